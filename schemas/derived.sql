@@ -1,0 +1,403 @@
+-- The library: what queries/derive/<table>.sql fills. Keyed by (drive_id, ego_id) unless it is a property of the map or of any actor.
+-- What is present but cannot be placed is a row with NULL, never an absent row.
+
+-- ---- the map, prepared once per environment
+
+CREATE TABLE lane_segment (
+    environment_id VARCHAR NOT NULL,  -- the map
+    lanelet_id VARCHAR NOT NULL,      -- the lanelet
+    k INTEGER NOT NULL,               -- segment from point k to k + 1
+    s0_m DOUBLE NOT NULL,             -- lanelet station of its start
+    len_m DOUBLE NOT NULL,            -- its length along the centre line
+    x0_m DOUBLE NOT NULL,             -- start
+    y0_m DOUBLE NOT NULL,             -- start
+    tx0 DOUBLE NOT NULL,              -- unit tangent at the start
+    ty0 DOUBLE NOT NULL,              -- unit tangent at the start
+    hw0_m DOUBLE NOT NULL,            -- half width at the start
+    x1_m DOUBLE NOT NULL,             -- end
+    y1_m DOUBLE NOT NULL,             -- end
+    tx1 DOUBLE NOT NULL,              -- unit tangent at the end
+    ty1 DOUBLE NOT NULL,              -- unit tangent at the end
+    hw1_m DOUBLE NOT NULL             -- half width at the end
+);
+
+CREATE TABLE lane_cell (
+    environment_id VARCHAR NOT NULL,  -- the map
+    cell BIGINT NOT NULL,             -- 4 m grid cell that the segment's lane area may touch
+    lanelet_id VARCHAR NOT NULL,      -- the lanelet
+    k INTEGER NOT NULL                -- its segment
+);
+
+-- ---- time, and what the drive can tell
+
+CREATE TABLE clock (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    period_ns BIGINT NOT NULL,        -- median time between the ego's samples
+    max_gap_ns BIGINT NOT NULL,       -- samples closer than this are continuous (2.5 periods by default)
+    t_start_ns BIGINT NOT NULL,       -- the ego's first sample
+    t_end_ns BIGINT NOT NULL          -- the ego's last sample
+);
+
+CREATE TABLE step (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- a sample of the ego
+    k INTEGER NOT NULL,               -- 0.. in time order
+    dt_ns BIGINT,                     -- time since the previous step; NULL: the first
+    seg INTEGER NOT NULL              -- 0.., one more after each hole longer than max_gap_ns
+);
+
+CREATE TABLE capability (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    signal VARCHAR NOT NULL,          -- what a rule may require: map, registration, handedness, lane_types, markings, speed_limits, indicator, brake_light, dimensions, objects, exit_signs, ...
+    available BOOLEAN NOT NULL,       -- the log and map give it
+    reason VARCHAR NOT NULL           -- what is missing, or where it is from
+);
+
+CREATE TABLE registration (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    n_steps BIGINT NOT NULL,          -- ego steps with a position
+    n_on_lane BIGINT NOT NULL,        -- of them, centre on a drivable lane
+    n_moving BIGINT NOT NULL,         -- of those on a lane, moving faster than 1 m/s
+    n_with_direction BIGINT NOT NULL, -- of the moving ones, heading within 90 degrees of the lane's direction
+    lateral_median_m DOUBLE,          -- median distance from the centre line of the lane; NULL: never on a lane
+    ok BOOLEAN NOT NULL,              -- good enough for rules that need the map
+    reason VARCHAR NOT NULL           -- why, or why not
+);
+
+-- ---- where everybody is
+
+CREATE TABLE state_dynamics (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    actor_id VARCHAR NOT NULL,        -- the actor
+    t_ns BIGINT NOT NULL,             -- time stamp
+    x_m DOUBLE,                       -- box centre
+    y_m DOUBLE,                       -- box centre
+    yaw_rad DOUBLE,                   -- heading
+    speed_mps DOUBLE,                 -- length of the velocity vector
+    accel_mps2 DOUBLE,                -- backward difference of speed at the log's own rate, unfiltered; NULL: first sample or after a hole
+    travel_m DOUBLE,                  -- way made since the actor's first sample
+    length_m DOUBLE,                  -- box
+    width_m DOUBLE,                   -- box
+    actor_class VARCHAR,              -- see actor
+    indicator VARCHAR                 -- see actor_state
+);
+
+CREATE TABLE lane_occupancy (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    actor_id VARCHAR NOT NULL,        -- the actor
+    t_ns BIGINT NOT NULL,             -- time stamp
+    lanelet_id VARCHAR,               -- a lanelet that contains the box centre, one row each; NULL: on none, or no position
+    s_m DOUBLE,                       -- station of the centre along it
+    d_m DOUBLE,                       -- offset from its centre line, left of travel positive
+    half_width_m DOUBLE,              -- half its width there
+    heading_diff_rad DOUBLE,          -- actor's heading against the lane's direction, -pi..pi
+    drivable BOOLEAN                  -- see lanelet
+);
+
+CREATE TABLE ego_lane (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step
+    lanelet_id VARCHAR,               -- the drivable lanelet it is on, one per step; in junctions the one that its way leads through; NULL: none
+    s_m DOUBLE,                       -- station along it
+    d_m DOUBLE,                       -- offset from its centre line, left of travel positive
+    half_width_m DOUBLE,              -- half its width there
+    with_direction BOOLEAN            -- heading within 90 degrees of the lane's direction
+);
+
+CREATE TABLE chain (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    chain_id INTEGER NOT NULL,        -- 0.. in time order; a new one with every change to another running lane
+    seq INTEGER NOT NULL,             -- order along the chain, from its far end behind
+    lanelet_id VARCHAR NOT NULL,      -- the lanelet
+    s_start_m DOUBLE NOT NULL,        -- chain station of its start; 0 = start of the first lanelet the ego was on
+    driven BOOLEAN NOT NULL           -- the ego drove it; else continued straight on
+);
+
+CREATE TABLE corridor (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    chain_id INTEGER NOT NULL,        -- the running chain
+    seq INTEGER NOT NULL,             -- order along the chain
+    k INTEGER NOT NULL,               -- segment within the lanelet
+    lanelet_id VARCHAR NOT NULL,      -- the lanelet
+    s0_m DOUBLE NOT NULL,             -- chain station of the segment's start
+    len_m DOUBLE NOT NULL,            -- its length
+    x0_m DOUBLE NOT NULL,             -- start
+    y0_m DOUBLE NOT NULL,             -- start
+    tx0 DOUBLE NOT NULL,              -- unit tangent at the start
+    ty0 DOUBLE NOT NULL,              -- unit tangent at the start
+    hw0_m DOUBLE NOT NULL,            -- half width of the running lane at the start
+    x1_m DOUBLE NOT NULL,             -- end
+    y1_m DOUBLE NOT NULL,             -- end
+    tx1 DOUBLE NOT NULL,              -- unit tangent at the end
+    ty1 DOUBLE NOT NULL,              -- unit tangent at the end
+    hw1_m DOUBLE NOT NULL,            -- half width of the running lane at the end
+    over_width_m DOUBLE,              -- width of the lane beside it on the overtaking side; through a junction, that of the lane before or after it; NULL: there is none
+    over_against BOOLEAN,             -- that lane is driven the other way
+    side INTEGER                      -- overtaking side: 1 left (right-hand traffic), -1 right; NULL: handedness unknown
+);
+
+CREATE TABLE ego_corridor (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    chain_id INTEGER NOT NULL,        -- a running chain whose strip the ego is in
+    t_ns BIGINT NOT NULL,             -- the step
+    s_m DOUBLE NOT NULL,              -- chain station of the box centre
+    d_m DOUBLE NOT NULL,              -- offset of the centre from the running lane's centre line, left positive
+    over_out_m DOUBLE,                -- furthest corner beyond the boundary towards the overtaking lane; negative: inside
+    over_in_m DOUBLE,                 -- nearest corner beyond that boundary; positive: wholly over it
+    near_out_m DOUBLE,                -- furthest corner beyond the other boundary
+    half_width_m DOUBLE NOT NULL,     -- half width of the running lane at the centre's station
+    over_width_m DOUBLE,              -- see corridor
+    over_against BOOLEAN,             -- see corridor
+    side INTEGER,                     -- see corridor
+    heading_diff_rad DOUBLE           -- ego's heading against the corridor, -pi..pi
+);
+
+CREATE TABLE ego_state (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step
+    x_m DOUBLE,                       -- box centre
+    y_m DOUBLE,                       -- box centre
+    yaw_rad DOUBLE,                   -- heading
+    speed_mps DOUBLE,                 -- speed
+    accel_mps2 DOUBLE,                -- see state_dynamics
+    travel_m DOUBLE,                  -- way made since the first step
+    length_m DOUBLE,                  -- box
+    width_m DOUBLE,                   -- box
+    indicator VARCHAR,                -- off, left, right, hazard; NULL: not known
+    lanelet_id VARCHAR,               -- see ego_lane
+    with_direction BOOLEAN,           -- see ego_lane
+    in_junction BOOLEAN,              -- on a junction's lanelet; NULL: on none
+    road_type VARCHAR,                -- of the lanelet; NULL: the map does not say
+    limit_mps DOUBLE,                 -- speed limit where it is; NULL: the map does not say
+    chain_id INTEGER,                 -- its running chain at this step; NULL: none
+    s_m DOUBLE,                       -- chain station of the centre
+    d_m DOUBLE,                       -- offset from the running lane's centre line, left positive
+    front_s_m DOUBLE,                 -- chain station of the front bumper
+    rear_s_m DOUBLE,                  -- chain station of the rear bumper
+    lat_half_m DOUBLE,                -- half the extent of the box across the corridor
+    heading_diff_rad DOUBLE           -- heading against the corridor
+);
+
+CREATE TABLE pair (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the ego's step
+    object_id VARCHAR NOT NULL,       -- an actor present: one row per step from its first to its last sample
+    actor_class VARCHAR,              -- see actor
+    x_m DOUBLE,                       -- its box centre; NULL: present but not placed (no position, stale, or a hole in its track)
+    y_m DOUBLE,                       -- its box centre
+    yaw_rad DOUBLE,                   -- its heading
+    speed_mps DOUBLE,                 -- its speed
+    accel_mps2 DOUBLE,                -- see state_dynamics
+    travel_m DOUBLE,                  -- see state_dynamics
+    length_m DOUBLE,                  -- box
+    width_m DOUBLE,                   -- box
+    distance_m DOUBLE,                -- centre to centre
+    clearance_m DOUBLE,               -- box to box; negative: depth of overlap; beyond 30 m a lower bound
+    clearance_is_bound BOOLEAN,       -- clearance_m is only a lower bound
+    s_m DOUBLE,                       -- station of its centre on the ego's running chain; NULL: not in the corridor's strip
+    d_m DOUBLE,                       -- its offset from the running lane's centre line, left positive
+    front_s_m DOUBLE,                 -- its furthest station along the ego's direction
+    rear_s_m DOUBLE,                  -- its nearest
+    lat_half_m DOUBLE,                -- half the extent of its box across the corridor
+    heading_diff_rad DOUBLE,          -- its heading against the corridor, -pi..pi
+    half_width_m DOUBLE,              -- half width of the running lane at its station
+    over_width_m DOUBLE,              -- see corridor
+    over_against BOOLEAN,             -- see corridor
+    on_lane BOOLEAN                   -- its centre is on some drivable lanelet; NULL: not placed, or no map
+);
+
+CREATE TABLE lost_object (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    object_id VARCHAR NOT NULL,       -- an actor whose track ends (or begins) while it could still (or already) have been there
+    t_from_ns BIGINT NOT NULL,        -- unknown from here
+    t_to_ns BIGINT NOT NULL,          -- to here
+    reason VARCHAR NOT NULL           -- lost_near_ego, lost_in_range, lost_on_road, appeared_near_ego, appeared_on_road
+);
+
+CREATE TABLE unplaced (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step
+    n BIGINT NOT NULL,                -- vehicles that may be on the road ahead and cannot be placed on it
+    object_id VARCHAR NOT NULL,       -- one of them
+    reason VARCHAR NOT NULL           -- why, for a person
+);
+
+CREATE TABLE lead (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step
+    object_id VARCHAR,                -- nearest vehicle ahead in the running lane; NULL: nobody there; no row: cannot be told
+    gap_m DOUBLE,                     -- bumper to bumper along the corridor
+    speed_mps DOUBLE                  -- its speed
+);
+
+-- ---- the overtake (paper, Appendix A)
+
+CREATE TABLE profile (
+    profile VARCHAR NOT NULL,         -- relaxed, nominal, aggressive, observed, or a user's own
+    style INTEGER NOT NULL,           -- 0 = least aggressive
+    pull_out_angle_rad DOUBLE,        -- beta; NULL for observed
+    cut_in_angle_rad DOUBLE,          -- theta
+    pull_out_headroom_m DOUBLE,       -- ego front to VBP rear when pulling out starts
+    cut_in_clearance_m DOUBLE,        -- VBP front to ego rear when cutting in starts
+    v_min_mps DOUBLE,                 -- speed range that it is meant for
+    v_max_mps DOUBLE,                 -- speed range that it is meant for
+    selected BOOLEAN NOT NULL         -- asked for in this run
+);
+
+CREATE TABLE overtake (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- 0.. in time order; each vehicle passed in one go is one more
+    chain_id INTEGER NOT NULL,        -- the running chain
+    opposing BOOLEAN,                 -- the overtaking lane is driven the other way; NULL: no lane beside, or unknown
+    side INTEGER NOT NULL,            -- 1 left, -1 right
+    vbp_id VARCHAR NOT NULL,          -- the vehicle being passed
+    t0_ns BIGINT NOT NULL,            -- first step with a corner more than 0.05 m over the boundary
+    t1_ns BIGINT,                     -- first step wholly in the overtaking lane
+    t2_ns BIGINT,                     -- lateral speed turns back
+    t3_ns BIGINT,                     -- first step wholly back in the running lane
+    t_end_ns BIGINT NOT NULL,         -- t3, or the last step of the excursion
+    passed BOOLEAN NOT NULL,          -- the ego's front got past the VBP's front
+    status VARCHAR NOT NULL,          -- completed, aborted, truncated (the log or the corridor ends first), lane_change (stayed over)
+    n_unplaced BIGINT NOT NULL,       -- vehicles at t0 that may be oncoming and cannot be placed
+    unplaced_reason VARCHAR,          -- which and why
+    v_av_mps DOUBLE,                  -- ego's speed at t0
+    v_vbp_mps DOUBLE,                 -- VBP's speed at t0
+    l_av_m DOUBLE,                    -- ego's length
+    l_vbp_m DOUBLE,                   -- VBP's length
+    lane_width_m DOUBLE,              -- w_L, width of the running lane at t0
+    vbp_gap_m DOUBLE,                 -- ego front to VBP rear at t0, along the corridor
+    t2_gap_m DOUBLE,                  -- VBP front to ego rear at t2
+    t3_gap_m DOUBLE,                  -- VBP front to ego rear at t3
+    v_vbp_t3_mps DOUBLE,              -- VBP's speed at t3
+    ov_id VARCHAR,                    -- nearest oncoming vehicle at t0 on the overtaking chain, or on its way to it; NULL: none seen
+    da_m DOUBLE,                      -- distance ahead at t0; without an OV the sight line (NULL: unlimited)
+    v_ov_mps DOUBLE,                  -- OV's speed at t0; without an OV the speed limit
+    pull_out_angle_rad DOUBLE,        -- observed: atan of lateral over longitudinal way from t0 to t1
+    cut_in_angle_rad DOUBLE           -- observed: the same from t2 to t3
+);
+
+CREATE TABLE overtake_sda (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- see overtake
+    profile VARCHAR NOT NULL,         -- see profile; every one, selected or not
+    t0_ns BIGINT NOT NULL,            -- see overtake
+    da_m DOUBLE,                      -- distance ahead, NULL: unknown
+    at_least BOOLEAN NOT NULL,        -- da_m is only a lower bound (a sight line)
+    nobody BOOLEAN NOT NULL,          -- ground truth, every vehicle placed, no OV: the road is free as far as it goes
+    sda_m DOUBLE,                     -- safe distance ahead; NULL: undefined
+    spare_m DOUBLE,                   -- da_m - sda_m
+    spare_s DOUBLE,                   -- the time in which it closes, at v_AV + v_OV
+    zone VARCHAR,                     -- A unsafe, B under 0.5 s, C 0.5 to 2.5 s, D over 2.5 s; NULL: unknown
+    reason VARCHAR                    -- why sda_m or da_m is NULL
+);
+
+CREATE TABLE overtake_step (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- see overtake
+    t_ns BIGINT NOT NULL,             -- a step from t0 to t_end
+    stage VARCHAR NOT NULL,           -- pulling_out, passing, cutting_in
+    vbp_id VARCHAR NOT NULL,          -- the vehicle being passed
+    ov_id VARCHAR,                    -- nearest oncoming vehicle at this step; NULL: none
+    ov_known BOOLEAN NOT NULL,        -- whether there is one can be told at this step
+    sd_av_m DOUBLE,                   -- stopping distance of the ego: length of its danger space
+    sd_ov_m DOUBLE,                   -- of the oncoming vehicle
+    vbp_in_ds_av_m DOUBLE,            -- along the corridor, how far the VBP is inside the ego's danger space (negative: clear of it by that much)
+    ov_in_ds_av_m DOUBLE,             -- the OV inside the ego's
+    av_in_ds_ov_m DOUBLE,             -- the ego inside the OV's
+    ds_overlap_m DOUBLE               -- the two danger spaces inside each other
+);
+
+CREATE TABLE opportunity (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- 0.. in time order
+    object_id VARCHAR NOT NULL,       -- the slower vehicle ahead
+    profile VARCHAR NOT NULL,         -- see profile (not observed)
+    t_start_ns BIGINT NOT NULL,       -- held up from here
+    t_end_ns BIGINT NOT NULL,         -- to here
+    t_best_ns BIGINT,                 -- the step with the most spare distance; NULL: never known
+    da_m DOUBLE,                      -- distance ahead there; NULL: unlimited or unknown
+    sda_m DOUBLE,                     -- safe distance ahead there
+    spare_s DOUBLE,                   -- time in which the spare distance closes
+    zone VARCHAR,                     -- A to D at that step; NULL: unknown
+    taken BOOLEAN NOT NULL            -- an overtake of that vehicle began in it
+);
+
+-- ---- crossing boundaries, signalling, exits
+
+CREATE TABLE lane_departure (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- 0.. in time order
+    chain_id INTEGER NOT NULL,        -- the running chain that is left
+    t_ns BIGINT NOT NULL,             -- first step with a corner more than 0.05 m over the boundary
+    t_end_ns BIGINT NOT NULL,         -- last step over it
+    side VARCHAR NOT NULL,            -- left or right
+    max_out_m DOUBLE NOT NULL,        -- how far the furthest corner got
+    changed BOOLEAN NOT NULL,         -- the ego's centre crossed too: a manoeuvre, not a wobble
+    from_lanelet_id VARCHAR,          -- lanelet at the step before
+    to_lanelet_id VARCHAR             -- lanelet that the centre came to; NULL: none
+);
+
+CREATE TABLE indicator_on (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- 0.. in time order
+    side VARCHAR NOT NULL,            -- left or right
+    t_on_ns BIGINT NOT NULL,          -- first step with it on, the step before being off or the other side
+    t_off_ns BIGINT NOT NULL,         -- last step with it on
+    at_log_start BOOLEAN NOT NULL     -- was on when the log began: t_on_ns is not its start
+);
+
+CREATE TABLE exit_lane (
+    environment_id VARCHAR NOT NULL,  -- the map
+    lanelet_id VARCHAR NOT NULL,      -- a lanelet of a lane that leaves the main carriageway
+    from_id VARCHAR,                  -- the through lanelet beside it; NULL: it branches off without one
+    side VARCHAR NOT NULL             -- on which side it leaves: left or right
+);
+
+CREATE TABLE exit_taken (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- 0.. in time order
+    t_ns BIGINT NOT NULL,             -- first step with a corner more than 0.05 m over the exit lane's boundary
+    side VARCHAR NOT NULL,            -- left or right
+    lanelet_id VARCHAR NOT NULL,      -- the exit lanelet
+    t_sign_ns BIGINT,                 -- first step at or past the last exit sign before it; NULL: passed before the log began
+    sign_id VARCHAR                   -- that sign; NULL: the map has none on the way
+);
+
+CREATE TABLE exit_passed (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- 0.. in time order
+    lanelet_id VARCHAR NOT NULL,      -- the exit lanelet beside the ego's way
+    side VARCHAR NOT NULL,            -- left or right
+    t_near_ns BIGINT NOT NULL,        -- first step beside it, or on it
+    t_gore_ns BIGINT,                 -- first step past its end, where the choice is made; NULL: the log ends before
+    taken BOOLEAN                     -- the ego was in the exit lane at its end; NULL: not reached
+);
+
+CREATE TABLE exposure (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    km DOUBLE NOT NULL,               -- way made
+    hours DOUBLE NOT NULL,            -- time, without the holes
+    n_steps BIGINT NOT NULL           -- ego steps
+);

@@ -1,0 +1,137 @@
+-- The road, one format for all maps. Keyed by environment_id (map hash, offset and handedness), so a thousand drives share one.
+-- A lanelet is one lane of one lane section. Its points run in the direction of travel, so left and right are the driver's.
+
+CREATE TABLE environment (
+    environment_id VARCHAR NOT NULL,  -- <map stem>-<first 8 hex of sha256><offset, if any><@lht or @rht>
+    name VARCHAR NOT NULL,            -- file name of the map, or the log it was embedded in
+    sha256 VARCHAR NOT NULL,          -- hash of the map's bytes
+    format VARCHAR NOT NULL,          -- opendrive, lanelet2, commonroad, osi
+    offset_x_m DOUBLE NOT NULL,       -- added to the map's coordinates
+    offset_y_m DOUBLE NOT NULL,       -- added to the map's coordinates
+    handedness VARCHAR NOT NULL,      -- lht or rht: the side of the road that is driven on
+    handedness_source VARCHAR NOT NULL, -- option, attribute, junctions, traces, default: how it was found (default: direction is a guess)
+    geo_reference VARCHAR             -- projection string, if the map has one
+);
+
+CREATE TABLE lanelet (
+    environment_id VARCHAR NOT NULL,  -- the map
+    lanelet_id VARCHAR NOT NULL,      -- OpenDRIVE: road.section.lane
+    road_id VARCHAR NOT NULL,         -- the road it belongs to
+    section INTEGER NOT NULL,         -- index of the lane section along the road, from 0
+    lane_no INTEGER NOT NULL,         -- OpenDRIVE lane number (negative: right of the reference line)
+    lane_type VARCHAR NOT NULL,       -- driving, entry, exit, onRamp, offRamp, connectingRamp, bidirectional, bus, taxi, HOV, biking, sidewalk, walking, shoulder, stop, parking, border, median, restricted, curb, none, tram, rail, ...
+    drivable BOOLEAN NOT NULL,        -- motor vehicles may drive here (by lane_type)
+    bidirectional BOOLEAN NOT NULL,   -- driven in both directions; its points then run as the road's right-hand side would
+    along_road INTEGER NOT NULL,      -- 1: direction of travel is that of the reference line, -1: against it
+    junction_id VARCHAR,              -- the junction it is a connecting lane of; NULL: none
+    road_type VARCHAR,                -- motorway, rural, town, lowSpeed, pedestrian, bicycle, ...; NULL: the map does not say
+    length_m DOUBLE NOT NULL,         -- along the centre line
+    width_m DOUBLE NOT NULL,          -- mean width
+    area_m2 DOUBLE NOT NULL,          -- area between the bounds
+    left_id VARCHAR,                  -- the lanelet beside it on the driver's left; NULL: none
+    left_against BOOLEAN,             -- that one is driven the other way
+    right_id VARCHAR,                 -- the lanelet beside it on the driver's right; NULL: none
+    right_against BOOLEAN             -- that one is driven the other way
+);
+
+CREATE TABLE lane_point (
+    environment_id VARCHAR NOT NULL,  -- the map
+    lanelet_id VARCHAR NOT NULL,      -- the lanelet
+    k INTEGER NOT NULL,               -- 0.. in the direction of travel; at least two per lanelet
+    s_m DOUBLE NOT NULL,              -- distance from the lanelet's start along its centre line
+    x_m DOUBLE NOT NULL,              -- centre line
+    y_m DOUBLE NOT NULL,              -- centre line
+    z_m DOUBLE,                       -- elevation of the reference line; NULL: unknown
+    tx DOUBLE NOT NULL,               -- unit tangent in the direction of travel
+    ty DOUBLE NOT NULL,               -- unit tangent in the direction of travel
+    half_width_m DOUBLE NOT NULL,     -- half the distance between the bounds
+    left_x_m DOUBLE NOT NULL,         -- left bound
+    left_y_m DOUBLE NOT NULL,         -- left bound
+    right_x_m DOUBLE NOT NULL,        -- right bound
+    right_y_m DOUBLE NOT NULL,        -- right bound
+    road_s_m DOUBLE NOT NULL          -- station on the road's reference line
+);
+
+CREATE TABLE lane_link (
+    environment_id VARCHAR NOT NULL,  -- the map
+    from_id VARCHAR NOT NULL,         -- a lanelet
+    to_id VARCHAR NOT NULL,           -- one that continues it in the direction of travel
+    turn_rad DOUBLE NOT NULL          -- heading change over to_id, left positive: smallest = straight on
+);
+
+CREATE TABLE lane_boundary (
+    environment_id VARCHAR NOT NULL,  -- the map
+    lanelet_id VARCHAR NOT NULL,      -- the lanelet
+    side VARCHAR NOT NULL,            -- left or right of the driver
+    s_start_m DOUBLE NOT NULL,        -- from here, along the lanelet's centre line
+    s_end_m DOUBLE NOT NULL,          -- to here
+    marking VARCHAR,                  -- solid, broken, solid_solid, solid_broken, broken_solid, broken_broken, botts_dots, grass, curb, none; first named = the side of the lane's own reference; NULL: the map does not say
+    color VARCHAR,                    -- standard, white, yellow, ...; NULL: the map does not say
+    lane_change VARCHAR               -- none, both, increase, decrease as the map says; NULL: it does not
+);
+
+CREATE TABLE speed_limit (
+    environment_id VARCHAR NOT NULL,  -- the map
+    lanelet_id VARCHAR NOT NULL,      -- the lanelet
+    s_start_m DOUBLE NOT NULL,        -- from here, along the lanelet's centre line
+    s_end_m DOUBLE NOT NULL,          -- to here
+    limit_mps DOUBLE,                 -- the limit; NULL: said to have none
+    source VARCHAR NOT NULL           -- lane, road_type, sign
+);
+
+CREATE TABLE traffic_signal (
+    environment_id VARCHAR NOT NULL,  -- the map
+    signal_id VARCHAR NOT NULL,       -- id in the map
+    kind VARCHAR,                     -- traffic_light, stop, give_way, speed_limit, exit, no_overtaking, ...; NULL: not recognised
+    country VARCHAR,                  -- code list it is from, lower case
+    type VARCHAR,                     -- code
+    subtype VARCHAR,                  -- code
+    value DOUBLE,                     -- the number on it, in the map's own unit
+    unit VARCHAR,                     -- that unit
+    dynamic BOOLEAN NOT NULL,         -- changes its state
+    road_id VARCHAR NOT NULL,         -- road it is listed on
+    road_s_m DOUBLE NOT NULL,         -- station on that road
+    lanelet_id VARCHAR NOT NULL,      -- a lanelet it holds for; one row each
+    lane_s_m DOUBLE NOT NULL,         -- where it stands, along that lanelet
+    x_m DOUBLE NOT NULL,              -- where it stands
+    y_m DOUBLE NOT NULL               -- where it stands
+);
+
+CREATE TABLE stop_line (
+    environment_id VARCHAR NOT NULL,  -- the map
+    stop_line_id VARCHAR NOT NULL,    -- id in the map
+    lanelet_id VARCHAR NOT NULL,      -- a lanelet it crosses; one row each
+    lane_s_m DOUBLE NOT NULL,         -- where, along that lanelet
+    source VARCHAR NOT NULL           -- object, signal: what in the map says so
+);
+
+CREATE TABLE road_object (
+    environment_id VARCHAR NOT NULL,  -- the map
+    object_id VARCHAR NOT NULL,       -- id in the map
+    kind VARCHAR NOT NULL,            -- crossing, stop_line, parking_space, obstacle, barrier, pole, tree, building, island, marking, other
+    name VARCHAR,                     -- the map's name for it
+    road_id VARCHAR NOT NULL,         -- road it is listed on
+    road_s_m DOUBLE NOT NULL,         -- station on that road
+    x_m DOUBLE NOT NULL,              -- where it stands
+    y_m DOUBLE NOT NULL,              -- where it stands
+    outline_x_m DOUBLE[],             -- its outline, counter-clockwise; NULL: a point
+    outline_y_m DOUBLE[]              -- its outline
+);
+
+CREATE TABLE crossing (
+    environment_id VARCHAR NOT NULL,  -- the map
+    crossing_id VARCHAR NOT NULL,     -- id in the map
+    lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet it lies across; one row each
+    s_start_m DOUBLE NOT NULL,        -- from here, along that lanelet
+    s_end_m DOUBLE NOT NULL,          -- to here
+    kind VARCHAR                      -- zebra, signalled, other; NULL: the map does not say
+);
+
+CREATE TABLE map_quality (
+    environment_id VARCHAR NOT NULL,  -- the map
+    check_id VARCHAR NOT NULL,        -- invalid_lane, missing_link, handedness_disagrees, handedness_default, unknown_geometry, ...
+    severity VARCHAR NOT NULL,        -- info, warning, error
+    lanelet_id VARCHAR,               -- the lanelet or road concerned; NULL: the whole map
+    n BIGINT NOT NULL,                -- how often
+    message VARCHAR NOT NULL          -- what was seen and what follows from it
+);

@@ -1,0 +1,69 @@
+-- The trace as recorded: what ingest writes and nothing later changes.
+-- Frame: right-handed map metres, box centres. Time: integer nanoseconds of the log's own clock. Everything else SI.
+
+CREATE TABLE data_log (
+    drive_id VARCHAR NOT NULL,        -- <file stem>-<first 8 hex of the content's sha256>
+    file_name VARCHAR NOT NULL,       -- name of the log, without its folder
+    sha256 VARCHAR NOT NULL,          -- hash of the log's bytes
+    format VARCHAR NOT NULL,          -- reader that read it: osi-mcap, canonical-parquet, or the mapping's name
+    environment_id VARCHAR,           -- the map this drive is judged on; NULL: no map
+    t_start_ns BIGINT,                -- first time stamp of any actor
+    t_end_ns BIGINT,                  -- last time stamp of any actor
+    utc_start_ns BIGINT,              -- UTC of t_start_ns where the log says it, else NULL
+    n_states BIGINT NOT NULL,         -- rows of actor_state
+    sensor_range_m DOUBLE,            -- range within which the recorder sees every actor; NULL: ground truth, unlimited
+    has_indicator BOOLEAN NOT NULL,   -- the ego's indicator is known in at least one state
+    has_brake_light BOOLEAN NOT NULL, -- the ego's brake light is known in at least one state
+    has_acceleration BOOLEAN NOT NULL -- acceleration was recorded, not derived
+);
+
+CREATE TABLE actor (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    actor_id VARCHAR NOT NULL,        -- the log's own id of the actor, as text
+    actor_class VARCHAR,              -- car, van, truck, bus, motorcycle, bicycle, trailer, vehicle (kind not said), pedestrian, animal, object; NULL: unknown
+    length_m DOUBLE,                  -- box length; NULL: unknown
+    width_m DOUBLE,                   -- box width; NULL: unknown
+    height_m DOUBLE,                  -- box height; NULL: unknown
+    is_ego BOOLEAN NOT NULL           -- selected as ego for this run
+);
+
+CREATE TABLE actor_state (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    actor_id VARCHAR NOT NULL,        -- the actor
+    t_ns BIGINT NOT NULL,             -- time stamp
+    x_m DOUBLE,                       -- box centre, east; NULL: present but not placed
+    y_m DOUBLE,                       -- box centre, north
+    z_m DOUBLE,                       -- box centre, up
+    yaw_rad DOUBLE,                   -- heading, counter-clockwise from east
+    vx_mps DOUBLE,                    -- velocity east (world frame)
+    vy_mps DOUBLE,                    -- velocity north (world frame)
+    ax_mps2 DOUBLE,                   -- acceleration east as recorded; NULL: not recorded
+    ay_mps2 DOUBLE,                   -- acceleration north as recorded; NULL: not recorded
+    indicator VARCHAR,                -- off, left, right, hazard; NULL: not known
+    brake_light VARCHAR               -- off, on, strong; NULL: not known
+);
+
+CREATE TABLE signal_state (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    signal_id VARCHAR NOT NULL,       -- traffic signal, by the map's or the log's id
+    t_ns BIGINT NOT NULL,             -- time stamp
+    state VARCHAR                     -- red, red_amber, amber, green, flashing, off; NULL: not known
+);
+
+CREATE TABLE declared_event (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    actor_id VARCHAR NOT NULL,        -- who declared it
+    t_ns BIGINT NOT NULL,             -- when
+    event VARCHAR NOT NULL,           -- what, such as mirror_check or overtake_go
+    value VARCHAR                     -- its value as text, if any
+);
+
+CREATE TABLE quality (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    check_id VARCHAR NOT NULL,        -- which check: duplicate_state, velocity_mismatch, yaw_mismatch, length_below_width, gap, clock_jump, not_finite, ...
+    severity VARCHAR NOT NULL,        -- info, warning, error
+    actor_id VARCHAR,                 -- the actor concerned; NULL: the whole drive
+    n BIGINT NOT NULL,                -- how many samples
+    t_first_ns BIGINT,                -- the first of them
+    message VARCHAR NOT NULL          -- what was seen and what follows from it, in one sentence
+);

@@ -1,0 +1,70 @@
+-- What evaluation writes.
+
+CREATE TABLE verdict (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego; '' where the drive has none
+    rule_id VARCHAR NOT NULL,         -- pack and file name of the rule
+    rule_version VARCHAR NOT NULL,    -- hash of the rule's file
+    kind VARCHAR NOT NULL,            -- invariant, execution, precondition, postcondition
+    profile VARCHAR,                  -- profile judged against; NULL: the rule has none
+    severity VARCHAR NOT NULL,        -- critical, major, minor
+    object_id VARCHAR,                -- the other actor; NULL: none
+    occurrence INTEGER NOT NULL,      -- 0.. per drive, ego, rule, profile and object, in time order
+    ref_id INTEGER,                   -- the assertion reference point, 0.. per drive, ego and rule; NULL: invariant
+    t_ref_ns BIGINT,                  -- its time; NULL: invariant
+    t_start_ns BIGINT,                -- start of the judged interval
+    t_end_ns BIGINT,                  -- its end
+    t_worst_ns BIGINT,                -- earliest step with the least margin
+    verdict VARCHAR NOT NULL,         -- pass, fail, unknown, not_applicable, error
+    reason_code VARCHAR NOT NULL,     -- machine-readable reason
+    reason VARCHAR NOT NULL,          -- the same for a person
+    observed DOUBLE,                  -- value at the worst step
+    required DOUBLE,                  -- what it was held against
+    margin DOUBLE,                    -- signed distance to the threshold, positive = kept; NULL for sense = holds
+    unit VARCHAR,                     -- of observed, required and margin
+    near_miss BOOLEAN NOT NULL,       -- passed with less than near_margin
+    n_expected BIGINT NOT NULL,       -- steps that had to be judged
+    n_judged BIGINT NOT NULL,         -- steps that were
+    x_m DOUBLE,                       -- ego at the worst step
+    y_m DOUBLE,                       -- ego at the worst step
+    lanelet_id VARCHAR                -- ego's lanelet at the worst step
+);
+
+CREATE TABLE finding (
+    finding_id VARCHAR NOT NULL,      -- hash of drive content, ego, rule, profile, object and occurrence
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    rule_id VARCHAR NOT NULL,         -- the rule
+    rule_version VARCHAR NOT NULL,    -- hash of the rule's file
+    kind VARCHAR NOT NULL,            -- invariant, execution, precondition, postcondition
+    profile VARCHAR,                  -- profile judged against; NULL: the rule has none
+    severity VARCHAR NOT NULL,        -- critical, major, minor
+    object_id VARCHAR,                -- the other actor; NULL: none
+    occurrence INTEGER NOT NULL,      -- 0.. per drive, ego, rule, profile and object, in time order
+    ref_id INTEGER,                   -- the assertion reference point; NULL: invariant
+    t_start_ns BIGINT NOT NULL,       -- first failing step
+    t_end_ns BIGINT NOT NULL,         -- last failing step
+    t_worst_ns BIGINT NOT NULL,       -- earliest step with the least margin
+    reason VARCHAR NOT NULL,          -- for a person
+    observed DOUBLE,                  -- value at the worst step
+    required DOUBLE,                  -- what it was held against
+    margin DOUBLE,                    -- negative; NULL for sense = holds
+    unit VARCHAR,                     -- of observed, required and margin
+    x_m DOUBLE,                       -- ego at the worst step
+    y_m DOUBLE,                       -- ego at the worst step
+    lanelet_id VARCHAR                -- ego's lanelet at the worst step
+);
+
+CREATE TABLE margin (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    rule_id VARCHAR NOT NULL,         -- the rule
+    profile VARCHAR,                  -- profile judged against; NULL: the rule has none
+    object_id VARCHAR,                -- the other actor; NULL: none
+    ref_id INTEGER,                   -- the assertion reference point; NULL: invariant
+    t_ns BIGINT NOT NULL,             -- the judged step
+    observed DOUBLE,                  -- value at that step
+    required DOUBLE,                  -- what it was held against
+    margin DOUBLE,                    -- signed, positive = kept; NULL for sense = holds
+    holds BOOLEAN                     -- kept at this step; NULL: unknown
+);

@@ -1,0 +1,43 @@
+"""Errors a user can act on: what, where (file, topic, offset, rule), what to do next."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class ExitCode(IntEnum):
+    """Exit codes of the command line. Precedence: 130 > 75 > 2 > 1 > 4 > 3 > 0."""
+
+    OK = 0
+    FAILED = 1
+    USAGE = 2
+    LOSSY = 3
+    NOT_JUDGED = 4
+    TEMPFAIL = 75
+    INTERRUPTED = 130
+
+
+class DriveLintError(Exception):
+    """A mistake or a fault that has one clear line for the user; never shown with a traceback."""
+
+    exit_code: ExitCode = ExitCode.USAGE
+
+
+class UsageError(DriveLintError):
+    """The command line, a settings file or a mapping cannot be understood."""
+
+
+class RuleError(DriveLintError):
+    """A rule file is wrong: header, sections, parameters or SQL."""
+
+
+class MapError(DriveLintError):
+    """A map is missing, unreadable or of another place."""
+
+    exit_code = ExitCode.NOT_JUDGED
+
+
+class TraceError(DriveLintError):
+    """A log is missing, unreadable, or holds nothing that can be judged."""
+
+    exit_code = ExitCode.NOT_JUDGED

@@ -1,0 +1,18 @@
+"""Where the SQL lives: beside the repository's src/, or inside the installed wheel."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+from drivelint.errors import DriveLintError
+
+
+@cache
+def folder(name: str) -> Path:
+    """Return the folder `schemas` or `queries`, installed or from the repository."""
+    package = Path(__file__).parent
+    for root in (package / "_data", package.parent.parent):
+        if (root / name).is_dir():
+            return root / name
+    raise DriveLintError(f"folder {name!r} is missing from the installation at {package}: reinstall drivelint")

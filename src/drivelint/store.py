@@ -1,0 +1,92 @@
+"""The DuckDB database: opened offline with its spatial extension, its tables made from schemas/*.sql."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import TYPE_CHECKING
+
+import duckdb
+
+from drivelint.errors import DriveLintError
+from drivelint.resources import folder
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import pyarrow as pa
+
+_TABLE = re.compile(r"^CREATE TABLE (\w+) \(\n(.*?)^\);", re.DOTALL | re.MULTILINE)
+_COLUMN = re.compile(r"^    (\w+) .*?,?\s*-- (.+)$", re.MULTILINE)
+
+
+def connect(path: Path | None = None, *, threads: int | None = None, memory_limit: str | None = None) -> duckdb.DuckDBPyConnection:
+    """Open a database with spatial loaded from its wheel (no network) and every table of `schemas/` and macro created.
+
+    Errors: `DriveLintError` when the pinned extension cannot be loaded.
+    """
+    con = duckdb.connect(str(path) if path else ":memory:")
+    con.execute("SET allow_community_extensions=false")
+    con.execute("SET python_enable_replacements=false")
+    con.execute("SET enable_progress_bar=false")
+    con.execute("SET preserve_insertion_order=false")
+    if threads:
+        con.execute(f"SET threads={int(threads)}")
+    if memory_limit:
+        con.execute("SET memory_limit=?", [memory_limit])
+    load_spatial(con)
+    create_tables(con)
+    for macro in sorted((folder("queries") / "macros").glob("*.sql")):
+        con.execute(macro.read_text(encoding="utf-8"))
+    return con
+
+
+def load_spatial(con: duckdb.DuckDBPyConnection) -> None:
+    """Load the spatial extension from the `duckdb-extension-spatial` wheel of the same version."""
+    import duckdb_extension_spatial
+
+    wheel = next(iter(duckdb_extension_spatial.__path__))
+    for file in sorted(folder_glob(wheel, "spatial.duckdb_extension")):
+        try:
+            con.execute(f"LOAD '{str(file).replace(chr(39), chr(39) * 2)}'")
+        except duckdb.Error as error:
+            raise DriveLintError(
+                f"duckdb {duckdb.__version__} cannot load its spatial extension {file}: {error}; "
+                "install duckdb and duckdb-extension-spatial in the same version"
+            ) from error
+        return
+    raise DriveLintError(f"no spatial extension in {wheel}: reinstall duckdb-extension-spatial=={duckdb.__version__}")
+
+
+def folder_glob(root: str, name: str) -> list[Path]:
+    """Return every file called `name` below `root`."""
+    from pathlib import Path
+
+    return list(Path(root).rglob(name))
+
+
+@cache
+def schema() -> dict[str, dict[str, str]]:
+    """Return table -> column -> comment for every table of `schemas/*.sql`, in file order."""
+    tables: dict[str, dict[str, str]] = {}
+    for file in sorted(folder("schemas").glob("*.sql")):
+        for name, body in _TABLE.findall(file.read_text(encoding="utf-8")):
+            tables[name] = dict(_COLUMN.findall(body))
+    return tables
+
+
+def create_tables(con: duckdb.DuckDBPyConnection) -> None:
+    """Create every table of `schemas/*.sql`, its column comments kept in the database."""
+    for file in sorted(folder("schemas").glob("*.sql")):
+        con.execute(file.read_text(encoding="utf-8"))
+    for table, columns in schema().items():
+        con.execute(";".join(f"COMMENT ON COLUMN {table}.{c} IS '{text.replace(chr(39), chr(39) * 2)}'" for c, text in columns.items()))
+
+
+def insert(con: duckdb.DuckDBPyConnection, table: str, rows: pa.Table) -> None:
+    """Append an Arrow table by column name; a column that the table does not have is refused."""
+    con.register("_incoming", rows)
+    try:
+        con.execute(f"INSERT INTO {table} BY NAME SELECT * FROM _incoming")
+    finally:
+        con.unregister("_incoming")
