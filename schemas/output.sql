@@ -1,0 +1,49 @@
+-- What is written beside verdicts.parquet and findings.parquet: drives.parquet and rules.parquet.
+
+CREATE TABLE drive (
+    drive_id VARCHAR NOT NULL,        -- the drive; its file's stem where the file could not be read
+    file_name VARCHAR NOT NULL,       -- name of the log, without its folder
+    sha256 VARCHAR,                   -- hash of the log's bytes; NULL: could not be read
+    format VARCHAR,                   -- reader that read it; NULL: none could
+    environment_id VARCHAR,           -- the map it was judged on; NULL: no map
+    map_name VARCHAR,                 -- file name of that map
+    map_sha256 VARCHAR,               -- hash of that map's bytes
+    handedness VARCHAR,               -- lht or rht; NULL: no map
+    handedness_source VARCHAR,        -- option, attribute, junctions, traces, default
+    utc_start_ns BIGINT,              -- UTC of the first time stamp; NULL: the log does not say
+    t_start_ns BIGINT,                -- first time stamp of any actor, on the log's own clock
+    duration_s DOUBLE,                -- from the first to the last time stamp; NULL: no states
+    km DOUBLE NOT NULL,               -- way made, all egos together
+    n_states BIGINT NOT NULL,         -- actor states read
+    n_steps BIGINT NOT NULL,          -- ego steps, all egos together
+    n_egos BIGINT NOT NULL,           -- egos judged
+    status VARCHAR NOT NULL,          -- judged, not_judged
+    status_reason VARCHAR,            -- why it was not judged; NULL: it was
+    lossy BOOLEAN NOT NULL,           -- parts of the log were lost or salvaged: the verdicts stand on what was left
+    exposure STRUCT(ego_id VARCHAR, km DOUBLE, hours DOUBLE, n_steps BIGINT)[] NOT NULL, -- per ego: way, time without holes, steps
+    occasions STRUCT(rule_id VARCHAR, profile VARCHAR, n BIGINT)[] NOT NULL, -- per rule and profile: how often it applied (verdict rows but not_applicable)
+    quality STRUCT(check_id VARCHAR, severity VARCHAR, actor_id VARCHAR, n BIGINT, t_first_ns BIGINT, message VARCHAR)[] NOT NULL, -- data-quality findings of the log and its map
+    not_judged STRUCT(ego_id VARCHAR, signal VARCHAR, reason VARCHAR)[] NOT NULL -- signals that the log and map do not give: rules that require them are unknown
+);
+
+CREATE TABLE rule (
+    rule_id VARCHAR NOT NULL,         -- pack and file name of the rule
+    rule_version VARCHAR NOT NULL,    -- hash of the rule's file
+    pack VARCHAR NOT NULL,            -- ukhc, rss, comfort, ...
+    title VARCHAR NOT NULL,           -- what it asks for, in a few words
+    clause VARCHAR NOT NULL,          -- the clause it comes from
+    hypothesis VARCHAR NOT NULL,      -- the same as a question
+    kind VARCHAR NOT NULL,            -- invariant, execution, precondition, postcondition
+    subtype VARCHAR,                  -- temporal, physical; NULL: neither pre- nor postcondition
+    window_s DOUBLE,                  -- length of the period before or after the reference point; NULL: none
+    derivation VARCHAR NOT NULL,      -- direct, model
+    severity VARCHAR NOT NULL,        -- critical, major, minor
+    legal VARCHAR NOT NULL,           -- must, should
+    status VARCHAR NOT NULL,          -- draft, stable, deprecated; only stable rules gate
+    sense VARCHAR NOT NULL,           -- relation that must hold between observed and required
+    unit VARCHAR,                     -- of observed, required and margin
+    near_margin DOUBLE,               -- a pass with less is a near miss; NULL: none
+    requires VARCHAR[] NOT NULL,      -- signals without which it is unknown
+    profiles VARCHAR[] NOT NULL,      -- profiles it was judged against; empty: it has none
+    params STRUCT("name" VARCHAR, "value" DOUBLE, unit VARCHAR, overridden BOOLEAN)[] NOT NULL -- parameters as used
+);

@@ -1,0 +1,31 @@
+"""How the pipeline tells a person where it is, without knowing who listens."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+
+class Progress(Protocol):
+    """Listener of the pipeline: progress and diagnostics, never results."""
+
+    def stage(self, name: str, total: int | None = None) -> None:
+        """Begin a stage of `total` units of work (None: not known)."""
+
+    def advance(self, n: int = 1) -> None:
+        """Report `n` more units of the current stage done."""
+
+    def note(self, text: str) -> None:
+        """Say one line that a person should read while waiting."""
+
+
+class Silent:
+    """A `Progress` that nobody listens to."""
+
+    def stage(self, name: str, total: int | None = None) -> None:
+        """Ignore the stage."""
+
+    def advance(self, n: int = 1) -> None:
+        """Ignore the work done."""
+
+    def note(self, text: str) -> None:
+        """Ignore the note."""

@@ -1,0 +1,107 @@
+"""What a run comes to: its tables, its exit code with the reason, its files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.errors import ExitCode
+from drivelint.report.contract import FILES, conform
+from drivelint.report.files import parquet_bytes, publish
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+VERDICTS: Final = ("pass", "fail", "unknown", "not_applicable", "error")
+SEVERITIES: Final = ("critical", "major", "minor")
+
+
+class Outcome(NamedTuple):
+    """The exit code and, in one sentence, why."""
+
+    code: ExitCode
+    why: str
+
+
+@dataclass(frozen=True)
+class Result:
+    """The tables of one run, totally ordered, each with the columns of `schemas/verdict.sql` or `schemas/output.sql`.
+
+    `margins_file`: finished Parquet of every judged step, or None; `write` takes it over.
+    `fail_on`: critical, major, minor or never. `strict`: unknown is not good enough.
+    Errors: `DriveLintError` when a table lacks a column or has one too many.
+    """
+
+    verdicts: pa.Table
+    findings: pa.Table
+    drives: pa.Table
+    rules: pa.Table
+    margins_file: Path | None = None
+    fail_on: str = "critical"
+    strict: bool = False
+
+    def __post_init__(self) -> None:
+        for name, table in FILES.items():
+            object.__setattr__(self, name, conform(getattr(self, name), table))
+
+    @property
+    def lossy(self) -> bool:
+        """Some judged drive had lost parts of its log."""
+        return bool(pc.any(pc.and_(self.drives["lossy"], pc.equal(self.drives["status"], "judged"))).as_py())
+
+
+def outcome(result: Result) -> Outcome:
+    """Return the exit code of DESIGN.md, by its precedence 2 > 1 > 4 > 3 > 0, and why.
+
+    Only stable rules gate: a draft's failure or unknown is shown, never an exit code. A rule that erred is always 2.
+    """
+    gating = _rows_of(result.verdicts, result.rules.filter(pc.equal(result.rules["status"], "stable")))
+    if errors := _count(result.verdicts, "error"):
+        return Outcome(ExitCode.USAGE, f"{errors} verdicts are errors: a rule could not be run")
+    if failed := _failed(gating, result.fail_on):
+        return Outcome(ExitCode.FAILED, f"{failed} verdicts failed at or above severity {result.fail_on}")
+    if lost := int(pc.sum(pc.equal(result.drives["status"], "not_judged")).as_py() or 0):
+        return Outcome(ExitCode.NOT_JUDGED, f"{lost} of {result.drives.num_rows} drives could not be judged")
+    if result.strict and (unknown := _count(gating, "unknown")):
+        return Outcome(ExitCode.NOT_JUDGED, f"{unknown} verdicts are unknown and --strict is set")
+    if result.lossy:
+        return Outcome(ExitCode.LOSSY, "judged on lossy input: parts of a log were lost")
+    if result.fail_on == "never":
+        return Outcome(ExitCode.OK, "failures do not gate (--fail-on never)")
+    return Outcome(ExitCode.OK, f"nothing failed at or above severity {result.fail_on}")
+
+
+def exit_code(result: Result) -> ExitCode:
+    """Return the exit code of DESIGN.md for a finished run."""
+    return outcome(result).code
+
+
+def write(result: Result, out: Path) -> None:
+    """Write every result file of `check` into the folder `out`; `summary.json` appears last, when the others are there.
+
+    Same tables, same bytes. Errors: `OutputError` when the folder cannot be written.
+    """
+    from drivelint.report import junit, summary
+
+    contents = {f"{name}.parquet": parquet_bytes(getattr(result, name), table) for name, table in FILES.items()}
+    contents["junit.xml"] = junit.render(result)
+    contents["summary.json"] = summary.render(result)
+    publish(out, contents, {"margins.parquet": result.margins_file} if result.margins_file else None)
+
+
+def _count(verdicts: pa.Table, verdict: str) -> int:
+    return int(pc.sum(pc.equal(verdicts["verdict"], verdict)).as_py() or 0)
+
+
+def _rows_of(verdicts: pa.Table, rules: pa.Table) -> pa.Table:
+    return verdicts.filter(pc.is_in(verdicts["rule_id"], value_set=rules["rule_id"].combine_chunks()))
+
+
+def _failed(verdicts: pa.Table, fail_on: str) -> int:
+    if fail_on == "never":
+        return 0
+    gates = pa.array(SEVERITIES[: SEVERITIES.index(fail_on) + 1])
+    return _count(verdicts.filter(pc.is_in(verdicts["severity"], value_set=gates)), "fail")
