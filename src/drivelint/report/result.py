@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.errors import ExitCode
 from drivelint.report.contract import FILES, conform
+from drivelint.report.counts import SEVERITIES
 from drivelint.report.files import parquet_bytes, publish
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
-
-VERDICTS: Final = ("pass", "fail", "unknown", "not_applicable", "error")
-SEVERITIES: Final = ("critical", "major", "minor")
 
 
 class Outcome(NamedTuple):
@@ -58,20 +57,25 @@ def outcome(result: Result) -> Outcome:
 
     Only stable rules gate: a draft's failure or unknown is shown, never an exit code. A rule that erred is always 2.
     """
+    return next(_outcomes(result))
+
+
+def _outcomes(result: Result) -> Iterator[Outcome]:
+    """Yield what the run comes to, weightiest first."""
     gating = _rows_of(result.verdicts, result.rules.filter(pc.equal(result.rules["status"], "stable")))
     if errors := _count(result.verdicts, "error"):
-        return Outcome(ExitCode.USAGE, f"{errors} verdicts are errors: a rule could not be run")
+        yield Outcome(ExitCode.USAGE, f"{_many(errors, 'verdict')} in error: a rule could not be run")
     if failed := _failed(gating, result.fail_on):
-        return Outcome(ExitCode.FAILED, f"{failed} verdicts failed at or above severity {result.fail_on}")
+        yield Outcome(ExitCode.FAILED, f"{_many(failed, 'verdict')} failed at or above severity {result.fail_on}")
     if lost := int(pc.sum(pc.equal(result.drives["status"], "not_judged")).as_py() or 0):
-        return Outcome(ExitCode.NOT_JUDGED, f"{lost} of {result.drives.num_rows} drives could not be judged")
+        yield Outcome(ExitCode.NOT_JUDGED, f"{lost} of {_many(result.drives.num_rows, 'drive')} could not be judged")
     if result.strict and (unknown := _count(gating, "unknown")):
-        return Outcome(ExitCode.NOT_JUDGED, f"{unknown} verdicts are unknown and --strict is set")
+        yield Outcome(ExitCode.NOT_JUDGED, f"{_many(unknown, 'verdict')} unknown, and --strict is set")
     if result.lossy:
-        return Outcome(ExitCode.LOSSY, "judged on lossy input: parts of a log were lost")
+        yield Outcome(ExitCode.LOSSY, "judged on lossy input: parts of a log were lost")
     if result.fail_on == "never":
-        return Outcome(ExitCode.OK, "failures do not gate (--fail-on never)")
-    return Outcome(ExitCode.OK, f"nothing failed at or above severity {result.fail_on}")
+        yield Outcome(ExitCode.OK, "failures do not gate (--fail-on never)")
+    yield Outcome(ExitCode.OK, f"nothing failed at or above severity {result.fail_on}")
 
 
 def exit_code(result: Result) -> ExitCode:
@@ -90,6 +94,10 @@ def write(result: Result, out: Path) -> None:
     contents["junit.xml"] = junit.render(result)
     contents["summary.json"] = summary.render(result)
     publish(out, contents, {"margins.parquet": result.margins_file} if result.margins_file else None)
+
+
+def _many(n: int, noun: str) -> str:
+    return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
 
 
 def _count(verdicts: pa.Table, verdict: str) -> int:

@@ -1,0 +1,142 @@
+"""`junit.xml`: a test suite per drive, a test case per rule and profile."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import pyarrow.compute as pc
+from lxml import etree
+
+from drivelint.report.text import line, times
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import pyarrow as pa
+
+    from drivelint.report.result import Result
+    from drivelint.report.text import Row
+
+MAX_LINES: Final = 50
+"""Findings or reasons listed per test case; the tables hold them all."""
+
+_NOT_XML: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+Key = tuple[str, str, str | None]
+"""drive_id, rule_id, profile."""
+
+
+class Case(NamedTuple):
+    """A test case; `outcome` is the name of its element (failure, error, skipped), None: passed."""
+
+    name: str
+    outcome: str | None
+    kind: str
+    lines: list[str]
+
+
+def render(result: Result) -> bytes:
+    """Return the report as UTF-8 XML.
+
+    A test case gathers the verdict rows of a drive, rule and profile: any error is an error, any fail a failure that
+    lists its findings, any unknown is skipped with the reasons (an error under `--strict`). Not applicable is skipped.
+    A draft never fails a suite: its failures are skipped, saying so. A drive that could not be judged is an error.
+    """
+    root = etree.Element("testsuites", name="drivelint")
+    cases = _cases(result)
+    totals = dict.fromkeys(("tests", "failures", "errors"), 0)
+    for drive in result.drives.select(["drive_id", "status", "status_reason"]).to_pylist():
+        suite = list(cases.get(drive["drive_id"], ()))
+        if drive["status"] == "not_judged":
+            suite.insert(0, Case("the drive can be judged", "error", "not_judged", [drive["status_reason"] or ""]))
+        counted = _suite(root, drive["drive_id"], suite)
+        totals = {name: n + counted[name] for name, n in totals.items()}
+    for name, n in totals.items():
+        root.set(name, str(n))
+    return bytes(etree.tostring(root, xml_declaration=True, encoding="UTF-8", pretty_print=True))
+
+
+def _cases(result: Result) -> dict[str, list[Case]]:
+    """Return drive_id -> its test cases, in the order of the verdict table."""
+    starts = dict(zip(result.drives["drive_id"].to_pylist(), result.drives["t_start_ns"].to_pylist(), strict=True))
+    drafts = set(result.rules.filter(pc.not_equal(result.rules["status"], "stable"))["rule_id"].to_pylist())
+    found: dict[Key, list[str]] = defaultdict(list)
+    for row in result.findings.to_pylist():
+        found[_key(row)].append(line(row, starts.get(row["drive_id"])))
+    reasons: dict[Key, dict[str, list[str]]] = defaultdict(dict)
+    for row in _reasons(result.verdicts):
+        reasons[_key(row)].setdefault(row["verdict"], []).append(times(row["reason"], row["count_all"]))
+    cases: dict[str, list[Case]] = defaultdict(list)
+    for key, verdicts in reasons.items():
+        if "fail" in verdicts and key in found:
+            verdicts["fail"] = found[key]
+        cases[key[0]].append(_case(key, verdicts, draft=key[1] in drafts, strict=result.strict))
+    return cases
+
+
+def _reasons(verdicts: pa.Table) -> Iterator[Row]:
+    """Yield each distinct verdict and reason of a drive, rule and profile with its count; passes need no reason."""
+    reason = pc.if_else(pc.equal(verdicts["verdict"], "pass"), "", verdicts["reason"])
+    columns = ["drive_id", "rule_id", "profile", "verdict"]
+    told = verdicts.select(columns).append_column("reason", reason)
+    grouped = told.group_by([*columns, "reason"], use_threads=False).aggregate([([], "count_all")])
+    yield from grouped.to_pylist()
+
+
+def _case(key: Key, verdicts: dict[str, list[str]], *, draft: bool, strict: bool) -> Case:
+    _, rule_id, profile = key
+    name = f"{rule_id} [{profile}]" if profile is not None else rule_id
+    if "error" in verdicts:
+        return Case(name, "error", "error", verdicts["error"])
+    if "fail" in verdicts:
+        lines = verdicts["fail"]
+        return (
+            Case(name, "skipped", "draft", [f"draft, does not gate: {x}" for x in lines])
+            if draft
+            else Case(name, "failure", "fail", lines)
+        )
+    if "unknown" in verdicts:
+        return Case(
+            name,
+            "error" if strict and not draft else "skipped",
+            "unknown",
+            [f"unknown: {x}" for x in verdicts["unknown"]],
+        )
+    if "pass" in verdicts:
+        return Case(name, None, "pass", [])
+    return Case(name, "skipped", "not_applicable", [f"not applicable: {x}" for x in verdicts.get("not_applicable", [])])
+
+
+def _suite(root: etree._Element, drive_id: str, cases: list[Case]) -> dict[str, int]:
+    """Append a drive's suite to the document and return its counts."""
+    counted = {
+        "tests": len(cases),
+        "failures": sum(case.outcome == "failure" for case in cases),
+        "errors": sum(case.outcome == "error" for case in cases),
+        "skipped": sum(case.outcome == "skipped" for case in cases),
+    }
+    suite = etree.SubElement(root, "testsuite", name=_xml(drive_id))
+    for name, n in counted.items():
+        suite.set(name, str(n))
+    for case in cases:
+        element = etree.SubElement(suite, "testcase", name=_xml(case.name), classname=_xml(drive_id))
+        if case.outcome:
+            lines = case.lines[:MAX_LINES]
+            if more := len(case.lines) - len(lines):
+                lines.append(f"... and {more} more: see findings.parquet and verdicts.parquet")
+            detail = etree.SubElement(
+                element, case.outcome, type=case.kind, message=_xml(lines[0] if lines else case.kind)
+            )
+            detail.text = _xml("\n".join(lines))
+    return counted
+
+
+def _key(row: Row) -> Key:
+    return row["drive_id"], row["rule_id"], row["profile"]
+
+
+def _xml(text: str) -> str:
+    """Return text with the characters that XML cannot hold replaced: ids and reasons are a log's own words."""
+    return _NOT_XML.sub("\ufffd", text)

@@ -1,0 +1,50 @@
+"""How numbers, times and findings read, the same in every report."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+NONE: Final = "-"
+
+Row = Mapping[str, Any]
+"""One row of an output table: column -> value."""
+
+
+def number(value: float | None, unit: str | None = None) -> str:
+    """Return a measured value with two decimals and its unit, or a dash for none."""
+    if value is None:
+        return NONE
+    text = f"{value:.2f}" if abs(value) < 1e6 else f"{value:.3g}"
+    return f"{text} {unit}" if unit else text
+
+
+def seconds(t_ns: int | None, start_ns: int | None) -> str:
+    """Return a time on the log's clock as seconds since the drive's first time stamp."""
+    return NONE if t_ns is None else f"{(t_ns - (start_ns or 0)) / 1e9:.2f} s"
+
+
+def subject(row: Row) -> str:
+    """Return whom a verdict or finding is about: the ego and, if any, the object."""
+    who = f"ego {row['ego_id']}" if row["ego_id"] else "no ego"
+    return f"{who}, object {row['object_id']}" if row["object_id"] is not None else who
+
+
+def comparison(row: Row) -> str:
+    """Return observed against required with the margin, or nothing where the rule measures nothing."""
+    if row["observed"] is None and row["required"] is None:
+        return ""
+    unit = row["unit"]
+    text = f"observed {number(row['observed'], unit)}, required {number(row['required'], unit)}"
+    return text if row["margin"] is None else f"{text}, margin {number(row['margin'], unit)}"
+
+
+def line(row: Row, start_ns: int | None) -> str:
+    """Return a verdict or finding in one line: when, who, what was measured, why."""
+    parts = [f"{seconds(row['t_worst_ns'], start_ns)}: {subject(row)}", comparison(row), row["reason"]]
+    return "; ".join(part for part in parts if part)
+
+
+def times(reason: str, n: int) -> str:
+    """Return a reason with how often it was given, if more than once."""
+    return reason if n == 1 else f"{reason} ({n} times)"

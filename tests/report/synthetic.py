@@ -1,0 +1,77 @@
+"""Small results made by hand: verdict rows as prose, everything else filled in."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pyarrow as pa
+
+from drivelint.report.contract import arrow_schema
+from drivelint.report.result import Result
+
+SECOND = 1_000_000_000
+SDA = "ukhc.r162.safe-distance-ahead"
+
+
+def table(name: str, rows: list[dict[str, Any]]) -> pa.Table:
+    """Return a schema table from rows that name only some columns; the others are NULL."""
+    schema = arrow_schema(name)
+    unknown = {key for row in rows for key in row} - set(schema.names)
+    assert not unknown, f"no such columns in {name}: {unknown}"
+    return pa.Table.from_pylist(rows, schema=schema)
+
+
+def verdict(said: str, **over: Any) -> dict[str, Any]:
+    """Return one verdict row of the nominal overtake rule, 8.3 s into drive `d1`."""
+    return {
+        "drive_id": "d1", "ego_id": "1", "rule_id": SDA, "rule_version": "v", "kind": "execution", "profile": "nominal",
+        "severity": "critical", "object_id": "3", "occurrence": 0, "ref_id": 0, "t_ref_ns": 108 * SECOND,
+        "t_start_ns": 108 * SECOND, "t_end_ns": 108 * SECOND, "t_worst_ns": 108 * SECOND, "verdict": said,
+        "reason_code": said, "reason": f"because {said}", "observed": 58.0, "required": 64.0, "margin": -6.0, "unit": "m",
+        "near_miss": False, "n_expected": 1, "n_judged": 1,
+    } | over  # fmt: skip
+
+
+def finding(**over: Any) -> dict[str, Any]:
+    """Return the finding of a failing `verdict`."""
+    row = verdict("fail", **over)
+    row |= {"finding_id": f"{row['drive_id']}-{row['rule_id']}-{row['profile']}-{row['occurrence']}"}
+    return {key: row[key] for key in arrow_schema("finding").names if key in row}
+
+
+def drive(drive_id: str = "d1", **over: Any) -> dict[str, Any]:
+    """Return the row of a judged drive of 25 s whose clock starts at 100 s."""
+    return {
+        "drive_id": drive_id, "file_name": f"{drive_id}.csv", "sha256": "ab" * 32, "format": "canonical-csv",
+        "environment_id": "road-1@lht", "map_name": "road.xodr", "map_sha256": "cd" * 32, "handedness": "lht",
+        "handedness_source": "attribute", "t_start_ns": 100 * SECOND, "duration_s": 25.0, "km": 0.12, "n_states": 750,
+        "n_steps": 250, "n_egos": 1, "status": "judged", "lossy": False, "exposure": [], "occasions": [], "quality": [],
+        "not_judged": [],
+    } | over  # fmt: skip
+
+
+def rule(rule_id: str = SDA, **over: Any) -> dict[str, Any]:
+    """Return the row of a stable critical rule."""
+    return {
+        "rule_id": rule_id, "rule_version": "v", "pack": "ukhc", "title": "room to overtake", "clause": "Rule 162",
+        "hypothesis": "is there room?", "kind": "execution", "derivation": "model", "severity": "critical",
+        "legal": "should", "status": "stable", "sense": ">", "unit": "m", "requires": [], "profiles": ["nominal"],
+        "params": [],
+    } | over  # fmt: skip
+
+
+def result(
+    verdicts: list[dict[str, Any]],
+    findings: list[dict[str, Any]] | None = None,
+    drives: list[dict[str, Any]] | None = None,
+    rules: list[dict[str, Any]] | None = None,
+    **settings: Any,
+) -> Result:
+    """Return a result; one judged drive and one stable rule unless said otherwise."""
+    return Result(
+        table("verdict", verdicts),
+        table("finding", findings or []),
+        table("drive", drives or [drive()]),
+        table("rule", rules or [rule()]),
+        **settings,
+    )
