@@ -1,0 +1,64 @@
+"""What a map reader takes and gives: one format for all maps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from hashlib import sha256
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+
+@dataclass(frozen=True)
+class MapSource:
+    """What is to be read: the bytes of a map, wherever they came from."""
+
+    name: str  # file name, or the log it was embedded in
+    content: bytes = field(repr=False)
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the content, hexadecimal."""
+        return sha256(self.content).hexdigest()
+
+
+@dataclass(frozen=True)
+class Request:
+    """What the caller knows beside the map.
+
+    `offset` in metres is added to all coordinates; `handedness` is the user's option (auto, lht, rht); `sensed` is what
+    the traces voted (lht, rht), used only where neither option nor map decides.
+    """
+
+    offset: tuple[float, float] = (0.0, 0.0)
+    handedness: str = "auto"
+    sensed: str | None = None
+
+
+@dataclass(frozen=True)
+class Environment:
+    """A map as rows: every table of `schemas/map.sql`, its columns and types exactly, rows totally ordered."""
+
+    environment_id: str
+    handedness: str  # lht | rht
+    handedness_source: str  # option | attribute | junctions | traces | default
+    tables: dict[str, pa.Table] = field(repr=False)
+
+
+class MapReader(Protocol):
+    """One map format."""
+
+    format: str
+
+    def read(self, source: MapSource, request: Request) -> Environment:
+        """Return the map's tables; `MapError` where nothing can be read."""
+        ...
+
+
+def environment_id(source: MapSource, offset: tuple[float, float], handedness: str) -> str:
+    """Return `<map stem>-<first 8 hex of sha256><offset, if any>@<lht or rht>`; the same on every machine."""
+    x, y = (float(v) + 0.0 for v in offset)
+    shift = f"{x:+}{y:+}" if x or y else ""
+    return f"{PurePath(source.name).stem}-{source.sha256[:8]}{shift}@{handedness}"

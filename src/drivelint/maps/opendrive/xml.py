@@ -1,0 +1,72 @@
+"""XML as untrusted input: no entities, no network, no DTD; numbers are finite or refused."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from lxml import etree
+
+from drivelint.errors import MapError
+
+if TYPE_CHECKING:
+    from drivelint.maps.contract import MapSource
+
+
+class MalformedError(ValueError):
+    """An element that cannot be understood; caught where the road or lane concerned is named."""
+
+
+def parse(source: MapSource) -> etree._Element:
+    """Return the root element, tags without namespaces; `MapError` for a DOCTYPE or malformed XML, naming the line."""
+    parser = etree.XMLParser(
+        resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, remove_comments=True, remove_pis=True
+    )
+    try:
+        root = etree.fromstring(source.content, parser)
+    except etree.XMLSyntaxError as error:
+        if b"<!DOCTYPE" in source.content[:65536]:
+            raise _doctype(source) from None
+        raise MapError(f"map {source.name} is not well-formed XML ({error.msg}): give the complete, unchanged file") from None
+    if root.getroottree().docinfo.internalDTD is not None:
+        raise _doctype(source)
+    for element in root.iter():
+        if isinstance(element.tag, str) and element.tag.startswith("{"):
+            element.tag = element.tag.partition("}")[2]
+    return root
+
+
+def _doctype(source: MapSource) -> MapError:
+    return MapError(f"map {source.name} carries a DOCTYPE, which OpenDRIVE does not need and which is refused: remove it")
+
+
+def number(element: etree._Element, name: str, default: float | None = None) -> float:
+    """Return an attribute as a finite number, or the default if it is absent."""
+    text = element.get(name)
+    if text is None:
+        if default is None:
+            raise MalformedError(f"<{element.tag}> in line {element.sourceline} has no attribute {name}")
+        return default
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise MalformedError(f"<{element.tag}> in line {element.sourceline}: {name}={text[:40]!r} is not a finite number")
+    return value
+
+
+def integer(element: etree._Element, name: str) -> int:
+    """Return an attribute as an integer."""
+    value = number(element, name)
+    if value != int(value) or abs(value) > 2**31 - 1:
+        raise MalformedError(f"<{element.tag}> in line {element.sourceline}: {name}={element.get(name)!r} is not an integer")
+    return int(value)
+
+
+def text(element: etree._Element, name: str) -> str:
+    """Return an attribute that has to be there."""
+    value = element.get(name)
+    if value is None:
+        raise MalformedError(f"<{element.tag}> in line {element.sourceline} has no attribute {name}")
+    return value

@@ -1,0 +1,62 @@
+"""Arrow tables with exactly the columns and types of schemas/map.sql."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import pyarrow as pa
+
+from drivelint.resources import folder
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+_TABLE = re.compile(r"^CREATE TABLE (\w+) \(\n(.*?)^\);", re.DOTALL | re.MULTILINE)
+_COLUMN = re.compile(r"^    (\w+) ([A-Z]+(?:\[\])?)", re.MULTILINE)
+_TYPES = {
+    "VARCHAR": pa.string(),
+    "DOUBLE": pa.float64(),
+    "BOOLEAN": pa.bool_(),
+    "INTEGER": pa.int32(),
+    "BIGINT": pa.int64(),
+    "DOUBLE[]": pa.list_(pa.float64()),
+}
+
+
+@cache
+def schemas() -> dict[str, pa.Schema]:
+    """Return table -> Arrow schema, as `schemas/map.sql` has them."""
+    text = (folder("schemas") / "map.sql").read_text(encoding="utf-8")
+    return {name: pa.schema([(column, _TYPES[kind]) for column, kind in _COLUMN.findall(body)]) for name, body in _TABLE.findall(text)}
+
+
+def from_rows(name: str, environment: str, rows: Sequence[Mapping[str, Any]]) -> pa.Table:
+    """Return the table `name` of these rows, each a mapping without `environment_id`, in the order given."""
+    schema = schemas()[name]
+    columns = {f.name: [row[f.name] for row in rows] for f in schema if f.name != "environment_id"}
+    return from_columns(name, environment, columns, len(rows))
+
+
+def from_columns(name: str, environment: str, columns: Mapping[str, Any], n: int) -> pa.Table:
+    """Return the table `name` of `n` rows from lists or arrays by column, `environment_id` added."""
+    schema = schemas()[name]
+    if columns.keys() != {f.name for f in schema} - {"environment_id"}:
+        raise KeyError(f"{name}: columns {sorted(columns)} are not those of schemas/map.sql")
+    data = {"environment_id": pa.repeat(pa.scalar(environment), n), **columns}
+    return pa.table([_array(data[f.name], f.type) for f in schema], schema=schema)
+
+
+def _array(values: Any, kind: pa.DataType) -> pa.Array:  # noqa: ANN401 - lists, numpy and Arrow arrays alike
+    if isinstance(values, (pa.Array, pa.ChunkedArray)):
+        return values.cast(kind)
+    return pa.array(values, type=kind)
+
+
+def repeated(names: Sequence[str], counts: Sequence[int]) -> pa.Array:
+    """Return each name as often as its count says, as an Arrow string array."""
+    import numpy as np
+
+    indices = pa.array(np.repeat(np.arange(len(names), dtype=np.int32), counts))
+    return pa.DictionaryArray.from_arrays(indices, pa.array(names, type=pa.string())).cast(pa.string())
