@@ -18,7 +18,23 @@ CREATE TABLE lane_segment (
     y1_m DOUBLE NOT NULL,             -- end
     tx1 DOUBLE NOT NULL,              -- unit tangent at the end
     ty1 DOUBLE NOT NULL,              -- unit tangent at the end
-    hw1_m DOUBLE NOT NULL             -- half width at the end
+    hw1_m DOUBLE NOT NULL,            -- half width at the end
+    slack0_m DOUBLE NOT NULL,         -- how far it reaches beyond its start: 0.05 at the lanelet's ends, where tangents may differ by a hair
+    slack1_m DOUBLE NOT NULL          -- how far it reaches beyond its end
+);
+
+CREATE TABLE lane_near (
+    environment_id VARCHAR NOT NULL,  -- the map
+    from_id VARCHAR NOT NULL,         -- a drivable lanelet
+    to_id VARCHAR NOT NULL,           -- itself, or one that continues it within three links
+    hops INTEGER NOT NULL             -- least number of links, 0 to 3
+);
+
+CREATE TABLE lane_next (
+    environment_id VARCHAR NOT NULL,  -- the map
+    lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet
+    ahead_id VARCHAR,                 -- the one that continues it straightest; NULL: the map ends
+    behind_id VARCHAR                 -- the one that it continues straightest; NULL: the map ends
 );
 
 CREATE TABLE lane_cell (
@@ -77,6 +93,8 @@ CREATE TABLE state_dynamics (
     x_m DOUBLE,                       -- box centre
     y_m DOUBLE,                       -- box centre
     yaw_rad DOUBLE,                   -- heading
+    vx_mps DOUBLE,                    -- velocity east
+    vy_mps DOUBLE,                    -- velocity north
     speed_mps DOUBLE,                 -- length of the velocity vector
     accel_mps2 DOUBLE,                -- backward difference of speed at the log's own rate, unfiltered; NULL: first sample or after a hole
     travel_m DOUBLE,                  -- way made since the actor's first sample
@@ -116,7 +134,8 @@ CREATE TABLE chain (
     seq INTEGER NOT NULL,             -- order along the chain, from its far end behind
     lanelet_id VARCHAR NOT NULL,      -- the lanelet
     s_start_m DOUBLE NOT NULL,        -- chain station of its start; 0 = start of the first lanelet the ego was on
-    driven BOOLEAN NOT NULL           -- the ego drove it; else continued straight on
+    t_first_ns BIGINT,                -- the ego drove it with the traffic from this step; NULL: not driven, the way continued straight on
+    t_last_ns BIGINT                  -- to this one
 );
 
 CREATE TABLE corridor (
@@ -143,6 +162,15 @@ CREATE TABLE corridor (
     side INTEGER                      -- overtaking side: 1 left (right-hand traffic), -1 right; NULL: handedness unknown
 );
 
+CREATE TABLE corridor_cell (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    cell BIGINT NOT NULL,             -- 16 m grid cell that the segment's strip may touch
+    chain_id INTEGER NOT NULL,        -- the running chain
+    seq INTEGER NOT NULL,             -- order along the chain
+    k INTEGER NOT NULL                -- the segment
+);
+
 CREATE TABLE ego_corridor (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -150,9 +178,13 @@ CREATE TABLE ego_corridor (
     t_ns BIGINT NOT NULL,             -- the step
     s_m DOUBLE NOT NULL,              -- chain station of the box centre
     d_m DOUBLE NOT NULL,              -- offset of the centre from the running lane's centre line, left positive
-    over_out_m DOUBLE,                -- furthest corner beyond the boundary towards the overtaking lane; negative: inside
-    over_in_m DOUBLE,                 -- nearest corner beyond that boundary; positive: wholly over it
-    near_out_m DOUBLE,                -- furthest corner beyond the other boundary
+    left_out_m DOUBLE,                -- furthest corner beyond the running lane's left boundary; negative: all inside
+    left_in_m DOUBLE,                 -- nearest corner beyond it; positive: wholly over it
+    right_out_m DOUBLE,               -- furthest corner beyond the right boundary
+    right_in_m DOUBLE,                -- nearest corner beyond it
+    front_s_m DOUBLE,                 -- chain station of the foremost corner
+    rear_s_m DOUBLE,                  -- chain station of the rearmost corner
+    lat_half_m DOUBLE,                -- half the extent of the box across the corridor
     half_width_m DOUBLE NOT NULL,     -- half width of the running lane at the centre's station
     over_width_m DOUBLE,              -- see corridor
     over_against BOOLEAN,             -- see corridor
@@ -212,8 +244,7 @@ CREATE TABLE pair (
     heading_diff_rad DOUBLE,          -- its heading against the corridor, -pi..pi
     half_width_m DOUBLE,              -- half width of the running lane at its station
     over_width_m DOUBLE,              -- see corridor
-    over_against BOOLEAN,             -- see corridor
-    on_lane BOOLEAN                   -- its centre is on some drivable lanelet; NULL: not placed, or no map
+    over_against BOOLEAN              -- see corridor
 );
 
 CREATE TABLE lost_object (
@@ -229,9 +260,22 @@ CREATE TABLE unplaced (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
-    n BIGINT NOT NULL,                -- vehicles that may be on the road ahead and cannot be placed on it
-    object_id VARCHAR NOT NULL,       -- one of them
+    object_id VARCHAR NOT NULL,       -- a vehicle that may be on the road ahead and cannot be placed on it
     reason VARCHAR NOT NULL           -- why, for a person
+);
+
+CREATE TABLE oncoming (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step; no row: the ego itself is not placed
+    object_id VARCHAR,                -- OV: the nearest oncoming vehicle on the overtaking chain or on its way to it; NULL: none seen
+    da_m DOUBLE,                      -- distance ahead: ego front to OV front, along the corridor; NULL: no OV
+    speed_mps DOUBLE,                 -- its speed
+    on_its_way BOOLEAN,               -- it was still on another lane: da_m is the way that it then made
+    free_m DOUBLE NOT NULL,           -- how far ahead of the ego's front the corridor and the sensor reach
+    free_reason VARCHAR NOT NULL,     -- what ends it: map_end, corridor_end, sensor_range
+    n_unplaced BIGINT NOT NULL,       -- other vehicles that cannot be placed: a nearer OV is not ruled out
+    unplaced_reason VARCHAR           -- one of them and why
 );
 
 CREATE TABLE lead (
@@ -257,6 +301,26 @@ CREATE TABLE profile (
     selected BOOLEAN NOT NULL         -- asked for in this run
 );
 
+CREATE TABLE excursion (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    chain_id INTEGER NOT NULL,        -- the running chain that is left
+    side INTEGER NOT NULL,            -- 1 over the left boundary, -1 over the right
+    overtaking BOOLEAN,               -- that is the side to overtake on; NULL: handedness unknown
+    t0_ns BIGINT NOT NULL,            -- first step with a corner more than 0.05 m over the boundary
+    begin_seen BOOLEAN NOT NULL,      -- the step before it is there and inside the lane
+    t_end_ns BIGINT NOT NULL,         -- last step over it
+    t_back_ns BIGINT,                 -- the step after that, wholly inside again; NULL: the log, a hole or the corridor ends first
+    t_over_ns BIGINT,                 -- first step wholly over; NULL: never
+    t_turn_ns BIGINT,                 -- last step after t_over before the lateral speed turned back for good; NULL: never
+    t_return_ns BIGINT,               -- first step after that with a corner over the line again; NULL: never
+    max_out_m DOUBLE NOT NULL,        -- how far the furthest corner got
+    centre_over BOOLEAN NOT NULL,     -- the centre crossed too: a manoeuvre, not a wobble
+    lane_width_m DOUBLE NOT NULL,     -- width of the running lane at t0
+    over_width_m DOUBLE,              -- width of the lane beside it on the overtaking side at t0; NULL: none
+    over_against BOOLEAN              -- that lane is driven the other way
+);
+
 CREATE TABLE overtake (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -264,16 +328,16 @@ CREATE TABLE overtake (
     chain_id INTEGER NOT NULL,        -- the running chain
     opposing BOOLEAN,                 -- the overtaking lane is driven the other way; NULL: no lane beside, or unknown
     side INTEGER NOT NULL,            -- 1 left, -1 right
-    vbp_id VARCHAR NOT NULL,          -- the vehicle being passed
+    vbp_id VARCHAR NOT NULL,          -- the vehicle being passed, or one that may be it
+    vbp_placed BOOLEAN NOT NULL,      -- it was placed at t0; else only its presence is known
+    begin_seen BOOLEAN NOT NULL,      -- t0 lies in the log: the step before it is there and inside the lane
     t0_ns BIGINT NOT NULL,            -- first step with a corner more than 0.05 m over the boundary
     t1_ns BIGINT,                     -- first step wholly in the overtaking lane
     t2_ns BIGINT,                     -- lateral speed turns back
     t3_ns BIGINT,                     -- first step wholly back in the running lane
     t_end_ns BIGINT NOT NULL,         -- t3, or the last step of the excursion
     passed BOOLEAN NOT NULL,          -- the ego's front got past the VBP's front
-    status VARCHAR NOT NULL,          -- completed, aborted, truncated (the log or the corridor ends first), lane_change (stayed over)
-    n_unplaced BIGINT NOT NULL,       -- vehicles at t0 that may be oncoming and cannot be placed
-    unplaced_reason VARCHAR,          -- which and why
+    status VARCHAR NOT NULL,          -- completed, aborted (back without passing), lane_change (stayed in a lane of its own direction), truncated (the log, a hole or the corridor ends first)
     v_av_mps DOUBLE,                  -- ego's speed at t0
     v_vbp_mps DOUBLE,                 -- VBP's speed at t0
     l_av_m DOUBLE,                    -- ego's length
@@ -283,9 +347,12 @@ CREATE TABLE overtake (
     t2_gap_m DOUBLE,                  -- VBP front to ego rear at t2
     t3_gap_m DOUBLE,                  -- VBP front to ego rear at t3
     v_vbp_t3_mps DOUBLE,              -- VBP's speed at t3
-    ov_id VARCHAR,                    -- nearest oncoming vehicle at t0 on the overtaking chain, or on its way to it; NULL: none seen
-    da_m DOUBLE,                      -- distance ahead at t0; without an OV the sight line (NULL: unlimited)
+    ov_id VARCHAR,                    -- see oncoming, at t0
+    da_m DOUBLE,                      -- distance ahead at t0; without an OV how far the road was free
     v_ov_mps DOUBLE,                  -- OV's speed at t0; without an OV the speed limit
+    n_unplaced BIGINT,                -- see oncoming, at t0; NULL: the ego is not placed
+    unplaced_reason VARCHAR,          -- see oncoming
+    free_reason VARCHAR,              -- see oncoming
     pull_out_angle_rad DOUBLE,        -- observed: atan of lateral over longitudinal way from t0 to t1
     cut_in_angle_rad DOUBLE           -- observed: the same from t2 to t3
 );
@@ -298,7 +365,7 @@ CREATE TABLE overtake_sda (
     t0_ns BIGINT NOT NULL,            -- see overtake
     da_m DOUBLE,                      -- distance ahead, NULL: unknown
     at_least BOOLEAN NOT NULL,        -- da_m is only a lower bound (a sight line)
-    nobody BOOLEAN NOT NULL,          -- ground truth, every vehicle placed, no OV: the road is free as far as it goes
+    nobody BOOLEAN NOT NULL,          -- every vehicle placed, and no OV as far as da_m
     sda_m DOUBLE,                     -- safe distance ahead; NULL: undefined
     spare_m DOUBLE,                   -- da_m - sda_m
     spare_s DOUBLE,                   -- the time in which it closes, at v_AV + v_OV
@@ -313,6 +380,8 @@ CREATE TABLE overtake_step (
     t_ns BIGINT NOT NULL,             -- a step from t0 to t_end
     stage VARCHAR NOT NULL,           -- pulling_out, passing, cutting_in
     vbp_id VARCHAR NOT NULL,          -- the vehicle being passed
+    free_m DOUBLE,                    -- how far ahead of the ego's front the corridor and the sensor reach at t0
+    free_reason VARCHAR,              -- what ends it: map_end, corridor_end, sensor_range
     ov_id VARCHAR,                    -- nearest oncoming vehicle at this step; NULL: none
     ov_known BOOLEAN NOT NULL,        -- whether there is one can be told at this step
     sd_av_m DOUBLE,                   -- stopping distance of the ego: length of its danger space
@@ -332,7 +401,7 @@ CREATE TABLE opportunity (
     t_start_ns BIGINT NOT NULL,       -- held up from here
     t_end_ns BIGINT NOT NULL,         -- to here
     t_best_ns BIGINT,                 -- the step with the most spare distance; NULL: never known
-    da_m DOUBLE,                      -- distance ahead there; NULL: unlimited or unknown
+    da_m DOUBLE,                      -- distance ahead there, or how far it was free; NULL: unknown
     sda_m DOUBLE,                     -- safe distance ahead there
     spare_s DOUBLE,                   -- time in which the spare distance closes
     zone VARCHAR,                     -- A to D at that step; NULL: unknown
@@ -345,14 +414,10 @@ CREATE TABLE lane_departure (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order
-    chain_id INTEGER NOT NULL,        -- the running chain that is left
-    t_ns BIGINT NOT NULL,             -- first step with a corner more than 0.05 m over the boundary
-    t_end_ns BIGINT NOT NULL,         -- last step over it
+    t_ns BIGINT NOT NULL,             -- first step with a corner more than 0.05 m over a boundary, in a manoeuvre that took the centre over it
+    begin_seen BOOLEAN NOT NULL,      -- see excursion
     side VARCHAR NOT NULL,            -- left or right
-    max_out_m DOUBLE NOT NULL,        -- how far the furthest corner got
-    changed BOOLEAN NOT NULL,         -- the ego's centre crossed too: a manoeuvre, not a wobble
-    from_lanelet_id VARCHAR,          -- lanelet at the step before
-    to_lanelet_id VARCHAR             -- lanelet that the centre came to; NULL: none
+    back BOOLEAN NOT NULL             -- it is the way back of an excursion: the boundary is crossed towards the running lane
 );
 
 CREATE TABLE indicator_on (

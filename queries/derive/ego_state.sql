@@ -1,0 +1,31 @@
+-- Every step of the ego with all that is known of it. Its running chain is that of the last lanelet it drove with the traffic, so
+-- an overtake in the lane beside is seen from the lane that was left; before the first one, it is the first one's.
+WITH running AS (
+    SELECT st.drive_id, st.ego_id, st.t_ns, coalesce(c.chain_id, f.chain_id) AS chain_id
+    FROM step st
+    ASOF LEFT JOIN (SELECT * FROM chain WHERE t_first_ns IS NOT NULL) c
+        ON c.drive_id = st.drive_id AND c.ego_id = st.ego_id AND c.t_first_ns <= st.t_ns
+    LEFT JOIN (SELECT drive_id, ego_id, min(chain_id) AS chain_id FROM chain GROUP BY ALL) f
+        ON f.drive_id = st.drive_id AND f.ego_id = st.ego_id
+),
+limited AS (
+    SELECT e.drive_id, e.ego_id, e.t_ns, min(v.limit_mps) AS limit_mps
+    FROM ego_lane e
+    JOIN data_log l USING (drive_id)
+    JOIN speed_limit v ON v.environment_id = l.environment_id AND v.lanelet_id = e.lanelet_id
+    WHERE e.s_m >= v.s_start_m AND e.s_m <= v.s_end_m
+    GROUP BY ALL
+)
+SELECT
+    r.drive_id, r.ego_id, r.t_ns, s.x_m, s.y_m, s.yaw_rad, s.speed_mps, s.accel_mps2, s.travel_m, s.length_m, s.width_m, s.indicator,
+    e.lanelet_id, e.with_direction,
+    CASE WHEN n.lanelet_id IS NOT NULL THEN n.junction_id IS NOT NULL END AS in_junction,
+    n.road_type, v.limit_mps,
+    r.chain_id, c.s_m, c.d_m, c.front_s_m, c.rear_s_m, c.lat_half_m, c.heading_diff_rad
+FROM running r
+JOIN data_log l USING (drive_id)
+JOIN state_dynamics s ON s.drive_id = r.drive_id AND s.actor_id = r.ego_id AND s.t_ns = r.t_ns
+LEFT JOIN ego_lane e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id AND e.t_ns = r.t_ns
+LEFT JOIN lanelet n ON n.environment_id = l.environment_id AND n.lanelet_id = e.lanelet_id
+LEFT JOIN limited v ON v.drive_id = r.drive_id AND v.ego_id = r.ego_id AND v.t_ns = r.t_ns
+LEFT JOIN ego_corridor c ON c.drive_id = r.drive_id AND c.ego_id = r.ego_id AND c.chain_id = r.chain_id AND c.t_ns = r.t_ns

@@ -1,0 +1,67 @@
+-- Every stretch in which a corner of the ego is over a boundary of its running lane, on either side. Entering a junction's lanelets is
+-- none: the chain leads through them.
+WITH side AS (
+    SELECT
+        c.drive_id, c.ego_id, c.chain_id, st.k, st.seg, st.t_ns, st.dt_ns, c.d_m, c.half_width_m, c.over_width_m, c.over_against, v.side,
+        c.side = v.side AS overtaking,
+        CASE v.side WHEN 1 THEN c.left_out_m ELSE c.right_out_m END AS out_m,
+        CASE v.side WHEN 1 THEN c.left_in_m ELSE c.right_in_m END AS in_m,
+        v.side * c.d_m AS lateral_m
+    FROM ego_corridor c
+    JOIN step st USING (drive_id, ego_id, t_ns)
+    CROSS JOIN (VALUES (1), (-1)) AS v(side)
+    WHERE c.left_out_m IS NOT NULL
+),
+sample AS (
+    SELECT
+        *,
+        out_m > over_boundary_m() AS over,
+        lag({'k': k, 'seg': seg, 'over': out_m > over_boundary_m(), 'lateral_m': lateral_m}) OVER w AS before,
+        lead({'k': k, 'seg': seg, 't_ns': t_ns}) OVER w AS after
+    FROM side
+    WINDOW w AS (PARTITION BY drive_id, ego_id, chain_id, side ORDER BY k)
+),
+stretch AS (
+    SELECT
+        *,
+        coalesce(before.k = k - 1 AND before.seg = seg, false) AS joined,
+        CASE WHEN before.k = k - 1 AND before.seg = seg THEN (lateral_m - before.lateral_m) / (dt_ns / 1e9) END AS lateral_mps
+    FROM sample
+    WHERE over
+),
+numbered AS (
+    SELECT
+        *,
+        sum((NOT (joined AND before.over))::INTEGER)
+            OVER (PARTITION BY drive_id, ego_id, chain_id, side ORDER BY k ROWS UNBOUNDED PRECEDING) AS n
+    FROM stretch
+),
+whole AS (
+    SELECT
+        drive_id, ego_id, chain_id, side, n,
+        min(t_ns) AS t0_ns, max(t_ns) AS t_end_ns, min(CASE WHEN in_m >= 0 THEN t_ns END) AS t_over_ns,
+        max({'k': k, 'after_ns': CASE WHEN after.k = k + 1 AND after.seg = seg THEN after.t_ns END}) FILTER (in_m >= 0) AS last_over,
+        max(out_m) AS max_out_m, bool_or(lateral_m > half_width_m) AS centre_over,
+        min({'k': k, 'joined': joined, 'overtaking': overtaking, 'half_width_m': half_width_m, 'over_width_m': over_width_m, 'over_against': over_against}) AS first,
+        max({'k': k, 'seg': seg, 'after': after}) AS last
+    FROM numbered
+    GROUP BY ALL
+),
+-- turning back: the last step over the line whose lateral speed was not yet towards home
+turn AS (
+    SELECT w.drive_id, w.ego_id, w.chain_id, w.side, w.n, max(s.t_ns) AS t_turn_ns
+    FROM whole w
+    JOIN numbered s USING (drive_id, ego_id, chain_id, side, n)
+    WHERE s.t_ns >= w.t_over_ns AND s.lateral_mps > -0.1
+    GROUP BY ALL
+)
+SELECT
+    w.drive_id, w.ego_id, w.chain_id, w.side, w.first.overtaking AS overtaking, w.t0_ns, w.first.joined AS begin_seen, w.t_end_ns,
+    CASE WHEN w.last.after.k = w.last.k + 1 AND w.last.after.seg = w.last.seg THEN w.last.after.t_ns END AS t_back_ns,
+    w.t_over_ns,
+    CASE WHEN w.last.after.k = w.last.k + 1 AND w.last.after.seg = w.last.seg THEN t.t_turn_ns END AS t_turn_ns,
+    w.last_over.after_ns AS t_return_ns, w.max_out_m, w.centre_over, 2 * w.first.half_width_m AS lane_width_m,
+    CASE WHEN w.first.overtaking THEN w.first.over_width_m END AS over_width_m,
+    CASE WHEN w.first.overtaking THEN w.first.over_against END AS over_against
+FROM whole w
+LEFT JOIN turn t USING (drive_id, ego_id, chain_id, side, n)

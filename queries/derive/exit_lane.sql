@@ -1,0 +1,57 @@
+-- Lanes that leave the main carriageway: said so by their type, or beside a through lane until both go on, gently, on different roads.
+-- (At an ordinary junction one of the two turns; an exit bends by less than 45 degrees and the through lane by less than 20.)
+WITH RECURSIVE pair_ AS (
+    SELECT n.environment_id, n.lanelet_id AS exit_id, m.lanelet_id AS through_id, v.side
+    FROM lanelet n
+    CROSS JOIN (VALUES ('left'), ('right')) AS v(side)
+    JOIN lanelet m ON m.environment_id = n.environment_id AND m.drivable AND m.junction_id IS NULL
+        AND m.lanelet_id = CASE v.side WHEN 'right' THEN n.left_id ELSE n.right_id END
+        AND NOT CASE v.side WHEN 'right' THEN n.left_against ELSE n.right_against END
+    WHERE n.drivable AND n.junction_id IS NULL
+),
+-- both lanes followed straight on, through the junction if there is one, until they are beside each other again or on their own roads
+walk AS (
+    SELECT environment_id, exit_id, through_id, side, exit_id AS e, through_id AS m, 0 AS hop, 0.0::DOUBLE AS turn_e, 0.0::DOUBLE AS turn_m FROM pair_
+    UNION ALL
+    SELECT
+        w.environment_id, w.exit_id, w.through_id, w.side, ne.ahead_id, nm.ahead_id, w.hop + 1,
+        w.turn_e + abs(le.turn_rad), w.turn_m + abs(lm.turn_rad)
+    FROM walk w
+    JOIN lane_next ne ON ne.environment_id = w.environment_id AND ne.lanelet_id = w.e AND ne.ahead_id IS NOT NULL
+    JOIN lane_next nm ON nm.environment_id = w.environment_id AND nm.lanelet_id = w.m AND nm.ahead_id IS NOT NULL
+    JOIN lane_link le ON le.environment_id = w.environment_id AND le.from_id = w.e AND le.to_id = ne.ahead_id
+    JOIN lane_link lm ON lm.environment_id = w.environment_id AND lm.from_id = w.m AND lm.to_id = nm.ahead_id
+    JOIN lanelet ae ON ae.environment_id = w.environment_id AND ae.lanelet_id = w.e
+    WHERE w.hop = 0 OR (ae.junction_id IS NOT NULL AND w.hop < 3)
+),
+apart AS (
+    SELECT DISTINCT w.environment_id, w.exit_id, w.through_id, w.side
+    FROM walk w
+    JOIN lanelet e ON e.environment_id = w.environment_id AND e.lanelet_id = w.e
+    JOIN lanelet m ON m.environment_id = w.environment_id AND m.lanelet_id = w.m
+    WHERE w.hop > 0 AND e.junction_id IS NULL AND m.junction_id IS NULL AND e.road_id <> m.road_id
+        AND w.turn_e < pi() / 4 AND w.turn_m < pi() / 9
+),
+-- the whole lane before the fork is the exit lane, as long as the through lane is beside it and it was not a through lane itself
+upstream AS (
+    SELECT environment_id, exit_id, through_id, side, 0 AS hop FROM apart
+    UNION ALL
+    SELECT u.environment_id, b.lanelet_id, t.lanelet_id, u.side, u.hop + 1
+    FROM upstream u
+    JOIN lane_link le ON le.environment_id = u.environment_id AND le.to_id = u.exit_id
+    JOIN lane_link lt ON lt.environment_id = u.environment_id AND lt.to_id = u.through_id
+    JOIN lanelet b ON b.environment_id = u.environment_id AND b.lanelet_id = le.from_id
+    JOIN lanelet t ON t.environment_id = u.environment_id AND t.lanelet_id = lt.from_id
+        AND t.lanelet_id = CASE u.side WHEN 'right' THEN b.left_id ELSE b.right_id END
+    WHERE u.hop < 10 AND b.road_id = t.road_id
+)
+SELECT environment_id, lanelet_id, min(from_id) AS from_id, min(side) AS side
+FROM (
+    SELECT environment_id, exit_id AS lanelet_id, through_id AS from_id, side FROM upstream
+    UNION ALL
+    SELECT n.environment_id, n.lanelet_id,
+        CASE e.handedness WHEN 'lht' THEN n.right_id ELSE n.left_id END, CASE e.handedness WHEN 'lht' THEN 'left' ELSE 'right' END
+    FROM lanelet n JOIN environment e USING (environment_id)
+    WHERE n.lane_type IN ('exit', 'offRamp')
+)
+GROUP BY ALL

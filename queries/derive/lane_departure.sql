@@ -1,0 +1,16 @@
+-- Boundaries that the ego crosses in a manoeuvre: out of its running lane, and back into it.
+WITH own AS (
+    SELECT x.*
+    FROM excursion x
+    JOIN ego_state e ON e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns = x.t0_ns AND e.chain_id = x.chain_id
+    WHERE x.centre_over
+),
+crossing AS (
+    SELECT drive_id, ego_id, t0_ns AS t_ns, begin_seen, side, false AS back FROM own
+    UNION ALL
+    SELECT drive_id, ego_id, t_return_ns, true, -side, true FROM own WHERE t_return_ns IS NOT NULL
+)
+SELECT
+    drive_id, ego_id, (row_number() OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns, side, back) - 1)::INTEGER AS occurrence,
+    t_ns, begin_seen, CASE side WHEN 1 THEN 'left' ELSE 'right' END AS side, back
+FROM crossing

@@ -1,0 +1,16 @@
+-- Actors whose track ends before the log does, where they could still have been seen: near the ego, or within the sensor's range.
+WITH last AS (
+    SELECT p.drive_id, p.ego_id, p.object_id, max(p.t_ns) AS t_last_ns FROM pair p GROUP BY ALL
+),
+ended AS (
+    SELECT n.drive_id, n.ego_id, n.object_id, n.t_last_ns, c.t_end_ns, g.sensor_range_m
+    FROM last n
+    JOIN clock c USING (drive_id, ego_id)
+    JOIN data_log g USING (drive_id)
+    WHERE n.t_last_ns + c.max_gap_ns < c.t_end_ns
+)
+SELECT e.drive_id, e.ego_id, e.object_id, e.t_last_ns + 1 AS t_from_ns, e.t_end_ns AS t_to_ns,
+    CASE WHEN p.distance_m < lost_near_m() OR p.distance_m IS NULL THEN 'lost_near_ego' ELSE 'lost_in_range' END AS reason
+FROM ended e
+JOIN pair p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.object_id = e.object_id AND p.t_ns = e.t_last_ns
+WHERE p.distance_m IS NULL OR p.distance_m < lost_near_m() OR p.distance_m < e.sensor_range_m

@@ -1,0 +1,64 @@
+-- Who comes towards the ego on the lane that it would overtake in (paper: OV and DA), and how far that can be told.
+-- A vehicle that comes from another lane counts from 15 s before it gets there, at the distance that it then really made.
+WITH reach AS (
+    SELECT c.drive_id, c.ego_id, c.chain_id, max(c.s0_m + c.len_m) AS end_m, max({'seq': c.seq, 'id': c.lanelet_id}).id AS last_id
+    FROM corridor c
+    GROUP BY ALL
+),
+ego AS (
+    SELECT
+        e.drive_id, e.ego_id, e.t_ns, e.s_m, e.front_s_m, x.side, x.half_width_m, x.over_width_m,
+        r.end_m - e.front_s_m AS corridor_m, n.ahead_id IS NULL AS map_ends, g.sensor_range_m - e.length_m / 2 AS range_m
+    FROM ego_state e
+    JOIN ego_corridor x ON x.drive_id = e.drive_id AND x.ego_id = e.ego_id AND x.chain_id = e.chain_id AND x.t_ns = e.t_ns
+    JOIN reach r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
+    JOIN data_log g ON g.drive_id = e.drive_id
+    LEFT JOIN lane_next n ON n.environment_id = g.environment_id AND n.lanelet_id = r.last_id
+    WHERE e.front_s_m IS NOT NULL AND x.side IS NOT NULL
+),
+against AS (
+    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.rear_s_m, p.travel_m, p.speed_mps, p.rear_s_m - e.front_s_m AS da_m
+    FROM pair p
+    JOIN ego e USING (drive_id, ego_id, t_ns)
+    WHERE may_be_vehicle(p.actor_class) AND p.s_m > e.s_m AND abs(p.heading_diff_rad) > 2 * pi() / 3
+        AND e.side * p.d_m - p.lat_half_m < p.half_width_m + coalesce(p.over_width_m, e.over_width_m, 2 * p.half_width_m)
+        -- standing the wrong way round in the running lane it is parked there; moving it is oncoming
+        AND e.side * p.d_m + p.lat_half_m > CASE WHEN p.speed_mps <= standing_mps() THEN p.half_width_m + over_boundary_m() ELSE -p.half_width_m END
+),
+entry AS (
+    SELECT drive_id, ego_id, object_id, min({'t_ns': t_ns, 's_m': rear_s_m, 'travel_m': travel_m}) AS e FROM against GROUP BY ALL
+),
+coming AS (
+    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.speed_mps, y.e.s_m - e.front_s_m + y.e.travel_m - p.travel_m AS da_m
+    FROM entry y
+    JOIN pair p ON p.drive_id = y.drive_id AND p.ego_id = y.ego_id AND p.object_id = y.object_id
+        AND p.t_ns < y.e.t_ns AND p.t_ns >= y.e.t_ns - 15_000_000_000
+    JOIN ego e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
+    WHERE p.x_m IS NOT NULL AND y.e.s_m > e.front_s_m
+),
+nearest AS (
+    SELECT drive_id, ego_id, t_ns, min({'da_m': da_m, 'object_id': object_id, 'speed_mps': speed_mps, 'way': way}) AS o
+    FROM (
+        SELECT drive_id, ego_id, t_ns, object_id, speed_mps, da_m, false AS way FROM against
+        UNION ALL BY NAME
+        SELECT *, true AS way FROM coming
+    )
+    GROUP BY ALL
+),
+hidden AS (
+    SELECT u.drive_id, u.ego_id, u.t_ns, count(*) AS n, min({'id': u.object_id, 'reason': u.reason}) AS u
+    FROM unplaced u
+    LEFT JOIN nearest n ON n.drive_id = u.drive_id AND n.ego_id = u.ego_id AND n.t_ns = u.t_ns
+    WHERE n.o.object_id IS NULL OR n.o.object_id <> u.object_id
+    GROUP BY ALL
+)
+SELECT
+    e.drive_id, e.ego_id, e.t_ns, n.o.object_id AS object_id, n.o.da_m AS da_m, n.o.speed_mps AS speed_mps, n.o.way AS on_its_way,
+    -- ground truth has no range: least() leaves its NULL out, as it should here
+    greatest(0.0, least(e.corridor_m, e.range_m)) AS free_m,
+    CASE WHEN e.range_m < e.corridor_m THEN 'sensor_range' WHEN e.map_ends THEN 'map_end' ELSE 'corridor_end' END AS free_reason,
+    coalesce(h.n, 0) AS n_unplaced,
+    CASE WHEN h.n > 0 THEN 'actor ' || h.u.id || ' ' || h.u.reason END AS unplaced_reason
+FROM ego e
+LEFT JOIN nearest n USING (drive_id, ego_id, t_ns)
+LEFT JOIN hidden h USING (drive_id, ego_id, t_ns)

@@ -1,0 +1,53 @@
+-- Times in which the ego is held up behind a slower vehicle with an opposing lane to overtake in, and the best moment in them for each
+-- profile. Held up: within 5 s of a lead that does less than 80 % of the limit. The ego would pass at its own speed, or 10 mph faster
+-- than the lead up to the limit.
+WITH held AS (
+    SELECT
+        l.drive_id, l.ego_id, l.t_ns, st.k, st.seg, l.object_id, l.speed_mps AS v_vbp, e.length_m AS l_av, x.half_width_m * 2 AS w,
+        greatest(e.speed_mps, least(e.limit_mps, l.speed_mps + 4.4704)) AS v_av, e.limit_mps
+    FROM lead l
+    JOIN ego_state e USING (drive_id, ego_id, t_ns)
+    JOIN step st USING (drive_id, ego_id, t_ns)
+    JOIN ego_corridor x ON x.drive_id = e.drive_id AND x.ego_id = e.ego_id AND x.chain_id = e.chain_id AND x.t_ns = e.t_ns
+    WHERE l.object_id IS NOT NULL AND x.over_against AND l.speed_mps < 0.8 * e.limit_mps
+        AND l.gap_m < 5 * greatest(e.speed_mps, 2.0)
+        AND CASE x.side WHEN 1 THEN x.left_out_m ELSE x.right_out_m END <= over_boundary_m()
+),
+numbered AS (
+    SELECT *, k - row_number() OVER (PARTITION BY drive_id, ego_id, object_id, seg ORDER BY k) AS run FROM held
+),
+judged AS (
+    SELECT
+        h.*, p.profile, coalesce(o.da_m, o.free_m) AS da_m, o.n_unplaced, o.object_id IS NULL AS free,
+        CASE WHEN h.v_av > h.v_vbp THEN safe_distance_ahead_m(
+            h.w, p.pull_out_angle_rad, p.cut_in_angle_rad, p.pull_out_headroom_m, p.cut_in_clearance_m, h.l_av, a.length_m, h.v_av, h.v_vbp,
+            CASE WHEN o.object_id IS NULL THEN h.limit_mps ELSE o.speed_mps END
+        ) END AS sda_m,
+        h.v_av + CASE WHEN o.object_id IS NULL THEN h.limit_mps ELSE o.speed_mps END AS closing_mps
+    FROM numbered h
+    JOIN actor a ON a.drive_id = h.drive_id AND a.actor_id = h.object_id
+    CROSS JOIN (SELECT * FROM profile WHERE profile <> 'observed') p
+    LEFT JOIN oncoming o ON o.drive_id = h.drive_id AND o.ego_id = h.ego_id AND o.t_ns = h.t_ns
+),
+spared AS (
+    SELECT *, CASE WHEN n_unplaced = 0 AND NOT (free AND da_m <= sda_m) THEN da_m - sda_m END AS spare_m FROM judged
+),
+episode AS (
+    SELECT
+        drive_id, ego_id, object_id, profile, seg, run, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns,
+        min({'less': -spare_m, 't_ns': t_ns, 'da_m': da_m, 'sda_m': sda_m, 'closing_mps': closing_mps}) FILTER (spare_m IS NOT NULL) AS best
+    FROM spared
+    GROUP BY ALL
+)
+SELECT
+    e.drive_id, e.ego_id,
+    (dense_rank() OVER (PARTITION BY e.drive_id, e.ego_id ORDER BY e.t_start_ns, e.object_id) - 1)::INTEGER AS occurrence,
+    e.object_id, e.profile, e.t_start_ns, e.t_end_ns, e.best.t_ns AS t_best_ns, e.best.da_m AS da_m, e.best.sda_m AS sda_m,
+    -e.best.less / nullif(e.best.closing_mps, 0) AS spare_s,
+    overtake_zone(-e.best.less, -e.best.less / nullif(e.best.closing_mps, 0)) AS zone,
+    EXISTS (
+        FROM overtake o JOIN clock c USING (drive_id, ego_id)
+        WHERE o.drive_id = e.drive_id AND o.ego_id = e.ego_id AND o.vbp_id = e.object_id
+            AND o.t0_ns >= e.t_start_ns AND o.t0_ns <= e.t_end_ns + c.max_gap_ns
+    ) AS taken
+FROM episode e

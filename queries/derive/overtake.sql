@@ -1,0 +1,87 @@
+-- Overtakes (paper, Appendix A): the ego leaves its lane towards the overtaking lane with a vehicle ahead of it. The nearest one counts
+-- if it is passed, or is within 100 m and the ego went well over the line (or the log ends before that shows); every further vehicle
+-- passed in the same go counts too.
+WITH gone AS (
+    SELECT x.*, e.front_s_m, e.rear_s_m, e.s_m, e.speed_mps, e.length_m, e.limit_mps
+    FROM excursion x
+    JOIN ego_state e ON e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns = x.t0_ns
+    -- at t0 the running chain is still the one that is left; seen from a lane not yet driven, the ego is always outside
+    WHERE x.overtaking AND e.chain_id = x.chain_id
+),
+ahead AS (
+    SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, p.object_id, p.rear_s_m - g.front_s_m AS gap_m, p.speed_mps, p.length_m, true AS placed
+    FROM gone g
+    JOIN pair p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns = g.t0_ns
+    WHERE may_be_vehicle(p.actor_class) AND p.s_m > g.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m - over_boundary_m()
+        AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps())
+),
+-- somebody without a position may be the one that is overtaken
+hidden AS (
+    SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, p.object_id, NULL::DOUBLE AS gap_m, p.speed_mps, p.length_m, false AS placed
+    FROM gone g
+    JOIN pair p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns = g.t0_ns
+    WHERE may_be_vehicle(p.actor_class) AND (p.x_m IS NULL OR p.y_m IS NULL)
+        AND NOT EXISTS (FROM ahead a WHERE a.drive_id = g.drive_id AND a.ego_id = g.ego_id AND a.chain_id = g.chain_id AND a.t0_ns = g.t0_ns)
+),
+candidate AS (
+    SELECT *, row_number() OVER (PARTITION BY drive_id, ego_id, chain_id, t0_ns ORDER BY gap_m, object_id) AS rank
+    FROM (SELECT * FROM ahead UNION ALL SELECT * FROM hidden)
+),
+passing AS (
+    SELECT c.drive_id, c.ego_id, c.chain_id, c.t0_ns, c.object_id, bool_or(e.front_s_m > p.front_s_m) AS passed
+    FROM candidate c
+    JOIN gone g USING (drive_id, ego_id, chain_id, t0_ns)
+    JOIN pair p ON p.drive_id = c.drive_id AND p.ego_id = c.ego_id AND p.object_id = c.object_id
+        AND p.t_ns >= c.t0_ns AND p.t_ns <= coalesce(g.t_back_ns, g.t_end_ns)
+    JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
+    GROUP BY ALL
+),
+kept AS (
+    SELECT
+        g.* EXCLUDE (overtaking), c.object_id, c.gap_m, c.speed_mps AS v_vbp_mps, c.length_m AS l_vbp_m, c.placed, coalesce(a.passed, false) AS passed
+    FROM candidate c
+    JOIN gone g USING (drive_id, ego_id, chain_id, t0_ns)
+    LEFT JOIN passing a USING (drive_id, ego_id, chain_id, t0_ns, object_id)
+    WHERE coalesce(a.passed, false)
+        OR (c.rank = 1 AND coalesce(c.gap_m, 0.0) <= 100 AND (g.max_out_m >= 0.5 OR g.t_back_ns IS NULL OR NOT c.placed))
+),
+later AS (
+    SELECT k.drive_id, k.ego_id, k.chain_id, k.t0_ns, k.object_id, w.moment, e.rear_s_m - p.front_s_m AS gap_m, p.speed_mps
+    FROM kept k
+    CROSS JOIN (VALUES ('t2'), ('t3')) AS w(moment)
+    JOIN pair p ON p.drive_id = k.drive_id AND p.ego_id = k.ego_id AND p.object_id = k.object_id
+        AND p.t_ns = CASE w.moment WHEN 't2' THEN k.t_turn_ns ELSE k.t_back_ns END
+    JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
+),
+angle AS (
+    SELECT
+        k.drive_id, k.ego_id, k.chain_id, k.t0_ns, k.object_id,
+        atan2(k.side * (b.d_m - a.d_m), b.s_m - a.s_m) AS pull_out_angle_rad,
+        atan2(k.side * (c.d_m - d.d_m), d.s_m - c.s_m) AS cut_in_angle_rad
+    FROM kept k
+    JOIN ego_corridor a ON a.drive_id = k.drive_id AND a.ego_id = k.ego_id AND a.chain_id = k.chain_id AND a.t_ns = k.t0_ns
+    LEFT JOIN ego_corridor b ON b.drive_id = k.drive_id AND b.ego_id = k.ego_id AND b.chain_id = k.chain_id AND b.t_ns = k.t_over_ns
+    LEFT JOIN ego_corridor c ON c.drive_id = k.drive_id AND c.ego_id = k.ego_id AND c.chain_id = k.chain_id AND c.t_ns = k.t_turn_ns
+    LEFT JOIN ego_corridor d ON d.drive_id = k.drive_id AND d.ego_id = k.ego_id AND d.chain_id = k.chain_id AND d.t_ns = k.t_back_ns
+)
+SELECT
+    k.drive_id, k.ego_id,
+    (row_number() OVER (PARTITION BY k.drive_id, k.ego_id ORDER BY k.t0_ns, k.chain_id, k.gap_m, k.object_id) - 1)::INTEGER AS occurrence,
+    k.chain_id, k.over_against AS opposing, k.side, k.object_id AS vbp_id, k.placed AS vbp_placed, k.begin_seen,
+    k.t0_ns, k.t_over_ns AS t1_ns, k.t_turn_ns AS t2_ns, k.t_back_ns AS t3_ns, coalesce(k.t_back_ns, k.t_end_ns) AS t_end_ns, k.passed,
+    CASE
+        WHEN k.t_back_ns IS NOT NULL AND k.passed THEN 'completed'
+        WHEN k.t_back_ns IS NOT NULL THEN 'aborted'
+        WHEN k.t_over_ns IS NOT NULL AND NOT k.over_against THEN 'lane_change'
+        ELSE 'truncated'
+    END AS status,
+    k.speed_mps AS v_av_mps, k.v_vbp_mps, k.length_m AS l_av_m, k.l_vbp_m, k.lane_width_m, k.gap_m AS vbp_gap_m,
+    t2.gap_m AS t2_gap_m, t3.gap_m AS t3_gap_m, t3.speed_mps AS v_vbp_t3_mps,
+    o.object_id AS ov_id, coalesce(o.da_m, o.free_m) AS da_m, CASE WHEN o.object_id IS NULL THEN k.limit_mps ELSE o.speed_mps END AS v_ov_mps,
+    o.n_unplaced, o.unplaced_reason, o.free_reason,
+    a.pull_out_angle_rad, a.cut_in_angle_rad
+FROM kept k
+LEFT JOIN oncoming o ON o.drive_id = k.drive_id AND o.ego_id = k.ego_id AND o.t_ns = k.t0_ns
+LEFT JOIN angle a ON a.drive_id = k.drive_id AND a.ego_id = k.ego_id AND a.chain_id = k.chain_id AND a.t0_ns = k.t0_ns AND a.object_id = k.object_id
+LEFT JOIN later t2 ON t2.moment = 't2' AND t2.drive_id = k.drive_id AND t2.ego_id = k.ego_id AND t2.chain_id = k.chain_id AND t2.t0_ns = k.t0_ns AND t2.object_id = k.object_id
+LEFT JOIN later t3 ON t3.moment = 't3' AND t3.drive_id = k.drive_id AND t3.ego_id = k.ego_id AND t3.chain_id = k.chain_id AND t3.t0_ns = k.t0_ns AND t3.object_id = k.object_id

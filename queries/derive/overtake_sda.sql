@@ -1,0 +1,38 @@
+-- Distance ahead against safe distance ahead for every profile, observed among them: the angles and gaps that this overtake had.
+WITH input AS (
+    SELECT
+        o.*, p.profile,
+        CASE p.profile WHEN 'observed' THEN o.pull_out_angle_rad ELSE p.pull_out_angle_rad END AS beta,
+        CASE p.profile WHEN 'observed' THEN o.cut_in_angle_rad ELSE p.cut_in_angle_rad END AS theta,
+        CASE p.profile WHEN 'observed' THEN o.vbp_gap_m ELSE p.pull_out_headroom_m END AS headroom,
+        CASE p.profile WHEN 'observed' THEN o.t2_gap_m ELSE p.cut_in_clearance_m END AS clearance
+    FROM overtake o CROSS JOIN profile p
+),
+required AS (
+    SELECT
+        *,
+        CASE WHEN beta > 0 AND theta > 0 AND v_av_mps > v_vbp_mps THEN
+            safe_distance_ahead_m(lane_width_m, beta, theta, headroom, clearance, l_av_m, l_vbp_m, v_av_mps, v_vbp_mps, v_ov_mps)
+        END AS sda_m
+    FROM input
+)
+SELECT
+    drive_id, ego_id, occurrence, profile, t0_ns,
+    CASE WHEN begin_seen AND vbp_placed THEN da_m END AS da_m,
+    ov_id IS NULL AS at_least,
+    ov_id IS NULL AND n_unplaced = 0 AS nobody,
+    sda_m, da_m - sda_m AS spare_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0) AS spare_s,
+    CASE WHEN begin_seen AND vbp_placed AND n_unplaced = 0 THEN overtake_zone(da_m - sda_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0)) END AS zone,
+    CASE
+        WHEN NOT begin_seen THEN 'the log does not show where the overtake began'
+        WHEN NOT vbp_placed THEN 'actor ' || vbp_id || ', who may be the vehicle passed, has no position'
+        WHEN da_m IS NULL THEN 'the ego is not placed on its corridor'
+        WHEN v_av_mps <= v_vbp_mps THEN 'undefined: the ego was not faster than the vehicle it passed'
+        WHEN profile = 'observed' AND status <> 'completed' THEN 'the overtake was not completed, so its own angles are not known'
+        WHEN sda_m IS NULL AND ov_id IS NULL AND v_ov_mps IS NULL THEN 'no oncoming vehicle is seen and the map has no speed limit to assume for one'
+        WHEN sda_m IS NULL THEN 'a speed, size or angle is not known'
+        WHEN n_unplaced > 0 AND da_m > sda_m THEN unplaced_reason
+        WHEN ov_id IS NULL AND da_m <= sda_m THEN 'no oncoming vehicle as far as can be told, but that is only ' || round(da_m, 1)::VARCHAR || ' m (' || free_reason || ')'
+        WHEN ov_id IS NULL THEN 'no oncoming vehicle within ' || round(da_m, 1)::VARCHAR || ' m'
+    END AS reason
+FROM required

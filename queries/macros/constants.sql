@@ -1,0 +1,20 @@
+-- Numbers of the library, named once.
+
+-- A corner this far over a boundary has left the lane (paper's registration noise is below it).
+CREATE OR REPLACE MACRO over_boundary_m() AS 0.05;
+-- Half width of the strip in which the corridor gives positions, and how far it reaches ahead of and behind the ego's way.
+CREATE OR REPLACE MACRO strip_m() AS 15.0;
+CREATE OR REPLACE MACRO corridor_ahead_m() AS 1000.0;
+CREATE OR REPLACE MACRO corridor_behind_m() AS 200.0;
+-- Boxes nearer than this get their exact clearance; beyond it a lower bound decides every rule that asks for one.
+CREATE OR REPLACE MACRO exact_clearance_m() AS 30.0;
+-- An object whose track ends this close to the ego did not just drive away.
+CREATE OR REPLACE MACRO lost_near_m() AS 50.0;
+-- Slower than this is standing: positions of parked vehicles jitter.
+CREATE OR REPLACE MACRO standing_mps() AS 0.5;
+-- Samples closer than this many periods are continuous.
+CREATE OR REPLACE MACRO max_gap_periods() AS 2.5;
+-- How long a vehicle that left or has not yet entered the log may be on the road ahead all the same: twice the time to meet it at both
+-- speeds, between 10 and 60 s.
+CREATE OR REPLACE MACRO unseen_ns(distance_m, v_object_mps, v_ego_mps) AS
+    (1e9 * least(60.0, greatest(10.0, 2 * coalesce(distance_m / nullif(v_object_mps + v_ego_mps, 0), 30.0))))::BIGINT;

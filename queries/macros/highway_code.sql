@@ -1,0 +1,29 @@
+-- Models that several rules share. Speeds in m/s unless the name says otherwise.
+
+CREATE OR REPLACE MACRO mph(v_mps) AS v_mps / 0.44704;
+
+-- Thinking and stopping distance of Highway Code Rule 126 as the paper fits it (speed in mph, metres out).
+CREATE OR REPLACE MACRO thinking_distance_m(v_mps) AS 0.300 * mph(v_mps);
+CREATE OR REPLACE MACRO stopping_distance_m(v_mps) AS 0.300 * mph(v_mps) + 0.058 - 0.011 * mph(v_mps) + 0.015 * mph(v_mps) ** 2;
+
+-- Safe distance ahead (the paper's Appendix A). w: lane width; beta, theta: pull-out and cut-in angle; headroom, clearance: gaps to the
+-- VBP when pulling out and cutting in start; undefined (NULL) where the ego is not faster than the VBP.
+CREATE OR REPLACE MACRO pull_out_time_s(w, beta, v_av) AS w / (v_av * sin(beta));
+CREATE OR REPLACE MACRO passing_time_s(w, beta, headroom, clearance, l_av, l_vbp, v_av, v_vbp) AS
+    CASE WHEN v_av > v_vbp THEN
+        (headroom + l_vbp + clearance + l_av + (v_vbp - v_av * cos(beta)) * pull_out_time_s(w, beta, v_av)) / (v_av - v_vbp)
+    END;
+CREATE OR REPLACE MACRO safe_distance_ahead_m(w, beta, theta, headroom, clearance, l_av, l_vbp, v_av, v_vbp, v_ov) AS
+    w / tan(beta) + w / tan(theta) + stopping_distance_m(v_ov)
+    + v_av * passing_time_s(w, beta, headroom, clearance, l_av, l_vbp, v_av, v_vbp)
+    + v_ov * (
+        pull_out_time_s(w, beta, v_av) + passing_time_s(w, beta, headroom, clearance, l_av, l_vbp, v_av, v_vbp)
+        + pull_out_time_s(w, theta, v_av)
+    );
+
+-- Performance zone of an overtake by the time in which the spare distance closes.
+CREATE OR REPLACE MACRO overtake_zone(spare_m, spare_s) AS
+    CASE WHEN spare_m <= 0 THEN 'A' WHEN spare_s < 0.5 THEN 'B' WHEN spare_s <= 2.5 THEN 'C' WHEN spare_s > 2.5 THEN 'D' END;
+
+-- Could be driven: everything that is not known to be on foot, an animal or a thing.
+CREATE OR REPLACE MACRO may_be_vehicle(actor_class) AS coalesce(actor_class NOT IN ('pedestrian', 'animal', 'object'), true);

@@ -1,0 +1,105 @@
+"""Derive the library tables: each `queries/derive/<table>.sql` is one SELECT that fills the table of its name.
+
+The order follows from which tables each SELECT reads; only what is asked for, and what that reads, is run.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import cache
+from graphlib import TopologicalSorter
+from typing import TYPE_CHECKING, Any
+
+import duckdb
+
+from drivelint.errors import DriveLintError
+from drivelint.resources import folder
+from drivelint.store import schema
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+# What the engine and the drive table read themselves, whatever the rules are.
+ALWAYS = ("clock", "step", "ego_state", "pair", "lost_object", "capability", "registration", "exposure")
+
+
+@dataclass(frozen=True)
+class Derivation:
+    """One library table, the SELECT that fills it, and the other library tables that the SELECT reads."""
+
+    table: str
+    sql: str
+    reads: frozenset[str]
+
+    @property
+    def of_the_map(self) -> bool:
+        """Whether the table is a property of the map alone, filled once per environment and not once per batch."""
+        return "drive_id" not in schema()[self.table]
+
+
+@cache
+def derivations() -> Mapping[str, Derivation]:
+    """Return every derivation, in an order in which each can be run after those before it."""
+    found: dict[str, Derivation] = {}
+    files = sorted((folder("queries") / "derive").glob("*.sql"))
+    names = {file.stem for file in files}
+    with duckdb.connect() as con:
+        for file in files:
+            if file.stem not in schema():
+                raise DriveLintError(f"{file}: no table {file.stem!r} in schemas/")
+            sql = file.read_text(encoding="utf-8")
+            found[file.stem] = Derivation(file.stem, sql, frozenset(_tables(con, sql, str(file)) & names - {file.stem}))
+    order = TopologicalSorter({name: sorted(d.reads) for name, d in found.items()}).static_order()
+    return {name: found[name] for name in order}
+
+
+def needed(tables: Iterable[str]) -> list[Derivation]:
+    """Return the derivations behind these tables, in order."""
+    wanted: set[str] = set()
+    todo = [*tables, *ALWAYS]
+    while todo:
+        table = todo.pop()
+        if table in derivations() and table not in wanted:
+            wanted.add(table)
+            todo.extend(derivations()[table].reads)
+    return [d for name, d in derivations().items() if name in wanted]
+
+
+def derive(
+    con: duckdb.DuckDBPyConnection,
+    tables: Iterable[str],
+    *,
+    of_the_map: bool,
+    advance: Callable[[str], None] = lambda _table: None,
+) -> None:
+    """Fill the library tables behind `tables`: those of the map, or those of the drives.
+
+    Errors: `DriveLintError` naming the table, if its SELECT fails.
+    """
+    for step in needed(tables):
+        if step.of_the_map is not of_the_map:
+            continue
+        try:
+            con.execute(f"INSERT INTO {step.table} BY NAME {step.sql}")
+        except duckdb.Error as error:
+            raise DriveLintError(f"queries/derive/{step.table}.sql: {str(error).splitlines()[0]}") from error
+        advance(step.table)
+
+
+def _tables(con: duckdb.DuckDBPyConnection, sql: str, where: str) -> set[str]:
+    tree = json.loads(con.execute("SELECT json_serialize_sql(?)", [sql]).fetchall()[0][0])
+    if tree["error"]:
+        raise DriveLintError(f"{where}: {tree['error_message']}")
+    return set(_table_names(tree))
+
+
+def _table_names(node: Any) -> Iterable[str]:  # noqa: ANN401 - the parser's tree is plain JSON
+    if isinstance(node, dict):
+        if node.get("type") == "BASE_TABLE":
+            yield node["table_name"]
+        for child in node.values():
+            yield from _table_names(child)
+    elif isinstance(node, list):
+        for child in node:
+            yield from _table_names(child)
