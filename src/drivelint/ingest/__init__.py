@@ -1,0 +1,9 @@
+"""From trace files to the tables of `schemas/model.sql`: `expand` finds the files, `read_trace` reads one."""
+
+from __future__ import annotations
+
+from drivelint.ingest.files import expand
+from drivelint.ingest.registry import read_trace
+from drivelint.ingest.trace import IngestOptions, Trace
+
+__all__ = ["IngestOptions", "Trace", "expand", "read_trace"]

@@ -1,0 +1,188 @@
+"""Canonical Parquet: the tables of `schemas/model.sql` as files, a folder of them or a single `actor_state` one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
+
+from drivelint.errors import TraceError
+from drivelint.ingest.trace import (
+    BRAKE_LIGHTS,
+    CLASSES,
+    INDICATORS,
+    NUMBERS,
+    SIGNAL_STATES,
+    SIZES,
+    Finding,
+    Recording,
+    States,
+)
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+REQUIRED = ("t_ns", "actor_id", "x_m", "y_m", "yaw_rad")
+"""What makes a Parquet table canonical; every other column may be missing and is then unknown."""
+_WORDS = {"indicator": INDICATORS, "brake_light": BRAKE_LIGHTS, "actor_class": CLASSES}
+
+
+def has_columns(path: Path) -> bool:
+    """Say whether a Parquet file has the columns of `actor_state`. Errors: `TraceError` where it is damaged."""
+    return set(REQUIRED) <= set(_open(path).schema.names)
+
+
+def read(path: Path) -> Recording:
+    """Read a canonical folder or file. Errors: `TraceError` for damaged files, missing or ill-typed columns, several drives in one."""
+    if not path.is_dir():
+        states, egos = _states(path)
+        return Recording("canonical-parquet", states, ego_ids=egos, findings=_findings(states, path))
+    states, egos = _states(path / "actor_state.parquet")
+    recording = Recording(
+        "canonical-parquet", states, ego_ids=egos, findings=_findings(states, path / "actor_state.parquet")
+    )
+    if (path / "actor.parquet").is_file():
+        recording.actors = _actors(path / "actor.parquet")
+        ego_column = recording.actors.column("is_ego").to_pylist() if "is_ego" in recording.actors.schema.names else []
+        recording.ego_ids += [
+            i for i, is_ego in zip(recording.actors.column("actor_id").to_pylist(), ego_column, strict=False) if is_ego
+        ]
+    recording.signals = _extra(path / "signal_state.parquet", ("signal_id", "t_ns"), ("state",))
+    recording.events = _extra(path / "declared_event.parquet", ("actor_id", "t_ns", "event"), ("value",))
+    _check_words(recording.signals, path / "signal_state.parquet")
+    return recording
+
+
+def _open(path: Path) -> pa.Table:
+    """Map the file; opened by handle, so that nothing in its path is read as a column."""
+    try:
+        with path.open("rb") as file:
+            return pq.ParquetFile(file).read()
+    except (pa.ArrowException, OSError) as error:
+        raise TraceError(f"{path}: not readable as Parquet: {' '.join(str(error).split())}") from error
+
+
+def _column(path: Path, table: pa.Table, name: str, kind: pa.DataType) -> pa.Array:
+    column = table.column(name)
+    array = column.combine_chunks() if isinstance(column, pa.ChunkedArray) else column
+    try:
+        return array.cast(kind)
+    except pa.ArrowException as error:
+        raise TraceError(
+            f"{path}: column {name!r} is {column.type}, not {kind}: {' '.join(str(error).split())}"
+        ) from error
+
+
+def _need(path: Path, table: pa.Table, names: tuple[str, ...]) -> None:
+    missing = [name for name in names if name not in table.schema.names]
+    if missing:
+        raise TraceError(f"{path}: no column {', '.join(missing)}: a canonical table needs {', '.join(names)}")
+    drives = pc.unique(table.column("drive_id")) if "drive_id" in table.schema.names else []
+    if len(drives) > 1:
+        raise TraceError(f"{path}: holds {len(drives)} drives: write one folder or file per drive")
+
+
+def _states(path: Path) -> tuple[States, list[str]]:
+    table = _open(path)
+    _need(path, table, REQUIRED)
+    ids = _column(path, table, "actor_id", pa.string())
+    times = _column(path, table, "t_ns", pa.int64())
+    lost = pc.or_(pc.or_(pc.is_null(ids), pc.equal(pc.fill_null(ids, ""), "")), pc.is_null(times)).to_numpy(
+        zero_copy_only=False
+    )
+    n = len(ids)
+    numbers, not_finite = {}, np.zeros(n, np.bool_)
+    for name in (*NUMBERS, *SIZES):
+        if name in table.schema.names:
+            column = _column(path, table, name, pa.float64())
+            values = pc.fill_null(column, float("nan")).to_numpy(zero_copy_only=False)
+            odd = ~np.isfinite(values)
+            numbers[name] = np.where(odd, np.nan, values)
+            not_finite |= odd & column.is_valid().to_numpy(zero_copy_only=False)
+    codes = {
+        name: _codes(path, _column(path, table, name, pa.string()), name)
+        for name in _WORDS
+        if name in table.schema.names
+    }
+    egos: list[str] = []
+    if "is_ego" in table.schema.names:
+        chosen = pc.fill_null(_column(path, table, "is_ego", pa.bool_()), fill_value=False)
+        egos = [i for i in pc.unique(ids.filter(chosen)).to_pylist() if i]
+    encoded = pc.dictionary_encode(pc.fill_null(ids, ""))
+    actor = encoded.indices.to_numpy()
+    t_ns = pc.fill_null(times, 0).to_numpy(zero_copy_only=False)
+    states = States(encoded.dictionary.to_pylist(), actor, t_ns, numbers, codes, not_finite)
+    return (states.take(~lost) if lost.any() else states), egos
+
+
+def _findings(states: States, path: Path) -> list[Finding]:
+    """Report rows that were left out because they say neither who nor when."""
+    lost = pq.ParquetFile(path).metadata.num_rows - len(states)
+    return (
+        [
+            Finding(
+                "dropped_row",
+                "error",
+                f"{lost} rows of {path.name} have no actor or no time: they are not judged",
+                lost,
+            )
+        ]
+        if lost
+        else []
+    )
+
+
+def _codes(path: Path, column: pa.Array, name: str) -> NDArray[np.int8]:
+    words = _WORDS[name]
+    encoded = pc.dictionary_encode(column)
+    table = []
+    for word in encoded.dictionary.to_pylist():
+        if word not in words:
+            raise TraceError(f"{path}: {name} is {word!r}: use one of {', '.join(words)}, or NULL for unknown")
+        table.append(words.index(word))
+    lookup = np.array([*table, -1], np.int8)
+    return lookup[pc.fill_null(encoded.indices, len(table)).to_numpy(zero_copy_only=False)]
+
+
+def _actors(path: Path) -> pa.Table:
+    table = _open(path)
+    _need(path, table, ("actor_id",))
+    columns = {"actor_id": _column(path, table, "actor_id", pa.string())}
+    for name in SIZES:
+        if name in table.schema.names:
+            columns[name] = _column(path, table, name, pa.float64())
+    if "actor_class" in table.schema.names:
+        columns["actor_class"] = _column(path, table, "actor_class", pa.string())
+        _codes(path, columns["actor_class"], "actor_class")
+    if "is_ego" in table.schema.names:
+        columns["is_ego"] = _column(path, table, "is_ego", pa.bool_())
+    return pa.table(columns)
+
+
+def _extra(path: Path, required: tuple[str, ...], optional: tuple[str, ...]) -> pa.Table | None:
+    if not path.is_file():
+        return None
+    table = _open(path)
+    _need(path, table, required)
+    types = {"t_ns": pa.int64()}
+    columns = {name: _column(path, table, name, types.get(name, pa.string())) for name in required}
+    for name in optional:
+        present = name in table.schema.names
+        columns[name] = _column(path, table, name, pa.string()) if present else pa.nulls(table.num_rows, pa.string())
+    for name, column in columns.items():
+        if name in required and column.null_count:
+            raise TraceError(f"{path}: {column.null_count} rows have no {name}: give every row one")
+    return pa.table(columns)
+
+
+def _check_words(signals: pa.Table | None, path: Path) -> None:
+    if signals is None:
+        return
+    for word in pc.unique(signals.column("state")).to_pylist():
+        if word is not None and word not in SIGNAL_STATES:
+            raise TraceError(f"{path}: state is {word!r}: use one of {', '.join(SIGNAL_STATES)}, or NULL for unknown")

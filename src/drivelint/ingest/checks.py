@@ -1,0 +1,238 @@
+"""The data-quality checks that every import runs: what a log says about itself that cannot all be true.
+
+Each check looks at states in order (by actor and time, no duplicates) and returns findings, one per check and drive.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from drivelint.ingest.order import MAX_GAP_PERIODS, listed, wrapped
+from drivelint.ingest.trace import MOTOR_VEHICLES, Finding
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from drivelint.ingest.actors import Actors
+    from drivelint.ingest.order import Steps
+    from drivelint.ingest.trace import Severity, States
+
+VELOCITY_MISMATCH_MPS = 1.0
+VELOCITY_MISMATCH_SHARE = 0.15
+"""Velocity may differ from the step in position by 1 m/s + 15 %: millimetre rounding at 20 Hz gives 0.03 m/s, hard braking
+within a step (10 m/s2, 0.1 s) 0.5 m/s, while km/h read as m/s, a flipped axis or knots differ by half or more."""
+YAW_MISMATCH_RAD = np.deg2rad(30.0)
+YAW_SPEED_MPS = 3.0
+"""Slip angles of a car stay below about 10 degrees; below 3 m/s reversing and rounding make the direction of motion useless."""
+TELEPORT_M = 3.0
+TELEPORT_FACTOR = 2.0
+"""A step is a jump if it is longer than 3 m + twice what the higher of both speeds covers: no acceleration explains that."""
+FLAWED_SHARE = 0.5
+"""Where more than half of the moving samples disagree, the units or the frame are wrong, not the sensor."""
+MOVING_SAMPLES = 20
+"""Fewer moving samples than this are too few to blame units or frame."""
+LONG_KINDS = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle"))
+"""Actors whose box is longer than wide."""
+
+
+def run(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[Finding]:
+    """Run every check on states in order. `derived`: velocities come from the positions, so comparing them says nothing."""
+    findings = [*_not_finite(states), *_not_placed(states), *_sizes(actors), *_gaps(states, step)]
+    if len(states) > 1:
+        jump = _jumps(states, step)
+        findings += _report(
+            states, jump, "teleport", "warning", "{n} steps in position are longer than any speed explains ({ids})"
+        )
+        if not derived:
+            findings += _velocity(states, step, jump)
+        findings += _yaw(states, actors)
+    return findings
+
+
+def _report(states: States, rows: NDArray[np.bool_], check: str, severity: Severity, text: str) -> list[Finding]:
+    n = int(rows.sum())
+    if n == 0:
+        return []
+    ids = [states.ids[i] for i in np.unique(states.actor[rows])]
+    message = text.format(n=n, ids=listed(ids), of=len(states))
+    return [Finding(check, severity, message, n, int(states.t_ns[rows].min()), ids[0] if len(ids) == 1 else None)]
+
+
+def _not_finite(states: States) -> list[Finding]:
+    return _report(
+        states,
+        states.not_finite,
+        "not_finite",
+        "warning",
+        "{n} states have NaN or infinity ({ids}): those values are unknown",
+    )
+
+
+def _not_placed(states: States) -> list[Finding]:
+    lost = np.isnan(states.numbers["x_m"]) | np.isnan(states.numbers["y_m"])
+    turned = ~lost & np.isnan(states.numbers["yaw_rad"])
+    return [
+        *_report(
+            states,
+            lost,
+            "no_position",
+            "warning",
+            "{n} of {of} states have no position ({ids}): the actors are present but not placed",
+        ),
+        *_report(
+            states,
+            turned,
+            "no_yaw",
+            "warning",
+            "{n} of {of} states have no heading ({ids}): their boxes cannot be placed",
+        ),
+    ]
+
+
+def _sizes(actors: Actors) -> list[Finding]:
+    length, width = actors.sizes["length_m"], actors.sizes["width_m"]
+    findings = []
+    missing = [actors.ids[i] for i in np.flatnonzero(np.isnan(length) | np.isnan(width))]
+    if missing:
+        message = (
+            f"{len(missing)} actors have no length or width ({listed(missing)}): distances to their boxes are unknown"
+        )
+        findings.append(
+            Finding("no_size", "warning", message, len(missing), actor_id=missing[0] if len(missing) == 1 else None)
+        )
+    long_kind = np.array([kind in LONG_KINDS for kind in actors.classes], np.bool_)
+    swapped = [actors.ids[i] for i in np.flatnonzero(long_kind & (length < width))]
+    if swapped:
+        message = f"{len(swapped)} vehicles are shorter than wide ({listed(swapped)}): length and width may be swapped"
+        findings.append(
+            Finding(
+                "length_below_width",
+                "warning",
+                message,
+                len(swapped),
+                actor_id=swapped[0] if len(swapped) == 1 else None,
+            )
+        )
+    return findings
+
+
+def _gaps(states: States, step: Steps) -> list[Finding]:
+    """Report holes of the whole log, and holes of single tracks that the log goes on recording through."""
+    import pyarrow as pa
+    import pyarrow.compute as pc
+
+    if step.period_ns <= 0:
+        return []
+    times = np.sort(pc.unique(pa.array(states.t_ns)).to_numpy())
+    dt = np.diff(times)
+    wide = dt > MAX_GAP_PERIODS * step.period_ns
+    findings = []
+    if wide.any():
+        n, first = int(wide.sum()), int(times[:-1][wide][0])
+        message = (
+            f"{n} gaps in the log longer than {MAX_GAP_PERIODS} periods of {step.period_ns / 1e9:g} s, the longest {dt.max() / 1e9:g} s, "
+            f"the first from {first / 1e9:g} s: nothing is judged across them"
+        )
+        findings.append(Finding("gap", "warning", message, n, first))
+    hole = np.zeros(len(states), np.bool_)
+    hole[:-1] = step.same & ~step.continuous
+    if findings:  # a hole that is a gap of the whole log is reported once
+        inside = np.searchsorted(times, states.t_ns[:-1][hole[:-1]])
+        hole[np.flatnonzero(hole)[wide[inside]]] = False
+    findings += _report(
+        states, hole, "track_gap", "info", "{n} tracks are interrupted ({ids}): those actors are unknown in between"
+    )
+    return findings
+
+
+def _displacement(states: States) -> NDArray[np.float64]:
+    return np.hypot(np.diff(states.numbers["x_m"]), np.diff(states.numbers["y_m"]))
+
+
+def _jumps(states: States, step: Steps) -> NDArray[np.bool_]:
+    speed = np.nan_to_num(np.hypot(states.numbers["vx_mps"], states.numbers["vy_mps"]))
+    reach = TELEPORT_M + TELEPORT_FACTOR * np.maximum(speed[1:], speed[:-1]) * step.dt_s
+    jump = np.zeros(len(states), np.bool_)
+    with np.errstate(invalid="ignore"):
+        jump[1:] = step.continuous & (_displacement(states) > reach)
+    return jump
+
+
+def _velocity(states: States, step: Steps, jump: NDArray[np.bool_]) -> list[Finding]:
+    """Compare each step in position with the mean of the velocities at its ends."""
+    numbers = states.numbers
+    dt = np.where(step.dt_s > 0.0, step.dt_s, np.nan)
+    moved = np.hypot(np.diff(numbers["x_m"]), np.diff(numbers["y_m"])) / dt
+    speed = np.hypot(numbers["vx_mps"], numbers["vy_mps"])
+    told = 0.5 * (speed[1:] + speed[:-1])
+    error = np.hypot(
+        np.diff(numbers["x_m"]) / dt - 0.5 * (numbers["vx_mps"][1:] + numbers["vx_mps"][:-1]),
+        np.diff(numbers["y_m"]) / dt - 0.5 * (numbers["vy_mps"][1:] + numbers["vy_mps"][:-1]),
+    )
+    wrong = np.zeros(len(states), np.bool_)
+    with np.errstate(invalid="ignore"):
+        usable = step.continuous & ~jump[1:]
+        wrong[1:] = usable & (error > VELOCITY_MISMATCH_MPS + VELOCITY_MISMATCH_SHARE * np.maximum(moved, told))
+        moving = usable & (np.maximum(moved, told) > YAW_SPEED_MPS)
+    n, n_moving = int(wrong.sum()), int(moving.sum())
+    if n_moving >= MOVING_SAMPLES and int((wrong[1:] & moving).sum()) > FLAWED_SHARE * n_moving:
+        with np.errstate(invalid="ignore", divide="ignore"):
+            ratio = float(np.nanmedian((told / moved)[moving]))
+        text = (
+            f"velocity disagrees with the steps in position in {100.0 * n / max(n, n_moving):.0f} % of the moving samples "
+            f"(speed is {ratio:.3g} times the step): {_cause(ratio)}"
+        )
+        return _report(states, wrong, "velocity_mismatch", "error", text.replace("{", "{{").replace("}", "}}"))
+    return _report(
+        states,
+        wrong,
+        "velocity_mismatch",
+        "warning",
+        "{n} of {of} velocities disagree with the steps in position ({ids})",
+    )
+
+
+def _cause(ratio: float) -> str:
+    """Guess what a wrong ratio of speed to motion comes from."""
+    for factor, cause in (
+        (3.6, "speeds in km/h read as m/s"),
+        (2.237, "speeds in mph read as m/s"),
+        (1 / 3.6, "speeds in m/s read as km/h"),
+        (0.447, "speeds in m/s read as mph"),
+    ):
+        if abs(ratio / factor - 1.0) < 0.03:
+            return cause
+    return (
+        "axes flipped differently for positions and velocities"
+        if abs(ratio - 1.0) < 0.1
+        else "units of speed, position or time are wrong"
+    )
+
+
+def _yaw(states: States, actors: Actors) -> list[Finding]:
+    """Compare the heading of vehicles with their direction of motion."""
+    numbers = states.numbers
+    place = {name: i for i, name in enumerate(actors.ids)}
+    long_kind = np.array([actors.classes[place[name]] in {*LONG_KINDS, None} for name in states.ids], np.bool_)
+    speed = np.hypot(numbers["vx_mps"], numbers["vy_mps"])
+    with np.errstate(invalid="ignore"):
+        moving = (speed > YAW_SPEED_MPS) & long_kind[states.actor] & ~np.isnan(numbers["yaw_rad"])
+        off = np.abs(wrapped(numbers["yaw_rad"] - np.arctan2(numbers["vy_mps"], numbers["vx_mps"])))
+        wrong = moving & (off > YAW_MISMATCH_RAD)
+    n, n_moving = int(wrong.sum()), int(moving.sum())
+    if n_moving >= MOVING_SAMPLES and n > FLAWED_SHARE * n_moving:
+        degrees = float(np.rad2deg(np.median(off[wrong])))
+        text = (
+            f"heading is off the direction of motion in {100.0 * n / n_moving:.0f} % of the moving samples (by {degrees:.0f} degrees): "
+            "the unit, sign or zero of the heading is wrong"
+        )
+        return _report(states, wrong, "yaw_mismatch", "error", text)
+    return _report(
+        states,
+        wrong,
+        "yaw_mismatch",
+        "warning",
+        "{n} headings are more than 30 degrees off the direction of motion ({ids})",
+    )

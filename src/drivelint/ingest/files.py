@@ -1,0 +1,115 @@
+"""Which files a command line means, and what a drive is called: by its content, not by where it lies."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from dataclasses import dataclass
+from glob import glob
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from drivelint.errors import TraceError, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+CANONICAL = ("actor.parquet", "actor_state.parquet", "declared_event.parquet", "signal_state.parquet")
+"""The files of a canonical folder, in name order."""
+TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi"})
+"""What a folder of traces is searched for. `.osi` is among them so that such a drive is reported, not passed over."""
+
+
+@dataclass(frozen=True)
+class Identity:
+    """Name and hash of a drive."""
+
+    drive_id: str
+    file_name: str
+    sha256: str
+
+
+def is_canonical_folder(path: Path) -> bool:
+    """Say whether `path` is a folder that holds one drive as canonical Parquet tables."""
+    return (path / "actor_state.parquet").is_file()
+
+
+def expand(traces: Sequence[str]) -> list[Path]:
+    """Return the traces that files, globs and folders name, sorted, each file once.
+
+    A path that exists is always taken literally, `[`, `*` and `?` in its name included. A folder with `actor_state.parquet` is one
+    drive; any other is searched, with its subfolders, for MCAP, Parquet, CSV and OSI files.
+    Errors: `UsageError` for a URI or an empty name, `TraceError` for something that matches nothing.
+    """
+    found: dict[Path, Path] = {}
+    for text in traces:
+        for path in _matches(text):
+            found.setdefault(path.resolve(), path)
+    return [found[key] for key in sorted(found, key=str)]
+
+
+def _matches(text: str) -> list[Path]:
+    if not text.strip():
+        raise UsageError("an empty trace name was given: name a file, a glob or a folder")
+    path = Path(text)
+    if _exists(path):
+        return _inside(path)
+    if re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", text):
+        raise UsageError(f"{text}: URIs cannot be read yet: copy the log to this machine and name the file")
+    matches = [Path(match) for match in sorted(glob(text, recursive=True))]  # noqa: PTH207 (Path.glob refuses absolute patterns)
+    if not matches:
+        what = "no file matches this pattern" if re.search(r"[*?\[]", text) else "no such file or folder"
+        raise TraceError(f"{text}: {what}: check the path")
+    return [file for match in matches for file in _inside(match)]
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except (OSError, ValueError):  # a pattern can be longer than a file name may be
+        return False
+
+
+def _inside(path: Path) -> list[Path]:
+    if not path.is_dir() or is_canonical_folder(path):
+        return [path]
+    drives = [folder.parent for folder in path.rglob("actor_state.parquet")]
+    files = [
+        file
+        for file in path.rglob("*")
+        if file.suffix.lower() in TRACE_SUFFIXES
+        and file.is_file()
+        and not any(drive in file.parents for drive in drives)
+    ]
+    if not drives and not files:
+        raise TraceError(
+            f"{path}: no trace in this folder (looked for {', '.join(sorted(TRACE_SUFFIXES))}): check the path"
+        )
+    return drives + files
+
+
+def identify(path: Path) -> Identity:
+    """Hash a trace: a file's bytes, or a canonical folder's tables in name order, each with its name.
+
+    Errors: `TraceError` when it cannot be read.
+    """
+    try:
+        if path.is_dir():
+            folder = hashlib.sha256()
+            for name in CANONICAL:
+                if (path / name).is_file():
+                    folder.update(f"{name}\0{_sha256(path / name)}\n".encode())
+            digest = folder.hexdigest()
+        else:
+            digest = _sha256(path)
+    except OSError as error:
+        raise TraceError(f"{path}: cannot be read: {error.strerror or error}") from error
+    name = Path(os.path.abspath(path)).name  # noqa: PTH100 (resolve would name the target of a link)
+    stem = name if path.is_dir() else Path(name).stem
+    return Identity(f"{stem}-{digest[:8]}", name, digest)
+
+
+def _sha256(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

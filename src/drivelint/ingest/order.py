@@ -1,0 +1,101 @@
+"""Total order of states, one state per actor and time, and differences along each actor's track."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from drivelint.ingest.trace import Finding, States
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+MAX_GAP_PERIODS = 2.5
+"""Samples further apart than this many periods are not continuous (DESIGN.md, Verdicts)."""
+LISTED = 5
+"""How many ids a message names before it says how many more there are."""
+
+
+def listed(ids: list[str]) -> str:
+    """Return ids as readable text, the first few by name."""
+    more = len(ids) - LISTED
+    return ", ".join(ids[:LISTED]) + (f" and {more} more" if more > 0 else "")
+
+
+def in_order(states: States) -> States:
+    """Return the states by actor id (as text), then time, equal ones in the log's order; unused ids dropped."""
+    used = np.flatnonzero(np.bincount(states.actor, minlength=len(states.ids)))
+    ids = sorted(states.ids[i] for i in used)
+    rank = np.zeros(len(states.ids), np.int32)
+    place = {name: i for i, name in enumerate(ids)}
+    for i in used:
+        rank[i] = place[states.ids[i]]
+    actor = rank[states.actor]
+    time_order = np.arange(len(states)) if _rising(states.t_ns) else np.argsort(states.t_ns, kind="stable")
+    # few actors fit 16 bits, for which numpy's stable sort is a radix sort: ten times faster
+    keys = actor[time_order].astype(np.uint16) if len(ids) <= np.iinfo(np.uint16).max else actor[time_order]
+    ordered = states.take(time_order[np.argsort(keys, kind="stable")])
+    ordered.ids = ids
+    ordered.actor = rank[ordered.actor]
+    return ordered
+
+
+def _rising(t_ns: NDArray[np.int64]) -> bool:
+    return bool(np.all(t_ns[1:] >= t_ns[:-1]))
+
+
+def without_duplicates(states: States) -> tuple[States, list[Finding]]:
+    """Keep the first of several states of one actor at one time (states in order), and report the others."""
+    repeated = np.zeros(len(states), np.bool_)
+    repeated[1:] = (states.actor[1:] == states.actor[:-1]) & (states.t_ns[1:] == states.t_ns[:-1])
+    n = int(repeated.sum())
+    if n == 0:
+        return states, []
+    ids = [states.ids[i] for i in np.unique(states.actor[repeated])]
+    message = f"{n} states repeat an actor at the same time ({listed(ids)}): the first of each is kept, the others are not judged"
+    finding = Finding(
+        "duplicate_state", "error", message, n, int(states.t_ns[repeated].min()), ids[0] if len(ids) == 1 else None
+    )
+    return states.take(~repeated), [finding]
+
+
+@dataclass(frozen=True)
+class Steps:
+    """From each state to the next of the same actor. Arrays have one row per pair of neighbouring rows (n - 1).
+
+    `same` = both rows are of one actor; `dt_s` seconds between them; `continuous` = same and no further apart than
+    `MAX_GAP_PERIODS` periods; `period_ns` the median step of all actors (0: no actor has two states).
+    """
+
+    same: NDArray[np.bool_]
+    dt_s: NDArray[np.float64]
+    continuous: NDArray[np.bool_]
+    period_ns: int
+
+
+def steps(states: States) -> Steps:
+    """Measure the steps between neighbouring states (in order, no duplicates)."""
+    same = states.actor[1:] == states.actor[:-1]
+    dt = np.diff(states.t_ns)
+    period = int(np.median(dt[same])) if same.any() else 0
+    return Steps(same, dt * 1e-9, same & (dt <= MAX_GAP_PERIODS * period), period)
+
+
+def rate(values: NDArray[np.float64], step: Steps) -> NDArray[np.float64]:
+    """Return the time derivative: central where both neighbours are continuous, else one-sided, NaN where there is neither."""
+    n = len(values)
+    rise, span = np.zeros(n), np.zeros(n)
+    with np.errstate(invalid="ignore"):
+        difference = np.diff(values)
+    usable = step.continuous & np.isfinite(difference)
+    for side in (slice(0, n - 1), slice(1, n)):
+        rise[side] += np.where(usable, difference, 0.0)
+        span[side] += np.where(usable, step.dt_s, 0.0)
+    return np.divide(rise, span, out=np.full(n, np.nan), where=span > 0)
+
+
+def wrapped(angle: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return angles in radians brought into [-pi, pi], those already there unchanged to the bit."""
+    return angle - 2.0 * np.pi * np.round(angle / (2.0 * np.pi))

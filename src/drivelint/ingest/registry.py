@@ -1,0 +1,130 @@
+"""Every reader, found by what the file holds (magic bytes, columns), never by topic or extension."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+from drivelint.errors import TraceError
+from drivelint.ingest.files import identify, is_canonical_folder
+from drivelint.ingest.finish import finish
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.ingest.trace import IngestOptions, Recording, Trace
+
+HEAD_BYTES = 4096
+
+
+@dataclass(frozen=True)
+class Probe:
+    """What is known of a trace before it is read: where it is and its first bytes (none for a folder)."""
+
+    path: Path
+    head: bytes
+    options: IngestOptions
+
+
+class Reader(Protocol):
+    """One trace format."""
+
+    def accepts(self, probe: Probe) -> bool:
+        """Say whether this reader is the one for the trace."""
+        ...
+
+    def read(self, probe: Probe) -> Recording:
+        """Read the trace. Errors: `TraceError` or `UsageError` with one clear line."""
+        ...
+
+
+class CanonicalReader:
+    """A folder of canonical Parquet tables, or one Parquet file with the columns of `actor_state`."""
+
+    def accepts(self, probe: Probe) -> bool:
+        """Accept a folder, or Parquet with canonical columns unless a mapping was asked for."""
+        from drivelint.ingest import canonical
+
+        if probe.path.is_dir():
+            return True
+        return probe.options.mapping is None and probe.head.startswith(b"PAR1") and canonical.has_columns(probe.path)
+
+    def read(self, probe: Probe) -> Recording:
+        """Read the canonical tables."""
+        from drivelint.ingest import canonical
+
+        return canonical.read(probe.path)
+
+
+class McapReader:
+    """MCAP with ASAM OSI ground truth."""
+
+    def accepts(self, probe: Probe) -> bool:
+        """Accept by the container's magic bytes."""
+        return probe.head.startswith(b"\x89MCAP")
+
+    def read(self, probe: Probe) -> Recording:
+        """Read the OSI channel."""
+        from drivelint.ingest import osi
+
+        return osi.read(probe.path, probe.options.topic)
+
+
+class TableReader:
+    """Any CSV or Parquet table through a mapping."""
+
+    def accepts(self, probe: Probe) -> bool:
+        """Accept Parquet, and whatever reads as text without markup."""
+        head = probe.head
+        return head.startswith(b"PAR1") or not (b"\0" in head or head.lstrip()[:1] in {b"<", b"{"})
+
+    def read(self, probe: Probe) -> Recording:
+        """Read the table through the mapping named, or the only shipped one that fits."""
+        from drivelint.ingest import tabular
+
+        return tabular.read(probe.path, probe.options.mapping)
+
+
+READERS: tuple[Reader, ...] = (CanonicalReader(), McapReader(), TableReader())
+
+
+def read_trace(path: Path, options: IngestOptions) -> Trace:
+    """Read one drive into the tables of `schemas/model.sql`, checked, with its egos chosen.
+
+    Errors: `TraceError` for a log that is missing, unreadable or holds nothing to judge; `UsageError` for a bad mapping.
+    """
+    probe = _probe(path, options)
+    identity = identify(path)
+    for reader in READERS:
+        if reader.accepts(probe):
+            return finish(path, identity, reader.read(probe), options)
+    raise TraceError(
+        f"{path}: no reader for this file, which begins with {probe.head[:16]!r}: give MCAP, Parquet or CSV"
+    )
+
+
+def _probe(path: Path, options: IngestOptions) -> Probe:
+    if path.is_dir():
+        if not is_canonical_folder(path):
+            raise TraceError(f"{path}: a folder without actor_state.parquet is not a drive: name the files in it")
+        return Probe(path, b"", options)
+    try:
+        with path.open("rb") as file:
+            head = file.read(HEAD_BYTES)
+    except FileNotFoundError:
+        raise TraceError(f"{path}: no such file or folder: check the path") from None
+    except OSError as error:
+        raise TraceError(f"{path}: cannot be read: {error.strerror or error}") from error
+    if not head:
+        raise TraceError(f"{path}: the file is empty (0 bytes): record or copy it again")
+    suffix = path.suffix.lower()
+    if suffix == ".osi":
+        raise TraceError(
+            f"{path}: .osi traces are not supported yet: convert it to an MCAP with osi3.GroundTruth messages"
+        )
+    magic = {".mcap": b"\x89MCAP", ".parquet": b"PAR1"}.get(suffix)
+    if magic is not None and not head.startswith(magic):
+        raise TraceError(
+            f"{path}: not {suffix[1:]}: byte 0 should begin {magic!r} but the file begins with {head[:32]!r}: copy it again"
+        )
+    return Probe(path, head, options)
