@@ -25,5 +25,7 @@ class Quality:
 
     def table(self, environment: str) -> pa.Table:
         """Return `map_quality`, the most severe first."""
-        rows = sorted(self.rows, key=lambda r: (_ORDER[r["severity"]], r["check_id"], r["lanelet_id"] or "", r["message"]))
+        rows = sorted(
+            self.rows, key=lambda r: (_ORDER[r["severity"]], r["check_id"], r["lanelet_id"] or "", r["message"])
+        )
         return from_rows("map_quality", environment, rows)

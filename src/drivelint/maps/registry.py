@@ -39,16 +39,22 @@ def read_source(path: Path) -> MapSource:
     """Return the file's name and bytes; `MapError` when it is missing, unreadable, empty or far too large."""
     try:
         size = path.stat().st_size
-        if size > MAX_BYTES:
-            raise MapError(f"map {path} has {size} bytes, more than the {MAX_BYTES} that are read: give a smaller extract")
-        content = path.read_bytes()
+        content = path.read_bytes() if size <= MAX_BYTES else b""
     except FileNotFoundError:
         raise MapError(f"map {path} does not exist: give the path of an OpenDRIVE file with --map") from None
     except OSError as error:
-        raise MapError(f"map {path} cannot be read ({error.strerror or error}): give a readable OpenDRIVE file with --map") from error
+        raise MapError(
+            f"map {path} cannot be read ({error.strerror or error}): give a readable OpenDRIVE file with --map"
+        ) from error
+    if size > MAX_BYTES:
+        raise _too_large(str(path), size)
     if not content:
         raise MapError(f"map {path} is empty: give the complete file")
     return MapSource(path.name, content)
+
+
+def _too_large(name: str, size: int) -> MapError:
+    return MapError(f"map {name} has {size} bytes, more than the {MAX_BYTES} that are read: give a smaller extract")
 
 
 def load_map(
@@ -60,9 +66,9 @@ def load_map(
 ) -> Environment:
     """Return the map as the tables of `schemas/map.sql`.
 
-    `offset` (metres) is added to all coordinates; `handedness` is the user's option, `sensed` what the traces voted (used
-    only when neither the option nor the map decides). `MapError`: unknown format or unreadable content; `UsageError`:
-    an option that has no meaning.
+    `offset` (metres) is added to all coordinates; `handedness` is the user's option, `sensed` what the traces voted
+    (used only when neither the option nor the map decides). `MapError`: unknown format or unreadable content;
+    `UsageError`: an option that has no meaning.
     """
     if handedness not in {"auto", "lht", "rht"}:
         raise UsageError(f"handedness {handedness!r} is not known: use auto, lht or rht")
@@ -71,7 +77,7 @@ def load_map(
     if not all(math.isfinite(v) for v in offset):
         raise UsageError(f"map offset {offset} is not two finite numbers of metres")
     if len(source.content) > MAX_BYTES:
-        raise MapError(f"map {source.name} has {len(source.content)} bytes, more than the {MAX_BYTES} that are read: give a smaller extract")
+        raise _too_large(source.name, len(source.content))
     request = Request((float(offset[0]), float(offset[1])), handedness, sensed)
     return _reader(source).read(source, request)
 

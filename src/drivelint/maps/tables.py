@@ -29,7 +29,10 @@ _TYPES = {
 def schemas() -> dict[str, pa.Schema]:
     """Return table -> Arrow schema, as `schemas/map.sql` has them."""
     text = (folder("schemas") / "map.sql").read_text(encoding="utf-8")
-    return {name: pa.schema([(column, _TYPES[kind]) for column, kind in _COLUMN.findall(body)]) for name, body in _TABLE.findall(text)}
+    return {
+        name: pa.schema([(column, _TYPES[kind]) for column, kind in _COLUMN.findall(body)])
+        for name, body in _TABLE.findall(text)
+    }
 
 
 def from_rows(name: str, environment: str, rows: Sequence[Mapping[str, Any]]) -> pa.Table:
@@ -48,7 +51,7 @@ def from_columns(name: str, environment: str, columns: Mapping[str, Any], n: int
     return pa.table([_array(data[f.name], f.type) for f in schema], schema=schema)
 
 
-def _array(values: Any, kind: pa.DataType) -> pa.Array:  # noqa: ANN401 - lists, numpy and Arrow arrays alike
+def _array(values: Any, kind: pa.DataType) -> pa.Array:
     if isinstance(values, (pa.Array, pa.ChunkedArray)):
         return values.cast(kind)
     return pa.array(values, type=kind)

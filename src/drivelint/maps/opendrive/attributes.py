@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from drivelint.maps.opendrive.network import spans
 
 if TYPE_CHECKING:
-    from drivelint.maps.opendrive.lanes import Lanelet
+    from drivelint.maps.opendrive.lanelet import Lanelet
     from drivelint.maps.opendrive.network import Mark
 
 
@@ -23,7 +23,7 @@ def road_type(lanelet: Lanelet) -> str | None:
 
 
 def speed_rows(lanelet: Lanelet) -> list[dict[str, Any]]:
-    """Return rows of `speed_limit`: the lane's own records where it has any, else the road type's; nothing where neither says."""
+    """Return rows of `speed_limit`: the lane's own records, else the road type's; none where neither says."""
     rows: list[dict[str, Any]] = []
     start, end = lanelet.strip.start_m, lanelet.strip.end_m
     for i, a, b in spans((s.start_m for s in lanelet.lane.speeds), start, end):
@@ -36,7 +36,9 @@ def speed_rows(lanelet: Lanelet) -> list[dict[str, Any]]:
     return sorted(rows, key=lambda row: float(row["s_start_m"]))
 
 
-def _speed_row(lanelet: Lanelet, span: list[tuple[int, float, float]], limit: float | None, source: str) -> list[dict[str, Any]]:
+def _speed_row(
+    lanelet: Lanelet, span: list[tuple[int, float, float]], limit: float | None, source: str
+) -> list[dict[str, Any]]:
     return [
         {"lanelet_id": lanelet.lanelet_id, "s_start_m": a, "s_end_m": b, "limit_mps": limit, "source": source}
         for _, a, b in lanelet.ranges(span)
@@ -46,8 +48,8 @@ def _speed_row(lanelet: Lanelet, span: list[tuple[int, float, float]], limit: fl
 def boundary_rows(lanelet: Lanelet) -> list[dict[str, Any]]:
     """Return rows of `lane_boundary`: both sides, all along; the marking is NULL where the map does not say.
 
-    A lane's mark lies on its outer edge, lane 0's on the centre line; double lines are named with the line nearer to this
-    lanelet first (OpenDRIVE names the inner one first, on the centre line the left one).
+    A lane's mark lies on its outer edge, lane 0's on the centre line; double lines are named with the line nearer to
+    this lanelet first (OpenDRIVE names the inner one first, on the centre line the left one).
     """
     lane_no, along = lanelet.lane.number, lanelet.along
     inside = [lane for lane in lanelet.strip.lanes if lane.number * lane_no > 0 and abs(lane.number) < abs(lane_no)]

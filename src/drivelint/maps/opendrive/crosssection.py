@@ -81,7 +81,9 @@ class Evaluator:
         """Return the strip's ends and every station between where a geometry, an offset or a width begins."""
         start, end = self.strip.start_m, self.strip.end_m
         profiles = [lane.widths or lane.borders for lane in (*self.left, *self.right)]
-        stations = np.concatenate([self.road.plan.s, self.road.offset.start, *(p.start for p in profiles if p is not None)])
+        stations = np.concatenate(
+            [self.road.plan.s, self.road.offset.start, *(p.start for p in profiles if p is not None)]
+        )
         stations = np.unique(stations[(stations > start + _SNAP_M) & (stations < end - _SNAP_M)])
         apart = np.diff(stations, prepend=-np.inf) > _SNAP_M
         return np.concatenate([[start], stations[apart], [end]])
@@ -97,7 +99,7 @@ class Evaluator:
 
 
 def stations(evaluator: Evaluator, breaks: Floats) -> Floats:
-    """Return stations whose chords keep within CHORD_M of every edge and SPACING_M of each other, the breaks among them."""
+    """Return stations, breaks included, at most SPACING_M apart and with chords within CHORD_M of every edge."""
     s = _divide(breaks, np.ceil(np.diff(breaks) / SPACING_M - 1e-9))
     for _ in range(10):
         parts = _deviation(evaluator, s)

@@ -18,7 +18,7 @@ _DECISIVE = 2 / 3  # some maps list both ends of every connecting lane: half the
 
 @dataclass(frozen=True)
 class Direction:
-    """The side that is driven on, and how it was found; `travel`: RoadRunner's travel directions say the same on the whole."""
+    """The side that is driven on, and how it was found; `travel`: the lanes' own travel directions mostly agree."""
 
     handedness: str
     source: str
@@ -36,11 +36,11 @@ class Direction:
 
 
 def decide(net: Network, request: Request, quality: Quality) -> Direction:
-    """Return the handedness: the option, the roads' attribute, the junctions' vote, RoadRunner's travel directions
-    (attributes too, of lanes), the traces' vote, the standard's default; in this order.
+    """Return the handedness: the first that option, roads, junctions, lanes, traces say, else the standard's default.
 
-    Any two that disagree are a warning; the default is a warning too.
-    """  # noqa: D205 - one sentence
+    The roads' rule attribute and the lanes' travel direction (RoadRunner's userData) both count as attributes. Any two
+    that disagree are a warning, and so is the default.
+    """
     roads = Counter(road.rule for road in net.roads.values() if road.rule)
     junctions, travel = _junction_votes(net), _travel_votes(net)
     found = [
@@ -53,12 +53,19 @@ def decide(net: Network, request: Request, quality: Quality) -> Direction:
     said = [(source, side, text) for source, side, text in found if side is not None]
     if len({side for _, side, _ in said}) > 1:
         opinions = "; ".join(f"{text}: {side}" for _, side, text in said)
-        quality.add("handedness_disagrees", "warning", None, f"{opinions}. {said[0][1]} is taken: if that is wrong, every direction is; give --handedness")
+        quality.add(
+            "handedness_disagrees",
+            "warning",
+            None,
+            f"{opinions}. {said[0][1]} is taken: if that is wrong, every direction is; give --handedness",
+        )
     if len(roads) > 1:
         counts = ", ".join(f"{side} {n}" for side, n in sorted(roads.items()))
-        quality.add("handedness_mixed", "warning", None, f"roads of both rules in one map ({counts}): one is taken for all")
+        quality.add(
+            "handedness_mixed", "warning", None, f"roads of both rules in one map ({counts}): one is taken for all"
+        )
     if not said:
-        message = "nothing in the map says which side is driven on: the standard's right-hand traffic is a guess; give --handedness"
+        message = "nothing in the map says which side is driven on: right-hand traffic is a guess; give --handedness"
         quality.add("handedness_default", "warning", None, message)
     source, handedness, _ = said[0] if said else ("default", "rht", "")
     direction = Direction(handedness, source, _winner(travel) == handedness)
@@ -104,5 +111,5 @@ def _report_exceptions(net: Network, direction: Direction, quality: Quality) -> 
             for lane in strip.lanes:
                 if lane.invalid is None and direction.of(lane) != plain.of(lane):
                     name = f"{road.road_id}.{strip.section}.{lane.number}"
-                    message = f"lane {name} is driven {lane.travel}, against the rule of its side ({direction.handedness}), as its userData says"
+                    message = f"lane {name} is driven {lane.travel}, as its userData says, against the rule of its side"
                     quality.add("direction_exception", "warning", name, message)

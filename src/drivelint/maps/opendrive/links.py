@@ -1,7 +1,7 @@
 """Which lanelet continues which, in the direction of travel.
 
 Every link that the file declares, from either lane, a road's end or a junction, is the same thing: two lane ends that
-touch. Directions are applied once, to the touching ends; so it does not matter which side declared a link, or whether both.
+touch. Directions are applied once, to the touching ends; so it does not matter which side declared a link, or if both.
 """
 
 from __future__ import annotations
@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.maps.opendrive.lanes import Lanelet, LaneKey, Lanes, lanelet_id
+from drivelint.maps.opendrive.lanelet import LaneKey, Lanelet, lanelet_id
 from drivelint.maps.opendrive.network import END, START
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from drivelint.maps.opendrive.lanes import Lanes
     from drivelint.maps.opendrive.network import Connection, Network, Road, Strip
     from drivelint.maps.quality import Quality
 
@@ -35,7 +36,12 @@ class Link:
 
 def links(net: Network, lanes: Lanes, quality: Quality) -> list[Link]:
     """Return the links, each once, ordered by ids; links to nowhere and over gaps are rows of `quality`."""
-    declared = {(road.road_id, strip.section, lane.number) for road in net.roads.values() for strip in road.strips for lane in strip.lanes}
+    declared = {
+        (road.road_id, strip.section, lane.number)
+        for road in net.roads.values()
+        for strip in road.strips
+        for lane in strip.lanes
+    }
     touching: set[tuple[LaneEnd, LaneEnd]] = set()
     for a, b in _declared_contacts(net, quality):
         if b[0] in declared:
@@ -63,16 +69,17 @@ def _declared_contacts(net: Network, quality: Quality) -> Iterator[tuple[LaneEnd
                         key = (road.road_id, strip.section, lane.number)
                         before = strips[k - 1] if k else None
                         after = strips[k + 1] if k + 1 < len(strips) else None
-                        yield from _contacts_at(net, road, key, START, lane.predecessors, before, quality)
-                        yield from _contacts_at(net, road, key, END, lane.successors, after, quality)
+                        yield from _contacts_at(net, road, (key, START), lane.predecessors, before, quality=quality)
+                        yield from _contacts_at(net, road, (key, END), lane.successors, after, quality=quality)
     for connection in net.connections:
         yield from _junction_contacts(net, connection, quality)
 
 
 def _contacts_at(
-    net: Network, road: Road, key: LaneKey, end: str, targets: tuple[int, ...], beside: Strip | None, quality: Quality
+    net: Network, road: Road, at: LaneEnd, targets: tuple[int, ...], beside: Strip | None, *, quality: Quality
 ) -> Iterator[tuple[LaneEnd, LaneEnd]]:
-    """Yield what one lane touches at one end: in the next section of its road, or in the next road."""
+    """Yield what a lane's end touches: in the next section of its road, or in the next road."""
+    key, end = at
     if beside is not None:
         for target in targets:
             yield (key, end), ((road.road_id, beside.section, target), _OTHER[end])
@@ -87,7 +94,12 @@ def _contacts_at(
     contact = join.contact or _contact_back(other, road.road_id)
     if contact is None:
         name = lanelet_id(key)
-        quality.add("missing_link", "error", name, f"lane {name} goes on in road {join.element_id}, but the file does not say at which end")
+        quality.add(
+            "missing_link",
+            "error",
+            name,
+            f"lane {name} goes on in road {join.element_id}, but the file does not say at which end",
+        )
         return
     for target in targets:
         yield (key, end), (_lane_at(other, contact, target), contact)
@@ -109,16 +121,19 @@ def _junction_contacts(net: Network, connection: Connection, quality: Quality) -
     incoming, connecting = net.roads.get(connection.incoming), net.roads.get(connection.connecting)
     if incoming is None or connecting is None:
         gone = connection.incoming if incoming is None else connection.connecting
-        message = f"junction {connection.junction_id} connects road {gone}, which does not exist or cannot be read"
+        message = f"junction {connection.junction_id} connects road {gone}, which is not there"
         quality.add("missing_link", "error", gone, message, max(len(connection.lanes), 1))
         return
     end = _end_at_junction(incoming, connecting, connection)
     for source, target in connection.lanes:
-        yield (_lane_at(incoming, end, source), end), (_lane_at(connecting, connection.contact, target), connection.contact)
+        yield (
+            (_lane_at(incoming, end, source), end),
+            (_lane_at(connecting, connection.contact, target), connection.contact),
+        )
 
 
 def _end_at_junction(incoming: Road, connecting: Road, connection: Connection) -> str:
-    """Return the end of the incoming road that lies at the junction: as it says, as the connecting road says, or the nearer."""
+    """Return the end of the incoming road at the junction: as it says, as the connecting road says, or the nearer."""
     ends = [e for e, join in incoming.joins.items() if join.is_junction and join.element_id == connection.junction_id]
     if len(ends) == 1:
         return ends[0]
@@ -136,7 +151,7 @@ def _road_end(road: Road, end: str) -> np.ndarray:
 
 
 def _through_short(touching: set[tuple[LaneEnd, LaneEnd]], short: set[LaneKey]) -> set[tuple[LaneEnd, LaneEnd]]:
-    """Join what touches a section that was left out as too short at its two ends."""
+    """Join what touches the two ends of a section that was left out as too short."""
     result = set(touching)
     for key in sorted(short):
         beside: dict[str, set[LaneEnd]] = {START: set(), END: set()}
@@ -163,7 +178,9 @@ def _directed(a: LaneEnd, b: LaneEnd, lanes: Lanes, quality: Quality) -> Link | 
     if not leaves and not enters:
         return Link(second, first)
     if not (first.bidirectional or second.bidirectional) and first.drivable and second.drivable:
-        message = f"lanes {first.lanelet_id} and {second.lanelet_id} are linked, but their directions of travel meet head-on: not linked"
+        message = (
+            f"{first.lanelet_id} and {second.lanelet_id} are linked, but are driven towards each other: not linked"
+        )
         quality.add("direction_conflict", "warning", first.lanelet_id, message)
     return None
 
@@ -187,5 +204,3 @@ def _check_gap(link: Link, quality: Quality) -> None:
     if gap > GAP_M:
         message = f"lane {b.lanelet_id} begins {gap:.2f} m away from the end of lane {a.lanelet_id} that it continues"
         quality.add("link_gap", "warning" if a.drivable else "info", a.lanelet_id, message)
-
-

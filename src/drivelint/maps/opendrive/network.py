@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 MAX_ROAD_M = 1e6  # a longer road is a unit mistake, and would be millions of points
 START, END = "start", "end"
 
-# Where motor vehicles may drive (ASAM OpenDRIVE e_laneType, with the names of older versions); the hard shoulder ("stop"),
-# parking, biking, tram and everything beside the carriageway are not.
+# Where motor vehicles may drive (ASAM OpenDRIVE e_laneType, with the names of older versions). The hard shoulder
+# ("stop"), parking, biking, tram and everything beside the carriageway are not.
 DRIVABLE = frozenset({
     "driving", "entry", "exit", "onRamp", "offRamp", "connectingRamp", "slipLane", "bidirectional",
     "bus", "taxi", "HOV", "carpool", "shared", "mwyEntry", "mwyExit",
@@ -89,7 +89,8 @@ class Road:
     """One road and everything that is needed to build its lanes."""
 
     road_id: str
-    length_m: float
+    length_m: float  # what its geometries cover of the length it says
+    said_length_m: float
     junction_id: str | None
     rule: str | None  # lht, rht
     joins: dict[str, Contact]  # by own end
@@ -132,29 +133,34 @@ def network(root: etree._Element, quality: Quality) -> Network:
     for element in root.findall("road"):
         name = element.get("id") or f"in line {element.sourceline}"
         try:
-            road = _road(element, quality)
-            if road.road_id in roads:
-                raise MalformedError("another road has the same id")
+            road = _road(element, roads, quality)
         except MalformedError as error:
             lanes = sum(1 for lane in element.iterfind("lanes/laneSection//lane") if lane.get("id") != "0")
-            quality.add("invalid_road", "error", name, f"road {name} is left out with its {lanes} lanes: {error}", max(lanes, 1))
+            quality.add(
+                "invalid_road", "error", name, f"road {name} is left out with its {lanes} lanes: {error}", max(lanes, 1)
+            )
         else:
             roads[road.road_id] = road
     reference = root.findtext("header/geoReference")
     return Network(roads, tuple(_connections(root, quality)), reference.strip() or None if reference else None)
 
 
-def _road(element: etree._Element, quality: Quality) -> Road:
+def _road(element: etree._Element, others: dict[str, Road], quality: Quality) -> Road:
+    if element.get("id") in others:
+        raise MalformedError("another road has the same id")
     length = number(element, "length")
     if not 0.0 < length <= MAX_ROAD_M:
         raise MalformedError(f"its length is {length:g} m")
     junction = element.get("junction", "-1")
     rule = (element.get("rule") or "").lower()
     plan = planview(element.find("planView"))
-    types = sorted(((number(t, "s", 0.0), t.get("type", "unknown")) for t in element.findall("type")), key=lambda t: t[0])
+    types = sorted(
+        ((number(t, "s", 0.0), t.get("type", "unknown")) for t in element.findall("type")), key=lambda t: t[0]
+    )
     return Road(
         road_id=text(element, "id"),
         length_m=min(length, plan.end),
+        said_length_m=length,
         junction_id=None if junction in {"-1", ""} else junction,
         rule=rule if rule in {"lht", "rht"} else None,
         joins=_joins(element),
@@ -175,7 +181,9 @@ def _joins(element: etree._Element) -> dict[str, Contact]:
         if link is not None and link.get("elementId") is not None:
             contact = link.get("contactPoint")
             joins[end] = Contact(
-                link.get("elementType") == "junction", text(link, "elementId"), contact if contact in {START, END} else None
+                link.get("elementType") == "junction",
+                text(link, "elementId"),
+                contact if contact in {START, END} else None,
             )
     return joins
 
@@ -190,10 +198,8 @@ def _strips(element: etree._Element, length: float, quality: Quality) -> tuple[S
         sides = [side for side in ("left", "right") if section in ends[side]]
         start = number(section, "s")
         marks = tuple(m for centre in section.findall("center/lane") for m in _marks(centre, start))
-        if len({ends[side][section] for side in sides}) == 1:
-            groups = [sides]
-        else:
-            groups = [[side] for side in sides]
+        together = len({ends[side][section] for side in sides}) == 1
+        groups = [sides] if together else [[side] for side in sides]
         for group in groups:
             end = ends[group[0]][section]
             lanes = [_lane(lane, start, quality) for side in group for lane in section.findall(f"{side}/lane")]
@@ -214,30 +220,33 @@ def _section_ends(sections: list[etree._Element], side: str, length: float) -> d
 
 def _lane(element: etree._Element, section_start: float, quality: Quality) -> Lane:
     lane_no = integer(element, "id")
-    kind = element.get("type", "none")
+    try:
+        return _valid_lane(element, lane_no, section_start, quality)
+    except MalformedError as error:
+        return Lane(lane_no, element.get("type", "none"), invalid=str(error))
+
+
+def _valid_lane(element: etree._Element, lane_no: int, section_start: float, quality: Quality) -> Lane:
     parent = element.getparent()
     side = "" if parent is None else str(parent.tag)
-    try:
-        if (side == "left") != (lane_no > 0) or lane_no == 0:
-            raise MalformedError(f"lane {lane_no} stands on the wrong side, under <{side}>")
-        widths, borders = element.findall("width"), element.findall("border")
-        if not widths and not borders:
-            raise MalformedError("it has neither <width> nor <border>")
-        user = next(iter(element.iterfind("userData//vectorLane")), None)
-        return Lane(
-            number=lane_no,
-            kind=kind,
-            predecessors=tuple(integer(e, "id") for e in element.findall("link/predecessor")),
-            successors=tuple(integer(e, "id") for e in element.findall("link/successor")),
-            widths=cubics(widths, "sOffset", section_start) if widths else None,
-            borders=None if widths else cubics(borders, "sOffset", section_start),
-            marks=tuple(_marks(element, section_start)),
-            speeds=_speeds(element.findall("speed"), "sOffset", section_start, quality),
-            travel=None if user is None else user.get("travelDir"),
-            direction=element.get("direction"),
-        )
-    except MalformedError as error:
-        return Lane(lane_no, kind, invalid=str(error))
+    if (side == "left") != (lane_no > 0) or lane_no == 0:
+        raise MalformedError(f"lane {lane_no} stands on the wrong side, under <{side}>")
+    widths, borders = element.findall("width"), element.findall("border")
+    if not widths and not borders:
+        raise MalformedError("it has neither <width> nor <border>")
+    user = next(iter(element.iterfind("userData//vectorLane")), None)
+    return Lane(
+        number=lane_no,
+        kind=element.get("type", "none"),
+        predecessors=tuple(integer(e, "id") for e in element.findall("link/predecessor")),
+        successors=tuple(integer(e, "id") for e in element.findall("link/successor")),
+        widths=cubics(widths, "sOffset", section_start) if widths else None,
+        borders=None if widths else cubics(borders, "sOffset", section_start),
+        marks=tuple(_marks(element, section_start)),
+        speeds=_speeds(element.findall("speed"), "sOffset", section_start, quality),
+        travel=None if user is None else user.get("travelDir"),
+        direction=element.get("direction"),
+    )
 
 
 def _marks(lane: etree._Element, section_start: float) -> list[Mark]:
@@ -274,7 +283,12 @@ def _speeds(
             speeds.append(Speed(start, limit, known=limit is not None))
             if limit is None:
                 said = f"{word[:20]} {speed.get('unit', 'm/s')[:20]}"
-                quality.add("invalid_speed", "warning", None, f"line {speed.sourceline}: {said} is no speed limit: taken as unknown")
+                quality.add(
+                    "invalid_speed",
+                    "warning",
+                    None,
+                    f"line {speed.sourceline}: {said} is no speed limit: taken as unknown",
+                )
     return tuple(sorted(speeds, key=lambda s: s.start_m))
 
 
@@ -290,18 +304,28 @@ def _connections(root: etree._Element, quality: Quality) -> Iterable[Connection]
     for junction in root.findall("junction"):
         name = junction.get("id", f"in line {junction.sourceline}")
         if junction.get("type") == "virtual":
-            quality.add("virtual_junction", "warning", name, f"junction {name} is virtual: its links in mid-road are left out")
+            message = f"junction {name} is virtual: its links in mid-road are left out"
+            quality.add("virtual_junction", "warning", name, message)
             continue
         for element in junction.findall("connection"):
             try:
-                links = tuple((integer(link, "from"), integer(link, "to")) for link in element.findall("laneLink"))
-                road = element.get("connectingRoad") or text(element, "linkedRoad")
-                contact = text(element, "contactPoint")
-                if contact not in {START, END}:
-                    raise MalformedError(f"<connection> in line {element.sourceline}: contactPoint={contact!r}")
-                yield Connection(name, text(element, "incomingRoad"), road, contact, links)
+                yield _connection(name, element)
             except MalformedError as error:
-                quality.add("invalid_connection", "error", name, f"a connection of junction {name} is left out: {error}")
+                message = f"a connection of junction {name} is left out: {error}"
+                quality.add("invalid_connection", "error", name, message)
+
+
+def _connection(junction_id: str, element: etree._Element) -> Connection:
+    contact = text(element, "contactPoint")
+    if contact not in {START, END}:
+        raise MalformedError(f"<connection> in line {element.sourceline}: contactPoint={contact!r}")
+    return Connection(
+        junction_id=junction_id,
+        incoming=text(element, "incomingRoad"),
+        connecting=element.get("connectingRoad") or text(element, "linkedRoad"),
+        contact=contact,
+        lanes=tuple((integer(link, "from"), integer(link, "to")) for link in element.findall("laneLink")),
+    )
 
 
 def spans(starts: Iterable[float], start: float, end: float) -> list[tuple[int, float, float]]:

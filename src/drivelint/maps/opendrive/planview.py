@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from drivelint.maps.opendrive.cubic import Floats
 from drivelint.maps.opendrive.xml import MalformedError, number
 
 if TYPE_CHECKING:
     from lxml import etree
+
+    from drivelint.maps.opendrive.cubic import Floats
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 _MAX_TURN_RAD = 200.0  # a loop ramp turns 5 rad; more than 30 turns in one geometry is nonsense
@@ -52,7 +53,7 @@ class Clothoid:
     def evaluate(self, ds: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
         """See Shape."""
         heading = (self.start + 0.5 * self.rate * ds) * ds
-        u, v = self._constant(ds) if self.rate == 0.0 else self._integral(ds, heading)
+        u, v = self._constant(ds) if self.rate == 0.0 else self._integral(ds)
         return u, v, np.cos(heading), np.sin(heading), self.start + self.rate * ds, np.ones_like(ds)
 
     def _constant(self, ds: Floats) -> tuple[Floats, Floats]:
@@ -61,7 +62,7 @@ class Clothoid:
         chord = ds * np.sinc(half / np.pi)
         return chord * np.cos(half), chord * np.sin(half)
 
-    def _integral(self, ds: Floats, heading: Floats) -> tuple[Floats, Floats]:
+    def _integral(self, ds: Floats) -> tuple[Floats, Floats]:
         turn = np.abs(self.start * ds) + np.abs(0.5 * self.rate * ds * ds)
         panels = max(1, int(np.ceil(2.0 * float(turn.max(initial=0.0)))))
         at = (np.arange(panels)[:, None] + 0.5 * (_NODES + 1.0)).ravel() / panels  # fractions of ds
@@ -117,7 +118,7 @@ def _arc(u: Floats, v: Floats, p0: Floats, p1: Floats) -> Floats:
 
 
 def by_arc_length(u: Floats, v: Floats, p_max: float, length: float | None = None) -> Polynomial:
-    """Return the curve as a function of arc length; with `length`, p_max is reached there even if the curve is not as long."""
+    """Return the curve by arc length; with `length`, p_max is reached there even if the curve is not as long."""
     p_at = np.linspace(0.0, p_max, 257)
     along = np.concatenate([[0.0], np.cumsum(_arc(u, v, p_at[:-1], p_at[1:]))])
     if not along[-1] > 1e-6:
@@ -150,7 +151,9 @@ class PlanView:
             local[:, mine] = self.shapes[i].evaluate(s[mine] - self.s[i])
         u, v, cos, sin, curvature, speed = local
         c, n = np.cos(self.heading)[k], np.sin(self.heading)[k]
-        return Line(self.x[k] + c * u - n * v, self.y[k] + n * u + c * v, c * cos - n * sin, n * cos + c * sin, curvature, speed)
+        return Line(
+            self.x[k] + c * u - n * v, self.y[k] + n * u + c * v, c * cos - n * sin, n * cos + c * sin, curvature, speed
+        )
 
     def joints(self) -> tuple[Floats, Floats]:
         """Return distance (m) and turn (rad) between each geometry's end and the next one's start, both (n - 1,)."""
@@ -174,7 +177,9 @@ def planview(element: etree._Element | None) -> PlanView:
 def _shape(geometry: etree._Element) -> Shape:
     length = number(geometry, "length")
     kind = next(iter(geometry), None)
-    match None if kind is None else kind.tag:
+    if kind is None:
+        raise MalformedError(f"<geometry> in line {geometry.sourceline} is empty")
+    match kind.tag:
         case "line":
             return Clothoid(0.0, 0.0)
         case "arc":
@@ -195,5 +200,7 @@ def _shape(geometry: etree._Element) -> Shape:
 
 def _clothoid(length: float, start: float, end: float) -> Clothoid:
     if max(abs(start), abs(end)) * length > _MAX_TURN_RAD:
-        raise MalformedError(f"a geometry of {length:g} m with curvatures {start:g} and {end:g} 1/m turns more than {_MAX_TURN_RAD:g} rad")
+        raise MalformedError(
+            f"a geometry of {length:g} m with curvatures {start:g} and {end:g} 1/m turns beyond {_MAX_TURN_RAD:g} rad"
+        )
     return Clothoid(start, (end - start) / length)

@@ -13,7 +13,7 @@ from drivelint.maps.opendrive import xml
 from drivelint.maps.opendrive.attributes import boundary_rows, road_type, speed_rows
 from drivelint.maps.opendrive.direction import decide
 from drivelint.maps.opendrive.furniture import furniture
-from drivelint.maps.opendrive.lanes import Lanelet, build
+from drivelint.maps.opendrive.lanes import build
 from drivelint.maps.opendrive.links import Link, links
 from drivelint.maps.opendrive.network import network
 from drivelint.maps.quality import Quality
@@ -21,6 +21,7 @@ from drivelint.maps.tables import from_columns, from_rows, repeated
 
 if TYPE_CHECKING:
     from drivelint.maps.opendrive.direction import Direction
+    from drivelint.maps.opendrive.lanelet import Lanelet
 
 
 class OpenDriveReader:
@@ -54,7 +55,9 @@ class OpenDriveReader:
         return Environment(name, direction.handedness, direction.source, tables)
 
 
-def _environment_row(source: MapSource, request: Request, direction: Direction, geo_reference: str | None) -> dict[str, object]:
+def _environment_row(
+    source: MapSource, request: Request, direction: Direction, geo_reference: str | None
+) -> dict[str, object]:
     return {
         "name": source.name,
         "sha256": source.sha256,
@@ -102,9 +105,12 @@ def _points(name: str, lanes: list[Lanelet]) -> pa.Table:
     counts = [len(lane.s) for lane in lanes]
     arrays = {
         "s_m": "s", "x_m": "x", "y_m": "y", "tx": "tx", "ty": "ty", "half_width_m": "half_width",
-        "left_x_m": "left_x", "left_y_m": "left_y", "right_x_m": "right_x", "right_y_m": "right_y", "road_s_m": "road_s",
+        "left_x_m": "left_x", "left_y_m": "left_y", "right_x_m": "right_x", "right_y_m": "right_y",
+        "road_s_m": "road_s",
     }  # fmt: skip
-    columns = {column: np.concatenate([getattr(lane, attribute) for lane in lanes]) for column, attribute in arrays.items()}
+    columns = {
+        column: np.concatenate([getattr(lane, attribute) for lane in lanes]) for column, attribute in arrays.items()
+    }
     z = np.concatenate([lane.z for lane in lanes])
     columns["z_m"] = pa.array(z, mask=np.isnan(z))
     columns["k"] = np.concatenate([np.arange(n, dtype=np.int32) for n in counts])

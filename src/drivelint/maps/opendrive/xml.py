@@ -27,7 +27,9 @@ def parse(source: MapSource) -> etree._Element:
     except etree.XMLSyntaxError as error:
         if b"<!DOCTYPE" in source.content[:65536]:
             raise _doctype(source) from None
-        raise MapError(f"map {source.name} is not well-formed XML ({error.msg}): give the complete, unchanged file") from None
+        raise MapError(
+            f"map {source.name} is not well-formed XML ({error.msg}): give the complete, unchanged file"
+        ) from None
     if root.getroottree().docinfo.internalDTD is not None:
         raise _doctype(source)
     for element in root.iter():
@@ -37,7 +39,9 @@ def parse(source: MapSource) -> etree._Element:
 
 
 def _doctype(source: MapSource) -> MapError:
-    return MapError(f"map {source.name} carries a DOCTYPE, which OpenDRIVE does not need and which is refused: remove it")
+    return MapError(
+        f"map {source.name} carries a DOCTYPE, which OpenDRIVE does not need and which is refused: remove it"
+    )
 
 
 def number(element: etree._Element, name: str, default: float | None = None) -> float:
@@ -52,7 +56,9 @@ def number(element: etree._Element, name: str, default: float | None = None) -> 
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise MalformedError(f"<{element.tag}> in line {element.sourceline}: {name}={text[:40]!r} is not a finite number")
+        raise MalformedError(
+            f"<{element.tag}> in line {element.sourceline}: {name}={text[:40]!r} is not a finite number"
+        )
     return value
 
 
@@ -60,7 +66,9 @@ def integer(element: etree._Element, name: str) -> int:
     """Return an attribute as an integer."""
     value = number(element, name)
     if value != int(value) or abs(value) > 2**31 - 1:
-        raise MalformedError(f"<{element.tag}> in line {element.sourceline}: {name}={element.get(name)!r} is not an integer")
+        raise MalformedError(
+            f"<{element.tag}> in line {element.sourceline}: {name}={element.get(name)!r} is not an integer"
+        )
     return int(value)
 
 

@@ -1,0 +1,103 @@
+"""What a signal's code means, in the words of the `traffic_signal` table.
+
+OpenDRIVE's own list (numbers from 1000001), the German catalogue (StVO sign numbers, which RoadRunner and CARLA also
+use under the country OpenDRIVE) and the British one (TSRGD diagram numbers), as far as rules ask for them. Where the
+code is not known, the signal's name may say it.
+"""
+
+from __future__ import annotations
+
+import re
+
+_LIGHTS = {
+    "1000001": "traffic_light",
+    "1000002": "pedestrian_light",
+    "1000007": "pedestrian_light",
+    "1000009": "traffic_light",
+    "1000010": "traffic_light",
+    "1000011": "traffic_light",
+    "1000012": "traffic_light",
+    "1000013": "bicycle_light",
+}
+_STVO = {
+    "205": "give_way",
+    "206": "stop",
+    "208": "give_way_to_oncoming",
+    "215": "roundabout",
+    "220": "one_way",
+    "250": "no_vehicles",
+    "267": "no_entry",
+    "274": "speed_limit",
+    "274.1": "speed_zone",
+    "274.2": "speed_zone_end",
+    "275": "minimum_speed",
+    "276": "no_overtaking",
+    "277": "no_overtaking_trucks",
+    "278": "speed_limit_end",
+    "280": "no_overtaking_end",
+    "281": "no_overtaking_trucks_end",
+    "282": "restrictions_end",
+    "283": "no_stopping",
+    "286": "no_parking",
+    "293": "crossing",
+    "294": "stop_line",
+    "301": "priority_here",
+    "306": "priority_road",
+    "307": "priority_road_end",
+    "308": "priority_over_oncoming",
+    "310": "town_entrance",
+    "311": "town_exit",
+    "330.1": "motorway",
+    "330.2": "motorway_end",
+    "331.1": "expressway",
+    "331.2": "expressway_end",
+    "332": "exit",
+    "333": "exit",
+    "350": "crossing",
+    "448": "exit",
+    "449": "exit",
+    "450": "exit",
+}
+_TSRGD = {
+    "601.1": "stop",
+    "602": "give_way",
+    "606": "one_way",
+    "611": "roundabout",
+    "615": "give_way_to_oncoming",
+    "616": "no_entry",
+    "632": "no_overtaking",
+    "670": "speed_limit",
+    "671": "restrictions_end",
+    "672": "minimum_speed",
+}
+_COUNTRIES = {
+    **dict.fromkeys(("", "opendrive", "de", "deu", "germany"), _LIGHTS | _STVO),
+    **dict.fromkeys(("gb", "gbr", "uk", "united kingdom"), _LIGHTS | _TSRGD),
+}
+_NAMES = [
+    (re.compile(pattern), kind)
+    for pattern, kind in (
+        (r"stop_?line", "stop_line"),
+        (r"overtaking.*end", "no_overtaking_end"),
+        (r"no_?overtaking|overtaking_?ban", "no_overtaking"),
+        (r"speed_?lowest|min(imum)?_?speed", "minimum_speed"),
+        (r"speed_?limit|speed_?highest|max(imum)?_?speed|^speed_\d", "speed_limit"),
+        (r"give_?way|yield", "give_way"),
+        (r"no_?entry", "no_entry"),
+        (r"(^|[_ ])exit($|[_ \d])", "exit"),
+        (r"(^|[_ ])stop($|[_ \d])", "stop"),
+        (r"traffic_?light|signal_\dlight", "traffic_light"),
+        (r"pedestrian_?crossing|crosswalk|zebra", "crossing"),
+    )
+]
+
+
+def kind_of(country: str, code: str, name: str) -> str | None:
+    """Return the kind of a signal by country (any case), code and name; None: not recognised."""
+    codes = _COUNTRIES.get(country.lower(), _LIGHTS)
+    plain = code.removesuffix(".0")
+    for candidate in (plain, plain.partition("-")[0]):
+        if candidate in codes:
+            return codes[candidate]
+    lowered = name.lower().replace(" ", "_").replace("-", "_")
+    return next((kind for pattern, kind in _NAMES if pattern.search(lowered)), None)
