@@ -1,0 +1,9 @@
+"""The rule catalogue: rule files found by glob, read, checked and selected. An assertion is data; nothing here runs one."""
+
+from __future__ import annotations
+
+from drivelint.catalogue.header import Conditions, Header, Param, json_schema
+from drivelint.catalogue.load import Rule, load, read_rule
+from drivelint.catalogue.select import parse_params, select
+
+__all__ = ["Conditions", "Header", "Param", "Rule", "json_schema", "load", "parse_params", "read_rule", "select"]

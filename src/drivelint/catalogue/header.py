@@ -1,0 +1,137 @@
+"""The header of a rule file: TOML in its leading comment lines, refused when it says anything that is not understood."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from typing import Any, Literal
+
+import msgspec
+
+from drivelint.errors import RuleError
+
+Kind = Literal["invariant", "execution", "precondition", "postcondition"]
+Seconds = float | str
+"""Seconds, or the name of the rule's parameter that holds them."""
+
+_NAME = re.compile(r"[a-z][a-z0-9_]*")
+
+
+class Param(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A number, switch or word of a rule that a user may change: bound as `$name`, never formatted into SQL."""
+
+    default: float | bool | str
+    unit: str
+    why: str
+    source: str = ""
+
+
+class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The environment in which a rule applies; empty: everywhere."""
+
+    road_types: tuple[str, ...] = ()
+
+
+class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """What a rule says about itself, field by field as in the design."""
+
+    title: str
+    clause: str
+    hypothesis: str
+    kind: Kind
+    subtype: Literal["temporal", "physical"] | None = None
+    window_s: Seconds | None = None
+    quantifier: Literal["always", "eventually"] = "always"
+    combine: Literal["each", "all", "any"] = "each"
+    derivation: Literal["direct", "model"]
+    severity: Literal["critical", "major", "minor"]
+    legal: Literal["must", "should"]
+    status: Literal["draft", "stable", "deprecated"]
+    sense: Literal[">=", ">", "<=", "<", "holds"]
+    unit: str | None = None
+    near_margin: float | None = None
+    reads: tuple[str, ...]
+    requires: tuple[str, ...] = ()
+    reference: str | None = None
+    exempt_after_s: Seconds = 0.0
+    merge_gap_s: Seconds = 1.0
+    applies: Conditions = Conditions()
+    params: dict[str, Param] = {}
+
+
+def json_schema() -> dict[str, Any]:
+    """Return the JSON schema of a rule's header, for editors and for authors of packs."""
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(Header)}
+
+
+def parse_header(text: str, where: str) -> Header:
+    """Parse the TOML `text`, whose line n is line n of the file `where`.
+
+    Errors: `RuleError` naming file and line for bad TOML, an unknown key (with the nearest known one), a wrong type, or fields
+    that contradict each other.
+    """
+    try:
+        raw = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        line = re.search(r"at line (\d+)", str(error))
+        raise RuleError(f"{where}:{line[1] if line else 1}: the header is not TOML: {error}") from error
+    try:
+        header = msgspec.convert(raw, Header)
+    except msgspec.ValidationError as error:
+        raise _explained(error, text, where) from error
+    problem = _contradiction(header)
+    if problem:
+        key, message = problem
+        raise RuleError(f"{where}:{_line_of(text, key)}: {message}")
+    return header
+
+
+def _explained(error: msgspec.ValidationError, text: str, where: str) -> RuleError:
+    """Turn msgspec's message into one line with file, line and the nearest known key."""
+    from difflib import get_close_matches
+
+    message = str(error)
+    place = re.search(r"at `\$\.?([^`]*)`", message)
+    path = place[1] if place else ""
+    unknown = re.search(r"unknown field `([^`]+)`", message)
+    key = unknown[1] if unknown else path.replace("[...]", "").split(".")[-1]
+    if not unknown:
+        missing = "missing required field" in message
+        line = 1 if missing and not path else _line_of(text, key)
+        return RuleError(f"{where}:{line}: header: {message}")
+    known = Param if path.startswith("params") else Conditions if path.startswith("applies") else Header
+    near = get_close_matches(key, known.__struct_fields__, n=1)
+    hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(known.__struct_fields__)}"
+    return RuleError(f"{where}:{_line_of(text, key)}: unknown key {key!r} in the header; {hint}")
+
+
+def _line_of(text: str, key: str) -> int:
+    pattern = re.compile(rf"^\s*\[?(?:[\w.]+\.)?{re.escape(key)}\b\s*[=\].]")
+    return next((n for n, line in enumerate(text.splitlines(), 1) if pattern.match(line)), 1)
+
+
+def _contradiction(h: Header) -> tuple[str, str] | None:
+    """Return (key, message) of the first rule of the header that is broken, or None."""
+    later = h.kind in {"precondition", "postcondition"}
+    seconds = {"window_s": h.window_s, "exempt_after_s": h.exempt_after_s, "merge_gap_s": h.merge_gap_s}
+    checks: list[tuple[bool, str, str]] = [
+        (later != (h.subtype is not None), "subtype" if h.subtype else "kind", "subtype (temporal or physical) belongs to pre- and postconditions, and they need it"),
+        ((h.subtype == "temporal") != (h.window_s is not None), "window_s", "window_s belongs to temporal conditions, and they need it"),
+        (h.quantifier == "eventually" and not later, "quantifier", f"quantifier = 'eventually' makes no sense for an {h.kind}: use a pre- or postcondition"),
+        (h.combine != "each" and h.kind == "invariant", "combine", "an invariant is judged per object: combine is for conditions at a reference point"),
+        (h.sense != "holds" and h.unit is None, "sense", "unit is missing: a measured condition says in which unit"),
+        (h.sense == "holds" and h.near_margin is not None, "near_margin", "near_margin needs a measured condition, not sense = 'holds'"),
+        (h.kind == "invariant" and h.reference is not None, "reference", "an invariant has no reference point"),
+        (h.kind != "invariant" and h.exempt_after_s != 0, "exempt_after_s", "exempt_after_s is for invariants"),
+        (not h.reads, "reads", "reads must name the tables that the rule reads"),
+    ]
+    for name in h.params:
+        checks.append((not _NAME.fullmatch(name), name, f"parameter {name!r}: use lower-case letters, digits and _, starting with a letter"))
+    for key, value in seconds.items():
+        if isinstance(value, str):
+            default = h.params[value].default if value in h.params else None
+            good = isinstance(default, float) and default >= 0
+            checks.append((not good, key, f"{key} = {value!r} must be a number or the name of a numeric parameter of this rule"))
+        elif value is not None:
+            checks.append((not 0 <= value < 1e9, key, f"{key} must be a number of seconds, not {value}"))
+    return next(((key, message) for broken, key, message in checks if broken), None)

@@ -1,0 +1,183 @@
+"""Finding and reading rule files: `<pack>/<rule>.sql` is the rule `<pack>.<rule>`."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from drivelint import store
+from drivelint.catalogue.check import Query, inspect
+from drivelint.catalogue.header import Header, parse_header
+from drivelint.catalogue.sections import Section, split
+from drivelint.errors import RuleError
+from drivelint.resources import folder
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+_STEM = re.compile(r"[a-z0-9][a-z0-9.-]*")
+_KEYS = ("drive_id", "ego_id", "t_ns")
+_CONDITION = (*_KEYS, "object_id", "ref_id", "profile", "observed", "required", "holds", "applies", "at_least", "reason_code", "reason")
+
+
+class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """One rule: its header, its SQL, and what can be told about it without running it."""
+
+    id: str
+    pack: str
+    path: Path
+    version: str
+    sections: dict[str, str]
+    columns: dict[str, tuple[str, ...]]
+    """Section -> its columns; @reference is missing here when it selects a star."""
+
+    @property
+    def profiled(self) -> bool:
+        """Whether it is judged against each profile."""
+        return "profile" in self.columns["condition"]
+
+    @property
+    def per_object(self) -> bool:
+        """Whether its condition is about an object."""
+        return "object_id" in self.columns["condition"]
+
+    def has(self, column: str) -> bool:
+        """Whether the condition returns this column."""
+        return column in self.columns["condition"]
+
+
+def load(dirs: Sequence[Path] = ()) -> dict[str, Rule]:
+    """Return every rule by id, sorted: the shipped packs and those of the folders in `dirs`.
+
+    A folder holds packs (`<pack>/<rule>.sql`) or is one (`<rule>.sql`). Errors: `RuleError` with file and line, for two rules
+    with one id, and for a folder without rules.
+    """
+    files = sorted((folder("queries") / "assertions").glob("*/*.sql"))
+    for root in dirs:
+        found = sorted(root.glob("*.sql")) + sorted(root.glob("*/*.sql"))
+        if not found:
+            raise RuleError(f"{root}: no rules here; --rules-dir is a folder of packs: <pack>/<rule>.sql")
+        files += found
+    rules: dict[str, Rule] = {}
+    for file in files:
+        rule = read_rule(file)
+        if rule.id in rules:
+            raise RuleError(f"{file}: rule {rule.id} exists already in {rules[rule.id].path}; give this one another name or pack")
+        rules[rule.id] = rule
+    return dict(sorted(rules.items()))
+
+
+def read_rule(file: Path) -> Rule:
+    """Read and check one rule file. Errors: `RuleError` with file and line."""
+    pack = file.resolve().parent.name
+    for part, what in ((pack, "folder"), (file.stem, "file")):
+        if not _STEM.fullmatch(part):
+            raise RuleError(f"{file}: the {what} name {part!r} makes no rule id: lower-case letters, digits, '.' and '-' only")
+    content = file.read_bytes()
+    try:
+        text = content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise RuleError(f"{file}: not UTF-8 at byte {error.start}") from error
+    toml, sections = split(text, str(file))
+    header = parse_header(toml, str(file))
+    if header.reference is not None:
+        sections = _event_table(header.reference, sections, file)
+    queries = {name: inspect(section.sql, f"{file}:{section.line}") for name, section in sections.items()}
+    _check_sections(header, sections, queries, file)
+    _check_reads(header, queries, file)
+    _check_params(header, queries, file)
+    fields = {name: getattr(header, name) for name in header.__struct_fields__}
+    return Rule(
+        **fields,
+        id=f"{pack}.{file.stem}",
+        pack=pack,
+        path=file,
+        version=hashlib.sha256(content).hexdigest()[:16],
+        sections={name: section.sql.rstrip().rstrip(";") for name, section in sections.items()},
+        columns={name: query.columns for name, query in queries.items() if query.columns is not None},
+    )
+
+
+def _event_table(table: str, sections: dict[str, Section], file: Path) -> dict[str, Section]:
+    """Let the header's `reference = "table"` stand for a @reference section over that event table."""
+    if "reference" in sections:
+        raise RuleError(f"{file}:{sections['reference'].line}: the header names an event table already: drop it or @reference")
+    columns = store.schema().get(table, {})
+    if not set(_KEYS) <= columns.keys():
+        raise RuleError(f"{file}:1: reference = {table!r} is no event table: it needs the columns drive_id, ego_id, t_ns")
+    return {**sections, "reference": Section(f"SELECT {', '.join(columns)} FROM {table}", 1)}
+
+
+def _check_sections(header: Header, sections: dict[str, Section], queries: dict[str, Query], file: Path) -> None:
+    """Check which sections stand here, and the columns of each."""
+    wanted = {"reference": header.kind != "invariant", "anchor": header.subtype == "physical"}
+    for name, needed in wanted.items():
+        if needed != (name in sections):
+            line = sections[name].line if name in sections else 1
+            raise RuleError(f"{file}:{line}: a {header.subtype or ''} {header.kind} {'needs' if needed else 'has no'} section @{name}".replace("  ", " "))
+    if "applies" in sections and header.kind != "invariant":
+        raise RuleError(f"{file}:{sections['applies'].line}: @applies is for invariants; return a column 'applies' from the condition instead")
+    measured = ("holds",) if header.sense == "holds" else ("observed", "required")
+    contracts: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+        "condition": ((*_KEYS, *measured), _CONDITION),
+        "applies": (_KEYS, (*_KEYS, "object_id", "applies")),
+        "anchor": (("ref_id", "t_ns"), ("ref_id", "drive_id", "ego_id", "t_ns")),
+    }
+    for name, query in queries.items():
+        where = f"{file}:{sections[name].line}: @{name}"
+        if name == "reference":
+            missing = [] if query.columns is None else [c for c in _KEYS if c not in query.columns]
+            if missing or "ref_id" in (query.columns or ()):
+                raise RuleError(f"{where} must return drive_id, ego_id, t_ns and no ref_id (the engine numbers it)")
+            continue
+        _check_columns(query.columns, *contracts[name], where)
+    _check_condition(header, queries["condition"], f"{file}:{sections['condition'].line}: @condition")
+
+
+def _check_columns(columns: tuple[str, ...] | None, needed: tuple[str, ...], allowed: tuple[str, ...], where: str) -> None:
+    if columns is None:
+        raise RuleError(f"{where} must name every column it returns: no star, and AS for every expression")
+    if len(set(columns)) != len(columns):
+        raise RuleError(f"{where} returns a column twice: {', '.join(columns)}")
+    missing = [c for c in needed if c not in columns]
+    if missing:
+        raise RuleError(f"{where} must return {', '.join(needed)}; {', '.join(missing)} missing")
+    stray = [c for c in columns if c not in allowed]
+    if stray:
+        near = get_close_matches(stray[0], allowed, n=1)
+        raise RuleError(f"{where} returns the unknown column {stray[0]!r}; " + (f"did you mean {near[0]!r}?" if near else f"known are {', '.join(allowed)}"))
+
+
+def _check_condition(header: Header, query: Query, where: str) -> None:
+    """Check the condition against the header: its sense, its reference, its objects."""
+    columns = query.columns or ()
+    wrong = {"observed", "required", "at_least"} if header.sense == "holds" else {"holds"}
+    if found := sorted(wrong & set(columns)):
+        raise RuleError(f"{where}: column {found[0]!r} does not go with sense = {header.sense!r}")
+    if ("ref_id" in columns) != ("reference" in query.tables):
+        raise RuleError(f"{where}: a condition that reads 'reference' returns its ref_id, and no other does")
+    if header.combine != "each" and "object_id" not in columns:
+        raise RuleError(f"{where}: combine = {header.combine!r} needs the column object_id")
+
+
+def _check_reads(header: Header, queries: dict[str, Query], file: Path) -> None:
+    if header.kind == "invariant" and any("reference" in query.tables for query in queries.values()):
+        raise RuleError(f"{file}:1: an invariant has no table 'reference'")
+    real = frozenset[str]().union(*(query.tables for query in queries.values())) - {"reference"}
+    said = frozenset(header.reads)
+    if said != real:
+        parts = [f"add {', '.join(sorted(real - said))}"] if real - said else []
+        parts += [f"remove {', '.join(sorted(said - real))}"] if said - real else []
+        raise RuleError(f"{file}:1: reads does not match the SQL: {'; '.join(parts)}")
+
+
+def _check_params(header: Header, queries: dict[str, Query], file: Path) -> None:
+    used = frozenset[str]().union(*(query.parameters for query in queries.values()))
+    if strange := sorted(used - header.params.keys()):
+        raise RuleError(f"{file}:1: ${strange[0]} is not a parameter of this rule; add [params.{strange[0]}] to the header")
+    used |= {s for s in (header.window_s, header.exempt_after_s, header.merge_gap_s) if isinstance(s, str)}
+    if unused := sorted(header.params.keys() - used):
+        raise RuleError(f"{file}:1: parameter {unused[0]!r} is never used")

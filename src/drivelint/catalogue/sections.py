@@ -1,0 +1,52 @@
+"""A rule file's text, cut into its header and its sections."""
+
+from __future__ import annotations
+
+import re
+from difflib import get_close_matches
+from typing import NamedTuple
+
+from drivelint.errors import RuleError
+
+NAMES = ("applies", "reference", "condition", "anchor")
+_MARK = re.compile(r"^--\s*@(\S+)\s*$")
+
+
+class Section(NamedTuple):
+    """One SELECT of a rule: its text and the line of the file on which it starts."""
+
+    sql: str
+    line: int
+
+
+def split(text: str, where: str) -> tuple[str, dict[str, Section]]:
+    """Return the header's TOML (line n of it is line n of the file) and the sections by name.
+
+    Errors: `RuleError` for SQL before the first section, an unknown, repeated or empty section.
+    """
+    lines = text.splitlines()
+    marks = [(n, match[1]) for n, line in enumerate(lines) if (match := _MARK.match(line))]
+    header_end = marks[0][0] if marks else len(lines)
+    header = [_uncomment(line, n, where) for n, line in enumerate(lines[:header_end], 1)]
+    sections: dict[str, Section] = {}
+    for (start, name), end in zip(marks, [n for n, _ in marks[1:]] + [len(lines)], strict=True):
+        if name not in NAMES:
+            near = get_close_matches(name, NAMES, n=1)
+            raise RuleError(f"{where}:{start + 1}: unknown section @{name}; " + (f"did you mean @{near[0]}?" if near else f"known are {', '.join(NAMES)}"))
+        if name in sections:
+            raise RuleError(f"{where}:{start + 1}: section @{name} stands twice")
+        body = "\n".join(lines[start + 1 : end]).strip()
+        if not body:
+            raise RuleError(f"{where}:{start + 1}: section @{name} is empty")
+        sections[name] = Section(body, start + 1)
+    if "condition" not in sections:
+        raise RuleError(f"{where}:{len(lines)}: section '-- @condition' is missing")
+    return "\n".join(header), sections
+
+
+def _uncomment(line: str, n: int, where: str) -> str:
+    if not line.strip():
+        return ""
+    if not line.startswith("--"):
+        raise RuleError(f"{where}:{n}: only '-- ' comment lines (the header) may stand before the first '-- @section' line")
+    return line[2:].removeprefix(" ")

@@ -1,0 +1,51 @@
+"""What every kind of rule leaves beside its verdicts: failing stretches, and (asked for) the margin of every step."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from drivelint.evaluate import terms
+
+if TYPE_CHECKING:
+    from drivelint.catalogue import Rule
+
+_SERIES = "drive_id, ego_id, object_id, profile, ref_id"
+
+
+def stretches(rule: Rule) -> str:
+    """SQL that appends to `_stretch` the failing runs of `_judged`, those closer than merge_gap_s as one; never across a hole."""
+    combined = rule.combine != "each"
+    failed = ""
+    if rule.quantifier == "eventually":
+        # its condition may well not hold at steps of a window that is kept, or unknown: no findings there
+        who = "" if combined else " AND j.object_id IS NOT DISTINCT FROM o.object_id"
+        failed = f"""SEMI JOIN (SELECT * FROM _outcome WHERE rule_no = $_no AND verdict = 'fail') o
+        ON j.drive_id = o.drive_id AND j.ego_id = o.ego_id AND j.ref_id = o.ref_id AND j.profile = o.profile{who}"""
+    return f"""
+INSERT INTO _stretch BY NAME
+WITH _fails AS (
+    SELECT j.*, CASE WHEN lag(n) OVER w = n - 1 AND lag(episode) OVER w = episode OR t_ns - lag(t_ns) OVER w < $_merge_ns
+        THEN 0 ELSE 1 END AS fresh
+    FROM _judged j {failed} WHERE NOT holds
+    WINDOW w AS (PARTITION BY {_SERIES}, seg ORDER BY t_ns)
+), _runs AS (
+    SELECT *, sum(fresh) OVER (PARTITION BY {_SERIES}, seg ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS run FROM _fails
+), _worst AS (
+    SELECT {_SERIES}, seg, run, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.worst(rule)} AS worst FROM _runs GROUP BY ALL)
+SELECT $_no AS rule_no, drive_id, ego_id, {"nullif(worst.who, '')" if combined else "object_id"} AS object_id, profile, ref_id,
+    t_start_ns, t_end_ns, worst.t AS t_worst_ns, coalesce(worst.code, 'violated') AS code, worst.reason AS reason,
+    {terms.numbers(rule, "worst")}
+FROM _worst
+"""
+
+
+def margins(rule: Rule) -> str:
+    """SQL that appends every expected step of `_judged` to `_margin`."""
+    who = "who" if rule.combine != "each" else "object_id"
+    margin = "NULL::DOUBLE" if rule.sense == "holds" else f"CASE WHEN holds IS NOT NULL THEN {terms.finite('gain')} END"
+    return f"""
+INSERT INTO _margin BY NAME
+SELECT $_no AS rule_no, drive_id, ego_id, profile, {who} AS object_id, ref_id, t_ns,
+    {terms.finite("observed")} AS observed, {terms.finite("required")} AS required, {margin} AS margin, holds
+FROM _judged WHERE t_ns IS NOT NULL
+"""

@@ -1,0 +1,219 @@
+"""Invariants: judged on every step of a grid, one verdict per continuous applicable episode and object.
+
+Groups that are whole and kept are settled by one aggregation without a join; only the others are laid over the grid and get windows.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from drivelint.evaluate import terms
+
+if TYPE_CHECKING:
+    from drivelint.catalogue import Rule
+
+OBJECT_GRID = "pair"
+STEP_GRID = "step"
+
+_SAME = "a.drive_id = b.drive_id AND a.ego_id = b.ego_id AND a.t_ns = b.t_ns"
+_GROUP = "drive_id, ego_id, object_id"
+_SERIES = "drive_id, ego_id, object_id, profile"
+
+
+def grid_of(rule: Rule) -> str | None:
+    """Return the table that is the rule's default grid; None: it brings its own, or needs each step looked at."""
+    if "applies" in rule.sections or rule.applies.road_types or rule.profiled or rule.exempt_after_s != 0:
+        return None
+    return OBJECT_GRID if rule.per_object else STEP_GRID
+
+
+def _default_grid(per_object: bool) -> str:
+    """SQL of the default grid with k and seg: every ego step, times the objects present."""
+    if not per_object:
+        return "SELECT a.drive_id, a.ego_id, a.t_ns, NULL::VARCHAR AS object_id, a.k, a.seg FROM step a"
+    return f"SELECT a.drive_id, a.ego_id, a.t_ns, a.object_id, b.k, b.seg FROM pair a JOIN step b ON {_SAME}"
+
+
+GRID_GROUPS = f"""
+CREATE OR REPLACE TEMP TABLE _grid_group AS
+SELECT grid, {_GROUP}, count(*) AS n, sum(hash(t_ns)::HUGEINT) AS signature,
+    min(seg) = max(seg) AND max(k) - min(k) + 1 = count(*) AS whole
+FROM (SELECT 'step' AS grid, * FROM ({_default_grid(False)}) UNION ALL SELECT 'pair', * FROM ({_default_grid(True)}) WHERE $_objects)
+GROUP BY ALL
+"""
+"""Per group of the default grids: its size, an order-free signature of its time stamps, and whether it has no gap."""
+
+
+def first_pass(rule: Rule, partial: bool) -> str:
+    """SQL that appends to `_group`: a group whose condition rows are exactly its grid, all applicable and kept, is clean.
+
+    Exactly: the same number of rows and the same sum of the time stamps' 64-bit hashes, which a lost or a doubled row cannot keep.
+    Groups that are whole and nowhere applicable are left out; all others wait for the second pass.
+    """
+    numbers = terms.numbers(rule, "s.worst")
+    who = " AND g.object_id = s.object_id" if rule.per_object else ""
+    return f"""
+INSERT INTO _group BY NAME
+WITH {terms.state(rule)}, _seen AS (
+    SELECT {_GROUP}, count(*) AS n, sum(hash(t_ns)::HUGEINT) AS signature, count(*) FILTER (applies AND holds) AS n_kept,
+        count(*) FILTER (NOT applies) AS n_out, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.worst(rule)} AS worst
+    FROM _state GROUP BY ALL)
+SELECT $_no AS rule_no, g.drive_id, g.ego_id, g.object_id, coalesce(g.whole AND s.n_kept = s.n, false) AS clean,
+    s.t_start_ns, s.t_end_ns, s.n, s.worst.t AS t_worst_ns, {numbers}, coalesce(s.worst.code, 'kept') AS code, s.worst.reason AS reason
+FROM _grid_group g
+LEFT JOIN _seen s ON g.drive_id = s.drive_id AND g.ego_id = s.ego_id{who} AND g.n = s.n AND g.signature = s.signature
+{terms.todo(partial, "g")}
+WHERE g.grid = '{OBJECT_GRID if rule.per_object else STEP_GRID}' AND s.n_out IS DISTINCT FROM g.n
+"""
+
+
+def profile_set(rule: Rule) -> str:
+    """SQL for `_profile_set`: per subject the profiles asked for and those that the condition returns; '' where there are none."""
+    return f"""
+CREATE OR REPLACE TEMP TABLE _profile_set AS
+WITH {terms.state(rule)}, _known AS (
+    SELECT s.drive_id, s.ego_id, p.profile FROM _subject s CROSS JOIN (SELECT profile FROM profile WHERE selected) p
+    UNION SELECT drive_id, ego_id, profile FROM _state WHERE profile IS NOT NULL)
+SELECT * FROM _known UNION ALL
+SELECT s.drive_id, s.ego_id, '' FROM _subject s ANTI JOIN _known k ON s.drive_id = k.drive_id AND s.ego_id = k.ego_id
+"""
+
+
+def _grid(rule: Rule, partial: bool, unsettled: bool) -> str:
+    """CTEs ending in `_grid`: drive_id, ego_id, t_ns, object_id, k, seg, applies, doubt (why applies is NULL)."""
+    if "applies" not in rule.sections:
+        first = f"_base AS (SELECT *, true AS applies FROM ({_default_grid(rule.per_object)}))"
+    else:
+        own = rule.columns["applies"]
+        who = "object_id" if "object_id" in own else "NULL::VARCHAR AS object_id"
+        three = "applies" if "applies" in own else "true"
+        crowd = rule.per_object and "object_id" not in own
+        first = f"""_applies AS (
+{rule.sections["applies"]}
+), _distinct AS (
+    SELECT drive_id, ego_id, t_ns, {who}, CASE WHEN bool_or(coalesce({three}, false)) THEN true WHEN bool_or({three} IS NULL) THEN NULL
+        ELSE false END AS applies
+    FROM _applies GROUP BY ALL
+), _base AS (
+    SELECT a.drive_id, a.ego_id, a.t_ns, {"p" if crowd else "a"}.object_id, b.k, b.seg, a.applies
+    FROM _distinct a LEFT JOIN step b ON {_SAME}
+    {"JOIN pair p ON a.drive_id = p.drive_id AND a.ego_id = p.ego_id AND a.t_ns = p.t_ns" if crowd else ""})"""
+    keep = ""
+    if unsettled:
+        keep = (" SEMI JOIN (SELECT * FROM _group WHERE rule_no = $_no AND NOT clean) _u ON a.drive_id = _u.drive_id AND a.ego_id = _u.ego_id"
+                + (" AND a.object_id = _u.object_id" if rule.per_object else ""))  # fmt: skip
+    if not rule.applies.road_types:
+        return f"""{first}, _grid AS (SELECT a.*, CASE WHEN a.applies IS NULL THEN 'applies_unknown' END AS doubt FROM _base a
+    {terms.todo(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
+    return f"""{first}, _road AS (
+    SELECT a.* EXCLUDE (applies), a.applies AND (CASE WHEN b.road_type IS NOT NULL THEN list_contains($_road_types, b.road_type) END) AS applies,
+        CASE WHEN a.applies IS NULL THEN 'applies_unknown' WHEN b.road_type IS NULL THEN 'road_type_unknown' END AS doubt
+    FROM _base a LEFT JOIN ego_state b ON {_SAME}
+), _grid AS (SELECT a.* FROM _road a{terms.todo(partial, "a")} WHERE a.applies IS DISTINCT FROM false)"""
+
+
+def second_pass(rule: Rule, partial: bool, unsettled: bool) -> str:
+    """SQL for `_judged`: every expected step of every series, judged or not, with its row number and its episode.
+
+    The conditions are left-joined to the grid on keys alone: a row that the author's join lost is an unknown step.
+    """
+    who = " AND g.object_id = v.object_id" if rule.per_object else ""
+    profile = " AND p.profile = v.profile" if rule.profiled else ""
+    profiles = "JOIN _profile_set p ON g.drive_id = p.drive_id AND g.ego_id = p.ego_id" if rule.profiled else ""
+    columns = f"{_SERIES}, NULL::INTEGER AS ref_id, t_ns, k, seg, holds, gain, observed, required, code, reason"
+    final = f"SELECT *, row_number() OVER (PARTITION BY {_SERIES} ORDER BY t_ns) AS n FROM _episodes"
+    if rule.exempt_after_s != 0:
+        # an episode whose beginning was not seen (the log's start, a hole) has no known age: none of it is exempt
+        final = f"""SELECT * EXCLUDE (t_begin_ns, k_begin), row_number() OVER (PARTITION BY {_SERIES} ORDER BY t_ns) AS n
+FROM (SELECT *, first_value(t_ns) OVER w AS t_begin_ns, first_value(k) OVER w AS k_begin FROM _episodes
+      WINDOW w AS (PARTITION BY {_SERIES}, episode ORDER BY t_ns)) a
+JOIN _segment s USING (drive_id, ego_id, seg)
+WHERE k_begin = s.k_first OR t_ns - t_begin_ns >= $_exempt_ns"""
+        final = f"SELECT * EXCLUDE (t_first_ns, t_last_ns, k_first) FROM ({final})"
+    return f"""
+CREATE OR REPLACE TEMP TABLE _judged AS
+WITH {terms.state(rule)}, {_grid(rule, partial, unsettled)}, _joined AS (
+    SELECT g.drive_id, g.ego_id, g.object_id, {"p.profile" if rule.profiled else "''"} AS profile, g.t_ns, g.k, g.seg,
+        g.applies AND (v.t_ns IS NULL OR v.applies) AS applies, v.holds, v.gain, v.observed, v.required,
+        CASE WHEN g.applies IS NULL THEN g.doubt WHEN v.t_ns IS NULL THEN 'missing_step'
+            WHEN v.applies IS NULL THEN coalesce(v.code, 'applies_unknown') ELSE v.code END AS code,
+        CASE WHEN g.applies THEN v.reason END AS reason
+    FROM _grid g {profiles}
+    LEFT JOIN _state v ON g.drive_id = v.drive_id AND g.ego_id = v.ego_id AND g.t_ns = v.t_ns{who}{profile}
+), _steps AS (
+    SELECT * REPLACE (CASE WHEN applies THEN holds END AS holds), lag(t_ns) OVER w AS t_prev_ns, lag(seg) OVER w AS seg_prev
+    FROM _joined WHERE applies IS DISTINCT FROM false WINDOW w AS (PARTITION BY {_SERIES} ORDER BY t_ns)
+), _episodes AS (
+    SELECT {columns}, t_prev_ns, seg_prev, sum(CASE WHEN seg_prev = seg AND t_ns - t_prev_ns <= s.max_gap_ns THEN 0 ELSE 1 END)
+        OVER (PARTITION BY {_SERIES} ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS episode
+    FROM _steps JOIN _subject s USING (drive_id, ego_id))
+{final}
+"""
+
+
+FAULTS = """
+INSERT INTO _error
+SELECT $_no, drive_id, ego_id, 'rule_error', CASE WHEN max(n_rows) > 1
+    THEN format('the condition returned {} rows for one step (first at {:.3f} s): it must return one', max(n_rows), min(t_ns) FILTER (n_rows > 1) / 1e9)
+    ELSE format('@applies returned the time {:.3f} s, which is no step of the ego', min(t_ns) / 1e9) END
+FROM (SELECT drive_id, ego_id, object_id, profile, t_ns, count(*) AS n_rows, min(k) AS k FROM _judged GROUP BY ALL)
+WHERE n_rows > 1 OR k IS NULL
+GROUP BY drive_id, ego_id
+"""
+"""Appends to `_error` the subjects for which the rule's rows are not one per step of the ego."""
+
+
+def episodes(rule: Rule) -> str:
+    """SQL that appends to `_outcome` one row per episode of `_judged`."""
+    return f"""
+INSERT INTO _outcome BY NAME
+WITH _all AS (
+    SELECT {_SERIES}, episode, count(*) AS n_expected, count(holds) AS n_judged, count(*) FILTER (NOT holds) AS n_fail,
+        min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.worst(rule)} AS worst, {terms.FIRST_UNKNOWN} AS unknown
+    FROM _judged GROUP BY ALL
+), _decided AS (SELECT *, CASE WHEN n_fail > 0 THEN 'fail' WHEN n_judged < n_expected THEN 'unknown' ELSE 'pass' END AS verdict FROM _all)
+SELECT $_no AS rule_no, {_SERIES}, t_start_ns, t_end_ns, worst.t AS t_worst_ns, verdict,
+    CASE verdict WHEN 'unknown' THEN unknown.t ELSE worst.t END AS t_decides_ns,
+    CASE verdict WHEN 'unknown' THEN unknown.code WHEN 'fail' THEN coalesce(worst.code, 'violated') ELSE coalesce(worst.code, 'kept') END AS code,
+    CASE verdict WHEN 'unknown' THEN unknown.reason ELSE worst.reason END AS reason,
+    {terms.numbers(rule, "worst")}, n_expected, n_judged
+FROM _decided
+"""
+
+
+HOLES = f"""
+INSERT INTO _outcome BY NAME
+WITH _ends AS (
+    SELECT j.drive_id, j.ego_id, j.object_id, j.profile, j.seg_prev, j.seg,
+        p.t_last_ns - j.t_prev_ns <= s.max_gap_ns AS from_edge, j.t_ns - q.t_first_ns <= s.max_gap_ns AS to_edge, s.period_ns
+    FROM _judged j JOIN _subject s USING (drive_id, ego_id)
+    JOIN _segment p ON p.drive_id = j.drive_id AND p.ego_id = j.ego_id AND p.seg = j.seg_prev
+    JOIN _segment q ON q.drive_id = j.drive_id AND q.ego_id = j.ego_id AND q.seg = j.seg
+    WHERE j.seg_prev <> j.seg
+), _holes AS (
+    SELECT e.*, p.t_last_ns AS t_start_ns, q.t_first_ns AS t_end_ns FROM _ends e
+    JOIN _segment p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.seg = CASE WHEN from_edge THEN seg_prev ELSE e.seg - 1 END
+    JOIN _segment q ON q.drive_id = e.drive_id AND q.ego_id = e.ego_id AND q.seg = CASE WHEN to_edge THEN e.seg ELSE seg_prev + 1 END
+    WHERE from_edge OR to_edge)
+SELECT $_no AS rule_no, {_SERIES}, t_start_ns, t_end_ns, t_start_ns AS t_worst_ns, t_start_ns AS t_decides_ns, 'unknown' AS verdict,
+    'log_hole' AS code, greatest(1, (t_end_ns - t_start_ns) // greatest(period_ns, 1) - 1) AS n_expected, 0 AS n_judged
+FROM _holes
+"""
+"""Appends a row of its own for each hole of the log between two applicable steps that the rule reaches from either side."""
+
+
+def lost_objects(rule: Rule, partial: bool) -> str:
+    """SQL that appends one unknown row per object whose track ends while it could still have been there."""
+    profiles = "JOIN _profile_set p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id" if rule.profiled else ""
+    roads = ""
+    if rule.applies.road_types:
+        roads = "LEFT JOIN ego_state e ON e.drive_id = l.drive_id AND e.ego_id = l.ego_id AND e.t_ns = l.t_from_ns"
+    return f"""
+INSERT INTO _outcome BY NAME
+SELECT $_no AS rule_no, l.drive_id, l.ego_id, l.object_id, {"p.profile" if rule.profiled else "''"} AS profile,
+    l.t_from_ns AS t_start_ns, l.t_to_ns AS t_end_ns, l.t_from_ns AS t_worst_ns, l.t_from_ns AS t_decides_ns, 'unknown' AS verdict,
+    l.reason AS code, greatest(1, (l.t_to_ns - l.t_from_ns) // greatest(s.period_ns, 1)) AS n_expected, 0 AS n_judged
+FROM lost_object l JOIN _subject s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id {profiles} {roads}
+{terms.todo(partial, "l")}
+{"WHERE e.road_type IS NULL OR list_contains($_road_types, e.road_type)" if roads else ""}
+"""

@@ -1,0 +1,83 @@
+"""The run's own tables: which rules, which subjects, what is decided before running, and where outcomes gather."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import duckdb
+
+    from drivelint.evaluate.terms import Binding
+
+_KEYS = "rule_no INTEGER, drive_id VARCHAR, ego_id VARCHAR"
+_TABLES = f"""
+CREATE OR REPLACE TEMP TABLE _subject AS
+    SELECT c.drive_id, c.ego_id, c.period_ns, c.max_gap_ns, c.t_start_ns, c.t_end_ns, l.sha256, l.sensor_range_m
+    FROM clock c LEFT JOIN data_log l ON c.drive_id = l.drive_id;
+CREATE OR REPLACE TEMP TABLE _segment AS
+    SELECT drive_id, ego_id, seg, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns, min(k) AS k_first FROM step GROUP BY ALL;
+CREATE OR REPLACE TEMP TABLE _rule (rule_no INTEGER, rule_id VARCHAR, rule_version VARCHAR, kind VARCHAR, severity VARCHAR,
+    sense VARCHAR, unit VARCHAR, near_margin DOUBLE);
+CREATE OR REPLACE TEMP TABLE _needs (rule_no INTEGER, pos INTEGER, signal VARCHAR);
+CREATE OR REPLACE TEMP TABLE _error ({_KEYS}, code VARCHAR, reason VARCHAR);
+CREATE OR REPLACE TEMP TABLE _group ({_KEYS}, object_id VARCHAR, clean BOOLEAN, t_start_ns BIGINT, t_end_ns BIGINT, n BIGINT,
+    t_worst_ns BIGINT, observed DOUBLE, required DOUBLE, margin DOUBLE, code VARCHAR, reason VARCHAR);
+CREATE OR REPLACE TEMP TABLE _outcome ({_KEYS}, profile VARCHAR, object_id VARCHAR, ref_id INTEGER, t_ref_ns BIGINT,
+    t_start_ns BIGINT, t_end_ns BIGINT, t_worst_ns BIGINT, t_decides_ns BIGINT, verdict VARCHAR, code VARCHAR, reason VARCHAR,
+    observed DOUBLE, required DOUBLE, margin DOUBLE, n_expected BIGINT, n_judged BIGINT);
+CREATE OR REPLACE TEMP TABLE _stretch ({_KEYS}, profile VARCHAR, object_id VARCHAR, ref_id INTEGER, t_start_ns BIGINT,
+    t_end_ns BIGINT, t_worst_ns BIGINT, code VARCHAR, reason VARCHAR, observed DOUBLE, required DOUBLE, margin DOUBLE);
+CREATE OR REPLACE TEMP TABLE _margin ({_KEYS}, profile VARCHAR, object_id VARCHAR, ref_id INTEGER, t_ns BIGINT,
+    observed DOUBLE, required DOUBLE, margin DOUBLE, holds BOOLEAN);
+"""
+
+# the first of a rule's required signals that the log cannot give; a signal nobody answered for is not there
+_GATED = """
+CREATE OR REPLACE TEMP TABLE _gated AS
+SELECT rule_no, drive_id, ego_id, first.signal AS signal, first.reason AS reason FROM (
+    SELECT n.rule_no, s.drive_id, s.ego_id,
+        min({'pos': n.pos, 'signal': n.signal, 'reason': coalesce(c.reason, 'nothing is known about the signal ' || n.signal)}) AS first
+    FROM _needs n CROSS JOIN _subject s
+    LEFT JOIN capability c ON c.drive_id = s.drive_id AND c.ego_id = s.ego_id AND c.signal = n.signal
+    WHERE c.available IS DISTINCT FROM true
+    GROUP BY ALL)
+"""
+_TODO = """
+CREATE OR REPLACE TEMP TABLE _todo AS
+SELECT r.rule_no, s.drive_id, s.ego_id FROM _rule r CROSS JOIN _subject s
+ANTI JOIN _gated g ON g.rule_no = r.rule_no AND g.drive_id = s.drive_id AND g.ego_id = s.ego_id
+"""
+_NAMES = (
+    "_subject", "_segment", "_rule", "_needs", "_error", "_group", "_outcome", "_stretch", "_margin", "_gated", "_todo",
+    "_grid_group", "_closed", "_judged", "_profile_set", "_raw_reference", "reference", "_occasion", "_point",
+)  # fmt: skip
+
+
+def prepare(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> dict[int, int]:
+    """Create the run's temporary tables and return rule number -> subjects for which it is to be run."""
+    con.execute(_TABLES)
+    rules = [b.rule for b in bindings]
+    con.execute(
+        "INSERT INTO _rule SELECT unnest($no), unnest($id), unnest($version), unnest($kind), unnest($severity), unnest($sense), "
+        "unnest($unit::VARCHAR[]), unnest($near::DOUBLE[])",
+        {
+            "no": [b.no for b in bindings], "id": [r.id for r in rules], "version": [r.version for r in rules],
+            "kind": [r.kind for r in rules], "severity": [r.severity for r in rules], "sense": [r.sense for r in rules],
+            "unit": [r.unit for r in rules], "near": [r.near_margin for r in rules],
+        },
+    )  # fmt: skip
+    needs = [(b.no, pos, signal) for b in bindings for pos, signal in enumerate(b.rule.requires)]
+    if needs:
+        no, pos, signal = (list(column) for column in zip(*needs, strict=True))
+        con.execute("INSERT INTO _needs SELECT unnest($no), unnest($pos), unnest($signal)", {"no": no, "pos": pos, "signal": signal})
+    con.execute(_GATED)
+    con.execute(_TODO)
+    counts = con.execute("SELECT rule_no, count(*) FROM _todo GROUP BY rule_no").fetchall()
+    return {int(no): int(n) for no, n in counts}
+
+
+def clean_up(con: duckdb.DuckDBPyConnection) -> None:
+    """Drop the run's temporary tables."""
+    con.execute(";".join(f"DROP TABLE IF EXISTS temp.{name}" for name in _NAMES))

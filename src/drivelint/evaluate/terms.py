@@ -1,0 +1,132 @@
+"""SQL text that every kind of rule shares: a condition's rows brought into one three-valued form, and their worst step.
+
+Rule text is our own checked file; it stands in the statement as a CTE. Values are always bound.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from drivelint.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from drivelint.catalogue import Rule
+
+_NS = 1_000_000_000
+_ENGINE = {"window_s": "_window_ns", "exempt_after_s": "_exempt_ns", "merge_gap_s": "_merge_ns"}
+
+
+class Binding:
+    """A rule's place in this run: its number and the values that its statements bind."""
+
+    def __init__(self, rule: Rule, no: int, overrides: Mapping[str, object]) -> None:
+        self.rule = rule
+        self.no = no
+        unknown = sorted(overrides.keys() - rule.params.keys())
+        if unknown:
+            raise UsageError(f"rule {rule.id} has no parameter {unknown[0]!r}; it has: {', '.join(rule.params) or 'none'}")
+        params: dict[str, object] = {name: param.default for name, param in rule.params.items()} | dict(overrides)
+        self._values: dict[str, object] = {**params, "_no": no, "_road_types": list(rule.applies.road_types)}
+        for field, name in _ENGINE.items():
+            given = getattr(rule, field)
+            seconds = params[given] if isinstance(given, str) else given
+            self._values[name] = None if seconds is None else _nanoseconds(seconds, rule.id, field)
+
+    def values(self, names: Iterable[str]) -> dict[str, object]:
+        """Return the values of exactly these parameters: the engine refuses spare ones."""
+        return {name: self._values[name] for name in names}
+
+
+def _nanoseconds(seconds: object, rule_id: str, field: str) -> int:
+    if isinstance(seconds, bool) or not isinstance(seconds, int | float) or not 0 <= seconds < _NS:
+        raise UsageError(f"rule {rule_id}: {field} must be a number of seconds, not {seconds!r}")
+    return round(seconds * _NS)
+
+
+def state(rule: Rule) -> str:
+    """Return the CTEs `_condition` and `_state` of a rule.
+
+    `_state`: drive_id, ego_id, t_ns, object_id, ref_id, profile ('' for none), applies, observed, required, holds (NULL: unknown),
+    gain (the signed margin, infinite where unlimited; 0 for sense = holds), code, reason (the author's, or NULL).
+    NaN is NULL. A lower bound proves what it can: a pass for > and >=, a violation for < and <=.
+    """
+    has = rule.has
+    measured = rule.sense != "holds"
+    number = "CASE WHEN isnan({0}::DOUBLE) THEN NULL ELSE {0}::DOUBLE END AS {0}"
+    columns = [
+        "drive_id::VARCHAR AS drive_id", "ego_id::VARCHAR AS ego_id", "t_ns::BIGINT AS t_ns",
+        f"{'object_id' if has('object_id') else 'NULL'}::VARCHAR AS object_id",
+        f"{'ref_id' if has('ref_id') else 'NULL'}::INTEGER AS ref_id",
+        f"{'profile' if has('profile') else 'NULL'}::VARCHAR AS profile",
+        f"{'applies' if has('applies') else 'true'}::BOOLEAN AS applies",
+        *([number.format("observed"), number.format("required")] if measured else ["NULL::DOUBLE AS observed", "NULL::DOUBLE AS required", "holds::BOOLEAN AS holds"]),
+        *(["coalesce(at_least::BOOLEAN, true) AS at_least"] if has("at_least") else []),
+        f"{'reason_code' if has('reason_code') else 'NULL'}::VARCHAR AS code",
+        f"{'reason' if has('reason') else 'NULL'}::VARCHAR AS reason",
+    ]  # fmt: skip
+    holds, gain, code = "holds", "0.0::DOUBLE", "code"
+    if measured:
+        compare = f"(observed {rule.sense} required)"
+        holds = compare
+        difference = "observed - required" if rule.sense[0] == ">" else "required - observed"
+        gain = f"CASE WHEN isnan({difference}) THEN 0.0::DOUBLE ELSE {difference} END"
+        if has("at_least"):
+            proven = f"{compare}" if rule.sense[0] == ">" else f"NOT {compare}"
+            holds = f"CASE WHEN NOT at_least OR ({proven}) THEN {compare} END"
+            code = f"CASE WHEN ({holds}) IS NULL THEN coalesce(code, CASE WHEN {compare} IS NOT NULL THEN 'only_a_bound' END) ELSE code END"
+    return f"""_condition AS (
+{rule.sections["condition"]}
+), _value AS (SELECT {", ".join(columns)} FROM _condition
+), _state AS (SELECT drive_id, ego_id, t_ns, object_id, ref_id, profile, applies, observed, required,
+    {holds} AS holds, {gain} AS gain, {code} AS code, reason FROM _value)"""
+
+
+def todo(binding_partial: bool, alias: str) -> str:
+    """Return the semi-join that leaves out subjects for which the rule is not to be run; '' when there are none."""
+    if not binding_partial:
+        return ""
+    return f" SEMI JOIN (SELECT drive_id, ego_id FROM _todo WHERE rule_no = $_no) _t ON {alias}.drive_id = _t.drive_id AND {alias}.ego_id = _t.ego_id"
+
+
+def worst(rule: Rule) -> str:
+    """Return the aggregate that picks the deciding step: a struct (b, g, t, [who,] observed, required, holds, code, reason).
+
+    always: least margin, or the earliest failing, else unknown, else first step (sense = holds); eventually: the greatest margin, or
+    the earliest holding, else unknown, else failing step. Ties take the earliest step. The leading fields are never NULL and t is unique
+    in its group, so NULLs in the payload are never compared.
+    """
+    eventually = rule.quantifier == "eventually"
+    good, bad = (0, 1) if eventually else (1, 0)
+    unknown = 2
+    if rule.sense == "holds":
+        good, unknown, bad = (0, 1, 2) if eventually else (2, 1, 0)
+    sign = "-" if eventually else ""
+    return pick(good, bad, unknown, sign, combined=rule.combine != "each")
+
+
+def pick(good: int, bad: int, unknown: int, sign: str = "", *, combined: bool = False) -> str:
+    """Return the aggregate over a group of steps that orders by these ranks, by margin, by time, and (combined) by object."""
+    who = "'who': coalesce(who, ''), " if combined else ""
+    return (
+        f"min({{'b': CASE WHEN holds THEN {good} WHEN NOT holds THEN {bad} ELSE {unknown} END, "
+        f"'g': CASE WHEN holds IS NULL THEN 0.0::DOUBLE ELSE {sign}gain END, 't': coalesce(t_ns, 9223372036854775807), "
+        f"{who}'observed': observed, 'required': required, 'holds': holds, 'code': code, 'reason': reason}})"
+    )
+
+
+FIRST_UNKNOWN = "min({'t': coalesce(t_ns, 9223372036854775807), 'code': coalesce(code, 'null_value'), 'reason': reason}) FILTER (holds IS NULL)"
+"""The aggregate that picks the earliest step that could not be judged."""
+
+
+def numbers(rule: Rule, worst_of: str) -> str:
+    """Return the columns observed, required, margin of an outcome from its worst step. Infinity is stored as NULL."""
+    sign = "-" if rule.quantifier == "eventually" else ""
+    margin = "NULL::DOUBLE" if rule.sense == "holds" else f"CASE WHEN {worst_of}.holds IS NOT NULL THEN {finite(f'({sign}{worst_of}.g)')} END"
+    return f"{finite(worst_of + '.observed')} AS observed, {finite(worst_of + '.required')} AS required, {margin} AS margin"
+
+
+def finite(value: str) -> str:
+    """Return the SQL for a number, NULL where it is infinite; never the negative zero that a sign can leave."""
+    return f"CASE WHEN isfinite({value}) THEN {value} + 0.0::DOUBLE END"
