@@ -12,7 +12,7 @@ from drivelint.ingest import actors as actor_rows
 from drivelint.ingest import checks, ego
 from drivelint.ingest.motion import complete_motion
 from drivelint.ingest.order import in_order, listed, steps, without_duplicates, wrapped
-from drivelint.ingest.trace import BRAKE_LIGHTS, INDICATORS, NUMBERS, SIZES, Finding, Trace
+from drivelint.ingest.trace import BRAKE_LIGHTS, EPOCH_NS, INDICATORS, NUMBERS, SIZES, Finding, Trace
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -22,9 +22,6 @@ if TYPE_CHECKING:
     from drivelint.ingest.actors import Actors
     from drivelint.ingest.files import Identity
     from drivelint.ingest.trace import IngestOptions, Recording, States
-
-EPOCH_NS = 946_684_800_000_000_000
-"""2000-01-01 UTC: a clock beyond it counts from 1970 in UTC, a smaller one from the start of the recording."""
 
 _S, _F, _I, _B = pa.string(), pa.float64(), pa.int64(), pa.bool_()
 SCHEMAS: dict[str, dict[str, pa.DataType]] = {

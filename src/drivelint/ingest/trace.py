@@ -35,6 +35,8 @@ CLASSES = (
 )
 MOTOR_VEHICLES = ("car", "van", "truck", "bus", "motorcycle", "vehicle")
 """What `--ego all` takes as an ego: driven by an engine and by somebody of its own."""
+EPOCH_NS = 946_684_800_000_000_000
+"""2000-01-01 UTC: a clock beyond it counts from 1970 in UTC, a smaller one from the start of the recording."""
 SIGNAL_STATES = ("red", "red_amber", "amber", "green", "flashing", "off")
 
 

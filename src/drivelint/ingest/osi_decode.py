@@ -1,0 +1,189 @@
+"""OSI messages to arrays: a batch of ground truth or sensor views decoded at once by a pruned schema."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import ptars
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.errors import TraceError
+from drivelint.ingest import descriptors
+from drivelint.ingest.osi_words import Bulbs, bulbs_of, child, state_codes, words_of
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from drivelint.ingest.container import Packet
+    from drivelint.ingest.descriptors import Tree
+
+GROUND_TRUTH = "osi3.GroundTruth"
+SENSOR_VIEW = "osi3.SensorView"
+
+_XY: Tree = {"x": None, "y": None}
+_ID: Tree = {"value": None}
+_TIMESTAMP: Tree = {"seconds": None, "nanos": None}
+_TRUTH: Tree = {
+    "timestamp": _TIMESTAMP,
+    "host_vehicle_id": _ID,
+    "moving_object": {
+        "id": _ID,
+        "type": None,
+        "base": {
+            "dimension": {"length": None, "width": None, "height": None},
+            "position": {**_XY, "z": None},
+            "orientation": {"yaw": None},
+            "velocity": _XY,
+            "acceleration": _XY,
+        },
+        "vehicle_classification": {"type": None, "light_state": {"indicator_state": None, "brake_light_state": None}},
+    },
+    "traffic_light": {
+        "id": _ID,
+        "classification": {"color": None, "mode": None},
+        "source_reference": {"type": None, "identifier": None},
+    },
+}
+TREES: dict[str, Tree] = {
+    GROUND_TRUTH: _TRUTH,
+    SENSOR_VIEW: {"timestamp": _TIMESTAMP, "host_vehicle_id": _ID, "global_ground_truth": _TRUTH},
+}
+VECTORS: dict[str, dict[str, str]] = {
+    "position": {"x_m": "x", "y_m": "y", "z_m": "z"},
+    "orientation": {"yaw_rad": "yaw"},
+    "velocity": {"vx_mps": "x", "vy_mps": "y"},
+    "acceleration": {"ax_mps2": "x", "ay_mps2": "y"},
+    "dimension": {"length_m": "length", "width_m": "width", "height_m": "height"},
+}
+"""Vector of `moving_object.base` -> our column -> its coordinate."""
+
+
+@dataclass(frozen=True)
+class Frames:
+    """A decoded batch. Per frame: the message's time and whether it says one, the host's id (None: not said).
+
+    Per object: its frame, id (`known`: it has one), columns of `NUMBERS` and `SIZES` (NaN: unknown), codes.
+    """
+
+    t_ns: NDArray[np.int64]
+    timed: NDArray[np.bool_]
+    hosts: list[int | None]
+    frame: NDArray[np.intp]
+    ids: NDArray[np.uint64]
+    nameless: int
+    numbers: dict[str, NDArray[np.float64]]
+    codes: dict[str, NDArray[np.int8]]
+    not_finite: NDArray[np.bool_]
+    bulbs: Bulbs
+
+
+class Decoder:
+    """Decodes messages of one schema record."""
+
+    def __init__(self, path: Path, schema_id: int, name: str, descriptor_set: bytes) -> None:
+        """Prune the schema. Errors: `TraceError` where it lacks the fields without which nothing can be judged."""
+        self._path, self._name, self.schema_id = path, name, schema_id
+        types = descriptors.parse(path, name, descriptor_set)
+        descriptor = descriptors.pruned(types, name, TREES[name])
+        self._handler = ptars.HandlerPool([descriptor.file]).get_for_message(descriptor)
+        truth = _inner(self._handler.schema(), "global_ground_truth") if name == SENSOR_VIEW else self._handler.schema()
+        base = _inner(_inner(truth, "moving_object"), "base")
+        if _inner(base, "position") is None or _inner(_inner(truth, "moving_object"), "id") is None:
+            raise TraceError(
+                f"{path}: the schema {name} in the log has no moving_object with id and base.position: not OSI 3"
+            )
+        self._words = words_of(types, GROUND_TRUTH)
+
+    def frames(self, packets: list[Packet]) -> Frames:
+        """Decode a batch. Errors: `TraceError` naming topic and byte of the first message that cannot be decoded."""
+        message = self._decode(packets)
+        truth = child(message, "global_ground_truth") if self._name == SENSOR_VIEW else message
+        t_ns, timed = _times(truth)
+        hosts = _hosts(truth)
+        if self._name == SENSOR_VIEW:
+            outer_t, outer_timed = _times(message)
+            t_ns, timed = np.where(timed, t_ns, outer_t), timed | outer_timed
+            hosts = [inner if inner is not None else outer for inner, outer in zip(hosts, _hosts(message), strict=True)]
+        lists = child(truth, "moving_object")
+        objects = lists.flatten()
+        counts = pc.fill_null(pc.list_value_length(lists), 0).to_numpy(zero_copy_only=False)
+        base = child(objects, "base")
+        numbers, not_finite = {}, np.zeros(len(objects), np.bool_)
+        for vector, columns in VECTORS.items():
+            values = child(base, vector)
+            for column, coordinate in columns.items():
+                numbers[column], odd = _coordinate(values, coordinate)
+                not_finite |= odd
+        ids = child(objects, "id")
+        frame = np.repeat(np.arange(len(packets)), counts)
+        number = pc.fill_null(child(ids, "value").cast(pa.uint64()), 0).to_numpy(zero_copy_only=False)
+        codes = state_codes(self._words, objects)
+        if ids.null_count:
+            known = ids.is_valid().to_numpy(zero_copy_only=False)
+            frame, number, not_finite = frame[known], number[known], not_finite[known]
+            numbers = {name: column[known] for name, column in numbers.items()}
+            codes = {name: column[known] for name, column in codes.items()}
+        bulbs = bulbs_of(self._words, child(truth, "traffic_light"))
+        return Frames(t_ns, timed, hosts, frame, number, ids.null_count, numbers, codes, not_finite, bulbs)
+
+    def _decode(self, packets: list[Packet]) -> pa.StructArray:
+        try:
+            rows = self._handler.list_to_record_batch([packet.data for packet in packets])
+        except ValueError as error:
+            self._blame(packets)
+            raise TraceError(f"{self._path}: {len(packets)} messages cannot be decoded together: {error}") from error
+        return pa.StructArray.from_arrays(rows.columns, fields=list(rows.schema))
+
+    def _blame(self, packets: list[Packet]) -> None:
+        """Find the message that spoilt a batch."""
+        for packet in packets:
+            try:
+                self._handler.list_to_record_batch([packet.data])
+            except ValueError as error:
+                raise malformed(self._path, packet, error) from error
+
+
+def malformed(path: Path, packet: Packet, error: ValueError) -> TraceError:
+    """Say which message cannot be decoded."""
+    where = f"topic {packet.channel.topic!r}, log time {packet.log_time_ns} ns, record at byte {packet.offset}"
+    return TraceError(f"{path}: {where}: {error}: record or copy the log again")
+
+
+def _inner(fields: pa.Schema | pa.DataType | None, name: str) -> pa.DataType | None:
+    """Return the struct type of a field, or that of its items; None where there is no such field."""
+    if fields is None or fields.get_field_index(name) < 0:
+        return None
+    kind = fields.field(fields.get_field_index(name)).type
+    kind = kind.value_type if pa.types.is_list(kind) else kind
+    return kind if pa.types.is_struct(kind) else None
+
+
+def _coordinate(vector: pa.Array, name: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Return a coordinate and where it is not finite: 0 where a present vector leaves it out (writers drop zeros), NaN where there is none."""
+    values = pc.fill_null(child(vector, name).cast(pa.float64()), 0.0).to_numpy(zero_copy_only=False)
+    odd = ~np.isfinite(values)
+    if odd.any():
+        values = np.where(odd, np.nan, values)
+    if vector.null_count:
+        values = np.where(vector.is_valid().to_numpy(zero_copy_only=False), values, np.nan)
+    return values, odd
+
+
+def _times(message: pa.Array) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    stamp = child(message, "timestamp")
+    seconds, nanos = (
+        pc.fill_null(child(stamp, name).cast(pa.int64()), 0).to_numpy(zero_copy_only=False)
+        for name in ("seconds", "nanos")
+    )
+    return seconds * 1_000_000_000 + nanos, stamp.is_valid().to_numpy(zero_copy_only=False)
+
+
+def _hosts(message: pa.Array) -> list[int | None]:
+    host = child(message, "host_vehicle_id")
+    value = pc.fill_null(child(host, "value").cast(pa.uint64()), 0)
+    return list(pc.if_else(host.is_valid(), value, pa.scalar(None, pa.uint64())).to_pylist())
