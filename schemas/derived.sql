@@ -219,6 +219,13 @@ CREATE TABLE ego_state (
     heading_diff_rad DOUBLE           -- heading against the corridor
 );
 
+CREATE TABLE ego_footway (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step
+    depth_m DOUBLE                    -- how far a corner or the middle of a side is inside a footway and on no carriageway; 0: not at all; NULL: the box is not known
+);
+
 CREATE TABLE pair (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -363,7 +370,7 @@ CREATE TABLE overtake_sda (
     occurrence INTEGER NOT NULL,      -- see overtake
     profile VARCHAR NOT NULL,         -- see profile; every one, selected or not
     t0_ns BIGINT NOT NULL,            -- see overtake
-    da_m DOUBLE,                      -- distance ahead, NULL: unknown
+    da_m DOUBLE,                      -- distance ahead; NULL: unknown, or more than sda_m while a nearer OV is not ruled out
     at_least BOOLEAN NOT NULL,        -- da_m is only a lower bound (a sight line)
     nobody BOOLEAN NOT NULL,          -- every vehicle placed, and no OV as far as da_m
     sda_m DOUBLE,                     -- safe distance ahead; NULL: undefined
@@ -383,7 +390,7 @@ CREATE TABLE overtake_step (
     free_m DOUBLE,                    -- how far ahead of the ego's front the corridor and the sensor reach at t0
     free_reason VARCHAR,              -- what ends it: map_end, corridor_end, sensor_range
     ov_id VARCHAR,                    -- nearest oncoming vehicle at this step; NULL: none
-    ov_known BOOLEAN NOT NULL,        -- whether there is one can be told at this step
+    ov_known BOOLEAN NOT NULL,        -- no other vehicle may be nearer: every one is placed
     sd_av_m DOUBLE,                   -- stopping distance of the ego: length of its danger space
     sd_ov_m DOUBLE,                   -- of the oncoming vehicle
     vbp_in_ds_av_m DOUBLE,            -- along the corridor, how far the VBP is inside the ego's danger space (negative: clear of it by that much)

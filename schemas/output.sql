@@ -35,7 +35,7 @@ CREATE TABLE rule (
     hypothesis VARCHAR NOT NULL,      -- the same as a question
     kind VARCHAR NOT NULL,            -- invariant, execution, precondition, postcondition
     subtype VARCHAR,                  -- temporal, physical; NULL: neither pre- nor postcondition
-    window_s DOUBLE,                  -- length of the period before or after the reference point; NULL: none
+    window_s DOUBLE,                  -- length of the period before or after the reference point as used; NULL: none
     derivation VARCHAR NOT NULL,      -- direct, model
     severity VARCHAR NOT NULL,        -- critical, major, minor
     legal VARCHAR NOT NULL,           -- must, should
@@ -45,5 +45,5 @@ CREATE TABLE rule (
     near_margin DOUBLE,               -- a pass with less is a near miss; NULL: none
     requires VARCHAR[] NOT NULL,      -- signals without which it is unknown
     profiles VARCHAR[] NOT NULL,      -- profiles it was judged against; empty: it has none
-    params STRUCT("name" VARCHAR, "value" DOUBLE, unit VARCHAR, overridden BOOLEAN)[] NOT NULL -- parameters as used
+    params STRUCT("name" VARCHAR, "value" VARCHAR, unit VARCHAR, overridden BOOLEAN)[] NOT NULL -- parameters as used, their values as text
 );

@@ -10,7 +10,7 @@ WITH input AS (
 ),
 required AS (
     SELECT
-        *,
+        *, begin_seen AND vbp_placed AND opposing IS NOT NULL AS told,
         CASE WHEN beta > 0 AND theta > 0 AND v_av_mps > v_vbp_mps THEN
             safe_distance_ahead_m(lane_width_m, beta, theta, headroom, clearance, l_av_m, l_vbp_m, v_av_mps, v_vbp_mps, v_ov_mps)
         END AS sda_m
@@ -18,14 +18,15 @@ required AS (
 )
 SELECT
     drive_id, ego_id, occurrence, profile, t0_ns,
-    CASE WHEN begin_seen AND vbp_placed THEN da_m END AS da_m,
+    CASE WHEN told AND (n_unplaced = 0 OR da_m <= sda_m) THEN da_m END AS da_m,
     ov_id IS NULL AS at_least,
     ov_id IS NULL AND n_unplaced = 0 AS nobody,
     sda_m, da_m - sda_m AS spare_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0) AS spare_s,
-    CASE WHEN begin_seen AND vbp_placed AND n_unplaced = 0 THEN overtake_zone(da_m - sda_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0)) END AS zone,
+    CASE WHEN told AND n_unplaced = 0 THEN overtake_zone(da_m - sda_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0)) END AS zone,
     CASE
         WHEN NOT begin_seen THEN 'the log does not show where the overtake began'
         WHEN NOT vbp_placed THEN 'actor ' || vbp_id || ', who may be the vehicle passed, has no position'
+        WHEN opposing IS NULL THEN 'the map has no lane beside the running lane on the overtaking side'
         WHEN da_m IS NULL THEN 'the ego is not placed on its corridor'
         WHEN v_av_mps <= v_vbp_mps THEN 'undefined: the ego was not faster than the vehicle it passed'
         WHEN profile = 'observed' AND status <> 'completed' THEN 'the overtake was not completed, so its own angles are not known'

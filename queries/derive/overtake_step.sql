@@ -15,7 +15,7 @@ WITH stage AS (
 )
 SELECT
     s.drive_id, s.ego_id, s.occurrence, s.t_ns, s.stage, s.vbp_id, n.object_id AS ov_id,
-    coalesce(n.object_id IS NOT NULL OR n.n_unplaced = 0, false) AND (n.object_id IS NULL OR v.s_m IS NOT NULL) AS ov_known,
+    coalesce(n.n_unplaced = 0, false) AS ov_known,
     s.sd_av_m, stopping_distance_m(v.speed_mps) AS sd_ov_m,
     inside3(s.ef + s.sd_av_m - b.rear_s_m, b.front_s_m - s.ef, s.eh + b.lat_half_m - abs(s.ed - b.d_m)) AS vbp_in_ds_av_m,
     inside3(s.ef + s.sd_av_m - v.rear_s_m, v.front_s_m - s.ef, s.eh + v.lat_half_m - abs(s.ed - v.d_m)) AS ov_in_ds_av_m,

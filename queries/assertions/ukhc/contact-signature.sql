@@ -1,0 +1,39 @@
+-- title = "No deceleration that only a contact explains"
+-- clause = "UKHC introduction and R144: drive so as not to collide; a contact that the boxes miss shows in the speeds"
+-- hypothesis = "While another actor was within reach, did ego and actor lose speed no faster than tyres can?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "critical"
+-- legal = "must"
+-- status = "stable"
+-- sense = "<"
+-- unit = "m/s2"
+-- merge_gap_s = 1.0
+-- reads = ["ego_state", "pair"]
+-- requires = ["ego_size"]
+--
+-- [params.within_m]
+-- default = 0.5
+-- unit = "m"
+-- why = "recorded boxes are a little smaller than the bodies; our default, of the order of that difference and one step's way"
+--
+-- [params.tyre_mps2]
+-- default = 12.0
+-- unit = "m/s2"
+-- why = "dry tyres give about 10; our default leaves room for noise of one backward difference"
+
+-- @applies
+SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN clearance_m IS NOT NULL THEN true END AS applies
+FROM pair
+WHERE clearance_m IS NULL OR clearance_m <= $within_m
+
+-- @condition
+SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, $tyre_mps2 AS required,
+    CASE
+        WHEN p.accel_mps2 IS NOT NULL AND e.accel_mps2 IS NOT NULL THEN greatest(-p.accel_mps2, -e.accel_mps2)
+        WHEN -p.accel_mps2 >= $tyre_mps2 THEN -p.accel_mps2
+        WHEN -e.accel_mps2 >= $tyre_mps2 THEN -e.accel_mps2
+    END AS observed,
+    CASE WHEN e.speed_mps < 0.1 AND e.accel_mps2 > -0.1 THEN 'the ego stood still: it was struck, if anything' END AS reason
+FROM pair p
+JOIN ego_state e USING (drive_id, ego_id, t_ns)

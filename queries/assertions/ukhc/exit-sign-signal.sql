@@ -1,0 +1,26 @@
+-- title = "Signal on at the last exit sign"
+-- clause = "UKHC R103 and R273: signal in good time before leaving by an exit (the paper's physical precondition)"
+-- hypothesis = "Was the indicator to the exit's side on when the ego passed the last exit sign before it left?"
+-- kind = "precondition"
+-- subtype = "physical"
+-- derivation = "direct"
+-- severity = "minor"
+-- legal = "should"
+-- status = "stable"
+-- sense = "holds"
+-- reads = ["ego_state", "exit_taken"]
+-- requires = ["map", "registration", "indicator", "exit_signs", "ego_size"]
+
+-- @reference
+SELECT drive_id, ego_id, t_ns, side, sign_id, t_sign_ns
+FROM exit_taken
+
+-- @anchor
+SELECT ref_id, t_sign_ns AS t_ns
+FROM reference
+WHERE sign_id IS NOT NULL
+
+-- @condition
+SELECT e.drive_id, e.ego_id, e.t_ns, r.ref_id, e.indicator = r.side AS holds
+FROM reference r
+JOIN ego_state e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id AND e.t_ns = r.t_sign_ns

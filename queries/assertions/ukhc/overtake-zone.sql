@@ -1,0 +1,33 @@
+-- title = "Overtakes with time to spare"
+-- clause = "UKHC R162 (the paper's performance zones): overtake only with enough road, and use the road that there is"
+-- hypothesis = "As this overtake was driven, would the spare distance ahead have lasted for half a second and more?"
+-- kind = "execution"
+-- derivation = "model"
+-- severity = "minor"
+-- legal = "should"
+-- status = "stable"
+-- sense = ">="
+-- unit = "s"
+-- reads = ["overtake", "overtake_sda", "profile"]
+-- requires = ["map", "registration", "handedness", "ego_size"]
+--
+-- [params.margin_s]
+-- default = 0.5
+-- unit = "s"
+-- why = "zone A (unsafe) and B (less than this to spare) fail, C and D are kept"
+-- source = "paper, performance zones"
+
+-- @reference
+SELECT drive_id, ego_id, t0_ns AS t_ns, ov_id AS object_id, occurrence
+FROM overtake
+WHERE opposing IS DISTINCT FROM false
+
+-- @condition
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, any_value(CASE WHEN s.profile = 'observed' AND s.zone IS NOT NULL THEN s.spare_s END) AS observed, $margin_s AS required,
+    any_value(CASE WHEN s.profile = 'observed' THEN s.at_least END) AS at_least,
+    'zones: ' || string_agg(s.profile || ' ' || coalesce(s.zone, 'unknown'), ', ' ORDER BY p.style) || '; best choice: '
+        || coalesce(min({'style': p.style, 'profile': s.profile}) FILTER (s.zone = 'C' AND s.profile <> 'observed').profile, 'none in zone C') AS reason
+FROM reference r
+JOIN overtake_sda s USING (drive_id, ego_id, occurrence)
+JOIN profile p USING (profile)
+GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id

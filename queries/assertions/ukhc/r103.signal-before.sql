@@ -1,0 +1,30 @@
+-- title = "Signal before moving out"
+-- clause = "UKHC R103: give clear signals in plenty of time before changing course or direction"
+-- hypothesis = "Was the indicator of that side on throughout the seconds before the ego crossed the boundary of its lane?"
+-- kind = "precondition"
+-- subtype = "temporal"
+-- window_s = "window_s"
+-- derivation = "direct"
+-- severity = "minor"
+-- legal = "should"
+-- status = "draft"
+-- sense = "holds"
+-- reads = ["ego_state", "lane_departure"]
+-- requires = ["map", "registration", "indicator", "ego_size"]
+--
+-- [params.window_s]
+-- default = 5.0
+-- unit = "s"
+-- why = "five seconds as in the paper's example; three is the least that an automatic lane change needs"
+-- source = "paper, temporal precondition; UN R79"
+
+-- @reference
+SELECT drive_id, ego_id, t_ns, side
+FROM lane_departure
+WHERE NOT back
+
+-- @condition
+SELECT e.drive_id, e.ego_id, e.t_ns, r.ref_id, e.indicator = r.side AS holds
+FROM reference r
+JOIN ego_state e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id
+    AND e.t_ns <= r.t_ns AND e.t_ns >= r.t_ns - ($window_s * 1e9)::BIGINT

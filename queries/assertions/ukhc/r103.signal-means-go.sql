@@ -1,0 +1,39 @@
+-- title = "A signal is followed by the manoeuvre"
+-- clause = "UKHC R103: signals tell others what you are going to do; do not mislead them"
+-- hypothesis = "After the indicator came on, did the ego move out or turn to that side in time?"
+-- kind = "postcondition"
+-- subtype = "temporal"
+-- window_s = "window_s"
+-- quantifier = "eventually"
+-- derivation = "direct"
+-- severity = "minor"
+-- legal = "should"
+-- status = "draft"
+-- sense = "holds"
+-- reads = ["ego_state", "indicator_on", "lane_departure"]
+-- requires = ["map", "registration", "indicator", "ego_size"]
+--
+-- [params.window_s]
+-- default = 10.0
+-- unit = "s"
+-- why = "our default: a signal that is older than that has misled somebody"
+--
+-- [params.turned_rad]
+-- default = 0.5
+-- unit = "rad"
+-- why = "our default: a change of heading of about 30 degrees is a turn, not a bend's worth of lane keeping"
+
+-- @reference
+SELECT drive_id, ego_id, t_on_ns AS t_ns, side
+FROM indicator_on
+WHERE NOT at_log_start
+
+-- @condition
+SELECT e.drive_id, e.ego_id, e.t_ns, r.ref_id,
+    d.t_ns IS NOT NULL OR wrap_rad(e.yaw_rad - o.yaw_rad) * CASE r.side WHEN 'left' THEN 1 ELSE -1 END >= $turned_rad AS holds
+FROM reference r
+JOIN ego_state o ON o.drive_id = r.drive_id AND o.ego_id = r.ego_id AND o.t_ns = r.t_ns
+JOIN ego_state e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id
+    AND e.t_ns >= r.t_ns AND e.t_ns <= r.t_ns + ($window_s * 1e9)::BIGINT
+LEFT JOIN (SELECT DISTINCT drive_id, ego_id, t_ns, side FROM lane_departure) d
+    ON d.drive_id = e.drive_id AND d.ego_id = e.ego_id AND d.t_ns = e.t_ns AND d.side = r.side

@@ -1,0 +1,25 @@
+-- title = "Oncoming vehicle outside the ego's danger space"
+-- clause = "UKHC R126 and R162 (runtime assertion of the paper): leave enough space to stop, in an overtake too"
+-- hypothesis = "At every step of the overtake, was the oncoming vehicle outside the space that the ego needs to stop?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "critical"
+-- legal = "should"
+-- status = "stable"
+-- sense = "<"
+-- unit = "m"
+-- near_margin = 1.0
+-- merge_gap_s = 1.0
+-- reads = ["overtake_step"]
+-- requires = ["map", "registration", "handedness", "ego_size"]
+
+-- @applies
+SELECT DISTINCT drive_id, ego_id, t_ns, ov_id AS object_id, stage AS episode,
+    CASE WHEN ov_id IS NOT NULL THEN true WHEN ov_known THEN false END AS applies
+FROM overtake_step
+
+-- @condition
+SELECT DISTINCT drive_id, ego_id, t_ns, ov_id AS object_id, 0.0 AS required,
+    -- a nearer vehicle that cannot be placed could only make it worse
+    CASE WHEN ov_known OR ov_in_ds_av_m >= 0 THEN ov_in_ds_av_m END AS observed
+FROM overtake_step

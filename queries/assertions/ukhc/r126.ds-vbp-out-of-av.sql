@@ -1,0 +1,20 @@
+-- title = "Vehicle being passed outside the ego's danger space"
+-- clause = "UKHC R126 and R162 (runtime assertion of the paper): leave enough space to stop, in an overtake too"
+-- hypothesis = "At every step of the overtake, was the vehicle being passed outside the space that the ego needs to stop?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "critical"
+-- legal = "should"
+-- status = "stable"
+-- sense = "<"
+-- unit = "m"
+-- near_margin = 1.0
+-- merge_gap_s = 1.0
+-- reads = ["overtake_step"]
+-- requires = ["map", "registration", "handedness", "ego_size"]
+
+-- @applies
+SELECT drive_id, ego_id, t_ns, vbp_id AS object_id, stage AS episode FROM overtake_step
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, vbp_id AS object_id, vbp_in_ds_av_m AS observed, 0.0 AS required FROM overtake_step

@@ -1,0 +1,24 @@
+-- title = "Not too close to the vehicle ahead when pulling out"
+-- clause = "UKHC R163: do not get too close to the vehicle you intend to overtake"
+-- hypothesis = "When the ego first left its lane, was it further from the vehicle being passed than its stopping distance?"
+-- kind = "execution"
+-- derivation = "direct"
+-- severity = "major"
+-- legal = "should"
+-- status = "stable"
+-- sense = ">"
+-- unit = "m"
+-- near_margin = 1.0
+-- reads = ["overtake"]
+-- requires = ["map", "registration", "handedness", "ego_size"]
+
+-- @reference
+SELECT drive_id, ego_id, t0_ns AS t_ns, vbp_id AS object_id, occurrence
+FROM overtake
+
+-- @condition
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, stopping_distance_m(o.v_av_mps) AS required,
+    CASE WHEN o.begin_seen THEN o.vbp_gap_m END AS observed,
+    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began' END AS reason
+FROM reference r
+JOIN overtake o USING (drive_id, ego_id, occurrence)

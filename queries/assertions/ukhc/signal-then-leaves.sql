@@ -1,0 +1,30 @@
+-- title = "Having signalled to leave, leaves"
+-- clause = "UKHC R103: do not mislead others by your signals (the paper's physical postcondition)"
+-- hypothesis = "When the ego signalled to the exit's side beside it, was it in the exit lane where the exit parts from the road?"
+-- kind = "postcondition"
+-- subtype = "physical"
+-- derivation = "direct"
+-- severity = "minor"
+-- legal = "should"
+-- status = "stable"
+-- sense = "holds"
+-- reads = ["exit_passed", "indicator_on"]
+-- requires = ["map", "registration", "indicator"]
+
+-- @reference
+SELECT x.drive_id, x.ego_id, greatest(max(i.t_on_ns), x.t_near_ns) AS t_ns, x.side, x.occurrence
+FROM exit_passed x
+JOIN indicator_on i ON i.drive_id = x.drive_id AND i.ego_id = x.ego_id AND i.side = x.side
+    AND i.t_on_ns <= coalesce(x.t_gore_ns, i.t_on_ns) AND i.t_off_ns >= x.t_near_ns
+GROUP BY x.drive_id, x.ego_id, x.t_near_ns, x.side, x.occurrence
+
+-- @anchor
+SELECT r.ref_id, x.t_gore_ns AS t_ns
+FROM reference r
+JOIN exit_passed x USING (drive_id, ego_id, occurrence)
+
+-- @condition
+SELECT x.drive_id, x.ego_id, x.t_gore_ns AS t_ns, r.ref_id, x.taken AS holds
+FROM reference r
+JOIN exit_passed x USING (drive_id, ego_id, occurrence)
+WHERE x.t_gore_ns IS NOT NULL

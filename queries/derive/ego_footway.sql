@@ -1,0 +1,49 @@
+-- The ego's outline (corners and middles of the sides) on footways. A point that is also on a drivable lanelet is on the carriageway:
+-- in junctions the footways of connecting roads lie across other roads.
+WITH ego AS (
+    SELECT st.drive_id, st.ego_id, st.t_ns, s.x_m, s.y_m, s.yaw_rad, s.length_m / 2 AS hl, s.width_m / 2 AS hw, g.environment_id
+    FROM step st
+    JOIN state_dynamics s ON s.drive_id = st.drive_id AND s.actor_id = st.ego_id AND s.t_ns = st.t_ns
+    JOIN data_log g ON g.drive_id = st.drive_id
+),
+point AS (
+    SELECT
+        e.drive_id, e.ego_id, e.t_ns, c.p, e.environment_id,
+        x_m + c.l * hl * cos(yaw_rad) - c.w * hw * sin(yaw_rad) AS x_m,
+        y_m + c.l * hl * sin(yaw_rad) + c.w * hw * cos(yaw_rad) AS y_m
+    FROM ego e CROSS JOIN (VALUES (1, 1, 1), (2, 1, -1), (3, -1, 1), (4, -1, -1), (5, 0, 1), (6, 0, -1), (7, 1, 0), (8, -1, 0)) AS c(p, l, w)
+    WHERE x_m IS NOT NULL AND y_m IS NOT NULL AND yaw_rad IS NOT NULL AND hl IS NOT NULL AND hw IS NOT NULL
+),
+candidate AS (
+    SELECT
+        a.drive_id, a.ego_id, a.t_ns, a.p, a.x_m, a.y_m, n.lane_type, n.drivable, g.*,
+        along0(a.x_m, a.y_m, g.x0_m, g.y0_m, g.tx0, g.ty0) AS a0,
+        along1(a.x_m, a.y_m, g.x1_m, g.y1_m, g.tx1, g.ty1) AS a1
+    FROM point a
+    JOIN lane_cell c ON c.environment_id = a.environment_id AND c.cell = lane_cell_of(a.x_m, a.y_m)
+    JOIN lanelet n ON n.environment_id = c.environment_id AND n.lanelet_id = c.lanelet_id AND (n.drivable OR n.lane_type IN ('sidewalk', 'walking'))
+    JOIN lane_segment g ON g.environment_id = c.environment_id AND g.lanelet_id = c.lanelet_id AND g.k = c.k
+),
+inside AS (
+    SELECT
+        drive_id, ego_id, t_ns, p, bool_or(drivable) AS on_carriageway, max(depth_m) FILTER (NOT drivable) AS depth_m
+    FROM (
+        SELECT
+            *,
+            hw0_m + a0 / (a0 + a1) * (hw1_m - hw0_m)
+            - abs(offset_left(x_m, y_m, a0 / (a0 + a1), x0_m, y0_m, tx0, ty0, x1_m, y1_m, tx1, ty1)) AS depth_m
+        FROM candidate
+        WHERE a0 >= -slack0_m AND a1 > -slack1_m AND a0 + a1 > 0
+    )
+    WHERE depth_m > -0.02
+    GROUP BY ALL
+),
+deepest AS (
+    SELECT drive_id, ego_id, t_ns, max(depth_m) FILTER (NOT on_carriageway) AS depth_m FROM inside GROUP BY ALL
+)
+SELECT
+    e.drive_id, e.ego_id, e.t_ns,
+    CASE WHEN e.x_m IS NOT NULL AND e.y_m IS NOT NULL AND e.yaw_rad IS NOT NULL AND e.hl IS NOT NULL AND e.hw IS NOT NULL
+        THEN greatest(coalesce(d.depth_m, 0.0), 0.0) END AS depth_m
+FROM ego e
+LEFT JOIN deepest d USING (drive_id, ego_id, t_ns)

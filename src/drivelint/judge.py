@@ -1,0 +1,149 @@
+"""The bench on which drives are judged, batch by batch: fill the tables, derive, evaluate, clear."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from drivelint import store
+from drivelint.derive import derivations, derive
+from drivelint.evaluate import evaluate
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+    from pathlib import Path
+
+    import duckdb
+
+    from drivelint.batch import Drive
+    from drivelint.catalogue import Rule
+
+# small tables that say what was judged, and on what: they stay until the end of the run
+_RESULTS: Final = ("data_log", "quality", "environment", "map_quality", "exposure", "capability", "registration", "verdict", "finding", "profile")
+_MARGIN_ORDER: Final = "drive_id, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, ref_id NULLS FIRST, t_ns"
+
+
+class Bench:
+    """Judges batches of drives in one database. Between batches only results stay in it.
+
+    `out` is where `margins_file` and the kept database go.
+    """
+
+    def __init__(
+        self,
+        con: duckdb.DuckDBPyConnection,
+        rules: Sequence[Rule],
+        params: Mapping[str, Mapping[str, object]],
+        out: Path | None,
+        *,
+        margins: bool = False,
+        keep_db: bool = False,
+    ) -> None:
+        self._con = con
+        self._rules = rules
+        self._params = params
+        self._tables = {table for rule in rules for table in rule.reads}
+        self._margins: pq.ParquetWriter | None = None
+        self._seen: set[str] = set()
+        self._maps: frozenset[str] = frozenset()
+        self.margins_file = out / ".margins.parquet" if margins and out else None
+        self._kept = out / "drivelint.duckdb" if keep_db and out else None
+        if self._kept:
+            self._attach(self._kept)
+
+    def knows(self, drive: Drive) -> bool:
+        """Whether this very log was judged before."""
+        return drive.trace.drive_id in self._seen
+
+    def judge(self, drives: Sequence[Drive]) -> None:
+        """Judge a batch of drives; if it fails, nothing of it stays behind."""
+        if not drives:
+            return
+        ids = [drive.trace.drive_id for drive in drives]
+        try:
+            self._load(drives)
+            derive(self._con, self._tables, of_the_map=False)
+            evaluate(self._con, self._rules, self._params, margins=self.margins_file is not None)
+        except BaseException:
+            self._forget(ids)
+            raise
+        self._seen.update(ids)
+        self._write_margins()
+        self._keep(_batch_tables())
+        self._clear()
+
+    def close(self) -> None:
+        """Finish the files that grew with the batches."""
+        if self._margins:
+            self._margins.close()
+        if self._kept:
+            self._keep(_RESULTS)
+            self._con.execute("DETACH kept")
+            self._kept = None
+
+    def _load(self, drives: Sequence[Drive]) -> None:
+        environments = {d.environment.environment_id: d.environment for d in drives if d.environment}
+        if not environments.keys() <= self._maps:
+            for table in (*_map_tables(), *(t for t, d in derivations().items() if d.of_the_map)):
+                self._con.execute(f"DELETE FROM {table}")
+            for _, environment in sorted(environments.items()):
+                known = self._con.execute("SELECT count(*) FROM environment WHERE environment_id = ?", [environment.environment_id]).fetchall()[0][0]
+                for table, rows in environment.tables.items():
+                    if not (known and table in _RESULTS):
+                        store.insert(self._con, table, rows)
+            self._maps = frozenset(environments)
+            derive(self._con, self._tables, of_the_map=True)
+            self._keep([*_map_tables(), *(t for t, d in derivations().items() if d.of_the_map)])
+        for table in drives[0].trace.tables:
+            rows = pa.concat_tables([_on_map(d) if table == "data_log" else d.trace.tables[table] for d in drives])
+            store.insert(self._con, table, rows)
+
+    def _write_margins(self) -> None:
+        if not self.margins_file:
+            return
+        rows = self._con.execute(f"SELECT * FROM margin ORDER BY {_MARGIN_ORDER}").to_arrow_table()
+        if self._margins is None:
+            self.margins_file.parent.mkdir(parents=True, exist_ok=True)
+            self._margins = pq.ParquetWriter(self.margins_file, rows.schema, compression="zstd")
+        self._margins.write_table(rows.combine_chunks())
+
+    def _attach(self, path: Path) -> None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.unlink(missing_ok=True)
+        with store.connect(path):
+            pass
+        self._con.execute(f"ATTACH '{str(path).replace(chr(39), chr(39) * 2)}' AS kept")
+
+    def _keep(self, tables: Iterable[str]) -> None:
+        if self._kept:
+            for table in tables:
+                self._con.execute(f"INSERT INTO kept.{table} SELECT * FROM {table}")
+
+    def _clear(self) -> None:
+        for table in _batch_tables():
+            self._con.execute(f"DELETE FROM {table}")
+
+    def _forget(self, ids: Sequence[str]) -> None:
+        self._clear()
+        for table in _RESULTS:
+            if "drive_id" in store.schema()[table]:
+                self._con.execute(f"DELETE FROM {table} WHERE list_contains(?, drive_id)", [list(ids)])
+
+
+def _on_map(drive: Drive) -> pa.Table:
+    log = drive.trace.tables["data_log"]
+    name = pa.array([drive.environment.environment_id if drive.environment else None], pa.string())
+    return log.set_column(log.schema.get_field_index("environment_id"), "environment_id", name)
+
+
+def _batch_tables() -> list[str]:
+    """Tables that hold one batch at a time."""
+    return [t for t, columns in store.schema().items() if "drive_id" in columns and t not in _RESULTS and t != "drive"]
+
+
+def _map_tables() -> list[str]:
+    """Tables of the map itself, replaced when a batch needs other maps."""
+    derived = derivations()
+    return [t for t, columns in store.schema().items() if next(iter(columns)) == "environment_id" and t not in _RESULTS and t not in derived]

@@ -1,0 +1,87 @@
+"""The maps of a run: each read once, whichever drives are judged on it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyarrow.compute as pc
+
+from drivelint.errors import MapError
+from drivelint.maps.contract import MapSource
+from drivelint.maps.registry import load_map, read_source
+from drivelint.maps.sense import vote
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import pyarrow as pa
+
+    from drivelint.maps.contract import Environment
+
+MOVING_MPS = 1.0
+FAR_M = 50.0  # beyond the map's own lanes by this much, a drive is somewhere else
+
+
+class MapLibrary:
+    """Finds the environment of each drive: the user's map, or the one embedded in its log; `None` where there is neither."""
+
+    def __init__(self, path: Path | None, offset: tuple[float, float] | None, handedness: str) -> None:
+        self._given = read_source(path) if path else None
+        self._offset = offset
+        self._handedness = handedness
+        self._loaded: dict[tuple[str, tuple[float, float], str | None], Environment] = {}
+
+    def find(self, log: str, embedded: bytes | None, offset: tuple[float, float] | None, states: pa.Table) -> Environment | None:
+        """Return the environment for one drive.
+
+        `offset` is the mapping's (the user's `--map-offset` goes before it), `states` the drive's `actor_state` rows.
+        Errors: `MapError` if the map cannot be read, or is of another place.
+        """
+        source = self._given or (MapSource("embedded", embedded) if embedded else None)
+        if source is None:
+            return None
+        shift = self._offset or offset or (0.0, 0.0)
+        environment = self._load(source, shift, None)
+        _refuse_elsewhere(environment, log, states)
+        if environment.handedness_source == "default" and (sensed := _sense(environment, states)):
+            environment = self._load(source, shift, sensed)
+        return environment
+
+    def _load(self, source: MapSource, offset: tuple[float, float], sensed: str | None) -> Environment:
+        key = (source.sha256, offset, sensed)
+        if key not in self._loaded:
+            self._loaded[key] = load_map(source, offset=offset, handedness=self._handedness, sensed=sensed)
+        return self._loaded[key]
+
+
+def _sense(environment: Environment, states: pa.Table) -> str | None:
+    speed = np.hypot(_floats(states, "vx_mps"), _floats(states, "vy_mps"))
+    moving = states.filter(np.nan_to_num(speed) > MOVING_MPS)
+    return vote(environment, _floats(moving, "x_m"), _floats(moving, "y_m"), _floats(moving, "yaw_rad"))
+
+
+def _refuse_elsewhere(environment: Environment, log: str, states: pa.Table) -> None:
+    """Refuse a map whose lanes and the drive's positions do not even overlap as rectangles."""
+    points = environment.tables["lane_point"]
+    drive, lanes = _extent(states), _extent(points)
+    if drive is None or lanes is None:
+        return
+    apart = max(drive[0] - lanes[1], lanes[0] - drive[1], drive[2] - lanes[3], lanes[2] - drive[3])
+    if apart > FAR_M:
+        raise MapError(
+            f"map {environment.environment_id} is of another place than {log}: its lanes lie in x {lanes[0]:.0f}..{lanes[1]:.0f}, "
+            f"y {lanes[2]:.0f}..{lanes[3]:.0f} m, the drive in x {drive[0]:.0f}..{drive[1]:.0f}, y {drive[2]:.0f}..{drive[3]:.0f} m; "
+            "give the right --map, or --map-offset"
+        )
+
+
+def _extent(table: pa.Table) -> tuple[float, float, float, float] | None:
+    x, y = pc.min_max(table["x_m"]).as_py(), pc.min_max(table["y_m"]).as_py()
+    if x["min"] is None or y["min"] is None:
+        return None
+    return x["min"], x["max"], y["min"], y["max"]
+
+
+def _floats(table: pa.Table, column: str) -> np.ndarray:
+    return table[column].to_numpy(zero_copy_only=False).astype(np.float64)

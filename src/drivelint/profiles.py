@@ -1,0 +1,81 @@
+"""The profiles of `queries/profiles.toml`: ways of overtaking that a controller may follow (paper, Appendix A)."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+import msgspec
+import pyarrow as pa
+
+from drivelint.errors import RuleError, UsageError
+from drivelint.resources import folder
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+DEFAULT = "nominal"
+
+
+class Profile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One way of overtaking: angles in degrees, gaps in metres, the speeds it is meant for; all absent for `observed`."""
+
+    style: int
+    pull_out_angle_deg: float | None = None
+    cut_in_angle_deg: float | None = None
+    pull_out_headroom_m: float | None = None
+    cut_in_clearance_m: float | None = None
+    v_min_mps: float | None = None
+    v_max_mps: float | None = None
+
+
+def load_profiles(dirs: Sequence[Path] = ()) -> dict[str, Profile]:
+    """Return the shipped profiles and those of a `profiles.toml` in each folder of `dirs`, a later one replacing an earlier.
+
+    Errors: `RuleError` naming the file for bad TOML or an unknown key.
+    """
+    profiles: dict[str, Profile] = {}
+    for root in (folder("queries"), *dirs):
+        file = root / "profiles.toml"
+        if not file.is_file():
+            continue
+        try:
+            profiles |= msgspec.convert(tomllib.loads(file.read_text(encoding="utf-8")), dict[str, Profile])
+        except (tomllib.TOMLDecodeError, msgspec.ValidationError) as error:
+            raise RuleError(f"{file}: {error}") from error
+    return profiles
+
+
+def profile_table(profiles: dict[str, Profile], selected: Sequence[str]) -> pa.Table:
+    """Return the rows of the library table `profile`; nothing selected means `nominal`.
+
+    Errors: `UsageError` for a name that no profile has, with the nearest one.
+    """
+    chosen = set(selected) or {DEFAULT}
+    for name in sorted(chosen - profiles.keys()):
+        near = get_close_matches(name, profiles, n=1)
+        hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(profiles)}"
+        raise UsageError(f"no profile {name!r}; {hint}")
+    rows = [
+        {
+            "profile": name,
+            "style": p.style,
+            "pull_out_angle_rad": _radians(p.pull_out_angle_deg),
+            "cut_in_angle_rad": _radians(p.cut_in_angle_deg),
+            "pull_out_headroom_m": p.pull_out_headroom_m,
+            "cut_in_clearance_m": p.cut_in_clearance_m,
+            "v_min_mps": p.v_min_mps,
+            "v_max_mps": p.v_max_mps,
+            "selected": name in chosen,
+        }
+        for name, p in profiles.items()
+    ]
+    kinds = {"profile": pa.string(), "style": pa.int32(), "selected": pa.bool_()}
+    return pa.Table.from_pylist(rows, schema=pa.schema([(key, kinds.get(key, pa.float64())) for key in rows[0]]))
+
+
+def _radians(degrees: float | None) -> float | None:
+    return None if degrees is None else math.radians(degrees)

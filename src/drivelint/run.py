@@ -1,0 +1,131 @@
+"""The whole pipeline: traces and a map in, verdicts out. Stages meet only in tables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import duckdb
+import pyarrow as pa
+
+from drivelint import catalogue, store
+from drivelint.batch import Drive, Refused, cut, in_order, read
+from drivelint.errors import DriveLintError, TraceError, UsageError
+from drivelint.ingest import IngestOptions, expand
+from drivelint.judge import Bench
+from drivelint.maps.library import MapLibrary
+from drivelint.profiles import DEFAULT, load_profiles, profile_table
+from drivelint.report import collect
+from drivelint.report.result import Result
+from drivelint.report.rulebook import rule_table
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from drivelint.report.progress import Progress
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What `check` is asked to do; the names are those of its options."""
+
+    traces: tuple[str, ...]
+    map: Path | None = None
+    out: Path | None = None
+    rules: tuple[str, ...] = ()
+    ignore: tuple[str, ...] = ()
+    profiles: tuple[str, ...] = ()
+    params: tuple[str, ...] = ()
+    ego: str | None = None
+    mapping: str | None = None
+    topic: str | None = None
+    map_offset: tuple[float, float] | None = None
+    handedness: str = "auto"
+    sensor_range_m: float | None = None
+    rules_dirs: tuple[Path, ...] = field(default=())
+    fail_on: str = "critical"
+    strict: bool = False
+    margins: bool = False
+    keep_db: bool = False
+
+
+def check(settings: Settings, progress: Progress) -> Result:
+    """Judge every drive by every selected rule.
+
+    Errors: `UsageError`, `RuleError` for what was asked; `MapError`, `TraceError` if no drive at all could be judged. A drive that
+    cannot be judged beside others that can is a row of the table `drive`.
+    """
+    rules = catalogue.select(catalogue.load(settings.rules_dirs), settings.rules, settings.ignore)
+    params = catalogue.parse_params(rules, settings.params)
+    profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles)
+    if (settings.margins or settings.keep_db) and settings.out is None:
+        raise UsageError("--margins and --keep-db write files: say where with --out DIR")
+    paths = in_order(expand(settings.traces))
+    options = IngestOptions(settings.mapping, settings.ego, settings.topic, settings.sensor_range_m)
+    library = MapLibrary(settings.map, settings.map_offset, settings.handedness)
+
+    with store.connect() as con:
+        store.insert(con, "profile", profiles)
+        bench = Bench(con, rules, params, settings.out, margins=settings.margins, keep_db=settings.keep_db)
+        progress.stage("checking", len(paths))
+        refused: list[Refused] = []
+        try:
+            for batch in cut(read(paths, options, library)):
+                refused += _judge(bench, batch, progress)
+        finally:
+            bench.close()
+        if len(refused) == len(paths):
+            raise _none_judged(refused)
+        unjudged = [collect.unjudged(r.path.stem, r.path.name, str(r.error)) for r in refused]
+        drives = pa.concat_tables([collect.drives(con), *unjudged]).sort_by([("drive_id", "ascending"), ("file_name", "ascending")])
+        return Result(
+            verdicts=collect.verdicts(con),
+            findings=collect.findings(con),
+            drives=drives,
+            rules=rule_table(rules, params, settings.profiles or (DEFAULT,)),
+            margins_file=bench.margins_file,
+            fail_on=settings.fail_on,
+            strict=settings.strict,
+        )
+
+
+def _judge(bench: Bench, batch: Iterable[Drive | Refused], progress: Progress) -> list[Refused]:
+    """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other."""
+    refused: list[Refused] = []
+    drives: list[Drive] = []
+    for item in batch:
+        if isinstance(item, Refused):
+            refused.append(item)
+            progress.note(str(item.error))
+        elif bench.knows(item) or any(item.trace.drive_id == d.trace.drive_id for d in drives):
+            progress.note(f"{item.trace.path}: the same log as one before ({item.trace.drive_id}), judged once")
+        else:
+            drives.append(item)
+            for note in item.trace.notes:
+                progress.note(f"{item.trace.path.name}: {note}")
+    try:
+        bench.judge(drives)
+    except (DriveLintError, duckdb.Error) as whole:
+        if len(drives) == 1:
+            return [*refused, _failed(drives[0], whole, progress)]
+        for drive in drives:
+            try:
+                bench.judge([drive])
+            except (DriveLintError, duckdb.Error) as error:
+                refused.append(_failed(drive, error, progress))
+    progress.advance(len(drives) + len(refused))
+    return refused
+
+
+def _failed(drive: Drive, error: Exception, progress: Progress) -> Refused:
+    failure = error if isinstance(error, DriveLintError) else TraceError(f"{drive.trace.path}: {str(error).splitlines()[0]}")
+    progress.note(f"{drive.trace.drive_id} could not be judged: {failure}")
+    return Refused(drive.trace.path, failure)
+
+
+def _none_judged(refused: list[Refused]) -> DriveLintError:
+    first = refused[0].error
+    if len(refused) == 1:
+        return first
+    return TraceError(f"none of {len(refused)} logs could be judged; the first: {first}")
