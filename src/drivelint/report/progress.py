@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Protocol
 
 
@@ -29,3 +30,11 @@ class Silent:
 
     def note(self, text: str) -> None:
         """Ignore the note."""
+
+
+class Notes(Silent):
+    """A `Progress` for a stderr that is no terminal: only what a person should read, one line each."""
+
+    def note(self, text: str) -> None:
+        """Print the note."""
+        print(f"drivelint: {text}", file=sys.stderr, flush=True)

@@ -22,7 +22,10 @@ def rule_table(rules: Sequence[Rule], params: Mapping[str, Mapping[str, object]]
 
 def _row(rule: Rule, overrides: Mapping[str, object], profiles: Sequence[str]) -> dict[str, object]:
     values = {name: overrides.get(name, param.default) for name, param in rule.params.items()}
-    same = ("pack", "title", "clause", "hypothesis", "kind", "subtype", "derivation", "severity", "legal", "status", "sense", "unit", "near_margin")
+    same = (
+        "pack", "title", "clause", "hypothesis", "kind", "subtype", "derivation", "severity", "legal", "status",
+        "sense", "unit", "near_margin",
+    )  # fmt: skip
     window = values.get(rule.window_s) if isinstance(rule.window_s, str) else rule.window_s
     return {key: getattr(rule, key) for key in same} | {
         "rule_id": rule.id,
@@ -31,7 +34,12 @@ def _row(rule: Rule, overrides: Mapping[str, object], profiles: Sequence[str]) -
         "requires": list(rule.requires),
         "profiles": sorted(profiles) if rule.profiled else [],
         "params": [
-            {"name": name, "value": float(value) if isinstance(value, int | float) else None, "unit": rule.params[name].unit, "overridden": name in overrides}
+            {
+                "name": name,
+                "value": str(value).lower() if isinstance(value, bool) else str(value),
+                "unit": rule.params[name].unit,
+                "overridden": name in overrides,
+            }
             for name, value in sorted(values.items())
         ],
     }

@@ -1,0 +1,297 @@
+"""The command line: parse, call, print, exit. stdout is data, stderr is progress and diagnostics.
+
+Everything heavy is imported inside the commands, so that `--help` stays fast.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import nullcontext
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, NoReturn, TypeVar
+
+import typer
+
+from drivelint import __version__
+from drivelint.errors import DriveLintError, ExitCode, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from contextlib import AbstractContextManager
+
+    from rich.console import Console
+
+    from drivelint.report.progress import Progress
+    from drivelint.report.result import Result
+
+T = TypeVar("T")
+
+app = typer.Typer(
+    name="drivelint",
+    help="Checks recorded drives against the rules of the road.",
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+rules_app = typer.Typer(help="The rule catalogue: list, show and test rules.")
+app.add_typer(rules_app, name="rules")
+
+
+class Format(StrEnum):
+    """How results are printed on stdout."""
+
+    text = "text"
+    json = "json"
+
+
+class FailOn(StrEnum):
+    """The least severity that makes exit code 1."""
+
+    critical = "critical"
+    major = "major"
+    minor = "minor"
+    never = "never"
+
+
+class Handedness(StrEnum):
+    """The side of the road that is driven on."""
+
+    auto = "auto"
+    lht = "lht"
+    rht = "rht"
+
+
+RulesDirs = Annotated[
+    list[Path] | None,
+    typer.Option("--rules-dir", metavar="DIR", help="Folder with rule packs of your own. Repeatable."),
+]
+
+
+def _version(value: bool) -> None:
+    if value:
+        typer.echo(f"drivelint {__version__}")
+        raise typer.Exit
+
+
+@app.callback(invoke_without_command=True)
+def _root(
+    ctx: typer.Context,
+    *,
+    version: Annotated[  # noqa: ARG001 - its callback acts
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
+    ] = False,
+) -> None:
+    """Checks recorded drives against the rules of the road."""
+    if ctx.invoked_subcommand is None:
+        typer.echo(ctx.get_help(), err=True)
+        raise typer.Exit(int(ExitCode.USAGE))
+
+
+@app.command()
+def check(
+    *,
+    traces: Annotated[list[str], typer.Argument(metavar="TRACE...", help="Recorded drives: files, globs or folders.")],
+    map_: Annotated[Path | None, typer.Option("--map", metavar="MAP", help="The road (OpenDRIVE).")] = None,
+    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for the result files.")] = None,
+    rules: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--rules", metavar="SEL", help="Rule id, glob or pack. Repeatable. Default: stable rules of ukhc."
+        ),
+    ] = None,
+    ignore: Annotated[
+        list[str] | None, typer.Option("--ignore", metavar="SEL", help="Leave these rules out. Repeatable.")
+    ] = None,
+    profile: Annotated[
+        list[str] | None,
+        typer.Option("--profile", metavar="NAME", help="relaxed, nominal (default), aggressive, observed. Repeatable."),
+    ] = None,
+    param: Annotated[
+        list[str] | None, typer.Option("--param", metavar="RULE.PARAM=V", help="Set a rule's parameter. Repeatable.")
+    ] = None,
+    ego: Annotated[
+        str | None, typer.Option("--ego", metavar="ID|all", help="The vehicle under test, or every vehicle in turn.")
+    ] = None,
+    mapping: Annotated[
+        str | None,
+        typer.Option(
+            "--mapping", metavar="FILE|NAME", help="How a table's columns are read: a TOML file or a shipped name."
+        ),
+    ] = None,
+    map_offset: Annotated[
+        str | None, typer.Option("--map-offset", metavar="DX,DY", help="Metres added to the map's coordinates.")
+    ] = None,
+    handedness: Annotated[
+        Handedness, typer.Option("--handedness", help="Side of the road that is driven on.")
+    ] = Handedness.auto,
+    sensor_range: Annotated[
+        float | None,
+        typer.Option(
+            "--sensor-range", metavar="M", min=0, help="Range in which the recorder sees everybody. Default: all."
+        ),
+    ] = None,
+    topic: Annotated[
+        str | None, typer.Option("--topic", metavar="NAME", help="Read this MCAP topic, where several would do.")
+    ] = None,
+    rules_dir: RulesDirs = None,
+    fail_on: Annotated[
+        FailOn, typer.Option("--fail-on", help="Least severity that makes exit code 1.")
+    ] = FailOn.critical,
+    strict: Annotated[bool, typer.Option("--strict", help="Unknown is not good enough: exit code 4.")] = False,
+    format_: Annotated[Format, typer.Option("--format", help="What is printed on stdout.")] = Format.text,
+    margins: Annotated[bool, typer.Option("--margins", help="Also write margins.parquet: every judged step.")] = False,
+    keep_db: Annotated[
+        bool, typer.Option("--keep-db", help="Also keep the database with every stage's tables.")
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+) -> None:
+    """Judge recorded drives against the rules and write verdicts, findings and reports.
+
+    Exit codes: 0 nothing failed at or above --fail-on; 1 something did; 2 usage or rule error; 3 judged on lossy input;
+    4 some drives not judged (with --strict: some rule unknown); 75 infrastructure lost; 130 interrupted.
+    """
+    from drivelint import run
+    from drivelint.report.result import exit_code, write
+
+    settings = run.Settings(
+        traces=tuple(traces),
+        map=map_,
+        out=out,
+        rules=tuple(rules or ()),
+        ignore=tuple(ignore or ()),
+        profiles=tuple(profile or ()),
+        params=tuple(param or ()),
+        ego=ego,
+        mapping=mapping,
+        map_offset=_offset(map_offset),
+        handedness=handedness.value,
+        sensor_range_m=sensor_range,
+        rules_dirs=tuple(rules_dir or ()),
+        fail_on=fail_on.value,
+        strict=strict,
+        margins=margins,
+        keep_db=keep_db,
+        topic=topic,
+    )
+    with _progress(quiet) as progress:
+        result = _interruptible(lambda: run.check(settings, progress))
+        if out is not None:
+            write(result, out)
+    _print(result, format_, out)
+    raise typer.Exit(int(exit_code(result)))
+
+
+@rules_app.command("list")
+def rules_list(
+    format_: Annotated[Format, typer.Option("--format", help="What is printed on stdout.")] = Format.text,
+    rules_dir: RulesDirs = None,
+) -> None:
+    """List every rule with its kind, severity, status, clause and the signals that it requires."""
+    from drivelint.catalogue import load
+    from drivelint.report import rules_text
+
+    rules = load(tuple(rules_dir or ())).values()
+    if format_ is Format.json:
+        typer.echo(rules_text.listing_json(rules))
+    else:
+        _console().print(rules_text.listing(rules))
+
+
+@rules_app.command("show")
+def rules_show(
+    rule_id: Annotated[str, typer.Argument(metavar="ID", help="The rule's id.")], rules_dir: RulesDirs = None
+) -> None:
+    """Show one rule: what it asks, where it comes from, its parameters and its SQL."""
+    from drivelint.catalogue import load, select
+    from drivelint.report import rules_text
+
+    rules = load(tuple(rules_dir or ()))
+    for rule in [rules[rule_id]] if rule_id in rules else select(rules, [rule_id], []):
+        _console().print(rules_text.page(rule))
+
+
+@rules_app.command("test")
+def rules_test(
+    folder: Annotated[
+        Path | None, typer.Argument(metavar="[DIR]", help="Folder with rule packs; default: the shipped ones.")
+    ] = None,
+) -> None:
+    """Run the cases beside the rules: each says what the rule must answer in a small scene."""
+    raise NotImplementedError(folder)
+
+
+def main() -> NoReturn:
+    """Run the command line; every mistake of a user ends in one line on stderr and its exit code."""
+    from typer.exceptions import TyperException
+
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a log's words may not fit the terminal's encoding
+    try:
+        code = app(standalone_mode=False)
+    except DriveLintError as error:
+        _fail(str(error), error.exit_code)
+    except TyperException as error:
+        _fail(f"{error.format_message()} (see drivelint --help)", ExitCode.USAGE)
+    except (KeyboardInterrupt, typer.Abort):
+        print("drivelint: error: interrupted; nothing was written", file=sys.stderr, flush=True)
+        os._exit(int(ExitCode.INTERRUPTED))  # a native thread may still be computing: there is nothing to wait for
+    sys.exit(code or 0)
+
+
+def _fail(message: str, code: ExitCode) -> NoReturn:
+    print(f"drivelint: error: {' '.join(message.split())}", file=sys.stderr)
+    sys.exit(int(code))
+
+
+def _offset(text: str | None) -> tuple[float, float] | None:
+    """Read DX,DY. Errors: `UsageError`."""
+    if text is None:
+        return None
+    try:
+        dx, dy = (float(part) for part in text.split(","))
+    except ValueError as error:
+        raise UsageError(f"--map-offset {text!r}: write two numbers in metres, DX,DY, such as 2.6,3.1") from error
+    return dx, dy
+
+
+def _interruptible(job: Callable[[], T]) -> T:
+    """Run `job` beside the main thread: the database does not look at Ctrl-C while it computes, this thread does."""
+    return ThreadPoolExecutor(max_workers=1).submit(job).result()
+
+
+def _progress(quiet: bool) -> AbstractContextManager[Progress]:
+    """Return a bar on a terminal's stderr; elsewhere only the pipeline's notes, as lines."""
+    from drivelint.report.progress import Notes, Silent
+
+    if quiet:
+        return nullcontext(Silent())
+    if not sys.stderr.isatty():
+        return nullcontext(Notes())
+    from drivelint.report.console import Bar
+
+    return Bar()
+
+
+def _console() -> Console:
+    """Return the console on stdout; where it is no terminal, lines are as long as a wide one's."""
+    from rich.console import Console
+
+    return Console(width=None if sys.stdout.isatty() or "COLUMNS" in os.environ else 120, highlight=False)
+
+
+def _print(result: Result, format_: Format, out: Path | None) -> None:
+    """Print the outcome of a check on stdout."""
+    if format_ is Format.json:
+        from drivelint.report import summary
+
+        typer.echo(summary.render(result), nl=False)
+        return
+    from drivelint.report import terminal
+
+    console = _console()
+    console.print(terminal.render(result, None if out is None else str(out), console.width))

@@ -1,0 +1,86 @@
+"""The catalogue for a person (`rules list`, `rules show`) and for a program (`rules list --format json`)."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+from rich import box
+from rich.console import Group
+from rich.table import Table
+from rich.text import Text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rich.console import RenderableType
+
+    from drivelint.catalogue import Rule
+
+
+def listing_json(rules: Iterable[Rule]) -> str:
+    """Return a JSON list: id, pack, kind, subtype, severity, status, clause, requires of every rule."""
+    rows = [
+        {
+            "id": rule.id,
+            "pack": rule.pack,
+            "kind": rule.kind,
+            "subtype": rule.subtype,
+            "severity": rule.severity,
+            "status": rule.status,
+            "clause": rule.clause,
+            "requires": sorted(rule.requires),
+        }
+        for rule in rules
+    ]
+    return json.dumps(rows, indent=2, ensure_ascii=False)
+
+
+def listing(rules: Iterable[Rule]) -> Table:
+    """Return the same as a table, with the rules' titles."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column("rule", overflow="fold")
+    for name in ("kind", "severity", "status"):
+        table.add_column(name, no_wrap=True)
+    table.add_column("clause")
+    table.add_column("what it asks", ratio=1)
+    for rule in rules:
+        kind = f"{rule.kind}, {rule.subtype}" if rule.subtype else rule.kind
+        table.add_row(rule.id, kind, rule.severity, rule.status, Text(rule.clause), Text(rule.title))
+    return table
+
+
+def page(rule: Rule) -> Group:
+    """Return everything about one rule: what it asks, where that is from, its parameters, the file and its SQL."""
+    facts = Table(box=None, show_header=False, pad_edge=False)
+    facts.add_column(style="bold", no_wrap=True)
+    facts.add_column(overflow="fold")
+    requires = ", ".join(sorted(rule.requires)) or "nothing beyond positions"
+    sense = "must hold" if rule.sense == "holds" else f"observed {rule.sense} required, in {rule.unit}"
+    for name, value in (
+        ("clause", f"{rule.clause} ({rule.legal}, {rule.derivation})"),
+        ("question", rule.hypothesis),
+        ("kind", f"{rule.kind}, {rule.subtype}" if rule.subtype else rule.kind),
+        ("window", "" if rule.window_s is None else f"{rule.window_s} s"),
+        ("sense", sense),
+        ("severity", f"{rule.severity}, {rule.status}"),
+        ("requires", requires),
+        ("reads", ", ".join(rule.reads)),
+        ("file", f"{rule.path} (version {rule.version})"),
+    ):
+        if value:
+            facts.add_row(name, Text(value))
+    parts: list[RenderableType] = [Text(f"{rule.id}: {rule.title}", style="bold"), facts]
+    if rule.params:
+        parts.append(_params(rule))
+    parts += [Text(f"\n-- @{name}\n{sql}") for name, sql in rule.sections.items()]
+    return Group(*parts)
+
+
+def _params(rule: Rule) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for name in ("parameter", "default", "unit", "why", "source"):
+        table.add_column(name, overflow="fold")
+    for name, param in rule.params.items():
+        table.add_row(*(Text(cell) for cell in (name, str(param.default), param.unit, param.why, param.source)))
+    return table

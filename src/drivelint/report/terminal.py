@@ -1,0 +1,216 @@
+"""The summary that a person reads in a terminal; plain text where the output is not one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import pyarrow as pa
+import pyarrow.compute as pc
+from rich import box
+from rich.console import Group
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from drivelint.errors import ExitCode
+from drivelint.report import counts
+from drivelint.report.result import outcome
+from drivelint.report.text import NONE, line, number, seconds, times
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from drivelint.report.result import Result
+
+MAX_ROWS: Final = 20
+"""Rows shown per section; the files hold them all."""
+NARROW: Final = 96
+"""Below this width findings are written as lines, and columns that only repeat are left out."""
+
+_OPEN: Final = pa.array(["unknown", "error"])
+_STYLE: Final = {
+    "pass": "green",
+    "fail": "bold red",
+    "unknown": "yellow",
+    "not_applicable": "dim",
+    "error": "bold magenta",
+}
+_HEAD: Final = {"pass": "pass", "fail": "fail", "unknown": "unknown", "not_applicable": "n/a", "error": "error"}
+_SEVERITY: Final = {"critical": "bold red", "major": "red", "minor": "yellow", "error": "red", "warning": "yellow"}
+
+
+def render(result: Result, out: str | None = None, width: int = 120) -> Group:
+    """Return the summary of a run as one rich renderable for a terminal of `width` columns.
+
+    Sections: drives, rules, findings, near misses, what could not be judged, data quality, exit.
+    """
+    measured = _lines if width < NARROW else _measured
+    starts = dict(zip(result.drives["drive_id"].to_pylist(), result.drives["t_start_ns"].to_pylist(), strict=True))
+    near = result.verdicts.filter(result.verdicts["near_miss"])
+    sections: list[RenderableType | None] = [
+        _drives(result, width),
+        _rules(result, width),
+        measured("Findings", result.findings, starts, "red"),
+        measured("Near misses: kept, but only just", near, starts, "yellow"),
+        _open(result),
+        _quality(result),
+        _end(result, out),
+    ]
+    return Group(*(Padding(section, (0, 0, 1, 0)) for section in sections if section is not None))
+
+
+def _drives(result: Result, width: int) -> Table:
+    told = counts.by(result.verdicts, "drive_id")
+    rows = result.drives.to_pylist()
+    table = _table("Drives" if len(rows) <= MAX_ROWS else f"Drives (first {MAX_ROWS} of {len(rows)})")
+    table.add_column("drive", overflow="fold", ratio=1)
+    wide = width >= NARROW
+    for column in ("km", "time") if wide else ():
+        table.add_column(column, justify="right", no_wrap=True)
+    _count_columns(table)
+    for row in rows[:MAX_ROWS]:
+        name = Text(row["drive_id"], style="" if row["status"] == "judged" else "yellow")
+        if row["lossy"]:
+            name.append(" (lossy)", style="yellow")
+        duration = NONE if row["duration_s"] is None else f"{row['duration_s']:.1f} s"
+        extent = [f"{row['km']:.2f}", duration] if wide else []
+        table.add_row(name, *extent, *_count_cells(told.get(row["drive_id"], {})))
+    return table
+
+
+def _rules(result: Result, width: int) -> Table:
+    told = counts.by(result.verdicts, "rule_id")
+    table = _table("Rules")
+    table.add_column("rule", overflow="fold", ratio=1)
+    wide = width >= NARROW
+    if wide:
+        table.add_column("severity")
+    _count_columns(table)
+    for row in result.rules.to_pylist():
+        name = Text(row["rule_id"])
+        if row["status"] != "stable":
+            name.append(f" ({row['status']})", style="dim")
+        severity = [Text(row["severity"], style=_SEVERITY[row["severity"]])] if wide else []
+        table.add_row(name, *severity, *_count_cells(told.get(row["rule_id"], {})))
+    table.add_section()
+    table.add_row(Text("all", style="bold"), *([""] if wide else []), *_count_cells(counts.total(result.verdicts)))
+    return table
+
+
+def _measured(title: str, rows: pa.Table, starts: dict[str, int | None], style: str) -> Table | None:
+    """Return findings or near misses with what was measured; None for none. The drive is named where it changes."""
+    if not rows.num_rows:
+        return None
+    table = _table(_title(title, rows.num_rows), style)
+    table.add_column("time", justify="right", no_wrap=True)
+    table.add_column("rule [profile]", overflow="fold", ratio=2)
+    table.add_column("object", overflow="fold")
+    for column in ("observed", "required", "margin"):
+        table.add_column(column, justify="right", no_wrap=True)
+    egos = len(pc.unique(rows["ego_id"])) > 1
+    previous = None
+    for row in rows.slice(0, MAX_ROWS).to_pylist():
+        where = f"{row['drive_id']}, ego {row['ego_id']}" if egos else row["drive_id"]
+        if where != previous:
+            table.add_row("", Text(where, style="bold"))
+            previous = where
+        profile = "" if row["profile"] is None else f" [{row['profile']}]"
+        table.add_row(
+            seconds(row["t_worst_ns"], starts.get(row["drive_id"])),
+            Text(f"{row['rule_id']}{profile}"),
+            Text(row["object_id"] or ""),
+            *(number(row[name], row["unit"]) for name in ("observed", "required", "margin")),
+        )
+    return table
+
+
+def _lines(title: str, rows: pa.Table, starts: dict[str, int | None], style: str) -> Text | None:
+    """Return the same as lines, for a narrow terminal; None for none."""
+    if not rows.num_rows:
+        return None
+    text = Text(_title(title, rows.num_rows), style=style)
+    for row in rows.slice(0, MAX_ROWS).to_pylist():
+        profile = "" if row["profile"] is None else f" [{row['profile']}]"
+        text.append(f"\n{row['drive_id']}\n  {row['rule_id']}{profile}\n", style="default")
+        text.append(f"  {line(row, starts.get(row['drive_id']))}", style="dim")
+    return text
+
+
+def _open(result: Result) -> Table | None:
+    """Return what could not be judged and why: drives, then unknown and erred verdicts by reason."""
+    lost = result.drives.filter(pc.equal(result.drives["status"], "not_judged")).to_pylist()
+    verdicts = result.verdicts.filter(pc.is_in(result.verdicts["verdict"], value_set=_OPEN))
+    grouped = verdicts.group_by(["verdict", "reason", "rule_id"], use_threads=False).aggregate([([], "count_all")])
+    why: dict[tuple[str, str], list[str]] = {}
+    for row in grouped.to_pylist():
+        why.setdefault((row["verdict"], row["reason"]), []).append(times(row["rule_id"], row["count_all"]))
+    if not lost and not why:
+        return None
+    table = _table(_title("Could not be judged", len(lost) + len(why)), "yellow")
+    table.add_column("what", overflow="fold", ratio=1)
+    table.add_column("why", overflow="fold", ratio=1)
+    for row in lost[:MAX_ROWS]:
+        table.add_row(Text(f"drive {row['drive_id']}", style="yellow"), Text(row["status_reason"] or ""))
+    for (verdict, reason), rules in sorted(why.items(), key=lambda item: (item[0][0], -len(item[1]), item[0][1]))[
+        :MAX_ROWS
+    ]:
+        table.add_row(Text("\n".join(rules), style=_STYLE[verdict]), Text(reason))
+    return table
+
+
+def _quality(result: Result) -> Table | None:
+    """Return the data-quality findings of logs and maps that are more than information, one row each."""
+    seen: dict[tuple[str, str, str], list[str]] = {}
+    for drive in result.drives.to_pylist():
+        for check in drive["quality"]:
+            if check["severity"] != "info":
+                seen.setdefault((check["severity"], check["check_id"], check["message"]), []).append(drive["drive_id"])
+    if not seen:
+        return None
+    table = _table(_title("Data quality", len(seen)), "yellow")
+    table.add_column("check", overflow="fold", ratio=1)
+    table.add_column("what was seen", overflow="fold", ratio=3)
+    for (severity, check_id, message), drives in list(seen.items())[:MAX_ROWS]:
+        where = drives[0] if len(set(drives)) == 1 else f"{len(set(drives))} drives"
+        table.add_row(Text(check_id, style=_SEVERITY[severity]), Text(f"{where}: {message}"))
+    return table
+
+
+def _end(result: Result, out: str | None) -> Text:
+    end = outcome(result)
+    style = (
+        "bold green"
+        if end.code is ExitCode.OK
+        else "bold red"
+        if end.code in {ExitCode.FAILED, ExitCode.USAGE}
+        else "bold yellow"
+    )
+    told = counts.total(result.verdicts)
+    text = Text(", ".join(f"{n} {_HEAD[verdict]}" for verdict, n in told.items()))
+    text.append(f"\nexit {int(end.code)}: {end.why}", style=style)
+    if out:
+        text.append(f"\nresults in {out}", style="dim")
+    return text
+
+
+def _table(title: str, style: str = "bold") -> Table:
+    return Table(
+        title=Text(title, style=style), title_justify="left", box=box.SIMPLE_HEAD, expand=False, pad_edge=False
+    )
+
+
+def _title(title: str, n: int) -> str:
+    return f"{title} ({n})" if n <= MAX_ROWS else f"{title} (first {MAX_ROWS} of {n})"
+
+
+def _count_columns(table: Table) -> None:
+    for verdict in counts.VERDICTS:
+        table.add_column(_HEAD[verdict], justify="right", no_wrap=True)
+
+
+def _count_cells(told: dict[str, Any]) -> list[Text]:
+    """Return one cell per verdict; zeros are a quiet dot, so that what happened stands out."""
+    return [
+        Text(str(told[verdict]), style=_STYLE[verdict]) if told.get(verdict) else Text("·", style="dim")
+        for verdict in counts.VERDICTS
+    ]
