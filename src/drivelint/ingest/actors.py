@@ -58,7 +58,9 @@ def from_states(states: States) -> tuple[Actors, list[Finding]]:
     findings = []
     if varying:
         ids = sorted(varying)
-        message = f"the box of {len(ids)} actors changes size over the log ({listed(ids)}): the median size is used throughout"
+        message = (
+            f"the box of {len(ids)} actors changes size over the log ({listed(ids)}): the median is used throughout"
+        )
         findings.append(
             Finding("size_varies", "warning", message, len(ids), actor_id=ids[0] if len(ids) == 1 else None)
         )
@@ -66,7 +68,7 @@ def from_states(states: States) -> tuple[Actors, list[Finding]]:
 
 
 def from_table(table: pa.Table, states: States) -> Actors:
-    """Read the log's own actor table (first row of each id); actors that only have states are added with all unknown."""
+    """Read the log's own actor table (first row of each id); actors that only have states are added as unknown."""
     rows = {str(row["actor_id"]): row for row in reversed(table.to_pylist()) if row["actor_id"] not in {None, ""}}
     ids = sorted({*rows, *states.ids})
     nothing: dict[str, object] = {}

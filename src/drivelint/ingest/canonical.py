@@ -38,7 +38,10 @@ def has_columns(path: Path) -> bool:
 
 
 def read(path: Path) -> Recording:
-    """Read a canonical folder or file. Errors: `TraceError` for damaged files, missing or ill-typed columns, several drives in one."""
+    """Read a canonical folder or file.
+
+    Errors: `TraceError` for damaged files, missing or ill-typed columns, several drives in one.
+    """
     if not path.is_dir():
         states, egos = _states(path)
         return Recording("canonical-parquet", states, ego_ids=egos, findings=_findings(states, path))
@@ -146,7 +149,7 @@ def _codes(path: Path, column: pa.Array, name: str) -> NDArray[np.int8]:
             raise TraceError(f"{path}: {name} is {word!r}: use one of {', '.join(words)}, or NULL for unknown")
         table.append(words.index(word))
     lookup = np.array([*table, -1], np.int8)
-    return lookup[pc.fill_null(encoded.indices, len(table)).to_numpy(zero_copy_only=False)]
+    return np.asarray(lookup[pc.fill_null(encoded.indices, len(table)).to_numpy(zero_copy_only=False)], np.int8)
 
 
 def _actors(path: Path) -> pa.Table:

@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
 VELOCITY_MISMATCH_MPS = 1.0
 VELOCITY_MISMATCH_SHARE = 0.15
-"""Velocity may differ from the step in position by 1 m/s + 15 %: millimetre rounding at 20 Hz gives 0.03 m/s, hard braking
-within a step (10 m/s2, 0.1 s) 0.5 m/s, while km/h read as m/s, a flipped axis or knots differ by half or more."""
+"""Velocity may differ from the step in position by 1 m/s + 15 %: millimetre rounding at 20 Hz gives 0.03 m/s, hard
+braking within a step (10 m/s2, 0.1 s) 0.5 m/s, while km/h read as m/s or a flipped axis differ by half or more."""
 YAW_MISMATCH_RAD = np.deg2rad(30.0)
 YAW_SPEED_MPS = 3.0
-"""Slip angles of a car stay below about 10 degrees; below 3 m/s reversing and rounding make the direction of motion useless."""
+"""Slip angles of a car stay below about 10 degrees; below 3 m/s reversing and rounding blur the direction of motion."""
 TELEPORT_M = 3.0
 TELEPORT_FACTOR = 2.0
-"""A step is a jump if it is longer than 3 m + twice what the higher of both speeds covers: no acceleration explains that."""
+"""A step is a jump if longer than 3 m + twice what the higher of both speeds covers: no acceleration explains that."""
 FLAWED_SHARE = 0.5
 """Where more than half of the moving samples disagree, the units or the frame are wrong, not the sensor."""
 MOVING_SAMPLES = 20
@@ -38,7 +38,7 @@ LONG_KINDS = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle"))
 
 
 def run(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[Finding]:
-    """Run every check on states in order. `derived`: velocities come from the positions, so comparing them says nothing."""
+    """Run every check on states in order. `derived`: velocities come from the positions, comparing says nothing."""
     findings = [*_not_finite(states), *_not_placed(states), *_sizes(actors), *_gaps(states, step)]
     if len(states) > 1:
         jump = _jumps(states, step)
@@ -132,8 +132,8 @@ def _gaps(states: States, step: Steps) -> list[Finding]:
     if wide.any():
         n, first = int(wide.sum()), int(times[:-1][wide][0])
         message = (
-            f"{n} gaps in the log longer than {MAX_GAP_PERIODS} periods of {step.period_ns / 1e9:g} s, the longest {dt.max() / 1e9:g} s, "
-            f"the first from {first / 1e9:g} s: nothing is judged across them"
+            f"{n} gaps in the log longer than {MAX_GAP_PERIODS} periods of {step.period_ns / 1e9:g} s, "
+            f"the longest {dt.max() / 1e9:g} s, the first from {first / 1e9:g} s: nothing is judged across them"
         )
         findings.append(Finding("gap", "warning", message, n, first))
     hole = np.zeros(len(states), np.bool_)
@@ -181,8 +181,8 @@ def _velocity(states: States, step: Steps, jump: NDArray[np.bool_]) -> list[Find
         with np.errstate(invalid="ignore", divide="ignore"):
             ratio = float(np.nanmedian((told / moved)[moving]))
         text = (
-            f"velocity disagrees with the steps in position in {100.0 * n / max(n, n_moving):.0f} % of the moving samples "
-            f"(speed is {ratio:.3g} times the step): {_cause(ratio)}"
+            f"velocity disagrees with the steps in position in {100.0 * n / max(n, n_moving):.0f} % "
+            f"of the moving samples (speed is {ratio:.3g} times the step): {_cause(ratio)}"
         )
         return _report(states, wrong, "velocity_mismatch", "error", text.replace("{", "{{").replace("}", "}}"))
     return _report(
@@ -225,8 +225,8 @@ def _yaw(states: States, actors: Actors) -> list[Finding]:
     if n_moving >= MOVING_SAMPLES and n > FLAWED_SHARE * n_moving:
         degrees = float(np.rad2deg(np.median(off[wrong])))
         text = (
-            f"heading is off the direction of motion in {100.0 * n / n_moving:.0f} % of the moving samples (by {degrees:.0f} degrees): "
-            "the unit, sign or zero of the heading is wrong"
+            f"heading is off the direction of motion in {100.0 * n / n_moving:.0f} % of the moving samples "
+            f"(by {degrees:.0f} degrees): the unit, sign or zero of the heading is wrong"
         )
         return _report(states, wrong, "yaw_mismatch", "error", text)
     return _report(

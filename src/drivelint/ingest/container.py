@@ -1,7 +1,7 @@
 """The MCAP container, read from front to back with every CRC checked and every length bounded before it is believed.
 
-The index at the end of the file is not used: what counts is the data. Each record's byte offset is known, so that damage
-is named by its place.
+The index at the end of the file is not used: what counts is the data. Each record's byte offset is known, so that
+damage is named by its place.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import mmap
 import struct
 import zlib
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
@@ -22,12 +22,14 @@ from drivelint.errors import TraceError
 from drivelint.ingest.trace import Finding
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
+
+T = TypeVar("T")
 
 MAGIC = b"\x89MCAP0\r\n"
 MAX_CHUNK_BYTES = 512 * 1024 * 1024
-"""A chunk that says it grows beyond this is refused before anything is allocated: recorders write chunks of a few MB."""
+"""A chunk that says it grows beyond this is refused before anything is allocated: recorders write a few MB each."""
 _RECORD = struct.Struct("<BQ")
 _MESSAGE = struct.Struct("<HIQQ")
 _CHUNK = struct.Struct("<QQQII")
@@ -35,7 +37,7 @@ _CHUNK = struct.Struct("<QQQII")
 
 @dataclass(frozen=True)
 class Packet:
-    """One message: its channel, time in the log and bytes. `offset` is that of its record, or of the chunk around it."""
+    """One message: its channel, time in the log and bytes; `offset` is its record's, or that of the chunk around it."""
 
     channel: Channel
     log_time_ns: int
@@ -55,7 +57,7 @@ class Container:
     _unprotected: int = 0
 
     def packets(self) -> Iterator[Packet]:
-        """Yield every message in the order of the file. Errors: `TraceError` naming what is damaged and at which byte."""
+        """Yield every message in the order of the file. Errors: `TraceError` naming what is damaged, at which byte."""
         with self.path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
             view = memoryview(data)
             try:
@@ -65,7 +67,7 @@ class Container:
 
     def _damaged(self, offset: int, what: str) -> TraceError:
         return TraceError(
-            f"{self.path}: {what} at byte {offset}: the log is damaged or cut off: copy it again or repair it (mcap recover)"
+            f"{self.path}: {what} at byte {offset}: the log is damaged or cut off: copy it again, or repair it"
         )
 
     def _file(self, view: memoryview) -> Iterator[Packet]:
@@ -79,7 +81,7 @@ class Container:
             elif opcode == Opcode.DATA_END:
                 self._check_data(view, at, start)
             elif opcode == Opcode.STATISTICS:
-                statistics = self._parsed(Statistics, view[start:end], at)
+                statistics = self._parsed(Statistics.read, view[start:end], at)
             elif opcode == Opcode.FOOTER:
                 self._check_summary(view, at, start, end)
                 break
@@ -88,7 +90,9 @@ class Container:
             at = end
         self._check_end(view, end)
         if statistics is not None and statistics.message_count != self._messages:
-            message = f"the index counts {statistics.message_count} messages, the file holds {self._messages}: the file is trusted"
+            message = (
+                f"the index counts {statistics.message_count} messages, the file has {self._messages}: all are read"
+            )
             self.findings.append(Finding("index_mismatch", "warning", message))
         if self._unprotected:
             message = f"{self._unprotected} chunks carry no CRC: flipped bits in them cannot be seen"
@@ -106,11 +110,11 @@ class Container:
             raise self._damaged(at, f"a {_name(opcode)} record of {length} bytes, of which {end - start} are there,")
         return opcode, start, start + length
 
-    def _parsed(self, kind: type, body: memoryview, at: int) -> object:
+    def _parsed(self, read: Callable[[ReadDataStream], T], body: memoryview, at: int) -> T:
         try:
-            return kind.read(ReadDataStream(io.BytesIO(body)))  # type: ignore[attr-defined]
-        except (struct.error, McapError, UnicodeDecodeError, ValueError) as error:
-            raise self._damaged(at, f"a {kind.__name__} record that cannot be read ({error})") from error
+            return read(ReadDataStream(io.BytesIO(body)))
+        except (struct.error, McapError, ValueError) as error:
+            raise self._damaged(at, f"a record that cannot be read ({error})") from error
 
     def _content(self, opcode: int, body: memoryview, at: int) -> Iterator[Packet]:
         """Take a schema, a channel or a message; other records are of no use here."""
@@ -123,12 +127,10 @@ class Container:
             self._messages += 1
             yield Packet(self.channels[number], log_time, bytes(body[_MESSAGE.size :]), at)
         elif opcode == Opcode.SCHEMA:
-            schema = self._parsed(Schema, body, at)
-            assert isinstance(schema, Schema)
+            schema = self._parsed(Schema.read, body, at)
             self.schemas[schema.id] = schema
         elif opcode == Opcode.CHANNEL:
-            channel = self._parsed(Channel, body, at)
-            assert isinstance(channel, Channel)
+            channel = self._parsed(Channel.read, body, at)
             if channel.schema_id and channel.schema_id not in self.schemas:
                 raise self._damaged(at, f"channel {channel.topic!r} with a schema that was never announced,")
             self.channels[channel.id] = channel
@@ -187,7 +189,7 @@ class Container:
             except zstandard.ZstdError as error:
                 raise self._damaged(at, f"a chunk that cannot be unpacked ({error})") from error
         elif compression == "lz4":
-            import lz4.frame
+            import lz4.frame  # type: ignore[import-untyped]
 
             try:
                 records = lz4.frame.LZ4FrameDecompressor().decompress(packed, max_length=size + 1)
@@ -195,7 +197,7 @@ class Container:
                 raise self._damaged(at, f"a chunk that cannot be unpacked ({error})") from error
         else:
             raise TraceError(
-                f"{self.path}: a chunk at byte {at} is compressed by {compression!r}, which MCAP does not know: use zstd, lz4 or none"
+                f"{self.path}: a chunk at byte {at} is compressed by {compression!r}: zstd, lz4 or none is needed"
             )
         if len(records) != size:
             raise self._damaged(at, f"a chunk that says it unpacks to {size} bytes and unpacks to {len(records)}")
@@ -208,8 +210,7 @@ class Container:
 
     def _check_summary(self, view: memoryview, at: int, start: int, end: int) -> None:
         """Check the index's CRC: the data were read without it, so damage there loses nothing."""
-        footer = self._parsed(Footer, view[start:end], at)
-        assert isinstance(footer, Footer)
+        footer = self._parsed(Footer.read, view[start:end], at)
         begin = footer.summary_start or at
         if footer.summary_crc and zlib.crc32(view[min(begin, at) : end - 4]) != footer.summary_crc:
             message = f"the index has a wrong CRC (footer at byte {at}): it is not used, the data are complete"
@@ -224,7 +225,7 @@ class Container:
             return
         if bytes(tail[len(MAGIC) : 2 * len(MAGIC)]) == MAGIC:
             raise TraceError(
-                f"{self.path}: a second MCAP file begins at byte {end + len(MAGIC)}: split the two and give each by itself"
+                f"{self.path}: a second MCAP file begins at byte {end + len(MAGIC)}: split the two, give each by itself"
             )
         message = f"{extra} bytes follow the end of the log at byte {end + len(MAGIC)}: they are not part of it"
         self.findings.append(Finding("trailing_bytes", "warning", message))

@@ -62,7 +62,7 @@ def parse(path: Path, name: str, descriptor_set: bytes) -> Types:
 
 
 def pruned(types: Types, name: str, tree: Tree) -> Descriptor:
-    """Return message `name` with only those fields of `tree` that it has, numbers and types kept, enumerations as int32."""
+    """Return message `name` with only those fields of `tree` that it has: same numbers and types, enums as int32."""
     file = descriptor_pb2.FileDescriptorProto(name=f"{PACKAGE}.proto", package=PACKAGE, syntax="proto2")
     _add(file, types, f".{name}", tree, "Root")
     pool = descriptor_pool.DescriptorPool()

@@ -19,8 +19,8 @@ EVERY = "all"
 def choose(path: Path, actors: Actors, asked: str | None, named: list[str]) -> tuple[list[str], list[Finding]]:
     """Return the ids of the egos and what is to be said about the choice.
 
-    `asked` is the user's id or `all` (every motor vehicle, except in a log whose actor is itself called `all`); `named` are
-    the log's or mapping's. Errors: `TraceError` when there is no ego or no such actor.
+    `asked` is the user's id or `all` (every motor vehicle, except in a log whose actor is itself called `all`);
+    `named` are the log's or mapping's. Errors: `TraceError` when there is no ego or no such actor.
     """
     ids = set(actors.ids)
     if asked == EVERY and EVERY not in ids:

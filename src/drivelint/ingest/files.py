@@ -38,8 +38,8 @@ def is_canonical_folder(path: Path) -> bool:
 def expand(traces: Sequence[str]) -> list[Path]:
     """Return the traces that files, globs and folders name, sorted, each file once.
 
-    A path that exists is always taken literally, `[`, `*` and `?` in its name included. A folder with `actor_state.parquet` is one
-    drive; any other is searched, with its subfolders, for MCAP, Parquet, CSV and OSI files.
+    A path that exists is always taken literally, `[`, `*` and `?` in its name included. A folder with
+    `actor_state.parquet` is one drive; any other is searched, with subfolders, for MCAP, Parquet, CSV and OSI files.
     Errors: `UsageError` for a URI or an empty name, `TraceError` for something that matches nothing.
     """
     found: dict[Path, Path] = {}

@@ -15,6 +15,7 @@ from drivelint.ingest.order import in_order, listed, steps, without_duplicates, 
 from drivelint.ingest.trace import BRAKE_LIGHTS, EPOCH_NS, INDICATORS, NUMBERS, SIZES, Finding, Trace
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -26,14 +27,19 @@ if TYPE_CHECKING:
 _S, _F, _I, _B = pa.string(), pa.float64(), pa.int64(), pa.bool_()
 SCHEMAS: dict[str, dict[str, pa.DataType]] = {
     "data_log": {
-        "drive_id": _S, "file_name": _S, "sha256": _S, "format": _S, "environment_id": _S, "t_start_ns": _I, "t_end_ns": _I,
-        "utc_start_ns": _I, "n_states": _I, "sensor_range_m": _F, "has_indicator": _B, "has_brake_light": _B, "has_acceleration": _B,
+        "drive_id": _S, "file_name": _S, "sha256": _S, "format": _S, "environment_id": _S,
+        "t_start_ns": _I, "t_end_ns": _I, "utc_start_ns": _I, "n_states": _I, "sensor_range_m": _F,
+        "has_indicator": _B, "has_brake_light": _B, "has_acceleration": _B,
     },
-    "actor": {"drive_id": _S, "actor_id": _S, "actor_class": _S, "length_m": _F, "width_m": _F, "height_m": _F, "is_ego": _B},
-    "actor_state": {"drive_id": _S, "actor_id": _S, "t_ns": _I, **dict.fromkeys(NUMBERS, _F), "indicator": _S, "brake_light": _S},
+    "actor": {"drive_id": _S, "actor_id": _S, "actor_class": _S, **dict.fromkeys(SIZES, _F), "is_ego": _B},
+    "actor_state": {
+        "drive_id": _S, "actor_id": _S, "t_ns": _I, **dict.fromkeys(NUMBERS, _F), "indicator": _S, "brake_light": _S,
+    },
     "signal_state": {"drive_id": _S, "signal_id": _S, "t_ns": _I, "state": _S},
     "declared_event": {"drive_id": _S, "actor_id": _S, "t_ns": _I, "event": _S, "value": _S},
-    "quality": {"drive_id": _S, "check_id": _S, "severity": _S, "actor_id": _S, "n": _I, "t_first_ns": _I, "message": _S},
+    "quality": {
+        "drive_id": _S, "check_id": _S, "severity": _S, "actor_id": _S, "n": _I, "t_first_ns": _I, "message": _S,
+    },
 }  # fmt: skip
 """Column names and types of the tables of `schemas/model.sql`, in its order."""
 _KEYS = {"signal_state": ("signal_id", "t_ns", "state"), "declared_event": ("t_ns", "actor_id", "event", "value")}
@@ -90,7 +96,9 @@ def _lights(states: States, egos: list[str], is_ego: NDArray[np.bool_]) -> list[
         n, of = int(unknown.sum()), int(is_ego.sum())
         if n == 0:
             continue
-        message = f"the {what} of the ego ({listed(egos)}) is unknown in {n} of its {of} states: rules that need it are unknown there"
+        message = (
+            f"the {what} of the ego ({listed(egos)}) is unknown in {n} of {of} states: rules that need it are unknown"
+        )
         only = egos[0] if len(egos) == 1 else None
         findings.append(Finding(f"no_{column}", "info", message, n, int(states.t_ns[unknown].min()), only))
     return findings
@@ -167,7 +175,7 @@ def _quality(drive: str, findings: list[Finding]) -> pa.Table:
     return _table("quality", columns)
 
 
-def _table(name: str, columns: dict[str, object]) -> pa.Table:
+def _table(name: str, columns: Mapping[str, object]) -> pa.Table:
     schema = pa.schema([pa.field(column, kind) for column, kind in SCHEMAS[name].items()])
     return pa.table({column: columns[column] for column in SCHEMAS[name]}, schema=schema)
 

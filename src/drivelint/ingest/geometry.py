@@ -14,16 +14,18 @@ if TYPE_CHECKING:
 
     from drivelint.ingest.mapping import Mapping
 
-_SOURCE = {"x": "x_m", "y": "y_m", "z": "z_m", "yaw": "yaw_rad", "vx": "vx_mps", "vy": "vy_mps", "ax": "ax_mps2", "ay": "ay_mps2",
-           "length": "length_m", "width": "width_m", "height": "height_m"}  # fmt: skip
+_SOURCE = {
+    "x": "x_m", "y": "y_m", "z": "z_m", "yaw": "yaw_rad", "vx": "vx_mps", "vy": "vy_mps", "ax": "ax_mps2", "ay": "ay_mps2",
+    "length": "length_m", "width": "width_m", "height": "height_m",
+}  # fmt: skip
 
 
 def to_map_frame(states: States, mapping: Mapping) -> None:
-    """Replace the mapping's quantities (SI, the log's frame and reference point) by the columns of `NUMBERS` and `SIZES`.
+    """Replace the mapping's quantities (SI, log's frame and reference point) by the columns of `NUMBERS` and `SIZES`.
 
-    Order: axes and heading are turned, velocities given along the vehicle brought into the world frame, the reference point moved to
-    the box centre. The centre's velocity is that of the reference point plus yaw rate times lever; the yaw rate is the
-    log's or, without one, the heading's derivative. Accelerations are kept as recorded.
+    Order: axes and heading are turned, velocities given along the vehicle brought into the world frame, the reference
+    point moved to the box centre. The centre's velocity is that of the reference point plus yaw rate times lever; the
+    yaw rate is the log's or, without one, the heading's derivative. Accelerations are kept as recorded.
     """
     log = states.numbers
     n = len(states)

@@ -1,8 +1,8 @@
 """Mapping files: how the columns of a table become actor states. TOML, checked key by key, shipped ones found by name.
 
 A field is a column name (`x = "pos_x"`), a constant in SI (`length = 4.8`) or a table
-`{ column = "v", unit = "km/h" }` / `{ value = "7" }`. `{k}` in a column name stands for the number of a column group: such a
-table is wide, one group per actor. Signs and zeros are turned first, then the reference point is moved to the box centre.
+`{ column = "v", unit = "km/h" }` / `{ value = "7" }`. `{k}` in a column name stands for the number of a column group:
+such a table is wide, one group per actor.
 """
 
 from __future__ import annotations
@@ -11,12 +11,15 @@ import re
 import tomllib
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import msgspec
 
 from drivelint.errors import UsageError
 from drivelint.ingest.trace import BRAKE_LIGHTS, CLASSES, INDICATORS
+
+if TYPE_CHECKING:
+    from collections.abc import Set as AbstractSet
 
 SHIPPED = Path(__file__).parent / "mappings"
 
@@ -60,10 +63,11 @@ class Time(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class Frame(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """The log's frame: `flip_y` turns y, vy and ay, `flip_yaw` the heading's sign; `yaw_zero` is where heading 0 points;
+    """The log's frame and how it lies to the map's.
 
-    `velocity` says whether velocity and acceleration are given in the world frame or along the vehicle's own axes;
-    `map_offset_m` is added to the map's coordinates to bring it to the log.
+    `flip_y` turns y, vy and ay, `flip_yaw` the heading's sign; `yaw_zero` is where heading 0 points; `velocity` says
+    whether velocity and acceleration are given in the world frame or along the vehicle's own axes; `map_offset_m` is
+    added to the map's coordinates to bring it to the log.
     """
 
     flip_y: bool = False
@@ -74,7 +78,7 @@ class Frame(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class Reference(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """What the position is of, and where the box centre lies from there in the vehicle's axes (forward, left, up; metres)."""
+    """What the position is of, and where the box centre lies from there: forward, left and up of the vehicle."""
 
     point: Literal["centre", "rear_axle", "front_bumper"] = "centre"
     forward: FieldSpec | None = None
@@ -83,7 +87,7 @@ class Reference(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class Columns(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """The quantities of an actor state. Velocity is `vx`, `vy`, or `speed` along the heading, or absent (then derived)."""
+    """The quantities of an actor state. Velocity: `vx` and `vy`, `speed` along the heading, or none (then derived)."""
 
     actor_id: FieldSpec
     x: FieldSpec
@@ -126,7 +130,7 @@ class Words(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class Ego(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """Ids that are the ego, the first one present counts; `otherwise = "first"` takes the first motor vehicle's column group."""
+    """Ids of the ego, the first present counts; `otherwise = "first"` takes the first column group with a vehicle."""
 
     ids: list[str] = []
     otherwise: Literal["first"] | None = None
@@ -148,9 +152,9 @@ class Mapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 QUANTITY = {
-    "x": "length", "y": "length", "z": "length", "yaw": "angle", "vx": "speed", "vy": "speed", "speed": "speed", "ax": "acceleration",
-    "ay": "acceleration", "yaw_rate": "rate", "length": "length", "width": "length", "height": "length",
-    "forward": "length", "left": "length", "up": "length",
+    "x": "length", "y": "length", "z": "length", "yaw": "angle", "vx": "speed", "vy": "speed", "speed": "speed",
+    "ax": "acceleration", "ay": "acceleration", "yaw_rate": "rate",
+    "length": "length", "width": "length", "height": "length", "forward": "length", "left": "length", "up": "length",
 }  # fmt: skip
 """Field -> quantity, which decides its units."""
 
@@ -249,39 +253,56 @@ def _struct_of(kind: Any) -> type[msgspec.Struct] | None:
 
 def _validate(path: Path, mapping: Mapping) -> None:
     """Refuse what the types let through. Errors: `UsageError`."""
-
-    def refuse(what: str) -> None:
-        raise UsageError(f"mapping {path}: {what}")
-
     if len(mapping.table.separator) != 1 or mapping.table.skip_rows < 0:
-        refuse("table.separator must be one character and table.skip_rows not negative")
-    given = fields(mapping)
-    for name, spec in given.items():
-        if (spec.column is None) == (spec.value is None):
-            refuse(f"{name}: give either a column or a value")
-        units = UNITS.get(QUANTITY.get(name, ""), {})
-        if spec.unit is not None and spec.unit not in units:
-            refuse(f"{name}: unknown unit {spec.unit!r}: use one of {', '.join(units) or 'none'}")
-        if name in QUANTITY and isinstance(spec.value, str):
-            refuse(f"{name}: the value {spec.value!r} is not a number")
-    if ("vx" in given) != ("vy" in given) or ("ax" in given) != ("ay" in given):
-        refuse("vx and vy, and ax and ay, go in pairs")
-    if "vx" in given and "speed" in given:
-        refuse("give vx and vy or speed, not both")
-    if "yaw" not in given and (
-        "speed" in given or mapping.frame.velocity == "vehicle" or mapping.reference.point != "centre"
-    ):
-        refuse("speed, velocities in the vehicle's frame and a reference point that is not the centre need yaw")
-    if mapping.reference.point == "rear_axle" and "forward" not in given:
-        refuse("reference.point = 'rear_axle' needs reference.forward (from the axle to the box centre)")
-    if mapping.reference.point == "front_bumper" and ("length" not in given or "forward" in given):
-        refuse("reference.point = 'front_bumper' needs columns.length, and no reference.forward")
-    if mapping.reference.point == "centre" and {"forward", "left", "up"} & given.keys():
-        refuse("reference.forward, left and up need reference.point = 'rear_axle'")
-    if mapping.ego.otherwise and not any(GROUP in name for name in needed(mapping)):
-        refuse("ego.otherwise = 'first' needs column groups ({k}): rows of a long table have no first actor")
-    for name, (spec, allowed) in words(mapping).items():
-        _validate_words(path, name, spec, allowed)
+        raise UsageError(f"mapping {path}: table.separator must be one character and table.skip_rows not negative")
+    for name, spec in fields(mapping).items():
+        _validate_field(path, name, spec)
+    for is_wrong, what in _contradictions(mapping, fields(mapping).keys()):
+        if is_wrong:
+            raise UsageError(f"mapping {path}: {what}")
+    for name, (choice, allowed) in words(mapping).items():
+        _validate_words(path, name, choice, allowed)
+
+
+def _validate_field(path: Path, name: str, spec: Field) -> None:
+    units = UNITS.get(QUANTITY.get(name, ""), {})
+    if (spec.column is None) == (spec.value is None):
+        raise UsageError(f"mapping {path}: {name}: give either a column or a value")
+    if spec.unit is not None and spec.unit not in units:
+        raise UsageError(f"mapping {path}: {name}: unknown unit {spec.unit!r}: use {', '.join(units) or 'none'}")
+    if name in QUANTITY and isinstance(spec.value, str):
+        raise UsageError(f"mapping {path}: {name}: the value {spec.value!r} is not a number")
+
+
+def _contradictions(mapping: Mapping, given: AbstractSet[str]) -> list[tuple[bool, str]]:
+    """List what cannot go together, each with whether it is so here."""
+    point = mapping.reference.point
+    heading = "speed" in given or mapping.frame.velocity == "vehicle" or point != "centre"
+    grouped = any(GROUP in name for name in needed(mapping))
+    return [
+        (
+            ("vx" in given) != ("vy" in given) or ("ax" in given) != ("ay" in given),
+            "vx and vy, and ax and ay, go in pairs",
+        ),
+        ("vx" in given and "speed" in given, "give vx and vy or speed, not both"),
+        (
+            heading and "yaw" not in given,
+            "speed, frame.velocity = 'vehicle' and a reference point other than the centre need columns.yaw",
+        ),
+        (point == "rear_axle" and "forward" not in given, "reference.point = 'rear_axle' needs reference.forward"),
+        (
+            point == "front_bumper" and ("length" not in given or "forward" in given),
+            "reference.point = 'front_bumper' needs columns.length and takes no reference.forward",
+        ),
+        (
+            point == "centre" and not given.isdisjoint({"forward", "left", "up"}),
+            "reference.forward, left and up need reference.point = 'rear_axle'",
+        ),
+        (
+            mapping.ego.otherwise is not None and not grouped,
+            "ego.otherwise = 'first' needs column groups ({k}): the rows of a long table have no first actor",
+        ),
+    ]
 
 
 def _validate_words(path: Path, name: str, spec: Words, allowed: tuple[str, ...]) -> None:

@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from drivelint.ingest.trace import States
 
 MOVED_M = 1.0
-"""An actor whose positions spread by more than this moves; below it a parked car's position noise would become a speed."""
+"""An actor whose positions spread by more moves; below it a parked car's position noise would become a speed."""
 
 
 def complete_motion(states: States, step: Steps) -> list[Finding]:
-    """Fill velocities that are absent, or zero although the actor moves, and drop accelerations that were never measured.
+    """Fill velocities that are absent, or zero although the actor moves; drop accelerations that were never measured.
 
     `states` in order, changed in place: every column of `NUMBERS` exists afterwards.
     """

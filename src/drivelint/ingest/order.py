@@ -54,7 +54,9 @@ def without_duplicates(states: States) -> tuple[States, list[Finding]]:
     if n == 0:
         return states, []
     ids = [states.ids[i] for i in np.unique(states.actor[repeated])]
-    message = f"{n} states repeat an actor at the same time ({listed(ids)}): the first of each is kept, the others are not judged"
+    message = (
+        f"{n} states repeat an actor at the same time ({listed(ids)}): the first is kept, the others are not judged"
+    )
     finding = Finding(
         "duplicate_state", "error", message, n, int(states.t_ns[repeated].min()), ids[0] if len(ids) == 1 else None
     )
@@ -84,7 +86,7 @@ def steps(states: States) -> Steps:
 
 
 def rate(values: NDArray[np.float64], step: Steps) -> NDArray[np.float64]:
-    """Return the time derivative: central where both neighbours are continuous, else one-sided, NaN where there is neither."""
+    """Return the time derivative: central where both neighbours are continuous, else one-sided, else NaN."""
     n = len(values)
     rise, span = np.zeros(n), np.zeros(n)
     with np.errstate(invalid="ignore"):
@@ -93,7 +95,9 @@ def rate(values: NDArray[np.float64], step: Steps) -> NDArray[np.float64]:
     for side in (slice(0, n - 1), slice(1, n)):
         rise[side] += np.where(usable, difference, 0.0)
         span[side] += np.where(usable, step.dt_s, 0.0)
-    return np.divide(rise, span, out=np.full(n, np.nan), where=span > 0)
+    result = np.full(n, np.nan)
+    np.divide(rise, span, out=result, where=span > 0)
+    return result
 
 
 def wrapped(angle: NDArray[np.float64]) -> NDArray[np.float64]:

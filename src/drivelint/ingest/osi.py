@@ -11,9 +11,9 @@ import ptars
 from drivelint.errors import TraceError
 from drivelint.ingest import descriptors
 from drivelint.ingest.container import Container
+from drivelint.ingest.order import listed
 from drivelint.ingest.osi_decode import GROUND_TRUTH, SENSOR_VIEW, TREES, Decoder, malformed
 from drivelint.ingest.osi_words import Bulbs, signal_states
-from drivelint.ingest.order import listed
 from drivelint.ingest.trace import EPOCH_NS, Finding, Recording, States
 
 if TYPE_CHECKING:
@@ -138,7 +138,8 @@ def _nothing(container: Container) -> str:
     for channel in container.channels.values():
         schema = container.schemas.get(channel.schema_id)
         kinds.add(f"{schema.name if schema else 'no schema'} in {channel.message_encoding or 'no encoding'}")
-    return f"it has {listed(sorted(kinds)) if kinds else 'no channel'}, and {GROUND_TRUTH} or {SENSOR_VIEW} in protobuf is needed"
+    needed = f"{GROUND_TRUTH} or {SENSOR_VIEW} in protobuf is needed"
+    return f"it has {listed(sorted(kinds)) if kinds else 'no channel'}; {needed}"
 
 
 def _joined(batches: list[Frames], log_ns: NDArray[np.uint64]) -> Recording:
@@ -183,7 +184,7 @@ def _clock(batches: list[Frames], log_ns: NDArray[np.int64], findings: list[Find
     back = np.diff(stamps) < 0
     if back.any():
         n, first = int(back.sum()), int(stamps[1:][back][0])
-        message = f"the clock goes backwards {n} times, first to {first / 1e9:g} s: states are put in the order of their times"
+        message = f"the clock goes backwards {n} times, first to {first / 1e9:g} s: states are sorted by their times"
         findings.append(Finding("clock_jump", "warning", message, n, first))
     return stamps
 
@@ -196,7 +197,8 @@ def _host(hosts: list[int | None], t_ns: NDArray[np.int64], findings: list[Findi
     first = min(said, key=lambda i: (t_ns[i], i))
     distinct = {host for host in hosts if host is not None}
     if len(distinct) > 1:
-        message = f"the log names {len(distinct)} host vehicles ({listed(sorted(map(str, distinct)))}): the first, {hosts[first]}, is the ego"
+        names = listed(sorted(map(str, distinct)))
+        message = f"the log names {len(distinct)} host vehicles ({names}): the first, {hosts[first]}, is the ego"
         findings.append(Finding("ego_count", "warning", message, len(distinct), actor_id=str(hosts[first])))
     return [str(hosts[first])]
 

@@ -164,7 +164,10 @@ def _inner(fields: pa.Schema | pa.DataType | None, name: str) -> pa.DataType | N
 
 
 def _coordinate(vector: pa.Array, name: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Return a coordinate and where it is not finite: 0 where a present vector leaves it out (writers drop zeros), NaN where there is none."""
+    """Return a coordinate and where it is not finite.
+
+    It is 0 where a present vector leaves it out (writers drop zeros) and NaN where there is no vector.
+    """
     values = pc.fill_null(child(vector, name).cast(pa.float64()), 0.0).to_numpy(zero_copy_only=False)
     odd = ~np.isfinite(values)
     if odd.any():

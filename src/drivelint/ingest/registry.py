@@ -91,7 +91,7 @@ READERS: tuple[Reader, ...] = (CanonicalReader(), McapReader(), TableReader())
 def read_trace(path: Path, options: IngestOptions) -> Trace:
     """Read one drive into the tables of `schemas/model.sql`, checked, with its egos chosen.
 
-    Errors: `TraceError` for a log that is missing, unreadable or holds nothing to judge; `UsageError` for a bad mapping.
+    Errors: `TraceError` for a log that is missing, unreadable or has nothing to judge; `UsageError` for a bad mapping.
     """
     probe = _probe(path, options)
     identity = identify(path)
@@ -125,6 +125,6 @@ def _probe(path: Path, options: IngestOptions) -> Probe:
     magic = {".mcap": b"\x89MCAP", ".parquet": b"PAR1"}.get(suffix)
     if magic is not None and not head.startswith(magic):
         raise TraceError(
-            f"{path}: not {suffix[1:]}: byte 0 should begin {magic!r} but the file begins with {head[:32]!r}: copy it again"
+            f"{path}: not {suffix[1:]}: it should begin {magic!r} and begins {head[:32]!r} at byte 0: copy it again"
         )
     return Probe(path, head, options)

@@ -21,11 +21,10 @@ if TYPE_CHECKING:
     from drivelint.ingest.mapping import Table
 
 MAX_NS = 2.0**63
-FLOAT_EXACT = 2.0**53
 
 
 class Sheet(Protocol):
-    """Columns by name. Values are NaN (or None) where the cell is empty; `bad` marks cells that are not what was asked for."""
+    """Columns by name. An empty cell gives NaN or null; `bad` marks cells that are not what was asked for."""
 
     names: list[str]
     """Column names, without padding."""
@@ -59,7 +58,7 @@ class Sheet(Protocol):
 
 
 class CsvSheet:
-    """A CSV file of UTF-8 text. Every cell is read as text first, so that nothing is guessed and nothing dropped unseen."""
+    """A CSV file of UTF-8 text. Every cell is read as text first: nothing is guessed, nothing dropped unseen."""
 
     def __init__(self, path: Path, layout: Table) -> None:
         """Read the header. Errors: `TraceError` where there is none."""
@@ -141,11 +140,11 @@ class CsvSheet:
 
     def time(self, name: str, unit: str) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
         """Return nanoseconds, whole ones exactly, and which cells are not times."""
-        values, bad = self.number(name)
-        if TIME_UNITS[unit] == 1:
-            exact = self._columns[name].cast(pl.Int64, strict=False)
-            return _nanoseconds(values, 1, bad, exact.fill_null(0).to_numpy(), exact.is_not_null().to_numpy())
-        return _nanoseconds(values, TIME_UNITS[unit], bad)
+        t_ns, bad = _nanoseconds(*self.number(name), factor=TIME_UNITS[unit])
+        if TIME_UNITS[unit] > 1:
+            return t_ns, bad
+        exact = self._columns[name].cast(pl.Int64, strict=False)  # beyond 2^53 a double is not exact to the nanosecond
+        return np.where(exact.is_not_null().to_numpy(), exact.fill_null(0).to_numpy(), t_ns), bad
 
     def where(self, rows: NDArray[np.intp]) -> str:
         """Return the line numbers of the first of these rows."""
@@ -224,13 +223,12 @@ class ParquetSheet:
             column, unit = column.cast(pa.timestamp("ns", column.type.tz)).cast(pa.int64()), "ns"
         elif pa.types.is_duration(column.type):
             column, unit = column.cast(pa.duration("ns")).cast(pa.int64()), "ns"
-        values = column.cast(pa.float64(), safe=False) if pa.types.is_integer(column.type) else None
-        if values is None:
-            return _nanoseconds(self.number(name)[0], TIME_UNITS[unit], np.zeros(len(column), np.bool_))
-        exact = pc.fill_null(column, 0).cast(pa.int64()).to_numpy(zero_copy_only=False)
-        known = column.is_valid().to_numpy(zero_copy_only=False)
-        floats = pc.fill_null(values, float("nan")).to_numpy(zero_copy_only=False)
-        return _nanoseconds(floats, TIME_UNITS[unit], ~known, exact * TIME_UNITS[unit], known)
+        if not pa.types.is_integer(column.type):
+            return _nanoseconds(*self.number(name), factor=TIME_UNITS[unit])
+        whole = pc.fill_null(column.cast(pa.int64(), safe=False), 0).to_numpy(zero_copy_only=False)
+        factor = TIME_UNITS[unit]
+        beyond = np.abs(whole) > int(MAX_NS) // factor
+        return np.where(beyond, 0, whole) * factor, beyond | column.is_null().to_numpy(zero_copy_only=False)
 
     def where(self, rows: NDArray[np.intp]) -> str:
         """Return the numbers of the first of these rows."""
@@ -245,15 +243,10 @@ def _trimmed(column: pa.Array | pa.ChunkedArray, nothing: list[str]) -> pl.Serie
 
 
 def _nanoseconds(
-    values: NDArray[np.float64],
-    factor: int,
-    bad: NDArray[np.bool_],
-    exact: NDArray[np.int64] | None = None,
-    is_exact: NDArray[np.bool_] | None = None,
+    values: NDArray[np.float64], bad: NDArray[np.bool_], *, factor: int
 ) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-    """Scale to nanoseconds and round (8.3 s is 8,300,000,000 ns); `exact` integers win over `values` where known."""
+    """Scale to nanoseconds and round: 8.3 s is 8,300,000,000 ns."""
     with np.errstate(invalid="ignore", over="ignore"):
         scaled = np.rint(values * float(factor))
         lost = bad | ~(np.abs(scaled) < MAX_NS)
-    whole = np.where(lost, 0.0, scaled).astype(np.int64)
-    return (whole if exact is None else np.where(is_exact, exact, whole)), lost
+    return np.where(lost, 0.0, scaled).astype(np.int64), lost

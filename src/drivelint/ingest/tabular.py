@@ -1,4 +1,4 @@
-"""Any CSV or Parquet table through a mapping: long (one row per actor and step) or wide (one column group per actor)."""
+"""Any CSV or Parquet table through a mapping: long (a row per actor and step) or wide (a column group per actor)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from drivelint.ingest import mapping as mappings
 from drivelint.ingest.geometry import to_map_frame
 from drivelint.ingest.mapping import GROUP, QUANTITY, UNITS
 from drivelint.ingest.sheets import CsvSheet, ParquetSheet
-from drivelint.ingest.trace import MOTOR_VEHICLES, Finding, Recording, States
+from drivelint.ingest.trace import CLASSES, MOTOR_VEHICLES, Finding, Recording, States
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -174,7 +174,7 @@ class _Body:
         encoded = pc.dictionary_encode(texts[0])
         words = [_word(text, spec) for text in encoded.dictionary.to_pylist()]
         table = np.array([allowed.index(word) if word is not None else -1 for word in words] + [-1], np.int8)
-        return table[pc.fill_null(encoded.indices, len(words)).to_numpy(zero_copy_only=False)]
+        return np.asarray(table[pc.fill_null(encoded.indices, len(words)).to_numpy(zero_copy_only=False)], np.int8)
 
     def _ids(self, k: str, n: int) -> pa.Array:
         spec = mappings.field_of(self.mapping.columns.actor_id)
@@ -189,13 +189,14 @@ class _Body:
                 return [name]
         if self.mapping.ego.otherwise is None or not len(states):
             return list(self.mapping.ego.ids)
-        motor = np.array([kind in MOTOR_VEHICLES for kind in mappings.CLASSES] + [False], np.bool_)
+        motor = np.array([kind in MOTOR_VEHICLES for kind in CLASSES] + [False], np.bool_)
         codes = states.codes.get("actor_class")
         rows = np.flatnonzero(motor[codes]) if codes is not None else np.arange(len(states))
         if not len(rows):
             return []
         first = states.ids[states.actor[rows[0]]]
-        message = f"no actor is called {' or '.join(self.mapping.ego.ids)}: the first vehicle of the file, {first}, is taken as the ego"
+        names = " or ".join(self.mapping.ego.ids)
+        message = f"no actor is called {names}: the first vehicle of the file, {first}, is taken as the ego"
         self.findings.append(Finding("ego_assumed", "info", message, actor_id=first))
         return [first]
 

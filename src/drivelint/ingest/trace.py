@@ -1,4 +1,4 @@
-"""What goes into ingest (options), between its stages (states, a recording) and comes out of it (a trace of Arrow tables)."""
+"""What goes into ingest (options), between its stages (states, a recording) and out of it (a trace of Arrow tables)."""
 
 from __future__ import annotations
 
@@ -83,7 +83,8 @@ class States:
     """Rows of `actor_state` as parallel arrays, SI units, box centres; NaN and code -1 mean unknown.
 
     `ids` are distinct actor ids, `actor` holds each row's index into them. `numbers` holds some or all of `NUMBERS` and
-    of `SIZES`. The codes index `INDICATORS`, `BRAKE_LIGHTS` and `CLASSES`. `not_finite` marks rows in which the log had NaN or infinity.
+    of `SIZES`. The codes index `INDICATORS`, `BRAKE_LIGHTS` and `CLASSES`. `not_finite` marks rows in which the log had
+    NaN or infinity.
     """
 
     ids: list[str]
@@ -112,8 +113,8 @@ class States:
 class Recording:
     """What a reader hands over: rows in the log's own order, nothing sorted or checked yet.
 
-    `actors` is an Arrow table with the columns of `actor` where the log has one apart from its states. `ego_ids` are the
-    log's or mapping's egos, `strict_units` is set where a mapping the user can correct decided units and frame.
+    `actors` is an Arrow table with the columns of `actor` where the log has one apart from its states. `ego_ids` are
+    the log's or mapping's egos, `strict_units` is set where a mapping the user can correct decided units and frame.
     """
 
     format: str
