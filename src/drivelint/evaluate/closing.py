@@ -72,7 +72,7 @@ WITH _named AS (SELECT v.* REPLACE (nullif(v.profile, '') AS profile), r.* EXCLU
 _numbered AS (
     SELECT *, row_number() OVER (PARTITION BY drive_id, ego_id, rule_id, profile, object_id
         ORDER BY coalesce(t_ref_ns, t_start_ns) NULLS LAST, t_start_ns NULLS LAST, t_end_ns NULLS LAST, ref_id NULLS LAST, code) - 1 AS occurrence,
-        {SENTENCE} AS sentence
+        coalesce(replace(label, '_', ' ') || ': ', '') || {SENTENCE} AS sentence
     FROM _named)
 SELECT v.drive_id, v.ego_id, rule_id, rule_version, kind, profile, severity, object_id, occurrence::INTEGER AS occurrence, ref_id, t_ref_ns, t_start_ns, t_end_ns,
     t_worst_ns, verdict, code AS reason_code, sentence AS reason, observed, required, margin, unit,

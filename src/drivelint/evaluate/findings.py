@@ -15,6 +15,10 @@ _SERIES = "drive_id, ego_id, object_id, profile, ref_id"
 def stretches(rule: Rule) -> str:
     """SQL that appends to `_stretch` the failing runs of `_judged`, those closer than merge_gap_s as one; never across a hole."""
     combined = rule.combine != "each"
+    follows = "lag(n) OVER w = n - 1 AND lag(episode) OVER w = episode"
+    if rule.kind == "invariant":
+        follows += " AND lag(label) OVER w IS NOT DISTINCT FROM label"
+    order = "t_ns, label" if rule.kind == "invariant" else "t_ns"
     failed = ""
     if rule.quantifier == "eventually":
         # its condition may well not hold at steps of a window that is kept, or unknown: no findings there
@@ -24,12 +28,12 @@ def stretches(rule: Rule) -> str:
     return f"""
 INSERT INTO _stretch BY NAME
 WITH _fails AS (
-    SELECT j.*, CASE WHEN lag(n) OVER w = n - 1 AND lag(episode) OVER w = episode OR t_ns - lag(t_ns) OVER w < $_merge_ns
+    SELECT j.*, CASE WHEN {follows} OR t_ns - lag(t_ns) OVER w < $_merge_ns
         THEN 0 ELSE 1 END AS fresh
     FROM _judged j {failed} WHERE NOT holds
-    WINDOW w AS (PARTITION BY {_SERIES}, seg ORDER BY t_ns)
+    WINDOW w AS (PARTITION BY {_SERIES}, seg ORDER BY {order})
 ), _runs AS (
-    SELECT *, sum(fresh) OVER (PARTITION BY {_SERIES}, seg ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS run FROM _fails
+    SELECT *, sum(fresh) OVER (PARTITION BY {_SERIES}, seg ORDER BY {order} ROWS UNBOUNDED PRECEDING) AS run FROM _fails
 ), _worst AS (
     SELECT {_SERIES}, seg, run, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.worst(rule)} AS worst FROM _runs GROUP BY ALL)
 SELECT $_no AS rule_no, drive_id, ego_id, {"nullif(worst.who, '')" if combined else "object_id"} AS object_id, profile, ref_id,

@@ -17,7 +17,8 @@ STEP_GRID = "step"
 
 _SAME = "a.drive_id = b.drive_id AND a.ego_id = b.ego_id AND a.t_ns = b.t_ns"
 _GROUP = "drive_id, ego_id, object_id"
-_SERIES = "drive_id, ego_id, object_id, profile"
+_OBJECT = "drive_id, ego_id, object_id, profile"
+_SERIES = f"{_OBJECT}, label"
 
 
 def grid_of(rule: Rule) -> str | None:
@@ -80,22 +81,23 @@ SELECT s.drive_id, s.ego_id, '' FROM _subject s ANTI JOIN _known k ON s.drive_id
 
 
 def _grid(rule: Rule, partial: bool, unsettled: bool) -> str:
-    """CTEs ending in `_grid`: drive_id, ego_id, t_ns, object_id, k, seg, applies, doubt (why applies is NULL)."""
+    """CTEs ending in `_grid`: drive_id, ego_id, t_ns, object_id, label, k, seg, applies, doubt (why applies is NULL)."""
     if "applies" not in rule.sections:
-        first = f"_base AS (SELECT *, true AS applies FROM ({_default_grid(rule.per_object)}))"
+        first = f"_base AS (SELECT *, NULL::VARCHAR AS label, true AS applies FROM ({_default_grid(rule.per_object)}))"
     else:
         own = rule.columns["applies"]
         who = "object_id" if "object_id" in own else "NULL::VARCHAR AS object_id"
+        label = "episode::VARCHAR AS label" if "episode" in own else "NULL::VARCHAR AS label"
         three = "applies" if "applies" in own else "true"
         crowd = rule.per_object and "object_id" not in own
         first = f"""_applies AS (
 {rule.sections["applies"]}
 ), _distinct AS (
-    SELECT drive_id, ego_id, t_ns, {who}, CASE WHEN bool_or(coalesce({three}, false)) THEN true WHEN bool_or({three} IS NULL) THEN NULL
+    SELECT drive_id, ego_id, t_ns, {who}, {label}, CASE WHEN bool_or(coalesce({three}, false)) THEN true WHEN bool_or({three} IS NULL) THEN NULL
         ELSE false END AS applies
     FROM _applies GROUP BY ALL
 ), _base AS (
-    SELECT a.drive_id, a.ego_id, a.t_ns, {"p" if crowd else "a"}.object_id, b.k, b.seg, a.applies
+    SELECT a.drive_id, a.ego_id, a.t_ns, {"p" if crowd else "a"}.object_id, a.label, b.k, b.seg, a.applies
     FROM _distinct a LEFT JOIN step b ON {_SAME}
     {"JOIN pair p ON a.drive_id = p.drive_id AND a.ego_id = p.ego_id AND a.t_ns = p.t_ns" if crowd else ""})"""
     keep = ""
@@ -117,7 +119,10 @@ def second_pass(rule: Rule, partial: bool, unsettled: bool) -> str:
 
     The conditions are left-joined to the grid on keys alone: a row that the author's join lost is an unknown step.
     """
-    who = " AND g.object_id = v.object_id" if rule.per_object else ""
+    who = ""
+    if rule.per_object:
+        # an author's own grid may hold a step at which it is not known which object is meant
+        who = " AND g.object_id IS NOT DISTINCT FROM v.object_id" if "applies" in rule.sections else " AND g.object_id = v.object_id"
     profile = " AND p.profile = v.profile" if rule.profiled else ""
     profiles = "JOIN _profile_set p ON g.drive_id = p.drive_id AND g.ego_id = p.ego_id" if rule.profiled else ""
     columns = f"{_SERIES}, NULL::INTEGER AS ref_id, t_ns, k, seg, holds, gain, observed, required, code, reason"
@@ -133,7 +138,7 @@ WHERE k_begin = s.k_first OR t_ns - t_begin_ns >= $_exempt_ns"""
     return f"""
 CREATE OR REPLACE TEMP TABLE _judged AS
 WITH {terms.state(rule)}, {_grid(rule, partial, unsettled)}, _joined AS (
-    SELECT g.drive_id, g.ego_id, g.object_id, {"p.profile" if rule.profiled else "''"} AS profile, g.t_ns, g.k, g.seg,
+    SELECT g.drive_id, g.ego_id, g.object_id, {"p.profile" if rule.profiled else "''"} AS profile, g.label, g.t_ns, g.k, g.seg,
         g.applies AND (v.t_ns IS NULL OR v.applies) AS applies, v.holds, v.gain, v.observed, v.required,
         CASE WHEN g.applies IS NULL THEN g.doubt WHEN v.t_ns IS NULL THEN 'missing_step'
             WHEN v.applies IS NULL THEN coalesce(v.code, 'applies_unknown') ELSE v.code END AS code,
@@ -141,10 +146,12 @@ WITH {terms.state(rule)}, {_grid(rule, partial, unsettled)}, _joined AS (
     FROM _grid g {profiles}
     LEFT JOIN _state v ON g.drive_id = v.drive_id AND g.ego_id = v.ego_id AND g.t_ns = v.t_ns{who}{profile}
 ), _steps AS (
-    SELECT * REPLACE (CASE WHEN applies THEN holds END AS holds), lag(t_ns) OVER w AS t_prev_ns, lag(seg) OVER w AS seg_prev
-    FROM _joined WHERE applies IS DISTINCT FROM false WINDOW w AS (PARTITION BY {_SERIES} ORDER BY t_ns)
+    SELECT * REPLACE (CASE WHEN applies THEN holds END AS holds), lag(t_ns) OVER o AS t_prev_ns, lag(seg) OVER o AS seg_prev,
+        lag(t_ns) OVER s AS t_last_ns, lag(seg) OVER s AS seg_last
+    FROM _joined WHERE applies IS DISTINCT FROM false
+    WINDOW o AS (PARTITION BY {_OBJECT} ORDER BY t_ns, label), s AS (PARTITION BY {_SERIES} ORDER BY t_ns)
 ), _episodes AS (
-    SELECT {columns}, t_prev_ns, seg_prev, sum(CASE WHEN seg_prev = seg AND t_ns - t_prev_ns <= s.max_gap_ns THEN 0 ELSE 1 END)
+    SELECT {columns}, t_prev_ns, seg_prev, sum(CASE WHEN seg_last = seg AND t_ns - t_last_ns <= s.max_gap_ns THEN 0 ELSE 1 END)
         OVER (PARTITION BY {_SERIES} ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS episode
     FROM _steps JOIN _subject s USING (drive_id, ego_id))
 {final}
@@ -156,7 +163,7 @@ INSERT INTO _error
 SELECT $_no, drive_id, ego_id, 'rule_error', CASE WHEN max(n_rows) > 1
     THEN format('the condition returned {} rows for one step (first at {:.3f} s): it must return one', max(n_rows), min(t_ns) FILTER (n_rows > 1) / 1e9)
     ELSE format('@applies returned the time {:.3f} s, which is no step of the ego', min(t_ns) / 1e9) END
-FROM (SELECT drive_id, ego_id, object_id, profile, t_ns, count(*) AS n_rows, min(k) AS k FROM _judged GROUP BY ALL)
+FROM (SELECT drive_id, ego_id, object_id, profile, label, t_ns, count(*) AS n_rows, min(k) AS k FROM _judged GROUP BY ALL)
 WHERE n_rows > 1 OR k IS NULL
 GROUP BY drive_id, ego_id
 """
@@ -195,7 +202,7 @@ WITH _ends AS (
     JOIN _segment p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.seg = CASE WHEN from_edge THEN seg_prev ELSE e.seg - 1 END
     JOIN _segment q ON q.drive_id = e.drive_id AND q.ego_id = e.ego_id AND q.seg = CASE WHEN to_edge THEN e.seg ELSE seg_prev + 1 END
     WHERE from_edge OR to_edge)
-SELECT $_no AS rule_no, {_SERIES}, t_start_ns, t_end_ns, t_start_ns AS t_worst_ns, t_start_ns AS t_decides_ns, 'unknown' AS verdict,
+SELECT $_no AS rule_no, {_OBJECT}, t_start_ns, t_end_ns, t_start_ns AS t_worst_ns, t_start_ns AS t_decides_ns, 'unknown' AS verdict,
     'log_hole' AS code, greatest(1, (t_end_ns - t_start_ns) // greatest(period_ns, 1) - 1) AS n_expected, 0 AS n_judged
 FROM _holes
 """

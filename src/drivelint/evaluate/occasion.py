@@ -99,7 +99,7 @@ def judged(rule: Rule, own_object: bool) -> str:
     WHERE {"true" if combined else "q.object_id IS NOT NULL OR p.t_ns IS NULL"}"""
     on = "g.drive_id = v.drive_id AND g.ego_id = v.ego_id AND g.t_ns = v.t_ns"
     on += " AND g.ref_id = v.ref_id" if rule.has("ref_id") else ""
-    on += " AND g.object_id = v.object_id" if rule.per_object else ""
+    on += " AND g.object_id IS NOT DISTINCT FROM v.object_id" if rule.per_object else ""
     on += " AND p.profile = v.profile" if rule.profiled else ""
     empty = f"CASE WHEN g.sensor_range_m IS NULL THEN {'true' if rule.combine == 'all' else 'false'} END"
     return f"""

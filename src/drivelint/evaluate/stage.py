@@ -24,7 +24,7 @@ CREATE OR REPLACE TEMP TABLE _needs (rule_no INTEGER, pos INTEGER, signal VARCHA
 CREATE OR REPLACE TEMP TABLE _error ({_KEYS}, code VARCHAR, reason VARCHAR);
 CREATE OR REPLACE TEMP TABLE _group ({_KEYS}, object_id VARCHAR, clean BOOLEAN, t_start_ns BIGINT, t_end_ns BIGINT, n BIGINT,
     t_worst_ns BIGINT, observed DOUBLE, required DOUBLE, margin DOUBLE, code VARCHAR, reason VARCHAR);
-CREATE OR REPLACE TEMP TABLE _outcome ({_KEYS}, profile VARCHAR, object_id VARCHAR, ref_id INTEGER, t_ref_ns BIGINT,
+CREATE OR REPLACE TEMP TABLE _outcome ({_KEYS}, profile VARCHAR, object_id VARCHAR, label VARCHAR, ref_id INTEGER, t_ref_ns BIGINT,
     t_start_ns BIGINT, t_end_ns BIGINT, t_worst_ns BIGINT, t_decides_ns BIGINT, verdict VARCHAR, code VARCHAR, reason VARCHAR,
     observed DOUBLE, required DOUBLE, margin DOUBLE, n_expected BIGINT, n_judged BIGINT);
 CREATE OR REPLACE TEMP TABLE _stretch ({_KEYS}, profile VARCHAR, object_id VARCHAR, ref_id INTEGER, t_start_ns BIGINT,
