@@ -220,8 +220,19 @@ def rules_test(
         Path | None, typer.Argument(metavar="[DIR]", help="Folder with rule packs; default: the shipped ones.")
     ] = None,
 ) -> None:
-    """Run the cases beside the rules: each says what the rule must answer in a small scene."""
-    raise NotImplementedError(folder)
+    """Run the cases beside the rules: what each must answer in small scenes. Exit code 1: some answer otherwise."""
+    from drivelint.casefile import run_cases
+    from drivelint.catalogue import load
+    from drivelint.report import rules_text
+
+    rules = load((folder,) if folder else ())
+    mine = [rule for rule in rules.values() if folder is None or rule.path.is_relative_to(folder)]
+    failed = False
+    for rule in mine:
+        results = run_cases(rule)
+        failed |= not all(result.ok for result in results)
+        _console().print(rules_text.case_line(rule.id, results))
+    raise typer.Exit(int(ExitCode.FAILED if failed else ExitCode.OK))
 
 
 def main() -> NoReturn:
