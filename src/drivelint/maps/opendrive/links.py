@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import shapely
 
 from drivelint.maps.opendrive.lanelet import LaneKey, Lanelet, lanelet_id
 from drivelint.maps.opendrive.network import END, START
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from drivelint.maps.quality import Quality
 
 GAP_M = 0.5  # linked ends further apart than this are reported
+TOUCH_M = 0.1  # a lane that begins this close to another's end, in the same direction, should be linked to it
+TOUCH_COS = 0.98
 LaneEnd = tuple[LaneKey, str]
 _OTHER = {START: END, END: START}
 
@@ -56,6 +59,7 @@ def links(net: Network, lanes: Lanes, quality: Quality) -> list[Link]:
     result = [found[key] for key in sorted(found)]
     for link in result:
         _check_gap(link, quality)
+    _check_unlinked(sorted(lanes.built.values(), key=lambda lane: lane.key), found, quality)
     return result
 
 
@@ -204,3 +208,18 @@ def _check_gap(link: Link, quality: Quality) -> None:
     if gap > GAP_M:
         message = f"lane {b.lanelet_id} begins {gap:.2f} m away from the end of lane {a.lanelet_id} that it continues"
         quality.add("link_gap", "warning" if a.drivable else "info", a.lanelet_id, message)
+
+
+def _check_unlinked(lanes: list[Lanelet], found: dict[tuple[str, str], Link], quality: Quality) -> None:
+    """Report drivable lanes that plainly go on in another one without a link: chains would end there."""
+    lanes = [lane for lane in lanes if lane.drivable]
+    if not lanes:
+        return
+    ends, starts = ([(lane.x[k], lane.y[k]) for lane in lanes] for k in (-1, 0))
+    touching = shapely.STRtree(shapely.points(starts)).query(shapely.points(ends), "dwithin", TOUCH_M)
+    for i, j in sorted(touching.T.tolist()):
+        a, b = lanes[i], lanes[j]
+        same = float(a.tx[-1] * b.tx[0] + a.ty[-1] * b.ty[0]) > TOUCH_COS
+        if same and (a.lanelet_id, b.lanelet_id) not in found:
+            message = f"lane {b.lanelet_id} begins where lane {a.lanelet_id} ends, but the map does not link them"
+            quality.add("unlinked_end", "error", a.lanelet_id, message)

@@ -75,7 +75,7 @@ def counter_clockwise(outline: Floats) -> Floats:
         outline = outline[:-1]
     x, y = (outline - outline[0]).T
     area = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
-    return outline if area >= 0.0 else outline[::-1]
+    return outline if area >= -1e-6 else outline[::-1]  # a line has no sense of turning, but rounding has
 
 
 def placed_objects(net: Network, offset: tuple[float, float], quality: Quality) -> list[Placed]:
