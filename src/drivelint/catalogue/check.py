@@ -13,6 +13,9 @@ from drivelint import store
 from drivelint.errors import RuleError
 from drivelint.resources import folder
 
+GIVEN = frozenset({"reference", "reference_step"})
+"""Tables that the engine makes for a rule: its reference points, and the steps at which each is judged."""
+
 _TABLE_FUNCTIONS = frozenset({"range", "generate_series", "unnest"})
 _UNSTABLE = frozenset(
     {"random", "setseed", "uuid", "uuidv4", "uuidv7", "gen_random_uuid", "now", "today", "get_current_timestamp", "current_timestamp",
@@ -99,7 +102,7 @@ def _macros() -> frozenset[str]:
 
 
 def _allow(found: _Found, where: str) -> None:
-    known = store.schema().keys() | {"reference"}
+    known = store.schema().keys() | GIVEN
     shadow = sorted(name for name in found.ctes if name in known or name.startswith("_"))
     if shadow:
         raise RuleError(f"{where}: rename the CTE {shadow[0]!r}: it hides a table, or begins with _ like the engine's own")

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from drivelint import store
-from drivelint.catalogue.check import Query, inspect
+from drivelint.catalogue.check import GIVEN, Query, inspect
 from drivelint.catalogue.header import Header, parse_header
 from drivelint.catalogue.sections import Section, split
 from drivelint.errors import RuleError
@@ -157,16 +157,18 @@ def _check_condition(header: Header, query: Query, where: str) -> None:
     wrong = {"observed", "required", "at_least"} if header.sense == "holds" else {"holds"}
     if found := sorted(wrong & set(columns)):
         raise RuleError(f"{where}: column {found[0]!r} does not go with sense = {header.sense!r}")
-    if ("ref_id" in columns) != ("reference" in query.tables):
-        raise RuleError(f"{where}: a condition that reads 'reference' returns its ref_id, and no other does")
+    if ("ref_id" in columns) != bool(GIVEN & query.tables):
+        raise RuleError(f"{where}: a condition that reads reference or reference_step returns ref_id, and no other does")
     if header.combine != "each" and "object_id" not in columns:
         raise RuleError(f"{where}: combine = {header.combine!r} needs the column object_id")
 
 
 def _check_reads(header: Header, queries: dict[str, Query], file: Path) -> None:
-    if header.kind == "invariant" and any("reference" in query.tables for query in queries.values()):
-        raise RuleError(f"{file}:1: an invariant has no table 'reference'")
-    real = frozenset[str]().union(*(query.tables for query in queries.values())) - {"reference"}
+    given = {"condition": GIVEN, "anchor": frozenset({"reference"})} if header.kind != "invariant" else {}
+    for name, query in queries.items():
+        if early := sorted(query.tables & GIVEN - given.get(name, frozenset())):
+            raise RuleError(f"{file}:1: @{name} of an {header.kind} has no table {early[0]!r}")
+    real = frozenset[str]().union(*(query.tables for query in queries.values())) - GIVEN
     said = frozenset(header.reads)
     if said != real:
         parts = [f"add {', '.join(sorted(real - said))}"] if real - said else []

@@ -55,11 +55,13 @@ class _Run:
         self.margins = margins
         self.n_todo: dict[int, int] = {}
         self.n_subjects = 0
+        self.n_segments = 0
 
     def judge(self) -> None:
         """Run every rule and close."""
         self.n_todo = stage.prepare(self.con, self.bindings)
         self.n_subjects = self._count("SELECT count(*) FROM _subject")
+        self.n_segments = self._count("SELECT count(*) FROM _segment")
         live = [b for b in self.bindings if self.n_todo.get(b.no)]
         quick = [] if self.margins else [b for b in live if b.rule.kind == "invariant" and invariant.grid_of(b.rule)]
         if quick:
@@ -84,15 +86,20 @@ class _Run:
             self._run(invariant.profile_set(rule), binding)
         if rule.per_object and "applies" not in rule.sections:
             self._run(invariant.lost_objects(rule, partial), binding)
+        expected = -1
         if quick:
             self._run(invariant.first_pass(rule, partial), binding)
-            if not self._count(f"SELECT count(*) FROM _group WHERE rule_no = {binding.no} AND NOT clean"):
+            expected = self._count(f"SELECT coalesce(sum(n), 0)::BIGINT FROM _group WHERE rule_no = {binding.no} AND NOT clean")
+            if not expected:
                 return
-        if not self._run(invariant.second_pass(rule, partial, quick), binding):
+        made = self._run(invariant.second_pass(rule, partial, quick), binding)
+        if not made:
             return
-        self._run(invariant.FAULTS, binding)
+        if made != expected:
+            self._run(invariant.FAULTS, binding)
         self._run(invariant.episodes(rule), binding)
-        self._run(invariant.HOLES, binding)
+        if self.n_segments > self.n_subjects:
+            self._run(invariant.HOLES, binding)
         self._leavings(binding)
 
     def _occasion(self, binding: Binding) -> None:

@@ -68,7 +68,7 @@ _PLACE = "LEFT JOIN ego_state p ON p.drive_id = v.drive_id AND p.ego_id = v.ego_
 
 _VERDICTS = f"""
 INSERT INTO verdict BY NAME
-WITH _named AS (SELECT v.* REPLACE (nullif(v.profile, '') AS profile), r.* EXCLUDE (rule_no) FROM _closed v JOIN _rule r USING (rule_no)),
+WITH _named AS (SELECT v.* REPLACE (nullif(v.profile, '') AS profile, nullif(v.object_id, '') AS object_id, nullif(v.label, '') AS label), r.* EXCLUDE (rule_no) FROM _closed v JOIN _rule r USING (rule_no)),
 _numbered AS (
     SELECT *, row_number() OVER (PARTITION BY drive_id, ego_id, rule_id, profile, object_id
         ORDER BY coalesce(t_ref_ns, t_start_ns) NULLS LAST, t_start_ns NULLS LAST, t_end_ns NULLS LAST, ref_id NULLS LAST, code) - 1 AS occurrence,
@@ -84,7 +84,7 @@ FROM _numbered v {_PLACE}
 _FINDINGS = f"""
 INSERT INTO finding BY NAME
 WITH _named AS (
-    SELECT f.* REPLACE (nullif(f.profile, '') AS profile), r.* EXCLUDE (rule_no), f.t_worst_ns AS t_decides_ns, 'fail' AS verdict
+    SELECT f.* REPLACE (nullif(f.profile, '') AS profile, nullif(f.object_id, '') AS object_id), r.* EXCLUDE (rule_no), f.t_worst_ns AS t_decides_ns, 'fail' AS verdict
     FROM _stretch f JOIN _rule r USING (rule_no)
     ANTI JOIN _error e ON e.rule_no = f.rule_no AND e.drive_id = f.drive_id AND e.ego_id = f.ego_id
 ), _numbered AS (
@@ -99,7 +99,7 @@ FROM _numbered v JOIN _subject s ON s.drive_id = v.drive_id AND s.ego_id = v.ego
 
 _MARGINS = """
 INSERT INTO margin BY NAME
-SELECT m.* EXCLUDE (rule_no) REPLACE (nullif(m.profile, '') AS profile), r.rule_id FROM _margin m JOIN _rule r USING (rule_no)
+SELECT m.* EXCLUDE (rule_no) REPLACE (nullif(m.profile, '') AS profile, nullif(m.object_id, '') AS object_id), r.rule_id FROM _margin m JOIN _rule r USING (rule_no)
 ANTI JOIN _error e ON e.rule_no = m.rule_no AND e.drive_id = m.drive_id AND e.ego_id = m.ego_id
 """
 

@@ -15,14 +15,11 @@ _SERIES = "drive_id, ego_id, object_id, profile, ref_id"
 def stretches(rule: Rule) -> str:
     """SQL that appends to `_stretch` the failing runs of `_judged`, those closer than merge_gap_s as one; never across a hole."""
     combined = rule.combine != "each"
-    follows = "lag(n) OVER w = n - 1 AND lag(episode) OVER w = episode"
-    if rule.kind == "invariant":
-        follows += " AND lag(label) OVER w IS NOT DISTINCT FROM label"
-    order = "t_ns, label" if rule.kind == "invariant" else "t_ns"
+    follows, order = ("k - lag(k) OVER w <= 1", "t_ns, label") if rule.kind == "invariant" else ("n - lag(n) OVER w = 1", "t_ns")
     failed = ""
     if rule.quantifier == "eventually":
         # its condition may well not hold at steps of a window that is kept, or unknown: no findings there
-        who = "" if combined else " AND j.object_id IS NOT DISTINCT FROM o.object_id"
+        who = "" if combined else " AND j.object_id = o.object_id"
         failed = f"""SEMI JOIN (SELECT * FROM _outcome WHERE rule_no = $_no AND verdict = 'fail') o
         ON j.drive_id = o.drive_id AND j.ego_id = o.ego_id AND j.ref_id = o.ref_id AND j.profile = o.profile{who}"""
     return f"""
@@ -36,7 +33,7 @@ WITH _fails AS (
     SELECT *, sum(fresh) OVER (PARTITION BY {_SERIES}, seg ORDER BY {order} ROWS UNBOUNDED PRECEDING) AS run FROM _fails
 ), _worst AS (
     SELECT {_SERIES}, seg, run, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.worst(rule)} AS worst FROM _runs GROUP BY ALL)
-SELECT $_no AS rule_no, drive_id, ego_id, {"nullif(worst.who, '')" if combined else "object_id"} AS object_id, profile, ref_id,
+SELECT $_no AS rule_no, drive_id, ego_id, {"worst.who" if combined else "object_id"} AS object_id, profile, ref_id,
     t_start_ns, t_end_ns, worst.t AS t_worst_ns, coalesce(worst.code, 'violated') AS code, worst.reason AS reason,
     {terms.numbers(rule, "worst")}
 FROM _worst
@@ -51,5 +48,5 @@ def margins(rule: Rule) -> str:
 INSERT INTO _margin BY NAME
 SELECT $_no AS rule_no, drive_id, ego_id, profile, {who} AS object_id, ref_id, t_ns,
     {terms.finite("observed")} AS observed, {terms.finite("required")} AS required, {margin} AS margin, holds
-FROM _judged WHERE t_ns IS NOT NULL
+FROM _judged WHERE t_ns IS NOT NULL AND {"applies IS DISTINCT FROM false" if rule.kind == "invariant" else "true"}
 """

@@ -21,6 +21,15 @@ _OBJECT = "drive_id, ego_id, object_id, profile"
 _SERIES = f"{_OBJECT}, label"
 
 
+_WALK = f"""), _linked AS (
+    SELECT *, lag(t_ns) OVER w AS t_last_ns, lag(seg) OVER w AS seg_last FROM ({{source}}) WINDOW w AS (PARTITION BY {_SERIES} ORDER BY t_ns)
+), _walked AS (
+    SELECT l.* EXCLUDE (t_last_ns, seg_last), sum(CASE WHEN seg_last = seg AND t_ns - t_last_ns <= s.max_gap_ns THEN 0 ELSE 1 END)
+        OVER (PARTITION BY {", ".join("l." + c.strip() for c in _SERIES.split(","))} ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS episode
+    FROM _linked l JOIN _subject s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id"""
+"""CTE text (it closes the CTE before it and leaves its last one open): rows of a source numbered by episode."""
+
+
 def grid_of(rule: Rule) -> str | None:
     """Return the table that is the rule's default grid; None: it brings its own, or needs each step looked at."""
     if "applies" in rule.sections or rule.applies.road_types or rule.profiled or rule.exempt_after_s != 0:
@@ -60,7 +69,7 @@ WITH {terms.state(rule)}, _seen AS (
         count(*) FILTER (NOT applies) AS n_out, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.worst(rule)} AS worst
     FROM _state GROUP BY ALL)
 SELECT $_no AS rule_no, g.drive_id, g.ego_id, g.object_id, coalesce(g.whole AND s.n_kept = s.n, false) AS clean,
-    s.t_start_ns, s.t_end_ns, s.n, s.worst.t AS t_worst_ns, {numbers}, coalesce(s.worst.code, 'kept') AS code, s.worst.reason AS reason
+    s.t_start_ns, s.t_end_ns, g.n, s.worst.t AS t_worst_ns, {numbers}, coalesce(s.worst.code, 'kept') AS code, s.worst.reason AS reason
 FROM _grid_group g
 LEFT JOIN _seen s ON g.drive_id = s.drive_id AND g.ego_id = s.ego_id{who} AND g.n = s.n AND g.signature = s.signature
 {terms.todo(partial, "g")}
@@ -115,7 +124,7 @@ def _grid(rule: Rule, partial: bool, unsettled: bool) -> str:
 
 
 def second_pass(rule: Rule, partial: bool, unsettled: bool) -> str:
-    """SQL for `_judged`: every expected step of every series, judged or not, with its row number and its episode.
+    """SQL for `_judged`: every step of the grid, judged or not; '' stands for no object, profile or label.
 
     The conditions are left-joined to the grid on keys alone: a row that the author's join lost is an unknown step.
     """
@@ -125,35 +134,27 @@ def second_pass(rule: Rule, partial: bool, unsettled: bool) -> str:
         who = " AND g.object_id IS NOT DISTINCT FROM v.object_id" if "applies" in rule.sections else " AND g.object_id = v.object_id"
     profile = " AND p.profile = v.profile" if rule.profiled else ""
     profiles = "JOIN _profile_set p ON g.drive_id = p.drive_id AND g.ego_id = p.ego_id" if rule.profiled else ""
-    columns = f"{_SERIES}, NULL::INTEGER AS ref_id, t_ns, k, seg, holds, gain, observed, required, code, reason"
-    final = f"SELECT *, row_number() OVER (PARTITION BY {_SERIES} ORDER BY t_ns) AS n FROM _episodes"
+    final = "SELECT * FROM _steps"
     if rule.exempt_after_s != 0:
         # an episode whose beginning was not seen (the log's start, a hole) has no known age: none of it is exempt
-        final = f"""SELECT * EXCLUDE (t_begin_ns, k_begin), row_number() OVER (PARTITION BY {_SERIES} ORDER BY t_ns) AS n
-FROM (SELECT *, first_value(t_ns) OVER w AS t_begin_ns, first_value(k) OVER w AS k_begin FROM _episodes
-      WINDOW w AS (PARTITION BY {_SERIES}, episode ORDER BY t_ns)) a
-JOIN _segment s USING (drive_id, ego_id, seg)
+        final = f"""{_WALK.format(source="SELECT * FROM _steps WHERE applies IS DISTINCT FROM false")}, _aged AS (
+    SELECT *, first_value(t_ns) OVER w AS t_begin_ns, first_value(k) OVER w AS k_begin FROM _walked
+    WINDOW w AS (PARTITION BY {_SERIES}, episode ORDER BY t_ns))
+SELECT a.* EXCLUDE (t_begin_ns, k_begin, episode) FROM _aged a
+JOIN _segment s ON s.drive_id = a.drive_id AND s.ego_id = a.ego_id AND s.seg = a.seg
 WHERE k_begin = s.k_first OR t_ns - t_begin_ns >= $_exempt_ns"""
-        final = f"SELECT * EXCLUDE (t_first_ns, t_last_ns, k_first) FROM ({final})"
     return f"""
 CREATE OR REPLACE TEMP TABLE _judged AS
 WITH {terms.state(rule)}, {_grid(rule, partial, unsettled)}, _joined AS (
-    SELECT g.drive_id, g.ego_id, g.object_id, {"p.profile" if rule.profiled else "''"} AS profile, g.label, g.t_ns, g.k, g.seg,
+    SELECT g.drive_id, g.ego_id, coalesce(g.object_id, '') AS object_id, {"p.profile" if rule.profiled else "''"} AS profile,
+        coalesce(g.label, '') AS label, NULL::INTEGER AS ref_id, g.t_ns, g.k, g.seg,
         g.applies AND (v.t_ns IS NULL OR v.applies) AS applies, v.holds, v.gain, v.observed, v.required,
         CASE WHEN g.applies IS NULL THEN g.doubt WHEN v.t_ns IS NULL THEN 'missing_step'
             WHEN v.applies IS NULL THEN coalesce(v.code, 'applies_unknown') ELSE v.code END AS code,
         CASE WHEN g.applies THEN v.reason END AS reason
     FROM _grid g {profiles}
     LEFT JOIN _state v ON g.drive_id = v.drive_id AND g.ego_id = v.ego_id AND g.t_ns = v.t_ns{who}{profile}
-), _steps AS (
-    SELECT * REPLACE (CASE WHEN applies THEN holds END AS holds), lag(t_ns) OVER o AS t_prev_ns, lag(seg) OVER o AS seg_prev,
-        lag(t_ns) OVER s AS t_last_ns, lag(seg) OVER s AS seg_last
-    FROM _joined WHERE applies IS DISTINCT FROM false
-    WINDOW o AS (PARTITION BY {_OBJECT} ORDER BY t_ns, label), s AS (PARTITION BY {_SERIES} ORDER BY t_ns)
-), _episodes AS (
-    SELECT {columns}, t_prev_ns, seg_prev, sum(CASE WHEN seg_last = seg AND t_ns - t_last_ns <= s.max_gap_ns THEN 0 ELSE 1 END)
-        OVER (PARTITION BY {_SERIES} ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS episode
-    FROM _steps JOIN _subject s USING (drive_id, ego_id))
+), _steps AS (SELECT * REPLACE (CASE WHEN applies THEN holds END AS holds) FROM _joined)
 {final}
 """
 
@@ -171,13 +172,20 @@ GROUP BY drive_id, ego_id
 
 
 def episodes(rule: Rule) -> str:
-    """SQL that appends to `_outcome` one row per episode of `_judged`."""
+    """SQL that appends to `_outcome` one row per continuous episode of `_judged`. Only series with a gap are walked step by step."""
     return f"""
 INSERT INTO _outcome BY NAME
-WITH _all AS (
+WITH _live AS (SELECT * FROM _judged WHERE applies IS DISTINCT FROM false
+), _flagged AS (
+    SELECT {_SERIES}, count(*) <> max(k) - min(k) + 1 OR min(seg) <> max(seg) AS broken FROM _live GROUP BY ALL
+{_WALK.format(source="SELECT l.* FROM _live l SEMI JOIN (SELECT * FROM _flagged WHERE broken) f USING (" + _SERIES + ")")}
+), _rows AS (
+    SELECT * FROM _walked UNION ALL BY NAME
+    SELECT l.*, 0 AS episode FROM _live l SEMI JOIN (SELECT * FROM _flagged WHERE NOT broken) f USING ({_SERIES})
+), _all AS (
     SELECT {_SERIES}, episode, count(*) AS n_expected, count(holds) AS n_judged, count(*) FILTER (NOT holds) AS n_fail,
         min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.worst(rule)} AS worst, {terms.FIRST_UNKNOWN} AS unknown
-    FROM _judged GROUP BY ALL
+    FROM _rows GROUP BY ALL
 ), _decided AS (SELECT *, CASE WHEN n_fail > 0 THEN 'fail' WHEN n_judged < n_expected THEN 'unknown' ELSE 'pass' END AS verdict FROM _all)
 SELECT $_no AS rule_no, {_SERIES}, t_start_ns, t_end_ns, worst.t AS t_worst_ns, verdict,
     CASE verdict WHEN 'unknown' THEN unknown.t ELSE worst.t END AS t_decides_ns,
@@ -190,10 +198,13 @@ FROM _decided
 
 HOLES = f"""
 INSERT INTO _outcome BY NAME
-WITH _ends AS (
+WITH _across AS (
+    SELECT {_OBJECT}, t_ns, seg, lag(t_ns) OVER w AS t_prev_ns, lag(seg) OVER w AS seg_prev
+    FROM _judged WHERE applies IS DISTINCT FROM false WINDOW w AS (PARTITION BY {_OBJECT} ORDER BY t_ns)
+), _ends AS (
     SELECT j.drive_id, j.ego_id, j.object_id, j.profile, j.seg_prev, j.seg,
         p.t_last_ns - j.t_prev_ns <= s.max_gap_ns AS from_edge, j.t_ns - q.t_first_ns <= s.max_gap_ns AS to_edge, s.period_ns
-    FROM _judged j JOIN _subject s USING (drive_id, ego_id)
+    FROM _across j JOIN _subject s USING (drive_id, ego_id)
     JOIN _segment p ON p.drive_id = j.drive_id AND p.ego_id = j.ego_id AND p.seg = j.seg_prev
     JOIN _segment q ON q.drive_id = j.drive_id AND q.ego_id = j.ego_id AND q.seg = j.seg
     WHERE j.seg_prev <> j.seg

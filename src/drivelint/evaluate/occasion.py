@@ -1,6 +1,6 @@
 """Rules with an assertion reference point: executions, and pre- and postconditions, temporal and physical.
 
-References come first; where there is none the rule stops. Then the points that must be judged (`_point`), the conditions left-joined to
+References come first; where there is none the rule stops. Then the points that must be judged (`reference_step`), the conditions left-joined to
 them on keys alone (`_judged`), and one outcome per reference, profile and (combine = each) object.
 """
 
@@ -61,13 +61,13 @@ FROM reference r
 
 
 def points(rule: Rule) -> str:
-    """SQL for `_point`: ref_id, drive_id, ego_id, object_id, t_ns (NULL: an unknown anchor), seg: where each reference is judged."""
+    """SQL for `reference_step`: ref_id, drive_id, ego_id, object_id, t_ns (NULL: an unknown anchor), seg: where each reference is judged."""
     keys = "o.ref_id, o.ref_no, o.drive_id, o.ego_id, o.object_id"
     asked = "o.applies AND o.t_ref_ns IS NOT NULL"
     if rule.subtype == "temporal":
         # time buckets as long as the window turn the range join into an equi-join: a window touches two of them
         return f"""
-CREATE OR REPLACE TEMP TABLE _point AS
+CREATE OR REPLACE TEMP TABLE reference_step AS
 WITH _bucket AS (
     SELECT *, unnest([a_ns // greatest($_window_ns, 1), a_ns // greatest($_window_ns, 1) + 1]) AS bucket FROM _occasion o WHERE {asked})
 SELECT {keys}, s.t_ns, s.seg FROM _bucket o
@@ -80,7 +80,7 @@ JOIN step s ON s.drive_id = o.drive_id AND s.ego_id = o.ego_id AND s.t_ns // gre
         author = f"WITH _anchor AS (\n{rule.sections['anchor']}\n)"
         source = f"""(SELECT DISTINCT {keys}, a.t_ns::BIGINT AS t_ns FROM _anchor a JOIN _occasion o ON a.ref_id = o.ref_id WHERE {asked})"""
     return f"""
-CREATE OR REPLACE TEMP TABLE _point AS
+CREATE OR REPLACE TEMP TABLE reference_step AS
 {author} SELECT p.*, s.seg FROM {source} p
 LEFT JOIN step s ON s.drive_id = p.drive_id AND s.ego_id = p.ego_id AND s.t_ns = p.t_ns
 """
@@ -90,11 +90,11 @@ def judged(rule: Rule, own_object: bool) -> str:
     """SQL for `_judged`: every expected point, judged or not; combined over objects where the rule says so."""
     crowd = rule.per_object and not own_object
     combined = rule.combine != "each"
-    source = "SELECT *, false AS nobody, NULL::DOUBLE AS sensor_range_m FROM _point"
+    source = "SELECT *, false AS nobody, NULL::DOUBLE AS sensor_range_m FROM reference_step"
     if crowd:
         # an anchor without a time is unknown whoever is there; nobody there is a row only where the objects are combined
         source = f"""SELECT p.* REPLACE (q.object_id AS object_id), q.object_id IS NULL AND p.t_ns IS NOT NULL AS nobody, s.sensor_range_m
-    FROM _point p JOIN _subject s ON s.drive_id = p.drive_id AND s.ego_id = p.ego_id
+    FROM reference_step p JOIN _subject s ON s.drive_id = p.drive_id AND s.ego_id = p.ego_id
     LEFT JOIN pair q ON q.drive_id = p.drive_id AND q.ego_id = p.ego_id AND q.t_ns = p.t_ns
     WHERE {"true" if combined else "q.object_id IS NOT NULL OR p.t_ns IS NULL"}"""
     on = "g.drive_id = v.drive_id AND g.ego_id = v.ego_id AND g.t_ns = v.t_ns"
@@ -117,7 +117,7 @@ WITH {terms.state(rule)}, _grid AS ({source}
     LEFT JOIN _state v ON {on}
 ), _expected AS (SELECT * FROM _joined WHERE applies IS DISTINCT FROM false
 ){_combination(rule) if combined else ", _series AS (SELECT *, object_id AS who, 1 AS n_same FROM _expected)"}
-SELECT *, 0 AS episode, row_number() OVER (PARTITION BY {_SERIES} ORDER BY t_ns) AS n FROM _series
+SELECT * REPLACE (coalesce(object_id, '') AS object_id, coalesce(who, '') AS who), row_number() OVER (PARTITION BY {_SERIES} ORDER BY t_ns) AS n FROM _series
 """
 
 
@@ -148,11 +148,11 @@ GROUP BY drive_id, ego_id
 def _coverage(rule: Rule) -> str:
     """CTE `_cover`: per reference what keeps its window from being seen whole; NULL: nothing."""
     if rule.subtype != "temporal":
-        return "_cover AS (SELECT ref_id, count(*) AS n_points, NULL::VARCHAR AS problem, min(t_ns) AS t_min, max(t_ns) AS t_max FROM _point GROUP BY ref_id)"
+        return "_cover AS (SELECT ref_id, count(*) AS n_points, NULL::VARCHAR AS problem, min(t_ns) AS t_min, max(t_ns) AS t_max FROM reference_step GROUP BY ref_id)"
     return """_seen AS (
     SELECT o.ref_id, any_value(o.a_ns) AS a_ns, any_value(o.b_ns) AS b_ns, any_value(s.max_gap_ns) AS max_gap_ns, any_value(s.t_start_ns) AS t_start_ns,
         any_value(s.t_end_ns) AS t_end_ns, count(p.t_ns) AS n_points, min(p.t_ns) AS t_min, max(p.t_ns) AS t_max, min(p.seg) AS seg_min, max(p.seg) AS seg_max
-    FROM _occasion o JOIN _subject s ON s.drive_id = o.drive_id AND s.ego_id = o.ego_id LEFT JOIN _point p ON p.ref_id = o.ref_id
+    FROM _occasion o JOIN _subject s ON s.drive_id = o.drive_id AND s.ego_id = o.ego_id LEFT JOIN reference_step p ON p.ref_id = o.ref_id
     GROUP BY o.ref_id
 ), _cover AS (
     SELECT ref_id, n_points, a_ns AS t_min, b_ns AS t_max, CASE
@@ -169,10 +169,10 @@ def outcomes(rule: Rule, own_object: bool) -> str:
     crowd = rule.per_object and not own_object
     decided = "coalesce(n_hold, 0) > 0" if rule.quantifier == "eventually" else "coalesce(n_fail, 0) > 0"
     early, late = ("pass", "fail") if rule.quantifier == "eventually" else ("fail", "pass")
-    who = "nullif(worst.who, '')" if rule.combine != "each" else "object_id"
+    who = "worst.who" if rule.combine != "each" else "object_id"
     none = "CASE WHEN n_points > 0 AND NOT somebody THEN 'nobody_there' ELSE 'outside_conditions' END" if crowd else "'outside_conditions'"
     profiles = "JOIN _profile_set p ON o.drive_id = p.drive_id AND o.ego_id = p.ego_id" if rule.profiled else ""
-    somebody = "o.ref_id IN (SELECT ref_id FROM _point JOIN pair USING (drive_id, ego_id, t_ns))" if crowd else "true"
+    somebody = "o.ref_id IN (SELECT ref_id FROM reference_step JOIN pair USING (drive_id, ego_id, t_ns))" if crowd else "true"
     return f"""
 INSERT INTO _outcome BY NAME
 WITH {_coverage(rule)}, _steps AS (
@@ -184,7 +184,8 @@ WITH {_coverage(rule)}, _steps AS (
         {somebody} AS somebody
     FROM _occasion o {profiles} LEFT JOIN _cover c ON c.ref_id = o.ref_id
 ), _state AS (
-    SELECT o.* EXCLUDE (object_id), {"s.object_id" if crowd and rule.combine == "each" else "o.object_id"} AS object_id, coalesce(s.n_expected, 0) AS n_expected, coalesce(s.n_judged, 0) AS n_judged,
+    SELECT o.* EXCLUDE (object_id), coalesce({"s.object_id" if crowd and rule.combine == "each" else "o.object_id"}, '') AS object_id,
+         coalesce(s.n_expected, 0) AS n_expected, coalesce(s.n_judged, 0) AS n_judged,
         s.n_fail, s.n_hold, s.worst, s.unknown
     FROM _all o LEFT JOIN _steps s ON s.drive_id = o.drive_id AND s.ego_id = o.ego_id AND s.ref_id = o.ref_no AND s.profile = o.profile
 ), _coded AS (
