@@ -39,9 +39,25 @@ CREATE TABLE lane_next (
 
 CREATE TABLE lane_cell (
     environment_id VARCHAR NOT NULL,  -- the map
-    cell BIGINT NOT NULL,             -- 4 m grid cell that the segment's lane area may touch
+    cell BIGINT NOT NULL,             -- 2 m grid cell that the segment's lane area may touch
     lanelet_id VARCHAR NOT NULL,      -- the lanelet
-    k INTEGER NOT NULL                -- its segment
+    drivable BOOLEAN NOT NULL,        -- see lanelet
+    footway BOOLEAN NOT NULL,         -- for people on foot only
+    k INTEGER NOT NULL,               -- the segment
+    s0_m DOUBLE NOT NULL,             -- lanelet station of the segment's start
+    len_m DOUBLE NOT NULL,            -- its length along the centre line
+    x0_m DOUBLE NOT NULL,             -- start
+    y0_m DOUBLE NOT NULL,             -- start
+    tx0 DOUBLE NOT NULL,              -- unit tangent at the start
+    ty0 DOUBLE NOT NULL,              -- unit tangent at the start
+    hw0_m DOUBLE NOT NULL,            -- half width of the lane at the start
+    x1_m DOUBLE NOT NULL,             -- end
+    y1_m DOUBLE NOT NULL,             -- end
+    tx1 DOUBLE NOT NULL,              -- unit tangent at the end
+    ty1 DOUBLE NOT NULL,              -- unit tangent at the end
+    hw1_m DOUBLE NOT NULL,            -- half width of the lane at the end
+    slack0_m DOUBLE NOT NULL,         -- see lane_segment
+    slack1_m DOUBLE NOT NULL          -- see lane_segment
 );
 
 -- ---- time, and what the drive can tell
@@ -61,7 +77,8 @@ CREATE TABLE step (
     t_ns BIGINT NOT NULL,             -- a sample of the ego
     k INTEGER NOT NULL,               -- 0.. in time order
     dt_ns BIGINT,                     -- time since the previous step; NULL: the first
-    seg INTEGER NOT NULL              -- 0.., one more after each hole longer than max_gap_ns
+    seg INTEGER NOT NULL,             -- 0.., one more after each hole longer than max_gap_ns
+    travel_m DOUBLE NOT NULL          -- way made since the first step, between the positions that are known
 );
 
 CREATE TABLE capability (
@@ -97,7 +114,6 @@ CREATE TABLE state_dynamics (
     vy_mps DOUBLE,                    -- velocity north
     speed_mps DOUBLE,                 -- length of the velocity vector
     accel_mps2 DOUBLE,                -- backward difference of speed at the log's own rate, unfiltered; NULL: first sample or after a hole
-    travel_m DOUBLE,                  -- way made since the actor's first sample
     length_m DOUBLE,                  -- box
     width_m DOUBLE,                   -- box
     actor_class VARCHAR,              -- see actor
@@ -134,6 +150,7 @@ CREATE TABLE chain (
     seq INTEGER NOT NULL,             -- order along the chain, from its far end behind
     lanelet_id VARCHAR NOT NULL,      -- the lanelet
     s_start_m DOUBLE NOT NULL,        -- chain station of its start; 0 = start of the first lanelet the ego was on
+    length_m DOUBLE NOT NULL,         -- its length
     t_first_ns BIGINT,                -- the ego drove it with the traffic from this step; NULL: not driven, the way continued straight on
     t_last_ns BIGINT                  -- to this one
 );
@@ -143,32 +160,34 @@ CREATE TABLE corridor (
     ego_id VARCHAR NOT NULL,          -- the ego
     chain_id INTEGER NOT NULL,        -- the running chain
     seq INTEGER NOT NULL,             -- order along the chain
-    k INTEGER NOT NULL,               -- segment within the lanelet
     lanelet_id VARCHAR NOT NULL,      -- the lanelet
-    s0_m DOUBLE NOT NULL,             -- chain station of the segment's start
-    len_m DOUBLE NOT NULL,            -- its length
-    x0_m DOUBLE NOT NULL,             -- start
-    y0_m DOUBLE NOT NULL,             -- start
-    tx0 DOUBLE NOT NULL,              -- unit tangent at the start
-    ty0 DOUBLE NOT NULL,              -- unit tangent at the start
-    hw0_m DOUBLE NOT NULL,            -- half width of the running lane at the start
-    x1_m DOUBLE NOT NULL,             -- end
-    y1_m DOUBLE NOT NULL,             -- end
-    tx1 DOUBLE NOT NULL,              -- unit tangent at the end
-    ty1 DOUBLE NOT NULL,              -- unit tangent at the end
-    hw1_m DOUBLE NOT NULL,            -- half width of the running lane at the end
+    s_start_m DOUBLE NOT NULL,        -- see chain
+    length_m DOUBLE NOT NULL,         -- see chain
+    side INTEGER,                     -- overtaking side: 1 left (right-hand traffic), -1 right; NULL: handedness unknown
     over_width_m DOUBLE,              -- width of the lane beside it on the overtaking side; through a junction, that of the lane before or after it; NULL: there is none
-    over_against BOOLEAN,             -- that lane is driven the other way
-    side INTEGER                      -- overtaking side: 1 left (right-hand traffic), -1 right; NULL: handedness unknown
+    over_against BOOLEAN              -- that lane is driven the other way
 );
 
 CREATE TABLE corridor_cell (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    cell BIGINT NOT NULL,             -- 16 m grid cell that the segment's strip may touch
-    chain_id INTEGER NOT NULL,        -- the running chain
-    seq INTEGER NOT NULL,             -- order along the chain
-    k INTEGER NOT NULL                -- the segment
+    cell BIGINT NOT NULL,             -- 4 m grid cell that the strip beside the segment may touch
+    lanelet_id VARCHAR NOT NULL,      -- a lanelet of any of the ego's chains
+    k INTEGER NOT NULL,               -- the segment
+    s0_m DOUBLE NOT NULL,             -- lanelet station of the segment's start
+    len_m DOUBLE NOT NULL,            -- its length along the centre line
+    x0_m DOUBLE NOT NULL,             -- start
+    y0_m DOUBLE NOT NULL,             -- start
+    tx0 DOUBLE NOT NULL,              -- unit tangent at the start
+    ty0 DOUBLE NOT NULL,              -- unit tangent at the start
+    hw0_m DOUBLE NOT NULL,            -- half width of the lane at the start
+    x1_m DOUBLE NOT NULL,             -- end
+    y1_m DOUBLE NOT NULL,             -- end
+    tx1 DOUBLE NOT NULL,              -- unit tangent at the end
+    ty1 DOUBLE NOT NULL,              -- unit tangent at the end
+    hw1_m DOUBLE NOT NULL,            -- half width of the lane at the end
+    slack0_m DOUBLE NOT NULL,         -- see lane_segment
+    slack1_m DOUBLE NOT NULL          -- see lane_segment
 );
 
 CREATE TABLE ego_corridor (
@@ -237,7 +256,6 @@ CREATE TABLE pair (
     yaw_rad DOUBLE,                   -- its heading
     speed_mps DOUBLE,                 -- its speed
     accel_mps2 DOUBLE,                -- see state_dynamics
-    travel_m DOUBLE,                  -- see state_dynamics
     length_m DOUBLE,                  -- box
     width_m DOUBLE,                   -- box
     distance_m DOUBLE,                -- centre to centre

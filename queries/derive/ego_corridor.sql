@@ -1,7 +1,7 @@
 -- The ego's box in its running chains: centre and corners each placed on its own segment, so that a bend does not tilt the box.
 -- Where a chain meets itself, the station that goes on from the last one counts.
 WITH ego AS (
-    SELECT st.drive_id, st.ego_id, st.t_ns, s.x_m, s.y_m, s.yaw_rad, s.length_m / 2 AS hl, s.width_m / 2 AS hw, s.travel_m
+    SELECT st.drive_id, st.ego_id, st.t_ns, s.x_m, s.y_m, s.yaw_rad, s.length_m / 2 AS hl, s.width_m / 2 AS hw, st.travel_m
     FROM step st
     JOIN state_dynamics s ON s.drive_id = st.drive_id AND s.actor_id = st.ego_id AND s.t_ns = st.t_ns
     WHERE s.x_m IS NOT NULL AND s.y_m IS NOT NULL
@@ -18,31 +18,33 @@ point AS (
 ),
 candidate AS (
     SELECT
-        a.drive_id, a.ego_id, a.t_ns, a.p, a.x_m, a.y_m, g.*,
-        along0(a.x_m, a.y_m, g.x0_m, g.y0_m, g.tx0, g.ty0) AS a0,
-        along1(a.x_m, a.y_m, g.x1_m, g.y1_m, g.tx1, g.ty1) AS a1
+        a.drive_id, a.ego_id, a.t_ns, a.p, a.x_m, a.y_m, c.* EXCLUDE (drive_id, ego_id, cell),
+        along0(a.x_m, a.y_m, c.x0_m, c.y0_m, c.tx0, c.ty0) AS a0,
+        along1(a.x_m, a.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) AS a1
     FROM point a
     JOIN corridor_cell c ON c.drive_id = a.drive_id AND c.ego_id = a.ego_id AND c.cell = corridor_cell_of(a.x_m, a.y_m)
-    JOIN corridor g ON g.drive_id = c.drive_id AND g.ego_id = c.ego_id AND g.chain_id = c.chain_id AND g.seq = c.seq AND g.k = c.k
 ),
-placed AS (
+beside AS (
     SELECT
-        drive_id, ego_id, chain_id, t_ns, p, s0_m + u * len_m AS s_m, d_m, hw0_m + u * (hw1_m - hw0_m) AS half_width_m,
-        atan2(ty0 + u * (ty1 - ty0), tx0 + u * (tx1 - tx0)) AS heading_rad, over_width_m, over_against, side
+        drive_id, ego_id, t_ns, p, lanelet_id, s0_m + u * len_m AS lane_s_m, d_m, hw0_m + u * (hw1_m - hw0_m) AS half_width_m,
+        atan2(ty0 + u * (ty1 - ty0), tx0 + u * (tx1 - tx0)) AS heading_rad
     FROM (
         SELECT *, a0 / (a0 + a1) AS u, offset_left(x_m, y_m, a0 / (a0 + a1), x0_m, y0_m, tx0, ty0, x1_m, y1_m, tx1, ty1) AS d_m
         FROM candidate
-        -- a hair beyond each end, so that joints of lanelets leave no gap
-        WHERE a0 >= -0.02 AND a1 > -0.02 AND a0 + a1 > 0
+        WHERE a0 >= -slack0_m AND a1 > -slack1_m AND a0 + a1 > 0
     )
     WHERE abs(d_m) <= strip_m()
+),
+placed AS (
+    SELECT b.* EXCLUDE (lanelet_id, lane_s_m), c.chain_id, c.s_start_m + b.lane_s_m AS s_m, c.over_width_m, c.over_against, c.side
+    FROM beside b JOIN corridor c USING (drive_id, ego_id, lanelet_id)
 ),
 -- stations that are certain: the lanelet that the ego is on, as it lies in the chain
 fix AS (
     SELECT e.drive_id, e.ego_id, c.chain_id, e.t_ns, c.s_start_m + e.s_m - s.travel_m AS drift_m
     FROM ego_lane e
     JOIN chain c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.lanelet_id = e.lanelet_id
-    JOIN state_dynamics s ON s.drive_id = e.drive_id AND s.actor_id = e.ego_id AND s.t_ns = e.t_ns
+    JOIN step s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.t_ns = e.t_ns
     WHERE e.with_direction AND e.t_ns BETWEEN c.t_first_ns AND c.t_last_ns
 ),
 centre AS (

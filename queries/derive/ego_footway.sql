@@ -16,13 +16,11 @@ point AS (
 ),
 candidate AS (
     SELECT
-        a.drive_id, a.ego_id, a.t_ns, a.p, a.x_m, a.y_m, n.lane_type, n.drivable, g.*,
-        along0(a.x_m, a.y_m, g.x0_m, g.y0_m, g.tx0, g.ty0) AS a0,
-        along1(a.x_m, a.y_m, g.x1_m, g.y1_m, g.tx1, g.ty1) AS a1
+        a.drive_id, a.ego_id, a.t_ns, a.p, a.x_m, a.y_m, c.* EXCLUDE (environment_id, cell),
+        along0(a.x_m, a.y_m, c.x0_m, c.y0_m, c.tx0, c.ty0) AS a0,
+        along1(a.x_m, a.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) AS a1
     FROM point a
-    JOIN lane_cell c ON c.environment_id = a.environment_id AND c.cell = lane_cell_of(a.x_m, a.y_m)
-    JOIN lanelet n ON n.environment_id = c.environment_id AND n.lanelet_id = c.lanelet_id AND (n.drivable OR n.lane_type IN ('sidewalk', 'walking'))
-    JOIN lane_segment g ON g.environment_id = c.environment_id AND g.lanelet_id = c.lanelet_id AND g.k = c.k
+    JOIN lane_cell c ON c.environment_id = a.environment_id AND c.cell = lane_cell_of(a.x_m, a.y_m) AND (c.drivable OR c.footway)
 ),
 inside AS (
     SELECT

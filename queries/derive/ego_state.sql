@@ -1,7 +1,7 @@
 -- Every step of the ego with all that is known of it. Its running chain is that of the last lanelet it drove with the traffic, so
 -- an overtake in the lane beside is seen from the lane that was left; before the first one, it is the first one's.
 WITH running AS (
-    SELECT st.drive_id, st.ego_id, st.t_ns, coalesce(c.chain_id, f.chain_id) AS chain_id
+    SELECT st.drive_id, st.ego_id, st.t_ns, st.travel_m, coalesce(c.chain_id, f.chain_id) AS chain_id
     FROM step st
     ASOF LEFT JOIN (SELECT * FROM chain WHERE t_first_ns IS NOT NULL) c
         ON c.drive_id = st.drive_id AND c.ego_id = st.ego_id AND c.t_first_ns <= st.t_ns
@@ -17,7 +17,7 @@ limited AS (
     GROUP BY ALL
 )
 SELECT
-    r.drive_id, r.ego_id, r.t_ns, s.x_m, s.y_m, s.yaw_rad, s.speed_mps, s.accel_mps2, s.travel_m, s.length_m, s.width_m, s.indicator,
+    r.drive_id, r.ego_id, r.t_ns, s.x_m, s.y_m, s.yaw_rad, s.speed_mps, s.accel_mps2, r.travel_m, s.length_m, s.width_m, s.indicator,
     e.lanelet_id, e.with_direction,
     CASE WHEN n.lanelet_id IS NOT NULL THEN n.junction_id IS NOT NULL END AS in_junction,
     n.road_type, v.limit_mps,

@@ -1,13 +1,19 @@
--- Every 4 m grid cell that the bounding box of a segment's lane area touches.
+-- Every 2 m grid cell that a segment's lane area may touch: those of its bounding box whose centre is within half a diagonal of it.
+-- The segment itself stands in each row, so that placing a point is one join.
 WITH box AS (
     SELECT
-        environment_id, lanelet_id, k,
-        floor((least(x0_m, x1_m) - greatest(hw0_m, hw1_m) - 0.1) / 4)::BIGINT AS ix0,
-        floor((greatest(x0_m, x1_m) + greatest(hw0_m, hw1_m) + 0.1) / 4)::BIGINT AS ix1,
-        floor((least(y0_m, y1_m) - greatest(hw0_m, hw1_m) - 0.1) / 4)::BIGINT AS iy0,
-        floor((greatest(y0_m, y1_m) + greatest(hw0_m, hw1_m) + 0.1) / 4)::BIGINT AS iy1
-    FROM lane_segment
+        g.*, n.drivable, n.lane_type IN ('sidewalk', 'walking') AS footway, greatest(hw0_m, hw1_m) + 0.1 AS reach_m,
+        floor((least(x0_m, x1_m) - greatest(hw0_m, hw1_m) - 0.1) / 2)::BIGINT AS ix0,
+        floor((greatest(x0_m, x1_m) + greatest(hw0_m, hw1_m) + 0.1) / 2)::BIGINT AS ix1,
+        floor((least(y0_m, y1_m) - greatest(hw0_m, hw1_m) - 0.1) / 2)::BIGINT AS iy0,
+        floor((greatest(y0_m, y1_m) + greatest(hw0_m, hw1_m) + 0.1) / 2)::BIGINT AS iy1
+    FROM lane_segment g JOIN lanelet n USING (environment_id, lanelet_id)
 ),
-columns_ AS (SELECT *, unnest(range(ix0, ix1 + 1)) AS ix FROM box)
-SELECT environment_id, cell_key(ix, iy) AS cell, lanelet_id, k
-FROM (SELECT *, unnest(range(iy0, iy1 + 1)) AS iy FROM columns_)
+columns_ AS (SELECT *, unnest(range(ix0, ix1 + 1)) AS ix FROM box),
+cells AS (SELECT *, unnest(range(iy0, iy1 + 1)) AS iy FROM columns_)
+SELECT
+    environment_id, cell_key(ix, iy) AS cell, lanelet_id, drivable, footway, k,
+    s0_m, len_m, x0_m, y0_m, tx0, ty0, hw0_m, x1_m, y1_m, tx1, ty1, hw1_m, slack0_m, slack1_m
+FROM cells
+WHERE along0(2 * ix + 1, 2 * iy + 1, x0_m, y0_m, tx0, ty0) > -1.5 AND along1(2 * ix + 1, 2 * iy + 1, x1_m, y1_m, tx1, ty1) > -1.5
+    AND abs(offset_left(2 * ix + 1, 2 * iy + 1, 0.5, x0_m, y0_m, tx0, ty0, x1_m, y1_m, tx1, ty1)) < reach_m + 2

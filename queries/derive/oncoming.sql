@@ -1,7 +1,7 @@
 -- Who comes towards the ego on the lane that it would overtake in (paper: OV and DA), and how far that can be told.
 -- A vehicle that comes from another lane counts from 15 s before it gets there, at the distance that it then really made.
 WITH reach AS (
-    SELECT c.drive_id, c.ego_id, c.chain_id, max(c.s0_m + c.len_m) AS end_m, max({'seq': c.seq, 'id': c.lanelet_id}).id AS last_id
+    SELECT c.drive_id, c.ego_id, c.chain_id, max(c.s_start_m + c.length_m) AS end_m, max({'seq': c.seq, 'id': c.lanelet_id}).id AS last_id
     FROM corridor c
     GROUP BY ALL
 ),
@@ -17,7 +17,7 @@ ego AS (
     WHERE e.front_s_m IS NOT NULL AND x.side IS NOT NULL
 ),
 against AS (
-    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.rear_s_m, p.travel_m, p.speed_mps, p.rear_s_m - e.front_s_m AS da_m
+    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.rear_s_m, p.speed_mps, p.rear_s_m - e.front_s_m AS da_m
     FROM pair p
     JOIN ego e USING (drive_id, ego_id, t_ns)
     WHERE may_be_vehicle(p.actor_class) AND p.s_m > e.s_m AND abs(p.heading_diff_rad) > 2 * pi() / 3
@@ -26,15 +26,26 @@ against AS (
         AND e.side * p.d_m + p.lat_half_m > CASE WHEN p.speed_mps <= standing_mps() THEN p.half_width_m + over_boundary_m() ELSE -p.half_width_m END
 ),
 entry AS (
-    SELECT drive_id, ego_id, object_id, min({'t_ns': t_ns, 's_m': rear_s_m, 'travel_m': travel_m}) AS e FROM against GROUP BY ALL
+    SELECT drive_id, ego_id, object_id, min({'t_ns': t_ns, 's_m': rear_s_m}) AS e FROM against GROUP BY ALL
 ),
-coming AS (
-    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.speed_mps, y.e.s_m - e.front_s_m + y.e.travel_m - p.travel_m AS da_m
+-- the way that it still had to make, from each of the steps before it got there
+approach AS (
+    SELECT
+        p.drive_id, p.ego_id, p.t_ns, p.object_id, p.speed_mps, p.x_m, y.e.s_m AS entry_s_m,
+        sqrt((p.x_m - lead(p.x_m) OVER w) ** 2 + (p.y_m - lead(p.y_m) OVER w) ** 2) AS step_m, p.t_ns = y.e.t_ns AS there
     FROM entry y
     JOIN pair p ON p.drive_id = y.drive_id AND p.ego_id = y.ego_id AND p.object_id = y.object_id
-        AND p.t_ns < y.e.t_ns AND p.t_ns >= y.e.t_ns - 15_000_000_000
-    JOIN ego e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
-    WHERE p.x_m IS NOT NULL AND y.e.s_m > e.front_s_m
+        AND p.t_ns <= y.e.t_ns AND p.t_ns >= y.e.t_ns - 15_000_000_000
+    WINDOW w AS (PARTITION BY p.drive_id, p.ego_id, p.object_id ORDER BY p.t_ns)
+),
+coming AS (
+    SELECT a.drive_id, a.ego_id, a.t_ns, a.object_id, a.speed_mps, a.entry_s_m - e.front_s_m + a.way_m AS da_m
+    FROM (
+        SELECT *, sum(coalesce(step_m, 0.0)) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns DESC ROWS UNBOUNDED PRECEDING) AS way_m
+        FROM approach
+    ) a
+    JOIN ego e USING (drive_id, ego_id, t_ns)
+    WHERE NOT a.there AND a.x_m IS NOT NULL AND a.entry_s_m > e.front_s_m
 ),
 nearest AS (
     SELECT drive_id, ego_id, t_ns, min({'da_m': da_m, 'object_id': object_id, 'speed_mps': speed_mps, 'way': way}) AS o

@@ -3,11 +3,11 @@
 -- Angle wrapped to [-pi, pi).
 CREATE OR REPLACE MACRO wrap_rad(a) AS a - 2 * pi() * floor((a + pi()) / (2 * pi()));
 
--- Keys of the 4 m grid that finds lanes and of the 16 m grid that finds corridors.
+-- Keys of the 2 m grid that finds lanes and of the 4 m grid that finds corridors.
 -- The factor keeps cells of one map apart: no map is 4,000 km high.
 CREATE OR REPLACE MACRO cell_key(ix, iy) AS ix::BIGINT * 1000003 + iy::BIGINT;
-CREATE OR REPLACE MACRO lane_cell_of(x, y) AS cell_key(floor(x / 4), floor(y / 4));
-CREATE OR REPLACE MACRO corridor_cell_of(x, y) AS cell_key(floor(x / 16), floor(y / 16));
+CREATE OR REPLACE MACRO lane_cell_of(x, y) AS cell_key(floor(x / 2), floor(y / 2));
+CREATE OR REPLACE MACRO corridor_cell_of(x, y) AS cell_key(floor(x / 4), floor(y / 4));
 
 -- A segment of a centre line with unit tangents t0, t1 at its ends claims the points between the normals at its ends:
 -- a0 >= 0 behind the first, a1 > 0 before the second. Consecutive segments share a tangent, so they tile the strip.
