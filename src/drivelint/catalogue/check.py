@@ -52,9 +52,11 @@ def inspect(sql: str, where: str) -> Query:
     if len(statements) != 1 or statements[0].type != duckdb.StatementType.SELECT:
         raise RuleError(f"{where}: a section is exactly one SELECT, found {len(statements)} statement(s)")
     row = con.execute("SELECT json_serialize_sql(?)", [sql]).fetchone()
-    tree = json.loads(row[0]) if row else {"error": True}
+    tree: dict[str, Any] = json.loads(row[0]) if row else {"error": True}
     if tree.get("error") or len(tree["statements"]) != 1:
-        raise RuleError(f"{where}: only a plain SELECT can be checked: {tree.get('error_message', 'not one statement')}")
+        raise RuleError(
+            f"{where}: only a plain SELECT can be checked: {tree.get('error_message', 'not one statement')}"
+        )
     found = _Found()
     found.walk(tree["statements"][0]["node"])
     _allow(found, where)
@@ -105,7 +107,9 @@ def _allow(found: _Found, where: str) -> None:
     known = store.schema().keys() | GIVEN
     shadow = sorted(name for name in found.ctes if name in known or name.startswith("_"))
     if shadow:
-        raise RuleError(f"{where}: rename the CTE {shadow[0]!r}: it hides a table, or begins with _ like the engine's own")
+        raise RuleError(
+            f"{where}: rename the CTE {shadow[0]!r}: it hides a table, or begins with _ like the engine's own"
+        )
     strange = sorted(found.tables - found.ctes - known)
     if strange:
         raise RuleError(f"{where}: there is no table {strange[0]!r}; rules read the tables of schemas/*.sql only")

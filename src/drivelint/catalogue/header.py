@@ -115,23 +115,51 @@ def _contradiction(h: Header) -> tuple[str, str] | None:
     later = h.kind in {"precondition", "postcondition"}
     seconds = {"window_s": h.window_s, "exempt_after_s": h.exempt_after_s, "merge_gap_s": h.merge_gap_s}
     checks: list[tuple[bool, str, str]] = [
-        (later != (h.subtype is not None), "subtype" if h.subtype else "kind", "subtype (temporal or physical) belongs to pre- and postconditions, and they need it"),
-        ((h.subtype == "temporal") != (h.window_s is not None), "window_s", "window_s belongs to temporal conditions, and they need it"),
-        (h.quantifier == "eventually" and not later, "quantifier", f"quantifier = 'eventually' makes no sense for an {h.kind}: use a pre- or postcondition"),
-        (h.combine != "each" and h.kind == "invariant", "combine", "an invariant is judged per object: combine is for conditions at a reference point"),
+        (
+            later != (h.subtype is not None),
+            "subtype" if h.subtype else "kind",
+            "subtype (temporal or physical) belongs to pre- and postconditions, and they need it",
+        ),
+        (
+            (h.subtype == "temporal") != (h.window_s is not None),
+            "window_s",
+            "window_s belongs to temporal conditions, and they need it",
+        ),
+        (
+            h.quantifier == "eventually" and not later,
+            "quantifier",
+            f"quantifier = 'eventually' makes no sense for an {h.kind}: use a pre- or postcondition",
+        ),
+        (
+            h.combine != "each" and h.kind == "invariant",
+            "combine",
+            "an invariant is judged per object: combine is for conditions at a reference point",
+        ),
         (h.sense != "holds" and h.unit is None, "sense", "unit is missing: a measured condition says in which unit"),
-        (h.sense == "holds" and h.near_margin is not None, "near_margin", "near_margin needs a measured condition, not sense = 'holds'"),
+        (
+            h.sense == "holds" and h.near_margin is not None,
+            "near_margin",
+            "near_margin needs a measured condition, not sense = 'holds'",
+        ),
         (h.kind == "invariant" and h.reference is not None, "reference", "an invariant has no reference point"),
         (h.kind != "invariant" and h.exempt_after_s != 0, "exempt_after_s", "exempt_after_s is for invariants"),
         (not h.reads, "reads", "reads must name the tables that the rule reads"),
     ]
     for name in h.params:
-        checks.append((not _NAME.fullmatch(name), name, f"parameter {name!r}: use lower-case letters, digits and _, starting with a letter"))
+        checks.append(
+            (
+                not _NAME.fullmatch(name),
+                name,
+                f"parameter {name!r}: use lower-case letters, digits and _, starting with a letter",
+            )
+        )
     for key, value in seconds.items():
         if isinstance(value, str):
             default = h.params[value].default if value in h.params else None
             good = isinstance(default, float) and default >= 0
-            checks.append((not good, key, f"{key} = {value!r} must be a number or the name of a numeric parameter of this rule"))
+            checks.append(
+                (not good, key, f"{key} = {value!r} must be a number or the name of a numeric parameter of this rule")
+            )
         elif value is not None:
             checks.append((not 0 <= value < 1e9, key, f"{key} must be a number of seconds, not {value}"))
     return next(((key, message) for broken, key, message in checks if broken), None)

@@ -20,7 +20,19 @@ if TYPE_CHECKING:
 
 _STEM = re.compile(r"[a-z0-9][a-z0-9.-]*")
 _KEYS = ("drive_id", "ego_id", "t_ns")
-_CONDITION = (*_KEYS, "object_id", "ref_id", "profile", "observed", "required", "holds", "applies", "at_least", "reason_code", "reason")
+_CONDITION = (
+    *_KEYS,
+    "object_id",
+    "ref_id",
+    "profile",
+    "observed",
+    "required",
+    "holds",
+    "applies",
+    "at_least",
+    "reason_code",
+    "reason",
+)
 
 
 class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -65,7 +77,9 @@ def load(dirs: Sequence[Path] = ()) -> dict[str, Rule]:
     for file in files:
         rule = read_rule(file)
         if rule.id in rules:
-            raise RuleError(f"{file}: rule {rule.id} exists already in {rules[rule.id].path}; give this one another name or pack")
+            raise RuleError(
+                f"{file}: rule {rule.id} exists already in {rules[rule.id].path}; give this one another name or pack"
+            )
         rules[rule.id] = rule
     return dict(sorted(rules.items()))
 
@@ -75,7 +89,9 @@ def read_rule(file: Path) -> Rule:
     pack = file.resolve().parent.name
     for part, what in ((pack, "folder"), (file.stem, "file")):
         if not _STEM.fullmatch(part):
-            raise RuleError(f"{file}: the {what} name {part!r} makes no rule id: lower-case letters, digits, '.' and '-' only")
+            raise RuleError(
+                f"{file}: the {what} name {part!r} makes no rule id: lower-case letters, digits, '.' and '-' only"
+            )
     content = file.read_bytes()
     try:
         text = content.decode("utf-8")
@@ -104,10 +120,14 @@ def read_rule(file: Path) -> Rule:
 def _event_table(table: str, sections: dict[str, Section], file: Path) -> dict[str, Section]:
     """Let the header's `reference = "table"` stand for a @reference section over that event table."""
     if "reference" in sections:
-        raise RuleError(f"{file}:{sections['reference'].line}: the header names an event table already: drop it or @reference")
+        raise RuleError(
+            f"{file}:{sections['reference'].line}: the header names an event table already: drop it or @reference"
+        )
     columns = store.schema().get(table, {})
     if not set(_KEYS) <= columns.keys():
-        raise RuleError(f"{file}:1: reference = {table!r} is no event table: it needs the columns drive_id, ego_id, t_ns")
+        raise RuleError(
+            f"{file}:1: reference = {table!r} is no event table: it needs the columns drive_id, ego_id, t_ns"
+        )
     return {**sections, "reference": Section(f"SELECT {', '.join(columns)} FROM {table}", 1)}
 
 
@@ -117,9 +137,15 @@ def _check_sections(header: Header, sections: dict[str, Section], queries: dict[
     for name, needed in wanted.items():
         if needed != (name in sections):
             line = sections[name].line if name in sections else 1
-            raise RuleError(f"{file}:{line}: a {header.subtype or ''} {header.kind} {'needs' if needed else 'has no'} section @{name}".replace("  ", " "))
+            raise RuleError(
+                f"{file}:{line}: a {header.subtype or ''} {header.kind} {'needs' if needed else 'has no'} section @{name}".replace(
+                    "  ", " "
+                )
+            )
     if "applies" in sections and header.kind != "invariant":
-        raise RuleError(f"{file}:{sections['applies'].line}: @applies is for invariants; return a column 'applies' from the condition instead")
+        raise RuleError(
+            f"{file}:{sections['applies'].line}: @applies is for invariants; return a column 'applies' from the condition instead"
+        )
     measured = ("holds",) if header.sense == "holds" else ("observed", "required")
     contracts: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         "condition": ((*_KEYS, *measured), _CONDITION),
@@ -137,7 +163,9 @@ def _check_sections(header: Header, sections: dict[str, Section], queries: dict[
     _check_condition(header, queries["condition"], f"{file}:{sections['condition'].line}: @condition")
 
 
-def _check_columns(columns: tuple[str, ...] | None, needed: tuple[str, ...], allowed: tuple[str, ...], where: str) -> None:
+def _check_columns(
+    columns: tuple[str, ...] | None, needed: tuple[str, ...], allowed: tuple[str, ...], where: str
+) -> None:
     if columns is None:
         raise RuleError(f"{where} must name every column it returns: no star, and AS for every expression")
     if len(set(columns)) != len(columns):
@@ -148,7 +176,10 @@ def _check_columns(columns: tuple[str, ...] | None, needed: tuple[str, ...], all
     stray = [c for c in columns if c not in allowed]
     if stray:
         near = get_close_matches(stray[0], allowed, n=1)
-        raise RuleError(f"{where} returns the unknown column {stray[0]!r}; " + (f"did you mean {near[0]!r}?" if near else f"known are {', '.join(allowed)}"))
+        raise RuleError(
+            f"{where} returns the unknown column {stray[0]!r}; "
+            + (f"did you mean {near[0]!r}?" if near else f"known are {', '.join(allowed)}")
+        )
 
 
 def _check_condition(header: Header, query: Query, where: str) -> None:
@@ -158,7 +189,9 @@ def _check_condition(header: Header, query: Query, where: str) -> None:
     if found := sorted(wrong & set(columns)):
         raise RuleError(f"{where}: column {found[0]!r} does not go with sense = {header.sense!r}")
     if ("ref_id" in columns) != bool(GIVEN & query.tables):
-        raise RuleError(f"{where}: a condition that reads reference or reference_step returns ref_id, and no other does")
+        raise RuleError(
+            f"{where}: a condition that reads reference or reference_step returns ref_id, and no other does"
+        )
     if header.combine != "each" and "object_id" not in columns:
         raise RuleError(f"{where}: combine = {header.combine!r} needs the column object_id")
 
@@ -179,7 +212,9 @@ def _check_reads(header: Header, queries: dict[str, Query], file: Path) -> None:
 def _check_params(header: Header, queries: dict[str, Query], file: Path) -> None:
     used = frozenset[str]().union(*(query.parameters for query in queries.values()))
     if strange := sorted(used - header.params.keys()):
-        raise RuleError(f"{file}:1: ${strange[0]} is not a parameter of this rule; add [params.{strange[0]}] to the header")
+        raise RuleError(
+            f"{file}:1: ${strange[0]} is not a parameter of this rule; add [params.{strange[0]}] to the header"
+        )
     used |= {s for s in (header.window_s, header.exempt_after_s, header.merge_gap_s) if isinstance(s, str)}
     if unused := sorted(header.params.keys() - used):
         raise RuleError(f"{file}:1: parameter {unused[0]!r} is never used")

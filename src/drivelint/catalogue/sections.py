@@ -32,7 +32,10 @@ def split(text: str, where: str) -> tuple[str, dict[str, Section]]:
     for (start, name), end in zip(marks, [n for n, _ in marks[1:]] + [len(lines)], strict=True):
         if name not in NAMES:
             near = get_close_matches(name, NAMES, n=1)
-            raise RuleError(f"{where}:{start + 1}: unknown section @{name}; " + (f"did you mean @{near[0]}?" if near else f"known are {', '.join(NAMES)}"))
+            raise RuleError(
+                f"{where}:{start + 1}: unknown section @{name}; "
+                + (f"did you mean @{near[0]}?" if near else f"known are {', '.join(NAMES)}")
+            )
         if name in sections:
             raise RuleError(f"{where}:{start + 1}: section @{name} stands twice")
         body = "\n".join(lines[start + 1 : end]).strip()
@@ -48,5 +51,7 @@ def _uncomment(line: str, n: int, where: str) -> str:
     if not line.strip():
         return ""
     if not line.startswith("--"):
-        raise RuleError(f"{where}:{n}: only '-- ' comment lines (the header) may stand before the first '-- @section' line")
+        raise RuleError(
+            f"{where}:{n}: only '-- ' comment lines (the header) may stand before the first '-- @section' line"
+        )
     return line[2:].removeprefix(" ")

@@ -15,7 +15,9 @@ if TYPE_CHECKING:
     from drivelint.catalogue.load import Rule
 
 
-def select(rules: Mapping[str, Rule], include: Sequence[str], ignore: Sequence[str], *, default_pack: str = "ukhc") -> list[Rule]:
+def select(
+    rules: Mapping[str, Rule], include: Sequence[str], ignore: Sequence[str], *, default_pack: str = "ukhc"
+) -> list[Rule]:
     """Return the selected rules, sorted by id.
 
     A selector is an id, a glob over ids or a pack. None given: the stable rules of `default_pack`. A deprecated rule is chosen only
@@ -38,7 +40,9 @@ def _matching(rules: Mapping[str, Rule], selector: str) -> list[Rule]:
         return [rules[selector]]
     found = [rule for rule in rules.values() if rule.pack == selector or fnmatchcase(rule.id, selector)]
     if not found:
-        raise UsageError(f"no rule, pack or glob matches {selector!r}{_nearest(selector, [*rules, *(r.pack for r in rules.values())])}")
+        raise UsageError(
+            f"no rule, pack or glob matches {selector!r}{_nearest(selector, [*rules, *(r.pack for r in rules.values())])}"
+        )
     return [rule for rule in found if rule.status != "deprecated"]
 
 
@@ -50,7 +54,9 @@ def _nearest(word: str, known: Iterable[str]) -> str:
     return f"; did you mean {names[near[0]]!r}?" if near else ""
 
 
-def parse_params(rules: Mapping[str, Rule] | Iterable[Rule], settings: Sequence[str]) -> dict[str, dict[str, float | str | bool]]:
+def parse_params(
+    rules: Mapping[str, Rule] | Iterable[Rule], settings: Sequence[str]
+) -> dict[str, dict[str, float | str | bool]]:
     """Read `RULE.PARAM=VALUE` settings into rule id -> parameter -> value, typed like the parameter's default.
 
     Errors: `UsageError` for a setting without '=', an unknown rule or parameter (with the nearest one), or a value of another type.

@@ -89,7 +89,9 @@ class _Run:
         expected = -1
         if quick:
             self._run(invariant.first_pass(rule, partial), binding)
-            expected = self._count(f"SELECT coalesce(sum(n), 0)::BIGINT FROM _group WHERE rule_no = {binding.no} AND NOT clean")
+            expected = self._count(
+                f"SELECT coalesce(sum(n), 0)::BIGINT FROM _group WHERE rule_no = {binding.no} AND NOT clean"
+            )
             if not expected:
                 return
         made = self._run(invariant.second_pass(rule, partial, quick), binding)

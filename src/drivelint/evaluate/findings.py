@@ -15,7 +15,9 @@ _SERIES = "drive_id, ego_id, object_id, profile, ref_id"
 def stretches(rule: Rule) -> str:
     """SQL that appends to `_stretch` the failing runs of `_judged`, those closer than merge_gap_s as one; never across a hole."""
     combined = rule.combine != "each"
-    follows, order = ("k - lag(k) OVER w <= 1", "t_ns, label") if rule.kind == "invariant" else ("n - lag(n) OVER w = 1", "t_ns")
+    follows, order = (
+        ("k - lag(k) OVER w <= 1", "t_ns, label") if rule.kind == "invariant" else ("n - lag(n) OVER w = 1", "t_ns")
+    )
     failed = ""
     if rule.quantifier == "eventually":
         # its condition may well not hold at steps of a window that is kept, or unknown: no findings there

@@ -131,7 +131,11 @@ def second_pass(rule: Rule, partial: bool, unsettled: bool) -> str:
     who = ""
     if rule.per_object:
         # an author's own grid may hold a step at which it is not known which object is meant
-        who = " AND g.object_id IS NOT DISTINCT FROM v.object_id" if "applies" in rule.sections else " AND g.object_id = v.object_id"
+        who = (
+            " AND g.object_id IS NOT DISTINCT FROM v.object_id"
+            if "applies" in rule.sections
+            else " AND g.object_id = v.object_id"
+        )
     profile = " AND p.profile = v.profile" if rule.profiled else ""
     profiles = "JOIN _profile_set p ON g.drive_id = p.drive_id AND g.ego_id = p.ego_id" if rule.profiled else ""
     final = "SELECT * FROM _steps"

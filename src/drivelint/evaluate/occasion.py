@@ -170,9 +170,15 @@ def outcomes(rule: Rule, own_object: bool) -> str:
     decided = "coalesce(n_hold, 0) > 0" if rule.quantifier == "eventually" else "coalesce(n_fail, 0) > 0"
     early, late = ("pass", "fail") if rule.quantifier == "eventually" else ("fail", "pass")
     who = "worst.who" if rule.combine != "each" else "object_id"
-    none = "CASE WHEN n_points > 0 AND NOT somebody THEN 'nobody_there' ELSE 'outside_conditions' END" if crowd else "'outside_conditions'"
+    none = (
+        "CASE WHEN n_points > 0 AND NOT somebody THEN 'nobody_there' ELSE 'outside_conditions' END"
+        if crowd
+        else "'outside_conditions'"
+    )
     profiles = "JOIN _profile_set p ON o.drive_id = p.drive_id AND o.ego_id = p.ego_id" if rule.profiled else ""
-    somebody = "o.ref_id IN (SELECT ref_id FROM reference_step JOIN pair USING (drive_id, ego_id, t_ns))" if crowd else "true"
+    somebody = (
+        "o.ref_id IN (SELECT ref_id FROM reference_step JOIN pair USING (drive_id, ego_id, t_ns))" if crowd else "true"
+    )
     return f"""
 INSERT INTO _outcome BY NAME
 WITH {_coverage(rule)}, _steps AS (

@@ -71,7 +71,10 @@ def prepare(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> dict
     needs = [(b.no, pos, signal) for b in bindings for pos, signal in enumerate(b.rule.requires)]
     if needs:
         no, pos, signal = (list(column) for column in zip(*needs, strict=True))
-        con.execute("INSERT INTO _needs SELECT unnest($no), unnest($pos), unnest($signal)", {"no": no, "pos": pos, "signal": signal})
+        con.execute(
+            "INSERT INTO _needs SELECT unnest($no), unnest($pos), unnest($signal)",
+            {"no": no, "pos": pos, "signal": signal},
+        )
     con.execute(_GATED)
     con.execute(_TODO)
     counts = con.execute("SELECT rule_no, count(*) FROM _todo GROUP BY rule_no").fetchall()

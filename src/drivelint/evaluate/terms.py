@@ -26,7 +26,9 @@ class Binding:
         self.no = no
         unknown = sorted(overrides.keys() - rule.params.keys())
         if unknown:
-            raise UsageError(f"rule {rule.id} has no parameter {unknown[0]!r}; it has: {', '.join(rule.params) or 'none'}")
+            raise UsageError(
+                f"rule {rule.id} has no parameter {unknown[0]!r}; it has: {', '.join(rule.params) or 'none'}"
+            )
         params: dict[str, object] = {name: param.default for name, param in rule.params.items()} | dict(overrides)
         self._values: dict[str, object] = {**params, "_no": no, "_road_types": list(rule.applies.road_types)}
         for field, name in _ENGINE.items():
@@ -123,7 +125,11 @@ FIRST_UNKNOWN = "min({'t': coalesce(t_ns, 9223372036854775807), 'code': coalesce
 def numbers(rule: Rule, worst_of: str) -> str:
     """Return the columns observed, required, margin of an outcome from its worst step. Infinity is stored as NULL."""
     sign = "-" if rule.quantifier == "eventually" else ""
-    margin = "NULL::DOUBLE" if rule.sense == "holds" else f"CASE WHEN {worst_of}.holds IS NOT NULL THEN {finite(f'({sign}{worst_of}.g)')} END"
+    margin = (
+        "NULL::DOUBLE"
+        if rule.sense == "holds"
+        else f"CASE WHEN {worst_of}.holds IS NOT NULL THEN {finite(f'({sign}{worst_of}.g)')} END"
+    )
     return f"{finite(worst_of + '.observed')} AS observed, {finite(worst_of + '.required')} AS required, {margin} AS margin"
 
 

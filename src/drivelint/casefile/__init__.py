@@ -1,0 +1,198 @@
+"""`<rule>.cases.yml`, the regression cases beside every rule, and their harness.
+
+A list of cases; each fills tables with a tiny scene, judges the rule, and says what must come out:
+
+    - name: faster than the limit            # shows: violation, if the name does not say it
+      given:
+        step: {t_s: 0..10 by 0.1}
+        ego_state: {t_s: 0..10 by 0.1, speed_mps: {else: 12, 5.0..5.3: 14}, limit_mps: 13.4}
+      params: {tolerance_mps: 0.2}           # optional
+      missing: [indicator]                   # signals the log does not have; everything else the rule requires is there
+      expect: [{verdict: fail, t_worst_s: 5.0, margin: -0.6}]
+      findings: 1                            # optional
+
+* `given`: table -> a block or a list of blocks. A column is a scalar (broadcast), a list, a range `a..b by c` (ends included) or
+  `a..b` (spread over the block's length), or by time `{else: v, 5.0..5.3: w, 7.2: u}`. Seconds may stand for nanoseconds: `t_s` for `t_ns`.
+  Drive 'd', ego 'e' and every other column that must not be NULL have defaults; the rest is NULL.
+* `step`: only `t_s` is needed. Without it the steps are the times used in the other tables. `clock` and the rest of `step` are
+  worked out (hole = longer than 2.5 median periods); a block `clock: {max_gap_s: 1}` replaces what it names.
+* `expect`: a verdict, which then every row must have, or the list of all rows in order of time, profile and object, each with the
+  columns that matter (`t_worst_s` for `t_worst_ns`; of `reason` a part is enough). Numbers must agree to the decimals written, at least two; 12 means 12.00.
+* Over its cases a rule must show `clean`, `violation`, `boundary`, `not_applicable` and `unknown`: words of the name, or `shows:`.
+"""
+
+from __future__ import annotations
+
+import re
+from decimal import Decimal
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import msgspec
+import yaml
+
+from drivelint.casefile.scene import Row, column_of, database, fill, scene
+from drivelint.errors import RuleError
+from drivelint.evaluate import evaluate
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import duckdb
+
+    from drivelint.catalogue import Rule
+
+SHOWS = ("clean", "violation", "boundary", "not_applicable", "unknown")
+_FOUND = "drive_id, ego_id, t_start_ns, profile NULLS LAST, object_id NULLS LAST, occurrence"
+_ORDER = (
+    "drive_id, ego_id, coalesce(t_ref_ns, t_start_ns) NULLS LAST, profile NULLS LAST, object_id NULLS LAST, occurrence"
+)
+
+
+class CaseResult(NamedTuple):
+    """One case: its name, whether what came out is what it expects, and the difference if not."""
+
+    name: str
+    ok: bool
+    message: str
+
+
+class Case(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """One case as written."""
+
+    name: str
+    given: dict[str, Any]
+    expect: str | list[dict[str, Any]]
+    shows: str | tuple[str, ...] = ()
+    params: dict[str, Any] = {}
+    missing: tuple[str, ...] = ()
+    findings: int | None = None
+
+    def categories(self) -> set[str]:
+        """Return which of SHOWS this case shows, by its own word or by its name."""
+        said = {self.shows} if isinstance(self.shows, str) else set(self.shows)
+        words = re.sub(r"[\s_-]+", "_", self.name.lower())
+        return said or {name for name in SHOWS if re.search(rf"(^|_){name}(_|$)", re.sub(r"[^a-z_]", "", words))}
+
+
+class _Loader(yaml.SafeLoader):
+    """YAML in which `off` and `on` are words: an indicator is off, not false."""
+
+
+_Loader.yaml_implicit_resolvers = {
+    first: [(tag, pattern) for tag, pattern in resolvers if tag != "tag:yaml.org,2002:bool"]
+    for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
+}
+_Loader.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile(r"^(?:true|false)$"), list("tf"))
+
+
+def read_cases(rule: Rule) -> list[Case]:
+    """Read the rule's cases. Errors: `RuleError` where the file is missing, is not YAML, or says what is not understood."""
+    file = rule.path.with_suffix(".cases.yml")
+    try:
+        raw = yaml.load(file.read_text(encoding="utf-8"), Loader=_Loader)  # noqa: S506 - a safe loader with fewer booleans
+        cases = msgspec.convert(raw, list[Case])
+    except FileNotFoundError as error:
+        raise RuleError(
+            f"{file}: rule {rule.id} has no cases; write clean, violation, boundary, not applicable and unknown"
+        ) from error
+    except yaml.YAMLError as error:
+        raise RuleError(f"{file}: not YAML: {' '.join(str(error).split())}") from error
+    except msgspec.ValidationError as error:
+        raise RuleError(f"{file}: {error}") from error
+    names = [case.name for case in cases]
+    if len(set(names)) != len(names):
+        raise RuleError(f"{file}: two cases have the same name: {next(n for n in names if names.count(n) > 1)!r}")
+    return cases
+
+
+def run_cases(rule: Rule) -> list[CaseResult]:
+    """Run every case beside the rule, in order, and one more result: that all kinds of case are there and say what they mean.
+
+    Errors: `RuleError` for a cases file that cannot be read.
+    """
+    cases = read_cases(rule)
+    results = [run_case(rule, case) for case in cases]
+    problem = _coverage(cases)
+    return [*results, CaseResult("kinds of case", not problem, problem)]
+
+
+def _coverage(cases: Sequence[Case]) -> str:
+    shown = {name for case in cases for name in case.categories()}
+    if unknown := sorted(shown - set(SHOWS)):
+        return f"shows: {unknown[0]!r} is not one of {', '.join(SHOWS)}"
+    if lacking := [name for name in SHOWS if name not in shown]:
+        return f"no case shows: {', '.join(lacking)}"
+    honest = {"clean": "pass", "violation": "fail", "not_applicable": "not_applicable", "unknown": "unknown"}
+    for case in cases:
+        verdicts = {case.expect} if isinstance(case.expect, str) else {row.get("verdict") for row in case.expect}
+        for name in sorted(case.categories() & honest.keys()):
+            if honest[name] not in verdicts:
+                return f"case {case.name!r} shows {name} but expects no {honest[name]}"
+    return ""
+
+
+def run_case(rule: Rule, case: Case) -> CaseResult:
+    """Fill a scene, judge it by this rule alone, compare."""
+    verdicts, findings = judge(rule, case)
+    message = _difference(case.expect, verdicts)
+    if not message and case.findings not in {None, len(findings)}:
+        message = f"expected {case.findings} findings, got {len(findings)}"
+    return CaseResult(case.name, not message, message)
+
+
+def judge(rule: Rule, case: Case) -> tuple[list[Row], list[Row]]:
+    """Return the verdict rows (in the order that `expect` uses) and the finding rows of a case.
+
+    Errors: `RuleError` for tables, columns or values that cannot be understood.
+    """
+    con = database()
+    filled = ["verdict", "finding", "margin"]
+    try:
+        for table, rows in scene(rule, case.given, case.missing, f"{rule.id}, case {case.name!r}").items():
+            filled.append(table)
+            fill(con, table, rows)
+        evaluate(con, [rule], {rule.id: case.params})
+        return _fetch(con, f"SELECT * FROM verdict ORDER BY {_ORDER}"), _fetch(
+            con, f"SELECT * FROM finding ORDER BY {_FOUND}"
+        )
+    finally:
+        con.execute(";".join(f"DELETE FROM {table}" for table in filled))
+
+
+def _fetch(con: duckdb.DuckDBPyConnection, sql: str) -> list[Row]:
+    result = con.execute(sql)
+    names = [column[0] for column in result.description or ()]
+    return [dict(zip(names, row, strict=True)) for row in result.fetchall()]
+
+
+def _difference(expect: str | Sequence[Mapping[str, Any]], rows: Sequence[Row]) -> str:
+    """Return '' where the rows are as expected, else one line that says how they differ."""
+    got = "; ".join(_brief(row) for row in rows)
+    if isinstance(expect, str):
+        wrong = [row for row in rows if row["verdict"] != expect]
+        return f"expected {expect}, got {got}" if wrong or not rows else ""
+    if len(expect) != len(rows):
+        return f"expected {len(expect)} rows, got {len(rows)}: {got}"
+    for n, (wanted, row) in enumerate(zip(expect, rows, strict=True)):
+        for name, value in wanted.items():
+            column, scale = column_of("verdict", name, "expect")
+            same = value in row[column] if name == "reason" else _same(value, row[column], scale)
+            if not same:
+                shown = row[column] if scale == 1 or row[column] is None else row[column] / scale
+                return f"row {n}: expected {name} = {value!r}, got {shown!r}: {_brief(row)}"
+    return ""
+
+
+def _same(wanted: Any, got: Any, scale: int) -> bool:
+    if isinstance(wanted, bool) or wanted is None or got is None or isinstance(wanted, str):
+        return bool(wanted == got)
+    if scale != 1 or isinstance(got, int):
+        return bool(round(Decimal(str(wanted)) * scale) == got)
+    exponent = Decimal(str(wanted)).as_tuple().exponent
+    decimals = max(2, -exponent if isinstance(exponent, int) else 2)
+    return abs(float(wanted) - float(got)) <= 0.5 * 10.0**-decimals + 1e-9
+
+
+def _brief(row: Row) -> str:
+    who = " ".join(str(row[c]) for c in ("profile", "object_id") if row[c] is not None)
+    return f"{row['verdict']} ({row['reason_code']}{', ' + who if who else ''}: {row['reason']})"

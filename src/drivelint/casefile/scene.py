@@ -1,0 +1,239 @@
+"""The scene of a case: tables spelled out from a few columns, ranges and times, with what follows from them."""
+
+from __future__ import annotations
+
+import re
+from decimal import Decimal
+from functools import cache
+from itertools import pairwise
+from statistics import median
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from drivelint import store
+from drivelint.errors import RuleError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    import duckdb
+
+    from drivelint.catalogue import Rule
+
+_DRIVE, _EGO = "d", "e"
+_NUMBER = r"-?\d+(?:\.\d+)?"
+_RANGE = re.compile(rf"({_NUMBER})\s*\.\.\s*({_NUMBER})(?:\s+by\s+(\d+(?:\.\d+)?))?")
+_DURATIONS = frozenset({"period_ns", "max_gap_ns", "dt_ns"})
+
+Row = dict[str, Any]
+
+
+@cache
+def database() -> duckdb.DuckDBPyConnection:
+    """One database for all cases of the process: every case leaves it empty."""
+    return store.connect(threads=1)
+
+
+class _Column(NamedTuple):
+    type: str
+    nullable: bool
+
+
+@cache
+def _tables() -> dict[str, dict[str, _Column]]:
+    tables: dict[str, dict[str, _Column]] = {}
+    found = database().execute(
+        "SELECT table_name, column_name, data_type, is_nullable FROM duckdb_columns() WHERE NOT internal"
+    )
+    for table, column, kind, nullable in found.fetchall():
+        tables.setdefault(table, {})[column] = _Column(kind, nullable)
+    return tables
+
+
+def scene(rule: Rule, given: Mapping[str, Any], missing: Sequence[str], where: str) -> dict[str, list[Row]]:
+    """Return table -> rows: what a case gives, and what follows from it. Errors: `RuleError` starting with `where`."""
+    scene = {table: _rows(table, blocks, where) for table, blocks in given.items()}
+    clock = scene.pop("clock", [{}])
+    scene["step"] = _steps(scene, clock[0].get("max_gap_ns"))
+    scene["clock"] = _clocks(scene["step"], clock)
+    subjects = [(row["drive_id"], row["ego_id"]) for row in scene["clock"]]
+    logged = {row["drive_id"] for row in scene.get("data_log", ())}
+    new = [{"drive_id": d, "sha256": f"hash of {d}"} for d in dict.fromkeys(d for d, _ in subjects) if d not in logged]
+    scene["data_log"] = scene.get("data_log", []) + new
+    answered = {row["signal"] for row in scene.get("capability", ())}
+    signals = [s for s in dict.fromkeys([*rule.requires, *missing]) if s not in answered]
+    scene["capability"] = scene.get("capability", []) + [
+        {
+            "drive_id": d,
+            "ego_id": e,
+            "signal": s,
+            "available": s not in missing,
+            "reason": f"no {s} in this log" if s in missing else "in the log",
+        }
+        for d, e in subjects
+        for s in signals
+    ]
+    return scene
+
+
+def _rows(table: str, given: Any, where: str) -> list[Row]:
+    """Spread the blocks of one table into rows."""
+    if table not in _tables():
+        raise RuleError(f"{where}: there is no table {table!r}")
+    blocks = given if isinstance(given, list) else [given]
+    rows: list[Row] = []
+    for block in blocks:
+        if not isinstance(block, dict):
+            raise RuleError(f"{where}: {table}: a block is 'column: value' pairs, not {block!r}")
+        rows += _block(table, block, f"{where}: {table}")
+    return rows
+
+
+def _block(table: str, block: Mapping[str, Any], where: str) -> list[Row]:
+    columns: dict[str, Any] = {}
+    for name, value in block.items():
+        column, scale = column_of(table, name, where)
+        columns[column] = _values(value, scale)
+    lengths = {len(v) for v in columns.values() if isinstance(v, list)}
+    if len(lengths) > 1:
+        raise RuleError(f"{where}: columns of different length: {', '.join(str(n) for n in sorted(lengths))}")
+    n = lengths.pop() if lengths else 1
+    times = columns.get("t_ns")
+    for column, value in columns.items():
+        if isinstance(value, _Spread):
+            columns[column] = value.over(n)
+        elif isinstance(value, dict):
+            columns[column] = _by_time(value, times, f"{where}.{column}")
+        elif not isinstance(value, list):
+            columns[column] = [value] * n
+    defaults = {"drive_id": _DRIVE, "ego_id": _EGO}
+    known = {c: v for c, v in defaults.items() if c in _tables()[table] and c not in columns}
+    return [known | {column: values[i] for column, values in columns.items()} for i in range(n)]
+
+
+def column_of(table: str, name: str, where: str) -> tuple[str, int]:
+    """Return the column meant and what its values are multiplied by: `t_s` means `t_ns`."""
+    columns = _tables()[table]
+    if name in columns:
+        return name, 1
+    if name.endswith("_s") and f"{name[:-2]}_ns" in columns:
+        return f"{name[:-2]}_ns", 1_000_000_000
+    raise RuleError(f"{where} has no column {name!r}; it has: {', '.join(columns)}")
+
+
+class _Spread(NamedTuple):
+    """`a..b`: evenly over as many rows as the block has."""
+
+    first: Decimal
+    last: Decimal
+    scale: int
+
+    def over(self, n: int) -> list[float | int]:
+        step = (self.last - self.first) / max(n - 1, 1)
+        return [_scaled(self.first + step * i, self.scale) for i in range(n)]
+
+
+def _scaled(value: Decimal, scale: int) -> float | int:
+    return round(value * scale) if scale != 1 else float(value)
+
+
+def _values(value: Any, scale: int) -> Any:
+    """Return a list, a scalar, a spread or a by-time mapping, in the column's own unit."""
+    if isinstance(value, list):
+        return [_values(item, scale) for item in value]
+    if isinstance(value, dict):
+        return {key: _values(item, scale) for key, item in value.items()}
+    if isinstance(value, str) and (match := _RANGE.fullmatch(value.strip())):
+        first, last = Decimal(match[1]), Decimal(match[2])
+        if match[3] is None:
+            return _Spread(first, last, scale)
+        step = Decimal(match[3])
+        return [_scaled(first + step * i, scale) for i in range(int((last - first) / step + Decimal("1e-9")) + 1)]
+    if scale != 1 and isinstance(value, int | float) and not isinstance(value, bool):
+        return _scaled(Decimal(str(value)), scale)
+    return value
+
+
+def _by_time(value: Mapping[Any, Any], times: Any, where: str) -> list[Any]:
+    """Choose each row's value by its time; later entries win."""
+    if not isinstance(times, list):
+        raise RuleError(f"{where}: a value by time needs the times: t_s as a list or range")
+    rows = [value.get("else")] * len(times)
+    for key, chosen in value.items():
+        if key == "else":
+            continue
+        match = _RANGE.fullmatch(str(key)) or re.fullmatch(rf"({_NUMBER})()()", str(key))
+        if not match:
+            raise RuleError(f"{where}: {key!r} is no time: write 5.0, 5.0..5.3 or else")
+        first = round(Decimal(match[1]) * 10**9)
+        last = round(Decimal(match[2] or match[1]) * 10**9)
+        rows = [chosen if first <= t <= last else old for t, old in zip(times, rows, strict=True)]
+    return rows
+
+
+def _steps(given: Mapping[str, Sequence[Row]], max_gap_ns: int | None) -> list[Row]:
+    """Return the step rows of every subject, from `step` or from the times that the scene uses."""
+    sources = {"step": given["step"]} if "step" in given else given
+    rows = [row for table in sources.values() for row in table]
+    # events alone make steps only where no table has a time grid of its own
+    grid = any("t_ns" in row for row in rows)
+    times: dict[tuple[str, str], set[int]] = {}
+    for row in rows:
+        used = {
+            v
+            for c, v in row.items()
+            if v is not None and (c == "t_ns" if grid else c.endswith("_ns") and c not in _DURATIONS)
+        }
+        times.setdefault((row.get("drive_id", _DRIVE), row.get("ego_id", _EGO)), set()).update(used)
+    said = {(row["drive_id"], row["ego_id"], row["t_ns"]): row for row in given.get("step", ())}
+    steps: list[Row] = []
+    for (drive, ego), moments in times.items():
+        ordered = sorted(moments)
+        gap = max_gap_ns or _period(ordered) * 5 // 2
+        seg = 0
+        for k, t in enumerate(ordered):
+            dt = t - ordered[k - 1] if k else None
+            seg += dt is not None and dt > gap
+            step = {"drive_id": drive, "ego_id": ego, "t_ns": t, "k": k, "dt_ns": dt, "seg": seg}
+            steps.append(step | said.get((drive, ego, t), {}))
+    return steps
+
+
+def _period(ordered: Sequence[int]) -> int:
+    return int(median(b - a for a, b in pairwise(ordered))) if len(ordered) > 1 else 100_000_000
+
+
+def _clocks(steps: Iterable[Row], given: Sequence[Row]) -> list[Row]:
+    """Return one clock per subject, with what the case says about it."""
+    times: dict[tuple[str, str], list[int]] = {}
+    for row in steps:
+        times.setdefault((row["drive_id"], row["ego_id"]), []).append(row["t_ns"])
+    said = {(row.get("drive_id", _DRIVE), row.get("ego_id", _EGO)): row for row in given if row}
+    clocks = []
+    for drive, ego in dict.fromkeys([*times, *said]):
+        used = sorted(times.get((drive, ego), [0]))
+        period = _period(used)
+        own = {c: v for c, v in said.get((drive, ego), {}).items() if v is not None}
+        clocks.append(
+            {
+                "drive_id": drive,
+                "ego_id": ego,
+                "period_ns": period,
+                "max_gap_ns": period * 5 // 2,
+                "t_start_ns": used[0],
+                "t_end_ns": used[-1],
+            }
+            | own
+        )
+    return clocks
+
+
+def fill(con: duckdb.DuckDBPyConnection, table: str, rows: Sequence[Row]) -> None:
+    """Insert rows; columns that must not be NULL and are not given get a default of their type."""
+    import pyarrow as pa
+
+    if not rows:
+        return
+    zero = {"VARCHAR": "", "BOOLEAN": False, "DOUBLE": 0.0}
+    defaults = {c: zero.get(column.type, 0) for c, column in _tables()[table].items() if not column.nullable}
+    names = dict.fromkeys([*defaults, *(c for row in rows for c in row)])
+    store.insert(con, table, pa.table({c: [row.get(c, defaults.get(c)) for row in rows] for c in names}))
