@@ -23,9 +23,13 @@ FROM overtake
 WHERE opposing IS DISTINCT FROM false
 
 -- @condition
-SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, any_value(CASE WHEN s.profile = 'observed' AND s.zone IS NOT NULL THEN s.spare_s END) AS observed, $margin_s AS required,
-    any_value(CASE WHEN s.profile = 'observed' THEN s.at_least END) AS at_least,
-    'zones: ' || string_agg(s.profile || ' ' || coalesce(s.zone, 'unknown'), ', ' ORDER BY p.style) || '; best choice: '
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $margin_s AS required, bool_or(s.at_least) AS at_least,
+    -- an overtake that was not completed has no angles of its own: it fails if no profile at all would have been in time
+    coalesce(
+        any_value(s.spare_s) FILTER (s.profile = 'observed' AND s.zone IS NOT NULL),
+        CASE WHEN bool_and(s.zone IN ('A', 'B')) FILTER (s.profile <> 'observed') THEN max(s.spare_s) END
+    ) AS observed,
+    'zones: ' || string_agg(s.profile || ' ' || coalesce(s.zone, 'unknown'), ', ' ORDER BY p.style, s.profile) || '; best choice: '
         || coalesce(min({'style': p.style, 'profile': s.profile}) FILTER (s.zone = 'C' AND s.profile <> 'observed').profile, 'none in zone C') AS reason
 FROM reference r
 JOIN overtake_sda s USING (drive_id, ego_id, occurrence)
