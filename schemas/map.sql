@@ -65,7 +65,7 @@ CREATE TABLE lane_boundary (
     side VARCHAR NOT NULL,            -- left or right of the driver
     s_start_m DOUBLE NOT NULL,        -- from here, along the lanelet's centre line
     s_end_m DOUBLE NOT NULL,          -- to here
-    marking VARCHAR,                  -- solid, broken, solid_solid, solid_broken, broken_solid, broken_broken, botts_dots, grass, curb, none; first named = the side of the lane's own reference; NULL: the map does not say
+    marking VARCHAR,                  -- solid, broken, solid_solid, solid_broken, broken_solid, broken_broken, botts_dots, grass, curb, none; of a double line the one nearer to this lanelet is named first; NULL: the map does not say
     color VARCHAR,                    -- standard, white, yellow, ...; NULL: the map does not say
     lane_change VARCHAR               -- none, both, increase, decrease as the map says; NULL: it does not
 );

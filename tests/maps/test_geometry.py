@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -10,29 +11,28 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.maps.naive import NaiveMap
-from tests.maps.xodr import checks, lane, lanelets, load, points, road, section, xodr
+from tests.maps.xodr import checks, geometry, lane, lanelets, load, points, road, section, xodr
 
+SPOT = (3, -2, 0.4)
 SPOTS = {
-    "line": '<geometry s="0" x="3" y="-2" hdg="0.4" length="100"><line/></geometry>',
-    "arc": '<geometry s="0" x="3" y="-2" hdg="0.4" length="100"><arc curvature="-0.02"/></geometry>',
-    "flat arc": '<geometry s="0" x="3" y="-2" hdg="0.4" length="100"><arc curvature="1e-12"/></geometry>',
-    "spiral": '<geometry s="0" x="3" y="-2" hdg="2" length="100"><spiral curvStart="0.0" curvEnd="0.05"/></geometry>',
-    "spiral through zero": '<geometry s="0" x="3" y="-2" hdg="2" length="100"><spiral curvStart="0.03" curvEnd="-0.03"/></geometry>',
-    "long spiral": '<geometry s="0" x="0" y="0" hdg="0" length="100"><spiral curvStart="-0.08" curvEnd="0.1"/></geometry>',
-    "constant spiral": '<geometry s="0" x="0" y="0" hdg="0" length="100"><spiral curvStart="0.01" curvEnd="0.01"/></geometry>',
-    "poly3": '<geometry s="0" x="0" y="0" hdg="1" length="100"><poly3 a="0" b="0" c="0.003" d="-0.00002"/></geometry>',
-    "paramPoly3 by arc length": (
-        '<geometry s="0" x="0" y="0" hdg="1" length="100">'
-        '<paramPoly3 pRange="arcLength" aU="0" bU="1" cU="0" dU="-0.0000004" aV="0" bV="0" cV="0.001" dV="0.000002"/></geometry>'
+    "line": geometry("<line/>", at=SPOT),
+    "arc": geometry('<arc curvature="-0.02"/>', at=SPOT),
+    "flat arc": geometry('<arc curvature="1e-12"/>', at=SPOT),
+    "spiral": geometry('<spiral curvStart="0.0" curvEnd="0.05"/>', at=SPOT),
+    "spiral through zero": geometry('<spiral curvStart="0.03" curvEnd="-0.03"/>', at=SPOT),
+    "long spiral": geometry('<spiral curvStart="-0.08" curvEnd="0.1"/>', at=SPOT),
+    "constant spiral": geometry('<spiral curvStart="0.01" curvEnd="0.01"/>', at=SPOT),
+    "poly3": geometry('<poly3 a="0" b="0" c="0.003" d="-0.00002"/>', at=SPOT),
+    "paramPoly3 by arc length": geometry(
+        '<paramPoly3 pRange="arcLength" aU="0" bU="1" cU="0" dU="-0.0000004" aV="0" bV="0" cV="0.001" dV="0.000002"/>'
     ),
-    "paramPoly3 normalized": (
-        '<geometry s="0" x="0" y="0" hdg="1" length="100">'
-        '<paramPoly3 pRange="normalized" aU="0" bU="120" cU="-40" dU="15" aV="0" bV="0" cV="30" dV="-5"/></geometry>'
+    "paramPoly3 normalized": geometry(
+        '<paramPoly3 pRange="normalized" aU="0" bU="120" cU="-40" dU="15" aV="0" bV="0" cV="30" dV="-5"/>'
     ),
     "several": (
-        '<geometry s="0" x="0" y="0" hdg="0" length="40"><line/></geometry>'
-        '<geometry s="40" x="40" y="0" hdg="0" length="30"><arc curvature="0.02"/></geometry>'
-        '<geometry s="70" x="68.23" y="8.73" hdg="0.6" length="30"><line/></geometry>'
+        geometry("<line/>", 0, length=40)
+        + geometry('<arc curvature="0.02"/>', 40, (40, 0, 0), 30)
+        + geometry("<line/>", 70, (68.23, 8.73, 0.6), 30)
     ),
 }
 PROFILE = {
@@ -75,26 +75,26 @@ def deviation(text: str, rows: dict[str, list[dict[str, Any]]], *, every: int = 
     return worst
 
 
-@pytest.mark.parametrize("geometry", SPOTS)
-def test_geometry_agrees_with_a_naive_reading(geometry: str) -> None:
-    environment = load(road(geometry=SPOTS[geometry]))
-    assert deviation(xodr(road(geometry=SPOTS[geometry])), points(environment), every=3) < 1e-3
+@pytest.mark.parametrize("shape", SPOTS)
+def test_geometry_agrees_with_a_naive_reading(shape: str) -> None:
+    environment = load(road(geometry=SPOTS[shape]))
+    assert deviation(xodr(road(geometry=SPOTS[shape])), points(environment), every=3) < 1e-3
 
 
 @pytest.mark.parametrize("profile", PROFILE)
-@pytest.mark.parametrize("geometry", ["arc", "spiral"])
-def test_offsets_widths_and_sections_agree_with_a_naive_reading(profile: str, geometry: str) -> None:
-    part = road(geometry=SPOTS[geometry], lanes=OFFSET + PROFILE[profile])
+@pytest.mark.parametrize("shape", ["arc", "spiral"])
+def test_offsets_widths_and_sections_agree_with_a_naive_reading(profile: str, shape: str) -> None:
+    part = road(geometry=SPOTS[shape], lanes=OFFSET + PROFILE[profile])
     assert deviation(xodr(part), points(load(part))) < 1e-3
 
 
-@pytest.mark.parametrize("geometry", SPOTS)
-def test_chords_keep_within_a_centimetre_and_five_metres(geometry: str) -> None:
-    part = road(geometry=SPOTS[geometry], lanes=OFFSET + PROFILE["widths"])
+@pytest.mark.parametrize("shape", SPOTS)
+def test_chords_keep_within_a_centimetre_and_five_metres(shape: str) -> None:
+    part = road(geometry=SPOTS[shape], lanes=OFFSET + PROFILE["widths"])
     naive = NaiveMap(xodr(part))
     for name, line in points(load(part)).items():
         road_id, section_no, lane_no = name.rsplit(".", 2)
-        for a, b in list(zip(line, line[1:], strict=False))[::4]:
+        for a, b in list(pairwise(line))[::4]:
             s = (a["road_s_m"] + b["road_s_m"]) / 2
             if abs(a["road_s_m"] - b["road_s_m"]) < 0.01:
                 continue
@@ -160,7 +160,7 @@ def test_a_lane_may_taper_to_nothing_at_either_end(handedness: str) -> None:
 def test_tangent_is_the_direction_of_the_centre_line() -> None:
     environment = load(road(geometry=SPOTS["spiral"], lanes=OFFSET + PROFILE["widths"]))
     for line in points(environment).values():
-        for a, b in zip(line, line[1:], strict=False):
+        for a, b in pairwise(line):
             chord = (b["x_m"] - a["x_m"], b["y_m"] - a["y_m"])
             length = math.hypot(*chord)
             middle = ((a["tx"] + b["tx"]) / 2, (a["ty"] + b["ty"]) / 2)
@@ -194,7 +194,7 @@ def test_all_lanes_of_a_section_share_their_stations() -> None:
 
 
 def test_what_does_not_fit_is_reported() -> None:
-    gap = '<geometry s="0" x="0" y="0" hdg="0" length="50"><line/></geometry><geometry s="50" x="51" y="0" hdg="0.5" length="50"><line/></geometry>'
+    gap = geometry("<line/>", length=50) + geometry("<line/>", 50, (51, 0, 0.5), 50)
     environment = load(
         road(geometry=gap, length=120, lanes=section(0, lane(-1), lane(-2, '<width sOffset="0" a="1" b="-0.02"/>')))
     )
@@ -212,6 +212,7 @@ def test_a_bend_tighter_than_its_lane_is_reported_and_finite() -> None:
 @settings(max_examples=25, deadline=None)
 @given(st.floats(-0.08, 0.08), st.floats(-0.08, 0.08), st.floats(5, 80), st.floats(-3, 3))
 def test_any_spiral_agrees_with_a_naive_reading(first: float, last: float, length: float, heading: float) -> None:
-    spiral = f'<geometry s="0" x="10" y="20" hdg="{heading}" length="{length}"><spiral curvStart="{first}" curvEnd="{last}"/></geometry>'
+    shape = f'<spiral curvStart="{first}" curvEnd="{last}"/>'
+    spiral = geometry(shape, at=(10, 20, heading), length=length)
     part = road(geometry=spiral, length=length)
     assert deviation(xodr(part), points(load(part)), every=5) < 1e-3

@@ -82,7 +82,7 @@ def test_bounds_are_those_that_the_authors_derived(theirs: str, ours: str) -> No
     mine = {s: shapely.LineString([(p[f"{s}_x_m"], p[f"{s}_y_m"]) for p in line]) for s in ("left", "right")}
     # the authors' bounds run against the direction of travel, so their left is the driver's right
     for side, other in (("leftBound", "right"), ("rightBound", "left")):
-        assert max(mine[other].distance(shapely.points(sides[side]))) < 0.02
+        assert np.max(mine[other].distance(shapely.points(sides[side]))) < 0.02
         start, end = shapely.Point(sides[side][0]), shapely.Point(sides[side][-1])
         assert mine[other].project(start) > mine[other].project(end)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cache
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -78,7 +79,7 @@ def test_tables_are_those_of_the_schema_and_finite(file: str) -> None:
     for line in placed(file).values():
         assert [p["k"] for p in line] == list(range(len(line)))
         assert len(line) >= 2
-        assert all(b["s_m"] > a["s_m"] for a, b in zip(line, line[1:], strict=False))
+        assert all(b["s_m"] > a["s_m"] for a, b in pairwise(line))
 
 
 @every_map

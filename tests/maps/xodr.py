@@ -18,12 +18,17 @@ def lane(number: int, inside: str = '<width sOffset="0" a="3.5"/>', kind: str = 
 
 def section(s: float, *lanes: str, centre: str = "", attributes: str = "") -> str:
     def side(sign: str) -> str:
-        return "".join(x for x in lanes if ('id="-' in x) == (sign == "-"))
+        return "".join(x for x in lanes if x.startswith('<lane id="-') == (sign == "-"))
 
     left = f"<left>{side('+')}</left>" if side("+") else ""
     right = f"<right>{side('-')}</right>" if side("-") else ""
     middle = f'<center><lane id="0" type="none">{centre}</lane></center>'
     return f'<laneSection s="{s}" {attributes}>{left}{middle}{right}</laneSection>'
+
+
+def geometry(shape: str, s: float = 0, at: tuple[float, float, float] = (0, 0, 0), length: float = 100) -> str:
+    x, y, heading = at
+    return f'<geometry s="{s}" x="{x}" y="{y}" hdg="{heading}" length="{length}">{shape}</geometry>'
 
 
 def road(  # noqa: PLR0917 - one parameter per part of the element
