@@ -58,6 +58,9 @@ def read(path: Path) -> Recording:
     recording.signals = _extra(path / "signal_state.parquet", ("signal_id", "t_ns"), ("state",))
     recording.events = _extra(path / "declared_event.parquet", ("actor_id", "t_ns", "event"), ("value",))
     _check_words(recording.signals, path / "signal_state.parquet")
+    if (path / "data_log.parquet").is_file():
+        log = (_open(path / "data_log.parquet").to_pylist() or [{}])[0]
+        recording.sensor_range_m, recording.utc_start_ns = log.get("sensor_range_m"), log.get("utc_start_ns")
     return recording
 
 

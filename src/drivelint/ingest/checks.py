@@ -26,6 +26,9 @@ braking within a step (10 m/s2, 0.1 s) 0.5 m/s, while km/h read as m/s or a flip
 YAW_MISMATCH_RAD = np.deg2rad(30.0)
 YAW_SPEED_MPS = 3.0
 """Slip angles of a car stay below about 10 degrees; below 3 m/s reversing and rounding blur the direction of motion."""
+REVERSING_MPS = 8.0
+REVERSING_RAD = np.deg2rad(150.0)
+"""Nobody reverses faster than this (29 km/h), and whoever reverses also drives forwards somewhere in the log."""
 TELEPORT_M = 3.0
 TELEPORT_FACTOR = 2.0
 """A step is a jump if longer than 3 m + twice what the higher of both speeds covers: no acceleration explains that."""
@@ -221,6 +224,9 @@ def _yaw(states: States, actors: Actors) -> list[Finding]:
         moving = (speed > YAW_SPEED_MPS) & long_kind[states.actor] & ~np.isnan(numbers["yaw_rad"])
         off = np.abs(wrapped(numbers["yaw_rad"] - np.arctan2(numbers["vy_mps"], numbers["vx_mps"])))
         wrong = moving & (off > YAW_MISMATCH_RAD)
+        backwards = wrong & (off > REVERSING_RAD) & (speed < REVERSING_MPS)
+    forwards = np.bincount(states.actor[moving & ~wrong], minlength=len(states.ids)) > 0
+    wrong &= ~(backwards & forwards[states.actor])
     n, n_moving = int(wrong.sum()), int(moving.sum())
     if n_moving >= MOVING_SAMPLES and n > FLAWED_SHARE * n_moving:
         degrees = float(np.rad2deg(np.median(off[wrong])))

@@ -58,12 +58,10 @@ class Container:
 
     def packets(self) -> Iterator[Packet]:
         """Yield every message in the order of the file. Errors: `TraceError` naming what is damaged, at which byte."""
-        with self.path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
-            view = memoryview(data)
-            try:
-                yield from self._file(view)
-            finally:
-                view.release()
+        with self.path.open("rb") as file:
+            # not closed by hand: an error on its way up still holds views into the map, which ends with the last of them
+            data = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+        yield from self._file(memoryview(data))
 
     def _damaged(self, offset: int, what: str) -> TraceError:
         return TraceError(

@@ -15,7 +15,13 @@ from drivelint.errors import TraceError, UsageError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-CANONICAL = ("actor.parquet", "actor_state.parquet", "declared_event.parquet", "signal_state.parquet")
+CANONICAL = (
+    "actor.parquet",
+    "actor_state.parquet",
+    "data_log.parquet",
+    "declared_event.parquet",
+    "signal_state.parquet",
+)
 """The files of a canonical folder, in name order."""
 TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi"})
 """What a folder of traces is searched for. `.osi` is among them so that such a drive is reported, not passed over."""

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from drivelint.ingest.mapping import Mapping
 
 _SOURCE = {
-    "x": "x_m", "y": "y_m", "z": "z_m", "yaw": "yaw_rad", "vx": "vx_mps", "vy": "vy_mps", "ax": "ax_mps2", "ay": "ay_mps2",
-    "length": "length_m", "width": "width_m", "height": "height_m",
+    "x": "x_m", "y": "y_m", "z": "z_m", "yaw": "yaw_rad", "vx": "vx_mps", "vy": "vy_mps",
+    "ax": "ax_mps2", "ay": "ay_mps2", "length": "length_m", "width": "width_m", "height": "height_m",
 }  # fmt: skip
 
 

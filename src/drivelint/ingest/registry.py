@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-from drivelint.errors import TraceError
+from drivelint.errors import TraceError, UsageError
 from drivelint.ingest.files import identify, is_canonical_folder
 from drivelint.ingest.finish import finish
 
@@ -93,11 +93,16 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
 
     Errors: `TraceError` for a log that is missing, unreadable or has nothing to judge; `UsageError` for a bad mapping.
     """
+    if options.sensor_range_m is not None and not options.sensor_range_m > 0.0:
+        raise UsageError(f"--sensor-range {options.sensor_range_m}: the range must be more than 0 m")
     probe = _probe(path, options)
     identity = identify(path)
     for reader in READERS:
         if reader.accepts(probe):
-            return finish(path, identity, reader.read(probe), options)
+            recording = reader.read(probe)
+            if options.mapping is not None and not isinstance(reader, TableReader):
+                recording.notes.append(f"mapping {options.mapping!r} is not needed: the log is {recording.format}")
+            return finish(path, identity, recording, options)
     raise TraceError(
         f"{path}: no reader for this file, which begins with {probe.head[:16]!r}: give MCAP, Parquet or CSV"
     )

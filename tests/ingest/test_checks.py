@@ -1,0 +1,184 @@
+"""What a log says about itself that cannot all be true; and who its ego is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from drivelint.errors import TraceError, UsageError
+from tests.ingest.logs import LONG, actors, at, cars, mapping, quality, read, states, table
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.ingest import Trace
+
+
+def edited(lines: list[str], actor: str, rows: range, **cells: str) -> list[str]:
+    """Return the lines with cells of the chosen rows (by number of the actor's sample) replaced."""
+    names = lines[0].split(",")
+    out, k = [lines[0]], -1
+    for line in lines[1:]:
+        parts = line.split(",")
+        if parts[1] == actor:
+            k += 1
+            if k in rows:
+                for name, text in cells.items():
+                    parts[names.index(name)] = text
+        out.append(",".join(parts))
+    return out
+
+
+def load(tmp_path: Path, lines: list[str], text: str = LONG, **options: str) -> Trace:
+    return read(table(tmp_path / "d.csv", lines), mapping=mapping(tmp_path, text), **options)
+
+
+def test_duplicates_keep_the_first_and_are_listed(tmp_path: Path) -> None:
+    lines = cars()
+    lines += ["0.500,b,99,99,0,0,0", "0.500,b,98,98,0,0,0"]
+    trace = load(tmp_path, lines)
+    row = quality(trace)["duplicate_state"]
+    assert (row["severity"], row["n"], row["actor_id"], row["t_first_ns"]) == ("error", 2, "b", 500_000_000)
+    assert "(b)" in row["message"]
+    assert len(states(trace)) == 40
+    assert at(trace, "b", 0.5)["x_m"] == 5.0
+
+
+def test_velocity_that_is_not_the_motion(tmp_path: Path) -> None:
+    found = quality(load(tmp_path, edited(cars(), "b", range(4, 6), vx="16.0")))
+    assert found["velocity_mismatch"]["severity"] == "warning"
+    assert (found["velocity_mismatch"]["n"], found["velocity_mismatch"]["t_first_ns"]) == (3, 400_000_000)
+    assert "velocity_mismatch" not in quality(load(tmp_path, edited(cars(), "b", range(4, 6), vx="10.9")))
+
+
+def test_heading_that_is_not_the_motion(tmp_path: Path) -> None:
+    found = quality(load(tmp_path, edited(cars(), "b", range(4, 6), yaw="0.6")))
+    assert (found["yaw_mismatch"]["n"], found["yaw_mismatch"]["actor_id"]) == (2, "b")
+    assert "yaw_mismatch" not in quality(load(tmp_path, edited(cars(), "b", range(4, 6), yaw="0.5")))
+
+
+def test_reversing_is_no_wrong_heading(tmp_path: Path) -> None:
+    """Forwards for two seconds, then back at 4 m/s."""
+    lines = ["t,id,x,y,yaw,vx,vy", *(f"{i / 10},a,{i * 0.4:.3f},0,0,4,0" for i in range(20))]
+    lines += [f"{2 + i / 10},a,{7.6 - i * 0.4:.3f},0,0,-4,0" for i in range(15)]
+    assert "yaw_mismatch" not in quality(load(tmp_path, lines))
+
+
+def test_length_below_width(tmp_path: Path) -> None:
+    words = '\n[class]\ncolumn = "kind"\nvalues = { c = "car", p = "pedestrian" }\n'
+    lines = [line + (",kind" if line[0] == "t" else ",c" if ",a," in line else ",p") for line in cars()]
+    text = LONG.replace("length = 4.5", "length = 1.0")
+    row = quality(load(tmp_path, lines, text + words))["length_below_width"]
+    assert (row["n"], row["actor_id"]) == (1, "a")
+
+
+def test_unknown_sizes(tmp_path: Path) -> None:
+    row = quality(load(tmp_path, cars(), LONG.replace("length = 4.5\n", "")))["no_size"]
+    assert (row["n"], row["severity"]) == (2, "warning")
+    assert "(a, b)" in row["message"]
+
+
+def test_a_hole_in_the_log(tmp_path: Path) -> None:
+    lines = [line for line in cars() if not 0.45 < float(line.split(",")[0].replace("t", "9")) < 0.95]
+    found = quality(load(tmp_path, lines))
+    assert (found["gap"]["n"], found["gap"]["t_first_ns"]) == (1, 400_000_000)
+    assert "0.6 s" in found["gap"]["message"]
+    assert "track_gap" not in found
+
+
+def test_a_hole_in_one_track(tmp_path: Path) -> None:
+    lines = [line for line in cars() if ",b," not in line or not 0.45 < float(line.split(",")[0]) < 0.95]
+    found = quality(load(tmp_path, lines))
+    assert (found["track_gap"]["actor_id"], found["track_gap"]["t_first_ns"]) == ("b", 400_000_000)
+    assert "gap" not in found
+
+
+def test_two_missing_samples_are_a_gap_and_one_is_not(tmp_path: Path) -> None:
+    one = [line for line in cars() if not line.startswith("0.500")]
+    two = [line for line in one if not line.startswith("0.600")]
+    assert "gap" not in quality(load(tmp_path, one))
+    assert "gap" in quality(load(tmp_path, two))
+
+
+def test_a_jump(tmp_path: Path) -> None:
+    found = quality(load(tmp_path, edited(cars(), "b", range(10, 20), y="12.0")))
+    assert (found["teleport"]["n"], found["teleport"]["t_first_ns"]) == (1, 1_000_000_000)
+    assert "velocity_mismatch" not in found
+
+
+def test_velocity_is_derived_where_absent(tmp_path: Path) -> None:
+    trace = load(tmp_path, cars(), LONG.replace('vx = "vx"\nvy = "vy"\n', ""))
+    assert [row["vx_mps"] for row in states(trace)] == pytest.approx([10.0] * 40)
+    row = quality(trace)["velocity_derived"]
+    assert (row["n"], row["severity"]) == (40, "warning")
+    assert "no velocity in the log" in row["message"]
+
+
+def test_velocity_zero_of_a_moving_actor_is_derived(tmp_path: Path) -> None:
+    trace = load(tmp_path, edited(cars(), "b", range(20), vx="0.0"))
+    assert at(trace, "b", 1.0)["vx_mps"] == pytest.approx(10.0)
+    row = quality(trace)["velocity_derived"]
+    assert (row["n"], row["actor_id"]) == (20, "b")
+
+
+def test_velocity_zero_of_a_parked_actor_stays(tmp_path: Path) -> None:
+    trace = load(tmp_path, edited(cars(), "b", range(20), vx="0.0", x="5.2"))
+    assert {row["vx_mps"] for row in states(trace, "b")} == {0.0}
+    assert "velocity_derived" not in quality(trace)
+
+
+def test_nothing_is_derived_across_a_hole(tmp_path: Path) -> None:
+    """A sample alone between two holes has no velocity; the one beside a hole takes its other side."""
+    keep = {0, 1, 2, 10, 18, 19}
+    lines = ["t,id,x,y,yaw,vx,vy", *(f"{i / 10},a,{i * i / 10:.3f},0,0,0,0" for i in range(20) if i in keep)]
+    trace = load(tmp_path, lines, LONG.replace('vx = "vx"\nvy = "vy"\n', ""))
+    assert [row["vx_mps"] for row in states(trace)] == [
+        pytest.approx(v) if v else None for v in (1, 2, 3, None, 37, 37)
+    ]
+
+
+def test_one_sample_is_a_drive(tmp_path: Path) -> None:
+    trace = load(tmp_path, ["t,id,x,y,yaw,vx,vy", "0,a,0,0,0,0,0"])
+    assert len(states(trace)) == 1
+
+
+def test_ego_by_option(tmp_path: Path) -> None:
+    assert {k: v["is_ego"] for k, v in actors(load(tmp_path, cars(), ego="b")).items()} == {"a": False, "b": True}
+    with pytest.raises(TraceError, match=r"d\.csv: no actor 'z' in this log: use --ego ID \(ids: a, b\)"):
+        load(tmp_path, cars(), ego="z")
+
+
+def test_no_ego(tmp_path: Path) -> None:
+    unnamed = LONG.replace('[ego]\nids = ["a"]\n', "")
+    with pytest.raises(TraceError, match=r"no ego: the log does not say .*: use --ego ID \(ids: a, b\)"):
+        load(tmp_path, cars(), unnamed)
+    with pytest.raises(TraceError, match=r"no ego: the log's ego q has no states: use --ego ID \(ids: a, b\)"):
+        load(tmp_path, cars(), LONG.replace('"a"', '"q"'))
+    many = cars(2, ids=tuple(f"{i:02}" for i in range(30)))
+    with pytest.raises(TraceError, match=r"\(ids: 00, 01, 02, 03, 04 and 25 more\)"):
+        load(tmp_path, many)
+
+
+def test_every_motor_vehicle_as_ego(tmp_path: Path) -> None:
+    words = '\n[class]\ncolumn = "kind"\nvalues = { a = "car", b = "truck", p = "pedestrian", c = "bicycle" }\n'
+    lines = cars(5, ids=("a", "b", "p", "c", "u"))
+    lines = [line + (",kind" if line[0] == "t" else f",{line.split(',')[1]}") for line in lines]
+    trace = load(tmp_path, lines, LONG + words, ego="all")
+    assert {k for k, v in actors(trace).items() if v["is_ego"]} == {"a", "b"}
+    assert "(u)" in quality(trace)["ego_count"]["message"]
+    with pytest.raises(TraceError, match=r"no ego: no actor's class is known"):
+        load(tmp_path, cars(), ego="all")
+
+
+def test_sensor_range(tmp_path: Path) -> None:
+    trace = read(table(tmp_path / "d.csv", cars()), mapping=mapping(tmp_path), sensor_range_m=80.0)
+    assert trace.tables["data_log"].column("sensor_range_m").to_pylist() == [80.0]
+    with pytest.raises(UsageError, match="more than 0 m"):
+        read(tmp_path / "d.csv", mapping=mapping(tmp_path), sensor_range_m=-1.0)
+
+
+def test_lights_are_named_and_counted(tmp_path: Path) -> None:
+    row = quality(load(tmp_path, cars()))["no_indicator"]
+    assert (row["actor_id"], row["n"], row["severity"]) == ("a", 20, "info")
+    assert "(a) is unknown in 20 of 20 states" in row["message"]
