@@ -138,10 +138,11 @@ def second_pass(rule: Rule, partial: bool, unsettled: bool) -> str:
         )
     profile = " AND p.profile = v.profile" if rule.profiled else ""
     profiles = "JOIN _profile_set p ON g.drive_id = p.drive_id AND g.ego_id = p.ego_id" if rule.profiled else ""
-    final = "SELECT * FROM _steps"
+    final = ") SELECT * FROM _steps"
     if rule.exempt_after_s != 0:
         # an episode whose beginning was not seen (the log's start, a hole) has no known age: none of it is exempt
-        final = f"""{_WALK.format(source="SELECT * FROM _steps WHERE applies IS DISTINCT FROM false")}, _aged AS (
+        final = f"""{_WALK.format(source="SELECT * FROM _steps WHERE applies IS DISTINCT FROM false")}
+), _aged AS (
     SELECT *, first_value(t_ns) OVER w AS t_begin_ns, first_value(k) OVER w AS k_begin FROM _walked
     WINDOW w AS (PARTITION BY {_SERIES}, episode ORDER BY t_ns))
 SELECT a.* EXCLUDE (t_begin_ns, k_begin, episode) FROM _aged a
@@ -158,7 +159,7 @@ WITH {terms.state(rule)}, {_grid(rule, partial, unsettled)}, _joined AS (
         CASE WHEN g.applies THEN v.reason END AS reason
     FROM _grid g {profiles}
     LEFT JOIN _state v ON g.drive_id = v.drive_id AND g.ego_id = v.ego_id AND g.t_ns = v.t_ns{who}{profile}
-), _steps AS (SELECT * REPLACE (CASE WHEN applies THEN holds END AS holds) FROM _joined)
+), _steps AS (SELECT * REPLACE (CASE WHEN applies THEN holds END AS holds) FROM _joined
 {final}
 """
 

@@ -1,0 +1,62 @@
+"""Tiny rules written by the tests, and what they say about tiny scenes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from drivelint.casefile import Case, judge
+from drivelint.catalogue import Rule, read_rule
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+HEADER = {
+    "title": '"A rule of a test"',
+    "clause": '"none"',
+    "hypothesis": '"Does it hold?"',
+    "derivation": '"direct"',
+    "severity": '"major"',
+    "legal": '"must"',
+    "status": '"stable"',
+}
+MEASURED = {"sense": '">"', "unit": '"m"'}
+HOLDS = {"sense": '"holds"'}
+INVARIANT = {"kind": '"invariant"'}
+EXECUTION = {"kind": '"execution"'}
+BEFORE = {"kind": '"precondition"', "subtype": '"temporal"', "window_s": "1.0"}
+AFTER = {"kind": '"postcondition"', "subtype": '"temporal"', "window_s": "1.0"}
+PLACE_BEFORE = {"kind": '"precondition"', "subtype": '"physical"'}
+
+Row = dict[str, Any]
+
+
+def text(header: dict[str, str], sections: dict[str, str], tables: str = "") -> str:
+    """Return a rule file's text: header lines, further TOML (params and the like), sections."""
+    lines = [f"{key} = {value}" for key, value in header.items()] + tables.strip().splitlines()
+    parts = [f"-- {line}\n" for line in lines]
+    parts += [f"\n-- @{name}\n{sql.strip()}\n" for name, sql in sections.items()]
+    return "".join(parts)
+
+
+def write(folder: Path, header: dict[str, str], sections: dict[str, str], *, name: str = "rule", tables: str = "") -> Rule:
+    """Write `pack/<name>.sql` under `folder` and read it back."""
+    pack = folder / "pack"
+    pack.mkdir(exist_ok=True)
+    file = pack / f"{name}.sql"
+    file.write_text(text(HEADER | header, sections, tables), encoding="utf-8")
+    return read_rule(file)
+
+
+def verdicts(rule: Rule, given: dict[str, Any], *, params: dict[str, Any] | None = None, missing: tuple[str, ...] = ()) -> list[Row]:
+    """Return the verdict rows of a scene."""
+    return judge(rule, Case(name="scene", given=given, expect="pass", params=params or {}, missing=missing))[0]
+
+
+def findings(rule: Rule, given: dict[str, Any]) -> list[Row]:
+    """Return the finding rows of a scene."""
+    return judge(rule, Case(name="scene", given=given, expect="pass"))[1]
+
+
+def brief(rows: list[Row]) -> list[tuple[str, str]]:
+    """Return (verdict, reason code) of each row."""
+    return [(row["verdict"], row["reason_code"]) for row in rows]
