@@ -204,7 +204,7 @@ def write(
                 schema = writer.register_schema(item.name, encoding, descriptor_set)
                 channels[key] = writer.register_channel(item.topic, encoding, schema)
             writer.add_message(channels[key], item.log_time, item.data, item.log_time)
-        writer.finish()
+        writer.finish()  # type: ignore[no-untyped-call]
     return path
 
 

@@ -57,7 +57,7 @@ def test_a_canonical_folder_is_one_drive(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "kind", "message"),
     [
-        ("missing.csv", TraceError, "missing.csv: no such file or folder"),
+        ("missing.csv", TraceError, r"missing\.csv: no such file or folder"),
         ("none*.csv", TraceError, r"none\*.csv: no file matches this pattern"),
         (" ", UsageError, "an empty trace name"),
         ("s3://bucket/drive.mcap", UsageError, "URIs cannot be read yet"),

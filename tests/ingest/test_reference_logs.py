@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import pytest
 
@@ -49,7 +50,7 @@ def test_esmini(name: str) -> None:
     assert [k for k, v in actors(trace).items() if v["is_ego"]] == [ego]
     assert len(actors(trace)) == n_actors
     times = [row["t_ns"] for row in states(trace, ego)]
-    assert {b - a for a, b in zip(times, times[1:], strict=False)} == {step}
+    assert {b - a for a, b in pairwise(times)} == {step}
     # a scenario may set an actor in motion within one step, so single velocities differ; headings never
     assert quality(trace).get("velocity_mismatch", {"n": 0})["n"] <= 1
     assert not {"yaw_mismatch", "teleport", "no_size", "not_finite", "gap"} & set(quality(trace))

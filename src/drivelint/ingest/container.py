@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, TypeVar
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Channel, Footer, Schema, Statistics
+from mcap.records import Channel, DataEnd, Footer, Schema, Statistics
 
 from drivelint.errors import TraceError
 from drivelint.ingest.trace import Finding
@@ -59,7 +59,7 @@ class Container:
     def packets(self) -> Iterator[Packet]:
         """Yield every message in the order of the file. Errors: `TraceError` naming what is damaged, at which byte."""
         with self.path.open("rb") as file:
-            # not closed by hand: an error on its way up still holds views into the map, which ends with the last of them
+            # not closed by hand: an error on its way up still holds views into the map; it ends with the last of them
             data = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
         yield from self._file(memoryview(data))
 
@@ -71,19 +71,20 @@ class Container:
     def _file(self, view: memoryview) -> Iterator[Packet]:
         if bytes(view[: len(MAGIC)]) != MAGIC:
             raise self._damaged(0, f"not an MCAP file: it begins with {bytes(view[:16])!r}")
-        at, statistics = len(MAGIC), None
+        at, in_data, statistics = len(MAGIC), True, None
         while True:
             opcode, start, end = self._record(view, at, len(view))
-            if opcode == Opcode.CHUNK:
-                yield from self._chunk(view[start:end], at)
-            elif opcode == Opcode.DATA_END:
-                self._check_data(view, at, start)
-            elif opcode == Opcode.STATISTICS:
-                statistics = self._parsed(Statistics.read, view[start:end], at)
-            elif opcode == Opcode.FOOTER:
+            if opcode == Opcode.FOOTER:
                 self._check_summary(view, at, start, end)
                 break
-            else:
+            if opcode == Opcode.DATA_END:
+                self._check_data(view, at, view[start:end])
+                in_data = False
+            elif opcode == Opcode.STATISTICS:
+                statistics = self._parsed(Statistics.read, view[start:end], at)
+            elif opcode == Opcode.CHUNK:
+                yield from self._chunk(view[start:end], at)
+            elif in_data:  # the index repeats schemas and channels: only those among the data count
                 yield from self._content(opcode, view[start:end], at)
             at = end
         self._check_end(view, end)
@@ -201,8 +202,8 @@ class Container:
             raise self._damaged(at, f"a chunk that says it unpacks to {size} bytes and unpacks to {len(records)}")
         return records
 
-    def _check_data(self, view: memoryview, at: int, start: int) -> None:
-        (crc,) = struct.unpack_from("<I", view, start)
+    def _check_data(self, view: memoryview, at: int, body: memoryview) -> None:
+        crc = self._parsed(DataEnd.read, body, at).data_section_crc
         if crc and zlib.crc32(view[:at]) != crc:
             raise self._damaged(at, "a data section with a wrong CRC (its content changed), ending")
 

@@ -61,12 +61,20 @@ def parse(path: Path, name: str, descriptor_set: bytes) -> Types:
     return types
 
 
-def pruned(types: Types, name: str, tree: Tree) -> Descriptor:
-    """Return message `name` with only those fields of `tree` that it has: same numbers and types, enums as int32."""
+def pruned(path: Path, types: Types, name: str, tree: Tree) -> Descriptor:
+    """Return message `name` with only those fields of `tree` that it has: same numbers and types, enums as int32.
+
+    Errors: `TraceError` when the log's description contradicts itself.
+    """
     file = descriptor_pb2.FileDescriptorProto(name=f"{PACKAGE}.proto", package=PACKAGE, syntax="proto2")
     _add(file, types, f".{name}", tree, "Root")
     pool = descriptor_pool.DescriptorPool()
-    pool.Add(file)
+    try:
+        pool.Add(file)
+    except TypeError as error:
+        raise TraceError(
+            f"{path}: the schema {name} in the log contradicts itself ({error}): record it again"
+        ) from error
     return pool.FindMessageTypeByName(f"{PACKAGE}.Root")
 
 

@@ -65,7 +65,7 @@ def _kind(container: Container, channel: Channel) -> str | None:
 
 def _map_text(container: Container, packet: Packet) -> bytes:
     types = descriptors.parse(container.path, OPEN_DRIVE, container.schemas[packet.channel.schema_id].data)
-    descriptor = descriptors.pruned(types, OPEN_DRIVE, {"open_drive_xml_content": None})
+    descriptor = descriptors.pruned(container.path, types, OPEN_DRIVE, {"open_drive_xml_content": None})
     try:
         rows = ptars.HandlerPool([descriptor.file]).get_for_message(descriptor).list_to_record_batch([packet.data])
     except ValueError as error:

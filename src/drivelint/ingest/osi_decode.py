@@ -89,7 +89,7 @@ class Decoder:
         """Prune the schema. Errors: `TraceError` where it lacks the fields without which nothing can be judged."""
         self._path, self._name, self.schema_id = path, name, schema_id
         types = descriptors.parse(path, name, descriptor_set)
-        descriptor = descriptors.pruned(types, name, TREES[name])
+        descriptor = descriptors.pruned(path, types, name, TREES[name])
         self._handler = ptars.HandlerPool([descriptor.file]).get_for_message(descriptor)
         truth = _inner(self._handler.schema(), "global_ground_truth") if name == SENSOR_VIEW else self._handler.schema()
         base = _inner(_inner(truth, "moving_object"), "base")

@@ -1,0 +1,357 @@
+"""OSI ground truth in MCAP, written by the tests: fields, quirks of real files, topics, and what cannot be read."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pyarrow as pa
+import pytest
+from google.protobuf import descriptor_pb2
+from mcap.writer import CompressionType
+
+from drivelint.errors import TraceError
+from tests.ingest import osi_log
+from tests.ingest.logs import actors, at, log, quality, read, states
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+EPOCH = 1_700_000_000_000_000_000
+
+
+def write(path: Path, frames: list[Any], **options: Any) -> Path:
+    return osi_log.write(path / "drive.mcap", osi_log.truths(frames), **options)
+
+
+def test_ground_truth(tmp_path: Path) -> None:
+    trace = read(write(tmp_path, osi_log.drive(a=(0.5, 0.0), indicator=3, brake=4)))
+    assert trace.drive_id.startswith("drive-")
+    assert (log(trace)["format"], log(trace)["n_states"]) == ("osi-mcap", 90)
+    assert [row["actor_id"] for row in states(trace)][::30] == ["0", "1", "2"]
+    row = at(trace, "2", 1.5)
+    assert (row["x_m"], row["y_m"], row["z_m"], row["yaw_rad"], row["vx_mps"]) == pytest.approx((15, 8, 0.75, 0, 10))
+    assert (row["ax_mps2"], row["indicator"], row["brake_light"]) == (0.5, "left", "strong")
+    assert actors(trace)["0"] == {
+        "drive_id": trace.drive_id,
+        "actor_id": "0",
+        "actor_class": "car",
+        "length_m": 4.5,
+        "width_m": 1.8,
+        "height_m": 1.5,
+        "is_ego": True,
+    }
+    assert (log(trace)["has_indicator"], log(trace)["has_brake_light"], log(trace)["has_acceleration"]) == (True,) * 3
+    assert not quality(trace)
+
+
+def test_ids_sort_as_text_and_keep_64_bits(tmp_path: Path) -> None:
+    frames = []
+    for i in range(3):
+        truth = osi_log.frame(i * 100_000_000, host=2**64 - 1)
+        for number in (9, 10, 2**64 - 1):
+            osi_log.moving(truth, number, float(i))
+        frames.append(truth)
+    trace = read(write(tmp_path, frames))
+    assert list(actors(trace)) == ["10", "18446744073709551615", "9"]
+    assert actors(trace)["18446744073709551615"]["is_ego"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "vehicle", "expected"),
+    [
+        (2, 4, "car"),
+        (2, 7, "truck"),
+        (2, 11, "bicycle"),
+        (2, 0, "vehicle"),
+        (3, 0, "pedestrian"),
+        (4, 0, "animal"),
+        (1, 0, None),
+        (0, 0, None),
+    ],
+)
+def test_classes(tmp_path: Path, kind: int, vehicle: int, expected: str | None) -> None:
+    trace = read(write(tmp_path, osi_log.drive(2, kind=kind, vehicle=vehicle)))
+    assert actors(trace)["0"]["actor_class"] == expected
+
+
+@pytest.mark.parametrize(
+    ("number", "expected"), [(0, None), (1, None), (2, "off"), (3, "left"), (4, "right"), (5, "hazard")]
+)
+def test_indicators(tmp_path: Path, number: int, expected: str | None) -> None:
+    trace = read(write(tmp_path, osi_log.drive(2, indicator=number)))
+    assert at(trace, "0", 0.0)["indicator"] == expected
+    assert ("no_indicator" in quality(trace)) == (expected is None)
+
+
+@pytest.mark.parametrize(("number", "expected"), [(0, None), (2, "off"), (3, "on"), (4, "strong")])
+def test_brake_lights(tmp_path: Path, number: int, expected: str | None) -> None:
+    assert at(read(write(tmp_path, osi_log.drive(2, brake=number))), "0", 0.0)["brake_light"] == expected
+
+
+def test_numbers_come_from_the_logs_own_schema(tmp_path: Path) -> None:
+    """The same names under other numbers: what the log says they are counts."""
+    file = descriptor_pb2.FileDescriptorProto()
+    file.CopyFrom(osi_log.FILE)
+    indicator = next(enum for enum in file.enum_type if enum.name == "Indicator")
+    for value in indicator.value:
+        value.number = {"INDICATOR_STATE_LEFT": 4, "INDICATOR_STATE_RIGHT": 3}.get(value.name, value.number)
+    other = descriptor_pb2.FileDescriptorSet(file=[file]).SerializeToString()
+    trace = read(write(tmp_path, osi_log.drive(2, indicator=3), descriptor_set=other))
+    assert at(trace, "0", 0.0)["indicator"] == "right"
+
+
+def test_numbers_without_a_name_are_unknown(tmp_path: Path) -> None:
+    file = descriptor_pb2.FileDescriptorProto()
+    file.CopyFrom(osi_log.FILE)
+    for enum in file.enum_type:
+        kept = [value for value in enum.value if value.name not in {"INDICATOR_STATE_LEFT", "TYPE_CAR"}]
+        del enum.value[:]
+        enum.value.extend(kept)
+    other = descriptor_pb2.FileDescriptorSet(file=[file]).SerializeToString()
+    trace = read(write(tmp_path, osi_log.drive(2, indicator=3), descriptor_set=other))
+    assert (at(trace, "0", 0.0)["indicator"], actors(trace)["0"]["actor_class"]) == (None, "vehicle")
+
+
+def test_sensor_view(tmp_path: Path) -> None:
+    views = []
+    for truth in osi_log.drive(5):
+        view = osi_log.message("SensorView")
+        truth.ClearField("host_vehicle_id")
+        view.global_ground_truth.CopyFrom(truth)
+        view.host_vehicle_id.value = 1
+        views.append(view)
+    views.append(osi_log.message("SensorView"))  # the last one carries no ground truth
+    views[-1].timestamp.seconds = 9
+    path = osi_log.write(tmp_path / "v.mcap", osi_log.truths(views, "sensor", "SensorView"))
+    trace = read(path)
+    assert [k for k, v in actors(trace).items() if v["is_ego"]] == ["1"]
+    assert len(states(trace)) == 15
+
+
+def test_host_unset(tmp_path: Path) -> None:
+    frames = osi_log.drive(3)
+    for truth in frames:
+        truth.ClearField("host_vehicle_id")
+    path = write(tmp_path, frames)
+    with pytest.raises(
+        TraceError, match=r"no ego: the log does not say which actor is the ego: use --ego ID \(ids: 0, 1, 2\)"
+    ):
+        read(path)
+    assert actors(read(path, ego="0"))["0"]["is_ego"]
+
+
+def test_host_of_value_zero_is_actor_zero(tmp_path: Path) -> None:
+    frames = osi_log.drive(3)
+    for truth in frames:
+        truth.ClearField("host_vehicle_id")
+        truth.host_vehicle_id.SetInParent()
+    assert actors(read(write(tmp_path, frames)))["0"]["is_ego"]
+
+
+def test_host_that_changes_is_reported(tmp_path: Path) -> None:
+    frames = osi_log.drive(3)
+    frames[2].host_vehicle_id.value = 2
+    trace = read(write(tmp_path, frames))
+    assert actors(trace)["0"]["is_ego"]
+    assert "2 host vehicles (0, 2)" in quality(trace)["ego_count"]["message"]
+
+
+def test_absent_vectors_are_unknown_and_dropped_zeros_are_zero(tmp_path: Path) -> None:
+    frames = osi_log.drive(4)
+    for truth in frames:
+        base = truth.moving_object[1].base
+        base.ClearField("orientation")
+        base.ClearField("dimension")
+        base.position.ClearField("x")  # as proto3 writers leave out 0.0
+        base.velocity.Clear()
+        base.velocity.SetInParent()
+        truth.moving_object[2].base.ClearField("position")
+    trace = read(write(tmp_path, frames))
+    row = at(trace, "1", 0.1)
+    assert (row["x_m"], row["y_m"], row["yaw_rad"], row["vx_mps"]) == (0.0, 4.0, None, 0.0)
+    assert (actors(trace)["1"]["length_m"], at(trace, "2", 0.1)["x_m"]) == (None, None)
+    assert {"no_position", "no_yaw", "no_size"} <= set(quality(trace))
+
+
+def test_velocities_all_zero_are_derived(tmp_path: Path) -> None:
+    trace = read(write(tmp_path, osi_log.drive(v=(0.0, 0.0), a=(0.0, 0.0))))
+    assert [row["vx_mps"] for row in states(trace)] == pytest.approx([10.0] * 90)
+    assert quality(trace)["velocity_derived"]["n"] == 90
+
+
+def test_not_finite_values(tmp_path: Path) -> None:
+    frames = osi_log.drive(4)
+    frames[1].moving_object[2].base.velocity.x = float("nan")
+    frames[2].moving_object[2].base.position.x = float("inf")
+    trace = read(write(tmp_path, frames))
+    assert (at(trace, "2", 0.1)["vx_mps"], at(trace, "2", 0.2)["x_m"]) == (None, None)
+    assert quality(trace)["not_finite"]["n"] == 2
+
+
+def test_objects_without_id_are_counted(tmp_path: Path) -> None:
+    frames = osi_log.drive(4)
+    frames[1].moving_object[2].ClearField("id")
+    trace = read(write(tmp_path, frames))
+    assert len(states(trace)) == 11
+    assert quality(trace)["dropped_row"]["n"] == 1
+
+
+def test_messages_without_times_use_the_logs(tmp_path: Path) -> None:
+    frames = osi_log.drive(4)
+    for truth in frames:
+        truth.ClearField("timestamp")
+    messages = [osi_log.Out(m.name, m.topic, EPOCH + m.log_time, m.data) for m in osi_log.truths(frames)]
+    trace = read(osi_log.write(tmp_path / "d.mcap", messages))
+    assert log(trace)["t_start_ns"] == log(trace)["utc_start_ns"] == EPOCH
+    assert quality(trace)["log_time_used"]["n"] == 4
+
+
+def test_log_times_tell_the_date_of_a_clock_from_zero(tmp_path: Path) -> None:
+    messages = [osi_log.Out(m.name, m.topic, EPOCH + m.log_time, m.data) for m in osi_log.truths(osi_log.drive(4))]
+    trace = read(osi_log.write(tmp_path / "d.mcap", messages))
+    assert (log(trace)["t_start_ns"], log(trace)["utc_start_ns"]) == (0, EPOCH)
+
+
+def test_a_clock_that_goes_backwards(tmp_path: Path) -> None:
+    frames = osi_log.drive(10)
+    frames[4], frames[7] = frames[7], frames[4]
+    trace = read(write(tmp_path, frames))
+    straight = read(osi_log.write(tmp_path / "s.mcap", osi_log.truths(osi_log.drive(10))))
+    assert (quality(trace)["clock_jump"]["n"], quality(trace)["clock_jump"]["severity"]) == (2, "warning")
+    assert trace.tables["actor_state"].drop_columns("drive_id") == straight.tables["actor_state"].drop_columns(
+        "drive_id"
+    )
+
+
+def test_repeated_ids_in_a_frame(tmp_path: Path) -> None:
+    frames = osi_log.drive(4)
+    osi_log.moving(frames[2], 1, 77.0)
+    trace = read(write(tmp_path, frames))
+    assert (quality(trace)["duplicate_state"]["actor_id"], quality(trace)["duplicate_state"]["n"]) == ("1", 1)
+    assert at(trace, "1", 0.2)["x_m"] == 2.0
+
+
+def bulb(truth: Any, number: int, color: int, mode: int, signal: str | None = None) -> None:
+    light = truth.traffic_light.add()
+    light.id.value = number
+    light.classification.color, light.classification.mode = color, mode
+    if signal is not None:
+        source = light.source_reference.add()
+        source.type = "net.asam.opendrive"
+        source.identifier.append(signal)
+
+
+def test_traffic_lights(tmp_path: Path) -> None:
+    """Bulbs of one OpenDRIVE signal make its state; a bulb by itself is its own signal."""
+    shown = [
+        (3, 2, 2, "red"),
+        (3, 3, 2, "red_amber"),
+        (2, 2, 3, "green"),
+        (2, 3, 2, "amber"),
+        (2, 2, 2, "off"),
+        (2, 4, 2, "flashing"),
+        (3, 2, 0, None),
+        (3, 2, 3, None),
+    ]
+    frames = osi_log.drive(len(shown))
+    for truth, (red, amber, green, _) in zip(frames, shown, strict=True):
+        for number, color, mode in ((51, 2, red), (52, 3, amber), (53, 4, green)):
+            bulb(truth, number, color, mode, signal="sig 7")
+        bulb(truth, 60, 4, 3)
+    trace = read(write(tmp_path, frames))
+    rows = trace.tables["signal_state"].to_pylist()
+    assert [row["state"] for row in rows if row["signal_id"] == "sig 7"] == [state for *_, state in shown]
+    assert {row["state"] for row in rows if row["signal_id"] == "60"} == {"green"}
+    assert [row["t_ns"] for row in rows if row["signal_id"] == "60"] == [i * 100_000_000 for i in range(len(shown))]
+
+
+def test_embedded_map(tmp_path: Path) -> None:
+    chart = osi_log.message("MapAsamOpenDrive")
+    chart.open_drive_xml_content = "<OpenDRIVE>é</OpenDRIVE>"
+    messages = [osi_log.Out("osi3.MapAsamOpenDrive", "/ground_truth_map", 0, chart.SerializeToString())]
+    messages += osi_log.truths(osi_log.drive(3), "/ground_truth")
+    trace = read(osi_log.write(tmp_path / "d.mcap", messages))
+    assert trace.embedded_map == "<OpenDRIVE>é</OpenDRIVE>".encode()
+    chart.open_drive_xml_content = "<OpenDRIVE/>"
+    messages.append(osi_log.Out("osi3.MapAsamOpenDrive", "other", 0, chart.SerializeToString()))
+    with pytest.raises(TraceError, match="2 different OpenDRIVE maps"):
+        read(osi_log.write(tmp_path / "e.mcap", messages))
+
+
+def test_topics(tmp_path: Path) -> None:
+    one = osi_log.truths(osi_log.drive(3), "/one")
+    two = osi_log.truths(osi_log.drive(4), "/two")
+    path = osi_log.write(tmp_path / "d.mcap", [*one, *two])
+    with pytest.raises(TraceError, match=r"ground truth on 2 topics \(/one, /two\): choose one with --topic"):
+        read(path)
+    assert log(read(path, topic="/two"))["n_states"] == 12
+    assert log(read(path, topic="/one"))["n_states"] == 9
+    with pytest.raises(TraceError, match=r"no OSI ground truth on topic '/three': ground truth is on /one, /two"):
+        read(path, topic="/three")
+
+
+def test_nothing_to_read(tmp_path: Path) -> None:
+    path = osi_log.write(tmp_path / "d.mcap", [osi_log.Out("nav.Odometry", "/odom", 0, b"x")], encoding="cdr")
+    with pytest.raises(
+        TraceError, match=r"no OSI ground truth in this file: it has nav.Odometry in cdr; osi3.GroundTruth"
+    ):
+        read(path)
+    path = osi_log.write(tmp_path / "j.mcap", osi_log.truths(osi_log.drive(2)), encoding="json")
+    with pytest.raises(TraceError, match=r"it has osi3.GroundTruth in json"):
+        read(path)
+    with pytest.raises(TraceError, match="no actor states in this log"):
+        read(write(tmp_path, [osi_log.frame(0)]))
+    with pytest.raises(TraceError, match="no channel"):
+        read(osi_log.write(tmp_path / "n.mcap", []))
+
+
+@pytest.mark.parametrize(
+    ("descriptor_set", "message"),
+    [
+        (b"\xff\xff\xff", "is not a protobuf description"),
+        (b"", "does not describe osi3.GroundTruth"),
+        (
+            descriptor_pb2.FileDescriptorSet(
+                file=[
+                    descriptor_pb2.FileDescriptorProto(
+                        name="x", package="osi3", message_type=[descriptor_pb2.DescriptorProto(name="GroundTruth")]
+                    )
+                ]
+            ).SerializeToString(),
+            r"no moving_object with id and base\.position",
+        ),
+    ],
+)
+def test_schemas_that_cannot_be_used(tmp_path: Path, descriptor_set: bytes, message: str) -> None:
+    with pytest.raises(TraceError, match=message) as error:
+        read(write(tmp_path, osi_log.drive(2), descriptor_set=descriptor_set))
+    assert "\n" not in str(error.value)
+
+
+def test_a_malformed_message_is_named(tmp_path: Path) -> None:
+    messages = osi_log.truths(osi_log.drive(5))
+    messages[3] = osi_log.Out(messages[3].name, messages[3].topic, messages[3].log_time, b"\x2a\x7f\x01")
+    with pytest.raises(
+        TraceError, match=r"topic 'ground_truth', log time 300000000 ns, record at byte \d+: failed to decode"
+    ):
+        read(osi_log.write(tmp_path / "d.mcap", messages))
+
+
+@pytest.mark.parametrize(
+    "options", [{"compression": CompressionType.LZ4}, {"compression": CompressionType.NONE}, {"use_chunking": False}]
+)
+def test_every_way_to_pack_gives_the_same(tmp_path: Path, options: dict[str, Any]) -> None:
+    frames = osi_log.drive(20)
+    expected = read(osi_log.write(tmp_path / "a.mcap", osi_log.truths(frames)))
+    found = read(osi_log.write(tmp_path / "b.mcap", osi_log.truths(frames), chunk_size=500, **options))
+    for name in ("actor", "actor_state"):
+        assert expected.tables[name].drop_columns("drive_id") == found.tables[name].drop_columns("drive_id")
+
+
+def test_batches_do_not_show(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = write(tmp_path, osi_log.drive(30))
+    whole = read(path)
+    monkeypatch.setattr("drivelint.ingest.osi.BATCH_BYTES", 700)
+    for name, rows in read(path).tables.items():
+        assert isinstance(rows, pa.Table)
+        assert rows == whole.tables[name]
