@@ -172,17 +172,10 @@ def _by_time(value: Mapping[Any, Any], times: Any, where: str) -> list[Any]:
 
 def _steps(given: Mapping[str, Sequence[Row]], max_gap_ns: int | None) -> list[Row]:
     """Return the step rows of every subject, from `step` or from the times that the scene uses."""
-    sources = {"step": given["step"]} if "step" in given else given
-    rows = [row for table in sources.values() for row in table]
-    # events alone make steps only where no table has a time grid of its own
-    grid = any("t_ns" in row for row in rows)
+    sources = {"step": given["step"]} if "step" in given else {t: rows for t, rows in given.items() if _is_grid(t) and rows}
     times: dict[tuple[str, str], set[int]] = {}
-    for row in rows:
-        used = {
-            v
-            for c, v in row.items()
-            if v is not None and (c == "t_ns" if grid else c.endswith("_ns") and c not in _DURATIONS)
-        }
+    for row in (row for rows in (sources or given).values() for row in rows):
+        used = {v for c, v in row.items() if v is not None and c.endswith("_ns") and c not in _DURATIONS and (c == "t_ns" or not sources)}
         times.setdefault((row.get("drive_id", _DRIVE), row.get("ego_id", _EGO)), set()).update(used)
     said = {(row["drive_id"], row["ego_id"], row["t_ns"]): row for row in given.get("step", ())}
     steps: list[Row] = []
@@ -196,6 +189,12 @@ def _steps(given: Mapping[str, Sequence[Row]], max_gap_ns: int | None) -> list[R
             step = {"drive_id": drive, "ego_id": ego, "t_ns": t, "k": k, "dt_ns": dt, "seg": seg}
             steps.append(step | said.get((drive, ego, t), {}))
     return steps
+
+
+def _is_grid(table: str) -> bool:
+    """Whether a table has a row per step of the ego; events make steps only where no such table is given."""
+    columns = _tables()[table]
+    return {"ego_id", "t_ns"} <= columns.keys() and ("occurrence" not in columns or table.endswith("_step"))
 
 
 def _period(ordered: Sequence[int]) -> int:
