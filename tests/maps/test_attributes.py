@@ -181,8 +181,8 @@ def object_(kind: str, s: float, t: float, **attributes: str) -> str:
 
 
 def test_stop_lines_as_objects_and_as_painted_signals() -> None:
-    line = object_("-1", 40, -1.75, name="StopLine", hdg="1.5708", length="3.4", width="0.3")
-    along = object_("-1", 60, -1.75, name="StopLine along", hdg="0", length="3.4", width="0.3")
+    line = object_("-1", 40, -1.2, name="StopLine", hdg="1.5708", length="3.4", width="0.3")
+    along = object_("-1", 60, -1.75, name="StopLine along", hdg="0.6", length="6", width="0.3")
     painted = signal(70, "-", type="294", t="-1.75", width="3.5", id="9")
     environment = load(road(more=f"<objects>{line}{along}</objects><signals>{painted}</signals>"))
     found = [
@@ -215,8 +215,11 @@ def test_objects_repeat() -> None:
     environment = load(road(more=f"<objects>{posts}{fence}</objects>"))
     found = {r["object_id"]: (r["kind"], r["x_m"], r["y_m"]) for r in rows(environment, "road_object")}
     assert found == {
-        "o/0": ("pole", 10.0, 4.0), "o/1": ("pole", 20.0, 5.0), "o/2": ("pole", 30.0, 6.0), "fence": ("barrier", 0.0, -8.0),
-    }  # fmt: skip
+        "o/0": ("pole", 10.0, 4.0),
+        "o/1": ("pole", 20.0, 5.0),
+        "o/2": ("pole", 30.0, 6.0),
+        "fence": ("barrier", 0.0, -8.0),
+    }
     band = next(r for r in rows(environment, "road_object") if r["object_id"] == "fence")
     assert (min(band["outline_x_m"]), max(band["outline_x_m"])) == (0.0, 50.0)
 
@@ -226,6 +229,14 @@ def test_an_object_repeated_without_end_is_refused() -> None:
     environment = load(road(more=f"<objects>{posts}</objects>"))
     assert rows(environment, "road_object") == []
     assert checks(environment)["invalid_object"] == ["1"]
+
+
+def test_outlines_turn_with_the_object_and_the_road() -> None:
+    corners = "".join(f'<cornerLocal u="{u}" v="{v}"/>' for u, v in ((0, 0), (4, 0), (4, 1)))
+    building = object_("building", 10, 5, hdg="1.5707963267948966", inside=f"<outline>{corners}</outline>")
+    row = rows(load(road(more=f"<objects>{building}</objects>")), "road_object")[0]
+    assert row["outline_x_m"] == pytest.approx([10, 10, 9])
+    assert row["outline_y_m"] == pytest.approx([5, 9, 9])
 
 
 def test_outlines_run_counter_clockwise() -> None:

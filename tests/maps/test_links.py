@@ -69,6 +69,19 @@ def test_roads_that_meet_end_to_end_swap_the_sign_of_their_lanes(contact: str) -
     assert "link_gap" not in checks(environment)
 
 
+def test_a_contact_that_is_not_said_is_the_end_that_names_the_road() -> None:
+    environment = load(
+        road("1", lanes=section(0, linked(-1, successor=1)), link=joined("successor", "2", "")),
+        road("2", line(200, heading=math.pi), lanes=section(0, lane(1)), link=joined("successor", "1", "")),
+    )
+    assert links(environment) == {("1.0.-1", "2.0.1")}
+    unsaid = load(
+        road("1", lanes=section(0, linked(-1, successor=1)), link=joined("successor", "2", "")),
+        road("2", line(200, heading=math.pi), lanes=section(0, lane(1))),
+    )
+    assert checks(unsaid)["missing_link"] == ["1.0.-1"]
+
+
 def junction(contact: str, to: int, connecting: str) -> tuple[str, str, str, str]:
     """Road 1 leads into the junction, road 2 out of it, 10 joins them."""
     connection = (
@@ -99,6 +112,19 @@ def test_junctions_entered_at_the_start_and_at_the_end_of_the_connecting_road() 
         assert lanelets(environment)["1.0.-1"]["junction_id"] is None
         assert environment.handedness_source == "junctions"
         assert set(checks(environment)) <= {"unlinked_end"}
+
+
+def test_the_incoming_road_says_which_of_its_ends_lies_at_the_junction() -> None:
+    elsewhere = road("10", line(-20, length=20), section(0, lane(-1)), 20, junction="9")
+    environment = load(*junction("start", -1, elsewhere))
+    assert links(environment) == {("1.0.-1", "10.0.-1")}
+    assert checks(environment)["link_gap"] == ["1.0.-1"]
+
+
+def test_the_nearer_end_is_taken_where_nobody_says() -> None:
+    parts = junction("start", -1, road("10", line(100, length=20), section(0, lane(-1)), 20, junction="9"))
+    environment = load(road("1"), *parts[1:])
+    assert links(environment) == {("1.0.-1", "10.0.-1")}
 
 
 def test_turn_is_the_heading_change_over_the_lane_entered() -> None:
