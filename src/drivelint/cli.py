@@ -8,8 +8,8 @@ from __future__ import annotations
 import io
 import os
 import sys
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import nullcontext
+from concurrent.futures import ThreadPoolExecutor, wait
+from contextlib import nullcontext, redirect_stdout
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn, TypeVar
@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn, TypeVar
 import typer
 
 from drivelint import __version__
-from drivelint.errors import DriveLintError, ExitCode, UsageError
+from drivelint.errors import DriveLintError, ExitCode, RuleError, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -87,7 +87,8 @@ def _root(
 ) -> None:
     """Checks recorded drives against the rules of the road."""
     if ctx.invoked_subcommand is None:
-        typer.echo(ctx.get_help(), err=True)
+        with redirect_stdout(sys.stderr):
+            typer.echo(ctx.get_help())
         raise typer.Exit(int(ExitCode.USAGE))
 
 
@@ -221,7 +222,7 @@ def rules_test(
     ] = None,
 ) -> None:
     """Run the cases beside the rules: what each must answer in small scenes. Exit code 1: some answer otherwise."""
-    from drivelint.casefile import run_cases
+    from drivelint.casefile import CaseResult, run_cases
     from drivelint.catalogue import load
     from drivelint.report import rules_text
 
@@ -229,9 +230,12 @@ def rules_test(
     mine = [rule for rule in rules.values() if folder is None or rule.path.is_relative_to(folder)]
     failed = False
     for rule in mine:
-        results = run_cases(rule)
+        try:
+            results = run_cases(rule)
+        except RuleError as error:
+            results = [CaseResult("cases", ok=False, message=str(error))]
         failed |= not all(result.ok for result in results)
-        _console().print(rules_text.case_line(rule.id, results))
+        _console().print(rules_text.case_line(rule.id, results), soft_wrap=True)
     raise typer.Exit(int(ExitCode.FAILED if failed else ExitCode.OK))
 
 
@@ -249,8 +253,10 @@ def main() -> NoReturn:
     except TyperException as error:
         _fail(f"{error.format_message()} (see drivelint --help)", ExitCode.USAGE)
     except (KeyboardInterrupt, typer.Abort):
-        print("drivelint: error: interrupted; nothing was written", file=sys.stderr, flush=True)
-        os._exit(int(ExitCode.INTERRUPTED))  # a native thread may still be computing: there is nothing to wait for
+        code = ExitCode.INTERRUPTED
+    if code == ExitCode.INTERRUPTED:
+        print("drivelint: error: interrupted", file=sys.stderr, flush=True)
+        os._exit(code)  # the database may still be computing in its thread: there is nothing to wait for
     sys.exit(code or 0)
 
 
@@ -271,8 +277,14 @@ def _offset(text: str | None) -> tuple[float, float] | None:
 
 
 def _interruptible(job: Callable[[], T]) -> T:
-    """Run `job` beside the main thread: the database does not look at Ctrl-C while it computes, this thread does."""
-    return ThreadPoolExecutor(max_workers=1).submit(job).result()
+    """Run `job` beside the main thread: the database does not look at Ctrl-C while it computes, this thread does.
+
+    It looks several times a second, because some libraries make the system restart a wait that a signal interrupted.
+    """
+    running = ThreadPoolExecutor(max_workers=1).submit(job)
+    while not running.done():
+        wait([running], timeout=0.2)
+    return running.result()
 
 
 def _progress(quiet: bool) -> AbstractContextManager[Progress]:

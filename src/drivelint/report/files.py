@@ -53,16 +53,20 @@ def parquet_bytes(rows: pa.Table, table: str) -> bytes:
     return sink.getvalue()
 
 
-def publish(out: Path, contents: dict[str, bytes], moved: dict[str, Path] | None = None) -> None:
+def publish(out: Path, contents: dict[str, bytes], moved: dict[str, Path | None]) -> None:
     """Write files into the folder `out`, all of them complete on disk before the first gets its name.
 
-    `contents`: name -> bytes; `moved`: name -> a finished file that is taken over. Names are published in order.
+    `contents`: name -> bytes; `moved`: name -> a finished file that is taken over, or None: what an earlier run left
+    under that name goes, because it is not of this run. Names are published in order, those of `moved` first.
     Errors: `OutputError` when the folder cannot be written (exit 75).
     """
     staged: list[tuple[Path, Path]] = []
     try:
         out.mkdir(parents=True, exist_ok=True)
-        for name, source in (moved or {}).items():
+        for name, source in moved.items():
+            if source is None:
+                (out / name).unlink(missing_ok=True)
+                continue
             temporary = out / f".{name}.{os.getpid()}.tmp"
             shutil.move(source, temporary)
             staged.append((temporary, out / name))

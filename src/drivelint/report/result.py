@@ -93,7 +93,7 @@ def write(result: Result, out: Path) -> None:
     contents = {f"{name}.parquet": parquet_bytes(getattr(result, name), table) for name, table in FILES.items()}
     contents["junit.xml"] = junit.render(result)
     contents["summary.json"] = summary.render(result)
-    publish(out, contents, {"margins.parquet": result.margins_file} if result.margins_file else None)
+    publish(out, contents, {"margins.parquet": result.margins_file})
 
 
 def _many(n: int, noun: str) -> str:

@@ -39,14 +39,12 @@ def listing_json(rules: Iterable[Rule]) -> str:
 def listing(rules: Iterable[Rule]) -> Table:
     """Return the same as a table, with the rules' titles."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("rule", overflow="fold")
-    for name in ("kind", "severity", "status"):
+    for name in ("rule", "kind", "severity", "status"):
         table.add_column(name, no_wrap=True)
-    table.add_column("clause")
     table.add_column("what it asks", ratio=1)
     for rule in rules:
         kind = f"{rule.kind}, {rule.subtype}" if rule.subtype else rule.kind
-        table.add_row(rule.id, kind, rule.severity, rule.status, Text(rule.clause), Text(rule.title))
+        table.add_row(rule.id, kind, rule.severity, rule.status, Text(rule.title))
     return table
 
 

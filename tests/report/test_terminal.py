@@ -1,0 +1,75 @@
+"""The terminal summary says what a person must know, in wide and narrow windows."""
+
+from __future__ import annotations
+
+import io
+
+import pytest
+from rich.console import Console
+
+from drivelint.report import terminal
+from drivelint.report.result import Result
+from tests.report.synthetic import drive, finding, result, rule, verdict
+
+WARNING = {
+    "check_id": "yaw_mismatch", "severity": "warning", "actor_id": "3", "n": 4, "t_first_ns": 0,
+    "message": "4 headings differ from the motion",
+}  # fmt: skip
+INFO = WARNING | {"severity": "info", "check_id": "note", "message": "nothing to worry about"}
+
+
+def shown(run: Result, width: int = 120) -> str:
+    console = Console(file=io.StringIO(), width=width, force_terminal=False)
+    console.print(terminal.render(run, "out", width))
+    text = console.file.getvalue()  # type: ignore[attr-defined]
+    assert max(len(line) for line in text.splitlines()) <= width
+    return str(text)
+
+
+@pytest.mark.parametrize("width", [120, 72])
+def test_everything_is_told(width: int) -> None:
+    run = result(
+        [
+            verdict("fail"),
+            verdict("pass", profile="relaxed", near_miss=True, observed=101.5, required=101.0, margin=0.5),
+            verdict("unknown", rule_id="ukhc.signal", profile=None, reason="the log has no indicators"),
+        ],
+        [finding()],
+        drives=[drive(quality=[WARNING, INFO]), drive("d2", status="not_judged", status_reason="d2.csv: no ego")],
+        rules=[rule(), rule("ukhc.signal", status="draft", severity="minor")],
+    )
+    text = " ".join(shown(run, width).split())
+    for part in ("8.00 s", "58.00 m", "64.00 m", "-6.00 m", "[nominal]", "Findings (1)", "Near misses", "101.50 m"):
+        assert part in text
+    assert "Could not be judged (2)" in text
+    assert "the log has no indicators" in text
+    assert "d2.csv: no ego" in text
+    assert "4 headings differ" in text
+    assert "nothing to worry about" not in text
+    assert "(draft)" in text
+    assert "1 pass, 1 fail, 1 unknown, 0 n/a, 0 error" in text
+    assert "exit 1: 1 verdict failed at or above severity critical" in text
+
+
+def test_nothing_to_report_is_short() -> None:
+    text = shown(result([verdict("pass")]))
+    for section in ("Findings", "Near misses", "Could not be judged", "Data quality"):
+        assert section not in text
+    assert "exit 0" in text
+
+
+def test_long_sections_are_cut_and_say_so() -> None:
+    many = [finding(occurrence=n) for n in range(25)]
+    text = shown(result([verdict("fail")], many))
+    assert "Findings (first 20 of 25)" in text
+    assert text.count("58.00 m") == 20
+
+
+@pytest.mark.parametrize("width", [120, 60])
+def test_a_logs_words_are_text_not_markup(width: int) -> None:
+    text = shown(
+        result([verdict("unknown", reason="[red]lost[/red]")], [finding(object_id="[bold]3[/bold]", reason="[x]")]),
+        width,
+    )
+    assert "[red]lost[/red]" in text
+    assert "[bold]3[/bold]" in text

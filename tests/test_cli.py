@@ -1,0 +1,298 @@
+"""The command line as a user meets it: its own process, its exit code, one line for a mistake."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pyarrow.parquet as pq
+import pytest
+
+from drivelint import __version__, cli
+from tests.shared_data import ROOT
+
+OVERTAKE = ROOT / "fixtures" / "overtake"
+TRACES = [str(OVERTAKE / f"{name}.csv") for name in ("safe", "near_miss", "collision")]
+ON_ROAD = ["--map", str(OVERTAKE / "road.xodr"), "--mapping", str(OVERTAKE / "mapping.toml")]
+SDA = ["--rules", "ukhc.r162.safe-distance-ahead"]
+PROFILES = ["--profile", "relaxed", "--profile", "nominal", "--profile", "aggressive"]
+
+
+def drivelint(*args: str, **env: str) -> subprocess.CompletedProcess[str]:
+    """Run the command line in a process of its own."""
+    source = str(ROOT / "src")
+    return subprocess.run(
+        [sys.executable, "-m", "drivelint", *args],
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        timeout=60,
+        check=False,
+        env={**os.environ, "PYTHONPATH": source, "PYTHONIOENCODING": "utf-8", **env},
+    )
+
+
+@pytest.fixture
+def refused(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Callable[..., tuple[int, str]]:
+    """Return a function that runs a command that must be refused and returns its exit code and one line."""
+
+    def run(*args: str) -> tuple[int, str]:
+        monkeypatch.setattr(sys, "argv", ["drivelint", *args])
+        with pytest.raises(SystemExit) as left:
+            cli.main()
+        out, err = capfd.readouterr()
+        assert out == ""
+        assert "Traceback" not in err
+        lines = err.splitlines()
+        assert [line for line in lines if line.startswith("drivelint: error: ")] == lines[-1:]
+        assert isinstance(left.value.code, int)
+        return left.value.code, lines[-1]
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def checked(tmp_path_factory: pytest.TempPathFactory) -> tuple[subprocess.CompletedProcess[str], Path]:
+    out = tmp_path_factory.mktemp("overtakes")
+    return drivelint("check", *TRACES, *ON_ROAD, *SDA, *PROFILES, "--out", str(out)), out
+
+
+def test_help_is_quick() -> None:
+    def once() -> float:
+        start = time.perf_counter()
+        assert drivelint("--help").returncode == 0
+        return time.perf_counter() - start
+
+    assert min(once() for _ in range(5)) < 0.3
+
+
+def test_help_loads_nothing_heavy() -> None:
+    probe = (
+        "import sys; sys.argv = ['drivelint', '--help']\n"
+        "from drivelint.cli import main\n"
+        "try: main()\n"
+        "except SystemExit: print('|'.join(sorted(sys.modules)))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", probe],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT / "src")},
+    )
+    loaded = {name.split(".")[0] for name in done.stdout.splitlines()[-1].split("|")}
+    assert "drivelint" in loaded
+    assert not loaded & {"duckdb", "pyarrow", "numpy", "polars", "lxml", "mcap", "shapely", "yaml", "msgspec"}
+
+
+def test_version() -> None:
+    assert drivelint("--version").stdout == f"drivelint {__version__}\n"
+
+
+def test_no_command_shows_help_on_stderr() -> None:
+    done = drivelint()
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "check" in done.stderr
+
+
+def test_the_papers_verdicts_on_the_fixture(checked: tuple[subprocess.CompletedProcess[str], Path]) -> None:
+    done, out = checked
+    assert done.returncode == 1, done.stderr
+    rows = pq.read_table(out / "verdicts.parquet").to_pylist()
+    golden = {
+        ("safe", "relaxed"): "fail", ("safe", "nominal"): "pass", ("safe", "aggressive"): "pass",
+        ("near_miss", "relaxed"): "fail", ("near_miss", "nominal"): "fail", ("near_miss", "aggressive"): "pass",
+        ("collision", "relaxed"): "fail", ("collision", "nominal"): "fail", ("collision", "aggressive"): "fail",
+    }  # fmt: skip
+    assert {(row["drive_id"].rpartition("-")[0], row["profile"]): row["verdict"] for row in rows} == golden
+    ahead = {"safe": 76.0, "near_miss": 58.0, "collision": 35.0}
+    required = {"relaxed": 101.39, "nominal": 63.74, "aggressive": 40.01}
+    for row in rows:
+        assert row["observed"] == pytest.approx(ahead[row["drive_id"].rpartition("-")[0]], abs=0.05)
+        assert row["required"] == pytest.approx(required[row["profile"]], abs=0.5)
+
+
+def test_text_is_for_people_and_goes_to_stdout(checked: tuple[subprocess.CompletedProcess[str], Path]) -> None:
+    done, out = checked
+    assert "Findings (6)" in done.stdout
+    assert "exit 1: 6 verdicts failed" in done.stdout
+    assert "\x1b" not in done.stdout
+    assert "Findings" not in done.stderr
+    assert {path.name for path in out.iterdir()} == {
+        "verdicts.parquet", "findings.parquet", "drives.parquet", "rules.parquet", "summary.json", "junit.xml",
+    }  # fmt: skip
+
+
+def test_json_is_the_summary_and_nothing_else(checked: tuple[subprocess.CompletedProcess[str], Path]) -> None:
+    _, out = checked
+    done = drivelint("check", *reversed(TRACES), *ON_ROAD, *SDA, *PROFILES, "--format", "json", "--quiet")
+    assert done.stdout == (out / "summary.json").read_text(encoding="utf-8")
+    assert done.stderr == ""
+    assert json.loads(done.stdout)["exit"]["code"] == done.returncode == 1
+
+
+def test_fail_on_never() -> None:
+    assert drivelint("check", TRACES[2], *ON_ROAD, *SDA, "--fail-on", "never").returncode == 0
+
+
+def test_margins_and_database_are_kept_where_asked(tmp_path: Path) -> None:
+    done = drivelint("check", TRACES[0], *ON_ROAD, *SDA, "--margins", "--keep-db", "--out", str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    assert pq.read_metadata(tmp_path / "margins.parquet").num_rows > 0
+    assert (tmp_path / "drivelint.duckdb").stat().st_size > 0
+    assert not [path for path in tmp_path.iterdir() if path.name.startswith(".")]
+
+
+MISTAKES = [
+    pytest.param(["check"], 2, "TRACE", id="no trace"),
+    pytest.param(["chek"], 2, "chek", id="unknown command"),
+    pytest.param(["check", TRACES[0], "--mpa", "x"], 2, "--mpa", id="unknown option"),
+    pytest.param(["check", "nowhere.csv", *ON_ROAD], 4, "nowhere.csv", id="unknown file"),
+    pytest.param(["check", TRACES[0], *ON_ROAD[2:], "--map", "nowhere.xodr"], 4, "nowhere.xodr", id="missing map"),
+    pytest.param(["check", TRACES[0], *ON_ROAD[:2], "--mapping", "nowhere"], 2, "nowhere", id="unknown mapping"),
+    pytest.param(["check", TRACES[0], *ON_ROAD[:2]], None, "safe.csv", id="a table without a mapping"),
+    pytest.param(["check", TRACES[0], *ON_ROAD, "--ego", "nobody"], 4, "nobody", id="unknown ego"),
+    pytest.param(["check", TRACES[0], *ON_ROAD, "--rules", "ukhc.r162"], 2, "ukhc.r162", id="unknown rule"),
+    pytest.param(["check", TRACES[0], *ON_ROAD, "--ignore", "ukhc"], 2, "no rule", id="no rule left"),
+    pytest.param(["check", TRACES[0], *ON_ROAD, "--profile", "nominl"], 2, "nominal", id="unknown profile"),
+    pytest.param(["check", TRACES[0], *ON_ROAD, "--param", "x=1"], 2, "x=1", id="unknown parameter"),
+    pytest.param(["check", TRACES[0], *ON_ROAD, "--map-offset", "1;2"], 2, "--map-offset", id="offset is no pair"),
+    pytest.param(["check", TRACES[0], *ON_ROAD, "--map-offset", "nan,0"], None, "offset", id="offset is no number"),
+    pytest.param(["check", TRACES[0], *ON_ROAD, "--sensor-range", "-1"], 2, "--sensor-range", id="negative range"),
+    pytest.param(["check", TRACES[0], *ON_ROAD, "--margins"], 2, "--out", id="margins go nowhere"),
+    pytest.param(["check", TRACES[0], *ON_ROAD, "--rules-dir", "nowhere"], 2, "nowhere", id="no rules there"),
+    pytest.param(["rules", "show", "ukhc.nothing"], 2, "ukhc.nothing", id="show an unknown rule"),
+]
+
+
+@pytest.mark.parametrize(("args", "code", "names"), MISTAKES)
+def test_a_mistake_is_one_line_with_the_right_exit_code(
+    args: list[str], code: int | None, names: str, refused: Callable[..., tuple[int, str]]
+) -> None:
+    got, line = refused(*args)
+    assert names in line
+    assert got == code or (code is None and got in {2, 4})
+
+
+def test_an_unreadable_mapping_is_named_with_its_place(tmp_path: Path, refused: Callable[..., tuple[int, str]]) -> None:
+    mapping = tmp_path / "broken.toml"
+    mapping.write_text('description = "x"\n[time\n', encoding="utf-8")
+    code, line = refused("check", TRACES[0], *ON_ROAD[:2], "--mapping", str(mapping))
+    assert code == 2
+    assert str(mapping) in line
+
+
+def test_a_log_without_an_ego_says_so(tmp_path: Path, refused: Callable[..., tuple[int, str]]) -> None:
+    mapping = tmp_path / "no_ego.toml"
+    text = (OVERTAKE / "mapping.toml").read_text(encoding="utf-8")
+    mapping.write_text(text.replace('ids = ["ego"]', "ids = []"), encoding="utf-8")
+    code, line = refused("check", TRACES[0], *ON_ROAD[:2], "--mapping", str(mapping))
+    assert code == 4
+    assert "--ego" in line
+
+
+def test_a_drive_that_cannot_be_judged_does_not_harm_the_others(tmp_path: Path) -> None:
+    bad = tmp_path / "bad.csv"
+    bad.write_text("time_s,actor\n", encoding="utf-8")
+    done = drivelint("check", TRACES[0], str(bad), *ON_ROAD, *SDA, "--out", str(tmp_path / "out"))
+    assert done.returncode == 4, done.stderr
+    assert "Traceback" not in done.stderr
+    rows = pq.read_table(tmp_path / "out" / "drives.parquet").to_pylist()
+    assert {row["file_name"]: row["status"] for row in rows} == {"bad.csv": "not_judged", "safe.csv": "judged"}
+
+
+def test_a_map_of_another_place_is_named_not_blamed_on_the_driver(refused: Callable[..., tuple[int, str]]) -> None:
+    code, line = refused("check", TRACES[2], *ON_ROAD, "--map-offset", "5000,0")
+    assert code == 4
+    assert "another place" in line
+
+
+def test_results_that_cannot_be_written_are_75(tmp_path: Path, refused: Callable[..., tuple[int, str]]) -> None:
+    (tmp_path / "taken").write_text("", encoding="utf-8")
+    code, line = refused("check", TRACES[0], *ON_ROAD, *SDA, "--out", str(tmp_path / "taken"))
+    assert code == 75
+    assert "taken" in line
+
+
+def test_rules_list_is_for_programs_too() -> None:
+    rows = json.loads(drivelint("rules", "list", "--format", "json").stdout)
+    assert {"ukhc.r162.safe-distance-ahead", "ukhc.no-collision"} <= {row["id"] for row in rows}
+    for row in rows:
+        assert row.keys() == {"id", "pack", "kind", "subtype", "severity", "status", "clause", "requires"}
+    assert [row["id"] for row in rows] == sorted(row["id"] for row in rows)
+    listed = drivelint("rules", "list").stdout
+    assert [row["id"] for row in rows if row["id"] not in listed] == []
+
+
+def test_rules_show_tells_where_a_rule_is_from() -> None:
+    text = drivelint("rules", "show", "ukhc.r162.safe-distance-ahead").stdout
+    for part in ("R162", "@reference", "@condition", "critical"):
+        assert part in text
+
+
+CASES = """
+- name: clean
+  given: {ego_state: {t_s: 0..1 by 0.1, speed_mps: 1.0}}
+  expect: %s
+"""
+RULE = """-- title = "not faster than 10 m/s"
+-- clause = "none"
+-- hypothesis = "is it slow?"
+-- kind = "invariant"
+-- derivation = "direct"
+-- severity = "minor"
+-- legal = "should"
+-- status = "draft"
+-- sense = "<="
+-- unit = "m/s"
+-- reads = ["ego_state"]
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, speed_mps AS observed, 10.0::DOUBLE AS required FROM ego_state
+"""
+
+
+@pytest.mark.parametrize("expect", ["pass", "fail"])
+def test_rules_test_runs_the_cases_of_a_folder(tmp_path: Path, expect: str) -> None:
+    pack = tmp_path / "mine"
+    pack.mkdir()
+    (pack / "slow.sql").write_text(RULE, encoding="utf-8")
+    (pack / "slow.cases.yml").write_text(CASES % expect, encoding="utf-8")
+    done = drivelint("rules", "test", str(tmp_path))
+    assert done.returncode == 1  # one case cannot show every kind
+    assert ("clean:" in done.stdout) == (expect == "fail")
+    assert "mine.slow" in done.stdout
+    assert "ukhc" not in done.stdout
+
+
+@pytest.mark.skipif(signal.getsignal(signal.SIGINT) is signal.SIG_IGN, reason="Ctrl-C is ignored where these tests run")
+def test_ctrl_c_is_answered_while_the_database_computes(tmp_path: Path) -> None:
+    pack = tmp_path / "mine"
+    pack.mkdir()
+    endless = RULE.replace(
+        "FROM ego_state", "FROM ego_state WHERE (SELECT count(*) FROM range(100000000000) t(i) WHERE sin(i) > 2) = 0"
+    )
+    (pack / "slow.sql").write_text(endless, encoding="utf-8")
+    args = ["check", TRACES[0], *ON_ROAD, "--rules-dir", str(tmp_path), "--rules", "mine"]
+    with subprocess.Popen(
+        [sys.executable, "-m", "drivelint", *args],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT / "src")},
+    ) as process:
+        try:
+            with pytest.raises(subprocess.TimeoutExpired):
+                process.wait(timeout=2)
+            process.send_signal(signal.SIGINT)
+            out, err = process.communicate(timeout=10)
+        finally:
+            process.kill()
+    assert (process.returncode, out) == (130, "")
+    assert err.splitlines()[-1] == "drivelint: error: interrupted"

@@ -1,0 +1,45 @@
+"""Tables are documented contracts: every column of schemas/*.sql has a comment, and the database has them too."""
+
+from __future__ import annotations
+
+import re
+
+import duckdb
+import pytest
+
+from drivelint import store
+
+
+@pytest.fixture(scope="module")
+def database() -> duckdb.DuckDBPyConnection:
+    con = duckdb.connect()
+    store.create_tables(con)
+    return con
+
+
+def test_every_column_of_every_table_has_a_comment(database: duckdb.DuckDBPyConnection) -> None:
+    columns = database.execute(
+        "SELECT table_name, column_name, comment FROM duckdb_columns() WHERE NOT internal"
+    ).fetchall()
+    assert len(columns) > 100
+    bare = [f"{table}.{column}" for table, column, comment in columns if not (comment or "").strip()]
+    assert not bare
+
+
+def test_what_is_parsed_from_the_files_is_what_the_database_has(database: duckdb.DuckDBPyConnection) -> None:
+    rows = database.execute(
+        "SELECT table_name, column_name FROM duckdb_columns() WHERE NOT internal ORDER BY table_oid, column_index"
+    )
+    found: dict[str, list[str]] = {}
+    for table, column in rows.fetchall():
+        found.setdefault(table, []).append(column)
+    assert {table: list(columns) for table, columns in store.schema().items()} == found
+
+
+def test_units_are_si_and_stand_in_the_name(database: duckdb.DuckDBPyConnection) -> None:
+    """A time in ticks is BIGINT nanoseconds (`_ns`); no column is in minutes, degrees or miles."""
+    columns = database.execute(
+        "SELECT table_name, column_name, data_type FROM duckdb_columns() WHERE NOT internal"
+    ).fetchall()
+    assert [c for c in columns if c[1].endswith("_ns") and c[2] != "BIGINT"] == []
+    assert [c for c in columns if re.search(r"_(deg|mph|kmh|min|ft|ms)$", c[1])] == []
