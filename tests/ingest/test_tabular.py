@@ -223,10 +223,10 @@ def test_malformed_rows_are_counted_and_placed(tmp_path: Path) -> None:
     ]
     found = {row["check_id"] + row["message"]: row["n"] for row in rows}
     for check, text in (
-        ("malformed_row", "(line 5)"),
-        ("malformed_cell", "(line 7): column 'x' is not a number"),
-        ("dropped_row", "(line 10): the time is missing or not a number"),
-        ("dropped_row", "(line 12): the actor id is missing"),
+        ("malformed_row", "line 5: not the 7 cells"),
+        ("malformed_cell", "line 7: column 'x' is not a number"),
+        ("dropped_row", "line 10: the time is missing or not a number"),
+        ("dropped_row", "line 12: the actor id is missing"),
     ):
         assert [n for message, n in found.items() if check in message and text in message] == [1], (check, text, found)
     assert log(trace)["n_states"] == 40 - 3
@@ -305,7 +305,7 @@ def test_row_order_does_not_matter(tmp_path: Path, data: st.DataObject) -> None:
         (["t,id,x,yy,yaw,vx,vy", "0,a,0,0,0,0,0"], r"no column 'y', which mapping 'mapping' needs: did you mean 'yy'"),
         (["t,id,x,y,yaw,vx,vy,y", "0,a,0,0,0,0,0,0"], r"the column 'y' is there 2 times"),
         (["t,id,x,y,yaw,vx,vy"], r"no row follows the header|no actor states"),
-        (["t,id,x,y,yaw,vx,vy", "0,a,0"], r"1 lines do not have the 7 cells of the header \(line 2\): no row is left"),
+        (["t,id,x,y,yaw,vx,vy", "0,a,0"], r"line 2: not the 7 cells of the header: no row is left"),
         (["", "t,id,x,y,yaw,vx,vy"], r"line 1 should name the columns and is blank"),
         (["t,id,x,y,yaw,vx,vy", ",,,,,,"], r"no actor states in this log"),
     ],

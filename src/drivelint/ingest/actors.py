@@ -58,9 +58,7 @@ def from_states(states: States) -> tuple[Actors, list[Finding]]:
     findings = []
     if varying:
         ids = sorted(varying)
-        message = (
-            f"the box of {len(ids)} actors changes size over the log ({listed(ids)}): the median is used throughout"
-        )
+        message = f"box size changes over the log ({listed(ids)}): the median is used throughout"
         findings.append(
             Finding("size_varies", "warning", message, len(ids), actor_id=ids[0] if len(ids) == 1 else None)
         )

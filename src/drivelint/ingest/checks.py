@@ -46,7 +46,11 @@ def run(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[F
     if len(states) > 1:
         jump = _jumps(states, step)
         findings += _report(
-            states, jump, "teleport", "warning", "{n} steps in position are longer than any speed explains ({ids})"
+            states,
+            jump,
+            "teleport",
+            "warning",
+            "position jumps further than any speed explains in {n} of {of} states ({ids})",
         )
         if not derived:
             findings += _velocity(states, step, jump)
@@ -69,7 +73,7 @@ def _not_finite(states: States) -> list[Finding]:
         states.not_finite,
         "not_finite",
         "warning",
-        "{n} states have NaN or infinity ({ids}): those values are unknown",
+        "NaN or infinity in {n} of {of} states ({ids}): those values are unknown",
     )
 
 
@@ -82,14 +86,14 @@ def _not_placed(states: States) -> list[Finding]:
             lost,
             "no_position",
             "warning",
-            "{n} of {of} states have no position ({ids}): the actors are present but not placed",
+            "no position in {n} of {of} states ({ids}): the actors are present but not placed",
         ),
         *_report(
             states,
             turned,
             "no_yaw",
             "warning",
-            "{n} of {of} states have no heading ({ids}): their boxes cannot be placed",
+            "no heading in {n} of {of} states ({ids}): their boxes cannot be placed",
         ),
     ]
 
@@ -99,16 +103,14 @@ def _sizes(actors: Actors) -> list[Finding]:
     findings = []
     missing = [actors.ids[i] for i in np.flatnonzero(np.isnan(length) | np.isnan(width))]
     if missing:
-        message = (
-            f"{len(missing)} actors have no length or width ({listed(missing)}): distances to their boxes are unknown"
-        )
+        message = f"no length or width is known of {listed(missing)}: distances to their boxes are unknown"
         findings.append(
             Finding("no_size", "warning", message, len(missing), actor_id=missing[0] if len(missing) == 1 else None)
         )
     long_kind = np.array([kind in LONG_KINDS for kind in actors.classes], np.bool_)
     swapped = [actors.ids[i] for i in np.flatnonzero(long_kind & (length < width))]
     if swapped:
-        message = f"{len(swapped)} vehicles are shorter than wide ({listed(swapped)}): length and width may be swapped"
+        message = f"shorter than wide: {listed(swapped)}: length and width may be swapped"
         findings.append(
             Finding(
                 "length_below_width",
@@ -135,7 +137,7 @@ def _gaps(states: States, step: Steps) -> list[Finding]:
     if wide.any():
         n, first = int(wide.sum()), int(times[:-1][wide][0])
         message = (
-            f"{n} gaps in the log longer than {MAX_GAP_PERIODS} periods of {step.period_ns / 1e9:g} s, "
+            f"gaps in the log of more than {MAX_GAP_PERIODS} periods ({step.period_ns / 1e9:g} s each): {n}, "
             f"the longest {dt.max() / 1e9:g} s, the first from {first / 1e9:g} s: nothing is judged across them"
         )
         findings.append(Finding("gap", "warning", message, n, first))
@@ -145,7 +147,11 @@ def _gaps(states: States, step: Steps) -> list[Finding]:
         inside = np.searchsorted(times, states.t_ns[:-1][hole[:-1]])
         hole[np.flatnonzero(hole)[wide[inside]]] = False
     findings += _report(
-        states, hole, "track_gap", "info", "{n} tracks are interrupted ({ids}): those actors are unknown in between"
+        states,
+        hole,
+        "track_gap",
+        "info",
+        "interruptions of single tracks: {n} ({ids}): those actors are unknown in between",
     )
     return findings
 
@@ -193,7 +199,7 @@ def _velocity(states: States, step: Steps, jump: NDArray[np.bool_]) -> list[Find
         wrong,
         "velocity_mismatch",
         "warning",
-        "{n} of {of} velocities disagree with the steps in position ({ids})",
+        "velocity disagrees with the step in position in {n} of {of} states ({ids})",
     )
 
 
@@ -240,5 +246,5 @@ def _yaw(states: States, actors: Actors) -> list[Finding]:
         wrong,
         "yaw_mismatch",
         "warning",
-        "{n} headings are more than 30 degrees off the direction of motion ({ids})",
+        "heading is more than 30 degrees off the direction of motion in {n} of {of} states ({ids})",
     )

@@ -94,7 +94,7 @@ class Container:
             )
             self.findings.append(Finding("index_mismatch", "warning", message))
         if self._unprotected:
-            message = f"{self._unprotected} chunks carry no CRC: flipped bits in them cannot be seen"
+            message = f"chunks without a CRC: {self._unprotected}: flipped bits in them cannot be seen"
             self.findings.append(Finding("unprotected", "info", message, self._unprotected))
 
     def _record(self, view: memoryview, at: int, end: int) -> tuple[int, int, int]:

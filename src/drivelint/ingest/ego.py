@@ -49,5 +49,5 @@ def _every(path: Path, actors: Actors) -> tuple[list[str], list[Finding]]:
         raise TraceError(f"{path}: no ego: {why}: use --ego ID (ids: {listed(actors.ids)})")
     if not unknown:
         return egos, []
-    message = f"{len(unknown)} actors of unknown class are not judged as egos ({listed(unknown)})"
+    message = f"actors of unknown class are not taken as egos ({listed(unknown)})"
     return egos, [Finding("ego_count", "warning", message, len(unknown))]

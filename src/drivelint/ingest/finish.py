@@ -122,7 +122,7 @@ def _data_log(
         "sensor_range_m": recording.sensor_range_m if options.sensor_range_m is None else options.sensor_range_m,
         "has_indicator": known["indicator"],
         "has_brake_light": known["brake_light"],
-        "has_acceleration": not bool(np.isnan(states.numbers["ax_mps2"]).all()),
+        "has_acceleration": not bool(np.isnan(states.numbers["ax_mps2"][is_ego]).all()),
     }
     return _table("data_log", {name: [value] for name, value in row.items()})
 

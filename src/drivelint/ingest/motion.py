@@ -51,8 +51,8 @@ def _velocity(states: States, step: Steps, starts: NDArray[np.intp]) -> list[Fin
     false_zero = still & (spread > MOVED_M)
     findings = []
     for check, which, why in (
-        ("velocity_derived", absent, "have no velocity in the log"),
-        ("velocity_derived", false_zero, "have velocity 0 throughout although they move"),
+        ("velocity_derived", absent, "no velocity in the log"),
+        ("velocity_derived", false_zero, "velocity 0 throughout although the positions move"),
     ):
         if not which.any():
             continue
@@ -60,7 +60,7 @@ def _velocity(states: States, step: Steps, starts: NDArray[np.intp]) -> list[Fin
         rows = _rows_of(which, starts, len(states))
         numbers["vx_mps"] = np.where(rows, rate(numbers["x_m"], step), numbers["vx_mps"])
         numbers["vy_mps"] = np.where(rows, rate(numbers["y_m"], step), numbers["vy_mps"])
-        message = f"{len(ids)} actors {why} ({listed(ids)}): velocity is derived from positions by central differences"
+        message = f"{why} ({listed(ids)}): velocity is derived from positions by central differences"
         findings.append(
             Finding(
                 check,

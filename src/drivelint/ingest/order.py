@@ -54,9 +54,7 @@ def without_duplicates(states: States) -> tuple[States, list[Finding]]:
     if n == 0:
         return states, []
     ids = [states.ids[i] for i in np.unique(states.actor[repeated])]
-    message = (
-        f"{n} states repeat an actor at the same time ({listed(ids)}): the first is kept, the others are not judged"
-    )
+    message = f"an actor appears again at the same time in {n} states ({listed(ids)}): only the first is judged"
     finding = Finding(
         "duplicate_state", "error", message, n, int(states.t_ns[repeated].min()), ids[0] if len(ids) == 1 else None
     )

@@ -159,7 +159,7 @@ def _joined(batches: list[Frames], log_ns: NDArray[np.uint64]) -> Recording:
     )
     nameless = sum(batch.nameless for batch in batches)
     if nameless:
-        message = f"{nameless} moving objects have no id: they are not judged"
+        message = f"moving objects without an id: {nameless}: they are not judged"
         findings.append(Finding("dropped_row", "error", message, nameless))
     return Recording(
         "osi-mcap",
@@ -184,7 +184,7 @@ def _clock(batches: list[Frames], log_ns: NDArray[np.int64], findings: list[Find
     back = np.diff(stamps) < 0
     if back.any():
         n, first = int(back.sum()), int(stamps[1:][back][0])
-        message = f"the clock goes backwards {n} times, first to {first / 1e9:g} s: states are sorted by their times"
+        message = f"backward steps of the clock: {n}, the first to {first / 1e9:g} s: states are sorted by their times"
         findings.append(Finding("clock_jump", "warning", message, n, first))
     return stamps
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Protocol
 
 from drivelint.errors import TraceError, UsageError
 from drivelint.ingest.files import identify, is_canonical_folder
-from drivelint.ingest.finish import finish
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -102,6 +101,8 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
             recording = reader.read(probe)
             if options.mapping is not None and not isinstance(reader, TableReader):
                 recording.notes.append(f"mapping {options.mapping!r} is not needed: the log is {recording.format}")
+            from drivelint.ingest.finish import finish
+
             return finish(path, identity, recording, options)
     raise TraceError(
         f"{path}: no reader for this file, which begins with {probe.head[:16]!r}: give MCAP, Parquet or CSV"

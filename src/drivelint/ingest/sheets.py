@@ -11,6 +11,7 @@ import pyarrow.compute as pc
 
 from drivelint.errors import TraceError
 from drivelint.ingest.mapping import TIME_UNITS
+from drivelint.ingest.order import LISTED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -148,8 +149,7 @@ class CsvSheet:
 
     def where(self, rows: NDArray[np.intp]) -> str:
         """Return the line numbers of the first of these rows."""
-        lines = [self._line(int(row)) for row in rows[:5]]
-        return f"line{'s' * (len(rows) > 1)} {', '.join(map(str, lines))}{' ...' * (len(rows) > 5)}"
+        return places("line", [self._line(int(row)) for row in rows[:LISTED]], len(rows))
 
     def _line(self, row: int) -> int:
         line = row + self._layout.skip_rows + 2
@@ -232,14 +232,18 @@ class ParquetSheet:
 
     def where(self, rows: NDArray[np.intp]) -> str:
         """Return the numbers of the first of these rows."""
-        return (
-            f"row{'s' * (len(rows) > 1)} {', '.join(str(int(row) + 1) for row in rows[:5])}{' ...' * (len(rows) > 5)}"
-        )
+        return places("row", [int(row) + 1 for row in rows[:LISTED]], len(rows))
+
+
+def places(what: str, first: list[int], n: int) -> str:
+    """Return the first of `n` places as text: `line 7`, `lines 7, 9`, `lines 1, 2, 3, 4, 5 and 12 more`."""
+    more = n - len(first[:LISTED])
+    return f"{what}{'s' * (n > 1)} {', '.join(map(str, first[:LISTED]))}" + (f" and {more} more" if more else "")
 
 
 def _trimmed(column: pa.Array | pa.ChunkedArray, nothing: list[str]) -> pl.Series:
     series = pl.Series(column).str.strip_chars()
-    return series.set(series.is_in(["", *nothing]), None)
+    return series.set(series.is_in(["", *nothing]) if nothing else series == "", None)
 
 
 def _nanoseconds(

@@ -15,7 +15,7 @@ from drivelint.errors import TraceError
 from drivelint.ingest import mapping as mappings
 from drivelint.ingest.geometry import to_map_frame
 from drivelint.ingest.mapping import GROUP, QUANTITY, UNITS
-from drivelint.ingest.sheets import CsvSheet, ParquetSheet
+from drivelint.ingest.sheets import CsvSheet, ParquetSheet, places
 from drivelint.ingest.trace import CLASSES, MOTOR_VEHICLES, Finding, Recording, States
 
 if TYPE_CHECKING:
@@ -211,19 +211,18 @@ class _Body:
     def _report_rows(self, rows: NDArray[np.bool_], why: str, check: str) -> None:
         n = int(rows.sum())
         if n:
-            follows = "those rows are not judged" if check == "dropped_row" else "those values are unknown"
-            message = f"{n} rows of {self.path.name} ({self.sheet.where(np.flatnonzero(rows))}): {why}: {follows}"
+            follows = "not judged" if check == "dropped_row" else "those values are unknown"
+            message = f"{self.path.name}, {self.sheet.where(np.flatnonzero(rows))}: {why}: {follows}"
             self.findings.append(Finding(check, "warning" if check == "malformed_cell" else "error", message, n))
 
     def _report_lines(self, n: int) -> None:
         lines = self.sheet.bad_lines
         if not lines:
             return
-        shown = ", ".join(map(str, lines[:5])) + (" ..." if len(lines) > 5 else "")
-        what = f"{len(lines)} lines do not have the {len(self.sheet.names)} cells of the header (line {shown})"
+        what = f"{places('line', lines, len(lines))}: not the {len(self.sheet.names)} cells of the header"
         if n == 0:
             raise TraceError(f"{self.path}: {what}: no row is left; check the mapping's separator and skip_rows")
-        self.findings.append(Finding("malformed_row", "error", f"{what}: they are not judged", len(lines)))
+        self.findings.append(Finding("malformed_row", "error", f"{self.path.name}, {what}: not judged", len(lines)))
 
 
 def _word(text: str, spec: Words) -> str | None:
@@ -233,6 +232,9 @@ def _word(text: str, spec: Words) -> str | None:
 
 
 def _joined(ids: list[str], actor: NDArray[np.int32], parts: list[States]) -> States:
+    if len(parts) == 1:
+        parts[0].ids, parts[0].actor = ids, actor
+        return parts[0]
     numbers = {name: np.concatenate([part.numbers[name] for part in parts]) for name in parts[0].numbers}
     codes = {name: np.concatenate([part.codes[name] for part in parts]) for name in parts[0].codes}
     return States(
