@@ -37,6 +37,13 @@ CREATE TABLE lane_next (
     behind_id VARCHAR                 -- the one that it continues straightest; NULL: the map ends
 );
 
+CREATE TABLE strip_cell (
+    environment_id VARCHAR NOT NULL,  -- the map
+    lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet
+    k INTEGER NOT NULL,               -- the segment
+    cell BIGINT NOT NULL              -- 4 m grid cell that the strip of 15 m on both sides of it may touch
+);
+
 CREATE TABLE lane_cell (
     environment_id VARCHAR NOT NULL,  -- the map
     cell BIGINT NOT NULL,             -- 2 m grid cell that the segment's lane area may touch
@@ -168,10 +175,15 @@ CREATE TABLE corridor (
     over_against BOOLEAN              -- that lane is driven the other way
 );
 
+CREATE TABLE visited_cell (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    cell BIGINT NOT NULL              -- 4 m grid cell in which some actor's centre, or a corner of an ego, ever was
+);
+
 CREATE TABLE corridor_cell (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    cell BIGINT NOT NULL,             -- 4 m grid cell that the strip beside the segment may touch
+    cell BIGINT NOT NULL,             -- 4 m grid cell that the strip beside the segment may touch, of those that anybody was in
     lanelet_id VARCHAR NOT NULL,      -- a lanelet of any of the ego's chains
     k INTEGER NOT NULL,               -- the segment
     s0_m DOUBLE NOT NULL,             -- lanelet station of the segment's start

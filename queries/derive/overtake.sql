@@ -15,12 +15,14 @@ ahead AS (
     WHERE may_be_vehicle(p.actor_class) AND p.s_m > g.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m - over_boundary_m()
         AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps())
 ),
--- somebody without a position may be the one that is overtaken
+-- somebody without a position, or whose track ended or begins nearby, may be the one that is overtaken
 hidden AS (
-    SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, p.object_id, NULL::DOUBLE AS gap_m, p.speed_mps, p.length_m, false AS placed
+    SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, u.object_id, NULL::DOUBLE AS gap_m, p.speed_mps, a.length_m, false AS placed
     FROM gone g
-    JOIN pair p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns = g.t0_ns
-    WHERE may_be_vehicle(p.actor_class) AND (p.x_m IS NULL OR p.y_m IS NULL)
+    JOIN unplaced u ON u.drive_id = g.drive_id AND u.ego_id = g.ego_id AND u.t_ns = g.t0_ns
+    JOIN actor a ON a.drive_id = u.drive_id AND a.actor_id = u.object_id
+    LEFT JOIN pair p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.t_ns = u.t_ns AND p.object_id = u.object_id
+    WHERE p.x_m IS NULL OR p.y_m IS NULL
         AND NOT EXISTS (FROM ahead a WHERE a.drive_id = g.drive_id AND a.ego_id = g.ego_id AND a.chain_id = g.chain_id AND a.t0_ns = g.t0_ns)
 ),
 candidate AS (

@@ -34,7 +34,11 @@ held AS (
     SELECT m.drive_id, m.ego_id, m.t_ns, m.object_id, (m.t_ns - s.t_ns) / 1e9 AS age_s, m.t_ns - s.t_ns <= c.max_gap_ns AS fresh, s.* EXCLUDE (drive_id, actor_id, t_ns)
     FROM missed m
     JOIN clock c USING (drive_id, ego_id)
-    ASOF JOIN state_dynamics s ON s.drive_id = m.drive_id AND s.actor_id = m.object_id AND s.t_ns <= m.t_ns
+    -- sorting every track for the sake of none would cost more than all the rest
+    ASOF JOIN (
+        SELECT s.* FROM state_dynamics s
+        SEMI JOIN ragged r ON r.drive_id = s.drive_id AND r.object_id = s.actor_id
+    ) s ON s.drive_id = m.drive_id AND s.actor_id = m.object_id AND s.t_ns <= m.t_ns
 ),
 sampled AS (
     SELECT * EXCLUDE (k) FROM same_time
@@ -87,26 +91,40 @@ beside AS (
     )
     WHERE abs(d_m) <= strip_m()
 ),
--- of several places on a corridor that meets itself, the one nearest to the ego along it
-placed AS (
+on_chain AS MATERIALIZED (
     SELECT
-        b.pair_no,
-        min({
-            'off': abs(c.s_start_m + b.lane_s_m - b.ego_s_m), 's_m': c.s_start_m + b.lane_s_m, 'd_m': b.d_m, 'half_width_m': b.half_width_m,
-            'psi': b.psi, 'over_width_m': c.over_width_m, 'over_against': c.over_against
-        }) AS p
+        b.pair_no, abs(c.s_start_m + b.lane_s_m - b.ego_s_m) AS off, c.s_start_m + b.lane_s_m AS s_m, b.d_m, b.half_width_m, b.psi,
+        c.over_width_m, c.over_against
     FROM beside b
     JOIN corridor c ON c.drive_id = b.drive_id AND c.ego_id = b.ego_id AND c.lanelet_id = b.lanelet_id AND c.chain_id = b.chain_id
-    GROUP BY b.pair_no
+),
+-- of several places on a corridor that meets itself, the one nearest to the ego along it; a tie is settled by the station
+nearest AS MATERIALIZED (
+    SELECT o.* FROM on_chain o JOIN (SELECT pair_no, min(off) AS off FROM on_chain GROUP BY pair_no) n USING (pair_no, off)
+),
+twice AS (SELECT pair_no FROM nearest GROUP BY pair_no HAVING count(*) > 1),
+settled AS (
+    SELECT
+        pair_no,
+        min({
+            's_m': s_m, 'd_m': d_m, 'half_width_m': half_width_m, 'psi': psi, 'over_width_m': over_width_m, 'over_against': over_against
+        }) AS p
+    FROM nearest SEMI JOIN twice USING (pair_no)
+    GROUP BY pair_no
+),
+placed AS (
+    SELECT * EXCLUDE (off) FROM nearest ANTI JOIN twice USING (pair_no)
+    UNION ALL
+    SELECT pair_no, unnest(p) FROM settled
 )
 SELECT
     c.drive_id, c.ego_id, c.t_ns, c.object_id, c.actor_class, c.x_m, c.y_m, c.yaw_rad, c.speed_mps, c.accel_mps2,
     c.length_m, c.width_m, c.distance_m, c.clearance_m, c.clearance_is_bound,
-    p.p.s_m AS s_m, p.p.d_m AS d_m,
-    p.p.s_m + c.hlb * abs(cos(p.p.psi)) + c.hwb * abs(sin(p.p.psi)) AS front_s_m,
-    p.p.s_m - c.hlb * abs(cos(p.p.psi)) - c.hwb * abs(sin(p.p.psi)) AS rear_s_m,
-    c.hlb * abs(sin(p.p.psi)) + c.hwb * abs(cos(p.p.psi)) AS lat_half_m,
-    p.p.psi AS heading_diff_rad,
-    p.p.half_width_m AS half_width_m, p.p.over_width_m AS over_width_m, p.p.over_against AS over_against
+    p.s_m AS s_m, p.d_m AS d_m,
+    p.s_m + c.hlb * abs(cos(p.psi)) + c.hwb * abs(sin(p.psi)) AS front_s_m,
+    p.s_m - c.hlb * abs(cos(p.psi)) - c.hwb * abs(sin(p.psi)) AS rear_s_m,
+    c.hlb * abs(sin(p.psi)) + c.hwb * abs(cos(p.psi)) AS lat_half_m,
+    p.psi AS heading_diff_rad,
+    p.half_width_m AS half_width_m, p.over_width_m AS over_width_m, p.over_against AS over_against
 FROM cleared c
 LEFT JOIN placed p USING (pair_no)

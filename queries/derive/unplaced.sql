@@ -1,5 +1,5 @@
--- Steps at which "nobody is coming" cannot be claimed: a vehicle is present without a position, moves within 300 m off every lane, or
--- its track begins or ends where it must have been on the road.
+-- Steps at which "nobody is coming" cannot be claimed: a vehicle is present without a position, moves off every lane nearer than the
+-- corridor reaches, or its track begins or ends where it must have been on the road.
 WITH blind AS (
     SELECT drive_id, ego_id, t_ns, object_id, 'has no position (or no fresh one)' AS reason
     FROM pair
@@ -9,7 +9,7 @@ off_lane AS (
     SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, 'moves off the lanes' AS reason
     FROM (
         SELECT * FROM pair
-        WHERE may_be_vehicle(actor_class) AND distance_m < 300 AND (speed_mps IS NULL OR speed_mps > standing_mps())
+        WHERE may_be_vehicle(actor_class) AND distance_m < corridor_ahead_m() AND (speed_mps IS NULL OR speed_mps > standing_mps())
     ) p
     ANTI JOIN (SELECT drive_id, actor_id, t_ns FROM lane_occupancy WHERE drivable) o
         ON o.drive_id = p.drive_id AND o.actor_id = p.object_id AND o.t_ns = p.t_ns
