@@ -22,7 +22,7 @@ hidden AS (
     JOIN unplaced u ON u.drive_id = g.drive_id AND u.ego_id = g.ego_id AND u.t_ns = g.t0_ns
     JOIN actor a ON a.drive_id = u.drive_id AND a.actor_id = u.object_id
     LEFT JOIN pair p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.t_ns = u.t_ns AND p.object_id = u.object_id
-    WHERE p.x_m IS NULL OR p.y_m IS NULL
+    WHERE (p.x_m IS NULL OR p.y_m IS NULL)
         AND NOT EXISTS (FROM ahead a WHERE a.drive_id = g.drive_id AND a.ego_id = g.ego_id AND a.chain_id = g.chain_id AND a.t0_ns = g.t0_ns)
 ),
 candidate AS (
