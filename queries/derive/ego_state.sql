@@ -12,8 +12,10 @@ limited AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, min(v.limit_mps) AS limit_mps
     FROM ego_lane e
     JOIN data_log l USING (drive_id)
+    JOIN lanelet n ON n.environment_id = l.environment_id AND n.lanelet_id = e.lanelet_id
     JOIN speed_limit v ON v.environment_id = l.environment_id AND v.lanelet_id = e.lanelet_id
-    WHERE e.s_m >= v.s_start_m AND e.s_m <= v.s_end_m
+    -- a lanelet holds points a hair beyond its ends; where two limits meet, the lower one counts
+    WHERE greatest(0.0, least(e.s_m, n.length_m)) BETWEEN v.s_start_m AND v.s_end_m
     GROUP BY ALL
 )
 SELECT
