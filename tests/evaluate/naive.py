@@ -1,0 +1,163 @@
+"""A slow, obvious evaluator of one subject: loops over steps, written from the text of the design and not from the engine."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import NamedTuple
+
+Holds = bool | None
+
+
+class Step(NamedTuple):
+    """One judged or expected step. `applies` and `value` are three-valued; `present`: the condition returned a row."""
+
+    t: int
+    seg: int
+    present: bool
+    applies: bool | None
+    value: float | None
+
+
+class Outcome(NamedTuple):
+    """What a verdict row says."""
+
+    start: int
+    end: int
+    verdict: str
+    code: str
+    worst: int | None
+    expected: int
+    judged: int
+
+
+def segments(times: list[int], gap: int) -> list[int]:
+    """Number the segments between holes."""
+    out, seg = [], 0
+    for i, t in enumerate(times):
+        seg += bool(i and t - times[i - 1] > gap)
+        out.append(seg)
+    return out
+
+
+def holds(step: Step) -> Holds:
+    """More than zero is required."""
+    applies = True if not step.present else step.applies
+    if not step.present or applies is None or step.value is None:
+        return None
+    return step.value > 0
+
+
+def why_unknown(step: Step) -> str:
+    if not step.present:
+        return "missing_step"
+    return "applies_unknown" if step.applies is None else "null_value"
+
+
+def expected(steps: list[Step]) -> list[Step]:
+    return [s for s in steps if not (s.present and s.applies is False)]
+
+
+def worst(steps: list[Step], *, eventually: bool = False) -> int | None:
+    judged = [s for s in steps if holds(s) is not None]
+    if not judged:
+        return min((s.t for s in steps), default=None)
+    best = None
+    for s in judged:
+        assert s.value is not None
+        if best is None or (s.value > best.value if eventually else s.value < best.value):  # type: ignore[operator]
+            best = s
+    return best.t if best else None
+
+
+def judge(steps: list[Step], *, eventually: bool = False, problem: str = "") -> tuple[str, str]:
+    """Return verdict and reason code of expected steps in time order."""
+    values = [holds(s) for s in steps]
+    if eventually and True in values:
+        return "pass", "kept"
+    if not eventually and False in values:
+        return "fail", "violated"
+    if problem:
+        return "unknown", problem
+    if None in values:
+        return "unknown", why_unknown(steps[values.index(None)])
+    return ("fail", "violated") if eventually else ("pass", "kept")
+
+
+def invariant(steps: list[Step], gap: int, period: int) -> list[Outcome]:
+    """Episodes and holes of one series, in time order."""
+    live = expected(steps)
+    out: list[Outcome] = []
+    episode: list[Step] = []
+    for i, step in enumerate(live):
+        if episode and (step.seg != episode[-1].seg or step.t - episode[-1].t > gap):
+            out.append(_episode(episode))
+            episode = []
+        if i and live[i - 1].seg != step.seg:
+            out += _hole(live[i - 1], step, steps, gap, period)
+        episode.append(step)
+    if episode:
+        out.append(_episode(episode))
+    return out
+
+
+def _episode(steps: list[Step]) -> Outcome:
+    verdict, code = judge(steps)
+    return Outcome(steps[0].t, steps[-1].t, verdict, code, worst(steps), len(steps), sum(holds(s) is not None for s in steps))
+
+
+def _hole(before: Step, after: Step, steps: list[Step], gap: int, period: int) -> list[Outcome]:
+    def first(seg: int) -> int:
+        return min(s.t for s in steps if s.seg == seg)
+
+    def last(seg: int) -> int:
+        return max(s.t for s in steps if s.seg == seg)
+
+    from_edge = last(before.seg) - before.t <= gap
+    to_edge = after.t - first(after.seg) <= gap
+    if not from_edge and not to_edge:
+        return []
+    start = last(before.seg) if from_edge else last(after.seg - 1)
+    end = first(after.seg) if to_edge else first(before.seg + 1)
+    return [Outcome(start, end, "unknown", "log_hole", start, max(1, (end - start) // period - 1), 0)]
+
+
+def window(steps: list[Step], a: int, b: int, gap: int, *, eventually: bool) -> Outcome:
+    """A temporal condition over [a, b]."""
+    inside = [s for s in steps if a <= s.t <= b]
+    log_start, log_end = steps[0].t, steps[-1].t
+    problem = ""
+    edges = [a, *(s.t for s in inside), b]
+    if not inside:
+        problem = "window_truncated" if a < log_start or b > log_end else "log_hole"
+    elif (inside[0].t - a > gap and inside[0].t == log_start) or (b - inside[-1].t > gap and inside[-1].t == log_end):
+        problem = "window_truncated"
+    elif edges[1] - a > gap or b - edges[-2] > gap or any(y.seg != x.seg for x, y in pairwise(inside)):
+        problem = "log_hole"
+    return _reference(expected(inside), a, b, eventually=eventually, problem=problem)
+
+
+def points(steps: list[Step], at: list[int], *, eventually: bool = False) -> Outcome:
+    """An execution (one time) or a physical condition (several)."""
+    by_time = {s.t: s for s in steps}
+    asked = [by_time.get(t, Step(t, -1, present=False, applies=True, value=None)) for t in sorted(at)]
+    return _reference(expected(asked), min(at), max(at), eventually=eventually, problem="")
+
+
+def _reference(live: list[Step], a: int, b: int, *, eventually: bool, problem: str) -> Outcome:
+    if not live and not problem:
+        return Outcome(a, b, "not_applicable", "outside_conditions", None, 0, 0)
+    verdict, code = judge(live, eventually=eventually, problem=problem)
+    return Outcome(a, b, verdict, code, worst(live, eventually=eventually), len(live), sum(holds(s) is not None for s in live))
+
+
+def stretches(steps: list[Step], merge: int) -> list[tuple[int, int]]:
+    """Failing runs of one invariant's series: adjacent failing steps, and runs closer than `merge`; never across a hole."""
+    runs: list[tuple[int, int]] = []
+    last: tuple[int, Step] | None = None
+    for k, step in enumerate(steps):
+        if holds(step) is not False or (step.present and step.applies is False):
+            continue
+        joined = last is not None and last[1].seg == step.seg and (k - last[0] == 1 or step.t - last[1].t < merge)
+        runs = [*runs[:-1], (runs[-1][0], step.t)] if joined else [*runs, (step.t, step.t)]
+        last = (k, step)
+    return runs

@@ -1,0 +1,159 @@
+"""The engine against a slow, obvious evaluator: random grids with NULLs, lost rows, holes and truncated windows."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import duckdb
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from drivelint import store
+from drivelint.casefile.scene import fill
+from drivelint.evaluate import evaluate
+from tests.evaluate import naive
+from tests.evaluate.packs import AFTER, BEFORE, EXECUTION, INVARIANT, MEASURED, PLACE_BEFORE, write
+
+if TYPE_CHECKING:
+    from drivelint.catalogue import Rule
+
+GAP, PERIOD, WINDOW = 250, 100, 700
+CONDITION = """SELECT drive_id, ego_id, t_ns, speed_mps AS observed, 0 AS required, in_junction AS applies
+FROM ego_state WHERE with_direction"""
+REFERENCE = "SELECT drive_id, ego_id, t_ns, occurrence FROM exit_taken"
+READS = {"reads": '["ego_state"]'}
+BOTH = {"reads": '["ego_state", "exit_taken"]'}
+
+
+@pytest.fixture(scope="module")
+def con() -> duckdb.DuckDBPyConnection:
+    con = duckdb.connect(config={"threads": 2})
+    store.create_tables(con)
+    return con
+
+
+@pytest.fixture(scope="module")
+def rules(tmp_path_factory: pytest.TempPathFactory) -> list[Rule]:
+    folder = tmp_path_factory.mktemp("rules")
+    window = {"window_s": str(WINDOW / 1e9)}
+    eventually = {"quantifier": '"eventually"'}
+    at = {"reference": REFERENCE, "condition": CONDITION}
+    anchor = "SELECT ref_id, unnest([t_ns - 300, t_ns, t_ns + 300]) AS t_ns FROM reference"
+    return [
+        write(folder, INVARIANT | MEASURED | READS | {"merge_gap_s": "3e-7"}, {"condition": CONDITION}, name="invariant"),
+        write(folder, EXECUTION | MEASURED | BOTH, at, name="execution"),
+        write(folder, BEFORE | MEASURED | BOTH | window, at, name="before"),
+        write(folder, AFTER | MEASURED | BOTH | window, at, name="after"),
+        write(folder, BEFORE | MEASURED | BOTH | window | eventually, at, name="before-eventually"),
+        write(folder, AFTER | MEASURED | BOTH | window | eventually, at, name="after-eventually"),
+        write(folder, PLACE_BEFORE | MEASURED | BOTH, at | {"anchor": anchor}, name="place"),
+        write(folder, PLACE_BEFORE | MEASURED | BOTH | eventually, at | {"anchor": anchor}, name="place-eventually"),
+    ]
+
+
+WAYS = (100, 100, 100, 100, 200, 250, 251, 900)  # to the next sample: continuous up to 250
+PRESENT = (True, True, True, True, True, False)  # the condition returns a row
+APPLIES = (True, True, True, True, False, None)
+VALUES = (3.0, 3.0, 2.0, 2.0, 1.0, 0.0, -1.0, None)
+# one draw per step keeps hypothesis quick
+STEP = st.integers(0, len(WAYS) * len(PRESENT) * len(APPLIES) * len(VALUES) - 1)
+SUBJECT = st.tuples(st.lists(STEP, min_size=1, max_size=25), st.lists(st.integers(-500, 3500), max_size=4, unique=True))
+
+
+def scene(drawn: list[int]) -> list[naive.Step]:
+    t, rows = 0, []
+    for number in drawn:
+        rest, way = divmod(number, len(WAYS))
+        rest, present = divmod(rest, len(PRESENT))
+        value, applies = divmod(rest, len(APPLIES))
+        rows.append((t, PRESENT[present], APPLIES[applies], VALUES[value]))
+        t += WAYS[way]
+    segs = naive.segments([row[0] for row in rows], GAP)
+    return [naive.Step(t, seg, *row) for (t, *row), seg in zip(rows, segs, strict=True)]
+
+
+def load(con: duckdb.DuckDBPyConnection, subjects: list[tuple[list[naive.Step], list[int]]]) -> None:
+    """Fill the tables with one ego per subject."""
+    con.execute(";".join(f"DELETE FROM {table}" for table in ("clock", "step", "ego_state", "exit_taken", "verdict", "finding", "margin")))
+    tables: dict[str, list[dict[str, Any]]] = {"clock": [], "step": [], "ego_state": [], "exit_taken": []}
+    for n, (steps, references) in enumerate(subjects):
+        who = {"drive_id": "d", "ego_id": f"e{n:03d}"}
+        times = {"period_ns": PERIOD, "max_gap_ns": GAP, "t_start_ns": steps[0].t, "t_end_ns": steps[-1].t}
+        tables["clock"].append(who | times)
+        tables["step"] += [who | {"t_ns": s.t, "k": k, "seg": s.seg} for k, s in enumerate(steps)]
+        given = ({"t_ns": s.t, "speed_mps": s.value, "in_junction": s.applies, "with_direction": s.present} for s in steps)
+        tables["ego_state"] += [who | row for row in given]
+        tables["exit_taken"] += [who | {"occurrence": i, "t_ns": t} for i, t in enumerate(references)]
+    for table, rows in tables.items():
+        fill(con, table, rows)
+
+
+def expect(rule: str, steps: list[naive.Step], references: list[int]) -> list[naive.Outcome]:
+    if rule == "invariant":
+        found = naive.invariant(steps, GAP, PERIOD)
+    else:
+        kind, _, word = rule.partition("-")
+        eventually = word == "eventually"
+        found = []
+        for t in sorted(references):
+            if kind == "execution":
+                found.append(naive.points(steps, [t]))
+            elif kind == "place":
+                found.append(naive.points(steps, [t - 300, t, t + 300], eventually=eventually))
+            else:
+                a, b = (t - WINDOW, t) if kind == "before" else (t, t + WINDOW)
+                found.append(naive.window(steps, a, b, GAP, eventually=eventually))
+    return found or [naive.Outcome(-1, -1, "not_applicable", "not_triggered", None, 0, 0)]
+
+
+@settings(max_examples=10, deadline=None, derandomize=True)
+@given(subjects=st.lists(SUBJECT, min_size=15, max_size=25))
+def test_the_engine_and_a_naive_evaluator_agree(con: duckdb.DuckDBPyConnection, rules: list[Rule], subjects: list[Any]) -> None:
+    scenes = [(scene(rows), references) for rows, references in subjects]
+    load(con, scenes)
+    evaluate(con, rules)
+    outcomes, runs = _outcomes(con), _runs(con)
+    for n, (steps, references) in enumerate(scenes):
+        ego = f"e{n:03d}"
+        for rule in rules:
+            wanted = expect(rule.id.removeprefix("pack."), steps, references)
+            assert outcomes[ego, rule.id] == wanted, (rule.id, steps, references)
+        assert runs.get(ego, []) == naive.stretches(steps, 300), steps
+
+
+@settings(max_examples=3, deadline=None, derandomize=True)
+@given(subjects=st.lists(SUBJECT, min_size=15, max_size=25))
+def test_asking_for_margins_changes_no_verdict(con: duckdb.DuckDBPyConnection, rules: list[Rule], subjects: list[Any]) -> None:
+    load(con, [(scene(rows), references) for rows, references in subjects])
+    evaluate(con, rules)
+    first = con.execute("SELECT * FROM verdict ORDER BY ALL").fetchall()
+    con.execute("DELETE FROM verdict")
+    evaluate(con, rules, margins=True)
+    assert con.execute("SELECT * FROM verdict ORDER BY ALL").fetchall() == first
+    margins = "SELECT rule_id, ego_id, count(*), count(holds) FROM margin GROUP BY ALL ORDER BY ALL"
+    verdicts = """SELECT rule_id, ego_id, sum(n_expected)::BIGINT AS n, sum(n_judged)::BIGINT
+        FROM verdict WHERE reason_code <> 'log_hole' OR n_judged > 0 GROUP BY ALL HAVING n > 0 ORDER BY ALL"""
+    kept = {row[:2]: row[2:] for row in con.execute(verdicts).fetchall()}
+    seen = {row[:2]: row[2:] for row in con.execute(margins).fetchall()}
+    assert {key: seen[key] for key in kept if key[0] == "pack.invariant"} == {key: n for key, n in kept.items() if key[0] == "pack.invariant"}
+    assert seen.keys() >= kept.keys()
+
+
+def _outcomes(con: duckdb.DuckDBPyConnection) -> dict[tuple[str, str], list[naive.Outcome]]:
+    rows = con.execute(
+        """SELECT ego_id, rule_id, coalesce(t_start_ns, -1), coalesce(t_end_ns, -1), verdict, reason_code, t_worst_ns, n_expected, n_judged
+        FROM verdict ORDER BY ego_id, rule_id, occurrence"""
+    ).fetchall()
+    found: dict[tuple[str, str], list[naive.Outcome]] = {}
+    for ego, rule, *values in rows:
+        found.setdefault((ego, rule), []).append(naive.Outcome(*values))
+    return found
+
+
+def _runs(con: duckdb.DuckDBPyConnection) -> dict[str, list[tuple[int, int]]]:
+    rows = con.execute("SELECT ego_id, t_start_ns, t_end_ns FROM finding WHERE rule_id = 'pack.invariant' ORDER BY ego_id, occurrence").fetchall()
+    found: dict[str, list[tuple[int, int]]] = {}
+    for ego, start, end in rows:
+        found.setdefault(ego, []).append((start, end))
+    return found
