@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from contextlib import AbstractContextManager
 
-    from rich.console import Console
+    from rich.console import RenderableType
 
     from drivelint.report.progress import Progress
     from drivelint.report.result import Result
@@ -199,7 +199,7 @@ def rules_list(
     if format_ is Format.json:
         typer.echo(rules_text.listing_json(rules))
     else:
-        _console().print(rules_text.listing(rules))
+        _say(rules_text.listing(rules))
 
 
 @rules_app.command("show")
@@ -212,7 +212,7 @@ def rules_show(
 
     rules = load(tuple(rules_dir or ()))
     for rule in [rules[rule_id]] if rule_id in rules else select(rules, [rule_id], []):
-        _console().print(rules_text.page(rule))
+        _say(rules_text.page(rule))
 
 
 @rules_app.command("test")
@@ -235,7 +235,7 @@ def rules_test(
         except RuleError as error:
             results = [CaseResult("cases", ok=False, message=str(error))]
         failed |= not all(result.ok for result in results)
-        _console().print(rules_text.case_line(rule.id, results), soft_wrap=True)
+        _say(rules_text.case_line(rule.id, results), soft_wrap=True)
     raise typer.Exit(int(ExitCode.FAILED if failed else ExitCode.OK))
 
 
@@ -300,21 +300,23 @@ def _progress(quiet: bool) -> AbstractContextManager[Progress]:
     return Bar()
 
 
-def _console() -> Console:
-    """Return the console on stdout; where it is no terminal, lines are as long as a wide one's."""
+def _say(what: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> None:
+    """Print for a person on stdout: plain and wide where that is no terminal. `what` may depend on the width."""
     from rich.console import Console
 
-    return Console(width=None if sys.stdout.isatty() or "COLUMNS" in os.environ else 120, highlight=False)
+    terminal = sys.stdout.isatty()
+    console = Console(width=None if terminal or "COLUMNS" in os.environ else 120, highlight=False)
+    with nullcontext() if terminal else console.capture() as captured:
+        console.print(what(console.width) if callable(what) else what, soft_wrap=soft_wrap)
+    if captured is not None:
+        typer.echo("\n".join(line.rstrip() for line in captured.get().splitlines()))
 
 
 def _print(result: Result, format_: Format, out: Path | None) -> None:
     """Print the outcome of a check on stdout."""
+    from drivelint.report import summary, terminal
+
     if format_ is Format.json:
-        from drivelint.report import summary
-
         typer.echo(summary.render(result), nl=False)
-        return
-    from drivelint.report import terminal
-
-    console = _console()
-    console.print(terminal.render(result, None if out is None else str(out), console.width))
+    else:
+        _say(lambda width: terminal.render(result, None if out is None else str(out), width))

@@ -38,7 +38,7 @@ def listing_json(rules: Iterable[Rule]) -> str:
 
 def listing(rules: Iterable[Rule]) -> Table:
     """Return the same as a table, with the rules' titles."""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
     for name in ("rule", "kind", "severity", "status"):
         table.add_column(name, no_wrap=True)
     table.add_column("what it asks", ratio=1)
@@ -76,7 +76,7 @@ def page(rule: Rule) -> Group:
 
 
 def _params(rule: Rule) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
     for name in ("parameter", "default", "unit", "why", "source"):
         table.add_column(name, overflow="fold")
     for name, param in rule.params.items():

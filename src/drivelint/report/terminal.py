@@ -195,7 +195,7 @@ def _end(result: Result, out: str | None) -> Text:
 
 def _table(title: str, style: str = "bold") -> Table:
     return Table(
-        title=Text(title, style=style), title_justify="left", box=box.SIMPLE_HEAD, expand=False, pad_edge=False
+        title=Text(title, style=style), title_justify="left", box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False
     )
 
 
