@@ -329,3 +329,11 @@ def test_text_that_is_not_utf8(tmp_path: Path) -> None:
     path.write_bytes("\n".join(cars()).encode() + b"\n0.1,\xff,0,0,0,0,0\n")
     with pytest.raises(TraceError, match=r"d\.csv: not .*UTF-?8"):
         read(path, mapping=mapping(tmp_path))
+
+
+def test_a_broken_line_that_is_not_utf8_either(tmp_path: Path) -> None:
+    path = tmp_path / "d.csv"
+    good = "\n".join(cars()).encode()
+    path.write_bytes(good + b"\n0.1,\xac,0\n")
+    with pytest.raises(TraceError, match=rf"not UTF-8 text at byte {len(good) + 5}: save it as UTF-8"):
+        read(path, mapping=mapping(tmp_path))

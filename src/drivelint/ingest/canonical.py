@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
-import pyarrow.parquet as pq
 
 from drivelint.errors import TraceError
+from drivelint.ingest import parquet
 from drivelint.ingest.trace import (
     BRAKE_LIGHTS,
     CLASSES,
@@ -34,7 +34,7 @@ _WORDS = {"indicator": INDICATORS, "brake_light": BRAKE_LIGHTS, "actor_class": C
 
 def has_columns(path: Path) -> bool:
     """Say whether a Parquet file has the columns of `actor_state`. Errors: `TraceError` where it is damaged."""
-    return set(REQUIRED) <= set(_open(path).schema.names)
+    return set(REQUIRED) <= set(parquet.schema(path).names)
 
 
 def read(path: Path) -> Recording:
@@ -42,13 +42,10 @@ def read(path: Path) -> Recording:
 
     Errors: `TraceError` for damaged files, missing or ill-typed columns, several drives in one.
     """
+    states, egos, findings = _states(path / "actor_state.parquet" if path.is_dir() else path)
+    recording = Recording("canonical-parquet", states, ego_ids=egos, findings=findings)
     if not path.is_dir():
-        states, egos = _states(path)
-        return Recording("canonical-parquet", states, ego_ids=egos, findings=_findings(states, path))
-    states, egos = _states(path / "actor_state.parquet")
-    recording = Recording(
-        "canonical-parquet", states, ego_ids=egos, findings=_findings(states, path / "actor_state.parquet")
-    )
+        return recording
     if (path / "actor.parquet").is_file():
         recording.actors = _actors(path / "actor.parquet")
         ego_column = recording.actors.column("is_ego").to_pylist() if "is_ego" in recording.actors.schema.names else []
@@ -59,25 +56,15 @@ def read(path: Path) -> Recording:
     recording.events = _extra(path / "declared_event.parquet", ("actor_id", "t_ns", "event"), ("value",))
     _check_words(recording.signals, path / "signal_state.parquet")
     if (path / "data_log.parquet").is_file():
-        log = (_open(path / "data_log.parquet").to_pylist() or [{}])[0]
+        log = (parquet.table(path / "data_log.parquet").to_pylist() or [{}])[0]
         recording.sensor_range_m, recording.utc_start_ns = log.get("sensor_range_m"), log.get("utc_start_ns")
     return recording
 
 
-def _open(path: Path) -> pa.Table:
-    """Map the file; opened by handle, so that nothing in its path is read as a column."""
-    try:
-        with path.open("rb") as file:
-            return pq.ParquetFile(file).read()
-    except (pa.ArrowException, OSError) as error:
-        raise TraceError(f"{path}: not readable as Parquet: {' '.join(str(error).split())}") from error
-
-
 def _column(path: Path, table: pa.Table, name: str, kind: pa.DataType) -> pa.Array:
-    column = table.column(name)
-    array = column.combine_chunks() if isinstance(column, pa.ChunkedArray) else column
+    column = parquet.column(table, name)
     try:
-        return array.cast(kind)
+        return column.cast(kind)
     except pa.ArrowException as error:
         raise TraceError(
             f"{path}: column {name!r} is {column.type}, not {kind}: {' '.join(str(error).split())}"
@@ -93,8 +80,8 @@ def _need(path: Path, table: pa.Table, names: tuple[str, ...]) -> None:
         raise TraceError(f"{path}: holds {len(drives)} drives: write one folder or file per drive")
 
 
-def _states(path: Path) -> tuple[States, list[str]]:
-    table = _open(path)
+def _states(path: Path) -> tuple[States, list[str], list[Finding]]:
+    table = parquet.table(path)
     _need(path, table, REQUIRED)
     ids = _column(path, table, "actor_id", pa.string())
     times = _column(path, table, "t_ns", pa.int64())
@@ -123,24 +110,10 @@ def _states(path: Path) -> tuple[States, list[str]]:
     actor = encoded.indices.to_numpy()
     t_ns = pc.fill_null(times, 0).to_numpy(zero_copy_only=False)
     states = States(encoded.dictionary.to_pylist(), actor, t_ns, numbers, codes, not_finite)
-    return (states.take(~lost) if lost.any() else states), egos
-
-
-def _findings(states: States, path: Path) -> list[Finding]:
-    """Report rows that were left out because they say neither who nor when."""
-    lost = pq.ParquetFile(path).metadata.num_rows - len(states)
-    return (
-        [
-            Finding(
-                "dropped_row",
-                "error",
-                f"{lost} rows of {path.name} have no actor or no time: they are not judged",
-                lost,
-            )
-        ]
-        if lost
-        else []
-    )
+    if not lost.any():
+        return states, egos, []
+    message = f"{path.name}: rows without actor or time: {int(lost.sum())}: they are not judged"
+    return states.take(~lost), egos, [Finding("dropped_row", "error", message, int(lost.sum()))]
 
 
 def _codes(path: Path, column: pa.Array, name: str) -> NDArray[np.int8]:
@@ -156,7 +129,7 @@ def _codes(path: Path, column: pa.Array, name: str) -> NDArray[np.int8]:
 
 
 def _actors(path: Path) -> pa.Table:
-    table = _open(path)
+    table = parquet.table(path)
     _need(path, table, ("actor_id",))
     columns = {"actor_id": _column(path, table, "actor_id", pa.string())}
     for name in SIZES:
@@ -173,7 +146,7 @@ def _actors(path: Path) -> pa.Table:
 def _extra(path: Path, required: tuple[str, ...], optional: tuple[str, ...]) -> pa.Table | None:
     if not path.is_file():
         return None
-    table = _open(path)
+    table = parquet.table(path)
     _need(path, table, required)
     types = {"t_ns": pa.int64()}
     columns = {name: _column(path, table, name, types.get(name, pa.string())) for name in required}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -10,6 +11,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.errors import TraceError
+from drivelint.ingest import parquet
 from drivelint.ingest.mapping import TIME_UNITS
 from drivelint.ingest.order import LISTED
 
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from drivelint.ingest.mapping import Table
 
 MAX_NS = 2.0**63
+TEXT_BLOCK = 1 << 20
 
 
 class Sheet(Protocol):
@@ -83,18 +86,36 @@ class CsvSheet:
                 lines = csv.reader((line.rstrip("\r\n") for line in file), delimiter=self._layout.separator)
                 header = next(lines, [])
                 following = next((line for line in lines if any(cell.strip() for cell in line)), [])
-        except UnicodeDecodeError as error:
-            raise TraceError(f"{self._path}: not UTF-8 text at byte {error.start}: save it as UTF-8") from error
+        except UnicodeDecodeError:
+            self._check_text()
+            raise
         except csv.Error as error:
             raise TraceError(f"{self._path}: not a CSV table: {error}") from error
         if not any(name.strip() for name in header):
             raise TraceError(f"{self._path}: line {self._layout.skip_rows + 1} should name the columns and is blank")
         return header, following
 
+    def _check_text(self) -> None:
+        """Refuse what is not UTF-8, naming the byte: the CSV parser itself would pass over it in broken lines."""
+        decoder, at = codecs.getincrementaldecoder("utf-8")(), 0
+        with self._path.open("rb") as file:
+            while True:
+                block = file.read(TEXT_BLOCK)
+                pending = len(decoder.getstate()[0])
+                try:
+                    decoder.decode(block, final=not block)
+                except UnicodeDecodeError as error:
+                    place = at - pending + error.start
+                    raise TraceError(f"{self._path}: not UTF-8 text at byte {place}: save it as UTF-8") from error
+                if not block:
+                    return
+                at += len(block)
+
     def load(self, names: Iterable[str]) -> int:
         """Read these columns as text."""
         import pyarrow.csv as arrow_csv
 
+        self._check_text()
         width = len(self.names) + self._spare
         wanted = {str(self.names.index(name)): name for name in names}
         options = {
@@ -163,33 +184,19 @@ class ParquetSheet:
 
     def __init__(self, path: Path) -> None:
         """Read the schema. Errors: `TraceError` where the file is damaged."""
-        import pyarrow.parquet as pq
-
         self._path = path
         self.bad_lines: list[int] = []
-        try:
-            with path.open("rb") as file:
-                schema = pq.ParquetFile(file).schema_arrow
-        except (pa.ArrowException, OSError) as error:
-            raise TraceError(f"{path}: not readable as Parquet: {' '.join(str(error).split())}") from error
+        schema = parquet.schema(path)
         self.names = list(schema.names)
-        self.metadata = dict(schema.metadata or {})
+        self.metadata: dict[bytes, bytes] = dict(schema.metadata or {})
 
     def load(self, names: Iterable[str]) -> int:
         """Read these columns."""
-        import pyarrow.parquet as pq
-
-        try:
-            with self._path.open("rb") as file:
-                self._table = pq.ParquetFile(file).read(columns=list(names)).combine_chunks()
-        except (pa.ArrowException, OSError) as error:
-            raise TraceError(f"{self._path}: not readable as Parquet: {' '.join(str(error).split())}") from error
+        self._table = parquet.table(self._path, names)
         return int(self._table.num_rows)
 
     def _column(self, name: str) -> pa.Array:
-        column = self._table.column(name)
-        array = column.combine_chunks() if isinstance(column, pa.ChunkedArray) else column
-        return array.cast(array.type.value_type) if pa.types.is_dictionary(array.type) else array
+        return parquet.column(self._table, name)
 
     def text(self, name: str) -> pa.Array:
         """Return the column as trimmed strings; whole numbers without a decimal point."""
