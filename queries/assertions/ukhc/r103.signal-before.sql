@@ -19,12 +19,14 @@
 -- source = "paper, temporal precondition; UN R79"
 
 -- @reference
-SELECT drive_id, ego_id, t_ns, side
+SELECT drive_id, ego_id, t_ns, side, begin_seen
 FROM lane_departure
 WHERE NOT back
 
 -- @condition
-SELECT e.drive_id, e.ego_id, e.t_ns, r.ref_id, e.indicator = r.side AS holds
+SELECT e.drive_id, e.ego_id, e.t_ns, r.ref_id,
+    CASE WHEN r.begin_seen THEN e.indicator = r.side END AS holds,
+    CASE WHEN NOT r.begin_seen THEN 'the log does not show where the ego crossed the boundary' END AS reason
 FROM reference r
 JOIN ego_state e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id
     AND e.t_ns <= r.t_ns AND e.t_ns >= r.t_ns - ($window_s * 1e9)::BIGINT
