@@ -15,7 +15,8 @@
 -- @reference
 SELECT drive_id, ego_id, t3_ns AS t_ns, vbp_id AS object_id, occurrence
 FROM overtake
-WHERE passed AND t3_ns IS NOT NULL
+-- where the log breaks off after the passing, the way back has an unknown time
+WHERE passed AND (t3_ns IS NOT NULL OR status = 'truncated')
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.t3_gap_m AS observed, thinking_distance_m(o.v_vbp_t3_mps) AS required
