@@ -27,7 +27,7 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $margin_s AS required, bool_or(s.
     -- an overtake that was not completed has no angles of its own: it fails if no profile at all would have been in time
     coalesce(
         any_value(s.spare_s) FILTER (s.profile = 'observed' AND s.zone IS NOT NULL),
-        CASE WHEN bool_and(s.zone IN ('A', 'B')) FILTER (s.profile <> 'observed') THEN max(s.spare_s) END
+        CASE WHEN bool_and(coalesce(s.zone IN ('A', 'B'), false)) FILTER (s.profile <> 'observed') THEN max(s.spare_s) END
     ) AS observed,
     'zones: ' || string_agg(s.profile || ' ' || coalesce(s.zone, 'unknown'), ', ' ORDER BY p.style, s.profile) || '; best choice: '
         || coalesce(min({'style': p.style, 'profile': s.profile}) FILTER (s.zone = 'C' AND s.profile <> 'observed').profile, 'none in zone C') AS reason
