@@ -1,5 +1,5 @@
 -- title = "No deceleration that only a contact explains"
--- clause = "UKHC introduction and R144: drive so as not to collide; a contact that the boxes miss shows in the speeds"
+-- clause = "UKHC R144: do not drive dangerously or without care for others; a contact that the boxes miss shows in the speeds"
 -- hypothesis = "While another actor was within reach, did ego and actor lose speed no faster than tyres can?"
 -- kind = "invariant"
 -- derivation = "model"
@@ -9,7 +9,7 @@
 -- sense = "<"
 -- unit = "m/s2"
 -- merge_gap_s = 1.0
--- reads = ["ego_state", "pair"]
+-- reads = ["ego_state", "lost_object", "pair", "step"]
 -- requires = ["ego_size"]
 --
 -- [params.within_m]
@@ -26,14 +26,18 @@
 SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN clearance_m IS NOT NULL THEN true END AS applies
 FROM pair
 WHERE clearance_m IS NULL OR clearance_m <= $within_m
+UNION ALL
+-- whose track ends or begins close by may have touched unseen: one step for each, not judged
+SELECT l.drive_id, l.ego_id, s.t_ns, l.object_id, NULL
+FROM lost_object l
+ASOF JOIN step s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id AND l.t_from_ns <= s.t_ns
+WHERE l.reason IN ('lost_near_ego', 'appeared_near_ego')
 
 -- @condition
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, $tyre_mps2 AS required,
-    CASE
-        WHEN p.accel_mps2 IS NOT NULL AND e.accel_mps2 IS NOT NULL THEN greatest(-p.accel_mps2, -e.accel_mps2)
-        WHEN -p.accel_mps2 >= $tyre_mps2 THEN -p.accel_mps2
-        WHEN -e.accel_mps2 >= $tyre_mps2 THEN -e.accel_mps2
-    END AS observed,
-    CASE WHEN e.speed_mps < 0.1 AND e.accel_mps2 > -0.1 THEN 'the ego stood still: it was struck, if anything' END AS reason
+    -- greatest() leaves a NULL out: one side alone can show a contact, but not that there was none
+    CASE WHEN p.accel_mps2 + e.accel_mps2 IS NOT NULL OR greatest(-p.accel_mps2, -e.accel_mps2) >= $tyre_mps2
+        THEN greatest(-p.accel_mps2, -e.accel_mps2) END AS observed,
+    CASE WHEN -p.accel_mps2 >= $tyre_mps2 AND e.speed_mps < 0.1 AND e.accel_mps2 > -0.1 THEN 'the ego stood still: it was struck, if anything' END AS reason
 FROM pair p
 JOIN ego_state e USING (drive_id, ego_id, t_ns)

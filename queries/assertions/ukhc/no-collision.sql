@@ -1,5 +1,5 @@
 -- title = "No collision"
--- clause = "UKHC introduction and R144: drive so as not to collide with anybody or anything"
+-- clause = "UKHC R144: do not drive dangerously or without care for others; a collision is the plainest breach"
 -- hypothesis = "At every step, was the ego's box clear of every other actor's box?"
 -- kind = "invariant"
 -- derivation = "direct"
@@ -10,9 +10,18 @@
 -- unit = "m"
 -- near_margin = 0.5
 -- merge_gap_s = 2.0
--- reads = ["pair"]
+-- reads = ["ego_state", "pair"]
 -- requires = ["ego_size"]
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, object_id, clearance_m AS observed, 0.0 AS required, clearance_is_bound AS at_least
+SELECT drive_id, ego_id, t_ns, object_id, clearance_m AS observed, 0.0 AS required, clearance_is_bound AS at_least, NULL AS reason
 FROM pair
+WHERE clearance_m > 0 OR clearance_m IS NULL
+UNION ALL
+-- contact: whether the ego moved is part of the answer
+SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.clearance_m, 0.0, p.clearance_is_bound,
+    format('contact, {:.2f} m deep, ', -p.clearance_m) || CASE WHEN e.speed_mps < 0.1 THEN 'while the ego stood still: it was struck'
+        WHEN e.speed_mps IS NOT NULL THEN format('the ego moving at {:.1f} m/s', e.speed_mps) ELSE 'the ego''s speed is not known' END
+FROM pair p
+LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
+WHERE p.clearance_m <= 0
