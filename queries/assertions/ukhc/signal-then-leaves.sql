@@ -27,4 +27,3 @@ JOIN exit_passed x USING (drive_id, ego_id, occurrence)
 SELECT x.drive_id, x.ego_id, x.t_gore_ns AS t_ns, r.ref_id, x.taken AS holds
 FROM reference r
 JOIN exit_passed x USING (drive_id, ego_id, occurrence)
-WHERE x.t_gore_ns IS NOT NULL
