@@ -12,7 +12,7 @@ from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import nullcontext, redirect_stdout
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn, TypeVar
 
 import typer
 
@@ -247,17 +247,31 @@ def main() -> NoReturn:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a log's words may not fit the terminal's encoding
     try:
-        code = app(standalone_mode=False)
+        code = app(standalone_mode=False, default_map={"check": _settings()})
     except DriveLintError as error:
         _fail(str(error), error.exit_code)
     except TyperException as error:
-        _fail(f"{error.format_message()} (see drivelint --help)", ExitCode.USAGE)
+        also = " and drivelint.toml in this folder" if Path("drivelint.toml").is_file() else ""
+        _fail(f"{error.format_message()} (see drivelint --help{also})", ExitCode.USAGE)
     except (KeyboardInterrupt, typer.Abort):
         code = ExitCode.INTERRUPTED
     if code == ExitCode.INTERRUPTED:
         print("drivelint: error: interrupted", file=sys.stderr, flush=True)
         os._exit(code)  # the database may still be computing in its thread: there is nothing to wait for
     sys.exit(code or 0)
+
+
+def _settings() -> dict[str, Any]:
+    """Return what `drivelint.toml` in the current folder says about the options of `check`."""
+    from drivelint.settings import FILE, defaults
+
+    if sys.argv[1:2] != ["check"] or not Path(FILE).is_file():
+        return {}
+    command = typer.main.get_command(app)
+    params = command.commands["check"].params  # type: ignore[attr-defined]
+    options = {p.opts[0].lstrip("-"): (p.name, p.multiple) for p in params if p.param_type_name == "option"}
+    options.pop("help", None)
+    return defaults(options)
 
 
 def _fail(message: str, code: ExitCode) -> NoReturn:

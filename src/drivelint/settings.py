@@ -1,0 +1,55 @@
+"""`drivelint.toml`: the options of `check`, written down once, so that everybody in a folder runs the same check.
+
+    map = "road.xodr"
+    profile = ["nominal", "aggressive"]
+    fail-on = "major"
+
+A key is an option's name without its dashes; the command line overrides it. The file is looked for in the current
+folder only, and relative paths in it start there too.
+"""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+FILE: Final = "drivelint.toml"
+
+
+def defaults(options: Mapping[str, tuple[str, bool]], file: Path = Path(FILE)) -> dict[str, Any]:
+    """Return parameter name -> value from the settings file; nothing if there is none.
+
+    `options`: option name without dashes -> (parameter name, whether it may be given more than once).
+    Errors: `UsageError` with the file for bad TOML, an unknown key (with the nearest), or a value that no option takes.
+    """
+    import tomllib
+
+    try:
+        content = tomllib.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return {}
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise UsageError(f"{file}: not TOML: {error}") from error
+    values: dict[str, Any] = {}
+    for key, value in content.items():
+        if key not in options:
+            near = get_close_matches(key, options, n=1)
+            hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(sorted(options))}"
+            raise UsageError(f"{file}: unknown setting {key!r}; {hint}")
+        name, repeatable = options[key]
+        if not _fits(value, repeatable):
+            raise UsageError(f"{file}: {key} = {value!r}: must be {'a list of texts' if repeatable else 'one value'}")
+        values[name] = value if repeatable or isinstance(value, bool) else str(value)
+    return values
+
+
+def _fits(value: Any, repeatable: bool) -> bool:
+    if repeatable:
+        return isinstance(value, list) and all(isinstance(item, str) for item in value)
+    return isinstance(value, str | bool | int | float)
