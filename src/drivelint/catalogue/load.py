@@ -18,7 +18,8 @@ from drivelint.resources import folder
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-_STEM = re.compile(r"[a-z0-9][a-z0-9.-]*")
+_PACK = re.compile(r"[a-z0-9][a-z0-9_-]*")
+_STEM = re.compile(r"[a-z0-9][a-z0-9._-]*")
 _KEYS = ("drive_id", "ego_id", "t_ns")
 _CONDITION = (
     *_KEYS,
@@ -87,10 +88,10 @@ def load(dirs: Sequence[Path] = ()) -> dict[str, Rule]:
 def read_rule(file: Path) -> Rule:
     """Read and check one rule file. Errors: `RuleError` with file and line."""
     pack = file.resolve().parent.name
-    for part, what in ((pack, "folder"), (file.stem, "file")):
-        if not _STEM.fullmatch(part):
+    for part, what, pattern in ((pack, "folder", _PACK), (file.stem, "file", _STEM)):
+        if not pattern.fullmatch(part):
             raise RuleError(
-                f"{file}: the {what} name {part!r} makes no rule id: lower-case letters, digits, '.' and '-' only"
+                f"{file}: the {what} name {part!r} makes no rule id: lower-case letters, digits, '-', '_' (and '.' in the file name) only"
             )
     content = file.read_bytes()
     try:

@@ -31,8 +31,8 @@ _WALK = f"""), _linked AS (
 
 
 def grid_of(rule: Rule) -> str | None:
-    """Return the table that is the rule's default grid; None: it brings its own, or needs each step looked at."""
-    if "applies" in rule.sections or rule.applies.road_types or rule.profiled or rule.exempt_after_s != 0:
+    """Return the table that is an invariant's default grid; None: it brings its own, or needs each step looked at."""
+    if rule.kind != "invariant" or "applies" in rule.sections or rule.applies.road_types or rule.profiled or rule.exempt_after_s != 0:
         return None
     return OBJECT_GRID if rule.per_object else STEP_GRID
 

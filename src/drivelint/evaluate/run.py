@@ -1,0 +1,148 @@
+"""One evaluation: which statements a rule needs, in order, and when it can stop early."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import duckdb
+
+from drivelint.evaluate import closing, findings, invariant, occasion, stage
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from drivelint.evaluate.terms import Binding
+
+
+class Run:
+    """A connection, the rules to judge on it, and what they share."""
+
+    def __init__(self, con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding], *, margins: bool) -> None:
+        self._con = con
+        self._bindings = bindings
+        self._margins = margins
+        self._n_todo: dict[int, int] = {}
+        self._n_subjects = 0
+        self._has_holes = False
+
+    def judge(self) -> None:
+        """Judge by every rule, then write the verdicts, findings and margins of all of them at once."""
+        self.prepare()
+        for binding in self._bindings:
+            if not self._n_todo.get(binding.no):
+                continue
+            try:
+                self.rule(binding)
+            except duckdb.Error as error:
+                self._blame(binding, error)
+        for statement in closing.STATEMENTS:
+            self._con.execute(statement)
+
+    def prepare(self) -> None:
+        """Make the run's tables, decide what can be decided before running, and look at the default grids once for all rules."""
+        self._n_todo = stage.prepare(self._con, self._bindings)
+        self._n_subjects = self._count("SELECT count(*) FROM _subject")
+        self._has_holes = self._count("SELECT count(*) FROM _segment WHERE seg > 0") > 0
+        quick = [b for b in self._bindings if self._is_quick(b)]
+        if quick:
+            self._con.execute(invariant.GRID_GROUPS, {"_objects": any(b.rule.per_object for b in quick)})
+
+    def rule(self, binding: Binding) -> None:
+        """Run the statements of one rule."""
+        if binding.rule.kind == "invariant":
+            self._invariant(binding)
+        else:
+            self._occasion(binding)
+
+    def _is_quick(self, binding: Binding) -> bool:
+        """Whether the first pass can settle groups; margins need every step anyway."""
+        return not self._margins and invariant.grid_of(binding.rule) is not None
+
+    def _is_partial(self, binding: Binding) -> bool:
+        return self._n_todo.get(binding.no, 0) < self._n_subjects
+
+    def _invariant(self, binding: Binding) -> None:
+        rule, partial, quick = binding.rule, self._is_partial(binding), self._is_quick(binding)
+        if rule.profiled:
+            self._execute(invariant.profile_set(rule), binding)
+        if rule.per_object and "applies" not in rule.sections:
+            self._execute(invariant.lost_objects(rule, partial), binding)
+        n_steps = -1
+        if quick:
+            self._execute(invariant.first_pass(rule, partial), binding)
+            n_steps = self._count(f"SELECT coalesce(sum(n), 0)::BIGINT FROM _group WHERE rule_no = {binding.no} AND NOT clean")
+            if self._may_stop(n_steps):
+                return
+        n_judged = self._execute(invariant.second_pass(rule, partial, quick), binding)
+        if self._may_stop(n_judged):
+            return
+        if n_judged != n_steps:  # as many rows as the grid has steps: none can be double
+            self._execute(invariant.FAULTS, binding)
+        self._execute(invariant.episodes(rule), binding)
+        if self._has_holes:
+            self._execute(invariant.HOLES, binding)
+        self._leave(binding)
+
+    def _occasion(self, binding: Binding) -> None:
+        rule = binding.rule
+        if self._may_stop(self._execute(occasion.raw_references(rule, self._is_partial(binding)), binding)):
+            return
+        described = self._con.execute("SELECT * FROM _raw_reference LIMIT 0").description or []
+        columns = [str(column[0]) for column in described]
+        own_object = "object_id" in columns
+        self._execute(occasion.references(columns), binding)
+        self._execute(occasion.occasions(rule, own_object), binding)
+        self._execute(occasion.points(rule), binding)
+        if rule.profiled:
+            self._execute(invariant.profile_set(rule), binding)
+        self._execute(occasion.judged(rule, own_object), binding)
+        self._execute(occasion.FAULTS, binding)
+        self._execute(occasion.outcomes(rule, own_object), binding)
+        self._leave(binding)
+
+    def _leave(self, binding: Binding) -> None:
+        self._execute(findings.stretches(binding.rule), binding)
+        if self._margins:
+            self._execute(findings.margins(binding.rule), binding)
+
+    def _may_stop(self, n_rows: int) -> bool:
+        return n_rows == 0
+
+    def _execute(self, sql: str, binding: Binding) -> int:
+        """Execute one statement with exactly the values it names; return how many rows it made."""
+        statement = self._con.extract_statements(sql)[0]
+        row = self._con.execute(statement, binding.values(statement.named_parameters)).fetchone()
+        return int(row[0]) if row else 0
+
+    def _count(self, sql: str) -> int:
+        row = self._con.execute(sql).fetchone()
+        return int(row[0]) if row else 0
+
+    def _blame(self, binding: Binding, error: duckdb.Error) -> None:
+        """Make this rule an error for every subject that it was to judge."""
+        self._con.execute(
+            "INSERT INTO _error SELECT rule_no, drive_id, ego_id, 'rule_error', $reason FROM _todo WHERE rule_no = $no",
+            {"no": binding.no, "reason": f"rule {binding.rule.id}: {str(error).splitlines()[0]}"},
+        )
+
+
+class Explanation(Run):
+    """A run that keeps the plan of every statement and stops nowhere."""
+
+    def __init__(self, con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding], *, margins: bool) -> None:
+        super().__init__(con, bindings, margins=margins)
+        self.plans: list[str] = []
+
+    def prepare(self) -> None:
+        """Make the run's tables; holes are always looked for."""
+        super().prepare()
+        self._has_holes = True
+
+    def _may_stop(self, n_rows: int) -> bool:  # noqa: ARG002 - the shape of what it overrides
+        return False
+
+    def _execute(self, sql: str, binding: Binding) -> int:
+        statement = self._con.extract_statements(f"EXPLAIN {sql}")[0]
+        rows = self._con.execute(statement, binding.values(statement.named_parameters)).fetchall()
+        self.plans += [str(plan) for _, plan in rows]
+        return super()._execute(sql, binding)

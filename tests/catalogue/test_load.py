@@ -1,0 +1,148 @@
+"""Reading rule files: what is refused, and how it is said."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from drivelint.catalogue import json_schema, load, read_rule
+from drivelint.errors import RuleError
+from drivelint.resources import folder
+from tests.evaluate.packs import BEFORE, EXECUTION, HEADER, HOLDS, INVARIANT, MEASURED, PLACE_BEFORE, text, write
+
+SPEED = "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, 1 AS required FROM ego_state"
+GOOD = INVARIANT | MEASURED | {"reads": '["ego_state"]'}
+REFERENCE = "SELECT drive_id, ego_id, t_ns FROM exit_taken"
+BOTH = {"reads": '["ego_state", "exit_taken"]'}
+PARAM = '[params.limit]\ndefault = 13\nunit = "m/s"\nwhy = "a test"'
+
+
+def test_a_rule_is_its_file(tmp_path: Path) -> None:
+    rule = write(tmp_path, GOOD, {"condition": SPEED.replace("1 AS", "$limit AS")}, name="r1.slow-down", tables=PARAM)
+    assert (rule.id, rule.pack, rule.kind, rule.severity) == ("pack.r1.slow-down", "pack", "invariant", "major")
+    assert rule.params["limit"].default == 13.0
+    assert isinstance(rule.params["limit"].default, float)
+    assert len(rule.version) == 16
+    assert (rule.reads, rule.per_object, rule.profiled) == (("ego_state",), False, False)
+    again = write(tmp_path, GOOD | {"title": '"Another"'}, {"condition": SPEED}, name="r1.slow-down")
+    assert again.version != rule.version
+
+
+@pytest.mark.parametrize(
+    ("header", "sections", "tables", "message"),
+    [
+        ({"senze": '">"'}, {}, "", r":12: unknown key 'senze' in the header; did you mean 'sense'\?"),
+        ({"kind": '"invarient"'}, {}, "", r"Invalid enum value 'invarient'"),
+        ({"title": None}, {}, "", "missing required field `title`"),
+        ({"clause": "7"}, {}, "", r":2: header: Expected `str`, got `int`"),
+        ({"clause": "broken"}, {}, "", r":2: the header is not TOML"),
+        ({}, {}, "[params.limit]\ndefualt = 1\n", r"unknown key 'defualt' in the header; did you mean 'default'"),
+        ({}, {}, "[applies]\nroad_typs = ['town']\n", r"unknown key 'road_typs' in the header; did you mean 'road_types'"),
+        ({}, {}, PARAM, "parameter 'limit' is never used"),
+        ({}, {}, PARAM.replace("limit", "Limit"), "parameter 'Limit': use lower-case"),
+        ({"quantifier": '"eventually"'}, {}, "", "'eventually' makes no sense for an invariant"),
+        ({"quantifier": '"eventually"'} | EXECUTION, {"reference": REFERENCE}, "", "'eventually' makes no sense for an execution"),
+        ({"subtype": '"temporal"'}, {}, "", "subtype .* belongs to pre- and postconditions"),
+        ({"window_s": "3"}, {}, "", "window_s belongs to temporal conditions"),
+        ({"combine": '"all"'}, {}, "", "combine is for conditions at a reference point"),
+        ({"unit": None}, {}, "", "unit is missing"),
+        ({"near_margin": "1.0", "sense": '"holds"'}, {}, "", "near_margin needs a measured condition"),
+        ({"merge_gap_s": '"nothing"'}, {}, "", "merge_gap_s = 'nothing' must be a number or the name of a numeric parameter"),
+        ({"merge_gap_s": "-1"}, {}, "", "merge_gap_s must be a number of seconds"),
+        ({"reads": "[]"}, {}, "", "reads must name the tables"),
+        ({"reads": '["ego_state", "pair"]'}, {}, "", "reads does not match the SQL: remove pair"),
+        ({"reads": '["pair"]'}, {}, "", "reads does not match the SQL: add ego_state; remove pair"),
+        (EXECUTION, {}, "", "a execution needs section @reference|execution needs section @reference"),
+        ({}, {"reference": REFERENCE}, "", "invariant has no section @reference"),
+        ({}, {"anchor": REFERENCE}, "", "invariant has no section @anchor"),
+        ({}, {"conditoin": SPEED}, "", r"unknown section @conditoin; did you mean @condition\?"),
+        ({}, {"condition": "SELECT 1 AS a; SELECT 2 AS b"}, "", "exactly one SELECT, found 2"),
+        ({}, {"condition": "DROP TABLE step"}, "", "exactly one SELECT"),
+        ({}, {"condition": "SELEC drive_id"}, "", "Parser Error|syntax error"),
+        ({}, {"condition": "SELECT * FROM ego_state"}, "", "must name every column"),
+        ({}, {"condition": SPEED.replace("speed_mps AS observed, ", "")}, "", "observed missing"),
+        ({}, {"condition": SPEED.replace(" FROM", ", 1 AS aplies FROM")}, "", "unknown column 'aplies'; did you mean 'applies'"),
+        ({}, {"condition": SPEED.replace(" FROM", ", true AS holds FROM")}, "", "column 'holds' does not go with sense = '>'"),
+        ({}, {"condition": SPEED.replace(" FROM", ", 1 AS ref_id FROM")}, "", "reads reference or reference_step returns ref_id"),
+        ({}, {"condition": SPEED.replace("ego_state", "'/etc/passwd'")}, "", "there is no table '/etc/passwd'"),
+        ({}, {"condition": SPEED.replace("ego_state", "read_csv('x.csv')")}, "", "table function 'read_csv' is not allowed"),
+        ({}, {"condition": SPEED.replace("ego_state", "query('SELECT 1')")}, "", "table function 'query' is not allowed"),
+        ({}, {"condition": SPEED.replace("ego_state", "ego_stat")}, "", "there is no table 'ego_stat'"),
+        ({}, {"condition": SPEED.replace("1 AS", "random() AS")}, "", r"random\(\) does not give the same answer"),
+        ({}, {"condition": f"WITH pair AS (SELECT 1) {SPEED}"}, "", "rename the CTE 'pair'"),
+        ({}, {"condition": f"WITH _grid AS (SELECT 1) {SPEED}"}, "", "rename the CTE '_grid'"),
+        ({}, {"condition": SPEED.replace("1 AS", "$limit AS")}, "", r"\$limit is not a parameter of this rule"),
+        ({}, {"condition": SPEED.replace("1 AS", "? AS")}, "", "is not a parameter of this rule"),
+        ({}, {"condition": SPEED, "applies": "SELECT drive_id, ego_id FROM ego_state"}, "", "t_ns missing"),
+        ({"reference": '"exit_taken"'}, {}, "", "an invariant has no reference point"),
+    ],
+)
+def test_what_is_refused(tmp_path: Path, header: dict[str, Any], sections: dict[str, str], tables: str, message: str) -> None:
+    fields = {key: value for key, value in (GOOD | header).items() if value is not None}
+    if "title" in header:
+        fields = {**fields, "title": ""}
+    body = {**({"condition": SPEED} if "conditoin" not in sections else {}), **sections}
+    pack = tmp_path / "pack"
+    pack.mkdir()
+    file = pack / "bad.sql"
+    whole = {key: value for key, value in (HEADER | fields).items() if value}
+    file.write_text(text(whole, body, tables), encoding="utf-8")
+    with pytest.raises(RuleError, match=message) as caught:
+        read_rule(file)
+    assert str(caught.value).startswith(str(file))
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("header", "sections", "message"),
+    [
+        (BEFORE | {"window_s": '"ahead"'}, {"reference": REFERENCE}, "window_s = 'ahead' must be a number or the name"),
+        (PLACE_BEFORE, {"reference": REFERENCE}, "physical precondition needs section @anchor"),
+        (EXECUTION, {"reference": "SELECT drive_id, ego_id FROM exit_taken"}, "must return drive_id, ego_id, t_ns"),
+        (EXECUTION, {"reference": REFERENCE, "applies": SPEED}, "@applies is for invariants"),
+        (EXECUTION | {"reference": '"exit_lane"'}, {}, "reference = 'exit_lane' is no event table"),
+        (EXECUTION | {"reference": '"exit_taken"'}, {"reference": REFERENCE}, "names an event table already"),
+        (EXECUTION | {"combine": '"any"'}, {"reference": REFERENCE}, "combine = 'any' needs the column object_id"),
+        (EXECUTION, {"reference": REFERENCE, "condition": SPEED.replace("ego_state", "ego_state JOIN reference r USING (drive_id)")}, "returns ref_id"),
+        (PLACE_BEFORE, {"reference": REFERENCE, "anchor": "SELECT ref_id, t_ns FROM reference_step"}, "@anchor of an precondition has no table 'reference_step'|has no table"),
+    ],
+)
+def test_what_is_refused_at_reference_points(tmp_path: Path, header: dict[str, str], sections: dict[str, str], message: str) -> None:
+    with pytest.raises(RuleError, match=message):
+        write(tmp_path, MEASURED | BOTH | header, {"condition": SPEED} | sections)
+
+
+def test_sql_before_the_first_section_and_a_missing_condition(tmp_path: Path) -> None:
+    (tmp_path / "pack").mkdir()
+    file = tmp_path / "pack" / "rule.sql"
+    file.write_text(text(HEADER | GOOD, {}) + "\nSELECT 1\n-- @condition\nSELECT 1", encoding="utf-8")
+    with pytest.raises(RuleError, match=r":13: only '-- ' comment lines"):
+        read_rule(file)
+    file.write_text(text(HEADER | GOOD, {}), encoding="utf-8")
+    with pytest.raises(RuleError, match="section '-- @condition' is missing"):
+        read_rule(file)
+
+
+def test_packs_of_users_stand_beside_the_shipped_ones(tmp_path: Path) -> None:
+    write(tmp_path, GOOD, {"condition": SPEED}, name="one")
+    assert "pack.one" in load([tmp_path])
+    assert "pack.one" in load([tmp_path / "pack"])
+    with pytest.raises(RuleError, match="exists already in"):
+        load([tmp_path, tmp_path / "pack"])
+    with pytest.raises(RuleError, match="no rules here"):
+        load([tmp_path / "nothing"])
+
+
+def test_a_rule_may_use_ctes_unions_macros_of_ours_and_unnest(tmp_path: Path) -> None:
+    sql = f"WITH fast AS (SELECT * FROM ego_state), n AS (SELECT unnest([1, 2]) AS i) {SPEED.replace('ego_state', 'fast')} UNION ALL {SPEED}"
+    rule = write(tmp_path, HOLDS | GOOD | MEASURED, {"condition": sql})
+    assert rule.columns["condition"] == ("drive_id", "ego_id", "t_ns", "observed", "required")
+
+
+def test_the_published_schema_of_the_header_is_current() -> None:
+    written = json.loads((folder("schemas") / "assertion-header.schema.json").read_text(encoding="utf-8"))
+    assert written == json.loads(json.dumps(json_schema()))
+    assert written["$defs"]["Header"]["additionalProperties"] is False

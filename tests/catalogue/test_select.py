@@ -1,0 +1,76 @@
+"""Selecting rules and setting parameters, as on the command line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from drivelint.catalogue import Rule, parse_params, select
+from drivelint.errors import UsageError
+from tests.evaluate.packs import INVARIANT, MEASURED, write
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SQL = "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, $limit AS required FROM ego_state WHERE $on AND $word = 'x'"
+PARAMS = "".join(f'[params.{name}]\ndefault = {value}\nunit = ""\nwhy = "a test"\n' for name, value in (("limit", 1), ("on", "true"), ("word", '"x"')))
+
+
+@pytest.fixture
+def rules(tmp_path: Path) -> dict[str, Rule]:
+    head = INVARIANT | MEASURED | {"reads": '["ego_state"]'}
+    made = [
+        write(tmp_path, head | {"status": f'"{status}"'}, {"condition": SQL}, name=name, tables=PARAMS)
+        for name, status in (("r2.gap", "stable"), ("r1.speed", "stable"), ("r3.new", "draft"), ("r4.old", "deprecated"))
+    ]
+    return {rule.id: rule for rule in made}
+
+
+@pytest.mark.parametrize(
+    ("include", "ignore", "expected"),
+    [
+        ([], [], ["pack.r1.speed", "pack.r2.gap"]),
+        (["pack"], [], ["pack.r1.speed", "pack.r2.gap", "pack.r3.new"]),
+        (["pack.r3.new"], [], ["pack.r3.new"]),
+        (["*.r4.old"], ["pack.r1.speed"], None),
+        (["pack.r4.old"], [], ["pack.r4.old"]),
+        (["pack.r*"], ["*.gap", "pack.r3.new"], ["pack.r1.speed"]),
+        (["pack.r2.gap", "pack.r2.gap", "*speed"], [], ["pack.r1.speed", "pack.r2.gap"]),
+        (["pack.r2.gap"], ["pack"], None),
+    ],
+)
+def test_select(rules: dict[str, Rule], include: list[str], ignore: list[str], expected: list[str] | None) -> None:
+    if expected is None:
+        with pytest.raises(UsageError, match="no rule is left"):
+            select(rules, include, ignore, default_pack="pack")
+    else:
+        assert [rule.id for rule in select(rules, include, ignore, default_pack="pack")] == expected
+
+
+@pytest.mark.parametrize(("selector", "nearest"), [("pack.r1.sped", "pack.r1.speed"), ("pac", "pack"), ("r2.gap", "pack.r2.gap")])
+def test_a_selector_that_matches_nothing_is_refused_with_the_nearest(rules: dict[str, Rule], selector: str, nearest: str) -> None:
+    for include, ignore in (([selector], []), ([], [selector])):
+        with pytest.raises(UsageError, match=f"did you mean '{nearest}'"):
+            select(rules, include, ignore, default_pack="pack")
+
+
+def test_parameters_are_typed_like_their_default(rules: dict[str, Rule]) -> None:
+    settings = ["pack.r1.speed.limit=2.5", "pack.r1.speed.on=FALSE", "pack.r2.gap.word=a=b"]
+    assert parse_params(rules, settings) == {"pack.r1.speed": {"limit": 2.5, "on": False}, "pack.r2.gap": {"word": "a=b"}}
+
+
+@pytest.mark.parametrize(
+    ("setting", "message"),
+    [
+        ("limit", "write RULE.PARAM=VALUE"),
+        ("pack.r1.sped.limit=1", "did you mean 'pack.r1.speed'"),
+        ("pack.r1.speed.limt=1", "has no parameter 'limt'; it has: limit, on, word"),
+        ("pack.r1.speed.limit=fast", "'fast' is not a number"),
+        ("pack.r1.speed.limit=nan", "must be a finite number"),
+        ("pack.r1.speed.on=1", "must be true or false"),
+    ],
+)
+def test_wrong_parameters(rules: dict[str, Rule], setting: str, message: str) -> None:
+    with pytest.raises(UsageError, match=message):
+        parse_params(rules, [setting])
