@@ -8,6 +8,7 @@ import duckdb
 import pytest
 
 from drivelint import store
+from drivelint.resources import folder
 
 
 @pytest.fixture(scope="module")
@@ -34,6 +35,15 @@ def test_what_is_parsed_from_the_files_is_what_the_database_has(database: duckdb
     for table, column in rows.fetchall():
         found.setdefault(table, []).append(column)
     assert {table: list(columns) for table, columns in store.schema().items()} == found
+
+
+def test_every_table_of_the_library_is_filled_by_a_query_of_its_name() -> None:
+    """A table that nothing fills is empty, and empty would read as: it never happened."""
+    text = (folder("schemas") / "derived.sql").read_text(encoding="utf-8")
+    tables = set(re.findall(r"^CREATE TABLE (\w+)", text, re.MULTILINE))
+    filled = {file.stem for file in (folder("queries") / "derive").glob("*.sql")}
+    assert tables - filled == {"profile"}  # filled from queries/profiles.toml
+    assert filled - tables == set()
 
 
 def test_units_are_si_and_stand_in_the_name(database: duckdb.DuckDBPyConnection) -> None:

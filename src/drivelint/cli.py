@@ -156,6 +156,7 @@ def check(
     4 some drives not judged (with --strict: some rule unknown); 75 infrastructure lost; 130 interrupted.
     """
     from drivelint import run
+    from drivelint.report.files import prepare
     from drivelint.report.result import exit_code, write
 
     settings = run.Settings(
@@ -178,6 +179,8 @@ def check(
         keep_db=keep_db,
         topic=topic,
     )
+    if out is not None:
+        prepare(out)
     with _progress(quiet) as progress:
         result = _interruptible(lambda: run.check(settings, progress))
         if out is not None:

@@ -53,6 +53,20 @@ def parquet_bytes(rows: pa.Table, table: str) -> bytes:
     return sink.getvalue()
 
 
+def prepare(out: Path) -> None:
+    """Make the folder for results and make sure that files can be written there, before hours of work are done for it.
+
+    Errors: `OutputError`.
+    """
+    probe = out / f".drivelint.{os.getpid()}.tmp"
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise _unwritable(out, error) from error
+
+
 def publish(out: Path, contents: dict[str, bytes], moved: dict[str, Path | None]) -> None:
     """Write files into the folder `out`, all of them complete on disk before the first gets its name.
 
@@ -80,12 +94,16 @@ def publish(out: Path, contents: dict[str, bytes], moved: dict[str, Path | None]
             temporary.replace(final)
         _sync(out)
     except OSError as error:
-        raise OutputError(
-            f"{out}: cannot write the results: {error.strerror or error}; free the disk or choose another --out"
-        ) from error
+        raise _unwritable(out, error) from error
     finally:
         for temporary, _ in staged:
             temporary.unlink(missing_ok=True)
+
+
+def _unwritable(out: Path, error: OSError) -> OutputError:
+    return OutputError(
+        f"{out}: cannot write the results: {error.strerror or error}; free the disk or choose another --out"
+    )
 
 
 def _sync(path: Path) -> None:
