@@ -230,6 +230,15 @@ def test_what_does_not_fit_is_reported() -> None:
     assert max(p["road_s_m"] for p in points(environment)["1.0.-1"]) == 100.0
 
 
+def test_a_hole_between_geometries_is_bridged_straight_on_and_reported() -> None:
+    spiral = geometry('<spiral curvStart="0" curvEnd="0.1"/>', length=20)
+    hole = spiral + geometry("<line/>", 60, (200, 0, 0), 40)
+    environment = load(road(geometry=hole))
+    assert checks(environment)["reference_gap"] == ["1"]
+    bridge = [p for p in points(environment)["1.0.-1"] if 20 <= p["road_s_m"] < 60]
+    assert {round(math.atan2(p["ty"], p["tx"]), 6) for p in bridge} == {1.0}
+
+
 def test_a_bend_tighter_than_its_lane_is_reported_and_finite() -> None:
     tight = '<geometry s="0" x="0" y="0" hdg="0" length="6"><arc curvature="-0.5"/></geometry>'
     environment = load(road(geometry=tight, length=6, lanes=section(0, lane(-1, '<width sOffset="0" a="6"/>'))))

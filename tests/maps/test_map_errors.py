@@ -105,7 +105,8 @@ def test_a_map_without_a_lane_says_why() -> None:
         (road("2", '<geometry s="0" x="0" y="0" hdg="0" length="9"><clothoid/></geometry>'), "clothoid"),
         (road("2", '<geometry s="0" x="0" y="0" hdg="0" length="9"/>'), "is empty"),
         (road("2", '<geometry s="0" x="0" y="0" hdg="0" length="9"><arc curvature="1e9"/></geometry>'), "turns"),
-        (road("2", length=1e12), "1e+12 m"),
+        (road("2", length=1e8), "1e+08 m"),
+        (road("2", length=1e12), "larger than anything on a road"),
         (road("2", lanes="<a/>"), "no <laneSection>"),
         (road("2", lanes=section(0, lane(-1), lane(-1))), "same lane twice"),
         (road("1"), "same id"),
@@ -126,6 +127,14 @@ def test_a_lane_that_cannot_be_built_is_named_with_those_that_lie_on_it() -> Non
     environment = load(road(lanes=lanes))
     assert set(lanelets(environment)) == {"1.0.1", "1.0.-1"}
     assert sorted(str(name) for name in checks(environment)["invalid_lane"]) == ["1.0.-2", "1.0.-3", "1.0.2"]
+
+
+@pytest.mark.parametrize("width", ['a="2000"', 'a="3" d="1"', 'a="3" c="1e8"'])
+def test_a_lane_wider_than_any_road_costs_its_section_only(width: str) -> None:
+    lanes = section(0, lane(-1)) + section(50, lane(-1, f'<width sOffset="0" {width}/>'))
+    environment = load(road(lanes=lanes))
+    assert set(lanelets(environment)) == {"1.0.-1"}
+    assert checks(environment)["invalid_lane"] == ["1.1.-1"]
 
 
 def test_a_polynomial_that_stands_still_costs_its_section_only() -> None:

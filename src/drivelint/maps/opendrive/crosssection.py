@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.errors import MapError
+from drivelint.maps.opendrive.xml import MalformedError
 
 if TYPE_CHECKING:
     from drivelint.maps.opendrive.cubic import Floats
@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 CHORD_M = 0.01  # furthest that a bound may be from the chord between two of its points
 SPACING_M = 5.0  # furthest that two points may be apart
 JUMP_M = 0.01  # a larger step in an edge is kept as a step
-MAX_POINTS = 200_000  # per strip: beyond 200 km of lane at this density the file is broken
+MAX_POINTS = 100_000  # per strip: 100 km in steps of a metre
+MAX_REACH_M = 1000.0  # no lane lies further from its reference line
 _SNAP_M = 1e-3  # break points closer than this are one
 _INSIDE_M = 1e-6  # how far inside its section a record must begin to hold there
 
@@ -53,6 +54,8 @@ class Evaluator:
         left, right = self._outward(self.left, 1.0, centre, s, at), self._outward(self.right, -1.0, centre, s, at)
         rows = [*left[::-1], centre, *right]
         t, dt = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
+        if not float(np.abs(t).max(initial=0.0)) < MAX_REACH_M:
+            raise MalformedError(f"an edge lies {float(np.abs(t).max()):.3g} m from the reference line")
         return Edges(line, t, dt, line.x - line.sin * t, line.y + line.cos * t)
 
     def _outward(
@@ -113,7 +116,7 @@ def _divide(s: Floats, parts: Floats) -> Floats:
     """Return the stations with each interval cut into equal parts."""
     count = np.maximum(parts, 1).astype(np.int64)
     if count.sum() > MAX_POINTS:
-        raise MapError(f"one lane section needs {count.sum()} points: the map's numbers make no sense, check its units")
+        raise MalformedError(f"its edges need {count.sum()} points: its numbers make no sense")
     first = np.repeat(s[:-1], count)
     place = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
     return np.append(first + place * np.repeat(np.diff(s) / count, count), s[-1])

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from drivelint.maps.opendrive.cubic import Floats
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+_BLOCK = 2**20  # nodes at a time: bounds the memory that a long spiral takes
 _MAX_TURN_RAD = 200.0  # a loop ramp turns 5 rad; more than 30 turns in one geometry is nonsense
 
 
@@ -67,9 +68,14 @@ class Clothoid:
         panels = max(1, int(np.ceil(2.0 * float(turn.max(initial=0.0)))))
         at = (np.arange(panels)[:, None] + 0.5 * (_NODES + 1.0)).ravel() / panels  # fractions of ds
         weight = np.tile(0.5 * _WEIGHTS, panels) / panels
-        q = ds[:, None] * at
-        phi = (self.start + 0.5 * self.rate * q) * q
-        return ds * (np.cos(phi) @ weight), ds * (np.sin(phi) @ weight)
+        u, v = np.empty_like(ds), np.empty_like(ds)
+        block = max(1, _BLOCK // len(at))
+        for i in range(0, len(ds), block):
+            part = ds[i : i + block]
+            q = part[:, None] * at
+            phi = (self.start + 0.5 * self.rate * q) * q
+            u[i : i + block], v[i : i + block] = part * (np.cos(phi) @ weight), part * (np.sin(phi) @ weight)
+        return u, v
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,11 +151,15 @@ class PlanView:
     def evaluate(self, s: Floats, at: Floats) -> Line:
         """Return the line at stations `s` (n,), ascending, taking the geometries that hold at stations `at` (n,)."""
         k = np.clip(np.searchsorted(self.s, at, side="right") - 1, 0, len(self.s) - 1)
+        ds = s - self.s[k]
+        inside = np.clip(ds, 0.0, self.length[k])
         local = np.empty((6, len(s)))
         for i in np.unique(k):
             mine = k == i
-            local[:, mine] = self.shapes[i].evaluate(s[mine] - self.s[i])
+            local[:, mine] = self.shapes[i].evaluate(inside[mine])
         u, v, cos, sin, curvature, speed = local
+        beyond = ds - inside  # a hole in the stations is bridged straight on; its far end is reported as a gap
+        u, v, curvature = u + beyond * cos, v + beyond * sin, np.where(np.abs(beyond) > 1e-3, 0.0, curvature)
         c, n = np.cos(self.heading)[k], np.sin(self.heading)[k]
         return Line(
             self.x[k] + c * u - n * v, self.y[k] + n * u + c * v, c * cos - n * sin, n * cos + c * sin, curvature, speed

@@ -44,31 +44,32 @@ def _doctype(source: MapSource) -> MapError:
     )
 
 
+LIMIT = 1e9  # no length, coordinate or coefficient of a road is larger; beyond it arithmetic loses the millimetres
+
+
 def number(element: etree._Element, name: str, default: float | None = None) -> float:
     """Return an attribute as a finite number, or the default if it is absent."""
-    text = element.get(name)
-    if text is None:
+    said = element.get(name)
+    if said is None:
         if default is None:
             raise MalformedError(f"<{element.tag}> in line {element.sourceline} has no attribute {name}")
         return default
     try:
-        value = float(text)
+        value = float(said)
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise MalformedError(
-            f"<{element.tag}> in line {element.sourceline}: {name}={text[:40]!r} is not a finite number"
-        )
+        raise MalformedError(f"{_where(element, name)} is not a finite number")
+    if abs(value) > LIMIT:
+        raise MalformedError(f"{_where(element, name)} is larger than anything on a road")
     return value
 
 
 def integer(element: etree._Element, name: str) -> int:
     """Return an attribute as an integer."""
     value = number(element, name)
-    if value != int(value) or abs(value) > 2**31 - 1:
-        raise MalformedError(
-            f"<{element.tag}> in line {element.sourceline}: {name}={element.get(name)!r} is not an integer"
-        )
+    if value != int(value):
+        raise MalformedError(f"{_where(element, name)} is not an integer")
     return int(value)
 
 
@@ -78,3 +79,8 @@ def text(element: etree._Element, name: str) -> str:
     if value is None:
         raise MalformedError(f"<{element.tag}> in line {element.sourceline} has no attribute {name}")
     return value
+
+
+def _where(element: etree._Element, name: str) -> str:
+    said = (element.get(name) or "")[:40]
+    return f"<{element.tag}> in line {element.sourceline}: {name}={said!r}"
