@@ -1,0 +1,358 @@
+"""What could not be seen must not pass: the case study's logs with things taken away around t0 = 8.3 s, and what is said of them."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import pyarrow as pa
+import pytest
+
+from drivelint.batch import Drive
+from drivelint.ingest import IngestOptions, read_trace
+from drivelint.maps import MapSource, load_map
+from tests import blinding, scenes
+from tests.blinding import EVER, Span
+from tests.shared_data import shared
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from drivelint.maps import Environment
+
+RUNS = ("safe", "near_miss", "collision")
+EGO, VBP, OV = "1", "2", "3"
+PROFILES = ("relaxed", "nominal", "aggressive", "observed")
+SAFE_DISTANCE = "ukhc.r162.safe-distance-ahead"
+SPACES_OV = ("ukhc.r126.ds-ov-out-of-av", "ukhc.r126.ds-av-out-of-ov", "ukhc.r126.ds-disjoint")
+SPACE_VBP = "ukhc.r126.ds-vbp-out-of-av"
+NO_COLLISION = "ukhc.no-collision"
+T0 = 8.3
+SPANS: dict[str, Span] = {
+    "0.3": (8.0, 8.6),
+    "0.5": (7.8, 8.8),
+    "2": (6.3, 10.3),
+    "5": (3.3, 13.3),
+    "start": (-1.0, 8.8),
+    "long-start": (-1.0, 13.3),
+    "end": (7.8, 1e6),
+    "long-end": (3.3, 1e6),
+    "ever": EVER,
+}
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Case:
+    """One version of one run: what was taken away, from whom, and when."""
+
+    run: str
+    what: str
+    span: str = ""
+
+    @property
+    def name(self) -> str:
+        """The drive's id."""
+        return f"{self.run}/{self.what}/{self.span}"
+
+
+Blinding = Callable[[Drive, Span], Drive] if TYPE_CHECKING else object
+BLINDINGS: Mapping[str, Blinding] = {
+    f"{how} {who}": (lambda make, who: lambda drive, span: make(drive, who, span))(make, who)
+    for who in (VBP, OV, EGO)
+    for how, make in (("nulled", blinding.nulled), ("dropped", blinding.dropped))
+} | {
+    "moved 30 m": lambda drive, span: blinding.moved(drive, OV, span, 30.0),
+    "moved 400 m": lambda drive, span: blinding.moved(drive, OV, span, 400.0),
+    "moved VBP": lambda drive, span: blinding.moved(drive, VBP, span, 30.0),
+    "hole": lambda drive, span: blinding.dropped(drive, None, span),
+}
+CUTS: dict[str, Span] = {"at t0": (8.3, 1e3), "from t0 on": (8.3, 1e3), "before t0": (8.2, 1e3), "passing": (10.0, 1e3)}
+ENDS: dict[str, Span] = {"to t0": (0.0, 8.3), "to 9 s": (0.0, 9.0), "to 13 s": (0.0, 13.0)}
+
+
+def maps(road: Environment) -> dict[str, Environment | None]:
+    """Return versions of the map with something lost; the ego runs in 3.0.1 and overtakes in 3.0.-1; 43.0.1 is straight on."""
+
+    def guessed(table: pa.Table) -> pa.Table:
+        at = table.schema.get_field_index("handedness_source")
+        return table.set_column(at, "handedness_source", pa.array(["default"]))
+
+    return {
+        "running lane": blinding.without_lanelet(road, "3.0.1", "no-running"),
+        "overtaking lane": blinding.without_lanelet(road, "3.0.-1", "no-overtaking"),
+        "lane ahead": blinding.without_lanelet(road, "43.0.1", "no-ahead"),
+        "link ahead": blinding.without_links(road, "no-link", "43.0.1"),
+        "every link": blinding.without_links(road, "no-links"),
+        "handedness": blinding.remade(road, "guessed", environment=guessed),
+        "map": None,
+    }
+
+
+class Judged:
+    """The verdict rows of every case."""
+
+    def __init__(self, rows: list[Row]) -> None:
+        self.by_drive: dict[str, list[Row]] = defaultdict(list)
+        for row in rows:
+            self.by_drive[row["drive_id"]].append(row)
+
+    def of(self, case: Case, *rules: str) -> list[Row]:
+        """Return a case's rows of these rules; there is always at least one."""
+        rows = [row for row in self.by_drive[case.name] if row["rule_id"] in rules]
+        assert {row["rule_id"] for row in rows} == set(rules)
+        return rows
+
+    def said(self, case: Case, rule: str) -> set[tuple[str, str]]:
+        """Return verdicts and reason codes."""
+        return {(row["verdict"], row["reason_code"]) for row in self.of(case, rule)}
+
+
+@pytest.fixture(scope="module")
+def judged() -> Iterator[Judged]:
+    """Judge every case in one batch: a crowd costs little more than one, and harms nobody (test_laws)."""
+    road: Environment | None = None
+    drives: list[Drive] = []
+
+    def add(drive: Drive, case: Case) -> None:
+        drives.append(blinding.renamed(drive, case.name))
+
+    for run in RUNS:
+        trace = read_trace(shared(f"overtake_case_study/{run}.csv"), IngestOptions(mapping="carla-testbench"))
+        if road is None:
+            content = shared("overtake_case_study/t_junction.xodr").read_bytes()
+            road = load_map(MapSource("t_junction.xodr", content), offset=trace.map_offset or (0, 0))
+        # the manoeuvre is over by then; the rest of the log would only take time
+        whole = blinding.cut(Drive(trace, road), (0.0, 24.0))
+        add(whole, Case(run, "nothing"))
+        for what, make in BLINDINGS.items():
+            for name, span in SPANS.items():
+                if what.endswith(f" {EGO}") and span == EVER or what == "hole" and span == EVER:
+                    continue
+                add(make(whole, span), Case(run, what, name))
+        for name, span in (CUTS | ENDS).items():
+            add(blinding.cut(whole, span), Case(run, "cut", name))
+        for lost, environment in maps(road).items():
+            add(blinding.on(whole, environment), Case(run, f"no {lost}"))
+            add(blinding.on(blinding.dropped(whole, OV, EVER), environment), Case(run, f"no {lost}, no OV"))
+        for range_m in (30.0, 60.0, 200.0):
+            add(blinding.ranged(whole, range_m), Case(run, f"range {range_m:.0f}"))
+    yield Judged(scenes.judged(drives, rules=["ukhc"], profiles=PROFILES))
+
+
+def touches(row: Row, span: Span) -> bool:
+    """Whether a verdict's interval and a span have a moment in common; a hair inside, as spans end on samples."""
+    return row["t_start_ns"] / 1e9 <= span[1] + 1e-6 and row["t_end_ns"] / 1e9 >= span[0] - 1e-6
+
+
+@pytest.mark.parametrize("run", RUNS)
+def test_with_everything_there_it_does_pass(judged: Judged, run: str) -> None:
+    """Or else the tests below would hold for a checker that never passes anything."""
+    case = Case(run, "nothing")
+    assert ("pass" in {row["verdict"] for row in judged.of(case, SAFE_DISTANCE)}) is (run != "collision")
+    assert {row["verdict"] for row in judged.of(case, NO_COLLISION)} == {"pass"}
+    assert "pass" in {row["verdict"] for row in judged.of(case, *SPACES_OV)}
+
+
+@pytest.mark.parametrize("span", [s for s in SPANS if s != "ever"])
+@pytest.mark.parametrize("what", [f"nulled {OV}", f"dropped {OV}", "moved 30 m", "moved 400 m"])
+def test_no_pass_without_the_oncoming_vehicle(judged: Judged, what: str, span: str) -> None:
+    for run in RUNS:
+        case = Case(run, what, span)
+        rows = judged.of(case, SAFE_DISTANCE)
+        if what.startswith("moved") and span.endswith("start"):
+            # it does come onto the road then, and how far it had to go at most is known: that may be too little, never enough
+            rows = [row for row in rows if row["verdict"] != "fail"]
+        assert {(row["verdict"], row["reason_code"]) for row in rows} == {("unknown", "null_value")}
+        for row in rows:
+            assert f"actor {OV} " in row["reason"] or "was not completed" in row["reason"], row["reason"]
+        for row in judged.of(case, *SPACES_OV):
+            assert row["verdict"] != "pass" or not touches(row, SPANS[span]), row
+        for row in judged.of(case, "ukhc.overtake-zone"):
+            assert row["verdict"] != "pass"
+
+
+@pytest.mark.parametrize("what", [f"nulled {OV}", "moved 30 m", "moved 400 m"])
+def test_no_pass_if_it_never_has_a_place_on_the_road(judged: Judged, what: str) -> None:
+    for run in RUNS:
+        case = Case(run, what, "ever")
+        assert judged.said(case, SAFE_DISTANCE) == {("unknown", "null_value")}
+        assert {row["verdict"] for row in judged.of(case, *SPACES_OV)} == {"unknown"}
+
+
+def test_a_vehicle_that_the_log_never_names_is_nobody(judged: Judged) -> None:
+    """With all of its rows gone nothing in the log tells that it was there: ground truth says that nobody came, and so do we."""
+    for run in RUNS:
+        case = Case(run, f"dropped {OV}", "ever")
+        for row in judged.of(case, SAFE_DISTANCE):
+            if row["profile"] != "observed":
+                assert row["verdict"] == "pass"
+                assert row["object_id"] is None
+                assert row["reason"].startswith("no oncoming vehicle within")
+        assert judged.said(case, SPACES_OV[0]) == {("not_applicable", "not_triggered")}
+
+
+@pytest.mark.parametrize("span", SPANS)
+@pytest.mark.parametrize("how", ["nulled", "dropped"])
+@pytest.mark.parametrize("who", [VBP, OV])
+def test_no_collision_is_not_passed_over_a_blind_spot(judged: Judged, who: str, how: str, span: str) -> None:
+    for run in RUNS:
+        rows = judged.of(Case(run, f"{how} {who}", span), NO_COLLISION)
+        own = [row for row in rows if row["object_id"] == who]
+        assert all(row["verdict"] != "pass" for row in own if touches(row, SPANS[span]))
+        if how == "nulled" or span in {"0.3", "0.5", "2", "5"}:
+            assert "unknown" in {row["verdict"] for row in own}
+        other = [row for row in rows if row["object_id"] not in {who, None}]
+        assert {row["verdict"] for row in other} == {"pass"}
+
+
+def test_a_track_that_ends_near_the_ego_is_unknown_from_there_on(judged: Judged) -> None:
+    for run in RUNS:
+        rows = [row for row in judged.of(Case(run, f"dropped {VBP}", "end"), NO_COLLISION) if row["object_id"] == VBP]
+        assert [(row["verdict"], row["reason_code"]) for row in rows] == [
+            ("pass", "kept"),
+            ("unknown", "lost_near_ego"),
+        ]
+        assert rows[1]["t_start_ns"] / 1e9 == pytest.approx(7.7)
+
+
+@pytest.mark.parametrize("span", SPANS)
+@pytest.mark.parametrize("how", ["nulled", "dropped"])
+def test_no_pass_without_the_vehicle_being_passed(judged: Judged, how: str, span: str) -> None:
+    for run in RUNS:
+        case = Case(run, f"{how} {VBP}", span)
+        if (how, span) == ("dropped", "ever"):  # nothing in the log tells that there was anybody to pass
+            assert judged.said(case, SAFE_DISTANCE) == {("not_applicable", "not_triggered")}
+            continue
+        assert judged.said(case, SAFE_DISTANCE) == {("unknown", "null_value")}
+        assert {row["verdict"] for row in judged.of(case, "ukhc.r163.pull-out-separation")} == {"unknown"}
+        for row in judged.of(case, SPACE_VBP):
+            assert row["verdict"] != "pass" or not touches(row, SPANS[span]), row
+
+
+@pytest.mark.parametrize("span", SPANS)
+def test_a_vehicle_beside_the_road_is_not_being_passed(judged: Judged, span: str) -> None:
+    """The parked one has a position and it is off the lanes: known, so there is no overtake, or not one of it."""
+    for run in RUNS:
+        assert judged.said(Case(run, "moved VBP", span), SAFE_DISTANCE) == {("not_applicable", "not_triggered")}
+
+
+@pytest.mark.parametrize("span", [s for s in SPANS if s != "ever"])
+@pytest.mark.parametrize("what", [f"nulled {EGO}", f"dropped {EGO}", "hole"])
+def test_no_pass_of_what_the_ego_did_unseen(judged: Judged, what: str, span: str) -> None:
+    """Where the way out of the lane lies in the blind spot, it is not known when or whether it was safe."""
+    for run in RUNS:
+        case = Case(run, what, span)
+        assert "pass" not in {row["verdict"] for row in judged.of(case, SAFE_DISTANCE, "ukhc.overtake-zone")}
+        assert "fail" not in {row["verdict"] for row in judged.of(case, SAFE_DISTANCE, "ukhc.overtake-zone")}
+        assert "pass" not in {row["verdict"] for row in judged.of(case, "ukhc.r163.pull-out-separation")}
+        for row in judged.of(case, NO_COLLISION, "ukhc.r124.speed-limit", *SPACES_OV, SPACE_VBP):
+            within = (SPANS[span][0] + 1e-3, SPANS[span][1] - 1e-3)
+            assert row["verdict"] != "pass" or not touches(row, within), row
+        if span in {"0.3", "0.5", "2"}:
+            assert judged.said(case, SAFE_DISTANCE) == {("unknown", "null_value")}
+            assert {row["reason"] for row in judged.of(case, SAFE_DISTANCE)} == {
+                "the log does not show where the overtake began"
+            }
+
+
+@pytest.mark.parametrize("span", ["0.3", "0.5", "2", "5"])
+def test_a_hole_is_a_row_of_its_own(judged: Judged, span: str) -> None:
+    for run in RUNS:
+        for rule in (NO_COLLISION, "ukhc.r124.speed-limit"):
+            holes = [row for row in judged.of(Case(run, "hole", span), rule) if row["reason_code"] == "log_hole"]
+            assert holes
+            assert {row["verdict"] for row in holes} == {"unknown"}
+            for row in holes:
+                assert row["t_start_ns"] / 1e9 == pytest.approx(SPANS[span][0] - 0.1)
+                assert row["t_end_ns"] / 1e9 == pytest.approx(SPANS[span][1] + 0.1)
+
+
+@pytest.mark.parametrize("run", RUNS)
+def test_a_log_that_begins_too_late(judged: Judged, run: str) -> None:
+    for name in ("at t0", "from t0 on", "passing"):
+        verdicts = {row["verdict"] for row in judged.of(Case(run, "cut", name), SAFE_DISTANCE)}
+        assert verdicts == {"unknown"}, name
+    if run != "collision":  # which is off its lane for most of what is left, so that its registration is in doubt
+        rows = judged.of(Case(run, "cut", "before t0"), SAFE_DISTANCE)
+        whole = judged.of(Case(run, "nothing"), SAFE_DISTANCE)
+        assert [row["verdict"] for row in rows] == [row["verdict"] for row in whole]
+
+
+@pytest.mark.parametrize("run", RUNS)
+def test_a_log_that_ends_too_early(judged: Judged, run: str) -> None:
+    """t0 was seen, so its distance stands; what comes later is not claimed."""
+    whole = {row["profile"]: row["verdict"] for row in judged.of(Case(run, "nothing"), SAFE_DISTANCE)}
+    for name, span in ENDS.items():
+        found = {row["profile"]: row["verdict"] for row in judged.of(Case(run, "cut", name), SAFE_DISTANCE)}
+        assert found == {**whole, "observed": "unknown"}
+        for row in judged.of(Case(run, "cut", name), *SPACES_OV, SPACE_VBP, NO_COLLISION):
+            assert row["t_end_ns"] / 1e9 <= span[1] + 1e-6
+        cut_in = {row["verdict"] for row in judged.of(Case(run, "cut", name), "ukhc.r163.cut-in")}
+        assert cut_in <= {"unknown", "not_applicable"}
+
+
+@pytest.mark.parametrize("run", RUNS)
+def test_a_lost_lane(judged: Judged, run: str) -> None:
+    for case in (Case(run, "no running lane"), Case(run, "no running lane, no OV")):
+        assert judged.said(case, SAFE_DISTANCE) == {("unknown", "missing_registration")}
+        assert {row["verdict"] for row in judged.of(case, *SPACES_OV, "ukhc.r124.speed-limit")} == {"unknown"}
+    for case in (Case(run, "no overtaking lane"), Case(run, "no overtaking lane, no OV")):
+        assert {row["verdict"] for row in judged.of(case, SAFE_DISTANCE, "ukhc.r124.speed-limit")} == {"unknown"}
+        for row in judged.of(case, SAFE_DISTANCE):
+            assert "the ego is on a lane" in row["reason"] or "no lane beside the running lane" in row["reason"]
+
+
+@pytest.mark.parametrize("lost", ["lane ahead", "link ahead", "every link"])
+@pytest.mark.parametrize("run", RUNS)
+def test_a_missing_link_never_makes_the_road_longer(judged: Judged, run: str, lost: str) -> None:
+    """The OV is then met on its way onto what is left of the corridor; where nobody is, only as much as is left is known."""
+    whole = {row["profile"]: row for row in judged.of(Case(run, "nothing"), SAFE_DISTANCE)}
+    for row in judged.of(Case(run, f"no {lost}"), SAFE_DISTANCE):
+        if row["observed"] is not None:
+            assert row["observed"] <= whole[row["profile"]]["observed"] + 0.01
+            assert row["observed"] >= whole[row["profile"]]["observed"] - 5
+    if lost == "every link":
+        for row in judged.of(Case(run, f"no {lost}, no OV"), SAFE_DISTANCE):
+            assert row["verdict"] == "unknown"
+            assert row["profile"] == "observed" or row["reason_code"] == "only_a_bound"
+
+
+@pytest.mark.parametrize("run", RUNS)
+def test_without_a_map_or_a_side_of_the_road(judged: Judged, run: str) -> None:
+    for lost, code in (("map", "missing_map"), ("handedness", "missing_handedness")):
+        for case in (Case(run, f"no {lost}"), Case(run, f"no {lost}, no OV")):
+            for rule in (SAFE_DISTANCE, SPACE_VBP, "ukhc.overtake-zone", *SPACES_OV):
+                assert judged.said(case, rule) == {("unknown", code)}
+    assert judged.said(Case(run, "no map"), "ukhc.r124.speed-limit") == {("unknown", "missing_map")}
+    assert judged.said(Case(run, "no map"), "ukhc.r145.off-road") == {("unknown", "missing_map")}
+    assert judged.said(Case(run, "no map"), NO_COLLISION) == {("pass", "kept")}  # boxes need no map
+
+
+@pytest.mark.parametrize("run", RUNS)
+@pytest.mark.parametrize("range_m", [30, 60, 200])
+def test_a_finite_sensor_range(judged: Judged, run: str, range_m: int) -> None:
+    """What came into range later was not seen before; what left it may still be there."""
+    case = Case(run, f"range {range_m}")
+    whole = {row["profile"]: row for row in judged.of(Case(run, "nothing"), SAFE_DISTANCE)}
+    for row in judged.of(case, SAFE_DISTANCE):
+        seen = whole[row["profile"]]["observed"] is not None and whole[row["profile"]]["observed"] + 4.8 < range_m
+        if seen:
+            assert row["verdict"] == whole[row["profile"]]["verdict"]
+        else:
+            assert row["verdict"] == "unknown"
+            assert row["observed"] is None or row["observed"] < range_m
+    lost = [row for row in judged.of(case, NO_COLLISION) if row["verdict"] == "unknown"]
+    if range_m == 30 and run != "collision":
+        assert {row["object_id"] for row in lost} == {VBP, OV}
+    assert {row["reason_code"] for row in lost} <= {"lost_near_ego", "lost_in_range", "appeared_near_ego"}
+
+
+def test_a_log_without_indicators_is_named_and_counted(judged: Judged) -> None:
+    asked = {"ukhc.r103.signal-before", "ukhc.r103.signal-means-go", "ukhc.exit-sign-signal", "ukhc.signal-then-leaves"}
+    for run in RUNS:
+        for rule in sorted(asked):
+            (row,) = judged.of(Case(run, "nothing"), rule)
+            assert (row["verdict"], row["reason_code"]) == ("unknown", "missing_indicator")
+            assert row["reason"] == "the log has no indicators of the ego"
