@@ -12,6 +12,7 @@ import shapely
 
 from drivelint.maps import load_map, read_source
 from drivelint.maps.tables import schemas
+from drivelint.store import connect, insert
 from tests.maps.naive import NaiveMap
 from tests.maps.xodr import checks, lanelets, points, rows
 from tests.shared_data import shared
@@ -174,6 +175,15 @@ def test_marks_cover_both_sides_all_along(file: str) -> None:
     assert covered == pytest.approx(
         {(name, side): length for name, length in lengths.items() for side in ("left", "right")}, abs=1e-5
     )
+
+
+def test_every_table_goes_into_the_database_as_it_is() -> None:
+    environment = read("overtake_case_study/t_junction.xodr")
+    con = connect(threads=1)
+    for name, table in environment.tables.items():
+        insert(con, name, table)
+        counted = con.execute(f"SELECT count(*), count(DISTINCT environment_id) FROM {name}").fetchone()
+        assert counted == (len(table), min(len(table), 1))
 
 
 def test_same_file_same_tables() -> None:
