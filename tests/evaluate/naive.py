@@ -102,7 +102,9 @@ def invariant(steps: list[Step], gap: int, period: int) -> list[Outcome]:
 
 def _episode(steps: list[Step]) -> Outcome:
     verdict, code = judge(steps)
-    return Outcome(steps[0].t, steps[-1].t, verdict, code, worst(steps), len(steps), sum(holds(s) is not None for s in steps))
+    return Outcome(
+        steps[0].t, steps[-1].t, verdict, code, worst(steps), len(steps), sum(holds(s) is not None for s in steps)
+    )
 
 
 def _hole(before: Step, after: Step, steps: list[Step], gap: int, period: int) -> list[Outcome]:
@@ -147,7 +149,9 @@ def _reference(live: list[Step], a: int, b: int, *, eventually: bool, problem: s
     if not live and not problem:
         return Outcome(a, b, "not_applicable", "outside_conditions", None, 0, 0)
     verdict, code = judge(live, eventually=eventually, problem=problem)
-    return Outcome(a, b, verdict, code, worst(live, eventually=eventually), len(live), sum(holds(s) is not None for s in live))
+    return Outcome(
+        a, b, verdict, code, worst(live, eventually=eventually), len(live), sum(holds(s) is not None for s in live)
+    )
 
 
 def stretches(steps: list[Step], merge: int) -> list[tuple[int, int]]:

@@ -38,7 +38,9 @@ def text(header: dict[str, str], sections: dict[str, str], tables: str = "") -> 
     return "".join(parts)
 
 
-def write(folder: Path, header: dict[str, str], sections: dict[str, str], *, name: str = "rule", tables: str = "") -> Rule:
+def write(
+    folder: Path, header: dict[str, str], sections: dict[str, str], *, name: str = "rule", tables: str = ""
+) -> Rule:
     """Write `pack/<name>.sql` under `folder` and read it back."""
     pack = folder / "pack"
     pack.mkdir(exist_ok=True)
@@ -47,7 +49,9 @@ def write(folder: Path, header: dict[str, str], sections: dict[str, str], *, nam
     return read_rule(file)
 
 
-def verdicts(rule: Rule, given: dict[str, Any], *, params: dict[str, Any] | None = None, missing: tuple[str, ...] = ()) -> list[Row]:
+def verdicts(
+    rule: Rule, given: dict[str, Any], *, params: dict[str, Any] | None = None, missing: tuple[str, ...] = ()
+) -> list[Row]:
     """Return the verdict rows of a scene."""
     return judge(rule, Case(name="scene", given=given, expect="pass", params=params or {}, missing=missing))[0]
 

@@ -46,14 +46,20 @@ def database(drives: tuple[str, ...], *, threads: int, order: str) -> duckdb.Duc
         FROM drives, range({N_STEPS}) r(k)"""
     )
     con.execute(f"INSERT INTO step BY NAME SELECT *, 0.0 AS travel_m FROM s ORDER BY {order}")
-    con.execute("INSERT INTO clock SELECT drive_id, 'e', 50000000, 125000000, min(t_ns), max(t_ns) FROM s GROUP BY drive_id")
-    con.execute(f"INSERT INTO ego_state BY NAME SELECT drive_id, ego_id, t_ns, k AS x_m, CASE WHEN k % 97 > 3 THEN 'left' END AS indicator FROM s ORDER BY {order}")
+    con.execute(
+        "INSERT INTO clock SELECT drive_id, 'e', 50000000, 125000000, min(t_ns), max(t_ns) FROM s GROUP BY drive_id"
+    )
+    con.execute(
+        f"INSERT INTO ego_state BY NAME SELECT drive_id, ego_id, t_ns, k AS x_m, CASE WHEN k % 97 > 3 THEN 'left' END AS indicator FROM s ORDER BY {order}"
+    )
     con.execute(
         f"""INSERT INTO pair BY NAME
         SELECT drive_id, ego_id, t_ns, 'o' || o AS object_id, CASE WHEN k = 500 + o AND o % 7 = 0 THEN NULL ELSE round(2 + 1.6 * sin(k / 50.0 + o), 1) END AS clearance_m
         FROM s, range({N_OBJECTS}) q(o) WHERE o % 5 > 0 OR k // 1000 % 2 = 0 ORDER BY {order}, o * {1 if order == "k" else -1}"""
     )
-    con.execute(f"INSERT INTO declared_event BY NAME SELECT drive_id, 'e' AS actor_id, t_ns, 'go' AS event FROM s WHERE k % 100 = 50 ORDER BY {order}")
+    con.execute(
+        f"INSERT INTO declared_event BY NAME SELECT drive_id, 'e' AS actor_id, t_ns, 'go' AS event FROM s WHERE k % 100 = 50 ORDER BY {order}"
+    )
     return con
 
 
@@ -77,12 +83,16 @@ def test_the_scene_has_every_kind_of_verdict(crowd: dict[str, list[tuple[Any, ..
     assert len(crowd["finding"]) > 300
 
 
-def test_order_of_rows_and_number_of_threads_do_not_matter(crowd: dict[str, list[tuple[Any, ...]]], rules: list[Rule]) -> None:
+def test_order_of_rows_and_number_of_threads_do_not_matter(
+    crowd: dict[str, list[tuple[Any, ...]]], rules: list[Rule]
+) -> None:
     with database(DRIVES, threads=1, order="hash(k)") as con:
         assert result(con, rules[::-1]) == crowd
 
 
-def test_a_drive_alone_has_the_same_rows_as_in_a_crowd(crowd: dict[str, list[tuple[Any, ...]]], rules: list[Rule]) -> None:
+def test_a_drive_alone_has_the_same_rows_as_in_a_crowd(
+    crowd: dict[str, list[tuple[Any, ...]]], rules: list[Rule]
+) -> None:
     for drive in DRIVES:
         with database((drive,), threads=2, order="-k") as con:
             alone = result(con, rules)

@@ -19,7 +19,14 @@ GAP_SQL = "SELECT drive_id, ego_id, t_ns, object_id, clearance_m AS observed, 0 
 
 
 def speeds(values: list[Any], **more: Any) -> dict[str, Any]:
-    return {"ego_state": {"t_s": [i / 10 for i in range(len(values))], "speed_mps": values, "x_m": list(range(len(values))), **more}}
+    return {
+        "ego_state": {
+            "t_s": [i / 10 for i in range(len(values))],
+            "speed_mps": values,
+            "x_m": list(range(len(values))),
+            **more,
+        }
+    }
 
 
 @pytest.mark.parametrize(
@@ -27,7 +34,9 @@ def speeds(values: list[Any], **more: Any) -> dict[str, Any]:
     [(">", 10.0, "fail"), (">=", 10.0, "pass"), ("<", 10.0, "fail"), ("<=", 10.0, "pass"), (">", 10.001, "pass"), ("<", 9.999, "pass"),
      (">", 9.0, "fail"), (">=", 9.0, "fail"), ("<", 11.0, "fail"), ("<=", 11.0, "fail")],
 )  # fmt: skip
-def test_the_operator_decides_and_equality_fails_a_strict_one(tmp_path: Path, sense: str, value: float, verdict: str) -> None:
+def test_the_operator_decides_and_equality_fails_a_strict_one(
+    tmp_path: Path, sense: str, value: float, verdict: str
+) -> None:
     rule = write(tmp_path, INVARIANT | {"sense": f'"{sense}"', "unit": '"m/s"'} | SPEED, {"condition": SPEED_SQL})
     (row,) = verdicts(rule, speeds([value] * 3))
     assert row["verdict"] == verdict
@@ -75,7 +84,9 @@ def test_infinity_is_stored_as_null(tmp_path: Path) -> None:
         (["on", None, "on", None], ("unknown", "null_value"), 0.1),
     ],
 )
-def test_holds_takes_the_earliest_deciding_step(tmp_path: Path, values: list[Any], expected: tuple[str, str], worst_s: float) -> None:
+def test_holds_takes_the_earliest_deciding_step(
+    tmp_path: Path, values: list[Any], expected: tuple[str, str], worst_s: float
+) -> None:
     sql = "SELECT drive_id, ego_id, t_ns, indicator = 'on' AS holds FROM ego_state"
     rule = write(tmp_path, INVARIANT | HOLDS | SPEED, {"condition": sql})
     (row,) = verdicts(rule, {"ego_state": {"t_s": [i / 10 for i in range(len(values))], "indicator": values}})
@@ -98,7 +109,9 @@ def test_holds_takes_the_earliest_deciding_step(tmp_path: Path, values: list[Any
         (">", None, True, ("unknown", "null_value")),
     ],
 )
-def test_a_lower_bound_proves_what_it_can(tmp_path: Path, sense: str, value: Any, bound: Any, expected: tuple[str, str]) -> None:
+def test_a_lower_bound_proves_what_it_can(
+    tmp_path: Path, sense: str, value: Any, bound: Any, expected: tuple[str, str]
+) -> None:
     sql = SPEED_SQL.replace(" FROM", ", with_direction AS at_least FROM")
     rule = write(tmp_path, INVARIANT | {"sense": f'"{sense}"', "unit": '"m/s"'} | SPEED, {"condition": sql})
     (row,) = verdicts(rule, speeds([value], with_direction=bound))
@@ -140,10 +153,15 @@ def test_a_doubled_row_cannot_stand_in_for_a_lost_one(tmp_path: Path) -> None:
     ],
 )
 @pytest.mark.parametrize("own_grid", [False, True])
-def test_applies_is_three_valued(tmp_path: Path, applies: list[Any], expected: list[tuple[str, str, int]], own_grid: bool) -> None:
+def test_applies_is_three_valued(
+    tmp_path: Path, applies: list[Any], expected: list[tuple[str, str, int]], own_grid: bool
+) -> None:
     values = [5, 12, 5] if expected[0][0] == "fail" else [12 if a is not False else 5 for a in applies]
     if own_grid:
-        sections = {"applies": "SELECT drive_id, ego_id, t_ns, in_junction AS applies FROM ego_state", "condition": SPEED_SQL}
+        sections = {
+            "applies": "SELECT drive_id, ego_id, t_ns, in_junction AS applies FROM ego_state",
+            "condition": SPEED_SQL,
+        }
     else:
         sections = {"condition": SPEED_SQL.replace(" FROM", ", in_junction AS applies FROM")}
     rule = write(tmp_path, INVARIANT | MEASURED | SPEED, sections)
@@ -184,7 +202,10 @@ def test_a_hole_splits_and_is_a_row_of_its_own(tmp_path: Path) -> None:
 def test_no_hole_row_where_the_rule_does_not_reach_the_hole(tmp_path: Path) -> None:
     sql = SPEED_SQL.replace(" FROM", ", in_junction AS applies FROM")
     rule = write(tmp_path, INVARIANT | MEASURED | SPEED, {"condition": sql})
-    away = [HOLE["ego_state"][0] | {"in_junction": {"else": False, "0..0.3": True}}, HOLE["ego_state"][1] | {"in_junction": {"else": False, "3.8..4": True}}]
+    away = [
+        HOLE["ego_state"][0] | {"in_junction": {"else": False, "0..0.3": True}},
+        HOLE["ego_state"][1] | {"in_junction": {"else": False, "3.8..4": True}},
+    ]
     assert brief(verdicts(rule, {"ego_state": away})) == [("pass", "kept"), ("pass", "kept")]
     near = [away[0], HOLE["ego_state"][1] | {"in_junction": True}]
     assert brief(verdicts(rule, {"ego_state": near})) == [("pass", "kept"), ("unknown", "log_hole"), ("pass", "kept")]
@@ -192,21 +213,32 @@ def test_no_hole_row_where_the_rule_does_not_reach_the_hole(tmp_path: Path) -> N
 
 def pairs(o1: list[Any], o2: list[Any]) -> dict[str, Any]:
     times = [i / 10 for i in range(len(o1))]
-    blocks = [{"t_s": t, "object_id": o, "clearance_m": c} for o, cs in (("1", o1), ("2", o2)) for t, c in zip(times, cs, strict=True) if c != "absent"]
+    blocks = [
+        {"t_s": t, "object_id": o, "clearance_m": c}
+        for o, cs in (("1", o1), ("2", o2))
+        for t, c in zip(times, cs, strict=True)
+        if c != "absent"
+    ]
     return {"step": {"t_s": times}, "pair": blocks}
 
 
 def test_objects_are_judged_each_on_their_own_steps(tmp_path: Path) -> None:
     rule = write(tmp_path, INVARIANT | MEASURED | GAP, {"condition": GAP_SQL})
     rows = verdicts(rule, pairs([3, 2, 3, 3], ["absent", 1, 0, None]))
-    assert [(r["object_id"], r["verdict"], r["n_expected"], r["n_judged"]) for r in rows] == [("1", "pass", 4, 4), ("2", "fail", 3, 2)]
+    assert [(r["object_id"], r["verdict"], r["n_expected"], r["n_judged"]) for r in rows] == [
+        ("1", "pass", 4, 4),
+        ("2", "fail", 3, 2),
+    ]
     assert verdicts(rule, {"step": {"t_s": "0..1 by 0.1"}})[0]["reason_code"] == "not_triggered"
 
 
 def test_a_pair_that_the_condition_leaves_out_is_unknown(tmp_path: Path) -> None:
     rule = write(tmp_path, INVARIANT | MEASURED | GAP, {"condition": GAP_SQL + " WHERE object_id = '1'"})
     rows = verdicts(rule, pairs([3, 3], [3, 3]))
-    assert [(r["object_id"], r["verdict"], r["reason_code"]) for r in rows] == [("1", "pass", "kept"), ("2", "unknown", "missing_step")]
+    assert [(r["object_id"], r["verdict"], r["reason_code"]) for r in rows] == [
+        ("1", "pass", "kept"),
+        ("2", "unknown", "missing_step"),
+    ]
 
 
 def test_lost_objects_are_unknown_from_there_on(tmp_path: Path) -> None:
@@ -217,7 +249,12 @@ def test_lost_objects_are_unknown_from_there_on(tmp_path: Path) -> None:
     assert [(r["object_id"], r["verdict"], r["reason_code"]) for r in rows] == [
         ("1", "pass", "kept"), ("2", "pass", "kept"), ("2", "unknown", "lost_near_ego"),
     ]  # fmt: skip
-    assert (rows[2]["t_start_ns"], rows[2]["t_end_ns"], rows[2]["n_expected"], rows[2]["n_judged"]) == (200_000_000, 500_000_000, 3, 0)
+    assert (rows[2]["t_start_ns"], rows[2]["t_end_ns"], rows[2]["n_expected"], rows[2]["n_judged"]) == (
+        200_000_000,
+        500_000_000,
+        3,
+        0,
+    )
 
 
 def test_own_grid_labels_episodes(tmp_path: Path) -> None:
@@ -237,7 +274,11 @@ def test_profiles_are_judged_each_and_a_lost_one_is_unknown(tmp_path: Path) -> N
     sql = """SELECT e.drive_id, e.ego_id, e.t_ns, p.profile, e.speed_mps AS observed, p.pull_out_headroom_m AS required
         FROM ego_state e CROSS JOIN profile p WHERE p.selected AND p.pull_out_headroom_m IS NOT NULL"""
     rule = write(tmp_path, INVARIANT | MEASURED | {"reads": '["ego_state", "profile"]'}, {"condition": sql})
-    profile = {"profile": ["easy", "hard", "lost", "other"], "pull_out_headroom_m": [5, 15, None, 5], "selected": [True, True, True, False]}
+    profile = {
+        "profile": ["easy", "hard", "lost", "other"],
+        "pull_out_headroom_m": [5, 15, None, 5],
+        "selected": [True, True, True, False],
+    }
     rows = verdicts(rule, speeds([12, 12]) | {"profile": profile})
     assert [(r["profile"], r["verdict"], r["reason_code"]) for r in rows] == [
         ("easy", "pass", "kept"), ("hard", "fail", "violated"), ("lost", "unknown", "missing_step"),
@@ -246,10 +287,16 @@ def test_profiles_are_judged_each_and_a_lost_one_is_unknown(tmp_path: Path) -> N
 
 @pytest.mark.parametrize(
     ("road", "expected"),
-    [(["town", "town", "town"], [("pass", "kept")]), (["rural"] * 3, [("not_applicable", "not_triggered")]), (["town", None, "town"], [("unknown", "road_type_unknown")])],
+    [
+        (["town", "town", "town"], [("pass", "kept")]),
+        (["rural"] * 3, [("not_applicable", "not_triggered")]),
+        (["town", None, "town"], [("unknown", "road_type_unknown")]),
+    ],
 )
 def test_road_types(tmp_path: Path, road: list[Any], expected: list[tuple[str, str]]) -> None:
-    rule = write(tmp_path, INVARIANT | MEASURED | SPEED, {"condition": SPEED_SQL}, tables='[applies]\nroad_types = ["town"]')
+    rule = write(
+        tmp_path, INVARIANT | MEASURED | SPEED, {"condition": SPEED_SQL}, tables='[applies]\nroad_types = ["town"]'
+    )
     assert brief(verdicts(rule, speeds([12, 12, 12], road_type=road))) == expected
 
 
@@ -270,8 +317,13 @@ def test_failing_stretches_are_findings_and_close_ones_are_one(tmp_path: Path) -
     for i in (3, 4, 8, 30):
         values[i] = 9
     loose = write(tmp_path, INVARIANT | MEASURED | SPEED | {"merge_gap_s": "0"}, {"condition": SPEED_SQL}, name="loose")
-    joined = write(tmp_path, INVARIANT | MEASURED | SPEED | {"merge_gap_s": "1"}, {"condition": SPEED_SQL}, name="joined")
-    spans = [[(f["t_start_ns"] // 10**8, f["t_end_ns"] // 10**8, f["occurrence"]) for f in findings(r, speeds(values))] for r in (loose, joined)]
+    joined = write(
+        tmp_path, INVARIANT | MEASURED | SPEED | {"merge_gap_s": "1"}, {"condition": SPEED_SQL}, name="joined"
+    )
+    spans = [
+        [(f["t_start_ns"] // 10**8, f["t_end_ns"] // 10**8, f["occurrence"]) for f in findings(r, speeds(values))]
+        for r in (loose, joined)
+    ]
     assert spans == [[(3, 4, 0), (8, 8, 1), (30, 30, 2)], [(3, 8, 0), (30, 30, 1)]]
     ids = [f["finding_id"] for f in findings(loose, speeds(values))]
     assert len(set(ids)) == 3
@@ -279,7 +331,11 @@ def test_failing_stretches_are_findings_and_close_ones_are_one(tmp_path: Path) -
 
 
 def test_near_misses_and_requirements(tmp_path: Path) -> None:
-    rule = write(tmp_path, INVARIANT | MEASURED | SPEED | {"near_margin": "1.0", "requires": '["indicator", "map"]'}, {"condition": SPEED_SQL})
+    rule = write(
+        tmp_path,
+        INVARIANT | MEASURED | SPEED | {"near_margin": "1.0", "requires": '["indicator", "map"]'},
+        {"condition": SPEED_SQL},
+    )
     assert verdicts(rule, speeds([10.5]))[0]["near_miss"] is True
     assert verdicts(rule, speeds([11.0]))[0]["near_miss"] is False
     assert verdicts(rule, speeds([9.9]))[0]["near_miss"] is False
@@ -288,7 +344,9 @@ def test_near_misses_and_requirements(tmp_path: Path) -> None:
 
 
 def test_sql_that_raises_is_an_error_of_that_rule(tmp_path: Path) -> None:
-    rule = write(tmp_path, INVARIANT | MEASURED | SPEED, {"condition": SPEED_SQL.replace("speed_mps", "indicator::DOUBLE")})
+    rule = write(
+        tmp_path, INVARIANT | MEASURED | SPEED, {"condition": SPEED_SQL.replace("speed_mps", "indicator::DOUBLE")}
+    )
     (row,) = verdicts(rule, speeds([12], indicator="fast"))
     assert (row["verdict"], row["reason_code"]) == ("error", "rule_error")
     assert "pack.rule" in row["reason"]
@@ -302,3 +360,16 @@ def test_the_authors_reason_is_kept_where_it_decides(tmp_path: Path) -> None:
     assert (row["verdict"], row["reason_code"], row["reason"]) == ("unknown", "z", "c")
     (row,) = verdicts(rule, speeds([12, 11], indicator=["a", "b"], road_type=["x", None]))
     assert (row["verdict"], row["reason_code"], row["reason"]) == ("pass", "kept", "b")
+
+
+def test_unlimited_on_both_sides_has_no_margin(tmp_path: Path) -> None:
+    sql = "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, speed_mps AS required FROM ego_state"
+    header = INVARIANT | {"sense": '">="', "unit": '"m"', "near_margin": "1.0"} | SPEED
+    (row,) = verdicts(write(tmp_path, header, {"condition": sql}), speeds([math.inf]))
+    assert (row["verdict"], row["margin"], row["near_miss"]) == ("pass", None, False)
+
+
+def test_times_off_the_grid_are_refused_also_where_the_start_is_exempt(tmp_path: Path) -> None:
+    sections = {"applies": "SELECT drive_id, ego_id, t_ns + 1 AS t_ns FROM ego_state", "condition": SPEED_SQL}
+    rule = write(tmp_path, INVARIANT | MEASURED | SPEED | {"exempt_after_s": "0.2"}, sections)
+    assert verdicts(rule, speeds([12, 12]))[0]["verdict"] == "error"

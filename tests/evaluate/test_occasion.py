@@ -6,7 +6,18 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.evaluate.packs import AFTER, BEFORE, EXECUTION, HOLDS, MEASURED, PLACE_BEFORE, brief, findings, verdicts, write
+from tests.evaluate.packs import (
+    AFTER,
+    BEFORE,
+    EXECUTION,
+    HOLDS,
+    MEASURED,
+    PLACE_BEFORE,
+    brief,
+    findings,
+    verdicts,
+    write,
+)
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -20,7 +31,10 @@ EVENTUALLY = {"quantifier": '"eventually"'}
 
 
 def scene(signal: Any, at: Any, times: Any = "0..4 by 0.1", **more: Any) -> dict[str, Any]:
-    return {"ego_state": {"t_s": times, "indicator": signal, "speed_mps": 12} | more, "exit_taken": {"t_s": at, "side": "left"}}
+    return {
+        "ego_state": {"t_s": times, "indicator": signal, "speed_mps": 12} | more,
+        "exit_taken": {"t_s": at, "side": "left"},
+    }
 
 
 # ---- executions
@@ -54,15 +68,25 @@ def test_execution_without_a_value(tmp_path: Path, speed: Any, at: Any, expected
     assert brief(verdicts(rule, given)) == [expected]
 
 
-@pytest.mark.parametrize(("applies", "expected"), [(False, ("not_applicable", "outside_conditions")), (None, ("unknown", "applies_unknown"))])
+@pytest.mark.parametrize(
+    ("applies", "expected"), [(False, ("not_applicable", "outside_conditions")), (None, ("unknown", "applies_unknown"))]
+)
 def test_execution_may_not_apply(tmp_path: Path, applies: Any, expected: tuple[str, str]) -> None:
-    rule = write(tmp_path, EXECUTION | MEASURED | READS, {"reference": REFERENCE, "condition": SPEED.replace(" FROM", ", in_junction AS applies FROM")})
+    rule = write(
+        tmp_path,
+        EXECUTION | MEASURED | READS,
+        {"reference": REFERENCE, "condition": SPEED.replace(" FROM", ", in_junction AS applies FROM")},
+    )
     assert brief(verdicts(rule, scene("off", 2.0, in_junction=applies))) == [expected]
 
 
 @pytest.mark.parametrize(
     ("road", "expected"),
-    [("town", ("pass", "kept")), ("rural", ("not_applicable", "outside_conditions")), (None, ("unknown", "road_type_unknown"))],
+    [
+        ("town", ("pass", "kept")),
+        ("rural", ("not_applicable", "outside_conditions")),
+        (None, ("unknown", "road_type_unknown")),
+    ],
 )
 def test_road_type_at_the_reference_point(tmp_path: Path, road: Any, expected: tuple[str, str]) -> None:
     sections = {"reference": REFERENCE, "condition": SPEED}
@@ -71,7 +95,10 @@ def test_road_type_at_the_reference_point(tmp_path: Path, road: Any, expected: t
 
 
 def test_the_references_object_goes_into_the_row(tmp_path: Path) -> None:
-    sections = {"reference": "SELECT drive_id, ego_id, t_ns, lanelet_id AS object_id FROM exit_taken", "condition": SPEED}
+    sections = {
+        "reference": "SELECT drive_id, ego_id, t_ns, lanelet_id AS object_id FROM exit_taken",
+        "condition": SPEED,
+    }
     rule = write(tmp_path, EXECUTION | MEASURED | READS, sections)
     given = scene("off", 2.0)
     given["exit_taken"] = {"t_s": [2.0, 2.0], "lanelet_id": ["b", "a"]}
@@ -98,7 +125,9 @@ PAIR_SQL = "SELECT drive_id, ego_id, t_ns, object_id, clearance_m AS observed, 1
         ([], ["not_applicable"], "pass", "fail"),
     ],
 )
-def test_combination_over_objects(tmp_path: Path, clearances: list[Any], each: list[str], every: str, some: str) -> None:
+def test_combination_over_objects(
+    tmp_path: Path, clearances: list[Any], each: list[str], every: str, some: str
+) -> None:
     got = []
     given: dict[str, Any] = {"step": {"t_s": [0, 1, 2]}, "exit_taken": {"t_s": 1.0}}
     given["pair"] = [{"t_s": 1.0, "object_id": str(i), "clearance_m": c} for i, c in enumerate(clearances)]
@@ -110,14 +139,22 @@ def test_combination_over_objects(tmp_path: Path, clearances: list[Any], each: l
 
 
 def test_nobody_there_is_not_known_beyond_sensor_range(tmp_path: Path) -> None:
-    given = {"step": {"t_s": [0, 1, 2]}, "exit_taken": {"t_s": 1.0}, "data_log": {"sensor_range_m": 80.0, "sha256": "x"}}
+    given = {
+        "step": {"t_s": [0, 1, 2]},
+        "exit_taken": {"t_s": 1.0},
+        "data_log": {"sensor_range_m": 80.0, "sha256": "x"},
+    }
     header = EXECUTION | MEASURED | PAIR | {"combine": '"all"'}
     rule = write(tmp_path, header, {"reference": REFERENCE, "condition": PAIR_SQL})
     assert brief(verdicts(rule, given)) == [("unknown", "beyond_sensor_range")]
 
 
 def test_combination_names_the_deciding_object(tmp_path: Path) -> None:
-    given = {"step": {"t_s": [0, 1, 2]}, "exit_taken": {"t_s": 1.0}, "pair": {"t_s": 1.0, "object_id": ["a", "b", "c"], "clearance_m": [5, 2, 3]}}
+    given = {
+        "step": {"t_s": [0, 1, 2]},
+        "exit_taken": {"t_s": 1.0},
+        "pair": {"t_s": 1.0, "object_id": ["a", "b", "c"], "clearance_m": [5, 2, 3]},
+    }
     for combine, who in (("all", "b"), ("any", "a")):
         header = EXECUTION | MEASURED | PAIR | {"combine": f'"{combine}"'}
         rule = write(tmp_path, header, {"reference": REFERENCE, "condition": PAIR_SQL}, name=combine)
@@ -127,7 +164,11 @@ def test_combination_names_the_deciding_object(tmp_path: Path) -> None:
 
 def test_two_rows_for_one_object_are_refused_also_where_objects_are_combined(tmp_path: Path) -> None:
     sql = PAIR_SQL + " UNION ALL SELECT drive_id, ego_id, t_ns, 'a', 9, 1 FROM pair WHERE object_id = 'a'"
-    given = {"step": {"t_s": [0, 1, 2]}, "exit_taken": {"t_s": 1.0}, "pair": {"t_s": 1.0, "object_id": ["a", "b"], "clearance_m": 5}}
+    given = {
+        "step": {"t_s": [0, 1, 2]},
+        "exit_taken": {"t_s": 1.0},
+        "pair": {"t_s": 1.0, "object_id": ["a", "b"], "clearance_m": 5},
+    }
     for combine in ("each", "all"):
         header = EXECUTION | MEASURED | PAIR | {"combine": f'"{combine}"'}
         rule = write(tmp_path, header, {"reference": REFERENCE, "condition": sql}, name=combine)
@@ -152,12 +193,18 @@ def test_two_rows_for_one_object_are_refused_also_where_objects_are_combined(tmp
         ("left", 0.8, ("pass", "kept"), (9, 9)),
     ],
 )
-def test_temporal_precondition(tmp_path: Path, signal: Any, at: float, expected: tuple[str, str], judged: tuple[int, int]) -> None:
+def test_temporal_precondition(
+    tmp_path: Path, signal: Any, at: float, expected: tuple[str, str], judged: tuple[int, int]
+) -> None:
     rule = write(tmp_path, BEFORE | HOLDS | READS, {"reference": REFERENCE, "condition": SIGNAL})
     (row,) = verdicts(rule, scene(signal, at))
     assert brief([row]) == [expected]
     assert (row["n_expected"], row["n_judged"]) == judged
-    assert (row["t_start_ns"], row["t_end_ns"], row["t_ref_ns"]) == (round((at - 1) * 1e9), round(at * 1e9), round(at * 1e9))
+    assert (row["t_start_ns"], row["t_end_ns"], row["t_ref_ns"]) == (
+        round((at - 1) * 1e9),
+        round(at * 1e9),
+        round(at * 1e9),
+    )
 
 
 @pytest.mark.parametrize(
@@ -171,7 +218,9 @@ def test_temporal_precondition(tmp_path: Path, signal: Any, at: float, expected:
         ({"else": "off", "3.9": "left"}, 3.5, ("pass", "kept")),
     ],
 )
-def test_eventually_in_a_temporal_postcondition(tmp_path: Path, signal: Any, at: float, expected: tuple[str, str]) -> None:
+def test_eventually_in_a_temporal_postcondition(
+    tmp_path: Path, signal: Any, at: float, expected: tuple[str, str]
+) -> None:
     rule = write(tmp_path, AFTER | HOLDS | READS | EVENTUALLY, {"reference": REFERENCE, "condition": SIGNAL})
     assert brief(verdicts(rule, scene(signal, at))) == [expected]
     assert len(findings(rule, scene(signal, at))) == (expected[0] == "fail")
@@ -211,7 +260,12 @@ def test_a_window_wholly_outside_the_log(tmp_path: Path) -> None:
 
 def test_the_window_may_be_a_parameter(tmp_path: Path) -> None:
     params = '[params.ahead_s]\ndefault = 1\nunit = "s"\nwhy = "a test"'
-    rule = write(tmp_path, BEFORE | HOLDS | READS | {"window_s": '"ahead_s"'}, {"reference": REFERENCE, "condition": SIGNAL}, tables=params)
+    rule = write(
+        tmp_path,
+        BEFORE | HOLDS | READS | {"window_s": '"ahead_s"'},
+        {"reference": REFERENCE, "condition": SIGNAL},
+        tables=params,
+    )
     given = scene({"else": "left", "0.5": "off"}, 2.0)
     assert brief(verdicts(rule, given)) == [("pass", "kept")]
     assert brief(verdicts(rule, given, params={"ahead_s": 1.5})) == [("fail", "violated")]
@@ -244,7 +298,9 @@ PLACE_REFERENCE = "SELECT drive_id, ego_id, t_ns, side, t_sign_ns, lanelet_id FR
     ],
 )
 def test_physical_precondition(tmp_path: Path, signal: Any, sign: Any, lanelet: str, expected: tuple[str, str]) -> None:
-    rule = write(tmp_path, PLACE_BEFORE | HOLDS | READS, {"reference": PLACE_REFERENCE, "anchor": ANCHOR, "condition": SIGNAL})
+    rule = write(
+        tmp_path, PLACE_BEFORE | HOLDS | READS, {"reference": PLACE_REFERENCE, "anchor": ANCHOR, "condition": SIGNAL}
+    )
     given = scene(signal, 3.0)
     given["exit_taken"] |= {"t_sign_s": sign, "lanelet_id": lanelet}
     assert brief(verdicts(rule, given)) == [expected]
@@ -252,35 +308,58 @@ def test_physical_precondition(tmp_path: Path, signal: Any, sign: Any, lanelet: 
 
 @pytest.mark.parametrize(
     ("first", "second", "always", "eventually"),
-    [("left", "left", "pass", "pass"), ("left", "off", "fail", "pass"), ("off", "off", "fail", "fail"), ("left", None, "unknown", "pass"), ("off", None, "fail", "unknown")],
+    [
+        ("left", "left", "pass", "pass"),
+        ("left", "off", "fail", "pass"),
+        ("off", "off", "fail", "fail"),
+        ("left", None, "unknown", "pass"),
+        ("off", None, "fail", "unknown"),
+    ],
 )
-def test_several_anchors_go_by_the_quantifier(tmp_path: Path, first: Any, second: Any, always: str, eventually: str) -> None:
+def test_several_anchors_go_by_the_quantifier(
+    tmp_path: Path, first: Any, second: Any, always: str, eventually: str
+) -> None:
     anchor = "SELECT ref_id, unnest([1000000000, 2000000000]) AS t_ns FROM reference"
     sections = {"reference": PLACE_REFERENCE, "anchor": anchor, "condition": SIGNAL}
     given = scene({"else": "off", "1": first, "2": second}, 3.0)
     got = []
     for quantifier in ("always", "eventually"):
-        rule = write(tmp_path, PLACE_BEFORE | HOLDS | READS | {"quantifier": f'"{quantifier}"'}, sections, name=quantifier)
+        rule = write(
+            tmp_path, PLACE_BEFORE | HOLDS | READS | {"quantifier": f'"{quantifier}"'}, sections, name=quantifier
+        )
         (row,) = verdicts(rule, given)
         got.append(row["verdict"])
     assert got == [always, eventually]
 
 
 def test_references_of_two_drives_do_not_mix(tmp_path: Path) -> None:
-    rule = write(tmp_path, PLACE_BEFORE | HOLDS | READS, {"reference": PLACE_REFERENCE, "anchor": ANCHOR, "condition": SIGNAL})
+    rule = write(
+        tmp_path, PLACE_BEFORE | HOLDS | READS, {"reference": PLACE_REFERENCE, "anchor": ANCHOR, "condition": SIGNAL}
+    )
     given = {
         "ego_state": [{"drive_id": d, "t_s": "0..4 by 0.1", "indicator": s} for d, s in (("a", "left"), ("b", "off"))],
         "exit_taken": [{"drive_id": d, "t_s": [2.0, 3.0], "t_sign_s": [1.0, 1.5], "side": "left"} for d in ("a", "b")],
     }
     rows = verdicts(rule, given)
-    assert [(r["drive_id"], r["ref_id"], r["verdict"]) for r in rows] == [("a", 0, "pass"), ("a", 1, "pass"), ("b", 0, "fail"), ("b", 1, "fail")]
+    assert [(r["drive_id"], r["ref_id"], r["verdict"]) for r in rows] == [
+        ("a", 0, "pass"),
+        ("a", 1, "pass"),
+        ("b", 0, "fail"),
+        ("b", 1, "fail"),
+    ]
 
 
 def test_profiles_at_a_reference_point(tmp_path: Path) -> None:
     sql = """SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, p.profile, 10 AS observed, p.pull_out_headroom_m AS required
         FROM reference r CROSS JOIN profile p WHERE p.selected AND p.profile <> 'lost'"""
-    rule = write(tmp_path, EXECUTION | MEASURED | {"reads": '["exit_taken", "profile"]'}, {"reference": REFERENCE, "condition": sql})
-    given = scene("off", 2.0) | {"profile": {"profile": ["lost", "hard", "easy"], "pull_out_headroom_m": [1, 15, 5], "selected": True}}
+    rule = write(
+        tmp_path,
+        EXECUTION | MEASURED | {"reads": '["exit_taken", "profile"]'},
+        {"reference": REFERENCE, "condition": sql},
+    )
+    given = scene("off", 2.0) | {
+        "profile": {"profile": ["lost", "hard", "easy"], "pull_out_headroom_m": [1, 15, 5], "selected": True}
+    }
     assert [(r["profile"], r["verdict"], r["reason_code"]) for r in verdicts(rule, given)] == [
         ("easy", "pass", "kept"), ("hard", "fail", "violated"), ("lost", "unknown", "missing_step"),
     ]  # fmt: skip
@@ -293,7 +372,23 @@ def test_a_window_over_objects(tmp_path: Path) -> None:
     given = {
         "step": {"t_s": times},
         "exit_taken": {"t_s": 2.0},
-        "pair": [{"t_s": times, "object_id": "a", "clearance_m": {"else": 3, "1.5": 2}}, {"t_s": "1.6..3 by 0.1", "object_id": "b", "clearance_m": 0}],
+        "pair": [
+            {"t_s": times, "object_id": "a", "clearance_m": {"else": 3, "1.5": 2}},
+            {"t_s": "1.6..3 by 0.1", "object_id": "b", "clearance_m": 0},
+        ],
     }
     rows = verdicts(rule, given)
-    assert [(r["object_id"], r["verdict"], r["n_expected"], r["t_worst_ns"]) for r in rows] == [("a", "pass", 11, 1_500_000_000), ("b", "fail", 5, 1_600_000_000)]
+    assert [(r["object_id"], r["verdict"], r["n_expected"], r["t_worst_ns"]) for r in rows] == [
+        ("a", "pass", 11, 1_500_000_000),
+        ("b", "fail", 5, 1_600_000_000),
+    ]
+
+
+def test_nobody_there_is_no_near_miss_and_loses_to_a_real_step(tmp_path: Path) -> None:
+    header = BEFORE | MEASURED | PAIR | {"combine": '"all"', "near_margin": "0.5"}
+    rule = write(tmp_path, header, {"reference": REFERENCE, "condition": PAIR_SQL})
+    given: dict[str, Any] = {"step": {"t_s": "0..3 by 0.1"}, "exit_taken": {"t_s": 2.0}}
+    (row,) = verdicts(rule, given)
+    assert (row["verdict"], row["reason_code"], row["margin"], row["near_miss"]) == ("pass", "nobody_there", None, False)
+    (row,) = verdicts(rule, given | {"pair": {"t_s": [1.5, 1.6], "object_id": "a", "clearance_m": [3, 1.2]}})
+    assert (row["verdict"], row["object_id"], row["t_worst_ns"], row["near_miss"]) == ("pass", "a", 1_600_000_000, True)

@@ -40,6 +40,8 @@ def evaluate(
     strange = sorted(params.keys() - {rule.id for rule in rules})
     if strange:
         raise UsageError(f"parameters are given for {strange[0]!r}, which is not among the selected rules")
+    if not rules:
+        return
     run = Run(con, [Binding(rule, no, params.get(rule.id, {})) for no, rule in enumerate(rules)], margins=margins)
     try:
         run.judge()

@@ -37,7 +37,7 @@ WITH _fails AS (
     SELECT {_SERIES}, seg, run, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.worst(rule)} AS worst FROM _runs GROUP BY ALL)
 SELECT $_no AS rule_no, drive_id, ego_id, {"worst.who" if combined else "object_id"} AS object_id, profile, ref_id,
     t_start_ns, t_end_ns, worst.t AS t_worst_ns, coalesce(worst.code, 'violated') AS code, worst.reason AS reason,
-    {terms.numbers(rule, "worst")}
+    {terms.numbers(rule, "worst.")}
 FROM _worst
 """
 
@@ -45,10 +45,9 @@ FROM _worst
 def margins(rule: Rule) -> str:
     """SQL that appends every expected step of `_judged` to `_margin`."""
     who = "who" if rule.combine != "each" else "object_id"
-    margin = "NULL::DOUBLE" if rule.sense == "holds" else f"CASE WHEN holds IS NOT NULL THEN {terms.finite('gain')} END"
     return f"""
 INSERT INTO _margin BY NAME
 SELECT $_no AS rule_no, drive_id, ego_id, profile, {who} AS object_id, ref_id, t_ns,
-    {terms.finite("observed")} AS observed, {terms.finite("required")} AS required, {margin} AS margin, holds
+    {terms.numbers(rule)}, holds
 FROM _judged WHERE t_ns IS NOT NULL AND {"applies IS DISTINCT FROM false" if rule.kind == "invariant" else "true"}
 """

@@ -32,7 +32,13 @@ _WALK = f"""), _linked AS (
 
 def grid_of(rule: Rule) -> str | None:
     """Return the table that is an invariant's default grid; None: it brings its own, or needs each step looked at."""
-    if rule.kind != "invariant" or "applies" in rule.sections or rule.applies.road_types or rule.profiled or rule.exempt_after_s != 0:
+    if (
+        rule.kind != "invariant"
+        or "applies" in rule.sections
+        or rule.applies.road_types
+        or rule.profiled
+        or rule.exempt_after_s != 0
+    ):
         return None
     return OBJECT_GRID if rule.per_object else STEP_GRID
 
@@ -60,7 +66,7 @@ def first_pass(rule: Rule, partial: bool) -> str:
     Exactly: the same number of rows and the same sum of the time stamps' 64-bit hashes, which a lost or a doubled row cannot keep.
     Groups that are whole and nowhere applicable are left out; all others wait for the second pass.
     """
-    numbers = terms.numbers(rule, "s.worst")
+    numbers = terms.numbers(rule, "s.worst.")
     who = " AND g.object_id = s.object_id" if rule.per_object else ""
     return f"""
 INSERT INTO _group BY NAME
@@ -146,8 +152,8 @@ def second_pass(rule: Rule, partial: bool, unsettled: bool) -> str:
     SELECT *, first_value(t_ns) OVER w AS t_begin_ns, first_value(k) OVER w AS k_begin FROM _walked
     WINDOW w AS (PARTITION BY {_SERIES}, episode ORDER BY t_ns))
 SELECT a.* EXCLUDE (t_begin_ns, k_begin, episode) FROM _aged a
-JOIN _segment s ON s.drive_id = a.drive_id AND s.ego_id = a.ego_id AND s.seg = a.seg
-WHERE k_begin = s.k_first OR t_ns - t_begin_ns >= $_exempt_ns"""
+LEFT JOIN _segment s ON s.drive_id = a.drive_id AND s.ego_id = a.ego_id AND s.seg = a.seg
+WHERE s.seg IS NULL OR k_begin = s.k_first OR t_ns - t_begin_ns >= $_exempt_ns"""
     return f"""
 CREATE OR REPLACE TEMP TABLE _judged AS
 WITH {terms.state(rule)}, {_grid(rule, partial, unsettled)}, _joined AS (
@@ -196,7 +202,7 @@ SELECT $_no AS rule_no, {_SERIES}, t_start_ns, t_end_ns, worst.t AS t_worst_ns, 
     CASE verdict WHEN 'unknown' THEN unknown.t ELSE worst.t END AS t_decides_ns,
     CASE verdict WHEN 'unknown' THEN unknown.code WHEN 'fail' THEN coalesce(worst.code, 'violated') ELSE coalesce(worst.code, 'kept') END AS code,
     CASE verdict WHEN 'unknown' THEN unknown.reason ELSE worst.reason END AS reason,
-    {terms.numbers(rule, "worst")}, n_expected, n_judged
+    {terms.numbers(rule, "worst.")}, n_expected, n_judged
 FROM _decided
 """
 

@@ -30,7 +30,7 @@ WITH _author AS (
 
 def references(columns: Sequence[str]) -> str:
     """SQL for `reference`, the table that conditions and anchors see: `ref_id` is 0.. over all subjects, in a total order."""
-    rest = [f'"{c}" NULLS LAST' for c in columns if c not in {"drive_id", "ego_id", "t_ns", "object_id"}]
+    rest = [f'"{c.replace(chr(34), chr(34) * 2)}" NULLS LAST' for c in columns if c not in {"drive_id", "ego_id", "t_ns", "object_id"}]
     who = ["object_id NULLS LAST"] if "object_id" in columns else []
     order = ", ".join(["drive_id", "ego_id", "t_ns NULLS LAST", *who, *rest])
     return f"""
@@ -101,13 +101,15 @@ def judged(rule: Rule, own_object: bool) -> str:
     on += " AND g.ref_id = v.ref_id" if rule.has("ref_id") else ""
     on += " AND g.object_id IS NOT DISTINCT FROM v.object_id" if rule.per_object else ""
     on += " AND p.profile = v.profile" if rule.profiled else ""
+    # where nobody is, "all" is kept and "any" is missed by as much as can be
+    edge = "'inf'::DOUBLE" if rule.combine == "all" else "'-inf'::DOUBLE"
     empty = f"CASE WHEN g.sensor_range_m IS NULL THEN {'true' if rule.combine == 'all' else 'false'} END"
     return f"""
 CREATE OR REPLACE TEMP TABLE _judged AS
 WITH {terms.state(rule)}, _grid AS ({source}
 ), _joined AS (
     SELECT g.ref_no AS ref_id, g.drive_id, g.ego_id, g.object_id, {"p.profile" if rule.profiled else "''"} AS profile, g.t_ns, g.seg,
-        v.t_ns IS NULL OR v.applies AS applies, v.observed, v.required, CASE WHEN g.nobody THEN 0.0::DOUBLE ELSE v.gain END AS gain,
+        v.t_ns IS NULL OR v.applies AS applies, v.observed, v.required, CASE WHEN g.nobody THEN {edge} ELSE v.gain END AS gain,
         CASE WHEN g.nobody THEN {empty} WHEN v.applies THEN v.holds END AS holds,
         CASE WHEN g.t_ns IS NULL THEN 'anchor_unknown' WHEN g.nobody AND g.sensor_range_m IS NULL THEN 'nobody_there'
             WHEN g.nobody THEN 'beyond_sensor_range' WHEN v.t_ns IS NULL THEN 'missing_step'
@@ -212,6 +214,6 @@ SELECT $_no AS rule_no, drive_id, ego_id, profile, {who} AS object_id, ref_no AS
     nullif(CASE WHEN coded[1] = 'unknown' AND problem IS NULL THEN unknown.t ELSE worst.t END, 9223372036854775807) AS t_decides_ns,
     coded[1] AS verdict, coalesce(coded[2], CASE coded[1] WHEN 'pass' THEN 'kept' ELSE 'violated' END) AS code,
     CASE WHEN coded[1] IN ('pass', 'fail') THEN worst.reason WHEN coded[1] = 'unknown' AND coded[2] IS NOT DISTINCT FROM unknown.code THEN unknown.reason END AS reason,
-    {terms.numbers(rule, "worst")}, n_expected, n_judged
+    {terms.numbers(rule, "worst.")}, n_expected, n_judged
 FROM _coded
 """

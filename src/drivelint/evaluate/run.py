@@ -70,7 +70,9 @@ class Run:
         n_steps = -1
         if quick:
             self._execute(invariant.first_pass(rule, partial), binding)
-            n_steps = self._count(f"SELECT coalesce(sum(n), 0)::BIGINT FROM _group WHERE rule_no = {binding.no} AND NOT clean")
+            n_steps = self._count(
+                f"SELECT coalesce(sum(n), 0)::BIGINT FROM _group WHERE rule_no = {binding.no} AND NOT clean"
+            )
             if self._may_stop(n_steps):
                 return
         n_judged = self._execute(invariant.second_pass(rule, partial, quick), binding)

@@ -122,17 +122,19 @@ FIRST_UNKNOWN = "min({'t': coalesce(t_ns, 9223372036854775807), 'code': coalesce
 """The aggregate that picks the earliest step that could not be judged."""
 
 
-def numbers(rule: Rule, worst_of: str) -> str:
-    """Return the columns observed, required, margin of an outcome from its worst step. Infinity is stored as NULL."""
-    sign = "-" if rule.quantifier == "eventually" else ""
-    margin = (
-        "NULL::DOUBLE"
-        if rule.sense == "holds"
-        else f"CASE WHEN {worst_of}.holds IS NOT NULL THEN {finite(f'({sign}{worst_of}.g)')} END"
-    )
-    return f"{finite(worst_of + '.observed')} AS observed, {finite(worst_of + '.required')} AS required, {margin} AS margin"
+def numbers(rule: Rule, step: str = "") -> str:
+    """Return the columns observed, required, margin of an outcome; `step` is its worst step with a dot, or '' for plain columns.
+
+    Infinity is stored as NULL, and there is no margin to it.
+    """
+    observed, required = f"{step}observed", f"{step}required"
+    margin = "NULL::DOUBLE"
+    if rule.sense != "holds":
+        gain = f"{observed} - {required}" if rule.sense[0] == ">" else f"{required} - {observed}"
+        margin = f"CASE WHEN {step}holds IS NOT NULL THEN {finite(f'({gain})')} END"
+    return f"{finite(observed)} AS observed, {finite(required)} AS required, {margin} AS margin"
 
 
 def finite(value: str) -> str:
-    """Return the SQL for a number, NULL where it is infinite; never the negative zero that a sign can leave."""
+    """Return the SQL for a number, NULL where it is infinite; never a negative zero."""
     return f"CASE WHEN isfinite({value}) THEN {value} + 0.0::DOUBLE END"
