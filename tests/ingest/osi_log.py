@@ -144,8 +144,9 @@ def moving(
         item.base.velocity.x, item.base.velocity.y = v
     if a is not None:
         item.base.acceleration.x, item.base.acceleration.y = a
-    if kind == 2:
+    if vehicle:
         item.vehicle_classification.type = vehicle
+    if kind == 2:
         item.vehicle_classification.light_state.indicator_state = indicator
         item.vehicle_classification.light_state.brake_light_state = brake
     return item

@@ -122,6 +122,22 @@ def test_velocity_zero_of_a_moving_actor_is_derived(tmp_path: Path) -> None:
     assert (row["n"], row["actor_id"]) == (20, "b")
 
 
+def test_driving_along_an_axis_is_not_standing_still(tmp_path: Path) -> None:
+    lines = ["t,id,x,y,yaw,vx,vy", *(f"{i / 10},a,{i / 10},{i},1.5708,0,10.5" for i in range(20))]
+    trace = load(tmp_path, lines)
+    assert {row["vy_mps"] for row in states(trace)} == {10.5}
+    assert "velocity_derived" not in quality(trace)
+
+
+def test_sizes_that_vary_are_reported(tmp_path: Path) -> None:
+    lines = [line + (",len" if line[0] == "t" else ",4.5" if ",a," in line else "") for line in cars(5)]
+    lines = [line if line.count(",") == 7 else f"{line},{4 + k % 5}" for k, line in enumerate(lines)]
+    trace = load(tmp_path, lines, LONG.replace("length = 4.5", 'length = "len"'))
+    sizes = sorted(4 + k % 5 for k, line in enumerate(lines) if ",b," in line)
+    assert (actors(trace)["a"]["length_m"], actors(trace)["b"]["length_m"]) == (4.5, sizes[2])
+    assert quality(trace)["size_varies"]["actor_id"] == "b"
+
+
 def test_velocity_zero_of_a_parked_actor_stays(tmp_path: Path) -> None:
     trace = load(tmp_path, edited(cars(), "b", range(20), vx="0.0", x="5.2"))
     assert {row["vx_mps"] for row in states(trace, "b")} == {0.0}

@@ -40,6 +40,7 @@ def test_ground_truth(tmp_path: Path) -> None:
         "height_m": 1.5,
         "is_ego": True,
     }
+    assert log(trace)["utc_start_ns"] is None
     assert (log(trace)["has_indicator"], log(trace)["has_brake_light"], log(trace)["has_acceleration"]) == (True,) * 3
     assert not quality(trace)
 
@@ -64,6 +65,7 @@ def test_ids_sort_as_text_and_keep_64_bits(tmp_path: Path) -> None:
         (2, 11, "bicycle"),
         (2, 0, "vehicle"),
         (3, 0, "pedestrian"),
+        (3, 4, "pedestrian"),
         (4, 0, "animal"),
         (1, 0, None),
         (0, 0, None),

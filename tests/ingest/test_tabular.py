@@ -84,9 +84,11 @@ def test_wide_table_with_units_and_an_absent_actor(tmp_path: Path) -> None:
 
 
 def test_first_vehicle_is_the_ego_where_none_has_its_name(tmp_path: Path) -> None:
-    lines = ["a", "b", "t [ms];#1 name;#1 x;#1 y;#1 h;#1 v;#1 len;#2 name;#2 x;#2 y;#2 h;#2 v;#2 len"]
-    lines += [f"{100 * i};Zoe;{i};0;0;36;450;Abe;{i};4;0;36;450" for i in range(3)]
-    trace = read(table(tmp_path / "wide.csv", lines), mapping=mapping(tmp_path, WIDE))
+    group = "#{k} name;#{k} x;#{k} y;#{k} h;#{k} v;#{k} len"
+    lines = ["a", "b", ";".join(["t [ms]", *(group.replace("{k}", k) for k in "123")])]
+    lines += [f"{100 * i};Cone;9;9;0;0;40;Zoe;{i};0;0;36;450;Abe;{i};4;0;36;450" for i in range(3)]
+    kinds = '[class]\ncolumn = "#{k} name"\nvalues = { Cone = "object" }\ndefault = "car"\n'
+    trace = read(table(tmp_path / "wide.csv", lines), mapping=mapping(tmp_path, WIDE + kinds))
     assert actors(trace)["Zoe"]["is_ego"]
     assert quality(trace)["ego_assumed"]["actor_id"] == "Zoe"
 
@@ -230,6 +232,14 @@ def test_malformed_rows_are_counted_and_placed(tmp_path: Path) -> None:
     ):
         assert [n for message, n in found.items() if check in message and text in message] == [1], (check, text, found)
     assert log(trace)["n_states"] == 40 - 3
+
+
+def test_a_bad_cell_right_after_a_broken_line(tmp_path: Path) -> None:
+    lines = cars()
+    lines[4] += ",7"  # line 5
+    lines[5] = lines[5].replace("a,", "a,nonsense", 1)  # line 6
+    found = quality(read(table(tmp_path / "d.csv", lines), mapping=mapping(tmp_path)))
+    assert "line 6: column 'x'" in found["malformed_cell"]["message"]
 
 
 def test_not_finite_values_are_unknown_and_counted(tmp_path: Path) -> None:
