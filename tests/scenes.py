@@ -1,7 +1,8 @@
 """Tiny scenes: a road as OpenDRIVE text, actors moving along it, and what the library derives from them; no files.
 
-Roads run along their reference line: `s` metres along it, `d` metres to its left. On a two-way road driven on the right the ego goes
-along +s at d = -1.75; driven on the left everything is mirrored: d = +1.75. `Road.own` is that offset, `Road.other` the oncoming one.
+Roads run along their reference line: `s` metres along it, `d` metres to its left. On a two-way road driven on the right
+the ego goes along +s at d = -1.75; driven on the left everything is mirrored. `Road.own` is that offset, `Road.other`
+that of the oncoming lane.
 """
 
 from __future__ import annotations
@@ -37,12 +38,16 @@ LANE = 3.5
 Row = dict[str, Any]
 
 
+Pose = tuple[float, float, float]
+
+
 @dataclass(frozen=True)
 class Road:
-    """A map whose main road has the reference line of `pieces` (length, curvature) from the origin eastwards."""
+    """A map, and a line on it along which actors move: pieces (length, curvature) from a pose (x, y, heading)."""
 
     environment: Environment
     pieces: tuple[tuple[float, float], ...]
+    start: Pose = (0.0, 0.0, 0.0)
 
     @property
     def own(self) -> float:
@@ -60,73 +65,87 @@ class Road:
         return -1 if self.environment.handedness == "lht" else 1
 
     def at(self, s: ArrayLike, d: ArrayLike = 0.0) -> tuple[Floats, Floats, Floats]:
-        """Return x, y and heading of the reference line at s, moved d to the left."""
+        """Return x, y and heading of the line at s, moved d to the left."""
         s, d = np.broadcast_arrays(np.asarray(s, float), np.asarray(d, float))
         x, y, heading = np.zeros(s.shape), np.zeros(s.shape), np.zeros(s.shape)
-        x0 = y0 = h0 = s0 = 0.0
+        pose, s0 = self.start, 0.0
         for n, (length, curvature) in enumerate(self.pieces):
             here = (s >= s0) | (n == 0)
-            u = s - s0
-            if curvature:
-                px = x0 + (np.sin(h0 + curvature * u) - math.sin(h0)) / curvature
-                py = y0 - (np.cos(h0 + curvature * u) - math.cos(h0)) / curvature
-            else:
-                px, py = x0 + u * math.cos(h0), y0 + u * math.sin(h0)
-            x, y = np.where(here, px, x), np.where(here, py, y)
-            heading = np.where(here, h0 + curvature * u, heading)
-            x0, y0, h0 = _end(x0, y0, h0, length, curvature)
-            s0 += length
+            px, py, ph = _walk(pose, s - s0, curvature)
+            x, y, heading = np.where(here, px, x), np.where(here, py, y), np.where(here, ph, heading)
+            pose, s0 = _end(pose, length, curvature), s0 + length
         return x - d * np.sin(heading), y + d * np.cos(heading), heading
 
 
-def _end(x: float, y: float, heading: float, length: float, curvature: float) -> tuple[float, float, float]:
+def _walk(pose: Pose, u: Floats, curvature: float) -> tuple[Floats, Floats, Floats]:
+    x, y, heading = pose
+    turned = heading + curvature * u
     if not curvature:
-        return x + length * math.cos(heading), y + length * math.sin(heading), heading
-    turned = heading + curvature * length
+        return x + u * math.cos(heading), y + u * math.sin(heading), turned
     return (
-        x + (math.sin(turned) - math.sin(heading)) / curvature,
-        y - (math.cos(turned) - math.cos(heading)) / curvature,
+        x + (np.sin(turned) - math.sin(heading)) / curvature,
+        y - (np.cos(turned) - math.cos(heading)) / curvature,
         turned,
     )
 
 
-def plan(pieces: Sequence[tuple[float, float]], x: float = 0.0, y: float = 0.0, heading: float = 0.0) -> str:
+def _end(pose: Pose, length: float, curvature: float) -> Pose:
+    x, y, heading = _walk(pose, np.array(length), curvature)
+    return float(x), float(y), float(heading)
+
+
+def plan(pieces: Sequence[tuple[float, float]], pose: Pose = (0.0, 0.0, 0.0)) -> str:
     """Return the planView geometries of these pieces."""
     parts, s = [], 0.0
     for length, curvature in pieces:
+        x, y, heading = pose
         shape = f'<arc curvature="{curvature!r}"/>' if curvature else "<line/>"
-        parts.append(
-            f'<geometry s="{s!r}" x="{x!r}" y="{y!r}" hdg="{heading!r}" length="{length!r}">{shape}</geometry>'
-        )
-        x, y, heading = _end(x, y, heading, length, curvature)
-        s += length
+        place = f'x="{x!r}" y="{y!r}" hdg="{heading!r}"'
+        parts.append(f'<geometry s="{s!r}" {place} length="{length!r}">{shape}</geometry>')
+        pose, s = _end(pose, length, curvature), s + length
     return "".join(parts)
+
+
+def linked(number: int, before: int | None = None, after: int | None = None, kind: str = "driving") -> str:
+    """Return a lane that continues the lane `before` and is continued by `after` (None: the same number)."""
+    ends = f'<predecessor id="{before or number}"/><successor id="{after or number}"/>'
+    return xodr.lane(number, f'<link>{ends}</link><width sOffset="0" a="{LANE}"/>', kind)
+
+
+def limited(mph: float | None) -> str:
+    """Return the type of a rural road with this speed limit."""
+    return f'<type s="0" type="rural"><speed max="{mph}" unit="mph"/></type>' if mph else ""
 
 
 @cache
 def road(
     pieces: tuple[tuple[float, float], ...] = ((600.0, 0.0),),
     hand: str = "rht",
-    left: int = 1,
-    right: int = 1,
+    lanes: tuple[int, int] = (1, 1),
+    *,
     limit_mph: float | None = 60,
-    link: str = "",
-    turned: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    cuts: tuple[float, ...] = (),
+    ring: bool = False,
+    start: Pose = (0.0, 0.0, 0.0),
 ) -> Road:
-    """Return one road; `left` and `right`: driving lanes on either side of its reference line; `turned`: where it begins."""
+    """Return one road; `lanes`: driving lanes to the left and right of its line; `cuts`: where lane sections end."""
+    left, right = lanes
     numbers = [*range(left, 0, -1), *(-n for n in range(1, right + 1))]
-    limit = f'<type s="0" type="rural"><speed max="{limit_mph}" unit="mph"/></type>' if limit_mph else ""
+    ends = ""
+    if ring:
+        ends = '<predecessor elementType="road" elementId="1" contactPoint="end"/>'
+        ends += '<successor elementType="road" elementId="1" contactPoint="start"/>'
     text = xodr.xodr(
         xodr.road(
-            geometry=plan(pieces, *turned),
-            lanes=xodr.section(0, *(xodr.lane(n) for n in numbers)),
+            geometry=plan(pieces, start),
+            lanes="".join(xodr.section(s, *(linked(n) for n in numbers)) for s in (0, *cuts)),
             length=sum(length for length, _ in pieces),
             attributes=f'rule="{hand.upper()}"',
-            more=limit,
-            link=link,
+            more=limited(limit_mph),
+            link=ends,
         )
     )
-    return Road(load_map(MapSource("scene.xodr", text.encode())), tuple(pieces))
+    return Road(load_map(MapSource("scene.xodr", text.encode())), tuple(pieces), start)
 
 
 @dataclass(frozen=True)
@@ -176,17 +195,20 @@ def standing(actor_id: str, way: Road, t: Floats, s: float, d: float, *, turned:
     return Actor(actor_id, t, x, y, heading + turned, np.zeros(t.shape), np.zeros(t.shape), **more)
 
 
-def swing(s: Floats, out: float, back: float | None, own: float, other: float, change: float = 20.0) -> Floats:
-    """Return offsets d along s: over from `out` on within `change` metres, back again from `back` on (None: it stays)."""
+def swing(way: Road, s: Floats, out: float, back: float | None, change: float = 20.0, share: float = 1.0) -> Floats:  # noqa: PLR0917
+    """Return offsets d along s: from the own lane's centre over by `share` of a lane, `change` metres from `out` on.
+
+    Back again from `back` on (None: it stays over).
+    """
 
     def ease(u: Floats) -> Floats:
         u = np.clip(u, 0.0, 1.0)
         return u * u * (3 - 2 * u)
 
-    share = ease((s - out) / change)
+    over = ease((s - out) / change)
     if back is not None:
-        share = share - ease((s - back) / change)
-    return own + (other - own) * share
+        over = over - ease((s - back) / change)
+    return way.own + (way.other - way.own) * share * over
 
 
 def drive(
@@ -250,7 +272,10 @@ def clear(con: duckdb.DuckDBPyConnection) -> None:
 def derived(
     *drives: Drive, tables: Iterable[str] = (), con: duckdb.DuckDBPyConnection | None = None
 ) -> duckdb.DuckDBPyConnection:
-    """Return a database (one for all scenes, emptied before) in which the library tables of these drives stand; none named: all."""
+    """Return a database in which the library tables of these drives stand; none named: all.
+
+    It is one database for all scenes, emptied before.
+    """
     con = con or _database()
     clear(con)
     store.insert(con, "profile", profile_table(load_profiles(), ()))
@@ -268,7 +293,7 @@ def judged(
     con: duckdb.DuckDBPyConnection | None = None,
     order: str = "drive_id, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, occurrence",
 ) -> list[Row]:
-    """Return the verdict rows of these batches of drives; the database keeps `verdict`, `finding` and the rest of the results."""
+    """Return the verdict rows of these batches of drives; the database keeps the results."""
     con = con or _database()
     clear(con)
     store.insert(con, "profile", profile_table(load_profiles(), profiles))
@@ -288,3 +313,59 @@ def rows(con: duckdb.DuckDBPyConnection, sql: str, params: Sequence[object] | Ma
 def seconds(rows_: Iterable[Mapping[str, Any]], column: str) -> list[float | None]:
     """Return a column of nanoseconds in seconds."""
     return [None if row[column] is None else row[column] / 1e9 for row in rows_]
+
+
+@cache
+def tee(hand: str = "rht") -> dict[str, Road]:
+    """Return a T junction and ways through it, all along the reference lines.
+
+    Road 1 runs east from the origin to x = 200, road 2 goes on from x = 220, road 3 leads south from (210, -10);
+    connecting roads are 10 (1 to 2), 11 (1 to 3) and 12 (3 to 2). Ways: `straight` (1, 10, 2), `south` (1, 11, 3) and
+    `north` (up road 3 and by 12 to 2), `home` (up road 3 and by 11 west along 1).
+    """
+    turn = (5 * math.pi, -0.1)
+    south, north = (210.0, -10.0, -math.pi / 2), (210.0, -10.0, math.pi / 2)
+    both = xodr.section(0, linked(1), linked(-1))
+
+    def part(number: str, pieces: tuple[tuple[float, float], ...], pose: Pose, ends: str, lanes: str = both) -> str:
+        junction = "5" if len(number) > 1 else "-1"
+        return xodr.road(
+            number, plan(pieces, pose), lanes, sum(length for length, _ in pieces), ends,
+            f'rule="{hand.upper()}"', limited(60), junction,
+        )  # fmt: skip
+
+    def end(kind: str, number: str, contact: str) -> str:
+        return f'<{kind} elementType="road" elementId="{number}" contactPoint="{contact}"/>'
+
+    def at_junction(kind: str) -> str:
+        return f'<{kind} elementType="junction" elementId="5"/>'
+
+    def connection(number: int, incoming: str, connecting: str, lanes: str) -> str:
+        head = (
+            f'<connection id="{number}" incomingRoad="{incoming}" connectingRoad="{connecting}" contactPoint="start">'
+        )
+        return f"{head}{lanes}</connection>"
+
+    same = '<laneLink from="-1" to="-1"/><laneLink from="1" to="1"/>'
+    crossed = '<laneLink from="1" to="-1"/><laneLink from="-1" to="1"/>'
+    text = xodr.xodr(
+        part("1", ((200.0, 0.0),), (0.0, 0.0, 0.0), at_junction("successor")),
+        part("2", ((200.0, 0.0),), (220.0, 0.0, 0.0), at_junction("predecessor")),
+        part("3", ((150.0, 0.0),), south, at_junction("predecessor")),
+        part("10", ((20.0, 0.0),), (200.0, 0.0, 0.0), end("predecessor", "1", "end") + end("successor", "2", "start")),
+        part("11", (turn,), (200.0, 0.0, 0.0), end("predecessor", "1", "end") + end("successor", "3", "start")),
+        part(
+            "12", (turn,), north, end("predecessor", "3", "start") + end("successor", "2", "start"),
+            xodr.section(0, linked(1, before=-1), linked(-1, before=1)),
+        ),
+        f'<junction id="5" name="tee">{connection(0, "1", "10", same)}{connection(1, "1", "11", same)}'
+        f"{connection(2, '3', '12', crossed)}</junction>",
+    )  # fmt: skip
+    environment = load_map(MapSource("tee.xodr", text.encode()))
+    up = (210.0, -160.0, math.pi / 2)
+    return {
+        "straight": Road(environment, ((420.0, 0.0),)),
+        "south": Road(environment, ((200.0, 0.0), turn, (150.0, 0.0))),
+        "north": Road(environment, ((150.0, 0.0), turn, (200.0, 0.0)), up),
+        "home": Road(environment, ((150.0, 0.0), (5 * math.pi, 0.1), (200.0, 0.0)), up),
+    }
