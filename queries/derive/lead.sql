@@ -7,7 +7,8 @@ WITH ahead AS (
     FROM pair p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     WHERE may_be_vehicle(p.actor_class) AND p.s_m > e.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m - over_boundary_m()
-        AND abs(p.heading_diff_rad) < 2 * pi() / 3
+        -- what stands the wrong way round is in the way all the same
+        AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps())
     GROUP BY ALL
 )
 SELECT e.drive_id, e.ego_id, e.t_ns, a.near.object_id AS object_id, a.near.gap_m AS gap_m, a.near.speed_mps AS speed_mps

@@ -93,12 +93,16 @@ beside AS (
 ),
 on_chain AS MATERIALIZED (
     SELECT
-        b.pair_no, abs(c.s_start_m + b.lane_s_m - b.ego_s_m) AS off, c.s_start_m + b.lane_s_m AS s_m, b.d_m, b.half_width_m, b.psi,
-        c.over_width_m, c.over_against
+        b.pair_no, c.s_start_m + b.lane_s_m AS s_m, b.d_m, b.half_width_m, b.psi, c.over_width_m, c.over_against,
+        abs(c.s_start_m + b.lane_s_m - b.ego_s_m)
+        -- beside the road only if it is nowhere on it: the legs of a hairpin lie in each other's strip
+        + CASE WHEN abs(b.d_m) > b.half_width_m + coalesce(c.over_width_m, 2 * b.half_width_m) THEN 1e8 ELSE 0.0 END
+        -- and what comes the other way is still to be met, even if the shorter way round a ring is back
+        + CASE WHEN abs(b.psi) > pi() / 2 AND c.s_start_m + b.lane_s_m < b.ego_s_m - exact_clearance_m() THEN 1e6 ELSE 0.0 END AS off
     FROM beside b
     JOIN corridor c ON c.drive_id = b.drive_id AND c.ego_id = b.ego_id AND c.lanelet_id = b.lanelet_id AND c.chain_id = b.chain_id
 ),
--- of several places on a corridor that meets itself, the one nearest to the ego along it; a tie is settled by the station
+-- of several places on a corridor that meets itself, the one nearest to the ego along it (see above); a tie is settled by the station
 nearest AS MATERIALIZED (
     SELECT o.* FROM on_chain o JOIN (SELECT pair_no, min(off) AS off FROM on_chain GROUP BY pair_no) n USING (pair_no, off)
 ),
