@@ -21,7 +21,18 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
 # small tables that say what was judged, and on what: they stay until the end of the run
-_RESULTS: Final = ("data_log", "quality", "environment", "map_quality", "exposure", "capability", "registration", "verdict", "finding", "profile")
+_RESULTS: Final = (
+    "data_log",
+    "quality",
+    "environment",
+    "map_quality",
+    "exposure",
+    "capability",
+    "registration",
+    "verdict",
+    "finding",
+    "profile",
+)
 _MARGIN_ORDER: Final = "drive_id, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, ref_id NULLS FIRST, t_ns"
 
 
@@ -48,6 +59,7 @@ class Bench:
         self._margins: pq.ParquetWriter | None = None
         self._seen: set[str] = set()
         self._maps: frozenset[str] = frozenset()
+        self._kept_maps: set[str] = set()
         self.margins_file = out / ".margins.parquet" if margins and out else None
         self._kept = out / "drivelint.duckdb" if keep_db and out else None
         if self._kept:
@@ -89,13 +101,15 @@ class Bench:
             for table in (*_map_tables(), *(t for t, d in derivations().items() if d.of_the_map)):
                 self._con.execute(f"DELETE FROM {table}")
             for _, environment in sorted(environments.items()):
-                known = self._con.execute("SELECT count(*) FROM environment WHERE environment_id = ?", [environment.environment_id]).fetchall()[0][0]
+                known = self._con.execute(
+                    "SELECT count(*) FROM environment WHERE environment_id = ?", [environment.environment_id]
+                ).fetchall()[0][0]
                 for table, rows in environment.tables.items():
                     if not (known and table in _RESULTS):
                         store.insert(self._con, table, rows)
             self._maps = frozenset(environments)
             derive(self._con, self._tables, of_the_map=True)
-            self._keep([*_map_tables(), *(t for t, d in derivations().items() if d.of_the_map)])
+            self._keep_maps(environments.keys() - self._kept_maps)
         for table in drives[0].trace.tables:
             rows = pa.concat_tables([_on_map(d) if table == "data_log" else d.trace.tables[table] for d in drives])
             store.insert(self._con, table, rows)
@@ -120,6 +134,15 @@ class Bench:
         if self._kept:
             for table in tables:
                 self._con.execute(f"INSERT INTO kept.{table} SELECT * FROM {table}")
+
+    def _keep_maps(self, ids: Iterable[str]) -> None:
+        new = sorted(ids)
+        if self._kept and new:
+            for table in (*_map_tables(), *(t for t, d in derivations().items() if d.of_the_map)):
+                self._con.execute(
+                    f"INSERT INTO kept.{table} SELECT * FROM {table} WHERE list_contains(?, environment_id)", [new]
+                )
+            self._kept_maps.update(new)
 
     def _clear(self) -> None:
         for table in _batch_tables():
@@ -146,4 +169,8 @@ def _batch_tables() -> list[str]:
 def _map_tables() -> list[str]:
     """Tables of the map itself, replaced when a batch needs other maps."""
     derived = derivations()
-    return [t for t, columns in store.schema().items() if next(iter(columns)) == "environment_id" and t not in _RESULTS and t not in derived]
+    return [
+        t
+        for t, columns in store.schema().items()
+        if next(iter(columns)) == "environment_id" and t not in _RESULTS and t not in derived
+    ]

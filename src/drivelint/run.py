@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import duckdb
@@ -22,6 +21,7 @@ from drivelint.report.rulebook import rule_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from pathlib import Path
 
     from drivelint.report.progress import Progress
 
@@ -72,13 +72,19 @@ def check(settings: Settings, progress: Progress) -> Result:
         refused: list[Refused] = []
         try:
             for batch in cut(read(paths, options, library)):
-                refused += _judge(bench, batch, progress)
+                failed = _judge(bench, batch, progress)
+                refused += failed
+                if len(paths) > 1:  # a single one is the error of the whole run
+                    for each in failed:
+                        progress.note(f"not judged: {each.error}")
         finally:
             bench.close()
         if len(refused) == len(paths):
             raise _none_judged(refused)
         unjudged = [collect.unjudged(r.path.stem, r.path.name, str(r.error)) for r in refused]
-        drives = pa.concat_tables([collect.drives(con), *unjudged]).sort_by([("drive_id", "ascending"), ("file_name", "ascending")])
+        drives = pa.concat_tables([collect.drives(con), *unjudged]).sort_by(
+            [("drive_id", "ascending"), ("file_name", "ascending")]
+        )
         return Result(
             verdicts=collect.verdicts(con),
             findings=collect.findings(con),
@@ -91,13 +97,12 @@ def check(settings: Settings, progress: Progress) -> Result:
 
 
 def _judge(bench: Bench, batch: Iterable[Drive | Refused], progress: Progress) -> list[Refused]:
-    """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other."""
+    """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other. Return what could not be judged."""
     refused: list[Refused] = []
     drives: list[Drive] = []
     for item in batch:
         if isinstance(item, Refused):
             refused.append(item)
-            progress.note(str(item.error))
         elif bench.knows(item) or any(item.trace.drive_id == d.trace.drive_id for d in drives):
             progress.note(f"{item.trace.path}: the same log as one before ({item.trace.drive_id}), judged once")
         else:
@@ -107,21 +112,25 @@ def _judge(bench: Bench, batch: Iterable[Drive | Refused], progress: Progress) -
     try:
         bench.judge(drives)
     except (DriveLintError, duckdb.Error) as whole:
-        if len(drives) == 1:
-            return [*refused, _failed(drives[0], whole, progress)]
-        for drive in drives:
-            try:
-                bench.judge([drive])
-            except (DriveLintError, duckdb.Error) as error:
-                refused.append(_failed(drive, error, progress))
+        refused += [_failed(drives[0], whole)] if len(drives) == 1 else _one_by_one(bench, drives)
     progress.advance(len(drives) + len(refused))
     return refused
 
 
-def _failed(drive: Drive, error: Exception, progress: Progress) -> Refused:
-    failure = error if isinstance(error, DriveLintError) else TraceError(f"{drive.trace.path}: {str(error).splitlines()[0]}")
-    progress.note(f"{drive.trace.drive_id} could not be judged: {failure}")
-    return Refused(drive.trace.path, failure)
+def _one_by_one(bench: Bench, drives: Iterable[Drive]) -> list[Refused]:
+    refused: list[Refused] = []
+    for drive in drives:
+        try:
+            bench.judge([drive])
+        except (DriveLintError, duckdb.Error) as error:
+            refused.append(_failed(drive, error))
+    return refused
+
+
+def _failed(drive: Drive, error: Exception) -> Refused:
+    if isinstance(error, DriveLintError):
+        return Refused(drive.trace.path, error)
+    return Refused(drive.trace.path, TraceError(f"{drive.trace.path}: {str(error).splitlines()[0]}"))
 
 
 def _none_judged(refused: list[Refused]) -> DriveLintError:

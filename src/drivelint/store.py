@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import duckdb
@@ -12,15 +13,15 @@ from drivelint.errors import DriveLintError
 from drivelint.resources import folder
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     import pyarrow as pa
 
 _TABLE = re.compile(r"^CREATE TABLE (\w+) \(\n(.*?)^\);", re.DOTALL | re.MULTILINE)
 _COLUMN = re.compile(r"^    (\w+) .*?,?\s*-- (.+)$", re.MULTILINE)
 
 
-def connect(path: Path | None = None, *, threads: int | None = None, memory_limit: str | None = None) -> duckdb.DuckDBPyConnection:
+def connect(
+    path: Path | None = None, *, threads: int | None = None, memory_limit: str | None = None
+) -> duckdb.DuckDBPyConnection:
     """Open a database with spatial loaded from its wheel (no network) and every table of `schemas/` and macro created.
 
     Errors: `DriveLintError` when the pinned extension cannot be loaded.
@@ -45,8 +46,8 @@ def load_spatial(con: duckdb.DuckDBPyConnection) -> None:
     """Load the spatial extension from the `duckdb-extension-spatial` wheel of the same version."""
     import duckdb_extension_spatial
 
-    wheel = next(iter(duckdb_extension_spatial.__path__))
-    for file in sorted(folder_glob(wheel, "spatial.duckdb_extension")):
+    wheel = Path(next(iter(duckdb_extension_spatial.__path__)))
+    for file in sorted(wheel.rglob("spatial.duckdb_extension")):
         try:
             con.execute(f"LOAD '{str(file).replace(chr(39), chr(39) * 2)}'")
         except duckdb.Error as error:
@@ -58,19 +59,12 @@ def load_spatial(con: duckdb.DuckDBPyConnection) -> None:
     raise DriveLintError(f"no spatial extension in {wheel}: reinstall duckdb-extension-spatial=={duckdb.__version__}")
 
 
-def folder_glob(root: str, name: str) -> list[Path]:
-    """Return every file called `name` below `root`."""
-    from pathlib import Path
-
-    return list(Path(root).rglob(name))
-
-
 @cache
-def schema() -> dict[str, dict[str, str]]:
-    """Return table -> column -> comment for every table of `schemas/*.sql`, in file order."""
+def schema(file: str = "*") -> dict[str, dict[str, str]]:
+    """Return table -> column -> comment for every table of `schemas/<file>.sql` (`*`: of all of them), in file order."""
     tables: dict[str, dict[str, str]] = {}
-    for file in sorted(folder("schemas").glob("*.sql")):
-        for name, body in _TABLE.findall(file.read_text(encoding="utf-8")):
+    for path in sorted(folder("schemas").glob(f"{file}.sql")):
+        for name, body in _TABLE.findall(path.read_text(encoding="utf-8")):
             tables[name] = dict(_COLUMN.findall(body))
     return tables
 
@@ -80,7 +74,12 @@ def create_tables(con: duckdb.DuckDBPyConnection) -> None:
     for file in sorted(folder("schemas").glob("*.sql")):
         con.execute(file.read_text(encoding="utf-8"))
     for table, columns in schema().items():
-        con.execute(";".join(f"COMMENT ON COLUMN {table}.{c} IS '{text.replace(chr(39), chr(39) * 2)}'" for c, text in columns.items()))
+        con.execute(
+            ";".join(
+                f"COMMENT ON COLUMN {table}.{c} IS '{text.replace(chr(39), chr(39) * 2)}'"
+                for c, text in columns.items()
+            )
+        )
 
 
 def insert(con: duckdb.DuckDBPyConnection, table: str, rows: pa.Table) -> None:

@@ -57,8 +57,11 @@ class MapReader(Protocol):
         ...
 
 
-def environment_id(source: MapSource, offset: tuple[float, float], handedness: str) -> str:
-    """Return `<map stem>-<first 8 hex of sha256><offset, if any>@<lht or rht>`; the same on every machine."""
+def environment_id(source: MapSource, offset: tuple[float, float], handedness: str, *, guessed: bool = False) -> str:
+    """Return `<map stem>-<first 8 hex of sha256><offset, if any>@<lht or rht>`; the same on every machine.
+
+    A handedness that is only the standard's default has a question mark: the traces of another drive may tell it for sure.
+    """
     x, y = (float(v) + 0.0 for v in offset)
     shift = f"{x:+}{y:+}" if x or y else ""
-    return f"{PurePath(source.name).stem}-{source.sha256[:8]}{shift}@{handedness}"
+    return f"{PurePath(source.name).stem}-{source.sha256[:8]}{shift}@{handedness}{'?' if guessed else ''}"

@@ -32,7 +32,9 @@ class MapLibrary:
         self._handedness = handedness
         self._loaded: dict[tuple[str, tuple[float, float], str | None], Environment] = {}
 
-    def find(self, log: str, embedded: bytes | None, offset: tuple[float, float] | None, states: pa.Table) -> Environment | None:
+    def find(
+        self, log: str, embedded: bytes | None, offset: tuple[float, float] | None, states: pa.Table
+    ) -> Environment | None:
         """Return the environment for one drive.
 
         `offset` is the mapping's (the user's `--map-offset` goes before it), `states` the drive's `actor_state` rows.
@@ -84,4 +86,4 @@ def _extent(table: pa.Table) -> tuple[float, float, float, float] | None:
 
 
 def _floats(table: pa.Table, column: str) -> np.ndarray:
-    return table[column].to_numpy(zero_copy_only=False).astype(np.float64)
+    return np.asarray(table[column].to_numpy(zero_copy_only=False), dtype=np.float64)

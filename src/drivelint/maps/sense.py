@@ -18,7 +18,9 @@ LEAST_VOTES: Final = 20
 AGREEMENT: Final = 0.8  # an overtake drives against its lane for a while, a drive does not
 
 
-def vote(environment: Environment, x_m: NDArray[np.float64], y_m: NDArray[np.float64], yaw_rad: NDArray[np.float64]) -> str | None:
+def vote(
+    environment: Environment, x_m: NDArray[np.float64], y_m: NDArray[np.float64], yaw_rad: NDArray[np.float64]
+) -> str | None:
     """Return lht or rht as the headings of moving vehicles say, or None if they are too few or disagree.
 
     `x_m, y_m, yaw_rad`: moving states of any vehicles, shape (n,), in map coordinates. A state counts where exactly one
@@ -31,7 +33,7 @@ def vote(environment: Environment, x_m: NDArray[np.float64], y_m: NDArray[np.flo
     areas, lines = _lanes(environment)
     if not len(areas):
         return None
-    points = shapely.points(x_m[chosen], y_m[chosen])
+    points = np.asarray(shapely.points(x_m[chosen], y_m[chosen]))
     state, lane = shapely.STRtree(areas).query(points, predicate="within")
     single = np.bincount(state, minlength=len(chosen))[state] == 1
     state, lane = state[single], lane[single]
@@ -53,16 +55,18 @@ def _lanes(environment: Environment) -> tuple[NDArray[np.object_], NDArray[np.ob
     """Return areas and centre lines of the one-way drivable lanelets."""
     lanelets, points = environment.tables["lanelet"], environment.tables["lane_point"]
     wanted = lanelets.filter(pc.and_(lanelets["drivable"], pc.invert(lanelets["bidirectional"])))["lanelet_id"]
-    points = points.filter(pc.is_in(points["lanelet_id"], value_set=wanted.combine_chunks())).sort_by([("lanelet_id", "ascending"), ("k", "ascending")])
+    points = points.filter(pc.is_in(points["lanelet_id"], value_set=wanted.combine_chunks())).sort_by(
+        [("lanelet_id", "ascending"), ("k", "ascending")]
+    )
     ids = points["lanelet_id"].to_numpy(zero_copy_only=False)
     if not len(ids):
         return np.array([], dtype=object), np.array([], dtype=object)
     _, index, counts = np.unique(ids, return_inverse=True, return_counts=True)
-    line = shapely.linestrings(_xy(points, "x_m", "y_m"), indices=index)
+    line = np.asarray(shapely.linestrings(_xy(points, "x_m", "y_m"), indices=index))
     left, right = _xy(points, "left_x_m", "left_y_m"), _xy(points, "right_x_m", "right_y_m")
     ends = np.cumsum(counts)
     rings = [np.vstack([left[a:b], right[a:b][::-1]]) for a, b in zip(ends - counts, ends, strict=True)]
-    area = shapely.polygons([shapely.linearrings(ring) for ring in rings])
+    area = np.array([shapely.Polygon(ring) for ring in rings], dtype=object)
     return area, line
 
 

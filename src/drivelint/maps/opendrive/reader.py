@@ -39,7 +39,7 @@ class OpenDriveReader:
             first = next((row["message"] for row in quality.rows if row["severity"] == "error"), "it has no roads")
             raise MapError(f"map {source.name} has no lane that can be built: {first}")
         joined = links(net, lanes, quality)
-        name = environment_id(source, request.offset, direction.handedness)
+        name = environment_id(source, request.offset, direction.handedness, guessed=direction.source == "default")
         built = sorted(lanes.built.values(), key=lambda lane: lane.key)
         rows = {
             "environment": [_environment_row(source, request, direction, net.geo_reference)],

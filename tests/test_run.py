@@ -1,0 +1,144 @@
+"""The pipeline around the verdicts: batches, drives that cannot be judged, the kept database, maps of another place."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+import duckdb
+import pytest
+
+from drivelint import batch, store
+from drivelint.errors import MapError, TraceError, UsageError
+from drivelint.report.progress import Silent
+from drivelint.run import Settings, check
+
+FIXTURE = Path(__file__).resolve().parents[1] / "fixtures" / "overtake"
+
+
+def settings(*traces: Path, **options: Any) -> Settings:
+    given: dict[str, Any] = {
+        "map": FIXTURE / "road.xodr",
+        "mapping": str(FIXTURE / "mapping.toml"),
+        "rules": ("ukhc",),
+        **options,
+    }
+    return Settings(traces=tuple(str(t) for t in traces), **given)
+
+
+def logs() -> list[Path]:
+    return [FIXTURE / f"{name}.csv" for name in ("safe", "near_miss", "collision")]
+
+
+class Notes(Silent):
+    """Keeps what the pipeline says."""
+
+    def __init__(self) -> None:
+        self.said: list[str] = []
+
+    def note(self, text: str) -> None:
+        self.said.append(text)
+
+
+def test_batches_of_one_drive_give_the_same_rows(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = check(settings(*logs()), Silent())
+    monkeypatch.setattr(batch, "STATES", 1)
+    single = check(settings(*reversed(logs())), Silent())
+    assert whole.verdicts.equals(single.verdicts)
+    assert whole.findings.equals(single.findings)
+    assert whole.drives.equals(single.drives)
+
+
+def test_a_drive_that_cannot_be_read_harms_no_other(tmp_path: Path) -> None:
+    broken = tmp_path / "broken.csv"
+    broken.write_text("<html>404</html>\n", encoding="utf-8")
+    alone = check(settings(FIXTURE / "safe.csv"), Silent())
+    notes = Notes()
+    both = check(settings(broken, FIXTURE / "safe.csv"), notes)
+    assert both.verdicts.equals(alone.verdicts)
+    by_name = {row["file_name"]: row for row in both.drives.to_pylist()}
+    assert by_name["broken.csv"]["status"] == "not_judged"
+    assert "broken.csv" in by_name["broken.csv"]["status_reason"]
+    assert by_name["safe.csv"]["status"] == "judged"
+    assert sum("not judged" in line for line in notes.said) == 1
+
+
+def test_a_drive_that_the_engine_chokes_on_harms_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    from drivelint.derive import derive as plain
+
+    def choking(con: duckdb.DuckDBPyConnection, *args: Any, **options: Any) -> None:
+        if con.execute(
+            "SELECT count(*) FROM actor_state s JOIN data_log l USING (drive_id) WHERE l.file_name = 'safe.csv'"
+        ).fetchall()[0][0]:
+            raise duckdb.OutOfMemoryException("no more")
+        plain(con, *args, **options)
+
+    monkeypatch.setattr("drivelint.judge.derive", choking)
+    result = check(settings(*logs()), Silent())
+    status = {row["file_name"]: (row["status"], row["status_reason"]) for row in result.drives.to_pylist()}
+    assert status["safe.csv"][0] == "not_judged"
+    assert "no more" in status["safe.csv"][1]
+    assert {name for name, (s, _) in status.items() if s == "judged"} == {"near_miss.csv", "collision.csv"}
+    judged = {row["drive_id"].rsplit("-", 1)[0] for row in result.verdicts.to_pylist()}
+    assert judged == {"near_miss", "collision"}
+
+
+def test_the_same_log_twice_is_judged_once(tmp_path: Path) -> None:
+    copy = tmp_path / "safe.csv"
+    shutil.copy(FIXTURE / "safe.csv", copy)
+    notes = Notes()
+    result = check(settings(FIXTURE / "safe.csv", copy), notes)
+    assert result.drives.num_rows == 1
+    assert any("judged once" in line for line in notes.said)
+
+
+def test_none_judged_is_an_error_of_its_own(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.csv").write_text(f"nothing,{name}\n", encoding="utf-8")
+    with pytest.raises(TraceError, match="none of 2 logs"):
+        check(settings(tmp_path / "a.csv", tmp_path / "b.csv"), Silent())
+
+
+def test_a_map_of_another_place_is_refused() -> None:
+    with pytest.raises(MapError, match=r"of another place than safe\.csv"):
+        check(settings(FIXTURE / "safe.csv", map_offset=(5000.0, 0.0)), Silent())
+
+
+def test_a_map_beside_the_drive_makes_map_rules_unknown_not_failed() -> None:
+    result = check(settings(FIXTURE / "safe.csv", map_offset=(0.0, 30.0)), Silent())
+    rows = {row["rule_id"]: row for row in result.verdicts.to_pylist()}
+    for rule in ("ukhc.r162.safe-distance-ahead", "ukhc.r145.off-road", "ukhc.r124.speed-limit"):
+        assert rows[rule]["verdict"] == "unknown"
+        assert rows[rule]["reason_code"] == "missing_registration"
+    assert rows["ukhc.no-collision"]["verdict"] == "pass"
+
+
+def test_kept_database_has_every_stage(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(batch, "STATES", 1)  # several batches, and two maps that take turns
+    result = check(settings(*logs(), out=tmp_path, keep_db=True, margins=True), Silent())
+    with duckdb.connect(str(tmp_path / "drivelint.duckdb"), read_only=True) as con:
+        count = {
+            t: con.execute(f"SELECT count(*) FROM {t}").fetchall()[0][0]
+            for t in store.schema()
+            if t not in ("drive", "rule")
+        }
+        assert con.execute("SELECT count(DISTINCT drive_id) FROM actor_state").fetchall() == [(3,)]
+        assert (
+            con.execute("SELECT count(*), count(DISTINCT (lanelet_id, k)) FROM lane_point").fetchall()[0]
+            == (count["lane_point"],) * 2
+        )
+        commented = con.execute(
+            "SELECT count(*) FROM duckdb_columns() WHERE table_name = 'verdict' AND comment IS NULL"
+        ).fetchall()
+    for table in ("actor_state", "lanelet", "lane_point", "ego_state", "pair", "overtake", "overtake_sda", "oncoming"):
+        assert count[table] > 0, table
+    assert count["verdict"] == result.verdicts.num_rows
+    assert count["finding"] == result.findings.num_rows
+    assert count["margin"] > result.verdicts.num_rows
+    assert commented == [(0,)]
+
+
+def test_files_need_a_folder() -> None:
+    with pytest.raises(UsageError, match="--out"):
+        check(settings(FIXTURE / "safe.csv", margins=True), Silent())
