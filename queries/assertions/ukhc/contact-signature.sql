@@ -9,7 +9,7 @@
 -- sense = "<"
 -- unit = "m/s2"
 -- merge_gap_s = 1.0
--- reads = ["ego_state", "lost_object", "pair", "step"]
+-- reads = ["ego_state", "lost_object", "pair", "step", "clock"]
 -- requires = ["ego_size"]
 --
 -- [params.within_m]
@@ -32,6 +32,13 @@ SELECT l.drive_id, l.ego_id, s.t_ns, l.object_id, NULL
 FROM lost_object l
 ASOF JOIN step s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id AND l.t_from_ns <= s.t_ns
 WHERE l.reason IN ('lost_near_ego', 'appeared_near_ego')
+UNION ALL
+-- so may whoever is close by when a hole of the log ends
+SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, NULL
+FROM step s
+JOIN clock c USING (drive_id, ego_id)
+JOIN pair p USING (drive_id, ego_id, t_ns)
+WHERE s.dt_ns > c.max_gap_ns AND p.clearance_m < lost_near_m()
 
 -- @condition
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, $tyre_mps2 AS required,

@@ -14,7 +14,7 @@
 -- requires = ["map", "registration", "handedness", "ego_size"]
 
 -- @applies
-SELECT DISTINCT drive_id, ego_id, t_ns, ov_id AS object_id, stage AS episode,
+SELECT drive_id, ego_id, t_ns, ov_id AS object_id, stage AS episode,
     CASE WHEN ov_id IS NOT NULL THEN true WHEN ov_known THEN false END AS applies
 FROM overtake_step
 
