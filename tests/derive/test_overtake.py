@@ -1,0 +1,396 @@
+"""The overtake: excursions, who is passed, its moments and how it ends, safe distance ahead, danger spaces, opportunities."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+from shapely.geometry import box
+
+from tests import scenes
+from tests.scenes import LANE, Actor, Road, derived, drive, moving, road, rows, standing, swing, times
+
+MPH = 0.44704
+Row = dict[str, Any]
+
+
+def scene(hand: str = "rht", end: float = 30.0, *, abort: bool = False) -> tuple[Road, list[Actor]]:
+    """Pass a slower car at 12 m/s: out from s = 150 on, back from s = 280 on; the oncoming car is met late."""
+    way = road(hand=hand)
+    t = times(end)
+    s = 50 + 12 * t
+    if abort:  # brakes to 4 m/s when it is half over, behind the car ahead
+        v_t = np.clip(12 - 4 * (t - 9), 4, 12)
+        s = 50 + np.concatenate([[0.0], np.cumsum((v_t[1:] + v_t[:-1]) / 2 * np.diff(t))])
+    d = swing(way, s, 150, 165 if abort else 280, share=0.6 if abort else 1.0)
+    ego = moving("ego", way, t, s, d)
+    vbp = moving("vbp", way, t, 140 + 4 * t, way.own)
+    ov = moving("ov", way, t, 590 - 9 * t, way.other)
+    return way, [ego, vbp, ov]
+
+
+def one(actors: list[Actor], way: Road, table: str) -> list[Row]:
+    return rows(derived(drive(actors, way.environment), tables=[table]), f"FROM {table} ORDER BY ALL")
+
+
+def edge(way: Road, ego: Actor, k: int, *, outer: bool) -> float:
+    """How far the furthest (or nearest) corner of a box on a straight road is beyond the centre line, by the corners themselves."""
+    offsets = [
+        ego.y[k] + a * ego.length / 2 * math.sin(ego.yaw[k]) + b * ego.width / 2 * math.cos(ego.yaw[k])
+        for a in (1, -1)
+        for b in (1, -1)
+        if ego.length and ego.width
+    ]
+    beyond = [way.over * y for y in offsets]
+    return max(beyond) if outer else min(beyond)
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_a_completed_overtake(hand: str) -> None:
+    way, actors = scene(hand)
+    ego, vbp, ov = actors
+    (found,) = one(actors, way, "overtake")
+    n = len(ego.t_s)
+    out = [edge(way, ego, k, outer=True) for k in range(n)]
+    inner = [edge(way, ego, k, outer=False) for k in range(n)]
+    k0 = next(k for k in range(n) if out[k] > 0.05)
+    k1 = next(k for k in range(n) if inner[k] >= 0)
+    k3 = next(k for k in range(k1, n) if out[k] <= 0.05)
+    assert [found[f"t{i}_ns"] for i in (0, 1, 3)] == [round(ego.t_s[k] * 1e9) for k in (k0, k1, k3)]
+    # the way back begins at s = 280; -0.1 m/s sideways is reached a little later
+    assert 280 <= 50 + 12 * found["t2_ns"] / 1e9 <= 284
+    assert (found["status"], found["passed"], found["opposing"], found["begin_seen"]) == ("completed", True, True, True)
+    assert (found["vbp_id"], found["ov_id"], found["occurrence"]) == ("vbp", "ov", 0)
+    assert found["side"] == (1 if hand == "rht" else -1)
+    ego_front = max(ego.x[k0] + 2.4 * math.cos(ego.yaw[k0]) + b * 0.9 * abs(math.sin(ego.yaw[k0])) for b in (1, -1))
+    assert found["vbp_gap_m"] == pytest.approx(vbp.x[k0] - 2.4 - ego_front, abs=1e-6)
+    assert found["da_m"] == pytest.approx(ov.x[k0] - 2.4 - ego_front, abs=1e-6)
+    assert found["v_av_mps"] == pytest.approx(math.hypot(ego.vx[k0], ego.vy[k0]))
+    assert (found["v_vbp_mps"], found["v_ov_mps"]) == pytest.approx((4.0, 9.0))
+    assert found["lane_width_m"] == pytest.approx(LANE)
+    ego_rear = min(ego.x[k3] - 2.4 * math.cos(ego.yaw[k3]) + b * 0.9 * math.sin(ego.yaw[k3]) for b in (1, -1))
+    assert found["t3_gap_m"] == pytest.approx(ego_rear - (vbp.x[k3] + 2.4), abs=1e-6)
+    beta = math.atan2(abs(ego.y[k1] - ego.y[k0]), ego.x[k1] - ego.x[k0])
+    assert found["pull_out_angle_rad"] == pytest.approx(beta, abs=1e-6)
+
+
+def test_mirrored_scenes_give_mirrored_results() -> None:
+    both = {}
+    for hand in ("rht", "lht"):
+        way, actors = scene(hand)
+        con = derived(drive(actors, way.environment))
+        both[hand] = {
+            table: rows(con, f"FROM {table} ORDER BY ALL")
+            for table in ("overtake", "overtake_sda", "overtake_step", "oncoming", "lead", "opportunity", "excursion")
+        }
+    for table, right in both["rht"].items():
+        left = both["lht"][table]
+        assert len(left) == len(right) > 0, table
+        for a, b in zip(left, right, strict=True):
+            for column, value in a.items():
+                if column == "side":
+                    assert value == -b[column]
+                elif isinstance(value, float):
+                    assert value == pytest.approx(b[column], abs=1e-6), (table, column)
+                else:
+                    assert value == b[column], (table, column)
+
+
+def test_an_aborted_overtake() -> None:
+    way, actors = scene(abort=True)
+    (found,) = one(actors, way, "overtake")
+    assert (found["status"], found["passed"], found["t1_ns"], found["t2_ns"]) == ("aborted", False, None, None)
+    assert found["t3_ns"] is not None
+    assert found["cut_in_angle_rad"] is None
+
+
+@pytest.mark.parametrize("end", [9.0, 10.0, 12.0, 19.5])
+def test_an_overtake_that_the_log_cuts_off(end: float) -> None:
+    way, actors = scene()
+    (whole,) = one(actors, way, "overtake")
+    assert whole["t0_ns"] < 9e9 < whole["t1_ns"] < 12e9 < whole["t2_ns"] < 19.5e9 + 1.1e9 < whole["t3_ns"] + 2e9
+    (found,) = one([a.keep(a.t_s < end + 0.01) for a in actors], way, "overtake")
+    assert (found["status"], found["t3_ns"], found["t_end_ns"]) == ("truncated", None, round(end * 1e9))
+    assert found["t2_ns"] is None  # whether it turned back for good is not known
+    assert found["t1_ns"] == (whole["t1_ns"] if whole["t1_ns"] <= end * 1e9 else None)
+    assert (found["t0_ns"], found["da_m"]) == (whole["t0_ns"], whole["da_m"])
+
+
+@pytest.mark.parametrize("start", [9.0, 12.0])
+def test_an_overtake_that_begins_before_the_log(start: float) -> None:
+    way, actors = scene()
+    late = [a.keep(a.t_s > start - 0.01) for a in actors]
+    found = one(late, way, "overtake")
+    assert not [row for row in found if row["begin_seen"]]
+    if start == 9.0:  # its centre is still in its lane then
+        assert [(row["status"], row["t0_ns"]) for row in found] == [("completed", 9_000_000_000)]
+        assert {row["da_m"] for row in one(late, way, "overtake_sda")} == {None}
+
+
+def test_a_hole_before_t0_hides_where_it_began() -> None:
+    way, actors = scene()
+    (whole,) = one(actors, way, "overtake")
+    t0 = whole["t0_ns"] / 1e9
+    holed = [a.keep((a.t_s < t0 - 0.5) | (a.t_s > t0 + 0.15)) for a in actors]
+    (found,) = one(holed, way, "overtake")
+    assert found["begin_seen"] is False
+    assert found["t0_ns"] > whole["t0_ns"]
+    reasons = {row["reason"] for row in one(holed, way, "overtake_sda")}
+    assert reasons == {"the log does not show where the overtake began"}
+
+
+def test_two_vehicles_passed_in_one_go_are_two_occurrences() -> None:
+    way, (ego, vbp, ov) = scene()
+    second = moving("second", way, ego.t_s, 155 + 4 * ego.t_s, way.own)
+    found = one([ego, vbp, second, ov], way, "overtake")
+    assert [(row["occurrence"], row["vbp_id"], row["passed"]) for row in found] == [
+        (0, "vbp", True),
+        (1, "second", True),
+    ]
+    assert len({(row["t0_ns"], row["t3_ns"]) for row in found}) == 1
+    assert found[1]["vbp_gap_m"] - found[0]["vbp_gap_m"] == pytest.approx(15.0)
+
+
+def test_a_vehicle_further_ahead_that_is_not_reached_is_not_passed() -> None:
+    way, (ego, vbp, ov) = scene()
+    far = moving("far", way, ego.t_s, 300 + 8 * ego.t_s, way.own)
+    assert [row["vbp_id"] for row in one([ego, vbp, far, ov], way, "overtake")] == ["vbp"]
+
+
+@pytest.mark.parametrize(("turned", "counts"), [(math.pi, True), (0.0, True)])
+def test_a_parked_car_is_passed_whichever_way_it_stands(turned: float, counts: bool) -> None:
+    way, (ego, _, ov) = scene()
+    parked = standing("parked", way, ego.t_s, 200, way.own, turned=turned)
+    found = one([ego, parked, ov], way, "overtake")
+    assert [(row["vbp_id"], row["status"], row["ov_id"]) for row in found] == [("parked", "completed", "ov")]
+
+
+def test_the_one_parked_the_wrong_way_round_is_no_oncoming_vehicle() -> None:
+    way, (ego, _, _) = scene()
+    parked = standing("parked", way, ego.t_s, 200, way.own, turned=math.pi)
+    assert {row["object_id"] for row in one([ego, parked], way, "oncoming")} == {None}
+
+
+def test_a_change_of_lane_in_the_same_direction_is_not_opposing() -> None:
+    way = road(lanes=(1, 2))
+    t = times(25.0)
+    s = 50 + 12 * t
+    d = -1.5 * LANE + LANE * np.clip((s - 150) / 40, 0, 1)
+    vbp = moving("vbp", way, t, 140 + 4 * t, -1.5 * LANE)
+    con = derived(drive([moving("ego", way, t, s, d), vbp], way.environment), tables=["overtake", "lane_departure"])
+    (found,) = rows(con, "FROM overtake")
+    assert (found["opposing"], found["status"], found["passed"]) == (False, "lane_change", True)
+    departures = rows(con, "FROM lane_departure ORDER BY t_ns")
+    assert [(row["side"], row["back"]) for row in departures] == [("left", False)]
+
+
+def test_nobody_ahead_is_no_overtake_but_a_departure() -> None:
+    way, (ego, _, ov) = scene()
+    con = derived(drive([ego, ov], way.environment), tables=["overtake", "lane_departure"])
+    assert not rows(con, "FROM overtake")
+    departures = rows(con, "FROM lane_departure ORDER BY t_ns")
+    assert [(row["side"], row["back"], row["begin_seen"]) for row in departures] == [
+        ("left", False, True),
+        ("right", True, True),
+    ]
+
+
+def test_a_wobble_over_the_line_is_an_excursion_and_nothing_else() -> None:
+    way, (ego, vbp, ov) = scene()
+    d = swing(way, ego.x, 70, 100, share=0.28)  # 0.1 m over
+    con = derived(
+        drive([moving("ego", way, ego.t_s, ego.x, d), vbp, ov], way.environment),
+        tables=["overtake", "lane_departure", "excursion"],
+    )
+    (found,) = rows(con, "FROM excursion")
+    assert 0.05 < found["max_out_m"] < 0.3
+    assert found["centre_over"] is False
+    assert not rows(con, "FROM overtake")
+    assert not rows(con, "FROM lane_departure")
+
+
+def safe_distance(  # noqa: PLR0917 - the formula's own symbols
+    w: float, beta: float, theta: float, k: float, v_av: float, v_vbp: float, v_ov: float
+) -> float:
+    """MISSION.md, Numbers: the paper's Appendix A, written out once more."""
+    pull = w / (v_av * math.sin(beta))
+    passing = (k + (v_vbp - v_av * math.cos(beta)) * pull) / (v_av - v_vbp)
+    cut = w / (v_av * math.sin(theta))
+    mph = v_ov / MPH
+    stopping = 0.300 * mph + (0.058 - 0.011 * mph + 0.015 * mph**2)
+    return w / math.tan(beta) + v_av * passing + w / math.tan(theta) + stopping + v_ov * (pull + passing + cut)
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.floats(5, 30), st.floats(0, 25), st.floats(1, 30), st.floats(3.8, 18.0), st.floats(3.5, 12))
+def test_safe_distance_ahead_is_the_papers_formula(  # noqa: PLR0917
+    v_av: float, v_vbp: float, v_ov: float, l_av: float, l_vbp: float
+) -> None:
+    """Speeds and lengths as drawn, moved over a line within a straight road; angles and gaps of every profile."""
+    assume(abs(v_av - v_vbp) > 0.5)
+    way = road(((2000.0, 0.0),))
+    t = times(6.0)
+    s = 600 + v_av * t
+    ego = moving("ego", way, t, s, swing(way, s, 600 + 2 * v_av, None, change=3 * v_av), length=l_av)
+    vbp = moving("vbp", way, t, 600 + 2 * v_av + 40 + v_vbp * (t - 2), way.own, length=l_vbp)
+    ov = moving("ov", way, t, 1900 - v_ov * t, way.other)
+    con = derived(drive([ego, vbp, ov], way.environment), tables=["overtake_sda"])
+    (o,) = rows(con, "FROM overtake")
+    assert (o["l_av_m"], o["l_vbp_m"]) == pytest.approx((l_av, l_vbp))
+    for row in rows(con, "SELECT * FROM overtake_sda JOIN profile USING (profile)"):
+        if row["profile"] == "observed" or o["v_av_mps"] <= o["v_vbp_mps"]:
+            assert row["sda_m"] is None
+            assert row["zone"] is None
+            assert row["reason"].startswith("the overtake was not completed" if v_av > v_vbp else "undefined")
+            continue
+        k = row["pull_out_headroom_m"] + l_vbp + row["cut_in_clearance_m"] + l_av
+        expected = safe_distance(
+            LANE, row["pull_out_angle_rad"], row["cut_in_angle_rad"], k, o["v_av_mps"], o["v_vbp_mps"], o["v_ov_mps"]
+        )
+        assert row["sda_m"] == pytest.approx(expected, rel=1e-9)
+        spare = o["da_m"] - expected
+        assert row["spare_m"] == pytest.approx(spare)
+        assert row["spare_s"] == pytest.approx(spare / (o["v_av_mps"] + o["v_ov_mps"]))
+        seconds = spare / (o["v_av_mps"] + o["v_ov_mps"])
+        assert row["zone"] == ("A" if spare <= 0 else "B" if seconds < 0.5 else "C" if seconds <= 2.5 else "D")
+
+
+def test_the_observed_profile_takes_what_this_overtake_had() -> None:
+    way, actors = scene()
+    con = derived(drive(actors, way.environment), tables=["overtake_sda"])
+    (o,) = rows(con, "FROM overtake")
+    (row,) = rows(con, "FROM overtake_sda WHERE profile = 'observed'")
+    k = o["vbp_gap_m"] + o["l_vbp_m"] + o["t2_gap_m"] + o["l_av_m"]
+    angles = o["pull_out_angle_rad"], o["cut_in_angle_rad"]
+    expected = safe_distance(LANE, *angles, k, o["v_av_mps"], o["v_vbp_mps"], o["v_ov_mps"])
+    assert row["sda_m"] == pytest.approx(expected, rel=1e-9)
+
+
+def test_without_anybody_the_distance_is_a_bound_and_the_limit_is_assumed() -> None:
+    """The road ends at 600 m; SDA is worked out for an oncoming vehicle at 60 mph."""
+    way, (ego, vbp, _) = scene()
+    con = derived(drive([ego, vbp], way.environment), tables=["overtake_sda"])
+    (o,) = rows(con, "FROM overtake")
+    assert (o["ov_id"], o["free_reason"]) == (None, "map_end")
+    assert o["v_ov_mps"] == pytest.approx(60 * MPH)
+    front = 50 + 12 * o["t0_ns"] / 1e9 + 2.4
+    assert o["da_m"] == pytest.approx(600 - front, abs=0.2)
+    for row in rows(con, "FROM overtake_sda"):
+        assert row["at_least"]
+        assert row["nobody"]
+
+
+def test_an_unlimited_road_gives_no_speed_to_assume() -> None:
+    way = road(limit_mph=None)
+    _, (ego, vbp, _) = scene()
+    found = one([ego, vbp], way, "overtake_sda")
+    assert {row["sda_m"] for row in found} == {None}
+    assert "no speed limit" in " ".join(row["reason"] for row in found)
+
+
+def spaces(way: Road, a: Actor, k: int, reach: float, forward: int) -> tuple[Any, Any]:
+    """Return an actor's box on a straight road as the rectangle that it takes up along and across, and its danger space."""
+    c, s = abs(math.cos(a.yaw[k])), abs(math.sin(a.yaw[k]))
+    half, across = 2.4 * c + 0.9 * s, 2.4 * s + 0.9 * c
+    own = box(a.x[k] - half, a.y[k] - across, a.x[k] + half, a.y[k] + across)
+    near = a.x[k] + forward * half
+    return own, box(
+        min(near, near + forward * reach), a.y[k] - across, max(near, near + forward * reach), a.y[k] + across
+    )
+
+
+def stopping(v: float) -> float:
+    mph = v / MPH
+    return 0.3 * mph + 0.058 - 0.011 * mph + 0.015 * mph**2
+
+
+def test_danger_spaces_on_a_straight_road_are_rectangles() -> None:
+    """Inside each other by a positive amount exactly where the rectangles have an area in common."""
+    way = road()
+    t = times(30.0)
+    s = 50 + 12 * t
+    ego = moving("ego", way, t, s, swing(way, s, 150, 280))
+    vbp = moving("vbp", way, t, 140 + 4 * t, way.own)
+    ov = moving("ov", way, t, 480 - 9 * t, way.other)  # they meet while the ego is still out
+    con = derived(drive([ego, vbp, ov], way.environment), tables=["overtake_step"])
+    found = rows(con, "FROM overtake_step ORDER BY t_ns")
+    (o,) = rows(con, "FROM overtake")
+    assert [row["t_ns"] for row in found][0] == o["t0_ns"]
+    assert found[-1]["t_ns"] == o["t_end_ns"]
+    seen = set()
+    for row in found:
+        k = round(row["t_ns"] / 1e8)
+        sd_av, sd_ov = (stopping(math.hypot(a.vx[k], a.vy[k])) for a in (ego, ov))
+        assert row["sd_av_m"] == pytest.approx(sd_av)
+        stage = "pulling_out" if row["t_ns"] < o["t1_ns"] else "passing" if row["t_ns"] < o["t2_ns"] else "cutting_in"
+        assert row["stage"] == stage
+        av, ds_av = spaces(way, ego, k, sd_av, 1)
+        passed, _ = spaces(way, vbp, k, 0, 1)
+        other, ds_ov = spaces(way, ov, k, sd_ov, -1)
+        pairs: list[tuple[str, Any, Any]] = [("vbp_in_ds_av_m", passed, ds_av)]
+        if row["ov_id"] is not None:
+            assert row["sd_ov_m"] == pytest.approx(sd_ov)
+            pairs += [("ov_in_ds_av_m", other, ds_av), ("av_in_ds_ov_m", av, ds_ov), ("ds_overlap_m", ds_av, ds_ov)]
+        for column, one_, two in pairs:
+            (ax0, ay0, ax1, ay1), (bx0, by0, bx1, by1) = one_.bounds, two.bounds
+            # how far one must be moved to be clear of the other, along or across; negative: how far they are apart
+            depth = min(ax1 - bx0, bx1 - ax0, ay1 - by0, by1 - ay0)
+            assert row[column] == pytest.approx(depth, abs=1e-6), (column, k)
+            if abs(depth) > 1e-6:
+                assert (row[column] > 0) is (one_.intersection(two).area > 0)
+            if depth > 0:
+                seen.add(column)
+    assert seen == {"vbp_in_ds_av_m", "ov_in_ds_av_m", "av_in_ds_ov_m", "ds_overlap_m"}
+
+
+def held_up(way: Road, t: NDArray[np.float64], speed: float = 10.0) -> list[Actor]:
+    return [moving("ego", way, t, 50 + speed * t, way.own), moving("slow", way, t, 80 + speed * t, way.own)]
+
+
+def test_an_opportunity_that_is_not_taken() -> None:
+    """Held up for 20 s at 10 m/s under 60 mph, an empty road ahead; on a road of one way there is none."""
+    way = road(((2000.0, 0.0),))
+    t = times(20.0)
+    found = one(held_up(way, t), way, "opportunity")
+    assert {row["profile"] for row in found} == {"relaxed", "nominal", "aggressive"}
+    for row in found:
+        assert (row["object_id"], row["occurrence"], row["taken"]) == ("slow", 0, False)
+        assert (row["t_start_ns"], row["t_end_ns"]) == (0, 20_000_000_000)
+        assert row["zone"] == "D"
+        assert row["t_best_ns"] is not None
+    one_way = road(((2000.0, 0.0),), lanes=(0, 2))
+    assert not one(held_up(one_way, t), one_way, "opportunity")
+
+
+def test_an_opportunity_taken() -> None:
+    way, actors = scene()
+    found = one(actors, way, "opportunity")
+    (o,) = one(actors, way, "overtake")
+    mine = [row for row in found if row["object_id"] == "vbp" and row["taken"]]
+    assert {row["profile"] for row in mine} == {"relaxed", "nominal", "aggressive"}
+    assert all(row["t_end_ns"] <= o["t0_ns"] for row in mine)
+
+
+def test_with_a_blind_spot_the_best_moment_is_elsewhere() -> None:
+    """Nobody can be told to be absent while somebody has no position: those steps are no opportunity."""
+    way = road(((2000.0, 0.0),))
+    t = times(20.0)
+    ghost = standing("ghost", way, t, 1500, way.other, turned=math.pi).lost(t < 15.05)
+    found = one([*held_up(way, t), ghost], way, "opportunity")
+    assert {row["t_best_ns"] >= 15_100_000_000 for row in found} == {True}
+    everywhere = standing("ghost", way, t, 1500, way.other, turned=math.pi).lost(t >= 0)
+    blind = one([*held_up(way, t), everywhere], way, "opportunity")
+    assert not [row for row in blind if row["t_best_ns"] is not None]
+
+
+@pytest.mark.parametrize("rules", [("ukhc.r162.safe-distance-ahead", "ukhc.r126.ds-*")])
+def test_the_rules_agree_with_the_tables(rules: tuple[str, ...]) -> None:
+    way, actors = scene()
+    verdicts = scenes.judged([drive(actors, way.environment)], rules=rules, profiles=["nominal"])
+    assert {row["verdict"] for row in verdicts if "r162" in row["rule_id"]} == {"pass"}
+    assert "error" not in {row["verdict"] for row in verdicts}
