@@ -1,4 +1,5 @@
-"""The shipped catalogue: every rule's header, SQL and plan, its cases, and whether the cases would notice a wrong rule."""
+"""The shipped catalogue: every rule's header, SQL and plan, its cases, and whether the cases would notice a wrong
+rule."""
 
 from __future__ import annotations
 
@@ -71,7 +72,12 @@ def test_cases_notice_a_wrong_sense(rule_id: str) -> None:
         assert _noticed(mutant), f"no case of {rule_id} notices sense = {mutant.sense}"
 
 
-NUMERIC = [(rule.id, name) for rule in RULES.values() for name, param in rule.params.items() if isinstance(param.default, float)]
+NUMERIC = [
+    (rule.id, name)
+    for rule in RULES.values()
+    for name, param in rule.params.items()
+    if isinstance(param.default, float)
+]
 
 
 @pytest.mark.parametrize(("rule_id", "name"), NUMERIC)

@@ -40,36 +40,76 @@ def test_a_rule_is_its_file(tmp_path: Path) -> None:
         ({"clause": "7"}, {}, "", r":2: header: Expected `str`, got `int`"),
         ({"clause": "broken"}, {}, "", r":2: the header is not TOML"),
         ({}, {}, "[params.limit]\ndefualt = 1\n", r"unknown key 'defualt' in the header; did you mean 'default'"),
-        ({}, {}, "[applies]\nroad_typs = ['town']\n", r"unknown key 'road_typs' in the header; did you mean 'road_types'"),
+        (
+            {},
+            {},
+            "[applies]\nroad_typs = ['town']\n",
+            r"unknown key 'road_typs' in the header; did you mean 'road_types'",
+        ),
         ({}, {}, PARAM, "parameter 'limit' is never used"),
         ({}, {}, PARAM.replace("limit", "Limit"), "parameter 'Limit': use lower-case"),
         ({"quantifier": '"eventually"'}, {}, "", "'eventually' makes no sense for an invariant"),
-        ({"quantifier": '"eventually"'} | EXECUTION, {"reference": REFERENCE}, "", "'eventually' makes no sense for an execution"),
+        (
+            {"quantifier": '"eventually"'} | EXECUTION,
+            {"reference": REFERENCE},
+            "",
+            "'eventually' makes no sense for an execution",
+        ),
         ({"subtype": '"temporal"'}, {}, "", "subtype .* belongs to pre- and postconditions"),
         ({"window_s": "3"}, {}, "", "window_s belongs to temporal conditions"),
         ({"combine": '"all"'}, {}, "", "combine is for conditions at a reference point"),
         ({"unit": None}, {}, "", "unit is missing"),
         ({"near_margin": "1.0", "sense": '"holds"'}, {}, "", "near_margin needs a measured condition"),
-        ({"merge_gap_s": '"nothing"'}, {}, "", "merge_gap_s = 'nothing' must be a number or the name of a numeric parameter"),
+        (
+            {"merge_gap_s": '"nothing"'},
+            {},
+            "",
+            "merge_gap_s = 'nothing' must be a number or the name of a numeric parameter",
+        ),
         ({"merge_gap_s": "-1"}, {}, "", "merge_gap_s must be a number of seconds"),
         ({"reads": "[]"}, {}, "", "reads must name the tables"),
         ({"reads": '["ego_state", "pair"]'}, {}, "", "reads does not match the SQL: remove pair"),
         ({"reads": '["pair"]'}, {}, "", "reads does not match the SQL: add ego_state; remove pair"),
-        (EXECUTION, {}, "", "a execution needs section @reference|execution needs section @reference"),
-        ({}, {"reference": REFERENCE}, "", "invariant has no section @reference"),
-        ({}, {"anchor": REFERENCE}, "", "invariant has no section @anchor"),
+        (EXECUTION, {}, "", "execution: needs a section @reference"),
+        ({}, {"reference": REFERENCE}, "", "invariant: has no section @reference"),
+        ({}, {"anchor": REFERENCE}, "", "invariant: has no section @anchor"),
         ({}, {"conditoin": SPEED}, "", r"unknown section @conditoin; did you mean @condition\?"),
         ({}, {"condition": "SELECT 1 AS a; SELECT 2 AS b"}, "", "exactly one SELECT, found 2"),
         ({}, {"condition": "DROP TABLE step"}, "", "exactly one SELECT"),
         ({}, {"condition": "SELEC drive_id"}, "", "Parser Error|syntax error"),
         ({}, {"condition": "SELECT * FROM ego_state"}, "", "must name every column"),
         ({}, {"condition": SPEED.replace("speed_mps AS observed, ", "")}, "", "observed missing"),
-        ({}, {"condition": SPEED.replace(" FROM", ", 1 AS aplies FROM")}, "", "unknown column 'aplies'; did you mean 'applies'"),
-        ({}, {"condition": SPEED.replace(" FROM", ", true AS holds FROM")}, "", "column 'holds' does not go with sense = '>'"),
-        ({}, {"condition": SPEED.replace(" FROM", ", 1 AS ref_id FROM")}, "", "reads reference or reference_step returns ref_id"),
+        (
+            {},
+            {"condition": SPEED.replace(" FROM", ", 1 AS aplies FROM")},
+            "",
+            "unknown column 'aplies'; did you mean 'applies'",
+        ),
+        (
+            {},
+            {"condition": SPEED.replace(" FROM", ", true AS holds FROM")},
+            "",
+            "column 'holds' does not go with sense = '>'",
+        ),
+        (
+            {},
+            {"condition": SPEED.replace(" FROM", ", 1 AS ref_id FROM")},
+            "",
+            "reads reference or reference_step returns ref_id",
+        ),
         ({}, {"condition": SPEED.replace("ego_state", "'/etc/passwd'")}, "", "there is no table '/etc/passwd'"),
-        ({}, {"condition": SPEED.replace("ego_state", "read_csv('x.csv')")}, "", "table function 'read_csv' is not allowed"),
-        ({}, {"condition": SPEED.replace("ego_state", "query('SELECT 1')")}, "", "table function 'query' is not allowed"),
+        (
+            {},
+            {"condition": SPEED.replace("ego_state", "read_csv('x.csv')")},
+            "",
+            "table function 'read_csv' is not allowed",
+        ),
+        (
+            {},
+            {"condition": SPEED.replace("ego_state", "query('SELECT 1')")},
+            "",
+            "table function 'query' is not allowed",
+        ),
         ({}, {"condition": SPEED.replace("ego_state", "ego_stat")}, "", "there is no table 'ego_stat'"),
         ({}, {"condition": SPEED.replace("1 AS", "random() AS")}, "", r"random\(\) does not give the same answer"),
         ({}, {"condition": f"WITH pair AS (SELECT 1) {SPEED}"}, "", "rename the CTE 'pair'"),
@@ -80,7 +120,9 @@ def test_a_rule_is_its_file(tmp_path: Path) -> None:
         ({"reference": '"exit_taken"'}, {}, "", "an invariant has no reference point"),
     ],
 )
-def test_what_is_refused(tmp_path: Path, header: dict[str, Any], sections: dict[str, str], tables: str, message: str) -> None:
+def test_what_is_refused(
+    tmp_path: Path, header: dict[str, Any], sections: dict[str, str], tables: str, message: str
+) -> None:
     fields = {key: value for key, value in (GOOD | header).items() if value is not None}
     if "title" in header:
         fields = {**fields, "title": ""}
@@ -100,17 +142,30 @@ def test_what_is_refused(tmp_path: Path, header: dict[str, Any], sections: dict[
     ("header", "sections", "message"),
     [
         (BEFORE | {"window_s": '"ahead"'}, {"reference": REFERENCE}, "window_s = 'ahead' must be a number or the name"),
-        (PLACE_BEFORE, {"reference": REFERENCE}, "physical precondition needs section @anchor"),
+        (PLACE_BEFORE, {"reference": REFERENCE}, "physical precondition: needs a section @anchor"),
         (EXECUTION, {"reference": "SELECT drive_id, ego_id FROM exit_taken"}, "must return drive_id, ego_id, t_ns"),
         (EXECUTION, {"reference": REFERENCE, "applies": SPEED}, "@applies is for invariants"),
         (EXECUTION | {"reference": '"exit_lane"'}, {}, "reference = 'exit_lane' is no event table"),
         (EXECUTION | {"reference": '"exit_taken"'}, {"reference": REFERENCE}, "names an event table already"),
         (EXECUTION | {"combine": '"any"'}, {"reference": REFERENCE}, "combine = 'any' needs the column object_id"),
-        (EXECUTION, {"reference": REFERENCE, "condition": SPEED.replace("ego_state", "ego_state JOIN reference r USING (drive_id)")}, "returns ref_id"),
-        (PLACE_BEFORE, {"reference": REFERENCE, "anchor": "SELECT ref_id, t_ns FROM reference_step"}, "@anchor of an precondition has no table 'reference_step'|has no table"),
+        (
+            EXECUTION,
+            {
+                "reference": REFERENCE,
+                "condition": SPEED.replace("ego_state", "ego_state JOIN reference r USING (drive_id)"),
+            },
+            "returns ref_id",
+        ),
+        (
+            PLACE_BEFORE,
+            {"reference": REFERENCE, "anchor": "SELECT ref_id, t_ns FROM reference_step"},
+            "@anchor has no table 'reference_step' in a rule of kind precondition",
+        ),
     ],
 )
-def test_what_is_refused_at_reference_points(tmp_path: Path, header: dict[str, str], sections: dict[str, str], message: str) -> None:
+def test_what_is_refused_at_reference_points(
+    tmp_path: Path, header: dict[str, str], sections: dict[str, str], message: str
+) -> None:
     with pytest.raises(RuleError, match=message):
         write(tmp_path, MEASURED | BOTH | header, {"condition": SPEED} | sections)
 
@@ -137,7 +192,8 @@ def test_packs_of_users_stand_beside_the_shipped_ones(tmp_path: Path) -> None:
 
 
 def test_a_rule_may_use_ctes_unions_macros_of_ours_and_unnest(tmp_path: Path) -> None:
-    sql = f"WITH fast AS (SELECT * FROM ego_state), n AS (SELECT unnest([1, 2]) AS i) {SPEED.replace('ego_state', 'fast')} UNION ALL {SPEED}"
+    ctes = "WITH fast AS (SELECT * FROM ego_state), n AS (SELECT unnest([1, 2]) AS i)"
+    sql = f"{ctes} {SPEED.replace('ego_state', 'fast')} UNION ALL {SPEED}"
     rule = write(tmp_path, HOLDS | GOOD | MEASURED, {"condition": sql})
     assert rule.columns["condition"] == ("drive_id", "ego_id", "t_ns", "observed", "required")
 

@@ -13,8 +13,13 @@ from tests.evaluate.packs import INVARIANT, MEASURED, write
 if TYPE_CHECKING:
     from pathlib import Path
 
-SQL = "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, $limit AS required FROM ego_state WHERE $on AND $word = 'x'"
-PARAMS = "".join(f'[params.{name}]\ndefault = {value}\nunit = ""\nwhy = "a test"\n' for name, value in (("limit", 1), ("on", "true"), ("word", '"x"')))
+SQL = (
+    "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, $limit AS required FROM ego_state WHERE $on AND $word = 'x'"
+)
+PARAMS = "".join(
+    f'[params.{name}]\ndefault = {value}\nunit = ""\nwhy = "a test"\n'
+    for name, value in (("limit", 1), ("on", "true"), ("word", '"x"'))
+)
 
 
 @pytest.fixture
@@ -22,7 +27,12 @@ def rules(tmp_path: Path) -> dict[str, Rule]:
     head = INVARIANT | MEASURED | {"reads": '["ego_state"]'}
     made = [
         write(tmp_path, head | {"status": f'"{status}"'}, {"condition": SQL}, name=name, tables=PARAMS)
-        for name, status in (("r2.gap", "stable"), ("r1.speed", "stable"), ("r3.new", "draft"), ("r4.old", "deprecated"))
+        for name, status in (
+            ("r2.gap", "stable"),
+            ("r1.speed", "stable"),
+            ("r3.new", "draft"),
+            ("r4.old", "deprecated"),
+        )
     ]
     return {rule.id: rule for rule in made}
 
@@ -48,8 +58,12 @@ def test_select(rules: dict[str, Rule], include: list[str], ignore: list[str], e
         assert [rule.id for rule in select(rules, include, ignore, default_pack="pack")] == expected
 
 
-@pytest.mark.parametrize(("selector", "nearest"), [("pack.r1.sped", "pack.r1.speed"), ("pac", "pack"), ("r2.gap", "pack.r2.gap")])
-def test_a_selector_that_matches_nothing_is_refused_with_the_nearest(rules: dict[str, Rule], selector: str, nearest: str) -> None:
+@pytest.mark.parametrize(
+    ("selector", "nearest"), [("pack.r1.sped", "pack.r1.speed"), ("pac", "pack"), ("r2.gap", "pack.r2.gap")]
+)
+def test_a_selector_that_matches_nothing_is_refused_with_the_nearest(
+    rules: dict[str, Rule], selector: str, nearest: str
+) -> None:
     for include, ignore in (([selector], []), ([], [selector])):
         with pytest.raises(UsageError, match=f"did you mean '{nearest}'"):
             select(rules, include, ignore, default_pack="pack")
@@ -57,7 +71,10 @@ def test_a_selector_that_matches_nothing_is_refused_with_the_nearest(rules: dict
 
 def test_parameters_are_typed_like_their_default(rules: dict[str, Rule]) -> None:
     settings = ["pack.r1.speed.limit=2.5", "pack.r1.speed.on=FALSE", "pack.r2.gap.word=a=b"]
-    assert parse_params(rules, settings) == {"pack.r1.speed": {"limit": 2.5, "on": False}, "pack.r2.gap": {"word": "a=b"}}
+    assert parse_params(rules, settings) == {
+        "pack.r1.speed": {"limit": 2.5, "on": False},
+        "pack.r2.gap": {"word": "a=b"},
+    }
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,5 @@
-"""A slow, obvious evaluator of one subject: loops over steps, written from the text of the design and not from the engine."""
+"""A slow, obvious evaluator of one subject: loops over steps, written from the text of the design and not from the
+engine."""
 
 from __future__ import annotations
 
@@ -155,7 +156,8 @@ def _reference(live: list[Step], a: int, b: int, *, eventually: bool, problem: s
 
 
 def stretches(steps: list[Step], merge: int) -> list[tuple[int, int]]:
-    """Failing runs of one invariant's series: adjacent failing steps, and runs closer than `merge`; never across a hole."""
+    """Failing runs of one invariant's series: adjacent failing steps, and runs closer than `merge`; never across a
+    hole."""
     runs: list[tuple[int, int]] = []
     last: tuple[int, Step] | None = None
     for k, step in enumerate(steps):

@@ -1,4 +1,5 @@
-"""Same inputs, same rows: for any order of the rows, any number of threads, alone and in a crowd. Shown on more than a million pairs."""
+"""Same inputs, same rows: for any order of the rows, any number of threads, alone and in a crowd. Shown on more than a
+million pairs."""
 
 from __future__ import annotations
 
@@ -35,14 +36,16 @@ def rules(tmp_path_factory: pytest.TempPathFactory) -> list[Rule]:
 
 
 def database(drives: tuple[str, ...], *, threads: int, order: str) -> duckdb.DuckDBPyConnection:
-    """Fill a database in SQL: rounded values, so that the least margin has many ties; NULLs, holes, an object that comes and goes."""
+    """Fill a database in SQL: rounded values, so that the least margin has many ties; NULLs, holes, an object that
+    comes and goes."""
     con = duckdb.connect(config={"threads": threads})
     con.execute("SET preserve_insertion_order=false")
     store.create_tables(con)
     con.execute("CREATE TEMP TABLE drives AS SELECT unnest($drives) AS drive_id", {"drives": list(drives)})
     con.execute(
         f"""CREATE TEMP TABLE s AS
-        SELECT drive_id, 'e' AS ego_id, (k + CASE WHEN k >= 7000 THEN 100 ELSE 0 END) * 50000000 AS t_ns, k::INTEGER AS k, CASE WHEN k >= 7000 THEN 1 ELSE 0 END AS seg
+        SELECT drive_id, 'e' AS ego_id, (k + CASE WHEN k >= 7000 THEN 100
+            ELSE 0 END) * 50000000 AS t_ns, k::INTEGER AS k, CASE WHEN k >= 7000 THEN 1 ELSE 0 END AS seg
         FROM drives, range({N_STEPS}) r(k)"""
     )
     con.execute(f"INSERT INTO step BY NAME SELECT *, 0.0 AS travel_m FROM s ORDER BY {order}")
@@ -50,15 +53,19 @@ def database(drives: tuple[str, ...], *, threads: int, order: str) -> duckdb.Duc
         "INSERT INTO clock SELECT drive_id, 'e', 50000000, 125000000, min(t_ns), max(t_ns) FROM s GROUP BY drive_id"
     )
     con.execute(
-        f"INSERT INTO ego_state BY NAME SELECT drive_id, ego_id, t_ns, k AS x_m, CASE WHEN k % 97 > 3 THEN 'left' END AS indicator FROM s ORDER BY {order}"
+        f"""INSERT INTO ego_state BY NAME
+        SELECT drive_id, ego_id, t_ns, k AS x_m, CASE WHEN k % 97 > 3 THEN 'left' END AS indicator FROM s ORDER BY {order}"""
     )
     con.execute(
         f"""INSERT INTO pair BY NAME
-        SELECT drive_id, ego_id, t_ns, 'o' || o AS object_id, CASE WHEN k = 500 + o AND o % 7 = 0 THEN NULL ELSE round(2 + 1.6 * sin(k / 50.0 + o), 1) END AS clearance_m
-        FROM s, range({N_OBJECTS}) q(o) WHERE o % 5 > 0 OR k // 1000 % 2 = 0 ORDER BY {order}, o * {1 if order == "k" else -1}"""
+        SELECT drive_id, ego_id, t_ns, 'o' || o AS object_id, CASE WHEN k = 500 + o AND o % 7 = 0 THEN NULL
+            ELSE round(2 + 1.6 * sin(k / 50.0 + o), 1) END AS clearance_m
+        FROM s, range({N_OBJECTS}) q(o) WHERE o % 5 > 0 OR k // 1000 % 2 = 0 ORDER BY {order},
+            o * {1 if order == "k" else -1}"""
     )
     con.execute(
-        f"INSERT INTO declared_event BY NAME SELECT drive_id, 'e' AS actor_id, t_ns, 'go' AS event FROM s WHERE k % 100 = 50 ORDER BY {order}"
+        f"""INSERT INTO declared_event BY NAME
+        SELECT drive_id, 'e' AS actor_id, t_ns, 'go' AS event FROM s WHERE k % 100 = 50 ORDER BY {order}"""
     )
     return con
 

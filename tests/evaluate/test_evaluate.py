@@ -31,7 +31,21 @@ def con() -> Iterator[duckdb.DuckDBPyConnection]:
             who = {"drive_id": drive, "ego_id": ego}
             fill(con, "clock", [who | {"period_ns": 10, "max_gap_ns": 25, "t_start_ns": 0, "t_end_ns": 20}])
             fill(con, "step", [who | {"t_ns": k * 10, "k": k, "seg": 0} for k in range(3)])
-            fill(con, "ego_state", [who | {"t_ns": k * 10, "speed_mps": 12.0 if drive == "a" else 8.0, "x_m": 1.5, "y_m": 2.5, "lanelet_id": "l"} for k in range(3)])
+            fill(
+                con,
+                "ego_state",
+                [
+                    who
+                    | {
+                        "t_ns": k * 10,
+                        "speed_mps": 12.0 if drive == "a" else 8.0,
+                        "x_m": 1.5,
+                        "y_m": 2.5,
+                        "lanelet_id": "l",
+                    }
+                    for k in range(3)
+                ],
+            )
             fill(con, "capability", [who | {"signal": "map", "available": drive == "a", "reason": "because"}])
         for drive in "ab":
             fill(con, "data_log", [{"drive_id": drive, "sha256": f"hash-{drive}"}])
@@ -40,14 +54,16 @@ def con() -> Iterator[duckdb.DuckDBPyConnection]:
 
 def rules(tmp_path: Path) -> list[Rule]:
     header = INVARIANT | MEASURED | READS
+    events = EXECUTION | MEASURED | {"reads": '["ego_state", "exit_taken"]'}
+    reference = "SELECT drive_id, ego_id, t_ns FROM exit_taken"
+    broken = SPEED.replace("speed_mps", "lanelet_id::DOUBLE")
     return [
         write(tmp_path, header, {"condition": SPEED}, name="speed", tables=PARAM),
         write(tmp_path, header | {"requires": '["map", "moon"]'}, {"condition": SPEED}, name="moon", tables=PARAM),
         write(tmp_path, header | {"requires": '["map"]'}, {"condition": SPEED}, name="map", tables=PARAM),
-        write(tmp_path, header, {"condition": SPEED.replace("speed_mps", "lanelet_id::DOUBLE")}, name="broken", tables=PARAM),
-        write(tmp_path, EXECUTION | MEASURED | {"reads": '["ego_state", "exit_taken"]'},
-              {"reference": "SELECT drive_id, ego_id, t_ns FROM exit_taken", "condition": SPEED}, name="never", tables=PARAM),
-    ]  # fmt: skip
+        write(tmp_path, header, {"condition": broken}, name="broken", tables=PARAM),
+        write(tmp_path, events, {"reference": reference, "condition": SPEED}, name="never", tables=PARAM),
+    ]
 
 
 def test_every_subject_has_a_verdict_of_every_rule(con: duckdb.DuckDBPyConnection, tmp_path: Path) -> None:
@@ -70,7 +86,10 @@ def test_verdicts_are_appended_and_nothing_is_left_behind(con: duckdb.DuckDBPyCo
     evaluate(con, chosen[:1])
     evaluate(con, chosen[1:2])
     evaluate(con, [])
-    assert con.execute("SELECT rule_id, count(*) FROM verdict GROUP BY ALL ORDER BY ALL").fetchall() == [("pack.moon", 3), ("pack.speed", 3)]
+    assert con.execute("SELECT rule_id, count(*) FROM verdict GROUP BY ALL ORDER BY ALL").fetchall() == [
+        ("pack.moon", 3),
+        ("pack.speed", 3),
+    ]
     assert con.execute("SELECT table_name FROM duckdb_tables() ORDER BY ALL").fetchall() == before
 
 
@@ -87,8 +106,12 @@ def test_parameters_override_the_default(con: duckdb.DuckDBPyConnection, tmp_pat
 def test_rows_carry_place_and_stable_ids(con: duckdb.DuckDBPyConnection, tmp_path: Path) -> None:
     chosen = rules(tmp_path)
     evaluate(con, chosen)
-    assert con.execute("SELECT DISTINCT x_m, y_m, lanelet_id FROM verdict WHERE verdict = 'fail'").fetchall() == [(1.5, 2.5, "l")]
-    assert con.execute("SELECT DISTINCT rule_version FROM verdict WHERE rule_id = 'pack.speed'").fetchall() == [(chosen[0].version,)]
+    assert con.execute("SELECT DISTINCT x_m, y_m, lanelet_id FROM verdict WHERE verdict = 'fail'").fetchall() == [
+        (1.5, 2.5, "l")
+    ]
+    assert con.execute("SELECT DISTINCT rule_version FROM verdict WHERE rule_id = 'pack.speed'").fetchall() == [
+        (chosen[0].version,)
+    ]
     ((first,),) = con.execute("SELECT finding_id FROM finding WHERE rule_id = 'pack.speed'").fetchall()
     con.execute("DELETE FROM finding")
     evaluate(con, chosen[:1], {"pack.speed": {"limit": 11.0}})
@@ -101,9 +124,16 @@ def test_rows_carry_place_and_stable_ids(con: duckdb.DuckDBPyConnection, tmp_pat
 
 def test_explain_shows_a_plan_that_joins_by_nested_loops(con: duckdb.DuckDBPyConnection, tmp_path: Path) -> None:
     """The guard of the catalogue can fail: a residual that is no comparison in an outer join."""
-    sql = SPEED.replace("FROM ego_state", "FROM ego_state e LEFT JOIN pair p USING (drive_id, ego_id)").replace("drive_id, ego_id, t_ns, speed", "e.drive_id, e.ego_id, e.t_ns, e.speed")
-    bad = sql.replace("USING (drive_id, ego_id)", "ON p.drive_id = e.drive_id AND (p.object_id IS NULL OR p.t_ns = e.t_ns)")
+    sql = SPEED.replace("FROM ego_state", "FROM ego_state e LEFT JOIN pair p USING (drive_id, ego_id)").replace(
+        "drive_id, ego_id, t_ns, speed", "e.drive_id, e.ego_id, e.t_ns, e.speed"
+    )
+    bad = sql.replace(
+        "USING (drive_id, ego_id)", "ON p.drive_id = e.drive_id AND (p.object_id IS NULL OR p.t_ns = e.t_ns)"
+    )
     header = INVARIANT | MEASURED | {"reads": '["ego_state", "pair"]'}
-    plans = {name: "".join(explain(con, write(tmp_path, header, {"condition": text}, name=name, tables=PARAM))) for name, text in (("good", sql), ("bad", bad))}
+    plans = {
+        name: "".join(explain(con, write(tmp_path, header, {"condition": text}, name=name, tables=PARAM)))
+        for name, text in (("good", sql), ("bad", bad))
+    }
     assert "BLOCKWISE_NL" not in plans["good"]
     assert "BLOCKWISE_NL" in plans["bad"]

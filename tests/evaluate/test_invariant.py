@@ -31,9 +31,12 @@ def speeds(values: list[Any], **more: Any) -> dict[str, Any]:
 
 @pytest.mark.parametrize(
     ("sense", "value", "verdict"),
-    [(">", 10.0, "fail"), (">=", 10.0, "pass"), ("<", 10.0, "fail"), ("<=", 10.0, "pass"), (">", 10.001, "pass"), ("<", 9.999, "pass"),
-     (">", 9.0, "fail"), (">=", 9.0, "fail"), ("<", 11.0, "fail"), ("<=", 11.0, "fail")],
-)  # fmt: skip
+    [
+        *((">", 10.0, "fail"), (">=", 10.0, "pass"), ("<", 10.0, "fail"), ("<=", 10.0, "pass")),
+        *((">", 10.001, "pass"), ("<", 9.999, "pass")),
+        *((">", 9.0, "fail"), (">=", 9.0, "fail"), ("<", 11.0, "fail"), ("<=", 11.0, "fail")),
+    ],
+)
 def test_the_operator_decides_and_equality_fails_a_strict_one(
     tmp_path: Path, sense: str, value: float, verdict: str
 ) -> None:
@@ -138,7 +141,8 @@ def test_two_rows_for_a_step_are_refused(tmp_path: Path) -> None:
 
 
 def test_a_doubled_row_cannot_stand_in_for_a_lost_one(tmp_path: Path) -> None:
-    sql = f"{SPEED_SQL} WHERE t_ns <> 200000000 UNION ALL SELECT drive_id, ego_id, t_ns, 50, 10 FROM ego_state WHERE t_ns = 100000000"
+    double = "SELECT drive_id, ego_id, t_ns, 50, 10 FROM ego_state WHERE t_ns = 100000000"
+    sql = f"{SPEED_SQL} WHERE t_ns <> 200000000 UNION ALL {double}"
     rule = write(tmp_path, INVARIANT | MEASURED | SPEED, {"condition": sql})
     assert verdicts(rule, speeds([12, 12, 12, 12]))[0]["verdict"] == "error"
 

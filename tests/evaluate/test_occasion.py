@@ -26,7 +26,8 @@ READS = {"reads": '["ego_state", "exit_taken"]'}
 REFERENCE = "SELECT drive_id, ego_id, t_ns, side FROM exit_taken"
 SPEED = "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, 10 AS required FROM ego_state"
 SIGNAL = """SELECT r.drive_id, r.ego_id, e.t_ns, r.ref_id, e.indicator = r.side AS holds
-FROM reference r JOIN reference_step s USING (ref_id) JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns"""
+FROM reference r JOIN reference_step s USING (ref_id) JOIN ego_state e ON e.drive_id = s.drive_id
+    AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns"""
 EVENTUALLY = {"quantifier": '"eventually"'}
 
 
@@ -389,6 +390,11 @@ def test_nobody_there_is_no_near_miss_and_loses_to_a_real_step(tmp_path: Path) -
     rule = write(tmp_path, header, {"reference": REFERENCE, "condition": PAIR_SQL})
     given: dict[str, Any] = {"step": {"t_s": "0..3 by 0.1"}, "exit_taken": {"t_s": 2.0}}
     (row,) = verdicts(rule, given)
-    assert (row["verdict"], row["reason_code"], row["margin"], row["near_miss"]) == ("pass", "nobody_there", None, False)
+    assert (row["verdict"], row["reason_code"], row["margin"], row["near_miss"]) == (
+        "pass",
+        "nobody_there",
+        None,
+        False,
+    )
     (row,) = verdicts(rule, given | {"pair": {"t_s": [1.5, 1.6], "object_id": "a", "clearance_m": [3, 1.2]}})
     assert (row["verdict"], row["object_id"], row["t_worst_ns"], row["near_miss"]) == ("pass", "a", 1_600_000_000, True)

@@ -74,7 +74,10 @@ def scene(drawn: list[int]) -> list[naive.Step]:
         rows.append((t, PRESENT[present], APPLIES[applies], VALUES[level]))
         t += WAYS[way]
     segs = naive.segments([row[0] for row in rows], GAP)
-    return [naive.Step(t, seg, present, applies, value) for (t, present, applies, value), seg in zip(rows, segs, strict=True)]
+    return [
+        naive.Step(t, seg, present, applies, value)
+        for (t, present, applies, value), seg in zip(rows, segs, strict=True)
+    ]
 
 
 def load(con: duckdb.DuckDBPyConnection, subjects: list[tuple[list[naive.Step], list[int]]]) -> None:
@@ -159,7 +162,8 @@ def test_asking_for_margins_changes_no_verdict(
 
 def _outcomes(con: duckdb.DuckDBPyConnection) -> dict[tuple[str, str], list[naive.Outcome]]:
     rows = con.execute(
-        """SELECT ego_id, rule_id, coalesce(t_start_ns, -1), coalesce(t_end_ns, -1), verdict, reason_code, t_worst_ns, n_expected, n_judged
+        """SELECT ego_id, rule_id, coalesce(t_start_ns, -1), coalesce(t_end_ns, -1), verdict, reason_code, t_worst_ns,
+            n_expected, n_judged
         FROM verdict ORDER BY ego_id, rule_id, occurrence"""
     ).fetchall()
     found: dict[tuple[str, str], list[naive.Outcome]] = {}

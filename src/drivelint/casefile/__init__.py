@@ -11,14 +11,18 @@ A list of cases; each fills tables with a tiny scene, judges the rule, and says 
       expect: [{verdict: fail, t_worst_s: 5.0, margin: -0.6}]
       findings: 1                            # optional
 
-* `given`: table -> a block or a list of blocks. A column is a scalar (broadcast), a list, a range `a..b by c` (ends included) or
-  `a..b` (spread over the block's length), or by time `{else: v, 5.0..5.3: w, 7.2: u}`. Seconds may stand for nanoseconds: `t_s` for `t_ns`.
-  Drive 'd', ego 'e' and every other column that must not be NULL have defaults; the rest is NULL.
-* `step`: only `t_s` is needed. Without it the steps are the times used in the other tables. `clock` and the rest of `step` are
-  worked out (hole = longer than 2.5 median periods); a block `clock: {max_gap_s: 1}` replaces what it names.
-* `expect`: a verdict, which then every row must have, or the list of all rows in order of time, profile and object, each with the
-  columns that matter (`t_worst_s` for `t_worst_ns`; of `reason` a part is enough). Numbers must agree to the decimals written, at least two; 12 means 12.00.
-* Over its cases a rule must show `clean`, `violation`, `boundary`, `not_applicable` and `unknown`: words of the name, or `shows:`.
+* `given`: table -> a block or a list of blocks. A column is a scalar (broadcast), a list, a range `a..b by c` (both
+  ends included) or `a..b` (spread over the block's length), or by time `{else: v, 5.0..5.3: w, 7.2: u}`. Seconds may
+  stand for nanoseconds: `t_s` for `t_ns`. Drive 'd', ego 'e' and every other column that must not be NULL have
+  defaults; the rest is NULL.
+* `step`: only `t_s` is needed. Without it the steps are the times of the tables that have a row per step, or else of
+  the events. `clock` and the rest of `step` are worked out (hole = longer than 2.5 median periods); a block
+  `clock: {max_gap_s: 1}` replaces what it names.
+* `expect`: a verdict, which then every row must have, or the list of all rows in order of time, profile and object,
+  each with the columns that matter (`t_worst_s` for `t_worst_ns`; of `reason` a part is enough). Numbers must agree to
+  the decimals written, at least two; 12 means 12.00.
+* Over its cases a rule must show `clean`, `violation`, `boundary`, `not_applicable` and `unknown`: words of the name,
+  or `shows:`.
 """
 
 from __future__ import annotations
@@ -86,7 +90,10 @@ _Loader.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile(r"^(?:true|fa
 
 
 def read_cases(rule: Rule) -> list[Case]:
-    """Read the rule's cases. Errors: `RuleError` where the file is missing, is not YAML, or says what is not understood."""
+    """Read the rule's cases.
+
+    Errors: `RuleError` where the file is missing, is not YAML, or says what is not understood.
+    """
     file = rule.path.with_suffix(".cases.yml")
     try:
         raw = yaml.load(file.read_text(encoding="utf-8"), Loader=_Loader)  # noqa: S506 - a safe loader with fewer booleans
@@ -106,7 +113,7 @@ def read_cases(rule: Rule) -> list[Case]:
 
 
 def run_cases(rule: Rule) -> list[CaseResult]:
-    """Run every case beside the rule, in order, and one more result: that all kinds of case are there and say what they mean.
+    """Run every case beside the rule, in order; one more result says whether all kinds of case are there.
 
     Errors: `RuleError` for a cases file that cannot be read.
     """

@@ -172,10 +172,16 @@ def _by_time(value: Mapping[Any, Any], times: Any, where: str) -> list[Any]:
 
 def _steps(given: Mapping[str, Sequence[Row]], max_gap_ns: int | None) -> list[Row]:
     """Return the step rows of every subject, from `step` or from the times that the scene uses."""
-    sources = {"step": given["step"]} if "step" in given else {t: rows for t, rows in given.items() if _is_grid(t) and rows}
+    sources = (
+        {"step": given["step"]} if "step" in given else {t: rows for t, rows in given.items() if _is_grid(t) and rows}
+    )
     times: dict[tuple[str, str], set[int]] = {}
     for row in (row for rows in (sources or given).values() for row in rows):
-        used = {v for c, v in row.items() if v is not None and c.endswith("_ns") and c not in _DURATIONS and (c == "t_ns" or not sources)}
+        used = {
+            v
+            for c, v in row.items()
+            if v is not None and c.endswith("_ns") and c not in _DURATIONS and (c == "t_ns" or not sources)
+        }
         times.setdefault((row.get("drive_id", _DRIVE), row.get("ego_id", _EGO)), set()).update(used)
     said = {(row["drive_id"], row["ego_id"], row["t_ns"]): row for row in given.get("step", ())}
     steps: list[Row] = []

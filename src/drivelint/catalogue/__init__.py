@@ -1,4 +1,4 @@
-"""The rule catalogue: rule files found by glob, read, checked and selected. An assertion is data; nothing here runs one."""
+"""The rule catalogue: rule files found by glob, read, checked and selected. An assertion is data: nothing runs here."""
 
 from __future__ import annotations
 

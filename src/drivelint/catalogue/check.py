@@ -18,10 +18,13 @@ GIVEN = frozenset({"reference", "reference_step"})
 
 _TABLE_FUNCTIONS = frozenset({"range", "generate_series", "unnest"})
 _UNSTABLE = frozenset(
-    {"random", "setseed", "uuid", "uuidv4", "uuidv7", "gen_random_uuid", "now", "today", "get_current_timestamp", "current_timestamp",
-     "current_date", "current_time", "current_localtime", "current_localtimestamp", "transaction_timestamp", "nextval", "currval",
-     "getenv", "getvariable", "current_setting"}
-)  # fmt: skip
+    {
+        *("random", "setseed", "uuid", "uuidv4", "uuidv7", "gen_random_uuid", "nextval", "currval"),
+        *("now", "today", "current_date", "current_time", "current_timestamp", "current_localtime"),
+        *("current_localtimestamp", "get_current_timestamp", "transaction_timestamp"),
+        *("getenv", "getvariable", "current_setting"),
+    }
+)
 _MACRO = re.compile(r"\bMACRO\s+(\w+)", re.IGNORECASE)
 
 
@@ -41,7 +44,8 @@ def _parser() -> duckdb.DuckDBPyConnection:
 def inspect(sql: str, where: str) -> Query:
     """Take one section's SQL apart.
 
-    Errors: `RuleError` when it is not exactly one SELECT, reads anything but documented tables, names a CTE like a table of ours
+    Errors: `RuleError` when it is not exactly one SELECT, reads anything but documented tables, names a CTE like a
+    table of ours
     or like the engine's own (`_...`), or calls what is not the same every time.
     """
     con = _parser()
@@ -73,7 +77,7 @@ class _Found:
         self.functions: set[str] = set()
         self.table_functions: set[str] = set()
 
-    def walk(self, node: Any) -> None:  # noqa: ANN401 - the tree is JSON
+    def walk(self, node: Any) -> None:
         """Collect names, without recursion: a deep expression must not exhaust the stack."""
         todo = [node]
         while todo:

@@ -1,4 +1,4 @@
-"""The header of a rule file: TOML in its leading comment lines, refused when it says anything that is not understood."""
+"""The header of a rule file: TOML in its leading comment lines, refused where it is not understood."""
 
 from __future__ import annotations
 
@@ -67,7 +67,8 @@ def json_schema() -> dict[str, Any]:
 def parse_header(text: str, where: str) -> Header:
     """Parse the TOML `text`, whose line n is line n of the file `where`.
 
-    Errors: `RuleError` naming file and line for bad TOML, an unknown key (with the nearest known one), a wrong type, or fields
+    Errors: `RuleError` naming file and line for bad TOML, an unknown key (with the nearest known one), a wrong type, or
+    fields
     that contradict each other.
     """
     try:
@@ -145,14 +146,10 @@ def _contradiction(h: Header) -> tuple[str, str] | None:
         (h.kind != "invariant" and h.exempt_after_s != 0, "exempt_after_s", "exempt_after_s is for invariants"),
         (not h.reads, "reads", "reads must name the tables that the rule reads"),
     ]
-    for name in h.params:
-        checks.append(
-            (
-                not _NAME.fullmatch(name),
-                name,
-                f"parameter {name!r}: use lower-case letters, digits and _, starting with a letter",
-            )
-        )
+    checks += [
+        (not _NAME.fullmatch(name), name, f"parameter {name!r}: use lower-case letters, digits and _, a letter first")
+        for name in h.params
+    ]
     for key, value in seconds.items():
         if isinstance(value, str):
             default = h.params[value].default if value in h.params else None

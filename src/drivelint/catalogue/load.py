@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 from difflib import get_close_matches
-from pathlib import Path
+from pathlib import Path  # noqa: TC003 - msgspec looks the field types up when it needs them
 from typing import TYPE_CHECKING
 
 from drivelint import store
@@ -65,7 +65,8 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
 def load(dirs: Sequence[Path] = ()) -> dict[str, Rule]:
     """Return every rule by id, sorted: the shipped packs and those of the folders in `dirs`.
 
-    A folder holds packs (`<pack>/<rule>.sql`) or is one (`<rule>.sql`). Errors: `RuleError` with file and line, for two rules
+    A folder holds packs (`<pack>/<rule>.sql`) or is one (`<rule>.sql`). Errors: `RuleError` with file and line, for two
+    rules
     with one id, and for a folder without rules.
     """
     files = sorted((folder("queries") / "assertions").glob("*/*.sql"))
@@ -91,7 +92,8 @@ def read_rule(file: Path) -> Rule:
     for part, what, pattern in ((pack, "folder", _PACK), (file.stem, "file", _STEM)):
         if not pattern.fullmatch(part):
             raise RuleError(
-                f"{file}: the {what} name {part!r} makes no rule id: lower-case letters, digits, '-', '_' (and '.' in the file name) only"
+                f"{file}: the {what} name {part!r} makes no rule id: "
+                "lower-case letters, digits, '-', '_' (and '.' in the file name) only"
             )
     content = file.read_bytes()
     try:
@@ -138,14 +140,12 @@ def _check_sections(header: Header, sections: dict[str, Section], queries: dict[
     for name, needed in wanted.items():
         if needed != (name in sections):
             line = sections[name].line if name in sections else 1
-            raise RuleError(
-                f"{file}:{line}: a {header.subtype or ''} {header.kind} {'needs' if needed else 'has no'} section @{name}".replace(
-                    "  ", " "
-                )
-            )
+            what = " ".join(word for word in (header.subtype, header.kind) if word)
+            raise RuleError(f"{file}:{line}: {what}: {'needs a' if needed else 'has no'} section @{name}")
     if "applies" in sections and header.kind != "invariant":
         raise RuleError(
-            f"{file}:{sections['applies'].line}: @applies is for invariants; return a column 'applies' from the condition instead"
+            f"{file}:{sections['applies'].line}: @applies is for invariants; "
+            "return a column 'applies' from the condition instead"
         )
     measured = ("holds",) if header.sense == "holds" else ("observed", "required")
     contracts: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
@@ -201,7 +201,7 @@ def _check_reads(header: Header, queries: dict[str, Query], file: Path) -> None:
     given = {"condition": GIVEN, "anchor": frozenset({"reference"})} if header.kind != "invariant" else {}
     for name, query in queries.items():
         if early := sorted(query.tables & GIVEN - given.get(name, frozenset())):
-            raise RuleError(f"{file}:1: @{name} of an {header.kind} has no table {early[0]!r}")
+            raise RuleError(f"{file}:1: @{name} has no table {early[0]!r} in a rule of kind {header.kind}")
     real = frozenset[str]().union(*(query.tables for query in queries.values())) - GIVEN
     said = frozenset(header.reads)
     if said != real:

@@ -29,7 +29,8 @@ def split(text: str, where: str) -> tuple[str, dict[str, Section]]:
     header_end = marks[0][0] if marks else len(lines)
     header = [_uncomment(line, n, where) for n, line in enumerate(lines[:header_end], 1)]
     sections: dict[str, Section] = {}
-    for (start, name), end in zip(marks, [n for n, _ in marks[1:]] + [len(lines)], strict=True):
+    ends = [n for n, _ in marks[1:]] + [len(lines)]
+    for (start, name), end in zip(marks, ends, strict=False):
         if name not in NAMES:
             near = get_close_matches(name, NAMES, n=1)
             raise RuleError(

@@ -20,7 +20,8 @@ def select(
 ) -> list[Rule]:
     """Return the selected rules, sorted by id.
 
-    A selector is an id, a glob over ids or a pack. None given: the stable rules of `default_pack`. A deprecated rule is chosen only
+    A selector is an id, a glob over ids or a pack. None given: the stable rules of `default_pack`. A deprecated rule is
+    chosen only
     by its full id. Errors: `UsageError` for a selector that matches nothing, or when nothing is left.
     """
     if include:
@@ -41,7 +42,8 @@ def _matching(rules: Mapping[str, Rule], selector: str) -> list[Rule]:
     found = [rule for rule in rules.values() if rule.pack == selector or fnmatchcase(rule.id, selector)]
     if not found:
         raise UsageError(
-            f"no rule, pack or glob matches {selector!r}{_nearest(selector, [*rules, *(r.pack for r in rules.values())])}"
+            f"no rule, pack or glob matches {selector!r}"
+            + _nearest(selector, [*rules, *(rule.pack for rule in rules.values())])
         )
     return [rule for rule in found if rule.status != "deprecated"]
 
@@ -59,7 +61,8 @@ def parse_params(
 ) -> dict[str, dict[str, float | str | bool]]:
     """Read `RULE.PARAM=VALUE` settings into rule id -> parameter -> value, typed like the parameter's default.
 
-    Errors: `UsageError` for a setting without '=', an unknown rule or parameter (with the nearest one), or a value of another type.
+    Errors: `UsageError` for a setting without '=', an unknown rule or parameter (with the nearest one), or a value of
+    another type.
     """
     known = {rule.id: rule for rule in (rules.values() if hasattr(rules, "values") else rules)}
     values: dict[str, dict[str, float | str | bool]] = {}

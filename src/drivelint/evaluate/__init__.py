@@ -1,8 +1,8 @@
 """Evaluation: the rules over the tables of a database, any number of drives and egos at once.
 
 Every (subject, rule) gets at least one verdict row, by construction: what was decided before running, what the rule's
-statements left, or not applicable. Where a rule's SQL fails, that rule is `error` for the subjects it was to judge, and the
-others go on.
+statements left, or not applicable. Where a rule's SQL fails, that rule is `error` for the subjects that it was to
+judge, and the others go on.
 """
 
 from __future__ import annotations
@@ -33,7 +33,8 @@ def evaluate(
 ) -> None:
     """Judge every (drive_id, ego_id) of `clock` by `rules`; append to `verdict`, `finding` and, if asked for, `margin`.
 
-    `con` holds the tables of schemas/*.sql, filled, and is not inside a transaction. `params` is rule id -> parameter -> value.
+    `con` holds the tables of schemas/*.sql, filled, and is not inside a transaction. `params` is rule id -> parameter
+    -> value.
     A failing statement costs its rule only. Errors: `UsageError` for parameters of rules or names that do not exist.
     """
     params = params or {}

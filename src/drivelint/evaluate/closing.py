@@ -1,10 +1,11 @@
-"""One closing step for all rules: nobody is left without a verdict, and every row gets its number, place, sentence and id."""
+"""One closing step for all rules: nobody is left without a verdict; every row gets number, place, sentence and id."""
 
 from __future__ import annotations
 
 _AT = "format('{:.3f} s', t_decides_ns / 1e9)"
 _OBSERVED = "format('{:.6g}', observed) || coalesce(' ' || unit, '')"
-_REQUIRED = """CASE sense WHEN '>' THEN 'more than ' WHEN '>=' THEN 'at least ' WHEN '<' THEN 'less than ' ELSE 'at most ' END
+_REQUIRED = """CASE sense WHEN '>' THEN 'more than ' WHEN '>=' THEN 'at least ' WHEN '<' THEN 'less than '
+            ELSE 'at most ' END
         || format('{:.6g}', required) || coalesce(' ' || unit, '')"""
 _MARGIN = "format('{:.6g}', abs(margin)) || coalesce(' ' || unit, '')"
 
@@ -20,10 +21,13 @@ SENTENCE = f"""CASE
             || coalesce(' at ' || {_AT}, '') || '.'
         WHEN 'reference_time_unknown' THEN 'Not judged: the time of the assertion reference point is not known.'
         WHEN 'anchor_unknown' THEN 'Not judged: it is not known when or where the condition had to hold.'
-        WHEN 'beyond_sensor_range' THEN 'Not judged: nobody was seen at ' || {_AT} || ', but the sensors do not reach everywhere.'
-        WHEN 'window_truncated' THEN format('Not judged: the window from {{:.3f}} s to {{:.3f}} s reaches beyond the log.',
+        WHEN 'beyond_sensor_range' THEN 'Not judged: nobody was seen at ' || {_AT}
+            || ', but the sensors do not reach everywhere.'
+        WHEN 'window_truncated' THEN format(
+            'Not judged: the window from {{:.3f}} s to {{:.3f}} s reaches beyond the log.',
             t_start_ns / 1e9, t_end_ns / 1e9)
-        WHEN 'log_hole' THEN format('Not judged: the log has a hole between {{:.3f}} s and {{:.3f}} s.', t_start_ns / 1e9, t_end_ns / 1e9)
+        WHEN 'log_hole' THEN format('Not judged: the log has a hole between {{:.3f}} s and {{:.3f}} s.',
+            t_start_ns / 1e9, t_end_ns / 1e9)
         WHEN 'lost_near_ego' THEN 'Not judged: the track of the object ends close to the ego at ' || {_AT} || '.'
         WHEN 'lost_in_range' THEN 'Not judged: the track of the object ends within sensor range at ' || {_AT} || '.'
         WHEN 'lost_on_road' THEN 'Not judged: the track of the object ends on the road at ' || {_AT} || '.'
@@ -41,7 +45,8 @@ SENTENCE = f"""CASE
         WHEN 'pass' THEN 'Kept: ' || coalesce({_OBSERVED}, 'unlimited') || ' at ' || {_AT} || '.'
         ELSE 'Violated: ' || coalesce({_OBSERVED}, 'unlimited') || ' at ' || {_AT} || '.' END
     ELSE {_OBSERVED} || ' at ' || {_AT} || ' where ' || {_REQUIRED} || ' is required: '
-        || CASE WHEN verdict = 'pass' THEN 'kept by ' || {_MARGIN} WHEN margin = 0 THEN 'exactly at the limit, which does not do'
+        || CASE WHEN verdict = 'pass' THEN 'kept by ' || {_MARGIN}
+            WHEN margin = 0 THEN 'exactly at the limit, which does not do'
             ELSE 'missed by ' || {_MARGIN} END || '.' END"""
 
 # clean groups of the first pass are outcomes too; a subject for which a rule erred has no other row of that rule
@@ -49,18 +54,22 @@ _ALL = """
 CREATE OR REPLACE TEMP TABLE _closed AS
 WITH _rows AS (
     SELECT * FROM _outcome UNION ALL BY NAME
-    SELECT rule_no, drive_id, ego_id, '' AS profile, object_id, t_start_ns, t_end_ns, t_worst_ns, t_worst_ns AS t_decides_ns,
+    SELECT rule_no, drive_id, ego_id, '' AS profile, object_id, t_start_ns, t_end_ns, t_worst_ns,
+        t_worst_ns AS t_decides_ns,
         'pass' AS verdict, code, reason, observed, required, margin, n AS n_expected, n AS n_judged
     FROM _group WHERE clean
 ), _kept AS (
-    SELECT r.* FROM _rows r ANTI JOIN _error e ON e.rule_no = r.rule_no AND e.drive_id = r.drive_id AND e.ego_id = r.ego_id
+    SELECT r.* FROM _rows r ANTI JOIN _error e ON e.rule_no = r.rule_no AND e.drive_id = r.drive_id
+        AND e.ego_id = r.ego_id
     UNION ALL BY NAME
-    SELECT rule_no, drive_id, ego_id, 'error' AS verdict, min(code) AS code, min(reason) AS reason FROM _error GROUP BY ALL
+    SELECT rule_no, drive_id, ego_id, 'error' AS verdict, min(code) AS code, min(reason) AS reason
+        FROM _error GROUP BY ALL
     UNION ALL BY NAME
     SELECT rule_no, drive_id, ego_id, 'unknown' AS verdict, 'missing_' || signal AS code, reason FROM _gated
 )
 SELECT * FROM _kept UNION ALL BY NAME
-SELECT r.rule_no, s.drive_id, s.ego_id, 'not_applicable' AS verdict, 'not_triggered' AS code FROM _rule r CROSS JOIN _subject s
+SELECT r.rule_no, s.drive_id, s.ego_id, 'not_applicable' AS verdict, 'not_triggered' AS code
+    FROM _rule r CROSS JOIN _subject s
 ANTI JOIN _kept k ON k.rule_no = r.rule_no AND k.drive_id = s.drive_id AND k.ego_id = s.ego_id
 """
 
@@ -68,13 +77,16 @@ _PLACE = "LEFT JOIN ego_state p ON p.drive_id = v.drive_id AND p.ego_id = v.ego_
 
 _VERDICTS = f"""
 INSERT INTO verdict BY NAME
-WITH _named AS (SELECT v.* REPLACE (nullif(v.profile, '') AS profile, nullif(v.object_id, '') AS object_id, nullif(v.label, '') AS label), r.* EXCLUDE (rule_no) FROM _closed v JOIN _rule r USING (rule_no)),
+WITH _named AS (SELECT v.* REPLACE (nullif(v.profile, '') AS profile, nullif(v.object_id, '') AS object_id,
+    nullif(v.label, '') AS label), r.* EXCLUDE (rule_no) FROM _closed v JOIN _rule r USING (rule_no)),
 _numbered AS (
     SELECT *, row_number() OVER (PARTITION BY drive_id, ego_id, rule_id, profile, object_id
-        ORDER BY coalesce(t_ref_ns, t_start_ns) NULLS LAST, t_start_ns NULLS LAST, t_end_ns NULLS LAST, ref_id NULLS LAST, code) - 1 AS occurrence,
+        ORDER BY coalesce(t_ref_ns, t_start_ns) NULLS LAST, t_start_ns NULLS LAST, t_end_ns NULLS LAST,
+            ref_id NULLS LAST, code) - 1 AS occurrence,
         coalesce(replace(label, '_', ' ') || ': ', '') || {SENTENCE} AS sentence
     FROM _named)
-SELECT v.drive_id, v.ego_id, rule_id, rule_version, kind, profile, severity, object_id, occurrence::INTEGER AS occurrence, ref_id, t_ref_ns, t_start_ns, t_end_ns,
+SELECT v.drive_id, v.ego_id, rule_id, rule_version, kind, profile, severity, object_id,
+    occurrence::INTEGER AS occurrence, ref_id, t_ref_ns, t_start_ns, t_end_ns,
     t_worst_ns, verdict, code AS reason_code, sentence AS reason, observed, required, margin, unit,
     coalesce(verdict = 'pass' AND margin < near_margin, false) AS near_miss,
     coalesce(n_expected, 0) AS n_expected, coalesce(n_judged, 0) AS n_judged, p.x_m, p.y_m, p.lanelet_id
@@ -84,22 +96,26 @@ FROM _numbered v {_PLACE}
 _FINDINGS = f"""
 INSERT INTO finding BY NAME
 WITH _named AS (
-    SELECT f.* REPLACE (nullif(f.profile, '') AS profile, nullif(f.object_id, '') AS object_id), r.* EXCLUDE (rule_no), f.t_worst_ns AS t_decides_ns, 'fail' AS verdict
+    SELECT f.* REPLACE (nullif(f.profile, '') AS profile, nullif(f.object_id, '') AS object_id), r.* EXCLUDE (rule_no),
+        f.t_worst_ns AS t_decides_ns, 'fail' AS verdict
     FROM _stretch f JOIN _rule r USING (rule_no)
     ANTI JOIN _error e ON e.rule_no = f.rule_no AND e.drive_id = f.drive_id AND e.ego_id = f.ego_id
 ), _numbered AS (
     SELECT *, (row_number() OVER (PARTITION BY drive_id, ego_id, rule_id, profile, object_id
         ORDER BY t_start_ns, t_end_ns, ref_id NULLS LAST) - 1)::INTEGER AS occurrence, {SENTENCE} AS sentence
     FROM _named)
-SELECT sha256(to_json([s.sha256, v.ego_id, rule_id, profile, object_id, v.occurrence::VARCHAR])::VARCHAR)[:16] AS finding_id,
+SELECT sha256(to_json([s.sha256, v.ego_id, rule_id, profile, object_id,
+    v.occurrence::VARCHAR])::VARCHAR)[:16] AS finding_id,
     v.drive_id, v.ego_id, rule_id, rule_version, kind, profile, severity, object_id, v.occurrence, ref_id,
-    v.t_start_ns, v.t_end_ns, t_worst_ns, sentence AS reason, observed, required, margin, unit, p.x_m, p.y_m, p.lanelet_id
+    v.t_start_ns, v.t_end_ns, t_worst_ns, sentence AS reason, observed, required, margin, unit, p.x_m, p.y_m,
+        p.lanelet_id
 FROM _numbered v JOIN _subject s ON s.drive_id = v.drive_id AND s.ego_id = v.ego_id {_PLACE}
 """
 
 _MARGINS = """
 INSERT INTO margin BY NAME
-SELECT m.* EXCLUDE (rule_no) REPLACE (nullif(m.profile, '') AS profile, nullif(m.object_id, '') AS object_id), r.rule_id FROM _margin m JOIN _rule r USING (rule_no)
+SELECT m.* EXCLUDE (rule_no) REPLACE (nullif(m.profile, '') AS profile, nullif(m.object_id, '') AS object_id),
+    r.rule_id FROM _margin m JOIN _rule r USING (rule_no)
 ANTI JOIN _error e ON e.rule_no = m.rule_no AND e.drive_id = m.drive_id AND e.ego_id = m.ego_id
 """
 

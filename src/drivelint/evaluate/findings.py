@@ -13,7 +13,7 @@ _SERIES = "drive_id, ego_id, object_id, profile, ref_id"
 
 
 def stretches(rule: Rule) -> str:
-    """SQL that appends to `_stretch` the failing runs of `_judged`, those closer than merge_gap_s as one; never across a hole."""
+    """SQL that appends to `_stretch` the failing runs of `_judged`: close ones as one, but never across a hole."""
     combined = rule.combine != "each"
     follows, order = (
         ("k - lag(k) OVER w <= 1", "t_ns, label") if rule.kind == "invariant" else ("n - lag(n) OVER w = 1", "t_ns")
@@ -34,7 +34,8 @@ WITH _fails AS (
 ), _runs AS (
     SELECT *, sum(fresh) OVER (PARTITION BY {_SERIES}, seg ORDER BY {order} ROWS UNBOUNDED PRECEDING) AS run FROM _fails
 ), _worst AS (
-    SELECT {_SERIES}, seg, run, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.worst(rule)} AS worst FROM _runs GROUP BY ALL)
+    SELECT {_SERIES}, seg, run, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.worst(rule)} AS worst
+        FROM _runs GROUP BY ALL)
 SELECT $_no AS rule_no, drive_id, ego_id, {"worst.who" if combined else "object_id"} AS object_id, profile, ref_id,
     t_start_ns, t_end_ns, worst.t AS t_worst_ns, coalesce(worst.code, 'violated') AS code, worst.reason AS reason,
     {terms.numbers(rule, "worst.")}

@@ -1,6 +1,6 @@
 """Invariants: judged on every step of a grid, one verdict per continuous applicable episode and object.
 
-Groups that are whole and kept are settled by one aggregation without a join; only the others are laid over the grid and get windows.
+Groups that are whole and kept are settled by one aggregation without a join; only the others are laid over the grid.
 """
 
 from __future__ import annotations
@@ -22,10 +22,13 @@ _SERIES = f"{_OBJECT}, label"
 
 
 _WALK = f"""), _linked AS (
-    SELECT *, lag(t_ns) OVER w AS t_last_ns, lag(seg) OVER w AS seg_last FROM ({{source}}) WINDOW w AS (PARTITION BY {_SERIES} ORDER BY t_ns)
+    SELECT *, lag(t_ns) OVER w AS t_last_ns, lag(seg) OVER w AS seg_last
+        FROM ({{source}}) WINDOW w AS (PARTITION BY {_SERIES} ORDER BY t_ns)
 ), _walked AS (
-    SELECT l.* EXCLUDE (t_last_ns, seg_last), sum(CASE WHEN seg_last = seg AND t_ns - t_last_ns <= s.max_gap_ns THEN 0 ELSE 1 END)
-        OVER (PARTITION BY {", ".join("l." + c.strip() for c in _SERIES.split(","))} ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS episode
+    SELECT l.* EXCLUDE (t_last_ns, seg_last), sum(CASE WHEN seg_last = seg AND t_ns - t_last_ns <= s.max_gap_ns THEN 0
+        ELSE 1 END)
+        OVER (PARTITION BY {", ".join("l." + c.strip() for c in _SERIES.split(","))}
+            ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS episode
     FROM _linked l JOIN _subject s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id"""
 """CTE text (it closes the CTE before it and leaves its last one open): rows of a source numbered by episode."""
 
@@ -54,28 +57,32 @@ GRID_GROUPS = f"""
 CREATE OR REPLACE TEMP TABLE _grid_group AS
 SELECT grid, {_GROUP}, count(*) AS n, sum(hash(t_ns)::HUGEINT) AS signature,
     min(seg) = max(seg) AND max(k) - min(k) + 1 = count(*) AS whole
-FROM (SELECT 'step' AS grid, * FROM ({_default_grid(False)}) UNION ALL SELECT 'pair', * FROM ({_default_grid(True)}) WHERE $_objects)
+FROM (SELECT 'step' AS grid, * FROM ({_default_grid(False)}) UNION ALL SELECT 'pair', * FROM ({_default_grid(True)})
+    WHERE $_objects)
 GROUP BY ALL
 """
 """Per group of the default grids: its size, an order-free signature of its time stamps, and whether it has no gap."""
 
 
 def first_pass(rule: Rule, partial: bool) -> str:
-    """SQL that appends to `_group`: a group whose condition rows are exactly its grid, all applicable and kept, is clean.
+    """SQL that appends to `_group`: a group whose condition rows are just its grid, applicable and kept, is clean.
 
-    Exactly: the same number of rows and the same sum of the time stamps' 64-bit hashes, which a lost or a doubled row cannot keep.
-    Groups that are whole and nowhere applicable are left out; all others wait for the second pass.
+    Just its grid: the same number of rows and the same sum of the time stamps' 64-bit hashes, which a lost or a doubled
+    row cannot keep. Groups that are whole and nowhere applicable are left out; all others wait for the second pass.
     """
     numbers = terms.numbers(rule, "s.worst.")
     who = " AND g.object_id = s.object_id" if rule.per_object else ""
     return f"""
 INSERT INTO _group BY NAME
 WITH {terms.state(rule)}, _seen AS (
-    SELECT {_GROUP}, count(*) AS n, sum(hash(t_ns)::HUGEINT) AS signature, count(*) FILTER (applies AND holds) AS n_kept,
-        count(*) FILTER (NOT applies) AS n_out, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.worst(rule)} AS worst
+    SELECT {_GROUP}, count(*) AS n, sum(hash(t_ns)::HUGEINT) AS signature, count(*) FILTER (applies
+        AND holds) AS n_kept,
+        count(*) FILTER (NOT applies) AS n_out, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns,
+            {terms.worst(rule)} AS worst
     FROM _state GROUP BY ALL)
 SELECT $_no AS rule_no, g.drive_id, g.ego_id, g.object_id, coalesce(g.whole AND s.n_kept = s.n, false) AS clean,
-    s.t_start_ns, s.t_end_ns, g.n, s.worst.t AS t_worst_ns, {numbers}, coalesce(s.worst.code, 'kept') AS code, s.worst.reason AS reason
+    s.t_start_ns, s.t_end_ns, g.n, s.worst.t AS t_worst_ns, {numbers}, coalesce(s.worst.code, 'kept') AS code,
+        s.worst.reason AS reason
 FROM _grid_group g
 LEFT JOIN _seen s ON g.drive_id = s.drive_id AND g.ego_id = s.ego_id{who} AND g.n = s.n AND g.signature = s.signature
 {terms.todo(partial, "g")}
@@ -84,7 +91,7 @@ WHERE g.grid = '{OBJECT_GRID if rule.per_object else STEP_GRID}' AND s.n_out IS 
 
 
 def profile_set(rule: Rule) -> str:
-    """SQL for `_profile_set`: per subject the profiles asked for and those that the condition returns; '' where there are none."""
+    """SQL for `_profile_set`: per subject the profiles asked for and those that the condition returns, or ''."""
     return f"""
 CREATE OR REPLACE TEMP TABLE _profile_set AS
 WITH {terms.state(rule)}, _known AS (
@@ -96,7 +103,7 @@ SELECT s.drive_id, s.ego_id, '' FROM _subject s ANTI JOIN _known k ON s.drive_id
 
 
 def _grid(rule: Rule, partial: bool, unsettled: bool) -> str:
-    """CTEs ending in `_grid`: drive_id, ego_id, t_ns, object_id, label, k, seg, applies, doubt (why applies is NULL)."""
+    """CTEs ending in `_grid`: drive_id, ego_id, t_ns, object_id, label, k, seg, applies, doubt (why it is NULL)."""
     if "applies" not in rule.sections:
         first = f"_base AS (SELECT *, NULL::VARCHAR AS label, true AS applies FROM ({_default_grid(rule.per_object)}))"
     else:
@@ -108,7 +115,8 @@ def _grid(rule: Rule, partial: bool, unsettled: bool) -> str:
         first = f"""_applies AS (
 {rule.sections["applies"]}
 ), _distinct AS (
-    SELECT drive_id, ego_id, t_ns, {who}, {label}, CASE WHEN bool_or(coalesce({three}, false)) THEN true WHEN bool_or({three} IS NULL) THEN NULL
+    SELECT drive_id, ego_id, t_ns, {who}, {label}, CASE WHEN bool_or(coalesce({three}, false)) THEN true
+        WHEN bool_or({three} IS NULL) THEN NULL
         ELSE false END AS applies
     FROM _applies GROUP BY ALL
 ), _base AS (
@@ -117,14 +125,18 @@ def _grid(rule: Rule, partial: bool, unsettled: bool) -> str:
     {"JOIN pair p ON a.drive_id = p.drive_id AND a.ego_id = p.ego_id AND a.t_ns = p.t_ns" if crowd else ""})"""
     keep = ""
     if unsettled:
-        keep = (" SEMI JOIN (SELECT * FROM _group WHERE rule_no = $_no AND NOT clean) _u ON a.drive_id = _u.drive_id AND a.ego_id = _u.ego_id"
-                + (" AND a.object_id = _u.object_id" if rule.per_object else ""))  # fmt: skip
+        keep = " SEMI JOIN (SELECT * FROM _group WHERE rule_no = $_no AND NOT clean) _u"
+        keep += " ON a.drive_id = _u.drive_id AND a.ego_id = _u.ego_id"
+        keep += " AND a.object_id = _u.object_id" if rule.per_object else ""
     if not rule.applies.road_types:
-        return f"""{first}, _grid AS (SELECT a.*, CASE WHEN a.applies IS NULL THEN 'applies_unknown' END AS doubt FROM _base a
+        return f"""{first}, _grid AS (SELECT a.*, CASE WHEN a.applies IS NULL THEN 'applies_unknown' END AS doubt
+            FROM _base a
     {terms.todo(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
     return f"""{first}, _road AS (
-    SELECT a.* EXCLUDE (applies), a.applies AND (CASE WHEN b.road_type IS NOT NULL THEN list_contains($_road_types, b.road_type) END) AS applies,
-        CASE WHEN a.applies IS NULL THEN 'applies_unknown' WHEN b.road_type IS NULL THEN 'road_type_unknown' END AS doubt
+    SELECT a.* EXCLUDE (applies), a.applies AND (CASE WHEN b.road_type IS NOT NULL THEN list_contains($_road_types,
+        b.road_type) END) AS applies,
+        CASE WHEN a.applies IS NULL THEN 'applies_unknown' WHEN b.road_type IS NULL THEN 'road_type_unknown' END
+            AS doubt
     FROM _base a LEFT JOIN ego_state b ON {_SAME}
 ), _grid AS (SELECT a.* FROM _road a{terms.todo(partial, "a")} WHERE a.applies IS DISTINCT FROM false)"""
 
@@ -157,7 +169,8 @@ WHERE s.seg IS NULL OR k_begin = s.k_first OR t_ns - t_begin_ns >= $_exempt_ns""
     return f"""
 CREATE OR REPLACE TEMP TABLE _judged AS
 WITH {terms.state(rule)}, {_grid(rule, partial, unsettled)}, _joined AS (
-    SELECT g.drive_id, g.ego_id, coalesce(g.object_id, '') AS object_id, {"p.profile" if rule.profiled else "''"} AS profile,
+    SELECT g.drive_id, g.ego_id, coalesce(g.object_id, '') AS object_id,
+        {"p.profile" if rule.profiled else "''"} AS profile,
         coalesce(g.label, '') AS label, NULL::INTEGER AS ref_id, g.t_ns, g.k, g.seg,
         g.applies AND (v.t_ns IS NULL OR v.applies) AS applies, v.holds, v.gain, v.observed, v.required,
         CASE WHEN g.applies IS NULL THEN g.doubt WHEN v.t_ns IS NULL THEN 'missing_step'
@@ -173,9 +186,11 @@ WITH {terms.state(rule)}, {_grid(rule, partial, unsettled)}, _joined AS (
 FAULTS = """
 INSERT INTO _error
 SELECT $_no, drive_id, ego_id, 'rule_error', CASE WHEN max(n_rows) > 1
-    THEN format('the condition returned {} rows for one step (first at {:.3f} s): it must return one', max(n_rows), min(t_ns) FILTER (n_rows > 1) / 1e9)
+    THEN format('the condition returned {} rows for one step (first at {:.3f} s): it must return one', max(n_rows),
+        min(t_ns) FILTER (n_rows > 1) / 1e9)
     ELSE format('@applies returned the time {:.3f} s, which is no step of the ego', min(t_ns) / 1e9) END
-FROM (SELECT drive_id, ego_id, object_id, profile, label, t_ns, count(*) AS n_rows, min(k) AS k FROM _judged GROUP BY ALL)
+FROM (SELECT drive_id, ego_id, object_id, profile, label, t_ns, count(*) AS n_rows, min(k) AS k
+    FROM _judged GROUP BY ALL)
 WHERE n_rows > 1 OR k IS NULL
 GROUP BY drive_id, ego_id
 """
@@ -183,13 +198,13 @@ GROUP BY drive_id, ego_id
 
 
 def episodes(rule: Rule) -> str:
-    """SQL that appends to `_outcome` one row per continuous episode of `_judged`. Only series with a gap are walked step by step."""
+    """SQL that appends to `_outcome` one row per episode of `_judged`; only series with a gap are walked by step."""
     return f"""
 INSERT INTO _outcome BY NAME
 WITH _live AS (SELECT * FROM _judged WHERE applies IS DISTINCT FROM false
 ), _flagged AS (
     SELECT {_SERIES}, count(*) <> max(k) - min(k) + 1 OR min(seg) <> max(seg) AS broken FROM _live GROUP BY ALL
-{_WALK.format(source="SELECT l.* FROM _live l SEMI JOIN (SELECT * FROM _flagged WHERE broken) f USING (" + _SERIES + ")")}
+{_WALK.format(source=f"SELECT l.* FROM _live l SEMI JOIN (FROM _flagged WHERE broken) f USING ({_SERIES})")}
 ), _rows AS (
     SELECT * FROM _walked UNION ALL BY NAME
     SELECT l.*, 0 AS episode FROM _live l SEMI JOIN (SELECT * FROM _flagged WHERE NOT broken) f USING ({_SERIES})
@@ -197,10 +212,12 @@ WITH _live AS (SELECT * FROM _judged WHERE applies IS DISTINCT FROM false
     SELECT {_SERIES}, episode, count(*) AS n_expected, count(holds) AS n_judged, count(*) FILTER (NOT holds) AS n_fail,
         min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.worst(rule)} AS worst, {terms.FIRST_UNKNOWN} AS unknown
     FROM _rows GROUP BY ALL
-), _decided AS (SELECT *, CASE WHEN n_fail > 0 THEN 'fail' WHEN n_judged < n_expected THEN 'unknown' ELSE 'pass' END AS verdict FROM _all)
+), _decided AS (SELECT *, CASE WHEN n_fail > 0 THEN 'fail' WHEN n_judged < n_expected THEN 'unknown'
+    ELSE 'pass' END AS verdict FROM _all)
 SELECT $_no AS rule_no, {_SERIES}, t_start_ns, t_end_ns, worst.t AS t_worst_ns, verdict,
     CASE verdict WHEN 'unknown' THEN unknown.t ELSE worst.t END AS t_decides_ns,
-    CASE verdict WHEN 'unknown' THEN unknown.code WHEN 'fail' THEN coalesce(worst.code, 'violated') ELSE coalesce(worst.code, 'kept') END AS code,
+    CASE verdict WHEN 'unknown' THEN unknown.code WHEN 'fail' THEN coalesce(worst.code, 'violated')
+        ELSE coalesce(worst.code, 'kept') END AS code,
     CASE verdict WHEN 'unknown' THEN unknown.reason ELSE worst.reason END AS reason,
     {terms.numbers(rule, "worst.")}, n_expected, n_judged
 FROM _decided
@@ -214,21 +231,25 @@ WITH _across AS (
     FROM _judged WHERE applies IS DISTINCT FROM false WINDOW w AS (PARTITION BY {_OBJECT} ORDER BY t_ns)
 ), _ends AS (
     SELECT j.drive_id, j.ego_id, j.object_id, j.profile, j.seg_prev, j.seg,
-        p.t_last_ns - j.t_prev_ns <= s.max_gap_ns AS from_edge, j.t_ns - q.t_first_ns <= s.max_gap_ns AS to_edge, s.period_ns
+        p.t_last_ns - j.t_prev_ns <= s.max_gap_ns AS from_edge, j.t_ns - q.t_first_ns <= s.max_gap_ns AS to_edge,
+            s.period_ns
     FROM _across j JOIN _subject s USING (drive_id, ego_id)
     JOIN _segment p ON p.drive_id = j.drive_id AND p.ego_id = j.ego_id AND p.seg = j.seg_prev
     JOIN _segment q ON q.drive_id = j.drive_id AND q.ego_id = j.ego_id AND q.seg = j.seg
     WHERE j.seg_prev <> j.seg
 ), _holes AS (
     SELECT e.*, p.t_last_ns AS t_start_ns, q.t_first_ns AS t_end_ns FROM _ends e
-    JOIN _segment p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.seg = CASE WHEN from_edge THEN seg_prev ELSE e.seg - 1 END
-    JOIN _segment q ON q.drive_id = e.drive_id AND q.ego_id = e.ego_id AND q.seg = CASE WHEN to_edge THEN e.seg ELSE seg_prev + 1 END
+    JOIN _segment p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.seg = CASE WHEN from_edge THEN seg_prev
+        ELSE e.seg - 1 END
+    JOIN _segment q ON q.drive_id = e.drive_id AND q.ego_id = e.ego_id AND q.seg = CASE WHEN to_edge THEN e.seg
+        ELSE seg_prev + 1 END
     WHERE from_edge OR to_edge)
-SELECT $_no AS rule_no, {_OBJECT}, t_start_ns, t_end_ns, t_start_ns AS t_worst_ns, t_start_ns AS t_decides_ns, 'unknown' AS verdict,
+SELECT $_no AS rule_no, {_OBJECT}, t_start_ns, t_end_ns, t_start_ns AS t_worst_ns, t_start_ns AS t_decides_ns,
+    'unknown' AS verdict,
     'log_hole' AS code, greatest(1, (t_end_ns - t_start_ns) // greatest(period_ns, 1) - 1) AS n_expected, 0 AS n_judged
 FROM _holes
 """
-"""Appends a row of its own for each hole of the log between two applicable steps that the rule reaches from either side."""
+"""Appends a row of its own for each hole between two applicable steps that the rule reaches from either side."""
 
 
 def lost_objects(rule: Rule, partial: bool) -> str:
@@ -240,7 +261,8 @@ def lost_objects(rule: Rule, partial: bool) -> str:
     return f"""
 INSERT INTO _outcome BY NAME
 SELECT $_no AS rule_no, l.drive_id, l.ego_id, l.object_id, {"p.profile" if rule.profiled else "''"} AS profile,
-    l.t_from_ns AS t_start_ns, l.t_to_ns AS t_end_ns, l.t_from_ns AS t_worst_ns, l.t_from_ns AS t_decides_ns, 'unknown' AS verdict,
+    l.t_from_ns AS t_start_ns, l.t_to_ns AS t_end_ns, l.t_from_ns AS t_worst_ns, l.t_from_ns AS t_decides_ns,
+        'unknown' AS verdict,
     l.reason AS code, greatest(1, (l.t_to_ns - l.t_from_ns) // greatest(s.period_ns, 1)) AS n_expected, 0 AS n_judged
 FROM lost_object l JOIN _subject s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id {profiles} {roads}
 {terms.todo(partial, "l")}

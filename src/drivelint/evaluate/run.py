@@ -39,7 +39,7 @@ class Run:
             self._con.execute(statement)
 
     def prepare(self) -> None:
-        """Make the run's tables, decide what can be decided before running, and look at the default grids once for all rules."""
+        """Make the run's tables, decide what needs no running, and look at the default grids once for all rules."""
         self._n_todo = stage.prepare(self._con, self._bindings)
         self._n_subjects = self._count("SELECT count(*) FROM _subject")
         self._has_holes = self._count("SELECT count(*) FROM _segment WHERE seg > 0") > 0

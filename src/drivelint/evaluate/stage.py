@@ -17,15 +17,20 @@ CREATE OR REPLACE TEMP TABLE _subject AS
     SELECT c.drive_id, c.ego_id, c.period_ns, c.max_gap_ns, c.t_start_ns, c.t_end_ns, l.sha256, l.sensor_range_m
     FROM clock c LEFT JOIN data_log l ON c.drive_id = l.drive_id;
 CREATE OR REPLACE TEMP TABLE _segment AS
-    SELECT drive_id, ego_id, seg, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns, min(k) AS k_first FROM step GROUP BY ALL;
-CREATE OR REPLACE TEMP TABLE _rule (rule_no INTEGER, rule_id VARCHAR, rule_version VARCHAR, kind VARCHAR, severity VARCHAR,
+    SELECT drive_id, ego_id, seg, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns, min(k) AS k_first
+        FROM step GROUP BY ALL;
+CREATE OR REPLACE TEMP TABLE _rule (rule_no INTEGER, rule_id VARCHAR, rule_version VARCHAR, kind VARCHAR,
+    severity VARCHAR,
     sense VARCHAR, unit VARCHAR, near_margin DOUBLE);
 CREATE OR REPLACE TEMP TABLE _needs (rule_no INTEGER, pos INTEGER, signal VARCHAR);
 CREATE OR REPLACE TEMP TABLE _error ({_KEYS}, code VARCHAR, reason VARCHAR);
-CREATE OR REPLACE TEMP TABLE _group ({_KEYS}, object_id VARCHAR, clean BOOLEAN, t_start_ns BIGINT, t_end_ns BIGINT, n BIGINT,
+CREATE OR REPLACE TEMP TABLE _group ({_KEYS}, object_id VARCHAR, clean BOOLEAN, t_start_ns BIGINT, t_end_ns BIGINT,
+    n BIGINT,
     t_worst_ns BIGINT, observed DOUBLE, required DOUBLE, margin DOUBLE, code VARCHAR, reason VARCHAR);
-CREATE OR REPLACE TEMP TABLE _outcome ({_KEYS}, profile VARCHAR, object_id VARCHAR, label VARCHAR, ref_id INTEGER, t_ref_ns BIGINT,
-    t_start_ns BIGINT, t_end_ns BIGINT, t_worst_ns BIGINT, t_decides_ns BIGINT, verdict VARCHAR, code VARCHAR, reason VARCHAR,
+CREATE OR REPLACE TEMP TABLE _outcome ({_KEYS}, profile VARCHAR, object_id VARCHAR, label VARCHAR, ref_id INTEGER,
+    t_ref_ns BIGINT,
+    t_start_ns BIGINT, t_end_ns BIGINT, t_worst_ns BIGINT, t_decides_ns BIGINT, verdict VARCHAR, code VARCHAR,
+        reason VARCHAR,
     observed DOUBLE, required DOUBLE, margin DOUBLE, n_expected BIGINT, n_judged BIGINT);
 CREATE OR REPLACE TEMP TABLE _stretch ({_KEYS}, profile VARCHAR, object_id VARCHAR, ref_id INTEGER, t_start_ns BIGINT,
     t_end_ns BIGINT, t_worst_ns BIGINT, code VARCHAR, reason VARCHAR, observed DOUBLE, required DOUBLE, margin DOUBLE);
@@ -38,7 +43,8 @@ _GATED = """
 CREATE OR REPLACE TEMP TABLE _gated AS
 SELECT rule_no, drive_id, ego_id, first.signal AS signal, first.reason AS reason FROM (
     SELECT n.rule_no, s.drive_id, s.ego_id,
-        min({'pos': n.pos, 'signal': n.signal, 'reason': coalesce(c.reason, 'nothing is known about the signal ' || n.signal)}) AS first
+        min({'pos': n.pos, 'signal': n.signal,
+            'reason': coalesce(c.reason, 'nothing is known about the signal ' || n.signal)}) AS first
     FROM _needs n CROSS JOIN _subject s
     LEFT JOIN capability c ON c.drive_id = s.drive_id AND c.ego_id = s.ego_id AND c.signal = n.signal
     WHERE c.available IS DISTINCT FROM true
@@ -60,8 +66,8 @@ def prepare(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> dict
     con.execute(_TABLES)
     rules = [b.rule for b in bindings]
     con.execute(
-        "INSERT INTO _rule SELECT unnest($no), unnest($id), unnest($version), unnest($kind), unnest($severity), unnest($sense), "
-        "unnest($unit::VARCHAR[]), unnest($near::DOUBLE[])",
+        "INSERT INTO _rule SELECT unnest($no), unnest($id), unnest($version), unnest($kind), unnest($severity), "
+        "unnest($sense), unnest($unit::VARCHAR[]), unnest($near::DOUBLE[])",
         {
             "no": [b.no for b in bindings], "id": [r.id for r in rules], "version": [r.version for r in rules],
             "kind": [r.kind for r in rules], "severity": [r.severity for r in rules], "sense": [r.sense for r in rules],

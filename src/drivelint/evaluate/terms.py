@@ -50,7 +50,8 @@ def _nanoseconds(seconds: object, rule_id: str, field: str) -> int:
 def state(rule: Rule) -> str:
     """Return the CTEs `_condition` and `_state` of a rule.
 
-    `_state`: drive_id, ego_id, t_ns, object_id, ref_id, profile ('' for none), applies, observed, required, holds (NULL: unknown),
+    `_state`: drive_id, ego_id, t_ns, object_id, ref_id, profile ('' for none), applies, observed, required, holds
+    (NULL: unknown),
     gain (the signed margin, infinite where unlimited; 0 for sense = holds), code, reason (the author's, or NULL).
     NaN is NULL. A lower bound proves what it can: a pass for > and >=, a violation for < and <=.
     """
@@ -63,7 +64,8 @@ def state(rule: Rule) -> str:
         f"{'ref_id' if has('ref_id') else 'NULL'}::INTEGER AS ref_id",
         f"{'profile' if has('profile') else 'NULL'}::VARCHAR AS profile",
         f"{'applies' if has('applies') else 'true'}::BOOLEAN AS applies",
-        *([number.format("observed"), number.format("required")] if measured else ["NULL::DOUBLE AS observed", "NULL::DOUBLE AS required", "holds::BOOLEAN AS holds"]),
+        *(number.format(column) if measured else f"NULL::DOUBLE AS {column}" for column in ("observed", "required")),
+        *(["holds::BOOLEAN AS holds"] if not measured else []),
         *(["coalesce(at_least::BOOLEAN, true) AS at_least"] if has("at_least") else []),
         f"{'reason_code' if has('reason_code') else 'NULL'}::VARCHAR AS code",
         f"{'reason' if has('reason') else 'NULL'}::VARCHAR AS reason",
@@ -77,7 +79,8 @@ def state(rule: Rule) -> str:
         if has("at_least"):
             proven = f"{compare}" if rule.sense[0] == ">" else f"NOT {compare}"
             holds = f"CASE WHEN NOT at_least OR ({proven}) THEN {compare} END"
-            code = f"CASE WHEN ({holds}) IS NULL THEN coalesce(code, CASE WHEN {compare} IS NOT NULL THEN 'only_a_bound' END) ELSE code END"
+            # known numbers and yet no answer: the bound did not reach
+            code = f"coalesce(code, CASE WHEN ({holds}) IS NULL AND {compare} IS NOT NULL THEN 'only_a_bound' END)"
     return f"""_condition AS (
 {rule.sections["condition"]}
 ), _value AS (SELECT {", ".join(columns)} FROM _condition
@@ -89,14 +92,17 @@ def todo(binding_partial: bool, alias: str) -> str:
     """Return the semi-join that leaves out subjects for which the rule is not to be run; '' when there are none."""
     if not binding_partial:
         return ""
-    return f" SEMI JOIN (SELECT drive_id, ego_id FROM _todo WHERE rule_no = $_no) _t ON {alias}.drive_id = _t.drive_id AND {alias}.ego_id = _t.ego_id"
+    subjects = "(SELECT drive_id, ego_id FROM _todo WHERE rule_no = $_no) _t"
+    return f" SEMI JOIN {subjects} ON {alias}.drive_id = _t.drive_id AND {alias}.ego_id = _t.ego_id"
 
 
 def worst(rule: Rule) -> str:
-    """Return the aggregate that picks the deciding step: a struct (b, g, t, [who,] observed, required, holds, code, reason).
+    """Return the aggregate that picks the deciding step: (b, g, t, [who,] observed, required, holds, code, reason).
 
-    always: least margin, or the earliest failing, else unknown, else first step (sense = holds); eventually: the greatest margin, or
-    the earliest holding, else unknown, else failing step. Ties take the earliest step. The leading fields are never NULL and t is unique
+    always: least margin, or the earliest failing, else unknown, else first step (sense = holds); eventually: the
+    greatest margin, or
+    the earliest holding, else unknown, else failing step. Ties take the earliest step. The leading fields are never
+    NULL and t is unique
     in its group, so NULLs in the payload are never compared.
     """
     eventually = rule.quantifier == "eventually"
@@ -109,7 +115,7 @@ def worst(rule: Rule) -> str:
 
 
 def pick(good: int, bad: int, unknown: int, sign: str = "", *, combined: bool = False) -> str:
-    """Return the aggregate over a group of steps that orders by these ranks, by margin, by time, and (combined) by object."""
+    """Return the aggregate over a group of steps that orders by these ranks, by margin, time and (combined) object."""
     who = "'who': coalesce(who, ''), " if combined else ""
     return (
         f"min({{'b': CASE WHEN holds THEN {good} WHEN NOT holds THEN {bad} ELSE {unknown} END, "
@@ -118,12 +124,14 @@ def pick(good: int, bad: int, unknown: int, sign: str = "", *, combined: bool = 
     )
 
 
-FIRST_UNKNOWN = "min({'t': coalesce(t_ns, 9223372036854775807), 'code': coalesce(code, 'null_value'), 'reason': reason}) FILTER (holds IS NULL)"
+FIRST_UNKNOWN = """min(
+        {'t': coalesce(t_ns, 9223372036854775807), 'code': coalesce(code, 'null_value'), 'reason': reason})
+        FILTER (holds IS NULL)"""
 """The aggregate that picks the earliest step that could not be judged."""
 
 
 def numbers(rule: Rule, step: str = "") -> str:
-    """Return the columns observed, required, margin of an outcome; `step` is its worst step with a dot, or '' for plain columns.
+    """Return the columns observed, required, margin of an outcome; `step` is '' or its worst step with a dot.
 
     Infinity is stored as NULL, and there is no margin to it.
     """
