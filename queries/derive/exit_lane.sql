@@ -1,6 +1,10 @@
 -- Lanes that leave the main carriageway: said so by their type, or beside a through lane until both go on, gently, on different roads.
 -- (At an ordinary junction one of the two turns; an exit bends by less than 45 degrees and the through lane by less than 20.)
-WITH RECURSIVE pair_ AS (
+-- Of the two roads the one with fewer lanes is the exit; with as many, the one on the side that is driven on.
+WITH RECURSIVE carriageway AS (
+    SELECT environment_id, road_id, section, along_road, count(*) AS n FROM lanelet WHERE drivable GROUP BY ALL
+),
+pair_ AS (
     SELECT n.environment_id, n.lanelet_id AS exit_id, m.lanelet_id AS through_id, v.side
     FROM lanelet n
     CROSS JOIN (VALUES ('left'), ('right')) AS v(side)
@@ -29,8 +33,12 @@ apart AS (
     FROM walk w
     JOIN lanelet e ON e.environment_id = w.environment_id AND e.lanelet_id = w.e
     JOIN lanelet m ON m.environment_id = w.environment_id AND m.lanelet_id = w.m
+    JOIN carriageway ce ON ce.environment_id = e.environment_id AND ce.road_id = e.road_id AND ce.section = e.section AND ce.along_road = e.along_road
+    JOIN carriageway cm ON cm.environment_id = m.environment_id AND cm.road_id = m.road_id AND cm.section = m.section AND cm.along_road = m.along_road
+    JOIN environment v ON v.environment_id = w.environment_id
     WHERE w.hop > 0 AND e.junction_id IS NULL AND m.junction_id IS NULL AND e.road_id <> m.road_id
         AND w.turn_e < pi() / 4 AND w.turn_m < pi() / 9
+        AND (ce.n < cm.n OR (ce.n = cm.n AND w.side = CASE v.handedness WHEN 'lht' THEN 'left' ELSE 'right' END))
 ),
 -- the whole lane before the fork is the exit lane, as long as the through lane is beside it and it was not a through lane itself
 upstream AS (
