@@ -122,6 +122,11 @@ def test_rows_carry_place_and_stable_ids(con: duckdb.DuckDBPyConnection, tmp_pat
     assert con.execute("SELECT finding_id FROM finding").fetchall() != [(first,)], "another log, another finding"
 
 
+def test_findings_of_two_egos_have_two_ids(con: duckdb.DuckDBPyConnection, tmp_path: Path) -> None:
+    evaluate(con, rules(tmp_path)[:1], {"pack.speed": {"limit": 13.0}})
+    assert con.execute("SELECT count(*), count(DISTINCT finding_id) FROM finding").fetchall() == [(3, 3)]
+
+
 def test_explain_shows_a_plan_that_joins_by_nested_loops(con: duckdb.DuckDBPyConnection, tmp_path: Path) -> None:
     """The guard of the catalogue can fail: a residual that is no comparison in an outer join."""
     sql = SPEED.replace("FROM ego_state", "FROM ego_state e LEFT JOIN pair p USING (drive_id, ego_id)").replace(

@@ -192,6 +192,7 @@ def test_two_rows_for_one_object_are_refused_also_where_objects_are_combined(tmp
         ("left", 0.5, ("unknown", "window_truncated"), (6, 6)),
         ({"else": "left", "0.2": "off"}, 0.5, ("fail", "violated"), (6, 6)),
         ("left", 0.8, ("pass", "kept"), (9, 9)),
+        ("left", 0.75, ("pass", "kept"), (8, 8)),
     ],
 )
 def test_temporal_precondition(
@@ -398,3 +399,34 @@ def test_nobody_there_is_no_near_miss_and_loses_to_a_real_step(tmp_path: Path) -
     )
     (row,) = verdicts(rule, given | {"pair": {"t_s": [1.5, 1.6], "object_id": "a", "clearance_m": [3, 1.2]}})
     assert (row["verdict"], row["object_id"], row["t_worst_ns"], row["near_miss"]) == ("pass", "a", 1_600_000_000, True)
+
+
+@pytest.mark.parametrize(
+    ("combine", "expected"),
+    [
+        ("each", [("a", "pass", "kept"), ("b", "unknown", "lost_near_ego")]),
+        ("all", [("b", "unknown", "lost_near_ego")]),
+        ("any", [("a", "pass", "kept")]),
+    ],
+)
+def test_an_object_that_was_lost_may_still_be_there(
+    tmp_path: Path, combine: str, expected: list[tuple[str, str, str]]
+) -> None:
+    rule = write(
+        tmp_path,
+        BEFORE | MEASURED | PAIR | {"combine": f'"{combine}"'},
+        {"reference": REFERENCE, "condition": PAIR_SQL},
+    )
+    times = "0..3 by 0.1"
+    given = {
+        "step": {"t_s": times},
+        "exit_taken": {"t_s": 2.0},
+        "pair": [
+            {"t_s": times, "object_id": "a", "clearance_m": 3},
+            {"t_s": "0..1.5 by 0.1", "object_id": "b", "clearance_m": 5},
+        ],
+        "lost_object": {"object_id": "b", "t_from_s": 1.5, "t_to_s": 3, "reason": "lost_near_ego"},
+    }
+    rows = verdicts(rule, given)
+    assert [(r["object_id"], r["verdict"], r["reason_code"]) for r in rows] == expected
+    assert rows[-1]["n_expected"] == 11

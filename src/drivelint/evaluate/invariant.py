@@ -210,7 +210,7 @@ WITH _live AS (SELECT * FROM _judged WHERE applies IS DISTINCT FROM false
     SELECT l.*, 0 AS episode FROM _live l SEMI JOIN (SELECT * FROM _flagged WHERE NOT broken) f USING ({_SERIES})
 ), _all AS (
     SELECT {_SERIES}, episode, count(*) AS n_expected, count(holds) AS n_judged, count(*) FILTER (NOT holds) AS n_fail,
-        min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.worst(rule)} AS worst, {terms.FIRST_UNKNOWN} AS unknown
+        min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.worst(rule)} AS worst, {terms.first_unknown(rule)} AS unknown
     FROM _rows GROUP BY ALL
 ), _decided AS (SELECT *, CASE WHEN n_fail > 0 THEN 'fail' WHEN n_judged < n_expected THEN 'unknown'
     ELSE 'pass' END AS verdict FROM _all)

@@ -96,14 +96,9 @@ def judged(rule: Rule, own_object: bool) -> str:
     """SQL for `_judged`: every expected point, judged or not; combined over objects where the rule says so."""
     crowd = rule.per_object and not own_object
     combined = rule.combine != "each"
-    source = "SELECT *, false AS nobody, NULL::DOUBLE AS sensor_range_m FROM reference_step"
+    source = "SELECT *, false AS nobody, NULL::DOUBLE AS sensor_range_m, NULL::VARCHAR AS lost FROM reference_step"
     if crowd:
-        # an anchor without a time is unknown whoever is there; nobody is a row only where the objects are combined
-        source = f"""SELECT p.* REPLACE (q.object_id AS object_id), q.object_id IS NULL
-            AND p.t_ns IS NOT NULL AS nobody, s.sensor_range_m
-    FROM reference_step p JOIN _subject s ON s.drive_id = p.drive_id AND s.ego_id = p.ego_id
-    LEFT JOIN pair q ON q.drive_id = p.drive_id AND q.ego_id = p.ego_id AND q.t_ns = p.t_ns
-    WHERE {"true" if combined else "q.object_id IS NOT NULL OR p.t_ns IS NULL"}"""
+        source = _crowd(combined)
     on = "g.drive_id = v.drive_id AND g.ego_id = v.ego_id AND g.t_ns = v.t_ns"
     on += " AND g.ref_id = v.ref_id" if rule.has("ref_id") else ""
     on += " AND g.object_id IS NOT DISTINCT FROM v.object_id" if rule.per_object else ""
@@ -116,11 +111,11 @@ CREATE OR REPLACE TEMP TABLE _judged AS
 WITH {terms.state(rule)}, _grid AS ({source}
 ), _joined AS (
     SELECT g.ref_no AS ref_id, g.drive_id, g.ego_id, g.object_id, {"p.profile" if rule.profiled else "''"} AS profile,
-        g.t_ns, g.seg,
-        v.t_ns IS NULL OR v.applies AS applies, v.observed, v.required, CASE WHEN g.nobody THEN {edge}
-            ELSE v.gain END AS gain,
-        CASE WHEN g.nobody THEN {empty} WHEN v.applies THEN v.holds END AS holds,
-        CASE WHEN g.t_ns IS NULL THEN 'anchor_unknown' WHEN g.nobody AND g.sensor_range_m IS NULL THEN 'nobody_there'
+        g.t_ns, g.seg, v.t_ns IS NULL OR v.applies AS applies, v.observed, v.required,
+        CASE WHEN g.nobody THEN {edge} ELSE v.gain END AS gain,
+        CASE WHEN g.nobody THEN {empty} WHEN v.applies AND g.lost IS NULL THEN v.holds END AS holds,
+        CASE WHEN g.lost IS NOT NULL THEN g.lost WHEN g.t_ns IS NULL THEN 'anchor_unknown'
+            WHEN g.nobody AND g.sensor_range_m IS NULL THEN 'nobody_there'
             WHEN g.nobody THEN 'beyond_sensor_range' WHEN v.t_ns IS NULL THEN 'missing_step'
             WHEN v.applies IS NULL THEN coalesce(v.code, 'applies_unknown') ELSE v.code END AS code,
         v.reason
@@ -131,6 +126,22 @@ WITH {terms.state(rule)}, _grid AS ({source}
 SELECT * REPLACE (coalesce(object_id, '') AS object_id, coalesce(who, '') AS who), row_number()
     OVER (PARTITION BY {_SERIES} ORDER BY t_ns) AS n FROM _series
 """
+
+
+def _crowd(combined: bool) -> str:
+    """SQL of the points times the objects present, and those that were lost and could still be there (`lost`: why)."""
+    # an anchor without a time is unknown whoever is there; nobody is a row only where the objects are combined
+    return f"""SELECT p.* REPLACE (q.object_id AS object_id), q.object_id IS NULL AND p.t_ns IS NOT NULL AS nobody,
+        s.sensor_range_m, NULL::VARCHAR AS lost
+    FROM reference_step p JOIN _subject s ON s.drive_id = p.drive_id AND s.ego_id = p.ego_id
+    LEFT JOIN pair q ON q.drive_id = p.drive_id AND q.ego_id = p.ego_id AND q.t_ns = p.t_ns
+    WHERE {"true" if combined else "q.object_id IS NOT NULL OR p.t_ns IS NULL"}
+    UNION ALL BY NAME
+    SELECT p.* REPLACE (l.object_id AS object_id), false AS nobody, NULL::DOUBLE AS sensor_range_m, min(l.reason) AS lost
+    FROM reference_step p JOIN lost_object l ON l.drive_id = p.drive_id AND l.ego_id = p.ego_id
+        AND p.t_ns >= l.t_from_ns AND p.t_ns <= l.t_to_ns
+    ANTI JOIN pair q ON q.drive_id = p.drive_id AND q.ego_id = p.ego_id AND q.t_ns = p.t_ns AND q.object_id = l.object_id
+    GROUP BY ALL"""
 
 
 def _combination(rule: Rule) -> str:
@@ -189,7 +200,8 @@ def outcomes(rule: Rule, own_object: bool) -> str:
     crowd = rule.per_object and not own_object
     decided = "coalesce(n_hold, 0) > 0" if rule.quantifier == "eventually" else "coalesce(n_fail, 0) > 0"
     early, late = ("pass", "fail") if rule.quantifier == "eventually" else ("fail", "pass")
-    who = "worst.who" if rule.combine != "each" else "object_id"
+    unseen = "coded[1] = 'unknown' AND problem IS NULL"
+    who = f"CASE WHEN {unseen} THEN unknown.who ELSE worst.who END" if rule.combine != "each" else "object_id"
     none = (
         "CASE WHEN n_points > 0 AND NOT somebody THEN 'nobody_there' ELSE 'outside_conditions' END"
         if crowd
@@ -204,7 +216,7 @@ INSERT INTO _outcome BY NAME
 WITH {_coverage(rule)}, _steps AS (
     SELECT {_SERIES}, count(*) AS n_expected, count(holds) AS n_judged, count(*) FILTER (NOT holds) AS n_fail,
         count(*) FILTER (holds) AS n_hold,
-        {terms.worst(rule)} AS worst, {terms.FIRST_UNKNOWN} AS unknown
+        {terms.worst(rule)} AS worst, {terms.first_unknown(rule)} AS unknown
     FROM _judged GROUP BY ALL
 ), _all AS (
     SELECT o.*, {"p.profile" if rule.profiled else "''"} AS profile, coalesce(c.n_points, 0) AS n_points, c.problem,
@@ -233,9 +245,9 @@ WITH {_coverage(rule)}, _steps AS (
 )
 SELECT $_no AS rule_no, drive_id, ego_id, profile, {who} AS object_id, ref_no AS ref_id, t_ref_ns,
     coalesce(t_min, a_ns) AS t_start_ns, coalesce(t_max, b_ns) AS t_end_ns, nullif(worst.t,
-        9223372036854775807) AS t_worst_ns,
-    nullif(CASE WHEN coded[1] = 'unknown' AND problem IS NULL THEN unknown.t
-        ELSE worst.t END, 9223372036854775807) AS t_decides_ns,
+        {terms.NEVER}) AS t_worst_ns,
+    nullif(CASE WHEN {unseen} THEN unknown.t
+        ELSE worst.t END, {terms.NEVER}) AS t_decides_ns,
     coded[1] AS verdict, coalesce(coded[2], CASE coded[1] WHEN 'pass' THEN 'kept' ELSE 'violated' END) AS code,
     CASE WHEN coded[1] IN ('pass', 'fail') THEN worst.reason WHEN coded[1] = 'unknown' AND coded[2] IS NOT DISTINCT
         FROM unknown.code THEN unknown.reason END AS reason,

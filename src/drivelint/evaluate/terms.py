@@ -18,6 +18,10 @@ _NS = 1_000_000_000
 _ENGINE = {"window_s": "_window_ns", "exempt_after_s": "_exempt_ns", "merge_gap_s": "_merge_ns"}
 
 
+NEVER = 2**63 - 1
+"""Stands for a time that is not known where a struct needs one to be ordered by."""
+
+
 class Binding:
     """A rule's place in this run: its number and the values that its statements bind."""
 
@@ -119,15 +123,18 @@ def pick(good: int, bad: int, unknown: int, sign: str = "", *, combined: bool = 
     who = "'who': coalesce(who, ''), " if combined else ""
     return (
         f"min({{'b': CASE WHEN holds THEN {good} WHEN NOT holds THEN {bad} ELSE {unknown} END, "
-        f"'g': CASE WHEN holds IS NULL THEN 0.0::DOUBLE ELSE {sign}gain END, 't': coalesce(t_ns, 9223372036854775807), "
+        f"'g': CASE WHEN holds IS NULL THEN 0.0::DOUBLE ELSE {sign}gain END, 't': coalesce(t_ns, {NEVER}), "
         f"{who}'observed': observed, 'required': required, 'holds': holds, 'code': code, 'reason': reason}})"
     )
 
 
-FIRST_UNKNOWN = """min(
-        {'t': coalesce(t_ns, 9223372036854775807), 'code': coalesce(code, 'null_value'), 'reason': reason})
-        FILTER (holds IS NULL)"""
-"""The aggregate that picks the earliest step that could not be judged."""
+def first_unknown(rule: Rule) -> str:
+    """Return the aggregate that picks the earliest step that could not be judged: (t, code, [who,] reason)."""
+    who = "'who': coalesce(who, ''), " if rule.combine != "each" else ""
+    return (
+        f"min({{'t': coalesce(t_ns, {NEVER}), 'code': coalesce(code, 'null_value'), {who}'reason': reason}}) "
+        "FILTER (holds IS NULL)"
+    )
 
 
 def numbers(rule: Rule, step: str = "") -> str:
