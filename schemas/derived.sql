@@ -101,7 +101,7 @@ CREATE TABLE registration (
     ego_id VARCHAR NOT NULL,          -- the ego
     n_steps BIGINT NOT NULL,          -- ego steps with a position
     n_on_lane BIGINT NOT NULL,        -- of them, centre on a drivable lane
-    n_moving BIGINT NOT NULL,         -- of those on a lane, moving faster than 1 m/s
+    n_moving BIGINT NOT NULL,         -- of those on a lane, moving faster than 1 m/s, and not overtaking in an opposing lane
     n_with_direction BIGINT NOT NULL, -- of the moving ones, heading within 90 degrees of the lane's direction
     lateral_median_m DOUBLE,          -- median distance from the centre line of the lane; NULL: never on a lane
     ok BOOLEAN NOT NULL,              -- good enough for rules that need the map

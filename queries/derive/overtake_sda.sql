@@ -22,7 +22,8 @@ SELECT
     ov_id IS NULL AS at_least,
     ov_id IS NULL AND n_unplaced = 0 AS nobody,
     sda_m, da_m - sda_m AS spare_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0) AS spare_s,
-    CASE WHEN told AND n_unplaced = 0 THEN overtake_zone(da_m - sda_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0)) END AS zone,
+    -- a sight line too short, or somebody who cannot be placed, leaves open how much worse it was: only A can be told then
+    CASE WHEN told AND CASE WHEN ov_id IS NULL THEN n_unplaced = 0 AND da_m > sda_m ELSE n_unplaced = 0 OR da_m <= sda_m END THEN overtake_zone(da_m - sda_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0)) END AS zone,
     CASE
         WHEN NOT begin_seen THEN 'the log does not show where the overtake began'
         WHEN NOT vbp_placed THEN 'actor ' || vbp_id || ', who may be the vehicle passed, has no position'
