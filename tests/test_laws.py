@@ -1,0 +1,245 @@
+"""Laws: rows depend neither on order, threads and batches nor on the company; and where a scene lies, and when, changes no verdict."""
+
+from __future__ import annotations
+
+import math
+import random
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from functools import cache
+from hashlib import sha256
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from drivelint import batch, store
+from drivelint.derive import derivations
+from tests import scenes
+from tests.derive.test_exits import exit_road, leaver
+from tests.derive.test_overtake import scene
+from tests.scenes import Actor, derived, drive, judged, moving, road, standing, tee, times
+from tests.shared_data import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    import duckdb
+
+    from drivelint.batch import Drive
+
+RULES = ("ukhc",)
+PROFILES = ("relaxed", "nominal", "observed")
+Row = dict[str, Any]
+
+
+@cache
+def crowd() -> tuple[Drive, ...]:
+    """Return drives that differ in map, side of the road, egos, holes, blind spots and length."""
+    found = []
+    for hand in ("rht", "lht"):
+        way, actors = scene(hand)
+        found.append(drive(actors, way.environment, drive_id=f"overtake-{hand}"))
+        ego, vbp, ov = actors
+        blind = [ego, vbp, ov.lost((ov.t_s > 7) & (ov.t_s < 9))]
+        found.append(drive(blind, way.environment, drive_id=f"blind-{hand}", egos=["ego", "vbp", "ov"]))
+        holed = [a.keep((a.t_s < 10) | (a.t_s > 12)) for a in actors]
+        found.append(drive(holed, way.environment, drive_id=f"holed-{hand}", sensor_range_m=150.0))
+    way, actors = scene(abort=True)
+    found.append(drive(actors, way.environment, drive_id="aborted"))
+    found.append(drive(actors, None, drive_id="no-map"))
+    ego, vbp, ov = actors
+    found.append(drive([ego, vbp.keep(vbp.t_s < 9), ov.keep(ov.t_s < 20)], way.environment, drive_id="lost"))
+    leaving = exit_road()
+    lights = tuple("right" if 7 < t < 15 else "off" for t in leaver(leaving).t_s)
+    found.append(drive([replace(leaver(leaving), indicator=lights)], leaving.environment, drive_id="exit"))
+    ways = tee()
+    t = times(24.0)
+    ego = moving("ego", ways["straight"], t, 20 + 3 * t, ways["straight"].own)
+    ov = moving("ov", ways["home"], t, 20 + 8 * t, ways["straight"].own)
+    found.append(drive([ego, ov.keep(t < 18)], ways["straight"].environment, drive_id="tee"))
+    return tuple(found)
+
+
+def of_each(rows: Sequence[Row]) -> dict[str, list[Row]]:
+    """Return rows by drive."""
+    found: dict[str, list[Row]] = {}
+    for row in rows:
+        found.setdefault(row["drive_id"], []).append(row)
+    return found
+
+
+@cache
+def expected() -> tuple[Row, ...]:
+    """Return the verdicts of the crowd in one batch and on one thread."""
+    return tuple(judged(crowd(), rules=RULES, profiles=PROFILES))
+
+
+def test_the_crowd_has_something_to_say() -> None:
+    """Every verdict but error, and every rule decided somewhere, or the laws below would be about little."""
+    assert {row["verdict"] for row in expected()} == {"pass", "fail", "unknown", "not_applicable"}
+    decided = {row["rule_id"] for row in expected() if row["verdict"] in {"pass", "fail"}}
+    assert len(decided) >= 12, sorted({row["rule_id"] for row in expected()} - decided)
+
+
+def test_alone_or_in_a_crowd() -> None:
+    by_drive = of_each(expected())
+    assert by_drive.keys() == {one.trace.drive_id for one in crowd()}
+    for one in crowd():
+        assert judged([one], rules=RULES, profiles=PROFILES) == by_drive[one.trace.drive_id]
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_order_of_drives_and_of_their_rows(seed: int) -> None:
+    shuffled = list(crowd())
+    random.Random(seed).shuffle(shuffled)
+    mixed = []
+    for one in shuffled:
+        tables = dict(one.trace.tables)
+        for table in ("actor_state", "actor"):
+            order = np.random.default_rng(seed).permutation(tables[table].num_rows)
+            tables[table] = tables[table].take(order)
+        mixed.append(replace(one, trace=replace(one.trace, tables=tables)))
+    assert judged(mixed, rules=RULES, profiles=PROFILES) == list(expected())
+
+
+@pytest.mark.parametrize("states", [1, 2000])
+def test_size_of_batches(states: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(batch, "STATES", states)
+    batches = [[one for one in part if isinstance(one, batch.Drive)] for part in batch.cut(crowd())]
+    assert len(batches) == (len(crowd()) if states == 1 else len(batches)) > 1
+    assert judged(*batches, rules=RULES, profiles=PROFILES) == list(expected())
+
+
+def prints(con: duckdb.DuckDBPyConnection) -> dict[str, tuple[Any, ...]]:
+    """Return for every table how many rows it has and the sum of their hashes, whatever their order."""
+    tables = [table for table in store.schema() if table != "drive"]
+    return {t: con.execute(f"SELECT count(*), sum(hash(t)::HUGEINT) FROM {t} t").fetchall()[0] for t in tables}
+
+
+def test_every_derived_row_is_the_same_on_any_threads() -> None:
+    first = prints(derived(*crowd()))
+    assert all(first[table][0] for table in derivations()), [t for t in derivations() if not first[t][0]]
+    with store.connect(threads=2) as con:
+        assert prints(derived(*reversed(crowd()), con=con)) == first
+
+
+def busy(seed: int, others: int = 24, steps: int = 13_500) -> Drive:
+    """Return a long drive round a ring of 2 km, out into the oncoming lane and back twice a minute, with others on all lanes."""
+    way = road(((2000.0, 2 * math.pi / 2000.0),), ring=True, lanes=(1, 2))
+    random_ = np.random.default_rng(seed)
+    t = times((steps - 1) / 10)
+    d = 3.5 * np.clip(1.5 * np.sin(t * math.pi / 15 + seed) - 0.5, 0, 1) - 1.75
+    actors: list[Actor] = [moving("ego", way, t, 100 + 12 * t, d)]
+    for n in range(others):
+        lane, sign = ((1.75, -1), (-1.75, 1), (-5.25, 1))[random_.integers(0, 3)]
+        s = random_.uniform(0, 2000) + sign * random_.uniform(3, 15) * t
+        actors.append(moving(f"{n:02}", way, t, s, lane))
+    actors.append(standing("parked", way, t, 700.0, -1.75))
+    return drive(actors, way.environment, drive_id=f"busy-{seed}")
+
+
+def test_a_million_states() -> None:
+    """Sums and ties vary with threads only at this size (1.6 M rows, not 40,000)."""
+    drives = [busy(seed) for seed in range(3)]
+    assert sum(one.n_states for one in drives) >= 1_000_000
+    found = []
+    for threads, batches in ((1, [drives]), (2, [drives[2:], drives[1::-1]])):
+        with store.connect(threads=threads) as con:
+            verdicts = judged(*batches, rules=RULES, profiles=PROFILES, con=con)
+            found.append((verdicts, scenes.rows(con, "FROM finding ORDER BY finding_id")))
+    assert found[0] == found[1]
+    verdicts, findings = found[0]
+    assert {row["verdict"] for row in verdicts} >= {"pass", "fail", "unknown"}
+    assert len(findings) > 100
+    assert len({row["finding_id"] for row in findings}) == len(findings)
+
+
+def test_derived_rows_of_a_third_of_a_million_states() -> None:
+    one = busy(7)
+    first = prints(derived(one))
+    with store.connect(threads=2) as con:
+        assert prints(derived(one, con=con)) == first
+    assert first["overtake"][0] > 20
+
+
+@pytest.mark.parametrize("table", [name for name, d in derivations().items() if not d.of_the_map])
+def test_no_derivation_compares_everything_with_everything(table: str) -> None:
+    """Joins are by key: a nested loop over two tables of a drive would take hours on a long one."""
+    con = _filled()
+    plan = con.execute(f"EXPLAIN {derivations()[table].sql}").fetchall()[0][1]
+    assert not re.findall(r"BLOCKWISE_NL_JOIN|NESTED_LOOP_JOIN", plan)
+
+
+@cache
+def _filled() -> duckdb.DuckDBPyConnection:
+    con = store.connect(threads=1)
+    return derived(*crowd(), con=con)
+
+
+def verdicts_of(turn: float, x: float, y: float, t_s: float, hand: str) -> list[Row]:
+    """Return the verdicts of an overtake on a bend, map and trace turned and moved, and its clock set forward."""
+    way = road(((150.0, 0.0), (300.0, 1 / 400), (250.0, 0.0)), hand=hand, start=(x, y, turn))
+    t = times(30.0)
+    s = 50 + 12 * t
+    ego = moving("ego", way, t, s, scenes.swing(way, s, 150, 280))
+    vbp = moving("vbp", way, t, 140 + 4 * t, way.own)
+    ov = moving("ov", way, t, 560 - 9 * t, way.other)
+    actors = [replace(a, t_s=a.t_s + t_s) for a in (ego, vbp, ov)]
+    return judged([drive(actors, way.environment)], rules=RULES, profiles=PROFILES)
+
+
+@cache
+def at_home(hand: str) -> tuple[Row, ...]:
+    return tuple(verdicts_of(0.0, 0.0, 0.0, 0.0, hand))
+
+
+@settings(max_examples=5, deadline=None)
+@given(
+    st.floats(-math.pi, math.pi),
+    st.floats(-5000, 5000),
+    st.floats(-5000, 5000),
+    st.integers(0, 2_000_000),
+    st.sampled_from(["rht", "lht"]),
+)
+def test_where_and_when_does_not_matter(turn: float, x: float, y: float, t_s: int, hand: str) -> None:
+    moved = verdicts_of(turn, x, y, t_s, hand)
+    home = at_home(hand)
+    assert len(moved) == len(home)
+    for a, b in zip(moved, home, strict=True):
+        for column in (
+            "rule_id",
+            "profile",
+            "object_id",
+            "verdict",
+            "reason_code",
+            "near_miss",
+            "n_expected",
+            "n_judged",
+        ):
+            assert a[column] == b[column], (column, a, b)
+        for column in ("t_ref_ns", "t_start_ns", "t_end_ns"):
+            assert a[column] == (None if b[column] is None else b[column] + t_s * 10**9)
+        for column in ("observed", "required", "margin"):
+            assert a[column] == (None if b[column] is None else pytest.approx(b[column], abs=2e-3)), (column, a, b)
+
+
+def test_the_file_is_the_same_bytes_for_the_same_set(tmp_path: Path) -> None:
+    """Named in another order, from another place, with margins or without: verdicts.parquet and findings.parquet agree."""
+    fixture = ROOT / "fixtures" / "overtake"
+    logs = [str(fixture / f"{name}.csv") for name in ("safe", "near_miss", "collision")]
+    digests = []
+    for n, (order, more) in enumerate(((logs, []), (logs[::-1], []), (logs[1:] + logs[:1], ["--margins"]))):
+        out = tmp_path / str(n)
+        command = [sys.executable, "-m", "drivelint", "check", *order, "--mapping", str(fixture / "mapping.toml")]
+        command += ["--map", str(fixture / "road.xodr"), "--rules", "ukhc", "--out", str(out), *more]
+        done = subprocess.run(command, capture_output=True, check=False, cwd=tmp_path)
+        assert done.returncode == 1, done.stderr.decode()
+        files = ("verdicts.parquet", "findings.parquet", "drives.parquet", "rules.parquet")
+        digests.append({name: sha256((out / name).read_bytes()).hexdigest() for name in files})
+    assert digests[0] == digests[1] == digests[2]
