@@ -254,7 +254,7 @@ CREATE TABLE ego_footway (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
-    depth_m DOUBLE                    -- how far a corner or the middle of a side is inside a footway and on no carriageway; 0: not at all; NULL: the box is not known
+    depth_m DOUBLE                    -- how far a corner or the middle of a side is inside a footway and on no carriageway; 0: not at all; NULL: the box is not known, or part of it is on nothing that the map knows
 );
 
 CREATE TABLE pair (

@@ -20,11 +20,11 @@ candidate AS (
         along0(a.x_m, a.y_m, c.x0_m, c.y0_m, c.tx0, c.ty0) AS a0,
         along1(a.x_m, a.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) AS a1
     FROM point a
-    JOIN lane_cell c ON c.environment_id = a.environment_id AND c.cell = lane_cell_of(a.x_m, a.y_m) AND (c.drivable OR c.footway)
+    JOIN lane_cell c ON c.environment_id = a.environment_id AND c.cell = lane_cell_of(a.x_m, a.y_m)
 ),
 inside AS (
     SELECT
-        drive_id, ego_id, t_ns, p, bool_or(drivable) AS on_carriageway, max(depth_m) FILTER (NOT drivable) AS depth_m
+        drive_id, ego_id, t_ns, p, bool_or(drivable) AS on_carriageway, max(depth_m) FILTER (footway) AS depth_m
     FROM (
         SELECT
             *,
@@ -37,11 +37,11 @@ inside AS (
     GROUP BY ALL
 ),
 deepest AS (
-    SELECT drive_id, ego_id, t_ns, max(depth_m) FILTER (NOT on_carriageway) AS depth_m FROM inside GROUP BY ALL
+    SELECT drive_id, ego_id, t_ns, count(*) AS n, max(depth_m) FILTER (NOT on_carriageway) AS depth_m FROM inside GROUP BY ALL
 )
 SELECT
     e.drive_id, e.ego_id, e.t_ns,
-    CASE WHEN e.x_m IS NOT NULL AND e.y_m IS NOT NULL AND e.yaw_rad IS NOT NULL AND e.hl IS NOT NULL AND e.hw IS NOT NULL
-        THEN greatest(coalesce(d.depth_m, 0.0), 0.0) END AS depth_m
+    -- a point on nothing that the map knows may be on a footway that it lost
+    CASE WHEN d.depth_m > 0 OR d.n = 8 THEN greatest(coalesce(d.depth_m, 0.0), 0.0) END AS depth_m
 FROM ego e
 LEFT JOIN deepest d USING (drive_id, ego_id, t_ns)

@@ -13,7 +13,9 @@ seen AS MATERIALIZED (
     SELECT DISTINCT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.x_m, p.y_m, p.s_m, p.d_m, p.front_s_m, p.rear_s_m,
         p.lat_half_m, p.half_width_m, p.heading_diff_rad, p.speed_mps, p.length_m
     FROM gone g
-    JOIN pair p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns >= g.t0_ns AND p.t_ns <= coalesce(g.t_back_ns, g.t_end_ns)
+    -- the steps first: they are few, and from them to the pairs it is by key alone
+    JOIN step st ON st.drive_id = g.drive_id AND st.ego_id = g.ego_id AND st.t_ns >= g.t0_ns AND st.t_ns <= coalesce(g.t_back_ns, g.t_end_ns)
+    JOIN pair p ON p.drive_id = st.drive_id AND p.ego_id = st.ego_id AND p.t_ns = st.t_ns
 ),
 ahead AS (
     SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, p.object_id, p.rear_s_m - g.front_s_m AS gap_m, p.speed_mps, p.length_m, true AS placed

@@ -9,6 +9,7 @@ import pyarrow.parquet as pq
 
 from drivelint import store
 from drivelint.derive import derivations, derive
+from drivelint.errors import RuleError
 from drivelint.evaluate import evaluate
 
 if TYPE_CHECKING:
@@ -78,6 +79,7 @@ class Bench:
             self._load(drives)
             derive(self._con, self._tables, of_the_map=False)
             evaluate(self._con, self._rules, self._params, margins=self.margins_file is not None)
+            self._refuse_shared_error(ids)
         except BaseException:
             self._forget(ids)
             raise
@@ -143,6 +145,12 @@ class Bench:
                     f"INSERT INTO kept.{table} SELECT * FROM {table} WHERE list_contains(?, environment_id)", [new]
                 )
             self._kept_maps.update(new)
+
+    def _refuse_shared_error(self, ids: Sequence[str]) -> None:
+        """Let a rule that erred on a crowd be tried on each drive alone: the fault of one is not the others'."""
+        erred = "SELECT rule_id FROM verdict WHERE verdict = 'error' AND list_contains(?, drive_id) ORDER BY rule_id LIMIT 1"
+        if len(ids) > 1 and (row := self._con.execute(erred, [list(ids)]).fetchone()):
+            raise RuleError(f"{row[0]} erred on a batch of {len(ids)} drives")
 
     def _clear(self) -> None:
         for table in _batch_tables():

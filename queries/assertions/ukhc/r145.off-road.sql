@@ -18,5 +18,6 @@
 -- why = "our default: the noise of registration, as for lane boundaries"
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, depth_m AS observed, $tolerance_m AS required
+SELECT drive_id, ego_id, t_ns, depth_m AS observed, $tolerance_m AS required,
+    CASE WHEN depth_m IS NULL THEN 'part of the ego is on nothing that the map knows' END AS reason
 FROM ego_footway
