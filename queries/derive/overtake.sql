@@ -8,19 +8,21 @@ WITH gone AS (
     -- at t0 the running chain is still the one that is left; seen from a lane not yet driven, the ego is always outside
     WHERE x.overtaking AND e.chain_id = x.chain_id
 ),
--- everybody's states while an excursion lasts: all that is needed of a large table, looked for once
+-- everybody's states, and the ego's, while an excursion lasts: all that is needed of a large table, by key from here on
 seen AS MATERIALIZED (
-    SELECT DISTINCT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.x_m, p.y_m, p.s_m, p.d_m, p.front_s_m, p.rear_s_m,
-        p.lat_half_m, p.half_width_m, p.heading_diff_rad, p.speed_mps, p.length_m
+    SELECT g.chain_id, g.t0_ns, e.front_s_m AS ego_front_m, e.rear_s_m AS ego_rear_m, p.*
     FROM gone g
-    -- the steps first: they are few, and from them to the pairs it is by key alone
-    JOIN step st ON st.drive_id = g.drive_id AND st.ego_id = g.ego_id AND st.t_ns >= g.t0_ns AND st.t_ns <= coalesce(g.t_back_ns, g.t_end_ns)
-    JOIN pair p ON p.drive_id = st.drive_id AND p.ego_id = st.ego_id AND p.t_ns = st.t_ns
+    JOIN ego_state e ON e.drive_id = g.drive_id AND e.ego_id = g.ego_id AND e.t_ns >= g.t0_ns AND e.t_ns <= coalesce(g.t_back_ns, g.t_end_ns)
+    JOIN (
+        SELECT drive_id, ego_id, t_ns, object_id, actor_class, x_m, y_m, s_m, d_m, front_s_m, rear_s_m, lat_half_m, half_width_m,
+            heading_diff_rad, speed_mps, length_m
+        FROM pair
+    ) p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.t_ns = e.t_ns
 ),
 ahead AS (
     SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, p.object_id, p.rear_s_m - g.front_s_m AS gap_m, p.speed_mps, p.length_m, true AS placed
     FROM gone g
-    JOIN seen p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns = g.t0_ns
+    JOIN seen p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.chain_id = g.chain_id AND p.t0_ns = g.t0_ns AND p.t_ns = g.t0_ns
     WHERE may_be_vehicle(p.actor_class) AND p.s_m > g.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m - over_boundary_m()
         AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps())
 ),
@@ -30,7 +32,8 @@ hidden AS (
     FROM gone g
     JOIN unplaced u ON u.drive_id = g.drive_id AND u.ego_id = g.ego_id AND u.t_ns = g.t0_ns
     JOIN actor a ON a.drive_id = u.drive_id AND a.actor_id = u.object_id
-    LEFT JOIN seen p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.t_ns = u.t_ns AND p.object_id = u.object_id
+    LEFT JOIN seen p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.chain_id = g.chain_id AND p.t0_ns = g.t0_ns
+        AND p.t_ns = g.t0_ns AND p.object_id = u.object_id
     WHERE (p.x_m IS NULL OR p.y_m IS NULL)
         AND NOT EXISTS (FROM ahead a WHERE a.drive_id = g.drive_id AND a.ego_id = g.ego_id AND a.chain_id = g.chain_id AND a.t0_ns = g.t0_ns)
 ),
@@ -39,12 +42,9 @@ candidate AS (
     FROM (SELECT * FROM ahead UNION ALL SELECT * FROM hidden)
 ),
 passing AS (
-    SELECT c.drive_id, c.ego_id, c.chain_id, c.t0_ns, c.object_id, bool_or(e.front_s_m > p.front_s_m) AS passed
+    SELECT c.drive_id, c.ego_id, c.chain_id, c.t0_ns, c.object_id, bool_or(p.ego_front_m > p.front_s_m) AS passed
     FROM candidate c
-    JOIN gone g USING (drive_id, ego_id, chain_id, t0_ns)
-    JOIN seen p ON p.drive_id = c.drive_id AND p.ego_id = c.ego_id AND p.object_id = c.object_id
-        AND p.t_ns >= c.t0_ns AND p.t_ns <= coalesce(g.t_back_ns, g.t_end_ns)
-    JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
+    JOIN seen p USING (drive_id, ego_id, chain_id, t0_ns, object_id)
     GROUP BY ALL
 ),
 kept AS (
@@ -57,12 +57,11 @@ kept AS (
         OR (c.rank = 1 AND coalesce(c.gap_m, 0.0) <= 100 AND (g.max_out_m >= 0.5 OR g.t_back_ns IS NULL OR NOT c.placed))
 ),
 later AS (
-    SELECT k.drive_id, k.ego_id, k.chain_id, k.t0_ns, k.object_id, w.moment, e.rear_s_m - p.front_s_m AS gap_m, p.speed_mps
+    SELECT k.drive_id, k.ego_id, k.chain_id, k.t0_ns, k.object_id, w.moment, p.ego_rear_m - p.front_s_m AS gap_m, p.speed_mps
     FROM kept k
     CROSS JOIN (VALUES ('t2'), ('t3')) AS w(moment)
-    JOIN seen p ON p.drive_id = k.drive_id AND p.ego_id = k.ego_id AND p.object_id = k.object_id
+    JOIN seen p ON p.drive_id = k.drive_id AND p.ego_id = k.ego_id AND p.chain_id = k.chain_id AND p.t0_ns = k.t0_ns AND p.object_id = k.object_id
         AND p.t_ns = CASE w.moment WHEN 't2' THEN k.t_turn_ns ELSE k.t_back_ns END
-    JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
 ),
 angle AS (
     SELECT
