@@ -1,0 +1,129 @@
+"""How the actors of a scene move: path speed as said, along the line, with smooth steps sideways; and what touches, stops.
+
+Motion is solved on a grid of milliseconds, so that samples, lane departures and contacts need no formula of their own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from drivelint.demo.actors import Actor, Body
+    from drivelint.demo.road import Road
+
+    Floats = NDArray[np.float64]
+
+TICKS = 1000  # per second
+_GRID_M = 0.02
+_TOUCH_M = 0.02  # bodies give way by this much before both stand
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """An actor's motion, arrays of one value per tick: station and offset (nearside positive), pose, speed, indicator."""
+
+    actor: Actor
+    t_s: Floats
+    station: Floats
+    offset: Floats
+    x: Floats
+    y: Floats
+    yaw: Floats
+    speed: Floats
+    light: NDArray[np.str_]
+
+    def at(self, rows: NDArray[np.intp]) -> Track:
+        """Return the track at these ticks."""
+        names = ("t_s", "station", "offset", "x", "y", "yaw", "speed", "light")
+        return replace(self, **{name: getattr(self, name)[rows] for name in names})
+
+    def stopped(self, tick: int) -> Track:
+        """Return the track of a body that stands still from a tick on."""
+        n = len(self.t_s)
+        frozen = self.at(np.minimum(np.arange(n), tick))
+        return replace(frozen, t_s=self.t_s, speed=np.where(np.arange(n) >= tick, 0.0, self.speed))
+
+
+def move(actor: Actor, road: Road, duration_s: float) -> Track:
+    """Return an actor's motion on a road."""
+    t = np.arange(round(duration_s * TICKS) + 1) / TICKS
+    along = 1 if actor.lane > 0 else -1
+    line = road.way(branch=actor.leaves)
+    speed = _speeds(actor, t)
+    way = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2 / TICKS)])
+    # the length of the path over a fine grid of stations gives the station after any way
+    reach = np.arange(0.0, float(way[-1]) * 1.2 + 1.0, _GRID_M)
+    grid = actor.station + along * reach
+    d, slope = _offsets(actor, road, grid)
+    scale = np.hypot(1.0 - line.curvature(grid) * d * road.nearside, slope)
+    path = np.concatenate([[0.0], np.cumsum((scale[1:] + scale[:-1]) / 2 * _GRID_M)])
+    station = actor.station + along * np.interp(way, path, reach)
+    d, slope = _offsets(actor, road, station)
+    x, y, heading = line.at(station, d * road.nearside)
+    drift = np.arctan2(slope * road.nearside, 1.0 - line.curvature(station) * d * road.nearside)
+    yaw = heading + drift + (0.0 if along > 0 else np.pi)
+    return Track(actor, t, station, d, x, y, np.arctan2(np.sin(yaw), np.cos(yaw)), speed, _lights(actor, road, t))
+
+
+def _speeds(actor: Actor, t: Floats) -> Floats:
+    speed, now = np.full(t.shape, actor.speed_mps), actor.speed_mps
+    for change in sorted(actor.speeds):
+        now = float(speed[min(round(change.at_s * TICKS), len(t) - 1)])
+        passed = np.clip(t - change.at_s, 0.0, None) * change.rate_mps2
+        over = change.to_mps - now
+        speed = np.where(t >= change.at_s, now + np.sign(over) * np.minimum(passed, abs(over)), speed)
+    return speed
+
+
+def _offsets(actor: Actor, road: Road, station: Floats) -> tuple[Floats, Floats]:
+    """Return the offset at stations and its slope along the line."""
+    along = 1 if actor.lane > 0 else -1
+    d = np.full(station.shape, road.lane(actor.lane) + actor.beside_m * along)
+    slope = np.zeros(station.shape)
+    for shift in actor.shifts:
+        u = np.clip((station - shift.at) * along / shift.within, 0.0, 1.0)
+        d = d + shift.by * along * u * u * (3.0 - 2.0 * u)
+        slope = slope + shift.by * 6.0 * u * (1.0 - u) / shift.within
+    return d, slope
+
+
+def _lights(actor: Actor, road: Road, t: Floats) -> NDArray[np.str_]:
+    sides = {"nearside": road.hand, "offside": "right" if road.hand == "left" else "left", "hazard": "hazard"}
+    light = np.full(t.shape, "off", dtype="<U6")
+    for signal in actor.lights:
+        light[(t >= signal.from_s - 1e-9) & (t < signal.until_s - 1e-9)] = sides[signal.side]
+    return light
+
+
+def reach(body: Body, drift: Floats) -> tuple[Floats, Floats]:
+    """Return half the extent of a box along and across the line, turned by `drift` (rad) against it."""
+    c, s = np.abs(np.cos(drift)), np.abs(np.sin(drift))
+    return c * body.length_m / 2 + s * body.width_m / 2, s * body.length_m / 2 + c * body.width_m / 2
+
+
+def separation(a: Track, b: Track) -> Floats:
+    """Return the largest gap of two boxes over their four axes at every tick; negative: they overlap, by that depth."""
+    gaps = []
+    for yaw in (a.yaw, a.yaw + np.pi / 2, b.yaw, b.yaw + np.pi / 2):
+        apart = np.abs((b.x - a.x) * np.cos(yaw) + (b.y - a.y) * np.sin(yaw))
+        gaps.append(apart - reach(a.actor.body, a.yaw - yaw)[0] - reach(b.actor.body, b.yaw - yaw)[0])
+    found: Floats = np.max(gaps, axis=0)
+    return found
+
+
+def collide(ego: Track, others: list[Track]) -> list[Track]:
+    """Return all tracks, the ego's first: whom the ego touches stands still with it from then on."""
+    deep = [np.flatnonzero(separation(ego, other) <= -_TOUCH_M) for other in others]
+    ticks = [int(found[0]) if len(found) else len(ego.t_s) for found in deep]
+    first = min(ticks, default=len(ego.t_s))
+    if first == len(ego.t_s):
+        return [ego, *others]
+    return [
+        ego.stopped(first),
+        *(o.stopped(first) if tick == first else o for o, tick in zip(others, ticks, strict=True)),
+    ]

@@ -1,0 +1,91 @@
+"""The roads of the scenes, said in a few words: pieces, lanes, the hand of traffic, markings, limits, signs, one fork.
+
+A road's line is its centre line. Actors and signs are placed by the station `s` along it and the offset `d` from it,
+**positive towards the nearside** (the side of the road that is driven on), so that a scene reads the same for left-hand
+and right-hand traffic.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal, NamedTuple
+
+from drivelint.demo.line import Line, Piece
+
+LANE_M = 3.5
+FOOTWAY_M = 2.0
+MPH = 0.44704  # m/s
+
+Hand = Literal["left", "right"]
+SignKind = Literal["exit", "give_way", "no_overtaking", "stop", "stop_line"]
+
+
+class Sign(NamedTuple):
+    """A sign beside the road, or a line painted across it, for traffic along the road."""
+
+    kind: SignKind
+    at: float
+
+
+class Fork(NamedTuple):
+    """Where a branch leaves the road: by a lane of its own (`exit_m` long, opening over `taper_m`), or as a side road.
+
+    The junction begins at station `at` and is `through_m` long; `turn` leads through it to the pieces of the branch.
+    """
+
+    at: float
+    through_m: float
+    turn: Piece
+    branch: tuple[Piece, ...]
+    exit_m: float = 0.0
+    taper_m: float = 40.0
+
+    @property
+    def is_exit(self) -> bool:
+        """Tell an exit from a side road."""
+        return self.exit_m > 0.0
+
+
+@dataclass(frozen=True)
+class Road:
+    """A two-way road. `lanes` and `oncoming` count driving lanes along and against its line.
+
+    `limits_mph` and `centre` (the centre line's marking) hold from their stations on.
+    """
+
+    pieces: tuple[Piece, ...]
+    hand: Hand = "left"
+    lanes: int = 1
+    oncoming: int = 1
+    kind: str = "town"
+    limits_mph: tuple[tuple[float, float], ...] = ((0.0, 30.0),)
+    centre: tuple[tuple[float, str], ...] = ((0.0, "broken"),)
+    footways: bool = True
+    signs: tuple[Sign, ...] = ()
+    fork: Fork | None = None
+
+    @property
+    def line(self) -> Line:
+        """Return the centre line."""
+        return Line(self.pieces)
+
+    @property
+    def nearside(self) -> int:
+        """Return 1 where the nearside is the left, -1 where it is the right."""
+        return 1 if self.hand == "left" else -1
+
+    def lane(self, number: int) -> float:
+        """Return the offset of a lane's middle: 1, 2, ... from the centre line to the nearside; -1, -2, ... oncoming."""
+        return (abs(number) - 0.5) * (LANE_M if number > 0 else -LANE_M)
+
+    def way(self, *, branch: bool) -> Line:
+        """Return the line that traffic along the road follows: on, or into the branch."""
+        if not branch:
+            return self.line
+        if self.fork is None:
+            raise ValueError("this road has no fork to leave by")
+        return self.line.cut(0.0, self.fork.at).then(self.fork.turn, *self.fork.branch)
+
+    def driven_on_the(self, hand: Hand) -> Road:
+        """Return the same road driven on the other side."""
+        return replace(self, hand=hand)
