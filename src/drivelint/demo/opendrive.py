@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from drivelint.demo.line import Line, Pose
-from drivelint.demo.road import FOOTWAY_M, LANE_M
+from drivelint.demo.road import BESIDE_M, LANE_M
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -101,7 +101,7 @@ def _element(
 def _lanes(road: Road, *, exit_lane: bool = False, ahead: bool = False, linked: bool = False) -> list[_Lane]:
     """Return the road's lanes; `exit_lane`: with one more on the nearside, `ahead`: that one begins where these end."""
     n, m = road.lanes, road.oncoming
-    edge = "curb" if road.footways else "solid"
+    edge = "curb" if road.beside == "sidewalk" else "solid"
     numbers = [*range(1, n + 1), *(-k for k in range(1, m + 1))]
     lanes = []
     for k in numbers:
@@ -110,11 +110,10 @@ def _lanes(road: Road, *, exit_lane: bool = False, ahead: bool = False, linked: 
         lanes.append(_Lane(k, mark=mark, before=k if linked else None, after=k if linked or ahead else None))
     if exit_lane and road.fork:
         lanes.append(_Lane(n + 1, "exit", _opening(road.fork), edge))
-    if road.footways:
-        width = f'<width sOffset="0" a="{FOOTWAY_M}" b="0" c="0" d="0"/>'
-        near = n + 2 if exit_lane else n + 1
-        lanes.append(_Lane(near, "sidewalk", width, "none", after=n + 2 if ahead else None))
-        lanes.append(_Lane(-m - 1, "sidewalk", width, "none", after=-m - 1 if ahead else None))
+    width = f'<width sOffset="0" a="{BESIDE_M}" b="0" c="0" d="0"/>'
+    near = n + 2 if exit_lane else n + 1
+    lanes.append(_Lane(near, road.beside, width, "none", after=n + 2 if ahead else None))
+    lanes.append(_Lane(-m - 1, road.beside, width, "none", after=-m - 1 if ahead else None))
     return lanes
 
 

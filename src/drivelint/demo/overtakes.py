@@ -35,7 +35,7 @@ class Manner(NamedTuple):
     in_m: float
 
 
-MANNERS: Final = {"": Manner(LOGGED_MPS, 15.7, -18.5, 5.0), "-25mph": Manner(25 * MPH, 23.5, -28.5, -0.5)}
+MANNERS: Final = {"": Manner(LOGGED_MPS, 15.7, -19.5, 4.0), "-25mph": Manner(25 * MPH, 23.5, -29.5, -1.5)}
 
 
 def overtakes() -> tuple[Scene, ...]:

@@ -13,7 +13,7 @@ from typing import Literal, NamedTuple
 from drivelint.demo.line import Line, Piece
 
 LANE_M = 3.5
-FOOTWAY_M = 2.0
+BESIDE_M = 2.0  # a footway's or a shoulder's width
 MPH = 0.44704  # m/s
 
 Hand = Literal["left", "right"]
@@ -50,7 +50,7 @@ class Fork(NamedTuple):
 class Road:
     """A two-way road. `lanes` and `oncoming` count driving lanes along and against its line.
 
-    `limits_mph` and `centre` (the centre line's marking) hold from their stations on.
+    `limits_mph` and `centre` (the centre line's marking) hold from their stations on; `beside` lies beside the carriageway.
     """
 
     pieces: tuple[Piece, ...]
@@ -60,7 +60,7 @@ class Road:
     kind: str = "town"
     limits_mph: tuple[tuple[float, float], ...] = ((0.0, 30.0),)
     centre: tuple[tuple[float, str], ...] = ((0.0, "broken"),)
-    footways: bool = True
+    beside: Literal["sidewalk", "shoulder"] = "sidewalk"
     signs: tuple[Sign, ...] = ()
     fork: Fork | None = None
 

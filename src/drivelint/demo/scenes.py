@@ -6,7 +6,7 @@ from typing import Final
 
 from drivelint.demo.actors import Actor, car, cyclist
 from drivelint.demo.line import left, right, straight
-from drivelint.demo.overtakes import MANNERS, overtakes, passing
+from drivelint.demo.overtakes import Manner, overtakes, passing
 from drivelint.demo.road import LANE_M, MPH, Fork, Road, Sign
 from drivelint.demo.scene import Scene, coming, departure
 
@@ -14,13 +14,13 @@ TWO_LANES: Final = Road((straight(500.0),), lanes=2)
 LONG: Final = Road((straight(1000.0),))
 BEND: Final = Road((straight(100.0), left(250.0, radius=150.0), straight(150.0)))
 SIDE_ROAD: Final = Road(
-    (straight(400.0),), fork=Fork(at=150.0, through_m=20.0, turn=left(15.707963, radius=10.0), branch=(straight(60.0),))
+    (straight(600.0),), fork=Fork(at=150.0, through_m=20.0, turn=left(15.707963, radius=10.0), branch=(straight(60.0),))
 )
 EXIT: Final = Road(
     (straight(600.0),),
     kind="rural",
     limits_mph=((0.0, 40.0),),
-    footways=False,
+    beside="shoulder",
     signs=(Sign("exit", 100.0), Sign("exit", 200.0)),
     fork=Fork(
         at=350.0,
@@ -34,7 +34,11 @@ COUNTRY: Final = Road(
     (straight(200.0), left(150.0, radius=120.0), straight(150.0), right(120.0, radius=200.0), straight(400.0)),
     kind="rural",
     limits_mph=((0.0, 30.0), (350.0, 40.0)),
+    beside="shoulder",
 )
+
+
+GENTLE: Final = Manner(25 * MPH, 30.0, -40.0, 6.0)
 
 
 def library() -> tuple[Scene, ...]:
@@ -94,8 +98,6 @@ def _exits() -> list[Scene]:
 
 
 def _harder_overtakes() -> list[Scene]:
-    manner = MANNERS["-25mph"]
-    v = manner.speed_mps
     return [
         _with_oncoming(
             "overtake-on-bend",
@@ -109,21 +111,21 @@ def _harder_overtakes() -> list[Scene]:
             SIDE_ROAD,
             142.0,
         ),
-        _aborted(v),
+        _aborted(),
         _two_in_one_go(),
     ]
 
 
 def _with_oncoming(name: str, shows: str, road: Road, parked_at: float) -> Scene:
-    """Return the 25 mph overtake on another road, with the oncoming car further away than any profile asks for."""
-    manner = MANNERS["-25mph"]
-    ego, parked, duration = passing(parked_at, manner)
-    other = coming(car().drives(manner.speed_mps), departure(ego, road, duration), ahead_m=130.0)
+    """Return a gentle overtake at 25 mph, with the oncoming car further away than any profile asks for."""
+    ego, parked, duration = passing(parked_at, GENTLE)
+    other = coming(car().drives(GENTLE.speed_mps), departure(ego, road, duration), ahead_m=200.0)
     return Scene(name, shows, road, ego, (parked, other), duration)
 
 
-def _aborted(v: float) -> Scene:
-    """Return an overtake given up: the ego is half over the line, sees that it is too late, brakes and falls in behind."""
+def _aborted() -> Scene:
+    """Return an overtake given up: at 25 mph the ego is half over the line, sees that it is too late, brakes and falls in behind."""
+    v = 25 * MPH
     ego = (
         car()
         .starts(20.0)
@@ -145,9 +147,9 @@ def _two_in_one_go() -> Scene:
         car()
         .starts(20.0)
         .drives(29 * MPH)
-        .moves_out(LANE_M, at=92.0, within=35.0)
+        .moves_out(LANE_M, at=86.0, within=35.0)
         .moves_in(LANE_M, at=200.0, within=35.0)
-        .signals("offside", 0.3, 8.2)
+        .signals("offside", 0.1, 7.8)
         .signals("nearside", 13.9, 16.6)
     )
     slow = tuple(car().starts(at).drives(5.0) for at in (100.0, 118.0))
