@@ -12,6 +12,8 @@ CREATE TABLE data_log (
     utc_start_ns BIGINT,              -- UTC of t_start_ns where the log says it, else NULL
     n_states BIGINT NOT NULL,         -- rows of actor_state
     sensor_range_m DOUBLE,            -- range within which the recorder sees every actor; NULL: ground truth, unlimited
+    map_offset_x_m DOUBLE,            -- added to the map's x to bring it to where the log is, as the mapping or the log says; NULL: nothing said
+    map_offset_y_m DOUBLE,            -- the same for y
     has_indicator BOOLEAN NOT NULL,   -- the ego's indicator is known in at least one state
     has_brake_light BOOLEAN NOT NULL, -- the ego's brake light is known in at least one state
     has_acceleration BOOLEAN NOT NULL -- acceleration was recorded, not derived

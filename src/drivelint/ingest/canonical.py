@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import msgspec
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
@@ -58,7 +59,36 @@ def read(path: Path) -> Recording:
     if (path / "data_log.parquet").is_file():
         log = (parquet.table(path / "data_log.parquet").to_pylist() or [{}])[0]
         recording.sensor_range_m, recording.utc_start_ns = log.get("sensor_range_m"), log.get("utc_start_ns")
+        offset = log.get("map_offset_x_m"), log.get("map_offset_y_m")
+        if offset != (None, None):
+            dx, dy = recording.map_offset = _offset(path, offset)
+            recording.notes.append(f"the log moves the map by ({dx:+g}, {dy:+g}) m")
+    if (path / "map.xodr").is_file():
+        recording.embedded_map = (path / "map.xodr").read_bytes()
+    recording.findings += _quality(path / "quality.parquet")
     return recording
+
+
+def _offset(path: Path, offset: tuple[object, object]) -> tuple[float, float]:
+    match offset:
+        case (float(x), float(y)) if np.isfinite([x, y]).all():
+            return x, y
+    raise TraceError(f"{path / 'data_log.parquet'}: map_offset_x_m and map_offset_y_m are {offset}: give two numbers")
+
+
+def _quality(path: Path) -> list[Finding]:
+    """Read what was found when the log was converted: what was mended then cannot be seen any more."""
+    if not path.is_file():
+        return []
+    rows = parquet.table(path)
+    _need(path, rows, ("check_id", "severity", "message"))
+    try:
+        return [
+            msgspec.convert({name: value for name, value in row.items() if name != "drive_id"}, Finding)
+            for row in rows.to_pylist()
+        ]
+    except msgspec.ValidationError as error:
+        raise TraceError(f"{path}: not rows of the table quality: {error}") from error
 
 
 def _column(path: Path, table: pa.Table, name: str, kind: pa.DataType) -> pa.Array:

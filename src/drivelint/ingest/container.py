@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, TypeVar
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Channel, DataEnd, Footer, Schema, Statistics
+from mcap.records import Channel, DataEnd, Footer, Metadata, Schema, Statistics
 
 from drivelint.errors import TraceError
 from drivelint.ingest.trace import Finding
@@ -47,11 +47,15 @@ class Packet:
 
 @dataclass
 class Container:
-    """An MCAP file. `channels`, `schemas` and `findings` are complete once `packets` is exhausted."""
+    """An MCAP file. All but its path is complete once `packets` is exhausted.
+
+    `metadata`: name of a metadata record -> its texts; of several with one name, the first.
+    """
 
     path: Path
     channels: dict[int, Channel] = field(default_factory=dict)
     schemas: dict[int, Schema] = field(default_factory=dict)
+    metadata: dict[str, dict[str, str]] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
     _messages: int = 0
     _unprotected: int = 0
@@ -84,6 +88,9 @@ class Container:
                 statistics = self._parsed(Statistics.read, view[start:end], at)
             elif opcode == Opcode.CHUNK:
                 yield from self._chunk(view[start:end], at)
+            elif opcode == Opcode.METADATA:
+                record = self._parsed(Metadata.read, view[start:end], at)
+                self.metadata.setdefault(record.name, record.metadata)
             elif in_data:  # the index repeats schemas and channels: only those among the data count
                 yield from self._content(opcode, view[start:end], at)
             at = end

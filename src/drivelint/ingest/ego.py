@@ -16,11 +16,14 @@ if TYPE_CHECKING:
 EVERY = "all"
 
 
-def choose(path: Path, actors: Actors, asked: str | None, named: list[str]) -> tuple[list[str], list[Finding]]:
+def choose(
+    path: Path, actors: Actors, asked: str | None, named: list[str], *, needed: bool = True
+) -> tuple[list[str], list[Finding]]:
     """Return the ids of the egos and what is to be said about the choice.
 
     `asked` is the user's id or `all` (every motor vehicle, except in a log whose actor is itself called `all`);
-    `named` are the log's or mapping's. Errors: `TraceError` when there is no ego or no such actor.
+    `named` are the log's or mapping's. Where nobody names one and none is `needed`, there is none and a finding says so.
+    Errors: `TraceError` when there is no ego though needed, or no such actor.
     """
     ids = set(actors.ids)
     if asked == EVERY and EVERY not in ids:
@@ -34,6 +37,8 @@ def choose(path: Path, actors: Actors, asked: str | None, named: list[str]) -> t
         absent = (
             f"the log's ego {listed(named)} has no states" if named else "the log does not say which actor is the ego"
         )
+        if not needed:
+            return [], [Finding("no_ego", "warning", f"no ego: {absent}: nothing is judged without --ego ID")]
         raise TraceError(f"{path}: no ego: {absent}: use --ego ID (ids: {listed(actors.ids)})")
     if len(egos) > 1:
         message = f"the log names {len(egos)} egos ({listed(egos)}): each is judged; choose one with --ego ID"

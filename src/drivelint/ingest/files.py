@@ -20,9 +20,11 @@ CANONICAL = (
     "actor_state.parquet",
     "data_log.parquet",
     "declared_event.parquet",
+    "map.xodr",
+    "quality.parquet",
     "signal_state.parquet",
 )
-"""The files of a canonical folder, in name order."""
+"""The files of a canonical folder, in name order; all but `actor_state.parquet` may be missing."""
 TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi"})
 """What a folder of traces is searched for. `.osi` is among them so that such a drive is reported, not passed over."""
 

@@ -29,6 +29,7 @@ SCHEMAS: dict[str, dict[str, pa.DataType]] = {
     "data_log": {
         "drive_id": _S, "file_name": _S, "sha256": _S, "format": _S, "environment_id": _S,
         "t_start_ns": _I, "t_end_ns": _I, "utc_start_ns": _I, "n_states": _I, "sensor_range_m": _F,
+        "map_offset_x_m": _F, "map_offset_y_m": _F,
         "has_indicator": _B, "has_brake_light": _B, "has_acceleration": _B,
     },
     "actor": {"drive_id": _S, "actor_id": _S, "actor_class": _S, **dict.fromkeys(SIZES, _F), "is_ego": _B},
@@ -58,11 +59,11 @@ def finish(path: Path, identity: Identity, recording: Recording, options: Ingest
         if recording.actors is None
         else (actor_rows.from_table(recording.actors, states), [])
     )
-    derived = any(f.check_id == "velocity_derived" and f.n == len(states) for f in motion)
+    derived = any(f.check_id == "velocity_derived" and f.n == len(states) for f in [*recording.findings, *motion])
     checked = checks.run(states, step, actors, derived=derived)
     if recording.strict_units:
         _refuse_wrong_units(path, checked)
-    egos, chosen = ego.choose(path, actors, options.ego, recording.ego_ids)
+    egos, chosen = ego.choose(path, actors, options.ego, recording.ego_ids, needed=options.need_ego)
     is_ego = np.isin(np.arange(len(states.ids)), [i for i, name in enumerate(states.ids) if name in egos])[states.actor]
     findings = [*recording.findings, *findings, *motion, *varying, *checked, *chosen, *_lights(states, egos, is_ego)]
     drive = identity.drive_id
@@ -74,7 +75,7 @@ def finish(path: Path, identity: Identity, recording: Recording, options: Ingest
         "declared_event": _extra(drive, "declared_event", recording.events),
         "quality": _quality(drive, findings),
     }
-    return Trace(drive, path, tables, recording.embedded_map, recording.map_offset, recording.notes)
+    return Trace(drive, path, tables, recording.embedded_map, recording.map_offset, recording.notes, recording.frame_times)
 
 
 def _wrap_heading(states: States) -> None:
@@ -108,6 +109,7 @@ def _data_log(
     identity: Identity, recording: Recording, states: States, is_ego: NDArray[np.bool_], options: IngestOptions
 ) -> pa.Table:
     start = int(states.t_ns.min())
+    offset = recording.map_offset or (None, None)
     known = {c: c in states.codes and bool((states.codes[c][is_ego] >= 0).any()) for c in ("indicator", "brake_light")}
     row = {
         "drive_id": identity.drive_id,
@@ -120,6 +122,8 @@ def _data_log(
         "utc_start_ns": start if start >= EPOCH_NS else recording.utc_start_ns,
         "n_states": len(states),
         "sensor_range_m": recording.sensor_range_m if options.sensor_range_m is None else options.sensor_range_m,
+        "map_offset_x_m": offset[0],
+        "map_offset_y_m": offset[1],
         "has_indicator": known["indicator"],
         "has_brake_light": known["brake_light"],
         "has_acceleration": not bool(np.isnan(states.numbers["ax_mps2"][is_ego]).all()),
@@ -168,7 +172,8 @@ def _extra(drive: str, name: str, table: pa.Table | None) -> pa.Table:
 
 
 def _quality(drive: str, findings: list[Finding]) -> pa.Table:
-    rows = sorted(findings, key=lambda f: (f.check_id, f.actor_id or "", f.t_first_ns or 0, f.message))
+    # a converted log brings findings that may be found again
+    rows = sorted(dict.fromkeys(findings), key=lambda f: (f.check_id, f.actor_id or "", f.t_first_ns or 0, f.message))
     columns: dict[str, list[object]] = {"drive_id": [drive] * len(rows)}
     for name in ("check_id", "severity", "actor_id", "n", "t_first_ns", "message"):
         columns[name] = [getattr(row, name) for row in rows]

@@ -9,12 +9,12 @@ import numpy as np
 import ptars
 
 from drivelint.errors import TraceError
-from drivelint.ingest import descriptors
+from drivelint.ingest import carried, descriptors
 from drivelint.ingest.container import Container
 from drivelint.ingest.order import listed
 from drivelint.ingest.osi_decode import GROUND_TRUTH, SENSOR_VIEW, TREES, Decoder, malformed
 from drivelint.ingest.osi_words import Bulbs, signal_states
-from drivelint.ingest.trace import EPOCH_NS, Finding, Recording, States
+from drivelint.ingest.trace import EPOCH_NS, Finding, FrameTimes, Recording, States
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -39,12 +39,15 @@ def read(path: Path, topic: str | None) -> Recording:
     container = Container(path)
     source = _Source(container, topic)
     maps: dict[bytes, str] = {}
+    events: list[bytes] = []
     for packet in container.packets():
         kind = _kind(container, packet.channel)
         if kind in TREES:
             source.take(packet, kind)
         elif kind == OPEN_DRIVE:
             maps.setdefault(_map_text(container, packet), packet.channel.topic)
+        elif _is_event(container, packet.channel):
+            events.append(packet.data)
     if len(maps) > 1:
         raise TraceError(
             f"{path}: {len(maps)} different OpenDRIVE maps (topics {listed(sorted(maps.values()))}): keep one"
@@ -52,6 +55,8 @@ def read(path: Path, topic: str | None) -> Recording:
     recording = source.recording()
     recording.findings += container.findings
     recording.embedded_map = next(iter(maps), None)
+    recording.events = carried.events(path, events)
+    carried.apply(path, container.metadata, recording)
     return recording
 
 
@@ -61,6 +66,12 @@ def _kind(container: Container, channel: Channel) -> str | None:
     if schema is None or schema.encoding != "protobuf" or channel.message_encoding != "protobuf":
         return None
     return schema.name
+
+
+def _is_event(container: Container, channel: Channel) -> bool:
+    """Say whether a channel is that of the declared events of a converted log."""
+    schema = container.schemas.get(channel.schema_id)
+    return schema is not None and schema.name == carried.EVENT and channel.message_encoding == "json"
 
 
 def _map_text(container: Container, packet: Packet) -> bytes:
@@ -168,6 +179,7 @@ def _joined(batches: list[Frames], log_ns: NDArray[np.uint64]) -> Recording:
         ego_ids=_host([host for batch in batches for host in batch.hosts], t_ns, findings),
         findings=findings,
         utc_start_ns=int(log_ns.min()) if log_ns.min() >= EPOCH_NS else None,
+        frame_times=FrameTimes(t_ns, log_ns),
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -42,12 +42,23 @@ SIGNAL_STATES = ("red", "red_amber", "amber", "green", "flashing", "off")
 
 @dataclass(frozen=True)
 class IngestOptions:
-    """What the command line says about reading: each None means what the log or the mapping says."""
+    """What the command line says about reading: each None means what the log or the mapping says.
+
+    `need_ego`: a log without an ego is an error; else it is read with none, for whoever only looks at it or converts it.
+    """
 
     mapping: str | None = None
     ego: str | None = None
     topic: str | None = None
     sensor_range_m: float | None = None
+    need_ego: bool = True
+
+
+class FrameTimes(NamedTuple):
+    """A log's frames in the order of the file: the time they speak of, and the container's time under which they lie."""
+
+    t_ns: NDArray[np.int64]
+    log_ns: NDArray[np.uint64]
 
 
 @dataclass(frozen=True)
@@ -55,7 +66,8 @@ class Trace:
     """One drive as tables of `schemas/model.sql` (data_log, actor, actor_state, signal_state, declared_event, quality).
 
     `data_log` has one row, its `environment_id` NULL. Rows are totally ordered: `actor_state` by actor_id and t_ns.
-    `embedded_map` is OpenDRIVE found in the log; `map_offset` (metres) is added to the map's coordinates.
+    `embedded_map` is OpenDRIVE found in the log; `map_offset` (metres) is added to the map's coordinates. `frame_times`:
+    see `FrameTimes`; None where the log has one clock only.
     """
 
     drive_id: str
@@ -64,6 +76,7 @@ class Trace:
     embedded_map: bytes | None
     map_offset: tuple[float, float] | None
     notes: list[str]
+    frame_times: FrameTimes | None = None
 
 
 @dataclass(frozen=True)
@@ -130,3 +143,4 @@ class Recording:
     utc_start_ns: int | None = None
     sensor_range_m: float | None = None
     strict_units: bool = False
+    frame_times: FrameTimes | None = None
