@@ -40,7 +40,8 @@ def changed(drive: Drive, table: str, change: Callable[[pa.Table], pa.Table]) ->
 def _hit(states: pa.Table, actor: str | None, span: Span) -> NDArray[np.bool_]:
     t = states["t_ns"].to_numpy() / 1e9
     who = np.ones(len(t), bool) if actor is None else np.array(states["actor_id"].to_pylist()) == actor
-    return who & (t > span[0] - 1e-6) & (t < span[1] + 1e-6)
+    hit: NDArray[np.bool_] = who & (t > span[0] - 1e-6) & (t < span[1] + 1e-6)
+    return hit
 
 
 def _with(states: pa.Table, column: str, hit: NDArray[np.bool_], new: pa.Array) -> pa.Table:

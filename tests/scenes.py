@@ -177,7 +177,8 @@ class Actor:
 
 def times(end: float, start: float = 0.0, period: float = 0.1) -> Floats:
     """Return the sample times from start to end, both included."""
-    return start + period * np.arange(round((end - start) / period) + 1)
+    steps: Floats = np.arange(round((end - start) / period) + 1).astype(np.float64)
+    return start + period * steps
 
 
 def moving(actor_id: str, way: Road, t: Floats, s: ArrayLike, d: ArrayLike, **more: Any) -> Actor:
@@ -202,13 +203,14 @@ def swing(way: Road, s: Floats, out: float, back: float | None, change: float = 
     """
 
     def ease(u: Floats) -> Floats:
-        u = np.clip(u, 0.0, 1.0)
-        return u * u * (3 - 2 * u)
+        held: Floats = np.clip(u, 0.0, 1.0)
+        return held * held * (3 - 2 * held)
 
     over = ease((s - out) / change)
     if back is not None:
         over = over - ease((s - back) / change)
-    return way.own + (way.other - way.own) * share * over
+    d: Floats = way.own + (way.other - way.own) * share * over
+    return d
 
 
 def drive(

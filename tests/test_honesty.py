@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import pyarrow as pa
 import pytest
@@ -17,7 +17,7 @@ from tests.blinding import EVER, Span
 from tests.shared_data import shared
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable
 
     from drivelint.maps import Environment
 
@@ -57,12 +57,16 @@ class Case:
         return f"{self.run}/{self.what}/{self.span}"
 
 
-Blinding = Callable[[Drive, Span], Drive] if TYPE_CHECKING else object
-BLINDINGS: Mapping[str, Blinding] = {
-    f"{how} {who}": (lambda make, who: lambda drive, span: make(drive, who, span))(make, who)
-    for who in (VBP, OV, EGO)
-    for how, make in (("nulled", blinding.nulled), ("dropped", blinding.dropped))
-} | {
+Blinding: TypeAlias = "Callable[[Drive, Span], Drive]"
+
+
+def _of(make: Callable[[Drive, str, Span], Drive], who: str) -> Blinding:
+    return lambda drive, span: make(drive, who, span)
+
+
+BLINDINGS: dict[str, Blinding] = {
+    **{f"nulled {who}": _of(blinding.nulled, who) for who in (VBP, OV, EGO)},
+    **{f"dropped {who}": _of(blinding.dropped, who) for who in (VBP, OV, EGO)},
     "moved 30 m": lambda drive, span: blinding.moved(drive, OV, span, 30.0),
     "moved 400 m": lambda drive, span: blinding.moved(drive, OV, span, 400.0),
     "moved VBP": lambda drive, span: blinding.moved(drive, VBP, span, 30.0),
@@ -110,7 +114,7 @@ class Judged:
 
 
 @pytest.fixture(scope="module")
-def judged() -> Iterator[Judged]:
+def judged() -> Judged:
     """Judge every case in one batch: a crowd costs little more than one, and harms nobody (test_laws)."""
     road: Environment | None = None
     drives: list[Drive] = []
@@ -128,7 +132,7 @@ def judged() -> Iterator[Judged]:
         add(whole, Case(run, "nothing"))
         for what, make in BLINDINGS.items():
             for name, span in SPANS.items():
-                if what.endswith(f" {EGO}") and span == EVER or what == "hole" and span == EVER:
+                if span == EVER and (what == "hole" or what.endswith(f" {EGO}")):
                     continue
                 add(make(whole, span), Case(run, what, name))
         for name, span in (CUTS | ENDS).items():
@@ -138,12 +142,14 @@ def judged() -> Iterator[Judged]:
             add(blinding.on(blinding.dropped(whole, OV, EVER), environment), Case(run, f"no {lost}, no OV"))
         for range_m in (30.0, 60.0, 200.0):
             add(blinding.ranged(whole, range_m), Case(run, f"range {range_m:.0f}"))
-    yield Judged(scenes.judged(drives, rules=["ukhc"], profiles=PROFILES))
+            alone = blinding.dropped(blinding.ranged(whole, range_m), OV, EVER)
+            add(alone, Case(run, f"range {range_m:.0f}, no OV"))
+    return Judged(scenes.judged(drives, rules=["ukhc"], profiles=PROFILES))
 
 
 def touches(row: Row, span: Span) -> bool:
     """Whether a verdict's interval and a span have a moment in common; a hair inside, as spans end on samples."""
-    return row["t_start_ns"] / 1e9 <= span[1] + 1e-6 and row["t_end_ns"] / 1e9 >= span[0] - 1e-6
+    return bool(row["t_start_ns"] / 1e9 <= span[1] + 1e-6 and row["t_end_ns"] / 1e9 >= span[0] - 1e-6)
 
 
 @pytest.mark.parametrize("run", RUNS)
@@ -347,6 +353,16 @@ def test_a_finite_sensor_range(judged: Judged, run: str, range_m: int) -> None:
     if range_m == 30 and run != "collision":
         assert {row["object_id"] for row in lost} == {VBP, OV}
     assert {row["reason_code"] for row in lost} <= {"lost_near_ego", "lost_in_range", "appeared_near_ego"}
+
+
+@pytest.mark.parametrize("run", RUNS)
+def test_a_short_sensor_range_cannot_tell_that_nobody_is_coming(judged: Judged, run: str) -> None:
+    """Where it reaches less far than ego and an oncoming vehicle at the limit need to stop, nothing is claimed."""
+    for rule in SPACES_OV:
+        assert {row["verdict"] for row in judged.of(Case(run, "range 30, no OV"), rule)} == {"unknown"}
+        assert {row["verdict"] for row in judged.of(Case(run, "range 200, no OV"), rule)} == {"not_applicable"}
+    for row in judged.of(Case(run, "range 30, no OV"), SAFE_DISTANCE):
+        assert row["verdict"] == "unknown"
 
 
 def test_a_log_without_indicators_is_named_and_counted(judged: Judged) -> None:

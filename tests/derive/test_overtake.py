@@ -46,7 +46,7 @@ def edge(way: Road, ego: Actor, k: int, *, outer: bool) -> float:
         for b in (1, -1)
         if ego.length and ego.width
     ]
-    beyond = [way.over * y for y in offsets]
+    beyond = [float(way.over * y) for y in offsets]
     return max(beyond) if outer else min(beyond)
 
 
@@ -228,7 +228,7 @@ def safe_distance(  # noqa: PLR0917 - the formula's own symbols
 
 @settings(max_examples=8, deadline=None)
 @given(st.floats(5, 30), st.floats(0, 25), st.floats(1, 30), st.floats(3.8, 18.0), st.floats(3.5, 12))
-def test_safe_distance_ahead_is_the_papers_formula(  # noqa: PLR0917
+def test_safe_distance_ahead_is_the_papers_formula(
     v_av: float, v_vbp: float, v_ov: float, l_av: float, l_vbp: float
 ) -> None:
     """Speeds and lengths as drawn, moved over a line within a straight road; angles and gaps of every profile."""
@@ -320,7 +320,7 @@ def test_danger_spaces_on_a_straight_road_are_rectangles() -> None:
     con = derived(drive([ego, vbp, ov], way.environment), tables=["overtake_step"])
     found = rows(con, "FROM overtake_step ORDER BY t_ns")
     (o,) = rows(con, "FROM overtake")
-    assert [row["t_ns"] for row in found][0] == o["t0_ns"]
+    assert found[0]["t_ns"] == o["t0_ns"]
     assert found[-1]["t_ns"] == o["t_end_ns"]
     seen = set()
     for row in found:

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import affinity
-from shapely.geometry import box
+from shapely.geometry import Polygon, box
 
 from tests.scenes import LANE, Actor, derived, drive, moving, road, rows, standing, times
 
@@ -19,7 +19,7 @@ SIDE = st.floats(0.3, 20.0)
 BOXES = st.tuples(st.floats(-45, 45), st.floats(-45, 45), ANGLE, SIDE, SIDE)
 
 
-def outline(x: float, y: float, yaw: float, length: float, width: float) -> box:
+def outline(x: float, y: float, yaw: float, length: float, width: float) -> Polygon:
     upright = box(-length / 2, -width / 2, length / 2, width / 2)
     return affinity.translate(affinity.rotate(upright, yaw, origin=(0, 0), use_radians=True), x, y)
 
@@ -31,17 +31,18 @@ def test_clearance_is_the_distance_between_the_boxes(far: float, yaw: float, oth
     t = np.array([0.0])
     zero = np.zeros(1)
 
-    def still(name: str, x: float, y: float, heading: float, length: float, width: float) -> Actor:
+    def still(name: str, place: tuple[float, ...]) -> Actor:
+        x, y, heading, length, width = place
         return Actor(name, t, zero + x, zero + y, zero + heading, zero, zero, length, width)
 
     ego = (far * 100, -far, yaw, 4.8, 1.8)
     placed = [(x + ego[0], y + ego[1], *rest) for x, y, *rest in others]
-    actors = [still("ego", *ego), *(still(f"{n:02}", *o) for n, o in enumerate(placed))]  # type: ignore[arg-type]
+    actors = [still("ego", ego), *(still(f"{n:02}", o) for n, o in enumerate(placed))]
     con = derived(drive(actors, None), tables=["pair"])
     found = rows(con, "FROM pair ORDER BY object_id")
     assert len(found) == 40
     for row, other in zip(found, placed, strict=True):
-        a, b = outline(*ego), outline(*other)  # type: ignore[arg-type]
+        a, b = outline(*ego), outline(*other)
         distance = a.distance(b)
         assert row["distance_m"] == pytest.approx(math.hypot(other[0] - ego[0], other[1] - ego[1]))
         if row["clearance_is_bound"]:
@@ -50,7 +51,7 @@ def test_clearance_is_the_distance_between_the_boxes(far: float, yaw: float, oth
             assert row["clearance_m"] == pytest.approx(distance, abs=1e-6)
         else:
             depth = -row["clearance_m"]
-            assert 0 <= depth
+            assert depth >= 0
             # moved apart by the depth along some axis they no longer overlap, by less they do along every one of them
             axes = [h + q for h in (ego[2], other[2]) for q in (0, math.pi / 2)]
             gaps = [

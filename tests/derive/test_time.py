@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -29,7 +30,7 @@ def test_steps_are_numbered_and_a_hole_begins_a_new_segment() -> None:
     assert seconds(steps, "t_ns") == t
     assert [row["seg"] for row in steps] == [0] * 8 + [1, 1]
     assert steps[0]["dt_ns"] is None
-    assert [row["dt_ns"] for row in steps[1:]] == [round((b - a) * 1e9) for a, b in zip(t, t[1:], strict=False)]
+    assert [row["dt_ns"] for row in steps[1:]] == [round((b - a) * 1e9) for a, b in pairwise(t)]
     assert steps[-1]["travel_m"] == pytest.approx(12.1)
 
 
