@@ -13,13 +13,15 @@ from drivelint.errors import RuleError
 from drivelint.evaluate import evaluate
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
     from pathlib import Path
 
     import duckdb
 
     from drivelint.batch import Drive
     from drivelint.catalogue import Rule
+
+    Witness = Callable[[duckdb.DuckDBPyConnection, Sequence[Drive]], None]
 
 # small tables that say what was judged, and on what: they stay until the end of the run
 _RESULTS: Final = (
@@ -32,6 +34,8 @@ _RESULTS: Final = (
     "registration",
     "verdict",
     "finding",
+    "scene",
+    "lane_shape",
     "profile",
 )
 _MARGIN_ORDER: Final = "drive_id, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, ref_id NULLS FIRST, t_ns"
@@ -40,7 +44,7 @@ _MARGIN_ORDER: Final = "drive_id, ego_id, rule_id, profile NULLS FIRST, object_i
 class Bench:
     """Judges batches of drives in one database. Between batches only results stay in it.
 
-    `out` is where `margins_file` and the kept database go.
+    `out` is where `margins_file` and the kept database go. `witnesses` are called after each batch while its tables are there.
     """
 
     def __init__(
@@ -52,10 +56,12 @@ class Bench:
         *,
         margins: bool = False,
         keep_db: bool = False,
+        witnesses: Sequence[Witness] = (),
     ) -> None:
         self._con = con
         self._rules = rules
         self._params = params
+        self._witnesses = witnesses
         self._tables = {table for rule in rules for table in rule.reads}
         self._margins: pq.ParquetWriter | None = None
         self._seen: set[str] = set()
@@ -80,6 +86,8 @@ class Bench:
             derive(self._con, self._tables, of_the_map=False)
             evaluate(self._con, self._rules, self._params, margins=self.margins_file is not None)
             self._refuse_shared_error(ids)
+            for witness in self._witnesses:
+                witness(self._con, drives)
         except BaseException:
             self._forget(ids)
             raise

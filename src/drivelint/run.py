@@ -9,13 +9,15 @@ import duckdb
 import pyarrow as pa
 
 from drivelint import catalogue, store
+from drivelint.annotate import Annotator
 from drivelint.batch import Drive, Refused, cut, in_order, read
 from drivelint.errors import DriveLintError, TraceError, UsageError
 from drivelint.ingest import IngestOptions, expand
-from drivelint.judge import Bench
+from drivelint.judge import Bench, Witness
 from drivelint.maps.library import MapLibrary
 from drivelint.profiles import DEFAULT, load_profiles, profile_table
-from drivelint.report import collect
+from drivelint.report import collect, evidence
+from drivelint.report.files import OutputError
 from drivelint.report.result import Result
 from drivelint.report.rulebook import rule_table
 
@@ -48,6 +50,7 @@ class Settings:
     strict: bool = False
     margins: bool = False
     keep_db: bool = False
+    annotate: bool = True
 
 
 def check(settings: Settings, progress: Progress) -> Result:
@@ -67,7 +70,16 @@ def check(settings: Settings, progress: Progress) -> Result:
 
     with store.connect() as con:
         store.insert(con, "profile", profiles)
-        bench = Bench(con, rules, params, settings.out, margins=settings.margins, keep_db=settings.keep_db)
+        table = rule_table(rules, params, settings.profiles or (DEFAULT,))
+        bench = Bench(
+            con,
+            rules,
+            params,
+            settings.out,
+            margins=settings.margins,
+            keep_db=settings.keep_db,
+            witnesses=_witnesses(settings, table),
+        )
         progress.stage("checking", len(paths))
         refused: list[Refused] = []
         try:
@@ -89,11 +101,25 @@ def check(settings: Settings, progress: Progress) -> Result:
             verdicts=collect.verdicts(con),
             findings=collect.findings(con),
             drives=drives,
-            rules=rule_table(rules, params, settings.profiles or (DEFAULT,)),
+            rules=table,
+            scenes=evidence.scenes(con),
+            lanes=evidence.lanes(con),
             margins_file=bench.margins_file,
             fail_on=settings.fail_on,
             strict=settings.strict,
         )
+
+
+def _witnesses(settings: Settings, rules: pa.Table) -> list[Witness]:
+    """Return who looks at each batch before its tables are cleared: the report, the annotated logs."""
+    if settings.out is None:
+        return []
+    seen: list[Witness] = [lambda con, _drives: evidence.gather(con)]
+    if settings.annotate:
+        seen.append(
+            Annotator(settings.out / "annotated", rules, fail_on=settings.fail_on, strict=settings.strict)
+        )
+    return seen
 
 
 def _judge(bench: Bench, batch: Iterable[Drive | Refused], progress: Progress) -> list[Refused]:
@@ -111,6 +137,8 @@ def _judge(bench: Bench, batch: Iterable[Drive | Refused], progress: Progress) -
                 progress.note(f"{item.trace.path.name}: {note}")
     try:
         bench.judge(drives)
+    except OutputError:
+        raise  # the folder for the results fails, not the drive
     except (DriveLintError, duckdb.Error) as whole:
         refused += [_failed(drives[0], whole)] if len(drives) == 1 else _one_by_one(bench, drives)
     progress.advance(len(drives) + len(refused))
@@ -122,6 +150,8 @@ def _one_by_one(bench: Bench, drives: Iterable[Drive]) -> list[Refused]:
     for drive in drives:
         try:
             bench.judge([drive])
+        except OutputError:
+            raise
         except (DriveLintError, duckdb.Error) as error:
             refused.append(_failed(drive, error))
     return refused

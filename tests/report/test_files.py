@@ -15,7 +15,7 @@ from drivelint.report.files import OutputError, parquet_bytes, publish
 from drivelint.report.result import write
 from tests.report.synthetic import finding, result, table, verdict
 
-NAMES = {"verdicts.parquet", "findings.parquet", "drives.parquet", "rules.parquet", "summary.json", "junit.xml"}
+NAMES = {f"{name}.parquet" for name in FILES} | {"summary.json", "junit.xml"}
 
 
 def rows(n: int) -> pa.Table:

@@ -1,4 +1,4 @@
-"""The output tables' columns: one truth, `schemas/verdict.sql` and `schemas/output.sql`, as Arrow schemas."""
+"""The output tables' columns: one truth, `schemas/verdict.sql`, `output.sql` and `evidence.sql`, as Arrow schemas."""
 
 from __future__ import annotations
 
@@ -16,7 +16,14 @@ if TYPE_CHECKING:
 OUTPUT_SCHEMA: Final = 1
 """Version of the output files: raised when a column or a key changes its meaning or goes."""
 
-FILES: Final = {"verdicts": "verdict", "findings": "finding", "drives": "drive", "rules": "rule"}
+FILES: Final = {
+    "verdicts": "verdict",
+    "findings": "finding",
+    "drives": "drive",
+    "rules": "rule",
+    "scenes": "scene",
+    "lanes": "lane_shape",
+}
 """Stem of the Parquet file -> table of the schema."""
 
 
@@ -24,7 +31,7 @@ FILES: Final = {"verdicts": "verdict", "findings": "finding", "drives": "drive",
 def arrow_schema(table: str) -> pa.Schema:
     """Return the columns of a schema table in order, as DuckDB hands them over to Arrow."""
     with duckdb.connect() as con:
-        for name in ("verdict", "output"):
+        for name in ("verdict", "output", "evidence"):
             con.execute((folder("schemas") / f"{name}.sql").read_text(encoding="utf-8"))
         return con.table(table).limit(0).to_arrow_table().schema
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.errors import ExitCode
-from drivelint.report.contract import FILES, conform
+from drivelint.report.contract import FILES, conform, empty
 from drivelint.report.counts import SEVERITIES
 from drivelint.report.files import parquet_bytes, publish
 
@@ -27,8 +27,9 @@ class Outcome(NamedTuple):
 
 @dataclass(frozen=True)
 class Result:
-    """The tables of one run, totally ordered, each with the columns of `schemas/verdict.sql` or `schemas/output.sql`.
+    """The tables of one run, totally ordered, each with the columns of `schemas/verdict.sql`, `output.sql` or `evidence.sql`.
 
+    `scenes`, `lanes`: the evidence for pictures, empty where none was gathered.
     `margins_file`: finished Parquet of every judged step, or None; `write` takes it over.
     `fail_on`: critical, major, minor or never. `strict`: unknown is not good enough.
     Errors: `DriveLintError` when a table lacks a column or has one too many.
@@ -38,6 +39,8 @@ class Result:
     findings: pa.Table
     drives: pa.Table
     rules: pa.Table
+    scenes: pa.Table = field(default_factory=lambda: empty("scene"))
+    lanes: pa.Table = field(default_factory=lambda: empty("lane_shape"))
     margins_file: Path | None = None
     fail_on: str = "critical"
     strict: bool = False
