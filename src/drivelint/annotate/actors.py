@@ -1,0 +1,198 @@
+"""Every actor's box at every step, encoded in columns: half a million boxes are a matter of a second, not of a minute."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from drivelint.annotate import draw, wire
+from drivelint.annotate.draw import Colour
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from drivelint.annotate.clock import LogClock
+    from drivelint.annotate.tracks import Tracks
+
+BOXES: Final = 1_000_000
+"""A drive with more states shows only every second, third ... step: about 30 MB of boxes are enough for any viewer."""
+CHUNK_BYTES: Final = 2 << 20
+LIFETIME_STEPS: Final = 2.5  # whoever has no box for that long is gone (as ingest's and the library's gaps)
+EGO_FRAME: Final = "base_link"
+"""The name that viewers follow without being asked."""
+EGO = Colour(0.13, 0.45, 0.95)
+VEHICLE = Colour(0.62, 0.66, 0.72)
+ON_FOOT = Colour(0.95, 0.78, 0.25)
+_WALKERS: Final = frozenset({"pedestrian", "bicycle", "animal"})
+_UNKNOWN_SIZE: Final = 1.0
+_HEIGHT: Final = 1.5
+Records = tuple[bytes, "NDArray[np.uint64]"]
+
+
+@dataclass(frozen=True)
+class Boxes:
+    """The boxes that are shown: rows in the order of time, then actor."""
+
+    tracks: Tracks
+    rows: NDArray[np.intp]
+    every: int
+
+    @property
+    def t_ns(self) -> NDArray[np.int64]:
+        """Time of each row."""
+        return self.tracks.t_ns[self.rows]
+
+
+def select(tracks: Tracks) -> Boxes:
+    """Choose the boxes to show: all that have a place and a heading, at every n-th step if they are too many."""
+    placed = np.flatnonzero(np.isfinite(tracks.x) & np.isfinite(tracks.y) & np.isfinite(tracks.yaw))
+    every = max(1, -(-len(placed) // BOXES))
+    if every > 1:
+        steps, step = np.unique(tracks.t_ns[placed], return_inverse=True)
+        placed = placed[step % every == 0] if len(steps) > every else placed
+    order = np.argsort(tracks.t_ns[placed], kind="stable")
+    return Boxes(tracks, placed[order], every)
+
+
+def messages(boxes: Boxes, clock: LogClock, channel: int) -> Iterator[Records]:
+    """Yield chunks of `foxglove.SceneUpdate` message records, one per step, each with its index (log time, offset)."""
+    tracks, rows = boxes.tracks, boxes.rows
+    if not len(rows):
+        return
+    t_ns, first, count = np.unique(boxes.t_ns, return_index=True, return_counts=True)
+    log_time = clock.log_time(t_ns)
+    heads = _heads(tracks, _lifetime(t_ns))
+    width = np.array([len(head) for head in heads])[tracks.actor[rows]] + _tail_width()
+    size = np.add.reduceat(width, first)
+    cuts = np.unique(np.searchsorted(np.cumsum(size), np.arange(0, size.sum(), CHUNK_BYTES)))
+    for begin, end in zip(cuts, [*cuts[1:], len(first)], strict=True):
+        if begin == end:
+            continue
+        of_rows = slice(int(first[begin]), int(first[end - 1] + count[end - 1]))
+        steps = slice(int(begin), int(end))
+        step_of_row = np.repeat(np.arange(begin, end), count[steps])
+        yield _chunk(
+            tracks, rows[of_rows], heads, log_time[step_of_row], count[steps],
+            message_heads(channel, log_time[steps], size[steps], int(begin)), log_time[steps],
+        )  # fmt: skip
+
+
+def transforms(boxes: Boxes, clock: LogClock, channel: int) -> Iterator[Records]:
+    """Yield chunks of `foxglove.FrameTransform` records: where the first ego is, so that a viewer can follow it."""
+    tracks = boxes.tracks
+    egos = [name for name, is_ego in zip(tracks.names, tracks.is_ego, strict=True) if is_ego]
+    if not egos:
+        return
+    rows = boxes.rows[tracks.actor[boxes.rows] == tracks.names.index(min(egos))]
+    log_time = clock.log_time(tracks.t_ns[rows])
+    z = np.nan_to_num(tracks.z[rows])
+    moved = [part for values in (tracks.x[rows], tracks.y[rows], z) for part in (wire.column(values),)]
+    half = tracks.yaw[rows] / 2
+    body = wire.rows(
+        len(rows),
+        wire.text(2, draw.FRAME) + wire.text(3, EGO_FRAME),
+        b"\x22\x1b\x09", moved[0], b"\x11", moved[1], b"\x19", moved[2],
+        b"\x2a\x12\x19", wire.column(np.sin(half)), b"\x21", wire.column(np.cos(half)),
+        wire.timestamps(1, log_time),
+    )  # fmt: skip
+    size = body.shape[1] + message_heads(channel, log_time[:0], log_time[:0].astype(np.int64), 0).shape[1]
+    for first in range(0, len(rows), CHUNK_BYTES // size):
+        part = slice(first, first + CHUNK_BYTES // size)
+        times = log_time[part]
+        sizes = np.full(len(times), body.shape[1])
+        records = np.concatenate([message_heads(channel, times, sizes, first), body[part]], axis=1)
+        place = np.arange(len(times), dtype=np.uint64) * np.uint64(size)
+        yield records.tobytes(), np.stack([times, place], axis=1)
+
+
+def message_heads(channel: int, log_time: NDArray[np.uint64], size: NDArray[np.int64], first: int) -> wire.Bytes:
+    """Return the beginnings of MCAP message records: `size` is that of each message alone, `first` the first's number."""
+    n = len(log_time)
+    head = np.zeros(n, np.dtype("u1, <u8, <u2, <u4, <u8, <u8"))
+    for field, values in zip(head.dtype.names or (), (5, size + 22, channel, np.arange(first, first + n), log_time, log_time), strict=True):
+        head[field] = values
+    return head.view(np.uint8).reshape(n, head.dtype.itemsize)
+
+
+def _chunk(
+    tracks: Tracks,
+    rows: NDArray[np.intp],
+    heads: list[bytes],
+    log_time: NDArray[np.uint64],
+    count: NDArray[np.int64],
+    starts: wire.Bytes,
+    step_time: NDArray[np.uint64],
+) -> Records:
+    """Lay the boxes of some steps side by side: each piece is written to its place, all pieces of one width at once."""
+    tails = _tails(tracks, rows, log_time)
+    actor = tracks.actor[rows]
+    head_width = np.array([len(head) for head in heads])[actor]
+    is_start = np.zeros(len(rows) + len(count), np.bool_)
+    starts_at = np.cumsum(count) - count + np.arange(len(count))
+    is_start[starts_at] = True
+    width = np.empty(len(is_start), np.int64)
+    width[is_start] = starts.shape[1]
+    width[~is_start] = head_width + tails.shape[1]
+    place = np.cumsum(width) - width
+    out = np.empty(int(width.sum()), np.uint8)
+    out[place[is_start, None] + np.arange(starts.shape[1])] = starts
+    box_place = place[~is_start]
+    for w in np.unique(head_width):
+        chosen = np.flatnonzero(head_width == w)
+        names, which = np.unique(actor[chosen], return_inverse=True)
+        table = np.stack([np.frombuffer(heads[name], np.uint8) for name in names])
+        piece = np.concatenate([table[which], tails[chosen]], axis=1)
+        out[box_place[chosen, None] + np.arange(piece.shape[1])] = piece
+    index = np.stack([step_time, place[is_start].astype(np.uint64)], axis=1)
+    return out.tobytes(), index
+
+
+def _lifetime(t_ns: NDArray[np.int64]) -> int:
+    return int(LIFETIME_STEPS * float(np.median(np.diff(t_ns)))) if len(t_ns) > 1 else 0
+
+
+def _heads(tracks: Tracks, lifetime_ns: int) -> list[bytes]:
+    """Return per actor what is the same at every step: the entity's name, its class, the box's size and colour."""
+    heads = []
+    for name, kind, size, is_ego in zip(tracks.names, tracks.classes, tracks.sizes, tracks.is_ego, strict=True):
+        length, width, height = (float(v) if np.isfinite(v) else d for v, d in zip(size, (_UNKNOWN_SIZE, _UNKNOWN_SIZE, _HEIGHT), strict=True))
+        shade = EGO if is_ego else ON_FOOT if kind in _WALKERS else VEHICLE
+        cube = draw.cube_head(length, width, height, shade.faint(0.9))
+        facts = {"class": ("ego, " if is_ego else "") + (kind or "unknown"), "length": f"{size[0]:.2f} m", "width": f"{size[1]:.2f} m"}
+        pairs = b"".join(wire.nested(6, wire.text(1, k) + wire.text(2, v)) for k, v in facts.items())
+        lifetime = wire.time(4, lifetime_ns) if lifetime_ns else b""
+        body = wire.text(2, draw.FRAME) + wire.text(3, name) + lifetime + pairs
+        body += draw.cube_field(len(cube) + _POSE_WIDTH) + cube
+        heads.append(wire.varint(2 << 3 | 2) + wire.varint(len(body) + _tail_width()) + body)
+    return heads
+
+
+def _tails(tracks: Tracks, rows: NDArray[np.intp], log_time: NDArray[np.uint64]) -> wire.Bytes:
+    """Return per row what changes: the cube's pose (its last field), the entity's time."""
+    half = tracks.yaw[rows] / 2
+    z = tracks.z[rows]
+    height = np.nan_to_num(tracks.sizes[tracks.actor[rows], 2], nan=_HEIGHT)
+    z = np.where(np.isfinite(z), z, height / 2)
+    return np.concatenate(
+        [poses(1, tracks.x[rows], tracks.y[rows], z, half), wire.timestamps(1, log_time)], axis=1
+    )
+
+
+def poses(
+    number: int, x: NDArray[np.float64], y: NDArray[np.float64], z: NDArray[np.float64], half_yaw: NDArray[np.float64]
+) -> wire.Bytes:
+    """Return a field of a pose, a row each."""
+    where = wire.rows(len(x), wire.varint(1 << 3 | 2) + b"\x1b", b"\x09", wire.column(x), b"\x11", wire.column(y), b"\x19", wire.column(z))
+    turned = wire.rows(len(x), wire.varint(2 << 3 | 2) + b"\x12", b"\x19", wire.column(np.sin(half_yaw)), b"\x21", wire.column(np.cos(half_yaw)))
+    return wire.rows(len(x), wire.varint(number << 3 | 2) + wire.varint(where.shape[1] + turned.shape[1]), where, turned)
+
+
+_POSE_WIDTH: Final = poses(1, *(np.zeros(1),) * 4).shape[1]
+
+
+def _tail_width() -> int:
+    return _POSE_WIDTH + wire.timestamps(1, np.zeros(1, np.uint64)).shape[1]

@@ -1,0 +1,89 @@
+"""Writes the annotated logs of a run, batch by batch, while the batch's tables are still there."""
+
+from __future__ import annotations
+
+import os
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, BinaryIO
+
+import pyarrow as pa
+
+from drivelint.annotate.evidence import gather
+from drivelint.annotate.road import Road
+from drivelint.annotate.write import Annotation, write
+from drivelint.report import summary
+from drivelint.report.files import OutputError
+from drivelint.report.result import Result
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    import duckdb
+
+    from drivelint.annotate.evidence import Evidence
+    from drivelint.batch import Drive
+    from drivelint.maps import Environment
+
+_BUFFER = 1 << 20
+
+
+class Annotator:
+    """Writes `<folder>/<drive_id>.mcap` for every drive. `rules` is the run's rule table, `fail_on` and `strict` its options."""
+
+    def __init__(self, folder: Path, rules: pa.Table, *, fail_on: str, strict: bool) -> None:
+        self._folder = folder
+        self._rules = rules
+        self._versions = dict(zip(rules["rule_id"].to_pylist(), rules["rule_version"].to_pylist(), strict=True))
+        self._fail_on = fail_on
+        self._strict = strict
+        self._roads: dict[str, Road] = {}
+
+    def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive]) -> None:
+        """Annotate a batch that was just judged in `con`.
+
+        Errors: `TraceError` for a log that cannot be copied; `OutputError` when the folder cannot be written.
+        """
+        found = gather(con, [drive.trace.drive_id for drive in drives])
+        for drive in drives:
+            name = drive.trace.drive_id
+            said = Annotation(
+                drive.trace, found[name], self._road(drive.environment), self._versions, self._summary(found[name])
+            )
+            with _whole(self._folder / f"{name}.mcap") as file:
+                write(file, said)
+
+    def _road(self, environment: Environment | None) -> Road | None:
+        """Return the road of a map; of several, only the last is kept."""
+        if environment is None:
+            return None
+        if environment.environment_id not in self._roads:
+            self._roads = {environment.environment_id: Road(environment)}
+        return self._roads[environment.environment_id]
+
+    def _summary(self, evidence: Evidence) -> bytes:
+        """Return the summary of one drive, as if it had been checked alone."""
+        alone = Result(
+            evidence.verdicts, evidence.findings, evidence.drive, self._rules, fail_on=self._fail_on, strict=self._strict
+        )
+        return summary.render(alone)
+
+
+@contextmanager
+def _whole(path: Path) -> Iterator[BinaryIO]:
+    """Open a file that appears under its name whole, or not at all. Errors: `OutputError`."""
+    temporary = path.with_name(f".drivelint.{os.getpid()}.mcap.tmp")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with temporary.open("wb", buffering=_BUFFER) as file:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+        temporary.replace(path)
+    except OSError as error:
+        raise OutputError(
+            f"{path}: cannot write the annotated log: {error.strerror or error}; free the disk, choose another --out, "
+            "or use --no-annotate"
+        ) from error
+    finally:
+        temporary.unlink(missing_ok=True)

@@ -1,0 +1,46 @@
+"""The times under which new messages are written, so that they line up with the log's own in a viewer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class LogClock:
+    """Maps the trace's time to log time: that of the frame at or before it, where the container has a clock of its own.
+
+    `t_ns` and `log_ns` are the frames' times in both clocks, `t_ns` strictly rising; both empty: the clocks are one, moved by
+    `shift_ns` where the trace's begins before 0, which log times cannot.
+    """
+
+    t_ns: NDArray[np.int64]
+    log_ns: NDArray[np.uint64]
+    shift_ns: int = 0
+
+    def log_time(self, t_ns: NDArray[np.int64]) -> NDArray[np.uint64]:
+        """Return the log times of moments of the trace."""
+        if not len(self.t_ns):
+            return (t_ns + self.shift_ns).astype(np.uint64)
+        frame = np.clip(np.searchsorted(self.t_ns, t_ns, side="right") - 1, 0, None)
+        return self.log_ns[frame]
+
+    def at(self, t_ns: int) -> int:
+        """Return the log time of one moment."""
+        return int(self.log_time(np.array([t_ns], np.int64))[0])
+
+
+def of_frames(t_ns: NDArray[np.int64], log_ns: NDArray[np.uint64]) -> LogClock:
+    """Return the clock of a log whose frames say both times; of several frames at one time the first counts."""
+    times, first = np.unique(t_ns, return_index=True)
+    return LogClock(times, log_ns[first])
+
+
+def of_trace(t_start_ns: int) -> LogClock:
+    """Return the clock of a trace without a container's."""
+    return LogClock(np.zeros(0, np.int64), np.zeros(0, np.uint64), max(0, -t_start_ns))

@@ -1,0 +1,90 @@
+"""Primitives of a `foxglove.SceneEntity`, in map coordinates, as bytes."""
+
+from __future__ import annotations
+
+import math
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drivelint.annotate import foxglove, wire
+
+FRAME: Final = "map"
+_CUBES, _LINES, _TRIANGLES, _TEXTS, _ARROWS = 8, 11, 12, 13, 7
+_LABEL_PX: Final = 14.0
+Points = NDArray[np.float64]
+
+
+class Colour(NamedTuple):
+    """Red, green, blue and opacity, 0 to 1."""
+
+    r: float
+    g: float
+    b: float
+    a: float = 1.0
+
+    def faint(self, opacity: float) -> Colour:
+        """Return the same colour, less opaque."""
+        return self._replace(a=opacity)
+
+
+def entity(name: str, log_time: int, primitives: bytes, *, lifetime_ns: int = 0, facts: dict[str, str] | None = None) -> bytes:
+    """Return a scene entity as a field of a SceneUpdate; `facts` are shown when it is clicked on."""
+    pairs = (wire.nested(6, wire.text(1, key) + wire.text(2, value)) for key, value in (facts or {}).items())
+    lifetime = wire.time(4, lifetime_ns) if lifetime_ns else b""
+    head = wire.time(1, log_time) + wire.text(2, FRAME) + wire.text(3, name) + lifetime
+    return wire.nested(2, head + b"".join(pairs) + primitives)
+
+
+def clear(log_time: int) -> bytes:
+    """Return the deletion of everything shown before, as a field of a SceneUpdate."""
+    return wire.nested(1, wire.time(1, log_time) + wire.whole(2, foxglove.DELETE_ALL))
+
+
+def colour(number: int, value: Colour) -> bytes:
+    """Return a field that holds a colour."""
+    return wire.nested(number, wire.doubles(*value))
+
+
+def pose(x: float, y: float, z: float, yaw: float = 0.0) -> bytes:
+    """Return a primitive's pose (field 1), turned about the vertical."""
+    turned = wire.doubles(math.sin(yaw / 2), math.cos(yaw / 2), first=3)
+    return wire.nested(1, wire.nested(1, wire.doubles(x, y, z)) + wire.nested(2, turned))
+
+
+def line(xyz: Points, value: Colour, *, thickness: float, kind: int, pixels: bool = True) -> bytes:
+    """Return a line; `thickness` is in pixels, or metres. Its points are relative to the first, which keeps them exact."""
+    head = wire.whole(1, kind) + pose(*map(float, xyz[0])) + wire.doubles(thickness, first=3) + wire.whole(4, int(pixels))
+    return wire.nested(_LINES, head + wire.points(5, xyz - xyz[0]) + colour(6, value))
+
+
+def ribbon(left: Points, right: Points, value: Colour) -> bytes:
+    """Return the area between two lines with the same number of points, as triangles."""
+    origin, n = left[0], len(left)
+    k = np.arange(n - 1, dtype=np.uint32)
+    corners = np.stack([k, k + n, k + 1, k + 1, k + n, k + n + 1], axis=1)
+    content = pose(*map(float, origin)) + wire.points(2, np.concatenate([left, right]) - origin)
+    return wire.nested(_TRIANGLES, content + colour(3, value) + wire.indices(5, corners.ravel()))
+
+
+def label(x: float, y: float, z: float, content: str, value: Colour) -> bytes:
+    """Return text that faces the viewer and stays as large at any distance."""
+    look = wire.whole(2, 1) + wire.doubles(_LABEL_PX, first=3) + wire.whole(4, 1)
+    return wire.nested(_TEXTS, pose(x, y, z) + look + colour(5, value) + wire.text(6, content))
+
+
+def arrow(x: float, y: float, z: float, yaw: float, length: float, value: Colour) -> bytes:
+    """Return a flat-lying arrow from (x, y, z) in direction `yaw`."""
+    shape = wire.doubles(0.6 * length, 0.15, 0.4 * length, 0.5, first=2)
+    return wire.nested(_ARROWS, pose(x, y, z, yaw) + shape + colour(6, value))
+
+
+def cube_head(length: float, width: float, height: float, value: Colour) -> bytes:
+    """Return size and colour of a cube, to which its pose is still to be added."""
+    return wire.nested(2, wire.doubles(length, width, height)) + colour(3, value)
+
+
+def cube_field(size: int) -> bytes:
+    """Return the beginning of a cube that is `size` bytes long."""
+    return wire.varint(_CUBES << 3 | 2) + wire.varint(size)

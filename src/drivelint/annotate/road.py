@@ -1,0 +1,92 @@
+"""The lanes near the way, drawn once: surfaces, bounds, and which way each is driven."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import shapely
+
+from drivelint.annotate import draw, foxglove
+from drivelint.annotate.draw import Colour
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from drivelint.maps import Environment
+
+NEAR_M: Final = 40.0
+"""Lanes within this distance of anybody's way are drawn (the way is kept on a grid of the same size)."""
+ASPHALT = Colour(0.27, 0.28, 0.30)
+PAVEMENT = Colour(0.42, 0.40, 0.37)
+VERGE = Colour(0.33, 0.36, 0.32)
+BOUND = Colour(0.80, 0.80, 0.78)
+ARROW = Colour(0.55, 0.57, 0.60)
+_FOOT: Final = frozenset({"sidewalk", "walking"})
+_UNDRAWN: Final = frozenset({"none"})
+_SURFACE_DOWN_M: Final = 0.05  # below the bounds, so that neither flickers through the other
+
+
+class Road:
+    """The lanelets of one map; each is encoded once, whichever drives are near it."""
+
+    def __init__(self, environment: Environment) -> None:
+        points, lanelets = environment.tables["lane_point"], environment.tables["lanelet"]
+        order = points.sort_by([("lanelet_id", "ascending"), ("k", "ascending")])
+        self._points = {name: _floats(order, name) for name in _COLUMNS}
+        names = np.asarray(order["lanelet_id"].to_numpy(zero_copy_only=False), object).astype(str)
+        self._names, first, count = np.unique(names, return_index=True, return_counts=True)
+        self._rows = [slice(int(a), int(a + n)) for a, n in zip(first, count, strict=True)]
+        self._about = {row["lanelet_id"]: row for row in lanelets.to_pylist()}
+        self._encoded: dict[int, bytes] = {}
+
+    def near(self, x: NDArray[np.float64], y: NDArray[np.float64], log_time: int) -> bytes:
+        """Return the SceneUpdate with the lanes near some positions."""
+        cells = np.unique(np.floor(np.stack([x, y], axis=1) / NEAR_M), axis=0)
+        around = shapely.box(*((cells - 1) * NEAR_M).T, *((cells + 2) * NEAR_M).T)
+        found = np.unique(self._lanelet_of[self._tree.query(around)[1]])
+        return b"".join(self._entity(int(i), log_time) for i in found)
+
+    @cached_property
+    def _lanelet_of(self) -> NDArray[np.int64]:
+        """The lanelet of each piece of the tree."""
+        return np.repeat(np.arange(len(self._rows)), [r.stop - r.start - 1 for r in self._rows])
+
+    @cached_property
+    def _tree(self) -> Any:
+        xy = np.stack([self._points["x_m"], self._points["y_m"]], axis=1)
+        start = np.concatenate([np.arange(r.start, r.stop - 1) for r in self._rows])
+        return shapely.STRtree(shapely.linestrings(np.stack([xy[start], xy[start + 1]], axis=1)))
+
+    def _entity(self, number: int, log_time: int) -> bytes:
+        name = str(self._names[number])
+        if number not in self._encoded:
+            self._encoded[number] = self._primitives(number, self._about[name])
+        about = self._about[name]
+        facts = {"lane type": about["lane_type"], "road": about["road_id"]}
+        return draw.entity(name, log_time, self._encoded[number], facts=facts)
+
+    def _primitives(self, number: int, about: dict[str, Any]) -> bytes:
+        if about["lane_type"] in _UNDRAWN:
+            return b""
+        p = {name: values[self._rows[number]] for name, values in self._points.items()}
+        z = np.nan_to_num(p["z_m"])
+        left, right = (np.stack([p[f"{side}_x_m"], p[f"{side}_y_m"], z], axis=1) for side in ("left", "right"))
+        down = np.array([0.0, 0.0, _SURFACE_DOWN_M])
+        ground = ASPHALT if about["drivable"] else PAVEMENT if about["lane_type"] in _FOOT else VERGE
+        parts = [draw.ribbon(left - down, right - down, ground)]
+        parts += [draw.line(side, BOUND, thickness=0.12, kind=foxglove.LINE_STRIP, pixels=False) for side in (left, right)]
+        if about["drivable"] and about["length_m"] > 10.0:
+            k = len(z) // 2
+            yaw = math.atan2(p["ty"][k], p["tx"][k])
+            parts.append(draw.arrow(float(p["x_m"][k]), float(p["y_m"][k]), float(z[k]), yaw, 3.0, ARROW))
+        return b"".join(parts)
+
+
+_COLUMNS: Final = ("x_m", "y_m", "z_m", "tx", "ty", "left_x_m", "left_y_m", "right_x_m", "right_y_m")
+
+
+def _floats(table: Any, column: str) -> NDArray[np.float64]:
+    return np.asarray(table[column].to_numpy(), np.float64)

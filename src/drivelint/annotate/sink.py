@@ -1,0 +1,219 @@
+"""An MCAP file being written: its bytes, its CRC, and the index of what is in it, written as the summary at the end."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections import Counter
+from typing import TYPE_CHECKING, BinaryIO, Final
+
+import numpy as np
+import zstandard
+from mcap.data_stream import RecordBuilder
+from mcap.opcode import Opcode
+from mcap.records import (
+    Attachment,
+    AttachmentIndex,
+    Channel,
+    Chunk,
+    ChunkIndex,
+    DataEnd,
+    Footer,
+    Header,
+    McapRecord,
+    Metadata,
+    MetadataIndex,
+    Schema,
+    Statistics,
+    SummaryOffset,
+)
+
+from drivelint.errors import DriveLintError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+MAGIC: Final = b"\x89MCAP0\r\n"
+IDS: Final = 1 << 16  # channel and schema ids are 16 bits wide; schema 0 means none
+_ZSTD_LEVEL: Final = 1
+_BLOCK: Final = 4 << 20
+
+
+class Sink:
+    """Writes one MCAP file. What was copied into it is told to its index too, so that the summary speaks of everything.
+
+    `offset` is where the next byte goes. The summary holds schemas, channels, statistics, chunk, attachment and metadata
+    indexes and their offsets, with a CRC; the data section has one too.
+    """
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+        self._crc = 0
+        self.offset = 0
+        self.schemas: dict[int, Schema] = {}
+        self.channels: dict[int, Channel] = {}
+        self.chunks: list[ChunkIndex] = []
+        self.attachments: list[AttachmentIndex] = []
+        self.metadata: list[MetadataIndex] = []
+        self.counts: Counter[int] = Counter()
+
+    def write(self, data: bytes | memoryview) -> None:
+        """Append bytes as they are."""
+        for start in range(0, len(data), _BLOCK):
+            block = data[start : start + _BLOCK]
+            self._crc = zlib.crc32(block, self._crc)
+            self._file.write(block)
+        self.offset += len(data)
+
+    def begin(self, library: str) -> None:
+        """Begin a file of our own (a copied one begins with the original's magic bytes and header)."""
+        self.write(MAGIC)
+        self._record(Header(profile="", library=library))
+
+    def add_channel(self, topic: str, encoding: str, schema: Schema) -> int:
+        """Announce a channel under ids that are still free, and its schema unless it is there; return the channel's id.
+
+        `schema` comes without an id (0). Errors: `DriveLintError` where all 65,535 ids are taken.
+        """
+        same = [s.id for s in self.schemas.values() if (s.name, s.encoding, s.data) == (schema.name, schema.encoding, schema.data)]
+        if same:
+            number = min(same)
+        else:
+            number = _free(self.schemas, 1, "schema")
+            self.schemas[number] = Schema(id=number, name=schema.name, encoding=schema.encoding, data=schema.data)
+            self._record(self.schemas[number])
+        channel = Channel(
+            id=_free(self.channels, 0, "channel"), topic=topic, message_encoding=encoding, metadata={}, schema_id=number
+        )
+        self.channels[channel.id] = channel
+        self._record(channel)
+        return channel.id
+
+    def add_chunk(
+        self, records: bytes | memoryview, index: Mapping[int, NDArray[np.uint64]], *, compressed: bool = True
+    ) -> None:
+        """Write records as one chunk with its message indexes.
+
+        `index`: channel id -> (n, 2) array of log time and offset within the chunk, for every message in `records`.
+        """
+        times = np.concatenate([entries[:, 0] for entries in index.values()])
+        data = zstandard.ZstdCompressor(level=_ZSTD_LEVEL).compress(records) if compressed else bytes(records)
+        chunk = Chunk(
+            compression="zstd" if compressed else "",
+            data=data,
+            message_start_time=int(times.min()),
+            message_end_time=int(times.max()),
+            uncompressed_crc=zlib.crc32(records),
+            uncompressed_size=len(records),
+        )
+        start = self.offset
+        self._record(chunk)
+        self.index_chunk(chunk_index(chunk, start, self.offset - start), index)
+
+    def index_chunk(self, chunk: ChunkIndex, index: Mapping[int, NDArray[np.uint64]]) -> None:
+        """Write the message indexes of the chunk that was written last, and remember it for the summary."""
+        start = self.offset
+        for channel, entries in sorted(index.items()):
+            chunk.message_index_offsets[channel] = self.offset
+            body = np.ascontiguousarray(entries, dtype="<u8").tobytes()
+            self.write(struct.pack("<BQHI", Opcode.MESSAGE_INDEX, 6 + len(body), channel, len(body)) + body)
+            self.counts[channel] += len(entries)
+        chunk.message_index_length = self.offset - start
+        self.chunks.append(chunk)
+
+    def add_attachment(self, name: str, media_type: str, data: bytes, log_time: int) -> None:
+        """Write a file into the file; its time of creation is 0 = not known, so that the same run writes the same bytes."""
+        start = self.offset
+        self._record(Attachment(create_time=0, log_time=log_time, name=name, media_type=media_type, data=data))
+        self.attachments.append(
+            AttachmentIndex(
+                offset=start,
+                length=self.offset - start,
+                log_time=log_time,
+                create_time=0,
+                data_size=len(data),
+                name=name,
+                media_type=media_type,
+            )
+        )
+
+    def add_metadata(self, name: str, content: Mapping[str, str]) -> None:
+        """Write a metadata record, its keys in order."""
+        start = self.offset
+        self._record(Metadata(name=name, metadata=dict(sorted(content.items()))))
+        self.metadata.append(MetadataIndex(offset=start, length=self.offset - start, name=name))
+
+    def finish(self) -> None:
+        """End the data, write the summary and the footer."""
+        self._record(DataEnd(data_section_crc=self._crc))
+        start = self.offset
+        self._crc = 0  # the footer's CRC begins with the summary
+        groups: list[tuple[int, Sequence[McapRecord]]] = [
+            (Opcode.SCHEMA, [s for _, s in sorted(self.schemas.items())]),
+            (Opcode.CHANNEL, [c for _, c in sorted(self.channels.items())]),
+            (Opcode.STATISTICS, [self._statistics()]),
+            (Opcode.CHUNK_INDEX, self.chunks),
+            (Opcode.ATTACHMENT_INDEX, self.attachments),
+            (Opcode.METADATA_INDEX, self.metadata),
+        ]
+        places = []
+        for opcode, records in groups:
+            group_start = self.offset
+            for record in records:
+                self._record(record)
+            if records:
+                places.append(SummaryOffset(group_opcode=opcode, group_start=group_start, group_length=self.offset - group_start))
+        offsets = self.offset
+        for place in places:
+            self._record(place)
+        head = struct.pack("<BQQQ", Opcode.FOOTER, 20, start, offsets)
+        footer = RecordBuilder()
+        Footer(summary_start=start, summary_offset_start=offsets, summary_crc=zlib.crc32(head, self._crc)).write(footer)
+        self.write(footer.end() + MAGIC)
+
+    def _record(self, record: McapRecord) -> None:
+        builder = RecordBuilder()
+        record.write(builder)
+        self.write(builder.end())
+
+    def _statistics(self) -> Statistics:
+        filled = [c for c in self.chunks if c.message_index_offsets]
+        return Statistics(
+            attachment_count=len(self.attachments),
+            channel_count=len(self.channels),
+            channel_message_counts=dict(sorted((c, n) for c, n in self.counts.items() if n)),
+            chunk_count=len(self.chunks),
+            message_count=self.counts.total(),
+            message_start_time=min((c.message_start_time for c in filled), default=0),
+            message_end_time=max((c.message_end_time for c in filled), default=0),
+            metadata_count=len(self.metadata),
+            schema_count=len(self.schemas),
+        )
+
+
+def chunk_index(chunk: Chunk, start: int, length: int) -> ChunkIndex:
+    """Return the index entry of a chunk record that begins at `start`, its message indexes still to be told."""
+    return ChunkIndex(
+        chunk_length=length,
+        chunk_start_offset=start,
+        compression=chunk.compression,
+        compressed_size=len(chunk.data),
+        message_end_time=chunk.message_end_time,
+        message_index_length=0,
+        message_index_offsets={},
+        message_start_time=chunk.message_start_time,
+        uncompressed_size=chunk.uncompressed_size,
+    )
+
+
+def _free(taken: Mapping[int, object], least: int, what: str) -> int:
+    """Return the id after the highest one, or the lowest that nobody has."""
+    after = max(taken, default=least - 1) + 1
+    if after < IDS:
+        return max(after, least)
+    for number in range(least, IDS):
+        if number not in taken:
+            return number
+    raise DriveLintError(f"all {IDS} {what} ids of the log are taken: it cannot be annotated, use --no-annotate")

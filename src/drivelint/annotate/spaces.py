@@ -1,0 +1,102 @@
+"""The danger spaces in an overtake, as they were judged: swept along the corridor, as wide as the vehicle, SD long."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import pyarrow.compute as pc
+
+from drivelint.annotate import draw, foxglove
+from drivelint.annotate.draw import Colour
+from drivelint.annotate.events import Message
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from drivelint.annotate.clock import LogClock
+    from drivelint.annotate.evidence import Evidence
+    from drivelint.annotate.tracks import Tracks
+
+FREE = Colour(0.20, 0.70, 0.35)
+MET = Colour(0.90, 0.16, 0.16)
+OVERLAP = Colour(1.00, 0.62, 0.05)
+ROLE = Colour(0.95, 0.95, 0.95)
+STEPS: Final = 5_000
+_SAMPLES: Final = 24
+_UP_M: Final = 0.1  # above the lanes
+_LEAST_M: Final = 0.1
+
+
+def messages(evidence: Evidence, tracks: Tracks, clock: LogClock) -> list[Message]:
+    """Return a SceneUpdate for every step of an overtake, and an empty one behind each."""
+    rows = evidence.spaces
+    every = max(1, -(-len(rows) // STEPS))
+    by_time: dict[int, list[dict[str, Any]]] = {}
+    for row in rows[::every]:
+        by_time.setdefault(row["t_ns"], []).append(row)
+    for ego in sorted({row["ego_id"] for row in rows}):
+        for t in _behind(tracks.times(ego), np.array([r["t_ns"] for r in rows if r["ego_id"] == ego], np.int64)):
+            by_time.setdefault(t, [])
+    lines = _Lines(evidence)
+    out = []
+    for t, shown in sorted(by_time.items()):
+        time = clock.at(t)
+        entities = [draw.entity(f"overtake of {row['ego_id']}", time, _overtake(row, lines, tracks)) for row in shown]
+        out.append(Message(time, draw.clear(time) + b"".join(entities)))
+    return out
+
+
+def _behind(times: NDArray[np.int64], drawn: NDArray[np.int64]) -> list[int]:
+    """Return the steps of the ego that follow a drawn one and are not drawn themselves."""
+    after = np.searchsorted(times, drawn, side="right")
+    return [int(t) for t in np.setdiff1d(times[after[after < len(times)]], drawn)]
+
+
+class _Lines:
+    """The centre lines of the chains that overtakes were judged on, by station."""
+
+    def __init__(self, evidence: Evidence) -> None:
+        self._chains = evidence.chains
+        self._found: dict[tuple[str, int], NDArray[np.float64]] = {}
+
+    def edges(self, ego: str, chain: int, s0: float, s1: float, d: float, half: float) -> list[NDArray[np.float64]] | None:
+        """Return left and right edge of a strip around the offset `d`; None where the chain has no such stations."""
+        line = self._line(ego, chain)
+        s0, s1 = max(s0, line[0, 0]), min(s1, line[0, -1])
+        if s1 - s0 < _LEAST_M:
+            return None
+        s = np.linspace(s0, s1, _SAMPLES)
+        x, y, z, tx, ty = (np.interp(s, line[0], column) for column in line[1:])
+        return [np.stack([x - ty * off, y + tx * off, z + _UP_M], axis=1) for off in (d + half, d - half)]
+
+    def _line(self, ego: str, chain: int) -> NDArray[np.float64]:
+        if (ego, chain) not in self._found:
+            mine = pc.and_(pc.equal(self._chains["ego_id"], ego), pc.equal(self._chains["chain_id"], chain))
+            rows = self._chains.filter(mine)
+            columns = [np.asarray(rows[c].to_numpy(), np.float64) for c in ("s_m", "x_m", "y_m", "z_m", "tx", "ty")]
+            self._found[ego, chain] = np.nan_to_num(np.stack(columns)[:, np.argsort(columns[0], kind="stable")])
+        return self._found[ego, chain]
+
+
+def _overtake(row: dict[str, Any], lines: _Lines, tracks: Tracks) -> bytes:
+    ego, chain = row["ego_id"], row["chain_id"]
+    parts = []
+    own, theirs = (row["s_m"], row["d_m"], row["lat_half_m"], row["sd_av_m"]), (row["ov_s_m"], row["ov_d_m"], row["ov_lat_half_m"], row["sd_ov_m"])
+    for (s, d, half, sd), direction, met in ((own, 1, row["av_met"]), (theirs, -1, row["ov_met"])):
+        if chain is not None and None not in (s, d, half, sd):
+            ends = sorted((s, s + direction * sd))
+            if edges := lines.edges(ego, chain, *ends, d, half):
+                parts += _space(*edges, MET if met else OVERLAP if row["overlap"] else FREE)
+    roles = [(ego, f"ego: {row['stage'].replace('_', ' ')}"), *((v, "VBP") for v in row["vbp_ids"]), (row["ov_id"], "OV")]
+    for name, role in roles:
+        if name is not None:
+            p = tracks.places(name, np.array([row["t_ns"]], np.int64))
+            if np.isfinite(p.x[0]) and np.isfinite(p.y[0]):
+                parts.append(draw.label(float(p.x[0]), float(p.y[0]), float(np.nan_to_num(p.z[0])) + 1.5, role, ROLE))
+    return b"".join(parts)
+
+
+def _space(left: NDArray[np.float64], right: NDArray[np.float64], colour: Colour) -> list[bytes]:
+    around = np.concatenate([left, right[::-1]])
+    return [draw.ribbon(left, right, colour.faint(0.3)), draw.line(around, colour, thickness=2.0, kind=foxglove.LINE_LOOP)]

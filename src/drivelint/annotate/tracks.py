@@ -1,0 +1,96 @@
+"""One drive's actor states as arrays, and who is where at a given time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+MAX_GAP: Final = 2.5  # a sample older than so many periods does not say where somebody is now
+
+
+class Places(NamedTuple):
+    """One actor's box at several times, NaN where it is not known: centre, heading; its length, width and height."""
+
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    z: NDArray[np.float64]
+    yaw: NDArray[np.float64]
+    length: float
+    width: float
+    height: float
+
+
+@dataclass(frozen=True)
+class Tracks:
+    """Rows of `actor_state` in their own order (actor, then time), with NaN for NULL; `actor` indexes the other lists."""
+
+    names: list[str]
+    classes: list[str | None]
+    sizes: NDArray[np.float64]
+    is_ego: list[bool]
+    actor: NDArray[np.int64]
+    t_ns: NDArray[np.int64]
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    z: NDArray[np.float64]
+    yaw: NDArray[np.float64]
+
+    @cached_property
+    def spans(self) -> dict[str, slice]:
+        """The rows of each actor."""
+        edges = np.searchsorted(self.actor, np.arange(len(self.names) + 1))
+        return {name: slice(int(edges[i]), int(edges[i + 1])) for i, name in enumerate(self.names)}
+
+    def times(self, name: str) -> NDArray[np.int64]:
+        """Return the times of an actor's samples; none if it is not there."""
+        return self.t_ns[self.spans.get(name, slice(0, 0))]
+
+    def places(self, name: str, t_ns: NDArray[np.int64]) -> Places:
+        """Return where an actor is at some times, by its last sample not too long before each."""
+        span, times = self.spans.get(name, slice(0, 0)), self.times(name)
+        if not len(times):
+            nowhere = np.full(len(t_ns), np.nan)
+            return Places(nowhere, nowhere, nowhere, nowhere, np.nan, np.nan, np.nan)
+        k = np.searchsorted(times, t_ns, side="right") - 1
+        row = span.start + np.clip(k, 0, None)
+        gap = MAX_GAP * float(np.median(np.diff(times))) if len(times) > 1 else 0.0
+        known = (k >= 0) & (t_ns - self.t_ns[row] <= gap)
+        columns = (np.where(known, column[row], np.nan) for column in (self.x, self.y, self.z, self.yaw))
+        return Places(*columns, *(float(v) for v in self.sizes[self.actor[span.start]]))
+
+
+def tracks(tables: Mapping[str, pa.Table]) -> Tracks:
+    """Return the tracks of one trace from its tables `actor` and `actor_state`."""
+    states = tables["actor_state"]
+    codes = pc.dictionary_encode(states["actor_id"].combine_chunks())
+    names = codes.dictionary.to_pylist()
+    about = {row["actor_id"]: row for row in tables["actor"].to_pylist()}
+    sizes = [[_number(about[n][c]) for c in ("length_m", "width_m", "height_m")] for n in names]
+    columns = {c: _floats(states[c]) for c in ("x_m", "y_m", "z_m", "yaw_rad")}
+    return Tracks(
+        names,
+        [about[n]["actor_class"] for n in names],
+        np.array(sizes, np.float64).reshape(-1, 3),
+        [about[n]["is_ego"] for n in names],
+        codes.indices.to_numpy().astype(np.int64),
+        states["t_ns"].to_numpy(),
+        *columns.values(),
+    )
+
+
+def _number(value: float | None) -> float:
+    return float("nan") if value is None else value
+
+
+def _floats(column: pa.ChunkedArray) -> NDArray[np.float64]:
+    return np.asarray(column.to_numpy(), np.float64)

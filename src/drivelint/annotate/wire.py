@@ -1,0 +1,96 @@
+"""Protobuf's wire format, written field by field for the few and column by column for the many."""
+
+from __future__ import annotations
+
+import struct
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+_VARINT, _FIXED64, _BYTES = 0, 1, 2
+_DOUBLE: Final = struct.Struct("<d")
+_NS: Final = 1_000_000_000
+_PADDED: Final = 5  # bytes of a varint of fixed width: 35 bits, seconds until the year 3058
+Bytes = NDArray[np.uint8]
+
+
+def varint(value: int) -> bytes:
+    """Return a non-negative integer in base 128, least significant group first."""
+    out = bytearray()
+    while value > 0x7F:
+        out.append(value & 0x7F | 0x80)
+        value >>= 7
+    out.append(value)
+    return bytes(out)
+
+
+def nested(number: int, content: bytes) -> bytes:
+    """Return a field that holds a message or bytes."""
+    return _key(number, _BYTES) + varint(len(content)) + content
+
+
+def text(number: int, content: str) -> bytes:
+    """Return a field that holds text."""
+    return nested(number, content.encode("utf-8", "replace"))
+
+
+def whole(number: int, value: int) -> bytes:
+    """Return a field that holds a non-negative integer, an enumeration or a truth value."""
+    return _key(number, _VARINT) + varint(value)
+
+
+def doubles(*values: float, first: int = 1) -> bytes:
+    """Return consecutive fields from number `first` on, a double each."""
+    return b"".join(_key(first + i, _FIXED64) + _DOUBLE.pack(value) for i, value in enumerate(values))
+
+
+def time(number: int, t_ns: int) -> bytes:
+    """Return a field that holds a Timestamp or a Duration."""
+    return nested(number, whole(1, t_ns // _NS) + whole(2, t_ns % _NS))
+
+
+def points(number: int, xyz: NDArray[np.float64]) -> bytes:
+    """Return a repeated field of points: `xyz` has a row of three doubles each."""
+    head = _key(number, _BYTES) + varint(27)
+    parts = [part for axis in range(3) for part in (_key(axis + 1, _FIXED64), column(xyz[:, axis]))]
+    return rows(len(xyz), head, *parts).tobytes()
+
+
+def indices(number: int, values: NDArray[np.uint32]) -> bytes:
+    """Return a packed repeated field of 32-bit indices."""
+    return nested(number, np.ascontiguousarray(values, "<u4").tobytes())
+
+
+def column(values: NDArray[np.float64]) -> Bytes:
+    """Return the bytes of doubles, a row of eight each."""
+    return np.ascontiguousarray(values, "<f8").view(np.uint8).reshape(len(values), 8)
+
+
+def timestamps(number: int, t_ns: NDArray[np.uint64]) -> Bytes:
+    """Return a field that holds a Timestamp, a row each, all of one width: unused high groups are written as zeros."""
+    parts = [whole_column(1, t_ns // _NS), whole_column(2, t_ns % _NS)]
+    return rows(len(t_ns), _key(number, _BYTES) + varint(2 * (_PADDED + 1)), *parts)
+
+
+def whole_column(number: int, values: NDArray[np.uint64]) -> Bytes:
+    """Return a field that holds an integer below 2^35, a row each, all of one width."""
+    shifts = np.arange(_PADDED, dtype=np.uint64) * np.uint64(7)
+    groups = ((values[:, None] >> shifts) & np.uint64(0x7F)).astype(np.uint8)
+    groups[:, :-1] |= 0x80
+    return rows(len(values), _key(number, _VARINT), groups)
+
+
+def rows(n: int, *parts: bytes | Bytes) -> Bytes:
+    """Return `n` rows of bytes: of each part its row, or the same bytes in every one."""
+    widths = [len(part) if isinstance(part, bytes) else part.shape[1] for part in parts]
+    out = np.empty((n, sum(widths)), np.uint8)
+    at = 0
+    for part, width in zip(parts, widths, strict=True):
+        out[:, at : at + width] = np.frombuffer(part, np.uint8) if isinstance(part, bytes) else part
+        at += width
+    return out
+
+
+def _key(number: int, kind: int) -> bytes:
+    return varint(number << 3 | kind)
