@@ -189,6 +189,20 @@ def check(
     raise typer.Exit(int(exit_code(result)))
 
 
+@app.command()
+def demo(
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the logs and their road.")] = Path(
+        "demo"
+    ),
+) -> None:
+    """Write the paper's three overtakes, at two speeds, and their road: to try drivelint without data of your own."""
+    from drivelint.demo import files
+
+    written = files.write(out)
+    typer.echo(f"{out}: {len(written) - 1} drives and their road are there. Check them with:", err=True)
+    typer.echo(files.next_command(out, sys.argv[0]))
+
+
 @rules_app.command("list")
 def rules_list(
     format_: Annotated[Format, typer.Option("--format", help="What is printed on stdout.")] = Format.text,

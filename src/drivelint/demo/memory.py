@@ -12,12 +12,13 @@ from drivelint.batch import Drive
 from drivelint.demo.osi_log import HOST_ID, mcap
 from drivelint.ingest.files import Identity
 from drivelint.ingest.finish import finish
-from drivelint.ingest.trace import CLASSES, INDICATORS, IngestOptions, Recording, States
+from drivelint.ingest.trace import BRAKE_LIGHTS, CLASSES, INDICATORS, IngestOptions, Recording, States
 from drivelint.maps import MapSource, load_map
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from drivelint.demo.motion import Track
     from drivelint.demo.scene import Scene
 
 
@@ -39,8 +40,8 @@ def drive(scene: Scene) -> Drive:
     }
     codes = {
         "actor_class": [np.full(n, CLASSES.index(t.actor.body.kind), np.int8) for t in tracks],
-        "indicator": [_indicators(t.light, lit=t.actor.body.kind != "pedestrian") for t in tracks],
-        "brake_light": [np.full(n, -1, np.int8) for _ in tracks],
+        "indicator": [_codes(t, t.light, INDICATORS) for t in tracks],
+        "brake_light": [_codes(t, np.where(t.brakes, "on", "off"), BRAKE_LIGHTS) for t in tracks],
     }
     states = States(
         [str(k) for k in range(HOST_ID, HOST_ID + len(tracks))],
@@ -60,10 +61,10 @@ def drive(scene: Scene) -> Drive:
     return Drive(trace, load_map(MapSource(f"{scene.map_name}.xodr", scene.map_text.encode())))
 
 
-def _indicators(lights: NDArray[np.str_], *, lit: bool) -> NDArray[np.int8]:
-    """Return the codes of indicator words; nobody on foot has any."""
-    codes = np.full(lights.shape, -1, np.int8)
-    if lit:
-        for code, word in enumerate(INDICATORS):
-            codes[lights == word] = code
+def _codes(track: Track, said: NDArray[np.str_], words: tuple[str, ...]) -> NDArray[np.int8]:
+    """Return the codes of light words; nobody on foot has lights."""
+    codes = np.full(said.shape, -1, np.int8)
+    if track.actor.body.kind != "pedestrian":
+        for code, word in enumerate(words):
+            codes[said == word] = code
     return codes

@@ -20,12 +20,13 @@ if TYPE_CHECKING:
 
 TICKS = 1000  # per second
 _GRID_M = 0.02
+_BRAKES_MPS2 = 0.5  # slower than this without the brake
 _TOUCH_M = 0.02  # bodies give way by this much before both stand
 
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """An actor's motion, arrays of one value per tick: station and offset (nearside positive), pose, speed, indicator."""
+    """An actor's motion, arrays of one value per tick: station, offset (nearside positive), pose, speed, lights."""
 
     actor: Actor
     t_s: Floats
@@ -36,10 +37,11 @@ class Track:
     yaw: Floats
     speed: Floats
     light: NDArray[np.str_]
+    brakes: NDArray[np.bool_]
 
     def at(self, rows: NDArray[np.intp]) -> Track:
         """Return the track at these ticks."""
-        names = ("t_s", "station", "offset", "x", "y", "yaw", "speed", "light")
+        names = ("t_s", "station", "offset", "x", "y", "yaw", "speed", "light", "brakes")
         return replace(self, **{name: getattr(self, name)[rows] for name in names})
 
     def stopped(self, tick: int) -> Track:
@@ -67,7 +69,9 @@ def move(actor: Actor, road: Road, duration_s: float) -> Track:
     x, y, heading = line.at(station, d * road.nearside)
     drift = np.arctan2(slope * road.nearside, 1.0 - line.curvature(station) * d * road.nearside)
     yaw = heading + drift + (0.0 if along > 0 else np.pi)
-    return Track(actor, t, station, d, x, y, np.arctan2(np.sin(yaw), np.cos(yaw)), speed, _lights(actor, road, t))
+    yaw = np.arctan2(np.sin(yaw), np.cos(yaw))
+    brakes = np.diff(speed, prepend=speed[0]) * TICKS < -_BRAKES_MPS2
+    return Track(actor, t, station, d, x, y, yaw, speed, _lights(actor, road, t), brakes)
 
 
 def _speeds(actor: Actor, t: Floats) -> Floats:

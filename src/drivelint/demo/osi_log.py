@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, Any, Final
 from mcap.writer import CompressionType, Writer
 
 from drivelint.demo.opendrive import MAKER
-from drivelint.demo.osi_schema import ENUMS, GROUND_TRUTH, descriptor_set, ground_truth_class
+from drivelint.demo.osi_schema import ENUMS, GROUND_TRUTH, VERSION, descriptor_set, ground_truth_class
 
 if TYPE_CHECKING:
     from drivelint.demo.motion import Track
     from drivelint.demo.scene import Scene
 
 TOPIC: Final = "ground_truth"
-OSI_VERSION: Final = (3, 7, 0)
 HOST_ID: Final = 1
 _CHUNK_BYTES = 1 << 18
 _VEHICLES = {
@@ -27,7 +26,9 @@ _VEHICLES = {
     "bus": "TYPE_BUS",
 }
 _INDICATORS = {"off": "OFF", "left": "LEFT", "right": "RIGHT", "hazard": "WARNING"}
-_KIND, _VEHICLE, _INDICATOR = (ENUMS[name] for name in ENUMS)
+_KIND, _VEHICLE = ENUMS["MovingObject.Type"], ENUMS["MovingObject.VehicleClassification.Type"]
+_LIGHTS = "MovingObject.VehicleClassification.LightState"
+_INDICATOR, _BRAKE = ENUMS[f"{_LIGHTS}.IndicatorState"], ENUMS[f"{_LIGHTS}.BrakeLightState"]
 
 
 def mcap(scene: Scene) -> bytes:
@@ -38,7 +39,7 @@ def mcap(scene: Scene) -> bytes:
     )
     writer.start(library=MAKER)
     schema = writer.register_schema(GROUND_TRUTH, "protobuf", descriptor_set())
-    version = ".".join(map(str, OSI_VERSION))
+    version = ".".join(map(str, VERSION))
     channel = writer.register_channel(TOPIC, "protobuf", schema, {"net.asam.osi.trace.channel.osi_version": version})
     writer.add_metadata(
         "net.asam.osi.trace",
@@ -61,7 +62,7 @@ def mcap(scene: Scene) -> bytes:
 def _frame(scene: Scene, k: int, t_ns: int) -> bytes:
     truth = ground_truth_class()()
     version = truth.version
-    version.version_major, version.version_minor, version.version_patch = OSI_VERSION
+    version.version_major, version.version_minor, version.version_patch = VERSION
     truth.timestamp.seconds, truth.timestamp.nanos = divmod(t_ns, 1_000_000_000)
     truth.host_vehicle_id.value = HOST_ID
     for number, track in enumerate(scene.tracks, HOST_ID):
@@ -85,8 +86,9 @@ def _object(item: Any, number: int, track: Track, k: int) -> None:
         return
     item.type = _KIND["TYPE_VEHICLE"]
     item.vehicle_classification.type = _VEHICLE[_VEHICLES[body.kind]]
-    light = _INDICATORS[str(track.light[k])]
-    item.vehicle_classification.light_state.indicator_state = _INDICATOR[f"INDICATOR_STATE_{light}"]
+    lights = item.vehicle_classification.light_state
+    lights.indicator_state = _INDICATOR[f"INDICATOR_STATE_{_INDICATORS[str(track.light[k])]}"]
+    lights.brake_light_state = _BRAKE[f"BRAKE_LIGHT_STATE_{'NORMAL' if track.brakes[k] else 'OFF'}"]
 
 
 def tenth_mm(value: float) -> float:

@@ -42,7 +42,10 @@ MESSAGES: Final[dict[str, tuple[tuple[str, int, str], ...]]] = {
         ("type", 1, "MovingObject.VehicleClassification.Type"),
         ("light_state", 2, _LIGHTS),
     ),
-    _LIGHTS: (("indicator_state", 1, f"{_LIGHTS}.IndicatorState"),),
+    _LIGHTS: (
+        ("indicator_state", 1, f"{_LIGHTS}.IndicatorState"),
+        ("brake_light_state", 7, f"{_LIGHTS}.BrakeLightState"),
+    ),
     "GroundTruth": (
         ("version", 1, "InterfaceVersion"),
         ("timestamp", 2, "Timestamp"),
@@ -76,8 +79,16 @@ ENUMS: Final[dict[str, dict[str, int]]] = {
         "INDICATOR_STATE_RIGHT": 4,
         "INDICATOR_STATE_WARNING": 5,
     },
+    f"{_LIGHTS}.BrakeLightState": {
+        "BRAKE_LIGHT_STATE_UNKNOWN": 0,
+        "BRAKE_LIGHT_STATE_OTHER": 1,
+        "BRAKE_LIGHT_STATE_OFF": 2,
+        "BRAKE_LIGHT_STATE_NORMAL": 3,
+        "BRAKE_LIGHT_STATE_STRONG": 4,
+    },
 }
 PACKAGE: Final = "osi3"
+VERSION: Final = (3, 7, 0)
 GROUND_TRUTH: Final = f"{PACKAGE}.GroundTruth"
 
 

@@ -31,9 +31,9 @@ EXIT: Final = Road(
     ),
 )
 COUNTRY: Final = Road(
-    (straight(200.0), left(150.0, radius=120.0), straight(150.0), right(120.0, radius=200.0), straight(400.0)),
+    (straight(300.0), left(150.0, radius=120.0), straight(150.0), right(120.0, radius=200.0), straight(400.0)),
     kind="rural",
-    limits_mph=((0.0, 30.0), (350.0, 40.0)),
+    limits_mph=((0.0, 30.0), (450.0, 40.0)),
     beside="shoulder",
 )
 
@@ -183,7 +183,7 @@ def _clean_drive() -> Scene:
     def faster(actor: Actor, at_s: float) -> Actor:
         return actor.drives(12.0).then_drives(15.0, at_s=at_s, rate=1.0)
 
-    ego, lead = faster(car().starts(20.0), 32.0), faster(car().starts(75.0), 28.0)
-    others = tuple(car().starts(at, lane=-1).drives(12.0) for at in (420.0, 780.0))
+    ego, lead = faster(car().starts(120.0), 32.0), faster(car().starts(175.0), 28.0)
+    others = tuple(car().starts(at, lane=-1).drives(12.0) for at in (520.0, 880.0))
     shows = "A clean drive: behind another car with room to stop, round bends, into a higher limit, past oncoming cars."
     return Scene("clean-drive", shows, COUNTRY, ego, (lead, *others), 42.0)

@@ -1,0 +1,59 @@
+"""What `drivelint demo` writes: the paper's overtakes and their road, and the command that checks them."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import PurePath
+from shutil import which
+from typing import TYPE_CHECKING, Final
+
+from drivelint.demo.opendrive import MAKER
+from drivelint.demo.osi_log import mcap
+from drivelint.demo.overtakes import PROFILES, overtakes
+from drivelint.errors import UsageError
+from drivelint.report.files import publish
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+ROAD_FILE: Final = "road.xodr"
+_HEAD_BYTES = 1024  # the maker's name stands in the header of either format
+
+
+def contents() -> dict[str, bytes]:
+    """Return every file, name -> bytes: the same bytes every time."""
+    scenes = overtakes()
+    return {ROAD_FILE: scenes[0].map_text.encode()} | {f"{scene.name}.mcap": mcap(scene) for scene in scenes}
+
+
+def write(out: Path) -> list[Path]:
+    """Write the files into the folder `out`, over those of an earlier demo if there are any.
+
+    Errors: `UsageError` when a file of such a name is somebody else's (nothing is written then); `OutputError` when the
+    folder cannot be written.
+    """
+    files = contents()
+    for name in files:
+        _is_ours(out / name)
+    publish(out, files, {})
+    return [out / name for name in files]
+
+
+def _is_ours(path: Path) -> None:
+    if not path.exists() and not path.is_symlink():
+        return
+    try:
+        with path.open("rb") as file:
+            ours = MAKER.encode() in file.read(_HEAD_BYTES)
+    except OSError:
+        ours = False
+    if not ours:
+        raise UsageError(f"{path} was not written by this demo, so it stays as it is: choose another folder with --out")
+
+
+def next_command(out: Path, called: str = "drivelint") -> str:
+    """Return the command that checks what was written, to be copied into a shell; `called` is how drivelint was started."""
+    folder = shlex.quote(str(out))
+    profiles = " ".join(f"--profile {name}" for name in PROFILES)
+    program = shlex.quote(called) if PurePath(called).name == "drivelint" and not which("drivelint") else "drivelint"
+    return f"{program} check {folder}/*.mcap --map {folder}/{ROAD_FILE} {profiles} --out {folder}/results"
