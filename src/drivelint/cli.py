@@ -148,6 +148,12 @@ def check(
     keep_db: Annotated[
         bool, typer.Option("--keep-db", help="Also keep the database with every stage's tables.")
     ] = False,
+    annotate: Annotated[
+        bool,
+        typer.Option(
+            "--annotate/--no-annotate", help="With --out: copy each log with its verdicts in it, for a viewer."
+        ),
+    ] = True,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
     """Judge recorded drives against the rules and write verdicts, findings and reports.
@@ -177,6 +183,7 @@ def check(
         strict=strict,
         margins=margins,
         keep_db=keep_db,
+        annotate=annotate,
         topic=topic,
     )
     if out is not None:

@@ -13,7 +13,7 @@ from drivelint.annotate import Annotator
 from drivelint.batch import Drive, Refused, cut, in_order, read
 from drivelint.errors import DriveLintError, TraceError, UsageError
 from drivelint.ingest import IngestOptions, expand
-from drivelint.judge import Bench, Witness
+from drivelint.judge import Bench
 from drivelint.maps.library import MapLibrary
 from drivelint.profiles import DEFAULT, load_profiles, profile_table
 from drivelint.report import collect, evidence
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
+    from drivelint.judge import Witness
     from drivelint.report.progress import Progress
 
 
@@ -116,9 +117,7 @@ def _witnesses(settings: Settings, rules: pa.Table) -> list[Witness]:
         return []
     seen: list[Witness] = [lambda con, _drives: evidence.gather(con)]
     if settings.annotate:
-        seen.append(
-            Annotator(settings.out / "annotated", rules, fail_on=settings.fail_on, strict=settings.strict)
-        )
+        seen.append(Annotator(settings.out / "annotated", rules, fail_on=settings.fail_on, strict=settings.strict))
     return seen
 
 

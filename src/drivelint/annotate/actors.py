@@ -72,13 +72,12 @@ def messages(boxes: Boxes, clock: LogClock, channel: int) -> Iterator[Records]:
     for begin, end in zip(cuts, [*cuts[1:], len(first)], strict=True):
         if begin == end:
             continue
-        of_rows = slice(int(first[begin]), int(first[end - 1] + count[end - 1]))
-        steps = slice(int(begin), int(end))
-        step_of_row = np.repeat(np.arange(begin, end), count[steps])
-        yield _chunk(
-            tracks, rows[of_rows], heads, log_time[step_of_row], count[steps],
-            message_heads(channel, log_time[steps], size[steps], int(begin)), log_time[steps],
-        )  # fmt: skip
+        rows_of = rows[first[begin] : first[end - 1] + count[end - 1]]
+        times, counts = log_time[begin:end], count[begin:end]
+        starts = message_heads(channel, times, size[begin:end], int(begin))
+        pieces = _Pieces(heads, tracks.actor[rows_of], _tails(tracks, rows_of, np.repeat(times, counts)))
+        records, place = pieces.behind(starts, counts)
+        yield records, np.stack([times, place.astype(np.uint64)], axis=1)
 
 
 def transforms(boxes: Boxes, clock: LogClock, channel: int) -> Iterator[Records]:
@@ -113,42 +112,39 @@ def message_heads(channel: int, log_time: NDArray[np.uint64], size: NDArray[np.i
     """Return the beginnings of MCAP message records: `size` is that of each message alone, `first` the first's number."""
     n = len(log_time)
     head = np.zeros(n, np.dtype("u1, <u8, <u2, <u4, <u8, <u8"))
-    for field, values in zip(head.dtype.names or (), (5, size + 22, channel, np.arange(first, first + n), log_time, log_time), strict=True):
+    for field, values in zip(
+        head.dtype.names or (), (5, size + 22, channel, np.arange(first, first + n), log_time, log_time), strict=True
+    ):
         head[field] = values
     return head.view(np.uint8).reshape(n, head.dtype.itemsize)
 
 
-def _chunk(
-    tracks: Tracks,
-    rows: NDArray[np.intp],
-    heads: list[bytes],
-    log_time: NDArray[np.uint64],
-    count: NDArray[np.int64],
-    starts: wire.Bytes,
-    step_time: NDArray[np.uint64],
-) -> Records:
-    """Lay the boxes of some steps side by side: each piece is written to its place, all pieces of one width at once."""
-    tails = _tails(tracks, rows, log_time)
-    actor = tracks.actor[rows]
-    head_width = np.array([len(head) for head in heads])[actor]
-    is_start = np.zeros(len(rows) + len(count), np.bool_)
-    starts_at = np.cumsum(count) - count + np.arange(len(count))
-    is_start[starts_at] = True
-    width = np.empty(len(is_start), np.int64)
-    width[is_start] = starts.shape[1]
-    width[~is_start] = head_width + tails.shape[1]
-    place = np.cumsum(width) - width
-    out = np.empty(int(width.sum()), np.uint8)
-    out[place[is_start, None] + np.arange(starts.shape[1])] = starts
-    box_place = place[~is_start]
-    for w in np.unique(head_width):
-        chosen = np.flatnonzero(head_width == w)
-        names, which = np.unique(actor[chosen], return_inverse=True)
-        table = np.stack([np.frombuffer(heads[name], np.uint8) for name in names])
-        piece = np.concatenate([table[which], tails[chosen]], axis=1)
-        out[box_place[chosen, None] + np.arange(piece.shape[1])] = piece
-    index = np.stack([step_time, place[is_start].astype(np.uint64)], axis=1)
-    return out.tobytes(), index
+@dataclass(frozen=True)
+class _Pieces:
+    """The boxes of some steps: of each its actor, what is the same for that actor at every step, and what changes."""
+
+    heads: list[bytes]
+    actor: NDArray[np.int64]
+    tails: wire.Bytes
+
+    def behind(self, starts: wire.Bytes, count: NDArray[np.int64]) -> tuple[bytes, NDArray[np.int64]]:
+        """Lay `count` boxes behind each of `starts`, all pieces of one width at once; return where each start lies."""
+        head_width = np.array([len(head) for head in self.heads])[self.actor]
+        is_start = np.zeros(len(self.actor) + len(count), np.bool_)
+        is_start[np.cumsum(count) - count + np.arange(len(count))] = True
+        width = np.where(is_start, starts.shape[1], 0)
+        width[~is_start] = head_width + self.tails.shape[1]
+        place = np.cumsum(width) - width
+        out = np.empty(int(width.sum()), np.uint8)
+        out[place[is_start, None] + np.arange(starts.shape[1])] = starts
+        box_place = place[~is_start]
+        for w in np.unique(head_width):
+            chosen = np.flatnonzero(head_width == w)
+            names, which = np.unique(self.actor[chosen], return_inverse=True)
+            table = np.stack([np.frombuffer(self.heads[name], np.uint8) for name in names])
+            piece = np.concatenate([table[which], self.tails[chosen]], axis=1)
+            out[box_place[chosen, None] + np.arange(piece.shape[1])] = piece
+        return out.tobytes(), place[is_start]
 
 
 def _lifetime(t_ns: NDArray[np.int64]) -> int:
@@ -159,10 +155,17 @@ def _heads(tracks: Tracks, lifetime_ns: int) -> list[bytes]:
     """Return per actor what is the same at every step: the entity's name, its class, the box's size and colour."""
     heads = []
     for name, kind, size, is_ego in zip(tracks.names, tracks.classes, tracks.sizes, tracks.is_ego, strict=True):
-        length, width, height = (float(v) if np.isfinite(v) else d for v, d in zip(size, (_UNKNOWN_SIZE, _UNKNOWN_SIZE, _HEIGHT), strict=True))
+        length, width, height = (
+            float(v) if np.isfinite(v) else d
+            for v, d in zip(size, (_UNKNOWN_SIZE, _UNKNOWN_SIZE, _HEIGHT), strict=True)
+        )
         shade = EGO if is_ego else ON_FOOT if kind in _WALKERS else VEHICLE
         cube = draw.cube_head(length, width, height, shade.faint(0.9))
-        facts = {"class": ("ego, " if is_ego else "") + (kind or "unknown"), "length": f"{size[0]:.2f} m", "width": f"{size[1]:.2f} m"}
+        facts = {
+            "class": ("ego, " if is_ego else "") + (kind or "unknown"),
+            "length": f"{size[0]:.2f} m",
+            "width": f"{size[1]:.2f} m",
+        }
         pairs = b"".join(wire.nested(6, wire.text(1, k) + wire.text(2, v)) for k, v in facts.items())
         lifetime = wire.time(4, lifetime_ns) if lifetime_ns else b""
         body = wire.text(2, draw.FRAME) + wire.text(3, name) + lifetime + pairs
@@ -177,22 +180,38 @@ def _tails(tracks: Tracks, rows: NDArray[np.intp], log_time: NDArray[np.uint64])
     z = tracks.z[rows]
     height = np.nan_to_num(tracks.sizes[tracks.actor[rows], 2], nan=_HEIGHT)
     z = np.where(np.isfinite(z), z, height / 2)
-    return np.concatenate(
-        [poses(1, tracks.x[rows], tracks.y[rows], z, half), wire.timestamps(1, log_time)], axis=1
-    )
+    return np.concatenate([poses(1, tracks.x[rows], tracks.y[rows], z, half), wire.timestamps(1, log_time)], axis=1)
 
 
 def poses(
     number: int, x: NDArray[np.float64], y: NDArray[np.float64], z: NDArray[np.float64], half_yaw: NDArray[np.float64]
 ) -> wire.Bytes:
     """Return a field of a pose, a row each."""
-    where = wire.rows(len(x), wire.varint(1 << 3 | 2) + b"\x1b", b"\x09", wire.column(x), b"\x11", wire.column(y), b"\x19", wire.column(z))
-    turned = wire.rows(len(x), wire.varint(2 << 3 | 2) + b"\x12", b"\x19", wire.column(np.sin(half_yaw)), b"\x21", wire.column(np.cos(half_yaw)))
-    return wire.rows(len(x), wire.varint(number << 3 | 2) + wire.varint(where.shape[1] + turned.shape[1]), where, turned)
+    where = wire.rows(
+        len(x),
+        wire.varint(1 << 3 | 2) + b"\x1b",
+        b"\x09",
+        wire.column(x),
+        b"\x11",
+        wire.column(y),
+        b"\x19",
+        wire.column(z),
+    )
+    turned = wire.rows(
+        len(x),
+        wire.varint(2 << 3 | 2) + b"\x12",
+        b"\x19",
+        wire.column(np.sin(half_yaw)),
+        b"\x21",
+        wire.column(np.cos(half_yaw)),
+    )
+    return wire.rows(
+        len(x), wire.varint(number << 3 | 2) + wire.varint(where.shape[1] + turned.shape[1]), where, turned
+    )
 
 
-_POSE_WIDTH: Final = poses(1, *(np.zeros(1),) * 4).shape[1]
+_POSE_WIDTH: Final = int(poses(1, *(np.zeros(1),) * 4).shape[1])
 
 
 def _tail_width() -> int:
-    return _POSE_WIDTH + wire.timestamps(1, np.zeros(1, np.uint64)).shape[1]
+    return _POSE_WIDTH + int(wire.timestamps(1, np.zeros(1, np.uint64)).shape[1])

@@ -6,8 +6,6 @@ import os
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, BinaryIO
 
-import pyarrow as pa
-
 from drivelint.annotate.evidence import gather
 from drivelint.annotate.road import Road
 from drivelint.annotate.write import Annotation, write
@@ -20,6 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     import duckdb
+    import pyarrow as pa
 
     from drivelint.annotate.evidence import Evidence
     from drivelint.batch import Drive
@@ -34,7 +33,9 @@ class Annotator:
     def __init__(self, folder: Path, rules: pa.Table, *, fail_on: str, strict: bool) -> None:
         self._folder = folder
         self._rules = rules
-        self._versions = dict(zip(rules["rule_id"].to_pylist(), rules["rule_version"].to_pylist(), strict=True))
+        names = rules["rule_id"].to_pylist()
+        self._versions = dict(zip(names, rules["rule_version"].to_pylist(), strict=True))
+        self._senses = dict(zip(names, rules["sense"].to_pylist(), strict=True))
         self._fail_on = fail_on
         self._strict = strict
         self._roads: dict[str, Road] = {}
@@ -48,7 +49,12 @@ class Annotator:
         for drive in drives:
             name = drive.trace.drive_id
             said = Annotation(
-                drive.trace, found[name], self._road(drive.environment), self._versions, self._summary(found[name])
+                drive.trace,
+                found[name],
+                self._road(drive.environment),
+                self._versions,
+                self._senses,
+                self._summary(found[name]),
             )
             with _whole(self._folder / f"{name}.mcap") as file:
                 write(file, said)
@@ -64,7 +70,12 @@ class Annotator:
     def _summary(self, evidence: Evidence) -> bytes:
         """Return the summary of one drive, as if it had been checked alone."""
         alone = Result(
-            evidence.verdicts, evidence.findings, evidence.drive, self._rules, fail_on=self._fail_on, strict=self._strict
+            evidence.verdicts,
+            evidence.findings,
+            evidence.drive,
+            self._rules,
+            fail_on=self._fail_on,
+            strict=self._strict,
         )
         return summary.render(alone)
 

@@ -29,7 +29,9 @@ class Colour(NamedTuple):
         return self._replace(a=opacity)
 
 
-def entity(name: str, log_time: int, primitives: bytes, *, lifetime_ns: int = 0, facts: dict[str, str] | None = None) -> bytes:
+def entity(
+    name: str, log_time: int, primitives: bytes, *, lifetime_ns: int = 0, facts: dict[str, str] | None = None
+) -> bytes:
     """Return a scene entity as a field of a SceneUpdate; `facts` are shown when it is clicked on."""
     pairs = (wire.nested(6, wire.text(1, key) + wire.text(2, value)) for key, value in (facts or {}).items())
     lifetime = wire.time(4, lifetime_ns) if lifetime_ns else b""
@@ -47,15 +49,16 @@ def colour(number: int, value: Colour) -> bytes:
     return wire.nested(number, wire.doubles(*value))
 
 
-def pose(x: float, y: float, z: float, yaw: float = 0.0) -> bytes:
-    """Return a primitive's pose (field 1), turned about the vertical."""
+def pose(x: float, y: float, z: float, yaw: float = 0.0, *, number: int = 1) -> bytes:
+    """Return a primitive's pose, turned about the vertical: field 1 of all but lines."""
     turned = wire.doubles(math.sin(yaw / 2), math.cos(yaw / 2), first=3)
-    return wire.nested(1, wire.nested(1, wire.doubles(x, y, z)) + wire.nested(2, turned))
+    return wire.nested(number, wire.nested(1, wire.doubles(x, y, z)) + wire.nested(2, turned))
 
 
 def line(xyz: Points, value: Colour, *, thickness: float, kind: int, pixels: bool = True) -> bytes:
     """Return a line; `thickness` is in pixels, or metres. Its points are relative to the first, which keeps them exact."""
-    head = wire.whole(1, kind) + pose(*map(float, xyz[0])) + wire.doubles(thickness, first=3) + wire.whole(4, int(pixels))
+    origin = pose(*map(float, xyz[0]), number=2)
+    head = wire.whole(1, kind) + origin + wire.doubles(thickness, first=3) + wire.whole(4, int(pixels))
     return wire.nested(_LINES, head + wire.points(5, xyz - xyz[0]) + colour(6, value))
 
 
@@ -74,10 +77,10 @@ def label(x: float, y: float, z: float, content: str, value: Colour) -> bytes:
     return wire.nested(_TEXTS, pose(x, y, z) + look + colour(5, value) + wire.text(6, content))
 
 
-def arrow(x: float, y: float, z: float, yaw: float, length: float, value: Colour) -> bytes:
-    """Return a flat-lying arrow from (x, y, z) in direction `yaw`."""
+def arrow(foot: tuple[float, float, float], yaw: float, length: float, value: Colour) -> bytes:
+    """Return a flat-lying arrow from a point in direction `yaw`."""
     shape = wire.doubles(0.6 * length, 0.15, 0.4 * length, 0.5, first=2)
-    return wire.nested(_ARROWS, pose(x, y, z, yaw) + shape + colour(6, value))
+    return wire.nested(_ARROWS, pose(*foot, yaw) + shape + colour(6, value))
 
 
 def cube_head(length: float, width: float, height: float, value: Colour) -> bytes:

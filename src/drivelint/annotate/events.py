@@ -13,6 +13,8 @@ from drivelint.annotate import foxglove, wire
 from drivelint.resources import folder
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import pyarrow as pa
 
     from drivelint.annotate.clock import LogClock
@@ -45,14 +47,16 @@ def findings(rows: pa.Table, clock: LogClock) -> list[Message]:
     return _in_order([_json(row, clock.at(row["t_start_ns"])) for row in rows.to_pylist()])
 
 
-def log_lines(rows: pa.Table, clock: LogClock, t_start_ns: int) -> list[Message]:
+def log_lines(rows: pa.Table, clock: LogClock, t_start_ns: int, senses: Mapping[str, str]) -> list[Message]:
     """Return a `foxglove.Log` line for every verdict that a person should look at: fails, near misses, unknowns, errors."""
     lines = []
     for row in rows.to_pylist():
         if row["verdict"] in {"fail", "error", "unknown"} or row["near_miss"]:
             time = clock.at(moment(row, t_start_ns))
-            level = foxglove.ERROR if (row["verdict"], row["severity"]) == ("fail", "critical") else _LEVELS[row["verdict"]]
-            said = wire.text(3, f"{headline(row)}: {row['reason']}") + wire.text(4, row["rule_id"])
+            level = (
+                foxglove.ERROR if (row["verdict"], row["severity"]) == ("fail", "critical") else _LEVELS[row["verdict"]]
+            )
+            said = wire.text(3, f"{headline(row, senses)}. {row['reason']}") + wire.text(4, row["rule_id"])
             lines.append(Message(time, wire.time(1, time) + wire.whole(2, level) + said))
     return _in_order(lines)
 
@@ -63,14 +67,16 @@ def moment(row: dict[str, Any], t_start_ns: int) -> int:
     return int(next(t for t in times if t is not None))
 
 
-def headline(row: dict[str, Any]) -> str:
-    """Return a verdict or finding in a few words: what, which rule, how much."""
+def headline(row: dict[str, Any], senses: Mapping[str, str]) -> str:
+    """Return a verdict or finding in a few words: what, which rule, with whom, how much. `senses`: rule -> relation that must hold."""
     word = "NEAR MISS" if row.get("near_miss") else row.get("verdict", "fail").upper().replace("_", " ")
-    rule = row["rule_id"].partition(".")[2]
-    profile = f" ({row['profile']})" if row["profile"] else ""
+    profile = f" [{row['profile']}]" if row["profile"] else ""
+    who = f", {row['object_id']}" if row["object_id"] else ""
+    start = f"{word} {row['rule_id'].partition('.')[2]}{profile}{who}"
     if row["observed"] is None or row["required"] is None:
-        return f"{word} {rule}{profile}"
-    return f"{word} {rule}{profile} {row['observed']:.2f} vs {row['required']:.2f} {row['unit'] or ''}".rstrip()
+        return start
+    unit = f" {row['unit']}" if row["unit"] else ""
+    return f"{start}: {row['observed']:.2f}{unit}, must be {senses[row['rule_id']]} {row['required']:.2f}"
 
 
 def _json(row: dict[str, Any], log_time: int) -> Message:

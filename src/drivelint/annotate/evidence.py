@@ -61,9 +61,15 @@ def gather(con: duckdb.DuckDBPyConnection, drive_ids: Sequence[str]) -> dict[str
     ids = list(drive_ids)
     spaces = con.execute(_SPACES, [ids]).to_arrow_table()
     chains = con.execute(_CHAINS, [ids]).to_arrow_table()
-    tables = (collect.verdicts(con, ids), collect.findings(con, ids), collect.drives(con, ids))
+    verdicts, findings, rows = collect.verdicts(con, ids), collect.findings(con, ids), collect.drives(con, ids)
     return {
-        drive: Evidence(*(_of(table, drive) for table in tables), _of(spaces, drive).to_pylist(), _of(chains, drive))
+        drive: Evidence(
+            _of(verdicts, drive),
+            _of(findings, drive),
+            _of(rows, drive),
+            _of(spaces, drive).to_pylist(),
+            _of(chains, drive),
+        )
         for drive in ids
     }
 

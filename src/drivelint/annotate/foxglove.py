@@ -93,9 +93,7 @@ def _fields(name: str) -> list[tuple[str, str, bool]]:
     return [(field, kind.strip("[]"), kind.startswith("[")) for field, kind in pairs]
 
 
-def _declare(
-    message: descriptor_pb2.DescriptorProto, name: str, kind: str, number: int, *, repeated: bool
-) -> None:
+def _declare(message: descriptor_pb2.DescriptorProto, name: str, kind: str, number: int, *, repeated: bool) -> None:
     words = name.split("_")
     field = message.field.add(name=name, number=number, json_name=words[0] + "".join(w.title() for w in words[1:]))
     field.label = _FIELD.LABEL_REPEATED if repeated else _FIELD.LABEL_OPTIONAL

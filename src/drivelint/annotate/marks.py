@@ -5,7 +5,6 @@ Each message is complete: it takes away what was drawn before, so that a viewer 
 
 from __future__ import annotations
 
-from collections import defaultdict
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
@@ -13,24 +12,37 @@ import numpy as np
 from drivelint.annotate import draw, foxglove
 from drivelint.annotate.draw import Colour
 from drivelint.annotate.events import Message, headline
+from drivelint.report.counts import SEVERITIES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from numpy.typing import NDArray
 
     from drivelint.annotate.clock import LogClock
     from drivelint.annotate.evidence import Evidence
-    from drivelint.annotate.tracks import Places, Tracks
+    from drivelint.annotate.tracks import Tracks
 
 FAIL = Colour(0.90, 0.16, 0.16)
 NEAR_MISS = Colour(1.00, 0.62, 0.05)
 STEPS: Final = 5_000
 """So many steps of findings are drawn per drive; of longer ones every second, third ... step."""
-BEFORE_NS: Final = 1_000_000_000  # a near miss is one moment: a person needs a little more than that to see it
+BEFORE_NS: Final = 1_000_000_000  # what lasts a moment is drawn a little longer: a person must see it
 AFTER_NS: Final = 2_000_000_000
-_LINES: Final = 5
+ASIDE_M: Final = 6.0  # beside the ego: its role stands on it, and a viewer that follows it has this in sight
+LINES: Final = 5
 _UNKNOWN_SIZE: Final = 1.0
+
+
+class Box(NamedTuple):
+    """A box at one time; length and width may be NaN."""
+
+    x: float
+    y: float
+    z: float
+    yaw: float
+    length: float
+    width: float
 
 
 class Window(NamedTuple):
@@ -44,46 +56,52 @@ class Window(NamedTuple):
     text: str
 
 
-def windows(evidence: Evidence) -> list[Window]:
-    """Return findings over their failing stretch and two seconds more, near misses around their worst step; fails first."""
+class Shown(NamedTuple):
+    """A window at one step: the boxes of ego and object, None where they are not known or there is no object."""
+
+    window: Window
+    ego: Box | None
+    object: Box | None
+
+
+def windows(evidence: Evidence, senses: Mapping[str, str]) -> list[Window]:
+    """Return findings over their failing stretch, near misses around their worst step; fails first, by severity."""
     fails = [
-        Window(row["ego_id"], row["object_id"], row["t_start_ns"], row["t_end_ns"] + AFTER_NS, FAIL, headline(row))
-        for row in evidence.findings.to_pylist()
+        _window(row, senses, FAIL, row["t_start_ns"], max(row["t_end_ns"], row["t_start_ns"] + AFTER_NS))
+        for row in sorted(evidence.findings.to_pylist(), key=lambda row: SEVERITIES.index(row["severity"]))
     ]
     near = [
-        Window(row["ego_id"], row["object_id"], t - BEFORE_NS, t + AFTER_NS, NEAR_MISS, headline(row))
+        _window(row, senses, NEAR_MISS, t - BEFORE_NS, t + AFTER_NS)
         for row in evidence.verdicts.filter(evidence.verdicts["near_miss"]).to_pylist()
         if (t := row["t_ref_ns"] if row["t_worst_ns"] is None else row["t_worst_ns"]) is not None
     ]
     return fails + near
 
 
-def messages(evidence: Evidence, tracks: Tracks, clock: LogClock) -> list[Message]:
+def messages(evidence: Evidence, tracks: Tracks, clock: LogClock, senses: Mapping[str, str]) -> list[Message]:
     """Return the SceneUpdates of all windows: one for every step in any of them, and an empty one behind each."""
-    found = windows(evidence)
+    found = windows(evidence, senses)
     steps = [_steps(tracks, window) for window in found]
-    every = max(1, -(-sum(len(s) for s, _ in steps) // STEPS))
-    drawn: dict[int, dict[tuple[str, str | None], list[tuple[int, int]]]] = defaultdict(dict)
-    for number, (times, behind) in enumerate(steps):
-        for k, t in enumerate(times[::every].tolist()):
-            pair = (found[number].ego_id, found[number].object_id)
-            drawn[t].setdefault(pair, []).append((number, k))
+    every = max(1, -(-sum(len(times) for times, _ in steps) // STEPS))
+    drawn: dict[int, list[Shown]] = {}
+    for window, (times, behind) in zip(found, steps, strict=True):
+        thinned = times[::every]
+        ego = _boxes(tracks, window.ego_id, thinned)
+        other = _boxes(tracks, window.object_id, thinned)
+        for k, t in enumerate(thinned.tolist()):
+            drawn.setdefault(t, []).append(Shown(window, ego[k], other[k]))
         if behind is not None:
-            drawn.setdefault(behind, {})
-    where = {(w.ego_id, w.object_id, n): _both(tracks, w, steps[n][0][::every]) for n, w in enumerate(found)}
+            drawn.setdefault(behind, [])
     out = []
-    for t, pairs in sorted(drawn.items()):
+    for t, shown in sorted(drawn.items()):
         time = clock.at(t)
-        entities = [
-            draw.entity(_name(pair), time, _pair([found[n] for n, _ in shown], *_at(where[*pair, shown[0][0]], shown[0][1])))
-            for pair, shown in sorted(pairs.items(), key=lambda item: _name(item[0]))
-        ]
-        out.append(Message(time, draw.clear(time) + b"".join(entities)))
+        out.append(Message(time, draw.clear(time) + b"".join(_entities(shown, time))))
     return out
 
 
-def _name(pair: tuple[str, str | None]) -> str:
-    return pair[0] if pair[1] is None else f"{pair[0]} and {pair[1]}"
+def _window(row: dict[str, Any], senses: Mapping[str, str], colour: Colour, start_ns: int, end_ns: int) -> Window:
+    text = headline(row, senses)
+    return Window(row["ego_id"], row["object_id"], start_ns, end_ns, colour, text)
 
 
 def _steps(tracks: Tracks, window: Window) -> tuple[NDArray[np.int64], int | None]:
@@ -93,37 +111,47 @@ def _steps(tracks: Tracks, window: Window) -> tuple[NDArray[np.int64], int | Non
     return times[first:end], int(times[end]) if end < len(times) else None
 
 
-def _both(tracks: Tracks, window: Window, times: NDArray[np.int64]) -> list[Places]:
-    names = [window.ego_id, *([window.object_id] if window.object_id is not None else [])]
-    return [tracks.places(name, times) for name in names]
+def _boxes(tracks: Tracks, name: str | None, times: NDArray[np.int64]) -> list[Box | None]:
+    """Return an actor's box at each time; None where its place or heading is not known."""
+    if name is None:
+        return [None] * len(times)
+    p = tracks.places(name, times)
+    z = np.nan_to_num(p.z)
+    known = np.isfinite(p.x) & np.isfinite(p.y) & np.isfinite(p.yaw)
+    columns = (p.x.tolist(), p.y.tolist(), z.tolist(), p.yaw.tolist(), known.tolist())
+    return [Box(*row[:4], p.length, p.width) if row[4] else None for row in zip(*columns, strict=True)]
 
 
-def _at(places: list[Places], k: int) -> Iterator[tuple[float, ...] | None]:
-    """Yield each box at step k, or None where it is not known."""
-    for p in places:
-        box = (float(p.x[k]), float(p.y[k]), float(np.nan_to_num(p.z[k])), float(p.yaw[k]), p.length, p.width, p.height)
-        yield box if np.isfinite(box[:4]).all() else None
+def _entities(shown: list[Shown], time: int) -> Iterator[bytes]:
+    """Yield what is drawn at one step: each pair once, in the colour of its worst window, and one label per ego."""
+    pairs: dict[tuple[str, str | None], Shown] = {}
+    egos: dict[str, list[Shown]] = {}
+    for one in shown:
+        pairs.setdefault((one.window.ego_id, one.window.object_id), one)
+        egos.setdefault(one.window.ego_id, []).append(one)
+    for (ego, other), one in sorted(pairs.items(), key=lambda item: (item[0][0], item[0][1] or "")):
+        yield draw.entity(ego if other is None else f"{ego} and {other}", time, _pair(one))
+    for ego, said in sorted(egos.items()):
+        if (box := said[0].ego) is not None:
+            more = [f"and {len(said) - LINES} more"] if len(said) > LINES else []
+            text = "\n".join([*(one.window.text for one in said[:LINES]), *more])
+            label = draw.label(box.x, box.y + ASIDE_M, box.z + 2.0, text, said[0].window.colour)
+            yield draw.entity(f"what is said of {ego}", time, label)
 
 
-def _pair(shown: list[Window], ego: tuple[float, ...] | None, other: tuple[float, ...] | None = None) -> bytes:
-    """Draw outlines of both boxes, the line between them, and what is said of them."""
-    colour = shown[0].colour
-    boxes = [box for box in (ego, other) if box is not None]
-    parts = [draw.line(outline(box), colour, thickness=3.0, kind=foxglove.LINE_LOOP) for box in boxes]
+def _pair(one: Shown) -> bytes:
+    """Draw the outlines of both boxes and the line between them."""
+    boxes = [box for box in (one.ego, one.object) if box is not None]
+    parts = [draw.line(outline(box), one.window.colour, thickness=3.0, kind=foxglove.LINE_LOOP) for box in boxes]
     if len(boxes) == 2:
         ends = np.array([box[:3] for box in boxes])
-        parts.append(draw.line(ends, colour, thickness=2.0, kind=foxglove.LINE_STRIP))
-    if boxes:
-        x, y, z = np.mean([box[:3] for box in boxes], axis=0)
-        lines = [w.text for w in shown[:_LINES]] + ([f"and {len(shown) - _LINES} more"] if len(shown) > _LINES else [])
-        parts.append(draw.label(float(x), float(y), float(z) + 3.0, "\n".join(lines), colour))
+        parts.append(draw.line(ends, one.window.colour, thickness=2.0, kind=foxglove.LINE_STRIP))
     return b"".join(parts)
 
 
-def outline(box: tuple[float, ...]) -> NDArray[np.float64]:
-    """Return the four corners of a box (x, y, z, yaw, length, width, ...) at its middle height."""
-    x, y, z, yaw = box[:4]
-    length, width = (v if np.isfinite(v) else _UNKNOWN_SIZE for v in box[4:6])
+def outline(box: Box) -> NDArray[np.float64]:
+    """Return the four corners of a box at its middle height."""
+    length, width = (v if np.isfinite(v) else _UNKNOWN_SIZE for v in (box.length, box.width))
     along, across = np.array([1, 1, -1, -1]) * length / 2, np.array([1, -1, -1, 1]) * width / 2
-    c, s = np.cos(yaw), np.sin(yaw)
-    return np.stack([x + c * along - s * across, y + s * along + c * across, np.full(4, z)], axis=1)
+    c, s = np.cos(box.yaw), np.sin(box.yaw)
+    return np.stack([box.x + c * along - s * across, box.y + s * along + c * across, np.full(4, box.z)], axis=1)

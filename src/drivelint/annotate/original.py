@@ -10,7 +10,6 @@ import hashlib
 import io
 import mmap
 import struct
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, NamedTuple
@@ -26,6 +25,7 @@ from drivelint.annotate.sink import MAGIC
 from drivelint.errors import TraceError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -98,7 +98,9 @@ class Original:
             digest = pool.submit(self._digest)
             _Copy(self, sink).run()
             if digest.result() != self._sha256:
-                raise TraceError(f"{self.path}: the log changed while it was judged: check it again when it is complete")
+                raise TraceError(
+                    f"{self.path}: the log changed while it was judged: check it again when it is complete"
+                )
 
     def records(self, at: int = len(MAGIC)) -> Iterator[Record]:
         """Yield the records of the file from byte `at` on, the footer being the last."""

@@ -58,7 +58,8 @@ class Road:
     def _tree(self) -> Any:
         xy = np.stack([self._points["x_m"], self._points["y_m"]], axis=1)
         start = np.concatenate([np.arange(r.start, r.stop - 1) for r in self._rows])
-        return shapely.STRtree(shapely.linestrings(np.stack([xy[start], xy[start + 1]], axis=1)))
+        pieces: Any = shapely.linestrings(np.stack([xy[start], xy[start + 1]], axis=1))
+        return shapely.STRtree(pieces)
 
     def _entity(self, number: int, log_time: int) -> bytes:
         name = str(self._names[number])
@@ -77,11 +78,13 @@ class Road:
         down = np.array([0.0, 0.0, _SURFACE_DOWN_M])
         ground = ASPHALT if about["drivable"] else PAVEMENT if about["lane_type"] in _FOOT else VERGE
         parts = [draw.ribbon(left - down, right - down, ground)]
-        parts += [draw.line(side, BOUND, thickness=0.12, kind=foxglove.LINE_STRIP, pixels=False) for side in (left, right)]
+        parts += [
+            draw.line(side, BOUND, thickness=0.12, kind=foxglove.LINE_STRIP, pixels=False) for side in (left, right)
+        ]
         if about["drivable"] and about["length_m"] > 10.0:
             k = len(z) // 2
             yaw = math.atan2(p["ty"][k], p["tx"][k])
-            parts.append(draw.arrow(float(p["x_m"][k]), float(p["y_m"][k]), float(z[k]), yaw, 3.0, ARROW))
+            parts.append(draw.arrow((float(p["x_m"][k]), float(p["y_m"][k]), float(z[k])), yaw, 3.0, ARROW))
         return b"".join(parts)
 
 

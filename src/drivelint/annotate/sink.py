@@ -77,7 +77,11 @@ class Sink:
 
         `schema` comes without an id (0). Errors: `DriveLintError` where all 65,535 ids are taken.
         """
-        same = [s.id for s in self.schemas.values() if (s.name, s.encoding, s.data) == (schema.name, schema.encoding, schema.data)]
+        same = [
+            s.id
+            for s in self.schemas.values()
+            if (s.name, s.encoding, s.data) == (schema.name, schema.encoding, schema.data)
+        ]
         if same:
             number = min(same)
         else:
@@ -164,19 +168,20 @@ class Sink:
             for record in records:
                 self._record(record)
             if records:
-                places.append(SummaryOffset(group_opcode=opcode, group_start=group_start, group_length=self.offset - group_start))
+                places.append(
+                    SummaryOffset(group_opcode=opcode, group_start=group_start, group_length=self.offset - group_start)
+                )
         offsets = self.offset
         for place in places:
             self._record(place)
         head = struct.pack("<BQQQ", Opcode.FOOTER, 20, start, offsets)
-        footer = RecordBuilder()
-        Footer(summary_start=start, summary_offset_start=offsets, summary_crc=zlib.crc32(head, self._crc)).write(footer)
-        self.write(footer.end() + MAGIC)
+        self._record(Footer(summary_start=start, summary_offset_start=offsets, summary_crc=zlib.crc32(head, self._crc)))
+        self.write(MAGIC)
 
     def _record(self, record: McapRecord) -> None:
         builder = RecordBuilder()
         record.write(builder)
-        self.write(builder.end())
+        self.write(builder.end())  # type: ignore[no-untyped-call]
 
     def _statistics(self) -> Statistics:
         filled = [c for c in self.chunks if c.message_index_offsets]

@@ -23,6 +23,7 @@ MET = Colour(0.90, 0.16, 0.16)
 OVERLAP = Colour(1.00, 0.62, 0.05)
 ROLE = Colour(0.95, 0.95, 0.95)
 STEPS: Final = 5_000
+Strip = tuple["NDArray[np.float64]", "NDArray[np.float64]"]
 _SAMPLES: Final = 24
 _UP_M: Final = 0.1  # above the lanes
 _LEAST_M: Final = 0.1
@@ -60,15 +61,20 @@ class _Lines:
         self._chains = evidence.chains
         self._found: dict[tuple[str, int], NDArray[np.float64]] = {}
 
-    def edges(self, ego: str, chain: int, s0: float, s1: float, d: float, half: float) -> list[NDArray[np.float64]] | None:
+    def strip(self, row: dict[str, Any], start: float, end: float, d: float, half: float) -> Strip | None:
         """Return left and right edge of a strip around the offset `d`; None where the chain has no such stations."""
-        line = self._line(ego, chain)
-        s0, s1 = max(s0, line[0, 0]), min(s1, line[0, -1])
-        if s1 - s0 < _LEAST_M:
+        if row["chain_id"] is None:
             return None
-        s = np.linspace(s0, s1, _SAMPLES)
+        line = self._line(row["ego_id"], row["chain_id"])
+        if not line.shape[1]:
+            return None
+        start, end = max(start, line[0, 0]), min(end, line[0, -1])
+        if end - start < _LEAST_M:
+            return None
+        s = np.linspace(start, end, _SAMPLES)
         x, y, z, tx, ty = (np.interp(s, line[0], column) for column in line[1:])
-        return [np.stack([x - ty * off, y + tx * off, z + _UP_M], axis=1) for off in (d + half, d - half)]
+        left, right = (np.stack([x - ty * off, y + tx * off, z + _UP_M], axis=1) for off in (d + half, d - half))
+        return left, right
 
     def _line(self, ego: str, chain: int) -> NDArray[np.float64]:
         if (ego, chain) not in self._found:
@@ -80,15 +86,16 @@ class _Lines:
 
 
 def _overtake(row: dict[str, Any], lines: _Lines, tracks: Tracks) -> bytes:
-    ego, chain = row["ego_id"], row["chain_id"]
     parts = []
-    own, theirs = (row["s_m"], row["d_m"], row["lat_half_m"], row["sd_av_m"]), (row["ov_s_m"], row["ov_d_m"], row["ov_lat_half_m"], row["sd_ov_m"])
+    own = row["s_m"], row["d_m"], row["lat_half_m"], row["sd_av_m"]
+    theirs = row["ov_s_m"], row["ov_d_m"], row["ov_lat_half_m"], row["sd_ov_m"]
     for (s, d, half, sd), direction, met in ((own, 1, row["av_met"]), (theirs, -1, row["ov_met"])):
-        if chain is not None and None not in (s, d, half, sd):
-            ends = sorted((s, s + direction * sd))
-            if edges := lines.edges(ego, chain, *ends, d, half):
-                parts += _space(*edges, MET if met else OVERLAP if row["overlap"] else FREE)
-    roles = [(ego, f"ego: {row['stage'].replace('_', ' ')}"), *((v, "VBP") for v in row["vbp_ids"]), (row["ov_id"], "OV")]
+        if None not in (s, d, half, sd):
+            start, end = sorted((s, s + direction * sd))
+            if strip := lines.strip(row, start, end, d, half):
+                parts += _space(strip, MET if met else OVERLAP if row["overlap"] else FREE)
+    stage = row["stage"].replace("_", " ")
+    roles = [(row["ego_id"], f"ego: {stage}"), *((v, "VBP") for v in row["vbp_ids"]), (row["ov_id"], "OV")]
     for name, role in roles:
         if name is not None:
             p = tracks.places(name, np.array([row["t_ns"]], np.int64))
@@ -97,6 +104,10 @@ def _overtake(row: dict[str, Any], lines: _Lines, tracks: Tracks) -> bytes:
     return b"".join(parts)
 
 
-def _space(left: NDArray[np.float64], right: NDArray[np.float64], colour: Colour) -> list[bytes]:
+def _space(strip: Strip, colour: Colour) -> list[bytes]:
+    left, right = strip
     around = np.concatenate([left, right[::-1]])
-    return [draw.ribbon(left, right, colour.faint(0.3)), draw.line(around, colour, thickness=2.0, kind=foxglove.LINE_LOOP)]
+    return [
+        draw.ribbon(left, right, colour.faint(0.3)),
+        draw.line(around, colour, thickness=2.0, kind=foxglove.LINE_LOOP),
+    ]

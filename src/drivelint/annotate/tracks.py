@@ -65,8 +65,9 @@ class Tracks:
         row = span.start + np.clip(k, 0, None)
         gap = MAX_GAP * float(np.median(np.diff(times))) if len(times) > 1 else 0.0
         known = (k >= 0) & (t_ns - self.t_ns[row] <= gap)
-        columns = (np.where(known, column[row], np.nan) for column in (self.x, self.y, self.z, self.yaw))
-        return Places(*columns, *(float(v) for v in self.sizes[self.actor[span.start]]))
+        x, y, z, yaw = (np.where(known, column[row], np.nan) for column in (self.x, self.y, self.z, self.yaw))
+        length, width, height = map(float, self.sizes[self.actor[span.start]])
+        return Places(x, y, z, yaw, length, width, height)
 
 
 def tracks(tables: Mapping[str, pa.Table]) -> Tracks:

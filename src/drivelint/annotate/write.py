@@ -17,10 +17,9 @@ from drivelint.annotate.tracks import tracks
 from drivelint.report.contract import OUTPUT_SCHEMA
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from mcap.records import Schema
-    from numpy.typing import NDArray
 
     from drivelint.annotate.actors import Records
     from drivelint.annotate.events import Message
@@ -36,13 +35,14 @@ _TRANSFORMS: Final = ("FrameTransform", "FrameTransforms", "TFMessage", "tfMessa
 class Annotation:
     """What is written beside the log: one drive's evidence and summary, and the road it is drawn on (None: no map).
 
-    `rules` is rule id -> version.
+    `versions` and `senses` are rule id -> hash of its file, rule id -> relation that must hold.
     """
 
     trace: Trace
     evidence: Evidence
     road: Road | None
-    rules: dict[str, str]
+    versions: Mapping[str, str]
+    senses: Mapping[str, str]
     summary: bytes
 
 
@@ -82,6 +82,7 @@ class _Writer:
         """Write every channel, then metadata and attachment."""
         evidence, times, start = self._said.evidence, self._clock, self._start_ns
         boxes = actors.select(self._tracks)
+        senses = self._said.senses
         scene = foxglove.schema("SceneUpdate")
         if self._said.road is not None and len(boxes.rows):
             at = times.at(start)
@@ -89,12 +90,14 @@ class _Writer:
             self._few("map", "protobuf", scene, [events.Message(at, lanes)])
         self._many("scene", scene, lambda channel: actors.messages(boxes, times, channel))
         if not self._moves:  # the log's own frames are not ours to speak of
-            self._many("tf", foxglove.schema("FrameTransform"), lambda channel: actors.transforms(boxes, times, channel))
+            self._many(
+                "tf", foxglove.schema("FrameTransform"), lambda channel: actors.transforms(boxes, times, channel)
+            )
         self._few("danger_spaces", "protobuf", scene, spaces.messages(evidence, self._tracks, times))
-        self._few("markers", "protobuf", scene, marks.messages(evidence, self._tracks, times))
+        self._few("markers", "protobuf", scene, marks.messages(evidence, self._tracks, times, senses))
         self._few("verdicts", "json", events.schema("verdict"), events.verdicts(evidence.verdicts, times, start))
         self._few("findings", "json", events.schema("finding"), events.findings(evidence.findings, times))
-        self._few("log", "protobuf", foxglove.schema("Log"), events.log_lines(evidence.verdicts, times, start))
+        self._few("log", "protobuf", foxglove.schema("Log"), events.log_lines(evidence.verdicts, times, start, senses))
         self._sink.add_metadata("drivelint", self._facts(boxes.every))
         self._sink.add_attachment("summary.json", "application/json", self._said.summary, times.at(start))
 
@@ -116,7 +119,17 @@ class _Writer:
     def _facts(self, every: int) -> dict[str, str]:
         """Return what the verdicts stand on: tool, log, map, rules with their versions."""
         row = self._said.evidence.drive.to_pylist()[0]
-        known = ("drive_id", "file_name", "sha256", "format", "environment_id", "map_name", "map_sha256", "handedness", "handedness_source")
+        known = (
+            "drive_id",
+            "file_name",
+            "sha256",
+            "format",
+            "environment_id",
+            "map_name",
+            "map_sha256",
+            "handedness",
+            "handedness_source",
+        )
         shift = self._clock.shift_ns
         return {
             "tool": "drivelint",
@@ -124,7 +137,7 @@ class _Writer:
             "duckdb": duckdb.__version__,
             "output_schema": str(OUTPUT_SCHEMA),
             **{key: str(row[key]) for key in known if row[key] is not None},
-            **{f"rule {rule}": version for rule, version in self._said.rules.items()},
+            **{f"rule {rule}": version for rule, version in self._said.versions.items()},
             **({"boxes": f"every {every}th step"} if every > 1 else {}),
             **({"time": f"log time = time of the trace + {shift} ns"} if shift else {}),
         }

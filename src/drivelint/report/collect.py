@@ -16,15 +16,17 @@ _KEYS: Final = (
     "t_start_ns NULLS FIRST"
 )
 
+_ONLY: Final = "coalesce(list_contains($only::VARCHAR[], drive_id), true)"  # no list: every drive
+
 _DRIVES: Final = """
 WITH
     way AS (
         SELECT drive_id,
             list({'ego_id': ego_id, 'km': km, 'hours': hours, 'n_steps': n_steps} ORDER BY ego_id) AS exposure
-        FROM exposure GROUP BY drive_id),
+        FROM exposure WHERE coalesce(list_contains($only::VARCHAR[], drive_id), true) GROUP BY drive_id),
     applied AS (
         SELECT drive_id, rule_id, profile, count(*) AS n FROM verdict
-        WHERE verdict <> 'not_applicable' GROUP BY ALL),
+        WHERE verdict <> 'not_applicable' AND coalesce(list_contains($only::VARCHAR[], drive_id), true) GROUP BY ALL),
     occasion AS (
         SELECT drive_id,
             list({'rule_id': rule_id, 'profile': profile, 'n': n} ORDER BY rule_id, profile NULLS FIRST) AS occasions
@@ -43,7 +45,7 @@ WITH
     gaps AS (
         SELECT drive_id,
             list({'ego_id': ego_id, 'signal': signal, 'reason': reason} ORDER BY ego_id, signal) AS not_judged
-        FROM capability WHERE NOT available GROUP BY drive_id)
+        FROM capability WHERE NOT available AND coalesce(list_contains($only::VARCHAR[], drive_id), true) GROUP BY drive_id)
 SELECT l.drive_id, l.file_name, l.sha256, l.format, l.environment_id, e.name AS map_name, e.sha256 AS map_sha256,
     e.handedness, e.handedness_source, l.utc_start_ns, l.t_start_ns, (l.t_end_ns - l.t_start_ns) / 1e9 AS duration_s,
     coalesce(list_sum([x.km FOR x IN w.exposure]), 0.0::DOUBLE) AS km, l.n_states,
@@ -57,23 +59,27 @@ LEFT JOIN way w USING (drive_id)
 LEFT JOIN occasion o USING (drive_id)
 LEFT JOIN defects d USING (drive_id)
 LEFT JOIN gaps g USING (drive_id)
+WHERE coalesce(list_contains($only::VARCHAR[], l.drive_id), true)
 ORDER BY l.drive_id
 """
 
 
-def verdicts(con: duckdb.DuckDBPyConnection) -> pa.Table:
-    """Return the table `verdict`, totally ordered."""
-    return conform(con.execute(f"SELECT * FROM verdict ORDER BY {_KEYS}").to_arrow_table(), "verdict")
+def verdicts(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.Table:
+    """Return the table `verdict`, of these drives or all, totally ordered."""
+    return conform(
+        con.execute(f"SELECT * FROM verdict WHERE {_ONLY} ORDER BY {_KEYS}", {"only": only}).to_arrow_table(), "verdict"
+    )
 
 
-def findings(con: duckdb.DuckDBPyConnection) -> pa.Table:
-    """Return the table `finding`, totally ordered."""
-    return conform(con.execute(f"SELECT * FROM finding ORDER BY {_KEYS}, finding_id").to_arrow_table(), "finding")
+def findings(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.Table:
+    """Return the table `finding`, of these drives or all, totally ordered."""
+    rows = con.execute(f"SELECT * FROM finding WHERE {_ONLY} ORDER BY {_KEYS}, finding_id", {"only": only})
+    return conform(rows.to_arrow_table(), "finding")
 
 
-def drives(con: duckdb.DuckDBPyConnection) -> pa.Table:
-    """Return one row of the table `drive` per log in the database: judged, and what it was judged on; ordered."""
-    return conform(con.execute(_DRIVES).to_arrow_table(), "drive")
+def drives(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.Table:
+    """Return one row of the table `drive` per log in the database, or per named one: judged, and on what; ordered."""
+    return conform(con.execute(_DRIVES, {"only": only}).to_arrow_table(), "drive")
 
 
 def unjudged(drive_id: str, file_name: str, reason: str, sha256: str | None = None) -> pa.Table:
