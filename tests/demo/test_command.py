@@ -1,0 +1,73 @@
+"""`drivelint demo` as a newcomer meets it: files, one command to copy, and that command's verdicts."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pyarrow.parquet as pq
+import pytest
+
+from drivelint.demo import files
+from drivelint.errors import UsageError
+from tests.demo.test_fixtures import TABLE_1
+
+PROGRAM = [sys.executable, "-m", "drivelint"]
+
+
+def run(words: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False, env=dict(os.environ))
+
+
+def test_the_printed_command_gives_the_nine_verdicts_at_both_speeds(tmp_path: Path) -> None:
+    shown = run([*PROGRAM, "demo", "--out", "a new folder"], tmp_path)
+    assert shown.returncode == 0, shown.stderr
+    (line,) = shown.stdout.splitlines()
+    program, *words = shlex.split(line)
+    assert program == "drivelint"
+    checked = run([*PROGRAM, *words], tmp_path)
+    assert checked.returncode == 1, checked.stderr
+    out = Path(words[words.index("--out") + 1])
+    found: dict[str, dict[str, str]] = {}
+    for row in pq.read_table(tmp_path / out / "verdicts.parquet").to_pylist():
+        if row["rule_id"] == "ukhc.r162.safe-distance-ahead":
+            found.setdefault(row["drive_id"].rpartition("-")[0], {})[row["profile"]] = row["verdict"]
+    assert found == TABLE_1 | {f"{name}-25mph": verdicts for name, verdicts in TABLE_1.items()}
+
+
+def test_an_earlier_demo_is_written_over(tmp_path: Path) -> None:
+    first = {path.name: path.read_bytes() for path in files.write(tmp_path)}
+    road = tmp_path / files.ROAD_FILE
+    road.write_text(road.read_text(encoding="utf-8").replace("30", "20"), encoding="utf-8")
+    assert {path.name: path.read_bytes() for path in files.write(tmp_path)} == first
+
+
+@pytest.mark.parametrize("foreign", [b"", b"mine", b"\x89MCAP0\r\n" + bytes(2000) + b"drivelint demo"])
+def test_somebody_elses_file_stays_and_nothing_is_written(tmp_path: Path, foreign: bytes) -> None:
+    mine = tmp_path / "near-miss.mcap"
+    mine.write_bytes(foreign)
+    with pytest.raises(UsageError, match=r"near-miss\.mcap was not written by this demo"):
+        files.write(tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == [mine.name]
+    assert mine.read_bytes() == foreign
+
+
+def test_a_folder_or_a_dangling_link_of_that_name_stays(tmp_path: Path) -> None:
+    (tmp_path / "one" / "safe.mcap").mkdir(parents=True)
+    (tmp_path / "two").mkdir()
+    (tmp_path / "two" / "safe.mcap").symlink_to(tmp_path / "nowhere")
+    for name in ("one", "two"):
+        with pytest.raises(UsageError, match=r"safe\.mcap was not written"):
+            files.write(tmp_path / name)
+
+
+def test_the_next_command_names_the_program_as_it_was_called_where_it_is_on_no_path(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("PATH", "")
+    assert files.next_command(Path("demo"), ".venv/bin/drivelint").startswith(".venv/bin/drivelint check demo/*.mcap ")
+    assert files.next_command(Path("demo"), "/x/pytest").startswith("drivelint check ")
+    assert files.next_command(Path("my demo")).endswith("--out 'my demo'/results")
