@@ -48,6 +48,13 @@ class Format(StrEnum):
     json = "json"
 
 
+class Target(StrEnum):
+    """What a drive is converted to."""
+
+    mcap = "mcap"
+    parquet = "parquet"
+
+
 class FailOn(StrEnum):
     """The least severity that makes exit code 1."""
 
@@ -65,6 +72,30 @@ class Handedness(StrEnum):
     rht = "rht"
 
 
+MapFile = Annotated[Path | None, typer.Option("--map", metavar="MAP", help="The road (OpenDRIVE).")]
+EgoId = Annotated[
+    str | None, typer.Option("--ego", metavar="ID|all", help="The vehicle under test, or every vehicle in turn.")
+]
+MappingName = Annotated[
+    str | None,
+    typer.Option(
+        "--mapping", metavar="FILE|NAME", help="How a table's columns are read: a TOML file or a shipped name."
+    ),
+]
+MapOffset = Annotated[
+    str | None, typer.Option("--map-offset", metavar="DX,DY", help="Metres added to the map's coordinates.")
+]
+DrivenSide = Annotated[Handedness, typer.Option("--handedness", help="Side of the road that is driven on.")]
+SensorRange = Annotated[
+    float | None,
+    typer.Option(
+        "--sensor-range", metavar="M", min=0, help="Range in which the recorder sees everybody. Default: all."
+    ),
+]
+Topic = Annotated[
+    str | None, typer.Option("--topic", metavar="NAME", help="Read this MCAP topic, where several would do.")
+]
+Printed = Annotated[Format, typer.Option("--format", help="What is printed on stdout.")]
 RulesDirs = Annotated[
     list[Path] | None,
     typer.Option("--rules-dir", metavar="DIR", help="Folder with rule packs of your own. Repeatable."),
@@ -96,7 +127,7 @@ def _root(
 def check(
     *,
     traces: Annotated[list[str], typer.Argument(metavar="TRACE...", help="Recorded drives: files, globs or folders.")],
-    map_: Annotated[Path | None, typer.Option("--map", metavar="MAP", help="The road (OpenDRIVE).")] = None,
+    map_: MapFile = None,
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for the result files.")] = None,
     rules: Annotated[
         list[str] | None,
@@ -114,36 +145,18 @@ def check(
     param: Annotated[
         list[str] | None, typer.Option("--param", metavar="RULE.PARAM=V", help="Set a rule's parameter. Repeatable.")
     ] = None,
-    ego: Annotated[
-        str | None, typer.Option("--ego", metavar="ID|all", help="The vehicle under test, or every vehicle in turn.")
-    ] = None,
-    mapping: Annotated[
-        str | None,
-        typer.Option(
-            "--mapping", metavar="FILE|NAME", help="How a table's columns are read: a TOML file or a shipped name."
-        ),
-    ] = None,
-    map_offset: Annotated[
-        str | None, typer.Option("--map-offset", metavar="DX,DY", help="Metres added to the map's coordinates.")
-    ] = None,
-    handedness: Annotated[
-        Handedness, typer.Option("--handedness", help="Side of the road that is driven on.")
-    ] = Handedness.auto,
-    sensor_range: Annotated[
-        float | None,
-        typer.Option(
-            "--sensor-range", metavar="M", min=0, help="Range in which the recorder sees everybody. Default: all."
-        ),
-    ] = None,
-    topic: Annotated[
-        str | None, typer.Option("--topic", metavar="NAME", help="Read this MCAP topic, where several would do.")
-    ] = None,
+    ego: EgoId = None,
+    mapping: MappingName = None,
+    map_offset: MapOffset = None,
+    handedness: DrivenSide = Handedness.auto,
+    sensor_range: SensorRange = None,
+    topic: Topic = None,
     rules_dir: RulesDirs = None,
     fail_on: Annotated[
         FailOn, typer.Option("--fail-on", help="Least severity that makes exit code 1.")
     ] = FailOn.critical,
     strict: Annotated[bool, typer.Option("--strict", help="Unknown is not good enough: exit code 4.")] = False,
-    format_: Annotated[Format, typer.Option("--format", help="What is printed on stdout.")] = Format.text,
+    format_: Printed = Format.text,
     margins: Annotated[bool, typer.Option("--margins", help="Also write margins.parquet: every judged step.")] = False,
     keep_db: Annotated[
         bool, typer.Option("--keep-db", help="Also keep the database with every stage's tables.")
@@ -210,9 +223,43 @@ def demo(
     typer.echo(files.next_command(out, sys.argv[0]))
 
 
+@app.command()
+def convert(
+    *,
+    trace: Annotated[str, typer.Argument(metavar="TRACE", help="One recorded drive.")],
+    to: Annotated[Target, typer.Option("--to", help="mcap: one file of ASAM OSI; parquet: a folder of tables.")],
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the converted log.")],
+    map_: MapFile = None,
+    ego: EgoId = None,
+    mapping: MappingName = None,
+    map_offset: MapOffset = None,
+    sensor_range: SensorRange = None,
+    topic: Topic = None,
+) -> None:
+    """Write a drive as OSI in MCAP or as Parquet tables, in metres and seconds, with its map and what its mapping said."""
+    from drivelint import convert as converter
+    from drivelint.convert.text import said
+
+    order = converter.Order(
+        trace=trace,
+        to=to.value,
+        out=out,
+        map=map_,
+        map_offset=_offset(map_offset),
+        mapping=mapping,
+        ego=ego,
+        topic=topic,
+        sensor_range_m=sensor_range,
+    )
+    written = _interruptible(lambda: converter.convert(order))
+    for note in written.notes:
+        typer.echo(f"drivelint: {note}", err=True)
+    typer.echo(said(written))
+
+
 @rules_app.command("list")
 def rules_list(
-    format_: Annotated[Format, typer.Option("--format", help="What is printed on stdout.")] = Format.text,
+    format_: Printed = Format.text,
     rules_dir: RulesDirs = None,
 ) -> None:
     """List every rule with its kind, severity, status, clause and the signals that it requires."""

@@ -1,0 +1,141 @@
+"""A trace of any format as canonical Parquet or as OSI in MCAP, with everything its mapping said: it is read without one."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final, Literal
+
+import pyarrow as pa
+
+from drivelint.convert.guard import refuse_to_overwrite
+from drivelint.convert.tables import MAP_FILE, parquet_bytes
+from drivelint.errors import UsageError
+from drivelint.ingest import IngestOptions, expand, read_trace
+from drivelint.ingest.carried import findings
+from drivelint.ingest.files import CANONICAL
+from drivelint.maps import MapSource, read_source
+from drivelint.maps.library import MapLibrary
+from drivelint.osi import log as osi_log
+from drivelint.report.files import prepare, publish
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.ingest import Trace
+
+TABLES: Final = ("actor", "actor_state", "data_log", "declared_event", "quality", "signal_state")
+
+
+@dataclass(frozen=True)
+class Order:
+    """What `convert` is asked to do; the names are those of its options."""
+
+    trace: str
+    to: Literal["mcap", "parquet"]
+    out: Path
+    map: Path | None = None
+    map_offset: tuple[float, float] | None = None
+    mapping: str | None = None
+    ego: str | None = None
+    topic: str | None = None
+    sensor_range_m: float | None = None
+
+
+@dataclass(frozen=True)
+class Written:
+    """What was written: `path` is the trace to give to `check`, `files` holds each file's size in bytes."""
+
+    path: Path
+    files: dict[str, int]
+    n_states: int
+    n_actors: int
+    map_name: str | None
+    notes: tuple[str, ...]
+
+
+def convert(order: Order) -> Written:
+    """Read a trace and write it anew: the folder `out` itself holds the tables, or `<stem>.mcap`.
+
+    Errors: `TraceError` where the trace cannot be read, `UsageError` where something else would be overwritten or the map
+    cannot go along, `MapError` for a map that cannot be read, `OutputError` where the folder cannot be written.
+    """
+    paths = expand([order.trace])
+    if len(paths) != 1:
+        raise UsageError(
+            f"{order.trace}: {len(paths)} logs: convert takes one at a time, each with an --out of its own"
+        )
+    (path,) = paths
+    stem = path.resolve().name if path.is_dir() else path.stem
+    target = order.out / f"{stem}.mcap" if order.to == "mcap" else order.out
+    refuse_to_overwrite(path, order.out, target)
+    options = IngestOptions(order.mapping, order.ego, order.topic, order.sensor_range_m, need_ego=False)
+    trace = read_trace(path, options)
+    if order.map_offset is not None:
+        trace = _moved(trace, order.map_offset)
+    road = _road(order, trace)
+    prepare(order.out)
+    files = _mcap(target, trace, road) if order.to == "mcap" else _parquet(target, trace, road)
+    notes = trace.notes
+    if not any(trace.tables["actor"]["is_ego"].to_pylist()):
+        notes = [
+            *notes,
+            "the log names no ego: choose one with --ego ID, here or in every check (drivelint inspect lists them)",
+        ]
+    return Written(
+        path=target,
+        files=files,
+        n_states=trace.tables["actor_state"].num_rows,
+        n_actors=trace.tables["actor"].num_rows,
+        map_name=None if road is None else road.name,
+        notes=tuple(notes),
+    )
+
+
+def _moved(trace: Trace, offset: tuple[float, float]) -> Trace:
+    """Return the trace with the user's map offset in place of the mapping's."""
+    log = trace.tables["data_log"]
+    for name, value in zip(("map_offset_x_m", "map_offset_y_m"), offset, strict=True):
+        log = log.set_column(log.schema.get_field_index(name), name, pa.array([value], pa.float64()))
+    return replace(trace, tables={**trace.tables, "data_log": log}, map_offset=offset)
+
+
+def _road(order: Order, trace: Trace) -> MapSource | None:
+    """Return the map that goes along: the user's, else the log's own. Errors: as `convert`."""
+    if order.map is None and trace.embedded_map is None:
+        return None
+    # read here so that a wrong map is refused now, not by whoever checks the converted log
+    MapLibrary(order.map, None, "auto").find(
+        trace.path.name, trace.embedded_map, trace.map_offset, trace.tables["actor_state"]
+    )
+    road = read_source(order.map) if order.map is not None else MapSource(MAP_FILE, trace.embedded_map or b"")
+    if order.to == "mcap":
+        try:
+            road.content.decode("utf-8")
+        except UnicodeDecodeError as error:
+            raise UsageError(
+                f"map {road.name} is not UTF-8 ({error.reason} at byte {error.start}), as OSI's texts are: save it as UTF-8, "
+                "or use --to parquet"
+            ) from error
+    return road
+
+
+def _mcap(target: Path, trace: Trace, road: MapSource | None) -> dict[str, int]:
+    temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
+    try:
+        with temporary.open("wb") as file:
+            osi_log.write(file, trace, road)
+        size = temporary.stat().st_size
+        publish(target.parent, {}, {target.name: temporary})
+    finally:
+        temporary.unlink(missing_ok=True)
+    return {target.name: size}
+
+
+def _parquet(target: Path, trace: Trace, road: MapSource | None) -> dict[str, int]:
+    tables = {**trace.tables, "quality": findings(trace)}
+    contents = {f"{name}.parquet": parquet_bytes(tables[name], name) for name in TABLES}
+    if road is not None:
+        contents[MAP_FILE] = road.content
+    publish(target, contents, {name: None for name in CANONICAL if name not in contents})
+    return {name: len(content) for name, content in contents.items()}

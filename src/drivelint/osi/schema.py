@@ -1,0 +1,166 @@
+"""The part of ASAM OSI 3 that is written, as a protobuf descriptor built here: names, numbers and nesting as in OSI."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any, Final
+
+from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+
+_F = descriptor_pb2.FieldDescriptorProto
+_SCALARS = {
+    "double": _F.TYPE_DOUBLE,
+    "int64": _F.TYPE_INT64,
+    "uint32": _F.TYPE_UINT32,
+    "uint64": _F.TYPE_UINT64,
+    "string": _F.TYPE_STRING,
+}
+_LIGHTS = "MovingObject.VehicleClassification.LightState"
+MESSAGES: Final[dict[str, tuple[tuple[str, int, str], ...]]] = {
+    "InterfaceVersion": (
+        ("version_major", 1, "uint32"),
+        ("version_minor", 2, "uint32"),
+        ("version_patch", 3, "uint32"),
+    ),
+    "Identifier": (("value", 1, "uint64"),),
+    "Timestamp": (("seconds", 1, "int64"), ("nanos", 2, "uint32")),
+    "Vector3d": (("x", 1, "double"), ("y", 2, "double"), ("z", 3, "double")),
+    "Dimension3d": (("length", 1, "double"), ("width", 2, "double"), ("height", 3, "double")),
+    "Orientation3d": (("roll", 1, "double"), ("pitch", 2, "double"), ("yaw", 3, "double")),
+    "BaseMoving": (
+        ("dimension", 1, "Dimension3d"),
+        ("position", 2, "Vector3d"),
+        ("orientation", 3, "Orientation3d"),
+        ("velocity", 4, "Vector3d"),
+        ("acceleration", 5, "Vector3d"),
+    ),
+    "MovingObject": (
+        ("id", 1, "Identifier"),
+        ("base", 2, "BaseMoving"),
+        ("type", 3, "MovingObject.Type"),
+        ("vehicle_classification", 6, "MovingObject.VehicleClassification"),
+    ),
+    "MovingObject.VehicleClassification": (
+        ("type", 1, "MovingObject.VehicleClassification.Type"),
+        ("light_state", 2, _LIGHTS),
+    ),
+    _LIGHTS: (
+        ("indicator_state", 1, f"{_LIGHTS}.IndicatorState"),
+        ("brake_light_state", 7, f"{_LIGHTS}.BrakeLightState"),
+    ),
+    "ExternalReference": (("type", 2, "string"), ("identifier", 3, "string[]")),
+    "TrafficLight": (
+        ("id", 1, "Identifier"),
+        ("classification", 3, "TrafficLight.Classification"),
+        ("source_reference", 5, "ExternalReference[]"),
+    ),
+    "TrafficLight.Classification": (
+        ("color", 1, "TrafficLight.Classification.Color"),
+        ("mode", 3, "TrafficLight.Classification.Mode"),
+    ),
+    "GroundTruth": (
+        ("version", 1, "InterfaceVersion"),
+        ("timestamp", 2, "Timestamp"),
+        ("host_vehicle_id", 3, "Identifier"),
+        ("moving_object", 5, "MovingObject[]"),
+        ("traffic_light", 7, "TrafficLight[]"),
+    ),
+    "MapAsamOpenDrive": (("map_reference", 1, "string"), ("open_drive_xml_content", 2, "string")),
+}
+"""Message -> (field, number, type); `[]` repeats, dots nest."""
+ENUMS: Final[dict[str, dict[str, int]]] = {
+    "MovingObject.Type": {
+        "TYPE_UNKNOWN": 0,
+        "TYPE_OTHER": 1,
+        "TYPE_VEHICLE": 2,
+        "TYPE_PEDESTRIAN": 3,
+        "TYPE_ANIMAL": 4,
+    },
+    "MovingObject.VehicleClassification.Type": {
+        "TYPE_UNKNOWN": 0,
+        "TYPE_OTHER": 1,
+        "TYPE_MEDIUM_CAR": 4,
+        "TYPE_DELIVERY_VAN": 6,
+        "TYPE_HEAVY_TRUCK": 7,
+        "TYPE_TRAILER": 9,
+        "TYPE_MOTORBIKE": 10,
+        "TYPE_BICYCLE": 11,
+        "TYPE_BUS": 12,
+    },
+    f"{_LIGHTS}.IndicatorState": {
+        "INDICATOR_STATE_UNKNOWN": 0,
+        "INDICATOR_STATE_OTHER": 1,
+        "INDICATOR_STATE_OFF": 2,
+        "INDICATOR_STATE_LEFT": 3,
+        "INDICATOR_STATE_RIGHT": 4,
+        "INDICATOR_STATE_WARNING": 5,
+    },
+    f"{_LIGHTS}.BrakeLightState": {
+        "BRAKE_LIGHT_STATE_UNKNOWN": 0,
+        "BRAKE_LIGHT_STATE_OTHER": 1,
+        "BRAKE_LIGHT_STATE_OFF": 2,
+        "BRAKE_LIGHT_STATE_NORMAL": 3,
+        "BRAKE_LIGHT_STATE_STRONG": 4,
+    },
+    "TrafficLight.Classification.Color": {
+        "COLOR_UNKNOWN": 0,
+        "COLOR_OTHER": 1,
+        "COLOR_RED": 2,
+        "COLOR_YELLOW": 3,
+        "COLOR_GREEN": 4,
+    },
+    "TrafficLight.Classification.Mode": {
+        "MODE_UNKNOWN": 0,
+        "MODE_OTHER": 1,
+        "MODE_OFF": 2,
+        "MODE_CONSTANT": 3,
+        "MODE_FLASHING": 4,
+    },
+}
+PACKAGE: Final = "osi3"
+GROUND_TRUTH: Final = f"{PACKAGE}.GroundTruth"
+OPEN_DRIVE: Final = f"{PACKAGE}.MapAsamOpenDrive"
+VERSION: Final = (3, 7, 0)
+"""The version of OSI that is written."""
+
+
+def _file() -> descriptor_pb2.FileDescriptorProto:
+    file = descriptor_pb2.FileDescriptorProto(name="osi_written.proto", package=PACKAGE, syntax="proto2")
+    made: dict[str, Any] = {}
+
+    def add(name: str, kind: str) -> Any:
+        outer, _, own = name.rpartition(".")
+        home = made[outer] if outer else file
+        field = {"message": ("nested_type" if outer else "message_type"), "enum": "enum_type"}[kind]
+        made[name] = getattr(home, field).add(name=own)
+        return made[name]
+
+    for name in MESSAGES:
+        add(name, "message")
+    for name, values in ENUMS.items():
+        enum = add(name, "enum")
+        for word, number in values.items():
+            enum.value.add(name=word, number=number)
+    for name, fields in MESSAGES.items():
+        for field, number, kind in fields:
+            plain = kind.removesuffix("[]")
+            item = made[name].field.add(name=field, number=number)
+            item.label = _F.LABEL_REPEATED if kind != plain else _F.LABEL_OPTIONAL
+            item.type = _SCALARS.get(plain, _F.TYPE_ENUM if plain in ENUMS else _F.TYPE_MESSAGE)
+            if plain not in _SCALARS:
+                item.type_name = f".{PACKAGE}.{plain}"
+    return file
+
+
+@cache
+def descriptor_set() -> bytes:
+    """Return the serialised `FileDescriptorSet` for an MCAP schema record."""
+    return descriptor_pb2.FileDescriptorSet(file=[_file()]).SerializeToString(deterministic=True)
+
+
+@cache
+def ground_truth_class() -> Any:
+    """Return the message class of `osi3.GroundTruth`."""
+    pool = descriptor_pool.DescriptorPool()
+    pool.Add(_file())
+    return message_factory.GetMessageClass(pool.FindMessageTypeByName(GROUND_TRUTH))
