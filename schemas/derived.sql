@@ -287,10 +287,10 @@ CREATE TABLE pair (
 CREATE TABLE lost_object (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    object_id VARCHAR NOT NULL,       -- an actor whose track ends (or begins) while it could still (or already) have been there
+    object_id VARCHAR NOT NULL,       -- an actor whose track ends while it could still have been there
     t_from_ns BIGINT NOT NULL,        -- unknown from here
     t_to_ns BIGINT NOT NULL,          -- to here
-    reason VARCHAR NOT NULL           -- lost_near_ego, lost_in_range, lost_on_road, appeared_near_ego, appeared_on_road
+    reason VARCHAR NOT NULL           -- lost_near_ego, lost_in_range
 );
 
 CREATE TABLE unplaced (

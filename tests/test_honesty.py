@@ -352,7 +352,7 @@ def test_a_finite_sensor_range(judged: Judged, run: str, range_m: int) -> None:
     lost = [row for row in judged.of(case, NO_COLLISION) if row["verdict"] == "unknown"]
     if range_m == 30 and run != "collision":
         assert {row["object_id"] for row in lost} == {VBP, OV}
-    assert {row["reason_code"] for row in lost} <= {"lost_near_ego", "lost_in_range", "appeared_near_ego"}
+    assert {row["reason_code"] for row in lost} <= {"lost_near_ego", "lost_in_range"}
 
 
 @pytest.mark.parametrize("run", RUNS)

@@ -27,11 +27,11 @@ SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN clearance_m IS NOT NULL THEN
 FROM pair
 WHERE clearance_m IS NULL OR clearance_m <= $within_m
 UNION ALL
--- whose track ends or begins close by may have touched unseen: one step for each, not judged
+-- whose track ends close by may have touched unseen: one step for each, not judged
 SELECT l.drive_id, l.ego_id, s.t_ns, l.object_id, NULL
 FROM lost_object l
 ASOF JOIN step s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id AND l.t_from_ns <= s.t_ns
-WHERE l.reason IN ('lost_near_ego', 'appeared_near_ego')
+WHERE l.reason = 'lost_near_ego'
 UNION ALL
 -- so may whoever is close by when a hole of the log ends
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, NULL
