@@ -108,6 +108,7 @@ class Bench:
     def _load(self, drives: Sequence[Drive]) -> None:
         environments = {d.environment.environment_id: d.environment for d in drives if d.environment}
         if not environments.keys() <= self._maps:
+            self._maps = frozenset()  # until the new ones are whole: a failure here must not leave half a map behind
             for table in (*_map_tables(), *(t for t, d in derivations().items() if d.of_the_map)):
                 self._con.execute(f"DELETE FROM {table}")
             for _, environment in sorted(environments.items()):
@@ -117,8 +118,8 @@ class Bench:
                 for table, rows in environment.tables.items():
                     if not (known and table in _RESULTS):
                         store.insert(self._con, table, rows)
-            self._maps = frozenset(environments)
             derive(self._con, self._tables, of_the_map=True)
+            self._maps = frozenset(environments)
             self._keep_maps(environments.keys() - self._kept_maps)
         for table in drives[0].trace.tables:
             rows = pa.concat_tables([_on_map(d) if table == "data_log" else d.trace.tables[table] for d in drives])
