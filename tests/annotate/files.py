@@ -70,7 +70,7 @@ def log(path: Path, *, n: int = 60, topics: int = 3, **options: Any) -> Path:
             if k == n // 2:
                 writer.add_metadata("in the middle", {"b": "2", "a": "1"})
         writer.add_attachment(7, 8, "last.bin", "application/octet-stream", bytes(range(256)))
-        writer.finish()
+        writer.finish()  # type: ignore[no-untyped-call]
     return path
 
 
@@ -144,6 +144,7 @@ def verify(path: Path) -> Statistics:
     assert kinds.count(Opcode.ATTACHMENT_INDEX) == sum(r.opcode == Opcode.ATTACHMENT for r in places.values())
     assert kinds.count(Opcode.METADATA_INDEX) == sum(r.opcode == Opcode.METADATA for r in places.values())
     assert not any(r.opcode == Opcode.MESSAGE for r in places.values()), "a message that no index leads to"
+    statistics: Statistics
     (statistics,) = (_read(Statistics.read, r) for r in found if r.opcode == Opcode.STATISTICS)
     assert statistics.chunk_count == kinds.count(Opcode.CHUNK_INDEX)
     assert statistics.schema_count == kinds.count(Opcode.SCHEMA)

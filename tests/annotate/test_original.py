@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import struct
+import zlib
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,8 +29,7 @@ OURS = "/ours"
 def annotated(path: Path, *, n: int = 5, prepare: Any = None) -> Path:
     """Copy a log and add `n` messages of our own, one per 7 ms from 0 on."""
     out = path.with_suffix(".annotated.mcap")
-    original = Original(path, hashlib.sha256(path.read_bytes()).hexdigest())
-    with out.open("wb") as file:
+    with out.open("wb") as file, Original(path, hashlib.sha256(path.read_bytes()).hexdigest()) as original:
         sink = Sink(file)
         original.copy(sink)
         if prepare:
@@ -198,8 +198,9 @@ def test_a_schema_that_the_log_has_is_used_again(tmp_path: Path) -> None:
 
 def test_a_log_that_changed_meanwhile_is_refused(tmp_path: Path) -> None:
     path = log(tmp_path / "log.mcap")
-    with pytest.raises(TraceError, match="changed while it was judged"), (tmp_path / "out").open("wb") as file:
-        Original(path, "0" * 64).copy(Sink(file))
+    changed = pytest.raises(TraceError, match="changed while it was judged")
+    with (tmp_path / "out").open("wb") as file, Original(path, "0" * 64) as original, changed:
+        original.copy(Sink(file))
 
 
 def test_a_log_that_was_cut_meanwhile_is_refused(tmp_path: Path) -> None:
@@ -230,8 +231,13 @@ def test_the_oracle_notices_a_wrong_index(tmp_path: Path) -> None:
     out = annotated(log(tmp_path / "log.mcap"))
     data = bytearray(out.read_bytes())
     index = next(r for r in files.records(bytes(data)) if r.opcode == Opcode.CHUNK_INDEX)
-    offset = struct.unpack_from("<Q", index.body, 16)[0]
-    struct.pack_into("<Q", data, index.at + 9 + 16, offset + 1)
-    out.write_bytes(data)
-    with pytest.raises(AssertionError):
-        verify(out)
+    footer = next(r for r in files.records(bytes(data)) if r.opcode == Opcode.FOOTER)
+    verify(out)
+    for field in (16, 24):  # where the chunk begins, how long it is
+        wrong = bytearray(data)
+        struct.pack_into("<Q", wrong, index.at + 9 + field, struct.unpack_from("<Q", index.body, field)[0] + 1)
+        (start,) = struct.unpack_from("<Q", footer.body)
+        struct.pack_into("<I", wrong, footer.at + 9 + 16, zlib.crc32(wrong[start : footer.at + 9 + 16]))
+        out.write_bytes(wrong)
+        with pytest.raises((AssertionError, KeyError)):
+            verify(out)

@@ -9,10 +9,11 @@ from __future__ import annotations
 import hashlib
 import io
 import mmap
+import os
 import struct
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple, Self
 
 import numpy as np
 from mcap.data_stream import ReadDataStream
@@ -52,7 +53,7 @@ _SUMMARY: Final = frozenset(
 )
 WRAP_BYTES: Final = 4 << 20
 """Messages outside of chunks are put into chunks of about this size."""
-_BLOCK: Final = 8 << 20
+_BLOCK: Final = 4 << 20
 _HEAD_BYTES: Final = 1 << 17  # names and times of an attachment or a chunk, without what is in it
 
 
@@ -88,9 +89,17 @@ class Original:
     def __init__(self, path: Path, sha256: str) -> None:
         self.path = path
         self._sha256 = sha256
-        with path.open("rb") as file:
-            self._view = memoryview(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ))
+        self._file = path.open("rb")  # closed by leaving the `with` that this object is made for
+        # mapped for the record heads alone: what is read through a map counts as memory of this process
+        self._view = memoryview(mmap.mmap(self._file.fileno(), 0, access=mmap.ACCESS_READ))
         self.contents = self._survey()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self._view.release()
+        self._file.close()
 
     def copy(self, sink: Sink) -> None:
         """Copy the data into a fresh sink and tell its index what was copied."""
@@ -120,17 +129,20 @@ class Original:
         """Return the error for a record that cannot be read."""
         return TraceError(f"{self.path}: the log changed or is damaged at byte {at}: check it again")
 
-    def bytes(self, start: int, end: int) -> memoryview:
-        """Return bytes of the file, not copied."""
-        return self._view[start:end]
+    def read(self, start: int, end: int) -> bytes:
+        """Return bytes of the file."""
+        content = os.pread(self._file.fileno(), end - start, start)
+        if len(content) != end - start:
+            raise self.damaged(start)
+        return content
 
     def stream(self, record: Record) -> ReadDataStream:
         """Return the body of a record, to be read field by field."""
-        return ReadDataStream(io.BytesIO(self._view[record.body : record.end]))
+        return ReadDataStream(io.BytesIO(self.read(record.body, record.end)))
 
     def head(self, record: Record) -> ReadDataStream:
         """Return the beginning of a record that may be large, for the fields before its data."""
-        return ReadDataStream(io.BytesIO(self._view[record.body : min(record.end, record.body + _HEAD_BYTES)]))
+        return ReadDataStream(io.BytesIO(self.read(record.body, min(record.end, record.body + _HEAD_BYTES))))
 
     def unpacked(self, record: Record) -> Iterator[tuple[int, int, memoryview]]:
         """Yield opcode, offset within the chunk and body of every record of a chunk."""
@@ -207,7 +219,7 @@ class Original:
     def _digest(self) -> str:
         digest = hashlib.sha256()
         for start in range(0, len(self._view), _BLOCK):
-            digest.update(self._view[start : start + _BLOCK])
+            digest.update(self.read(start, min(start + _BLOCK, len(self._view))))
         return digest.hexdigest()
 
 
@@ -265,7 +277,8 @@ class _Copy:
             self._flush()
 
     def _flush(self) -> None:
-        self._sink.write(self._original.bytes(self._from, self._to))
+        for start in range(self._from, self._to, _BLOCK):
+            self._sink.write(self._original.read(start, min(start + _BLOCK, self._to)))
         self._from = self._to
 
     def _place(self, at: int) -> int:
@@ -352,7 +365,7 @@ class _Copy:
                 entries.setdefault(channel, []).append((log_time, record.at - start))
         if entries:
             self._flush()
-            self._sink.add_chunk(self._original.bytes(start, end), arrays(entries), compressed=False)
+            self._sink.add_chunk(self._original.read(start, end), arrays(entries), compressed=False)
             self._from = end
         self._to = end
 

@@ -51,7 +51,8 @@ def write(file: BinaryIO, said: Annotation) -> None:
     sink = Sink(file)
     log = said.trace.tables["data_log"].to_pylist()[0]
     if _is_mcap(said.trace):
-        Original(said.trace.path, log["sha256"]).copy(sink)
+        with Original(said.trace.path, log["sha256"]) as original:
+            original.copy(sink)
     else:
         sink.begin(f"drivelint {__version__}")
     _Writer(sink, said, int(log["t_start_ns"])).run()
