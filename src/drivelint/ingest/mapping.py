@@ -151,6 +151,8 @@ class Mapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     ego: Ego = Ego()
 
 
+# logs are read in several threads, and msgspec plans a type at its first use without a lock: two threads at once crash
+PLANNED = msgspec.json.Decoder(Mapping)
 QUANTITY = {
     "x": "length", "y": "length", "z": "length", "yaw": "angle", "vx": "speed", "vy": "speed", "speed": "speed",
     "ax": "acceleration", "ay": "acceleration", "yaw_rate": "rate",
