@@ -128,9 +128,7 @@ def _section(road: Road, s: float, lanes: Sequence[_Lane], start: float = 0.0, e
     """Return a lane section at `s` of its road, which begins at the station `start` of the scene's road."""
     side = road.nearside
     ordered = sorted(lanes, key=lambda lane: -lane.number * side)
-    centre = "".join(
-        _mark(marking, max(at - s, 0.0)) for at, marking in _from(road.centre, start, end) if at >= s or at == 0.0
-    )
+    centre = "".join(_mark(marking, at) for at, marking in _from(road.centre, start + s, end))
     left = [_lane(lane, side) for lane in ordered if lane.number * side > 0]
     right = [_lane(lane, side) for lane in ordered if lane.number * side < 0]
     return "\n".join([
