@@ -55,6 +55,12 @@ class Target(StrEnum):
     parquet = "parquet"
 
 
+class Report(StrEnum):
+    """What a result can be written as."""
+
+    html = "html"
+
+
 class FailOn(StrEnum):
     """The least severity that makes exit code 1."""
 
@@ -255,6 +261,20 @@ def convert(
     for note in written.notes:
         typer.echo(f"drivelint: {note}", err=True)
     typer.echo(said(written))
+
+
+@app.command()
+def report(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="What check --out wrote.")],
+    to: Annotated[Report, typer.Option("--to", help="html: one page that opens offline.")] = Report.html,
+) -> None:
+    """Write a report from a result folder, into that folder."""
+    from drivelint.report.files import publish
+    from drivelint.report.html import render
+    from drivelint.report.load import load
+
+    publish(folder, {f"report.{to.value}": render(load(folder))}, {})
+    typer.echo(str(folder / f"report.{to.value}"))
 
 
 @rules_app.command("list")

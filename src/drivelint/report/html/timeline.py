@@ -1,0 +1,162 @@
+"""The timeline of one ego in one drive: a row per rule and profile, what was judged when, and the findings on it.
+
+Places along the time axis are percentages, so that the drawing fits any width without losing the shape of its marks.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from drivelint.report.html.anchors import finding_anchor
+from drivelint.report.text import number, seconds
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    Row = Mapping[str, Any]
+
+_ORDER: Final = ("fail", "error", "unknown", "pass", "not_applicable")
+_LAYERS: Final = ("pass", "unknown", "error", "fail")  # what matters most is drawn last
+_TICKS: Final = (1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600)
+_MOST_TICKS: Final = 9
+_THIN: Final = 0.35  # percent: a shorter stretch is drawn as a mark
+
+
+class Band(NamedTuple):
+    """A judged stretch, or a moment (`w` empty)."""
+
+    verdict: str
+    x: str
+    w: str
+    title: str
+
+
+class Mark(NamedTuple):
+    """A finding (with its anchor) or a near miss on a row."""
+
+    kind: str
+    x: str
+    w: str
+    href: str
+    title: str
+
+
+class Lane(NamedTuple):
+    """One row: a rule and profile, its worst verdict and what is drawn."""
+
+    rule_id: str
+    title: str
+    profile: str | None
+    verdict: str
+    bands: list[Band]
+    marks: list[Mark]
+
+
+class Timeline(NamedTuple):
+    """All rows of one ego, the ticks of the axis, and the rules that never applied."""
+
+    ego_id: str
+    ticks: list[tuple[str, str]]
+    rows: list[Lane]
+    not_applicable: list[str]
+
+
+class Clock(NamedTuple):
+    """The log's clock as percentages of the drive."""
+
+    start_ns: int
+    duration_s: float
+
+    def at(self, t_ns: int) -> float:
+        """Return where a time lies, 0 to 100."""
+        return min(max((t_ns - self.start_ns) / 1e7 / self.duration_s, 0.0), 100.0)
+
+    def ticks(self) -> list[tuple[str, str]]:
+        """Return positions and labels of the axis."""
+        step = next((s for s in _TICKS if self.duration_s / s <= _MOST_TICKS), _TICKS[-1])
+        return [(_pc(100 * t / self.duration_s), str(t)) for t in range(0, int(self.duration_s) + 1, step)]
+
+
+def timelines(
+    verdicts: Iterable[Row], findings: Sequence[Row], titles: Mapping[str, str], clock: Clock
+) -> list[Timeline]:
+    """Return a timeline for every ego of one drive, in the order of the verdicts."""
+    groups: dict[str, dict[tuple[str, str | None], list[Row]]] = {}
+    for row in verdicts:
+        groups.setdefault(row["ego_id"], {}).setdefault((row["rule_id"], row["profile"]), []).append(row)
+    found: dict[tuple[str, str, str | None], list[Row]] = {}
+    for row in findings:
+        found.setdefault((row["ego_id"], row["rule_id"], row["profile"]), []).append(row)
+    return [
+        _timeline(ego, rules, {k[1:]: v for k, v in found.items() if k[0] == ego}, titles, clock)
+        for ego, rules in groups.items()
+    ]
+
+
+def _timeline(
+    ego: str,
+    rules: Mapping[tuple[str, str | None], list[Row]],
+    found: Mapping[tuple[str, str | None], list[Row]],
+    titles: Mapping[str, str],
+    clock: Clock,
+) -> Timeline:
+    rows, idle = [], []
+    for key, told in rules.items():
+        rule_id, profile = key
+        worst = min((row["verdict"] for row in told), key=_ORDER.index)
+        title = titles.get(rule_id, rule_id)
+        if worst == "not_applicable":
+            idle.append(title if profile is None else f"{title} ({profile})")
+            continue
+        marks = [_finding(row, clock) for row in found.get(key, [])] + [_near(r, clock) for r in told if r["near_miss"]]
+        rows.append(Lane(rule_id, title, profile, worst, _bands(told, clock), marks))
+    rows.sort(key=lambda lane: _ORDER.index(lane.verdict))
+    return Timeline(ego, clock.ticks(), rows, idle)
+
+
+def _bands(told: Sequence[Row], clock: Clock) -> list[Band]:
+    """Return the judged stretches by verdict; stretches of one verdict that touch are one (many objects, one rule)."""
+    bands = []
+    for verdict in _LAYERS:
+        spans: list[list[float]] = []
+        rows = [row for row in told if row["verdict"] == verdict]
+        for start, end in sorted(_span(row, clock) for row in rows):
+            if spans and start <= spans[-1][1]:
+                spans[-1][1] = max(spans[-1][1], end)
+            else:
+                spans.append([start, end])
+        why = "; ".join(dict.fromkeys(row["reason"] for row in rows))
+        title = f"{verdict}: {why[:200]}" if rows else ""
+        bands += [Band(verdict, _pc(a), _pc(b - a) if b - a > _THIN else "", title) for a, b in spans]
+    return bands
+
+
+def _span(row: Row, clock: Clock) -> tuple[float, float]:
+    """Return the judged stretch; where the verdict names none, it is about the whole drive."""
+    if row["t_start_ns"] is None:
+        return (0.0, 100.0) if row["t_ref_ns"] is None else (clock.at(row["t_ref_ns"]),) * 2
+    return clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])
+
+
+def _finding(row: Row, clock: Clock) -> Mark:
+    start, end = clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])
+    return Mark(
+        "fail",
+        _pc(start),
+        _pc(end - start) if end - start > _THIN else "",
+        f"#{finding_anchor(row)}",
+        _title(row, clock),
+    )
+
+
+def _near(row: Row, clock: Clock) -> Mark:
+    return Mark("near", _pc(clock.at(row["t_worst_ns"])), "", "", f"near miss, {_title(row, clock)}")
+
+
+def _title(row: Row, clock: Clock) -> str:
+    margin = "" if row["margin"] is None else f", margin {number(row['margin'], row['unit'])}"
+    return f"{seconds(row['t_worst_ns'], clock.start_ns)}{margin}"
+
+
+def _pc(value: float) -> str:
+    return f"{value:.2f}".rstrip("0").rstrip(".") + "%"
