@@ -230,6 +230,49 @@ def demo(
 
 
 @app.command()
+def inspect(
+    *,
+    trace: Annotated[str, typer.Argument(metavar="TRACE", help="One recorded drive.")],
+    map_: MapFile = None,
+    ego: EgoId = None,
+    mapping: MappingName = None,
+    map_offset: MapOffset = None,
+    handedness: DrivenSide = Handedness.auto,
+    sensor_range: SensorRange = None,
+    topic: Topic = None,
+    rules: Annotated[
+        list[str] | None,
+        typer.Option("--rules", metavar="SEL", help="Rule id, glob or pack to ask about. Repeatable. Default: ukhc."),
+    ] = None,
+    rules_dir: RulesDirs = None,
+    format_: Printed = Format.text,
+) -> None:
+    """Show what is in a log, how it lies on the map, what is wrong with it, and which rules it can decide."""
+    from drivelint import inspect as inspection
+
+    order = inspection.Order(
+        trace=trace,
+        map=map_,
+        mapping=mapping,
+        ego=ego,
+        topic=topic,
+        map_offset=_offset(map_offset),
+        handedness=handedness.value,
+        sensor_range_m=sensor_range,
+        rules=tuple(rules or ()),
+        rules_dirs=tuple(rules_dir or ()),
+    )
+    found = _interruptible(lambda: inspection.inspect(order))
+    if format_ is Format.json:
+        typer.echo(inspection.to_json(found))
+    else:
+        from drivelint.inspect.text import render
+
+        _say(render(found))
+    raise typer.Exit(int(inspection.exit_code(found)))
+
+
+@app.command()
 def convert(
     *,
     trace: Annotated[str, typer.Argument(metavar="TRACE", help="One recorded drive.")],

@@ -21,6 +21,11 @@ def schema(path: Path) -> pa.Schema:
     return _open(path, lambda file: file.schema_arrow)
 
 
+def n_rows(path: Path) -> int:
+    """Return the number of rows of a file. Errors: `TraceError` where the file is damaged."""
+    return _open(path, lambda file: int(file.metadata.num_rows))
+
+
 def table(path: Path, columns: Iterable[str] | None = None) -> pa.Table:
     """Read a file, or some columns of it. Errors: `TraceError` where the file is damaged."""
     names = None if columns is None else list(columns)

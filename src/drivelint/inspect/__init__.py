@@ -1,0 +1,235 @@
+"""What a log is, what is wrong with it and what can be decided of it: read, derived and asked, but not judged."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import msgspec
+
+from drivelint import catalogue, store
+from drivelint.batch import Drive as Judgeable
+from drivelint.errors import ExitCode, MapError, TraceError, UsageError
+from drivelint.ingest import IngestOptions, expand, read_trace
+from drivelint.inspect import advice, model, tracks
+from drivelint.inspect.content import content, size
+from drivelint.judge import Bench
+from drivelint.maps.library import MapLibrary
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    import duckdb
+
+    from drivelint.catalogue import Rule
+    from drivelint.ingest import Trace
+    from drivelint.maps import Environment
+
+DEFAULT_RULES: Final = ("ukhc",)
+_SEVERITIES: Final = ("error", "warning", "info")
+
+
+@dataclass(frozen=True)
+class Order:
+    """What `inspect` is asked to do; the names are those of its options."""
+
+    trace: str
+    map: Path | None = None
+    mapping: str | None = None
+    ego: str | None = None
+    topic: str | None = None
+    map_offset: tuple[float, float] | None = None
+    handedness: str = "auto"
+    sensor_range_m: float | None = None
+    rules: tuple[str, ...] = ()
+    rules_dirs: tuple[Path, ...] = ()
+
+
+def inspect(order: Order) -> model.Inspection:
+    """Find out what there is to know. A file that cannot be read as a drive is no error: `problem` says why.
+
+    Errors: `TraceError` for a file that is not there, `UsageError`, `RuleError`, and `MapError` for a map that cannot be
+    read; one of another place is told in the result.
+    """
+    selection = order.rules or DEFAULT_RULES
+    rules = catalogue.select(catalogue.load(order.rules_dirs), selection, ())
+    paths = expand([order.trace])
+    if len(paths) != 1:
+        raise UsageError(f"{order.trace}: {len(paths)} logs: inspect looks at one at a time")
+    (path,) = paths
+    library = MapLibrary(order.map, order.map_offset, order.handedness)
+    options = IngestOptions(order.mapping, order.ego, order.topic, order.sensor_range_m, need_ego=False)
+    file = model.File(name=path.resolve().name, bytes=size(path))
+    try:
+        trace = read_trace(path, options)
+    except TraceError as error:
+        return model.Inspection(file=file, content=_content_of_unread(path), problem=str(error))
+    log = trace.tables["data_log"].to_pylist()[0]
+    mapping = None if log["format"] in {"osi-mcap", "canonical-parquet"} else order.mapping or log["format"]
+    return model.Inspection(
+        file=model.File(
+            name=file.name, bytes=file.bytes, sha256=log["sha256"], drive_id=trace.drive_id, format=log["format"]
+        ),
+        content=content(path, mapping, list(trace.notes)),
+        drive=_drive(trace, library, rules, order, selection),
+    )
+
+
+def to_json(found: model.Inspection) -> str:
+    """Return an inspection as JSON: the structure of `schemas/inspect.schema.json`."""
+    return msgspec.json.format(msgspec.json.encode(found), indent=2).decode()
+
+
+def exit_code(found: model.Inspection) -> ExitCode:
+    """Return 0 where the log is a drive and the map its, else 4."""
+    unfit = found.problem is not None or (found.drive is not None and found.drive.road_problem is not None)
+    return ExitCode.NOT_JUDGED if unfit else ExitCode.OK
+
+
+def _content_of_unread(path: Path) -> model.Content:
+    try:
+        return content(path, None, [])
+    except TraceError:  # the problem that the reader has told already
+        return model.Content()
+
+
+def _drive(
+    trace: Trace, library: MapLibrary, rules: Sequence[Rule], order: Order, selection: Sequence[str]
+) -> model.Drive:
+    environment, road_problem = _environment(trace, library)
+    everybody = tracks.actors(trace)
+    egos, quality = _judgeable(trace, environment, everybody, rules)
+    supposed, candidates = None, []
+    if not egos:
+        candidates = tracks.candidates(everybody)
+        options = IngestOptions(order.mapping, candidates[0].actor_id, order.topic, order.sensor_range_m)
+        ((supposed,), _) = _judgeable(read_trace(trace.path, options), environment, everybody, rules)
+    return model.Drive(
+        clock=tracks.clock(trace),
+        states=trace.tables["actor_state"].num_rows,
+        classes=tracks.classes(everybody),
+        egos=egos,
+        ego_source=_ego_source(trace, order.ego),
+        candidates=candidates,
+        supposed=supposed,
+        road=None if environment is None else _road(environment, given=order.map is not None),
+        road_problem=road_problem,
+        quality=quality,
+        rules=[rule.id for rule in rules],
+        selection=list(selection),
+    )
+
+
+def _environment(trace: Trace, library: MapLibrary) -> tuple[Environment | None, str | None]:
+    try:
+        found = library.find(trace.path.name, trace.embedded_map, trace.map_offset, trace.tables["actor_state"])
+    except MapError as error:
+        return None, str(error)
+    return found, None
+
+
+def _judgeable(
+    trace: Trace, environment: Environment | None, everybody: Sequence[model.Actor], rules: Sequence[Rule]
+) -> tuple[list[model.Ego], list[model.Quality]]:
+    """Lay the drive on the bench without a rule, and ask what the library says of its egos and its data."""
+    with store.connect() as con:
+        bench = Bench(con, (), {}, None)
+        bench.judge([Judgeable(trace, environment)])
+        rows = {table: _rows(con, f"FROM {table}") for table in ("capability", "registration", "exposure")}
+        start = trace.tables["data_log"]["t_start_ns"][0].as_py()
+        quality = _quality(con, start)
+    log_format = trace.tables["data_log"]["format"][0].as_py()
+    by_id = {actor.actor_id: actor for actor in everybody}
+    registrations = {row["ego_id"]: row for row in rows["registration"]}
+    egos = []
+    for way in sorted(rows["exposure"], key=lambda row: str(row["ego_id"])):
+        ego_id = way["ego_id"]
+        mine = {row["signal"]: row for row in rows["capability"] if row["ego_id"] == ego_id}
+        lacking = {signal: row["reason"] for signal, row in mine.items() if not row["available"]}
+        cannot = advice.undecided(rules, lacking)
+        known = {rule.rule_id for rule in cannot}
+        egos.append(
+            model.Ego(
+                actor=by_id[ego_id],
+                km=way["km"],
+                steps=way["n_steps"],
+                registration=None if environment is None else _registration(registrations.get(ego_id)),
+                can=[rule.id for rule in rules if rule.id not in known],
+                cannot=cannot,
+                missing=advice.missing(cannot, lacking, log_format),
+            )
+        )
+    return egos, quality
+
+
+def _registration(row: dict[str, Any] | None) -> model.Registration | None:
+    if row is None:
+        return None
+    return model.Registration(
+        ok=row["ok"],
+        reason=row["reason"],
+        steps=row["n_steps"],
+        on_lane=row["n_on_lane"],
+        moving=row["n_moving"],
+        with_direction=row["n_with_direction"],
+        lateral_median_m=row["lateral_median_m"],
+    )
+
+
+def _quality(con: duckdb.DuckDBPyConnection, start_ns: int) -> list[model.Quality]:
+    sql = """
+        SELECT 'log' AS about, severity, check_id, message, n, actor_id, t_first_ns FROM quality
+        UNION ALL
+        SELECT 'map', severity, check_id, coalesce(lanelet_id || ': ', '') || message, n, NULL, NULL FROM map_quality
+        ORDER BY about, check_id, actor_id NULLS FIRST, t_first_ns NULLS FIRST, message"""
+    found = [
+        model.Quality(
+            about=row["about"],
+            severity=row["severity"],
+            check_id=row["check_id"],
+            message=row["message"],
+            n=row["n"],
+            actor_id=row["actor_id"],
+            first_at_s=None if row["t_first_ns"] is None else (row["t_first_ns"] - start_ns) / 1e9,
+        )
+        for row in _rows(con, sql)
+    ]
+    return sorted(found, key=lambda q: _SEVERITIES.index(q.severity))
+
+
+def _rows(con: duckdb.DuckDBPyConnection, sql: str) -> list[dict[str, Any]]:
+    rows: list[dict[str, Any]] = con.execute(sql).to_arrow_table().to_pylist()
+    return rows
+
+
+def _ego_source(trace: Trace, asked: str | None) -> str:
+    if asked is not None:
+        return "every motor vehicle in turn (--ego all)" if asked == "all" else "chosen with --ego"
+    said = {row["check_id"]: row["message"] for row in trace.tables["quality"].to_pylist()}
+    if "no_ego" in said:
+        return str(said["no_ego"])
+    if "ego_assumed" in said:
+        return "assumed: the first vehicle of the file, as the mapping says (--ego ID to choose another)"
+    log_format = trace.tables["data_log"]["format"][0].as_py()
+    named = {"osi-mcap": "the log's host vehicle", "canonical-parquet": "marked is_ego in the log"}
+    return named.get(log_format, f"named by the mapping {log_format}")
+
+
+def _road(environment: Environment, *, given: bool) -> model.Road:
+    row = environment.tables["environment"].to_pylist()[0]
+    lanelets = environment.tables["lanelet"]
+    drivable = lanelets.filter(lanelets["drivable"])
+    return model.Road(
+        name=row["name"],
+        source="option" if given else "log",
+        environment_id=row["environment_id"],
+        sha256=row["sha256"],
+        format=row["format"],
+        offset_m=(row["offset_x_m"], row["offset_y_m"]),
+        handedness=row["handedness"],
+        handedness_source=row["handedness_source"],
+        lanelets=lanelets.num_rows,
+        drivable=drivable.num_rows,
+        drivable_km=sum(drivable["length_m"].to_pylist()) / 1000,
+    )

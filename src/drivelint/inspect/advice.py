@@ -1,0 +1,81 @@
+"""What to provide so that a signal that rules require is there: one place for all of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from drivelint.inspect.model import Missing, Undecided
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from drivelint.catalogue import Rule
+
+OF_THE_MAP: Final = frozenset({"registration", "handedness", "lane_types", "markings", "speed_limits", "exit_signs"})
+"""Signals that nobody can have without a map: where there is none, it is what is missing."""
+ADVICE: Final = {
+    "map": "the road as OpenDRIVE: --map FILE",
+    "registration": "the map of this place (--map), or where it lies in the log's frame (--map-offset DX,DY)",
+    "handedness": "the side of the road that is driven on: --handedness lht or rht",
+    "lane_types": "a map that has the footways, kerbs, borders or shoulders beside the carriageway",
+    "markings": "a map with road markings (OpenDRIVE: roadMark)",
+    "speed_limits": "a map with speed limits (OpenDRIVE: speed, of a road's type or of a lane)",
+    "exit_signs": "a map with its exit signs (OpenDRIVE: signals, such as type 332, 333, 448 or 449)",
+    "indicator": "the ego's indicators: {indicator}",
+    "brake_light": "the ego's brake lights: {brake_light}",
+    "ego_size": "the ego's length and width: {ego_size}",
+}
+_WHERE: Final = {
+    "osi-mcap": {
+        "indicator": "vehicle_classification.light_state.indicator_state of the host vehicle (not UNKNOWN)",
+        "brake_light": "vehicle_classification.light_state.brake_light_state of the host vehicle (not UNKNOWN)",
+        "ego_size": "base.dimension of the host vehicle",
+    },
+    "canonical-parquet": {
+        "indicator": "the column indicator of actor_state.parquet",
+        "brake_light": "the column brake_light of actor_state.parquet",
+        "ego_size": "length_m and width_m in actor.parquet",
+    },
+    "": {
+        "indicator": "[indicator] in the mapping, and a column to read it from",
+        "brake_light": "[brake_light] in the mapping, and a column to read it from",
+        "ego_size": "length and width in the mapping's [columns], as columns or as numbers",
+    },
+}
+
+
+def provide(signal: str, log_format: str) -> str:
+    """Say what to give so that the signal is there, in the words of the log's format."""
+    where = _WHERE.get(log_format, _WHERE[""])
+    return ADVICE.get(signal, "see what the rules that need it say: drivelint rules show ID").format_map(where)
+
+
+def undecided(rules: Sequence[Rule], lacking: Mapping[str, str]) -> list[Undecided]:
+    """Return the rules that require any of the signals that are lacking (signal -> why)."""
+    found = []
+    for rule in rules:
+        missing = set(rule.requires) & lacking.keys()
+        if "map" in missing:
+            missing -= OF_THE_MAP
+        if missing:
+            found.append(Undecided(rule_id=rule.id, title=rule.title, missing=sorted(missing)))
+    return found
+
+
+def missing(cannot: Sequence[Undecided], lacking: Mapping[str, str], log_format: str) -> list[Missing]:
+    """Return the same by signal, that which most rules wait for first."""
+    by_signal: dict[str, list[Undecided]] = {}
+    for rule in cannot:
+        for signal in rule.missing:
+            by_signal.setdefault(signal, []).append(rule)
+    found = [
+        Missing(
+            signal=signal,
+            reason=lacking[signal],
+            provide=provide(signal, log_format),
+            rules=[rule.rule_id for rule in waiting],
+            alone=[rule.rule_id for rule in waiting if rule.missing == [signal]],
+        )
+        for signal, waiting in by_signal.items()
+    ]
+    return sorted(found, key=lambda item: (-len(item.rules), item.signal))

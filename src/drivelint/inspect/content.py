@@ -1,0 +1,132 @@
+"""What a file holds, whether or not it can be read as a drive: channels, tables, columns and what is read of them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from drivelint.errors import TraceError
+from drivelint.ingest import mapping as mappings
+from drivelint.ingest import parquet
+from drivelint.ingest.carried import EVENT
+from drivelint.ingest.container import MAGIC, Container
+from drivelint.ingest.files import CANONICAL
+from drivelint.ingest.mapping import GROUP, Mapping, Table
+from drivelint.ingest.osi import OPEN_DRIVE
+from drivelint.ingest.osi_decode import TREES
+from drivelint.ingest.sheets import CsvSheet, ParquetSheet
+from drivelint.inspect.model import Channel, Column, Content, Sheet
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+_HEAD_BYTES: Final = 4096
+_ROLES: Final = {(name, "protobuf"): "ground truth" for name in TREES} | {
+    (OPEN_DRIVE, "protobuf"): "map",
+    (EVENT, "json"): "declared events",
+}
+
+
+def size(path: Path) -> int:
+    """Return the bytes of a file, or of the tables of a canonical folder."""
+    files = [path / name for name in CANONICAL] if path.is_dir() else [path]
+    return sum(file.stat().st_size for file in files if file.is_file())
+
+
+def content(path: Path, mapping: str | None, notes: list[str]) -> Content:
+    """Look into the file. `mapping`: what it was read through; None: through none, or not at all."""
+    if path.is_dir():
+        return Content(sheets=[_plain(path / name) for name in CANONICAL if _is_table(path / name)], notes=notes)
+    with path.open("rb") as file:
+        head = file.read(_HEAD_BYTES)
+    if head.startswith(MAGIC[:5]):
+        return Content(channels=_channels(path), notes=notes)
+    if mapping is not None:
+        name, loaded = mappings.load(mapping)
+        return Content(sheets=[_mapped(path, loaded)], mapping=name, notes=notes)
+    if head.startswith(b"PAR1"):
+        return Content(sheets=[_plain(path)], notes=notes)
+    if b"\0" in head or not head.strip() or head.lstrip()[:1] in {b"<", b"{"}:
+        return Content(notes=notes)
+    columns = [Column(name=name, read_as=[]) for name in CsvSheet(path, Table()).names]
+    return Content(sheets=[Sheet(name=path.name, rows=None, columns=columns)], notes=notes)
+
+
+def _is_table(path: Path) -> bool:
+    return path.suffix == ".parquet" and path.is_file()
+
+
+def _plain(path: Path) -> Sheet:
+    columns = [Column(name=name, read_as=[]) for name in parquet.schema(path).names]
+    return Sheet(name=path.name, rows=parquet.n_rows(path), columns=columns)
+
+
+def _mapped(path: Path, mapping: Mapping) -> Sheet:
+    """Return a table's columns, those that the mapping reads first."""
+    with path.open("rb") as file:
+        is_parquet = file.read(4) == b"PAR1"
+    names = ParquetSheet(path).names if is_parquet else CsvSheet(path, mapping.table).names
+    columns = _read(mapping)
+    shapes = [re.compile(re.escape(c.name).replace(re.escape(GROUP), r"\d+")) for c in columns]
+    grouped = any(GROUP in c.name for c in columns)
+    unread = [name for name in names if name and not any(shape.fullmatch(name) for shape in shapes)]
+    others = dict.fromkeys(re.sub(r"(?<=#)\d+", GROUP, name) if grouped else name for name in unread)
+    columns += [Column(name=name, read_as=[]) for name in others]
+    return Sheet(name=path.name, rows=parquet.n_rows(path) if is_parquet else None, columns=columns)
+
+
+def _read(mapping: Mapping) -> list[Column]:
+    found: dict[str, list[str]] = {mapping.time.column: ["time"]}
+    units: dict[str, str | None] = {mapping.time.column: mapping.time.unit}
+    for name, spec in mappings.fields(mapping).items():
+        if spec.column is not None:
+            found.setdefault(spec.column, []).append(name)
+            units[spec.column] = units.get(spec.column) or spec.unit
+    for name, (words, _) in mappings.words(mapping).items():
+        for column in words.columns:
+            found.setdefault(column, []).append(name.removeprefix("actor_"))
+    return [Column(name=name, read_as=read_as, unit=units.get(name)) for name, read_as in found.items()]
+
+
+@dataclass
+class _Count:
+    messages: int = 0
+    size: int = 0
+    first_ns: int = 0
+    last_ns: int = 0
+
+
+def _channels(path: Path) -> list[Channel]:
+    """Count the messages of every channel; of a damaged file those before the damage."""
+    container = Container(path)
+    counts: dict[int, _Count] = {}
+    try:
+        for packet in container.packets():
+            count = counts.setdefault(
+                packet.channel.id, _Count(first_ns=packet.log_time_ns, last_ns=packet.log_time_ns)
+            )
+            count.messages += 1
+            count.size += len(packet.data)
+            count.first_ns = min(count.first_ns, packet.log_time_ns)
+            count.last_ns = max(count.last_ns, packet.log_time_ns)
+    except TraceError:
+        pass  # the drive cannot be read either, for the same reason, and that is told
+    found = []
+    for number, channel in container.channels.items():
+        schema, count = container.schemas.get(channel.schema_id), counts.get(number, _Count())
+        span_s = (count.last_ns - count.first_ns) / 1e9
+        role = _ROLES.get((schema.name, channel.message_encoding)) if schema else None
+        found.append(
+            Channel(
+                topic=channel.topic,
+                schema=schema.name if schema else None,
+                schema_encoding=schema.encoding if schema else None,
+                encoding=channel.message_encoding,
+                messages=count.messages,
+                bytes=count.size,
+                rate_hz=(count.messages - 1) / span_s if span_s > 0 else None,
+                read_as=role,
+            )
+        )
+    return sorted(found, key=lambda c: (c.topic, c.schema or "", c.encoding))

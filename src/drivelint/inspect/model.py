@@ -1,0 +1,211 @@
+"""What `inspect` finds out, as its JSON has it: `schemas/inspect.schema.json` is made from here.
+
+Times are seconds; those named `t_...` or `..._at_s` count from the first time stamp of the log. Lengths are metres.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Final, Literal
+
+import msgspec
+from msgspec import Meta
+
+VERSION: Final = 1
+"""Raised when a key changes its meaning or goes; new keys do not raise it."""
+
+
+class File(msgspec.Struct, frozen=True, kw_only=True):
+    """The log as a file."""
+
+    name: Annotated[str, Meta(description="file or folder name, without where it lies")]
+    bytes: Annotated[int, Meta(description="size; of a folder, of its tables together")]
+    sha256: Annotated[str | None, Meta(description="hash of its content; null: not read as a drive")] = None
+    drive_id: Annotated[
+        str | None, Meta(description="what its verdicts are filed under; null: not read as a drive")
+    ] = None
+    format: Annotated[
+        str | None, Meta(description="osi-mcap, canonical-parquet or the mapping's name; null: not read")
+    ] = None
+
+
+class Channel(msgspec.Struct, frozen=True, kw_only=True):
+    """One channel of an MCAP file."""
+
+    topic: str
+    schema: Annotated[str | None, Meta(description="name of the messages' schema")]
+    schema_encoding: Annotated[str | None, Meta(description="protobuf, ros2msg, jsonschema, ...")]
+    encoding: Annotated[str, Meta(description="of the messages: protobuf, cdr, json, ...")]
+    messages: int
+    bytes: Annotated[int, Meta(description="of all its messages, unpacked")]
+    rate_hz: Annotated[float | None, Meta(description="mean, by log time; null: fewer than two messages")]
+    read_as: Annotated[str | None, Meta(description="ground truth, map, declared events; null: not read")]
+
+
+class Column(msgspec.Struct, frozen=True, kw_only=True):
+    """One column of a table; of a wide table one for all its groups, `{k}` standing for the group's number."""
+
+    name: str
+    read_as: Annotated[
+        list[str], Meta(description="what the mapping reads from it: time, x, yaw, class, ...; empty: nothing")
+    ]
+    unit: Annotated[str | None, Meta(description="as the mapping says; null: SI, or no number")] = None
+
+
+class Sheet(msgspec.Struct, frozen=True, kw_only=True):
+    """One table of the log."""
+
+    name: Annotated[str, Meta(description="file name")]
+    rows: Annotated[int | None, Meta(description="null: not counted")]
+    columns: list[Column]
+
+
+class Content(msgspec.Struct, frozen=True, kw_only=True):
+    """What the file holds."""
+
+    channels: Annotated[list[Channel], Meta(description="of an MCAP file, by topic")] = []
+    sheets: Annotated[list[Sheet], Meta(description="tables, of CSV and Parquet")] = []
+    mapping: Annotated[str | None, Meta(description="the mapping that a table was read through")] = None
+    notes: Annotated[list[str], Meta(description="what the reader said")] = []
+
+
+class Clock(msgspec.Struct, frozen=True, kw_only=True):
+    """The log's time stamps."""
+
+    start_ns: Annotated[int, Meta(description="the first, on the log's own clock")]
+    utc_start: Annotated[str | None, Meta(description="the same in UTC, ISO 8601; null: the log does not say")]
+    duration_s: Annotated[float, Meta(description="from the first to the last")]
+    steps: Annotated[int, Meta(description="distinct time stamps")]
+    period_s: Annotated[float | None, Meta(description="median time between them; null: there is only one")]
+    holes: Annotated[int, Meta(description="gaps of more than 2.5 periods, across which nothing is judged")]
+    longest_hole_s: float | None = None
+    first_hole_at_s: float | None = None
+
+
+class ClassCount(msgspec.Struct, frozen=True, kw_only=True):
+    """Actors of one class."""
+
+    actor_class: Annotated[str | None, Meta(description="null: not known")]
+    n: int
+    sized: Annotated[int, Meta(description="of them with a known length and width")]
+    moving: Annotated[int, Meta(description="of them those that moved by more than 1 m")]
+
+
+class Actor(msgspec.Struct, frozen=True, kw_only=True):
+    """One actor and its track."""
+
+    actor_id: str
+    actor_class: Annotated[str | None, Meta(description="null: not known")]
+    length_m: float | None
+    width_m: float | None
+    states: int
+    first_at_s: float
+    last_at_s: float
+    way_m: Annotated[float, Meta(description="length of its track")]
+    top_speed_mps: Annotated[float | None, Meta(description="null: no speed is known")]
+
+
+class Registration(msgspec.Struct, frozen=True, kw_only=True):
+    """How an ego's track lies on the map."""
+
+    ok: Annotated[bool, Meta(description="good enough for rules that need the map")]
+    reason: str
+    steps: Annotated[int, Meta(description="steps with a position")]
+    on_lane: Annotated[int, Meta(description="of them, on a lane for driving")]
+    moving: Annotated[int, Meta(description="of those, in motion and not overtaking in an opposing lane")]
+    with_direction: Annotated[int, Meta(description="of the moving ones, along the lane's direction")]
+    lateral_median_m: Annotated[
+        float | None, Meta(description="median distance from the lane's middle; null: never on one")
+    ]
+
+
+class Undecided(msgspec.Struct, frozen=True, kw_only=True):
+    """A rule that will be unknown."""
+
+    rule_id: str
+    title: str
+    missing: Annotated[list[str], Meta(description="signals; without a map only `map` for all that is of the map")]
+
+
+class Missing(msgspec.Struct, frozen=True, kw_only=True):
+    """A signal that some rule requires and this log and map do not give."""
+
+    signal: str
+    reason: Annotated[str, Meta(description="what is wrong or missing")]
+    provide: Annotated[str, Meta(description="what to give to have it")]
+    rules: Annotated[list[str], Meta(description="rules that wait for it")]
+    alone: Annotated[list[str], Meta(description="of them those that wait for nothing else")]
+
+
+class Ego(msgspec.Struct, frozen=True, kw_only=True):
+    """A vehicle under test, and what can be decided about it."""
+
+    actor: Actor
+    km: float
+    steps: int
+    registration: Registration | None
+    can: Annotated[list[str], Meta(description="rules that can be decided")]
+    cannot: list[Undecided]
+    missing: list[Missing]
+
+
+class Road(msgspec.Struct, frozen=True, kw_only=True):
+    """The map."""
+
+    name: str
+    source: Literal["option", "log"]
+    environment_id: str
+    sha256: str
+    format: str
+    offset_m: Annotated[tuple[float, float], Meta(description="added to its coordinates")]
+    handedness: Literal["lht", "rht"]
+    handedness_source: Annotated[str, Meta(description="option, attribute, junctions, traces, default (a guess)")]
+    lanelets: int
+    drivable: Annotated[int, Meta(description="lanelets for motor vehicles")]
+    drivable_km: float
+
+
+class Quality(msgspec.Struct, frozen=True, kw_only=True):
+    """A data-quality finding."""
+
+    about: Literal["log", "map"]
+    severity: Literal["error", "warning", "info"]
+    check_id: str
+    message: str
+    n: int
+    actor_id: Annotated[str | None, Meta(description="null: the whole log, or several actors")] = None
+    first_at_s: float | None = None
+
+
+class Drive(msgspec.Struct, frozen=True, kw_only=True):
+    """The log, read as a drive."""
+
+    clock: Clock
+    states: int
+    classes: Annotated[list[ClassCount], Meta(description="the most numerous first")]
+    egos: Annotated[list[Ego], Meta(description="by id; empty: the log names none and none was chosen")]
+    ego_source: Annotated[str, Meta(description="how the egos were found, or why there is none")]
+    candidates: Annotated[list[Actor], Meta(description="where there is no ego: who might be, the longest way first")]
+    supposed: Annotated[
+        Ego | None, Meta(description="where there is no ego: what could be decided of the first candidate")
+    ]
+    road: Annotated[Road | None, Meta(description="null: no map")]
+    road_problem: Annotated[str | None, Meta(description="why a map that was given is not used")]
+    quality: Annotated[list[Quality], Meta(description="errors first")]
+    rules: Annotated[list[str], Meta(description="the rules that were asked about")]
+    selection: Annotated[list[str], Meta(description="as they were selected")]
+
+
+class Inspection(msgspec.Struct, frozen=True, kw_only=True):
+    """Everything that `drivelint inspect --format json` prints."""
+
+    inspect_schema: Annotated[int, Meta(description="version of this structure")] = VERSION
+    file: File
+    content: Content
+    problem: Annotated[str | None, Meta(description="why the file cannot be read as a drive; null: it can")] = None
+    drive: Annotated[Drive | None, Meta(description="null: it cannot be read as one")] = None
+
+
+def json_schema() -> bytes:
+    """Return the JSON schema of an `Inspection`, formatted."""
+    raw = msgspec.json.encode(msgspec.json.schema(Inspection), order="sorted")
+    return msgspec.json.format(raw, indent=2) + b"\n"

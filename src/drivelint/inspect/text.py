@@ -1,0 +1,217 @@
+"""An inspection as a person reads it: a label and what there is to say, folding well where the terminal is narrow."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from rich.console import Group
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from drivelint.inspect.rules_text import rules
+from drivelint.inspect.words import amount, holes, many, metres, plural, side, size
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rich.console import RenderableType
+
+    from drivelint.inspect.model import (
+        Actor,
+        Channel,
+        Content,
+        Drive,
+        Ego,
+        Inspection,
+        Quality,
+        Registration,
+        Road,
+        Sheet,
+    )
+
+MAX_ROWS: Final = 12
+"""Lines shown of a list; the JSON has them all."""
+_STYLE: Final = {"error": "bold red", "warning": "yellow", "info": "dim"}
+Line = tuple[str, Text]
+
+
+def render(found: Inspection) -> Group:
+    """Return the whole inspection."""
+    parts: list[RenderableType] = [_title(found)]
+    lines = [*_content(found.content)]
+    if found.problem is not None:
+        lines.append(("problem", Text(f"cannot be read as a drive: {found.problem}", "bold red")))
+    if found.drive is not None:
+        lines += _drive(found.drive)
+    parts.append(_labelled(lines))
+    if found.drive is not None:
+        parts.append(rules(found.drive, found.file.name))
+    return Group(*(Padding(part, (0, 0, 1, 0)) for part in parts))
+
+
+def _title(found: Inspection) -> Text:
+    file = found.file
+    text = Text(file.name, style="bold")
+    kinds = {"osi-mcap": "ASAM OSI in MCAP", "canonical-parquet": "drivelint's own Parquet tables"}
+    kind = "" if file.format is None else kinds.get(file.format, f"a table, read through the mapping {file.format}")
+    text.append(f"  {', '.join(part for part in (kind, size(file.bytes)) if part)}", style="default")
+    if file.drive_id:
+        text.append(f"  drive {file.drive_id}", style="dim")
+    return text
+
+
+def _labelled(lines: Sequence[Line]) -> Table:
+    """Return lines with their labels in a column of their own, each label once."""
+    grid = Table.grid(padding=(0, 2, 0, 0), expand=False)
+    grid.add_column(style="bold", no_wrap=True)
+    grid.add_column(overflow="fold", ratio=1)
+    previous = None
+    for label, text in lines:
+        grid.add_row("" if label == previous else label, text)
+        previous = label
+    return grid
+
+
+def _content(content: Content) -> Iterator[Line]:
+    for channel in content.channels:
+        yield "channels", _channel(channel)
+    for sheet in content.sheets:
+        yield "table" if content.mapping or len(content.sheets) == 1 else "tables", _sheet(sheet)
+    for note in content.notes:
+        if not note.startswith(("read through", f"{sum(c.messages for c in content.channels)} messages")):
+            yield "note", Text(note)
+
+
+def _channel(channel: Channel) -> Text:
+    text = Text(channel.topic)
+    rate = "" if channel.rate_hz is None else f", {channel.rate_hz:.3g} Hz"
+    kind = f"{channel.schema or 'no schema'} in {channel.encoding or 'no encoding'}"
+    text.append(f": {plural(channel.messages, 'message')} of {kind}{rate}, {size(channel.bytes)}")
+    text.append(
+        f", read as {channel.read_as}" if channel.read_as else ", not read", "green" if channel.read_as else "dim"
+    )
+    return text
+
+
+def _sheet(sheet: Sheet) -> Text:
+    rows = "" if sheet.rows is None else f"{plural(sheet.rows, 'row')}, "
+    read = [c for c in sheet.columns if c.read_as]
+    if not read:
+        names = [c.name for c in sheet.columns]
+        return Text(f"{sheet.name}: {rows}{plural(len(names), 'column')}: {many(names, MAX_ROWS)}")
+    text = Text(f"{rows}{len(read)} of {plural(len(sheet.columns), 'column')} read: ")
+    cells = []
+    for column in read:
+        meant = " and ".join(column.read_as)
+        unit = f" in {column.unit}" if column.unit else ""
+        cells.append(f"{column.name}{unit}" if meant == column.name else f"{column.name}{unit} as {meant}")
+    text.append("; ".join(cells))
+    if others := [c.name for c in sheet.columns if not c.read_as]:
+        text.append(f"; not read: {many(others, MAX_ROWS)}", style="dim")
+    return text
+
+
+def _drive(drive: Drive) -> Iterator[Line]:
+    clock = drive.clock
+    period = "" if clock.period_s is None else f", one every {clock.period_s:.4g} s ({1 / clock.period_s:.3g} Hz)"
+    time = Text(f"{clock.duration_s:.2f} s, {plural(clock.steps, 'step')}{period}, ")
+    time.append(holes(clock), style="yellow" if clock.holes else "green")
+    yield "time", time.append("" if clock.utc_start is None else f", from {clock.utc_start}")
+    total = sum(c.n for c in drive.classes)
+    yield "actors", Text(f"{plural(total, 'actor')}, {plural(drive.states, 'state')}")
+    for count in drive.classes:
+        sized = "sizes known" if count.sized == count.n else f"size known of {count.sized}"
+        line = Text(
+            f"{plural(count.n, count.actor_class or 'actor of unknown class')}: {count.moving or 'none'} moving, "
+        )
+        yield "actors", line.append(sized, style="" if count.sized == count.n else "yellow")
+    yield from _egos(drive)
+    yield from _road(drive)
+    yield from _quality(drive.quality)
+
+
+def _egos(drive: Drive) -> Iterator[Line]:
+    if not drive.egos:
+        yield "ego", Text(f"{drive.ego_source}. Candidates, the longest way first:", style="yellow")
+        for actor in drive.candidates[:MAX_ROWS]:
+            yield "ego", Text(f"--ego {actor.actor_id}  {_actor(actor)}")
+        if len(drive.candidates) > MAX_ROWS:
+            yield "ego", Text(f"and {len(drive.candidates) - MAX_ROWS} more", style="dim")
+        return
+    if len(drive.egos) > 1:
+        yield "egos", Text(f"{len(drive.egos)}: {drive.ego_source}")
+    for ego in drive.egos[:MAX_ROWS]:
+        line = Text(f"{ego.actor.actor_id}: {_actor(ego.actor)}")
+        yield ("ego", line.append(f"; {drive.ego_source}")) if len(drive.egos) == 1 else ("egos", line)
+    if len(drive.egos) > MAX_ROWS:
+        yield "egos", Text(f"and {len(drive.egos) - MAX_ROWS} more", style="dim")
+
+
+def _actor(actor: Actor) -> str:
+    box = "size unknown"
+    if actor.length_m is not None and actor.width_m is not None:
+        box = f"{actor.length_m:.2f} x {actor.width_m:.2f} m"
+    speed = "" if actor.top_speed_mps is None else f", up to {actor.top_speed_mps:.1f} m/s"
+    seen = f"from {actor.first_at_s:.1f} to {actor.last_at_s:.1f} s"
+    return f"{actor.actor_class or 'class unknown'}, {box}, {metres(actor.way_m)}{speed}, {seen}"
+
+
+def _road(drive: Drive) -> Iterator[Line]:
+    road = drive.road
+    if road is None:
+        why = drive.road_problem or "none: what the road has to do with cannot be decided; give it with --map"
+        yield "map", Text(why, style="bold red" if drive.road_problem else "yellow")
+        return
+    yield "map", _map(road)
+    about = drive.egos or ([drive.supposed] if drive.supposed else [])
+    fits = [(ego, ego.registration) for ego in about if ego.registration is not None]
+    if len(fits) == 1:
+        yield "fit", _fit(fits[0][1])
+        return
+    bad = [(ego, fit) for ego, fit in fits if not fit.ok]
+    good = len(fits) - len(bad)
+    yield "fit", Text(f"{amount(good, len(fits))} of the egos lie well on the map", style="yellow" if bad else "green")
+    for ego, fit in bad[:MAX_ROWS]:
+        yield "fit", Text(f"{_named(ego)}: {fit.reason}", style="yellow")
+    if len(bad) > MAX_ROWS:
+        yield "fit", Text(f"and {len(bad) - MAX_ROWS} more", style="dim")
+
+
+def _named(ego: Ego) -> str:
+    return f"ego {ego.actor.actor_id}"
+
+
+def _map(road: Road) -> Text:
+    text = Text("the log's own" if road.source == "log" else road.name)
+    text.append(f": {plural(road.lanelets, 'lanelet')}, {road.drivable} of them for driving, {road.drivable_km:.2f} km")
+    if any(road.offset_m):
+        text.append(f", moved by ({road.offset_m[0]:+g}, {road.offset_m[1]:+g}) m")
+    guess = road.handedness_source == "default"
+    return text.append(f"; {side(road.handedness, road.handedness_source)}", style="yellow" if guess else "")
+
+
+def _fit(fit: Registration) -> Text:
+    if not fit.ok:
+        return Text(fit.reason, style="bold yellow")
+    off = "" if fit.lateral_median_m is None else f", {fit.lateral_median_m:.2f} m from its middle (median)"
+    return Text(f"{fit.reason}{off}", style="green")
+
+
+def _quality(found: Sequence[Quality]) -> Iterator[Line]:
+    if not any(q.severity != "info" for q in found):
+        yield "data", Text("nothing that speaks against it", style="green")
+    for finding in found[:MAX_ROWS]:
+        about = "map: " if finding.about == "map" else ""
+        at = (
+            ""
+            if finding.first_at_s is None or finding.severity == "info"
+            else f" (first at {finding.first_at_s:.2f} s)"
+        )
+        text = Text(f"{finding.severity}: ", style=_STYLE[finding.severity])
+        yield (
+            "data",
+            text.append(f"{about}{finding.message}{at}", style="dim" if finding.severity == "info" else "default"),
+        )
+    if len(found) > MAX_ROWS:
+        yield "data", Text(f"and {len(found) - MAX_ROWS} more", style="dim")

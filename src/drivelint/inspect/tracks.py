@@ -1,0 +1,110 @@
+"""The log's clock, and every actor's track in a few numbers."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime, timedelta
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyarrow.compute as pc
+
+from drivelint.ingest.order import MAX_GAP_PERIODS
+from drivelint.ingest.trace import MOTOR_VEHICLES
+from drivelint.inspect.model import Actor, ClassCount, Clock
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from drivelint.ingest import Trace
+
+MOVED_M = 1.0
+"""Who moved by less stood: positions of parked cars are noisy."""
+
+
+def clock(trace: Trace) -> Clock:
+    """Return the log's time stamps in a few numbers."""
+    log = trace.tables["data_log"].to_pylist()[0]
+    t_ns = np.unique(trace.tables["actor_state"]["t_ns"].to_numpy())
+    gaps = np.diff(t_ns)
+    period = float(np.median(gaps)) if len(gaps) else None
+    holes = np.flatnonzero(gaps > MAX_GAP_PERIODS * period) if period else np.zeros(0, np.intp)
+    start = int(t_ns[0])
+    return Clock(
+        start_ns=start,
+        utc_start=None if log["utc_start_ns"] is None else _utc(log["utc_start_ns"]),
+        duration_s=(int(t_ns[-1]) - start) / 1e9,
+        steps=len(t_ns),
+        period_s=None if period is None else period / 1e9,
+        holes=len(holes),
+        longest_hole_s=float(gaps[holes].max()) / 1e9 if len(holes) else None,
+        first_hole_at_s=(int(t_ns[holes[0]]) - start) / 1e9 if len(holes) else None,
+    )
+
+
+def _utc(t_ns: int) -> str | None:
+    try:
+        at = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(microseconds=t_ns // 1000)
+    except OverflowError:  # a clock that counts something else: year 10,000 and beyond
+        return None
+    return at.isoformat(timespec="milliseconds").replace("+00:00", "Z")
+
+
+def actors(trace: Trace) -> list[Actor]:
+    """Return every actor with states, by id."""
+    states = trace.tables["actor_state"]  # by actor, then time
+    start = pc.min(states["t_ns"]).as_py()
+    encoded = states["actor_id"].combine_chunks().dictionary_encode()
+    code = encoded.indices.to_numpy()
+    firsts = np.flatnonzero(np.r_[True, code[1:] != code[:-1]])
+    counts = np.diff(np.r_[firsts, len(code)])
+    x, y, vx, vy = (_floats(states, name) for name in ("x_m", "y_m", "vx_mps", "vy_mps"))
+    step = np.nan_to_num(np.hypot(np.diff(x, prepend=np.nan), np.diff(y, prepend=np.nan)))
+    step[firsts] = 0.0
+    way = np.add.reduceat(step, firsts)
+    top = np.fmax.reduceat(np.hypot(vx, vy), firsts)
+    times = states["t_ns"].to_numpy()
+    known = {row["actor_id"]: row for row in trace.tables["actor"].to_pylist()}
+    names = encoded.dictionary.take(encoded.indices.take(firsts)).to_pylist()
+    return [
+        Actor(
+            actor_id=name,
+            actor_class=known[name]["actor_class"],
+            length_m=known[name]["length_m"],
+            width_m=known[name]["width_m"],
+            states=int(counts[k]),
+            first_at_s=(int(times[firsts[k]]) - start) / 1e9,
+            last_at_s=(int(times[firsts[k] + counts[k] - 1]) - start) / 1e9,
+            way_m=float(way[k]),
+            top_speed_mps=None if np.isnan(top[k]) else float(top[k]),
+        )
+        for k, name in enumerate(names)
+    ]
+
+
+def _floats(states: object, name: str) -> NDArray[np.float64]:
+    return np.asarray(pc.fill_null(states[name], float("nan")).to_numpy(), np.float64)  # type: ignore[index]
+
+
+def classes(found: Sequence[Actor]) -> list[ClassCount]:
+    """Count actors by class, the most numerous first."""
+    by_class: dict[str | None, list[Actor]] = {}
+    for actor in found:
+        by_class.setdefault(actor.actor_class, []).append(actor)
+    counts = [
+        ClassCount(
+            actor_class=name,
+            n=len(some),
+            sized=sum(a.length_m is not None and a.width_m is not None for a in some),
+            moving=sum(a.way_m > MOVED_M for a in some),
+        )
+        for name, some in by_class.items()
+    ]
+    return sorted(counts, key=lambda c: (-c.n, c.actor_class or "~"))
+
+
+def candidates(found: Sequence[Actor]) -> list[Actor]:
+    """Return who might be the ego: motor vehicles, or whose class is not known; those first that made the longest way."""
+    likely = [a for a in found if a.actor_class in MOTOR_VEHICLES] or [a for a in found if a.actor_class is None]
+    return sorted(likely or found, key=lambda a: (-round(a.way_m, 3), a.actor_id))

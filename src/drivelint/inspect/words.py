@@ -1,0 +1,66 @@
+"""How amounts and lists read."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from drivelint.inspect.model import Clock
+
+_PLURAL: Final = {
+    "bus": "buses",
+    "actor of unknown class": "actors of unknown class",
+}
+_SOURCES: Final = {
+    "option": "as --handedness says",
+    "attribute": "as the map says",
+    "junctions": "as the map's junctions are linked",
+    "traces": "as the log's traffic drives",
+    "default": "only by the standard's default: say it with --handedness",
+}
+
+
+def plural(n: int, what: str) -> str:
+    """Return a count and its noun."""
+    return f"{n} {what if n == 1 else _PLURAL.get(what, f'{what}s')}"
+
+
+def amount(n: int, of: int) -> str:
+    """Return how many of a number, in a word where that is plain."""
+    return "none" if n == 0 else ("all" if n == of else f"{n} of {of}") if of > 1 else "it is"
+
+
+def many(names: Sequence[str], most: int) -> str:
+    """Return the first names and how many more there are."""
+    more = len(names) - most
+    return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
+
+
+def size(n: int) -> str:
+    """Return bytes in kB, MB or GB."""
+    for unit, factor in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
+        if n >= factor:
+            return f"{n / factor:.1f} {unit}"
+    return plural(n, "byte")
+
+
+def metres(n: float) -> str:
+    """Return a way driven."""
+    return f"{n / 1000:.2f} km" if n >= 1000 else f"{n:.0f} m"
+
+
+def side(handedness: str, source: str) -> str:
+    """Return the side that is driven on, and who says so."""
+    return f"{'left' if handedness == 'lht' else 'right'}-hand traffic, {_SOURCES.get(source, source)}"
+
+
+def holes(clock: Clock) -> str:
+    """Return what is missing between the time stamps."""
+    if not clock.holes:
+        return "no holes"
+    return (
+        f"{plural(clock.holes, 'hole')}, the longest {clock.longest_hole_s or 0.0:.2f} s, "
+        f"the first at {clock.first_hole_at_s or 0.0:.2f} s"
+    )
