@@ -63,7 +63,9 @@ def messages(boxes: Boxes, clock: LogClock, channel: int) -> Iterator[Records]:
     tracks, rows = boxes.tracks, boxes.rows
     if not len(rows):
         return
-    t_ns, first, count = np.unique(boxes.t_ns, return_index=True, return_counts=True)
+    first = np.flatnonzero(np.diff(boxes.t_ns, prepend=boxes.t_ns[0] - 1))
+    count = np.diff(first, append=len(rows))
+    t_ns = boxes.t_ns[first]
     log_time = clock.log_time(t_ns)
     heads = _heads(tracks, _lifetime(t_ns))
     width = np.array([len(head) for head in heads])[tracks.actor[rows]] + _tail_width()
@@ -124,7 +126,7 @@ class _Pieces:
     """The boxes of some steps: of each its actor, what is the same for that actor at every step, and what changes."""
 
     heads: list[bytes]
-    actor: NDArray[np.int64]
+    actor: NDArray[np.int32]
     tails: wire.Bytes
 
     def behind(self, starts: wire.Bytes, count: NDArray[np.int64]) -> tuple[bytes, NDArray[np.int64]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -44,6 +45,7 @@ def clear(log_time: int) -> bytes:
     return wire.nested(1, wire.time(1, log_time) + wire.whole(2, foxglove.DELETE_ALL))
 
 
+@cache
 def colour(number: int, value: Colour) -> bytes:
     """Return a field that holds a colour."""
     return wire.nested(number, wire.doubles(*value))

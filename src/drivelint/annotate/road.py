@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 NEAR_M: Final = 40.0
 """Lanes within this distance of anybody's way are drawn (the way is kept on a grid of the same size)."""
+_ROWS: Final = 1 << 31  # more than any map has in one column of the grid
 ASPHALT = Colour(0.27, 0.28, 0.30)
 PAVEMENT = Colour(0.42, 0.40, 0.37)
 VERGE = Colour(0.33, 0.36, 0.32)
@@ -44,8 +45,10 @@ class Road:
 
     def near(self, x: NDArray[np.float64], y: NDArray[np.float64], log_time: int) -> bytes:
         """Return the SceneUpdate with the lanes near some positions."""
-        cells = np.unique(np.floor(np.stack([x, y], axis=1) / NEAR_M), axis=0)
-        around = shapely.box(*((cells - 1) * NEAR_M).T, *((cells + 2) * NEAR_M).T)
+        column, row = (np.floor(values / NEAR_M).astype(np.int64) for values in (x, y))
+        _, first = np.unique(column * _ROWS + row, return_index=True)
+        cells = np.stack([column[first], row[first]])
+        around = shapely.box(*((cells - 1) * NEAR_M), *((cells + 2) * NEAR_M))
         found = np.unique(self._lanelet_of[self._tree.query(around)[1]])
         return b"".join(self._entity(int(i), log_time) for i in found)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -26,6 +27,7 @@ STEPS: Final = 5_000
 Strip = tuple["NDArray[np.float64]", "NDArray[np.float64]"]
 _SAMPLES: Final = 24
 _UP_M: Final = 0.1  # above the lanes
+_ABOVE_M: Final = 1.5
 _LEAST_M: Final = 0.1
 
 
@@ -39,11 +41,13 @@ def messages(evidence: Evidence, tracks: Tracks, clock: LogClock) -> list[Messag
     for ego in sorted({row["ego_id"] for row in rows}):
         for t in _behind(tracks.times(ego), np.array([r["t_ns"] for r in rows if r["ego_id"] == ego], np.int64)):
             by_time.setdefault(t, [])
-    lines = _Lines(evidence)
+    lines, roles = _Lines(evidence), _Roles(rows, tracks)
     out = []
     for t, shown in sorted(by_time.items()):
         time = clock.at(t)
-        entities = [draw.entity(f"overtake of {row['ego_id']}", time, _overtake(row, lines, tracks)) for row in shown]
+        entities = [
+            draw.entity(f"overtake of {row['ego_id']}", time, _spaces(row, lines) + roles.labels(row)) for row in shown
+        ]
         out.append(Message(time, draw.clear(time) + b"".join(entities)))
     return out
 
@@ -85,22 +89,40 @@ class _Lines:
         return self._found[ego, chain]
 
 
-def _overtake(row: dict[str, Any], lines: _Lines, tracks: Tracks) -> bytes:
-    parts = []
+class _Roles:
+    """Who is who in the overtakes, and where, found for all their steps at once."""
+
+    def __init__(self, rows: list[dict[str, Any]], tracks: Tracks) -> None:
+        times = np.unique(np.array([row["t_ns"] for row in rows], np.int64))
+        names = {name for row in rows for name in (row["ego_id"], row["ov_id"], *row["vbp_ids"]) if name is not None}
+        self._step = {t: k for k, t in enumerate(times.tolist())}
+        self._places = {name: tracks.places(name, times) for name in sorted(names)}
+
+    def labels(self, row: dict[str, Any]) -> bytes:
+        """Return the roles of one step as texts above the boxes that are placed."""
+        roles = [(row["ego_id"], "ego: " + row["stage"].replace("_", " ")), *((name, "VBP") for name in row["vbp_ids"])]
+        if row["ov_id"] is not None:
+            roles.append((row["ov_id"], "OV"))
+        k = self._step[row["t_ns"]]
+        parts = []
+        for name, role in roles:
+            p = self._places[name]
+            x, y, z = float(p.x[k]), float(p.y[k]), float(p.z[k])
+            if math.isfinite(x) and math.isfinite(y):
+                parts.append(draw.label(x, y, (z if math.isfinite(z) else 0.0) + _ABOVE_M, role, ROLE))
+        return b"".join(parts)
+
+
+def _spaces(row: dict[str, Any], lines: _Lines) -> bytes:
+    """Return the danger spaces of ego and OV at one step."""
     own = row["s_m"], row["d_m"], row["lat_half_m"], row["sd_av_m"]
     theirs = row["ov_s_m"], row["ov_d_m"], row["ov_lat_half_m"], row["sd_ov_m"]
+    parts = []
     for (s, d, half, sd), direction, met in ((own, 1, row["av_met"]), (theirs, -1, row["ov_met"])):
         if None not in (s, d, half, sd):
             start, end = sorted((s, s + direction * sd))
             if strip := lines.strip(row, start, end, d, half):
                 parts += _space(strip, MET if met else OVERLAP if row["overlap"] else FREE)
-    stage = row["stage"].replace("_", " ")
-    roles = [(row["ego_id"], f"ego: {stage}"), *((v, "VBP") for v in row["vbp_ids"]), (row["ov_id"], "OV")]
-    for name, role in roles:
-        if name is not None:
-            p = tracks.places(name, np.array([row["t_ns"]], np.int64))
-            if np.isfinite(p.x[0]) and np.isfinite(p.y[0]):
-                parts.append(draw.label(float(p.x[0]), float(p.y[0]), float(np.nan_to_num(p.z[0])) + 1.5, role, ROLE))
     return b"".join(parts)
 
 

@@ -38,7 +38,7 @@ class Tracks:
     classes: list[str | None]
     sizes: NDArray[np.float64]
     is_ego: list[bool]
-    actor: NDArray[np.int64]
+    actor: NDArray[np.int32]
     t_ns: NDArray[np.int64]
     x: NDArray[np.float64]
     y: NDArray[np.float64]
@@ -83,7 +83,7 @@ def tracks(tables: Mapping[str, pa.Table]) -> Tracks:
         [about[n]["actor_class"] for n in names],
         np.array(sizes, np.float64).reshape(-1, 3),
         [about[n]["is_ego"] for n in names],
-        codes.indices.to_numpy().astype(np.int64),
+        codes.indices.to_numpy(),
         states["t_ns"].to_numpy(),
         *columns.values(),
     )

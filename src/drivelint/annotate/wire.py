@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 _VARINT, _FIXED64, _BYTES = 0, 1, 2
-_DOUBLE: Final = struct.Struct("<d")
+_SMALL: Final = [bytes([value]) for value in range(0x80)]
 _NS: Final = 1_000_000_000
 _PADDED: Final = 5  # bytes of a varint of fixed width: 35 bits, seconds until the year 3058
 Bytes = NDArray[np.uint8]
@@ -17,6 +17,8 @@ Bytes = NDArray[np.uint8]
 
 def varint(value: int) -> bytes:
     """Return a non-negative integer in base 128, least significant group first."""
+    if value < 0x80:
+        return _SMALL[value]
     out = bytearray()
     while value > 0x7F:
         out.append(value & 0x7F | 0x80)
@@ -41,8 +43,9 @@ def whole(number: int, value: int) -> bytes:
 
 
 def doubles(*values: float, first: int = 1) -> bytes:
-    """Return consecutive fields from number `first` on, a double each."""
-    return b"".join(_key(first + i, _FIXED64) + _DOUBLE.pack(value) for i, value in enumerate(values))
+    """Return consecutive fields from number `first` on (all below 16), a double each."""
+    keyed = [part for number, value in enumerate(values, first) for part in (number << 3 | _FIXED64, value)]
+    return struct.pack("<" + "Bd" * len(values), *keyed)
 
 
 def time(number: int, t_ns: int) -> bytes:
