@@ -12,7 +12,10 @@ import pyarrow.parquet as pq
 import pytest
 
 from drivelint.demo import files
+from drivelint.demo.overtakes import LOGGED_MPS, distance_ahead_m, safe_distance_ahead_m
+from drivelint.demo.road import MPH
 from drivelint.errors import UsageError
+from drivelint.profiles import load_profiles
 from tests.demo.test_fixtures import TABLE_1
 
 PROGRAM = [sys.executable, "-m", "drivelint"]
@@ -32,9 +35,14 @@ def test_the_printed_command_gives_the_nine_verdicts_at_both_speeds(tmp_path: Pa
     assert checked.returncode == 1, checked.stderr
     out = Path(words[words.index("--out") + 1])
     found: dict[str, dict[str, str]] = {}
+    profiles = load_profiles()
     for row in pq.read_table(tmp_path / out / "verdicts.parquet").to_pylist():
         if row["rule_id"] == "ukhc.r162.safe-distance-ahead":
-            found.setdefault(row["drive_id"].rpartition("-")[0], {})[row["profile"]] = row["verdict"]
+            name = row["drive_id"].rpartition("-")[0]
+            found.setdefault(name, {})[row["profile"]] = row["verdict"]
+            v = 25 * MPH if name.endswith("-25mph") else LOGGED_MPS
+            assert row["observed"] == pytest.approx(distance_ahead_m(name.removesuffix("-25mph"), v), abs=0.01)
+            assert row["required"] == pytest.approx(safe_distance_ahead_m(profiles[row["profile"]], v), abs=0.01)
     assert found == TABLE_1 | {f"{name}-25mph": verdicts for name, verdicts in TABLE_1.items()}
 
 

@@ -26,12 +26,17 @@ TABLE_1 = {
     "near-miss": {"relaxed": "fail", "nominal": "fail", "aggressive": "pass"},
     "collision": {"relaxed": "fail", "nominal": "fail", "aggressive": "fail"},
 }
-DISPUTED = {
-    # a signal for passing with two wheels over the line is followed by no lane departure, so it looks misleading
-    "cyclist-at-1.0m": "fail    r103.signal-means-go",
-    # an overtake that only straddles the line has no angles of its own, though it was completed
-    "cyclist-at-1.6m": "unknown overtake-zone",
-}
+DISPUTED = [
+    # a signal for an overtake that only straddles the line, or for the way back from it, counts as misleading
+    ("cyclist-at-1.0m", "fail    r103.signal-means-go"),
+    ("cyclist-at-1.6m", "fail    r103.signal-means-go"),
+    ("overtake-aborted", "fail    r103.signal-means-go"),
+    # a completed overtake that only straddles the line has no angles of its own, so its zone is not known
+    ("cyclist-at-1.0m", "unknown overtake-zone"),
+    ("cyclist-at-1.6m", "unknown overtake-zone"),
+    # the distance for the second vehicle passed in one go is that for a single one
+    ("overtake-two-too-many", "pass    r162.safe-distance-ahead   relaxed    4"),
+]
 """Lines of the table that the review did not agree with: whoever mends the rule takes them from here."""
 
 
@@ -85,9 +90,9 @@ def test_the_nine_verdicts_come_out_at_both_speeds(said: str, ending: str) -> No
     assert found == TABLE_1
 
 
-def test_what_was_disputed_still_stands(said: str) -> None:
-    for name, start in DISPUTED.items():
-        assert any(line.startswith(start) for line in sections(said)[name]), f"{name}: mended? strike it from DISPUTED"
+@pytest.mark.parametrize(("name", "start"), DISPUTED)
+def test_what_was_disputed_still_stands(said: str, name: str, start: str) -> None:
+    assert any(line.startswith(start) for line in sections(said)[name]), "mended? strike it from DISPUTED"
 
 
 @pytest.mark.parametrize("scene", overtakes(), ids=lambda scene: scene.name)

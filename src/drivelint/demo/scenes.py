@@ -112,7 +112,7 @@ def _harder_overtakes() -> list[Scene]:
             142.0,
         ),
         _aborted(),
-        _two_in_one_go(),
+        *_two_in_one_go(),
     ]
 
 
@@ -125,24 +125,24 @@ def _with_oncoming(name: str, shows: str, road: Road, parked_at: float) -> Scene
 
 def _aborted() -> Scene:
     """Return an overtake given up: at 25 mph the ego is half over the line, sees that it is too late, brakes and falls in behind."""
-    v = 25 * MPH
     ego = (
         car()
-        .starts(20.0)
-        .drives(v)
+        .starts(100.0)
+        .drives(25 * MPH)
         .then_drives(5.0, at_s=6.5, rate=3.0)
-        .moves_out(2.4, at=76.0, within=20.0)
-        .moves_in(2.4, at=98.0, within=18.0)
+        .moves_out(2.4, at=156.0, within=20.0)
+        .moves_in(2.4, at=178.0, within=18.0)
         .signals("offside", 0.5, 7.0)
         .signals("nearside", 7.0, 10.5)
     )
-    slow = car().starts(80.0).drives(6.0)
-    other = coming(car().drives(v), departure(ego, LONG, 16.0), ahead_m=100.0)
+    slow = car().starts(160.0).drives(6.0)
+    other = coming(car().drives(25 * MPH), departure(ego, LONG, 20.0), ahead_m=100.0)
     shows = "An overtake is given up: the ego pulls out with too little road ahead, brakes, and falls in behind again."
-    return Scene("overtake-aborted", shows, LONG, ego, (slow, other), 16.0, "long-road")
+    return Scene("overtake-aborted", shows, LONG, ego, (slow, other), 20.0, "long-road")
 
 
-def _two_in_one_go() -> Scene:
+def _two_in_one_go() -> list[Scene]:
+    """Return two slow cars passed in one go, at 29 mph, with nobody and with somebody coming the other way."""
     ego = (
         car()
         .starts(20.0)
@@ -153,8 +153,13 @@ def _two_in_one_go() -> Scene:
         .signals("nearside", 13.9, 16.6)
     )
     slow = tuple(car().starts(at).drives(5.0) for at in (100.0, 118.0))
-    shows = "Two slow cars are passed in one go, with nobody coming the other way."
-    return Scene("overtake-two-in-one-go", shows, LONG, ego, slow, 20.0, "long-road")
+    other = coming(car().drives(29 * MPH), departure(ego, LONG, 20.0), ahead_m=190.0)
+    alone = "Two slow cars are passed in one go, with nobody coming the other way."
+    crash = "Two slow cars are passed in one go, with the road ahead that a relaxed driver needs for one of them; it ends in a crash."
+    return [
+        Scene("overtake-two-in-one-go", alone, LONG, ego, slow, 20.0, "long-road"),
+        Scene("overtake-two-too-many", crash, LONG, ego, (*slow, other), 20.0, "long-road"),
+    ]
 
 
 def _cyclists() -> list[Scene]:
@@ -173,7 +178,7 @@ def _cyclists() -> list[Scene]:
             .signals("nearside", 11.9, 14.2)
         )
         shows = f"A cyclist is passed with {clearance:.1f} m between the boxes."
-        scenes.append(Scene(f"cyclist-at-{clearance:.1f}m", shows, LONG, ego, (rider,), 18.0, "long-road"))
+        scenes.append(Scene(f"cyclist-at-{clearance:.1f}m", shows, LONG, ego, (rider,), 24.0, "long-road"))
     return scenes
 
 
