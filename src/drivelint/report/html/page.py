@@ -50,19 +50,26 @@ def content(result: Result) -> dict[str, Any]:
     near = _worst_first(
         result.verdicts.filter(pc.and_(result.verdicts["near_miss"], pc.is_valid(result.verdicts["t_worst_ns"])))
     )
-    lines = [(row, measured(row, "fail", rules[row["rule_id"]], starts.get(row["drive_id"]))) for row in failed]
-    close = [(row, measured(row, "near", rules[row["rule_id"]], starts.get(row["drive_id"]))) for row in near]
+    lines: list[tuple[Row, Measured]] = [
+        (row, measured(row, "fail", rules[row["rule_id"]], starts.get(row["drive_id"]))) for row in failed
+    ]
+    close: list[tuple[Row, Measured]] = [
+        (row, measured(row, "near", rules[row["rule_id"]], starts.get(row["drive_id"]))) for row in near
+    ]
     drawn = pictures([row for row, _ in lines + close], result.scenes.to_pylist(), Road(result.lanes), MAX_PICTURES)
     listed = _by_drive(lines + close)
     told = counts.by(result.verdicts, "drive_id")
     shown = _with_section(drives, listed, told)
+    lines, close = _linked(lines, shown), _linked(close, shown)
     verdicts, found = _rows_by_drive(result.verdicts, shown), _rows_by_drive(result.findings, shown)
+    anchors = {line.anchor for _, line in lines}
     titles = {rule_id: rule["title"] for rule_id, rule in rules.items()}
     return {
         "outcome": outcome(result),
         "headline": _headline(result),
         "counts": _shares(counts.total(result.verdicts)),
         "names": _NAMES,
+        "passes": counts.total(result.verdicts)["pass"],
         "n_findings": result.findings.num_rows,
         "n_near": int(pc.sum(result.verdicts["near_miss"]).as_py() or 0),
         "findings": [line for _, line in lines],
@@ -77,7 +84,9 @@ def content(result: Result) -> dict[str, Any]:
         "sections": [
             _section(
                 row,
-                timelines(verdicts.get(row["drive_id"], []), found.get(row["drive_id"], []), titles, _clock(row)),
+                timelines(
+                    verdicts.get(row["drive_id"], []), found.get(row["drive_id"], []), titles, anchors, _clock(row)
+                ),
                 moments(listed.get(row["drive_id"], []), rules, drawn),
                 unfolded=len(drives) <= OPEN_DRIVES,
             )
@@ -126,16 +135,25 @@ def _by_drive(rows: Sequence[tuple[Row, Measured]]) -> dict[str, list[tuple[Row,
 
 
 def _with_section(drives: Sequence[Row], listed: Mapping[str, Any], told: Mapping[str, Mapping[str, int]]) -> set[str]:
-    """Return the ids of the drives that get a section."""
+    """Return the ids of the drives that get a section: those with the worst findings first."""
+    place = {drive_id: n for n, drive_id in enumerate(listed)}
 
-    def weight(row: Row) -> int:
+    def weight(row: Row) -> tuple[int, int]:
         verdicts = told.get(row["drive_id"], {})
-        if row["drive_id"] in listed:
-            return 0
-        return 1 if verdicts.get("unknown") or verdicts.get("error") else 2
+        if row["drive_id"] in place:
+            return 0, place[row["drive_id"]]
+        return (1, 0) if verdicts.get("unknown") or verdicts.get("error") else (2, 0)
 
     judged = [row for row in drives if row["status"] == "judged"]
     return {row["drive_id"] for row in sorted(judged, key=weight)[:MAX_DRIVES]}
+
+
+def _linked(rows: Sequence[tuple[Row, Measured]], shown: set[str]) -> list[tuple[Row, Measured]]:
+    """Return the rows, without links into drives that have no section."""
+    return [
+        (row, line if line.drive_id in shown else line._replace(anchor="", href="", drive_href=""))
+        for row, line in rows
+    ]
 
 
 def _rows_by_drive(rows: pa.Table, drives: set[str]) -> dict[str, list[dict[str, Any]]]:

@@ -122,7 +122,7 @@ def plan(scene: Mapping[str, Any], road: Road, concerned: Collection[str], *, sp
         spaces=[(_kind(who, ego, concerned), closed(view(ring))) for who, ring in rings],
         bodies=[
             _body(a, _kind(a["actor_id"], ego, concerned), view, inside, scene["t_ns"])
-            for a in (*(o for o in others if o not in met), *met, ego)
+            for a in sorted((*others, ego), key=_area, reverse=True)  # whoever is under a larger one is still seen
             if inside.has(a)
         ],
         gaps=gaps,
@@ -143,8 +143,7 @@ def _fit(ego: Mapping[str, Any], yaw: float, shown: Points) -> _View:
     scale = min(WIDTH / along, _HEIGHT[1] / across)
     height = min(max(across * scale, _HEIGHT[0]), _HEIGHT[1])
     return replace(
-        raw,
-        ahead=float(u.max() + u.min()) / 2, left=float(v.max() + v.min()) / 2, scale=scale, height=round(height, 1)
+        raw, ahead=float(u.max() + u.min()) / 2, left=float(v.max() + v.min()) / 2, scale=scale, height=round(height, 1)
     )
 
 
@@ -192,6 +191,10 @@ def _corners(actor: Mapping[str, Any]) -> Points:
     return _of_body(actor, [(hl, hw), (-hl, hw), (-hl, -hw), (hl, -hw)])
 
 
+def _area(actor: Mapping[str, Any]) -> float:
+    return (actor["length_m"] or _DOT_M) * (actor["width_m"] or _DOT_M)
+
+
 def _of_body(actor: Mapping[str, Any], points: Sequence[tuple[float, float]]) -> Points:
     yaw = actor["yaw_rad"] or 0.0
     c, s = math.cos(yaw), math.sin(yaw)
@@ -225,21 +228,25 @@ def _body(actor: Mapping[str, Any], kind: str, view: _View, inside: _Clip, t_ns:
 
 def _distances(
     ego: Mapping[str, Any], met: Sequence[Mapping[str, Any]], view: _View
-) -> tuple[list[Text], list[Line], list[tuple[str, float]]]:
-    """Return labels, lines and values of the least distances from the ego's box to those concerned."""
+) -> tuple[list[Text], list[Line], list[str]]:
+    """Return labels, lines and words of the least distances from the ego's box to those concerned."""
     texts, lines, told = [], [], []
     for actor in met:
         a, b = _corners(ego), _corners(actor)
         nearest = shapely.get_coordinates(shapely.shortest_line(shapely.polygons(a), shapely.polygons(b)))
         far = float(np.hypot(*(nearest[1] - nearest[0])))
-        told.append((actor["actor_id"], far))
+        if far < _TOUCH_M:
+            common = float(shapely.area(shapely.intersection(shapely.polygons(a), shapely.polygons(b))))
+            told.append("the boxes overlap" if common > _TOUCH_M else "the boxes touch")
+            continue
+        told.append(f"{far:.2f} m from box to box")
         p, q = view(nearest)
         middle = (p + q) / 2
         text = f"{far:.1f} m" if far >= 10 else f"{far:.2f} m"
-        if far > _TOUCH_M and np.hypot(*(q - p)) > 60:
+        if np.hypot(*(q - p)) > 60:
             lines.append(Line(num(p[0]), num(p[1]), num(q[0]), num(q[1])))
             texts.append(Text(num(middle[0]), num(middle[1] - 6), text, "gap"))
-        elif far > _TOUCH_M:  # too short for a label on it: lead it out to the free side
+        else:  # too short for a label on it: lead it out to the free side
             top = float(min(view(a)[:, 1].min(), view(b)[:, 1].min()))
             y = top - 26 if top > 44 else float(max(view(a)[:, 1].max(), view(b)[:, 1].max())) + 34
             lines.append(Line(num(p[0]), num(p[1]), num(q[0]), num(q[1])))
@@ -253,7 +260,8 @@ def _label(actor: Mapping[str, Any], ego: Mapping[str, Any], met: Sequence[Mappi
     box = view(_corners(actor))
     middle = box.mean(axis=0)
     partner = met[0] if actor is ego and met else ego
-    below = actor is not partner and middle[1] > view(_corners(partner)).mean(axis=0)[1] + 1
+    lower = middle[1] - view(_corners(partner)).mean(axis=0)[1]
+    below = actor is not partner and (lower > 1 or (abs(lower) <= 1 and actor is not ego))
     y = box[:, 1].max() + 14 if below else box[:, 1].min() - 6
     name, kind = (
         (f"ego {actor['actor_id']}", "ego") if actor is ego else (actor["actor_id"], "met" if actor in met else "other")
@@ -271,13 +279,13 @@ def _bar(scale: float) -> tuple[float, int]:
 def _words(
     ego: Mapping[str, Any],
     met: Sequence[Mapping[str, Any]],
-    told: Sequence[tuple[str, float]],
+    told: Sequence[str],
     spaces: Sequence[Mapping[str, Any]],
 ) -> str:
     """Return the picture in words."""
     speeds = [f"ego {ego['actor_id']} at {_speed(ego)}"] + [f"{a['actor_id']} at {_speed(a)}" for a in met]
-    parts = [f"{', '.join(speeds)}"]
-    parts += [f"{far:.2f} m from box to box" if far > _TOUCH_M else "the boxes touch" for _, far in told]
+    parts = [", ".join(speeds)]
+    parts += told
     if spaces:
         lengths = ", ".join(
             f"{'ego' if s['actor_id'] == ego['actor_id'] else s['actor_id']} {s['length_m']:.1f} m" for s in spaces

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from drivelint.report.html.anchors import finding_anchor
+from drivelint.report.html.anchors import finding_anchor, rule_anchor
 from drivelint.report.text import number, seconds
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
     Row = Mapping[str, Any]
 
@@ -45,6 +45,7 @@ class Lane(NamedTuple):
     """One row: a rule and profile, its worst verdict and what is drawn."""
 
     rule_id: str
+    href: str
     title: str
     profile: str | None
     verdict: str
@@ -78,9 +79,12 @@ class Clock(NamedTuple):
 
 
 def timelines(
-    verdicts: Iterable[Row], findings: Sequence[Row], titles: Mapping[str, str], clock: Clock
+    verdicts: Iterable[Row], findings: Sequence[Row], titles: Mapping[str, str], anchors: Collection[str], clock: Clock
 ) -> list[Timeline]:
-    """Return a timeline for every ego of one drive, in the order of the verdicts."""
+    """Return a timeline for every ego of one drive, in the order of the verdicts.
+
+    `anchors`: the findings that are on the page, to link to.
+    """
     groups: dict[str, dict[tuple[str, str | None], list[Row]]] = {}
     for row in verdicts:
         groups.setdefault(row["ego_id"], {}).setdefault((row["rule_id"], row["profile"]), []).append(row)
@@ -88,7 +92,9 @@ def timelines(
     for row in findings:
         found.setdefault((row["ego_id"], row["rule_id"], row["profile"]), []).append(row)
     return [
-        _timeline(ego, rules, {k[1:]: v for k, v in found.items() if k[0] == ego}, titles, clock)
+        _timeline(
+            ego, rules, {k[1:]: v for k, v in found.items() if k[0] == ego}, titles=titles, anchors=anchors, clock=clock
+        )
         for ego, rules in groups.items()
     ]
 
@@ -97,7 +103,9 @@ def _timeline(
     ego: str,
     rules: Mapping[tuple[str, str | None], list[Row]],
     found: Mapping[tuple[str, str | None], list[Row]],
+    *,
     titles: Mapping[str, str],
+    anchors: Collection[str],
     clock: Clock,
 ) -> Timeline:
     rows, idle = [], []
@@ -108,8 +116,10 @@ def _timeline(
         if worst == "not_applicable":
             idle.append(title if profile is None else f"{title} ({profile})")
             continue
-        marks = [_finding(row, clock) for row in found.get(key, [])] + [_near(r, clock) for r in told if r["near_miss"]]
-        rows.append(Lane(rule_id, title, profile, worst, _bands(told, clock), marks))
+        marks = [_finding(row, anchors, clock) for row in found.get(key, [])] + [
+            _near(r, clock) for r in told if r["near_miss"]
+        ]
+        rows.append(Lane(rule_id, f"#{rule_anchor(rule_id)}", title, profile, worst, _bands(told, clock), marks))
     rows.sort(key=lambda lane: _ORDER.index(lane.verdict))
     return Timeline(ego, clock.ticks(), rows, idle)
 
@@ -138,13 +148,14 @@ def _span(row: Row, clock: Clock) -> tuple[float, float]:
     return clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])
 
 
-def _finding(row: Row, clock: Clock) -> Mark:
+def _finding(row: Row, anchors: Collection[str], clock: Clock) -> Mark:
+    anchor = finding_anchor(row)
     start, end = clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])
     return Mark(
         "fail",
         _pc(start),
         _pc(end - start) if end - start > _THIN else "",
-        f"#{finding_anchor(row)}",
+        f"#{anchor}" if anchor in anchors else "",
         _title(row, clock),
     )
 
