@@ -268,7 +268,7 @@ def inspect(
     else:
         from drivelint.inspect.text import render
 
-        _say(render(found))
+        _say(render(found, trace))
     raise typer.Exit(int(inspection.exit_code(found)))
 
 

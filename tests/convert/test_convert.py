@@ -202,7 +202,7 @@ def test_an_earlier_map_does_not_stay(tmp_path: Path) -> None:
         ("drive.csv", "parquet", "notes", "holds other files"),
         ("log.mcap", "parquet", "d", "holds other files"),
         ("log.mcap", "parquet", "drive.csv", "is a file"),
-        (".", "mcap", "new", "logs: convert takes one at a time"),
+        (".", "mcap", "new", "convert takes one at a time"),
     ],
 )
 def test_nothing_else_is_overwritten(tmp_path: Path, trace: str, to: Any, out: str, message: str) -> None:

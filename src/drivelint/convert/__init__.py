@@ -14,6 +14,7 @@ from drivelint.errors import UsageError
 from drivelint.ingest import IngestOptions, expand, read_trace
 from drivelint.ingest.carried import findings
 from drivelint.ingest.files import CANONICAL
+from drivelint.ingest.order import listed
 from drivelint.maps import MapSource, read_source
 from drivelint.maps.library import MapLibrary
 from drivelint.osi import log as osi_log
@@ -62,8 +63,9 @@ def convert(order: Order) -> Written:
     """
     paths = expand([order.trace])
     if len(paths) != 1:
+        names = listed([each.name for each in paths])
         raise UsageError(
-            f"{order.trace}: {len(paths)} logs: convert takes one at a time, each with an --out of its own"
+            f"{order.trace}: {len(paths)} logs ({names}): convert takes one at a time, each with its own --out"
         )
     (path,) = paths
     stem = path.resolve().name if path.is_dir() else path.stem

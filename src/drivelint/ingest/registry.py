@@ -104,6 +104,8 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
             from drivelint.ingest.finish import finish
 
             return finish(path, identity, recording, options)
+    if b"<OpenDRIVE" in probe.head:
+        raise TraceError(f"{path}: this is a map, not a log: give it with --map, beside a log")
     raise TraceError(
         f"{path}: no reader for this file, which begins with {probe.head[:16]!r}: give MCAP, Parquet or CSV"
     )

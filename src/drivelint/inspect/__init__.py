@@ -11,6 +11,7 @@ from drivelint import catalogue, store
 from drivelint.batch import Drive as Judgeable
 from drivelint.errors import ExitCode, MapError, TraceError, UsageError
 from drivelint.ingest import IngestOptions, expand, read_trace
+from drivelint.ingest.order import listed
 from drivelint.inspect import advice, model, tracks
 from drivelint.inspect.content import content, size
 from drivelint.judge import Bench
@@ -56,7 +57,9 @@ def inspect(order: Order) -> model.Inspection:
     rules = catalogue.select(catalogue.load(order.rules_dirs), selection, ())
     paths = expand([order.trace])
     if len(paths) != 1:
-        raise UsageError(f"{order.trace}: {len(paths)} logs: inspect looks at one at a time")
+        raise UsageError(
+            f"{order.trace}: {len(paths)} logs ({listed([path.name for path in paths])}): inspect looks at one at a time"
+        )
     (path,) = paths
     library = MapLibrary(order.map, order.map_offset, order.handedness)
     options = IngestOptions(order.mapping, order.ego, order.topic, order.sensor_range_m, need_ego=False)
@@ -71,7 +74,7 @@ def inspect(order: Order) -> model.Inspection:
         file=model.File(
             name=file.name, bytes=file.bytes, sha256=log["sha256"], drive_id=trace.drive_id, format=log["format"]
         ),
-        content=content(path, mapping, list(trace.notes)),
+        content=content(path, mapping, list(trace.notes), read=True),
         drive=_drive(trace, library, rules, order, selection),
     )
 
@@ -89,7 +92,7 @@ def exit_code(found: model.Inspection) -> ExitCode:
 
 def _content_of_unread(path: Path) -> model.Content:
     try:
-        return content(path, None, [])
+        return content(path, None, [], read=False)
     except TraceError:  # the problem that the reader has told already
         return model.Content()
 
@@ -99,12 +102,12 @@ def _drive(
 ) -> model.Drive:
     environment, road_problem = _environment(trace, library)
     everybody = tracks.actors(trace)
-    egos, quality = _judgeable(trace, environment, everybody, rules)
+    egos, quality = _judgeable(trace, environment, everybody, rules, road_problem)
     supposed, candidates = None, []
     if not egos:
         candidates = tracks.candidates(everybody)
         options = IngestOptions(order.mapping, candidates[0].actor_id, order.topic, order.sensor_range_m)
-        ((supposed,), _) = _judgeable(read_trace(trace.path, options), environment, everybody, rules)
+        ((supposed,), _) = _judgeable(read_trace(trace.path, options), environment, everybody, rules, road_problem)
     return model.Drive(
         clock=tracks.clock(trace),
         states=trace.tables["actor_state"].num_rows,
@@ -130,7 +133,11 @@ def _environment(trace: Trace, library: MapLibrary) -> tuple[Environment | None,
 
 
 def _judgeable(
-    trace: Trace, environment: Environment | None, everybody: Sequence[model.Actor], rules: Sequence[Rule]
+    trace: Trace,
+    environment: Environment | None,
+    everybody: Sequence[model.Actor],
+    rules: Sequence[Rule],
+    road_problem: str | None,
 ) -> tuple[list[model.Ego], list[model.Quality]]:
     """Lay the drive on the bench without a rule, and ask what the library says of its egos and its data."""
     with store.connect() as con:
@@ -147,6 +154,8 @@ def _judgeable(
         ego_id = way["ego_id"]
         mine = {row["signal"]: row for row in rows["capability"] if row["ego_id"] == ego_id}
         lacking = {signal: row["reason"] for signal, row in mine.items() if not row["available"]}
+        if road_problem is not None:
+            lacking["map"] = "the map is not used (see above)"
         cannot = advice.undecided(rules, lacking)
         known = {rule.rule_id for rule in cannot}
         egos.append(

@@ -16,6 +16,7 @@ from drivelint.ingest.mapping import GROUP, Mapping, Table
 from drivelint.ingest.osi import OPEN_DRIVE
 from drivelint.ingest.osi_decode import TREES
 from drivelint.ingest.sheets import CsvSheet, ParquetSheet
+from drivelint.inspect.draft import draft
 from drivelint.inspect.model import Channel, Column, Content, Sheet
 
 if TYPE_CHECKING:
@@ -34,8 +35,8 @@ def size(path: Path) -> int:
     return sum(file.stat().st_size for file in files if file.is_file())
 
 
-def content(path: Path, mapping: str | None, notes: list[str]) -> Content:
-    """Look into the file. `mapping`: what it was read through; None: through none, or not at all."""
+def content(path: Path, mapping: str | None, notes: list[str], *, read: bool) -> Content:
+    """Look into the file. `mapping`: what it was read through; `read`: whether it was read at all."""
     if path.is_dir():
         return Content(sheets=[_plain(path / name) for name in CANONICAL if _is_table(path / name)], notes=notes)
     with path.open("rb") as file:
@@ -46,11 +47,14 @@ def content(path: Path, mapping: str | None, notes: list[str]) -> Content:
         name, loaded = mappings.load(mapping)
         return Content(sheets=[_mapped(path, loaded)], mapping=name, notes=notes)
     if head.startswith(b"PAR1"):
-        return Content(sheets=[_plain(path)], notes=notes)
+        sheet = _plain(path)
+        guess = None if read else draft([column.name for column in sheet.columns])
+        return Content(sheets=[sheet], notes=notes, draft_mapping=guess)
     if b"\0" in head or not head.strip() or head.lstrip()[:1] in {b"<", b"{"}:
         return Content(notes=notes)
-    columns = [Column(name=name, read_as=[]) for name in CsvSheet(path, Table()).names]
-    return Content(sheets=[Sheet(name=path.name, rows=None, columns=columns)], notes=notes)
+    names = CsvSheet(path, Table()).names
+    columns = [Column(name=name, read_as=[]) for name in names]
+    return Content(sheets=[Sheet(name=path.name, rows=None, columns=columns)], notes=notes, draft_mapping=draft(names))
 
 
 def _is_table(path: Path) -> bool:

@@ -66,6 +66,10 @@ class Content(msgspec.Struct, frozen=True, kw_only=True):
     sheets: Annotated[list[Sheet], Meta(description="tables, of CSV and Parquet")] = []
     mapping: Annotated[str | None, Meta(description="the mapping that a table was read through")] = None
     notes: Annotated[list[str], Meta(description="what the reader said")] = []
+    draft_mapping: Annotated[
+        str | None,
+        Meta(description="where no mapping fits a table: one to start from, TOML, guessed from the columns' names"),
+    ] = None
 
 
 class Clock(msgspec.Struct, frozen=True, kw_only=True):

@@ -46,7 +46,7 @@ def _about(drive: Drive, egos: list[Ego], log: str) -> list[RenderableType]:
         parts.append(Text(f"It can: {', '.join(_short(rule, drive) for rule in ego.can)}.", style="dim"))
     if ego.missing:
         parts += [Text("\nTo decide more, provide:", style="bold"), _by_signal(ego)]
-        parts += [Text("\nWhat the others wait for:", style="bold"), _by_rule(ego)]
+        parts += [Text("\nWhich rules wait for what:", style="bold"), _by_rule(ego)]
     return parts
 
 
@@ -70,11 +70,13 @@ def _by_signal(ego: Ego) -> Table:
 
 
 def _by_rule(ego: Ego) -> Table:
+    """Return the rules that wait for the same together."""
     grid = _grid()
+    waiting: dict[tuple[str, ...], list[str]] = {}
     for rule in ego.cannot:
-        text = Text(", ".join(rule.missing))
-        text.append(f"  ({rule.title})", style="dim")
-        grid.add_row(rule.rule_id, text)
+        waiting.setdefault(tuple(rule.missing), []).append(rule.rule_id)
+    for missing, ids in sorted(waiting.items(), key=lambda item: (-len(item[1]), item[0])):
+        grid.add_row(" + ".join(missing), Text(", ".join(ids)))
     return grid
 
 

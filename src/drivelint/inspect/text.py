@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from typing import TYPE_CHECKING, Final
 
 from rich.console import Group
@@ -9,6 +10,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from drivelint.ingest.mapping import GROUP
 from drivelint.inspect.rules_text import rules
 from drivelint.inspect.words import amount, holes, many, metres, plural, side, size
 
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from drivelint.inspect.model import (
         Actor,
         Channel,
+        Column,
         Content,
         Drive,
         Ego,
@@ -36,10 +39,12 @@ _STYLE: Final = {"error": "bold red", "warning": "yellow", "info": "dim"}
 Line = tuple[str, Text]
 
 
-def render(found: Inspection) -> Group:
-    """Return the whole inspection."""
+def render(found: Inspection, trace: str) -> Group:
+    """Return the whole inspection; `trace` is what the user called the log."""
     parts: list[RenderableType] = [_title(found)]
     lines = [*_content(found.content)]
+    if found.file.drive_id:
+        lines.append(("drive", Text(found.file.drive_id)))
     if found.problem is not None:
         lines.append(("problem", Text(f"cannot be read as a drive: {found.problem}", "bold red")))
     if found.drive is not None:
@@ -47,6 +52,15 @@ def render(found: Inspection) -> Group:
     parts.append(_labelled(lines))
     if found.drive is not None:
         parts.append(rules(found.drive, found.file.name))
+    if found.content.draft_mapping is not None:
+        parts.append(
+            Text(
+                f"A mapping says which column is what. One to start from, to be checked line by line:\n\n{found.content.draft_mapping}"
+            )
+        )
+        parts.append(
+            Text(f"Save it as my.toml, then: drivelint inspect {shlex.quote(trace)} --mapping my.toml", style="bold")
+        )
     return Group(*(Padding(part, (0, 0, 1, 0)) for part in parts))
 
 
@@ -56,8 +70,6 @@ def _title(found: Inspection) -> Text:
     kinds = {"osi-mcap": "ASAM OSI in MCAP", "canonical-parquet": "drivelint's own Parquet tables"}
     kind = "" if file.format is None else kinds.get(file.format, f"a table, read through the mapping {file.format}")
     text.append(f"  {', '.join(part for part in (kind, size(file.bytes)) if part)}", style="default")
-    if file.drive_id:
-        text.append(f"  drive {file.drive_id}", style="dim")
     return text
 
 
@@ -100,16 +112,20 @@ def _sheet(sheet: Sheet) -> Text:
     if not read:
         names = [c.name for c in sheet.columns]
         return Text(f"{sheet.name}: {rows}{plural(len(names), 'column')}: {many(names, MAX_ROWS)}")
-    text = Text(f"{rows}{len(read)} of {plural(len(sheet.columns), 'column')} read: ")
-    cells = []
-    for column in read:
-        meant = " and ".join(column.read_as)
-        unit = f" in {column.unit}" if column.unit else ""
-        cells.append(f"{column.name}{unit}" if meant == column.name else f"{column.name}{unit} as {meant}")
-    text.append("; ".join(cells))
+    grouped = any(GROUP in c.name for c in sheet.columns)
+    whole = f"{rows}{len(read)} of {plural(len(sheet.columns), 'column')}{' per actor' if grouped else ''}"
+    text = Text(f"{whole} read: {', '.join(_cell(column, grouped=grouped) for column in read)}")
     if others := [c.name for c in sheet.columns if not c.read_as]:
-        text.append(f"; not read: {many(others, MAX_ROWS)}", style="dim")
+        names = [name.replace(GROUP, "").lstrip("# ") for name in others]
+        text.append(f"; not read: {many(names, MAX_ROWS)}", style="dim")
     return text
+
+
+def _cell(column: Column, *, grouped: bool) -> str:
+    """Return what a column is read as; its own name too, unless it is the same or one of many groups."""
+    meant = " and ".join(column.read_as)
+    unit = f" in {column.unit}" if column.unit else ""
+    return f"{meant}{unit}" if grouped or meant == column.name else f"{column.name}{unit} as {meant}"
 
 
 def _drive(drive: Drive) -> Iterator[Line]:
@@ -128,12 +144,12 @@ def _drive(drive: Drive) -> Iterator[Line]:
         yield "actors", line.append(sized, style="" if count.sized == count.n else "yellow")
     yield from _egos(drive)
     yield from _road(drive)
-    yield from _quality(drive.quality)
+    yield from _quality([q for q in drive.quality if q.check_id != "no_ego"])
 
 
 def _egos(drive: Drive) -> Iterator[Line]:
     if not drive.egos:
-        yield "ego", Text(f"{drive.ego_source}. Candidates, the longest way first:", style="yellow")
+        yield "ego", Text("none: the log does not say who it is; choose one. The longest way first:", style="yellow")
         for actor in drive.candidates[:MAX_ROWS]:
             yield "ego", Text(f"--ego {actor.actor_id}  {_actor(actor)}")
         if len(drive.candidates) > MAX_ROWS:

@@ -1,0 +1,136 @@
+"""A mapping to start from, guessed from the names of a table's columns: shown for correction, never used unseen."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Final
+
+from drivelint.ingest.mapping import QUANTITY, TIME_UNITS, UNITS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+_WORD: Final = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
+_FUSED: Final = {"vx": "v x", "vy": "v y", "ax": "a x", "ay": "a y", "xcenter": "x", "ycenter": "y"}
+_UNIT_WORDS: Final = {
+    "kmh": "km/h", "kph": "km/h", "mph": "mph", "deg": "deg", "degrees": "deg", "cm": "cm", "mm": "mm", "ns": "ns",
+    "nanos": "ns", "ms": "ms", "us": "us", "millis": "ms",
+}  # fmt: skip
+_TIME: Final = {"t", "time", "timestamp", "stamp", "nanos", "ns"}
+_ID: Final = {"id", "idx", "actor", "agent", "object", "track", "vehicle", "no"}
+_SPEED: Final = {"v", "vel", "velocity", "speed"}
+_ACCELERATION: Final = {"a", "acc", "accel", "acceleration"}
+_FILLERS: Final = {"m", "mps", "s", "rad", "pos", "position", "world"}
+_NAMES: Final = {
+    "yaw": {"yaw", "heading", "psi", "hdg"},
+    "length": {"length"},
+    "width": {"width"},
+    "height": {"height"},
+    "indicator": {"indicator", "blinker"},
+    "class": {"type", "class", "kind", "category"},
+    "speed": _SPEED,
+}
+_OTHERS: Final = {"rate", "lane", "relative", "rel", "wheel", "distance", "center", "reference"}
+"""Words of quantities that look like ours and are not."""
+NEEDED: Final = ("time", "actor_id", "x", "y")
+_ORDER: Final = (
+    "actor_id", "x", "y", "z", "yaw", "vx", "vy", "speed", "ax", "ay", "length", "width", "height",
+)  # fmt: skip
+
+
+def draft(columns: Sequence[str]) -> str | None:
+    """Return a mapping as TOML, a comment where something has to be filled in; None where hardly anything is recognised."""
+    found: dict[str, str] = {}
+    for column in columns:
+        meant = _meaning(column)
+        if meant is not None:
+            found.setdefault(meant, column)
+    if ("vx" in found) != ("vy" in found):
+        found.pop("vx", None), found.pop("vy", None)
+    if ("ax" in found) != ("ay" in found):
+        found.pop("ax", None), found.pop("ay", None)
+    if "vx" in found or "yaw" not in found:
+        found.pop("speed", None)
+    if sum(name in found for name in NEEDED) < 3:
+        return None
+    return "\n".join([*_head(found), *_columns(found), *_words(found)])
+
+
+def _meaning(column: str) -> str | None:
+    """Return which of a mapping's fields the column's name speaks of."""
+    words = _split(column)
+    bare = words - set(_UNIT_WORDS) - _FILLERS
+    axes = words & {"x", "y", "z"}
+    if len(axes) == 1:
+        return _of_axis(next(iter(axes)), words, bare)
+    if words & _OTHERS:
+        return None
+    for meant, some in _NAMES.items():
+        if words & some:
+            return meant
+    if (bare and bare <= _TIME) or "nanos" in words:
+        return "time"
+    return "actor_id" if bare and bare <= _ID else None
+
+
+def _of_axis(axis: str, words: set[str], bare: set[str]) -> str | None:
+    kind = "v" if words & _SPEED else "a" if words & _ACCELERATION else ""
+    if kind:
+        return None if axis == "z" else f"{kind}{axis}"
+    return axis if bare <= {axis} else None
+
+
+def _split(column: str) -> set[str]:
+    words = [word.lower() for word in _WORD.findall(column)]
+    return {part for word in words for part in _FUSED.get(word, word).split()}
+
+
+def _unit(column: str, known: Mapping[str, float]) -> str | None:
+    in_brackets = re.findall(r"[\[(]([^\])]+)[\])]", column)
+    named = [*in_brackets, *(_UNIT_WORDS.get(word) for word in sorted(_split(column)))]
+    return next((unit for unit in named if unit in known), None)
+
+
+def _head(found: Mapping[str, str]) -> list[str]:
+    time = found.get("time")
+    lines = ['description = "what this table is"', "", "[time]"]
+    lines.append(f"column = {_text(time)}" if time else '# column = ""  # which column is the time?')
+    return [*lines, f'unit = "{(time and _unit(time, dict(TIME_UNITS))) or "s"}"']
+
+
+def _columns(found: Mapping[str, str]) -> list[str]:
+    lines = ["", "[columns]"]
+    for name in _ORDER:
+        if name in found:
+            unit = _unit(found[name], UNITS.get(QUANTITY.get(name, ""), {}))
+            column = _text(found[name])
+            lines.append(f'{name} = {{ column = {column}, unit = "{unit}" }}' if unit else f"{name} = {column}")
+        elif name in NEEDED:
+            lines.append(f'# {name} = ""  # which column?')
+        elif name in {"length", "width"}:
+            lines.append(f"# {name} = {4.8 if name == 'length' else 1.8}  # metres, if all vehicles are alike")
+        elif name == "yaw":
+            lines.append('# yaw = ""  # the heading: without it no box can be placed')
+    return lines
+
+
+def _words(found: Mapping[str, str]) -> list[str]:
+    lines = []
+    if "class" in found:
+        lines += [
+            "",
+            "[class]",
+            f"column = {_text(found['class'])}",
+            '# values = { "text in the column" = "car" }',
+            'default = "vehicle"',
+        ]
+    if "indicator" in found:
+        lines += ["", "[indicator]", f"column = {_text(found['indicator'])}"]
+        lines.append('values = { off = "off", left = "left", right = "right", hazard = "hazard" }')
+    return [*lines, "", "[ego]", 'ids = []  # such as ["1"]']
+
+
+def _text(value: str) -> str:
+    """Return a TOML string."""
+    escaped = value.replace("\\", "\\\\").replace('"', '\\"')
+    return '"' + "".join(c if c.isprintable() else f"\\u{ord(c):04x}" for c in escaped) + '"'
