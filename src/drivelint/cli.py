@@ -10,13 +10,12 @@ import os
 import sys
 from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import nullcontext, redirect_stdout
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn, TypeVar
 
 import typer
 
-from drivelint import __version__
+from drivelint import __version__, options
 from drivelint.errors import DriveLintError, ExitCode, RuleError, UsageError
 
 if TYPE_CHECKING:
@@ -39,73 +38,6 @@ app = typer.Typer(
 )
 rules_app = typer.Typer(help="The rule catalogue: list, show and test rules.")
 app.add_typer(rules_app, name="rules")
-
-
-class Format(StrEnum):
-    """How results are printed on stdout."""
-
-    text = "text"
-    json = "json"
-
-
-class Target(StrEnum):
-    """What a drive is converted to."""
-
-    mcap = "mcap"
-    parquet = "parquet"
-
-
-class Report(StrEnum):
-    """What a result can be written as."""
-
-    html = "html"
-
-
-class FailOn(StrEnum):
-    """The least severity that makes exit code 1."""
-
-    critical = "critical"
-    major = "major"
-    minor = "minor"
-    never = "never"
-
-
-class Handedness(StrEnum):
-    """The side of the road that is driven on."""
-
-    auto = "auto"
-    lht = "lht"
-    rht = "rht"
-
-
-MapFile = Annotated[Path | None, typer.Option("--map", metavar="MAP", help="The road (OpenDRIVE).")]
-EgoId = Annotated[
-    str | None, typer.Option("--ego", metavar="ID|all", help="The vehicle under test, or every vehicle in turn.")
-]
-MappingName = Annotated[
-    str | None,
-    typer.Option(
-        "--mapping", metavar="FILE|NAME", help="How a table's columns are read: a TOML file or a shipped name."
-    ),
-]
-MapOffset = Annotated[
-    str | None, typer.Option("--map-offset", metavar="DX,DY", help="Metres added to the map's coordinates.")
-]
-DrivenSide = Annotated[Handedness, typer.Option("--handedness", help="Side of the road that is driven on.")]
-SensorRange = Annotated[
-    float | None,
-    typer.Option(
-        "--sensor-range", metavar="M", min=0, help="Range in which the recorder sees everybody. Default: all."
-    ),
-]
-Topic = Annotated[
-    str | None, typer.Option("--topic", metavar="NAME", help="Read this MCAP topic, where several would do.")
-]
-Printed = Annotated[Format, typer.Option("--format", help="What is printed on stdout.")]
-RulesDirs = Annotated[
-    list[Path] | None,
-    typer.Option("--rules-dir", metavar="DIR", help="Folder with rule packs of your own. Repeatable."),
-]
 
 
 def _version(value: bool) -> None:
@@ -133,7 +65,7 @@ def _root(
 def check(
     *,
     traces: Annotated[list[str], typer.Argument(metavar="TRACE...", help="Recorded drives: files, globs or folders.")],
-    map_: MapFile = None,
+    map_: options.MapFile = None,
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for the result files.")] = None,
     rules: Annotated[
         list[str] | None,
@@ -151,18 +83,18 @@ def check(
     param: Annotated[
         list[str] | None, typer.Option("--param", metavar="RULE.PARAM=V", help="Set a rule's parameter. Repeatable.")
     ] = None,
-    ego: EgoId = None,
-    mapping: MappingName = None,
-    map_offset: MapOffset = None,
-    handedness: DrivenSide = Handedness.auto,
-    sensor_range: SensorRange = None,
-    topic: Topic = None,
-    rules_dir: RulesDirs = None,
+    ego: options.EgoId = None,
+    mapping: options.MappingName = None,
+    map_offset: options.MapOffset = None,
+    handedness: options.DrivenSide = options.Handedness.auto,
+    sensor_range: options.SensorRange = None,
+    topic: options.Topic = None,
+    rules_dir: options.RulesDirs = None,
     fail_on: Annotated[
-        FailOn, typer.Option("--fail-on", help="Least severity that makes exit code 1.")
-    ] = FailOn.critical,
+        options.FailOn, typer.Option("--fail-on", help="Least severity that makes exit code 1.")
+    ] = options.FailOn.critical,
     strict: Annotated[bool, typer.Option("--strict", help="Unknown is not good enough: exit code 4.")] = False,
-    format_: Printed = Format.text,
+    format_: options.Printed = options.Format.text,
     margins: Annotated[bool, typer.Option("--margins", help="Also write margins.parquet: every judged step.")] = False,
     keep_db: Annotated[
         bool, typer.Option("--keep-db", help="Also keep the database with every stage's tables.")
@@ -233,19 +165,19 @@ def demo(
 def inspect(
     *,
     trace: Annotated[str, typer.Argument(metavar="TRACE", help="One recorded drive.")],
-    map_: MapFile = None,
-    ego: EgoId = None,
-    mapping: MappingName = None,
-    map_offset: MapOffset = None,
-    handedness: DrivenSide = Handedness.auto,
-    sensor_range: SensorRange = None,
-    topic: Topic = None,
+    map_: options.MapFile = None,
+    ego: options.EgoId = None,
+    mapping: options.MappingName = None,
+    map_offset: options.MapOffset = None,
+    handedness: options.DrivenSide = options.Handedness.auto,
+    sensor_range: options.SensorRange = None,
+    topic: options.Topic = None,
     rules: Annotated[
         list[str] | None,
         typer.Option("--rules", metavar="SEL", help="Rule id, glob or pack to ask about. Repeatable. Default: ukhc."),
     ] = None,
-    rules_dir: RulesDirs = None,
-    format_: Printed = Format.text,
+    rules_dir: options.RulesDirs = None,
+    format_: options.Printed = options.Format.text,
 ) -> None:
     """Show what is in a log, how it lies on the map, what is wrong with it, and which rules it can decide."""
     from drivelint import inspect as inspection
@@ -263,7 +195,7 @@ def inspect(
         rules_dirs=tuple(rules_dir or ()),
     )
     found = _interruptible(lambda: inspection.inspect(order))
-    if format_ is Format.json:
+    if format_ is options.Format.json:
         typer.echo(inspection.to_json(found))
     else:
         from drivelint.inspect.text import render
@@ -276,14 +208,16 @@ def inspect(
 def convert(
     *,
     trace: Annotated[str, typer.Argument(metavar="TRACE", help="One recorded drive.")],
-    to: Annotated[Target, typer.Option("--to", help="mcap: one file of ASAM OSI; parquet: a folder of tables.")],
+    to: Annotated[
+        options.Target, typer.Option("--to", help="mcap: one file of ASAM OSI; parquet: a folder of tables.")
+    ],
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the converted log.")],
-    map_: MapFile = None,
-    ego: EgoId = None,
-    mapping: MappingName = None,
-    map_offset: MapOffset = None,
-    sensor_range: SensorRange = None,
-    topic: Topic = None,
+    map_: options.MapFile = None,
+    ego: options.EgoId = None,
+    mapping: options.MappingName = None,
+    map_offset: options.MapOffset = None,
+    sensor_range: options.SensorRange = None,
+    topic: options.Topic = None,
 ) -> None:
     """Write a drive as OSI in MCAP or as Parquet tables, in metres and seconds, with its map and what its mapping said."""
     from drivelint import convert as converter
@@ -309,7 +243,9 @@ def convert(
 @app.command()
 def report(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="What check --out wrote.")],
-    to: Annotated[Report, typer.Option("--to", help="html: one page that opens offline.")] = Report.html,
+    to: Annotated[
+        options.Report, typer.Option("--to", help="html: one page that opens offline.")
+    ] = options.Report.html,
 ) -> None:
     """Write a report from a result folder, into that folder."""
     from drivelint.report.files import publish
@@ -322,15 +258,15 @@ def report(
 
 @rules_app.command("list")
 def rules_list(
-    format_: Printed = Format.text,
-    rules_dir: RulesDirs = None,
+    format_: options.Printed = options.Format.text,
+    rules_dir: options.RulesDirs = None,
 ) -> None:
     """List every rule with its kind, severity, status, clause and the signals that it requires."""
     from drivelint.catalogue import load
     from drivelint.report import rules_text
 
     rules = load(tuple(rules_dir or ())).values()
-    if format_ is Format.json:
+    if format_ is options.Format.json:
         typer.echo(rules_text.listing_json(rules))
     else:
         _say(rules_text.listing(rules))
@@ -338,7 +274,7 @@ def rules_list(
 
 @rules_app.command("show")
 def rules_show(
-    rule_id: Annotated[str, typer.Argument(metavar="ID", help="The rule's id.")], rules_dir: RulesDirs = None
+    rule_id: Annotated[str, typer.Argument(metavar="ID", help="The rule's id.")], rules_dir: options.RulesDirs = None
 ) -> None:
     """Show one rule: what it asks, where it comes from, its parameters and its SQL."""
     from drivelint.catalogue import load, select
@@ -460,11 +396,11 @@ def _say(what: RenderableType | Callable[[int], RenderableType], *, soft_wrap: b
         typer.echo("\n".join(line.rstrip() for line in captured.get().splitlines()))
 
 
-def _print(result: Result, format_: Format, out: Path | None) -> None:
+def _print(result: Result, format_: options.Format, out: Path | None) -> None:
     """Print the outcome of a check on stdout."""
     from drivelint.report import summary, terminal
 
-    if format_ is Format.json:
+    if format_ is options.Format.json:
         typer.echo(summary.render(result), nl=False)
     else:
         _say(lambda width: terminal.render(result, None if out is None else str(out), width))

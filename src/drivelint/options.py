@@ -1,0 +1,76 @@
+"""The options that several commands have, and the words they take: each written down once."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+class Format(StrEnum):
+    """How results are printed on stdout."""
+
+    text = "text"
+    json = "json"
+
+
+class Target(StrEnum):
+    """What a drive is converted to."""
+
+    mcap = "mcap"
+    parquet = "parquet"
+
+
+class Report(StrEnum):
+    """What a result can be written as."""
+
+    html = "html"
+
+
+class FailOn(StrEnum):
+    """The least severity that makes exit code 1."""
+
+    critical = "critical"
+    major = "major"
+    minor = "minor"
+    never = "never"
+
+
+class Handedness(StrEnum):
+    """The side of the road that is driven on."""
+
+    auto = "auto"
+    lht = "lht"
+    rht = "rht"
+
+
+MapFile = Annotated[Path | None, typer.Option("--map", metavar="MAP", help="The road (OpenDRIVE).")]
+EgoId = Annotated[
+    str | None, typer.Option("--ego", metavar="ID|all", help="The vehicle under test, or every vehicle in turn.")
+]
+MappingName = Annotated[
+    str | None,
+    typer.Option(
+        "--mapping", metavar="FILE|NAME", help="How a table's columns are read: a TOML file or a shipped name."
+    ),
+]
+MapOffset = Annotated[
+    str | None, typer.Option("--map-offset", metavar="DX,DY", help="Metres added to the map's coordinates.")
+]
+DrivenSide = Annotated[Handedness, typer.Option("--handedness", help="Side of the road that is driven on.")]
+SensorRange = Annotated[
+    float | None,
+    typer.Option(
+        "--sensor-range", metavar="M", min=0, help="Range in which the recorder sees everybody. Default: all."
+    ),
+]
+Topic = Annotated[
+    str | None, typer.Option("--topic", metavar="NAME", help="Read this MCAP topic, where several would do.")
+]
+Printed = Annotated[Format, typer.Option("--format", help="What is printed on stdout.")]
+RulesDirs = Annotated[
+    list[Path] | None,
+    typer.Option("--rules-dir", metavar="DIR", help="Folder with rule packs of your own. Repeatable."),
+]
