@@ -13,6 +13,8 @@ from drivelint.report.text import NONE, number, seconds
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    import pyarrow as pa
+
     from drivelint.report.html.road import Road
 
     Row = Mapping[str, Any]
@@ -129,18 +131,19 @@ def moments(
     ]
 
 
-def pictures(rows: Iterable[Row], scenes: Iterable[Row], road: Road, most: int) -> dict[Key, Plan]:
+def pictures(rows: Iterable[Row], scenes: pa.Table, road: Road, most: int) -> dict[Key, Plan]:
     """Return the plan views of the moments of `rows`, of the first `most` in their order."""
+    keys = zip(*(scenes[name].to_pylist() for name in ("drive_id", "ego_id", "t_ns")), strict=True)
+    index = {at: n for n, at in enumerate(keys)}
     told: dict[Key, list[Row]] = {}
     for row in rows:
         told.setdefault(key(row), []).append(row)
-    seen = {(s["drive_id"], s["ego_id"], s["t_ns"]): s for s in scenes}
     drawn: dict[Key, Plan] = {}
-    for at, found in told.items():
-        if at in seen and len(drawn) < most:
-            concerned = {r["object_id"] for r in found if r["object_id"] is not None}
-            spaces = any(r["rule_id"].startswith(_SPACES) for r in found)
-            drawn[at] = plan(seen[at], road, concerned, spaces=spaces)
+    for at, found in [(at, found) for at, found in told.items() if at in index][:most]:
+        (scene,) = scenes.slice(index[at], 1).to_pylist()
+        concerned = {row["object_id"] for row in found if row["object_id"] is not None}
+        spaces = any(row["rule_id"].startswith(_SPACES) for row in found)
+        drawn[at] = plan(scene, road, concerned, spaces=spaces)
     return drawn
 
 

@@ -24,7 +24,9 @@ if TYPE_CHECKING:
     Row = Mapping[str, Any]
 
 MAX_FINDINGS: Final = 1000
-"""Findings, and as many near misses, in the page: the worst; the Parquet files hold them all."""
+"""Findings in the page: the worst; the Parquet files hold them all."""
+MAX_NEAR: Final = 300
+"""Near misses in the page."""
 MAX_PICTURES: Final = 250
 MAX_DRIVES: Final = 200
 """Drives with a section of their own: first those with findings, then those with near misses or something unknown."""
@@ -46,17 +48,16 @@ def content(result: Result) -> dict[str, Any]:
     rules = {row["rule_id"]: row for row in result.rules.to_pylist()}
     drives = result.drives.to_pylist()
     starts = {row["drive_id"]: row["t_start_ns"] for row in drives}
-    failed = _worst_first(result.findings)
-    near = _worst_first(
-        result.verdicts.filter(pc.and_(result.verdicts["near_miss"], pc.is_valid(result.verdicts["t_worst_ns"])))
-    )
+    failed = _worst_first(result.findings, MAX_FINDINGS)
+    near_miss = pc.and_(result.verdicts["near_miss"], pc.is_valid(result.verdicts["t_worst_ns"]))
+    near = _worst_first(result.verdicts.filter(near_miss), MAX_NEAR)
     lines: list[tuple[Row, Measured]] = [
         (row, measured(row, "fail", rules[row["rule_id"]], starts.get(row["drive_id"]))) for row in failed
     ]
     close: list[tuple[Row, Measured]] = [
         (row, measured(row, "near", rules[row["rule_id"]], starts.get(row["drive_id"]))) for row in near
     ]
-    drawn = pictures([row for row, _ in lines + close], result.scenes.to_pylist(), Road(result.lanes), MAX_PICTURES)
+    drawn = pictures([row for row, _ in lines + close], result.scenes, Road(result.lanes), MAX_PICTURES)
     listed = _by_drive(lines + close)
     told = counts.by(result.verdicts, "drive_id")
     shown = _with_section(drives, listed, told)
@@ -74,7 +75,6 @@ def content(result: Result) -> dict[str, Any]:
         "n_near": int(pc.sum(result.verdicts["near_miss"]).as_py() or 0),
         "findings": [line for _, line in lines],
         "near": [line for _, line in close],
-        "max_findings": MAX_FINDINGS,
         "filters": _filters([line for _, line in lines]),
         "not_judged": [row for row in drives if row["status"] == "not_judged"],
         "open": _reasons(result.verdicts, titles),
@@ -116,14 +116,14 @@ def _headline(result: Result) -> tuple[str, str]:
     return "pass", "No finding"
 
 
-def _worst_first(rows: pa.Table) -> list[dict[str, Any]]:
+def _worst_first(rows: pa.Table, most: int) -> list[dict[str, Any]]:
     """Return the rows to show, in the order of severity, drive and time."""
     weight = pc.index_in(rows["severity"], value_set=pa.array(counts.SEVERITIES))
     order = [
         (name, "ascending")
         for name in ("weight", "drive_id", "ego_id", "t_worst_ns", "rule_id", "profile", "object_id")
     ]
-    worst: list[dict[str, Any]] = rows.append_column("weight", weight).sort_by(order).slice(0, MAX_FINDINGS).to_pylist()
+    worst: list[dict[str, Any]] = rows.append_column("weight", weight).sort_by(order).slice(0, most).to_pylist()
     return worst
 
 

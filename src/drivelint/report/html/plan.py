@@ -163,9 +163,11 @@ class _Clip:
 
     def areas(self, polygons: Sequence[shapely.Geometry]) -> str:
         """Return the union of polygons as a path."""
-        if not len(polygons):
+        view = shapely.box(*self._rect)
+        seen = [polygon for polygon in polygons if shapely.intersects(polygon, view)]
+        if not seen:
             return ""
-        cut = shapely.intersection(shapely.union_all(polygons, grid_size=0.05), shapely.box(*self._rect))
+        cut = shapely.intersection(shapely.union_all(seen, grid_size=0.05), view)
         parts = [p for p in shapely.get_parts(shapely.simplify(cut, 0.2)) if p.geom_type == "Polygon"]
         rings = [ring for p in parts for ring in (p.exterior, *p.interiors)]
         return "".join(closed(shapely.get_coordinates(ring)[:-1]) for ring in rings)

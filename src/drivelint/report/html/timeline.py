@@ -5,6 +5,7 @@ Places along the time axis are percentages, so that the drawing fits any width w
 
 from __future__ import annotations
 
+import hashlib
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.report.html.anchors import finding_anchor, rule_anchor
@@ -54,9 +55,11 @@ class Lane(NamedTuple):
 
 
 class Timeline(NamedTuple):
-    """All rows of one ego, the ticks of the axis, and the rules that never applied."""
+    """All rows of one ego, the axis (name and width of its grid, labels), and the rules that never applied."""
 
     ego_id: str
+    grid: str
+    step: str
     ticks: list[tuple[str, str]]
     rows: list[Lane]
     not_applicable: list[str]
@@ -72,9 +75,13 @@ class Clock(NamedTuple):
         """Return where a time lies, 0 to 100."""
         return min(max((t_ns - self.start_ns) / 1e7 / self.duration_s, 0.0), 100.0)
 
+    def step_s(self) -> int:
+        """Return the time from one tick to the next."""
+        return next((s for s in _TICKS if self.duration_s / s <= _MOST_TICKS), _TICKS[-1])
+
     def ticks(self) -> list[tuple[str, str]]:
         """Return positions and labels of the axis."""
-        step = next((s for s in _TICKS if self.duration_s / s <= _MOST_TICKS), _TICKS[-1])
+        step = self.step_s()
         return [(_pc(100 * t / self.duration_s), str(t)) for t in range(0, int(self.duration_s) + 1, step)]
 
 
@@ -91,15 +98,16 @@ def timelines(
     found: dict[tuple[str, str, str | None], list[Row]] = {}
     for row in findings:
         found.setdefault((row["ego_id"], row["rule_id"], row["profile"]), []).append(row)
-    return [
-        _timeline(
-            ego, rules, {k[1:]: v for k, v in found.items() if k[0] == ego}, titles=titles, anchors=anchors, clock=clock
-        )
-        for ego, rules in groups.items()
-    ]
+    drawn = []
+    for ego, rules in groups.items():
+        mine = {k[1:]: v for k, v in found.items() if k[0] == ego}
+        drive_id = next(iter(rules.values()))[0]["drive_id"]
+        drawn.append(_timeline(_grid(drive_id, ego), ego, rules, mine, titles=titles, anchors=anchors, clock=clock))
+    return drawn
 
 
 def _timeline(
+    grid: str,
     ego: str,
     rules: Mapping[tuple[str, str | None], list[Row]],
     found: Mapping[tuple[str, str | None], list[Row]],
@@ -121,7 +129,12 @@ def _timeline(
         ]
         rows.append(Lane(rule_id, f"#{rule_anchor(rule_id)}", title, profile, worst, _bands(told, clock), marks))
     rows.sort(key=lambda lane: _ORDER.index(lane.verdict))
-    return Timeline(ego, clock.ticks(), rows, idle)
+    return Timeline(ego, grid, f"{clock.step_s() / clock.duration_s:.5f}", clock.ticks(), rows, idle)
+
+
+def _grid(drive_id: str, ego_id: str) -> str:
+    """Return the name of the grid that the rows of a timeline share."""
+    return f"grid-{hashlib.sha256(repr((drive_id, ego_id)).encode('utf-8', 'surrogatepass')).hexdigest()[:12]}"
 
 
 def _bands(told: Sequence[Row], clock: Clock) -> list[Band]:
@@ -135,9 +148,10 @@ def _bands(told: Sequence[Row], clock: Clock) -> list[Band]:
                 spans[-1][1] = max(spans[-1][1], end)
             else:
                 spans.append([start, end])
-        why = "; ".join(dict.fromkeys(row["reason"] for row in rows))
-        title = f"{verdict}: {why[:200]}" if rows else ""
-        bands += [Band(verdict, _pc(a), _pc(b - a) if b - a > _THIN else "", title) for a, b in spans]
+        why = (
+            "" if verdict in {"pass", "fail"} else f": {'; '.join(dict.fromkeys(row['reason'] for row in rows))[:200]}"
+        )
+        bands += [Band(verdict, _pc(a), _pc(b - a) if b - a > _THIN else "", f"{verdict}{why}") for a, b in spans]
     return bands
 
 
