@@ -20,7 +20,7 @@ _TIME: Final = {"t", "time", "timestamp", "stamp", "nanos", "ns"}
 _ID: Final = {"id", "idx", "actor", "agent", "object", "track", "vehicle", "no"}
 _SPEED: Final = {"v", "vel", "velocity", "speed"}
 _ACCELERATION: Final = {"a", "acc", "accel", "acceleration"}
-_FILLERS: Final = {"m", "mps", "s", "rad", "pos", "position", "world"}
+_FILLERS: Final = {"m", "mps", "s", "rad", "pos", "position", "world", "center", "centre"}
 _NAMES: Final = {
     "yaw": {"yaw", "heading", "psi", "hdg"},
     "length": {"length"},
@@ -102,9 +102,14 @@ def _columns(found: Mapping[str, str]) -> list[str]:
     lines = ["", "[columns]"]
     for name in _ORDER:
         if name in found:
-            unit = _unit(found[name], UNITS.get(QUANTITY.get(name, ""), {}))
+            units = UNITS.get(QUANTITY.get(name, ""), {})
+            unit = _unit(found[name], units)
             column = _text(found[name])
-            lines.append(f'{name} = {{ column = {column}, unit = "{unit}" }}' if unit else f"{name} = {column}")
+            lines.append(
+                f'{name} = {{ column = {column}, unit = "{unit}" }}'
+                if unit and unit != next(iter(units))
+                else f"{name} = {column}"
+            )
         elif name in NEEDED:
             lines.append(f'# {name} = ""  # which column?')
         elif name in {"length", "width"}:

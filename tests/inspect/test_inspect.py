@@ -1,0 +1,240 @@
+"""What inspect finds out: held against the data's own description, and against what check then judges."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+import pytest
+
+from drivelint.errors import ExitCode, UsageError
+from drivelint.inspect import Order, exit_code, inspect, to_json
+from drivelint.inspect.advice import ADVICE, provide
+from drivelint.inspect.model import Inspection, json_schema
+from drivelint.report.progress import Silent
+from drivelint.resources import folder
+from drivelint.run import Settings, check
+from tests.ingest import osi_log
+from tests.shared_data import ROOT, shared
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.inspect.model import Drive
+
+FIXTURE = ROOT / "fixtures" / "overtake"
+ROAD = FIXTURE / "road.xodr"
+MAPPING = str(FIXTURE / "mapping.toml")
+LIGHTS = {"ukhc.r103.signal-before", "ukhc.r103.signal-means-go", "ukhc.signal-then-leaves"}
+
+
+def looked(trace: Path | str, **options: Any) -> Drive:
+    """Return what is known of a log that is a drive."""
+    found = inspect(Order(str(trace), **options))
+    assert found.problem is None
+    assert found.drive is not None
+    return found.drive
+
+
+@pytest.fixture(scope="module")
+def study() -> Inspection:
+    road = shared("overtake_case_study/t_junction.xodr")
+    return inspect(Order(str(shared("overtake_case_study/safe.csv")), map=road, mapping="carla-testbench"))
+
+
+def test_the_case_study(study: Inspection) -> None:
+    drive = study.drive
+    assert drive is not None
+    (ego,) = drive.egos
+    assert (ego.actor.actor_id, ego.actor.length_m, ego.actor.width_m) == ("1", 4.8, 1.8)
+    assert (drive.clock.period_s, drive.clock.holes, drive.states) == (0.1, 0, 1005)
+    assert [(c.actor_class, c.n, c.sized, c.moving) for c in drive.classes] == [("car", 3, 3, 2)]
+    assert drive.road is not None
+    assert (drive.road.handedness, drive.road.handedness_source, drive.road.offset_m) == (
+        "lht",
+        "junctions",
+        (2.618, 3.113),
+    )
+    assert ego.registration is not None
+    assert ego.registration.ok
+    assert ego.registration.on_lane == ego.registration.steps == ego.steps == drive.clock.steps
+
+
+def test_12_of_16_rules_and_why_not_the_others(study: Inspection) -> None:
+    assert study.drive is not None
+    (ego,) = study.drive.egos
+    assert (len(ego.can), len(study.drive.rules)) == (12, 16)
+    assert {rule.rule_id: rule.missing for rule in ego.cannot} == {
+        **{rule: ["indicator"] for rule in LIGHTS},
+        "ukhc.exit-sign-signal": ["exit_signs", "indicator"],
+    }
+    by_signal = {item.signal: item for item in ego.missing}
+    assert set(by_signal["indicator"].alone) == LIGHTS
+    assert by_signal["exit_signs"].alone == []
+
+
+@pytest.mark.parametrize("road", [ROAD, None], ids=["map", "no map"])
+def test_what_cannot_be_decided_is_what_check_calls_missing(road: Path | None) -> None:
+    """inspect and check must not tell different stories: the rules whose verdict is `missing_...` are those named here."""
+    (ego,) = looked(FIXTURE / "safe.csv", map=road, mapping=MAPPING).egos
+    rows = check(Settings((str(FIXTURE / "safe.csv"),), map=road, mapping=MAPPING, rules=("ukhc",)), Silent()).verdicts
+    lacking = {row["rule_id"] for row in rows.to_pylist() if row["reason_code"].startswith("missing_")}
+    assert lacking
+    assert lacking == {rule.rule_id for rule in ego.cannot}
+
+
+def test_without_a_map_it_is_the_map_that_is_missing() -> None:
+    drive = looked(FIXTURE / "safe.csv", mapping=MAPPING)
+    (ego,) = drive.egos
+    assert (drive.road, ego.registration) == (None, None)
+    assert {signal for rule in ego.cannot for signal in rule.missing} <= {"map", "indicator", "ego_size"}
+    assert next(item for item in ego.missing if item.signal == "map").provide.endswith("--map FILE")
+
+
+def test_a_map_of_another_place_is_told_and_not_used() -> None:
+    found = inspect(Order(str(FIXTURE / "safe.csv"), map=ROAD, mapping=MAPPING, map_offset=(9000.0, 0.0)))
+    assert found.drive is not None
+    assert "of another place" in (found.drive.road_problem or "")
+    assert found.drive.road is None
+    assert found.drive.egos[0].missing[0].reason.startswith("the map is not used")
+    assert exit_code(found) is ExitCode.NOT_JUDGED
+
+
+def test_no_ego_is_no_error_but_a_choice(tmp_path: Path) -> None:
+    frames = []
+    for i in range(20):
+        truth = osi_log.frame(i * 100_000_000, host=None)
+        osi_log.moving(truth, 7, 1.0 * i)
+        osi_log.moving(truth, 8, 2.0 * i, 4.0, v=(20.0, 0.0))
+        osi_log.moving(truth, 9, 5.0 * i, 8.0, v=(50.0, 0.0), kind=3, vehicle=0)
+        frames.append(truth)
+    drive = looked(osi_log.write(tmp_path / "log.mcap", osi_log.truths(frames)))
+    assert drive.egos == []
+    assert [(a.actor_id, round(a.way_m)) for a in drive.candidates] == [("8", 38), ("7", 19)]
+    assert drive.supposed is not None
+    assert drive.supposed.actor.actor_id == "8"
+    assert "ukhc.no-collision" in drive.supposed.can
+    chosen = looked(tmp_path / "log.mcap", ego="7")
+    assert [ego.actor.actor_id for ego in chosen.egos] == ["7"]
+    assert (chosen.supposed, chosen.candidates) == (None, [])
+
+
+def test_every_vehicle_in_turn_and_who_lacks_what(tmp_path: Path) -> None:
+    frames = osi_log.drive(20)
+    for truth in frames:
+        truth.moving_object[1].base.ClearField("dimension")
+        truth.moving_object[0].vehicle_classification.light_state.indicator_state = 2
+    drive = looked(osi_log.write(tmp_path / "log.mcap", osi_log.truths(frames)), ego="all")
+    assert [ego.actor.actor_id for ego in drive.egos] == ["0", "1", "2"]
+    lacking = {ego.actor.actor_id: {item.signal for item in ego.missing} for ego in drive.egos}
+    assert lacking["1"] >= {"map", "ego_size"}
+    assert "ego_size" not in lacking["0"]
+
+
+def test_channels_are_counted_and_said_what_they_are_for(tmp_path: Path) -> None:
+    more = [osi_log.Out("osi3.SensorView", "view", 500_000_000, b"")]
+    path = osi_log.write(tmp_path / "log.mcap", [*osi_log.truths(osi_log.drive(11)), *more])
+    found = inspect(Order(str(path)))
+    assert "2 topics" in (found.problem or "")
+    channels = {c.topic: c for c in found.content.channels}
+    truth = channels["ground_truth"]
+    assert (truth.messages, truth.schema, truth.encoding, truth.read_as) == (
+        11,
+        "osi3.GroundTruth",
+        "protobuf",
+        "ground truth",
+    )
+    assert truth.rate_hz == pytest.approx(10.0)
+    assert (channels["view"].messages, channels["view"].rate_hz) == (1, None)
+    assert exit_code(found) is ExitCode.NOT_JUDGED
+    assert exit_code(inspect(Order(str(path), topic="ground_truth"))) is ExitCode.OK
+
+
+def test_holes(tmp_path: Path) -> None:
+    frames = [frame for i, frame in enumerate(osi_log.drive(40)) if i not in range(10, 15)]
+    clock = looked(osi_log.write(tmp_path / "log.mcap", osi_log.truths(frames))).clock
+    assert (clock.steps, clock.holes) == (35, 1)
+    assert clock.longest_hole_s == pytest.approx(0.6)
+    assert clock.first_hole_at_s == pytest.approx(0.9)
+
+
+def test_a_table_that_no_mapping_fits_gets_one_to_start_from(tmp_path: Path) -> None:
+    found = inspect(Order(str(FIXTURE / "safe.csv")))
+    assert "no shipped mapping fits" in (found.problem or "")
+    draft = found.content.draft_mapping or ""
+    (tmp_path / "draft.toml").write_text(draft.replace("ids = []", 'ids = ["ego"]'), encoding="utf-8")
+    mine, good = (looked(FIXTURE / "safe.csv", mapping=name) for name in (str(tmp_path / "draft.toml"), MAPPING))
+    assert mine.clock == good.clock
+    assert mine.egos[0].actor.way_m == good.egos[0].actor.way_m
+    assert not [q for q in mine.quality if q.severity == "error"]
+    assert {item.signal for item in mine.egos[0].missing} == {"map", "ego_size"}  # which the table does not have
+
+
+@pytest.mark.parametrize(
+    ("columns", "lines"),
+    [
+        ("timestamp_ms,Track ID,Position X [m],Position Y [m],Speed [km/h],Heading (deg)",
+         ['column = "timestamp_ms"', 'unit = "ms"', 'actor_id = "Track ID"', 'x = "Position X [m]"',
+          'speed = { column = "Speed [km/h]", unit = "km/h" }', 'yaw = { column = "Heading (deg)", unit = "deg" }']),
+        ("t,object_id,xCenter,yCenter,xVelocity,yVelocity", ['x = "xCenter"', 'vx = "xVelocity"', 'vy = "yVelocity"', "# yaw"]),
+        ('t,id,x,y,vx,"say ""hi""\\n"', ['x = "x"']),
+    ],
+)  # fmt: skip
+def test_drafts(tmp_path: Path, columns: str, lines: list[str]) -> None:
+    (tmp_path / "log.csv").write_text(columns + "\n", encoding="utf-8")
+    draft = inspect(Order(str(tmp_path / "log.csv"))).content.draft_mapping or ""
+    for line in lines:
+        assert line in draft
+    assert ("\nvx = " in draft) == ("\nvy = " in draft)
+
+
+@pytest.mark.parametrize(
+    ("content", "problem"),
+    [
+        (b"", "the file is empty"),
+        (b"<html>404</html>", "no reader for this file"),
+        (b"\x89MCAP0\r\n\x01", "ends without a footer"),
+        (b"PAR1 not really", "not readable as Parquet"),
+        (b"a,b\n1,2\n", "no shipped mapping fits"),
+        (b"\xff\xfe,b\n1,2\n", "no shipped mapping fits"),
+        (b'<?xml version="1.0"?><OpenDRIVE>', "this is a map, not a log"),
+    ],
+)
+def test_files_that_are_no_drives(tmp_path: Path, content: bytes, problem: str) -> None:
+    (tmp_path / "log").write_bytes(content)
+    found = inspect(Order(str(tmp_path / "log")))
+    assert problem in (found.problem or "")
+    assert (found.drive, exit_code(found)) == (None, ExitCode.NOT_JUDGED)
+
+
+def test_several_logs_are_refused(tmp_path: Path) -> None:
+    for name in ("a.csv", "b.csv"):
+        (tmp_path / name).write_text("x\n", encoding="utf-8")
+    with pytest.raises(UsageError, match=r"2 logs \(a\.csv, b\.csv\)"):
+        inspect(Order(str(tmp_path)))
+
+
+def test_every_signal_that_the_library_tells_has_advice() -> None:
+    sql = (folder("queries") / "derive" / "capability.sql").read_text(encoding="utf-8")
+    signals = set(re.findall(r"\('(\w+)'\)", sql))
+    assert "registration" in signals
+    assert signals == set(ADVICE)
+    for signal in signals:
+        for log_format in ("osi-mcap", "canonical-parquet", "esmini"):
+            assert "{" not in provide(signal, log_format)
+
+
+def test_the_json_is_as_its_schema_says(study: Inspection) -> None:
+    """The schema in the repository is made from the code; a key that goes must be seen in a diff of it."""
+    assert (folder("schemas") / "inspect.schema.json").read_bytes() == json_schema(), "write it anew with json_schema()"
+    text = to_json(study)
+    assert msgspec.json.decode(text, type=Inspection) == study
+    assert list(json.loads(text)) == ["inspect_schema", "file", "content", "problem", "drive"]
+
+
+def test_the_same_every_time(study: Inspection) -> None:
+    road = shared("overtake_case_study/t_junction.xodr")
+    again = inspect(Order(str(shared("overtake_case_study/safe.csv")), map=road, mapping="carla-testbench"))
+    assert to_json(again) == to_json(study)

@@ -1,0 +1,109 @@
+"""An inspection as a person meets it: in a process of its own, narrow, plain, with odd names."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+from rich.console import Console
+
+from drivelint.inspect import Order, inspect
+from drivelint.inspect.text import render
+from tests.ingest import osi_log
+from tests.shared_data import ROOT
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+FIXTURE = ROOT / "fixtures" / "overtake"
+LOG = str(FIXTURE / "safe.csv")
+ON_ROAD = {"map": FIXTURE / "road.xodr", "mapping": str(FIXTURE / "mapping.toml")}
+
+
+def run(*args: str, columns: int = 100) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "drivelint", *args],
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        check=False,
+        env={**os.environ, "PYTHONPATH": str(ROOT / "src"), "COLUMNS": str(columns), "PYTHONIOENCODING": "utf-8"},
+    )
+
+
+def text(order: Order, width: int = 100) -> str:
+    console = Console(file=io.StringIO(), width=width, color_system=None)
+    console.print(render(inspect(order), order.trace))
+    assert isinstance(console.file, io.StringIO)
+    return console.file.getvalue()
+
+
+@pytest.mark.parametrize("width", [40, 80, 200])
+def test_nothing_is_cut_off(width: int) -> None:
+    shown = text(Order(LOG, **ON_ROAD), width)  # type: ignore[arg-type]
+    assert max(map(len, shown.splitlines())) <= width
+    assert "…" not in shown
+    whole = "".join(shown.split())
+    for said in ("safe.csvcandecide", "road.xodr", "noholes", "ukhc.exit-sign-signal"):
+        assert said in whole
+
+
+def test_plain_where_it_is_no_terminal() -> None:
+    done = run("inspect", LOG, "--mapping", str(ON_ROAD["mapping"]))
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "\x1b" not in done.stdout
+    assert all(line == line.rstrip() for line in done.stdout.splitlines())
+    assert "give it with --map" in done.stdout
+
+
+def test_json_for_machines() -> None:
+    done = run("inspect", LOG, "--mapping", str(ON_ROAD["mapping"]), "--map", str(ON_ROAD["map"]), "--format", "json")
+    found = json.loads(done.stdout)
+    assert (found["inspect_schema"], found["problem"], found["drive"]["egos"][0]["actor"]["actor_id"]) == (
+        1,
+        None,
+        "ego",
+    )
+
+
+def test_a_file_that_is_no_drive_is_exit_code_4_and_its_content_is_shown() -> None:
+    done = run("inspect", LOG)
+    assert done.returncode == 4
+    assert "cannot be read as a drive" in done.stdout
+    assert "heading_deg" in done.stdout
+    assert "Traceback" not in done.stderr
+
+
+def test_convert_says_how_to_check(tmp_path: Path) -> None:
+    done = run(
+        "convert",
+        LOG,
+        "--to",
+        "mcap",
+        "--out",
+        str(tmp_path),
+        "--mapping",
+        str(ON_ROAD["mapping"]),
+        "--map",
+        str(ON_ROAD["map"]),
+    )
+    assert done.returncode == 0, done.stderr
+    command = done.stdout.splitlines()[-1].partition("drivelint check ")[2].removesuffix(" --out results")
+    checked = run("check", *command.split(), "-q")
+    assert (checked.returncode, checked.stderr) == (0, "")
+    wrong = run("convert", str(tmp_path / "safe.mcap"), "--to", "mcap", "--out", str(tmp_path))
+    assert (wrong.returncode, wrong.stdout) == (2, "")
+    assert "overwrite the log itself" in wrong.stderr
+
+
+def test_names_are_shown_as_they_are(tmp_path: Path) -> None:
+    """Topics and ids may look like markup; they are text."""
+    path = osi_log.write(tmp_path / "[red]x.mcap", osi_log.truths(osi_log.drive(5), topic="[bold]t[/bold]"))
+    shown = text(Order(str(path)))
+    assert "[bold]t[/bold]: 5 messages" in shown
+    assert "[red]x.mcap" in shown
