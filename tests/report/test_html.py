@@ -5,6 +5,8 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
+import subprocess
+import sys
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -262,6 +264,18 @@ def test_a_crowd_is_cut_to_the_worst_and_says_so(monkeypatch: pytest.MonkeyPatch
 def test_a_result_read_back_gives_the_same_page(overtakes: Result, text: str, tmp_path: Path) -> None:
     write(overtakes, tmp_path)
     assert page(load(tmp_path)) == text
+
+
+def test_the_command_writes_the_page_into_the_folder(overtakes: Result, text: str, tmp_path: Path) -> None:
+    write(overtakes, tmp_path)
+    command = [sys.executable, "-m", "drivelint", "report", str(tmp_path), "--to", "html"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout.strip()) == (0, str(tmp_path / "report.html"))
+    assert (tmp_path / "report.html").read_text(encoding="utf-8") == text
+    done = subprocess.run([*command[:4], str(tmp_path / "absent")], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith("drivelint: error: ")
+    assert len(done.stderr.splitlines()) == 1
 
 
 def test_a_folder_without_a_result_is_one_clear_error(tmp_path: Path) -> None:
