@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, BinaryIO
 
 from drivelint.annotate.evidence import gather
@@ -97,4 +97,5 @@ def _whole(path: Path) -> Iterator[BinaryIO]:
             "or use --no-annotate"
         ) from error
     finally:
-        temporary.unlink(missing_ok=True)
+        with suppress(OSError):  # the folder itself may be what is wrong: the first error is the one to tell
+            temporary.unlink(missing_ok=True)

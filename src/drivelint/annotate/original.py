@@ -13,7 +13,7 @@ import os
 import struct
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final, NamedTuple, Self
+from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple, Self
 
 import numpy as np
 from mcap.data_stream import ReadDataStream
@@ -89,7 +89,7 @@ class Original:
     def __init__(self, path: Path, sha256: str) -> None:
         self.path = path
         self._sha256 = sha256
-        self._file = path.open("rb")  # closed by leaving the `with` that this object is made for
+        self._file = _opened(path)  # closed by leaving the `with` that this object is made for
         # mapped for the record heads alone: what is read through a map counts as memory of this process
         self._view = memoryview(mmap.mmap(self._file.fileno(), 0, access=mmap.ACCESS_READ))
         self.contents = self._survey()
@@ -131,7 +131,10 @@ class Original:
 
     def read(self, start: int, end: int) -> bytes:
         """Return bytes of the file."""
-        content = os.pread(self._file.fileno(), end - start, start)
+        try:
+            content = os.pread(self._file.fileno(), end - start, start)
+        except OSError as error:
+            raise _unreadable(self.path, error) from error
         if len(content) != end - start:
             raise self.damaged(start)
         return content
@@ -221,6 +224,25 @@ class Original:
         for start in range(0, len(self._view), _BLOCK):
             digest.update(self.read(start, min(start + _BLOCK, len(self._view))))
         return digest.hexdigest()
+
+
+def is_mcap(path: Path) -> bool:
+    """Whether a trace is an MCAP file, by its first bytes."""
+    if path.is_dir():
+        return False
+    with _opened(path) as file:
+        return file.read(len(MAGIC)) == MAGIC
+
+
+def _opened(path: Path) -> BinaryIO:
+    try:
+        return path.open("rb")
+    except OSError as error:
+        raise _unreadable(path, error) from error
+
+
+def _unreadable(path: Path, error: OSError) -> TraceError:
+    return TraceError(f"{path}: the log cannot be read any more ({error.strerror or error}): check it again")
 
 
 def _agrees(found: Contents, named: set[int]) -> bool:

@@ -11,8 +11,8 @@ import numpy as np
 
 from drivelint import __version__
 from drivelint.annotate import actors, clock, events, foxglove, marks, spaces
-from drivelint.annotate.original import Original
-from drivelint.annotate.sink import MAGIC, Sink
+from drivelint.annotate.original import Original, is_mcap
+from drivelint.annotate.sink import Sink
 from drivelint.annotate.tracks import tracks
 from drivelint.report.contract import OUTPUT_SCHEMA
 
@@ -50,20 +50,13 @@ def write(file: BinaryIO, said: Annotation) -> None:
     """Write the annotated log of one drive. Same inputs, same bytes. Errors: `TraceError` where the log cannot be copied."""
     sink = Sink(file)
     log = said.trace.tables["data_log"].to_pylist()[0]
-    if _is_mcap(said.trace):
+    if is_mcap(said.trace.path):
         with Original(said.trace.path, log["sha256"]) as original:
             original.copy(sink)
     else:
         sink.begin(f"drivelint {__version__}")
     _Writer(sink, said, int(log["t_start_ns"])).run()
     sink.finish()
-
-
-def _is_mcap(trace: Trace) -> bool:
-    if trace.path.is_dir():
-        return False
-    with trace.path.open("rb") as file:
-        return file.read(len(MAGIC)) == MAGIC
 
 
 class _Writer:
