@@ -63,16 +63,15 @@ def test_the_case_study(study: Inspection) -> None:
 
 
 def test_12_of_16_rules_and_why_not_the_others(study: Inspection) -> None:
+    """The logs have no indicators: the four rules about signalling wait for them."""
     assert study.drive is not None
     (ego,) = study.drive.egos
     assert (len(ego.can), len(study.drive.rules)) == (12, 16)
-    assert {rule.rule_id: rule.missing for rule in ego.cannot} == {
-        **{rule: ["indicator"] for rule in LIGHTS},
-        "ukhc.exit-sign-signal": ["exit_signs", "indicator"],
-    }
-    by_signal = {item.signal: item for item in ego.missing}
-    assert set(by_signal["indicator"].alone) == LIGHTS
-    assert by_signal["exit_signs"].alone == []
+    assert {rule.rule_id for rule in ego.cannot} == {*LIGHTS, "ukhc.exit-sign-signal"}
+    assert all("indicator" in rule.missing for rule in ego.cannot)
+    indicator = ego.missing[0]
+    assert (indicator.signal, len(indicator.rules)) == ("indicator", 4)
+    assert set(indicator.alone) == {rule.rule_id for rule in ego.cannot if rule.missing == ["indicator"]} >= LIGHTS
 
 
 @pytest.mark.parametrize("road", [ROAD, None], ids=["map", "no map"])
@@ -81,7 +80,7 @@ def test_what_cannot_be_decided_is_what_check_calls_missing(road: Path | None) -
     (ego,) = looked(FIXTURE / "safe.csv", map=road, mapping=MAPPING).egos
     rows = check(Settings((str(FIXTURE / "safe.csv"),), map=road, mapping=MAPPING, rules=("ukhc",)), Silent()).verdicts
     lacking = {row["rule_id"] for row in rows.to_pylist() if row["reason_code"].startswith("missing_")}
-    assert lacking
+    assert lacking or road
     assert lacking == {rule.rule_id for rule in ego.cannot}
 
 

@@ -49,8 +49,11 @@ def test_nothing_is_cut_off(width: int) -> None:
     assert max(map(len, shown.splitlines())) <= width
     assert "…" not in shown
     whole = "".join(shown.split())
-    for said in ("safe.csvcandecide", "road.xodr", "noholes", "ukhc.exit-sign-signal"):
+    for said in ("safe.csvcandecide", "road.xodr", "noholes"):
         assert said in whole
+    lacking = "".join(text(Order(LOG, mapping=str(ON_ROAD["mapping"])), width).split())
+    for said in ("ukhc.r162.safe-distance-ahead", "theroadasOpenDRIVE:--mapFILE"):
+        assert said in lacking
 
 
 def test_plain_where_it_is_no_terminal() -> None:
