@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any, Final
 
-from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+from google.protobuf import descriptor_pb2
 
 _F = descriptor_pb2.FieldDescriptorProto
 _SCALARS = {
@@ -156,11 +156,3 @@ def _file() -> descriptor_pb2.FileDescriptorProto:
 def descriptor_set() -> bytes:
     """Return the serialised `FileDescriptorSet` for an MCAP schema record."""
     return descriptor_pb2.FileDescriptorSet(file=[_file()]).SerializeToString(deterministic=True)
-
-
-@cache
-def ground_truth_class() -> Any:
-    """Return the message class of `osi3.GroundTruth`."""
-    pool = descriptor_pool.DescriptorPool()
-    pool.Add(_file())
-    return message_factory.GetMessageClass(pool.FindMessageTypeByName(GROUND_TRUTH))
