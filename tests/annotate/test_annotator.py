@@ -19,6 +19,7 @@ from shapely.ops import unary_union
 
 from drivelint import __version__, batch
 from drivelint.annotate import actors, events
+from drivelint.annotate.annotator import LAYOUT
 from drivelint.errors import TraceError
 from drivelint.evaluate import evaluate
 from drivelint.ingest import IngestOptions, read_trace
@@ -207,7 +208,7 @@ def test_after_a_jump_a_viewer_shows_what_it_shows_when_it_plays(out: Path, name
 
 
 def test_nothing_stays_behind_a_finding(out: Path) -> None:
-    for path in (out / "annotated").iterdir():
+    for path in (out / "annotated").glob("*.mcap"):
         ends = [row["t_end_ns"] for row in rows(out, "findings", path.stem)]
         near = [row["t_worst_ns"] for row in rows(out, "verdicts", path.stem) if row["near_miss"]]
         last = max([*ends, *near]) + 2_100_000_000
@@ -292,7 +293,7 @@ def test_a_recorded_log_keeps_every_message_and_ours_lie_at_its_frames(logged: t
 
 def test_an_annotated_log_can_be_checked_and_annotated_again(logged: tuple[Path, Path], tmp_path: Path) -> None:
     _, once = logged
-    (twice,) = run(tmp_path, once, map=SCENE / "overtake-road.xodr", mapping=None).iterdir()
+    twice = the(run(tmp_path, once, map=SCENE / "overtake-road.xodr", mapping=None), once.stem)
     topics = {m[0] for m in streaming(twice)}
     assert {"/drivelint/verdicts", "/drivelint_2/verdicts"} <= topics
     assert not any(topic.startswith("/drivelint_2/tf") for topic in topics), "the log has its own transforms now"
@@ -306,7 +307,7 @@ def test_the_same_bytes_alone_or_in_a_crowd_in_any_order(
     monkeypatch.setattr(batch, "STATES", 1)
     others = run(tmp_path / "a", *(CASE / f"{name}.csv" for name in ("collision", "safe")))
     alone = run(tmp_path / "b", CASE / "near_miss.csv")
-    for path in (*others.iterdir(), *alone.iterdir()):
+    for path in (*others.glob("*"), *alone.glob("*")):
         assert path.read_bytes() == (out / "annotated" / path.name).read_bytes()
 
 
@@ -335,6 +336,17 @@ def test_without_a_map_there_are_boxes_and_verdicts(tmp_path: Path) -> None:
     assert messages(path, "scene")
     assert messages(path, "verdicts")
     verify(path)
+
+
+def test_the_layout_shows_every_topic_that_is_there(out: Path) -> None:
+    layout = json.loads((out / "annotated" / LAYOUT).read_bytes())
+    panels = layout["configById"]
+    assert set(panels["3D!drivelint"]["topics"]) == {f"/drivelint/{topic}" for topic in SCENES}
+    assert all(topic["visible"] for topic in panels["3D!drivelint"]["topics"].values())
+    moves = messages(the(out / "annotated", "safe"), "tf")
+    assert panels["3D!drivelint"]["followTf"] == moves[0].content.child_frame_id
+    others = {panels["RosOut!drivelint"]["topicToRender"], panels["RawMessages!drivelint"]["topicPath"]}
+    assert others == {"/drivelint/log", "/drivelint/findings"}
 
 
 def test_no_annotate_writes_none(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from drivelint.annotate.evidence import gather
@@ -15,7 +16,6 @@ from drivelint.report.result import Result
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from pathlib import Path
 
     import duckdb
     import pyarrow as pa
@@ -24,11 +24,16 @@ if TYPE_CHECKING:
     from drivelint.batch import Drive
     from drivelint.maps import Environment
 
+LAYOUT = "viewer-layout.json"
+"""Panels and topics as Foxglove and Lichtblick import them: there, topics are hidden until somebody asks for them."""
 _BUFFER = 1 << 20
 
 
 class Annotator:
-    """Writes `<folder>/<drive_id>.mcap` for every drive. `rules` is the run's rule table, `fail_on` and `strict` its options."""
+    """Writes `<folder>/<drive_id>.mcap` for every drive, and a layout for the viewer.
+
+    `rules` is the run's rule table, `fail_on` and `strict` its options.
+    """
 
     def __init__(self, folder: Path, rules: pa.Table, *, fail_on: str, strict: bool) -> None:
         self._folder = folder
@@ -58,6 +63,8 @@ class Annotator:
             )
             with _whole(self._folder / f"{name}.mcap") as file:
                 write(file, said)
+        with _whole(self._folder / LAYOUT) as file:
+            file.write((Path(__file__).parent / "layout.json").read_bytes())
 
     def _road(self, environment: Environment | None) -> Road | None:
         """Return the road of a map; of several, only the last is kept."""
@@ -83,7 +90,7 @@ class Annotator:
 @contextmanager
 def _whole(path: Path) -> Iterator[BinaryIO]:
     """Open a file that appears under its name whole, or not at all. Errors: `OutputError`."""
-    temporary = path.with_name(f".drivelint.{os.getpid()}.mcap.tmp")
+    temporary = path.with_name(f".drivelint.{os.getpid()}.tmp")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with temporary.open("wb", buffering=_BUFFER) as file:

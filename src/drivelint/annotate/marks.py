@@ -29,7 +29,7 @@ STEPS: Final = 5_000
 """So many steps of findings are drawn per drive; of longer ones every second, third ... step."""
 BEFORE_NS: Final = 1_000_000_000  # what lasts a moment is drawn a little longer: a person must see it
 AFTER_NS: Final = 2_000_000_000
-ASIDE_M: Final = 6.0  # beside the ego: its role stands on it, and a viewer that follows it has this in sight
+ASIDE_M: Final = 9.0  # beside the ego: its role stands on it, and a viewer that follows it has this in sight
 LINES: Final = 5
 _UNKNOWN_SIZE: Final = 1.0
 
