@@ -317,7 +317,7 @@ def main() -> NoReturn:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a log's words may not fit the terminal's encoding
     try:
-        code = app(standalone_mode=False, default_map={"check": _settings()})
+        code = app(standalone_mode=False, default_map=_settings())
     except DriveLintError as error:
         _fail(str(error), error.exit_code)
     except TyperException as error:
@@ -332,16 +332,23 @@ def main() -> NoReturn:
 
 
 def _settings() -> dict[str, Any]:
-    """Return what `drivelint.toml` in the current folder says about the options of `check`."""
+    """Return what `drivelint.toml` in the current folder says about the options of `check`, or of others that read a log.
+
+    Those take what is about the log and its map, not where `check` writes to and how it prints.
+    """
     from drivelint.settings import FILE, defaults
 
-    if sys.argv[1:2] != ["check"] or not Path(FILE).is_file():
+    name = "".join(sys.argv[1:2])
+    if name not in {"check", "inspect", "convert"} or not Path(FILE).is_file():
         return {}
-    command = typer.main.get_command(app)
-    params = command.commands["check"].params  # type: ignore[attr-defined]
-    options = {p.opts[0].lstrip("-"): (p.name, p.multiple) for p in params if p.param_type_name == "option"}
-    options.pop("help", None)
-    return defaults(options)
+    commands = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+    params = commands["check"].params
+    known = {p.opts[0].lstrip("-"): (p.name, p.multiple) for p in params if p.param_type_name == "option"}
+    known.pop("help", None)
+    taken = {p.name for p in commands[name].params}
+    if name != "check":
+        taken -= {"out", "format_"}
+    return {name: {param: value for param, value in defaults(known).items() if param in taken}}
 
 
 def _fail(message: str, code: ExitCode) -> NoReturn:

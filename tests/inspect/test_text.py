@@ -25,13 +25,14 @@ LOG = str(FIXTURE / "safe.csv")
 ON_ROAD = {"map": FIXTURE / "road.xodr", "mapping": str(FIXTURE / "mapping.toml")}
 
 
-def run(*args: str, columns: int = 100) -> subprocess.CompletedProcess[str]:
+def run(*args: str, columns: int = 100, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-m", "drivelint", *args],
         capture_output=True,
         text=True,
         encoding="utf-8",
         check=False,
+        cwd=cwd,
         env={**os.environ, "PYTHONPATH": str(ROOT / "src"), "COLUMNS": str(columns), "PYTHONIOENCODING": "utf-8"},
     )
 
@@ -110,3 +111,15 @@ def test_names_are_shown_as_they_are(tmp_path: Path) -> None:
     shown = text(Order(str(path)))
     assert "[bold]t[/bold]: 5 messages" in shown
     assert "[red]x.mcap" in shown
+
+
+def test_a_projects_settings_count_here_too(tmp_path: Path) -> None:
+    settings = f'map = "{ON_ROAD["map"]}"\nmapping = "{ON_ROAD["mapping"]}"\nout = "results"\nfail-on = "never"\nformat = "json"\n'
+    (tmp_path / "drivelint.toml").write_text(settings, encoding="utf-8")
+    shown = run("inspect", LOG, cwd=tmp_path)
+    assert (shown.returncode, shown.stderr) == (0, "")
+    assert "road.xodr: " in shown.stdout
+    assert run("convert", LOG, "--to", "mcap", cwd=tmp_path).returncode == 2  # where to is not what check's results are
+    done = run("convert", LOG, "--to", "mcap", "--out", "c", cwd=tmp_path)
+    assert "the map road.xodr with it" in done.stdout
+    assert {file.name for file in tmp_path.iterdir()} == {"drivelint.toml", "c"}

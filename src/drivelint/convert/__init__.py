@@ -52,6 +52,7 @@ class Written:
     n_states: int
     n_actors: int
     map_name: str | None
+    has_ego: bool
     notes: tuple[str, ...]
 
 
@@ -79,7 +80,8 @@ def convert(order: Order) -> Written:
     prepare(order.out)
     files = _mcap(target, trace, road) if order.to == "mcap" else _parquet(target, trace, road)
     notes = trace.notes
-    if not any(trace.tables["actor"]["is_ego"].to_pylist()):
+    has_ego = any(trace.tables["actor"]["is_ego"].to_pylist())
+    if not has_ego:
         notes = [
             *notes,
             "the log names no ego: choose one with --ego ID, here or in every check (drivelint inspect lists them)",
@@ -90,6 +92,7 @@ def convert(order: Order) -> Written:
         n_states=trace.tables["actor_state"].num_rows,
         n_actors=trace.tables["actor"].num_rows,
         map_name=None if road is None else road.name,
+        has_ego=has_ego,
         notes=tuple(notes),
     )
 

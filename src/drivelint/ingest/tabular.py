@@ -70,7 +70,7 @@ def _fitting(path: Path) -> tuple[str, Mapping, Sheet]:
         return fits[0]
     names = ", ".join(name for name, _, _ in fits) if fits else ", ".join(mappings.shipped())
     what = f"several mappings fit ({names})" if fits else f"no shipped mapping fits its columns (shipped: {names})"
-    raise TraceError(f"{path}: {what}: say how to read it with --mapping FILE|NAME")
+    raise TraceError(f"{path}: {what}: say how to read it with --mapping FILE|NAME; drivelint inspect drafts one")
 
 
 def _groups(path: Path, name: str, mapping: Mapping, sheet: Sheet) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from typing import TYPE_CHECKING, Final
 
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
 MAX_ROWS: Final = 12
 """Lines shown of a list; the JSON has them all."""
 _STYLE: Final = {"error": "bold red", "warning": "yellow", "info": "dim"}
+_TOLD: Final = re.compile(r"read through|\d+ messages of")
+"""Notes of the readers that the content tells anyway."""
 Line = tuple[str, Text]
 
 
@@ -88,10 +91,12 @@ def _labelled(lines: Sequence[Line]) -> Table:
 def _content(content: Content) -> Iterator[Line]:
     for channel in content.channels:
         yield "channels", _channel(channel)
-    for sheet in content.sheets:
-        yield "table" if content.mapping or len(content.sheets) == 1 else "tables", _sheet(sheet)
+    if len(content.sheets) > 1:
+        yield "tables", Text(", ".join(f"{s.name} ({plural(s.rows or 0, 'row')})" for s in content.sheets if s.rows))
+    for sheet in content.sheets if len(content.sheets) == 1 else ():
+        yield "table", _sheet(sheet)
     for note in content.notes:
-        if not note.startswith(("read through", f"{sum(c.messages for c in content.channels)} messages")):
+        if not _TOLD.match(note):
             yield "note", Text(note)
 
 
