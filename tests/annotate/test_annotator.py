@@ -349,6 +349,21 @@ def test_the_layout_shows_every_topic_that_is_there(out: Path) -> None:
     assert others == {"/drivelint/log", "/drivelint/findings"}
 
 
+def test_a_trace_that_begins_before_zero_lies_at_zero_and_says_so(tmp_path: Path) -> None:
+    lines = (CASE / "safe.csv").read_text(encoding="utf-8").splitlines()
+    at = lines[0].split(",").index("time_s")
+    earlier = [
+        [*cells[:at], f"{float(cells[at]) - 2:.1f}", *cells[at + 1 :]] for cells in (x.split(",") for x in lines[1:])
+    ]
+    (tmp_path / "early.csv").write_text("\n".join([lines[0], *map(",".join, earlier)]), encoding="utf-8")
+    path = the(run(tmp_path / "out", tmp_path / "early.csv"), "early")
+    assert messages(path, "scene")[0].log_time == 0
+    assert shown(path, "danger_spaces", T0), "two seconds earlier in a log that is shown two seconds later"
+    with path.open("rb") as file:
+        (said,) = (m.metadata for m in SeekingReader(file).iter_metadata())
+    assert said["time"] == "log time = time of the trace + 2000000000 ns"
+
+
 def test_no_annotate_writes_none(tmp_path: Path) -> None:
     assert not run(tmp_path, CASE / "safe.csv", annotate=False).exists()
 

@@ -221,6 +221,16 @@ def test_unknown_records_are_copied(tmp_path: Path) -> None:
     assert verify(out).message_count == 65
 
 
+def test_bytes_behind_the_end_are_no_part_of_the_log(tmp_path: Path) -> None:
+    """Ingest reads such a log with a warning; the annotated one ends where it should."""
+    path = log(tmp_path / "log.mcap")
+    expected = streaming(path)
+    path.write_bytes(path.read_bytes() + b"\0" * 100)
+    out = annotated(path)
+    assert others(streaming(out)) == expected
+    verify(out)
+
+
 def test_same_log_same_bytes(tmp_path: Path) -> None:
     path = log(tmp_path / "log.mcap")
     assert annotated(path).read_bytes() == annotated(path).read_bytes()
