@@ -19,6 +19,7 @@ from drivelint.errors import TraceError, UsageError
 from drivelint.ingest import IngestOptions, read_trace
 from drivelint.osi.frames import varint
 from drivelint.osi.log import osi_ids
+from drivelint.report.files import OutputError
 from tests.ingest import osi_log
 from tests.shared_data import ROOT
 
@@ -184,6 +185,18 @@ def test_same_bytes_every_time(tmp_path: Path, to: Any) -> None:
     assert digests[0] == digests[1]
     convert(Order(str(FIXTURE / "safe.csv"), to, tmp_path / "a" / "x", **SAFE))  # over its own earlier result
     assert {f.name for f in (tmp_path / "a" / "x").iterdir()} == digests[0].keys()
+
+
+def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(sink: Any, *_: object) -> int:
+        sink.write(b"half")
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("drivelint.osi.log.write", full)
+    with pytest.raises(OutputError, match=r"safe\.mcap: cannot be written: No space left") as error:
+        convert(Order(str(FIXTURE / "safe.csv"), "mcap", tmp_path, **SAFE))
+    assert error.value.exit_code == 75
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_an_earlier_map_does_not_stay(tmp_path: Path) -> None:

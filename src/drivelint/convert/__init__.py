@@ -18,7 +18,7 @@ from drivelint.ingest.order import listed
 from drivelint.maps import MapSource, read_source
 from drivelint.maps.library import MapLibrary
 from drivelint.osi import log as osi_log
-from drivelint.report.files import prepare, publish
+from drivelint.report.files import OutputError, prepare, publish
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -132,6 +132,10 @@ def _mcap(target: Path, trace: Trace, road: MapSource | None) -> dict[str, int]:
             osi_log.write(file, trace, road)
         size = temporary.stat().st_size
         publish(target.parent, {}, {target.name: temporary})
+    except OSError as error:
+        raise OutputError(
+            f"{target}: cannot be written: {error.strerror or error}; free the disk or choose another --out"
+        ) from error
     finally:
         temporary.unlink(missing_ok=True)
     return {target.name: size}
