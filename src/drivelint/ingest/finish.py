@@ -75,7 +75,9 @@ def finish(path: Path, identity: Identity, recording: Recording, options: Ingest
         "declared_event": _extra(drive, "declared_event", recording.events),
         "quality": _quality(drive, findings),
     }
-    return Trace(drive, path, tables, recording.embedded_map, recording.map_offset, recording.notes, recording.frame_times)
+    return Trace(
+        drive, path, tables, recording.embedded_map, recording.map_offset, recording.notes, recording.frame_times
+    )
 
 
 def _wrap_heading(states: States) -> None:
