@@ -232,6 +232,7 @@ CREATE TABLE ego_state (
     yaw_rad DOUBLE,                   -- heading
     speed_mps DOUBLE,                 -- speed
     accel_mps2 DOUBLE,                -- see state_dynamics
+    fastest_3s_mps DOUBLE,            -- highest speed of this step and of those in the 3 s before it
     travel_m DOUBLE,                  -- way made since the first step
     length_m DOUBLE,                  -- box
     width_m DOUBLE,                   -- box
@@ -349,7 +350,8 @@ CREATE TABLE excursion (
     t_end_ns BIGINT NOT NULL,         -- last step over it
     t_back_ns BIGINT,                 -- the step after that, wholly inside again; NULL: the log, a hole or the corridor ends first
     t_over_ns BIGINT,                 -- first step wholly over; NULL: never
-    t_turn_ns BIGINT,                 -- last step after t_over before the lateral speed turned back for good; NULL: never
+    t_out_ns BIGINT NOT NULL,         -- t_over; where it is never wholly over, the first step within 0.1 m of its furthest
+    t_turn_ns BIGINT,                 -- last step after t_out before the lateral speed turned back for good; NULL: never
     t_return_ns BIGINT,               -- first step after that with a corner over the line again; NULL: never
     max_out_m DOUBLE NOT NULL,        -- how far the furthest corner got
     centre_over BOOLEAN NOT NULL,     -- the centre crossed too: a manoeuvre, not a wobble
@@ -370,6 +372,7 @@ CREATE TABLE overtake (
     begin_seen BOOLEAN NOT NULL,      -- t0 lies in the log: the step before it is there and inside the lane
     t0_ns BIGINT NOT NULL,            -- first step with a corner more than 0.05 m over the boundary
     t1_ns BIGINT,                     -- first step wholly in the overtaking lane
+    t_out_ns BIGINT NOT NULL,         -- end of pulling out: t1, or for an overtake astride the line the first step within 0.1 m of its furthest
     t2_ns BIGINT,                     -- lateral speed turns back
     t3_ns BIGINT,                     -- first step wholly back in the running lane
     t_end_ns BIGINT NOT NULL,         -- t3, or the last step of the excursion
@@ -381,6 +384,7 @@ CREATE TABLE overtake (
     l_vbp_m DOUBLE,                   -- VBP's length
     lane_width_m DOUBLE,              -- w_L, width of the running lane at t0
     vbp_gap_m DOUBLE,                 -- ego front to VBP rear at t0, along the corridor
+    span_m DOUBLE,                    -- from the rear of the first vehicle passed in this go to the front of this one, at t0: L_VBP if it is alone
     t2_gap_m DOUBLE,                  -- VBP front to ego rear at t2
     t3_gap_m DOUBLE,                  -- VBP front to ego rear at t3
     v_vbp_t3_mps DOUBLE,              -- VBP's speed at t3
@@ -390,7 +394,7 @@ CREATE TABLE overtake (
     n_unplaced BIGINT,                -- see oncoming, at t0; NULL: the ego is not placed
     unplaced_reason VARCHAR,          -- see oncoming
     free_reason VARCHAR,              -- see oncoming
-    pull_out_angle_rad DOUBLE,        -- observed: atan of lateral over longitudinal way from t0 to t1
+    pull_out_angle_rad DOUBLE,        -- observed: atan of lateral over longitudinal way from t0 to t_out
     cut_in_angle_rad DOUBLE           -- observed: the same from t2 to t3
 );
 
@@ -422,7 +426,11 @@ CREATE TABLE overtake_step (
     ov_id VARCHAR,                    -- nearest oncoming vehicle at this step; NULL: none
     ov_known BOOLEAN NOT NULL,        -- no other vehicle may be nearer: every one is placed
     sd_av_m DOUBLE,                   -- stopping distance of the ego: length of its danger space
-    sd_ov_m DOUBLE,                   -- of the oncoming vehicle
+    ds_av_d_m DOUBLE,                 -- middle of that danger space across the corridor: where the front bumper's middle is, left positive
+    ds_av_half_m DOUBLE,              -- half its width: half the vehicle's
+    sd_ov_m DOUBLE,                   -- stopping distance of the oncoming vehicle
+    ds_ov_d_m DOUBLE,                 -- middle of its danger space across the corridor
+    ds_ov_half_m DOUBLE,              -- half its width
     vbp_in_ds_av_m DOUBLE,            -- along the corridor, how far the VBP is inside the ego's danger space (negative: clear of it by that much)
     ov_in_ds_av_m DOUBLE,             -- the OV inside the ego's
     av_in_ds_ov_m DOUBLE,             -- the ego inside the OV's
@@ -451,7 +459,7 @@ CREATE TABLE lane_departure (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order
-    t_ns BIGINT NOT NULL,             -- first step with a corner more than 0.05 m over a boundary, in a manoeuvre that took the centre over it
+    t_ns BIGINT NOT NULL,             -- first step with a corner more than 0.05 m over a boundary, in a manoeuvre: the centre crossed too, or a vehicle was overtaken; on the way back, see t_return and t_back of excursion
     begin_seen BOOLEAN NOT NULL,      -- see excursion
     side VARCHAR NOT NULL,            -- left or right
     back BOOLEAN NOT NULL             -- it is the way back of an excursion: the boundary is crossed towards the running lane

@@ -11,7 +11,8 @@ map AS (
         EXISTS (FROM lanelet n WHERE n.environment_id = e.environment_id AND n.lane_type IN ('sidewalk', 'walking', 'curb', 'border', 'shoulder')) AS lane_types,
         EXISTS (FROM lane_boundary b WHERE b.environment_id = e.environment_id AND b.marking IS NOT NULL) AS markings,
         EXISTS (FROM speed_limit v WHERE v.environment_id = e.environment_id) AS speed_limits,
-        EXISTS (FROM traffic_signal t WHERE t.environment_id = e.environment_id AND t.kind = 'exit') AS exit_signs
+        EXISTS (FROM traffic_signal t WHERE t.environment_id = e.environment_id AND t.kind = 'exit') AS exit_signs,
+        EXISTS (FROM exit_lane x WHERE x.environment_id = e.environment_id) AS exits
     FROM environment e
 ),
 answer AS (
@@ -24,7 +25,8 @@ answer AS (
             WHEN 'lane_types' THEN m.lane_types
             WHEN 'markings' THEN m.markings
             WHEN 'speed_limits' THEN m.speed_limits
-            WHEN 'exit_signs' THEN m.exit_signs
+            -- without exits there is nothing to sign: then it is enough to know that
+            WHEN 'exit_signs' THEN m.exit_signs OR NOT m.exits
             WHEN 'indicator' THEN s.has_indicator
             WHEN 'brake_light' THEN s.has_brake_light
             WHEN 'ego_size' THEN s.ego_size
@@ -37,7 +39,7 @@ answer AS (
             WHEN 'lane_types' THEN CASE WHEN m.lane_types THEN 'the map has ways beside the carriageway' ELSE 'the map has no footway, kerb, border or shoulder' END
             WHEN 'markings' THEN CASE WHEN m.markings THEN 'the map has road markings' ELSE 'the map has no road markings' END
             WHEN 'speed_limits' THEN CASE WHEN m.speed_limits THEN 'the map has speed limits' ELSE 'the map has no speed limits' END
-            WHEN 'exit_signs' THEN CASE WHEN m.exit_signs THEN 'the map has exit signs' ELSE 'the map has no exit signs' END
+            WHEN 'exit_signs' THEN CASE WHEN m.exit_signs THEN 'the map has exit signs' WHEN m.exits THEN 'the map has exits, but no exit signs' ELSE 'the map has no exits' END
             WHEN 'indicator' THEN CASE WHEN s.has_indicator THEN 'the log has the ego''s indicators' ELSE 'the log has no indicators of the ego' END
             WHEN 'brake_light' THEN CASE WHEN s.has_brake_light THEN 'the log has the ego''s brake lights' ELSE 'the log has no brake lights of the ego' END
             WHEN 'ego_size' THEN CASE WHEN s.ego_size THEN 'the ego''s box is known' ELSE 'the ego''s length or width is not known' END

@@ -19,7 +19,9 @@ limited AS (
     GROUP BY ALL
 )
 SELECT
-    r.drive_id, r.ego_id, r.t_ns, s.x_m, s.y_m, s.yaw_rad, s.speed_mps, s.accel_mps2, r.travel_m, s.length_m, s.width_m, s.indicator,
+    r.drive_id, r.ego_id, r.t_ns, s.x_m, s.y_m, s.yaw_rad, s.speed_mps, s.accel_mps2,
+    max(s.speed_mps) OVER (PARTITION BY r.drive_id, r.ego_id ORDER BY r.t_ns RANGE BETWEEN 3_000_000_000 PRECEDING AND CURRENT ROW) AS fastest_3s_mps,
+    r.travel_m, s.length_m, s.width_m, s.indicator,
     e.lanelet_id, e.with_direction,
     CASE WHEN n.lanelet_id IS NOT NULL THEN n.junction_id IS NOT NULL END AS in_junction,
     n.road_type, v.limit_mps,

@@ -47,21 +47,31 @@ whole AS (
     FROM numbered
     GROUP BY ALL
 ),
+-- settled: the first step within 0.1 m of the furthest; a narrow vehicle is passed astride the line, never wholly over it
+settled AS (
+    SELECT s.drive_id, s.ego_id, s.chain_id, s.side, s.n, min(s.t_ns) AS t_set_ns
+    FROM whole w
+    JOIN numbered s USING (drive_id, ego_id, chain_id, side, n)
+    WHERE s.out_m >= w.max_out_m - 0.1
+    GROUP BY ALL
+),
 -- turning back: the last step over the line whose lateral speed was not yet towards home
 turn AS (
     SELECT w.drive_id, w.ego_id, w.chain_id, w.side, w.n, max(s.t_ns) AS t_turn_ns
     FROM whole w
+    JOIN settled e USING (drive_id, ego_id, chain_id, side, n)
     JOIN numbered s USING (drive_id, ego_id, chain_id, side, n)
-    WHERE s.t_ns >= w.t_over_ns AND s.lateral_mps > -0.1
+    WHERE s.t_ns >= coalesce(w.t_over_ns, e.t_set_ns) AND s.lateral_mps > -0.1
     GROUP BY ALL
 )
 SELECT
     w.drive_id, w.ego_id, w.chain_id, w.side, w.first.overtaking AS overtaking, w.t0_ns, w.first.joined AS begin_seen, w.t_end_ns,
     CASE WHEN w.last.after.k = w.last.k + 1 AND w.last.after.seg = w.last.seg THEN w.last.after.t_ns END AS t_back_ns,
-    w.t_over_ns,
+    w.t_over_ns, coalesce(w.t_over_ns, e.t_set_ns) AS t_out_ns,
     CASE WHEN w.last.after.k = w.last.k + 1 AND w.last.after.seg = w.last.seg THEN t.t_turn_ns END AS t_turn_ns,
     w.last_over.after_ns AS t_return_ns, w.max_out_m, w.centre_over, 2 * w.first.half_width_m AS lane_width_m,
     CASE WHEN w.first.overtaking THEN w.first.over_width_m END AS over_width_m,
     CASE WHEN w.first.overtaking THEN w.first.over_against END AS over_against
 FROM whole w
+JOIN settled e USING (drive_id, ego_id, chain_id, side, n)
 LEFT JOIN turn t USING (drive_id, ego_id, chain_id, side, n)

@@ -70,7 +70,7 @@ angle AS (
         atan2(k.side * (c.d_m - d.d_m), d.s_m - c.s_m) AS cut_in_angle_rad
     FROM kept k
     JOIN ego_corridor a ON a.drive_id = k.drive_id AND a.ego_id = k.ego_id AND a.chain_id = k.chain_id AND a.t_ns = k.t0_ns
-    LEFT JOIN ego_corridor b ON b.drive_id = k.drive_id AND b.ego_id = k.ego_id AND b.chain_id = k.chain_id AND b.t_ns = k.t_over_ns
+    LEFT JOIN ego_corridor b ON b.drive_id = k.drive_id AND b.ego_id = k.ego_id AND b.chain_id = k.chain_id AND b.t_ns = k.t_out_ns
     LEFT JOIN ego_corridor c ON c.drive_id = k.drive_id AND c.ego_id = k.ego_id AND c.chain_id = k.chain_id AND c.t_ns = k.t_turn_ns
     LEFT JOIN ego_corridor d ON d.drive_id = k.drive_id AND d.ego_id = k.ego_id AND d.chain_id = k.chain_id AND d.t_ns = k.t_back_ns
 )
@@ -78,7 +78,7 @@ SELECT
     k.drive_id, k.ego_id,
     (row_number() OVER (PARTITION BY k.drive_id, k.ego_id ORDER BY k.t0_ns, k.chain_id, k.gap_m, k.object_id) - 1)::INTEGER AS occurrence,
     k.chain_id, k.over_against AS opposing, k.side, k.object_id AS vbp_id, k.placed AS vbp_placed, k.begin_seen,
-    k.t0_ns, k.t_over_ns AS t1_ns, k.t_turn_ns AS t2_ns, k.t_back_ns AS t3_ns, coalesce(k.t_back_ns, k.t_end_ns) AS t_end_ns, k.passed,
+    k.t0_ns, k.t_over_ns AS t1_ns, k.t_out_ns, k.t_turn_ns AS t2_ns, k.t_back_ns AS t3_ns, coalesce(k.t_back_ns, k.t_end_ns) AS t_end_ns, k.passed,
     CASE
         WHEN k.t_back_ns IS NOT NULL AND k.passed THEN 'completed'
         WHEN k.t_back_ns IS NOT NULL THEN 'aborted'
@@ -86,6 +86,7 @@ SELECT
         ELSE 'truncated'
     END AS status,
     k.speed_mps AS v_av_mps, k.v_vbp_mps, k.length_m AS l_av_m, k.l_vbp_m, k.lane_width_m, k.gap_m AS vbp_gap_m,
+    k.gap_m + k.l_vbp_m - min(k.gap_m) OVER (PARTITION BY k.drive_id, k.ego_id, k.chain_id, k.t0_ns) AS span_m,
     t2.gap_m AS t2_gap_m, t3.gap_m AS t3_gap_m, t3.speed_mps AS v_vbp_t3_mps,
     o.object_id AS ov_id, coalesce(o.da_m, o.free_m) AS da_m, CASE WHEN o.object_id IS NULL THEN k.limit_mps ELSE o.speed_mps END AS v_ov_mps,
     o.n_unplaced, o.unplaced_reason, o.free_reason,

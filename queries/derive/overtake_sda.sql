@@ -1,10 +1,11 @@
 -- Distance ahead against safe distance ahead for every profile, observed among them: the angles and gaps that this overtake had.
+-- Of several vehicles passed in one go, each is as long to pass as the row of them up to its front.
 WITH input AS (
     SELECT
         o.*, p.profile,
-        CASE p.profile WHEN 'observed' THEN o.pull_out_angle_rad ELSE p.pull_out_angle_rad END AS beta,
+        CASE WHEN p.profile <> 'observed' THEN p.pull_out_angle_rad WHEN o.status = 'completed' THEN o.pull_out_angle_rad END AS beta,
         CASE p.profile WHEN 'observed' THEN o.cut_in_angle_rad ELSE p.cut_in_angle_rad END AS theta,
-        CASE p.profile WHEN 'observed' THEN o.vbp_gap_m ELSE p.pull_out_headroom_m END AS headroom,
+        CASE p.profile WHEN 'observed' THEN o.vbp_gap_m - o.span_m + o.l_vbp_m ELSE p.pull_out_headroom_m END AS headroom,
         CASE p.profile WHEN 'observed' THEN o.t2_gap_m ELSE p.cut_in_clearance_m END AS clearance
     FROM overtake o CROSS JOIN profile p
 ),
@@ -12,7 +13,7 @@ required AS (
     SELECT
         *, begin_seen AND vbp_placed AND opposing IS NOT NULL AS told,
         CASE WHEN beta > 0 AND theta > 0 AND v_av_mps > v_vbp_mps THEN
-            safe_distance_ahead_m(lane_width_m, beta, theta, headroom, clearance, l_av_m, l_vbp_m, v_av_mps, v_vbp_mps, v_ov_mps)
+            safe_distance_ahead_m(lane_width_m, beta, theta, headroom, clearance, l_av_m, span_m, v_av_mps, v_vbp_mps, v_ov_mps)
         END AS sda_m
     FROM input
 )

@@ -4,11 +4,13 @@ WITH stage AS (
     SELECT
         o.drive_id, o.ego_id, o.occurrence, o.vbp_id, e.t_ns,
         CASE
-            WHEN o.t1_ns IS NULL OR e.t_ns < o.t1_ns THEN 'pulling_out'
+            WHEN e.t_ns < o.t_out_ns THEN 'pulling_out'
             WHEN o.t2_ns IS NULL OR e.t_ns < o.t2_ns THEN 'passing'
             ELSE 'cutting_in'
         END AS stage,
-        e.front_s_m AS ef, e.rear_s_m AS er, e.d_m AS ed, e.lat_half_m AS eh, danger_space_m(e.speed_mps) AS sd_av_m, e.limit_mps
+        e.front_s_m AS ef, e.rear_s_m AS er, e.d_m AS ed, e.lat_half_m AS eh,
+        -- the danger space is as wide as the vehicle and begins at the middle of its front bumper
+        e.d_m + e.length_m / 2 * sin(e.heading_diff_rad) AS fd, e.width_m / 2 AS fh, danger_space_m(e.speed_mps) AS sd_av_m, e.limit_mps
     FROM overtake o
     JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns >= o.t0_ns AND e.t_ns <= o.t_end_ns
     WHERE o.opposing IS DISTINCT FROM false
@@ -18,12 +20,14 @@ SELECT
     -- nobody is there only as far as can be told: an unseen vehicle at the limit (70 mph where the map has none) must be out of reach
     coalesce(n.n_unplaced = 0, false)
         AND (n.object_id IS NOT NULL OR n.free_m > s.sd_av_m + danger_space_m(coalesce(s.limit_mps, 31.3))) AS ov_known,
-    s.sd_av_m, danger_space_m(v.speed_mps) AS sd_ov_m,
-    inside3(s.ef + s.sd_av_m - b.rear_s_m, b.front_s_m - s.ef, s.eh + b.lat_half_m - abs(s.ed - b.d_m)) AS vbp_in_ds_av_m,
-    inside3(s.ef + s.sd_av_m - v.rear_s_m, v.front_s_m - s.ef, s.eh + v.lat_half_m - abs(s.ed - v.d_m)) AS ov_in_ds_av_m,
-    inside3(s.ef - v.rear_s_m + danger_space_m(v.speed_mps), v.rear_s_m - s.er, s.eh + v.lat_half_m - abs(s.ed - v.d_m)) AS av_in_ds_ov_m,
-    inside3(s.ef + s.sd_av_m - v.rear_s_m + danger_space_m(v.speed_mps), v.rear_s_m - s.ef, s.eh + v.lat_half_m - abs(s.ed - v.d_m)) AS ds_overlap_m
+    s.sd_av_m, s.fd AS ds_av_d_m, s.fh AS ds_av_half_m, v.sd_m AS sd_ov_m, v.fd AS ds_ov_d_m, v.fh AS ds_ov_half_m,
+    inside3(s.ef + s.sd_av_m - b.rear_s_m, b.front_s_m - s.ef, s.fh + b.lat_half_m - abs(s.fd - b.d_m)) AS vbp_in_ds_av_m,
+    inside3(s.ef + s.sd_av_m - v.rear_s_m, v.front_s_m - s.ef, s.fh + v.lat_half_m - abs(s.fd - v.d_m)) AS ov_in_ds_av_m,
+    inside3(s.ef - v.rear_s_m + v.sd_m, v.rear_s_m - s.er, s.eh + v.fh - abs(s.ed - v.fd)) AS av_in_ds_ov_m,
+    inside3(s.ef + s.sd_av_m - v.rear_s_m + v.sd_m, v.rear_s_m - s.ef, s.fh + v.fh - abs(s.fd - v.fd)) AS ds_overlap_m
 FROM stage s
 LEFT JOIN pair b ON b.drive_id = s.drive_id AND b.ego_id = s.ego_id AND b.t_ns = s.t_ns AND b.object_id = s.vbp_id
 LEFT JOIN oncoming n ON n.drive_id = s.drive_id AND n.ego_id = s.ego_id AND n.t_ns = s.t_ns
-LEFT JOIN pair v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns AND v.object_id = n.object_id
+LEFT JOIN (
+    SELECT *, danger_space_m(speed_mps) AS sd_m, d_m + length_m / 2 * sin(heading_diff_rad) AS fd, width_m / 2 AS fh FROM pair
+) v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns AND v.object_id = n.object_id

@@ -138,7 +138,7 @@ def test_a_road_without_signs() -> None:
     (found,) = rows(con, "FROM exit_taken")
     assert (found["sign_id"], found["t_sign_ns"]) == (None, None)
     (signs,) = rows(con, "FROM capability WHERE signal = 'exit_signs'")
-    assert (signs["available"], signs["reason"]) == (False, "the map has no exit signs")
+    assert (signs["available"], signs["reason"]) == (False, "the map has exits, but no exit signs")
 
 
 def test_who_is_in_the_exit_lane_already_crosses_nothing() -> None:

@@ -104,9 +104,13 @@ def test_mirrored_scenes_give_mirrored_results() -> None:
 def test_an_aborted_overtake() -> None:
     way, actors = scene(abort=True)
     (found,) = one(actors, way, "overtake")
-    assert (found["status"], found["passed"], found["t1_ns"], found["t2_ns"]) == ("aborted", False, None, None)
-    assert found["t3_ns"] is not None
-    assert found["cut_in_angle_rad"] is None
+    assert (found["status"], found["passed"], found["t1_ns"]) == ("aborted", False, None)
+    furthest = int(np.argmax(way.over * actors[0].y)) * 100_000_000
+    assert found["t0_ns"] < found["t2_ns"] < found["t3_ns"]
+    assert abs(found["t2_ns"] - furthest) <= 300_000_000
+    (observed,) = [row for row in one(actors, way, "overtake_sda") if row["profile"] == "observed"]
+    assert observed["sda_m"] is None
+    assert "not completed" in observed["reason"]
 
 
 @pytest.mark.parametrize("end", [9.0, 10.0, 12.0, 19.5])
@@ -299,9 +303,9 @@ def spaces(way: Road, a: Actor, k: int, reach: float, forward: int) -> tuple[Any
     half, across = 2.4 * c + 0.9 * s, 2.4 * s + 0.9 * c
     own = box(a.x[k] - half, a.y[k] - across, a.x[k] + half, a.y[k] + across)
     near = a.x[k] + forward * half
-    return own, box(
-        min(near, near + forward * reach), a.y[k] - across, max(near, near + forward * reach), a.y[k] + across
-    )
+    # as wide as the vehicle, from the middle of its front bumper on
+    front = a.y[k] + 2.4 * math.sin(a.yaw[k])
+    return own, box(min(near, near + forward * reach), front - 0.9, max(near, near + forward * reach), front + 0.9)
 
 
 def stopping(v: float) -> float:

@@ -45,6 +45,6 @@ SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, $tyre_mps2 AS required,
     -- greatest() leaves a NULL out: one side alone can show a contact, but not that there was none
     CASE WHEN p.accel_mps2 + e.accel_mps2 IS NOT NULL OR greatest(-p.accel_mps2, -e.accel_mps2) >= $tyre_mps2
         THEN greatest(-p.accel_mps2, -e.accel_mps2) END AS observed,
-    CASE WHEN -p.accel_mps2 >= $tyre_mps2 AND e.speed_mps < standing_mps() AND e.accel_mps2 >= 0 THEN 'the ego stood still: it was struck, if anything' END AS reason
+    CASE WHEN -p.accel_mps2 >= $tyre_mps2 AND e.fastest_3s_mps < standing_mps() THEN 'the ego stood still: it was struck, if anything' END AS reason
 FROM pair p
 JOIN ego_state e USING (drive_id, ego_id, t_ns)

@@ -20,8 +20,8 @@ WHERE coalesce(clearance_m > 0 OR clearance_is_bound, true)
 UNION ALL
 -- contact: whether the ego moved is part of the answer
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.clearance_m, 0.0, false,
-    format('contact, {:.2f} m deep, ', -p.clearance_m) || CASE WHEN e.speed_mps < standing_mps() THEN 'while the ego stood still: it was struck'
-        WHEN e.speed_mps IS NOT NULL THEN format('the ego moving at {:.1f} m/s', e.speed_mps) ELSE 'the ego''s speed is not known' END
+    format('contact, {:.2f} m deep, ', -p.clearance_m) || CASE WHEN e.fastest_3s_mps < standing_mps() THEN 'while the ego stood still: it was struck'
+        WHEN e.fastest_3s_mps IS NOT NULL THEN format('the ego having moved at {:.1f} m/s in the 3 s before', e.fastest_3s_mps) ELSE 'the ego''s speed is not known' END
 FROM pair p
 LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
 WHERE p.clearance_m <= 0 AND NOT p.clearance_is_bound

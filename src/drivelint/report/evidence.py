@@ -100,13 +100,13 @@ cast_ AS (
 -- danger spaces in corridor coordinates, as the runtime assertions have them
 extent AS (
     SELECT DISTINCT m.drive_id, m.ego_id, m.t_ns, m.environment_id, e.chain_id, m.ego_id AS actor_id, o.sd_av_m AS length_m,
-        e.front_s_m AS s0, e.front_s_m + o.sd_av_m AS s1, e.d_m, e.lat_half_m
+        e.front_s_m AS s0, e.front_s_m + o.sd_av_m AS s1, o.ds_av_d_m AS d_m, o.ds_av_half_m AS half_m
     FROM _moment m
     JOIN overtake_step o USING (drive_id, ego_id, t_ns)
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     UNION
     SELECT DISTINCT m.drive_id, m.ego_id, m.t_ns, m.environment_id, e.chain_id, p.object_id, o.sd_ov_m,
-        p.rear_s_m - o.sd_ov_m, p.rear_s_m, p.d_m, p.lat_half_m
+        p.rear_s_m - o.sd_ov_m, p.rear_s_m, o.ds_ov_d_m, o.ds_ov_half_m
     FROM _moment m
     JOIN overtake_step o USING (drive_id, ego_id, t_ns)
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
@@ -118,11 +118,11 @@ piece AS (  -- the corridor's segments under a danger space, cut at its ends
     FROM extent x
     JOIN chain c ON c.drive_id = x.drive_id AND c.ego_id = x.ego_id AND c.chain_id = x.chain_id
     JOIN lane_segment g ON g.environment_id = x.environment_id AND g.lanelet_id = c.lanelet_id
-    WHERE x.length_m > 0 AND g.len_m > 0 AND x.lat_half_m IS NOT NULL
+    WHERE x.length_m > 0 AND g.len_m > 0 AND x.half_m IS NOT NULL
         AND c.s_start_m + g.s0_m < x.s1 AND c.s_start_m + g.s0_m + g.len_m > x.s0
 ),
 edge AS (
-    SELECT DISTINCT drive_id, ego_id, t_ns, actor_id, length_m, d_m, lat_half_m, round(at_m + u * len_m, 2) AS s_m,
+    SELECT DISTINCT drive_id, ego_id, t_ns, actor_id, length_m, d_m, half_m, round(at_m + u * len_m, 2) AS s_m,
         first(x0_m + u * (x1_m - x0_m) ORDER BY at_m) AS x_m, first(y0_m + u * (y1_m - y0_m) ORDER BY at_m) AS y_m,
         first(tx0 + u * (tx1 - tx0) ORDER BY at_m) AS tx, first(ty0 + u * (ty1 - ty0) ORDER BY at_m) AS ty
     FROM (SELECT *, unnest([u0, u1]) AS u FROM piece)
@@ -130,8 +130,8 @@ edge AS (
 ),
 side AS (
     SELECT drive_id, ego_id, t_ns, actor_id, length_m, s_m,
-        [round(x_m - ty * (d_m + lat_half_m), 2), round(y_m + tx * (d_m + lat_half_m), 2)] AS l,
-        [round(x_m - ty * (d_m - lat_half_m), 2), round(y_m + tx * (d_m - lat_half_m), 2)] AS r
+        [round(x_m - ty * (d_m + half_m), 2), round(y_m + tx * (d_m + half_m), 2)] AS l,
+        [round(x_m - ty * (d_m - half_m), 2), round(y_m + tx * (d_m - half_m), 2)] AS r
     FROM edge
 ),
 ring AS (
