@@ -114,7 +114,8 @@ def check(
     """
     from drivelint import run
     from drivelint.report.files import prepare
-    from drivelint.report.result import exit_code, write
+    from drivelint.report.outputs import write
+    from drivelint.report.result import exit_code
 
     settings = run.Settings(
         traces=tuple(traces),

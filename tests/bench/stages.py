@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from drivelint import batch, judge, run
 from drivelint.ingest import IngestOptions, read_trace
 from drivelint.report.progress import Silent
-from drivelint.report.result import write
+from drivelint.report.outputs import write
 from tests.bench import traffic
 
 if TYPE_CHECKING:

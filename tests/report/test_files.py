@@ -12,10 +12,10 @@ from drivelint.errors import ExitCode
 from drivelint.report import files
 from drivelint.report.contract import FILES, OUTPUT_SCHEMA
 from drivelint.report.files import OutputError, parquet_bytes, publish
-from drivelint.report.result import write
+from drivelint.report.outputs import write
 from tests.report.synthetic import finding, result, table, verdict
 
-NAMES = {f"{name}.parquet" for name in FILES} | {"summary.json", "junit.xml"}
+NAMES = {f"{name}.parquet" for name in FILES} | {"report.html", "summary.json", "junit.xml"}
 
 
 def rows(n: int) -> pa.Table:

@@ -16,7 +16,8 @@ import pytest
 
 from drivelint.errors import UsageError
 from drivelint.report.load import load
-from drivelint.report.result import Result, write
+from drivelint.report.outputs import write
+from drivelint.report.result import Result
 from tests.report import test_evidence
 from tests.report.synthetic import SECOND, drive, finding, result, rule, table, verdict
 

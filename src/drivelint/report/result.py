@@ -11,7 +11,6 @@ import pyarrow.compute as pc
 from drivelint.errors import ExitCode
 from drivelint.report.contract import FILES, conform, empty
 from drivelint.report.counts import SEVERITIES
-from drivelint.report.files import parquet_bytes, publish
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -84,19 +83,6 @@ def _outcomes(result: Result) -> Iterator[Outcome]:
 def exit_code(result: Result) -> ExitCode:
     """Return the exit code of DESIGN.md for a finished run."""
     return outcome(result).code
-
-
-def write(result: Result, out: Path) -> None:
-    """Write every result file of `check` into the folder `out`; `summary.json` appears last, when the others are there.
-
-    Same tables, same bytes. Errors: `OutputError` when the folder cannot be written.
-    """
-    from drivelint.report import junit, summary
-
-    contents = {f"{name}.parquet": parquet_bytes(getattr(result, name), table) for name, table in FILES.items()}
-    contents["junit.xml"] = junit.render(result)
-    contents["summary.json"] = summary.render(result)
-    publish(out, contents, {"margins.parquet": result.margins_file})
 
 
 def _many(n: int, noun: str) -> str:
