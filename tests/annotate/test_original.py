@@ -161,6 +161,17 @@ def test_message_indexes_that_lie_are_written_anew(tmp_path: Path) -> None:
     assert verify(annotated(path)).message_count == 65
 
 
+def test_a_message_index_that_is_not_behind_its_chunk_is_found_anew(tmp_path: Path) -> None:
+    path = log(tmp_path / "log.mcap")
+    data = path.read_bytes()
+    stray = next(r for r in records(data) if r.opcode == Opcode.MESSAGE_INDEX)
+    private = struct.pack("<BQ", 0x91, 0)
+    path.write_bytes(data[: stray.at] + private + data[stray.at :])
+    out = annotated(path)
+    assert verify(out).message_count == 65
+    assert others(streaming(out)) == streaming(path)
+
+
 def test_ids_are_chosen_among_the_free_ones(tmp_path: Path) -> None:
     path = log(tmp_path / "log.mcap")
 
