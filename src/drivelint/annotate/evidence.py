@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     import duckdb
 
 _SPACES: Final = """
-SELECT o.drive_id, o.ego_id, o.t_ns, any_value(e.chain_id) AS chain_id, any_value(e.front_s_m) AS s_m, any_value(e.d_m) AS d_m,
-    any_value(e.lat_half_m) AS lat_half_m, max(o.sd_av_m) AS sd_av_m, max(o.sd_ov_m) AS sd_ov_m, min(o.stage) AS stage,
+SELECT o.drive_id, o.ego_id, o.t_ns, any_value(e.chain_id) AS chain_id, any_value(e.front_s_m) AS s_m, any_value(o.ds_av_d_m) AS d_m,
+    any_value(o.ds_av_half_m) AS half_m, max(o.sd_av_m) AS sd_av_m, max(o.sd_ov_m) AS sd_ov_m, min(o.stage) AS stage,
     list(DISTINCT o.vbp_id ORDER BY o.vbp_id) AS vbp_ids, min(o.ov_id) AS ov_id, any_value(v.rear_s_m) AS ov_s_m,
-    any_value(v.d_m) AS ov_d_m, any_value(v.lat_half_m) AS ov_lat_half_m,
+    any_value(o.ds_ov_d_m) AS ov_d_m, any_value(o.ds_ov_half_m) AS ov_half_m,
     bool_or(coalesce(o.vbp_in_ds_av_m >= 0, false) OR coalesce(o.ov_in_ds_av_m >= 0, false)) AS av_met,
     bool_or(coalesce(o.av_in_ds_ov_m >= 0, false)) AS ov_met,
     bool_or(coalesce(o.ds_overlap_m >= 0, false)) AS overlap

@@ -115,8 +115,8 @@ class _Roles:
 
 def _spaces(row: dict[str, Any], lines: _Lines) -> bytes:
     """Return the danger spaces of ego and OV at one step."""
-    own = row["s_m"], row["d_m"], row["lat_half_m"], row["sd_av_m"]
-    theirs = row["ov_s_m"], row["ov_d_m"], row["ov_lat_half_m"], row["sd_ov_m"]
+    own = row["s_m"], row["d_m"], row["half_m"], row["sd_av_m"]
+    theirs = row["ov_s_m"], row["ov_d_m"], row["ov_half_m"], row["sd_ov_m"]
     parts = []
     for (s, d, half, sd), direction, met in ((own, 1, row["av_met"]), (theirs, -1, row["ov_met"])):
         if None not in (s, d, half, sd):
