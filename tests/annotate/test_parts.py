@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory, timestamp_pb2
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from drivelint.annotate import clock, events, foxglove, wire
@@ -20,6 +21,7 @@ VIEWER_TYPES = {"string", "number", "integer", "boolean"}
 """What Foxglove's and Lichtblick's readers of JSON Schema take for a plain field; a list of types or null ends the channel."""
 
 
+@cache
 def made(name: str) -> Any:
     """Return the class of a Foxglove message, from our own declaration."""
     pool = descriptor_pool.DescriptorPool()
@@ -39,12 +41,14 @@ def test_foxgloves_types_are_those_of_its_own_package(name: str) -> None:
     assert declared(foxglove.schema(name).data) == declared(getattr(package, name).get_schema().data)
 
 
+@settings(deadline=None)
 @given(st.integers(0, 2**63 - 1))
 def test_times_are_read_back(t_ns: int) -> None:
     stamp = made("Log").FromString(wire.time(1, t_ns)).timestamp
     assert stamp.seconds * 10**9 + stamp.nanos == t_ns
 
 
+@settings(deadline=None)
 @given(st.lists(st.integers(0, 2**63 - 1), min_size=1, max_size=5))
 def test_columns_of_times_are_read_back(times: list[int]) -> None:
     column = wire.timestamps(1, np.array(times, np.uint64))
@@ -54,6 +58,7 @@ def test_columns_of_times_are_read_back(times: list[int]) -> None:
     assert timestamp_pb2.Timestamp.FromString(column[0, 2:].tobytes()).ToNanoseconds() == times[0]
 
 
+@settings(deadline=None)
 @given(st.lists(st.tuples(*[st.floats(allow_nan=False)] * 3), max_size=4), st.integers(0, 2**20), st.text(max_size=300))
 def test_fields_are_read_back(xyz: list[tuple[float, float, float]], whole: int, text: str) -> None:
     line = made("SceneUpdate")().entities.add().lines.add()
