@@ -59,7 +59,8 @@ def test_select(rules: dict[str, Rule], include: list[str], ignore: list[str], e
 
 
 @pytest.mark.parametrize(
-    ("selector", "nearest"), [("pack.r1.sped", "pack.r1.speed"), ("pac", "pack"), ("r2.gap", "pack.r2.gap")]
+    ("selector", "nearest"),
+    [("pack.r1.sped", "pack.r1.speed"), ("pac", "pack"), ("r2.gap", "pack.r2.gap"), ("r1", "pack.r1.speed")],
 )
 def test_a_selector_that_matches_nothing_is_refused_with_the_nearest(
     rules: dict[str, Rule], selector: str, nearest: str

@@ -8,6 +8,7 @@ import pytest
 
 from drivelint.errors import TraceError, UsageError
 from drivelint.ingest import expand
+from drivelint.report.contract import FILES
 from tests.ingest.logs import cars, mapping, read, table
 
 
@@ -24,6 +25,23 @@ def test_files_globs_and_folders(tmp_path: Path) -> None:
     assert names(expand([str(tmp_path)])) == ["a.mcap", "b.csv", "c.parquet", "d.CSV", "e.osi"]
     assert names(expand([str(tmp_path / "*.csv")])) == ["b.csv"]
     assert names(expand([str(tmp_path / "**" / "*.csv"), str(tmp_path / "c.parquet")])) == ["b.csv", "c.parquet"]
+
+
+def test_what_an_earlier_check_wrote_is_not_searched(tmp_path: Path) -> None:
+    """Whoever keeps results beside the logs and checks the folder again must not judge the results."""
+    written = [f"{name}.parquet" for name in FILES] + ["margins.parquet", "summary.json", "annotated/a.mcap"]
+    for out in (tmp_path, tmp_path / "out"):
+        for name in [*written, "a.mcap"]:
+            (out / name).parent.mkdir(parents=True, exist_ok=True)
+            (out / name).write_text("x")
+    (tmp_path / "annotated" / "sub").mkdir()
+    (tmp_path / "annotated" / "sub" / "b.mcap").write_text("x")
+    found = [tmp_path / "a.mcap", tmp_path / "annotated" / "sub" / "b.mcap", tmp_path / "out" / "a.mcap"]
+    assert expand([str(tmp_path)]) == found
+    assert expand([str(tmp_path / "annotated" / "a.mcap")]) == [tmp_path / "annotated" / "a.mcap"]
+    assert names(expand([str(tmp_path / "annotated")])) == ["a.mcap", "b.mcap"]
+    (tmp_path / "summary.json").unlink()
+    assert tmp_path / "verdicts.parquet" in expand([str(tmp_path)])
 
 
 def test_each_file_once_in_one_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -49,11 +49,12 @@ def _matching(rules: Mapping[str, Rule], selector: str) -> list[Rule]:
 
 
 def _nearest(word: str, known: Iterable[str]) -> str:
-    """Return '; did you mean ...?', or ''. A rule may also be meant by the part of its id after the pack."""
+    """Return '; did you mean ...?', or ''. A rule may also be meant by a part of its id."""
     names = {name: name for name in known}
     names |= {name.split(".", 1)[1]: name for name in list(names) if "." in name}
-    near = get_close_matches(word, names, n=1, cutoff=0.4)
-    return f"; did you mean {names[near[0]]!r}?" if near else ""
+    holding = sorted((len(name), name) for name in names.values() if word in name)  # r162: the rule, not one alike
+    near = [holding[0][1]] if holding else [names[n] for n in get_close_matches(word, names, n=1, cutoff=0.4)]
+    return f"; did you mean {near[0]!r}?" if near else ""
 
 
 def parse_params(

@@ -27,6 +27,12 @@ CANONICAL = (
 """The files of a canonical folder, in name order; all but `actor_state.parquet` may be missing."""
 TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi"})
 """What a folder of traces is searched for. `.osi` is among them so that such a drive is reported, not passed over."""
+RESULTS = frozenset(
+    {f"{name}.parquet" for name in ("drives", "findings", "lanes", "margins", "rules", "scenes", "verdicts")}
+)
+"""What `check --out` writes and a folder of traces is not searched for, where it lies with its `summary.json`."""
+ANNOTATED = "annotated"
+"""The folder beside them: logs that were judged already."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +53,8 @@ def expand(traces: Sequence[str]) -> list[Path]:
     """Return the traces that files, globs and folders name, sorted, each file once.
 
     A path that exists is always taken literally, `[`, `*` and `?` in its name included. A folder with
-    `actor_state.parquet` is one drive; any other is searched, with subfolders, for MCAP, Parquet, CSV and OSI files.
+    `actor_state.parquet` is one drive; any other is searched, with subfolders, for MCAP, Parquet, CSV and OSI files, except
+    for what an earlier check wrote there.
     Errors: `UsageError` for a URI or an empty name, `TraceError` for something that matches nothing.
     """
     found: dict[Path, Path] = {}
@@ -89,12 +96,28 @@ def _inside(path: Path) -> list[Path]:
         if file.suffix.lower() in TRACE_SUFFIXES
         and file.is_file()
         and not any(drive in file.parents for drive in drives)
+        and not _is_result(file, path)
     ]
     if not drives and not files:
         raise TraceError(
             f"{path}: no trace in this folder (looked for {', '.join(sorted(TRACE_SUFFIXES))}): check the path"
         )
     return drives + files
+
+
+def _is_result(file: Path, searched: Path) -> bool:
+    """Say whether an earlier check wrote the file: the logs that somebody recorded beside its results are none.
+
+    Who names the folder of annotated logs itself, means them.
+    """
+    if file.name in RESULTS:
+        return _checked(file.parent)
+    folder = file.parent.parent
+    return file.parent.name == ANNOTATED and folder.is_relative_to(searched) and _checked(folder)
+
+
+def _checked(folder: Path) -> bool:
+    return (folder / "summary.json").is_file() and (folder / "verdicts.parquet").is_file()
 
 
 def identify(path: Path) -> Identity:

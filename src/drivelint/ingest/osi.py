@@ -137,10 +137,7 @@ class _Source:
         if self.topic is None and len(self.kinds) > 1:
             raise TraceError(f"{path}: ground truth on {len(self.kinds)} topics ({topics}): choose one with --topic")
         self._decode()
-        topic = self.topic if self.topic is not None else next(iter(self.kinds))
-        recording = _joined(self.batches, np.array(self.log_ns, np.uint64))
-        recording.notes.append(f"{len(self.log_ns)} messages of {self.kinds[topic]} on topic {topic!r}")
-        return recording
+        return _joined(self.batches, np.array(self.log_ns, np.uint64))
 
 
 def _nothing(container: Container) -> str:

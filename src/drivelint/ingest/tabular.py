@@ -69,7 +69,11 @@ def _fitting(path: Path) -> tuple[str, Mapping, Sheet]:
     if len(fits) == 1:
         return fits[0]
     names = ", ".join(name for name, _, _ in fits) if fits else ", ".join(mappings.shipped())
-    what = f"several mappings fit ({names})" if fits else f"no shipped mapping fits its columns (shipped: {names})"
+    what = (
+        f"several mappings fit ({names})"
+        if fits
+        else f"read as a table, no shipped mapping fits its columns (shipped: {names})"
+    )
     raise TraceError(f"{path}: {what}: say how to read it with --mapping FILE|NAME; drivelint inspect drafts one")
 
 

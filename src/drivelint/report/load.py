@@ -35,7 +35,9 @@ def _summary(folder: Path) -> dict[str, Any]:
     try:
         found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise UsageError(f"{folder}: no result of drivelint check: summary.json {_why(error)}") from error
+        raise UsageError(
+            f"{folder}: no result of drivelint check: summary.json {_why(error)}: name the folder that check --out wrote"
+        ) from error
     if not isinstance(found, dict) or not {"fail_on", "strict"} <= found.keys():
         raise UsageError(f"{folder}: no result of drivelint check: summary.json is of another program")
     return found

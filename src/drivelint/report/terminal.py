@@ -15,7 +15,7 @@ from rich.text import Text
 from drivelint.errors import ExitCode
 from drivelint.report import counts
 from drivelint.report.result import outcome
-from drivelint.report.text import NONE, line, number, seconds, times
+from drivelint.report.text import NONE, comparison, number, seconds, times
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 MAX_ROWS: Final = 20
 """Rows shown per section; the files hold them all."""
 NARROW: Final = 96
-"""Below this width findings are written as lines, and columns that only repeat are left out."""
+"""Below this width findings take two lines each, and columns that only repeat are left out."""
 
 _OPEN: Final = pa.array(["unknown", "error"])
 _STYLE: Final = {
@@ -44,14 +44,14 @@ def render(result: Result, out: str | None = None, width: int = 120) -> Group:
 
     Sections: drives, rules, findings, near misses, what could not be judged, data quality, exit.
     """
-    measured = _lines if width < NARROW else _measured
+    wide = width >= NARROW
     starts = dict(zip(result.drives["drive_id"].to_pylist(), result.drives["t_start_ns"].to_pylist(), strict=True))
     near = result.verdicts.filter(result.verdicts["near_miss"])
     sections: list[RenderableType | None] = [
         _drives(result, width),
         _rules(result, width),
-        measured("Findings", result.findings, starts, "red"),
-        measured("Near misses: kept, but only just", near, starts, "yellow"),
+        _measured("Findings", result.findings, starts, "red", wide=wide),
+        _measured("Near misses: kept, but only just", near, starts, "yellow", wide=wide),
         _open(result),
         _quality(result),
         _end(result, out),
@@ -97,16 +97,23 @@ def _rules(result: Result, width: int) -> Table:
     return table
 
 
-def _measured(title: str, rows: pa.Table, starts: dict[str, int | None], style: str) -> Table | None:
-    """Return findings or near misses with what was measured; None for none. The drive is named where it changes."""
+def _measured(
+    title: str, rows: pa.Table, starts: dict[str, int | None], style: str, *, wide: bool = True
+) -> Table | None:
+    """Return findings or near misses with what was measured; None for none. The drive is named where it changes.
+
+    In a narrow terminal what was measured stands below the rule, so that no number and no name is torn apart.
+    """
     if not rows.num_rows:
         return None
     table = _table(_title(title, rows.num_rows), style)
+    table.show_header = wide
     table.add_column("time", justify="right", no_wrap=True)
     table.add_column("rule [profile]", overflow="fold", ratio=2)
-    table.add_column("object", overflow="fold")
-    for column in ("observed", "required", "margin"):
-        table.add_column(column, justify="right", no_wrap=True)
+    if wide:
+        table.add_column("object", overflow="fold")
+        for column in ("observed", "required", "margin"):
+            table.add_column(column, justify="right", no_wrap=True)
     egos = len(pc.unique(rows["ego_id"])) > 1
     previous = None
     for row in rows.slice(0, MAX_ROWS).to_pylist():
@@ -115,25 +122,15 @@ def _measured(title: str, rows: pa.Table, starts: dict[str, int | None], style: 
             table.add_row("", Text(where, style="bold"))
             previous = where
         profile = "" if row["profile"] is None else f" [{row['profile']}]"
-        table.add_row(
-            seconds(row["t_worst_ns"], starts.get(row["drive_id"])),
-            Text(f"{row['rule_id']}{profile}"),
-            Text(row["object_id"] or ""),
-            *(number(row[name], row["unit"]) for name in ("observed", "required", "margin")),
-        )
+        when, rule = seconds(row["t_worst_ns"], starts.get(row["drive_id"])), Text(f"{row['rule_id']}{profile}")
+        if wide:
+            numbers = (number(row[name], row["unit"]) for name in ("observed", "required", "margin"))
+            table.add_row(when, rule, Text(row["object_id"] or ""), *numbers)
+        else:
+            about = f"object {row['object_id']}: " if row["object_id"] is not None else ""
+            table.add_row(when, rule)
+            table.add_row("", Text(about + (comparison(row) or row["reason"]), style="dim"))
     return table
-
-
-def _lines(title: str, rows: pa.Table, starts: dict[str, int | None], style: str) -> Text | None:
-    """Return the same as lines, for a narrow terminal; None for none."""
-    if not rows.num_rows:
-        return None
-    text = Text(_title(title, rows.num_rows), style=style)
-    for row in rows.slice(0, MAX_ROWS).to_pylist():
-        profile = "" if row["profile"] is None else f" [{row['profile']}]"
-        text.append(f"\n{row['drive_id']}\n  {row['rule_id']}{profile}\n", style="default")
-        text.append(f"  {line(row, starts.get(row['drive_id']))}", style="dim")
-    return text
 
 
 def _open(result: Result) -> Table | None:
@@ -188,8 +185,16 @@ def _end(result: Result, out: str | None) -> Text:
     told = counts.total(result.verdicts)
     text = Text(", ".join(f"{n} {_HEAD[verdict]}" for verdict, n in told.items()))
     text.append(f"\nexit {int(end.code)}: {end.why}", style=style)
-    if out:
-        text.append(f"\nresults in {out}", style="dim")
+    if told["unknown"]:
+        text.append(
+            "\nunknown is not pass: drivelint inspect TRACE tells what a log lacks, and what to provide", "yellow"
+        )
+    if out is None:
+        text.append(
+            "\nnothing was written: --out DIR keeps a report, the tables and the logs with their verdicts", "dim"
+        )
+    else:
+        text.append(f"\nto look at it, open {out}/report.html", style="bold")
     return text
 
 
