@@ -11,6 +11,7 @@ import pytest
 
 from drivelint import batch, store
 from drivelint.errors import MapError, TraceError, UsageError
+from drivelint.evaluate import evaluate as plain
 from drivelint.report.progress import Silent
 from drivelint.run import Settings, check
 
@@ -65,14 +66,14 @@ def test_a_drive_that_cannot_be_read_harms_no_other(tmp_path: Path) -> None:
 
 
 def test_a_drive_that_the_engine_chokes_on_harms_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
-    from drivelint.derive import derive as plain
+    from drivelint.derive import derive
 
     def choking(con: duckdb.DuckDBPyConnection, *args: Any, **options: Any) -> None:
         if con.execute(
             "SELECT count(*) FROM actor_state s JOIN data_log l USING (drive_id) WHERE l.file_name = 'safe.csv'"
         ).fetchall()[0][0]:
             raise duckdb.OutOfMemoryException("no more")
-        plain(con, *args, **options)
+        derive(con, *args, **options)
 
     monkeypatch.setattr("drivelint.judge.derive", choking)
     result = check(settings(*logs()), Silent())
@@ -82,6 +83,22 @@ def test_a_drive_that_the_engine_chokes_on_harms_no_other(monkeypatch: pytest.Mo
     assert {name for name, (s, _) in status.items() if s == "judged"} == {"near_miss.csv", "collision.csv"}
     judged = {row["drive_id"].rsplit("-", 1)[0] for row in result.verdicts.to_pylist()}
     assert judged == {"near_miss", "collision"}
+
+
+def test_memory_that_does_not_do_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = check(settings(*logs()), Silent())
+    asked: list[str] = []
+
+    def short(con: duckdb.DuckDBPyConnection, *_args: Any, **_options: Any) -> None:
+        asked.append(con.execute("SELECT current_setting('memory_limit')").fetchall()[0][0])
+        if len(asked) == 1:
+            raise duckdb.OutOfMemoryException("not enough")
+        plain(con, *_args, **_options)
+
+    monkeypatch.setattr("drivelint.judge.evaluate", short)
+    again = check(settings(*logs()), Silent())
+    assert len(set(asked)) == 2, "the second try has the machine's memory"
+    assert again.verdicts.equals(usual.verdicts)
 
 
 def test_the_same_log_twice_is_judged_once(tmp_path: Path) -> None:

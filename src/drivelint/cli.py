@@ -32,11 +32,14 @@ T = TypeVar("T")
 app = typer.Typer(
     name="drivelint",
     help="Checks recorded drives against the rules of the road.",
+    epilog="To begin: `drivelint demo` writes drives to try it on and prints the command that checks them; "
+    "`drivelint inspect TRACE` shows what a log of yours can decide.",
     add_completion=False,
+    rich_markup_mode=None,  # two columns of text: frames and types leave a help of 80 columns no room for words
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-rules_app = typer.Typer(help="The rule catalogue: list, show and test rules.")
+rules_app = typer.Typer(help="List, show and test the rules.", rich_markup_mode=None)
 app.add_typer(rules_app, name="rules")
 
 
@@ -64,7 +67,7 @@ def _root(
 @app.command()
 def check(
     *,
-    traces: Annotated[list[str], typer.Argument(metavar="TRACE...", help="Recorded drives: files, globs or folders.")],
+    traces: Annotated[list[str], typer.Argument(metavar="TRACE", help="Recorded drives: files, globs or folders.")],
     map_: options.MapFile = None,
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for the result files.")] = None,
     rules: Annotated[
@@ -107,10 +110,13 @@ def check(
     ] = True,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
-    """Judge recorded drives against the rules and write verdicts, findings and reports.
+    """Judge recorded drives against the rules.
 
-    Exit codes: 0 nothing failed at or above --fail-on; 1 something did; 2 usage or rule error; 3 judged on lossy input;
-    4 some drives not judged (with --strict: some rule unknown); 75 infrastructure lost; 130 interrupted.
+    With --out: tables of verdicts and findings, report.html, and the logs with their verdicts in them.
+
+    Exit codes: 0 nothing failed at or above --fail-on; 1 something did; 2 usage or rule error;
+    3 judged on lossy input; 4 some drives not judged (with --strict: some rule unknown);
+    75 the machine failed, try again; 130 interrupted.
     """
     from drivelint import run
     from drivelint.report.files import prepare
@@ -154,7 +160,10 @@ def demo(
         "demo"
     ),
 ) -> None:
-    """Write the paper's three overtakes, at two speeds, and their road: to try drivelint without data of your own."""
+    """Write drives to try drivelint on.
+
+    Three overtakes at two speeds, as ASAM OSI in MCAP, and their road. Prints the command that checks them.
+    """
     from drivelint.demo import files
 
     written = files.write(out)
@@ -180,7 +189,10 @@ def inspect(
     rules_dir: options.RulesDirs = None,
     format_: options.Printed = options.Format.text,
 ) -> None:
-    """Show what is in a log, how it lies on the map, what is wrong with it, and which rules it can decide."""
+    """Show what is in a log and what it can decide.
+
+    Also how it lies on the map, what is wrong with it, and what to provide so that more rules can be decided.
+    """
     from drivelint import inspect as inspection
 
     order = inspection.Order(
@@ -220,7 +232,10 @@ def convert(
     sensor_range: options.SensorRange = None,
     topic: options.Topic = None,
 ) -> None:
-    """Write a drive as OSI in MCAP or as Parquet tables, in metres and seconds, with its map and what its mapping said."""
+    """Write a log anew, as OSI in MCAP or as Parquet.
+
+    In metres, seconds and box centres, with its map, so that it needs no mapping any more and gives the same verdicts.
+    """
     from drivelint import convert as converter
     from drivelint.convert.text import said
 
@@ -248,7 +263,7 @@ def report(
         options.Report, typer.Option("--to", help="html: one page that opens offline.")
     ] = options.Report.html,
 ) -> None:
-    """Write a report from a result folder, into that folder."""
+    """Write report.html anew from a result folder."""
     from drivelint.report.files import publish
     from drivelint.report.html import render
     from drivelint.report.load import load
@@ -262,7 +277,10 @@ def rules_list(
     format_: options.Printed = options.Format.text,
     rules_dir: options.RulesDirs = None,
 ) -> None:
-    """List every rule with its kind, severity, status, clause and the signals that it requires."""
+    """List the rules.
+
+    With --format json also the clause that each is from and what it requires of a log.
+    """
     from drivelint.catalogue import load
     from drivelint.report import rules_text
 
@@ -270,20 +288,21 @@ def rules_list(
     if format_ is options.Format.json:
         typer.echo(rules_text.listing_json(rules))
     else:
-        _say(rules_text.listing(rules))
+        _say(lambda width: rules_text.listing(rules, width))
 
 
 @rules_app.command("show")
 def rules_show(
     rule_id: Annotated[str, typer.Argument(metavar="ID", help="The rule's id.")], rules_dir: options.RulesDirs = None
 ) -> None:
-    """Show one rule: what it asks, where it comes from, its parameters and its SQL."""
+    """Show one rule: question, clause, parameters, SQL."""
     from drivelint.catalogue import load, select
     from drivelint.report import rules_text
 
     rules = load(tuple(rules_dir or ()))
     for rule in [rules[rule_id]] if rule_id in rules else select(rules, [rule_id], []):
         _say(rules_text.page(rule))
+        _say(rules_text.source(rule), soft_wrap=True)
 
 
 @rules_app.command("test")
@@ -292,7 +311,10 @@ def rules_test(
         Path | None, typer.Argument(metavar="[DIR]", help="Folder with rule packs; default: the shipped ones.")
     ] = None,
 ) -> None:
-    """Run the cases beside the rules: what each must answer in small scenes. Exit code 1: some answer otherwise."""
+    """Run the test cases beside the rules.
+
+    Each is a small scene with the verdict that is due. Exit code 1: some verdict is another.
+    """
     from drivelint.casefile import CaseResult, run_cases
     from drivelint.catalogue import load
     from drivelint.report import rules_text

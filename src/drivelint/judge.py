@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+import duckdb
 import pyarrow as pa
 import pyarrow.parquet as pq
 
@@ -15,8 +16,6 @@ from drivelint.evaluate import evaluate
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from pathlib import Path
-
-    import duckdb
 
     from drivelint.batch import Drive
     from drivelint.catalogue import Rule
@@ -65,6 +64,7 @@ class Bench:
         self._tables = {table for rule in rules for table in rule.reads}
         self._margins: pq.ParquetWriter | None = None
         self._seen: set[str] = set()
+        self._limited = True
         self._maps: frozenset[str] = frozenset()
         self._kept_maps: set[str] = set()
         self.margins_file = out / ".margins.parquet" if margins and out else None
@@ -80,21 +80,31 @@ class Bench:
         """Judge a batch of drives; if it fails, nothing of it stays behind."""
         if not drives:
             return
+        try:
+            self._judge(drives)
+        except duckdb.OutOfMemoryException:
+            # the usual limit keeps long drives small; what cannot be spilled to disk may take what the machine has
+            self._con.execute("RESET memory_limit")
+            self._limited = False
+            self._judge(drives)
+        self._seen.update(drive.trace.drive_id for drive in drives)
+        self._write_margins()
+        self._keep(_batch_tables())
+        self._clear()
+
+    def _judge(self, drives: Sequence[Drive]) -> None:
         ids = [drive.trace.drive_id for drive in drives]
         try:
             self._load(drives)
             derive(self._con, self._tables, of_the_map=False)
             evaluate(self._con, self._rules, self._params, margins=self.margins_file is not None)
+            self._refuse_short_memory(ids)
             self._refuse_shared_error(ids)
             for witness in self._witnesses:
                 witness(self._con, drives)
         except BaseException:
             self._forget(ids)
             raise
-        self._seen.update(ids)
-        self._write_margins()
-        self._keep(_batch_tables())
-        self._clear()
 
     def close(self) -> None:
         """Finish the files that grew with the batches."""
@@ -154,6 +164,12 @@ class Bench:
                     f"INSERT INTO kept.{table} SELECT * FROM {table} WHERE list_contains(?, environment_id)", [new]
                 )
             self._kept_maps.update(new)
+
+    def _refuse_short_memory(self, ids: Sequence[str]) -> None:
+        """A rule that ran out of memory under the usual limit is not at fault yet."""
+        short = "SELECT count(*) FROM verdict WHERE verdict = 'error' AND reason LIKE '%Out of Memory%' AND list_contains(?, drive_id)"
+        if self._limited and self._con.execute(short, [list(ids)]).fetchall()[0][0]:
+            raise duckdb.OutOfMemoryException("a rule needs more than the usual memory")
 
     def _refuse_shared_error(self, ids: Sequence[str]) -> None:
         """Let a rule that erred on a crowd be tried on each drive alone: the fault of one is not the others'."""

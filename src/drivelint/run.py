@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Final
 
 import duckdb
 import pyarrow as pa
@@ -23,10 +25,13 @@ from drivelint.report.rulebook import rule_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from pathlib import Path
 
     from drivelint.judge import Witness
     from drivelint.report.progress import Progress
+
+# what the database keeps in memory before it uses the disk: measured to cost nothing on a drive of 600,000 states, and to hold
+# one of 4.8 million in 2.3 GB instead of 13.7
+MEMORY: Final = "1200MB"
 
 
 @dataclass(frozen=True)
@@ -69,7 +74,7 @@ def check(settings: Settings, progress: Progress) -> Result:
     options = IngestOptions(settings.mapping, settings.ego, settings.topic, settings.sensor_range_m)
     library = MapLibrary(settings.map, settings.map_offset, settings.handedness)
 
-    with store.connect() as con:
+    with TemporaryDirectory(prefix="drivelint-") as spill, store.connect(memory_limit=MEMORY, spill=Path(spill)) as con:
         store.insert(con, "profile", profiles)
         table = rule_table(rules, params, settings.profiles or (DEFAULT,))
         bench = Bench(

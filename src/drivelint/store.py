@@ -20,11 +20,16 @@ _COLUMN = re.compile(r"^    (\w+) .*?,?\s*-- (.+)$", re.MULTILINE)
 
 
 def connect(
-    path: Path | None = None, *, threads: int | None = None, memory_limit: str | None = None
+    path: Path | None = None,
+    *,
+    threads: int | None = None,
+    memory_limit: str | None = None,
+    spill: Path | None = None,
 ) -> duckdb.DuckDBPyConnection:
     """Open a database with spatial loaded from its wheel (no network) and every table of `schemas/` and macro created.
 
-    Errors: `DriveLintError` when the pinned extension cannot be loaded.
+    Beyond `memory_limit` (80 % of the machine's by default) tables go to the folder `spill`; without one, DuckDB would put
+    them where the user happens to be. Errors: `DriveLintError` when the pinned extension cannot be loaded.
     """
     con = duckdb.connect(str(path) if path else ":memory:")
     con.execute("SET allow_community_extensions=false")
@@ -35,6 +40,8 @@ def connect(
         con.execute(f"SET threads={int(threads)}")
     if memory_limit:
         con.execute("SET memory_limit=?", [memory_limit])
+    if spill:
+        con.execute("SET temp_directory=?", [str(spill)])
     load_spatial(con)
     create_tables(con)
     for macro in sorted((folder("queries") / "macros").glob("*.sql")):

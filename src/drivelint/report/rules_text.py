@@ -10,6 +10,8 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
+from drivelint.report.terminal import NARROW
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
@@ -36,20 +38,21 @@ def listing_json(rules: Iterable[Rule]) -> str:
     return json.dumps(rows, indent=2, ensure_ascii=False)
 
 
-def listing(rules: Iterable[Rule]) -> Table:
-    """Return the same as a table, with the rules' titles."""
+def listing(rules: Iterable[Rule], width: int = 120) -> Table:
+    """Return the same as a table for a terminal of `width` columns, with the rules' titles; narrow: without their kinds."""
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
-    for name in ("rule", "kind", "severity", "status"):
+    wide = width >= NARROW
+    for name in ("rule", *(("kind",) if wide else ()), "severity", "status"):
         table.add_column(name, no_wrap=True)
     table.add_column("what it asks", ratio=1)
     for rule in rules:
-        kind = f"{rule.kind}, {rule.subtype}" if rule.subtype else rule.kind
-        table.add_row(rule.id, kind, rule.severity, rule.status, Text(rule.title))
+        kind = [f"{rule.kind}, {rule.subtype}" if rule.subtype else rule.kind] if wide else []
+        table.add_row(rule.id, *kind, rule.severity, rule.status, Text(rule.title))
     return table
 
 
 def page(rule: Rule) -> Group:
-    """Return everything about one rule: what it asks, where that is from, its parameters, the file and its SQL."""
+    """Return everything about one rule: what it asks, where that is from, its parameters."""
     facts = Table(box=None, show_header=False, pad_edge=False)
     facts.add_column(style="bold", no_wrap=True)
     facts.add_column(overflow="fold")
@@ -64,15 +67,19 @@ def page(rule: Rule) -> Group:
         ("severity", f"{rule.severity}, {rule.status}"),
         ("requires", requires),
         ("reads", ", ".join(rule.reads)),
-        ("file", f"{rule.path} (version {rule.version})"),
+        ("version", rule.version),
     ):
         if value:
             facts.add_row(name, Text(value))
     parts: list[RenderableType] = [Text(f"{rule.id}: {rule.title}", style="bold"), facts]
     if rule.params:
         parts.append(_params(rule))
-    parts += [Text(f"\n-- @{name}\n{sql}") for name, sql in rule.sections.items()]
     return Group(*parts)
+
+
+def source(rule: Rule) -> Text:
+    """Return the rule's file and its SQL, to be printed as it stands: both are there to be copied."""
+    return Text("\n".join([str(rule.path), *(f"\n-- @{name}\n{sql}" for name, sql in rule.sections.items())]))
 
 
 def _params(rule: Rule) -> Table:
