@@ -46,7 +46,9 @@ class Handedness(StrEnum):
     rht = "rht"
 
 
-MapFile = Annotated[Path | None, typer.Option("--map", metavar="MAP", help="The road, as OpenDRIVE: most rules need it.")]
+MapFile = Annotated[
+    Path | None, typer.Option("--map", metavar="MAP", help="The road, as OpenDRIVE: most rules need it.")
+]
 EgoId = Annotated[
     str | None, typer.Option("--ego", metavar="ID|all", help="The vehicle under test, or every vehicle in turn.")
 ]
