@@ -5,9 +5,14 @@ from __future__ import annotations
 import re
 import runpy
 import shlex
+from pathlib import Path
+from typing import Any
 
 import pytest
+from typer.main import get_command
 
+from drivelint import cli
+from drivelint.demo import files
 from tests.shared_data import ROOT
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -34,11 +39,34 @@ def test_a_command_is_one_line_that_leaves_the_systems_python_alone(name: str) -
     assert "sudo" not in line
 
 
-def test_the_first_command_names_files_that_are_there() -> None:
-    words = shlex.split(command("run"))
-    paths = [word for word in words if word.startswith("fixtures/")]
-    assert len(paths) == 3
-    assert all(list(ROOT.glob(path)) for path in paths)
+def test_the_first_command_checks_the_demo_as_the_demo_says() -> None:
+    install, demo, check = command("run").split(" && ", 1)[1].split(" && ")
+    assert install.endswith(" install -q .")
+    assert demo == ".venv/bin/drivelint demo"
+    shown = files.next_command(Path("demo"), "drivelint").partition(" ")[2]
+    assert check == f".venv/bin/drivelint {shown}"
+    assert f"`{shown.rpartition(' ')[2]}/report.html`" in README
+
+
+def test_every_picture_and_file_that_the_readme_names_is_there() -> None:
+    pictures = re.findall(r"^!\[.+?\]\((.+?)\)$", README, re.MULTILINE)
+    assert len(pictures) == 2
+    assert all((ROOT / picture).stat().st_size < 300_000 for picture in pictures)
+    paths = re.findall(r"`((?:fixtures|schemas|queries|\.ci)/[^`<>*]*)`", README)
+    assert paths
+    assert [path for path in paths if not (ROOT / path).exists()] == []
+
+
+def test_the_command_line_takes_every_line_that_the_readme_shows() -> None:
+    blocks = re.findall(r"^```sh\n(.+?)\n```$", README, re.MULTILINE | re.DOTALL)
+    lines = [line for block in blocks for line in block.splitlines() if line.startswith("drivelint ")]
+    assert len(lines) > 8
+    for line in lines:
+        called: Any = get_command(cli.app)
+        _, *words = shlex.split(line, comments=True)
+        while hasattr(called, "commands"):
+            called = called.commands[words.pop(0)]
+        called.make_context(called.name, words)  # parses, runs nothing
 
 
 def test_ci_takes_the_test_command_from_the_readme() -> None:
