@@ -176,6 +176,8 @@ MISTAKES = [
     pytest.param(["check", TRACES[0], *ON_ROAD, "--margins"], 2, "--out", id="margins go nowhere"),
     pytest.param(["check", TRACES[0], *ON_ROAD, "--rules-dir", "nowhere"], 2, "nowhere", id="no rules there"),
     pytest.param(["rules", "show", "ukhc.nothing"], 2, "ukhc.nothing", id="show an unknown rule"),
+    pytest.param(["rules", "show"], 2, "drivelint rules show --help", id="which help to read"),
+    pytest.param(["convert", "x", "--to", "csv", "--out", "y"], 2, "'--to': 'csv' is not", id="unknown target"),
 ]
 
 

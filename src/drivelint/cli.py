@@ -345,13 +345,22 @@ def main() -> NoReturn:
         _fail(str(error), error.exit_code)
     except TyperException as error:
         also = " and drivelint.toml in this folder" if Path("drivelint.toml").is_file() else ""
-        _fail(f"{error.format_message()} (see drivelint --help{also})", ExitCode.USAGE)
+        words = error.format_message().replace("Value error, ", "")  # the library's, not ours
+        _fail(f"{words} (see drivelint {_asked(error)}--help{also})", ExitCode.USAGE)
     except (KeyboardInterrupt, typer.Abort):
         code = ExitCode.INTERRUPTED
     if code == ExitCode.INTERRUPTED:
         print("drivelint: error: interrupted", file=sys.stderr, flush=True)
         os._exit(code)  # the database may still be computing in its thread: there is nothing to wait for
     sys.exit(code or 0)
+
+
+def _asked(error: Exception) -> str:
+    """Return the words of the command that a mistake was made in, each with a space behind it; '' for none."""
+    about, words = getattr(error, "ctx", None), ""
+    while about is not None and about.parent is not None:
+        about, words = about.parent, f"{about.info_name} {words}"
+    return words
 
 
 def _settings() -> dict[str, Any]:

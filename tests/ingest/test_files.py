@@ -44,6 +44,15 @@ def test_what_an_earlier_check_wrote_is_not_searched(tmp_path: Path) -> None:
     assert tmp_path / "verdicts.parquet" in expand([str(tmp_path)])
 
 
+def test_a_folder_that_goes_while_it_is_searched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def gone(folder: Path, pattern: str) -> list[Path]:
+        raise FileNotFoundError(2, "No such file or directory", str(folder / "sub"))
+
+    monkeypatch.setattr(Path, "rglob", gone)
+    with pytest.raises(TraceError, match=r"cannot be searched: .*sub: No such file"):
+        expand([str(tmp_path)])
+
+
 def test_each_file_once_in_one_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("b.csv", "a.csv"):
         (tmp_path / name).write_text("x")

@@ -89,15 +89,18 @@ def _exists(path: Path) -> bool:
 def _inside(path: Path) -> list[Path]:
     if not path.is_dir() or is_canonical_folder(path):
         return [path]
-    drives = [folder.parent for folder in path.rglob("actor_state.parquet")]
-    files = [
-        file
-        for file in path.rglob("*")
-        if file.suffix.lower() in TRACE_SUFFIXES
-        and file.is_file()
-        and not any(drive in file.parents for drive in drives)
-        and not _is_result(file, path)
-    ]
+    try:
+        drives = [folder.parent for folder in path.rglob("actor_state.parquet")]
+        files = [
+            file
+            for file in path.rglob("*")
+            if file.suffix.lower() in TRACE_SUFFIXES
+            and file.is_file()
+            and not any(drive in file.parents for drive in drives)
+            and not _is_result(file, path)
+        ]
+    except OSError as error:  # such as a folder that went while it was looked through
+        raise TraceError(f"{path}: cannot be searched: {error.filename}: {error.strerror}: try again") from error
     if not drives and not files:
         raise TraceError(
             f"{path}: no trace in this folder (looked for {', '.join(sorted(TRACE_SUFFIXES))}): check the path"
