@@ -1,115 +1,109 @@
-"""Seconds per stage: `python -m tests.bench.stages [--runs N]`, from the repository's root.
-
-Makes its drives in a temporary folder, then runs each set N times in this process (after one run to warm up) and prints medians.
-Shared machines are noisy: compare lines of one run, not numbers of two.
-"""
+"""`check` by stage: the reference drive, and many short ones. Alone: `python -m tests.bench.stages`."""
 
 from __future__ import annotations
 
-import argparse
-import resource
-import statistics
-import tempfile
-import time
-from collections import defaultdict
-from contextlib import contextmanager
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+import sys
+from functools import partial
+from typing import TYPE_CHECKING
 
-from drivelint import batch, judge, run
+from drivelint import batch, catalogue, judge, run, store
+from drivelint.annotate import Annotator
 from drivelint.ingest import IngestOptions, read_trace
+from drivelint.maps.library import MapLibrary
+from drivelint.report import evidence, html, junit, outputs
 from drivelint.report.progress import Silent
-from drivelint.report.outputs import write
 from tests.bench import traffic
+from tests.bench.clock import Span, Stages, alone, by_stage, now, repeat
+from tests.bench.table import Bar, Row
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from pathlib import Path
 
-_clock: dict[str, float] = defaultdict(float)
+    from tests.bench.place import Place
 
-
-@contextmanager
-def _timed(owner: Any, name: str, stage: str) -> Iterator[None]:
-    """Add the time spent in `owner.name` to a stage while the block runs."""
-    plain = getattr(owner, name)
-
-    def timed(*args: Any, **options: Any) -> Any:
-        begin = time.perf_counter()
-        try:
-            return plain(*args, **options)
-        finally:
-            _clock[stage] += time.perf_counter() - begin
-
-    setattr(owner, name, timed)
-    try:
-        yield
-    finally:
-        setattr(owner, name, plain)
+WATCHED = (
+    (store, "connect", "database opened"),
+    (catalogue, "load", "catalogue read"),
+    (batch, "_drive", "ingest"),  # waiting for the threads that read
+    (MapLibrary, "find", "map"),
+    (judge.Bench, "_load", "tables filled"),
+    (judge, "derive", "derive"),
+    (judge, "evaluate", "rules"),
+    (evidence, "gather", "report"),
+    (html, "render", "report"),
+    (junit, "render", "report"),
+    (outputs, "write", "output files"),
+    (Annotator, "__call__", "annotate"),
+)
+EXTRA = ("report", "annotate")
 
 
-def measure(traces: list[str], road: Path, out: Path, runs: int) -> dict[str, float]:
-    """Return the median seconds of each stage of `check` over these traces, and of the whole."""
-    settings = run.Settings(traces=tuple(traces), map=road, rules=("ukhc",), fail_on="never")
-    taken: dict[str, list[float]] = defaultdict(list)
-    for n in range(runs + 1):
-        _clock.clear()
-        begin = time.perf_counter()
-        with (
-            _timed(judge.Bench, "_load", "map, tables"),
-            _timed(judge, "derive", "derive"),
-            _timed(judge, "evaluate", "rules"),
-            _timed(batch, "_drive", "ingest (waited for)"),
-        ):
-            result = run.check(settings, Silent())
-        _clock["to the verdicts"] = time.perf_counter() - begin
-        begin = time.perf_counter()
-        write(result, out)
-        _clock["written"] = time.perf_counter() - begin
-        _clock["whole"] = _clock["to the verdicts"] + _clock["written"]
-        if n:
-            for stage, seconds in _clock.items():
-                taken[stage].append(seconds)
-    return {stage: statistics.median(values) for stage, values in taken.items()}
+def check(traces: list[str], road: Path, out: Path, *, annotate: bool = True) -> dict[str, Span]:
+    """Check drives, write everything, and return the time of each stage and of the whole."""
+    settings = run.Settings(
+        traces=tuple(traces), map=road, out=out, rules=("ukhc",), fail_on="never", annotate=annotate
+    )
+    stages = Stages()
+    begin = now()
+    with stages.watch(*WATCHED):
+        outputs.write(run.check(settings, Silent()), out)
+    whole = now() - begin
+    spent = {**{stage: Span() for _, _, stage in WATCHED}, **stages.spent}
+    spent["the rest"] = whole - sum(spent.values(), Span())
+    spent["whole"] = whole
+    return spent
 
 
-def _alone(path: Path, runs: int) -> float:
-    """Return the median seconds of reading one trace."""
-    taken = []
-    for _ in range(runs + 1):
-        begin = time.perf_counter()
-        read_trace(path, IngestOptions())
-        taken.append(time.perf_counter() - begin)
-    return statistics.median(taken[1:])
+def reference(place: Place) -> list[Row]:
+    """Measure the reference drive: stages, then what the bars ask for."""
+    shape, runs = place.sizes.reference, place.sizes.runs
+    trace = place.reference
+    note = f"{place.states(shape):,} states, {trace.stat().st_size / 1e6:.0f} MB of OSI MCAP, median of {runs}"
+    reading = repeat(partial(read_trace, trace, IngestOptions()), runs)
+    spent = by_stage(partial(check, [str(trace)], place.road, place.home / "out"), runs)
+    extra = sum((spent[stage] for stage in EXTRA), Span())
+    verdicts = spent["whole"] - extra
+    bars = {"ingest": Bar(0.5), "derive": Bar(0.6), "rules": Bar(0.7)}
+    row = partial(Row, "reference drive")
+    return [
+        row("reading alone", reading.wall, cpu=reading.cpu, note=note),
+        *(row(s, v.wall, cpu=v.cpu, bar=bars.get(s)) for s, v in spent.items() if s != "whole"),
+        row(
+            "to the verdict tables", verdicts.wall, cpu=verdicts.cpu, bar=Bar(2.0), note="without report, annotated log"
+        ),
+        row("real time", shape.seconds / verdicts.wall, "x", bar=Bar(300.0, at_least=True)),
+        row("report and annotated log on top", extra.wall / verdicts.wall, "of it", bar=Bar(0.5)),
+    ]
 
 
-def main() -> None:
-    """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--runs", type=int, default=3)
-    parser.add_argument("--short", type=int, default=1000, help="how many short drives")
-    options = parser.parse_args()
-    with tempfile.TemporaryDirectory() as name:
-        home = Path(name)
-        road = home / "ring.xodr"
-        road.write_text(traffic.ring(), encoding="utf-8")
-        reference = traffic.write_osi(home / "reference.mcap", traffic.REFERENCE)
-        print(f"reference drive: OSI MCAP, {reference.stat().st_size / 1e6:.0f} MB, 600,000 states")
-        print(f"  {'ingest alone':24s} {_alone(reference, options.runs):8.2f} s")
-        _print(measure([str(reference)], road, home / "out", options.runs), 1)
-        short = home / "short"
-        for n in range(options.short):
-            traffic.write_folder(short / f"s{n:04d}", traffic.SHORT, n)
-        print(f"{options.short} short drives: Parquet, 20 s, 10 Hz, 20 actors")
-        _print(measure([str(short)], road, home / "out", max(1, options.runs // 3)), options.short)
-    print(f"peak memory {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6:.2f} GB")
+def short(place: Place) -> list[Row]:
+    """Measure many short drives in a process of its own."""
+    sizes = place.sizes
+    folder = place.home / "short"
+    for n in range(sizes.drives):
+        traffic.write_folder(folder / f"s{n:04d}", sizes.short, n)
+    spent, peak = alone(_short, folder, place.road, place.home / "short_out", sizes.slow_runs)
+    whole = spent["whole"]
+    row = partial(Row, "short drives")
+    return [
+        *(row(s, v.wall, cpu=v.cpu) for s, v in spent.items() if s not in {"whole", "annotate"}),
+        row(
+            f"{sizes.drives} drives",
+            sizes.drives / whole.wall,
+            "drives/s",
+            cpu=whole.cpu,
+            bar=Bar(90.0, at_least=True),
+            note=f"Parquet, no annotated logs, median of {sizes.slow_runs}; {sizes.drives / whole.cpu:.0f} a CPU second",
+        ),
+        row("peak memory", peak / 1e9, "GB", bar=Bar(1.0)),
+    ]
 
 
-def _print(stages: dict[str, float], drives: int) -> None:
-    for stage, seconds in stages.items():
-        print(f"  {stage:24s} {seconds:8.2f} s")
-    if drives > 1:
-        print(f"  {'drives a second':24s} {drives / stages['whole']:8.1f}")
+def _short(folder: Path, road: Path, out: Path, runs: int) -> dict[str, Span]:
+    return by_stage(partial(check, [str(folder)], road, out, annotate=False), runs)
 
 
 if __name__ == "__main__":
-    main()
+    from tests.bench.__main__ import main
+
+    main(["reference", "short", *sys.argv[1:]])

@@ -149,6 +149,8 @@ def write_osi(path: Path, shape: Shape, seed: int = 0) -> Path:
         key: rows[key].to_numpy().reshape(shape.actors, frames)
         for key in ("x_m", "y_m", "yaw_rad", "vx_mps", "vy_mps", "t_ns")
     }
+    # not every reader can do without accelerations
+    ax, ay = (np.gradient(column[key], axis=1) * shape.hertz for key in ("vx_mps", "vy_mps"))
     messages = []
     for i in range(frames):
         truth = osi_log.frame(int(column["t_ns"][0, i]))
@@ -161,6 +163,7 @@ def write_osi(path: Path, shape: Shape, seed: int = 0) -> Path:
                 float(column["y_m"][n, i]),
                 yaw=float(column["yaw_rad"][n, i]),
                 v=velocity,
+                a=(float(ax[n, i]), float(ay[n, i])),
                 indicator=2,
                 brake=2,
             )

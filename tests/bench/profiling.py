@@ -1,0 +1,67 @@
+"""Where the time of `derive` goes: per table, and per operator of the dearest ones, as DuckDB's own profile tells."""
+
+from __future__ import annotations
+
+import json
+import time
+from typing import TYPE_CHECKING, Any
+
+from drivelint import catalogue, store
+from drivelint.batch import Drive
+from drivelint.derive import needed
+from drivelint.ingest import IngestOptions, read_trace
+from drivelint.judge import Bench
+from drivelint.maps.library import MapLibrary
+from drivelint.profiles import load_profiles, profile_table
+from tests.bench.table import Row
+
+if TYPE_CHECKING:
+    from tests.bench.place import Place
+
+DEAREST = 8
+OPERATORS = 4
+
+
+def profile(place: Place) -> list[Row]:
+    """Return the dearest derived tables of the reference drive, the costliest operators in the note."""
+    spent: dict[str, tuple[float, str]] = {}
+    rules = catalogue.select(catalogue.load(()), ("ukhc",), ())
+    tables = {table for rule in rules for table in rule.reads}
+    trace = read_trace(place.reference, IngestOptions())
+    road = MapLibrary(place.road, None, "auto").find("", None, None, trace.tables["actor_state"])
+    with store.connect() as con:
+        store.insert(con, "profile", profile_table(load_profiles(()), ()))
+        bench = Bench(con, rules, catalogue.parse_params(rules, ()), None)
+        bench._load([Drive(trace, road)])
+        for step in needed(tables):
+            if not step.of_the_map:
+                begin = time.perf_counter()
+                plan = con.execute(
+                    f"EXPLAIN (ANALYZE, FORMAT JSON) INSERT INTO {step.table} BY NAME {step.sql}"
+                ).fetchall()[0][1]
+                took = time.perf_counter() - begin
+                rows = con.execute(f"SELECT count(*) FROM {step.table}").fetchall()[0][0]
+                spent[step.table] = took, f"{rows:,} rows; {_operators(json.loads(plan))}"
+    dearest = sorted(spent.items(), key=lambda item: -item[1][0])[:DEAREST]
+    whole = sum(took for took, _ in spent.values())
+    return [
+        Row("profile", "derive, profiled", whole, note="profiling adds some"),
+        *(Row("profile", table, took, note=note) for table, (took, note) in dearest),
+    ]
+
+
+def _operators(plan: dict[str, Any]) -> str:
+    """Return the costliest operators with their CPU seconds and rows out."""
+    found: list[tuple[float, str]] = []
+    _collect(plan, found)
+    return "; ".join(f"{name} {seconds:.2f} s" for seconds, name in sorted(found, reverse=True)[:OPERATORS])
+
+
+def _collect(node: dict[str, Any], found: list[tuple[float, str]]) -> None:
+    if "operator_timing" in node:
+        about = node.get("extra_info", {})
+        what = next((str(about[key]) for key in ("Conditions", "Table", "CTE Name", "Expressions") if key in about), "")
+        name = f"{node['operator_name'].strip()} ({' '.join(what.split())[:60]}) -> {node['operator_cardinality']:,}"
+        found.append((node["operator_timing"], name.replace("|", "/")))
+    for child in node.get("children", []):
+        _collect(child, found)
