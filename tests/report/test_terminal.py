@@ -7,7 +7,8 @@ import io
 import pytest
 from rich.console import Console
 
-from drivelint.report import terminal
+from drivelint.catalogue import load
+from drivelint.report import rules_text, terminal
 from drivelint.report.result import Result
 from tests.report.synthetic import drive, finding, result, rule, verdict
 
@@ -73,3 +74,24 @@ def test_a_logs_words_are_text_not_markup(width: int) -> None:
     )
     assert "[red]lost[/red]" in text
     assert "[bold]3[/bold]" in text
+
+
+def test_the_end_says_where_to_look_next() -> None:
+    assert "open out/report.html" in shown(result([verdict("pass")]))
+    assert "drivelint inspect" not in shown(result([verdict("pass")]))
+    assert "drivelint inspect TRACE" in shown(result([verdict("unknown")]))
+    console = Console(file=io.StringIO(), width=120)
+    console.print(terminal.render(result([verdict("pass")])))
+    assert "--out DIR" in console.file.getvalue()  # type: ignore[attr-defined]
+
+
+def test_eighty_columns_tear_no_id_and_no_number_apart() -> None:
+    narrow = shown(result([verdict("fail")], [finding(rule_id="ukhc.r162.safe-distance-ahead")]), 80)
+    assert "ukhc.r162.safe-distance-ahead [nominal]" in narrow
+    assert "observed 58.00 m, required 64.00 m, margin -6.00 m" in narrow
+    rules = list(load().values())
+    console = Console(file=io.StringIO(), width=80)
+    console.print(rules_text.listing(rules, 80))
+    listed = console.file.getvalue()  # type: ignore[attr-defined]
+    assert all(rule.id in listed for rule in rules)
+    assert all(word in listed.split() for rule in rules for word in rule.title.split())
