@@ -12,6 +12,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+import duckdb
+
 from drivelint import catalogue, store
 from drivelint.batch import Drive
 from drivelint.ingest import IngestOptions, read_trace
@@ -26,9 +28,6 @@ from tests.bench.table import Bar, Row
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import duckdb
-
-    from drivelint.judge import Witness
     from tests.bench.place import Place
 
     Answer = Sequence[float]
@@ -77,9 +76,12 @@ FROM (
 
 
 _STATES: Final = """
-SELECT s.actor_id, s.t_ns, s.x_m, s.y_m, s.yaw_rad, s.speed_mps, s.length_m, s.width_m, s.actor_id = k.ego_id
-FROM state_dynamics s JOIN clock k USING (drive_id) ORDER BY s.t_ns, s.actor_id
+SELECT s.actor_id, s.t_ns, s.x_m, s.y_m, s.yaw_rad, sqrt(s.vx_mps ** 2 + s.vy_mps ** 2), a.length_m, a.width_m, a.is_ego
+FROM actor_state s JOIN actor a USING (drive_id, actor_id) ORDER BY s.t_ns, s.actor_id
 """
+_TIMES: Final = (
+    "SELECT t_ns FROM actor_state SEMI JOIN (SELECT * FROM actor WHERE is_ego) USING (drive_id, actor_id) ORDER BY t_ns"
+)
 _LANES: Final = """
 SELECT lanelet_id, 'POLYGON((' || string_agg(format('{} {}', x, y), ',' ORDER BY n) || '))'
 FROM (
@@ -132,42 +134,43 @@ def compare(place: Place) -> list[Row]:
     ]
 
 
-def _judged(place: Place, witness: Witness) -> None:
-    """Judge the reference drive by the whole catalogue, and show a witness the tables."""
-    rules = catalogue.select(catalogue.load(()), ("ukhc",), ())
+def _read(place: Place) -> Drive:
     trace = read_trace(place.reference, IngestOptions())
-    road = MapLibrary(place.road, None, "auto").find("", None, None, trace.tables["actor_state"])
-    with store.connect() as con:
-        store.insert(con, "profile", profile_table(load_profiles(()), ()))
-        bench = Bench(con, rules, catalogue.parse_params(rules, ()), None, witnesses=[witness])
-        bench.judge([Drive(trace, road)])
-        bench.close()
+    return Drive(trace, MapLibrary(place.road, None, "auto").find("", None, None, trace.tables["actor_state"]))
 
 
 def _ours(place: Place) -> Answer:
-    """Judge, and answer what PostGIS is asked."""
+    """Judge the reference drive by the whole catalogue, and answer what PostGIS is asked."""
     found: list[Answer] = []
-    _judged(place, lambda con, _drives: found.extend(con.execute(_ANSWER).fetchall()))
+
+    def witness(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive]) -> None:
+        found.extend(con.execute(_ANSWER).fetchall())
+
+    rules = catalogue.select(catalogue.load(()), ("ukhc",), ())
+    with store.connect() as con:
+        store.insert(con, "profile", profile_table(load_profiles(()), ()))
+        bench = Bench(con, rules, catalogue.parse_params(rules, ()), None, witnesses=[witness])
+        bench.judge([_read(place)])
+        bench.close()
     return found[0]
 
 
 def _script(place: Place) -> tuple[dict[str, str], list[int]]:
     """Return the sections of postgis.sql, its files having been written, and the times of the steps."""
-    states, lanes = place.home / "states.csv", place.home / "lanes.csv"
-    times: list[int] = []
-
-    def witness(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive]) -> None:
-        con.execute(f"COPY ({_STATES}) TO '{states}' (FORMAT csv, HEADER false)")
-        con.execute(f"COPY ({_LANES}) TO '{lanes}' (FORMAT csv, HEADER false)")
-        times.extend(t for (t,) in con.execute("SELECT t_ns FROM step ORDER BY t_ns").fetchall())
-
-    _judged(place, witness)
-    states.chmod(0o644)
-    lanes.chmod(0o644)
+    files = {"states": place.home / "states.csv", "lanes": place.home / "lanes.csv"}
+    drive = _read(place)
+    assert drive.environment
+    with duckdb.connect() as con:
+        for table in ("actor", "actor_state"):
+            con.register(table, drive.trace.tables[table])
+        con.register("lane_point", drive.environment.tables["lane_point"])
+        for select, file in zip((_STATES, _LANES), files.values(), strict=True):
+            con.execute(f"COPY ({select}) TO '{file}' (FORMAT csv, HEADER false)")
+        times = [t for (t,) in con.execute(_TIMES).fetchall()]
     text = Path(__file__).with_suffix(".sql").read_text(encoding="utf-8")
     parts = re.split(r"^-- @(\w+)\n", text, flags=re.MULTILINE)[1:]
     script = dict(zip(parts[::2], parts[1::2], strict=True))
-    script["load"] = script["load"].format(states=states, lanes=lanes)
+    script["load"] = script["load"].format(**files)
     return script, times
 
 
