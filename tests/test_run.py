@@ -117,13 +117,16 @@ def test_none_judged_is_an_error_of_its_own(tmp_path: Path) -> None:
         check(settings(tmp_path / "a.csv", tmp_path / "b.csv"), Silent())
 
 
-def test_a_map_of_another_place_is_refused() -> None:
-    with pytest.raises(MapError, match=r"of another place than safe\.csv"):
-        check(settings(FIXTURE / "safe.csv", map_offset=(5000.0, 0.0)), Silent())
+@pytest.mark.parametrize(
+    ("offset", "told"), [((5000.0, 0.0), "its lanes lie in"), ((0.0, 30.0), "none is on anything")]
+)
+def test_a_map_of_another_place_is_refused(offset: tuple[float, float], told: str) -> None:
+    with pytest.raises(MapError, match=r"of another place than safe\.csv: .*" + told):
+        check(settings(FIXTURE / "safe.csv", map_offset=offset), Silent())
 
 
 def test_a_map_beside_the_drive_makes_map_rules_unknown_not_failed() -> None:
-    result = check(settings(FIXTURE / "safe.csv", map_offset=(0.0, 30.0)), Silent())
+    result = check(settings(FIXTURE / "safe.csv", map_offset=(0.0, 4.5)), Silent())
     rows = {row["rule_id"]: row for row in result.verdicts.to_pylist()}
     for rule in ("ukhc.r162.safe-distance-ahead", "ukhc.r145.off-road", "ukhc.r124.speed-limit"):
         assert rows[rule]["verdict"] == "unknown"

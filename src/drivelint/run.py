@@ -88,9 +88,10 @@ def check(settings: Settings, progress: Progress) -> Result:
         )
         progress.stage("checking", len(paths))
         refused: list[Refused] = []
+        said: set[str] = set()
         try:
             for batch in cut(read(paths, options, library)):
-                failed = _judge(bench, batch, progress)
+                failed = _judge(bench, batch, progress, said)
                 refused += failed
                 if len(paths) > 1:  # a single one is the error of the whole run
                     for each in failed:
@@ -126,8 +127,11 @@ def _witnesses(settings: Settings, rules: pa.Table) -> list[Witness]:
     return seen
 
 
-def _judge(bench: Bench, batch: Iterable[Drive | Refused], progress: Progress) -> list[Refused]:
-    """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other. Return what could not be judged."""
+def _judge(bench: Bench, batch: Iterable[Drive | Refused], progress: Progress, said: set[str]) -> list[Refused]:
+    """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other. Return what could not be judged.
+
+    `said`: notes of earlier logs, not to be repeated for each of a thousand.
+    """
     refused: list[Refused] = []
     drives: list[Drive] = []
     for item in batch:
@@ -138,7 +142,9 @@ def _judge(bench: Bench, batch: Iterable[Drive | Refused], progress: Progress) -
         else:
             drives.append(item)
             for note in item.trace.notes:
-                progress.note(f"{item.trace.path.name}: {note}")
+                if note not in said:
+                    progress.note(f"{item.trace.path.name}: {note}")
+            said.update(item.trace.notes)
     try:
         bench.judge(drives)
     except OutputError:

@@ -10,12 +10,13 @@ import pyarrow.compute as pc
 from drivelint.errors import MapError
 from drivelint.maps.contract import MapSource
 from drivelint.maps.registry import load_map, read_source
-from drivelint.maps.sense import vote
+from drivelint.maps.sense import ground, on_map, vote
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     import pyarrow as pa
+    import shapely
 
     from drivelint.maps.contract import Environment
 
@@ -30,6 +31,7 @@ class MapLibrary:
         self._given = read_source(path) if path else None
         self._offset = offset
         self._handedness = handedness
+        self._grounds: dict[str, shapely.STRtree] = {}
         self._loaded: dict[tuple[str, tuple[float, float], str | None], Environment] = {}
 
     def find(
@@ -45,10 +47,19 @@ class MapLibrary:
             return None
         shift = self._offset or offset or (0.0, 0.0)
         environment = self._load(source, shift, None)
-        _refuse_elsewhere(environment, log, states)
+        if trouble := _elsewhere(environment, self._ground(environment), states):
+            raise MapError(
+                f"map {environment.environment_id} is of another place than {log}: {trouble}; "
+                "give the right --map, or --map-offset"
+            )
         if environment.handedness_source == "default" and (sensed := _sense(environment, states)):
             environment = self._load(source, shift, sensed)
         return environment
+
+    def _ground(self, environment: Environment) -> shapely.STRtree:
+        if environment.environment_id not in self._grounds:
+            self._grounds[environment.environment_id] = ground(environment)
+        return self._grounds[environment.environment_id]
 
     def _load(self, source: MapSource, offset: tuple[float, float], sensed: str | None) -> Environment:
         key = (source.sha256, offset, sensed)
@@ -63,19 +74,21 @@ def _sense(environment: Environment, states: pa.Table) -> str | None:
     return vote(environment, _floats(moving, "x_m"), _floats(moving, "y_m"), _floats(moving, "yaw_rad"))
 
 
-def _refuse_elsewhere(environment: Environment, log: str, states: pa.Table) -> None:
-    """Refuse a map whose lanes and the drive's positions do not even overlap as rectangles."""
-    points = environment.tables["lane_point"]
-    drive, lanes = _extent(states), _extent(points)
-    if drive is None or lanes is None:
-        return
-    apart = max(drive[0] - lanes[1], lanes[0] - drive[1], drive[2] - lanes[3], lanes[2] - drive[3])
+def _elsewhere(environment: Environment, lanes: shapely.STRtree, states: pa.Table) -> str | None:
+    """Return what shows that the map is of another place than the drive, or None."""
+    drive, roads = _extent(states), _extent(environment.tables["lane_point"])
+    if drive is None or roads is None:
+        return None
+    apart = max(drive[0] - roads[1], roads[0] - drive[1], drive[2] - roads[3], roads[2] - drive[3])
     if apart > FAR_M:
-        raise MapError(
-            f"map {environment.environment_id} is of another place than {log}: its lanes lie in x {lanes[0]:.0f}..{lanes[1]:.0f}, "
-            f"y {lanes[2]:.0f}..{lanes[3]:.0f} m, the drive in x {drive[0]:.0f}..{drive[1]:.0f}, y {drive[2]:.0f}..{drive[3]:.0f} m; "
-            "give the right --map, or --map-offset"
+        return (
+            f"its lanes lie in x {roads[0]:.0f}..{roads[1]:.0f}, y {roads[2]:.0f}..{roads[3]:.0f} m, "
+            f"the drive in x {drive[0]:.0f}..{drive[1]:.0f}, y {drive[2]:.0f}..{drive[3]:.0f} m"
         )
+    looked, found = on_map(lanes, _floats(states, "x_m"), _floats(states, "y_m"))
+    if looked and not found:
+        return f"of {looked} positions looked at, none is on anything that it knows"
+    return None
 
 
 def _extent(table: pa.Table) -> tuple[float, float, float, float] | None:

@@ -9,6 +9,7 @@ import pyarrow.compute as pc
 import shapely
 
 if TYPE_CHECKING:
+    import pyarrow as pa
     from numpy.typing import NDArray
 
     from drivelint.maps.contract import Environment
@@ -51,10 +52,32 @@ def vote(
     return None
 
 
+def ground(environment: Environment) -> shapely.STRtree:
+    """Return the areas of every lanelet of any type, to look positions up in."""
+    return shapely.STRtree(_shapes(environment, environment.tables["lanelet"]["lanelet_id"])[0])
+
+
+def on_map(lanes: shapely.STRtree, x_m: NDArray[np.float64], y_m: NDArray[np.float64]) -> tuple[int, int]:
+    """Return how many of at most `SAMPLES` known positions, evenly spread, are looked at, and how many lie on some lanelet."""
+    known = np.flatnonzero(np.isfinite(x_m) & np.isfinite(y_m))
+    if not len(known):
+        return 0, 0
+    chosen = known[np.unique(np.linspace(0, len(known) - 1, min(SAMPLES, len(known))).astype(np.int64))]
+    found = lanes.query(np.asarray(shapely.points(x_m[chosen], y_m[chosen])), predicate="within")[0]
+    return len(chosen), len(np.unique(found))
+
+
 def _lanes(environment: Environment) -> tuple[NDArray[np.object_], NDArray[np.object_]]:
     """Return areas and centre lines of the one-way drivable lanelets."""
-    lanelets, points = environment.tables["lanelet"], environment.tables["lane_point"]
-    wanted = lanelets.filter(pc.and_(lanelets["drivable"], pc.invert(lanelets["bidirectional"])))["lanelet_id"]
+    lanelets = environment.tables["lanelet"]
+    return _shapes(
+        environment, lanelets.filter(pc.and_(lanelets["drivable"], pc.invert(lanelets["bidirectional"])))["lanelet_id"]
+    )
+
+
+def _shapes(environment: Environment, wanted: pa.ChunkedArray) -> tuple[NDArray[np.object_], NDArray[np.object_]]:
+    """Return areas and centre lines of these lanelets."""
+    points = environment.tables["lane_point"]
     points = points.filter(pc.is_in(points["lanelet_id"], value_set=wanted.combine_chunks())).sort_by(
         [("lanelet_id", "ascending"), ("k", "ascending")]
     )
