@@ -96,7 +96,10 @@ def test_mirrored_scenes_give_mirrored_results() -> None:
                 if column == "side":
                     assert value == -b[column]
                 elif column.endswith("_d_m"):  # offsets change their sign with the side of the road
-                    assert value == (b[column] if value is None else pytest.approx(-b[column], abs=1e-6)), (table, column)
+                    assert value == (b[column] if value is None else pytest.approx(-b[column], abs=1e-6)), (
+                        table,
+                        column,
+                    )
                 elif isinstance(value, float):
                     assert value == pytest.approx(b[column], abs=1e-6), (table, column)
                 else:
