@@ -8,7 +8,9 @@ WITH reach AS (
 ego AS (
     SELECT
         e.drive_id, e.ego_id, e.t_ns, e.s_m, e.front_s_m, x.side, x.half_width_m, x.over_width_m,
-        r.end_m - e.front_s_m AS corridor_m, n.ahead_id IS NULL AS map_ends, g.sensor_range_m - e.length_m / 2 AS range_m
+        -- everybody is placed on the corridor at least so far ahead, however far the ego's own way leads on
+        least(r.end_m - e.front_s_m, corridor_ahead_m()) AS corridor_m,
+        n.ahead_id IS NULL AND r.end_m - e.front_s_m <= corridor_ahead_m() AS map_ends, g.sensor_range_m - e.length_m / 2 AS range_m
     FROM ego_state e
     JOIN ego_corridor x ON x.drive_id = e.drive_id AND x.ego_id = e.ego_id AND x.chain_id = e.chain_id AND x.t_ns = e.t_ns
     JOIN reach r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id

@@ -91,6 +91,11 @@ beside AS (
     )
     WHERE abs(d_m) <= strip_m()
 ),
+-- the corridor by kilometre of the ego's station: what lies within 1.2 km of it, so that a ring's other laps are not looked at
+lap AS (
+    SELECT *, unnest(range(floor((s_start_m - 1200) / 1000)::BIGINT, floor((s_start_m + length_m + 1200) / 1000)::BIGINT + 1)) AS bucket
+    FROM corridor
+),
 on_chain AS MATERIALIZED (
     SELECT
         b.pair_no, c.s_start_m + b.lane_s_m AS s_m, b.d_m, b.half_width_m, b.psi, c.over_width_m, c.over_against,
@@ -100,7 +105,8 @@ on_chain AS MATERIALIZED (
         -- and what comes the other way is still to be met, even if the shorter way round a ring is back
         + CASE WHEN abs(b.psi) > pi() / 2 AND c.s_start_m + b.lane_s_m < b.ego_s_m - exact_clearance_m() THEN 1e6 ELSE 0.0 END AS off
     FROM beside b
-    JOIN corridor c ON c.drive_id = b.drive_id AND c.ego_id = b.ego_id AND c.lanelet_id = b.lanelet_id AND c.chain_id = b.chain_id
+    JOIN lap c ON c.drive_id = b.drive_id AND c.ego_id = b.ego_id AND c.lanelet_id = b.lanelet_id AND c.chain_id = b.chain_id
+        AND c.bucket = floor(b.ego_s_m / 1000)::BIGINT
 ),
 -- of several places on a corridor that meets itself, the one nearest to the ego along it (see above); a tie is settled by the station
 nearest AS MATERIALIZED (

@@ -91,12 +91,13 @@ def _inside(path: Path) -> list[Path]:
         return [path]
     try:
         drives = [folder.parent for folder in path.rglob("actor_state.parquet")]
+        inside = frozenset(drives)
         files = [
             file
             for file in path.rglob("*")
             if file.suffix.lower() in TRACE_SUFFIXES
             and file.is_file()
-            and not any(drive in file.parents for drive in drives)
+            and inside.isdisjoint(file.parents)
             and not _is_result(file, path)
         ]
     except OSError as error:  # such as a folder that went while it was looked through
