@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 SAMPLES: Final = 400  # moving states looked at, evenly spread: enough to vote, cheap for a long log
 LEAST_VOTES: Final = 20
+FEW, MANY = 20, 2000  # positions looked at to see whether a drive is on its map
 AGREEMENT: Final = 0.8  # an overtake drives against its lane for a while, a drive does not
 
 
@@ -54,17 +55,25 @@ def vote(
 
 def ground(environment: Environment) -> shapely.STRtree:
     """Return the areas of every lanelet of any type, to look positions up in."""
-    return shapely.STRtree(_shapes(environment, environment.tables["lanelet"]["lanelet_id"])[0])
+    areas = _shapes(environment, environment.tables["lanelet"]["lanelet_id"])[0]
+    shapely.prepare(areas)
+    return shapely.STRtree(areas)
 
 
 def on_map(lanes: shapely.STRtree, x_m: NDArray[np.float64], y_m: NDArray[np.float64]) -> tuple[int, int]:
-    """Return how many of at most `SAMPLES` known positions, evenly spread, are looked at, and how many lie on some lanelet."""
+    """Return how many known positions, evenly spread, are looked at, and how many of them lie on some lanelet.
+
+    A few do where one is found; before it is said that there is none, `MANY` are looked at.
+    """
     known = np.flatnonzero(np.isfinite(x_m) & np.isfinite(y_m))
-    if not len(known):
-        return 0, 0
-    chosen = known[np.unique(np.linspace(0, len(known) - 1, min(SAMPLES, len(known))).astype(np.int64))]
-    found = lanes.query(np.asarray(shapely.points(x_m[chosen], y_m[chosen])), predicate="within")[0]
-    return len(chosen), len(np.unique(found))
+    looked = found = 0
+    for most in (FEW, MANY):
+        if found or looked == len(known):
+            break
+        chosen = known[np.unique(np.linspace(0, len(known) - 1, min(most, len(known))).astype(np.int64))]
+        points = np.asarray(shapely.points(x_m[chosen], y_m[chosen]))
+        looked, found = len(chosen), len(np.unique(lanes.query(points, predicate="intersects")[0]))
+    return looked, found
 
 
 def _lanes(environment: Environment) -> tuple[NDArray[np.object_], NDArray[np.object_]]:
