@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Final
 
 import duckdb
@@ -94,7 +95,8 @@ class Bench:
 
     def _judge(self, drives: Sequence[Drive]) -> None:
         ids = [drive.trace.drive_id for drive in drives]
-        try:
+        with ExitStack() as undo:
+            undo.callback(self._forget, ids)
             self._load(drives)
             derive(self._con, self._tables, of_the_map=False)
             evaluate(self._con, self._rules, self._params, margins=self.margins_file is not None)
@@ -102,9 +104,7 @@ class Bench:
             self._refuse_shared_error(ids)
             for witness in self._witnesses:
                 witness(self._con, drives)
-        except BaseException:
-            self._forget(ids)
-            raise
+            undo.pop_all()
 
     def close(self) -> None:
         """Finish the files that grew with the batches."""
