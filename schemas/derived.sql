@@ -321,8 +321,15 @@ CREATE TABLE lead (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
     object_id VARCHAR,                -- nearest vehicle ahead in the running lane; NULL: nobody there; no row: cannot be told
+    actor_class VARCHAR,              -- see actor
     gap_m DOUBLE,                     -- bumper to bumper along the corridor
-    speed_mps DOUBLE                  -- its speed
+    speed_mps DOUBLE,                 -- its speed
+    accel_mps2 DOUBLE,                -- its acceleration, mean over the 0.5 s up to the step; NULL: not known
+    ego_speed_mps DOUBLE,             -- the ego's speed
+    in_lane BOOLEAN,                  -- some of the ego's box is in the running lane: it follows, and does not overtake beside it
+    oncoming BOOLEAN,                 -- it heads against the corridor
+    t_since_ns BIGINT,                -- first step of the unbroken stretch in which it has been the nearest one
+    joined BOOLEAN                    -- the stretch began with one of the two changing lanes; false: it was ahead in the lane before (behind another, or further away), or the log begins there
 );
 
 -- ---- the overtake (paper, Appendix A)

@@ -60,6 +60,13 @@ CREATE TABLE declared_event (
     value VARCHAR                     -- its value as text, if any
 );
 
+CREATE TABLE drive_condition (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    condition VARCHAR NOT NULL,       -- nation, weather, light, vehicle_class, road_type, carriageway, area, engaged
+    value VARCHAR NOT NULL,           -- one of the words of its column in ego_condition
+    source VARCHAR NOT NULL           -- env: given on the command line or in the settings; trace: said by the log
+);
+
 CREATE TABLE quality (
     drive_id VARCHAR NOT NULL,        -- the drive
     check_id VARCHAR NOT NULL,        -- which check: duplicate_state, velocity_mismatch, yaw_mismatch, length_below_width, gap, clock_jump, not_finite, ...

@@ -1,0 +1,148 @@
+-- The library, second part: the conditions of a step, the ego's own motion, and what it does with the others on its road.
+-- As in derived.sql: what is present but cannot be placed is a row with NULL, never an absent row.
+
+CREATE TABLE ego_condition (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step
+    road_type VARCHAR,                -- motorway, rural, town, ...: of the lanelet, or as given; NULL: not known
+    carriageway VARCHAR,              -- single or dual: whether the two directions of its road are apart, or as given; NULL: not known
+    area VARCHAR,                     -- built_up or open: by road type, or as given; NULL: not known
+    nation VARCHAR,                   -- gb, gb-eng, gb-wls, gb-sct, de, ...; NULL: not given
+    weather VARCHAR,                  -- dry, wet or ice; NULL: not given
+    light VARCHAR,                    -- day or night; NULL: not given
+    vehicle_class VARCHAR,            -- car, car_towing, bus, goods_7t5, goods_over_7t5, motorcycle: of the ego, as given or by its class; NULL: not known
+    limit_mps DOUBLE,                 -- speed limit of the map where the ego is; NULL: the map does not say
+    engaged BOOLEAN                   -- the automated driver drives: by its mode flag, or as given; true where neither is there; NULL: there are flags, and none is known here
+);
+
+CREATE TABLE ego_mode (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step
+    mode VARCHAR NOT NULL,            -- a declared event whose values are on and off: engaged, emergency_manoeuvre, minimal_risk_manoeuvre, lane_change_procedure, headlights, horn, ...; one row per step for each that the ego ever declared
+    is_on BOOLEAN                     -- by the last declaration before the step; NULL: none yet
+);
+
+CREATE TABLE ego_motion (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step
+    v_long_mps DOUBLE,                -- speed along its own heading; negative: reversing
+    accel_mps2 DOUBLE,                -- longitudinal acceleration, smoothed (the query says how); NULL where its window is not whole
+    lat_accel_mps2 DOUBLE,            -- speed times smoothed yaw rate, to the left positive
+    jerk_mps3 DOUBLE,                 -- slope of accel_mps2, smoothed the same way
+    accel_2s_mps2 DOUBLE,             -- mean acceleration over the 2 s that end at this step
+    jerk_1s_mps3 DOUBLE               -- mean jerk over the 1 s that ends at this step
+);
+
+CREATE TABLE follower (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step; no row: cannot be told
+    lane VARCHAR NOT NULL,            -- own, left or right: the running lane, or the strip of one lane's width beside it; one row each
+    object_id VARCHAR,                -- nearest vehicle behind in it that heads as the ego does; NULL: nobody there
+    gap_m DOUBLE,                     -- its front to the ego's rear along the corridor; negative: alongside
+    speed_mps DOUBLE,                 -- its speed
+    closing_mps DOUBLE                -- its speed minus the ego's
+);
+
+CREATE TABLE lane_change (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- 0.. in time order; from a lane to one beside it that is driven the same way
+    t_start_ns BIGINT NOT NULL,       -- first step with a corner more than 0.05 m over the boundary
+    begin_seen BOOLEAN NOT NULL,      -- the step before it is there and inside the lane
+    t_cross_ns BIGINT,                -- first step with the centre over it; NULL: never, or not seen
+    t_done_ns BIGINT,                 -- first step wholly in the new lane; NULL: the log or a hole ends before
+    side VARCHAR NOT NULL,            -- left or right
+    from_lanelet_id VARCHAR NOT NULL, -- the lane left, at t_start
+    to_lanelet_id VARCHAR,            -- the lane entered, at t_cross
+    merge BOOLEAN,                    -- out of a lane that only leads onto this one (entry, on-ramp, or one that ends); NULL: not known
+    ego_speed_mps DOUBLE,             -- ego's speed at t_start
+    leader_id VARCHAR,                -- nearest vehicle ahead in the new lane at t_start; NULL: nobody, see known
+    leader_gap_m DOUBLE,              -- ego front to its rear
+    leader_speed_mps DOUBLE,          -- its speed
+    follower_id VARCHAR,              -- nearest vehicle behind in the new lane at t_start; NULL: nobody, see known
+    follower_gap_m DOUBLE,            -- its front to the ego's rear; negative: alongside
+    follower_speed_mps DOUBLE,        -- its speed
+    follower_decel_mps2 DOUBLE,       -- its strongest mean deceleration over 0.5 s in the 4 s after t_start (positive: it slowed); NULL: not seen whole, or nobody
+    known BOOLEAN NOT NULL            -- every vehicle nearby was placed at t_start: nobody else is leader or follower
+);
+
+CREATE TABLE cut_in (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- 0.. in time order; another vehicle moves from beside into the running lane ahead of the ego
+    object_id VARCHAR NOT NULL,       -- that vehicle
+    t_ns BIGINT NOT NULL,             -- first step with its box more than 0.3 m inside the running lane
+    side VARCHAR NOT NULL,            -- left or right: where it came from
+    gap_m DOUBLE NOT NULL,            -- ego front to its rear at that step, along the corridor
+    ego_speed_mps DOUBLE,             -- ego's speed then
+    speed_mps DOUBLE,                 -- its speed then
+    in_place_ns BIGINT                -- first step with its centre in the running lane; NULL: never
+);
+
+CREATE TABLE beside (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- a step at which the two boxes overlap along the corridor, or may: then the rest is NULL
+    object_id VARCHAR NOT NULL,       -- any other actor
+    actor_class VARCHAR,              -- see actor
+    side VARCHAR,                     -- left or right of the ego
+    gap_m DOUBLE,                     -- gap between the two boxes across the corridor; negative: overlap
+    clearance_m DOUBLE,               -- box to box, see pair
+    ego_speed_mps DOUBLE,             -- ego's speed
+    speed_mps DOUBLE,                 -- its speed
+    ego_lat_mps DOUBLE,               -- ego's speed across the corridor, towards it positive
+    lat_mps DOUBLE,                   -- its speed across the corridor, towards the ego positive
+    along BOOLEAN,                    -- it heads as the corridor runs (within 90 degrees)
+    on_carriageway BOOLEAN            -- its box reaches into the ego's running lane or a drivable lane beside it; NULL: not known
+);
+
+CREATE TABLE passing (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- 0.. in time order; ego and another road user that heads the same way change their order
+    object_id VARCHAR NOT NULL,       -- the other
+    actor_class VARCHAR,              -- see actor
+    ego_passes BOOLEAN NOT NULL,      -- the ego's front got ahead of its front; false: its front got ahead of the ego's
+    t_ns BIGINT NOT NULL,             -- first step in the new order
+    t_from_ns BIGINT NOT NULL,        -- first step of the stretch around t_ns in which they are beside each other
+    t_to_ns BIGINT NOT NULL,          -- last one
+    side VARCHAR NOT NULL,            -- left or right: where the other is, seen from the ego
+    gap_m DOUBLE NOT NULL,            -- least gap across the corridor in that stretch
+    same_lane BOOLEAN NOT NULL,       -- its centre is in the ego's running lane at t_ns: the ego passes round it
+    ego_speed_mps DOUBLE,             -- ego's speed at t_ns
+    speed_mps DOUBLE                  -- its speed at t_ns; standing: at most 0.5
+);
+
+CREATE TABLE line_step (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- a step with a corner of the ego more than 0.05 m over a boundary of its running lane; none inside a junction
+    side VARCHAR NOT NULL,            -- left or right: that boundary; one row each
+    out_m DOUBLE NOT NULL,            -- how far the furthest corner is over it
+    marking VARCHAR,                  -- see lane_boundary: as seen from the running lane, at the ego's centre; NULL: the map does not say
+    forbidden BOOLEAN,                -- from this lane it must not be crossed: solid, or double with the nearer one solid; NULL: marking not known
+    t_since_ns BIGINT NOT NULL,       -- first step of this stretch over it
+    begin_seen BOOLEAN NOT NULL,      -- the step before that is there and inside
+    manoeuvre BOOLEAN NOT NULL,       -- the stretch is (part of) a lane change or an overtake, see lane_departure
+    passing_id VARCHAR,               -- a vehicle standing, or a cyclist, animal or works vehicle at most at 4.47 m/s, in the running lane or on its edge, that is being passed: from 30 m ahead of the ego to 10 m behind; NULL: none
+    access BOOLEAN                    -- within 30 m the ego goes on to, or comes from, a way beside the road (leaves the lanes); NULL: not known
+);
+
+CREATE TABLE overtake_place (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- see overtake
+    junction_m DOUBLE,                -- ego's front at t0 to the next junction on its way, along the corridor; infinite: none within the corridor; negative: inside one
+    crossing_m DOUBLE,                -- the same to the next pedestrian crossing
+    marking_out VARCHAR,              -- marking of the boundary crossed at t0, seen from the running lane; NULL: the map does not say
+    marking_back VARCHAR,             -- marking of the boundary crossed back at t3, seen from the overtaking lane; NULL: the map does not say, or never back
+    no_overtaking BOOLEAN,            -- a no-overtaking sign holds at t0; NULL: the map has no such signs at all
+    rear_id VARCHAR,                  -- vehicle behind or beside, in the overtaking lane or moving into it, at t0; NULL: nobody
+    rear_gap_m DOUBLE,                -- its front to the ego's rear; negative: alongside
+    rear_ttc_s DOUBLE,                -- time until it gets to the ego's rear at both speeds; infinite: never, or nobody; 0: alongside
+    rear_known BOOLEAN NOT NULL       -- every vehicle behind was placed
+);

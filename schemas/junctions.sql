@@ -1,0 +1,123 @@
+-- The library, third part: where ways meet. Junctions, stop lines, crossings, conflict areas, standing still.
+-- As in derived.sql: what is present but cannot be placed is a row with NULL, never an absent row.
+
+CREATE TABLE conflict (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- 0.. in time order; the swept way of another actor crosses or merges with the ego's at more than 20 degrees, at most 10 s apart
+    object_id VARCHAR NOT NULL,       -- the other actor
+    actor_class VARCHAR,              -- see actor
+    t_ego_in_ns BIGINT NOT NULL,      -- first step at which the ego's box is on ground that the other's box was or will be on (the conflict area)
+    t_ego_out_ns BIGINT NOT NULL,     -- last one
+    t_object_in_ns BIGINT NOT NULL,   -- first sample of the other on ground that the ego's box was or will be on
+    t_object_out_ns BIGINT NOT NULL,  -- last one
+    pet_s DOUBLE NOT NULL,            -- post-encroachment time: later entry minus earlier exit; negative: both in it at once
+    ego_first BOOLEAN NOT NULL,       -- the ego entered first (a tie: true)
+    angle_rad DOUBLE NOT NULL,        -- other's heading against the ego's where they meet, -pi..pi: near pi oncoming, negative: it comes from the left
+    ego_speed_mps DOUBLE,             -- ego's speed on entering
+    speed_mps DOUBLE,                 -- its speed on entering
+    decel_mps2 DOUBLE,                -- its strongest mean deceleration over 0.5 s from 4 s before the ego's entry until its own entry (positive: it slowed); NULL: not seen
+    junction_id VARCHAR,              -- junction in which the ego enters the area; NULL: in none
+    crossing_id VARCHAR               -- pedestrian crossing on which the ego enters it; NULL: on none
+);
+
+CREATE TABLE junction_passage (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- 0.. in time order; the ego goes through a junction, entered by a lane that ends there
+    junction_id VARCHAR NOT NULL,     -- the junction
+    t_in_ns BIGINT,                   -- first step with the ego's front bumper in it; NULL: the log, or a hole, begins inside
+    t_out_ns BIGINT,                  -- first step with its rear bumper past it; NULL: the log, or a hole, ends inside
+    from_lanelet_id VARCHAR,          -- lanelet before it
+    via_lanelet_id VARCHAR NOT NULL,  -- the (first) connecting lanelet
+    to_lanelet_id VARCHAR,            -- lanelet after it
+    turn VARCHAR,                     -- left, right, straight, u_turn: by the change of heading from one to the other (straight within 30 degrees, u_turn beyond 150); NULL: not seen whole
+    turn_rad DOUBLE,                  -- that change, left positive
+    across BOOLEAN,                   -- the turn crosses the oncoming traffic (right where the left is driven on); NULL: handedness not known
+    branches INTEGER NOT NULL,        -- roads that meet in the junction: 2 is no junction for a driver
+    control VARCHAR,                  -- what governs the ego's way in: traffic_light, stop, give_way, none; NULL: the map has none of these anywhere, so cannot tell
+    minor BOOLEAN                     -- by control stop or give_way the ego's road is the lesser one; NULL: control not known
+);
+
+CREATE TABLE passage_conflict (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- see junction_passage; one row for each of its relations
+    relation VARCHAR NOT NULL,        -- oncoming (from the road ahead), from_left, from_right, ahead_going (a cyclist, animal or vehicle along the ego's own road that goes on while the ego turns), pedestrian (crosses the road that the ego turns into)
+    object_id VARCHAR,                -- of those before whom the ego went, the one with the least PET; NULL: nobody
+    pet_s DOUBLE,                     -- its PET; infinite: nobody; NULL: somebody could not be placed, so cannot be told (a lower PET that was seen is still given)
+    decel_mps2 DOUBLE,                -- see conflict; 0 where nobody; NULL: cannot be told
+    reason VARCHAR                    -- why NULL
+);
+
+CREATE TABLE stop_line_crossing (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- 0.. in time order; the ego's front goes over a stop line of its own lane
+    stop_line_id VARCHAR NOT NULL,    -- the line
+    lanelet_id VARCHAR NOT NULL,      -- the lanelet that it crosses
+    control VARCHAR,                  -- traffic_light, stop, give_way: the signal that the line belongs to; NULL: the map has none for it
+    signal_id VARCHAR,                -- that signal
+    t_ns BIGINT NOT NULL,             -- first step with the ego's front past the line
+    begin_seen BOOLEAN NOT NULL,      -- the step before is there, with the front before the line
+    speed_mps DOUBLE,                 -- ego's speed at t
+    state VARCHAR,                    -- the light's state at t, from signal_state: red, red_amber, amber, green, flashing, off; NULL: not known
+    state_before VARCHAR,             -- its state before the present one
+    t_state_ns BIGINT,                -- since when it has been so; NULL: not known
+    amber_front_m DOUBLE,             -- at the onset of the amber that it crossed on, or of the one before that red: ego's front to the line; NULL: none seen
+    amber_speed_mps DOUBLE,           -- ego's speed then
+    slowest_mps DOUBLE,               -- least speed with the front 0 to 3 m before the line; NULL: never seen there
+    slowest_front_m DOUBLE,           -- ego's front to the line at that step
+    stood_s DOUBLE                    -- longest time that it stood (0.1 m/s) with the front 0 to 1 m before the line; 0: it did not
+);
+
+CREATE TABLE crossing_occupancy (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    crossing_id VARCHAR NOT NULL,     -- a pedestrian crossing of the map
+    object_id VARCHAR NOT NULL,       -- somebody on foot (or of a class not known) whose centre is on it
+    along_road INTEGER NOT NULL,      -- which half: 1 on lanes driven along the reference line, -1 against it
+    t_from_ns BIGINT NOT NULL,        -- first sample there
+    t_to_ns BIGINT NOT NULL           -- last sample there
+);
+
+CREATE TABLE crossing_passage (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- 0.. in time order; the ego goes over a pedestrian crossing
+    crossing_id VARCHAR NOT NULL,     -- the crossing
+    kind VARCHAR,                     -- zebra, signalled, other; NULL: the map does not say
+    t_in_ns BIGINT,                   -- first step with its front on it; NULL: the log, or a hole, begins with the ego on it
+    t_out_ns BIGINT,                  -- first step with its rear past it; NULL: the log, or a hole, ends with the ego on it
+    on_id VARCHAR,                    -- somebody on foot on the ego's half at any time from t_in to t_out; NULL: nobody
+    t_on_ns BIGINT,                   -- when first
+    waiting_id VARCHAR,               -- somebody on foot who stands, within 2 m of its end on the ego's side, throughout the 2 s before t_in; NULL: nobody
+    known BOOLEAN NOT NULL,           -- everybody on foot nearby was placed from 2 s before t_in to t_out
+    signal_id VARCHAR,                -- the light for vehicles; NULL: none in the map
+    state VARCHAR,                    -- its state at t_in; NULL: not known
+    stood_before BOOLEAN              -- the ego stood within 5 m before it during the 10 s before t_in
+);
+
+CREATE TABLE standstill (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- 0.. in time order; the ego stands (below 0.1 m/s) for at least 1 s
+    t_start_ns BIGINT NOT NULL,       -- first step
+    t_end_ns BIGINT NOT NULL,         -- last step
+    begin_seen BOOLEAN NOT NULL,      -- it was seen to stop: the step before is there and it moves
+    end_seen BOOLEAN NOT NULL,        -- it was seen to start again
+    road_type VARCHAR,                -- see ego_state
+    lanelet_id VARCHAR,               -- see ego_lane; NULL: on none
+    junction_id VARCHAR,              -- the junction that some of its box is in, by front or rear bumper; NULL: none
+    turn VARCHAR,                     -- the turn that the ego makes there, see junction_passage; NULL: none, or not known
+    across BOOLEAN,                   -- see junction_passage
+    junction_m DOUBLE,                -- front bumper to the next junction along its way; infinite: none within the corridor; NULL: not known
+    crossing_id VARCHAR,              -- a pedestrian crossing that some of its box is on; NULL: none
+    stop_line_id VARCHAR,             -- next stop line ahead within 20 m, or at most 3 m behind its front; NULL: none
+    stop_line_m DOUBLE,               -- its front to that line; negative: over it
+    control VARCHAR,                  -- see stop_line_crossing
+    state VARCHAR,                    -- the light's state at t_start; NULL: not known, or no light
+    ahead_id VARCHAR,                 -- nearest vehicle ahead in its lane at t_start; NULL: nobody, see ahead_known
+    ahead_gap_m DOUBLE,               -- gap to it
+    ahead_speed_mps DOUBLE,           -- its speed
+    ahead_known BOOLEAN NOT NULL      -- see lead
+);
