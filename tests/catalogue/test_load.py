@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from drivelint import conditions
 from drivelint.catalogue import json_schema, load, read_rule
 from drivelint.errors import RuleError
 from drivelint.resources import folder
@@ -44,8 +45,26 @@ def test_a_rule_is_its_file(tmp_path: Path) -> None:
             {},
             {},
             "[applies]\nroad_typs = ['town']\n",
-            r"unknown key 'road_typs' in the header; did you mean 'road_types'",
+            r"unknown key 'road_typs' in the header; did you mean 'road_type'",
         ),
+        ({}, {}, "[applies]\nweather = ['wett']", r":\d+: \[applies\] 'wett' is no weather; did you mean 'wet'"),
+        ({}, {}, "[applies]\ncarriageway = ['duel', 'single']", "'duel' is no carriageway; did you mean 'dual'"),
+        ({}, {}, "[applies]\narea = ['urban']", "'urban' is no area; known are built_up, open"),
+        ({}, {}, "[applies]\nlight = ['dusk']", "'dusk' is no light; known are day, night"),
+        ({}, {}, "[applies]\nvehicle_class = ['truck']", "'truck' is no vehicle class"),
+        ({}, {}, "[applies]\nroad_type = ['moterway']", "'moterway' is no road type; did you mean 'motorway'"),
+        ({}, {}, "[applies]\nroad_type = ['TownLocal']", "did you mean 'townLocal'"),
+        ({}, {}, "[applies]\nnation = ['uk']", "'uk' is no country code: use 'gb'"),
+        ({}, {}, "[applies]\nnation = ['gb-eng', 'gb-nir']", "'gb-nir' is no nation"),
+        ({}, {}, "[applies]\nlimit_min_mps = -1", "limit_min_mps must be a speed in m/s, not -1"),
+        ({}, {}, "[applies]\nlimit_max_mps = inf", "limit_max_mps must be a speed in m/s, not inf"),
+        (
+            {},
+            {},
+            "[applies]\nlimit_min_mps = 3\nlimit_max_mps = 2",
+            "above limit_max_mps: the rule would apply nowhere",
+        ),
+        ({"observes": '" "'}, {}, "", "observes names what a measured condition observes"),
         ({}, {}, PARAM, "parameter 'limit' is never used"),
         ({}, {}, PARAM.replace("limit", "Limit"), "parameter 'Limit': use lower-case"),
         ({"quantifier": '"eventually"'}, {}, "", "'eventually' makes no sense for an invariant"),
@@ -196,6 +215,17 @@ def test_a_rule_may_use_ctes_unions_macros_of_ours_and_unnest(tmp_path: Path) ->
     sql = f"{ctes} {SPEED.replace('ego_state', 'fast')} UNION ALL {SPEED}"
     rule = write(tmp_path, HOLDS | GOOD | MEASURED, {"condition": sql})
     assert rule.columns["condition"] == ("drive_id", "ego_id", "t_ns", "observed", "required")
+
+
+def test_conditions_are_read_and_what_they_include_is_known(tmp_path: Path) -> None:
+    tables = '[applies]\nnation = ["gb"]\nroad_type = ["town", "rural"]\nlimit_min_mps = 13\n'
+    rule = write(tmp_path, GOOD | {"observes": '"speed"'}, {"condition": SPEED}, tables=tables)
+    assert rule.applies.words == {"road_type": ("town", "rural"), "nation": ("gb",)}
+    assert (rule.applies.limit_min_mps, rule.applies.limited, rule.observes) == (13.0, True, "speed")
+    assert conditions.covered(("gb",)) == ["gb", "gb-eng", "gb-sct", "gb-wls"]
+    assert {"town", "townLocal", "rural"} < set(conditions.covered(("rural", "town")))
+    assert (conditions.undecided(("gb-sct", "de")), conditions.undecided(("gb",))) == (["gb"], [])
+    assert conditions.problem("nation", "fr") is None
 
 
 def test_the_published_schema_of_the_header_is_current() -> None:

@@ -299,7 +299,7 @@ def test_profiles_are_judged_each_and_a_lost_one_is_unknown(tmp_path: Path) -> N
 )
 def test_road_types(tmp_path: Path, road: list[Any], expected: list[tuple[str, str]]) -> None:
     rule = write(
-        tmp_path, INVARIANT | MEASURED | SPEED, {"condition": SPEED_SQL}, tables='[applies]\nroad_types = ["town"]'
+        tmp_path, INVARIANT | MEASURED | SPEED, {"condition": SPEED_SQL}, tables='[applies]\nroad_type = ["town"]'
     )
     assert brief(verdicts(rule, speeds([12, 12, 12], road_type=road))) == expected
 

@@ -91,7 +91,7 @@ def test_execution_may_not_apply(tmp_path: Path, applies: Any, expected: tuple[s
 )
 def test_road_type_at_the_reference_point(tmp_path: Path, road: Any, expected: tuple[str, str]) -> None:
     sections = {"reference": REFERENCE, "condition": SPEED}
-    rule = write(tmp_path, EXECUTION | MEASURED | READS, sections, tables='[applies]\nroad_types = ["town"]')
+    rule = write(tmp_path, EXECUTION | MEASURED | READS, sections, tables='[applies]\nroad_type = ["town"]')
     assert brief(verdicts(rule, scene("off", 2.0, road_type={"else": "motorway", "2": road}))) == [expected]
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import re
 import tomllib
+from math import inf
 from typing import Any, Literal
 
 import msgspec
 
+from drivelint import conditions
 from drivelint.errors import RuleError
 
 Kind = Literal["invariant", "execution", "precondition", "postcondition"]
@@ -27,9 +29,29 @@ class Param(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The environment in which a rule applies; empty: everywhere."""
+    """The conditions in which a rule applies, all of them together, see `ego_condition`; an empty one: in all of them."""
 
-    road_types: tuple[str, ...] = ()
+    road_type: tuple[str, ...] = ()
+    carriageway: tuple[str, ...] = ()
+    area: tuple[str, ...] = ()
+    nation: tuple[str, ...] = ()
+    weather: tuple[str, ...] = ()
+    light: tuple[str, ...] = ()
+    vehicle_class: tuple[str, ...] = ()
+    limit_min_mps: float | None = None
+    """The least speed limit in m/s, itself included."""
+    limit_max_mps: float | None = None
+    """The greatest speed limit in m/s, itself included."""
+
+    @property
+    def words(self) -> dict[str, tuple[str, ...]]:
+        """Condition -> the words that it may have, for those that restrict the rule."""
+        return {name: getattr(self, name) for name in conditions.WORDS if getattr(self, name)}
+
+    @property
+    def limited(self) -> bool:
+        """Whether the speed limit restricts the rule."""
+        return self.limit_min_mps is not None or self.limit_max_mps is not None
 
 
 class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -49,6 +71,8 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     status: Literal["draft", "stable", "deprecated"]
     sense: Literal[">=", ">", "<=", "<", "holds"]
     unit: str | None = None
+    observes: str | None = None
+    """What `observed` is, as a short noun phrase, for the sentence of a verdict."""
     near_margin: float | None = None
     reads: tuple[str, ...]
     requires: tuple[str, ...] = ()
@@ -144,12 +168,31 @@ def _contradiction(h: Header) -> tuple[str, str] | None:
         ),
         (h.kind == "invariant" and h.reference is not None, "reference", "an invariant has no reference point"),
         (h.kind != "invariant" and h.exempt_after_s != 0, "exempt_after_s", "exempt_after_s is for invariants"),
+        (
+            h.observes is not None and (h.sense == "holds" or not h.observes.strip()),
+            "observes",
+            "observes names what a measured condition observes, as a short noun phrase; sense = 'holds' observes nothing",
+        ),
         (not h.reads, "reads", "reads must name the tables that the rule reads"),
     ]
     checks += [
         (not _NAME.fullmatch(name), name, f"parameter {name!r}: use lower-case letters, digits and _, a letter first")
         for name in h.params
     ]
+    for name, words in h.applies.words.items():
+        checks += [(True, name, f"[applies] {wrong}") for word in words if (wrong := conditions.problem(name, word))]
+    least, most = h.applies.limit_min_mps, h.applies.limit_max_mps
+    checks += [
+        (value is not None and not 0 <= value < inf, key, f"{key} must be a speed in m/s, not {value}")
+        for key, value in (("limit_min_mps", least), ("limit_max_mps", most))
+    ]
+    checks.append(
+        (
+            least is not None and most is not None and least > most,
+            "limit_min_mps",
+            "limit_min_mps is above limit_max_mps: the rule would apply nowhere",
+        )
+    )
     for key, value in seconds.items():
         if isinstance(value, str):
             default = h.params[value].default if value in h.params else None

@@ -38,7 +38,7 @@ def grid_of(rule: Rule) -> str | None:
     if (
         rule.kind != "invariant"
         or "applies" in rule.sections
-        or rule.applies.road_types
+        or rule.applies.road_type
         or rule.profiled
         or rule.exempt_after_s != 0
     ):
@@ -128,7 +128,7 @@ def _grid(rule: Rule, partial: bool, unsettled: bool) -> str:
         keep = " SEMI JOIN (SELECT * FROM _group WHERE rule_no = $_no AND NOT clean) _u"
         keep += " ON a.drive_id = _u.drive_id AND a.ego_id = _u.ego_id"
         keep += " AND a.object_id = _u.object_id" if rule.per_object else ""
-    if not rule.applies.road_types:
+    if not rule.applies.road_type:
         return f"""{first}, _grid AS (SELECT a.*, CASE WHEN a.applies IS NULL THEN 'applies_unknown' END AS doubt
             FROM _base a
     {terms.todo(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
@@ -256,7 +256,7 @@ def lost_objects(rule: Rule, partial: bool) -> str:
     """SQL that appends one unknown row per object whose track ends while it could still have been there."""
     profiles = "JOIN _profile_set p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id" if rule.profiled else ""
     roads = ""
-    if rule.applies.road_types:
+    if rule.applies.road_type:
         roads = "LEFT JOIN ego_state e ON e.drive_id = l.drive_id AND e.ego_id = l.ego_id AND e.t_ns = l.t_from_ns"
     return f"""
 INSERT INTO _outcome BY NAME

@@ -50,7 +50,7 @@ def occasions(rule: Rule, own_object: bool) -> str:
     }[rule.kind]
     if rule.subtype == "physical":
         start = end = "r.t_ns"
-    roads = rule.applies.road_types
+    roads = rule.applies.road_type
     applies = "CASE WHEN e.road_type IS NOT NULL THEN list_contains($_road_types, e.road_type) END" if roads else "true"
     return f"""
 CREATE OR REPLACE TEMP TABLE _occasion AS

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from drivelint import conditions
 from drivelint.errors import UsageError
 
 if TYPE_CHECKING:
@@ -34,7 +35,11 @@ class Binding:
                 f"rule {rule.id} has no parameter {unknown[0]!r}; it has: {', '.join(rule.params) or 'none'}"
             )
         params: dict[str, object] = {name: param.default for name, param in rule.params.items()} | dict(overrides)
-        self._values: dict[str, object] = {**params, "_no": no, "_road_types": list(rule.applies.road_types)}
+        self._values: dict[str, object] = {
+            **params,
+            "_no": no,
+            "_road_types": conditions.covered(rule.applies.road_type),
+        }
         for field, name in _ENGINE.items():
             given = getattr(rule, field)
             seconds = params[given] if isinstance(given, str) else given

@@ -1,0 +1,53 @@
+"""The conditions of a drive that rules may be restricted to: their names, the words of each, and which words include which.
+
+One vocabulary for the rules' `[applies]`, for `--env` and for what a log may say of itself; the columns are those of
+`ego_condition`.
+"""
+
+from __future__ import annotations
+
+import re
+from difflib import get_close_matches
+
+TOWN = ("town", "townExpressway", "townCollector", "townArterial", "townPrivate", "townLocal", "townPlayStreet")
+ROAD_TYPES = ("motorway", "rural", *TOWN, "lowSpeed", "pedestrian", "bicycle")
+"""OpenDRIVE's road types (ASAM OpenDRIVE 1.8, e_roadType), without `unknown`, which is NULL."""
+BRITAIN = ("gb", "gb-eng", "gb-wls", "gb-sct")
+
+WORDS: dict[str, tuple[str, ...]] = {
+    "road_type": ROAD_TYPES,
+    "carriageway": ("single", "dual"),
+    "area": ("built_up", "open"),
+    "nation": (*BRITAIN, "de"),
+    "weather": ("dry", "wet", "ice"),
+    "light": ("day", "night"),
+    "vehicle_class": ("car", "car_towing", "bus", "goods_7t5", "goods_over_7t5", "motorcycle"),
+}
+"""Condition -> its words; `nation` also takes any other country's two letters (ISO 3166-1), see `problem`."""
+
+_WIDER = {"gb": BRITAIN, "town": TOWN}
+_COUNTRY = re.compile(r"[a-z]{2}")
+
+
+def problem(condition: str, word: str) -> str | None:
+    """Return what is wrong with this word for this condition, with the nearest good one; None: nothing."""
+    words = WORDS[condition]
+    if word in words or (condition == "nation" and word != "uk" and _COUNTRY.fullmatch(word)):
+        return None
+    if condition == "nation" and word.lower() == "uk":
+        return "'uk' is no country code: use 'gb', or gb-eng, gb-wls, gb-sct"
+    near = get_close_matches(word.lower(), [w.lower() for w in words], n=1)
+    meant = next((w for w in words if near and w.lower() == near[0]), None)
+    hint = f"did you mean {meant!r}?" if meant else f"known are {', '.join(words)}"
+    return f"{word!r} is no {condition.replace('_', ' ')}; {hint}"
+
+
+def covered(words: tuple[str, ...]) -> list[str]:
+    """Return these words and those that they include: gb holds in gb-sct, town in townLocal."""
+    return sorted({part for word in words for part in (word, *_WIDER.get(word, ()))})
+
+
+def undecided(words: tuple[str, ...]) -> list[str]:
+    """Return the words that leave open whether one of these is meant: gb, where the rule is for gb-sct."""
+    inside = covered(words)
+    return sorted(wide for wide, parts in _WIDER.items() if wide not in inside and set(parts) & set(inside))
