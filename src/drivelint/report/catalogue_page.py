@@ -1,0 +1,190 @@
+"""The catalogue as one Markdown page: a table per pack, and for the Highway Code a table by clause.
+
+`queries/README.md` is this page for the shipped packs; a test holds it to be current. A pack that has a `clauses.toml`
+beside its rules gets the table by clause: what covers each clause, what is a draft, and what cannot be decided and why.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from typing import TYPE_CHECKING, NamedTuple
+
+import msgspec
+
+from drivelint.errors import RuleError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from pathlib import Path
+
+    from drivelint.catalogue import Rule
+
+_CITED = re.compile(r"\b(?:R|H)\d+")
+_NUMBER = re.compile(r"(H?)(\d+)(?:-(\d+))?")
+
+INTRODUCTION = """# The rule catalogue
+
+Written by `drivelint rules page`; edit the rules, not this page. A rule is a `.sql` file in `assertions/<pack>/` with its
+cases beside it; `drivelint rules show ID` prints one with its SQL. Only *stable* rules gate; a *draft* is checked when it
+is asked for. Packs are never merged into one verdict: they ask different things of the same gap.
+"""
+
+
+class Clause(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A clause, or a range of them: `of` (H1, 103, 89-94), what it is about, and why (some of) it is not decided."""
+
+    of: str
+    about: str
+    why: str = ""
+
+    @property
+    def names(self) -> set[str]:
+        """The clauses as rules cite them: H1, R103, R89 to R94. Errors: `RuleError` for an `of` that is not one."""
+        match = _NUMBER.fullmatch(self.of)
+        if match is None:
+            raise RuleError(f"clauses.toml: of = {self.of!r}: write H1, 103 or 89-94")
+        first, last = int(match[2]), int(match[3] or match[2])
+        return {f"{match[1] or 'R'}{n}" for n in range(first, last + 1)}
+
+
+class Row(NamedTuple):
+    """A clause with the rules that cover it and those that are drafts."""
+
+    clause: Clause
+    covered: tuple[str, ...]
+    drafted: tuple[str, ...]
+
+
+def cited(rule: Rule) -> set[str]:
+    """Return the Highway Code's clauses that a rule names at the head of its `clause` (up to the colon): R126, H2."""
+    head = rule.clause.split(":", 1)[0]
+    return set(_CITED.findall(head)) if head.startswith("UKHC") else set()
+
+
+def clauses(folder: Path) -> list[Clause]:
+    """Read `clauses.toml` of a pack's folder; none: []. Errors: `RuleError` where it is not understood."""
+    file = folder / "clauses.toml"
+    if not file.is_file():
+        return []
+    try:
+        return msgspec.convert(tomllib.loads(file.read_text(encoding="utf-8")).get("clause", []), list[Clause])
+    except (tomllib.TOMLDecodeError, msgspec.ValidationError) as error:
+        raise RuleError(f"{file}: {error}") from error
+
+
+def by_clause(rules: Iterable[Rule], table: Sequence[Clause]) -> list[Row]:
+    """Return each clause with what covers it.
+
+    Errors: `RuleError` for a rule that cites a clause of which the table knows nothing, and for a clause without rules
+    that does not say why.
+    """
+    citing: dict[str, list[Rule]] = {}
+    for rule in rules:
+        for name in cited(rule):
+            citing.setdefault(name, []).append(rule)
+    known = {name for clause in table for name in clause.names}
+    strange = sorted(citing.keys() - known)
+    if strange:
+        raise RuleError(f"clauses.toml: {citing[strange[0]][0].id} cites {strange[0]}, which has no entry")
+    rows = []
+    for clause in table:
+        mine = {rule.id: rule for name in clause.names for rule in citing.get(name, ())}
+        covered = tuple(sorted(i for i, rule in mine.items() if rule.status == "stable"))
+        drafted = tuple(sorted(i for i, rule in mine.items() if rule.status == "draft"))
+        if not mine and not clause.why:
+            raise RuleError(f"clauses.toml: {clause.of}: no rule covers it, and it does not say why")
+        rows.append(Row(clause, covered, drafted))
+    return rows
+
+
+def page(rules: Iterable[Rule], folder: Path) -> str:
+    """Return the page for rules whose packs lie in `folder` (for its clauses.toml files)."""
+    rules = sorted(rules, key=lambda rule: rule.id)
+    packs: dict[str, list[Rule]] = {}
+    for rule in rules:
+        packs.setdefault(rule.pack, []).append(rule)
+    parts = [INTRODUCTION, _overview(packs)]
+    for pack, mine in packs.items():
+        parts.append(_pack(pack, mine))
+        if table := clauses(folder / pack):
+            parts.append(_clauses(by_clause(rules, table)))
+    return "\n".join(parts)
+
+
+def _overview(packs: dict[str, list[Rule]]) -> str:
+    rows = [
+        (f"[`{pack}`](#{pack})", str(len(mine)), *(str(sum(r.status == s for r in mine)) for s in ("stable", "draft")))
+        for pack, mine in packs.items()
+    ]
+    total = [rule for mine in packs.values() for rule in mine]
+    rows.append(("all", str(len(total)), *(str(sum(rule.status == s for rule in total)) for s in ("stable", "draft"))))
+    return _table(("pack", "rules", "stable", "draft"), rows)
+
+
+def _pack(pack: str, rules: Sequence[Rule]) -> str:
+    rows = [
+        (
+            f"`{rule.id.removeprefix(pack + '.')}`",
+            rule.hypothesis,
+            f"{_kind(rule)}; {rule.severity}, {rule.legal}" + ("" if rule.status == "stable" else f"; *{rule.status}*"),
+            ", ".join(f"`{signal}`" for signal in rule.requires) or "positions",
+            _numbers(rule),
+            rule.clause,
+        )
+        for rule in rules
+    ]
+    return f"## {pack}\n\n" + _table(("rule", "asserts", "kind", "needs", "numbers", "from"), rows)
+
+
+def _kind(rule: Rule) -> str:
+    window = f" {rule.quantifier} within {rule.window_s} s" if isinstance(rule.window_s, float | int) else ""
+    if isinstance(rule.window_s, str):
+        window = f" {rule.quantifier} within {rule.params[rule.window_s].default:g} s"
+    return rule.kind + window + (f", [{_applies(rule)}]" if _applies(rule) else "")
+
+
+def _applies(rule: Rule) -> str:
+    conditions = msgspec.structs.asdict(rule.applies)
+    said = [
+        f"{name} {' or '.join(map(str, value)) if isinstance(value, tuple) else value}"
+        for name, value in conditions.items()
+        if value not in {None, ()}
+    ]
+    return ", ".join(said)
+
+
+def _numbers(rule: Rule) -> str:
+    def one(name: str, default: float | bool | str, unit: str) -> str:
+        shown = f"{default:g}" if isinstance(default, float | int) and not isinstance(default, bool) else str(default)
+        return f"`{name}` {shown} {unit}".rstrip()
+
+    said = [
+        f"{one(name, p.default, p.unit)}: {p.why}" + (f" ({p.source})" if p.source else "")
+        for name, p in rule.params.items()
+    ]
+    return "<br>".join(said) or "none of its own"
+
+
+def _clauses(rows: Sequence[Row]) -> str:
+    def ids(names: Sequence[str]) -> str:
+        return "<br>".join(f"`{name}`" for name in names)
+
+    body = [(r.clause.of, r.clause.about, ids(r.covered), ids(r.drafted), r.clause.why) for r in rows]
+    counts = (
+        sum(bool(r.covered) for r in rows),
+        sum(bool(r.drafted) and not r.covered for r in rows),
+        sum(not r.covered and not r.drafted for r in rows),
+    )
+    return (
+        "### By clause of the Highway Code\n\n"
+        f"Of {len(rows)} entries {counts[0]} are covered, {counts[1]} drafted only, {counts[2]} undecidable from a trace. "
+        "The last column says what is left open.\n\n"
+        + _table(("clause", "about", "covered by", "drafted", "not decided"), body)
+    )
+
+
+def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    lines += ["| " + " | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in row) + " |" for row in rows]
+    return "\n".join(lines) + "\n"
