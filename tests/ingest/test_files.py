@@ -125,7 +125,7 @@ def test_a_drive_is_called_by_stem_and_content(tmp_path: Path) -> None:
         ("a.mcap", b"<!DOCTYPE html><html>not found", r"not mcap: .*begins b'<!DOCTYPE html>.*at byte 0"),
         ("a.parquet", b"PAR2....", "not parquet"),
         ("a.parquet", b"PAR1 and nothing", "not readable as Parquet"),
-        ("a.osi", b"\x10\0\0\0", "not supported yet"),
+        ("a.osi", b"\x10\0\0\0", "not an OSI trace"),
         ("a.csv", b"<html></html>", "no reader for this file"),
         ("a.bag", b"#ROSBAG V2.0\n\0\0", "no reader for this file, which begins with b'#ROSBAG"),
     ],

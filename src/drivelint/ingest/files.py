@@ -26,7 +26,7 @@ CANONICAL = (
 )
 """The files of a canonical folder, in name order; all but `actor_state.parquet` may be missing."""
 TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi"})
-"""What a folder of traces is searched for. `.osi` is among them so that such a drive is reported, not passed over."""
+"""What a folder of traces is searched for."""
 RESULTS = frozenset(
     {f"{name}.parquet" for name in ("drives", "findings", "lanes", "margins", "rules", "scenes", "verdicts")}
 )

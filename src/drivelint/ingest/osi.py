@@ -137,7 +137,7 @@ class _Source:
         if self.topic is None and len(self.kinds) > 1:
             raise TraceError(f"{path}: ground truth on {len(self.kinds)} topics ({topics}): choose one with --topic")
         self._decode()
-        return _joined(self.batches, np.array(self.log_ns, np.uint64))
+        return joined(self.batches, np.array(self.log_ns, np.uint64))
 
 
 def _nothing(container: Container) -> str:
@@ -150,7 +150,7 @@ def _nothing(container: Container) -> str:
     return f"it has {listed(sorted(kinds)) if kinds else 'no channel'}; {needed}"
 
 
-def _joined(batches: list[Frames], log_ns: NDArray[np.uint64]) -> Recording:
+def joined(batches: list[Frames], log_ns: NDArray[np.uint64]) -> Recording:
     """Join batches into one recording in the order of the file."""
     findings: list[Finding] = []
     t_ns = _clock(batches, log_ns.astype(np.int64), findings)

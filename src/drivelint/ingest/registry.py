@@ -69,6 +69,22 @@ class McapReader:
         return osi.read(probe.path, probe.options.topic)
 
 
+class OsiFileReader:
+    """ASAM OSI trace file: length-prefixed ground truth or sensor views."""
+
+    def accepts(self, probe: Probe) -> bool:
+        """Accept by the first length and the message behind it."""
+        from drivelint.ingest import osi_file
+
+        return not probe.path.is_dir() and osi_file.looks_like(probe.head, probe.path.stat().st_size)
+
+    def read(self, probe: Probe) -> Recording:
+        """Read the messages."""
+        from drivelint.ingest import osi_file
+
+        return osi_file.read(probe.path)
+
+
 class TableReader:
     """Any CSV or Parquet table through a mapping."""
 
@@ -84,7 +100,7 @@ class TableReader:
         return tabular.read(probe.path, probe.options.mapping)
 
 
-READERS: tuple[Reader, ...] = (CanonicalReader(), McapReader(), TableReader())
+READERS: tuple[Reader, ...] = (CanonicalReader(), McapReader(), OsiFileReader(), TableReader())
 
 
 def read_trace(path: Path, options: IngestOptions) -> Trace:
@@ -125,10 +141,13 @@ def _probe(path: Path, options: IngestOptions) -> Probe:
         raise TraceError(f"{path}: cannot be read: {error.strerror or error}") from error
     if not head:
         raise TraceError(f"{path}: the file is empty (0 bytes): record or copy it again")
+    from drivelint.ingest import osi_file
+
     suffix = path.suffix.lower()
-    if suffix == ".osi":
+    if suffix == ".osi" and not osi_file.looks_like(head, path.stat().st_size):
         raise TraceError(
-            f"{path}: .osi traces are not supported yet: convert it to an MCAP with osi3.GroundTruth messages"
+            f"{path}: not an OSI trace: it should begin with a message's length and the message, and begins {head[:32]!r} at "
+            "byte 0: copy it again"
         )
     magic = {".mcap": b"\x89MCAP", ".parquet": b"PAR1"}.get(suffix)
     if magic is not None and not head.startswith(magic):

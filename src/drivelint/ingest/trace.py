@@ -37,6 +37,12 @@ MOTOR_VEHICLES = ("car", "van", "truck", "bus", "motorcycle", "vehicle")
 """What `--ego all` takes as an ego: driven by an engine and by somebody of its own."""
 EPOCH_NS = 946_684_800_000_000_000
 """2000-01-01 UTC: a clock beyond it counts from 1970 in UTC, a smaller one from the start of the recording."""
+FORMATS: dict[str, tuple[str, str]] = {
+    "osi-mcap": ("ASAM OSI in MCAP", "the log's host vehicle"),
+    "osi-file": ("ASAM OSI trace file", "the log's host vehicle"),
+    "canonical-parquet": ("drivelint's own Parquet tables", "marked is_ego in the log"),
+}
+"""What `data_log.format` may say beside a mapping's name -> its title, and how its ego is known."""
 SIGNAL_STATES = ("red", "red_amber", "amber", "green", "flashing", "off")
 
 

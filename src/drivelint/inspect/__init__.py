@@ -12,6 +12,7 @@ from drivelint.batch import Drive as Judgeable
 from drivelint.errors import ExitCode, MapError, TraceError, UsageError
 from drivelint.ingest import IngestOptions, expand, read_trace
 from drivelint.ingest.order import listed
+from drivelint.ingest.trace import FORMATS
 from drivelint.inspect import advice, model, tracks
 from drivelint.inspect.content import content, size
 from drivelint.judge import Bench
@@ -69,7 +70,7 @@ def inspect(order: Order) -> model.Inspection:
     except TraceError as error:
         return model.Inspection(file=file, content=_content_of_unread(path), problem=str(error))
     log = trace.tables["data_log"].to_pylist()[0]
-    mapping = None if log["format"] in {"osi-mcap", "canonical-parquet"} else order.mapping or log["format"]
+    mapping = None if log["format"] in FORMATS else order.mapping or log["format"]
     return model.Inspection(
         file=model.File(
             name=file.name, bytes=file.bytes, sha256=log["sha256"], drive_id=trace.drive_id, format=log["format"]
@@ -221,8 +222,7 @@ def _ego_source(trace: Trace, asked: str | None) -> str:
     if "ego_assumed" in said:
         return "assumed: the first vehicle of the file, as the mapping says (--ego ID to choose another)"
     log_format = trace.tables["data_log"]["format"][0].as_py()
-    named = {"osi-mcap": "the log's host vehicle", "canonical-parquet": "marked is_ego in the log"}
-    return named.get(log_format, f"named by the mapping {log_format}")
+    return FORMATS[log_format][1] if log_format in FORMATS else f"named by the mapping {log_format}"
 
 
 def _road(environment: Environment, *, given: bool) -> model.Road:

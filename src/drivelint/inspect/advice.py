@@ -46,7 +46,7 @@ _WHERE: Final = {
 
 def provide(signal: str, log_format: str) -> str:
     """Say what to give so that the signal is there, in the words of the log's format."""
-    where = _WHERE.get(log_format, _WHERE[""])
+    where = _WHERE.get("osi-mcap" if log_format == "osi-file" else log_format, _WHERE[""])
     return ADVICE.get(signal, "see what the rules that need it say: drivelint rules show ID").format_map(where)
 
 

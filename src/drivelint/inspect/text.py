@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from drivelint.ingest.mapping import GROUP
+from drivelint.ingest.trace import FORMATS
 from drivelint.inspect.rules_text import rules
 from drivelint.inspect.words import amount, holes, many, metres, plural, side, size
 
@@ -69,8 +70,9 @@ def render(found: Inspection, trace: str) -> Group:
 def _title(found: Inspection) -> Text:
     file = found.file
     text = Text(file.name, style="bold")
-    kinds = {"osi-mcap": "ASAM OSI in MCAP", "canonical-parquet": "drivelint's own Parquet tables"}
-    kind = "" if file.format is None else kinds.get(file.format, f"a table, read through the mapping {file.format}")
+    kind = ""
+    if file.format is not None:
+        kind = FORMATS[file.format][0] if file.format in FORMATS else f"a table, read through the mapping {file.format}"
     text.append(f"  {', '.join(part for part in (kind, size(file.bytes)) if part)}", style="default")
     return text
 

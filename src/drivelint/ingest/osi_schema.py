@@ -1,4 +1,7 @@
-"""The part of ASAM OSI 3 that is written, as a protobuf descriptor built here: names, numbers and nesting as in OSI."""
+"""The part of ASAM OSI 3 that we write, and that we read where the log brings no schema, as protobuf descriptors.
+
+Names, numbers and nesting are OSI's. What is written is the smaller part: its bytes stand in logs whose hash is known.
+"""
 
 from __future__ import annotations
 
@@ -117,6 +120,30 @@ ENUMS: Final[dict[str, dict[str, int]]] = {
         "MODE_FLASHING": 4,
     },
 }
+_READ_MESSAGES: Final[dict[str, tuple[tuple[str, int, str], ...]]] = {
+    **MESSAGES,
+    "SensorView": (
+        ("timestamp", 2, "Timestamp"),
+        ("global_ground_truth", 7, "GroundTruth"),
+        ("host_vehicle_id", 8, "Identifier"),
+    ),
+}
+_READ_ENUMS: Final[dict[str, dict[str, int]]] = {
+    **ENUMS,
+    "MovingObject.VehicleClassification.Type": {
+        **ENUMS["MovingObject.VehicleClassification.Type"],
+        "TYPE_SMALL_CAR": 2,
+        "TYPE_COMPACT_CAR": 3,
+        "TYPE_LUXURY_CAR": 5,
+        "TYPE_SEMITRAILER": 8,
+        "TYPE_TRAM": 13,
+        "TYPE_TRAIN": 14,
+        "TYPE_WHEELCHAIR": 15,
+        "TYPE_SEMITRACTOR": 16,
+        "TYPE_STANDUP_SCOOTER": 17,
+    },
+    "TrafficLight.Classification.Mode": {**ENUMS["TrafficLight.Classification.Mode"], "MODE_COUNTING": 5},
+}
 PACKAGE: Final = "osi3"
 GROUND_TRUTH: Final = f"{PACKAGE}.GroundTruth"
 OPEN_DRIVE: Final = f"{PACKAGE}.MapAsamOpenDrive"
@@ -124,7 +151,9 @@ VERSION: Final = (3, 7, 0)
 """The version of OSI that is written."""
 
 
-def _file() -> descriptor_pb2.FileDescriptorProto:
+def _file(
+    messages: dict[str, tuple[tuple[str, int, str], ...]], enums: dict[str, dict[str, int]]
+) -> descriptor_pb2.FileDescriptorProto:
     file = descriptor_pb2.FileDescriptorProto(name="osi_written.proto", package=PACKAGE, syntax="proto2")
     made: dict[str, Any] = {}
 
@@ -135,18 +164,18 @@ def _file() -> descriptor_pb2.FileDescriptorProto:
         made[name] = getattr(home, field).add(name=own)
         return made[name]
 
-    for name in MESSAGES:
+    for name in messages:
         add(name, "message")
-    for name, values in ENUMS.items():
+    for name, values in enums.items():
         enum = add(name, "enum")
         for word, number in values.items():
             enum.value.add(name=word, number=number)
-    for name, fields in MESSAGES.items():
+    for name, fields in messages.items():
         for field, number, kind in fields:
             plain = kind.removesuffix("[]")
             item = made[name].field.add(name=field, number=number)
             item.label = _F.LABEL_REPEATED if kind != plain else _F.LABEL_OPTIONAL
-            item.type = _SCALARS.get(plain, _F.TYPE_ENUM if plain in ENUMS else _F.TYPE_MESSAGE)
+            item.type = _SCALARS.get(plain, _F.TYPE_ENUM if plain in enums else _F.TYPE_MESSAGE)
             if plain not in _SCALARS:
                 item.type_name = f".{PACKAGE}.{plain}"
     return file
@@ -155,4 +184,14 @@ def _file() -> descriptor_pb2.FileDescriptorProto:
 @cache
 def descriptor_set() -> bytes:
     """Return the serialised `FileDescriptorSet` for an MCAP schema record."""
-    return descriptor_pb2.FileDescriptorSet(file=[_file()]).SerializeToString(deterministic=True)
+    return _serialised(_file(MESSAGES, ENUMS))
+
+
+@cache
+def reading_set() -> bytes:
+    """Return the serialised `FileDescriptorSet` by which messages are read that come without one."""
+    return _serialised(_file(_READ_MESSAGES, _READ_ENUMS))
+
+
+def _serialised(file: descriptor_pb2.FileDescriptorProto) -> bytes:
+    return descriptor_pb2.FileDescriptorSet(file=[file]).SerializeToString(deterministic=True)
