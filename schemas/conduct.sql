@@ -146,3 +146,15 @@ CREATE TABLE overtake_place (
     rear_ttc_s DOUBLE,                -- time until it gets to the ego's rear at both speeds; infinite: never, or nobody; 0: alongside
     rear_known BOOLEAN NOT NULL       -- every vehicle behind was placed
 );
+
+CREATE TABLE following (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- every step
+    object_id VARCHAR,                -- see lead; NULL: nobody ahead, or cannot be told
+    follows BOOLEAN,                  -- the ego is behind it and goes its way: in its lane, neither oncoming nor about to be passed (no overtake or lane change under way, and what stands ahead is in the way of the ego's box); NULL: cannot be told
+    gap_m DOUBLE,                     -- see lead
+    ego_speed_mps DOUBLE,             -- ego's speed
+    speed_mps DOUBLE,                 -- its speed
+    joined_ns BIGINT                  -- since when it is the nearest one ahead, if one of the two then changed lanes: the gap is new; NULL: it was ahead before
+);

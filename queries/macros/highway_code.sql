@@ -30,3 +30,22 @@ CREATE OR REPLACE MACRO overtake_zone(spare_m, spare_s) AS
 
 -- Could be driven: everything that is not known to be on foot, an animal or a thing.
 CREATE OR REPLACE MACRO may_be_vehicle(actor_class) AS coalesce(actor_class NOT IN ('pedestrian', 'animal', 'object'), true);
+
+-- How many times the stopping distance and the two seconds grow with the weather: twice in the wet (Rule 227), up to ten times on ice
+-- (Rule 230). Weather that is not known counts as dry: who is too close then is too close in any weather.
+CREATE OR REPLACE MACRO stopping_factor(weather) AS CASE weather WHEN 'wet' THEN 2.0::DOUBLE WHEN 'ice' THEN 10.0::DOUBLE ELSE 1.0::DOUBLE END;
+
+-- The side on which one overtakes, where traffic keeps to the other.
+CREATE OR REPLACE MACRO overtaking_side(handedness) AS CASE handedness WHEN 'lht' THEN 'right' WHEN 'rht' THEN 'left' END;
+
+-- Whether an actor is of this class; unknown for one whose class is not known or only that it is a vehicle of some kind.
+CREATE OR REPLACE MACRO is_class(actor_class, word) AS CASE WHEN actor_class <> 'vehicle' THEN actor_class = word END;
+
+-- National speed limit of Rule 124 outside built-up areas in mph. road: single, dual or motorway. Cars and motorcycles have those of the road.
+CREATE OR REPLACE MACRO class_limit_mph(vehicle_class, nation, road) AS
+    CASE
+        WHEN vehicle_class IN ('car', 'motorcycle') THEN CASE road WHEN 'single' THEN 60 ELSE 70 END
+        WHEN vehicle_class IN ('bus', 'goods_7t5') THEN CASE road WHEN 'single' THEN 50 WHEN 'dual' THEN 60 ELSE 70 END
+        WHEN vehicle_class = 'goods_over_7t5' AND nation = 'gb-sct' THEN CASE road WHEN 'single' THEN 40 WHEN 'dual' THEN 50 ELSE 60 END
+        ELSE CASE road WHEN 'single' THEN 50 ELSE 60 END
+    END;
