@@ -96,15 +96,14 @@ def _tables(con: duckdb.DuckDBPyConnection, sql: str, where: str) -> set[str]:
     tree = json.loads(con.execute("SELECT json_serialize_sql(?)", [sql]).fetchall()[0][0])
     if tree["error"]:
         raise DriveLintError(f"{where}: {tree['error_message']}")
-    return set(_table_names(tree))
+    nodes = list(_nodes(tree))
+    # a CTE may have the name of another library table: then it is the CTE that is read
+    own = {entry["key"] for node in nodes for entry in node.get("cte_map", {}).get("map", ())}
+    return {node["table_name"] for node in nodes if node.get("type") == "BASE_TABLE"} - own
 
 
-def _table_names(node: Any) -> Iterable[str]:
-    if isinstance(node, dict):
-        if node.get("type") == "BASE_TABLE":
-            yield node["table_name"]
-        for child in node.values():
-            yield from _table_names(child)
-    elif isinstance(node, list):
-        for child in node:
-            yield from _table_names(child)
+def _nodes(tree: Any) -> Iterable[dict[str, Any]]:
+    if isinstance(tree, dict):
+        yield tree
+    for child in tree.values() if isinstance(tree, dict) else tree if isinstance(tree, list) else ():
+        yield from _nodes(child)
