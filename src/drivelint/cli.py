@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn, TypeVar
 import typer
 
 from drivelint import __version__, options
-from drivelint.errors import DriveLintError, ExitCode, RuleError, UsageError
+from drivelint.errors import DriveLintError, ExitCode, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -310,26 +310,25 @@ def rules_test(
     folder: Annotated[
         Path | None, typer.Argument(metavar="[DIR]", help="Folder with rule packs; default: the shipped ones.")
     ] = None,
+    only: Annotated[
+        list[str] | None, typer.Option("--rules", metavar="SEL", help="Rule id or glob. Repeatable. Default: all.")
+    ] = None,
+    mutate: Annotated[
+        bool, typer.Option("--mutate", help="Break each rule in many ways, and ask whether some case notices.")
+    ] = False,
 ) -> None:
     """Run the test cases beside the rules.
 
-    Each is a small scene with the verdict that is due. Exit code 1: some verdict is another.
-    """
-    from drivelint.casefile import CaseResult, run_cases
-    from drivelint.catalogue import load
-    from drivelint.report import rules_text
+    Each is a small scene with the verdict that is due. With --mutate: whether the cases would notice a wrong sense,
+    threshold or window, or a missing condition.
 
-    rules = load((folder,) if folder else ())
-    mine = [rule for rule in rules.values() if folder is None or rule.path.is_relative_to(folder)]
-    failed = False
-    for rule in mine:
-        try:
-            results = run_cases(rule)
-        except RuleError as error:
-            results = [CaseResult("cases", ok=False, message=str(error))]
-        failed |= not all(result.ok for result in results)
-        _say(rules_text.case_line(rule.id, results), soft_wrap=True)
-    raise typer.Exit(int(ExitCode.FAILED if failed else ExitCode.OK))
+    Exit codes: 0 all is well; 1 some verdict is another, or a mutant of a stable rule is noticed by no case; 2 a rule
+    or its cases cannot be used.
+    """
+    from drivelint.casefile import workshop
+
+    test = workshop.mutation_test if mutate else workshop.case_test
+    raise typer.Exit(int(test(folder, tuple(only or ()), typer.echo)))
 
 
 def main() -> NoReturn:

@@ -18,6 +18,8 @@ A list of cases; each fills tables with a tiny scene, judges the rule, and says 
 * `step`: only `t_s` is needed. Without it the steps are the times of the tables that have a row per step, or else of
   the events. `clock` and the rest of `step` are worked out (hole = longer than 2.5 median periods); a block
   `clock: {max_gap_s: 1}` replaces what it names.
+* `ego_condition`: what rules with `[applies]` ask for. At steps without a row, and in rows without `engaged`, the
+  automated driver drives (`engaged: true`); everything else that is not given is not known.
 * `expect`: a verdict, which then every row must have, or the list of all rows in order of time, profile and object,
   each with the columns that matter (`t_worst_s` for `t_worst_ns`; of `reason` a part is enough). Numbers must agree to
   the decimals written, at least two; 12 means 12.00.
@@ -34,22 +36,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 import yaml
 
-from drivelint.casefile.scene import Row, column_of, database, fill, scene
+from drivelint.casefile import crowd
+from drivelint.casefile.scene import Row, column_of, scene
 from drivelint.errors import RuleError
-from drivelint.evaluate import evaluate
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-
-    import duckdb
+    from pathlib import Path
 
     from drivelint.catalogue import Rule
 
 SHOWS = ("clean", "violation", "boundary", "not_applicable", "unknown")
-_FOUND = "drive_id, ego_id, t_start_ns, profile NULLS LAST, object_id NULLS LAST, occurrence"
-_ORDER = (
-    "drive_id, ego_id, coalesce(t_ref_ns, t_start_ns) NULLS LAST, profile NULLS LAST, object_id NULLS LAST, occurrence"
-)
 
 
 class CaseResult(NamedTuple):
@@ -70,6 +67,8 @@ class Case(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
     params: dict[str, Any] = {}
     missing: tuple[str, ...] = ()
     findings: int | None = None
+    line: int = 0
+    """Where it stands in its file: filled in, never written."""
 
     def categories(self) -> set[str]:
         """Return which of SHOWS this case shows, by its own word or by its name."""
@@ -94,21 +93,48 @@ def read_cases(rule: Rule) -> list[Case]:
 
     Errors: `RuleError` where the file is missing, is not YAML, or says what is not understood.
     """
-    file = rule.path.with_suffix(".cases.yml")
+    file = cases_of(rule)
     try:
-        raw = yaml.load(file.read_text(encoding="utf-8"), Loader=_Loader)  # noqa: S506 - a safe loader with fewer booleans
-        cases = msgspec.convert(raw, list[Case])
+        cases = _parsed(file, file.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
         raise RuleError(
-            f"{file}: rule {rule.id} has no cases; write clean, violation, boundary, not applicable and unknown"
+            f"{file}:1: rule {rule.id} has no cases; write clean, violation, boundary, not applicable and unknown"
         ) from error
+    except UnicodeDecodeError as error:
+        raise RuleError(f"{file}:1: not UTF-8 at byte {error.start}") from error
     except yaml.YAMLError as error:
-        raise RuleError(f"{file}: not YAML: {' '.join(str(error).split())}") from error
-    except msgspec.ValidationError as error:
-        raise RuleError(f"{file}: {error}") from error
-    names = [case.name for case in cases]
-    if len(set(names)) != len(names):
-        raise RuleError(f"{file}: two cases have the same name: {next(n for n in names if names.count(n) > 1)!r}")
+        mark = getattr(error, "problem_mark", None)
+        raise RuleError(f"{file}:{mark.line + 1 if mark else 1}: not YAML: {' '.join(str(error).split())}") from error
+    seen: dict[str, Case] = {}
+    for case in cases:
+        if case.name in seen:
+            raise RuleError(
+                f"{file}:{case.line}: case {case.name!r} has the name of the case in line {seen[case.name].line}"
+            )
+        seen[case.name] = case
+    return cases
+
+
+def cases_of(rule: Rule) -> Path:
+    """Return the file of a rule's cases."""
+    return rule.path.with_suffix(".cases.yml")
+
+
+def _parsed(file: Path, text: str) -> list[Case]:
+    """Return the cases of a file, each with its line. Errors: `RuleError`, `yaml.YAMLError`."""
+    raw = yaml.load(text, Loader=_Loader)  # noqa: S506 - a safe loader with fewer booleans
+    if not isinstance(raw, list):
+        raise RuleError(f"{file}:1: cases are a list: each begins with '- name: ...'")
+    root = yaml.compose(text, Loader=_Loader)
+    lines = [item.start_mark.line + 1 for item in root.value] if root else []
+    cases = []
+    for line, item in zip(lines, raw, strict=True):
+        if not isinstance(item, dict) or "line" in item:
+            raise RuleError(f"{file}:{line}: a case is 'key: value' pairs: {', '.join(Case.__struct_fields__[:-1])}")
+        try:
+            cases.append(msgspec.convert({**item, "line": line}, Case))
+        except msgspec.ValidationError as error:
+            raise RuleError(f"{file}:{line}: case {item.get('name')!r}: {error}") from error
     return cases
 
 
@@ -120,31 +146,42 @@ def run_cases(rule: Rule) -> list[CaseResult]:
     cases = read_cases(rule)
     results = [run_case(rule, case) for case in cases]
     problem = _coverage(cases)
-    return [*results, CaseResult("kinds of case", not problem, problem)]
+    return [*results, CaseResult("kinds of case", not problem, problem and f"{cases_of(rule)}:{problem}")]
 
 
 def _coverage(cases: Sequence[Case]) -> str:
+    for case in cases:
+        if unknown := sorted(case.categories() - set(SHOWS)):
+            return f"{case.line}: shows: {unknown[0]!r} is not one of {', '.join(SHOWS)}"
     shown = {name for case in cases for name in case.categories()}
-    if unknown := sorted(shown - set(SHOWS)):
-        return f"shows: {unknown[0]!r} is not one of {', '.join(SHOWS)}"
     if lacking := [name for name in SHOWS if name not in shown]:
-        return f"no case shows: {', '.join(lacking)}"
+        return f"1: no case shows: {', '.join(lacking)}"
     honest = {"clean": "pass", "violation": "fail", "not_applicable": "not_applicable", "unknown": "unknown"}
     for case in cases:
         verdicts = {case.expect} if isinstance(case.expect, str) else {row.get("verdict") for row in case.expect}
         for name in sorted(case.categories() & honest.keys()):
             if honest[name] not in verdicts:
-                return f"case {case.name!r} shows {name} but expects no {honest[name]}"
+                return f"{case.line}: case {case.name!r} shows {name} but expects no {honest[name]}"
     return ""
 
 
 def run_case(rule: Rule, case: Case) -> CaseResult:
     """Fill a scene, judge it by this rule alone, compare."""
-    verdicts, findings = judge(rule, case)
+    message = difference(case, *judge(rule, case))
+    return CaseResult(case.name, not message, message and f"{place(rule, case)}: {message}")
+
+
+def place(rule: Rule, case: Case) -> str:
+    """Return where a case stands: file, line and its name."""
+    return f"{cases_of(rule)}:{case.line}: case {case.name!r}"
+
+
+def difference(case: Case, verdicts: Sequence[Row], findings: Sequence[Row]) -> str:
+    """Return '' where the rows are as the case expects, else one line that says how they differ."""
     message = _difference(case.expect, verdicts)
     if not message and case.findings not in {None, len(findings)}:
         message = f"expected {case.findings} findings, got {len(findings)}"
-    return CaseResult(case.name, not message, message)
+    return message
 
 
 def judge(rule: Rule, case: Case) -> tuple[list[Row], list[Row]]:
@@ -152,24 +189,9 @@ def judge(rule: Rule, case: Case) -> tuple[list[Row], list[Row]]:
 
     Errors: `RuleError` for tables, columns or values that cannot be understood.
     """
-    con = database()
-    filled = ["verdict", "finding", "margin"]
-    try:
-        for table, rows in scene(rule, case.given, case.missing, f"{rule.id}, case {case.name!r}").items():
-            filled.append(table)
-            fill(con, table, rows)
-        evaluate(con, [rule], {rule.id: case.params})
-        return _fetch(con, f"SELECT * FROM verdict ORDER BY {_ORDER}"), _fetch(
-            con, f"SELECT * FROM finding ORDER BY {_FOUND}"
-        )
-    finally:
-        con.execute(";".join(f"DELETE FROM {table}" for table in filled))
-
-
-def _fetch(con: duckdb.DuckDBPyConnection, sql: str) -> list[Row]:
-    result = con.execute(sql)
-    names = [column[0] for column in result.description or ()]
-    return [dict(zip(names, row, strict=True)) for row in result.fetchall()]
+    given = scene(rule, case.given, case.missing, place(rule, case))
+    outcome = crowd.judge([rule], given, case.params)[rule.id]
+    return outcome.verdicts, outcome.findings
 
 
 def _difference(expect: str | Sequence[Mapping[str, Any]], rows: Sequence[Row]) -> str:

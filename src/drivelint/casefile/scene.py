@@ -55,6 +55,7 @@ def scene(rule: Rule, given: Mapping[str, Any], missing: Sequence[str], where: s
     clock = scene.pop("clock", [{}])
     scene["step"] = _steps(scene, clock[0].get("max_gap_ns"))
     scene["clock"] = _clocks(scene["step"], clock)
+    scene["ego_condition"] = _engaged(scene["step"], scene.get("ego_condition", ()))
     subjects = [(row["drive_id"], row["ego_id"]) for row in scene["clock"]]
     logged = {row["drive_id"] for row in scene.get("data_log", ())}
     new = [{"drive_id": d, "sha256": f"hash of {d}"} for d in dict.fromkeys(d for d, _ in subjects) if d not in logged]
@@ -195,6 +196,14 @@ def _steps(given: Mapping[str, Sequence[Row]], max_gap_ns: int | None) -> list[R
             step = {"drive_id": drive, "ego_id": ego, "t_ns": t, "k": k, "dt_ns": dt, "seg": seg}
             steps.append(step | said.get((drive, ego, t), {}))
     return steps
+
+
+def _engaged(steps: Iterable[Row], given: Iterable[Row]) -> list[Row]:
+    """Return the conditions of every step: what a case does not give is not known, but the automated driver drives."""
+    keys = ("drive_id", "ego_id", "t_ns")
+    said = {tuple(row.get(key) for key in keys): row for row in given}
+    at = dict.fromkeys([*(tuple(step[key] for key in keys) for step in steps), *said])
+    return [{**dict(zip(keys, key, strict=True)), "engaged": True, **said.get(key, {})} for key in at]
 
 
 def _is_grid(table: str) -> bool:

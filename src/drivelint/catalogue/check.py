@@ -102,7 +102,8 @@ class _Found:
 
 
 @cache
-def _macros() -> frozenset[str]:
+def macros() -> frozenset[str]:
+    """Return the names of the library's macros, in lower case."""
     files = sorted((folder("queries") / "macros").glob("*.sql"))
     return frozenset(name.lower() for file in files for name in _MACRO.findall(file.read_text(encoding="utf-8")))
 
@@ -117,7 +118,7 @@ def _allow(found: _Found, where: str) -> None:
     strange = sorted(found.tables - found.ctes - known)
     if strange:
         raise RuleError(f"{where}: there is no table {strange[0]!r}; rules read the tables of schemas/*.sql only")
-    functions = sorted(found.table_functions - _TABLE_FUNCTIONS - _macros())
+    functions = sorted(found.table_functions - _TABLE_FUNCTIONS - macros())
     if functions:
         raise RuleError(f"{where}: table function {functions[0]!r} is not allowed in a rule")
     unstable = sorted(found.functions & _UNSTABLE)

@@ -65,18 +65,10 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
 def load(dirs: Sequence[Path] = ()) -> dict[str, Rule]:
     """Return every rule by id, sorted: the shipped packs and those of the folders in `dirs`.
 
-    A folder holds packs (`<pack>/<rule>.sql`) or is one (`<rule>.sql`). Errors: `RuleError` with file and line, for two
-    rules
-    with one id, and for a folder without rules.
+    Errors: `RuleError` with file and line, for two rules with one id, and for a folder without rules.
     """
-    files = sorted((folder("queries") / "assertions").glob("*/*.sql"))
-    for root in dirs:
-        found = sorted(root.glob("*.sql")) + sorted(root.glob("*/*.sql"))
-        if not found:
-            raise RuleError(f"{root}: no rules here; --rules-dir is a folder of packs: <pack>/<rule>.sql")
-        files += found
     rules: dict[str, Rule] = {}
-    for file in files:
+    for file in (file for root in (folder("queries") / "assertions", *dirs) for file in files(root)):
         rule = read_rule(file)
         if rule.id in rules:
             raise RuleError(
@@ -84,6 +76,22 @@ def load(dirs: Sequence[Path] = ()) -> dict[str, Rule]:
             )
         rules[rule.id] = rule
     return dict(sorted(rules.items()))
+
+
+def files(root: Path) -> list[Path]:
+    """Return the rule files of a folder, which holds packs (`<pack>/<rule>.sql`) or is one (`<rule>.sql`).
+
+    Errors: `RuleError` where there is none.
+    """
+    found = sorted(root.glob("*.sql")) + sorted(root.glob("*/*.sql"))
+    if not found:
+        raise RuleError(f"{root}: no rules here; a folder of rules holds packs, <pack>/<rule>.sql, or is one")
+    return found
+
+
+def id_of(file: Path) -> str:
+    """Return the id of the rule in a file: `<pack>.<rule>`."""
+    return f"{file.resolve().parent.name}.{file.stem}"
 
 
 def read_rule(file: Path) -> Rule:
@@ -111,7 +119,7 @@ def read_rule(file: Path) -> Rule:
     fields = {name: getattr(header, name) for name in header.__struct_fields__}
     return Rule(
         **fields,
-        id=f"{pack}.{file.stem}",
+        id=id_of(file),
         pack=pack,
         path=file,
         version=hashlib.sha256(content).hexdigest()[:16],

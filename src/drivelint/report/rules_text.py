@@ -13,7 +13,7 @@ from rich.text import Text
 from drivelint.report.terminal import NARROW
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
 
     from rich.console import RenderableType
 
@@ -89,13 +89,3 @@ def _params(rule: Rule) -> Table:
     for name, param in rule.params.items():
         table.add_row(*(Text(cell) for cell in (name, str(param.default), param.unit, param.why, param.source)))
     return table
-
-
-def case_line(rule_id: str, results: Sequence[tuple[str, bool, str]]) -> Text:
-    """Return the outcome of a rule's cases (name, ok, message): one line, and one more per case that failed."""
-    failed = [(name, message) for name, ok, message in results if not ok]
-    text = Text("FAIL " if failed else "ok   ", style="bold red" if failed else "green")
-    text.append(f"{rule_id}: {len(results) - len(failed)} of {len(results)} checks", style="default")
-    for name, message in failed:
-        text.append(f"\n     {name}: {message}", style="default")
-    return text

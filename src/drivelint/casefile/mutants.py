@@ -1,0 +1,278 @@
+"""Wrong variants of a rule, each with one deliberate fault that some case beside the rule must notice.
+
+* the sense turned round, and (measured) its edge: >= becomes <, and >; `holds` becomes NOT holds
+* every ordering comparison in the SQL turned round
+* every threshold times 0.9 and 1.1: numeric parameters, numeric literals, constants of the library (`standing_mps()`) and
+  whatever else is `required`
+* every window halved and doubled: window_s, exempt_after_s, merge_gap_s (where the header sets it)
+* every term of every WHERE, HAVING, QUALIFY and JOIN ... ON or USING left out
+
+Left alone: what only words the reason; the literals 0 and 1 (counts and signs) and powers of ten from 1000 on (units).
+The faults are put into DuckDB's own syntax tree, which is then turned back into SQL.
+"""
+
+from __future__ import annotations
+
+import copy
+import json
+from collections import Counter
+from functools import cache
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import duckdb
+import msgspec
+
+from drivelint.catalogue.check import macros
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from drivelint.catalogue import Rule
+
+Node = dict[str, Any]
+
+OPPOSITE = {">": "<=", ">=": "<", "<": ">=", "<=": ">"}
+EDGE = {">": ">=", ">=": ">", "<": "<=", "<=": "<"}
+_TURNED = {
+    "COMPARE_LESSTHAN": "COMPARE_GREATERTHANOREQUALTO",
+    "COMPARE_LESSTHANOREQUALTO": "COMPARE_GREATERTHAN",
+    "COMPARE_GREATERTHAN": "COMPARE_LESSTHANOREQUALTO",
+    "COMPARE_GREATERTHANOREQUALTO": "COMPARE_LESSTHAN",
+}
+_CLAUSES = {"where_clause": "WHERE", "having": "HAVING", "qualify": "QUALIFY", "condition": "ON"}
+_SECONDS = ("window_s", "exempt_after_s", "merge_gap_s")
+_THRESHOLD = (0.9, 1.1)
+_WINDOW = (0.5, 2.0)
+
+
+class Mutant(NamedTuple):
+    """A wrong rule and what is wrong with it, in words that stay the same as long as that place of the rule does."""
+
+    fault: str
+    rule: Rule
+
+
+def mutants(rule: Rule) -> list[Mutant]:
+    """Return every mutant of a rule, each fault named once (`#2` for the second of the same words)."""
+    seen: Counter[str] = Counter()
+    found: list[Mutant] = []
+    for fault, wrong in (*_of_the_sense(rule), *_of_the_params(rule), *_of_the_windows(rule), *_of_the_sql(rule)):
+        seen[fault] += 1
+        name = fault if seen[fault] == 1 else f"{fault} #{seen[fault]}"
+        found.append(Mutant(name, msgspec.structs.replace(wrong, id=f"{rule.id}~{len(found)}")))
+    return found
+
+
+def _of_the_sense(rule: Rule) -> Iterator[Mutant]:
+    if rule.sense == "holds":
+        sql = f"SELECT * REPLACE (NOT holds AS holds) FROM (\n{rule.sections['condition']}\n)"
+        yield Mutant("NOT holds", _with_section(rule, "condition", sql))
+        return
+    for sense in (OPPOSITE[rule.sense], EDGE[rule.sense]):
+        yield Mutant(f"sense {rule.sense} -> {sense}", msgspec.structs.replace(rule, sense=sense))
+
+
+def _of_the_params(rule: Rule) -> Iterator[Mutant]:
+    windows = {getattr(rule, field) for field in _SECONDS}
+    for name, param in rule.params.items():
+        if isinstance(param.default, bool | str) or param.default == 0:
+            continue
+        for factor in _WINDOW if name in windows else _THRESHOLD:
+            changed = msgspec.structs.replace(param, default=param.default * factor)
+            wrong = msgspec.structs.replace(rule, params={**rule.params, name: changed})
+            yield Mutant(f"params.{name} * {factor:g}", wrong)
+
+
+def _of_the_windows(rule: Rule) -> Iterator[Mutant]:
+    said = rule.path.read_text(encoding="utf-8")
+    for field in _SECONDS:
+        seconds = getattr(rule, field)
+        if isinstance(seconds, str) or not seconds or f"\n-- {field} =" not in said:
+            continue
+        for factor in _WINDOW:
+            yield Mutant(f"{field} * {factor:g}", msgspec.structs.replace(rule, **{field: seconds * factor}))
+
+
+def _of_the_sql(rule: Rule) -> Iterator[Mutant]:
+    for section, sql in rule.sections.items():
+        tree = _tree(sql)
+        for place in _places(tree["statements"][0]["node"]):
+            for fault, changed in _faults(tree, place):
+                yield Mutant(f"@{section} {fault}", _with_section(rule, section, _sql(changed)))
+
+
+def _with_section(rule: Rule, name: str, sql: str) -> Rule:
+    return msgspec.structs.replace(rule, sections={**rule.sections, name: sql})
+
+
+class _Place(NamedTuple):
+    """A node of a syntax tree: the way to it from the statement's node, and itself."""
+
+    way: tuple[str | int, ...]
+    node: Node
+
+
+def _places(root: Node) -> list[_Place]:
+    """Return every node that can matter to a verdict, in the order of the text."""
+    wording = _wording(root)
+    found: list[_Place] = []
+    todo: list[tuple[tuple[str | int, ...], Any]] = [((), root)]
+    while todo:
+        way, part = todo.pop()
+        if way in wording:
+            continue
+        if isinstance(part, dict):
+            found.append(_Place(way, part))
+            todo += [((*way, key), part[key]) for key in reversed(part)]
+        elif isinstance(part, list):
+            todo += [((*way, i), part[i]) for i in range(len(part) - 1, -1, -1)]
+    return found
+
+
+def _outputs(root: Node) -> list[tuple[str | int, ...]]:
+    """Return the ways to the SELECT nodes whose columns are those of the statement: itself or the branches of a UNION."""
+    if root["type"] == "SELECT_NODE":
+        return [()]
+    if root["type"] != "SET_OPERATION_NODE":
+        return []
+    branches: list[tuple[str | int, ...]] = (
+        [("left",), ("right",)] if "left" in root else [("children", i) for i in range(len(root["children"]))]
+    )
+    return [(*branch, *way) for branch in branches for way in _outputs(_at(root, branch))]
+
+
+def _columns(root: Node, names: frozenset[str]) -> set[tuple[str | int, ...]]:
+    """Return the ways to the expressions of the statement's columns of these names."""
+    outputs = _outputs(root)
+    if not outputs:
+        return set()
+    first = _at(root, outputs[0])["select_list"]
+    chosen = [i for i, item in enumerate(first) if _name(item) in names]
+    return {(*way, "select_list", i) for way in outputs for i in chosen}
+
+
+def _wording(root: Node) -> set[tuple[str | int, ...]]:
+    return _columns(root, frozenset({"reason", "reason_code"}))
+
+
+def _name(item: Node) -> str:
+    return str(item.get("alias") or (item["column_names"][-1] if item["class"] == "COLUMN_REF" else "")).lower()
+
+
+def _at(root: Any, way: tuple[str | int, ...]) -> Any:
+    for key in way:
+        root = root[key]
+    return root
+
+
+def _faults(tree: Node, place: _Place) -> Iterator[tuple[str, Node]]:
+    """Yield the faults of one node: words and the changed tree."""
+    node, way = place.node, place.way
+    if (turned := _TURNED.get(str(node.get("type")))) is not None:
+        yield f"turned: {_text(node)}", _replaced(tree, way, node | {"type": turned})
+    if _is_threshold(tree, place):
+        for factor in _THRESHOLD:
+            yield f"{_text(node)} * {factor:g}", _replaced(tree, way, _scaled(node, factor))
+    for key, words in _CLAUSES.items():
+        clause = node.get(key)
+        if isinstance(clause, dict) and (key != "condition" or node.get("type") == "JOIN"):
+            yield from _without_terms(tree, (*way, key), clause, words)
+    using = node.get("using_columns") or []
+    for i, column in enumerate(using):
+        rest = node | {"using_columns": using[:i] + using[i + 1 :]}
+        if not rest["using_columns"]:
+            rest |= {"condition": _true()}
+        yield f"USING without: {column}", _replaced(tree, way, rest)
+
+
+def _without_terms(tree: Node, way: tuple[str | int, ...], clause: Node, words: str) -> Iterator[tuple[str, Node]]:
+    if clause["type"] != "CONJUNCTION_AND":
+        yield f"{words} without: {_text(clause)}", _replaced(tree, way, _true())
+        return
+    terms = clause["children"]
+    for i, term in enumerate(terms):
+        rest = terms[:i] + terms[i + 1 :]
+        yield (
+            f"{words} without: {_text(term)}",
+            _replaced(tree, way, rest[0] if len(rest) == 1 else clause | {"children": rest}),
+        )
+
+
+def _is_threshold(tree: Node, place: _Place) -> bool:
+    node = place.node
+    kind = node.get("class")
+    if kind == "CONSTANT":
+        return _is_number(node["value"])
+    if kind == "FUNCTION" and not node["children"] and node["function_name"].lower() in macros():
+        return True
+    if kind in {None, "PARAMETER"}:
+        return False
+    return place.way in _columns(tree["statements"][0]["node"], frozenset({"required"}))
+
+
+def _is_number(value: Node) -> bool:
+    if value.get("is_null") or isinstance(value.get("value"), bool | str | None):
+        return False
+    if not isinstance(value["value"], int | float):
+        return False
+    info = value["type"].get("type_info") or {}
+    number = abs(value["value"]) / 10 ** info.get("scale", 0)
+    return number not in {0, 1} and number not in {float(10**n) for n in range(3, 19)}
+
+
+def _replaced(tree: Node, way: tuple[str | int, ...], new: Node) -> Node:
+    changed: Node = copy.deepcopy(tree)
+    _at(changed["statements"][0]["node"], way[:-1])[way[-1]] = copy.deepcopy(new)
+    return changed
+
+
+def _scaled(node: Node, factor: float) -> Node:
+    product: Node = copy.deepcopy(_expression(f"1 * {factor}::DOUBLE"))
+    product["children"][0] = node | {"alias": ""}
+    return product | {"alias": node.get("alias", "")}
+
+
+def _true() -> Node:
+    return _expression("true")
+
+
+@cache
+def _expression(sql: str) -> Node:
+    node: Node = _tree(f"SELECT {sql}")["statements"][0]["node"]["select_list"][0]
+    return node
+
+
+def _text(node: Node) -> str:
+    tree = copy.deepcopy(_tree("SELECT 1"))
+    tree["statements"][0]["node"]["select_list"] = [node | {"alias": ""}]
+    return _bare(_sql(tree).removeprefix("SELECT "))
+
+
+def _bare(text: str) -> str:
+    """Take off the brackets that the printer puts round a whole expression."""
+    while text.startswith("(") and text.endswith(")") and _balanced(text[1:-1]):
+        text = text[1:-1]
+    return text
+
+
+def _balanced(text: str) -> bool:
+    depth = 0
+    for letter in text:
+        depth += (letter == "(") - (letter == ")")
+        if depth < 0:
+            return False
+    return depth == 0
+
+
+@cache
+def _printer() -> duckdb.DuckDBPyConnection:
+    return duckdb.connect()
+
+
+def _tree(sql: str) -> Node:
+    tree: Node = json.loads(_printer().execute("SELECT json_serialize_sql(?)", [sql]).fetchall()[0][0])
+    return tree
+
+
+def _sql(tree: Node) -> str:
+    return str(_printer().execute("SELECT json_deserialize_sql(?::JSON)", [json.dumps(tree)]).fetchall()[0][0])

@@ -1,0 +1,177 @@
+"""Proof that the cases beside a rule would notice a wrong rule: each of its mutants is judged by all its cases.
+
+A mutant that no case notices asks for a case. Where none can be written (it is the same rule in other words), the
+pack's `survivors.toml` says so: `[[survivor]]` with `rule` (its id), `mutant` (the fault as printed) and `reason`.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from multiprocessing import get_context
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import msgspec
+
+from drivelint.casefile import difference, place, read_cases
+from drivelint.casefile.crowd import Member, crowds, judge, merge, share
+from drivelint.casefile.mutants import mutants
+from drivelint.casefile.scene import scene
+from drivelint.errors import RuleError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
+
+    from drivelint.casefile import Case
+    from drivelint.casefile.mutants import Mutant
+    from drivelint.catalogue import Rule
+
+FILE: Final = "survivors.toml"
+LEAST: Final = 0.95
+"""The share of the mutants of stable rules that must be noticed, whatever is listed."""
+
+
+class Proof(NamedTuple):
+    """What became of a rule's mutants.
+
+    `survivors`: the faults that no case noticed; `listed`: those that the pack lets live; `problem`: why there is no
+    proof at all (the rule does not keep its own cases), or ''.
+    """
+
+    rule_id: str
+    stable: bool
+    n: int
+    survivors: tuple[str, ...]
+    listed: tuple[str, ...]
+    problem: str = ""
+
+    @property
+    def unlisted(self) -> tuple[str, ...]:
+        """Survivors for which nobody gave a reason."""
+        return tuple(fault for fault in self.survivors if fault not in self.listed)
+
+    @property
+    def stale(self) -> tuple[str, ...]:
+        """Listed survivors that are noticed after all, or that the rule has no more."""
+        return tuple(fault for fault in self.listed if fault not in self.survivors)
+
+    @property
+    def ok(self) -> bool:
+        """Whether nothing is left to do; a rule that is not stable yet may have survivors."""
+        return not (self.problem or self.stale or (self.stable and self.unlisted))
+
+
+class _Survivor(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    rule: str
+    mutant: str
+    reason: str
+
+
+class _Survivors(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    survivor: list[_Survivor] = []
+
+
+def prove_all(rules: Sequence[Rule], jobs: int) -> Iterator[Proof]:
+    """Yield the proof of every rule, in order, worked out by `jobs` processes."""
+    if jobs <= 1 or len(rules) < 4:
+        yield from map(prove, rules)
+        return
+    with get_context("spawn").Pool(min(jobs, len(rules))) as pool:  # the database does not survive a fork
+        yield from pool.imap(prove, rules)
+
+
+def rate(proofs: Sequence[Proof]) -> float:
+    """Return the share of the mutants of stable rules that some case noticed."""
+    n = sum(proof.n for proof in proofs if proof.stable)
+    return 1 - sum(len(proof.survivors) for proof in proofs if proof.stable) / n if n else 1.0
+
+
+def said(proof: Proof) -> str:
+    """Return a proof in words: one line, and one more for each mutant to look at."""
+    draft = "" if proof.stable else " (not stable yet: it may have survivors)"
+    noticed = f"{proof.n - len(proof.survivors)} of {proof.n} mutants noticed{draft}"
+    return "\n".join(
+        [
+            f"{'ok  ' if proof.ok else 'FAIL'} {proof.rule_id}: {proof.problem or noticed}",
+            *(f"     no case notices: {fault}" for fault in proof.unlisted),
+            *(f"     listed in {FILE}, but noticed or gone: {fault}" for fault in proof.stale),
+        ]
+    )
+
+
+def summary(proofs: Sequence[Proof]) -> str:
+    """Return the figures of all proofs in one line."""
+    stable = [proof for proof in proofs if proof.stable]
+    n, n_survivors = sum(proof.n for proof in stable), sum(len(proof.survivors) for proof in stable)
+    return f"{len(stable)} stable rules: {n - n_survivors} of {n} mutants noticed ({rate(proofs):.1%})"
+
+
+def prove(rule: Rule) -> Proof:
+    """Judge every mutant of a rule by the rule's cases; it is noticed where one case comes out otherwise than it expects.
+
+    The cases are judged together, first as drives of one database, then (what is left) as egos of one drive.
+    """
+    listed: tuple[str, ...] = ()
+    wrong = mutants(rule)
+    try:
+        listed = _listed(rule)
+        survivors = tuple(mutant.fault for mutant in _survivors(rule, wrong))
+    except RuleError as error:
+        return Proof(rule.id, rule.status == "stable", len(wrong), (), listed, str(error))
+    return Proof(rule.id, rule.status == "stable", len(wrong), survivors, listed)
+
+
+def _survivors(rule: Rule, alive: list[Mutant]) -> list[Mutant]:
+    cases = read_cases(rule)
+    members = [
+        Member(no, scene(rule, case.given, case.missing, place(rule, case)), case.params)
+        for no, case in enumerate(cases)
+    ]
+    for key in ("drive_id", "ego_id"):
+        for crowd in crowds(members, key):
+            alive = _unnoticed(rule, alive, crowd, {m.no: cases[m.no] for m in crowd}, key)
+    return alive
+
+
+def _unnoticed(
+    rule: Rule, alive: list[Mutant], crowd: list[Member], cases: Mapping[int, Case], key: str
+) -> list[Mutant]:
+    """Return the mutants that come out of a crowd as the rule does: as every case expects."""
+    outcomes = judge([rule, *(mutant.rule for mutant in alive)], merge(crowd, key), crowd[0].params)
+
+    def wrong(rule_id: str) -> str:
+        for no, case in cases.items():
+            if message := difference(case, *share(outcomes[rule_id], no)):
+                return f"{place(rule, case)}: {message}"
+        return ""
+
+    if message := wrong(rule.id):
+        where = (
+            "in one database with the other cases" if key == "drive_id" else "with the other cases as egos beside it"
+        )
+        raise RuleError(f"{where}, {message}")
+    return [mutant for mutant in alive if not wrong(mutant.rule.id)]
+
+
+def _listed(rule: Rule) -> tuple[str, ...]:
+    """Return the mutants of a rule that its pack lets live. Errors: `RuleError` naming the file."""
+    return tuple(entry.mutant for entry in _read(rule.path.parent / FILE) if entry.rule == rule.id)
+
+
+def strangers(rules: Sequence[Rule]) -> list[str]:
+    """Return a line per entry of the packs' `survivors.toml` that names no rule. Errors: `RuleError` naming the file."""
+    known = {rule.id for rule in rules}
+    return [
+        f"{pack / FILE}: there is no rule {name!r} here"
+        for pack in dict.fromkeys(rule.path.parent for rule in rules)
+        for name in sorted({entry.rule for entry in _read(pack / FILE)} - known)
+    ]
+
+
+def _read(file: Path) -> list[_Survivor]:
+    if not file.is_file():
+        return []
+    try:
+        return msgspec.convert(tomllib.loads(file.read_text(encoding="utf-8")), _Survivors).survivor
+    except (tomllib.TOMLDecodeError, msgspec.ValidationError) as error:
+        raise RuleError(f"{file}: {error}") from error

@@ -1,0 +1,107 @@
+"""What an author of rules runs: every rule of a folder read, planned and judged by its cases, or its mutants by them.
+
+A rule that is wrong is refused with `file:line: what`, and the others go on. Here, unlike in `check`, the shipped rules
+are not loaded beside a folder of yours: copies of them can be worked on.
+"""
+
+from __future__ import annotations
+
+import os
+from fnmatch import fnmatchcase
+from typing import TYPE_CHECKING
+
+import duckdb
+
+from drivelint.casefile import mutation, run_cases
+from drivelint.casefile.scene import database
+from drivelint.catalogue import read_rule
+from drivelint.catalogue.load import files, id_of
+from drivelint.errors import ExitCode, RuleError, UsageError
+from drivelint.evaluate import explain
+from drivelint.resources import folder
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+    from pathlib import Path
+
+    from drivelint.catalogue import Rule
+
+    Say = Callable[[str], None]
+
+
+def case_test(root: Path | None, only: Sequence[str], say: Say) -> ExitCode:
+    """Judge each rule by its cases and `say` a line for each, and one for each case that failed.
+
+    Returns FAILED where a case failed and USAGE where a rule or its cases were refused, which counts for more.
+    """
+    code = ExitCode.OK
+    for rule in _rules(root, only):
+        if isinstance(rule, RuleError):
+            say(f"REFUSED {rule}")
+            code = ExitCode.USAGE
+            continue
+        try:
+            results = run_cases(rule)
+        except RuleError as error:
+            say(f"REFUSED {error}")
+            code = ExitCode.USAGE
+            continue
+        failed = [f"     {result.message}" for result in results if not result.ok]
+        first = f"{'FAIL' if failed else 'ok  '} {rule.id}: {len(results) - len(failed)} of {len(results)} checks"
+        say("\n".join([first, *failed]))
+        code = max(code, ExitCode.FAILED if failed else ExitCode.OK)
+    return code
+
+
+def mutation_test(root: Path | None, only: Sequence[str], say: Say) -> ExitCode:
+    """Judge each rule's mutants by its cases and `say` which nobody noticed, and the figures.
+
+    Returns FAILED where a mutant of a stable rule lives that is not listed, and USAGE where a rule was refused.
+    """
+    found = list(_rules(root, only))
+    refused = [error for error in found if isinstance(error, RuleError)]
+    rules = [rule for rule in found if not isinstance(rule, RuleError)]
+    for error in refused:
+        say(f"REFUSED {error}")
+    proofs = []
+    for proof in mutation.prove_all(rules, os.cpu_count() or 1):
+        say(mutation.said(proof))
+        proofs.append(proof)
+    strange = [] if only or refused else mutation.strangers(rules)
+    for line in strange:
+        say(f"FAIL {line}")
+    say(mutation.summary(proofs))
+    good = all(proof.ok for proof in proofs) and not strange and (only or mutation.rate(proofs) >= mutation.LEAST)
+    return ExitCode.USAGE if refused else ExitCode.OK if good else ExitCode.FAILED
+
+
+def _rules(root: Path | None, only: Sequence[str]) -> Iterator[Rule | RuleError]:
+    """Yield the rules of a folder (None: the shipped ones) that `only` selects, or why each cannot be used.
+
+    Errors: `UsageError` where nothing is selected.
+    """
+    found = files(root or folder("queries") / "assertions")
+    chosen = [file for file in found if not only or any(fnmatchcase(id_of(file), name) for name in only)]
+    if not chosen:
+        raise UsageError(f"--rules {', '.join(only)}: none of the {len(found)} rules here has such an id")
+    for file in chosen:
+        try:
+            rule = read_rule(file)
+            _check_plans(rule)
+        except RuleError as error:
+            yield error
+        else:
+            yield rule
+
+
+def _check_plans(rule: Rule) -> None:
+    """Refuse a rule whose SQL does not fit the tables, or that compares every row with every other."""
+    try:
+        plans = explain(database(), rule)
+    except duckdb.Error as error:
+        raise RuleError(f"{rule.path}:1: {str(error).splitlines()[0]}") from error
+    if any("BLOCKWISE_NL_JOIN" in plan for plan in plans):
+        raise RuleError(
+            f"{rule.path}:1: a join compares every row with every other (BLOCKWISE_NL_JOIN): join on keys, and move "
+            "what is no comparison into a WHERE or into branches of a UNION ALL"
+        )
