@@ -21,6 +21,6 @@ FROM reference
 WHERE sign_id IS NOT NULL
 
 -- @condition
-SELECT e.drive_id, e.ego_id, e.t_ns, r.ref_id, e.indicator = r.side AS holds
+SELECT r.drive_id, r.ego_id, r.t_sign_ns AS t_ns, r.ref_id, e.indicator = r.side AS holds
 FROM reference r
 JOIN ego_state e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id AND e.t_ns = r.t_sign_ns

@@ -24,9 +24,9 @@ FROM lane_departure
 WHERE NOT back
 
 -- @condition
-SELECT e.drive_id, e.ego_id, e.t_ns, r.ref_id,
+SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id,
     CASE WHEN r.begin_seen THEN e.indicator = r.side END AS holds,
     CASE WHEN NOT r.begin_seen THEN 'the log does not show where the ego crossed the boundary' END AS reason
-FROM reference r
-JOIN ego_state e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id
-    AND e.t_ns <= r.t_ns AND e.t_ns >= r.t_ns - ($window_s * 1e9)::BIGINT
+FROM reference_step s
+JOIN reference r USING (ref_id)
+JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns

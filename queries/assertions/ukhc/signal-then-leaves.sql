@@ -24,6 +24,7 @@ FROM reference r
 JOIN exit_passed x USING (drive_id, ego_id, occurrence)
 
 -- @condition
-SELECT x.drive_id, x.ego_id, x.t_gore_ns AS t_ns, r.ref_id, x.taken AS holds
-FROM reference r
-JOIN exit_passed x USING (drive_id, ego_id, occurrence)
+SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, x.taken AS holds
+FROM reference_step s
+JOIN reference r USING (ref_id)
+JOIN exit_passed x ON x.drive_id = s.drive_id AND x.ego_id = s.ego_id AND x.occurrence = r.occurrence

@@ -46,6 +46,11 @@ class Proof(NamedTuple):
     problem: str = ""
 
     @property
+    def noticed(self) -> int:
+        """How many of the mutants some case noticed; none where there is no proof."""
+        return 0 if self.problem else self.n - len(self.survivors)
+
+    @property
     def unlisted(self) -> tuple[str, ...]:
         """Survivors for which nobody gave a reason."""
         return tuple(fault for fault in self.survivors if fault not in self.listed)
@@ -83,13 +88,13 @@ def prove_all(rules: Sequence[Rule], jobs: int) -> Iterator[Proof]:
 def rate(proofs: Sequence[Proof]) -> float:
     """Return the share of the mutants of stable rules that some case noticed."""
     n = sum(proof.n for proof in proofs if proof.stable)
-    return 1 - sum(len(proof.survivors) for proof in proofs if proof.stable) / n if n else 1.0
+    return sum(proof.noticed for proof in proofs if proof.stable) / n if n else 1.0
 
 
 def said(proof: Proof) -> str:
     """Return a proof in words: one line, and one more for each mutant to look at."""
     draft = "" if proof.stable else " (not stable yet: it may have survivors)"
-    noticed = f"{proof.n - len(proof.survivors)} of {proof.n} mutants noticed{draft}"
+    noticed = f"{proof.noticed} of {proof.n} mutants noticed{draft}"
     return "\n".join(
         [
             f"{'ok  ' if proof.ok else 'FAIL'} {proof.rule_id}: {proof.problem or noticed}",
@@ -102,8 +107,8 @@ def said(proof: Proof) -> str:
 def summary(proofs: Sequence[Proof]) -> str:
     """Return the figures of all proofs in one line."""
     stable = [proof for proof in proofs if proof.stable]
-    n, n_survivors = sum(proof.n for proof in stable), sum(len(proof.survivors) for proof in stable)
-    return f"{len(stable)} stable rules: {n - n_survivors} of {n} mutants noticed ({rate(proofs):.1%})"
+    n, noticed = sum(proof.n for proof in stable), sum(proof.noticed for proof in stable)
+    return f"{len(stable)} stable rules: {noticed} of {n} mutants noticed ({rate(proofs):.1%})"
 
 
 def prove(rule: Rule) -> Proof:
