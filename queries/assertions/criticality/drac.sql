@@ -1,0 +1,32 @@
+-- title = "Deceleration rate to avoid the crash"
+-- clause = "Cooper and Ferguson 1976: the braking that it takes not to hit the vehicle ahead"
+-- hypothesis = "At every step behind a vehicle in its lane, did avoiding it ask for no more than ordinary braking?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "major"
+-- legal = "should"
+-- status = "stable"
+-- sense = "<="
+-- unit = "m/s2"
+-- observes = "braking that avoids a collision"
+-- near_margin = 0.5
+-- merge_gap_s = 1.0
+-- reads = ["lead", "step"]
+-- requires = ["map", "registration", "ego_size"]
+--
+-- [params.most_mps2]
+-- default = 3.4
+-- unit = "m/s2"
+-- why = "comfortable for most drivers, and what stopping sight distances are designed for"
+-- source = "AASHTO Green Book, stopping sight distance (11.2 ft/s2)"
+
+-- @applies
+-- a step without a row in `lead` is one at which nobody knows who leads
+SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id, CASE WHEN l.object_id IS NOT NULL THEN follows(l.in_lane, l.gap_m, l.speed_mps, l.oncoming) WHEN l.t_ns IS NOT NULL THEN true END AS applies
+FROM step s
+LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, object_id, $most_mps2 AS required,
+    CASE WHEN object_id IS NULL THEN 0.0::DOUBLE ELSE drac_mps2(gap_m, ego_speed_mps - along_mps(speed_mps, oncoming)) END AS observed
+FROM lead

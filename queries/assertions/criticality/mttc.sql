@@ -1,0 +1,32 @@
+-- title = "Modified time to collision"
+-- clause = "Ozbay, Yang, Bartin, Mudigonda 2008: the time until ego and leading vehicle would collide at their present accelerations"
+-- hypothesis = "At every step behind a vehicle in its lane, was the ego at least 1.5 s from hitting it if both went on as they were?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "major"
+-- legal = "should"
+-- status = "stable"
+-- sense = ">="
+-- unit = "s"
+-- observes = "modified time to collision"
+-- near_margin = 0.5
+-- merge_gap_s = 1.0
+-- reads = ["ego_motion", "lead", "step"]
+-- requires = ["map", "registration", "ego_size"]
+--
+-- [params.least_s]
+-- default = 1.5
+-- unit = "s"
+-- why = "our default: the same as for the time to collision"
+
+-- @applies
+-- a step without a row in `lead` is one at which nobody knows who leads
+SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id, CASE WHEN l.object_id IS NOT NULL THEN l.in_lane AND l.gap_m >= 0 WHEN l.t_ns IS NOT NULL THEN true END AS applies
+FROM step s
+LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+
+-- @condition
+SELECT l.drive_id, l.ego_id, l.t_ns, l.object_id, $least_s AS required,
+    CASE WHEN l.object_id IS NULL THEN 'inf'::DOUBLE ELSE mttc_s(l.gap_m, l.ego_speed_mps, m.accel_mps2, along_mps(l.speed_mps, l.oncoming), along_mps(l.accel_mps2, l.oncoming)) END AS observed
+FROM lead l
+JOIN ego_motion m USING (drive_id, ego_id, t_ns)

@@ -1,0 +1,33 @@
+-- title = "Post-encroachment time"
+-- clause = "Allen, Shin, Cooper 1978: the time between one road user leaving the ground of a conflict and the other coming onto it"
+-- hypothesis = "Where the ways of the ego and of another crossed, was there at least 1.5 s between the two?"
+-- kind = "execution"
+-- derivation = "model"
+-- severity = "major"
+-- legal = "should"
+-- status = "stable"
+-- sense = ">="
+-- unit = "s"
+-- observes = "post-encroachment time"
+-- near_margin = 0.5
+-- reads = ["conflict", "lost_object", "pair"]
+-- requires = ["ego_size"]
+--
+-- [params.least_s]
+-- default = 1.5
+-- unit = "s"
+-- why = "below it a conflict counts as serious"
+-- source = "Archer 2005"
+
+-- @reference
+SELECT drive_id, ego_id, t_ego_in_ns AS t_ns, object_id, occurrence FROM conflict
+UNION ALL
+-- whose track ends close by, or is not known for a while, may have crossed the ego's way unseen
+SELECT drive_id, ego_id, t_from_ns, object_id, NULL FROM lost_object WHERE reason = 'lost_near_ego'
+UNION ALL
+SELECT drive_id, ego_id, min(t_ns), object_id, NULL FROM pair WHERE x_m IS NULL OR y_m IS NULL GROUP BY drive_id, ego_id, object_id
+
+-- @condition
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, c.pet_s AS observed, $least_s AS required
+FROM reference r
+JOIN conflict c USING (drive_id, ego_id, occurrence)

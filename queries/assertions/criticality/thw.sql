@@ -1,0 +1,37 @@
+-- title = "Time headway"
+-- clause = "Germany, BKatV no. 12 (distances): the time until the ego is where the vehicle ahead is now"
+-- hypothesis = "At every step behind a vehicle in its lane, did the ego follow at no less than 0.9 s?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "minor"
+-- legal = "should"
+-- status = "stable"
+-- sense = ">="
+-- unit = "s"
+-- observes = "time headway"
+-- near_margin = 0.3
+-- merge_gap_s = 1.0
+-- reads = ["lead", "step"]
+-- requires = ["map", "registration", "ego_size"]
+--
+-- [params.least_s]
+-- default = 0.9
+-- unit = "s"
+-- why = "less than half of the rule of thumb (half the speedometer reading in metres, 1.8 s) is fined"
+-- source = "BKatV no. 12"
+--
+-- [params.slowest_mps]
+-- default = 5.0
+-- unit = "m/s"
+-- why = "our default: below it a queue closes up, and a headway says nothing"
+
+-- @applies
+-- a step without a row in `lead` is one at which nobody knows who leads
+SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id, CASE WHEN l.object_id IS NOT NULL THEN follows(l.in_lane, l.gap_m, l.speed_mps, l.oncoming) AND l.ego_speed_mps >= $slowest_mps WHEN l.t_ns IS NOT NULL THEN true END AS applies
+FROM step s
+LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, object_id, $least_s AS required,
+    CASE WHEN object_id IS NULL THEN 'inf'::DOUBLE ELSE thw_s(gap_m, ego_speed_mps) END AS observed
+FROM lead

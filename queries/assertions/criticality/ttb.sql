@@ -1,0 +1,38 @@
+-- title = "Time to brake"
+-- clause = "Hillenbrand, Spieker, Kroschel 2006: the time left until only full braking avoids the collision"
+-- hypothesis = "At every step behind a vehicle in its lane, could the ego have waited another second before braking fully?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "major"
+-- legal = "should"
+-- status = "stable"
+-- sense = ">="
+-- unit = "s"
+-- observes = "time left to brake"
+-- near_margin = 0.5
+-- merge_gap_s = 1.0
+-- reads = ["lead", "step"]
+-- requires = ["map", "registration", "ego_size"]
+--
+-- [params.least_s]
+-- default = 1.0
+-- unit = "s"
+-- why = "a second to see and to act"
+-- source = "Hillenbrand, Spieker, Kroschel 2006"
+--
+-- [params.brake_mps2]
+-- default = 8.0
+-- unit = "m/s2"
+-- why = "full braking on a dry road: the b_max of RSS"
+-- source = "ad-rss-lib, parameter discussion"
+
+-- @applies
+-- a step without a row in `lead` is one at which nobody knows who leads
+SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id, CASE WHEN l.object_id IS NOT NULL THEN follows(l.in_lane, l.gap_m, l.speed_mps, l.oncoming) WHEN l.t_ns IS NOT NULL THEN true END AS applies
+FROM step s
+LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, object_id, $least_s AS required,
+    CASE WHEN object_id IS NULL THEN 'inf'::DOUBLE ELSE ttb_s(gap_m, ego_speed_mps - along_mps(speed_mps, oncoming), $brake_mps2) END AS observed
+FROM lead

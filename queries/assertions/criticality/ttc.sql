@@ -1,0 +1,33 @@
+-- title = "Time to collision"
+-- clause = "Hayward 1972: the time until ego and leading vehicle would collide at their present speeds"
+-- hypothesis = "At every step behind a vehicle in its lane, was the ego at least 1.5 s from hitting it at the present speeds?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "major"
+-- legal = "should"
+-- status = "stable"
+-- sense = ">="
+-- unit = "s"
+-- observes = "time to collision"
+-- near_margin = 0.5
+-- merge_gap_s = 1.0
+-- reads = ["lead", "step"]
+-- requires = ["map", "registration", "ego_size"]
+--
+-- [params.least_s]
+-- default = 1.5
+-- unit = "s"
+-- why = "below it a conflict counts as serious"
+-- source = "van der Horst 1990"
+
+-- @applies
+-- a step without a row in `lead` is one at which nobody knows who leads
+-- crossing traffic is not looked at here: criticality.pet does
+SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id, CASE WHEN l.object_id IS NOT NULL THEN l.in_lane AND l.gap_m >= 0 WHEN l.t_ns IS NOT NULL THEN true END AS applies
+FROM step s
+LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, object_id, $least_s AS required,
+    CASE WHEN object_id IS NULL THEN 'inf'::DOUBLE ELSE ttc_s(gap_m, ego_speed_mps - along_mps(speed_mps, oncoming)) END AS observed
+FROM lead

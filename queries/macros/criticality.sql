@@ -1,0 +1,44 @@
+-- Measures of how near a rear-end collision is (Westhofen et al. 2023 collect the definitions). Gap in m, speeds in m/s; infinite: never.
+
+-- Speed along the corridor of a vehicle that heads with it or against it.
+CREATE OR REPLACE MACRO along_mps(speed_mps, oncoming) AS CASE WHEN oncoming THEN -speed_mps WHEN NOT oncoming THEN speed_mps END;
+
+-- Time to collision at present speeds.
+CREATE OR REPLACE MACRO ttc_s(gap_m, closing_mps) AS
+    CASE WHEN closing_mps > 0 THEN gap_m / closing_mps WHEN closing_mps <= 0 AND gap_m IS NOT NULL THEN 'inf'::DOUBLE END;
+
+-- Time headway: until the ego's front is where the other's rear is now.
+CREATE OR REPLACE MACRO thw_s(gap_m, v_mps) AS
+    CASE WHEN v_mps > 0 THEN gap_m / v_mps WHEN v_mps <= 0 AND gap_m IS NOT NULL THEN 'inf'::DOUBLE END;
+
+-- Deceleration rate to avoid the crash: what it takes to lose the closing speed within the gap.
+CREATE OR REPLACE MACRO drac_mps2(gap_m, closing_mps) AS
+    CASE
+        WHEN gap_m > 0 AND closing_mps > 0 THEN closing_mps ** 2 / (2 * gap_m)
+        WHEN gap_m <= 0 AND closing_mps > 0 THEN 'inf'::DOUBLE
+        WHEN closing_mps <= 0 AND gap_m IS NOT NULL THEN 0.0::DOUBLE
+    END;
+
+-- Time to brake: how long the ego may still wait before full braking just avoids the collision; negative: too late.
+CREATE OR REPLACE MACRO ttb_s(gap_m, closing_mps, brake_mps2) AS
+    CASE WHEN closing_mps > 0 THEN gap_m / closing_mps - closing_mps / (2 * brake_mps2) ELSE ttc_s(gap_m, closing_mps) END;
+
+-- Time until a gap that closes at dv, and da faster every second, is gone: the smallest positive root of gap = dv t + da t^2 / 2.
+CREATE OR REPLACE MACRO gone_s(gap_m, dv, da) AS
+    CASE
+        WHEN dv ** 2 + 2 * da * gap_m >= 0 AND dv + sqrt(greatest(dv ** 2 + 2 * da * gap_m, 0)) > 0
+            THEN 2 * gap_m / (dv + sqrt(greatest(dv ** 2 + 2 * da * gap_m, 0)))
+        WHEN dv + da + gap_m IS NOT NULL THEN 'inf'::DOUBLE
+    END;
+
+-- Modified time to collision (Ozbay et al. 2008): at present accelerations. A braking lead comes to a stand, it does not reverse.
+CREATE OR REPLACE MACRO mttc_s(gap_m, v_mps, a_mps2, v_lead_mps, a_lead_mps2) AS
+    CASE
+        WHEN v_lead_mps >= 0 AND a_lead_mps2 < 0 AND gone_s(gap_m, v_mps - v_lead_mps, a_mps2 - a_lead_mps2) > -v_lead_mps / a_lead_mps2
+            THEN gone_s(gap_m - v_lead_mps ** 2 / (2 * a_lead_mps2), v_mps, a_mps2)
+        ELSE gone_s(gap_m, v_mps - v_lead_mps, a_mps2 - a_lead_mps2)
+    END;
+
+-- Whether the ego follows its lead: some of it is in the lane, the lead is not alongside, and does not come towards it (parked the wrong
+-- way round it is in the way all the same).
+CREATE OR REPLACE MACRO follows(in_lane, gap_m, speed_mps, oncoming) AS in_lane AND gap_m >= 0 AND NOT (oncoming AND speed_mps > standing_mps());
