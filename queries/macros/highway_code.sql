@@ -41,7 +41,7 @@ CREATE OR REPLACE MACRO overtaking_side(handedness) AS CASE handedness WHEN 'lht
 -- Whether an actor is of this class; unknown for one whose class is not known or only that it is a vehicle of some kind.
 CREATE OR REPLACE MACRO is_class(actor_class, word) AS CASE WHEN actor_class <> 'vehicle' THEN actor_class = word END;
 
--- National speed limit of Rule 124 outside built-up areas in mph. road: single, dual or motorway. Cars and motorcycles have those of the road.
+-- Speed limits of Rule 124 for a class of vehicle outside built-up areas, in mph. road: single, dual or motorway.
 CREATE OR REPLACE MACRO class_limit_mph(vehicle_class, nation, road) AS
     CASE
         WHEN vehicle_class IN ('car', 'motorcycle') THEN CASE road WHEN 'single' THEN 60 ELSE 70 END
@@ -50,12 +50,23 @@ CREATE OR REPLACE MACRO class_limit_mph(vehicle_class, nation, road) AS
         ELSE CASE road WHEN 'single' THEN 50 ELSE 60 END
     END;
 
--- Whether a light forbids to go on (Rule 175): red, and red with amber.
-CREATE OR REPLACE MACRO forbids(light) AS light IN ('red', 'red_amber');
-
--- Whether the ego stands in a queue: somebody slow close ahead in its lane. `known`: nobody else can be nearer; NULL: not known.
-CREATE OR REPLACE MACRO queued(ahead_id, ahead_gap_m, ahead_speed_mps, known, near_m, slow_mps) AS
-    ((ahead_id IS NOT NULL AND ahead_gap_m <= near_m AND ahead_speed_mps <= slow_mps) OR CASE WHEN known THEN false END);
-
--- A PET that was seen while somebody else could not be placed (`reason`) is only the most that it can be: it shows too little, not enough.
-CREATE OR REPLACE MACRO pet_known(pet_s, reason, enough_s) AS CASE WHEN reason IS NULL OR pet_s < enough_s THEN pet_s END;
+-- The highest and the lowest limit of Rule 124, in m/s, that can hold where some of this is not known; NULL: another country's law. signed:
+-- the map gives a limit, which then counts instead of the built-up one (20 mph in Wales, else 30).
+CREATE OR REPLACE MACRO most_limit_mps(vehicle_class, nation, road_type, carriageway, area, signed) AS
+    0.44704 * CASE
+        WHEN nation NOT IN ('gb', 'gb-eng', 'gb-wls', 'gb-sct') THEN NULL
+        WHEN NOT signed AND area = 'built_up' THEN CASE nation WHEN 'gb-wls' THEN 20 ELSE 30 END
+        ELSE class_limit_mph(
+            coalesce(vehicle_class, 'car'), coalesce(nation, 'gb'),
+            CASE WHEN coalesce(road_type, 'motorway') = 'motorway' AND coalesce(carriageway, 'dual') = 'dual' THEN 'motorway' ELSE coalesce(carriageway, 'dual') END
+        )
+    END;
+CREATE OR REPLACE MACRO least_limit_mps(vehicle_class, nation, road_type, carriageway, area, signed) AS
+    0.44704 * CASE
+        WHEN nation NOT IN ('gb', 'gb-eng', 'gb-wls', 'gb-sct') THEN NULL
+        WHEN NOT signed AND coalesce(area, 'built_up') = 'built_up' THEN CASE WHEN coalesce(nation, 'gb') IN ('gb', 'gb-wls') THEN 20 ELSE 30 END
+        ELSE class_limit_mph(
+            coalesce(vehicle_class, 'goods_over_7t5'), CASE WHEN coalesce(nation, 'gb') = 'gb' THEN 'gb-sct' ELSE nation END,
+            CASE WHEN road_type = 'motorway' THEN 'motorway' ELSE coalesce(carriageway, 'single') END
+        )
+    END;

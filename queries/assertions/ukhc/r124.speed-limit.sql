@@ -1,6 +1,6 @@
 -- title = "Within the speed limit"
 -- clause = "UKHC R124: you must not exceed the maximum speed limits for the road and for your vehicle"
--- hypothesis = "At every step, was the ego no faster than the limit where it was?"
+-- hypothesis = "At every step, did the ego keep to the limit of the road and to that of its class of vehicle?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "major"
@@ -8,16 +8,28 @@
 -- status = "stable"
 -- sense = "<="
 -- unit = "m/s"
+-- observes = "speed"
 -- merge_gap_s = 5.0
--- reads = ["ego_state"]
--- requires = ["map", "registration", "speed_limits"]
+-- reads = ["ego_condition", "ego_state"]
+-- requires = ["map", "registration"]
 --
 -- [params.tolerance_mps]
 -- default = 0.45
 -- unit = "m/s"
--- why = "our default: 1 mph, below which recorded speed and speedometer differ; the limit itself is the map's"
+-- why = "our default: 1 mph, below which recorded speed and speedometer differ; the limits are the map's and those of R124's table"
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, speed_mps AS observed, limit_mps + $tolerance_mps AS required,
-    CASE WHEN lanelet_id IS NULL THEN 'the ego is on no lane' WHEN limit_mps IS NULL THEN 'the map gives no limit for lanelet ' || lanelet_id END AS reason
-FROM ego_state
+-- where class, nation or kind of road are not known, the limit lies between two: a speed between them is neither kept nor broken
+WITH limits AS (
+    SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps, e.lanelet_id, e.limit_mps,
+        least(e.limit_mps, most_limit_mps(c.vehicle_class, c.nation, c.road_type, c.carriageway, c.area, e.limit_mps IS NOT NULL)) + $tolerance_mps AS most_mps,
+        least(e.limit_mps, least_limit_mps(c.vehicle_class, c.nation, c.road_type, c.carriageway, c.area, e.limit_mps IS NOT NULL)) + $tolerance_mps AS least_mps
+    FROM ego_state e
+    LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)
+)
+SELECT drive_id, ego_id, t_ns, speed_mps AS observed,
+    CASE WHEN speed_mps > most_mps THEN most_mps WHEN speed_mps <= least_mps THEN least_mps END AS required,
+    CASE WHEN speed_mps <= most_mps AND speed_mps > least_mps OR most_mps IS NULL THEN
+        CASE WHEN lanelet_id IS NULL THEN 'the ego is on no lane' WHEN limit_mps IS NULL THEN 'the map gives no limit for lanelet ' || lanelet_id
+            ELSE 'the limit depends on the class of the vehicle and the kind of road, not all of which is known' END END AS reason
+FROM limits
