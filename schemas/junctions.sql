@@ -1,10 +1,24 @@
 -- The library, third part: where ways meet. Junctions, stop lines, crossings, conflict areas, standing still.
 -- As in derived.sql: what is present but cannot be placed is a row with NULL, never an absent row.
 
+CREATE TABLE meeting (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    period_s DOUBLE NOT NULL,         -- time from sample to sample in which a box goes on
+    cell_m DOUBLE NOT NULL,           -- width of the drive's grid cells: as far as two boxes reach
+    cell BIGINT NOT NULL,             -- ego's visit: the cell its centre is in
+    slot INTEGER NOT NULL,            -- the 10 s
+    heading INTEGER NOT NULL,         -- the 5 degrees of heading
+    object_id VARCHAR NOT NULL,       -- another actor that moves at some time
+    object_cell BIGINT NOT NULL,      -- its visit, the same way: the boxes around both overlap, the headings may differ by more than 20 degrees
+    object_slot INTEGER NOT NULL,     -- the 10 s
+    object_heading INTEGER NOT NULL   -- the 5 degrees of heading
+);
+
 CREATE TABLE conflict (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    occurrence INTEGER NOT NULL,      -- 0.. in time order; the swept way of another actor crosses or merges with the ego's at more than 20 degrees, at most 10 s apart
+    occurrence INTEGER NOT NULL,      -- 0.. in time order; the ground swept by another's box and by the ego's crosses or merges at more than 20 degrees (its way against the ego's where that comes nearest), at most 10 s apart; who stands all the while it is on it is in the way and no partner, nor who lacks position, heading or size: see passage_conflict
     object_id VARCHAR NOT NULL,       -- the other actor
     actor_class VARCHAR,              -- see actor
     t_ego_in_ns BIGINT NOT NULL,      -- first step at which the ego's box is on ground that the other's box was or will be on (the conflict area)
@@ -13,12 +27,12 @@ CREATE TABLE conflict (
     t_object_out_ns BIGINT NOT NULL,  -- last one
     pet_s DOUBLE NOT NULL,            -- post-encroachment time: later entry minus earlier exit; negative: both in it at once
     ego_first BOOLEAN NOT NULL,       -- the ego entered first (a tie: true)
-    angle_rad DOUBLE NOT NULL,        -- other's heading against the ego's where they meet, -pi..pi: near pi oncoming, negative: it comes from the left
+    angle_rad DOUBLE NOT NULL,        -- where the other enters: its heading against the ego's way there, -pi..pi: near pi oncoming, negative: it comes from the left
     ego_speed_mps DOUBLE,             -- ego's speed on entering
     speed_mps DOUBLE,                 -- its speed on entering
-    decel_mps2 DOUBLE,                -- its strongest mean deceleration over 0.5 s from 4 s before the ego's entry until its own entry (positive: it slowed); NULL: not seen
-    junction_id VARCHAR,              -- junction in which the ego enters the area; NULL: in none
-    crossing_id VARCHAR               -- pedestrian crossing on which the ego enters it; NULL: on none
+    decel_mps2 DOUBLE,                -- its strongest mean deceleration over 0.5 s from 4 s before the ego's entry until its own entry (positive: it slowed); NULL: not seen whole, or it entered before that
+    junction_id VARCHAR,              -- junction that the ego's front is in on entering the area; NULL: none, or no map
+    crossing_id VARCHAR               -- pedestrian crossing that the ego's box is on then; NULL: none, or no map
 );
 
 CREATE TABLE junction_passage (

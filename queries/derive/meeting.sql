@@ -1,0 +1,45 @@
+-- Where two ways may meet at an angle, by grid alone: a visit is a stretch of one actor in one cell, ten seconds and 5 degrees of heading,
+-- with the box around all that it covers.
+WITH
+-- what never moves is on nobody's way: contact with it is another rule's
+mover AS (
+    SELECT drive_id, actor_id, max(length_m) AS length_m, max(width_m) AS width_m, max(speed_mps) AS speed_mps
+    FROM state_dynamics
+    GROUP BY drive_id, actor_id
+    HAVING bool_or(coalesce(speed_mps > standing_mps(), true))
+),
+grid AS (
+    SELECT drive_id, max(period_s) AS period_s, 2 * max(sqrt(swept_half_m(length_m, speed_mps, period_s) ** 2 + (width_m / 2) ** 2)) + 0.1 AS cell_m
+    FROM mover JOIN (SELECT drive_id, max(period_ns) / 1e9 AS period_s FROM clock GROUP BY drive_id) USING (drive_id)
+    GROUP BY drive_id
+    HAVING cell_m IS NOT NULL
+),
+box AS (
+    SELECT
+        s.drive_id, s.actor_id, s.x_m, s.y_m, g.period_s, g.cell_m, meeting_cell(s.x_m, s.y_m, g.cell_m) AS cell, meeting_slot(s.t_ns) AS slot,
+        heading_step(going_rad(s.actor_class, s.speed_mps, s.vx_mps, s.vy_mps, s.yaw_rad)) AS heading,
+        swept_half_m(s.length_m, s.speed_mps, g.period_s) AS hl, s.width_m / 2 AS hw, abs(cos(s.yaw_rad)) AS c, abs(sin(s.yaw_rad)) AS s
+    FROM state_dynamics s
+    JOIN grid g USING (drive_id)
+    SEMI JOIN mover m USING (drive_id, actor_id)
+    WHERE s.x_m IS NOT NULL AND s.y_m IS NOT NULL AND s.yaw_rad IS NOT NULL AND s.length_m IS NOT NULL AND s.width_m IS NOT NULL
+),
+visit AS MATERIALIZED (
+    SELECT
+        drive_id, actor_id, cell, slot, heading, max(period_s) AS period_s, max(cell_m) AS cell_m,
+        min(x_m - hl * c - hw * s) AS x0, max(x_m + hl * c + hw * s) AS x1, min(y_m - hl * s - hw * c) AS y0, max(y_m + hl * s + hw * c) AS y1
+    FROM box
+    GROUP BY drive_id, actor_id, cell, slot, heading
+),
+around AS (
+    SELECT v.*, v.cell + cell_key(x.i, y.i) AS near_cell, v.slot + t.i AS near_slot
+    FROM visit v
+    SEMI JOIN clock c ON c.drive_id = v.drive_id AND c.ego_id = v.actor_id
+    CROSS JOIN (VALUES (-1), (0), (1)) AS x(i) CROSS JOIN (VALUES (-1), (0), (1)) AS y(i) CROSS JOIN (VALUES (-1), (0), (1)) AS t(i)
+)
+SELECT
+    e.drive_id, e.actor_id AS ego_id, e.period_s, e.cell_m, e.cell, e.slot, e.heading,
+    o.actor_id AS object_id, o.cell AS object_cell, o.slot AS object_slot, o.heading AS object_heading
+FROM around e
+JOIN visit o ON o.drive_id = e.drive_id AND o.cell = e.near_cell AND o.slot = e.near_slot AND o.actor_id <> e.actor_id
+WHERE steps_apart(o.heading, e.heading) > 3 AND o.x0 <= e.x1 AND o.x1 >= e.x0 AND o.y0 <= e.y1 AND o.y1 >= e.y0

@@ -1,0 +1,285 @@
+"""Where two ways cross or merge: who was on the shared ground, and when. No map is needed for that."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from shapely import affinity
+
+from tests.scenes import Actor, Road, derived, drive, moving, rows, seconds, standing, tee, times
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from tests.scenes import Row
+
+
+def line(heading: float = 0.0, x: float = 0.0, y: float = 0.0) -> Road:
+    """Return a straight way without a map, its station 0 at (x, y)."""
+    return Road(None, ((1000.0, 0.0),), (x, y, heading))  # type: ignore[arg-type]
+
+
+NORTH = line(math.pi / 2)  # comes from the right of who goes east
+SOUTH = line(-math.pi / 2)
+
+
+def east(v: float = 10.0, s0: float = -50.0, end: float = 12.0, name: str = "ego") -> Actor:
+    """Go east along y = 0; without more the centre is at the origin at 5 s."""
+    t = times(end)
+    return moving(name, line(), t, s0 + v * t, 0.0)
+
+
+def across(s: ArrayLike, end: float = 12.0, way: Road = NORTH, name: str = "other", **more: object) -> Actor:
+    return moving(name, way, times(end), s, 0.0, **more)
+
+
+def conflicts(*actors: Actor, **options: object) -> list[Row]:
+    con = derived(drive(actors, None, **options), tables=["conflict"])  # type: ignore[arg-type]
+    return rows(con, "FROM conflict ORDER BY ego_id, occurrence")
+
+
+def test_the_other_crosses_behind_the_ego() -> None:
+    """Boxes 4.8 m x 1.8 m at right angles: each is on the shared 1.8 m square while its centre is within 3.3 m of it."""
+    t = times(12)
+    (row,) = conflicts(east(), across(-40 + 5 * t))
+    # ego's centre at 10 (t - 5), on it for |x| <= 3.3; the other's at 5 (t - 8)
+    assert seconds([row], "t_ego_in_ns") == [pytest.approx(4.7)]
+    assert seconds([row], "t_ego_out_ns") == [pytest.approx(5.3)]
+    assert seconds([row], "t_object_in_ns") == [pytest.approx(7.4)]
+    assert seconds([row], "t_object_out_ns") == [pytest.approx(8.6)]
+    assert row["pet_s"] == pytest.approx(7.4 - 5.3)
+    assert (row["ego_first"], row["occurrence"], row["actor_class"]) == (True, 0, "car")
+    assert row["angle_rad"] == pytest.approx(math.pi / 2)
+    assert (row["ego_speed_mps"], row["speed_mps"]) == (pytest.approx(10), pytest.approx(5))
+    assert row["decel_mps2"] == pytest.approx(0, abs=1e-6)
+    assert (row["junction_id"], row["crossing_id"]) == (None, None)
+
+
+def test_the_other_crosses_first_from_the_left() -> None:
+    (row,) = conflicts(east(), across(-15 + 5 * times(12), way=SOUTH))
+    assert row["pet_s"] == pytest.approx(4.7 - 3.6)
+    assert row["ego_first"] is False
+    assert row["angle_rad"] == pytest.approx(-math.pi / 2)
+
+
+def test_both_in_it_at_once_is_negative() -> None:
+    (row,) = conflicts(east(), across(-28 + 5 * times(12)))
+    assert row["pet_s"] == pytest.approx(5.0 - 5.3)
+
+
+def test_more_than_ten_seconds_apart_is_no_conflict() -> None:
+    assert conflicts(east(end=20), across(-40 + 5 * (times(20) - 6.4), end=20))
+    assert not conflicts(east(end=20), across(-40 + 5 * (times(20) - 8.5), end=20))
+
+
+@pytest.mark.parametrize(("degrees", "n"), [(15, 0), (25, 1), (155, 1), (180, 1)])
+def test_ways_that_run_along_each_other_do_not_cross(degrees: float, n: int) -> None:
+    """Oncoming in the ego's own lane, some seconds later, is a conflict at 180 degrees."""
+    way = line(math.radians(degrees))
+    t = times(12)
+    found = conflicts(east(), across(-100 + 10 * t if degrees < 180 else -90 + 10 * t, way=way))
+    assert len(found) == n
+    if n:
+        assert abs(found[0]["angle_rad"]) == pytest.approx(math.radians(degrees), abs=1e-6)
+
+
+def test_oncoming_in_the_next_lane_is_no_conflict() -> None:
+    way = line(math.pi, 0.0, 3.5)
+    assert not conflicts(east(), across(-50 + 10 * times(12), way=way))
+
+
+def test_a_follower_in_a_tight_bend_is_no_conflict() -> None:
+    """Its box lies across that of the ego of half a second before, at 45 degrees; its way is the ego's own."""
+    bend = Road(None, ((50.0, 0.0), (9.4, 1 / 6), (50.0, 0.0)))  # type: ignore[arg-type]
+    t = times(14)
+    ego, other = moving("ego", bend, t, 20 + 5 * t, 0.0), moving("other", bend, t, 8 + 5 * t, 0.0)
+    assert not conflicts(ego, other)
+
+
+def test_merging_onto_the_egos_way_is_a_conflict_while_it_is_at_an_angle() -> None:
+    """The other comes in behind the ego: from 90 degrees into the same lane."""
+    side = Road(None, ((40.0, 0.0), (5 * math.pi, -0.1), (300.0, 0.0)), (-10.0, -50.0, math.pi / 2))  # type: ignore[arg-type]
+    t = times(14)
+    other = moving("other", side, t, 5 * t, 0.0)
+    (row,) = conflicts(east(s0=-65.0, end=14), other)
+    assert row["ego_first"] is True
+    # the other's front corner reaches the ego's side (y = -0.9) on the bend, its heading still well off
+    assert 0.4 < abs(row["angle_rad"]) < 1.2
+    assert row["pet_s"] == pytest.approx((row["t_object_in_ns"] - row["t_ego_out_ns"]) / 1e9)
+
+
+def test_parked_across_the_way_is_no_partner_but_a_walker_who_pauses_is() -> None:
+    t = times(12)
+    parked = standing("parked", NORTH, t, 0.0, 0.0)
+    there = east(v=1.0, s0=-20.0)  # stops nowhere, yet touches nobody within the log but by 4 m
+    assert not conflicts(there, parked)
+    # walks onto the ego's way, stands there until 3 s and walks on
+    s = np.interp(t, [0, 1, 3, 6], [-3, 0, 0, 5])
+    walker = moving("walker", NORTH, t, s, 0.0, length=0.5, width=0.5, kind="pedestrian")
+    (row,) = conflicts(east(v=10.0, s0=-70.0), walker)
+    assert row["ego_first"] is False
+    assert row["actor_class"] == "pedestrian"
+
+
+def test_contact_with_what_stands_all_the_while_is_not_a_conflict() -> None:
+    t = times(12)
+    assert not conflicts(east(), standing("parked", NORTH, t, 0.0, 0.0))
+    creeping = moving("parked", NORTH, t, 0.6 * (t - 5), 0.0)
+    assert len(conflicts(east(), creeping)) == 1
+
+
+def test_a_walker_goes_where_they_go_whichever_way_they_are_turned() -> None:
+    t = times(12)
+    walker = moving("w", NORTH, t, -8 + 1.4 * t, 0.0, length=0.5, width=0.5, kind="pedestrian")
+    turned = Actor(**{**walker.__dict__, "yaw": np.zeros(t.shape)})
+    (row,) = conflicts(east(), turned)
+    assert row["angle_rad"] == pytest.approx(math.pi / 2)
+
+
+def test_two_encounters_with_the_same_actor_are_two_rows() -> None:
+    """Ahead of the ego and, turned round, behind it again, both within ten seconds of the ego's passing."""
+    t = times(20)
+    s = np.interp(t, [0, 2, 6, 12, 20], [-10, 10, 14, 14, -26])
+    found = conflicts(east(s0=-70.0, end=20), moving("other", NORTH, t, s, 0.0))
+    assert [row["ego_first"] for row in found] == [False, True]
+    assert [row["occurrence"] for row in found] == [0, 1]
+    assert all(row["pet_s"] > 0 for row in found)
+
+
+def test_who_has_no_position_heading_or_size_is_left_to_passage_conflict() -> None:
+    other = across(-40 + 5 * times(12))
+    there = np.abs(other.y) < 8
+    assert not conflicts(east(), other.lost(there))
+    assert not conflicts(east(), Actor(**{**other.__dict__, "length": None}))
+    assert not conflicts(east(), Actor(**{**other.__dict__, "yaw": np.full(other.t_s.shape, np.nan)}))
+
+
+def test_a_log_of_few_samples_misses_nobody() -> None:
+    """At 1 Hz and 30 m/s every car jumps over six car lengths."""
+    t = times(12, period=1.0)
+    ego = moving("ego", line(), t, -165 + 30 * t, 0.0)
+    assert len(conflicts(ego, moving("other", NORTH, t, -165 + 30 * (t - 2), 0.0))) == 1
+    assert not conflicts(ego, moving("other", line(math.pi / 2, 250.0), t, -165 + 30 * (t - 2), 0.0))
+
+
+@pytest.mark.parametrize(("braking", "seen"), [(3.0, 3.0), (0.0, 0.0)])
+def test_how_hard_the_other_braked_before_it_came(braking: float, seen: float) -> None:
+    """It comes at 12 m/s and brakes from 4 s to 6 s."""
+    t = times(14)
+    v = 12 - braking * np.clip(t - 4, 0, 2)
+    s = np.concatenate([[0.0], np.cumsum((v[1:] + v[:-1]) / 2 * 0.1)])
+    (row,) = conflicts(east(end=14), across(s - 90, end=14))
+    assert row["decel_mps2"] == pytest.approx(seen, abs=0.01)
+
+
+def test_braking_is_unknown_where_it_was_not_seen_whole() -> None:
+    t = times(14)
+    other = across(-70 + 10 * t, end=14)
+    (row,) = conflicts(east(end=14), other.keep((t < 3) | (t > 4)))
+    assert row["decel_mps2"] is None
+    (row,) = conflicts(east(end=14), other.keep(t > 3))
+    assert row["decel_mps2"] is None
+    (row,) = conflicts(east(end=14), other.keep(t > 0.5))
+    assert row["decel_mps2"] is not None
+
+
+def test_braking_after_its_entry_or_long_before_is_not_the_egos_doing() -> None:
+    t = times(14)
+    early = np.where(t < 0.5, 12 - 10 * t, 7.0)  # from 12 to 7 m/s before t = 0.5; the ego enters at 4.7
+    s = np.concatenate([[0.0], np.cumsum((early[1:] + early[:-1]) / 2 * 0.1)])
+    (row,) = conflicts(east(end=14), across(s - 60, end=14))
+    assert row["decel_mps2"] == pytest.approx(0, abs=0.01)
+    (row,) = conflicts(east(s0=-120.0, end=14), across(-10 + 5 * t, end=14))
+    assert row["decel_mps2"] is None  # it was through before the four seconds began
+
+
+def test_every_ego_and_every_drive_for_itself() -> None:
+    t = times(12)
+    first, second = across(-40 + 5 * t), across(-36 + 5 * t, name="third", way=line(math.pi / 2, 30.0))
+    one = drive([east(), first, second], None, egos=("ego", "other"))
+    two = drive([east(v=8.0), first], None, drive_id="e")
+    con = derived(one, two, tables=["conflict"])
+    found = rows(con, "FROM conflict ORDER BY drive_id, ego_id, occurrence")
+    assert [(r["drive_id"], r["ego_id"], r["object_id"]) for r in found] == [
+        ("d", "ego", "other"), ("d", "ego", "third"), ("d", "other", "ego"), ("e", "ego", "other"),
+    ]  # fmt: skip
+    assert [r["occurrence"] for r in found] == [0, 1, 0, 0]
+    assert found[0]["pet_s"] == found[2]["pet_s"]
+    assert found[0]["angle_rad"] == pytest.approx(-found[2]["angle_rad"])
+    assert (found[0]["ego_first"], found[2]["ego_first"]) == (True, False)
+    alone = derived(two, tables=["conflict"])
+    assert rows(alone, "FROM conflict") == [found[3]]
+
+
+def test_the_junction_in_which_they_meet() -> None:
+    way = tee()["straight"]
+    t = times(20)
+    ego = moving("ego", way, t, 150 + 10 * t, way.own)
+    other = moving("other", line(math.pi / 2, 210.0), t, -20 + 5 * (t - 5), 0.0)
+    late = moving("late", line(math.pi / 2, 260.0), t, -20 + 5 * (t - 10), 0.0)
+    con = derived(drive([ego, other, late], way.environment), tables=["conflict"])
+    found = rows(con, "FROM conflict ORDER BY occurrence")
+    assert [(r["object_id"], r["junction_id"]) for r in found] == [("other", "5"), ("late", None)]
+
+
+Box = tuple[float, float]
+
+
+def swept(t: np.ndarray, x: np.ndarray, y: np.ndarray, heading: float, size: Box) -> list[shapely.Polygon]:
+    box = affinity.rotate(
+        shapely.box(-size[0] / 2, -size[1] / 2, size[0] / 2, size[1] / 2), heading, (0, 0), use_radians=True
+    )
+    return [affinity.translate(box, float(a), float(b)) for a, b in zip(x, y, strict=True)]
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    degrees=st.one_of(st.integers(25, 155), st.integers(-155, -25)),
+    ego_v=st.integers(4, 20),
+    other_v=st.integers(1, 15),
+    delay=st.floats(-6, 6),
+    other_size=st.sampled_from([(4.8, 1.8), (0.6, 0.6), (12.0, 2.5), (1.8, 0.6)]),
+)
+@example(degrees=90, ego_v=10, other_v=10, delay=0.0, other_size=(4.8, 1.8))
+def test_the_times_are_those_of_the_swept_polygons(
+    degrees: int, ego_v: int, other_v: int, delay: float, other_size: Box
+) -> None:
+    """Entry and exit by shapely: first and last moment that a box touches the union of all the other's boxes, at 50 Hz."""
+    heading = math.radians(degrees)
+    fine = np.arange(0, 40.001, 0.02)
+
+    def way(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        s = other_v * (at - 20 - delay)
+        return s * math.cos(heading), s * math.sin(heading)
+
+    ego_boxes = swept(fine, ego_v * (fine - 20), 0 * fine, 0.0, (4.8, 1.8))
+    other_boxes = swept(fine, *way(fine), heading, other_size)
+    ego_ground, other_ground = shapely.union_all(ego_boxes), shapely.union_all(other_boxes)
+    on_ego = fine[shapely.intersects(np.array(ego_boxes), other_ground)]
+    on_other = fine[shapely.intersects(np.array(other_boxes), ego_ground)]
+
+    t = times(40)
+    x, y = way(t)
+    v = np.full(t.shape, float(other_v))
+    other = Actor(
+        "other", t, x, y, np.full(t.shape, heading), v * math.cos(heading), v * math.sin(heading),
+        length=other_size[0], width=other_size[1],
+    )  # fmt: skip
+    found = conflicts(moving("ego", line(), t, ego_v * (t - 20), 0.0), other)
+    pet = max(on_ego[0], on_other[0]) - min(on_ego[-1], on_other[-1])
+    (row,) = found
+    times_ = [row[f"t_{who}_{end}_ns"] / 1e9 for who in ("ego", "object") for end in ("in", "out")]
+    # a sample of 10 Hz at most, and where the ends of two slender boxes barely touch one more of the other's
+    tolerance = 0.13 + 0.1 * max(ego_v / other_v, other_v / ego_v)
+    span = max(on_ego[-1], on_other[-1]) - min(on_ego[0], on_other[0])
+    if span < 10:  # beyond that the pairs more than ten seconds apart are left out
+        assert times_ == pytest.approx([on_ego[0], on_ego[-1], on_other[0], on_other[-1]], abs=tolerance)
+    assert row["pet_s"] == pytest.approx(pet, abs=2 * tolerance)
+    assert row["ego_first"] == (row["t_ego_in_ns"] <= row["t_object_in_ns"])
+    assert row["angle_rad"] == pytest.approx(heading)
