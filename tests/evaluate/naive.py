@@ -10,13 +10,18 @@ Holds = bool | None
 
 
 class Step(NamedTuple):
-    """One judged or expected step. `applies` and `value` are three-valued; `present`: the condition returned a row."""
+    """One judged or expected step. `applies` and `value` are three-valued; `present`: the condition returned a row.
+
+    `engaged` and `wet`, three-valued too: whether the automated driver drives, and whether a rule for wet roads is in force.
+    """
 
     t: int
     seg: int
     present: bool
     applies: bool | None
     value: float | None
+    engaged: bool | None = True
+    wet: bool | None = True
 
 
 class Outcome(NamedTuple):
@@ -40,15 +45,32 @@ def segments(times: list[int], gap: int) -> list[int]:
     return out
 
 
+def in_force(step: Step, *, wet_only: bool) -> bool | None:
+    """Whether a rule is in force: the driver is engaged and, where the rule is for wet roads only, the road is wet."""
+    said = [step.engaged, step.wet] if wet_only else [step.engaged]
+    if False in said:
+        return False
+    return None if None in said else True
+
+
+def blind(step: Step, *, wet_only: bool) -> Step:
+    """Return the step as a rule sees it that may not be in force there."""
+    return step._replace(wet=step.wet if wet_only else True)
+
+
 def holds(step: Step) -> Holds:
     """More than zero is required."""
     applies = True if not step.present else step.applies
-    if not step.present or applies is None or step.value is None:
+    if not (step.engaged and step.wet) or not step.present or applies is None or step.value is None:
         return None
     return step.value > 0
 
 
 def why_unknown(step: Step) -> str:
+    if step.engaged is not True:
+        return "engaged_unknown" if step.engaged is None else "not_engaged"
+    if step.wet is None:
+        return "weather_unknown"
     if not step.present:
         return "missing_step"
     return "applies_unknown" if step.applies is None else "null_value"
@@ -84,9 +106,10 @@ def judge(steps: list[Step], *, eventually: bool = False, problem: str = "") -> 
     return ("fail", "violated") if eventually else ("pass", "kept")
 
 
-def invariant(steps: list[Step], gap: int, period: int) -> list[Outcome]:
+def invariant(steps: list[Step], gap: int, period: int, *, wet_only: bool = False) -> list[Outcome]:
     """Episodes and holes of one series, in time order."""
-    live = expected(steps)
+    forced = [s for s in steps if in_force(s, wet_only=wet_only) is not False]
+    live = expected([blind(s, wet_only=wet_only) for s in forced])
     out: list[Outcome] = []
     episode: list[Step] = []
     for i, step in enumerate(live):
@@ -136,13 +159,33 @@ def window(steps: list[Step], a: int, b: int, gap: int, *, eventually: bool) -> 
         problem = "window_truncated"
     elif edges[1] - a > gap or b - edges[-2] > gap or any(y.seg != x.seg for x, y in pairwise(inside)):
         problem = "log_hole"
-    return _reference(expected(inside), a, b, eventually=eventually, problem=problem)
+    return _reference(
+        expected([blind(s, wet_only=False) for s in inside]), a, b, eventually=eventually, problem=problem
+    )
+
+
+def occasion(steps: list[Step], t: int, otherwise: Outcome, *, wet_only: bool, physical: bool) -> Outcome:
+    """A reference point: where the rule is not in force, or may not be, that is the verdict, and no anchor is looked for."""
+    here = next(
+        (s for s in steps if s.t == t), Step(t, -1, present=False, applies=True, value=None, engaged=None, wet=None)
+    )
+    if here.seg < 0 and all(s.engaged for s in steps):
+        here = here._replace(engaged=True)  # nothing was ever said of the driver
+    force = in_force(here, wet_only=wet_only)
+    if force:
+        return otherwise
+    a, b = (t, t) if physical else (otherwise.start, otherwise.end)
+    if force is False:
+        return Outcome(a, b, "not_applicable", "outside_conditions", None, 0, 0)
+    code = "engaged_unknown" if here.engaged is None else "weather_unknown"
+    return Outcome(a, b, "unknown", code, None, 0, 0)
 
 
 def points(steps: list[Step], at: list[int], *, eventually: bool = False) -> Outcome:
     """An execution (one time) or a physical condition (several)."""
-    by_time = {s.t: s for s in steps}
-    asked = [by_time.get(t, Step(t, -1, present=False, applies=True, value=None)) for t in sorted(at)]
+    by_time = {s.t: blind(s, wet_only=False) for s in steps}
+    nothing = True if all(s.engaged for s in steps) else None
+    asked = [by_time.get(t, Step(t, -1, present=False, applies=True, value=None, engaged=nothing)) for t in sorted(at)]
     return _reference(expected(asked), min(at), max(at), eventually=eventually, problem="")
 
 
@@ -161,7 +204,7 @@ def stretches(steps: list[Step], merge: int) -> list[tuple[int, int]]:
     runs: list[tuple[int, int]] = []
     last: tuple[int, Step] | None = None
     for k, step in enumerate(steps):
-        if holds(step) is not False or (step.present and step.applies is False):
+        if holds(blind(step, wet_only=False)) is not False or (step.present and step.applies is False):
             continue
         joined = last is not None and last[1].seg == step.seg and (k - last[0] == 1 or step.t - last[1].t < merge)
         runs = [*runs[:-1], (runs[-1][0], step.t)] if joined else [*runs, (step.t, step.t)]

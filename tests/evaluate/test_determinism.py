@@ -53,6 +53,9 @@ def database(drives: tuple[str, ...], *, threads: int, order: str) -> duckdb.Duc
         "INSERT INTO clock SELECT drive_id, 'e', 50000000, 125000000, min(t_ns), max(t_ns) FROM s GROUP BY drive_id"
     )
     con.execute(
+        f"INSERT INTO ego_condition BY NAME SELECT drive_id, ego_id, t_ns, true AS engaged FROM s ORDER BY {order}"
+    )
+    con.execute(
         f"""INSERT INTO ego_state BY NAME
         SELECT drive_id, ego_id, t_ns, k AS x_m, CASE WHEN k % 97 > 3 THEN 'left' END AS indicator FROM s ORDER BY {order}"""
     )

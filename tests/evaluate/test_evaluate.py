@@ -46,6 +46,7 @@ def con() -> Iterator[duckdb.DuckDBPyConnection]:
                     for k in range(3)
                 ],
             )
+            fill(con, "ego_condition", [who | {"t_ns": k * 10, "engaged": True} for k in range(3)])
             fill(con, "capability", [who | {"signal": "map", "available": drive == "a", "reason": "because"}])
         for drive in "ab":
             fill(con, "data_log", [{"drive_id": drive, "sha256": f"hash-{drive}"}])

@@ -289,21 +289,6 @@ def test_profiles_are_judged_each_and_a_lost_one_is_unknown(tmp_path: Path) -> N
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("road", "expected"),
-    [
-        (["town", "town", "town"], [("pass", "kept")]),
-        (["rural"] * 3, [("not_applicable", "not_triggered")]),
-        (["town", None, "town"], [("unknown", "road_type_unknown")]),
-    ],
-)
-def test_road_types(tmp_path: Path, road: list[Any], expected: list[tuple[str, str]]) -> None:
-    rule = write(
-        tmp_path, INVARIANT | MEASURED | SPEED, {"condition": SPEED_SQL}, tables='[applies]\nroad_type = ["town"]'
-    )
-    assert brief(verdicts(rule, speeds([12, 12, 12], road_type=road))) == expected
-
-
 def test_the_start_of_an_episode_is_exempt_unless_it_was_not_seen(tmp_path: Path) -> None:
     header = INVARIANT | MEASURED | SPEED | {"exempt_after_s": "0.2"}
     rule = write(tmp_path, header, {"condition": SPEED_SQL.replace(" FROM", ", in_junction AS applies FROM")})

@@ -81,20 +81,6 @@ def test_execution_may_not_apply(tmp_path: Path, applies: Any, expected: tuple[s
     assert brief(verdicts(rule, scene("off", 2.0, in_junction=applies))) == [expected]
 
 
-@pytest.mark.parametrize(
-    ("road", "expected"),
-    [
-        ("town", ("pass", "kept")),
-        ("rural", ("not_applicable", "outside_conditions")),
-        (None, ("unknown", "road_type_unknown")),
-    ],
-)
-def test_road_type_at_the_reference_point(tmp_path: Path, road: Any, expected: tuple[str, str]) -> None:
-    sections = {"reference": REFERENCE, "condition": SPEED}
-    rule = write(tmp_path, EXECUTION | MEASURED | READS, sections, tables='[applies]\nroad_type = ["town"]')
-    assert brief(verdicts(rule, scene("off", 2.0, road_type={"else": "motorway", "2": road}))) == [expected]
-
-
 def test_the_references_object_goes_into_the_row(tmp_path: Path) -> None:
     sections = {
         "reference": "SELECT drive_id, ego_id, t_ns, lanelet_id AS object_id FROM exit_taken",

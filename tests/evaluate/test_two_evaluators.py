@@ -41,7 +41,11 @@ def rules(tmp_path_factory: pytest.TempPathFactory) -> list[Rule]:
     eventually = {"quantifier": '"eventually"'}
     at = {"reference": REFERENCE, "condition": CONDITION}
     anchor = "SELECT ref_id, unnest([t_ns - 300, t_ns, t_ns + 300]) AS t_ns FROM reference"
+    wet = '[applies]\nweather = ["wet", "ice"]'
     return [
+        write(folder, INVARIANT | MEASURED | READS, {"condition": CONDITION}, name="invariant_wet", tables=wet),
+        write(folder, EXECUTION | MEASURED | BOTH, at, name="execution_wet", tables=wet),
+        write(folder, AFTER | MEASURED | BOTH | window, at, name="after_wet", tables=wet),
         write(
             folder, INVARIANT | MEASURED | READS | {"merge_gap_s": "3e-7"}, {"condition": CONDITION}, name="invariant"
         ),
@@ -59,24 +63,35 @@ WAYS = (100, 100, 100, 100, 200, 250, 251, 900)  # to the next sample: continuou
 PRESENT = (True, True, True, True, True, False)  # the condition returns a row
 APPLIES = (True, True, True, True, False, None)
 VALUES = (3.0, 3.0, 2.0, 2.0, 1.0, 0.0, -1.0, None)
+ENGAGED = (True, True, True, True, True, False, None)
+WEATHER = (True, True, True, False, None)
+WORD = {True: "wet", False: "dry", None: None}
 # one draw per step keeps hypothesis quick
-STEP = st.integers(0, len(WAYS) * len(PRESENT) * len(APPLIES) * len(VALUES) - 1)
-SUBJECT = st.tuples(st.lists(STEP, min_size=1, max_size=25), st.lists(st.integers(-500, 3500), max_size=4, unique=True))
+STEP = st.integers(0, len(WAYS) * len(PRESENT) * len(APPLIES) * len(VALUES) * len(ENGAGED) * len(WEATHER) - 1)
+# most subjects are never driven by hand; times that are steps are as likely as others
+SUBJECT = st.tuples(
+    st.lists(STEP, min_size=1, max_size=25),
+    st.lists(st.one_of(st.integers(-500, 3500), st.integers(0, 20).map(lambda k: 100 * k)), max_size=4, unique=True),
+    st.sampled_from((False, False, True)),
+)
 
 
-def scene(drawn: list[int]) -> list[naive.Step]:
+def scene(drawn: list[int], *, by_hand: bool) -> list[naive.Step]:
     t = 0
-    rows: list[tuple[int, bool, bool | None, float | None]] = []
+    rows: list[tuple[int, bool, bool | None, float | None, bool | None, bool | None]] = []
     for number in drawn:
         rest, way = divmod(number, len(WAYS))
         rest, present = divmod(rest, len(PRESENT))
-        level, applies = divmod(rest, len(APPLIES))
-        rows.append((t, PRESENT[present], APPLIES[applies], VALUES[level]))
+        rest, applies = divmod(rest, len(APPLIES))
+        rest, engaged = divmod(rest, len(ENGAGED))
+        level, weather = divmod(rest, len(WEATHER))
+        driven = ENGAGED[engaged] if by_hand else True
+        rows.append((t, PRESENT[present], APPLIES[applies], VALUES[level], driven, WEATHER[weather]))
         t += WAYS[way]
     segs = naive.segments([row[0] for row in rows], GAP)
     return [
-        naive.Step(t, seg, present, applies, value)
-        for (t, present, applies, value), seg in zip(rows, segs, strict=True)
+        naive.Step(t, seg, present, applies, value, engaged, wet)
+        for (t, present, applies, value, engaged, wet), seg in zip(rows, segs, strict=True)
     ]
 
 
@@ -85,10 +100,12 @@ def load(con: duckdb.DuckDBPyConnection, subjects: list[tuple[list[naive.Step], 
     con.execute(
         ";".join(
             f"DELETE FROM {table}"
-            for table in ("clock", "step", "ego_state", "exit_taken", "verdict", "finding", "margin")
+            for table in ("clock", "step", "ego_state", "ego_condition", "exit_taken", "verdict", "finding", "margin")
         )
     )
-    tables: dict[str, list[dict[str, Any]]] = {"clock": [], "step": [], "ego_state": [], "exit_taken": []}
+    tables: dict[str, list[dict[str, Any]]] = {
+        name: [] for name in ("clock", "step", "ego_state", "ego_condition", "exit_taken")
+    }
     for n, (steps, references) in enumerate(subjects):
         who = {"drive_id": "d", "ego_id": f"e{n:03d}"}
         times = {"period_ns": PERIOD, "max_gap_ns": GAP, "t_start_ns": steps[0].t, "t_end_ns": steps[-1].t}
@@ -98,14 +115,17 @@ def load(con: duckdb.DuckDBPyConnection, subjects: list[tuple[list[naive.Step], 
             {"t_ns": s.t, "speed_mps": s.value, "in_junction": s.applies, "with_direction": s.present} for s in steps
         )
         tables["ego_state"] += [who | row for row in given]
+        conditions = ({"t_ns": s.t, "engaged": s.engaged, "weather": WORD[s.wet]} for s in steps)
+        tables["ego_condition"] += [who | row for row in conditions]
         tables["exit_taken"] += [who | {"occurrence": i, "t_ns": t} for i, t in enumerate(references)]
     for table, rows in tables.items():
         fill(con, table, rows)
 
 
 def expect(rule: str, steps: list[naive.Step], references: list[int]) -> list[naive.Outcome]:
+    rule, _, wet = rule.partition("_")
     if rule == "invariant":
-        found = naive.invariant(steps, GAP, PERIOD)
+        found = naive.invariant(steps, GAP, PERIOD, wet_only=bool(wet))
     else:
         kind, _, word = rule.partition("-")
         eventually = word == "eventually"
@@ -118,7 +138,9 @@ def expect(rule: str, steps: list[naive.Step], references: list[int]) -> list[na
             else:
                 a, b = (t - WINDOW, t) if kind == "before" else (t, t + WINDOW)
                 found.append(naive.window(steps, a, b, GAP, eventually=eventually))
-    return found or [naive.Outcome(-1, -1, "not_applicable", "not_triggered", None, 0, 0)]
+            found[-1] = naive.occasion(steps, t, found[-1], wet_only=bool(wet), physical=kind == "place")
+    code = "not_engaged" if all(s.engaged is False for s in steps) else "not_triggered"
+    return found or [naive.Outcome(-1, -1, "not_applicable", code, None, 0, 0)]
 
 
 @settings(max_examples=10, deadline=None, derandomize=True, phases=PHASES)
@@ -126,7 +148,7 @@ def expect(rule: str, steps: list[naive.Step], references: list[int]) -> list[na
 def test_the_engine_and_a_naive_evaluator_agree(
     con: duckdb.DuckDBPyConnection, rules: list[Rule], subjects: list[Any]
 ) -> None:
-    scenes = [(scene(rows), references) for rows, references in subjects]
+    scenes = [(scene(rows, by_hand=by_hand), references) for rows, references, by_hand in subjects]
     load(con, scenes)
     evaluate(con, rules)
     outcomes, runs = _outcomes(con), _runs(con)
@@ -143,7 +165,7 @@ def test_the_engine_and_a_naive_evaluator_agree(
 def test_asking_for_margins_changes_no_verdict(
     con: duckdb.DuckDBPyConnection, rules: list[Rule], subjects: list[Any]
 ) -> None:
-    load(con, [(scene(rows), references) for rows, references in subjects])
+    load(con, [(scene(rows, by_hand=by_hand), references) for rows, references, by_hand in subjects])
     evaluate(con, rules)
     first = con.execute("SELECT * FROM verdict ORDER BY ALL").fetchall()
     con.execute("DELETE FROM verdict")

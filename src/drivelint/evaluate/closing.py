@@ -2,12 +2,33 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 _AT = "format('{:.3f} s', t_decides_ns / 1e9)"
 _OBSERVED = "format('{:.6g}', observed) || coalesce(' ' || unit, '')"
 _REQUIRED = """CASE sense WHEN '>' THEN 'more than ' WHEN '>=' THEN 'at least ' WHEN '<' THEN 'less than '
             ELSE 'at most ' END
         || format('{:.6g}', required) || coalesce(' ' || unit, '')"""
 _MARGIN = "format('{:.6g}', abs(margin)) || coalesce(' ' || unit, '')"
+
+_WHAT = "CASE WHEN observes IS NULL THEN '' ELSE upper(observes[1]) || observes[2:] || ' ' END"
+
+_CONDITIONS: Final = {
+    "engaged": ("whether the automated driver drives", "the log''s mode flag engaged, or --env engaged=yes"),
+    "road_type": ("what kind of road this is", "a map that says it, or --env road_type=rural"),
+    "carriageway": ("whether this is a single or a dual carriageway", "--env carriageway=single"),
+    "area": ("whether this is a built-up area", "a map with road types, or --env area=built_up"),
+    "nation": ("in which country this is", "--env nation=gb"),
+    "weather": ("the weather", "--env weather=dry"),
+    "light": ("whether it is day or night", "--env light=day"),
+    "vehicle_class": ("which class of vehicle the ego is", "--env vehicle_class=car"),
+    "limit": ("the speed limit", "a map with speed limits"),
+}
+"""Condition -> what is not known, and what to give; as SQL text."""
+_NOT_KNOWN = "\n        ".join(
+    f"WHEN '{name}_unknown' THEN 'Not judged: {what} is not known' || coalesce(' at ' || {_AT}, '') || ': give {remedy}.'"
+    for name, (what, remedy) in _CONDITIONS.items()
+)
 
 SENTENCE = f"""CASE
     WHEN reason IS NOT NULL THEN reason
@@ -17,8 +38,8 @@ SENTENCE = f"""CASE
         WHEN 'only_a_bound' THEN 'Not decided: only a bound is known at ' || {_AT}
             || coalesce(' (' || {_OBSERVED} || ', required ' || {_REQUIRED} || ')', '') || '.'
         WHEN 'applies_unknown' THEN 'Not judged: whether the rule applies is not known at ' || {_AT} || '.'
-        WHEN 'road_type_unknown' THEN 'Not judged: the map does not say what kind of road this is'
-            || coalesce(' at ' || {_AT}, '') || '.'
+        {_NOT_KNOWN}
+        WHEN 'not_engaged' THEN 'Not judged: the automated driver does not drive' || coalesce(' at ' || {_AT}, '') || '.'
         WHEN 'reference_time_unknown' THEN 'Not judged: the time of the assertion reference point is not known.'
         WHEN 'anchor_unknown' THEN 'Not judged: it is not known when or where the condition had to hold.'
         WHEN 'beyond_sensor_range' THEN 'Not judged: nobody was seen at ' || {_AT}
@@ -35,6 +56,7 @@ SENTENCE = f"""CASE
     WHEN verdict = 'not_applicable' THEN CASE code
         WHEN 'no_anchor' THEN 'Not applicable: the time or place at which it must hold never came.'
         WHEN 'nobody_there' THEN 'Not applicable: nobody was there.'
+        WHEN 'not_engaged' THEN 'Not applicable: the automated driver never drives in this drive.'
         WHEN 'outside_conditions' THEN 'Not applicable: outside the conditions of the rule.'
         ELSE 'Not applicable: what the rule is about never happened in this drive.' END
     WHEN code = 'nobody_there' THEN 'Nobody was there at ' || {_AT} || '.'
@@ -42,9 +64,9 @@ SENTENCE = f"""CASE
         WHEN 'pass' THEN 'Kept: the condition held.'
         ELSE 'The condition did not hold at ' || {_AT} || '.' END
     WHEN observed IS NULL OR required IS NULL THEN CASE verdict
-        WHEN 'pass' THEN 'Kept: ' || coalesce({_OBSERVED}, 'unlimited') || ' at ' || {_AT} || '.'
-        ELSE 'Violated: ' || coalesce({_OBSERVED}, 'unlimited') || ' at ' || {_AT} || '.' END
-    ELSE {_OBSERVED} || ' at ' || {_AT} || ' where ' || {_REQUIRED} || ' is required: '
+        WHEN 'pass' THEN 'Kept: ' || {_WHAT} || coalesce({_OBSERVED}, 'unlimited') || ' at ' || {_AT} || '.'
+        ELSE 'Violated: ' || {_WHAT} || coalesce({_OBSERVED}, 'unlimited') || ' at ' || {_AT} || '.' END
+    ELSE {_WHAT} || {_OBSERVED} || ' at ' || {_AT} || ' where ' || {_REQUIRED} || ' is required: '
         || CASE WHEN verdict = 'pass' THEN 'kept by ' || {_MARGIN}
             WHEN margin = 0 THEN 'exactly at the limit, which does not do'
             ELSE 'missed by ' || {_MARGIN} END || '.' END"""
@@ -68,8 +90,9 @@ WITH _rows AS (
     SELECT rule_no, drive_id, ego_id, 'unknown' AS verdict, 'missing_' || signal AS code, reason FROM _gated
 )
 SELECT * FROM _kept UNION ALL BY NAME
-SELECT r.rule_no, s.drive_id, s.ego_id, 'not_applicable' AS verdict, 'not_triggered' AS code
-    FROM _rule r CROSS JOIN _subject s
+SELECT r.rule_no, s.drive_id, s.ego_id, 'not_applicable' AS verdict,
+    CASE WHEN w.never THEN 'not_engaged' ELSE 'not_triggered' END AS code
+    FROM _rule r CROSS JOIN _subject s LEFT JOIN _watched w ON w.drive_id = s.drive_id AND w.ego_id = s.ego_id
 ANTI JOIN _kept k ON k.rule_no = r.rule_no AND k.drive_id = s.drive_id AND k.ego_id = s.ego_id
 """
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from drivelint.evaluate import terms
+from drivelint.evaluate import restricted, terms
 
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
@@ -38,7 +38,7 @@ def grid_of(rule: Rule) -> str | None:
     if (
         rule.kind != "invariant"
         or "applies" in rule.sections
-        or rule.applies.road_type
+        or restricted.restricts(rule)
         or rule.profiled
         or rule.exempt_after_s != 0
     ):
@@ -55,13 +55,17 @@ def _default_grid(per_object: bool) -> str:
 
 GRID_GROUPS = f"""
 CREATE OR REPLACE TEMP TABLE _grid_group AS
-SELECT grid, {_GROUP}, count(*) AS n, sum(hash(t_ns)::HUGEINT) AS signature,
-    min(seg) = max(seg) AND max(k) - min(k) + 1 = count(*) AS whole
-FROM (SELECT 'step' AS grid, * FROM ({_default_grid(False)}) UNION ALL SELECT 'pair', * FROM ({_default_grid(True)})
-    WHERE $_objects)
-GROUP BY ALL
+WITH _seen AS (
+    SELECT grid, {_GROUP}, count(*) AS n, sum(hash(t_ns)::HUGEINT) AS signature,
+        min(seg) = max(seg) AND max(k) - min(k) + 1 = count(*) AS unbroken
+    FROM (SELECT 'step' AS grid, * FROM ({_default_grid(False)})
+        UNION ALL SELECT 'pair', * FROM ({_default_grid(True)}) WHERE $_objects)
+    GROUP BY ALL)
+SELECT g.* EXCLUDE (unbroken), g.unbroken AND w.ego_id IS NULL AS whole
+FROM _seen g LEFT JOIN _watched w ON w.drive_id = g.drive_id AND w.ego_id = g.ego_id
 """
-"""Per group of the default grids: its size, an order-free signature of its time stamps, and whether it has no gap."""
+"""Per group of the default grids: its size, an order-free signature of its time stamps, and whether all of it must be judged,
+without a gap: the automated driver is engaged at every step."""
 
 
 def first_pass(rule: Rule, partial: bool) -> str:
@@ -102,7 +106,7 @@ SELECT s.drive_id, s.ego_id, '' FROM _subject s ANTI JOIN _known k ON s.drive_id
 """
 
 
-def _grid(rule: Rule, partial: bool, unsettled: bool) -> str:
+def _grid(rule: Rule, partial: bool, unsettled: bool, watching: bool) -> str:
     """CTEs ending in `_grid`: drive_id, ego_id, t_ns, object_id, label, k, seg, applies, doubt (why it is NULL)."""
     if "applies" not in rule.sections:
         first = f"_base AS (SELECT *, NULL::VARCHAR AS label, true AS applies FROM ({_default_grid(rule.per_object)}))"
@@ -128,20 +132,20 @@ def _grid(rule: Rule, partial: bool, unsettled: bool) -> str:
         keep = " SEMI JOIN (SELECT * FROM _group WHERE rule_no = $_no AND NOT clean) _u"
         keep += " ON a.drive_id = _u.drive_id AND a.ego_id = _u.ego_id"
         keep += " AND a.object_id = _u.object_id" if rule.per_object else ""
-    if not rule.applies.road_type:
+    joins = restricted.joins(rule, "a", "a.t_ns", watching=watching)
+    if not joins:
         return f"""{first}, _grid AS (SELECT a.*, CASE WHEN a.applies IS NULL THEN 'applies_unknown' END AS doubt
             FROM _base a
     {terms.todo(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
-    return f"""{first}, _road AS (
-    SELECT a.* EXCLUDE (applies), a.applies AND (CASE WHEN b.road_type IS NOT NULL THEN list_contains($_road_types,
-        b.road_type) END) AS applies,
-        CASE WHEN a.applies IS NULL THEN 'applies_unknown' WHEN b.road_type IS NULL THEN 'road_type_unknown' END
-            AS doubt
-    FROM _base a LEFT JOIN ego_state b ON {_SAME}
-), _grid AS (SELECT a.* FROM _road a{terms.todo(partial, "a")} WHERE a.applies IS DISTINCT FROM false)"""
+    return f"""{first}, _restricted AS (
+    SELECT a.* EXCLUDE (applies), a.applies AND {restricted.holds(rule, watching=watching)} AS applies,
+        CASE WHEN a.applies IS NULL THEN 'applies_unknown' ELSE {restricted.doubt(rule, watching=watching)} END AS doubt
+    FROM _base a
+    {joins}
+), _grid AS (SELECT a.* FROM _restricted a{terms.todo(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
 
 
-def second_pass(rule: Rule, partial: bool, unsettled: bool) -> str:
+def second_pass(rule: Rule, partial: bool, unsettled: bool, watching: bool) -> str:
     """SQL for `_judged`: every step of the grid, judged or not; '' stands for no object, profile or label.
 
     The conditions are left-joined to the grid on keys alone: a row that the author's join lost is an unknown step.
@@ -168,7 +172,7 @@ LEFT JOIN _segment s ON s.drive_id = a.drive_id AND s.ego_id = a.ego_id AND s.se
 WHERE s.seg IS NULL OR k_begin = s.k_first OR t_ns - t_begin_ns >= $_exempt_ns"""
     return f"""
 CREATE OR REPLACE TEMP TABLE _judged AS
-WITH {terms.state(rule)}, {_grid(rule, partial, unsettled)}, _joined AS (
+WITH {terms.state(rule)}, {_grid(rule, partial, unsettled, watching)}, _joined AS (
     SELECT g.drive_id, g.ego_id, coalesce(g.object_id, '') AS object_id,
         {"p.profile" if rule.profiled else "''"} AS profile,
         coalesce(g.label, '') AS label, NULL::INTEGER AS ref_id, g.t_ns, g.k, g.seg,
@@ -252,19 +256,17 @@ FROM _holes
 """Appends a row of its own for each hole between two applicable steps that the rule reaches from either side."""
 
 
-def lost_objects(rule: Rule, partial: bool) -> str:
+def lost_objects(rule: Rule, partial: bool, watching: bool) -> str:
     """SQL that appends one unknown row per object whose track ends while it could still have been there."""
     profiles = "JOIN _profile_set p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id" if rule.profiled else ""
-    roads = ""
-    if rule.applies.road_type:
-        roads = "LEFT JOIN ego_state e ON e.drive_id = l.drive_id AND e.ego_id = l.ego_id AND e.t_ns = l.t_from_ns"
     return f"""
 INSERT INTO _outcome BY NAME
 SELECT $_no AS rule_no, l.drive_id, l.ego_id, l.object_id, {"p.profile" if rule.profiled else "''"} AS profile,
     l.t_from_ns AS t_start_ns, l.t_to_ns AS t_end_ns, l.t_from_ns AS t_worst_ns, l.t_from_ns AS t_decides_ns,
         'unknown' AS verdict,
     l.reason AS code, greatest(1, (l.t_to_ns - l.t_from_ns) // greatest(s.period_ns, 1)) AS n_expected, 0 AS n_judged
-FROM lost_object l JOIN _subject s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id {profiles} {roads}
+FROM lost_object l JOIN _subject s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id {profiles}
+{restricted.joins(rule, "l", "l.t_from_ns", watching=watching)}
 {terms.todo(partial, "l")}
-{"WHERE e.road_type IS NULL OR list_contains($_road_types, e.road_type)" if roads else ""}
+WHERE ({restricted.holds(rule, watching=watching)}) IS DISTINCT FROM false
 """

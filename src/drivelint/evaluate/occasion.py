@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from drivelint.evaluate import terms
+from drivelint.evaluate import restricted, terms
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -41,8 +41,8 @@ SELECT (row_number() OVER (ORDER BY {order}) - 1)::INTEGER AS ref_id, * FROM _ra
 """
 
 
-def occasions(rule: Rule, own_object: bool) -> str:
-    """SQL for `_occasion`: one row per reference, with its window and whether the rule applies there."""
+def occasions(rule: Rule, own_object: bool, watching: bool) -> str:
+    """SQL for `_occasion`: one row per reference, with its window, whether the rule applies there, else why it may not."""
     start, end = {
         "precondition": ("r.t_ns - $_window_ns", "r.t_ns"),
         "postcondition": ("r.t_ns", "r.t_ns + $_window_ns"),
@@ -50,17 +50,16 @@ def occasions(rule: Rule, own_object: bool) -> str:
     }[rule.kind]
     if rule.subtype == "physical":
         start = end = "r.t_ns"
-    roads = rule.applies.road_type
-    applies = "CASE WHEN e.road_type IS NOT NULL THEN list_contains($_road_types, e.road_type) END" if roads else "true"
     return f"""
 CREATE OR REPLACE TEMP TABLE _occasion AS
 SELECT r.ref_id, r.ref_id - min(r.ref_id) OVER (PARTITION BY r.drive_id, r.ego_id) AS ref_no,
     r.drive_id::VARCHAR AS drive_id,
     r.ego_id::VARCHAR AS ego_id, {"r.object_id" if own_object else "NULL"}::VARCHAR AS object_id,
         r.t_ns::BIGINT AS t_ref_ns,
-    ({start})::BIGINT AS a_ns, ({end})::BIGINT AS b_ns, {applies} AS applies
+    ({start})::BIGINT AS a_ns, ({end})::BIGINT AS b_ns, {restricted.holds(rule, watching=watching)} AS applies,
+    {restricted.doubt(rule, watching=watching)} AS doubt
 FROM reference r
-{"LEFT JOIN ego_state e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id AND e.t_ns = r.t_ns" if roads else ""}
+{restricted.joins(rule, "r", "r.t_ns", watching=watching)}
 """
 
 
@@ -92,8 +91,11 @@ LEFT JOIN step s ON s.drive_id = p.drive_id AND s.ego_id = p.ego_id AND s.t_ns =
 """
 
 
-def judged(rule: Rule, own_object: bool) -> str:
-    """SQL for `_judged`: every expected point, judged or not; combined over objects where the rule says so."""
+def judged(rule: Rule, own_object: bool, watching: bool) -> str:
+    """SQL for `_judged`: every expected point, judged or not; combined over objects where the rule says so.
+
+    A point of a window at which the automated driver does not drive is not judged: what happens there is not its doing.
+    """
     crowd = rule.per_object and not own_object
     combined = rule.combine != "each"
     source = "SELECT *, false AS nobody, NULL::DOUBLE AS sensor_range_m, NULL::VARCHAR AS lost FROM reference_step"
@@ -105,6 +107,10 @@ def judged(rule: Rule, own_object: bool) -> str:
     on += " AND p.profile = v.profile" if rule.profiled else ""
     # where nobody is, "all" is kept and "any" is missed by as much as can be
     edge = "'inf'::DOUBLE" if rule.combine == "all" else "'-inf'::DOUBLE"
+    human, why = "false", ""
+    if watching:
+        human = f"({restricted.ENGAGED}) IS DISTINCT FROM true"
+        why = f"WHEN {human} THEN CASE WHEN NOT e.engaged THEN 'not_engaged' ELSE 'engaged_unknown' END"
     empty = f"CASE WHEN g.sensor_range_m IS NULL THEN {'true' if rule.combine == 'all' else 'false'} END"
     return f"""
 CREATE OR REPLACE TEMP TABLE _judged AS
@@ -113,14 +119,15 @@ WITH {terms.state(rule)}, _grid AS ({source}
     SELECT g.ref_no AS ref_id, g.drive_id, g.ego_id, g.object_id, {"p.profile" if rule.profiled else "''"} AS profile,
         g.t_ns, g.seg, v.t_ns IS NULL OR v.applies AS applies, v.observed, v.required,
         CASE WHEN g.nobody THEN {edge} ELSE v.gain END AS gain,
-        CASE WHEN g.nobody THEN {empty} WHEN v.applies AND g.lost IS NULL THEN v.holds END AS holds,
-        CASE WHEN g.lost IS NOT NULL THEN g.lost WHEN g.t_ns IS NULL THEN 'anchor_unknown'
+        CASE WHEN {human} THEN NULL WHEN g.nobody THEN {empty} WHEN v.applies AND g.lost IS NULL THEN v.holds END AS holds,
+        CASE WHEN g.lost IS NOT NULL THEN g.lost WHEN g.t_ns IS NULL THEN 'anchor_unknown' {why}
             WHEN g.nobody AND g.sensor_range_m IS NULL THEN 'nobody_there'
             WHEN g.nobody THEN 'beyond_sensor_range' WHEN v.t_ns IS NULL THEN 'missing_step'
             WHEN v.applies IS NULL THEN coalesce(v.code, 'applies_unknown') ELSE v.code END AS code,
-        v.reason
+        CASE WHEN NOT ({human}) THEN v.reason END AS reason
     FROM _grid g {"JOIN _profile_set p ON g.drive_id = p.drive_id AND g.ego_id = p.ego_id" if rule.profiled else ""}
     LEFT JOIN _state v ON {on}
+    {restricted.engagement("g") if watching else ""}
 ), _expected AS (SELECT * FROM _joined WHERE applies IS DISTINCT FROM false
 ){_combination(rule) if combined else ", _series AS (SELECT *, object_id AS who, 1 AS n_same FROM _expected)"}
 SELECT * REPLACE (coalesce(object_id, '') AS object_id, coalesce(who, '') AS who), row_number()
@@ -234,7 +241,7 @@ WITH {_coverage(rule)}, _steps AS (
     SELECT *, CASE
         WHEN t_ref_ns IS NULL THEN ['unknown', 'reference_time_unknown']
         WHEN NOT applies THEN ['not_applicable', 'outside_conditions']
-        WHEN applies IS NULL THEN ['unknown', 'road_type_unknown']
+        WHEN applies IS NULL THEN ['unknown', doubt]
         WHEN {"n_points = 0" if rule.subtype == "physical" else "false"} THEN ['not_applicable', 'no_anchor']
         WHEN {decided} THEN ['{early}', worst.code]
         WHEN problem IS NOT NULL THEN ['unknown', problem]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import duckdb
 
-from drivelint.evaluate import closing, findings, invariant, occasion, stage
+from drivelint.evaluate import closing, findings, invariant, occasion, restricted, stage
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,6 +24,7 @@ class Run:
         self._n_todo: dict[int, int] = {}
         self._n_subjects = 0
         self._has_holes = False
+        self._watching = False
 
     def judge(self) -> None:
         """Judge by every rule, then write the verdicts, findings and margins of all of them at once."""
@@ -43,6 +44,8 @@ class Run:
         self._n_todo = stage.prepare(self._con, self._bindings)
         self._n_subjects = self._count("SELECT count(*) FROM _subject")
         self._has_holes = self._count("SELECT count(*) FROM _segment WHERE seg > 0") > 0
+        self._con.execute(restricted.WATCHED)
+        self._watching = self._count("SELECT count(*) FROM _watched") > 0
         quick = [b for b in self._bindings if self._is_quick(b)]
         if quick:
             self._con.execute(invariant.GRID_GROUPS, {"_objects": any(b.rule.per_object for b in quick)})
@@ -66,7 +69,7 @@ class Run:
         if rule.profiled:
             self._execute(invariant.profile_set(rule), binding)
         if rule.per_object and "applies" not in rule.sections:
-            self._execute(invariant.lost_objects(rule, partial), binding)
+            self._execute(invariant.lost_objects(rule, partial, self._watching), binding)
         n_steps = -1
         if quick:
             self._execute(invariant.first_pass(rule, partial), binding)
@@ -75,10 +78,10 @@ class Run:
             )
             if self._may_stop(n_steps):
                 return
-        n_judged = self._execute(invariant.second_pass(rule, partial, quick), binding)
+        n_judged = self._execute(invariant.second_pass(rule, partial, quick, self._watching), binding)
         if self._may_stop(n_judged):
             return
-        if n_judged != n_steps:  # as many rows as the grid has steps: none can be double
+        if self._watching or n_judged != n_steps:  # as many rows as the grid has steps: none can be double
             self._execute(invariant.FAULTS, binding)
         self._execute(invariant.episodes(rule), binding)
         if self._has_holes:
@@ -93,11 +96,11 @@ class Run:
         columns = [str(column[0]) for column in described]
         own_object = "object_id" in columns
         self._execute(occasion.references(columns), binding)
-        self._execute(occasion.occasions(rule, own_object), binding)
+        self._execute(occasion.occasions(rule, own_object, self._watching), binding)
         self._execute(occasion.points(rule), binding)
         if rule.profiled:
             self._execute(invariant.profile_set(rule), binding)
-        self._execute(occasion.judged(rule, own_object), binding)
+        self._execute(occasion.judged(rule, own_object, self._watching), binding)
         self._execute(occasion.FAULTS, binding)
         self._execute(occasion.outcomes(rule, own_object), binding)
         self._leave(binding)
@@ -129,16 +132,16 @@ class Run:
 
 
 class Explanation(Run):
-    """A run that keeps the plan of every statement and stops nowhere."""
+    """A run that keeps the plan of every statement, stops nowhere, and takes every way round: holes, drivers of both kinds."""
 
     def __init__(self, con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding], *, margins: bool) -> None:
         super().__init__(con, bindings, margins=margins)
         self.plans: list[str] = []
 
     def prepare(self) -> None:
-        """Make the run's tables; holes are always looked for."""
+        """Make the run's tables; holes and drivers that are not engaged are always looked for."""
         super().prepare()
-        self._has_holes = True
+        self._has_holes = self._watching = True
 
     def _may_stop(self, n_rows: int) -> bool:  # noqa: ARG002 - the shape of what it overrides
         return False

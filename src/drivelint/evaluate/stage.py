@@ -21,7 +21,7 @@ CREATE OR REPLACE TEMP TABLE _segment AS
         FROM step GROUP BY ALL;
 CREATE OR REPLACE TEMP TABLE _rule (rule_no INTEGER, rule_id VARCHAR, rule_version VARCHAR, kind VARCHAR,
     severity VARCHAR,
-    sense VARCHAR, unit VARCHAR, near_margin DOUBLE);
+    sense VARCHAR, unit VARCHAR, observes VARCHAR, near_margin DOUBLE);
 CREATE OR REPLACE TEMP TABLE _needs (rule_no INTEGER, pos INTEGER, signal VARCHAR);
 CREATE OR REPLACE TEMP TABLE _error ({_KEYS}, code VARCHAR, reason VARCHAR);
 CREATE OR REPLACE TEMP TABLE _group ({_KEYS}, object_id VARCHAR, clean BOOLEAN, t_start_ns BIGINT, t_end_ns BIGINT,
@@ -56,7 +56,7 @@ SELECT r.rule_no, s.drive_id, s.ego_id FROM _rule r CROSS JOIN _subject s
 ANTI JOIN _gated g ON g.rule_no = r.rule_no AND g.drive_id = s.drive_id AND g.ego_id = s.ego_id
 """
 _NAMES = (
-    "_subject", "_segment", "_rule", "_needs", "_error", "_group", "_outcome", "_stretch", "_margin", "_gated", "_todo",
+    "_subject", "_watched", "_segment", "_rule", "_needs", "_error", "_group", "_outcome", "_stretch", "_margin", "_gated", "_todo",
     "_grid_group", "_closed", "_judged", "_profile_set", "_raw_reference", "reference", "_occasion", "reference_step",
 )  # fmt: skip
 
@@ -67,11 +67,12 @@ def prepare(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> dict
     rules = [b.rule for b in bindings]
     con.execute(
         "INSERT INTO _rule SELECT unnest($no), unnest($id), unnest($version), unnest($kind), unnest($severity), "
-        "unnest($sense), unnest($unit::VARCHAR[]), unnest($near::DOUBLE[])",
+        "unnest($sense), unnest($unit::VARCHAR[]), unnest($observes::VARCHAR[]), unnest($near::DOUBLE[])",
         {
             "no": [b.no for b in bindings], "id": [r.id for r in rules], "version": [r.version for r in rules],
             "kind": [r.kind for r in rules], "severity": [r.severity for r in rules], "sense": [r.sense for r in rules],
-            "unit": [r.unit for r in rules], "near": [r.near_margin for r in rules],
+            "unit": [r.unit for r in rules], "observes": [r.observes for r in rules],
+            "near": [r.near_margin for r in rules],
         },
     )  # fmt: skip
     needs = [(b.no, pos, signal) for b in bindings for pos, signal in enumerate(b.rule.requires)]

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from drivelint import conditions
 from drivelint.errors import UsageError
+from drivelint.evaluate import restricted
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -38,7 +38,7 @@ class Binding:
         self._values: dict[str, object] = {
             **params,
             "_no": no,
-            "_road_types": conditions.covered(rule.applies.road_type),
+            **restricted.bound(rule),
         }
         for field, name in _ENGINE.items():
             given = getattr(rule, field)

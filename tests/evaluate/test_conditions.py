@@ -1,0 +1,236 @@
+"""Where a rule holds: the conditions of its header, three-valued, and whether the automated driver drives."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.evaluate.packs import (
+    AFTER,
+    EXECUTION,
+    INVARIANT,
+    MEASURED,
+    PLACE_BEFORE,
+    brief,
+    findings,
+    verdicts,
+    write,
+)
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.catalogue import Rule
+
+SPEED = {"reads": '["ego_state"]', "unit": '"m/s"', "sense": '">="'}
+SPEED_SQL = "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, 10 AS required FROM ego_state"
+REFERENCE = "SELECT drive_id, ego_id, t_ns FROM exit_taken"
+AT = {"reads": '["ego_state", "exit_taken"]'}
+PAIR = {"reads": '["pair"]'}
+PAIR_SQL = "SELECT drive_id, ego_id, t_ns, object_id, clearance_m AS observed, 1 AS required FROM pair"
+
+PASS, OUT, NOWHERE = ("pass", "kept"), ("not_applicable", "outside_conditions"), ("not_applicable", "not_triggered")
+
+
+def invariant(tmp_path: Path, applies: str = "", **header: str) -> Rule:
+    return write(
+        tmp_path, INVARIANT | SPEED | header, {"condition": SPEED_SQL}, tables=applies and f"[applies]\n{applies}"
+    )
+
+
+def at_event(tmp_path: Path, applies: str = "", kind: dict[str, str] = EXECUTION, **sections: str) -> Rule:
+    body = {"reference": REFERENCE, "condition": SPEED_SQL} | sections
+    return write(tmp_path, kind | SPEED | AT, body, name="event", tables=applies and f"[applies]\n{applies}")
+
+
+def drive(speeds: list[Any], *, at: Any = None, **given: Any) -> dict[str, Any]:
+    """Return a scene at ten steps a second in which these conditions hold."""
+    times = [i / 10 for i in range(len(speeds))]
+    scene: dict[str, Any] = {"ego_state": {"t_s": times, "speed_mps": speeds}, "ego_condition": {"t_s": times, **given}}
+    return scene | ({} if at is None else {"exit_taken": {"t_s": at}})
+
+
+@pytest.mark.parametrize(
+    ("applies", "given", "expected"),
+    [
+        ('road_type = ["town"]', {"road_type": "town"}, "in"),
+        ('road_type = ["town"]', {"road_type": "townLocal"}, "in"),
+        ('road_type = ["townLocal"]', {"road_type": "town"}, "road_type_unknown"),
+        ('road_type = ["town"]', {"road_type": "rural"}, "out"),
+        ('road_type = ["town"]', {"road_type": None}, "road_type_unknown"),
+        ('road_type = ["town", "rural"]', {"road_type": "rural"}, "in"),
+        ('carriageway = ["dual"]', {"carriageway": "single"}, "out"),
+        ('carriageway = ["dual"]', {}, "carriageway_unknown"),
+        ('area = ["built_up"]', {"area": "built_up"}, "in"),
+        ('area = ["open"]', {"area": "built_up"}, "out"),
+        ('nation = ["gb"]', {"nation": "gb-sct"}, "in"),
+        ('nation = ["gb-sct"]', {"nation": "gb"}, "nation_unknown"),
+        ('nation = ["gb-sct"]', {"nation": "gb-eng"}, "out"),
+        ('nation = ["gb-sct", "gb"]', {"nation": "gb"}, "in"),
+        ('nation = ["de"]', {"nation": "gb"}, "out"),
+        ('nation = ["de"]', {}, "nation_unknown"),
+        ('weather = ["wet", "ice"]', {"weather": "ice"}, "in"),
+        ('weather = ["wet", "ice"]', {"weather": "dry"}, "out"),
+        ('light = ["night"]', {"light": "day"}, "out"),
+        ('vehicle_class = ["car"]', {"vehicle_class": "car_towing"}, "out"),
+        ('vehicle_class = ["car"]', {}, "vehicle_class_unknown"),
+        ("limit_min_mps = 13.41", {"limit_mps": 13.4112}, "in"),
+        ("limit_min_mps = 13.42", {"limit_mps": 13.4112}, "in"),  # rounding of mph and km/h
+        ("limit_min_mps = 13.5", {"limit_mps": 13.4112}, "out"),
+        ("limit_max_mps = 13.41", {"limit_mps": 13.4112}, "in"),
+        ("limit_max_mps = 13.3", {"limit_mps": 13.4112}, "out"),
+        ("limit_min_mps = 13\nlimit_max_mps = 18", {"limit_mps": 17.88}, "in"),
+        ("limit_min_mps = 13\nlimit_max_mps = 18", {"limit_mps": 22.35}, "out"),
+        ("limit_min_mps = 13\nlimit_max_mps = 18", {"limit_mps": 8.94}, "out"),
+        ("limit_min_mps = 13", {}, "limit_unknown"),
+        # all together: one that is false settles it, whatever is not known
+        ('weather = ["wet"]\nlight = ["night"]', {"weather": "wet", "light": "night"}, "in"),
+        ('weather = ["wet"]\nlight = ["night"]', {"weather": "wet", "light": "day"}, "out"),
+        ('weather = ["wet"]\nlight = ["night"]', {"weather": None, "light": "day"}, "out"),
+        ('weather = ["wet"]\nlight = ["night"]', {"weather": "wet", "light": None}, "light_unknown"),
+        ('weather = ["wet"]\nlight = ["night"]', {}, "weather_unknown"),
+        # and the driver's engagement with them
+        ('weather = ["wet"]', {"weather": None, "engaged": False}, "never"),
+        ('weather = ["wet"]', {"weather": "dry", "engaged": None}, "out"),
+        ('weather = ["wet"]', {"weather": "wet", "engaged": None}, "engaged_unknown"),
+        ("", {"engaged": True}, "in"),
+        ("", {"engaged": False}, "never"),
+        ("", {"engaged": None}, "engaged_unknown"),
+    ],
+)
+def test_a_rule_holds_where_all_its_conditions_do(
+    tmp_path: Path, applies: str, given: dict[str, Any], expected: str
+) -> None:
+    scene = drive([12, 12, 12], at=0.1, **given)
+    ends = {"in": (PASS, PASS), "out": (NOWHERE, OUT), "never": (("not_applicable", "not_engaged"), OUT)}
+    wanted = ends.get(expected, (("unknown", expected), ("unknown", expected)))
+    rules = invariant(tmp_path, applies), at_event(tmp_path, applies)
+    assert tuple(brief(verdicts(rule, scene)) for rule in rules) == tuple([end] for end in wanted)
+
+
+def test_what_is_not_known_is_named_and_how_to_give_it(tmp_path: Path) -> None:
+    said = {
+        "weather_unknown": "the weather is not known at 0.000 s: give --env weather=dry",
+        "engaged_unknown": "whether the automated driver drives is not known at 0.000 s: give the log's mode flag engaged",
+    }
+    rule = invariant(tmp_path, 'weather = ["wet"]')
+    for given in ({}, {"weather": "wet", "engaged": None}):
+        (row,) = verdicts(rule, drive([12, 12], **given))
+        assert said[row["reason_code"]] in row["reason"]
+
+
+def test_observes_stands_in_the_sentence(tmp_path: Path) -> None:
+    rule = invariant(tmp_path, observes='"speed on the ramp"')
+    (kept,), (failed,) = (verdicts(rule, drive([v, v])) for v in (12, 9))
+    assert kept["reason"] == "Speed on the ramp 12 m/s at 0.000 s where at least 10 m/s is required: kept by 2 m/s."
+    assert failed["reason"] == "Speed on the ramp 9 m/s at 0.000 s where at least 10 m/s is required: missed by 1 m/s."
+
+
+def test_a_step_without_conditions_is_a_step_at_which_they_are_not_known(tmp_path: Path) -> None:
+    scene = drive([12, 12, 12], weather="wet")
+    scene["ego_condition"] = {"t_s": [0.0, 0.2], "weather": "wet"}
+    (row,) = verdicts(invariant(tmp_path, 'weather = ["wet"]'), scene)
+    assert (row["verdict"], row["reason_code"], row["n_judged"]) == ("unknown", "weather_unknown", 2)
+
+
+def test_only_the_steps_at_which_a_condition_holds_are_judged(tmp_path: Path) -> None:
+    wet = ["dry", "wet", "wet", "wet", "dry", "dry", "dry", "wet"]
+    rows = verdicts(invariant(tmp_path, 'weather = ["wet"]'), drive([9, 12, 9, 12, 9, 9, 9, 12], weather=wet))
+    assert [(r["verdict"], r["t_start_ns"], r["t_end_ns"], r["n_expected"]) for r in rows] == [
+        ("fail", 10**8, 3 * 10**8, 3), ("pass", 7 * 10**8, 7 * 10**8, 1),
+    ]  # fmt: skip
+
+
+# ---- the automated driver's engagement
+
+
+def test_what_the_human_did_is_not_judged(tmp_path: Path) -> None:
+    """Steps 0 to 2 and 5 to 7 are driven by hand: what fails there is nobody's finding."""
+    engaged = [False, False, False, True, True, False, False, False, True, True]
+    scene = drive([9, 9, 9, 12, 12, 9, 9, 9, 12, 9], engaged=engaged)
+    rule = invariant(tmp_path)
+    rows = verdicts(rule, scene)
+    assert [(r["verdict"], r["t_start_ns"], r["t_end_ns"], r["n_expected"]) for r in rows] == [
+        ("pass", 3 * 10**8, 4 * 10**8, 2), ("fail", 8 * 10**8, 9 * 10**8, 2),
+    ]  # fmt: skip
+    assert [(f["t_start_ns"], f["t_end_ns"]) for f in findings(rule, scene)] == [(9 * 10**8, 9 * 10**8)]
+
+
+def test_where_it_is_not_known_who_drove_a_failure_is_unknown(tmp_path: Path) -> None:
+    scene = drive([9, 12, 12], engaged=[None, True, True])
+    (row,) = verdicts(invariant(tmp_path), scene)
+    assert (row["verdict"], row["reason_code"], row["n_judged"]) == ("unknown", "engaged_unknown", 2)
+    assert findings(invariant(tmp_path), scene) == []
+
+
+def test_objects_beside_a_human_are_not_judged(tmp_path: Path) -> None:
+    rule = write(tmp_path, INVARIANT | MEASURED | PAIR, {"condition": PAIR_SQL})
+    times = [0.0, 0.1, 0.2, 0.3]
+    scene = {
+        "step": {"t_s": times},
+        "pair": [{"t_s": times, "object_id": who, "clearance_m": [0, 2, 2, 2]} for who in "ab"],
+        "ego_condition": {"t_s": times, "engaged": [False, True, True, True]},
+        "lost_object": {"object_id": "c", "t_from_s": 0.0, "t_to_s": 0.3, "reason": "lost_near_ego"},
+    }
+    assert [(r["object_id"], r["verdict"], r["n_expected"]) for r in verdicts(rule, scene)] == [
+        ("a", "pass", 3), ("b", "pass", 3),
+    ]  # fmt: skip
+    scene["ego_condition"] = {"t_s": times, "engaged": [True, True, True, False]}
+    assert [(r["object_id"], r["verdict"]) for r in verdicts(rule, scene)] == [
+        ("a", "fail"), ("b", "fail"), ("c", "unknown"),
+    ]  # fmt: skip
+
+
+def test_one_ego_by_hand_leaves_the_others_alone(tmp_path: Path) -> None:
+    """Also a reference time that is no step: unknown only for the ego of which there is something to know."""
+    scene = {
+        "ego_state": [{"ego_id": e, "t_s": [0.0, 0.1, 0.2], "speed_mps": [9, 12, 12]} for e in "ab"],
+        "ego_condition": {"ego_id": "a", "t_s": [0.0, 0.1, 0.2], "engaged": [False, True, True]},
+        "exit_taken": [{"ego_id": e, "t_s": 0.15} for e in "ab"],
+    }
+    assert [(r["ego_id"], r["verdict"], r["n_expected"]) for r in verdicts(invariant(tmp_path), scene)] == [
+        ("a", "pass", 2), ("b", "fail", 3),
+    ]  # fmt: skip
+    assert [(r["ego_id"], r["reason_code"]) for r in verdicts(at_event(tmp_path), scene)] == [
+        ("a", "engaged_unknown"), ("b", "missing_step"),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("quantifier", "speeds", "engaged", "expected"),
+    [
+        ("always", [12, 12, 12, 12], [True, True, True, True], ("pass", "kept")),
+        ("always", [12, 12, 12, 12], [True, True, True, False], ("unknown", "not_engaged")),
+        ("always", [12, 12, 12, 9], [True, True, True, False], ("unknown", "not_engaged")),
+        ("always", [12, 12, 12, 9], [True, True, True, None], ("unknown", "engaged_unknown")),
+        ("always", [12, 12, 9, 9], [True, True, True, False], ("fail", "violated")),
+        ("always", [12, 12, 12, 12], [False, True, True, True], ("pass", "kept")),
+        ("always", [12, 12, 12, 12], [True, False, True, True], ("not_applicable", "outside_conditions")),
+        ("eventually", [9, 9, 9, 12], [True, True, True, False], ("unknown", "not_engaged")),
+        ("eventually", [9, 9, 12, 9], [True, True, True, False], ("pass", "kept")),
+        ("eventually", [9, 9, 9, 9], [True, True, True, True], ("fail", "violated")),
+    ],
+)
+def test_a_window_in_which_the_human_takes_over(
+    tmp_path: Path, quantifier: str, speeds: list[int], engaged: list[Any], expected: tuple[str, str]
+) -> None:
+    kind = AFTER | {"window_s": "0.2", "quantifier": f'"{quantifier}"'}
+    rule = at_event(tmp_path, kind=kind)
+    assert brief(verdicts(rule, drive(speeds, at=0.1, engaged=engaged))) == [expected]
+
+
+def test_an_anchor_that_the_human_drove_past_is_unknown(tmp_path: Path) -> None:
+    rule = at_event(tmp_path, kind=PLACE_BEFORE, anchor="SELECT ref_id, t_ns - 200000000 AS t_ns FROM reference")
+    for engaged, expected in ((True, ("pass", "kept")), (False, ("unknown", "not_engaged"))):
+        scene = drive([12, 12, 12], at=0.2, engaged=[engaged, True, True])
+        assert brief(verdicts(rule, scene)) == [expected]
+
+
+def test_nobody_beside_a_human_is_not_claimed(tmp_path: Path) -> None:
+    reads = {"reads": '["exit_taken", "pair"]', "combine": '"all"', "window_s": "0.1"}
+    rule = write(tmp_path, AFTER | MEASURED | reads, {"reference": REFERENCE, "condition": PAIR_SQL})
+    scene: dict[str, Any] = {"step": {"t_s": [0.0, 0.1, 0.2]}, "exit_taken": {"t_s": 0.1}}
+    assert brief(verdicts(rule, scene)) == [("pass", "nobody_there")]
+    scene["ego_condition"] = {"t_s": [0.0, 0.1, 0.2], "engaged": [True, True, False]}
+    assert brief(verdicts(rule, scene)) == [("unknown", "not_engaged")]
