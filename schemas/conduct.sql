@@ -29,11 +29,45 @@ CREATE TABLE ego_motion (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
     v_long_mps DOUBLE,                -- speed along its own heading; negative: reversing
-    accel_mps2 DOUBLE,                -- longitudinal acceleration, smoothed (the query says how); NULL where its window is not whole
+    accel_mps2 DOUBLE,                -- longitudinal acceleration, least-squares over 0.25 s to both sides; NULL where that is not whole (log's ends, holes), and below 5 Hz
     lat_accel_mps2 DOUBLE,            -- speed times smoothed yaw rate, to the left positive
     jerk_mps3 DOUBLE,                 -- slope of accel_mps2, smoothed the same way
     accel_2s_mps2 DOUBLE,             -- mean acceleration over the 2 s that end at this step
     jerk_1s_mps3 DOUBLE               -- mean jerk over the 1 s that ends at this step
+);
+
+CREATE TABLE hidden (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step
+    object_id VARCHAR NOT NULL,       -- somebody who is or may be there and has no place in the corridor: no position or box, lost, or beyond the map's end
+    actor_class VARCHAR,              -- see actor
+    vehicle BOOLEAN NOT NULL,         -- it may be a vehicle
+    least_m DOUBLE NOT NULL,          -- box to box it is at least so far away, by when and where it is seen
+    ahead BOOLEAN                     -- it is ahead of the ego; NULL: it may be or not
+);
+
+CREATE TABLE neighbour (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step
+    k INTEGER NOT NULL,               -- see step
+    seg INTEGER NOT NULL,             -- see step
+    object_id VARCHAR NOT NULL,       -- an actor in the corridor's strip, at most 30 m away, box to box
+    actor_class VARCHAR,              -- see actor
+    chain_id INTEGER NOT NULL,        -- the ego's running chain
+    ahead_m DOUBLE NOT NULL,          -- its front to the ego's front, positive ahead
+    gap_ahead_m DOUBLE NOT NULL,      -- its rear to the ego's front
+    gap_behind_m DOUBLE NOT NULL,     -- the ego's rear to its front
+    d_m DOUBLE NOT NULL,              -- see pair
+    lat_half_m DOUBLE NOT NULL,       -- see pair
+    half_width_m DOUBLE NOT NULL,     -- see pair
+    heading_diff_rad DOUBLE NOT NULL, -- see pair
+    side VARCHAR NOT NULL,            -- left or right of the ego
+    gap_m DOUBLE NOT NULL,            -- see beside
+    clearance_m DOUBLE,               -- see pair
+    ego_speed_mps DOUBLE,             -- ego's speed
+    speed_mps DOUBLE                  -- its speed
 );
 
 CREATE TABLE follower (
@@ -92,12 +126,13 @@ CREATE TABLE beside (
     side VARCHAR,                     -- left or right of the ego
     gap_m DOUBLE,                     -- gap between the two boxes across the corridor; negative: overlap
     clearance_m DOUBLE,               -- box to box, see pair
+    ahead_m DOUBLE,                   -- its front to the ego's front along the corridor, positive ahead
     ego_speed_mps DOUBLE,             -- ego's speed
     speed_mps DOUBLE,                 -- its speed
     ego_lat_mps DOUBLE,               -- ego's speed across the corridor, towards it positive
     lat_mps DOUBLE,                   -- its speed across the corridor, towards the ego positive
     along BOOLEAN,                    -- it heads as the corridor runs (within 90 degrees)
-    on_carriageway BOOLEAN            -- its box reaches into the ego's running lane or a drivable lane beside it; NULL: not known
+    on_carriageway BOOLEAN            -- its box reaches into the ego's running lane or a drivable lane beside it, or its centre is on any; NULL: not known
 );
 
 CREATE TABLE passing (
@@ -106,12 +141,13 @@ CREATE TABLE passing (
     occurrence INTEGER NOT NULL,      -- 0.. in time order; ego and another road user that heads the same way change their order
     object_id VARCHAR NOT NULL,       -- the other
     actor_class VARCHAR,              -- see actor
-    ego_passes BOOLEAN NOT NULL,      -- the ego's front got ahead of its front; false: its front got ahead of the ego's
+    ego_passes BOOLEAN NOT NULL,      -- the ego's front got ahead of its front by more than 0.25 m; false: its front got ahead of the ego's
     t_ns BIGINT NOT NULL,             -- first step in the new order
     t_from_ns BIGINT NOT NULL,        -- first step of the stretch around t_ns in which they are beside each other
     t_to_ns BIGINT NOT NULL,          -- last one
     side VARCHAR NOT NULL,            -- left or right: where the other is, seen from the ego
-    gap_m DOUBLE NOT NULL,            -- least gap across the corridor in that stretch
+    gap_m DOUBLE,                     -- least gap across the corridor in that stretch; NULL: they are beside each other in no step that was seen
+    whole BOOLEAN NOT NULL,           -- the stretch was seen from before its first step until after its last, without a hole: else gap_m is only the least that was seen
     same_lane BOOLEAN NOT NULL,       -- its centre is in the ego's running lane at t_ns: the ego passes round it
     ego_speed_mps DOUBLE,             -- ego's speed at t_ns
     speed_mps DOUBLE                  -- its speed at t_ns; standing: at most 0.5

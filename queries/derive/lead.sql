@@ -1,18 +1,77 @@
--- The nearest vehicle ahead in the running lane, or the certainty that there is none: a step at which somebody cannot be placed, or the
--- ego itself cannot, has no row.
+-- The nearest vehicle ahead in the running lane, or the certainty that there is none: a step at which somebody without a place may be
+-- nearer, or the ego itself has none, has no row.
 WITH ahead AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns,
-        min({'gap_m': p.rear_s_m - e.front_s_m, 'object_id': p.object_id, 'speed_mps': p.speed_mps}) AS near
+        min({
+            'gap_m': p.rear_s_m - e.front_s_m, 'object_id': p.object_id, 'speed_mps': p.speed_mps, 'actor_class': p.actor_class,
+            'oncoming': abs(p.heading_diff_rad) > pi() / 2
+        }) AS near
     FROM pair p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
-    WHERE may_be_vehicle(p.actor_class) AND p.s_m > e.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m - over_boundary_m()
+    WHERE may_be_vehicle(p.actor_class) AND p.s_m > e.s_m AND in_lane(p.d_m, p.lat_half_m, p.half_width_m)
         -- what stands the wrong way round is in the way all the same
         AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps())
     GROUP BY ALL
+),
+doubt AS (
+    SELECT drive_id, ego_id, t_ns, min(least_m) AS least_m FROM hidden WHERE vehicle AND ahead IS DISTINCT FROM false GROUP BY ALL
+),
+told AS (
+    SELECT
+        e.drive_id, e.ego_id, e.t_ns, st.k, st.seg, e.chain_id, e.speed_mps AS ego_speed_mps, a.near,
+        first_value(e.t_ns) OVER (
+            PARTITION BY e.drive_id, e.ego_id, st.seg ORDER BY e.t_ns RANGE BETWEEN 500_000_000 PRECEDING AND CURRENT ROW
+        ) AS t_half_ns,
+        lag(e.t_ns) OVER (PARTITION BY e.drive_id, e.ego_id ORDER BY st.k) AS t_before_ns,
+        lag(st.seg) OVER (PARTITION BY e.drive_id, e.ego_id ORDER BY st.k) = st.seg AS goes_on,
+        e.front_s_m IS NOT NULL AND coalesce(d.least_m >= coalesce(a.near.gap_m, corridor_ahead_m()), true) AS known
+    FROM ego_state e
+    JOIN step st USING (drive_id, ego_id, t_ns)
+    LEFT JOIN ahead a USING (drive_id, ego_id, t_ns)
+    LEFT JOIN doubt d USING (drive_id, ego_id, t_ns)
+),
+run AS (
+    SELECT
+        *,
+        sum((NOT coalesce(same, false))::INTEGER) OVER (PARTITION BY drive_id, ego_id ORDER BY k ROWS UNBOUNDED PRECEDING) AS n
+    FROM (
+        SELECT
+            *,
+            goes_on AND lag(known) OVER (PARTITION BY drive_id, ego_id ORDER BY k)
+                AND near.object_id IS NOT DISTINCT FROM lag(near.object_id) OVER (PARTITION BY drive_id, ego_id ORDER BY k) AS same
+        FROM told
+    )
+    WHERE known
+),
+begun AS (
+    SELECT drive_id, ego_id, n, min(t_ns) AS t_since_ns, min(k) AS k FROM run WHERE near.object_id IS NOT NULL GROUP BY ALL
+),
+-- where the nearest one was one step before it became that: in the lane ahead already, or not; half a second ago how fast
+past AS (
+    SELECT r.drive_id, r.ego_id, r.t_ns, p.t_ns AS t_past_ns, p.speed_mps, p.s_m, in_lane(p.d_m, p.lat_half_m, p.half_width_m) AS in_lane
+    FROM (
+        SELECT drive_id, ego_id, t_ns, near.object_id AS object_id, unnest(list_distinct([t_half_ns, t_before_ns])) AS t_past_ns FROM run WHERE near.object_id IS NOT NULL
+    ) r
+    JOIN pair p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_ns = r.t_past_ns AND p.object_id = r.object_id
+),
+origin AS (
+    SELECT b.drive_id, b.ego_id, b.n, NOT (p.s_m > e.s_m AND p.in_lane) AS joined
+    FROM begun b
+    JOIN run r ON r.drive_id = b.drive_id AND r.ego_id = b.ego_id AND r.t_ns = b.t_since_ns
+    JOIN past p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_ns = r.t_ns AND p.t_past_ns = r.t_before_ns
+    JOIN ego_state e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id AND e.t_ns = r.t_before_ns
+    WHERE r.goes_on
 )
-SELECT e.drive_id, e.ego_id, e.t_ns, a.near.object_id AS object_id, a.near.gap_m AS gap_m, a.near.speed_mps AS speed_mps
-FROM ego_state e
-LEFT JOIN ahead a USING (drive_id, ego_id, t_ns)
-ANTI JOIN unplaced u ON u.drive_id = e.drive_id AND u.ego_id = e.ego_id AND u.t_ns = e.t_ns
-WHERE e.front_s_m IS NOT NULL
+SELECT
+    r.drive_id, r.ego_id, r.t_ns, r.near.object_id AS object_id, r.near.actor_class AS actor_class, r.near.gap_m AS gap_m,
+    r.near.speed_mps AS speed_mps,
+    -- a mean over half a second; less than 0.4 s of it at the log's begin is none
+    CASE WHEN r.t_ns - r.t_half_ns >= 400_000_000 THEN 1e9 * (r.near.speed_mps - h.speed_mps) / (r.t_ns - r.t_half_ns) END AS accel_mps2,
+    r.ego_speed_mps, x.left_in_m < 0 AND x.right_in_m < 0 AS in_lane, r.near.oncoming AS oncoming,
+    b.t_since_ns, CASE WHEN b.k = 0 THEN false ELSE o.joined END AS joined
+FROM run r
+LEFT JOIN ego_corridor x ON x.drive_id = r.drive_id AND x.ego_id = r.ego_id AND x.chain_id = r.chain_id AND x.t_ns = r.t_ns
+LEFT JOIN past h ON h.drive_id = r.drive_id AND h.ego_id = r.ego_id AND h.t_ns = r.t_ns AND h.t_past_ns = r.t_half_ns
+LEFT JOIN begun b ON b.drive_id = r.drive_id AND b.ego_id = r.ego_id AND b.n = r.n
+LEFT JOIN origin o ON o.drive_id = r.drive_id AND o.ego_id = r.ego_id AND o.n = r.n

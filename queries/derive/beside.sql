@@ -1,0 +1,55 @@
+-- Whose box overlaps the ego's along the corridor, how far apart across it. Speeds across come from the velocity where a sample of the
+-- step's time is there, else from speed and heading.
+WITH placed AS (
+    SELECT n.*, e.d_m AS ego_d_m, e.s_m AS ego_s_m, e.speed_mps * sin(e.heading_diff_rad) AS ego_drift_mps, e.yaw_rad - e.heading_diff_rad AS way_rad
+    FROM neighbour n
+    JOIN ego_state e USING (drive_id, ego_id, t_ns)
+    WHERE n.gap_ahead_m <= 0 AND n.gap_behind_m <= 0
+),
+moving AS (
+    SELECT
+        n.*, coalesce(s.vy_mps * cos(n.way_rad) - s.vx_mps * sin(n.way_rad), n.speed_mps * sin(n.heading_diff_rad)) AS drift_mps,
+        coalesce(g.vy_mps * cos(n.way_rad) - g.vx_mps * sin(n.way_rad), n.ego_drift_mps) AS ego_left_mps
+    FROM placed n
+    LEFT JOIN state_dynamics s ON s.drive_id = n.drive_id AND s.actor_id = n.object_id AND s.t_ns = n.t_ns
+    JOIN state_dynamics g ON g.drive_id = n.drive_id AND g.actor_id = n.ego_id AND g.t_ns = n.t_ns
+),
+-- the lane beside the running one on the object's side
+lane AS (
+    SELECT n.drive_id, n.ego_id, n.t_ns, n.object_id, max(b.width_m) AS width_m
+    FROM placed n
+    JOIN data_log g ON g.drive_id = n.drive_id
+    JOIN chain c ON c.drive_id = n.drive_id AND c.ego_id = n.ego_id AND c.chain_id = n.chain_id
+        AND c.s_start_m <= n.ego_s_m AND n.ego_s_m <= c.s_start_m + c.length_m
+    JOIN lanelet r ON r.environment_id = g.environment_id AND r.lanelet_id = c.lanelet_id
+    JOIN lanelet b ON b.environment_id = g.environment_id AND b.lanelet_id = CASE WHEN n.d_m > 0 THEN r.left_id ELSE r.right_id END
+    WHERE b.drivable
+    GROUP BY ALL
+),
+on_lane AS (
+    SELECT DISTINCT n.drive_id, n.ego_id, n.t_ns, n.object_id
+    FROM placed n
+    JOIN lane_occupancy o ON o.drive_id = n.drive_id AND o.actor_id = n.object_id AND o.t_ns = n.t_ns
+    WHERE o.drivable
+),
+doubt AS (
+    SELECT drive_id, ego_id, t_ns, object_id, actor_class FROM hidden WHERE least_m < may_be_beside_m()
+    UNION
+    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class
+    FROM pair p
+    JOIN ego_state e USING (drive_id, ego_id, t_ns)
+    WHERE NOT p.clearance_is_bound AND (e.front_s_m IS NULL OR p.front_s_m IS NULL)
+        -- beyond the strip's edge, or where the ego itself has no corridor
+        AND p.clearance_m < may_be_beside_m() AND (e.front_s_m IS NULL OR p.clearance_m < may_be_beside_m() / 2)
+)
+SELECT
+    m.drive_id, m.ego_id, m.t_ns, m.object_id, m.actor_class, m.side, m.gap_m, m.clearance_m, m.ahead_m, m.ego_speed_mps, m.speed_mps,
+    CASE WHEN m.d_m > m.ego_d_m THEN m.ego_left_mps ELSE -m.ego_left_mps END AS ego_lat_mps,
+    CASE WHEN m.d_m > m.ego_d_m THEN -m.drift_mps ELSE m.drift_mps END AS lat_mps,
+    abs(m.heading_diff_rad) < pi() / 2 AS along,
+    o.object_id IS NOT NULL OR abs(m.d_m) - m.lat_half_m < m.half_width_m + coalesce(l.width_m, 0.0) AS on_carriageway
+FROM moving m
+LEFT JOIN lane l USING (drive_id, ego_id, t_ns, object_id)
+LEFT JOIN on_lane o USING (drive_id, ego_id, t_ns, object_id)
+UNION ALL BY NAME
+SELECT drive_id, ego_id, t_ns, object_id, actor_class FROM doubt

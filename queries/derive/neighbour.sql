@@ -1,0 +1,12 @@
+-- Who is near the ego, seen along and across its corridor. `pair` is large, what is near is little: whatever asks for neighbours asks here.
+SELECT
+    p.drive_id, p.ego_id, p.t_ns, st.k, st.seg, p.object_id, p.actor_class, e.chain_id,
+    p.front_s_m - e.front_s_m AS ahead_m, p.rear_s_m - e.front_s_m AS gap_ahead_m, e.rear_s_m - p.front_s_m AS gap_behind_m,
+    p.d_m, p.lat_half_m, p.half_width_m, p.heading_diff_rad,
+    -- heading against the corridor, the ego has its left on the other side
+    CASE WHEN (p.d_m > e.d_m) = (abs(e.heading_diff_rad) <= pi() / 2) THEN 'left' ELSE 'right' END AS side,
+    abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m AS gap_m, p.clearance_m, e.speed_mps AS ego_speed_mps, p.speed_mps
+FROM pair p
+JOIN ego_state e USING (drive_id, ego_id, t_ns)
+JOIN step st USING (drive_id, ego_id, t_ns)
+WHERE NOT p.clearance_is_bound AND p.front_s_m IS NOT NULL AND e.front_s_m IS NOT NULL

@@ -1,0 +1,48 @@
+-- Where the ego and another road user that heads the same way change their order, fronts against fronts. Steps at which the other has no
+-- place, and holes, are bridged: the order has changed all the same, but the stretch was not seen whole.
+WITH met AS (
+    SELECT drive_id, ego_id, object_id, actor_class, t_ns, k, seg, true AS placed, ahead_m, gap_ahead_m <= 0 AND gap_behind_m <= 0 AS over,
+        gap_m, side, abs(d_m) < half_width_m AS same_lane, abs(heading_diff_rad) < pi() / 2 AS along, ego_speed_mps, speed_mps
+    FROM neighbour
+    UNION ALL BY NAME
+    SELECT h.drive_id, h.ego_id, h.object_id, h.t_ns, st.k, st.seg, false AS placed, false AS over
+    FROM hidden h
+    SEMI JOIN neighbour n ON n.drive_id = h.drive_id AND n.ego_id = h.ego_id AND n.object_id = h.object_id
+    JOIN step st ON st.drive_id = h.drive_id AND st.ego_id = h.ego_id AND st.t_ns = h.t_ns
+),
+ordered AS (
+    SELECT
+        *,
+        CASE WHEN ahead_m > order_m() THEN 1 WHEN ahead_m < -order_m() THEN -1 END AS rank,
+        k - row_number() OVER w AS run, lag(k) OVER w = k - 1 AND lag(seg) OVER w = seg AND lag(placed) OVER w AND placed AS joined,
+        lag(over) OVER w AS over_before,
+        lead(k) OVER w = k + 1 AND lead(seg) OVER w = seg AND lead(placed) OVER w AS goes_on
+    FROM met
+    WINDOW w AS (PARTITION BY drive_id, ego_id, object_id ORDER BY k)
+),
+numbered AS (
+    SELECT
+        *,
+        -- a stretch beside each other begins with every step that does not go on from one
+        sum((NOT coalesce(over AND over_before AND joined, false))::INTEGER)
+            OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY k ROWS UNBOUNDED PRECEDING) AS n,
+        last_value(rank IGNORE NULLS) OVER (PARTITION BY drive_id, ego_id, object_id, run ORDER BY k ROWS BETWEEN UNBOUNDED PRECEDING AND 1 PRECEDING) AS rank_before
+    FROM ordered
+),
+stretch AS (
+    SELECT
+        drive_id, ego_id, object_id, n, min(t_ns) AS t_from_ns, max(t_ns) AS t_to_ns, min(gap_m) AS gap_m,
+        min({'k': k, 'seen': coalesce(joined, false)}).seen AND max({'k': k, 'seen': coalesce(goes_on, false)}).seen AS whole
+    FROM numbered
+    WHERE over
+    GROUP BY ALL
+)
+SELECT
+    c.drive_id, c.ego_id,
+    (row_number() OVER (PARTITION BY c.drive_id, c.ego_id ORDER BY c.t_ns, c.object_id) - 1)::INTEGER AS occurrence,
+    c.object_id, c.actor_class, c.rank < 0 AS ego_passes, c.t_ns,
+    coalesce(s.t_from_ns, c.t_ns) AS t_from_ns, coalesce(s.t_to_ns, c.t_ns) AS t_to_ns,
+    c.side, s.gap_m, coalesce(s.whole, false) AS whole, c.same_lane, c.ego_speed_mps, c.speed_mps
+FROM numbered c
+LEFT JOIN (SELECT *, true AS over FROM stretch) s USING (drive_id, ego_id, object_id, n, over)
+WHERE c.rank <> c.rank_before AND c.along

@@ -1,0 +1,22 @@
+-- How the ego's conduct is measured.
+
+-- Least-squares slope per second from whole-number sums over n samples: t in ns, y in billionths of its unit.
+CREATE OR REPLACE MACRO exact_slope(n, sum_t, sum_y, sum_ty, sum_tt) AS
+    (n * sum_ty - sum_t * sum_y)::DOUBLE / nullif(n * sum_tt - sum_t * sum_t, 0)::DOUBLE;
+
+-- Whether the samples of a window reach 0.7 of its half width to both sides.
+CREATE OR REPLACE MACRO whole_window(t_ns, first_ns, last_ns, half_ns) AS
+    t_ns - first_ns >= 0.7 * half_ns AND last_ns - t_ns >= 0.7 * half_ns;
+
+-- Nobody comes nearer to the ego than at this speed while unseen, and no two boxes reach further than this from their centres.
+CREATE OR REPLACE MACRO unseen_closing_mps() AS 60.0;
+CREATE OR REPLACE MACRO two_half_boxes_m() AS 12.0;
+
+-- Somebody who cannot be placed may be beside the ego if he may be this near.
+CREATE OR REPLACE MACRO may_be_beside_m() AS 10.0;
+
+-- Two fronts are in another order when they are this far apart in it: side by side they jitter.
+CREATE OR REPLACE MACRO order_m() AS 0.25;
+
+-- Some of a box is in the running lane: its middle is d from the lane's centre line, its half extent across lat_half.
+CREATE OR REPLACE MACRO in_lane(d_m, lat_half_m, half_width_m) AS abs(d_m) - lat_half_m < half_width_m - over_boundary_m();
