@@ -9,7 +9,7 @@ CREATE TABLE environment (
     offset_x_m DOUBLE NOT NULL,       -- added to the map's coordinates
     offset_y_m DOUBLE NOT NULL,       -- added to the map's coordinates
     handedness VARCHAR NOT NULL,      -- lht or rht: the side of the road that is driven on
-    handedness_source VARCHAR NOT NULL, -- option, attribute, junctions, traces, default: how it was found (default: direction is a guess)
+    handedness_source VARCHAR NOT NULL, -- option, attribute, junctions, lanes (beside each other, driven in opposite directions), traces, default: how it was found (default: a guess)
     geo_reference VARCHAR             -- projection string, if the map has one
 );
 

@@ -121,7 +121,7 @@ def test_a_garbled_message_is_refused_with_its_byte(tmp_path: Path) -> None:
     first = 4 + int.from_bytes(data[:4], "little")
     data[first + 4 : first + 12] = b"\xff" * 8
     path.write_bytes(data)
-    with pytest.raises(TraceError, match="drive.osi"):
+    with pytest.raises(TraceError, match=r"drive\.osi"):
         read(path)
 
 

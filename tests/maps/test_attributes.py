@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from drivelint.maps.opendrive.signcodes import kind_of
+from drivelint.maps.signcodes import kind_of
 from tests.maps.xodr import LINE, checks, lane, lanelets, load, road, rows, section
 
 WIDTH = '<width sOffset="0" a="3.5"/>'

@@ -85,6 +85,22 @@ class OsiFileReader:
         return osi_file.read(probe.path)
 
 
+class CommonRoadReader:
+    """A CommonRoad scenario."""
+
+    def accepts(self, probe: Probe) -> bool:
+        """Accept by its root element."""
+        from drivelint.ingest import commonroad
+
+        return commonroad.looks_like(probe.head)
+
+    def read(self, probe: Probe) -> Recording:
+        """Read obstacles and map."""
+        from drivelint.ingest import commonroad
+
+        return commonroad.read(probe.path)
+
+
 class TableReader:
     """Any CSV or Parquet table through a mapping."""
 
@@ -100,7 +116,7 @@ class TableReader:
         return tabular.read(probe.path, probe.options.mapping)
 
 
-READERS: tuple[Reader, ...] = (CanonicalReader(), McapReader(), OsiFileReader(), TableReader())
+READERS: tuple[Reader, ...] = (CanonicalReader(), McapReader(), OsiFileReader(), CommonRoadReader(), TableReader())
 
 
 def read_trace(path: Path, options: IngestOptions) -> Trace:

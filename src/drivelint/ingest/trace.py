@@ -40,6 +40,7 @@ EPOCH_NS = 946_684_800_000_000_000
 FORMATS: dict[str, tuple[str, str]] = {
     "osi-mcap": ("ASAM OSI in MCAP", "the log's host vehicle"),
     "osi-file": ("ASAM OSI trace file", "the log's host vehicle"),
+    "commonroad": ("CommonRoad scenario", "said with --ego"),
     "canonical-parquet": ("drivelint's own Parquet tables", "marked is_ego in the log"),
 }
 """What `data_log.format` may say beside a mapping's name -> its title, and how its ego is known."""
@@ -58,6 +59,8 @@ class IngestOptions:
     topic: str | None = None
     sensor_range_m: float | None = None
     need_ego: bool = True
+    conditions: tuple[tuple[str, str], ...] = ()
+    """What holds in the drive, as (condition, word): see `drivelint.conditions`."""
 
 
 class FrameTimes(NamedTuple):
@@ -69,7 +72,8 @@ class FrameTimes(NamedTuple):
 
 @dataclass(frozen=True)
 class Trace:
-    """One drive as tables of `schemas/model.sql` (data_log, actor, actor_state, signal_state, declared_event, quality).
+    """One drive as tables of `schemas/model.sql` (data_log, actor, actor_state, signal_state, declared_event,
+    drive_condition, quality).
 
     `data_log` has one row, its `environment_id` NULL. Rows are totally ordered: `actor_state` by actor_id and t_ns.
     `embedded_map` is OpenDRIVE found in the log; `map_offset` (metres) is added to the map's coordinates. `frame_times`:
@@ -133,7 +137,8 @@ class Recording:
     """What a reader hands over: rows in the log's own order, nothing sorted or checked yet.
 
     `actors` is an Arrow table with the columns of `actor` where the log has one apart from its states. `ego_ids` are
-    the log's or mapping's egos, `strict_units` is set where a mapping the user can correct decided units and frame.
+    the log's or mapping's egos, `conditions` what it says of the drive (condition -> word), `strict_units` is set where a
+    mapping the user can correct decided units and frame.
     """
 
     format: str
@@ -141,6 +146,7 @@ class Recording:
     actors: pa.Table | None = None
     signals: pa.Table | None = None
     events: pa.Table | None = None
+    conditions: dict[str, str] = field(default_factory=dict)
     ego_ids: list[str] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)

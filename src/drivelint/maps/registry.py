@@ -19,7 +19,6 @@ _SKIP = re.compile(r"\s*(?:<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^\[>]*(?:\[.*?\]\s*)?>
 _ROOT = re.compile(r"\s*<(?:[\w.-]+:)?([A-Za-z_][\w.-]*)")
 _LOOKS = {
     "osm": "an OSM file (Lanelet2 or OpenStreetMap)",
-    "commonroad": "a CommonRoad scenario",
     "net": "a SUMO network",
     "openscenario": "an OpenSCENARIO scenario, not its road network",
     "html": "an HTML page, as a failed download leaves behind",
@@ -32,7 +31,14 @@ def _opendrive() -> MapReader:
     return OpenDriveReader()
 
 
-READERS: dict[str, Callable[[], MapReader]] = {"opendrive": _opendrive}  # by root element, lower case
+def _commonroad() -> MapReader:
+    from drivelint.maps.commonroad import CommonRoadReader
+
+    return CommonRoadReader()
+
+
+# by root element, lower case
+READERS: dict[str, Callable[[], MapReader]] = {"opendrive": _opendrive, "commonroad": _commonroad}
 
 
 def read_source(path: Path) -> MapSource:
@@ -89,7 +95,9 @@ def _reader(source: MapSource) -> MapReader:
         raise MapError(f"map {source.name} is not XML (it begins with {shown!r}): give an OpenDRIVE file (.xodr)")
     if root.lower() not in READERS:
         looks = _LOOKS.get(root.lower(), f"XML with the root element <{root}>")
-        raise MapError(f"map {source.name} looks like {looks}; supported: OpenDRIVE (root element <OpenDRIVE>)")
+        raise MapError(
+            f"map {source.name} looks like {looks}; supported: OpenDRIVE (root element <OpenDRIVE>) and CommonRoad (<commonRoad>)"
+        )
     return READERS[root.lower()]()
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from drivelint.maps.opendrive.placement import place_one
-from drivelint.maps.opendrive.signcodes import kind_of
 from drivelint.maps.opendrive.xml import MalformedError, integer, number
+from drivelint.maps.signcodes import kind_of
 
 if TYPE_CHECKING:
     from lxml import etree

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from lxml import etree
-
+from drivelint import markup
 from drivelint.errors import MapError
 
 if TYPE_CHECKING:
+    from lxml import etree
+
     from drivelint.maps.contract import MapSource
 
 
@@ -19,29 +20,10 @@ class MalformedError(ValueError):
 
 def parse(source: MapSource) -> etree._Element:
     """Return the root element, tags without namespaces; `MapError` for a DOCTYPE or malformed XML, naming the line."""
-    parser = etree.XMLParser(
-        resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, remove_comments=True, remove_pis=True
-    )
     try:
-        root = etree.fromstring(source.content, parser)
-    except etree.XMLSyntaxError as error:
-        if b"<!DOCTYPE" in source.content[:65536]:
-            raise _doctype(source) from None
-        raise MapError(
-            f"map {source.name} is not well-formed XML ({error.msg}): give the complete, unchanged file"
-        ) from None
-    if root.getroottree().docinfo.internalDTD is not None:
-        raise _doctype(source)
-    for element in root.iter():
-        if isinstance(element.tag, str) and element.tag.startswith("{"):
-            element.tag = element.tag.partition("}")[2]
-    return root
-
-
-def _doctype(source: MapSource) -> MapError:
-    return MapError(
-        f"map {source.name} carries a DOCTYPE, which OpenDRIVE does not need and which is refused: remove it"
-    )
+        return markup.parse(source.content)
+    except markup.RefusedError as error:
+        raise MapError(f"map {source.name} {error}") from None
 
 
 LIMIT = 1e9  # no length, coordinate or coefficient of a road is larger; beyond it arithmetic loses the millimetres

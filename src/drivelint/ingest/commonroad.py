@@ -1,0 +1,146 @@
+"""CommonRoad scenarios (XML, 2018b and 2020a): their obstacles as a drive, the file itself as its map.
+
+A scenario has no ego but the start of a planning problem: say who it is with --ego.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from drivelint import markup
+from drivelint.errors import TraceError
+from drivelint.ingest.order import listed
+from drivelint.ingest.trace import CLASSES, Finding, Recording, States
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from lxml import etree
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+_CLASSES = {
+    "car": "car", "taxi": "car", "truck": "truck", "bus": "bus", "motorcycle": "motorcycle", "bicycle": "bicycle",
+    "pedestrian": "pedestrian", "priorityVehicle": "vehicle", "parkedVehicle": "vehicle", "train": "vehicle",
+    "constructionZone": "object", "roadBoundary": "object", "pillar": "object", "building": "object",
+    "median_strip": "object",
+}  # fmt: skip
+_FIELDS = {
+    "x_m": "position/point/x", "y_m": "position/point/y", "yaw_rad": "orientation/exact", "v": "velocity/exact",
+    "a": "acceleration/exact", "slip": "slipAngle/exact",
+}  # fmt: skip
+"""What is read of a state; a value given as an interval is not known."""
+
+
+def looks_like(head: bytes) -> bool:
+    """Say whether a file begins as a CommonRoad scenario."""
+    return b"<commonRoad" in head
+
+
+def read(path: Path) -> Recording:
+    """Read a scenario. Errors: `TraceError` for malformed XML, no obstacles, or times that cannot be understood."""
+    content = path.read_bytes()
+    try:
+        root = markup.parse(content)
+    except markup.RefusedError as error:
+        raise TraceError(f"{path} {error}") from None
+    step_s = _number(root.get("timeStepSize"))
+    if not step_s > 0.0:
+        raise TraceError(
+            f"{path}: timeStepSize is {root.get('timeStepSize')!r}: a scenario needs a positive number of seconds"
+        )
+    obstacles = [*root.findall("dynamicObstacle"), *root.findall("staticObstacle"), *root.findall("obstacle")]
+    if not obstacles:
+        raise TraceError(f"{path}: the scenario has no obstacles: there is nobody to judge")
+    last = max((step for o in obstacles for step in _steps(path, o)), default=0)
+    ids = [str(o.get("id")) for o in obstacles]
+    if len(set(ids)) < len(ids):
+        raise TraceError(
+            f"{path}: two obstacles have the same id: {listed(sorted({i for i in ids if ids.count(i) > 1}))}"
+        )
+    parts = [_states(path, o, last) for o in obstacles]
+    counts = [len(part["step"]) for part in parts]
+    columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    heading = columns["yaw_rad"] + np.nan_to_num(columns["slip"])
+    states = States(
+        ids,
+        np.repeat(np.arange(len(ids), dtype=np.int32), counts),
+        np.round(columns["step"] * step_s * 1e9).astype(np.int64),
+        {
+            "x_m": columns["x_m"], "y_m": columns["y_m"], "yaw_rad": columns["yaw_rad"],
+            "vx_mps": columns["v"] * np.cos(heading), "vy_mps": columns["v"] * np.sin(heading),
+            "ax_mps2": columns["a"] * np.cos(heading), "ay_mps2": columns["a"] * np.sin(heading),
+            "length_m": columns["length_m"], "width_m": columns["width_m"],
+        },
+        _codes(obstacles, counts),
+        np.zeros(sum(counts), np.bool_),
+    )  # fmt: skip
+    recording = Recording("commonroad", states, embedded_map=content if root.find("lanelet") is not None else None)
+    uncertain = sum(1 for _ in root.iterfind(".//state//intervalStart"))
+    if uncertain:
+        message = f"values of obstacles given as intervals: {uncertain}: they are not known"
+        recording.findings.append(Finding("uncertain_value", "warning", message, uncertain))
+    return recording
+
+
+def _number(text: str | None) -> float:
+    try:
+        return float(text or "nan")
+    except ValueError:
+        return math.nan
+
+
+def _all_states(obstacle: etree._Element) -> list[etree._Element]:
+    return [*obstacle.findall("initialState"), *obstacle.findall("trajectory/state")]
+
+
+def _steps(path: Path, obstacle: etree._Element) -> list[int]:
+    """Return the time steps of an obstacle's states."""
+    said = [state.findtext("time/exact") for state in _all_states(obstacle)]
+    try:
+        return [int(float(step or "")) for step in said]
+    except (ValueError, OverflowError):
+        raise TraceError(
+            f"{path}: obstacle {obstacle.get('id')}, line {obstacle.sourceline}: a state without an exact time"
+        ) from None
+
+
+def _states(path: Path, obstacle: etree._Element, last: int) -> dict[str, Floats]:
+    """Return the columns of an obstacle, (n,) each; one that stands has a state at every step of the scenario."""
+    states = _all_states(obstacle)
+    columns = {
+        name: np.array([_number(state.findtext(place)) for state in states], np.float64)
+        for name, place in _FIELDS.items()
+    }
+    columns["step"] = np.array(_steps(path, obstacle), np.float64)
+    static = obstacle.tag == "staticObstacle" or obstacle.findtext("role") == "static"
+    if static and len(states) == 1:
+        columns = {name: np.repeat(values, last + 1) for name, values in columns.items()}
+        columns["step"] = np.arange(last + 1, dtype=np.float64)
+        columns["v"] = np.zeros(last + 1)
+    length, width = _size(obstacle)
+    columns["length_m"] = np.full(len(columns["step"]), length)
+    columns["width_m"] = np.full(len(columns["step"]), width)
+    return columns
+
+
+def _size(obstacle: etree._Element) -> tuple[float, float]:
+    """Return length and width of a rectangle, or of the square around a circle; of other shapes: not known."""
+    box, circle = obstacle.find("shape/rectangle"), obstacle.find("shape/circle")
+    if box is not None:
+        return _number(box.findtext("length")), _number(box.findtext("width"))
+    diameter = 2 * _number(circle.findtext("radius")) if circle is not None else math.nan
+    return diameter, diameter
+
+
+def _codes(obstacles: list[etree._Element], counts: list[int]) -> dict[str, NDArray[np.int8]]:
+    classes = []
+    for obstacle in obstacles:
+        word = _CLASSES.get((obstacle.findtext("type") or "").strip())
+        classes.append(CLASSES.index(word) if word else -1)
+    unknown = np.full(sum(counts), -1, np.int8)
+    return {"actor_class": np.repeat(np.array(classes, np.int8), counts), "indicator": unknown, "brake_light": unknown}

@@ -1,0 +1,113 @@
+"""CommonRoad scenarios as drives."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import pytest
+
+from drivelint.errors import TraceError
+from tests.ingest.logs import actors, at, log, put, quality, read, states
+from tests.shared_data import shared
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def state(tag: str, t: int, x: float, *, v: float = 10.0, yaw: float = 0.0, more: str = "") -> str:
+    return (
+        f"<{tag}><position><point><x>{x}</x><y>2</y></point></position><orientation><exact>{yaw}</exact></orientation>"
+        f"<time><exact>{t}</exact></time><velocity><exact>{v}</exact></velocity>{more}</{tag}>"
+    )
+
+
+def obstacle(
+    name: int, kind: str, inner: str, shape: str = "<rectangle><length>4</length><width>2</width></rectangle>"
+) -> str:
+    return f'<dynamicObstacle id="{name}"><type>{kind}</type><shape>{shape}</shape>{inner}</dynamicObstacle>'
+
+
+def moving(name: int = 1, kind: str = "car", n: int = 20, yaw: float = 0.0) -> str:
+    path = "".join(state("state", t, float(t), yaw=yaw) for t in range(1, n))
+    return obstacle(name, kind, state("initialState", 0, 0.0, yaw=yaw) + f"<trajectory>{path}</trajectory>")
+
+
+def write(tmp_path: Path, *parts: str, attributes: str = 'timeStepSize="0.1"') -> Path:
+    return put(tmp_path / "a.xml", f"<?xml version='1.0'?><commonRoad {attributes}>{''.join(parts)}</commonRoad>")
+
+
+def test_moving_and_standing_obstacles(tmp_path: Path) -> None:
+    still = '<staticObstacle id="5"><type>parkedVehicle</type><shape><circle><radius>1</radius></circle></shape>'
+    path = write(tmp_path, moving(), still + state("initialState", 0, 40.0, v=0.0) + "</staticObstacle>")
+    trace = read(path, ego="1")
+    assert (log(trace)["format"], log(trace)["n_states"]) == ("commonroad", 40)
+    assert {k: (v["actor_class"], v["length_m"], v["width_m"]) for k, v in actors(trace).items()} == {
+        "1": ("car", 4.0, 2.0),
+        "5": ("vehicle", 2.0, 2.0),
+    }
+    row = at(trace, "1", 1.5)
+    assert (row["x_m"], row["vx_mps"], row["vy_mps"], row["indicator"]) == (15.0, 10.0, 0.0, None)
+    assert at(trace, "5", 1.9)["x_m"] == 40.0
+    assert trace.embedded_map is None
+
+
+def test_velocity_lies_along_the_heading_and_its_slip_angle(tmp_path: Path) -> None:
+    slip = "<slipAngle><exact>0.1</exact></slipAngle>"
+    inner = (
+        state("initialState", 0, 0.0) + "<trajectory>" + state("state", 1, 1.0, yaw=0.5, more=slip) + "</trajectory>"
+    )
+    row = at(read(write(tmp_path, obstacle(1, "car", inner)), ego="1"), "1", 0.1)
+    assert (row["vx_mps"], row["vy_mps"]) == pytest.approx((10 * math.cos(0.6), 10 * math.sin(0.6)))
+
+
+def test_intervals_are_not_known(tmp_path: Path) -> None:
+    unsure = "<orientation><intervalStart>0</intervalStart><intervalEnd>1</intervalEnd></orientation>"
+    inner = (
+        state("initialState", 0, 0.0)
+        + "<trajectory>"
+        + state("state", 1, 1.0).replace("<orientation><exact>0.0</exact></orientation>", unsure)
+        + "</trajectory>"
+    )
+    trace = read(write(tmp_path, obstacle(1, "car", inner)), ego="1")
+    assert at(trace, "1", 0.1)["yaw_rad"] is None
+    assert "uncertain_value" in quality(trace)
+
+
+def test_the_older_version_and_the_files_own_map(tmp_path: Path) -> None:
+    old = moving().replace("dynamicObstacle", "obstacle").replace("<type>", "<role>dynamic</role><type>")
+    trace = read(write(tmp_path, old, '<lanelet id="1"/>'), ego="1")
+    assert log(trace)["n_states"] == 20
+    assert trace.embedded_map == (tmp_path / "a.xml").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("parts", "attributes", "why"),
+    [
+        ([], 'timeStepSize="0.1"', "no obstacles"),
+        ([moving()], "", "timeStepSize is None"),
+        ([moving()], 'timeStepSize="0"', "positive number"),
+        ([moving(), moving()], 'timeStepSize="0.1"', "same id: 1"),
+        ([moving().replace("<time><exact>3</exact></time>", "")], 'timeStepSize="0.1"', "without an exact time"),
+        (["<x>"], 'timeStepSize="0.1"', "not well-formed"),
+    ],
+)
+def test_what_is_refused(tmp_path: Path, parts: list[str], attributes: str, why: str) -> None:
+    with pytest.raises(TraceError, match=why):
+        read(write(tmp_path, *parts, attributes=attributes))
+
+
+@pytest.mark.parametrize(
+    ("name", "ego", "n_actors", "n_states"),
+    [
+        ("DEU_Gar-1_1_T-1", "200", 4, 84),
+        ("OSC_Overtake-1_1_T-1", "256", 2, 402),
+        ("OSC_PedestrianCollision-1_1_T-1", "34", 2, 186),
+        ("USA_US101-5_1_T-1", "464", 25, 1619),
+    ],
+)
+def test_real_scenarios(name: str, ego: str, n_actors: int, n_states: int) -> None:
+    trace = read(shared(f"commonroad/{name}.xml"), ego=ego)
+    assert (len(actors(trace)), len(states(trace))) == (n_actors, n_states)
+    assert not {"yaw_mismatch", "teleport", "no_size", "gap"} & set(quality(trace))
+    assert trace.embedded_map is not None
