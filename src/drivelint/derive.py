@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 # What the engine and the drive table read themselves, whatever the rules are.
 _GIVEN = {"profile"}  # filled from queries/profiles.toml
-ALWAYS = ("clock", "step", "ego_state", "pair", "lost_object", "capability", "registration", "exposure")
+ALWAYS = ("clock", "step", "ego_state", "pair", "lost_object", "ego_condition", "capability", "registration", "exposure")
 
 
 @dataclass(frozen=True)

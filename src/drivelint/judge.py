@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 _RESULTS: Final = (
     "data_log",
     "quality",
+    "drive_condition",
     "environment",
     "map_quality",
     "exposure",

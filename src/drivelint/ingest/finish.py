@@ -38,6 +38,7 @@ SCHEMAS: dict[str, dict[str, pa.DataType]] = {
     },
     "signal_state": {"drive_id": _S, "signal_id": _S, "t_ns": _I, "state": _S},
     "declared_event": {"drive_id": _S, "actor_id": _S, "t_ns": _I, "event": _S, "value": _S},
+    "drive_condition": {"drive_id": _S, "condition": _S, "value": _S, "source": _S},
     "quality": {
         "drive_id": _S, "check_id": _S, "severity": _S, "actor_id": _S, "n": _I, "t_first_ns": _I, "message": _S,
     },
@@ -73,6 +74,7 @@ def finish(path: Path, identity: Identity, recording: Recording, options: Ingest
         "actor_state": _state_table(drive, states),
         "signal_state": _extra(drive, "signal_state", recording.signals),
         "declared_event": _extra(drive, "declared_event", recording.events),
+        "drive_condition": _conditions(drive, recording.conditions, dict(options.conditions)),
         "quality": _quality(drive, findings),
     }
     return Trace(
@@ -171,6 +173,18 @@ def _extra(drive: str, name: str, table: pa.Table | None) -> pa.Table:
     return _table(
         name, {"drive_id": pa.repeat(pa.scalar(drive, _S), rows.num_rows), **{c: rows.column(c) for c in keys}}
     )
+
+
+def _conditions(drive: str, trace: Mapping[str, str], env: Mapping[str, str]) -> pa.Table:
+    """Bring together what the log says and what the user gives, which counts more; one row per condition."""
+    rows = sorted({**{c: (v, "trace") for c, v in trace.items()}, **{c: (v, "env") for c, v in env.items()}}.items())
+    columns = {
+        "drive_id": [drive] * len(rows),
+        "condition": [condition for condition, _ in rows],
+        "value": [value for _, (value, _) in rows],
+        "source": [source for _, (_, source) in rows],
+    }
+    return _table("drive_condition", columns)
 
 
 def _quality(drive: str, findings: list[Finding]) -> pa.Table:

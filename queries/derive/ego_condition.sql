@@ -1,0 +1,65 @@
+-- What holds at every step of the ego: as given for the drive (drive_condition), else as the map, the log and the ego itself say.
+WITH given AS (
+    SELECT
+        drive_id,
+        max(value) FILTER (condition = 'road_type') AS road_type, max(value) FILTER (condition = 'carriageway') AS carriageway,
+        max(value) FILTER (condition = 'area') AS area, max(value) FILTER (condition = 'nation') AS nation,
+        max(value) FILTER (condition = 'weather') AS weather, max(value) FILTER (condition = 'light') AS light,
+        max(value) FILTER (condition = 'vehicle_class') AS vehicle_class, max(value) FILTER (condition = 'engaged') AS engaged
+    FROM drive_condition GROUP BY drive_id
+),
+-- a cross-section: its two directions run side by side, or something lies between them, or there is only one
+road AS (
+    SELECT
+        n.environment_id, n.road_id, n.section,
+        coalesce(bool_or(n.drivable AND n.bidirectional OR n.drivable AND b.drivable), false) AS touching,
+        count(DISTINCT n.along_road) FILTER (n.drivable) = 2 AS both_ways,
+        bool_or(n.lane_type = 'median') AS median
+    FROM lanelet n
+    LEFT JOIN lanelet b ON b.environment_id = n.environment_id
+        AND (b.lanelet_id = n.left_id AND n.left_against OR b.lanelet_id = n.right_id AND n.right_against)
+    GROUP BY ALL
+),
+here AS (
+    SELECT
+        st.drive_id, st.ego_id, st.t_ns, coalesce(g.road_type, e.road_type) AS road_type, e.limit_mps,
+        CASE WHEN n.junction_id IS NULL THEN r.touching END AS touching,
+        CASE WHEN n.junction_id IS NULL THEN r.both_ways END AS both_ways,
+        CASE WHEN n.junction_id IS NULL THEN r.median END AS median
+    FROM step st
+    JOIN data_log l ON l.drive_id = st.drive_id
+    LEFT JOIN given g ON g.drive_id = st.drive_id
+    LEFT JOIN ego_state e ON e.drive_id = st.drive_id AND e.ego_id = st.ego_id AND e.t_ns = st.t_ns
+    LEFT JOIN lanelet n ON n.environment_id = l.environment_id AND n.lanelet_id = e.lanelet_id
+    LEFT JOIN road r ON r.environment_id = n.environment_id AND r.road_id = n.road_id AND r.section = n.section
+),
+declares AS (
+    SELECT DISTINCT drive_id, ego_id FROM ego_mode WHERE mode = 'engaged'
+)
+SELECT
+    h.drive_id, h.ego_id, h.t_ns, h.road_type,
+    coalesce(g.carriageway, CASE
+        WHEN h.touching THEN 'single'
+        WHEN h.both_ways THEN CASE WHEN h.median OR h.road_type = 'motorway' THEN 'dual' END
+        -- out of town a road of one direction is half of one; in town it may as well be a one-way street
+        WHEN NOT h.both_ways AND h.road_type IN ('motorway', 'rural') THEN 'dual'
+    END) AS carriageway,
+    coalesce(g.area, CASE
+        WHEN h.road_type = 'townExpressway' THEN NULL
+        WHEN starts_with(h.road_type, 'town') OR h.road_type = 'lowSpeed' THEN 'built_up'
+        WHEN h.road_type IN ('motorway', 'rural') THEN 'open'
+    END) AS area,
+    g.nation, g.weather, g.light,
+    -- a van may be a car-derived one or a goods vehicle, a lorry may be of any weight
+    coalesce(g.vehicle_class, CASE WHEN a.actor_class IN ('car', 'bus', 'motorcycle') THEN a.actor_class END) AS vehicle_class,
+    h.limit_mps,
+    CASE
+        WHEN g.engaged IS NOT NULL THEN g.engaged = 'yes'
+        WHEN d.ego_id IS NOT NULL THEN m.is_on
+        ELSE true
+    END AS engaged
+FROM here h
+JOIN actor a ON a.drive_id = h.drive_id AND a.actor_id = h.ego_id
+LEFT JOIN given g ON g.drive_id = h.drive_id
+LEFT JOIN declares d ON d.drive_id = h.drive_id AND d.ego_id = h.ego_id
+LEFT JOIN ego_mode m ON m.drive_id = h.drive_id AND m.ego_id = h.ego_id AND m.t_ns = h.t_ns AND m.mode = 'engaged'

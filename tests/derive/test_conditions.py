@@ -1,0 +1,182 @@
+"""The conditions of a step, and the modes that a log declares."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import pyarrow as pa
+import pytest
+
+from drivelint.maps import MapSource, load_map
+from tests.maps import xodr
+from tests.scenes import LANE, Actor, Road, derived, drive, linked, moving, plan, road, rows, tee, times
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import duckdb
+
+    from drivelint.batch import Drive
+
+Event = tuple[float, str, str | None]
+CONDITIONS = ("road_type", "carriageway", "area", "nation", "weather", "light", "vehicle_class", "limit_mps", "engaged")
+
+
+def ride(way: Road | None = None, d: float | None = None, seconds: float = 1.0, **more: Any) -> Actor:
+    way = way or road()
+    t = times(seconds)
+    return replace(moving("ego", way, t, 5 + 10 * t, way.own if d is None else d), **more)
+
+
+def saying(scene: Drive, events: Sequence[Event] = (), by: str = "ego", **given: str) -> Drive:
+    """Return the drive with declared events, and with conditions given for it."""
+    tables = dict(scene.trace.tables)
+    said = [
+        {"drive_id": "d", "actor_id": by, "t_ns": round(t * 1e9), "event": event, "value": value}
+        for t, event, value in events
+    ]
+    conditions = [{"drive_id": "d", "condition": c, "value": v, "source": "env"} for c, v in given.items()]
+    for name, found in (("declared_event", said), ("drive_condition", conditions)):
+        tables[name] = pa.Table.from_pylist(found, schema=tables[name].schema)
+    return replace(scene, trace=replace(scene.trace, tables=tables))
+
+
+def conditions(con: duckdb.DuckDBPyConnection, column: str) -> list[Any]:
+    found = rows(con, "FROM ego_condition ORDER BY t_ns")
+    assert len(found) == rows(con, "SELECT count(*) AS n FROM step")[0]["n"]
+    return [row[column] for row in found]
+
+
+def only(con: duckdb.DuckDBPyConnection, column: str) -> Any:
+    (value,) = set(conditions(con, column))
+    return value
+
+
+def highway(kind: str | None, *lanes: tuple[int, str]) -> Road:
+    """Return a straight road of this type with these lanes: number and lane type."""
+    line = ((200.0, 0.0),)
+    section = xodr.section(0, *(linked(number, kind=what) for number, what in sorted(lanes, reverse=True)))
+    types = f'<type s="0" type="{kind}"/>' if kind else ""
+    text = xodr.xodr(xodr.road("1", plan(line), section, 200.0, "", 'rule="RHT"', types))
+    return Road(load_map(MapSource("way.xodr", text.encode())), line)
+
+
+BOTH = ((1, "driving"), (-1, "driving"))
+ONE_WAY = ((-1, "driving"), (-2, "shoulder"))
+MEDIAN = ((2, "driving"), (1, "median"), (-1, "driving"))
+APART = ((2, "driving"), (1, "restricted"), (-1, "driving"))
+
+
+@pytest.mark.parametrize(
+    ("kind", "lanes", "carriageway", "area"),
+    [
+        ("rural", BOTH, "single", "open"),
+        ("rural", ONE_WAY, "dual", "open"),
+        ("rural", MEDIAN, "dual", "open"),
+        ("rural", APART, None, "open"),
+        ("rural", ((1, "bidirectional"), (-1, "shoulder")), "single", "open"),
+        ("motorway", ONE_WAY, "dual", "open"),
+        ("motorway", APART, "dual", "open"),
+        ("town", BOTH, "single", "built_up"),
+        ("town", ONE_WAY, None, "built_up"),
+        ("townLocal", BOTH, "single", "built_up"),
+        ("townExpressway", BOTH, "single", None),
+        ("lowSpeed", BOTH, "single", "built_up"),
+        ("unknown", BOTH, "single", None),
+        (None, ONE_WAY, None, None),
+        (None, BOTH, "single", None),
+    ],
+)
+def test_carriageway_and_area_by_the_road(
+    kind: str | None, lanes: Any, carriageway: str | None, area: str | None
+) -> None:
+    way = highway(kind, *lanes)
+    d = LANE / 2 if lanes[0][1] == "bidirectional" else -LANE / 2
+    con = derived(drive([ride(way, d)], way.environment), tables=["ego_condition"])
+    assert (only(con, "carriageway"), only(con, "area")) == (carriageway, area)
+    assert only(con, "road_type") == (None if kind == "unknown" else kind)
+    assert (only(con, "nation"), only(con, "weather"), only(con, "light")) == (None, None, None)
+
+
+def test_in_a_junction_the_carriageway_is_not_known() -> None:
+    way = tee()["straight"]
+    t = times(30.0)
+    ego = moving("ego", way, t, 5 + 10 * t, way.own)
+    con = derived(drive([ego], way.environment), tables=["ego_condition"])
+    seen = rows(
+        con, "SELECT DISTINCT in_junction, carriageway FROM ego_condition JOIN ego_state USING (drive_id, ego_id, t_ns)"
+    )
+    assert {(row["in_junction"], row["carriageway"]) for row in seen} == {(False, "single"), (True, None)}
+
+
+def test_without_a_map_the_road_is_not_known_and_the_rest_is() -> None:
+    con = derived(drive([ride(kind="bus")], None), tables=["ego_condition"])
+    assert [only(con, c) for c in CONDITIONS] == [None, None, None, None, None, None, "bus", None, True]
+
+
+def test_off_the_lanes_the_road_is_not_known() -> None:
+    way = road()
+    con = derived(drive([ride(way, d=-30.0)], way.environment), tables=["ego_condition"])
+    assert [only(con, c) for c in ("road_type", "carriageway", "area", "limit_mps")] == [None] * 4
+
+
+@pytest.mark.parametrize(
+    ("kind", "expected"),
+    [
+        ("car", "car"),
+        ("motorcycle", "motorcycle"),
+        ("bus", "bus"),
+        ("van", None),
+        ("truck", None),
+        ("vehicle", None),
+        (None, None),
+    ],
+)
+def test_the_class_of_the_ego_is_told_only_where_it_says_enough(kind: str | None, expected: str | None) -> None:
+    """A van may be a car-derived one or a goods vehicle; a lorry may be of any weight."""
+    con = derived(drive([ride(kind=kind)], None), tables=["ego_condition"])
+    assert only(con, "vehicle_class") == expected
+
+
+def test_what_is_given_for_the_drive_overrides_the_map_and_the_log() -> None:
+    way = highway("town", *BOTH)
+    given = {
+        "road_type": "rural", "carriageway": "dual", "area": "built_up", "nation": "gb-sct", "weather": "wet",
+        "light": "night", "vehicle_class": "goods_7t5", "engaged": "no",
+    }  # fmt: skip
+    told = saying(drive([ride(way)], way.environment), [(0.0, "engaged", "on")], **given)
+    con = derived(told, tables=["ego_condition"])
+    assert {c: only(con, c) for c in given} == {**given, "engaged": False}
+    # the area follows a road type that is given, too
+    con = derived(saying(drive([ride(way)], way.environment), road_type="motorway"), tables=["ego_condition"])
+    assert [only(con, c) for c in ("road_type", "carriageway", "area")] == ["motorway", "single", "open"]
+
+
+def test_a_mode_holds_from_its_declaration_to_the_next() -> None:
+    said: list[Event] = [
+        (0.25, "engaged", "ON"), (0.6, "engaged", "false"), (0.8, "engaged", "perhaps"), (0.9, "engaged", "true"),
+        (0.5, "headlights", "on"),
+        (0.1, "mirror_check", None), (0.2, "target_speed", "30"),
+    ]  # fmt: skip
+    con = derived(saying(drive([ride()], None), said), tables=["ego_condition"])
+    expected = [None] * 3 + [True] * 3 + [False] * 2 + [None] + [True] * 2
+    assert conditions(con, "engaged") == expected
+    modes = rows(con, "FROM ego_mode ORDER BY mode, t_ns")
+    assert [row["is_on"] for row in modes if row["mode"] == "engaged"] == expected
+    assert [row["is_on"] for row in modes if row["mode"] == "headlights"] == [None] * 5 + [True] * 6
+    assert {row["mode"] for row in modes} == {"engaged", "headlights"}
+
+
+def test_two_declarations_at_once_are_not_known() -> None:
+    said: list[Event] = [(0.0, "engaged", "on"), (0.5, "engaged", "on"), (0.5, "engaged", "off")]
+    con = derived(saying(drive([ride()], None), said), tables=["ego_condition"])
+    assert conditions(con, "engaged") == [True] * 5 + [None] * 6
+
+
+def test_what_another_actor_declares_is_not_the_egos() -> None:
+    other = replace(ride(), actor_id="other")
+    told = saying(drive([ride(), other], None), [(0.0, "engaged", "off")], by="other")
+    con = derived(told, tables=["ego_condition"])
+    assert only(con, "engaged") is True
+    assert rows(con, "FROM ego_mode") == []
