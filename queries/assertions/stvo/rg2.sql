@@ -1,0 +1,50 @@
+-- title = "No unnecessary hard braking"
+-- clause = "StVO 4(1) (R_G2 of Maierhofer et al. 2020): do not brake hard without a compelling reason"
+-- hypothesis = "At every step, did the ego brake no harder than allowed, unless a vehicle ahead was too near or itself braked?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "major"
+-- legal = "must"
+-- status = "stable"
+-- sense = ">="
+-- unit = "m/s2"
+-- observes = "acceleration"
+-- near_margin = 0.2
+-- reads = ["ego_motion", "lead"]
+-- requires = ["map", "registration", "ego_size"]
+--
+-- [applies]
+-- road_type = ["motorway"]
+--
+-- [params.abrupt_mps2]
+-- default = 2.0
+-- unit = "m/s2"
+-- why = "deceleration beyond which braking is abrupt, alone and against the vehicle ahead"
+-- source = "Maierhofer et al. 2020, Table II (a_abrupt)"
+--
+-- [params.reaction_s]
+-- default = 0.3
+-- unit = "s"
+-- why = "time before the follower brakes"
+-- source = "Maierhofer et al. 2020, Table II"
+--
+-- [params.brake_mps2]
+-- default = 10.0
+-- unit = "m/s2"
+-- why = "hardest deceleration of the follower"
+-- source = "Maierhofer et al. 2020, Table II"
+--
+-- [params.brake_lead_mps2]
+-- default = 10.5
+-- unit = "m/s2"
+-- why = "hardest deceleration of the vehicle ahead"
+-- source = "Maierhofer et al. 2020, Table II"
+
+-- @condition
+SELECT m.drive_id, m.ego_id, m.t_ns, m.accel_mps2 AS observed, -$abrupt_mps2 AS required,
+    -- braking for a vehicle that is too near, or that brakes itself, has its reason; no row of lead: it may have one
+    NOT (m.accel_mps2 < -$abrupt_mps2 AND CASE WHEN l.t_ns IS NOT NULL THEN l.object_id IS NOT NULL AND (
+        l.gap_m < stvo_safe_gap_m(l.ego_speed_mps, l.speed_mps, $reaction_s, $brake_mps2, $brake_lead_mps2)
+        OR m.accel_mps2 - l.accel_mps2 >= -$abrupt_mps2) END) AS applies
+FROM ego_motion m
+LEFT JOIN lead l USING (drive_id, ego_id, t_ns)

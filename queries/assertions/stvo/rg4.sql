@@ -1,0 +1,38 @@
+-- title = "Keeping the traffic flowing"
+-- clause = "StVO 3(2) (R_G4 of Maierhofer et al. 2020): without good reason do not drive so slowly that you hinder the traffic"
+-- hypothesis = "At every step without a slow vehicle ahead, was the ego less than the allowed difference below the speed limit?"
+-- kind = "invariant"
+-- derivation = "direct"
+-- severity = "minor"
+-- legal = "must"
+-- status = "stable"
+-- sense = ">"
+-- unit = "m/s"
+-- observes = "speed"
+-- merge_gap_s = 5.0
+-- reads = ["ego_condition", "ego_state", "lead"]
+-- requires = ["map", "registration", "ego_size", "speed_limits"]
+--
+-- [applies]
+-- road_type = ["motorway"]
+--
+-- [params.slower_mps]
+-- default = 15.0
+-- unit = "m/s"
+-- why = "so far below the limit the traffic is hindered"
+-- source = "Maierhofer et al. 2020, Table II"
+--
+-- [params.desired_mps]
+-- default = 36.11
+-- unit = "m/s"
+-- why = "130 km/h, the recommended speed: no more is asked for"
+-- source = "Autobahn-Richtgeschwindigkeits-Verordnung 1"
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed, c.top_mps - $slower_mps AS required,
+    -- a vehicle ahead that is as slow itself is the reason; no row of lead: there may be one
+    CASE WHEN l.t_ns IS NOT NULL THEN l.object_id IS NULL OR l.speed_mps > c.top_mps - $slower_mps
+        WHEN e.speed_mps > c.top_mps - $slower_mps THEN true END AS applies
+FROM ego_state e
+JOIN (SELECT *, CASE WHEN limit_mps > $desired_mps THEN $desired_mps ELSE limit_mps END AS top_mps FROM ego_condition) c USING (drive_id, ego_id, t_ns)
+LEFT JOIN lead l USING (drive_id, ego_id, t_ns)

@@ -1,0 +1,52 @@
+-- title = "Passing on the inner side only"
+-- clause = "StVO 5(1), 7(2), 7(2a) (R_I2 of Maierhofer et al. 2020): overtake on the left; on the right only past a queue, little faster than it"
+-- hypothesis = "When the ego got ahead of a vehicle in a lane to its left (right where the left is driven on), was that a slow queue passed with little more speed?"
+-- kind = "execution"
+-- derivation = "direct"
+-- severity = "major"
+-- legal = "must"
+-- status = "stable"
+-- sense = "holds"
+-- reads = ["ego_corridor", "ego_state", "pair", "passing"]
+-- requires = ["map", "registration", "ego_size", "handedness"]
+--
+-- [applies]
+-- road_type = ["motorway"]
+--
+-- [params.queue_mps]
+-- default = 16.67
+-- unit = "m/s"
+-- why = "60 km/h: a queue is no faster"
+-- source = "StVO 7(2a) and case law; Maierhofer et al. 2020, Table II"
+--
+-- [params.faster_mps]
+-- default = 5.55
+-- unit = "m/s"
+-- why = "20 km/h: so much faster the ego may be at most"
+-- source = "case law on StVO 7(2a); Maierhofer et al. 2020, Table II"
+--
+-- [params.queue_n]
+-- default = 3.0
+-- unit = "vehicles"
+-- why = "so many slow vehicles in the other lanes are a queue"
+-- source = "Maierhofer et al. 2020, Table II"
+
+-- @reference
+SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.occurrence, p.speed_mps, p.ego_speed_mps, c.side
+FROM passing p
+JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
+LEFT JOIN ego_corridor c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.chain_id = e.chain_id AND c.t_ns = e.t_ns
+WHERE p.ego_passes AND NOT p.same_lane AND coalesce(c.side = CASE p.side WHEN 'left' THEN 1 ELSE -1 END, true)
+
+-- @condition
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.object_id,
+    CASE WHEN r.side IS NOT NULL THEN r.speed_mps <= $queue_mps AND r.ego_speed_mps - r.speed_mps <= $faster_mps
+        AND CASE WHEN q.n >= $queue_n THEN true WHEN q.n_unknown = 0 THEN false END END AS holds
+FROM reference r
+JOIN (
+    SELECT b.ref_id, count(*) FILTER (o.d_m * b.side > o.half_width_m AND o.speed_mps <= $queue_mps AND abs(o.heading_diff_rad) < pi() / 2) AS n,
+        count(*) FILTER (o.x_m IS NULL OR o.speed_mps IS NULL) AS n_unknown
+    FROM reference b
+    JOIN pair o USING (drive_id, ego_id, t_ns)
+    GROUP BY b.ref_id
+) q USING (ref_id)

@@ -1,0 +1,41 @@
+-- title = "Fifty metres behind"
+-- clause = "StVO 4(3): lorries over 3.5 t and buses keep at least 50 m behind the vehicle ahead on motorways when faster than 50 km/h"
+-- hypothesis = "At every step faster than 50 km/h, did the lorry or bus keep 50 m behind the vehicle ahead?"
+-- kind = "invariant"
+-- derivation = "direct"
+-- severity = "major"
+-- legal = "must"
+-- status = "stable"
+-- sense = ">="
+-- unit = "m"
+-- observes = "gap to the vehicle ahead"
+-- near_margin = 2.0
+-- reads = ["following"]
+-- requires = ["map", "registration", "ego_size"]
+--
+-- [applies]
+-- road_type = ["motorway"]
+-- vehicle_class = ["bus", "goods_7t5", "goods_over_7t5"]
+--
+-- [params.gap_m]
+-- default = 50.0
+-- unit = "m"
+-- why = "least distance"
+-- source = "StVO 4(3)"
+--
+-- [params.from_mps]
+-- default = 13.89
+-- unit = "m/s"
+-- why = "50 km/h"
+-- source = "StVO 4(3)"
+--
+-- [params.cut_in_s]
+-- default = 3.0
+-- unit = "s"
+-- why = "time to restore the distance after somebody changed lane in front"
+-- source = "case law: not only quite briefly; as R_G1 of Maierhofer et al. 2020"
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, gap_m AS observed, $gap_m AS required,
+    follows AND ego_speed_mps > $from_mps AND coalesce(t_ns - joined_ns >= $cut_in_s * 1e9, true) AS applies
+FROM following

@@ -1,0 +1,49 @@
+-- title = "Space for cyclists and people on foot"
+-- clause = "StVO 5(4): overtake people on foot, on bicycles and on small electric vehicles with at least 1.5 m in built-up areas and 2 m elsewhere"
+-- hypothesis = "At every step beside a cyclist or somebody walking on the road, going the same way but slower, did the ego keep the distance?"
+-- kind = "invariant"
+-- derivation = "direct"
+-- severity = "critical"
+-- legal = "must"
+-- status = "stable"
+-- sense = ">="
+-- unit = "m"
+-- observes = "gap to the side"
+-- near_margin = 0.2
+-- reads = ["beside", "ego_condition", "standstill"]
+-- requires = ["map", "registration", "ego_size", "actor_classes"]
+--
+-- [params.built_up_m]
+-- default = 1.5
+-- unit = "m"
+-- why = "distance in built-up areas"
+-- source = "StVO 5(4) sentence 3"
+--
+-- [params.open_m]
+-- default = 2.0
+-- unit = "m"
+-- why = "distance elsewhere"
+-- source = "StVO 5(4) sentence 3"
+--
+-- [params.waited_s]
+-- default = 10.0
+-- unit = "s"
+-- why = "our default: who drew up beside the standing ego need not be given the distance when traffic starts again (StVO 5(4) sentence 4)"
+
+-- @applies
+SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id,
+    b.actor_class IN ('bicycle', 'pedestrian') AND b.along AND b.on_carriageway AND b.ego_speed_mps > b.speed_mps AND w.object_id IS NULL AS applies
+FROM beside b
+LEFT JOIN (
+    SELECT DISTINCT s.drive_id, s.ego_id, o.object_id, s.t_start_ns, s.t_end_ns
+    FROM standstill s
+    JOIN beside o ON o.drive_id = s.drive_id AND o.ego_id = s.ego_id AND o.t_ns >= s.t_start_ns AND o.t_ns <= s.t_end_ns
+) w ON w.drive_id = b.drive_id AND w.ego_id = b.ego_id AND w.object_id = b.object_id
+    AND b.t_ns >= w.t_start_ns AND b.t_ns <= w.t_end_ns + ($waited_s * 1e9)::BIGINT
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, object_id, b.gap_m AS observed,
+    CASE c.area WHEN 'built_up' THEN $built_up_m WHEN 'open' THEN $open_m END AS required,
+    CASE WHEN c.area IS NULL THEN 'whether the area is built up is not known' END AS reason
+FROM beside b
+JOIN ego_condition c USING (drive_id, ego_id, t_ns)
