@@ -1,0 +1,35 @@
+-- # Draft: a deceleration on the major road may have another cause than the ego.
+-- title = "Give way to the major road"
+-- clause = "UKHC R172: at a give-way line you must give way to traffic on the main road"
+-- hypothesis = "When the ego went from a give-way line before somebody on the other road, did it leave enough time and make nobody brake?"
+-- kind = "execution"
+-- derivation = "model"
+-- severity = "critical"
+-- legal = "must"
+-- status = "draft"
+-- sense = "holds"
+-- reads = ["junction_passage", "passage_conflict"]
+-- requires = ["map", "registration", "ego_size"]
+--
+-- [params.pet_s]
+-- default = 2.0
+-- unit = "s"
+-- why = "our default: the two seconds that are also asked for when following"
+--
+-- [params.decel_mps2]
+-- default = 2.0
+-- unit = "m/s2"
+-- why = "our default: who brakes harder than this has been made to"
+
+-- @reference
+SELECT p.drive_id, p.ego_id, p.t_in_ns AS t_ns, p.occurrence, c.object_id, c.relation, c.decel_mps2, c.reason,
+    pet_known(c.pet_s, c.reason, $pet_s) AS pet_s
+FROM junction_passage p
+LEFT JOIN passage_conflict c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id AND c.occurrence = p.occurrence
+    AND c.relation IN ('from_left', 'from_right')
+WHERE p.control = 'give_way'
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, ref_id, pet_s >= $pet_s AND decel_mps2 <= $decel_mps2 AS holds,
+    coalesce(reason, format('{} came by {:.1f} s after the ego and braked with {:.1f} m/s2', object_id, pet_s, decel_mps2)) AS reason
+FROM reference

@@ -1,0 +1,28 @@
+-- title = "Stop at a red light"
+-- clause = "UKHC R175: you must stop behind the stop line unless the light is green, or amber and too late to stop"
+-- hypothesis = "Was the light neither red nor red with amber when the ego's front went over the stop line?"
+-- kind = "execution"
+-- derivation = "direct"
+-- severity = "critical"
+-- legal = "must"
+-- status = "stable"
+-- sense = "holds"
+-- reads = ["step", "stop_line_crossing"]
+-- requires = ["map", "registration", "ego_size", "traffic_lights", "stop_lines", "signals"]
+
+-- @reference
+SELECT c.drive_id, c.ego_id, c.t_ns, c.occurrence, c.signal_id, c.begin_seen, c.state, c.state_before,
+    c.t_state_ns > c.t_ns - s.dt_ns AS changed
+FROM stop_line_crossing c
+JOIN step s ON s.drive_id = c.drive_id AND s.ego_id = c.ego_id AND s.t_ns = c.t_ns
+WHERE c.control = 'traffic_light'
+
+-- @condition
+-- the line is crossed between two steps: if the light changed between them as well, both states must agree
+SELECT drive_id, ego_id, t_ns, ref_id,
+    CASE WHEN begin_seen AND (NOT coalesce(changed, false) OR forbids(state_before) = forbids(state)) THEN NOT forbids(state) END AS holds,
+    CASE WHEN NOT begin_seen THEN 'the log does not show when the ego crossed the stop line'
+        WHEN state IS NULL THEN 'the light''s state is not known'
+        WHEN changed THEN 'the light turned ' || replace(state, '_', ' and ') || ' while the ego was crossing the stop line'
+        ELSE 'the light was ' || replace(state, '_', ' and ') END AS reason
+FROM reference
