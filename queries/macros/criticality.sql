@@ -42,3 +42,9 @@ CREATE OR REPLACE MACRO mttc_s(gap_m, v_mps, a_mps2, v_lead_mps, a_lead_mps2) AS
 -- Whether the ego follows its lead: some of it is in the lane, the lead is not alongside, and does not come towards it (parked the wrong
 -- way round it is in the way all the same).
 CREATE OR REPLACE MACRO follows(in_lane, gap_m, speed_mps, oncoming) AS in_lane AND gap_m >= 0 AND NOT (oncoming AND speed_mps > standing_mps());
+
+-- Whether the lead comes towards the ego in its lane.
+CREATE OR REPLACE MACRO meets(in_lane, gap_m, speed_mps, oncoming) AS in_lane AND gap_m >= 0 AND oncoming AND speed_mps > standing_mps();
+
+-- Speed away from the ego of a vehicle that it follows: what stands the wrong way round stands.
+CREATE OR REPLACE MACRO ahead_mps(speed_mps, oncoming) AS CASE WHEN oncoming THEN 0.0::DOUBLE WHEN NOT oncoming THEN speed_mps END;

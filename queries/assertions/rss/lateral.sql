@@ -1,0 +1,59 @@
+-- title = "RSS: safe distance beside"
+-- clause = "RSS definition 6 (Shalev-Shwartz et al. 2017; IEEE 2846): beside another vehicle keep room for both to stop drifting towards each other"
+-- hypothesis = "At every step beside another vehicle, was the gap to it at least the safe lateral distance of RSS?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "major"
+-- legal = "should"
+-- status = "stable"
+-- sense = ">="
+-- unit = "m"
+-- observes = "gap to the vehicle beside"
+-- near_margin = 0.2
+-- reads = ["beside"]
+-- requires = ["map", "registration", "ego_size"]
+--
+-- [params.rho_s]
+-- default = 1.0
+-- unit = "s"
+-- why = "response time of the ego"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.rho_other_s]
+-- default = 2.0
+-- unit = "s"
+-- why = "response time of others, driven by people"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.lat_accel_mps2]
+-- default = 0.2
+-- unit = "m/s2"
+-- why = "greatest acceleration to the side during the response time"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.lat_brake_mps2]
+-- default = 0.8
+-- unit = "m/s2"
+-- why = "braking of a movement to the side after it"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.mu_m]
+-- default = 0.1
+-- unit = "m"
+-- why = "vehicles do not hold their line exactly"
+-- source = "ad-rss-lib, parameter discussion (fluctuation margin)"
+
+-- @applies
+-- Beside each other the distance along is unsafe; before and after that it may be safe, and is not judged here. A standing ego does not
+-- drift, nor does a parked car.
+SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN ego_speed_mps <= standing_mps() THEN false ELSE on_carriageway END AS applies
+FROM beside
+WHERE may_be_vehicle(actor_class)
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, object_id, gap_m AS observed,
+    rss_lateral_m(
+        ego_lat_mps, $rho_s, CASE WHEN speed_mps <= standing_mps() THEN 0 ELSE lat_mps END, CASE WHEN speed_mps <= standing_mps() THEN 0 ELSE $rho_other_s END,
+        $lat_accel_mps2, $lat_brake_mps2, $mu_m
+    ) AS required
+FROM beside

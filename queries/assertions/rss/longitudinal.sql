@@ -1,0 +1,51 @@
+-- title = "RSS: safe distance behind"
+-- clause = "RSS definition 1 (Shalev-Shwartz et al. 2017; IEEE 2846): keep the distance at which you can stop if the vehicle ahead brakes as hard as it can"
+-- hypothesis = "At every step, was the gap to the vehicle ahead at least the safe longitudinal distance of RSS?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "major"
+-- legal = "should"
+-- status = "stable"
+-- sense = ">="
+-- unit = "m"
+-- observes = "gap to the vehicle ahead"
+-- near_margin = 2.0
+-- reads = ["lead", "step"]
+-- requires = ["map", "registration", "ego_size"]
+--
+-- [params.rho_s]
+-- default = 1.0
+-- unit = "s"
+-- why = "response time of the ego"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.accel_mps2]
+-- default = 3.5
+-- unit = "m/s2"
+-- why = "greatest acceleration during the response time"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.brake_min_mps2]
+-- default = 4.0
+-- unit = "m/s2"
+-- why = "braking that may be counted on after the response time"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.brake_max_mps2]
+-- default = 8.0
+-- unit = "m/s2"
+-- why = "hardest braking of the vehicle ahead"
+-- source = "ad-rss-lib, parameter discussion"
+
+-- @applies
+-- RSS calls a situation dangerous where the distances along and across are both unsafe: who shares the lane is not safe across. A standing
+-- ego does already what RSS asks of it. A step without a row in `lead` is one at which nobody knows who leads.
+SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
+    CASE WHEN l.object_id IS NOT NULL THEN follows(l.in_lane, l.gap_m, l.speed_mps, l.oncoming) AND l.ego_speed_mps > standing_mps() WHEN l.t_ns IS NOT NULL THEN false END AS applies
+FROM step s
+LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, object_id, gap_m AS observed,
+    rss_longitudinal_m(ego_speed_mps, ahead_mps(speed_mps, oncoming), $rho_s, $accel_mps2, $brake_min_mps2, $brake_max_mps2) AS required
+FROM lead

@@ -1,0 +1,72 @@
+-- title = "RSS: safe distance to one that comes towards the ego"
+-- clause = "RSS definition 2 (Shalev-Shwartz et al. 2017): two vehicles that come towards each other in one lane keep room for both to stop"
+-- hypothesis = "At every step with the ego in the opposing lane, or an oncoming vehicle in the ego's, could both have stopped in time?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "major"
+-- legal = "should"
+-- status = "stable"
+-- sense = ">="
+-- unit = "m"
+-- observes = "distance to the oncoming vehicle"
+-- near_margin = 2.0
+-- reads = ["ego_state", "excursion", "lane_departure", "lead", "oncoming", "step"]
+-- requires = ["map", "registration", "handedness", "ego_size"]
+--
+-- [params.rho_s]
+-- default = 1.0
+-- unit = "s"
+-- why = "response time of the ego"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.rho_other_s]
+-- default = 2.0
+-- unit = "s"
+-- why = "response time of others, driven by people"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.accel_mps2]
+-- default = 3.5
+-- unit = "m/s2"
+-- why = "greatest acceleration during the response time"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.brake_min_mps2]
+-- default = 4.0
+-- unit = "m/s2"
+-- why = "braking that may be counted on after the response time"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.brake_correct_mps2]
+-- default = 3.0
+-- unit = "m/s2"
+-- why = "braking of the one in its own lane, who need not expect the other"
+-- source = "ad-rss-lib, parameter discussion"
+
+-- @applies
+-- One lane for both makes the distance across unsafe. The ego is in the opposing lane during a manoeuvre over its boundary, not when it
+-- touches the line. Without an oncoming vehicle there is nothing to judge, if everybody is placed.
+SELECT s.drive_id, s.ego_id, s.t_ns, o.object_id, CASE WHEN o.object_id IS NOT NULL THEN true WHEN o.n_unplaced = 0 THEN false END AS applies
+FROM lane_departure d
+JOIN excursion x ON x.drive_id = d.drive_id AND x.ego_id = d.ego_id AND x.t0_ns = d.t_ns
+JOIN step s ON s.drive_id = d.drive_id AND s.ego_id = d.ego_id AND s.t_ns >= x.t0_ns AND s.t_ns <= x.t_end_ns
+LEFT JOIN oncoming o ON o.drive_id = s.drive_id AND o.ego_id = s.ego_id AND o.t_ns = s.t_ns
+WHERE NOT d.back AND x.overtaking IS DISTINCT FROM false AND x.over_against IS DISTINCT FROM false
+UNION ALL
+SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id, CASE WHEN l.object_id IS NOT NULL THEN meets(l.in_lane, l.gap_m, l.speed_mps, l.oncoming) WHEN l.t_ns IS NOT NULL THEN false END
+FROM step s
+LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+
+-- @condition
+WITH wrong AS (FROM lead WHERE object_id IS NOT NULL AND meets(in_lane, gap_m, speed_mps, oncoming) IS DISTINCT FROM false)
+SELECT drive_id, ego_id, t_ns, object_id, gap_m AS observed,
+    rss_way_m(ego_speed_mps, $rho_s, $accel_mps2, $brake_correct_mps2) + rss_way_m(speed_mps, $rho_other_s, $accel_mps2, $brake_min_mps2) AS required
+FROM wrong
+UNION ALL
+SELECT o.drive_id, o.ego_id, o.t_ns, o.object_id,
+    -- one that cannot be placed could only be nearer
+    CASE WHEN o.n_unplaced = 0 OR o.da_m < needs.m THEN o.da_m END, needs.m
+FROM oncoming o
+ANTI JOIN wrong w ON w.drive_id = o.drive_id AND w.ego_id = o.ego_id AND w.t_ns = o.t_ns AND w.object_id = o.object_id
+JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns = o.t_ns
+CROSS JOIN LATERAL (SELECT rss_way_m(e.speed_mps, $rho_s, $accel_mps2, $brake_min_mps2) + rss_way_m(o.speed_mps, $rho_other_s, $accel_mps2, $brake_correct_mps2) AS m) needs

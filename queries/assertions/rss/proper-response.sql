@@ -1,0 +1,72 @@
+-- title = "RSS: proper response"
+-- clause = "RSS definition 4 (Shalev-Shwartz et al. 2017): once a situation is dangerous, brake after the response time until it is safe again"
+-- hypothesis = "After the gap to the vehicle ahead had become unsafe, did the ego brake with at least 4 m/s2 within a second and until it was safe again?"
+-- kind = "postcondition"
+-- subtype = "temporal"
+-- window_s = "window_s"
+-- derivation = "model"
+-- severity = "major"
+-- legal = "should"
+-- status = "stable"
+-- sense = ">="
+-- unit = "m/s2"
+-- observes = "deceleration"
+-- near_margin = 0.5
+-- reads = ["ego_motion", "lead", "step"]
+-- requires = ["map", "registration", "ego_size"]
+--
+-- [params.rho_s]
+-- default = 1.0
+-- unit = "s"
+-- why = "response time of the ego"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.accel_mps2]
+-- default = 3.5
+-- unit = "m/s2"
+-- why = "greatest acceleration during the response time"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.brake_min_mps2]
+-- default = 4.0
+-- unit = "m/s2"
+-- why = "braking that may be counted on after the response time"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.brake_max_mps2]
+-- default = 8.0
+-- unit = "m/s2"
+-- why = "hardest braking of the vehicle ahead"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.window_s]
+-- default = 5.0
+-- unit = "s"
+-- why = "our default: the response time and four seconds of braking, which take 16 m/s off"
+
+-- @reference
+SELECT drive_id, ego_id, min(t_ns) AS t_ns, object_id, max(t_ns) AS t_last_ns
+FROM (
+    SELECT l.drive_id, l.ego_id, l.t_ns, l.object_id, s.seg, s.k - row_number() OVER (PARTITION BY l.drive_id, l.ego_id, l.object_id, s.seg ORDER BY s.k) AS run
+    FROM lead l
+    JOIN step s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id AND s.t_ns = l.t_ns
+    WHERE follows(l.in_lane, l.gap_m, l.speed_mps, l.oncoming) AND l.ego_speed_mps > standing_mps()
+        AND l.gap_m < rss_longitudinal_m(l.ego_speed_mps, ahead_mps(l.speed_mps, l.oncoming), $rho_s, $accel_mps2, $brake_min_mps2, $brake_max_mps2)
+)
+GROUP BY drive_id, ego_id, object_id, seg, run
+UNION ALL
+-- where it cannot be told who leads, or how near, nobody knows when it became unsafe
+SELECT s.drive_id, s.ego_id, NULL, NULL, NULL
+FROM step s
+LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+WHERE l.t_ns IS NULL
+    OR (l.object_id IS NOT NULL AND (follows(l.in_lane, l.gap_m, l.speed_mps, l.oncoming)
+        AND l.gap_m < rss_longitudinal_m(l.ego_speed_mps, ahead_mps(l.speed_mps, l.oncoming), $rho_s, $accel_mps2, $brake_min_mps2, $brake_max_mps2)) IS NULL)
+GROUP BY s.drive_id, s.ego_id
+
+-- @condition
+SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, -m.accel_mps2 AS observed, $brake_min_mps2 AS required,
+    s.t_ns >= r.t_ns + $rho_s * 1_000_000_000 AND s.t_ns <= r.t_last_ns AS applies
+FROM reference_step s
+JOIN reference r USING (ref_id)
+LEFT JOIN ego_motion m ON m.drive_id = s.drive_id AND m.ego_id = s.ego_id AND m.t_ns = s.t_ns
