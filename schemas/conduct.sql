@@ -81,17 +81,30 @@ CREATE TABLE follower (
     closing_mps DOUBLE                -- its speed minus the ego's
 );
 
+CREATE TABLE lane_crossing (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    from_chain_id INTEGER NOT NULL,   -- running chain before
+    to_chain_id INTEGER NOT NULL,     -- running chain from here on
+    to_lanelet_id VARCHAR,            -- its lanelet
+    t_ns BIGINT NOT NULL,             -- first step with the centre in another lane of the same direction
+    k INTEGER NOT NULL,               -- see step
+    t_before_ns BIGINT NOT NULL,      -- the step before
+    seen BOOLEAN NOT NULL,            -- no hole lies between the two
+    side INTEGER NOT NULL             -- 1 to the left, -1 to the right
+);
+
 CREATE TABLE lane_change (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order; from a lane to one beside it that is driven the same way
     t_start_ns BIGINT NOT NULL,       -- first step with a corner more than 0.05 m over the boundary
     begin_seen BOOLEAN NOT NULL,      -- the step before it is there and inside the lane
-    t_cross_ns BIGINT,                -- first step with the centre over it; NULL: never, or not seen
+    t_cross_ns BIGINT,                -- first step with the centre over it; NULL: the log or a hole ends before (and half a metre was over it), or it crossed in a hole
     t_done_ns BIGINT,                 -- first step wholly in the new lane; NULL: the log or a hole ends before
     side VARCHAR NOT NULL,            -- left or right
     from_lanelet_id VARCHAR NOT NULL, -- the lane left, at t_start
-    to_lanelet_id VARCHAR,            -- the lane entered, at t_cross
+    to_lanelet_id VARCHAR,            -- the lane entered, at t_cross; NULL: not seen
     merge BOOLEAN,                    -- out of a lane that only leads onto this one (entry, on-ramp, or one that ends); NULL: not known
     ego_speed_mps DOUBLE,             -- ego's speed at t_start
     leader_id VARCHAR,                -- nearest vehicle ahead in the new lane at t_start; NULL: nobody, see known
@@ -156,15 +169,17 @@ CREATE TABLE passing (
 CREATE TABLE line_step (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    t_ns BIGINT NOT NULL,             -- a step with a corner of the ego more than 0.05 m over a boundary of its running lane; none inside a junction
+    t_ns BIGINT NOT NULL,             -- a step with a corner of the ego more than 0.05 m over a boundary of its running lane; none inside a junction, and none where its box is not placed (ego_state.front_s_m is NULL)
     side VARCHAR NOT NULL,            -- left or right: that boundary; one row each
     out_m DOUBLE NOT NULL,            -- how far the furthest corner is over it
     marking VARCHAR,                  -- see lane_boundary: as seen from the running lane, at the ego's centre; NULL: the map does not say
     forbidden BOOLEAN,                -- from this lane it must not be crossed: solid, or double with the nearer one solid; NULL: marking not known
-    t_since_ns BIGINT NOT NULL,       -- first step of this stretch over it
+    beyond VARCHAR,                   -- what lies beyond it: same or opposing (a drivable lane, by its direction), else its lane_type; NULL: nothing in the map
+    t_since_ns BIGINT NOT NULL,       -- first step of this stretch over it; a line is one stretch, whichever of its two lanes is the running one
     begin_seen BOOLEAN NOT NULL,      -- the step before that is there and inside
     manoeuvre BOOLEAN NOT NULL,       -- the stretch is (part of) a lane change or an overtake, see lane_departure
     passing_id VARCHAR,               -- a vehicle standing, or a cyclist, animal or works vehicle at most at 4.47 m/s, in the running lane or on its edge, that is being passed: from 30 m ahead of the ego to 10 m behind; NULL: none
+    passing_known BOOLEAN NOT NULL,   -- nobody else may be passed: everybody near was placed
     access BOOLEAN                    -- within 30 m the ego goes on to, or comes from, a way beside the road (leaves the lanes); NULL: not known
 );
 
