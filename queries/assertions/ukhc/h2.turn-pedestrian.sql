@@ -1,0 +1,31 @@
+-- title = "Give way to people crossing the road turned into"
+-- clause = "UKHC H2 and R170: at a junction give way to people on foot who cross the road that you turn into"
+-- hypothesis = "When the ego turned into a road before somebody on foot, was there time for both?"
+-- kind = "execution"
+-- derivation = "direct"
+-- severity = "critical"
+-- legal = "should"
+-- status = "stable"
+-- sense = ">="
+-- unit = "s"
+-- observes = "time between the ego's leaving and the walker's entering the place where their ways cross"
+-- near_margin = 1.0
+-- reads = ["junction_passage", "passage_conflict"]
+-- requires = ["map", "registration", "ego_size"]
+--
+-- [params.pet_s]
+-- default = 2.0
+-- unit = "s"
+-- why = "our default: who gets there sooner was crossing, or about to, when the ego went"
+
+-- @reference
+SELECT p.drive_id, p.ego_id, p.t_in_ns AS t_ns, p.occurrence, p.turn, c.object_id, c.reason,
+    pet_known(c.pet_s, c.reason, $pet_s) AS pet_s
+FROM junction_passage p
+LEFT JOIN passage_conflict c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id AND c.occurrence = p.occurrence AND c.relation = 'pedestrian'
+WHERE p.turn IS DISTINCT FROM 'straight'
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, ref_id, CASE WHEN turn IS NOT NULL THEN pet_s END AS observed, $pet_s AS required,
+    CASE WHEN turn IS NULL THEN 'the log does not show which way the ego turned' ELSE reason END AS reason
+FROM reference

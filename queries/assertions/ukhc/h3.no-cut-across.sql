@@ -1,0 +1,39 @@
+-- title = "Do not cut across cyclists and horses"
+-- clause = "UKHC H3 and R182: do not cut across cyclists or horses going ahead when you turn"
+-- hypothesis = "When the ego turned before a cyclist or horse going ahead, did it leave enough time and make nobody brake?"
+-- kind = "execution"
+-- derivation = "direct"
+-- severity = "critical"
+-- legal = "should"
+-- status = "stable"
+-- sense = "holds"
+-- reads = ["actor", "junction_passage", "passage_conflict"]
+-- requires = ["map", "registration", "ego_size"]
+--
+-- [params.pet_s]
+-- default = 2.0
+-- unit = "s"
+-- why = "our default: the two seconds that are also asked for when following"
+--
+-- [params.decel_mps2]
+-- default = 1.5
+-- unit = "m/s2"
+-- why = "our default: a cyclist who brakes harder than this has been made to"
+
+-- @reference
+SELECT p.drive_id, p.ego_id, p.t_in_ns AS t_ns, p.occurrence, p.turn, c.object_id, c.decel_mps2, c.reason,
+    pet_known(c.pet_s, c.reason, $pet_s) AS pet_s
+FROM junction_passage p
+LEFT JOIN passage_conflict c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id AND c.occurrence = p.occurrence AND c.relation = 'ahead_going'
+WHERE p.turn IS DISTINCT FROM 'straight'
+
+-- @condition
+-- another vehicle that came sooner may hide a cyclist behind it: then only what is kept is known
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id,
+    CASE WHEN r.turn IS NULL THEN NULL
+        WHEN a.actor_class IN ('bicycle', 'animal') OR (r.pet_s >= $pet_s AND r.decel_mps2 <= $decel_mps2)
+        THEN r.pet_s >= $pet_s AND r.decel_mps2 <= $decel_mps2 END AS holds,
+    CASE WHEN r.turn IS NULL THEN 'the log does not show which way the ego turned'
+        ELSE coalesce(r.reason, format('{} came by {:.1f} s after the ego and braked with {:.1f} m/s2', r.object_id, r.pet_s, r.decel_mps2)) END AS reason
+FROM reference r
+LEFT JOIN actor a ON a.drive_id = r.drive_id AND a.actor_id = r.object_id

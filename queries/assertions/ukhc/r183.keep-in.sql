@@ -1,0 +1,31 @@
+-- title = "Keep in when turning to the near side"
+-- clause = "UKHC R183: when turning left keep as close to the left as is safe and practicable"
+-- hypothesis = "When the ego had turned to the near side, was it wholly on its own side of the road that it entered?"
+-- kind = "execution"
+-- derivation = "direct"
+-- severity = "minor"
+-- legal = "should"
+-- status = "stable"
+-- sense = "<="
+-- unit = "m"
+-- observes = "how far the ego is over the middle of the road entered"
+-- reads = ["ego_corridor", "ego_state", "junction_passage"]
+-- requires = ["map", "registration", "handedness", "ego_size"]
+--
+-- [params.tolerance_m]
+-- default = 0.3
+-- unit = "m"
+-- why = "our default: a wheel on the line is not yet the other side of the road"
+
+-- @reference
+SELECT drive_id, ego_id, t_out_ns AS t_ns, occurrence, turn, across
+FROM junction_passage
+WHERE across IS DISTINCT FROM true AND turn IS DISTINCT FROM 'straight'
+
+-- @condition
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $tolerance_m AS required,
+    CASE k.side WHEN 1 THEN k.left_out_m WHEN -1 THEN k.right_out_m END AS observed,
+    CASE WHEN k.over_width_m IS NULL THEN false WHEN r.turn IS NOT NULL THEN k.over_against END AS applies
+FROM reference r
+JOIN ego_state e USING (drive_id, ego_id, t_ns)
+JOIN ego_corridor k USING (drive_id, ego_id, chain_id, t_ns)
