@@ -46,7 +46,6 @@ def test_a_file_name_is_exactly_that_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "says"),
     [
-        ("<?xml version='1.0'?><!-- <OpenDRIVE> --><osm version='0.6'/>", "Lanelet2"),
         ("<net/>", "SUMO"),
         ("<!DOCTYPE html>\n<html><body>404</body></html>", "HTML"),
         ("<roads/>", "<roads>"),

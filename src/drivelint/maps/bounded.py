@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
+import shapely
 
 from drivelint.maps.tables import from_columns, from_rows, repeated
 
@@ -272,6 +273,32 @@ def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
 
     Where the left is driven on, the oncoming lane is the one on the right.
     """
-    left = sum(lane.left_against is True for lane in lanes if lane.drivable)
-    right = sum(lane.right_against is True for lane in lanes if lane.drivable)
+    one_way = {lane.lanelet_id: lane for lane in lanes if lane.drivable and not lane.bidirectional}
+    left = sum(lane.left_against is True and lane.left_id in one_way for lane in one_way.values())
+    right = sum(lane.right_against is True and lane.right_id in one_way for lane in one_way.values())
     return None if left == right else "rht" if left > right else "lht"
+
+
+def crossings(
+    walks: Iterable[BoundedLane], lanes: Sequence[BoundedLane], offset: tuple[float, float]
+) -> list[dict[str, Any]]:
+    """Return the rows of `crossing`: one for each drivable lanelet that a lane for people on foot lies across."""
+    driven = [lane for lane in lanes if lane.drivable]
+    lines = [shapely.LineString(lane.line.centre) for lane in driven]
+    tree = shapely.STRtree(lines)
+    rows = []
+    for walk in walks:
+        area = shapely.Polygon(np.vstack([walk.right, walk.left[::-1]]) + offset).buffer(0.0)
+        for i in sorted(int(i) for i in tree.query(area, predicate="intersects")):
+            common = shapely.get_coordinates(shapely.intersection(area, lines[i]))
+            s = shapely.line_locate_point(lines[i], shapely.points(common))
+            rows.append(
+                {
+                    "crossing_id": walk.lanelet_id,
+                    "lanelet_id": driven[i].lanelet_id,
+                    "s_start_m": float(s.min()),
+                    "s_end_m": float(s.max()),
+                    "kind": "zebra" if walk.kind == "zebra" else None,
+                }
+            )
+    return sorted(rows, key=lambda r: (r["crossing_id"], r["lanelet_id"]))

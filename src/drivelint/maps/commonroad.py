@@ -13,14 +13,14 @@ import shapely
 
 from drivelint import markup
 from drivelint.errors import MapError
-from drivelint.maps.bounded import BoundedLane, build, side_driven_on, tables
+from drivelint.maps.bounded import BoundedLane, build, crossings, side_driven_on, tables
 from drivelint.maps.contract import Environment, MapSource, Request, environment_id
 from drivelint.maps.quality import Quality
 from drivelint.maps.signcodes import kind_of
 from drivelint.maps.tables import from_rows
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
     from lxml import etree
     from numpy.typing import NDArray
@@ -79,7 +79,7 @@ class CommonRoadReader:
             "traffic_signal": _signals(root, lanes, request.offset),
             "stop_line": _stop_lines(root, lanes, request.offset),
             "road_object": [],
-            "crossing": _crossings(walks, lanes, request.offset),
+            "crossing": crossings(walks, lanes, request.offset),
         }
         result |= {table: from_rows(table, name, content) for table, content in rows.items()}
         result["map_quality"] = quality.table(name)
@@ -268,28 +268,3 @@ def _stop_lines(
             }
         )
     return sorted(rows, key=lambda r: r["stop_line_id"])
-
-
-def _crossings(
-    walks: Iterable[BoundedLane], lanes: Sequence[BoundedLane], offset: tuple[float, float]
-) -> list[dict[str, Any]]:
-    """Return a row for each drivable lanelet that a crosswalk's lanelet lies across."""
-    driven = [lane for lane in lanes if lane.drivable]
-    lines = [shapely.LineString(lane.line.centre) for lane in driven]
-    tree = shapely.STRtree(lines)
-    rows = []
-    for walk in walks:
-        area = shapely.Polygon(np.vstack([walk.right, walk.left[::-1]]) + offset).buffer(0.0)
-        for i in sorted(int(i) for i in tree.query(area, predicate="intersects")):
-            common = shapely.get_coordinates(shapely.intersection(area, lines[i]))
-            s = shapely.line_locate_point(lines[i], shapely.points(common))
-            rows.append(
-                {
-                    "crossing_id": walk.lanelet_id,
-                    "lanelet_id": driven[i].lanelet_id,
-                    "s_start_m": float(s.min()),
-                    "s_end_m": float(s.max()),
-                    "kind": None,
-                }
-            )
-    return sorted(rows, key=lambda r: (r["crossing_id"], r["lanelet_id"]))

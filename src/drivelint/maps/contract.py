@@ -29,12 +29,14 @@ class Request:
     """What the caller knows beside the map.
 
     `offset` in metres is added to all coordinates; `handedness` is the user's option (auto, lht, rht); `sensed` is what
-    the traces voted (lht, rht), used only where neither option nor map decides.
+    the traces voted (lht, rht), used only where neither option nor map decides. `origin`: latitude and longitude
+    (degrees) of the point that is 0,0 in the log, for maps that lie on the globe.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
     handedness: str = "auto"
     sensed: str | None = None
+    origin: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)

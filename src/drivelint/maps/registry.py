@@ -18,7 +18,6 @@ MAX_BYTES = 512 * 2**20  # a city of 2,000 km of lanes is about 200 MB; beyond t
 _SKIP = re.compile(r"\s*(?:<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^\[>]*(?:\[.*?\]\s*)?>)", re.DOTALL | re.IGNORECASE)
 _ROOT = re.compile(r"\s*<(?:[\w.-]+:)?([A-Za-z_][\w.-]*)")
 _LOOKS = {
-    "osm": "an OSM file (Lanelet2 or OpenStreetMap)",
     "net": "a SUMO network",
     "openscenario": "an OpenSCENARIO scenario, not its road network",
     "html": "an HTML page, as a failed download leaves behind",
@@ -37,8 +36,14 @@ def _commonroad() -> MapReader:
     return CommonRoadReader()
 
 
+def _lanelet2() -> MapReader:
+    from drivelint.maps.lanelet2 import Lanelet2Reader
+
+    return Lanelet2Reader()
+
+
 # by root element, lower case
-READERS: dict[str, Callable[[], MapReader]] = {"opendrive": _opendrive, "commonroad": _commonroad}
+READERS: dict[str, Callable[[], MapReader]] = {"opendrive": _opendrive, "commonroad": _commonroad, "osm": _lanelet2}
 
 
 def read_source(path: Path) -> MapSource:
@@ -69,11 +74,13 @@ def load_map(
     offset: tuple[float, float] = (0, 0),
     handedness: str = "auto",
     sensed: str | None = None,
+    origin: tuple[float, float] | None = None,
 ) -> Environment:
     """Return the map as the tables of `schemas/map.sql`.
 
     `offset` (metres) is added to all coordinates; `handedness` is the user's option, `sensed` what the traces voted
-    (used only when neither the option nor the map decides). `MapError`: unknown format or unreadable content;
+    (used only when neither the option nor the map decides), `origin` the latitude and longitude (degrees) of the log's 0,0.
+    `MapError`: unknown format or unreadable content;
     `UsageError`: an option that has no meaning.
     """
     if handedness not in {"auto", "lht", "rht"}:
@@ -84,7 +91,7 @@ def load_map(
         raise UsageError(f"map offset {offset} is not two finite numbers of metres")
     if len(source.content) > MAX_BYTES:
         raise _too_large(source.name, len(source.content))
-    request = Request((float(offset[0]), float(offset[1])), handedness, sensed)
+    request = Request((float(offset[0]), float(offset[1])), handedness, sensed, origin)
     return _reader(source).read(source, request)
 
 
@@ -96,7 +103,8 @@ def _reader(source: MapSource) -> MapReader:
     if root.lower() not in READERS:
         looks = _LOOKS.get(root.lower(), f"XML with the root element <{root}>")
         raise MapError(
-            f"map {source.name} looks like {looks}; supported: OpenDRIVE (root element <OpenDRIVE>) and CommonRoad (<commonRoad>)"
+            f"map {source.name} looks like {looks}; supported: OpenDRIVE (root element <OpenDRIVE>), "
+            "CommonRoad (<commonRoad>) and Lanelet2 (<osm>)"
         )
     return READERS[root.lower()]()
 
