@@ -75,7 +75,7 @@ CREATE TABLE follower (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step; no row: cannot be told
     lane VARCHAR NOT NULL,            -- own, left or right: the running lane, or the strip of one lane's width beside it; one row each
-    object_id VARCHAR,                -- nearest vehicle behind in it that heads as the ego does; NULL: nobody there
+    object_id VARCHAR,                -- nearest vehicle behind in it, within 200 m, that heads as the ego does; NULL: nobody there
     gap_m DOUBLE,                     -- its front to the ego's rear along the corridor; negative: alongside
     speed_mps DOUBLE,                 -- its speed
     closing_mps DOUBLE                -- its speed minus the ego's
@@ -122,7 +122,8 @@ CREATE TABLE cut_in (
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order; another vehicle moves from beside into the running lane ahead of the ego
     object_id VARCHAR NOT NULL,       -- that vehicle
-    t_ns BIGINT NOT NULL,             -- first step with its box more than 0.3 m inside the running lane
+    t_ns BIGINT NOT NULL,             -- first step with its box more than 0.3 m inside the running lane, from at most 0.05 m; within 45 degrees of it, at most 150 m ahead
+    begin_seen BOOLEAN NOT NULL,      -- the step before is there and it is placed: else it may have come in earlier
     side VARCHAR NOT NULL,            -- left or right: where it came from
     gap_m DOUBLE NOT NULL,            -- ego front to its rear at that step, along the corridor
     ego_speed_mps DOUBLE,             -- ego's speed then
@@ -191,11 +192,11 @@ CREATE TABLE overtake_place (
     crossing_m DOUBLE,                -- the same to the next pedestrian crossing
     marking_out VARCHAR,              -- marking of the boundary crossed at t0, seen from the running lane; NULL: the map does not say
     marking_back VARCHAR,             -- marking of the boundary crossed back at t3, seen from the overtaking lane; NULL: the map does not say, or never back
-    no_overtaking BOOLEAN,            -- a no-overtaking sign holds at t0; NULL: the map has no such signs at all
+    no_overtaking BOOLEAN,            -- a no-overtaking sign holds at t0, until its end is said or the next junction; NULL: the map has no such signs at all, or the way behind was not seen far enough
     rear_id VARCHAR,                  -- vehicle behind or beside, in the overtaking lane or moving into it, at t0; NULL: nobody
     rear_gap_m DOUBLE,                -- its front to the ego's rear; negative: alongside
     rear_ttc_s DOUBLE,                -- time until it gets to the ego's rear at both speeds; infinite: never, or nobody; 0: alongside
-    rear_known BOOLEAN NOT NULL       -- every vehicle behind was placed
+    rear_known BOOLEAN NOT NULL       -- every vehicle behind, within 200 m, was placed, and its speed known
 );
 
 CREATE TABLE following (

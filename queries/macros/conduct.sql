@@ -23,3 +23,13 @@ CREATE OR REPLACE MACRO in_lane(d_m, lat_half_m, half_width_m) AS abs(d_m) - lat
 
 -- Whoever is further away than this when a lane change begins is neither its leader nor its follower: 5 s at 70 km/h of difference.
 CREATE OR REPLACE MACRO lane_change_near_m() AS 100.0;
+
+-- How far behind the ego somebody is looked for: as far as the corridor surely reaches.
+CREATE OR REPLACE MACRO follower_m() AS 200.0;
+
+-- How far in the running lane a vehicle has come when it has cut in.
+CREATE OR REPLACE MACRO cut_in_m() AS 0.3;
+
+-- A marking as the lane on its other side sees it: of a double line the nearer one is named first.
+CREATE OR REPLACE MACRO seen_from_beyond(marking) AS
+    CASE marking WHEN 'solid_broken' THEN 'broken_solid' WHEN 'broken_solid' THEN 'solid_broken' ELSE marking END;

@@ -1,0 +1,53 @@
+-- Another vehicle comes from beside into the running lane ahead of the ego: from less than 0.05 m inside it to more than 0.3 m, along the
+-- lane (within 45 degrees), at most 150 m ahead. What the ego does by changing lanes itself is none. Where it was lost to sight in
+-- between, t is the first step at which it is seen there.
+WITH ahead AS (
+    SELECT
+        p.drive_id, p.ego_id, p.t_ns, st.k, st.seg, p.object_id, e.chain_id, p.rear_s_m - e.front_s_m AS gap_m, e.speed_mps AS ego_speed_mps,
+        p.speed_mps, p.d_m, abs(p.d_m) < p.half_width_m AS centre_in, p.half_width_m + p.lat_half_m - abs(p.d_m) AS inside_m,
+        abs(p.heading_diff_rad) < pi() / 4 AS along
+    FROM pair p
+    JOIN ego_state e USING (drive_id, ego_id, t_ns)
+    JOIN step st USING (drive_id, ego_id, t_ns)
+    WHERE may_be_vehicle(p.actor_class) AND p.front_s_m > e.front_s_m AND p.rear_s_m - e.front_s_m <= 150
+        AND abs(p.heading_diff_rad) < pi() / 2 AND abs(p.d_m) < 5 * p.half_width_m
+),
+-- who is in the lane all the time, or never, does not cut in
+moving AS (
+    SELECT a.*
+    FROM ahead a
+    SEMI JOIN (
+        SELECT drive_id, ego_id, object_id, chain_id
+        FROM ahead
+        GROUP BY ALL
+        HAVING min(inside_m) <= over_boundary_m() AND max(inside_m) > cut_in_m()
+    ) m ON m.drive_id = a.drive_id AND m.ego_id = a.ego_id AND m.object_id = a.object_id AND m.chain_id = a.chain_id
+),
+ordered AS (
+    SELECT
+        *,
+        last_value(CASE WHEN inside_m > cut_in_m() THEN {'is_in': true, 't_ns': t_ns, 'd_m': d_m} WHEN inside_m <= over_boundary_m() THEN {'is_in': false, 't_ns': t_ns, 'd_m': d_m} END IGNORE NULLS)
+            OVER (w ROWS BETWEEN UNBOUNDED PRECEDING AND 1 PRECEDING) AS was,
+        lag(k) OVER w = k - 1 AND lag(seg) OVER w = seg AS joined
+    FROM moving
+    WINDOW w AS (PARTITION BY drive_id, ego_id, object_id, chain_id ORDER BY k)
+),
+cut AS (
+    SELECT
+        *,
+        coalesce(inside_m > cut_in_m() AND NOT was.is_in AND along AND t_ns - was.t_ns <= 5_000_000_000, false) AS begins,
+        sum(((inside_m > cut_in_m() AND NOT was.is_in) OR inside_m <= over_boundary_m())::INTEGER)
+            OVER (PARTITION BY drive_id, ego_id, object_id, chain_id ORDER BY k ROWS UNBOUNDED PRECEDING) AS n
+    FROM ordered
+),
+placed AS (
+    SELECT drive_id, ego_id, object_id, chain_id, n, min(t_ns) AS t_ns FROM cut WHERE centre_in GROUP BY ALL
+)
+SELECT
+    c.drive_id, c.ego_id,
+    (row_number() OVER (PARTITION BY c.drive_id, c.ego_id ORDER BY c.t_ns, c.object_id) - 1)::INTEGER AS occurrence,
+    c.object_id, c.t_ns, coalesce(c.joined, false) AS begin_seen, CASE WHEN c.was.d_m > 0 THEN 'left' ELSE 'right' END AS side,
+    c.gap_m, c.ego_speed_mps, c.speed_mps, p.t_ns AS in_place_ns
+FROM cut c
+LEFT JOIN placed p USING (drive_id, ego_id, object_id, chain_id, n)
+WHERE c.begins

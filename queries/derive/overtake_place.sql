@@ -1,0 +1,127 @@
+-- Where an overtake begins and ends, and who comes up from behind when it begins.
+WITH gone AS (
+    SELECT
+        o.drive_id, o.ego_id, o.occurrence, o.chain_id, o.side, o.t0_ns, o.t3_ns, g.environment_id, e.s_m, e.front_s_m, e.rear_s_m, e.speed_mps
+    FROM overtake o
+    JOIN data_log g USING (drive_id)
+    JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns = o.t0_ns
+),
+-- two roads that meet in a junction are one for a driver
+roads AS (
+    SELECT environment_id, junction_id, count(DISTINCT road_id) AS n
+    FROM (
+        SELECT l.environment_id, a.junction_id, b.road_id
+        FROM lane_link l
+        JOIN lanelet a ON a.environment_id = l.environment_id AND a.lanelet_id = l.from_id
+        JOIN lanelet b ON b.environment_id = l.environment_id AND b.lanelet_id = l.to_id
+        WHERE a.junction_id IS NOT NULL AND b.junction_id IS NULL
+        UNION ALL
+        SELECT l.environment_id, b.junction_id, a.road_id
+        FROM lane_link l
+        JOIN lanelet a ON a.environment_id = l.environment_id AND a.lanelet_id = l.from_id
+        JOIN lanelet b ON b.environment_id = l.environment_id AND b.lanelet_id = l.to_id
+        WHERE b.junction_id IS NOT NULL AND a.junction_id IS NULL
+    )
+    GROUP BY ALL
+),
+way AS (
+    SELECT g.drive_id, g.ego_id, g.occurrence, g.environment_id, g.front_s_m, g.rear_s_m, c.lanelet_id, c.s_start_m, c.length_m
+    FROM gone g
+    JOIN chain c USING (drive_id, ego_id, chain_id)
+),
+junction AS (
+    SELECT w.drive_id, w.ego_id, w.occurrence, min(w.s_start_m - w.front_s_m) AS m
+    FROM way w
+    JOIN lanelet n ON n.environment_id = w.environment_id AND n.lanelet_id = w.lanelet_id
+    JOIN roads r ON r.environment_id = n.environment_id AND r.junction_id = n.junction_id
+    WHERE w.s_start_m + w.length_m > w.rear_s_m AND r.n > 2
+    GROUP BY ALL
+),
+crossed AS (
+    SELECT w.drive_id, w.ego_id, w.occurrence, min(w.s_start_m + x.s_start_m - w.front_s_m) AS m
+    FROM way w
+    JOIN crossing x ON x.environment_id = w.environment_id AND x.lanelet_id = w.lanelet_id
+    WHERE w.s_start_m + x.s_end_m > w.rear_s_m
+    GROUP BY ALL
+),
+-- the last word before the ego: a sign holds until its end is said, or until the next junction
+sign AS (
+    SELECT drive_id, ego_id, occurrence, max({'s_m': s_m, 'holds': holds}).holds AS holds
+    FROM (
+        SELECT w.drive_id, w.ego_id, w.occurrence, w.s_start_m + t.lane_s_m AS s_m, t.kind = 'no_overtaking' AS holds, w.front_s_m
+        FROM way w
+        JOIN traffic_signal t ON t.environment_id = w.environment_id AND t.lanelet_id = w.lanelet_id
+        WHERE t.kind IN ('no_overtaking', 'no_overtaking_end')
+        UNION ALL
+        SELECT w.drive_id, w.ego_id, w.occurrence, w.s_start_m + w.length_m, false, w.front_s_m
+        FROM way w
+        JOIN lanelet n ON n.environment_id = w.environment_id AND n.lanelet_id = w.lanelet_id
+        JOIN roads r ON r.environment_id = n.environment_id AND r.junction_id = n.junction_id
+        WHERE r.n > 2
+    )
+    WHERE s_m <= front_s_m
+    GROUP BY ALL
+),
+-- a chain that begins on the way has not seen every sign behind it
+begun AS (
+    SELECT w.drive_id, w.ego_id, w.occurrence, min({'s_m': w.s_start_m, 'ends': l.behind_id IS NULL}).ends AS at_map_end
+    FROM way w
+    JOIN lane_next l ON l.environment_id = w.environment_id AND l.lanelet_id = w.lanelet_id
+    GROUP BY ALL
+),
+signed AS (SELECT DISTINCT environment_id FROM traffic_signal WHERE kind IN ('no_overtaking', 'no_overtaking_end')),
+-- the running lane's own boundary on the overtaking side, when it is left and when it is come back over
+line AS (
+    SELECT g.drive_id, g.ego_id, g.occurrence, v.back, min(b.marking) AS marking
+    FROM gone g
+    CROSS JOIN (VALUES (false), (true)) AS v(back)
+    JOIN ego_corridor x ON x.drive_id = g.drive_id AND x.ego_id = g.ego_id AND x.chain_id = g.chain_id
+        AND x.t_ns = CASE WHEN v.back THEN g.t3_ns ELSE g.t0_ns END
+    JOIN chain c ON c.drive_id = g.drive_id AND c.ego_id = g.ego_id AND c.chain_id = g.chain_id
+        AND c.s_start_m <= x.s_m AND x.s_m < c.s_start_m + c.length_m
+    JOIN lane_boundary b ON b.environment_id = g.environment_id AND b.lanelet_id = c.lanelet_id
+        AND b.side = CASE g.side WHEN 1 THEN 'left' ELSE 'right' END
+        AND b.s_start_m <= x.s_m - c.s_start_m AND x.s_m - c.s_start_m < b.s_end_m
+    GROUP BY ALL
+),
+-- in the overtaking lane, or in the running one and moving over at more than 0.3 m/s
+rear AS (
+    SELECT
+        g.drive_id, g.ego_id, g.occurrence,
+        min({
+            'ttc_s': CASE
+                WHEN p.front_s_m >= g.rear_s_m THEN 0.0::DOUBLE
+                WHEN p.speed_mps > g.speed_mps THEN (g.rear_s_m - p.front_s_m) / (p.speed_mps - g.speed_mps)
+                WHEN p.speed_mps <= g.speed_mps THEN 'infinity'::DOUBLE
+            END,
+            'gap_m': g.rear_s_m - p.front_s_m, 'object_id': p.object_id
+        }) AS o,
+        bool_and(p.speed_mps IS NOT NULL OR p.front_s_m >= g.rear_s_m) AS known
+    FROM gone g
+    JOIN pair p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns = g.t0_ns
+    WHERE may_be_vehicle(p.actor_class) AND p.s_m <= g.s_m AND abs(p.heading_diff_rad) < pi() / 2 AND g.rear_s_m - p.front_s_m <= follower_m()
+        AND (
+            in_lane(g.side * p.d_m - 2 * p.half_width_m, p.lat_half_m, p.half_width_m)
+            OR (in_lane(p.d_m, p.lat_half_m, p.half_width_m) AND g.side * p.speed_mps * sin(p.heading_diff_rad) > 0.3)
+        )
+    GROUP BY ALL
+),
+doubt AS (
+    SELECT DISTINCT drive_id, ego_id, t_ns FROM hidden WHERE vehicle AND ahead IS DISTINCT FROM true AND least_m < follower_m()
+)
+SELECT
+    g.drive_id, g.ego_id, g.occurrence, coalesce(j.m, 'infinity'::DOUBLE) AS junction_m, coalesce(x.m, 'infinity'::DOUBLE) AS crossing_m,
+    o.marking AS marking_out, seen_from_beyond(b.marking) AS marking_back,
+    CASE WHEN d.environment_id IS NOT NULL THEN coalesce(s.holds, CASE WHEN u.at_map_end THEN false END) END AS no_overtaking,
+    r.o.object_id AS rear_id, r.o.gap_m AS rear_gap_m, CASE WHEN r.o.object_id IS NULL THEN 'infinity'::DOUBLE ELSE r.o.ttc_s END AS rear_ttc_s,
+    h.t_ns IS NULL AND coalesce(r.known, true) AS rear_known
+FROM gone g
+LEFT JOIN junction j USING (drive_id, ego_id, occurrence)
+LEFT JOIN crossed x USING (drive_id, ego_id, occurrence)
+LEFT JOIN (FROM line WHERE NOT back) o USING (drive_id, ego_id, occurrence)
+LEFT JOIN (FROM line WHERE back) b USING (drive_id, ego_id, occurrence)
+LEFT JOIN signed d ON d.environment_id = g.environment_id
+LEFT JOIN sign s USING (drive_id, ego_id, occurrence)
+LEFT JOIN begun u USING (drive_id, ego_id, occurrence)
+LEFT JOIN rear r USING (drive_id, ego_id, occurrence)
+LEFT JOIN doubt h ON h.drive_id = g.drive_id AND h.ego_id = g.ego_id AND h.t_ns = g.t0_ns
