@@ -45,24 +45,20 @@
 -- why = "our default: the response time and four seconds of braking, which take 16 m/s off"
 
 -- @reference
-SELECT drive_id, ego_id, min(t_ns) AS t_ns, object_id, max(t_ns) AS t_last_ns
-FROM (
-    SELECT l.drive_id, l.ego_id, l.t_ns, l.object_id, s.seg, s.k - row_number() OVER (PARTITION BY l.drive_id, l.ego_id, l.object_id, s.seg ORDER BY s.k) AS run
-    FROM lead l
-    JOIN step s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id AND s.t_ns = l.t_ns
-    WHERE follows(l.in_lane, l.gap_m, l.speed_mps, l.oncoming) AND l.ego_speed_mps > standing_mps()
-        AND l.gap_m < rss_longitudinal_m(l.ego_speed_mps, ahead_mps(l.speed_mps, l.oncoming), $rho_s, $accel_mps2, $brake_min_mps2, $brake_max_mps2)
+WITH judged AS (
+    SELECT s.drive_id, s.ego_id, s.t_ns, s.k, s.seg, l.object_id,
+        CASE WHEN l.object_id IS NOT NULL THEN follows(l.in_lane, l.gap_m, l.speed_mps, l.oncoming) AND l.ego_speed_mps > standing_mps()
+            AND l.gap_m < rss_longitudinal_m(l.ego_speed_mps, ahead_mps(l.speed_mps, l.oncoming), $rho_s, $accel_mps2, $brake_min_mps2, $brake_max_mps2)
+        WHEN l.t_ns IS NOT NULL THEN false END AS unsafe
+    FROM step s
+    LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
 )
+SELECT drive_id, ego_id, min(t_ns) AS t_ns, object_id, max(t_ns) AS t_last_ns
+FROM (SELECT *, k - row_number() OVER (PARTITION BY drive_id, ego_id, object_id, seg ORDER BY k) AS run FROM judged WHERE unsafe)
 GROUP BY drive_id, ego_id, object_id, seg, run
 UNION ALL
 -- where it cannot be told who leads, or how near, nobody knows when it became unsafe
-SELECT s.drive_id, s.ego_id, NULL, NULL, NULL
-FROM step s
-LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
-WHERE l.t_ns IS NULL
-    OR (l.object_id IS NOT NULL AND (follows(l.in_lane, l.gap_m, l.speed_mps, l.oncoming)
-        AND l.gap_m < rss_longitudinal_m(l.ego_speed_mps, ahead_mps(l.speed_mps, l.oncoming), $rho_s, $accel_mps2, $brake_min_mps2, $brake_max_mps2)) IS NULL)
-GROUP BY s.drive_id, s.ego_id
+SELECT drive_id, ego_id, NULL, NULL, NULL FROM judged WHERE unsafe IS NULL GROUP BY drive_id, ego_id
 
 -- @condition
 SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, -m.accel_mps2 AS observed, $brake_min_mps2 AS required,
