@@ -3,3 +3,8 @@
 -- A limit of ISO 15622: `slow` up to 5 m/s, `fast` from 20 m/s on, straight in between.
 CREATE OR REPLACE MACRO iso15622_limit(v_mps, slow, fast) AS
     CASE WHEN v_mps <= 5 THEN slow WHEN v_mps >= 20 THEN fast WHEN v_mps IS NOT NULL THEN slow + (fast - slow) * (v_mps - 5) / 15 END;
+
+-- Whether a filtered value is to be judged: where it is known, and where it is not though the log is there before and after. At the ends
+-- of the log its window is not whole, which says nothing about the drive.
+CREATE OR REPLACE MACRO judged_inside(value, t_ns, t_start_ns, t_end_ns, edge_s) AS
+    value IS NOT NULL OR (t_ns - t_start_ns >= edge_s * 1_000_000_000 AND t_end_ns - t_ns >= edge_s * 1_000_000_000);

@@ -1,0 +1,37 @@
+-- title = "Acceleration within ISO 15622"
+-- clause = "ISO 15622 (adaptive cruise control): speed up gently, the more so the faster"
+-- hypothesis = "At every step, was the ego's acceleration at most 4 m/s2 up to 5 m/s, falling to 2 m/s2 at 20 m/s?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "minor"
+-- legal = "should"
+-- status = "stable"
+-- sense = "<="
+-- unit = "m/s2"
+-- observes = "acceleration"
+-- near_margin = 0.3
+-- reads = ["clock", "ego_motion"]
+--
+-- [params.slow_mps2]
+-- default = 4.0
+-- unit = "m/s2"
+-- why = "limit up to 5 m/s"
+-- source = "ISO 15622:2018, operational limits"
+--
+-- [params.fast_mps2]
+-- default = 2.0
+-- unit = "m/s2"
+-- why = "limit from 20 m/s on"
+-- source = "ISO 15622:2018, operational limits"
+--
+-- [params.edge_s]
+-- default = 0.5
+-- unit = "s"
+-- why = "our default: so near to the ends of the log the filter's window is not whole"
+
+-- @condition
+-- filtered before it is differentiated, see ego_motion
+SELECT m.drive_id, m.ego_id, m.t_ns, m.accel_mps2 AS observed, iso15622_limit(m.v_long_mps, $slow_mps2, $fast_mps2) AS required,
+    judged_inside(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies
+FROM ego_motion m
+JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id

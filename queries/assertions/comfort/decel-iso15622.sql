@@ -1,0 +1,31 @@
+-- title = "Deceleration within ISO 15622"
+-- clause = "ISO 15622 (adaptive cruise control): over two seconds brake no harder than people in traffic do"
+-- hypothesis = "At every step, was the ego's mean deceleration over the last 2 s at most 3.5 m/s2?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "minor"
+-- legal = "should"
+-- status = "stable"
+-- sense = "<="
+-- unit = "m/s2"
+-- observes = "mean deceleration over 2 s"
+-- near_margin = 0.3
+-- reads = ["clock", "ego_motion"]
+--
+-- [params.most_mps2]
+-- default = 3.5
+-- unit = "m/s2"
+-- why = "limit of the mean over 2 s"
+-- source = "ISO 15622:2018, operational limits"
+--
+-- [params.edge_s]
+-- default = 2.5
+-- unit = "s"
+-- why = "our default: so near to the ends of the log the two seconds are not whole"
+
+-- @condition
+-- filtered before it is differentiated, see ego_motion
+SELECT m.drive_id, m.ego_id, m.t_ns, -m.accel_2s_mps2 AS observed, $most_mps2 AS required,
+    judged_inside(m.accel_2s_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies
+FROM ego_motion m
+JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id

@@ -1,0 +1,37 @@
+-- title = "Jerk within ISO 15622"
+-- clause = "ISO 15622 (adaptive cruise control): let braking grow gently, the more so the faster"
+-- hypothesis = "At every step, did the ego's deceleration grow, over the last second, by at most 5 m/s3 up to 5 m/s, falling to 2.5 m/s3 at 20 m/s?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "minor"
+-- legal = "should"
+-- status = "stable"
+-- sense = "<="
+-- unit = "m/s3"
+-- observes = "growth of the deceleration over 1 s"
+-- near_margin = 0.5
+-- reads = ["clock", "ego_motion"]
+--
+-- [params.slow_mps3]
+-- default = 5.0
+-- unit = "m/s3"
+-- why = "limit up to 5 m/s"
+-- source = "ISO 15622:2018, operational limits (negative jerk)"
+--
+-- [params.fast_mps3]
+-- default = 2.5
+-- unit = "m/s3"
+-- why = "limit from 20 m/s on"
+-- source = "ISO 15622:2018, operational limits (negative jerk)"
+--
+-- [params.edge_s]
+-- default = 1.5
+-- unit = "s"
+-- why = "our default: so near to the ends of the log the second and the filter's window are not whole"
+
+-- @condition
+-- filtered before it is differentiated, see ego_motion
+SELECT m.drive_id, m.ego_id, m.t_ns, -m.jerk_1s_mps3 AS observed, iso15622_limit(m.v_long_mps, $slow_mps3, $fast_mps3) AS required,
+    judged_inside(m.jerk_1s_mps3, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies
+FROM ego_motion m
+JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id

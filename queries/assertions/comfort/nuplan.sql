@@ -1,0 +1,52 @@
+-- title = "Acceleration and jerk within nuPlan's bounds"
+-- clause = "nuPlan, metric ego_is_comfortable: stay within the accelerations and jerks of expert drivers (of the jerk its longitudinal part)"
+-- hypothesis = "At every step, were the ego's accelerations and its longitudinal jerk within the bounds?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "minor"
+-- legal = "should"
+-- status = "stable"
+-- sense = "<="
+-- unit = "of the bound"
+-- observes = "largest of acceleration, braking, lateral acceleration and jerk, each as a share of its bound,"
+-- near_margin = 0.1
+-- reads = ["clock", "ego_motion"]
+--
+-- [params.accel_mps2]
+-- default = 2.4
+-- unit = "m/s2"
+-- why = "greatest acceleration"
+-- source = "nuPlan devkit, ego_is_comfortable"
+--
+-- [params.brake_mps2]
+-- default = 4.05
+-- unit = "m/s2"
+-- why = "greatest deceleration"
+-- source = "nuPlan devkit, ego_is_comfortable"
+--
+-- [params.lat_mps2]
+-- default = 4.89
+-- unit = "m/s2"
+-- why = "greatest lateral acceleration"
+-- source = "nuPlan devkit, ego_is_comfortable"
+--
+-- [params.jerk_mps3]
+-- default = 8.37
+-- unit = "m/s3"
+-- why = "greatest jerk"
+-- source = "nuPlan devkit, ego_is_comfortable"
+--
+-- [params.edge_s]
+-- default = 1.0
+-- unit = "s"
+-- why = "our default: so near to the ends of the log the filter's windows are not whole"
+
+-- @condition
+-- filtered before it is differentiated, see ego_motion
+SELECT m.drive_id, m.ego_id, m.t_ns, w.share AS observed, 1.0::DOUBLE AS required,
+    judged_inside(w.share, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies
+FROM ego_motion m
+JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
+-- greatest() leaves a NULL out: what is known can show that it was too much, but not that it was all right
+CROSS JOIN LATERAL (SELECT greatest(m.accel_mps2 / $accel_mps2, -m.accel_mps2 / $brake_mps2, abs(m.lat_accel_mps2) / $lat_mps2, abs(m.jerk_mps3) / $jerk_mps3) AS most) g
+CROSS JOIN LATERAL (SELECT CASE WHEN m.accel_mps2 + m.lat_accel_mps2 + m.jerk_mps3 IS NOT NULL OR g.most > 1 THEN g.most END AS share) w
