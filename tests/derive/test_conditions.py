@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 import pyarrow as pa
 import pytest
 
+from drivelint import catalogue
+from drivelint.inspect.advice import OF_THE_MAP
 from drivelint.maps import MapSource, load_map
 from tests.maps import xodr
 from tests.scenes import LANE, Actor, Road, derived, drive, linked, moving, plan, road, rows, tee, times
@@ -180,3 +182,70 @@ def test_what_another_actor_declares_is_not_the_egos() -> None:
     con = derived(told, tables=["ego_condition"])
     assert only(con, "engaged") is True
     assert rows(con, "FROM ego_mode") == []
+
+
+def signals(scene: Drive) -> dict[str, bool]:
+    return {row["signal"]: row["available"] for row in capabilities(scene)}
+
+
+def capabilities(scene: Drive) -> list[dict[str, Any]]:
+    return rows(derived(scene, tables=["capability"]), "FROM capability")
+
+
+def test_every_signal_that_a_rule_requires_is_answered_for_whatever_the_log() -> None:
+    required = {signal for rule in catalogue.load().values() for signal in rule.requires}
+    assert required <= signals(drive([ride()], None)).keys()
+
+
+def test_every_signal_says_why_it_is_there_or_what_to_provide() -> None:
+    way = highway("rural", *BOTH)
+    for scene in (drive([ride()], None), drive([ride(way)], way.environment)):
+        for row in capabilities(scene):
+            assert row["reason"], row
+    nothing = {row["signal"]: row["reason"] for row in capabilities(drive([ride()], None))}
+    assert {nothing[signal] for signal in {"map", *OF_THE_MAP} - {"registration"}} == {"no map: give one with --map"}
+
+
+def test_what_the_log_declares_can_be_required() -> None:
+    quiet = drive([ride()], None)
+    assert not any(there for signal, there in signals(quiet).items() if signal.startswith(("mode", "declared")))
+    loud = saying(quiet, [(0.0, "horn", "on"), (0.5, "overtake_go", None)])
+    said = signals(loud)
+    assert [said[s] for s in ("declared_events", "modes", "mode_horn", "mode_engaged")] == [True, True, True, False]
+    assert not signals(saying(quiet, [(0.0, "overtake_go", None)]))["modes"]
+
+
+def test_what_the_others_are_is_known_if_it_is_of_any_of_them_or_nobody_is_there() -> None:
+    def known(*kinds: str | None) -> bool:
+        others = [replace(ride(kind=kind), actor_id=f"o{n}") for n, kind in enumerate(kinds)]
+        return signals(drive([ride(), *others], None))["actor_classes"]
+
+    assert [known(), known("vehicle"), known(None), known(None, "bicycle"), known("car", "vehicle")] == [
+        True, False, False, True, True,
+    ]  # fmt: skip
+
+
+def test_a_road_type_may_be_given_where_the_map_has_none() -> None:
+    def known(kind: str | None, **given: str) -> bool:
+        way = highway(kind, *BOTH)
+        return signals(saying(drive([ride(way)], way.environment), (), **given))["road_types"]
+
+    assert [known("rural"), known(None), known(None, road_type="rural"), known(None, area="open")] == [
+        True, False, True, False,
+    ]  # fmt: skip
+    assert signals(saying(drive([ride()], None), road_type="rural"))["road_types"]
+
+
+def test_states_of_traffic_lights_count_only_if_one_is_known() -> None:
+    scene = drive([ride()], None)
+    for state, expected in ((None, False), ("red", True)):
+        tables = dict(scene.trace.tables)
+        row = {"drive_id": "d", "signal_id": "s", "t_ns": 0, "state": state}
+        tables["signal_state"] = pa.Table.from_pylist([row], schema=tables["signal_state"].schema)
+        assert signals(replace(scene, trace=replace(scene.trace, tables=tables)))["signals"] is expected
+
+
+def test_junctions_of_the_map_are_a_signal() -> None:
+    way, plain = tee()["straight"], highway("rural", *BOTH)
+    assert signals(drive([ride(way)], way.environment))["junctions"]
+    assert not signals(drive([ride(plain)], plain.environment))["junctions"]

@@ -11,7 +11,12 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
 
-OF_THE_MAP: Final = frozenset({"registration", "handedness", "lane_types", "markings", "speed_limits", "exit_signs"})
+OF_THE_MAP: Final = frozenset(
+    {
+        "registration", "handedness", "lane_types", "markings", "speed_limits", "exit_signs", "road_types", "junctions",
+        "traffic_lights", "stop_lines", "crossings",
+    }
+)  # fmt: skip
 """Signals that nobody can have without a map: where there is none, it is what is missing."""
 ADVICE: Final = {
     "map": "the road as OpenDRIVE: --map FILE",
@@ -21,25 +26,54 @@ ADVICE: Final = {
     "markings": "a map with road markings (OpenDRIVE: roadMark)",
     "speed_limits": "a map with speed limits (OpenDRIVE: speed, of a road's type or of a lane)",
     "exit_signs": "a map with its exit signs (OpenDRIVE: signals, such as type 332, 333, 448 or 449)",
+    "road_types": "a map with road types (OpenDRIVE: type of a road), or --env road_type=rural (motorway, town, ...)",
+    "junctions": "a map with its junctions (OpenDRIVE: junction)",
+    "traffic_lights": "a map with its traffic lights (OpenDRIVE: signals, such as type 1000001)",
+    "stop_lines": "a map with its stop lines (OpenDRIVE: signal 294, or objects)",
+    "crossings": "a map with its pedestrian crossings (OpenDRIVE: objects of type crosswalk)",
     "indicator": "the ego's indicators: {indicator}",
     "brake_light": "the ego's brake lights: {brake_light}",
     "ego_size": "the ego's length and width: {ego_size}",
+    "actor_classes": "what the others are, such as car or bicycle: {actor_classes}",
+    "signals": "the states of the traffic lights: {signals}",
+    "declared_events": "the events that the ego declares: {declared_events}",
+    "modes": "the ego's modes, as declared events with the values on and off: {declared_events}",
+    **{
+        f"mode_{mode}": f"when {mode} is on, as declared events {mode} with the values on and off: {{declared_events}}"
+        for mode in (
+            "engaged",
+            "emergency_manoeuvre",
+            "minimal_risk_manoeuvre",
+            "lane_change_procedure",
+            "headlights",
+            "horn",
+        )
+    },
 }
 _WHERE: Final = {
     "osi-mcap": {
         "indicator": "vehicle_classification.light_state.indicator_state of the host vehicle (not UNKNOWN)",
         "brake_light": "vehicle_classification.light_state.brake_light_state of the host vehicle (not UNKNOWN)",
         "ego_size": "base.dimension of the host vehicle",
+        "actor_classes": "type and vehicle_classification.type of the moving objects",
+        "signals": "traffic_light of the ground truth, with ids as the map has them",
+        "declared_events": "a channel of JSON messages drivelint.DeclaredEvent",
     },
     "canonical-parquet": {
         "indicator": "the column indicator of actor_state.parquet",
         "brake_light": "the column brake_light of actor_state.parquet",
         "ego_size": "length_m and width_m in actor.parquet",
+        "actor_classes": "the column actor_class of actor.parquet",
+        "signals": "signal_state.parquet",
+        "declared_events": "declared_event.parquet",
     },
     "": {
         "indicator": "[indicator] in the mapping, and a column to read it from",
         "brake_light": "[brake_light] in the mapping, and a column to read it from",
         "ego_size": "length and width in the mapping's [columns], as columns or as numbers",
+        "actor_classes": "[class] in the mapping, and a column to read it from",
+        "signals": "drivelint convert --to parquet, and signal_state.parquet beside it",
+        "declared_events": "drivelint convert --to parquet, and declared_event.parquet beside it",
     },
 }
 
