@@ -67,15 +67,22 @@ def crowds(members: Sequence[Member], key: str) -> list[list[Member]]:
     """
     groups: dict[str, list[Member]] = {}
     for member in members:
-        shared = {t: rows for t, rows in member.scene.items() if not _is_apart(t, rows, key)}
+        shared = {t: rows for t, rows in member.scene.items() if not _is_apart(t, member.scene, key)}
         groups.setdefault(repr((sorted(member.params.items()), sorted(shared.items()))), []).append(member)
     return list(groups.values())
 
 
-def _is_apart(table: str, rows: Sequence[Row], key: str) -> bool:
+def _is_apart(table: str, scene: Scene, key: str) -> bool:
     """Whether the rows of two cases can stand in one table and be told apart by the key."""
-    names = {name for row in rows for name in row}
-    return key in names or (key == "drive_id" and _of_the_map(table))
+    names = {name for row in scene[table] for name in row}
+    if key == "drive_id":
+        return key in names or _of_the_map(table)
+    # a table of any actor that tells of egos only
+    return key in names or ("actor_id" in names and {row.get("actor_id") for row in scene[table]} <= _egos(scene))
+
+
+def _egos(scene: Scene) -> set[str]:
+    return {row["ego_id"] for row in scene["clock"]}
 
 
 def _of_the_map(table: str) -> bool:
@@ -89,7 +96,7 @@ def merge(crowd: Sequence[Member], key: str) -> Scene:
     merged: Scene = {}
     for member in crowd:
         for table, rows in member.scene.items():
-            if _is_apart(table, rows, key):
+            if _is_apart(table, member.scene, key):
                 merged.setdefault(table, []).extend(_marked(row, table, key, member.no) for row in rows)
             else:
                 merged[table] = rows  # the same in every case of the crowd
@@ -98,7 +105,7 @@ def merge(crowd: Sequence[Member], key: str) -> Scene:
 
 def _marked(row: Row, table: str, key: str, no: int) -> Row:
     marked = dict(row)
-    keys = (key, "environment_id") if key == "drive_id" else (key,)
+    keys = (key, "environment_id") if key == "drive_id" else (key if key in row else "actor_id",)
     if _of_the_map(table):
         marked.setdefault("environment_id", "")
     for name in keys:
