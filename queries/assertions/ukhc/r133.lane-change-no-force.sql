@@ -1,0 +1,41 @@
+-- title = "Changing lanes forces nobody to brake"
+-- clause = "UKHC R133: change lanes only if it does not force another road user to change course or speed"
+-- hypothesis = "In the seconds after a lane change began, did the vehicle behind in the new lane get by without braking hard?"
+-- kind = "postcondition"
+-- subtype = "temporal"
+-- window_s = "window_s"
+-- derivation = "direct"
+-- severity = "major"
+-- legal = "should"
+-- status = "draft"
+-- sense = "<="
+-- unit = "m/s2"
+-- observes = "deceleration of the vehicle behind in the new lane"
+-- near_margin = 0.5
+-- reads = ["lane_change"]
+-- requires = ["map", "registration", "ego_size"]
+--
+-- [params.window_s]
+-- default = 4.0
+-- unit = "s"
+-- why = "our default: a driver's reaction and the braking that it leads to; the library looks at the follower for as long"
+--
+-- [params.decel_mps2]
+-- default = 2.0
+-- unit = "m/s2"
+-- why = "our default: more than letting off the accelerator or braking in comfort"
+--
+-- # Draft: why the follower braked is a judgement; it is asked only where the follower could not have stopped behind the place of the ego.
+
+-- @reference
+SELECT drive_id, ego_id, t_start_ns AS t_ns, follower_id AS object_id, occurrence
+FROM lane_change
+WHERE follower_id IS NOT NULL OR NOT known OR NOT begin_seen
+
+-- @condition
+SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id, $decel_mps2 AS required,
+    CASE WHEN c.begin_seen AND (c.known OR c.follower_decel_mps2 > $decel_mps2) THEN c.follower_decel_mps2 END AS observed,
+    c.follower_gap_m <= stopping_distance_m(c.follower_speed_mps) OR NOT c.known AND NULL AS applies
+FROM reference_step s
+JOIN reference r USING (ref_id)
+JOIN lane_change c ON c.drive_id = r.drive_id AND c.ego_id = r.ego_id AND c.occurrence = r.occurrence

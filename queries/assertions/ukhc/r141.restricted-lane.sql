@@ -1,0 +1,39 @@
+-- title = "Not in lanes kept for others"
+-- clause = "UKHC R140 and R141: you must not drive in a bus lane, or a cycle lane marked by a solid line, during its hours, unless signs allow your class of vehicle"
+-- hypothesis = "At every step, was the ego's centre outside lanes kept for buses, taxis, cycles or shared cars?"
+-- kind = "invariant"
+-- derivation = "direct"
+-- severity = "major"
+-- legal = "must"
+-- status = "draft"
+-- sense = "holds"
+-- merge_gap_s = 2.0
+-- reads = ["data_log", "ego_condition", "ego_state", "lane_occupancy", "lanelet"]
+-- requires = ["map", "registration"]
+--
+-- [params.always_in_force]
+-- default = false
+-- unit = ""
+-- why = "our default: maps do not say in which hours such a lane is kept for others, so being there is unknown, not wrong; true for maps whose lanes always are"
+--
+-- # Draft: hours, and how many sit in the vehicle, are in no table; what can be proved is that the ego was never there.
+
+-- @condition
+WITH lane AS (
+    SELECT o.drive_id, o.actor_id AS ego_id, o.t_ns, min(o.lanelet_id) AS lanelet_id,
+        bool_and(n.lane_type IN ('bus', 'taxi', 'HOV', 'biking')) AS kept, bool_and(n.lane_type = 'bus') AS bus, bool_or(n.lane_type = 'HOV') AS shared
+    FROM lane_occupancy o
+    JOIN data_log g USING (drive_id)
+    JOIN lanelet n USING (environment_id, lanelet_id)
+    GROUP BY ALL
+)
+SELECT e.drive_id, e.ego_id, e.t_ns,
+    CASE
+        WHEN e.x_m IS NULL THEN NULL
+        WHEN NOT coalesce(l.kept, false) OR l.bus AND c.vehicle_class = 'bus' THEN true
+        WHEN $always_in_force AND NOT l.shared AND c.vehicle_class <> 'motorcycle' THEN false
+    END AS holds,
+    CASE WHEN l.kept THEN 'on lane ' || l.lanelet_id || ', which is kept for others in its hours' END AS reason
+FROM ego_state e
+LEFT JOIN lane l USING (drive_id, ego_id, t_ns)
+LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)

@@ -1,0 +1,34 @@
+-- title = "Not on the hard shoulder"
+-- clause = "UKHC R269: you must not drive on the hard shoulder of a motorway except in an emergency or where signs open it"
+-- hypothesis = "At every step on a motorway without an emergency, was the ego's centre off the hard shoulder?"
+-- kind = "invariant"
+-- derivation = "direct"
+-- severity = "major"
+-- legal = "must"
+-- status = "stable"
+-- sense = "holds"
+-- merge_gap_s = 5.0
+-- reads = ["data_log", "ego_condition", "ego_mode", "ego_state", "lane_occupancy", "lanelet"]
+-- requires = ["map", "registration", "lane_types"]
+
+-- @condition
+-- an emergency: hazard lights, or a mode that says so
+WITH lane AS (
+    SELECT o.drive_id, o.actor_id AS ego_id, o.t_ns, bool_and(n.lane_type IN ('shoulder', 'stop')) AS shoulder, min(n.road_type) AS road_type
+    FROM lane_occupancy o
+    JOIN data_log g USING (drive_id)
+    JOIN lanelet n USING (environment_id, lanelet_id)
+    GROUP BY ALL
+),
+emergency AS (
+    SELECT DISTINCT drive_id, ego_id, t_ns FROM ego_mode WHERE mode IN ('minimal_risk_manoeuvre', 'emergency_manoeuvre') AND is_on
+)
+SELECT e.drive_id, e.ego_id, e.t_ns, CASE WHEN e.x_m IS NOT NULL THEN NOT coalesce(l.shoulder, false) END AS holds,
+    -- what kind of road it is matters only on a shoulder
+    CASE WHEN x.t_ns IS NOT NULL OR e.indicator = 'hazard' THEN false
+        WHEN e.x_m IS NOT NULL AND NOT coalesce(l.shoulder, false) THEN coalesce(coalesce(c.road_type, l.road_type) = 'motorway', false)
+        ELSE coalesce(c.road_type, l.road_type) = 'motorway' END AS applies
+FROM ego_state e
+LEFT JOIN lane l USING (drive_id, ego_id, t_ns)
+LEFT JOIN emergency x USING (drive_id, ego_id, t_ns)
+LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)
