@@ -1,0 +1,35 @@
+-- title = "No overtaking just before turning left"
+-- clause = "UKHC R182: do not overtake cyclists, motorcyclists or others immediately before turning left"
+-- hypothesis = "In the seconds before the ego turned to the near side, did it get ahead of nobody who was moving on that side?"
+-- kind = "precondition"
+-- subtype = "temporal"
+-- window_s = "window_s"
+-- derivation = "direct"
+-- severity = "major"
+-- legal = "should"
+-- status = "stable"
+-- sense = "holds"
+-- reads = ["beside", "junction_passage", "passing"]
+-- requires = ["map", "registration", "handedness", "ego_size"]
+--
+-- [params.window_s]
+-- default = 5.0
+-- unit = "s"
+-- why = "our default: whom the ego got ahead of longer ago has seen it signal and slow down"
+
+-- @reference
+SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, turn
+FROM junction_passage
+WHERE across IS DISTINCT FROM true AND turn IS DISTINCT FROM 'straight'
+
+-- @condition
+SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
+    CASE WHEN r.turn IS NULL OR (p.t_ns IS NULL AND b.t_ns IS NOT NULL) THEN NULL ELSE p.t_ns IS NULL END AS holds,
+    CASE WHEN r.turn IS NULL THEN 'the log does not show which way the ego turned'
+        WHEN p.t_ns IS NULL AND b.t_ns IS NOT NULL THEN 'somebody who may be beside the ego cannot be placed' END AS reason
+FROM reference_step g
+JOIN reference r USING (ref_id)
+LEFT JOIN (SELECT DISTINCT drive_id, ego_id, t_ns, side FROM passing WHERE ego_passes AND coalesce(speed_mps > standing_mps(), true)) p
+    ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns = g.t_ns AND p.side = r.turn
+LEFT JOIN (SELECT DISTINCT drive_id, ego_id, t_ns FROM beside WHERE gap_m IS NULL AND coalesce(actor_class, '') <> 'pedestrian') b
+    ON b.drive_id = g.drive_id AND b.ego_id = g.ego_id AND b.t_ns = g.t_ns

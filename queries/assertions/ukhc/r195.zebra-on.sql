@@ -1,0 +1,25 @@
+-- title = "Give way to people on a zebra crossing"
+-- clause = "UKHC R195: you must give way when a pedestrian has moved onto a zebra crossing"
+-- hypothesis = "When the ego's front came onto the zebra crossing, was nobody on foot on that half of it?"
+-- kind = "execution"
+-- derivation = "direct"
+-- severity = "critical"
+-- legal = "must"
+-- status = "stable"
+-- sense = "holds"
+-- reads = ["crossing_passage"]
+-- requires = ["map", "registration", "ego_size", "crossings"]
+
+-- @reference
+SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, crossing_id, kind, on_id AS object_id, t_on_ns, known
+FROM crossing_passage
+WHERE coalesce(kind, 'zebra') = 'zebra'
+
+-- @condition
+-- who steps on it while the ego is on it already has not been refused
+SELECT drive_id, ego_id, t_ns, ref_id,
+    CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns THEN CASE WHEN kind = 'zebra' THEN false END WHEN known THEN true END AS holds,
+    CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns
+        THEN object_id || ' was on it' || CASE WHEN kind IS NULL THEN '; the map does not say what kind of crossing it is' ELSE '' END
+        WHEN NOT known THEN 'somebody on foot nearby cannot be placed' END AS reason
+FROM reference

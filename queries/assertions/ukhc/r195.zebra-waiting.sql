@@ -1,0 +1,25 @@
+-- # Draft: whether somebody who stands at the kerb wants to cross is a judgement.
+-- title = "Give way to people waiting at a zebra crossing"
+-- clause = "UKHC R195: you should give way to pedestrians waiting to cross at a zebra crossing"
+-- hypothesis = "When the ego's front came onto the zebra crossing, had nobody been standing at its end?"
+-- kind = "execution"
+-- derivation = "model"
+-- severity = "major"
+-- legal = "should"
+-- status = "draft"
+-- sense = "holds"
+-- reads = ["crossing_passage"]
+-- requires = ["map", "registration", "ego_size", "crossings"]
+
+-- @reference
+SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, crossing_id, kind, waiting_id AS object_id, known
+FROM crossing_passage
+WHERE coalesce(kind, 'zebra') = 'zebra'
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, ref_id,
+    CASE WHEN object_id IS NOT NULL THEN CASE WHEN kind = 'zebra' THEN false END WHEN known THEN true END AS holds,
+    CASE WHEN object_id IS NOT NULL
+        THEN object_id || ' stood at its end' || CASE WHEN kind IS NULL THEN '; the map does not say what kind of crossing it is' ELSE '' END
+        WHEN NOT known THEN 'somebody on foot nearby cannot be placed' END AS reason
+FROM reference

@@ -1,0 +1,32 @@
+-- title = "Stop at a signalled crossing"
+-- clause = "UKHC R196: at a signalled crossing you must stop on red, and give way to people on it while amber flashes"
+-- hypothesis = "When the ego went onto the crossing, did the light allow it, and was nobody on its half while amber flashed?"
+-- kind = "execution"
+-- derivation = "direct"
+-- severity = "critical"
+-- legal = "must"
+-- status = "stable"
+-- sense = "holds"
+-- reads = ["crossing_passage", "stop_line_crossing"]
+-- requires = ["map", "registration", "ego_size", "crossings", "traffic_lights", "signals"]
+--
+-- [params.past_line_s]
+-- default = 10.0
+-- unit = "s"
+-- why = "our default: a stop line crossed longer ago is not the one before this crossing"
+
+-- @reference
+-- where the crossing has a stop line, it is there that the light had to be kept
+SELECT c.drive_id, c.ego_id, c.t_in_ns AS t_ns, c.occurrence, c.on_id AS object_id, c.t_on_ns, c.known,
+    CASE WHEN count(l.t_ns) > 0 THEN max({'t': l.t_ns, 'state': l.state}).state ELSE c.state END AS state
+FROM crossing_passage c
+LEFT JOIN stop_line_crossing l ON l.drive_id = c.drive_id AND l.ego_id = c.ego_id AND l.signal_id = c.signal_id
+    AND l.t_ns <= c.t_in_ns AND l.t_ns >= c.t_in_ns - ($past_line_s * 1e9)::BIGINT
+WHERE coalesce(c.kind, 'signalled') = 'signalled'
+GROUP BY c.drive_id, c.ego_id, c.t_in_ns, c.occurrence, c.on_id, c.t_on_ns, c.known, c.state
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, ref_id,
+    NOT forbids(state) AND (state <> 'flashing' OR CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns THEN false WHEN known THEN true END) AS holds,
+    'the light was ' || coalesce(replace(state, '_', ' and '), 'not known') || coalesce(', and ' || object_id || ' on the crossing', '') AS reason
+FROM reference

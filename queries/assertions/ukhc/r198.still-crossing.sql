@@ -1,0 +1,24 @@
+-- title = "Let people finish crossing on green"
+-- clause = "UKHC R198: give way to anyone still crossing after the light for vehicles has turned green"
+-- hypothesis = "When the ego went onto the signalled crossing on green, was nobody on foot on its half?"
+-- kind = "execution"
+-- derivation = "direct"
+-- severity = "major"
+-- legal = "should"
+-- status = "stable"
+-- sense = "holds"
+-- reads = ["crossing_passage"]
+-- requires = ["map", "registration", "ego_size", "crossings", "traffic_lights", "signals"]
+
+-- @reference
+SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, on_id AS object_id, t_on_ns, known, state
+FROM crossing_passage
+WHERE coalesce(kind, 'signalled') = 'signalled'
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, ref_id, state = 'green' AS applies,
+    CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns THEN false WHEN known THEN true END AS holds,
+    CASE WHEN state IS NULL THEN 'the light''s state is not known'
+        WHEN object_id IS NOT NULL AND t_on_ns <= t_ns THEN object_id || ' was on it'
+        WHEN NOT known THEN 'somebody on foot nearby cannot be placed' END AS reason
+FROM reference
