@@ -35,6 +35,38 @@ CREATE TABLE conflict (
     crossing_id VARCHAR               -- pedestrian crossing that the ego's box is on then; NULL: none, or no map
 );
 
+CREATE TABLE way_mark (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    chain_id INTEGER NOT NULL,        -- a running chain, see chain
+    kind VARCHAR NOT NULL,            -- junction, stop_line or crossing
+    mark_id VARCHAR NOT NULL,         -- its id in the map; a traffic light within 30 m of no stop line is a stop line where it stands, by its own id, one inside a junction where that begins
+    lanelet_id VARCHAR NOT NULL,      -- the first lanelet of the chain that it lies on
+    seq_first INTEGER NOT NULL,       -- that lanelet, see chain
+    seq_last INTEGER NOT NULL,        -- the last one
+    s_start_m DOUBLE NOT NULL,        -- chain station of its start
+    s_end_m DOUBLE NOT NULL,          -- chain station of its end
+    control VARCHAR,                  -- traffic_light, stop or give_way, the first of these that holds for the way there: of a junction from 50 m before it to its connecting lanelets, of a stop line within 30 m, of a crossing (lights only) from 15 m before to 30 m after; not across another junction; NULL: none
+    signal_id VARCHAR                 -- that signal: of several the one whose states were recorded, then the nearest
+);
+
+CREATE TABLE near_mark (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    chain_id INTEGER NOT NULL,        -- a chain in whose strip the ego is
+    kind VARCHAR NOT NULL,            -- see way_mark
+    mark_id VARCHAR NOT NULL,         -- see way_mark
+    s_start_m DOUBLE NOT NULL,        -- see way_mark
+    t_ns BIGINT NOT NULL,             -- a step with the front bumper 10 m before it or further and the rear one at most 10 m past it
+    k INTEGER NOT NULL,               -- see step
+    seg INTEGER NOT NULL,             -- see step
+    front_m DOUBLE NOT NULL,          -- front bumper beyond its start; negative: before it
+    rear_m DOUBLE NOT NULL,           -- rear bumper beyond its end
+    front_before_m DOUBLE,            -- front_m one step before; NULL: no such step, a hole, or not placed then
+    rear_before_m DOUBLE,             -- rear_m one step before
+    running BOOLEAN NOT NULL          -- the chain is the ego's running chain at this step
+);
+
 CREATE TABLE junction_passage (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -42,14 +74,16 @@ CREATE TABLE junction_passage (
     junction_id VARCHAR NOT NULL,     -- the junction
     t_in_ns BIGINT,                   -- first step with the ego's front bumper in it; NULL: the log, or a hole, begins inside
     t_out_ns BIGINT,                  -- first step with its rear bumper past it; NULL: the log, or a hole, ends inside
+    t_first_ns BIGINT NOT NULL,       -- first step with its centre on a connecting lanelet
+    t_last_ns BIGINT NOT NULL,        -- last one
     from_lanelet_id VARCHAR,          -- lanelet before it
     via_lanelet_id VARCHAR NOT NULL,  -- the (first) connecting lanelet
     to_lanelet_id VARCHAR,            -- lanelet after it
     turn VARCHAR,                     -- left, right, straight, u_turn: by the change of heading from one to the other (straight within 30 degrees, u_turn beyond 150); NULL: not seen whole
     turn_rad DOUBLE,                  -- that change, left positive
-    across BOOLEAN,                   -- the turn crosses the oncoming traffic (right where the left is driven on); NULL: handedness not known
+    across BOOLEAN,                   -- the turn crosses the oncoming traffic (right where the left is driven on; any u_turn); NULL: handedness or turn not known
     branches INTEGER NOT NULL,        -- roads that meet in the junction: 2 is no junction for a driver
-    control VARCHAR,                  -- what governs the ego's way in: traffic_light, stop, give_way, none; NULL: the map has none of these anywhere, so cannot tell
+    control VARCHAR,                  -- what governs the ego's way in, see way_mark: traffic_light, stop, give_way, none; NULL: the map has none of these anywhere, so cannot tell
     minor BOOLEAN                     -- by control stop or give_way the ego's road is the lesser one; NULL: control not known
 );
 

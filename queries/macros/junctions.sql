@@ -24,3 +24,7 @@ CREATE OR REPLACE MACRO swept_half_m(length_m, speed_mps, period_s) AS greatest(
 -- Grid of a drive, its cells as wide as two boxes reach: what touches has its centres in one cell or in neighbours.
 CREATE OR REPLACE MACRO meeting_cell(x_m, y_m, cell_m) AS cell_key(floor(x_m / cell_m), floor(y_m / cell_m));
 CREATE OR REPLACE MACRO meeting_slot(t_ns) AS (t_ns // conflict_ns())::INTEGER;
+-- A signal and a stop line this far apart along the way belong together.
+CREATE OR REPLACE MACRO line_reach_m() AS 30.0;
+-- Steps are kept from this far before a mark to as far beyond it.
+CREATE OR REPLACE MACRO near_mark_m() AS 10.0;

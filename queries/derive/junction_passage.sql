@@ -1,0 +1,115 @@
+-- The ego's ways through junctions: stretches of steps on connecting lanelets, with the stations of its bumpers on its chain.
+WITH placed AS (
+    SELECT e.drive_id, e.ego_id, e.t_ns, st.seg, g.environment_id, e.lanelet_id, n.junction_id
+    FROM ego_lane e
+    JOIN step st USING (drive_id, ego_id, t_ns)
+    JOIN data_log g USING (drive_id)
+    JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = e.lanelet_id
+),
+inside AS (
+    SELECT
+        drive_id, ego_id, environment_id, seg, junction_id, run, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns,
+        min({'t_ns': t_ns, 'id': lanelet_id}).id AS via_id
+    FROM (
+        SELECT
+            *,
+            sum((junction_id IS DISTINCT FROM junction_before OR seg IS DISTINCT FROM seg_before)::INTEGER)
+                OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS run
+        FROM (
+            SELECT *, lag(junction_id) OVER w AS junction_before, lag(seg) OVER w AS seg_before
+            FROM placed
+            WINDOW w AS (PARTITION BY drive_id, ego_id ORDER BY t_ns)
+        )
+    )
+    WHERE junction_id IS NOT NULL
+    GROUP BY drive_id, ego_id, environment_id, seg, junction_id, run
+),
+-- the junction on the chains by which the ego drove it: one may end in it and the next begin
+driven AS (
+    SELECT
+        i.drive_id, i.ego_id, i.t_first_ns,
+        min({'t_ns': c.t_first_ns, 'chain_id': m.chain_id, 's_m': m.s_start_m, 'seq': m.seq_first, 'control': m.control}) AS entry,
+        max({'t_ns': c.t_first_ns, 'chain_id': m.chain_id, 's_m': m.s_start_m, 'seq': m.seq_last}) AS leave
+    FROM inside i
+    JOIN chain c ON c.drive_id = i.drive_id AND c.ego_id = i.ego_id AND c.t_first_ns <= i.t_last_ns AND c.t_last_ns >= i.t_first_ns
+    JOIN way_mark m ON m.drive_id = c.drive_id AND m.ego_id = c.ego_id AND m.chain_id = c.chain_id AND m.kind = 'junction'
+        AND m.mark_id = i.junction_id AND c.seq >= m.seq_first AND c.seq <= m.seq_last
+    GROUP BY i.drive_id, i.ego_id, i.t_first_ns
+),
+entered AS (
+    SELECT i.drive_id, i.ego_id, i.t_first_ns, max(n.t_ns) AS t_in_ns
+    FROM inside i
+    JOIN driven w USING (drive_id, ego_id, t_first_ns)
+    JOIN near_mark n ON n.drive_id = i.drive_id AND n.ego_id = i.ego_id AND n.chain_id = w.entry.chain_id AND n.kind = 'junction'
+        AND n.mark_id = i.junction_id AND n.s_start_m = w.entry.s_m AND n.seg = i.seg AND n.t_ns <= i.t_first_ns
+    WHERE n.front_m >= 0 AND n.front_before_m < 0
+    GROUP BY i.drive_id, i.ego_id, i.t_first_ns
+),
+left_behind AS (
+    SELECT i.drive_id, i.ego_id, i.t_first_ns, min(n.t_ns) AS t_out_ns
+    FROM inside i
+    JOIN driven w USING (drive_id, ego_id, t_first_ns)
+    JOIN near_mark n ON n.drive_id = i.drive_id AND n.ego_id = i.ego_id AND n.chain_id = w.leave.chain_id AND n.kind = 'junction'
+        AND n.mark_id = i.junction_id AND n.s_start_m = w.leave.s_m AND n.seg = i.seg AND n.t_ns >= i.t_last_ns
+    WHERE n.rear_m >= 0 AND n.rear_before_m < 0
+    GROUP BY i.drive_id, i.ego_id, i.t_first_ns
+),
+-- headings of the way in and the way out
+edge AS (
+    SELECT environment_id, lanelet_id, min({'k': k, 'a': atan2(ty, tx)}).a AS first_rad, max({'k': k, 'a': atan2(ty, tx)}).a AS last_rad
+    FROM lane_point
+    GROUP BY environment_id, lanelet_id
+),
+-- both ends of a road may lead to the same junction
+branch AS (
+    SELECT environment_id, junction_id, count(*) AS n
+    FROM (
+        SELECT j.environment_id, j.junction_id, o.road_id, o.along_road = -1 AS by_its_end
+        FROM lanelet j
+        JOIN lane_link l ON l.environment_id = j.environment_id AND l.from_id = j.lanelet_id
+        JOIN lanelet o ON o.environment_id = j.environment_id AND o.lanelet_id = l.to_id
+        WHERE j.junction_id IS NOT NULL AND j.drivable AND o.drivable AND o.junction_id IS DISTINCT FROM j.junction_id
+        UNION
+        SELECT j.environment_id, j.junction_id, o.road_id, o.along_road = 1
+        FROM lanelet j
+        JOIN lane_link l ON l.environment_id = j.environment_id AND l.to_id = j.lanelet_id
+        JOIN lanelet o ON o.environment_id = j.environment_id AND o.lanelet_id = l.from_id
+        WHERE j.junction_id IS NOT NULL AND j.drivable AND o.drivable AND o.junction_id IS DISTINCT FROM j.junction_id
+    )
+    GROUP BY environment_id, junction_id
+),
+signed AS (SELECT DISTINCT environment_id FROM traffic_signal WHERE kind IN ('traffic_light', 'stop', 'give_way')),
+whole AS (
+    SELECT
+        i.*, e.t_in_ns, o.t_out_ns, b.lanelet_id AS from_id, a.lanelet_id AS to_id,
+        CASE WHEN v.handedness_source <> 'default' THEN v.handedness END AS hand,
+        CASE WHEN e.t_in_ns IS NOT NULL AND o.t_out_ns IS NOT NULL THEN wrap_rad(ea.first_rad - eb.last_rad) END AS turn_rad,
+        CASE WHEN g.environment_id IS NOT NULL AND w.entry IS NOT NULL THEN coalesce(w.entry.control, 'none') END AS control
+    FROM inside i
+    JOIN environment v USING (environment_id)
+    LEFT JOIN driven w USING (drive_id, ego_id, t_first_ns)
+    LEFT JOIN entered e USING (drive_id, ego_id, t_first_ns)
+    LEFT JOIN left_behind o USING (drive_id, ego_id, t_first_ns)
+    LEFT JOIN chain b ON b.drive_id = i.drive_id AND b.ego_id = i.ego_id AND b.chain_id = w.entry.chain_id AND b.seq = w.entry.seq - 1
+    LEFT JOIN chain a ON a.drive_id = i.drive_id AND a.ego_id = i.ego_id AND a.chain_id = w.leave.chain_id AND a.seq = w.leave.seq + 1
+    LEFT JOIN edge eb ON eb.environment_id = i.environment_id AND eb.lanelet_id = b.lanelet_id
+    LEFT JOIN edge ea ON ea.environment_id = i.environment_id AND ea.lanelet_id = a.lanelet_id
+    LEFT JOIN signed g ON g.environment_id = i.environment_id
+),
+turned AS (
+    SELECT
+        *,
+        CASE
+            WHEN abs(turn_rad) <= radians(30) THEN 'straight' WHEN abs(turn_rad) > radians(150) THEN 'u_turn'
+            WHEN turn_rad > 0 THEN 'left' WHEN turn_rad < 0 THEN 'right'
+        END AS turn
+    FROM whole
+)
+SELECT
+    t.drive_id, t.ego_id, (row_number() OVER (PARTITION BY t.drive_id, t.ego_id ORDER BY t.t_first_ns) - 1)::INTEGER AS occurrence,
+    t.junction_id, t.t_in_ns, t.t_out_ns, t.t_first_ns, t.t_last_ns, t.from_id AS from_lanelet_id, t.via_id AS via_lanelet_id, t.to_id AS to_lanelet_id,
+    t.turn, t.turn_rad,
+    CASE WHEN t.hand IS NOT NULL THEN t.turn = 'u_turn' OR t.turn = CASE t.hand WHEN 'lht' THEN 'right' ELSE 'left' END END AS across,
+    coalesce(n.n, 0)::INTEGER AS branches, t.control, t.control IN ('stop', 'give_way') AS minor
+FROM turned t
+LEFT JOIN branch n USING (environment_id, junction_id)

@@ -1,0 +1,159 @@
+"""The ego's ways through junctions: when, by which lanelets, which turn, and what governs the way in."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import permutations
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from tests.derive.junction_scenes import ARM, TURN, R, cross, signal
+from tests.scenes import Actor, Road, derived, drive, moving, rows, times
+
+if TYPE_CHECKING:
+    from tests.scenes import Row
+
+LENGTH = {"right": TURN, "straight": 2 * R, "left": TURN}
+
+
+def going(way: Road, *, v: float = 8.0, s0: float = 120.0, end: float = 18.0, name: str = "ego") -> Actor:
+    """Drive in the way's own lane at v; its centre enters the junction at s = 185."""
+    t = times(end)
+    return moving(name, way, t, s0 + v * t, way.own)
+
+
+def passages(*actors: Actor, way: Road, **options: object) -> list[Row]:
+    con = derived(drive(actors, way.environment, **options), tables=["junction_passage"])  # type: ignore[arg-type]
+    return rows(con, "FROM junction_passage ORDER BY ego_id, occurrence")
+
+
+def turned(a: str, b: str) -> str:
+    return {1: "right", 2: "straight", 3: "left"}[("wsen".index(b) - "wsen".index(a)) % 4]
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize("name", ["".join(p) for p in permutations("wsen", 2)])
+def test_every_way_through_a_crossroads(hand: str, name: str) -> None:
+    way = cross(hand)[name]
+    (row,) = passages(going(way), way=way)
+    turn = turned(*name)
+    assert (row["turn"], row["branches"], row["junction_id"], row["occurrence"]) == (turn, 4, "9", 0)
+    assert row["turn_rad"] == pytest.approx({"left": 1, "straight": 0, "right": -1}[turn] * np.pi / 2, abs=1e-3)
+    assert row["across"] == (turn == ("right" if hand == "lht" else "left"))
+    # the front bumper is 2.4 m ahead of the centre, the rear one as far behind; the log has a step every 0.8 m
+    assert row["t_in_ns"] / 1e9 == pytest.approx((ARM - 2.4 - 120) / 8, abs=0.1)
+    assert row["t_out_ns"] / 1e9 == pytest.approx((ARM + LENGTH[turn] + 2.4 - 120) / 8, abs=0.1)
+    assert row["from_lanelet_id"].split(".")[0] == {"w": "1", "e": "2", "s": "3", "n": "4"}[name[0]]
+    assert row["to_lanelet_id"].split(".")[0] == {"w": "1", "e": "2", "s": "3", "n": "4"}[name[1]]
+    assert len(row["via_lanelet_id"].split(".")[0]) == 2
+    # no signal of these kinds in the whole map: nobody can tell
+    assert (row["control"], row["minor"]) == (None, None)
+
+
+def test_first_and_last_step_are_exact() -> None:
+    way = cross()["we"]
+    ego = going(way)
+    con = derived(drive([ego], way.environment), tables=["junction_passage", "ego_state"])
+    (row,) = rows(con, "FROM junction_passage")
+    steps = rows(con, "FROM ego_state ORDER BY t_ns")
+    front = {r["t_ns"]: r["x_m"] + 2.4 for r in steps}
+    assert row["t_in_ns"] == min(t for t, x in front.items() if x >= -R)
+    assert row["t_out_ns"] == min(t for t, x in front.items() if x - 4.8 >= R)
+    assert row["t_first_ns"] == min(r["t_ns"] for r in steps if r["x_m"] >= -R)
+
+
+def test_a_log_that_begins_or_ends_inside() -> None:
+    way = cross()["ws"]
+    (row,) = passages(going(way, s0=190.0, end=8.0), way=way)
+    assert (row["t_in_ns"], row["turn"], row["across"]) == (None, None, None)
+    assert row["t_out_ns"] is not None
+    (row,) = passages(going(way, end=9.0), way=way)
+    assert row["t_in_ns"] is not None
+    assert (row["t_out_ns"], row["turn"], row["turn_rad"]) == (None, None, None)
+    assert not passages(going(way, end=7.0), way=way)
+
+
+def test_a_hole_inside_makes_two_halves() -> None:
+    way = cross()["we"]
+    ego = going(way)
+    (one, two) = passages(ego.keep((ego.t_s < 9) | (ego.t_s > 10)), way=way)
+    assert one["t_in_ns"] is not None
+    assert one["t_out_ns"] is None
+    assert two["t_in_ns"] is None
+    assert two["t_out_ns"] is not None
+    assert (one["occurrence"], two["occurrence"]) == (0, 1)
+
+
+def test_a_hole_over_the_way_in_leaves_it_unknown() -> None:
+    way = cross()["we"]
+    ego = going(way)
+    (row,) = passages(ego.keep((ego.t_s < 7.3) | (ego.t_s > 8.2)), way=way)
+    assert row["t_in_ns"] is None
+    assert row["t_out_ns"] is not None
+
+
+def test_front_in_and_back_out_again_counts_from_the_last_time() -> None:
+    """It stops with the front 1 m over, rolls back 3 m, waits and goes."""
+    way = cross()["we"]
+    t = times(30)
+    s = np.interp(t, [0, 5, 8, 10, 15, 30], [ARM - 30, ARM - 1.4, ARM - 1.4, ARM - 4.4, ARM - 4.4, ARM + 90])
+    (row,) = passages(moving("ego", way, t, s, way.own), way=way)
+    assert row["t_in_ns"] / 1e9 == pytest.approx(15.35, abs=0.15)
+
+
+def test_no_junction_no_row() -> None:
+    way = cross()["we"]
+    assert not passages(going(way, s0=10.0, end=10.0), way=way)
+
+
+SIGNS = [("206", "stop", True), ("205", "give_way", True), ("1000001", "traffic_light", False), ("274", "none", False)]
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(("code", "control", "minor"), SIGNS)
+def test_what_governs_the_way_in(hand: str, code: str, control: str, minor: bool) -> None:
+    signals = (("1", signal("a", 170.0, code)), ("3", signal("far", 100.0, "205", orientation="-")))
+    way = cross(hand, signals)["we"]
+    (row,) = passages(going(way), way=way)
+    assert (row["control"], row["minor"]) == (control, minor)
+
+
+@pytest.mark.parametrize(("s", "orientation", "control"), [(136, "+", "stop"), (134, "+", "none"), (170, "-", "none")])
+def test_only_what_holds_for_the_last_fifty_metres(s: float, orientation: str, control: str) -> None:
+    way = cross("rht", (("1", signal("a", s, "206", orientation=orientation)),))["we"]
+    (row,) = passages(going(way), way=way)
+    assert row["control"] == control
+
+
+def test_a_signal_on_the_connecting_lane_holds_for_who_takes_it() -> None:
+    ways = cross("rht", (("12", signal("turn", 3.0, "1000001")), ("1", signal("gw", 180.0, "205"))))
+    (left,) = passages(going(ways["wn"]), way=ways["wn"])
+    (right,) = passages(going(ways["ws"]), way=ways["ws"])
+    assert (left["control"], right["control"]) == ("traffic_light", "give_way")
+
+
+def test_a_signal_past_the_junction_is_not_its_own() -> None:
+    way = cross("rht", (("2", signal("next", 10.0, "206")),))["we"]
+    (row,) = passages(going(way), way=way)
+    assert (row["control"], row["minor"]) == ("none", False)
+
+
+def test_each_ego_by_its_own_way() -> None:
+    ways = cross()
+    other = going(ways["ns"], name="other", s0=90.0)
+    found = passages(going(ways["wn"]), other, way=ways["we"], egos=("ego", "other"))
+    assert [(r["ego_id"], r["turn"]) for r in found] == [("ego", "left"), ("other", "straight")]
+
+
+def test_with_the_handedness_unknown_nobody_knows_which_turn_crosses_the_traffic() -> None:
+    way = cross()["wn"]
+    table = way.environment.tables["environment"]
+    said = table.set_column(
+        table.schema.get_field_index("handedness_source"), "handedness_source", pa.array(["default"], pa.string())
+    )
+    guessed = replace(way.environment, tables={**way.environment.tables, "environment": said})
+    (row,) = passages(going(way), way=replace(way, environment=guessed))
+    assert (row["turn"], row["across"]) == ("left", None)
