@@ -1,0 +1,31 @@
+-- title = "No horn while stationary"
+-- clause = "UKHC R112: you must not use your horn while stationary, except when another road user poses a danger"
+-- hypothesis = "When the ego's horn sounded, was it moving?"
+-- kind = "execution"
+-- derivation = "direct"
+-- severity = "minor"
+-- legal = "must"
+-- status = "stable"
+-- sense = "holds"
+-- reads = ["ego_mode", "ego_state", "pair"]
+-- requires = ["mode_horn"]
+--
+-- [params.near_m]
+-- default = 50.0
+-- unit = "m"
+-- why = "our default: whoever moves within this distance may have been a danger, which is for a person to say"
+
+-- @reference
+SELECT drive_id, ego_id, t_ns
+FROM ego_mode
+WHERE mode = 'horn'
+QUALIFY is_on AND lag(is_on) OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns) IS DISTINCT FROM true
+
+-- @condition
+-- the hours of the night, 23:30 to 7:00, are local time, which logs do not have
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id,
+    CASE WHEN e.speed_mps > standing_mps() THEN true WHEN e.speed_mps IS NOT NULL AND n.t_ns IS NULL THEN false END AS holds,
+    CASE WHEN n.t_ns IS NOT NULL THEN 'somebody near was moving: whether it was a danger is for a person to say' END AS reason
+FROM reference r
+JOIN ego_state e USING (drive_id, ego_id, t_ns)
+LEFT JOIN (SELECT DISTINCT drive_id, ego_id, t_ns FROM pair WHERE coalesce(speed_mps > standing_mps() AND distance_m <= $near_m, true)) n USING (drive_id, ego_id, t_ns)

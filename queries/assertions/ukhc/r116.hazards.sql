@@ -1,0 +1,31 @@
+-- title = "No hazard lights while driving"
+-- clause = "UKHC R116: you must not use hazard warning lights while driving, except to warn on a motorway or unrestricted dual carriageway"
+-- hypothesis = "At every step, were the hazard lights off, or was the ego standing or on a road where they may warn?"
+-- kind = "invariant"
+-- derivation = "direct"
+-- severity = "minor"
+-- legal = "must"
+-- status = "stable"
+-- sense = "holds"
+-- reads = ["ego_condition", "ego_state"]
+-- requires = ["indicator"]
+--
+-- [params.rolling_mps]
+-- default = 1.0
+-- unit = "m/s"
+-- why = "our default: the last of rolling to a stop is not driving"
+--
+-- [params.unrestricted_mps]
+-- default = 31.0
+-- unit = "m/s"
+-- why = "the limit of a dual carriageway without a lower one is 70 mph, 31.3 m/s"
+-- source = "UKHC R124"
+
+-- @condition
+SELECT e.drive_id, e.ego_id, e.t_ns,
+    e.indicator <> 'hazard' OR e.speed_mps <= $rolling_mps OR coalesce(c.road_type = 'motorway', false)
+        OR (c.carriageway = 'dual' AND c.limit_mps >= $unrestricted_mps) AS holds,
+    CASE WHEN e.indicator = 'hazard' AND c.carriageway IS NULL THEN 'whether this road is a dual carriageway is not known'
+        WHEN e.indicator = 'hazard' AND c.carriageway = 'dual' AND c.limit_mps IS NULL THEN 'the limit of this dual carriageway is not known' END AS reason
+FROM ego_state e
+LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)

@@ -1,0 +1,30 @@
+-- title = "At night park facing with the traffic"
+-- clause = "UKHC R248: you must not park on a road at night facing against the direction of the traffic flow"
+-- hypothesis = "Where the ego stood for long on a lane at night, did it face the way that the lane is driven?"
+-- kind = "execution"
+-- derivation = "direct"
+-- severity = "minor"
+-- legal = "must"
+-- status = "stable"
+-- sense = "holds"
+-- reads = ["ego_state", "standstill"]
+-- requires = ["map", "registration", "handedness"]
+--
+-- [applies]
+-- light = ["night"]
+--
+-- [params.parked_s]
+-- default = 60.0
+-- unit = "s"
+-- why = "our default: who stands longer than this has parked, or waits as if"
+
+-- @reference
+SELECT drive_id, ego_id, t_start_ns AS t_ns, occurrence
+FROM standstill
+WHERE t_end_ns - t_start_ns >= $parked_s * 1e9
+
+-- @condition
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, e.with_direction AS holds,
+    CASE WHEN e.lanelet_id IS NULL THEN 'the ego stands on no lane' END AS reason
+FROM reference r
+JOIN ego_state e USING (drive_id, ego_id, t_ns)
