@@ -11,13 +11,18 @@
 -- observes = "modified time to collision"
 -- near_margin = 0.5
 -- merge_gap_s = 1.0
--- reads = ["ego_motion", "lead", "step"]
+-- reads = ["clock", "ego_motion", "lead", "step"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [params.least_s]
 -- default = 1.5
 -- unit = "s"
 -- why = "our default: the same as for the time to collision"
+--
+-- [params.edge_s]
+-- default = 0.5
+-- unit = "s"
+-- why = "our default: so near to the ends of the log the filter's window is not whole"
 
 -- @applies
 -- a step without a row in `lead` is one at which nobody knows who leads
@@ -26,7 +31,10 @@ FROM step s
 LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
 
 -- @condition
-SELECT l.drive_id, l.ego_id, l.t_ns, l.object_id, $least_s AS required,
-    CASE WHEN l.object_id IS NULL THEN 'inf'::DOUBLE ELSE mttc_s(l.gap_m, l.ego_speed_mps, m.accel_mps2, along_mps(l.speed_mps, l.oncoming), along_mps(l.accel_mps2, l.oncoming)) END AS observed
+-- at the ends of the log the window of the ego's acceleration is not whole, which says nothing about the drive
+SELECT l.drive_id, l.ego_id, l.t_ns, l.object_id, $least_s AS required, l.object_id IS NULL OR judged_inside(m.accel_mps2, l.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
+    CASE WHEN l.object_id IS NULL THEN 'inf'::DOUBLE
+        ELSE mttc_s(l.gap_m, l.ego_speed_mps, m.accel_mps2, along_mps(l.speed_mps, l.oncoming), along_mps(l.accel_mps2, l.oncoming)) END AS observed
 FROM lead l
-JOIN ego_motion m USING (drive_id, ego_id, t_ns)
+JOIN clock c ON c.drive_id = l.drive_id AND c.ego_id = l.ego_id
+JOIN ego_motion m ON m.drive_id = l.drive_id AND m.ego_id = l.ego_id AND m.t_ns = l.t_ns

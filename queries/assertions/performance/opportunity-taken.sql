@@ -1,0 +1,36 @@
+-- title = "Takes its opportunities to overtake"
+-- clause = "The paper, performance zones (zone D: overcautious if not taken): use the room to overtake that there is"
+-- hypothesis = "Held up behind a slower vehicle, did the ego pass up no overtake that would have left more than 2.5 s to spare?"
+-- kind = "execution"
+-- derivation = "model"
+-- severity = "minor"
+-- legal = "should"
+-- status = "draft"
+-- sense = "<="
+-- unit = "s"
+-- observes = "spare time of the opportunity passed up"
+-- reads = ["opportunity", "profile"]
+-- requires = ["map", "registration", "handedness", "ego_size"]
+--
+-- [params.spare_s]
+-- default = 2.5
+-- unit = "s"
+-- why = "beyond it begins zone D"
+-- source = "paper, performance zones"
+--
+-- [params.notice_s]
+-- default = 5.0
+-- unit = "s"
+-- why = "our default: who is held up for less has hardly had the time to see it"
+
+-- @reference
+-- a draft: whether lines, signs and junctions allowed it is not in `opportunity`
+SELECT DISTINCT drive_id, ego_id, t_start_ns AS t_ns, object_id, occurrence FROM opportunity
+
+-- @condition
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.profile, CASE WHEN o.taken THEN 0.0::DOUBLE ELSE o.spare_s END AS observed, $spare_s AS required,
+    o.taken OR o.t_end_ns - o.t_start_ns >= $notice_s * 1_000_000_000 AS applies
+FROM reference r
+JOIN opportunity o USING (drive_id, ego_id, occurrence)
+JOIN profile p USING (profile)
+WHERE p.selected

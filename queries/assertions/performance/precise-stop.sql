@@ -1,0 +1,35 @@
+-- title = "Stops at the line"
+-- clause = "The paper, performance (precise stopping): who stops for a line stops at it, not over it and not far before it"
+-- hypothesis = "Having stopped for a stop line, did the ego stand with its front within half a metre before it?"
+-- kind = "execution"
+-- derivation = "direct"
+-- severity = "minor"
+-- legal = "should"
+-- status = "stable"
+-- sense = "<="
+-- unit = "m"
+-- observes = "distance of the front from the middle of the half metre before the line"
+-- reads = ["standstill"]
+-- requires = ["map", "registration", "ego_size", "stop_lines"]
+--
+-- [params.within_m]
+-- default = 0.5
+-- unit = "m"
+-- why = "our default: a driver's eye is about that exact"
+--
+-- [params.for_it_m]
+-- default = 5.0
+-- unit = "m"
+-- why = "our default: who stands further off, a car's length or more, stands for something else and drives up to the line later"
+
+-- @reference
+SELECT drive_id, ego_id, t_start_ns AS t_ns, occurrence FROM standstill WHERE stop_line_id IS NOT NULL
+
+-- @condition
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, abs(s.stop_line_m - $within_m / 2) AS observed, $within_m / 2 AS required,
+    format('The front stood {:.2f} m {} the line, at most {:.2f} m before it is asked for.', abs(s.stop_line_m), CASE WHEN s.stop_line_m < 0 THEN 'beyond' ELSE 'before' END, $within_m) AS reason,
+    -- not where it was seen standing from the beginning, stood behind somebody at the line, or had a green light
+    s.begin_seen AND s.stop_line_m <= $for_it_m AND s.state IS DISTINCT FROM 'green'
+        AND CASE WHEN s.ahead_id IS NOT NULL THEN s.ahead_gap_m >= s.stop_line_m WHEN s.ahead_known THEN true END AS applies
+FROM reference r
+JOIN standstill s USING (drive_id, ego_id, occurrence)
