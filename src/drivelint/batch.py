@@ -88,7 +88,7 @@ def cut(drives: Iterable[Drive | Refused]) -> Iterator[list[Drive | Refused]]:
 def _drive(path: Path, future: Future[Trace], library: MapLibrary) -> Drive | Refused:
     try:
         trace = future.result()
-        return Drive(trace, library.find(path.name, trace.embedded_map, trace.map_offset, trace.tables["actor_state"]))
+        return Drive(trace, library.find(path, trace.embedded_map, trace.map_offset, trace.tables["actor_state"]))
     except DriveLintError as error:
         return Refused(path, error)
 

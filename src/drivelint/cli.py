@@ -89,8 +89,11 @@ def check(
     ego: options.EgoId = None,
     mapping: options.MappingName = None,
     map_offset: options.MapOffset = None,
+    map_dir: options.MapDir = None,
+    map_origin: options.MapOrigin = None,
     handedness: options.DrivenSide = options.Handedness.auto,
     sensor_range: options.SensorRange = None,
+    env: options.Conditions = None,
     topic: options.Topic = None,
     rules_dir: options.RulesDirs = None,
     fail_on: Annotated[
@@ -134,8 +137,11 @@ def check(
         ego=ego,
         mapping=mapping,
         map_offset=_offset(map_offset),
+        map_dir=map_dir,
+        map_origin=_origin(map_origin),
         handedness=handedness.value,
         sensor_range_m=sensor_range,
+        env=tuple(env or ()),
         rules_dirs=tuple(rules_dir or ()),
         fail_on=fail_on.value,
         strict=strict,
@@ -179,8 +185,11 @@ def inspect(
     ego: options.EgoId = None,
     mapping: options.MappingName = None,
     map_offset: options.MapOffset = None,
+    map_dir: options.MapDir = None,
+    map_origin: options.MapOrigin = None,
     handedness: options.DrivenSide = options.Handedness.auto,
     sensor_range: options.SensorRange = None,
+    env: options.Conditions = None,
     topic: options.Topic = None,
     rules: Annotated[
         list[str] | None,
@@ -202,8 +211,11 @@ def inspect(
         ego=ego,
         topic=topic,
         map_offset=_offset(map_offset),
+        map_dir=map_dir,
+        map_origin=_origin(map_origin),
         handedness=handedness.value,
         sensor_range_m=sensor_range,
+        env=tuple(env or ()),
         rules=tuple(rules or ()),
         rules_dirs=tuple(rules_dir or ()),
     )
@@ -396,6 +408,19 @@ def _offset(text: str | None) -> tuple[float, float] | None:
     except ValueError as error:
         raise UsageError(f"--map-offset {text!r}: write two numbers in metres, DX,DY, such as 2.6,3.1") from error
     return dx, dy
+
+
+def _origin(text: str | None) -> tuple[float, float] | None:
+    """Read LAT,LON. Errors: `UsageError`."""
+    if text is None:
+        return None
+    try:
+        lat, lon = (float(part) for part in text.split(","))
+    except ValueError:
+        lat = lon = 999.0
+    if not (abs(lat) <= 90 and abs(lon) <= 180):
+        raise UsageError(f"--map-origin {text!r}: write latitude and longitude in degrees, LAT,LON, such as 51.5,-2.58")
+    return lat, lon
 
 
 def _interruptible(job: Callable[[], T]) -> T:

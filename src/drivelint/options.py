@@ -61,11 +61,28 @@ MappingName = Annotated[
 MapOffset = Annotated[
     str | None, typer.Option("--map-offset", metavar="DX,DY", help="Metres added to the map's coordinates.")
 ]
+MapDir = Annotated[
+    Path | None,
+    typer.Option("--map-dir", metavar="DIR", help="Folder of maps: each log gets its own, by maps.csv, name or place."),
+]
+MapOrigin = Annotated[
+    str | None,
+    typer.Option("--map-origin", metavar="LAT,LON", help="Where the log's 0,0 is, for a map in degrees (Lanelet2)."),
+]
 DrivenSide = Annotated[Handedness, typer.Option("--handedness", help="Side of the road that is driven on.")]
 SensorRange = Annotated[
     float | None,
     typer.Option(
         "--sensor-range", metavar="M", min=0, help="Range in which the recorder sees everybody. Default: all."
+    ),
+]
+Conditions = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--env",
+        metavar="KEY=VALUE",
+        help="What holds in the drives: nation, weather, light, vehicle_class, road_type, carriageway, area, engaged. "
+        "Repeatable. Counts before what the map or the log says.",
     ),
 ]
 Topic = Annotated[

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import duckdb
 import pyarrow as pa
 
-from drivelint import catalogue, store
+from drivelint import catalogue, conditions, store
 from drivelint.annotate import Annotator
 from drivelint.batch import Drive, Refused, cut, in_order, read
 from drivelint.errors import DriveLintError, TraceError, UsageError
@@ -49,8 +49,11 @@ class Settings:
     mapping: str | None = None
     topic: str | None = None
     map_offset: tuple[float, float] | None = None
+    map_dir: Path | None = None
+    map_origin: tuple[float, float] | None = None
     handedness: str = "auto"
     sensor_range_m: float | None = None
+    env: tuple[str, ...] = ()
     rules_dirs: tuple[Path, ...] = field(default=())
     fail_on: str = "critical"
     strict: bool = False
@@ -71,8 +74,16 @@ def check(settings: Settings, progress: Progress) -> Result:
     if (settings.margins or settings.keep_db) and settings.out is None:
         raise UsageError("--margins and --keep-db write files: say where with --out DIR")
     paths = in_order(expand(settings.traces))
-    options = IngestOptions(settings.mapping, settings.ego, settings.topic, settings.sensor_range_m)
-    library = MapLibrary(settings.map, settings.map_offset, settings.handedness)
+    options = IngestOptions(
+        settings.mapping,
+        settings.ego,
+        settings.topic,
+        settings.sensor_range_m,
+        conditions=conditions.parse(settings.env),
+    )
+    library = MapLibrary(
+        settings.map, settings.map_offset, settings.handedness, origin=settings.map_origin, folder=settings.map_dir
+    )
 
     with TemporaryDirectory(prefix="drivelint-") as spill, store.connect(memory_limit=MEMORY, spill=Path(spill)) as con:
         store.insert(con, "profile", profiles)

@@ -28,7 +28,7 @@ def profile(place: Place) -> list[Row]:
     rules = catalogue.select(catalogue.load(()), ("ukhc",), ())
     tables = {table for rule in rules for table in rule.reads}
     trace = read_trace(place.reference, IngestOptions())
-    road = MapLibrary(place.road, None, "auto").find("", None, None, trace.tables["actor_state"])
+    road = MapLibrary(place.road, None, "auto").find(Path(), None, None, trace.tables["actor_state"])
     with store.connect() as con:
         store.insert(con, "profile", profile_table(load_profiles(()), ()))
         bench = Bench(con, rules, catalogue.parse_params(rules, ()), None)

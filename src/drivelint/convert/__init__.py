@@ -17,6 +17,7 @@ from drivelint.ingest.files import CANONICAL
 from drivelint.ingest.order import listed
 from drivelint.maps import MapSource, read_source
 from drivelint.maps.library import MapLibrary
+from drivelint.maps.registry import root_element
 from drivelint.osi import log as osi_log
 from drivelint.report.files import OutputError, prepare, publish
 
@@ -109,9 +110,14 @@ def _road(order: Order, trace: Trace) -> MapSource | None:
     """Return the map that goes along: the user's, else the log's own. Errors: as `convert`."""
     if order.map is None and trace.embedded_map is None:
         return None
+    content = trace.embedded_map or b"" if order.map is None else read_source(order.map).content
+    if order.to == "mcap" and (root_element(content) or "").lower() != "opendrive":
+        raise UsageError(
+            "only an OpenDRIVE map can go along in MCAP (OSI has no message for another): use --to parquet"
+        )
     # read here so that a wrong map is refused now, not by whoever checks the converted log
     MapLibrary(order.map, None, "auto").find(
-        trace.path.name, trace.embedded_map, trace.map_offset, trace.tables["actor_state"]
+        trace.path, trace.embedded_map, trace.map_offset, trace.tables["actor_state"]
     )
     road = read_source(order.map) if order.map is not None else MapSource(MAP_FILE, trace.embedded_map or b"")
     if order.to == "mcap":
@@ -143,7 +149,8 @@ def _mcap(target: Path, trace: Trace, road: MapSource | None) -> dict[str, int]:
 
 def _parquet(target: Path, trace: Trace, road: MapSource | None) -> dict[str, int]:
     tables = {**trace.tables, "quality": findings(trace)}
-    contents = {f"{name}.parquet": parquet_bytes(tables[name], name) for name in TABLES}
+    names = [*TABLES, *(["drive_condition"] if tables["drive_condition"].num_rows else [])]
+    contents = {f"{name}.parquet": parquet_bytes(tables[name], name) for name in names}
     if road is not None:
         contents[MAP_FILE] = road.content
     publish(target, contents, {name: None for name in CANONICAL if name not in contents})

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
-from drivelint import catalogue, store
+from drivelint import catalogue, conditions, store
 from drivelint.batch import Drive as Judgeable
 from drivelint.errors import ExitCode, MapError, TraceError, UsageError
 from drivelint.ingest import IngestOptions, expand, read_trace
@@ -42,8 +42,11 @@ class Order:
     ego: str | None = None
     topic: str | None = None
     map_offset: tuple[float, float] | None = None
+    map_dir: Path | None = None
+    map_origin: tuple[float, float] | None = None
     handedness: str = "auto"
     sensor_range_m: float | None = None
+    env: tuple[str, ...] = ()
     rules: tuple[str, ...] = ()
     rules_dirs: tuple[Path, ...] = ()
 
@@ -62,8 +65,10 @@ def inspect(order: Order) -> model.Inspection:
             f"{order.trace}: {len(paths)} logs ({listed([path.name for path in paths])}): inspect looks at one at a time"
         )
     (path,) = paths
-    library = MapLibrary(order.map, order.map_offset, order.handedness)
-    options = IngestOptions(order.mapping, order.ego, order.topic, order.sensor_range_m, need_ego=False)
+    library = MapLibrary(
+        order.map, order.map_offset, order.handedness, origin=order.map_origin, folder=order.map_dir
+    )
+    options = _options(order, order.ego)
     file = model.File(name=path.resolve().name, bytes=size(path))
     try:
         trace = read_trace(path, options)
@@ -78,6 +83,11 @@ def inspect(order: Order) -> model.Inspection:
         content=content(path, mapping, list(trace.notes), read=True),
         drive=_drive(trace, library, rules, order, selection),
     )
+
+
+def _options(order: Order, ego: str | None) -> IngestOptions:
+    given = conditions.parse(order.env)
+    return IngestOptions(order.mapping, ego, order.topic, order.sensor_range_m, need_ego=False, conditions=given)
 
 
 def to_json(found: model.Inspection) -> str:
@@ -107,8 +117,8 @@ def _drive(
     supposed, candidates = None, []
     if not egos:
         candidates = tracks.candidates(everybody)
-        options = IngestOptions(order.mapping, candidates[0].actor_id, order.topic, order.sensor_range_m)
-        ((supposed,), _) = _judgeable(read_trace(trace.path, options), environment, everybody, rules, road_problem)
+        supposing = _options(order, candidates[0].actor_id)
+        ((supposed,), _) = _judgeable(read_trace(trace.path, supposing), environment, everybody, rules, road_problem)
     return model.Drive(
         clock=tracks.clock(trace),
         states=trace.tables["actor_state"].num_rows,
@@ -127,7 +137,7 @@ def _drive(
 
 def _environment(trace: Trace, library: MapLibrary) -> tuple[Environment | None, str | None]:
     try:
-        found = library.find(trace.path.name, trace.embedded_map, trace.map_offset, trace.tables["actor_state"])
+        found = library.find(trace.path, trace.embedded_map, trace.map_offset, trace.tables["actor_state"])
     except MapError as error:
         return None, str(error)
     return found, None

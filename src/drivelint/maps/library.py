@@ -1,4 +1,8 @@
-"""The maps of a run: each read once, whichever drives are judged on it."""
+"""The maps of a run: each read once, whichever drives are judged on it.
+
+Of a folder of maps each drive gets its own: the one that `maps.csv` (columns log, map) names, else the one of the log's
+name or of its folder's, else the only one on whose lanes the drive lies.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow.compute as pc
 
-from drivelint.errors import MapError
+from drivelint.errors import MapError, UsageError
 from drivelint.maps.contract import MapSource
 from drivelint.maps.registry import load_map, read_source
 from drivelint.maps.sense import ground, on_map, vote
+from drivelint.maps.shelf import MANIFEST, Shelf, listed
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -25,36 +30,66 @@ FAR_M = 50.0  # beyond the map's own lanes by this much, a drive is somewhere el
 
 
 class MapLibrary:
-    """Finds the environment of each drive: the user's map, or the one embedded in its log; `None` where there is neither."""
+    """Finds the environment of each drive: the user's map, or the one embedded in its log; `None` where there is neither.
 
-    def __init__(self, path: Path | None, offset: tuple[float, float] | None, handedness: str) -> None:
+    `path` is one map for all, `folder` one that holds several; `origin` is the latitude and longitude of the log's 0,0.
+    """
+
+    def __init__(
+        self,
+        path: Path | None,
+        offset: tuple[float, float] | None,
+        handedness: str,
+        *,
+        origin: tuple[float, float] | None = None,
+        folder: Path | None = None,
+    ) -> None:
+        if path and folder:
+            raise UsageError("--map names one map and --map-dir many: give one of them")
         self._given = read_source(path) if path else None
+        self._shelf = Shelf(folder) if folder else None
         self._offset = offset
         self._handedness = handedness
+        self._origin = origin
         self._grounds: dict[str, shapely.STRtree] = {}
         self._loaded: dict[tuple[str, tuple[float, float], str | None], Environment] = {}
 
     def find(
-        self, log: str, embedded: bytes | None, offset: tuple[float, float] | None, states: pa.Table
+        self, log: Path, embedded: bytes | None, offset: tuple[float, float] | None, states: pa.Table
     ) -> Environment | None:
         """Return the environment for one drive.
 
-        `offset` is the mapping's (the user's `--map-offset` goes before it), `states` the drive's `actor_state` rows.
+        `log` is the drive's file, `offset` is the mapping's (the user's `--map-offset` goes before it), `states` the drive's
+        `actor_state` rows.
         Errors: `MapError` if the map cannot be read, or is of another place.
         """
+        shift = self._offset or offset or (0.0, 0.0)
         source = self._given or (MapSource("embedded", embedded) if embedded else None)
+        if self._shelf is not None:
+            source = self._shelf.named(log) or source or self._only_fitting(self._shelf, log, shift, states)
         if source is None:
             return None
-        shift = self._offset or offset or (0.0, 0.0)
         environment = self._load(source, shift, None)
         if trouble := _elsewhere(environment, self._ground(environment), states):
             raise MapError(
-                f"map {environment.environment_id} is of another place than {log}: {trouble}; "
+                f"map {environment.environment_id} is of another place than {log.name}: {trouble}; "
                 "give the right --map, or --map-offset"
             )
         if environment.handedness_source == "default" and (sensed := _sense(environment, states)):
             environment = self._load(source, shift, sensed)
         return environment
+
+    def _only_fitting(self, shelf: Shelf, log: Path, shift: tuple[float, float], states: pa.Table) -> MapSource:
+        """Return the one map on which the drive lies. Errors: `MapError` where none or several are."""
+        fitting = []
+        for source in shelf.sources():
+            environment = self._load(source, shift, None)
+            if not _elsewhere(environment, self._ground(environment), states):
+                fitting.append(source)
+        if len(fitting) == 1:
+            return fitting[0]
+        what = "none of its maps is of" if not fitting else f"{listed([s.name for s in fitting])} are all of"
+        raise MapError(f"{shelf.folder}: {what} the place of {log.name}: name its map in {shelf.folder / MANIFEST}")
 
     def _ground(self, environment: Environment) -> shapely.STRtree:
         if environment.environment_id not in self._grounds:
@@ -64,7 +99,9 @@ class MapLibrary:
     def _load(self, source: MapSource, offset: tuple[float, float], sensed: str | None) -> Environment:
         key = (source.sha256, offset, sensed)
         if key not in self._loaded:
-            self._loaded[key] = load_map(source, offset=offset, handedness=self._handedness, sensed=sensed)
+            self._loaded[key] = load_map(
+                source, offset=offset, handedness=self._handedness, sensed=sensed, origin=self._origin
+            )
         return self._loaded[key]
 
 
