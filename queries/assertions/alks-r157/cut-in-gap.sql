@@ -1,0 +1,40 @@
+-- title = "Distance restored after a cut-in"
+-- clause = "UN R157 5.2.3.3: where a vehicle that cuts in leaves less than the distance of the table, restore it at the next opportunity"
+-- hypothesis = "After a vehicle cut in, was the following distance there again in time, or that vehicle gone?"
+-- kind = "postcondition"
+-- subtype = "temporal"
+-- window_s = "window_s"
+-- quantifier = "eventually"
+-- derivation = "model"
+-- severity = "major"
+-- legal = "must"
+-- status = "stable"
+-- sense = ">="
+-- unit = "m"
+-- observes = "gap to the vehicle that cut in"
+-- reads = ["cut_in", "ego_state", "lead"]
+-- requires = ["mode_engaged", "map", "registration", "ego_size"]
+--
+-- [params.window_s]
+-- default = 10.0
+-- unit = "s"
+-- why = "our default: time to restore the distance without harsh braking"
+--
+-- [params.v_max_mps]
+-- default = 16.67
+-- unit = "m/s"
+-- why = "60 km/h, where the table ends: beyond it the law of the country holds"
+-- source = "UN R157 5.2.3.3"
+
+-- @reference
+SELECT drive_id, ego_id, t_ns, object_id, gap_m
+FROM cut_in
+
+-- @condition
+SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id, e.speed_mps <= $v_max_mps AS applies, r157_gap_m(e.speed_mps) AS required,
+    -- later somebody else ahead, or nobody: it has gone again
+    CASE WHEN s.t_ns = r.t_ns THEN r.gap_m WHEN l.object_id = s.object_id THEN l.gap_m WHEN l.t_ns IS NOT NULL THEN 'inf'::DOUBLE END AS observed
+FROM reference_step s
+JOIN reference r USING (ref_id)
+JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
+LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns

@@ -1,0 +1,47 @@
+-- title = "No collision with one that cuts in"
+-- clause = "UN R157 5.2.5.2: avoid a collision with a vehicle that cuts in, if it leaves more than the time to collision given by the formula"
+-- hypothesis = "After a vehicle cut in with enough time left, did the ego not touch it?"
+-- kind = "postcondition"
+-- subtype = "temporal"
+-- window_s = "window_s"
+-- derivation = "direct"
+-- severity = "critical"
+-- legal = "must"
+-- status = "stable"
+-- sense = ">"
+-- unit = "m"
+-- observes = "clearance to the vehicle that cut in"
+-- near_margin = 0.5
+-- reads = ["cut_in", "lost_object", "pair"]
+-- requires = ["mode_engaged", "map", "registration", "ego_size"]
+--
+-- [params.window_s]
+-- default = 5.0
+-- unit = "s"
+-- why = "our default: by then the conflict is over"
+--
+-- [params.brake_mps2]
+-- default = 6.0
+-- unit = "m/s2"
+-- why = "deceleration that the system is held to be capable of"
+-- source = "UN R157 5.2.5.2"
+--
+-- [params.delay_s]
+-- default = 0.35
+-- unit = "s"
+-- why = "time until it brakes so (0.25 s in EU 2022/1426)"
+-- source = "UN R157 5.2.5.2"
+
+-- @reference
+SELECT drive_id, ego_id, t_ns, object_id
+FROM cut_in
+-- only where the time to collision leaves the system a chance; speeds that are not known may be such
+WHERE coalesce(gap_m > (ego_speed_mps - speed_mps) * ((ego_speed_mps - speed_mps) / (2 * $brake_mps2) + $delay_s), true)
+
+-- @condition
+SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id, 0 AS required, p.clearance_is_bound AS at_least,
+    -- one that has gone for good, in sight and far away, is no longer touched
+    CASE WHEN p.object_id IS NOT NULL THEN p.clearance_m WHEN l.object_id IS NULL THEN 'inf'::DOUBLE END AS observed
+FROM reference_step s
+LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
+LEFT JOIN lost_object l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.object_id = s.object_id AND s.t_ns >= l.t_from_ns AND s.t_ns <= l.t_to_ns

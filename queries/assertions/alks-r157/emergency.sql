@@ -1,0 +1,29 @@
+-- title = "Hard braking is an emergency manoeuvre"
+-- clause = "UN R157 2.20 and 5.3: braking harder than 5 m/s2 is an emergency manoeuvre, and recorded as one"
+-- hypothesis = "While the ego braked harder than 5 m/s2, did it declare an emergency manoeuvre?"
+-- kind = "invariant"
+-- derivation = "direct"
+-- severity = "minor"
+-- legal = "must"
+-- status = "stable"
+-- sense = "holds"
+-- exempt_after_s = "grace_s"
+-- reads = ["ego_mode", "ego_motion"]
+-- requires = ["mode_engaged"]
+--
+-- [params.emergency_mps2]
+-- default = 5.0
+-- unit = "m/s2"
+-- why = "deceleration beyond which it is an emergency manoeuvre"
+-- source = "UN R157 5.3"
+--
+-- [params.grace_s]
+-- default = 0.3
+-- unit = "s"
+-- why = "our default: the smoothing of the acceleration and the delay of the message"
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, f.is_on AS holds, m.accel_mps2 < -$emergency_mps2 AS applies,
+    CASE WHEN f.mode IS NULL THEN 'the log never declares emergency_manoeuvre' END AS reason
+FROM ego_motion m
+LEFT JOIN (SELECT * FROM ego_mode WHERE mode = 'emergency_manoeuvre') f USING (drive_id, ego_id, t_ns)

@@ -1,0 +1,41 @@
+-- title = "Following distance"
+-- clause = "UN R157 5.2.3.3: up to 60 km/h keep at least the distance of the table, never less than 2 m; if others take it, restore it at the next opportunity"
+-- hypothesis = "At every step behind a vehicle, was the gap at least the distance of the table?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "critical"
+-- legal = "must"
+-- status = "stable"
+-- sense = ">="
+-- unit = "m"
+-- observes = "gap to the vehicle ahead"
+-- near_margin = 0.5
+-- reads = ["following", "lead"]
+-- requires = ["mode_engaged", "map", "registration", "ego_size"]
+--
+-- [params.v_max_mps]
+-- default = 16.67
+-- unit = "m/s"
+-- why = "60 km/h, where the table ends: beyond it the law of the country holds"
+-- source = "UN R157 5.2.3.3"
+--
+-- [params.restore_s]
+-- default = 10.0
+-- unit = "s"
+-- why = "our default: time to restore the distance without harsh braking after a cut-in or while and after the vehicle ahead brakes"
+--
+-- [params.lead_brakes_mps2]
+-- default = 1.0
+-- unit = "m/s2"
+-- why = "our default: so the vehicle ahead takes distance away by braking"
+
+-- @condition
+SELECT f.drive_id, f.ego_id, f.t_ns, f.gap_m AS observed, r157_gap_m(f.ego_speed_mps) AS required,
+    f.follows AND f.ego_speed_mps <= $v_max_mps AND coalesce(f.t_ns - f.joined_ns >= $restore_s * 1e9, true)
+        AND CASE WHEN b.braked THEN false WHEN f.gap_m >= r157_gap_m(f.ego_speed_mps) OR NOT b.unsure THEN true END AS applies
+FROM following f
+LEFT JOIN (
+    SELECT drive_id, ego_id, t_ns, bool_or(accel_mps2 <= -$lead_brakes_mps2) OVER w AS braked, bool_or(accel_mps2 IS NULL) OVER w AS unsure
+    FROM lead
+    WINDOW w AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns RANGE BETWEEN ($restore_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW)
+) b USING (drive_id, ego_id, t_ns)

@@ -1,0 +1,22 @@
+-- title = "Hazard lights in a minimal risk manoeuvre"
+-- clause = "UN R157 5.5.4: the hazard warning lights come on with the start of a minimal risk manoeuvre"
+-- hypothesis = "During a minimal risk manoeuvre, were the hazard warning lights on?"
+-- kind = "invariant"
+-- derivation = "direct"
+-- severity = "major"
+-- legal = "must"
+-- status = "stable"
+-- sense = "holds"
+-- exempt_after_s = "grace_s"
+-- reads = ["ego_mode", "ego_state"]
+-- requires = ["mode_engaged", "mode_minimal_risk_manoeuvre", "indicator"]
+--
+-- [params.grace_s]
+-- default = 0.5
+-- unit = "s"
+-- why = "our default: a lamp and its message take that long"
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, m.indicator = 'hazard' AS holds, f.is_on AS applies
+FROM ego_state m
+LEFT JOIN (SELECT * FROM ego_mode WHERE mode = 'minimal_risk_manoeuvre') f USING (drive_id, ego_id, t_ns)

@@ -1,0 +1,31 @@
+-- title = "A lane change done in five seconds"
+-- clause = "UN R79 5.6.4.6: the lane change manoeuvre of a car is completed in less than 5 s"
+-- hypothesis = "Was the ego wholly in the new lane in less than 5 s after it first reached over the line?"
+-- kind = "execution"
+-- derivation = "direct"
+-- severity = "minor"
+-- legal = "must"
+-- status = "stable"
+-- sense = "<"
+-- unit = "s"
+-- observes = "time over the line"
+-- near_margin = 0.2
+-- reads = ["lane_change"]
+-- requires = ["mode_engaged", "map", "registration", "ego_size"]
+--
+-- [applies]
+-- vehicle_class = ["car", "car_towing"]
+--
+-- [params.most_s]
+-- default = 5.0
+-- unit = "s"
+-- why = "time allowed for cars and light goods vehicles; heavy ones have ten"
+-- source = "UN R79 5.6.4.6.5"
+
+-- @reference
+SELECT drive_id, ego_id, t_start_ns AS t_ns, t_done_ns, begin_seen
+FROM lane_change
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, ref_id, CASE WHEN begin_seen THEN (t_done_ns - t_ns) / 1e9 END AS observed, $most_s AS required
+FROM reference

@@ -1,0 +1,37 @@
+-- title = "In doubt, no overtaking"
+-- clause = "UKHC R166: do not overtake if you are in doubt"
+-- hypothesis = "When the ego left its lane to overtake, was its declared confidence high enough?"
+-- kind = "execution"
+-- derivation = "direct"
+-- severity = "major"
+-- legal = "should"
+-- status = "stable"
+-- sense = ">="
+-- unit = ""
+-- observes = "declared confidence"
+-- near_margin = 0.02
+-- reads = ["declared_event", "overtake"]
+-- requires = ["declared_events", "map", "registration", "ego_size", "handedness"]
+--
+-- [params.window_s]
+-- default = 5.0
+-- unit = "s"
+-- why = "our default: an older confidence was about another situation"
+--
+-- [params.least]
+-- default = 0.9
+-- unit = ""
+-- why = "our default: what counts as doubt is for the maker to say"
+
+-- @reference
+SELECT DISTINCT drive_id, ego_id, t0_ns AS t_ns, begin_seen
+FROM overtake
+
+-- @condition
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $least AS required,
+    -- the last one counts, of two at once the lower; one that is no number leaves it open
+    CASE WHEN r.begin_seen THEN -(max({'t': d.t_ns, 'open': TRY_CAST(d.value AS DOUBLE) IS NULL, 'less': -TRY_CAST(d.value AS DOUBLE)})).less END AS observed
+FROM reference r
+LEFT JOIN declared_event d ON d.drive_id = r.drive_id AND d.actor_id = r.ego_id AND d.event = 'confidence'
+    AND d.t_ns <= r.t_ns AND d.t_ns >= r.t_ns - ($window_s * 1e9)::BIGINT
+GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.begin_seen

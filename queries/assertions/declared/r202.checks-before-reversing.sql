@@ -1,0 +1,44 @@
+-- title = "A look round before reversing"
+-- clause = "UKHC R202: before and while reversing look carefully, into the mirrors and the blind spots"
+-- hypothesis = "Before the ego began to reverse, did it declare a mirror check and a blind spot check?"
+-- kind = "execution"
+-- derivation = "direct"
+-- severity = "major"
+-- legal = "should"
+-- status = "stable"
+-- sense = "holds"
+-- reads = ["clock", "declared_event", "ego_motion", "step"]
+-- requires = ["declared_events"]
+--
+-- [params.window_s]
+-- default = 5.0
+-- unit = "s"
+-- why = "our default: an older look says nothing about now"
+--
+-- [params.reverse_mps]
+-- default = 0.1
+-- unit = "m/s"
+-- why = "our default: noise of a speed that is zero"
+
+-- @reference
+SELECT drive_id, ego_id, t_ns, before
+FROM (
+    SELECT m.drive_id, m.ego_id, m.t_ns, m.v_long_mps < -$reverse_mps AS reverses,
+        lag(m.v_long_mps >= -$reverse_mps) OVER (PARTITION BY m.drive_id, m.ego_id, s.seg ORDER BY m.t_ns) AS before
+    FROM ego_motion m
+    JOIN step s USING (drive_id, ego_id, t_ns)
+)
+-- a log or a stretch that begins in reverse does not show when that began
+WHERE reverses AND before IS DISTINCT FROM false
+
+-- @condition
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, CASE
+    WHEN NOT coalesce(r.before, false) THEN NULL
+    WHEN bool_or(d.event = 'mirror_check' AND d.t_ns >= r.t_ns - $window_s * 1e9 AND d.t_ns <= r.t_ns)
+        AND bool_or(d.event = 'blind_spot_check' AND d.t_ns >= r.t_ns - $window_s * 1e9 AND d.t_ns <= r.t_ns) THEN true
+    WHEN r.t_ns - $window_s * 1e9 >= c.t_start_ns AND bool_or(d.event = 'mirror_check') AND bool_or(d.event = 'blind_spot_check') THEN false
+    END AS holds
+FROM reference r
+JOIN clock c ON c.drive_id = r.drive_id AND c.ego_id = r.ego_id
+LEFT JOIN declared_event d ON d.drive_id = r.drive_id AND d.actor_id = r.ego_id
+GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.before, c.t_start_ns
