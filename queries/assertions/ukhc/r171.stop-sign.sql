@@ -10,18 +10,30 @@
 -- sense = "<="
 -- unit = "m/s"
 -- observes = "least speed just before the stop line"
--- reads = ["stop_line_crossing"]
--- requires = ["map", "registration", "ego_size", "stop_lines"]
+-- reads = ["junction_passage", "stop_line_crossing"]
+-- requires = ["map", "registration", "ego_size"]
 --
 -- [params.standing_mps]
 -- default = 0.1
 -- unit = "m/s"
 -- why = "our default: slower than this is a halt, for a recorded speed is seldom exactly zero"
+--
+-- [params.line_s]
+-- default = 10.0
+-- unit = "s"
+-- why = "our default: a stop line crossed longer than this before or after is not the one at this junction"
 
 -- @reference
-SELECT drive_id, ego_id, t_ns, occurrence, stop_line_id, begin_seen, slowest_mps
+-- a way in that is, or may be, governed by a stop sign and has no line in the map cannot be judged
+SELECT drive_id, ego_id, t_ns, stop_line_id, control, begin_seen, slowest_mps
 FROM stop_line_crossing
 WHERE control = 'stop'
+UNION ALL
+SELECT p.drive_id, p.ego_id, p.t_in_ns, NULL, p.control, NULL, NULL
+FROM junction_passage p
+ANTI JOIN stop_line_crossing c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id AND c.control = 'stop'
+    AND c.t_ns >= p.t_in_ns - ($line_s * 1e9)::BIGINT AND c.t_ns <= p.t_in_ns + ($line_s * 1e9)::BIGINT
+WHERE coalesce(p.control, 'stop') = 'stop'
 
 -- @anchor
 SELECT ref_id, t_ns
@@ -30,5 +42,7 @@ FROM reference
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, $standing_mps AS required,
     CASE WHEN begin_seen OR slowest_mps <= $standing_mps THEN slowest_mps END AS observed,
-    CASE WHEN NOT begin_seen THEN 'the log does not show how the ego came to the stop line' END AS reason
+    CASE WHEN control IS NULL THEN 'the map does not say what governs the way in'
+        WHEN stop_line_id IS NULL THEN 'the map has a stop sign here and no stop line'
+        WHEN NOT begin_seen THEN 'the log does not show how the ego came to the stop line' END AS reason
 FROM reference

@@ -22,14 +22,15 @@
 -- why = "our default: who brakes harder than this has been made to"
 
 -- @reference
-SELECT p.drive_id, p.ego_id, p.t_in_ns AS t_ns, p.occurrence, c.object_id, c.relation, c.decel_mps2, c.reason,
+SELECT p.drive_id, p.ego_id, p.t_in_ns AS t_ns, p.occurrence, p.control, c.object_id, c.relation, c.decel_mps2, c.reason,
     pet_known(c.pet_s, c.reason, $pet_s) AS pet_s
 FROM junction_passage p
 LEFT JOIN passage_conflict c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id AND c.occurrence = p.occurrence
     AND c.relation IN ('from_left', 'from_right')
-WHERE p.control = 'give_way'
+WHERE coalesce(p.control, 'give_way') = 'give_way'
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, ref_id, pet_s >= $pet_s AND decel_mps2 <= $decel_mps2 AS holds,
-    coalesce(reason, format('{} came by {:.1f} s after the ego and braked with {:.1f} m/s2', object_id, pet_s, decel_mps2)) AS reason
+SELECT drive_id, ego_id, t_ns, ref_id, CASE WHEN control IS NOT NULL THEN pet_s >= $pet_s AND decel_mps2 <= $decel_mps2 END AS holds,
+    CASE WHEN control IS NULL THEN 'the map does not say what governs the way in'
+        ELSE coalesce(reason, format('{} came by {:.1f} s after the ego and braked with {:.1f} m/s2', object_id, pet_s, decel_mps2)) END AS reason
 FROM reference

@@ -11,7 +11,7 @@
 -- unit = "m/s2"
 -- observes = "deceleration needed to stop before the line"
 -- reads = ["stop_line_crossing"]
--- requires = ["map", "registration", "ego_size", "traffic_lights", "stop_lines", "signals"]
+-- requires = ["map", "registration", "ego_size", "traffic_lights", "signals"]
 --
 -- [params.decel_mps2]
 -- default = 3.5

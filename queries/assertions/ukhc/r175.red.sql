@@ -8,7 +8,7 @@
 -- status = "stable"
 -- sense = "holds"
 -- reads = ["step", "stop_line_crossing"]
--- requires = ["map", "registration", "ego_size", "traffic_lights", "stop_lines", "signals"]
+-- requires = ["map", "registration", "ego_size", "traffic_lights", "signals"]
 
 -- @reference
 SELECT c.drive_id, c.ego_id, c.t_ns, c.occurrence, c.signal_id, c.begin_seen, c.state, c.state_before,

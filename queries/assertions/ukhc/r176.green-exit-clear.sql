@@ -22,9 +22,9 @@
 -- why = "our default: slower than this moves up in a queue"
 
 -- @reference
-SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, junction_id, t_out_ns, across
+SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, junction_id, t_out_ns, across, control
 FROM junction_passage
-WHERE control = 'traffic_light'
+WHERE coalesce(control, 'traffic_light') = 'traffic_light'
 
 -- @anchor
 SELECT ref_id, t_out_ns AS t_ns
@@ -37,8 +37,9 @@ JOIN standstill s ON s.drive_id = r.drive_id AND s.ego_id = r.ego_id AND s.junct
 
 -- @condition
 SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
-    s.t_start_ns IS NULL OR r.across OR NOT e.in_junction
-        OR NOT queued(s.ahead_id, s.ahead_gap_m, s.ahead_speed_mps, s.ahead_known, $near_m, $slow_mps) AS holds,
+    CASE WHEN r.control IS NOT NULL
+        THEN s.t_start_ns IS NULL OR r.across OR NOT e.in_junction
+            OR NOT queued(s.ahead_id, s.ahead_gap_m, s.ahead_speed_mps, s.ahead_known, $near_m, $slow_mps) END AS holds,
     CASE WHEN s.t_start_ns IS NOT NULL THEN 'the ego stood in the junction' || coalesce(' behind ' || s.ahead_id, '') END AS reason
 FROM reference_step g
 JOIN reference r USING (ref_id)

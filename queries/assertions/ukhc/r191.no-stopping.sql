@@ -9,7 +9,7 @@
 -- status = "stable"
 -- sense = "holds"
 -- reads = ["crossing_passage", "standstill"]
--- requires = ["map", "registration", "ego_size", "crossings"]
+-- requires = ["map", "registration", "ego_size"]
 --
 -- [params.stop_s]
 -- default = 5.0

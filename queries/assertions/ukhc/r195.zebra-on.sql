@@ -8,7 +8,7 @@
 -- status = "stable"
 -- sense = "holds"
 -- reads = ["crossing_passage"]
--- requires = ["map", "registration", "ego_size", "crossings"]
+-- requires = ["map", "registration", "ego_size"]
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, crossing_id, kind, on_id AS object_id, t_on_ns, known

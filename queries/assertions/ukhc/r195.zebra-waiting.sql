@@ -9,7 +9,7 @@
 -- status = "draft"
 -- sense = "holds"
 -- reads = ["crossing_passage"]
--- requires = ["map", "registration", "ego_size", "crossings"]
+-- requires = ["map", "registration", "ego_size"]
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, crossing_id, kind, waiting_id AS object_id, known

@@ -8,7 +8,7 @@
 -- status = "stable"
 -- sense = "holds"
 -- reads = ["crossing_passage", "stop_line_crossing"]
--- requires = ["map", "registration", "ego_size", "crossings", "traffic_lights", "signals"]
+-- requires = ["map", "registration", "ego_size"]
 --
 -- [params.past_line_s]
 -- default = 10.0

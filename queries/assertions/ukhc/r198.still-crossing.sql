@@ -8,7 +8,7 @@
 -- status = "stable"
 -- sense = "holds"
 -- reads = ["crossing_passage"]
--- requires = ["map", "registration", "ego_size", "crossings", "traffic_lights", "signals"]
+-- requires = ["map", "registration", "ego_size"]
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, on_id AS object_id, t_on_ns, known, state
