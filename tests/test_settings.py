@@ -17,6 +17,7 @@ OPTIONS = {
     "strict": ("strict", False),
     "sensor-range": ("sensor_range", False),
     "rules": ("rules", True),
+    "env": ("env", True),
 }
 OVERTAKE = ROOT / "fixtures" / "overtake"
 
@@ -41,16 +42,22 @@ def test_values_are_those_of_the_options(tmp_path: Path) -> None:
     }
 
 
+def test_conditions_are_a_table_of_their_own(tmp_path: Path) -> None:
+    file = written(tmp_path, '[env]\nnation = "gb"\nengaged = true\n')
+    assert defaults(OPTIONS, file) == {"env": ["nation=gb", "engaged=yes"]}
+
+
 @pytest.mark.parametrize(
     ("text", "says"),
     [
         ("map = ", "not TOML"),
         ('mpa = "x"', r"unknown setting 'mpa'; did you mean 'map'"),
-        ("zzz = 1", "known are map, rules, sensor-range, strict"),
+        ("zzz = 1", "known are env, map, rules, sensor-range, strict"),
         ('rules = "ukhc"', "rules.*must be a list"),
         ("rules = [1]", "rules.*must be a list"),
         ('map = ["x"]', "map.*must be one value"),
         ("[map]\nx = 1", "map.*must be one value"),
+        ("[env]\nweather = 1", r"\[env\] weather = 1: must be a text"),
     ],
 )
 def test_what_is_not_understood_is_refused(tmp_path: Path, text: str, says: str) -> None:

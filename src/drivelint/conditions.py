@@ -8,6 +8,12 @@ from __future__ import annotations
 
 import re
 from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from drivelint.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 TOWN = ("town", "townExpressway", "townCollector", "townArterial", "townPrivate", "townLocal", "townPlayStreet")
 ROAD_TYPES = ("motorway", "rural", *TOWN, "lowSpeed", "pedestrian", "bicycle")
@@ -25,13 +31,16 @@ WORDS: dict[str, tuple[str, ...]] = {
 }
 """Condition -> its words; `nation` also takes any other country's two letters (ISO 3166-1), see `problem`."""
 
+GIVEN: dict[str, tuple[str, ...]] = {**WORDS, "engaged": ("yes", "no")}
+"""What may be given for a drive: those, and whether the automated driver drives."""
+
 _WIDER = {"gb": BRITAIN, "town": TOWN}
 _COUNTRY = re.compile(r"[a-z]{2}")
 
 
 def problem(condition: str, word: str) -> str | None:
     """Return what is wrong with this word for this condition, with the nearest good one; None: nothing."""
-    words = WORDS[condition]
+    words = GIVEN[condition]
     if word in words or (condition == "nation" and word != "uk" and _COUNTRY.fullmatch(word)):
         return None
     if condition == "nation" and word.lower() == "uk":
@@ -51,3 +60,29 @@ def undecided(words: tuple[str, ...]) -> list[str]:
     """Return the words that leave open whether one of these is meant: gb, where the rule is for gb-sct."""
     inside = covered(words)
     return sorted(wide for wide, parts in _WIDER.items() if wide not in inside and set(parts) & set(inside))
+
+
+def parse(settings: Iterable[str]) -> tuple[tuple[str, str], ...]:
+    """Read `KEY=VALUE` settings of `--env` into (condition, word), in order of the conditions.
+
+    Errors: `UsageError` for a setting without '=', an unknown key or word (with the nearest one), or two words for one key.
+    """
+    found: dict[str, str] = {}
+    for setting in settings:
+        key, equals, word = (part.strip() for part in setting.partition("="))
+        if not equals:
+            raise UsageError(f"--env {setting!r}: write KEY=VALUE, such as weather=wet")
+        if wrong := unknown(key) or problem(key, word):
+            raise UsageError(f"--env {setting!r}: {wrong}")
+        if found.setdefault(key, word) != word:
+            raise UsageError(f"--env {setting!r}: {key} is {found[key]!r} already: a drive has one {key}")
+    return tuple(sorted(found.items()))
+
+
+def unknown(condition: str) -> str | None:
+    """Return what is wrong with this name of a condition, with the nearest good one; None: nothing."""
+    if condition in GIVEN:
+        return None
+    near = get_close_matches(condition.lower(), GIVEN, n=1)
+    hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(GIVEN)}"
+    return f"{condition!r} is no condition of a drive; {hint}"

@@ -4,6 +4,10 @@
     profile = ["nominal", "aggressive"]
     fail-on = "major"
 
+    [env]
+    nation = "gb"
+    weather = "dry"
+
 A key is an option's name without its dashes; the command line overrides it. The file is looked for in the current
 folder only, and relative paths in it start there too.
 """
@@ -37,16 +41,26 @@ def defaults(options: Mapping[str, tuple[str, bool]], file: Path = Path(FILE)) -
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise UsageError(f"{file}: not TOML: {error}") from error
     values: dict[str, Any] = {}
-    for key, value in content.items():
+    for key, said in content.items():
         if key not in options:
             near = get_close_matches(key, options, n=1)
             hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(sorted(options))}"
             raise UsageError(f"{file}: unknown setting {key!r}; {hint}")
         name, repeatable = options[key]
+        value = _assignments(said, file) if key == "env" and isinstance(said, dict) else said
         if not _fits(value, repeatable):
             raise UsageError(f"{file}: {key} = {value!r}: must be {'a list of texts' if repeatable else 'one value'}")
         values[name] = value if repeatable or isinstance(value, bool) else str(value)
     return values
+
+
+def _assignments(table: Mapping[str, Any], file: Path) -> list[str]:
+    """Return the table [env] as `KEY=VALUE`, as the command line takes them."""
+    words = {True: "yes", False: "no"}
+    for key, value in table.items():
+        if not isinstance(value, str | bool):
+            raise UsageError(f"{file}: [env] {key} = {value!r}: must be a text")
+    return [f"{key}={words[value] if isinstance(value, bool) else value}" for key, value in table.items()]
 
 
 def _fits(value: Any, repeatable: bool) -> bool:

@@ -140,11 +140,15 @@ def test_what_osi_cannot_say_comes_back(tmp_path: Path) -> None:
             "map_offset_y_m": -2.0,
         }
     ]
-    given_folder = folder(tmp_path / "d", states, actors, signal_state=signals, declared_event=events, data_log=log)
+    holds = [{"condition": "weather", "value": "wet"}, {"condition": "engaged", "value": "yes"}]
+    given_folder = folder(
+        tmp_path / "d", states, actors, signal_state=signals, declared_event=events, data_log=log, drive_condition=holds
+    )
     original = again(tmp_path / "d")
     mcap = convert(Order(given_folder, "mcap", tmp_path / "m")).path
     back = again(mcap)
-    for name in ("actor", "actor_state", "signal_state", "declared_event"):
+    for name in ("actor", "actor_state", "signal_state", "declared_event", "drive_condition"):
+        assert back.tables[name].num_rows
         assert back.tables[name].drop_columns("drive_id") == original.tables[name].drop_columns("drive_id"), name
     for name in ("sensor_range_m", "utc_start_ns", "map_offset_x_m", "map_offset_y_m", "t_start_ns"):
         assert back.tables["data_log"][name] == original.tables["data_log"][name]

@@ -54,6 +54,43 @@ def test_round_trip(tmp_path: Path, source: Trace) -> None:
     }
 
 
+def conditions(path: Path, source: Trace, rows: list[dict[str, str | None]], **options: Any) -> list[tuple[str, ...]]:
+    drive = folder(path, source)
+    pq.write_table(pa.Table.from_pylist(rows), drive / "drive_condition.parquet")
+    found = read(drive, **options).tables["drive_condition"].drop_columns("drive_id").to_pylist()
+    return [tuple(row.values()) for row in found]
+
+
+def test_what_holds_in_the_drive_is_said_by_the_log_or_given_and_then_that_counts(
+    tmp_path: Path, source: Trace
+) -> None:
+    rows: list[dict[str, str | None]] = [
+        {"condition": "weather", "value": "wet"}, {"condition": "nation", "value": "gb-sct"},
+    ]  # fmt: skip
+    assert conditions(tmp_path / "a", source, rows) == [("nation", "gb-sct", "trace"), ("weather", "wet", "trace")]
+    given = (("light", "night"), ("weather", "dry"))
+    assert conditions(tmp_path / "b", source, rows, conditions=given) == [
+        ("light", "night", "env"), ("nation", "gb-sct", "trace"), ("weather", "dry", "env"),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("condition", "value", "says"),
+    [
+        ("weather", "wett", "did you mean 'wet'"),
+        ("wether", "wet", "did you mean 'weather'"),
+        ("weather", None, "without a name or a value"),
+        ("weather", "dry", "both 'wet' and 'dry'"),
+    ],
+)
+def test_conditions_that_are_not_understood_are_refused(
+    tmp_path: Path, source: Trace, condition: str, value: str | None, says: str
+) -> None:
+    rows: list[dict[str, str | None]] = [{"condition": "weather", "value": "wet"}]
+    with pytest.raises(TraceError, match=f"drive_condition.parquet: .*{says}"):
+        conditions(tmp_path / "a", source, [*rows, {"condition": condition, "value": value}])
+
+
 def test_tables_go_into_the_database(source: Trace) -> None:
     con = connect()
     for name, rows in source.tables.items():

@@ -11,6 +11,7 @@ import pyarrow.compute as pc
 
 from drivelint.errors import TraceError
 from drivelint.ingest import parquet
+from drivelint.ingest.carried import conditions_of
 from drivelint.ingest.trace import (
     BRAKE_LIGHTS,
     CLASSES,
@@ -56,6 +57,7 @@ def read(path: Path) -> Recording:
     recording.signals = _extra(path / "signal_state.parquet", ("signal_id", "t_ns"), ("state",))
     recording.events = _extra(path / "declared_event.parquet", ("actor_id", "t_ns", "event"), ("value",))
     _check_words(recording.signals, path / "signal_state.parquet")
+    recording.conditions = _conditions(path / "drive_condition.parquet")
     if (path / "data_log.parquet").is_file():
         log = (parquet.table(path / "data_log.parquet").to_pylist() or [{}])[0]
         recording.sensor_range_m, recording.utc_start_ns = log.get("sensor_range_m"), log.get("utc_start_ns")
@@ -187,6 +189,15 @@ def _extra(path: Path, required: tuple[str, ...], optional: tuple[str, ...]) -> 
         if name in required and column.null_count:
             raise TraceError(f"{path}: {column.null_count} rows have no {name}: give every row one")
     return pa.table(columns)
+
+
+def _conditions(path: Path) -> dict[str, str]:
+    if not path.is_file():
+        return {}
+    table = parquet.table(path)
+    _need(path, table, ("condition", "value"))
+    names, words = (_column(path, table, name, pa.string()).to_pylist() for name in ("condition", "value"))
+    return conditions_of(path, zip(names, words, strict=True))
 
 
 def _check_words(signals: pa.Table | None, path: Path) -> None:

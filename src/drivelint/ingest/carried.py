@@ -1,8 +1,9 @@
 """What OSI has no field for, carried in a converted log beside its messages, written and read here.
 
 Two MCAP metadata records. `drivelint.trace`: where the log is from, the map offset and sensor range that its mapping said,
-what was found when it was read. `drivelint.actors`: OSI id -> the row of `actor` in JSON, since OSI's ids are numbers and
-its classes and hosts are fewer than ours. One channel of JSON messages, `drivelint.DeclaredEvent`, for declared events.
+what holds in the drive, what was found when it was read. `drivelint.actors`: OSI id -> the row of `actor` in JSON, since
+OSI's ids are numbers and its classes and hosts are fewer than ours. One channel of JSON messages, `drivelint.DeclaredEvent`,
+for declared events.
 """
 
 from __future__ import annotations
@@ -14,11 +15,12 @@ import msgspec
 import numpy as np
 import pyarrow as pa
 
+from drivelint import conditions
 from drivelint.errors import TraceError
 from drivelint.ingest.trace import CLASSES, SIZES, Finding
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
     from drivelint.ingest.trace import Recording, Trace
@@ -48,6 +50,7 @@ class _Said(msgspec.Struct, frozen=True, kw_only=True):
     sensor_range_m: float | None = None
     utc_start_ns: int | None = None
     unknown: tuple[str, ...] = ()
+    conditions: dict[str, str] = {}
     quality: tuple[Finding, ...] = ()
 
 
@@ -76,6 +79,9 @@ def records(trace: Trace, numbers: Mapping[str, int]) -> dict[str, dict[str, str
         "quality": findings(trace).drop_columns("drive_id").to_pylist(),
         "unknown": [name for name in OPTIONAL if states[name].null_count == states.num_rows],
     }
+    holds = {r["condition"]: r["value"] for r in trace.tables["drive_condition"].to_pylist() if r["source"] == "trace"}
+    if holds:
+        said["conditions"] = holds
     if trace.map_offset is not None:
         said["map_offset_m"] = trace.map_offset
     for name in ("sensor_range_m", "utc_start_ns"):
@@ -97,7 +103,7 @@ def findings(trace: Trace) -> pa.Table:
 def apply(path: Path, metadata: Mapping[str, Mapping[str, str]], recording: Recording) -> None:
     """Give a recording of OSI messages what its metadata records add. Errors: `TraceError` where they do not fit it."""
     if TRACE in metadata:
-        _apply_trace(_read(path, TRACE, metadata[TRACE], _Said), recording)
+        _apply_trace(path, _read(path, TRACE, metadata[TRACE], _Said), recording)
     if ACTORS in metadata:
         rows = {
             number: _read(path, f"{ACTORS}, actor {number}", text, _Actor) for number, text in metadata[ACTORS].items()
@@ -124,7 +130,21 @@ def events(path: Path, messages: Sequence[bytes]) -> pa.Table | None:
     )
 
 
-def _apply_trace(said: _Said, recording: Recording) -> None:
+def conditions_of(path: Path, rows: Iterable[tuple[str | None, str | None]]) -> dict[str, str]:
+    """Return what a log says of its drive, condition -> word. Errors: `TraceError` for what is not understood."""
+    found: dict[str, str] = {}
+    for name, word in rows:
+        if name is None or word is None:
+            raise TraceError(f"{path}: a condition of the drive without a name or a value: give both")
+        if wrong := conditions.unknown(name) or conditions.problem(name, word):
+            raise TraceError(f"{path}: condition of the drive: {wrong}")
+        if found.setdefault(name, word) != word:
+            raise TraceError(f"{path}: the drive's {name} is both {found[name]!r} and {word!r}: give one")
+    return found
+
+
+def _apply_trace(path: Path, said: _Said, recording: Recording) -> None:
+    recording.conditions = conditions_of(path, said.conditions.items())
     if said.map_offset_m is not None:
         dx, dy = recording.map_offset = said.map_offset_m
         recording.notes.append(f"the log moves the map by ({dx:+g}, {dy:+g}) m")

@@ -20,6 +20,7 @@ CANONICAL = (
     "actor_state.parquet",
     "data_log.parquet",
     "declared_event.parquet",
+    "drive_condition.parquet",
     "map.xodr",
     "quality.parquet",
     "signal_state.parquet",

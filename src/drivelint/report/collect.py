@@ -42,6 +42,9 @@ WITH
             list({'check_id': check_id, 'severity': severity, 'actor_id': actor_id, 'n': n, 't_first_ns': t_first_ns,
                 'message': message} ORDER BY check_id, actor_id NULLS FIRST, t_first_ns NULLS FIRST, message) AS quality
         FROM defect GROUP BY drive_id),
+    given AS (
+        SELECT drive_id, list({'condition': condition, 'value': value, 'source': source} ORDER BY condition) AS conditions
+        FROM drive_condition WHERE coalesce(list_contains($only::VARCHAR[], drive_id), true) GROUP BY drive_id),
     gaps AS (
         SELECT drive_id,
             list({'ego_id': ego_id, 'signal': signal, 'reason': reason} ORDER BY ego_id, signal) AS not_judged
@@ -51,6 +54,7 @@ SELECT l.drive_id, l.file_name, l.sha256, l.format, l.environment_id, e.name AS 
     coalesce(list_sum([x.km FOR x IN w.exposure]), 0.0::DOUBLE) AS km, l.n_states,
     coalesce(list_sum([x.n_steps FOR x IN w.exposure]), 0)::BIGINT AS n_steps, coalesce(len(w.exposure), 0) AS n_egos,
     'judged' AS status, NULL::VARCHAR AS status_reason, false AS lossy,
+    coalesce(c.conditions, []) AS conditions,
     coalesce(w.exposure, []) AS exposure, coalesce(o.occasions, []) AS occasions, coalesce(d.quality, []) AS quality,
     coalesce(g.not_judged, []) AS not_judged
 FROM data_log l
@@ -58,6 +62,7 @@ LEFT JOIN environment e USING (environment_id)
 LEFT JOIN way w USING (drive_id)
 LEFT JOIN occasion o USING (drive_id)
 LEFT JOIN defects d USING (drive_id)
+LEFT JOIN given c USING (drive_id)
 LEFT JOIN gaps g USING (drive_id)
 WHERE coalesce(list_contains($only::VARCHAR[], l.drive_id), true)
 ORDER BY l.drive_id
@@ -86,7 +91,7 @@ def unjudged(drive_id: str, file_name: str, reason: str, sha256: str | None = No
     """Return the row of the table `drive` for a log that could not be judged at all, and why."""
     schema = arrow_schema("drive")
     row = dict.fromkeys(schema.names)
-    row |= {key: [] for key in ("exposure", "occasions", "quality", "not_judged")}
+    row |= {key: [] for key in ("conditions", "exposure", "occasions", "quality", "not_judged")}
     row |= dict.fromkeys(("n_states", "n_steps", "n_egos"), 0)
     row |= {"drive_id": drive_id, "file_name": file_name, "sha256": sha256, "km": 0.0, "lossy": False}
     row |= {"status": "not_judged", "status_reason": reason}

@@ -59,7 +59,7 @@ def _drives(result: Result, near: dict[str, int]) -> list[dict[str, Any]]:
     columns = [
         "drive_id", "file_name", "sha256", "format", "map_name", "map_sha256", "handedness", "handedness_source",
         "status", "status_reason", "lossy", "duration_s", "km", "n_states", "n_steps", "n_egos",
-        "quality", "not_judged",
+        "conditions", "quality", "not_judged",
     ]  # fmt: skip
     return [
         {
