@@ -43,7 +43,7 @@ _MARGIN_ORDER: Final = "drive_id, ego_id, rule_id, profile NULLS FIRST, object_i
 
 
 class Bench:
-    """Judges batches of drives in one database. Between batches only results stay in it.
+    """Judges batches of drives in one database, which is locked for that. Between batches only results stay in it.
 
     `out` is where `margins_file` and the kept database go. `witnesses` are called after each batch while its tables are there.
     """
@@ -73,6 +73,7 @@ class Bench:
         self._kept = out / "drivelint.duckdb" if keep_db and out else None
         if self._kept:
             self._attach(self._kept)
+        store.lock(con)  # from here on rules of anybody may run in it
 
     def knows(self, drive: Drive) -> bool:
         """Whether this very log was judged before."""

@@ -49,6 +49,23 @@ def connect(
     return con
 
 
+def lock(con: duckdb.DuckDBPyConnection) -> None:
+    """Shut a database off from files and network, and its settings from change, before rules run in it.
+
+    What is attached stays so, Arrow tables can still be registered and spilling goes on. `memory_limit` alone can be set:
+    a batch that is out of memory is tried again with more. Errors: `duckdb.Error` if it is locked already.
+    """
+    for setting in (
+        "allow_persistent_secrets=false",
+        "autoinstall_known_extensions=false",
+        "autoload_known_extensions=false",
+        "allowed_configs=['memory_limit']",
+        "enable_external_access=false",
+        "lock_configuration=true",
+    ):
+        con.execute(f"SET {setting}")
+
+
 def load_spatial(con: duckdb.DuckDBPyConnection) -> None:
     """Load the spatial extension from the `duckdb-extension-spatial` wheel of the same version."""
     import duckdb_extension_spatial

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import duckdb
 import msgspec
 
-from drivelint.catalogue.check import macros
+from drivelint.catalogue.allowed import macros
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

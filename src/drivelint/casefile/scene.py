@@ -29,8 +29,10 @@ Row = dict[str, Any]
 
 @cache
 def database() -> duckdb.DuckDBPyConnection:
-    """One database for all cases of the process: every case leaves it empty."""
-    return store.connect(threads=1)
+    """One database for all cases of the process, locked: every case leaves it empty."""
+    con = store.connect(threads=1)
+    store.lock(con)
+    return con
 
 
 class _Column(NamedTuple):

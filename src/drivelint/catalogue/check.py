@@ -1,4 +1,8 @@
-"""Mechanical checks of a rule's SQL: one SELECT, known tables only, bound parameters, a named set of columns."""
+"""Mechanical checks of a rule's SQL: one SELECT, known tables and functions only, bound parameters, named columns.
+
+What stands in DuckDB's syntax tree is held against the lists in `allowed`: that DuckDB can parse or serialise a statement
+says nothing (it does so with two statements, DESCRIBE, `query('...')` and `FROM '/etc/passwd'`).
+"""
 
 from __future__ import annotations
 
@@ -9,31 +13,45 @@ from typing import Any, NamedTuple
 
 import duckdb
 
-from drivelint import store
+from drivelint.catalogue import allowed
+from drivelint.catalogue.allowed import GIVEN
 from drivelint.errors import RuleError
-from drivelint.resources import folder
 
-GIVEN = frozenset({"reference", "reference_step"})
-"""Tables that the engine makes for a rule: its reference points, and the steps at which each is judged."""
+__all__ = ["GIVEN", "Query", "inspect"]
 
-_TABLE_FUNCTIONS = frozenset({"range", "generate_series", "unnest"})
-_UNSTABLE = frozenset(
-    {
-        *("random", "setseed", "uuid", "uuidv4", "uuidv7", "gen_random_uuid", "nextval", "currval"),
-        *("now", "today", "current_date", "current_time", "current_timestamp", "current_localtime"),
-        *("current_localtimestamp", "get_current_timestamp", "transaction_timestamp"),
-        *("getenv", "getvariable", "current_setting"),
-    }
-)
-_MACRO = re.compile(r"\bMACRO\s+(\w+)", re.IGNORECASE)
+Node = dict[str, Any]
+
+_DEEP = "too deeply nested to be checked: split it into CTEs"
 
 
 class Query(NamedTuple):
-    """What one SELECT is made of. `columns` is None where a star hides them."""
+    """What one SELECT is made of.
+
+    `places`: table or `$parameter` -> `file:line` of its first mention. `columns` is None where a star hides them.
+    """
 
     tables: frozenset[str]
     parameters: frozenset[str]
     columns: tuple[str, ...] | None
+    places: dict[str, str]
+
+
+class _Text(NamedTuple):
+    """SQL and where in which file it stands."""
+
+    sql: str
+    file: str
+    line: int
+
+    def at(self, offset: int | None) -> str:
+        """Return file:line of a byte of the SQL; of its first line where that is not known."""
+        before = b"" if offset is None else self.sql.encode()[:offset]
+        return f"{self.file}:{self.line + before.count(10)}"
+
+    def of(self, error: duckdb.Error) -> str:
+        """Return file:line of what DuckDB complains about."""
+        line = re.search(r"^LINE (\d+):", str(error), re.MULTILINE)
+        return f"{self.file}:{self.line + (int(line[1]) - 1 if line else 0)}"
 
 
 @cache
@@ -41,92 +59,153 @@ def _parser() -> duckdb.DuckDBPyConnection:
     return duckdb.connect()
 
 
-def inspect(sql: str, where: str) -> Query:
-    """Take one section's SQL apart.
+def inspect(sql: str, file: str, line: int = 1) -> Query:
+    """Take one section's SQL apart, which stands from `line` on in `file`.
 
-    Errors: `RuleError` when it is not exactly one SELECT, reads anything but documented tables, names a CTE like a
-    table of ours
-    or like the engine's own (`_...`), or calls what is not the same every time.
+    Errors: `RuleError` with file and line when it is not exactly one SELECT, or reads, calls or is built of anything that
+    `allowed` does not name, or has a CTE named like a table of ours or like the engine's own (`_...`).
     """
+    text = _Text(sql, file, line)
+    statement, node = _parsed(text)
+    found = _Found(text)
+    found.walk(node)
+    parameters = frozenset(statement.named_parameters)
+    places = found.tables | {f"${name}": text.at(_parameter(sql, name)) for name in parameters}
+    return Query(frozenset(found.tables), parameters, _columns(node), places)
+
+
+def _parsed(text: _Text) -> tuple[duckdb.Statement, Node]:
     con = _parser()
     try:
-        statements = con.extract_statements(sql)
+        statements = con.extract_statements(text.sql)
+        if len(statements) > 1:
+            second = text.sql.encode().find(statements[1].query.strip().encode())
+            raise RuleError(f"{text.at(second)}: a section is exactly one SELECT, found {len(statements)} statements")
+        if not statements or statements[0].type != duckdb.StatementType.SELECT:
+            raise RuleError(f"{text.at(0)}: a section is exactly one SELECT, and this is none")
+        tree = json.loads(con.execute("SELECT json_serialize_sql(?)", [text.sql]).fetchall()[0][0])
     except duckdb.Error as error:
-        raise RuleError(f"{where}: {str(error).splitlines()[0]}") from error
-    if len(statements) != 1 or statements[0].type != duckdb.StatementType.SELECT:
-        raise RuleError(f"{where}: a section is exactly one SELECT, found {len(statements)} statement(s)")
-    row = con.execute("SELECT json_serialize_sql(?)", [sql]).fetchone()
-    tree: dict[str, Any] = json.loads(row[0]) if row else {"error": True}
+        raise RuleError(f"{text.of(error)}: {str(error).splitlines()[0]}") from error
+    except RecursionError as error:
+        raise RuleError(f"{text.at(0)}: {_DEEP}") from error
     if tree.get("error") or len(tree["statements"]) != 1:
-        raise RuleError(
-            f"{where}: only a plain SELECT can be checked: {tree.get('error_message', 'not one statement')}"
-        )
-    found = _Found()
-    found.walk(tree["statements"][0]["node"])
-    _allow(found, where)
-    tables = frozenset(found.tables - found.ctes)
-    return Query(tables, frozenset(statements[0].named_parameters), _columns(tree["statements"][0]["node"]))
+        raise RuleError(f"{text.at(0)}: only a plain SELECT can be checked: {tree.get('error_message', 'none here')}")
+    return statements[0], tree["statements"][0]["node"]
+
+
+def _parameter(sql: str, name: str) -> int | None:
+    """Return the byte at which a parameter stands first; the syntax tree does not say."""
+    found = re.search(rf"\${re.escape(name)}\b", sql)
+    return len(sql[: found.start()].encode()) if found else None
 
 
 class _Found:
-    """Names met in a serialised statement."""
+    """Walks a syntax tree, refuses what is not allowed, and keeps the tables read (name -> file:line)."""
 
-    def __init__(self) -> None:
-        self.tables: set[str] = set()
-        self.ctes: set[str] = set()
-        self.functions: set[str] = set()
-        self.table_functions: set[str] = set()
+    def __init__(self, text: _Text) -> None:
+        self._text = text
+        self.tables: dict[str, str] = {}
 
-    def walk(self, node: Any) -> None:
-        """Collect names, without recursion: a deep expression must not exhaust the stack."""
-        todo = [node]
+    def walk(self, root: Node) -> None:
+        """Look at every node, without recursion: a deep expression must not exhaust the stack."""
+        todo: list[tuple[Any, frozenset[str]]] = [(root, frozenset())]
         while todo:
-            part = todo.pop()
+            part, ctes = todo.pop()
             if isinstance(part, list):
-                todo.extend(part)
+                todo.extend((item, ctes) for item in reversed(part))
             elif isinstance(part, dict):
-                self._meet(part)
-                todo.extend(part.values())
+                self._meet(part, ctes)
+                rest = dict(part)
+                if isinstance(part.get("cte_map"), dict):
+                    # a CTE sees those before it; only its own SELECT, and what is inside, sees it
+                    for entry in rest.pop("cte_map")["map"]:
+                        todo.append((entry["value"], ctes))
+                        ctes |= {self._cte(entry)}
+                todo.extend((value, ctes) for value in reversed(list(rest.values())))
 
-    def _meet(self, part: dict[str, Any]) -> None:
+    def _meet(self, part: Node, ctes: frozenset[str]) -> None:
         kind = part.get("type")
-        if kind == "BASE_TABLE":
-            prefix = f"{part['schema_name']}." if part.get("schema_name") else ""
-            self.tables.add(prefix + part["table_name"].lower())
+        if part.get("sample"):
+            self._refuse(part, "a sample is another one every time: a rule may not take one")
+        if part.get("ref_type") == "POSITIONAL":
+            self._refuse(part, "POSITIONAL JOIN depends on the order of rows, which is not fixed")
+        if "class" in part:
+            self._expression(part)
+        elif kind == "BASE_TABLE":
+            self._table(part, ctes)
         elif kind == "TABLE_FUNCTION":
-            self.table_functions.add(part["function"]["function_name"].lower())
-        elif part.get("class") == "FUNCTION":
-            self.functions.add(part["function_name"].lower())
-        if isinstance(part.get("cte_map"), dict):
-            self.ctes |= {entry["key"].lower() for entry in part["cte_map"]["map"]}
+            name = str(part["function"]["function_name"]).lower()
+            if name not in allowed.TABLE_FUNCTIONS | allowed.macros():
+                self._refuse(part["function"], f"table function {name}() is not allowed in a rule")
+        elif _is_foreign(part):
+            self._refuse(part, f"{_plain(kind)} is not allowed in a rule: write a plain SELECT")
+
+    def _expression(self, part: Node) -> None:
+        kind = part["class"]
+        if kind not in allowed.EXPRESSIONS:
+            self._refuse(part, f"{_plain(kind)} is not allowed in a rule")
+        name = str(part.get("function_name", "")).lower()
+        if name and name not in allowed.functions():
+            self._refuse(
+                part,
+                f"function {name}() is not allowed in a rule: only those that give the same answer every time and touch "
+                "nothing but the tables, and the library's macros",
+            )
+        if kind == "COLUMN_REF" and len(part["column_names"]) == 1:
+            word = part["column_names"][0].lower()
+            if word in allowed.CLOCKS:
+                self._refuse(part, f"{word} does not give the same answer every time: a rule may not use it")
+
+    def _table(self, part: Node, ctes: frozenset[str]) -> None:
+        name = part["table_name"].lower()
+        whole = ".".join(word for word in (part["catalog_name"], part["schema_name"], name) if word)
+        if part.get("at_clause"):
+            self._refuse(part, "AT (...) is not allowed in a rule")
+        if whole in ctes:
+            return
+        if whole not in allowed.tables():
+            self._refuse(part, f"there is no table {whole!r} for rules; they read the tables of schemas/*.sql only")
+        self.tables.setdefault(name, self._text.at(part["query_location"]))
+
+    def _cte(self, entry: Node) -> str:
+        name = str(entry["key"]).lower()
+        if name in allowed.tables() or name.startswith("_"):
+            select = entry["value"]["query"]["node"]
+            self._refuse(select, f"rename the CTE {name!r}: it hides a table, or begins with _ like the engine's own")
+        return name
+
+    def _refuse(self, part: Node, message: str) -> None:
+        raise RuleError(f"{self._text.at(_offset(part))}: {message}")
 
 
-@cache
-def macros() -> frozenset[str]:
-    """Return the names of the library's macros, in lower case."""
-    files = sorted((folder("queries") / "macros").glob("*.sql"))
-    return frozenset(name.lower() for file in files for name in _MACRO.findall(file.read_text(encoding="utf-8")))
+def _offset(part: Any) -> int | None:
+    """Return the first byte that a node, or else what is in it, says it stands at."""
+    todo = [part]
+    while todo:
+        node = todo.pop(0)
+        if isinstance(node, dict):
+            place = node.get("query_location")
+            if isinstance(place, int) and place < 1 << 62:
+                return place
+            todo.extend(node.values())
+        elif isinstance(node, list):
+            todo.extend(node)
+    return None
 
 
-def _allow(found: _Found, where: str) -> None:
-    known = store.schema().keys() | GIVEN
-    shadow = sorted(name for name in found.ctes if name in known or name.startswith("_"))
-    if shadow:
-        raise RuleError(
-            f"{where}: rename the CTE {shadow[0]!r}: it hides a table, or begins with _ like the engine's own"
-        )
-    strange = sorted(found.tables - found.ctes - known)
-    if strange:
-        raise RuleError(f"{where}: there is no table {strange[0]!r}; rules read the tables of schemas/*.sql only")
-    functions = sorted(found.table_functions - _TABLE_FUNCTIONS - macros())
-    if functions:
-        raise RuleError(f"{where}: table function {functions[0]!r} is not allowed in a rule")
-    unstable = sorted(found.functions & _UNSTABLE)
-    if unstable:
-        raise RuleError(f"{where}: {unstable[0]}() does not give the same answer every time: a rule may not use it")
+def _is_foreign(part: Node) -> bool:
+    """Whether a node is a source of rows or a query, and none of those that a rule may be made of."""
+    kind = str(part.get("type"))
+    if {"alias", "sample"} <= part.keys():
+        return kind not in allowed.SOURCES
+    return kind.endswith("_NODE") and kind not in allowed.NODES
 
 
-def _columns(node: dict[str, Any]) -> tuple[str, ...] | None:
+def _plain(kind: object) -> str:
+    return str(kind).removesuffix("_NODE").removesuffix("_REF").replace("_", " ")
+
+
+def _columns(node: Node) -> tuple[str, ...] | None:
     """Names of the columns of a SELECT (of the first branch of a UNION); None where they cannot be read off."""
     while node["type"] == "SET_OPERATION_NODE":
         node = node["left"] if "left" in node else node["children"][0]

@@ -107,7 +107,7 @@ def parse_header(text: str, where: str) -> Header:
     problem = _contradiction(header)
     if problem:
         key, message = problem
-        raise RuleError(f"{where}:{_line_of(text, key)}: {message}")
+        raise RuleError(f"{where}:{line_of(text, key)}: {message}")
     return header
 
 
@@ -122,15 +122,16 @@ def _explained(error: msgspec.ValidationError, text: str, where: str) -> RuleErr
     key = unknown[1] if unknown else path.replace("[...]", "").split(".")[-1]
     if not unknown:
         missing = "missing required field" in message
-        line = 1 if missing and not path else _line_of(text, key)
+        line = 1 if missing and not path else line_of(text, key)
         return RuleError(f"{where}:{line}: header: {message}")
     known = Param if path.startswith("params") else Conditions if path.startswith("applies") else Header
     near = get_close_matches(key, known.__struct_fields__, n=1)
     hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(known.__struct_fields__)}"
-    return RuleError(f"{where}:{_line_of(text, key)}: unknown key {key!r} in the header; {hint}")
+    return RuleError(f"{where}:{line_of(text, key)}: unknown key {key!r} in the header; {hint}")
 
 
-def _line_of(text: str, key: str) -> int:
+def line_of(text: str, key: str) -> int:
+    """Return the line of the header on which a key, or the table of a parameter, stands; 1 where it does not."""
     pattern = re.compile(rf"^\s*\[?(?:[\w.]+\.)?{re.escape(key)}\b\s*[=\].]")
     return next((n for n, line in enumerate(text.splitlines(), 1) if pattern.match(line)), 1)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from drivelint import store
 from drivelint.catalogue.check import GIVEN, Query, inspect
-from drivelint.catalogue.header import Header, parse_header
+from drivelint.catalogue.header import Header, line_of, parse_header
 from drivelint.catalogue.sections import Section, split
 from drivelint.errors import RuleError
 from drivelint.resources import folder
@@ -111,11 +111,11 @@ def read_rule(file: Path) -> Rule:
     toml, sections = split(text, str(file))
     header = parse_header(toml, str(file))
     if header.reference is not None:
-        sections = _event_table(header.reference, sections, file)
-    queries = {name: inspect(section.sql, f"{file}:{section.line}") for name, section in sections.items()}
+        sections = _event_table(header.reference, sections, file, line_of(toml, "reference"))
+    queries = {name: inspect(section.sql, str(file), section.sql_line) for name, section in sections.items()}
     _check_sections(header, sections, queries, file)
-    _check_reads(header, queries, file)
-    _check_params(header, queries, file)
+    _check_reads(header, queries, f"{file}:{line_of(toml, 'reads')}")
+    _check_params(header, queries, file, toml)
     fields = {name: getattr(header, name) for name in header.__struct_fields__}
     return Rule(
         **fields,
@@ -128,7 +128,7 @@ def read_rule(file: Path) -> Rule:
     )
 
 
-def _event_table(table: str, sections: dict[str, Section], file: Path) -> dict[str, Section]:
+def _event_table(table: str, sections: dict[str, Section], file: Path, line: int) -> dict[str, Section]:
     """Let the header's `reference = "table"` stand for a @reference section over that event table."""
     if "reference" in sections:
         raise RuleError(
@@ -137,9 +137,9 @@ def _event_table(table: str, sections: dict[str, Section], file: Path) -> dict[s
     columns = store.schema().get(table, {})
     if not set(_KEYS) <= columns.keys():
         raise RuleError(
-            f"{file}:1: reference = {table!r} is no event table: it needs the columns drive_id, ego_id, t_ns"
+            f"{file}:{line}: reference = {table!r} is no event table: it needs the columns drive_id, ego_id, t_ns"
         )
-    return {**sections, "reference": Section(f"SELECT {', '.join(columns)} FROM {table}", 1)}
+    return {**sections, "reference": Section(f"SELECT {', '.join(columns)} FROM {table}", line, line)}
 
 
 def _check_sections(header: Header, sections: dict[str, Section], queries: dict[str, Query], file: Path) -> None:
@@ -205,25 +205,35 @@ def _check_condition(header: Header, query: Query, where: str) -> None:
         raise RuleError(f"{where}: combine = {header.combine!r} needs the column object_id")
 
 
-def _check_reads(header: Header, queries: dict[str, Query], file: Path) -> None:
+def _check_reads(header: Header, queries: dict[str, Query], reads: str) -> None:
+    """Check that the header's `reads`, which stands at file:line `reads`, is what the SQL reads."""
     given = {"condition": GIVEN, "anchor": frozenset({"reference"})} if header.kind != "invariant" else {}
     for name, query in queries.items():
         if early := sorted(query.tables & GIVEN - given.get(name, frozenset())):
-            raise RuleError(f"{file}:1: @{name} has no table {early[0]!r} in a rule of kind {header.kind}")
-    real = frozenset[str]().union(*(query.tables for query in queries.values())) - GIVEN
+            raise RuleError(
+                f"{query.places[early[0]]}: @{name} has no table {early[0]!r} in a rule of kind {header.kind}"
+            )
     said = frozenset(header.reads)
-    if said != real:
-        parts = [f"add {', '.join(sorted(real - said))}"] if real - said else []
-        parts += [f"remove {', '.join(sorted(said - real))}"] if said - real else []
-        raise RuleError(f"{file}:1: reads does not match the SQL: {'; '.join(parts)}")
+    for query in queries.values():
+        if undeclared := sorted(query.tables - GIVEN - said):
+            raise RuleError(
+                f"{query.places[undeclared[0]]}: reads does not match the SQL: add {', '.join(undeclared)} to reads"
+            )
+    if idle := sorted(said.difference(*(query.tables for query in queries.values()))):
+        raise RuleError(f"{reads}: reads does not match the SQL: remove {', '.join(idle)}")
 
 
-def _check_params(header: Header, queries: dict[str, Query], file: Path) -> None:
+def _check_params(header: Header, queries: dict[str, Query], file: Path, toml: str) -> None:
+    for query in queries.values():
+        if strange := sorted(query.parameters - header.params.keys()):
+            name = strange[0]
+            raise RuleError(
+                f"{query.places[f'${name}']}: ${name} is not a parameter of this rule; "
+                f"add [params.{name}] to the header, with default, unit, why and source"
+            )
     used = frozenset[str]().union(*(query.parameters for query in queries.values()))
-    if strange := sorted(used - header.params.keys()):
-        raise RuleError(
-            f"{file}:1: ${strange[0]} is not a parameter of this rule; add [params.{strange[0]}] to the header"
-        )
     used |= {s for s in (header.window_s, header.exempt_after_s, header.merge_gap_s) if isinstance(s, str)}
     if unused := sorted(header.params.keys() - used):
-        raise RuleError(f"{file}:1: parameter {unused[0]!r} is never used")
+        raise RuleError(
+            f"{file}:{line_of(toml, f'params.{unused[0]}')}: parameter {unused[0]!r} is never used: bind it as ${unused[0]}"
+        )

@@ -13,10 +13,11 @@ _MARK = re.compile(r"^--\s*@(\S+)\s*$")
 
 
 class Section(NamedTuple):
-    """One SELECT of a rule: its text and the line of the file on which it starts."""
+    """One SELECT of a rule: its text, the line of the file on which its mark stands, and that on which the text begins."""
 
     sql: str
     line: int
+    sql_line: int
 
 
 def split(text: str, where: str) -> tuple[str, dict[str, Section]]:
@@ -39,10 +40,12 @@ def split(text: str, where: str) -> tuple[str, dict[str, Section]]:
             )
         if name in sections:
             raise RuleError(f"{where}:{start + 1}: section @{name} stands twice")
-        body = "\n".join(lines[start + 1 : end]).strip()
+        below = lines[start + 1 : end]
+        body = "\n".join(below).strip()
         if not body:
             raise RuleError(f"{where}:{start + 1}: section @{name} is empty")
-        sections[name] = Section(body, start + 1)
+        blank = next(n for n, line in enumerate(below) if line.strip())
+        sections[name] = Section(body, start + 1, start + 2 + blank)
     if "condition" not in sections:
         raise RuleError(f"{where}:{len(lines)}: section '-- @condition' is missing")
     return "\n".join(header), sections
