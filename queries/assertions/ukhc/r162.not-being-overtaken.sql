@@ -1,0 +1,35 @@
+-- title = "Nobody overtaking when pulling out"
+-- clause = "UKHC R162: before overtaking make sure that nobody behind is beginning to overtake you"
+-- hypothesis = "When the ego first left its lane to overtake, was the nearest vehicle behind in the passing lane still seconds away?"
+-- kind = "execution"
+-- derivation = "direct"
+-- severity = "major"
+-- legal = "should"
+-- status = "stable"
+-- sense = ">="
+-- unit = "s"
+-- observes = "time until the vehicle behind in the passing lane is there"
+-- near_margin = 1.0
+-- reads = ["overtake", "overtake_place"]
+-- requires = ["map", "registration", "handedness", "ego_size"]
+--
+-- [params.ttc_s]
+-- default = 4.0
+-- unit = "s"
+-- why = "our default: time to see the ego pull out and to slow down in comfort"
+
+-- @reference
+SELECT o.drive_id, o.ego_id, o.t0_ns AS t_ns, p.rear_id AS object_id, o.occurrence
+FROM overtake o
+LEFT JOIN overtake_place p USING (drive_id, ego_id, occurrence)
+-- two vehicles passed in one go are pulled out for once
+QUALIFY o.occurrence = min(o.occurrence) OVER (PARTITION BY o.drive_id, o.ego_id, o.t0_ns)
+
+-- @condition
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $ttc_s AS required,
+    -- somebody else who was not placed could only make it worse
+    CASE WHEN o.begin_seen AND (p.rear_known OR p.rear_ttc_s < $ttc_s) THEN p.rear_ttc_s END AS observed,
+    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began' END AS reason
+FROM reference r
+JOIN overtake o USING (drive_id, ego_id, occurrence)
+LEFT JOIN overtake_place p USING (drive_id, ego_id, occurrence)

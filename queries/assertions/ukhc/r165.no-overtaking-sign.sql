@@ -1,0 +1,23 @@
+-- title = "No overtaking where a sign forbids it"
+-- clause = "UKHC R165: you must not overtake after a no-overtaking sign, until the sign that cancels it"
+-- hypothesis = "When the ego pulled out to overtake a moving vehicle, did no no-overtaking sign hold?"
+-- kind = "execution"
+-- derivation = "direct"
+-- severity = "major"
+-- legal = "must"
+-- status = "stable"
+-- sense = "holds"
+-- reads = ["overtake", "overtake_place"]
+-- requires = ["map", "registration", "handedness", "ego_size"]
+
+-- @reference
+SELECT o.drive_id, o.ego_id, o.t0_ns AS t_ns, o.vbp_id AS object_id, o.occurrence
+FROM overtake o
+
+-- @condition
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps > standing_mps() AS applies,
+    CASE WHEN o.begin_seen THEN NOT p.no_overtaking END AS holds,
+    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began' WHEN p.no_overtaking IS NULL THEN 'the map has no such signs: whether there are any is not known' END AS reason
+FROM reference r
+JOIN overtake o USING (drive_id, ego_id, occurrence)
+LEFT JOIN overtake_place p USING (drive_id, ego_id, occurrence)
