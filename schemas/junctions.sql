@@ -91,11 +91,11 @@ CREATE TABLE passage_conflict (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- see junction_passage; one row for each of its relations
-    relation VARCHAR NOT NULL,        -- oncoming (from the road ahead), from_left, from_right, ahead_going (a cyclist, animal or vehicle along the ego's own road that goes on while the ego turns), pedestrian (crosses the road that the ego turns into)
-    object_id VARCHAR,                -- of those before whom the ego went, the one with the least PET; NULL: nobody
-    pet_s DOUBLE,                     -- its PET; infinite: nobody; NULL: somebody could not be placed, so cannot be told (a lower PET that was seen is still given)
+    relation VARCHAR NOT NULL,        -- oncoming (from the road ahead), from_left, from_right, ahead_going (a cyclist, animal or vehicle along the ego's own road that goes on while the ego turns), by their heading 2 s before against the ego's on its way in; pedestrian (on foot, in the junction or within 12 m past it: over the road that the ego turns into); who has no class may be either
+    object_id VARCHAR,                -- of those before whom the ego went (or, on foot, into whom: still there as it came), the one with the least PET; NULL: nobody
+    pet_s DOUBLE,                     -- its PET, also where reason says that another one may be lower; infinite: nobody within 10 s, or until the log ends, 4 s later at least; NULL: cannot be told
     decel_mps2 DOUBLE,                -- see conflict; 0 where nobody; NULL: cannot be told
-    reason VARCHAR                    -- why NULL
+    reason VARCHAR                    -- why another one cannot be ruled out: somebody without position, heading or size, or whose track begins or ends within 30 m; the log, a hole or the sensor's range ends too soon; NULL: nobody else
 );
 
 CREATE TABLE stop_line_crossing (

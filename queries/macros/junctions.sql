@@ -28,3 +28,7 @@ CREATE OR REPLACE MACRO meeting_slot(t_ns) AS (t_ns // conflict_ns())::INTEGER;
 CREATE OR REPLACE MACRO line_reach_m() AS 30.0;
 -- Steps are kept from this far before a mark to as far beyond it.
 CREATE OR REPLACE MACRO near_mark_m() AS 10.0;
+-- "Nobody came" asks for the log to go on at least this long after the ego has left (twice what rules ask for).
+CREATE OR REPLACE MACRO watched_ns() AS 4_000_000_000;
+-- Who is unseen for a while this near to where ways meet, or could have come this near, may have been on them.
+CREATE OR REPLACE MACRO meeting_near_m() AS 30.0;

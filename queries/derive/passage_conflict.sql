@@ -1,0 +1,146 @@
+-- Before whom the ego went through a junction, by where they came from; and whether nobody else can have come.
+WITH passed AS (
+    SELECT
+        p.drive_id, p.ego_id, p.occurrence, p.t_in_ns, p.t_out_ns, coalesce(p.t_in_ns, p.t_first_ns) AS t_a_ns, coalesce(p.t_out_ns, p.t_last_ns) AS t_b_ns,
+        a.yaw_rad AS heading_rad, b.travel_m, b.x_m, b.y_m
+    FROM junction_passage p
+    JOIN ego_state a ON a.drive_id = p.drive_id AND a.ego_id = p.ego_id AND a.t_ns = coalesce(p.t_in_ns, p.t_first_ns)
+    JOIN ego_state b ON b.drive_id = p.drive_id AND b.ego_id = p.ego_id AND b.t_ns = p.t_last_ns
+),
+-- those who came to ground that the ego went over in the junction, people on foot up to 12 m beyond: the mouth of the road that it turns into
+met AS (
+    SELECT
+        p.drive_id, p.ego_id, p.occurrence, p.heading_rad, c.object_id, c.actor_class, c.pet_s, c.decel_mps2, c.t_object_in_ns,
+        -- who has no class may be either
+        c.actor_class IS NULL OR c.actor_class = 'pedestrian' AS on_foot, c.actor_class IS DISTINCT FROM 'pedestrian' AND e.t_ns <= p.t_b_ns AS driven
+    FROM passed p
+    JOIN conflict c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id AND c.t_ego_out_ns >= p.t_a_ns
+    JOIN ego_state e ON e.drive_id = c.drive_id AND e.ego_id = c.ego_id AND e.t_ns = c.t_ego_in_ns
+    WHERE (e.t_ns <= p.t_b_ns OR (c.actor_class IS NOT DISTINCT FROM 'pedestrian' AND e.travel_m <= p.travel_m + 12))
+        -- and into whom it went: somebody still walking there
+        AND (c.ego_first OR (c.pet_s < 0 AND c.actor_class IS NOT DISTINCT FROM 'pedestrian'))
+        AND c.actor_class IS DISTINCT FROM 'object'
+),
+-- where they came from: their heading two seconds before they came, against the ego's on its way in
+came AS (
+    SELECT m.drive_id, m.ego_id, m.occurrence, m.object_id, m.t_object_in_ns, wrap_rad(min({'t_ns': s.t_ns, 'yaw_rad': s.yaw_rad}).yaw_rad - m.heading_rad) AS from_rad
+    FROM met m
+    JOIN state_dynamics s ON s.drive_id = m.drive_id AND s.actor_id = m.object_id
+        AND s.t_ns >= m.t_object_in_ns - 2_000_000_000 AND s.t_ns <= m.t_object_in_ns
+    WHERE s.yaw_rad IS NOT NULL
+    GROUP BY m.drive_id, m.ego_id, m.occurrence, m.object_id, m.t_object_in_ns, m.heading_rad
+),
+related AS (
+    SELECT drive_id, ego_id, occurrence, 'pedestrian' AS relation, object_id, pet_s, decel_mps2 FROM met WHERE on_foot
+    UNION ALL
+    SELECT
+        m.drive_id, m.ego_id, m.occurrence,
+        CASE
+            WHEN abs(c.from_rad) >= radians(135) THEN 'oncoming' WHEN abs(c.from_rad) <= radians(45) THEN 'ahead_going'
+            WHEN c.from_rad < 0 THEN 'from_left' ELSE 'from_right'
+        END,
+        m.object_id, m.pet_s, m.decel_mps2
+    FROM met m JOIN came c USING (drive_id, ego_id, occurrence, object_id, t_object_in_ns)
+    WHERE m.driven
+),
+nearest AS (
+    SELECT drive_id, ego_id, occurrence, relation, min({'pet_s': pet_s, 'object_id': object_id, 'decel_mps2': decel_mps2}) AS who
+    FROM related
+    GROUP BY drive_id, ego_id, occurrence, relation
+),
+-- ---- what stands against "nobody else": somebody present who cannot be compared
+blind AS (
+    SELECT
+        drive_id, ego_id, t_ns, object_id, actor_class, x_m, y_m, x_m IS NULL OR y_m IS NULL AS nowhere,
+        CASE WHEN x_m IS NULL OR y_m IS NULL THEN 'has no position' WHEN yaw_rad IS NULL THEN 'has no heading' ELSE 'has no size' END AS what
+    FROM pair
+    WHERE (x_m IS NULL OR y_m IS NULL OR yaw_rad IS NULL OR length_m IS NULL OR width_m IS NULL) AND actor_class IS DISTINCT FROM 'object'
+),
+unclear AS (
+    SELECT p.drive_id, p.ego_id, p.occurrence, b.object_id, b.actor_class, min(b.what) AS what, p.x_m, p.y_m, p.t_a_ns, p.t_b_ns,
+        count(*) FILTER (b.nowhere) * any_value(c.period_ns) / 1e9 AS nowhere_s
+    FROM passed p
+    JOIN clock c USING (drive_id, ego_id)
+    JOIN blind b ON b.drive_id = p.drive_id AND b.ego_id = p.ego_id AND b.t_ns >= p.t_a_ns AND b.t_ns <= p.t_b_ns + conflict_ns()
+    GROUP BY p.drive_id, p.ego_id, p.occurrence, b.object_id, b.actor_class, p.x_m, p.y_m, p.t_a_ns, p.t_b_ns
+),
+-- seen before or after at a place from which it cannot have come (30 m/s), it does not matter
+unclear_near AS (
+    SELECT u.drive_id, u.ego_id, u.occurrence, u.object_id, u.actor_class, u.what
+    FROM unclear u
+    LEFT JOIN (
+        SELECT u.drive_id, u.ego_id, u.occurrence, u.object_id, min(sqrt((o.x_m - u.x_m) ** 2 + (o.y_m - u.y_m) ** 2)) AS least_m
+        FROM unclear u
+        JOIN pair o ON o.drive_id = u.drive_id AND o.ego_id = u.ego_id AND o.object_id = u.object_id
+            AND o.t_ns >= u.t_a_ns - conflict_ns() AND o.t_ns <= u.t_b_ns + conflict_ns()
+        GROUP BY u.drive_id, u.ego_id, u.occurrence, u.object_id
+    ) k USING (drive_id, ego_id, occurrence, object_id)
+    WHERE k.least_m IS NULL OR k.least_m < meeting_near_m() + 30 * u.nowhere_s
+),
+-- somebody whose track begins or ends there while the ego passes
+edge AS (
+    SELECT s.drive_id, s.actor_id, s.actor_class, min(s.t_ns) AS t_first_ns, max(s.t_ns) AS t_last_ns
+    FROM state_dynamics s
+    WHERE s.actor_class IS DISTINCT FROM 'object'
+    GROUP BY s.drive_id, s.actor_id, s.actor_class
+),
+broken AS (
+    SELECT p.drive_id, p.ego_id, p.occurrence, d.actor_id AS object_id, d.actor_class, v.what, v.t_ns, p.x_m, p.y_m
+    FROM passed p
+    JOIN clock c USING (drive_id, ego_id)
+    JOIN edge d ON d.drive_id = p.drive_id AND d.actor_id <> p.ego_id
+    CROSS JOIN LATERAL (VALUES ('appeared in the log nearby', d.t_first_ns, 0), ('was lost from the log nearby', d.t_last_ns, 1)) AS v(what, t_ns, lost)
+    WHERE v.t_ns >= p.t_a_ns AND v.t_ns <= p.t_b_ns + conflict_ns() AND v.t_ns > c.t_start_ns + c.max_gap_ns AND v.t_ns < c.t_end_ns - c.max_gap_ns
+),
+broken_near AS (
+    SELECT b.drive_id, b.ego_id, b.occurrence, b.object_id, b.actor_class, b.what
+    FROM broken b
+    JOIN state_dynamics s ON s.drive_id = b.drive_id AND s.actor_id = b.object_id AND s.t_ns = b.t_ns
+    WHERE coalesce(sqrt((s.x_m - b.x_m) ** 2 + (s.y_m - b.y_m) ** 2) < meeting_near_m(), true)
+),
+-- the ego's own log, and how far it sees back
+own AS (
+    SELECT p.drive_id, p.ego_id, p.occurrence,
+        CASE
+            WHEN p.t_in_ns IS NULL THEN 'the log, or a hole in it, begins in the junction'
+            WHEN p.t_out_ns IS NULL THEN 'the log, or a hole in it, ends in the junction'
+            WHEN c.t_end_ns < p.t_b_ns + watched_ns() THEN 'the log ends too soon after the junction'
+            WHEN min(st.seg) < max(st.seg) THEN 'there is a hole in the log soon after the junction'
+            WHEN count(*) FILTER (s.t_ns <= p.t_b_ns AND (s.x_m IS NULL OR s.y_m IS NULL OR s.yaw_rad IS NULL)) > 0 THEN 'the ego has no position in the junction'
+            WHEN max(sqrt((s.x_m - p.x_m) ** 2 + (s.y_m - p.y_m) ** 2)) + 10 > g.sensor_range_m THEN 'the sensor''s range ends too near to the junction'
+        END AS reason
+    FROM passed p
+    JOIN clock c USING (drive_id, ego_id)
+    JOIN data_log g USING (drive_id)
+    JOIN ego_state s ON s.drive_id = p.drive_id AND s.ego_id = p.ego_id AND s.t_ns >= p.t_a_ns AND s.t_ns <= p.t_b_ns + watched_ns()
+    JOIN step st ON st.drive_id = s.drive_id AND st.ego_id = s.ego_id AND st.t_ns = s.t_ns
+    GROUP BY p.drive_id, p.ego_id, p.occurrence, p.t_in_ns, p.t_out_ns, p.t_b_ns, c.t_end_ns, g.sensor_range_m
+),
+doubt AS (
+    SELECT drive_id, ego_id, occurrence, on_foot, min({'id': object_id, 'what': what}) AS who
+    FROM (
+        SELECT *, true AS on_foot FROM (FROM unclear_near UNION ALL FROM broken_near) WHERE actor_class IS NULL OR actor_class = 'pedestrian'
+        UNION ALL
+        SELECT *, false FROM (FROM unclear_near UNION ALL FROM broken_near) WHERE actor_class IS DISTINCT FROM 'pedestrian'
+    )
+    GROUP BY drive_id, ego_id, occurrence, on_foot
+),
+asked AS (
+    SELECT p.drive_id, p.ego_id, p.occurrence, v.relation, v.relation = 'pedestrian' AS on_foot
+    FROM passed p CROSS JOIN (VALUES ('oncoming'), ('from_left'), ('from_right'), ('ahead_going'), ('pedestrian')) AS v(relation)
+),
+answered AS (
+    SELECT
+        a.drive_id, a.ego_id, a.occurrence, a.relation, n.who,
+        coalesce(o.reason, 'actor ' || d.who.id || ' ' || d.who.what) AS reason
+    FROM asked a
+    JOIN own o USING (drive_id, ego_id, occurrence)
+    LEFT JOIN nearest n USING (drive_id, ego_id, occurrence, relation)
+    LEFT JOIN doubt d USING (drive_id, ego_id, occurrence, on_foot)
+)
+SELECT
+    drive_id, ego_id, occurrence, relation, who.object_id AS object_id,
+    CASE WHEN who IS NOT NULL THEN who.pet_s WHEN reason IS NULL THEN 'inf'::DOUBLE END AS pet_s,
+    CASE WHEN who IS NOT NULL THEN who.decel_mps2 WHEN reason IS NULL THEN 0.0 END AS decel_mps2,
+    reason
+FROM answered

@@ -1,0 +1,245 @@
+"""Before whom the ego went through a junction, and when "nobody" may be said."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from tests.derive.junction_scenes import ARM, R, cross
+from tests.scenes import Actor, Road, derived, drive, moving, rows, standing, times
+
+if TYPE_CHECKING:
+    from tests.scenes import Row
+
+RELATIONS = ("ahead_going", "from_left", "from_right", "oncoming", "pedestrian")
+
+
+def going(
+    way: Road, *, v: float = 8.0, s0: float = 120.0, end: float = 24.0, name: str = "ego", **more: object
+) -> Actor:
+    t = times(end)
+    return moving(name, way, t, s0 + v * t, way.own, **more)
+
+
+def answers(*actors: Actor, way: Road, **options: object) -> dict[str, Row]:
+    """Return the rows of the first passage by relation."""
+    con = derived(drive(actors, way.environment, **options), tables=["passage_conflict"])  # type: ignore[arg-type]
+    found = rows(con, "FROM passage_conflict WHERE ego_id = 'ego' AND occurrence = 0 ORDER BY relation")
+    assert tuple(row["relation"] for row in found) == RELATIONS
+    return {row["relation"]: row for row in found}
+
+
+def seen(found: dict[str, Row]) -> dict[str, str]:
+    return {relation: row["object_id"] for relation, row in found.items() if row["object_id"]}
+
+
+def test_nobody_is_certain_where_everybody_is_placed() -> None:
+    ways = cross()
+    far = going(ways["ns"], v=0.01, s0=20.0, name="far")
+    for row in answers(going(ways["wn"]), far, way=ways["we"]).values():
+        assert (row["object_id"], row["pet_s"], row["decel_mps2"], row["reason"]) == (None, math.inf, 0.0, None)
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(
+    ("ego", "other", "relation"),
+    [
+        ("we", "sn", "from_right"), ("we", "ns", "from_left"), ("nw", "we", None), ("sn", "we", "from_left"),
+        ("wn", "ew", "oncoming"), ("ws", "ew", None), ("en", "we", None), ("nw", "sn", None),
+        ("se", "we", "from_left"), ("ws", "ns", "from_left"), ("wn", "en", "oncoming"),
+    ],
+)  # fmt: skip
+def test_where_they_came_from(hand: str, ego: str, other: str, relation: str | None) -> None:
+    """They come 3 s after the ego. Which of two turns crosses the other's way depends on the side that is driven on."""
+    if hand == "lht":
+        mirror = str.maketrans("ns", "sn")
+        ego, other = ego.translate(mirror), other.translate(mirror)
+        relation = {"from_left": "from_right", "from_right": "from_left"}.get(relation or "", relation)
+    ways = cross(hand)
+    found = answers(going(ways[ego]), going(ways[other], s0=92.0, name="other"), way=ways[ego])
+    expected = {relation: "other"} if relation else {}
+    assert seen(found) == expected
+    for r, row in found.items():
+        if r == relation:
+            assert 0 < row["pet_s"] < 6
+            assert row["reason"] is None
+            if (
+                relation != "oncoming" or other == "ew"
+            ):  # who turns at a constant rate along the line between the lanes is slower in the bend
+                assert row["decel_mps2"] == pytest.approx(0, abs=1e-6)
+
+
+def test_only_those_before_whom_the_ego_went() -> None:
+    ways = cross()
+    found = answers(going(ways["wn"], s0=92.0), going(ways["ew"], s0=120.0, name="first"), way=ways["we"])
+    assert not seen(found)
+
+
+def test_the_one_with_the_least_pet() -> None:
+    ways = cross()
+    near, far = going(ways["ew"], s0=98.0, name="z"), going(ways["ew"], s0=80.0, name="a")
+    both = answers(going(ways["wn"]), near, far, way=ways["we"])["oncoming"]
+    alone = answers(going(ways["wn"]), near, way=ways["we"])["oncoming"]
+    assert both == alone
+    assert both["object_id"] == "z"
+
+
+def test_how_hard_the_other_had_to_brake() -> None:
+    ways = cross()
+    t = times(24)
+    v = 12 - 3 * np.clip(t - 7, 0, 2)
+    s = np.concatenate([[0.0], np.cumsum((v[1:] + v[:-1]) / 2 * 0.1)])
+    other = moving("other", ways["ew"], t, s + 60, ways["ew"].own)
+    row = answers(going(ways["wn"]), other, way=ways["we"])["oncoming"]
+    assert row["decel_mps2"] == pytest.approx(3.0, abs=0.01)
+
+
+def test_a_cyclist_along_the_egos_road_goes_on_while_the_ego_turns() -> None:
+    """Driving on the right the ego turns right; the cyclist comes up on its right, straight on."""
+    ways = cross()
+    t = times(24)
+    cyclist = moving("c", ways["we"], t, 108 + 8.0 * t, -3.2, kind="bicycle", length=1.8, width=0.6)
+    found = answers(going(ways["ws"]), cyclist, way=ways["we"])
+    assert seen(found) == {"ahead_going": "c"}
+    assert found["ahead_going"]["pet_s"] < 2.0
+
+
+def walker(y: np.ndarray | float, x: np.ndarray | float, t: np.ndarray, **more: object) -> Actor:
+    x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float), t)[:2]
+    vx, vy = np.gradient(x, t), np.gradient(y, t)
+    given = {"length": 0.5, "width": 0.5, "kind": "pedestrian", **more}
+    return Actor("w", t, x, y, np.arctan2(vy, vx), vx, vy, **given)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("past", "counts"), [(3.0, True), (8.0, True), (30.0, False)])
+def test_somebody_on_foot_over_the_mouth_of_the_road_turned_into(past: float, counts: bool) -> None:
+    """The ego turns left into road 4 and goes north; the walker goes east over it, `past` metres beyond the junction."""
+    ways = cross()
+    t = times(24)
+    x = -10 + 1.4 * (t - 9.5)
+    found = answers(going(ways["wn"]), walker(R + past, x, t), way=ways["we"])
+    assert seen(found) == ({"pedestrian": "w"} if counts else {})
+    if counts:
+        assert found["pedestrian"]["pet_s"] > 0
+
+
+def test_who_is_still_walking_there_counts_though_they_were_first_but_not_who_is_through() -> None:
+    ways = cross()
+    t = times(24)
+    ego_there = (ARM + 23.56 + 3 - 120) / 8  # its centre 3 m past the junction, in x = 1.75
+    still = walker(R + 3.0, 1.75 + 1.4 * (t - ego_there) + 0.4, t)
+    found = answers(going(ways["wn"]), still, way=ways["we"])
+    assert seen(found) == {"pedestrian": "w"}
+    assert found["pedestrian"]["pet_s"] < 0
+    through = walker(R + 3.0, 1.75 + 1.4 * (t - ego_there) + 4, t)
+    assert not seen(answers(going(ways["wn"]), through, way=ways["we"]))
+
+
+def test_without_a_class_it_may_be_either() -> None:
+    ways = cross()
+    found = answers(going(ways["wn"]), going(ways["ew"], s0=92.0, name="o", kind=None), way=ways["we"])
+    assert seen(found) == {"oncoming": "o", "pedestrian": "o"}
+    assert not seen(answers(going(ways["wn"]), going(ways["ew"], s0=92.0, name="o", kind="object"), way=ways["we"]))
+
+
+def test_somebody_without_a_position_may_be_the_one() -> None:
+    """A car that nobody placed leaves the roads open, but not the people on foot; and the other way round."""
+    ways = cross()
+    other = going(ways["ew"], s0=92.0, name="o")
+    lost = other.lost((other.t_s > 8) & (other.t_s < 20))
+    found = answers(going(ways["wn"]), lost, way=ways["we"])
+    for relation, row in found.items():
+        if relation == "pedestrian":
+            assert (row["pet_s"], row["reason"]) == (math.inf, None)
+        else:
+            assert (row["pet_s"], row["decel_mps2"]) == (None, None)
+            assert row["reason"] == "actor o has no position"
+    t = times(24)
+    on_foot = walker(R + 3.0, -5 + 1.4 * (t - 9), t)
+    found = answers(going(ways["wn"]), on_foot.lost(t > 8), way=ways["we"])
+    assert found["pedestrian"]["pet_s"] is None
+    assert found["oncoming"]["pet_s"] == math.inf
+
+
+def test_a_lower_pet_that_was_seen_is_given_with_the_doubt() -> None:
+    ways = cross()
+    other = going(ways["ew"], s0=98.0, name="o")
+    ghost = going(ways["ns"], s0=92.0, name="ghost")
+    row = answers(going(ways["wn"]), other, ghost.lost(ghost.t_s > 6), way=ways["we"])["oncoming"]
+    assert row["object_id"] == "o"
+    assert row["pet_s"] > 0
+    assert row["reason"] == "actor ghost has no position"
+
+
+@pytest.mark.parametrize("missing", ["length", "yaw"])
+def test_without_size_or_heading_nobody_can_be_compared(missing: str) -> None:
+    ways = cross()
+    other = going(ways["ew"], s0=92.0, name="o")
+    bare = Actor(**{**other.__dict__, missing: None if missing == "length" else np.full(other.t_s.shape, np.nan)})
+    row = answers(going(ways["wn"]), bare, way=ways["we"])["oncoming"]
+    assert row["pet_s"] is None
+    assert row["reason"] == ("actor o has no size" if missing == "length" else "actor o has no heading")
+
+
+def test_who_was_too_far_away_to_come_is_in_no_doubt() -> None:
+    """Two seconds without a position, and 150 m away before and after."""
+    ways = cross()
+    t = times(24)
+    parked = standing("p", ways["ew"], t, 50.0, 8.0)
+    found = answers(going(ways["wn"]), parked.lost((t > 9) & (t < 11)), way=ways["we"])
+    assert found["oncoming"]["pet_s"] == math.inf
+    near = standing("p", ways["ew"], t, 150.0, 8.0)
+    found = answers(going(ways["wn"]), near.lost((t > 9) & (t < 11)), way=ways["we"])
+    assert found["oncoming"]["pet_s"] is None
+
+
+def test_a_track_that_begins_or_ends_near_while_the_ego_passes() -> None:
+    ways = cross()
+    t = times(24)
+    near = standing("p", ways["ew"], t, ARM + 20, 12.0)
+    for kept, reason in ((t > 10, "appeared in the log nearby"), (t < 10, "was lost from the log nearby")):
+        found = answers(going(ways["wn"]), near.keep(kept), way=ways["we"])
+        assert found["oncoming"]["reason"] == f"actor p {reason}"
+        assert found["pedestrian"]["reason"] is None
+    far = standing("p", ways["ew"], t, 100.0, 12.0)
+    assert answers(going(ways["wn"]), far.keep(t > 10), way=ways["we"])["oncoming"]["reason"] is None
+    assert answers(going(ways["wn"]), near.keep(t > 2), way=ways["we"])["oncoming"]["reason"] is None
+
+
+def test_the_log_must_go_on_for_a_while() -> None:
+    """The rear leaves the junction at 11.4 s."""
+    ways = cross()
+    assert answers(going(ways["wn"], end=15.6), way=ways["we"])["oncoming"]["pet_s"] == math.inf
+    row = answers(going(ways["wn"], end=15.0), way=ways["we"])["oncoming"]
+    assert (row["pet_s"], row["reason"]) == (None, "the log ends too soon after the junction")
+    row = answers(going(ways["wn"], end=10.0), way=ways["we"])["oncoming"]
+    assert (row["pet_s"], row["reason"]) == (None, "the log, or a hole in it, ends in the junction")
+    row = answers(going(ways["wn"], s0=190.0), way=ways["we"])["oncoming"]
+    assert (row["pet_s"], row["reason"]) == (None, "the log, or a hole in it, begins in the junction")
+    ego = going(ways["wn"])
+    row = answers(ego.keep((ego.t_s < 12.5) | (ego.t_s > 13.5)), way=ways["we"])["oncoming"]
+    assert (row["pet_s"], row["reason"]) == (None, "there is a hole in the log soon after the junction")
+
+
+@pytest.mark.parametrize(("metres", "known"), [(60.0, True), (40.0, False)])
+def test_a_sensor_must_still_see_the_junction(metres: float, known: bool) -> None:
+    """Four seconds after leaving the ego is 34 m away."""
+    ways = cross()
+    row = answers(going(ways["wn"]), way=ways["we"], sensor_range_m=metres)["oncoming"]
+    assert row["pet_s"] == (math.inf if known else None)
+
+
+def test_every_ego_and_drive_for_itself() -> None:
+    ways = cross()
+    a, b = going(ways["wn"]), going(ways["ew"], s0=92.0, name="other")
+    one = drive([a, b], ways["we"].environment, egos=("ego", "other"))
+    two = drive([a], ways["we"].environment, drive_id="e")
+    con = derived(one, two, tables=["passage_conflict"])
+    found = rows(con, "FROM passage_conflict WHERE object_id IS NOT NULL")
+    assert [(r["drive_id"], r["ego_id"], r["relation"], r["object_id"]) for r in found] == [
+        ("d", "ego", "oncoming", "other")
+    ]
+    assert rows(con, "SELECT count(*) AS n FROM passage_conflict") == [{"n": 15}]
