@@ -101,6 +101,22 @@ class CommonRoadReader:
         return commonroad.read(probe.path)
 
 
+class SumoReader:
+    """SUMO floating car data."""
+
+    def accepts(self, probe: Probe) -> bool:
+        """Accept by its element or its columns."""
+        from drivelint.ingest import sumo
+
+        return not probe.path.is_dir() and sumo.looks_like(probe.path, probe.head)
+
+    def read(self, probe: Probe) -> Recording:
+        """Read the log; its mapping is the file with the vehicle types."""
+        from drivelint.ingest import sumo
+
+        return sumo.read(probe.path, probe.options.mapping)
+
+
 class TableReader:
     """Any CSV or Parquet table through a mapping."""
 
@@ -116,7 +132,14 @@ class TableReader:
         return tabular.read(probe.path, probe.options.mapping)
 
 
-READERS: tuple[Reader, ...] = (CanonicalReader(), McapReader(), OsiFileReader(), CommonRoadReader(), TableReader())
+READERS: tuple[Reader, ...] = (
+    CanonicalReader(),
+    McapReader(),
+    OsiFileReader(),
+    CommonRoadReader(),
+    SumoReader(),
+    TableReader(),
+)
 
 
 def read_trace(path: Path, options: IngestOptions) -> Trace:
@@ -131,7 +154,7 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
     for reader in READERS:
         if reader.accepts(probe):
             recording = reader.read(probe)
-            if options.mapping is not None and not isinstance(reader, TableReader):
+            if options.mapping is not None and not isinstance(reader, TableReader | SumoReader):
                 recording.notes.append(f"mapping {options.mapping!r} is not needed: the log is {recording.format}")
             from drivelint.ingest.finish import finish
 

@@ -41,6 +41,7 @@ FORMATS: dict[str, tuple[str, str]] = {
     "osi-mcap": ("ASAM OSI in MCAP", "the log's host vehicle"),
     "osi-file": ("ASAM OSI trace file", "the log's host vehicle"),
     "commonroad": ("CommonRoad scenario", "said with --ego"),
+    "sumo-fcd": ("SUMO floating car data", "said with --ego"),
     "canonical-parquet": ("drivelint's own Parquet tables", "marked is_ego in the log"),
 }
 """What `data_log.format` may say beside a mapping's name -> its title, and how its ego is known."""
