@@ -11,7 +11,7 @@
 -- observes = "time between the ego's leaving and the oncoming one's entering the place where their ways cross"
 -- near_margin = 1.0
 -- reads = ["junction_passage", "passage_conflict"]
--- requires = ["map", "registration", "handedness", "ego_size"]
+-- requires = ["map", "registration", "ego_size"]
 --
 -- [params.pet_s]
 -- default = 2.0
@@ -27,5 +27,5 @@ WHERE p.across IS DISTINCT FROM false
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, CASE WHEN across THEN pet_s END AS observed, $pet_s AS required,
-    CASE WHEN across IS NULL THEN 'the log does not show which way the ego turned' ELSE reason END AS reason
+    CASE WHEN across IS NULL THEN 'which way the ego turned, or the side of the road, is not known' ELSE reason END AS reason
 FROM reference

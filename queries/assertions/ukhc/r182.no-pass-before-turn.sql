@@ -10,7 +10,7 @@
 -- status = "stable"
 -- sense = "holds"
 -- reads = ["beside", "junction_passage", "passing"]
--- requires = ["map", "registration", "handedness", "ego_size"]
+-- requires = ["map", "registration", "ego_size"]
 --
 -- [params.window_s]
 -- default = 5.0
@@ -18,14 +18,14 @@
 -- why = "our default: whom the ego got ahead of longer ago has seen it signal and slow down"
 
 -- @reference
-SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, turn
+SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, turn, across
 FROM junction_passage
 WHERE across IS DISTINCT FROM true AND turn IS DISTINCT FROM 'straight'
 
 -- @condition
 SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
-    CASE WHEN r.turn IS NULL OR (p.t_ns IS NULL AND b.t_ns IS NOT NULL) THEN NULL ELSE p.t_ns IS NULL END AS holds,
-    CASE WHEN r.turn IS NULL THEN 'the log does not show which way the ego turned'
+    CASE WHEN r.across IS NULL OR (p.t_ns IS NULL AND b.t_ns IS NOT NULL) THEN NULL ELSE p.t_ns IS NULL END AS holds,
+    CASE WHEN r.across IS NULL THEN 'which way the ego turned, or the side of the road, is not known'
         WHEN p.t_ns IS NULL AND b.t_ns IS NOT NULL THEN 'somebody who may be beside the ego cannot be placed' END AS reason
 FROM reference_step g
 JOIN reference r USING (ref_id)

@@ -10,7 +10,7 @@
 -- unit = "m"
 -- observes = "how far the ego is over the middle of the road entered"
 -- reads = ["ego_corridor", "ego_state", "junction_passage"]
--- requires = ["map", "registration", "handedness", "ego_size"]
+-- requires = ["map", "registration", "ego_size"]
 --
 -- [params.tolerance_m]
 -- default = 0.3
@@ -25,7 +25,7 @@ WHERE across IS DISTINCT FROM true AND turn IS DISTINCT FROM 'straight'
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $tolerance_m AS required,
     CASE k.side WHEN 1 THEN k.left_out_m WHEN -1 THEN k.right_out_m END AS observed,
-    CASE WHEN k.over_width_m IS NULL THEN false WHEN r.turn IS NOT NULL THEN k.over_against END AS applies
+    CASE WHEN r.across IS NULL THEN NULL WHEN k.over_width_m IS NULL THEN false ELSE k.over_against END AS applies
 FROM reference r
 JOIN ego_state e USING (drive_id, ego_id, t_ns)
 JOIN ego_corridor k USING (drive_id, ego_id, chain_id, t_ns)
