@@ -241,6 +241,19 @@ def test_rules_list_is_for_programs_too(ran: Ran) -> None:
     assert [row["id"] for row in rows if row["id"] not in listed] == []
 
 
+def test_rules_list_takes_the_selectors_of_check(ran: Ran) -> None:
+    def listed(*selectors: str) -> set[str]:
+        return {row["id"] for row in json.loads(ran("rules", "list", *selectors, "--format", "json")[1])}
+
+    assert {"ukhc.r162.safe-distance-ahead"} <= listed("ukhc,clause:R162") < listed("ukhc") < listed()
+    assert listed("ukhc,kind:invariant", "ukhc,kind:execution") == listed("ukhc,kind:invariant") | listed(
+        "ukhc,kind:execution"
+    )
+    code, _, err = ran("rules", "list", "kind:invarient")
+    assert code == 2
+    assert "no rule has the kind 'invarient'; did you mean 'invariant'?" in err
+
+
 def test_rules_show_tells_where_a_rule_is_from(ran: Ran) -> None:
     _, text, _ = ran("rules", "show", "ukhc.r162.safe-distance-ahead")
     for part in ("R162", "@reference", "@condition", "critical"):

@@ -73,7 +73,7 @@ def check(
     rules: Annotated[
         list[str] | None,
         typer.Option(
-            "--rules", metavar="SEL", help="Rule id, glob or pack. Repeatable. Default: stable rules of ukhc."
+            "--rules", metavar="SEL", help="Rules to judge by, see above. Repeatable. Default: stable rules of ukhc."
         ),
     ] = None,
     ignore: Annotated[
@@ -116,6 +116,9 @@ def check(
     """Judge recorded drives against the rules.
 
     With --out: tables of verdicts and findings, report.html, and the logs with their verdicts in them.
+
+    SEL is a rule's id, a glob, a pack, all, or what a rule says of itself: kind:invariant, severity:critical,
+    status:draft, legal:must, clause:R162, requires:indicator. A comma means both (ukhc,legal:must), --rules twice either.
 
     Exit codes: 0 nothing failed at or above --fail-on; 1 something did; 2 usage or rule error;
     3 judged on lossy input; 4 some drives not judged (with --strict: some rule unknown);
@@ -193,7 +196,7 @@ def inspect(
     topic: options.Topic = None,
     rules: Annotated[
         list[str] | None,
-        typer.Option("--rules", metavar="SEL", help="Rule id, glob or pack to ask about. Repeatable. Default: ukhc."),
+        typer.Option("--rules", metavar="SEL", help="Rules to ask about, as in check. Repeatable. Default: ukhc."),
     ] = None,
     rules_dir: options.RulesDirs = None,
     format_: options.Printed = options.Format.text,
@@ -286,17 +289,23 @@ def report(
 
 @rules_app.command("list")
 def rules_list(
+    selectors: Annotated[
+        list[str] | None, typer.Argument(metavar="[SEL]...", help="Which ones, as --rules of check. Default: all.")
+    ] = None,
     format_: options.Printed = options.Format.text,
     rules_dir: options.RulesDirs = None,
 ) -> None:
     """List the rules.
 
+    Such as: drivelint rules list ukhc,status:stable clause:R162
+
     With --format json also the clause that each is from and what it requires of a log.
     """
-    from drivelint.catalogue import load
+    from drivelint.catalogue import load, select
     from drivelint.report import rules_text
 
-    rules = load(tuple(rules_dir or ())).values()
+    known = load(tuple(rules_dir or ()))
+    rules = select(known, selectors, ()) if selectors else list(known.values())
     if format_ is options.Format.json:
         typer.echo(rules_text.listing_json(rules))
     else:

@@ -26,12 +26,12 @@ PARAMS = "".join(
 def rules(tmp_path: Path) -> dict[str, Rule]:
     head = INVARIANT | MEASURED | {"reads": '["ego_state"]'}
     made = [
-        write(tmp_path, head | {"status": f'"{status}"'}, {"condition": SQL}, name=name, tables=PARAMS)
-        for name, status in (
-            ("r2.gap", "stable"),
-            ("r1.speed", "stable"),
-            ("r3.new", "draft"),
-            ("r4.old", "deprecated"),
+        write(tmp_path, head | {"status": f'"{status}"'} | more, {"condition": SQL}, name=name, tables=PARAMS)
+        for name, status, more in (
+            ("r2.gap", "stable", {"clause": '"UKHC R2 and R10: keep away"', "requires": '["map"]'}),
+            ("r1.speed", "stable", {"severity": '"critical"', "clause": '"StVO 3(2): be slow"'}),
+            ("r3.new", "draft", {"legal": '"should"', "severity": '"critical"'}),
+            ("r4.old", "deprecated", {}),
         )
     ]
     return {rule.id: rule for rule in made}
@@ -48,6 +48,16 @@ def rules(tmp_path: Path) -> dict[str, Rule]:
         (["pack.r*"], ["*.gap", "pack.r3.new"], ["pack.r1.speed"]),
         (["pack.r2.gap", "pack.r2.gap", "*speed"], [], ["pack.r1.speed", "pack.r2.gap"]),
         (["pack.r2.gap"], ["pack"], None),
+        (["all"], [], ["pack.r1.speed", "pack.r2.gap", "pack.r3.new"]),
+        (["kind:invariant"], ["status:draft"], ["pack.r1.speed", "pack.r2.gap"]),
+        (["severity:critical"], [], ["pack.r1.speed", "pack.r3.new"]),
+        (["severity:critical,status:draft"], [], ["pack.r3.new"]),
+        (["pack, legal:must", "pack.r3.new"], ["severity:critical,legal:should"], ["pack.r1.speed", "pack.r2.gap"]),
+        (["clause:R10"], [], ["pack.r2.gap"]),
+        (["clause:r1"], [], ["pack.r1.speed"]),
+        (["clause:3(2)"], [], ["pack.r1.speed"]),
+        (["requires:map"], [], ["pack.r2.gap"]),
+        (["status:deprecated"], [], ["pack.r4.old"]),
     ],
 )
 def test_select(rules: dict[str, Rule], include: list[str], ignore: list[str], expected: list[str] | None) -> None:
@@ -68,6 +78,23 @@ def test_a_selector_that_matches_nothing_is_refused_with_the_nearest(
     for include, ignore in (([selector], []), ([], [selector])):
         with pytest.raises(UsageError, match=f"did you mean '{nearest}'"):
             select(rules, include, ignore, default_pack="pack")
+
+
+@pytest.mark.parametrize(
+    ("selector", "says"),
+    [
+        ("knd:invariant", "rules are not selected by 'knd'; did you mean 'kind'"),
+        ("zzz:1", "known are kind, subtype, severity, status, legal, derivation, clause, requires"),
+        ("severity:crit", "no rule has the severity 'crit'; did you mean 'critical'"),
+        ("requires:zzz", "no rule has the requires 'zzz'; known are map"),
+        ("pack,severity:minor", "no rule has the severity 'minor'; "),
+        ("clause:R10,status:draft", "no rule is all of 'clause:R10,status:draft'"),
+        ("pack,", "no rule, pack or glob matches ''"),
+    ],
+)
+def test_what_a_selector_asks_for_must_exist(rules: dict[str, Rule], selector: str, says: str) -> None:
+    with pytest.raises(UsageError, match=says.replace("(", r"\(")):
+        select(rules, [selector], [], default_pack="pack")
 
 
 def test_parameters_are_typed_like_their_default(rules: dict[str, Rule]) -> None:

@@ -1,16 +1,29 @@
-"""Choosing rules and setting their parameters, as the command line names them."""
+"""Choosing rules and setting their parameters, as the command line names them.
+
+A selector is what a rule must be, or several of that joined by commas, all of which it must be:
+
+    ukhc.r162.safe-distance-ahead       a rule
+    ukhc.r162.*                         a glob over ids
+    ukhc                                a pack
+    kind:invariant                      a word of the header: kind, subtype, severity, status, legal, derivation
+    clause:R162                         named at the head of its clause or in its id
+    requires:indicator                  a signal that it requires
+    all                                 every rule
+    ukhc,severity:critical              both
+"""
 
 from __future__ import annotations
 
+import re
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from math import isfinite
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from drivelint.catalogue.load import Rule
 
@@ -20,9 +33,8 @@ def select(
 ) -> list[Rule]:
     """Return the selected rules, sorted by id.
 
-    A selector is an id, a glob over ids or a pack. None given: the stable rules of `default_pack`. A deprecated rule is
-    chosen only
-    by its full id. Errors: `UsageError` for a selector that matches nothing, or when nothing is left.
+    Selectors: see the module. None given: the stable rules of `default_pack`. A deprecated rule is chosen only by its full
+    id or as `status:deprecated`. Errors: `UsageError` for a selector that matches nothing, or when nothing is left.
     """
     if include:
         chosen = {rule.id: rule for selector in include for rule in _matching(rules, selector)}
@@ -37,15 +49,61 @@ def select(
 
 
 def _matching(rules: Mapping[str, Rule], selector: str) -> list[Rule]:
-    if selector in rules:
-        return [rules[selector]]
-    found = [rule for rule in rules.values() if rule.pack == selector or fnmatchcase(rule.id, selector)]
+    """Return the rules that are all that the selector says, joined by commas."""
+    parts = [part.strip() for part in selector.split(",")]
+    found = [{rule.id for rule in _being(rules, part)} for part in parts]
+    both = set.intersection(*found)
+    if not both and len(parts) > 1:
+        raise UsageError(f"no rule is all of {selector!r}: each part alone selects some")
+    return [rules[rule_id] for rule_id in sorted(both)]
+
+
+def _being(rules: Mapping[str, Rule], part: str) -> list[Rule]:
+    if part in rules:
+        return [rules[part]]
+    method, colon, word = part.partition(":")
+    if colon:
+        return [rule for rule in _by_method(rules, method, word) if rule.status != "deprecated" or word == rule.status]
+    found = [rule for rule in rules.values() if part in {"all", rule.pack} or fnmatchcase(rule.id, part)]
     if not found:
-        raise UsageError(
-            f"no rule, pack or glob matches {selector!r}"
-            + _nearest(selector, [*rules, *(rule.pack for rule in rules.values())])
-        )
+        known = [*rules, *(rule.pack for rule in rules.values())]
+        raise UsageError(f"no rule, pack or glob matches {part!r}{_nearest(part, known)}")
     return [rule for rule in found if rule.status != "deprecated"]
+
+
+def _by_method(rules: Mapping[str, Rule], method: str, word: str) -> list[Rule]:
+    """Return the rules of which this word is true. Errors: `UsageError` naming the methods, or the words in use."""
+    if method not in _METHODS:
+        near = get_close_matches(method, _METHODS, n=1)
+        hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(_METHODS)}"
+        raise UsageError(f"rules are not selected by {method!r}; {hint}")
+    words = {rule.id: _METHODS[method](rule) for rule in rules.values()}
+    found = [rules[rule_id] for rule_id, mine in words.items() if word.casefold() in mine]
+    if not found:
+        known = sorted({name for mine in words.values() for name in mine})
+        shown = f"; known are {', '.join(known)}" if len(known) <= _FEW else ""
+        raise UsageError(f"no rule has the {method} {word!r}{_nearest(word, known) or shown}")
+    return found
+
+
+def clauses(rule: Rule) -> set[str]:
+    """Return what a rule may be called after, in lower case: clauses named before the colon of `clause`, and in its id."""
+    named = re.findall(r"[A-Za-z]*\d[\w.()]*", rule.clause.split(":", 1)[0])
+    inside = rule.id.split(".")[1:2] if rule.id.count(".") > 1 else []
+    return {name.rstrip(".").casefold() for name in [*named, *inside]}
+
+
+_METHODS: Final[dict[str, Callable[[Rule], set[str]]]] = {
+    "kind": lambda rule: {rule.kind},
+    "subtype": lambda rule: {rule.subtype} if rule.subtype else set(),
+    "severity": lambda rule: {rule.severity},
+    "status": lambda rule: {rule.status},
+    "legal": lambda rule: {rule.legal},
+    "derivation": lambda rule: {rule.derivation},
+    "clause": clauses,
+    "requires": lambda rule: set(rule.requires),
+}
+_FEW: Final = 12
 
 
 def _nearest(word: str, known: Iterable[str]) -> str:
