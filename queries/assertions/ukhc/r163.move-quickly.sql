@@ -1,0 +1,38 @@
+-- title = "Quickly past the vehicle being overtaken"
+-- clause = "UKHC R163: move quickly past the vehicle you are overtaking once you have started"
+-- hypothesis = "Was the ego back in its lane no later than the least aggressive profile would have been, with time to spare?"
+-- kind = "execution"
+-- derivation = "model"
+-- severity = "minor"
+-- legal = "should"
+-- status = "draft"
+-- sense = "<="
+-- unit = "s"
+-- observes = "time out of its lane"
+-- near_margin = 1.0
+-- reads = ["overtake", "profile"]
+-- requires = ["map", "registration", "handedness", "ego_size"]
+--
+-- [params.slack]
+-- default = 1.5
+-- unit = ""
+-- why = "our default: half as long again as the model"
+--
+-- # Draft: what is quick is a judgement, and the profiles are those of the paper's slow overtakes.
+
+-- @reference
+SELECT drive_id, ego_id, coalesce(t3_ns, t0_ns) AS t_ns, vbp_id AS object_id, occurrence
+FROM overtake
+WHERE passed AND opposing IS DISTINCT FROM false
+-- two in one go: as long as the last takes, with the length of both
+QUALIFY occurrence = max(occurrence) OVER (PARTITION BY drive_id, ego_id, t0_ns)
+
+-- @condition
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, CASE WHEN o.begin_seen THEN (o.t3_ns - o.t0_ns) / 1e9 END AS observed,
+    $slack * (
+        pull_out_time_s(o.lane_width_m, p.pull_out_angle_rad, o.v_av_mps) + pull_out_time_s(o.lane_width_m, p.cut_in_angle_rad, o.v_av_mps)
+        + passing_time_s(o.lane_width_m, p.pull_out_angle_rad, p.pull_out_headroom_m, p.cut_in_clearance_m, o.l_av_m, o.span_m, o.v_av_mps, o.v_vbp_mps)
+    ) AS required
+FROM reference r
+JOIN overtake o USING (drive_id, ego_id, occurrence)
+CROSS JOIN (FROM profile WHERE pull_out_angle_rad IS NOT NULL QUALIFY style = min(style) OVER ()) p

@@ -1,0 +1,47 @@
+-- title = "Giving way to oncoming traffic when passing an obstruction"
+-- clause = "UKHC R163: give way to oncoming vehicles before you pass parked vehicles or other obstructions on your side of the road"
+-- hypothesis = "When the ego went into the opposing lane round a standing vehicle, did no oncoming vehicle have to brake or come close?"
+-- kind = "execution"
+-- derivation = "model"
+-- severity = "major"
+-- legal = "should"
+-- status = "stable"
+-- sense = "holds"
+-- reads = ["clock", "conflict", "overtake"]
+-- requires = ["map", "registration", "handedness", "ego_size"]
+--
+-- [params.pet_s]
+-- default = 2.0
+-- unit = "s"
+-- why = "our default: time between the ego leaving the ground and the oncoming vehicle reaching it"
+--
+-- [params.decel_mps2]
+-- default = 2.0
+-- unit = "m/s2"
+-- why = "our default: more than letting off the accelerator or braking in comfort"
+--
+-- [params.oncoming_rad]
+-- default = 2.6
+-- unit = "rad"
+-- why = "our default: within 30 degrees of head on"
+
+-- @reference
+SELECT drive_id, ego_id, t0_ns AS t_ns, vbp_id AS object_id, occurrence
+FROM overtake
+WHERE opposing IS DISTINCT FROM false
+-- a row of parked vehicles is one obstruction
+QUALIFY occurrence = min(occurrence) OVER (PARTITION BY drive_id, ego_id, t0_ns)
+
+-- @condition
+-- kept is only what was seen to its end: nobody unplaced, back in its lane, and the time after that too
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps <= standing_mps() AS applies,
+    CASE
+        WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false) THEN false
+        WHEN o.begin_seen AND o.n_unplaced = 0 AND count(c.object_id) = count(c.decel_mps2) AND k.t_end_ns >= o.t3_ns + ($pet_s * 1e9)::BIGINT THEN true
+    END AS holds
+FROM reference r
+JOIN overtake o USING (drive_id, ego_id, occurrence)
+JOIN clock k USING (drive_id, ego_id)
+LEFT JOIN (FROM conflict WHERE ego_first AND abs(angle_rad) >= $oncoming_rad) c
+    ON c.drive_id = r.drive_id AND c.ego_id = r.ego_id AND c.t_ego_in_ns >= r.t_ns AND c.t_ego_in_ns <= o.t_end_ns
+GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.t3_ns, k.t_end_ns
