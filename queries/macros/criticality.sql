@@ -39,12 +39,20 @@ CREATE OR REPLACE MACRO mttc_s(gap_m, v_mps, a_mps2, v_lead_mps, a_lead_mps2) AS
         ELSE gone_s(gap_m, v_mps - v_lead_mps, a_mps2 - a_lead_mps2)
     END;
 
+-- Whether the lead is ahead of the ego's own box: across the corridor the two overlap, as they no longer do in the middle of an overtake.
+-- NULL as soon as either is not placed. Alongside it is not ahead.
+CREATE OR REPLACE MACRO on_course(gap_m, d_m, lat_half_m, lead_d_m, lead_lat_half_m) AS
+    gap_m >= 0 AND abs(d_m - lead_d_m) < lat_half_m + lead_lat_half_m;
+
+-- Whether a vehicle ahead comes towards the ego: to stand the wrong way round is not to come.
+CREATE OR REPLACE MACRO comes(speed_mps, oncoming) AS oncoming AND speed_mps > standing_mps();
+
 -- Whether the ego follows its lead: some of it is in the lane, the lead is not alongside, and does not come towards it (parked the wrong
 -- way round it is in the way all the same).
-CREATE OR REPLACE MACRO follows(in_lane, gap_m, speed_mps, oncoming) AS in_lane AND gap_m >= 0 AND NOT (oncoming AND speed_mps > standing_mps());
+CREATE OR REPLACE MACRO follows(in_lane, gap_m, speed_mps, oncoming) AS in_lane AND gap_m >= 0 AND NOT comes(speed_mps, oncoming);
 
 -- Whether the lead comes towards the ego in its lane.
-CREATE OR REPLACE MACRO meets(in_lane, gap_m, speed_mps, oncoming) AS in_lane AND gap_m >= 0 AND oncoming AND speed_mps > standing_mps();
+CREATE OR REPLACE MACRO meets(in_lane, gap_m, speed_mps, oncoming) AS in_lane AND gap_m >= 0 AND comes(speed_mps, oncoming);
 
 -- Speed away from the ego of a vehicle that it follows: what stands the wrong way round stands.
 CREATE OR REPLACE MACRO ahead_mps(speed_mps, oncoming) AS CASE WHEN oncoming THEN 0.0::DOUBLE WHEN NOT oncoming THEN speed_mps END;

@@ -11,7 +11,7 @@
 -- observes = "modified time to collision"
 -- near_margin = 0.5
 -- merge_gap_s = 1.0
--- reads = ["clock", "ego_motion", "lead", "step"]
+-- reads = ["clock", "ego_motion", "ego_state", "lead", "pair", "step"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [params.least_s]
@@ -22,17 +22,20 @@
 -- [params.edge_s]
 -- default = 0.5
 -- unit = "s"
--- why = "our default: so near to the ends of the log the filter's window is not whole"
+-- why = "our default: so near to the ends of the log the windows of the accelerations are not whole"
 
 -- @applies
 -- a step without a row in `lead` is one at which nobody knows who leads
-SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id, CASE WHEN l.object_id IS NOT NULL THEN l.in_lane AND l.gap_m >= 0 WHEN l.t_ns IS NOT NULL THEN true END AS applies
+SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
+    CASE WHEN l.object_id IS NOT NULL THEN on_course(l.gap_m, e.d_m, e.lat_half_m, p.d_m, p.lat_half_m) WHEN l.t_ns IS NOT NULL THEN true END AS applies
 FROM step s
 LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.t_ns = l.t_ns AND p.object_id = l.object_id
+LEFT JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
 
 -- @condition
--- at the ends of the log the window of the ego's acceleration is not whole, which says nothing about the drive
-SELECT l.drive_id, l.ego_id, l.t_ns, l.object_id, $least_s AS required, l.object_id IS NULL OR judged_inside(m.accel_mps2, l.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
+-- at the ends of the log the windows of the accelerations are not whole, which says nothing about the drive
+SELECT l.drive_id, l.ego_id, l.t_ns, l.object_id, $least_s AS required, l.object_id IS NULL OR judged_inside(m.accel_mps2 + l.accel_mps2, l.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
     CASE WHEN l.object_id IS NULL THEN 'inf'::DOUBLE
         ELSE mttc_s(l.gap_m, l.ego_speed_mps, m.accel_mps2, along_mps(l.speed_mps, l.oncoming), along_mps(l.accel_mps2, l.oncoming)) END AS observed
 FROM lead l

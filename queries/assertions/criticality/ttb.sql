@@ -11,7 +11,7 @@
 -- observes = "time left to brake"
 -- near_margin = 0.5
 -- merge_gap_s = 1.0
--- reads = ["lead", "step"]
+-- reads = ["ego_state", "lead", "pair", "step"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [params.least_s]
@@ -28,9 +28,12 @@
 
 -- @applies
 -- a step without a row in `lead` is one at which nobody knows who leads
-SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id, CASE WHEN l.object_id IS NOT NULL THEN follows(l.in_lane, l.gap_m, l.speed_mps, l.oncoming) WHEN l.t_ns IS NOT NULL THEN true END AS applies
+SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
+    CASE WHEN l.object_id IS NOT NULL THEN on_course(l.gap_m, e.d_m, e.lat_half_m, p.d_m, p.lat_half_m) AND NOT comes(l.speed_mps, l.oncoming) WHEN l.t_ns IS NOT NULL THEN true END AS applies
 FROM step s
 LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.t_ns = l.t_ns AND p.object_id = l.object_id
+LEFT JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, object_id, $least_s AS required,

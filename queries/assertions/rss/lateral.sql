@@ -51,7 +51,8 @@ FROM beside
 WHERE may_be_vehicle(actor_class)
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, object_id, gap_m AS observed,
+-- box to box: askew, they are further from each other than their extents across the road
+SELECT drive_id, ego_id, t_ns, object_id, clearance_m AS observed,
     rss_lateral_m(
         ego_lat_mps, $rho_s, CASE WHEN speed_mps <= standing_mps() THEN 0 ELSE lat_mps END, CASE WHEN speed_mps <= standing_mps() THEN 0 ELSE $rho_other_s END,
         $lat_accel_mps2, $lat_brake_mps2, $mu_m
