@@ -1,0 +1,67 @@
+"""Roads with markings and several lanes each way, and ways across them."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from drivelint.maps import MapSource, load_map
+from tests.maps import xodr
+from tests.scenes import LANE, Actor, Road, derived, drive, limited, linked, plan
+
+if TYPE_CHECKING:
+    import duckdb
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+
+def mark(kind: str) -> str:
+    return f'<roadMark sOffset="0" type="{kind}" weight="standard" color="white" width="0.12" laneChange="both"/>'
+
+
+@cache
+def marked(hand: str, centre: str = "solid", lanes: int = 1, beyond: str | None = None, length: float = 600.0) -> Road:
+    """Return a road of `lanes` lanes each way, its centre line marked so, its lane lines broken, its edges solid.
+
+    `beyond`: a lane of that type beside both edges.
+    """
+
+    def lane(number: int) -> str:
+        edge = abs(number) == lanes
+        kind = "solid" if edge else "broken"
+        return linked(number).replace("</lane>", mark(kind) + "</lane>")
+
+    numbers = [*range(lanes, 0, -1), *(-n for n in range(1, lanes + 1))]
+    shoulders = [linked(n, kind=beyond) for n in (lanes + 1, -lanes - 1)] if beyond else []
+    section = xodr.section(0, *shoulders[:1], *(lane(n) for n in numbers), *shoulders[1:], centre=mark(centre))
+    # the centre lane's id is 0: its marking is that between the directions
+    text = xodr.xodr(
+        xodr.road(
+            geometry=plan(((length, 0.0),)),
+            lanes=section,
+            length=length,
+            attributes=f'rule="{hand.upper()}"',
+            more=limited(60),
+        )
+    )
+    return Road(load_map(MapSource(f"marked-{hand}-{centre}-{lanes}-{beyond}.xodr", text.encode())), ((length, 0.0),))
+
+
+def ease(u: Floats) -> Floats:
+    held: Floats = np.clip(u, 0.0, 1.0)
+    return held * held * (3 - 2 * held)
+
+
+def offsets(way: Road, t: Floats, begin: float, lasts: float = 4.0, *, to: float = 0.5, start: float = 1.5) -> Floats:
+    """Return offsets of one that goes from the lane `start` (0.5: next to the centre line) to the lane `to`."""
+    sign = 1 if way.own > 0 else -1
+    return sign * LANE * (start + (to - start) * ease((t - begin) / lasts))
+
+
+def tables(way: Road, *actors: Actor, egos: tuple[str, ...] = ("ego",)) -> duckdb.DuckDBPyConnection:
+    """Return a database with the tables about lanes."""
+    names = ["lane_change", "line_step", "cut_in", "lane_crossing", "ego_corridor", "ego_state"]
+    return derived(drive(actors, way.environment, egos=egos), tables=names)

@@ -1,0 +1,94 @@
+"""Others that come from beside into the ego's lane."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.derive.marked import ease, marked, offsets, tables
+from tests.scenes import LANE, Actor, Road, moving, rows, times
+
+ROW = dict[str, Any]
+
+
+def cuts(way: Road, *actors: Actor, egos: tuple[str, ...] = ("ego",)) -> list[ROW]:
+    return rows(tables(way, *actors, egos=egos), "FROM cut_in ORDER BY ego_id, occurrence")
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize("of", ["in", "out"])
+def test_one_cuts_in_from_either_side(hand: str, of: str) -> None:
+    way = marked(hand, lanes=2)
+    t = times(14.0)
+    mine, its = (1.5, 0.5) if of == "in" else (0.5, 1.5)
+    ego = moving("ego", way, t, 100 + 12 * t, offsets(way, t, 99.0, start=mine))
+    other = moving("x", way, t, 95 + 13 * t, offsets(way, t, 7.0, start=its, to=mine))
+    (found,) = cuts(way, ego, other)
+    left = (hand == "rht") == (of == "in")
+    assert (found["object_id"], found["side"], found["begin_seen"]) == ("x", "left" if left else "right", True)
+    lane = abs(mine) * LANE * np.sign(way.own)
+    inside = LANE / 2 + 0.9 * np.cos(other.yaw) + 2.4 * np.abs(np.sin(other.yaw)) - np.abs(other.y - lane)
+    k = int(np.argmax(inside > 0.3))
+    assert found["t_ns"] == round(t[k] * 1e9)
+    assert found["in_place_ns"] == round(t[np.abs(other.y - lane) < LANE / 2][0] * 1e9)
+    assert found["gap_m"] == pytest.approx(-5 + t[k] - 4.8, abs=0.2)
+    assert found["ego_speed_mps"] == pytest.approx(12.0)
+    assert found["speed_mps"] == pytest.approx(13.0, abs=0.2)
+
+
+def test_what_is_no_cut_in() -> None:
+    """Out of the lane; behind the ego; far ahead; a wobble of 0.25 m; the ego's own change; one that turns in across."""
+    way = marked("rht", lanes=2)
+    t = times(14.0)
+    stay = offsets(way, t, 99.0)
+    ego = moving("ego", way, t, 100 + 12 * t, stay)
+    leaves = moving("leaves", way, t, 140 + 12 * t, offsets(way, t, 4.0))
+    behind = moving("behind", way, t, 60 + 12 * t, offsets(way, t, 4.0, start=0.5, to=1.5))
+    far = moving("far", way, t, 270 + 12 * t, offsets(way, t, 4.0, start=0.5, to=1.5))
+    wobbles = moving("wobbles", way, t, 120 + 12 * t, -0.5 * LANE - 0.9 * ease((t - 4) / 4))
+    across = moving("across", way, t[40:80], 200 + 1.0 * t[40:80], -12 + 2 * (t[40:80] - 4))
+    assert not cuts(way, ego, leaves, behind, far, wobbles)
+    assert not cuts(way, ego, across)
+    changes = moving("ego", way, t, 100 + 12 * t, offsets(way, t, 4.0))
+    assert not cuts(way, changes, moving("x", way, t, 130 + 12 * t, offsets(way, t, 99.0, start=0.5)))
+
+
+def test_a_cut_in_that_is_taken_back_and_made_again_is_two() -> None:
+    way = marked("rht", lanes=2)
+    t = times(24.0)
+    ego = moving("ego", way, t, 60 + 12 * t, offsets(way, t, 99.0))
+    d = (
+        offsets(way, t, 3.0, start=0.5, to=0.9)
+        + offsets(way, t, 9.0, start=0.0, to=-0.4)
+        + offsets(way, t, 15.0, start=0.0, to=1.0)
+    )
+    found = cuts(way, ego, moving("x", way, t, 90 + 12 * t, d))
+    assert [(row["occurrence"], row["in_place_ns"] is None) for row in found] == [(0, True), (1, False)]
+
+
+def test_where_it_was_not_seen_to_come() -> None:
+    way = marked("rht", lanes=2)
+    t = times(14.0)
+    ego = moving("ego", way, t, 100 + 12 * t, offsets(way, t, 99.0))
+    other = moving("x", way, t, 130 + 12 * t, offsets(way, t, 5.0, start=0.5, to=1.5))
+    (whole,) = cuts(way, ego, other)
+    at = whole["t_ns"] / 1e9
+    (found,) = cuts(way, ego, other.lost((t > at - 0.55) & (t < at + 0.55)))
+    assert (found["begin_seen"], found["t_ns"]) == (False, round((at + 0.6) * 1e9))
+    keep = (t < at - 0.55) | (t > at + 0.55)
+    (found,) = cuts(way, ego.keep(keep), other.keep(keep))
+    assert (found["begin_seen"], found["t_ns"]) == (False, round((at + 0.6) * 1e9))
+    assert not cuts(way, ego, other.keep(t > at + 0.3))  # where it came from is not in the log
+    assert not cuts(way, ego, other.lost((t > at - 4) & (t < at + 3)))  # it had 7 s: nobody cuts in for so long
+
+
+def test_each_ego_has_its_own_cut_ins() -> None:
+    way = marked("rht", lanes=2)
+    t = times(14.0)
+    slow = moving("a", way, t, 100 + 12 * t, offsets(way, t, 99.0))
+    fast = moving("b", way, t, 60 + 12 * t, offsets(way, t, 99.0, start=0.5))
+    other = moving("x", way, t, 130 + 12 * t, offsets(way, t, 5.0, start=0.5, to=1.5))
+    found = cuts(way, slow, fast, other, egos=("a", "b"))
+    assert [(row["ego_id"], row["object_id"]) for row in found] == [("a", "x")]

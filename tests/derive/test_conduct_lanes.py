@@ -1,0 +1,299 @@
+"""Lines crossed step by step, and lanes changed, on roads of two lanes each way."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from drivelint.maps import MapSource, load_map
+from tests.derive.marked import ease, marked, offsets, tables
+from tests.maps import xodr
+from tests.scenes import LANE, Road, limited, linked, moving, plan, road, rows, seconds, standing, swing, times
+
+HANDS = pytest.mark.parametrize("hand", ["rht", "lht"])
+ROW = dict[str, Any]
+
+
+# ---- line_step
+
+
+@HANDS
+def test_every_step_over_the_centre_line(hand: str) -> None:
+    """A wobble over a solid line to one that comes the other way; its furthest corner by hand."""
+    way = marked(hand)
+    t = times(10.0)
+    d = way.own - np.sign(way.own) * 1.2 * ease((t - 3) / 1.5) * (1 - ease((t - 6) / 1.5))
+    ego = moving("ego", way, t, 100 + 10 * t, d)
+    found = rows(tables(way, ego), "FROM line_step ORDER BY t_ns")
+    out = np.abs(d - way.own) + 0.9 * np.cos(ego.yaw) + 2.4 * np.abs(np.sin(ego.yaw)) - LANE / 2
+    assert seconds(found, "t_ns") == pytest.approx(list(t[out > 0.05]))
+    assert [row["out_m"] for row in found] == pytest.approx(list(out[out > 0.05]), abs=1e-6)
+    assert {(r["side"], r["marking"], r["forbidden"], r["beyond"]) for r in found} == {
+        ("left" if hand == "rht" else "right", "solid", True, "opposing")
+    }
+    assert {(r["t_since_ns"], r["begin_seen"], r["manoeuvre"]) for r in found} == {(found[0]["t_ns"], True, False)}
+    assert {(r["passing_id"], r["passing_known"], r["access"]) for r in found} == {(None, True, False)}
+
+
+@pytest.mark.parametrize(
+    ("centre", "seen", "forbidden"),
+    [("broken", "broken", False), ("solid solid", "solid_solid", True), ("none", "none", False)],
+)
+def test_what_may_be_crossed(centre: str, seen: str, forbidden: bool) -> None:
+    way = marked("rht", centre)
+    t = times(3.0)
+    found = rows(tables(way, moving("ego", way, t, 100 + 10 * t, -0.5)), "FROM line_step")
+    assert {(row["marking"], row["forbidden"]) for row in found} == {(seen, forbidden)}
+    assert len(found) == len(t)
+    assert {row["begin_seen"] for row in found} == {False}  # it is over it when the log begins
+
+
+@pytest.mark.parametrize(("centre", "may"), [("solid broken", True), ("broken solid", False)])
+def test_of_a_double_line_the_nearer_one_counts(centre: str, may: bool) -> None:
+    """OpenDRIVE names the two of a centre line from left to right: where one driver may cross it, the other may not."""
+    way = marked("rht", centre)
+    t = times(1.0)
+    one = rows(tables(way, moving("ego", way, t, 100 + 10 * t, -0.5)), "FROM line_step")
+    other = rows(tables(way, moving("ego", way, t, 500 - 10 * t, 0.5)), "FROM line_step")
+    assert {row["forbidden"] for row in one} == {not may}
+    assert {row["forbidden"] for row in other} == {may}
+
+
+def test_a_map_without_markings_does_not_say() -> None:
+    way = road()
+    t = times(1.0)
+    found = rows(tables(way, moving("ego", way, t, 100 + 10 * t, -0.5)), "FROM line_step")
+    assert {(row["marking"], row["forbidden"], row["beyond"]) for row in found} == {(None, None, "opposing")}
+
+
+def test_over_the_edge() -> None:
+    t = times(1.0)
+    for beyond, what in ((None, None), ("shoulder", "shoulder")):
+        way = marked("rht", beyond=beyond)
+        found = rows(tables(way, moving("ego", way, t, 100 + 10 * t, -3.0)), "FROM line_step")
+        assert {(row["side"], row["marking"], row["beyond"]) for row in found} == {("right", "solid", what)}
+
+
+@HANDS
+def test_round_whom_it_goes(hand: str) -> None:
+    """A parked car is passed from 30 m before it to 10 m behind; one that drives on is none, nor one beyond the verge."""
+    way = marked(hand)
+    t = times(30.0)
+    s = 50 + 10 * t
+    ego = moving("ego", way, t, s, swing(way, s, 120, 260))
+    parked = standing("parked", way, t, 190, way.own * 1.4)
+    far = standing("verge", way, t, 150, way.own * 4.5)
+    con = tables(way, ego, parked, far)
+    found = rows(con, "FROM line_step ORDER BY t_ns")
+    assert {row["manoeuvre"] for row in found} == {True}
+    for row in found:
+        at = 50 + row["t_ns"] / 1e8
+        near = 190 - 2.4 - (at + 2.4) <= 30 and at - 2.4 - (190 + 2.4) <= 10
+        assert (row["passing_id"] == "parked") is near, at
+    blind = rows(tables(way, ego, parked.lost(t > 2.0), far), "FROM line_step ORDER BY t_ns")
+    assert {(row["passing_id"], row["passing_known"]) for row in blind} == {(None, False)}
+
+
+WHOM = [
+    ("bicycle", 4.4, True),
+    ("bicycle", 4.6, False),
+    ("car", 0.4, True),
+    ("car", 0.6, False),
+    ("animal", 2.0, True),
+    ("pedestrian", 0.0, False),
+]
+
+
+@pytest.mark.parametrize(("kind", "speed", "counts"), WHOM)
+def test_whom_one_may_pass_over_a_line(kind: str, speed: float, counts: bool) -> None:
+    way = marked("rht")
+    t = times(1.0)
+    ego = moving("ego", way, t, 100 + 6 * t, -0.5)
+    other = moving("x", way, t, 110 + speed * t, -3.0, kind=kind, length=1.8, width=0.6)
+    found = rows(tables(way, ego, other), "FROM line_step")
+    assert {row["passing_id"] for row in found} == ({"x"} if counts else {None})
+
+
+def test_access_to_a_way_beside_the_road() -> None:
+    """Off the lanes to the left at 330 m: within 30 m of it yes, before no; where the log ends before, not known."""
+    way = marked("rht")
+    t = times(30.0)
+    s = 100 + 10 * t
+    ego = moving("ego", way, t, s, -0.5 + 8 * ease((s - 300) / 60))
+    off = float(s[ego.y > 3.5][0])
+    found = rows(tables(way, ego), "FROM line_step ORDER BY t_ns")
+    for row in found:
+        at = 100 + row["t_ns"] / 1e8
+        if at < off - 31 and at > 131:
+            assert row["access"] is False
+        elif off - 29 < at < off:
+            assert row["access"] is True
+        elif at < 129:
+            assert row["access"] is None  # it may have come out of one
+    cut = rows(tables(way, ego.keep(s < off - 10)), "FROM line_step ORDER BY t_ns")
+    assert cut[-1]["access"] is None
+
+
+def test_none_in_a_hole_and_not_seen_to_begin_after_it() -> None:
+    way = marked("rht")
+    t = times(10.0)
+    ego = moving("ego", way, t, 100 + 10 * t, np.where(t > 2.05, -0.5, way.own))
+    keep = (t < 3.05) | (t > 4.05)
+    found = rows(tables(way, ego.keep(keep)), "SELECT DISTINCT t_since_ns, begin_seen FROM line_step ORDER BY ALL")
+    assert [row["begin_seen"] for row in found] == [True, False]
+    assert found[1]["t_since_ns"] == 4_100_000_000
+
+
+# ---- lane_change
+
+
+@HANDS
+@pytest.mark.parametrize("to", ["in", "out"])
+def test_a_lane_change_to_either_side(hand: str, to: str) -> None:
+    way = marked(hand, lanes=2)
+    t = times(16.0)
+    d = offsets(way, t, 6.0) if to == "in" else offsets(way, t, 6.0, start=0.5, to=1.5)
+    ego = moving("ego", way, t, 100 + 12 * t, d)
+    ahead = moving("ahead", way, t, 160 + 12 * t, offsets(way, t, 99.0, start=0.5 if to == "in" else 1.5))
+    behind = moving("behind", way, t, 70 + 13 * t - 1.5 * np.clip(t - 7.5, 0, 1) ** 2, ahead.y)
+    same = moving("same", way, t, 130 + 12 * t, offsets(way, t, 99.0, start=1.5 if to == "in" else 0.5))
+    con = tables(way, ego, ahead, behind, same)
+    (found,) = rows(con, "FROM lane_change")
+    left = (hand == "rht") == (to == "in")
+    inner, outer = ("1.0.-1", "1.0.-2") if hand == "rht" else ("1.0.1", "1.0.2")
+    assert found["side"] == ("left" if left else "right")
+    assert (found["from_lanelet_id"], found["to_lanelet_id"]) == ((outer, inner) if to == "in" else (inner, outer))
+    moved = np.abs(d - d[0])
+    extent = 0.9 * np.cos(ego.yaw) + 2.4 * np.abs(np.sin(ego.yaw))
+    assert found["t_start_ns"] == round(t[moved + extent - LANE / 2 > 0.05][0] * 1e9)
+    assert found["t_cross_ns"] == pytest.approx(8e9, abs=1.1e8)
+    assert found["t_done_ns"] == round(t[(moved - extent > LANE / 2 - 0.05)][0] * 1e9)
+    start = int(np.searchsorted(t, found["t_start_ns"] / 1e9 - 0.01))
+    front = 100 + 12 * t[start] + 2.4
+    assert (found["begin_seen"], found["known"], found["merge"]) == (True, True, False)
+    assert (found["leader_id"], found["follower_id"]) == ("ahead", "behind")
+    assert found["leader_gap_m"] == pytest.approx(160 + 12 * t[start] - 2.4 - front, abs=0.1)
+    assert found["follower_gap_m"] == pytest.approx(front - 4.8 - (70 + 13 * t[start]) - 2.4, abs=0.2)
+    assert (found["leader_speed_mps"], found["follower_speed_mps"]) == pytest.approx((12.0, 13.0))
+    assert found["ego_speed_mps"] == pytest.approx(12.0, abs=0.2)
+    speed = behind.vx
+    drops = [(speed[k - 5] - speed[k]) / 0.5 for k in range(start + 5, start + 41)]
+    assert found["follower_decel_mps2"] == pytest.approx(max(drops), abs=1e-6)
+    assert max(drops) > 2.0
+    (line,) = rows(con, "SELECT DISTINCT t_since_ns, begin_seen, manoeuvre FROM line_step")
+    assert tuple(line.values()) == (found["t_start_ns"], True, True)
+    assert {row["side"] for row in rows(con, "FROM line_step")} == {"left", "right"}
+    assert {row["forbidden"] for row in rows(con, "FROM line_step")} == {False}
+
+
+def test_neither_a_wobble_nor_an_overtake_is_a_lane_change() -> None:
+    way = marked("rht", lanes=2)
+    t = times(14.0)
+    there_and_back = offsets(way, t, 3.0, to=1.05) + offsets(way, t, 8.0, start=0.0, to=0.45)
+    assert not rows(tables(way, moving("ego", way, t, 100 + 12 * t, there_and_back)), "FROM lane_change")
+    way = road()
+    s = 50 + 12 * t
+    ego = moving("ego", way, t, s, swing(way, s, 80, 160))
+    assert not rows(tables(way, ego, standing("x", way, t, 140, way.own)), "FROM lane_change")
+
+
+def test_who_may_be_there_is_said() -> None:
+    way = marked("rht", lanes=2)
+    t = times(14.0)
+    ego = moving("ego", way, t, 100 + 12 * t, offsets(way, t, 6.0))
+    near = moving("x", way, t, 80 + 12 * t, offsets(way, t, 99.0, start=0.5))
+    (found,) = rows(tables(way, ego, near.lost((t > 6.5) & (t < 8.5))), "FROM lane_change")
+    assert (found["follower_id"], found["known"]) == (None, False)
+    (found,) = rows(tables(way, ego, near.lost((t > 9) & (t < 9.5))), "FROM lane_change")
+    assert (found["follower_id"], found["known"], found["follower_decel_mps2"]) == ("x", True, None)
+    (found,) = rows(tables(way, ego, near.keep(t < 9.95)), "FROM lane_change")
+    assert (found["follower_id"], found["follower_decel_mps2"]) == ("x", None)
+    (found,) = rows(tables(way, ego, near), "FROM lane_change")
+    assert found["follower_decel_mps2"] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_cut_by_the_log_or_by_a_hole() -> None:
+    way = marked("rht", lanes=2)
+    t = times(14.0)
+    ego = moving("ego", way, t, 100 + 12 * t, offsets(way, t, 6.0))
+
+    def seen(keep: Any) -> ROW:
+        (found,) = rows(tables(way, ego.keep(keep)), "FROM lane_change")
+        return found
+
+    whole = seen(t > -1)
+    begun = seen(t < 7.85)
+    assert (begun["t_start_ns"], begun["t_cross_ns"], begun["t_done_ns"]) == (whole["t_start_ns"], None, None)
+    assert (begun["to_lanelet_id"], begun["merge"], begun["side"]) == (None, None, "left")
+    crossed = seen(t < 8.55)
+    assert (crossed["t_cross_ns"], crossed["t_done_ns"]) == (whole["t_cross_ns"], None)
+    late = seen(t > 7.55)
+    assert (late["t_start_ns"], late["begin_seen"], late["t_done_ns"]) == (7_600_000_000, False, whole["t_done_ns"])
+    hole = seen((t < 7.55) | (t > 8.35))
+    assert (hole["t_start_ns"], hole["t_cross_ns"], hole["t_done_ns"]) == (
+        whole["t_start_ns"],
+        None,
+        whole["t_done_ns"],
+    )
+    assert hole["to_lanelet_id"] == "1.0.-1"
+    unseen = seen((t < 6.05) | (t > 10.05))
+    assert (unseen["t_start_ns"], unseen["begin_seen"], unseen["t_cross_ns"]) == (10_100_000_000, False, None)
+    barely = ego.keep(t < 7.15)  # 0.1 m over the line at the end may be a wobble
+    assert not rows(tables(way, barely), "FROM lane_change")
+
+
+def test_two_in_a_row_and_one_taken_back() -> None:
+    way = marked("rht", lanes=3)
+    t = times(20.0)
+    ego = moving("ego", way, t, 50 + 12 * t, offsets(way, t, 3.0, 8.0, to=0.5, start=2.5))
+    found = rows(tables(way, ego), "FROM lane_change ORDER BY occurrence")
+    assert [(row["occurrence"], row["side"], row["from_lanelet_id"], row["to_lanelet_id"]) for row in found] == [
+        (0, "left", "1.0.-3", "1.0.-2"),
+        (1, "left", "1.0.-2", "1.0.-1"),
+    ]
+    assert found[0]["t_done_ns"] is None or found[0]["t_done_ns"] <= found[1]["t_cross_ns"]
+    back = offsets(way, t, 3.0, start=1.5, to=0.9) + offsets(way, t, 8.0, start=0.0, to=0.6)
+    found = rows(tables(way, moving("ego", way, t, 50 + 12 * t, back)), "FROM lane_change ORDER BY occurrence")
+    assert [(row["side"], row["begin_seen"]) for row in found] == [("left", True), ("right", False)]
+    assert found[0]["t_done_ns"] is None  # it was never wholly in the new lane
+    assert found[1]["t_start_ns"] == found[0]["t_cross_ns"]
+    assert found[1]["t_done_ns"] > found[1]["t_cross_ns"]
+
+
+@cache
+def ramp(hand: str, kind: str) -> Road:
+    """Return 600 m of road with a second lane of this type that ends at 300 m."""
+    one = (1, 2) if hand == "lht" else (-1, -2)
+    long = linked(one[0])
+    short = xodr.lane(one[1], f'<link/><width sOffset="0" a="{LANE}"/>', kind)
+    text = xodr.xodr(
+        xodr.road(
+            geometry=plan(((600.0, 0.0),)), lanes=xodr.section(0, long, short) + xodr.section(300, long),
+            length=600.0, attributes=f'rule="{hand.upper()}"', more=limited(60),
+        )
+    )  # fmt: skip
+    return Road(load_map(MapSource(f"ramp-{hand}-{kind}.xodr", text.encode())), ((600.0, 0.0),))
+
+
+@HANDS
+@pytest.mark.parametrize("kind", ["onRamp", "entry", "driving"])
+def test_a_merge_leaves_a_lane_that_only_leads_there(hand: str, kind: str) -> None:
+    way = ramp(hand, kind)
+    t = times(20.0)
+    (found,) = rows(tables(way, moving("ego", way, t, 50 + 15 * t, offsets(way, t, 4.0))), "FROM lane_change")
+    assert found["merge"] is True
+    away = moving("ego", way, t, 10 + 12 * t, offsets(way, t, 4.0, start=0.5, to=1.5))
+    (found,) = rows(tables(way, away), "FROM lane_change")
+    assert found["merge"] is False
+
+
+def test_each_ego_has_its_own_changes() -> None:
+    way = marked("rht", lanes=2)
+    t = times(14.0)
+    a = moving("a", way, t, 100 + 12 * t, offsets(way, t, 6.0))
+    b = moving("b", way, t, 60 + 12 * t, offsets(way, t, 4.0, start=0.5, to=1.5))
+    found = rows(tables(way, a, b, egos=("a", "b")), "FROM lane_change ORDER BY ego_id")
+    assert [(row["ego_id"], row["occurrence"], row["side"]) for row in found] == [("a", 0, "left"), ("b", 0, "right")]

@@ -1,0 +1,218 @@
+"""Since when the nearest vehicle ahead is that, how it came, how it slows; and who follows."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.scenes import LANE, derived, drive, moving, road, rows, seconds, standing, swing, times
+
+HANDS = pytest.mark.parametrize("hand", ["rht", "lht"])
+
+
+def lanes(hand: str, n: int = 2) -> tuple[int, int]:
+    return (0, n) if hand == "rht" else (n, 0)
+
+
+def shift(t: np.ndarray, begin: float, lasts: float = 2.0) -> np.ndarray:
+    """Return 0..1 over `lasts` seconds from `begin`."""
+    u: np.ndarray = np.clip((t - begin) / lasts, 0.0, 1.0)
+    return u
+
+
+@HANDS
+def test_a_lead_that_cut_in_joined_then(hand: str) -> None:
+    """From the lane beside into the ego's: turned by 10 degrees, it is 2.6 m across, and in when its centre is 3.0 m from the lane's."""
+    way = road(hand=hand, lanes=lanes(hand))
+    t = times(8.0)
+    sign = 1 if hand == "rht" else -1
+    slow, fast = -1.5 * LANE * sign, -0.5 * LANE * sign
+    ego = moving("ego", way, t, 100 + 10 * t, slow)
+    old = moving("old", way, t, 200 + 10 * t, slow)
+    other = moving("x", way, t, 130 + 10 * t, fast + (slow - fast) * shift(t, 3.0))
+    con = derived(drive([ego, old, other], way.environment), tables=["lead"])
+    found = rows(con, "FROM lead ORDER BY t_ns")
+    assert len(found) == len(t)
+    joins = next(k for k, row in enumerate(found) if row["object_id"] == "x")
+    assert t[joins] == pytest.approx(3.3)
+    assert [row["object_id"] for row in found] == ["old"] * joins + ["x"] * (len(t) - joins)
+    assert {row["joined"] for row in found[:joins]} == {False}  # the log begins there
+    assert {row["joined"] for row in found[joins:]} == {True}
+    assert {row["t_since_ns"] for row in found[joins:]} == {found[joins]["t_ns"]}
+    assert {row["t_since_ns"] for row in found[:joins]} == {0}
+
+
+def test_a_lead_behind_the_one_that_leaves_was_there_before() -> None:
+    way = road(lanes=(0, 2))
+    t = times(8.0)
+    ego = moving("ego", way, t, 100 + 10 * t, -1.5 * LANE)
+    far = moving("far", way, t, 180 + 10 * t, -1.5 * LANE)
+    near = moving("near", way, t, 130 + 10 * t, -1.5 * LANE + LANE * shift(t, 3.0))
+    found = rows(derived(drive([ego, far, near], way.environment), tables=["lead"]), "FROM lead ORDER BY t_ns")
+    assert {(row["object_id"], row["joined"]) for row in found} == {("near", False), ("far", False)}
+    left = [row for row in found if row["object_id"] == "far"]
+    assert {row["t_since_ns"] for row in left} == {left[0]["t_ns"]}
+
+
+def test_the_ego_that_changes_lanes_joins_its_new_lead() -> None:
+    way = road(lanes=(0, 2))
+    t = times(8.0)
+    ego = moving("ego", way, t, 100 + 10 * t, -1.5 * LANE + LANE * shift(t, 3.0))
+    lead = moving("x", way, t, 150 + 10 * t, -0.5 * LANE)
+    found = rows(derived(drive([ego, lead], way.environment), tables=["lead"]), "FROM lead ORDER BY t_ns")
+    assert {(row["object_id"], row["joined"]) for row in found} == {(None, None), ("x", True)}
+    assert next(row["t_ns"] for row in found if row["object_id"]) == pytest.approx(4e9, abs=1e8)
+
+
+def test_how_it_came_is_not_known_after_a_hole_or_where_it_had_no_place() -> None:
+    way = road()
+    t = times(8.0)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    lead = moving("x", way, t, 150 + 10 * t, way.own)
+    keep = (t < 3.05) | (t > 3.95)
+    found = rows(
+        derived(drive([ego.keep(keep), lead.keep(keep)], way.environment), tables=["lead"]), "FROM lead ORDER BY t_ns"
+    )
+    assert {(row["t_since_ns"], row["joined"]) for row in found} == {(0, False), (4_000_000_000, None)}
+    blind = lead.lost((t > 2.95) & (t < 3.45))
+    found = rows(derived(drive([ego, blind], way.environment), tables=["lead"]), "FROM lead ORDER BY t_ns")
+    assert not [row for row in found if 2.95 < row["t_ns"] / 1e9 < 3.45]  # nobody is claimed absent
+    assert {(row["t_since_ns"], row["joined"]) for row in found} == {(0, False), (3_500_000_000, None)}
+
+
+def test_one_without_a_place_far_away_leaves_the_near_lead() -> None:
+    """Unseen from 3 s on, 200 m ahead: at 60 m/s it may be nearer than the lead at 25 m only after 3 s."""
+    way = road()
+    t = times(8.0)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    lead = moving("x", way, t, 130 + 10 * t, way.own)
+    lost = moving("far", way, t, 300 + 10 * t, way.own).lost(t > 2.95)
+    found = rows(derived(drive([ego, lead, lost], way.environment), tables=["lead"]), "FROM lead ORDER BY t_ns")
+    assert {row["object_id"] for row in found} == {"x"}
+    # 200 - 12 - 60 s >= 25.2, s = 2.71 after the last sample at 2.9
+    assert found[-1]["t_ns"] == 5_600_000_000
+
+
+def test_one_off_the_lanes_with_a_place_hides_nobody() -> None:
+    way = road()
+    t = times(1.0)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    beside_road = moving("x", way, t, 130 + 10 * t, 8.0)
+    found = rows(derived(drive([ego, beside_road], way.environment), tables=["lead"]), "FROM lead")
+    assert [row["object_id"] for row in found] == [None] * len(t)
+    # but beyond the map's end it may well be on the road: 590 m is 10 m short of that
+    ego = standing("ego", way, t, 590, way.own)
+    beyond = moving("x", way, t, 640 + 10 * t, way.own)
+    assert not rows(derived(drive([ego, beyond], way.environment), tables=["lead"]), "FROM lead")
+
+
+def test_its_acceleration_is_a_mean_over_half_a_second() -> None:
+    way = road()
+    t = times(6.0)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    lead = moving("x", way, t, 150 + 10 * t - np.clip(t - 2, 0, None) ** 2, way.own)
+    speed = np.hypot(lead.vx, lead.vy)
+    found = rows(derived(drive([ego, lead], way.environment), tables=["lead"]), "FROM lead ORDER BY t_ns")
+    mean = [None] * 4 + [(speed[k] - speed[max(0, k - 5)]) / (t[k] - t[max(0, k - 5)]) for k in range(4, len(t))]
+    assert [row["accel_mps2"] is None for row in found] == [m is None for m in mean]
+    assert [row["accel_mps2"] for row in found[4:]] == pytest.approx(mean[4:], abs=1e-6)
+    assert found[40]["accel_mps2"] == pytest.approx(-2.0)
+    assert [row["ego_speed_mps"] for row in found] == pytest.approx(list(np.hypot(ego.vx, ego.vy)))
+
+
+def test_the_wrong_way_round_and_the_ego_beside_its_lane() -> None:
+    """Parked against the traffic it leads, as oncoming; overtaking it, the ego is not in its lane."""
+    way = road()
+    t = times(20.0)
+    s = 50 + 12 * t
+    ego = moving("ego", way, t, s, swing(way, s, 100, 200, share=1.0))
+    parked = standing("x", way, t, 280, way.own, turned=math.pi)
+    found = rows(derived(drive([ego, parked], way.environment), tables=["lead"]), "FROM lead ORDER BY t_ns")
+    assert {row["oncoming"] for row in found if row["object_id"]} == {True}
+    out = [row["in_lane"] is False for row in found]
+    assert out[: round((100 - 50) / 1.2)] == [False] * round((100 - 50) / 1.2)
+    assert all(out[k] for k in range(len(t)) if 122 < s[k] < 198)
+    assert not any(out[k] for k in range(len(t)) if s[k] > 222)
+
+
+def test_each_ego_has_its_own_lead() -> None:
+    way = road()
+    t = times(1.0)
+    cars = [moving(name, way, t, at + 10 * t, way.own) for name, at in (("a", 100), ("b", 140), ("c", 200))]
+    con = derived(drive(cars, way.environment, egos=["a", "b"]), tables=["lead"])
+    found = rows(con, "SELECT DISTINCT ego_id, object_id, joined FROM lead ORDER BY ALL")
+    assert [tuple(row.values()) for row in found] == [("a", "b", False), ("b", "c", False)]
+
+
+# ---- followers
+
+
+@HANDS
+def test_who_follows_in_each_lane(hand: str) -> None:
+    """Left and right are the ego's, whichever side is driven on; who comes the other way follows nobody."""
+    way = road(hand=hand, lanes=(3, 3))
+    t = times(1.0)
+    sign = -1 if hand == "rht" else 1
+    ego = moving("ego", way, t, 300 + 10 * t, 1.5 * LANE * sign)
+    other = [
+        moving("own", way, t, 260 + 12 * t, 1.5 * LANE * sign),
+        moving("further", way, t, 240 + 12 * t, 1.5 * LANE * sign),
+        moving("out", way, t, 290 + 10 * t, 2.5 * LANE * sign),
+        moving("in", way, t, 298 + 11 * t, 0.5 * LANE * sign),
+        moving("against", way, t, 299 - 10 * t, -0.5 * LANE * sign),
+        moving("walker", way, t, 280 + t, 1.5 * LANE * sign, kind="pedestrian"),
+        moving("ahead", way, t, 310 + 10 * t, 0.5 * LANE * sign),
+    ]
+    con = derived(drive([ego, *other], way.environment), tables=["follower"])
+    found = {row["lane"]: row for row in rows(con, "FROM follower WHERE t_ns = 0")}
+    outer, inner = ("right", "left") if hand == "rht" else ("left", "right")
+    assert {lane: row["object_id"] for lane, row in found.items()} == {"own": "own", outer: "out", inner: "in"}
+    assert found["own"]["gap_m"] == pytest.approx(40 - 4.8)
+    assert found[inner]["gap_m"] == pytest.approx(2 - 4.8)  # alongside
+    assert found["own"]["closing_mps"] == pytest.approx(2.0)
+    assert found["own"]["speed_mps"] == pytest.approx(12.0)
+    assert len(rows(con, "FROM follower")) == 3 * len(t)
+
+
+def test_nobody_behind_is_said_and_only_where_it_is_known() -> None:
+    way = road()
+    t = times(3.0)
+    ego = moving("ego", way, t, 300 + 10 * t, way.own)
+    far = moving("far", way, t, 60 + 10 * t, way.own)
+    assert {
+        row["object_id"]
+        for row in rows(derived(drive([ego, far], way.environment), tables=["follower"]), "FROM follower")
+    } == {None}
+    lost = moving("lost", way, t, 260 + 10 * t, way.own).lost(t > 1.05)
+    found = rows(derived(drive([ego, lost], way.environment), tables=["follower"]), "FROM follower ORDER BY t_ns")
+    assert seconds(found, "t_ns")[-1] == 1.0
+    assert {row["object_id"] for row in found if row["lane"] == "own"} == {"lost"}
+    # one alongside is the nearest, whoever else may be there
+    beside = moving("near", way, t, 299 + 10 * t, way.own)
+    found = rows(
+        derived(drive([ego, beside, lost], way.environment), tables=["follower"]), "FROM follower ORDER BY t_ns"
+    )
+    assert [row["t_ns"] for row in found if row["lane"] == "own"] == [round(x * 1e9) for x in t]
+    assert {row["lane"] for row in found if row["t_ns"] > 1.05e9} == {"own"}
+
+
+def test_one_without_a_heading_ahead_is_no_doubt_behind() -> None:
+    way = road()
+    t = times(0.5)
+    ego = moving("ego", way, t, 300 + 10 * t, way.own)
+    for s, told in ((350, True), (250, False)):
+        other = standing("x", way, t, s, way.own, turned=math.nan)
+        con = derived(drive([ego, other], way.environment), tables=["follower", "lead"])
+        assert bool(rows(con, "FROM follower")) is told
+        assert bool(rows(con, "FROM lead")) is not told
+
+
+def test_each_ego_has_its_own_follower() -> None:
+    way = road()
+    t = times(0.5)
+    cars = [moving(name, way, t, at + 10 * t, way.own) for name, at in (("a", 100), ("b", 140), ("c", 200))]
+    con = derived(drive(cars, way.environment, egos=["b", "c"]), tables=["follower"])
+    found = rows(con, "SELECT DISTINCT ego_id, object_id FROM follower WHERE lane = 'own' ORDER BY ALL")
+    assert [tuple(row.values()) for row in found] == [("b", "a"), ("c", "b")]

@@ -1,0 +1,135 @@
+"""The ego's own motion: filtered as said, against numpy's least squares; nothing where the window is not whole."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from tests.scenes import LANE, Actor, derived, drive, moving, road, rows, times
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+COLUMNS = ("v_long_mps", "accel_mps2", "lat_accel_mps2", "jerk_mps3", "accel_2s_mps2", "jerk_1s_mps3")
+
+
+def free(t: Floats, speed: Floats, yaw: Floats, slip: float = 0.0) -> Actor:
+    """Return an ego with this speed along its heading, and `slip` across it."""
+    vx, vy = speed * np.cos(yaw) - slip * np.sin(yaw), speed * np.sin(yaw) + slip * np.cos(yaw)
+    x, y = np.cumsum(vx) * (t[1] - t[0]), np.cumsum(vy) * (t[1] - t[0])
+    return Actor("ego", t, x, y, np.remainder(yaw + math.pi, 2 * math.pi) - math.pi, vx, vy)
+
+
+def slope(t: Floats, y: Floats, half: float) -> Floats:
+    """Least-squares slope around each sample; NaN where the samples do not reach 0.7 of `half` to both sides, or one is NaN."""
+    found = np.full(t.shape, np.nan)
+    for k, at in enumerate(t):
+        near = np.abs(t - at) <= half + 1e-9
+        if (
+            at - t[near].min() >= 0.7 * half - 1e-9
+            and t[near].max() - at >= 0.7 * half - 1e-9
+            and np.isfinite(y[near]).all()
+        ):
+            found[k] = np.polyfit(t[near] - at, y[near], 1)[0]
+    return found
+
+
+def columns(*actors: Actor, egos: tuple[str, ...] = ("ego",), ego: str = "ego") -> dict[str, Floats]:
+    con = derived(drive(actors, None, egos=egos), tables=["ego_motion"])
+    found = rows(con, "FROM ego_motion WHERE ego_id = $ego ORDER BY t_ns", {"ego": ego})
+    return {name: np.array([row[name] for row in found], float) for name in COLUMNS}
+
+
+@pytest.mark.parametrize("period", [0.02, 0.05, 0.1, 0.15, 0.2])
+def test_slopes_are_those_of_numpy(period: float) -> None:
+    """A weaving, braking ego that turns round more than once; a jittering clock."""
+    rng = np.random.default_rng(7)
+    t = times(9.0, period=period) + rng.uniform(-0.02, 0.02, len(times(9.0, period=period))) * period
+    t = np.round(t, 9) - np.round(t.min(), 9)
+    speed = 12 + 3 * np.sin(t) + rng.normal(0, 0.02, len(t))
+    yaw = 1.1 * t + 0.2 * np.sin(2 * t)
+    found = columns(free(t, speed, yaw, slip=0.4))
+    half = max(0.25, 2.2 * float(np.median(np.diff(t))))
+    accel, turning = slope(t, speed, half), slope(t, yaw, half)
+    jerk = slope(t, accel, half)
+    assert found["v_long_mps"] == pytest.approx(speed, abs=1e-9)
+    assert found["accel_mps2"] == pytest.approx(accel, abs=1e-6, nan_ok=True)
+    assert found["lat_accel_mps2"] == pytest.approx(speed * turning, abs=1e-5, nan_ok=True)
+    assert found["jerk_mps3"] == pytest.approx(jerk, abs=1e-5, nan_ok=True)
+    for name, value, back in (("accel_2s_mps2", speed, 2.0), ("jerk_1s_mps3", accel, 1.0)):
+        first = np.searchsorted(t, t - back - 1e-9)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            mean = np.where(t - t[0] >= back - 1e-9, (value - value[first]) / (t - t[first]), np.nan)
+        assert found[name] == pytest.approx(mean, abs=1e-6, nan_ok=True)
+        assert np.isfinite(mean).any()
+
+
+def test_reversing_is_negative_and_turns_the_other_way_round() -> None:
+    """Backwards with the heading turning left, the ego is pushed to its right."""
+    t = times(3.0)
+    found = columns(free(t, np.full(t.shape, -2.0), 0.3 * t))
+    assert set(np.round(found["v_long_mps"], 9)) == {-2.0}
+    assert found["lat_accel_mps2"][15] == pytest.approx(-0.6)
+
+
+def test_a_spike_is_smoothed_and_not_hidden() -> None:
+    t = times(3.0, period=0.05)
+    speed = np.full(t.shape, 10.0)
+    speed[30] += 1.0  # 20 m/s2 up and 20 down again, unfiltered
+    found = columns(free(t, speed, np.zeros(t.shape)))
+    assert 0.9 < np.nanmax(found["accel_mps2"]) < 2.0
+    assert np.nanmin(found["accel_mps2"]) == pytest.approx(-np.nanmax(found["accel_mps2"]))
+
+
+def test_nothing_at_the_ends_and_none_across_a_hole() -> None:
+    t = times(8.0)
+    keep = (t < 3.05) | (t > 3.95)
+    found = columns(free(t, 10 + t, np.zeros(t.shape)).keep(keep))
+    t = t[keep]
+    known = np.isfinite(found["accel_mps2"])
+    assert [round(x, 1) for x in t[~known]] == [0.0, 0.1, 2.9, 3.0, 4.0, 4.1, 7.9, 8.0]
+    assert np.isfinite(found["accel_2s_mps2"]).tolist() == ((t >= 1.99) & (t < 3.05) | (t >= 5.99)).tolist()
+    assert found["accel_mps2"][known] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("lost", ["yaw", "vx"])
+def test_what_is_not_known_in_the_window_leaves_it_unknown(lost: str) -> None:
+    t = times(6.0)
+    ego = free(t, 10 + t, 0.1 * t)
+    gone = np.abs(t - 3.0) < 0.05
+    yaw, vx = (np.where(gone & (lost == name), np.nan, kept) for name, kept in (("yaw", ego.yaw), ("vx", ego.vx)))
+    ego = replace(ego, yaw=yaw, vx=vx)
+    found = columns(ego)
+    near = np.abs(t - 3.0) < 0.25
+    assert not np.isfinite(found["accel_mps2"][near]).any()
+    assert not np.isfinite(found["lat_accel_mps2"][near & (np.abs(t - 3.0) < 0.05)]).any()
+    assert found["accel_mps2"][(t > 0.15) & (t < 5.85) & ~near] == pytest.approx(1.0)
+    # the mean over two seconds needs its ends
+    unknown = {round(x, 1) for x in t[(t > 1.95) & ~np.isfinite(found["accel_2s_mps2"])]}
+    assert unknown == {3.0, 5.0}
+
+
+@pytest.mark.parametrize(("period", "told"), [(0.2, True), (0.25, False), (1.0, False)])
+def test_a_log_too_slow_for_it_tells_no_acceleration(period: float, told: bool) -> None:
+    t = times(12.0, period=period)
+    found = columns(free(t, 10 + t, np.zeros(t.shape)))
+    assert found["v_long_mps"] == pytest.approx(10 + t)
+    for name in COLUMNS[1:]:
+        assert np.isfinite(found[name]).any() == told, name
+
+
+def test_each_ego_has_its_own() -> None:
+    way = road()
+    t = times(4.0)
+    a = moving("a", way, t, 100 + 10 * t + t**2, way.own)
+    b = moving("b", way, t, 200 + 10 * t - t**2, way.own + LANE)
+    one = columns(a, b, egos=("a", "b"), ego="a")["accel_mps2"]
+    two = columns(a, b, egos=("a", "b"), ego="b")["accel_mps2"]
+    assert one[5:-5] == pytest.approx(2.0)
+    assert two[5:-5] == pytest.approx(-2.0)
