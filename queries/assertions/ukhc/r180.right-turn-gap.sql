@@ -8,7 +8,7 @@
 -- status = "stable"
 -- sense = ">="
 -- unit = "s"
--- observes = "time between the ego's leaving and the oncoming one's entering the place where their ways cross"
+-- observes = "time until the oncoming vehicle came"
 -- near_margin = 1.0
 -- reads = ["junction_passage", "passage_conflict"]
 -- requires = ["map", "registration", "ego_size"]

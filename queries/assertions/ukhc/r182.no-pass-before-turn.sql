@@ -26,10 +26,16 @@ WHERE across IS DISTINCT FROM true AND turn IS DISTINCT FROM 'straight'
 SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
     CASE WHEN r.across IS NULL OR (p.t_ns IS NULL AND b.t_ns IS NOT NULL) THEN NULL ELSE p.t_ns IS NULL END AS holds,
     CASE WHEN r.across IS NULL THEN 'which way the ego turned, or the side of the road, is not known'
-        WHEN p.t_ns IS NULL AND b.t_ns IS NOT NULL THEN 'somebody who may be beside the ego cannot be placed' END AS reason
+        WHEN p.t_ns IS NOT NULL THEN 'the ego got ahead of ' || p.object_id
+        WHEN b.t_ns IS NOT NULL THEN 'somebody who may be beside the ego cannot be placed' END AS reason
 FROM reference_step g
 JOIN reference r USING (ref_id)
-LEFT JOIN (SELECT DISTINCT drive_id, ego_id, t_ns, side FROM passing WHERE ego_passes AND coalesce(speed_mps > standing_mps(), true)) p
+LEFT JOIN (
+    SELECT drive_id, ego_id, t_ns, side, min(object_id) AS object_id
+    FROM passing
+    WHERE ego_passes AND coalesce(speed_mps > standing_mps(), true)
+    GROUP BY drive_id, ego_id, t_ns, side
+) p
     ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns = g.t_ns AND p.side = r.turn
 LEFT JOIN (SELECT DISTINCT drive_id, ego_id, t_ns FROM beside WHERE gap_m IS NULL AND coalesce(actor_class, '') <> 'pedestrian') b
     ON b.drive_id = g.drive_id AND b.ego_id = g.ego_id AND b.t_ns = g.t_ns

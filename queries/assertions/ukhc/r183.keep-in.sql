@@ -8,7 +8,7 @@
 -- status = "stable"
 -- sense = "<="
 -- unit = "m"
--- observes = "how far the ego is over the middle of the road entered"
+-- observes = "reach over the middle of the road entered"
 -- reads = ["ego_corridor", "ego_state", "junction_passage"]
 -- requires = ["map", "registration", "ego_size"]
 --
