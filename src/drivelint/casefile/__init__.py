@@ -30,6 +30,7 @@ A list of cases; each fills tables with a tiny scene, judges the rule, and says 
 from __future__ import annotations
 
 import re
+from contextlib import contextmanager
 from decimal import Decimal
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -41,7 +42,7 @@ from drivelint.casefile.scene import Row, column_of, scene
 from drivelint.errors import RuleError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from drivelint.catalogue import Rule
@@ -112,6 +113,11 @@ def read_cases(rule: Rule) -> list[Case]:
                 f"{file}:{case.line}: case {case.name!r} has the name of the case in line {seen[case.name].line}"
             )
         seen[case.name] = case
+        if strange := sorted(case.params.keys() - rule.params.keys()):
+            known = ", ".join(rule.params) or "none"
+            raise RuleError(f"{place(rule, case)}: params: {rule.id} has no parameter {strange[0]!r}; it has: {known}")
+        if "capability" not in rule.reads and (idle := sorted(set(case.missing) - set(rule.requires))):
+            raise RuleError(f"{place(rule, case)}: missing: {rule.id} does not require {idle[0]!r}")
     return cases
 
 
@@ -139,12 +145,16 @@ def _parsed(file: Path, text: str) -> list[Case]:
 
 
 def run_cases(rule: Rule) -> list[CaseResult]:
-    """Run every case beside the rule, in order; one more result says whether all kinds of case are there.
+    """Run every case beside the rule, in order; then all of them together, as drives of one database and as egos of one
+    drive: each must come out as it does alone. One more result says whether all kinds of case are there.
 
     Errors: `RuleError` for a cases file that cannot be read.
     """
     cases = read_cases(rule)
     results = [run_case(rule, case) for case in cases]
+    if all(result.ok for result in results):  # else the crowd only says it again
+        mixed = _together(rule, cases)
+        results.append(CaseResult("all cases together", not mixed, mixed))
     problem = _coverage(cases)
     return [*results, CaseResult("kinds of case", not problem, problem and f"{cases_of(rule)}:{problem}")]
 
@@ -166,8 +176,9 @@ def _coverage(cases: Sequence[Case]) -> str:
 
 
 def run_case(rule: Rule, case: Case) -> CaseResult:
-    """Fill a scene, judge it by this rule alone, compare."""
-    message = difference(case, *judge(rule, case))
+    """Fill a scene, judge it by this rule alone, compare. Errors: `RuleError` with file, line and case."""
+    with _placed(rule, case):
+        message = difference(case, crowd.Outcome(*judge(rule, case)))
     return CaseResult(case.name, not message, message and f"{place(rule, case)}: {message}")
 
 
@@ -176,11 +187,20 @@ def place(rule: Rule, case: Case) -> str:
     return f"{cases_of(rule)}:{case.line}: case {case.name!r}"
 
 
-def difference(case: Case, verdicts: Sequence[Row], findings: Sequence[Row]) -> str:
+@contextmanager
+def _placed(rule: Rule, case: Case) -> Iterator[None]:
+    """Say of what is wrong in a case where the case stands."""
+    try:
+        yield
+    except RuleError as error:
+        raise RuleError(f"{place(rule, case)}: {error}") from error
+
+
+def difference(case: Case, outcome: crowd.Outcome) -> str:
     """Return '' where the rows are as the case expects, else one line that says how they differ."""
-    message = _difference(case.expect, verdicts)
-    if not message and case.findings not in {None, len(findings)}:
-        message = f"expected {case.findings} findings, got {len(findings)}"
+    message = _difference(case.expect, outcome.verdicts)
+    if not message and case.findings not in {None, len(outcome.findings)}:
+        message = f"expected {case.findings} findings, got {len(outcome.findings)}"
     return message
 
 
@@ -189,9 +209,30 @@ def judge(rule: Rule, case: Case) -> tuple[list[Row], list[Row]]:
 
     Errors: `RuleError` for tables, columns or values that cannot be understood.
     """
-    given = scene(rule, case.given, case.missing, place(rule, case))
-    outcome = crowd.judge([rule], given, case.params)[rule.id]
+    outcome = crowd.judge([rule], scene(rule, case.given, case.missing, "given"), case.params)[rule.id]
     return outcome.verdicts, outcome.findings
+
+
+def members(rule: Rule, cases: Sequence[Case]) -> list[crowd.Member]:
+    """Return the scenes of all cases, to be judged together. Errors: `RuleError` with file, line and case."""
+    found = []
+    for no, case in enumerate(cases):
+        with _placed(rule, case):
+            found.append(crowd.Member(no, scene(rule, case.given, case.missing, "given"), case.params))
+    return found
+
+
+def _together(rule: Rule, cases: Sequence[Case]) -> str:
+    """Judge all cases in one database, and return '' where each comes out as it expects."""
+    everybody = members(rule, cases)
+    for key, where in crowd.KEYS.items():
+        for group in crowd.crowds(everybody, key):
+            outcome = crowd.judge([rule], crowd.merge(group, key), group[0].params)[rule.id]
+            for member in group:
+                case = cases[member.no]
+                if message := difference(case, crowd.share(outcome, member.no)):
+                    return f"{place(rule, case)}: as one of {where}: {message}; does each join have {key}?"
+    return ""
 
 
 def _difference(expect: str | Sequence[Mapping[str, Any]], rows: Sequence[Row]) -> str:

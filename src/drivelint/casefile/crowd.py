@@ -18,7 +18,10 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
 
-_KEYS = ("drive_id", "ego_id", "environment_id")
+KEYS = {"drive_id": "drives of one database", "ego_id": "egos of one drive"}
+"""What tells the cases of a crowd apart, and what they are then."""
+
+_MARKED = ("drive_id", "ego_id", "environment_id")
 _FOUND = "drive_id, ego_id, t_start_ns, profile NULLS LAST, object_id NULLS LAST, occurrence"
 _ORDER = (
     "drive_id, ego_id, coalesce(t_ref_ns, t_start_ns) NULLS LAST, profile NULLS LAST, object_id NULLS LAST, occurrence"
@@ -43,7 +46,10 @@ class Member(NamedTuple):
 
 
 def judge(rules: Sequence[Rule], scene: Scene, params: Mapping[str, Any]) -> dict[str, Outcome]:
-    """Fill a scene, judge it by all the rules and return rule id -> outcome."""
+    """Fill a scene, judge it by all the rules and return rule id -> outcome.
+
+    Errors: `RuleError` for a value that does not fit its column.
+    """
     con = database()
     tables = [*scene, "verdict", "finding", "margin"]
     try:
@@ -120,11 +126,11 @@ def share(outcome: Outcome, no: int) -> Outcome:
 
 
 def _is_of(row: Row, no: int) -> bool:
-    return any(str(row.get(name)).startswith(f"{no}:") for name in _KEYS)
+    return any(str(row.get(name)).startswith(f"{no}:") for name in _MARKED)
 
 
 def _unmarked(row: Row, no: int) -> Row:
-    plain = {name: row[name].removeprefix(f"{no}:") for name in _KEYS if isinstance(row.get(name), str)}
+    plain = {name: row[name].removeprefix(f"{no}:") for name in _MARKED if isinstance(row.get(name), str)}
     return {**row, **plain}
 
 

@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import msgspec
 
-from drivelint.casefile import difference, place, read_cases
-from drivelint.casefile.crowd import Member, crowds, judge, merge, share
+from drivelint.casefile import difference, members, place, read_cases
+from drivelint.casefile.crowd import KEYS, crowds, judge, merge, share
 from drivelint.casefile.mutants import mutants
-from drivelint.casefile.scene import scene
 from drivelint.errors import RuleError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from drivelint.casefile import Case
+    from drivelint.casefile.crowd import Member, Outcome
     from drivelint.casefile.mutants import Mutant
     from drivelint.catalogue import Rule
 
@@ -128,34 +128,22 @@ def prove(rule: Rule) -> Proof:
 
 def _survivors(rule: Rule, alive: list[Mutant]) -> list[Mutant]:
     cases = read_cases(rule)
-    members = [
-        Member(no, scene(rule, case.given, case.missing, place(rule, case)), case.params)
-        for no, case in enumerate(cases)
-    ]
-    for key in ("drive_id", "ego_id"):
-        for crowd in crowds(members, key):
-            alive = _unnoticed(rule, alive, crowd, {m.no: cases[m.no] for m in crowd}, key)
+    everybody = members(rule, cases)
+    for key, where in KEYS.items():
+        for crowd in crowds(everybody, key):
+            outcomes = judge([rule, *(mutant.rule for mutant in alive)], merge(crowd, key), crowd[0].params)
+            if message := _wrong(rule, cases, crowd, outcomes[rule.id]):
+                raise RuleError(f"{message} (the rule itself, its cases judged as {where}: see rules test)")
+            alive = [mutant for mutant in alive if not _wrong(rule, cases, crowd, outcomes[mutant.rule.id])]
     return alive
 
 
-def _unnoticed(
-    rule: Rule, alive: list[Mutant], crowd: list[Member], cases: Mapping[int, Case], key: str
-) -> list[Mutant]:
-    """Return the mutants that come out of a crowd as the rule does: as every case expects."""
-    outcomes = judge([rule, *(mutant.rule for mutant in alive)], merge(crowd, key), crowd[0].params)
-
-    def wrong(rule_id: str) -> str:
-        for no, case in cases.items():
-            if message := difference(case, *share(outcomes[rule_id], no)):
-                return f"{place(rule, case)}: {message}"
-        return ""
-
-    if message := wrong(rule.id):
-        where = (
-            "in one database with the other cases" if key == "drive_id" else "with the other cases as egos beside it"
-        )
-        raise RuleError(f"{where}, {message}")
-    return [mutant for mutant in alive if not wrong(mutant.rule.id)]
+def _wrong(rule: Rule, cases: Sequence[Case], crowd: Sequence[Member], outcome: Outcome) -> str:
+    """Return '' where every case of a crowd comes out as it expects, else how one does not."""
+    for member in crowd:
+        if message := difference(cases[member.no], share(outcome, member.no)):
+            return f"{place(rule, cases[member.no])}: {message}"
+    return ""
 
 
 def _listed(rule: Rule) -> tuple[str, ...]:

@@ -9,13 +9,13 @@ from itertools import pairwise
 from statistics import median
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import duckdb
+
 from drivelint import store
 from drivelint.errors import RuleError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
-
-    import duckdb
 
     from drivelint.catalogue import Rule
 
@@ -244,7 +244,10 @@ def _clocks(steps: Iterable[Row], given: Sequence[Row]) -> list[Row]:
 
 
 def fill(con: duckdb.DuckDBPyConnection, table: str, rows: Sequence[Row]) -> None:
-    """Insert rows; columns that must not be NULL and are not given get a default of their type."""
+    """Insert rows; columns that must not be NULL and are not given get a default of their type.
+
+    Errors: `RuleError` for a value that does not fit its column.
+    """
     import pyarrow as pa
 
     if not rows:
@@ -252,4 +255,7 @@ def fill(con: duckdb.DuckDBPyConnection, table: str, rows: Sequence[Row]) -> Non
     zero = {"VARCHAR": "", "BOOLEAN": False, "DOUBLE": 0.0}
     defaults = {c: zero.get(column.type, 0) for c, column in _tables()[table].items() if not column.nullable}
     names = dict.fromkeys([*defaults, *(c for row in rows for c in row)])
-    store.insert(con, table, pa.table({c: [row.get(c, defaults.get(c)) for row in rows] for c in names}))
+    try:
+        store.insert(con, table, pa.table({c: [row.get(c, defaults.get(c)) for row in rows] for c in names}))
+    except (pa.ArrowException, duckdb.Error) as error:
+        raise RuleError(f"given: {table}: {str(error).splitlines()[0]}") from error
