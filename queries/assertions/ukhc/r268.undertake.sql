@@ -1,0 +1,36 @@
+-- title = "No overtaking on the left on motorways"
+-- clause = "UKHC R268: do not overtake on the left or move to a lane on your left to overtake; in congestion you may pass slower traffic on your right"
+-- hypothesis = "When the ego's front got past another vehicle's on a motorway, was that vehicle not on the overtaking side, or was traffic slow?"
+-- kind = "execution"
+-- derivation = "direct"
+-- severity = "major"
+-- legal = "should"
+-- status = "draft"
+-- sense = "holds"
+-- reads = ["data_log", "ego_state", "environment", "lanelet", "passing"]
+-- requires = ["map", "registration", "handedness", "ego_size"]
+--
+-- [applies]
+-- road_type = ["motorway"]
+--
+-- [params.congestion_mps]
+-- default = 16.7
+-- unit = "m/s"
+-- why = "our default: 60 km/h; where both are slower, lanes move at their own speeds"
+--
+-- # Draft: whether it was done to overtake, or the other merely slowed down in its lane to leave, is a judgement.
+
+-- @reference
+SELECT drive_id, ego_id, t_ns, object_id, occurrence FROM passing WHERE ego_passes AND NOT same_lane
+
+-- @condition
+-- whoever leaves by an exit lane may pass those who stay
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, p.side <> overtaking_side(m.handedness) AS holds,
+    NOT (p.ego_speed_mps < $congestion_mps AND p.speed_mps < $congestion_mps) AND n.lane_type NOT IN ('exit', 'offRamp') AS applies,
+    format('ego at {:.1f} m/s, the other {:.1f} m/s on its {}', p.ego_speed_mps, p.speed_mps, p.side) AS reason
+FROM reference r
+JOIN passing p USING (drive_id, ego_id, occurrence)
+JOIN data_log g USING (drive_id)
+JOIN environment m USING (environment_id)
+LEFT JOIN ego_state e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id AND e.t_ns = r.t_ns
+LEFT JOIN lanelet n ON n.environment_id = m.environment_id AND n.lanelet_id = e.lanelet_id
