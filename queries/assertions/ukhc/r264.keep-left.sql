@@ -1,0 +1,60 @@
+-- title = "Back to the left after overtaking"
+-- clause = "UKHC R264: keep in the left lane unless overtaking; move back to the left when you have passed and it is safe"
+-- hypothesis = "After passing a vehicle in the lane on its near side on a motorway, did the ego move back, or was that lane not free?"
+-- kind = "postcondition"
+-- subtype = "temporal"
+-- window_s = "back_s"
+-- quantifier = "eventually"
+-- derivation = "direct"
+-- severity = "minor"
+-- legal = "should"
+-- status = "draft"
+-- sense = "holds"
+-- reads = ["data_log", "ego_state", "environment", "lane_change", "lanelet", "pair", "passing"]
+-- requires = ["map", "registration", "handedness", "ego_size"]
+--
+-- [applies]
+-- road_type = ["motorway"]
+--
+-- [params.back_s]
+-- default = 10.0
+-- unit = "s"
+-- why = "our default: time to move back once the vehicle is passed"
+--
+-- [params.ahead_s]
+-- default = 10.0
+-- unit = "s"
+-- why = "our default: somebody less than this ahead in the near lane is about to be overtaken too"
+--
+-- [params.behind_m]
+-- default = 20.0
+-- unit = "m"
+-- why = "our default: somebody closer behind in the near lane would be cut in on"
+--
+-- # Draft: whether the lane was free for long enough to make moving back worth it is a judgement.
+
+-- @reference
+SELECT p.drive_id, p.ego_id, p.t_to_ns AS t_ns, p.object_id, p.side, m.environment_id
+FROM passing p
+JOIN data_log g USING (drive_id)
+JOIN environment m USING (environment_id)
+WHERE p.ego_passes AND NOT p.same_lane AND p.side <> overtaking_side(m.handedness)
+
+-- @condition
+-- back, or in a lane without another of the same direction on that side, or somebody is there, or may be
+WITH occupied AS (
+    SELECT DISTINCT e.drive_id, e.ego_id, e.t_ns, CASE WHEN p.d_m > e.d_m THEN 'left' ELSE 'right' END AS side
+    FROM ego_state e
+    JOIN pair p USING (drive_id, ego_id, t_ns)
+    WHERE abs(p.d_m) > p.half_width_m AND abs(p.d_m) < 3 * p.half_width_m
+        AND p.front_s_m > e.rear_s_m - $behind_m AND p.rear_s_m < e.front_s_m + $ahead_s * e.speed_mps
+)
+SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id,
+    CASE WHEN c.drive_id IS NOT NULL OR o.t_ns IS NOT NULL THEN true WHEN n.lanelet_id IS NOT NULL AND e.front_s_m IS NOT NULL THEN coalesce(b.lane_type, '') <> 'driving' OR b.along_road <> n.along_road END AS holds
+FROM reference_step s
+JOIN reference r USING (ref_id)
+JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
+LEFT JOIN occupied o ON o.drive_id = s.drive_id AND o.ego_id = s.ego_id AND o.t_ns = s.t_ns AND o.side = r.side
+LEFT JOIN lane_change c ON c.drive_id = s.drive_id AND c.ego_id = s.ego_id AND c.side = r.side AND c.t_start_ns = s.t_ns
+LEFT JOIN lanelet n ON n.environment_id = r.environment_id AND n.lanelet_id = e.lanelet_id
+LEFT JOIN lanelet b ON b.environment_id = r.environment_id AND b.lanelet_id = CASE r.side WHEN 'left' THEN n.left_id ELSE n.right_id END
