@@ -9,3 +9,8 @@ CREATE OR REPLACE MACRO queued(ahead_id, ahead_gap_m, ahead_speed_mps, known, ne
 
 -- A PET that was seen while somebody else could not be placed (`reason`) is only the most that it can be: it shows too little, not enough.
 CREATE OR REPLACE MACRO pet_known(pet_s, reason, enough_s) AS CASE WHEN reason IS NULL OR pet_s < enough_s THEN pet_s END;
+
+-- How somebody met the ego, in words.
+CREATE OR REPLACE MACRO met_words(object_id, pet_s, decel_mps2) AS
+    object_id || CASE WHEN pet_s < 0 THEN ' was there at the same time' ELSE format(' came {:.1f} s after the ego', pet_s) END
+    || coalesce(format(' and braked with {:.1f} m/s2', decel_mps2), '');
