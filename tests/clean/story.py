@@ -1,0 +1,163 @@
+"""A story: the ego drives along a way through chapters, each a stretch of road, what it meets there, and how it behaves.
+
+A chapter is a function of a `Story` and of what may be changed in it. It lays its roads and says how the ego drives; whom
+the ego meets it says afterwards (`story.then`), when it is known when the ego is where.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyarrow as pa
+
+from drivelint.batch import Drive
+from drivelint.maps import MapSource, load_map
+from tests import scenes
+from tests.clean.motion import CAR, HZ, Body, Plan, track
+from tests.clean.route import Kind, Route
+from tests.scenes import Actor
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from drivelint.demo.line import Line
+
+    Floats = NDArray[np.float64]
+
+GARAGE_Y = -3000.0  # where those stand who are not on the road yet, or no more
+
+
+@dataclass
+class Story:
+    """What chapters write into. `nation` gives the side of the road and the words of `--env`."""
+
+    nation: str
+    events: list[tuple[float, str, str | None]] = field(default_factory=list)
+    conditions: dict[str, str] = field(default_factory=dict)
+    lights: list[tuple[str, float, float]] = field(default_factory=list)
+    hazards: list[tuple[float, float]] = field(default_factory=list)
+    reverse: list[tuple[float, float]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.route = Route("rht" if self.nation == "de" else "lht")
+        self.plan = Plan(10.0, self.route.offset(), 13.0)
+        self.events.append((0.0, "chosen_speed", "13.0;start"))
+        self.conditions.setdefault("nation", self.nation)
+        self.others: list[Actor] = []
+        self.signals: list[tuple[str, float, str]] = []
+        self._then: list[Callable[[], None]] = []
+        self.body = CAR
+        self.t: Floats = np.zeros(0)
+        self.s: Floats = np.zeros(0)
+        self.keep: Callable[[Actor], Actor] = lambda ego: ego
+
+    # ---- while the way is laid
+
+    def then(self, scene: Callable[[], None]) -> None:
+        """Say whom the ego meets, when its drive is known."""
+        self._then.append(scene)
+
+    def slow(self, start: float, length: float, speed: float, why: str = "road") -> None:
+        """Drive no faster than this from a station on, and say that and why."""
+        self.plan.slow(start, start + length, speed)
+        self.then(lambda: self.events.append((self.when(start), "chosen_speed", f"{speed};{why}")))
+
+    def indicates(self, side: str, start: float, end: float, *, looks: bool = True) -> None:
+        """Have the indicator of the nearside or the offside on between two stations of the ego's centre, after a look."""
+        self.lights.append((side, start, end))
+        if looks:
+            self.then(lambda: self.events.append((self.when(start) - 1.0, "mirror_check", None)))
+
+    def leaves(self, by: float, at: float, within: float, *, looks: tuple[str, ...] = ("mirror_check", "blind_spot_check")) -> None:
+        """Move to the nearside by so much, far enough to leave the lane, after two looks."""
+        self.plan.shift(by, at, within)
+        self.then(lambda: self.events.extend((self.when(at) - 1.5 + k, look, None) for k, look in enumerate(looks)))
+
+    def stands(self, halt: float) -> float:
+        """Return when the ego comes to stand at the station of a halt."""
+        return self.when(halt - 0.1)
+
+    # ---- when the drive is known
+
+    def when(self, s: float) -> float:
+        """Return when the ego's centre first reaches a station."""
+        return float(self.t[min(int(np.searchsorted(self.s, s)), len(self.t) - 1)])
+
+    def where(self, t: ArrayLike) -> Floats:
+        """Return the ego's station at times; before and after the drive it goes on as fast as at its ends."""
+        t = np.asarray(t, np.float64)
+        found = np.interp(t, self.t, self.s)
+        first, last = (self.s[1] - self.s[0]) * HZ, (self.s[-1] - self.s[-2]) * HZ
+        found = found + np.minimum(t - self.t[0], 0.0) * first + np.maximum(t - self.t[-1], 0.0) * last
+        return np.asarray(found, np.float64)
+
+    def meets(self, s: float | Floats | Callable[[Floats], Floats], n: ArrayLike | Callable[[Floats], Floats], body: Body = CAR, *, line: Line | None = None,
+              between: tuple[float, float] | None = None, turned: float = 0.0) -> None:  # fmt: skip
+        """Add somebody at stations and offsets of the ego's way, or of another line, while between two times.
+
+        Before and after he stands far away.
+        """
+        where = np.asarray(s(self.t) if callable(s) else s, np.float64)
+        where, beside = np.broadcast_arrays(where, np.asarray(n(self.t) if callable(n) else n, np.float64))
+        where = np.broadcast_to(where, self.t.shape)
+        beside = np.broadcast_to(beside, self.t.shape)
+        name = f"{len(self.others) + 2:03d}"
+        actor = track(name, body, line or self.route.line, self.route.h, self.t, where, beside, turned=turned)
+        if between is not None:
+            actor = _garaged(actor, (self.t >= between[0]) & (self.t <= between[1]), len(self.others))
+        self.others.append(actor)
+
+    def drive(self, name: str) -> Drive:
+        """Return the whole story as a drive, ready for the bench."""
+        self.t, self.s = self.plan.stations(self.route.length)
+        for scene in self._then:
+            scene()
+        ego = track("ego", self.body, self.route.line, self.route.h, self.t, self.s, self.plan.offsets(self.s))
+        ego = self.keep(replace(ego, indicator=self._lamps()))
+        text = self.route.text()
+        made = scenes.drive([ego, *self.others], load_map(MapSource(f"{name}.xodr", text.encode())), drive_id=name)
+        return _with(made, name, self)
+
+    def _lamps(self) -> tuple[str, ...]:
+        near, off = ("left", "right") if self.route.h > 0 else ("right", "left")
+        lamp = np.full(self.s.shape, "off", dtype=object)
+        for side, start, end in self.lights:
+            lamp[(self.s >= start) & (self.s < end)] = near if side == "nearside" else off
+        for start, end in self.hazards:
+            lamp[(self.t >= start) & (self.t < end)] = "hazard"
+        return tuple(lamp)
+
+
+def _garaged(actor: Actor, on: NDArray[np.bool_], place: int) -> Actor:
+    x, y = 20.0 * place, GARAGE_Y
+    values = {"x": x, "y": y, "yaw": 0.0, "vx": 0.0, "vy": 0.0}
+    return replace(actor, **{name: np.where(on, getattr(actor, name), value) for name, value in values.items()})
+
+
+def _with(made: Drive, name: str, story: Story) -> Drive:
+    """Return the drive with what else the log says: lights' states, declared events, conditions."""
+    rows: dict[str, list[dict[str, Any]]] = {
+        "signal_state": [
+            {"drive_id": name, "signal_id": signal, "t_ns": round(t * 1e9), "state": state}
+            for signal, t, state in sorted(story.signals)
+        ],
+        "declared_event": [
+            {"drive_id": name, "actor_id": "ego", "t_ns": round(t * 1e9), "event": event, "value": value}
+            for t, event, value in sorted(story.events, key=lambda e: (e[0], e[1]))
+        ],
+        "drive_condition": [
+            {"drive_id": name, "condition": condition, "value": value, "source": "env"}
+            for condition, value in sorted(story.conditions.items())
+        ],
+    }
+    tables = made.trace.tables | {
+        table: pa.Table.from_pylist(content, schema=made.trace.tables[table].schema) for table, content in rows.items()
+    }
+    return replace(made, trace=replace(made.trace, tables=tables))
+
+
+__all__ = ["CAR", "Body", "Kind", "Story"]
