@@ -57,14 +57,26 @@ CREATE TABLE near_mark (
     kind VARCHAR NOT NULL,            -- see way_mark
     mark_id VARCHAR NOT NULL,         -- see way_mark
     s_start_m DOUBLE NOT NULL,        -- see way_mark
-    t_ns BIGINT NOT NULL,             -- a step with the front bumper 10 m before it or further and the rear one at most 10 m past it
+    t_ns BIGINT NOT NULL,             -- a step with the front bumper 10 m before it or further and the rear one at most 10 m past it, or one before that not
     k INTEGER NOT NULL,               -- see step
     seg INTEGER NOT NULL,             -- see step
     front_m DOUBLE NOT NULL,          -- front bumper beyond its start; negative: before it
     rear_m DOUBLE NOT NULL,           -- rear bumper beyond its end
-    front_before_m DOUBLE,            -- front_m one step before; NULL: no such step, a hole, or not placed then
-    rear_before_m DOUBLE,             -- rear_m one step before
-    running BOOLEAN NOT NULL          -- the chain is the ego's running chain at this step
+    front_before_m DOUBLE,            -- front_m at the last step before that was placed on this chain; NULL: none
+    rear_before_m DOUBLE,             -- rear_m then
+    joined BOOLEAN NOT NULL,          -- that is the step before, without a hole
+    running BOOLEAN NOT NULL          -- the chain is the ego's running chain at this step, and it is not beside the lane by more than 4 m
+);
+
+CREATE TABLE signal_phase (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    signal_id VARCHAR NOT NULL,       -- see signal_state
+    t_from_ns BIGINT NOT NULL,        -- the state holds from here
+    t_to_ns BIGINT,                   -- to before here; NULL: no end
+    state VARCHAR,                    -- see signal_state; NULL: not known, also beyond the last sample of a light that was recorded once a second or oftener
+    state_before VARCHAR,             -- the state before; NULL: not known
+    begin_seen BOOLEAN NOT NULL,      -- both states are known: the change was seen
+    t_before_ns BIGINT                -- since when the state before held; NULL: not seen
 );
 
 CREATE TABLE junction_passage (
@@ -101,22 +113,22 @@ CREATE TABLE passage_conflict (
 CREATE TABLE stop_line_crossing (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    occurrence INTEGER NOT NULL,      -- 0.. in time order; the ego's front goes over a stop line of its own lane
-    stop_line_id VARCHAR NOT NULL,    -- the line
+    occurrence INTEGER NOT NULL,      -- 0.. in time order; the ego's front goes over a stop line of its running lane; again only if it was 0.5 m back in between
+    stop_line_id VARCHAR NOT NULL,    -- the line; where a light has none, the light itself, see way_mark (a stop or give-way sign without a line: no row, see junction_passage)
     lanelet_id VARCHAR NOT NULL,      -- the lanelet that it crosses
-    control VARCHAR,                  -- traffic_light, stop, give_way: the signal that the line belongs to; NULL: the map has none for it
+    control VARCHAR,                  -- traffic_light, stop, give_way: the signal that the line belongs to, see way_mark; NULL: the map has none for it
     signal_id VARCHAR,                -- that signal
     t_ns BIGINT NOT NULL,             -- first step with the ego's front past the line
     begin_seen BOOLEAN NOT NULL,      -- the step before is there, with the front before the line
     speed_mps DOUBLE,                 -- ego's speed at t
-    state VARCHAR,                    -- the light's state at t, from signal_state: red, red_amber, amber, green, flashing, off; NULL: not known
+    state VARCHAR,                    -- the light's state at t, see signal_phase: red, red_amber, amber, green, flashing, off; NULL: not known
     state_before VARCHAR,             -- its state before the present one
     t_state_ns BIGINT,                -- since when it has been so; NULL: not known
     amber_front_m DOUBLE,             -- at the onset of the amber that it crossed on, or of the one before that red: ego's front to the line; NULL: none seen
     amber_speed_mps DOUBLE,           -- ego's speed then
-    slowest_mps DOUBLE,               -- least speed with the front 0 to 3 m before the line; NULL: never seen there
+    slowest_mps DOUBLE,               -- least speed with the front 0 to 3 m before the line, or at the last step before it if no step fell there; NULL: never seen there, or the speed not known
     slowest_front_m DOUBLE,           -- ego's front to the line at that step
-    stood_s DOUBLE                    -- longest time that it stood (0.1 m/s) with the front 0 to 1 m before the line; 0: it did not
+    stood_s DOUBLE                    -- longest time that it stood (at most 0.1 m/s) with the front 0 to 1 m before the line, as far as seen; 0: it did not; NULL: the speed there is not known
 );
 
 CREATE TABLE crossing_occupancy (

@@ -4,10 +4,16 @@ from __future__ import annotations
 
 import math
 from functools import cache
+from typing import TYPE_CHECKING
+
+import pyarrow as pa
 
 from drivelint.maps import MapSource, load_map
 from tests.maps import xodr
 from tests.scenes import LANE, Road, limited, linked, plan
+
+if TYPE_CHECKING:
+    from drivelint.batch import Drive
 
 R = 15.0  # the junction is a square of +-15 m around the origin
 ARM = 185.0
@@ -108,3 +114,14 @@ def cross(
             piece = {1: (TURN, -_ARC), 2: (2 * R, 0.0), 3: (TURN, _ARC)}[hops]
             ways[a + b] = Road(environment, ((ARM, 0.0), piece, (ARM, 0.0)), (*begin[a], heading[a]))
     return ways
+
+
+def lit(told: Drive, signal_id: str, *states: tuple[float, str | None]) -> Drive:
+    """Return the drive with a light that shows each state from its time in seconds on."""
+    table = told.trace.tables["signal_state"]
+    new = [
+        {"drive_id": told.trace.drive_id, "signal_id": signal_id, "t_ns": round(t * 1e9), "state": state}
+        for t, state in states
+    ]
+    told.trace.tables["signal_state"] = pa.concat_tables([table, pa.Table.from_pylist(new, schema=table.schema)])
+    return told
