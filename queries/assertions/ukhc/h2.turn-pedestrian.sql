@@ -27,5 +27,6 @@ WHERE p.turn IS DISTINCT FROM 'straight'
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, CASE WHEN turn IS NOT NULL THEN pet_s END AS observed, $pet_s AS required,
-    CASE WHEN turn IS NULL THEN 'the log does not show which way the ego turned' ELSE reason END AS reason
+    CASE WHEN turn IS NULL THEN 'the log does not show which way the ego turned'
+        WHEN pet_s IS NULL THEN reason END AS reason
 FROM reference

@@ -34,6 +34,6 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id,
         WHEN a.actor_class IN ('bicycle', 'animal') OR (r.pet_s >= $pet_s AND r.decel_mps2 <= $decel_mps2)
         THEN r.pet_s >= $pet_s AND r.decel_mps2 <= $decel_mps2 END AS holds,
     CASE WHEN r.turn IS NULL THEN 'the log does not show which way the ego turned'
-        ELSE coalesce(r.reason, met_words(r.object_id, r.pet_s, r.decel_mps2)) END AS reason
+        ELSE coalesce(met_words(r.object_id, r.pet_s, r.decel_mps2), r.reason) END AS reason
 FROM reference r
 LEFT JOIN actor a ON a.drive_id = r.drive_id AND a.actor_id = r.object_id

@@ -32,5 +32,5 @@ WHERE coalesce(p.control, 'give_way') = 'give_way'
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, CASE WHEN control IS NOT NULL THEN pet_s >= $pet_s AND decel_mps2 <= $decel_mps2 END AS holds,
     CASE WHEN control IS NULL THEN 'the map does not say what governs the way in'
-        ELSE coalesce(reason, met_words(object_id, pet_s, decel_mps2)) END AS reason
+        ELSE coalesce(met_words(object_id, pet_s, decel_mps2), reason) END AS reason
 FROM reference

@@ -27,5 +27,6 @@ WHERE p.across IS DISTINCT FROM false
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, CASE WHEN across THEN pet_s END AS observed, $pet_s AS required,
-    CASE WHEN across IS NULL THEN 'which way the ego turned, or the side of the road, is not known' ELSE reason END AS reason
+    CASE WHEN across IS NULL THEN 'which way the ego turned, or the side of the road, is not known'
+        WHEN pet_s IS NULL THEN reason END AS reason
 FROM reference
