@@ -53,8 +53,10 @@ def lock(con: duckdb.DuckDBPyConnection) -> None:
     """Shut a database off from files and network, and its settings from change, before rules run in it.
 
     What is attached stays so, Arrow tables can still be registered and spilling goes on. `memory_limit` alone can be set:
-    a batch that is out of memory is tried again with more. Errors: `duckdb.Error` if it is locked already.
+    a batch that is out of memory is tried again with more. One that is locked already stays as it is.
     """
+    if con.execute("SELECT current_setting('lock_configuration')").fetchall()[0][0]:
+        return
     for setting in (
         "allow_persistent_secrets=false",
         "autoinstall_known_extensions=false",
