@@ -516,5 +516,7 @@ CREATE TABLE exposure (
     ego_id VARCHAR NOT NULL,          -- the ego
     km DOUBLE NOT NULL,               -- way made
     hours DOUBLE NOT NULL,            -- time, without the holes
+    engaged_km DOUBLE NOT NULL,       -- way up to the steps at which the automated driver drives (see ego_condition)
+    engaged_hours DOUBLE NOT NULL,    -- the same time
     n_steps BIGINT NOT NULL           -- ego steps
 );

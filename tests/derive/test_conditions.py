@@ -249,3 +249,15 @@ def test_junctions_of_the_map_are_a_signal() -> None:
     way, plain = tee()["straight"], highway("rural", *BOTH)
     assert signals(drive([ride(way)], way.environment))["junctions"]
     assert not signals(drive([ride(plain)], plain.environment))["junctions"]
+
+
+def test_exposure_tells_the_way_and_time_of_the_automated_driver() -> None:
+    """Engaged at the steps from 0.4 s on, and not known from 0.8 s on."""
+    (all_of_it,) = rows(derived(drive([ride()], None), tables=["exposure"]), "FROM exposure")
+    assert all_of_it["engaged_km"] == pytest.approx(all_of_it["km"]) == pytest.approx(0.01)
+    assert all_of_it["engaged_hours"] == all_of_it["hours"] == pytest.approx(1 / 3600)
+    said: list[Event] = [(0.0, "engaged", "off"), (0.35, "engaged", "on"), (0.75, "engaged", "?")]
+    (part,) = rows(derived(saying(drive([ride()], None), said), tables=["exposure"]), "FROM exposure")
+    assert (part["km"], part["hours"], part["n_steps"]) == (all_of_it["km"], all_of_it["hours"], 11)
+    assert part["engaged_km"] == pytest.approx(0.004)
+    assert part["engaged_hours"] == pytest.approx(0.4 / 3600)

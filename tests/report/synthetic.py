@@ -45,7 +45,7 @@ def drive(drive_id: str = "d1", **over: Any) -> dict[str, Any]:
         "drive_id": drive_id, "file_name": f"{drive_id}.csv", "sha256": "ab" * 32, "format": "canonical-csv",
         "environment_id": "road-1@lht", "map_name": "road.xodr", "map_sha256": "cd" * 32, "handedness": "lht",
         "handedness_source": "attribute", "t_start_ns": 100 * SECOND, "duration_s": 25.0, "km": 0.12, "n_states": 750,
-        "n_steps": 250, "n_egos": 1, "status": "judged", "lossy": False, "exposure": [], "occasions": [], "quality": [],
+        "n_steps": 250, "n_egos": 1, "status": "judged", "lossy": False, "conditions": [], "exposure": [], "occasions": [], "quality": [],
         "not_judged": [],
     } | over  # fmt: skip
 

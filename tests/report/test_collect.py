@@ -27,7 +27,18 @@ def con() -> duckdb.DuckDBPyConnection:
     insert(
         con,
         "exposure",
-        [{"drive_id": "d1", "ego_id": e, "km": km, "hours": 0.1, "n_steps": 20} for e, km in (("b", 0.2), ("a", 0.1))],
+        [
+            {
+                "drive_id": "d1",
+                "ego_id": e,
+                "km": km,
+                "hours": 0.1,
+                "engaged_km": km / 2,
+                "engaged_hours": 0.05,
+                "n_steps": 20,
+            }
+            for e, km in (("b", 0.2), ("a", 0.1))
+        ],
     )
     insert(con, "quality", [{"drive_id": "d1", "check_id": "gap", "severity": "warning", "n": 1, "message": "a hole"}])
     insert(
@@ -72,10 +83,12 @@ def test_a_drive_is_told_with_map_way_and_what_is_missing(con: duckdb.DuckDBPyCo
     assert row["duration_s"] == 2.0
     assert row["km"] == pytest.approx(0.3)
     assert (row["n_egos"], row["n_steps"]) == (2, 40)
-    assert [x["ego_id"] for x in row["exposure"]] == ["a", "b"]
+    assert [(x["ego_id"], x["engaged_km"], x["engaged_hours"]) for x in row["exposure"]] == [
+        ("a", 0.05, 0.05), ("b", 0.1, 0.05),
+    ]  # fmt: skip
     assert row["occasions"] == [
-        {"rule_id": "ukhc.r162.safe-distance-ahead", "profile": "nominal", "n": 2},
-        {"rule_id": "ukhc.r162.safe-distance-ahead", "profile": "relaxed", "n": 1},
+        {"rule_id": "ukhc.r162.safe-distance-ahead", "profile": "nominal", "n": 2, "n_judged": 2},
+        {"rule_id": "ukhc.r162.safe-distance-ahead", "profile": "relaxed", "n": 1, "n_judged": 0},
     ]
     assert [x["message"] for x in row["quality"]] == ["a hole", "map road.xodr, 1.0.1: no way on"]
     assert row["not_judged"] == [{"ego_id": "a", "signal": "indicator", "reason": "not in the log"}]

@@ -35,6 +35,15 @@ def test_all_counts_stand_beside_each_other() -> None:
     assert told["rules"][2]["verdicts"] == dict.fromkeys(told["verdicts"], 0)
 
 
+def test_packs_are_counted_apart() -> None:
+    rules = [rule(), rule("rss.along", pack="rss"), rule("rss.silent", pack="rss")]
+    run = result([verdict("fail"), verdict("pass", rule_id="rss.along")], [finding()], rules=rules)
+    none = dict.fromkeys(("pass", "fail", "unknown", "not_applicable", "error"), 0)
+    assert json.loads(summary.render(run))["packs"] == [
+        {"pack": "ukhc", "verdicts": none | {"fail": 1}}, {"pack": "rss", "verdicts": none | {"pass": 1}},
+    ]  # fmt: skip
+
+
 def test_it_names_inputs_versions_and_the_exit() -> None:
     told = json.loads(summary.render(RUN))
     assert told["output_schema"] >= 1

@@ -52,6 +52,23 @@ def test_everything_is_told(width: int) -> None:
     assert "exit 1: 1 verdict failed at or above severity critical" in text
 
 
+def test_packs_are_counted_apart() -> None:
+    rules = [rule(), rule("rss.along", pack="rss"), rule("rss.across", pack="rss")]
+    rows = [verdict("pass"), verdict("fail", rule_id="rss.along"), verdict("pass", rule_id="rss.across")]
+    lines = [line.split() for line in shown(result(rows, [finding(rule_id="rss.along")], rules=rules)).splitlines()]
+    assert ["all", "of", "ukhc", "1", "·", "·", "·", "·"] in lines
+    assert ["all", "of", "rss", "1", "1", "·", "·", "·"] in lines
+    assert not [line for line in lines if line[:1] == ["all"] and line[1:2] != ["of"]]
+    alone = [line.split() for line in shown(result([verdict("pass")])).splitlines()]
+    assert ["all", "1", "·", "·", "·", "·"] in alone
+
+
+def test_the_conditions_that_were_given_are_told() -> None:
+    wet = [{"condition": "weather", "value": "wet", "source": "env"}]
+    assert "judged in: weather=wet" in shown(result([verdict("pass")], drives=[drive(conditions=wet)]))
+    assert "judged in" not in shown(result([verdict("pass")]))
+
+
 def test_nothing_to_report_is_short() -> None:
     text = shown(result([verdict("pass")]))
     for section in ("Findings", "Near misses", "Could not be judged", "Data quality"):

@@ -22,14 +22,17 @@ _DRIVES: Final = """
 WITH
     way AS (
         SELECT drive_id,
-            list({'ego_id': ego_id, 'km': km, 'hours': hours, 'n_steps': n_steps} ORDER BY ego_id) AS exposure
+            list({'ego_id': ego_id, 'km': km, 'hours': hours, 'engaged_km': engaged_km, 'engaged_hours': engaged_hours,
+                'n_steps': n_steps} ORDER BY ego_id) AS exposure
         FROM exposure WHERE coalesce(list_contains($only::VARCHAR[], drive_id), true) GROUP BY drive_id),
     applied AS (
-        SELECT drive_id, rule_id, profile, count(*) AS n FROM verdict
+        SELECT drive_id, rule_id, profile, count(*) AS n, count(*) FILTER (verdict IN ('pass', 'fail')) AS n_judged
+        FROM verdict
         WHERE verdict <> 'not_applicable' AND coalesce(list_contains($only::VARCHAR[], drive_id), true) GROUP BY ALL),
     occasion AS (
         SELECT drive_id,
-            list({'rule_id': rule_id, 'profile': profile, 'n': n} ORDER BY rule_id, profile NULLS FIRST) AS occasions
+            list({'rule_id': rule_id, 'profile': profile, 'n': n, 'n_judged': n_judged}
+                ORDER BY rule_id, profile NULLS FIRST) AS occasions
         FROM applied GROUP BY drive_id),
     defect AS (
         SELECT drive_id, check_id, severity, actor_id, n, t_first_ns, message FROM quality

@@ -32,6 +32,16 @@ def by(verdicts: pa.Table, key: str) -> dict[str, dict[str, int]]:
     return counted
 
 
+def packs(rules: pa.Table, told: dict[str, dict[str, int]]) -> dict[str, dict[str, int]]:
+    """Return pack -> verdict -> number of rows, from what was told of each rule; packs in the order of `rules`."""
+    found: dict[str, dict[str, int]] = {}
+    for rule_id, pack in zip(rules["rule_id"].to_pylist(), rules["pack"].to_pylist(), strict=True):
+        sums = found.setdefault(pack, dict.fromkeys(VERDICTS, 0))
+        for verdict, n in told.get(rule_id, {}).items():
+            sums[verdict] += n
+    return found
+
+
 def rows_by(rows: pa.Table, key: str) -> dict[str, int]:
     """Return key's value -> number of rows."""
     return {item["values"]: item["counts"] for item in pc.value_counts(rows[key]).to_pylist()}

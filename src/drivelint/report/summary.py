@@ -35,6 +35,10 @@ def content(result: Result) -> dict[str, Any]:
         "verdicts": counts.total(result.verdicts),
         "near_misses": near.num_rows,
         "findings": counts.tally(result.findings, counts.SEVERITIES, "severity"),
+        "packs": [
+            {"pack": pack, "verdicts": told}
+            for pack, told in counts.packs(result.rules, counts.by(result.verdicts, "rule_id")).items()
+        ],
         "rules": _rules(result, counts.rows_by(near, "rule_id")),
         "drives": _drives(result, counts.rows_by(near, "drive_id")),
     }

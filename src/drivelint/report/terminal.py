@@ -93,7 +93,10 @@ def _rules(result: Result, width: int) -> Table:
         severity = [Text(row["severity"], style=_SEVERITY[row["severity"]])] if wide else []
         table.add_row(name, *severity, *_count_cells(told.get(row["rule_id"], {})))
     table.add_section()
-    table.add_row(Text("all", style="bold"), *([""] if wide else []), *_count_cells(counts.total(result.verdicts)))
+    packs = counts.packs(result.rules, told)
+    for pack, sums in packs.items():  # packs are never one verdict
+        name = "all" if len(packs) == 1 else f"all of {pack}"
+        table.add_row(Text(name, style="bold"), *([""] if wide else []), *_count_cells(sums))
     return table
 
 
@@ -184,6 +187,9 @@ def _end(result: Result, out: str | None) -> Text:
     )
     told = counts.total(result.verdicts)
     text = Text(", ".join(f"{n} {_HEAD[verdict]}" for verdict, n in told.items()))
+    given = {f"{c['condition']}={c['value']}" for cs in result.drives["conditions"].to_pylist() for c in cs or ()}
+    if given:
+        text.append(f"\njudged in: {', '.join(sorted(given))}")
     text.append(f"\nexit {int(end.code)}: {end.why}", style=style)
     if told["unknown"]:
         text.append(
