@@ -95,8 +95,8 @@ def _rules(result: Result, width: int) -> Table:
     table.add_section()
     packs = counts.packs(result.rules, told)
     for pack, sums in packs.items():  # packs are never one verdict
-        name = "all" if len(packs) == 1 else f"all of {pack}"
-        table.add_row(Text(name, style="bold"), *([""] if wide else []), *_count_cells(sums))
+        what = "all" if len(packs) == 1 else f"all of {pack}"
+        table.add_row(Text(what, style="bold"), *([""] if wide else []), *_count_cells(sums))
     return table
 
 
