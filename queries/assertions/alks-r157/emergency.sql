@@ -8,7 +8,7 @@
 -- status = "stable"
 -- sense = "holds"
 -- exempt_after_s = "grace_s"
--- reads = ["ego_mode", "ego_motion"]
+-- reads = ["clock", "ego_mode", "ego_motion"]
 -- requires = ["mode_engaged"]
 --
 -- [params.emergency_mps2]
@@ -21,9 +21,15 @@
 -- default = 0.3
 -- unit = "s"
 -- why = "our default: the smoothing of the acceleration and the delay of the message"
+--
+-- [params.edge_s]
+-- default = 1.0
+-- unit = "s"
+-- why = "our default: so near to the ends of the log the filter's windows are not whole"
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, f.is_on AS holds, m.accel_mps2 < -$emergency_mps2 AS applies,
+SELECT m.drive_id, m.ego_id, m.t_ns, f.is_on AS holds, judged_inside(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AND m.accel_mps2 < -$emergency_mps2 AS applies,
     CASE WHEN f.mode IS NULL THEN 'the log never declares emergency_manoeuvre' END AS reason
 FROM ego_motion m
-LEFT JOIN (SELECT * FROM ego_mode WHERE mode = 'emergency_manoeuvre') f USING (drive_id, ego_id, t_ns)
+JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
+LEFT JOIN (SELECT * FROM ego_mode WHERE mode = 'emergency_manoeuvre') f ON f.drive_id = m.drive_id AND f.ego_id = m.ego_id AND f.t_ns = m.t_ns

@@ -10,7 +10,7 @@
 -- unit = "m/s2"
 -- observes = "acceleration"
 -- near_margin = 0.2
--- reads = ["ego_mode", "ego_motion"]
+-- reads = ["clock", "ego_mode", "ego_motion"]
 -- requires = ["mode_engaged", "mode_minimal_risk_manoeuvre"]
 --
 -- [params.brake_mps2]
@@ -18,8 +18,14 @@
 -- unit = "m/s2"
 -- why = "deceleration allowed"
 -- source = "UN R157 5.5.1"
+--
+-- [params.edge_s]
+-- default = 1.0
+-- unit = "s"
+-- why = "our default: so near to the ends of the log the filter's windows are not whole"
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, m.accel_mps2 AS observed, -$brake_mps2 AS required, f.is_on AS applies
+SELECT m.drive_id, m.ego_id, m.t_ns, m.accel_mps2 AS observed, -$brake_mps2 AS required, f.is_on AND judged_inside(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies
 FROM ego_motion m
-LEFT JOIN (SELECT * FROM ego_mode WHERE mode = 'minimal_risk_manoeuvre') f USING (drive_id, ego_id, t_ns)
+JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
+LEFT JOIN (SELECT * FROM ego_mode WHERE mode = 'minimal_risk_manoeuvre') f ON f.drive_id = m.drive_id AND f.ego_id = m.ego_id AND f.t_ns = m.t_ns

@@ -10,7 +10,7 @@
 -- unit = "m/s2"
 -- observes = "acceleration"
 -- near_margin = 0.2
--- reads = ["ego_motion", "lead"]
+-- reads = ["clock", "ego_motion", "lead"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [applies]
@@ -39,12 +39,18 @@
 -- unit = "m/s2"
 -- why = "hardest deceleration of the vehicle ahead"
 -- source = "Maierhofer et al. 2020, Table II"
+--
+-- [params.edge_s]
+-- default = 1.0
+-- unit = "s"
+-- why = "our default: so near to the ends of the log the filter's windows are not whole"
 
 -- @condition
 SELECT m.drive_id, m.ego_id, m.t_ns, m.accel_mps2 AS observed, -$abrupt_mps2 AS required,
     -- braking for a vehicle that is too near, or that brakes itself, has its reason; no row of lead: it may have one
-    NOT (m.accel_mps2 < -$abrupt_mps2 AND CASE WHEN l.t_ns IS NOT NULL THEN l.object_id IS NOT NULL AND (
+    judged_inside(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AND NOT (m.accel_mps2 < -$abrupt_mps2 AND CASE WHEN l.t_ns IS NOT NULL THEN l.object_id IS NOT NULL AND (
         l.gap_m < stvo_safe_gap_m(l.ego_speed_mps, l.speed_mps, $reaction_s, $brake_mps2, $brake_lead_mps2)
         OR m.accel_mps2 - l.accel_mps2 >= -$abrupt_mps2) END) AS applies
 FROM ego_motion m
-LEFT JOIN lead l USING (drive_id, ego_id, t_ns)
+JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
+LEFT JOIN lead l ON l.drive_id = m.drive_id AND l.ego_id = m.ego_id AND l.t_ns = m.t_ns

@@ -9,6 +9,7 @@
 -- sense = ">"
 -- unit = "m/s"
 -- observes = "speed"
+-- exempt_after_s = "settle_s"
 -- merge_gap_s = 5.0
 -- reads = ["ego_condition", "ego_state", "lead"]
 -- requires = ["map", "registration", "ego_size", "speed_limits"]
@@ -21,6 +22,11 @@
 -- unit = "m/s"
 -- why = "so far below the limit the traffic is hindered"
 -- source = "Maierhofer et al. 2020, Table II"
+--
+-- [params.settle_s]
+-- default = 10.0
+-- unit = "s"
+-- why = "our default: time to speed up after the motorway is entered, or the slow vehicle ahead has gone or sped up"
 --
 -- [params.desired_mps]
 -- default = 36.11
