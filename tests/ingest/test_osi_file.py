@@ -8,7 +8,7 @@ import pytest
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 
 from drivelint.errors import TraceError
-from drivelint.ingest.osi_schema import reading_set
+from drivelint.osi_schema import reading_set
 from tests.ingest.logs import actors, at, log, quality, read, states
 from tests.shared_data import shared
 

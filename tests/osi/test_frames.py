@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from drivelint.ingest.trace import BRAKE_LIGHTS, CLASSES, INDICATORS
 from drivelint.osi import frames
 from drivelint.osi.frames import Objects, head, moving_objects, traffic_light
-from drivelint.ingest.osi_schema import GROUND_TRUTH, descriptor_set
+from drivelint.osi_schema import GROUND_TRUTH, descriptor_set
 
 VECTORS = {
     "position": {"x": "x_m", "y": "y_m", "z": "z_m"},

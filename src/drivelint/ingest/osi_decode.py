@@ -9,7 +9,9 @@ import numpy as np
 import ptars
 import pyarrow as pa
 import pyarrow.compute as pc
+from google.protobuf.message import DecodeError
 
+from drivelint import osi_schema
 from drivelint.errors import TraceError
 from drivelint.ingest import descriptors
 from drivelint.ingest.osi_words import Bulbs, bulbs_of, child, state_codes, words_of
@@ -146,6 +148,24 @@ class Decoder:
                 self._handler.list_to_record_batch([packet.data])
             except ValueError as error:
                 raise malformed(self._path, packet, error) from error
+
+
+def lanes_of(data: bytes, name: str) -> bytes | None:
+    """Return the lanes of a ground truth (or of the one in a sensor view) as a message of their own, or None: no lanes.
+
+    Without boundaries they have no width, and nothing can be placed on them: None too.
+    """
+    try:
+        outer = osi_schema.message(name.removeprefix("osi3.")).FromString(data)
+    except DecodeError:
+        return None  # whether the message is damaged, who reads its objects says
+    truth = outer.global_ground_truth if name == SENSOR_VIEW else outer
+    if not truth.lane or not truth.lane_boundary:
+        return None
+    kept = osi_schema.message("GroundTruth")()
+    kept.lane.extend(truth.lane)
+    kept.lane_boundary.extend(truth.lane_boundary)
+    return bytes(kept.SerializeToString(deterministic=True))
 
 
 def malformed(path: Path, packet: Packet, error: ValueError) -> TraceError:

@@ -11,9 +11,9 @@ from mcap.records import Channel
 from drivelint.errors import TraceError
 from drivelint.ingest.container import Packet
 from drivelint.ingest.osi import BATCH_BYTES, joined
-from drivelint.ingest.osi_decode import GROUND_TRUTH, SENSOR_VIEW, Decoder
-from drivelint.ingest.osi_schema import reading_set
+from drivelint.ingest.osi_decode import GROUND_TRUTH, SENSOR_VIEW, Decoder, lanes_of
 from drivelint.ingest.trace import Finding
+from drivelint.osi_schema import reading_set
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -42,9 +42,11 @@ def read(path: Path) -> Recording:
     channel = Channel(id=1, topic=path.name, message_encoding="protobuf", schema_id=1, metadata={})
     batches: list[Frames] = []
     decoder: Decoder | None = None
+    lanes: bytes | None = None
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         for packets in _batches(path, channel, content):
-            decoder = decoder or _decoder(path, packets)
+            if decoder is None:
+                decoder, lanes = _decoder(path, packets)
             batches.append(decoder.frames(packets))
     n = sum(len(batch.t_ns) for batch in batches)
     untimed = n - sum(int(batch.timed.sum()) for batch in batches)
@@ -53,6 +55,7 @@ def read(path: Path) -> Recording:
     recording = joined(batches, np.zeros(n, np.uint64))
     recording.format = "osi-file"
     recording.frame_times = None
+    recording.embedded_map = lanes
     recording.findings.append(
         Finding("unprotected", "info", "the file has no checksums: damage inside a message may go unseen")
     )
@@ -81,8 +84,8 @@ def _batches(path: Path, channel: Channel, content: mmap.mmap) -> Iterator[list[
         yield waiting
 
 
-def _decoder(path: Path, packets: list[Packet]) -> Decoder:
-    """Return the decoder of the kind of message in which objects with positions are found."""
+def _decoder(path: Path, packets: list[Packet]) -> tuple[Decoder, bytes | None]:
+    """Return the decoder of the kind of message in which objects with positions are found, and the lanes of the first one."""
     for name in (GROUND_TRUTH, SENSOR_VIEW):
         decoder = Decoder(path, 1, name, reading_set())
         try:
@@ -90,7 +93,7 @@ def _decoder(path: Path, packets: list[Packet]) -> Decoder:
         except TraceError:
             continue
         if len(frames.ids) and np.isfinite(frames.numbers["x_m"]).any():
-            return decoder
+            return decoder, lanes_of(packets[0].data, name)
     raise TraceError(
         f"{path}: no moving objects in the first {len(packets)} messages, read as {GROUND_TRUTH} or as {SENSOR_VIEW}: "
         "only these two kinds of OSI trace can be judged"

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 MAX_BYTES = 512 * 2**20  # a city of 2,000 km of lanes is about 200 MB; beyond that the file is a mistake or an attack
 
+OSI_TAGS = (b"\x4a", b"\x52")  # what the lanes of an OSI trace begin with: the tags of lane_boundary and lane
 _SKIP = re.compile(r"\s*(?:<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^\[>]*(?:\[.*?\]\s*)?>)", re.DOTALL | re.IGNORECASE)
 _ROOT = re.compile(r"\s*<(?:[\w.-]+:)?([A-Za-z_][\w.-]*)")
 _LOOKS = {
@@ -96,6 +97,10 @@ def load_map(
 
 
 def _reader(source: MapSource) -> MapReader:
+    if source.content[:1] in OSI_TAGS:
+        from drivelint.maps.osi_lanes import OsiLanesReader
+
+        return OsiLanesReader()
     root = root_element(source.content)
     if root is None:
         shown = source.content[:24]

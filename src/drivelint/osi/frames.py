@@ -13,7 +13,7 @@ import numpy as np
 
 from drivelint.ingest.osi_words import OPEN_DRIVE_REFERENCE
 from drivelint.ingest.trace import BRAKE_LIGHTS, CLASSES, INDICATORS
-from drivelint.ingest.osi_schema import ENUMS, VERSION
+from drivelint.osi_schema import ENUMS, VERSION
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

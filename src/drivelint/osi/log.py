@@ -11,9 +11,9 @@ import pyarrow.compute as pc
 from mcap.writer import CompressionType, Writer
 
 from drivelint.ingest import carried
-from drivelint.ingest.osi_schema import GROUND_TRUTH, OPEN_DRIVE, VERSION, descriptor_set
 from drivelint.ingest.trace import BRAKE_LIGHTS, CLASSES, INDICATORS, NUMBERS, SIZES
 from drivelint.osi.frames import Objects, head, moving_objects, nested, traffic_light
+from drivelint.osi_schema import GROUND_TRUTH, OPEN_DRIVE, VERSION, descriptor_set
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -8,10 +8,11 @@ from __future__ import annotations
 from functools import cache
 from typing import Any, Final
 
-from google.protobuf import descriptor_pb2
+from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 
 _F = descriptor_pb2.FieldDescriptorProto
 _SCALARS = {
+    "bool": _F.TYPE_BOOL,
     "double": _F.TYPE_DOUBLE,
     "int64": _F.TYPE_INT64,
     "uint32": _F.TYPE_UINT32,
@@ -122,6 +123,30 @@ ENUMS: Final[dict[str, dict[str, int]]] = {
 }
 _READ_MESSAGES: Final[dict[str, tuple[tuple[str, int, str], ...]]] = {
     **MESSAGES,
+    "GroundTruth": (*MESSAGES["GroundTruth"], ("lane_boundary", 9, "LaneBoundary[]"), ("lane", 10, "Lane[]")),
+    "LaneBoundary": (
+        ("id", 1, "Identifier"),
+        ("boundary_line", 2, "LaneBoundary.BoundaryPoint[]"),
+        ("classification", 3, "LaneBoundary.Classification"),
+    ),
+    "LaneBoundary.BoundaryPoint": (("position", 1, "Vector3d"),),
+    "LaneBoundary.Classification": (("type", 1, "uint32"),),  # an enumeration whose numbers are read
+    "Lane": (("id", 1, "Identifier"), ("classification", 2, "Lane.Classification")),
+    "Lane.Classification": (
+        ("type", 1, "uint32"),
+        ("centerline", 3, "Vector3d[]"),
+        ("centerline_is_driving_direction", 4, "bool"),
+        ("left_adjacent_lane_id", 5, "Identifier[]"),
+        ("right_adjacent_lane_id", 6, "Identifier[]"),
+        ("lane_pairing", 7, "Lane.Classification.LanePairing[]"),
+        ("right_lane_boundary_id", 8, "Identifier[]"),
+        ("left_lane_boundary_id", 9, "Identifier[]"),
+        ("subtype", 12, "uint32"),
+    ),
+    "Lane.Classification.LanePairing": (
+        ("antecessor_lane_id", 1, "Identifier"),
+        ("successor_lane_id", 2, "Identifier"),
+    ),
     "SensorView": (
         ("timestamp", 2, "Timestamp"),
         ("global_ground_truth", 7, "GroundTruth"),
@@ -191,6 +216,18 @@ def descriptor_set() -> bytes:
 def reading_set() -> bytes:
     """Return the serialised `FileDescriptorSet` by which messages are read that come without one."""
     return _serialised(_file(_READ_MESSAGES, _READ_ENUMS))
+
+
+@cache
+def _pool() -> descriptor_pool.DescriptorPool:
+    pool = descriptor_pool.DescriptorPool()
+    pool.Add(_file(_READ_MESSAGES, _READ_ENUMS))
+    return pool
+
+
+def message(name: str) -> Any:
+    """Return the class of a message that is read, such as GroundTruth: for one message; thousands are decoded by columns."""
+    return message_factory.GetMessageClass(_pool().FindMessageTypeByName(f"{PACKAGE}.{name}"))
 
 
 def _serialised(file: descriptor_pb2.FileDescriptorProto) -> bytes:

@@ -1,0 +1,189 @@
+"""Lanes that an OSI trace carries: turned into the direction of travel, ways through intersections, against OpenDRIVE."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+
+from drivelint.errors import MapError
+from drivelint.ingest import IngestOptions, read_trace
+from drivelint.maps import load_map, read_source
+from drivelint.maps.contract import Environment, MapSource
+from drivelint.osi_schema import message
+from tests.shared_data import shared
+
+
+def points(field: Any, line: list[tuple[float, float]]) -> None:
+    for x, y in line:
+        point = field.add()
+        point = getattr(point, "position", point)
+        point.x, point.y = x, y
+
+
+class Trace:
+    """Collects lanes of one ground truth."""
+
+    def __init__(self) -> None:
+        self.truth = message("GroundTruth")()
+
+    def bound(self, name: int, line: list[tuple[float, float]], kind: int = 3) -> None:
+        bound = self.truth.lane_boundary.add()
+        bound.id.value, bound.classification.type = name, kind
+        points(bound.boundary_line, line)
+
+    def lane(
+        self, name: int, middle: list[tuple[float, float]], *, left: int = 0, right: int = 0, ahead: bool = True,
+        kind: int = 2, subtype: int = 2, pairs: tuple[tuple[int | None, int | None], ...] = (), beside: tuple[int, int] = (0, 0),
+    ) -> None:  # fmt: skip
+        lane = self.truth.lane.add()
+        lane.id.value = name
+        said = lane.classification
+        said.type, said.subtype, said.centerline_is_driving_direction = kind, subtype, ahead
+        points(said.centerline, middle)
+        for field, value in (
+            (said.left_lane_boundary_id, left), (said.right_lane_boundary_id, right),
+            (said.left_adjacent_lane_id, beside[0]), (said.right_adjacent_lane_id, beside[1]),
+        ):  # fmt: skip
+            if value:
+                field.add().value = value
+        for before, after in pairs:
+            pair = said.lane_pairing.add()
+            if before is not None:
+                pair.antecessor_lane_id.value = before
+            if after is not None:
+                pair.successor_lane_id.value = after
+
+    def load(self, **options: Any) -> Environment:
+        kept = message("GroundTruth")()
+        kept.lane.extend(self.truth.lane)
+        kept.lane_boundary.extend(self.truth.lane_boundary)
+        return load_map(MapSource("embedded", kept.SerializeToString(deterministic=True)), **options)
+
+
+def row(y: float, *, x0: float = 0.0, x1: float = 40.0) -> list[tuple[float, float]]:
+    return [(x0, y), ((x0 + x1) / 2, y), (x1, y)]
+
+
+def two_way() -> Trace:
+    """Lanes 1 (along +x) and 2 (along -x, though its centre line runs along +x), and a footway 3."""
+    trace = Trace()
+    trace.bound(11, row(3.5), 4)
+    trace.bound(12, row(0.0)[::-1])  # drawn the other way round
+    trace.bound(13, row(-3.5), 12)
+    trace.bound(14, row(-5.0))
+    trace.lane(1, row(-1.75), left=12, right=13, beside=(2, 3))
+    trace.lane(2, row(1.75), left=11, right=12, ahead=False, beside=(0, 1))
+    trace.lane(3, row(-4.25), left=13, right=14, kind=3, subtype=4, beside=(1, 0))
+    return trace
+
+
+def test_lanes_run_in_the_direction_of_travel() -> None:
+    environment = two_way().load(offset=(100.0, 0.0))
+    rows = {r["lanelet_id"]: r for r in environment.tables["lanelet"].to_pylist()}
+    assert {k: (r["lane_type"], r["drivable"], round(r["width_m"], 3)) for k, r in rows.items()} == {
+        "1": ("driving", True, 3.5),
+        "2": ("driving", True, 3.5),
+        "3": ("sidewalk", False, 1.5),
+    }
+    assert (rows["1"]["left_id"], rows["1"]["left_against"], rows["1"]["right_id"], rows["1"]["right_against"]) == (
+        "2",
+        True,
+        "3",
+        False,
+    )
+    assert (rows["2"]["left_id"], rows["2"]["left_against"], rows["2"]["right_id"]) == ("1", True, None)
+    assert (environment.handedness, environment.handedness_source) == ("rht", "lanes")
+    first = {
+        r["lanelet_id"]: (r["x_m"], r["y_m"], r["tx"])
+        for r in environment.tables["lane_point"].to_pylist()
+        if r["k"] == 0
+    }
+    assert first["1"] == pytest.approx((100.0, -1.75, 1.0))
+    assert first["2"] == pytest.approx((140.0, 1.75, -1.0))
+    marks = {(r["lanelet_id"], r["side"]): r["marking"] for r in environment.tables["lane_boundary"].to_pylist()}
+    assert (marks["1", "left"], marks["1", "right"]) == ("solid", "curb")
+    assert (marks["2", "left"], marks["2", "right"]) == ("solid", "broken")
+
+
+def test_what_follows_is_turned_too() -> None:
+    trace = two_way()
+    for name, y in ((21, 3.5), (22, 0.0), (23, -3.5)):
+        trace.bound(name, row(y, x0=40.0, x1=80.0))
+    trace.lane(4, row(-1.75, x0=40.0, x1=80.0), left=22, right=23, pairs=((1, None),))
+    trace.lane(5, row(1.75, x0=40.0, x1=80.0), left=21, right=22, ahead=False, pairs=((2, None),))
+    for lane, after in ((trace.truth.lane[0], 4), (trace.truth.lane[1], 5)):
+        lane.classification.lane_pairing.add().successor_lane_id.value = after
+    links = [(r["from_id"], r["to_id"]) for r in trace.load().tables["lane_link"].to_pylist()]
+    assert links == [("1", "4"), ("5", "2")]
+
+
+def test_a_boundary_that_reaches_beyond_the_lane_is_cut() -> None:
+    trace = Trace()
+    trace.bound(11, [(-50.0, 9.0), *row(1.75), (90.0, 9.0)])
+    trace.bound(12, row(-1.75))
+    trace.lane(1, row(0.0), left=11, right=12)
+    (lane,) = trace.load(handedness="rht").tables["lanelet"].to_pylist()
+    assert (lane["width_m"], lane["length_m"]) == pytest.approx((3.5, 40.0))
+
+
+def test_ways_through_an_intersection_are_drawn() -> None:
+    trace = Trace()
+    for name, line in (
+        (11, row(1.75)),
+        (12, row(-1.75)),
+        (13, [(58.25, 20.0), (58.25, 60.0)]),
+        (14, [(61.75, 20.0), (61.75, 60.0)]),
+    ):
+        trace.bound(name, line)
+    trace.lane(1, row(0.0), left=11, right=12, pairs=((None, 9),))
+    trace.lane(2, [(60.0, 20.0), (60.0, 60.0)], left=13, right=14, pairs=((9, None),))
+    trace.lane(9, [(40.0, 0.0), (60.0, 20.0)], kind=4, pairs=((1, 2), (2, 1)))
+    tables = trace.load(handedness="rht").tables
+    rows = {r["lanelet_id"]: r for r in tables["lanelet"].to_pylist()}
+    assert rows["9.1.2"]["junction_id"] == "j9"
+    assert 2.5 < rows["9.1.2"]["width_m"] < 4.5
+    links = {(r["from_id"], r["to_id"]): r["turn_rad"] for r in tables["lane_link"].to_pylist()}
+    assert {("1", "9.1.2"), ("9.1.2", "2")} <= set(links)
+    assert links["1", "9.1.2"] == pytest.approx(np.pi / 2, abs=0.2)
+
+
+def test_lanes_without_boundaries_make_no_map() -> None:
+    trace = Trace()
+    trace.lane(1, row(0.0))
+    with pytest.raises(MapError, match="no boundaries"):
+        trace.load()
+
+
+@pytest.mark.parametrize(
+    ("name", "road"),
+    [
+        ("pedestrian", "osi/fabriksgatan.xodr"),
+        ("alks_cut-in", "osi/straight_500m.xodr"),
+        ("highway_merge", "osi/soderleden.xodr"),
+    ],
+)
+def test_real_lanes_lie_on_the_real_road(name: str, road: str) -> None:
+    """The trace's lanes for driving, outside intersections, against our own reading of the road's OpenDRIVE."""
+    trace = read_trace(shared(f"osi/{name}.osi"), IngestOptions(ego="0"))
+    assert trace.embedded_map is not None
+    carried = load_map(MapSource("embedded", trace.embedded_map))
+    own = load_map(read_source(shared(road)))
+    lanes = {
+        r["lanelet_id"]: r for r in carried.tables["lanelet"].to_pylist() if r["drivable"] and r["junction_id"] is None
+    }
+    drivable = {r["lanelet_id"] for r in own.tables["lanelet"].to_pylist() if r["drivable"]}
+    theirs = [r for r in own.tables["lane_point"].to_pylist() if r["lanelet_id"] in drivable]
+    tree = shapely.STRtree(shapely.points([(r["x_m"], r["y_m"]) for r in theirs]))
+    mine = [r for r in carried.tables["lane_point"].to_pylist() if r["lanelet_id"] in lanes]
+    near = tree.nearest(shapely.points([(r["x_m"], r["y_m"]) for r in mine]))
+    pairs = [(r, theirs[i]) for r, i in zip(mine, near, strict=True)]
+    across = np.array([abs((r["x_m"] - t["x_m"]) * t["ty"] - (r["y_m"] - t["y_m"]) * t["tx"]) for r, t in pairs])
+    along = np.array([r["tx"] * t["tx"] + r["ty"] * t["ty"] for r, t in pairs])
+    width = np.array([abs(r["half_width_m"] - t["half_width_m"]) for r, t in pairs])
+    assert len(mine) > 20
+    assert np.quantile(across, 0.9) < 0.3
+    assert (along > 0.9).mean() > 0.97
+    assert np.quantile(width, 0.9) < 0.2
