@@ -10,7 +10,7 @@ WITH ahead AS (
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     JOIN step st USING (drive_id, ego_id, t_ns)
     WHERE may_be_vehicle(p.actor_class) AND p.front_s_m > e.front_s_m AND p.rear_s_m - e.front_s_m <= 150
-        AND abs(p.heading_diff_rad) < pi() / 2 AND abs(p.d_m) < 5 * p.half_width_m
+        AND abs(p.heading_diff_rad) < pi() / 2 AND abs(p.d_m) < 10
 ),
 -- who is in the lane all the time, or never, does not cut in
 moving AS (
@@ -23,25 +23,37 @@ moving AS (
         HAVING min(inside_m) <= over_boundary_m() AND max(inside_m) > cut_in_m()
     ) m ON m.drive_id = a.drive_id AND m.ego_id = a.ego_id AND m.object_id = a.object_id AND m.chain_id = a.chain_id
 ),
+-- where lanes merge, or a lane begins, the running lane's middle jumps, and nobody has moved
+steady AS (
+    SELECT *, sum(coalesce(leaps, false)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id, chain_id ORDER BY k ROWS UNBOUNDED PRECEDING) AS run
+    FROM (
+        SELECT *, abs(d_m - lag(d_m) OVER w) > 0.3 + 5 * (t_ns - lag(t_ns) OVER w) / 1e9 AS leaps
+        FROM moving
+        WINDOW w AS (PARTITION BY drive_id, ego_id, object_id, chain_id ORDER BY k)
+    )
+),
 ordered AS (
     SELECT
         *,
-        last_value(CASE WHEN inside_m > cut_in_m() THEN {'is_in': true, 't_ns': t_ns, 'd_m': d_m} WHEN inside_m <= over_boundary_m() THEN {'is_in': false, 't_ns': t_ns, 'd_m': d_m} END IGNORE NULLS)
+        last_value(
+            CASE WHEN inside_m > cut_in_m() OR inside_m <= over_boundary_m() THEN {'is_in': inside_m > cut_in_m(), 't_ns': t_ns, 'd_m': d_m} END
+            IGNORE NULLS
+        )
             OVER (w ROWS BETWEEN UNBOUNDED PRECEDING AND 1 PRECEDING) AS was,
         lag(k) OVER w = k - 1 AND lag(seg) OVER w = seg AS joined
-    FROM moving
-    WINDOW w AS (PARTITION BY drive_id, ego_id, object_id, chain_id ORDER BY k)
+    FROM steady
+    WINDOW w AS (PARTITION BY drive_id, ego_id, object_id, chain_id, run ORDER BY k)
 ),
 cut AS (
     SELECT
         *,
         coalesce(inside_m > cut_in_m() AND NOT was.is_in AND along AND t_ns - was.t_ns <= 5_000_000_000, false) AS begins,
         sum(((inside_m > cut_in_m() AND NOT was.is_in) OR inside_m <= over_boundary_m())::INTEGER)
-            OVER (PARTITION BY drive_id, ego_id, object_id, chain_id ORDER BY k ROWS UNBOUNDED PRECEDING) AS n
+            OVER (PARTITION BY drive_id, ego_id, object_id, chain_id, run ORDER BY k ROWS UNBOUNDED PRECEDING) AS n
     FROM ordered
 ),
 placed AS (
-    SELECT drive_id, ego_id, object_id, chain_id, n, min(t_ns) AS t_ns FROM cut WHERE centre_in GROUP BY ALL
+    SELECT drive_id, ego_id, object_id, chain_id, run, n, min(t_ns) AS t_ns FROM cut WHERE centre_in GROUP BY ALL
 )
 SELECT
     c.drive_id, c.ego_id,
@@ -49,5 +61,5 @@ SELECT
     c.object_id, c.t_ns, coalesce(c.joined, false) AS begin_seen, CASE WHEN c.was.d_m > 0 THEN 'left' ELSE 'right' END AS side,
     c.gap_m, c.ego_speed_mps, c.speed_mps, p.t_ns AS in_place_ns
 FROM cut c
-LEFT JOIN placed p USING (drive_id, ego_id, object_id, chain_id, n)
+LEFT JOIN placed p USING (drive_id, ego_id, object_id, chain_id, run, n)
 WHERE c.begins

@@ -131,6 +131,27 @@ ending AS (
     FROM chain c
     GROUP BY ALL
 ),
+-- or because both go on as one lane, and it narrows to nothing on the way there
+joining AS (
+    SELECT c.drive_id, c.ego_id, c.occurrence, min({'s_m': a.s_start_m, 'from_seq': a.seq, 'to_seq': b.seq}) AS one
+    FROM change c
+    JOIN chain a ON a.drive_id = c.drive_id AND a.ego_id = c.ego_id AND a.chain_id = c.from_chain_id
+    JOIN chain b ON b.drive_id = c.drive_id AND b.ego_id = c.ego_id AND b.chain_id = c.to_chain_id AND b.lanelet_id = a.lanelet_id
+    WHERE a.s_start_m >= c.from_s_m AND a.s_start_m < c.from_s_m + 500 AND b.s_start_m >= c.to_s_m
+    GROUP BY ALL
+),
+last_point AS (
+    SELECT environment_id, lanelet_id, max({'k': k, 'half_width_m': half_width_m}).half_width_m AS half_width_m FROM lane_point GROUP BY ALL
+),
+narrowing AS (
+    SELECT j.drive_id, j.ego_id, j.occurrence, p.half_width_m / nullif(q.half_width_m, 0) AS share
+    FROM joining j
+    JOIN change c USING (drive_id, ego_id, occurrence)
+    JOIN chain a ON a.drive_id = c.drive_id AND a.ego_id = c.ego_id AND a.chain_id = c.from_chain_id AND a.seq = j.one.from_seq - 1
+    JOIN chain b ON b.drive_id = c.drive_id AND b.ego_id = c.ego_id AND b.chain_id = c.to_chain_id AND b.seq = j.one.to_seq - 1
+    JOIN last_point p ON p.environment_id = c.environment_id AND p.lanelet_id = a.lanelet_id
+    JOIN last_point q ON q.environment_id = c.environment_id AND q.lanelet_id = b.lanelet_id
+),
 doubt AS (
     SELECT DISTINCT drive_id, ego_id, t_ns FROM hidden WHERE vehicle AND least_m < lane_change_near_m()
 )
@@ -139,6 +160,7 @@ SELECT
     CASE c.side WHEN 1 THEN 'left' ELSE 'right' END AS side, c.from_lanelet_id, c.to_lanelet_id,
     CASE
         WHEN n.lane_type IN ('entry', 'onRamp', 'connectingRamp') THEN true
+        WHEN j.one IS NOT NULL THEN CASE WHEN r.share < 0.5 THEN true WHEN r.share > 2 OR r.share IS NULL THEN false END
         WHEN c.to_chain_id IS NOT NULL THEN a.ahead_id IS NULL AND f.end_m - c.from_s_m < 500 AND t.end_m - c.to_s_m > f.end_m - c.from_s_m + 20
     END AS merge,
     c.ego_speed_mps, l.o.object_id AS leader_id, l.o.gap_m AS leader_gap_m, l.o.speed_mps AS leader_speed_mps,
@@ -149,6 +171,8 @@ FROM change c
 LEFT JOIN leader l USING (drive_id, ego_id, occurrence)
 LEFT JOIN follower b USING (drive_id, ego_id, occurrence)
 LEFT JOIN slowed s USING (drive_id, ego_id, occurrence)
+LEFT JOIN joining j USING (drive_id, ego_id, occurrence)
+LEFT JOIN narrowing r USING (drive_id, ego_id, occurrence)
 LEFT JOIN lanelet n ON n.environment_id = c.environment_id AND n.lanelet_id = c.from_lanelet_id
 LEFT JOIN ending f ON f.drive_id = c.drive_id AND f.ego_id = c.ego_id AND f.chain_id = c.from_chain_id
 LEFT JOIN ending t ON t.drive_id = c.drive_id AND t.ego_id = c.ego_id AND t.chain_id = c.to_chain_id

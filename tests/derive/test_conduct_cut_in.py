@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.derive.marked import ease, marked, offsets, tables
+from tests.derive.marked import ease, marked, offsets, tables, tapering
 from tests.scenes import LANE, Actor, Road, moving, rows, times
 
 ROW = dict[str, Any]
@@ -53,6 +53,19 @@ def test_what_is_no_cut_in() -> None:
     assert not cuts(way, ego, across)
     changes = moving("ego", way, t, 100 + 12 * t, offsets(way, t, 4.0))
     assert not cuts(way, changes, moving("x", way, t, 130 + 12 * t, offsets(way, t, 99.0, start=0.5)))
+
+
+def test_where_lanes_merge_nobody_cuts_in() -> None:
+    """The one ahead drives straight on; it is the ego's lane that becomes its lane."""
+    way = tapering()
+    t = times(12.0)
+    ego = moving("ego", way, t, 150 + 10 * t, offsets(way, t, 99.0))
+    other = moving("x", way, t, 220 + 12 * t, offsets(way, t, 99.0, start=0.5))
+    con = tables(way, ego, other)
+    assert not rows(con, "FROM cut_in")
+    # it does become the one ahead in the lane
+    placed = rows(con, "SELECT DISTINCT abs(d_m) < 0.1 AS inside FROM pair ORDER BY ALL")
+    assert [row["inside"] for row in placed] == [False, True]
 
 
 def test_a_cut_in_that_is_taken_back_and_made_again_is_two() -> None:

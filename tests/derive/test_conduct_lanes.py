@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from drivelint.maps import MapSource, load_map
-from tests.derive.marked import ease, marked, offsets, tables
+from tests.derive.marked import ease, marked, offsets, tables, tapering
 from tests.maps import xodr
 from tests.scenes import LANE, Road, limited, linked, moving, plan, road, rows, seconds, standing, swing, times
 
@@ -288,6 +288,16 @@ def test_a_merge_leaves_a_lane_that_only_leads_there(hand: str, kind: str) -> No
     away = moving("ego", way, t, 10 + 12 * t, offsets(way, t, 4.0, start=0.5, to=1.5))
     (found,) = rows(tables(way, away), "FROM lane_change")
     assert found["merge"] is False
+
+
+@pytest.mark.parametrize("to", [0.5, 1.5])
+def test_of_two_lanes_that_go_on_as_one_the_narrowing_one_merges(to: float) -> None:
+    """The map links both to the same lane; only one of them narrows to nothing."""
+    way = tapering()
+    t = times(12.0)
+    ego = moving("ego", way, t, 20 + 12 * t, offsets(way, t, 2.0, to=to, start=2.0 - to))
+    (found,) = rows(tables(way, ego), "FROM lane_change")
+    assert found["merge"] is (to < 1)
 
 
 def test_each_ego_has_its_own_changes() -> None:
