@@ -9,8 +9,8 @@ SELECT
         WHEN l.t_ns IS NULL THEN NULL
         WHEN l.object_id IS NULL OR c.t_ns IS NOT NULL THEN false
         ELSE l.in_lane AND NOT l.oncoming
-            -- a vehicle parked at the lane's edge is passed, not followed
-            AND (l.speed_mps > standing_mps() OR abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m)
+            -- one parked at the lane's edge is passed, one in the next lane that reaches over the line is beside: neither is in the ego's way
+            AND (abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m OR l.speed_mps > standing_mps() AND abs(p.d_m) <= p.half_width_m)
     END AS follows
 FROM step s
 LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns

@@ -51,11 +51,12 @@ CREATE OR REPLACE MACRO class_limit_mph(vehicle_class, nation, road) AS
     END;
 
 -- The highest and the lowest limit of Rule 124, in m/s, that can hold where some of this is not known; NULL: another country's law. signed:
--- the map gives a limit, which then counts instead of the built-up one (20 mph in Wales, else 30).
+-- the map gives a limit, which then counts instead of the built-up one (20 mph in Wales, else 30; a map of a town that gives none may be of
+-- anywhere, so somebody must have said that it is in Britain).
 CREATE OR REPLACE MACRO most_limit_mps(vehicle_class, nation, road_type, carriageway, area, signed) AS
     0.44704 * CASE
         WHEN nation NOT IN ('gb', 'gb-eng', 'gb-wls', 'gb-sct') THEN NULL
-        WHEN NOT signed AND area = 'built_up' THEN CASE nation WHEN 'gb-wls' THEN 20 ELSE 30 END
+        WHEN NOT signed AND area = 'built_up' AND nation IS NOT NULL THEN CASE nation WHEN 'gb-wls' THEN 20 ELSE 30 END
         ELSE class_limit_mph(
             coalesce(vehicle_class, 'car'), coalesce(nation, 'gb'),
             CASE WHEN coalesce(road_type, 'motorway') = 'motorway' AND coalesce(carriageway, 'dual') = 'dual' THEN 'motorway' ELSE coalesce(carriageway, 'dual') END

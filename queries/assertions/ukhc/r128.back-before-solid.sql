@@ -12,12 +12,12 @@
 -- requires = ["map", "registration", "handedness", "markings", "ego_size"]
 
 -- @reference
-SELECT o.drive_id, o.ego_id, o.t0_ns AS t_ns, max(o.vbp_id) AS object_id, o.t3_ns, o.t_end_ns, CASE o.side WHEN 1 THEN 'left' ELSE 'right' END AS side
+SELECT o.drive_id, o.ego_id, o.t0_ns AS t_ns, max(o.vbp_id) AS object_id, o.t3_ns, o.t_end_ns, o.opposing, CASE o.side WHEN 1 THEN 'left' ELSE 'right' END AS side
 FROM overtake o
 LEFT JOIN line_step f ON f.drive_id = o.drive_id AND f.ego_id = o.ego_id AND f.t_ns = o.t0_ns AND f.side = CASE o.side WHEN 1 THEN 'left' ELSE 'right' END
 -- a line that was solid from the start is the business of r129.no-cross-solid, unless the start was not seen
 WHERE o.opposing IS DISTINCT FROM false AND (f.forbidden IS DISTINCT FROM true OR NOT o.begin_seen)
-GROUP BY o.drive_id, o.ego_id, o.t0_ns, o.t3_ns, o.t_end_ns, o.side
+GROUP BY o.drive_id, o.ego_id, o.t0_ns, o.t3_ns, o.t_end_ns, o.opposing, o.side
 
 -- @anchor
 -- where the line became solid under it, or where it was back
@@ -29,9 +29,11 @@ GROUP BY r.ref_id, r.t3_ns
 -- @condition
 SELECT r.drive_id, r.ego_id, coalesce(min(l.t_ns) FILTER (l.forbidden AND l.passing_id IS NULL), r.t3_ns) AS t_ns, r.ref_id,
     CASE
+        -- without a lane beside it, the line may be the edge of the road
+        WHEN r.opposing IS NULL THEN NULL
         WHEN coalesce(bool_or(l.forbidden AND l.passing_id IS NULL), false) THEN false
         WHEN count(l.t_ns) > 0 AND count(l.t_ns) = count(l.forbidden AND l.passing_id IS NULL) THEN true
     END AS holds
 FROM reference r
 LEFT JOIN line_step l ON l.drive_id = r.drive_id AND l.ego_id = r.ego_id AND l.side = r.side AND l.t_ns >= r.t_ns AND l.t_ns <= r.t_end_ns
-GROUP BY r.drive_id, r.ego_id, r.ref_id, r.t3_ns
+GROUP BY r.drive_id, r.ego_id, r.ref_id, r.t3_ns, r.opposing

@@ -39,7 +39,7 @@ WITH passing_by AS (
         AND s.t_ns < x.t0_ns + ($passing_s * 1e9)::BIGINT
 )
 SELECT e.drive_id, e.ego_id, e.t_ns,
-    p.t_ns IS NULL AND NOT (e.x_m IS NOT NULL AND e.lanelet_id IS NULL) AND NOT e.in_junction
+    (p.t_ns IS NULL OR e.with_direction) AND NOT (e.x_m IS NOT NULL AND e.lanelet_id IS NULL) AND NOT e.in_junction
         AND (abs(m.v_long_mps) > $manoeuvring_mps OR coalesce(e.road_type, '') = 'motorway') AS applies
 FROM ego_state e
 LEFT JOIN ego_motion m USING (drive_id, ego_id, t_ns)

@@ -11,7 +11,7 @@
 -- observes = "distance to the next junction"
 -- near_margin = 5.0
 -- reads = ["overtake", "overtake_place"]
--- requires = ["map", "registration", "handedness", "ego_size", "junctions"]
+-- requires = ["map", "registration", "handedness", "ego_size"]
 --
 -- [params.junction_m]
 -- default = 20.0
@@ -23,7 +23,8 @@
 -- @reference
 SELECT drive_id, ego_id, t0_ns AS t_ns, vbp_id AS object_id, occurrence
 FROM overtake
-WHERE opposing IS DISTINCT FROM false
+-- given up before it was in the passing lane: a wobble as likely as not
+WHERE opposing IS DISTINCT FROM false AND NOT (status = 'aborted' AND t1_ns IS NULL)
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps > standing_mps() AS applies, $junction_m AS required,

@@ -9,7 +9,7 @@
 -- sense = "holds"
 -- merge_gap_s = 5.0
 -- reads = ["data_log", "ego_condition", "ego_mode", "ego_state", "lane_occupancy", "lanelet"]
--- requires = ["map", "registration", "lane_types"]
+-- requires = ["map", "registration"]
 
 -- @condition
 -- an emergency: hazard lights, or a mode that says so
@@ -23,10 +23,10 @@ WITH lane AS (
 emergency AS (
     SELECT DISTINCT drive_id, ego_id, t_ns FROM ego_mode WHERE mode IN ('minimal_risk_manoeuvre', 'emergency_manoeuvre') AND is_on
 )
-SELECT e.drive_id, e.ego_id, e.t_ns, CASE WHEN e.x_m IS NOT NULL THEN NOT coalesce(l.shoulder, false) END AS holds,
-    -- what kind of road it is matters only on a shoulder
+-- off all that the map knows, there may be a shoulder; what kind of road it is matters only on one
+SELECT e.drive_id, e.ego_id, e.t_ns, NOT l.shoulder AS holds,
     CASE WHEN x.t_ns IS NOT NULL OR e.indicator = 'hazard' THEN false
-        WHEN e.x_m IS NOT NULL AND NOT coalesce(l.shoulder, false) THEN coalesce(coalesce(c.road_type, l.road_type) = 'motorway', false)
+        WHEN NOT l.shoulder OR e.x_m IS NOT NULL AND l.shoulder IS NULL THEN coalesce(c.road_type, l.road_type, '') = 'motorway'
         ELSE coalesce(c.road_type, l.road_type) = 'motorway' END AS applies
 FROM ego_state e
 LEFT JOIN lane l USING (drive_id, ego_id, t_ns)
