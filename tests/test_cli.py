@@ -290,7 +290,7 @@ def test_rules_test_runs_the_cases_of_a_folder(tmp_path: Path, expect: str, ran:
     (pack / "slow.cases.yml").write_text(CASES % expect, encoding="utf-8")
     code, out, _ = ran("rules", "test", str(tmp_path))
     assert code == 1  # one case cannot show every kind
-    assert ("clean:" in out) == (expect == "fail")
+    assert ("case 'clean':" in out) == (expect == "fail")
     assert "mine.slow" in out
     assert "ukhc" not in out
 

@@ -39,7 +39,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-rules_app = typer.Typer(help="List, show and test the rules.", rich_markup_mode=None)
+rules_app = typer.Typer(help="List, show, write and test the rules.", rich_markup_mode=None)
 app.add_typer(rules_app, name="rules")
 
 
@@ -326,6 +326,25 @@ def rules_show(
         _say(rules_text.source(rule), soft_wrap=True)
 
 
+@rules_app.command("new")
+def rules_new(
+    rule_id: Annotated[str, typer.Argument(metavar="PACK.NAME", help="The id of the rule to write.")],
+    folder: Annotated[Path, typer.Option("--dir", metavar="DIR", help="Folder of packs to write it into.")] = Path(),
+    kind: Annotated[
+        options.RuleKind, typer.Option("--kind", help="What it is judged at.")
+    ] = options.RuleKind.invariant,
+) -> None:
+    """Write a rule to start from.
+
+    DIR/PACK/NAME.sql and NAME.cases.yml: a small rule with its cases, which runs as it is. Nothing is overwritten.
+    """
+    from drivelint.casefile import workshop
+
+    for file in workshop.new(rule_id, folder, kind.value):
+        typer.echo(file)
+    typer.echo(f"Edit both, then: drivelint rules test {folder} --rules {rule_id}", err=True)
+
+
 @rules_app.command("test")
 def rules_test(
     folder: Annotated[
@@ -349,7 +368,7 @@ def rules_test(
     from drivelint.casefile import workshop
 
     test = workshop.mutation_test if mutate else workshop.case_test
-    raise typer.Exit(int(test(folder, tuple(only or ()), typer.echo)))
+    raise typer.Exit(int(_interruptible(lambda: test(folder, tuple(only or ()), typer.echo))))
 
 
 def main() -> NoReturn:

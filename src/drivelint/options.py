@@ -29,6 +29,15 @@ class Report(StrEnum):
     html = "html"
 
 
+class RuleKind(StrEnum):
+    """What a rule is judged at."""
+
+    invariant = "invariant"
+    execution = "execution"
+    precondition = "precondition"
+    postcondition = "postcondition"
+
+
 class FailOn(StrEnum):
     """The least severity that makes exit code 1."""
 

@@ -15,7 +15,7 @@ import duckdb
 from drivelint.casefile import mutation, run_cases
 from drivelint.casefile.scene import database
 from drivelint.catalogue import read_rule
-from drivelint.catalogue.load import files, id_of
+from drivelint.catalogue.load import PACK, STEM, files, id_of
 from drivelint.errors import ExitCode, RuleError, UsageError
 from drivelint.evaluate import explain
 from drivelint.resources import folder
@@ -27,6 +27,36 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
     Say = Callable[[str], None]
+
+
+def new(rule_id: str, root: Path, kind: str) -> tuple[Path, Path]:
+    """Write `<root>/<pack>/<rule>.sql` and its cases: a small rule of that kind that runs, to be edited.
+
+    Returns both files. Errors: `UsageError` for an id that is none or is taken, and where one of the files is there.
+    """
+    pack, dot, name = rule_id.partition(".")
+    if not (dot and PACK.fullmatch(pack) and STEM.fullmatch(name)):
+        raise UsageError(
+            f"{rule_id!r} is no rule id: write PACK.NAME in lower-case letters, digits, '-' and '_' (and '.' in the name), "
+            "such as mine.r124.speed"
+        )
+    shipped = folder("queries") / "assertions" / pack / f"{name}.sql"
+    if shipped.exists():
+        raise UsageError(f"rule {rule_id} is shipped already ({shipped}): give yours another name or pack")
+    sql = root / pack / f"{name}.sql"
+    cases = sql.with_suffix(".cases.yml")
+    for file in (sql, cases):
+        if file.exists():
+            raise UsageError(f"{file} is there already: nothing was written")
+    try:
+        sql.parent.mkdir(parents=True, exist_ok=True)
+        for file, suffix in ((sql, ".sql"), (cases, ".cases.yml")):
+            text = (folder("queries") / "skeletons" / f"{kind}{suffix}").read_text(encoding="utf-8")
+            with file.open("x", encoding="utf-8") as written:
+                written.write(text)
+    except OSError as error:
+        raise UsageError(f"{sql.parent}: cannot write there: {error.strerror}") from error
+    return sql, cases
 
 
 def case_test(root: Path | None, only: Sequence[str], say: Say) -> ExitCode:

@@ -18,8 +18,8 @@ from drivelint.resources import folder
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-_PACK = re.compile(r"[a-z0-9][a-z0-9_-]*")
-_STEM = re.compile(r"[a-z0-9][a-z0-9._-]*")
+PACK = re.compile(r"[a-z0-9][a-z0-9_-]*")
+STEM = re.compile(r"[a-z0-9][a-z0-9._-]*")
 _KEYS = ("drive_id", "ego_id", "t_ns")
 _CONDITION = (
     *_KEYS,
@@ -97,7 +97,7 @@ def id_of(file: Path) -> str:
 def read_rule(file: Path) -> Rule:
     """Read and check one rule file. Errors: `RuleError` with file and line."""
     pack = file.resolve().parent.name
-    for part, what, pattern in ((pack, "folder", _PACK), (file.stem, "file", _STEM)):
+    for part, what, pattern in ((pack, "folder", PACK), (file.stem, "file", STEM)):
         if not pattern.fullmatch(part):
             raise RuleError(
                 f"{file}: the {what} name {part!r} makes no rule id: "
