@@ -204,9 +204,9 @@ CREATE TABLE following (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- every step
     object_id VARCHAR,                -- see lead; NULL: nobody ahead, or cannot be told
-    follows BOOLEAN,                  -- the ego is behind it and goes its way: in its lane, neither oncoming nor about to be passed (no overtake or lane change under way, and what stands ahead is in the way of the ego's box); NULL: cannot be told
+    follows BOOLEAN,                  -- the ego is behind it and goes its way: in its lane, no overtake or lane change under way, and the other neither oncoming nor beside: what stands is in the way of the ego's box, what moves is so too or has its centre in the lane; NULL: cannot be told
     gap_m DOUBLE,                     -- see lead
     ego_speed_mps DOUBLE,             -- ego's speed
     speed_mps DOUBLE,                 -- its speed
-    joined_ns BIGINT                  -- since when it is the nearest one ahead, if one of the two then changed lanes: the gap is new; NULL: it was ahead before
+    joined_ns BIGINT                  -- since when it is the nearest one ahead, if one of the two then changed lanes: the gap is new; NULL: it was ahead before, or how it came was not seen
 );

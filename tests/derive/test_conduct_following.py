@@ -1,0 +1,107 @@
+"""Whom the ego follows: who is ahead in its lane and neither met, overtaken, beside it nor passed at the lane's edge."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from tests.scenes import LANE, derived, drive, moving, road, rows, standing, swing, times
+
+if TYPE_CHECKING:
+    from tests.scenes import Actor, Road, Row
+
+HANDS = pytest.mark.parametrize("hand", ["rht", "lht"])
+
+
+def following(way: Road, *actors: Actor) -> list[Row]:
+    con = derived(drive(list(actors), way.environment), tables=["following"])
+    found = rows(con, "FROM following ORDER BY t_ns")
+    assert len(found) == len(actors[0].t_s)
+    return found
+
+
+@HANDS
+def test_behind_a_vehicle_and_behind_nobody(hand: str) -> None:
+    way = road(hand=hand)
+    t = times(5.0)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    found = following(way, ego, moving("x", way, t, 140 + 8 * t, way.own, length=4.8))
+    assert {(row["object_id"], row["follows"], row["joined_ns"]) for row in found} == {("x", True, None)}
+    assert found[0]["gap_m"] == pytest.approx(40 - 4.8, abs=0.3)
+    assert (found[9]["ego_speed_mps"], found[9]["speed_mps"]) == pytest.approx((10, 8))
+    assert {(row["object_id"], row["follows"]) for row in following(way, ego)} == {(None, False)}
+
+
+@HANDS
+def test_an_overtaken_vehicle_is_followed_until_the_ego_pulls_out(hand: str) -> None:
+    way = road(hand=hand)
+    t = times(14.0)
+    s = 60 + 10 * t
+    ego = moving("ego", way, t, s, swing(way, s, 100, 160))
+    found = following(way, ego, moving("x", way, t, 100 + 4 * t, way.own))
+    out = next(k for k, row in enumerate(found) if not row["follows"])
+    assert 4.0 < t[out] < 5.5
+    assert {row["follows"] for row in found[:out]} == {True}
+    assert {row["follows"] for row in found[out:]} == {False}
+
+
+@HANDS
+def test_oncoming_in_its_lane_is_met_not_followed(hand: str) -> None:
+    way = road(hand=hand)
+    t = times(4.0)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    found = following(way, ego, moving("x", way, t, 300 - 10 * t, way.own))
+    assert {row["follows"] for row in found} == {False}
+
+
+@pytest.mark.parametrize(("reaches_in", "follows"), [(0.4, False), (1.2, True)])
+def test_parked_at_the_edge_of_the_lane_is_passed_unless_it_is_in_the_way(reaches_in: float, follows: bool) -> None:
+    """The ego's side is 0.85 m from the edge of its lane; the parked car reaches in by less or by more than that."""
+    way = road()
+    t = times(3.0)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    parked = standing("x", way, t, 200, -LANE - 0.9 + reaches_in)
+    assert {(row["object_id"], row["follows"]) for row in following(way, ego, parked)} == {("x", follows)}
+
+
+@pytest.mark.parametrize(("inside", "follows"), [(-0.7, False), (0.1, True)])
+def test_one_that_reaches_over_the_line_is_beside_until_its_centre_is_in(inside: float, follows: bool) -> None:
+    """`inside`: its centre past the line. At 0.1 m the two boxes are still 0.75 m apart across the lane: a motorcycle."""
+    way = road(lanes=(0, 2))
+    t = times(3.0)
+    ego = moving("ego", way, t, 100 + 10 * t, -1.5 * LANE)
+    other = moving("x", way, t, 112 + 10 * t, -LANE - inside, width=1.8 if inside < 0 else 0.8)
+    assert {(row["object_id"], row["follows"]) for row in following(way, ego, other)} == {("x", follows)}
+
+
+def test_one_that_cuts_in_makes_a_new_gap() -> None:
+    way = road(lanes=(0, 2))
+    t = times(8.0)
+    ego = moving("ego", way, t, 100 + 10 * t, -1.5 * LANE)
+    other = moving("x", way, t, 130 + 10 * t, -0.5 * LANE - LANE * np.clip((t - 3.0) / 2.0, 0, 1))
+    found = following(way, ego, other)
+    joins = next(k for k, row in enumerate(found) if row["object_id"] == "x")
+    assert {row["joined_ns"] for row in found[joins:]} == {found[joins]["t_ns"]}
+    assert found[-1]["follows"] is True
+
+
+def test_somebody_without_a_place_leaves_it_open() -> None:
+    way = road()
+    t = times(5.0)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    other = moving("x", way, t, 130 + 10 * t, way.own).lost((t > 1.95) & (t < 2.45))
+    found = following(way, ego, other)
+    open_ = {round(row["t_ns"] / 1e9, 1) for row in found if row["follows"] is None}
+    assert open_ == {2.0, 2.1, 2.2, 2.3, 2.4}
+    assert {row["object_id"] for row in found if row["follows"] is None} == {None}
+
+
+def test_a_wrong_way_round_wreck_in_the_lane_is_not_followed() -> None:
+    way = road()
+    t = times(3.0)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    found = following(way, ego, standing("x", way, t, 200, way.own, turned=math.pi))
+    assert {row["follows"] for row in found} == {False}
