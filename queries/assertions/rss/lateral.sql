@@ -5,7 +5,7 @@
 -- derivation = "model"
 -- severity = "major"
 -- legal = "should"
--- status = "stable"
+-- status = "draft"
 -- sense = ">="
 -- unit = "m"
 -- observes = "gap to the vehicle beside"
@@ -44,6 +44,9 @@
 -- source = "ad-rss-lib, parameter discussion (fluctuation margin)"
 
 -- @applies
+-- A draft: RSS takes a lateral speed without its fluctuations (definition 5, over the time in which a vehicle leaves its line by mu), and
+-- `beside` has the momentary one, across the ego's corridor: recorded headings (NGSIM) jitter by half a metre per second, and who comes
+-- down a slip road at an angle has a speed across, though his lane turns.
 -- Beside each other the distance along is unsafe; before and after that it may be safe, and is not judged here. A standing ego does not
 -- drift, nor does a parked car.
 SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN ego_speed_mps <= standing_mps() THEN false ELSE on_carriageway END AS applies

@@ -45,8 +45,9 @@
 
 -- @applies
 -- One lane for both makes the distance across unsafe. The ego is in the opposing lane during a manoeuvre over its boundary, not when it
--- touches the line. Without an oncoming vehicle there is nothing to judge, if everybody is placed.
-SELECT s.drive_id, s.ego_id, s.t_ns, o.object_id, CASE WHEN o.object_id IS NOT NULL THEN true WHEN o.n_unplaced = 0 THEN false END AS applies
+-- touches the line. Without an oncoming vehicle, or once it is alongside, there is nothing to judge, if everybody
+-- is placed.
+SELECT s.drive_id, s.ego_id, s.t_ns, o.object_id, CASE WHEN o.object_id IS NOT NULL THEN o.da_m >= 0 WHEN o.n_unplaced = 0 THEN false END AS applies
 FROM lane_departure d
 JOIN excursion x ON x.drive_id = d.drive_id AND x.ego_id = d.ego_id AND x.t0_ns = d.t_ns
 JOIN step s ON s.drive_id = d.drive_id AND s.ego_id = d.ego_id AND s.t_ns >= x.t0_ns AND s.t_ns <= x.t_end_ns
