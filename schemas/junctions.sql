@@ -145,22 +145,22 @@ CREATE TABLE crossing_passage (
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order; the ego goes over a pedestrian crossing
     crossing_id VARCHAR NOT NULL,     -- the crossing
-    kind VARCHAR,                     -- zebra, signalled, other; NULL: the map does not say
+    kind VARCHAR,                     -- zebra, signalled, other, as the map says, or signalled where a light governs it; NULL: the map does not say
     t_in_ns BIGINT,                   -- first step with its front on it; NULL: the log, or a hole, begins with the ego on it
     t_out_ns BIGINT,                  -- first step with its rear past it; NULL: the log, or a hole, ends with the ego on it
-    on_id VARCHAR,                    -- somebody on foot on the ego's half at any time from t_in to t_out; NULL: nobody
-    t_on_ns BIGINT,                   -- when first
-    waiting_id VARCHAR,               -- somebody on foot who stands, within 2 m of its end on the ego's side, throughout the 2 s before t_in; NULL: nobody
-    known BOOLEAN NOT NULL,           -- everybody on foot nearby was placed from 2 s before t_in to t_out
-    signal_id VARCHAR,                -- the light for vehicles; NULL: none in the map
+    on_id VARCHAR,                    -- somebody on foot on the ego's half at any time from t_in to t_out, the first of them; NULL: nobody
+    t_on_ns BIGINT,                   -- since when
+    waiting_id VARCHAR,               -- somebody on foot who stands (0.5 m/s) off the lanes it lies on, within 2 m of its end on the ego's side, throughout the 2 s before t_in; NULL: nobody
+    known BOOLEAN NOT NULL,           -- everybody on foot nearby was placed from 2 s before t_in to t_out: no track with a hole, or that begins or ends within 30 m then; nobody without a class is on it
+    signal_id VARCHAR,                -- the light for vehicles, see way_mark; NULL: none in the map
     state VARCHAR,                    -- its state at t_in; NULL: not known
-    stood_before BOOLEAN              -- the ego stood within 5 m before it during the 10 s before t_in
+    stood_before BOOLEAN              -- the ego stood within 5 m before it during the 10 s before t_in; NULL: not seen
 );
 
 CREATE TABLE standstill (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    occurrence INTEGER NOT NULL,      -- 0.. in time order; the ego stands (below 0.1 m/s) for at least 1 s
+    occurrence INTEGER NOT NULL,      -- 0.. in time order; the ego stands (below 0.1 m/s, by its way from step to step where the log has no speed) for at least 1 s
     t_start_ns BIGINT NOT NULL,       -- first step
     t_end_ns BIGINT NOT NULL,         -- last step
     begin_seen BOOLEAN NOT NULL,      -- it was seen to stop: the step before is there and it moves

@@ -32,3 +32,8 @@ CREATE OR REPLACE MACRO near_mark_m() AS 10.0;
 CREATE OR REPLACE MACRO watched_ns() AS 4_000_000_000;
 -- Who is unseen for a while this near to where ways meet, or could have come this near, may have been on them.
 CREATE OR REPLACE MACRO meeting_near_m() AS 30.0;
+-- Distance from a point to the piece from a to b metres along a straight line that begins at (x0, y0) with unit direction (tx, ty).
+CREATE OR REPLACE MACRO end_distance_m(x, y, x0, y0, tx, ty, a, b) AS
+    sqrt(
+        ((x - x0) * tx + (y - y0) * ty - greatest(a, least(b, (x - x0) * tx + (y - y0) * ty))) ** 2 + ((y - y0) * tx - (x - x0) * ty) ** 2
+    );

@@ -20,7 +20,7 @@ LINE = 180.0
 def lined(code: str | None = "206", hand: str = "rht", at: float = LINE, way: str = "we") -> Road:
     """Return a way over a stop line at s = 180 of road 1; a sign or light of this code stands 2 m before it."""
     t = -1.75 if hand == "rht" else 1.75
-    signals = (("1", stop_line("line", LINE, t)),)
+    signals: tuple[tuple[str, str], ...] = (("1", stop_line("line", LINE, t)),)
     if code:
         signals += (("1", signal("sign", at - 2, code)),)
     return cross(hand, signals)[way]

@@ -1,0 +1,22 @@
+-- Who is on a pedestrian crossing, half by half: stretches of samples without a hole.
+WITH walker AS (
+    SELECT a.drive_id, a.actor_id, c.max_gap_ns
+    FROM actor a
+    JOIN (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM clock GROUP BY drive_id) c USING (drive_id)
+    WHERE a.actor_class = 'pedestrian' OR a.actor_class IS NULL
+),
+on_it AS (
+    SELECT DISTINCT o.drive_id, x.crossing_id, o.actor_id AS object_id, n.along_road, o.t_ns, w.max_gap_ns
+    FROM lane_occupancy o
+    JOIN walker w USING (drive_id, actor_id)
+    JOIN data_log g USING (drive_id)
+    JOIN crossing x ON x.environment_id = g.environment_id AND x.lanelet_id = o.lanelet_id
+    JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = o.lanelet_id
+    WHERE o.s_m >= x.s_start_m AND o.s_m <= x.s_end_m
+)
+SELECT drive_id, crossing_id, object_id, along_road, min(t_ns) AS t_from_ns, max(t_ns) AS t_to_ns
+FROM (
+    SELECT *, sum((t_ns - before_ns > max_gap_ns)::INTEGER) OVER (PARTITION BY drive_id, crossing_id, object_id, along_road ORDER BY t_ns) AS n
+    FROM (SELECT *, lag(t_ns, 1, t_ns) OVER (PARTITION BY drive_id, crossing_id, object_id, along_road ORDER BY t_ns) AS before_ns FROM on_it)
+)
+GROUP BY drive_id, crossing_id, object_id, along_road, n

@@ -1,0 +1,78 @@
+-- The ego stands. Where the log has no speed, its way from step to step stands in: an unknown speed must not hide that it stood.
+WITH moved AS (
+    SELECT
+        e.drive_id, e.ego_id, e.t_ns, st.k, st.seg,
+        coalesce(
+            e.speed_mps,
+            CASE WHEN st.dt_ns <= c.max_gap_ns THEN sqrt((e.x_m - lag(e.x_m) OVER w) ** 2 + (e.y_m - lag(e.y_m) OVER w) ** 2) / (st.dt_ns / 1e9) END
+        ) AS v_mps
+    FROM ego_state e
+    JOIN step st USING (drive_id, ego_id, t_ns)
+    JOIN clock c USING (drive_id, ego_id)
+    WINDOW w AS (PARTITION BY e.drive_id, e.ego_id ORDER BY e.t_ns)
+),
+stood AS (
+    SELECT drive_id, ego_id, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, min(k) AS k_first, max(k) AS k_last, seg
+    FROM (
+        SELECT *, k - row_number() OVER (PARTITION BY drive_id, ego_id, seg ORDER BY k) AS run FROM moved WHERE v_mps < stood_mps()
+    )
+    GROUP BY drive_id, ego_id, seg, run
+    HAVING max(t_ns) - min(t_ns) >= 1_000_000_000
+),
+there AS (
+    SELECT s.*, e.road_type, e.lanelet_id, e.chain_id, e.front_s_m, e.rear_s_m, n.junction_id AS lane_junction_id
+    FROM stood s
+    JOIN data_log g USING (drive_id)
+    JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_start_ns
+    LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = e.lanelet_id
+),
+mark AS (
+    SELECT t.drive_id, t.ego_id, t.t_start_ns, t.front_s_m, t.rear_s_m, m.kind, m.mark_id, m.s_start_m, m.s_end_m, m.control, m.signal_id
+    FROM there t
+    JOIN way_mark m ON m.drive_id = t.drive_id AND m.ego_id = t.ego_id AND m.chain_id = t.chain_id
+    WHERE t.front_s_m IS NOT NULL AND m.s_end_m > t.rear_s_m - 3
+),
+around AS (
+    SELECT
+        drive_id, ego_id, t_start_ns,
+        min({'s_m': s_start_m, 'id': mark_id}) FILTER (kind = 'junction' AND s_start_m < front_s_m AND s_end_m > rear_s_m).id AS junction_id,
+        min(s_start_m - front_s_m) FILTER (kind = 'junction' AND s_start_m >= front_s_m) AS junction_m,
+        min({'s_m': s_start_m, 'id': mark_id}) FILTER (kind = 'crossing' AND s_start_m < front_s_m AND s_end_m > rear_s_m).id AS crossing_id,
+        min({'off_m': abs(s_start_m - front_s_m), 'id': mark_id, 'm': s_start_m - front_s_m, 'control': control, 'signal_id': signal_id})
+            FILTER (kind = 'stop_line' AND s_start_m - front_s_m BETWEEN -3 AND 20) AS line
+    FROM mark
+    GROUP BY drive_id, ego_id, t_start_ns
+),
+turning AS (
+    SELECT t.drive_id, t.ego_id, t.t_start_ns, p.junction_id, min({'occurrence': p.occurrence, 'turn': p.turn, 'across': p.across}) AS p
+    FROM there t
+    JOIN junction_passage p ON p.drive_id = t.drive_id AND p.ego_id = t.ego_id
+        AND coalesce(p.t_out_ns, t.t_start_ns) >= t.t_start_ns AND coalesce(p.t_in_ns, p.t_first_ns) <= t.t_end_ns
+    GROUP BY t.drive_id, t.ego_id, t.t_start_ns, p.junction_id
+),
+placed AS (
+    SELECT
+        t.*, coalesce(a.junction_id, t.lane_junction_id) AS junction_id, a.crossing_id, a.line,
+        CASE WHEN t.front_s_m IS NOT NULL THEN coalesce(a.junction_m, 'inf'::DOUBLE) END AS junction_m
+    FROM there t
+    LEFT JOIN around a USING (drive_id, ego_id, t_start_ns)
+),
+lit AS (
+    SELECT p.drive_id, p.ego_id, p.t_start_ns, f.state
+    FROM placed p
+    JOIN signal_phase f ON f.drive_id = p.drive_id AND f.signal_id = p.line.signal_id
+        AND f.t_from_ns <= p.t_start_ns AND p.t_start_ns < coalesce(f.t_to_ns, p.t_start_ns + 1)
+    WHERE p.line.control = 'traffic_light'
+)
+SELECT
+    p.drive_id, p.ego_id, (row_number() OVER (PARTITION BY p.drive_id, p.ego_id ORDER BY p.t_start_ns) - 1)::INTEGER AS occurrence,
+    p.t_start_ns, p.t_end_ns, coalesce(b.v_mps >= stood_mps(), false) AS begin_seen, coalesce(a.v_mps >= stood_mps(), false) AS end_seen,
+    p.road_type, p.lanelet_id, p.junction_id, u.p.turn AS turn, u.p.across AS across, p.junction_m, p.crossing_id,
+    p.line.id AS stop_line_id, p.line.m AS stop_line_m, p.line.control AS control, l.state,
+    d.object_id AS ahead_id, d.gap_m AS ahead_gap_m, d.speed_mps AS ahead_speed_mps, d.t_ns IS NOT NULL AS ahead_known
+FROM placed p
+LEFT JOIN moved b ON b.drive_id = p.drive_id AND b.ego_id = p.ego_id AND b.seg = p.seg AND b.k = p.k_first - 1
+LEFT JOIN moved a ON a.drive_id = p.drive_id AND a.ego_id = p.ego_id AND a.seg = p.seg AND a.k = p.k_last + 1
+LEFT JOIN turning u ON u.drive_id = p.drive_id AND u.ego_id = p.ego_id AND u.t_start_ns = p.t_start_ns AND u.junction_id = p.junction_id
+LEFT JOIN lit l ON l.drive_id = p.drive_id AND l.ego_id = p.ego_id AND l.t_start_ns = p.t_start_ns
+LEFT JOIN lead d ON d.drive_id = p.drive_id AND d.ego_id = p.ego_id AND d.t_ns = p.t_start_ns

@@ -1,0 +1,236 @@
+"""Pedestrian crossings: who is on them, and the ego's ways over them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from tests.derive.junction_scenes import cross, crosswalk, lit, signal
+from tests.scenes import Actor, Road, derived, drive, moving, rows, seconds, times
+
+if TYPE_CHECKING:
+    from drivelint.batch import Drive
+    from tests.scenes import Row
+
+SIDE = {"rht": -1, "lht": 1}  # of the ego's half, along road 1
+X = -200 + 100  # the crossing begins here and is 3 m wide
+
+
+def zebra(hand: str = "rht", said: str = "zebra", lights: tuple[tuple[str, str], ...] = ()) -> Road:
+    """Return the way from west to east with a crossing at s = 100 of road 1."""
+    return cross(hand, lights, (("1", crosswalk("x", 100.0, said=said)),))["we"]
+
+
+def going(way: Road, *, v: float = 8.0, s0: float = 20.0, end: float = 14.0, name: str = "ego") -> Actor:
+    """The front is at s0 + 2.4 + 8 t: on the crossing at 9.7 s, the rear past it at 10.675 s."""
+    t = times(end)
+    return moving(name, way, t, s0 + v * t, way.own)
+
+
+def walker(name: str, t: np.ndarray, y: np.ndarray | float, x: float = X + 1.5, **more: object) -> Actor:
+    y = np.broadcast_to(np.asarray(y, float), t.shape).copy()
+    vy = np.gradient(y, t)
+    given = {"length": 0.5, "width": 0.5, "kind": "pedestrian", **more}
+    return Actor(name, t, np.full(t.shape, x), y, np.where(vy < 0, -1.0, 1.0) * np.pi / 2, 0 * t, vy, **given)  # type: ignore[arg-type]
+
+
+def passages(told: Drive) -> list[Row]:
+    con = derived(told, tables=["crossing_passage"])
+    return rows(con, "FROM crossing_passage ORDER BY drive_id, ego_id, occurrence")
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_on_it_half_by_half(hand: str) -> None:
+    """Walks from y = -6 to +6 at 1.2 m/s: at y = -3.5 after 2.1 s, at 0 after 5 s, at 3.5 after 7.9 s."""
+    way = zebra(hand)
+    t = times(14)
+    con = derived(drive([going(way), walker("w", t, -6 + 1.2 * t)], way.environment), tables=["crossing_occupancy"])
+    found = rows(con, "FROM crossing_occupancy ORDER BY t_from_ns")
+    assert [(r["crossing_id"], r["object_id"]) for r in found] == [("x", "w")] * 2
+    south, north = (
+        (1, -1) if hand == "rht" else (-1, 1)
+    )  # driven on the right the lane in the south leads east, along the line
+    assert [r["along_road"] for r in found] == [south, north]
+    assert seconds(found, "t_from_ns") == [pytest.approx(2.1, abs=0.1), pytest.approx(5.0, abs=0.1)]
+    assert seconds(found, "t_to_ns") == [pytest.approx(5.0, abs=0.1), pytest.approx(7.9, abs=0.1)]
+
+
+def test_cars_beside_it_and_people_beside_it_are_not_on_it() -> None:
+    way = zebra()
+    t = times(14)
+    others = [walker("beside", t, -1.75, x=X - 0.5), walker("kerb", t, -4.5), walker("car", t, -1.75, kind="car")]
+    con = derived(drive([going(way), *others], way.environment), tables=["crossing_occupancy"])
+    assert not rows(con, "FROM crossing_occupancy")
+
+
+def test_without_a_class_it_may_be_somebody_on_foot_and_a_hole_parts_two_stretches() -> None:
+    way = zebra()
+    t = times(14)
+    some = walker("w", t, -1.75, kind=None)
+    con = derived(drive([going(way), some.keep((t < 5) | (t > 6))], way.environment), tables=["crossing_occupancy"])
+    found = rows(con, "FROM crossing_occupancy ORDER BY t_from_ns")
+    assert seconds(found, "t_from_ns") == [0.0, pytest.approx(6.1)]
+    assert seconds(found, "t_to_ns") == [pytest.approx(4.9), pytest.approx(14.0)]
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(("said", "kind"), [("zebra", "zebra"), ("signalised", "signalled"), ("", None)])
+def test_going_over_an_empty_one(hand: str, said: str, kind: str | None) -> None:
+    way = zebra(hand, said)
+    (row,) = passages(drive([going(way)], way.environment))
+    assert (row["crossing_id"], row["kind"], row["occurrence"]) == ("x", kind, 0)
+    assert seconds([row], "t_in_ns") == [pytest.approx(9.7)]
+    assert seconds([row], "t_out_ns") == [pytest.approx(10.7)]
+    assert (row["on_id"], row["t_on_ns"], row["waiting_id"], row["known"]) == (None, None, None, True)
+    assert (row["signal_id"], row["state"], row["stood_before"]) == (None, None, False)
+
+
+def test_not_reached_no_row() -> None:
+    way = zebra()
+    assert not passages(drive([going(way, end=9.0)], way.environment))
+    assert not passages(drive([going(way, s0=110.0, end=9.0)], way.environment))
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(
+    ("half", "since", "on"), [(1, 9.0, True), (1, 10.0, True), (1, 11.5, False), (-1, 9.0, False), (1, 8.0, False)]
+)
+def test_somebody_on_the_egos_half(hand: str, half: int, since: float, on: bool) -> None:
+    """Steps from the kerb onto the ego's half (or the other one) at `since` and stays there for a second."""
+    way = zebra(hand)
+    t = times(14)
+    y = np.where((t >= since) & (t < since + 1), 3.0, 4.5) * SIDE[hand] * half
+    (row,) = passages(drive([going(way), walker("w", t, y)], way.environment))
+    assert row["on_id"] == ("w" if on else None)
+    if on:
+        assert seconds([row], "t_on_ns") == [pytest.approx(since)]
+    assert row["known"] is True
+
+
+def test_who_was_off_it_before_the_ego_came_is_not_on_it_and_the_first_counts() -> None:
+    way = zebra()
+    t = times(14)
+    gone = walker("a", t, np.where(t < 9.5, -3.0, -4.5))
+    second, first = walker("b", t, np.where(t > 9, -3.0, -4.5)), walker("c", t, np.where(t > 8, -3.0, -4.5))
+    (row,) = passages(drive([going(way), gone], way.environment))
+    assert row["on_id"] is None
+    (row,) = passages(drive([going(way), second, first], way.environment))
+    assert row["on_id"] == "c"
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(
+    ("y", "x", "waits"), [(4.5, X + 1.5, True), (5.4, X + 1.5, True), (5.6, X + 1.5, False), (4.5, X - 1.5, True),
+        (4.5, X - 3, False), (-4.5, X + 1.5, False)]
+)  # fmt: skip
+def test_somebody_waits_at_its_end(hand: str, y: float, x: float, waits: bool) -> None:
+    way = zebra(hand)
+    (row,) = passages(drive([going(way), walker("w", times(14), y * SIDE[hand], x)], way.environment))
+    assert row["waiting_id"] == ("w" if waits else None)
+
+
+def test_who_walks_by_or_came_late_does_not_wait() -> None:
+    way = zebra()
+    t = times(14)
+    by = walker("w", t, -4.5 - 0.1 * np.sin(8 * t))
+    (row,) = passages(drive([going(way), by], way.environment))
+    assert row["waiting_id"] is None
+    late = walker("w", t, np.where(t < 8.5, -8.0, -4.5))
+    (row,) = passages(drive([going(way), late], way.environment))
+    assert row["waiting_id"] is None
+    early = walker("w", t, np.where(t < 7.5, -8.0, -4.5))
+    (row,) = passages(drive([going(way), early], way.environment))
+    assert row["waiting_id"] == "w"
+
+
+def test_somebody_who_cannot_be_placed() -> None:
+    way = zebra()
+    t = times(14)
+    w = walker("w", t, -6.0)
+    # the window is from 7.7 to 10.7 s; a position moved on for a quarter of a second is still one
+    for hidden, known in (
+        (t > 9, False),
+        (t < 8, False),
+        ((t > 9) & (t < 9.5), False),
+        (t < 7.6, True),
+        (t > 11, True),
+    ):
+        (row,) = passages(drive([going(way), w.lost(hidden)], way.environment))
+        assert row["known"] is known
+    far = walker("w", t, -60.0)
+    (row,) = passages(drive([going(way), far.lost((t > 9) & (t < 10))], way.environment))
+    assert row["known"] is True
+    (row,) = passages(drive([going(way), walker("car", t, -6.0, kind="car").lost(t > 9)], way.environment))
+    assert row["known"] is True
+    (row,) = passages(drive([going(way), walker("w", t, -1.75, kind=None)], way.environment))
+    assert (row["known"], row["on_id"]) == (False, None)
+
+
+def test_a_track_that_begins_or_ends_nearby() -> None:
+    way = zebra()
+    t = times(14)
+    for kept, known in ((t > 9, False), (t < 10, False), (t > 5, True), (t < 12, True)):
+        (row,) = passages(drive([going(way), walker("w", t, -6.0).keep(kept)], way.environment))
+        assert row["known"] is known, kept.sum()
+    (row,) = passages(drive([going(way), walker("w", t, -60.0).keep(t > 9)], way.environment))
+    assert row["known"] is True
+
+
+def test_a_log_that_begins_or_ends_on_it_and_holes() -> None:
+    way = zebra()
+    (row,) = passages(drive([going(way, s0=99.0, end=5.0)], way.environment))
+    assert (row["t_in_ns"], row["known"]) == (None, False)
+    assert row["t_out_ns"] is not None
+    (row,) = passages(drive([going(way, end=10.0)], way.environment))
+    assert (row["t_out_ns"], row["known"]) == (None, False)
+    assert row["t_in_ns"] is not None
+    ego = going(way, end=16.0)
+    one, two = passages(drive([ego.keep((ego.t_s < 9.9) | (ego.t_s > 10.2))], way.environment))
+    assert (one["t_out_ns"], two["t_in_ns"], one["known"], two["known"]) == (None, None, False, False)
+    (over,) = passages(drive([ego.keep((ego.t_s < 8) | (ego.t_s > 13))], way.environment))
+    assert (over["t_in_ns"], over["t_out_ns"], over["known"]) == (None, None, False)
+    (row,) = passages(drive([ego.keep((ego.t_s < 8) | (ego.t_s > 8.5))], way.environment))
+    assert (row["t_in_ns"] is not None, row["known"]) == (True, False)
+    (row,) = passages(drive([going(way, s0=84.0, end=5.0)], way.environment))
+    assert row["known"] is False  # the log begins 1.7 s before
+
+
+@pytest.mark.parametrize(("at", "stood"), [(2.0, True), (7.0, False)])
+def test_it_stood_before_it(at: float, stood: bool) -> None:
+    way = zebra()
+    t = times(30)
+    s = np.interp(t, [0, 5, 10, 30], [100 - 42.4 - at, 100 - 2.4 - at, 100 - 2.4 - at, 200])
+    (row,) = passages(drive([moving("ego", way, t, s, way.own)], way.environment))
+    assert row["stood_before"] is stood
+
+
+def test_trembling_at_its_edge_is_one_passage() -> None:
+    way = zebra()
+    t = times(30)
+    s = np.interp(t, [0, 5, 15, 30], [100 - 42.4, 100 - 2.4, 100 - 2.4, 200]) + 0.02 * np.sin(5 * t)
+    assert len(passages(drive([moving("ego", way, t, s, way.own)], way.environment))) == 1
+
+
+def test_the_light_for_vehicles() -> None:
+    way = zebra(said="", lights=(("1", signal("light", 98.0, "1000001")),))
+    (row,) = passages(lit(drive([going(way)], way.environment), "light", (0.0, "green"), (9.6, "amber"), (10.0, "red")))
+    assert (row["kind"], row["signal_id"], row["state"]) == ("signalled", "light", "amber")
+    for code, s in (("206", 98.0), ("1000001", 80.0), ("1000001", 140.0)):
+        way = zebra(said="", lights=(("1", signal("other", s, code)),))
+        (row,) = passages(drive([going(way)], way.environment))
+        assert (row["kind"], row["signal_id"]) == (None, None)
+
+
+def test_each_ego_and_drive_for_itself() -> None:
+    way = zebra()
+    t = times(14)
+    on = walker("w", t, np.where(t > 8, -3.0, -4.5))
+    one = drive([going(way), going(way, s0=0.0, name="other"), on], way.environment, egos=("ego", "other"))
+    two = drive([going(way)], way.environment, drive_id="e")
+    con = derived(one, two, tables=["crossing_passage"])
+    found = rows(con, "FROM crossing_passage ORDER BY drive_id, ego_id")
+    assert [(r["drive_id"], r["ego_id"], r["on_id"], r["waiting_id"]) for r in found] == [
+        ("d", "ego", "w", None), ("d", "other", "w", None), ("e", "ego", None, None),
+    ]  # fmt: skip
