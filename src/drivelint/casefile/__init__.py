@@ -153,13 +153,14 @@ def run_cases(rule: Rule) -> list[CaseResult]:
     cases = read_cases(rule)
     results = [run_case(rule, case) for case in cases]
     if all(result.ok for result in results):  # else the crowd only says it again
-        mixed = _together(rule, cases)
+        mixed = together(rule, cases)
         results.append(CaseResult("all cases together", not mixed, mixed))
-    problem = _coverage(cases)
+    problem = coverage(cases)
     return [*results, CaseResult("kinds of case", not problem, problem and f"{cases_of(rule)}:{problem}")]
 
 
-def _coverage(cases: Sequence[Case]) -> str:
+def coverage(cases: Sequence[Case]) -> str:
+    """Return '' where the cases show what cases must show, else `line: what` is amiss."""
     for case in cases:
         if unknown := sorted(case.categories() - set(SHOWS)):
             return f"{case.line}: shows: {unknown[0]!r} is not one of {', '.join(SHOWS)}"
@@ -222,8 +223,8 @@ def members(rule: Rule, cases: Sequence[Case]) -> list[crowd.Member]:
     return found
 
 
-def _together(rule: Rule, cases: Sequence[Case]) -> str:
-    """Judge all cases in one database, and return '' where each comes out as it expects."""
+def together(rule: Rule, cases: Sequence[Case]) -> str:
+    """Judge all cases in one database, and return '' where each comes out as it expects. Errors: `RuleError`."""
     everybody = members(rule, cases)
     for key, where in crowd.KEYS.items():
         for group in crowd.crowds(everybody, key):
