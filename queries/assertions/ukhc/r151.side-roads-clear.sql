@@ -1,0 +1,46 @@
+-- title = "Keep side roads clear in a queue"
+-- clause = "UKHC R151: in slow-moving traffic allow access into and from side roads"
+-- hypothesis = "Did the ego get through a junction without lights without standing in it behind somebody?"
+-- kind = "postcondition"
+-- subtype = "physical"
+-- derivation = "direct"
+-- severity = "minor"
+-- legal = "should"
+-- status = "stable"
+-- sense = "holds"
+-- reads = ["ego_state", "junction_passage", "standstill"]
+-- requires = ["map", "registration", "ego_size"]
+--
+-- [params.near_m]
+-- default = 10.0
+-- unit = "m"
+-- why = "our default: who stands closer than this behind somebody stands because of them"
+--
+-- [params.slow_mps]
+-- default = 1.0
+-- unit = "m/s"
+-- why = "our default: slower than this moves up in a queue"
+
+-- @reference
+SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, junction_id, t_out_ns, across
+FROM junction_passage
+WHERE branches NOT IN (1, 2) AND control IS DISTINCT FROM 'traffic_light'
+
+-- @anchor
+SELECT ref_id, t_out_ns AS t_ns
+FROM reference
+UNION ALL
+SELECT r.ref_id, s.t_start_ns
+FROM reference r
+JOIN standstill s ON s.drive_id = r.drive_id AND s.ego_id = r.ego_id AND s.junction_id = r.junction_id
+    AND s.t_start_ns >= r.t_ns AND s.t_start_ns <= coalesce(r.t_out_ns, s.t_start_ns)
+
+-- @condition
+SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
+    s.t_start_ns IS NULL OR r.across OR NOT e.in_junction
+        OR NOT queued(s.ahead_id, s.ahead_gap_m, s.ahead_speed_mps, s.ahead_known, $near_m, $slow_mps) AS holds,
+    CASE WHEN s.t_start_ns IS NOT NULL THEN 'the ego stood in the junction' || coalesce(' behind ' || s.ahead_id, '') END AS reason
+FROM reference_step g
+JOIN reference r USING (ref_id)
+JOIN ego_state e ON e.drive_id = g.drive_id AND e.ego_id = g.ego_id AND e.t_ns = g.t_ns
+LEFT JOIN standstill s ON s.drive_id = g.drive_id AND s.ego_id = g.ego_id AND s.t_start_ns = g.t_ns AND s.junction_id = r.junction_id
