@@ -28,7 +28,7 @@ WALK = 100.0  # where the crossing begins, 3 m wide; the ego's front is there at
 RULES = tuple(
     f"ukhc.{name}"
     for name in (
-        "h2.turn-pedestrian", "h3.no-cut-across", "r112.horn", "r113.headlights", "r116.hazards", "r171.safe-gap",
+        "h2.turn-pedestrian", "h3.no-cut-across", "r112.horn", "r113.headlights", "r116.hazards", "r151.side-roads-clear", "r171.safe-gap",
         "r171.stop-sign", "r172.give-way", "r174.box", "r175.amber", "r175.red", "r176.green-exit-clear",
         "r180.corner-cut", "r180.right-turn-gap", "r182.no-pass-before-turn", "r183.keep-in", "r191.no-stopping",
         "r192.keep-clear", "r195.zebra-on", "r195.zebra-waiting", "r196.pelican", "r198.still-crossing",
@@ -174,6 +174,10 @@ def scenes(hand: str) -> dict[str, tuple[Callable[[str], Drive], tuple[str, ...]
         "stands in the junction behind somebody": (
             scene(light["we"], inside, going(light["we"], halting(209), "other"), signal_state=lit((0, "green"))),
             ("r174.box", "r176.green-exit-clear"),
+        ),
+        "stands in a junction without lights behind somebody": (
+            scene(minor["we"], inside, going(minor["we"], halting(209), "other")),
+            ("r151.side-roads-clear", "r174.box"),
         ),
         "stands in the junction": (scene(light["we"], inside, signal_state=lit((0, "green"))), ()),
         "waits to turn right behind somebody": (
