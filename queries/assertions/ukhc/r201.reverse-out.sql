@@ -12,9 +12,9 @@
 -- requires = ["map", "registration"]
 --
 -- [params.back_mps]
--- default = 0.1
+-- default = 0.5
 -- unit = "m/s"
--- why = "our default: slower than this is standing"
+-- why = "our default: slower than this is standing: recorded speeds of standing vehicles tremble"
 
 -- @reference
 SELECT e.drive_id, e.ego_id, e.t_ns, lag(e.lanelet_id) OVER w AS from_lanelet_id

@@ -16,9 +16,9 @@
 -- road_type = ["motorway"]
 --
 -- [params.back_mps]
--- default = 0.1
+-- default = 0.5
 -- unit = "m/s"
--- why = "our default: slower than this is standing, for a recorded speed is seldom exactly zero"
+-- why = "our default: slower than this is standing: recorded speeds of standing vehicles tremble"
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, v_long_mps AS observed, -$back_mps AS required
