@@ -261,6 +261,22 @@ def drive(
     return Drive(Trace(drive_id, Path(f"{drive_id}.parquet"), tables, None, None, []), environment)
 
 
+Event = tuple[float, str, str | None]
+
+
+def saying(scene: Drive, events: Sequence[Event] = (), by: str = "ego", **given: str) -> Drive:
+    """Return the drive with events (seconds, name, value) that an actor declares, and with conditions given for it."""
+    tables, drive_id = dict(scene.trace.tables), scene.trace.drive_id
+    said = [
+        {"drive_id": drive_id, "actor_id": by, "t_ns": round(t * 1e9), "event": event, "value": value}
+        for t, event, value in events
+    ]
+    holds = [{"drive_id": drive_id, "condition": c, "value": v, "source": "env"} for c, v in given.items()]
+    for name, found in (("declared_event", said), ("drive_condition", holds)):
+        tables[name] = pa.Table.from_pylist(found, schema=tables[name].schema)
+    return replace(scene, trace=replace(scene.trace, tables=tables))
+
+
 @cache
 def _database() -> duckdb.DuckDBPyConnection:
     return store.connect(threads=1)

@@ -21,7 +21,7 @@ from drivelint.derive import derivations
 from tests import scenes
 from tests.derive.test_exits import exit_road, leaver
 from tests.derive.test_overtake import scene
-from tests.scenes import Actor, derived, drive, judged, moving, road, standing, tee, times
+from tests.scenes import Actor, derived, drive, judged, moving, road, saying, standing, tee, times
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
@@ -51,6 +51,8 @@ def crowd() -> tuple[Drive, ...]:
         found.append(drive(holed, way.environment, drive_id=f"holed-{hand}", sensor_range_m=150.0))
     way, actors = scene(abort=True)
     found.append(drive(actors, way.environment, drive_id="aborted"))
+    by_hand = drive(actors, way.environment, drive_id="by-hand")
+    found.append(saying(by_hand, [(2.0, "engaged", "on"), (9.0, "engaged", "off")], weather="wet"))
     found.append(drive(actors, None, drive_id="no-map"))
     ego, vbp, ov = actors
     found.append(drive([ego, vbp.keep(vbp.t_s < 9), ov.keep(ov.t_s < 20)], way.environment, drive_id="lost"))

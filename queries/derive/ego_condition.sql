@@ -9,15 +9,20 @@ WITH given AS (
     FROM drive_condition GROUP BY drive_id
 ),
 -- a cross-section: its two directions run side by side, or something lies between them, or there is only one
+facing AS (
+    SELECT environment_id, lanelet_id, left_id AS beside_id FROM lanelet WHERE drivable AND left_against
+    UNION ALL
+    SELECT environment_id, lanelet_id, right_id FROM lanelet WHERE drivable AND right_against
+),
 road AS (
     SELECT
         n.environment_id, n.road_id, n.section,
-        coalesce(bool_or(n.drivable AND n.bidirectional OR n.drivable AND b.drivable), false) AS touching,
+        coalesce(bool_or(n.drivable AND n.bidirectional OR b.drivable), false) AS touching,
         count(DISTINCT n.along_road) FILTER (n.drivable) = 2 AS both_ways,
         bool_or(n.lane_type = 'median') AS median
     FROM lanelet n
-    LEFT JOIN lanelet b ON b.environment_id = n.environment_id
-        AND (b.lanelet_id = n.left_id AND n.left_against OR b.lanelet_id = n.right_id AND n.right_against)
+    LEFT JOIN facing f ON f.environment_id = n.environment_id AND f.lanelet_id = n.lanelet_id
+    LEFT JOIN lanelet b ON b.environment_id = f.environment_id AND b.lanelet_id = f.beside_id
     GROUP BY ALL
 ),
 here AS (

@@ -12,16 +12,14 @@ from drivelint import catalogue
 from drivelint.inspect.advice import OF_THE_MAP
 from drivelint.maps import MapSource, load_map
 from tests.maps import xodr
-from tests.scenes import LANE, Actor, Road, derived, drive, linked, moving, plan, road, rows, tee, times
+from tests.scenes import LANE, Actor, Event, Road, derived, drive, linked, moving, plan, road, rows, saying, tee, times
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
 
     import duckdb
 
     from drivelint.batch import Drive
 
-Event = tuple[float, str, str | None]
 CONDITIONS = ("road_type", "carriageway", "area", "nation", "weather", "light", "vehicle_class", "limit_mps", "engaged")
 
 
@@ -29,19 +27,6 @@ def ride(way: Road | None = None, d: float | None = None, seconds: float = 1.0, 
     way = way or road()
     t = times(seconds)
     return replace(moving("ego", way, t, 5 + 10 * t, way.own if d is None else d), **more)
-
-
-def saying(scene: Drive, events: Sequence[Event] = (), by: str = "ego", **given: str) -> Drive:
-    """Return the drive with declared events, and with conditions given for it."""
-    tables = dict(scene.trace.tables)
-    said = [
-        {"drive_id": "d", "actor_id": by, "t_ns": round(t * 1e9), "event": event, "value": value}
-        for t, event, value in events
-    ]
-    conditions = [{"drive_id": "d", "condition": c, "value": v, "source": "env"} for c, v in given.items()]
-    for name, found in (("declared_event", said), ("drive_condition", conditions)):
-        tables[name] = pa.Table.from_pylist(found, schema=tables[name].schema)
-    return replace(scene, trace=replace(scene.trace, tables=tables))
 
 
 def conditions(con: duckdb.DuckDBPyConnection, column: str) -> list[Any]:
