@@ -10,6 +10,9 @@
 -- reads = ["lane_change"]
 -- requires = ["map", "registration", "ego_size"]
 --
+-- [applies]
+-- road_type = ["motorway"]
+--
 -- [params.pet_s]
 -- default = 2.0
 -- unit = "s"

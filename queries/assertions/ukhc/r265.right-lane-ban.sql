@@ -8,7 +8,7 @@
 -- status = "stable"
 -- sense = "holds"
 -- merge_gap_s = 5.0
--- reads = ["data_log", "ego_condition", "ego_state", "environment", "lanelet"]
+-- reads = ["data_log", "ego_condition", "ego_state", "environment", "lane_next", "lanelet"]
 -- requires = ["map", "registration", "handedness"]
 --
 -- [applies]
@@ -16,9 +16,11 @@
 -- vehicle_class = ["car_towing", "bus", "goods_7t5", "goods_over_7t5"]
 
 -- @condition
--- lighter goods vehicles are banned if they have a speed limiter, which no log says
+-- lighter goods vehicles are banned if they have a speed limiter, which no log says; a lane that leads no further is for joining
 WITH wide AS (
-    SELECT environment_id, road_id, section, along_road FROM lanelet WHERE lane_type = 'driving' GROUP BY ALL HAVING count(*) >= 3
+    SELECT environment_id, road_id, section, along_road FROM lanelet JOIN lane_next USING (environment_id, lanelet_id)
+    WHERE lane_type = 'driving' AND ahead_id IS NOT NULL
+    GROUP BY ALL HAVING count(*) >= 3
 )
 SELECT e.drive_id, e.ego_id, e.t_ns,
     CASE
