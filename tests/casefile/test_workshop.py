@@ -1,0 +1,197 @@
+"""The author's commands: a rule to start from, and what is said of rules and cases that are wrong."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from drivelint.casefile import workshop
+from drivelint.catalogue import Rule, read_rule
+from drivelint.errors import ExitCode, RuleError, UsageError
+from tests.casefile.test_mutants import CASES, SPEED, measured, with_cases
+from tests.evaluate.packs import INVARIANT, MEASURED, text
+
+KINDS = ("invariant", "execution", "precondition", "postcondition")
+
+
+class Said(list[str]):
+    """What a command printed."""
+
+    def __call__(self, line: str) -> None:
+        self.append(line)
+
+
+def said_of(folder: Path, *only: str) -> tuple[ExitCode, str]:
+    said = Said()
+    code = workshop.case_test(folder, only, said)
+    return code, "\n".join(said)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_new_rule_runs_as_it_is_and_its_cases_notice_every_mutant(tmp_path: Path, kind: str) -> None:
+    sql, cases = workshop.new(f"mine.r1.{kind}", tmp_path, kind)
+    assert (sql.name, cases.name) == (f"r1.{kind}.sql", f"r1.{kind}.cases.yml")
+    rule = read_rule(sql)
+    assert (rule.id, rule.kind, rule.status) == (f"mine.r1.{kind}", kind, "draft")
+    assert said_of(tmp_path)[0] is ExitCode.OK
+    said = Said()
+    assert workshop.mutation_test(tmp_path, (), said) is ExitCode.OK
+    assert "no case notices" not in "\n".join(said)
+
+
+def test_nothing_is_overwritten(tmp_path: Path) -> None:
+    sql, cases = workshop.new("mine.one", tmp_path, "invariant")
+    sql.write_text("mine", encoding="utf-8")
+    with pytest.raises(UsageError, match=r"one\.sql is there already: nothing was written"):
+        workshop.new("mine.one", tmp_path, "invariant")
+    sql.unlink()
+    cases.write_text("mine", encoding="utf-8")
+    with pytest.raises(UsageError, match=r"one\.cases\.yml is there already: nothing was written"):
+        workshop.new("mine.one", tmp_path, "invariant")
+    assert not sql.exists()
+    assert cases.read_text(encoding="utf-8") == "mine"
+
+
+@pytest.mark.parametrize(
+    "rule_id", ["one", "mine.", ".one", "Mine.one", "mine/../../x.one", "mine.a/b", "mine.one two"]
+)
+def test_what_is_no_rule_id(tmp_path: Path, rule_id: str) -> None:
+    with pytest.raises(UsageError, match="is no rule id: write PACK"):
+        workshop.new(rule_id, tmp_path, "invariant")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_new_rule_does_not_take_the_name_of_a_shipped_one(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="is shipped already"):
+        workshop.new("ukhc.r124.speed-limit", tmp_path, "invariant")
+
+
+def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
+    (tmp_path / "mine").write_text("a file", encoding="utf-8")
+    with pytest.raises(UsageError, match="cannot write there"):
+        workshop.new("mine.one", tmp_path, "invariant")
+
+
+def test_a_copy_of_the_shipped_rules_can_be_worked_on(tmp_path: Path) -> None:
+    from drivelint.resources import folder
+
+    pack = tmp_path / "ukhc"
+    pack.mkdir()
+    for file in (folder("queries") / "assertions" / "ukhc").glob("r145.off-road.*"):
+        (pack / file.name).write_text(file.read_text(encoding="utf-8"), encoding="utf-8")
+    code, said = said_of(tmp_path)
+    assert (code, said.split(":")[0]) == (ExitCode.OK, "ok   ukhc.r145.off-road")
+
+
+def test_one_rule_is_refused_and_the_others_go_on(tmp_path: Path) -> None:
+    with_cases(measured(tmp_path), CASES)
+    broken = tmp_path / "pack" / "broken.sql"
+    broken.write_text(text(INVARIANT | MEASURED | {"senze": "1"}, {"condition": SPEED}), encoding="utf-8")
+    code, said = said_of(tmp_path)
+    assert code is ExitCode.USAGE
+    assert f"REFUSED {broken}:4: unknown key 'senze'" in said
+    assert "pack.rule: 5 of 6 checks" in said, "no case is not applicable"
+    assert workshop.mutation_test(tmp_path, (), Said()) is ExitCode.USAGE
+    assert said_of(tmp_path, "pack.rule")[0] is ExitCode.FAILED
+    with pytest.raises(UsageError, match="none of the 2 rules here"):
+        said_of(tmp_path, "nobody.*")
+
+
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        (
+            "ego_state e LEFT JOIN pair p ON p.drive_id = e.drive_id AND (p.t_ns = e.t_ns OR p.object_id = 'a')",
+            "BLOCKWISE",
+        ),
+        ("ego_state e JOIN pair p USING (drive_id)", "Ambiguous reference"),
+    ],
+)
+def test_a_plan_or_sql_that_does_not_fit_is_refused(tmp_path: Path, source: str, message: str) -> None:
+    reads = '["ego_state", "pair"]' if "pair" in source else '["ego_state"]'
+    sql = f"SELECT e.drive_id, e.ego_id, {'t_ns' if message[0] == 'A' else 'e.t_ns'}, 1 AS observed, 2 AS required\nFROM {source}"
+    rule = with_cases(measured(tmp_path, sql, {"reads": reads}, tables=""), CASES)
+    code, said = said_of(tmp_path)
+    assert code is ExitCode.USAGE
+    assert said.startswith(f"REFUSED {rule.path}:")
+    assert message in said
+
+
+@pytest.mark.parametrize(
+    ("cases", "line", "message"),
+    [
+        (None, 1, "has no cases"),
+        ("- name: [", 1, "not YAML"),
+        ("a: 1", 1, "cases are a list"),
+        ("\n- name: clean\n  given: {}\n  expect: pass\n- 7", 5, "a case is 'key: value' pairs"),
+        ("\n\n- name: clean\n  given: {}\n  expct: pass", 3, "unknown field `expct`"),
+        (CASES + "\n- name: clean\n  given: {}\n  expect: pass", 15, "has the name of the case in line 2"),
+        (CASES.replace("name: boundary", "name: boundary\n  params: {limitt: 1}"), 5, "has no parameter 'limitt'"),
+        (CASES.replace("name: boundary", "name: boundary\n  missing: [indicator]"), 5, "does not require 'indicator'"),
+        (
+            CASES.replace("speed_mps: 13", "spead_mps: 13"),
+            5,
+            "case 'boundary': given: ego_state has no column 'spead_mps'",
+        ),
+        (CASES.replace("{ego_state: {t_s: 0..1 by 0.1, speed_mps: 13}}", "{ego: {}}"), 5, "there is no table 'ego'"),
+        (CASES.replace("speed_mps: 13", "speed_mps: fast"), 5, "case 'boundary': given: ego_state:"),
+        (CASES.replace("margin: 0", "margn: 0"), 5, "case 'boundary': expect has no column 'margn'"),
+    ],
+)
+def test_what_is_wrong_in_cases_is_said_with_its_line(
+    tmp_path: Path, cases: str | None, line: int, message: str
+) -> None:
+    rule = measured(tmp_path)
+    if cases is not None:
+        with_cases(rule, cases)
+    code, said = said_of(tmp_path)
+    assert code is ExitCode.USAGE
+    assert said.startswith(f"REFUSED {rule.path.with_suffix('.cases.yml')}:{line}: ")
+    assert message in said
+    assert "\n" not in said
+
+
+@pytest.mark.parametrize(
+    ("cases", "line", "message"),
+    [
+        (CASES, 1, "no case shows: not_applicable"),
+        (CASES.replace("margin: 0", "margin: 0.5"), 5, "case 'boundary': row 0: expected margin = 0.5, got 0.0"),
+        (CASES.replace("expect: unknown", "expect: pass"), 11, "case 'unknown': expected pass, got unknown"),
+        (CASES.replace("name: boundary", "name: edge\n  shows: brink"), 5, "shows: 'brink' is not one of clean"),
+    ],
+)
+def test_a_case_that_fails_is_said_with_its_line(tmp_path: Path, cases: str, line: int, message: str) -> None:
+    rule = with_cases(measured(tmp_path), cases)
+    code, said = said_of(tmp_path)
+    assert code is ExitCode.FAILED
+    assert f"{rule.path.with_suffix('.cases.yml')}:{line}: {message}" in said
+
+
+@pytest.mark.parametrize(
+    ("change", "line", "message"),
+    [
+        (("$limit", "$limit + $more"), 18, "$more is not a parameter of this rule; add [params.more] to the header"),
+        (("$limit", "13"), 12, "parameter 'limit' is never used"),
+        (("FROM ego_state", "FROM ego_state\nJOIN pair USING (drive_id)"), 19, "add pair to reads"),
+        (('reads = ["ego_state"]', 'reads = ["ego_state", "pair"]'), 11, "remove pair"),
+        (("FROM ego_state", "FROM\nego_states"), 19, "there is no table 'ego_states'"),
+        (("$limit", "now()"), 18, "function now() is not allowed"),
+        (('"invariant"', '"invarient"'), 8, "Invalid enum value 'invarient'"),
+        (("FROM ego_state", "FROM ego_state;\nSELECT 1"), 19, "exactly one SELECT, found 2"),
+        (("SELECT drive_id", "DROP TABLE step; SELECT drive_id"), 18, "exactly one SELECT, found 2"),
+        (("speed_mps AS observed", "speed_mps"), 17, "observed missing"),
+        (("-- @condition", "-- @conditoin"), 17, "did you mean @condition?"),
+    ],
+)
+def test_what_is_wrong_in_a_rule_is_said_with_its_line(
+    tmp_path: Path, change: tuple[str, str], line: int, message: str
+) -> None:
+    rule: Rule = measured(tmp_path)
+    good = rule.path.read_text(encoding="utf-8")
+    assert change[0] in good
+    rule.path.write_text(good.replace(*change), encoding="utf-8")
+    with pytest.raises(RuleError) as caught:
+        read_rule(rule.path)
+    assert str(caught.value).startswith(f"{rule.path}:{line}: ")
+    assert message in str(caught.value)
