@@ -73,15 +73,37 @@ parted AS (
     FROM shared s JOIN stretch p USING (drive_id, ego_id, object_id, t1)
     GROUP BY ALL
 ),
+-- samples without a pause, and what follows soon after on the same ground (an angle that comes and goes at its edge)
+piece AS (
+    SELECT
+        drive_id, ego_id, object_id, n1, n2, max_gap_ns, min(t1_first) AS t1_first, max(t1_last) AS t1_last, min(t2) AS t2_first, max(t2) AS t2_last,
+        min({'t2': t2, 'angle_rad': near.angle_rad}) AS entry
+    FROM (
+        SELECT *, sum((t2 - before > max_gap_ns)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id, n1 ORDER BY t2) AS n2
+        FROM (
+            SELECT p.*, c.max_gap_ns, lag(p.t2, 1, p.t2) OVER (PARTITION BY p.drive_id, p.ego_id, p.object_id, p.n1 ORDER BY p.t2) AS before
+            FROM parted p JOIN clock c USING (drive_id, ego_id)
+        )
+    )
+    GROUP BY drive_id, ego_id, object_id, n1, n2, max_gap_ns
+),
 encounter AS (
     SELECT
-        drive_id, ego_id, object_id, min(t1_first) AS t_ego_in_ns, max(t1_last) AS t_ego_out_ns, min(t2) AS t_object_in_ns, max(t2) AS t_object_out_ns,
-        min({'t2': t2, 'angle_rad': near.angle_rad}).angle_rad AS angle_rad
+        drive_id, ego_id, object_id, min(t1_first) AS t_ego_in_ns, max(t1_last) AS t_ego_out_ns, min(t2_first) AS t_object_in_ns, max(t2_last) AS t_object_out_ns,
+        min(entry).angle_rad AS angle_rad
     FROM (
-        SELECT *, sum((t2 - before > conflict_apart_ns())::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id, n1 ORDER BY t2) AS n2
-        FROM (SELECT *, lag(t2, 1, t2) OVER (PARTITION BY drive_id, ego_id, object_id, n1 ORDER BY t2) AS before FROM parted)
+        SELECT
+            *,
+            sum((t2_first - before.t2_last > conflict_apart_ns() OR t1_first > before.t1_last + max_gap_ns OR t1_last < before.t1_first - max_gap_ns)::INTEGER)
+                OVER (PARTITION BY drive_id, ego_id, object_id, n1 ORDER BY n2) AS n
+        FROM (
+            SELECT
+                *,
+                lag({'t1_first': t1_first, 't1_last': t1_last, 't2_last': t2_last}) OVER (PARTITION BY drive_id, ego_id, object_id, n1 ORDER BY n2) AS before
+            FROM piece
+        )
     )
-    GROUP BY drive_id, ego_id, object_id, n1, n2
+    GROUP BY drive_id, ego_id, object_id, n1, coalesce(n, 0)
 ),
 -- what stands there all the while is in the way, not on its way
 moving AS MATERIALIZED (

@@ -152,6 +152,19 @@ def test_two_encounters_with_the_same_actor_are_two_rows() -> None:
     assert all(row["pet_s"] > 0 for row in found)
 
 
+def test_out_of_the_egos_way_and_back_into_it_are_two_places() -> None:
+    """A car ahead swerves out of the lane and, past an obstacle, back in: the ego gets to each place after it."""
+    t = times(16)
+    s = -30 + 10 * t
+    out, back = np.clip((s - 20) / 8, 0, 1), np.clip((s - 34) / 8, 0, 1)
+    d = 3.5 * (out * out * (3 - 2 * out) - back * back * (3 - 2 * back))
+    ego = east(s0=-50.0, end=16)
+    found = conflicts(ego, moving("other", line(), t, s, d))
+    assert len(found) == 2
+    assert all(row["pet_s"] > 0.5 for row in found)
+    assert found[0]["angle_rad"] > 0.35 > -0.35 > found[1]["angle_rad"]
+
+
 def test_who_has_no_position_heading_or_size_is_left_to_passage_conflict() -> None:
     other = across(-40 + 5 * times(12))
     there = np.abs(other.y) < 8
