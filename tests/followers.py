@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 OVER_M = 0.05  # a box this far over a lane's boundary is in the lane
+DRIFT_S = 3.0  # so long a present speed across the lane counts
 CLOSE_CALL_M = 0.03  # nearer to that than this, two honest computations may differ
 COMES_MPS = 0.5
 FULL_BRAKING_MPS2 = 8.0
@@ -41,6 +42,7 @@ class Seen(NamedTuple):
     across: tuple[float, float]
     in_by: float
     speed: float
+    drift: float  # speed across the lane, to the left positive, by its heading
     comes: bool
 
 
@@ -58,13 +60,16 @@ class Measure(NamedTuple):
     close_call: bool
 
 
-def measure(speed: float, across: tuple[float, float], others: Iterable[Seen]) -> Measure:
+def measure(
+    speed: float, drift: float, across: tuple[float, float], others: Iterable[Seen], doubt_rad: float = 0.0
+) -> Measure:
     """Return a step's measures by their definitions.
 
     The lead is the nearest vehicle ahead in the lane (its centre ahead of the ego's). TTC = gap / closing speed (Hayward
-    1972), headway = gap / speed, DRAC = closing speed squared / twice the gap, time to brake =
-    TTC less half the time of a full braking from the closing speed; defined behind a lead that is not yet
-    alongside and whose box overlaps the ego's across the lane. The rule on headway is for 5 m/s and more.
+    1972), headway = gap / speed, DRAC = closing speed squared / twice the gap, time to brake = TTC less half the time of
+    a full braking from the closing speed. Headway is defined behind a lead that is not alongside and whose box overlaps
+    the ego's across the lane, and from 5 m/s on; the others where the two will overlap when the ego is there, at the
+    present speeds across. `doubt_rad`: how exactly the lane's heading is known.
     """
     others = list(others)
     inside = [o for o in others if o.ahead and o.in_by > OVER_M and not o.comes]
@@ -72,16 +77,25 @@ def measure(speed: float, across: tuple[float, float], others: Iterable[Seen]) -
     if not inside:
         return Measure(None, math.inf, math.inf, 0.0, math.inf, close_call)
     lead = min(inside, key=lambda o: o.gap)
-    overlap = min(across[1], lead.across[1]) - max(across[0], lead.across[0])
-    close_call |= abs(overlap) < CLOSE_CALL_M or abs(lead.gap) < CLOSE_CALL_M or abs(speed - 5.0) < 1e-3
-    if lead.gap < 0 or overlap <= 0:
-        return Measure(lead.name, None, None, None, None, close_call)
     closing = speed - lead.speed
     ttc = lead.gap / closing if closing > 0 else math.inf
-    drac = closing**2 / (2 * lead.gap) if closing > 0 else 0.0
-    thw = lead.gap / speed if speed >= 5.0 else None
-    ttb = ttc - closing / (2 * FULL_BRAKING_MPS2) if closing > 0 else math.inf
-    return Measure(lead.name, ttc, thw, drac, ttb, close_call)
+    now = _overlap(across, lead.across)
+    shift = (drift - lead.drift) * min(ttc, DRIFT_S) if math.isfinite(ttc) else 0.0
+    then = _overlap((across[0] + shift, across[1] + shift), lead.across)
+    far = doubt_rad * speed * min(ttc, DRIFT_S) if math.isfinite(ttc) else 0.0
+    close_call |= min(abs(lead.gap), abs(now), abs(then) - far) < CLOSE_CALL_M or abs(speed - 5.0) < 1e-3
+    ttb = drac = thw = None
+    on_course = lead.gap >= 0 and then > 0
+    if on_course:
+        drac = closing**2 / (2 * lead.gap) if closing > 0 else 0.0
+        ttb = ttc - closing / (2 * FULL_BRAKING_MPS2) if closing > 0 else math.inf
+    if lead.gap >= 0 and now > 0 and speed >= 5.0:
+        thw = lead.gap / speed
+    return Measure(lead.name, ttc if on_course else None, thw, drac, ttb, close_call)
+
+
+def _overlap(a: tuple[float, float], b: tuple[float, float]) -> float:
+    return min(a[1], b[1]) - max(a[0], b[0])
 
 
 # ---- esmini: stations and offsets as logged
@@ -113,7 +127,7 @@ def esmini(log: Path, road: Path, ego: str) -> dict[float, Measure]:
             half = widths(own["s"][i], int(own["lane"][i])) / 2 if vehicles else 0.0
             lane = Lane(sense, own["d"][i] - own["off"][i], half)
         seen = [_esmini_seen(name, a, own, i, lane, bends) for name, a in vehicles.items()]
-        result[float(t)] = measure(float(own["v"][i]), _across(own, i, lane), seen)
+        result[float(t)] = measure(float(own["v"][i]), _drift(own, i, lane), _across(own, i, lane), seen)
     return result
 
 
@@ -153,6 +167,10 @@ def _across(a: Mapping[str, Any], i: int, lane: Lane) -> tuple[float, float]:
     return float(d.min()), float(d.max())
 
 
+def _drift(a: Mapping[str, Any], i: int, lane: Lane) -> float:
+    return lane.sense * float(a["v"][i] * math.sin(a["rel"][i]))
+
+
 def _esmini_seen(  # noqa: PLR0917 - two vehicles, a moment, and the road
     name: str, a: Mapping[str, Any], own: Mapping[str, Any], i: int, lane: Lane, bends: tuple[Floats, Floats]
 ) -> Seen:
@@ -168,6 +186,7 @@ def _esmini_seen(  # noqa: PLR0917 - two vehicles, a moment, and the road
         (low, high),
         min(lane.half - low, high + lane.half),
         float(a["v"][i]),
+        _drift(a, i, lane),
         bool(with_lane < -0.5 and a["v"][i] > COMES_MPS),
     )
 
@@ -243,12 +262,14 @@ class Scenario:
             name: shapely.Polygon(np.vstack([left, right[::-1]])) for name, (left, right) in self.bounds.items()
         }
 
-    def measures(self, ego: str) -> dict[int, Measure | None]:
+    def measures(self, ego: str, doubt_rad: float = 0.0) -> dict[int, Measure | None]:
         """Return time step -> measures of an ego; None where it is on no lanelet that runs its way."""
         own = self.obstacles[ego]
         lanes = {k: self._lanelet(own.states[k]) for k in sorted(own.states)}
         driven = [name for name in dict.fromkeys(lanes.values()) if name]
-        return {k: self._at(k, lane, driven, own, ego) if lane else None for k, lane in lanes.items()}
+        return {
+            k: self._at(k, self._chain(lane, driven), ego, doubt_rad) if lane else None for k, lane in lanes.items()
+        }
 
     def _lanelet(self, state: tuple[float, float, float, float]) -> str | None:
         """Return the lanelet under a state that runs most as it heads."""
@@ -274,8 +295,8 @@ class Scenario:
         first, last = line[1] - line[0], line[-1] - line[-2]
         return _turn(math.atan2(last[1], last[0]), math.atan2(first[1], first[0]))
 
-    def _at(self, k: int, lane: str, driven: list[str], own: Obstacle, ego: str) -> Measure:
-        chain = self._chain(lane, driven)
+    def _at(self, k: int, chain: list[str], ego: str, doubt_rad: float) -> Measure:
+        own = self.obstacles[ego]
         left, right = (np.vstack([self.bounds[name][side] for name in chain]) for side in (0, 1))
         line, half = _centre(left, right), np.hypot(*(left - right).T) / 2
         keep = np.concatenate([[True], np.hypot(*np.diff(line, axis=0).T) > 1e-6])
@@ -293,12 +314,24 @@ class Scenario:
                 continue
             os, od = _along(line, other.corners(k))
             width = float(np.interp(mid, stations, half))
-            comes = abs(_turn(_heading(line, x, y), yaw)) > 2 * math.pi / 3 and speed > COMES_MPS
+            turn = _turn(yaw, _heading(line, x, y))
+            comes = abs(turn) > 2 * math.pi / 3 and speed > COMES_MPS
             inside = min(width - od.min(), od.max() + width)
             seen.append(
-                Seen(name, float(os.min() - s.max()), mid > centre_s, (od.min(), od.max()), inside, speed, comes)
+                Seen(
+                    name,
+                    float(os.min() - s.max()),
+                    mid > centre_s,
+                    (od.min(), od.max()),
+                    inside,
+                    speed,
+                    speed * math.sin(turn),
+                    comes,
+                )
             )
-        return measure(own.states[k][3], (float(d.min()), float(d.max())), seen)
+        x, y, yaw, speed = own.states[k]
+        drift = speed * math.sin(_turn(yaw, _heading(line, x, y)))
+        return measure(speed, drift, (float(d.min()), float(d.max())), seen, doubt_rad)
 
 
 def _obstacle(element: Any) -> Obstacle:

@@ -32,9 +32,11 @@ COMMONROAD = {
     "DEU_Gar-1_1_T-1": 80,
     "OSC_Overtake-1_1_T-1": 400,
     "OSC_PedestrianCollision-1_1_T-1": 90,
-    "USA_US101-5_1_T-1": 650,
+    "USA_US101-5_1_T-1": 500,
 }
 """Scenario -> how many steps at least must have been compared, every vehicle being the ego in turn."""
+ZIGZAG_RAD = {"USA_US101-5_1_T-1": 0.05}
+"""Scenario -> how far the headings of its lanelets' middle lines jump from piece to piece: see EXPLAINED."""
 EXPLAINED = {
     # The bounds of the NGSIM lanelets were sampled apart, so that their middle line zigzags by 2 to 4 degrees. The product
     # takes a box's extent along and across the lane from the lane's direction at the middle of the box, the computation
@@ -114,7 +116,7 @@ def test_commonroad(name: str) -> None:
     for ego, obstacle in scenario.obstacles.items():
         if obstacle.kind == "pedestrian":
             continue
-        for k, expected in scenario.measures(ego).items():
+        for k, expected in scenario.measures(ego, ZIGZAG_RAD.get(name, 0.0)).items():
             step = found[ego, round(k * scenario.step_s * 1e9)]
             if expected is None or expected.close_call or not told(step):
                 continue

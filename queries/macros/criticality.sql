@@ -39,10 +39,19 @@ CREATE OR REPLACE MACRO mttc_s(gap_m, v_mps, a_mps2, v_lead_mps, a_lead_mps2) AS
         ELSE gone_s(gap_m, v_mps - v_lead_mps, a_mps2 - a_lead_mps2)
     END;
 
--- Whether the lead is ahead of the ego's own box: across the corridor the two overlap, as they no longer do in the middle of an overtake.
--- NULL as soon as either is not placed. Alongside it is not ahead.
-CREATE OR REPLACE MACRO on_course(gap_m, d_m, lat_half_m, lead_d_m, lead_lat_half_m) AS
+-- For so long a present speed across the lane tells where somebody will be.
+CREATE OR REPLACE MACRO drift_s() AS 3.0;
+
+-- Whether the lead is ahead of the ego's own box: across the corridor the two overlap. NULL as soon as either is not placed. Alongside it
+-- is not ahead.
+CREATE OR REPLACE MACRO behind(gap_m, d_m, lat_half_m, lead_d_m, lead_lat_half_m) AS
     gap_m >= 0 AND abs(d_m - lead_d_m) < lat_half_m + lead_lat_half_m;
+
+-- Whether it still will be when the ego is there, at the present speeds across the lane (heading against the corridor): who pulls out or
+-- in beside another closes in on nobody.
+CREATE OR REPLACE MACRO on_course(gap_m, ttc_s, d_m, lat_half_m, lat_mps, lead_d_m, lead_lat_half_m, lead_lat_mps) AS
+    gap_m >= 0 AND abs(d_m - lead_d_m + (lat_mps - lead_lat_mps) * CASE WHEN isinf(ttc_s) THEN 0.0 WHEN ttc_s < drift_s() THEN ttc_s WHEN ttc_s >= drift_s() THEN drift_s() END)
+        < lat_half_m + lead_lat_half_m;
 
 -- Whether a vehicle ahead comes towards the ego: to stand the wrong way round is not to come.
 CREATE OR REPLACE MACRO comes(speed_mps, oncoming) AS oncoming AND speed_mps > standing_mps();

@@ -29,7 +29,11 @@
 -- @applies
 -- a step without a row in `lead` is one at which nobody knows who leads
 SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
-    CASE WHEN l.object_id IS NOT NULL THEN on_course(l.gap_m, e.d_m, e.lat_half_m, p.d_m, p.lat_half_m) AND NOT comes(l.speed_mps, l.oncoming) WHEN l.t_ns IS NOT NULL THEN true END AS applies
+    CASE WHEN l.object_id IS NOT NULL THEN on_course(
+        l.gap_m, ttc_s(l.gap_m, l.ego_speed_mps - along_mps(l.speed_mps, l.oncoming)),
+        e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, p.speed_mps * sin(p.heading_diff_rad)
+    ) AND NOT comes(l.speed_mps, l.oncoming)
+    WHEN l.t_ns IS NOT NULL THEN true END AS applies
 FROM step s
 LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
 LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.t_ns = l.t_ns AND p.object_id = l.object_id
