@@ -1,0 +1,119 @@
+"""Windowed rules of the catalogue against rtamt, which monitors signal temporal logic: the same verdict, and its robustness
+is our margin."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from hypothesis import Phase, given, settings
+from hypothesis import strategies as st
+
+from drivelint.casefile.crowd import Member, judge, merge, share
+from drivelint.casefile.scene import scene
+from drivelint.catalogue import load
+from tests.evaluate.stl import FAR, PERIOD_S, SPECS, STEPS, Spec, Trace
+
+if TYPE_CHECKING:
+    from drivelint.casefile.crowd import Outcome
+
+rtamt: Any = pytest.importorskip("rtamt", reason="rtamt is not installed (pip install rtamt)")
+
+PHASES = (Phase.explicit, Phase.generate)  # a seed does not shrink
+RULES = load()
+EXACT = 1e-9
+
+
+@cache
+def monitor(formula: str, names: tuple[str, ...]) -> Any:
+    spec = rtamt.StlDiscreteTimeOfflineSpecification()
+    for name in (*names, "out"):
+        spec.declare_var(name, "float")
+    spec.set_sampling_period(round(PERIOD_S * 1000), "ms", 0.1)
+    spec.spec = f"out = {formula}"
+    spec.parse()
+    return spec
+
+
+def robustness(spec: Spec, trace: Trace) -> float:
+    """Return rtamt's value at the reference point, or at the beginning for an invariant."""
+    times = {"time": [k * PERIOD_S for k in range(STEPS)]}
+    rows = monitor(spec.formula, tuple(trace.signals)).evaluate(times | trace.signals)
+    return float(rows[trace.at if spec.window_s else 0][1])
+
+
+def ours(spec: Spec, traces: list[Trace]) -> list[Outcome]:
+    """Judge all traces at once, as drives of one database."""
+    rule = RULES[spec.rule]
+    members = [Member(no, scene(rule, trace.given, (), spec.rule), {}) for no, trace in enumerate(traces)]
+    outcome = judge([rule], merge(members, "drive_id"), {})[rule.id]
+    return [share(outcome, member.no) for member in members]
+
+
+def check(spec: Spec, trace: Trace, outcome: Outcome) -> str:
+    """Hold one trace's verdict against rtamt's robustness; return the verdict."""
+    value = robustness(spec, trace)
+    rows = outcome.verdicts
+    words = {row["verdict"] for row in rows}
+    if value > FAR / 2:
+        assert words == {"not_applicable"}, "rtamt: nowhere on"
+        return "not_applicable"
+    if spec.window_s:
+        assert len(rows) == 1
+    verdict = "fail" if "fail" in words else "pass"
+    assert words <= {"pass", "fail"}, rows[0]["reason"]
+    if spec.measured:
+        assert min(row["margin"] for row in rows) == pytest.approx(value, rel=EXACT, abs=EXACT)
+    if abs(value) > EXACT:  # at the limit itself > and >= differ, and to rtamt both are 0
+        assert verdict == ("pass" if value > 0 else "fail")
+    return verdict
+
+
+@pytest.mark.parametrize("spec", SPECS, ids=lambda spec: spec.rule)
+def test_the_catalogue_and_rtamt_agree(spec: Spec) -> None:
+    seen: set[str] = set()
+
+    @settings(max_examples=4, deadline=None, derandomize=True, database=None, phases=PHASES)
+    @given(seeds=st.lists(st.integers(0, 2**32), min_size=6, max_size=8, unique=True))
+    def agree(seeds: list[int]) -> None:
+        traces = [spec.random(seed) for seed in seeds]
+        for trace, outcome in zip(traces, ours(spec, traces), strict=True):
+            seen.add(check(spec, trace, outcome))
+
+    agree()
+    assert seen >= {"pass", "fail"}, "the traces show both"
+
+
+@pytest.mark.parametrize(
+    ("rule", "formula"),
+    [
+        ("ukhc.r103.signal-before", "historically[0s,4.9s](lit >= 0)"),
+        ("ukhc.r103.signal-before", "always[0s,5s](lit >= 0)"),
+        ("ukhc.r168.drop-back", "eventually[0s,5s](gap >= 2 * v)"),
+        ("ukhc.r103.signal-off", "eventually[0.1s,5s](lit <= 0)"),
+        ("ukhc.r103.signal-off", "eventually[0s,4.9s](lit <= 0)"),
+        ("ukhc.r103.signal-off", "eventually[0s,5.1s](lit <= 0)"),
+        ("ukhc.r182.no-pass-before-turn", "historically[0s,5.1s](free >= 0)"),
+        ("alks-r157.cut-in", "eventually[0s,5s](clear > 0)"),
+        ("stvo.s4-truck", "always((on >= 0) -> (gap >= 50.01))"),
+    ],
+)
+def test_another_formula_would_be_noticed(rule: str, formula: str) -> None:
+    spec = next(spec for spec in SPECS if spec.rule == rule)
+    traces = [spec.random(seed) for seed in range(40)]
+    other = spec._replace(formula=formula)
+    noticed = 0
+    for trace, outcome in zip(traces, ours(spec, traces), strict=True):
+        try:
+            check(other, trace, outcome)
+        except AssertionError:
+            noticed += 1
+    assert noticed
+
+
+def test_enough_of_the_catalogue_is_compared() -> None:
+    windowed = [spec for spec in SPECS if spec.window_s]
+    assert len(SPECS) >= 10
+    assert len({RULES[spec.rule].kind for spec in windowed}) == 2, "pre- and postconditions"
+    assert {RULES[spec.rule].quantifier for spec in windowed} == {"always", "eventually"}
