@@ -99,13 +99,15 @@ reached AS (
             ELSE t.kind = 'traffic_light' AND t.s_m >= m.s_start_m - 15 AND t.s_m <= m.s_end_m + line_reach_m()
         END
 ),
--- what stands before the way into another junction is that one's
+-- what stands before the way into another junction, or past the way out of this one, is another's
 own AS (
     SELECT r.*
     FROM reached r
     ANTI JOIN junction j
         ON j.drive_id = r.drive_id AND j.ego_id = r.ego_id AND j.chain_id = r.chain_id
         AND j.s_start_m >= least(r.s_m, r.s_start_m) AND j.s_start_m < greatest(r.s_m, r.s_start_m) - 5
+    ANTI JOIN junction o
+        ON o.drive_id = r.drive_id AND o.ego_id = r.ego_id AND o.chain_id = r.chain_id AND o.s_end_m > r.s_start_m + 1 AND o.s_end_m <= r.s_m
 ),
 governed AS (
     SELECT

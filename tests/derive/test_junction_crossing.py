@@ -223,6 +223,15 @@ def test_the_light_for_vehicles() -> None:
         assert (row["kind"], row["signal_id"]) == (None, None)
 
 
+def test_a_light_past_the_junction_is_not_that_of_a_crossing_at_its_beginning() -> None:
+    way = cross("rht", (("2", signal("next", 1.0, "1000001")),), (("10", crosswalk("x", 2.0)),))["we"]
+    (row,) = passages(drive([going(way, s0=120.0)], way.environment))
+    assert (row["kind"], row["signal_id"]) == (None, None)
+    way = cross("rht", (("10", signal("own", 29.0, "1000001")),), (("10", crosswalk("x", 2.0)),))["we"]
+    (row,) = passages(drive([going(way, s0=120.0)], way.environment))
+    assert (row["kind"], row["signal_id"]) == ("signalled", "own")
+
+
 def test_each_ego_and_drive_for_itself() -> None:
     way = zebra()
     t = times(14)
