@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 HZ = 10
 _FINE = 0.02  # s, of the simulation
+_GRID_M = 0.1
 _BACK_MPS = 1.5
-_SMOOTH_S = 1.6  # the window that rounds the corners of a speed
 
 
 def smooth(u: ArrayLike) -> Floats:
@@ -39,8 +39,10 @@ class Plan:
     limits: list[tuple[float, float, float]] = field(default_factory=list)
     halts: list[tuple[float, float, float]] = field(default_factory=list)
     shifts: list[tuple[float, float, float]] = field(default_factory=list)
-    brake: float = 1.5
+    brake: float = 1.1
     pull: float = 1.2
+    rounding_s: float = 1.6
+    """Length of the window that rounds the corners of the speed."""
 
     def slow(self, start: float, end: float, speed: float) -> None:
         """Drive no faster than this between two stations."""
@@ -54,8 +56,16 @@ class Plan:
         """Move to the nearside by so much, beginning at a station, within a distance."""
         self.shifts.append((at, within, by))
 
-    def stations(self, end: float) -> tuple[Floats, Floats]:
-        """Return times from 0 at `HZ`, and the stations at them, until 30 m before the end of the way."""
+    def stations(self, line: Line, h: int) -> tuple[Floats, Floats]:
+        """Return times from 0 at `HZ`, and the stations at them, until 30 m before the end of the line.
+
+        Speeds are those of the actor itself: a station on the line is shorter or longer where it drives beside it in a bend.
+        """
+        end = line.length_m
+        grid = np.arange(0.0, end, _GRID_M)
+        n = self.offsets(grid)
+        scale = np.hypot(1.0 - line.curvature(grid) * n * h, np.gradient(n, _GRID_M))
+        made = np.concatenate([[0.0], np.cumsum((scale[1:] + scale[:-1]) / 2 * _GRID_M)])
         halts = sorted(self.halts)
         s, v, waiting, back, way = self.start, self.speed, 0.0, 0.0, [self.start]
         while s < end - 30.0 and len(way) < 60 * 60 / _FINE:
@@ -64,6 +74,7 @@ class Plan:
                 waiting, back, s = waiting - _FINE, back - step, s - step
                 way.append(s)
                 continue
+            here = scale[min(int(s / _GRID_M), len(scale) - 1)]
             free = min((top for a, b, top in self.limits if a <= s <= b), default=self.speed)
             ahead = [np.sqrt(top**2 + 2 * self.brake * (a - s)) for a, b, top in self.limits if s < a]
             gap = halts[0][0] - s if halts else np.inf
@@ -72,16 +83,16 @@ class Plan:
             if gap < 0.02:
                 _, waiting, back = halts.pop(0)
                 v = 0.0
-            s += v * _FINE
+            s += v * _FINE / here
             way.append(s)
-        fine = np.array(way)
-        n = round(_SMOOTH_S / _FINE) | 1
-        window = np.hanning(n + 2)[1:-1]
-        before = self.start - self.speed * _FINE * np.arange(n // 2, 0, -1)
-        after = fine[-1] + (fine[-1] - fine[-2]) * np.arange(1, n // 2 + 1)
+        fine = np.interp(way, grid, made)
+        n_window = round(self.rounding_s / _FINE) | 1
+        window = np.hanning(n_window + 2)[1:-1]
+        before = fine[0] - self.speed * _FINE * np.arange(n_window // 2, 0, -1)
+        after = fine[-1] + (fine[-1] - fine[-2]) * np.arange(1, n_window // 2 + 1)
         rounded = np.convolve(np.concatenate([before, fine, after]), window / window.sum(), "valid")
         every = round(1 / (HZ * _FINE))
-        found: Floats = rounded[::every]
+        found: Floats = np.interp(rounded[::every], made, grid)
         return np.arange(len(found)) / HZ, found
 
     def offsets(self, s: Floats) -> Floats:
@@ -105,6 +116,7 @@ CAR = Body("car", 4.8, 1.8)
 BUS = Body("bus", 11.0, 2.5)
 BICYCLE = Body("bicycle", 1.8, 0.6)
 WALKER = Body("pedestrian", 0.5, 0.5)
+HORSE = Body("animal", 2.2, 0.6)
 
 
 def track(name: str, body: Body, line: Line, h: int, t: Floats, s: Floats, n: Floats, *, turned: float = 0.0) -> Actor:  # noqa: PLR0913, PLR0917

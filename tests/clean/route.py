@@ -23,7 +23,10 @@ LANE = 3.5
 BESIDE = {"sidewalk": 2.0, "shoulder": 3.0}
 RADIUS = 10.0  # of the corners of junctions: their arms end so far from the middle
 STUB = 150.0  # length of the roads that lead away from the ego's way
-SIGNS = {"stop": {"lht": ("gb", "601.1"), "rht": ("de", "206")}, "give_way": {"lht": ("gb", "602"), "rht": ("de", "205")}}
+SIGNS = {
+    "stop": {"lht": ("gb", "601.1"), "rht": ("de", "206")},
+    "no_overtaking": {"lht": ("gb", "632"), "rht": ("de", "276")},
+}
 
 
 @dataclass(frozen=True)
@@ -143,7 +146,9 @@ class Route:
         came = Arm(self._on_way[-1], entry, by_its_end=True)
         number = 1000 + len(self._junctions)
         came.part.ends["successor"] = f'elementType="junction" elementId="{number}"'
-        middle = Pose(entry.x + RADIUS * math.cos(entry.heading), entry.y + RADIUS * math.sin(entry.heading), entry.heading)
+        middle = Pose(
+            entry.x + RADIUS * math.cos(entry.heading), entry.y + RADIUS * math.sin(entry.heading), entry.heading
+        )
         arms = {"came": came}
         turns = {"left": math.pi / 2, "right": -math.pi / 2, "straight": 0.0}
         for side in sides:
@@ -189,7 +194,7 @@ class Route:
         self._junctions.append(f'<junction id="{number}" name="j{number}">{"".join(connections)}</junction>')
 
     def stop_line(self, s: float, control: str = "", *, light: str = "") -> None:
-        """Paint a line across the ego's lane, with a sign (stop, give_way) or a light (its signal id) beside it."""
+        """Paint a line across the ego's lane, with a sign (stop) or a light (its signal id) beside it."""
         part, at = self._holding(s)
         t = sorted((0.1 * self.h, (LANE - 0.1) * self.h))
         part.objects.append(_area(f"line{s:.0f}", "", "StopLine", at, at + 0.3, *t))
@@ -198,6 +203,14 @@ class Route:
             part.signals.append(self._signal(f"sign{s:.0f}", at, code, country))
         if light:
             part.signals.append(self._signal(light, at, "1000001", "OpenDRIVE", dynamic="yes"))
+
+    def sign(self, s: float, kind: str) -> None:
+        """Put a sign beside the ego's lane."""
+        part, at = self._holding(s)
+        country, code = SIGNS[kind][self.hand]
+        text = self._signal(f"{kind}{s:.0f}", at, code, country)
+        if text not in part.signals:
+            part.signals.append(text)
 
     def crossing(self, s: float, kind: str, *, light: str = "") -> None:
         """Paint a pedestrian crossing, 3 m wide, right across the road from station s on."""
@@ -208,7 +221,9 @@ class Route:
 
     def _signal(self, name: str, at: float, code: str, country: str, dynamic: str = "no") -> str:
         place = f's="{at!r}" t="{self.h * (LANE + 1)}" zOffset="2" orientation="+"'
-        return f'<signal id="{name}" name="" {place} dynamic="{dynamic}" country="{country}" type="{code}" subtype="-1"/>'
+        return (
+            f'<signal id="{name}" name="" {place} dynamic="{dynamic}" country="{country}" type="{code}" subtype="-1"/>'
+        )
 
     def _holding(self, s: float) -> tuple[_Part, float]:
         part = next(p for p in reversed(self._on_way) if p.s0 is not None and p.s0 <= s)
@@ -293,4 +308,4 @@ def _area(name: str, kind: str, label: str, s0: float, s1: float, t0: float, t1:
     corners: Iterable[tuple[float, float]] = ((s0, t0), (s1, t0), (s1, t1), (s0, t1))
     text = "".join(f'<cornerRoad s="{s!r}" t="{t!r}" dz="0" height="0"/>' for s, t in corners)
     head = f'<object id="{name}" name="{label}" type="{kind}" s="{s0!r}" t="0" zOffset="0" hdg="0">'
-    return f"{head}<outlines><outline id=\"0\">{text}</outline></outlines></object>"
+    return f'{head}<outlines><outline id="0">{text}</outline></outlines></object>'

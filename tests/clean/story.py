@@ -45,8 +45,9 @@ class Story:
     def __post_init__(self) -> None:
         self.route = Route("rht" if self.nation == "de" else "lht")
         self.plan = Plan(10.0, self.route.offset(), 13.0)
-        self.events.append((0.0, "chosen_speed", "13.0;start"))
-        self.conditions.setdefault("nation", self.nation)
+        self.events += [(0.0, "chosen_speed", "13.0;start"), (0.0, "engaged", "on")]
+        self.events += [(0.0, mode, "off") for mode in ("emergency_manoeuvre", "minimal_risk_manoeuvre", "horn")]
+        self.conditions.update(nation=self.nation, light="day", weather="dry")
         self.others: list[Actor] = []
         self.signals: list[tuple[str, float, str]] = []
         self._then: list[Callable[[], None]] = []
@@ -72,7 +73,9 @@ class Story:
         if looks:
             self.then(lambda: self.events.append((self.when(start) - 1.0, "mirror_check", None)))
 
-    def leaves(self, by: float, at: float, within: float, *, looks: tuple[str, ...] = ("mirror_check", "blind_spot_check")) -> None:
+    def leaves(
+        self, by: float, at: float, within: float, *, looks: tuple[str, ...] = ("mirror_check", "blind_spot_check")
+    ) -> None:
         """Move to the nearside by so much, far enough to leave the lane, after two looks."""
         self.plan.shift(by, at, within)
         self.then(lambda: self.events.extend((self.when(at) - 1.5 + k, look, None) for k, look in enumerate(looks)))
@@ -113,7 +116,7 @@ class Story:
 
     def drive(self, name: str) -> Drive:
         """Return the whole story as a drive, ready for the bench."""
-        self.t, self.s = self.plan.stations(self.route.length)
+        self.t, self.s = self.plan.stations(self.route.line, self.route.h)
         for scene in self._then:
             scene()
         ego = track("ego", self.body, self.route.line, self.route.h, self.t, self.s, self.plan.offsets(self.s))

@@ -1,0 +1,50 @@
+"""Stories judged by every stable rule of the packs that fit their nation."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from drivelint import catalogue
+from tests.clean.chapters import CHAPTERS, open_road
+from tests.clean.story import Story
+from tests.scenes import judged
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from drivelint.batch import Drive
+    from tests.scenes import Row
+
+EVERYWHERE = ("rss", "criticality", "comfort", "performance", "declared")
+PACKS = {"gb": ("ukhc", *EVERYWHERE), "de": ("stvo", "alks-r157", *EVERYWHERE)}
+# who is passed inside the ego's lane is the vehicle ahead of it for RSS until it is passed, however far to the side
+PASSED_IN_LANE = {"cyclist", "parked"}
+
+
+def stable(packs: Iterable[str]) -> tuple[str, ...]:
+    """Return the ids of the stable rules of packs."""
+    return tuple(r.id for r in catalogue.load().values() if r.status == "stable" and r.pack in packs)
+
+
+def told(name: str, nation: str, chapters: Iterable[str], change: Mapping[str, Any] | None = None) -> Drive:
+    """Return a story of these chapters, the same change made to each, with open road before, between and after."""
+    story = Story(nation)
+    open_road(story)
+    for chapter in chapters:
+        CHAPTERS[chapter](story, **(change or {}))
+        open_road(story)
+    return story.drive(name)
+
+
+def verdicts(drives: Iterable[Drive], packs: Iterable[str]) -> dict[str, list[Row]]:
+    """Judge all drives in one batch; return rows by drive."""
+    drives = list(drives)
+    found: dict[str, list[Row]] = {drive.trace.drive_id: [] for drive in drives}
+    for row in judged(drives, rules=stable(packs)):
+        found[row["drive_id"]].append(row)
+    return found
+
+
+def broken(rows: Iterable[Row]) -> set[str]:
+    """Return the rules that fail (or err)."""
+    return {row["rule_id"] for row in rows if row["verdict"] in {"fail", "error"}}
