@@ -27,29 +27,35 @@ around AS (
     SELECT cell_key(x.i, y.i) AS cell, t.i AS slot
     FROM (VALUES (-1), (0), (1)) AS x(i) CROSS JOIN (VALUES (-1), (0), (1)) AS y(i) CROSS JOIN (VALUES (-1), (0), (1)) AS t(i)
 ),
-angled AS MATERIALIZED (
-    SELECT m.drive_id, m.ego_id, m.object_id, e.t_ns AS t1, o.t_ns AS t2
+-- step by step, or the planner, which cannot know how few they are, would compare everybody with everybody
+close AS MATERIALIZED (
+    SELECT m.ego_id, m.cell AS ego_cell, m.slot AS ego_slot, m.heading AS ego_heading, o.*
     FROM meeting m
-    JOIN ego e ON e.drive_id = m.drive_id AND e.actor_id = m.ego_id AND e.cell = m.cell AND e.slot = m.slot AND e.heading = m.heading
     JOIN other o ON o.drive_id = m.drive_id AND o.actor_id = m.object_id AND o.cell = m.object_cell AND o.slot = m.object_slot
         AND o.heading = m.object_heading
+),
+angled AS MATERIALIZED (
+    SELECT o.drive_id, o.ego_id, o.actor_id AS object_id, e.t_ns AS t1, o.t_ns AS t2
+    FROM close o
+    JOIN ego e ON e.drive_id = o.drive_id AND e.actor_id = o.ego_id AND e.cell = o.ego_cell AND e.slot = o.ego_slot AND e.heading = o.ego_heading
     WHERE boxes_meet(o.x_m - e.x_m, o.y_m - e.y_m, e.c, e.s, o.c, o.s, e.hl, e.hw, o.hl, o.hw)
         AND abs(e.t_ns - o.t_ns) <= conflict_ns() AND abs(wrap_rad(o.dir_rad - e.dir_rad)) > conflict_angle_rad()
 ),
 -- In a tight bend even a follower's box lies across the ego's of another moment: what counts is the angle against the ego's way where that
 -- comes nearest.
+there AS MATERIALIZED (
+    SELECT b.*, a.ego_id
+    FROM (SELECT DISTINCT drive_id, ego_id, object_id, t2 FROM angled) a
+    JOIN other b ON b.drive_id = a.drive_id AND b.actor_id = a.object_id AND b.t_ns = a.t2
+),
+reached AS MATERIALIZED (SELECT b.*, b.cell + n.cell AS near_cell, b.slot + n.slot AS near_slot FROM there b CROSS JOIN around n),
 met AS (
     SELECT
         o.drive_id, o.ego_id, o.actor_id AS object_id, o.t_ns AS t2,
         min({
             'd2': (o.x_m - e.x_m) ** 2 + (o.y_m - e.y_m) ** 2, 't1': e.t_ns, 't2': o.t_ns, 'angle_rad': wrap_rad(o.dir_rad - e.dir_rad)
         }) AS near
-    FROM (
-        SELECT b.*, a.ego_id, b.cell + n.cell AS near_cell, b.slot + n.slot AS near_slot
-        FROM (SELECT DISTINCT drive_id, ego_id, object_id, t2 FROM angled) a
-        JOIN other b ON b.drive_id = a.drive_id AND b.actor_id = a.object_id AND b.t_ns = a.t2
-        CROSS JOIN around n
-    ) o
+    FROM reached o
     JOIN ego e ON e.drive_id = o.drive_id AND e.actor_id = o.ego_id AND e.cell = o.near_cell AND e.slot = o.near_slot
     WHERE boxes_meet(o.x_m - e.x_m, o.y_m - e.y_m, e.c, e.s, o.c, o.s, e.hl, e.hw, o.hl, o.hw) AND abs(e.t_ns - o.t_ns) <= conflict_ns()
     GROUP BY ALL
