@@ -74,7 +74,7 @@ def test_ci_takes_the_test_command_from_the_readme() -> None:
     assert "<!-- command: test -->" in script
     assert ".venv/bin/pytest" not in script
     assert "pytest" in command("test")
-    for tool in ("ruff check", "ruff format --check", "mypy", "lint-imports"):
+    for tool in ("ruff check", "ruff format --check", "mypy", "lint-imports", "drivelint rules test --mutate"):
         assert f"step .venv/bin/{tool}" in script
 
 
