@@ -145,8 +145,15 @@ def _grid(rule: Rule, partial: bool, unsettled: bool, watching: bool) -> str:
 ), _grid AS (SELECT a.* FROM _restricted a{terms.todo(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
 
 
+def asked(rule: Rule, partial: bool, watching: bool) -> str:
+    """SQL for `_asked`: the grid of a rule that has no first pass. Empty: nothing to judge, its condition is not looked at."""
+    return f"CREATE OR REPLACE TEMP TABLE _asked AS WITH {_grid(rule, partial, False, watching)} SELECT * FROM _grid"
+
+
 def second_pass(rule: Rule, partial: bool, unsettled: bool, watching: bool) -> str:
     """SQL for `_judged`: every step of the grid, judged or not; '' stands for no object, profile or label.
+
+    The grid is what a first pass left unsettled, or `_asked`.
 
     The conditions are left-joined to the grid on keys alone: a row that the author's join lost is an unknown step.
     """
@@ -170,9 +177,10 @@ def second_pass(rule: Rule, partial: bool, unsettled: bool, watching: bool) -> s
 SELECT a.* EXCLUDE (t_begin_ns, k_begin, episode) FROM _aged a
 LEFT JOIN _segment s ON s.drive_id = a.drive_id AND s.ego_id = a.ego_id AND s.seg = a.seg
 WHERE s.seg IS NULL OR k_begin = s.k_first OR t_ns - t_begin_ns >= $_exempt_ns"""
+    grid = _grid(rule, partial, True, watching) if unsettled else "_grid AS (SELECT * FROM _asked)"
     return f"""
 CREATE OR REPLACE TEMP TABLE _judged AS
-WITH {terms.state(rule)}, {_grid(rule, partial, unsettled, watching)}, _joined AS (
+WITH {terms.state(rule)}, {grid}, _joined AS (
     SELECT g.drive_id, g.ego_id, coalesce(g.object_id, '') AS object_id,
         {"p.profile" if rule.profiled else "''"} AS profile,
         coalesce(g.label, '') AS label, NULL::INTEGER AS ref_id, g.t_ns, g.k, g.seg,

@@ -78,6 +78,8 @@ class Run:
             )
             if self._may_stop(n_steps):
                 return
+        elif self._may_stop(self._execute(invariant.asked(rule, partial, self._watching), binding)):
+            return
         n_judged = self._execute(invariant.second_pass(rule, partial, quick, self._watching), binding)
         if self._may_stop(n_judged):
             return
@@ -106,7 +108,8 @@ class Run:
         self._leave(binding)
 
     def _leave(self, binding: Binding) -> None:
-        self._execute(findings.stretches(binding.rule), binding)
+        if not self._may_stop(self._count("SELECT count(*) FROM (FROM _judged WHERE NOT holds LIMIT 1)")):
+            self._execute(findings.stretches(binding.rule), binding)
         if self._margins:
             self._execute(findings.margins(binding.rule), binding)
 

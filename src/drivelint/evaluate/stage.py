@@ -57,7 +57,7 @@ ANTI JOIN _gated g ON g.rule_no = r.rule_no AND g.drive_id = s.drive_id AND g.eg
 """
 _NAMES = (
     "_subject", "_watched", "_segment", "_rule", "_needs", "_error", "_group", "_outcome", "_stretch", "_margin", "_gated", "_todo",
-    "_grid_group", "_closed", "_judged", "_profile_set", "_raw_reference", "reference", "_occasion", "reference_step",
+    "_grid_group", "_asked", "_closed", "_judged", "_profile_set", "_raw_reference", "reference", "_occasion", "reference_step",
 )  # fmt: skip
 
 
