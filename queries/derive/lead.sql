@@ -10,8 +10,10 @@ WITH ahead AS (
     FROM pair p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     WHERE may_be_vehicle(p.actor_class) AND p.s_m > e.s_m AND in_lane(p.d_m, p.lat_half_m, p.half_width_m)
-        -- what stands the wrong way round is in the way all the same
-        AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps())
+        -- what stands the wrong way round is in the way all the same; one that comes towards the ego only if it is in its lane or its way:
+        -- oncoming vehicles that touch the line must not hide whom the ego follows
+        AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps()
+            OR abs(p.d_m) <= p.half_width_m OR abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m)
     GROUP BY ALL
 ),
 doubt AS (

@@ -9,7 +9,7 @@ WITH held AS (
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     JOIN step st USING (drive_id, ego_id, t_ns)
     JOIN ego_corridor x ON x.drive_id = e.drive_id AND x.ego_id = e.ego_id AND x.chain_id = e.chain_id AND x.t_ns = e.t_ns
-    WHERE l.object_id IS NOT NULL AND x.over_against AND l.speed_mps < 0.8 * e.limit_mps
+    WHERE l.object_id IS NOT NULL AND NOT coalesce(l.oncoming AND l.speed_mps > standing_mps(), false) AND x.over_against AND l.speed_mps < 0.8 * e.limit_mps
         AND l.gap_m < 5 * greatest(e.speed_mps, 2.0)
         AND CASE x.side WHEN 1 THEN x.left_out_m ELSE x.right_out_m END <= over_boundary_m()
 ),

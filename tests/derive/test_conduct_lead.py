@@ -216,3 +216,21 @@ def test_each_ego_has_its_own_follower() -> None:
     con = derived(drive(cars, way.environment, egos=["b", "c"]), tables=["follower"])
     found = rows(con, "SELECT DISTINCT ego_id, object_id FROM follower WHERE lane = 'own' ORDER BY ALL")
     assert [tuple(row.values()) for row in found] == [("b", "a"), ("c", "b")]
+
+
+def test_one_that_comes_in_the_egos_lane_is_ahead_and_one_that_touches_the_line_is_not() -> None:
+    """Head on in the lane it is the nearest; 0.1 m over the middle line it hides nobody whom the ego follows."""
+    way = road(lanes=(1, 1))
+    t = times(4.0)
+    ego = moving("ego", way, t, 100 + 10 * t, -0.5 * LANE)
+    old = moving("old", way, t, 220 + 10 * t, -0.5 * LANE)
+
+    def ahead(d: float) -> set[tuple[str, bool]]:
+        other = moving("x", way, t, 200 - 10 * t, d)
+        found = rows(derived(drive([ego, old, other], way.environment), tables=["lead"]), "FROM lead ORDER BY t_ns")
+        assert len(found) == len(t)
+        return {(row["object_id"], row["oncoming"]) for row in found if row["t_ns"] < 3_000_000_000}
+
+    assert ahead(-0.5 * LANE) == {("x", True)}
+    assert ahead(0.9 - 0.1) == {("old", False)}
+    assert ahead(0.5 * LANE) == {("old", False)}

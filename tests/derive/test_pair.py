@@ -204,7 +204,7 @@ LEADS = [
     ("own lane, behind", 60.0, -1.75, 0.0, 5.0, False),
     ("a corner in the own lane", 140.0, -0.2 - 0.9 + 1.75, 0.0, 5.0, True),
     ("beside it", 140.0, 1.75, 0.0, 5.0, False),
-    ("coming towards it", 140.0, -1.75, math.pi, 5.0, False),
+    ("coming towards it", 140.0, -1.75, math.pi, 5.0, True),
     ("parked the wrong way round", 140.0, -1.75, math.pi, 0.0, True),
     ("on the verge", 140.0, -4.7, 0.0, 0.0, False),
 ]
@@ -222,7 +222,7 @@ def test_who_leads(what: str, s: float, d: float, turned: float, speed: float, l
     assert len(found) == len(t)
     assert {row["object_id"] for row in found} == ({"x"} if leads else {None})
     if leads:
-        assert [row["gap_m"] for row in found] == pytest.approx(list(s - 100 - 4.8 + (speed - 10) * t), abs=1e-6)
+        assert [row["gap_m"] for row in found] == pytest.approx(list(s - 100 - 4.8 + (direction * speed - 10) * t), abs=1e-6)
 
 
 def test_the_nearest_leads_and_people_do_not() -> None:
