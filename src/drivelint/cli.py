@@ -345,6 +345,30 @@ def rules_new(
     typer.echo(f"Edit both, then: drivelint rules test {folder} --rules {rule_id}", err=True)
 
 
+@rules_app.command("page")
+def rules_page(
+    folder: Annotated[
+        Path | None, typer.Argument(metavar="[DIR]", help="Folder with rule packs; default: the shipped ones.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="Write it there; default: print it.")] = None,
+) -> None:
+    """Write the catalogue as one Markdown page.
+
+    A table per pack: what each rule asserts and needs, its numbers and where they are from; and by clause what is covered.
+    """
+    from drivelint.catalogue import load
+    from drivelint.report.catalogue_page import page
+    from drivelint.resources import folder as shipped
+
+    rules = load((folder,) if folder else ()).values()
+    packs = folder or shipped("queries") / "assertions"
+    text = page([rule for rule in rules if rule.path.is_relative_to(packs)], packs)
+    if out is None:
+        typer.echo(text, nl=False)
+    else:
+        out.write_text(text, encoding="utf-8")
+
+
 @rules_app.command("test")
 def rules_test(
     folder: Annotated[
