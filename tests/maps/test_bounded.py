@@ -83,7 +83,10 @@ def test_what_lies_side_by_side_is_one_road() -> None:
 
 
 def test_the_left_is_driven_on_where_the_oncoming_lane_is_on_the_right() -> None:
-    one, other = straight("1", 0.0, right_id="2", right_against=True), straight("2", -3.5, right_id="1", right_against=True)
+    one, other = (
+        straight("1", 0.0, right_id="2", right_against=True),
+        straight("2", -3.5, right_id="1", right_against=True),
+    )
     assert side_driven_on([one, other]) == "lht"
     assert side_driven_on([straight("1", 0.0)]) is None
     other.bidirectional = True  # beside a lane that is driven both ways nothing is said
