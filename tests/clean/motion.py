@@ -119,7 +119,7 @@ WALKER = Body("pedestrian", 0.5, 0.5)
 HORSE = Body("animal", 2.2, 0.6)
 
 
-def track(name: str, body: Body, line: Line, h: int, t: Floats, s: Floats, n: Floats, *, turned: float = 0.0) -> Actor:  # noqa: PLR0913, PLR0917
+def track(name: str, body: Body, line: Line, h: int, t: Floats, s: Floats, n: Floats, *, turned: float = 0.0) -> Actor:  # noqa: PLR0917
     """Return an actor at stations s and nearside offsets n of a line; it heads along it, turned by so much.
 
     `turned`: pi for who comes the other way; heading and velocity else follow from the motion, or from the line at rest.

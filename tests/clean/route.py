@@ -177,7 +177,7 @@ class Route:
         onward.ends["predecessor"] = f'elementType="junction" elementId="{number}"'
         pose = onward.pose
         junction.arms[turn] = Arm(onward, Pose(pose.x, pose.y, pose.heading + math.pi), by_its_end=False)
-        connections = []
+        connections: list[str] = []
         arms = list(junction.arms.values())
         for i, a in enumerate(arms):
             for b in arms[i + 1 :]:
@@ -242,8 +242,9 @@ class Route:
         kind, (limit, unit) = part.kind, part.kind.limit
         speed = f'<speed max="{limit}" unit="{unit}"/>' if limit else ""
         more = f'<type s="0" type="{kind.type}">{speed}</type>'
+        shape = plan([(p.length_m, p.curvature) for p in part.pieces], (part.pose.x, part.pose.y, part.pose.heading))
         text = xodr.road(
-            str(part.number), plan([(p.length_m, p.curvature) for p in part.pieces], tuple(part.pose)), self._lanes(part),
+            str(part.number), shape, self._lanes(part),
             part.length, "".join(f"<{end} {what}/>" for end, what in part.ends.items()), f'rule="{self.hand.upper()}"', more,
             str(part.junction),
         )  # fmt: skip

@@ -16,11 +16,11 @@ from drivelint.batch import Drive
 from drivelint.maps import MapSource, load_map
 from tests import scenes
 from tests.clean.motion import CAR, HZ, Body, Plan, track
-from tests.clean.route import Kind, Route
+from tests.clean.route import Route
 from tests.scenes import Actor
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+LOOKS = ("mirror_check", "blind_spot_check")
 GARAGE_Y = -3000.0  # where those stand who are not on the road yet, or no more
 
 
@@ -40,7 +41,6 @@ class Story:
     conditions: dict[str, str] = field(default_factory=dict)
     lights: list[tuple[str, float, float]] = field(default_factory=list)
     hazards: list[tuple[float, float]] = field(default_factory=list)
-    reverse: list[tuple[float, float]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.route = Route("rht" if self.nation == "de" else "lht")
@@ -51,10 +51,8 @@ class Story:
         self.others: list[Actor] = []
         self.signals: list[tuple[str, float, str]] = []
         self._then: list[Callable[[], None]] = []
-        self.body = CAR
         self.t: Floats = np.zeros(0)
         self.s: Floats = np.zeros(0)
-        self.keep: Callable[[Actor], Actor] = lambda ego: ego
 
     # ---- while the way is laid
 
@@ -73,9 +71,7 @@ class Story:
         if looks:
             self.then(lambda: self.events.append((self.when(start) - 1.0, "mirror_check", None)))
 
-    def leaves(
-        self, by: float, at: float, within: float, *, looks: tuple[str, ...] = ("mirror_check", "blind_spot_check")
-    ) -> None:
+    def leaves(self, by: float, at: float, within: float, *, looks: Sequence[str] = LOOKS) -> None:
         """Move to the nearside by so much, far enough to leave the lane, after two looks."""
         self.plan.shift(by, at, within)
         self.then(lambda: self.events.extend((self.when(at) - 1.5 + k, look, None) for k, look in enumerate(looks)))
@@ -98,16 +94,21 @@ class Story:
         found = found + np.minimum(t - self.t[0], 0.0) * first + np.maximum(t - self.t[-1], 0.0) * last
         return np.asarray(found, np.float64)
 
-    def meets(self, s: float | Floats | Callable[[Floats], Floats], n: ArrayLike | Callable[[Floats], Floats], body: Body = CAR, *, line: Line | None = None,
-              between: tuple[float, float] | None = None, turned: float = 0.0) -> None:  # fmt: skip
-        """Add somebody at stations and offsets of the ego's way, or of another line, while between two times.
+    def meets(
+        self,
+        s: ArrayLike,
+        n: ArrayLike,
+        body: Body = CAR,
+        *,
+        line: Line | None = None,
+        between: tuple[float, float] | None = None,
+        turned: float = 0.0,
+    ) -> None:
+        """Add somebody at stations and offsets of the ego's way, or of another line, at the times `t`, or between two times.
 
-        Before and after he stands far away.
+        Before and after these he stands far away. `turned`: see `track`.
         """
-        where = np.asarray(s(self.t) if callable(s) else s, np.float64)
-        where, beside = np.broadcast_arrays(where, np.asarray(n(self.t) if callable(n) else n, np.float64))
-        where = np.broadcast_to(where, self.t.shape)
-        beside = np.broadcast_to(beside, self.t.shape)
+        where, beside, _ = np.broadcast_arrays(np.asarray(s, np.float64), np.asarray(n, np.float64), self.t)
         name = f"{len(self.others) + 2:03d}"
         actor = track(name, body, line or self.route.line, self.route.h, self.t, where, beside, turned=turned)
         if between is not None:
@@ -119,8 +120,8 @@ class Story:
         self.t, self.s = self.plan.stations(self.route.line, self.route.h)
         for scene in self._then:
             scene()
-        ego = track("ego", self.body, self.route.line, self.route.h, self.t, self.s, self.plan.offsets(self.s))
-        ego = self.keep(replace(ego, indicator=self._lamps()))
+        ego = track("ego", CAR, self.route.line, self.route.h, self.t, self.s, self.plan.offsets(self.s))
+        ego = replace(ego, indicator=self._lamps())
         text = self.route.text()
         made = scenes.drive([ego, *self.others], load_map(MapSource(f"{name}.xodr", text.encode())), drive_id=name)
         return _with(made, name, self)
@@ -137,8 +138,13 @@ class Story:
 
 def _garaged(actor: Actor, on: NDArray[np.bool_], place: int) -> Actor:
     x, y = 20.0 * place, GARAGE_Y
-    values = {"x": x, "y": y, "yaw": 0.0, "vx": 0.0, "vy": 0.0}
-    return replace(actor, **{name: np.where(on, getattr(actor, name), value) for name, value in values.items()})
+
+    def there(values: Floats, otherwise: float = 0.0) -> Floats:
+        return np.where(on, values, otherwise)
+
+    return replace(
+        actor, x=there(actor.x, x), y=there(actor.y, y), yaw=there(actor.yaw), vx=there(actor.vx), vy=there(actor.vy)
+    )
 
 
 def _with(made: Drive, name: str, story: Story) -> Drive:
@@ -161,6 +167,3 @@ def _with(made: Drive, name: str, story: Story) -> Drive:
         table: pa.Table.from_pylist(content, schema=made.trace.tables[table].schema) for table, content in rows.items()
     }
     return replace(made, trace=replace(made.trace, tables=tables))
-
-
-__all__ = ["CAR", "Body", "Kind", "Story"]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.clean.judging import EVERYWHERE, PACKS, PASSED_IN_LANE, broken, stable, told, verdicts
+from tests.clean.judging import EVERYWHERE, NOT_FOR_RSS, PACKS, broken, stable, told, verdicts
 
 if TYPE_CHECKING:
     from tests.scenes import Row
@@ -42,7 +42,7 @@ NOT_KEPT = {
 @cache
 def judged(nation: str, packs: tuple[str, ...]) -> list[Row]:
     """Return the verdicts of a nation's drive by these packs."""
-    chapters = [c for c in CHAPTERS[nation] if "rss" not in packs or c not in PASSED_IN_LANE]
+    chapters = [c for c in CHAPTERS[nation] if "rss" not in packs or c not in NOT_FOR_RSS]
     drive = told(f"clean-{nation}", nation, chapters)
     log = drive.trace.tables["data_log"].to_pylist()[0]
     assert log["t_end_ns"] - log["t_start_ns"] >= 600 * 10**9
