@@ -11,6 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from drivelint.errors import TraceError, UsageError
+from drivelint.ingest.bag import METADATA, is_bag
+from drivelint.ingest.bag import files as files_of_bag
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -50,11 +52,16 @@ def is_canonical_folder(path: Path) -> bool:
     return (path / "actor_state.parquet").is_file()
 
 
+def is_drive_folder(path: Path) -> bool:
+    """Say whether `path` is a folder that is one drive: canonical tables, or a bag of rosbag2."""
+    return is_canonical_folder(path) or is_bag(path)
+
+
 def expand(traces: Sequence[str]) -> list[Path]:
     """Return the traces that files, globs and folders name, sorted, each file once.
 
     A path that exists is always taken literally, `[`, `*` and `?` in its name included. A folder with
-    `actor_state.parquet` is one drive; any other is searched, with subfolders, for MCAP, Parquet, CSV and OSI files, except
+    `actor_state.parquet` or of rosbag2 is one drive; any other is searched, with subfolders, for MCAP, Parquet, CSV and OSI files, except
     for what an earlier check wrote there.
     Errors: `UsageError` for a URI or an empty name, `TraceError` for something that matches nothing.
     """
@@ -88,10 +95,11 @@ def _exists(path: Path) -> bool:
 
 
 def _inside(path: Path) -> list[Path]:
-    if not path.is_dir() or is_canonical_folder(path):
+    if not path.is_dir() or is_drive_folder(path):
         return [path]
     try:
         drives = [folder.parent for folder in path.rglob("actor_state.parquet")]
+        drives += [file.parent for file in path.rglob(METADATA) if is_bag(file.parent) and file.parent not in drives]
         inside = frozenset(drives)
         files = [
             file
@@ -126,14 +134,15 @@ def _checked(folder: Path) -> bool:
 
 
 def identify(path: Path) -> Identity:
-    """Hash a trace: a file's bytes, or a canonical folder's tables in name order, each with its name.
+    """Hash a trace: a file's bytes, or a folder's tables in name order or parts in order, each with its name.
 
     Errors: `TraceError` when it cannot be read.
     """
     try:
         if path.is_dir():
             folder = hashlib.sha256()
-            for name in CANONICAL:
+            names = CANONICAL if is_canonical_folder(path) else [METADATA, *(file.name for file in files_of_bag(path))]
+            for name in names:
                 if (path / name).is_file():
                     folder.update(f"{name}\0{_sha256(path / name)}\n".encode())
             digest = folder.hexdigest()

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 from drivelint.errors import TraceError, UsageError
-from drivelint.ingest.files import identify, is_canonical_folder
+from drivelint.ingest.files import identify, is_canonical_folder, is_drive_folder
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -45,7 +45,7 @@ class CanonicalReader:
         from drivelint.ingest import canonical
 
         if probe.path.is_dir():
-            return True
+            return is_canonical_folder(probe.path)
         return probe.options.mapping is None and probe.head.startswith(b"PAR1") and canonical.has_columns(probe.path)
 
     def read(self, probe: Probe) -> Recording:
@@ -56,16 +56,23 @@ class CanonicalReader:
 
 
 class McapReader:
-    """MCAP with ASAM OSI ground truth."""
+    """MCAP, a file or a folder of rosbag2: ASAM OSI ground truth, ROS 2 messages or Foxglove scenes."""
 
     def accepts(self, probe: Probe) -> bool:
-        """Accept by the container's magic bytes."""
-        return probe.head.startswith(b"\x89MCAP")
+        """Accept by the container's magic bytes, or the folder's description."""
+        return probe.head.startswith(b"\x89MCAP") or (probe.path.is_dir() and not is_canonical_folder(probe.path))
 
     def read(self, probe: Probe) -> Recording:
-        """Read the OSI channel."""
-        from drivelint.ingest import osi
+        """Read what the log holds, OSI before the others."""
+        from drivelint.ingest import bag, osi
 
+        family = bag.family(probe.path)
+        if family == "ros2":
+            from drivelint.ingest import ros
+
+            return ros.read(probe.path, probe.options)
+        if probe.path.is_dir():
+            raise TraceError(f"{probe.path}: a bag without ROS 2 messages that are read: give one of its files")
         return osi.read(probe.path, probe.options.topic)
 
 
@@ -168,8 +175,10 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
 
 def _probe(path: Path, options: IngestOptions) -> Probe:
     if path.is_dir():
-        if not is_canonical_folder(path):
-            raise TraceError(f"{path}: a folder without actor_state.parquet is not a drive: name the files in it")
+        if not is_drive_folder(path):
+            raise TraceError(
+                f"{path}: a folder without actor_state.parquet is not a drive (nor has it a bag's metadata.yaml): name the files in it"
+            )
         return Probe(path, b"", options)
     try:
         with path.open("rb") as file:

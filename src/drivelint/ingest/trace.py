@@ -42,10 +42,19 @@ FORMATS: dict[str, tuple[str, str]] = {
     "osi-file": ("ASAM OSI trace file", "the log's host vehicle"),
     "commonroad": ("CommonRoad scenario", "said with --ego"),
     "sumo-fcd": ("SUMO floating car data", "said with --ego"),
+    "ros2-mcap": ("ROS 2 in MCAP", "the odometry's vehicle"),
     "canonical-parquet": ("drivelint's own Parquet tables", "marked is_ego in the log"),
 }
 """What `data_log.format` may say beside a mapping's name -> its title, and how its ego is known."""
 SIGNAL_STATES = ("red", "red_amber", "amber", "green", "flashing", "off")
+
+
+class EgoSize(NamedTuple):
+    """The ego's box where the log does not have it, in metres; `forward_m`: its centre ahead of the odometry's frame."""
+
+    length_m: float
+    width_m: float
+    forward_m: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -62,6 +71,7 @@ class IngestOptions:
     need_ego: bool = True
     conditions: tuple[tuple[str, str], ...] = ()
     """What holds in the drive, as (condition, word): see `drivelint.conditions`."""
+    ego_size: EgoSize | None = None
 
 
 class FrameTimes(NamedTuple):

@@ -1,0 +1,101 @@
+"""MCAP logs of one drive: a file, or a folder of files as `ros2 bag record` splits them."""
+
+from __future__ import annotations
+
+import struct
+from typing import TYPE_CHECKING, Final
+
+import yaml
+from mcap.exceptions import McapError
+from mcap.reader import make_reader
+
+from drivelint.errors import TraceError
+from drivelint.ingest.container import Container
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+METADATA = "metadata.yaml"
+_ROOT = "rosbag2_bagfile_information"
+OSI: Final = frozenset({"osi3.GroundTruth", "osi3.SensorView"})
+ROS: Final = frozenset(
+    {
+        "derived_object_msgs/ObjectArray",
+        "autoware_perception_msgs/TrackedObjects",
+        "autoware_auto_perception_msgs/TrackedObjects",
+        "vision_msgs/Detection3DArray",
+        "nav_msgs/Odometry",
+    }
+)
+FOXGLOVE: Final = frozenset({"foxglove.SceneUpdate"})
+"""The schemas whose messages say where road users are."""
+
+
+def is_bag(path: Path) -> bool:
+    """Say whether `path` is a folder that rosbag2 recorded."""
+    try:
+        with (path / METADATA).open("rb") as file:
+            return _ROOT.encode() in file.read(65536)
+    except OSError:
+        return False
+
+
+def files(path: Path) -> list[Path]:
+    """Return the MCAP files of a drive in the order of recording.
+
+    Errors: `TraceError` for a bag whose description cannot be read, that is no MCAP, or of which files are missing.
+    """
+    if not path.is_dir():
+        return [path]
+    try:
+        information = yaml.safe_load((path / METADATA).read_bytes())[_ROOT]
+        storage, names = information.get("storage_identifier"), information["relative_file_paths"]
+    except (OSError, yaml.YAMLError, KeyError, TypeError, AttributeError) as error:
+        raise TraceError(
+            f"{path}: its {METADATA} cannot be read ({type(error).__name__}: {error}): reindex the bag"
+        ) from error
+    if not isinstance(names, list) or not names or not all(isinstance(name, str) for name in names):
+        raise TraceError(f"{path}: its {METADATA} lists no files: reindex the bag")
+    if storage not in {None, "mcap"}:
+        raise TraceError(
+            f"{path}: a bag in {storage}: convert it to MCAP (ros2 bag convert, with storage_id: mcap), and give that"
+        )
+    found = []
+    for name in names:
+        # older recorders list a file by its name only, or below the folder's own name
+        file = next((each for each in (path / name, path / name.rsplit("/", 1)[-1]) if each.is_file()), None)
+        if file is None:
+            raise TraceError(f"{path}: {name}, a part of this bag, is missing: copy the whole folder")
+        found.append(file)
+    return found
+
+
+def family(path: Path) -> str:
+    """Return what kind of messages a drive's log holds: `osi`, `ros2`, `foxglove`, or `none` of them.
+
+    The index at the end of the file is asked first, the whole file only where there is none: each reader then finds out
+    for itself whether it was right to ask. A log may hold several: OSI counts first, it is the truth.
+    """
+    found = {name for file in files(path) for name in _schemas(file)}
+    for name, mark in (("osi", OSI), ("ros2", ROS), ("foxglove", FOXGLOVE)):
+        if found & mark:
+            return name
+    return "none"
+
+
+def _schemas(file: Path) -> set[str]:
+    """Return the schemas of a file, without the `msg` in the names of ROS."""
+    names: set[str] = set()
+    try:
+        with file.open("rb") as stream:
+            summary = make_reader(stream).get_summary()
+    except (McapError, struct.error, OSError, ValueError):
+        summary = None  # damage is told by whoever reads the data
+    if summary is not None:
+        names = {schema.name for schema in summary.schemas.values()}
+    if not names:
+        container = Container(file)
+        for _ in container.packets():
+            pass
+        names = {schema.name for schema in container.schemas.values()}
+    return {name.replace("/msg/", "/") for name in names}

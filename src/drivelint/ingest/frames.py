@@ -1,0 +1,166 @@
+"""Coordinate frames: poses brought from the frame they are given in to the fixed one, along the chain of transforms.
+
+A transform that moves is interpolated between its neighbours in time, never carried on beyond them: what cannot be placed
+is not placed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    Vectors = NDArray[np.float64]
+
+FIXED: Final = ("map", "world", "odom")
+"""What the frame that everything is brought into may be called, best first (REP 105: of these only `map` and the earth's
+do not drift)."""
+MAX_HOLE_NS: Final = 500_000_000
+"""Transforms further apart are not joined: in 0.5 s a car at 20 m/s that turns with 0.5 rad/s leaves the chord by 0.3 m."""
+
+
+@dataclass(frozen=True)
+class Poses:
+    """n poses: `place` (n, 3) metres, `turn` (n, 4) quaternions x, y, z, w; NaN where unknown."""
+
+    place: Vectors
+    turn: Vectors
+
+    @property
+    def yaw(self) -> Vectors:
+        """Return the headings."""
+        x, y, z, w = self.turn.T
+        yaw: Vectors = np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+        return yaw
+
+    def of(self, inner: Poses) -> Poses:
+        """Return poses given in these frames in the frames around them."""
+        return Poses(self.place + rotated(self.turn, inner.place), _product(self.turn, inner.turn))
+
+
+@dataclass
+class _Edge:
+    """How a frame lies in its parent: at times in order, or always (`static`)."""
+
+    parent: str
+    static: bool
+    t_ns: NDArray[np.int64]
+    poses: Poses
+
+
+@dataclass
+class Frames:
+    """The transforms of a log. `ambiguous`: frames that are said to have several parents."""
+
+    edges: dict[str, _Edge] = field(default_factory=dict)
+    ambiguous: set[str] = field(default_factory=set)
+
+    def add(self, child: str, parent: str, t_ns: NDArray[np.int64], poses: Poses, *, static: bool) -> None:
+        """Add all transforms of a frame. A second parent makes it ambiguous; static ones count from the last."""
+        if child in self.edges and self.edges[child].parent != parent:
+            self.ambiguous.add(child)
+            return
+        known = self.edges.get(child)
+        if known is not None:
+            t_ns = np.concatenate([known.t_ns, t_ns])
+            poses = Poses(
+                np.concatenate([known.poses.place, poses.place]), np.concatenate([known.poses.turn, poses.turn])
+            )
+            static = static and known.static
+        t_ns, last = np.unique(t_ns[::-1], return_index=True)
+        last = len(poses.place) - 1 - last
+        self.edges[child] = _Edge(parent, static, t_ns, Poses(poses.place[last], poses.turn[last]))
+
+    def chain(self, frame: str, fixed: str) -> list[_Edge] | None:
+        """Return the transforms from a frame up to the fixed one; None where there is no way."""
+        found: list[_Edge] = []
+        while frame != fixed:
+            edge = self.edges.get(frame)
+            if edge is None or frame in self.ambiguous or len(found) > len(self.edges):
+                return None
+            found.append(edge)
+            frame = edge.parent
+        return found
+
+    def root(self, frame: str) -> str:
+        """Return the topmost frame above a frame."""
+        for _ in range(len(self.edges) + 1):
+            if frame not in self.edges or frame in self.ambiguous:
+                break
+            frame = self.edges[frame].parent
+        return frame
+
+    def into(self, fixed: str, frame: str, t_ns: NDArray[np.int64]) -> Poses:
+        """Return how `frame` lies in the fixed one at given times; NaN where that is not known."""
+        n = len(t_ns)
+        chain = self.chain(frame, fixed)
+        if chain is None:
+            return Poses(np.full((n, 3), np.nan), np.full((n, 4), np.nan))
+        found = Poses(np.zeros((n, 3)), np.tile([0.0, 0.0, 0.0, 1.0], (n, 1)))
+        for edge in chain:
+            found = _at(edge, t_ns).of(found)
+        return found
+
+
+def fixed_frame(frames: Frames, used: Iterable[str]) -> str:
+    """Return the frame that poses given in the frames `used` are brought into, most important first.
+
+    The best of `FIXED` that any of them leads to, else the one above the first of them.
+    """
+    names = list(used)
+    for candidate in FIXED:
+        if any(frames.chain(name, candidate) is not None for name in names):
+            return candidate
+    return frames.root(names[0]) if names else FIXED[0]
+
+
+def clean(name: str) -> str:
+    """Return a frame's name without the slash that old recordings have before it."""
+    return name.removeprefix("/")
+
+
+def unit(turn: Vectors) -> Vectors:
+    """Return quaternions of length one; NaN for those that say nothing (all zero)."""
+    length = np.linalg.norm(turn, axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where((length > 1e-6)[:, None], turn / length[:, None], np.nan)
+
+
+def rotated(turn: Vectors, vectors: Vectors) -> Vectors:
+    """Return vectors turned by quaternions."""
+    axis, w = turn[:, :3], turn[:, 3:]
+    twice = 2.0 * np.cross(axis, vectors)
+    result: Vectors = vectors + w * twice + np.cross(axis, twice)
+    return result
+
+
+def _product(a: Vectors, b: Vectors) -> Vectors:
+    av, aw, bv, bw = a[:, :3], a[:, 3:], b[:, :3], b[:, 3:]
+    return np.concatenate(
+        [aw * bv + bw * av + np.cross(av, bv), aw * bw - (av * bv).sum(axis=1, keepdims=True)], axis=1
+    )
+
+
+def _at(edge: _Edge, t_ns: NDArray[np.int64]) -> Poses:
+    """Interpolate a transform: places linearly, turns along the shorter way; NaN outside its times and in holes."""
+    if edge.static:
+        return Poses(
+            np.repeat(edge.poses.place[-1:], len(t_ns), axis=0), np.repeat(edge.poses.turn[-1:], len(t_ns), axis=0)
+        )
+    after = np.clip(np.searchsorted(edge.t_ns, t_ns), 0, len(edge.t_ns) - 1)
+    exact = edge.t_ns[after] == t_ns
+    before = np.where(exact, after, np.maximum(after - 1, 0))
+    span = edge.t_ns[after] - edge.t_ns[before]
+    inside = exact | ((edge.t_ns[before] < t_ns) & (t_ns < edge.t_ns[after]) & (span <= MAX_HOLE_NS))
+    share = np.where(span > 0, (t_ns - edge.t_ns[before]) / np.maximum(span, 1), 0.0)[:, None]
+    first, second = edge.poses.turn[before], edge.poses.turn[after]
+    near = np.where((first * second).sum(axis=1, keepdims=True) < 0.0, -second, second)
+    place = edge.poses.place[before] * (1.0 - share) + edge.poses.place[after] * share
+    turn = unit(first * (1.0 - share) + near * share)
+    return Poses(np.where(inside[:, None], place, np.nan), np.where(inside[:, None], turn, np.nan))

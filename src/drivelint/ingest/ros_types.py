@@ -1,0 +1,124 @@
+"""ROS 2 message definitions as text (`ros2msg` schema records of MCAP) to types.
+
+Syntax: https://docs.ros.org/en/rolling/Concepts/Basic/About-Interfaces.html
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from drivelint.errors import TraceError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+CODES: Final = {
+    "bool": "u1", "byte": "u1", "char": "u1", "uint8": "u1", "int8": "i1", "uint16": "u2", "int16": "i2", "uint32": "u4",
+    "int32": "i4", "uint64": "u8", "int64": "i8", "float32": "f4", "float64": "f8",
+}  # fmt: skip
+"""Primitive type -> numpy code without byte order. The number in it is the size, and in CDR the alignment."""
+TEXTS: Final = ("string", "wstring")
+SEQUENCE: Final = -1
+_STAMPS: Final = ("time", "duration", "builtin_interfaces/Time", "builtin_interfaces/Duration")
+"""Times that a definition may use without describing them."""
+_RULE = re.compile(r"^={10,}\s*$", re.MULTILINE)
+_FIELD = re.compile(
+    r"^(?P<type>[A-Za-z][\w/]*)(?P<bound><=\d+)?(?P<array>\[(?:<=)?(?P<count>\d*)\])?\s+(?P<name>[A-Za-z]\w*)(?P<rest>.*)$"
+)
+
+
+@dataclass(frozen=True)
+class Field:
+    """A member: `kind` is a primitive, `string`, or a message's full name; `count` None: one, `SEQUENCE`, or how many."""
+
+    name: str
+    kind: str
+    count: int | None = None
+
+
+Types = dict[str, list[Field]]
+"""Full name (`package/Name`) -> its members in order."""
+
+
+def short(name: str) -> str:
+    """Return `package/Name` of a schema that may be called `package/msg/Name`."""
+    return name.replace("/msg/", "/")
+
+
+def parse(path: Path, name: str, text: bytes) -> Types:
+    """Read the definition of `name` and of all it uses. Errors: `TraceError` for a line or a type that is not understood."""
+    types: Types = {stamp: [Field("sec", "int32"), Field("nanosec", "uint32")] for stamp in _STAMPS}
+    try:
+        first, *others = _RULE.split(text.decode())
+    except UnicodeDecodeError as error:
+        raise TraceError(
+            f"{path}: the definition of {name} in the log is not text ({error}): record it again"
+        ) from error
+    sections = [(short(name), first)]
+    for section in others:
+        title, _, body = section.lstrip().partition("\n")
+        if not title.startswith("MSG:"):
+            raise _not_understood(path, name, title)
+        sections.append((short(title.removeprefix("MSG:").strip()), body))
+    defined = {title for title, _ in sections}
+    for title, body in sections:
+        types[title] = [_resolved(field, title, defined, path, name) for field in _fields(path, name, body)]
+    _refuse_loops(path, name, types)
+    return types
+
+
+def _fields(path: Path, name: str, body: str) -> list[Field]:
+    fields = []
+    for raw in body.splitlines():
+        line = raw.split("#")[0].strip()
+        if not line:
+            continue
+        match = _FIELD.match(line)
+        if match is None:
+            raise _not_understood(path, name, line)
+        if match["rest"].lstrip().startswith("="):
+            continue  # a constant
+        count = None
+        if match["array"]:
+            bounded = match["count"] == "" or "<=" in match["array"]
+            count = SEQUENCE if bounded else int(match["count"])
+        fields.append(Field(match["name"], match["type"], count))
+    return fields
+
+
+def _resolved(field: Field, container: str, defined: set[str], path: Path, name: str) -> Field:
+    """Give a member's type its full name: another package's, the same package's, or a primitive."""
+    kind = field.kind
+    if kind in CODES or kind in TEXTS:
+        return field
+    full = short(kind)
+    if full == "Header":
+        full = "std_msgs/Header"
+    if "/" not in full and full not in _STAMPS:
+        full = f"{container.split('/', maxsplit=1)[0]}/{full}"
+    if full not in defined and full not in _STAMPS:
+        raise TraceError(
+            f"{path}: the definition of {name} in the log uses {kind}, which it does not describe: record it with its definitions"
+        )
+    return Field(field.name, full, field.count)
+
+
+def _refuse_loops(path: Path, name: str, types: Types) -> None:
+    done: set[str] = set()
+
+    def visit(kind: str, inside: tuple[str, ...]) -> None:
+        if kind in inside:
+            raise TraceError(f"{path}: the definition of {name} in the log contains itself ({kind}): record it again")
+        if kind in done:
+            return
+        for field in types.get(kind, []):
+            visit(field.kind, (*inside, kind))
+        done.add(kind)
+
+    visit(short(name), ())
+
+
+def _not_understood(path: Path, name: str, line: str) -> TraceError:
+    return TraceError(f"{path}: the definition of {name} in the log has a line that is not understood: {line[:80]!r}")
