@@ -10,6 +10,7 @@ import os
 import sys
 from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import nullcontext, redirect_stdout
+from datetime import date, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn, TypeVar
 
@@ -111,6 +112,9 @@ def check(
             "--annotate/--no-annotate", help="With --out: copy each log with its verdicts in it, for a viewer."
         ),
     ] = True,
+    baseline: options.Baseline = None,
+    waivers: options.Waivers = None,
+    today: options.Today = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
     """Judge recorded drives against the rules.
@@ -120,15 +124,18 @@ def check(
     SEL is a rule's id, a glob, a pack, all, or what a rule says of itself: kind:invariant, severity:critical,
     status:draft, legal:must, clause:R162, requires:indicator. A comma means both (ukhc,legal:must), --rules twice either.
 
-    Exit codes: 0 nothing failed at or above --fail-on; 1 something did; 2 usage or rule error;
-    3 judged on lossy input; 4 some drives not judged (with --strict: some rule unknown);
-    75 the machine failed, try again; 130 interrupted.
+    Exit codes: 0 nothing failed at or above --fail-on; 1 something did (with --baseline or --waivers: something that is new
+    and that nobody answers for); 2 usage or rule error; 3 judged on lossy input; 4 some drives not judged (with --strict: some
+    rule unknown); 75 the machine failed, try again; 130 interrupted.
     """
     from drivelint import run
     from drivelint.report.files import prepare
+    from drivelint.report.gate import Keeper
     from drivelint.report.outputs import write
     from drivelint.report.result import exit_code
+    from drivelint.settings import FILE
 
+    keeper = Keeper.of(baseline, waivers, Path(FILE), _today(today), out)
     settings = run.Settings(
         traces=tuple(traces),
         map=map_,
@@ -157,6 +164,8 @@ def check(
         prepare(out)
     with _progress(quiet) as progress:
         result = _interruptible(lambda: run.check(settings, progress))
+        if keeper is not None:
+            result = keeper.gate(result)
         if out is not None:
             write(result, out)
     _print(result, format_, out)
@@ -275,16 +284,60 @@ def convert(
 def report(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="What check --out wrote.")],
     to: Annotated[
-        options.Report, typer.Option("--to", help="html: one page that opens offline.")
+        options.Report,
+        typer.Option(
+            "--to",
+            help="html: one page that opens offline; junit, sarif (2.1.0), xqar (ASAM): for servers and viewers; "
+            "markdown: for a comment on a pull request.",
+        ),
     ] = options.Report.html,
 ) -> None:
-    """Write report.html anew from a result folder."""
+    """Write a report from a result folder, into it.
+
+    Files: report.html, junit.xml, report.sarif, report.xqar, report.md. Prints the name of the one that was written.
+    """
     from drivelint.report.files import publish
-    from drivelint.report.html import render
+    from drivelint.report.load import load
+    from drivelint.report.targets import TARGETS
+
+    name, render = TARGETS[to.value]
+    publish(folder, {name: render(load(folder))}, {})
+    typer.echo(str(folder / name))
+
+
+@app.command("diff")
+def diff_(
+    base: Annotated[Path, typer.Argument(metavar="BASE", help="What check --out wrote, earlier.")],
+    new: Annotated[Path, typer.Argument(metavar="NEW", help="What check --out wrote, later.")],
+    format_: Annotated[
+        options.Compared, typer.Option("--format", help="What is printed on stdout.")
+    ] = options.Compared.text,
+    fail_on: Annotated[
+        options.FailOn | None,
+        typer.Option("--fail-on", help="Least severity of a new finding that makes exit code 1. Default: NEW's."),
+    ] = None,
+) -> None:
+    """Compare two results: new, fixed, changed and unchanged findings.
+
+    What NEW did not judge is not fixed: it is listed apart, with the reason. Findings that NEW's run waived do not gate.
+
+    Exit codes: 0 no new finding of a stable rule at or above --fail-on; 1 there is one; 2 usage error.
+    """
+    from drivelint.report.gate import compared, words
     from drivelint.report.load import load
 
-    publish(folder, {f"report.{to.value}": render(load(folder))}, {})
-    typer.echo(str(folder / f"report.{to.value}"))
+    earlier, later = load(base), load(new)
+    least = later.fail_on if fail_on is None else fail_on.value
+    found, failing = compared(earlier, later, (base.resolve().name, new.resolve().name), least)
+    if format_ is options.Compared.json:
+        typer.echo(words.to_json(found, failing, least))
+    elif format_ is options.Compared.markdown:
+        from drivelint.report import markdown
+
+        typer.echo(markdown.difference(found, failing, least, later.gate))
+    else:
+        typer.echo(words.text(found, failing, least, later.gate))
+    raise typer.Exit(int(ExitCode.FAILED if failing else ExitCode.OK))
 
 
 @rules_app.command("list")
@@ -350,7 +403,9 @@ def rules_page(
     folder: Annotated[
         Path | None, typer.Argument(metavar="[DIR]", help="Folder with rule packs; default: the shipped ones.")
     ] = None,
-    out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="Write it there; default: print it.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="FILE", help="Write it there; default: print it.")
+    ] = None,
 ) -> None:
     """Write the catalogue as one Markdown page.
 
@@ -439,7 +494,8 @@ def _settings() -> dict[str, Any]:
     commands = typer.main.get_command(app).commands  # type: ignore[attr-defined]
     params = commands["check"].params
     known = {p.opts[0].lstrip("-"): (p.name, p.multiple) for p in params if p.param_type_name == "option"}
-    known.pop("help", None)
+    for name_ in ("help", "today"):  # a day that stands in a file would keep waivers from expiring
+        known.pop(name_, None)
     taken = {p.name for p in commands[name].params}
     if name != "check":
         taken -= {"out", "format_"}
@@ -449,6 +505,16 @@ def _settings() -> dict[str, Any]:
 def _fail(message: str, code: ExitCode) -> NoReturn:
     print(f"drivelint: error: {' '.join(message.split())}", file=sys.stderr)
     sys.exit(int(code))
+
+
+def _today(text: str | None) -> date:
+    """Read the day that waivers are held against; the system's if none is given. Errors: `UsageError`."""
+    if text is None:
+        return datetime.now().astimezone().date()
+    try:
+        return date.fromisoformat(text)
+    except ValueError as error:
+        raise UsageError(f"--today {text!r}: write a day such as 2027-03-31") from error
 
 
 def _offset(text: str | None) -> tuple[float, float] | None:

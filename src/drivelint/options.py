@@ -27,6 +27,18 @@ class Report(StrEnum):
     """What a result can be written as."""
 
     html = "html"
+    junit = "junit"
+    sarif = "sarif"
+    xqar = "xqar"
+    markdown = "markdown"
+
+
+class Compared(StrEnum):
+    """How a difference is printed on stdout."""
+
+    text = "text"
+    json = "json"
+    markdown = "markdown"
 
 
 class RuleKind(StrEnum):
@@ -96,6 +108,18 @@ Conditions = Annotated[
 ]
 Topic = Annotated[
     str | None, typer.Option("--topic", metavar="NAME", help="Read this MCAP topic, where several would do.")
+]
+Baseline = Annotated[
+    Path | None,
+    typer.Option("--baseline", metavar="DIR", help="An earlier result: its findings are known, only new ones gate."),
+]
+Waivers = Annotated[
+    Path | None,
+    typer.Option("--waivers", metavar="FILE", help="TOML of findings that somebody answers for: shown, but no gate."),
+]
+Today = Annotated[
+    str | None,
+    typer.Option("--today", metavar="DATE", help="The day that waivers are held against. Default: the system's."),
 ]
 Printed = Annotated[Format, typer.Option("--format", help="What is printed on stdout.")]
 RulesDirs = Annotated[

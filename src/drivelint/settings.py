@@ -8,6 +8,8 @@
     nation = "gb"
     weather = "dry"
 
+Waivers may stand there as well, as tables [[waiver]]: see `drivelint.report.gate.waivers`.
+
 A key is an option's name without its dashes; the command line overrides it. The file is looked for in the current
 folder only, and relative paths in it start there too.
 """
@@ -42,6 +44,8 @@ def defaults(options: Mapping[str, tuple[str, bool]], file: Path = Path(FILE)) -
         raise UsageError(f"{file}: not TOML: {error}") from error
     values: dict[str, Any] = {}
     for key, said in content.items():
+        if key == "waiver":
+            continue  # read where the gate is
         if key not in options:
             near = get_close_matches(key, options, n=1)
             hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(sorted(options))}"

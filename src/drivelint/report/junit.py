@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
-import re
 from collections import defaultdict
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import pyarrow.compute as pc
 from lxml import etree
 
+from drivelint.report.gate import words
 from drivelint.report.text import line, times
+from drivelint.report.xml import xml
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     import pyarrow as pa
 
+    from drivelint.report.gate.model import Gate
     from drivelint.report.result import Result
     from drivelint.report.text import Row
 
 MAX_LINES: Final = 50
 """Findings or reasons listed per test case; the tables hold them all."""
-
-_NOT_XML: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 Key = tuple[str, str, str | None]
 """drive_id, rule_id, profile."""
@@ -42,7 +42,8 @@ def render(result: Result) -> bytes:
 
     A test case gathers the verdict rows of a drive, rule and profile: any error is an error, any fail a failure that
     lists its findings, any unknown is skipped with the reasons (an error under `--strict`). Not applicable is skipped.
-    A draft never fails a suite: its failures are skipped, saying so. A drive that could not be judged is an error.
+    A draft never fails a suite: its failures are skipped, saying so; so are findings that the gate lets through, where a case
+    has no others. A drive that could not be judged is an error.
     """
     root = etree.Element("testsuites", name="drivelint")
     cases = _cases(result)
@@ -63,15 +64,23 @@ def _cases(result: Result) -> dict[str, list[Case]]:
     starts = dict(zip(result.drives["drive_id"].to_pylist(), result.drives["t_start_ns"].to_pylist(), strict=True))
     drafts = set(result.rules.filter(pc.not_equal(result.rules["status"], "stable"))["rule_id"].to_pylist())
     found: dict[Key, list[str]] = defaultdict(list)
+    passed: dict[Key, list[str]] = defaultdict(list)
     for row in result.findings.to_pylist():
-        found[_key(row)].append(line(row, starts.get(row["drive_id"])))
+        text, excuse = line(row, starts.get(row["drive_id"])), _excuse(row["finding_id"], result.gate)
+        if excuse:
+            passed[_key(row)].append(f"{excuse}: {text}")
+        else:
+            found[_key(row)].append(text)
     reasons: dict[Key, dict[str, list[str]]] = defaultdict(dict)
     for row in _reasons(result.verdicts):
         reasons[_key(row)].setdefault(row["verdict"], []).append(times(row["reason"], row["count_all"]))
     cases: dict[str, list[Case]] = defaultdict(list)
     for key, verdicts in reasons.items():
         if "fail" in verdicts and key in found:
-            verdicts["fail"] = found[key]
+            verdicts["fail"] = [*found[key], *passed[key]]
+        elif "fail" in verdicts and key in passed:
+            del verdicts["fail"]
+            verdicts["let_through"] = passed[key]
         cases[key[0]].append(_case(key, verdicts, draft=key[1] in drafts, strict=result.strict))
     return cases
 
@@ -97,16 +106,27 @@ def _case(key: Key, verdicts: dict[str, list[str]], *, draft: bool, strict: bool
             if draft
             else Case(name, "failure", "fail", lines)
         )
+    let_through = verdicts.get("let_through", [])
     if "unknown" in verdicts:
         return Case(
             name,
             "error" if strict and not draft else "skipped",
             "unknown",
-            [f"unknown: {x}" for x in verdicts["unknown"]],
+            [*(f"unknown: {x}" for x in verdicts["unknown"]), *let_through],
         )
+    if let_through:
+        return Case(name, "skipped", "let_through", let_through)
     if "pass" in verdicts:
         return Case(name, None, "pass", [])
     return Case(name, "skipped", "not_applicable", [f"not applicable: {x}" for x in verdicts.get("not_applicable", [])])
+
+
+def _excuse(finding_id: str, gate: Gate | None) -> str:
+    """Return why a finding does not fail its case; '' where it does."""
+    if gate is None or gate.gates(finding_id):
+        return ""
+    waiver = gate.waiver(finding_id)
+    return "known: the baseline has it" if waiver is None else words.excuse(waiver)
 
 
 def _suite(root: etree._Element, drive_id: str, cases: list[Case]) -> dict[str, int]:
@@ -117,26 +137,21 @@ def _suite(root: etree._Element, drive_id: str, cases: list[Case]) -> dict[str, 
         "errors": sum(case.outcome == "error" for case in cases),
         "skipped": sum(case.outcome == "skipped" for case in cases),
     }
-    suite = etree.SubElement(root, "testsuite", name=_xml(drive_id))
+    suite = etree.SubElement(root, "testsuite", name=xml(drive_id))
     for name, n in counted.items():
         suite.set(name, str(n))
     for case in cases:
-        element = etree.SubElement(suite, "testcase", name=_xml(case.name), classname=_xml(drive_id))
+        element = etree.SubElement(suite, "testcase", name=xml(case.name), classname=xml(drive_id))
         if case.outcome:
             lines = case.lines[:MAX_LINES]
             if more := len(case.lines) - len(lines):
                 lines.append(f"... and {more} more: see findings.parquet and verdicts.parquet")
             detail = etree.SubElement(
-                element, case.outcome, type=case.kind, message=_xml(lines[0] if lines else case.kind)
+                element, case.outcome, type=case.kind, message=xml(lines[0] if lines else case.kind)
             )
-            detail.text = _xml("\n".join(lines))
+            detail.text = xml("\n".join(lines))
     return counted
 
 
 def _key(row: Row) -> Key:
     return row["drive_id"], row["rule_id"], row["profile"]
-
-
-def _xml(text: str) -> str:
-    """Return text with the characters that XML cannot hold replaced: ids and reasons are a log's own words."""
-    return _NOT_XML.sub("\ufffd", text)

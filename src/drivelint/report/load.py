@@ -10,6 +10,7 @@ import pyarrow.parquet as pq
 
 from drivelint.errors import UsageError
 from drivelint.report.contract import FILES, OUTPUT_SCHEMA
+from drivelint.report.gate import store
 from drivelint.report.result import Result
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ def load(folder: Path) -> Result:
             "check the drives again"
         )
     tables = {name: _table(folder / f"{name}.parquet") for name in FILES}
-    return Result(**tables, fail_on=summary["fail_on"], strict=summary["strict"])
+    return Result(**tables, fail_on=summary["fail_on"], strict=summary["strict"], gate=store.load(folder))
 
 
 def _summary(folder: Path) -> dict[str, Any]:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from drivelint.report import html, junit, summary
 from drivelint.report.contract import FILES
 from drivelint.report.files import parquet_bytes, publish
+from drivelint.report.gate import store
+from drivelint.report.targets import TARGETS
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -22,5 +24,11 @@ def write(result: Result, out: Path) -> None:
     contents = {f"{name}.parquet": parquet_bytes(getattr(result, name), table) for name, table in FILES.items()}
     contents["report.html"] = html.render(result)
     contents["junit.xml"] = junit.render(result)
+    moved: dict[str, Path | None] = {"margins.parquet": result.margins_file}
+    moved |= {name: None for name, _ in TARGETS.values() if name not in contents}  # of an earlier result
+    if result.gate is None:
+        moved[store.FILE] = None
+    else:
+        contents[store.FILE] = store.render(result.gate)
     contents["summary.json"] = summary.render(result)
-    publish(out, contents, {"margins.parquet": result.margins_file})
+    publish(out, contents, moved)

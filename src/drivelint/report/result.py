@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from drivelint.report.gate.model import Gate
+
 
 class Outcome(NamedTuple):
     """The exit code and, in one sentence, why."""
@@ -31,6 +33,7 @@ class Result:
     `scenes`, `lanes`: the evidence for pictures, empty where none was gathered.
     `margins_file`: finished Parquet of every judged step, or None; `write` takes it over.
     `fail_on`: critical, major, minor or never. `strict`: unknown is not good enough.
+    `gate`: what findings are known or waived, or None: all gate.
     Errors: `DriveLintError` when a table lacks a column or has one too many.
     """
 
@@ -43,6 +46,7 @@ class Result:
     margins_file: Path | None = None
     fail_on: str = "critical"
     strict: bool = False
+    gate: Gate | None = None
 
     def __post_init__(self) -> None:
         for name, table in FILES.items():
@@ -67,8 +71,14 @@ def _outcomes(result: Result) -> Iterator[Outcome]:
     gating = _rows_of(result.verdicts, result.rules.filter(pc.equal(result.rules["status"], "stable")))
     if errors := _count(result.verdicts, "error"):
         yield Outcome(ExitCode.USAGE, f"{_many(errors, 'verdict')} in error: a rule could not be run")
-    if failed := _failed(gating, result.fail_on):
-        yield Outcome(ExitCode.FAILED, f"{_many(failed, 'verdict')} failed at or above severity {result.fail_on}")
+    let_through = ""
+    if result.gate is None:
+        if failed := _severe(gating, "fail", result.fail_on):
+            yield Outcome(ExitCode.FAILED, f"{_many(failed, 'verdict')} failed at or above severity {result.fail_on}")
+    else:
+        stopped, let_through = _gate(result, gating)
+        if stopped:
+            yield Outcome(ExitCode.FAILED, f"{stopped} at or above severity {result.fail_on}{let_through}")
     if lost := int(pc.sum(pc.equal(result.drives["status"], "not_judged")).as_py() or 0):
         yield Outcome(ExitCode.NOT_JUDGED, f"{lost} of {_many(result.drives.num_rows, 'drive')} could not be judged")
     if result.strict and (unknown := _count(gating, "unknown")):
@@ -77,7 +87,8 @@ def _outcomes(result: Result) -> Iterator[Outcome]:
         yield Outcome(ExitCode.LOSSY, "judged on lossy input: parts of a log were lost")
     if result.fail_on == "never":
         yield Outcome(ExitCode.OK, "failures do not gate (--fail-on never)")
-    yield Outcome(ExitCode.OK, f"nothing failed at or above severity {result.fail_on}")
+    new = "new " if result.gate is not None and result.gate.baseline is not None else ""
+    yield Outcome(ExitCode.OK, f"nothing {new}failed at or above severity {result.fail_on}{let_through}")
 
 
 def exit_code(result: Result) -> ExitCode:
@@ -97,8 +108,37 @@ def _rows_of(verdicts: pa.Table, rules: pa.Table) -> pa.Table:
     return verdicts.filter(pc.is_in(verdicts["rule_id"], value_set=rules["rule_id"].combine_chunks()))
 
 
-def _failed(verdicts: pa.Table, fail_on: str) -> int:
+def _severe(verdicts: pa.Table, verdict: str, fail_on: str) -> int:
+    return _count(_at_or_above(verdicts, fail_on), verdict)
+
+
+def _at_or_above(rows: pa.Table, fail_on: str) -> pa.Table:
     if fail_on == "never":
-        return 0
-    gates = pa.array(SEVERITIES[: SEVERITIES.index(fail_on) + 1])
-    return _count(verdicts.filter(pc.is_in(verdicts["severity"], value_set=gates)), "fail")
+        return rows.slice(0, 0)
+    return rows.filter(pc.is_in(rows["severity"], value_set=pa.array(SEVERITIES[: SEVERITIES.index(fail_on) + 1])))
+
+
+def _gate(result: Result, gating: pa.Table) -> tuple[str, str]:
+    """Return what a gate stops ('' for nothing) and what it lets through, in words.
+
+    It lets findings through, not verdicts: a failed verdict of a drive, ego, rule and profile without any finding is stopped.
+    """
+    gate = result.gate
+    assert gate is not None  # noqa: S101 - for the type checker
+    stable = result.rules.filter(pc.equal(result.rules["status"], "stable"))
+    findings = _at_or_above(_rows_of(result.findings, stable), result.fail_on)
+    ids = findings["finding_id"].to_pylist()
+    waived = sum(gate.waiver(name) is not None for name in ids)
+    known = sum(gate.waiver(name) is None and gate.known(name) for name in ids)
+    stopped = len(ids) - waived - known
+    keys = ["drive_id", "ego_id", "rule_id", "profile"]
+    told = {tuple(row.values()) for row in findings.select(keys).to_pylist()}
+    failed = _at_or_above(gating, result.fail_on)
+    failed = failed.filter(pc.equal(failed["verdict"], "fail")).select(keys)
+    bare = sum(tuple(row.values()) not in told for row in failed.to_pylist())
+    new = "new finding" if gate.baseline is not None else "finding"
+    parts = [_many(stopped, new)] if stopped else []
+    parts += [f"{_many(bare, 'failed verdict')} without a finding"] if bare else []
+    through = [f"{known} known"] if gate.baseline is not None else []
+    through += [f"{waived} waived"] if gate.waivers else []
+    return " and ".join(parts), f" ({', '.join(through)})" if through else ""

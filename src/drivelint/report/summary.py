@@ -11,6 +11,7 @@ import duckdb
 from drivelint import __version__
 from drivelint.report import counts
 from drivelint.report.contract import OUTPUT_SCHEMA
+from drivelint.report.gate import words
 from drivelint.report.result import outcome
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ def content(result: Result) -> dict[str, Any]:
         "exit": {"code": int(end.code), "name": end.code.name.lower(), "why": end.why},
         "fail_on": result.fail_on,
         "strict": result.strict,
+        "gate": None if result.gate is None else words.summary(result.gate),
         "verdicts": counts.total(result.verdicts),
         "near_misses": near.num_rows,
         "findings": counts.tally(result.findings, counts.SEVERITIES, "severity"),

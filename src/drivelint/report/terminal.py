@@ -14,6 +14,7 @@ from rich.text import Text
 
 from drivelint.errors import ExitCode
 from drivelint.report import counts
+from drivelint.report.gate import words
 from drivelint.report.result import outcome
 from drivelint.report.text import NONE, comparison, number, seconds, times
 
@@ -50,10 +51,11 @@ def render(result: Result, out: str | None = None, width: int = 120) -> Group:
     sections: list[RenderableType | None] = [
         _drives(result, width),
         _rules(result, width),
-        _measured("Findings", result.findings, starts, "red", wide=wide),
+        *_findings(result, starts, wide=wide),
         _measured("Near misses: kept, but only just", near, starts, "yellow", wide=wide),
         _open(result),
         _quality(result),
+        _gate(result),
         _end(result, out),
     ]
     return Group(*(Padding(section, (0, 0, 1, 0)) for section in sections if section is not None))
@@ -97,6 +99,38 @@ def _rules(result: Result, width: int) -> Table:
     for pack, sums in packs.items():  # packs are never one verdict
         what = "all" if len(packs) == 1 else f"all of {pack}"
         table.add_row(Text(what, style="bold"), *([""] if wide else []), *_count_cells(sums))
+    return table
+
+
+def _findings(result: Result, starts: dict[str, int | None], *, wide: bool) -> list[Table | None]:
+    """Return the findings; where a gate lets some through, those that it stops come first."""
+    gate, rows = result.gate, result.findings
+    if gate is None:
+        return [_measured("Findings", rows, starts, "red", wide=wide)]
+    stops = pa.array([gate.gates(name) for name in rows["finding_id"].to_pylist()], pa.bool_())
+    title = "New findings" if gate.baseline is not None else "Findings"
+    return [
+        _measured(title, rows.filter(stops), starts, "red", wide=wide),
+        _measured(
+            "Known or waived findings: they do not gate", rows.filter(pc.invert(stops)), starts, "dim", wide=wide
+        ),
+    ]
+
+
+def _gate(result: Result) -> Table | None:
+    """Return what changed since the baseline, and the waivers that do not do what they are for."""
+    if result.gate is None:
+        return None
+    lines = [] if result.gate.baseline is None else [("baseline", words.headline(result.gate.baseline))]
+    lines += [("waiver", line) for line in words.waivers(result.gate)]
+    if not lines:
+        return None
+    table = _table("Gate", "bold")
+    table.show_header = False
+    table.add_column("what", no_wrap=True)
+    table.add_column("which", overflow="fold", ratio=1)
+    for what, line in lines:
+        table.add_row(what, Text(line))
     return table
 
 

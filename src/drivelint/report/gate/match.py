@@ -1,0 +1,127 @@
+"""Which drives and findings of two results are the same."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    Row = Mapping[str, Any]
+
+NEAR_S: Final = 1.0
+"""Failing stretches so close in time are the same, where the place agrees."""
+NEAR_M: Final = 5.0
+"""So far may the ego have been elsewhere at the worst step, if the log is another."""
+
+Key = tuple[str, str, str | None, str | None]
+"""ego_id, rule_id, profile, object_id: what must agree."""
+
+
+class Stretch(NamedTuple):
+    """A finding with its times in seconds since the drive's first time stamp."""
+
+    row: Row
+    start: float
+    end: float
+    worst: float
+
+    @property
+    def id(self) -> str:
+        """Its finding_id."""
+        return str(self.row["finding_id"])
+
+
+def seconds(t_ns: int, drive: Row) -> float:
+    """Return a time of a drive as seconds since its first time stamp."""
+    return (t_ns - (drive["t_start_ns"] or 0)) / 1e9
+
+
+def stretch(row: Row, drive: Row) -> Stretch:
+    """Return a finding of a drive with its times."""
+    return Stretch(row, *(seconds(row[name], drive) for name in ("t_start_ns", "t_end_ns", "t_worst_ns")))
+
+
+def key(row: Row) -> Key:
+    """Return what a finding is about."""
+    return row["ego_id"], row["rule_id"], row["profile"], row["object_id"]
+
+
+def drives(base: Sequence[Row], new: Sequence[Row]) -> dict[str, str]:
+    """Return drive_id in NEW -> drive_id in BASE: the same id, else the only one on both sides with that file stem."""
+    ids = {row["drive_id"] for row in base}
+    same = {row["drive_id"]: row["drive_id"] for row in new if row["drive_id"] in ids}
+    left = _stems(row for row in base if row["drive_id"] not in same)
+    right = _stems(row for row in new if row["drive_id"] not in same)
+    for stem, names in right.items():
+        others = left.get(stem, [])
+        if len(names) == len(others) == 1:
+            same[names[0]] = others[0]
+    return same
+
+
+def _stems(rows: Iterable[Row]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = defaultdict(list)
+    for row in rows:
+        found[PurePath(row["file_name"]).stem].append(row["drive_id"])
+    return found
+
+
+def findings(base: Sequence[Stretch], new: Sequence[Stretch], *, same_log: bool) -> dict[int, int]:
+    """Return index in `new` -> index in `base` of findings of one drive that are the same; each is taken once.
+
+    The same: ego, rule, profile and object agree, and `near`. Equal ids go first, then the closest in time. An id alone
+    does not do: ids number the findings of a drive, so an earlier one moves all that follow.
+    """
+    groups: dict[Key, list[int]] = defaultdict(list)
+    for j, had in enumerate(base):
+        groups[key(had.row)].append(j)
+    pairs = [
+        (had.id != now.id, abs(had.worst - now.worst), gap(had, now), i, j)
+        for i, now in enumerate(new)
+        for j in groups.get(key(now.row), ())
+        for had in (base[j],)
+        if near(had, now, same_log=same_log)
+    ]
+    taken: dict[int, int] = {}
+    left = set(range(len(base)))
+    for _, _, _, i, j in sorted(pairs):
+        if i not in taken and j in left:
+            taken[i] = j
+            left.remove(j)
+    return taken
+
+
+def near(had: Stretch, now: Stretch, *, same_log: bool) -> bool:
+    """Return whether two stretches can be one.
+
+    In the same log: less than `NEAR_S` apart. In another one, a repetition: so close at their worst and less than `NEAR_M`
+    apart in place; or, since the worst step of a long stretch may be anywhere in it, for at least half of the time the same.
+    """
+    if same_log:
+        return gap(had, now) <= NEAR_S
+    if abs(had.worst - now.worst) <= NEAR_S and _distance(had.row, now.row) <= NEAR_M:
+        return True
+    common = min(had.end, now.end) - max(had.start, now.start)
+    whole = max(had.end, now.end) - min(had.start, now.start)
+    return 0 < whole <= 2 * common
+
+
+def within(part: Stretch, whole: Stretch) -> bool:
+    """Return whether a stretch is a part of another of the same: what was one is now several, or several are one."""
+    same = key(part.row) == key(whole.row)
+    return same and part.start >= whole.start - NEAR_S and part.end <= whole.end + NEAR_S
+
+
+def gap(a: Stretch, b: Stretch) -> float:
+    """Return the seconds between two stretches; 0 where they overlap."""
+    return max(0.0, max(a.start, b.start) - min(a.end, b.end))
+
+
+def _distance(a: Row, b: Row) -> float:
+    """Return metres between the places of two findings; 0 where one of them has none: time must do."""
+    if None in {a["x_m"], a["y_m"], b["x_m"], b["y_m"]}:
+        return 0.0
+    return float(((a["x_m"] - b["x_m"]) ** 2 + (a["y_m"] - b["y_m"]) ** 2) ** 0.5)

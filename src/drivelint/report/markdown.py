@@ -1,0 +1,246 @@
+"""`report.md`: GitHub-flavoured Markdown, short enough for a comment on a pull request."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Final
+from urllib.parse import quote
+
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.report import counts
+from drivelint.report.gate import words
+from drivelint.report.html.anchors import finding_anchor
+from drivelint.report.result import outcome
+from drivelint.report.text import number, seconds, subject, times
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from drivelint.report.gate.model import Difference, Entry, Gate
+    from drivelint.report.result import Result
+    from drivelint.report.text import Row
+
+MAX_ROWS: Final = 40
+"""Rows per table."""
+MAX_CHARS: Final = 60_000
+"""A comment on GitHub has at most 65,536 characters."""
+MAX_TEXT: Final = 160
+"""Characters of one reason."""
+
+_OPEN: Final = pa.array(["unknown", "error"])
+_HEAD: Final = ("pass", "fail", "unknown", "not applicable", "error")
+
+
+def render(result: Result, link: str = "report.html") -> bytes:
+    """Return the summary as UTF-8 Markdown; `link`: where report.html is to be found.
+
+    What gates comes first, then what a baseline or a waiver lets through, then what could not be judged.
+    """
+    end = outcome(result)
+    blocks = [f"## drivelint: {_mark(int(end.code))}, exit {int(end.code)}", f"{text(end.why)}."]
+    blocks.append("\n".join(_packs(result)))
+    gate = result.gate
+    if gate is not None and gate.baseline is not None:
+        blocks.append(f"Against the baseline: {text(words.headline(gate.baseline))}.")
+    blocks += _findings(result, link)
+    if gate is not None:
+        blocks += _changes(gate, link)
+    blocks += _open(result)
+    kept = _within(blocks)
+    if len(kept) < len(blocks):
+        kept.append(f"{words.many(len(blocks) - len(kept), 'part')} left out here for length, not for weight.")
+    return ("\n\n".join([*kept, f"[The whole report]({_target(link)})"]) + "\n").encode("utf-8", "replace")
+
+
+def _within(blocks: Sequence[str]) -> list[str]:
+    """Return the first blocks that a comment has room for."""
+    kept, n = [], 0
+    for block in blocks:
+        n += len(block) + 2
+        if n > MAX_CHARS:
+            break
+        kept.append(block)
+    return kept
+
+
+def difference(diff: Difference, failing: Sequence[Entry], fail_on: str, gate: Gate | None = None) -> str:
+    """Return two results' difference as Markdown."""
+    blocks = [f"## drivelint diff: {text(words.headline(diff))}", f"{text(words.verdict(failing, fail_on))}."]
+    rows = [(diff.base_name, diff.base_verdicts), (diff.name, diff.verdicts)]
+    lines = [_row("result", *_HEAD), _row("---", *["---:"] * len(_HEAD))]
+    blocks.append("\n".join([*lines, *(_row(code(name), *map(str, told.values())) for name, told in rows)]))
+    blocks += _entries(diff, words.TITLES, gate, None)
+    blocks += _opened(diff)
+    for title, names in (("Only in the newer result", diff.new_only), ("Only in the base", diff.base_only)):
+        if names:
+            few = ", ".join(code(name) for name in names[:MAX_ROWS]) + (", ..." if len(names) > MAX_ROWS else "")
+            blocks.append(f"{title}: {words.many(len(names), 'drive')}: {few}")
+    return "\n\n".join(blocks)
+
+
+def text(words_: str) -> str:
+    """Return words so that Markdown shows them as they are: no markup, no HTML, no link, nobody mentioned.
+
+    A word joiner, which no reader sees, keeps GitHub from seeing addresses, mentions and numbers of issues.
+    """
+    one_line = " ".join(words_.split())
+    apart = re.sub(r"(@|#|:)(?=[\w/])|(?<=www)(?=\.)", "\\g<0>\u2060", one_line)
+    escaped = re.sub(r"([\\`*_\[\]<>|~&!])", r"\\\1", apart)
+    return re.sub(r"^([-+#])", r"\\\1", escaped)
+
+
+def code(words_: str) -> str:
+    """Return an id as code, in a table too; a backtick in it becomes an apostrophe."""
+    plain = " ".join(words_.split()).replace("`", "'").replace("|", "\\|")
+    return f"`{plain}`" if plain else ""
+
+
+def _mark(exit_code: int) -> str:
+    return {0: "passed", 1: "failed", 2: "a rule could not be run"}.get(exit_code, "not everything could be judged")
+
+
+def _packs(result: Result) -> Iterator[str]:
+    yield _row("pack", *_HEAD)
+    yield _row("---", *["---:"] * len(_HEAD))
+    told = counts.packs(result.rules, counts.by(result.verdicts, "rule_id"))
+    for pack, sums in told.items():
+        yield _row(code(pack), *(str(sums[verdict]) for verdict in counts.VERDICTS))
+
+
+def _findings(result: Result, link: str) -> Iterator[str]:
+    """Yield a table of findings that gate, then one of those that do not, with the reason."""
+    drives = {row["drive_id"]: row for row in result.drives.to_pylist()}
+    rules = {row["rule_id"]: row for row in result.rules.to_pylist()}
+    stopped: list[tuple[Row, str]] = []
+    passed: list[tuple[Row, str]] = []
+    for row in result.findings.to_pylist():
+        excuse = _excuse(row, rules.get(row["rule_id"]), result)
+        (passed if excuse else stopped).append((row, excuse))
+    gate = result.gate
+    kind = "New findings" if gate is not None and gate.baseline is not None else "Findings"
+    for title, rows in ((kind, stopped), ("Findings that do not gate", passed)):
+        if rows:
+            rows.sort(key=lambda item: counts.SEVERITIES.index(item[0]["severity"]))
+            why = rows is passed
+            lines = [
+                _row("severity", "drive", "time", "rule", "who", "observed", "required", *(["why not"] if why else []))
+            ]
+            lines.append(_row(*["---"] * (8 if why else 7)))
+            for row, excuse in rows[:MAX_ROWS]:
+                start_ns = drives[row["drive_id"]]["t_start_ns"]
+                lines.append(_finding(row, start_ns, link, [text(_short(excuse))] if why else []))
+            more = len(rows) - MAX_ROWS
+            shown = f" (the first {MAX_ROWS} of {len(rows)})" if more > 0 else f" ({len(rows)})"
+            table = "\n".join(lines)
+            yield _folded(title + shown, table) if why else f"### {title}{shown}\n\n{table}"
+
+
+def _finding(row: Row, start_ns: int | None, link: str, more: list[str]) -> str:
+    profile = "" if row["profile"] is None else f" [{row['profile']}]"
+    rule = f"[{code(row['rule_id'] + profile)}]({_target(link)}#{finding_anchor(row)})"
+    measured = [text(number(row[name], row["unit"])) for name in ("observed", "required")]
+    when, who = text(seconds(row["t_worst_ns"], start_ns)), text(subject(row))
+    return _row(row["severity"], code(row["drive_id"]), when, rule, who, *measured, *more)
+
+
+def _excuse(row: Row, rule: Row | None, result: Result) -> str:
+    """Return why a finding does not gate; '' where it does."""
+    gate = result.gate
+    waiver = gate.waiver(row["finding_id"]) if gate else None
+    if waiver is not None:
+        return words.excuse(waiver)
+    if gate is not None and gate.known(row["finding_id"]):
+        return "known: the baseline has it"
+    if rule is None or rule["status"] != "stable":
+        return "draft" if rule is None else rule["status"]
+    severe = () if result.fail_on == "never" else counts.SEVERITIES[: counts.SEVERITIES.index(result.fail_on) + 1]
+    return "" if row["severity"] in severe else f"below --fail-on {result.fail_on}"
+
+
+def _changes(gate: Gate, link: str) -> Iterator[str]:
+    """Yield what a baseline and the waivers tell beyond the findings: new ones stand above."""
+    if gate.baseline is not None:
+        titles = {standing: title for standing, title in words.TITLES.items() if standing != "new"}
+        yield from _entries(gate.baseline, titles, gate, link)
+        yield from _opened(gate.baseline)
+    if said := [f"* {text(line)}" for line in words.waivers(gate)]:
+        yield "### Waivers to look at\n\n" + "\n".join(said)
+
+
+def _entries(diff: Difference, titles: dict[str, str], gate: Gate | None, link: str | None) -> Iterator[str]:
+    for standing, title in titles.items():
+        entries = diff.of(standing)
+        if not entries:
+            continue
+        lines = []
+        for entry in entries[:MAX_ROWS]:
+            waived = " (waived)" if gate is not None and entry.finding_id in gate.waived else ""
+            here = link is not None and standing == "changed"
+            there = f" [see]({_target(link or '')}#{finding_anchor({'finding_id': entry.finding_id})})" if here else ""
+            lines.append(f"* {text(_short(words.line(entry)))}{waived}{there}")
+        shown = f" (the first {MAX_ROWS} of {len(entries)})" if len(entries) > MAX_ROWS else f" ({len(entries)})"
+        body = "\n".join(lines)
+        yield (
+            f"### {title}{shown}\n\n{body}" if standing in {"new", "unknown", "lost"} else _folded(title + shown, body)
+        )
+
+
+def _opened(diff: Difference) -> Iterator[str]:
+    groups = words.grouped(diff.opened)
+    if groups:
+        total = sum(n for _, _, n in groups)
+        lines = [_row("verdicts", "rules", "why"), _row("---:", "---", "---")]
+        lines += [_row(str(n), _few(rules), text(_short(reason))) for reason, rules, n in groups[:MAX_ROWS]]
+        yield f"### More is unknown than was ({total})\n\n" + "\n".join(lines)
+
+
+def _open(result: Result) -> Iterator[str]:
+    """Yield what could not be judged and why: drives, then verdicts by reason."""
+    lost = result.drives.filter(pc.equal(result.drives["status"], "not_judged")).to_pylist()
+    if lost:
+        lines = [
+            f"* {code(row['drive_id'])}: {text(_short(row['status_reason'] or 'no reason given'))}" for row in lost
+        ]
+        rest = [f"* ... and {len(lost) - MAX_ROWS} more"] if len(lost) > MAX_ROWS else []
+        yield f"### Drives that could not be judged ({len(lost)})\n\n" + "\n".join([*lines[:MAX_ROWS], *rest])
+    rows = result.verdicts.filter(pc.is_in(result.verdicts["verdict"], value_set=_OPEN))
+    if not rows.num_rows:
+        return
+    why: dict[tuple[str, str], list[str]] = {}
+    told: dict[tuple[str, str], int] = {}
+    grouped = rows.group_by(["verdict", "reason", "rule_id"], use_threads=False).aggregate([([], "count_all")])
+    for row in grouped.to_pylist():
+        at = row["verdict"], row["reason"]
+        why.setdefault(at, []).append(row["rule_id"])
+        told[at] = told.get(at, 0) + row["count_all"]
+    ordered = sorted(told, key=lambda at: (at[0], -told[at], at[1]))
+    lines = [_row("verdict", "rules", "why"), _row("---", "---", "---")]
+    lines += [_row(at[0], _few(sorted(why[at])), text(times(_short(at[1]), told[at]))) for at in ordered[:MAX_ROWS]]
+    more = f" (the first {MAX_ROWS} of {len(ordered)} reasons)" if len(ordered) > MAX_ROWS else ""
+    n = words.many(rows.num_rows, "verdict")
+    yield _folded(f"Could not be judged: {n}, for {words.many(len(ordered), 'reason')}{more}", "\n".join(lines))
+
+
+def _few(rules: Sequence[str]) -> str:
+    few = ", ".join(code(rule) for rule in rules[:3])
+    return few + (f" and {len(rules) - 3} more" if len(rules) > 3 else "")
+
+
+def _folded(title: str, body: str) -> str:
+    """Return a block that GitHub shows folded; the title is our own words."""
+    return f"<details><summary>{title}</summary>\n\n{body}\n\n</details>"
+
+
+def _row(*cells: str) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def _short(words_: str) -> str:
+    return words_ if len(words_) <= MAX_TEXT else words_[: MAX_TEXT - 3] + "..."
+
+
+def _target(link: str) -> str:
+    """Return a link that cannot end early."""
+    return quote(link, safe="/:?&=%+,;@~.-_!$")

@@ -1,0 +1,238 @@
+"""`report.sarif`: findings as SARIF 2.1.0 (OASIS), for code scanning and for viewers of static analysis.
+
+Only findings are results. What could not be judged is a notification: servers that show results, GitHub's code scanning among
+them, take a result of any kind for an alert, so one that says "open" would cry wolf. Counts of every verdict stand in the
+properties of the run and of each rule, so that a pass is not read where nothing was judged.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import TYPE_CHECKING, Any, Final
+from urllib.parse import quote
+
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint import __version__
+from drivelint.report import counts
+from drivelint.report.gate import words
+from drivelint.report.result import outcome
+from drivelint.report.text import comparison, number, seconds, subject, times
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from drivelint.report.result import Result
+    from drivelint.report.text import Row
+
+SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+LEVELS: Final = {"critical": "error", "major": "warning", "minor": "note"}
+"""Severity -> level. A draft's findings are notes, whatever their severity: they do not gate."""
+
+_OPEN: Final = pa.array(["unknown", "error"])
+_STATES: Final = {"new": "new", "changed": "updated", "unchanged": "unchanged"}
+_NOTICES: Final = {
+    "unknown": "A rule could not be judged",
+    "error": "A rule could not be run",
+    "not-judged": "A drive could not be judged",
+    "data-quality": "Something is wrong with a log or its map",
+    "waiver": "A waiver expired or matches nothing",
+}
+
+
+def render(result: Result) -> bytes:
+    """Return the SARIF log as UTF-8 JSON with a final newline; the same result gives the same bytes."""
+    content = {"$schema": SCHEMA, "version": "2.1.0", "runs": [_Run(result).content()]}
+    return (json.dumps(_finite(content), indent=1, ensure_ascii=True, allow_nan=False) + "\n").encode()
+
+
+class _Run:
+    """One result, with the places of its rules and logs in the lists of the run."""
+
+    def __init__(self, result: Result) -> None:
+        self._result = result
+        self._rules: list[Row] = result.rules.to_pylist()
+        self._logs: list[Row] = result.drives.to_pylist()
+        self._drives: dict[str, Row] = {row["drive_id"]: row for row in self._logs}
+        self._rule_index = {rule["rule_id"]: n for n, rule in enumerate(self._rules)}
+        self._artifact_index = {drive["drive_id"]: n for n, drive in enumerate(self._logs)}
+
+    def content(self) -> dict[str, Any]:
+        """Return the SARIF run as plain data."""
+        result, end = self._result, outcome(self._result)
+        told, none = counts.by(result.verdicts, "rule_id"), dict.fromkeys(counts.VERDICTS, 0)
+        total = counts.total(result.verdicts)
+        properties = {"verdicts": total, "failOn": result.fail_on, "strict": result.strict}
+        if result.gate is not None:
+            properties["gate"] = words.summary(result.gate)
+        driver = {
+            "name": "drivelint",
+            "semanticVersion": __version__,
+            "rules": [_rule(rule, told.get(rule["rule_id"], none)) for rule in self._rules],
+            "notifications": [{"id": name, "shortDescription": {"text": text}} for name, text in _NOTICES.items()],
+        }
+        invocation = {
+            "executionSuccessful": not total["error"],
+            "exitCode": int(end.code),
+            "exitCodeDescription": end.why,
+            "toolExecutionNotifications": list(self._notifications()),
+        }
+        return {
+            "tool": {"driver": driver},
+            "invocations": [invocation],
+            "artifacts": [_artifact(drive) for drive in self._logs],
+            "results": [self._finding(row) for row in result.findings.to_pylist()],
+            "properties": properties,
+        }
+
+    def _finding(self, row: Row) -> dict[str, Any]:
+        drive, rule_index = self._drives[row["drive_id"]], self._rule_index[row["rule_id"]]
+        rule, gate = self._rules[rule_index], self._result.gate
+        start_ns = drive["t_start_ns"]
+        measured = "" if "required" in row["reason"] else comparison(row)
+        said = [
+            f"{rule['title']}: {row['reason']}",
+            measured,
+            f"{subject(row)}, {seconds(row['t_worst_ns'], start_ns)}",
+        ]
+        found: dict[str, Any] = {
+            "ruleId": row["rule_id"],
+            "ruleIndex": rule_index,
+            "kind": "fail",
+            "level": _level(row["severity"], rule["status"]),
+            "message": {"text": " ".join(part for part in said if part)},
+            "locations": [self._location(drive, row)],
+            "partialFingerprints": {"findingId/v1": row["finding_id"]},
+            "properties": {
+                "profile": row["profile"],
+                "severity": row["severity"],
+                "start_s": _since(row["t_start_ns"], start_ns),
+                "end_s": _since(row["t_end_ns"], start_ns),
+                "worst_s": _since(row["t_worst_ns"], start_ns),
+                **{name: row[name] for name in ("observed", "required", "margin", "unit", "x_m", "y_m", "lanelet_id")},
+            },
+        }
+        if gate is not None:
+            entry, waiver = gate.entry(row["finding_id"]), gate.waiver(row["finding_id"])
+            if gate.baseline is not None:
+                found["baselineState"] = _STATES[entry.standing] if entry else "new"
+            if waiver is not None:
+                justification = f"{waiver.reason} ({waiver.owner}, until {waiver.expires})"
+                found["suppressions"] = [{"kind": "external", "status": "accepted", "justification": justification}]
+            elif gate.waivers:
+                found["suppressions"] = []  # SARIF: where some results are suppressed, the others say that they are not
+        return found
+
+    def _location(self, drive: Row, row: Row | None = None) -> dict[str, Any]:
+        """Return a log as a place, and within it, if a finding is given, whom it is about and where it was."""
+        drive_id = drive["drive_id"]
+        place: dict[str, Any] = {
+            "physicalLocation": {
+                "artifactLocation": {"uri": _uri(drive["file_name"]), "index": self._artifact_index[drive_id]}
+            }
+        }
+        if row is not None:
+            inside = [
+                ("drive", drive_id),
+                ("ego", row["ego_id"]),
+                ("object", row["object_id"]),
+                ("lanelet", row["lanelet_id"]),
+            ]
+            place["logicalLocations"] = [
+                {
+                    "name": name,
+                    "kind": kind,
+                    "fullyQualifiedName": f"{drive_id}/{kind}/{name}" if kind != "drive" else drive_id,
+                }
+                for kind, name in inside
+                if name is not None
+            ]
+            at = f"{seconds(row['t_worst_ns'], drive['t_start_ns'])} into {drive['file_name']}"
+            if row["x_m"] is not None and row["y_m"] is not None:
+                at += f", ego at x {number(row['x_m'], 'm')}, y {number(row['y_m'], 'm')}"
+            place["message"] = {"text": at}
+        return place
+
+    def _notifications(self) -> Iterator[dict[str, Any]]:
+        """Yield what could not be judged and why: drives, rules by drive, profile and reason; data quality; waivers."""
+        for drive in self._logs:
+            if drive["status"] == "not_judged":
+                yield _notice("not-judged", "error", drive["status_reason"] or "no reason given", self._location(drive))
+        result = self._result
+        rows = result.verdicts.filter(pc.is_in(result.verdicts["verdict"], value_set=_OPEN))
+        columns = ["drive_id", "rule_id", "profile", "verdict", "reason"]
+        for row in rows.group_by(columns, use_threads=False).aggregate([([], "count_all")]).to_pylist():
+            profile = "" if row["profile"] is None else f" [{row['profile']}]"
+            text = f"{row['rule_id']}{profile}: {row['verdict']}: {times(row['reason'], row['count_all'])}"
+            level = "error" if row["verdict"] == "error" else "warning"
+            notice = _notice(row["verdict"], level, text, self._location(self._drives[row["drive_id"]]))
+            yield notice | {"associatedRule": {"id": row["rule_id"], "index": self._rule_index[row["rule_id"]]}}
+        for drive in self._logs:
+            for check in drive["quality"]:
+                level = "note" if check["severity"] == "info" else check["severity"]
+                text = f"{check['check_id']}: {check['message']}"
+                yield _notice("data-quality", level, text, self._location(drive))
+        for text in words.waivers(result.gate) if result.gate else ():
+            yield _notice("waiver", "warning", text)
+
+
+def _rule(rule: Row, told: Mapping[str, int]) -> dict[str, Any]:
+    params = [f"{p['name']} = {p['value']}{' ' + p['unit'] if p['unit'] else ''}" for p in rule["params"]]
+    lines = [rule["clause"], rule["hypothesis"], f"Derived as: {rule['derivation']}. Status: {rule['status']}."]
+    lines += [f"Parameters: {'; '.join(params)}."] if params else []
+    lines += [f"SQL and sources: drivelint rules show {rule['rule_id']}"]
+    return {
+        "id": rule["rule_id"],
+        "shortDescription": {"text": rule["title"]},
+        "fullDescription": {"text": rule["hypothesis"]},
+        "help": {"text": "\n".join(lines)},
+        "defaultConfiguration": {"level": _level(rule["severity"], rule["status"])},
+        "properties": {
+            "tags": [rule["pack"], rule["kind"], rule["severity"], rule["legal"], rule["status"]],
+            "version": rule["rule_version"],
+            "clause": rule["clause"],
+            "requires": rule["requires"],
+            "verdicts": dict(told),
+        },
+    }
+
+
+def _artifact(drive: Row) -> dict[str, Any]:
+    found: dict[str, Any] = {
+        "location": {"uri": _uri(drive["file_name"])},
+        "roles": ["analysisTarget"],
+        "properties": {"driveId": drive["drive_id"], "status": drive["status"], "map": drive["map_name"]},
+    }
+    if drive["sha256"] is not None:
+        found["hashes"] = {"sha-256": drive["sha256"]}
+    return found
+
+
+def _notice(kind: str, level: str, text: str, place: dict[str, Any] | None = None) -> dict[str, Any]:
+    number = list(_NOTICES).index(kind)
+    notice = {"descriptor": {"id": kind, "index": number}, "level": level, "message": {"text": text}}
+    return notice if place is None else notice | {"locations": [place]}
+
+
+def _level(severity: str, status: str) -> str:
+    return LEVELS[severity] if status == "stable" else "note"
+
+
+def _since(t_ns: int | None, start_ns: int | None) -> float | None:
+    return None if t_ns is None else (t_ns - (start_ns or 0)) / 1e9
+
+
+def _uri(name: str) -> str:
+    """Return a file's name as a relative URI; a colon in it must not be read as a scheme's."""
+    return quote(name, safe="", errors="surrogateescape")
+
+
+def _finite(value: Any) -> Any:
+    """Return plain data with NaN and infinity as null: neither is JSON."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    return [_finite(item) for item in value] if isinstance(value, list) else value

@@ -1,0 +1,13 @@
+"""Text in XML."""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+_NOT_XML: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def xml(text: str) -> str:
+    """Return text with the characters that XML cannot hold replaced: ids and reasons are a log's own words."""
+    return _NOT_XML.sub("\ufffd", text)
