@@ -45,7 +45,10 @@ answer AS (
             'yes': CASE WHEN s.road_type_given THEN 'the road type is given' ELSE 'the map has road types' END,
             'no': 'the map has no road types: give one that has, or --env road_type=...'},
         {'signal': 'junctions', 'of_map': true, 'available': m.junctions, 'yes': 'the map has junctions', 'no': 'the map has no junctions: give one that has'},
-        {'signal': 'traffic_lights', 'of_map': true, 'available': m.traffic_lights, 'yes': 'the map has traffic lights', 'no': 'the map has no traffic lights: give one that has'},
+        -- where no ways meet, there is nothing to light; and where nothing is lit, nothing to record
+        {'signal': 'traffic_lights', 'of_map': true, 'available': m.traffic_lights OR NOT (m.junctions OR m.crossings),
+            'yes': CASE WHEN m.traffic_lights THEN 'the map has traffic lights' ELSE 'the map has neither junctions nor crossings' END,
+            'no': 'the map has junctions or crossings and no traffic lights: give one that has'},
         {'signal': 'stop_lines', 'of_map': true, 'available': m.stop_lines, 'yes': 'the map has stop lines', 'no': 'the map has no stop lines: give one that has'},
         {'signal': 'crossings', 'of_map': true, 'available': m.crossings, 'yes': 'the map has pedestrian crossings', 'no': 'the map has no pedestrian crossings: give one that has'},
         -- without exits there is nothing to sign: then it is enough to know that
@@ -57,7 +60,8 @@ answer AS (
         -- a vehicle of no kind may be a bicycle; where nobody else is, there is nobody to know the class of
         {'signal': 'actor_classes', 'of_map': false, 'available': s.classes OR NOT s.others,
             'yes': CASE WHEN s.others THEN 'the log says what the others are' ELSE 'nobody else is in the log' END, 'no': 'the log does not say what the others are: give their classes'},
-        {'signal': 'signals', 'of_map': false, 'available': s.signals, 'yes': 'the log has the states of traffic lights', 'no': 'the log has no states of traffic lights: record them'},
+        {'signal': 'signals', 'of_map': false, 'available': s.signals OR NOT (m.traffic_lights OR m.junctions OR m.crossings),
+            'yes': CASE WHEN s.signals THEN 'the log has the states of traffic lights' ELSE 'the map has neither junctions nor crossings' END, 'no': 'the log has no states of traffic lights: record them'},
         {'signal': 'declared_events', 'of_map': false, 'available': s.events, 'yes': 'the log has events that the ego declares', 'no': 'the ego declares no events in the log: record them'},
         {'signal': 'modes', 'of_map': false, 'available': d.modes IS NOT NULL, 'yes': 'the log says when the ego''s modes are on: ' || array_to_string(list_sort(d.modes), ', '),
             'no': 'the log declares no modes of the ego: record them as events that are on and off'}

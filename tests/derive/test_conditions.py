@@ -15,7 +15,6 @@ from tests.maps import xodr
 from tests.scenes import LANE, Actor, Event, Road, derived, drive, linked, moving, plan, road, rows, saying, tee, times
 
 if TYPE_CHECKING:
-
     import duckdb
 
     from drivelint.batch import Drive
@@ -234,6 +233,24 @@ def test_junctions_of_the_map_are_a_signal() -> None:
     way, plain = tee()["straight"], highway("rural", *BOTH)
     assert signals(drive([ride(way)], way.environment))["junctions"]
     assert not signals(drive([ride(plain)], plain.environment))["junctions"]
+
+
+def test_where_no_ways_meet_there_is_nothing_to_light_or_to_record() -> None:
+    """But a map with junctions that has no lights may leave them out, and without a map nobody knows."""
+    way, plain = tee()["straight"], highway("rural", *BOTH)
+    told = [
+        signals(scene)
+        for scene in (
+            drive([ride(plain)], plain.environment),
+            drive([ride(way)], way.environment),
+            drive([ride()], None),
+        )
+    ]
+    assert [(said["traffic_lights"], said["signals"]) for said in told] == [
+        (True, True),
+        (False, False),
+        (False, False),
+    ]
 
 
 def test_exposure_tells_the_way_and_time_of_the_automated_driver() -> None:

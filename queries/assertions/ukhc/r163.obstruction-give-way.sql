@@ -39,7 +39,10 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps <= standing_mps() AS 
         WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false) THEN false
         WHEN o.begin_seen AND o.n_unplaced = 0 AND count(c.object_id) = count(c.decel_mps2) AND k.t_end_ns >= o.t3_ns + ($pet_s * 1e9)::BIGINT THEN true
     END AS holds,
-    CASE WHEN o.t3_ns IS NULL AND NOT coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false) THEN 'the ego was not seen back in its lane' END AS reason
+    CASE
+        WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false)
+            THEN format('an oncoming vehicle came {:.1f} s after the ego, or braked by {:.1f} m/s2', min(c.pet_s), coalesce(max(c.decel_mps2), 0))
+        WHEN o.t3_ns IS NULL THEN 'the ego was not seen back in its lane' END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 JOIN clock k USING (drive_id, ego_id)
