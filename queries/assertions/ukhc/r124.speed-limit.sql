@@ -23,13 +23,15 @@
 WITH limits AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps, e.lanelet_id, e.limit_mps,
         least(e.limit_mps, most_limit_mps(c.vehicle_class, c.nation, c.road_type, c.carriageway, c.area, e.limit_mps IS NOT NULL)) + $tolerance_mps AS most_mps,
-        least(e.limit_mps, least_limit_mps(c.vehicle_class, c.nation, c.road_type, c.carriageway, c.area, e.limit_mps IS NOT NULL)) + $tolerance_mps AS least_mps
+        -- a sign that the map does not have may say anything: without its limit nothing is kept
+        CASE WHEN e.limit_mps IS NOT NULL
+            THEN least(e.limit_mps, least_limit_mps(c.vehicle_class, c.nation, c.road_type, c.carriageway, c.area, true)) + $tolerance_mps END AS least_mps
     FROM ego_state e
     LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)
 )
 SELECT drive_id, ego_id, t_ns, speed_mps AS observed,
     CASE WHEN speed_mps > most_mps THEN most_mps WHEN speed_mps <= least_mps THEN least_mps END AS required,
-    CASE WHEN speed_mps <= most_mps AND speed_mps > least_mps OR most_mps IS NULL THEN
+    CASE WHEN (speed_mps > least_mps) IS DISTINCT FROM false AND (speed_mps > most_mps) IS DISTINCT FROM true THEN
         CASE WHEN lanelet_id IS NULL THEN 'the ego is on no lane' WHEN limit_mps IS NULL THEN 'the map gives no limit for lanelet ' || lanelet_id
             ELSE 'the limit depends on the class of the vehicle and the kind of road, not all of which is known' END END AS reason
 FROM limits
