@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import pyarrow as pa
+
+from drivelint import store
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -64,28 +68,40 @@ _NAMES = (
 def prepare(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> dict[int, int]:
     """Create the run's temporary tables and return rule number -> subjects for which it is to be run."""
     con.execute(_TABLES)
-    rules = [b.rule for b in bindings]
-    con.execute(
-        "INSERT INTO _rule SELECT unnest($no), unnest($id), unnest($version), unnest($kind), unnest($severity), "
-        "unnest($sense), unnest($unit::VARCHAR[]), unnest($observes::VARCHAR[]), unnest($near::DOUBLE[])",
-        {
-            "no": [b.no for b in bindings], "id": [r.id for r in rules], "version": [r.version for r in rules],
-            "kind": [r.kind for r in rules], "severity": [r.severity for r in rules], "sense": [r.sense for r in rules],
-            "unit": [r.unit for r in rules], "observes": [r.observes for r in rules],
-            "near": [r.near_margin for r in rules],
-        },
-    )  # fmt: skip
-    needs = [(b.no, pos, signal) for b in bindings for pos, signal in enumerate(b.rule.requires)]
-    if needs:
-        no, pos, signal = (list(column) for column in zip(*needs, strict=True))
-        con.execute(
-            "INSERT INTO _needs SELECT unnest($no), unnest($pos), unnest($signal)",
-            {"no": no, "pos": pos, "signal": signal},
-        )
+    # as Arrow tables: lists bound as parameters took a tenth of a second each
+    store.insert(con, "_rule", _rules(bindings))
+    store.insert(con, "_needs", _needs(bindings))
     con.execute(_GATED)
     con.execute(_TODO)
     counts = con.execute("SELECT rule_no, count(*) FROM _todo GROUP BY rule_no").fetchall()
     return {int(no): int(n) for no, n in counts}
+
+
+def _rules(bindings: Sequence[Binding]) -> pa.Table:
+    rules = [b.rule for b in bindings]
+    columns = {
+        "rule_id": [r.id for r in rules], "rule_version": [r.version for r in rules], "kind": [r.kind for r in rules],
+        "severity": [r.severity for r in rules], "sense": [r.sense for r in rules], "unit": [r.unit for r in rules],
+        "observes": [r.observes for r in rules],
+    }  # fmt: skip
+    return pa.table(
+        {
+            "rule_no": pa.array([b.no for b in bindings], pa.int32()),
+            **{name: pa.array(values, pa.string()) for name, values in columns.items()},
+            "near_margin": pa.array([r.near_margin for r in rules], pa.float64()),
+        }
+    )
+
+
+def _needs(bindings: Sequence[Binding]) -> pa.Table:
+    needs = [(b.no, pos, signal) for b in bindings for pos, signal in enumerate(b.rule.requires)]
+    return pa.table(
+        {
+            "rule_no": pa.array([no for no, _, _ in needs], pa.int32()),
+            "pos": pa.array([pos for _, pos, _ in needs], pa.int32()),
+            "signal": pa.array([signal for _, _, signal in needs], pa.string()),
+        }
+    )
 
 
 def clean_up(con: duckdb.DuckDBPyConnection) -> None:
