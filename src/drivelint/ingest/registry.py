@@ -71,8 +71,14 @@ class McapReader:
             from drivelint.ingest import ros
 
             return ros.read(probe.path, probe.options)
+        if family == "foxglove":
+            from drivelint.ingest import foxglove_scene
+
+            return foxglove_scene.read(probe.path, probe.options.topic)
         if probe.path.is_dir():
-            raise TraceError(f"{probe.path}: a bag without ROS 2 messages that are read: give one of its files")
+            raise TraceError(
+                f"{probe.path}: a bag without ROS 2 or Foxglove messages that are read: give one of its files"
+            )
         return osi.read(probe.path, probe.options.topic)
 
 

@@ -15,7 +15,7 @@ from drivelint.ingest.order import listed
 from drivelint.ingest.ros_ego import EGO_INFO, ENGAGE, HAZARD, MODE, ODOMETRY, TRANSFORMS, TREES, TURN, WORLD_INFO
 from drivelint.ingest.ros_merge import Sources, merged
 from drivelint.ingest.ros_objects import KINDS, stamps
-from drivelint.ingest.ros_rows import Rows, common_clock, joined, placed
+from drivelint.ingest.ros_rows import Rows, common_clock, distinct, joined, placed
 from drivelint.ingest.trace import EPOCH_NS, Finding, FrameTimes, Recording, States
 
 if TYPE_CHECKING:
@@ -215,12 +215,13 @@ def read(path: Path, options: IngestOptions) -> Recording:
 
 def _frame_times(t_ns: NDArray[np.int64], log_ns: NDArray[np.int64]) -> FrameTimes:
     """Return each message once, in the order of the file."""
-    pairs = np.unique(np.stack([log_ns, t_ns]), axis=1)
+    new = np.r_[True, (t_ns[1:] != t_ns[:-1]) | (log_ns[1:] != log_ns[:-1])]
+    pairs = np.unique(np.stack([log_ns[new], t_ns[new]]), axis=1)
     return FrameTimes(pairs[1], pairs[0].astype(np.uint64))
 
 
 def _frame_names(rows: Rows) -> list[str]:
-    return [clean(name.decode("utf-8", "replace")) for name in np.unique(rows.frames)]
+    return [clean(name) for name in sorted(distinct(rows.frames)[0])]
 
 
 def _frames(log: _Log, *, own_times: bool) -> Frames:

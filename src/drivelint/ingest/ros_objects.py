@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from drivelint.ingest.ros_rows import Rows, blank
+from drivelint.ingest.ros_rows import Rows, blank, distinct
 from drivelint.ingest.trace import CLASSES
 
 if TYPE_CHECKING:
@@ -84,7 +84,9 @@ def stamps(table: Table, path: str) -> tuple[NDArray[np.int64], NDArray[np.bool_
 def vectors(table: Table, path: str, axes: str = "xyz") -> Vectors:
     """Return the coordinates of a vector as columns; NaN for those that the definition does not have."""
     missing = np.full(table.n, np.nan)
-    return np.stack([table.columns.get(f"{path}.{axis}", missing).astype(np.float64) for axis in axes], axis=1)
+    return np.stack(
+        [table.columns.get(f"{path}.{axis}", missing).astype(np.float64, copy=False) for axis in axes], axis=1
+    )
 
 
 @dataclass(frozen=True)
@@ -162,9 +164,8 @@ def _detections(top: Table, items: Table) -> Rows:
     score = next((c for c in ("hypothesis.score", "score") if c in results.columns), None)
     if key is not None and score is not None and results.columns[key].dtype.kind == "S":
         word = _likeliest(items, "results", key, score, b"")
-        unique, which = np.unique(word, return_inverse=True)
-        known = np.array([class_of(w.decode("utf-8", "replace")) for w in unique], np.int8)
-        rows.classes = known[which.reshape(-1)]
+        words, which = distinct(word)
+        rows.classes = np.array([class_of(each) for each in words], np.int8)[which]
     return rows
 
 

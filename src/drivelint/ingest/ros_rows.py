@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pyarrow as pa
 
 from drivelint.ingest.frames import Poses, clean, rotated, unit
 from drivelint.ingest.order import rate, steps
@@ -23,6 +24,8 @@ MOVING_MPS = 2.0
 CLEARLY = 3.0
 """A velocity is read in the other frame where that fits the positions this many times better, and well."""
 FITS_MPS = 0.5
+ASKED = 8
+"""Of so many actors, those that move most."""
 ENOUGH = 20
 """So many moving samples tell in which frame velocities are."""
 
@@ -78,13 +81,30 @@ def blank(n: int) -> Vectors:
 
 def named(rows: Rows) -> tuple[list[str], NDArray[np.int32]]:
     """Return the distinct ids as text, and each row's index into them."""
-    if rows.ids.dtype.kind == "V":  # sixteen bytes: a UUID
-        unique, actor = np.unique(rows.ids, return_inverse=True)
-        texts = [f"{h[:8]}-{h[8:12]}-{h[12:16]}-{h[16:20]}-{h[20:]}" for h in (bytes(u).hex() for u in unique)]
+    return distinct(rows.ids)
+
+
+def distinct(values: NDArray[Any]) -> tuple[list[str], NDArray[np.int32]]:
+    """Return the distinct values as text, in the order in which they appear, and each row's index into them.
+
+    Bytes are texts, or UUIDs where they are sixteen of any value (numpy's kind V). Hashed, not sorted: four times faster.
+    """
+    if not len(values):
+        return [], np.zeros(0, np.int32)
+    if values.dtype.kind in "SV":
+        width = pa.binary(values.dtype.itemsize)
+        column = pa.FixedSizeBinaryArray.from_buffers(
+            width, len(values), [None, pa.py_buffer(np.ascontiguousarray(values))]
+        )
     else:
-        unique, actor = np.unique(rows.ids, return_inverse=True)
-        texts = [u.decode("utf-8", "replace") if isinstance(u, bytes) else str(u) for u in unique.tolist()]
-    return texts, actor.reshape(-1).astype(np.int32)
+        column = pa.array(values.astype(values.dtype.newbyteorder("="), copy=False))
+    coded = column.dictionary_encode()
+    words = coded.dictionary.to_pylist()
+    if values.dtype.kind == "V":
+        words = [f"{h[:8]}-{h[8:12]}-{h[12:16]}-{h[16:20]}-{h[20:]}" for h in (word.hex() for word in words)]
+    elif values.dtype.kind == "S":
+        words = [word.rstrip(b"\0").decode("utf-8", "backslashreplace") for word in words]
+    return [str(word) for word in words], coded.indices.to_numpy(zero_copy_only=False)
 
 
 def placed(rows: Rows, frames: Frames, fixed: str, what: str) -> tuple[States, list[Finding]]:
@@ -93,17 +113,15 @@ def placed(rows: Rows, frames: Frames, fixed: str, what: str) -> tuple[States, l
     `what` they are is said in the findings.
     """
     ids, actor = named(rows)
-    n = len(rows)
-    place, turn = rows.place.astype(np.float64), unit(rows.turn.astype(np.float64))
-    velocity = np.where(rows.along[:, None], rotated(turn, rows.velocity), rows.velocity) if n else rows.velocity
-    acceleration = np.where(rows.along[:, None], rotated(turn, rows.acceleration), rows.acceleration)
-    swapped = np.where(rows.along[:, None], rows.velocity, rotated(turn, rows.velocity))
+    place, turn = rows.place.copy(), unit(rows.turn)
+    along = rows.along[:, None]
+    outward = rotated(turn, rows.velocity)
+    velocity, swapped = np.where(along, outward, rows.velocity), np.where(along, rows.velocity, outward)
+    acceleration = np.where(along, rotated(turn, rows.acceleration), rows.acceleration)
     findings: list[Finding] = []
-    names, which = np.unique(rows.frames, return_inverse=True)
-    which = which.reshape(-1)
+    names, which = distinct(rows.frames)
     at_ns = rows.t_ns if rows.at_ns is None else rows.at_ns
-    for i, raw in enumerate(names):
-        frame = clean(raw.decode("utf-8", "replace"))
+    for i, frame in enumerate(map(clean, names)):
         if frame == fixed:
             continue
         here = np.flatnonzero(which == i)
@@ -155,7 +173,11 @@ def _lost(what: str, frame: str, fixed: str, frames: Frames, t_ns: NDArray[np.in
 def _other_frame(states: States, swapped: Vectors, along: NDArray[np.bool_], what: str) -> list[Finding]:
     """Read velocities in the other frame where they then are what the positions do, and are not as they should be given."""
     vx, vy = states.numbers["vx_mps"], states.numbers["vy_mps"]
-    order = np.lexsort((states.t_ns, states.actor))
+    fast = np.bincount(states.actor[np.hypot(swapped[:, 0], swapped[:, 1]) > MOVING_MPS], minlength=len(states.ids))
+    chosen = np.zeros(len(states.ids), np.bool_)
+    chosen[np.argsort(-fast, kind="stable")[:ASKED]] = True
+    some = np.flatnonzero(chosen[states.actor])
+    order = some[np.lexsort((states.t_ns[some], states.actor[some]))]
     track = states.take(order)
     if len(track) < ENOUGH:
         return []

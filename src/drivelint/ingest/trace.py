@@ -43,6 +43,7 @@ FORMATS: dict[str, tuple[str, str]] = {
     "commonroad": ("CommonRoad scenario", "said with --ego"),
     "sumo-fcd": ("SUMO floating car data", "said with --ego"),
     "ros2-mcap": ("ROS 2 in MCAP", "the odometry's vehicle"),
+    "foxglove-mcap": ("Foxglove scene in MCAP", "said with --ego"),
     "canonical-parquet": ("drivelint's own Parquet tables", "marked is_ego in the log"),
 }
 """What `data_log.format` may say beside a mapping's name -> its title, and how its ego is known."""
