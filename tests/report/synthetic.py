@@ -35,7 +35,7 @@ def verdict(said: str, **over: Any) -> dict[str, Any]:
 def finding(**over: Any) -> dict[str, Any]:
     """Return the finding of a failing `verdict`."""
     row = verdict("fail", **over)
-    row |= {"finding_id": f"{row['drive_id']}-{row['rule_id']}-{row['profile']}-{row['occurrence']}"}
+    row = {"finding_id": f"{row['drive_id']}-{row['rule_id']}-{row['profile']}-{row['occurrence']}"} | row
     return {key: row[key] for key in arrow_schema("finding").names if key in row}
 
 

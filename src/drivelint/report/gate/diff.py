@@ -66,26 +66,35 @@ def _drive(had: Witness, has: Witness, base_id: str | None, drive_id: str) -> tu
     ours = has.findings.get(drive_id, [])
     same_log = base_id is not None and had.drives[base_id]["sha256"] == has.drives[drive_id]["sha256"]
     pairs = match.findings(theirs, ours, same_log=same_log)
+    told = set(pairs.values())
     entries: list[Entry] = []
     for i, now in enumerate(ours):
-        part = next((each for each in theirs if match.within(now, each)), None)
         if i in pairs:
             entries.append(_kept(now, theirs[pairs[i]], has))
-        elif part is not None:
-            entries.append(_entry("changed", now, part, has, Said("fail", f"a part of {part.id}, which was one")))
+        elif wholes := [j for j, each in enumerate(theirs) if match.within(now, each, same_log=same_log)]:
+            told.add(wholes[0])
+            was = theirs[wholes[0]]
+            entries.append(_entry("changed", now, was, has, Said("fail", f"a part of {was.id}, which was one")))
         else:
-            entries.append(_entry("new", now, None, has, had.said(base_id, now, same_log=same_log)))
+            said = had.said(base_id, now, same_log=same_log)
+            entries.append(_entry("new", now, None, has, _noting_rule(said, now, had, has)))
     gone: list[Entry] = []
-    taken = set(pairs.values())
-    for j, was in enumerate(theirs):
-        whole = next((each for each in ours if match.within(was, each)), None)
-        if j in taken:
-            continue
-        if whole is not None:
-            gone.append(_entry("changed", whole, was, has, Said("fail", f"{was.id} is a part of it now")))
+    for was in (each for j, each in enumerate(theirs) if j not in told):
+        wholes = [i for i in sorted(pairs) if match.within(was, ours[i], same_log=same_log)]
+        if wholes:
+            gone.append(_entry("changed", ours[wholes[0]], was, has, Said("fail", f"{was.id} is a part of it now")))
         else:
-            gone.append(_gone(was, drive_id, has.said(drive_id, was, same_log=same_log), had))
+            said = _noting_rule(has.said(drive_id, was, same_log=same_log), was, had, has)
+            gone.append(_gone(was, drive_id, said, had))
     return entries, gone
+
+
+def _noting_rule(said: Said, at: Stretch, had: Witness, has: Witness) -> Said:
+    """Add what may be the cause: that the two results had not the same rule."""
+    a, b = (witness.rules.get(at.row["rule_id"]) for witness in (had, has))
+    if a is None or b is None or (a["rule_version"], a["params"]) == (b["rule_version"], b["params"]):
+        return said
+    return said._replace(why=f"{said.why} The rule or its parameters changed.")
 
 
 def _kept(now: Stretch, was: Stretch, has: Witness) -> Entry:

@@ -109,10 +109,11 @@ def near(had: Stretch, now: Stretch, *, same_log: bool) -> bool:
     return 0 < whole <= 2 * common
 
 
-def within(part: Stretch, whole: Stretch) -> bool:
-    """Return whether a stretch is a part of another of the same: what was one is now several, or several are one."""
-    same = key(part.row) == key(whole.row)
-    return same and part.start >= whole.start - NEAR_S and part.end <= whole.end + NEAR_S
+def within(part: Stretch, whole: Stretch, *, same_log: bool) -> bool:
+    """Return whether a stretch is a part of a longer one of the same: what was one is now several, or several are one."""
+    slack = NEAR_S if same_log else 0.0
+    longer = key(part.row) == key(whole.row) and part.end - part.start < whole.end - whole.start
+    return longer and part.start >= whole.start - slack and part.end <= whole.end + slack
 
 
 def gap(a: Stretch, b: Stretch) -> float:
