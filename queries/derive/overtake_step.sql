@@ -14,6 +14,11 @@ WITH stage AS (
     FROM overtake o
     JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns >= o.t0_ns AND e.t_ns <= o.t_end_ns
     WHERE o.opposing IS DISTINCT FROM false
+),
+-- by the time alone first, a number: the keys are texts, and most of the drive is no overtake
+met AS (
+    SELECT *, danger_space_m(speed_mps) AS sd_m, d_m + length_m / 2 * sin(heading_diff_rad) AS fd, width_m / 2 AS fh
+    FROM pair SEMI JOIN stage USING (t_ns)
 )
 SELECT
     s.drive_id, s.ego_id, s.occurrence, s.t_ns, s.stage, s.vbp_id, n.object_id AS ov_id,
@@ -26,8 +31,6 @@ SELECT
     inside3(s.ef - v.rear_s_m + v.sd_m, v.rear_s_m - s.er, s.eh + v.fh - abs(s.ed - v.fd)) AS av_in_ds_ov_m,
     inside3(s.ef + s.sd_av_m - v.rear_s_m + v.sd_m, v.rear_s_m - s.ef, s.fh + v.fh - abs(s.fd - v.fd)) AS ds_overlap_m
 FROM stage s
-LEFT JOIN pair b ON b.drive_id = s.drive_id AND b.ego_id = s.ego_id AND b.t_ns = s.t_ns AND b.object_id = s.vbp_id
+LEFT JOIN met b ON b.drive_id = s.drive_id AND b.ego_id = s.ego_id AND b.t_ns = s.t_ns AND b.object_id = s.vbp_id
 LEFT JOIN oncoming n ON n.drive_id = s.drive_id AND n.ego_id = s.ego_id AND n.t_ns = s.t_ns
-LEFT JOIN (
-    SELECT *, danger_space_m(speed_mps) AS sd_m, d_m + length_m / 2 * sin(heading_diff_rad) AS fd, width_m / 2 AS fh FROM pair
-) v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns AND v.object_id = n.object_id
+LEFT JOIN met v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns AND v.object_id = n.object_id
