@@ -109,10 +109,12 @@ on_chain AS MATERIALIZED (
         AND c.bucket = floor(b.ego_s_m / 1000)::BIGINT
 ),
 -- of several places on a corridor that meets itself, the one nearest to the ego along it (see above); a tie is settled by the station
-nearest AS MATERIALIZED (
-    SELECT o.* FROM on_chain o JOIN (SELECT pair_no, min(off) AS off FROM on_chain GROUP BY pair_no) n USING (pair_no, off)
+least AS MATERIALIZED (SELECT pair_no, min(off) AS off FROM on_chain GROUP BY pair_no),
+nearest AS MATERIALIZED (SELECT o.* FROM on_chain o JOIN least USING (pair_no, off)),
+-- ties are rare: only where there are more rows than pairs it is worth looking for them
+twice AS (
+    SELECT pair_no FROM nearest WHERE (SELECT count(*) FROM nearest) > (SELECT count(*) FROM least) GROUP BY pair_no HAVING count(*) > 1
 ),
-twice AS (SELECT pair_no FROM nearest GROUP BY pair_no HAVING count(*) > 1),
 settled AS (
     SELECT
         pair_no,
