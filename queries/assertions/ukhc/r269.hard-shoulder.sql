@@ -14,10 +14,11 @@
 -- @condition
 -- an emergency: hazard lights, or a mode that says so
 WITH lane AS (
-    SELECT o.drive_id, o.actor_id AS ego_id, o.t_ns, bool_and(n.lane_type IN ('shoulder', 'stop')) AS shoulder, min(n.road_type) AS road_type
-    FROM lane_occupancy o
-    JOIN data_log g USING (drive_id)
-    JOIN lanelet n USING (environment_id, lanelet_id)
+    SELECT e.drive_id, e.ego_id, e.t_ns, bool_and(n.lane_type IN ('shoulder', 'stop')) AS shoulder, min(n.road_type) AS road_type
+    FROM ego_state e
+    JOIN lane_occupancy o ON o.drive_id = e.drive_id AND o.actor_id = e.ego_id AND o.t_ns = e.t_ns
+    JOIN data_log g ON g.drive_id = e.drive_id
+    JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = o.lanelet_id
     GROUP BY ALL
 ),
 emergency AS (
