@@ -86,7 +86,7 @@ def text(words_: str) -> str:
     A word joiner, which no reader sees, keeps GitHub from seeing addresses, mentions and numbers of issues.
     """
     one_line = " ".join(words_.split())
-    apart = re.sub(r"(@|#|:)(?=[\w/])|(?<=www)(?=\.)", "\\g<0>\u2060", one_line)
+    apart = re.sub(r"(@|#)(?=\w)|:(?=//)|(?<=www)(?=\.)", "\\g<0>\u2060", one_line)
     escaped = re.sub(r"([\\`*_\[\]<>|~&!])", r"\\\1", apart)
     return re.sub(r"^([-+#])", r"\\\1", escaped)
 

@@ -1,0 +1,278 @@
+"""The gate as CI uses it: README's workflow, run; `check --baseline`, `--waivers`, `diff` and `report --to`."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pyarrow.parquet as pq
+import pytest
+import yaml
+
+from drivelint import cli
+from drivelint.demo import files
+from drivelint.report import targets
+from tests.shared_data import ROOT
+
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+OVERTAKE = ROOT / "fixtures" / "overtake"
+ON_ROAD = ["--map", str(OVERTAKE / "road.xodr"), "--mapping", str(OVERTAKE / "mapping.toml"), "--quiet"]
+SDA = ["--rules", "ukhc.r162.safe-distance-ahead"]
+SAFE, NEAR, COLLISION = (str(OVERTAKE / f"{name}.csv") for name in ("safe", "near_miss", "collision"))
+
+Ran = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def ran(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Ran:
+    """Return a function that runs a command in an empty folder and returns exit code, stdout and stderr."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "120")
+
+    def run(*args: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["drivelint", *args])
+        with pytest.raises(SystemExit) as left:
+            cli.main()
+        out, err = capfd.readouterr()
+        assert isinstance(left.value.code, int)
+        assert "Traceback" not in err
+        return left.value.code, out, err
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """Return result folders: base (safe, near miss), new (these and the collision)."""
+    folder = tmp_path_factory.mktemp("results")
+    made = {}
+    for name, traces in (("base", [SAFE, NEAR]), ("new", [SAFE, NEAR, COLLISION])):
+        command = ["check", *traces, *ON_ROAD, *SDA, "--no-annotate", "--out", str(folder / name)]
+        done = subprocess.run(
+            [sys.executable, "-m", "drivelint", *command],
+            check=False,
+            capture_output=True,
+            env={**os.environ, "PYTHONPATH": str(ROOT / "src")},
+        )
+        assert done.returncode == 1, done.stderr
+        made[name] = folder / name
+    return made
+
+
+def block(mark: str) -> str:
+    """Return README's code block behind a mark."""
+    found = re.search(rf"<!-- {re.escape(mark)} -->\n```\w+\n(.*?)```", README, re.DOTALL)
+    assert found, mark
+    return found.group(1)
+
+
+class Workflow:
+    """README's workflow in a folder of its own, with a `gh` that only notes what it was asked to do."""
+
+    def __init__(self, folder: Path) -> None:
+        self.steps: list[dict[str, Any]] = yaml.safe_load(block("workflow: gate"))["jobs"]["check"]["steps"]
+        self.folder = folder
+        self.kept: Path | None = None
+        tools = folder / "tools"
+        tools.mkdir()
+        (tools / "drivelint").write_text(f'#!/bin/sh\nexec "{sys.executable}" -m drivelint "$@"\n', encoding="utf-8")
+        (tools / "gh").write_text(f'#!/bin/sh\nprintf "%s " "$@" > "{folder}/asked"\n', encoding="utf-8")
+        for tool in tools.iterdir():
+            tool.chmod(0o755)
+        path = f"{tools}{os.pathsep}{os.environ['PATH']}"
+        self.env = {**os.environ, "PATH": path, "PYTHONPATH": str(ROOT / "src"), "NUMBER": "7"}
+        self.env["GITHUB_STEP_SUMMARY"] = str(folder / "summary.md")
+
+    def run(self, *, on_main: bool, drives: list[str], demo: Path) -> tuple[int, str]:
+        """Run every step for these drives; return the exit code of the check and the outcome's page."""
+        for name in ("drives", "results", "baseline"):
+            shutil.rmtree(self.folder / name, ignore_errors=True)
+        (self.folder / "summary.md").unlink(missing_ok=True)
+        (self.folder / "asked").unlink(missing_ok=True)
+        (self.folder / "drives").mkdir()
+        for drive in drives:
+            shutil.copy(demo / f"{drive}.mcap", self.folder / "drives")
+        shutil.copy(demo / "road.xodr", self.folder)
+        (self.folder / "waivers.toml").write_text(block("file: waivers.toml"), encoding="utf-8")
+        code = 0
+        for step in self.steps:
+            condition = step.get("if", "")
+            if ("refs/heads/main" in condition and not on_main) or ("pull_request" in condition and on_main):
+                continue
+            ended = self._step(step)
+            if step.get("name") == "Check the drives":
+                code = ended
+            else:
+                assert ended == 0, step
+        return code, (self.folder / "summary.md").read_text(encoding="utf-8")
+
+    def _step(self, step: dict[str, Any]) -> int:
+        action = step.get("uses", "").partition("@")[0]
+        if action == "actions/cache/save":
+            self.kept = self.folder / "cache"
+            shutil.rmtree(self.kept, ignore_errors=True)
+            shutil.copytree(self.folder / step["with"]["path"], self.kept)
+        elif action == "actions/cache/restore" and self.kept:
+            shutil.copytree(self.kept, self.folder / step["with"]["path"])
+        if action or "pip install" in step["run"]:
+            return 0
+        command = ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", step["run"]]  # as the runner does
+        done = subprocess.run(
+            command, cwd=self.folder, env=self.env, check=False, capture_output=True, text=True, timeout=300
+        )
+        assert "error:" not in done.stderr, done.stderr
+        return done.returncode
+
+
+def test_readmes_workflow_stops_what_is_new_and_nothing_else(tmp_path: Path) -> None:
+    demo = tmp_path / "demo"
+    files.write(demo)
+    (tmp_path / "work").mkdir()
+    workflow = Workflow(tmp_path / "work")
+
+    code, page = workflow.run(on_main=True, drives=["safe", "near-miss"], demo=demo)
+    assert code == 1, "main has a near miss, and no earlier result"
+    assert "waived until 2099-12-31 by jo@" in page
+    assert not (workflow.folder / "asked").exists()
+
+    code, page = workflow.run(on_main=False, drives=["safe", "near-miss"], demo=demo)
+    assert code == 0, page
+    assert page.startswith(
+        "## drivelint: passed, exit 0\n\nnothing new failed at or above severity critical (2 known, 0 waived)"
+    )
+    assert (workflow.folder / "asked").read_text(encoding="utf-8").split() == (
+        ["pr", "comment", "7", "--body-file", "results/report.md", "--edit-last", "--create-if-none"]
+    )
+
+    code, page = workflow.run(on_main=False, drives=["safe", "near-miss", "collision"], demo=demo)
+    assert code == 1
+    assert "### New findings (" in page
+    assert "`ukhc.no-collision`" in page.partition("### New findings")[2].partition("<details>")[0]
+
+
+def test_check_against_a_baseline_exits_1_only_for_what_is_new(results: dict[str, Path], ran: Ran) -> None:
+    base = ["--baseline", str(results["base"])]
+    code, out, _ = ran("check", SAFE, NEAR, *ON_ROAD, *SDA, *base)
+    assert code == 0
+    assert "exit 0: nothing new failed at or above severity critical (1 known)" in out
+    code, out, _ = ran("check", NEAR, COLLISION, *ON_ROAD, *SDA, *base, "--out", "again", "--no-annotate")
+    assert code == 1
+    assert "New findings (1)" in out
+    gate = json.loads(Path("again/gate.json").read_text(encoding="utf-8"))["gate"]
+    assert [entry["standing"] for entry in gate["baseline"]["entries"]] == ["new", "unchanged"]
+    assert gate["baseline"]["base_only"][0].startswith("safe-")
+    told = json.loads(Path("again/summary.json").read_text(encoding="utf-8"))
+    assert (told["exit"]["code"], told["gate"]["baseline"]["new"]) == (1, 1)
+
+
+def test_tables_do_not_depend_on_the_gate(results: dict[str, Path], ran: Ran) -> None:
+    Path("drivelint.toml").write_text(block("file: waivers.toml"), encoding="utf-8")
+    base = ["--baseline", str(results["base"]), "--today", "2100-01-01"]
+    ran("check", SAFE, NEAR, COLLISION, *ON_ROAD, *SDA, *base, "--no-annotate", "--out", "gated")
+    for table in sorted(results["new"].glob("*.parquet")):
+        assert (Path("gated") / table.name).read_bytes() == table.read_bytes(), table.name
+    assert not (results["new"] / "gate.json").exists()
+
+
+def test_waivers_in_the_settings_and_in_a_file_until_their_day(ran: Ran) -> None:
+    text = '[[waiver]]\nrule = "ukhc.r162.*"\nreason = "r"\nowner = "jo"\nexpires = 2027-03-31\n'
+    Path("drivelint.toml").write_text(f'quiet = true\n{text}drive = "collision*"\n', encoding="utf-8")
+    check = ["check", COLLISION, *ON_ROAD, *SDA]
+    assert ran(*check, "--today", "2027-03-31")[0] == 0
+    code, out, _ = ran(*check, "--today", "2027-04-01")
+    assert code == 1
+    assert "drivelint.toml:2: expired 2027-03-31 (jo): it waives nothing; 1 finding like that" in out
+    Path("more.toml").write_text(f"# ours\n{text.replace('162', '126')}", encoding="utf-8")
+    code, out, _ = ran(*check, "--today", "2027-01-01", "--waivers", "more.toml", "--format", "json")
+    told = json.loads(out)["gate"]
+    assert (code, told["waived_findings"], told["waivers"]) == (0, 1, {"active": 1, "expired": 0, "unmatched": 1})
+    assert told["notes"] == ["more.toml:2: no finding is like that: ukhc.r126.* (jo); correct or drop it"]
+    assert ran("inspect", COLLISION, *ON_ROAD[:-1])[0] == 0, "waivers are no option of other commands"
+
+
+MISTAKES = [
+    pytest.param(["--baseline", "nowhere"], "nowhere: no result of drivelint check", id="no baseline"),
+    pytest.param(["--baseline", "out", "--out", "out"], "is also --out", id="the baseline is overwritten"),
+    pytest.param(["--waivers", "nowhere.toml"], "nowhere.toml: no such file of waivers", id="no waivers"),
+    pytest.param(["--waivers", "w.toml"], "w.toml:1: waiver: owner and expires missing", id="nobody answers"),
+    pytest.param(["--waivers", "w.toml", "--today", "tomorrow"], "--today 'tomorrow'", id="no day"),
+]
+
+
+@pytest.mark.parametrize(("args", "says"), MISTAKES)
+def test_a_mistake_is_told_before_anything_is_judged(args: list[str], says: str, ran: Ran) -> None:
+    Path("w.toml").write_text('[[waiver]]\nrule = "*"\nreason = "r"\n', encoding="utf-8")
+    code, out, err = ran("check", "no-such-log.csv", *args)
+    assert (code, out) == (2, "")
+    assert says in err
+    assert len(err.splitlines()) == 1
+
+
+def test_a_day_in_the_settings_would_keep_waivers_alive(ran: Ran) -> None:
+    Path("drivelint.toml").write_text('today = "2026-01-01"\n', encoding="utf-8")
+    code, _, err = ran("check", COLLISION, *ON_ROAD, *SDA)
+    assert code == 2
+    assert "unknown setting 'today'" in err
+
+
+def test_diff_of_two_results(results: dict[str, Path], ran: Ran) -> None:
+    base, new = str(results["base"]), str(results["new"])
+    code, out, err = ran("diff", base, new)
+    assert (code, err) == (1, "")
+    assert "1 new, 0 changed (0 worse), 1 unchanged, 0 fixed" in out
+    assert out.endswith("exit 1: 1 new finding at or above severity critical\n")
+    assert ran("diff", base, new, "--fail-on", "never")[0] == 0
+    assert ran("diff", base, base)[0] == 0
+    code, out, _ = ran("diff", new, base)
+    assert code == 0
+    assert "gone but not fixed: 0 unknown now, 1 not looked at" in out, "a drive that was left out fixes nothing"
+    code, out, _ = ran("diff", base, new, "--format", "json")
+    assert (code, json.loads(out)["exit"]["code"]) == (1, 1)
+    code, out, _ = ran("diff", base, new, "--format", "markdown")
+    assert code == 1
+    assert out.startswith("## drivelint diff: 1 new")
+    assert ran("diff", base, "nowhere")[0] == 2
+
+
+def test_a_log_of_another_content_is_matched_by_its_name(results: dict[str, Path], ran: Ran) -> None:
+    """As where a simulation is repeated: the id of the drive and of the finding are others."""
+    text = Path(NEAR).read_text(encoding="utf-8").rstrip("\n").splitlines()
+    Path("near_miss.csv").write_text("\n".join(text[:-3]) + "\n", encoding="utf-8")  # the last step is cut off
+    args = ["check", "near_miss.csv", *ON_ROAD, *SDA, "--no-annotate", "--baseline", str(results["base"])]
+    assert ran(*args, "--out", "out")[0] == 0
+    entry, *_ = json.loads(Path("out/gate.json").read_text(encoding="utf-8"))["gate"]["baseline"]["entries"]
+    assert entry["standing"] in {"unchanged", "changed"}
+    assert entry["finding_id"] != entry["base_id"]
+
+
+def test_each_report_is_written_from_the_folder_alone(results: dict[str, Path], ran: Ran, tmp_path: Path) -> None:
+    folder = tmp_path / "copy"
+    folder.mkdir()
+    for file in (*results["new"].glob("*.parquet"), results["new"] / "summary.json"):
+        shutil.copy(file, folder)
+    for kind, (name, _) in targets.TARGETS.items():
+        code, out, err = ran("report", str(folder), "--to", kind)
+        assert (code, out, err) == (0, f"{folder / name}\n", "")
+        first = (folder / name).read_bytes()
+        assert b"safe-distance-ahead" in first
+        ran("report", str(folder), "--to", kind)
+        assert (folder / name).read_bytes() == first
+    assert (folder / "junit.xml").read_bytes() == (results["new"] / "junit.xml").read_bytes()
+
+
+def test_a_new_run_leaves_no_report_of_an_older_one(ran: Ran) -> None:
+    Path("w.toml").write_text(block("file: waivers.toml"), encoding="utf-8")
+    check = ["check", SAFE, *ON_ROAD, *SDA, "--no-annotate", "--out", "out"]
+    ran(*check, "--waivers", "w.toml")
+    ran("report", "out", "--to", "sarif")
+    assert {"gate.json", "report.sarif"} <= {path.name for path in Path("out").iterdir()}
+    ran(*check)
+    assert not {"gate.json", "report.sarif"} & {path.name for path in Path("out").iterdir()}
+    assert pq.read_table("out/findings.parquet").num_rows == 0
