@@ -76,7 +76,7 @@ def test_a_finding_is_an_issue_with_time_place_and_id() -> None:
     found = checker(result([verdict("fail")], [finding(x_m=1.5, y_m=-2.0, lanelet_id="117")]))
     (issue,) = found.iter("Issue")
     assert (issue.get("level"), issue.get("issueId")) == ("1", "0")
-    assert issue.get("description").startswith("8.00 s: ego 1, object 3; observed 58.00 m")
+    assert issue.get("description").startswith("profile nominal: 8.00 s: ego 1, object 3; observed 58.00 m")
     place = issue.find("Locations")
     assert dict(place.find("InertialLocation").attrib) == {"x": "1.5", "y": "-2.0", "z": "0.0"}
     assert float(place.find("TimeLocation").get("time")) == 108.0

@@ -92,10 +92,11 @@ class _Run:
         rule, gate = self._rules[rule_index], self._result.gate
         start_ns = drive["t_start_ns"]
         measured = "" if "required" in row["reason"] else comparison(row)
+        profile = "" if row["profile"] is None else f", profile {row['profile']}"
         said = [
             f"{rule['title']}: {row['reason']}",
             measured,
-            f"{subject(row)}, {seconds(row['t_worst_ns'], start_ns)}",
+            f"{subject(row)}{profile}, {seconds(row['t_worst_ns'], start_ns)}",
         ]
         found: dict[str, Any] = {
             "ruleId": row["rule_id"],

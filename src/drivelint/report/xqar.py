@@ -117,7 +117,8 @@ class _Checker:
         waiver = gate.waiver(row["finding_id"]) if gate else None
         stable = self._rule["status"] == "stable"
         start_ns = self._drive["t_start_ns"]
-        text = line(row, start_ns)
+        profile = "" if row["profile"] is None else f"profile {row['profile']}: "
+        text = profile + line(row, start_ns)
         notes = [] if stable else [f"{self._rule['status']}, does not gate"]
         notes += [words.excuse(waiver)] if waiver else []
         notes += ["known: the baseline has it"] if gate and gate.known(row["finding_id"]) else []
