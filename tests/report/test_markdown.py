@@ -59,7 +59,7 @@ def test_a_finding_is_a_row_that_links_to_the_report() -> None:
     text = told(result(MIXED, [finding()]), link="https://ci.example/run 1/report.html")
     _, found, _ = tables(text)
     assert found[1] == [
-        "critical", "d1", "8.00 s", f"{SDA} [nominal]", "ego 1, object 3", "58.00 m", "64.00 m",
+        "critical", "d1", "8.00 s", f"{SDA} [nominal]", "ego 1, object 3", "58.00 m", "> 64.00 m",
     ]  # fmt: skip
     links = [c.attrGet("href") for t in PARSER.parse(text) for c in t.children or [] if c.type == "link_open"]
     assert links == [

@@ -130,17 +130,20 @@ def _findings(result: Result, link: str) -> Iterator[str]:
             lines.append(_row(*["---"] * (8 if why else 7)))
             for row, excuse in rows[:MAX_ROWS]:
                 start_ns = drives[row["drive_id"]]["t_start_ns"]
-                lines.append(_finding(row, start_ns, link, [text(_short(excuse))] if why else []))
+                sense = rules[row["rule_id"]]["sense"] if row["rule_id"] in rules else ""
+                lines.append(_finding(row, sense, start_ns, link, [text(_short(excuse))] if why else []))
             more = len(rows) - MAX_ROWS
             shown = f" (the first {MAX_ROWS} of {len(rows)})" if more > 0 else f" ({len(rows)})"
             table = "\n".join(lines)
             yield _folded(title + shown, table) if why else f"### {title}{shown}\n\n{table}"
 
 
-def _finding(row: Row, start_ns: int | None, link: str, more: list[str]) -> str:
+def _finding(row: Row, sense: str, start_ns: int | None, link: str, more: list[str]) -> str:
     profile = "" if row["profile"] is None else f" [{row['profile']}]"
     rule = f"[{code(row['rule_id'] + profile)}]({_target(link)}#{finding_anchor(row)})"
-    measured = [text(number(row[name], row["unit"])) for name in ("observed", "required")]
+    measured = [text(number(row["observed"], row["unit"])), text(number(row["required"], row["unit"]))]
+    if sense in {">", ">=", "<", "<="} and row["required"] is not None:
+        measured[1] = f"{text(sense)} {measured[1]}"
     when, who = text(seconds(row["t_worst_ns"], start_ns)), text(subject(row))
     return _row(row["severity"], code(row["drive_id"]), when, rule, who, *measured, *more)
 
