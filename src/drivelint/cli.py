@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from rich.console import RenderableType
 
+    from drivelint.ingest.trace import EgoSize
     from drivelint.report.progress import Progress
     from drivelint.report.result import Result
 
@@ -94,6 +95,7 @@ def check(
     map_origin: options.MapOrigin = None,
     handedness: options.DrivenSide = options.Handedness.auto,
     sensor_range: options.SensorRange = None,
+    ego_size: options.EgoBox = None,
     env: options.Conditions = None,
     topic: options.Topic = None,
     rules_dir: options.RulesDirs = None,
@@ -151,6 +153,7 @@ def check(
         map_origin=_origin(map_origin),
         handedness=handedness.value,
         sensor_range_m=sensor_range,
+        ego_size=_ego_size(ego_size),
         env=tuple(env or ()),
         rules_dirs=tuple(rules_dir or ()),
         fail_on=fail_on.value,
@@ -201,6 +204,7 @@ def inspect(
     map_origin: options.MapOrigin = None,
     handedness: options.DrivenSide = options.Handedness.auto,
     sensor_range: options.SensorRange = None,
+    ego_size: options.EgoBox = None,
     env: options.Conditions = None,
     topic: options.Topic = None,
     rules: Annotated[
@@ -227,6 +231,7 @@ def inspect(
         map_origin=_origin(map_origin),
         handedness=handedness.value,
         sensor_range_m=sensor_range,
+        ego_size=_ego_size(ego_size),
         env=tuple(env or ()),
         rules=tuple(rules or ()),
         rules_dirs=tuple(rules_dir or ()),
@@ -254,6 +259,7 @@ def convert(
     mapping: options.MappingName = None,
     map_offset: options.MapOffset = None,
     sensor_range: options.SensorRange = None,
+    ego_size: options.EgoBox = None,
     topic: options.Topic = None,
 ) -> None:
     """Write a log anew, as OSI in MCAP or as Parquet.
@@ -273,6 +279,7 @@ def convert(
         ego=ego,
         topic=topic,
         sensor_range_m=sensor_range,
+        ego_size=_ego_size(ego_size),
     )
     written = _interruptible(lambda: converter.convert(order))
     for note in written.notes:
@@ -526,6 +533,22 @@ def _offset(text: str | None) -> tuple[float, float] | None:
     except ValueError as error:
         raise UsageError(f"--map-offset {text!r}: write two numbers in metres, DX,DY, such as 2.6,3.1") from error
     return dx, dy
+
+
+def _ego_size(text: str | None) -> EgoSize | None:
+    """Read L,W[,AHEAD]. Errors: `UsageError`."""
+    if text is None:
+        return None
+    from drivelint.ingest.trace import EgoSize
+
+    try:
+        length, width, *rest = (float(part) for part in text.split(","))
+        (ahead,) = rest or [0.0]
+    except ValueError:
+        length = width = ahead = float("nan")
+    if not (0.0 < length < 100.0 and 0.0 < width < 10.0 and abs(ahead) < 100.0):
+        raise UsageError(f"--ego-size {text!r}: write length and width in metres, such as 4.9,1.9 or 4.9,1.9,1.4")
+    return EgoSize(length, width, ahead)
 
 
 def _origin(text: str | None) -> tuple[float, float] | None:

@@ -97,6 +97,14 @@ SensorRange = Annotated[
         "--sensor-range", metavar="M", min=0, help="Range in which the recorder sees everybody. Default: all."
     ),
 ]
+EgoBox = Annotated[
+    str | None,
+    typer.Option(
+        "--ego-size",
+        metavar="L,W[,AHEAD]",
+        help="The ego's length and width in metres, where the log has none; AHEAD: its centre ahead of the odometry's frame.",
+    ),
+]
 Conditions = Annotated[
     list[str] | None,
     typer.Option(

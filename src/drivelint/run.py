@@ -19,13 +19,15 @@ from drivelint.judge import Bench
 from drivelint.maps.library import MapLibrary
 from drivelint.profiles import DEFAULT, load_profiles, profile_table
 from drivelint.report import collect, evidence
+from drivelint.report.asked import Asked
 from drivelint.report.files import OutputError
 from drivelint.report.result import Result
 from drivelint.report.rulebook import rule_table
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
+    from drivelint.ingest.trace import EgoSize
     from drivelint.judge import Witness
     from drivelint.report.progress import Progress
 
@@ -53,6 +55,7 @@ class Settings:
     map_origin: tuple[float, float] | None = None
     handedness: str = "auto"
     sensor_range_m: float | None = None
+    ego_size: EgoSize | None = None
     env: tuple[str, ...] = ()
     rules_dirs: tuple[Path, ...] = field(default=())
     fail_on: str = "critical"
@@ -80,6 +83,7 @@ def check(settings: Settings, progress: Progress) -> Result:
         settings.topic,
         settings.sensor_range_m,
         conditions=conditions.parse(settings.env),
+        ego_size=settings.ego_size,
     )
     library = MapLibrary(
         settings.map, settings.map_offset, settings.handedness, origin=settings.map_origin, folder=settings.map_dir
@@ -100,8 +104,9 @@ def check(settings: Settings, progress: Progress) -> Result:
         progress.stage("checking", len(paths))
         refused: list[Refused] = []
         said: set[str] = set()
+        places: dict[str, str] = {}
         try:
-            for batch in cut(read(paths, options, library)):
+            for batch in cut(_noting(read(paths, options, library), places)):
                 failed = _judge(bench, batch, progress, said)
                 refused += failed
                 if len(paths) > 1:  # a single one is the error of the whole run
@@ -122,10 +127,42 @@ def check(settings: Settings, progress: Progress) -> Result:
             rules=table,
             scenes=evidence.scenes(con),
             lanes=evidence.lanes(con),
+            spaces=evidence.spaces(con),
+            courses=evidence.courses(con),
+            overtakes=evidence.overtakes(con),
+            opportunities=evidence.opportunities(con),
             margins_file=bench.margins_file,
             fail_on=settings.fail_on,
             strict=settings.strict,
+            asked=_asked(settings, places),
         )
+
+
+def _noting(drives: Iterable[Drive | Refused], places: dict[str, str]) -> Iterator[Drive | Refused]:
+    """Yield them, and note where the log of each lies."""
+    for drive in drives:
+        if isinstance(drive, Drive):
+            places.setdefault(drive.trace.drive_id, str(drive.trace.path))
+        yield drive
+
+
+def _asked(settings: Settings, places: dict[str, str]) -> Asked:
+    return Asked(
+        traces=places,
+        map=None if settings.map is None else str(settings.map),
+        map_dir=None if settings.map_dir is None else str(settings.map_dir),
+        map_offset=settings.map_offset,
+        map_origin=settings.map_origin,
+        handedness=settings.handedness,
+        mapping=settings.mapping,
+        topic=settings.topic,
+        sensor_range_m=settings.sensor_range_m,
+        ego_size=settings.ego_size,
+        env=settings.env,
+        profiles=settings.profiles,
+        params=settings.params,
+        rules_dirs=tuple(str(folder) for folder in settings.rules_dirs),
+    )
 
 
 def _witnesses(settings: Settings, rules: pa.Table) -> list[Witness]:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.ingest import Trace
+    from drivelint.ingest.trace import EgoSize
 
 TABLES: Final = ("actor", "actor_state", "data_log", "declared_event", "quality", "signal_state")
 
@@ -42,6 +43,7 @@ class Order:
     ego: str | None = None
     topic: str | None = None
     sensor_range_m: float | None = None
+    ego_size: EgoSize | None = None
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,9 @@ def convert(order: Order) -> Written:
     stem = path.resolve().name if path.is_dir() else path.stem
     target = order.out / f"{stem}.mcap" if order.to == "mcap" else order.out
     refuse_to_overwrite(path, order.out, target)
-    options = IngestOptions(order.mapping, order.ego, order.topic, order.sensor_range_m, need_ego=False)
+    options = IngestOptions(
+        order.mapping, order.ego, order.topic, order.sensor_range_m, need_ego=False, ego_size=order.ego_size
+    )
     trace = read_trace(path, options)
     if order.map_offset is not None:
         trace = _moved(trace, order.map_offset)

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from math import isnan
+from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import TraceError
 from drivelint.ingest.order import listed
-from drivelint.ingest.trace import MOTOR_VEHICLES, Finding
+from drivelint.ingest.trace import MOTOR_VEHICLES, SIZES, Finding
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.ingest.actors import Actors
+    from drivelint.ingest.trace import EgoSize
 
 EVERY = "all"
+DIFFERS_M: Final = 0.05
+"""Sizes that differ by more are two sizes."""
 
 
 def choose(
@@ -44,6 +48,22 @@ def choose(
         message = f"the log names {len(egos)} egos ({listed(egos)}): each is judged; choose one with --ego ID"
         return egos, [Finding("ego_count", "warning", message, len(egos))]
     return egos, []
+
+
+def sized(actors: Actors, egos: list[str], size: EgoSize | None) -> list[Finding]:
+    """Give egos without a size the one that the user says, in place. What the log itself says counts more, and is told."""
+    if size is None:
+        return []
+    findings = []
+    for i in (actors.ids.index(name) for name in egos):
+        known = actors.sizes["length_m"][i], actors.sizes["width_m"][i]
+        for name, has, given in zip(SIZES, known, size[:2], strict=False):
+            if isnan(has):
+                actors.sizes[name][i] = given
+            elif abs(has - given) > DIFFERS_M:
+                message = f"--ego-size gives {actors.ids[i]} a {name.removesuffix('_m')} of {given:g} m, the log {has:g} m, which counts"
+                findings.append(Finding("ego_size", "warning", message, actor_id=actors.ids[i]))
+    return findings
 
 
 def _every(path: Path, actors: Actors) -> tuple[list[str], list[Finding]]:

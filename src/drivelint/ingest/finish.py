@@ -60,11 +60,12 @@ def finish(path: Path, identity: Identity, recording: Recording, options: Ingest
         if recording.actors is None
         else (actor_rows.from_table(recording.actors, states), [])
     )
+    egos, chosen = ego.choose(path, actors, options.ego, recording.ego_ids, needed=options.need_ego)
+    chosen += ego.sized(actors, egos, options.ego_size)
     derived = any(f.check_id == "velocity_derived" and f.n == len(states) for f in [*recording.findings, *motion])
     checked = checks.run(states, step, actors, derived=derived)
     if recording.strict_units:
         _refuse_wrong_units(path, checked)
-    egos, chosen = ego.choose(path, actors, options.ego, recording.ego_ids, needed=options.need_ego)
     is_ego = np.isin(np.arange(len(states.ids)), [i for i, name in enumerate(states.ids) if name in egos])[states.actor]
     findings = [*recording.findings, *findings, *motion, *varying, *checked, *chosen, *_lights(states, egos, is_ego)]
     drive = identity.drive_id

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
     from drivelint.ingest import Trace
+    from drivelint.ingest.trace import EgoSize
     from drivelint.maps import Environment
 
 DEFAULT_RULES: Final = ("ukhc",)
@@ -46,6 +47,7 @@ class Order:
     map_origin: tuple[float, float] | None = None
     handedness: str = "auto"
     sensor_range_m: float | None = None
+    ego_size: EgoSize | None = None
     env: tuple[str, ...] = ()
     rules: tuple[str, ...] = ()
     rules_dirs: tuple[Path, ...] = ()
@@ -65,9 +67,7 @@ def inspect(order: Order) -> model.Inspection:
             f"{order.trace}: {len(paths)} logs ({listed([path.name for path in paths])}): inspect looks at one at a time"
         )
     (path,) = paths
-    library = MapLibrary(
-        order.map, order.map_offset, order.handedness, origin=order.map_origin, folder=order.map_dir
-    )
+    library = MapLibrary(order.map, order.map_offset, order.handedness, origin=order.map_origin, folder=order.map_dir)
     options = _options(order, order.ego)
     file = model.File(name=path.resolve().name, bytes=size(path))
     try:
@@ -87,7 +87,15 @@ def inspect(order: Order) -> model.Inspection:
 
 def _options(order: Order, ego: str | None) -> IngestOptions:
     given = conditions.parse(order.env)
-    return IngestOptions(order.mapping, ego, order.topic, order.sensor_range_m, need_ego=False, conditions=given)
+    return IngestOptions(
+        order.mapping,
+        ego,
+        order.topic,
+        order.sensor_range_m,
+        need_ego=False,
+        conditions=given,
+        ego_size=order.ego_size,
+    )
 
 
 def to_json(found: model.Inspection) -> str:
