@@ -320,7 +320,7 @@ CREATE TABLE lead (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
-    object_id VARCHAR,                -- nearest vehicle ahead in the running lane; NULL: nobody there; no row: cannot be told
+    object_id VARCHAR,                -- nearest vehicle ahead in the running lane, not one that moves across it by its own way through a junction; NULL: nobody there; no row: cannot be told
     actor_class VARCHAR,              -- see actor
     gap_m DOUBLE,                     -- bumper to bumper along the corridor
     speed_mps DOUBLE,                 -- its speed
@@ -328,6 +328,9 @@ CREATE TABLE lead (
     ego_speed_mps DOUBLE,             -- the ego's speed
     in_lane BOOLEAN,                  -- some of the ego's box is in the running lane: it follows, and does not overtake beside it
     oncoming BOOLEAN,                 -- it heads against the corridor
+    across_m DOUBLE,                  -- gap between the two boxes across the corridor; negative: overlap
+    ego_across_mps DOUBLE,            -- ego's speed across the corridor, towards it positive
+    across_mps DOUBLE,                -- its speed across the corridor, towards the ego positive
     t_since_ns BIGINT,                -- first step of the unbroken stretch in which it has been the nearest one
     joined BOOLEAN                    -- the stretch began with one of the two changing lanes; false: it was ahead in the lane before (behind another, or further away), or the log begins there
 );

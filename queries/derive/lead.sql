@@ -1,19 +1,31 @@
 -- The nearest vehicle ahead in the running lane, or the certainty that there is none: a step at which somebody without a place may be
 -- nearer, or the ego itself has none, has no row.
-WITH ahead AS (
+WITH
+-- who follows a junction's lane of his own that leads across the ego's way crosses it: see conflict
+crossing AS (
+    SELECT DISTINCT o.drive_id, o.actor_id AS object_id, o.t_ns
+    FROM lane_occupancy o
+    JOIN data_log g USING (drive_id)
+    JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = o.lanelet_id
+    WHERE n.drivable AND n.junction_id IS NOT NULL AND abs(o.heading_diff_rad) < own_way_rad()
+),
+ahead AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns,
         min({
             'gap_m': p.rear_s_m - e.front_s_m, 'object_id': p.object_id, 'speed_mps': p.speed_mps, 'actor_class': p.actor_class,
-            'oncoming': abs(p.heading_diff_rad) > pi() / 2
+            'oncoming': abs(p.heading_diff_rad) > pi() / 2, 'across_m': abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m,
+            'ego_across_mps': sign(p.d_m - e.d_m) * e.speed_mps * sin(e.heading_diff_rad), 'across_mps': sign(e.d_m - p.d_m) * p.speed_mps * sin(p.heading_diff_rad)
         }) AS near
     FROM pair p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
+    LEFT JOIN crossing c ON c.drive_id = p.drive_id AND c.object_id = p.object_id AND c.t_ns = p.t_ns
     WHERE may_be_vehicle(p.actor_class) AND p.s_m > e.s_m AND in_lane(p.d_m, p.lat_half_m, p.half_width_m)
         -- what stands the wrong way round is in the way all the same; one that comes towards the ego only if it is in its lane or its way:
         -- oncoming vehicles that touch the line must not hide whom the ego follows
         AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps()
             OR abs(p.d_m) <= p.half_width_m OR abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m)
+        AND (c.t_ns IS NULL OR abs(p.heading_diff_rad) < pi() / 4 OR p.speed_mps <= standing_mps())
     GROUP BY ALL
 ),
 doubt AS (
@@ -71,6 +83,7 @@ SELECT
     -- a mean over half a second; less than 0.4 s of it at the log's begin is none
     CASE WHEN r.t_ns - r.t_half_ns >= 400_000_000 THEN 1e9 * (r.near.speed_mps - h.speed_mps) / (r.t_ns - r.t_half_ns) END AS accel_mps2,
     r.ego_speed_mps, x.left_in_m < 0 AND x.right_in_m < 0 AS in_lane, r.near.oncoming AS oncoming,
+    r.near.across_m AS across_m, r.near.ego_across_mps AS ego_across_mps, r.near.across_mps AS across_mps,
     b.t_since_ns, CASE WHEN b.k = 0 THEN false ELSE o.joined END AS joined
 FROM run r
 LEFT JOIN ego_corridor x ON x.drive_id = r.drive_id AND x.ego_id = r.ego_id AND x.chain_id = r.chain_id AND x.t_ns = r.t_ns

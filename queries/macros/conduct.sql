@@ -21,6 +21,9 @@ CREATE OR REPLACE MACRO order_m() AS 0.25;
 -- Some of a box is in the running lane: its middle is d from the lane's centre line, its half extent across lat_half.
 CREATE OR REPLACE MACRO in_lane(d_m, lat_half_m, half_width_m) AS abs(d_m) - lat_half_m < half_width_m - over_boundary_m();
 
+-- Who heads within this of a lane's direction follows it.
+CREATE OR REPLACE MACRO own_way_rad() AS pi() / 9;
+
 -- Whoever is further away than this when a lane change begins is neither its leader nor its follower: 5 s at 70 km/h of difference.
 CREATE OR REPLACE MACRO lane_change_near_m() AS 100.0;
 

@@ -10,3 +10,9 @@ CREATE OR REPLACE MACRO rss_longitudinal_m(v_rear, v_front, rho, a_acc, b_min, b
 -- Definition 6: two vehicles drift towards each other (speeds across the road, positive towards the other), fluctuation mu.
 CREATE OR REPLACE MACRO rss_lateral_m(v1, rho1, v2, rho2, a_lat, b_lat, mu) AS
     CASE WHEN v1 + v2 IS NOT NULL THEN mu + greatest(0.0, rss_way_m(v1, rho1, a_lat, b_lat) + rss_way_m(v2, rho2, a_lat, b_lat)) END;
+
+-- The same for the ego and another, who drifts nowhere while standing. Where their boxes are so far apart across the road, no distance along
+-- it is dangerous (definitions 3 and 7).
+CREATE OR REPLACE MACRO rss_across_m(ego_lat_mps, rho, lat_mps, speed_mps, rho_other, a_lat, b_lat, mu) AS
+    CASE WHEN speed_mps <= standing_mps() THEN rss_lateral_m(ego_lat_mps, rho, 0, 0, a_lat, b_lat, mu)
+        WHEN speed_mps IS NOT NULL THEN rss_lateral_m(ego_lat_mps, rho, lat_mps, rho_other, a_lat, b_lat, mu) END;

@@ -21,12 +21,6 @@ if TYPE_CHECKING:
 
 EVERYWHERE = ("rss", "criticality", "comfort", "performance", "declared")
 PACKS = {"gb": ("ukhc", *EVERYWHERE), "de": ("stvo", "alks-r157", *EVERYWHERE)}
-NOT_FOR_RSS = {
-    "cyclist": "who is passed inside the ego's lane is the vehicle ahead until it is passed, however far to the side",
-    "parked": "who is passed inside the ego's lane is the vehicle ahead until it is passed, however far to the side",
-    "offside_turn": "who comes straight over the junction is for a moment on the ego's curved way, and heads against it",
-}
-"""Chapter -> why the rss pack finds fault with it though nothing is wrong."""
 
 
 def stable(packs: Iterable[str]) -> tuple[str, ...]:

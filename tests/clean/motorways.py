@@ -88,7 +88,7 @@ def jam(w: Story) -> None:
 
     def scene() -> None:
         for k in range(2):
-            at, gone = halt + (k + 1) * 11.0, w.stands(halt) + 12.9 - k
+            at, gone = halt + (k + 1) * 11.0, w.stands(halt) + 11.0 - k
             way = (w.when(s - 300.0), w.when(s + 1400.0))
             w.meets(moving_off(w.t, at, gone, 26.0), w.route.offset(), between=way)
 

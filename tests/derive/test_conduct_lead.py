@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from tests.scenes import LANE, derived, drive, moving, road, rows, seconds, standing, swing, times
+from tests.derive.junction_scenes import cross
+from tests.scenes import LANE, Actor, derived, drive, moving, road, rows, seconds, standing, swing, times
 
 HANDS = pytest.mark.parametrize("hand", ["rht", "lht"])
 
@@ -234,3 +235,24 @@ def test_one_that_comes_in_the_egos_lane_is_ahead_and_one_that_touches_the_line_
     assert ahead(-0.5 * LANE) == {("x", True)}
     assert ahead(0.9 - 0.1) == {("old", False)}
     assert ahead(0.5 * LANE) == {("old", False)}
+
+
+@HANDS
+def test_who_crosses_the_egos_way_by_a_lane_of_his_own_is_no_lead(hand: str) -> None:
+    """The ego waits to turn across those who come straight on; one who stands there, or comes along the ego's own way, is ahead."""
+    ways = cross(hand)
+    t = times(24.0)
+    turn, beside = ("wn", "ns") if hand == "rht" else ("ws", "sn")
+    waits = 178.0 + 8 * np.clip(t - 16.0, 0.0, None)
+
+    def ahead(*others: Actor, way: str = turn) -> list[dict[str, object]]:
+        ego = moving("ego", ways[way], t, waits, ways[way].own)
+        con = derived(drive([ego, *others], ways[way].environment), tables=["lead"])
+        return [row for row in rows(con, "FROM lead ORDER BY t_ns") if row["t_ns"] < 16_000_000_000]
+
+    comes = moving("x", ways["ew"], t, 120 + 8 * t, ways["ew"].own)
+    across = moving("y", ways[beside], t, 100 + 8 * t, ways[beside].own)
+    assert [row["object_id"] for row in ahead(comes, across)] == [None] * 160
+    assert {row["object_id"] for row in ahead(standing("s", ways["ew"], t, 204.0, ways["ew"].own))} == {"s"}
+    wrong = ahead(moving("w", ways["we"], t, 290 - 6 * t, ways["we"].own), way="we")
+    assert {(row["object_id"], row["oncoming"]) for row in wrong} == {("w", True)}

@@ -56,8 +56,5 @@ WHERE may_be_vehicle(actor_class)
 -- @condition
 -- box to box: askew, they are further from each other than their extents across the road
 SELECT drive_id, ego_id, t_ns, object_id, clearance_m AS observed,
-    rss_lateral_m(
-        ego_lat_mps, $rho_s, CASE WHEN speed_mps <= standing_mps() THEN 0 ELSE lat_mps END, CASE WHEN speed_mps <= standing_mps() THEN 0 ELSE $rho_other_s END,
-        $lat_accel_mps2, $lat_brake_mps2, $mu_m
-    ) AS required
+    rss_across_m(ego_lat_mps, $rho_s, lat_mps, speed_mps, $rho_other_s, $lat_accel_mps2, $lat_brake_mps2, $mu_m) AS required
 FROM beside

@@ -42,11 +42,29 @@
 -- unit = "m/s2"
 -- why = "braking of the one in its own lane, who need not expect the other"
 -- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.lat_accel_mps2]
+-- default = 0.2
+-- unit = "m/s2"
+-- why = "greatest acceleration to the side during the response time"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.lat_brake_mps2]
+-- default = 0.8
+-- unit = "m/s2"
+-- why = "braking of a movement to the side after it"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.mu_m]
+-- default = 0.1
+-- unit = "m"
+-- why = "vehicles do not hold their line exactly"
+-- source = "ad-rss-lib, parameter discussion (fluctuation margin)"
 
 -- @applies
--- One lane for both makes the distance across unsafe. The ego is in the opposing lane during a manoeuvre over its boundary, not when it
--- touches the line. Without an oncoming vehicle, or once it is alongside, there is nothing to judge, if everybody
--- is placed.
+-- The distance across is unsafe in the opposing lane, and in the ego's own where the two boxes are too near to each other across it. The
+-- ego is in the opposing lane during a manoeuvre over its boundary, not when it touches the line. Without an oncoming vehicle, or once it is
+-- alongside, there is nothing to judge, if everybody is placed.
 SELECT s.drive_id, s.ego_id, s.t_ns, o.object_id, CASE WHEN o.object_id IS NOT NULL THEN o.da_m >= 0 WHEN o.n_unplaced = 0 THEN false END AS applies
 FROM lane_departure d
 JOIN excursion x ON x.drive_id = d.drive_id AND x.ego_id = d.ego_id AND x.t0_ns = d.t_ns
@@ -54,7 +72,10 @@ JOIN step s ON s.drive_id = d.drive_id AND s.ego_id = d.ego_id AND s.t_ns >= x.t
 LEFT JOIN oncoming o ON o.drive_id = s.drive_id AND o.ego_id = s.ego_id AND o.t_ns = s.t_ns
 WHERE NOT d.back AND x.overtaking IS DISTINCT FROM false AND x.over_against IS DISTINCT FROM false
 UNION ALL
-SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id, CASE WHEN l.object_id IS NOT NULL THEN meets(l.in_lane, l.gap_m, l.speed_mps, l.oncoming) WHEN l.t_ns IS NOT NULL THEN false END
+SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
+    CASE WHEN l.object_id IS NOT NULL THEN meets(l.in_lane, l.gap_m, l.speed_mps, l.oncoming)
+        AND l.across_m < rss_across_m(l.ego_across_mps, $rho_s, l.across_mps, l.speed_mps, $rho_other_s, $lat_accel_mps2, $lat_brake_mps2, $mu_m)
+        WHEN l.t_ns IS NOT NULL THEN false END
 FROM step s
 LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
 

@@ -39,6 +39,30 @@
 -- why = "hardest braking of the vehicle ahead"
 -- source = "ad-rss-lib, parameter discussion"
 --
+-- [params.rho_other_s]
+-- default = 2.0
+-- unit = "s"
+-- why = "response time of others, driven by people"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.lat_accel_mps2]
+-- default = 0.2
+-- unit = "m/s2"
+-- why = "greatest acceleration to the side during the response time"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.lat_brake_mps2]
+-- default = 0.8
+-- unit = "m/s2"
+-- why = "braking of a movement to the side after it"
+-- source = "ad-rss-lib, parameter discussion"
+--
+-- [params.mu_m]
+-- default = 0.1
+-- unit = "m"
+-- why = "vehicles do not hold their line exactly"
+-- source = "ad-rss-lib, parameter discussion (fluctuation margin)"
+--
 -- [params.window_s]
 -- default = 5.0
 -- unit = "s"
@@ -49,6 +73,7 @@ WITH judged AS (
     SELECT s.drive_id, s.ego_id, s.t_ns, s.k, s.seg, l.object_id,
         CASE WHEN l.object_id IS NOT NULL THEN follows(l.in_lane, l.gap_m, l.speed_mps, l.oncoming) AND l.ego_speed_mps > standing_mps()
             AND l.gap_m < rss_longitudinal_m(l.ego_speed_mps, ahead_mps(l.speed_mps, l.oncoming), $rho_s, $accel_mps2, $brake_min_mps2, $brake_max_mps2)
+            AND l.across_m < rss_across_m(l.ego_across_mps, $rho_s, l.across_mps, l.speed_mps, $rho_other_s, $lat_accel_mps2, $lat_brake_mps2, $mu_m)
         WHEN l.t_ns IS NOT NULL THEN false END AS unsafe
     FROM step s
     LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns

@@ -1,6 +1,6 @@
 -- title = "No stopping on a motorway"
 -- clause = "UKHC R240: you must not stop on the carriageway of a motorway, nor on a clearway"
--- hypothesis = "At every step on a motorway, had the ego not stood for long of its own accord?"
+-- hypothesis = "At every step on a motorway, had the ego not stood for long with nobody close ahead?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "major"
@@ -25,12 +25,20 @@
 
 -- @condition
 -- clearways and zig-zags are not in map tables; crossings have r191.no-stopping
-SELECT e.drive_id, e.ego_id, e.t_ns,
-    CASE WHEN s.t_start_ns IS NOT NULL THEN l.gap_m IS NOT NULL AND l.gap_m <= $near_m OR CASE WHEN l.t_ns IS NOT NULL THEN false END
-        WHEN e.speed_mps IS NOT NULL THEN true END AS holds,
-    CASE WHEN s.t_start_ns IS NOT NULL AND l.t_ns IS NULL THEN 'the ego stands, and not everybody ahead can be placed'
-        WHEN s.t_start_ns IS NOT NULL THEN format('the ego has stood for {:.1f} s', (e.t_ns - s.t_start_ns) / 1e9) END AS reason
-FROM ego_state e
-LEFT JOIN lead l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.t_ns = e.t_ns
-LEFT JOIN standstill s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id
-    AND s.t_start_ns + ($stop_s * 1e9)::BIGINT < e.t_ns AND s.t_end_ns >= e.t_ns
+WITH stood AS (
+    SELECT e.drive_id, e.ego_id, e.t_ns, s.t_start_ns, s.begin_seen, e.speed_mps, l.t_ns IS NULL AS doubt,
+        max(CASE WHEN l.gap_m <= $near_m THEN e.t_ns END) OVER w AS t_queue_ns, max(CASE WHEN l.t_ns IS NULL THEN e.t_ns END) OVER w AS t_doubt_ns
+    FROM ego_state e
+    LEFT JOIN lead l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.t_ns = e.t_ns
+    LEFT JOIN standstill s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.t_start_ns <= e.t_ns AND s.t_end_ns >= e.t_ns
+    WINDOW w AS (PARTITION BY e.drive_id, e.ego_id, s.t_start_ns ORDER BY e.t_ns)
+)
+SELECT drive_id, ego_id, t_ns,
+    CASE WHEN t_start_ns IS NULL THEN CASE WHEN speed_mps IS NOT NULL THEN true END
+        -- it may go on a while after those ahead did
+        WHEN t_ns - t_queue_ns <= ($stop_s * 1e9)::BIGINT OR begin_seen AND t_ns - t_start_ns <= ($stop_s * 1e9)::BIGINT THEN true
+        WHEN t_ns - t_start_ns > ($stop_s * 1e9)::BIGINT AND (t_doubt_ns IS NULL OR t_ns - t_doubt_ns > ($stop_s * 1e9)::BIGINT) THEN false END AS holds,
+    CASE WHEN t_start_ns IS NOT NULL AND doubt THEN 'the ego stands, and not everybody ahead can be placed'
+        WHEN NOT begin_seen AND t_ns - t_start_ns <= ($stop_s * 1e9)::BIGINT THEN 'the log does not show since when the ego has stood'
+        WHEN t_start_ns IS NOT NULL THEN format('the ego has stood for {:.1f} s', (t_ns - t_start_ns) / 1e9) END AS reason
+FROM stood
