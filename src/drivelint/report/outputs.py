@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from drivelint.report import html, junit, summary
+from drivelint.report import asked, html, junit, summary
 from drivelint.report.contract import FILES
 from drivelint.report.files import parquet_bytes, publish
 from drivelint.report.gate import store
@@ -30,5 +30,9 @@ def write(result: Result, out: Path) -> None:
         moved[store.FILE] = None
     else:
         contents[store.FILE] = store.render(result.gate)
+    if result.asked is None:
+        moved[asked.FILE] = None
+    else:
+        contents[asked.FILE] = asked.render(result.asked, out)
     contents["summary.json"] = summary.render(result)
     publish(out, contents, moved)

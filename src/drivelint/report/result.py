@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from drivelint.report.asked import Asked
     from drivelint.report.gate.model import Gate
 
 
@@ -33,7 +34,7 @@ class Result:
     `scenes`, `lanes`: the evidence for pictures, empty where none was gathered.
     `margins_file`: finished Parquet of every judged step, or None; `write` takes it over.
     `fail_on`: critical, major, minor or never. `strict`: unknown is not good enough.
-    `gate`: what findings are known or waived, or None: all gate.
+    `gate`: what findings are known or waived, or None: all gate. `asked`: what the run was asked to do, if that is known.
     Errors: `DriveLintError` when a table lacks a column or has one too many.
     """
 
@@ -47,6 +48,7 @@ class Result:
     fail_on: str = "critical"
     strict: bool = False
     gate: Gate | None = None
+    asked: Asked | None = None
 
     def __post_init__(self) -> None:
         for name, table in FILES.items():
