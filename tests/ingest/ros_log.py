@@ -220,14 +220,22 @@ def pose(x: float, y: float, yaw: float = 0.0, z: float = 0.0) -> dict[str, Any]
 def thing(number: int, x: float, y: float, yaw: float = 0.0, speed: float = 0.0, **other: Any) -> dict[str, Any]:
     """Return an Object of the CARLA bridge, a car 4.5 x 1.8 x 1.5 m that drives where it looks."""
     return {
-        "header": header(0.0), "id": number, "object_classified": 1, "pose": pose(x, y, yaw),
+        "id": number, "object_classified": 1, "pose": pose(x, y, yaw),
         "twist": {"linear": xyz(speed * math.cos(yaw), speed * math.sin(yaw))},
         "shape": {"type": 1, "dimensions": [4.5, 1.8, 1.5]}, "classification": 6, **other,
     }  # fmt: skip
 
 
 def things(t_s: float, *objects: dict[str, Any], topic: str = "/carla/objects", frame: str = "map") -> Message:
-    return topic, "derived_object_msgs/ObjectArray", t_s, {"header": header(t_s, frame), "objects": list(objects)}
+    return (
+        topic,
+        "derived_object_msgs/ObjectArray",
+        t_s,
+        {
+            "header": header(t_s, frame),
+            "objects": [{"header": header(t_s, frame), **each} for each in objects],
+        },
+    )
 
 
 def odometry(
