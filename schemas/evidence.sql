@@ -8,8 +8,7 @@ CREATE TABLE scene (
     environment_id VARCHAR,           -- the map, for table lane_shape; NULL: no map
     reach_m DOUBLE NOT NULL,          -- how far around the ego actors and lanes were kept
     lanelets VARCHAR[] NOT NULL,      -- lanelets within reach
-    actors STRUCT(actor_id VARCHAR, actor_class VARCHAR, length_m DOUBLE, width_m DOUBLE, x_m DOUBLE, y_m DOUBLE, yaw_rad DOUBLE, speed_mps DOUBLE, path STRUCT(t_ns BIGINT, x_m DOUBLE, y_m DOUBLE, yaw_rad DOUBLE)[])[] NOT NULL, -- the ego first, then everybody within reach and placed: box centre at the moment, and the way 5 s before and after it, at most 5 points a second
-    spaces STRUCT(actor_id VARCHAR, length_m DOUBLE, x_m DOUBLE[], y_m DOUBLE[])[] NOT NULL -- danger spaces of ego and OV, swept along the corridor: a closed ring; only in overtakes
+    actors STRUCT(actor_id VARCHAR, actor_class VARCHAR, length_m DOUBLE, width_m DOUBLE, x_m DOUBLE, y_m DOUBLE, yaw_rad DOUBLE, speed_mps DOUBLE, path STRUCT(t_ns BIGINT, x_m DOUBLE, y_m DOUBLE, yaw_rad DOUBLE)[])[] NOT NULL -- the ego first, then everybody within reach and placed: box centre at the moment, and the way 5 s before and after it, at most 5 points a second and the moment itself
 );
 
 CREATE TABLE lane_shape (
@@ -24,4 +23,65 @@ CREATE TABLE lane_shape (
     left_y_m DOUBLE[] NOT NULL,       -- left bound
     right_x_m DOUBLE[] NOT NULL,      -- right bound in the direction of travel
     right_y_m DOUBLE[] NOT NULL       -- right bound
+);
+
+CREATE TABLE danger_space (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- a moment, or a step of the ego's way around it; only in overtakes
+    actor_id VARCHAR NOT NULL,        -- whose danger space: the ego's or the oncoming vehicle's
+    length_m DOUBLE NOT NULL,         -- its stopping distance
+    x_m DOUBLE[] NOT NULL,            -- the space swept along the corridor, as the assertions have it: a closed ring, true to 10 cm
+    y_m DOUBLE[] NOT NULL             -- the same
+);
+
+CREATE TABLE course (
+    finding_id VARCHAR NOT NULL,      -- a finding
+    t_ns BIGINT[] NOT NULL,           -- judged steps around it: of the same rule, profile, object and reference point
+    observed DOUBLE[] NOT NULL,       -- value at each; NULL: not known, or nothing is measured
+    required DOUBLE[] NOT NULL,       -- what it was held against
+    margin DOUBLE[] NOT NULL,         -- signed, positive = kept
+    holds BOOLEAN[] NOT NULL          -- kept there; NULL: unknown
+);
+
+CREATE TABLE overtake_record (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- 0.. in time order, see overtake
+    status VARCHAR NOT NULL,          -- completed, aborted, lane_change, truncated
+    opposing BOOLEAN,                 -- the overtaking lane is driven the other way; NULL: not known
+    vbp_id VARCHAR NOT NULL,          -- the vehicle being passed
+    ov_id VARCHAR,                    -- the oncoming vehicle at t0; NULL: none seen
+    begin_seen BOOLEAN NOT NULL,      -- t0 lies in the log
+    t0_ns BIGINT NOT NULL,            -- first step with a corner over the boundary
+    t1_ns BIGINT,                     -- wholly in the overtaking lane; NULL: never
+    t2_ns BIGINT,                     -- turning back; NULL: never
+    t3_ns BIGINT,                     -- wholly back; NULL: never
+    t_end_ns BIGINT NOT NULL,         -- t3, or the last step of the excursion
+    v_av_mps DOUBLE,                  -- ego's speed at t0
+    v_vbp_mps DOUBLE,                 -- speed of the vehicle being passed at t0
+    v_ov_mps DOUBLE,                  -- oncoming vehicle's speed at t0; without one the speed limit
+    l_av_m DOUBLE,                    -- ego's length
+    l_vbp_m DOUBLE,                   -- length of the vehicle being passed
+    lane_width_m DOUBLE,              -- width of the running lane at t0
+    da_m DOUBLE,                      -- distance ahead at t0; without an oncoming vehicle how far the road was free
+    profiles STRUCT(profile VARCHAR, style INTEGER, da_m DOUBLE, at_least BOOLEAN, nobody BOOLEAN, sda_m DOUBLE, spare_m DOUBLE, spare_s DOUBLE, "zone" VARCHAR, reason VARCHAR)[] NOT NULL, -- per profile, selected or not: see overtake_sda
+    stretches STRUCT(stage VARCHAR, t_start_ns BIGINT, t_end_ns BIGINT, n BIGINT, said VARCHAR[], worst_m DOUBLE[])[] NOT NULL -- runs of steps in which the four danger-space assertions say the same, in the order VBP outside DS_AV, OV outside DS_AV, AV outside DS_OV, DS_AV and DS_OV apart: pass, fail, unknown, nobody; and how far inside at worst (negative: clear of it)
+);
+
+CREATE TABLE opportunity_record (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    occurrence INTEGER NOT NULL,      -- 0.. in time order, see opportunity
+    object_id VARCHAR NOT NULL,       -- the slower vehicle ahead
+    profile VARCHAR NOT NULL,         -- see profile (not observed)
+    style INTEGER NOT NULL,           -- 0 = least aggressive
+    t_start_ns BIGINT NOT NULL,       -- held up from here
+    t_end_ns BIGINT NOT NULL,         -- to here
+    t_best_ns BIGINT,                 -- the step with the most spare distance; NULL: never known
+    da_m DOUBLE,                      -- distance ahead there, or how far it was free; NULL: unknown
+    sda_m DOUBLE,                     -- safe distance ahead there
+    spare_s DOUBLE,                   -- time in which the spare distance closes
+    zone VARCHAR,                     -- A to D at that step; NULL: unknown
+    taken BOOLEAN NOT NULL            -- an overtake of that vehicle began in it
 );

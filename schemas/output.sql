@@ -43,6 +43,7 @@ CREATE TABLE rule (
     status VARCHAR NOT NULL,          -- draft, stable, deprecated; only stable rules gate
     sense VARCHAR NOT NULL,           -- relation that must hold between observed and required
     unit VARCHAR,                     -- of observed, required and margin
+    observes VARCHAR,                 -- what observed is, as a noun phrase; NULL: nothing is measured, or the title says it
     near_margin DOUBLE,               -- a pass with less is a near miss; NULL: none
     requires VARCHAR[] NOT NULL,      -- signals without which it is unknown
     profiles VARCHAR[] NOT NULL,      -- profiles it was judged against; empty: it has none

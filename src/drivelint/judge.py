@@ -37,6 +37,10 @@ _RESULTS: Final = (
     "finding",
     "scene",
     "lane_shape",
+    "danger_space",
+    "course",
+    "overtake_record",
+    "opportunity_record",
     "profile",
 )
 _MARGIN_ORDER: Final = "drive_id, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, ref_id NULLS FIRST, t_ns"
@@ -101,7 +105,7 @@ class Bench:
             undo.callback(self._forget, ids)
             self._load(drives)
             derive(self._con, self._tables, of_the_map=False)
-            evaluate(self._con, self._rules, self._params, margins=self.margins_file is not None)
+            evaluate(self._con, self._rules, self._params, margins=self.margins_file is not None, courses=bool(self._witnesses))
             self._refuse_short_memory(ids)
             self._refuse_shared_error(ids)
             for witness in self._witnesses:

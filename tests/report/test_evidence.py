@@ -92,12 +92,13 @@ def test_ways_are_the_logs_positions(scenes: dict[tuple[str, int], dict[str, Any
 
 
 def test_a_danger_space_is_as_long_as_the_stopping_distance_and_as_wide_as_its_vehicle(
-    scenes: dict[tuple[str, int], dict[str, Any]],
+    result: Result, scenes: dict[tuple[str, int], dict[str, Any]]
 ) -> None:
     seen = 0
-    for scene in scenes.values():
+    spaces = result.spaces.to_pylist()
+    for at, scene in scenes.items():
         actors = {a["actor_id"]: a for a in scene["actors"]}
-        for space in scene["spaces"]:
+        for space in (row for row in spaces if (row["drive_id"], row["t_ns"]) == at):
             actor = actors.get(space["actor_id"])
             if actor is None or space["length_m"] < 1:
                 continue

@@ -15,6 +15,7 @@ import pyarrow as pa
 import pytest
 
 from drivelint.errors import UsageError
+from drivelint.report.contract import FILES
 from drivelint.report.load import load
 from drivelint.report.outputs import write
 from drivelint.report.result import Result
@@ -128,7 +129,6 @@ def nasty() -> Result:
                     "reach_m": 60.0,
                     "lanelets": [NASTY],
                     "actors": [actor, actor | {"actor_id": NASTY + "2", "x_m": 9.0}],
-                    "spaces": [],
                 }
             ],
         ),
@@ -186,8 +186,7 @@ def test_the_same_result_gives_the_same_bytes(overtakes: Result, text: str) -> N
         pieces(overtakes.findings),
         pieces(overtakes.drives),
         pieces(overtakes.rules),
-        pieces(overtakes.scenes),
-        pieces(overtakes.lanes),
+        *(pieces(getattr(overtakes, name)) for name in list(FILES)[4:]),
     )
     assert page(again) == text
 

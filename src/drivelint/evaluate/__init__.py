@@ -30,8 +30,9 @@ def evaluate(
     params: Mapping[str, Mapping[str, object]] | None = None,
     *,
     margins: bool = False,
+    courses: bool = False,
 ) -> None:
-    """Judge every (drive_id, ego_id) of `clock` by `rules`; append to `verdict`, `finding` and, if asked for, `margin`.
+    """Judge every (drive_id, ego_id) of `clock` by `rules`; append to `verdict`, `finding` and, if asked for, `margin`, `course`.
 
     `con` holds the tables of schemas/*.sql, filled, and is not inside a transaction. `params` is rule id -> parameter
     -> value.
@@ -43,7 +44,8 @@ def evaluate(
         raise UsageError(f"parameters are given for {strange[0]!r}, which is not among the selected rules")
     if not rules:
         return
-    run = Run(con, [Binding(rule, no, params.get(rule.id, {})) for no, rule in enumerate(rules)], margins=margins)
+    bindings = [Binding(rule, no, params.get(rule.id, {})) for no, rule in enumerate(rules)]
+    run = Run(con, bindings, margins=margins, courses=courses)
     try:
         run.judge()
     finally:

@@ -142,5 +142,18 @@ SELECT m.* EXCLUDE (rule_no) REPLACE (nullif(m.profile, '') AS profile, nullif(m
 ANTI JOIN _error e ON e.rule_no = m.rule_no AND e.drive_id = m.drive_id AND e.ego_id = m.ego_id
 """
 
+COURSES = """
+INSERT INTO course BY NAME
+WITH _named AS (SELECT c.* REPLACE (nullif(c.profile, '') AS profile, nullif(c.object_id, '') AS object_id), r.rule_id
+    FROM _course c JOIN _rule r USING (rule_no))
+SELECT f.finding_id, list(c.t_ns ORDER BY c.t_ns) AS t_ns, list(c.observed ORDER BY c.t_ns) AS observed,
+    list(c.required ORDER BY c.t_ns) AS required, list(c.margin ORDER BY c.t_ns) AS margin, list(c.holds ORDER BY c.t_ns) AS holds
+FROM _named c
+JOIN finding f ON f.drive_id = c.drive_id AND f.ego_id = c.ego_id AND f.rule_id = c.rule_id AND f.profile IS NOT DISTINCT FROM c.profile
+    AND f.object_id IS NOT DISTINCT FROM c.object_id AND f.ref_id IS NOT DISTINCT FROM c.ref_id AND f.t_start_ns = c.t_start_ns
+GROUP BY f.finding_id
+"""
+"""Run after these, if the courses of findings are asked for."""
+
 STATEMENTS = (_ALL, _VERDICTS, _FINDINGS, _MARGINS)
 """Run in this order once every rule has left its outcomes."""

@@ -1,4 +1,4 @@
-"""What every kind of rule leaves beside its verdicts: failing stretches, and (asked for) the margin of every step."""
+"""What every kind of rule leaves beside its verdicts: failing stretches, and (asked for) the steps around them, or all."""
 
 from __future__ import annotations
 
@@ -40,6 +40,33 @@ SELECT $_no AS rule_no, drive_id, ego_id, {"worst.who" if combined else "object_
     t_start_ns, t_end_ns, worst.t AS t_worst_ns, coalesce(worst.code, 'violated') AS code, worst.reason AS reason,
     {terms.numbers(rule, "worst.")}
 FROM _worst
+"""
+
+
+def courses(rule: Rule) -> str:
+    """SQL that appends to `_course` how the measure went around the failing stretches of a rule.
+
+    From 2 s before to 2 s after a stretch and 5 s around its worst step, but at most 30 s from that; thinned to some 150
+    steps, of which each is the worst of its share.
+    """
+    whose = "" if rule.combine != "each" else " AND j.object_id IS NOT DISTINCT FROM s.object_id"
+    series = "s.object_id, s.profile, s.ref_id, s.t_start_ns"
+    return f"""
+INSERT INTO _course BY NAME
+WITH _seen AS (
+    SELECT s.*, greatest(t_worst_ns - 30_000_000_000, least(t_worst_ns - 5_000_000_000, t_start_ns - 2_000_000_000)) AS t_from_ns,
+        least(t_worst_ns + 30_000_000_000, greatest(t_worst_ns + 5_000_000_000, t_end_ns + 2_000_000_000)) AS t_to_ns
+    FROM _stretch s WHERE rule_no = $_no
+)
+SELECT s.rule_no, s.drive_id, s.ego_id, {series}, j.t_ns, {terms.numbers(rule, "j.")}, j.holds
+FROM _seen s
+JOIN _judged j ON j.drive_id = s.drive_id AND j.ego_id = s.ego_id AND j.profile IS NOT DISTINCT FROM s.profile
+    AND j.ref_id IS NOT DISTINCT FROM s.ref_id{whose} AND j.t_ns BETWEEN s.t_from_ns AND s.t_to_ns
+{"WHERE j.applies IS DISTINCT FROM false" if rule.kind == "invariant" else ""}
+QUALIFY row_number() OVER (
+    PARTITION BY s.drive_id, s.ego_id, {series}, (j.t_ns - s.t_from_ns) * 150 // (s.t_to_ns - s.t_from_ns)
+    ORDER BY coalesce(j.holds::INTEGER, 1), margin NULLS LAST, j.t_ns
+) = 1
 """
 
 

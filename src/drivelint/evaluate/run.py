@@ -17,10 +17,13 @@ if TYPE_CHECKING:
 class Run:
     """A connection, the rules to judge on it, and what they share."""
 
-    def __init__(self, con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding], *, margins: bool) -> None:
+    def __init__(
+        self, con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding], *, margins: bool, courses: bool = False
+    ) -> None:
         self._con = con
         self._bindings = bindings
         self._margins = margins
+        self._courses = courses
         self._n_todo: dict[int, int] = {}
         self._n_subjects = 0
         self._has_holes = False
@@ -38,6 +41,8 @@ class Run:
                 self._blame(binding, error)
         for statement in closing.STATEMENTS:
             self._con.execute(statement)
+        if self._courses:
+            self._con.execute(closing.COURSES)
 
     def prepare(self) -> None:
         """Make the run's tables, decide what needs no running, and look at the default grids once for all rules."""
@@ -110,6 +115,8 @@ class Run:
     def _leave(self, binding: Binding) -> None:
         if not self._may_stop(self._count("SELECT count(*) FROM (FROM _judged WHERE NOT holds LIMIT 1)")):
             self._execute(findings.stretches(binding.rule), binding)
+            if self._courses:
+                self._execute(findings.courses(binding.rule), binding)
         if self._margins:
             self._execute(findings.margins(binding.rule), binding)
 
@@ -138,7 +145,7 @@ class Explanation(Run):
     """A run that keeps the plan of every statement, stops nowhere, and takes every way round: holes, drivers of both kinds."""
 
     def __init__(self, con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding], *, margins: bool) -> None:
-        super().__init__(con, bindings, margins=margins)
+        super().__init__(con, bindings, margins=margins, courses=True)
         self.plans: list[str] = []
 
     def prepare(self) -> None:

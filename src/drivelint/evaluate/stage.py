@@ -40,6 +40,8 @@ CREATE OR REPLACE TEMP TABLE _stretch ({_KEYS}, profile VARCHAR, object_id VARCH
     t_end_ns BIGINT, t_worst_ns BIGINT, code VARCHAR, reason VARCHAR, observed DOUBLE, required DOUBLE, margin DOUBLE);
 CREATE OR REPLACE TEMP TABLE _margin ({_KEYS}, profile VARCHAR, object_id VARCHAR, ref_id INTEGER, t_ns BIGINT,
     observed DOUBLE, required DOUBLE, margin DOUBLE, holds BOOLEAN);
+CREATE OR REPLACE TEMP TABLE _course ({_KEYS}, profile VARCHAR, object_id VARCHAR, ref_id INTEGER, t_start_ns BIGINT,
+    t_ns BIGINT, observed DOUBLE, required DOUBLE, margin DOUBLE, holds BOOLEAN);
 """
 
 # the first of a rule's required signals that the log cannot give; a signal nobody answered for is not there
@@ -60,8 +62,8 @@ SELECT r.rule_no, s.drive_id, s.ego_id FROM _rule r CROSS JOIN _subject s
 ANTI JOIN _gated g ON g.rule_no = r.rule_no AND g.drive_id = s.drive_id AND g.ego_id = s.ego_id
 """
 _NAMES = (
-    "_subject", "_watched", "_segment", "_rule", "_needs", "_error", "_group", "_outcome", "_stretch", "_margin", "_gated", "_todo",
-    "_grid_group", "_asked", "_closed", "_judged", "_profile_set", "_raw_reference", "reference", "_occasion", "reference_step",
+    "_subject", "_watched", "_segment", "_rule", "_needs", "_error", "_group", "_outcome", "_stretch", "_margin", "_course", "_gated",
+    "_todo", "_grid_group", "_asked", "_closed", "_judged", "_profile_set", "_raw_reference", "reference", "_occasion", "reference_step",
 )  # fmt: skip
 
 

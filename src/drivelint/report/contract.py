@@ -23,6 +23,10 @@ FILES: Final = {
     "rules": "rule",
     "scenes": "scene",
     "lanes": "lane_shape",
+    "spaces": "danger_space",
+    "courses": "course",
+    "overtakes": "overtake_record",
+    "opportunities": "opportunity_record",
 }
 """Stem of the Parquet file -> table of the schema."""
 

@@ -31,7 +31,7 @@ class Outcome(NamedTuple):
 class Result:
     """The tables of one run, totally ordered, each with the columns of `schemas/verdict.sql`, `output.sql` or `evidence.sql`.
 
-    `scenes`, `lanes`: the evidence for pictures, empty where none was gathered.
+    `scenes` to `opportunities`: the evidence for pictures and charts, empty where none was gathered.
     `margins_file`: finished Parquet of every judged step, or None; `write` takes it over.
     `fail_on`: critical, major, minor or never. `strict`: unknown is not good enough.
     `gate`: what findings are known or waived, or None: all gate. `asked`: what the run was asked to do, if that is known.
@@ -44,6 +44,10 @@ class Result:
     rules: pa.Table
     scenes: pa.Table = field(default_factory=lambda: empty("scene"))
     lanes: pa.Table = field(default_factory=lambda: empty("lane_shape"))
+    spaces: pa.Table = field(default_factory=lambda: empty("danger_space"))
+    courses: pa.Table = field(default_factory=lambda: empty("course"))
+    overtakes: pa.Table = field(default_factory=lambda: empty("overtake_record"))
+    opportunities: pa.Table = field(default_factory=lambda: empty("opportunity_record"))
     margins_file: Path | None = None
     fail_on: str = "critical"
     strict: bool = False

@@ -24,7 +24,7 @@ def _row(rule: Rule, overrides: Mapping[str, object], profiles: Sequence[str]) -
     values = {name: overrides.get(name, param.default) for name, param in rule.params.items()}
     same = (
         "pack", "title", "clause", "hypothesis", "kind", "subtype", "derivation", "severity", "legal", "status",
-        "sense", "unit", "near_margin",
+        "sense", "unit", "observes", "near_margin",
     )  # fmt: skip
     window = values.get(rule.window_s) if isinstance(rule.window_s, str) else rule.window_s
     return {key: getattr(rule, key) for key in same} | {

@@ -131,19 +131,22 @@ def moments(
     ]
 
 
-def pictures(rows: Iterable[Row], scenes: pa.Table, road: Road, most: int) -> dict[Key, Plan]:
+def pictures(rows: Iterable[Row], scenes: pa.Table, spaces: pa.Table, road: Road, most: int) -> dict[Key, Plan]:
     """Return the plan views of the moments of `rows`, of the first `most` in their order."""
     keys = zip(*(scenes[name].to_pylist() for name in ("drive_id", "ego_id", "t_ns")), strict=True)
     index = {at: n for n, at in enumerate(keys)}
     told: dict[Key, list[Row]] = {}
     for row in rows:
         told.setdefault(key(row), []).append(row)
+    rings: dict[Key, list[Row]] = {}
+    for row in spaces.to_pylist():
+        rings.setdefault((row["drive_id"], row["ego_id"], row["t_ns"]), []).append(row)
     drawn: dict[Key, Plan] = {}
     for at, found in [(at, found) for at, found in told.items() if at in index][:most]:
         (scene,) = scenes.slice(index[at], 1).to_pylist()
         concerned = {row["object_id"] for row in found if row["object_id"] is not None}
-        spaces = any(row["rule_id"].startswith(_SPACES) for row in found)
-        drawn[at] = plan(scene, road, concerned, spaces=spaces)
+        about = any(row["rule_id"].startswith(_SPACES) for row in found)
+        drawn[at] = plan(scene, road, concerned, rings.get(at, []) if about else [])
     return drawn
 
 

@@ -57,7 +57,7 @@ def content(result: Result) -> dict[str, Any]:
     close: list[tuple[Row, Measured]] = [
         (row, measured(row, "near", rules[row["rule_id"]], starts.get(row["drive_id"]))) for row in near
     ]
-    drawn = pictures([row for row, _ in lines + close], result.scenes, Road(result.lanes), MAX_PICTURES)
+    drawn = pictures([row for row, _ in lines + close], result.scenes, result.spaces, Road(result.lanes), MAX_PICTURES)
     listed = _by_drive(lines + close)
     told = counts.by(result.verdicts, "drive_id")
     shown = _with_section(drives, listed, told)

@@ -95,15 +95,15 @@ class _View:
         return np.column_stack([WIDTH / 2 + self.scale * u, self.height / 2 - self.scale * v])
 
 
-def plan(scene: Mapping[str, Any], road: Road, concerned: Collection[str], *, spaces: bool) -> Plan:
+def plan(scene: Mapping[str, Any], road: Road, concerned: Collection[str], spaces: Sequence[Mapping[str, Any]]) -> Plan:
     """Return the plan view of a row of the table `scene`.
 
-    `concerned`: the objects that the findings are about; `spaces`: also the danger spaces.
+    `concerned`: the objects that the findings are about; `spaces`: rows of `danger_space` at the moment, to be shown.
     """
     actors: list[dict[str, Any]] = scene["actors"]
     ego, others = actors[0], actors[1:]
     met = [a for a in others if a["actor_id"] in concerned]
-    around = [s for s in scene["spaces"] if spaces and s["actor_id"] in {ego["actor_id"], *concerned}]
+    around = [s for s in spaces if s["actor_id"] in {ego["actor_id"], *concerned}]
     rings = [(s["actor_id"], _ring(s)) for s in around]
     lanes = road.near(scene["environment_id"], scene["lanelets"])
     shown = [_corners(a) for a in (ego, *met)] + [ring for _, ring in rings]
