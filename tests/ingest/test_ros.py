@@ -63,7 +63,11 @@ def test_objects_and_odometry(tmp_path: Path) -> None:
     trace = seen(tmp_path, [*ego(), *others()])
     assert log(trace)["format"] == "ros2-mcap"
     rows = actors(trace)
-    assert {name: row["actor_class"] for name, row in rows.items()} == {"9": "car", "12": "pedestrian", "ego": None}
+    assert {name: row["actor_class"] for name, row in rows.items()} == {
+        "9": "car",
+        "12": "pedestrian",
+        "ego": "vehicle",
+    }
     assert [name for name, row in rows.items() if row["is_ego"]] == ["ego"]
     assert (rows["9"]["length_m"], rows["9"]["width_m"], rows["9"]["height_m"]) == (4.5, 1.8, 1.5)
     assert (rows["12"]["length_m"], rows["12"]["width_m"], rows["12"]["height_m"]) == (0.6, 0.6, 1.8)

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from drivelint.errors import TraceError
 from drivelint.ingest import expand
+from drivelint.inspect.content import content, size
 from tests.ingest import ros_log as ros
 from tests.ingest.logs import at, log, quality, read, states
 from tests.ingest.test_ros import T0, TURN, N, along, ego, others, seen, ticks
@@ -186,6 +187,17 @@ def test_bag_in_parts(tmp_path: Path) -> None:
     before = trace.drive_id
     shutil.copy(folder / "drive_0.mcap", folder / "drive_2.mcap")
     assert read(folder).drive_id != before
+
+
+def test_what_a_bag_holds(tmp_path: Path) -> None:
+    folder, messages = parts(tmp_path)
+    assert size(folder) == sum(file.stat().st_size for file in folder.glob("*.mcap"))
+    found = {channel.topic: channel for channel in content(folder, None, [], read=True).channels}
+    assert {topic: channel.read_as for topic, channel in found.items()} == {
+        "/carla/hero/odometry": "odometry", "/carla/objects": "road users", "/tf": "frames", "/tf_static": "frames",
+    }  # fmt: skip
+    assert sum(channel.messages for channel in found.values()) == len(messages)
+    assert found["/carla/objects"].rate_hz == pytest.approx(20.0)
 
 
 def test_bag_with_a_part_missing(tmp_path: Path) -> None:

@@ -18,17 +18,34 @@ if TYPE_CHECKING:
 METADATA = "metadata.yaml"
 _ROOT = "rosbag2_bagfile_information"
 OSI: Final = frozenset({"osi3.GroundTruth", "osi3.SensorView"})
-ROS: Final = frozenset(
-    {
-        "derived_object_msgs/ObjectArray",
-        "autoware_perception_msgs/TrackedObjects",
-        "autoware_auto_perception_msgs/TrackedObjects",
-        "vision_msgs/Detection3DArray",
-        "nav_msgs/Odometry",
-    }
-)
-FOXGLOVE: Final = frozenset({"foxglove.SceneUpdate"})
-"""The schemas whose messages say where road users are."""
+ROAD_USERS: Final = "road users"
+ODOMETRY: Final = "odometry"
+ROS_ROLES: Final = {
+    "derived_object_msgs/ObjectArray": ROAD_USERS,
+    "autoware_perception_msgs/TrackedObjects": ROAD_USERS,
+    "autoware_auto_perception_msgs/TrackedObjects": ROAD_USERS,
+    "vision_msgs/Detection3DArray": ROAD_USERS,
+    "nav_msgs/Odometry": ODOMETRY,
+    "tf2_msgs/TFMessage": "frames",
+    "carla_msgs/CarlaEgoVehicleInfo": "ego",
+    "carla_msgs/CarlaWorldInfo": "map",
+    **{
+        f"{package}/{name}": role
+        for package in ("autoware_vehicle_msgs", "autoware_auto_vehicle_msgs")
+        for name, role in (
+            ("TurnIndicatorsReport", "lights"),
+            ("HazardLightsReport", "lights"),
+            ("ControlModeReport", "declared events"),
+            ("Engage", "declared events"),
+        )
+    },
+}
+FOXGLOVE_ROLES: Final = {
+    "foxglove.SceneUpdate": ROAD_USERS,
+    "foxglove.FrameTransform": "frames",
+    "foxglove.FrameTransforms": "frames",
+}
+"""Schema (without the `msg` in the names of ROS) -> what is read from its messages."""
 
 
 def is_bag(path: Path) -> bool:
@@ -77,8 +94,10 @@ def family(path: Path) -> str:
     for itself whether it was right to ask. A log may hold several: OSI counts first, it is the truth.
     """
     found = {name for file in files(path) for name in _schemas(file)}
-    for name, mark in (("osi", OSI), ("ros2", ROS), ("foxglove", FOXGLOVE)):
-        if found & mark:
+    if found & OSI:
+        return "osi"
+    for name, roles in (("ros2", ROS_ROLES), ("foxglove", FOXGLOVE_ROLES)):
+        if {roles.get(schema) for schema in found} & {ROAD_USERS, ODOMETRY}:
             return name
     return "none"
 

@@ -10,7 +10,7 @@ import pyarrow as pa
 from drivelint.ingest.frames import Frames, Poses, clean, unit
 from drivelint.ingest.ros_objects import HEADER, POSE, STAMP, XYZ, stamps, vectors
 from drivelint.ingest.ros_rows import Rows, blank
-from drivelint.ingest.trace import INDICATORS
+from drivelint.ingest.trace import CLASSES, INDICATORS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -86,7 +86,7 @@ def odometry(table: Table, log_ns: NDArray[np.int64], forward_m: float) -> Rows:
         place=place,
         turn=turn,
         size=blank(n),
-        classes=np.full(n, -1, np.int8),
+        classes=np.full(n, CLASSES.index("vehicle"), np.int8),
         along=along,
         faces=np.ones(n, np.bool_),
         velocity=velocity,

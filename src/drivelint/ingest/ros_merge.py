@@ -71,7 +71,8 @@ def _once(ego: States, others: States, topic: str, findings: list[Finding]) -> R
         known = known[known > 0.0]
         ego.numbers[size][:] = known[(len(known) - 1) // 2] if len(known) else np.nan
     kinds = others.codes["actor_class"][twin]
-    ego.codes["actor_class"][:] = kinds[kinds >= 0][0] if (kinds >= 0).any() else -1
+    if (kinds >= 0).any():
+        ego.codes["actor_class"][:] = kinds[kinds >= 0][0]
     findings.append(
         Finding("ego_twice", "info", f"{both}: its size there counts, its {len(ego)} states are the odometry's", n)
     )

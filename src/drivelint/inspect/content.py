@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import TraceError
+from drivelint.ingest import bag, parquet
 from drivelint.ingest import mapping as mappings
-from drivelint.ingest import parquet
 from drivelint.ingest.carried import EVENT
 from drivelint.ingest.container import MAGIC, Container
 from drivelint.ingest.files import CANONICAL
@@ -22,27 +22,44 @@ from drivelint.inspect.model import Channel, Column, Content, Sheet
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from mcap import records
+
 _HEAD_BYTES: Final = 4096
-_ROLES: Final = {(name, "protobuf"): "ground truth" for name in TREES} | {
+_OSI: Final = {(name, "protobuf"): "ground truth" for name in TREES} | {
     (OPEN_DRIVE, "protobuf"): "map",
     (EVENT, "json"): "declared events",
 }
+_ROLES: Final[dict[str, dict[tuple[str, str], str]]] = {
+    "osi": _OSI,
+    "none": _OSI,
+    "ros2": {(name, "cdr"): role for name, role in bag.ROS_ROLES.items()},
+    "foxglove": {(name, kind): role for name, role in bag.FOXGLOVE_ROLES.items() for kind in ("protobuf", "json")},
+}
+"""What is read of a log of each family: (schema, encoding) -> what as."""
 
 
 def size(path: Path) -> int:
-    """Return the bytes of a file, or of the tables of a canonical folder."""
+    """Return the bytes of a file, or of the tables of a canonical folder or the files of a bag."""
     files = [path / name for name in CANONICAL] if path.is_dir() else [path]
+    if bag.is_bag(path):
+        files = [file for file in path.iterdir() if file.suffix.lower() == ".mcap"]
     return sum(file.stat().st_size for file in files if file.is_file())
 
 
 def content(path: Path, mapping: str | None, notes: list[str], *, read: bool) -> Content:
     """Look into the file. `mapping`: what it was read through; `read`: whether it was read at all."""
     if path.is_dir():
+        if bag.is_bag(path):
+            return Content(channels=_channels(path), notes=notes)
         return Content(sheets=[_plain(path / name) for name in CANONICAL if _is_table(path / name)], notes=notes)
     with path.open("rb") as file:
         head = file.read(_HEAD_BYTES)
     if head.startswith(MAGIC[:5]):
         return Content(channels=_channels(path), notes=notes)
+    return _of_table(path, head, mapping, notes, read=read)
+
+
+def _of_table(path: Path, head: bytes, mapping: str | None, notes: list[str], *, read: bool) -> Content:
     if mapping is not None:
         name, loaded = mappings.load(mapping)
         return Content(sheets=[_mapped(path, loaded)], mapping=name, notes=notes)
@@ -102,35 +119,51 @@ class _Count:
 
 
 def _channels(path: Path) -> list[Channel]:
-    """Count the messages of every channel; of a damaged file those before the damage."""
-    container = Container(path)
-    counts: dict[int, _Count] = {}
+    """Count the messages of every channel, of a bag over all its parts; of a damaged file those before the damage."""
+    counts: dict[tuple[str, str, str, str], _Count] = {}
     try:
-        for packet in container.packets():
-            count = counts.setdefault(
-                packet.channel.id, _Count(first_ns=packet.log_time_ns, last_ns=packet.log_time_ns)
-            )
-            count.messages += 1
-            count.size += len(packet.data)
-            count.first_ns = min(count.first_ns, packet.log_time_ns)
-            count.last_ns = max(count.last_ns, packet.log_time_ns)
+        for file in bag.files(path):
+            container = Container(file)
+            try:
+                for packet in container.packets():
+                    count = counts.setdefault(_key(container, packet.channel), _Count(first_ns=packet.log_time_ns))
+                    count.messages += 1
+                    count.size += len(packet.data)
+                    count.first_ns = min(count.first_ns, packet.log_time_ns)
+                    count.last_ns = max(count.last_ns, packet.log_time_ns)
+            finally:
+                for channel in container.channels.values():
+                    counts.setdefault(_key(container, channel), _Count())
     except TraceError:
         pass  # the drive cannot be read either, for the same reason, and that is told
-    found = []
-    for number, channel in container.channels.items():
-        schema, count = container.schemas.get(channel.schema_id), counts.get(number, _Count())
-        span_s = (count.last_ns - count.first_ns) / 1e9
-        role = _ROLES.get((schema.name, channel.message_encoding)) if schema else None
-        found.append(
-            Channel(
-                topic=channel.topic,
-                schema=schema.name if schema else None,
-                schema_encoding=schema.encoding if schema else None,
-                encoding=channel.message_encoding,
-                messages=count.messages,
-                bytes=count.size,
-                rate_hz=(count.messages - 1) / span_s if span_s > 0 else None,
-                read_as=role,
-            )
-        )
-    return sorted(found, key=lambda c: (c.topic, c.schema or "", c.encoding))
+    roles = _roles(path)
+    return [_channel(key, counts[key], roles) for key in sorted(counts)]
+
+
+def _key(container: Container, channel: records.Channel) -> tuple[str, str, str, str]:
+    """Return topic, schema, encoding and the schema's encoding; channels that share them are one."""
+    schema = container.schemas.get(channel.schema_id)
+    return channel.topic, schema.name if schema else "", channel.message_encoding, schema.encoding if schema else ""
+
+
+def _channel(key: tuple[str, str, str, str], count: _Count, roles: dict[tuple[str, str], str]) -> Channel:
+    topic, schema, encoding, schema_encoding = key
+    span_s = (count.last_ns - count.first_ns) / 1e9
+    return Channel(
+        topic=topic,
+        schema=schema or None,
+        schema_encoding=schema_encoding if schema else None,
+        encoding=encoding,
+        messages=count.messages,
+        bytes=count.size,
+        rate_hz=(count.messages - 1) / span_s if span_s > 0 else None,
+        read_as=roles.get((schema.replace("/msg/", "/"), encoding)),
+    )
+
+
+def _roles(path: Path) -> dict[tuple[str, str], str]:
+    """Return what is read of a log, by schema and encoding: of one that holds several kinds, only the best is."""
+    try:
+        return _ROLES[bag.family(path)]
+    except TraceError:
+        return _ROLES["osi"]
