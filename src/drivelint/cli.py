@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn, TypeVar
 
 import typer
 
-from drivelint import __version__, options
+from drivelint import __version__, cli_explain, options
 from drivelint.errors import DriveLintError, ExitCode, UsageError
 
 if TYPE_CHECKING:
@@ -310,6 +310,9 @@ def report(
     name, render = TARGETS[to.value]
     publish(folder, {name: render(load(folder))}, {})
     typer.echo(str(folder / name))
+
+
+cli_explain.register(app, lambda job: _interruptible(job), lambda what: _say(what))
 
 
 @app.command("diff")

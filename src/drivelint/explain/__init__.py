@@ -1,0 +1,150 @@
+"""Why one verdict is what it is: clause, SQL and numbers behind it, what would change it, and how sure it is.
+
+The drive is judged anew by that rule alone, from the kept database or from its log.
+"""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from drivelint import catalogue
+from drivelint.errors import UsageError
+from drivelint.explain import evidence
+from drivelint.explain.case import Case, around
+from drivelint.explain.change import changes
+from drivelint.explain.model import Explanation, Sensitivity
+from drivelint.explain.outcome import first_unknown
+from drivelint.explain.sensitivity import Errors, copies, counted
+from drivelint.explain.source import open_drive
+from drivelint.explain.target import Wanted, find
+from drivelint.profiles import load_profiles, profile_table
+from drivelint.report import asked as asking
+from drivelint.report.load import load
+
+if TYPE_CHECKING:
+    from drivelint.batch import Drive
+    from drivelint.explain.model import Change, Row, Step
+    from drivelint.explain.target import Target
+    from drivelint.report.asked import Asked
+    from drivelint.report.result import Result
+
+__all__ = ["Errors", "Explanation", "Order", "Wanted", "explain"]
+
+_RULE: Final = (
+    "title", "clause", "hypothesis", "kind", "severity", "legal", "status", "sense", "unit", "observes", "near_margin",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Order:
+    """What `explain` is asked: a finding or rule, the result folder, and where log and map are if they were moved."""
+
+    name: str
+    folder: Path
+    wanted: Wanted = field(default_factory=Wanted)
+    trace: Path | None = None
+    map: Path | None = None
+    errors: Errors = field(default_factory=Errors)
+
+
+def explain(order: Order) -> Explanation:
+    """Explain one verdict of a result.
+
+    Errors: `UsageError` for a finding, rule, folder or log that is not there.
+    """
+    result = load(order.folder)
+    asked = asking.load(order.folder)
+    target = find(result, order.name, order.wanted)
+    case = _case(asked, target)
+    row = target.row
+    drive, source = open_drive(order.folder, asked, row["drive_id"], row["ego_id"], trace=order.trace, map_=order.map)
+    with ExitStack() as opened:
+        lab = opened.enter_context(case.lab([drive]))
+        judged = lab.judge(case.params)
+        now = case.told(judged, [lab.drive_id])[0]
+        series = evidence.series(case.rule, target, judged)
+        decides = _decides(target, series, now)
+        gate = row["reason_code"].removeprefix("missing_") if case.gated else None
+        rows = evidence.rows(case.rule, target, lab, decides, gate)
+        found: list[Change] = []
+        sensitivity = None
+        if not case.gated:
+            part, span = around(case, drive, now)
+            if part is not drive:
+                lab = opened.enter_context(case.lab([part]))
+            found = changes(case, lab, now)
+            if order.errors.samples:
+                sensitivity = _sensitivity(case, part, order.errors, span)
+    rule = case.rule
+    return Explanation(
+        rule={"rule_id": rule.id, "rule_version": rule.version, **{key: getattr(rule, key) for key in _RULE}},
+        drive=_drive(result, row["drive_id"]),
+        verdict={**row, "judged_anew": now},
+        others=target.others,
+        decides_ns=decides,
+        sql=evidence.bound(rule, case.params),
+        params=[
+            {"name": name, "value": case.params[name], "unit": p.unit, "why": p.why, "source": p.source}
+            for name, p in rule.params.items()
+        ],
+        rows=rows,
+        series=series,
+        changes=found,
+        sensitivity=sensitivity,
+        source=source,
+        notes=_notes(case, now),
+    )
+
+
+def _case(asked: Asked, target: Target) -> Case:
+    """Return the rule of a verdict, as it was set in that run."""
+    folders = [Path(folder) for folder in asked.rules_dirs]
+    known = catalogue.load(folders)
+    rule_id = target.row["rule_id"]
+    if rule_id not in known:
+        raise UsageError(f"rule {rule_id} is not in the catalogue any more: check the drives again")
+    rule = known[rule_id]
+    mine = [setting for setting in asked.params if setting.partition("=")[0].strip().rpartition(".")[0] == rule_id]
+    set_ = catalogue.parse_params([rule], mine).get(rule_id, {})
+    params = {name: set_.get(name, param.default) for name, param in rule.params.items()}
+    return Case(rule, target, params, profile_table(load_profiles(folders), asked.profiles))
+
+
+def _decides(target: Target, series: list[Step], now: str) -> int | None:
+    """Return the step that the verdict hangs on; None: it is about no step."""
+    times: list[int | None] = [target.row["t_worst_ns"], target.row["t_start_ns"]]
+    if now == "unknown":
+        times = [first_unknown(series), target.row["t_start_ns"]]
+    return next((t_ns for t_ns in times if t_ns is not None), None)
+
+
+def _notes(case: Case, now: str) -> list[str]:
+    notes = []
+    version, before = case.target.row["rule_version"], case.target.verdict["verdict"]
+    if case.rule.version != version:
+        notes.append(
+            f"The rule has changed since (version {version[:8]} then, {case.rule.version[:8]} now): "
+            "the SQL and what follows from it are today's."
+        )
+    if now != before:
+        notes.append(f"Judged anew it is {now}, not {before} as in the result: the tool or the rule has changed.")
+    return notes
+
+
+def _sensitivity(case: Case, drive: Drive, errors: Errors, span: tuple[int, int] | None) -> Sensitivity:
+    found: list[str] = []
+    for batch in copies(drive, errors):
+        with case.lab(batch) as lab:
+            found += case.told(lab.judge(case.params), [copy.trace.drive_id for copy in batch])
+    start, end = span or (None, None)
+    return Sensitivity(
+        errors.samples, errors.seed, errors.position_m, errors.time_s, errors.map_m, counted(found), start, end
+    )
+
+
+def _drive(result: Result, drive_id: str) -> Row:
+    keys = ["drive_id", "file_name", "t_start_ns", "duration_s", "map_name"]
+    return next(row for row in result.drives.select(keys).to_pylist() if row["drive_id"] == drive_id)

@@ -1,0 +1,88 @@
+"""One verdict with all that is needed to judge it again: the rule, its parameters in that run, and the profiles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from drivelint.explain import evidence
+from drivelint.explain.lab import Lab, cropped
+from drivelint.explain.outcome import outcomes
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import pyarrow as pa
+
+    from drivelint.batch import Drive
+    from drivelint.catalogue import Rule
+    from drivelint.explain.lab import Judged
+    from drivelint.explain.model import Step
+    from drivelint.explain.target import Target
+
+
+@dataclass(frozen=True)
+class Case:
+    """A verdict to explain."""
+
+    rule: Rule
+    target: Target
+    params: Mapping[str, object]
+    profiles: pa.Table
+
+    def lab(self, drives: Sequence[Drive]) -> Lab:
+        """Return a database with these drives, derived for the rule."""
+        return Lab(self.rule, drives, self.profiles)
+
+    def verdict(self, lab: Lab, params: Mapping[str, object] | None = None) -> str:
+        """Return the verdict on the one drive in a lab, with other parameters if they are given."""
+        return self.told(lab.judge(self.params if params is None else params), [lab.drive_id])[0]
+
+    def told(self, judged: Judged, drives: Sequence[str]) -> list[str]:
+        """Return the verdict on each of these drives, in their order."""
+        found = outcomes(self.rule, self.target, judged, drives)
+        return [found[drive] for drive in drives]
+
+    @property
+    def gated(self) -> bool:
+        """Whether the rule was not run because the log or map lacks something: no number alters that."""
+        code = "" if self.target.finding else self.target.verdict["reason_code"]
+        return is_gated(self.target.verdict["verdict"], code)
+
+
+AROUND_NS = (20_000_000_000, 60_000_000_000)
+"""How much of a drive around what is explained is enough, if the verdict is the same there; tried in this order."""
+
+
+def is_gated(verdict: str, reason_code: str) -> bool:
+    """Whether a verdict is unknown for want of a signal that the rule requires."""
+    return verdict == "unknown" and reason_code.startswith("missing_") and reason_code != "missing_step"
+
+
+def around(case: Case, drive: Drive, now: str) -> tuple[Drive, tuple[int, int] | None]:
+    """Return the part of a drive that is enough for the same verdict, and from when to when it is; None: all of it."""
+    span = case.target.span
+    if span is None or now == "not_applicable":
+        return drive, None
+    log = drive.trace.tables["data_log"].to_pylist()[0]
+    for margin in AROUND_NS:
+        part = (max(log["t_start_ns"], span[0] - margin), min(log["t_end_ns"], span[1] + margin))
+        if part == (log["t_start_ns"], log["t_end_ns"]):
+            break
+        small = cropped(drive, *part)
+        with case.lab([small]) as lab:
+            judged = lab.judge(case.params)
+            if case.told(judged, [lab.drive_id]) == [now] and _same_numbers(
+                case, evidence.series(case.rule, case.target, judged)
+            ):
+                return small, part
+    return drive, None
+
+
+def _same_numbers(case: Case, series: list[Step]) -> bool:
+    """Tell whether the deciding step has the same numbers in a part of the drive as in all of it."""
+    row = case.target.row
+    if case.rule.sense == "holds" or row["margin"] is None:
+        return True
+    here = [step.margin for step in series if step.t_ns == row["t_worst_ns"] and step.margin is not None]
+    return any(abs(margin - row["margin"]) < 1e-6 for margin in here)

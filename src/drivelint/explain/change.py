@@ -1,0 +1,135 @@
+"""What would have to be otherwise: for each number of a rule or its profile, the nearest value with another verdict."""
+
+from __future__ import annotations
+
+import math
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from drivelint.errors import DriveLintError
+from drivelint.explain.model import Change
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from drivelint.explain.case import Case
+    from drivelint.explain.lab import Lab
+
+FACTORS: Final = (0.02, 0.1, 0.25, 0.5, 1.0, 3.0, 10.0)
+"""How far to look in each direction, in parts of the value as it is (of 1 where it is 0)."""
+_HALVINGS: Final = 10
+_PROFILE: Final = {
+    "pull_out_angle_rad": ("rad", "angle at which this profile pulls out"),
+    "cut_in_angle_rad": ("rad", "angle at which this profile cuts in"),
+    "pull_out_headroom_m": ("m", "gap to the vehicle ahead at which this profile pulls out"),
+    "cut_in_clearance_m": ("m", "gap to the vehicle behind at which this profile cuts in"),
+}
+
+
+class _Number(NamedTuple):
+    name: str
+    what: str
+    unit: str
+    now: float
+    most: float
+    judge: Callable[[float], str]
+
+
+class _Edge(NamedTuple):
+    """The nearest value on one side that changes the verdict, what it becomes, and the furthest one looked at that agrees."""
+
+    value: float
+    becomes: str
+    beyond: bool
+
+
+def changes(case: Case, lab: Lab, verdict: str) -> list[Change]:
+    """Return the nearest change of each number that changes `verdict` on the drive in `lab`, the least relative one first."""
+    found = [_nearest(number, verdict) for number in _numbers(case, lab)]
+    return sorted(found, key=lambda c: (c.found is None, abs((c.found or 0.0) - c.now) / (abs(c.now) or 1.0), c.name))
+
+
+def _numbers(case: Case, lab: Lab) -> Iterator[_Number]:
+    for name, param in case.rule.params.items():
+        now = case.params[name]
+        if isinstance(now, bool) or not isinstance(now, int | float):
+            continue
+
+        def with_param(value: float, name: str = name) -> str:
+            try:
+                return case.verdict(lab, {**case.params, name: value})
+            except DriveLintError:  # no value for this parameter, such as a window of less than nothing
+                return "error"
+
+        yield _Number(name, param.why, param.unit, float(now), math.inf, with_param)
+    profile = case.target.row["profile"]
+    if not case.rule.profiled or profile is None:
+        return
+    for row in lab.rows("SELECT * FROM profile WHERE profile = ?", [profile]):
+        for column, (unit, what) in _PROFILE.items():
+            now = row[column]
+            if now is None:
+                continue  # the profile that this overtake itself had
+
+            def with_profile(value: float, column: str = column, now: float = now) -> str:
+                with _profile(lab, profile, column, value, now):
+                    return case.verdict(lab)
+
+            most = math.pi / 2 if unit == "rad" else math.inf
+            yield _Number(f"{profile}.{column}", what, unit, float(now), most, with_profile)
+
+
+@contextmanager
+def _profile(lab: Lab, profile: str, column: str, value: float, now: float) -> Iterator[None]:
+    """Give a number of a profile another value for a while."""
+    lab.set_profile(profile, column, value)
+    try:
+        yield
+    finally:
+        lab.set_profile(profile, column, now)
+
+
+def _nearest(number: _Number, verdict: str) -> Change:
+    scale = abs(number.now) or 1.0
+    least = 0.0 if number.now >= 0 else -math.inf  # what is counted from nothing upwards stays so
+    edges = [edge for sign in (1, -1) if (edge := _edge(number, verdict, scale * sign, least))]
+    low, high = max(least, number.now - scale * FACTORS[-1]), min(number.most, number.now + scale * FACTORS[-1])
+    if not edges:
+        return Change(number.name, number.what, number.unit, number.now, None, None, False, low, high)
+    edge = min(edges, key=lambda e: (abs(e.value - number.now), e.value))
+    return Change(number.name, number.what, number.unit, number.now, edge.value, edge.becomes, edge.beyond, low, high)
+
+
+def _edge(number: _Number, verdict: str, scale: float, least: float) -> _Edge | None:
+    """Look outwards on one side until the verdict changes, then halve the last stretch."""
+    near = number.now
+    values = list(dict.fromkeys(min(number.most, max(least, number.now + scale * f)) for f in FACTORS))
+    for at, value in enumerate(values):
+        becomes = number.judge(value) if value != number.now else verdict
+        if becomes == "error":
+            return None
+        if becomes == verdict:
+            near = value
+            continue
+        far = value
+        for _ in range(_HALVINGS):
+            middle = (near + far) / 2
+            if number.judge(middle) == becomes:
+                far = middle
+            else:
+                near = middle
+        further = values[at + 1 : at + 3] or [value]
+        return _Edge(_round(number, far, becomes), becomes, all(number.judge(v) == becomes for v in further))
+    return None
+
+
+def _round(number: _Number, far: float, becomes: str) -> float:
+    """Return a short number at or just beyond `far`, at which the verdict is the same."""
+    away = math.ceil if far > number.now else math.floor
+    size = math.floor(math.log10(max(abs(far), 1e-12)))
+    for digits in range(1, 7):
+        unit = 10.0 ** (size - digits + 1)
+        value = float(f"{away(far / unit) * unit:.{digits}g}")
+        if abs(value - far) <= max(0.05 * abs(far - number.now), 1e-9) and number.judge(value) == becomes:
+            return value
+    return far

@@ -1,0 +1,122 @@
+"""What a verdict was judged by and on: the rule's SQL with its values written in, and the rows it read where it was decided."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint import store
+from drivelint.explain.model import Rows, Step
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from drivelint.catalogue import Rule
+    from drivelint.explain.lab import Judged, Lab
+    from drivelint.explain.target import Target
+
+MAX_ROWS: Final = 6
+"""Rows shown of one table."""
+AROUND_NS: Final = 30_000_000_000
+"""How much of a longer episode is shown on each side of what is explained."""
+_NAMED = re.compile(r"\$(\w+)")
+_SPANS: Final = (
+    ("t_start_ns", "t_end_ns"),
+    ("t_from_ns", "t_to_ns"),
+    ("t0_ns", "t_end_ns"),
+    ("t_first_ns", "t_last_ns"),
+)
+_OBJECTS: Final = ("object_id", "vbp_id", "ov_id", "lead_id")
+
+
+def bound(rule: Rule, params: Mapping[str, object]) -> dict[str, str]:
+    """Return the rule's sections with the parameters' values in the place of their names, for reading only."""
+    return {
+        section: _NAMED.sub(lambda m: _literal(params[m[1]]) if m[1] in params else m[0], sql)
+        for section, sql in rule.sections.items()
+    }
+
+
+def _literal(value: object) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f"'{value.replace(chr(39), chr(39) * 2)}'" if isinstance(value, str) else repr(value)
+
+
+def series(rule: Rule, target: Target, judged: Judged) -> list[Step]:
+    """Return the judged steps of the episode or window that is explained, at most half a minute around it."""
+    row, span = target.row, target.span
+    if span is None:
+        return []
+    start, end = target.verdict["t_start_ns"], target.verdict["t_end_ns"]
+    start, end = max(start, span[0] - AROUND_NS), min(end, span[1] + AROUND_NS)
+    same = {"ego_id": row["ego_id"], "profile": row["profile"]}
+    if rule.kind != "invariant":
+        same["ref_id"] = row["ref_id"]
+    if rule.combine == "each":
+        same["object_id"] = row["object_id"]
+    return [
+        Step(step["t_ns"], step["observed"], step["required"], step["margin"], step["holds"])
+        for step in judged.steps
+        if start <= step["t_ns"] <= end and all(step[key] == value for key, value in same.items())
+    ]
+
+
+def rows(rule: Rule, target: Target, lab: Lab, t_ns: int | None, gate: str | None) -> list[Rows]:
+    """Return what each table that the rule reads holds at one time (None: in the whole drive) for ego and object.
+
+    `gate`: the signal for want of which the rule was not run; then only what is known about that.
+    """
+    if gate is not None:
+        sql = "SELECT signal, available, reason FROM capability WHERE ego_id = ? AND signal = ?"
+        return [Rows("capability", lab.rows(sql, [target.row["ego_id"], gate]), 0)]
+    found = []
+    for table in rule.reads:
+        columns = list(store.schema().get(table, {}))
+        if "drive_id" in columns or table == "profile":
+            found.append(_of_table(target, lab, table, columns, t_ns))
+    return found
+
+
+def _of_table(target: Target, lab: Lab, table: str, columns: list[str], t_ns: int | None) -> Rows:
+    row = target.row
+    terms: list[str] = []
+    values: list[Any] = []
+    if "ego_id" in columns:
+        terms.append("ego_id = ?")
+        values.append(row["ego_id"])
+    if "profile" in columns and row["profile"] is not None:
+        terms.append("profile IS NOT DISTINCT FROM ?")
+        values.append(row["profile"])
+    if t_ns is not None:
+        _at_time(columns, t_ns, terms, values)
+    if row["object_id"] is not None:
+        who = [column for column in _OBJECTS if column in columns]
+        if who:
+            terms.append(f"({' OR '.join(f'{column} = ?' for column in who)})")
+            values += [row["object_id"]] * len(who)
+    where = f" WHERE {' AND '.join(terms)}" if terms else ""
+    # a table of the catalogue's own list, never a word of a user
+    everything = lab.rows(f"SELECT * FROM {table}{where} ORDER BY ALL LIMIT {MAX_ROWS}", values)
+    n = lab.rows(f"SELECT count(*) AS n FROM {table}{where}", values)[0]["n"]
+    return Rows(table, [_plain(each) for each in everything], max(0, n - len(everything)))
+
+
+def _at_time(columns: list[str], t_ns: int, terms: list[str], values: list[Any]) -> None:
+    if "t_ns" in columns:
+        terms.append("t_ns = ?")
+        values.append(t_ns)
+        return
+    for start, end in _SPANS:
+        if start in columns and end in columns:
+            terms.append(f"{start} <= ? AND coalesce({end}, {start}) >= ?")
+            values += [t_ns, t_ns]
+            return
+    if "t0_ns" in columns:
+        terms.append("t0_ns <= ?")
+        values.append(t_ns)
+
+
+def _plain(row: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a row without the keys that are the same everywhere."""
+    return {column: value for column, value in row.items() if column not in {"drive_id", "ego_id"}}

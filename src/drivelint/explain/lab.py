@@ -1,0 +1,110 @@
+"""A database with copies of one drive, where one rule is judged again and again: other numbers, the same facts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Self
+
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint import store
+from drivelint.derive import derive, needed
+from drivelint.evaluate import evaluate
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from types import TracebackType
+
+    from drivelint.batch import Drive
+    from drivelint.catalogue import Rule
+    from drivelint.explain.model import Row
+
+_JUDGED: Final = ("verdict", "finding", "margin")
+MEMORY: Final = "1200MB"
+
+
+class Judged(NamedTuple):
+    """What one judgement left: rows of `verdict`, and every step that was looked at."""
+
+    verdicts: list[Row]
+    steps: list[Row]
+
+
+class Lab:
+    """One rule over some copies of a drive, derived once. Use it as a context manager.
+
+    `drives` share one map. The shipped or user's `profiles` are the rows of the table `profile`.
+    """
+
+    def __init__(self, rule: Rule, drives: Sequence[Drive], profiles: pa.Table) -> None:
+        self._rule = rule
+        self.drive_id = drives[0].trace.drive_id
+        self.con = store.connect(memory_limit=MEMORY)
+        store.insert(self.con, "profile", profiles)
+        environment = drives[0].environment
+        if environment is not None:
+            for table, rows in environment.tables.items():
+                store.insert(self.con, table, rows)
+        store.lock(self.con)
+        derive(self.con, rule.reads, of_the_map=True)
+        place = pa.array([environment.environment_id if environment else None], pa.string())
+        for table in drives[0].trace.tables:
+            rows = pa.concat_tables([drive.trace.tables[table] for drive in drives])
+            if table == "data_log":
+                at = rows.schema.get_field_index("environment_id")
+                rows = rows.set_column(at, "environment_id", pa.concat_arrays([place] * rows.num_rows))
+            store.insert(self.con, table, rows)
+        derive(self.con, rule.reads, of_the_map=False)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.con.close()
+
+    def judge(self, params: Mapping[str, object]) -> Judged:
+        """Judge every copy by the rule with these parameters."""
+        for table in _JUDGED:
+            self.con.execute(f"DELETE FROM {table}")
+        evaluate(self.con, [self._rule], {self._rule.id: params}, margins=True)
+        return Judged(
+            self.rows("SELECT * FROM verdict ORDER BY drive_id, t_start_ns, occurrence, profile, object_id"),
+            self.rows("SELECT * FROM margin ORDER BY drive_id, t_ns, profile, object_id, ref_id"),
+        )
+
+    def set_profile(self, profile: str, column: str, value: float) -> None:
+        """Give one number of a profile another value, and derive anew what follows from it."""
+        self.con.execute(f"UPDATE profile SET {column} = ? WHERE profile = ?", [value, profile])
+        stale = {"profile"}
+        for derivation in needed(self._rule.reads):
+            if derivation.reads & stale and not derivation.of_the_map:
+                stale.add(derivation.table)
+                self.con.execute(f"DELETE FROM {derivation.table}")
+                self.con.execute(f"INSERT INTO {derivation.table} BY NAME {derivation.sql}")
+
+    def rows(self, sql: str, values: Sequence[Any] = ()) -> list[Row]:
+        """Return the rows of a query as dictionaries."""
+        return [dict(row) for row in self.con.execute(sql, list(values)).to_arrow_table().to_pylist()]
+
+
+def cropped(drive: Drive, from_ns: int, to_ns: int) -> Drive:
+    """Return the part of a drive between two times."""
+    tables = dict(drive.trace.tables)
+    for name in ("actor_state", "signal_state", "declared_event"):
+        t_ns = tables[name]["t_ns"]
+        tables[name] = tables[name].filter(pc.and_(pc.greater_equal(t_ns, from_ns), pc.less_equal(t_ns, to_ns)))
+    seen = pc.unique(tables["actor_state"]["actor_id"])
+    tables["actor"] = tables["actor"].filter(pc.is_in(tables["actor"]["actor_id"], value_set=seen))
+    span = pc.min_max(tables["actor_state"]["t_ns"]).as_py()
+    log = tables["data_log"]
+    for column, value in (
+        ("t_start_ns", span["min"]),
+        ("t_end_ns", span["max"]),
+        ("n_states", tables["actor_state"].num_rows),
+    ):
+        log = log.set_column(log.schema.get_field_index(column), column, pa.array([value], pa.int64()))
+    tables["data_log"] = log
+    return replace(drive, trace=replace(drive.trace, tables=tables))

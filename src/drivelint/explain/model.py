@@ -1,0 +1,81 @@
+"""What an explanation holds: plain data, for a person and for a program."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+Row = dict[str, Any]
+
+
+class Step(NamedTuple):
+    """One judged step: when, what was observed and required, the margin (positive: kept), whether kept (None: unknown)."""
+
+    t_ns: int
+    observed: float | None
+    required: float | None
+    margin: float | None
+    holds: bool | None
+
+
+class Rows(NamedTuple):
+    """Rows of one library table that the rule read at the deciding step; `more` were left out."""
+
+    table: str
+    rows: list[Row]
+    more: int
+
+
+class Change(NamedTuple):
+    """The nearest change of one number that changes the verdict; `found` None: none was found between `low` and `high`."""
+
+    name: str
+    what: str
+    unit: str
+    now: float
+    found: float | None
+    becomes: str | None
+    beyond: bool
+    """The verdict stays so further away, too."""
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """How often each verdict came out, of so many copies of the drive, each with errors of these sizes (standard deviations)."""
+
+    samples: int
+    seed: int
+    position_m: float
+    time_s: float
+    map_m: float
+    counts: dict[str, int]
+    from_ns: int | None
+    to_ns: int | None
+    """What of the drive was judged; None: all of it."""
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """Why one verdict is what it is. Verdicts are those of `verdict`; the numbers are of the deciding step."""
+
+    rule: Row
+    """rule_id, title, clause, hypothesis, kind, severity, legal, status, sense, unit, observes, near_margin."""
+    drive: Row
+    """drive_id, file_name, t_start_ns."""
+    verdict: Row
+    """The row of `verdict`, and `finding_id` with the numbers of the finding where one is explained."""
+    others: list[Row]
+    """Further verdict rows of this rule in this drive: profile, object_id, t_start_ns, verdict."""
+    decides_ns: int | None
+    sql: dict[str, str]
+    params: list[Row]
+    rows: list[Rows]
+    series: list[Step]
+    changes: list[Change]
+    sensitivity: Sensitivity | None
+    source: str
+    """Where the numbers behind it are from: the kept database, or the log."""
+    notes: list[str] = field(default_factory=list)
+    """What could not be shown, and why."""

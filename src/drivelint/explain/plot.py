@@ -1,0 +1,99 @@
+"""A margin over time in characters: columns of eighths above and below the line at which the rule is just kept."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from drivelint.explain.model import Step
+
+_EIGHTHS: Final = " ▁▂▃▄▅▆▇█"
+_UNKNOWN: Final = "?"
+
+
+class _Column(NamedTuple):
+    """The steps that share one column: the least margin, whether one failed, was unknown, and whether any is there."""
+
+    margin: float | None
+    failed: bool
+    unknown: bool
+    there: bool
+
+
+def plot(steps: Sequence[Step], width: int, height: int, start_ns: int, unit: str) -> list[str]:
+    """Return the lines of a plot: margins as bars from the zero line, `?` where it is not known. Steps are in time order.
+
+    A rule that measures nothing has one line: `█` broken, `·` kept, `?` unknown.
+    """
+    if len(steps) < 2:
+        return []
+    columns = [column for column in _columns(steps, width) for _ in range(max(1, width // len(steps)))]
+    measured = any(column.margin is not None for column in columns)
+    label = max(9, len(unit) + 8)
+    body = _bars(columns, height, label, unit) if measured else [" " * label + " " + _strip(columns)]
+    first, last = (_seconds(step.t_ns, start_ns) for step in (steps[0], steps[-1]))
+    axis = " " * label + " " + first + last.rjust(max(len(last) + 1, len(columns) - len(first)))
+    return [*body, axis]
+
+
+def _columns(steps: Sequence[Step], width: int) -> list[_Column]:
+    t0, t1 = steps[0].t_ns, steps[-1].t_ns
+    n = min(width, max(len(steps), 2))
+    cells: list[list[Step]] = [[] for _ in range(n)]
+    for step in steps:
+        cells[min(n - 1, (step.t_ns - t0) * n // max(1, t1 - t0))].append(step)
+    return [
+        _Column(
+            min((s.margin for s in cell if s.margin is not None), default=None),
+            any(s.holds is False for s in cell),
+            any(s.holds is None for s in cell),
+            bool(cell),
+        )
+        for cell in cells
+    ]
+
+
+def _strip(columns: Sequence[_Column]) -> str:
+    return "".join("█" if c.failed else _UNKNOWN if c.unknown else "·" if c.there else " " for c in columns)
+
+
+def _bars(columns: Sequence[_Column], height: int, label: int, unit: str) -> list[str]:
+    known = [c.margin for c in columns if c.margin is not None]
+    top, bottom = max(0.0, *known), min(0.0, *known)
+    size = (top - bottom) / height or 1.0
+    above, below = math.ceil(top / size - 1e-9), math.ceil(-bottom / size - 1e-9)
+    lines = []
+    for row in range(above, 0, -1):
+        cells = "".join(_up(c.margin, (row - 1) * size, size) for c in columns)
+        lines.append(f"{_number(top, unit) if row == above else '':>{label}}┤{cells}")
+    line = "".join(_UNKNOWN if c.unknown and not c.failed else "─" if c.there else " " for c in columns)
+    lines.append(f"{'limit':>{label}}┼{line}")
+    for row in range(1, below + 1):
+        cells = "".join(_down(c.margin, (row - 1) * size, size) for c in columns)
+        lines.append(f"{_number(bottom, unit) if row == below else '':>{label}}┤{cells}")
+    return lines
+
+
+def _up(margin: float | None, base: float, size: float) -> str:
+    if margin is None or margin <= base:
+        return " "
+    return _EIGHTHS[min(8, max(1, round((margin - base) / size * 8)))]
+
+
+def _down(margin: float | None, base: float, size: float) -> str:
+    """Return a cell hanging from the line: there are no eighths from above, so half or whole."""
+    if margin is None or -margin <= base:
+        return " "
+    part = (-margin - base) / size
+    return "█" if part >= 0.75 else "▀" if part >= 0.25 else "▔"
+
+
+def _number(value: float, unit: str) -> str:
+    return f"{value:+.3g} {unit}"
+
+
+def _seconds(t_ns: int, start_ns: int) -> str:
+    return f"{(t_ns - start_ns) / 1e9:.2f} s"

@@ -1,0 +1,86 @@
+"""How sure a verdict is: the drive again and again with errors as positions, clocks and maps have them, each judged anew.
+
+Every copy has, drawn once for the whole drive (such errors drift slowly, they do not jump from step to step):
+for each actor an offset of its position (x and y alike) and one of its clock, which moves it along its velocity;
+and one offset of the map, which is one of all actors together. Normal distributions about nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.batch import STATES, Drive
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+VERDICTS: Final = ("fail", "unknown", "pass", "not_applicable", "error")
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Standard deviations of the errors, and how many copies are judged with them."""
+
+    position_m: float = 0.1
+    time_s: float = 0.05
+    map_m: float = 0.1
+    samples: int = 100
+    seed: int = 0
+
+
+def copies(drive: Drive, errors: Errors) -> Iterator[list[Drive]]:
+    """Yield the copies of a drive, as many at once as a batch may have states; the same ones for the same seed."""
+    states = drive.trace.tables["actor_state"]
+    ids = sorted(pc.unique(states["actor_id"]).to_pylist())
+    actor = pc.index_in(states["actor_id"], value_set=pa.array(ids, pa.string())).to_numpy(zero_copy_only=False)
+    rng = np.random.Generator(np.random.PCG64(errors.seed))
+    drawn = rng.standard_normal((errors.samples, len(ids), 3))
+    of_map = rng.standard_normal((errors.samples, 2))
+    numbers = {name: _floats(states, name) for name in ("x_m", "y_m", "vx_mps", "vy_mps")}
+    at_once = max(1, STATES // max(1, states.num_rows))
+    for start in range(0, errors.samples, at_once):
+        yield [
+            _copy(drive, sample, _moved(states, numbers, drawn[sample][actor], of_map[sample], errors))
+            for sample in range(start, min(start + at_once, errors.samples))
+        ]
+
+
+def _moved(
+    states: pa.Table,
+    numbers: dict[str, NDArray[np.float64]],
+    drawn: NDArray[np.float64],
+    of_map: NDArray[np.float64],
+    errors: Errors,
+) -> pa.Table:
+    """Return the states with their errors: `drawn` has x, y and clock for each state, `of_map` x and y for all."""
+    clock = drawn[:, 2] * errors.time_s
+    for axis, (place, speed) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
+        along = np.nan_to_num(numbers[speed]) * clock
+        values = numbers[place] + drawn[:, axis] * errors.position_m + of_map[axis] * errors.map_m + along
+        states = states.set_column(states.schema.get_field_index(place), place, pa.array(values, from_pandas=True))
+    return states
+
+
+def _copy(drive: Drive, sample: int, states: pa.Table) -> Drive:
+    name = f"{drive.trace.drive_id}~{sample:05}"
+    tables = {}
+    for table, rows in {**drive.trace.tables, "actor_state": states}.items():
+        at = rows.schema.get_field_index("drive_id")
+        tables[table] = rows.set_column(at, "drive_id", pa.repeat(pa.scalar(name, pa.string()), rows.num_rows))
+    return Drive(replace(drive.trace, drive_id=name, tables=tables), drive.environment)
+
+
+def counted(found: Sequence[str]) -> dict[str, int]:
+    """Return how often each verdict came out, those that never did left out."""
+    return {verdict: found.count(verdict) for verdict in VERDICTS if verdict in found}
+
+
+def _floats(table: pa.Table, column: str) -> NDArray[np.float64]:
+    return np.asarray(table[column].to_numpy(zero_copy_only=False), dtype=np.float64)

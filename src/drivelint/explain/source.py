@@ -1,0 +1,114 @@
+"""The drive behind a verdict, as it was before anything was derived: from the kept database, else from its log."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import duckdb
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint import conditions, store
+from drivelint.batch import Drive
+from drivelint.errors import DriveLintError, UsageError
+from drivelint.ingest import IngestOptions, Trace, read_trace
+from drivelint.ingest.finish import SCHEMAS
+from drivelint.ingest.trace import EgoSize
+from drivelint.maps import Environment
+from drivelint.maps.library import MapLibrary
+from drivelint.maps.tables import schemas
+
+if TYPE_CHECKING:
+    from drivelint.report.asked import Asked
+
+DATABASE = "drivelint.duckdb"
+_OTHER = {"map_quality"}
+"""Tables of the map that nothing is derived from."""
+
+
+class Source(NamedTuple):
+    """A drive with one ego, and where it is from."""
+
+    drive: Drive
+    where: str
+
+
+def open_drive(
+    folder: Path, asked: Asked, drive_id: str, ego_id: str, *, trace: Path | None, map_: Path | None
+) -> Source:
+    """Return the drive that was judged. `trace`, `map_`: where log and map are now, if not where they were.
+
+    Errors: `UsageError` where neither the database was kept nor the log is where it was, or where the log is another one.
+    """
+    kept = folder / DATABASE
+    if trace is None and kept.is_file():
+        try:
+            return Source(_kept(kept, drive_id, ego_id), f"the kept database {kept.name}")
+        except duckdb.Error as error:
+            raise UsageError(f"{kept}: {str(error).splitlines()[0]}: check the drives again with --keep-db") from error
+    path = trace or Path(asked.traces.get(drive_id, ""))
+    if not path.exists() or not (trace or drive_id in asked.traces):
+        raise UsageError(
+            f"the log of {drive_id} is not at {path} any more and the result has no database (check --keep-db): "
+            "say where it is with --trace FILE"
+        )
+    return Source(_read(asked, path, map_, drive_id, ego_id), f"the log {path.name}, read again")
+
+
+def _read(asked: Asked, path: Path, map_: Path | None, drive_id: str, ego_id: str) -> Drive:
+    given = map_ or (None if asked.map is None else Path(asked.map))
+    if given is not None and not given.exists():
+        raise UsageError(f"the map {given} is not there any more: say where it is with --map FILE")
+    options = IngestOptions(
+        asked.mapping,
+        ego_id,
+        asked.topic,
+        asked.sensor_range_m,
+        conditions=conditions.parse(asked.env),
+        ego_size=None if asked.ego_size is None else EgoSize(*asked.ego_size),
+    )
+    read = read_trace(path, options)
+    if read.drive_id.rpartition("-")[2] != drive_id.rpartition("-")[2]:
+        raise UsageError(
+            f"{path} is not the log that was judged ({drive_id}) but {read.drive_id}: give that one with --trace"
+        )
+    if read.drive_id != drive_id:  # the same bytes under another name
+        read = _renamed(read, drive_id)
+    folder = None if given is not None or asked.map_dir is None else Path(asked.map_dir)
+    library = MapLibrary(given, asked.map_offset, asked.handedness, origin=asked.map_origin, folder=folder)
+    return Drive(read, library.find(path, read.embedded_map, read.map_offset, read.tables["actor_state"]))
+
+
+def _renamed(trace: Trace, drive_id: str) -> Trace:
+    tables = {
+        name: rows.set_column(
+            rows.schema.get_field_index("drive_id"), "drive_id", pa.repeat(pa.scalar(drive_id), rows.num_rows)
+        )
+        for name, rows in trace.tables.items()
+    }
+    return replace(trace, drive_id=drive_id, tables=tables)
+
+
+def _kept(file: Path, drive_id: str, ego_id: str) -> Drive:
+    with duckdb.connect(str(file), read_only=True) as con:
+        store.load_spatial(con)
+        tables = {name: _rows(con, name, "drive_id", drive_id) for name in SCHEMAS}
+        if not tables["data_log"].num_rows:
+            raise DriveLintError(f"{file}: the drive {drive_id} is not in it: check the drives again")
+        actors = tables["actor"]
+        is_ego = pc.equal(actors["actor_id"], ego_id)
+        tables["actor"] = actors.set_column(actors.schema.get_field_index("is_ego"), "is_ego", is_ego)
+        place = tables["data_log"]["environment_id"][0].as_py()
+        environment = None
+        if place is not None:
+            road = {name: _rows(con, name, "environment_id", place) for name in schemas() if name not in _OTHER}
+            hand = road["environment"].to_pylist()[0]
+            environment = Environment(place, hand["handedness"], hand["handedness_source"], road)
+    return Drive(Trace(drive_id, file, tables, None, None, []), environment)
+
+
+def _rows(con: duckdb.DuckDBPyConnection, table: str, key: str, value: str) -> pa.Table:
+    order: Any = ", ".join(str(n) for n in range(1, len(store.schema()[table]) + 1))
+    return con.execute(f"SELECT * FROM {table} WHERE {key} = ? ORDER BY {order}", [value]).to_arrow_table()

@@ -1,0 +1,168 @@
+"""Which verdict is meant: a finding by its id or the beginning of it, or a rule, in a drive if there are several."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any
+
+from drivelint.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from drivelint.explain.model import Row
+    from drivelint.report.result import Result
+
+_WEIGHT = {"error": 0, "fail": 1, "unknown": 2, "pass": 3, "not_applicable": 4}
+
+
+@dataclass(frozen=True)
+class Target:
+    """A row of `verdict`, the finding on it that is meant (or None), and the other rows of its rule in its drive."""
+
+    verdict: Row
+    finding: Row | None
+    others: list[Row]
+
+    @property
+    def row(self) -> Row:
+        """The verdict with the finding's interval, numbers and reason, where one is meant."""
+        return self.verdict if self.finding is None else self.verdict | self.finding
+
+    @property
+    def span(self) -> tuple[int, int] | None:
+        """From when to when it was judged; None: it is about the whole drive."""
+        start, end = self.row["t_start_ns"], self.row["t_end_ns"]
+        return None if start is None or end is None else (start, end)
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What of several verdicts of one rule is wanted; None: whichever is worst."""
+
+    profile: str | None = None
+    object_id: str | None = None
+    at_s: float | None = None
+
+
+def find(result: Result, name: str, wanted: Wanted) -> Target:
+    """Return the verdict that `name` means: FINDING_ID or its beginning, or RULE or RULE@DRIVE, each of them or its beginning.
+
+    Errors: `UsageError` for what is not there (with the nearest that is), or for what several begin with.
+    """
+    findings = result.findings.to_pylist()
+    verdicts = result.verdicts.to_pylist()
+    ids = sorted({row["finding_id"] for row in findings})
+    if meant := [i for i in ids if i.startswith(name)]:
+        exact = name if name in meant else _only(name, meant, "findings")
+        found = [row for row in findings if row["finding_id"] == exact]
+        finding = found[0]
+        row = min(_under(finding, verdicts), key=_order)
+        return Target(row, finding, _others(row, verdicts))
+    rule, _, drive = name.partition("@")
+    rule = _rule(rule, sorted({row["rule_id"] for row in verdicts}), ids)
+    rows = [row for row in verdicts if row["rule_id"] == rule]
+    if drive:
+        drive = _meant(drive, sorted({row["drive_id"] for row in rows}), f"{rule}: drive")
+        rows = [row for row in rows if row["drive_id"] == drive]
+    starts = dict(zip(result.drives["drive_id"].to_pylist(), result.drives["t_start_ns"].to_pylist(), strict=True))
+    row = min(_asked(rows, wanted, starts), key=_order)
+    return Target(row, None, _others(row, verdicts))
+
+
+def _under(finding: Row, verdicts: Iterable[Row]) -> list[Row]:
+    """Return the verdicts that a finding is part of."""
+    same = ("drive_id", "ego_id", "rule_id", "profile", "ref_id")
+    rows = [row for row in verdicts if all(row[key] == finding[key] for key in same) and row["verdict"] == "fail"]
+    exact = [
+        row
+        for row in rows
+        if row["ref_id"] is not None
+        or (row["object_id"] == finding["object_id"] and row["t_start_ns"] <= finding["t_start_ns"] <= row["t_end_ns"])
+    ]
+    if not (exact or rows):
+        raise UsageError(f"finding {finding['finding_id']}: no verdict belongs to it: check the drives again")
+    return exact or rows
+
+
+def _asked(rows: list[Row], wanted: Wanted, starts: dict[str, int | None]) -> list[Row]:
+    for key in ("profile", "object_id"):
+        value = getattr(wanted, key)
+        if value is not None:
+            known = sorted({row[key] for row in rows if row[key] is not None})
+            rows = [row for row in rows if row[key] == value]
+            if not rows:
+                raise UsageError(
+                    f"no verdict for {key.replace('_id', '')} {value!r}; there are {', '.join(known) or 'none'}"
+                )
+    if wanted.at_s is None:
+        return rows
+    around = [row for row in rows if _covers(row, wanted.at_s, starts)]
+    if not around:
+        raise UsageError(f"no verdict of {rows[0]['rule_id']} is about the time {wanted.at_s:g} s")
+    return around
+
+
+def _covers(row: Row, at_s: float, starts: dict[str, int | None]) -> bool:
+    if row["t_start_ns"] is None or row["t_end_ns"] is None:
+        return False
+    t_ns = round(at_s * 1e9) + (starts.get(row["drive_id"]) or 0)
+    return bool(row["t_start_ns"] - 1_000_000 <= t_ns <= row["t_end_ns"] + 1_000_000)
+
+
+def _order(row: Row) -> tuple[Any, ...]:
+    """Put the worst first: failed before unknown before kept, by margin, then by name and time."""
+    margin = row["margin"]
+    return (
+        _WEIGHT[row["verdict"]],
+        float("-inf") if margin is None else margin,
+        row["drive_id"],
+        row["ego_id"],
+        row["t_start_ns"] or 0,
+        row["profile"] or "",
+        row["object_id"] or "",
+        row["occurrence"],
+    )
+
+
+def _others(row: Row, verdicts: Iterable[Row]) -> list[Row]:
+    keys = ("ego_id", "profile", "object_id", "t_start_ns", "verdict")
+    mine = [v for v in verdicts if v["drive_id"] == row["drive_id"] and v["rule_id"] == row["rule_id"] and v is not row]
+    return [{key: v[key] for key in keys} for v in mine]
+
+
+def _rule(name: str, rules: Sequence[str], findings: Sequence[str]) -> str:
+    if name in rules:
+        return name
+    meant = [r for r in rules if r.startswith(name)] or [r for r in rules if name in r]
+    if len(meant) == 1:
+        return meant[0]
+    if meant:
+        return _only(name, meant, "rules")
+    near = get_close_matches(name, [*rules, *(r.partition(".")[2] for r in rules)], n=1, cutoff=0.4)
+    hint = (
+        f"did you mean {near[0]!r}?"
+        if near
+        else f"it has {len(findings)} findings, by rules such as {rules[0]}"
+        if rules
+        else ""
+    )
+    raise UsageError(f"no finding begins with {name!r} and no rule of this result is called so; {hint}")
+
+
+def _meant(name: str, known: Sequence[str], what: str) -> str:
+    if name in known:
+        return name
+    meant = [k for k in known if k.startswith(name)]
+    if not meant:
+        near = get_close_matches(name, known, n=1, cutoff=0.3)
+        raise UsageError(f"{what} {name!r} is not in this result; did you mean {(near or known)[0]!r}?")
+    return _only(name, meant, "drives")
+
+
+def _only(name: str, meant: Sequence[str], what: str) -> str:
+    if len(meant) > 1:
+        shown = ", ".join(meant[:5]) + (", ..." if len(meant) > 5 else "")
+        raise UsageError(f"{name!r} is the beginning of several {what}: {shown}: write more of it")
+    return meant[0]
