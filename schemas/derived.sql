@@ -387,7 +387,7 @@ CREATE TABLE overtake (
     t3_ns BIGINT,                     -- first step wholly back in the running lane
     t_end_ns BIGINT NOT NULL,         -- t3, or the last step of the excursion
     passed BOOLEAN NOT NULL,          -- the ego's front got past the VBP's front
-    status VARCHAR NOT NULL,          -- completed, aborted (back without passing), lane_change (stayed in a lane of its own direction), truncated (the log, a hole or the corridor ends first)
+    status VARCHAR NOT NULL,          -- completed, aborted (back without passing, its centre over the line or not all of it seen), lane_change (stayed in a lane of its own direction), truncated (the log, a hole or the corridor ends first)
     v_av_mps DOUBLE,                  -- ego's speed at t0
     v_vbp_mps DOUBLE,                 -- VBP's speed at t0
     l_av_m DOUBLE,                    -- ego's length

@@ -1,10 +1,12 @@
 -- Overtakes (paper, Appendix A): the ego leaves its lane towards the overtaking lane with a vehicle ahead of it. The nearest one counts
--- if it is passed, or is within 100 m and the ego went well over the line (or the log ends before that shows); every further vehicle
--- passed in the same go counts too.
+-- if it is passed, or is within 100 m and the ego's centre was over the line: less is a wobble, if all of it was seen. Every further
+-- vehicle passed in the same go counts too.
 WITH gone AS (
-    SELECT x.*, e.front_s_m, e.rear_s_m, e.s_m, e.speed_mps, e.length_m, e.limit_mps
+    SELECT x.*, b.k - st.k + 1 AS n_steps, e.front_s_m, e.rear_s_m, e.s_m, e.speed_mps, e.length_m, e.limit_mps
     FROM excursion x
     JOIN ego_state e ON e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns = x.t0_ns
+    JOIN step st ON st.drive_id = x.drive_id AND st.ego_id = x.ego_id AND st.t_ns = x.t0_ns
+    LEFT JOIN step b ON b.drive_id = x.drive_id AND b.ego_id = x.ego_id AND b.t_ns = x.t_back_ns
     -- at t0 the running chain is still the one that is left; seen from a lane not yet driven, the ego is always outside
     WHERE x.overtaking AND e.chain_id = x.chain_id
 ),
@@ -42,7 +44,8 @@ candidate AS (
     FROM (SELECT * FROM ahead UNION ALL SELECT * FROM hidden)
 ),
 passing AS (
-    SELECT c.drive_id, c.ego_id, c.chain_id, c.t0_ns, c.object_id, bool_or(p.ego_front_m > p.front_s_m) AS passed
+    SELECT c.drive_id, c.ego_id, c.chain_id, c.t0_ns, c.object_id, bool_or(p.ego_front_m > p.front_s_m) AS passed,
+        count(p.front_s_m) AS n_seen
     FROM candidate c
     JOIN seen p USING (drive_id, ego_id, chain_id, t0_ns, object_id)
     GROUP BY ALL
@@ -54,7 +57,8 @@ kept AS (
     JOIN gone g USING (drive_id, ego_id, chain_id, t0_ns)
     LEFT JOIN passing a USING (drive_id, ego_id, chain_id, t0_ns, object_id)
     WHERE coalesce(a.passed, false)
-        OR (c.rank = 1 AND coalesce(c.gap_m, 0.0) <= 100 AND (g.max_out_m >= 0.5 OR g.t_back_ns IS NULL OR NOT c.placed))
+        OR (c.rank = 1 AND coalesce(c.gap_m, 0.0) <= 100
+            AND (g.centre_over OR NOT g.begin_seen OR g.t_back_ns IS NULL OR coalesce(a.n_seen, 0) < g.n_steps))
 ),
 later AS (
     SELECT k.drive_id, k.ego_id, k.chain_id, k.t0_ns, k.object_id, w.moment, p.ego_rear_m - p.front_s_m AS gap_m, p.speed_mps

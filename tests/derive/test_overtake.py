@@ -209,6 +209,24 @@ def test_nobody_ahead_is_no_overtake_but_a_departure() -> None:
     ]
 
 
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_a_look_past_the_vehicle_ahead_is_no_overtake_if_all_of_it_was_seen(hand: str) -> None:
+    """Its corner is 0.7 m over the line for seven seconds, its centre never; nobody is passed."""
+    way = road(hand=hand)
+    t = times(14.0)
+    vbp = moving("vbp", way, t, 130 + 8 * t, way.own)
+    ego = moving("ego", way, t, 60 + 8 * t, swing(way, 60 + 8 * t, 76, 130, share=0.45))
+    (out,) = one([ego, vbp], way, "excursion")
+    assert 0.6 < out["max_out_m"] < 0.9
+    assert not one([ego, vbp], way, "overtake")
+    # what was not seen may have been one
+    for actors in ([ego, vbp.lost((t > 4) & (t < 5))], [ego, vbp.keep(t < 5)]):
+        assert [row["status"] for row in one(actors, way, "overtake")] == ["aborted"]
+    early, late = [ego.keep(t >= 4), vbp.keep(t >= 4)], [ego.keep(t <= 7), vbp.keep(t <= 7)]
+    assert [(row["status"], row["begin_seen"]) for row in one(early, way, "overtake")] == [("aborted", False)]
+    assert [row["status"] for row in one(late, way, "overtake")] == ["truncated"]
+
+
 def test_a_wobble_over_the_line_is_an_excursion_and_nothing_else() -> None:
     way, (ego, vbp, ov) = scene()
     d = swing(way, ego.x, 70, 100, share=0.28)  # 0.1 m over
