@@ -108,7 +108,7 @@ def _edge(number: _Number, verdict: str, scale: float, least: float) -> _Edge | 
         becomes = number.judge(value) if value != number.now else verdict
         if becomes == "error":
             return None
-        if becomes == verdict:
+        if becomes == verdict or (becomes == "unknown" and verdict in {"pass", "fail"}):  # a value of no meaning
             near = value
             continue
         far = value

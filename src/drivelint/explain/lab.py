@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, Self
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 _JUDGED: Final = ("verdict", "finding", "margin")
 MEMORY: Final = "1200MB"
+_READS_PROFILE: Final = re.compile(r"\b(?:FROM|JOIN)\s+profile\b", re.IGNORECASE)
 
 
 class Judged(NamedTuple):
@@ -78,9 +80,10 @@ class Lab:
     def set_profile(self, profile: str, column: str, value: float) -> None:
         """Give one number of a profile another value, and derive anew what follows from it."""
         self.con.execute(f"UPDATE profile SET {column} = ? WHERE profile = ?", [value, profile])
-        stale = {"profile"}
+        stale: set[str] = set()
         for derivation in needed(self._rule.reads):
-            if derivation.reads & stale and not derivation.of_the_map:
+            # the profiles are given, not derived: `reads` does not name them
+            if derivation.reads & stale or _READS_PROFILE.search(derivation.sql):
                 stale.add(derivation.table)
                 self.con.execute(f"DELETE FROM {derivation.table}")
                 self.con.execute(f"INSERT INTO {derivation.table} BY NAME {derivation.sql}")

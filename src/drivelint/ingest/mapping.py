@@ -174,8 +174,9 @@ def load(name: str) -> tuple[str, Mapping]:
     path = Path(name)
     if not path.is_file():
         if name not in shipped():
-            near = get_close_matches(name, shipped(), 1)
-            hint = f"did you mean {near[0]!r}?" if near else f"shipped: {', '.join(shipped())}"
+            known = sorted([*shipped(), *(file.stem for file in (SHIPPED / "video").glob("*.toml"))])
+            near = get_close_matches(name, known, 1)
+            hint = f"did you mean {near[0]!r}?" if near else f"shipped: {', '.join(known)}"
             raise UsageError(f"mapping {name!r}: neither a file nor a shipped mapping: {hint}")
         path = SHIPPED / f"{name}.toml"
     try:

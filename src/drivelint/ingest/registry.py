@@ -130,6 +130,26 @@ class SumoReader:
         return sumo.read(probe.path, probe.options.mapping)
 
 
+class FilmReader:
+    """What was detected in the frames of a film, as a table or as boxes in MCAP, through a mapping of that kind."""
+
+    def accepts(self, probe: Probe) -> bool:
+        """Accept by the mapping; a table without one by the columns of a shipped one."""
+        from drivelint.ingest import video, video_mapping
+
+        if probe.path.is_dir():
+            return False
+        if probe.options.mapping is not None:
+            return video_mapping.is_film(probe.options.mapping)
+        return probe.head[:16].lstrip(b"\xef\xbb\xbf").startswith(b"frame") and video.fits(probe.path) is not None
+
+    def read(self, probe: Probe) -> Recording:
+        """Read the detections."""
+        from drivelint.ingest import video
+
+        return video.read(probe.path, probe.options.mapping or video.fits(probe.path) or "")
+
+
 class TableReader:
     """Any CSV or Parquet table through a mapping."""
 
@@ -146,6 +166,7 @@ class TableReader:
 
 
 READERS: tuple[Reader, ...] = (
+    FilmReader(),
     CanonicalReader(),
     McapReader(),
     OsiFileReader(),
@@ -167,7 +188,7 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
     for reader in READERS:
         if reader.accepts(probe):
             recording = reader.read(probe)
-            if options.mapping is not None and not isinstance(reader, TableReader | SumoReader):
+            if options.mapping is not None and not isinstance(reader, TableReader | SumoReader | FilmReader):
                 recording.notes.append(f"mapping {options.mapping!r} is not needed: the log is {recording.format}")
             from drivelint.ingest.finish import finish
 

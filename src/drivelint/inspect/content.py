@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import TraceError
-from drivelint.ingest import bag, parquet
+from drivelint.ingest import bag, parquet, video_mapping
 from drivelint.ingest import mapping as mappings
 from drivelint.ingest.carried import EVENT
 from drivelint.ingest.container import MAGIC, Container
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from mcap import records
+
+    from drivelint.ingest.video_mapping import Film
 
 _HEAD_BYTES: Final = 4096
 _OSI: Final = {(name, "protobuf"): "ground truth" for name in TREES} | {
@@ -60,6 +62,9 @@ def content(path: Path, mapping: str | None, notes: list[str], *, read: bool) ->
 
 
 def _of_table(path: Path, head: bytes, mapping: str | None, notes: list[str], *, read: bool) -> Content:
+    if mapping is not None and video_mapping.is_film(mapping):
+        name, film = video_mapping.load(mapping)
+        return Content(sheets=[_filmed(path, film)], mapping=name, notes=notes)
     if mapping is not None:
         name, loaded = mappings.load(mapping)
         return Content(sheets=[_mapped(path, loaded)], mapping=name, notes=notes)
@@ -95,6 +100,17 @@ def _mapped(path: Path, mapping: Mapping) -> Sheet:
     others = dict.fromkeys(re.sub(r"(?<=#)\d+", GROUP, name) if grouped else name for name in unread)
     columns += [Column(name=name, read_as=[]) for name in others]
     return Sheet(name=path.name, rows=parquet.n_rows(path) if is_parquet else None, columns=columns)
+
+
+def _filmed(path: Path, film: Film) -> Sheet:
+    """Return the columns of a table of detections, those that its mapping reads first."""
+    names = CsvSheet(path, Table()).names
+    read = {film.frames.column: ["time"]} | {
+        str(actor.ahead): [f"distance ahead of {actor.id}"] for actor in film.actor
+    }
+    columns = [Column(name=name, read_as=read_as) for name, read_as in read.items()]
+    columns += [Column(name=name, read_as=[]) for name in names if name and name not in read]
+    return Sheet(name=path.name, rows=None, columns=columns)
 
 
 def _read(mapping: Mapping) -> list[Column]:

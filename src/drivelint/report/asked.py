@@ -65,7 +65,9 @@ def load(folder: Path) -> Asked:
         plain["rules_dirs"] = [str(folder / path) for path in plain["rules_dirs"]]
         return msgspec.convert(plain, Asked)
     except FileNotFoundError as error:
-        raise UsageError(f"{file} is missing: name the folder that check --out wrote, or check the drives again") from error
+        raise UsageError(
+            f"{file} is missing: name the folder that check --out wrote, or check the drives again"
+        ) from error
     except (OSError, ValueError, KeyError, TypeError, AttributeError, msgspec.ValidationError) as error:
         raise UsageError(f"{file}: not what drivelint writes: check the drives again") from error
 
