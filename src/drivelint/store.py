@@ -33,7 +33,7 @@ def connect(
     """
     con = duckdb.connect(str(path) if path else ":memory:")
     con.execute("SET allow_community_extensions=false")
-    con.execute("SET python_enable_replacements=false")
+    con.execute("SET GLOBAL python_enable_replacements=false")  # for its cursors too
     con.execute("SET enable_progress_bar=false")
     con.execute("SET preserve_insertion_order=false")
     if threads:

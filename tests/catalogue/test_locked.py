@@ -6,6 +6,7 @@ from pathlib import Path
 
 import duckdb
 import msgspec
+import pyarrow as pa
 import pytest
 
 from drivelint import store
@@ -202,3 +203,12 @@ def test_the_bench_on_which_rules_run_is_locked(tmp_path: Path, statement: str) 
             con.execute(statement.format(folder=tmp_path))
         con.execute("SET memory_limit = '1GB'")  # the one thing that the bench itself changes
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_variable_of_the_program_is_no_table_on_any_of_its_connections() -> None:
+    secret = pa.table({"a": [1]})
+    with store.connect(threads=1) as con, con.cursor() as other:
+        for each in (con, other):
+            with pytest.raises(duckdb.CatalogException, match="secret"):
+                each.execute("SELECT * FROM secret")
+    assert secret.num_rows == 1

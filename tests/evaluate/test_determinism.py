@@ -9,10 +9,12 @@ import duckdb
 import pytest
 
 from drivelint import store
-from drivelint.evaluate import evaluate
+from drivelint.evaluate import evaluate, run
 from tests.evaluate.packs import BEFORE, EXECUTION, HOLDS, INVARIANT, MEASURED, write
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from drivelint.catalogue import Rule
 
 N_STEPS, N_OBJECTS = 11_500, 50
@@ -108,3 +110,26 @@ def test_a_drive_alone_has_the_same_rows_as_in_a_crowd(
             alone = result(con, rules)
         for table, rows in alone.items():
             assert rows == [row for row in crowd[table] if drive in row[:2]]
+
+
+def test_rules_are_judged_on_two_connections_as_on_one(
+    crowd: dict[str, list[tuple[Any, ...]]], rules: list[Rule], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(run, "SHARED", 2)
+    with database(DRIVES, threads=2, order="k") as con:
+        assert result(con, rules) == crowd
+
+
+def test_a_rule_that_errs_is_an_error_on_whatever_connection(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    reads = {"reads": '["ego_state"]'}
+    good = "SELECT drive_id, ego_id, t_ns, x_m >= 0 AS holds FROM ego_state"
+    bad = "SELECT drive_id, ego_id, t_ns, (drive_id || 'x')::BIGINT > 0 AS holds FROM ego_state"
+    found = [
+        write(tmp_path, INVARIANT | HOLDS | reads, {"condition": bad if n % 3 else good}, name=f"rule{n}")
+        for n in range(12)
+    ]
+    monkeypatch.setattr(run, "SHARED", 2)
+    with database(("d0",), threads=2, order="k") as con:
+        evaluate(con, found)
+        rows = con.execute("SELECT rule_id, list_sort(list(DISTINCT verdict)) FROM verdict GROUP BY rule_id").fetchall()
+    assert dict(rows) == {rule.id: ["error"] if n % 3 else ["pass", "unknown"] for n, rule in enumerate(found)}

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections import deque
+from concurrent.futures import ThreadPoolExecutor, wait
+from typing import TYPE_CHECKING, Final
 
 import duckdb
 
+from drivelint import store
 from drivelint.evaluate import closing, findings, invariant, occasion, restricted, stage
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from drivelint.evaluate.terms import Binding
+
+SHARED: Final = 16
+"""From so many rules on they are judged on two connections."""
+LARGE: Final = 200_000
+"""Steps from which on they are not: one statement then uses all cores, and two would need twice the memory."""
 
 
 class Run:
@@ -32,17 +40,46 @@ class Run:
     def judge(self) -> None:
         """Judge by every rule, then write the verdicts, findings and margins of all of them at once."""
         self.prepare()
-        for binding in self._bindings:
-            if not self._n_todo.get(binding.no):
-                continue
-            try:
-                self.rule(binding)
-            except duckdb.Error as error:
-                self._blame(binding, error)
+        todo = deque(binding for binding in self._bindings if self._n_todo.get(binding.no))
+        if len(todo) >= SHARED and self._count("SELECT count(*) FROM step") < LARGE:
+            self._share(todo)
+        else:
+            self._work(todo)
         for statement in closing.STATEMENTS:
             self._con.execute(statement)
         if self._courses:
             self._con.execute(closing.COURSES)
+
+    def _share(self, todo: deque[Binding]) -> None:
+        """Judge on a second connection too: on so few rows a statement is planned and run on one core."""
+        with ThreadPoolExecutor(1) as pool, self._con.cursor() as other:
+            helper = Run(other, self._bindings, margins=self._margins, courses=self._courses)
+            helped = pool.submit(helper.assist, todo)
+            try:
+                self._work(todo)
+                helped.result()
+                for table in stage.OUTCOMES:
+                    store.insert(self._con, table, other.execute(f"FROM temp.{table}").to_arrow_table())
+            finally:
+                todo.clear()  # whatever came between, the helper stops after its present rule
+                wait([helped])
+
+    def assist(self, todo: deque[Binding]) -> None:
+        """Judge by some of the rules, for another run to take over."""
+        self.prepare()
+        self._work(todo)
+
+    def _work(self, todo: deque[Binding]) -> None:
+        """Judge by the rules that are still to do, until there are none."""
+        while True:
+            try:
+                binding = todo.popleft()
+            except IndexError:
+                return
+            try:
+                self.rule(binding)
+            except duckdb.Error as error:
+                self._blame(binding, error)
 
     def prepare(self) -> None:
         """Make the run's tables, decide what needs no running, and look at the default grids once for all rules."""

@@ -61,6 +61,8 @@ CREATE OR REPLACE TEMP TABLE _todo AS
 SELECT r.rule_no, s.drive_id, s.ego_id FROM _rule r CROSS JOIN _subject s
 ANTI JOIN _gated g ON g.rule_no = r.rule_no AND g.drive_id = s.drive_id AND g.ego_id = s.ego_id
 """
+OUTCOMES = ("_error", "_group", "_outcome", "_stretch", "_course", "_margin")
+"""What rules leave behind: what another connection judged is brought together with."""
 _NAMES = (
     "_subject", "_watched", "_segment", "_rule", "_needs", "_error", "_group", "_outcome", "_stretch", "_margin", "_course", "_gated",
     "_todo", "_grid_group", "_asked", "_closed", "_judged", "_profile_set", "_raw_reference", "reference", "_occasion", "reference_step",
