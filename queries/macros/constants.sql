@@ -12,6 +12,9 @@ CREATE OR REPLACE MACRO exact_clearance_m() AS 30.0;
 CREATE OR REPLACE MACRO lost_near_m() AS 50.0;
 -- Slower than this is standing: positions of parked vehicles jitter.
 CREATE OR REPLACE MACRO standing_mps() AS 0.5;
+-- From so far away of the end of the map, who is beyond it is nothing to reckon with yet: two vehicles at 60 mph that brake for each other
+-- need some 150 m to stop, and 350 m by the most careful of the models.
+CREATE OR REPLACE MACRO beyond_map_m() AS 400.0;
 -- Samples closer than this many periods are continuous.
 CREATE OR REPLACE MACRO max_gap_periods() AS 2.5;
 -- How long a vehicle that left or has not yet entered the log may be on the road ahead all the same: twice the time to meet it at both

@@ -175,6 +175,44 @@ def test_who_is_not_in_the_log_may_be_on_the_road(  # noqa: PLR0917
     assert {k for k, n in counted.items() if n} == set(steps)
 
 
+@pytest.mark.parametrize(
+    ("at", "lane", "v", "doubted"),
+    [
+        (
+            897.7,
+            "other",
+            -8.0,
+            range(36, 120),
+        ),  # a sample earlier it was beyond the end; doubted from 400 m before that on
+        (895.7, "other", -8.0, range(36, 120)),
+        (895.5, "other", -8.0, range(120)),  # 2.1 m from the end, which it does not make in 0.25 s
+        (897.55, "own", 0.6, range(120)),  # about to leave over it: it was on the map before
+    ],
+)
+def test_who_comes_in_over_the_end_of_the_map_was_beyond_it(at: float, lane: str, v: float, doubted: range) -> None:
+    """The ego's front is 482.5 + 5 t on a map of 900 m: 400 m from its end at 3.5 s."""
+    way = road(((900.0, 0.0),))
+    t = times(20.0)
+    ego = moving("ego", way, t, 480.1 + 5 * t, way.own)
+    other = moving("x", way, t, at + v * (t - 12.0), getattr(way, lane)).keep((t > 11.99) & (t < 12.3))
+    con = derived(drive([ego, other], way.environment, sensor_range_m=2000.0), tables=["oncoming", "unplaced"])
+    counted = {round(row["t_ns"] / 1e8) for row in rows(con, "FROM oncoming WHERE n_unplaced > 0 AND t_ns < 12e9")}
+    assert counted == set(doubted)
+    known = {round(row["t_ns"] / 1e8) for row in rows(con, "FROM unplaced WHERE reason LIKE 'came in%'")}
+    assert known == set(range(120)) - counted
+
+
+def test_the_end_of_another_chain_tells_nothing() -> None:
+    """Who comes in over the end of the side road, that the ego has turned into by then, may have been near before it did."""
+    ways = tee()
+    t = times(30.0)
+    ego = moving("ego", ways["south"], t, 20 + 10 * t, ways["straight"].own)
+    s = 160 + 5 * math.pi + 0.1 - 8 * (t - 20.0)
+    other = moving("x", ways["south"], t, s + 187.4, ways["straight"].other).keep(t > 19.99)
+    con = derived(drive([ego, other], ways["south"].environment), tables=["unplaced"])
+    assert {row["reason"] for row in rows(con, "FROM unplaced")} == {"appeared in the log nearby"}
+
+
 def test_the_doubt_about_one_that_was_lost_passes() -> None:
     """300 m apart, at 5 and 8 m/s: they would have met after 23 s; after twice that it is not coming any more."""
     way = road(((900.0, 0.0),))
