@@ -1,0 +1,262 @@
+"""An independent reading of SUMO's log: its overtakes, their distance ahead and the safe distance ahead.
+
+Numpy over the columns of the FCD and the lane shapes of the net, after the definitions of the paper; nothing of the product's
+readers, maps, tables or macros is used. Distances are along the middle of the overtaking vehicle's own lane.
+"""
+
+from __future__ import annotations
+
+import math
+import xml.etree.ElementTree as ET
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+OVER_M = 0.05  # a corner further over the line than that has left the lane
+LOOK_M = 1000.0  # with nobody coming, how far the road counts as looked at
+NEAR_M = 100.0  # who is pulled out behind, though not passed in the end
+WELL_OVER_M = 0.5
+PROFILES = {"relaxed": (10.0, 9.10), "nominal": (20.0, 4.65), "aggressive": (40.0, 1.11)}
+"""Angle of pulling out and cutting in (degrees), headroom and clearance (m)."""
+VERDICTS = ("fail", "unknown", "pass")
+
+
+@dataclass(frozen=True)
+class Line:
+    """The middle of a lane, in its direction: stations and points."""
+
+    s: Floats
+    x: Floats
+    y: Floats
+
+    def place(self, x: Floats, y: Floats, guess: Floats) -> tuple[Floats, Floats]:
+        """Return station and offset (left positive) of points whose station is roughly known."""
+        along = guess
+        for _ in range(6):
+            k = np.clip(np.searchsorted(self.s, along, side="right") - 1, 0, len(self.s) - 2)
+            step = self.s[k + 1] - self.s[k]
+            tx, ty = (self.x[k + 1] - self.x[k]) / step, (self.y[k + 1] - self.y[k]) / step
+            dx, dy = x - self.x[k], y - self.y[k]
+            along = self.s[k] + dx * tx + dy * ty
+        return along, dy * tx - dx * ty
+
+
+@dataclass(frozen=True)
+class Net:
+    """The road's two lanes and what the definitions need of them."""
+
+    lines: dict[str, Line]
+    lane_m: float
+    limit_mps: float
+
+
+@dataclass(frozen=True)
+class Log:
+    """Rows by step: `step` counts tenths of a second; `who` indexes `ids`; corners (row, 4).
+
+    `sizes`: length and width by vehicle. `x`, `y`: the middle of the front bumper; `heading` counter-clockwise from east.
+    `against`: it drives the way of `ba`. `along`: on the middle of its own lane; `offset` from the centre line, positive on
+    its own side; `met`: where those who come towards it have it, on the middle of theirs.
+    """
+
+    ids: tuple[str, ...]
+    sizes: Floats
+    step: NDArray[np.int64]
+    who: NDArray[np.int64]
+    x: Floats
+    y: Floats
+    heading: Floats
+    against: NDArray[np.bool_]
+    speed: Floats
+    along: Floats
+    met: Floats
+    offset: Floats
+
+    def of(self, who: int) -> Log:
+        return self._take(self.who == who)
+
+    def at(self, step: int) -> Log:
+        return self._take(slice(*np.searchsorted(self.step, (step, step + 1))))
+
+    def _take(self, rows: NDArray[np.bool_] | slice) -> Log:
+        names = ("step", "who", "x", "y", "heading", "against", "speed", "along", "met", "offset")
+        return replace(self, **{name: getattr(self, name)[rows] for name in names})
+
+
+class Overtake(NamedTuple):
+    """One vehicle that was passed or pulled out behind; metres, m/s, seconds; verdicts by profile."""
+
+    ego: str
+    t0: float
+    t3: float | None
+    vbp: str
+    passed: bool
+    ov: str | None
+    da_m: float
+    end_m: float  # how far the road goes on
+    sda_m: dict[str, float | None]
+    verdicts: dict[str, str]
+
+
+def read_net(path: Path) -> Net:
+    """Read the net: its two lanes."""
+    lanes = [lane.attrib for lane in ET.parse(path).getroot().iter("lane")]  # noqa: S314
+    return Net({lane["id"]: _line(lane["shape"]) for lane in lanes}, float(lanes[0]["width"]), float(lanes[0]["speed"]))
+
+
+def _line(shape: str) -> Line:
+    points = np.array([[float(v) for v in point.split(",")[:2]] for point in shape.split()])
+    s = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    return Line(s, points[:, 0], points[:, 1])
+
+
+def read_log(log: Path, routes: Path, net: Net) -> Log:
+    """Read the log, and the sizes of its vehicles from the route file."""
+    sizes = {
+        e.attrib["id"]: (float(e.attrib["length"]), float(e.attrib["width"]))
+        for e in ET.parse(routes).getroot().iter("vType")  # noqa: S314
+    }
+    numbers: dict[str, int] = {}
+    kinds: list[str] = []
+    rows = []
+    for step, vehicle in _vehicles(log):
+        name = vehicle["id"]
+        if name not in numbers:
+            numbers[name] = len(numbers)
+            kinds.append(vehicle["type"])
+        at = (float(vehicle[key]) for key in ("x", "y", "angle", "speed", "pos"))
+        rows.append((step, numbers[name], vehicle["lane"] == "ba_0", *at))
+    step, who, on_ba, x, y, angle, speed, pos = np.array(rows, np.float64).T
+    who = who.astype(np.int64)
+    length, width = (np.array([sizes[kind][k] for kind in kinds]) for k in (0, 1))
+    heading = np.radians(90.0 - angle)
+    forward, side = np.array([np.cos(heading), np.sin(heading)]), np.array([-np.sin(heading), np.cos(heading)])
+    own = {name: np.where((on_ba > 0) == (name == "ba_0"), pos, line.s[-1] - pos) for name, line in net.lines.items()}
+    k = np.clip(np.searchsorted(net.lines["ab_0"].s, own["ab_0"]) - 1, 0, len(net.lines["ab_0"].s) - 2)
+    ab = net.lines["ab_0"]
+    against = forward[0] * (ab.x[k + 1] - ab.x[k]) + forward[1] * (ab.y[k + 1] - ab.y[k]) < 0
+    found = {name: np.empty((2, len(x), 4)) for name in net.lines}
+    for n, (back, beside) in enumerate(((0.0, 0.5), (0.0, -0.5), (1.0, 0.5), (1.0, -0.5))):
+        cx, cy = np.array([x, y]) - back * length[who] * forward + beside * width[who] * side
+        for name, line in net.lines.items():
+            found[name][0, :, n], found[name][1, :, n] = line.place(cx, cy, own[name])
+    (along, offset), (met, _) = (
+        np.where(against[:, None], found[one], found[other]) for one, other in (("ba_0", "ab_0"), ("ab_0", "ba_0"))
+    )
+    offset = offset + net.lane_m / 2  # each lane lies to the left of the centre line in its direction
+    steps = step.astype(np.int64)
+    return Log(
+        tuple(numbers), np.array([length, width]).T, steps, who, x, y, heading, against, speed, along, met, offset
+    )
+
+
+def _vehicles(log: Path) -> Iterator[tuple[int, dict[str, str]]]:
+    step = -1
+    for event, element in ET.iterparse(log, events=("start", "end")):  # noqa: S314
+        if element.tag == "timestep":
+            if event == "start":
+                step = round(float(element.attrib["time"]) * 10)
+            else:
+                element.clear()
+        elif element.tag == "vehicle" and event == "start":
+            yield step, dict(element.attrib)
+
+
+def overtakes(log: Log, net: Net) -> list[Overtake]:
+    """Return every overtake of every vehicle."""
+    found = []
+    for who in range(len(log.ids)):
+        own = log.of(who)
+        over = own.offset.min(axis=1) < -OVER_M
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], over, [False]]).astype(np.int8)))
+        for first, end in edges.reshape(-1, 2):
+            found += _excursion(log, net, own, int(first), int(end))
+    return sorted(found, key=lambda o: (o.t0, o.ego, o.vbp))
+
+
+def _excursion(log: Log, net: Net, own: Log, first: int, end: int) -> list[Overtake]:
+    """Return whom the vehicle overtakes in its rows from `first` until before `end`."""
+    step = int(own.step[first])
+    there = log.at(step)
+    me = own.who[first]
+    front, centre = own.along[first].max(), own.along[first].mean()
+    same = (there.against == own.against[first]) & (there.who != me)
+    ahead = same & (there.along.mean(axis=1) > centre) & (there.offset.max(axis=1) > OVER_M)
+    order = np.flatnonzero(ahead)[np.argsort(there.along[ahead].min(axis=1))]
+    back = end < len(own.step)
+    well = -own.offset[first:end].min() >= WELL_OVER_M or not back
+    gaps = there.along[order].min(axis=1) - front
+    row_begin = float(there.along[order].min()) if len(order) else math.nan  # rear of the nearest one
+    found = []
+    for rank, at in enumerate(order):
+        vbp = int(there.who[at])
+        passed = _passed(own, log.of(vbp), first, min(end + 1, len(own.step)))
+        if not passed and not (rank == 0 and gaps[0] <= NEAR_M and well):
+            continue
+        line = net.lines["ba_0" if own.against[first] else "ab_0"]
+        da, v_ov, ov = _oncoming(there, line, bool(own.against[first]), float(front), float(centre))
+        v_ov = net.limit_mps if ov is None else v_ov
+        # the row of vehicles from the nearest one's rear to this one's front; one that is alone has its own length
+        row_m = float(there.along[at].max() - row_begin)
+        needed = {
+            name: _safe_distance(
+                net.lane_m, math.radians(angle), 2 * gap + row_m + log.sizes[me, 0],
+                (float(own.speed[first]), float(there.speed[at]), v_ov),
+            )
+            for name, (angle, gap) in PROFILES.items()
+        }  # fmt: skip
+        verdicts = {name: _verdict(da, sda, seen=ov is not None, begin=first > 0) for name, sda in needed.items()}
+        found.append(
+            Overtake(
+                log.ids[me], step / 10, int(own.step[end]) / 10 if back else None, log.ids[vbp], passed,
+                None if ov is None else log.ids[ov], da, float(line.s[-1] - front), needed, verdicts,
+            )
+        )  # fmt: skip
+    return found
+
+
+def _passed(own: Log, other: Log, first: int, end: int) -> bool:
+    """Say whether the vehicle's front gets past the other's in its rows from `first` until before `end`."""
+    _, mine, theirs = np.intersect1d(own.step[first:end], other.step, return_indices=True)
+    return bool((own.along[first:end].max(axis=1)[mine] > other.along.max(axis=1)[theirs]).any())
+
+
+def _oncoming(there: Log, line: Line, against: bool, front: float, centre: float) -> tuple[float, float, int | None]:
+    """Return DA, the speed to reckon with, and who comes; nobody: the road's end  (or as far as is looked) and no speed."""
+    coming = (there.against != against) & (there.met.mean(axis=1) > centre)
+    if not coming.any():
+        return min(float(line.s[-1]) - front, LOOK_M), math.nan, None
+    k = np.flatnonzero(coming)[np.argmin(there.met[coming].min(axis=1))]
+    return float(there.met[k].min() - front), float(there.speed[k]), int(there.who[k])
+
+
+def _safe_distance(lane_m: float, angle: float, way_m: float, speeds: tuple[float, float, float]) -> float | None:
+    """Return what the whole manoeuvre needs, angle of pulling out and cutting in alike; None: undefined.
+
+    `way_m`: headroom, vehicles passed, clearance and the own length; `speeds`: the own, the VBP's and the OV's.
+    """
+    v, v_vbp, v_ov = speeds
+    if v <= v_vbp:
+        return None
+    aside = lane_m / (v * math.sin(angle))  # time in which the lane is left, and got back into
+    beside = (way_m - (v * math.cos(angle) - v_vbp) * aside) / (v - v_vbp)
+    own_way = 2 * lane_m / math.tan(angle) + v * beside
+    mph = v_ov / 0.44704
+    return own_way + v_ov * (2 * aside + beside) + 0.3 * mph + (0.058 - 0.011 * mph + 0.015 * mph * mph)
+
+
+def _verdict(da: float, sda: float | None, *, seen: bool, begin: bool) -> str:
+    if sda is None or not begin:
+        return "unknown"
+    if da > sda:
+        return "pass"
+    return "fail" if seen else "unknown"  # what comes from beyond the road's end is not told

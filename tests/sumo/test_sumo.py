@@ -1,0 +1,52 @@
+"""Some minutes of SUMO's traffic: overtakes and contacts are those of an independent reading. The hour: `python -m tests.sumo`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from tests.sumo import contacts, reading, world
+from tests.sumo.both import both
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+needs_sumo = pytest.mark.skipif(
+    world.tool("sumo") is None or world.tool("netconvert") is None,
+    reason="SUMO is not installed (pip install eclipse-sumo, or set SUMO_HOME)",
+)
+
+
+@needs_sumo
+def test_overtakes_and_contacts_are_those_of_an_independent_reading(tmp_path: Path) -> None:
+    figures, differ = both(tmp_path, seconds=300, seed=4, per_kind=1)
+    assert not differ
+    assert figures["overtakes found"] >= 20
+    assert figures["largest difference of DA (m)"] < 0.1
+    for name in ("passed", "not passed", "nominal: pass", "nominal: fail", "nominal: unknown"):
+        assert figures[name] >= 3, name
+    assert figures["contacts found, SUMO's own with them"] >= figures["planted contacts"] == 6
+
+
+def test_the_reading_measures_along_a_bend_and_over_the_line() -> None:
+    """A quarter of a circle of 100 m, driven at half a lane beside its line."""
+    angle = np.linspace(0, np.pi / 2, 500)
+    line = reading.Line(100 * angle, 100 * np.sin(angle), 100 - 100 * np.cos(angle))
+    s, d = line.place(np.array([98.0 * np.sin(0.7)]), np.array([100 - 98.0 * np.cos(0.7)]), np.array([75.0]))
+    assert s == pytest.approx(70.0, abs=0.01)
+    assert d == pytest.approx(2.0, abs=0.001)
+
+
+@pytest.mark.parametrize(("gap", "touches"), [(0.01, False), (-0.01, True)])
+def test_contacts_of_boxes(gap: float, touches: bool) -> None:
+    """Two boxes of 4 m by 2 m: one behind the other, and one across before the other."""
+    nothing = np.zeros(4)
+    log = reading.Log(
+        ("a", "b"), np.array([[4.0, 2.0], [4.0, 2.0]]), np.array([0, 0, 9, 9]), np.array([0, 1, 0, 1]),
+        x=np.array([0.0, 4.0 + gap, 0.0, 1.0 + gap]), y=np.array([0.0, 0.0, 0.0, 2.0]),
+        heading=np.array([0.0, 0.0, 0.0, np.pi / 2]), against=nothing > 0,
+        speed=nothing, along=nothing, met=nothing, offset=nothing,
+    )  # fmt: skip
+    assert contacts.contacts(log) == ([contacts.Contact("a", "b", 0, 9)] if touches else [])
