@@ -9,10 +9,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import polars as pl
 import ptars
 import pyarrow as pa
 import pyarrow.compute as pc
+from pyarrow import json
 
 from drivelint.ingest import descriptors
 from drivelint.ingest.osi_decode import malformed
@@ -54,6 +54,7 @@ TREES: Final[dict[str, Tree]] = {
 }
 _LISTS: Final = frozenset({"deletions", "entities", "metadata", "cubes", "transforms"})
 _WORDS: Final = frozenset({"id", "frame_id", "key", "value", "parent_frame_id", "child_frame_id"})
+_BLOCK: Final = 1 << 20
 _WHOLE_SECONDS: Final = ("seconds", "sec")
 _NANOSECONDS: Final = ("nanos", "nsec")
 
@@ -66,7 +67,7 @@ class Decoder:
         self._path, self._name = path, name
         self._json: Any = None
         if encoding == "json":
-            self._json = _json_type(TREES[name])
+            self._json = pa.schema(_json_type(TREES[name]))
         else:
             types = descriptors.parse(path, name, schema)
             descriptor = descriptors.pruned(path, types, name, TREES[name])
@@ -88,24 +89,29 @@ class Decoder:
         if self._json is None:
             batch = self._handler.list_to_record_batch([packet.data for packet in packets])
             return pa.StructArray.from_arrays(batch.columns, fields=list(batch.schema))
-        try:
-            texts = pl.Series([packet.data.decode() for packet in packets], dtype=pl.String)
-            return texts.str.json_decode(self._json).to_arrow()
-        except pl.exceptions.PolarsError as error:
-            raise ValueError(str(error)) from error
+        # within JSON's texts a line's end is written otherwise, so that one message can be put on one line
+        lines = [packet.data.replace(b"\n", b" ").replace(b"\r", b" ") for packet in packets]
+        parse = json.ParseOptions(explicit_schema=self._json, unexpected_field_behavior="ignore")
+        block = json.ReadOptions(block_size=max(_BLOCK, 2 * max(map(len, lines)) + 2))
+        table = json.read_json(pa.BufferReader(b"\n".join(lines)), block, parse).combine_chunks()
+        if table.num_rows != len(packets):
+            raise ValueError(f"{len(packets)} messages hold {table.num_rows} JSON objects")
+        columns = [table.column(name).chunk(0) for name in self._json.names]
+        return pa.StructArray.from_arrays(columns, fields=list(self._json))
 
 
-def _json_type(tree: Tree) -> pl.Struct:
-    fields: dict[str, Any] = {}
+def _json_type(tree: Tree) -> list[pa.Field]:
+    fields = []
     for name, subtree in tree.items():
         if subtree is not None:
-            inner = _json_type(subtree)
-            fields[name] = pl.List(inner) if name in _LISTS else inner
+            inner = pa.struct(_json_type(subtree))
+            kind = pa.list_(inner) if name in _LISTS else inner
         elif name in _WORDS:
-            fields[name] = pl.String
+            kind = pa.string()
         else:
-            fields[name] = pl.Boolean if name == "frame_locked" else pl.Float64
-    return pl.Struct(fields)
+            kind = pa.bool_() if name == "frame_locked" else pa.float64()
+        fields.append(pa.field(name, kind))
+    return fields
 
 
 def items(rows: pa.Array, name: str) -> tuple[pa.Array, NDArray[np.intp]]:

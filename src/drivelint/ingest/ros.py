@@ -15,8 +15,8 @@ from drivelint.ingest.order import listed
 from drivelint.ingest.ros_ego import EGO_INFO, ENGAGE, HAZARD, MODE, ODOMETRY, TRANSFORMS, TREES, TURN, WORLD_INFO
 from drivelint.ingest.ros_merge import Sources, merged
 from drivelint.ingest.ros_objects import KINDS, stamps
-from drivelint.ingest.ros_rows import Rows, common_clock, distinct, joined, placed
-from drivelint.ingest.trace import EPOCH_NS, Finding, FrameTimes, Recording, States
+from drivelint.ingest.ros_rows import Rows, clocks, common_clock, distinct, joined, placed
+from drivelint.ingest.trace import Finding, Recording, States
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -206,18 +206,9 @@ def read(path: Path, options: IngestOptions) -> Recording:
             recording.states.codes["indicator"] = codes
         recording.events = ros_ego.engagement(reports, ego)
     recording.embedded_map = _map(log)
-    t_ns, log_ns = (np.concatenate([getattr(part, name) for part in parts.values()]) for name in ("t_ns", "log_ns"))
-    recording.frame_times = _frame_times(t_ns, log_ns)
-    recording.utc_start_ns = int(log_ns.min()) if log_ns.min() >= EPOCH_NS else None
+    recording.frame_times, recording.utc_start_ns = clocks(list(parts.values()))
     recording.notes.append(f"positions are in the frame {fixed!r}")
     return recording
-
-
-def _frame_times(t_ns: NDArray[np.int64], log_ns: NDArray[np.int64]) -> FrameTimes:
-    """Return each message once, in the order of the file."""
-    new = np.r_[True, (t_ns[1:] != t_ns[:-1]) | (log_ns[1:] != log_ns[:-1])]
-    pairs = np.unique(np.stack([log_ns[new], t_ns[new]]), axis=1)
-    return FrameTimes(pairs[1], pairs[0].astype(np.uint64))
 
 
 def _frame_names(rows: Rows) -> list[str]:

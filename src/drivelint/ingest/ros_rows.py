@@ -10,7 +10,7 @@ import pyarrow as pa
 
 from drivelint.ingest.frames import Poses, clean, rotated, unit
 from drivelint.ingest.order import rate, steps
-from drivelint.ingest.trace import EPOCH_NS, NUMBERS, SIZES, Finding, States
+from drivelint.ingest.trace import EPOCH_NS, NUMBERS, SIZES, Finding, FrameTimes, States
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -233,6 +233,15 @@ def common_clock(parts: dict[str, Rows], findings: list[Finding]) -> bool:
         message = f"{why}: the log times of the container are used for all messages"
         findings.append(Finding("log_time_used", "warning", message, n, first))
     return why is None
+
+
+def clocks(parts: Sequence[Rows]) -> tuple[FrameTimes, int | None]:
+    """Return each message once, in the order of the file, and when the log begins in UTC where its clock tells."""
+    t_ns, log_ns = np.concatenate([part.t_ns for part in parts]), np.concatenate([part.log_ns for part in parts])
+    new = np.r_[True, (t_ns[1:] != t_ns[:-1]) | (log_ns[1:] != log_ns[:-1])]
+    pairs = np.unique(np.stack([log_ns[new], t_ns[new]]), axis=1)
+    first = int(pairs[0, 0])
+    return FrameTimes(pairs[1], pairs[0].astype(np.uint64)), first if first >= EPOCH_NS else None
 
 
 def same_actor(ego: States, others: States) -> list[str]:
