@@ -152,17 +152,17 @@ CREATE TABLE beside (
 CREATE TABLE passing (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    occurrence INTEGER NOT NULL,      -- 0.. in time order; ego and another road user that heads the same way change their order
+    occurrence INTEGER NOT NULL,      -- 0.. in time order; ego and another road user that heads the same way change their order, or a vehicle that cannot be placed may have
     object_id VARCHAR NOT NULL,       -- the other
     actor_class VARCHAR,              -- see actor
-    ego_passes BOOLEAN NOT NULL,      -- the ego's front got ahead of its front by more than 0.25 m; false: its front got ahead of the ego's
+    ego_passes BOOLEAN,               -- the ego's front got ahead of its front by more than 0.25 m; false: its front got ahead of the ego's; NULL: one of the two, or nothing: it may be beside the ego and has no place
     t_ns BIGINT NOT NULL,             -- first step in the new order
     t_from_ns BIGINT NOT NULL,        -- first step of the stretch around t_ns in which they are beside each other
     t_to_ns BIGINT NOT NULL,          -- last one
-    side VARCHAR NOT NULL,            -- left or right: where the other is, seen from the ego
+    side VARCHAR,                     -- left or right: where the other is, seen from the ego; NULL: ego_passes is
     gap_m DOUBLE,                     -- least gap across the corridor in that stretch; NULL: they are beside each other in no step that was seen
     whole BOOLEAN NOT NULL,           -- the stretch was seen from before its first step until after its last, without a hole: else gap_m is only the least that was seen
-    same_lane BOOLEAN NOT NULL,       -- its centre is in the ego's running lane at t_ns: the ego passes round it
+    same_lane BOOLEAN,                -- its centre is in the ego's running lane at t_ns: the ego passes round it; NULL: ego_passes is
     ego_speed_mps DOUBLE,             -- ego's speed at t_ns
     speed_mps DOUBLE                  -- its speed at t_ns; standing: at most 0.5
 );

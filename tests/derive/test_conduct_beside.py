@@ -218,3 +218,23 @@ def test_each_ego_has_its_own_passings() -> None:
         ("a", "b", False, "left"),
         ("b", "a", True, "right"),
     ]
+
+
+def test_who_has_no_place_beside_the_ego_may_have_been_passed() -> None:
+    way = road(lanes=(1, 2))
+    t = times(12.0)
+    ego = moving("ego", way, t, 100 + 15 * t, -1.5 * LANE)
+    slow = moving("x", way, t, 160 + 5 * t, -0.5 * LANE)
+    blind = slow.lost((t > 1.95) & (t < 9.95))  # from 40 m ahead to 40 m behind, near after 0.4 s at the earliest
+    ever = slow.lost(t > -1)
+    for other, begin, end in ((blind, 2.3, 9.6), (slow.lost(t < 9.95), 0.0, 9.6), (ever, 0.0, 12.0)):
+        (found,) = passings(way, ego, other)
+        assert (found["ego_passes"], found["side"], found["same_lane"], found["whole"]) == (None, None, None, False)
+        assert (found["occurrence"], found["gap_m"]) == (0, None)
+        assert seconds([found], "t_from_ns") == [begin]
+        assert seconds([found], "t_to_ns") == [end]
+    # ahead before and after, or seen just before and just after, there is no doubt
+    assert [row["ego_passes"] for row in passings(way, ego, slow.lost((t > 1.95) & (t < 3.45)))] == [True]
+    assert [row["ego_passes"] for row in passings(way, ego, slow.lost((t > 3.45) & (t < 8.45)))] == [True]
+    oncoming = moving("o", way, t, 300 - 5 * t, 0.5 * LANE)
+    assert not passings(way, ego, oncoming.lost((t > 4.95) & (t < 11.45)))

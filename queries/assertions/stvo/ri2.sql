@@ -32,11 +32,12 @@
 -- source = "Maierhofer et al. 2020, Table II"
 
 -- @reference
-SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.occurrence, p.speed_mps, p.ego_speed_mps, c.side
+SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.occurrence, p.speed_mps, p.ego_speed_mps, CASE WHEN p.ego_passes THEN c.side END AS side
 FROM passing p
 JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
 LEFT JOIN ego_corridor c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.chain_id = e.chain_id AND c.t_ns = e.t_ns
-WHERE p.ego_passes AND NOT p.same_lane AND coalesce(c.side = CASE p.side WHEN 'left' THEN 1 ELSE -1 END, true)
+-- who may have been passed has no side
+WHERE coalesce(p.ego_passes AND NOT p.same_lane AND c.side = CASE p.side WHEN 'left' THEN 1 WHEN 'right' THEN -1 END, true)
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.object_id,

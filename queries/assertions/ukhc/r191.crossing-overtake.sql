@@ -20,14 +20,20 @@ SELECT drive_id, ego_id, t_in_ns AS t_ns, coalesce(t_out_ns, t_in_ns) AS t_out_n
 FROM crossing_passage
 
 -- @condition
--- a crossing that is neither a zebra nor signalled has no zig-zags
-SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.kind <> 'other' AS applies, count(p.object_id) = 0 AS holds,
-    'passed ' || string_agg(DISTINCT p.object_id, ', ' ORDER BY p.object_id) || ' before crossing ' || r.crossing_id AS reason
+-- a crossing that is neither a zebra nor signalled has no zig-zags; whom the ego got past before the log began is not known
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.kind <> 'other' AS applies,
+    CASE WHEN bool_or(p.ego_passes) THEN false WHEN i.travel_m >= $zigzag_m AND count(p.object_id) = 0 THEN true END AS holds,
+    CASE WHEN bool_or(p.ego_passes)
+        THEN 'passed ' || string_agg(DISTINCT p.object_id, ', ' ORDER BY p.object_id) FILTER (p.ego_passes) || ' before crossing ' || r.crossing_id
+        WHEN count(p.object_id) > 0 THEN format('actor {} may have been passed before crossing {}', min(p.object_id), r.crossing_id)
+        WHEN i.travel_m < $zigzag_m THEN 'the log does not show the way to the crossing' END AS reason
 FROM reference r
 JOIN step i USING (drive_id, ego_id, t_ns)
 LEFT JOIN (
-    SELECT drive_id, ego_id, t_ns, object_id, s.travel_m
-    FROM passing JOIN step s USING (drive_id, ego_id, t_ns)
-    WHERE ego_passes AND may_be_vehicle(actor_class) AND actor_class IS DISTINCT FROM 'bicycle'
+    SELECT drive_id, ego_id, p.t_ns, object_id, ego_passes, s.travel_m
+    -- somebody without a place may have been passed as late as this
+    FROM passing p JOIN step s USING (drive_id, ego_id)
+    WHERE ego_passes IS DISTINCT FROM false AND s.t_ns = CASE WHEN ego_passes THEN p.t_ns ELSE p.t_to_ns END
+        AND may_be_vehicle(actor_class) AND actor_class IS DISTINCT FROM 'bicycle'
 ) p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_ns <= r.t_out_ns AND p.travel_m >= i.travel_m - $zigzag_m
-GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.kind, r.crossing_id
+GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.kind, r.crossing_id, i.travel_m

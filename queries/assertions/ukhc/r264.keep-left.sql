@@ -38,7 +38,7 @@ SELECT p.drive_id, p.ego_id, p.t_to_ns AS t_ns, p.object_id, p.side, m.environme
 FROM passing p
 JOIN data_log g USING (drive_id)
 JOIN environment m USING (environment_id)
-WHERE p.ego_passes AND NOT p.same_lane AND p.side <> overtaking_side(m.handedness)
+WHERE coalesce(p.ego_passes AND NOT p.same_lane AND p.side <> overtaking_side(m.handedness), true)
 
 -- @condition
 -- back, or in a lane without another of the same direction on that side, or somebody is there, or may be
@@ -50,7 +50,7 @@ WITH occupied AS (
         AND p.front_s_m > e.rear_s_m - $behind_m AND p.rear_s_m < e.front_s_m + $ahead_s * e.speed_mps
 )
 SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id,
-    CASE WHEN c.drive_id IS NOT NULL OR o.t_ns IS NOT NULL THEN true WHEN n.lanelet_id IS NOT NULL AND e.front_s_m IS NOT NULL THEN coalesce(b.lane_type, '') <> 'driving' OR b.along_road <> n.along_road END AS holds
+    CASE WHEN r.side IS NULL THEN NULL WHEN c.drive_id IS NOT NULL OR o.t_ns IS NOT NULL THEN true WHEN n.lanelet_id IS NOT NULL AND e.front_s_m IS NOT NULL THEN coalesce(b.lane_type, '') <> 'driving' OR b.along_road <> n.along_road END AS holds
 FROM reference_step s
 JOIN reference r USING (ref_id)
 JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
