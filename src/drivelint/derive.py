@@ -6,10 +6,13 @@ The order follows from which tables each SELECT reads; only what is asked for, a
 from __future__ import annotations
 
 import json
+from collections import deque
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cache
 from graphlib import TopologicalSorter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import duckdb
 
@@ -20,8 +23,11 @@ from drivelint.store import schema
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-# What the engine and the drive table read themselves, whatever the rules are.
+WORKERS: Final = 2
+LARGE: Final = 1_000_000
+"""States from which on there is one: a statement then uses all cores, and two would need twice the memory."""
 _GIVEN = {"profile"}  # filled from queries/profiles.toml
+# What the engine and the drive table read themselves, whatever the rules are.
 ALWAYS = ("clock", "step", "ego_state", "pair", "lost_object", "ego_condition", "capability", "registration", "exposure")
 
 
@@ -80,16 +86,41 @@ def derive(
 ) -> None:
     """Fill the library tables behind `tables`: those of the map, or those of the drives.
 
+    Two at a time, each on its own connection: most are so small that DuckDB plans and runs them on one core.
     Errors: `DriveLintError` naming the table, if its SELECT fails.
     """
-    for step in needed(tables):
-        if step.of_the_map is not of_the_map:
-            continue
-        try:
-            con.execute(f"INSERT INTO {step.table} BY NAME {step.sql}")
-        except duckdb.Error as error:
-            raise DriveLintError(f"queries/derive/{step.table}.sql: {str(error).splitlines()[0]}") from error
-        advance(step.table)
+    todo = {step.table: step for step in needed(tables) if step.of_the_map is of_the_map}
+    graph = TopologicalSorter({table: sorted(step.reads & todo.keys()) for table, step in todo.items()})
+    graph.prepare()
+    (n_states,) = con.execute("SELECT count(*) FROM actor_state").fetchall()[0]
+    workers = WORKERS if n_states < LARGE else 1
+    with ThreadPoolExecutor(workers) as pool, ExitStack() as stack:
+        free = [stack.enter_context(con.cursor()) for _ in range(workers)]
+        busy: dict[Future[None], tuple[str, duckdb.DuckDBPyConnection]] = {}
+        ready: deque[str] = deque()
+        stack.callback(wait, busy)
+        for cursor in free:
+            stack.callback(cursor.interrupt)  # should one fail, or the user not want to wait
+        while graph.is_active():
+            ready.extend(sorted(graph.get_ready()))
+            while ready and free:
+                cursor, table = free.pop(), ready.popleft()
+                busy[pool.submit(_fill, cursor, todo[table])] = table, cursor
+            for done in wait(busy, return_when=FIRST_COMPLETED).done:
+                done.result()
+                table, cursor = busy.pop(done)
+                free.append(cursor)
+                graph.done(table)
+                advance(table)
+
+
+def _fill(con: duckdb.DuckDBPyConnection, step: Derivation) -> None:
+    try:
+        con.execute(f"INSERT INTO {step.table} BY NAME {step.sql}")
+    except duckdb.OutOfMemoryException:
+        raise  # no fault of the query: there may be more
+    except duckdb.Error as error:
+        raise DriveLintError(f"queries/derive/{step.table}.sql: {str(error).splitlines()[0]}") from error
 
 
 def _tables(con: duckdb.DuckDBPyConnection, sql: str, where: str) -> set[str]:
