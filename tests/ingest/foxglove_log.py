@@ -91,7 +91,7 @@ def _google(value: Any) -> Any:
     return found
 
 
-def write(path: Path, messages: Iterable[Message], encoding: str = "protobuf") -> Path:
+def write(path: Path, messages: Iterable[Message], encoding: str = "protobuf", indent: int | None = None) -> Path:
     """Write a log in the order given."""
     with path.open("wb") as file:
         writer = Writer(file, compression=CompressionType.NONE)
@@ -105,7 +105,7 @@ def write(path: Path, messages: Iterable[Message], encoding: str = "protobuf") -
                 schemas[name] = writer.register_schema(f"foxglove.{name}", kind, data)
             if topic not in channels:
                 channels[topic] = writer.register_channel(topic, encoding, schemas[name])
-            data = _protobuf(name, content) if encoding == "protobuf" else json.dumps(content).encode()
+            data = _protobuf(name, content) if encoding == "protobuf" else json.dumps(content, indent=indent).encode()
             t_ns = round(t_s * 1e9)
             writer.add_message(channels[topic], t_ns, data, t_ns)
         writer.finish()  # type: ignore[no-untyped-call]

@@ -6,9 +6,12 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from mcap.reader import make_reader
+from mcap.writer import Writer
 
 from drivelint.errors import TraceError
 from tests.ingest import foxglove_log as fox
+from tests.ingest import osi_log
 from tests.ingest.logs import actors, at, log, quality, read, states
 
 if TYPE_CHECKING:
@@ -147,6 +150,34 @@ def test_float_seconds(tmp_path: Path) -> None:
         )
     trace = seen(tmp_path, messages, "json")
     assert times(trace, "car") == [i * 0.5 for i in range(20)]
+
+
+def test_json_on_several_lines(tmp_path: Path) -> None:
+    path = fox.write(tmp_path / "lines.mcap", drive(), "json", indent=1)
+    assert len(states(read(path, ego="car"))) == 20
+
+
+def test_truth_counts_before_scenes(tmp_path: Path) -> None:
+    """A log of OSI to which somebody has added a scene is still a log of OSI, with an index and without."""
+    for index in (True, False):
+        path = osi_log.write(tmp_path / "osi.mcap", osi_log.truths(osi_log.drive(5)))
+        with path.open("rb") as file:
+            packets = list(make_reader(file).iter_messages())
+        with path.open("wb") as file:
+            writer = Writer(file, use_summary_offsets=index, repeat_schemas=index, repeat_channels=index)
+            writer.start()
+            own = writer.register_schema("foxglove.SceneUpdate", "jsonschema", b"{}")
+            scene = writer.register_channel("/scene", "json", own)
+            writer.add_message(scene, 0, b"{}", 0)
+            schema, channel, _ = packets[0]
+            assert schema is not None
+            truth = writer.register_channel(
+                channel.topic, "protobuf", writer.register_schema(schema.name, "protobuf", schema.data)
+            )
+            for _, _, message in packets:
+                writer.add_message(truth, message.log_time, message.data, message.publish_time)
+            writer.finish()  # type: ignore[no-untyped-call]
+        assert log(read(path))["format"] == "osi-mcap"
 
 
 def test_no_times(tmp_path: Path) -> None:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from typing import TYPE_CHECKING, Any
 
 import pytest
+import typer
 
-from drivelint.errors import TraceError
+from drivelint.cli import app
+from drivelint.errors import TraceError, UsageError
 from drivelint.ingest.trace import EgoSize
 from tests.ingest import ros_log as ros
 from tests.ingest.logs import actors, at, log, quality, read, states
@@ -245,6 +248,22 @@ def test_ego_size(tmp_path: Path) -> None:
     assert math.hypot(state["x_m"], state["y_m"]) == pytest.approx(math.hypot(20, 1.4))
     assert math.hypot(state["vx_mps"], state["vy_mps"]) == pytest.approx(rate * math.hypot(20, 1.4))
     assert {"no_size", "velocity_mismatch", "reference_point", "twist_frame"}.isdisjoint(quality(trace))
+
+
+@pytest.mark.parametrize("text", ["4.9", "4.9,0", "-4.9,1.9", "4.9,x", "nan,1.9", "4.9,1.9,1.4,2", ""])
+def test_ego_size_on_the_command_line(tmp_path: Path, text: str) -> None:
+    path = ros.write(tmp_path / "log.mcap", [*ego(), *others()])
+    with pytest.raises(UsageError, match="write length and width in metres"):
+        app(["inspect", str(path), "--ego-size", text], standalone_mode=False)
+
+
+def test_ego_size_reaches_the_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = ros.write(tmp_path / "log.mcap", [*ego(), *others()])
+    for command in (["inspect", str(path)], ["convert", str(path), "--to", "parquet", "--out", str(tmp_path / "out")]):
+        with contextlib.suppress(typer.Exit):
+            app([*command, "--ego-size", "4.9,1.9,1.4"], standalone_mode=False)
+    assert "4.90 x 1.90 m" in capsys.readouterr().out
+    assert actors(read(tmp_path / "out"))["ego"]["length_m"] == 4.9
 
 
 def test_ego_size_of_the_log_counts(tmp_path: Path) -> None:

@@ -90,31 +90,33 @@ def files(path: Path) -> list[Path]:
 def family(path: Path) -> str:
     """Return what kind of messages a drive's log holds: `osi`, `ros2`, `foxglove`, or `none` of them.
 
-    The index at the end of the file is asked first, the whole file only where there is none: each reader then finds out
-    for itself whether it was right to ask. A log may hold several: OSI counts first, it is the truth.
+    The index at the end of the file is asked first, the whole file only where that says nothing: each reader then finds
+    out for itself whether it was right to ask. A log may hold several: OSI counts first, it is the truth.
     """
-    found = {name for file in files(path) for name in _schemas(file)}
-    if found & OSI:
-        return "osi"
-    for name, roles in (("ros2", ROS_ROLES), ("foxglove", FOXGLOVE_ROLES)):
-        if {roles.get(schema) for schema in found} & {ROAD_USERS, ODOMETRY}:
-            return name
+    parts = files(path)
+    for schemas in (_indexed, _recorded):
+        found = {name.replace("/msg/", "/") for file in parts for name in schemas(file)}
+        if found & OSI:
+            return "osi"
+        for name, roles in (("ros2", ROS_ROLES), ("foxglove", FOXGLOVE_ROLES)):
+            if {roles.get(schema) for schema in found} & {ROAD_USERS, ODOMETRY}:
+                return name
     return "none"
 
 
-def _schemas(file: Path) -> set[str]:
-    """Return the schemas of a file, without the `msg` in the names of ROS."""
-    names: set[str] = set()
+def _indexed(file: Path) -> set[str]:
+    """Return the schemas that the index lists; none where it is not there or damaged."""
     try:
         with file.open("rb") as stream:
             summary = make_reader(stream).get_summary()
-    except (McapError, struct.error, OSError, ValueError):
-        summary = None  # damage is told by whoever reads the data
-    if summary is not None:
-        names = {schema.name for schema in summary.schemas.values()}
-    if not names:
-        container = Container(file)
-        for _ in container.packets():
-            pass
-        names = {schema.name for schema in container.schemas.values()}
-    return {name.replace("/msg/", "/") for name in names}
+    except (McapError, struct.error, OSError, ValueError, OverflowError):
+        return set()  # damage is told by whoever reads the data
+    return set() if summary is None else {schema.name for schema in summary.schemas.values()}
+
+
+def _recorded(file: Path) -> set[str]:
+    """Return the schemas that stand among the data. Errors: `TraceError` for a damaged file."""
+    container = Container(file)
+    for _ in container.packets():
+        pass
+    return {schema.name for schema in container.schemas.values()}
