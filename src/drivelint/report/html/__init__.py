@@ -39,7 +39,10 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    style, script = ((_TEMPLATES / name).read_text(encoding="utf-8").strip() for name in ("report.css", "report.js"))
+    style, script = (
+        "\n".join((_TEMPLATES / name).read_text(encoding="utf-8").strip() for name in names)
+        for names in (("report.css", "charts.css", "narrow.css"), ("report.js", "replay.js"))
+    )
     environment.globals.update(
         style=Markup(style),  # noqa: S704 - ours
         script=Markup(script),  # noqa: S704 - ours

@@ -32,6 +32,11 @@ def moment_anchor(drive_id: str, ego_id: str, t_ns: int) -> str:
     return f"moment-{hashlib.sha256(repr((drive_id, ego_id, t_ns)).encode()).hexdigest()[:12]}"
 
 
+def overtake_anchor(drive_id: str, ego_id: str, occurrence: int) -> str:
+    """Return the anchor of an overtake."""
+    return f"overtake-{hashlib.sha256(repr((drive_id, ego_id, occurrence)).encode()).hexdigest()[:12]}"
+
+
 def _safe(name: str) -> str:
     """Return a name as it is if it is plain, else a hash of it."""
     if _PLAIN.fullmatch(name):

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from drivelint.report.counts import SEVERITIES
 from drivelint.report.html.anchors import drive_anchor, finding_anchor, moment_anchor, rule_anchor
 from drivelint.report.html.plan import Plan, plan
+from drivelint.report.html.replay import ticks
 from drivelint.report.html.svg import num
 from drivelint.report.text import NONE, number, seconds
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
-    import pyarrow as pa
-
+    from drivelint.report.html.courses import Course
     from drivelint.report.html.road import Road
 
     Row = Mapping[str, Any]
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 _SENSE: Final = {">": "more than", ">=": "at least", "<": "less than", "<=": "at most"}
 _SPACES: Final = ("ukhc.r126.ds-",)
 """Rules about danger spaces: their plan views show them."""
+KEY_MOMENTS: Final = 6
+"""Moments of a drive that the printed report shows with their plan views."""
 
 
 class Gauge(NamedTuple):
@@ -35,12 +37,13 @@ class Gauge(NamedTuple):
 
 
 class Measured(NamedTuple):
-    """One finding or near miss, as a row of the table and as a line of its moment."""
+    """One finding or near miss, as a row of the table and as a line of its moment; `keys`: what it is found by."""
 
     anchor: str
     href: str
     kind: str
     severity: str
+    keys: str
     status: str
     rule_id: str
     title: str
@@ -58,6 +61,7 @@ class Measured(NamedTuple):
     sense: str
     gauge: Gauge | None
     reason: str
+    course: Course | None
 
 
 class Card(NamedTuple):
@@ -70,10 +74,16 @@ class Card(NamedTuple):
 
 
 class Moment(NamedTuple):
-    """One time of one ego: a plan view (None: there is none, and why) and what the rules say there."""
+    """One time of one ego: a plan view (None: there is none, and why) and what the rules say there.
+
+    `t`: hundredths of a second since the drive's start; `leading`: it is among those that tell what happened.
+    """
 
     anchor: str
     time: str
+    t: int
+    keys: str
+    leading: bool
     ego_id: str
     objects: list[str]
     kind: str
@@ -84,7 +94,7 @@ class Moment(NamedTuple):
     cards: list[Card]
 
 
-def measured(row: Row, kind: str, rule: Row, start_ns: int | None) -> Measured:
+def measured(row: Row, kind: str, rule: Row, start_ns: int | None, course: Course | None = None) -> Measured:
     """Return a finding (`fail`) or a near miss (`near`) in words."""
     unit, long = row["unit"], row["t_end_ns"] is not None and row["t_end_ns"] != row["t_start_ns"]
     sense = _SENSE.get(rule["sense"])
@@ -93,6 +103,7 @@ def measured(row: Row, kind: str, rule: Row, start_ns: int | None) -> Measured:
         href="#" + (finding_anchor(row) if kind == "fail" else moment_anchor(*key(row))),
         kind=kind,
         severity=row["severity"],
+        keys=" ".join((kind, row["severity"], rule["pack"])),
         status=rule["status"],
         rule_id=row["rule_id"],
         title=rule["title"],
@@ -110,6 +121,7 @@ def measured(row: Row, kind: str, rule: Row, start_ns: int | None) -> Measured:
         sense=sense or "",
         gauge=_gauge(row["observed"], row["required"]),
         reason=row["reason"],
+        course=course,
     )
 
 
@@ -118,46 +130,73 @@ def key(row: Row) -> Key:
     return row["drive_id"], row["ego_id"], row["t_worst_ns"]
 
 
+def leading(rows: Iterable[tuple[Row, Measured]]) -> set[Key]:
+    """Return the moments of one drive that tell what happened: of each rule its worst, the gravest rules first."""
+    first: dict[str, tuple[int, float, Key]] = {}
+    for row, line in rows:
+        if line.kind == "fail":
+            ratio = 0.0 if not row["required"] or row["margin"] is None else row["margin"] / abs(row["required"])
+            worst = (SEVERITIES.index(row["severity"]), ratio, key(row))
+            first[row["rule_id"]] = min(first.get(row["rule_id"], worst), worst)
+    told: dict[Key, None] = {}
+    for _, _, at in sorted(first.values()):
+        if len(told) < KEY_MOMENTS:
+            told[at] = None
+    return set(told)
+
+
 def moments(
-    rows: Sequence[tuple[Row, Measured]], rules: Mapping[str, Row], pictures: Mapping[Key, Plan]
+    rows: Sequence[tuple[Row, Measured]],
+    rules: Mapping[str, Row],
+    pictures: Mapping[Key, Plan],
+    start_ns: int,
+    told: Collection[Key],
 ) -> list[Moment]:
-    """Return the moments of one drive, in time order, from its findings and near misses."""
+    """Return the moments of one drive, in time order, from its findings and near misses; `told`: those that lead."""
     groups: dict[Key, list[tuple[Row, Measured]]] = {}
     for row, line in rows:
         groups.setdefault(key(row), []).append((row, line))
     return [
-        _moment(at, found, rules, pictures.get(at))
+        _moment(at, found, rules, pictures.get(at), ticks(at[2], start_ns), leads=at in told)
         for at, found in sorted(groups.items(), key=lambda item: (item[0][2], item[0][1]))
     ]
 
 
-def pictures(rows: Iterable[Row], scenes: pa.Table, spaces: pa.Table, road: Road, most: int) -> dict[Key, Plan]:
+def pictures(
+    rows: Iterable[Row], scenes: Mapping[Key, Row], spaces: Mapping[Key, list[Row]], road: Road, most: int
+) -> dict[Key, Plan]:
     """Return the plan views of the moments of `rows`, of the first `most` in their order."""
-    keys = zip(*(scenes[name].to_pylist() for name in ("drive_id", "ego_id", "t_ns")), strict=True)
-    index = {at: n for n, at in enumerate(keys)}
     told: dict[Key, list[Row]] = {}
     for row in rows:
         told.setdefault(key(row), []).append(row)
-    rings: dict[Key, list[Row]] = {}
-    for row in spaces.to_pylist():
-        rings.setdefault((row["drive_id"], row["ego_id"], row["t_ns"]), []).append(row)
     drawn: dict[Key, Plan] = {}
-    for at, found in [(at, found) for at, found in told.items() if at in index][:most]:
-        (scene,) = scenes.slice(index[at], 1).to_pylist()
+    for at, found in [(at, found) for at, found in told.items() if at in scenes][:most]:
         concerned = {row["object_id"] for row in found if row["object_id"] is not None}
         about = any(row["rule_id"].startswith(_SPACES) for row in found)
-        drawn[at] = plan(scene, road, concerned, rings.get(at, []) if about else [])
+        drawn[at] = plan(scenes[at], road, concerned, spaces.get(at, []) if about else [])
     return drawn
 
 
-def _moment(at: Key, found: Sequence[tuple[Row, Measured]], rules: Mapping[str, Row], picture: Plan | None) -> Moment:
+def _moment(
+    at: Key,
+    found: Sequence[tuple[Row, Measured]],
+    rules: Mapping[str, Row],
+    picture: Plan | None,
+    t: int,
+    *,
+    leads: bool,
+) -> Moment:
     cards: dict[str, list[Measured]] = {}
     for row, line in found:
         cards.setdefault(row["rule_id"], []).append(line)
     failed = [line for _, line in found if line.kind == "fail"]
+    keys = {name for _, line in found for name in line.keys.split()}
     return Moment(
         anchor=moment_anchor(*at),
         time=found[0][1].time,
+        t=t,
+        keys=" ".join(sorted(keys)),
+        leading=leads,
         ego_id=at[1],
         objects=sorted({row["object_id"] for row, _ in found if row["object_id"] is not None}),
         kind="fail" if failed else "near",

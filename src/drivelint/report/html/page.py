@@ -8,8 +8,15 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.report import counts
+from drivelint.report.html import front
 from drivelint.report.html.anchors import drive_anchor, rule_anchor
-from drivelint.report.html.moments import measured, moments, pictures
+from drivelint.report.html.courses import course
+from drivelint.report.html.moments import leading, measured, moments, pictures
+from drivelint.report.html.opportunities import opportunities
+from drivelint.report.html.overtakes import views
+from drivelint.report.html.parties import parties
+from drivelint.report.html.reasons import can_be_provided, plain, reasons
+from drivelint.report.html.replay import replays
 from drivelint.report.html.road import Road
 from drivelint.report.html.timeline import Clock, timelines
 from drivelint.report.result import outcome
@@ -18,7 +25,9 @@ from drivelint.report.text import number
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from drivelint.report.html.moments import Measured
+    from drivelint.report.html.moments import Key, Measured, Moment
+    from drivelint.report.html.parties import Party
+    from drivelint.report.html.timeline import Timeline
     from drivelint.report.result import Result
 
     Row = Mapping[str, Any]
@@ -28,18 +37,17 @@ MAX_FINDINGS: Final = 1000
 MAX_NEAR: Final = 300
 """Near misses in the page."""
 MAX_PICTURES: Final = 250
-MAX_DRIVES: Final = 200
+MAX_DRIVES: Final = 100
 """Drives with a section of their own: first those with findings, then those with near misses or something unknown."""
-MAX_REASONS: Final = 200
 OPEN_DRIVES: Final = 3
 """Up to so many drives are shown unfolded."""
 
 _NAMES: Final = {
-    "pass": "pass",
-    "fail": "fail",
-    "unknown": "unknown",
-    "not_applicable": "not applicable",
+    "fail": "not kept",
     "error": "error",
+    "unknown": "unknown",
+    "pass": "kept",
+    "not_applicable": "not applicable",
 }
 
 
@@ -47,73 +55,88 @@ def content(result: Result) -> dict[str, Any]:
     """Return everything that the template shows."""
     rules = {row["rule_id"]: row for row in result.rules.to_pylist()}
     drives = result.drives.to_pylist()
-    starts = {row["drive_id"]: row["t_start_ns"] for row in drives}
-    failed = _worst_first(result.findings, MAX_FINDINGS)
-    near_miss = pc.and_(result.verdicts["near_miss"], pc.is_valid(result.verdicts["t_worst_ns"]))
-    near = _worst_first(result.verdicts.filter(near_miss), MAX_NEAR)
-    lines: list[tuple[Row, Measured]] = [
-        (row, measured(row, "fail", rules[row["rule_id"]], starts.get(row["drive_id"]))) for row in failed
-    ]
-    close: list[tuple[Row, Measured]] = [
-        (row, measured(row, "near", rules[row["rule_id"]], starts.get(row["drive_id"]))) for row in near
-    ]
-    drawn = pictures([row for row, _ in lines + close], result.scenes, result.spaces, Road(result.lanes), MAX_PICTURES)
+    starts = {row["drive_id"]: row["t_start_ns"] or 0 for row in drives}
+    lines, close = _lines(result, rules, starts)
+    scenes = {_at(row): row for row in result.scenes.to_pylist()}
+    spaces: dict[Key, list[Row]] = {}
+    for row in result.spaces.to_pylist():
+        spaces.setdefault(_at(row), []).append(row)
+    road = Road(result.lanes)
+    drawn = pictures([row for row, _ in lines + close], scenes, spaces, road, MAX_PICTURES)
     listed = _by_drive(lines + close)
     told = counts.by(result.verdicts, "drive_id")
     shown = _with_section(drives, listed, told)
     lines, close = _linked(lines, shown), _linked(close, shown)
-    verdicts, found = _rows_by_drive(result.verdicts, shown), _rows_by_drive(result.findings, shown)
+    listed = _by_drive(lines + close)
     anchors = {line.anchor for _, line in lines}
-    titles = {rule_id: rule["title"] for rule_id, rule in rules.items()}
+    verdicts, found = _rows_by_drive(result.verdicts, shown), _rows_by_drive(result.findings, shown)
+    sections = [
+        _section(
+            row,
+            timelines(verdicts.get(row["drive_id"], []), found.get(row["drive_id"], []), rules, anchors, _clock(row)),
+            moments(mine := listed.get(row["drive_id"], []), rules, drawn, starts[row["drive_id"]], leading(mine)),
+            parties(row["drive_id"], mine, scenes),
+            unfolded=len(drives) <= OPEN_DRIVES,
+        )
+        for row in drives
+        if row["drive_id"] in shown
+    ]
+    totals = counts.total(result.verdicts)
     return {
         "outcome": outcome(result),
-        "headline": _headline(result),
-        "counts": _shares(counts.total(result.verdicts)),
+        "headline": front.headline(result),
+        "counts": front.shares(totals),
         "names": _NAMES,
-        "passes": counts.total(result.verdicts)["pass"],
+        "passes": totals["pass"],
         "n_findings": result.findings.num_rows,
         "n_near": int(pc.sum(result.verdicts["near_miss"]).as_py() or 0),
+        "broken": front.broken(result, rules, lines),
+        "packs": front.packs(result),
+        "stories": front.stories(sections, len(drives)),
         "findings": [line for _, line in lines],
         "near": [line for _, line in close],
-        "filters": _filters([line for _, line in lines]),
+        "filters": _filters([line for _, line in lines + close], rules),
         "not_judged": [row for row in drives if row["status"] == "not_judged"],
-        "open": _reasons(result.verdicts, titles),
+        "open": reasons(result.verdicts, {rule_id: rule["title"] for rule_id, rule in rules.items()}),
         "km": sum(row["km"] for row in drives),
         "duration_s": sum(row["duration_s"] or 0.0 for row in drives),
         "drives": [_drive_row(row, told, listed, row["drive_id"] in shown) for row in drives],
-        "sections": [
-            _section(
-                row,
-                timelines(
-                    verdicts.get(row["drive_id"], []), found.get(row["drive_id"], []), titles, anchors, _clock(row)
-                ),
-                moments(listed.get(row["drive_id"], []), rules, drawn),
-                unfolded=len(drives) <= OPEN_DRIVES,
-            )
-            for row in drives
-            if row["drive_id"] in shown
-        ],
+        "sections": sections,
+        "tiles": road.tiles() if drawn else [],
+        "replays_of": {
+            drive_anchor(drive_id): text
+            for drive_id, text in replays([scenes[at] for at in drawn], spaces, starts, road).items()
+        },
+        "overtakes": views(result.overtakes.to_pylist(), starts, shown),
+        "opportunities": opportunities(result.opportunities.to_pylist()),
         "rules": _rules(result, rules),
+        "rule_groups": _rule_groups(result, rules),
         "profiles": sorted({profile for rule in rules.values() for profile in rule["profiles"]}),
-        "maps": sorted({row["map_name"] for row in drives if row["map_name"] is not None}),
+        "maps": sorted({(row["map_name"], row["map_sha256"]) for row in drives if row["map_name"] is not None}),
     }
 
 
-def _headline(result: Result) -> tuple[str, str]:
-    """Return the sign and the sentence that stand on top."""
-    told, n = counts.total(result.verdicts), result.findings.num_rows
-    judged = int(pc.sum(pc.equal(result.drives["status"], "judged")).as_py() or 0)
-    open_ = told["unknown"] + told["error"]
-    if n:
-        drives = len(pc.unique(result.findings["drive_id"]))
-        return "fail", f"{n} {'finding' if n == 1 else 'findings'} in {drives} of {result.drives.num_rows} drives"
-    if not judged or not result.verdicts.num_rows:
-        return "unknown", "Nothing was judged"
-    if not told["pass"] and open_:
-        return "unknown", "Nothing could be decided"
-    if open_ or judged < result.drives.num_rows:
-        return "unknown", "No finding, as far as it could be judged"
-    return "pass", "No finding"
+def _at(row: Row) -> Key:
+    return row["drive_id"], row["ego_id"], row["t_ns"]
+
+
+def _lines(
+    result: Result, rules: Mapping[str, Row], starts: Mapping[str, int]
+) -> tuple[list[tuple[Row, Measured]], list[tuple[Row, Measured]]]:
+    """Return the findings and the near misses that the page shows, the worst first, each with its words."""
+    courses = {row["finding_id"]: row for row in result.courses.to_pylist()}
+    failed: list[tuple[Row, Measured]] = []
+    for row in _worst_first(result.findings, MAX_FINDINGS):
+        start = starts.get(row["drive_id"], 0)
+        seen = courses.get(row["finding_id"])
+        way = None if seen is None else course(seen, row["t_worst_ns"], row["unit"], start)
+        failed.append((row, measured(row, "fail", rules[row["rule_id"]], start, way)))
+    near = pc.and_(result.verdicts["near_miss"], pc.is_valid(result.verdicts["t_worst_ns"]))
+    close: list[tuple[Row, Measured]] = [
+        (row, measured(row, "near", rules[row["rule_id"]], starts.get(row["drive_id"], 0)))
+        for row in _worst_first(result.verdicts.filter(near), MAX_NEAR)
+    ]
+    return failed, close
 
 
 def _worst_first(rows: pa.Table, most: int) -> list[dict[str, Any]]:
@@ -163,46 +186,16 @@ def _rows_by_drive(rows: pa.Table, drives: set[str]) -> dict[str, list[dict[str,
     return grouped
 
 
-def _shares(told: Mapping[str, int]) -> list[dict[str, Any]]:
-    """Return the verdicts with their number and their stretch of a bar, in percent."""
-    total, at, shares = sum(told.values()), 0.0, []
-    for verdict in ("fail", "error", "unknown", "pass", "not_applicable"):
-        width = 100 * told[verdict] / total if total else 0.0
-        shares.append({"verdict": verdict, "n": told[verdict], "x": f"{at:.3f}%", "w": f"{width:.3f}%"})
-        at += width
-    return shares
-
-
-def _filters(lines: Sequence[Measured]) -> dict[str, list[tuple[str, str]]]:
-    """Return what the table of findings can be filtered by: value and label."""
-    severities = {line.severity for line in lines}
+def _filters(lines: Sequence[Measured], rules: Mapping[str, Row]) -> dict[str, list[tuple[str, str]]]:
+    """Return what can be chosen in the filters: value and label."""
+    severities = {rule["severity"] for rule in rules.values()}
+    drives = sorted({line.drive_id for line in lines})
     return {
+        "verdict": [(v, _NAMES.get(v, "near miss")) for v in ("fail", "near", "unknown", "pass", "error")],
         "severity": [(s, s) for s in counts.SEVERITIES if s in severities],
-        "rule": sorted({(line.rule_id, f"{line.title} ({line.rule_id})") for line in lines}, key=lambda item: item[0]),
-        "drive": sorted({(line.drive_id, line.drive_id) for line in lines}),
+        "pack": [(p, p) for p in sorted({rule["pack"] for rule in rules.values()})],
+        "drive": [(d, d) for d in drives] if len(drives) > 1 else [],
     }
-
-
-def _reasons(verdicts: pa.Table, titles: Mapping[str, str]) -> list[dict[str, Any]]:
-    """Return why verdicts are unknown or errors: reason, rules, how many verdicts and drives; the most frequent first."""
-    rows = verdicts.filter(pc.is_in(verdicts["verdict"], value_set=pa.array(["unknown", "error"])))
-    grouped: dict[tuple[str, str], dict[str, Any]] = {}
-    for row in rows.select(["verdict", "reason", "rule_id", "drive_id"]).to_pylist():
-        entry = grouped.setdefault((row["verdict"], row["reason"]), {"n": 0, "rules": set(), "drives": set()})
-        entry["n"] += 1
-        entry["rules"].add(row["rule_id"])
-        entry["drives"].add(row["drive_id"])
-    ordered = sorted(grouped.items(), key=lambda item: (item[0][0], -item[1]["n"], item[0][1]))
-    return [
-        {
-            "verdict": verdict,
-            "reason": reason,
-            "n": entry["n"],
-            "rules": [(titles.get(rule, rule), "#" + rule_anchor(rule)) for rule in sorted(entry["rules"])],
-            "n_drives": len(entry["drives"]),
-        }
-        for (verdict, reason), entry in ordered[:MAX_REASONS]
-    ]
 
 
 def _clock(row: Row) -> Clock:
@@ -223,12 +216,21 @@ def _drive_row(
     }
 
 
-def _section(row: Row, tracks: Sequence[Any], seen: Sequence[Any], *, unfolded: bool) -> dict[str, Any]:
+def _section(
+    row: Row, tracks: Sequence[Timeline], seen: Sequence[Moment], involved: Sequence[Party], *, unfolded: bool
+) -> dict[str, Any]:
+    """Return a drive with its egos: the timeline, the moments and the parties of each."""
     weight = {"error": 0, "warning": 1, "info": 2}
+    egos = [{"timeline": t, "moments": [m for m in seen if m.ego_id == t.ego_id]} for t in tracks]
+    missing: dict[str, list[str]] = {}
+    for gap in row["not_judged"]:
+        missing.setdefault(gap["reason"], []).append(gap["ego_id"])
     return {
         **row,
         "anchor": drive_anchor(row["drive_id"]),
-        "timelines": tracks,
+        "parties": involved,
+        "missing": [{"reason": why, "n": len(who), "egos": ", ".join(who)} for why, who in missing.items()],
+        "egos": sorted(egos, key=lambda ego: (-len(ego["moments"]), ego["timeline"].ego_id)) if len(egos) > 1 else egos,
         "moments": seen,
         "unfolded": unfolded,
         "quality": sorted(row["quality"], key=lambda check: weight.get(check["severity"], 3)),
@@ -249,3 +251,42 @@ def _rules(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any]]:
         }
         for rule_id, rule in rules.items()
     ]
+
+
+def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any]]:
+    """Return the rules by pack: those that were judged somewhere, then the others in one fold per reason."""
+    told = {rule["rule_id"]: rule for rule in _rules(result, rules)}
+    why = _first_reason(result.verdicts)
+    groups: dict[str, dict[str, Any]] = {}
+    for rule_id, rule in told.items():
+        group = groups.setdefault(
+            rule["pack"], {"pack": rule["pack"], "about": front.PACKS.get(rule["pack"], ""), "rules": [], "folds": {}}
+        )
+        if (reason := why.get(rule_id)) is None:
+            group["rules"].append(rule)
+        else:
+            group["folds"].setdefault(reason, []).append(rule)
+    order = ("not_applicable", "unknown")
+    for group in groups.values():
+        group["folds"] = sorted(
+            group["folds"].items(), key=lambda item: (order.index(item[0][0]), -len(item[1]), item[0][1])
+        )
+    return list(groups.values())
+
+
+def _first_reason(verdicts: pa.Table) -> dict[str, tuple[str, str]]:
+    """Return verdict and reason of the rules that were judged nowhere, for want of an occasion or of something to be provided."""
+    keys = ["rule_id", "verdict", "reason_code", "reason"]
+    rows = verdicts.group_by(keys, use_threads=False).aggregate([([], "count_all")]).to_pylist()
+    found: dict[str, tuple[str, str]] = {}
+    judged = set()
+    for row in sorted(
+        rows, key=lambda r: (r["rule_id"], r["verdict"] == "not_applicable", -r["count_all"], r["reason"])
+    ):
+        idle = row["verdict"] == "not_applicable" or (
+            row["verdict"] == "unknown" and can_be_provided(row["reason_code"])
+        )
+        if not idle:
+            judged.add(row["rule_id"])
+        found.setdefault(row["rule_id"], (row["verdict"], plain(row["reason"])))
+    return {rule_id: reason for rule_id, reason in found.items() if rule_id not in judged}

@@ -1,6 +1,7 @@
 """The plan view of a moment: lanes, boxes, ways, danger spaces and the least distance, as numbers for an SVG.
 
-The road runs to the right as the ego drives it. Lengths are viewBox units, y down; everything is clipped to the view.
+The road runs to the right as the ego drives it. What lies on the map is drawn in the map's units (see `road`) under one matrix, so
+that a script can move it; names and distances are in viewBox units, y down.
 """
 
 from __future__ import annotations
@@ -12,12 +13,13 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 import shapely
 
+from drivelint.report.html.road import UNITS
 from drivelint.report.html.svg import closed, num, polyline
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-    from drivelint.report.html.road import Points, Road
+    from drivelint.report.html.road import Lanes, Points, Road
 
 WIDTH: Final = 600
 _HEIGHT: Final = (190.0, 330.0)
@@ -29,18 +31,21 @@ _TOUCH_M: Final = 0.005  # boxes nearer than this are not apart
 
 
 class Text(NamedTuple):
-    """A label at a point."""
+    """A label at a point; `actor`: whose name it is."""
 
     x: str
     y: str
     text: str
     kind: str
+    actor: str = ""
 
 
 class Body(NamedTuple):
-    """An actor's box with the line of its front window, and its way before and after the moment."""
+    """An actor: its box and the chevron on it, in its own frame; where it is; its way before and after the moment."""
 
     kind: str
+    actor: str
+    place: str
     box: str
     front: str
     before: str
@@ -62,10 +67,8 @@ class Plan:
     """Everything that the template draws, in drawing order, and the same in words."""
 
     height: str
-    road: str
-    beside: str
-    markings: list[tuple[str, str]]
-    arrows: list[str]
+    matrix: str
+    tiles: list[str]
     spaces: list[tuple[str, str]]
     bodies: list[Body]
     gaps: list[Line]
@@ -94,6 +97,18 @@ class _View:
         u, v = dx * self.cos + dy * self.sin - self.ahead, dy * self.cos - dx * self.sin - self.left
         return np.column_stack([WIDTH / 2 + self.scale * u, self.height / 2 - self.scale * v])
 
+    def matrix(self, lanes: Lanes) -> str:
+        """Return the transformation of drawn units of the map."""
+        k = self.scale / UNITS
+        e, f = self(np.array([lanes.origin]))[0]
+        turn = f"{k * self.cos:.5f},{k * self.sin:.5f},{k * self.sin:.5f},{-k * self.cos:.5f}"
+        return f"matrix({turn},{num(e)},{num(f)})"
+
+    def holds(self, xy: Points) -> bool:
+        """Whether any of these map points is in the view."""
+        x, y = self(xy).T
+        return bool(((x > 0) & (x < WIDTH) & (y > 0) & (y < self.height)).any())
+
 
 def plan(scene: Mapping[str, Any], road: Road, concerned: Collection[str], spaces: Sequence[Mapping[str, Any]]) -> Plan:
     """Return the plan view of a row of the table `scene`.
@@ -104,26 +119,22 @@ def plan(scene: Mapping[str, Any], road: Road, concerned: Collection[str], space
     ego, others = actors[0], actors[1:]
     met = [a for a in others if a["actor_id"] in concerned]
     around = [s for s in spaces if s["actor_id"] in {ego["actor_id"], *concerned}]
-    rings = [(s["actor_id"], _ring(s)) for s in around]
-    lanes = road.near(scene["environment_id"], scene["lanelets"])
+    rings = [(s["actor_id"], np.column_stack([s["x_m"], s["y_m"]])) for s in around]
+    lanes = road.on(scene["environment_id"])
     shown = [_corners(a) for a in (ego, *met)] + [ring for _, ring in rings]
     heading = lanes.direction(ego["x_m"], ego["y_m"], ego["yaw_rad"] or 0.0)
     view = _fit(ego, heading, np.concatenate(shown))
-    inside = _Clip(view)
     texts, gaps, told = _distances(ego, met, view)
-    texts += [_label(a, ego, met, view) for a in actors if inside.has(a)]
+    texts += [_label(a, ego, met, view) for a in actors if view.holds(_corners(a))]
     length_px, length_m = _bar(view.scale)
     return Plan(
         height=num(view.height),
-        road=inside.areas(lanes.drivable(view)),
-        beside=inside.areas(lanes.beside(view)),
-        markings=[(kind, d) for kind, line in lanes.markings(view) if (d := inside.line(line))],
-        arrows=[inside.arrow(p, q) for p, q in lanes.arrows(view) if inside.point(p)],
-        spaces=[(_kind(who, ego, concerned), closed(view(ring))) for who, ring in rings],
+        matrix=view.matrix(lanes),
+        tiles=lanes.tiles_of(scene["lanelets"]),
+        spaces=[(_kind(who, ego, concerned), closed(np.rint(lanes.drawn(ring)))) for who, ring in rings],
         bodies=[
-            _body(a, _kind(a["actor_id"], ego, concerned), view, inside, scene["t_ns"])
+            _body(a, _kind(a["actor_id"], ego, concerned), lanes, scene["t_ns"])
             for a in sorted((*others, ego), key=_area, reverse=True)  # whoever is under a larger one is still seen
-            if inside.has(a)
         ],
         gaps=gaps,
         texts=texts,
@@ -147,85 +158,52 @@ def _fit(ego: Mapping[str, Any], yaw: float, shown: Points) -> _View:
     )
 
 
-class _Clip:
-    """What of a drawing lies inside the view."""
-
-    def __init__(self, view: _View) -> None:
-        self._view = view
-        self._rect = (-3.0, -3.0, WIDTH + 3.0, view.height + 3.0)
-
-    def point(self, p: Points) -> bool:
-        x0, y0, x1, y1 = self._rect
-        return bool(x0 + 9 < p[0] < x1 - 9 and y0 + 9 < p[1] < y1 - 9)
-
-    def has(self, actor: Mapping[str, Any]) -> bool:
-        return bool(shapely.intersects(shapely.polygons(self._view(_corners(actor))), shapely.box(*self._rect)))
-
-    def areas(self, polygons: Sequence[shapely.Geometry]) -> str:
-        """Return the union of polygons as a path."""
-        view = shapely.box(*self._rect)
-        seen = [polygon for polygon in polygons if shapely.intersects(polygon, view)]
-        if not seen:
-            return ""
-        cut = shapely.intersection(shapely.union_all(seen, grid_size=0.05), view)
-        parts = [p for p in shapely.get_parts(shapely.simplify(cut, 0.2)) if p.geom_type == "Polygon"]
-        rings = [ring for p in parts for ring in (p.exterior, *p.interiors)]
-        return "".join(closed(shapely.get_coordinates(ring)[:-1]) for ring in rings)
-
-    def line(self, points: Points) -> str:
-        """Return a line as a path, in several pieces if it leaves the view."""
-        if len(points) < 2:
-            return ""
-        cut = shapely.clip_by_rect(shapely.linestrings(points), *self._rect)
-        parts = [p for p in shapely.get_parts(shapely.simplify(cut, 0.1)) if p.geom_type == "LineString"]
-        return "".join(polyline(shapely.get_coordinates(part)) for part in parts)
-
-    def arrow(self, at: Points, towards: Points) -> str:
-        """Return a small chevron at a point."""
-        u = (towards - at) / max(float(np.hypot(*(towards - at))), 1e-9)
-        n = np.array([-u[1], u[0]])
-        return polyline(np.array([at - 4 * u + 3 * n, at, at - 4 * u - 3 * n]))
-
-
-def _corners(actor: Mapping[str, Any]) -> Points:
-    """Return the corners of a box in map metres, front left first, counter-clockwise; shape (4, 2)."""
-    hl, hw = (actor["length_m"] or _DOT_M) / 2, (actor["width_m"] or _DOT_M) / 2
-    return _of_body(actor, [(hl, hw), (-hl, hw), (-hl, -hw), (hl, -hw)])
+def _size(actor: Mapping[str, Any]) -> tuple[float, float]:
+    return actor["length_m"] or _DOT_M, actor["width_m"] or _DOT_M
 
 
 def _area(actor: Mapping[str, Any]) -> float:
-    return (actor["length_m"] or _DOT_M) * (actor["width_m"] or _DOT_M)
+    length, width = _size(actor)
+    return length * width
 
 
-def _of_body(actor: Mapping[str, Any], points: Sequence[tuple[float, float]]) -> Points:
+def _outline(actor: Mapping[str, Any]) -> Points:
+    """Return the corners of a box in its own frame in metres, front left first, counter-clockwise; shape (4, 2)."""
+    hl, hw = (side / 2 for side in _size(actor))
+    return np.array([(hl, hw), (-hl, hw), (-hl, -hw), (hl, -hw)])
+
+
+def _corners(actor: Mapping[str, Any]) -> Points:
+    """Return the corners of a box in map metres; shape (4, 2)."""
     yaw = actor["yaw_rad"] or 0.0
     c, s = math.cos(yaw), math.sin(yaw)
-    return np.array([(actor["x_m"] + c * u - s * v, actor["y_m"] + s * u + c * v) for u, v in points])
-
-
-def _ring(space: Mapping[str, Any]) -> Points:
-    return np.column_stack([space["x_m"], space["y_m"]])
+    corners: Points = _outline(actor) @ np.array([[c, s], [-s, c]]) + (actor["x_m"], actor["y_m"])
+    return corners
 
 
 def _kind(actor_id: str, ego: Mapping[str, Any], concerned: Collection[str]) -> str:
     return "ego" if actor_id == ego["actor_id"] else "met" if actor_id in concerned else "other"
 
 
-def _body(actor: Mapping[str, Any], kind: str, view: _View, inside: _Clip, t_ns: int) -> Body:
+def _body(actor: Mapping[str, Any], kind: str, lanes: Lanes, t_ns: int) -> Body:
     hl, hw = (actor["length_m"] or 0.0) / 2, (actor["width_m"] or 0.0) / 2
-    heading = (
-        [(0.5 * hl, 0.8 * hw), (0.82 * hl, 0.0), (0.5 * hl, -0.8 * hw)] if actor["yaw_rad"] is not None and hl else []
-    )
+    front = ""
+    if actor["yaw_rad"] is not None and hl:
+        front = polyline(UNITS * np.array([(0.5 * hl, 0.8 * hw), (0.82 * hl, 0.0), (0.5 * hl, -0.8 * hw)]))
     before, after, seconds = "", "", []
     way: list[dict[str, Any]] = actor["path"] or []
     if kind != "other" and way and np.ptp([p["x_m"] for p in way]) + np.ptp([p["y_m"] for p in way]) > 1:
         t = np.array([p["t_ns"] for p in way])
-        xy = view(np.array([(p["x_m"], p["y_m"]) for p in way]))
-        before, after = inside.line(xy[t <= t_ns]), inside.line(xy[t >= t_ns])
-        near = np.abs((t - t_ns) - 1e9 * np.round((t - t_ns) / 1e9)) < 5e7
-        seconds = [(num(p[0]), num(p[1])) for p in xy[near & (t != t_ns)] if inside.point(p)]
-    front = polyline(view(_of_body(actor, heading))) if heading else ""
-    return Body(kind, closed(view(_corners(actor))), front, before, after, seconds)
+        xy = np.rint(lanes.drawn(np.array([(p["x_m"], p["y_m"]) for p in way])))
+        before, after = polyline(xy[t <= t_ns]), polyline(xy[t >= t_ns])
+        # the nearest kept point to every full second from the moment
+        whole = 1e9 * np.round((t - t_ns) / 1e9)
+        near = (np.abs(t - t_ns - whole) <= 1e8) & (whole != 0)
+        picked = {int(s): i for i, s in reversed(list(enumerate(whole.tolist()))) if near[i]}
+        seconds = [(num(xy[i, 0]), num(xy[i, 1])) for _, i in sorted(picked.items())]
+    x, y = lanes.drawn(np.array([[actor["x_m"], actor["y_m"]]]))[0]
+    place = f"translate({num(x)},{num(y)})rotate({math.degrees(actor['yaw_rad'] or 0.0):.1f})"
+    return Body(kind, actor["actor_id"], place, closed(UNITS * _outline(actor)), front, before, after, seconds)
 
 
 def _distances(
@@ -269,7 +247,7 @@ def _label(actor: Mapping[str, Any], ego: Mapping[str, Any], met: Sequence[Mappi
         (f"ego {actor['actor_id']}", "ego") if actor is ego else (actor["actor_id"], "met" if actor in met else "other")
     )
     x = min(max(float(middle[0]), 22.0), WIDTH - 22.0)
-    return Text(num(x), num(min(max(float(y), 12.0), view.height - 4.0)), name, kind)
+    return Text(num(x), num(min(max(float(y), 12.0), view.height - 4.0)), name, kind, actor["actor_id"])
 
 
 def _bar(scale: float) -> tuple[float, int]:

@@ -1,59 +1,93 @@
-"""The lanes around a scene, from the table `lane_shape`."""
+"""The lanes around scenes, from the table `lane_shape`: each drawn once in the page, in map coordinates, and used by every scene.
+
+Drawn lengths are decimetres from an origin of the map, y up: a scene turns and scales them by one matrix.
+"""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
-import shapely
+
+from drivelint.report.html.svg import closed, polyline
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     import pyarrow as pa
     from numpy.typing import NDArray
 
     Points = NDArray[np.float64]
     """Shape (n, 2)."""
-    View = Callable[[Points], Points]
 
+UNITS: Final = 10.0
+"""Drawn units per metre."""
 _ARROW_EVERY_M: Final = 25.0
 _ON_ROAD_M: Final = 6.0  # a bound nearer than this belongs to the road that the ego is on
 _SLANT_RAD: Final = math.radians(50)  # and it runs along it if the ego does not cross it more steeply
+_TILE_M: Final = 200.0  # lanes that begin in one square are drawn together
+
+
+class Tile(NamedTuple):
+    """Lanes that begin in one square of the map, as the data of paths: areas first, then what is painted on them."""
+
+    name: str
+    road: str
+    beside: str
+    marks: list[tuple[str, str]]
+    arrows: str
 
 
 class Road:
     """All lane shapes of a result."""
 
     def __init__(self, lanes: pa.Table) -> None:
-        self._lanes: dict[tuple[str, str], dict[str, Any]] = {}
+        maps: dict[str, list[dict[str, Any]]] = {}
         for row in lanes.to_pylist():
             for side in ("left", "right"):
                 row[side] = np.column_stack([row[f"{side}_x_m"], row[f"{side}_y_m"]])
-            self._lanes[row["environment_id"], row["lanelet_id"]] = row
+            maps.setdefault(row["environment_id"], []).append(row)
+        self._maps = {name: Lanes(f"m{n}", rows) for n, (name, rows) in enumerate(sorted(maps.items()))}
+        self._none = Lanes("m", [])
 
-    def near(self, environment_id: str | None, lanelets: Sequence[str]) -> Lanes:
-        """Return these lanes of a map; none without a map."""
-        keys = [(environment_id, lanelet) for lanelet in lanelets] if environment_id is not None else []
-        return Lanes([self._lanes[key] for key in keys if key in self._lanes])
+    def on(self, environment_id: str | None) -> Lanes:
+        """Return the lanes of a map; none without a map."""
+        return self._maps.get(environment_id, self._none) if environment_id is not None else self._none
+
+    def tiles(self) -> list[Tile]:
+        """Return what is to be drawn once in the page."""
+        return [tile for lanes in self._maps.values() for tile in lanes.tiles()]
 
 
 class Lanes:
-    """Some lanes, drawn through a view from map metres to drawing units."""
+    """The lanes of one map."""
 
-    def __init__(self, lanes: Sequence[Mapping[str, Any]]) -> None:
-        self._lanes = lanes
+    def __init__(self, name: str, lanes: Sequence[Mapping[str, Any]]) -> None:
+        self._name, self._lanes = name, lanes
+        points = np.concatenate([lane["left"] for lane in lanes]) if lanes else None
+        self.origin = (0.0, 0.0) if points is None else tuple(float(v) for v in np.round(points.mean(axis=0)))
+        self._tile = {lane["lanelet_id"]: self._tile_of(lane) for lane in lanes}
+        ends = [(lane[side][:-1], lane[side][1:]) for lane in lanes if lane["drivable"] for side in ("left", "right")]
+        none = np.empty((0, 2))
+        self._a, self._b = (np.concatenate([e[i] for e in ends]) if ends else none for i in (0, 1))
+
+    def drawn(self, xy: Points) -> Points:
+        """Return drawn units of map points in metres."""
+        return (xy - self.origin) * UNITS
+
+    def tiles_of(self, lanelets: Sequence[str]) -> list[str]:
+        """Return the names of the tiles that these lanelets are drawn on."""
+        return sorted({self._tile[lanelet] for lanelet in lanelets if lanelet in self._tile})
 
     def direction(self, x_m: float, y_m: float, yaw_rad: float) -> float:
         """Return the heading of the road at a place, the way round that is nearer to `yaw_rad`; that itself off the road."""
-        ends = [
-            (lane[side][:-1], lane[side][1:]) for lane in self._lanes if lane["drivable"] for side in ("left", "right")
-        ]
-        if not ends:
+        near = (np.minimum(self._a, self._b) < (x_m + _ON_ROAD_M, y_m + _ON_ROAD_M)).all(axis=1) & (
+            np.maximum(self._a, self._b) > (x_m - _ON_ROAD_M, y_m - _ON_ROAD_M)
+        ).all(axis=1)
+        if not near.any():
             return yaw_rad
-        a, b = np.concatenate([e[0] for e in ends]), np.concatenate([e[1] for e in ends])
-        step = b - a
+        a, step = self._a[near], (self._b - self._a)[near]
         length = np.maximum(np.hypot(step[:, 0], step[:, 1]), 1e-9)
         u = np.clip(((np.array([x_m, y_m]) - a) * step).sum(axis=1) / length**2, 0.0, 1.0)
         away = np.hypot(*(a + u[:, None] * step - (x_m, y_m)).T)
@@ -63,17 +97,31 @@ class Lanes:
         fits = (away < _ON_ROAD_M) & (np.abs(turn) < _SLANT_RAD)
         return yaw_rad + float(turn[np.where(fits, away, np.inf).argmin()]) if fits.any() else yaw_rad
 
-    def drivable(self, view: View) -> list[shapely.Geometry]:
-        """Return the areas that are driven on."""
-        return self._areas(view, drivable=True)
+    def tiles(self) -> Iterator[Tile]:
+        """Yield the drawing of the lanes, tile by tile."""
+        marks = self._markings()
+        for name in sorted(set(self._tile.values())):
+            lanes = [lane for lane in self._lanes if self._tile[lane["lanelet_id"]] == name]
+            yield Tile(
+                name,
+                road=self._areas(lanes, drivable=True),
+                beside=self._areas(lanes, drivable=False),
+                marks=[
+                    (kind, "".join(line for tile, what, line in marks if (tile, what) == (name, kind)))
+                    for kind in sorted({what for tile, what, _ in marks if tile == name})
+                ],
+                arrows="".join(arrow for lane in lanes for arrow in self._arrows(lane)),
+            )
 
-    def beside(self, view: View) -> list[shapely.Geometry]:
-        """Return the other areas: footways, shoulders, parking."""
-        return self._areas(view, drivable=False)
+    def _areas(self, lanes: Sequence[Mapping[str, Any]], *, drivable: bool) -> str:
+        rings = [np.concatenate([lane["left"], lane["right"][::-1]]) for lane in lanes if lane["drivable"] is drivable]
+        # all the same way round: where lanes overlap they fill, and do not cut each other out
+        return "".join(closed(np.rint(self.drawn(ring if _area(ring) > 0 else ring[::-1]))) for ring in rings)
 
-    def markings(self, view: View) -> Iterator[tuple[str, Points]]:
-        """Yield each bound once: solid, broken, edge (a kerb or a bound that the map does not describe)."""
+    def _markings(self) -> list[tuple[str, str, str]]:
+        """Return each bound once: tile, solid, broken or edge (a kerb or a bound that the map does not describe), path."""
         seen: set[frozenset[tuple[float, float]]] = set()
+        marks = []
         # a bound inside a junction is only where somebody could drive: nothing is painted there
         for lane in (lane for lane in self._lanes if not lane["in_junction"]):
             for side in ("left", "right"):
@@ -82,29 +130,41 @@ class Lanes:
                 kind = _marking(lane[f"{side}_marking"], drivable=lane["drivable"])
                 if kind and ends not in seen:
                     seen.add(ends)
-                    yield kind, view(line)
+                    marks.append((self._tile[lane["lanelet_id"]], kind, polyline(np.rint(self.drawn(line)))))
+        return marks
 
-    def arrows(self, view: View) -> Iterator[tuple[Points, Points]]:
-        """Yield points in the middle of lanes that are driven on, each with one a little further in the direction of travel."""
-        for lane in (lane for lane in self._lanes if lane["drivable"] and not lane["in_junction"]):
-            left, right = shapely.linestrings(lane["left"]), shapely.linestrings(lane["right"])
-            n = int(left.length // _ARROW_EVERY_M)
-            for k in range(n):
-                share = np.array([(k + 0.5) / n, (k + 0.5) / n + 0.5 / left.length])
-                pair = [
-                    shapely.get_coordinates(shapely.line_interpolate_point(line, share, normalized=True))
-                    for line in (left, right)
-                ]
-                at, towards = view((pair[0] + pair[1]) / 2)
-                yield at, towards
+    def _arrows(self, lane: Mapping[str, Any]) -> Iterator[str]:
+        """Yield small chevrons in the middle of a lane that is driven on, in the direction of travel."""
+        if not lane["drivable"] or lane["in_junction"]:
+            return
+        left, right = (_along(lane[side]) for side in ("left", "right"))
+        n = int(left[-1] // _ARROW_EVERY_M)
+        for k in range(n):
+            share = np.array([(k + 0.5) / n, (k + 0.5) / n + 0.5 / left[-1]])
+            pair = [_at(lane[side], s, share) for side, s in (("left", left), ("right", right))]
+            at, towards = self.drawn((pair[0] + pair[1]) / 2)
+            u = (towards - at) / max(float(np.hypot(*(towards - at))), 1e-9)
+            v = np.array([-u[1], u[0]])
+            yield polyline(np.rint(np.array([at - 8 * u + 6 * v, at, at - 8 * u - 6 * v])))
 
-    def _areas(self, view: View, *, drivable: bool) -> list[shapely.Geometry]:
-        rings = [
-            view(np.concatenate([lane["left"], lane["right"][::-1]]))
-            for lane in self._lanes
-            if lane["drivable"] is drivable
-        ]
-        return list(shapely.make_valid(np.array([shapely.Polygon(ring) for ring in rings], dtype=object)))
+    def _tile_of(self, lane: Mapping[str, Any]) -> str:
+        x, y = (int((lane["left"][0][i] - self.origin[i]) // _TILE_M) for i in (0, 1))
+        return f"{self._name}t{x}_{y}".replace("-", "n")
+
+
+def _area(ring: Points) -> float:
+    x, y = ring.T
+    return float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+
+
+def _along(line: Points) -> NDArray[np.float64]:
+    """Return the way from the first point of a line to each."""
+    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+
+
+def _at(line: Points, along: NDArray[np.float64], share: NDArray[np.float64]) -> Points:
+    """Return the points at shares of a line's length."""
+    return np.column_stack([np.interp(share * along[-1], along, line[:, i]) for i in (0, 1)])
 
 
 def _marking(marking: str | None, *, drivable: bool) -> str | None:

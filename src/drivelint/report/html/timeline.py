@@ -9,6 +9,7 @@ import hashlib
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.report.html.anchors import finding_anchor, rule_anchor
+from drivelint.report.html.reasons import can_be_provided, named, plain
 from drivelint.report.text import number, seconds
 
 if TYPE_CHECKING:
@@ -43,26 +44,36 @@ class Mark(NamedTuple):
 
 
 class Lane(NamedTuple):
-    """One row: a rule and profile, its worst verdict and what is drawn."""
+    """One row: a rule and profile, its worst verdict and what is drawn; `keys`: what it is found by."""
 
     rule_id: str
     href: str
     title: str
     profile: str | None
     verdict: str
+    keys: str
     bands: list[Band]
     marks: list[Mark]
 
 
+class Folded(NamedTuple):
+    """Rules of which there is nothing to draw, for one reason: not applicable, or unknown because something is missing."""
+
+    verdict: str
+    why: str
+    rules: list[tuple[str, str]]
+
+
 class Timeline(NamedTuple):
-    """All rows of one ego, the axis (name and width of its grid, labels), and the rules that never applied."""
+    """All rows of one ego, the axis (name and width of its grid, labels), and the rules of which there is nothing to draw."""
 
     ego_id: str
     grid: str
     step: str
     ticks: list[tuple[str, str]]
     rows: list[Lane]
-    not_applicable: list[str]
+    folded: list[Folded]
+    n: dict[str, int]
 
 
 class Clock(NamedTuple):
@@ -86,7 +97,7 @@ class Clock(NamedTuple):
 
 
 def timelines(
-    verdicts: Iterable[Row], findings: Sequence[Row], titles: Mapping[str, str], anchors: Collection[str], clock: Clock
+    verdicts: Iterable[Row], findings: Sequence[Row], rules: Mapping[str, Row], anchors: Collection[str], clock: Clock
 ) -> list[Timeline]:
     """Return a timeline for every ego of one drive, in the order of the verdicts.
 
@@ -99,37 +110,54 @@ def timelines(
     for row in findings:
         found.setdefault((row["ego_id"], row["rule_id"], row["profile"]), []).append(row)
     drawn = []
-    for ego, rules in groups.items():
+    for ego, told in groups.items():
         mine = {k[1:]: v for k, v in found.items() if k[0] == ego}
-        drive_id = next(iter(rules.values()))[0]["drive_id"]
-        drawn.append(_timeline(_grid(drive_id, ego), ego, rules, mine, titles=titles, anchors=anchors, clock=clock))
+        drive_id = next(iter(told.values()))[0]["drive_id"]
+        drawn.append(_timeline(_grid(drive_id, ego), ego, told, mine, rules=rules, anchors=anchors, clock=clock))
     return drawn
 
 
 def _timeline(
     grid: str,
     ego: str,
-    rules: Mapping[tuple[str, str | None], list[Row]],
+    groups: Mapping[tuple[str, str | None], list[Row]],
     found: Mapping[tuple[str, str | None], list[Row]],
     *,
-    titles: Mapping[str, str],
+    rules: Mapping[str, Row],
     anchors: Collection[str],
     clock: Clock,
 ) -> Timeline:
-    rows, idle = [], []
-    for key, told in rules.items():
+    rows: list[Lane] = []
+    folded: dict[tuple[str, str], set[str]] = {}
+    for key, told in groups.items():
         rule_id, profile = key
         worst = min((row["verdict"] for row in told), key=_ORDER.index)
-        title = titles.get(rule_id, rule_id)
-        if worst == "not_applicable":
-            idle.append(title if profile is None else f"{title} ({profile})")
+        if worst == "not_applicable" or all(_is_missing(row) for row in told):
+            folded.setdefault((worst, plain(told[0]["reason"])), set()).add(rule_id)
             continue
-        marks = [_finding(row, anchors, clock) for row in found.get(key, [])] + [
-            _near(r, clock) for r in told if r["near_miss"]
-        ]
-        rows.append(Lane(rule_id, f"#{rule_anchor(rule_id)}", title, profile, worst, _bands(told, clock), marks))
+        marks = [_finding(row, anchors, clock) for row in found.get(key, [])]
+        near = [_near(row, clock) for row in told if row["near_miss"]]
+        rule = rules[rule_id]
+        keys = " ".join((worst, "near" if near else "", rule["severity"], rule["pack"]))
+        href = f"#{rule_anchor(rule_id)}"
+        rows.append(Lane(rule_id, href, rule["title"], profile, worst, keys, _bands(told, clock), marks + near))
     rows.sort(key=lambda lane: _ORDER.index(lane.verdict))
-    return Timeline(ego, grid, f"{clock.step_s() / clock.duration_s:.5f}", clock.ticks(), rows, idle)
+    titles = {rule_id: rule["title"] for rule_id, rule in rules.items()}
+    order = sorted(folded.items(), key=lambda item: (_ORDER.index(item[0][0]), -len(item[1]), item[0][1]))
+    return Timeline(
+        ego,
+        grid,
+        f"{clock.step_s() / clock.duration_s:.5f}",
+        clock.ticks(),
+        rows,
+        [Folded(verdict, why, named(ids, titles)) for (verdict, why), ids in order],
+        {verdict: sum(lane.verdict == verdict for lane in rows) for verdict in _ORDER},
+    )
+
+
+def _is_missing(row: Row) -> bool:
+    """Whether it is unknown for the whole drive, because a signal is missing."""
+    return bool(row["verdict"] == "unknown" and row["t_start_ns"] is None and can_be_provided(row["reason_code"]))
 
 
 def _grid(drive_id: str, ego_id: str) -> str:

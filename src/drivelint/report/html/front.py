@@ -1,0 +1,126 @@
+"""The first page: what came out in one sentence, what was not kept, how the packs fared; for readers who know no rule by its id."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import pyarrow.compute as pc
+
+from drivelint.report import counts
+from drivelint.report.html.anchors import rule_anchor
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from drivelint.report.html.moments import Measured, Moment
+    from drivelint.report.result import Result
+
+    Row = Mapping[str, Any]
+
+PACKS: Final = {
+    "ukhc": "UK Highway Code",
+    "stvo": "German road traffic regulations",
+    "rss": "Responsibility-Sensitive Safety",
+    "criticality": "criticality metrics",
+    "comfort": "comfort",
+    "performance": "performance",
+    "declared": "declared intentions",
+    "alks-r157": "UN Regulation 157 (lane keeping)",
+}
+"""What the packs that come with drivelint are about."""
+_STORY_DRIVES: Final = 6
+
+
+class Broken(NamedTuple):
+    """A rule that was not kept: how often, and the worst of it (None: not among the findings of the page)."""
+
+    rule: Row
+    href: str
+    n: int
+    n_drives: int
+    worst: Measured | None
+
+
+class Story(NamedTuple):
+    """What happened in one drive, in time order."""
+
+    drive_id: str
+    href: str
+    moments: list[Moment]
+
+
+def headline(result: Result) -> tuple[str, str]:
+    """Return the sign and the sentence that stand on top."""
+    told, n = counts.total(result.verdicts), result.findings.num_rows
+    judged = int(pc.sum(pc.equal(result.drives["status"], "judged")).as_py() or 0)
+    open_ = told["unknown"] + told["error"]
+    if n:
+        drives, all_ = len(pc.unique(result.findings["drive_id"])), result.drives.num_rows
+        return (
+            "fail",
+            f"{n} {'finding' if n == 1 else 'findings'} in {drives} of {all_} {'drive' if all_ == 1 else 'drives'}",
+        )
+    if not judged or not result.verdicts.num_rows:
+        return "unknown", "Nothing was judged"
+    if not told["pass"] and open_:
+        return "unknown", "Nothing could be decided"
+    if open_ or judged < result.drives.num_rows:
+        return "unknown", "No finding, as far as it could be judged"
+    return "pass", "No finding"
+
+
+def broken(result: Result, rules: Mapping[str, Row], lines: Sequence[tuple[Row, Measured]]) -> list[Broken]:
+    """Return the rules with findings, the gravest and most frequent first."""
+    drives: dict[str, set[str]] = {}
+    for row in result.findings.select(["rule_id", "drive_id"]).to_pylist():
+        drives.setdefault(row["rule_id"], set()).add(row["drive_id"])
+    worst: dict[str, tuple[float, int, Measured]] = {}
+    for n, (row, line) in enumerate(lines):
+        margin = float("-inf") if row["margin"] is None else row["margin"]
+        here = (margin, n, line)
+        worst[row["rule_id"]] = min(worst.get(row["rule_id"], here), here, key=lambda w: w[:2])
+    found = [
+        Broken(
+            rules[rule_id],
+            "#" + rule_anchor(rule_id),
+            n,
+            len(drives[rule_id]),
+            worst[rule_id][2] if rule_id in worst else None,
+        )
+        for rule_id, n in counts.rows_by(result.findings, "rule_id").items()
+    ]
+    return sorted(found, key=lambda b: (counts.SEVERITIES.index(b.rule["severity"]), -b.n, b.rule["rule_id"]))
+
+
+def packs(result: Result) -> list[dict[str, Any]]:
+    """Return how many verdicts of each kind every pack has, and of how many rules."""
+    told = counts.packs(result.rules, counts.by(result.verdicts, "rule_id"))
+    rules = counts.rows_by(result.rules, "pack")
+    return [
+        {
+            "pack": pack,
+            "about": PACKS.get(pack, ""),
+            "n_rules": rules[pack],
+            "verdicts": verdicts,
+            "shares": shares(verdicts),
+        }
+        for pack, verdicts in told.items()
+    ]
+
+
+def shares(told: Mapping[str, int]) -> list[dict[str, Any]]:
+    """Return the verdicts with their number and their stretch of a bar, in percent."""
+    total, at, found = sum(told.values()), 0.0, []
+    for verdict in ("fail", "error", "unknown", "pass", "not_applicable"):
+        width = 100 * told[verdict] / total if total else 0.0
+        found.append({"verdict": verdict, "n": told[verdict], "x": f"{at:.3f}%", "w": f"{width:.3f}%"})
+        at += width
+    return found
+
+
+def stories(sections: Sequence[Mapping[str, Any]], n_drives: int) -> list[Story]:
+    """Return what happened in each drive, if they are few enough to be told on the first page."""
+    if n_drives > _STORY_DRIVES:
+        return []
+    told = [Story(s["drive_id"], "#" + s["anchor"], [m for m in s["moments"] if m.leading]) for s in sections]
+    return [story for story in told if story.moments]

@@ -1,0 +1,87 @@
+"""Opportunities to overtake, taken and not taken, by the distance ahead that there was."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from drivelint.report.html.scale import Axis, nice
+from drivelint.report.html.svg import num
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    Row = Mapping[str, Any]
+
+_WIDTH, _HEIGHT = 560, 230
+_BINS: Final = 12
+_PREFERRED: Final = "nominal"
+
+
+class Bar(NamedTuple):
+    """One range of distances: place and width, heights of both parts, and in words."""
+
+    x: str
+    w: str
+    taken_y: str
+    taken_h: str
+    passed_y: str
+    passed_h: str
+    words: str
+
+
+class Opportunities(NamedTuple):
+    """The histogram for one profile, and per profile how many were taken and not, by zone."""
+
+    profile: str
+    n: int
+    unknown: int
+    bars: list[Bar]
+    x_ticks: list[tuple[str, str]]
+    y_ticks: list[tuple[str, str]]
+    rows: list[tuple[str, list[tuple[int, int]], tuple[int, int]]]
+
+
+def opportunities(records: Sequence[Row]) -> Opportunities | None:
+    """Return the distribution of the rows of `opportunity_record`; None: there are none."""
+    if not records:
+        return None
+    profiles = [name for _, name in sorted({(row["style"], row["profile"]) for row in records})]
+    profile = _PREFERRED if _PREFERRED in profiles else profiles[0]
+    mine = [row for row in records if row["profile"] == profile]
+    known = [row for row in mine if row["da_m"] is not None]
+    bars, x_ticks, y_ticks = _bars(known) if known else ([], [], [])
+    return Opportunities(
+        profile, len(mine), len(mine) - len(known), bars, x_ticks, y_ticks, [_row(p, records) for p in profiles]
+    )
+
+
+def _row(profile: str, records: Sequence[Row]) -> tuple[str, list[tuple[int, int]], tuple[int, int]]:
+    """Return a profile with the numbers taken and not taken in zones A to D, and where the zone is not known."""
+    mine = [row for row in records if row["profile"] == profile]
+
+    def count(zone: str | None) -> tuple[int, int]:
+        there = [row["taken"] for row in mine if row["zone"] == zone]
+        return sum(there), len(there) - sum(there)
+
+    return profile, [count(zone) for zone in "ABCD"], count(None)
+
+
+def _bars(known: Sequence[Row]) -> tuple[list[Bar], list[tuple[str, str]], list[tuple[str, str]]]:
+    far = max(row["da_m"] for row in known)
+    width = nice(max(far, 10.0) / _BINS)
+    n = int(far // width) + 1
+    counts = [[0, 0] for _ in range(n)]
+    for row in known:
+        counts[int(row["da_m"] // width)][0 if row["taken"] else 1] += 1
+    x = Axis(0.0, n * width, 44.0, _WIDTH - 12.0)
+    y = Axis(0.0, float(max(sum(pair) for pair in counts)), _HEIGHT - 38.0, 10.0)
+    bars = []
+    for k, (taken, passed) in enumerate(counts):
+        a, b = x.at(k * width), x.at((k + 1) * width)
+        low, middle, high = y.at(0), y.at(taken), y.at(taken + passed)
+        words = f"{k * width:g} to {(k + 1) * width:g} m: {taken} taken, {passed} not taken"
+        bars.append(
+            Bar(num(a + 1), num(b - a - 2), num(middle), num(low - middle), num(high), num(middle - high), words)
+        )
+    whole = [(place, label.split(".")[0]) for place, label in y.ticks(4) if float(label) == int(float(label))]
+    return bars, x.ticks(8), whole

@@ -1,0 +1,274 @@
+"""The paper's views of overtakes: the table of safe distances ahead, the stages with their four danger-space assertions, the zones."""
+
+from __future__ import annotations
+
+import statistics
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from drivelint.report.html.anchors import drive_anchor, overtake_anchor
+from drivelint.report.html.scale import Axis
+from drivelint.report.html.svg import num
+from drivelint.report.text import number, seconds
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    Row = Mapping[str, Any]
+
+MOST: Final = 200
+"""Overtakes in the page: those with the least to spare against any profile first."""
+ASSERTIONS: Final = (
+    ("Vehicle being passed outside the ego's danger space", "ukhc.r126.ds-vbp-out-of-av"),
+    ("Oncoming vehicle outside the ego's danger space", "ukhc.r126.ds-ov-out-of-av"),
+    ("Ego outside the oncoming vehicle's danger space", "ukhc.r126.ds-av-out-of-ov"),
+    ("The two danger spaces apart", "ukhc.r126.ds-disjoint"),
+)
+"""The runtime assertions in the order of `overtake_record.stretches`: what must hold, and the rule that says so."""
+_STAGES: Final = ("pulling_out", "passing", "cutting_in")
+_WORST: Final = ("fail", "unknown", "pass", "nobody")
+_ZONES_S: Final = (0.0, 0.5, 2.5)  # the spare time at which zones B, C and D begin
+_SHAPES: Final = ("circle", "square", "diamond", "triangle", "cross")
+_PLOT_W, _PLOT_H = 560, 400
+_LABELS: Final = 10
+
+
+class Cell(NamedTuple):
+    """What one profile says of an overtake."""
+
+    verdict: str
+    sda: str
+    spare: str
+    zone: str
+    reason: str
+
+
+class StageCell(NamedTuple):
+    """What one assertion says of one stage."""
+
+    verdict: str
+    worst: str
+
+
+class StageRow(NamedTuple):
+    """One of the four assertions: per stage, and its stretches over time as percentages."""
+
+    title: str
+    cells: list[StageCell]
+    bands: list[tuple[str, str, str, str]]
+
+
+class Overtake(NamedTuple):
+    """One overtake."""
+
+    anchor: str
+    drive_id: str
+    drive_href: str
+    ego_id: str
+    time: str
+    vbp_id: str
+    ov_id: str
+    status: str
+    da: str
+    speeds: str
+    inputs: str
+    cells: list[Cell]
+    stages: list[str]
+    rows: list[StageRow]
+    times: list[tuple[str, str]]
+    bounds: list[tuple[str, str, str]]
+
+
+class Dot(NamedTuple):
+    """One overtake against one profile."""
+
+    x: str
+    y: str
+    shape: str
+    zone: str
+    title: str
+
+
+class Zones(NamedTuple):
+    """The zone plot: areas of the zones, axes, a dot per overtake and profile, names, and the speed that the areas are drawn for."""
+
+    areas: list[tuple[str, str, tuple[str, str] | None]]
+    x_ticks: list[tuple[str, str]]
+    y_ticks: list[tuple[str, str]]
+    dots: list[Dot]
+    names: list[tuple[str, str, str]]
+    shapes: list[tuple[str, str]]
+    speed: str
+    same_speed: bool
+    missing: int
+
+
+class Views(NamedTuple):
+    """Everything about overtakes."""
+
+    profiles: list[str]
+    overtakes: list[Overtake]
+    n: int
+    zones: Zones | None
+
+
+def views(records: Sequence[Row], starts: Mapping[str, int], shown: set[str]) -> Views | None:
+    """Return the views of the rows of `overtake_record` (None: there are none); `shown`: drives that have a section."""
+    records = [row for row in records if row["profiles"] or row["stretches"]]
+    if not records:
+        return None
+    told = {(p["style"], p["profile"]) for row in records for p in row["profiles"]}
+    profiles = [profile for _, profile in sorted(told)]
+    picked = sorted(records, key=_least_spare)[:MOST]
+    listed = sorted(picked, key=lambda r: (r["drive_id"], r["ego_id"], r["occurrence"]))
+    return Views(
+        profiles,
+        [_overtake(row, profiles, starts.get(row["drive_id"]) or 0, row["drive_id"] in shown) for row in listed],
+        len(records),
+        _zones(listed, profiles, starts),
+    )
+
+
+def _least_spare(row: Row) -> tuple[float, str, str, int]:
+    spare = [p["spare_m"] for p in row["profiles"] if p["spare_m"] is not None]
+    return min(spare, default=float("inf")), row["drive_id"], row["ego_id"], row["occurrence"]
+
+
+def _overtake(row: Row, profiles: Sequence[str], start_ns: int, shown: bool) -> Overtake:
+    cells = {p["profile"]: _cell(p) for p in row["profiles"]}
+    stages = [stage for stage in _STAGES if any(s["stage"] == stage for s in row["stretches"])]
+    clock = Axis(row["t0_ns"], max(row["t_end_ns"], row["t0_ns"] + 1), 0.0, 100.0)
+    given = (
+        ("lane", row["lane_width_m"], "m wide"),
+        ("ego", row["l_av_m"], "m long"),
+        ("passed", row["l_vbp_m"], "m long"),
+    )
+    return Overtake(
+        anchor=overtake_anchor(row["drive_id"], row["ego_id"], row["occurrence"]),
+        drive_id=row["drive_id"],
+        drive_href="#" + drive_anchor(row["drive_id"]) if shown else "",
+        ego_id=row["ego_id"],
+        time=seconds(row["t0_ns"], start_ns),
+        vbp_id=row["vbp_id"],
+        ov_id=row["ov_id"] or "nobody seen",
+        status=row["status"].replace("_", " "),
+        da=("" if row["ov_id"] else "at least " if row["da_m"] is not None else "") + number(row["da_m"], "m"),
+        speeds=", ".join(
+            f"{who} {number(v, 'm/s')}"
+            for who, v in (("ego", row["v_av_mps"]), ("passed", row["v_vbp_mps"]), ("oncoming", row["v_ov_mps"]))
+        ),
+        inputs=", ".join(f"{what} {value:.2f} {unit}" for what, value, unit in given if value is not None),
+        cells=[cells.get(profile, Cell("unknown", "-", "-", "", "not computed")) for profile in profiles],
+        stages=[stage.replace("_", " ") for stage in stages],
+        rows=[_assertion(n, row["stretches"], stages, clock) for n in range(len(ASSERTIONS))] if stages else [],
+        times=[(_pc(clock.at(t)), f"{name} {(t - start_ns) / 1e9:.1f}") for name, t in _times(row)],
+        bounds=_bounds(row["stretches"], clock),
+    )
+
+
+def _cell(p: Row) -> Cell:
+    verdict = "unknown" if p["zone"] is None else "fail" if p["zone"] == "A" else "pass"
+    spare = "-"
+    if p["spare_m"] is not None:
+        spare = f"{'short by' if p['spare_m'] <= 0 else 'spare'} {number(abs(p['spare_m']), 'm')}"
+    return Cell(verdict, number(p["sda_m"], "m"), spare, p["zone"] or "", p["reason"] or "")
+
+
+def _times(row: Row) -> list[tuple[str, int]]:
+    return [(name, row[f"{name}_ns"]) for name in ("t0", "t1", "t2", "t3") if row[f"{name}_ns"] is not None]
+
+
+def _bounds(stretches: Sequence[Row], clock: Axis) -> list[tuple[str, str, str]]:
+    """Return the stages as name, place and width."""
+    drawn = []
+    for stage in _STAGES:
+        mine = [s for s in stretches if s["stage"] == stage]
+        if mine:
+            a, b = clock.at(min(s["t_start_ns"] for s in mine)), clock.at(max(s["t_end_ns"] for s in mine))
+            drawn.append((stage.replace("_", " "), _pc(a), _pc(b - a)))
+    return drawn
+
+
+def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: Axis) -> StageRow:
+    cells = []
+    for stage in stages:
+        mine = [(s["said"][n], s["worst_m"][n]) for s in stretches if s["stage"] == stage]
+        verdict = min((said for said, _ in mine), key=_WORST.index)
+        deep = max((m for _, m in mine if m is not None), default=None)
+        worst = "nobody was coming" if verdict == "nobody" else _depth(deep)
+        cells.append(StageCell("not_applicable" if verdict == "nobody" else verdict, worst))
+    runs: list[tuple[str, int, int]] = []
+    for s in stretches:
+        said = "not_applicable" if s["said"][n] == "nobody" else s["said"][n]
+        runs.append((said, s["t_start_ns"], s["t_end_ns"]))
+    ends = [b for _, b, _ in runs[1:]] + [runs[-1][2]]
+    bands = [
+        (said, _pc(clock.at(a)), _pc(max(clock.at(max(b, end)) - clock.at(a), 0.6)), said.replace("_", " "))
+        for (said, a, b), end in zip(runs, ends, strict=True)
+    ]
+    return StageRow(ASSERTIONS[n][0], cells, bands)
+
+
+def _depth(metres: float | None) -> str:
+    if metres is None:
+        return ""
+    return f"inside by {number(metres, 'm')}" if metres >= 0 else f"clear by {number(-metres, 'm')}"
+
+
+def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str, int]) -> Zones | None:
+    known = [(row, p) for row in records for p in row["profiles"] if p["da_m"] is not None and p["sda_m"] is not None]
+    missing = sum(len(row["profiles"]) for row in records) - len(known)
+    if not known:
+        return None
+    far = 1.08 * max(p[name] for _, p in known for name in ("da_m", "sda_m"))
+    x, y = Axis(0.0, far, 48.0, _PLOT_W - 12.0), Axis(0.0, far, _PLOT_H - 40.0, 10.0)
+    closing = [p["spare_m"] / p["spare_s"] for _, p in known if p["spare_s"]]
+    v = statistics.median(closing) if closing else 0.0
+    shapes = {profile: _SHAPES[min(n, len(_SHAPES) - 1)] for n, profile in enumerate(profiles)}
+    rows = {id(row): row for row, _ in known}.values()
+    return Zones(
+        areas=_areas(x, y, far, v),
+        x_ticks=x.ticks(7),
+        y_ticks=y.ticks(7),
+        dots=[
+            Dot(
+                num(x.at(p["sda_m"])),
+                num(y.at(p["da_m"])),
+                shapes[p["profile"]],
+                p["zone"] or "",
+                f"{row['drive_id']} at {seconds(row['t0_ns'], starts.get(row['drive_id']))}, {p['profile']}: distance ahead "
+                f"{number(p['da_m'], 'm')}, required more than {number(p['sda_m'], 'm')}, zone {p['zone'] or 'unknown'}",
+            )
+            for row, p in known
+        ],
+        names=[_name(row, x, y) for row in rows] if len(rows) <= _LABELS else [],
+        shapes=list(shapes.items()),
+        speed=number(v, "m/s"),
+        same_speed=bool(closing) and max(closing) - min(closing) < 0.05 * v,
+        missing=missing,
+    )
+
+
+def _name(row: Row, x: Axis, y: Axis) -> tuple[str, str, str]:
+    """Return the name of an overtake, right of its last dot, or left of its first one where there is no room."""
+    known = [p for p in row["profiles"] if p["da_m"] is not None and p["sda_m"] is not None]
+    right = max(x.at(p["sda_m"]) for p in known)
+    at = num(y.at(known[0]["da_m"]) - 10)
+    return num(min(right + 4, x.end - 6 * len(row["drive_id"]))), at, row["drive_id"]
+
+
+def _areas(x: Axis, y: Axis, far: float, v: float) -> list[tuple[str, str, tuple[str, str] | None]]:
+    """Return the zones from the diagonal upwards: name, path, and where its letter stands (None: too thin for one)."""
+    floors = [-far, *(v * s for s in _ZONES_S), 2 * far]
+    drawn: list[tuple[str, str, tuple[str, str] | None]] = []
+    for zone, low, high in zip("ABCD", floors[:-1], floors[1:], strict=True):
+        corners = [(0.0, low), (far, low + far), (far, high + far), (0.0, high)]
+        path = "M" + " ".join(f"{num(x.at(a))},{num(y.at(b))}" for a, b in corners) + "Z"
+        thick = min(high, far) - max(low, 0.0) if zone != "A" else far
+        a, b = (0.86 * far, 0.30 * far) if zone == "A" else (0.04 * far, 0.04 * far + (low + min(high, far)) / 2)
+        letter = (num(x.at(a)), num(y.at(b) + 6)) if thick > 0.06 * far and b < 0.97 * far else None
+        drawn.append((zone, path, letter))
+    return drawn
+
+
+def _pc(value: float) -> str:
+    return f"{value:.2f}".rstrip("0").rstrip(".") + "%"

@@ -1,0 +1,81 @@
+"""Why something could not be judged, in one line per reason: first what can be provided, then what the logs did not tell."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.report.html.anchors import rule_anchor
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+MOST: Final = 60
+_NUMBER = r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
+_ASIDE: Final = (
+    (re.compile(rf" \({_NUMBER}[^()]*\)"), ""),  # measured values in brackets
+    (re.compile(rf" (?:at|from|between) {_NUMBER} s(?: (?:to|and) {_NUMBER} s)?"), ""),
+    (re.compile(r"\b(lanelet|object|actor|vehicle|crossing|junction|lane) [\w.:-]*\d[\w.:-]*"), r"a \1"),
+    (re.compile(rf"\b{_NUMBER}\b"), "some"),
+)
+_LEAD: Final = re.compile(r"^(?:Not judged|Not decided|Not applicable): ")
+
+
+class Reason(NamedTuple):
+    """A reason, whether something can be provided against it, the rules (title and link) and how often."""
+
+    verdict: str
+    why: str
+    provide: bool
+    rules: list[tuple[str, str]]
+    n: int
+    n_drives: int
+
+
+def plain(reason: str) -> str:
+    """Return a reason without the times and numbers of its occasion."""
+    text = _LEAD.sub("", reason)
+    for pattern, instead in _ASIDE:
+        text = pattern.sub(instead, text)
+    return text[:1].upper() + text[1:]
+
+
+def can_be_provided(code: str) -> bool:
+    """Whether a log, a map or an option could tell what was missing: a signal, or a condition of the drive."""
+    return (code.startswith("missing_") and code != "missing_step") or (
+        code.endswith("_unknown") and code not in _OF_THE_MOMENT
+    )
+
+
+_OF_THE_MOMENT: Final = {"applies_unknown", "anchor_unknown", "reference_time_unknown"}
+
+
+def reasons(verdicts: pa.Table, titles: Mapping[str, str]) -> list[Reason]:
+    """Return why verdicts are unknown or errors; what can be provided first, then the most frequent."""
+    rows = verdicts.filter(pc.is_in(verdicts["verdict"], value_set=pa.array(["unknown", "error"])))
+    keys = ["verdict", "reason_code", "reason", "rule_id", "drive_id"]
+    counted = rows.group_by(keys, use_threads=False).aggregate([([], "count_all")]).to_pylist()
+    grouped: dict[tuple[str, bool, str], list[dict[str, Any]]] = {}
+    for row in counted:
+        key = row["verdict"], can_be_provided(row["reason_code"]), plain(row["reason"])
+        grouped.setdefault(key, []).append(row)
+    found = [
+        Reason(
+            verdict,
+            why,
+            provide,
+            named({row["rule_id"] for row in told}, titles),
+            sum(row["count_all"] for row in told),
+            len({row["drive_id"] for row in told}),
+        )
+        for (verdict, provide, why), told in grouped.items()
+    ]
+    return sorted(found, key=lambda r: (r.verdict, not r.provide, -r.n, r.why))[:MOST]
+
+
+def named(rules: Iterable[str], titles: Mapping[str, str]) -> list[tuple[str, str]]:
+    """Return titles of rules with links to them."""
+    return [(titles.get(rule, rule), "#" + rule_anchor(rule)) for rule in sorted(rules)]

@@ -1,0 +1,90 @@
+"""What the script of the page needs to move a scene: where everybody was, once per drive, as small whole numbers."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from markupsafe import Markup
+
+from drivelint.report.html.svg import closed
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from drivelint.report.html.road import Road
+
+    Row = Mapping[str, Any]
+    Key = tuple[str, str, int]
+
+MOST_POINTS: Final = 60_000
+"""Places of actors in the page; drives beyond that are shown without replay."""
+_TICK_NS: Final = 10_000_000
+_CM: Final = 100
+
+
+def ticks(t_ns: int, start_ns: int) -> int:
+    """Return a time as hundredths of a second since the drive's start, as the script counts."""
+    return round((t_ns - start_ns) / _TICK_NS)
+
+
+def replays(
+    scenes: Iterable[Row], spaces: Mapping[Key, Sequence[Row]], starts: Mapping[str, int], road: Road
+) -> dict[str, Markup]:
+    """Return drive -> JSON for the script, of the drives of these scenes, until the page has enough.
+
+    `a`: actor -> times, x, y (cm from the map's origin), heading (centirad), each as its first value and what is added;
+    `s`: ego -> time -> actor -> path of its danger space in the map's drawn units.
+    """
+    drives: dict[str, list[Row]] = {}
+    for scene in scenes:
+        drives.setdefault(scene["drive_id"], []).append(scene)
+    told: dict[str, Markup] = {}
+    n = 0
+    for drive_id, rows in drives.items():
+        start = starts.get(drive_id) or 0
+        lanes = road.on(rows[0]["environment_id"])
+        tracks = _tracks(rows)
+        n += sum(len(track) for track in tracks.values())
+        if n > MOST_POINTS:
+            break
+        actors = {
+            actor: _columns(sorted(track.items()), start, lanes.origin) for actor, track in sorted(tracks.items())
+        }
+        rings: dict[str, dict[int, dict[str, str]]] = {}
+        for (drive, ego, t_ns), around in spaces.items():
+            if drive == drive_id:
+                rings.setdefault(ego, {})[ticks(t_ns, start)] = {
+                    ring["actor_id"]: closed(np.rint(lanes.drawn(np.column_stack([ring["x_m"], ring["y_m"]]))))
+                    for ring in around
+                }
+        told[drive_id] = _json({"a": actors, "s": rings})
+    return told
+
+
+def _tracks(scenes: Sequence[Row]) -> dict[str, dict[int, tuple[float, float, float]]]:
+    tracks: dict[str, dict[int, tuple[float, float, float]]] = {}
+    for scene in scenes:
+        for actor in scene["actors"]:
+            track = tracks.setdefault(actor["actor_id"], {})
+            for p in actor["path"] or []:
+                track[p["t_ns"]] = p["x_m"], p["y_m"], p["yaw_rad"] or 0.0
+    return tracks
+
+
+def _columns(
+    track: Sequence[tuple[int, tuple[float, float, float]]], start: int, origin: tuple[float, ...]
+) -> list[list[int]]:
+    if not track:
+        return [[], [], [], []]
+    x, y, yaw = np.array([place for _, place in track]).T
+    t = np.array([ticks(t_ns, start) for t_ns, _ in track])
+    columns = (t, (x - origin[0]) * _CM, (y - origin[1]) * _CM, np.unwrap(yaw) * 100)
+    return [np.diff(np.rint(c).astype(np.int64), prepend=0).tolist() for c in columns]
+
+
+def _json(value: object) -> Markup:
+    """Return JSON that may stand in a script element: nothing in it can end that."""
+    text = json.dumps(value, separators=(",", ":"), ensure_ascii=True)
+    return Markup(text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026"))  # noqa: S704 - escaped
