@@ -6,7 +6,9 @@ WITH unseen AS (
     SELECT u.drive_id, u.ego_id, u.t_ns, u.object_id, a.actor_class
     FROM unplaced u
     JOIN actor a ON a.drive_id = u.drive_id AND a.actor_id = u.object_id
-    WHERE u.reason IN ('was lost from the log nearby', 'appeared in the log nearby', 'came in over the end of the map')
+    WHERE u.reason IN (
+        'was lost from the log nearby', 'was lost behind, driving away', 'appeared in the log nearby', 'came in over the end of the map'
+    )
 ),
 seen AS (
     SELECT p.drive_id, p.ego_id, p.object_id, p.t_ns, p.distance_m

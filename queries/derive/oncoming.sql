@@ -62,8 +62,8 @@ hidden AS (
     SELECT u.drive_id, u.ego_id, u.t_ns, count(*) AS n, min({'id': u.object_id, 'reason': u.reason}) AS u
     FROM unplaced u
     LEFT JOIN nearest n ON n.drive_id = u.drive_id AND n.ego_id = u.ego_id AND n.t_ns = u.t_ns
-    -- free_m ends where the map does; of one that came from off the lanes nobody knows which way it was to make
-    WHERE u.reason <> 'came in over the end of the map' AND (n.o.object_id IS NULL OR n.o.object_id <> u.object_id OR n.o.way)
+    -- free_m ends where the map does, and who was met is behind; of one that came from off the lanes nobody knows which way it was to make
+    WHERE u.reason NOT IN ('came in over the end of the map', 'was lost behind, driving away') AND (n.o.object_id IS NULL OR n.o.object_id <> u.object_id OR n.o.way)
     GROUP BY ALL
 )
 SELECT

@@ -1,6 +1,6 @@
 -- Steps at which "nobody is coming" cannot be claimed: a vehicle is present without a position, moves off every lane nearer than the
 -- corridor reaches, or its track begins or ends where it must have been on the road. Of one that comes in over the far end of the map
--- it is known that it was beyond it until then; while the ego was far from there, too, that has a reason of its own.
+-- it is known that it was beyond it until then; while the ego was far from there, that has a reason of its own, as has one that was met already.
 WITH blind AS (
     SELECT drive_id, ego_id, t_ns, object_id, 'has no position (or no fresh one)' AS reason
     FROM pair
@@ -25,7 +25,11 @@ edge AS (
 ),
 -- a vehicle that was on its way along the corridor when its track ended or began: as long as it would take to meet the ego
 ended AS (
-    SELECT e.drive_id, e.ego_id, e.object_id, p.t_ns + 1 AS t_from_ns, p.t_ns + reach.ns AS t_to_ns, 'was lost from the log nearby' AS reason
+    SELECT
+        e.drive_id, e.ego_id, e.object_id, p.t_ns + 1 AS t_from_ns, p.t_ns + reach.ns AS t_to_ns,
+        CASE WHEN p.front_s_m < s.rear_s_m AND abs(p.heading_diff_rad) > 2 * pi() / 3 AND p.speed_mps > standing_mps()
+            THEN 'was lost behind, driving away' ELSE 'was lost from the log nearby'
+        END AS reason
     FROM edge e
     JOIN clock c USING (drive_id, ego_id)
     JOIN data_log g USING (drive_id)

@@ -213,6 +213,26 @@ def test_the_end_of_another_chain_tells_nothing() -> None:
     assert {row["reason"] for row in rows(con, "FROM unplaced")} == {"appeared in the log nearby"}
 
 
+@pytest.mark.parametrize(
+    ("s", "lane", "v", "doubted"),
+    [
+        (100.0, "other", -8.0, False),  # all of it is past the ego's rear
+        (100.4, "other", -8.0, True),  # not yet
+        (80.0, "other", -0.4, True),  # it stands there
+        (80.0, "own", 8.0, True),  # it comes up from behind
+    ],
+)
+def test_who_was_met_and_lost_after_it_is_not_ahead(s: float, lane: str, v: float, doubted: bool) -> None:
+    """The ego's rear is at 102.6 m when the other is seen last, 5 s into the log."""
+    way = road(((900.0, 0.0),))
+    t = times(20.0)
+    ego = moving("ego", way, t, 80 + 5 * t, way.own)
+    other = moving("x", way, t, s + v * (t - 5.0), getattr(way, lane)).keep(t < 5.01)
+    con = derived(drive([ego, other], way.environment), tables=["oncoming", "unplaced"])
+    assert len(rows(con, "FROM unplaced")) == 100
+    assert {row["n_unplaced"] for row in rows(con, "FROM oncoming WHERE t_ns > 5e9")} == ({1, 0} if doubted else {0})
+
+
 def test_the_doubt_about_one_that_was_lost_passes() -> None:
     """300 m apart, at 5 and 8 m/s: they would have met after 23 s; after twice that it is not coming any more."""
     way = road(((900.0, 0.0),))
