@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from drivelint.errors import DriveLintError
@@ -17,7 +16,7 @@ if TYPE_CHECKING:
 
 FACTORS: Final = (0.02, 0.1, 0.25, 0.5, 1.0, 3.0, 10.0)
 """How far to look in each direction, in parts of the value as it is (of 1 where it is 0)."""
-_HALVINGS: Final = 10
+_HALVINGS: Final = 8
 _PROFILE: Final = {
     "pull_out_angle_rad": ("rad", "angle at which this profile pulls out"),
     "cut_in_angle_rad": ("rad", "angle at which this profile cuts in"),
@@ -71,56 +70,62 @@ def _numbers(case: Case, lab: Lab) -> Iterator[_Number]:
             if now is None:
                 continue  # the profile that this overtake itself had
 
-            def with_profile(value: float, column: str = column, now: float = now) -> str:
-                with _profile(lab, profile, column, value, now):
-                    return case.verdict(lab)
+            def with_profile(value: float, column: str = column) -> str:
+                lab.set_profile(profile, column, value)
+                return case.verdict(lab)
 
             most = math.pi / 2 if unit == "rad" else math.inf
-            yield _Number(f"{profile}.{column}", what, unit, float(now), most, with_profile)
-
-
-@contextmanager
-def _profile(lab: Lab, profile: str, column: str, value: float, now: float) -> Iterator[None]:
-    """Give a number of a profile another value for a while."""
-    lab.set_profile(profile, column, value)
-    try:
-        yield
-    finally:
-        lab.set_profile(profile, column, now)
+            try:
+                yield _Number(f"{profile}.{column}", what, unit, float(now), most, with_profile)
+            finally:
+                lab.set_profile(profile, column, now)
 
 
 def _nearest(number: _Number, verdict: str) -> Change:
+    """Look outwards on both sides at once until the verdict changes on one, then halve the last stretch there."""
     scale = abs(number.now) or 1.0
     least = 0.0 if number.now >= 0 else -math.inf  # what is counted from nothing upwards stays so
-    edges = [edge for sign in (1, -1) if (edge := _edge(number, verdict, scale * sign, least))]
-    low, high = max(least, number.now - scale * FACTORS[-1]), min(number.most, number.now + scale * FACTORS[-1])
-    if not edges:
-        return Change(number.name, number.what, number.unit, number.now, None, None, False, low, high)
-    edge = min(edges, key=lambda e: (abs(e.value - number.now), e.value))
-    return Change(number.name, number.what, number.unit, number.now, edge.value, edge.becomes, edge.beyond, low, high)
+    sides = [_values(number, scale * sign, least) for sign in (1, -1)]
+    low, high = min(number.now, *sides[1]), max(number.now, *sides[0])
+    none = Change(number.name, number.what, number.unit, number.now, None, None, False, low, high)
+    shut: set[int] = set()
+    for n in range(len(FACTORS)):
+        edges = []
+        for side, values in enumerate(sides):
+            if n >= len(values) or side in shut:
+                continue
+            becomes = number.judge(values[n])
+            if becomes == "error":
+                shut.add(side)  # no value beyond it means anything
+            elif not _same(becomes, verdict):
+                edges.append(_edge(number, values, n, becomes))
+        if edges:
+            edge = min(edges, key=lambda e: (abs(e.value - number.now), e.value))
+            return none._replace(found=edge.value, becomes=edge.becomes, beyond=edge.beyond)
+    return none
 
 
-def _edge(number: _Number, verdict: str, scale: float, least: float) -> _Edge | None:
-    """Look outwards on one side until the verdict changes, then halve the last stretch."""
-    near = number.now
-    values = list(dict.fromkeys(min(number.most, max(least, number.now + scale * f)) for f in FACTORS))
-    for at, value in enumerate(values):
-        becomes = number.judge(value) if value != number.now else verdict
-        if becomes == "error":
-            return None
-        if becomes == verdict or (becomes == "unknown" and verdict in {"pass", "fail"}):  # a value of no meaning
-            near = value
-            continue
-        far = value
-        for _ in range(_HALVINGS):
-            middle = (near + far) / 2
-            if number.judge(middle) == becomes:
-                far = middle
-            else:
-                near = middle
-        further = values[at + 1 : at + 3] or [value]
-        return _Edge(_round(number, far, becomes), becomes, all(number.judge(v) == becomes for v in further))
-    return None
+def _values(number: _Number, scale: float, least: float) -> list[float]:
+    """Return the values to look at on one side, nearest first."""
+    reached = dict.fromkeys(min(number.most, max(least, number.now + scale * factor)) for factor in FACTORS)
+    return [value for value in reached if value != number.now]
+
+
+def _same(becomes: str, verdict: str) -> bool:
+    """Whether a verdict is no other one; what was decided and becomes unknown has met a value of no meaning."""
+    return becomes == verdict or (becomes == "unknown" and verdict in {"pass", "fail"})
+
+
+def _edge(number: _Number, values: list[float], at: int, becomes: str) -> _Edge:
+    near, far = (values[at - 1] if at else number.now), values[at]
+    for _ in range(_HALVINGS):
+        middle = (near + far) / 2
+        if number.judge(middle) == becomes:
+            far = middle
+        else:
+            near = middle
+    further = values[at + 1 : at + 3] or [values[at]]
+    return _Edge(_round(number, far, becomes), becomes, all(number.judge(v) == becomes for v in further))
 
 
 def _round(number: _Number, far: float, becomes: str) -> float:

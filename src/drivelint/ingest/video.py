@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from drivelint.ingest.video_mapping import Film, Stages
+    from drivelint.ingest.video_mapping import EgoCar, Film, Seen, Stages
 
 TOUCHES_M: Final = 0.06
 """How far a corner is over the centre line in the first frame of pulling out: just more than counts as over it (0.05 m)."""
@@ -156,7 +156,7 @@ def _states(
         x = (front + distance + actor.length / 2)[there]
         y = np.where(np.isfinite(x), middle if along else -middle, np.nan)
         parts.append((number, x, y, 0.0 if along else np.pi, actor.speed.mps * (1 if along else -1), t_ns[there]))
-    everybody = [film.ego, *film.actor]
+    everybody: list[EgoCar | Seen] = [film.ego, *film.actor]
     kinds = ["car", *(actor.kind for actor in film.actor)]
     who = np.concatenate([np.full(len(x), number, np.int32) for number, x, *_ in parts])
     placed = np.isfinite(np.concatenate([x for _, x, *_ in parts]))
@@ -207,7 +207,7 @@ def _across(film: Film, stages: Stages, frames: NDArray[np.int64]) -> NDArray[np
         points += [(float(leaving[0]), stages.offset), (float(max(stages.back, leaving[0] + 1)), home)]
     at = np.array([point[0] for point in points])
     values = np.array([point[1] for point in points])
-    return np.interp(frames.astype(np.float64), at, values)
+    return np.asarray(np.interp(frames.astype(np.float64), at, values), np.float64)
 
 
 def _road(film: Film, ego_x: tuple[float, float]) -> bytes:

@@ -1,0 +1,61 @@
+"""The command `explain` as a user meets it."""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+from drivelint import cli
+from tests.explain.test_explain import check
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("command")
+    check(out, rules=("ukhc.no-collision",), params=())
+    return out
+
+
+def ran(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], *args: str) -> tuple[int, str, str]:
+    monkeypatch.setattr(sys, "argv", ["drivelint", "explain", *args])
+    monkeypatch.setenv("COLUMNS", "100")
+    with pytest.raises(SystemExit) as left:
+        cli.main()
+    out, err = capfd.readouterr()
+    assert isinstance(left.value.code, int)
+    return left.value.code, out, err
+
+
+def test_text_is_for_people(folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
+    code, out, err = ran(
+        monkeypatch, capfd, "no-collision@safe", "--in", str(folder), "--samples", "4", "--sigma-map", "0.2"
+    )
+    assert (code, err) == (0, "")
+    assert out.startswith("ukhc.no-collision: ")
+    assert "Passes in 4 of 4." in out
+    assert "0.2 m in the map's place" in " ".join(out.split())
+    assert "\x1b" not in out
+    assert "Traceback" not in err
+
+
+def test_json_is_for_programs(folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
+    args = ("no-collision", "--in", str(folder), "--samples", "0", "--format", "json")
+    code, out, err = ran(monkeypatch, capfd, *args)
+    assert (code, err) == (0, "")
+    assert json.loads(out)["verdict"]["verdict"] == "fail"
+    assert json.loads(out)["sensitivity"] is None
+
+
+def test_a_mistake_is_one_line(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    code, out, err = ran(monkeypatch, capfd, "abc", "--in", str(folder))
+    assert (code, out) == (2, "")
+    assert err.startswith("drivelint: error: no finding begins with 'abc'")
+    assert err.count("\n") == 1

@@ -1,0 +1,331 @@
+"""Explanations of a failing, an unknown and a passing verdict, from the log and from a kept database."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from rich.console import Console
+
+from drivelint import run
+from drivelint.errors import UsageError
+from drivelint.explain import Errors, Explanation, Order, Wanted, explain
+from drivelint.explain.text import render, to_json
+from drivelint.report.outputs import write
+from drivelint.report.progress import Silent
+from tests.shared_data import ROOT
+
+if TYPE_CHECKING:
+    from drivelint.report.result import Result
+
+OVERTAKE = ROOT / "fixtures" / "overtake"
+RULES = (
+    "ukhc.r162.safe-distance-ahead",
+    "ukhc.contact-signature",
+    "ukhc.r126.ds-av-out-of-ov",
+    "ukhc.no-collision",
+    "ukhc.r112.horn",
+)
+NONE = Errors(samples=0)
+
+
+def check(out: Path, **over: Any) -> Result:
+    settings: dict[str, Any] = {
+        "traces": tuple(str(OVERTAKE / f"{name}.csv") for name in ("safe", "near_miss", "collision")),
+        "map": OVERTAKE / "road.xodr",
+        "mapping": str(OVERTAKE / "mapping.toml"),
+        "rules": RULES,
+        "profiles": ("relaxed", "nominal"),
+        "params": ("ukhc.contact-signature.within_m=0.4",),
+        "out": out,
+        "annotate": False,
+    }
+    result = run.check(run.Settings(**{**settings, **over}), Silent())
+    write(result, out)
+    return result
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("explained")
+    check(out)
+    return out
+
+
+def of(folder: Path, name: str, *, errors: Errors = NONE, **wanted: Any) -> Explanation:
+    return explain(Order(name, folder, Wanted(**wanted), errors=errors))
+
+
+def said(found: Explanation, width: int = 100) -> str:
+    console = Console(width=width, highlight=False)
+    with console.capture() as captured:
+        console.print(render(found, width))
+    return captured.get()
+
+
+def flat(text: str) -> str:
+    return re.sub(r"\s+", " ", text)
+
+
+def test_a_failed_verdict_says_what_why_and_what_would_change_it(folder: Path) -> None:
+    found = of(folder, "r162.safe@near_miss", profile="nominal")
+    assert found.verdict["verdict"] == found.verdict["judged_anew"] == "fail"
+    text = flat(said(found))
+    assert "FAIL: the rule was broken" in text
+    assert found.verdict["reason"] in text
+    assert "UKHC R162" in text
+    assert "It was judged at one moment only." in text
+    assert [rows.table for rows in found.rows] == ["overtake", "overtake_sda", "profile"]
+    (sda,) = found.rows[1].rows
+    assert (sda["da_m"], sda["sda_m"]) == (found.verdict["observed"], found.verdict["required"])
+    assert found.decides_ns == found.verdict["t_ref_ns"]
+
+
+def test_the_change_that_is_named_changes_the_verdict_and_a_smaller_one_does_not(folder: Path, tmp_path: Path) -> None:
+    found = of(folder, "r162.safe@near_miss", profile="nominal")
+    change = next(c for c in found.changes if c.name == "nominal.pull_out_headroom_m")
+    assert change.becomes == "pass"
+    assert change.found is not None
+    assert 0 < change.found < change.now
+    rules = tmp_path / "mine"
+    for value, expected in ((change.found, "pass"), (change.now - 0.9 * (change.now - change.found), "fail")):
+        (rules / "pack").mkdir(parents=True, exist_ok=True)
+        (rules / "pack" / "x.sql").write_text((ROOT / "queries/assertions/ukhc/no-collision.sql").read_text())
+        (rules / "profiles.toml").write_text(
+            "[nominal]\nstyle = 1\npull_out_angle_deg = 20.0\ncut_in_angle_deg = 20.0\n"
+            f"pull_out_headroom_m = {value}\ncut_in_clearance_m = 4.65\nv_min_mps = 0.0\nv_max_mps = 31.3\n"
+        )
+        result = check(
+            tmp_path / "out", traces=(str(OVERTAKE / "near_miss.csv"),), rules=(RULES[0],), profiles=("nominal",), params=(),
+            rules_dirs=(rules,),
+        )  # fmt: skip
+        assert result.verdicts["verdict"].to_pylist() == [expected]
+
+
+def test_parameters_are_those_of_the_run_and_change_as_said(folder: Path, tmp_path: Path) -> None:
+    found = of(folder, "contact-signature@collision")
+    assert {p["name"]: p["value"] for p in found.params}["within_m"] == 0.4
+    assert "$within_m" not in " ".join(found.sql.values())
+    assert "0.4" in found.sql["condition"] + found.sql.get("applies", "")
+    change = next(c for c in found.changes if c.name == "tyre_mps2")
+    assert change.becomes == "pass"
+    assert change.beyond
+    assert change.found is not None
+    assert change.found > found.verdict["observed"]
+    assert change.found < 1.1 * found.verdict["observed"]
+    assert f"tyre_mps2 >= {change.found:g} m/s2 it would pass" in flat(said(found))
+    for value, expected in ((change.found, {"pass", "not_applicable"}), (0.95 * found.verdict["observed"], {"fail"})):
+        result = check(
+            tmp_path, traces=(str(OVERTAKE / "collision.csv"),), rules=(RULES[1],),
+            params=("ukhc.contact-signature.within_m=0.4", f"ukhc.contact-signature.tyre_mps2={value}"),
+        )  # fmt: skip
+        assert {
+            row["verdict"] for row in result.verdicts.to_pylist() if row["object_id"] == found.verdict["object_id"]
+        } <= expected
+
+
+def test_a_finding_is_found_by_the_beginning_of_its_id(folder: Path) -> None:
+    found = of(folder, "r126.ds-av-out-of-ov@collision")
+    ids = {row["finding_id"]: row for row in _findings(folder)}
+    mine = next(
+        i
+        for i, row in ids.items()
+        if row["rule_id"] == "ukhc.r126.ds-av-out-of-ov" and row["drive_id"].startswith("collision")
+    )
+    same = of(folder, mine[:9])
+    assert same.verdict["finding_id"] == mine
+    assert same.verdict["drive_id"] == found.verdict["drive_id"]
+    assert same.verdict["margin"] == ids[mine]["margin"]
+    assert mine in said(same)
+
+
+def _findings(folder: Path) -> list[dict[str, Any]]:
+    import pyarrow.parquet as pq
+
+    return list(pq.read_table(folder / "findings.parquet").to_pylist())
+
+
+def test_the_margin_over_time_has_every_step(folder: Path) -> None:
+    found = of(folder, "r126.ds-av-out-of-ov@near_miss")
+    assert len(found.series) == found.verdict["n_expected"]
+    assert min(step.margin for step in found.series if step.margin is not None) == found.verdict["margin"]
+    assert {step.holds for step in found.series} == {True, False}
+    text = said(found)
+    assert "limit┼" in text
+    assert "The rule has no number of its own" in flat(text)
+
+
+def test_a_passing_verdict(folder: Path) -> None:
+    found = of(folder, "no-collision@safe")
+    assert found.verdict["verdict"] == "pass"
+    text = flat(said(found))
+    assert "PASS: the rule was kept" in text
+    assert f"Broken with the same limit, if what was observed were {found.verdict['margin']:.6g} m less." in text
+
+
+def test_an_unknown_verdict_for_want_of_a_signal(folder: Path) -> None:
+    found = of(folder, "r112.horn@safe", errors=Errors(samples=5))
+    text = flat(said(found))
+    assert "UNKNOWN: it cannot be told whether the rule was kept: that is no pass" in text
+    assert "no number changes that" in text
+    assert found.sensitivity is None
+    assert found.changes == []
+    (table,) = found.rows
+    assert (table.table, table.rows[0]["available"]) == ("capability", False)
+    assert table.rows[0]["reason"] in text
+
+
+def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
+    """The oncoming car has no place for half a second: there the margin is not known."""
+    lines = (OVERTAKE / "near_miss.csv").read_text(encoding="utf-8").splitlines()
+    head = lines[0].split(",")
+    x, who, at = head.index("x_m"), head.index("actor"), head.index("time_s")
+    rows = [line.split(",") for line in lines[1:]]
+    ov = next(row[who] for row in rows if row[who] not in {"ego", rows[1][who]})
+    for row in rows:
+        if row[who] == ov and 8.0 <= float(row[at]) < 8.5:
+            row[x] = ""
+    log = tmp_path / "blind.csv"
+    log.write_text("\n".join([lines[0], *(",".join(row) for row in rows)]) + "\n", encoding="utf-8")
+    check(tmp_path / "out", traces=(str(log),), rules=("ukhc.no-collision",), params=())
+    found = of(tmp_path / "out", "no-collision", object_id=ov)
+    assert found.verdict["verdict"] == "unknown"
+    assert found.decides_ns == 8_000_000_000
+    pair = next(rows for rows in found.rows if rows.table == "pair")
+    assert pair.rows[0]["clearance_m"] is None
+    text = said(found)
+    assert re.search(r"clearance_m\s+not known", text)
+    assert "?" in text[text.index("Margin over time") :]
+
+
+def test_small_errors_are_counted_and_the_same_seed_draws_the_same(folder: Path) -> None:
+    errors = Errors(position_m=0.6, time_s=0.2, map_m=0.1, samples=20, seed=3)
+    first, again = (of(folder, "r126.ds-av-out-of-ov@near_miss", errors=errors).sensitivity for _ in range(2))
+    assert first is not None
+    assert first == again
+    assert sum(first.counts.values()) == 20
+    assert len(first.counts) > 1  # 0.98 m inside with errors of 0.6 m in both positions: not always
+    other = of(folder, "r126.ds-av-out-of-ov@near_miss", errors=Errors(0.6, 0.2, 0.1, 20, 4)).sensitivity
+    assert other is not None
+    assert other.counts != first.counts
+
+
+def test_without_errors_every_copy_is_the_drive(folder: Path) -> None:
+    for name in ("no-collision@safe", "r126.ds-av-out-of-ov@near_miss"):
+        found = of(folder, name, errors=Errors(0.0, 0.0, 0.0, 3))
+        assert found.sensitivity is not None
+        assert found.sensitivity.counts == {found.verdict["verdict"]: 3}
+        assert re.search(r"(Fails|Passes) in 3 of 3", said(found))
+
+
+def test_the_kept_database_says_the_same_as_the_log(folder: Path, tmp_path: Path) -> None:
+    check(tmp_path, keep_db=True)
+    errors = Errors(1.0, 0.1, 0.1, 5)
+    for name in ("contact-signature@collision", "r126.ds-av-out-of-ov@near_miss"):
+        read, kept = (of(where, name, errors=errors) for where in (folder, tmp_path))
+        assert "read again" in read.source
+        assert "kept database" in kept.source
+        for part in ("verdict", "rows", "series", "changes", "sensitivity", "decides_ns", "sql"):
+            assert getattr(read, part) == getattr(kept, part), part
+
+
+def test_a_log_that_is_gone_is_asked_for_and_another_one_refused(tmp_path: Path) -> None:
+    log = tmp_path / "drive.csv"
+    shutil.copy(OVERTAKE / "near_miss.csv", log)
+    check(tmp_path / "out", traces=(str(log),))
+    moved = log.rename(tmp_path / "moved.csv")
+    with pytest.raises(UsageError, match="--trace"):
+        of(tmp_path / "out", "r126.ds")
+    found = explain(Order("r126.ds", tmp_path / "out", trace=moved, errors=NONE))
+    assert found.verdict["judged_anew"] == "fail"
+    assert found.verdict["drive_id"].startswith("drive-")
+    with pytest.raises(UsageError, match="is not the log that was judged"):
+        explain(Order("r126.ds", tmp_path / "out", trace=OVERTAKE / "safe.csv", errors=NONE))
+
+
+def test_a_folder_that_moves_with_its_logs_still_finds_them(tmp_path: Path) -> None:
+    shutil.copytree(OVERTAKE, tmp_path / "a" / "logs")
+    logs = tmp_path / "a" / "logs"
+    check(
+        tmp_path / "a" / "out",
+        traces=(str(logs / "near_miss.csv"),),
+        map=logs / "road.xodr",
+        mapping=str(logs / "mapping.toml"),
+    )
+    (tmp_path / "a").rename(tmp_path / "b")
+    assert of(tmp_path / "b" / "out", "r126.ds").verdict["judged_anew"] == "fail"
+
+
+def test_a_rule_that_was_changed_is_said(tmp_path: Path) -> None:
+    rule = tmp_path / "packs" / "mine" / "near.sql"
+    rule.parent.mkdir(parents=True)
+    text = (ROOT / "queries/assertions/ukhc/no-collision.sql").read_text(encoding="utf-8")
+    rule.write_text(text, encoding="utf-8")
+    check(tmp_path / "out", rules=("mine.near",), rules_dirs=(tmp_path / "packs",), params=())
+    rule.write_text(text.replace("0.0 AS required", "2.0 AS required"), encoding="utf-8")
+    found = of(tmp_path / "out", "mine.near@safe")
+    assert found.verdict["verdict"] == "pass"
+    assert found.verdict["judged_anew"] == "fail"
+    assert "The rule has changed since" in flat(said(found))
+    assert "Judged anew it is fail, not pass" in flat(said(found))
+
+
+def test_json_has_it_all(folder: Path) -> None:
+    plain = json.loads(to_json(of(folder, "r126.ds-av-out-of-ov@near_miss", errors=Errors(samples=2))))
+    assert plain["explain_schema"] == 1
+    assert plain.keys() >= {
+        "rule",
+        "drive",
+        "verdict",
+        "sql",
+        "params",
+        "rows",
+        "series",
+        "changes",
+        "sensitivity",
+        "source",
+    }
+    assert len(plain["series"][0]) == 5
+    assert plain["rows"][0]["table"] == "overtake_step"
+    assert plain["sensitivity"]["counts"] == {"fail": 2}
+
+
+def test_every_line_fits_a_narrow_terminal(folder: Path) -> None:
+    text = said(of(folder, "r126.ds-av-out-of-ov@near_miss"), 60)
+    assert max(len(line) for line in text.splitlines()) <= 60
+
+
+MISTAKES = [
+    ("nonsense", {}, "no finding begins with 'nonsense'"),
+    ("safe-distance-haed", {}, "did you mean"),
+    ("ukhc.r162.safe-distance-ahead@unsafe", {}, "did you mean 'safe-"),
+    ("no-collision", {"object_id": "9"}, "no verdict for object '9'"),
+    ("r162.safe", {"profile": "aggressive"}, "there are nominal, relaxed"),
+    ("no-collision", {"at_s": 1e6}, "about the time 1e+06 s"),
+    ("ukhc", {}, "the beginning of several rules"),
+]
+
+
+@pytest.mark.parametrize(("name", "wanted", "message"), MISTAKES)
+def test_mistakes_are_one_clear_line(folder: Path, name: str, wanted: dict[str, Any], message: str) -> None:
+    with pytest.raises(UsageError) as error:
+        of(folder, name, **wanted)
+    assert message in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_the_worst_verdict_is_meant_unless_one_is_asked_for(folder: Path) -> None:
+    found = of(folder, "no-collision")
+    assert found.verdict["drive_id"].startswith("collision")
+    assert found.verdict["verdict"] == "fail"
+    at = of(folder, "no-collision@safe", at_s=1.0)
+    assert at.verdict["t_start_ns"] <= 1e9 <= at.verdict["t_end_ns"]
+
+
+def test_a_folder_without_a_result(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="no result of drivelint check"):
+        of(tmp_path, "x")
