@@ -47,7 +47,7 @@ class Chart(NamedTuple):
 
 
 class Step(NamedTuple):
-    """One judged step in words."""
+    """One judged step in words; numbers in the unit of the course."""
 
     time: str
     observed: str
@@ -61,6 +61,7 @@ class Course(NamedTuple):
     """The chart (None: too few steps) and the steps around the worst one."""
 
     chart: Chart | None
+    unit: str
     steps: list[Step]
     n_steps: int
 
@@ -70,14 +71,14 @@ def course(row: Row, worst_ns: int, unit: str | None, start_ns: int) -> Course:
     t: list[int] = row["t_ns"]
     worst = min(range(len(t)), key=lambda i: abs(t[i] - worst_ns))
     first = max(0, min(worst - _ROWS // 2, len(t) - _ROWS))
-    steps = [_step(row, i, unit, start_ns, worst=i == worst) for i in range(first, min(first + _ROWS, len(t)))]
-    return Course(_chart(row, worst, unit, start_ns) if len(t) >= _LEAST else None, steps, len(t))
+    steps = [_step(row, i, start_ns, worst=i == worst) for i in range(first, min(first + _ROWS, len(t)))]
+    return Course(_chart(row, worst, unit, start_ns) if len(t) >= _LEAST else None, unit or "", steps, len(t))
 
 
-def _step(row: Row, i: int, unit: str | None, start_ns: int, *, worst: bool) -> Step:
+def _step(row: Row, i: int, start_ns: int, *, worst: bool) -> Step:
     kept = {True: "yes", False: "no", None: "unknown"}[row["holds"][i]]
-    observed, required, margin = (number(row[name][i], unit) for name in ("observed", "required", "margin"))
-    return Step(f"{(row['t_ns'][i] - start_ns) / 1e9:.2f} s", observed, required, margin, kept, worst)
+    observed, required, margin = (number(row[name][i]) for name in ("observed", "required", "margin"))
+    return Step(f"{(row['t_ns'][i] - start_ns) / 1e9:.2f}", observed, required, margin, kept, worst)
 
 
 def _chart(row: Row, worst: int, unit: str | None, start_ns: int) -> Chart:

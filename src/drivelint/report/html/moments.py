@@ -201,14 +201,23 @@ def _moment(
         objects=sorted({row["object_id"] for row, _ in found if row["object_id"] is not None}),
         kind="fail" if failed else "near",
         severity=min((line.severity for line in failed or [line for _, line in found]), key=SEVERITIES.index),
-        titles=list(dict.fromkeys(line.title for line in failed or [line for _, line in found])),
+        titles=list(dict.fromkeys(line.title for line in sorted(failed or [line for _, line in found], key=_grave))),
         plan=picture,
         no_plan="" if picture else "No picture: the ego's position is not known here, or too many findings are worse.",
         cards=[
             Card(rules[rule_id], "#" + rule_anchor(rule_id), lines[0].severity, lines)
-            for rule_id, lines in sorted(cards.items(), key=lambda item: (item[1][0].kind != "fail", item[0]))
+            for rule_id, lines in sorted(cards.items(), key=_weight)
         ],
     )
+
+
+def _grave(line: Measured) -> int:
+    return SEVERITIES.index(line.severity)
+
+
+def _weight(item: tuple[str, Sequence[Measured]]) -> tuple[bool, int, str]:
+    rule_id, lines = item
+    return lines[0].kind != "fail", SEVERITIES.index(lines[0].severity), rule_id
 
 
 def _gauge(observed: float | None, required: float | None) -> Gauge | None:

@@ -25,6 +25,8 @@ ASSERTIONS: Final = (
 )
 """The runtime assertions in the order of `overtake_record.stretches`: what must hold, and the rule that says so."""
 _STAGES: Final = ("pulling_out", "passing", "cutting_in")
+_SAID: Final = {"fail": "not kept", "pass": "kept", "unknown": "unknown", "not_applicable": "nobody was coming"}
+_THIN: Final = 0.6  # percent: a band is at least as wide
 _WORST: Final = ("fail", "unknown", "pass", "nobody")
 _ZONES_S: Final = (0.0, 0.5, 2.5)  # the spare time at which zones B, C and D begin
 _SHAPES: Final = ("circle", "square", "diamond", "triangle", "cross")
@@ -196,15 +198,18 @@ def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: A
         deep = max((m for _, m in mine if m is not None), default=None)
         worst = "nobody was coming" if verdict == "nobody" else _depth(deep)
         cells.append(StageCell("not_applicable" if verdict == "nobody" else verdict, worst))
-    runs: list[tuple[str, int, int]] = []
+    runs: list[list[Any]] = []
     for s in stretches:
         said = "not_applicable" if s["said"][n] == "nobody" else s["said"][n]
-        runs.append((said, s["t_start_ns"], s["t_end_ns"]))
-    ends = [b for _, b, _ in runs[1:]] + [runs[-1][2]]
-    bands = [
-        (said, _pc(clock.at(a)), _pc(max(clock.at(max(b, end)) - clock.at(a), 0.6)), said.replace("_", " "))
-        for (said, a, b), end in zip(runs, ends, strict=True)
-    ]
+        if runs and runs[-1][0] == said:
+            runs[-1][2] = s["t_end_ns"]
+        else:
+            runs.append([said, s["t_start_ns"], s["t_end_ns"]])
+    ends = [start for _, start, _ in runs[1:]] + [runs[-1][2]]
+    bands = []
+    for (said, start, last), end in zip(runs, ends, strict=True):
+        a, b = clock.at(start), min(max(clock.at(max(last, end)), clock.at(start) + _THIN), 100.0)
+        bands.append((said, _pc(min(a, 100.0 - _THIN)), _pc(b - min(a, 100.0 - _THIN)), _SAID[said]))
     return StageRow(ASSERTIONS[n][0], cells, bands)
 
 
@@ -249,11 +254,9 @@ def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str,
 
 
 def _name(row: Row, x: Axis, y: Axis) -> tuple[str, str, str]:
-    """Return the name of an overtake, right of its last dot, or left of its first one where there is no room."""
-    known = [p for p in row["profiles"] if p["da_m"] is not None and p["sda_m"] is not None]
-    right = max(x.at(p["sda_m"]) for p in known)
-    at = num(y.at(known[0]["da_m"]) - 10)
-    return num(min(right + 4, x.end - 6 * len(row["drive_id"]))), at, row["drive_id"]
+    """Return the name of an overtake, above its dots at the right edge."""
+    da = next(p["da_m"] for p in row["profiles"] if p["da_m"] is not None and p["sda_m"] is not None)
+    return num(x.end - 4), num(y.at(da) - 11), row["drive_id"]
 
 
 def _areas(x: Axis, y: Axis, far: float, v: float) -> list[tuple[str, str, tuple[str, str] | None]]:
@@ -264,8 +267,8 @@ def _areas(x: Axis, y: Axis, far: float, v: float) -> list[tuple[str, str, tuple
         corners = [(0.0, low), (far, low + far), (far, high + far), (0.0, high)]
         path = "M" + " ".join(f"{num(x.at(a))},{num(y.at(b))}" for a, b in corners) + "Z"
         thick = min(high, far) - max(low, 0.0) if zone != "A" else far
-        a, b = (0.86 * far, 0.30 * far) if zone == "A" else (0.04 * far, 0.04 * far + (low + min(high, far)) / 2)
-        letter = (num(x.at(a)), num(y.at(b) + 6)) if thick > 0.06 * far and b < 0.97 * far else None
+        a, b = (0.7 * far, 0.1 * far) if zone == "A" else (0.04 * far, 0.04 * far + (low + min(high, far)) / 2)
+        letter = (num(x.at(a)), num(y.at(b) + 6)) if thick > 0.03 * far and b < 0.97 * far else None
         drawn.append((zone, path, letter))
     return drawn
 

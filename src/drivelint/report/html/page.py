@@ -15,10 +15,11 @@ from drivelint.report.html.moments import leading, measured, moments, pictures
 from drivelint.report.html.opportunities import opportunities
 from drivelint.report.html.overtakes import views
 from drivelint.report.html.parties import parties
+from drivelint.report.html.plan import shapes
 from drivelint.report.html.reasons import can_be_provided, plain, reasons
 from drivelint.report.html.replay import replays
 from drivelint.report.html.road import Road
-from drivelint.report.html.timeline import Clock, timelines
+from drivelint.report.html.timeline import Clock, shared, timelines
 from drivelint.report.result import outcome
 from drivelint.report.text import number
 
@@ -103,6 +104,7 @@ def content(result: Result) -> dict[str, Any]:
         "drives": [_drive_row(row, told, listed, row["drive_id"] in shown) for row in drives],
         "sections": sections,
         "tiles": road.tiles() if drawn else [],
+        "shapes": shapes(scenes[at] for at in drawn),
         "replays_of": {
             drive_anchor(drive_id): text
             for drive_id, text in replays([scenes[at] for at in drawn], spaces, starts, road).items()
@@ -221,6 +223,7 @@ def _section(
 ) -> dict[str, Any]:
     """Return a drive with its egos: the timeline, the moments and the parties of each."""
     weight = {"error": 0, "warning": 1, "info": 2}
+    folded, tracks = shared(tracks)
     egos = [{"timeline": t, "moments": [m for m in seen if m.ego_id == t.ego_id]} for t in tracks]
     missing: dict[str, list[str]] = {}
     for gap in row["not_judged"]:
@@ -228,6 +231,7 @@ def _section(
     return {
         **row,
         "anchor": drive_anchor(row["drive_id"]),
+        "folded": folded,
         "parties": involved,
         "missing": [{"reason": why, "n": len(who), "egos": ", ".join(who)} for why, who in missing.items()],
         "egos": sorted(egos, key=lambda ego: (-len(ego["moments"]), ego["timeline"].ego_id)) if len(egos) > 1 else egos,

@@ -47,7 +47,7 @@ def parties(drive_id: str, rows: Sequence[tuple[Row, Any]], scenes: Mapping[Key,
             _speeds(seen.get(who, [])),
             n,
         )
-        for (is_object, who), n in sorted(findings.items())
+        for (is_object, who), n in sorted(findings.items(), key=lambda item: (item[0][0], -item[1], item[0][1]))
         if not (is_object and who in egos)
     ]
 

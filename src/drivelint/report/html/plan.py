@@ -17,7 +17,7 @@ from drivelint.report.html.road import UNITS
 from drivelint.report.html.svg import closed, num, polyline
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
     from drivelint.report.html.road import Lanes, Points, Road
 
@@ -27,6 +27,7 @@ _LEAST_M: Final = (44.0, 16.0)  # the view shows at least this much of the road,
 _PAD_M: Final = (7.0, 3.5)
 _DOT_M: Final = 0.8  # drawn size of an actor whose size is not known
 _BARS_M: Final = (1, 2, 5, 10, 20, 50, 100)
+_BESIDE: Final = 0.5  # who is up to half a view away may come into it when the scene is replayed
 _TOUCH_M: Final = 0.005  # boxes nearer than this are not apart
 
 
@@ -40,17 +41,24 @@ class Text(NamedTuple):
     actor: str = ""
 
 
+class Shape(NamedTuple):
+    """A box of one size and the chevron on it, in its own frame; drawn once in the page."""
+
+    name: str
+    box: str
+    front: str
+
+
 class Body(NamedTuple):
-    """An actor: its box and the chevron on it, in its own frame; where it is; its way before and after the moment."""
+    """An actor: its shape and where it is; its way before and after the moment, and where it was at full seconds from it."""
 
     kind: str
     actor: str
+    shape: str
     place: str
-    box: str
-    front: str
     before: str
     after: str
-    seconds: list[tuple[str, str]]
+    seconds: str
 
 
 class Line(NamedTuple):
@@ -104,10 +112,13 @@ class _View:
         turn = f"{k * self.cos:.5f},{k * self.sin:.5f},{k * self.sin:.5f},{-k * self.cos:.5f}"
         return f"matrix({turn},{num(e)},{num(f)})"
 
-    def holds(self, xy: Points) -> bool:
-        """Whether any of these map points is in the view."""
-        x, y = self(xy).T
-        return bool(((x > 0) & (x < WIDTH) & (y > 0) & (y < self.height)).any())
+    def holds(self, actor: Mapping[str, Any], room: float = 0.0) -> bool:
+        """Whether the middle of an actor is in the view, or no more than `room` of its width beside it."""
+        dx, dy = actor["x_m"] - self.x, actor["y_m"] - self.y
+        x = WIDTH / 2 + self.scale * (dx * self.cos + dy * self.sin - self.ahead)
+        y = self.height / 2 - self.scale * (dy * self.cos - dx * self.sin - self.left)
+        beside = room * WIDTH
+        return bool(-beside < x < WIDTH + beside and -beside < y < self.height + beside)
 
 
 def plan(scene: Mapping[str, Any], road: Road, concerned: Collection[str], spaces: Sequence[Mapping[str, Any]]) -> Plan:
@@ -125,7 +136,7 @@ def plan(scene: Mapping[str, Any], road: Road, concerned: Collection[str], space
     heading = lanes.direction(ego["x_m"], ego["y_m"], ego["yaw_rad"] or 0.0)
     view = _fit(ego, heading, np.concatenate(shown))
     texts, gaps, told = _distances(ego, met, view)
-    texts += [_label(a, ego, met, view) for a in actors if view.holds(_corners(a))]
+    texts += [_label(a, ego, met, view) for a in actors if view.holds(a)]
     length_px, length_m = _bar(view.scale)
     return Plan(
         height=num(view.height),
@@ -135,6 +146,7 @@ def plan(scene: Mapping[str, Any], road: Road, concerned: Collection[str], space
         bodies=[
             _body(a, _kind(a["actor_id"], ego, concerned), lanes, scene["t_ns"])
             for a in sorted((*others, ego), key=_area, reverse=True)  # whoever is under a larger one is still seen
+            if a is ego or a in met or view.holds(a, _BESIDE)
         ],
         gaps=gaps,
         texts=texts,
@@ -185,25 +197,47 @@ def _kind(actor_id: str, ego: Mapping[str, Any], concerned: Collection[str]) -> 
     return "ego" if actor_id == ego["actor_id"] else "met" if actor_id in concerned else "other"
 
 
+def shapes(scenes: Iterable[Mapping[str, Any]]) -> list[Shape]:
+    """Return the shapes of all actors of these scenes, each once."""
+    actors = {_shape_name(actor): actor for scene in scenes for actor in scene["actors"]}
+    return [_shape(name, actor) for name, actor in sorted(actors.items())]
+
+
+def _shape(name: str, actor: Mapping[str, Any]) -> Shape:
+    """Return the shape of an actor; without a heading it has no front."""
+    length, width = _size(actor)
+    turned = actor["yaw_rad"] is not None and actor["length_m"] is not None
+    hl, hw = UNITS * length / 2, UNITS * width / 2
+    front = polyline(np.array([(0.5 * hl, 0.8 * hw), (0.82 * hl, 0.0), (0.5 * hl, -0.8 * hw)])) if turned else ""
+    return Shape(name, closed(UNITS * _outline(actor)), front)
+
+
+def _shape_name(actor: Mapping[str, Any]) -> str:
+    length, width = _size(actor)
+    turned = actor["yaw_rad"] is not None and actor["length_m"] is not None
+    return f"b{length * 100:.0f}x{width * 100:.0f}{'' if turned else 'n'}"
+
+
 def _body(actor: Mapping[str, Any], kind: str, lanes: Lanes, t_ns: int) -> Body:
-    hl, hw = (actor["length_m"] or 0.0) / 2, (actor["width_m"] or 0.0) / 2
-    front = ""
-    if actor["yaw_rad"] is not None and hl:
-        front = polyline(UNITS * np.array([(0.5 * hl, 0.8 * hw), (0.82 * hl, 0.0), (0.5 * hl, -0.8 * hw)]))
-    before, after, seconds = "", "", []
-    way: list[dict[str, Any]] = actor["path"] or []
-    if kind != "other" and way and np.ptp([p["x_m"] for p in way]) + np.ptp([p["y_m"] for p in way]) > 1:
-        t = np.array([p["t_ns"] for p in way])
-        xy = np.rint(lanes.drawn(np.array([(p["x_m"], p["y_m"]) for p in way])))
-        before, after = polyline(xy[t <= t_ns]), polyline(xy[t >= t_ns])
-        # the nearest kept point to every full second from the moment
-        whole = 1e9 * np.round((t - t_ns) / 1e9)
-        near = (np.abs(t - t_ns - whole) <= 1e8) & (whole != 0)
-        picked = {int(s): i for i, s in reversed(list(enumerate(whole.tolist()))) if near[i]}
-        seconds = [(num(xy[i, 0]), num(xy[i, 1])) for _, i in sorted(picked.items())]
-    x, y = lanes.drawn(np.array([[actor["x_m"], actor["y_m"]]]))[0]
+    before, after, seconds = _way(actor["path"] or [], lanes, t_ns) if kind != "other" else ("", "", "")
+    x, y = ((actor[axis] - zero) * UNITS for axis, zero in zip(("x_m", "y_m"), lanes.origin, strict=True))
     place = f"translate({num(x)},{num(y)})rotate({math.degrees(actor['yaw_rad'] or 0.0):.1f})"
-    return Body(kind, actor["actor_id"], place, closed(UNITS * _outline(actor)), front, before, after, seconds)
+    return Body(kind, actor["actor_id"], _shape_name(actor), place, before, after, seconds)
+
+
+def _way(way: Sequence[Mapping[str, Any]], lanes: Lanes, t_ns: int) -> tuple[str, str, str]:
+    """Return the paths before and after a moment and of the points at full seconds from it; nothing for who stands."""
+    xy = lanes.drawn(np.array([(p["x_m"], p["y_m"]) for p in way])) if way else np.empty((0, 2))
+    if not len(xy) or np.ptp(xy, axis=0).sum() < UNITS:
+        return "", "", ""
+    t = np.array([p["t_ns"] for p in way])
+    xy = np.rint(xy)
+    # the nearest kept point to every full second from the moment
+    whole = np.round((t - t_ns) / 1e9).astype(int)
+    near = (np.abs(t - t_ns - whole * 1_000_000_000) <= 100_000_000) & (whole != 0)
+    picked = {int(whole[i]): i for i in np.flatnonzero(near)[::-1]}
+    dots = "".join(f"M{num(xy[i, 0])},{num(xy[i, 1])}h0" for _, i in sorted(picked.items()))
+    return polyline(xy[t <= t_ns]), polyline(xy[t >= t_ns]), dots
 
 
 def _distances(
@@ -219,7 +253,7 @@ def _distances(
             common = float(shapely.area(shapely.intersection(shapely.polygons(a), shapely.polygons(b))))
             told.append("the boxes overlap" if common > _TOUCH_M else "the boxes touch")
             continue
-        told.append(f"{far:.2f} m from box to box")
+        told.append(f"{far:.2f} m from box to box" + (f" with {actor['actor_id']}" if len(met) > 1 else ""))
         p, q = view(nearest)
         middle = (p + q) / 2
         text = f"{far:.1f} m" if far >= 10 else f"{far:.2f} m"

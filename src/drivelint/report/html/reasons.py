@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import pyarrow as pa
@@ -21,7 +22,7 @@ _ASIDE: Final = (
     (re.compile(r"\b(lanelet|object|actor|vehicle|crossing|junction|lane) [\w.:-]*\d[\w.:-]*"), r"a \1"),
     (re.compile(rf"\b{_NUMBER}\b"), "some"),
 )
-_LEAD: Final = re.compile(r"^(?:Not judged|Not decided|Not applicable): ")
+_LEAD: Final = re.compile(r"^(?:[a-z ]+: )?(?:Not judged|Not decided|Not applicable): ")
 
 
 class Reason(NamedTuple):
@@ -35,6 +36,7 @@ class Reason(NamedTuple):
     n_drives: int
 
 
+@lru_cache(4096)
 def plain(reason: str) -> str:
     """Return a reason without the times and numbers of its occasion."""
     text = _LEAD.sub("", reason)

@@ -11,13 +11,15 @@ if TYPE_CHECKING:
 
 def num(value: float) -> str:
     """Return a number with at most one decimal."""
+    if value == (whole := int(value)):
+        return str(whole)
     text = f"{value:.1f}".removesuffix(".0")
     return "0" if text == "-0" else text
 
 
 def polyline(points: NDArray[np.float64]) -> str:
     """Return the path data of an open line through points of shape (n, 2)."""
-    return "M" + " ".join(f"{num(x)},{num(y)}" for x, y in points.tolist())
+    return "M" + " ".join([f"{num(x)},{num(y)}" for x, y in points.tolist()])
 
 
 def closed(points: NDArray[np.float64]) -> str:

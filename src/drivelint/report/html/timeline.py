@@ -155,6 +155,24 @@ def _timeline(
     )
 
 
+def shared(drawn: Sequence[Timeline]) -> tuple[list[Folded], list[Timeline]]:
+    """Return what is folded alike for every ego, once, and the timelines with what is folded for some only."""
+    common = {(f.verdict, f.why): set(f.rules) for f in drawn[0].folded} if drawn else {}
+    for t in drawn[1:]:
+        mine = {(f.verdict, f.why): set(f.rules) for f in t.folded}
+        common = {key: rules & mine.get(key, set()) for key, rules in common.items()}
+    common = {key: rules for key, rules in common.items() if rules}
+
+    def rest(t: Timeline) -> list[Folded]:
+        left = [f._replace(rules=[r for r in f.rules if r not in common.get((f.verdict, f.why), ())]) for f in t.folded]
+        return [f for f in left if f.rules]
+
+    return (
+        [Folded(verdict, why, sorted(rules, key=lambda r: r[1])) for (verdict, why), rules in common.items()],
+        [t._replace(folded=rest(t)) for t in drawn],
+    )
+
+
 def _is_missing(row: Row) -> bool:
     """Whether it is unknown for the whole drive, because a signal is missing."""
     return bool(row["verdict"] == "unknown" and row["t_start_ns"] is None and can_be_provided(row["reason_code"]))
@@ -177,7 +195,9 @@ def _bands(told: Sequence[Row], clock: Clock) -> list[Band]:
             else:
                 spans.append([start, end])
         why = (
-            "" if verdict in {"pass", "fail"} else f": {'; '.join(dict.fromkeys(row['reason'] for row in rows))[:200]}"
+            ""
+            if verdict in {"pass", "fail"}
+            else f": {'; '.join(dict.fromkeys(plain(row['reason']) for row in rows))[:120]}"
         )
         bands += [Band(verdict, _pc(a), _pc(b - a) if b - a > _THIN else "", f"{verdict}{why}") for a, b in spans]
     return bands

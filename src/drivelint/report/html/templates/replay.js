@@ -43,7 +43,7 @@
     const rings = data.s[scene.dataset.ego] || {};
     const frames = Object.keys(rings).map(Number);
     const map = cam.querySelector("g").transform.baseVal.consolidate().matrix;
-    const bodies = [...picture.querySelectorAll("g[data-actor]")].map((g) => ({ g, home: g.getAttribute("transform"), who: g.dataset.actor }));
+    const bodies = [...picture.querySelectorAll("use[data-actor]")].map((g) => ({ g, home: g.getAttribute("transform"), who: g.dataset.actor }));
     const labels = [...picture.querySelectorAll("text[data-actor]")];
     const charts = [...scene.parentElement.querySelectorAll(".chart")];
     const width = 600;
