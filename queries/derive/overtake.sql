@@ -22,26 +22,45 @@ seen AS MATERIALIZED (
     ) p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.t_ns = e.t_ns
 ),
 ahead AS (
-    SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, p.object_id, p.rear_s_m - g.front_s_m AS gap_m, p.speed_mps, p.length_m, true AS placed
+    SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, p.object_id, p.rear_s_m - g.front_s_m AS gap_m, p.speed_mps, p.length_m, true AS placed,
+        p.rear_s_m - g.front_s_m AS near_m
     FROM gone g
     JOIN seen p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.chain_id = g.chain_id AND p.t0_ns = g.t0_ns AND p.t_ns = g.t0_ns
     WHERE may_be_vehicle(p.actor_class) AND p.s_m > g.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m - over_boundary_m()
         AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps())
 ),
--- somebody without a position, or whose track ended or begins nearby, may be the one that is overtaken
+-- somebody without a position, heading or size, or whose track ended or begins nearby, may be the one that is overtaken
 hidden AS (
-    SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, u.object_id, NULL::DOUBLE AS gap_m, p.speed_mps, a.length_m, false AS placed
+    SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, u.object_id, NULL::DOUBLE AS gap_m, p.speed_mps, a.length_m, false AS placed,
+        p.s_m - g.front_s_m AS near_m
     FROM gone g
     JOIN unplaced u ON u.drive_id = g.drive_id AND u.ego_id = g.ego_id AND u.t_ns = g.t0_ns
     JOIN actor a ON a.drive_id = u.drive_id AND a.actor_id = u.object_id
     LEFT JOIN seen p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.chain_id = g.chain_id AND p.t0_ns = g.t0_ns
         AND p.t_ns = g.t0_ns AND p.object_id = u.object_id
-    WHERE (p.x_m IS NULL OR p.y_m IS NULL)
-        AND NOT EXISTS (FROM ahead a WHERE a.drive_id = g.drive_id AND a.ego_id = g.ego_id AND a.chain_id = g.chain_id AND a.t0_ns = g.t0_ns)
+    WHERE p.front_s_m IS NULL AND p.s_m > g.s_m AND abs(p.d_m) < 2 * p.half_width_m
+        OR (p.x_m IS NULL OR p.y_m IS NULL)
+            AND NOT EXISTS (FROM ahead a WHERE a.drive_id = g.drive_id AND a.ego_id = g.ego_id AND a.chain_id = g.chain_id AND a.t0_ns = g.t0_ns)
+),
+-- and so was who comes into the log later, ahead in the lane, and is passed
+late AS (
+    SELECT drive_id, ego_id, chain_id, t0_ns, object_id, NULL::DOUBLE AS gap_m, NULL::DOUBLE AS speed_mps, max(length_m) AS length_m, false AS placed, NULL::DOUBLE AS near_m
+    FROM seen
+    WHERE may_be_vehicle(actor_class) AND abs(d_m) - lat_half_m < half_width_m - over_boundary_m() AND abs(heading_diff_rad) < 2 * pi() / 3
+    GROUP BY drive_id, ego_id, chain_id, t0_ns, object_id
+    HAVING min(t_ns) > t0_ns AND min(ego_front_m - front_s_m) < 0 AND max(ego_front_m - front_s_m) > 0
 ),
 candidate AS (
-    SELECT *, row_number() OVER (PARTITION BY drive_id, ego_id, chain_id, t0_ns ORDER BY gap_m, object_id) AS rank
-    FROM (SELECT * FROM ahead UNION ALL SELECT * FROM hidden)
+    SELECT *, row_number() OVER (PARTITION BY drive_id, ego_id, chain_id, t0_ns ORDER BY near_m, object_id) AS rank
+    FROM (
+        SELECT * FROM ahead
+        UNION ALL
+        SELECT * FROM hidden
+        UNION ALL
+        SELECT l.* FROM late l
+        ANTI JOIN seen p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.chain_id = l.chain_id AND p.t0_ns = l.t0_ns AND p.t_ns = l.t0_ns AND p.object_id = l.object_id
+        ANTI JOIN hidden h ON h.drive_id = l.drive_id AND h.ego_id = l.ego_id AND h.chain_id = l.chain_id AND h.t0_ns = l.t0_ns AND h.object_id = l.object_id
+    )
 ),
 passing AS (
     SELECT c.drive_id, c.ego_id, c.chain_id, c.t0_ns, c.object_id, bool_or(p.ego_front_m > p.front_s_m) AS passed,
@@ -57,7 +76,7 @@ kept AS (
     JOIN gone g USING (drive_id, ego_id, chain_id, t0_ns)
     LEFT JOIN passing a USING (drive_id, ego_id, chain_id, t0_ns, object_id)
     WHERE coalesce(a.passed, false)
-        OR (c.rank = 1 AND coalesce(c.gap_m, 0.0) <= 100
+        OR (c.rank = 1 AND coalesce(c.near_m, 0.0) <= 100
             AND (g.centre_over OR NOT g.begin_seen OR g.t_back_ns IS NULL OR coalesce(a.n_seen, 0) < g.n_steps))
 ),
 later AS (

@@ -23,8 +23,7 @@ met AS (
 SELECT
     s.drive_id, s.ego_id, s.occurrence, s.t_ns, s.stage, s.vbp_id, n.object_id AS ov_id,
     -- nobody is there only as far as can be told: an unseen vehicle at the limit (70 mph where the map has none) must be out of reach
-    coalesce(n.n_unplaced = 0, false)
-        AND (n.object_id IS NOT NULL OR n.free_m > s.sd_av_m + danger_space_m(coalesce(s.limit_mps, 31.3))) AS ov_known,
+    coalesce(n.n_unplaced = 0 AND (n.object_id IS NOT NULL OR n.free_m > s.sd_av_m + danger_space_m(coalesce(s.limit_mps, 31.3))), false) AS ov_known,
     s.sd_av_m, s.fd AS ds_av_d_m, s.fh AS ds_av_half_m, v.sd_m AS sd_ov_m, v.fd AS ds_ov_d_m, v.fh AS ds_ov_half_m,
     inside3(s.ef + s.sd_av_m - b.rear_s_m, b.front_s_m - s.ef, s.fh + b.lat_half_m - abs(s.fd - b.d_m)) AS vbp_in_ds_av_m,
     inside3(s.ef + s.sd_av_m - v.rear_s_m, v.front_s_m - s.ef, s.fh + v.lat_half_m - abs(s.fd - v.d_m)) AS ov_in_ds_av_m,

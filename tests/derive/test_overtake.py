@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -225,6 +226,31 @@ def test_a_look_past_the_vehicle_ahead_is_no_overtake_if_all_of_it_was_seen(hand
     early, late = [ego.keep(t >= 4), vbp.keep(t >= 4)], [ego.keep(t <= 7), vbp.keep(t <= 7)]
     assert [(row["status"], row["begin_seen"]) for row in one(early, way, "overtake")] == [("aborted", False)]
     assert [row["status"] for row in one(late, way, "overtake")] == ["truncated"]
+
+
+@pytest.mark.parametrize("lacks", ["yaw", "length", "width"])
+def test_who_lacks_heading_or_size_ahead_may_be_the_one(lacks: str) -> None:
+    """Nearer than another who is placed: the overtake is not that one's alone."""
+    way, (ego, vbp, ov) = scene()
+    unknown = replace(vbp, yaw=vbp.yaw * np.nan) if lacks == "yaw" else replace(vbp, **{lacks: None})
+    far = moving("far", way, ego.t_s, 260 + 4 * ego.t_s, way.own)
+    for actors in ([ego, unknown, ov], [ego, unknown, ov, far]):
+        (found,) = one(actors, way, "overtake")
+        assert (found["vbp_id"], found["vbp_placed"], found["vbp_gap_m"]) == ("vbp", False, None)
+    beside = moving("vbp", way, ego.t_s, 140 + 4 * ego.t_s, way.own - 8 * way.over)
+    unknown = replace(beside, yaw=vbp.yaw * np.nan) if lacks == "yaw" else replace(beside, **{lacks: None})
+    assert not one([ego, unknown, ov], way, "overtake")
+
+
+def test_who_comes_into_the_log_later_and_is_passed_was_there() -> None:
+    way, (ego, vbp, ov) = scene()
+    (whole,) = one([ego, vbp, ov], way, "overtake")
+    late = vbp.keep(vbp.t_s * 1e9 > whole["t0_ns"] + 3e8)
+    far = moving("vbp", way, ego.t_s, 230 + 1 * ego.t_s, way.own)
+    for actor in (late, far.keep(far.t_s * 1e9 > whole["t0_ns"] + 3e8)):
+        (found,) = one([ego, actor, ov], way, "overtake")
+        assert (found["vbp_id"], found["vbp_placed"], found["vbp_gap_m"]) == ("vbp", False, None)
+        assert (found["t0_ns"], found["passed"]) == (whole["t0_ns"], True)
 
 
 def test_a_wobble_over_the_line_is_an_excursion_and_nothing_else() -> None:
