@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from drivelint.report.result import Result
@@ -41,23 +42,86 @@ def test_it_opens_without_complaints_and_asks_for_nothing(opened: Page) -> None:
 
 
 def test_filters_show_only_what_is_asked_for(opened: Page, overtakes: Result) -> None:
-    rows = overtakes.findings.to_pylist()
+    near = [r for r in overtakes.verdicts.to_pylist() if r["near_miss"]]
+    rows = overtakes.findings.to_pylist() + near
     shown = "[...document.querySelectorAll('#findings-table tbody tr')].filter(r => r.offsetHeight > 0).length"
     choose = (
         "(() => {{ const s = document.querySelector('select[name={}]'); s.value = {!r};"
         " s.dispatchEvent(new Event('change', {{bubbles: true}})); }})()"
     )
     assert opened.value(shown) == len(rows)
+    opened.value(choose.format("verdict", "near"))
+    assert opened.value(shown) == len(near) > 0
+    opened.value(choose.format("verdict", ""))
     opened.value(choose.format("severity", "minor"))
     minor = sum(row["severity"] == "minor" for row in rows)
     assert 0 < minor < len(rows)
     assert opened.value(shown) == minor
+    lines = "[...document.querySelectorAll('.timeline .tl[data-k]')].filter(r => !r.hidden)"
+    assert opened.value(f"{lines}.length") > 0
+    assert opened.value(f"{lines}.every(r => r.dataset.k.includes('minor'))")
     opened.value(choose.format("drive", rows[0]["drive_id"]))
     both = sum(row["severity"] == "minor" and row["drive_id"] == rows[0]["drive_id"] for row in rows)
     assert opened.value(shown) == both
     assert opened.value("document.querySelector('.filters output').textContent") == f"{both} of {len(rows)} shown"
     opened.value("new Promise(done => { document.querySelector('.filters').reset(); setTimeout(done, 20); })")
     assert opened.value(shown) == len(rows)
+
+
+def test_rules_are_found_by_words_typed_on_the_keyboard(opened: Page, overtakes: Result) -> None:
+    opened.value("document.querySelector('.filters input').focus()")
+    for letter in "r162.safe":
+        opened.call("Input.dispatchKeyEvent", type="keyDown", text=letter)
+        opened.call("Input.dispatchKeyEvent", type="keyUp")
+    rows = [row for row in overtakes.findings.to_pylist() if "r162.safe" in row["rule_id"]]
+    near = [r for r in overtakes.verdicts.to_pylist() if r["near_miss"] and "r162.safe" in r["rule_id"]]
+    shown = "[...document.querySelectorAll('#findings-table tbody tr')].filter(r => r.offsetHeight > 0).length"
+    assert opened.value(shown) == len(rows) + len(near) > 0
+    opened.value("new Promise(done => { document.querySelector('.filters').reset(); setTimeout(done, 20); })")
+
+
+def test_the_arrow_keys_replay_a_scene(opened: Page, overtakes: Result) -> None:
+    finding = next(r for r in overtakes.findings.to_pylist() if "r126.ds-" in r["rule_id"])
+    opened.value(
+        f"new Promise(done => {{ location.hash = 'finding-{finding['finding_id']}'; setTimeout(done, 500); }})"
+    )
+    opened.value(
+        f"window.scene = document.getElementById('finding-{finding['finding_id']}').closest('.moment').querySelector('.scene'); 1"
+    )
+    ego = "scene.querySelector('use.b-ego').getAttribute('transform')"
+    spaces = "[...scene.querySelectorAll('.spaces path')].map(p => p.getAttribute('d')).join()"
+    before, rings, said = (
+        opened.value(ego),
+        opened.value(spaces),
+        opened.value("scene.querySelector('output').textContent"),
+    )
+    opened.value("scene.querySelector('input').focus()")
+    for _ in range(10):
+        for kind in ("keyDown", "keyUp"):
+            opened.call(
+                "Input.dispatchKeyEvent", type=kind, key="ArrowLeft", code="ArrowLeft", windowsVirtualKeyCode=37
+            )
+    there = opened.value(ego)
+    scene = next(
+        s for s in overtakes.scenes.to_pylist()
+        if (s["drive_id"], s["t_ns"]) == (finding["drive_id"], finding["t_worst_ns"])
+    )  # fmt: skip
+    path = scene["actors"][0]["path"]
+    t = [finding["t_worst_ns"], finding["t_worst_ns"] - 1_000_000_000]
+    moved = [[float(v) for v in re.findall(r"-?[\d.]+", text)[:2]] for text in (before, there)]
+    for i, axis in enumerate(("x_m", "y_m")):
+        here, back = np.interp(t, [p["t_ns"] for p in path], [p[axis] for p in path])
+        assert (moved[1][i] - moved[0][i]) / 10 == pytest.approx(back - here, abs=0.02)
+    assert opened.value(spaces) != rings != ""
+    assert float(opened.value("scene.querySelector('output').textContent").split()[0]) == pytest.approx(
+        float(said.split()[0]) - 1
+    )
+    opened.value(
+        "(() => { const r = scene.querySelector('input'); r.value = scene.dataset.t; r.dispatchEvent(new Event('input')); })()"
+    )
+    assert opened.value(ego) == before
+    assert opened.value(spaces) == rings
+    assert opened.complaints() == []
 
 
 def test_a_findings_link_lands_on_it_though_its_drive_is_folded(opened: Page, overtakes: Result) -> None:
@@ -72,7 +136,7 @@ def test_a_findings_link_lands_on_it_though_its_drive_is_folded(opened: Page, ov
 
 
 def test_everything_can_be_reached_by_keyboard(opened: Page) -> None:
-    reachable = "document.querySelectorAll('a[href], summary, select, button').length"
+    reachable = "document.querySelectorAll('a[href], summary, select, button, input').length"
     negative = "document.querySelectorAll('[tabindex=\"-1\"]').length"
     assert opened.value(reachable) > 20
     assert opened.value(negative) == 0
@@ -113,5 +177,5 @@ def test_markup_in_names_does_nothing(tmp_path: Path) -> None:
     file.write_text(page(nasty()), encoding="utf-8")
     with Page(tmp_path / "profile", file.as_uri()) as shown:
         assert shown.complaints() == []
-        assert shown.value("document.querySelectorAll('script').length") == 1
+        assert shown.value("document.querySelectorAll('script:not([type=\"application/json\"])').length") == 1
         assert shown.value("document.querySelectorAll('svg.plan .name').length") > 1

@@ -19,7 +19,7 @@ from drivelint.report.html.plan import shapes
 from drivelint.report.html.reasons import can_be_provided, plain, reasons
 from drivelint.report.html.replay import replays
 from drivelint.report.html.road import Road
-from drivelint.report.html.timeline import Clock, shared, timelines
+from drivelint.report.html.timeline import Clock, nothing, shared, timelines
 from drivelint.report.result import outcome
 from drivelint.report.text import number
 
@@ -224,6 +224,8 @@ def _section(
     """Return a drive with its egos: the timeline, the moments and the parties of each."""
     weight = {"error": 0, "warning": 1, "info": 2}
     folded, tracks = shared(tracks)
+    without = sorted({m.ego_id for m in seen} - {t.ego_id for t in tracks})
+    tracks = [*tracks, *(nothing(ego_id) for ego_id in without)]
     egos = [{"timeline": t, "moments": [m for m in seen if m.ego_id == t.ego_id]} for t in tracks]
     missing: dict[str, list[str]] = {}
     for gap in row["not_judged"]:

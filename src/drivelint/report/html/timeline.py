@@ -155,6 +155,11 @@ def _timeline(
     )
 
 
+def nothing(ego_id: str) -> Timeline:
+    """Return the timeline of an ego without verdicts."""
+    return Timeline(ego_id, "", "0", [], [], [], dict.fromkeys(_ORDER, 0))
+
+
 def shared(drawn: Sequence[Timeline]) -> tuple[list[Folded], list[Timeline]]:
     """Return what is folded alike for every ego, once, and the timelines with what is folded for some only."""
     common = {(f.verdict, f.why): set(f.rules) for f in drawn[0].folded} if drawn else {}

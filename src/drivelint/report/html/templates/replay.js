@@ -78,7 +78,7 @@
       else {
         const t = still ? nearest(frames, at) : null;
         spaces.replaceChildren(...Object.entries(t === null ? {} : rings[t]).map(([who, d]) => {
-          const path = document.createElementNS("http://www.w3.org/2000/svg", "path");
+          const path = document.createElementNS(spaces.namespaceURI, "path");
           path.setAttribute("class", `space s-${who === scene.dataset.ego ? "ego" : "met"}`);
           path.setAttribute("d", d);
           return path;
