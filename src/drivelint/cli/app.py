@@ -8,25 +8,20 @@ from __future__ import annotations
 import io
 import os
 import sys
-from concurrent.futures import ThreadPoolExecutor, wait
-from contextlib import nullcontext, redirect_stdout
-from datetime import date, datetime
+from contextlib import redirect_stdout
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn, TypeVar
 
 import typer
 
-from drivelint import __version__, cli_explain, options
-from drivelint.errors import DriveLintError, ExitCode, UsageError
+from drivelint import __version__
+from drivelint.cli import explain as explain_
+from drivelint.cli import options, rules, values
+from drivelint.cli.shell import interruptible, say
+from drivelint.cli.shell import progress as bar
+from drivelint.errors import DriveLintError, ExitCode
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from contextlib import AbstractContextManager
-
-    from rich.console import RenderableType
-
-    from drivelint.ingest.trace import EgoSize
-    from drivelint.report.progress import Progress
     from drivelint.report.result import Result
 
 T = TypeVar("T")
@@ -41,8 +36,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-rules_app = typer.Typer(help="List, show, write and test the rules.", rich_markup_mode=None)
-app.add_typer(rules_app, name="rules")
+app.add_typer(rules.app, name="rules")
 
 
 def _version(value: bool) -> None:
@@ -137,7 +131,7 @@ def check(
     from drivelint.report.result import exit_code
     from drivelint.settings import FILE
 
-    keeper = Keeper.of(baseline, waivers, Path(FILE), _today(today), out)
+    keeper = Keeper.of(baseline, waivers, Path(FILE), values.today(today), out)
     settings = run.Settings(
         traces=tuple(traces),
         map=map_,
@@ -148,12 +142,12 @@ def check(
         params=tuple(param or ()),
         ego=ego,
         mapping=mapping,
-        map_offset=_offset(map_offset),
+        map_offset=values.offset(map_offset),
         map_dir=map_dir,
-        map_origin=_origin(map_origin),
+        map_origin=values.origin(map_origin),
         handedness=handedness.value,
         sensor_range_m=sensor_range,
-        ego_size=_ego_size(ego_size),
+        ego_size=values.ego_size(ego_size),
         env=tuple(env or ()),
         rules_dirs=tuple(rules_dir or ()),
         fail_on=fail_on.value,
@@ -165,8 +159,8 @@ def check(
     )
     if out is not None:
         prepare(out)
-    with _progress(quiet) as progress:
-        result = _interruptible(lambda: run.check(settings, progress))
+    with bar(quiet) as progress:
+        result = interruptible(lambda: run.check(settings, progress))
         if keeper is not None:
             result = keeper.gate(result)
         if out is not None:
@@ -226,23 +220,23 @@ def inspect(
         mapping=mapping,
         ego=ego,
         topic=topic,
-        map_offset=_offset(map_offset),
+        map_offset=values.offset(map_offset),
         map_dir=map_dir,
-        map_origin=_origin(map_origin),
+        map_origin=values.origin(map_origin),
         handedness=handedness.value,
         sensor_range_m=sensor_range,
-        ego_size=_ego_size(ego_size),
+        ego_size=values.ego_size(ego_size),
         env=tuple(env or ()),
         rules=tuple(rules or ()),
         rules_dirs=tuple(rules_dir or ()),
     )
-    found = _interruptible(lambda: inspection.inspect(order))
+    found = interruptible(lambda: inspection.inspect(order))
     if format_ is options.Format.json:
         typer.echo(inspection.to_json(found))
     else:
         from drivelint.inspect.text import render
 
-        _say(render(found, trace))
+        say(render(found, trace))
     raise typer.Exit(int(inspection.exit_code(found)))
 
 
@@ -274,14 +268,14 @@ def convert(
         to=to.value,
         out=out,
         map=map_,
-        map_offset=_offset(map_offset),
+        map_offset=values.offset(map_offset),
         mapping=mapping,
         ego=ego,
         topic=topic,
         sensor_range_m=sensor_range,
-        ego_size=_ego_size(ego_size),
+        ego_size=values.ego_size(ego_size),
     )
-    written = _interruptible(lambda: converter.convert(order))
+    written = interruptible(lambda: converter.convert(order))
     for note in written.notes:
         typer.echo(f"drivelint: {note}", err=True)
     typer.echo(said(written))
@@ -312,7 +306,7 @@ def report(
     typer.echo(str(folder / name))
 
 
-cli_explain.register(app, lambda job: _interruptible(job), lambda what: _say(what))
+app.command()(explain_.explain)
 
 
 @app.command("diff")
@@ -348,116 +342,6 @@ def diff_(
     else:
         typer.echo(words.text(found, failing, least, later.gate))
     raise typer.Exit(int(ExitCode.FAILED if failing else ExitCode.OK))
-
-
-@rules_app.command("list")
-def rules_list(
-    selectors: Annotated[
-        list[str] | None, typer.Argument(metavar="[SEL]...", help="Which ones, as --rules of check. Default: all.")
-    ] = None,
-    format_: options.Printed = options.Format.text,
-    rules_dir: options.RulesDirs = None,
-) -> None:
-    """List the rules.
-
-    Such as: drivelint rules list ukhc,status:stable clause:R162
-
-    With --format json also the clause that each is from and what it requires of a log.
-    """
-    from drivelint.catalogue import load, select
-    from drivelint.report import rules_text
-
-    known = load(tuple(rules_dir or ()))
-    rules = select(known, selectors, ()) if selectors else list(known.values())
-    if format_ is options.Format.json:
-        typer.echo(rules_text.listing_json(rules))
-    else:
-        _say(lambda width: rules_text.listing(rules, width))
-
-
-@rules_app.command("show")
-def rules_show(
-    rule_id: Annotated[str, typer.Argument(metavar="ID", help="The rule's id.")], rules_dir: options.RulesDirs = None
-) -> None:
-    """Show one rule: question, clause, parameters, SQL."""
-    from drivelint.catalogue import load, select
-    from drivelint.report import rules_text
-
-    rules = load(tuple(rules_dir or ()))
-    for rule in [rules[rule_id]] if rule_id in rules else select(rules, [rule_id], []):
-        _say(rules_text.page(rule))
-        _say(rules_text.source(rule), soft_wrap=True)
-
-
-@rules_app.command("new")
-def rules_new(
-    rule_id: Annotated[str, typer.Argument(metavar="PACK.NAME", help="The id of the rule to write.")],
-    folder: Annotated[Path, typer.Option("--dir", metavar="DIR", help="Folder of packs to write it into.")] = Path(),
-    kind: Annotated[
-        options.RuleKind, typer.Option("--kind", help="What it is judged at.")
-    ] = options.RuleKind.invariant,
-) -> None:
-    """Write a rule to start from.
-
-    DIR/PACK/NAME.sql and NAME.cases.yml: a small rule with its cases, which runs as it is. Nothing is overwritten.
-    """
-    from drivelint.casefile import workshop
-
-    for file in workshop.new(rule_id, folder, kind.value):
-        typer.echo(file)
-    typer.echo(f"Edit both, then: drivelint rules test {folder} --rules {rule_id}", err=True)
-
-
-@rules_app.command("page")
-def rules_page(
-    folder: Annotated[
-        Path | None, typer.Argument(metavar="[DIR]", help="Folder with rule packs; default: the shipped ones.")
-    ] = None,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="FILE", help="Write it there; default: print it.")
-    ] = None,
-) -> None:
-    """Write the catalogue as one Markdown page.
-
-    A table per pack: what each rule asserts and needs, its numbers and where they are from; and by clause what is covered.
-    """
-    from drivelint.catalogue import load
-    from drivelint.report.catalogue_page import page
-    from drivelint.resources import folder as shipped
-
-    rules = load((folder,) if folder else ()).values()
-    packs = folder or shipped("queries") / "assertions"
-    text = page([rule for rule in rules if rule.path.is_relative_to(packs)], packs)
-    if out is None:
-        typer.echo(text, nl=False)
-    else:
-        out.write_text(text, encoding="utf-8")
-
-
-@rules_app.command("test")
-def rules_test(
-    folder: Annotated[
-        Path | None, typer.Argument(metavar="[DIR]", help="Folder with rule packs; default: the shipped ones.")
-    ] = None,
-    only: Annotated[
-        list[str] | None, typer.Option("--rules", metavar="SEL", help="Rule id or glob. Repeatable. Default: all.")
-    ] = None,
-    mutate: Annotated[
-        bool, typer.Option("--mutate", help="Break each rule in many ways, and ask whether some case notices.")
-    ] = False,
-) -> None:
-    """Run the test cases beside the rules.
-
-    Each is a small scene with the verdict that is due. With --mutate: whether the cases would notice a wrong sense,
-    threshold or window, or a missing condition.
-
-    Exit codes: 0 all is well; 1 some verdict is another, or a mutant of a stable rule is noticed by no case; 2 a rule
-    or its cases cannot be used.
-    """
-    from drivelint.casefile import workshop
-
-    test = workshop.mutation_test if mutate else workshop.case_test
-    raise typer.Exit(int(_interruptible(lambda: test(folder, tuple(only or ()), typer.echo))))
 
 
 def main() -> NoReturn:
@@ -517,92 +401,6 @@ def _fail(message: str, code: ExitCode) -> NoReturn:
     sys.exit(int(code))
 
 
-def _today(text: str | None) -> date:
-    """Read the day that waivers are held against; the system's if none is given. Errors: `UsageError`."""
-    if text is None:
-        return datetime.now().astimezone().date()
-    try:
-        return date.fromisoformat(text)
-    except ValueError as error:
-        raise UsageError(f"--today {text!r}: write a day such as 2027-03-31") from error
-
-
-def _offset(text: str | None) -> tuple[float, float] | None:
-    """Read DX,DY. Errors: `UsageError`."""
-    if text is None:
-        return None
-    try:
-        dx, dy = (float(part) for part in text.split(","))
-    except ValueError as error:
-        raise UsageError(f"--map-offset {text!r}: write two numbers in metres, DX,DY, such as 2.6,3.1") from error
-    return dx, dy
-
-
-def _ego_size(text: str | None) -> EgoSize | None:
-    """Read L,W[,AHEAD]. Errors: `UsageError`."""
-    if text is None:
-        return None
-    from drivelint.ingest.trace import EgoSize
-
-    try:
-        length, width, *rest = (float(part) for part in text.split(","))
-        (ahead,) = rest or [0.0]
-    except ValueError:
-        length = width = ahead = float("nan")
-    if not (0.0 < length < 100.0 and 0.0 < width < 10.0 and abs(ahead) < 100.0):
-        raise UsageError(f"--ego-size {text!r}: write length and width in metres, such as 4.9,1.9 or 4.9,1.9,1.4")
-    return EgoSize(length, width, ahead)
-
-
-def _origin(text: str | None) -> tuple[float, float] | None:
-    """Read LAT,LON. Errors: `UsageError`."""
-    if text is None:
-        return None
-    try:
-        lat, lon = (float(part) for part in text.split(","))
-    except ValueError:
-        lat = lon = 999.0
-    if not (abs(lat) <= 90 and abs(lon) <= 180):
-        raise UsageError(f"--map-origin {text!r}: write latitude and longitude in degrees, LAT,LON, such as 51.5,-2.58")
-    return lat, lon
-
-
-def _interruptible(job: Callable[[], T]) -> T:
-    """Run `job` beside the main thread: the database does not look at Ctrl-C while it computes, this thread does.
-
-    It looks several times a second, because some libraries make the system restart a wait that a signal interrupted.
-    """
-    running = ThreadPoolExecutor(max_workers=1).submit(job)
-    while not running.done():
-        wait([running], timeout=0.2)
-    return running.result()
-
-
-def _progress(quiet: bool) -> AbstractContextManager[Progress]:
-    """Return a bar on a terminal's stderr; elsewhere only the pipeline's notes, as lines."""
-    from drivelint.report.progress import Notes, Silent
-
-    if quiet:
-        return nullcontext(Silent())
-    if not sys.stderr.isatty():
-        return nullcontext(Notes())
-    from drivelint.report.console import Bar
-
-    return Bar()
-
-
-def _say(what: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> None:
-    """Print for a person on stdout: plain and wide where that is no terminal. `what` may depend on the width."""
-    from rich.console import Console
-
-    terminal = sys.stdout.isatty()
-    console = Console(width=None if terminal or "COLUMNS" in os.environ else 120, highlight=False)
-    with nullcontext() if terminal else console.capture() as captured:
-        console.print(what(console.width) if callable(what) else what, soft_wrap=soft_wrap)
-    if captured is not None:
-        typer.echo("\n".join(line.rstrip() for line in captured.get().splitlines()))
-
-
 def _print(result: Result, format_: options.Format, out: Path | None) -> None:
     """Print the outcome of a check on stdout."""
     from drivelint.report import summary, terminal
@@ -610,4 +408,4 @@ def _print(result: Result, format_: options.Format, out: Path | None) -> None:
     if format_ is options.Format.json:
         typer.echo(summary.render(result), nl=False)
     else:
-        _say(lambda width: terminal.render(result, None if out is None else str(out), width))
+        say(lambda width: terminal.render(result, None if out is None else str(out), width))

@@ -1,0 +1,123 @@
+"""`drivelint rules`: list, show, write and test the rules."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from drivelint.cli import options
+from drivelint.cli.shell import interruptible, say
+
+app = typer.Typer(help="List, show, write and test the rules.", rich_markup_mode=None)
+
+
+@app.command("list")
+def list_(
+    selectors: Annotated[
+        list[str] | None, typer.Argument(metavar="[SEL]...", help="Which ones, as --rules of check. Default: all.")
+    ] = None,
+    format_: options.Printed = options.Format.text,
+    rules_dir: options.RulesDirs = None,
+) -> None:
+    """List the rules.
+
+    Such as: drivelint rules list ukhc,status:stable clause:R162
+
+    With --format json also the clause that each is from and what it requires of a log.
+    """
+    from drivelint.catalogue import load, select
+    from drivelint.report import rules_text
+
+    known = load(tuple(rules_dir or ()))
+    rules = select(known, selectors, ()) if selectors else list(known.values())
+    if format_ is options.Format.json:
+        typer.echo(rules_text.listing_json(rules))
+    else:
+        say(lambda width: rules_text.listing(rules, width))
+
+
+@app.command("show")
+def show(
+    rule_id: Annotated[str, typer.Argument(metavar="ID", help="The rule's id.")], rules_dir: options.RulesDirs = None
+) -> None:
+    """Show one rule: question, clause, parameters, SQL."""
+    from drivelint.catalogue import load, select
+    from drivelint.report import rules_text
+
+    rules = load(tuple(rules_dir or ()))
+    for rule in [rules[rule_id]] if rule_id in rules else select(rules, [rule_id], []):
+        say(rules_text.page(rule))
+        say(rules_text.source(rule), soft_wrap=True)
+
+
+@app.command("new")
+def new(
+    rule_id: Annotated[str, typer.Argument(metavar="PACK.NAME", help="The id of the rule to write.")],
+    folder: Annotated[Path, typer.Option("--dir", metavar="DIR", help="Folder of packs to write it into.")] = Path(),
+    kind: Annotated[
+        options.RuleKind, typer.Option("--kind", help="What it is judged at.")
+    ] = options.RuleKind.invariant,
+) -> None:
+    """Write a rule to start from.
+
+    DIR/PACK/NAME.sql and NAME.cases.yml: a small rule with its cases, which runs as it is. Nothing is overwritten.
+    """
+    from drivelint.casefile import workshop
+
+    for file in workshop.new(rule_id, folder, kind.value):
+        typer.echo(file)
+    typer.echo(f"Edit both, then: drivelint rules test {folder} --rules {rule_id}", err=True)
+
+
+@app.command("page")
+def page_(
+    folder: Annotated[
+        Path | None, typer.Argument(metavar="[DIR]", help="Folder with rule packs; default: the shipped ones.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="FILE", help="Write it there; default: print it.")
+    ] = None,
+) -> None:
+    """Write the catalogue as one Markdown page.
+
+    A table per pack: what each rule asserts and needs, its numbers and where they are from; and by clause what is covered.
+    """
+    from drivelint.catalogue import load
+    from drivelint.report.catalogue_page import page
+    from drivelint.resources import folder as shipped
+
+    rules = load((folder,) if folder else ()).values()
+    packs = folder or shipped("queries") / "assertions"
+    text = page([rule for rule in rules if rule.path.is_relative_to(packs)], packs)
+    if out is None:
+        typer.echo(text, nl=False)
+    else:
+        out.write_text(text, encoding="utf-8")
+
+
+@app.command("test")
+def run_tests(
+    folder: Annotated[
+        Path | None, typer.Argument(metavar="[DIR]", help="Folder with rule packs; default: the shipped ones.")
+    ] = None,
+    only: Annotated[
+        list[str] | None, typer.Option("--rules", metavar="SEL", help="Rule id or glob. Repeatable. Default: all.")
+    ] = None,
+    mutate: Annotated[
+        bool, typer.Option("--mutate", help="Break each rule in many ways, and ask whether some case notices.")
+    ] = False,
+) -> None:
+    """Run the test cases beside the rules.
+
+    Each is a small scene with the verdict that is due. With --mutate: whether the cases would notice a wrong sense,
+    threshold or window, or a missing condition.
+
+    Exit codes: 0 all is well; 1 some verdict is another, or a mutant of a stable rule is noticed by no case; 2 a rule
+    or its cases cannot be used.
+    """
+    from drivelint.casefile import workshop
+
+    test = workshop.mutation_test if mutate else workshop.case_test
+    raise typer.Exit(int(interruptible(lambda: test(folder, tuple(only or ()), typer.echo))))

@@ -1,0 +1,57 @@
+"""What the commands share: a job beside the main thread, progress, printing for a person."""
+
+from __future__ import annotations
+
+import os
+import sys
+from concurrent.futures import ThreadPoolExecutor, wait
+from contextlib import nullcontext
+from typing import TYPE_CHECKING, TypeVar
+
+import typer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from contextlib import AbstractContextManager
+
+    from rich.console import RenderableType
+
+    from drivelint.report.progress import Progress
+
+T = TypeVar("T")
+
+
+def interruptible(job: Callable[[], T]) -> T:
+    """Run `job` beside the main thread: the database does not look at Ctrl-C while it computes, this thread does.
+
+    It looks several times a second, because some libraries make the system restart a wait that a signal interrupted.
+    """
+    running = ThreadPoolExecutor(max_workers=1).submit(job)
+    while not running.done():
+        wait([running], timeout=0.2)
+    return running.result()
+
+
+def progress(quiet: bool) -> AbstractContextManager[Progress]:
+    """Return a bar on a terminal's stderr; elsewhere only the pipeline's notes, as lines."""
+    from drivelint.report.progress import Notes, Silent
+
+    if quiet:
+        return nullcontext(Silent())
+    if not sys.stderr.isatty():
+        return nullcontext(Notes())
+    from drivelint.report.console import Bar
+
+    return Bar()
+
+
+def say(what: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> None:
+    """Print for a person on stdout: plain and wide where that is no terminal. `what` may depend on the width."""
+    from rich.console import Console
+
+    terminal = sys.stdout.isatty()
+    console = Console(width=None if terminal or "COLUMNS" in os.environ else 120, highlight=False)
+    with nullcontext() if terminal else console.capture() as captured:
+        console.print(what(console.width) if callable(what) else what, soft_wrap=soft_wrap)
+    if captured is not None:
+        typer.echo("\n".join(line.rstrip() for line in captured.get().splitlines()))

@@ -1,0 +1,61 @@
+"""Values of options that are more than a word or a number: read, or refused in one line."""
+
+from __future__ import annotations
+
+from datetime import date, datetime
+from typing import TYPE_CHECKING
+
+from drivelint.errors import UsageError
+
+if TYPE_CHECKING:
+    from drivelint.ingest.trace import EgoSize
+
+
+def today(text: str | None) -> date:
+    """Read the day that waivers are held against; the system's if none is given. Errors: `UsageError`."""
+    if text is None:
+        return datetime.now().astimezone().date()
+    try:
+        return date.fromisoformat(text)
+    except ValueError as error:
+        raise UsageError(f"--today {text!r}: write a day such as 2027-03-31") from error
+
+
+def offset(text: str | None) -> tuple[float, float] | None:
+    """Read DX,DY. Errors: `UsageError`."""
+    if text is None:
+        return None
+    try:
+        dx, dy = (float(part) for part in text.split(","))
+    except ValueError as error:
+        raise UsageError(f"--map-offset {text!r}: write two numbers in metres, DX,DY, such as 2.6,3.1") from error
+    return dx, dy
+
+
+def ego_size(text: str | None) -> EgoSize | None:
+    """Read L,W[,AHEAD]. Errors: `UsageError`."""
+    if text is None:
+        return None
+    from drivelint.ingest.trace import EgoSize
+
+    try:
+        length, width, *rest = (float(part) for part in text.split(","))
+        (ahead,) = rest or [0.0]
+    except ValueError:
+        length = width = ahead = float("nan")
+    if not (0.0 < length < 100.0 and 0.0 < width < 10.0 and abs(ahead) < 100.0):
+        raise UsageError(f"--ego-size {text!r}: write length and width in metres, such as 4.9,1.9 or 4.9,1.9,1.4")
+    return EgoSize(length, width, ahead)
+
+
+def origin(text: str | None) -> tuple[float, float] | None:
+    """Read LAT,LON. Errors: `UsageError`."""
+    if text is None:
+        return None
+    try:
+        lat, lon = (float(part) for part in text.split(","))
+    except ValueError:
+        lat = lon = 999.0
+    if not (abs(lat) <= 90 and abs(lon) <= 180):
+        raise UsageError(f"--map-origin {text!r}: write latitude and longitude in degrees, LAT,LON, such as 51.5,-2.58")
+    return lat, lon
