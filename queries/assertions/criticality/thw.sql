@@ -26,9 +26,9 @@
 -- why = "our default: below it a queue closes up, and a headway says nothing"
 
 -- @applies
--- a step without a row in `lead` is one at which nobody knows who leads
+-- a step without a row in `lead` is one at which nobody knows who leads; a speed held at the limit trembles in its last digits
 SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
-    CASE WHEN l.object_id IS NOT NULL THEN behind(l.gap_m, e.d_m, e.lat_half_m, p.d_m, p.lat_half_m) AND NOT comes(l.speed_mps, l.oncoming) AND l.ego_speed_mps >= $slowest_mps WHEN l.t_ns IS NOT NULL THEN true END AS applies
+    CASE WHEN l.object_id IS NOT NULL THEN behind(l.gap_m, e.d_m, e.lat_half_m, p.d_m, p.lat_half_m) AND NOT comes(l.speed_mps, l.oncoming) AND round(l.ego_speed_mps, 2) >= $slowest_mps WHEN l.t_ns IS NOT NULL THEN true END AS applies
 FROM step s
 LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
 LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.t_ns = l.t_ns AND p.object_id = l.object_id

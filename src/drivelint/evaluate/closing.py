@@ -111,7 +111,7 @@ _numbered AS (
 SELECT v.drive_id, v.ego_id, rule_id, rule_version, kind, profile, severity, object_id,
     occurrence::INTEGER AS occurrence, ref_id, t_ref_ns, t_start_ns, t_end_ns,
     t_worst_ns, verdict, code AS reason_code, sentence AS reason, observed, required, margin, unit,
-    coalesce(verdict = 'pass' AND margin < near_margin, false) AS near_miss,
+    coalesce(verdict = 'pass' AND round(margin, 6) < near_margin, false) AS near_miss,
     coalesce(n_expected, 0) AS n_expected, coalesce(n_judged, 0) AS n_judged, p.x_m, p.y_m, p.lanelet_id
 FROM _numbered v {_PLACE}
 """
