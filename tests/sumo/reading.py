@@ -25,6 +25,7 @@ OVER_M = 0.05  # a corner further over the line than that has left the lane
 LOOK_M = 1000.0  # with nobody coming, how far the road counts as looked at
 NEAR_M = 100.0  # who is pulled out behind, though not passed in the end
 WELL_OVER_M = 0.5
+STANDING_MPS = 0.5
 PROFILES = {"relaxed": (10.0, 9.10), "nominal": (20.0, 4.65), "aggressive": (40.0, 1.11)}
 """Angle of pulling out and cutting in (degrees), headroom and clearance (m)."""
 VERDICTS = ("fail", "unknown", "pass")
@@ -86,6 +87,13 @@ class Log:
 
     def at(self, step: int) -> Log:
         return self._take(slice(*np.searchsorted(self.step, (step, step + 1))))
+
+    def seen_by(self, against: bool) -> Log:
+        """Return it with `along` and `offset` as those have them who drive the one way or the other."""
+        other = (self.against != against)[:, None]
+        return replace(
+            self, along=np.where(other, self.met, self.along), offset=np.where(other, -self.offset, self.offset)
+        )
 
     def _take(self, rows: NDArray[np.bool_] | slice) -> Log:
         names = ("step", "who", "x", "y", "heading", "against", "speed", "along", "met", "offset")
@@ -189,8 +197,11 @@ def _excursion(log: Log, net: Net, own: Log, first: int, end: int) -> list[Overt
     there = log.at(step)
     me = own.who[first]
     front, centre = own.along[first].max(), own.along[first].mean()
-    same = (there.against == own.against[first]) & (there.who != me)
-    ahead = same & (there.along.mean(axis=1) > centre) & (there.offset.max(axis=1) > OVER_M)
+    same = there.against == own.against[first]
+    # who stands in the lane is passed, whichever way it faces
+    there = there.seen_by(bool(own.against[first]))
+    ahead = (there.along.mean(axis=1) > centre) & (there.offset.max(axis=1) > OVER_M) & (there.who != me)
+    ahead &= same | (there.speed <= STANDING_MPS)
     order = np.flatnonzero(ahead)[np.argsort(there.along[ahead].min(axis=1))]
     back = end < len(own.step)
     well = -own.offset[first:end].min() >= WELL_OVER_M or not back
@@ -199,7 +210,7 @@ def _excursion(log: Log, net: Net, own: Log, first: int, end: int) -> list[Overt
     found = []
     for rank, at in enumerate(order):
         vbp = int(there.who[at])
-        passed = _passed(own, log.of(vbp), first, min(end + 1, len(own.step)))
+        passed = _passed(own, log.of(vbp).seen_by(bool(own.against[first])), first, min(end + 1, len(own.step)))
         if not passed and not (rank == 0 and gaps[0] <= NEAR_M and well):
             continue
         line = net.lines["ba_0" if own.against[first] else "ab_0"]
@@ -232,11 +243,12 @@ def _passed(own: Log, other: Log, first: int, end: int) -> bool:
 
 def _oncoming(there: Log, line: Line, against: bool, front: float, centre: float) -> tuple[float, float, int | None]:
     """Return DA, the speed to reckon with, and who comes; nobody: the road's end  (or as far as is looked) and no speed."""
-    coming = (there.against != against) & (there.met.mean(axis=1) > centre)
+    coming = (there.against != against) & (there.along.mean(axis=1) > centre)
+    coming &= (there.speed > STANDING_MPS) | (there.offset.min(axis=1) < -OVER_M)  # or it is parked in the own lane
     if not coming.any():
         return min(float(line.s[-1]) - front, LOOK_M), math.nan, None
-    k = np.flatnonzero(coming)[np.argmin(there.met[coming].min(axis=1))]
-    return float(there.met[k].min() - front), float(there.speed[k]), int(there.who[k])
+    k = np.flatnonzero(coming)[np.argmin(there.along[coming].min(axis=1))]
+    return float(there.along[k].min() - front), float(there.speed[k]), int(there.who[k])
 
 
 def _safe_distance(lane_m: float, angle: float, way_m: float, speeds: tuple[float, float, float]) -> float | None:
