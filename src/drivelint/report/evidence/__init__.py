@@ -8,9 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from drivelint.report.contract import conform
-from drivelint.report.evidence import lanes as _lanes
-from drivelint.report.evidence import overtakes as _overtakes
-from drivelint.report.evidence import scenes as _scenes
+from drivelint.report.evidence import passing, roads, surroundings
 
 if TYPE_CHECKING:
     import duckdb
@@ -22,9 +20,9 @@ def gather(con: duckdb.DuckDBPyConnection) -> None:
 
     Reads `finding` and `verdict` (of which those of this batch have their states in `ego_state` and `pair`).
     """
-    _scenes.gather(con)
-    _lanes.gather(con)
-    _overtakes.gather(con)
+    surroundings.gather(con)
+    roads.gather(con)
+    passing.gather(con)
 
 
 def scenes(con: duckdb.DuckDBPyConnection) -> pa.Table:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     Row = Mapping[str, Any]
 
-MOST: Final = 200
+MOST: Final = 60
 """Overtakes in the page: those with the least to spare against any profile first."""
 ASSERTIONS: Final = (
     ("Vehicle being passed outside the ego's danger space", "ukhc.r126.ds-vbp-out-of-av"),

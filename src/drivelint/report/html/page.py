@@ -43,6 +43,9 @@ MAX_DRIVES: Final = 100
 OPEN_DRIVES: Final = 3
 """Up to so many drives are shown unfolded."""
 
+BRIEF_DRIVES: Final = 20
+"""With more drives, rules that were kept throughout are named, not drawn."""
+
 _NAMES: Final = {
     "fail": "not kept",
     "error": "error",
@@ -103,6 +106,7 @@ def content(result: Result) -> dict[str, Any]:
         "duration_s": sum(row["duration_s"] or 0.0 for row in drives),
         "drives": [_drive_row(row, told, listed, row["drive_id"] in shown) for row in drives],
         "sections": sections,
+        "brief": len(drives) > BRIEF_DRIVES,
         "tiles": road.tiles() if drawn else [],
         "shapes": shapes(scenes[at] for at in drawn),
         "replays_of": {

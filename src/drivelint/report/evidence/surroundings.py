@@ -9,7 +9,7 @@ import pyarrow as pa
 import shapely
 
 from drivelint import store
-from drivelint.report.evidence.lanes import TRUE_TO_M
+from drivelint.report.evidence.roads import TRUE_TO_M
 
 if TYPE_CHECKING:
     import duckdb
