@@ -31,7 +31,20 @@ CANONICAL = (
 TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi"})
 """What a folder of traces is searched for."""
 RESULTS = frozenset(
-    {f"{name}.parquet" for name in ("drives", "findings", "lanes", "margins", "rules", "scenes", "verdicts")}
+    f"{name}.parquet"
+    for name in (
+        "courses",
+        "drives",
+        "findings",
+        "lanes",
+        "margins",
+        "opportunities",
+        "overtakes",
+        "rules",
+        "scenes",
+        "spaces",
+        "verdicts",
+    )
 )
 """What `check --out` writes and a folder of traces is not searched for, where it lies with its `summary.json`."""
 ANNOTATED = "annotated"
