@@ -198,7 +198,7 @@ def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
     pair = next(rows for rows in found.rows if rows.table == "pair")
     assert pair.rows[0]["clearance_m"] is None
     text = said(found)
-    assert re.search(r"clearance_m\s+not known", text)
+    assert re.search(r"clearance_m\s+NULL", text)
     assert "?" in text[text.index("Margin over time") :]
 
 
@@ -329,3 +329,22 @@ def test_the_worst_verdict_is_meant_unless_one_is_asked_for(folder: Path) -> Non
 def test_a_folder_without_a_result(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="no result of drivelint check"):
         of(tmp_path, "x")
+
+
+def test_a_long_drive_is_judged_in_part_where_the_verdict_is_the_same(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from drivelint.explain import case
+
+    monkeypatch.setattr(case, "AROUND_NS", (1_000_000, 3_000_000_000))
+    errors = Errors(0.0, 0.0, 0.0, 2)
+    found = of(folder, "contact-signature@collision", errors=errors)
+    told = found.sensitivity
+    assert told is not None
+    assert told.from_ns is not None
+    assert told.to_ns is not None
+    start, end = found.verdict["t_start_ns"], found.verdict["t_end_ns"]
+    assert told.from_ns >= start - 3_000_000_000
+    assert told.to_ns <= end + 3_000_000_000
+    assert told.counts == {"fail": 2}
+    assert "on the part from" in flat(said(found))

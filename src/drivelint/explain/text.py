@@ -153,7 +153,7 @@ def _rows(found: Explanation) -> list[str]:
 
 
 def _table(table: Rows, sql: str, start_ns: int) -> list[str]:
-    """Return the columns that the rule names, each with what it means; NULL is 'not known'."""
+    """Return the columns that the rule names, each with what it means."""
     if not table.rows:
         return [f"{table.table}: no row: there is nothing of that kind here."]
     comments = store.schema().get(table.table, {})
@@ -173,6 +173,8 @@ def _table(table: Rows, sql: str, start_ns: int) -> list[str]:
 def _cell(column: str, value: Any, start_ns: int) -> str:
     """Return a value; a time as it is elsewhere, in seconds of the drive."""
     is_time = column.endswith("_ns") and column[0] == "t" and isinstance(value, int)
+    if value is None:
+        return "NULL"  # the comment beside it says what that means
     return seconds(value, start_ns) if is_time else _value(value)
 
 
@@ -188,7 +190,8 @@ def _series(found: Explanation, width: int) -> list[str]:
     if not lines:
         return []
     key = "Above the limit: kept, and by how much; below: broken; ?: not known."
-    return [*lines, key if found.rule["sense"] != "holds" else "█ broken, · kept, ? not known."]
+    measured = any(step.margin is not None for step in found.series)
+    return [*lines, key if measured else "█ broken, · kept, ? not known."]
 
 
 def _changes(found: Explanation) -> list[str]:
