@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import polars as pl
 import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 import shapely
 
 from drivelint import batch
+from drivelint.report.contract import FILES
 from drivelint.report.progress import Silent
 from drivelint.report.result import Result
 from drivelint.run import Settings, check
@@ -145,8 +148,68 @@ def test_lanes_near_a_scene_are_kept_once_and_true_to_a_decimetre(
 def test_batches_do_not_change_the_evidence(result: Result, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(batch, "STATES", 1)
     single = run(tmp_path)
-    assert single.scenes.equals(result.scenes)
-    assert single.lanes.equals(result.lanes)
+    for name in list(FILES)[4:]:
+        assert getattr(single, name).equals(getattr(result, name)), name
+
+
+def test_danger_spaces_are_kept_along_the_ways(result: Result) -> None:
+    at: dict[tuple[str, str], list[int]] = {}
+    for row in result.spaces.to_pylist():
+        at.setdefault((row["drive_id"], row["actor_id"]), []).append(row["t_ns"])
+    assert len(at) == 6  # ego and oncoming vehicle of each
+    for (drive_id, _), times in at.items():
+        (overtake,) = [row for row in result.overtakes.to_pylist() if row["drive_id"] == drive_id]
+        assert len(times) == len(set(times)) > 5
+        assert overtake["t0_ns"] <= min(times) <= max(times) <= overtake["t_end_ns"]
+        # five a second, and the moments of findings between them
+        assert max(np.diff(sorted(times))) < 1.5 * 200_000_000
+
+
+def test_every_finding_has_its_course_and_the_steps_are_the_margins(tmp_path: Path) -> None:
+    settings = Settings(
+        (str(FIXTURE / "collision.csv"),),
+        map=FIXTURE / "road.xodr",
+        mapping=str(FIXTURE / "mapping.toml"),
+        out=tmp_path,
+        margins=True,
+        rules=("ukhc", "rss"),
+    )
+    result = check(settings, Silent())
+    assert result.margins_file is not None
+    margins = {
+        (row["rule_id"], row["profile"], row["object_id"], row["t_ns"]): row
+        for row in pq.read_table(result.margins_file).to_pylist()
+    }
+    courses = {row["finding_id"]: row for row in result.courses.to_pylist()}
+    assert courses.keys() == {row["finding_id"] for row in result.findings.to_pylist()}
+    compared = 0
+    for row in result.findings.to_pylist():
+        course = courses[row["finding_id"]]
+        assert course["t_ns"] == sorted(set(course["t_ns"]))
+        assert len(course["t_ns"]) <= 152
+        steps = zip(
+            course["t_ns"], course["observed"], course["required"], course["margin"], course["holds"], strict=True
+        )
+        for t_ns, *values in steps:
+            if step := margins.get((row["rule_id"], row["profile"], row["object_id"], t_ns)):
+                assert values == [step["observed"], step["required"], step["margin"], step["holds"]]
+                compared += 1
+    assert compared > 100
+
+
+def test_an_overtake_is_recorded_with_its_profiles_and_stages(result: Result) -> None:
+    rows = result.overtakes.to_pylist()
+    assert [row["drive_id"].split("-")[0] for row in rows] == ["collision", "near_miss", "safe"]
+    for row in rows:
+        assert [p["profile"] for p in row["profiles"]] == ["relaxed", "nominal", "aggressive", "observed"]
+        runs = row["stretches"]
+        assert row["t0_ns"] == runs[0]["t_start_ns"]
+        assert runs[-1]["t_end_ns"] <= row["t_end_ns"]
+        assert all(a["t_end_ns"] < b["t_start_ns"] for a, b in pairwise(runs))
+        assert all((a["stage"], a["said"]) != (b["stage"], b["said"]) for a, b in pairwise(runs))
+        for run_ in runs:
+            for said, worst in zip(run_["said"], run_["worst_m"], strict=True):
+                assert said == ("nobody" if worst is None else "fail" if worst >= 0 else "pass")
 
 
 def test_without_an_output_folder_no_evidence_is_gathered() -> None:
