@@ -1,0 +1,206 @@
+"""What may not matter: which side is driven on, where the world lies and when, the rate of the samples, who stands first.
+
+By all stable rules of all packs: the scenes of the library, and the drives with one planted violation of every rule. A change is
+made to tables and map text, after whatever made them.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from functools import cache
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from drivelint.batch import Drive
+from drivelint.demo import memory
+from drivelint.demo import scene as sampling
+from drivelint.demo.scenes import library
+from drivelint.maps import MapSource, load_map
+from tests.clean.chapters import CHAPTERS
+from tests.clean.judging import named
+from tests.clean.roads import open_road
+from tests.clean.story import Story
+from tests.clean.test_planted import PLANTED
+from tests.mirror import mirrored_map
+from tests.scenes import Row, judged
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from drivelint.ingest import Trace
+
+STABLE = ("status:stable",)
+PROFILES = ("relaxed", "nominal", "aggressive", "observed")
+SAID = ("rule_id", "profile", "object_id", "occurrence", "verdict", "reason_code", "near_miss")
+TIMES = ("t_ref_ns", "t_start_ns", "t_end_ns")
+NUMBERS = ("observed", "required", "margin")
+NEVER = 1e6  # two equal speeds close in within years, or never, by their last bits
+OTHER_SIDE = {"left": "right", "right": "left"}
+
+
+class Case(NamedTuple):
+    """A log and the text of its map."""
+
+    trace: Trace
+    text: str
+
+    def drive(self, name: str) -> Drive:
+        """Return it ready for the bench, under a name."""
+        return named(Drive(self.trace, load_map(MapSource("road.xodr", self.text.encode()))), name)
+
+
+class Move(NamedTuple):
+    """Turned about the origin (rad), then moved (m); the clock set forward (s); rows in an order of this seed."""
+
+    turn: float = 0.0
+    x: float = 0.0
+    y: float = 0.0
+    t_s: int = 0
+    seed: int = 0
+
+
+FAR = Move(1.234, -3210.5, 987.25, 1_234_567, 3)
+
+
+@cache
+def cases() -> dict[str, Case]:
+    """Return the scenes of the library, and the drives with a planted violation by the rule that they break."""
+    found = {scene.name: Case(memory.drive(scene).trace, scene.map_text) for scene in library()}
+    for each in PLANTED:
+        if each.chapter:
+            story = Story(each.nation)
+            open_road(story)
+            CHAPTERS[each.chapter](story, **each.change)
+            open_road(story)
+            found[each.rule] = Case(story.drive(each.rule).trace, story.route.text())
+    return found
+
+
+def sampled(rate_hz: int) -> dict[str, Case]:
+    """Return the scenes of the library with so many samples a second."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sampling, "RATE_HZ", rate_hz)
+        return {scene.name: Case(memory.drive(replace(scene)).trace, scene.map_text) for scene in library()}
+
+
+def moved(case: Case, move: Move) -> Case:
+    """Return the case elsewhere and at another time, the rows of its tables in another order."""
+    cos, sin = math.cos(move.turn), math.sin(move.turn)
+    said = case.trace.tables["actor_state"]
+    turned = {"yaw_rad": floats(said, "yaw_rad") + move.turn}
+    for (x, y), (dx, dy) in {
+        ("x_m", "y_m"): (move.x, move.y), ("vx_mps", "vy_mps"): (0.0, 0.0), ("ax_mps2", "ay_mps2"): (0.0, 0.0),
+    }.items():  # fmt: skip
+        turned[x] = cos * floats(said, x) - sin * floats(said, y) + dx
+        turned[y] = sin * floats(said, x) + cos * floats(said, y) + dy
+    random = np.random.default_rng(move.seed)
+    tables = {}
+    for name, table in (case.trace.tables | {"actor_state": replaced(said, turned)}).items():
+        times = [c for c in ("t_ns", "t_start_ns", "t_end_ns") if c in table.schema.names]
+        later = replaced(table, {c: pc.add(table[c], move.t_s * 10**9) for c in times})
+        tables[name] = later.take(random.permutation(table.num_rows))
+
+    def again(geometry: re.Match[str]) -> str:
+        x, y, heading = (float(value) for value in geometry.groups())
+        x, y = cos * x - sin * y + move.x, sin * x + cos * y + move.y
+        return f'x="{x!r}" y="{y!r}" hdg="{heading + move.turn!r}"'
+
+    text = re.sub(r'x="([^"]+)" y="([^"]+)" hdg="([^"]+)"', again, case.text)
+    return Case(replace(case.trace, tables=tables), text)
+
+
+def mirrored(case: Case) -> Case:
+    """Return the case as a mirror shows it: driven on the other side, bends and turns to the other side."""
+    said = case.trace.tables["actor_state"]
+    lamps = [OTHER_SIDE.get(lamp, lamp) for lamp in said["indicator"].to_pylist()]
+    flipped = {name: -floats(said, name) for name in ("y_m", "yaw_rad", "vy_mps", "ay_mps2")}
+    tables = case.trace.tables | {"actor_state": replaced(said, {**flipped, "indicator": lamps})}
+    return Case(replace(case.trace, tables=tables), mirrored_map(case.text))
+
+
+def replaced(table: pa.Table, columns: Mapping[str, object]) -> pa.Table:
+    """Return the table with some of its columns replaced; NaN is NULL."""
+    for name, values in columns.items():
+        field = table.schema.field(name)
+        column = values if isinstance(values, pa.ChunkedArray) else pa.array(values, field.type, from_pandas=True)
+        table = table.set_column(table.schema.get_field_index(name), field, column)
+    return table
+
+
+def floats(table: pa.Table, name: str) -> NDArray[np.float64]:
+    return np.asarray(pc.fill_null(table[name], float("nan")).to_numpy(), np.float64)
+
+
+def verdicts(cases: Mapping[str, Case]) -> dict[str, list[Row]]:
+    """Return the rows of each case."""
+    rows: dict[str, list[Row]] = {name: [] for name in cases}
+    for row in judged([case.drive(name) for name, case in cases.items()], rules=STABLE, profiles=PROFILES):
+        rows[row["drive_id"]].append(row)
+    return rows
+
+
+def same(before: Mapping[str, list[Row]], after: Mapping[str, list[Row]], later_s: int = 0) -> None:
+    """Hold that every row is there again, so many seconds later."""
+    for name, rows in before.items():
+        for a, b in zip(rows, after[name], strict=True):
+            assert [a[c] for c in SAID] == [b[c] for c in SAID], (name, a, b)
+            expected = [None if a[c] is None else a[c] + later_s * 10**9 for c in TIMES]
+            assert expected == [b[c] for c in TIMES], (name, a, b)
+            for column in NUMBERS:
+                x, y = (None if row[column] is None else min(row[column], NEVER) for row in (a, b))
+                assert y == (None if x is None else pytest.approx(x, abs=2e-3)), (name, a, b)
+
+
+def test_the_world_in_a_mirror_elsewhere_and_later() -> None:
+    """All at once: mirrored, turned and moved, its clock set, its rows shuffled. Every other case: all take twice as long."""
+    some = dict(list(cases().items())[::2])
+    before = verdicts(some)
+    assert {row["verdict"] for rows in before.values() for row in rows} == {"pass", "fail", "unknown", "not_applicable"}
+    assert len({row["rule_id"] for rows in before.values() for row in rows if row["verdict"] == "fail"}) > 30
+    same(before, verdicts({name: moved(mirrored(case), FAR) for name, case in some.items()}), FAR.t_s)
+
+
+@settings(max_examples=2, deadline=None)
+@given(
+    st.builds(
+        Move, st.floats(-math.pi, math.pi), st.floats(-1e5, 1e5), st.floats(-1e5, 1e5), st.integers(0, 2_000_000_000),
+        st.integers(0, 99),
+    ),
+    st.sets(st.sampled_from(sorted(cases())), min_size=3, max_size=3),
+    st.booleans(),
+)  # fmt: skip
+def test_where_and_when_does_not_matter(move: Move, names: set[str], mirror: bool) -> None:
+    some = {name: cases()[name] for name in sorted(names)}
+    changed = {name: moved(mirrored(case) if mirror else case, move) for name, case in some.items()}
+    same(verdicts(some), verdicts(changed), move.t_s)
+
+
+def test_twice_the_samples_change_no_verdict() -> None:
+    found = [verdicts(sampled(rate_hz)) for rate_hz in (10, 20)]
+    for name, rows in found[0].items():
+        kept = ("rule_id", "profile", "object_id", "verdict", "reason_code")
+        said = [sorted([tuple(str(row[c]) for c in kept) for row in each]) for each in (rows, found[1][name])]
+        assert said[0] == said[1], name
+
+
+@pytest.mark.parametrize("name", ["overtake-on-bend", "ukhc.r171.stop-sign"])
+def test_a_mirror_is_the_road_driven_on_the_other_side(name: str) -> None:
+    case = cases()[name]
+    maps = [mirrored_map(mirrored_map(case.text)), case.text, mirrored_map(case.text)]
+    twice, once, other = (load_map(MapSource("road.xodr", text.encode())) for text in maps)
+    for table, rows in once.tables.items():
+        own = {"environment_id", "sha256"}.intersection(rows.schema.names)  # what the bytes of the text give
+        assert twice.tables[table].drop(own) == rows.drop(own), table
+    assert {once.handedness, other.handedness} == {"lht", "rht"}
+    lanes = [m.tables["lanelet"].sort_by([("length_m", "ascending")])["length_m"].to_pylist() for m in (once, other)]
+    assert lanes[1] == pytest.approx(lanes[0])
