@@ -40,9 +40,9 @@ hidden AS (
         AND p.t_ns = g.t0_ns AND p.object_id = u.object_id
     WHERE p.front_s_m IS NULL AND p.s_m > g.s_m AND abs(p.d_m) < 2 * p.half_width_m
         OR (p.x_m IS NULL OR p.y_m IS NULL)
-            AND NOT EXISTS (FROM ahead a WHERE a.drive_id = g.drive_id AND a.ego_id = g.ego_id AND a.chain_id = g.chain_id AND a.t0_ns = g.t0_ns)
+            AND NOT EXISTS (FROM ahead a WHERE a.drive_id = g.drive_id AND a.ego_id = g.ego_id AND a.chain_id = g.chain_id AND a.t0_ns = g.t0_ns AND a.near_m <= 100)
 ),
--- and so was who comes into the log later, ahead in the lane, and is passed
+-- and so was who has a place only later, ahead in the lane, and is passed
 late AS (
     SELECT drive_id, ego_id, chain_id, t0_ns, object_id, NULL::DOUBLE AS gap_m, NULL::DOUBLE AS speed_mps, max(length_m) AS length_m, false AS placed, NULL::DOUBLE AS near_m
     FROM seen
@@ -51,14 +51,14 @@ late AS (
     HAVING min(t_ns) > t0_ns AND min(ego_front_m - front_s_m) < 0 AND max(ego_front_m - front_s_m) > 0
 ),
 candidate AS (
-    SELECT *, row_number() OVER (PARTITION BY drive_id, ego_id, chain_id, t0_ns ORDER BY near_m, object_id) AS rank
+    SELECT *, row_number() OVER (PARTITION BY drive_id, ego_id, chain_id, t0_ns ORDER BY coalesce(near_m, 0.0), object_id) AS rank
     FROM (
         SELECT * FROM ahead
         UNION ALL
         SELECT * FROM hidden
         UNION ALL
         SELECT l.* FROM late l
-        ANTI JOIN seen p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.chain_id = l.chain_id AND p.t0_ns = l.t0_ns AND p.t_ns = l.t0_ns AND p.object_id = l.object_id
+        ANTI JOIN seen p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.chain_id = l.chain_id AND p.t0_ns = l.t0_ns AND p.t_ns = l.t0_ns AND p.object_id = l.object_id AND p.front_s_m IS NOT NULL
         ANTI JOIN hidden h ON h.drive_id = l.drive_id AND h.ego_id = l.ego_id AND h.chain_id = l.chain_id AND h.t0_ns = l.t0_ns AND h.object_id = l.object_id
     )
 ),

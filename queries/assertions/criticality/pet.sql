@@ -10,7 +10,7 @@
 -- unit = "s"
 -- observes = "post-encroachment time"
 -- near_margin = 0.5
--- reads = ["conflict", "lost_object", "pair"]
+-- reads = ["conflict", "ego_state", "lost_object", "pair"]
 -- requires = ["ego_size"]
 --
 -- [params.least_s]
@@ -22,10 +22,15 @@
 -- @reference
 SELECT drive_id, ego_id, t_ego_in_ns AS t_ns, object_id, occurrence FROM conflict
 UNION ALL
--- whose track ends close by, or is not known for a while, may have crossed the ego's way unseen
+-- whose track ends close by, who is not placed for a while, or moves and lacks heading or size, may have crossed the ego's way unseen
 SELECT drive_id, ego_id, t_from_ns, object_id, NULL FROM lost_object WHERE reason = 'lost_near_ego'
 UNION ALL
-SELECT drive_id, ego_id, min(t_ns), object_id, NULL FROM pair WHERE x_m IS NULL OR y_m IS NULL GROUP BY drive_id, ego_id, object_id
+SELECT drive_id, ego_id, min(t_ns), object_id, NULL
+FROM pair
+WHERE x_m IS NULL OR y_m IS NULL OR (yaw_rad IS NULL OR length_m IS NULL OR width_m IS NULL) AND (speed_mps > standing_mps()) IS DISTINCT FROM false
+GROUP BY drive_id, ego_id, object_id
+UNION ALL
+SELECT drive_id, ego_id, min(t_ns), NULL, NULL FROM ego_state WHERE x_m IS NULL OR y_m IS NULL OR yaw_rad IS NULL GROUP BY drive_id, ego_id
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, c.pet_s AS observed, $least_s AS required

@@ -30,6 +30,9 @@ FROM (
 )
 -- a log or a stretch that begins in reverse does not show when that began
 WHERE reverses AND before IS DISTINCT FROM false
+UNION ALL
+-- nor where its speed or heading is not known
+SELECT drive_id, ego_id, min(t_ns), NULL FROM ego_motion WHERE v_long_mps IS NULL GROUP BY drive_id, ego_id
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, CASE

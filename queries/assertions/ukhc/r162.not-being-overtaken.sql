@@ -22,8 +22,6 @@
 SELECT o.drive_id, o.ego_id, o.t0_ns AS t_ns, p.rear_id AS object_id, o.occurrence
 FROM overtake o
 LEFT JOIN overtake_place p USING (drive_id, ego_id, occurrence)
--- given up before it was in the passing lane: a wobble as likely as not
-WHERE NOT (o.status = 'aborted' AND o.t1_ns IS NULL)
 -- two vehicles passed in one go are pulled out for once
 QUALIFY o.occurrence = min(o.occurrence) OVER (PARTITION BY o.drive_id, o.ego_id, o.t0_ns)
 

@@ -16,8 +16,7 @@
 -- @reference
 SELECT drive_id, ego_id, t0_ns AS t_ns, vbp_id AS object_id, occurrence
 FROM overtake
--- given up before it was in the passing lane: a wobble as likely as not
-WHERE opposing IS DISTINCT FROM false AND NOT (status = 'aborted' AND t1_ns IS NULL)
+WHERE opposing IS DISTINCT FROM false
 -- of two passed in one go, the ego returns ahead of the last
 QUALIFY occurrence = max(occurrence) OVER (PARTITION BY drive_id, ego_id, t0_ns)
 

@@ -13,8 +13,6 @@
 -- @reference
 SELECT o.drive_id, o.ego_id, o.t0_ns AS t_ns, o.vbp_id AS object_id, o.occurrence
 FROM overtake o
--- given up before it was in the passing lane: a wobble as likely as not
-WHERE NOT (o.status = 'aborted' AND o.t1_ns IS NULL)
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps > standing_mps() AS applies,

@@ -23,8 +23,7 @@
 -- @reference
 SELECT drive_id, ego_id, t0_ns AS t_ns, vbp_id AS object_id, occurrence
 FROM overtake
--- given up before it was in the passing lane: a wobble as likely as not
-WHERE opposing IS DISTINCT FROM false AND NOT (status = 'aborted' AND t1_ns IS NULL)
+WHERE opposing IS DISTINCT FROM false
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps > standing_mps() AS applies, $junction_m AS required,

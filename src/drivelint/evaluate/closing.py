@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
+from drivelint.evaluate import blind
+
 _AT = "format('{:.3f} s', t_decides_ns / 1e9)"
 _OBSERVED = "format('{:.6g}', observed) || coalesce(' ' || unit, '')"
 _REQUIRED = """CASE sense WHEN '>' THEN 'more than ' WHEN '>=' THEN 'at least ' WHEN '<' THEN 'less than '
@@ -72,7 +74,7 @@ SENTENCE = f"""CASE
             ELSE 'missed by ' || {_MARGIN} END || '.' END"""
 
 # clean groups of the first pass are outcomes too; a subject for which a rule erred has no other row of that rule
-_ALL = """
+_ALL = f"""
 CREATE OR REPLACE TEMP TABLE _closed AS
 WITH _rows AS (
     SELECT * FROM _outcome UNION ALL BY NAME
@@ -88,12 +90,15 @@ WITH _rows AS (
         FROM _error GROUP BY ALL
     UNION ALL BY NAME
     SELECT rule_no, drive_id, ego_id, 'unknown' AS verdict, 'missing_' || signal AS code, reason FROM _gated
+), _seen AS (
+    SELECT * FROM _kept UNION ALL BY NAME
+    ({blind.OUTCOMES})
 )
-SELECT * FROM _kept UNION ALL BY NAME
+SELECT * FROM _seen UNION ALL BY NAME
 SELECT r.rule_no, s.drive_id, s.ego_id, 'not_applicable' AS verdict,
     CASE WHEN w.never THEN 'not_engaged' ELSE 'not_triggered' END AS code
     FROM _rule r CROSS JOIN _subject s LEFT JOIN _watched w ON w.drive_id = s.drive_id AND w.ego_id = s.ego_id
-ANTI JOIN _kept k ON k.rule_no = r.rule_no AND k.drive_id = s.drive_id AND k.ego_id = s.ego_id
+ANTI JOIN _seen k ON k.rule_no = r.rule_no AND k.drive_id = s.drive_id AND k.ego_id = s.ego_id
 """
 
 _PLACE = "LEFT JOIN ego_state p ON p.drive_id = v.drive_id AND p.ego_id = v.ego_id AND p.t_ns = v.t_worst_ns"
@@ -155,5 +160,5 @@ GROUP BY f.finding_id
 """
 """Run after these, if the courses of findings are asked for."""
 
-STATEMENTS = (_ALL, _VERDICTS, _FINDINGS, _MARGINS)
+STATEMENTS = (blind.BLIND, _ALL, _VERDICTS, _FINDINGS, _MARGINS)
 """Run in this order once every rule has left its outcomes."""

@@ -65,7 +65,8 @@ OUTCOMES = ("_error", "_group", "_outcome", "_stretch", "_course", "_margin")
 """What rules leave behind: what another connection judged is brought together with."""
 _NAMES = (
     "_subject", "_watched", "_segment", "_rule", "_needs", "_error", "_group", "_outcome", "_stretch", "_margin", "_course", "_gated",
-    "_todo", "_grid_group", "_asked", "_closed", "_judged", "_profile_set", "_raw_reference", "reference", "_occasion", "reference_step",
+    "_todo", "_grid_group", "_asked", "_blind", "_closed", "_judged", "_profile_set", "_raw_reference", "reference", "_occasion",
+    "reference_step",
 )  # fmt: skip
 
 
