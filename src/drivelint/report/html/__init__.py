@@ -1,4 +1,9 @@
-"""`report.html`: one self-contained page that opens offline. Nothing is fetched, everything from a log is escaped."""
+"""`report.html`: one self-contained page that opens offline. Nothing is fetched, everything from a log is escaped.
+
+Charts are our own SVG, made here: they print, work without the script, follow the page's colours in light and dark, and take
+2 kB and half a millisecond each. Libraries were tried: Altair with vl-convert makes 13 kB and 64 ms a chart in fixed colours and
+brings 100 MB; plotly's script alone is 4 MB; uPlot draws on a canvas, which neither prints sharply nor works without a script.
+"""
 
 from __future__ import annotations
 

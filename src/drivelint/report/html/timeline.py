@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+from drivelint.report.counts import SEVERITIES
 from drivelint.report.html.anchors import finding_anchor, rule_anchor
 from drivelint.report.html.reasons import can_be_provided, named, plain
 from drivelint.report.text import number, seconds
@@ -141,7 +142,7 @@ def _timeline(
         keys = " ".join((worst, "near" if near else "", rule["severity"], rule["pack"]))
         href = f"#{rule_anchor(rule_id)}"
         rows.append(Lane(rule_id, href, rule["title"], profile, worst, keys, _bands(told, clock), marks + near))
-    rows.sort(key=lambda lane: _ORDER.index(lane.verdict))
+    rows.sort(key=lambda lane: (_ORDER.index(lane.verdict), SEVERITIES.index(rules[lane.rule_id]["severity"])))
     titles = {rule_id: rule["title"] for rule_id, rule in rules.items()}
     order = sorted(folded.items(), key=lambda item: (_ORDER.index(item[0][0]), -len(item[1]), item[0][1]))
     return Timeline(
