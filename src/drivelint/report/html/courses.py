@@ -58,7 +58,7 @@ class Step(NamedTuple):
 
 
 class Course(NamedTuple):
-    """The chart (None: too few steps) and the steps around the worst one."""
+    """The chart (None: too few steps, or nothing is measured) and the steps around the worst one."""
 
     chart: Chart | None
     unit: str
@@ -72,7 +72,8 @@ def course(row: Row, worst_ns: int, unit: str | None, start_ns: int) -> Course:
     worst = min(range(len(t)), key=lambda i: abs(t[i] - worst_ns))
     first = max(0, min(worst - _ROWS // 2, len(t) - _ROWS))
     steps = [_step(row, i, start_ns, worst=i == worst) for i in range(first, min(first + _ROWS, len(t)))]
-    return Course(_chart(row, worst, unit, start_ns) if len(t) >= _LEAST else None, unit or "", steps, len(t))
+    measured = len(t) >= _LEAST and any(value is not None for value in row["observed"])
+    return Course(_chart(row, worst, unit, start_ns) if measured else None, unit or "", steps, len(t))
 
 
 def _step(row: Row, i: int, start_ns: int, *, worst: bool) -> Step:
