@@ -120,12 +120,12 @@ CREATE TABLE lane_change (
 CREATE TABLE cut_in (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    occurrence INTEGER NOT NULL,      -- 0.. in time order; another vehicle moves from beside into the running lane ahead of the ego
-    object_id VARCHAR NOT NULL,       -- that vehicle
-    t_ns BIGINT NOT NULL,             -- first step with its box more than 0.3 m inside the running lane, from at most 0.05 m; within 45 degrees of it, at most 150 m ahead
+    occurrence INTEGER NOT NULL,      -- 0.. in time order; another vehicle moves from beside into the running lane ahead of the ego, or may: for a second or longer it cannot be told who is ahead
+    object_id VARCHAR,                -- that vehicle; NULL: somebody may have, and the rest is NULL
+    t_ns BIGINT NOT NULL,             -- first step at which it cannot be told, or first step with its box more than 0.3 m inside the running lane, from at most 0.05 m; within 45 degrees of it, at most 150 m ahead
     begin_seen BOOLEAN NOT NULL,      -- the step before is there and it is placed: else it may have come in earlier
-    side VARCHAR NOT NULL,            -- left or right: where it came from
-    gap_m DOUBLE NOT NULL,            -- ego front to its rear at that step, along the corridor
+    side VARCHAR,                     -- left or right: where it came from
+    gap_m DOUBLE,                     -- ego front to its rear at that step, along the corridor
     ego_speed_mps DOUBLE,             -- ego's speed then
     speed_mps DOUBLE,                 -- its speed then
     in_place_ns BIGINT                -- first step with its centre in the running lane; NULL: never
@@ -156,7 +156,8 @@ CREATE TABLE passing (
     object_id VARCHAR NOT NULL,       -- the other
     actor_class VARCHAR,              -- see actor
     ego_passes BOOLEAN,               -- the ego's front got ahead of its front by more than 0.25 m; false: its front got ahead of the ego's; NULL: one of the two, or nothing: it may be beside the ego and has no place
-    t_ns BIGINT NOT NULL,             -- first step in the new order
+    t_ns BIGINT NOT NULL,             -- first step in the new order; the last one at which it may be beside the ego
+    t_unseen_ns BIGINT,               -- last step in the old order, if the order may have changed unseen since then; the first one at which it may be beside the ego; NULL: t_ns is when it changed
     t_from_ns BIGINT NOT NULL,        -- first step of the stretch around t_ns in which they are beside each other
     t_to_ns BIGINT NOT NULL,          -- last one
     side VARCHAR,                     -- left or right: where the other is, seen from the ego; NULL: ego_passes is

@@ -107,7 +107,7 @@ CREATE TABLE passage_conflict (
     object_id VARCHAR,                -- of those before whom the ego went (or, on foot, into whom: still there as it came), the one with the least PET; NULL: nobody
     pet_s DOUBLE,                     -- its PET, also where reason says that another one may be lower; infinite: nobody within 10 s, or until the log ends, 4 s later at least; NULL: cannot be told
     decel_mps2 DOUBLE,                -- see conflict; 0 where nobody; NULL: cannot be told
-    reason VARCHAR                    -- why another one cannot be ruled out: somebody without position, heading or size, or whose track begins or ends within 30 m; the log, a hole or the sensor's range ends too soon; NULL: nobody else
+    reason VARCHAR                    -- why another one cannot be ruled out: somebody without position, heading or size, or whose track begins or ends within 30 m, or as far away as he comes from or goes to in that time; the log, a hole or the sensor's range ends too soon; NULL: nobody else
 );
 
 CREATE TABLE stop_line_crossing (

@@ -1,6 +1,6 @@
 -- Another vehicle comes from beside into the running lane ahead of the ego: from less than 0.05 m inside it to more than 0.3 m, along the
 -- lane (within 45 degrees), at most 150 m ahead. What the ego does by changing lanes itself is none. Where it was lost to sight in
--- between, t is the first step at which it is seen there.
+-- between, t is the first step at which it is seen there. Where it cannot be told for a second who is ahead, somebody may have come in.
 WITH ahead AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, st.k, st.seg, p.object_id, e.chain_id, p.rear_s_m - e.front_s_m AS gap_m, e.speed_mps AS ego_speed_mps,
@@ -54,12 +54,33 @@ cut AS (
 ),
 placed AS (
     SELECT drive_id, ego_id, object_id, chain_id, run, n, min(t_ns) AS t_ns FROM cut WHERE centre_in GROUP BY ALL
+),
+blind AS (
+    SELECT drive_id, ego_id, min(t_ns) AS t_ns, max(t_ns) AS t_to_ns
+    FROM (
+        SELECT st.*, st.k - row_number() OVER (PARTITION BY st.drive_id, st.ego_id, st.seg ORDER BY st.k) AS run
+        FROM step st
+        ANTI JOIN lead l ON l.drive_id = st.drive_id AND l.ego_id = st.ego_id AND l.t_ns = st.t_ns
+    )
+    GROUP BY drive_id, ego_id, seg, run
+    HAVING max(t_ns) - min(t_ns) >= 1_000_000_000
+),
+named AS (
+    SELECT
+        c.drive_id, c.ego_id, c.object_id, c.t_ns, coalesce(c.joined, false) AS begin_seen, CASE WHEN c.was.d_m > 0 THEN 'left' ELSE 'right' END AS side,
+        c.gap_m, c.ego_speed_mps, c.speed_mps, p.t_ns AS in_place_ns
+    FROM cut c
+    LEFT JOIN placed p USING (drive_id, ego_id, object_id, chain_id, run, n)
+    WHERE c.begins
+),
+found AS (
+    SELECT * FROM named
+    UNION ALL BY NAME
+    SELECT b.drive_id, b.ego_id, b.t_ns, false AS begin_seen
+    FROM blind b
+    JOIN clock c USING (drive_id, ego_id)
+    -- who is there when it can be told again has come in
+    ANTI JOIN named n ON n.drive_id = b.drive_id AND n.ego_id = b.ego_id AND n.t_ns >= b.t_ns AND n.t_ns <= b.t_to_ns + c.max_gap_ns
 )
-SELECT
-    c.drive_id, c.ego_id,
-    (row_number() OVER (PARTITION BY c.drive_id, c.ego_id ORDER BY c.t_ns, c.object_id) - 1)::INTEGER AS occurrence,
-    c.object_id, c.t_ns, coalesce(c.joined, false) AS begin_seen, CASE WHEN c.was.d_m > 0 THEN 'left' ELSE 'right' END AS side,
-    c.gap_m, c.ego_speed_mps, c.speed_mps, p.t_ns AS in_place_ns
-FROM cut c
-LEFT JOIN placed p USING (drive_id, ego_id, object_id, chain_id, run, n)
-WHERE c.begins
+SELECT *, (row_number() OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns, object_id) - 1)::INTEGER AS occurrence
+FROM found

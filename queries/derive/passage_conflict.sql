@@ -77,7 +77,7 @@ unclear_near AS (
     ) k USING (drive_id, ego_id, occurrence, object_id)
     WHERE k.least_m IS NULL OR k.least_m < meeting_near_m() + 30 * u.nowhere_s
 ),
--- somebody whose track begins or ends there while the ego passes
+-- somebody whose track begins or ends there while the ego passes, or so soon before that he may have come
 edge AS (
     SELECT s.drive_id, s.actor_id, s.actor_class, min(s.t_ns) AS t_first_ns, max(s.t_ns) AS t_last_ns
     FROM state_dynamics s
@@ -85,18 +85,22 @@ edge AS (
     GROUP BY s.drive_id, s.actor_id, s.actor_class
 ),
 broken AS (
-    SELECT p.drive_id, p.ego_id, p.occurrence, d.actor_id AS object_id, d.actor_class, v.what, v.t_ns, p.x_m, p.y_m
+    SELECT p.drive_id, p.ego_id, p.occurrence, d.actor_id AS object_id, d.actor_class, v.what, v.t_ns, p.x_m, p.y_m,
+        -- towards the junction, or away from it, and in how long
+        2 * v.lost - 1 AS sense, (CASE v.lost WHEN 1 THEN p.t_b_ns + watched_ns() - v.t_ns ELSE v.t_ns - p.t_a_ns END) / 1e9 AS reach_s
     FROM passed p
     JOIN clock c USING (drive_id, ego_id)
     JOIN edge d ON d.drive_id = p.drive_id AND d.actor_id <> p.ego_id
     CROSS JOIN LATERAL (VALUES ('appeared in the log nearby', d.t_first_ns, 0), ('was lost from the log nearby', d.t_last_ns, 1)) AS v(what, t_ns, lost)
-    WHERE v.t_ns >= p.t_a_ns AND v.t_ns <= p.t_b_ns + conflict_ns() AND v.t_ns > c.t_start_ns + c.max_gap_ns AND v.t_ns < c.t_end_ns - c.max_gap_ns
+    WHERE v.t_ns >= p.t_a_ns - v.lost * watched_ns() AND v.t_ns <= p.t_b_ns + conflict_ns() AND v.t_ns > c.t_start_ns + c.max_gap_ns AND v.t_ns < c.t_end_ns - c.max_gap_ns
 ),
 broken_near AS (
     SELECT b.drive_id, b.ego_id, b.occurrence, b.object_id, b.actor_class, b.what
     FROM broken b
     JOIN state_dynamics s ON s.drive_id = b.drive_id AND s.actor_id = b.object_id AND s.t_ns = b.t_ns
-    WHERE coalesce(sqrt((s.x_m - b.x_m) ** 2 + (s.y_m - b.y_m) ** 2) < meeting_near_m(), true)
+    CROSS JOIN LATERAL (SELECT b.x_m - s.x_m AS dx, b.y_m - s.y_m AS dy) d
+    WHERE coalesce(sqrt(dx ** 2 + dy ** 2) < CASE WHEN b.sense * (dx * s.vx_mps + dy * s.vy_mps) > 0
+        THEN greatest(meeting_near_m(), s.speed_mps * b.reach_s) ELSE meeting_near_m() END, true)
 ),
 -- the ego's own log, and how far it sees back
 own AS (

@@ -27,8 +27,12 @@ numbered AS (
         -- a stretch beside each other begins with every step that does not go on from one
         sum((NOT coalesce(over AND over_before AND joined, false))::INTEGER)
             OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY k ROWS UNBOUNDED PRECEDING) AS n,
-        last_value(rank IGNORE NULLS) OVER (PARTITION BY drive_id, ego_id, object_id, run ORDER BY k ROWS BETWEEN UNBOUNDED PRECEDING AND 1 PRECEDING) AS rank_before
-    FROM ordered
+        last_value(CASE WHEN rank IS NOT NULL THEN {'rank': rank, 't_ns': t_ns, 'parts': parts} END IGNORE NULLS)
+            OVER (PARTITION BY drive_id, ego_id, object_id, run ORDER BY k ROWS BETWEEN UNBOUNDED PRECEDING AND 1 PRECEDING) AS was
+    FROM (
+        SELECT *, sum((NOT coalesce(joined, false))::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY k ROWS UNBOUNDED PRECEDING) AS parts
+        FROM ordered
+    )
 ),
 stretch AS (
     SELECT
@@ -40,12 +44,12 @@ stretch AS (
 ),
 changed AS (
     SELECT
-        c.drive_id, c.ego_id, c.object_id, c.actor_class, c.rank < 0 AS ego_passes, c.t_ns,
+        c.drive_id, c.ego_id, c.object_id, c.actor_class, c.rank < 0 AS ego_passes, c.t_ns, CASE WHEN c.parts > c.was.parts THEN c.was.t_ns END AS t_unseen_ns,
         coalesce(s.t_from_ns, c.t_ns) AS t_from_ns, coalesce(s.t_to_ns, c.t_ns) AS t_to_ns,
         c.side, s.gap_m, coalesce(s.whole, false) AS whole, c.same_lane, c.ego_speed_mps, c.speed_mps
     FROM numbered c
     LEFT JOIN (SELECT *, true AS over FROM stretch) s USING (drive_id, ego_id, object_id, n, over)
-    WHERE c.rank <> c.rank_before AND c.along
+    WHERE c.rank <> c.was.rank AND c.along
 ),
 -- who may be beside the ego in steps on end
 unseen AS (
@@ -66,7 +70,7 @@ seen AS (
     WHERE p.front_s_m IS NOT NULL AND e.front_s_m IS NOT NULL
 ),
 doubt AS (
-    SELECT u.drive_id, u.ego_id, u.object_id, u.actor_class, u.t_from_ns AS t_ns, u.t_from_ns, u.t_to_ns, false AS whole
+    SELECT u.drive_id, u.ego_id, u.object_id, u.actor_class, u.t_to_ns AS t_ns, u.t_from_ns AS t_unseen_ns, u.t_from_ns, u.t_to_ns, false AS whole
     FROM unseen u
     ASOF LEFT JOIN seen b ON b.drive_id = u.drive_id AND b.ego_id = u.ego_id AND b.object_id = u.object_id AND b.t_ns <= u.t_from_ns
     ASOF LEFT JOIN seen a ON a.drive_id = u.drive_id AND a.ego_id = u.ego_id AND a.object_id = u.object_id AND a.t_ns >= u.t_to_ns

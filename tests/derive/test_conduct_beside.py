@@ -202,9 +202,12 @@ def test_of_a_passing_cut_by_the_log_or_a_hole_the_least_gap_is_only_what_was_se
     assert (found["t_ns"], found["whole"]) == (4_500_000_000, False)
     blind = fast.lost((t > 3.45) & (t < 4.45))
     (found,) = passings(way, ego, blind)
-    assert (found["t_ns"], found["whole"]) == (4_500_000_000, False)
+    assert (found["t_unseen_ns"], found["t_ns"], found["whole"]) == (3_400_000_000, 4_500_000_000, False)
+    (whole,) = passings(way, ego, fast.lost((t > 1) & (t < 2)))
+    assert (whole["t_unseen_ns"], whole["t_ns"]) == (None, 4_100_000_000)
     all_of_it = fast.lost((t > 2.45) & (t < 5.55))
     (found,) = passings(way, ego, all_of_it)
+    assert (found["t_unseen_ns"], found["t_ns"]) == (2_400_000_000, 5_600_000_000)
     assert (found["whole"], found["gap_m"]) == (False, None)
 
 
@@ -231,8 +234,8 @@ def test_who_has_no_place_beside_the_ego_may_have_been_passed() -> None:
         (found,) = passings(way, ego, other)
         assert (found["ego_passes"], found["side"], found["same_lane"], found["whole"]) == (None, None, None, False)
         assert (found["occurrence"], found["gap_m"]) == (0, None)
-        assert seconds([found], "t_from_ns") == [begin]
-        assert seconds([found], "t_to_ns") == [end]
+        assert seconds([found], "t_from_ns") == seconds([found], "t_unseen_ns") == [begin]
+        assert seconds([found], "t_to_ns") == seconds([found], "t_ns") == [end]
     # ahead before and after, or seen just before and just after, there is no doubt
     assert [row["ego_passes"] for row in passings(way, ego, slow.lost((t > 1.95) & (t < 3.45)))] == [True]
     assert [row["ego_passes"] for row in passings(way, ego, slow.lost((t > 3.45) & (t < 8.45)))] == [True]

@@ -50,7 +50,8 @@ def test_what_is_no_cut_in() -> None:
     wobbles = moving("wobbles", way, t, 120 + 12 * t, -0.5 * LANE - 0.9 * ease((t - 4) / 4))
     across = moving("across", way, t[40:80], 200 + 1.0 * t[40:80], -12 + 2 * (t[40:80] - 4))
     assert not cuts(way, ego, leaves, behind, far, wobbles)
-    assert not cuts(way, ego, across)
+    # whose track begins and ends on the road: before and after it somebody may have come in
+    assert {row["object_id"] for row in cuts(way, ego, across)} == {None}
     changes = moving("ego", way, t, 100 + 12 * t, offsets(way, t, 4.0))
     assert not cuts(way, changes, moving("x", way, t, 130 + 12 * t, offsets(way, t, 99.0, start=0.5)))
 
@@ -93,8 +94,9 @@ def test_where_it_was_not_seen_to_come() -> None:
     keep = (t < at - 0.55) | (t > at + 0.55)
     (found,) = cuts(way, ego.keep(keep), other.keep(keep))
     assert (found["begin_seen"], found["t_ns"]) == (False, round((at + 0.6) * 1e9))
-    assert not cuts(way, ego, other.keep(t > at + 0.3))  # where it came from is not in the log
-    assert not cuts(way, ego, other.lost((t > at - 4) & (t < at + 3)))  # it had 7 s: nobody cuts in for so long
+    # where it came from is not in the log; it had 7 s: nobody cuts in for so long, and it may have come at any time
+    for unseen in (other.keep(t > at + 0.3), other.lost((t > at - 4) & (t < at + 3))):
+        assert [row["object_id"] for row in cuts(way, ego, unseen)] == [None]
 
 
 def test_each_ego_has_its_own_cut_ins() -> None:
@@ -105,3 +107,18 @@ def test_each_ego_has_its_own_cut_ins() -> None:
     other = moving("x", way, t, 130 + 12 * t, offsets(way, t, 5.0, start=0.5, to=1.5))
     found = cuts(way, slow, fast, other, egos=("a", "b"))
     assert [(row["ego_id"], row["object_id"]) for row in found] == [("a", "x")]
+
+
+def test_where_it_cannot_be_told_who_is_ahead_somebody_may_have_come_in() -> None:
+    way = marked("rht", lanes=2)
+    t = times(14.0)
+    ego = moving("ego", way, t, 100 + 12 * t, offsets(way, t, 99.0))
+    other = moving("x", way, t, 130 + 12 * t, offsets(way, t, 5.0, start=0.5, to=1.5))
+    for lost, at in ((t < 99, 0.0), (t > 3.95, 4.0), ((t > 1.95) & (t < 3.05), 2.0)):
+        found = cuts(way, ego, other.lost(lost))
+        assert (found[0]["object_id"], found[0]["t_ns"] / 1e9, found[0]["begin_seen"]) == (None, at, False)
+        assert (found[0]["gap_m"], found[0]["side"], found[0]["in_place_ns"]) == (None, None, None)
+        assert [row["object_id"] for row in found[1:]] == ["x"] * (at == 2.0)
+    (only,) = cuts(way, ego, other.lost((t > 1.95) & (t < 2.95)))
+    assert only["object_id"] == "x"
+    assert [row["object_id"] for row in cuts(way, ego.lost((t > 8) & (t < 10)), other)] == ["x", None]

@@ -209,6 +209,23 @@ def test_a_track_that_begins_or_ends_near_while_the_ego_passes() -> None:
     assert answers(going(ways["wn"]), near.keep(t > 2), way=ways["we"])["oncoming"]["reason"] is None
 
 
+def test_a_track_that_ends_on_its_way_to_the_junction_or_begins_on_its_way_from_there() -> None:
+    """The ego is in the junction from 7.8 to 11.4 s; they come 40 m and more from its middle."""
+    ways = cross()
+    t = times(24)
+    comes = moving("p", ways["ew"], t, 80 + 12 * t, ways["ew"].own)  # 48 m away at 6 s
+    for kept, doubt in ((t < 6, True), (t < 3.5, False)):
+        reason = answers(going(ways["wn"]), comes.keep(kept), way=ways["we"])["oncoming"]["reason"]
+        assert reason == ("actor p was lost from the log nearby" if doubt else None)
+    # 52 m beyond it at 13 s, it was there 4.3 s before
+    leaves = moving("p", ways["ew"], t, 96 + 12 * t, ways["ew"].own)
+    for kept, doubt in ((t > 13, True), (t > 2, False)):
+        found = answers(going(ways["wn"]), leaves.keep(kept), way=ways["we"])["oncoming"]
+        assert (found["reason"] == "actor p appeared in the log nearby") is doubt
+    backwards = moving("p", ways["we"], t, 330 + 2 * t, ways["we"].own)  # far past it, and further away
+    assert answers(going(ways["wn"]), backwards.keep(t < 9), way=ways["we"])["oncoming"]["reason"] is None
+
+
 def test_the_log_must_go_on_for_a_while() -> None:
     """The rear leaves the junction at 11.4 s."""
     ways = cross()

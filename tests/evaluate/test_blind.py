@@ -64,7 +64,9 @@ def test_each_ego_and_drive_by_itself_and_what_is_said_already_is_not_said_twice
         ("d", "f", "not_applicable"),
         ("g", "e", "unknown"),
     ]
-    assert brief(said(tmp_path, blind, taken=[4.0])) == [("unknown", "null_value")]
+    for at in (4.0, 5.2):  # within it, and just after
+        late = blind | {"speed_mps": {"else": 12, str(at): None}}
+        assert brief(said(tmp_path, late, taken=[at])) == [("unknown", "null_value")]
 
 
 def test_an_invariant_says_so_of_a_place_but_not_of_a_hole_that_it_does_not_reach(tmp_path: Path) -> None:

@@ -33,7 +33,7 @@ FROM cut_in
 -- @condition
 SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id, e.speed_mps <= $v_max_mps AS applies, r157_gap_m(e.speed_mps) AS required,
     -- later somebody else ahead, or nobody: it has gone again
-    CASE WHEN s.t_ns = r.t_ns THEN r.gap_m WHEN l.object_id = s.object_id THEN l.gap_m WHEN l.t_ns IS NOT NULL THEN 'inf'::DOUBLE END AS observed
+    CASE WHEN r.object_id IS NULL THEN NULL WHEN s.t_ns = r.t_ns THEN r.gap_m WHEN l.object_id = s.object_id THEN l.gap_m WHEN l.t_ns IS NOT NULL THEN 'inf'::DOUBLE END AS observed
 FROM reference_step s
 JOIN reference r USING (ref_id)
 JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns

@@ -41,7 +41,7 @@ WHERE coalesce(gap_m > (ego_speed_mps - speed_mps) * ((ego_speed_mps - speed_mps
 -- @condition
 SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id, 0 AS required, p.clearance_is_bound AS at_least,
     -- one that has gone for good, in sight and far away, is no longer touched
-    CASE WHEN p.object_id IS NOT NULL THEN p.clearance_m WHEN l.object_id IS NULL THEN 'inf'::DOUBLE END AS observed
+    CASE WHEN s.object_id IS NULL THEN NULL WHEN p.object_id IS NOT NULL THEN p.clearance_m WHEN l.object_id IS NULL THEN 'inf'::DOUBLE END AS observed
 FROM reference_step s
 LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN lost_object l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.object_id = s.object_id AND s.t_ns >= l.t_from_ns AND s.t_ns <= l.t_to_ns

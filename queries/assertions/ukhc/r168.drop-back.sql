@@ -30,7 +30,7 @@ SELECT drive_id, ego_id, t_ns, object_id, coalesce(in_place_ns, t_ns) AS in_plac
 -- @condition
 -- gone again, or behind another that moved in too: nothing is left to restore
 SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id,
-    CASE WHEN l.object_id = r.object_id THEN l.gap_m >= $time_gap_s * stopping_factor(c.weather) * l.ego_speed_mps
+    CASE WHEN r.object_id IS NULL THEN NULL WHEN l.object_id = r.object_id THEN l.gap_m >= $time_gap_s * stopping_factor(c.weather) * l.ego_speed_mps
         WHEN l.t_ns > r.in_place_ns THEN true WHEN l.t_ns IS NOT NULL THEN false END AS holds
 FROM reference_step s
 JOIN reference r USING (ref_id)

@@ -21,19 +21,18 @@ FROM crossing_passage
 
 -- @condition
 -- a crossing that is neither a zebra nor signalled has no zig-zags; whom the ego got past before the log began is not known
+WITH passed AS (
+    SELECT p.drive_id, p.ego_id, p.object_id, p.ego_passes AND p.t_unseen_ns IS NULL AS seen, p.t_ns, coalesce(p.t_unseen_ns, p.t_ns) AS t_first_ns, s.travel_m
+    FROM passing p
+    JOIN step s USING (drive_id, ego_id, t_ns)
+    WHERE p.ego_passes IS DISTINCT FROM false AND may_be_vehicle(p.actor_class) AND p.actor_class IS DISTINCT FROM 'bicycle'
+)
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.kind <> 'other' AS applies,
-    CASE WHEN bool_or(p.ego_passes) THEN false WHEN i.travel_m >= $zigzag_m AND count(p.object_id) = 0 THEN true END AS holds,
-    CASE WHEN bool_or(p.ego_passes)
-        THEN 'passed ' || string_agg(DISTINCT p.object_id, ', ' ORDER BY p.object_id) FILTER (p.ego_passes) || ' before crossing ' || r.crossing_id
+    CASE WHEN bool_or(p.seen) THEN false WHEN i.travel_m >= $zigzag_m AND count(p.object_id) = 0 THEN true END AS holds,
+    CASE WHEN bool_or(p.seen) THEN 'passed ' || string_agg(DISTINCT p.object_id, ', ' ORDER BY p.object_id) FILTER (p.seen) || ' before crossing ' || r.crossing_id
         WHEN count(p.object_id) > 0 THEN format('actor {} may have been passed before crossing {}', min(p.object_id), r.crossing_id)
         WHEN i.travel_m < $zigzag_m THEN 'the log does not show the way to the crossing' END AS reason
 FROM reference r
 JOIN step i USING (drive_id, ego_id, t_ns)
-LEFT JOIN (
-    SELECT drive_id, ego_id, p.t_ns, object_id, ego_passes, s.travel_m
-    -- somebody without a place may have been passed as late as this
-    FROM passing p JOIN step s USING (drive_id, ego_id)
-    WHERE ego_passes IS DISTINCT FROM false AND s.t_ns = CASE WHEN ego_passes THEN p.t_ns ELSE p.t_to_ns END
-        AND may_be_vehicle(actor_class) AND actor_class IS DISTINCT FROM 'bicycle'
-) p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_ns <= r.t_out_ns AND p.travel_m >= i.travel_m - $zigzag_m
+LEFT JOIN passed p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_first_ns <= r.t_out_ns AND p.travel_m >= i.travel_m - $zigzag_m
 GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.kind, r.crossing_id, i.travel_m

@@ -42,9 +42,10 @@ SELECT b.rule_no, b.drive_id, b.ego_id, min(b.a_ns) AS t_start_ns, min({'a': b.a
         ELSE 'the log has a hole' END, b.a_ns / 1e9, b.b_ns / 1e9)}).what
         || CASE WHEN count(*) > 1 THEN format(', and in {} more such stretches', count(*) - 1) ELSE '' END || '.' AS reason
 FROM (
-    SELECT r.rule_no, b.*
-    FROM _rule r
-    JOIN _blind b ON b.signal IS NULL AND r.kind <> 'invariant'
+    SELECT r.rule_no, b.*, s.max_gap_ns
+    FROM _blind b
+    JOIN _subject s ON s.drive_id = b.drive_id AND s.ego_id = b.ego_id
+    JOIN _rule r ON b.signal IS NULL AND r.kind <> 'invariant'
         OR EXISTS (FROM _needs n WHERE n.rule_no = r.rule_no AND n.signal = b.signal)
 ) b
 LEFT JOIN _watched w ON w.drive_id = b.drive_id AND w.ego_id = b.ego_id
@@ -52,7 +53,8 @@ LEFT JOIN (
     SELECT rule_no, drive_id, ego_id, bool_and(code = 'outside_conditions') AS elsewhere FROM _kept GROUP BY ALL
 ) k ON k.rule_no = b.rule_no AND k.drive_id = b.drive_id AND k.ego_id = b.ego_id
 ANTI JOIN _kept u ON u.rule_no = b.rule_no AND u.drive_id = b.drive_id AND u.ego_id = b.ego_id
-    AND (u.verdict = 'error' OR u.verdict = 'unknown' AND coalesce(u.t_start_ns <= b.b_ns AND u.t_end_ns >= b.a_ns, true))
+    AND (u.verdict = 'error' OR u.verdict = 'unknown' AND coalesce(
+        u.t_start_ns <= b.b_ns + b.max_gap_ns AND u.t_end_ns >= b.a_ns - b.max_gap_ns, true))
 WHERE w.never IS DISTINCT FROM true AND k.elsewhere IS DISTINCT FROM true
 GROUP BY b.rule_no, b.drive_id, b.ego_id
 """
