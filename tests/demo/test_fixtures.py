@@ -90,4 +90,8 @@ def test_the_overtakes_end_as_their_names_say(scene: Any) -> None:
 
 
 def test_no_failure_in_the_clean_drive(said: str) -> None:
-    assert {line.split()[0] for line in sections(said)["clean-drive"]} == {"pass", "not"}
+    words = [line.split() for line in sections(said)["clean-drive"]]
+    assert {word[0] for word in words} == {"pass", "not", "unknown"}
+    # a log of positions and indicators does not say when lamps and horn are on
+    lacking = {word[-1] for word in words if word[0] == "unknown"}
+    assert lacking == {"missing_mode_headlights", "missing_mode_horn"}
