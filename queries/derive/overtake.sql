@@ -63,7 +63,7 @@ candidate AS (
     )
 ),
 passing AS (
-    SELECT c.drive_id, c.ego_id, c.chain_id, c.t0_ns, c.object_id, bool_or(p.ego_front_m > p.front_s_m) AS passed,
+    SELECT c.drive_id, c.ego_id, c.chain_id, c.t0_ns, c.object_id, bool_or(p.ego_front_m > coalesce(p.front_s_m, p.s_m)) AS passed,
         count(p.front_s_m) AS n_seen
     FROM candidate c
     JOIN seen p USING (drive_id, ego_id, chain_id, t0_ns, object_id)

@@ -1,21 +1,28 @@
 -- Where the ego and another road user that heads the same way change their order, fronts against fronts. Steps at which the other has no
 -- place, and holes, are bridged: the order has changed all the same, but the stretch was not seen whole. Where the order before or after is
 -- not known either, and the two may have been beside each other, it may have changed.
-WITH met AS (
-    SELECT drive_id, ego_id, object_id, actor_class, t_ns, k, seg, true AS placed, ahead_m, gap_ahead_m <= 0 AND gap_behind_m <= 0 AS over,
+WITH
+-- steps without a place of the ego's own are bridged too
+own AS (
+    SELECT drive_id, ego_id, t_ns, row_number() OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns) AS n_own FROM ego_state WHERE front_s_m IS NOT NULL
+),
+met AS (
+    SELECT drive_id, ego_id, object_id, actor_class, t_ns, k, seg, n_own, true AS placed, ahead_m, gap_ahead_m <= 0 AND gap_behind_m <= 0 AS over,
         gap_m, side, abs(d_m) < half_width_m AS same_lane, abs(heading_diff_rad) < pi() / 2 AS along, ego_speed_mps, speed_mps
     FROM neighbour
+    JOIN own USING (drive_id, ego_id, t_ns)
     UNION ALL BY NAME
-    SELECT h.drive_id, h.ego_id, h.object_id, h.t_ns, st.k, st.seg, false AS placed, false AS over
+    SELECT h.drive_id, h.ego_id, h.object_id, h.t_ns, st.k, st.seg, o.n_own, false AS placed, false AS over
     FROM hidden h
     SEMI JOIN neighbour n ON n.drive_id = h.drive_id AND n.ego_id = h.ego_id AND n.object_id = h.object_id
     JOIN step st ON st.drive_id = h.drive_id AND st.ego_id = h.ego_id AND st.t_ns = h.t_ns
+    JOIN own o ON o.drive_id = h.drive_id AND o.ego_id = h.ego_id AND o.t_ns = h.t_ns
 ),
 ordered AS (
     SELECT
         *,
         CASE WHEN ahead_m > order_m() THEN 1 WHEN ahead_m < -order_m() THEN -1 END AS rank,
-        k - row_number() OVER w AS run, lag(k) OVER w = k - 1 AND lag(seg) OVER w = seg AND lag(placed) OVER w AND placed AS joined,
+        n_own - row_number() OVER w AS run, lag(k) OVER w = k - 1 AND lag(seg) OVER w = seg AND lag(placed) OVER w AND placed AS joined,
         lag(over) OVER w AS over_before,
         lead(k) OVER w = k + 1 AND lead(seg) OVER w = seg AND lead(placed) OVER w AS goes_on
     FROM met

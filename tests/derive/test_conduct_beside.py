@@ -203,6 +203,8 @@ def test_of_a_passing_cut_by_the_log_or_a_hole_the_least_gap_is_only_what_was_se
     blind = fast.lost((t > 3.45) & (t < 4.45))
     (found,) = passings(way, ego, blind)
     assert (found["t_unseen_ns"], found["t_ns"], found["whole"]) == (3_400_000_000, 4_500_000_000, False)
+    (own,) = passings(way, ego.lost((t > 3.45) & (t < 4.45)), fast)
+    assert (own["t_unseen_ns"], own["t_ns"], own["whole"]) == (3_400_000_000, 4_500_000_000, False)
     (whole,) = passings(way, ego, fast.lost((t > 1) & (t < 2)))
     assert (whole["t_unseen_ns"], whole["t_ns"]) == (None, 4_100_000_000)
     all_of_it = fast.lost((t > 2.45) & (t < 5.55))

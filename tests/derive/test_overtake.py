@@ -237,6 +237,9 @@ def test_who_lacks_heading_or_size_ahead_may_be_the_one(lacks: str) -> None:
     for actors in ([ego, unknown, ov], [ego, unknown, ov, far]):
         (found,) = one(actors, way, "overtake")
         assert (found["vbp_id"], found["vbp_placed"], found["vbp_gap_m"]) == ("vbp", False, None)
+    distant = moving("vbp", way, ego.t_s, 260 + 0.1 * ego.t_s, way.own)  # 105 m ahead at t0, and passed
+    unknown = replace(distant, yaw=vbp.yaw * np.nan) if lacks == "yaw" else replace(distant, **{lacks: None})
+    assert [row["vbp_placed"] for row in one([ego, unknown, ov], way, "overtake")] == [False]
     beside = moving("vbp", way, ego.t_s, 140 + 4 * ego.t_s, way.own - 8 * way.over)
     unknown = replace(beside, yaw=vbp.yaw * np.nan) if lacks == "yaw" else replace(beside, **{lacks: None})
     assert not one([ego, unknown, ov], way, "overtake")

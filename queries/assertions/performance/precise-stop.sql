@@ -23,7 +23,9 @@
 -- why = "our default: who stands further off, a car's length or more, stands for something else and drives up to the line later"
 
 -- @reference
-SELECT drive_id, ego_id, t_start_ns AS t_ns, occurrence FROM standstill WHERE stop_line_id IS NOT NULL
+SELECT drive_id, ego_id, t_start_ns AS t_ns, occurrence FROM standstill
+-- where it stands without a place there may be a line
+WHERE stop_line_id IS NOT NULL OR junction_m IS NULL
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, abs(s.stop_line_m - $within_m / 2) AS observed, $within_m / 2 AS required,
