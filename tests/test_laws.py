@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 from drivelint import batch, store
 from drivelint.derive import derivations
 from tests import scenes
+from tests.clean.judging import told
 from tests.derive.test_exits import exit_road, leaver
 from tests.derive.test_overtake import scene
 from tests.scenes import Actor, derived, drive, judged, moving, road, saying, standing, tee, times
@@ -123,10 +124,13 @@ def prints(con: duckdb.DuckDBPyConnection) -> dict[str, tuple[Any, ...]]:
 
 
 def test_every_derived_row_is_the_same_on_any_threads() -> None:
-    first = prints(derived(*crowd()))
+    """The crowd, and drives with lights, crossings, turns, lane changes and a cut-in."""
+    chapters = ("zebra", "light", "offside_turn", "motorway", "cut_in")
+    everybody = [*crowd(), *(told(f"gb {name}", "gb", [name]) for name in chapters)]
+    first = prints(derived(*everybody))
     assert all(first[table][0] for table in derivations()), [t for t in derivations() if not first[t][0]]
     with store.connect(threads=2) as con:
-        assert prints(derived(*reversed(crowd()), con=con)) == first
+        assert prints(derived(*reversed(everybody), con=con)) == first
 
 
 def busy(seed: int, others: int = 24, steps: int = 13_500) -> Drive:
