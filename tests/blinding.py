@@ -146,3 +146,44 @@ def without_links(environment: Environment, name: str, *ends: str) -> Environmen
         return links.filter(pc.invert(pc.or_(pc.is_in(links["from_id"], named), pc.is_in(links["to_id"], named))))
 
     return remade(environment, name, lane_link=drop)
+
+
+def without(drive: Drive, table: str, columns: tuple[str, ...], actor: str | None = None, span: Span = EVER) -> Drive:
+    """Take away columns of the actor's rows (None: of everybody's), of `actor_state` only in the span."""
+
+    def change(rows: pa.Table) -> pa.Table:
+        if "t_ns" in rows.schema.names and "actor_id" in rows.schema.names:
+            hit = _hit(rows, actor, span)
+        elif "t_ns" in rows.schema.names:
+            t = rows["t_ns"].to_numpy() / 1e9
+            hit = (t > span[0]) & (t < span[1])
+        else:
+            hit = np.array([actor in {None, a} for a in rows["actor_id"].to_pylist()], bool)
+        for column in columns:
+            rows = _with(rows, column, hit, pa.nulls(len(hit), rows.schema.field(column).type))
+        return rows
+
+    return changed(drive, table, change)
+
+
+def empty(rows: pa.Table) -> pa.Table:
+    """Return the table without its rows."""
+    return rows.slice(0, 0)
+
+
+def unsaid(*columns: str) -> Callable[[pa.Table], pa.Table]:
+    """Return a change that takes these columns away."""
+
+    def change(rows: pa.Table) -> pa.Table:
+        for column in columns:
+            at, kind = rows.schema.get_field_index(column), rows.schema.field(column).type
+            rows = rows.set_column(at, column, pa.nulls(len(rows), kind))
+        return rows
+
+    return change
+
+
+def guessed(environment: pa.Table) -> pa.Table:
+    """Return the table of the map with a side of the road that nobody said."""
+    at = environment.schema.get_field_index("handedness_source")
+    return environment.set_column(at, "handedness_source", pa.array(["default"]))

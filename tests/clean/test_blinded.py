@@ -1,0 +1,135 @@
+"""What could not be seen must not pass: planted drives with things taken away around what was planted, and what is said of it."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import pyarrow.compute as pc
+import pytest
+
+from drivelint.batch import Drive
+from tests import blinding
+from tests.blinding import EVER
+from tests.clean.story import GARAGE_Y
+from tests.clean.test_planted import PLANTED, Planted, judged
+from tests.scenes import judged as judged_by
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from tests.blinding import Span
+    from tests.scenes import Row
+
+BEFORE_S, AFTER_S = 25.0, 17.0  # so much of each drive is looked at, before and after what was planted
+LONG = ("ukhc.r239.parked-with-traffic", "ukhc.r248.parked-at-night")  # broken by standing for long
+STORIES = [p for p in PLANTED if not p.scene and p.rule not in LONG]
+SIZE, SPEED = ("length_m", "width_m"), ("vx_mps", "vy_mps")
+MAPS = {
+    "markings": {"lane_boundary": blinding.unsaid("marking")},
+    "limits and types": {"speed_limit": blinding.empty, "lanelet": blinding.unsaid("road_type")},
+    "handedness": {"environment": blinding.guessed},
+    "signals": {"traffic_signal": blinding.empty, "road_object": blinding.empty},
+}
+# (what is taken away, rule): why the rule need not be broken nor unknown any more
+EVIDENCE = {
+    ("conditions", "ukhc.r265.right-lane-ban"): "by its class the ego is a car",
+    ("conditions", "stvo.s4-truck"): "by its class the ego is a car",
+    (
+        "end of the others",
+        "ukhc.r126.ds-vbp-out-of-av",
+    ): "170 m ahead and going the same way: who is lost there may have left the road",
+    ("end of the others", "ukhc.r128.back-before-solid"): "the same",
+    ("end of the others", "ukhc.r162.return-gap"): "the same",
+    ("end of the others", "ukhc.r165.no-overtaking-sign"): "the same",
+    ("end of the others", "ukhc.r163.obstruction-give-way"): "the same, 65 m ahead",
+    ("end of the others", "ukhc.r215.horse"): "the same",
+}
+
+
+def on_the_road(drive: Drive) -> Drive:
+    """Return the drive without those who wait elsewhere for their chapter: far away they have a place, here they are to have none."""
+    there = blinding.changed(
+        drive, "actor_state", lambda states: states.filter(pc.greater(states["y_m"], GARAGE_Y / 2))
+    )
+    left = pc.unique(there.trace.tables["actor_state"]["actor_id"])
+    return blinding.changed(there, "actor", lambda actors: actors.filter(pc.is_in(actors["actor_id"], left)))
+
+
+def found(planted: Planted) -> tuple[Row, Span]:
+    """Return the (first) row that breaks the rule, and from when to when."""
+    row = next(r for r in judged(planted.pack)[planted.rule] if r["rule_id"] == planted.rule and r["verdict"] == "fail")
+    times = [row[t] / 1e9 for t in ("t_start_ns", "t_end_ns", "t_ref_ns") if row[t] is not None]
+    return row, (min(times), max(times))
+
+
+def blinded(drive: Drive, row: Row, span: Span) -> Iterator[tuple[str, Drive]]:
+    """Return the drive with something taken away, in many ways; what, and from whom."""
+    long = (span[0] - 2.5, span[1] + 2.5)
+    everybody = drive.trace.tables["actor"]["actor_id"].to_pylist()
+    others = [row["object_id"]] if row["object_id"] else [a for a in everybody if a != "ego"]
+
+    def each(make: Any, *more: Any) -> Drive:
+        less = drive
+        for other in others:
+            less = make(less, other, *more)
+        return less
+
+    def lacking(table: str, columns: tuple[str, ...], time: Span = EVER) -> Drive:
+        less = drive
+        for other in others:
+            less = blinding.without(less, table, columns, other, time)
+        return less
+
+    yield "nothing", drive
+    yield "ego's place", blinding.nulled(drive, "ego", long)
+    yield "ego's heading", blinding.without(drive, "actor_state", ("yaw_rad",), "ego", long)
+    yield "ego's speed", blinding.without(drive, "actor_state", SPEED, "ego")
+    yield "ego's size", blinding.without(drive, "actor", SIZE, "ego")
+    yield "indicator", blinding.without(drive, "actor_state", ("indicator",), "ego", (span[0] - 7, span[1] + 7))
+    if others:
+        yield "place of the others", each(blinding.nulled, long)
+        yield "place of the others for ever", each(blinding.nulled, EVER)
+        yield "heading of the others", lacking("actor_state", ("yaw_rad",))
+        yield "speed of the others", lacking("actor_state", SPEED)
+        yield "size of the others", lacking("actor", SIZE)
+        yield "class of the others", lacking("actor", ("actor_class",))
+        rest = each(blinding.dropped, (span[0] - 0.35, 1e6))
+        if rest.trace.tables["actor"].num_rows == len(everybody):
+            yield "end of the others", rest
+    if drive.trace.tables["signal_state"].num_rows:
+        yield "lights", blinding.without(drive, "signal_state", ("state",), None, long)
+        yield "all lights", blinding.changed(drive, "signal_state", blinding.empty)
+    yield "events", blinding.changed(drive, "declared_event", blinding.empty)
+    yield "conditions", blinding.changed(drive, "drive_condition", blinding.empty)
+    yield "map", blinding.on(drive, None)
+    for what, changes in MAPS.items():
+        road = drive.environment
+        assert road is not None
+        yield what, blinding.on(drive, blinding.remade(road, f"{road.environment_id} {what}", **changes))
+
+
+@cache
+def said(pack: str, chapter: str) -> dict[str, set[str]]:
+    """Return the verdicts on what is planted in a chapter by a pack's rules, by rule and what was taken away."""
+    drives: list[Drive] = []
+    mine = [p for p in STORIES if (p.pack, p.chapter) == (pack, chapter)]
+    for planted in mine:
+        row, span = found(planted)
+        whole = on_the_road(planted.drives()[planted.rule]())
+        part = blinding.cut(whole, (span[0] - BEFORE_S, span[1] + AFTER_S))
+        drives += [blinding.renamed(one, f"{planted.rule}/{what}") for what, one in blinded(part, row, span)]
+    verdicts: dict[str, set[str]] = {drive.trace.drive_id: set() for drive in drives}
+    for row in judged_by(drives, rules=[p.rule for p in mine]):
+        if row["drive_id"].startswith(f"{row['rule_id']}/"):
+            verdicts[row["drive_id"]].add(row["verdict"])
+    return verdicts
+
+
+@pytest.mark.parametrize("planted", STORIES, ids=lambda p: p.rule)
+def test_what_was_broken_is_broken_or_unknown(planted: Planted) -> None:
+    every = said(planted.pack, planted.chapter)
+    mine = {name.partition("/")[2]: v for name, v in every.items() if name.startswith(f"{planted.rule}/")}
+    assert "fail" in mine["nothing"]
+    clear = {what for what, verdicts in mine.items() if not verdicts & {"fail", "unknown"}}
+    assert clear == {what for what, rule in EVIDENCE if rule == planted.rule and what in mine}
