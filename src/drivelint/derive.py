@@ -28,7 +28,17 @@ LARGE: Final = 1_000_000
 """States from which on there is one: a statement then uses all cores, and two would need twice the memory."""
 _GIVEN = {"profile"}  # filled from queries/profiles.toml
 # What the engine and the drive table read themselves, whatever the rules are.
-ALWAYS = ("clock", "step", "ego_state", "pair", "lost_object", "ego_condition", "capability", "registration", "exposure")
+ALWAYS = (
+    "clock",
+    "step",
+    "ego_state",
+    "pair",
+    "lost_object",
+    "ego_condition",
+    "capability",
+    "registration",
+    "exposure",
+)
 
 
 @dataclass(frozen=True)

@@ -105,7 +105,13 @@ class Bench:
             undo.callback(self._forget, ids)
             self._load(drives)
             derive(self._con, self._tables, of_the_map=False)
-            evaluate(self._con, self._rules, self._params, margins=self.margins_file is not None, courses=bool(self._witnesses))
+            evaluate(
+                self._con,
+                self._rules,
+                self._params,
+                margins=self.margins_file is not None,
+                courses=bool(self._witnesses),
+            )
             self._refuse_short_memory(ids)
             self._refuse_shared_error(ids)
             for witness in self._witnesses:

@@ -25,7 +25,7 @@ BEFORE_S, AFTER_S = 25.0, 17.0  # so much of each drive is looked at, before and
 LONG = ("ukhc.r239.parked-with-traffic", "ukhc.r248.parked-at-night")  # broken by standing for long
 STORIES = [p for p in PLANTED if not p.scene and p.rule not in LONG]
 SIZE, SPEED = ("length_m", "width_m"), ("vx_mps", "vy_mps")
-MAPS = {
+MAPS: dict[str, dict[str, Any]] = {
     "markings": {"lane_boundary": blinding.unsaid("marking")},
     "limits and types": {"speed_limit": blinding.empty, "lanelet": blinding.unsaid("road_type")},
     "handedness": {"environment": blinding.guessed},

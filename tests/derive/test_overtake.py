@@ -232,16 +232,21 @@ def test_a_look_past_the_vehicle_ahead_is_no_overtake_if_all_of_it_was_seen(hand
 def test_who_lacks_heading_or_size_ahead_may_be_the_one(lacks: str) -> None:
     """Nearer than another who is placed: the overtake is not that one's alone."""
     way, (ego, vbp, ov) = scene()
-    unknown = replace(vbp, yaw=vbp.yaw * np.nan) if lacks == "yaw" else replace(vbp, **{lacks: None})
+
+    def without(actor: Actor) -> Actor:
+        lost: dict[str, Any] = {lacks: actor.yaw * np.nan if lacks == "yaw" else None}
+        return replace(actor, **lost)
+
+    unknown = without(vbp)
     far = moving("far", way, ego.t_s, 260 + 4 * ego.t_s, way.own)
     for actors in ([ego, unknown, ov], [ego, unknown, ov, far]):
         (found,) = one(actors, way, "overtake")
         assert (found["vbp_id"], found["vbp_placed"], found["vbp_gap_m"]) == ("vbp", False, None)
     distant = moving("vbp", way, ego.t_s, 260 + 0.1 * ego.t_s, way.own)  # 105 m ahead at t0, and passed
-    unknown = replace(distant, yaw=vbp.yaw * np.nan) if lacks == "yaw" else replace(distant, **{lacks: None})
+    unknown = without(distant)
     assert [row["vbp_placed"] for row in one([ego, unknown, ov], way, "overtake")] == [False]
     beside = moving("vbp", way, ego.t_s, 140 + 4 * ego.t_s, way.own - 8 * way.over)
-    unknown = replace(beside, yaw=vbp.yaw * np.nan) if lacks == "yaw" else replace(beside, **{lacks: None})
+    unknown = without(beside)
     assert not one([ego, unknown, ov], way, "overtake")
 
 

@@ -222,7 +222,9 @@ def test_who_leads(what: str, s: float, d: float, turned: float, speed: float, l
     assert len(found) == len(t)
     assert {row["object_id"] for row in found} == ({"x"} if leads else {None})
     if leads:
-        assert [row["gap_m"] for row in found] == pytest.approx(list(s - 100 - 4.8 + (direction * speed - 10) * t), abs=1e-6)
+        assert [row["gap_m"] for row in found] == pytest.approx(
+            list(s - 100 - 4.8 + (direction * speed - 10) * t), abs=1e-6
+        )
 
 
 def test_the_nearest_leads_and_people_do_not() -> None:

@@ -150,9 +150,7 @@ def _cross(a: Vectors, b: Vectors) -> Vectors:
 
 def _product(a: Vectors, b: Vectors) -> Vectors:
     av, aw, bv, bw = a[:, :3], a[:, 3:], b[:, :3], b[:, 3:]
-    return np.concatenate(
-        [aw * bv + bw * av + _cross(av, bv), aw * bw - (av * bv).sum(axis=1, keepdims=True)], axis=1
-    )
+    return np.concatenate([aw * bv + bw * av + _cross(av, bv), aw * bw - (av * bv).sum(axis=1, keepdims=True)], axis=1)
 
 
 def _at(edge: _Edge, t_ns: NDArray[np.int64]) -> Poses:
