@@ -9,7 +9,7 @@
 -- sense = "holds"
 -- merge_gap_s = 5.0
 -- reads = ["data_log", "ego_motion", "ego_state", "excursion", "lanelet", "line_step", "overtake_step", "step"]
--- requires = ["map", "registration", "handedness"]
+-- requires = ["map", "registration", "handedness", "ego_size"]
 --
 -- [params.reverse_mps]
 -- default = 0.1
