@@ -11,6 +11,7 @@ import pytest
 from drivelint.batch import Drive
 from tests import blinding
 from tests.blinding import EVER
+from tests.clean.judging import stable
 from tests.clean.story import GARAGE_Y
 from tests.clean.test_planted import PLANTED, Planted, judged
 from tests.scenes import judged as judged_by
@@ -133,3 +134,16 @@ def test_what_was_broken_is_broken_or_unknown(planted: Planted) -> None:
     assert "fail" in mine["nothing"]
     clear = {what for what, verdicts in mine.items() if not verdicts & {"fail", "unknown"}}
     assert clear == {what for what, rule in EVIDENCE if rule == planted.rule and what in mine}
+
+
+@pytest.mark.parametrize("rule", ["ukhc.overtake-zone", "ukhc.r180.right-turn-gap", "ukhc.r163.cyclist"])
+def test_what_is_kept_is_never_broken_by_not_being_seen(rule: str) -> None:
+    """The same drives without what was planted, by every stable rule of these packs."""
+    planted = next(p for p in STORIES if p.rule == rule)
+    row, span = found(planted)
+    whole = on_the_road(planted.drives()[planted.clean]())
+    part = blinding.cut(whole, (span[0] - BEFORE_S, span[1] + AFTER_S))
+    drives = [blinding.renamed(one, what) for what, one in blinded(part, row | {"object_id": None}, span)]
+    rows = judged_by(drives, rules=stable(["ukhc", "rss", "criticality"]))
+    broken = {(r["drive_id"], r["rule_id"], r["reason"]) for r in rows if r["verdict"] in {"fail", "error"}}
+    assert not broken
