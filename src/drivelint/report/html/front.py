@@ -56,10 +56,8 @@ def headline(result: Result) -> tuple[str, str]:
     open_ = told["unknown"] + told["error"]
     if n:
         drives, all_ = len(pc.unique(result.findings["drive_id"])), result.drives.num_rows
-        return (
-            "fail",
-            f"{n} {'finding' if n == 1 else 'findings'} in {drives} of {all_} {'drive' if all_ == 1 else 'drives'}",
-        )
+        said = f"{n} {'finding' if n == 1 else 'findings'} in {drives} of {all_} {'drive' if all_ == 1 else 'drives'}"
+        return "fail", said + _of_these(result)
     if not judged or not result.verdicts.num_rows:
         return "unknown", "Nothing was judged"
     if not told["pass"] and open_:
@@ -67,6 +65,16 @@ def headline(result: Result) -> tuple[str, str]:
     if open_ or judged < result.drives.num_rows:
         return "unknown", "No finding, as far as it could be judged"
     return "pass", "No finding"
+
+
+def _of_these(result: Result) -> str:
+    """Return how many findings an earlier result or a waiver does not account for; '' where they were held against nothing."""
+    gate = result.gate
+    if gate is None:
+        return ""
+    ids = result.findings["finding_id"].to_pylist()
+    left = sum(gate.gates(name) for name in ids)
+    return f", {left or 'none'} of them {'new' if gate.baseline is not None else 'not waived'}"
 
 
 def broken(result: Result, rules: Mapping[str, Row], lines: Sequence[tuple[Row, Measured]]) -> list[Broken]:

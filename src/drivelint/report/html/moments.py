@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from drivelint.report.html.courses import Course
     from drivelint.report.html.road import Road
+    from drivelint.report.html.standing import Standing
 
     Row = Mapping[str, Any]
     Key = tuple[str, str, int]
@@ -62,6 +63,7 @@ class Measured(NamedTuple):
     gauge: Gauge | None
     reason: str
     course: Course | None
+    standing: Standing | None
 
 
 class Card(NamedTuple):
@@ -94,8 +96,16 @@ class Moment(NamedTuple):
     cards: list[Card]
 
 
-def measured(row: Row, kind: str, rule: Row, start_ns: int | None, course: Course | None = None) -> Measured:
-    """Return a finding (`fail`) or a near miss (`near`) in words."""
+def measured(
+    row: Row,
+    kind: str,
+    rule: Row,
+    start_ns: int | None,
+    *,
+    course: Course | None = None,
+    standing: Standing | None = None,
+) -> Measured:
+    """Return a finding (`fail`) or a near miss (`near`) in words; `standing`: how the finding stands to an earlier result."""
     unit, long = row["unit"], row["t_end_ns"] is not None and row["t_end_ns"] != row["t_start_ns"]
     sense = _SENSE.get(rule["sense"])
     return Measured(
@@ -103,7 +113,7 @@ def measured(row: Row, kind: str, rule: Row, start_ns: int | None, course: Cours
         href="#" + (finding_anchor(row) if kind == "fail" else moment_anchor(*key(row))),
         kind=kind,
         severity=row["severity"],
-        keys=" ".join((kind, row["severity"], rule["pack"])),
+        keys=" ".join((kind, row["severity"], rule["pack"], *([standing.key] if standing else []))),
         status=rule["status"],
         rule_id=row["rule_id"],
         title=rule["title"],
@@ -122,6 +132,7 @@ def measured(row: Row, kind: str, rule: Row, start_ns: int | None, course: Cours
         gauge=_gauge(row["observed"], row["required"]),
         reason=row["reason"],
         course=course,
+        standing=standing,
     )
 
 

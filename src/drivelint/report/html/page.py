@@ -19,6 +19,7 @@ from drivelint.report.html.plan import shapes
 from drivelint.report.html.reasons import can_be_provided, plain, reasons
 from drivelint.report.html.replay import replays
 from drivelint.report.html.road import Road
+from drivelint.report.html.standing import standing, view
 from drivelint.report.html.timeline import Clock, nothing, shared, timelines
 from drivelint.report.result import outcome
 from drivelint.report.text import number
@@ -72,7 +73,7 @@ def content(result: Result) -> dict[str, Any]:
     shown = _with_section(drives, listed, told)
     lines, close = _linked(lines, shown), _linked(close, shown)
     listed = _by_drive(lines + close)
-    anchors = {line.anchor for _, line in lines}
+    anchors = {line.anchor: line.standing.key if line.standing else "" for _, line in lines}
     verdicts, found = _rows_by_drive(result.verdicts, shown), _rows_by_drive(result.findings, shown)
     sections = [
         _section(
@@ -93,6 +94,7 @@ def content(result: Result) -> dict[str, Any]:
         "names": _NAMES,
         "passes": totals["pass"],
         "n_findings": result.findings.num_rows,
+        "gate": view(result.gate, result.findings["finding_id"].to_pylist()),
         "n_near": int(pc.sum(result.verdicts["near_miss"]).as_py() or 0),
         "broken": front.broken(result, rules, lines),
         "packs": front.packs(result),
@@ -136,7 +138,8 @@ def _lines(
         start = starts.get(row["drive_id"], 0)
         seen = courses.get(row["finding_id"])
         way = None if seen is None else course(seen, row["t_worst_ns"], row["unit"], start)
-        failed.append((row, measured(row, "fail", rules[row["rule_id"]], start, way)))
+        stands = standing(result.gate, row["finding_id"])
+        failed.append((row, measured(row, "fail", rules[row["rule_id"]], start, course=way, standing=stands)))
     near = pc.and_(result.verdicts["near_miss"], pc.is_valid(result.verdicts["t_worst_ns"]))
     close: list[tuple[Row, Measured]] = [
         (row, measured(row, "near", rules[row["rule_id"]], starts.get(row["drive_id"], 0)))
@@ -200,6 +203,7 @@ def _filters(lines: Sequence[Measured], rules: Mapping[str, Row]) -> dict[str, l
         "verdict": [(v, _NAMES.get(v, "near miss")) for v in ("fail", "near", "unknown", "pass", "error")],
         "severity": [(s, s) for s in counts.SEVERITIES if s in severities],
         "pack": [(p, p) for p in sorted({rule["pack"] for rule in rules.values()})],
+        "standing": sorted({(line.standing.key, line.standing.label) for line in lines if line.standing}),
         "drive": [(d, d) for d in drives] if len(drives) > 1 else [],
     }
 

@@ -98,11 +98,11 @@ class Clock(NamedTuple):
 
 
 def timelines(
-    verdicts: Iterable[Row], findings: Sequence[Row], rules: Mapping[str, Row], anchors: Collection[str], clock: Clock
+    verdicts: Iterable[Row], findings: Sequence[Row], rules: Mapping[str, Row], anchors: Mapping[str, str], clock: Clock
 ) -> list[Timeline]:
     """Return a timeline for every ego of one drive, in the order of the verdicts.
 
-    `anchors`: the findings that are on the page, to link to.
+    `anchors`: the findings that are on the page, to link to, and what each is found by besides ('' for nothing).
     """
     groups: dict[str, dict[tuple[str, str | None], list[Row]]] = {}
     for row in verdicts:
@@ -125,7 +125,7 @@ def _timeline(
     found: Mapping[tuple[str, str | None], list[Row]],
     *,
     rules: Mapping[str, Row],
-    anchors: Collection[str],
+    anchors: Mapping[str, str],
     clock: Clock,
 ) -> Timeline:
     rows: list[Lane] = []
@@ -139,7 +139,8 @@ def _timeline(
         marks = [_finding(row, anchors, clock) for row in found.get(key, [])]
         near = [_near(row, clock) for row in told if row["near_miss"]]
         rule = rules[rule_id]
-        keys = " ".join((worst, "near" if near else "", rule["severity"], rule["pack"]))
+        stands = sorted({anchors.get(finding_anchor(row), "") for row in found.get(key, [])})
+        keys = " ".join((worst, "near" if near else "", rule["severity"], rule["pack"], *stands))
         href = f"#{rule_anchor(rule_id)}"
         rows.append(Lane(rule_id, href, rule["title"], profile, worst, keys, _bands(told, clock), marks + near))
     rows.sort(key=lambda lane: (_ORDER.index(lane.verdict), SEVERITIES.index(rules[lane.rule_id]["severity"])))
