@@ -1,5 +1,5 @@
 -- title = "Hard braking is an emergency manoeuvre"
--- clause = "UN R157 2.20 and 5.3: braking harder than 5 m/s2 is an emergency manoeuvre, and recorded as one"
+-- clause = "UN R157 5.3.1.1: a system that asks for more than 5 m/s2 of braking carries out an emergency manoeuvre, which is to be recorded"
 -- hypothesis = "While the ego braked harder than 5 m/s2, did it declare an emergency manoeuvre?"
 -- kind = "invariant"
 -- derivation = "direct"
@@ -15,7 +15,7 @@
 -- default = 5.0
 -- unit = "m/s2"
 -- why = "deceleration beyond which it is an emergency manoeuvre"
--- source = "UN R157 5.3"
+-- source = "UN R157 5.3.1.1"
 --
 -- [params.grace_s]
 -- default = 0.3

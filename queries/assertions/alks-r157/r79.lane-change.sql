@@ -1,5 +1,5 @@
 -- title = "Three to five seconds of signal"
--- clause = "UN R79 5.6.4.6: an automatic lane change begins 3 to 5 s after its indicator came on"
+-- clause = "UN R79 5.6.4.6.4: an automatic lane change begins 3 to 5 s after its indicator came on (later supplements: 7 s where the driver confirms it)"
 -- hypothesis = "When the ego began to cross into the next lane, had its indicator on that side been on for 3 to 5 s?"
 -- kind = "execution"
 -- derivation = "direct"

@@ -1,5 +1,5 @@
 -- title = "Give way to people crossing the road turned into"
--- clause = "UKHC H2 and R170: at a junction give way to people on foot who cross the road that you turn into"
+-- clause = "UKHC H2 and R170: at a junction give way to people on foot who cross the road that you turn into or out of"
 -- hypothesis = "When the ego turned into a road before somebody on foot, was there time for both?"
 -- kind = "execution"
 -- derivation = "direct"

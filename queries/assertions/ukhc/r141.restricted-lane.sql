@@ -1,5 +1,5 @@
 -- title = "Not in lanes kept for others"
--- clause = "UKHC R140 and R141: you must not drive in a bus lane, or a cycle lane marked by a solid line, during its hours, unless signs allow your class of vehicle"
+-- clause = "UKHC R140, R141 and R142: during its hours you must not drive in a cycle lane with a solid line or a lane kept for other kinds of vehicle, and should not in a bus lane, unless signs allow your kind"
 -- hypothesis = "At every step, was the ego's centre outside lanes kept for buses, taxis, cycles or shared cars?"
 -- kind = "invariant"
 -- derivation = "direct"

@@ -1,5 +1,5 @@
 -- title = "No passing in the zig-zags before a crossing"
--- clause = "UKHC R191: you must not overtake the moving motor vehicle nearest the crossing, or the one that has stopped there to give way, in the area marked by zig-zag lines"
+-- clause = "UKHC R191 and R165: you must not overtake the moving motor vehicle nearest the crossing, or the one that has stopped there to give way, in the area marked by zig-zag lines"
 -- hypothesis = "When the ego went over a pedestrian crossing, had it got past no vehicle between the zig-zags' beginning and the crossing?"
 -- kind = "execution"
 -- derivation = "direct"

@@ -1,5 +1,5 @@
 -- title = "Not on the hard shoulder"
--- clause = "UKHC R269: you must not drive on the hard shoulder of a motorway except in an emergency or where signs open it"
+-- clause = "UKHC R269: you must not drive on the hard shoulder of a motorway except in an emergency, where signs open it, or when told to"
 -- hypothesis = "At every step on a motorway without an emergency, was the ego's centre off the hard shoulder?"
 -- kind = "invariant"
 -- derivation = "direct"
