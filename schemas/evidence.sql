@@ -36,7 +36,13 @@ CREATE TABLE danger_space (
 );
 
 CREATE TABLE course (
-    finding_id VARCHAR NOT NULL,      -- a finding
+    finding_id VARCHAR,               -- a finding; NULL: a near miss, one of the 20 closest of its ego, rule and profile
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    rule_id VARCHAR NOT NULL,         -- the rule
+    profile VARCHAR,                  -- the profile; NULL: the rule has none
+    object_id VARCHAR,                -- the other road user
+    occurrence INTEGER NOT NULL,      -- as in finding; of a near miss as in verdict
     t_ns BIGINT[] NOT NULL,           -- judged steps around it: of the same rule, profile, object and reference point
     observed DOUBLE[] NOT NULL,       -- value at each; NULL: not known, or nothing is measured
     required DOUBLE[] NOT NULL,       -- what it was held against

@@ -180,7 +180,7 @@ def test_every_finding_has_its_course_and_the_steps_are_the_margins(tmp_path: Pa
         (row["rule_id"], row["profile"], row["object_id"], row["t_ns"]): row
         for row in pq.read_table(result.margins_file).to_pylist()
     }
-    courses = {row["finding_id"]: row for row in result.courses.to_pylist()}
+    courses = {row["finding_id"]: row for row in result.courses.to_pylist() if row["finding_id"] is not None}
     assert courses.keys() == {row["finding_id"] for row in result.findings.to_pylist()}
     compared = 0
     for row in result.findings.to_pylist():
@@ -195,6 +195,35 @@ def test_every_finding_has_its_course_and_the_steps_are_the_margins(tmp_path: Pa
                 assert values == [step["observed"], step["required"], step["margin"], step["holds"]]
                 compared += 1
     assert compared > 100
+
+
+def _named(row: dict[str, Any]) -> tuple[Any, ...]:
+    return tuple(row[name] for name in ("drive_id", "ego_id", "rule_id", "profile", "object_id", "occurrence"))
+
+
+@pytest.mark.parametrize("margins", [False, True], ids=["settled in the first pass", "every step"])
+def test_every_near_miss_has_its_course_and_its_worst_step_is_in_it(margins: bool, tmp_path: Path) -> None:
+    settings = Settings(
+        tuple(str(FIXTURE / f"{name}.csv") for name in NAMES),
+        map=FIXTURE / "road.xodr",
+        mapping=str(FIXTURE / "mapping.toml"),
+        out=tmp_path,
+        margins=margins,
+        rules=("ukhc", "criticality"),
+    )
+    result = check(settings, Silent())
+    near = {_named(row): row for row in result.verdicts.to_pylist() if row["near_miss"]}
+    courses = {_named(row): row for row in result.courses.to_pylist() if row["finding_id"] is None}
+    assert near.keys() == courses.keys()
+    assert len({row["rule_id"] for row in near.values()}) > 1
+    for key, row in near.items():
+        course = courses[key]
+        at = course["t_ns"].index(row["t_worst_ns"])
+        seen = course["observed"][at], course["required"][at], course["margin"][at], course["holds"][at]
+        assert seen == (row["observed"], row["required"], row["margin"], True)
+        assert row["margin"] == min(value for value in course["margin"] if value is not None)
+        assert course["t_ns"] == sorted(set(course["t_ns"]))
+        assert max(abs(t_ns - row["t_worst_ns"]) for t_ns in course["t_ns"]) <= 5 * 10**9
 
 
 def test_an_overtake_is_recorded_with_its_profiles_and_stages(result: Result) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from drivelint.evaluate import blind
+from drivelint.evaluate import blind, findings
 
 _AT = "format('{:.3f} s', t_decides_ns / 1e9)"
 _OBSERVED = "format('{:.6g}', observed) || coalesce(' ' || unit, '')"
@@ -116,7 +116,7 @@ _numbered AS (
 SELECT v.drive_id, v.ego_id, rule_id, rule_version, kind, profile, severity, object_id,
     occurrence::INTEGER AS occurrence, ref_id, t_ref_ns, t_start_ns, t_end_ns,
     t_worst_ns, verdict, code AS reason_code, sentence AS reason, observed, required, margin, unit,
-    coalesce(verdict = 'pass' AND round(margin, 6) < near_margin, false) AS near_miss,
+    coalesce(verdict = 'pass' AND {findings.NEAR}, false) AS near_miss,
     coalesce(n_expected, 0) AS n_expected, coalesce(n_judged, 0) AS n_judged, p.x_m, p.y_m, p.lanelet_id
 FROM _numbered v {_PLACE}
 """
@@ -150,15 +150,21 @@ ANTI JOIN _error e ON e.rule_no = m.rule_no AND e.drive_id = m.drive_id AND e.eg
 COURSES = """
 INSERT INTO course BY NAME
 WITH _named AS (SELECT c.* REPLACE (nullif(c.profile, '') AS profile, nullif(c.object_id, '') AS object_id), r.rule_id
-    FROM _course c JOIN _rule r USING (rule_no))
-SELECT f.finding_id, list(c.t_ns ORDER BY c.t_ns) AS t_ns, list(c.observed ORDER BY c.t_ns) AS observed,
+    FROM _course c JOIN _rule r USING (rule_no)), _whose AS (
+    SELECT finding_id, drive_id, ego_id, rule_id, profile, object_id, occurrence, ref_id, t_start_ns, false AS near FROM finding
+    UNION ALL
+    SELECT NULL, drive_id, ego_id, rule_id, profile, object_id, occurrence, ref_id, t_start_ns, true
+    FROM verdict WHERE near_miss)
+SELECT f.finding_id, f.drive_id, f.ego_id, f.rule_id, f.profile, f.object_id, f.occurrence,
+    list(c.t_ns ORDER BY c.t_ns) AS t_ns, list(c.observed ORDER BY c.t_ns) AS observed,
     list(c.required ORDER BY c.t_ns) AS required, list(c.margin ORDER BY c.t_ns) AS margin, list(c.holds ORDER BY c.t_ns) AS holds
 FROM _named c
-JOIN finding f ON f.drive_id = c.drive_id AND f.ego_id = c.ego_id AND f.rule_id = c.rule_id AND f.profile IS NOT DISTINCT FROM c.profile
+JOIN _whose f ON f.near = c.near AND f.drive_id = c.drive_id AND f.ego_id = c.ego_id AND f.rule_id = c.rule_id
+    AND f.profile IS NOT DISTINCT FROM c.profile
     AND f.object_id IS NOT DISTINCT FROM c.object_id AND f.ref_id IS NOT DISTINCT FROM c.ref_id AND f.t_start_ns = c.t_start_ns
-GROUP BY f.finding_id
+GROUP BY f.finding_id, f.drive_id, f.ego_id, f.rule_id, f.profile, f.object_id, f.occurrence
 """
-"""Run after these, if the courses of findings are asked for."""
+"""Run after these, if the courses of findings and near misses are asked for."""
 
 STATEMENTS = (blind.BLIND, _ALL, _VERDICTS, _FINDINGS, _MARGINS)
 """Run in this order once every rule has left its outcomes."""

@@ -9,6 +9,10 @@ from drivelint.evaluate import terms
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
+NEAR = "round(margin, 6) < near_margin"
+"""What makes a kept row a near miss; of a row of outcomes joined to `_rule`."""
+MOST = 20
+"""Near misses of an ego, rule and profile whose course is kept."""
 _SERIES = "drive_id, ego_id, object_id, profile, ref_id"
 
 
@@ -58,13 +62,60 @@ WITH _seen AS (
         least(t_worst_ns + 30_000_000_000, greatest(t_worst_ns + 5_000_000_000, t_end_ns + 2_000_000_000)) AS t_to_ns
     FROM _stretch s WHERE rule_no = $_no
 )
-SELECT s.rule_no, s.drive_id, s.ego_id, {series}, j.t_ns, {terms.numbers(rule, "j.")}, j.holds
+SELECT s.rule_no, s.drive_id, s.ego_id, {series}, false AS near, j.t_ns, {terms.numbers(rule, "j.")}, j.holds
 FROM _seen s
 JOIN _judged j ON j.drive_id = s.drive_id AND j.ego_id = s.ego_id AND j.profile IS NOT DISTINCT FROM s.profile
     AND j.ref_id IS NOT DISTINCT FROM s.ref_id{whose} AND j.t_ns BETWEEN s.t_from_ns AND s.t_to_ns
 {"WHERE j.applies IS DISTINCT FROM false" if rule.kind == "invariant" else ""}
 QUALIFY row_number() OVER (
     PARTITION BY s.drive_id, s.ego_id, {series}, (j.t_ns - s.t_from_ns) * 150 // (s.t_to_ns - s.t_from_ns)
+    ORDER BY coalesce(j.holds::INTEGER, 1), margin NULLS LAST, j.t_ns
+) = 1
+"""
+
+
+def n_near(rule_no: int, table: str, kept: str) -> str:
+    """SQL that counts the near misses of a rule among the kept rows of a table of outcomes."""
+    return f"SELECT count(*) FROM {table} JOIN _rule USING (rule_no) WHERE rule_no = {rule_no} AND {kept} AND {NEAR}"
+
+
+def settled_courses(rule: Rule) -> str:
+    """SQL like `near_courses` for groups that the first pass settled: their condition rows are just the steps judged."""
+    near = f"""SELECT g.drive_id, g.ego_id, coalesce(g.object_id, '') AS object_id, '' AS profile, NULL::INTEGER AS ref_id, '' AS label,
+        g.t_start_ns, g.t_end_ns, g.t_worst_ns, g.margin
+    FROM _group g JOIN _rule r USING (rule_no) WHERE rule_no = $_no AND g.clean AND {NEAR}"""
+    who = "coalesce(object_id, '')" if rule.per_object else "''"
+    steps = f"""SELECT drive_id, ego_id, {who} AS object_id, '' AS profile, NULL::INTEGER AS ref_id, '' AS label, t_ns,
+        observed, required, holds, gain FROM _state"""
+    return _near(rule, near, f"{terms.state(rule)}, _steps AS ({steps})", "_steps")
+
+
+def near_courses(rule: Rule) -> str:
+    """SQL that appends to `_course` how the measure went around near misses of `_outcome`, the closest per ego and profile."""
+    near = f"""SELECT o.drive_id, o.ego_id, coalesce(o.object_id, '') AS object_id, coalesce(o.profile, '') AS profile, o.ref_id,
+        coalesce(o.label, '') AS label, o.t_start_ns, o.t_end_ns, o.t_worst_ns, o.margin
+    FROM _outcome o JOIN _rule r USING (rule_no) WHERE rule_no = $_no AND o.verdict = 'pass' AND {NEAR}"""
+    return _near(rule, near, "", "_judged")
+
+
+def _near(rule: Rule, near: str, before: str, steps: str) -> str:
+    """SQL that appends to `_course` the steps 5 s around the worst one of each row of `near`; `before`: CTEs that it needs."""
+    invariant = rule.kind == "invariant"
+    whose = "" if rule.combine != "each" else " AND j.object_id = s.object_id"
+    episode = " AND j.label = s.label AND j.applies IS DISTINCT FROM false" if steps == "_judged" and invariant else ""
+    series = "s.object_id, s.profile, s.ref_id, s.t_start_ns"
+    return f"""
+INSERT INTO _course BY NAME
+WITH {before + ", " if before else ""}_near AS ({near}
+    QUALIFY row_number() OVER (PARTITION BY drive_id, ego_id, profile ORDER BY margin, t_worst_ns, object_id, ref_id) <= {MOST}
+)
+SELECT $_no AS rule_no, s.drive_id, s.ego_id, {series}, true AS near, j.t_ns, {terms.numbers(rule, "j.")}, j.holds
+FROM _near s
+JOIN {steps} j ON j.drive_id = s.drive_id AND j.ego_id = s.ego_id AND j.profile = s.profile
+    AND j.ref_id IS NOT DISTINCT FROM s.ref_id{whose}{episode}
+    AND j.t_ns BETWEEN s.t_worst_ns - 5_000_000_000 AND s.t_worst_ns + 5_000_000_000
+QUALIFY row_number() OVER (
+    PARTITION BY s.drive_id, s.ego_id, {series}, (j.t_ns - s.t_worst_ns) // 70_000_000
     ORDER BY coalesce(j.holds::INTEGER, 1), margin NULLS LAST, j.t_ns
 ) = 1
 """

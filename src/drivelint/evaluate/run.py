@@ -118,6 +118,8 @@ class Run:
             n_steps = self._count(
                 f"SELECT coalesce(sum(n), 0)::BIGINT FROM _group WHERE rule_no = {binding.no} AND NOT clean"
             )
+            if self._courses and not self._may_stop(self._count(findings.n_near(binding.no, "_group", "clean"))):
+                self._execute(findings.settled_courses(binding.rule), binding)
             if self._may_stop(n_steps):
                 return
         elif self._may_stop(self._execute(invariant.asked(rule, partial, self._watching), binding)):
@@ -150,6 +152,10 @@ class Run:
         self._leave(binding)
 
     def _leave(self, binding: Binding) -> None:
+        if self._courses and not self._may_stop(
+            self._count(findings.n_near(binding.no, "_outcome", "verdict = 'pass'"))
+        ):
+            self._execute(findings.near_courses(binding.rule), binding)
         if not self._may_stop(self._count("SELECT count(*) FROM (FROM _judged WHERE NOT holds LIMIT 1)")):
             self._execute(findings.stretches(binding.rule), binding)
             if self._courses:

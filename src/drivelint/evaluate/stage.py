@@ -41,7 +41,7 @@ CREATE OR REPLACE TEMP TABLE _stretch ({_KEYS}, profile VARCHAR, object_id VARCH
 CREATE OR REPLACE TEMP TABLE _margin ({_KEYS}, profile VARCHAR, object_id VARCHAR, ref_id INTEGER, t_ns BIGINT,
     observed DOUBLE, required DOUBLE, margin DOUBLE, holds BOOLEAN);
 CREATE OR REPLACE TEMP TABLE _course ({_KEYS}, profile VARCHAR, object_id VARCHAR, ref_id INTEGER, t_start_ns BIGINT,
-    t_ns BIGINT, observed DOUBLE, required DOUBLE, margin DOUBLE, holds BOOLEAN);
+    near BOOLEAN, t_ns BIGINT, observed DOUBLE, required DOUBLE, margin DOUBLE, holds BOOLEAN);
 """
 
 # the first of a rule's required signals that the log cannot give; a signal nobody answered for is not there

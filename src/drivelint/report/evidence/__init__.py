@@ -42,7 +42,9 @@ def spaces(con: duckdb.DuckDBPyConnection) -> pa.Table:
 
 def courses(con: duckdb.DuckDBPyConnection) -> pa.Table:
     """Return the table `course`, totally ordered."""
-    return _ordered(con, "course", "finding_id")
+    return _ordered(
+        con, "course", "finding_id IS NULL, finding_id, drive_id, ego_id, rule_id, profile, object_id, occurrence"
+    )
 
 
 def overtakes(con: duckdb.DuckDBPyConnection) -> pa.Table:

@@ -27,6 +27,7 @@ from drivelint.report.text import number
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from drivelint.report.html.courses import Course
     from drivelint.report.html.moments import Key, Measured, Moment
     from drivelint.report.html.parties import Party
     from drivelint.report.html.timeline import Timeline
@@ -132,20 +133,30 @@ def _lines(
     result: Result, rules: Mapping[str, Row], starts: Mapping[str, int]
 ) -> tuple[list[tuple[Row, Measured]], list[tuple[Row, Measured]]]:
     """Return the findings and the near misses that the page shows, the worst first, each with its words."""
-    courses = {row["finding_id"]: row for row in result.courses.to_pylist()}
+    courses = {_whose(row): row for row in result.courses.to_pylist()}
     failed: list[tuple[Row, Measured]] = []
     for row in _worst_first(result.findings, MAX_FINDINGS):
         start = starts.get(row["drive_id"], 0)
-        seen = courses.get(row["finding_id"])
-        way = None if seen is None else course(seen, row["t_worst_ns"], row["unit"], start)
+        way = _course(courses.get(_whose(row)), row, start)
         stands = standing(result.gate, row["finding_id"])
         failed.append((row, measured(row, "fail", rules[row["rule_id"]], start, course=way, standing=stands)))
     near = pc.and_(result.verdicts["near_miss"], pc.is_valid(result.verdicts["t_worst_ns"]))
-    close: list[tuple[Row, Measured]] = [
-        (row, measured(row, "near", rules[row["rule_id"]], starts.get(row["drive_id"], 0)))
-        for row in _worst_first(result.verdicts.filter(near), MAX_NEAR)
-    ]
+    close: list[tuple[Row, Measured]] = []
+    for row in _worst_first(result.verdicts.filter(near), MAX_NEAR):
+        start = starts.get(row["drive_id"], 0)
+        way = _course(courses.get(_whose(row)), row, start)
+        close.append((row, measured(row, "near", rules[row["rule_id"]], start, course=way)))
     return failed, close
+
+
+def _whose(row: Row) -> tuple[Any, ...]:
+    """Return what tells a course's finding or near miss apart."""
+    told = (row[name] for name in ("drive_id", "ego_id", "rule_id", "profile", "object_id", "occurrence"))
+    return (row.get("finding_id"), *told)
+
+
+def _course(seen: Row | None, row: Row, start_ns: int) -> Course | None:
+    return None if seen is None else course(seen, row["t_worst_ns"], row["unit"], start_ns)
 
 
 def _worst_first(rows: pa.Table, most: int) -> list[dict[str, Any]]:
