@@ -25,6 +25,7 @@ NOT_KEPT = {
     "ukhc.signal-then-leaves": "the way has no exit: see the demo's exits",
     "ukhc.r112.horn": "the horn is never used",
     "ukhc.r113.headlights": "by day",
+    "ukhc.r115.dipped-headlights": "by day",
     "ukhc.r239.parked-with-traffic": "nobody parks",
     "ukhc.r248.parked-at-night": "nobody parks",
     "ukhc.r215.horse": "no horse",

@@ -1,20 +1,31 @@
 -- title = "Headlights at night"
--- clause = "UKHC R113 and R115: you must use headlights at night, and should where street lighting would excuse it"
--- hypothesis = "At every step at night at which the ego moved, were its headlights on?"
+-- clause = "UKHC R113: you must use headlights at night, except on a road with lit street lighting, which is generally one of 30 mph"
+-- hypothesis = "At every step at night at which the ego moved, were its headlights on, or might the street be lit?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "major"
 -- legal = "must"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["ego_mode", "ego_state"]
+-- reads = ["ego_condition", "ego_mode", "ego_state"]
 -- requires = ["mode_headlights"]
 --
 -- [applies]
 -- light = ["night"]
+--
+-- [params.lit_mps]
+-- default = 13.42
+-- unit = "m/s"
+-- why = "30 mph: lamps excuse from headlights only on roads with no higher limit"
+-- source = "UKHC R113"
 
 -- @condition
-SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps > standing_mps() AS applies, m.is_on AS holds,
-    CASE WHEN m.is_on IS NULL THEN 'the log has not yet said whether the headlights are on' END AS reason
+-- whether lamps are lit is in no table: there, and where the limit is not known, driving without is not proved wrong (r115.dipped-headlights)
+SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps > standing_mps() AS applies,
+    CASE WHEN m.is_on THEN true WHEN NOT m.is_on AND (coalesce(c.road_type, '') = 'motorway' OR c.limit_mps > $lit_mps) THEN false END AS holds,
+    CASE WHEN m.is_on IS NULL THEN 'the log has not yet said whether the headlights are on'
+        WHEN NOT m.is_on AND c.limit_mps <= $lit_mps THEN 'the headlights were off, and whether the street was lit is not known'
+        WHEN NOT m.is_on AND c.limit_mps IS NULL THEN 'the headlights were off, and whether lamps may have excused it is not known without the limit' END AS reason
 FROM ego_state e
 LEFT JOIN ego_mode m ON m.drive_id = e.drive_id AND m.ego_id = e.ego_id AND m.t_ns = e.t_ns AND m.mode = 'headlights'
+LEFT JOIN ego_condition c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.t_ns = e.t_ns

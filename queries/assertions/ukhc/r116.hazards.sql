@@ -1,6 +1,6 @@
 -- title = "No hazard lights while driving"
--- clause = "UKHC R116: you must not use hazard warning lights while driving, except to warn on a motorway or unrestricted dual carriageway"
--- hypothesis = "At every step, were the hazard lights off, or was the ego standing or on a road where they may warn?"
+-- clause = "UKHC R116: you must not use hazard warning lights while driving, except to warn of a hazard ahead on a motorway or unrestricted dual carriageway"
+-- hypothesis = "At every step, were the hazard lights off, or was the ego standing?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "minor"
@@ -23,9 +23,13 @@
 
 -- @condition
 SELECT e.drive_id, e.ego_id, e.t_ns,
-    e.indicator <> 'hazard' OR e.speed_mps <= $rolling_mps OR coalesce(c.road_type = 'motorway', false)
-        OR (c.carriageway = 'dual' AND c.limit_mps >= $unrestricted_mps) AS holds,
-    CASE WHEN e.indicator = 'hazard' AND c.carriageway IS NULL THEN 'whether this road is a dual carriageway is not known'
+    -- on a road where they may warn, whether there was something to warn of is for a person to say
+    CASE WHEN e.indicator <> 'hazard' OR e.speed_mps <= $rolling_mps THEN true
+        WHEN e.indicator = 'hazard' AND e.speed_mps > $rolling_mps AND NOT coalesce(c.road_type = 'motorway', false)
+            AND (c.carriageway <> 'dual' OR c.limit_mps < $unrestricted_mps) THEN false END AS holds,
+    CASE WHEN e.indicator = 'hazard' AND (c.road_type = 'motorway' OR c.carriageway = 'dual' AND c.limit_mps >= $unrestricted_mps)
+            THEN 'hazard lights may warn on this road: whether there was a hazard ahead is for a person to say'
+        WHEN e.indicator = 'hazard' AND c.carriageway IS NULL THEN 'whether this road is a dual carriageway is not known'
         WHEN e.indicator = 'hazard' AND c.carriageway = 'dual' AND c.limit_mps IS NULL THEN 'the limit of this dual carriageway is not known' END AS reason
 FROM ego_state e
 LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)

@@ -38,9 +38,11 @@ JOIN standstill s ON s.drive_id = r.drive_id AND s.ego_id = r.ego_id AND s.junct
 
 -- @condition
 SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
-    s.t_start_ns IS NULL OR r.across OR NOT e.in_junction
-        OR NOT queued(s.ahead_id, s.ahead_gap_m, s.ahead_speed_mps, s.ahead_known, $near_m, $slow_mps) AS holds,
-    CASE WHEN s.t_start_ns IS NOT NULL THEN 'the ego stood in the junction' || coalesce(' behind ' || s.ahead_id, '') END AS reason
+    -- who turns across may wait for the oncoming traffic, or behind one who does, or for a full exit: which of these is not known
+    s.t_start_ns IS NULL OR NOT e.in_junction
+        OR NOT queued(s.ahead_id, s.ahead_gap_m, s.ahead_speed_mps, s.ahead_known, $near_m, $slow_mps) OR CASE WHEN NOT r.across THEN false END AS holds,
+    CASE WHEN s.t_start_ns IS NOT NULL THEN 'the ego stood in the junction' || coalesce(' behind ' || s.ahead_id, '')
+        || CASE WHEN r.across THEN '; turning across, it may have waited for the oncoming traffic' ELSE '' END END AS reason
 FROM reference_step g
 JOIN reference r USING (ref_id)
 JOIN ego_state e ON e.drive_id = g.drive_id AND e.ego_id = g.ego_id AND e.t_ns = g.t_ns
