@@ -145,7 +145,7 @@ CREATE TABLE beside (
     speed_mps DOUBLE,                 -- its speed
     ego_lat_mps DOUBLE,               -- ego's speed across the corridor, towards it positive
     lat_mps DOUBLE,                   -- its speed across the corridor, towards the ego positive
-    along BOOLEAN,                    -- it heads as the corridor runs (within 90 degrees)
+    along BOOLEAN,                    -- it heads as the corridor runs (within 45 degrees: who crosses it at 89 does not go the same way)
     on_carriageway BOOLEAN            -- its box reaches into the ego's running lane or a drivable lane beside it, or its centre is on any; NULL: not known
 );
 

@@ -46,7 +46,7 @@ SELECT
     m.drive_id, m.ego_id, m.t_ns, m.object_id, m.actor_class, m.side, m.gap_m, m.clearance_m, m.ahead_m, m.ego_speed_mps, m.speed_mps,
     CASE WHEN m.d_m > m.ego_d_m THEN m.ego_left_mps ELSE -m.ego_left_mps END AS ego_lat_mps,
     CASE WHEN m.d_m > m.ego_d_m THEN -m.drift_mps ELSE m.drift_mps END AS lat_mps,
-    abs(m.heading_diff_rad) < pi() / 2 AS along,
+    abs(m.heading_diff_rad) < pi() / 4 AS along,
     o.object_id IS NOT NULL OR abs(m.d_m) - m.lat_half_m < m.half_width_m + coalesce(l.width_m, 0.0) AS on_carriageway
 FROM moving m
 LEFT JOIN lane l USING (drive_id, ego_id, t_ns, object_id)

@@ -86,6 +86,20 @@ def test_one_that_comes_the_other_way_is_beside_but_not_along() -> None:
     assert {(row["along"], row["on_carriageway"], row["side"]) for row in found} == {(False, True, "left")}
 
 
+@pytest.mark.parametrize(
+    ("degrees", "along"), [(0, True), (44, True), (-44, True), (46, False), (-46, False), (89, False)]
+)
+def test_who_crosses_does_not_go_along(degrees: float, along: bool) -> None:
+    """As one of a log does who steps into the ego's way at 89.9 degrees."""
+    way = road()
+    t = times(0.5)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    other = moving("x", way, t, 102 + 10 * t, way.own - 2, kind="pedestrian", length=0.6, width=0.5)
+    other = replace(other, yaw=np.full(len(t), math.radians(degrees)))
+    found = rows(derived(drive([ego, other], way.environment), tables=["beside"]), "FROM beside")
+    assert {row["along"] for row in found} == {along}
+
+
 def test_turned_round_the_ego_has_its_left_on_the_other_side() -> None:
     """It drives 10 m and then stands the other way round."""
     way = road()

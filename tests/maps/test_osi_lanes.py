@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -120,6 +121,21 @@ def test_what_follows_is_turned_too() -> None:
     assert links == [("1", "4"), ("5", "2")]
 
 
+@pytest.mark.parametrize(("ahead", "link"), [(True, ("1", "4")), (False, ("4", "1"))])
+@pytest.mark.parametrize("by", ["the first along the line", "the second", "both"])
+def test_a_link_is_said_by_either_lane(ahead: bool, link: tuple[str, str], by: str) -> None:
+    """esmini's lane before a junction names another one as its successor; only the lane after it tells."""
+    trace = Trace()
+    for name, y in ((11, 1.75), (12, -1.75)):
+        trace.bound(name, row(y, x1=80.0))
+    trace.lane(1, row(0.0), left=11, right=12, ahead=ahead, pairs=((None, 9 if by == "the second" else 4),))
+    later = row(0.0, x0=40.0, x1=80.0)
+    before = None if by == "the first along the line" else 1
+    trace.lane(4, later, left=11, right=12, ahead=ahead, pairs=((before, None),))
+    links = [(r["from_id"], r["to_id"]) for r in trace.load(handedness="rht").tables["lane_link"].to_pylist()]
+    assert links == [link]
+
+
 def test_a_boundary_that_reaches_beyond_the_lane_is_cut() -> None:
     trace = Trace()
     trace.bound(11, [(-50.0, 9.0), *row(1.75), (90.0, 9.0)])
@@ -187,3 +203,13 @@ def test_real_lanes_lie_on_the_real_road(name: str, road: str) -> None:
     assert np.quantile(across, 0.9) < 0.3
     assert (along > 0.9).mean() > 0.97
     assert np.quantile(width, 0.9) < 0.2
+
+
+def test_the_lanes_of_the_merge_are_joined_up() -> None:
+    """Main carriageway 24, 31, 3, 11 and 25, 32, 4, 12; the slip road 18, 34, 5 runs into 12."""
+    trace = read_trace(shared("osi/highway_merge.osi"), IngestOptions(ego="0"))
+    assert trace.embedded_map is not None
+    carried = load_map(MapSource("embedded", trace.embedded_map))
+    links = {(r["from_id"], r["to_id"]) for r in carried.tables["lane_link"].to_pylist()}
+    for way in (("24", "31", "3", "11"), ("25", "32", "4", "12"), ("18", "34", "5", "12")):
+        assert set(pairwise(way)) <= links

@@ -1,6 +1,6 @@
 -- title = "Post-encroachment time"
 -- clause = "Allen, Shin, Cooper 1978: the time between one road user leaving the ground of a conflict and the other coming onto it"
--- hypothesis = "Where the ways of the ego and of another crossed, was there at least 1.5 s between the two?"
+-- hypothesis = "Where the ways of the ego and of another crossed at 45 degrees or more, was there at least 1.5 s between the two?"
 -- kind = "execution"
 -- derivation = "model"
 -- severity = "major"
@@ -18,6 +18,11 @@
 -- unit = "s"
 -- why = "below it a conflict counts as serious"
 -- source = "Archer 2005"
+--
+-- [params.crossing_rad]
+-- default = 0.7854
+-- unit = "rad"
+-- why = "our default: 45 degrees; ways that meet at less merge or part, as in a lane change, where the follower's headway and time to collision say how close it was"
 
 -- @reference
 SELECT drive_id, ego_id, t_ego_in_ns AS t_ns, object_id, occurrence FROM conflict
@@ -33,6 +38,6 @@ UNION ALL
 SELECT drive_id, ego_id, min(t_ns), NULL, NULL FROM ego_state WHERE x_m IS NULL OR y_m IS NULL OR yaw_rad IS NULL GROUP BY drive_id, ego_id
 
 -- @condition
-SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, c.pet_s AS observed, $least_s AS required
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, c.pet_s AS observed, $least_s AS required, abs(c.angle_rad) >= $crossing_rad AS applies
 FROM reference r
 JOIN conflict c USING (drive_id, ego_id, occurrence)

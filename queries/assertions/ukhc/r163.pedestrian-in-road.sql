@@ -8,7 +8,7 @@
 -- status = "draft"
 -- sense = "holds"
 -- merge_gap_s = 2.0
--- reads = ["beside"]
+-- reads = ["beside", "conflict"]
 -- requires = ["map", "registration", "actor_classes", "ego_size"]
 --
 -- [params.clearance_m]
@@ -30,9 +30,12 @@
 -- # Draft: what a low speed is, and whether there was no pavement, is a judgement; somebody who waits to cross is taken for one who walks along.
 
 -- @applies
-SELECT drive_id, ego_id, t_ns, object_id,
-    actor_class = 'pedestrian' AND on_carriageway AND ego_speed_mps > standing_mps() AND abs(lat_mps) <= $across_mps AS applies
-FROM beside
+-- who crosses and stops in the ego's way, or is struck there, was crossing still
+SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id,
+    b.actor_class = 'pedestrian' AND b.on_carriageway AND b.ego_speed_mps > standing_mps() AND abs(b.lat_mps) <= $across_mps AND c.object_id IS NULL AS applies
+FROM beside b
+LEFT JOIN (SELECT DISTINCT drive_id, ego_id, object_id, t_object_in_ns, t_object_out_ns FROM conflict WHERE abs(sin(angle_rad)) >= sin(pi() / 4)) c
+    ON c.drive_id = b.drive_id AND c.ego_id = b.ego_id AND c.object_id = b.object_id AND c.t_object_in_ns <= b.t_ns AND b.t_ns <= c.t_object_out_ns
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, object_id, clearance_m >= $clearance_m AND ego_speed_mps <= $speed_mps AS holds,

@@ -143,11 +143,10 @@ def _kind(said: Any) -> tuple[str, bool]:
 
 def _lanes(plain: Mapping[int, _Lane], bounds: Mapping[int, Any], ways: Sequence[BoundedLane]) -> Iterable[BoundedLane]:
     """Yield the lanes; where one ends at an intersection, the ways drawn from it follow."""
+    linked = _linked(plain)
     for i, lane in plain.items():
         said = lane.message.classification
         kind, drivable = _kind(said)
-        after = "antecessor_lane_id" if lane.turned else "successor_lane_id"
-        following = {getattr(pair, after).value for pair in said.lane_pairing if pair.HasField(after)}
         ids = [said.left_lane_boundary_id, said.right_lane_boundary_id]
         beside = [said.left_adjacent_lane_id, said.right_adjacent_lane_id]
         if lane.turned:
@@ -157,13 +156,27 @@ def _lanes(plain: Mapping[int, _Lane], bounds: Mapping[int, Any], ways: Sequence
             str(i), lane.left, lane.right, kind, drivable,
             junction_id=f"j{i}" if said.type == _INTERSECTION else None,
             successors=(
-                *(str(f) for f in sorted(following) if f in plain and _follows(lane, plain[f])),
+                *(str(b) for a, b in linked if a == i),
                 *(way.lanelet_id for way in ways if way.lanelet_id.split(".")[1] == str(i)),
             ),
             left_id=neighbours[0][0], left_against=neighbours[0][1],
             right_id=neighbours[1][0], right_against=neighbours[1][1],
             left_marking=_marking(ids[0], bounds), right_marking=_marking(ids[1], bounds),
         )  # fmt: skip
+
+
+def _linked(plain: Mapping[int, _Lane]) -> list[tuple[int, int]]:
+    """Return (a, b) where b follows a, as either of the two says: esmini names some links only at the later lane."""
+    pairs = set()
+    for i, lane in plain.items():
+        names = ["antecessor_lane_id", "successor_lane_id"]
+        before, after = names[::-1] if lane.turned else names
+        for pair in lane.message.classification.lane_pairing:
+            if pair.HasField(before):
+                pairs.add((getattr(pair, before).value, i))
+            if pair.HasField(after):
+                pairs.add((i, getattr(pair, after).value))
+    return sorted((a, b) for a, b in pairs if a in plain and b in plain and _follows(plain[a], plain[b]))
 
 
 def _neighbour(lane: _Lane, ids: Sequence[Any], plain: Mapping[int, _Lane]) -> tuple[str | None, bool | None]:
