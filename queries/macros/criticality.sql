@@ -7,6 +7,10 @@ CREATE OR REPLACE MACRO along_mps(speed_mps, oncoming) AS CASE WHEN oncoming THE
 CREATE OR REPLACE MACRO ttc_s(gap_m, closing_mps) AS
     CASE WHEN closing_mps > 0 THEN gap_m / closing_mps WHEN closing_mps <= 0 AND gap_m IS NOT NULL THEN 'inf'::DOUBLE END;
 
+-- A time so long that nobody meets: it comes of speeds that differ by less than any log tells. Never, unless more than that is required.
+CREATE OR REPLACE MACRO or_never(time_s, required_s) AS
+    CASE WHEN time_s > greatest(600.0, required_s) THEN 'inf'::DOUBLE ELSE time_s END;
+
 -- Time headway: until the ego's front is where the other's rear is now.
 CREATE OR REPLACE MACRO thw_s(gap_m, v_mps) AS
     CASE WHEN v_mps > 0 THEN gap_m / v_mps WHEN v_mps <= 0 AND gap_m IS NOT NULL THEN 'inf'::DOUBLE END;

@@ -41,7 +41,9 @@ LEFT JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t
 -- at the ends of the log the windows of the accelerations are not whole, which says nothing about the drive
 SELECT l.drive_id, l.ego_id, l.t_ns, l.object_id, $least_s AS required, l.object_id IS NULL OR judged_inside(m.accel_mps2 + l.accel_mps2, l.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
     CASE WHEN l.object_id IS NULL THEN 'inf'::DOUBLE
-        ELSE mttc_s(l.gap_m, l.ego_speed_mps, m.accel_mps2, along_mps(l.speed_mps, l.oncoming), along_mps(l.accel_mps2, l.oncoming)) END AS observed
+        ELSE or_never(
+            mttc_s(l.gap_m, l.ego_speed_mps, m.accel_mps2, along_mps(l.speed_mps, l.oncoming), along_mps(l.accel_mps2, l.oncoming)), $least_s
+        ) END AS observed
 FROM lead l
 JOIN clock c ON c.drive_id = l.drive_id AND c.ego_id = l.ego_id
 JOIN ego_motion m ON m.drive_id = l.drive_id AND m.ego_id = l.ego_id AND m.t_ns = l.t_ns

@@ -36,5 +36,5 @@ LEFT JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, object_id, $least_s AS required,
-    CASE WHEN object_id IS NULL THEN 'inf'::DOUBLE ELSE ttc_s(gap_m, ego_speed_mps - along_mps(speed_mps, oncoming)) END AS observed
+    CASE WHEN object_id IS NULL THEN 'inf'::DOUBLE ELSE or_never(ttc_s(gap_m, ego_speed_mps - along_mps(speed_mps, oncoming)), $least_s) END AS observed
 FROM lead
