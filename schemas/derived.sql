@@ -69,6 +69,15 @@ CREATE TABLE lane_cell (
 
 -- ---- time, and what the drive can tell
 
+CREATE TABLE ego_clock (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- an ego of the drive, whether it is judged now or in another part of the run
+    period_ns BIGINT NOT NULL,        -- see clock
+    max_gap_ns BIGINT NOT NULL,       -- see clock
+    t_start_ns BIGINT NOT NULL,       -- the ego's first sample
+    t_end_ns BIGINT NOT NULL          -- the ego's last sample
+);
+
 CREATE TABLE clock (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego

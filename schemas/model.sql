@@ -67,6 +67,11 @@ CREATE TABLE drive_condition (
     source VARCHAR NOT NULL           -- env: given on the command line or in the settings; trace: said by the log
 );
 
+CREATE TABLE resting_ego (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL           -- an ego that is judged in another part of the run: nothing is derived for it now
+);
+
 CREATE TABLE quality (
     drive_id VARCHAR NOT NULL,        -- the drive
     check_id VARCHAR NOT NULL,        -- which check: duplicate_state, velocity_mismatch, yaw_mismatch, length_below_width, gap, clock_jump, not_finite, ...

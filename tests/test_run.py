@@ -12,9 +12,14 @@ import pytest
 from drivelint import batch, store
 from drivelint.errors import MapError, TraceError, UsageError
 from drivelint.evaluate import evaluate as plain
+from drivelint.ingest import IngestOptions, read_trace
+from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
 from drivelint.run import Settings, check
 
+EGOS = ("ego", "once", "oncoming", "parked")
+# where anybody judged at the same time ever was, the corridor is looked at: more cells of it are kept, nobody else is in them
+TABLES = [table for table in store.schema() if table not in ("drive", "rule", "visited_cell", "corridor_cell")]
 FIXTURE = Path(__file__).resolve().parents[1] / "fixtures" / "overtake"
 
 
@@ -49,6 +54,84 @@ def test_batches_of_one_drive_give_the_same_rows(monkeypatch: pytest.MonkeyPatch
     assert whole.verdicts.equals(single.verdicts)
     assert whole.findings.equals(single.findings)
     assert whole.drives.equals(single.drives)
+
+
+@pytest.fixture(scope="module")
+def ragged(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a log whose three cars are sampled at 10, 10 and 2 Hz, with a fourth that is there once."""
+    path = tmp_path_factory.mktemp("ragged") / "ragged.csv"
+    head, *rows = (FIXTURE / "near_miss.csv").read_text("utf-8").splitlines()
+    kept = [row for i, row in enumerate(rows) if ",oncoming," not in row or (i // 3) % 5 == 0]
+    once = kept[len(kept) // 2].split(",")
+    once[1], once[4] = "once", "5.25"
+    path.write_text("\n".join([head, *kept, ",".join(once)]) + "\n", encoding="utf-8")
+    return path
+
+
+def test_where_the_egos_are_cut_does_not_show(ragged: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every file of the results has the same bytes, and every table of the kept database the same rows."""
+    found = []
+    for room in (batch.MEETINGS, 1, 1100):
+        monkeypatch.setattr(batch, "MEETINGS", room)
+        out = tmp_path / str(room)
+        asked = settings(ragged, ego="all", out=out, keep_db=True, margins=True, rules=("all",))
+        result = check(asked, Silent())
+        assert result.drives["n_egos"].to_pylist() == [4]
+        write(result, out)
+        files = {str(f.relative_to(out)): f.read_bytes() for f in sorted(out.rglob("*")) if f.is_file()}
+        files.pop("drivelint.duckdb")
+        with duckdb.connect(str(out / "drivelint.duckdb"), read_only=True) as con:
+            rows = {t: con.execute(f"SELECT count(*), sum(hash(t)::HUGEINT) FROM {t} t").fetchone() for t in TABLES}
+        found.append((files, rows))
+    (whole, all_rows), *others = found
+    assert any(name.startswith("annotated/ragged") for name in whole)
+    for cut, cut_rows in others:
+        assert whole.keys() == cut.keys()
+        assert [name for name in whole if whole[name] != cut[name]] == []
+        assert {t: (all_rows[t], cut_rows[t]) for t in TABLES if all_rows[t] != cut_rows[t]} == {}
+
+
+def test_parts_of_a_drive_hold_its_egos_once(ragged: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    drive = batch.Drive(read_trace(ragged, IngestOptions(mapping=str(FIXTURE / "mapping.toml"), ego="all")), None)
+    steps = {name: sum(a == name for a in drive.trace.tables["actor_state"]["actor_id"].to_pylist()) for name in EGOS}
+    assert drive.meetings.keys() == set(EGOS)
+    assert drive.meetings["once"] == 4  # its only step, and the four that are there then
+    assert drive.meetings["ego"] == 3 * steps["ego"] + 1
+    assert drive.size == sum(drive.meetings.values())
+    for room in (1, 1100, 10**9):
+        monkeypatch.setattr(batch, "MEETINGS", room)
+        judged = [sorted(set(EGOS) - set(resting)) for resting in batch.parts([drive])]
+        assert [ego for part in judged for ego in part] == sorted(EGOS)
+        assert all(len(part) == 1 or sum(drive.meetings[e] for e in part) <= room for part in judged)
+    assert batch.parts([drive, drive]) == [[]]
+
+
+def test_a_drive_of_which_a_part_fails_leaves_nothing(
+    ragged: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(batch, "MEETINGS", 1)
+    monkeypatch.setattr(batch, "STATES", 1)
+    calls = []
+
+    def third(con: duckdb.DuckDBPyConnection, *args: Any, **options: Any) -> None:
+        calls.append(1)
+        if len(calls) == 3:
+            raise duckdb.Error("the engine choked")
+        plain(con, *args, **options)
+
+    monkeypatch.setattr("drivelint.judge.evaluate", third)
+    asked = settings(ragged, FIXTURE / "safe.csv", ego="all", out=tmp_path, keep_db=True)
+    result = check(asked, Silent())
+    assert len(calls) == 3 + 3
+    assert dict(zip(*(result.drives[c].to_pylist() for c in ("file_name", "status")), strict=True)) == {
+        "ragged.csv": "not_judged",
+        "safe.csv": "judged",
+    }
+    assert {name.split("-")[0] for name in result.verdicts["drive_id"].to_pylist()} == {"safe"}
+    with duckdb.connect(str(tmp_path / "drivelint.duckdb"), read_only=True) as con:
+        for table in ("actor_state", "step", "pair", "verdict", "exposure"):
+            (n,) = con.execute(f"SELECT count(*) FROM {table} WHERE drive_id LIKE 'ragged%'").fetchall()[0]
+            assert n == 0, table
 
 
 def test_a_drive_that_cannot_be_read_harms_no_other(tmp_path: Path) -> None:

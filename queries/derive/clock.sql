@@ -1,16 +1,2 @@
-SELECT
-    drive_id, actor_id AS ego_id, period_ns,
-    ceil(period_ns * max_gap_periods())::BIGINT AS max_gap_ns,
-    t_start_ns, t_end_ns
-FROM (
-    SELECT
-        s.drive_id, s.actor_id,
-        -- one sample has no period: a tenth of a second, the field's usual step
-        coalesce(quantile_disc(s.dt_ns, 0.5), 100_000_000)::BIGINT AS period_ns,
-        min(s.t_ns) AS t_start_ns, max(s.t_ns) AS t_end_ns
-    FROM (
-        SELECT a.drive_id, a.actor_id, a.t_ns, a.t_ns - lag(a.t_ns) OVER (PARTITION BY a.drive_id, a.actor_id ORDER BY a.t_ns) AS dt_ns
-        FROM actor_state a JOIN actor e ON e.drive_id = a.drive_id AND e.actor_id = a.actor_id AND e.is_ego
-    ) s
-    GROUP BY ALL
-)
+-- The egos that are judged now; those of another part of the run rest meanwhile.
+SELECT c.* FROM ego_clock c ANTI JOIN resting_ego USING (drive_id, ego_id)

@@ -2,7 +2,7 @@
 WITH walker AS (
     SELECT a.drive_id, a.actor_id, c.max_gap_ns
     FROM actor a
-    JOIN (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM clock GROUP BY drive_id) c USING (drive_id)
+    JOIN (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id) c USING (drive_id)
     WHERE a.actor_class = 'pedestrian' OR a.actor_class IS NULL
 ),
 on_it AS (

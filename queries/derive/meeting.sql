@@ -10,7 +10,7 @@ mover AS (
 ),
 grid AS (
     SELECT drive_id, max(period_s) AS period_s, 2 * max(sqrt(swept_half_m(length_m, speed_mps, period_s) ** 2 + (width_m / 2) ** 2)) + 0.1 AS cell_m
-    FROM mover JOIN (SELECT drive_id, max(period_ns) / 1e9 AS period_s FROM clock GROUP BY drive_id) USING (drive_id)
+    FROM mover JOIN (SELECT drive_id, max(period_ns) / 1e9 AS period_s FROM ego_clock GROUP BY drive_id) USING (drive_id)
     GROUP BY drive_id
     HAVING cell_m IS NOT NULL
 ),

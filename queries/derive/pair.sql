@@ -8,9 +8,11 @@ WITH same_time AS (
     JOIN state_dynamics s ON s.drive_id = e.drive_id AND s.t_ns = e.t_ns AND s.actor_id <> e.ego_id
 ),
 track AS (
-    SELECT c.drive_id, c.ego_id, s.actor_id AS object_id, min(s.t_ns) AS t_first_ns, max(s.t_ns) AS t_last_ns, count(*) AS n
-    FROM clock c JOIN state_dynamics s ON s.drive_id = c.drive_id AND s.actor_id <> c.ego_id
-    GROUP BY ALL
+    SELECT c.drive_id, c.ego_id, s.object_id, s.t_first_ns, s.t_last_ns, s.n
+    FROM clock c
+    JOIN (
+        SELECT drive_id, actor_id AS object_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns, count(*) AS n FROM state_dynamics GROUP BY ALL
+    ) s ON s.drive_id = c.drive_id AND s.object_id <> c.ego_id
 ),
 met AS (
     SELECT drive_id, ego_id, object_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns, max(k) - min(k) + 1 AS span, count(*) AS n

@@ -1,5 +1,5 @@
 -- Speed and its unfiltered backward difference at the log's own rate, taken only over samples that are continuous by the drive's clock.
-WITH gap AS (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM clock GROUP BY drive_id),
+WITH gap AS (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id),
 prior AS (
     SELECT
         s.drive_id, s.actor_id, s.t_ns, s.x_m, s.y_m, s.yaw_rad, s.vx_mps, s.vy_mps, s.indicator,

@@ -1,12 +1,16 @@
-"""Drives in batches: read ahead, with the map each is judged on, cut by their number of states."""
+"""Drives in batches: read ahead, with the map each is judged on, cut by their size; and the parts of one that has many egos."""
 
 from __future__ import annotations
 
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cached_property
 from hashlib import sha256
 from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pyarrow.compute as pc
 
 from drivelint.errors import DriveLintError
 from drivelint.ingest import IngestOptions, Trace, read_trace
@@ -20,6 +24,8 @@ if TYPE_CHECKING:
     from drivelint.maps.library import MapLibrary
 
 STATES: Final = 400_000  # a batch costs little more than its longest drive, and its tables still fit in a GiB
+MEETINGS: Final = 3_000_000
+"""A part of a drive of many egos has no more ego steps times the actors that are there then: the largest tables have so many rows."""
 AHEAD: Final = 4
 
 
@@ -34,6 +40,18 @@ class Drive:
     def n_states(self) -> int:
         """Rows of `actor_state`."""
         return int(self.trace.tables["actor_state"].num_rows)
+
+    @cached_property
+    def meetings(self) -> dict[str, int]:
+        """Each ego -> its steps times the actors that are there then, by id. Empty: there are not several egos."""
+        actors = self.trace.tables["actor"]
+        egos = set(actors.filter(actors["is_ego"])["actor_id"].to_pylist())
+        return _meetings(self.trace, egos) if len(egos) > 1 else {}
+
+    @property
+    def size(self) -> int:
+        """How much room the drive takes: its states, or the meetings of its egos."""
+        return max(self.n_states, sum(self.meetings.values()))
 
 
 @dataclass(frozen=True)
@@ -71,11 +89,11 @@ def read(paths: Sequence[Path], options: IngestOptions, library: MapLibrary) -> 
 
 
 def cut(drives: Iterable[Drive | Refused]) -> Iterator[list[Drive | Refused]]:
-    """Cut into batches of at most `STATES` states, a longer drive being a batch of its own."""
+    """Cut into batches of at most `STATES` states or meetings, a longer drive being a batch of its own."""
     batch: list[Drive | Refused] = []
     states = 0
     for drive in drives:
-        n = drive.n_states if isinstance(drive, Drive) else 0
+        n = drive.size if isinstance(drive, Drive) else 0
         if batch and states + n > STATES:
             yield batch
             batch, states = [], 0
@@ -83,6 +101,39 @@ def cut(drives: Iterable[Drive | Refused]) -> Iterator[list[Drive | Refused]]:
         states += n
     if batch:
         yield batch
+
+
+def parts(drives: Sequence[Drive]) -> list[list[str]]:
+    """Return, for each part in which a batch is judged, the egos that are not judged in it; a part has at least one ego.
+
+    Only a drive alone is cut, with its egos in the order of their ids; what comes out does not depend on where.
+    """
+    meetings = drives[0].meetings if len(drives) == 1 else {}
+    found: list[list[str]] = []
+    room = 0
+    for ego, n in meetings.items():
+        if not found or n > room:
+            found.append([])
+            room = MEETINGS
+        found[-1].append(ego)
+        room -= n
+    return [[ego for ego in meetings if ego not in part] for part in map(set, found)] or [[]]
+
+
+def _meetings(trace: Trace, egos: set[str]) -> dict[str, int]:
+    states = trace.tables["actor_state"]  # by actor, then by time
+    coded = pc.dictionary_encode(states["actor_id"].combine_chunks())
+    names, code, t_ns = coded.dictionary.to_pylist(), coded.indices.to_numpy(), states["t_ns"].to_numpy()
+    ends = np.r_[np.flatnonzero(np.diff(code)), len(code) - 1]
+    starts = np.r_[0, ends[:-1] + 1]
+    first, last = np.sort(t_ns[starts]), np.sort(t_ns[ends])
+    found = {}
+    for name, start, end in zip(names, starts, ends, strict=True):
+        if name in egos:
+            steps = t_ns[start : end + 1]
+            there = np.searchsorted(first, steps, side="right") - np.searchsorted(last, steps, side="left")
+            found[name] = int(there.sum())
+    return dict(sorted(found.items()))
 
 
 def _drive(path: Path, future: Future[Trace], library: MapLibrary) -> Drive | Refused:

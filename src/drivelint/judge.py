@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Protocol
 
 import duckdb
 import pyarrow as pa
 import pyarrow.parquet as pq
 
 from drivelint import store
+from drivelint.batch import parts
 from drivelint.derive import derivations, derive
 from drivelint.errors import RuleError
 from drivelint.evaluate import evaluate
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
     from drivelint.batch import Drive
     from drivelint.catalogue import Rule
-
-    Witness = Callable[[duckdb.DuckDBPyConnection, Sequence[Drive]], None]
 
 # small tables that say what was judged, and on what: they stay until the end of the run
 _RESULTS: Final = (
@@ -44,12 +43,23 @@ _RESULTS: Final = (
     "profile",
 )
 _MARGIN_ORDER: Final = "drive_id, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, ref_id NULLS FIRST, t_ns"
+_MARGIN: Final = "* REPLACE (drive_id::VARCHAR AS drive_id, ego_id::VARCHAR AS ego_id, object_id::VARCHAR AS object_id)"
+_MARGIN_BLOCK: Final = 1 << 20
+
+
+class Witness(Protocol):
+    """Who looks at what was judged while the tables are there."""
+
+    def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], /, *, first: bool, last: bool) -> None:
+        """Look at a batch, or at the egos of a part of one drive: `first` and `last` of its parts or not."""
+        ...
 
 
 class Bench:
     """Judges batches of drives in one database, which is locked for that. Between batches only results stay in it.
 
-    `out` is where `margins_file` and the kept database go. `witnesses` are called after each batch while its tables are there.
+    A drive of many egos is judged some of them at a time, so that its tables stay small whatever their number.
+    `out` is where `margins_file` and the kept database go. `witnesses` are called after each part while its tables are there.
     """
 
     def __init__(
@@ -96,7 +106,6 @@ class Bench:
             self._judge(drives)
         self._seen.update(drive.trace.drive_id for drive in drives)
         self._write_margins()
-        self._keep(_batch_tables())
         self._clear()
 
     def _judge(self, drives: Sequence[Drive]) -> None:
@@ -104,19 +113,32 @@ class Bench:
         with ExitStack() as undo:
             undo.callback(self._forget, ids)
             self._load(drives)
-            derive(self._con, self._tables, of_the_map=False)
-            evaluate(
-                self._con,
-                self._rules,
-                self._params,
-                margins=self.margins_file is not None,
-                courses=bool(self._witnesses),
-            )
-            self._refuse_short_memory(ids)
-            self._refuse_shared_error(ids)
-            for witness in self._witnesses:
-                witness(self._con, drives)
+            todo = parts(drives)
+            for no, resting in enumerate(todo):
+                if no:
+                    self._empty([*_part_tables(drives[0]), "resting_ego"])
+                if resting:
+                    store.insert(self._con, "resting_ego", _egos(drives[0], resting))
+                self._judge_part(ids)
+                for witness in self._witnesses:
+                    witness(self._con, drives, first=no == 0, last=no + 1 == len(todo))
+                trace_tables = [t for t in drives[0].trace.tables if t not in _RESULTS and not no]
+                self._keep([*trace_tables, *_part_tables(drives[0])], again=no > 0)
+            self._keep(["margin"])
             undo.pop_all()
+
+    def _judge_part(self, ids: Sequence[str]) -> None:
+        """Judge the egos that do not rest."""
+        derive(self._con, self._tables, of_the_map=False)
+        evaluate(
+            self._con,
+            self._rules,
+            self._params,
+            margins=self.margins_file is not None,
+            courses=bool(self._witnesses),
+        )
+        self._refuse_short_memory(ids)
+        self._refuse_shared_error(ids)
 
     def close(self) -> None:
         """Finish the files that grew with the batches."""
@@ -150,11 +172,15 @@ class Bench:
     def _write_margins(self) -> None:
         if not self.margins_file:
             return
-        rows = self._con.execute(f"SELECT * FROM margin ORDER BY {_MARGIN_ORDER}").to_arrow_table()
+        # block by block: those of a drive of many egos are too many to hold at once
+        blocks = self._con.execute(f"SELECT {_MARGIN} FROM margin ORDER BY {_MARGIN_ORDER}").to_arrow_reader(
+            _MARGIN_BLOCK
+        )
         if self._margins is None:
             self.margins_file.parent.mkdir(parents=True, exist_ok=True)
-            self._margins = pq.ParquetWriter(self.margins_file, rows.schema, compression="zstd")
-        self._margins.write_table(rows.combine_chunks())
+            self._margins = pq.ParquetWriter(self.margins_file, blocks.schema, compression="zstd")
+        for block in blocks:
+            self._margins.write_batch(block)
 
     def _attach(self, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -163,10 +189,14 @@ class Bench:
             pass
         self._con.execute(f"ATTACH '{str(path).replace(chr(39), chr(39) * 2)}' AS kept")
 
-    def _keep(self, tables: Iterable[str]) -> None:
-        if self._kept:
-            for table in tables:
-                self._con.execute(f"INSERT INTO kept.{table} SELECT * FROM {table}")
+    def _keep(self, tables: Iterable[str], *, again: bool = False) -> None:
+        """Copy tables to the kept database; `again`: what is the same for all parts of a drive is there already."""
+        if not self._kept:
+            return
+        for table in tables:
+            whole = again and ("ego_id" not in store.schema()[table] or table == "ego_clock")
+            known = f" EXCEPT FROM kept.{table}" if whole else ""
+            self._con.execute(f"INSERT INTO kept.{table} SELECT * FROM {table}{known}")
 
     def _keep_maps(self, ids: Iterable[str]) -> None:
         new = sorted(ids)
@@ -190,7 +220,10 @@ class Bench:
             raise RuleError(f"{row[0]} erred on a batch of {len(ids)} drives")
 
     def _clear(self) -> None:
-        for table in _batch_tables():
+        self._empty(_batch_tables())
+
+    def _empty(self, tables: Iterable[str]) -> None:
+        for table in tables:
             self._con.execute(f"DELETE FROM {table}")
 
     def _forget(self, ids: Sequence[str]) -> None:
@@ -198,6 +231,8 @@ class Bench:
         for table in _RESULTS:
             if "drive_id" in store.schema()[table]:
                 self._con.execute(f"DELETE FROM {table} WHERE list_contains(?, drive_id)", [list(ids)])
+        for table in _batch_tables() if self._kept else ():  # parts of it may be there
+            self._con.execute(f"DELETE FROM kept.{table} WHERE list_contains(?, drive_id)", [list(ids)])
 
 
 def _on_map(drive: Drive) -> pa.Table:
@@ -209,6 +244,15 @@ def _on_map(drive: Drive) -> pa.Table:
 def _batch_tables() -> list[str]:
     """Tables that hold one batch at a time."""
     return [t for t, columns in store.schema().items() if "drive_id" in columns and t not in _RESULTS and t != "drive"]
+
+
+def _part_tables(drive: Drive) -> list[str]:
+    """Tables that hold one part of a drive at a time; margins wait for the whole of it."""
+    return [table for table in _batch_tables() if table not in {"margin", "resting_ego", *drive.trace.tables}]
+
+
+def _egos(drive: Drive, names: Sequence[str]) -> pa.Table:
+    return pa.table({"drive_id": [drive.trace.drive_id] * len(names), "ego_id": list(names)})
 
 
 def _map_tables() -> list[str]:

@@ -25,7 +25,7 @@ from drivelint.report.result import Result
 from drivelint.report.rulebook import rule_table
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
     from drivelint.ingest.trace import EgoSize
     from drivelint.judge import Witness
@@ -169,10 +169,14 @@ def _witnesses(settings: Settings, rules: pa.Table) -> list[Witness]:
     """Return who looks at each batch before its tables are cleared: the report, the annotated logs."""
     if settings.out is None:
         return []
-    seen: list[Witness] = [lambda con, _drives: evidence.gather(con)]
+    seen: list[Witness] = [_gather]
     if settings.annotate:
         seen.append(Annotator(settings.out / "annotated", rules, fail_on=settings.fail_on, strict=settings.strict))
     return seen
+
+
+def _gather(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], **_part: bool) -> None:
+    evidence.gather(con)
 
 
 def _judge(bench: Bench, batch: Iterable[Drive | Refused], progress: Progress, said: set[str]) -> list[Refused]:

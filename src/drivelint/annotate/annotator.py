@@ -7,7 +7,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
-from drivelint.annotate.evidence import gather
+from drivelint.annotate.evidence import gather, room
 from drivelint.annotate.road import Road
 from drivelint.annotate.write import Annotation, write
 from drivelint.report import summary
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import duckdb
     import pyarrow as pa
 
-    from drivelint.annotate.evidence import Evidence
+    from drivelint.annotate.evidence import Evidence, Room
     from drivelint.batch import Drive
     from drivelint.maps import Environment
 
@@ -44,13 +44,21 @@ class Annotator:
         self._fail_on = fail_on
         self._strict = strict
         self._roads: dict[str, Road] = {}
+        self._rooms: list[Room] = []
 
-    def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive]) -> None:
-        """Annotate a batch that was just judged in `con`.
+    def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], *, first: bool, last: bool) -> None:
+        """Annotate a batch that was just judged in `con`, once the last of its parts was.
 
         Errors: `TraceError` for a log that cannot be copied; `OutputError` when the folder cannot be written.
         """
-        found = gather(con, [drive.trace.drive_id for drive in drives])
+        ids = [drive.trace.drive_id for drive in drives]
+        if first:
+            self._rooms.clear()
+        self._rooms.append(room(con, ids))
+        if not last:
+            return
+        found = gather(con, ids, self._rooms)
+        self._rooms.clear()
         for drive in drives:
             name = drive.trace.drive_id
             said = Annotation(

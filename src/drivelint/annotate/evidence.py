@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import pyarrow as pa
 import pyarrow.compute as pc
@@ -56,11 +56,23 @@ class Evidence:
     chains: pa.Table
 
 
-def gather(con: duckdb.DuckDBPyConnection, drive_ids: Sequence[str]) -> dict[str, Evidence]:
-    """Return the evidence of every drive of a batch that was just judged."""
+class Room(NamedTuple):
+    """Danger spaces and the chains they lie on, of a part of a drive or of a batch."""
+
+    spaces: pa.Table
+    chains: pa.Table
+
+
+def room(con: duckdb.DuckDBPyConnection, drive_ids: Sequence[str]) -> Room:
+    """Return what of the evidence is in the database only while the part is."""
     ids = list(drive_ids)
-    spaces = con.execute(_SPACES, [ids]).to_arrow_table()
-    chains = con.execute(_CHAINS, [ids]).to_arrow_table()
+    return Room(con.execute(_SPACES, [ids]).to_arrow_table(), con.execute(_CHAINS, [ids]).to_arrow_table())
+
+
+def gather(con: duckdb.DuckDBPyConnection, drive_ids: Sequence[str], rooms: Sequence[Room]) -> dict[str, Evidence]:
+    """Return the evidence of every drive of a batch of which the last part was just judged; `rooms`: of all its parts."""
+    ids = list(drive_ids)
+    spaces, chains = (pa.concat_tables(tables) for tables in zip(*rooms, strict=True))
     verdicts, findings, rows = collect.verdicts(con, ids), collect.findings(con, ids), collect.drives(con, ids)
     return {
         drive: Evidence(

@@ -143,7 +143,7 @@ def _ours(place: Place) -> Answer:
     """Judge the reference drive by the whole catalogue, and answer what PostGIS is asked."""
     found: list[Answer] = []
 
-    def witness(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive]) -> None:
+    def witness(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], **_part: bool) -> None:
         found.extend(con.execute(_ANSWER).fetchall())
 
     rules = catalogue.select(catalogue.load(()), ("ukhc",), ())
