@@ -122,6 +122,34 @@ def test_velocity_zero_of_a_moving_actor_is_derived(tmp_path: Path) -> None:
     assert (row["n"], row["actor_id"]) == (20, "b")
 
 
+def test_velocity_of_another_motion_is_derived(tmp_path: Path) -> None:
+    """Half as fast as the positions, all along: derived. Of a second only: it is said, and stays."""
+    trace = load(tmp_path, edited(cars(60), "b", range(60), vx="5.0"))
+    assert {row["vx_mps"] for row in states(trace, "a")} == {10.0}
+    assert [row["vx_mps"] for row in states(trace, "b")] == pytest.approx([10.0] * 60)
+    row = quality(trace)["velocity_derived"]
+    assert (row["n"], row["actor_id"], row["severity"]) == (60, "b", "warning")
+    assert row["message"].startswith("velocity that is not the motion of the positions (b): velocity is derived")
+    assert "velocity_mismatch" not in quality(trace)
+    trace = load(tmp_path, edited(cars(60), "b", range(20, 30), vx="5.0"))
+    assert at(trace, "b", 2.5)["vx_mps"] == 5.0
+    assert quality(trace).keys() >= {"velocity_mismatch"} > quality(trace).keys() & {"velocity_derived"}
+
+
+def test_positions_that_tremble_do_not_make_a_velocity_wrong(tmp_path: Path) -> None:
+    """Half a metre to and fro at 10 Hz is 10 m/s from step to step, and next to nothing over a second."""
+    lines = cars(60)
+    for i, line in enumerate(lines):
+        cells = line.split(",")
+        if cells[1] == "b":
+            cells[2] = f"{float(cells[2]) + 0.5 * ((i // 2) % 2):.4f}"
+            lines[i] = ",".join(cells)
+    trace = load(tmp_path, lines)
+    assert {row["vx_mps"] for row in states(trace, "b")} == {10.0}
+    assert "velocity_mismatch" in quality(trace)
+    assert "velocity_derived" not in quality(trace)
+
+
 def test_driving_along_an_axis_is_not_standing_still(tmp_path: Path) -> None:
     lines = ["t,id,x,y,yaw,vx,vy", *(f"{i / 10},a,{i / 10},{i},1.5708,0,10.5" for i in range(20))]
     trace = load(tmp_path, lines)

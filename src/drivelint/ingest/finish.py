@@ -54,7 +54,7 @@ def finish(path: Path, identity: Identity, recording: Recording, options: Ingest
     states, findings = without_duplicates(in_order(recording.states))
     step = steps(states)
     _wrap_heading(states)
-    motion = complete_motion(states, step)
+    motion = complete_motion(states, step, most=_replaceable(recording))
     actors, varying = (
         actor_rows.from_states(states)
         if recording.actors is None
@@ -81,6 +81,16 @@ def finish(path: Path, identity: Identity, recording: Recording, options: Ingest
     return Trace(
         drive, path, tables, recording.embedded_map, recording.map_offset, recording.notes, recording.frame_times
     )
+
+
+def _replaceable(recording: Recording) -> float:
+    """Return the share of the motion for which velocities that disagree with it may be replaced.
+
+    What a film's mapping assumes is asked for; of most actors' velocities another mapping is at fault, and can be corrected.
+    """
+    if any(finding.check_id == "assumed_motion" for finding in recording.findings):
+        return 0.0
+    return 0.5 if recording.strict_units else 1.0
 
 
 def _wrap_heading(states: States) -> None:

@@ -1,4 +1,4 @@
-"""Velocities that the log does not have: derived from positions, never without saying so."""
+"""Velocities that the log does not have, or that are not what its positions do: derived from these, never without saying so."""
 
 from __future__ import annotations
 
@@ -14,14 +14,21 @@ if TYPE_CHECKING:
 
     from drivelint.ingest.trace import States
 
+WRONG_MPS = 1.0
+WRONG_SHARE = 0.15
+"""A velocity is not the motion if over a second it leads more than this elsewhere (see `checks.VELOCITY_MISMATCH_MPS`)."""
+WRONG_SECOND_NS = 1_000_000_000
+WRONG_WINDOWS = 20
+"""Over a second the trembling of positions averages out, which step by step is worse than any velocity: so many must be wrong."""
 MOVED_M = 1.0
 """An actor whose positions spread by more moves; below it a parked car's position noise would become a speed."""
 
 
-def complete_motion(states: States, step: Steps) -> list[Finding]:
-    """Fill velocities that are absent, or zero although the actor moves; drop accelerations that were never measured.
+def complete_motion(states: States, step: Steps, *, most: float = 1.0) -> list[Finding]:
+    """Fill velocities that are absent, zero although the actor moves, or of another motion than its positions'.
 
-    `states` in order, changed in place: every column of `NUMBERS` exists afterwards.
+    `most`: the share of the motion up to which it may be of another; beyond that all velocities stay. Accelerations that were
+    never measured are dropped. `states` in order, changed in place: every column of `NUMBERS` exists afterwards.
     """
     from drivelint.ingest.trace import NUMBERS
 
@@ -31,17 +38,18 @@ def complete_motion(states: States, step: Steps) -> list[Finding]:
     if n == 0:
         return []
     starts = np.flatnonzero(np.r_[True, ~step.same])
-    findings = _velocity(states, step, starts)
+    findings = _velocity(states, step, starts, most)
     findings += _acceleration(states, starts)
     return findings
 
 
-def _velocity(states: States, step: Steps, starts: NDArray[np.intp]) -> list[Finding]:
+def _velocity(states: States, step: Steps, starts: NDArray[np.intp], most: float) -> list[Finding]:
     numbers = states.numbers
     vx, vy = numbers["vx_mps"], numbers["vy_mps"]
     absent = np.logical_and.reduceat(np.isnan(vx) & np.isnan(vy), starts)
     still = ~absent & np.logical_and.reduceat((vx == 0.0) & (vy == 0.0), starts)
-    if not (absent.any() or still.any()):
+    astray = ~absent & _astray(states, step, most)[states.actor[starts]]
+    if not (absent.any() or still.any() or astray.any()):
         return []
     spread = np.zeros(len(starts))
     for name in ("x_m", "y_m"):
@@ -53,6 +61,7 @@ def _velocity(states: States, step: Steps, starts: NDArray[np.intp]) -> list[Fin
     for check, which, why in (
         ("velocity_derived", absent, "no velocity in the log"),
         ("velocity_derived", false_zero, "velocity 0 throughout although the positions move"),
+        ("velocity_derived", astray & ~still, "velocity that is not the motion of the positions"),
     ):
         if not which.any():
             continue
@@ -72,6 +81,33 @@ def _velocity(states: States, step: Steps, starts: NDArray[np.intp]) -> list[Fin
             )
         )
     return findings
+
+
+def _astray(states: States, step: Steps, most: float) -> NDArray[np.bool_]:
+    """Say of each actor whether its velocities lead elsewhere than its positions in most of the seconds in which it moves."""
+    wrong, n = np.zeros(len(states.ids), np.bool_), len(states)
+    k = max(1, round(WRONG_SECOND_NS / step.period_ns)) if step.period_ns else n
+    if n <= k or most == 0.0:
+        return wrong
+    t_ns, numbers = states.t_ns, states.numbers
+    off, moved, told = (np.zeros(n - k) for _ in range(3))
+    usable = step.continuous.copy()
+    for name in ("x_m", "y_m", "vx_mps", "vy_mps"):
+        usable &= np.isfinite(numbers[name][1:]) & np.isfinite(numbers[name][:-1])
+    unusable = np.r_[0, np.cumsum(~usable)]
+    for place, rate_of in (("x_m", "vx_mps"), ("y_m", "vy_mps")):
+        v = numbers[rate_of]
+        way = np.r_[0.0, np.cumsum(np.where(usable, 0.5 * (v[1:] + v[:-1]) * step.dt_s, 0.0))]
+        went, led = numbers[place][k:] - numbers[place][:-k], way[k:] - way[:-k]
+        off, moved, told = np.hypot(off, went - led), np.hypot(moved, went), np.hypot(told, led)
+    span = (t_ns[k:] - t_ns[:-k]) * 1e-9
+    with np.errstate(invalid="ignore"):
+        fastest = np.maximum(moved, told)
+        moving = (unusable[k:] == unusable[:-k]) & (fastest > WRONG_MPS * span)
+        bad = moving & (off > WRONG_MPS * span + WRONG_SHARE * fastest)
+    seconds, astray = (np.bincount(states.actor[:-k][rows], minlength=len(states.ids)) for rows in (moving, bad))
+    wrong = (astray >= WRONG_WINDOWS) & (2 * astray > seconds)
+    return wrong & bool(seconds[wrong].sum() <= most * seconds.sum())
 
 
 def _acceleration(states: States, starts: NDArray[np.intp]) -> list[Finding]:
