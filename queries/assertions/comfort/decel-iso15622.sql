@@ -1,6 +1,6 @@
 -- title = "Deceleration within ISO 15622"
--- clause = "ISO 15622 (adaptive cruise control): over two seconds brake no harder than people in traffic do"
--- hypothesis = "At every step, was the ego's mean deceleration over the last 2 s at most 3.5 m/s2?"
+-- clause = "ISO 15622 (adaptive cruise control): over two seconds brake no harder than people in traffic do, the less the faster"
+-- hypothesis = "At every step, was the ego's mean deceleration over the last 2 s at most 5 m/s2 up to 5 m/s, falling to 3.5 m/s2 at 20 m/s?"
 -- kind = "invariant"
 -- derivation = "model"
 -- severity = "minor"
@@ -12,10 +12,16 @@
 -- near_margin = 0.3
 -- reads = ["clock", "ego_motion"]
 --
--- [params.most_mps2]
+-- [params.slow_mps2]
+-- default = 5.0
+-- unit = "m/s2"
+-- why = "limit of the mean over 2 s up to 5 m/s"
+-- source = "ISO 15622:2018, operational limits (as openpilot's panda quotes them: the standard itself was not seen)"
+--
+-- [params.fast_mps2]
 -- default = 3.5
 -- unit = "m/s2"
--- why = "limit of the mean over 2 s"
+-- why = "limit of the mean over 2 s from 20 m/s on"
 -- source = "ISO 15622:2018, operational limits"
 --
 -- [params.tolerance_mps2]
@@ -30,7 +36,7 @@
 
 -- @condition
 -- filtered before it is differentiated, see ego_motion
-SELECT m.drive_id, m.ego_id, m.t_ns, -m.accel_2s_mps2 AS observed, $most_mps2 + $tolerance_mps2 AS required,
+SELECT m.drive_id, m.ego_id, m.t_ns, -m.accel_2s_mps2 AS observed, iso15622_limit(m.v_long_mps, $slow_mps2, $fast_mps2) + $tolerance_mps2 AS required,
     judged_inside(m.accel_2s_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id

@@ -1,5 +1,5 @@
 -- title = "Acceleration and jerk within nuPlan's bounds"
--- clause = "nuPlan, metric ego_is_comfortable: stay within the accelerations and jerks of expert drivers (of the jerk its longitudinal part)"
+-- clause = "nuPlan, metric ego_is_comfortable: stay within the accelerations and jerks of expert drivers (here four of its seven bounds: those of the yaw, and of the jerk as a vector, 8.37 m/s3, are not judged)"
 -- hypothesis = "At every step, were the ego's accelerations and its longitudinal jerk within the bounds?"
 -- kind = "invariant"
 -- derivation = "model"
@@ -31,9 +31,9 @@
 -- source = "nuPlan devkit, ego_is_comfortable"
 --
 -- [params.jerk_mps3]
--- default = 8.37
+-- default = 4.13
 -- unit = "m/s3"
--- why = "greatest jerk"
+-- why = "greatest longitudinal jerk"
 -- source = "nuPlan devkit, ego_is_comfortable"
 --
 -- [params.edge_s]

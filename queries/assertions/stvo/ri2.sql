@@ -1,5 +1,5 @@
 -- title = "Passing on the inner side only"
--- clause = "StVO 5(1), 7(2), 7(2a) (R_I2 of Maierhofer et al. 2020): overtake on the left; on the right only past a queue, little faster than it"
+-- clause = "StVO 5(1), 7(2), 7(2a), 7a (R_I2 of Maierhofer et al. 2020): overtake on the left; on the right only past a queue, little faster than it, or on the way in"
 -- hypothesis = "When the ego got ahead of a vehicle in a lane to its left (right where the left is driven on), was that a slow queue passed with little more speed?"
 -- kind = "execution"
 -- derivation = "direct"
@@ -7,7 +7,7 @@
 -- legal = "must"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["ego_corridor", "ego_state", "pair", "passing"]
+-- reads = ["data_log", "ego_corridor", "ego_state", "lanelet", "pair", "passing"]
 -- requires = ["map", "registration", "ego_size", "handedness"]
 --
 -- [applies]
@@ -32,17 +32,22 @@
 -- source = "Maierhofer et al. 2020, Table II"
 
 -- @reference
-SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.occurrence, p.speed_mps, p.ego_speed_mps, CASE WHEN p.ego_passes THEN c.side END AS side
+SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.occurrence, p.speed_mps, p.ego_speed_mps, CASE WHEN p.ego_passes THEN c.side END AS side, n.lane_type
 FROM passing p
+JOIN data_log g ON g.drive_id = p.drive_id
 JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
 LEFT JOIN ego_corridor c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.chain_id = e.chain_id AND c.t_ns = e.t_ns
+LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = e.lanelet_id
 -- who may have been passed has no side
 WHERE coalesce(p.ego_passes AND NOT p.same_lane AND c.side = CASE p.side WHEN 'left' THEN 1 WHEN 'right' THEN -1 END, true)
 
 -- @condition
-SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.object_id,
+-- on the way in one may be faster than the through lanes; on the way out too, beside a broad line, which the map may not have
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.object_id, coalesce(r.lane_type NOT IN ('entry', 'onRamp', 'connectingRamp'), true) AS applies,
     CASE WHEN r.side IS NOT NULL THEN r.speed_mps <= $queue_mps AND r.ego_speed_mps - r.speed_mps <= $faster_mps
-        AND CASE WHEN q.n >= $queue_n THEN true WHEN q.n_unknown = 0 THEN false END END AS holds
+        AND CASE WHEN q.n >= $queue_n THEN true WHEN q.n_unknown = 0 THEN false END
+        OR CASE WHEN coalesce(r.lane_type NOT IN ('exit', 'offRamp'), true) THEN false END END AS holds,
+    CASE WHEN r.lane_type IN ('exit', 'offRamp') THEN 'the ego was on lane type ' || r.lane_type || ': whether a broad line parted it from the through lanes is not known' END AS reason
 FROM reference r
 JOIN (
     SELECT b.ref_id, count(*) FILTER (o.d_m * b.side > o.half_width_m AND o.speed_mps <= $queue_mps AND abs(o.heading_diff_rad) < pi() / 2) AS n,

@@ -10,7 +10,7 @@
 -- unit = "m"
 -- observes = "gap to the vehicle ahead"
 -- near_margin = 2.0
--- reads = ["following"]
+-- reads = ["ego_condition", "following"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [applies]
@@ -36,6 +36,9 @@
 -- source = "case law: not only quite briefly; as R_G1 of Maierhofer et al. 2020"
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, gap_m AS observed, $gap_m AS required,
+-- a goods vehicle of up to 7.5 t may be a van of up to 3.5 t, of which nothing is asked
+SELECT drive_id, ego_id, t_ns, f.gap_m AS observed, CASE WHEN c.vehicle_class <> 'goods_7t5' OR f.gap_m >= $gap_m THEN $gap_m END AS required,
+    CASE WHEN c.vehicle_class = 'goods_7t5' AND f.gap_m < $gap_m THEN format('{:.1f} m behind: whether it weighs more than 3.5 t is not known', f.gap_m) END AS reason,
     follows AND ego_speed_mps > $from_mps AND coalesce(t_ns - joined_ns >= $cut_in_s * 1e9, true) AS applies
-FROM following
+FROM following f
+JOIN ego_condition c USING (drive_id, ego_id, t_ns)
