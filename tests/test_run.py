@@ -208,6 +208,28 @@ def test_a_map_of_another_place_is_refused(offset: tuple[float, float], told: st
         check(settings(FIXTURE / "safe.csv", map_offset=offset), Silent())
 
 
+def test_a_map_whose_lanes_run_the_other_way_is_refused() -> None:
+    """Everybody drives against their lane, both ways: read so, the ego would overtake all along, and nothing be said of it."""
+    side = check(settings(FIXTURE / "near_miss.csv"), Silent()).drives["handedness"][0].as_py()
+    other = "lht" if side == "rht" else "rht"
+    with pytest.raises(
+        MapError, match=rf"near_miss.csv runs against its lanes, on road \S+ both ways: .*\({other} by option\)"
+    ):
+        check(settings(FIXTURE / "near_miss.csv", handedness=other), Silent())
+    check(settings(FIXTURE / "near_miss.csv", handedness=side), Silent())
+
+
+def test_one_vehicle_against_its_lane_is_a_doubt(tmp_path: Path) -> None:
+    log = tmp_path / "alone.csv"
+    head, *rows = (FIXTURE / "near_miss.csv").read_text("utf-8").splitlines()
+    log.write_text("\n".join([head, *(row for row in rows if row.split(",")[1] == "oncoming")]) + "\n", "utf-8")
+    said = {}
+    for hand in ("lht", "rht"):
+        (found,) = check(settings(log, handedness=hand, ego="oncoming"), Silent()).drives["quality"].to_pylist()
+        said[hand] = [q["severity"] for q in found if "headings looked at" in q["message"]]
+    assert said == {"lht": [], "rht": ["warning"]}
+
+
 def test_a_map_beside_the_drive_makes_map_rules_unknown_not_failed() -> None:
     result = check(settings(FIXTURE / "safe.csv", map_offset=(0.0, 4.5)), Silent())
     rows = {row["rule_id"]: row for row in result.verdicts.to_pylist()}

@@ -13,7 +13,7 @@ import numpy as np
 import pyarrow.compute as pc
 
 from drivelint.errors import DriveLintError
-from drivelint.ingest import IngestOptions, Trace, read_trace
+from drivelint.ingest import Finding, IngestOptions, Trace, read_trace
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -136,10 +136,21 @@ def _meetings(trace: Trace, egos: set[str]) -> dict[str, int]:
     return dict(sorted(found.items()))
 
 
+def on_its_map(trace: Trace, library: MapLibrary) -> Drive:
+    """Find the map of a drive. Errors: `MapError` if it cannot be read, or shows another place or side of the road."""
+    states = trace.tables["actor_state"]
+    environment = library.find(trace.path, trace.embedded_map, trace.map_offset, states)
+    if doubt := library.doubt(trace.path, environment, states):
+        from drivelint.ingest.finish import with_finding
+
+        trace = with_finding(trace, Finding("handedness_disagrees", "warning", doubt))
+    return Drive(trace, environment)
+
+
 def _drive(path: Path, future: Future[Trace], library: MapLibrary) -> Drive | Refused:
     try:
         trace = future.result()
-        return Drive(trace, library.find(path, trace.embedded_map, trace.map_offset, trace.tables["actor_state"]))
+        return on_its_map(trace, library)
     except DriveLintError as error:
         return Refused(path, error)
 

@@ -4,6 +4,6 @@ from __future__ import annotations
 
 from drivelint.ingest.files import expand
 from drivelint.ingest.registry import read_trace
-from drivelint.ingest.trace import IngestOptions, Trace
+from drivelint.ingest.trace import Finding, IngestOptions, Trace
 
-__all__ = ["IngestOptions", "Trace", "expand", "read_trace"]
+__all__ = ["Finding", "IngestOptions", "Trace", "expand", "read_trace"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -81,6 +82,13 @@ def finish(path: Path, identity: Identity, recording: Recording, options: Ingest
     return Trace(
         drive, path, tables, recording.embedded_map, recording.map_offset, recording.notes, recording.frame_times
     )
+
+
+def with_finding(trace: Trace, finding: Finding) -> Trace:
+    """Return the trace with one more row in `quality`."""
+    rows = pa.concat_tables([trace.tables["quality"], _quality(trace.drive_id, [finding])])
+    ordered = rows.sort_by([(name, "ascending") for name in ("check_id", "actor_id", "t_first_ns", "message")])
+    return replace(trace, tables={**trace.tables, "quality": ordered})
 
 
 def _replaceable(recording: Recording) -> float:

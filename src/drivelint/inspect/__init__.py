@@ -9,6 +9,7 @@ import msgspec
 
 from drivelint import catalogue, conditions, store
 from drivelint.batch import Drive as Judgeable
+from drivelint.batch import on_its_map
 from drivelint.errors import ExitCode, MapError, TraceError, UsageError
 from drivelint.ingest import IngestOptions, expand, read_trace
 from drivelint.ingest.order import listed
@@ -119,7 +120,7 @@ def _content_of_unread(path: Path) -> model.Content:
 def _drive(
     trace: Trace, library: MapLibrary, rules: Sequence[Rule], order: Order, selection: Sequence[str]
 ) -> model.Drive:
-    environment, road_problem = _environment(trace, library)
+    trace, environment, road_problem = _on_its_map(trace, library)
     everybody = tracks.actors(trace)
     egos, quality = _judgeable(trace, environment, everybody, rules, road_problem)
     supposed, candidates = None, []
@@ -143,12 +144,12 @@ def _drive(
     )
 
 
-def _environment(trace: Trace, library: MapLibrary) -> tuple[Environment | None, str | None]:
+def _on_its_map(trace: Trace, library: MapLibrary) -> tuple[Trace, Environment | None, str | None]:
     try:
-        found = library.find(trace.path, trace.embedded_map, trace.map_offset, trace.tables["actor_state"])
+        found = on_its_map(trace, library)
     except MapError as error:
-        return None, str(error)
-    return found, None
+        return trace, None, str(error)
+    return found.trace, found.environment, None
 
 
 def _judgeable(

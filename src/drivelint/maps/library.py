@@ -14,7 +14,7 @@ import pyarrow.compute as pc
 from drivelint.errors import MapError, UsageError
 from drivelint.maps.contract import MapSource
 from drivelint.maps.registry import load_map, read_source
-from drivelint.maps.sense import ground, on_map, vote
+from drivelint.maps.sense import DOUBT_SAMPLES, SAMPLES, ground, headings, on_map, reversed_road, vote, ways
 from drivelint.maps.shelf import MANIFEST, Shelf, listed
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     import shapely
 
     from drivelint.maps.contract import Environment
+    from drivelint.maps.sense import Headings, Ways
 
 MOVING_MPS = 1.0
 FAR_M = 50.0  # beyond the map's own lanes by this much, a drive is somewhere else
@@ -52,6 +53,7 @@ class MapLibrary:
         self._handedness = handedness
         self._origin = origin
         self._grounds: dict[str, shapely.STRtree] = {}
+        self._ways: dict[str, Ways] = {}
         self._loaded: dict[tuple[str, tuple[float, float], str | None], Environment] = {}
 
     def find(
@@ -75,9 +77,44 @@ class MapLibrary:
                 f"map {environment.environment_id} is of another place than {log.name}: {trouble}; "
                 "give the right --map, or --map-offset"
             )
-        if environment.handedness_source == "default" and (sensed := _sense(environment, states)):
-            environment = self._load(source, shift, sensed)
+        if environment.handedness_source == "default" and (sensed := self._sensed(environment, states)):
+            return self._load(source, shift, sensed)
         return environment
+
+    def doubt(self, log: Path, environment: Environment | None, states: pa.Table) -> str | None:
+        """Return what speaks against the side of the road that is driven on by a map's or the user's word, or None.
+
+        Errors: `MapError` where the traffic shows that the lanes run the other way.
+        """
+        if environment is None or environment.handedness_source in {"default", "traces"}:
+            return None
+        seen = self._headings(environment, states, DOUBT_SAMPLES)
+        if road := reversed_road(self._lanes(environment), seen):
+            raise MapError(
+                f"map {environment.environment_id}: the traffic of {log.name} runs against its lanes, on road {road} both ways: the "
+                f"side of the road ({environment.handedness} by {environment.handedness_source}) or the lanes' direction is wrong; "
+                "give --handedness, or another map"
+            )
+        if vote(environment.handedness, seen) in {None, environment.handedness}:
+            return None
+        return (
+            f"of {len(seen.agree)} headings looked at, {int((~seen.agree).sum())} are against the direction of their lane, though "
+            f"the side of the road is {environment.handedness} by {environment.handedness_source}: if that is wrong, give --handedness"
+        )
+
+    def _sensed(self, environment: Environment, states: pa.Table) -> str | None:
+        return vote(environment.handedness, self._headings(environment, states, SAMPLES))
+
+    def _headings(self, environment: Environment, states: pa.Table, most: int) -> Headings:
+        speed = np.hypot(_floats(states, "vx_mps"), _floats(states, "vy_mps"))
+        moving = states.select(["x_m", "y_m", "yaw_rad"]).filter(np.nan_to_num(speed) > MOVING_MPS)
+        x_m, y_m, yaw_rad = (_floats(moving, name) for name in ("x_m", "y_m", "yaw_rad"))
+        return headings(self._lanes(environment), x_m, y_m, yaw_rad, most)
+
+    def _lanes(self, environment: Environment) -> Ways:
+        if environment.environment_id not in self._ways:
+            self._ways[environment.environment_id] = ways(environment)
+        return self._ways[environment.environment_id]
 
     def _only_fitting(self, shelf: Shelf, log: Path, shift: tuple[float, float], states: pa.Table) -> MapSource:
         """Return the one map on which the drive lies. Errors: `MapError` where none or several are."""
@@ -103,12 +140,6 @@ class MapLibrary:
                 source, offset=offset, handedness=self._handedness, sensed=sensed, origin=self._origin
             )
         return self._loaded[key]
-
-
-def _sense(environment: Environment, states: pa.Table) -> str | None:
-    speed = np.hypot(_floats(states, "vx_mps"), _floats(states, "vy_mps"))
-    moving = states.filter(np.nan_to_num(speed) > MOVING_MPS)
-    return vote(environment, _floats(moving, "x_m"), _floats(moving, "y_m"), _floats(moving, "yaw_rad"))
 
 
 def _elsewhere(environment: Environment, lanes: shapely.STRtree, states: pa.Table) -> str | None:

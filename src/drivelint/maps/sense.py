@@ -1,8 +1,8 @@
-"""Which side of the road the traces drive on: the last witness, where neither the user nor the map says."""
+"""Which side of the road the traces drive on: the last witness, where neither the user nor the map says, and a doubt where they do."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 import pyarrow.compute as pc
@@ -14,42 +14,89 @@ if TYPE_CHECKING:
 
     from drivelint.maps.contract import Environment
 
+DOUBT_SAMPLES: Final = 80  # where the side is known, every drive is looked at: it must cost next to nothing
 SAMPLES: Final = 400  # moving states looked at, evenly spread: enough to vote, cheap for a long log
 LEAST_VOTES: Final = 20
 FEW, MANY = 20, 2000  # positions looked at to see whether a drive is on its map
+EACH_WAY: Final = 5  # so many of them against their lane in both directions of a road: nobody overtakes both ways
 AGREEMENT: Final = 0.8  # an overtake drives against its lane for a while, a drive does not
 
 
-def vote(
-    environment: Environment, x_m: NDArray[np.float64], y_m: NDArray[np.float64], yaw_rad: NDArray[np.float64]
-) -> str | None:
-    """Return lht or rht as the headings of moving vehicles say, or None if they are too few or disagree.
+class Ways(NamedTuple):
+    """The one-way drivable lanelets of a map: their areas, looked up by place, centre lines, roads and direction along these."""
 
-    `x_m, y_m, yaw_rad`: moving states of any vehicles, shape (n,), in map coordinates. A state counts where exactly one
-    one-way drivable lanelet holds it.
+    areas: shapely.STRtree
+    lines: NDArray[np.object_]
+    road: NDArray[np.object_]
+    along: NDArray[np.int64]
+
+
+class Headings(NamedTuple):
+    """Moving states that exactly one of `Ways` holds: whether each is headed along its lane, and which lane that is."""
+
+    agree: NDArray[np.bool_]
+    lane: NDArray[np.intp]
+
+
+def ways(environment: Environment) -> Ways:
+    """Return the lanes whose direction is compared with the traces'."""
+    lanelets = environment.tables["lanelet"]
+    one_way = lanelets.filter(pc.and_(lanelets["drivable"], pc.invert(lanelets["bidirectional"])))
+    one_way = one_way.sort_by("lanelet_id")
+    areas, lines = _shapes(environment, one_way["lanelet_id"])
+    shapely.prepare(areas)
+    return Ways(
+        shapely.STRtree(areas),
+        lines,
+        one_way["road_id"].to_numpy(zero_copy_only=False),
+        one_way["along_road"].to_numpy(),
+    )
+
+
+def headings(
+    lanes: Ways, x_m: NDArray[np.float64], y_m: NDArray[np.float64], yaw_rad: NDArray[np.float64], most: int
+) -> Headings:
+    """Compare headings with lanes. `x_m, y_m, yaw_rad`: moving states of any vehicles, shape (n,), in map coordinates.
+
+    Of them `most` are looked at, evenly spread.
     """
     known = np.flatnonzero(np.isfinite(x_m) & np.isfinite(y_m) & np.isfinite(yaw_rad))
-    if len(known) < LEAST_VOTES:
-        return None
-    chosen = known[np.unique(np.linspace(0, len(known) - 1, min(SAMPLES, len(known))).astype(np.int64))]
-    areas, lines = _lanes(environment)
-    if not len(areas):
-        return None
+    if len(known) < LEAST_VOTES or not len(lanes.lines):
+        return Headings(np.zeros(0, np.bool_), np.zeros(0, np.intp))
+    chosen = known[np.unique(np.linspace(0, len(known) - 1, min(most, len(known))).astype(np.int64))]
     points = np.asarray(shapely.points(x_m[chosen], y_m[chosen]))
-    state, lane = shapely.STRtree(areas).query(points, predicate="within")
+    state, lane = lanes.areas.query(points, predicate="intersects")
     single = np.bincount(state, minlength=len(chosen))[state] == 1
     state, lane = state[single], lane[single]
-    if len(state) < LEAST_VOTES:
-        return None
-    at = shapely.line_locate_point(lines[lane], points[state])
-    ahead = shapely.get_coordinates(shapely.line_interpolate_point(lines[lane], at + 0.5))
-    behind = shapely.get_coordinates(shapely.line_interpolate_point(lines[lane], np.maximum(at - 0.5, 0.0)))
+    line = lanes.lines[lane]
+    at = shapely.line_locate_point(line, points[state])
+    ahead = shapely.get_coordinates(shapely.line_interpolate_point(line, at + 0.5))
+    behind = shapely.get_coordinates(shapely.line_interpolate_point(line, np.maximum(at - 0.5, 0.0)))
     direction = np.arctan2(ahead[:, 1] - behind[:, 1], ahead[:, 0] - behind[:, 0])
-    agree = float(np.mean(np.cos(yaw_rad[chosen][state] - direction) > 0))
+    return Headings(np.cos(yaw_rad[chosen][state] - direction) > 0, lane)
+
+
+def vote(handedness: str, seen: Headings) -> str | None:
+    """Return lht or rht as the headings of moving vehicles say, or None if they are too few or disagree."""
+    if len(seen.agree) < LEAST_VOTES:
+        return None
+    agree = float(np.mean(seen.agree))
     if agree >= AGREEMENT:
-        return environment.handedness
+        return handedness
     if agree <= 1 - AGREEMENT:
-        return "lht" if environment.handedness == "rht" else "rht"
+        return "lht" if handedness == "rht" else "rht"
+    return None
+
+
+def reversed_road(lanes: Ways, seen: Headings) -> str | None:
+    """Return a road on which there is traffic both ways and nearly all of it, as on the whole map, runs against its lane."""
+    if len(seen.agree) < LEAST_VOTES or float(np.mean(seen.agree)) > 1 - AGREEMENT:
+        return None
+    against = seen.lane[~seen.agree]
+    for road in sorted({str(name) for name in lanes.road[against]}):
+        here = against[lanes.road[against] == road]
+        if min(int((lanes.along[here] == way).sum()) for way in (1, -1)) >= EACH_WAY:
+            return road
     return None
 
 
@@ -74,14 +121,6 @@ def on_map(lanes: shapely.STRtree, x_m: NDArray[np.float64], y_m: NDArray[np.flo
         points = np.asarray(shapely.points(x_m[chosen], y_m[chosen]))
         looked, found = len(chosen), len(np.unique(lanes.query(points, predicate="intersects")[0]))
     return looked, found
-
-
-def _lanes(environment: Environment) -> tuple[NDArray[np.object_], NDArray[np.object_]]:
-    """Return areas and centre lines of the one-way drivable lanelets."""
-    lanelets = environment.tables["lanelet"]
-    return _shapes(
-        environment, lanelets.filter(pc.and_(lanelets["drivable"], pc.invert(lanelets["bidirectional"])))["lanelet_id"]
-    )
 
 
 def _shapes(environment: Environment, wanted: pa.ChunkedArray) -> tuple[NDArray[np.object_], NDArray[np.object_]]:
