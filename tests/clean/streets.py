@@ -86,15 +86,20 @@ def pelican(w: Story, *, state: str = "green", walker: bool = False) -> None:
     w.then(scene)
 
 
-def queue(w: Story, *, gap: float = 8.0, horn: bool = False, brakes: float = 0.0) -> None:
+def queue(w: Story, *, gap: float = 8.0, horn: bool = False, brakes: float = 0.0, dark: bool = False) -> None:
     """Behind a queue that stands, and on with it."""
     s = w.route.road(500.0, TOWN[w.nation])
     w.slow(s, 500.0, 12.0)
     halt = s + 250.0
     w.plan.halt(halt, 12.0)
     w.plan.brake = brakes or w.plan.brake
+    if dark:
+        w.conditions["light"] = "night"
 
     def scene() -> None:
+        if dark:
+            w.events += [(w.when(s + 10.0), "headlights", "on"), (w.when(s + 100.0), "headlights", "off")]
+            w.events.append((w.when(s + 400.0), "headlights", "on"))
         for k in range(2):
             at, gone = halt + (k + 1) * (4.8 + gap), w.stands(halt) + 9.5 - k
             w.meets(

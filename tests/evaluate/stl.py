@@ -220,7 +220,7 @@ def _apart(dice: Dice, at: int) -> Trace:
 
 
 def _comfort(dice: Dice, at: int) -> Trace:
-    signals = {"a": walk(dice, -5, 3), "lat": walk(dice, -6, 6), "jerk": walk(dice, -10, 10)}
+    signals = {"a": walk(dice, -5, 3), "lat": walk(dice, -6, 6), "jerk": walk(dice, -5, 5)}
     given = {
         "ego_state": _steps(speed_mps=8),
         "ego_motion": _steps(accel_mps2=signals["a"], lat_accel_mps2=signals["lat"], jerk_mps3=signals["jerk"]),
@@ -267,7 +267,7 @@ SPECS = (
     Spec("comfort.lateral", "always(abs(lat) <= 3)", _comfort),
     Spec(
         "comfort.nuplan",
-        "always((a / 2.4 <= 1) and ((0 - a) / 4.05 <= 1) and (abs(lat) / 4.89 <= 1) and (abs(jerk) / 8.37 <= 1))",
+        "always((a / 2.4 <= 1) and ((0 - a) / 4.05 <= 1) and (abs(lat) / 4.89 <= 1) and (abs(jerk) / 4.13 <= 1))",
         _comfort,
     ),
 )
