@@ -8,6 +8,7 @@
 -- status = "stable"
 -- sense = "<"
 -- unit = "m/s2"
+-- observes = "deceleration of the ego or the other"
 -- merge_gap_s = 1.0
 -- reads = ["ego_state", "lost_object", "pair", "step", "clock"]
 -- requires = ["ego_size"]

@@ -8,6 +8,7 @@
 -- status = "stable"
 -- sense = ">"
 -- unit = "m"
+-- observes = "distance between the two"
 -- near_margin = 0.5
 -- merge_gap_s = 2.0
 -- reads = ["ego_state", "pair"]

@@ -8,6 +8,7 @@
 -- status = "stable"
 -- sense = ">="
 -- unit = "s"
+-- observes = "spare time"
 -- reads = ["overtake", "overtake_sda", "profile"]
 -- requires = ["map", "registration", "handedness", "ego_size"]
 --

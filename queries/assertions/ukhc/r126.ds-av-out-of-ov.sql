@@ -8,6 +8,7 @@
 -- status = "stable"
 -- sense = "<"
 -- unit = "m"
+-- observes = "reach into the oncoming vehicle's danger space"
 -- near_margin = 1.0
 -- merge_gap_s = 1.0
 -- reads = ["overtake_step"]

@@ -8,6 +8,7 @@
 -- status = "stable"
 -- sense = "<="
 -- unit = "m"
+-- observes = "reach onto the footway"
 -- merge_gap_s = 2.0
 -- reads = ["ego_footway"]
 -- requires = ["map", "registration", "lane_types", "ego_size"]

@@ -8,6 +8,7 @@
 -- status = "stable"
 -- sense = ">"
 -- unit = "m"
+-- observes = "distance ahead"
 -- near_margin = 5.0
 -- reads = ["overtake", "overtake_sda", "profile"]
 -- requires = ["map", "registration", "handedness", "ego_size"]

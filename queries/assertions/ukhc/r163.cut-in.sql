@@ -8,6 +8,7 @@
 -- status = "draft"
 -- sense = ">="
 -- unit = "m"
+-- observes = "gap to the vehicle passed"
 -- near_margin = 1.0
 -- reads = ["overtake"]
 -- requires = ["map", "registration", "handedness", "ego_size"]

@@ -8,6 +8,7 @@
 -- status = "stable"
 -- sense = ">"
 -- unit = "m"
+-- observes = "gap to the vehicle ahead"
 -- near_margin = 1.0
 -- reads = ["overtake"]
 -- requires = ["map", "registration", "handedness", "ego_size"]

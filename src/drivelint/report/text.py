@@ -19,6 +19,11 @@ def number(value: float | None, unit: str | None = None) -> str:
     return f"{text} {unit}" if unit else text
 
 
+def tied(text: str) -> str:
+    """Return a number that no line break parts from its unit."""
+    return text.replace(" ", "\u00a0", 1)
+
+
 def seconds(t_ns: int | None, start_ns: int | None) -> str:
     """Return a time on the log's clock as seconds since the drive's first time stamp."""
     return NONE if t_ns is None else f"{(t_ns - (start_ns or 0)) / 1e9:.2f} s"

@@ -29,6 +29,7 @@ PACKS: Final = {
 }
 """What the packs that come with drivelint are about."""
 _STORY_DRIVES: Final = 6
+_STORY_PARTIES: Final = 6
 
 
 class Broken(NamedTuple):
@@ -42,10 +43,13 @@ class Broken(NamedTuple):
 
 
 class Story(NamedTuple):
-    """What happened in one drive, in time order."""
+    """What happened in one drive, in time order; `who`: the vehicles and people that the findings are about."""
 
     drive_id: str
     href: str
+    file_name: str
+    who: list[str]
+    n_more: int
     moments: list[Moment]
 
 
@@ -130,5 +134,25 @@ def stories(sections: Sequence[Mapping[str, Any]], n_drives: int) -> list[Story]
     """Return what happened in each drive, if they are few enough to be told on the first page."""
     if n_drives > _STORY_DRIVES:
         return []
-    told = [Story(s["drive_id"], "#" + s["anchor"], [m for m in s["moments"] if m.leading]) for s in sections]
+    told = [_story(s) for s in sections]
     return [story for story in told if story.moments]
+
+
+def _story(section: Mapping[str, Any]) -> Story:
+    who = [f"{party.name} ({party.what})" for party in section["parties"] if party.n]
+    return Story(
+        section["drive_id"],
+        "#" + section["anchor"],
+        section["file_name"],
+        who[:_STORY_PARTIES],
+        max(len(who) - _STORY_PARTIES, 0),
+        [moment for moment in section["moments"] if moment.leading],
+    )
+
+
+def texts(rules: Sequence[Broken], told: Sequence[Story], lines: Sequence[Measured]) -> list[str]:
+    """Return what the first page says of rules and findings, to be searched for words that need to be explained."""
+    worst = [line for b in rules if (line := b.worst) is not None]
+    leading = [line for story in told for moment in story.moments for card in moment.cards for line in card.lines]
+    profiles = {line.profile for line in lines}
+    return [b.rule["title"] for b in rules] + [line.told for line in worst + leading] + sorted(profiles)

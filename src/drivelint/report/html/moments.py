@@ -9,7 +9,7 @@ from drivelint.report.html.anchors import drive_anchor, finding_anchor, moment_a
 from drivelint.report.html.plan import Plan, plan
 from drivelint.report.html.replay import ticks
 from drivelint.report.html.svg import num
-from drivelint.report.text import NONE, number, seconds
+from drivelint.report.text import NONE, number, seconds, tied
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     Row = Mapping[str, Any]
     Key = tuple[str, str, int]
 
+_OURS: Final = " is required: "
+"""What every sentence holds that the evaluation made of numbers; others are the rule's own."""
 _SENSE: Final = {">": "more than", ">=": "at least", "<": "less than", "<=": "at most"}
 _SPACES: Final = ("ukhc.r126.ds-",)
 """Rules about danger spaces: their plan views show them."""
@@ -62,6 +64,7 @@ class Measured(NamedTuple):
     sense: str
     gauge: Gauge | None
     reason: str
+    told: str
     course: Course | None
     standing: Standing | None
 
@@ -108,6 +111,9 @@ def measured(
     """Return a finding (`fail`) or a near miss (`near`) in words; `standing`: how the finding stands to an earlier result."""
     unit, long = row["unit"], row["t_end_ns"] is not None and row["t_end_ns"] != row["t_start_ns"]
     sense = _SENSE.get(rule["sense"])
+    required = number(row["required"], unit)
+    if sense is not None:
+        required = "none" if row["required"] == 0 and rule["sense"][0] == "<" else f"{sense} {tied(required)}"
     return Measured(
         anchor=finding_anchor(row) if kind == "fail" else "",
         href="#" + (finding_anchor(row) if kind == "fail" else moment_anchor(*key(row))),
@@ -122,18 +128,26 @@ def measured(
         drive_href="#" + drive_anchor(row["drive_id"]),
         ego_id=row["ego_id"],
         object_id=NONE if row["object_id"] is None else row["object_id"],
-        time=seconds(row["t_worst_ns"], start_ns),
+        time=tied(seconds(row["t_worst_ns"], start_ns)),
         stretch=f"{seconds(row['t_start_ns'], start_ns)} to {seconds(row['t_end_ns'], start_ns)}" if long else "",
-        observed=number(row["observed"], unit),
-        required=number(row["required"], unit) if sense is None else f"{sense} {number(row['required'], unit)}",
-        margin=number(row["margin"], unit),
-        missed=NONE if row["margin"] is None else number(abs(row["margin"]), unit),
+        observed=tied(number(row["observed"], unit)),
+        required=required,
+        margin=tied(number(row["margin"], unit)),
+        missed=NONE if row["margin"] is None else tied(number(abs(row["margin"]), unit)),
         sense=sense or "",
         gauge=_gauge(row["observed"], row["required"]),
         reason=row["reason"],
+        told=_told(row, rule, required) if sense else row["reason"],
         course=course,
         standing=standing,
     )
+
+
+def _told(row: Row, rule: Row, required: str) -> str:
+    """Return in a sentence what was measured, what had to be, and what the rule itself says of it."""
+    what = f"{rule['observes']} " if rule["observes"] else ""
+    said = f"{what}{tied(number(row['observed'], row['unit']))}, must be {required}"
+    return said if _OURS in row["reason"] else f"{said} ({row['reason']})"
 
 
 def key(row: Row) -> Key:

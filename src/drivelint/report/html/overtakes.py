@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from drivelint.report.html.anchors import drive_anchor, overtake_anchor
 from drivelint.report.html.scale import Axis
 from drivelint.report.html.svg import num
-from drivelint.report.text import number, seconds
+from drivelint.report.text import number, seconds, tied
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -171,8 +171,8 @@ def _cell(p: Row) -> Cell:
     verdict = "unknown" if p["zone"] is None else "fail" if p["zone"] == "A" else "pass"
     spare = "-"
     if p["spare_m"] is not None:
-        spare = f"{'short by' if p['spare_m'] <= 0 else 'spare'} {number(abs(p['spare_m']), 'm')}"
-    return Cell(verdict, number(p["sda_m"], "m"), spare, p["zone"] or "", p["reason"] or "")
+        spare = f"{'short by' if p['spare_m'] <= 0 else 'spare'} {tied(number(abs(p['spare_m']), 'm'))}"
+    return Cell(verdict, tied(number(p["sda_m"], "m")), spare, p["zone"] or "", p["reason"] or "")
 
 
 def _times(row: Row) -> list[tuple[str, int]]:
@@ -216,7 +216,7 @@ def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: A
 def _depth(metres: float | None) -> str:
     if metres is None:
         return ""
-    return f"inside by {number(metres, 'm')}" if metres >= 0 else f"clear by {number(-metres, 'm')}"
+    return f"inside by {tied(number(metres, 'm'))}" if metres >= 0 else f"clear by {tied(number(-metres, 'm'))}"
 
 
 def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str, int]) -> Zones | None:

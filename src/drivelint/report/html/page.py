@@ -11,7 +11,9 @@ from drivelint.report import counts
 from drivelint.report.html import front
 from drivelint.report.html.anchors import drive_anchor, rule_anchor
 from drivelint.report.html.courses import course
+from drivelint.report.html.glossary import words
 from drivelint.report.html.moments import leading, measured, moments, pictures
+from drivelint.report.html.notes import notes
 from drivelint.report.html.opportunities import opportunities
 from drivelint.report.html.overtakes import views
 from drivelint.report.html.parties import parties
@@ -88,6 +90,7 @@ def content(result: Result) -> dict[str, Any]:
         if row["drive_id"] in shown
     ]
     totals = counts.total(result.verdicts)
+    broken, told_of = front.broken(result, rules, lines), front.stories(sections, len(drives))
     return {
         "outcome": outcome(result),
         "headline": front.headline(result),
@@ -97,9 +100,12 @@ def content(result: Result) -> dict[str, Any]:
         "n_findings": result.findings.num_rows,
         "gate": view(result.gate, result.findings["finding_id"].to_pylist()),
         "n_near": int(pc.sum(result.verdicts["near_miss"]).as_py() or 0),
-        "broken": front.broken(result, rules, lines),
+        "broken": broken,
+        "words": words(front.texts(broken, told_of, [line for _, line in lines])),
+        "several_egos": len({(row["drive_id"], row["ego_id"]) for row, _ in lines + close}) > len(listed),
+        "notes": notes(drives),
         "packs": front.packs(result),
-        "stories": front.stories(sections, len(drives)),
+        "stories": told_of,
         "findings": [line for _, line in lines],
         "near": [line for _, line in close],
         "filters": _filters([line for _, line in lines + close], rules),

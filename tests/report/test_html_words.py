@@ -1,0 +1,89 @@
+"""What the page says to a reader who is no engineer: words explained, measures named, whose finding it is, the paper's tables."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pyarrow as pa
+import pytest
+
+from drivelint.report.html.notes import notes
+from drivelint.report.result import Result
+from tests.report import test_evidence
+from tests.report.synthetic import finding, result, verdict
+from tests.report.test_html import Parsed, page
+from tests.shared_data import shared
+
+
+@pytest.fixture(scope="module")
+def overtakes(tmp_path_factory: pytest.TempPathFactory) -> Result:
+    return test_evidence.run(tmp_path_factory.mktemp("overtakes"))
+
+
+@pytest.fixture(scope="module")
+def text(overtakes: Result) -> str:
+    return page(overtakes)
+
+
+def test_the_first_page_explains_the_words_it_uses(overtakes: Result, text: str) -> None:
+    told = Parsed(text).text
+    words = told.partition("Words used here")[2].partition("Rules that were not kept")[0]
+    assert "Danger space" in words
+    assert "RSS" not in words, "no rule of that pack was asked for"
+    assert "Words used here" not in page(result([verdict("pass")]))
+
+
+def test_what_happened_names_the_measure_and_the_parties(overtakes: Result, text: str) -> None:
+    told = Parsed(text).text.replace("\u00a0", " ")
+    row = next(r for r in overtakes.findings.to_pylist() if r["rule_id"] == "ukhc.r162.safe-distance-ahead")
+    assert f"distance ahead {row['observed']:.2f} m, must be more than {row['required']:.2f} m" in told
+    assert re.search(r"reach into the oncoming vehicle's danger space \d+\.\d\d m, must be none", told)
+    assert "also not kept: No collision" in told, "a rule's title alone would say that there was none"
+    assert "Involved: ego" in told
+
+
+def test_with_several_egos_each_finding_says_whose_it_is() -> None:
+    rows = [finding(), finding(ego_id="9", finding_id="x")]
+    several = page(result([verdict("fail"), verdict("fail", ego_id="9")], rows))
+    assert '<th scope="col">ego</th>' in several
+    assert '<td data-label="ego">9</td>' in several
+    assert '<th scope="col">ego</th>' not in page(result([verdict("fail")], rows[:1]))
+
+
+def test_the_drive_is_named_where_there_are_several(text: str) -> None:
+    assert '<th scope="col">drive</th><th scope="col" class="num">time</th>' in text
+    one = page(result([verdict("fail")], [finding()]))
+    assert '<th scope="col">drive</th><th scope="col" class="num">time</th>' not in one
+
+
+TABLE_1 = "17be8a04c5126c316f44070ff7b758308e61b5e4a0138ad3fc8b1585e620432b"
+TABLE_2 = "517679d844fca426b466d6b86ed5ee3d570cb5cfe527b74acfd6e71503da0857"
+
+
+@pytest.mark.parametrize(
+    ("sha256", "said"),
+    [
+        pytest.param(TABLE_1, "some 2 m less", id="table 1"),
+        pytest.param(TABLE_2, "nobody was detected, which is not nobody there", id="table 2"),
+        pytest.param("ab" * 32, "", id="no log of theirs"),
+    ],
+)
+def test_differences_from_the_paper_are_named_on_its_own_logs_only(overtakes: Result, sha256: str, said: str) -> None:
+    hashes = pa.array([sha256] * overtakes.drives.num_rows)
+    place = overtakes.drives.column_names.index("sha256")
+    told = Parsed(page(replace(overtakes, drives=overtakes.drives.set_column(place, "sha256", hashes)))).text
+    assert ("the paper's Table" in told) == bool(said)
+    assert said in told
+
+
+def test_the_logs_of_the_paper_are_the_ones_that_the_differences_are_about() -> None:
+    for name in ("safe", "near_miss", "collision"):
+        assert notes([{"sha256": _hash(shared(f"overtake_case_study/{name}.csv"))}])[0].title.endswith("distances")
+    assert "Table 2" in notes([{"sha256": _hash(shared("video_case_study/detections.csv"))}])[0].title
+
+
+def _hash(file: Path) -> str:
+    return hashlib.sha256(file.read_bytes()).hexdigest()
