@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import duckdb
 
-from tests.bench import copying, growth, profiling, stages
+from tests.bench import copying, formats, growth, profiling, stages
 from tests.bench.place import TINY, Place, Sizes
 from tests.bench.rivals import boxes, postgis, reading, temporal
 from tests.bench.table import Row, Skipped, markdown
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 SECTIONS: dict[str, Callable[[Place], list[Row]]] = {
     "reference": stages.reference,
     "short": stages.short,
+    "formats": formats.formats,
     "growth": growth.growth,
     "copy": copying.copying,
     "shapely": boxes.compare,

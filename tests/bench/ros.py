@@ -1,26 +1,20 @@
-"""`python -m tests.bench.ros`, from the repository's root: how many actor states a second are read of ROS 2 and Foxglove logs.
-
-600,000 states of 50 road users, from the opening of the file to checked tables; the best of five runs. On a busy machine
-look at the CPU seconds.
-"""
+"""Logs of ROS 2 and Foxglove for `tests.bench.formats`: 50 road users that all move in every message."""
 
 from __future__ import annotations
 
 import struct
-import tempfile
-import time
-from pathlib import Path
+from functools import partial
 from typing import TYPE_CHECKING
 
 from mcap.writer import CompressionType, Writer
 
-from drivelint.ingest import IngestOptions, read_trace
 from tests.ingest import foxglove_log, ros_log
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
+    from pathlib import Path
 
-OBJECTS, STEPS, RUNS = 50, 12_000, 5
+OBJECTS = 50
 PROBE = 1e6
 """Where the first road user of the message is whose bytes are then changed."""
 
@@ -41,13 +35,13 @@ def detections() -> ros_log.Message:
     return ros_log.detections(1.0, *named)
 
 
-def moved(message: ros_log.Message) -> Iterator[tuple[float, bytes]]:
+def moved(message: ros_log.Message, steps: int) -> Iterator[tuple[float, bytes]]:
     """Yield a message again and again, its time stamp and its places moved on."""
     _, name, _, content = message
     data = bytearray(ros_log.encode(name, content))
     places = [(at, k) for k in range(OBJECTS) if (at := data.find(struct.pack("<d", PROBE + k))) > 0]
     assert len(places) == OBJECTS
-    for i in range(STEPS):
+    for i in range(steps):
         t_s = 1.0 + 0.05 * i
         struct.pack_into("<iI", data, 4, int(t_s), round((t_s % 1.0) * 1e9))
         for at, k in places:
@@ -55,7 +49,7 @@ def moved(message: ros_log.Message) -> Iterator[tuple[float, bytes]]:
         yield t_s, bytes(data)
 
 
-def write_ros(path: Path, message: ros_log.Message) -> None:
+def write_ros(path: Path, message: ros_log.Message, steps: int) -> None:
     """Write a log of one kind of object list and the odometry of an ego."""
     with path.open("wb") as file:
         writer = Writer(file, compression=CompressionType.ZSTD)
@@ -64,7 +58,7 @@ def write_ros(path: Path, message: ros_log.Message) -> None:
         for topic, name, _, _ in (message, ros_log.odometry(1.0, 0.0, 0.0)):
             schema = writer.register_schema(name.replace("/", "/msg/"), "ros2msg", ros_log.definition(name).encode())
             channels.append(writer.register_channel(topic, "cdr", schema))
-        for i, (t_s, data) in enumerate(moved(message)):
+        for i, (t_s, data) in enumerate(moved(message, steps)):
             t_ns = round(t_s * 1e9)
             writer.add_message(channels[0], t_ns, data, t_ns)
             ego = ros_log.odometry(t_s, 0.5 * i, -4.0, speed=10.0)
@@ -72,11 +66,11 @@ def write_ros(path: Path, message: ros_log.Message) -> None:
         writer.finish()  # type: ignore[no-untyped-call]
 
 
-def write_scene(path: Path, encoding: str) -> None:
+def write_scene(path: Path, encoding: str, steps: int) -> None:
     """Write a scene in which everybody moves in every message."""
 
     def scenes() -> Iterator[foxglove_log.Message]:
-        for i in range(STEPS):
+        for i in range(steps):
             t_s = 1.0 + 0.05 * i
             cars = (foxglove_log.entity(f"car {k}", t_s, 0.5 * i + 20.0 * k, 4.0 * k, life=0.1) for k in range(OBJECTS))
             yield foxglove_log.scene(t_s, *cars)
@@ -84,29 +78,18 @@ def write_scene(path: Path, encoding: str) -> None:
     foxglove_log.write(path, scenes(), encoding)
 
 
-def main() -> None:
-    """Print the table."""
-    logs: dict[str, Callable[[Path], None]] = {
-        "ObjectArray": lambda path: write_ros(path, things()),
-        "TrackedObjects": lambda path: write_ros(path, tracks()),
-        "Detection3DArray": lambda path: write_ros(path, detections()),
-        "SceneUpdate, JSON": lambda path: write_scene(path, "json"),
-        "SceneUpdate, protobuf": lambda path: write_scene(path, "protobuf"),
+def logs(steps: int) -> dict[str, Callable[[Path], None]]:
+    """Return the logs of so many messages: name -> what writes one."""
+    ros = {"ObjectArray": things, "TrackedObjects": tracks, "Detection3DArray": detections}
+    return {
+        **{f"ROS 2 {name}": partial(_write_ros, make, steps) for name, make in ros.items()},
+        **{f"Foxglove SceneUpdate, {kind}": partial(_write_scene, kind, steps) for kind in ("json", "protobuf")},
     }
-    print("| log | states | MB | s | CPU s | M states/s | per CPU s |\n|---|---|---|---|---|---|---|")
-    with tempfile.TemporaryDirectory(prefix="drivelint-bench-") as home:
-        for name, write in logs.items():
-            path = Path(home) / "log.mcap"
-            write(path)
-            best, cpu, n = float("inf"), float("inf"), 0
-            for _ in range(RUNS):
-                start, used = time.perf_counter(), time.process_time()
-                n = read_trace(path, IngestOptions(need_ego=False)).tables["actor_state"].num_rows
-                best, cpu = min(best, time.perf_counter() - start), min(cpu, time.process_time() - used)
-            megabytes = path.stat().st_size / 1e6
-            rates = f"{n / best / 1e6:.2f} | {n / cpu / 1e6:.2f}"
-            print(f"| {name} | {n} | {megabytes:.0f} | {best:.2f} | {cpu:.2f} | {rates} |", flush=True)
 
 
-if __name__ == "__main__":
-    main()
+def _write_ros(make: Callable[[], ros_log.Message], steps: int, path: Path) -> None:
+    write_ros(path, make(), steps)
+
+
+def _write_scene(encoding: str, steps: int, path: Path) -> None:
+    write_scene(path, encoding, steps)

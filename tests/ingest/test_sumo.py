@@ -59,6 +59,15 @@ def test_xml_csv_and_parquet_are_one_log(tmp_path: Path) -> None:
     assert {log(trace)["format"] for trace in found} == {"sumo-fcd"}
 
 
+def test_csv_written_anew_with_quotes(tmp_path: Path) -> None:
+    plain = put(tmp_path / "a.csv", csv())
+    head, rest = csv().split("\n", 1)
+    quoted = '"' + head.replace(";", '";"') + '"\n' + rest
+    (tmp_path / "b.csv").write_text(quoted, "utf-8-sig")
+    assert states(read(tmp_path / "b.csv", ego="a.0"))[0]["x_m"] == states(read(plain, ego="a.0"))[0]["x_m"]
+    assert log(read(tmp_path / "b.csv", ego="a.0"))["format"] == "sumo-fcd"
+
+
 def test_front_bumper_and_compass(tmp_path: Path) -> None:
     put(tmp_path / "r.rou.xml", TYPES)
     turned = [row | {"angle": angle} for row, angle in zip(ROWS[1:8:2], (90.0, 0.0, 180.0, 270.0), strict=True)]

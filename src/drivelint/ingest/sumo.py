@@ -62,8 +62,9 @@ def looks_like(path: Path, head: bytes) -> bool:
     """Say whether a file is FCD: an <fcd-export> element, or a table with its columns."""
     if head.startswith(b"PAR1"):
         return set(_COLUMNS) <= set(parquet.schema(path).names)
-    if head.startswith(b"timestep_time"):
-        return set(_COLUMNS) <= set(re.split(r"[;,\t]", head.split(b"\n", 1)[0].decode("utf-8", "replace").strip()))
+    if _is_csv(head):
+        names = re.split(r"[;,\t]", head.split(b"\n", 1)[0].decode("utf-8-sig", "replace").strip())
+        return set(_COLUMNS) <= {name.strip('"') for name in names}
     if b"<fcd-export" in head:
         return True
     if head.lstrip()[:1] != b"<" or b"sumo" not in head.lower():
@@ -98,7 +99,12 @@ def _rows(path: Path) -> pa.Table:
         start = file.read(16)
     if start.startswith(b"PAR1"):
         return parquet.table(path)
-    return _csv(path) if start.startswith(b"timestep_time") else _xml(path)
+    return _csv(path) if _is_csv(start) else _xml(path)
+
+
+def _is_csv(head: bytes) -> bool:
+    """Say whether a file begins with SUMO's first column; other programs that wrote it anew may quote it."""
+    return head.lstrip(b'\xef\xbb\xbf"').startswith(b"timestep_t")
 
 
 def _recording(table: pa.Table, types: dict[str, VehicleType]) -> Recording:
