@@ -36,9 +36,10 @@ def connect(
     """Open a database with spatial loaded from its wheel (no network) and every table of `schemas/` and macro created.
 
     Beyond `memory_limit` (80 % of the machine's by default) tables go to the folder `spill`; without one, DuckDB would put
-    them where the user happens to be. Errors: `DriveLintError` when the pinned extension cannot be loaded.
+    them where the user happens to be. Only a database that is kept in a file has the columns' comments: they take longer
+    than the tables, and in memory nobody reads them. Errors: `DriveLintError` when the pinned extension cannot be loaded.
     """
-    con = duckdb.connect(str(path) if path else ":memory:")
+    con = opened(path)
     con.execute("SET allow_community_extensions=false")
     con.execute("SET GLOBAL python_enable_replacements=false")  # for its cursors too
     con.execute("SET enable_progress_bar=false")
@@ -49,8 +50,7 @@ def connect(
         con.execute("SET memory_limit=?", [memory_limit])
     if spill:
         con.execute("SET temp_directory=?", [str(spill)])
-    load_spatial(con)
-    create_tables(con)
+    create_tables(con, comments=path is not None)
     for macro in sorted((folder("queries") / "macros").glob("*.sql")):
         con.execute(macro.read_text(encoding="utf-8"))
     return con
@@ -75,8 +75,22 @@ def lock(con: duckdb.DuckDBPyConnection) -> None:
         con.execute(f"SET {setting}")
 
 
-def load_spatial(con: duckdb.DuckDBPyConnection) -> None:
-    """Load the spatial extension from the `duckdb-extension-spatial` wheel of the same version."""
+def opened(path: Path | None = None, *, read_only: bool = False) -> duckdb.DuckDBPyConnection:
+    """Open a database as it is (None: an empty one in memory), with spatial loaded from its wheel.
+
+    Whether the extension is signed is not asked: that is a hash over its 80 MB each time, and the file was installed by
+    whoever installed duckdb itself, which nobody asks either. Any other must be signed from then on.
+    Errors: `DriveLintError` when the pinned extension cannot be loaded.
+    """
+    con = duckdb.connect(
+        str(path) if path else ":memory:", read_only=read_only, config={"allow_unsigned_extensions": True}
+    )
+    _load_spatial(con)
+    con.execute("SET allow_unsigned_extensions=false")
+    return con
+
+
+def _load_spatial(con: duckdb.DuckDBPyConnection) -> None:
     import duckdb_extension_spatial
 
     wheel = Path(next(iter(duckdb_extension_spatial.__path__)))
@@ -130,11 +144,11 @@ def _bodies() -> dict[str, str]:
     return dict(each for file in files for each in _TABLE.findall(file.read_text(encoding="utf-8")))
 
 
-def create_tables(con: duckdb.DuckDBPyConnection) -> None:
-    """Create every table of `schemas/*.sql`, its column comments kept in the database."""
+def create_tables(con: duckdb.DuckDBPyConnection, *, comments: bool = True) -> None:
+    """Create every table of `schemas/*.sql`, its columns' comments kept in the database if asked."""
     for file in sorted(folder("schemas").glob("*.sql")):
         con.execute(file.read_text(encoding="utf-8"))
-    for table, columns in schema().items():
+    for table, columns in schema().items() if comments else ():
         con.execute(
             ";".join(
                 f"COMMENT ON COLUMN {table}.{c} IS '{text.replace(chr(39), chr(39) * 2)}'"

@@ -92,8 +92,7 @@ def _renamed(trace: Trace, drive_id: str) -> Trace:
 
 
 def _kept(file: Path, drive_id: str, ego_id: str) -> Drive:
-    with duckdb.connect(str(file), read_only=True) as con:
-        store.load_spatial(con)
+    with store.opened(file, read_only=True) as con:
         tables = {name: _rows(con, name, "drive_id", drive_id) for name in SCHEMAS}
         if not tables["data_log"].num_rows:
             raise DriveLintError(f"{file}: the drive {drive_id} is not in it: check the drives again")
