@@ -7,6 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import duckdb
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
 import pytest
 
 from drivelint import batch, store
@@ -17,6 +20,7 @@ from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
 from drivelint.run import Settings, check
 
+OMEGA = {"x": "x_m", "y": "y_m", "yaw": "yaw_rad", "vel_x": "vx_mps", "vel_y": "vy_mps"}
 EGOS = ("ego", "once", "oncoming", "parked")
 # where anybody judged at the same time ever was, the corridor is looked at: more cells of it are kept, nobody else is in them
 TABLES = [table for table in store.schema() if table not in ("drive", "rule", "visited_cell", "corridor_cell")]
@@ -206,6 +210,35 @@ def test_none_judged_is_an_error_of_its_own(tmp_path: Path) -> None:
 def test_a_map_of_another_place_is_refused(offset: tuple[float, float], told: str) -> None:
     with pytest.raises(MapError, match=r"of another place than safe\.csv: .*" + told):
         check(settings(FIXTURE / "safe.csv", map_offset=offset), Silent())
+
+
+def test_the_map_and_the_host_that_an_omega_prime_table_holds(tmp_path: Path) -> None:
+    """Without --map and --ego the distance ahead is that of the CSV with both."""
+    rows = read_trace(FIXTURE / "near_miss.csv", IngestOptions(mapping=str(FIXTURE / "mapping.toml")))
+    states = rows.tables["actor_state"]
+    ids = {"ego": 3, "parked": 7, "oncoming": 0}
+    same = {"length": 4.8, "width": 1.8, "height": 1.5, "z": 0.0, "acc_x": 0.0, "acc_y": 0.0, "type": 2, "subtype": 4}
+    table = pa.table(
+        {
+            "total_nanos": states["t_ns"],
+            "idx": [ids[name] for name in states["actor_id"].to_pylist()],
+            **{name: states[ours] for name, ours in OMEGA.items()},
+            **{name: [value] * states.num_rows for name, value in same.items()},
+        }
+    )
+    log = tmp_path / "omega.parquet"
+    metadata = {"host_vehicle_idx": "3", "xodr": (FIXTURE / "road.xodr").read_text("utf-8"), "xodr_name": "road"}
+    pq.write_table(table.replace_schema_metadata(metadata), log)
+    found = []
+    for asked in (settings(FIXTURE / "near_miss.csv"), settings(log, map=None, mapping=None)):
+        result = check(asked, Silent())
+        rule = pc.equal(result.verdicts["rule_id"], "ukhc.r162.safe-distance-ahead")
+        (row,) = result.verdicts.filter(rule).to_pylist()
+        found.append((row["verdict"], row["t_ref_ns"], round(row["observed"], 6), round(row["required"], 6)))
+        assert result.drives["handedness"].to_pylist() == ["lht"]
+    assert found[0] == found[1]
+    assert result.drives["map_name"].to_pylist() == ["embedded"]
+    assert result.verdicts["ego_id"].unique().to_pylist() == ["3"]
 
 
 def test_a_map_whose_lanes_run_the_other_way_is_refused() -> None:

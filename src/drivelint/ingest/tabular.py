@@ -191,6 +191,11 @@ class _Body:
         for name in self.mapping.ego.ids:
             if name in states.ids:
                 return [name]
+        host = self.sheet.metadata.get(b"host_vehicle_idx", b"").decode(
+            "utf-8", "replace"
+        )  # as omega-prime's Parquet has it
+        if host in states.ids:
+            return [host]
         if self.mapping.ego.otherwise is None or not len(states):
             return list(self.mapping.ego.ids)
         motor = np.array([kind in MOTOR_VEHICLES for kind in CLASSES] + [False], np.bool_)
