@@ -57,6 +57,9 @@ CREATE OR REPLACE MACRO on_course(gap_m, ttc_s, d_m, lat_half_m, lat_mps, lead_d
     gap_m >= 0 AND abs(d_m - lead_d_m + (lat_mps - lead_lat_mps) * CASE WHEN isinf(ttc_s) THEN 0.0 WHEN ttc_s < drift_s() THEN ttc_s WHEN ttc_s >= drift_s() THEN drift_s() END)
         < lat_half_m + lead_lat_half_m;
 
+-- Whether at least one of the two moves: standing vehicles, in contact even, have recorded speeds that tremble.
+CREATE OR REPLACE MACRO either_moves(ego_mps, lead_mps) AS ego_mps > standing_mps() OR lead_mps > standing_mps();
+
 -- Whether a vehicle ahead comes towards the ego: to stand the wrong way round is not to come.
 CREATE OR REPLACE MACRO comes(speed_mps, oncoming) AS oncoming AND speed_mps > standing_mps();
 
