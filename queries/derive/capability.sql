@@ -67,7 +67,7 @@ answer AS (
             'no': 'the log declares no modes of the ego: record them as events that are on and off'}
     ] || [
         {'signal': 'mode_' || mode, 'of_map': false, 'available': coalesce(list_contains(d.modes, mode), false), 'yes': 'the log says when ' || mode || ' is on',
-            'no': 'the log does not say when ' || mode || ' is on: record the event ' || mode || ' with on and off'}
+            'no': 'the log does not tell about ' || replace(mode, '_', ' ') || ': record the event ' || mode || ', on and off'}
         FOR mode IN ['engaged', 'emergency_manoeuvre', 'minimal_risk_manoeuvre', 'lane_change_procedure', 'headlights', 'horn']
     ], recursive := true)
     FROM subject s

@@ -241,6 +241,9 @@ def test_the_headline() -> None:
     assert headline(result([verdict("pass"), verdict("unknown")])) == "No finding, as far as it could be judged"
     lost = [drive("d2", status="not_judged", status_reason="broken")]
     assert headline(result([verdict("pass")], drives=[drive(), *lost])) == "No finding, as far as it could be judged"
+    mostly = [verdict("pass"), verdict("unknown"), verdict("unknown", occurrence=1)]
+    assert headline(result(mostly)) == "Most could not be judged; no finding in the rest"
+    assert "1 of the rules could not be judged" in Parsed(page(result(mostly))).text
     assert headline(result([], drives=lost)) == "Nothing was judged"
     assert headline(result([verdict("fail")], [finding()])) == "1 finding in 1 of 1 drive"
 

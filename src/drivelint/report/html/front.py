@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.report import counts
@@ -28,6 +29,7 @@ PACKS: Final = {
     "alks-r157": "UN Regulation 157 (lane keeping)",
 }
 """What the packs that come with drivelint are about."""
+_OPEN: Final = pa.array(["unknown", "error"])
 _STORY_DRIVES: Final = 6
 _STORY_PARTIES: Final = 6
 
@@ -66,9 +68,17 @@ def headline(result: Result) -> tuple[str, str]:
         return "unknown", "Nothing was judged"
     if not told["pass"] and open_:
         return "unknown", "Nothing could be decided"
+    if open_ > told["pass"]:
+        return "unknown", "Most could not be judged; no finding in the rest"
     if open_ or judged < result.drives.num_rows:
         return "unknown", "No finding, as far as it could be judged"
     return "pass", "No finding"
+
+
+def not_decided(result: Result) -> int:
+    """Return how many rules are unknown, or could not be run, somewhere."""
+    rows = result.verdicts.filter(pc.is_in(result.verdicts["verdict"], value_set=_OPEN))
+    return len(pc.unique(rows["rule_id"]))
 
 
 def _of_these(result: Result) -> str:

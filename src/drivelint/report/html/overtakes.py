@@ -26,6 +26,7 @@ ASSERTIONS: Final = (
 """The runtime assertions in the order of `overtake_record.stretches`: what must hold, and the rule that says so."""
 _STAGES: Final = ("pulling_out", "passing", "cutting_in")
 _SAID: Final = {"fail": "not kept", "pass": "kept", "unknown": "unknown", "not_applicable": "nobody was coming"}
+_STATUS: Final = {"truncated": "still out at the end of the recording", "lane_change": "stayed in the other lane"}
 _THIN: Final = 0.6  # percent: a band is at least as wide
 _WORST: Final = ("fail", "unknown", "pass", "nobody")
 _ZONES_S: Final = (0.0, 0.5, 2.5)  # the spare time at which zones B, C and D begin
@@ -152,7 +153,7 @@ def _overtake(row: Row, profiles: Sequence[str], start_ns: int, shown: bool) -> 
         time=seconds(row["t0_ns"], start_ns),
         vbp_id=row["vbp_id"],
         ov_id=row["ov_id"] or "nobody seen",
-        status=row["status"].replace("_", " "),
+        status=_STATUS.get(row["status"]) or row["status"],
         da=("" if row["ov_id"] else "at least " if row["da_m"] is not None else "") + number(row["da_m"], "m"),
         speeds=", ".join(
             f"{who} {number(v, 'm/s')}"

@@ -94,6 +94,7 @@ def content(result: Result) -> dict[str, Any]:
     return {
         "outcome": outcome(result),
         "headline": front.headline(result),
+        "not_decided": front.not_decided(result),
         "counts": front.shares(totals),
         "names": _NAMES,
         "passes": totals["pass"],
