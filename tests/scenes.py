@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from unittest.mock import patch
 
 import numpy as np
@@ -19,7 +19,7 @@ import pyarrow as pa
 
 from drivelint import catalogue, store
 from drivelint.batch import Drive
-from drivelint.derive import derivations, derive
+from drivelint.derive import derivations, derive, needed
 from drivelint.ingest import Trace
 from drivelint.ingest.finish import SCHEMAS
 from drivelint.judge import Bench
@@ -282,10 +282,46 @@ def _database() -> duckdb.DuckDBPyConnection:
     return store.connect(threads=1)
 
 
-def clear(con: duckdb.DuckDBPyConnection) -> None:
-    """Empty every table."""
-    for table in store.schema():
+def clear(con: duckdb.DuckDBPyConnection, *, but: Iterable[str] = ()) -> None:
+    """Empty every table but these."""
+    filled = con.execute("SELECT table_name FROM duckdb_tables() WHERE NOT temporary AND estimated_size > 0").fetchall()
+    for table in sorted({name for (name,) in filled} - set(but)):
         con.execute(f"DELETE FROM {table}")
+
+
+class _Place(NamedTuple):
+    """A database in which the maps of some scenes lie, and its bench."""
+
+    con: duckdb.DuckDBPyConnection
+    bench: Bench
+    maps: list[Environment]
+
+
+_PLACES: Final[list[_Place]] = []
+"""The databases of the last few maps, the last used at the end: most of a file's scenes lie on a handful of maps."""
+
+
+def _place(drives: Iterable[Drive]) -> _Place:
+    """Return a database for these drives: the one in which their very maps lie already, or another, emptied."""
+    maps = list({id(d.environment): d.environment for d in drives if d.environment}.values())
+    found = next((p for p in _PLACES if {*map(id, p.maps)} == {*map(id, maps)}), None)
+    if found:
+        _PLACES.remove(found)
+        clear(found.con, but=(*_of_the_map(), "profile"))
+    else:
+        con = _PLACES.pop(0).con if len(_PLACES) >= 4 else store.connect(threads=1)
+        clear(con)
+        store.insert(con, "profile", profile_table(load_profiles(), ()))
+        found = _Place(con, Bench(con, (), {}, None), maps)
+    _PLACES.append(found)
+    return found
+
+
+@cache
+def _of_the_map() -> list[str]:
+    return [
+        table for table, columns in store.schema().items() if "environment_id" in columns and "drive_id" not in columns
+    ]
 
 
 def derived(
@@ -293,17 +329,24 @@ def derived(
 ) -> duckdb.DuckDBPyConnection:
     """Return a database in which the library tables of these drives stand; none named: all.
 
-    It is one database for all scenes, emptied before.
+    Without `con` it is one of a few that all scenes share, emptied before of all but the same maps.
     """
-    con = con or _database()
-    clear(con)
-    store.insert(con, "profile", profile_table(load_profiles(), ()))
-    bench = Bench(con, (), {}, None)
-    bench._tables = set(tables) or set(derivations())
+    if con:
+        clear(con)
+        store.insert(con, "profile", profile_table(load_profiles(), ()))
+        place = _Place(con, Bench(con, (), {}, None), [])
+    else:
+        place = _place(drives)
+    con, bench, _ = place
+    wanted = set(tables) or set(derivations())
     # what the engine always needs besides is not asked for here, and would take most of the time
     with patch("drivelint.derive.ALWAYS", ()):
+        of_the_map = {d.table for d in needed(wanted) if d.of_the_map}
+        if not of_the_map <= bench._tables:
+            bench._tables |= of_the_map
+            bench._maps = frozenset()  # all of the map once more, with these
         bench._load(drives)
-        derive(con, bench._tables, of_the_map=False)
+        derive(con, wanted, of_the_map=False)
     return con
 
 

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pytest
 import shapely
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from shapely import affinity
 
 from tests.scenes import Actor, Road, derived, drive, moving, rows, seconds, standing, tee, times
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from drivelint.batch import Drive
     from tests.scenes import Row
 
 
@@ -241,58 +241,92 @@ def test_the_junction_in_which_they_meet() -> None:
     assert [(r["object_id"], r["junction_id"]) for r in found] == [("other", "5"), ("late", None)]
 
 
-Box = tuple[float, float]
+class Meeting(NamedTuple):
+    """The ego goes east; the other comes at an angle, both at constant speeds, and crosses its way some seconds later."""
+
+    degrees: int
+    ego_v: int
+    other_v: int
+    delay: float
+    length: float
+    width: float
+
+    @property
+    def heading(self) -> float:
+        return math.radians(self.degrees)
+
+    def other(self, t: np.ndarray) -> np.ndarray:
+        """Return where its centre is at each time: (n, 2)."""
+        s = self.other_v * (t - 20 - self.delay)
+        return np.stack([s * math.cos(self.heading), s * math.sin(self.heading)], axis=1)
+
+    def ego(self, t: np.ndarray) -> np.ndarray:
+        return np.stack([self.ego_v * (t - 20), 0 * t], axis=1)
+
+    def drive(self, drive_id: str) -> Drive:
+        t = times(40)
+        x, y = self.other(t).T
+        v = np.full(t.shape, float(self.other_v))
+        other = Actor(
+            "other", t, x, y, np.full(t.shape, self.heading), v * math.cos(self.heading), v * math.sin(self.heading),
+            length=self.length, width=self.width,
+        )  # fmt: skip
+        return drive([moving("ego", line(), t, self.ego_v * (t - 20), 0.0), other], None, drive_id=drive_id)
 
 
-def swept(t: np.ndarray, x: np.ndarray, y: np.ndarray, heading: float, size: Box) -> list[shapely.Polygon]:
-    box = affinity.rotate(
-        shapely.box(-size[0] / 2, -size[1] / 2, size[0] / 2, size[1] / 2), heading, (0, 0), use_radians=True
-    )
-    return [affinity.translate(box, float(a), float(b)) for a, b in zip(x, y, strict=True)]
+def boxes(centres: np.ndarray, heading: float, length: float, width: float) -> np.ndarray:
+    """Return the box around every centre."""
+    u, v = np.array([math.cos(heading), math.sin(heading)]), np.array([-math.sin(heading), math.cos(heading)])
+    corners = [a * length / 2 * u + b * width / 2 * v for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+    return np.asarray(shapely.polygons(centres[:, None, :] + np.array(corners)))
 
 
-@settings(max_examples=40, deadline=None)
-@given(
-    degrees=st.one_of(st.integers(25, 155), st.integers(-155, -25)),
-    ego_v=st.integers(4, 20),
-    other_v=st.integers(1, 15),
-    delay=st.floats(-6, 6),
-    other_size=st.sampled_from([(4.8, 1.8), (0.6, 0.6), (12.0, 2.5), (1.8, 0.6)]),
+def ground(swept: np.ndarray) -> shapely.Geometry:
+    """Return what a box covers that goes straight on: the hull of where it begins and ends."""
+    hull: shapely.Geometry = shapely.convex_hull(shapely.union(swept[0], swept[-1]))
+    return hull
+
+
+meetings = st.builds(
+    lambda degrees, ego_v, other_v, delay, size: Meeting(degrees, ego_v, other_v, delay, *size),
+    st.one_of(st.integers(25, 155), st.integers(-155, -25)),
+    st.integers(4, 20),
+    st.integers(1, 15),
+    st.floats(-6, 6),
+    st.sampled_from([(4.8, 1.8), (0.6, 0.6), (12.0, 2.5), (1.8, 0.6)]),
 )
-@example(degrees=90, ego_v=10, other_v=10, delay=0.0, other_size=(4.8, 1.8))
-def test_the_times_are_those_of_the_swept_polygons(
-    degrees: int, ego_v: int, other_v: int, delay: float, other_size: Box
-) -> None:
-    """Entry and exit by shapely: first and last moment that a box touches the union of all the other's boxes, at 50 Hz."""
-    heading = math.radians(degrees)
+
+
+@settings(max_examples=3)
+@given(st.lists(meetings, min_size=14, max_size=14))
+@example([Meeting(90, 10, 10, 0.0, 4.8, 1.8)])
+def test_the_times_are_those_of_the_swept_polygons(found: list[Meeting]) -> None:
+    """Entry and exit by shapely: first and last moment that a box touches the ground that the other's covers, at 50 Hz.
+
+    Each meeting is a drive of its own, all derived at once.
+    """
+    con = derived(*(each.drive(f"{no:02}") for no, each in enumerate(found)), tables=["conflict"])
+    told = rows(con, "FROM conflict ORDER BY drive_id")
+    assert [row["drive_id"] for row in told] == [f"{no:02}" for no in range(len(found))]
+    for each, row in zip(found, told, strict=True):
+        as_swept(each, row)
+
+
+def as_swept(each: Meeting, row: Row) -> None:
+    """Hold that the conflict has the times of the polygons."""
     fine = np.arange(0, 40.001, 0.02)
+    ego_boxes = boxes(each.ego(fine), 0.0, 4.8, 1.8)
+    other_boxes = boxes(each.other(fine), each.heading, each.length, each.width)
+    on_ego = fine[shapely.intersects(ego_boxes, ground(other_boxes))]
+    on_other = fine[shapely.intersects(other_boxes, ground(ego_boxes))]
 
-    def way(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        s = other_v * (at - 20 - delay)
-        return s * math.cos(heading), s * math.sin(heading)
-
-    ego_boxes = swept(fine, ego_v * (fine - 20), 0 * fine, 0.0, (4.8, 1.8))
-    other_boxes = swept(fine, *way(fine), heading, other_size)
-    ego_ground, other_ground = shapely.union_all(ego_boxes), shapely.union_all(other_boxes)
-    on_ego = fine[shapely.intersects(np.array(ego_boxes), other_ground)]
-    on_other = fine[shapely.intersects(np.array(other_boxes), ego_ground)]
-
-    t = times(40)
-    x, y = way(t)
-    v = np.full(t.shape, float(other_v))
-    other = Actor(
-        "other", t, x, y, np.full(t.shape, heading), v * math.cos(heading), v * math.sin(heading),
-        length=other_size[0], width=other_size[1],
-    )  # fmt: skip
-    found = conflicts(moving("ego", line(), t, ego_v * (t - 20), 0.0), other)
     pet = max(on_ego[0], on_other[0]) - min(on_ego[-1], on_other[-1])
-    (row,) = found
     times_ = [row[f"t_{who}_{end}_ns"] / 1e9 for who in ("ego", "object") for end in ("in", "out")]
     # a sample of 10 Hz at most, and where the ends of two slender boxes barely touch one more of the other's
-    tolerance = 0.13 + 0.1 * max(ego_v / other_v, other_v / ego_v)
+    tolerance = 0.13 + 0.1 * max(each.ego_v / each.other_v, each.other_v / each.ego_v)
     span = max(on_ego[-1], on_other[-1]) - min(on_ego[0], on_other[0])
     if span < 10:  # beyond that the pairs more than ten seconds apart are left out
-        assert times_ == pytest.approx([on_ego[0], on_ego[-1], on_other[0], on_other[-1]], abs=tolerance)
-    assert row["pet_s"] == pytest.approx(pet, abs=2 * tolerance)
-    assert row["ego_first"] == (row["t_ego_in_ns"] <= row["t_object_in_ns"])
-    assert row["angle_rad"] == pytest.approx(heading)
+        assert times_ == pytest.approx([on_ego[0], on_ego[-1], on_other[0], on_other[-1]], abs=tolerance), each
+    assert row["pet_s"] == pytest.approx(pet, abs=2 * tolerance), each
+    assert row["ego_first"] == (row["t_ego_in_ns"] <= row["t_object_in_ns"]), each
+    assert row["angle_rad"] == pytest.approx(each.heading), each
