@@ -148,6 +148,7 @@ CREATE TABLE crossing_passage (
     kind VARCHAR,                     -- zebra, signalled, other, as the map says, or signalled where a light governs it; NULL: the map does not say
     t_in_ns BIGINT,                   -- first step with its front on it; NULL: the log, or a hole, begins with the ego on it
     t_out_ns BIGINT,                  -- first step with its rear past it; NULL: the log, or a hole, ends with the ego on it
+    along_road BOOLEAN,               -- which half is the ego's, see crossing_occupancy
     on_id VARCHAR,                    -- somebody on foot on the ego's half at any time from t_in to t_out, the first of them; NULL: nobody
     t_on_ns BIGINT,                   -- since when
     waiting_id VARCHAR,               -- somebody on foot who stands (0.5 m/s) off the lanes it lies on, within 2 m of its end on the ego's side, throughout the 2 s before t_in; NULL: nobody

@@ -170,7 +170,7 @@ SELECT
     v.drive_id, v.ego_id, (row_number() OVER (PARTITION BY v.drive_id, v.ego_id ORDER BY v.t_ns, v.mark_id) - 1)::INTEGER AS occurrence,
     v.mark_id AS crossing_id, coalesce(s.kind, CASE WHEN v.signal_id IS NOT NULL THEN 'signalled' END) AS kind,
     v.t_in_ns, CASE WHEN v.t_last_ns IS NOT NULL OR v.t_in_ns IS NOT NULL THEN v.t_out_ns END AS t_out_ns,
-    o.who.id AS on_id, o.who.t_ns AS t_on_ns, w.waiting_id, u.t_ns IS NULL AS known,
+    v.along_road, o.who.id AS on_id, o.who.t_ns AS t_on_ns, w.waiting_id, u.t_ns IS NULL AS known,
     v.signal_id, l.state, h.stood_before
 FROM visit v
 LEFT JOIN said s ON s.environment_id = v.environment_id AND s.crossing_id = v.mark_id

@@ -1,6 +1,6 @@
 -- title = "Following distance"
--- clause = "UN R157 5.2.3.3: up to 60 km/h keep at least the distance of the table, never less than 2 m; if others take it, restore it at the next opportunity"
--- hypothesis = "At every step behind a vehicle, was the gap at least the distance of the table?"
+-- clause = "UN R157 5.2.3.3 (cars and vans; more for heavy vehicles): while moving, up to 60 km/h, keep at least the distance of the table, never less than 2 m; if others take it, restore it at the next opportunity"
+-- hypothesis = "At every step at which the ego moved behind a vehicle, was the gap at least the distance of the table?"
 -- kind = "invariant"
 -- derivation = "model"
 -- severity = "critical"
@@ -31,7 +31,7 @@
 
 -- @condition
 SELECT f.drive_id, f.ego_id, f.t_ns, f.gap_m AS observed, r157_gap_m(f.ego_speed_mps) AS required,
-    f.follows AND f.ego_speed_mps <= $v_max_mps AND coalesce(f.t_ns - f.joined_ns >= $restore_s * 1e9, true)
+    f.follows AND f.ego_speed_mps > stood_mps() AND f.ego_speed_mps <= $v_max_mps AND coalesce(f.t_ns - f.joined_ns >= $restore_s * 1e9, true)
         AND CASE WHEN b.braked THEN false WHEN f.gap_m >= r157_gap_m(f.ego_speed_mps) OR NOT b.unsure THEN true END AS applies
 FROM following f
 LEFT JOIN (

@@ -1,13 +1,13 @@
 -- title = "Stop at a signalled crossing"
--- clause = "UKHC R196: at a signalled crossing you must stop on red, and give way to people on it while amber flashes"
--- hypothesis = "When the ego went onto the crossing, did the light allow it, and was nobody on its half while amber flashed?"
+-- clause = "UKHC R196 and R197: at a signalled crossing you must stop on red, and give way to people on it while amber flashes, to those from beyond an island too"
+-- hypothesis = "When the ego went onto the crossing, did the light allow it, and was nobody on its half, or about to come onto it, while amber flashed?"
 -- kind = "execution"
 -- derivation = "direct"
 -- severity = "critical"
 -- legal = "must"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["crossing_passage", "stop_line_crossing"]
+-- reads = ["actor", "clock", "crossing_occupancy", "crossing_passage", "stop_line_crossing"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [params.past_line_s]
@@ -17,16 +17,33 @@
 
 -- @reference
 -- where the crossing has a stop line, it is there that the light had to be kept
-SELECT c.drive_id, c.ego_id, c.t_in_ns AS t_ns, c.occurrence, c.on_id AS object_id, c.t_on_ns, c.known,
+SELECT c.drive_id, c.ego_id, c.t_in_ns AS t_ns, c.occurrence, c.crossing_id, c.along_road, c.on_id AS object_id, c.t_on_ns, c.known,
     CASE WHEN count(l.t_ns) > 0 THEN max({'t': l.t_ns, 'state': l.state}).state ELSE c.state END AS state
 FROM crossing_passage c
 LEFT JOIN stop_line_crossing l ON l.drive_id = c.drive_id AND l.ego_id = c.ego_id AND l.signal_id = c.signal_id
     AND l.t_ns <= c.t_in_ns AND l.t_ns >= c.t_in_ns - ($past_line_s * 1e9)::BIGINT
 WHERE coalesce(c.kind, 'signalled') = 'signalled'
-GROUP BY c.drive_id, c.ego_id, c.t_in_ns, c.occurrence, c.on_id, c.t_on_ns, c.known, c.state
+GROUP BY c.drive_id, c.ego_id, c.t_in_ns, c.occurrence, c.crossing_id, c.along_road, c.on_id, c.t_on_ns, c.known, c.state
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, ref_id,
-    NOT forbids(state) AND (state <> 'flashing' OR CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns THEN false WHEN known THEN true END) AS holds,
-    'the light was ' || coalesce(replace(state, '_', ' and '), 'not known') || coalesce(', and ' || object_id || ' on the crossing', '') AS reason
-FROM reference
+-- who is on the other half and later comes over was on the way when the ego came; who came from here, or leaves there, was not
+WITH other AS (
+    SELECT r.ref_id, min(o.object_id) FILTER (h.comes) AS comes_id, min(o.object_id) FILTER (h.comes IS NULL) AS may_come_id
+    FROM reference r
+    JOIN clock k USING (drive_id, ego_id)
+    JOIN crossing_occupancy o ON o.drive_id = r.drive_id AND o.crossing_id = r.crossing_id AND o.along_road <> r.along_road
+        AND o.t_from_ns <= r.t_ns AND o.t_to_ns >= r.t_ns AND o.object_id <> r.ego_id
+    JOIN actor a ON a.drive_id = o.drive_id AND a.actor_id = o.object_id
+    LEFT JOIN (
+        SELECT drive_id, crossing_id, object_id, along_road, min(t_from_ns) AS t_first_ns, max(t_from_ns) AS t_last_ns
+        FROM crossing_occupancy GROUP BY ALL
+    ) q ON q.drive_id = o.drive_id AND q.crossing_id = o.crossing_id AND q.object_id = o.object_id AND q.along_road = r.along_road
+    CROSS JOIN LATERAL (SELECT CASE WHEN q.t_last_ns > r.t_ns THEN CASE WHEN a.actor_class IS NOT NULL THEN true END WHEN q.t_first_ns <= r.t_ns OR o.t_to_ns < k.t_end_ns - k.max_gap_ns THEN false END AS comes) h
+    GROUP BY r.ref_id
+)
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id,
+    NOT forbids(r.state) AND (r.state <> 'flashing'
+        OR CASE WHEN r.object_id IS NOT NULL AND r.t_on_ns <= r.t_ns OR o.comes_id IS NOT NULL THEN false WHEN r.known AND o.may_come_id IS NULL THEN true END) AS holds,
+    'the light was ' || coalesce(replace(r.state, '_', ' and '), 'not known') || coalesce(', and ' || coalesce(r.object_id, o.comes_id) || ' on the crossing', '') AS reason
+FROM reference r
+LEFT JOIN other o USING (ref_id)
