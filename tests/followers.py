@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 OVER_M = 0.05  # a box this far over a lane's boundary is in the lane
 DRIFT_S = 3.0  # so long a present speed across the lane counts
 CLOSE_CALL_M = 0.03  # nearer to that than this, two honest computations may differ
+NEVER_S = 600.0  # so far off, nobody meets
 COMES_MPS = 0.5
 FULL_BRAKING_MPS2 = 8.0
 
@@ -41,6 +42,7 @@ class Seen(NamedTuple):
     ahead: bool
     across: tuple[float, float]
     in_by: float
+    centre_in_by: float
     speed: float
     drift: float  # speed across the lane, to the left positive, by its heading
     comes: bool
@@ -65,15 +67,24 @@ def measure(
 ) -> Measure:
     """Return a step's measures by their definitions.
 
-    The lead is the nearest vehicle ahead in the lane (its centre ahead of the ego's). TTC = gap / closing speed (Hayward
-    1972), headway = gap / speed, DRAC = closing speed squared / twice the gap, time to brake = TTC less half the time of
+    The lead is the nearest vehicle ahead in the lane (its centre ahead of the ego's) and in the way: its centre in the
+    lane, or the two boxes overlapping across it, now or within DRIFT_S at the present speeds across. TTC = gap / closing speed
+    (Hayward 1972), headway = gap / speed, DRAC = closing speed squared / twice the gap, time to brake = TTC less half the time of
     a full braking from the closing speed. Headway is defined behind a lead that is not alongside and whose box overlaps
     the ego's across the lane, and from 5 m/s on; the others where the two will overlap when the ego is there, at the
-    present speeds across. `doubt_rad`: how exactly the lane's heading is known.
+    present speeds across, and one of them moves. `doubt_rad`: how exactly the lane's heading is known.
     """
     others = list(others)
-    inside = [o for o in others if o.ahead and o.in_by > OVER_M and not o.comes]
+    reaching = [o for o in others if o.ahead and o.in_by > OVER_M and not o.comes]
+    late = {o.name: _comes_in_by(drift, across, o) for o in reaching}
+    inside = [o for o in reaching if o.centre_in_by >= 0 or late[o.name] > 0]
     close_call = any(o.ahead and abs(o.in_by - OVER_M) < CLOSE_CALL_M for o in others)
+    # nobody further away than the lead could be it
+    least = min((o.gap for o in inside), default=math.inf)
+    far = CLOSE_CALL_M + doubt_rad * speed * DRIFT_S
+    for o in reaching:
+        if o.gap <= least and o.centre_in_by < CLOSE_CALL_M:
+            close_call |= o.centre_in_by > -CLOSE_CALL_M or abs(late[o.name]) < far
     if not inside:
         return Measure(None, math.inf, math.inf, 0.0, math.inf, close_call)
     lead = min(inside, key=lambda o: o.gap)
@@ -85,13 +96,23 @@ def measure(
     far = doubt_rad * speed * min(ttc, DRIFT_S) if math.isfinite(ttc) else 0.0
     close_call |= min(abs(lead.gap), abs(now), abs(then) - far) < CLOSE_CALL_M or abs(speed - 5.0) < 1e-3
     ttb = drac = thw = None
-    on_course = lead.gap >= 0 and then > 0
+    on_course = lead.gap >= 0 and then > 0 and max(speed, lead.speed) > COMES_MPS
     if on_course:
         drac = closing**2 / (2 * lead.gap) if closing > 0 else 0.0
-        ttb = ttc - closing / (2 * FULL_BRAKING_MPS2) if closing > 0 else math.inf
+        ttb = _or_never(ttc - closing / (2 * FULL_BRAKING_MPS2)) if closing > 0 else math.inf
     if lead.gap >= 0 and now > 0 and speed >= 5.0:
         thw = lead.gap / speed
-    return Measure(lead.name, ttc if on_course else None, thw, drac, ttb, close_call)
+    return Measure(lead.name, _or_never(ttc) if on_course else None, thw, drac, ttb, close_call)
+
+
+def _or_never(time: float) -> float:
+    return math.inf if time > NEVER_S else time
+
+
+def _comes_in_by(drift: float, across: tuple[float, float], other: Seen) -> float:
+    """Return by how much the two boxes overlap across the lane, now or in DRIFT_S if they come nearer."""
+    side = math.copysign(1.0, sum(other.across) - sum(across))
+    return _overlap(across, other.across) + DRIFT_S * max(0.0, side * (drift - other.drift))
 
 
 def _overlap(a: tuple[float, float], b: tuple[float, float]) -> float:
@@ -185,6 +206,7 @@ def _esmini_seen(  # noqa: PLR0917 - two vehicles, a moment, and the road
         bool(apart + float(_corners(a, i, lane)[0].mean() - _corners(own, i, lane)[0].mean()) > 0),
         (low, high),
         min(lane.half - low, high + lane.half),
+        lane.half - abs(low + high) / 2,
         float(a["v"][i]),
         _drift(a, i, lane),
         bool(with_lane < -0.5 and a["v"][i] > COMES_MPS),
@@ -324,6 +346,7 @@ class Scenario:
                     mid > centre_s,
                     (od.min(), od.max()),
                     inside,
+                    width - abs(mid_d),
                     speed,
                     speed * math.sin(turn),
                     comes,

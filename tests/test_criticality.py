@@ -32,7 +32,7 @@ COMMONROAD = {
     "DEU_Gar-1_1_T-1": 80,
     "OSC_Overtake-1_1_T-1": 400,
     "OSC_PedestrianCollision-1_1_T-1": 90,
-    "USA_US101-5_1_T-1": 500,
+    "USA_US101-5_1_T-1": 430,
 }
 """Scenario -> how many steps at least must have been compared, every vehicle being the ego in turn."""
 ZIGZAG_RAD = {"USA_US101-5_1_T-1": 0.05}

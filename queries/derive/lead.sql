@@ -21,10 +21,12 @@ ahead AS (
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     LEFT JOIN crossing c ON c.drive_id = p.drive_id AND c.object_id = p.object_id AND c.t_ns = p.t_ns
     WHERE may_be_vehicle(p.actor_class) AND p.s_m > e.s_m AND in_lane(p.d_m, p.lat_half_m, p.half_width_m)
-        -- what stands the wrong way round is in the way all the same; one that comes towards the ego only if it is in its lane or its way:
-        -- oncoming vehicles that touch the line must not hide whom the ego follows
-        AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps()
-            OR abs(p.d_m) <= p.half_width_m OR abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m)
+        -- in the lane with its centre, or in the ego's way, now or soon at the present speeds across (who comes towards the ego: now): a
+        -- vehicle that only reaches over the line must not hide whom the ego follows
+        AND (abs(p.d_m) <= p.half_width_m OR abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m
+            < CASE WHEN abs(p.heading_diff_rad) < 2 * pi() / 3 THEN
+                drift_s() * greatest(0.0, sign(p.d_m - e.d_m) * (e.speed_mps * sin(e.heading_diff_rad) - p.speed_mps * sin(p.heading_diff_rad)))
+            ELSE 0.0 END)
         AND (c.t_ns IS NULL OR abs(p.heading_diff_rad) < pi() / 4 OR p.speed_mps <= standing_mps())
     GROUP BY ALL
 ),

@@ -64,7 +64,8 @@ def test_parked_at_the_edge_of_the_lane_is_passed_unless_it_is_in_the_way(reache
     t = times(3.0)
     ego = moving("ego", way, t, 100 + 10 * t, way.own)
     parked = standing("x", way, t, 200, -LANE - 0.9 + reaches_in)
-    assert {(row["object_id"], row["follows"]) for row in following(way, ego, parked)} == {("x", follows)}
+    seen = "x" if follows else None
+    assert {(row["object_id"], row["follows"]) for row in following(way, ego, parked)} == {(seen, follows)}
 
 
 @pytest.mark.parametrize(("inside", "follows"), [(-0.7, False), (0.1, True)])
@@ -74,7 +75,30 @@ def test_one_that_reaches_over_the_line_is_beside_until_its_centre_is_in(inside:
     t = times(3.0)
     ego = moving("ego", way, t, 100 + 10 * t, -1.5 * LANE)
     other = moving("x", way, t, 112 + 10 * t, -LANE - inside, width=1.8 if inside < 0 else 0.8)
-    assert {(row["object_id"], row["follows"]) for row in following(way, ego, other)} == {("x", follows)}
+    seen = "x" if follows else None
+    assert {(row["object_id"], row["follows"]) for row in following(way, ego, other)} == {(seen, follows)}
+
+
+@pytest.mark.parametrize("at", ["parked at the edge", "in the next lane"])
+def test_one_that_reaches_over_the_line_hides_nobody_ahead(at: str) -> None:
+    way = road(lanes=(0, 2))
+    t = times(3.0)
+    ego = moving("ego", way, t, 100 + 10 * t, -1.5 * LANE)
+    lead = moving("y", way, t, 140 + 10 * t, -1.5 * LANE)
+    parked = standing("x", way, t, 145, -2 * LANE - 0.5)
+    other = parked if at == "parked at the edge" else moving("x", way, t, 112 + 10 * t, -LANE + 0.7)
+    assert {(row["object_id"], row["follows"]) for row in following(way, ego, other, lead)} == {("y", True)}
+
+
+@pytest.mark.parametrize(("across", "seen"), [(0.2, "y"), (0.5, "x"), (-0.5, "y")])
+def test_one_that_is_about_to_come_in_the_way_is_ahead_before(across: float, seen: str) -> None:
+    """0.65 m beside the ego's way and coming nearer: within three seconds at more than 0.22 m/s."""
+    way = road(lanes=(0, 2))
+    t = times(0.5)
+    ego = moving("ego", way, t, 100 + 10 * t, -1.5 * LANE)
+    other = moving("x", way, t, 112 + 10 * t, -1.5 * LANE + 0.9 + 0.65 + 0.9 - across * t)
+    lead = moving("y", way, t, 140 + 10 * t, -1.5 * LANE)
+    assert following(way, ego, other, lead)[0]["object_id"] == seen
 
 
 def test_one_that_cuts_in_makes_a_new_gap() -> None:

@@ -202,7 +202,8 @@ def test_the_other_leg_of_a_hairpin_is_not_beside_the_road() -> None:
 LEADS = [
     ("own lane, ahead", 140.0, -1.75, 0.0, 5.0, True),
     ("own lane, behind", 60.0, -1.75, 0.0, 5.0, False),
-    ("a corner in the own lane", 140.0, -0.2 - 0.9 + 1.75, 0.0, 5.0, True),
+    ("a corner in the own lane, beside the ego's way", 140.0, -0.2 - 0.9 + 1.75, 0.0, 5.0, False),
+    ("over the line, in the ego's way", 140.0, -0.05, 0.0, 5.0, True),
     ("beside it", 140.0, 1.75, 0.0, 5.0, False),
     ("coming towards it", 140.0, -1.75, math.pi, 5.0, True),
     ("parked the wrong way round", 140.0, -1.75, math.pi, 0.0, True),
