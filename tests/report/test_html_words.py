@@ -87,3 +87,14 @@ def test_the_logs_of_the_paper_are_the_ones_that_the_differences_are_about() -> 
 
 def _hash(file: Path) -> str:
     return hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+def test_of_a_crowd_the_worst_have_charts_and_the_page_says_so(
+    overtakes: Result, text: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert text.count('<svg class="chart"') > 2
+    assert "Charts over time are drawn" not in text
+    monkeypatch.setattr("drivelint.report.html.page.MAX_CHARTS", 5)
+    few = page(overtakes)
+    assert 0 < few.count('<svg class="chart"') <= 5
+    assert "Charts over time are drawn for the worst 5" in few

@@ -27,6 +27,7 @@ ASSERTIONS: Final = (
 _STAGES: Final = ("pulling_out", "passing", "cutting_in")
 _SAID: Final = {"fail": "not kept", "pass": "kept", "unknown": "unknown", "not_applicable": "nobody was coming"}
 _STATUS: Final = {"truncated": "still out at the end of the recording", "lane_change": "stayed in the other lane"}
+_APART: Final = 20.0  # percent: so much room a label needs on a phone
 _THIN: Final = 0.6  # percent: a band is at least as wide
 _WORST: Final = ("fail", "unknown", "pass", "nobody")
 _ZONES_S: Final = (0.0, 0.5, 2.5)  # the spare time at which zones B, C and D begin
@@ -163,9 +164,20 @@ def _overtake(row: Row, profiles: Sequence[str], start_ns: int, shown: bool) -> 
         cells=[cells.get(profile, Cell("unknown", "-", "-", "", "not computed")) for profile in profiles],
         stages=[stage.replace("_", " ") for stage in stages],
         rows=[_assertion(n, row["stretches"], stages, clock) for n in range(len(ASSERTIONS))] if stages else [],
-        times=[(_pc(clock.at(t)), f"{name} {(t - start_ns) / 1e9:.1f}") for name, t in _times(row)],
+        times=_marks([(clock.at(t), f"{name} {(t - start_ns) / 1e9:.1f}") for name, t in _times(row)]),
         bounds=_bounds(row["stretches"], clock),
     )
+
+
+def _marks(times: Sequence[tuple[float, str]]) -> list[tuple[str, str]]:
+    """Return places and labels on the axis; those that would lie on each other stand together at the first one's place."""
+    kept: list[tuple[float, str]] = []
+    for at, label in times:
+        if kept and at - kept[-1][0] < _APART:
+            kept[-1] = kept[-1][0], f"{kept[-1][1]}, {label}"
+        else:
+            kept.append((at, label))
+    return [(_pc(at), label) for at, label in kept]
 
 
 def _cell(p: Row) -> Cell:

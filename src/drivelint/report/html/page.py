@@ -42,6 +42,8 @@ MAX_FINDINGS: Final = 1000
 MAX_NEAR: Final = 300
 """Near misses in the page."""
 MAX_PICTURES: Final = 250
+MAX_CHARTS: Final = 250
+"""Findings and near misses with their measure over time and the steps behind it, the worst first."""
 MAX_DRIVES: Final = 100
 """Drives with a section of their own: first those with findings, then those with near misses or something unknown."""
 OPEN_DRIVES: Final = 3
@@ -116,6 +118,7 @@ def content(result: Result) -> dict[str, Any]:
         "duration_s": sum(row["duration_s"] or 0.0 for row in drives),
         "drives": [_drive_row(row, told, listed, row["drive_id"] in shown) for row in drives],
         "sections": sections,
+        "n_charts": MAX_CHARTS,
         "brief": len(drives) > BRIEF_DRIVES,
         "tiles": road.tiles() if drawn else [],
         "shapes": shapes(scenes[at] for at in drawn),
@@ -144,14 +147,14 @@ def _lines(
     failed: list[tuple[Row, Measured]] = []
     for row in _worst_first(result.findings, MAX_FINDINGS):
         start = starts.get(row["drive_id"], 0)
-        way = _course(courses.get(_whose(row)), row, start)
+        way = _course(courses, row, start) if len(failed) < MAX_CHARTS else None
         stands = standing(result.gate, row["finding_id"])
         failed.append((row, measured(row, "fail", rules[row["rule_id"]], start, course=way, standing=stands)))
     near = pc.and_(result.verdicts["near_miss"], pc.is_valid(result.verdicts["t_worst_ns"]))
     close: list[tuple[Row, Measured]] = []
     for row in _worst_first(result.verdicts.filter(near), MAX_NEAR):
         start = starts.get(row["drive_id"], 0)
-        way = _course(courses.get(_whose(row)), row, start)
+        way = _course(courses, row, start) if len(failed) + len(close) < MAX_CHARTS else None
         close.append((row, measured(row, "near", rules[row["rule_id"]], start, course=way)))
     return failed, close
 
@@ -162,7 +165,8 @@ def _whose(row: Row) -> tuple[Any, ...]:
     return (row.get("finding_id"), *told)
 
 
-def _course(seen: Row | None, row: Row, start_ns: int) -> Course | None:
+def _course(courses: Mapping[tuple[Any, ...], Row], row: Row, start_ns: int) -> Course | None:
+    seen = courses.get(_whose(row))
     return None if seen is None else course(seen, row["t_worst_ns"], row["unit"], start_ns)
 
 
