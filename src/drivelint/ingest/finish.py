@@ -11,6 +11,7 @@ import pyarrow as pa
 from drivelint.errors import TraceError
 from drivelint.ingest import actors as actor_rows
 from drivelint.ingest import checks, ego
+from drivelint.ingest.align import aligned
 from drivelint.ingest.motion import complete_motion
 from drivelint.ingest.order import in_order, listed, steps, without_duplicates, wrapped
 from drivelint.ingest.trace import BRAKE_LIGHTS, EPOCH_NS, INDICATORS, NUMBERS, SIZES, Finding, Trace
@@ -67,8 +68,18 @@ def finish(path: Path, identity: Identity, recording: Recording, options: Ingest
     checked = checks.run(states, step, actors, derived=derived)
     if recording.strict_units:
         _refuse_wrong_units(path, checked)
+    states, moved = aligned(states, egos)
     is_ego = np.isin(np.arange(len(states.ids)), [i for i, name in enumerate(states.ids) if name in egos])[states.actor]
-    findings = [*recording.findings, *findings, *motion, *varying, *checked, *chosen, *_lights(states, egos, is_ego)]
+    findings = [
+        *recording.findings,
+        *findings,
+        *motion,
+        *varying,
+        *checked,
+        *chosen,
+        *moved,
+        *_lights(states, egos, is_ego),
+    ]
     drive = identity.drive_id
     tables = {
         "data_log": _data_log(identity, recording, states, is_ego, options),
