@@ -1,5 +1,5 @@
 -- title = "No collision with one that cuts in"
--- clause = "UN R157 5.2.5.2: avoid a collision with a vehicle that cuts in, if it leaves more than the time to collision given by the formula"
+-- clause = "UN R157 5.2.5.2: avoid a collision with a slower vehicle that cuts in, if it was seen to move over for 0.72 s and leaves more than the time to collision given by the formula"
 -- hypothesis = "After a vehicle cut in with enough time left, did the ego not touch it?"
 -- kind = "postcondition"
 -- subtype = "temporal"
@@ -31,6 +31,17 @@
 -- unit = "s"
 -- why = "time until it brakes so (0.25 s in EU 2022/1426)"
 -- source = "UN R157 5.2.5.2"
+--
+-- [params.visible_s]
+-- default = 0.72
+-- unit = "s"
+-- why = "so long the system is to have seen it move over"
+-- source = "UN R157 5.2.5.2"
+--
+-- [params.moved_m]
+-- default = 0.05
+-- unit = "m"
+-- why = "our default: further to the side than it is moves a vehicle that begins to come over; who had not, jumps out"
 
 -- @reference
 SELECT drive_id, ego_id, t_ns, object_id
@@ -39,9 +50,19 @@ FROM cut_in
 WHERE coalesce(gap_m > (ego_speed_mps - speed_mps) * ((ego_speed_mps - speed_mps) / (2 * $brake_mps2) + $delay_s), true)
 
 -- @condition
-SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id, 0 AS required, p.clearance_is_bound AS at_least,
+-- who is seen beside, and that long before not yet any nearer than in the three seconds before, leaves the system no chance
+WITH before AS (
+    SELECT r.ref_id, max({'t_ns': p.t_ns, 'off_m': abs(p.d_m)}).off_m < max(abs(p.d_m)) - $moved_m AS moved
+    FROM reference r
+    JOIN pair p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.object_id = r.object_id
+        AND p.t_ns <= r.t_ns - ($visible_s * 1e9)::BIGINT AND p.t_ns >= r.t_ns - ($visible_s * 1e9)::BIGINT - 3_000_000_000
+    WHERE p.d_m IS NOT NULL
+    GROUP BY r.ref_id
+)
+SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id, 0 AS required, p.clearance_is_bound AS at_least, coalesce(b.moved, true) AS applies,
     -- one that has gone for good, in sight and far away, is no longer touched
     CASE WHEN s.object_id IS NULL THEN NULL WHEN p.object_id IS NOT NULL THEN p.clearance_m WHEN l.object_id IS NULL THEN 'inf'::DOUBLE END AS observed
 FROM reference_step s
+LEFT JOIN before b USING (ref_id)
 LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN lost_object l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.object_id = s.object_id AND s.t_ns >= l.t_from_ns AND s.t_ns <= l.t_to_ns
