@@ -54,3 +54,8 @@ CREATE OR REPLACE MACRO box_clearance(dx, dy, c, s, hla, hwa, hlb, hwb) AS
 
 -- Depth of an overlap from its three one-sided depths; unknown as soon as one is (least() alone would leave it out).
 CREATE OR REPLACE MACRO inside3(a, b, c) AS CASE WHEN a IS NOT NULL AND b IS NOT NULL AND c IS NOT NULL THEN least(a, b, c) END;
+
+-- Lengths as whole picometres, and back: their running sums are the same to the last bit in every order and beside any other drive.
+-- (A sum of doubles over a window is not: how it is split depends on what else is in the table.)
+CREATE OR REPLACE MACRO whole_pm(x_m) AS round(1e12 * x_m)::HUGEINT;
+CREATE OR REPLACE MACRO of_pm(x_pm) AS x_pm / 1e12;

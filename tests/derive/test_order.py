@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from itertools import accumulate
 from typing import TYPE_CHECKING
 
 import duckdb
@@ -11,7 +13,7 @@ from drivelint import derive, store
 from drivelint.errors import DriveLintError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
 STEP = (
     "SELECT 'd' AS drive_id, 'e' AS ego_id, range AS t_ns, range::INTEGER AS k, 0 AS seg, 0.0 AS travel_m FROM range(5)"
@@ -69,3 +71,31 @@ def test_short_memory_is_no_fault_of_the_query(con: duckdb.DuckDBPyConnection, m
     )
     with pytest.raises(duckdb.OutOfMemoryException):
         derive.derive(con, ["visited_cell"], of_the_map=False)
+
+
+SAMPLES = (91, 91, 16, 91, 91, 34, 29, 23, 18, 17, 91)
+
+
+def way(egos: Sequence[int]) -> dict[int, list[float]]:
+    """Return ego -> its way, step by step, where these egos are in one drive."""
+    with store.connect() as con:
+        con.execute(
+            "CREATE TEMP TABLE e AS SELECT unnest(?) AS e, unnest(?) AS n", [[*egos], [SAMPLES[e] for e in egos]]
+        )
+        con.execute("INSERT INTO actor BY NAME SELECT 'd' AS drive_id, e::VARCHAR AS actor_id, true AS is_ego FROM e")
+        con.execute(
+            "INSERT INTO actor_state BY NAME SELECT 'd' AS drive_id, e::VARCHAR AS actor_id, range * 50_000_000 AS t_ns, "
+            "sqrt(range * 1.7) * (31 + e) AS x_m, sin(range / 7) AS y_m FROM e, range(100) WHERE range < n"
+        )
+        derive.derive(con, ["step"], of_the_map=False)
+        found = con.execute("SELECT ego_id::INTEGER, list(travel_m ORDER BY k) FROM step GROUP BY ego_id").fetchall()
+        return dict(found)
+
+
+def test_the_way_is_the_same_to_the_last_bit_beside_other_egos() -> None:
+    crowd = way(range(len(SAMPLES)))
+    for ego, n in enumerate(SAMPLES):
+        x, y = [math.sqrt(k * 1.7) * (31 + ego) for k in range(n)], [math.sin(k / 7) for k in range(n)]
+        steps = [math.hypot(b - a, d - c) for a, b, c, d in zip(x, x[1:], y, y[1:], strict=False)]
+        assert crowd[ego] == pytest.approx([0.0, *accumulate(steps)], abs=1e-9)
+        assert way([ego])[ego] == crowd[ego]
