@@ -16,13 +16,13 @@
 -- default = 4.0
 -- unit = "m/s2"
 -- why = "limit up to 5 m/s"
--- source = "ISO 15622:2018, operational limits"
+-- source = "ISO 15622:2018 6.4, operational limits (second-hand: the standard itself was not seen)"
 --
 -- [params.fast_mps2]
 -- default = 2.0
 -- unit = "m/s2"
 -- why = "limit from 20 m/s on"
--- source = "ISO 15622:2018, operational limits"
+-- source = "ISO 15622:2018 6.4, operational limits (second-hand: the standard itself was not seen)"
 --
 -- [params.tolerance_mps2]
 -- default = 0.05

@@ -16,13 +16,13 @@
 -- default = 5.0
 -- unit = "m/s3"
 -- why = "limit up to 5 m/s"
--- source = "ISO 15622:2018, operational limits (negative jerk)"
+-- source = "ISO 15622:2018 6.4, operational limits, negative jerk (second-hand: the standard itself was not seen)"
 --
 -- [params.fast_mps3]
 -- default = 2.5
 -- unit = "m/s3"
 -- why = "limit from 20 m/s on"
--- source = "ISO 15622:2018, operational limits (negative jerk)"
+-- source = "ISO 15622:2018 6.4, operational limits, negative jerk (second-hand: the standard itself was not seen)"
 --
 -- [params.edge_s]
 -- default = 1.5

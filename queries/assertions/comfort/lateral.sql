@@ -16,7 +16,7 @@
 -- default = 3.0
 -- unit = "m/s2"
 -- why = "the most that a lane keeping system may ask for"
--- source = "UN R79 5.6.2.1.3"
+-- source = "UN R79 5.6.2.1.3 (not seen)"
 --
 -- [params.edge_s]
 -- default = 0.5

@@ -18,7 +18,7 @@
 -- default = 3.4
 -- unit = "m/s2"
 -- why = "comfortable for most drivers, and what stopping sight distances are designed for"
--- source = "AASHTO Green Book, stopping sight distance (11.2 ft/s2)"
+-- source = "AASHTO Green Book, stopping sight distance, 11.2 ft/s2 (not seen)"
 
 -- @applies
 -- a step without a row in `lead` is one at which nobody knows who leads

@@ -17,7 +17,7 @@
 -- default = 1.5
 -- unit = "s"
 -- why = "below it a conflict counts as serious"
--- source = "Archer 2005"
+-- source = "Archer 2005 (not seen)"
 --
 -- [params.crossing_rad]
 -- default = 0.7854

@@ -1,5 +1,5 @@
 -- title = "Time headway"
--- clause = "Germany, BKatV no. 12 (distances): the time until the ego is where the vehicle ahead is now"
+-- clause = "Germany, BKatV no. 12.5 (distances): the time until the ego is where the vehicle ahead is now"
 -- hypothesis = "At every step behind a vehicle in its lane, did the ego follow at no less than 0.9 s?"
 -- kind = "invariant"
 -- derivation = "model"
@@ -17,8 +17,8 @@
 -- [params.least_s]
 -- default = 0.9
 -- unit = "s"
--- why = "less than half of the rule of thumb (half the speedometer reading in metres, 1.8 s) is fined"
--- source = "BKatV no. 12"
+-- why = "less than half of the rule of thumb (half the speedometer reading in metres, 1.8 s) is fined above 80 km/h; here it is asked for at any speed"
+-- source = "BKatV no. 12.5"
 --
 -- [params.slowest_mps]
 -- default = 5.0

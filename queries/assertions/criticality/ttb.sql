@@ -18,7 +18,7 @@
 -- default = 1.0
 -- unit = "s"
 -- why = "a second to see and to act"
--- source = "Hillenbrand, Spieker, Kroschel 2006"
+-- source = "Hillenbrand, Spieker, Kroschel 2006 (not seen)"
 --
 -- [params.brake_mps2]
 -- default = 8.0

@@ -18,7 +18,7 @@
 -- default = 1.5
 -- unit = "s"
 -- why = "below it a conflict counts as serious"
--- source = "van der Horst 1990"
+-- source = "van der Horst 1990 (not seen)"
 
 -- @applies
 -- a step without a row in `lead` is one at which nobody knows who leads

@@ -1,5 +1,5 @@
 -- title = "Not faster than chosen"
--- clause = "UKHC R125, R152: the limit is no target; choose a speed that suits the conditions"
+-- clause = "UKHC R125, R146, R152: the limit is no target; choose a speed that suits the conditions"
 -- hypothesis = "At every step, was the ego no faster than the speed that it had declared to have chosen?"
 -- kind = "invariant"
 -- derivation = "direct"

@@ -1,5 +1,5 @@
 -- title = "Three seconds at the stop sign"
--- clause = "StVO 41, sign 206 (R_IN1 of Maierhofer et al. 2022): at a stop sign halt at the line"
+-- clause = "StVO 41(1), Anlage 2 no. 3, sign 206 (R_IN1 of Maierhofer et al. 2022): at a stop sign halt at the line"
 -- hypothesis = "Before the ego crossed a stop line with a stop sign, did it stand close before it for the whole time?"
 -- kind = "execution"
 -- derivation = "direct"
@@ -15,7 +15,7 @@
 -- [params.stand_s]
 -- default = 3.0
 -- unit = "s"
--- why = "how long a halt lasts"
+-- why = "how long a halt lasts: the law names no time"
 -- source = "Maierhofer et al. 2022 (t_slw = 3 s, standing within 1 m of the line)"
 
 -- @reference
