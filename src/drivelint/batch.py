@@ -139,11 +139,11 @@ def _meetings(trace: Trace, egos: set[str]) -> dict[str, int]:
 def on_its_map(trace: Trace, library: MapLibrary) -> Drive:
     """Find the map of a drive. Errors: `MapError` if it cannot be read, or shows another place or side of the road."""
     states = trace.tables["actor_state"]
-    environment = library.find(trace.path, trace.embedded_map, trace.map_offset, states)
-    if doubt := library.doubt(trace.path, environment, states):
+    environment = library.find(trace.path, trace.embedded_map, trace.map_offset, states, trace.geo_reference)
+    for check, doubt in library.doubts(trace.path, environment, states, trace.geo_reference).items():
         from drivelint.ingest.finish import with_finding
 
-        trace = with_finding(trace, Finding("handedness_disagrees", "warning", doubt))
+        trace = with_finding(trace, Finding(check, "warning", doubt))
     return Drive(trace, environment)
 
 

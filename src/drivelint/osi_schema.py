@@ -123,7 +123,12 @@ ENUMS: Final[dict[str, dict[str, int]]] = {
 }
 _READ_MESSAGES: Final[dict[str, tuple[tuple[str, int, str], ...]]] = {
     **MESSAGES,
-    "GroundTruth": (*MESSAGES["GroundTruth"], ("lane_boundary", 9, "LaneBoundary[]"), ("lane", 10, "Lane[]")),
+    "GroundTruth": (
+        *MESSAGES["GroundTruth"],
+        ("lane_boundary", 9, "LaneBoundary[]"),
+        ("lane", 10, "Lane[]"),
+        ("proj_string", 14, "string"),
+    ),
     "LaneBoundary": (
         ("id", 1, "Identifier"),
         ("boundary_line", 2, "LaneBoundary.BoundaryPoint[]"),

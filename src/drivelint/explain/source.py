@@ -78,7 +78,9 @@ def _read(asked: Asked, path: Path, map_: Path | None, drive_id: str, ego_id: st
         read = _renamed(read, drive_id)
     folder = None if given is not None or asked.map_dir is None else Path(asked.map_dir)
     library = MapLibrary(given, asked.map_offset, asked.handedness, origin=asked.map_origin, folder=folder)
-    return Drive(read, library.find(path, read.embedded_map, read.map_offset, read.tables["actor_state"]))
+    return Drive(
+        read, library.find(path, read.embedded_map, read.map_offset, read.tables["actor_state"], read.geo_reference)
+    )
 
 
 def _renamed(trace: Trace, drive_id: str) -> Trace:

@@ -91,7 +91,14 @@ def finish(path: Path, identity: Identity, recording: Recording, options: Ingest
         "quality": _quality(drive, findings),
     }
     return Trace(
-        drive, path, tables, recording.embedded_map, recording.map_offset, recording.notes, recording.frame_times
+        drive,
+        path,
+        tables,
+        recording.embedded_map,
+        recording.map_offset,
+        recording.notes,
+        recording.frame_times,
+        recording.geo_reference,
     )
 
 

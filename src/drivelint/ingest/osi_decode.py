@@ -168,6 +168,15 @@ def lanes_of(data: bytes, name: str) -> bytes | None:
     return bytes(kept.SerializeToString(deterministic=True))
 
 
+def reference_of(data: bytes, name: str) -> str | None:
+    """Return the geo reference (a PROJ string) of a ground truth's coordinates, or of the one in a sensor view; None: not said."""
+    try:
+        outer = osi_schema.message(name.removeprefix("osi3.")).FromString(data)
+    except DecodeError:
+        return None  # see lanes_of
+    return str((outer.global_ground_truth if name == SENSOR_VIEW else outer).proj_string) or None
+
+
 def malformed(path: Path, packet: Packet, error: ValueError) -> TraceError:
     """Say which message cannot be decoded."""
     where = f"topic {packet.channel.topic!r}, log time {packet.log_time_ns} ns, record at byte {packet.offset}"

@@ -11,7 +11,7 @@ from mcap.records import Channel
 from drivelint.errors import TraceError
 from drivelint.ingest.container import Packet
 from drivelint.ingest.osi import BATCH_BYTES, joined
-from drivelint.ingest.osi_decode import GROUND_TRUTH, SENSOR_VIEW, Decoder, lanes_of
+from drivelint.ingest.osi_decode import GROUND_TRUTH, SENSOR_VIEW, Decoder, lanes_of, reference_of
 from drivelint.ingest.trace import Finding
 from drivelint.osi_schema import reading_set
 
@@ -43,10 +43,12 @@ def read(path: Path) -> Recording:
     batches: list[Frames] = []
     decoder: Decoder | None = None
     lanes: bytes | None = None
+    reference: str | None = None
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         for packets in _batches(path, channel, content):
             if decoder is None:
-                decoder, lanes = _decoder(path, packets)
+                decoder, name = _decoder(path, packets)
+                lanes, reference = lanes_of(packets[0].data, name), reference_of(packets[0].data, name)
             batches.append(decoder.frames(packets))
     n = sum(len(batch.t_ns) for batch in batches)
     untimed = n - sum(int(batch.timed.sum()) for batch in batches)
@@ -56,6 +58,7 @@ def read(path: Path) -> Recording:
     recording.format = "osi-file"
     recording.frame_times = None
     recording.embedded_map = lanes
+    recording.geo_reference = reference
     recording.findings.append(
         Finding("unprotected", "info", "the file has no checksums: damage inside a message may go unseen")
     )
@@ -84,8 +87,8 @@ def _batches(path: Path, channel: Channel, content: mmap.mmap) -> Iterator[list[
         yield waiting
 
 
-def _decoder(path: Path, packets: list[Packet]) -> tuple[Decoder, bytes | None]:
-    """Return the decoder of the kind of message in which objects with positions are found, and the lanes of the first one."""
+def _decoder(path: Path, packets: list[Packet]) -> tuple[Decoder, str]:
+    """Return the decoder of the kind of message in which objects with positions are found, and its name."""
     for name in (GROUND_TRUTH, SENSOR_VIEW):
         decoder = Decoder(path, 1, name, reading_set())
         try:
@@ -93,7 +96,7 @@ def _decoder(path: Path, packets: list[Packet]) -> tuple[Decoder, bytes | None]:
         except TraceError:
             continue
         if len(frames.ids) and np.isfinite(frames.numbers["x_m"]).any():
-            return decoder, lanes_of(packets[0].data, name)
+            return decoder, name
     raise TraceError(
         f"{path}: no moving objects in the first {len(packets)} messages, read as {GROUND_TRUTH} or as {SENSOR_VIEW}: "
         "only these two kinds of OSI trace can be judged"

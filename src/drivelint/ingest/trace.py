@@ -89,7 +89,7 @@ class Trace:
 
     `data_log` has one row, its `environment_id` NULL. Rows are totally ordered: `actor_state` by actor_id and t_ns.
     `embedded_map` is OpenDRIVE found in the log; `map_offset` (metres) is added to the map's coordinates. `frame_times`:
-    see `FrameTimes`; None where the log has one clock only.
+    see `FrameTimes`; None where the log has one clock only. `geo_reference`: the projection of its coordinates, a PROJ string.
     """
 
     drive_id: str
@@ -99,6 +99,7 @@ class Trace:
     map_offset: tuple[float, float] | None
     notes: list[str]
     frame_times: FrameTimes | None = None
+    geo_reference: str | None = None
 
 
 @dataclass(frozen=True)
@@ -168,3 +169,4 @@ class Recording:
     sensor_range_m: float | None = None
     strict_units: bool = False
     frame_times: FrameTimes | None = None
+    geo_reference: str | None = None

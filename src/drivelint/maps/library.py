@@ -1,7 +1,8 @@
 """The maps of a run: each read once, whichever drives are judged on it.
 
 Of a folder of maps each drive gets its own: the one that `maps.csv` (columns log, map) names, else the one of the log's
-name or of its folder's, else the only one on whose lanes the drive lies.
+name or of its folder's, else the log's own, else the only one of the log's geo reference, else the only one on whose lanes the
+drive lies.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import numpy as np
 import pyarrow.compute as pc
 
 from drivelint.errors import MapError, UsageError
+from drivelint.maps import geo
 from drivelint.maps.contract import MapSource
 from drivelint.maps.registry import load_map, read_source
 from drivelint.maps.sense import DOUBT_SAMPLES, SAMPLES, ground, headings, on_map, reversed_road, vote, ways
@@ -57,18 +59,28 @@ class MapLibrary:
         self._loaded: dict[tuple[str, tuple[float, float], str | None], Environment] = {}
 
     def find(
-        self, log: Path, embedded: bytes | None, offset: tuple[float, float] | None, states: pa.Table
+        self,
+        log: Path,
+        embedded: bytes | None,
+        offset: tuple[float, float] | None,
+        states: pa.Table,
+        reference: str | None = None,
     ) -> Environment | None:
         """Return the environment for one drive.
 
         `log` is the drive's file, `offset` is the mapping's (the user's `--map-offset` goes before it), `states` the drive's
-        `actor_state` rows.
+        `actor_state` rows, `reference` the geo reference of its coordinates, a PROJ string.
         Errors: `MapError` if the map cannot be read, or is of another place.
         """
         shift = self._offset or offset or (0.0, 0.0)
         source = self._given or (MapSource("embedded", embedded) if embedded else None)
         if self._shelf is not None:
-            source = self._shelf.named(log) or source or self._only_fitting(self._shelf, log, shift, states)
+            source = (
+                self._shelf.named(log)
+                or source
+                or (self._shelf.referenced(reference) if reference else None)
+                or self._only_fitting(self._shelf, log, shift, states)
+            )
         if source is None:
             return None
         environment = self._load(source, shift, None)
@@ -81,12 +93,26 @@ class MapLibrary:
             return self._load(source, shift, sensed)
         return environment
 
-    def doubt(self, log: Path, environment: Environment | None, states: pa.Table) -> str | None:
-        """Return what speaks against the side of the road that is driven on by a map's or the user's word, or None.
+    def doubts(
+        self, log: Path, environment: Environment | None, states: pa.Table, reference: str | None = None
+    ) -> dict[str, str]:
+        """Return what speaks against a map: against its geo reference, or the side of the road by its or the user's word.
 
-        Errors: `MapError` where the traffic shows that the lanes run the other way.
+        Keys name the check. Errors: `MapError` where the traffic shows that the lanes run the other way.
         """
-        if environment is None or environment.handedness_source in {"default", "traces"}:
+        if environment is None:
+            return {}
+        found = {"handedness_disagrees": self._side_doubt(log, environment, states)}
+        theirs = environment.tables["environment"]["geo_reference"][0].as_py()
+        if reference and theirs and not geo.same(reference, theirs) and geo.comparable(reference, theirs):
+            found["geo_reference_differs"] = (
+                f"the log's coordinates are {reference!r}, the map's {theirs!r}: if they are not of one place and frame, give the "
+                "right --map or --map-offset"
+            )
+        return {check: text for check, text in found.items() if text}
+
+    def _side_doubt(self, log: Path, environment: Environment, states: pa.Table) -> str | None:
+        if environment.handedness_source in {"default", "traces"}:
             return None
         seen = self._headings(environment, states, DOUBT_SAMPLES)
         if road := reversed_road(self._lanes(environment), seen):

@@ -7,6 +7,7 @@ from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import MapError
+from drivelint.maps import geo
 from drivelint.maps.registry import READERS, read_source, root_element
 
 if TYPE_CHECKING:
@@ -45,6 +46,11 @@ class Shelf:
             if len(same) == 1:
                 return self._source(same[0])
         return None
+
+    def referenced(self, reference: str) -> MapSource | None:
+        """Return the map with this geo reference, if it is the only one that has it."""
+        found = [source for source in self.sources() if geo.same(geo.reference_of(source) or "", reference)]
+        return found[0] if len(found) == 1 else None
 
     def sources(self) -> Sequence[MapSource]:
         """Return every map, in order of name."""
