@@ -49,7 +49,7 @@ def test_with_several_egos_each_finding_says_whose_it_is() -> None:
     rows = [finding(), finding(ego_id="9", finding_id="x")]
     several = page(result([verdict("fail"), verdict("fail", ego_id="9")], rows))
     assert '<th scope="col">ego</th>' in several
-    assert '<td data-label="ego">9</td>' in several
+    assert '<td class="actor" data-label="ego">9</td>' in several
     assert '<th scope="col">ego</th>' not in page(result([verdict("fail")], rows[:1]))
 
 
