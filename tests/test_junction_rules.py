@@ -29,7 +29,8 @@ RULES = tuple(
     f"ukhc.{name}"
     for name in (
         "h2.turn-pedestrian", "h3.no-cut-across", "r112.horn", "r113.headlights", "r115.dipped-headlights", "r116.hazards",
-        "r151.side-roads-clear", "r171.safe-gap", "r171.stop-sign", "r172.give-way", "r174.box", "r175.amber", "r175.red", "r176.green-exit-clear",
+        "r151.side-roads-clear", "r171.safe-gap",
+        "r171.stop-sign", "r172.give-way", "r174.box", "r175.amber", "r175.red", "r176.green-exit-clear",
         "r180.corner-cut", "r180.right-turn-gap", "r182.no-pass-before-turn", "r183.keep-in", "r191.no-stopping",
         "r192.keep-clear", "r195.zebra-on", "r195.zebra-waiting", "r196.pelican", "r198.still-crossing",
         "r201.reverse-out", "r239.parked-with-traffic", "r240.no-stopping", "r243.junction-10m", "r248.parked-at-night",
@@ -206,6 +207,14 @@ def scenes(hand: str) -> dict[str, tuple[Callable[[str], Drive], tuple[str, ...]
         "signalled crossing, flashing, nobody": (scene(pelican["we"], over, signal_state=lit((0, "flashing"))), ()),
         "signalled crossing, flashing, somebody on it": (
             scene(pelican["we"], over, crossing(side, 2.0), signal_state=lit((0, "flashing"))),
+            ("r196.pelican",),
+        ),
+        "signalled crossing, flashing, somebody who came from here": (
+            scene(pelican["we"], over, crossing(side, -1.0), signal_state=lit((0, "flashing"))),
+            (),
+        ),
+        "signalled crossing, flashing, somebody comes over": (
+            scene(pelican["we"], over, crossing(side, -1.5, -1.4), signal_state=lit((0, "flashing"))),
             ("r196.pelican",),
         ),
         "signalled crossing, green, somebody on it": (
