@@ -223,10 +223,13 @@ def members(rule: Rule, cases: Sequence[Case]) -> list[crowd.Member]:
     return found
 
 
-def together(rule: Rule, cases: Sequence[Case]) -> str:
-    """Judge all cases in one database, and return '' where each comes out as it expects. Errors: `RuleError`."""
+def together(rule: Rule, cases: Sequence[Case], keys: Mapping[str, str] = crowd.KEYS) -> str:
+    """Judge all cases in one database, and return '' where each comes out as it expects. Errors: `RuleError`.
+
+    `keys`: by what they are told apart there, in turn.
+    """
     everybody = members(rule, cases)
-    for key, where in crowd.KEYS.items():
+    for key, where in keys.items():
         for group in crowd.crowds(everybody, key):
             outcome = crowd.judge([rule], crowd.merge(group, key), group[0].params)[rule.id]
             for member in group:

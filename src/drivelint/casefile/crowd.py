@@ -6,10 +6,12 @@ cases up, and that shows. And many variants of a rule can be judged at once on t
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from drivelint.casefile.scene import Row, database, fill
 from drivelint.evaluate import evaluate
+from drivelint.store import schema
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -91,9 +93,8 @@ def _egos(scene: Scene) -> set[str]:
     return {row["ego_id"] for row in scene["clock"]}
 
 
+@cache
 def _of_the_map(table: str) -> bool:
-    from drivelint.store import schema
-
     return "environment_id" in schema()[table] and "drive_id" not in schema()[table]
 
 
