@@ -44,6 +44,28 @@ beyond AS (
     JOIN ego_state e ON e.drive_id = u.drive_id AND e.ego_id = u.ego_id AND e.t_ns = u.t_ns
     JOIN reach r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
     WHERE u.reason = 'moves off the lanes' AND p.s_m IS NULL AND p.distance_m > least(r.end_m - e.s_m, e.s_m - r.begin_m)
+),
+-- where the ego's lane ends though the map goes on: who is straight on from there is ahead of it, if only the link is missing
+lane_end AS (
+    SELECT c.drive_id, c.ego_id, c.chain_id, c.end_m, p.x_m, p.y_m, p.tx, p.ty, p.half_width_m
+    FROM (
+        SELECT drive_id, ego_id, chain_id, max({'end_m': s_start_m + length_m, 'id': lanelet_id}).id AS lanelet_id, max(s_start_m + length_m) AS end_m
+        FROM corridor
+        GROUP BY drive_id, ego_id, chain_id
+    ) c
+    JOIN data_log g USING (drive_id)
+    JOIN lane_next n ON n.environment_id = g.environment_id AND n.lanelet_id = c.lanelet_id
+    JOIN lane_point p ON p.environment_id = g.environment_id AND p.lanelet_id = c.lanelet_id
+    WHERE n.ahead_id IS NULL
+    QUALIFY p.k = max(p.k) OVER (PARTITION BY c.drive_id, c.ego_id, c.chain_id)
+),
+unlinked AS (
+    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m
+    FROM pair p
+    JOIN ego_state e USING (drive_id, ego_id, t_ns)
+    JOIN lane_end l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.chain_id = e.chain_id
+    WHERE p.s_m IS NULL AND e.s_m < l.end_m AND (p.x_m - l.x_m) * l.tx + (p.y_m - l.y_m) * l.ty > 0
+        AND abs((p.y_m - l.y_m) * l.tx - (p.x_m - l.x_m) * l.ty) < l.half_width_m + 1
 )
 SELECT
     drive_id, ego_id, t_ns, object_id, actor_class, may_be_vehicle(actor_class) AS vehicle,
@@ -54,5 +76,5 @@ SELECT
     h.drive_id, h.ego_id, h.t_ns, h.object_id, h.actor_class, may_be_vehicle(h.actor_class),
     greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - two_half_boxes_m()),
     CASE WHEN h.distance_m > two_half_boxes_m() THEN (h.x_m - e.x_m) * cos(e.yaw_rad) + (h.y_m - e.y_m) * sin(e.yaw_rad) > 0 END
-FROM (SELECT * FROM incomplete UNION ALL SELECT * FROM beyond) h
+FROM (SELECT * FROM incomplete UNION ALL SELECT * FROM beyond UNION SELECT * FROM unlinked) h
 JOIN ego_state e USING (drive_id, ego_id, t_ns)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -256,3 +257,27 @@ def test_who_crosses_the_egos_way_by_a_lane_of_his_own_is_no_lead(hand: str) -> 
     assert {row["object_id"] for row in ahead(standing("s", ways["ew"], t, 204.0, ways["ew"].own))} == {"s"}
     wrong = ahead(moving("w", ways["we"], t, 290 - 6 * t, ways["we"].own), way="we")
     assert {(row["object_id"], row["oncoming"]) for row in wrong} == {("w", True)}
+
+
+@pytest.mark.parametrize(
+    ("linked", "s", "d", "told"),
+    [
+        (True, 180.0, -1.75, {"x"}),
+        (False, 180.0, -1.75, set()),
+        (False, 180.0, 1.75, {None}),
+        (False, 140.0, -1.75, {"x"}),
+    ],
+)
+def test_beyond_a_lane_whose_link_is_missing_nobody_knows_who_leads(
+    linked: bool, s: float, d: float, told: set[str | None]
+) -> None:
+    """The lane is cut at 150 m; without the link the corridor ends there, though the next lane goes straight on."""
+    way = road(cuts=(150.0,))
+    tables = way.environment.tables
+    environment = replace(
+        way.environment, tables=tables if linked else tables | {"lane_link": tables["lane_link"].slice(0, 0)}
+    )
+    t = times(0.3)
+    ego, other = moving("ego", way, t, 100 + 10 * t, way.own), moving("x", way, t, s + 10 * t, d)
+    found = rows(derived(drive([ego, other], environment), tables=["lead"]), "FROM lead")
+    assert {row["object_id"] for row in found} == told
