@@ -213,3 +213,25 @@ def test_the_lanes_of_the_merge_are_joined_up() -> None:
     links = {(r["from_id"], r["to_id"]) for r in carried.tables["lane_link"].to_pylist()}
     for way in (("24", "31", "3", "11"), ("25", "32", "4", "12"), ("18", "34", "5", "12")):
         assert set(pairwise(way)) <= links
+
+
+@pytest.mark.parametrize("ahead", [True, False])
+@pytest.mark.parametrize("bend", [0.0, 0.02])
+def test_a_side_that_ends_early_is_led_on_beside_the_middle(ahead: bool, bend: float) -> None:
+    """The left side is drawn from 3 to 34 m of 40; the lane is as long and as wide as its middle line says."""
+
+    def line(d: float, first: float, last: float) -> list[tuple[float, float]]:
+        s = np.linspace(first, last, 40)
+        x, y = (np.sin(bend * s) / bend, (1 - np.cos(bend * s)) / bend) if bend else (s, 0 * s)
+        return list(zip(x - d * np.sin(bend * s), y + d * np.cos(bend * s), strict=True))
+
+    trace = Trace()
+    trace.bound(11, line(1.75, 3.0, 34.0))
+    trace.bound(12, line(-1.75, 0.0, 40.0))
+    trace.lane(1, line(0.0, 0.0, 40.0), left=11, right=12, ahead=ahead)
+    environment = trace.load(handedness="rht")
+    (lane,) = environment.tables["lanelet"].to_pylist()
+    assert (lane["width_m"], lane["length_m"]) == (pytest.approx(3.5, abs=0.05), pytest.approx(40.0, abs=0.05))
+    places = [(r["x_m"], r["y_m"]) for r in environment.tables["lane_point"].to_pylist()]
+    ends = [line(0.0, 0.0, 40.0)[k] for k in ((0, -1) if ahead else (-1, 0))]
+    assert [places[0], places[-1]] == [pytest.approx(end, abs=0.05) for end in ends]

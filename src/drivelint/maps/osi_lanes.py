@@ -34,6 +34,7 @@ _SUBTYPES = {
 }  # fmt: skip
 _DRIVEN = frozenset({"exit", "entry", "onRamp", "offRamp", "connectingRamp"})
 _MARKINGS = {2: "none", 3: "solid", 4: "broken", 5: "botts_dots", 8: "grass", 12: "curb"}
+_CUT_M = 0.2  # a side that ends further than this from the lane's end is not whole
 _NEAR_M = 5.0  # a lane that begins further away from where another ends does not follow it
 _WAY_POINTS = 13
 
@@ -124,7 +125,31 @@ def _bound(centre: Floats, ids: Iterable[Any], bounds: Mapping[int, Any]) -> Flo
     inside = (station > 1e-6) & (station < line.length - 1e-6)
     first, last = points[station <= 1e-6], points[station >= line.length - 1e-6]
     kept = np.vstack([_nearest(first, centre[:1]), points[inside], _nearest(last, centre[-1:])])
-    return kept if len(kept) > 1 else None
+    return _whole(kept, centre) if len(kept) > 1 else None
+
+
+def _whole(side: Floats, centre: Floats) -> Floats:
+    """Return a side (n, 2) led on beside the centre line (m, 2) to both of its ends: what is cut off is no gap in the road.
+
+    esmini draws a boundary up to its last marked point, which may be metres before the lane's end.
+    """
+    way = np.gradient(centre, axis=0)
+    left = np.column_stack([-way[:, 1], way[:, 0]]) / np.maximum(np.hypot(*way.T), 1e-9)[:, None]
+    line = shapely.LineString(centre)
+    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(centre, axis=0).T))])
+    begin, end = (float(line.project(shapely.Point(p))) for p in (side[0], side[-1]))
+    missing = (at < begin - _CUT_M), (at > end + _CUT_M)
+    before, after = (
+        centre[m] + left[m] * _offset(p, centre, left, s, at)
+        for m, p, s in zip(missing, (side[0], side[-1]), (begin, end), strict=True)
+    )
+    return np.vstack([before, side, after])
+
+
+def _offset(point: Floats, centre: Floats, left: Floats, station: float, at: Floats) -> float:
+    """Return how far a point is to the left of the centre line."""
+    k = int(np.argmin(np.abs(at - station)))
+    return float(np.dot(point - centre[k], left[k]))
 
 
 def _nearest(points: Floats, to: Floats) -> Floats:
