@@ -30,7 +30,7 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $ttc_s AS required,
     -- somebody else who was not placed could only make it worse
     CASE WHEN o.begin_seen AND (p.rear_known OR p.rear_ttc_s < $ttc_s)
         -- over the line ahead of nobody who was seen it may have overtaken nobody: a corner that trembles, a lane change
-        AND (o.vbp_placed OR o.passed OR p.rear_ttc_s >= $ttc_s) THEN p.rear_ttc_s END AS observed,
+        AND (o.vbp_placed OR o.passed OR p.rear_ttc_s >= $ttc_s) THEN or_never(p.rear_ttc_s, $ttc_s) END AS observed,
     CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began'
         WHEN NOT o.vbp_placed AND NOT o.passed THEN 'whom the ego was to overtake, if anybody, was not seen' END AS reason
 FROM reference r

@@ -41,7 +41,7 @@ _OVERTAKES: Final = Note(
     ],
 )
 _FILM: Final = Note(
-    "Beside the paper's Table 2 (Harper et al.)",
+    "Beside the paper's Table 2 (Harper et al.); second 0 here is second 90 of the film, frame 0",
     [
         (
             "oncoming vehicle (assertions 2, 3, 4)",
