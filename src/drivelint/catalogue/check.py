@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import re
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 import duckdb
@@ -59,6 +59,7 @@ def _parser() -> duckdb.DuckDBPyConnection:
     return duckdb.connect()
 
 
+@lru_cache(maxsize=2048)  # whoever judges twice in a process reads the same rules again
 def inspect(sql: str, file: str, line: int = 1) -> Query:
     """Take one section's SQL apart, which stands from `line` on in `file`.
 
