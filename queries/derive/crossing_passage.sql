@@ -34,7 +34,7 @@ passed AS (
 said AS (SELECT environment_id, crossing_id, min(kind) AS kind FROM crossing GROUP BY environment_id, crossing_id),
 visit AS (
     SELECT
-        p.*, g.environment_id, g.sensor_range_m, n.along_road, m.control, m.signal_id, c.max_gap_ns, c.t_start_ns,
+        p.*, g.environment_id, g.sensor_range_m, n.along_road, m.control, m.signal_id, c.max_gap_ns, c.t_start_ns, c.t_end_ns,
         p.t_in_ns - 2_000_000_000 AS t_a_ns, coalesce(p.t_out_ns, p.t_last_ns, p.t_ns) AS t_b_ns, e.x_m, e.y_m
     FROM passed p
     JOIN data_log g USING (drive_id)
@@ -54,6 +54,26 @@ occupied AS (
         AND o.t_from_ns <= v.t_b_ns AND o.t_to_ns >= coalesce(v.t_in_ns, v.t_ns)
     JOIN actor a ON a.drive_id = o.drive_id AND a.actor_id = o.object_id
     GROUP BY v.drive_id, v.ego_id, v.mark_id, v.t_ns
+),
+-- on the other half, and what becomes of them: who went straight on came to the ego's half, who had been there or left it there did not
+beyond AS (
+    SELECT
+        v.drive_id, v.ego_id, v.mark_id, v.t_ns, o.object_id, a.actor_class, o.t_to_ns, v.t_end_ns - v.max_gap_ns AS t_seen_ns,
+        min(q.t_from_ns) FILTER (q.t_from_ns > v.t_in_ns) AS t_next_ns, coalesce(bool_or(q.t_from_ns <= v.t_in_ns), false) AS came
+    FROM visit v
+    JOIN crossing_occupancy o ON o.drive_id = v.drive_id AND o.crossing_id = v.mark_id AND o.along_road = -v.along_road AND o.object_id <> v.ego_id
+        AND o.t_from_ns <= v.t_in_ns AND o.t_to_ns >= v.t_in_ns
+    JOIN actor a ON a.drive_id = o.drive_id AND a.actor_id = o.object_id
+    LEFT JOIN crossing_occupancy q ON q.drive_id = o.drive_id AND q.crossing_id = o.crossing_id AND q.object_id = o.object_id AND q.along_road = v.along_road
+    GROUP BY ALL
+),
+coming AS (
+    SELECT drive_id, ego_id, mark_id, t_ns, min(object_id) FILTER (comes AND actor_class IS NOT NULL) AS coming_id,
+        bool_and(comes IS NOT NULL AND NOT (comes AND actor_class IS NULL)) AS known
+    FROM (
+        SELECT *, CASE WHEN t_next_ns - t_to_ns <= straight_on_ns() THEN true WHEN came OR t_to_ns < t_seen_ns THEN false END AS comes FROM beyond
+    )
+    GROUP BY drive_id, ego_id, mark_id, t_ns
 ),
 -- the outer bound of the outermost of the half's lanes, where the crossing ends
 outer_lane AS (
@@ -170,12 +190,13 @@ SELECT
     v.drive_id, v.ego_id, (row_number() OVER (PARTITION BY v.drive_id, v.ego_id ORDER BY v.t_ns, v.mark_id) - 1)::INTEGER AS occurrence,
     v.mark_id AS crossing_id, coalesce(s.kind, CASE WHEN v.signal_id IS NOT NULL THEN 'signalled' END) AS kind,
     v.t_in_ns, CASE WHEN v.t_last_ns IS NOT NULL OR v.t_in_ns IS NOT NULL THEN v.t_out_ns END AS t_out_ns,
-    v.along_road, o.who.id AS on_id, o.who.t_ns AS t_on_ns, w.waiting_id, u.t_ns IS NULL AS known,
+    o.who.id AS on_id, o.who.t_ns AS t_on_ns, f.coming_id, coalesce(f.known, true) AS coming_known, w.waiting_id, u.t_ns IS NULL AS known,
     v.signal_id, l.state, h.stood_before
 FROM visit v
 LEFT JOIN said s ON s.environment_id = v.environment_id AND s.crossing_id = v.mark_id
 LEFT JOIN occupied o USING (drive_id, ego_id, mark_id, t_ns)
 LEFT JOIN waiting w USING (drive_id, ego_id, mark_id, t_ns)
+LEFT JOIN coming f USING (drive_id, ego_id, mark_id, t_ns)
 LEFT JOIN unknown u USING (drive_id, ego_id, mark_id, t_ns)
 LEFT JOIN halted h USING (drive_id, ego_id, mark_id, t_ns)
 LEFT JOIN lit l USING (drive_id, ego_id, mark_id, t_ns)

@@ -11,6 +11,8 @@ CREATE OR REPLACE MACRO heading_step(yaw_rad) AS floor(yaw_rad / radians(5))::IN
 CREATE OR REPLACE MACRO steps_apart(a, b) AS abs(((a - b + 36) % 72 + 72) % 72 - 36);
 -- Slower than this for at least a second is a standstill (UKHC and ALKS rules ask for a stop, not for slow driving).
 CREATE OR REPLACE MACRO stood_mps() AS 0.1;
+-- From one half of a pedestrian crossing to the other; who takes longer waits on an island between them.
+CREATE OR REPLACE MACRO straight_on_ns() AS 3_000_000_000;
 -- Two boxes overlap or touch: (dx, dy) from the first one's centre to the second one's in map axes, (ca, sa) and (cb, sb) the cosine and
 -- sine of their headings.
 CREATE OR REPLACE MACRO boxes_meet(dx, dy, ca, sa, cb, sb, hla, hwa, hlb, hwb) AS

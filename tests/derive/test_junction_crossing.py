@@ -109,6 +109,40 @@ def test_somebody_on_the_egos_half(hand: str, half: int, since: float, on: bool)
     assert row["known"] is True
 
 
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(
+    ("out", "v", "comes", "known"),
+    [
+        (-1.0, 1.2, True, True),  # a metre beyond the middle as the ego's front comes, and on to its half
+        (-1.0, -1.2, False, True),  # the same, but from the ego's half
+        (-3.0, -1.2, False, True),  # from the ego's half, and gone again
+        (-2.0, -0.1, False, False),  # on the other half to the end of the log
+        (-4.5, 1.2, False, True),  # still beyond the other half
+    ],
+)
+def test_somebody_on_the_other_half(hand: str, out: float, v: float, comes: bool, known: bool) -> None:
+    """Walks so that it is `out` metres on the ego's side of the middle at 9.7 s, towards that side at `v`."""
+    way = zebra(hand)
+    t = times(14)
+    (row,) = passages(drive([going(way), walker("w", t, SIDE[hand] * (out + v * (t - 9.7)))], way.environment))
+    assert (row["coming_id"], row["coming_known"]) == ("w" if comes else None, known)
+
+
+def test_who_waits_between_the_halves_or_has_no_class_or_is_a_car() -> None:
+    way = zebra()
+    t = times(18)
+    to = np.interp(t, (0, 9.7, 10.5, 14.5, 18), (3.4, 0.6, 0.1, -0.1, -3.4))
+    for until, comes in ((12.9, "w"), (14.1, None)):  # not on it in the middle of the road, as on an island
+        waits = walker("w", t, to).keep((t < 10.5) | (t > until))
+        (row,) = passages(drive([going(way, end=18), waits], way.environment))
+        assert (row["coming_id"], row["coming_known"]) == (comes, True)
+    over = -(-1.0 + 1.2 * (t - 9.7))
+    some = passages(drive([going(way, end=18), walker("w", t, over, kind=None)], way.environment))
+    assert (some[0]["coming_id"], some[0]["coming_known"]) == (None, False)
+    car = passages(drive([going(way, end=18), walker("w", t, over, kind="car")], way.environment))
+    assert (car[0]["coming_id"], car[0]["coming_known"]) == (None, True)
+
+
 def test_who_was_off_it_before_the_ego_came_is_not_on_it_and_the_first_counts() -> None:
     way = zebra()
     t = times(14)
