@@ -1,0 +1,70 @@
+"""The report of a busy recorded drive, every vehicle in turn as ego: small, quiet, fits a phone, prints, says whose each finding is."""
+
+from __future__ import annotations
+
+import base64
+import re
+from collections.abc import Iterator
+
+import pytest
+
+from drivelint.report.progress import Silent
+from drivelint.report.result import Result
+from drivelint.run import Settings, check
+from tests.report.browser import CHROMIUM, Page
+from tests.report.test_html import page
+from tests.shared_data import shared
+
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
+TYPICAL = 3_000_000
+"""Bytes that the page of one drive may have."""
+PAGES = range(5, 31)
+"""Printed pages that somebody reads: not three hundred rows of a table."""
+
+
+@pytest.fixture(scope="module")
+def busy(tmp_path_factory: pytest.TempPathFactory) -> Result:
+    log = shared("commonroad/USA_US101-5_1_T-1.xml")
+    out = tmp_path_factory.mktemp("busy")
+    return check(Settings((str(log),), rules=("all",), ego="all", annotate=False, out=out), Silent())
+
+
+@pytest.fixture(scope="module")
+def opened(busy: Result, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
+    folder = tmp_path_factory.mktemp("page")
+    (folder / "report.html").write_text(page(busy), encoding="utf-8")
+    with Page(folder / "profile", (folder / "report.html").as_uri()) as shown:
+        yield shown
+
+
+def test_it_is_small_and_opens_without_a_word_or_a_request(busy: Result, opened: Page) -> None:
+    assert busy.drives["n_egos"][0].as_py() > 20
+    assert busy.findings.num_rows > 50
+    assert len(page(busy).encode()) < TYPICAL
+    assert opened.complaints() == []
+    assert [url for url in opened.requests() if not url.startswith(("file:", "data:"))] == []
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_nothing_sticks_out_and_no_number_is_torn(opened: Page, width: int) -> None:
+    opened.call("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=width < 500)
+    assert opened.value("document.documentElement.scrollWidth") <= width
+    torn = """[...document.querySelectorAll('#findings-table td.actor, #findings-table td.num')].filter(cell => {
+      const text = document.createRange();
+      text.selectNodeContents(cell.querySelector('b') || cell);
+      const lines = new Set([...text.getClientRects()].map(box => Math.round(box.top)));
+      return cell.textContent.trim().length < 8 && lines.size > 1;
+    }).length"""
+    assert opened.value(torn) == 0
+
+
+def test_each_finding_says_whose_it_is(busy: Result, opened: Page) -> None:
+    told = opened.value("[...document.querySelectorAll('#findings-table td[data-label=ego]')].map(c => c.textContent)")
+    shown = busy.findings.num_rows + sum(busy.verdicts["near_miss"].to_pylist())
+    assert len(told) == shown
+    assert set(told) >= set(busy.findings["ego_id"].to_pylist())
+
+
+def test_it_prints_on_pages_that_somebody_reads(opened: Page) -> None:
+    pdf = base64.b64decode(opened.call("Page.printToPDF", printBackground=True, preferCSSPageSize=True)["data"])
+    assert len(re.findall(rb"/Type\s*/Page\b", pdf)) in PAGES
