@@ -16,6 +16,7 @@ from drivelint import batch, store
 from drivelint.errors import MapError, TraceError, UsageError
 from drivelint.evaluate import evaluate as plain
 from drivelint.ingest import IngestOptions, read_trace
+from drivelint.report.evidence import surroundings
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
 from drivelint.run import Settings, check
@@ -77,6 +78,7 @@ def test_where_the_egos_are_cut_does_not_show(ragged: Path, tmp_path: Path, monk
     found = []
     for room in (batch.MEETINGS, 1, 1100):
         monkeypatch.setattr(batch, "MEETINGS", room)
+        monkeypatch.setattr(surroundings, "AT_ONCE", room)
         out = tmp_path / str(room)
         asked = settings(ragged, ego="all", out=out, keep_db=True, margins=True, rules=("all",))
         result = check(asked, Silent())

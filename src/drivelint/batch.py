@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from drivelint.maps.library import MapLibrary
 
 STATES: Final = 400_000  # a batch costs little more than its longest drive, and its tables still fit in a GiB
-MEETINGS: Final = 3_000_000
+MEETINGS: Final = 1_500_000
 """A part of a drive of many egos has no more ego steps times the actors that are there then: the largest tables have so many rows."""
 AHEAD: Final = 4
 

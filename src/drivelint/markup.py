@@ -23,6 +23,8 @@ def parse(content: bytes) -> etree._Element:
         raise RefusedError(f"is not well-formed XML ({error.msg}): give the complete, unchanged file") from None
     if root.getroottree().docinfo.internalDTD is not None:
         raise RefusedError(doctype)
+    if b"xmlns" not in content and content[:2] not in {b"\xff\xfe", b"\xfe\xff"}:
+        return root  # without a declaration nothing has a namespace
     for element in root.iter():
         if isinstance(element.tag, str) and element.tag.startswith("{"):
             element.tag = element.tag.partition("}")[2]

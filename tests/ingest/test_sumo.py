@@ -9,6 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from drivelint.errors import TraceError, UsageError
+from drivelint.ingest import sumo
 from tests.ingest.logs import actors, at, log, put, quality, read, states
 
 if TYPE_CHECKING:
@@ -57,6 +58,28 @@ def test_xml_csv_and_parquet_are_one_log(tmp_path: Path) -> None:
     assert rows[0] == rows[1] == rows[2]
     assert len(rows[0]) == 40
     assert {log(trace)["format"] for trace in found} == {"sumo-fcd"}
+
+
+def test_line_by_line_is_what_the_parser_reads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Steps without vehicles, several vehicles a step: the fast way is taken, and reads the same."""
+    text = xml(ROWS[:6]).replace("<fcd-export>\n", '<fcd-export>\n  <timestep time="0.00"/>\n')
+    text = text.replace(
+        "</fcd-export>", '  <timestep time="7.00"/>\n  <timestep time="8.00">\n  </timestep>\n</fcd-export>'
+    )
+    path = put(tmp_path / "a.xml", text)
+    content = path.read_bytes()
+    fast = sumo._lines(content, content.find(b"<fcd-export"))
+    assert fast is not None
+    assert fast.column("timestep_time").to_pylist() == [float(row["time"]) for row in ROWS[:6]]
+    monkeypatch.setattr(sumo, "_lines", lambda *_: None)
+    slow = sumo._xml(path)
+    assert fast.column_names == slow.column_names
+    assert all(fast.column(name).to_pylist() == slow.column(name).to_pylist() for name in fast.column_names)
+    for change in ("</timestep><timestep", '"/><vehicle', "<person "):
+        other = text.replace("</timestep>\n  <timestep", change, 1).replace(
+            "<vehicle ", change if "pers" in change else "<vehicle ", 1
+        )
+        assert sumo._lines(other.encode(), other.find("<fcd-export")) is None or change == '"/><vehicle'
 
 
 def test_csv_written_anew_with_quotes(tmp_path: Path) -> None:

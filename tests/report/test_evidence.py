@@ -16,6 +16,7 @@ import shapely
 
 from drivelint import batch
 from drivelint.report.contract import FILES
+from drivelint.report.evidence import surroundings
 from drivelint.report.progress import Silent
 from drivelint.report.result import Result
 from drivelint.run import Settings, check
@@ -251,3 +252,13 @@ def test_the_tables_can_be_read_by_column(result: Result) -> None:
     frame = pl.from_arrow(pa.table(result.scenes))
     assert isinstance(frame, pl.DataFrame)
     assert frame.explode("actors").unnest("actors").height > frame.height
+
+
+@pytest.mark.parametrize("most", [1, 5, 7, 100])
+def test_moments_are_cut_between_egos(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(surroundings, "AT_ONCE", most)
+    counts = [(1, 3), (2, 2), (3, 9), (4, 1), (5, 1)]
+    runs = list(surroundings._some(counts))
+    assert [ego for first, end in runs for ego in range(first, end)] == [1, 2, 3, 4, 5]
+    assert all(end - first == 1 or sum(n for ego, n in counts if first <= ego < end) <= most for first, end in runs)
+    assert list(surroundings._some([])) == []

@@ -6,9 +6,11 @@ A scenario has no ego but the start of a planning problem: say who it is with --
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
+from lxml import etree
 
 from drivelint import markup
 from drivelint.errors import TraceError
@@ -18,7 +20,6 @@ from drivelint.ingest.trace import CLASSES, Finding, Recording, States
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from lxml import etree
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
@@ -34,6 +35,9 @@ _FIELDS = {
     "a": "acceleration/exact", "slip": "slipAngle/exact",
 }  # fmt: skip
 """What is read of a state; a value given as an interval is not known."""
+_TIME = "time/exact"
+_STATES = "(initialState|trajectory/state)"
+_TEXTS = {place: etree.XPath(f"{_STATES}/{place}/text()", smart_strings=False) for place in (*_FIELDS.values(), _TIME)}
 
 
 def looks_like(head: bytes) -> bool:
@@ -56,13 +60,14 @@ def read(path: Path) -> Recording:
     obstacles = [*root.findall("dynamicObstacle"), *root.findall("staticObstacle"), *root.findall("obstacle")]
     if not obstacles:
         raise TraceError(f"{path}: the scenario has no obstacles: there is nobody to judge")
-    last = max((step for o in obstacles for step in _steps(path, o)), default=0)
     ids = [str(o.get("id")) for o in obstacles]
     if len(set(ids)) < len(ids):
         raise TraceError(
             f"{path}: two obstacles have the same id: {listed(sorted({i for i in ids if ids.count(i) > 1}))}"
         )
-    parts = [_states(path, o, last) for o in obstacles]
+    parts = [_states(path, o) for o in obstacles]
+    last = max((int(part["step"].max()) for part in parts if len(part["step"])), default=0)
+    parts = [_standing(o, part, last) for o, part in zip(obstacles, parts, strict=True)]
     counts = [len(part["step"]) for part in parts]
     columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     heading = columns["yaw_rad"] + np.nan_to_num(columns["slip"])
@@ -80,7 +85,7 @@ def read(path: Path) -> Recording:
         np.zeros(sum(counts), np.bool_),
     )  # fmt: skip
     recording = Recording("commonroad", states, embedded_map=content if root.find("lanelet") is not None else None)
-    uncertain = sum(1 for _ in root.iterfind(".//state//intervalStart"))
+    uncertain = int(float(str(root.xpath("count(.//state//intervalStart)"))))
     if uncertain:
         message = f"values of obstacles given as intervals: {uncertain}: they are not known"
         recording.findings.append(Finding("uncertain_value", "warning", message, uncertain))
@@ -98,27 +103,45 @@ def _all_states(obstacle: etree._Element) -> list[etree._Element]:
     return [*obstacle.findall("initialState"), *obstacle.findall("trajectory/state")]
 
 
-def _steps(path: Path, obstacle: etree._Element) -> list[int]:
-    """Return the time steps of an obstacle's states."""
-    said = [state.findtext("time/exact") for state in _all_states(obstacle)]
-    try:
-        return [int(float(step or "")) for step in said]
-    except (ValueError, OverflowError):
+@cache
+def _lacking(places: tuple[str, ...]) -> etree.XPath:
+    """Return the question whether some state lacks one of these places."""
+    return etree.XPath(f"boolean({_STATES}[{' or '.join(f'not({place}/text())' for place in places)}])")
+
+
+def _numbers(obstacle: etree._Element, states: list[etree._Element]) -> dict[str, Floats]:
+    """Return every field of the states, NaN where it is not said: all at once where each state says it once or none does."""
+    texts = {place: list(read(obstacle)) for place, read in _TEXTS.items()}  # type: ignore[arg-type]
+    said = tuple(place for place, found in texts.items() if found)
+    if all(len(texts[place]) == len(states) for place in said) and not (said and _lacking(said)(obstacle)):
+        nothing = np.full(len(states), np.nan)
+        try:
+            return {
+                p: np.array(found, dtype=np.str_).astype(np.float64) if found else nothing for p, found in texts.items()
+            }
+        except ValueError:
+            pass  # one of them is no number: which, is seen below
+    return {place: np.array([_number(state.findtext(place)) for state in states], np.float64) for place in texts}
+
+
+def _states(path: Path, obstacle: etree._Element) -> dict[str, Floats]:
+    """Return the columns of an obstacle, (n,) each. Errors: `TraceError` for a state without an exact time."""
+    states = _all_states(obstacle)
+    found = _numbers(obstacle, states)
+    columns = {name: found[place] for name, place in _FIELDS.items()}
+    columns["step"] = np.trunc(found[_TIME])
+    if not np.isfinite(columns["step"]).all():
         raise TraceError(
             f"{path}: obstacle {obstacle.get('id')}, line {obstacle.sourceline}: a state without an exact time"
-        ) from None
+        )
+    return columns
 
 
-def _states(path: Path, obstacle: etree._Element, last: int) -> dict[str, Floats]:
-    """Return the columns of an obstacle, (n,) each; one that stands has a state at every step of the scenario."""
-    states = _all_states(obstacle)
-    columns = {
-        name: np.array([_number(state.findtext(place)) for state in states], np.float64)
-        for name, place in _FIELDS.items()
-    }
-    columns["step"] = np.array(_steps(path, obstacle), np.float64)
+def _standing(obstacle: etree._Element, columns: dict[str, Floats], last: int) -> dict[str, Floats]:
+    """Add the sizes; one that stands has a state at every step of the scenario."""
+    n = len(columns["step"])
     static = obstacle.tag == "staticObstacle" or obstacle.findtext("role") == "static"
-    if static and len(states) == 1:
+    if static and n == 1:
         columns = {name: np.repeat(values, last + 1) for name, values in columns.items()}
         columns["step"] = np.arange(last + 1, dtype=np.float64)
         columns["v"] = np.zeros(last + 1)

@@ -87,7 +87,7 @@ def _astray(states: States, step: Steps, most: float) -> NDArray[np.bool_]:
     """Say of each actor whether its velocities lead elsewhere than its positions in most of the seconds in which it moves."""
     wrong, n = np.zeros(len(states.ids), np.bool_), len(states)
     k = max(1, round(WRONG_SECOND_NS / step.period_ns)) if step.period_ns else n
-    if n <= k or most == 0.0:
+    if n <= k or most == 0.0 or not _suspicious(states, k):
         return wrong
     t_ns, numbers = states.t_ns, states.numbers
     off, moved, told = (np.zeros(n - k) for _ in range(3))
@@ -108,6 +108,25 @@ def _astray(states: States, step: Steps, most: float) -> NDArray[np.bool_]:
     seconds, astray = (np.bincount(states.actor[:-k][rows], minlength=len(states.ids)) for rows in (moving, bad))
     wrong = (astray >= WRONG_WINDOWS) & (2 * astray > seconds)
     return wrong & bool(seconds[wrong].sum() <= most * seconds.sum())
+
+
+def _suspicious(states: States, k: int) -> bool:
+    """Look at every k-th state only, and by Simpson's rule: whether the velocities of somebody may well be wrong."""
+    first = np.arange(0, len(states) - k, k)
+    middle, last = first + k // 2, first + k
+    here = (states.actor[first] == states.actor[last]) & (states.t_ns[last] > states.t_ns[first])
+    first, middle, last = first[here], middle[here], last[here]
+    span, numbers = (states.t_ns[last] - states.t_ns[first]) * 1e-9, states.numbers
+    off = np.zeros(len(first))
+    for place, rate_of in (("x_m", "vx_mps"), ("y_m", "vy_mps")):
+        v = numbers[rate_of]
+        went = (numbers[place][last] - numbers[place][first]) / span
+        led = (v[first] + 4.0 * v[middle] + v[last]) / 6.0
+        off = np.hypot(off, went - led)
+    bad, n = (
+        np.bincount(states.actor[first][rows], minlength=len(states.ids)) for rows in (off > WRONG_MPS / 2, off >= 0.0)
+    )
+    return bool((3 * bad > n).any())
 
 
 def _acceleration(states: States, starts: NDArray[np.intp]) -> list[Finding]:

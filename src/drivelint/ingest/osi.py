@@ -12,7 +12,7 @@ from drivelint.errors import TraceError
 from drivelint.ingest import carried, descriptors
 from drivelint.ingest.container import Container
 from drivelint.ingest.order import listed
-from drivelint.ingest.osi_decode import GROUND_TRUTH, SENSOR_VIEW, TREES, Decoder, lanes_of, malformed, reference_of
+from drivelint.ingest.osi_decode import GROUND_TRUTH, SENSOR_VIEW, TREES, Decoder, Head, head_of, malformed
 from drivelint.ingest.osi_words import Bulbs, signal_states
 from drivelint.ingest.trace import EPOCH_NS, Finding, FrameTimes, Recording, States
 
@@ -54,8 +54,9 @@ def read(path: Path, topic: str | None) -> Recording:
         )
     recording = source.recording()
     recording.findings += container.findings
-    recording.embedded_map = next(iter(maps), source.lanes)
-    recording.geo_reference = source.geo_reference
+    recording.embedded_map = next(iter(maps), source.head.lanes)
+    recording.geo_reference = source.head.reference
+    recording.findings += () if maps else source.head.findings
     recording.events = carried.events(path, events)
     carried.apply(path, container.metadata, recording)
     return recording
@@ -102,8 +103,7 @@ class _Source:
     log_ns: list[int] = field(default_factory=list)
     batches: list[Frames] = field(default_factory=list)
     decoder: Decoder | None = None
-    lanes: bytes | None = None
-    geo_reference: str | None = None
+    head: Head = field(default_factory=Head)
 
     def take(self, packet: Packet, kind: str) -> None:
         """Keep a message of the topic, decoding when enough have come together."""
@@ -115,7 +115,7 @@ class _Source:
             self._decode()
         self.waiting.append(packet)
         if not self.log_ns:  # lanes stand in the first message, if anywhere
-            self.lanes, self.geo_reference = lanes_of(packet.data, kind), reference_of(packet.data, kind)
+            self.head = head_of(packet.data, kind)
         self.log_ns.append(packet.log_time_ns)
         self.size += len(packet.data)
         if self.size >= BATCH_BYTES:

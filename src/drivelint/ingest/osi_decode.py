@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import ptars
@@ -15,6 +15,7 @@ from drivelint import osi_schema
 from drivelint.errors import TraceError
 from drivelint.ingest import descriptors
 from drivelint.ingest.osi_words import Bulbs, bulbs_of, child, state_codes, words_of
+from drivelint.ingest.trace import Finding
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -150,31 +151,35 @@ class Decoder:
                 raise malformed(self._path, packet, error) from error
 
 
-def lanes_of(data: bytes, name: str) -> bytes | None:
-    """Return the lanes of a ground truth (or of the one in a sensor view) as a message of their own, or None: no lanes.
+class Head(NamedTuple):
+    """What the first message alone says: lanes as a message of their own, the geo reference, lanes that have no width."""
 
-    Without boundaries they have no width, and nothing can be placed on them: None too.
+    lanes: bytes | None = None
+    reference: str | None = None
+    findings: tuple[Finding, ...] = ()
+
+
+def head_of(data: bytes, name: str) -> Head:
+    """Return lanes and geo reference (a PROJ string) of a ground truth, or of the one in a sensor view.
+
+    Lanes without boundaries have no width, and nothing can be placed on them: they are told, and make no map.
     """
     try:
         outer = osi_schema.message(name.removeprefix("osi3.")).FromString(data)
     except DecodeError:
-        return None  # whether the message is damaged, who reads its objects says
+        return Head()  # whether the message is damaged, who reads its objects says
     truth = outer.global_ground_truth if name == SENSOR_VIEW else outer
-    if not truth.lane or not truth.lane_boundary:
-        return None
+    reference = str(truth.proj_string) or None
+    if not truth.lane_boundary:
+        n = len(truth.lane)
+        message = f"lanes in the log: {n}, all of them centre lines without boundaries: without a width they make no map: give --map"
+        return Head(None, reference, (Finding("lanes_without_width", "info", message, n),) if n else ())
+    if not truth.lane:
+        return Head(None, reference)
     kept = osi_schema.message("GroundTruth")()
     kept.lane.extend(truth.lane)
     kept.lane_boundary.extend(truth.lane_boundary)
-    return bytes(kept.SerializeToString(deterministic=True))
-
-
-def reference_of(data: bytes, name: str) -> str | None:
-    """Return the geo reference (a PROJ string) of a ground truth's coordinates, or of the one in a sensor view; None: not said."""
-    try:
-        outer = osi_schema.message(name.removeprefix("osi3.")).FromString(data)
-    except DecodeError:
-        return None  # see lanes_of
-    return str((outer.global_ground_truth if name == SENSOR_VIEW else outer).proj_string) or None
+    return Head(bytes(kept.SerializeToString(deterministic=True)), reference)
 
 
 def malformed(path: Path, packet: Packet, error: ValueError) -> TraceError:

@@ -11,7 +11,7 @@ from mcap.records import Channel
 from drivelint.errors import TraceError
 from drivelint.ingest.container import Packet
 from drivelint.ingest.osi import BATCH_BYTES, joined
-from drivelint.ingest.osi_decode import GROUND_TRUTH, SENSOR_VIEW, Decoder, lanes_of, reference_of
+from drivelint.ingest.osi_decode import GROUND_TRUTH, SENSOR_VIEW, Decoder, Head, head_of
 from drivelint.ingest.trace import Finding
 from drivelint.osi_schema import reading_set
 
@@ -42,13 +42,12 @@ def read(path: Path) -> Recording:
     channel = Channel(id=1, topic=path.name, message_encoding="protobuf", schema_id=1, metadata={})
     batches: list[Frames] = []
     decoder: Decoder | None = None
-    lanes: bytes | None = None
-    reference: str | None = None
+    head = Head()
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         for packets in _batches(path, channel, content):
             if decoder is None:
                 decoder, name = _decoder(path, packets)
-                lanes, reference = lanes_of(packets[0].data, name), reference_of(packets[0].data, name)
+                head = head_of(packets[0].data, name)
             batches.append(decoder.frames(packets))
     n = sum(len(batch.t_ns) for batch in batches)
     untimed = n - sum(int(batch.timed.sum()) for batch in batches)
@@ -57,8 +56,8 @@ def read(path: Path) -> Recording:
     recording = joined(batches, np.zeros(n, np.uint64))
     recording.format = "osi-file"
     recording.frame_times = None
-    recording.embedded_map = lanes
-    recording.geo_reference = reference
+    recording.embedded_map, recording.geo_reference = head.lanes, head.reference
+    recording.findings += head.findings
     recording.findings.append(
         Finding("unprotected", "info", "the file has no checksums: damage inside a message may go unseen")
     )

@@ -249,9 +249,12 @@ def _csv(path: Path) -> pa.Table:
 
 
 def _xml(path: Path) -> pa.Table:
-    """Read XML by one expression that is made from the first vehicle; where a vehicle looks otherwise, by the parser."""
+    """Read XML: where all vehicles look like the first, line by line, else by one expression, else by the parser."""
     content = path.read_bytes()
     begin = content.find(b"<fcd-export")
+    lines = _lines(content, begin) if b"&" not in content else None
+    if lines is not None:
+        return lines
     first = re.search(rb"<vehicle\s([^<>]*?)/?>", content[begin:])
     if first is not None and b"&" not in content:
         names = [name.decode() for name in re.findall(rb'([\w:]+)="', first[1])]
@@ -266,6 +269,62 @@ def _xml(path: Path) -> pa.Table:
         if len(rows) == steps + others and content.rstrip().endswith(b"</fcd-export>"):
             return _table(rows, names)
     return _parsed(path, content)
+
+
+def _lines(content: bytes, begin: int) -> pa.Table | None:
+    """Read a log with an element on each line as a table that quotation marks cut; None where one looks otherwise."""
+    first = re.search(rb"^[ \t]*<vehicle [^\n]*/>$", content[begin:], re.MULTILINE)
+    if first is None or not content.rstrip().endswith(b"</fcd-export>"):
+        return None
+    parts = first[0].decode("utf-8", "replace").split('"')
+    names = [part.strip().removeprefix("<vehicle ").removesuffix("=") for part in parts[:-1:2]]
+    columns = [f"{i}" for i in range(len(parts))]
+    others: list[tuple[int, str]] = []
+
+    def other(row: Any) -> str:
+        others.append((row.number, row.text))
+        return "skip"
+
+    wanted = [c for i, c in enumerate(columns) if i % 2 == 0 or names[i // 2] in _FIELDS]
+    try:
+        table = pa_csv.read_csv(
+            pa.BufferReader(memoryview(content)[begin:]),
+            # one thread: the numbers of lines are only known then
+            pa_csv.ReadOptions(column_names=columns, use_threads=False, block_size=1 << 24),
+            pa_csv.ParseOptions(delimiter='"', quote_char=False, ignore_empty_lines=False, invalid_row_handler=other),
+            pa_csv.ConvertOptions(
+                column_types=dict.fromkeys(wanted, pa.string()), include_columns=wanted, strings_can_be_null=False
+            ),
+        )
+    except pa.ArrowInvalid:
+        return None
+    for column, literal in zip(columns[::2], parts[::2], strict=True):
+        if pc.any(pc.not_equal(table.column(column), literal)).as_py():
+            return None
+    return _timed(table, names, others)
+
+
+def _timed(table: pa.Table, names: list[str], others: list[tuple[int, str]]) -> pa.Table | None:
+    """Give each vehicle the time of the line with a step above it; None where the other lines are not those of steps."""
+    marks, stamps = [], []
+    for number, text in others:
+        line = text.strip()
+        if line.startswith("<timestep") and (step := re.fullmatch(r'<timestep\s+time="([^"<]*)"\s*/?>', line)):
+            marks.append(number)
+            stamps.append(float(step[1]))
+        elif line and not line.startswith(("</timestep>", "<fcd-export", "</fcd-export>")):
+            return None
+    taken = np.array([number for number, _ in others], np.int64)
+    # the n-th vehicle's line: so many lines of other kinds are above it
+    above = np.searchsorted(taken - np.arange(len(taken)), np.arange(table.num_rows) + 1, side="right")
+    at = np.searchsorted(np.array(marks, np.int64), np.arange(table.num_rows) + 1 + above) - 1
+    if not marks or (at < 0).any():
+        return None
+    made: dict[str, Any] = {"timestep_time": pa.array(np.array(stamps, np.float64)[at])}
+    for i, name in enumerate(names):
+        if name in _FIELDS:
+            made[f"vehicle_{name}"] = table.column(f"{2 * i + 1}")
+    return pa.table(made)
 
 
 def _table(rows: list[tuple[bytes, ...]], names: list[str]) -> pa.Table:

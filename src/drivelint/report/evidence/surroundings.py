@@ -12,6 +12,8 @@ from drivelint import store
 from drivelint.report.evidence.roads import TRUE_TO_M
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
     import duckdb
     from numpy.typing import NDArray
 
@@ -21,11 +23,13 @@ PATH_STEP_NS: Final = 200_000_000
 """A way has at most one point in so long."""
 REACH_M: Final = (60.0, 300.0)
 """Least and largest reach of a scene around the ego."""
+AT_ONCE: Final = 400
+"""Moments whose scenes are made at once: their ways are lists, which the database holds in memory."""
 PER_RULE: Final = 20
 """Scenes per ego, rule and profile: those with the worst margins."""
 
 _MOMENTS: Final = """
-CREATE OR REPLACE TEMP TABLE _moment AS
+CREATE OR REPLACE TEMP TABLE _every_moment AS
 WITH told AS (
     SELECT drive_id, ego_id, rule_id, profile, object_id, t_worst_ns AS t_ns, margin, 0 AS weight FROM finding
     UNION ALL
@@ -45,10 +49,15 @@ seen AS (
     GROUP BY ALL
 )
 SELECT s.drive_id, s.ego_id, s.t_ns, l.environment_id, e.x_m, e.y_m,
-    least(greatest(coalesce(s.far_m, 0.0) + 30.0, $least_m), $most_m) AS reach_m
+    least(greatest(coalesce(s.far_m, 0.0) + 30.0, $least_m), $most_m) AS reach_m,
+    dense_rank() OVER (ORDER BY s.drive_id, s.ego_id) AS ego_no
 FROM seen s
 JOIN ego_state e USING (drive_id, ego_id, t_ns)
 JOIN data_log l USING (drive_id)
+"""
+
+_SOME: Final = """
+CREATE OR REPLACE TEMP TABLE _moment AS SELECT * EXCLUDE (ego_no) FROM _every_moment WHERE ego_no >= ? AND ego_no < ?
 """
 
 _AROUND: Final = """
@@ -162,11 +171,26 @@ def gather(con: duckdb.DuckDBPyConnection) -> None:
     """Add the scenes of the batch that was just judged, and the danger spaces in them."""
     least, most = REACH_M
     con.execute(_MOMENTS, {"per_rule": PER_RULE, "least_m": least, "most_m": most})
-    con.execute(_AROUND, {"path_ns": int(PATH_S * 1e9), "step_ns": PATH_STEP_NS})
-    con.execute(_SCENES)
-    edges = con.execute(_SPACES).to_arrow_table()
-    if edges.num_rows:
-        store.insert(con, "danger_space", _rings(edges))
+    counts = con.execute("SELECT ego_no, count(*) FROM _every_moment GROUP BY ego_no ORDER BY ego_no").fetchall()
+    for first, end in _some(counts):
+        con.execute(_SOME, [first, end])
+        con.execute(_AROUND, {"path_ns": int(PATH_S * 1e9), "step_ns": PATH_STEP_NS})
+        con.execute(_SCENES)
+        edges = con.execute(_SPACES).to_arrow_table()
+        if edges.num_rows:
+            store.insert(con, "danger_space", _rings(edges))
+
+
+def _some(counts: Sequence[tuple[int, int]]) -> Iterator[tuple[int, int]]:
+    """Cut egos, given with their numbers of moments, into runs [first, end) of at most `AT_ONCE` moments or one ego."""
+    first, n = 1, 0
+    for ego, moments in counts:
+        if n and n + moments > AT_ONCE:
+            yield first, ego
+            first, n = ego, 0
+        n += moments
+    if n:
+        yield first, len(counts) + 1
 
 
 def _rings(edges: pa.Table) -> pa.Table:
