@@ -9,7 +9,7 @@ import sys
 from dataclasses import replace
 from functools import cache
 from hashlib import sha256
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -204,35 +204,52 @@ def _filled() -> duckdb.DuckDBPyConnection:
     return derived(*crowd(), con=con)
 
 
-def verdicts_of(turn: float, x: float, y: float, t_s: float, hand: str) -> list[Row]:
-    """Return the verdicts of an overtake on a bend, map and trace turned and moved, and its clock set forward."""
-    way = road(((150.0, 0.0), (300.0, 1 / 400), (250.0, 0.0)), hand=hand, start=(x, y, turn))
-    t = times(30.0)
-    s = 50 + 12 * t
-    ego = moving("ego", way, t, s, scenes.swing(way, s, 150, 280))
-    vbp = moving("vbp", way, t, 140 + 4 * t, way.own)
-    ov = moving("ov", way, t, 560 - 9 * t, way.other)
-    actors = [replace(a, t_s=a.t_s + t_s) for a in (ego, vbp, ov)]
-    return judged([drive(actors, way.environment)], rules=RULES, profiles=PROFILES)
+class Elsewhere(NamedTuple):
+    """A map and its trace turned and moved, the clock set forward, driven on either side."""
+
+    hand: str
+    turn: float = 0.0
+    x: float = 0.0
+    y: float = 0.0
+    t_s: int = 0
+
+    def drive(self, drive_id: str) -> Drive:
+        """Return an overtake on a bend there and then."""
+        bend = ((150.0, 0.0), (300.0, 1 / 400), (250.0, 0.0))
+        way = road(bend, hand=self.hand, start=(self.x, self.y, self.turn))
+        t = times(30.0)
+        s = 50 + 12 * t
+        ego = moving("ego", way, t, s, scenes.swing(way, s, 150, 280))
+        vbp = moving("vbp", way, t, 140 + 4 * t, way.own)
+        ov = moving("ov", way, t, 560 - 9 * t, way.other)
+        actors = [replace(a, t_s=a.t_s + self.t_s) for a in (ego, vbp, ov)]
+        return drive(actors, way.environment, drive_id=drive_id)
 
 
-@cache
-def at_home(hand: str) -> tuple[Row, ...]:
-    return tuple(verdicts_of(0.0, 0.0, 0.0, 0.0, hand))
-
-
-@settings(max_examples=5, deadline=None)
-@given(
+elsewhere = st.builds(
+    Elsewhere,
+    st.sampled_from(["rht", "lht"]),
     st.floats(-math.pi, math.pi),
     st.floats(-5000, 5000),
     st.floats(-5000, 5000),
     st.integers(0, 2_000_000),
-    st.sampled_from(["rht", "lht"]),
 )
-def test_where_and_when_does_not_matter(turn: float, x: float, y: float, t_s: int, hand: str) -> None:
-    moved = verdicts_of(turn, x, y, t_s, hand)
-    home = at_home(hand)
-    assert len(moved) == len(home)
+
+
+@settings(max_examples=2)
+@given(st.lists(elsewhere, min_size=4, max_size=4))
+def test_where_and_when_does_not_matter(moves: list[Elsewhere]) -> None:
+    """All of them are judged at once, with both that stay at home."""
+    homes = {hand: Elsewhere(hand) for hand in ("rht", "lht")}
+    drives = {f"{no}": move for no, move in enumerate(moves)} | homes
+    found = of_each(judged([one.drive(name) for name, one in drives.items()], rules=RULES, profiles=PROFILES))
+    for no, move in enumerate(moves):
+        as_at_home(found[f"{no}"], found[move.hand], move.t_s)
+
+
+def as_at_home(moved: Sequence[Row], home: Sequence[Row], later_s: int) -> None:
+    """Hold that the verdicts are the same, so many seconds later."""
+    assert len(moved) == len(home) > 0
     for a, b in zip(moved, home, strict=True):
         for column in (
             "rule_id",
@@ -246,7 +263,7 @@ def test_where_and_when_does_not_matter(turn: float, x: float, y: float, t_s: in
         ):
             assert a[column] == b[column], (column, a, b)
         for column in ("t_ref_ns", "t_start_ns", "t_end_ns"):
-            assert a[column] == (None if b[column] is None else b[column] + t_s * 10**9)
+            assert a[column] == (None if b[column] is None else b[column] + later_s * 10**9)
         for column in ("observed", "required", "margin"):
             assert a[column] == (None if b[column] is None else pytest.approx(b[column], abs=2e-3)), (column, a, b)
 

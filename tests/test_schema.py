@@ -14,7 +14,7 @@ from drivelint.resources import folder
 @pytest.fixture(scope="module")
 def database() -> duckdb.DuckDBPyConnection:
     con = duckdb.connect()
-    store.create_tables(con)
+    store.create_tables(con, comments=True)
     return con
 
 

@@ -144,7 +144,7 @@ def _bodies() -> dict[str, str]:
     return dict(each for file in files for each in _TABLE.findall(file.read_text(encoding="utf-8")))
 
 
-def create_tables(con: duckdb.DuckDBPyConnection, *, comments: bool = True) -> None:
+def create_tables(con: duckdb.DuckDBPyConnection, *, comments: bool = False) -> None:
     """Create every table of `schemas/*.sql`, its columns' comments kept in the database if asked."""
     for file in sorted(folder("schemas").glob("*.sql")):
         con.execute(file.read_text(encoding="utf-8"))

@@ -166,7 +166,7 @@ def test_a_passing_verdict(folder: Path) -> None:
     assert found.verdict["verdict"] == "pass"
     text = flat(said(found))
     assert "PASS: the rule was kept" in text
-    assert f"Broken with the same limit, if what was observed were {found.verdict['margin']:.6g} m less." in text
+    assert f"Broken with the same limit, if distance between the two were {found.verdict['margin']:.6g} m less." in text
 
 
 def test_an_unknown_verdict_for_want_of_a_signal(folder: Path) -> None:
