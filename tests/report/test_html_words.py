@@ -98,3 +98,13 @@ def test_of_a_crowd_the_worst_have_charts_and_the_page_says_so(
     few = page(overtakes)
     assert 0 < few.count('<svg class="chart"') <= 5
     assert "Charts over time are drawn for the worst 5" in few
+
+
+def test_a_contact_stands_on_top(overtakes: Result, text: str) -> None:
+    told = Parsed(text).text.partition("In short")[0].replace("\u00a0", " ")
+    rows = [r for r in overtakes.findings.to_pylist() if r["rule_id"] == "ukhc.no-collision"]
+    drives = {row["drive_id"] for row in rows}
+    assert len(drives) == 1
+    assert told.count("and object") == 1, "found by its boxes and by its speeds, it is one contact"
+    assert drives.pop() in told.partition("there was a contact:")[2]
+    assert "there was a contact" not in page(result([verdict("fail")], [finding()]))

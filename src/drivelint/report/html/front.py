@@ -9,6 +9,7 @@ import pyarrow.compute as pc
 
 from drivelint.report import counts
 from drivelint.report.html.anchors import rule_anchor
+from drivelint.report.text import seconds, tied
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -29,6 +30,9 @@ PACKS: Final = {
     "alks-r157": "UN Regulation 157 (lane keeping)",
 }
 """What the packs that come with drivelint are about."""
+_CONTACT: Final = pa.array(["ukhc.no-collision", "ukhc.contact-signature"])
+"""Rules whose findings are contacts: of the boxes, or told by the speeds."""
+_NAMED: Final = 4
 _OPEN: Final = pa.array(["unknown", "error"])
 _STORY_DRIVES: Final = 6
 _STORY_PARTIES: Final = 6
@@ -73,6 +77,31 @@ def headline(result: Result) -> tuple[str, str]:
     if open_ or judged < result.drives.num_rows:
         return "unknown", "No finding, as far as it could be judged"
     return "pass", "No finding"
+
+
+class Contacts(NamedTuple):
+    """The contacts that rules found, in words, each with the link to it; `n_more`: those that are not named."""
+
+    named: list[tuple[str, str]]
+    n_more: int
+
+
+def contacts(result: Result, lines: Sequence[tuple[Row, Measured]]) -> Contacts | None:
+    """Return who touched whom and when, by all findings; None: none is about a contact. `lines`: those of the page, to link to."""
+    starts = {
+        row["drive_id"]: row["t_start_ns"] for row in result.drives.select(["drive_id", "t_start_ns"]).to_pylist()
+    }
+    hrefs = {row["finding_id"]: line.href for row, line in lines if line.kind == "fail"}
+    rows = result.findings.filter(pc.is_in(result.findings["rule_id"], value_set=_CONTACT))
+    told: dict[tuple[str, frozenset[str | None]], tuple[str, str]] = {}
+    for row in rows.sort_by([("drive_id", "ascending"), ("t_worst_ns", "ascending")]).to_pylist():
+        drive_id, ego_id, object_id = row["drive_id"], row["ego_id"], row["object_id"]
+        who = f"ego {ego_id}" if object_id is None else f"ego {ego_id} and object {object_id}"
+        where = f", {drive_id}" if len(starts) > 1 else ""
+        said = f"{who} at {tied(seconds(row['t_worst_ns'], starts[drive_id]))}{where}"
+        told.setdefault((drive_id, frozenset((ego_id, object_id))), (said, hrefs.get(row["finding_id"], "")))
+    named = list(told.values())
+    return Contacts(named[:_NAMED], len(named) - len(named[:_NAMED])) if named else None
 
 
 def not_decided(result: Result) -> int:

@@ -96,6 +96,7 @@ def content(result: Result) -> dict[str, Any]:
     return {
         "outcome": outcome(result),
         "headline": front.headline(result),
+        "contacts": front.contacts(result, lines),
         "not_decided": front.not_decided(result),
         "counts": front.shares(totals),
         "names": _NAMES,

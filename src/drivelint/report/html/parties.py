@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.report.text import NONE
 
@@ -11,6 +11,9 @@ if TYPE_CHECKING:
 
     Row = Mapping[str, Any]
     Key = tuple[str, str, int]
+
+
+_STANDS_MPS: Final = 0.1
 
 
 class Party(NamedTuple):
@@ -62,4 +65,7 @@ def _speeds(actors: Sequence[Row]) -> str:
     if not speeds:
         return NONE
     low, high = min(speeds), max(speeds)
-    return f"{high:.1f} m/s" if high - low < 0.1 else f"{low:.1f} to {high:.1f} m/s"
+    if high < _STANDS_MPS:
+        return "standing"
+    usual = f" (up to {high * 3.6:.0f} km/h, {high * 2.23694:.0f} mph)"
+    return (f"{high:.1f} m/s" if high - low < _STANDS_MPS else f"{low:.1f} to {high:.1f} m/s") + usual
