@@ -309,7 +309,7 @@ def _place(drives: Iterable[Drive]) -> _Place:
         _PLACES.remove(found)
         clear(found.con, but=(*_of_the_map(), "profile"))
     else:
-        con = _PLACES.pop(0).con if len(_PLACES) >= 4 else store.connect(threads=1)
+        con = _PLACES.pop(0).con if len(_PLACES) >= 8 else store.connect(threads=1)
         clear(con)
         store.insert(con, "profile", profile_table(load_profiles(), ()))
         found = _Place(con, Bench(con, (), {}, None), maps)

@@ -61,10 +61,14 @@ def offsets(way: Road, t: Floats, begin: float, lasts: float = 4.0, *, to: float
     return sign * LANE * (start + (to - start) * ease((t - begin) / lasts))
 
 
-def tables(way: Road, *actors: Actor, egos: tuple[str, ...] = ("ego",)) -> duckdb.DuckDBPyConnection:
-    """Return a database with the tables about lanes."""
-    names = ["lane_change", "line_step", "cut_in", "lane_crossing", "ego_corridor", "ego_state"]
-    return derived(drive(actors, way.environment, egos=egos), tables=names)
+LANES = ("lane_change", "line_step", "lane_crossing")
+
+
+def tables(
+    way: Road, *actors: Actor, egos: tuple[str, ...] = ("ego",), of: tuple[str, ...] = LANES
+) -> duckdb.DuckDBPyConnection:
+    """Return a database with these tables about lanes, and where the ego's lanes are."""
+    return derived(drive(actors, way.environment, egos=egos), tables=[*of, "ego_corridor", "ego_state"])
 
 
 @cache

@@ -14,7 +14,7 @@ ROW = dict[str, Any]
 
 
 def cuts(way: Road, *actors: Actor, egos: tuple[str, ...] = ("ego",)) -> list[ROW]:
-    return rows(tables(way, *actors, egos=egos), "FROM cut_in ORDER BY ego_id, occurrence")
+    return rows(tables(way, *actors, egos=egos, of=("cut_in",)), "FROM cut_in ORDER BY ego_id, occurrence")
 
 
 @pytest.mark.parametrize("hand", ["rht", "lht"])
@@ -62,7 +62,7 @@ def test_where_lanes_merge_nobody_cuts_in() -> None:
     t = times(12.0)
     ego = moving("ego", way, t, 150 + 10 * t, offsets(way, t, 99.0))
     other = moving("x", way, t, 220 + 12 * t, offsets(way, t, 99.0, start=0.5))
-    con = tables(way, ego, other)
+    con = tables(way, ego, other, of=("cut_in",))
     assert not rows(con, "FROM cut_in")
     # it does become the one ahead in the lane
     placed = rows(con, "SELECT DISTINCT abs(d_m) < 0.1 AS inside FROM pair ORDER BY ALL")
