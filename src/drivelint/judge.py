@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final, Protocol
 
 import duckdb
 import pyarrow as pa
+import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from drivelint import store
@@ -165,6 +166,7 @@ class Bench:
             derive(self._con, self._tables, of_the_map=True)
             self._maps = frozenset(environments)
             self._keep_maps(environments.keys() - self._kept_maps)
+        store.code_ids(self._con, _batch_tables(), (d.trace.drive_id for d in drives), _actors(drives))
         for table in drives[0].trace.tables:
             rows = pa.concat_tables([_on_map(d) if table == "data_log" else d.trace.tables[table] for d in drives])
             store.insert(self._con, table, rows)
@@ -243,6 +245,13 @@ def _on_map(drive: Drive) -> pa.Table:
     log = drive.trace.tables["data_log"]
     name = pa.array([drive.environment.environment_id if drive.environment else None], pa.string())
     return log.set_column(log.schema.get_field_index("environment_id"), "environment_id", name)
+
+
+def _actors(drives: Iterable[Drive]) -> set[str]:
+    held = set(_batch_tables())
+    tables = [d.trace.tables[name] for d in drives for name in d.trace.tables if name in held]
+    columns = [table.column(c) for table in tables for c in table.column_names if c in store.ACTOR_IDS]
+    return {each for column in columns for each in pc.unique(column).to_pylist() if each is not None}
 
 
 def _batch_tables() -> list[str]:
