@@ -8,10 +8,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from drivelint.errors import ExitCode
+from drivelint.errors import ExitCode, UsageError
 from drivelint.report import files
 from drivelint.report.contract import FILES, OUTPUT_SCHEMA
 from drivelint.report.files import OutputError, parquet_bytes, publish
+from drivelint.report.load import load
 from drivelint.report.outputs import write
 from tests.report.synthetic import finding, result, table, verdict
 
@@ -83,3 +84,11 @@ def test_a_full_disk_leaves_the_earlier_results_whole(tmp_path: Path, monkeypatc
     with pytest.raises(OutputError, match="No space left"):
         publish(tmp_path, {"one": b"new", "two": b"new"}, {})
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {"one": b"old", "two": b"old"}
+
+
+def test_a_folder_of_other_columns_says_what_to_do(tmp_path: Path) -> None:
+    write(result([verdict("fail")], [finding()]), tmp_path)
+    file = tmp_path / "courses.parquet"
+    pq.write_table(pq.read_table(file).drop_columns(["occurrence"]), file)
+    with pytest.raises(UsageError, match=r"occurrence.*check the drives again"):
+        load(tmp_path)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from drivelint.errors import UsageError
+from drivelint.errors import DriveLintError, UsageError
 from drivelint.report.contract import FILES, OUTPUT_SCHEMA
 from drivelint.report.gate import store
 from drivelint.report.result import Result
@@ -29,7 +29,11 @@ def load(folder: Path) -> Result:
             "check the drives again"
         )
     tables = {name: _table(folder / f"{name}.parquet") for name in FILES}
-    return Result(**tables, fail_on=summary["fail_on"], strict=summary["strict"], gate=store.load(folder))
+    gate = store.load(folder)
+    try:
+        return Result(**tables, fail_on=summary["fail_on"], strict=summary["strict"], gate=gate)
+    except DriveLintError as error:
+        raise UsageError(f"{folder}: of another version of drivelint ({error}): check the drives again") from error
 
 
 def _summary(folder: Path) -> dict[str, Any]:
