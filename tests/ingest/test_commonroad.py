@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING
 import pytest
 
 from drivelint.errors import TraceError
+from drivelint.ingest import commonroad
+from drivelint.ingest.commonroad_text import cut
 from tests.ingest.logs import actors, at, log, put, quality, read, states
 from tests.shared_data import shared
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
 
@@ -111,3 +114,45 @@ def test_real_scenarios(name: str, ego: str, n_actors: int, n_states: int) -> No
     assert (len(actors(trace)), len(states(trace))) == (n_actors, n_states)
     assert not {"yaw_mismatch", "teleport", "no_size", "gap"} & set(quality(trace))
     assert trace.embedded_map is not None
+
+
+SLIP = "<slipAngle><exact>0.1</exact></slipAngle>"
+
+
+@pytest.mark.parametrize(
+    ("change", "fast"),
+    [
+        (lambda text: text, True),
+        (lambda text: text.replace("><", ">\n  <"), True),
+        (lambda text: text.replace("<dynamicObstacle", "<!-- a & b --><dynamicObstacle"), True),
+        (lambda text: text.replace("<dynamicObstacle", "<!-- <trajectory></trajectory> --><dynamicObstacle", 1), False),
+        (lambda text: text.replace("<x>5.0</x>", "<x> 5.0 </x>"), True),
+        (lambda text: text.replace("</velocity></state>", f"</velocity>{SLIP}</state>"), True),
+        (lambda text: text.replace("</velocity></state>", f"</velocity>{SLIP}</state>", 3), False),
+        (lambda text: text.replace("<x>5.0</x><y>2</y>", "<y>2</y><x>5.0</x>", 1), False),
+        (lambda text: text.replace("<exact>10.0</exact>", "<intervalStart>9</intervalStart><intervalEnd>11</intervalEnd>"), False),
+        (lambda text: text.replace("<x>5.0</x>", "<x>five</x>", 1), False),
+        (lambda text: text.replace("<x>5.0</x>", "<x>5.0<!-- about --></x>", 1), False),
+        (lambda text: text.replace("<x>5.0</x>", "<x>&#53;.0</x>", 1), False),
+        (lambda text: text.replace("<trajectory>", "<trajectory><note>x</note>", 1), False),
+    ],
+)  # fmt: skip
+def test_the_text_of_trajectories_is_read_as_their_elements_are(
+    change: Callable[[str], str], fast: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = write(tmp_path, moving(1), moving(2, "bus", n=7, yaw=0.2), obstacle(3, "car", state("initialState", 0, 9.0)))
+    path.write_text(change(path.read_text("utf-8")), "utf-8")
+    assert (cut(path.read_bytes()) is not None) == fast
+    first = read(path, ego="1")
+    monkeypatch.setattr(commonroad, "cut", lambda _content: None)
+    second = read(path, ego="1")
+    assert first.tables == second.tables
+    assert len(states(first)) == 20 + 7 + 1
+
+
+@pytest.mark.parametrize("name", ["DEU_Gar-1_1_T-1", "OSC_Overtake-1_1_T-1", "USA_US101-5_1_T-1"])
+def test_real_trajectories_read_either_way(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = shared(f"commonroad/{name}.xml")
+    first = read(path, need_ego=False)
+    monkeypatch.setattr(commonroad, "cut", lambda _content: None)
+    assert first.tables == read(path, need_ego=False).tables

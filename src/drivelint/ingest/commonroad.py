@@ -14,10 +14,12 @@ from lxml import etree
 
 from drivelint import markup
 from drivelint.errors import TraceError
+from drivelint.ingest.commonroad_text import cut
 from drivelint.ingest.order import listed
 from drivelint.ingest.trace import CLASSES, Finding, Recording, States
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -48,8 +50,9 @@ def looks_like(head: bytes) -> bool:
 def read(path: Path) -> Recording:
     """Read a scenario. Errors: `TraceError` for malformed XML, no obstacles, or times that cannot be understood."""
     content = path.read_bytes()
+    fast = cut(content)
     try:
-        root = markup.parse(content)
+        root = markup.parse(content if fast is None else fast.rest)
     except markup.RefusedError as error:
         raise TraceError(f"{path} {error}") from None
     step_s = _number(root.get("timeStepSize"))
@@ -65,7 +68,8 @@ def read(path: Path) -> Recording:
         raise TraceError(
             f"{path}: two obstacles have the same id: {listed(sorted({i for i in ids if ids.count(i) > 1}))}"
         )
-    parts = [_states(path, o) for o in obstacles]
+    trajectories = {} if fast is None else dict(zip(root.iter("trajectory"), fast.columns, strict=True))
+    parts = [_states(path, o, trajectories) for o in obstacles]
     last = max((int(part["step"].max()) for part in parts if len(part["step"])), default=0)
     parts = [_standing(o, part, last) for o, part in zip(obstacles, parts, strict=True)]
     counts = [len(part["step"]) for part in parts]
@@ -124,10 +128,17 @@ def _numbers(obstacle: etree._Element, states: list[etree._Element]) -> dict[str
     return {place: np.array([_number(state.findtext(place)) for state in states], np.float64) for place in texts}
 
 
-def _states(path: Path, obstacle: etree._Element) -> dict[str, Floats]:
+def _states(
+    path: Path, obstacle: etree._Element, trajectories: Mapping[etree._Element, Mapping[str, Floats]]
+) -> dict[str, Floats]:
     """Return the columns of an obstacle, (n,) each. Errors: `TraceError` for a state without an exact time."""
     states = _all_states(obstacle)
     found = _numbers(obstacle, states)
+    trajectory = obstacle.find("trajectory")
+    more = None if trajectory is None else trajectories.get(trajectory)
+    if more is not None:
+        nothing = np.full(len(next(iter(more.values()))), np.nan)
+        found = {place: np.concatenate([values, more.get(place, nothing)]) for place, values in found.items()}
     columns = {name: found[place] for name, place in _FIELDS.items()}
     columns["step"] = np.trunc(found[_TIME])
     if not np.isfinite(columns["step"]).all():
