@@ -113,26 +113,26 @@ def test_the_crowd_has_something_to_say() -> None:
 def test_alone_or_in_a_crowd() -> None:
     by_drive = of_each(expected())
     assert by_drive.keys() == {one.trace.drive_id for one in crowd()}
-    for one in crowd()[::3]:
+    for one in crowd()[2::5]:
         assert judged([one], rules=RULES, profiles=PROFILES) == by_drive[one.trace.drive_id]
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_order_of_drives_and_of_their_rows(seed: int) -> None:
-    shuffled = [crowd()[i] for i in np.random.default_rng(seed).permutation(len(crowd()))]
+def test_order_of_drives_and_of_their_rows() -> None:
+    dice = np.random.default_rng(0)
+    shuffled = [crowd()[i] for i in dice.permutation(len(crowd()))]
     mixed = []
     for one in shuffled:
         tables = dict(one.trace.tables)
         for table in ("actor_state", "actor"):
-            order = np.random.default_rng(seed).permutation(tables[table].num_rows)
+            order = dice.permutation(tables[table].num_rows)
             tables[table] = tables[table].take(order)
         mixed.append(replace(one, trace=replace(one.trace, tables=tables)))
     assert judged(mixed, rules=RULES, profiles=PROFILES) == list(expected())
 
 
 def test_size_of_batches(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As many as fit in 5,000 states: one drive, or two to five."""
-    monkeypatch.setattr(batch, "STATES", 5000)
+    """As many as fit in 10,000 states: two to seven drives. One alone has its own test."""
+    monkeypatch.setattr(batch, "STATES", 10_000)
     batches = [[one for one in part if isinstance(one, batch.Drive)] for part in batch.cut(crowd())]
     assert len(crowd()) > len(batches) > 3
     assert judged(*batches, rules=RULES, profiles=PROFILES) == list(expected())
