@@ -52,3 +52,10 @@ def test_units_are_si_and_stand_in_the_name(database: duckdb.DuckDBPyConnection)
     ).fetchall()
     assert [c for c in columns if c[1].endswith("_ns") and c[2].removesuffix("[]") != "BIGINT"] == []
     assert [c for c in columns if re.search(r"_(deg|mph|kmh|min|ft|ms)$", c[1])] == []
+
+
+def test_only_the_wheels_extension_may_be_unsigned() -> None:
+    with store.connect(threads=1) as con:
+        assert con.execute("SELECT current_setting('allow_unsigned_extensions')").fetchall() == [(False,)]
+        with pytest.raises(duckdb.InvalidInputException, match="while database is running"):
+            con.execute("SET allow_unsigned_extensions=true")
