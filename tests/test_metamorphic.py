@@ -149,6 +149,13 @@ def verdicts(cases: Mapping[str, Case]) -> dict[str, list[Row]]:
     return rows
 
 
+def both(before: Mapping[str, Case], after: Mapping[str, Case]) -> tuple[dict[str, list[Row]], dict[str, list[Row]]]:
+    """Return the rows of the cases before and after a change; all are judged at once."""
+    first = {f"{name}, before": case for name, case in before.items()}
+    rows = verdicts(first | {f"{name}, after": case for name, case in after.items()})
+    return {name: rows[f"{name}, before"] for name in before}, {name: rows[f"{name}, after"] for name in after}
+
+
 def same(before: Mapping[str, list[Row]], after: Mapping[str, list[Row]], later_s: int = 0) -> None:
     """Hold that every row is there again, so many seconds later."""
     for name, rows in before.items():
@@ -164,10 +171,10 @@ def same(before: Mapping[str, list[Row]], after: Mapping[str, list[Row]], later_
 def test_the_world_in_a_mirror_elsewhere_and_later() -> None:
     """All at once: mirrored, turned and moved, its clock set, its rows shuffled. Every other case: all take twice as long."""
     some = dict(list(cases().items())[::2])
-    before = verdicts(some)
+    before, after = both(some, {name: moved(mirrored(case), FAR) for name, case in some.items()})
     assert {row["verdict"] for rows in before.values() for row in rows} == {"pass", "fail", "unknown", "not_applicable"}
     assert len({row["rule_id"] for rows in before.values() for row in rows if row["verdict"] == "fail"}) > 30
-    same(before, verdicts({name: moved(mirrored(case), FAR) for name, case in some.items()}), FAR.t_s)
+    same(before, after, FAR.t_s)
 
 
 @settings(max_examples=2, deadline=None)
@@ -182,11 +189,11 @@ def test_the_world_in_a_mirror_elsewhere_and_later() -> None:
 def test_where_and_when_does_not_matter(move: Move, names: set[str], mirror: bool) -> None:
     some = {name: cases()[name] for name in sorted(names)}
     changed = {name: moved(mirrored(case) if mirror else case, move) for name, case in some.items()}
-    same(verdicts(some), verdicts(changed), move.t_s)
+    same(*both(some, changed), move.t_s)
 
 
 def test_twice_the_samples_change_no_verdict() -> None:
-    found = [verdicts(sampled(rate_hz)) for rate_hz in (10, 20)]
+    found = both(sampled(10), sampled(20))
     for name, rows in found[0].items():
         kept = ("rule_id", "profile", "object_id", "verdict", "reason_code")
         said = [sorted([tuple(str(row[c]) for c in kept) for row in each]) for each in (rows, found[1][name])]
