@@ -25,6 +25,7 @@ OMEGA = {"x": "x_m", "y": "y_m", "yaw": "yaw_rad", "vel_x": "vx_mps", "vel_y": "
 EGOS = ("ego", "once", "oncoming", "parked")
 # where anybody judged at the same time ever was, the corridor is looked at: more cells of it are kept, nobody else is in them
 TABLES = [table for table in store.schema() if table not in ("drive", "rule", "visited_cell", "corridor_cell")]
+FEW = ("ukhc.no-collision", "ukhc.r162.safe-distance-ahead")  # where it is not the rules that matter
 FIXTURE = Path(__file__).resolve().parents[1] / "fixtures" / "overtake"
 
 
@@ -126,7 +127,7 @@ def test_a_drive_of_which_a_part_fails_leaves_nothing(
         plain(con, *args, **options)
 
     monkeypatch.setattr("drivelint.judge.evaluate", third)
-    asked = settings(ragged, FIXTURE / "safe.csv", ego="all", out=tmp_path, keep_db=True)
+    asked = settings(ragged, FIXTURE / "safe.csv", ego="all", out=tmp_path, keep_db=True, rules=FEW)
     result = check(asked, Silent())
     assert len(calls) == 3 + 3
     assert dict(zip(*(result.drives[c].to_pylist() for c in ("file_name", "status")), strict=True)) == {
@@ -143,9 +144,9 @@ def test_a_drive_of_which_a_part_fails_leaves_nothing(
 def test_a_drive_that_cannot_be_read_harms_no_other(tmp_path: Path) -> None:
     broken = tmp_path / "broken.csv"
     broken.write_text("<html>404</html>\n", encoding="utf-8")
-    alone = check(settings(FIXTURE / "safe.csv"), Silent())
+    alone = check(settings(FIXTURE / "safe.csv", rules=FEW), Silent())
     notes = Notes()
-    both = check(settings(broken, FIXTURE / "safe.csv"), notes)
+    both = check(settings(broken, FIXTURE / "safe.csv", rules=FEW), notes)
     assert both.verdicts.equals(alone.verdicts)
     by_name = {row["file_name"]: row for row in both.drives.to_pylist()}
     assert by_name["broken.csv"]["status"] == "not_judged"
@@ -165,7 +166,7 @@ def test_a_drive_that_the_engine_chokes_on_harms_no_other(monkeypatch: pytest.Mo
         derive(con, *args, **options)
 
     monkeypatch.setattr("drivelint.judge.derive", choking)
-    result = check(settings(*logs()), Silent())
+    result = check(settings(*logs(), rules=FEW), Silent())
     status = {row["file_name"]: (row["status"], row["status_reason"]) for row in result.drives.to_pylist()}
     assert status["safe.csv"][0] == "not_judged"
     assert "no more" in status["safe.csv"][1]
@@ -175,7 +176,7 @@ def test_a_drive_that_the_engine_chokes_on_harms_no_other(monkeypatch: pytest.Mo
 
 
 def test_memory_that_does_not_do_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    usual = check(settings(*logs()), Silent())
+    usual = check(settings(*logs(), rules=FEW), Silent())
     asked: list[str] = []
 
     def short(con: duckdb.DuckDBPyConnection, *_args: Any, **_options: Any) -> None:
@@ -185,7 +186,7 @@ def test_memory_that_does_not_do_is_no_error(monkeypatch: pytest.MonkeyPatch) ->
         plain(con, *_args, **_options)
 
     monkeypatch.setattr("drivelint.judge.evaluate", short)
-    again = check(settings(*logs()), Silent())
+    again = check(settings(*logs(), rules=FEW), Silent())
     assert len(set(asked)) == 2, "the second try has the machine's memory"
     assert again.verdicts.equals(usual.verdicts)
 
@@ -194,7 +195,7 @@ def test_the_same_log_twice_is_judged_once(tmp_path: Path) -> None:
     copy = tmp_path / "safe.csv"
     shutil.copy(FIXTURE / "safe.csv", copy)
     notes = Notes()
-    result = check(settings(FIXTURE / "safe.csv", copy), notes)
+    result = check(settings(FIXTURE / "safe.csv", copy, rules=FEW), notes)
     assert result.drives.num_rows == 1
     assert any("judged once" in line for line in notes.said)
 
@@ -241,6 +242,21 @@ def test_the_map_and_the_host_that_an_omega_prime_table_holds(tmp_path: Path) ->
     assert found[0] == found[1]
     assert result.drives["map_name"].to_pylist() == ["embedded"]
     assert result.verdicts["ego_id"].unique().to_pylist() == ["3"]
+
+
+def test_objects_at_half_the_rate_change_no_verdict(tmp_path: Path) -> None:
+    """They move evenly: at the ego's steps they are where they were."""
+    head, *rows = (FIXTURE / "near_miss.csv").read_text("utf-8").splitlines()
+    thin = [row for row in rows if ",ego," in row or round(float(row.split(",")[0]) * 10) % 2 == 1]
+    assert len(rows) - len(thin) > 100
+    log = tmp_path / "near_miss.csv"
+    log.write_text("\n".join([head, *thin]) + "\n", encoding="utf-8")
+    columns = ["rule_id", "profile", "object_id", "occurrence", "t_ref_ns", "verdict", "reason_code"]
+    every, half = (check(settings(path), Silent()) for path in (FIXTURE / "near_miss.csv", log))
+    assert every.verdicts.select(columns).equals(half.verdicts.select(columns))
+    assert {"pass", "fail"} <= set(every.verdicts["verdict"].to_pylist())
+    (found,) = half.drives["quality"].to_pylist()
+    assert "aligned" in {row["check_id"] for row in found}
 
 
 def test_a_map_whose_lanes_run_the_other_way_is_refused() -> None:
