@@ -40,7 +40,7 @@ CREATE TABLE hidden (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
-    object_id VARCHAR NOT NULL,       -- somebody who is or may be there and has no place in the corridor: no position or box, lost, beyond the map's end, or straight on from where the ego's lane ends without a link
+    object_id VARCHAR NOT NULL,       -- somebody who is or may be there and has no place in the corridor: no position or box, lost, beyond the map's end, or straight on from where the ego's lane ends without a link, or in a hole between two lanes
     actor_class VARCHAR,              -- see actor
     vehicle BOOLEAN NOT NULL,         -- it may be a vehicle
     least_m DOUBLE NOT NULL,          -- box to box it is at least so far away, by when and where it is seen

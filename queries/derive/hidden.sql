@@ -45,26 +45,37 @@ beyond AS (
     JOIN reach r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
     WHERE u.reason = 'moves off the lanes' AND p.s_m IS NULL AND p.distance_m > least(r.end_m - e.s_m, e.s_m - r.begin_m)
 ),
--- where the ego's lane ends though the map goes on: who is straight on from there is ahead of it, if only the link is missing
-lane_end AS (
-    SELECT c.drive_id, c.ego_id, c.chain_id, c.end_m, p.x_m, p.y_m, p.tx, p.ty, p.half_width_m
-    FROM (
-        SELECT drive_id, ego_id, chain_id, max({'end_m': s_start_m + length_m, 'id': lanelet_id}).id AS lanelet_id, max(s_start_m + length_m) AS end_m
-        FROM corridor
-        GROUP BY drive_id, ego_id, chain_id
-    ) c
+-- where the lanes of a chain do not meet: an end without a link though the map goes on, and holes between one and the next
+last_piece AS (
+    SELECT
+        c.drive_id, c.ego_id, c.chain_id, c.seq, c.seq = max(c.seq) OVER (PARTITION BY c.drive_id, c.ego_id, c.chain_id) AS is_last,
+        g.environment_id, c.lanelet_id, c.s_start_m + c.length_m AS end_m,
+        p.x1_m AS x_m, p.y1_m AS y_m, p.tx1 AS tx, p.ty1 AS ty, p.hw1_m AS half_width_m
+    FROM corridor c
     JOIN data_log g USING (drive_id)
-    JOIN lane_next n ON n.environment_id = g.environment_id AND n.lanelet_id = c.lanelet_id
-    JOIN lane_point p ON p.environment_id = g.environment_id AND p.lanelet_id = c.lanelet_id
-    WHERE n.ahead_id IS NULL
-    QUALIFY p.k = max(p.k) OVER (PARTITION BY c.drive_id, c.ego_id, c.chain_id)
+    JOIN lane_segment p ON p.environment_id = g.environment_id AND p.lanelet_id = c.lanelet_id AND p.slack1_m > 0
 ),
-unlinked AS (
+hole AS (
+    -- who is straight on from there is ahead, if only the link is missing
+    SELECT e.*, 'inf'::DOUBLE AS hole_m
+    FROM last_piece e
+    JOIN lane_next n ON n.environment_id = e.environment_id AND n.lanelet_id = e.lanelet_id
+    WHERE e.is_last AND n.ahead_id IS NULL
+    UNION ALL
+    SELECT e.*, along0(f.x0_m, f.y0_m, e.x_m, e.y_m, e.tx, e.ty) AS hole_m
+    FROM last_piece e
+    JOIN corridor c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.chain_id = e.chain_id AND c.seq = e.seq + 1
+    JOIN lane_segment f ON f.environment_id = e.environment_id AND f.lanelet_id = c.lanelet_id AND f.k = 0
+    WHERE hole_m > f.slack0_m
+),
+ahead_of AS (SELECT *, unnest(range(floor(end_m / 500)::BIGINT - 2, floor(end_m / 500)::BIGINT + 1)) AS bucket FROM hole),
+in_hole AS (
     SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m
-    FROM pair p
-    JOIN ego_state e USING (drive_id, ego_id, t_ns)
-    JOIN lane_end l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.chain_id = e.chain_id
-    WHERE p.s_m IS NULL AND e.s_m < l.end_m AND (p.x_m - l.x_m) * l.tx + (p.y_m - l.y_m) * l.ty > 0
+    FROM ego_state e
+    JOIN ahead_of l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.chain_id = e.chain_id AND l.bucket = floor(e.s_m / 500)::BIGINT
+    JOIN pair p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.t_ns = e.t_ns
+    WHERE p.s_m IS NULL AND e.s_m < l.end_m AND along0(p.x_m, p.y_m, l.x_m, l.y_m, l.tx, l.ty) > 0
+        AND along0(p.x_m, p.y_m, l.x_m, l.y_m, l.tx, l.ty) <= l.hole_m
         AND abs((p.y_m - l.y_m) * l.tx - (p.x_m - l.x_m) * l.ty) < l.half_width_m + 1
 )
 SELECT
@@ -76,5 +87,5 @@ SELECT
     h.drive_id, h.ego_id, h.t_ns, h.object_id, h.actor_class, may_be_vehicle(h.actor_class),
     greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - two_half_boxes_m()),
     CASE WHEN h.distance_m > two_half_boxes_m() THEN (h.x_m - e.x_m) * cos(e.yaw_rad) + (h.y_m - e.y_m) * sin(e.yaw_rad) > 0 END
-FROM (SELECT * FROM incomplete UNION ALL SELECT * FROM beyond UNION SELECT * FROM unlinked) h
+FROM (SELECT * FROM incomplete UNION ALL SELECT * FROM beyond UNION SELECT * FROM in_hole) h
 JOIN ego_state e USING (drive_id, ego_id, t_ns)

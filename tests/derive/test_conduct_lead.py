@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pyarrow.compute as pc
 import pytest
 
 from tests.derive.junction_scenes import cross
@@ -280,4 +281,22 @@ def test_beyond_a_lane_whose_link_is_missing_nobody_knows_who_leads(
     t = times(0.3)
     ego, other = moving("ego", way, t, 100 + 10 * t, way.own), moving("x", way, t, s + 10 * t, d)
     found = rows(derived(drive([ego, other], environment), tables=["lead"]), "FROM lead")
+    assert {row["object_id"] for row in found} == told
+
+
+@pytest.mark.parametrize(
+    ("s", "d", "told"), [(147.0, -1.75, set()), (160.0, -1.75, {"x"}), (140.0, -1.75, {"x"}), (147.0, 2.5, {None})]
+)
+def test_in_a_hole_between_two_lanes_nobody_knows_who_leads(s: float, d: float, told: set[str | None]) -> None:
+    """The lanes are cut at 150 m, and those before drawn to about 145 m only."""
+    way = road(cuts=(150.0,))
+    tables = way.environment.tables
+    points, lanelets = tables["lane_point"], tables["lanelet"]
+    short = pc.is_in(points["lanelet_id"], lanelets.filter(pc.less(lanelets["length_m"], 200))["lanelet_id"])
+    kept = points.filter(pc.or_(pc.invert(short), pc.less(points["s_m"], 145)))
+    assert 0 < points.num_rows - kept.num_rows < 20
+    t = times(0.3)
+    ego, other = moving("ego", way, t, 100 + 10 * t, way.own), standing("x", way, t, s, d)
+    holed = replace(way.environment, tables=tables | {"lane_point": kept})
+    found = rows(derived(drive([ego, other], holed), tables=["lead"]), "FROM lead")
     assert {row["object_id"] for row in found} == told
