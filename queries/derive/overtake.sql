@@ -29,6 +29,23 @@ ahead AS (
     WHERE may_be_vehicle(p.actor_class) AND p.s_m > g.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m - over_boundary_m()
         AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps())
 ),
+-- who was seen to come towards the ego, last before and first after, is not the one that is overtaken
+met AS (
+    SELECT drive_id, ego_id, t0_ns, object_id
+    FROM (
+        SELECT u.*, p.t_ns, coalesce(abs(p.heading_diff_rad) >= 2 * pi() / 3 AND p.speed_mps > standing_mps(), false) AS towards
+        FROM (
+            SELECT DISTINCT g.drive_id, g.ego_id, g.t0_ns, u.object_id
+            FROM gone g
+            JOIN unplaced u ON u.drive_id = g.drive_id AND u.ego_id = g.ego_id AND u.t_ns = g.t0_ns
+        ) u
+        JOIN pair p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.object_id = u.object_id
+        WHERE p.front_s_m IS NOT NULL
+    )
+    GROUP BY ALL
+    HAVING coalesce(max({'t_ns': t_ns, 'towards': towards}) FILTER (t_ns <= t0_ns).towards, true)
+        AND coalesce(min({'t_ns': t_ns, 'towards': towards}) FILTER (t_ns > t0_ns).towards, true)
+),
 -- somebody without a position, heading or size, or whose track ended or begins nearby, may be the one that is overtaken
 hidden AS (
     SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, u.object_id, NULL::DOUBLE AS gap_m, p.speed_mps, a.length_m, false AS placed,
@@ -36,6 +53,7 @@ hidden AS (
     FROM gone g
     JOIN unplaced u ON u.drive_id = g.drive_id AND u.ego_id = g.ego_id AND u.t_ns = g.t0_ns
     JOIN actor a ON a.drive_id = u.drive_id AND a.actor_id = u.object_id
+    ANTI JOIN met m ON m.drive_id = u.drive_id AND m.ego_id = u.ego_id AND m.t0_ns = u.t_ns AND m.object_id = u.object_id
     LEFT JOIN seen p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.chain_id = g.chain_id AND p.t0_ns = g.t0_ns
         AND p.t_ns = g.t0_ns AND p.object_id = u.object_id
     WHERE p.front_s_m IS NULL AND p.s_m > g.s_m AND abs(p.d_m) < 2 * p.half_width_m

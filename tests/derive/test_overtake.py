@@ -261,6 +261,21 @@ def test_who_comes_into_the_log_later_and_is_passed_was_there() -> None:
         assert (found["t0_ns"], found["passed"]) == (whole["t0_ns"], True)
 
 
+@pytest.mark.parametrize("stops", [False, True])
+def test_who_comes_into_the_log_later_towards_the_ego_is_not_overtaken(stops: bool) -> None:
+    """The vehicle ahead is 105 m away and is passed; the oncoming one appears over the end of the map after t0, and may stop later."""
+    way, (ego, _, _) = scene()
+    t = ego.t_s
+    far = moving("vbp", way, t, 260 + 0.1 * t, way.own)
+    way_s = 590 - 9 * (np.minimum(t, 20) if stops else t)
+    late = moving("ov", way, t, way_s, way.other).keep(t > 9.0)
+    con = derived(drive([ego, far, late], way.environment), tables=["overtake", "unplaced"])
+    found = rows(con, "FROM overtake")
+    assert found[0]["t0_ns"] < 9e9
+    assert rows(con, f"FROM unplaced WHERE object_id = 'ov' AND t_ns = {found[0]['t0_ns']}")
+    assert [(row["vbp_id"], row["vbp_placed"]) for row in found] == [("vbp", True)]
+
+
 def test_a_wobble_over_the_line_is_an_excursion_and_nothing_else() -> None:
     way, (ego, vbp, ov) = scene()
     d = swing(way, ego.x, 70, 100, share=0.28)  # 0.1 m over
