@@ -16,7 +16,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 import pytest
-from hypothesis import given, settings
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from drivelint.batch import Drive
@@ -45,6 +45,7 @@ SAID = ("rule_id", "profile", "object_id", "occurrence", "verdict", "reason_code
 TIMES = ("t_ref_ns", "t_start_ns", "t_end_ns")
 NUMBERS = ("observed", "required", "margin")
 NEVER = 1e6  # two equal speeds close in within years, or never, by their last bits
+NO_SHRINKING = (Phase.explicit, Phase.reuse, Phase.generate)  # an example takes seconds, and is small as it is
 OTHER_SIDE = {"left": "right", "right": "left"}
 
 
@@ -162,7 +163,10 @@ def same(before: Mapping[str, list[Row]], after: Mapping[str, list[Row]], later_
         for a, b in zip(rows, after[name], strict=True):
             assert [a[c] for c in SAID] == [b[c] for c in SAID], (name, a, b)
             expected = [None if a[c] is None else a[c] + later_s * 10**9 for c in TIMES]
-            assert expected == [b[c] for c in TIMES], (name, a, b)
+            # a sample exactly on the joint of two lanes is on either, by its last bits: a stretch may begin there a sample sooner or later
+            assert [b[c] for c in TIMES] == [
+                None if t is None else pytest.approx(t, rel=0, abs=1e8) for t in expected
+            ], (name, a, b)
             for column in NUMBERS:
                 x, y = (None if row[column] is None else min(row[column], NEVER) for row in (a, b))
                 assert y == (None if x is None else pytest.approx(x, abs=2e-3)), (name, a, b)
@@ -177,7 +181,7 @@ def test_the_world_in_a_mirror_elsewhere_and_later() -> None:
     same(before, after, FAR.t_s)
 
 
-@settings(max_examples=2, deadline=None)
+@settings(max_examples=2, deadline=None, phases=NO_SHRINKING)
 @given(
     st.builds(
         Move, st.floats(-math.pi, math.pi), st.floats(-1e5, 1e5), st.floats(-1e5, 1e5), st.integers(0, 2_000_000_000),

@@ -29,7 +29,7 @@ ahead AS (
     WHERE may_be_vehicle(p.actor_class) AND p.s_m > g.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m - over_boundary_m()
         AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps())
 ),
--- who was seen to come towards the ego, last before and first after, is not the one that is overtaken
+-- who comes into the log only later, and towards the ego, is not the one that is overtaken
 met AS (
     SELECT drive_id, ego_id, t0_ns, object_id
     FROM (
@@ -43,8 +43,7 @@ met AS (
         WHERE p.front_s_m IS NOT NULL
     )
     GROUP BY ALL
-    HAVING coalesce(max({'t_ns': t_ns, 'towards': towards}) FILTER (t_ns <= t0_ns).towards, true)
-        AND coalesce(min({'t_ns': t_ns, 'towards': towards}) FILTER (t_ns > t0_ns).towards, true)
+    HAVING min(t_ns) > t0_ns AND min({'t_ns': t_ns, 'towards': towards}).towards
 ),
 -- somebody without a position, heading or size, or whose track ended or begins nearby, may be the one that is overtaken
 hidden AS (
