@@ -1,4 +1,4 @@
--- title = "No deceleration that only a contact explains"
+-- title = "No jolt such as only an impact gives"
 -- clause = "UKHC R144: do not drive dangerously or without care for others; a contact that the boxes miss shows in the speeds"
 -- hypothesis = "While another actor was within reach, did ego and actor lose speed no faster than tyres can?"
 -- kind = "invariant"

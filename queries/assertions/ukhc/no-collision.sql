@@ -1,4 +1,4 @@
--- title = "No collision"
+-- title = "Clear of everybody else"
 -- clause = "UKHC R144: do not drive dangerously or without care for others; a collision is the plainest breach"
 -- hypothesis = "At every step, was the ego's box clear of every other actor's box?"
 -- kind = "invariant"
