@@ -108,9 +108,7 @@ def derive(
         free = [stack.enter_context(con.cursor()) for _ in range(workers)]
         busy: dict[Future[None], tuple[str, duckdb.DuckDBPyConnection]] = {}
         ready: deque[str] = deque()
-        stack.callback(wait, busy)
-        for cursor in free:
-            stack.callback(cursor.interrupt)  # should one fail, or the user not want to wait
+        stack.callback(_stop, tuple(free), busy)  # should one fail, or the user not want to wait
         while graph.is_active():
             ready.extend(sorted(graph.get_ready()))
             while ready and free:
@@ -122,6 +120,15 @@ def derive(
                 free.append(cursor)
                 graph.done(table)
                 advance(table)
+
+
+def _stop(cursors: Iterable[duckdb.DuckDBPyConnection], running: Iterable[Future[None]]) -> None:
+    """Interrupt until nothing runs: once is not enough, as an interrupt before a statement has begun is lost."""
+    left = set(running)
+    while left:
+        for cursor in cursors:
+            cursor.interrupt()
+        left = wait(left, timeout=0.05).not_done
 
 
 def _fill(con: duckdb.DuckDBPyConnection, step: Derivation) -> None:

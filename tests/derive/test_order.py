@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from itertools import accumulate
 from typing import TYPE_CHECKING
 
@@ -53,10 +54,19 @@ def test_each_runs_after_what_it_reads(
     assert con.execute("SELECT * FROM clock").fetchall() == [("d", "e", 4, 5, 0, 4)]
 
 
+@pytest.mark.parametrize("begins_late", [False, True])  # an interrupt before a statement has begun is lost
 def test_what_fails_is_named_and_what_runs_beside_it_is_stopped(
-    con: duckdb.DuckDBPyConnection, monkeypatch: pytest.MonkeyPatch
+    con: duckdb.DuckDBPyConnection, monkeypatch: pytest.MonkeyPatch, begins_late: bool
 ) -> None:
     only(monkeypatch, {"visited_cell": (SLOW, set()), "step": (STEP.replace("0 AS seg", "'x'::INTEGER AS seg"), set())})
+    fill = derive._fill
+
+    def late(con: duckdb.DuckDBPyConnection, step: derive.Derivation) -> None:
+        if begins_late and step.table == "visited_cell":
+            time.sleep(0.3)
+        fill(con, step)
+
+    monkeypatch.setattr(derive, "_fill", late)
     with pytest.raises(DriveLintError, match=r"^queries/derive/step\.sql: .*'x'"):
         derive.derive(con, ["step", "visited_cell"], of_the_map=False)
     assert con.execute("SELECT (SELECT count(*) FROM visited_cell), (SELECT count(*) FROM step)").fetchall() == [(0, 0)]
