@@ -13,7 +13,7 @@ import numpy as np
 import pyarrow.compute as pc
 
 from drivelint.errors import DriveLintError
-from drivelint.ingest import Finding, IngestOptions, Trace, read_trace
+from drivelint.ingest import Finding, IngestOptions, Trace, read_trace, with_finding
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -141,8 +141,6 @@ def on_its_map(trace: Trace, library: MapLibrary) -> Drive:
     states = trace.tables["actor_state"]
     environment = library.find(trace.path, trace.embedded_map, trace.map_offset, states, trace.geo_reference)
     for check, doubt in library.doubts(trace.path, environment, states, trace.geo_reference).items():
-        from drivelint.ingest.finish import with_finding
-
         trace = with_finding(trace, Finding(check, "warning", doubt))
     return Drive(trace, environment)
 

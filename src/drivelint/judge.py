@@ -117,7 +117,7 @@ class Bench:
             todo = parts(drives)
             for no, resting in enumerate(todo):
                 if no:
-                    self._renew([*_part_tables(drives[0]), "resting_ego"])
+                    store.renew(self._con, [*_part_tables(drives[0]), "resting_ego"])
                 if resting:
                     store.insert(self._con, "resting_ego", _egos(drives[0], resting))
                 self._judge_part(ids)
@@ -222,15 +222,7 @@ class Bench:
             raise RuleError(f"{row[0]} erred on a batch of {len(ids)} drives")
 
     def _clear(self) -> None:
-        for table in _batch_tables():
-            self._con.execute(f"DELETE FROM {table}")
-
-    def _renew(self, tables: Iterable[str]) -> None:
-        """Make tables anew, empty: what is only deleted takes its room until a database is written down, which this one never is."""
-        made = "SELECT table_name, sql FROM duckdb_tables() WHERE database_name = current_database() AND NOT temporary"
-        definitions = dict(self._con.execute(made).fetchall())
-        for table in tables:
-            self._con.execute(definitions[table].replace("CREATE TABLE", "CREATE OR REPLACE TABLE", 1))
+        store.renew(self._con, _batch_tables())
 
     def _forget(self, ids: Sequence[str]) -> None:
         self._clear()

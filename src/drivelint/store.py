@@ -20,9 +20,7 @@ if TYPE_CHECKING:
 _TABLE = re.compile(r"^CREATE TABLE (\w+) \(\n(.*?)^\);", re.DOTALL | re.MULTILINE)
 ACTOR_IDS = frozenset({"ego_id", "object_id", "actor_id"})
 """Columns that hold the id of an actor."""
-_OLD_CODES = (
-    r"SELECT type_name FROM duckdb_types() WHERE NOT internal AND regexp_full_match(type_name, '(drive|actor)_ids_\d+')"
-)
+_CODES = r"SELECT regexp_extract(type_name, '^actor_ids_(\d+)$', 1) FROM duckdb_types() WHERE regexp_matches(type_name, '^actor_ids_\d+$')"
 _COLUMN = re.compile(r"^    (\w+) .*?,?\s*-- (.+)$", re.MULTILINE)
 
 
@@ -122,20 +120,35 @@ def code_ids(
     """Make tables anew, empty, that hold ids of drives and actors as numbers which read as the text (ENUM).
 
     Nearly every join is on them, and numbers are a fifth cheaper to derive with. They are numbered in the order of the text: both
-    sort alike. `drives`, `actors`: every id that will come up. Column comments are lost.
+    sort alike. `drives`, `actors`: every id that will come up.
     """
-    old = [str(name) for (name,) in con.execute(_OLD_CODES).fetchall()]
-    no = 1 + max((int(name.rsplit("_", 1)[1]) for name in old), default=0)
+    old = _codes(con)
     for kind, ids in (("drive", drives), ("actor", actors)):
         listed = ", ".join("'" + each.replace("'", "''") + "'" for each in sorted(set(ids)))
-        con.execute(f"CREATE TYPE {kind}_ids_{no} AS {f'ENUM ({listed})' if listed else 'VARCHAR'}")
-    types = {"drive_id": f"drive_ids_{no}", **dict.fromkeys(ACTOR_IDS, f"actor_ids_{no}")}
+        made = f"ENUM ({listed})" if listed else "VARCHAR"
+        con.execute(f"CREATE TYPE {kind}_ids_{max(old, default=0) + 1} AS {made}")
+    renew(con, tables)
+    for no in old:
+        con.execute(f"DROP TYPE drive_ids_{no}; DROP TYPE actor_ids_{no}")
+
+
+def renew(con: duckdb.DuckDBPyConnection, tables: Iterable[str]) -> None:
+    """Make tables anew, empty, their ids of the types that `code_ids` made last, if it did; column comments are lost.
+
+    What is only deleted takes its room until a database is written down, which one in memory never is.
+    """
+    types = {}
+    if codes := _codes(con):
+        types = {"drive_id": f"drive_ids_{max(codes)}", **dict.fromkeys(ACTOR_IDS, f"actor_ids_{max(codes)}")}
     for table in tables:
         body = _bodies()[table]
         for column in types.keys() & schema()[table].keys():
             body = re.sub(rf"^    {column} VARCHAR", f"    {column} {types[column]}", body, flags=re.MULTILINE)
         con.execute(f"CREATE OR REPLACE TABLE {table} (\n{body})")
-    con.execute(";".join(f"DROP TYPE {name}" for name in old))
+
+
+def _codes(con: duckdb.DuckDBPyConnection) -> list[int]:
+    return [int(no) for (no,) in con.execute(_CODES).fetchall()]
 
 
 @cache

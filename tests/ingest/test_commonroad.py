@@ -135,6 +135,8 @@ SLIP = "<slipAngle><exact>0.1</exact></slipAngle>"
         (lambda text: text.replace("<x>5.0</x>", "<x>5.0<!-- about --></x>", 1), False),
         (lambda text: text.replace("<x>5.0</x>", "<x>&#53;.0</x>", 1), False),
         (lambda text: text.replace("<trajectory>", "<trajectory><note>x</note>", 1), False),
+        (lambda text: text.replace("<trajectory>", '<trajectory kind="a">', 1), False),
+        (lambda text: text.replace("</initialState></dynamicObstacle>", "</initialState><trajectory/></dynamicObstacle>"), False),
     ],
 )  # fmt: skip
 def test_the_text_of_trajectories_is_read_as_their_elements_are(

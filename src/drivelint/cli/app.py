@@ -10,7 +10,7 @@ import os
 import sys
 from contextlib import redirect_stdout
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
@@ -23,8 +23,6 @@ from drivelint.errors import DriveLintError, ExitCode
 
 if TYPE_CHECKING:
     from drivelint.report.result import Result
-
-T = TypeVar("T")
 
 app = typer.Typer(
     name="drivelint",

@@ -11,7 +11,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint import conditions, store
-from drivelint.batch import Drive
+from drivelint.batch import Drive, on_its_map
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.ingest import IngestOptions, Trace, read_trace
 from drivelint.ingest.finish import SCHEMAS
@@ -78,9 +78,7 @@ def _read(asked: Asked, path: Path, map_: Path | None, drive_id: str, ego_id: st
         read = _renamed(read, drive_id)
     folder = None if given is not None or asked.map_dir is None else Path(asked.map_dir)
     library = MapLibrary(given, asked.map_offset, asked.handedness, origin=asked.map_origin, folder=folder)
-    return Drive(
-        read, library.find(path, read.embedded_map, read.map_offset, read.tables["actor_state"], read.geo_reference)
-    )
+    return on_its_map(read, library)
 
 
 def _renamed(trace: Trace, drive_id: str) -> Trace:

@@ -42,8 +42,10 @@ def cut(content: bytes) -> Trajectories | None:
             return None
         columns.append(dict(zip(places, values.T, strict=True)))
     rest = b"<trajectory/>".join(parts[::2])
-    # in a comment, a trajectory is none: then it cannot be told which is whose
-    return None if b"<trajectory" in b"".join(_COMMENT.findall(rest)) else Trajectories(rest, columns)
+    # in a comment, a trajectory is none, and with attributes or empty it was not cut out: then it cannot be told which is whose
+    if b"<trajectory" in b"".join(_COMMENT.findall(rest)) or rest.count(b"<trajectory") != len(columns):
+        return None
+    return Trajectories(rest, columns)
 
 
 def _shape(state: bytes) -> tuple[re.Pattern[bytes], list[str], int] | None:

@@ -191,9 +191,8 @@ class _Body:
         for name in self.mapping.ego.ids:
             if name in states.ids:
                 return [name]
-        host = self.sheet.metadata.get(b"host_vehicle_idx", b"").decode(
-            "utf-8", "replace"
-        )  # as omega-prime's Parquet has it
+        # as omega-prime's Parquet has it
+        host = self.sheet.metadata.get(b"host_vehicle_idx", b"").decode("utf-8", "replace")
         if host in states.ids:
             return [host]
         if self.mapping.ego.otherwise is None or not len(states):
