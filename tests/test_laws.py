@@ -198,6 +198,17 @@ def test_no_derivation_compares_everything_with_everything(table: str) -> None:
     assert not re.findall(r"BLOCKWISE_NL_JOIN|NESTED_LOOP_JOIN", plan)
 
 
+@pytest.mark.parametrize("table", [name for name, d in derivations().items() if d.needs])
+def test_a_derivation_that_is_not_run_would_have_had_no_rows(table: str) -> None:
+    step, con = derivations()[table], _filled()
+    has_rows = f"SELECT count(*) FROM ({step.sql})"
+    assert con.execute(has_rows).fetchall() != [(0,)]
+    for empty in sorted(step.needs):
+        con.execute(f"BEGIN; DELETE FROM {empty}")
+        assert con.execute(has_rows).fetchall() == [(0,)], empty
+        con.execute("ROLLBACK")
+
+
 @cache
 def _filled() -> duckdb.DuckDBPyConnection:
     con = store.connect(threads=1)

@@ -1,21 +1,22 @@
 """Derive the library tables: each `queries/derive/<table>.sql` is one SELECT that fills the table of its name.
 
-The order follows from which tables each SELECT reads; only what is asked for, and what that reads, is run.
+The order follows from which tables each SELECT reads; only what is asked for, and what that reads, is run, and nothing for whose
+rows there would have to be some in a table that has none.
 """
 
 from __future__ import annotations
 
-import json
 from collections import deque
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cache
 from graphlib import TopologicalSorter
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import duckdb
 
+from drivelint import sqltree
 from drivelint.errors import DriveLintError
 from drivelint.resources import folder
 from drivelint.store import schema
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 WORKERS: Final = 2
 LARGE: Final = 1_000_000
 """States from which on there is one: a statement then uses all cores, and two would need twice the memory."""
+# a table whose rows were deleted may be missing here, which only costs time
+_EMPTY = "SELECT table_name FROM duckdb_tables() WHERE database_name = current_database() AND estimated_size = 0"
 _GIVEN = {"profile"}  # filled from queries/profiles.toml
 # What the engine and the drive table read themselves, whatever the rules are.
 ALWAYS = (
@@ -43,11 +46,12 @@ ALWAYS = (
 
 @dataclass(frozen=True)
 class Derivation:
-    """One library table, the SELECT that fills it, and the other library tables that the SELECT reads."""
+    """One library table, the SELECT that fills it, the other library tables that it reads, and those without whose rows it has none."""
 
     table: str
     sql: str
     reads: frozenset[str]
+    needs: frozenset[str] = frozenset()
 
     @property
     def of_the_map(self) -> bool:
@@ -61,12 +65,12 @@ def derivations() -> Mapping[str, Derivation]:
     found: dict[str, Derivation] = {}
     files = sorted((folder("queries") / "derive").glob("*.sql"))
     names = {file.stem for file in files}
-    with duckdb.connect() as con:
-        for file in files:
-            if file.stem not in schema():
-                raise DriveLintError(f"{file}: no table {file.stem!r} in schemas/")
-            sql = file.read_text(encoding="utf-8")
-            found[file.stem] = Derivation(file.stem, sql, frozenset(_tables(con, sql, str(file)) & names - {file.stem}))
+    for file in files:
+        if file.stem not in schema():
+            raise DriveLintError(f"{file}: no table {file.stem!r} in schemas/")
+        sql = file.read_text(encoding="utf-8")
+        tree = sqltree.parsed(sql, str(file))
+        found[file.stem] = Derivation(file.stem, sql, sqltree.reads(tree) & names - {file.stem}, sqltree.needs(tree))
     if missing := sorted(schema("derived").keys() - names - _GIVEN):
         raise DriveLintError(
             f"queries/derive: no query for the library table {missing[0]!r} of schemas/derived.sql: reinstall drivelint"
@@ -103,26 +107,36 @@ def derive(
     graph = TopologicalSorter({table: sorted(step.reads & todo.keys()) for table, step in todo.items()})
     graph.prepare()
     (n_states,) = con.execute("SELECT count(*) FROM actor_state").fetchall()[0]
+    empty = {table for (table,) in con.execute(_EMPTY).fetchall()} - todo.keys()
     workers = WORKERS if n_states < LARGE else 1
     with ThreadPoolExecutor(workers) as pool, ExitStack() as stack:
         free = [stack.enter_context(con.cursor()) for _ in range(workers)]
-        busy: dict[Future[None], tuple[str, duckdb.DuckDBPyConnection]] = {}
+        busy: dict[Future[int], tuple[str, duckdb.DuckDBPyConnection]] = {}
         ready: deque[str] = deque()
         stack.callback(_stop, tuple(free), busy)  # should one fail, or the user not want to wait
         while graph.is_active():
             ready.extend(sorted(graph.get_ready()))
+            filled: list[str] = []
             while ready and free:
-                cursor, table = free.pop(), ready.popleft()
-                busy[pool.submit(_fill, cursor, todo[table])] = table, cursor
-            for done in wait(busy, return_when=FIRST_COMPLETED).done:
-                done.result()
+                table = ready.popleft()
+                if todo[table].needs & empty:
+                    empty.add(table)
+                    filled.append(table)
+                else:
+                    cursor = free.pop()
+                    busy[pool.submit(_fill, cursor, todo[table])] = table, cursor
+            for done in wait(busy, return_when=FIRST_COMPLETED).done if not filled else ():
                 table, cursor = busy.pop(done)
+                if not done.result():
+                    empty.add(table)
                 free.append(cursor)
+                filled.append(table)
+            for table in filled:
                 graph.done(table)
                 advance(table)
 
 
-def _stop(cursors: Iterable[duckdb.DuckDBPyConnection], running: Iterable[Future[None]]) -> None:
+def _stop(cursors: Iterable[duckdb.DuckDBPyConnection], running: Iterable[Future[int]]) -> None:
     """Interrupt until nothing runs: once is not enough, as an interrupt before a statement has begun is lost."""
     left = set(running)
     while left:
@@ -131,27 +145,11 @@ def _stop(cursors: Iterable[duckdb.DuckDBPyConnection], running: Iterable[Future
         left = wait(left, timeout=0.05).not_done
 
 
-def _fill(con: duckdb.DuckDBPyConnection, step: Derivation) -> None:
+def _fill(con: duckdb.DuckDBPyConnection, step: Derivation) -> int:
+    """Return how many rows the table got."""
     try:
-        con.execute(f"INSERT INTO {step.table} BY NAME {step.sql}")
+        return int(con.execute(f"INSERT INTO {step.table} BY NAME {step.sql}").fetchall()[0][0])
     except duckdb.OutOfMemoryException:
         raise  # no fault of the query: there may be more
     except duckdb.Error as error:
         raise DriveLintError(f"queries/derive/{step.table}.sql: {str(error).splitlines()[0]}") from error
-
-
-def _tables(con: duckdb.DuckDBPyConnection, sql: str, where: str) -> set[str]:
-    tree = json.loads(con.execute("SELECT json_serialize_sql(?)", [sql]).fetchall()[0][0])
-    if tree["error"]:
-        raise DriveLintError(f"{where}: {tree['error_message']}")
-    nodes = list(_nodes(tree))
-    # a CTE may have the name of another library table: then it is the CTE that is read
-    own = {entry["key"] for node in nodes for entry in node.get("cte_map", {}).get("map", ())}
-    return {node["table_name"] for node in nodes if node.get("type") == "BASE_TABLE"} - own
-
-
-def _nodes(tree: Any) -> Iterable[dict[str, Any]]:
-    if isinstance(tree, dict):
-        yield tree
-    for child in tree.values() if isinstance(tree, dict) else tree if isinstance(tree, list) else ():
-        yield from _nodes(child)
