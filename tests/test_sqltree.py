@@ -6,6 +6,7 @@ import duckdb
 import pytest
 
 from drivelint import sqltree
+from drivelint.derive import Derivation, derivations
 from drivelint.errors import DriveLintError
 
 TABLES = ("a", "b", "c")
@@ -46,6 +47,19 @@ NEEDS = {
     "SELECT count(*) FROM a GROUP BY ALL": "",
     "SELECT b.x FROM b JOIN (SELECT count(*) AS n FROM a) ON true": "b",
     "SELECT DISTINCT x FROM a ORDER BY x LIMIT 1": "a",
+    "WITH A AS (SELECT 7 AS x) FROM a": "",
+    "WITH a AS (FROM b) FROM main.a": "a",
+    "SELECT x FROM B": "b",
+    "SELECT 1 FROM a HAVING true": "",
+    "SELECT 1 FROM a ORDER BY count(*)": "",
+    "SELECT DISTINCT ON (count(*)) 1 FROM a": "",
+    "SELECT 1 FROM a QUALIFY row_number() OVER (ORDER BY count(*)) = 1": "",
+    "SELECT count(*) AS n, n FROM a GROUP BY ALL": "",
+    "SELECT 5 AS k, k, count(*) FROM a GROUP BY ALL": "",
+    "SELECT l.n FROM b, LATERAL (SELECT b.x, count(*) AS n FROM a GROUP BY ALL) l": "b",
+    "SELECT geomean(x) FROM a": "",
+    "SELECT wavg(x, x) FROM a": "",
+    "SELECT b.x FROM b JOIN (SELECT x, count(*) AS n FROM a GROUP BY x) USING (x)": "a b",
 }
 
 
@@ -71,6 +85,20 @@ def test_a_select_has_no_rows_without_those_of_what_it_needs(con: duckdb.DuckDBP
 def test_what_is_read() -> None:
     tree = sqltree.parsed("WITH a AS (FROM b) SELECT (SELECT max(x) FROM c) FROM a WHERE x IN (FROM d)", "here")
     assert sqltree.reads(tree) == {"b", "c", "d"}
+    tree = sqltree.parsed("WITH a AS (FROM A WHERE x > 0) SELECT * FROM a, (WITH b AS (FROM a) FROM B), main.a", "here")
+    assert sqltree.reads(tree) == {"a"}
+    tree = sqltree.parsed("WITH b AS (FROM a) SELECT * FROM (WITH a AS (FROM c) FROM a JOIN b USING (x))", "here")
+    assert sqltree.reads(tree) == {"a", "c"}
+
+
+@pytest.mark.parametrize("name", ["st_extent_agg", "ST_Union_Agg"])
+def test_the_aggregates_of_spatial_are_known(name: str) -> None:
+    assert not sqltree.needs(sqltree.parsed(f"SELECT {name}(x) FROM a", "here"))
+
+
+@pytest.mark.parametrize("step", derivations().values(), ids=lambda step: step.table)
+def test_what_a_derivation_needs_it_reads(step: Derivation) -> None:
+    assert step.needs & derivations().keys() <= step.reads
 
 
 def test_what_is_no_select_is_refused() -> None:

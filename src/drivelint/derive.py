@@ -100,7 +100,8 @@ def derive(
 ) -> None:
     """Fill the library tables behind `tables`: those of the map, or those of the drives.
 
-    Two at a time, each on its own connection: most are so small that DuckDB plans and runs them on one core.
+    Two at a time, each on its own connection: most are so small that DuckDB plans and runs them on one core. Not inside a
+    transaction, whose rows the other connections do not see.
     Errors: `DriveLintError` naming the table, if its SELECT fails.
     """
     todo = {step.table: step for step in needed(tables) if step.of_the_map is of_the_map}

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import json
+import re
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import duckdb
 
 from drivelint.errors import DriveLintError
+from drivelint.resources import folder
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Container, Iterator, Mapping
 
     Node = dict[str, Any]
     Names = frozenset[str]
 
-_NONE: frozenset[str] = frozenset()
+_NONE: Final[frozenset[str]] = frozenset()
+_CALLED: Final = re.compile(r"(\w+)\"?\(")
 
 
 def parsed(sql: str, where: str) -> Node:
@@ -29,60 +32,93 @@ def parsed(sql: str, where: str) -> Node:
 
 
 def reads(tree: Node) -> Names:
-    """Return the tables that are read. A CTE may have the name of a table: then it is the CTE that is read."""
-    nodes = list(_nodes(tree))
-    own = {entry["key"] for node in nodes for entry in _ctes(node)}
-    return frozenset(node["table_name"] for node in nodes if node.get("type") == "BASE_TABLE") - own
+    """Return the tables that are read. A CTE may have the name of a table: where it is in sight, it is the CTE that is read."""
+    found: set[str] = set()
+    _read(tree, _NONE, found)
+    return frozenset(found)
 
 
 def needs(tree: Node) -> Names:
     """Return tables of which each must have rows, or the SELECT has none. One that is left out only costs time."""
-    return _query(tree, {})
+    return _query(tree, {}, beside=False)
 
 
-def _query(node: Node, ctes: Mapping[str, Names]) -> Names:
-    """`ctes`: what each CTE in sight needs."""
+def _read(part: Any, ctes: Names, found: set[str]) -> None:
+    """`ctes`: the names of the CTEs in sight."""
+    if isinstance(part, list):
+        for each in part:
+            _read(each, ctes, found)
+    elif isinstance(part, dict):
+        for entry in _ctes(part):
+            _read(entry["value"]["query"], ctes, found)
+            ctes |= {_folded(entry["key"])}
+        if part.get("type") == "RECURSIVE_CTE_NODE":
+            ctes |= {_folded(part["cte_name"])}
+        if part.get("type") == "BASE_TABLE" and not _is_cte(part, ctes):
+            found.add(_folded(part["table_name"]))
+        _read([value for key, value in part.items() if key != "cte_map"], ctes, found)
+
+
+def _query(node: Node, ctes: Mapping[str, Names], *, beside: bool) -> Names:
+    """`ctes`: what each CTE in sight needs; `beside`: it stands right of a join, and may speak of columns on the left."""
     own = dict(ctes)
     for entry in _ctes(node):
-        own[entry["key"]] = _query(entry["value"]["query"]["node"], own)
+        own[_folded(entry["key"])] = _query(entry["value"]["query"]["node"], own, beside=beside)
     match node["type"]:
-        case "SELECT_NODE" if not _has_a_row_of_none(node):
-            return _source(node["from_table"], own)
+        case "SELECT_NODE" if not _has_a_row_of_none(node, beside=beside):
+            return _source(node["from_table"], own, beside=beside)
         case "SET_OPERATION_NODE" if node["setop_type"].startswith("UNION"):
-            return _query(node["left"], own) & _query(node["right"], own)
+            return _query(node["left"], own, beside=beside) & _query(node["right"], own, beside=beside)
         case "RECURSIVE_CTE_NODE":
-            first = _query(node["left"], own)
-            return first & _query(node["right"], own | {node["cte_name"]: first})
+            first = _query(node["left"], own, beside=beside)
+            return first & _query(node["right"], own | {_folded(node["cte_name"]): first}, beside=beside)
     return _NONE
 
 
-def _source(node: Node, ctes: Mapping[str, Names]) -> Names:
+def _source(node: Node, ctes: Mapping[str, Names], *, beside: bool) -> Names:
     match node["type"], node.get("join_type"), node.get("ref_type"):
         case "BASE_TABLE", _, _:
-            return ctes.get(node["table_name"], frozenset({node["table_name"]}))
+            name = _folded(node["table_name"])
+            return ctes[name] if _is_cte(node, ctes) else frozenset({name})
         case "SUBQUERY", _, _:
-            return _query(node["subquery"]["node"], ctes)
+            return _query(node["subquery"]["node"], ctes, beside=beside)
         case "JOIN", "INNER" | "SEMI", "REGULAR" | "CROSS" | "ASOF":
-            return _source(node["left"], ctes) | _source(node["right"], ctes)
+            return _source(node["left"], ctes, beside=beside) | _source(node["right"], ctes, beside=True)
         case "JOIN", "LEFT" | "ANTI", "REGULAR" | "ASOF":
-            return _source(node["left"], ctes)
+            return _source(node["left"], ctes, beside=beside)
     return _NONE
 
 
-def _has_a_row_of_none(node: Node) -> bool:
-    """Whether a SELECT may have a row although its source has none: it aggregates all rows into one."""
+def _has_a_row_of_none(node: Node, *, beside: bool) -> bool:
+    """Whether a SELECT may have a row although its source has none: it takes all rows together."""
     if node["group_sets"]:
         return not all(node["group_sets"])
     items = node["select_list"]
-    if node["aggregate_handling"] == "FORCE_AGGREGATES" and any(item["class"] == "COLUMN_REF" for item in items):
-        return False  # GROUP BY ALL: it has a group for each value of that column
-    calls = (each["function_name"] for each in _nodes([items, node["having"]]) if each.get("class") == "FUNCTION")
-    return not _aggregates().isdisjoint(calls)
+    if node["aggregate_handling"] == "FORCE_AGGREGATES":
+        # GROUP BY ALL: a group for each value of a column, if it is one of the source, and no other item's new name
+        named = {_folded(item["alias"]) for item in items}
+        columns = (_folded(item["column_names"][-1]) for item in items if item["class"] == "COLUMN_REF")
+        return beside or named.issuperset(columns)
+    calls = {
+        _folded(each["function_name"])
+        for each in _nodes([items, node["qualify"], node["modifiers"]])
+        if each.get("class") == "FUNCTION"
+    }
+    return node["having"] is not None or any(name in _aggregates() or name.endswith("_agg") for name in calls)
+
+
+def _is_cte(table: Node, ctes: Container[str]) -> bool:
+    return _folded(table["table_name"]) in ctes and not table["schema_name"] and not table["catalog_name"]
 
 
 def _ctes(node: Node) -> list[Node]:
     found: list[Node] = node.get("cte_map", {}).get("map", [])
     return found
+
+
+def _folded(name: str) -> str:
+    """Return a name as DuckDB compares it."""
+    return name.lower()
 
 
 def _nodes(tree: Any) -> Iterator[Node]:
@@ -94,9 +130,16 @@ def _nodes(tree: Any) -> Iterator[Node]:
 
 @cache
 def _aggregates() -> Names:
-    """Aggregates that DuckDB brings; a macro that calls one counts as none, so there must be none such among ours."""
-    names = "SELECT DISTINCT function_name FROM duckdb_functions() WHERE function_type = 'aggregate'"
-    return frozenset(name for (name,) in _parser().execute(names).fetchall())
+    """Return DuckDB's aggregates and the macros, its own and ours, that call one; those of spatial all end in `_agg`."""
+    with duckdb.connect() as con:
+        for file in sorted((folder("queries") / "macros").glob("*.sql")):
+            con.execute(file.read_text(encoding="utf-8"))
+        rows = con.execute("SELECT function_name, function_type, macro_definition FROM duckdb_functions()").fetchall()
+    found = {name for name, kind, _ in rows if kind == "aggregate"}
+    calls = [(name, set(_CALLED.findall(text.lower()))) for name, kind, text in rows if kind == "macro" and text]
+    while more := {name for name, called in calls if called & found} - found:
+        found |= more
+    return frozenset(found)
 
 
 @cache

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 _TABLE = re.compile(r"^CREATE TABLE (\w+) \(\n(.*?)^\);", re.DOTALL | re.MULTILINE)
 ACTOR_IDS = frozenset({"ego_id", "object_id", "actor_id"})
 """Columns that hold the id of an actor."""
+_AS_TOLD = frozenset({"margin"})
+"""Tables whose ids a rule gave: it may speak of an actor that no log has."""
 _CODES = r"SELECT regexp_extract(type_name, '^actor_ids_(\d+)$', 1) FROM duckdb_types() WHERE regexp_matches(type_name, '^actor_ids_\d+$')"
 _COLUMN = re.compile(r"^    (\w+) .*?,?\s*-- (.+)$", re.MULTILINE)
 
@@ -146,7 +148,7 @@ def renew(con: duckdb.DuckDBPyConnection, tables: Iterable[str]) -> None:
         types = {"drive_id": f"drive_ids_{max(codes)}", **dict.fromkeys(ACTOR_IDS, f"actor_ids_{max(codes)}")}
     for table in tables:
         body = _bodies()[table]
-        for column in types.keys() & schema()[table].keys():
+        for column in types.keys() & schema()[table].keys() if table not in _AS_TOLD else ():
             body = re.sub(rf"^    {column} VARCHAR", f"    {column} {types[column]}", body, flags=re.MULTILINE)
         con.execute(f"CREATE OR REPLACE TABLE {table} (\n{body})")
 

@@ -62,15 +62,14 @@ def state(rule: Rule) -> str:
     `_state`: drive_id, ego_id, t_ns, object_id, ref_id, profile ('' for none), applies, observed, required, holds
     (NULL: unknown),
     gain (the signed margin, infinite where unlimited; 0 for sense = holds), code, reason (the author's, or NULL).
-    Ids stay of the type that their tables have: numbers that read as the text group and join faster than the text.
     NaN is NULL. A lower bound proves what it can: a pass for > and >=, a violation for < and <=.
     """
     has = rule.has
     measured = rule.sense != "holds"
     number = "CASE WHEN isnan({0}::DOUBLE) THEN NULL ELSE {0}::DOUBLE END AS {0}"
     columns = [
-        "drive_id", "ego_id", "t_ns::BIGINT AS t_ns",
-        "object_id" if has("object_id") else "NULL::VARCHAR AS object_id",
+        "drive_id::VARCHAR AS drive_id", "ego_id::VARCHAR AS ego_id", "t_ns::BIGINT AS t_ns",
+        f"{'object_id' if has('object_id') else 'NULL'}::VARCHAR AS object_id",
         f"{'ref_id' if has('ref_id') else 'NULL'}::INTEGER AS ref_id",
         f"{'profile' if has('profile') else 'NULL'}::VARCHAR AS profile",
         f"{'applies' if has('applies') else 'true'}::BOOLEAN AS applies",
