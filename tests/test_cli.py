@@ -227,9 +227,22 @@ def test_a_map_of_another_place_is_named_not_blamed_on_the_driver(refused: Refus
 def test_results_that_cannot_be_written_are_75(tmp_path: Path, refused: Refused) -> None:
     (tmp_path / "taken").write_text("", encoding="utf-8")
     for more in ([], ["--margins"], ["--keep-db"]):
-        code, line = refused("check", TRACES[0], *ON_ROAD, *SDA, "--out", str(tmp_path / "taken"), *more)
+        code, line = refused("check", TRACES[0], *ON_ROAD, *SDA, "--out", str(tmp_path / "taken" / "results"), *more)
         assert code == 75
         assert "taken" in line
+    code, line = refused("check", TRACES[0], *ON_ROAD, *SDA, "--out", str(tmp_path / "taken"))
+    assert (code, "is a file" in line) == (2, True)
+
+
+def test_a_log_of_which_a_row_could_not_be_read_is_3(tmp_path: Path, ran: Ran) -> None:
+    lines = Path(TRACES[0]).read_text(encoding="utf-8").splitlines()
+    lines[50] = lines[50].partition(",")[0]
+    cut = tmp_path / "cut.csv"
+    cut.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    code, out, _ = ran("check", str(cut), *ON_ROAD, "--rules", "ukhc.r124.speed-limit")
+    assert (code, "(lossy)" in out, "parts of a log were lost" in out) == (3, True, True)
+    code, out, _ = ran("check", TRACES[0], *ON_ROAD, "--rules", "ukhc.r124.speed-limit")
+    assert (code, "lossy" in out) == (0, False)
 
 
 def test_rules_list_is_for_programs_too(ran: Ran) -> None:

@@ -15,6 +15,7 @@ from rich.console import Console
 from drivelint import run
 from drivelint.errors import UsageError
 from drivelint.explain import Errors, Explanation, Order, Wanted, explain
+from drivelint.explain.target import _meant
 from drivelint.explain.text import render, to_json
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
@@ -319,6 +320,14 @@ def test_mistakes_are_one_clear_line(folder: Path, name: str, wanted: dict[str, 
         of(folder, name, **wanted)
     assert message in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_the_whole_name_of_a_log_goes_before_the_beginning_of_another() -> None:
+    known = ["near-miss-25mph-54ec422b", "near-miss-e888ec04", "near-miss-25mph-slow-0a1b2c3d"]
+    assert _meant("near-miss", known, "drive") == known[1]
+    assert _meant("near-miss-25mph", known, "drive") == known[0]
+    with pytest.raises(UsageError, match="the beginning of several drives"):
+        _meant("near", known, "drive")
 
 
 def test_the_worst_verdict_is_meant_unless_one_is_asked_for(folder: Path) -> None:

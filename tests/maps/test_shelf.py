@@ -72,6 +72,14 @@ def test_none_or_two_of_the_place_is_an_error_that_says_what_to_do(tmp_path: Pat
         found(tmp_path, x=12.0)
 
 
+def test_a_map_that_cannot_be_read_is_passed_over_where_another_is_of_the_place(tmp_path: Path) -> None:
+    put(tmp_path, "a.xml")
+    (tmp_path / "broken.xodr").write_text("<OpenDRIVE/>")
+    assert found(tmp_path) == "a"
+    with pytest.raises(MapError, match=r"none of its maps .* \(1 could not be read, the first: .*broken\.xodr"):
+        found(tmp_path, x=5000.0)
+
+
 @pytest.mark.parametrize(
     ("manifest", "why"),
     [

@@ -13,7 +13,7 @@ import pytest
 from drivelint.report.html.notes import notes
 from drivelint.report.result import Result
 from tests.report import test_evidence
-from tests.report.synthetic import finding, result, verdict
+from tests.report.synthetic import drive, finding, result, verdict
 from tests.report.test_html import Parsed, page
 from tests.shared_data import shared
 
@@ -100,6 +100,17 @@ def test_of_a_crowd_the_worst_have_charts_and_the_page_says_so(
     assert "Charts over time are drawn for the worst 5" in few
 
 
+def test_overtakes_are_counted_though_no_rule_about_them_was_asked_for(overtakes: Result) -> None:
+    bare = [row | {"profiles": [], "stretches": []} for row in overtakes.overtakes.to_pylist()]
+    unasked = replace(overtakes, overtakes=pa.Table.from_pylist(bare, schema=overtakes.overtakes.schema))
+    assert f"Overtakes {len(bare)}" in " ".join(Parsed(page(unasked)).text.split())
+
+
+def test_kilometres_of_several_egos_are_of_several() -> None:
+    assert "km by 25 vehicles in" in Parsed(page(result([verdict("pass")], drives=[drive(n_egos=25)]))).text
+    assert "vehicles in" not in Parsed(page(result([verdict("pass")]))).text
+
+
 def test_a_contact_stands_on_top(overtakes: Result, text: str) -> None:
     told = Parsed(text).text.partition("In short")[0].replace("\u00a0", " ")
     rows = [r for r in overtakes.findings.to_pylist() if r["rule_id"] == "ukhc.no-collision"]
@@ -107,4 +118,5 @@ def test_a_contact_stands_on_top(overtakes: Result, text: str) -> None:
     assert len(drives) == 1
     assert told.count("and object") == 1, "found by its boxes and by its speeds, it is one contact"
     assert drives.pop() in told.partition("shows a contact:")[2]
+    assert f"{-rows[0]['observed']:.2f} m deep" in told
     assert "there was a contact" not in page(result([verdict("fail")], [finding()]))

@@ -41,6 +41,12 @@ def test_exit_code(
     assert outcome(run).why
 
 
+def test_it_is_said_that_nothing_could_be_decided() -> None:
+    assert "nothing could be decided" in outcome(result([verdict("unknown")])).why
+    for said in ("pass", "not_applicable"):
+        assert "decided" not in outcome(result([verdict("unknown"), verdict(said, occurrence=1)])).why
+
+
 @pytest.mark.parametrize("severity", ["critical", "major", "minor"])
 @pytest.mark.parametrize("fail_on", ["critical", "major", "minor", "never"])
 def test_only_failures_at_or_above_the_threshold_gate(severity: str, fail_on: str) -> None:

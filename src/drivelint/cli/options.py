@@ -68,7 +68,8 @@ class Handedness(StrEnum):
 
 
 MapFile = Annotated[
-    Path | None, typer.Option("--map", metavar="MAP", help="The road, as OpenDRIVE: most rules need it.")
+    Path | None,
+    typer.Option("--map", metavar="MAP", help="The road, as OpenDRIVE, Lanelet2 or CommonRoad: most rules need it."),
 ]
 EgoId = Annotated[
     str | None, typer.Option("--ego", metavar="ID|all", help="The vehicle under test, or every vehicle in turn.")

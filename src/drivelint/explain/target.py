@@ -154,7 +154,8 @@ def _rule(name: str, rules: Sequence[str], findings: Sequence[str]) -> str:
 def _meant(name: str, known: Sequence[str], what: str) -> str:
     if name in known:
         return name
-    meant = [k for k in known if k.startswith(name)]
+    # a drive is called by its log's name and some of its hash: the whole name goes before a beginning of others
+    meant = [k for k in known if k.rpartition("-")[0] == name] or [k for k in known if k.startswith(name)]
     if not meant:
         near = get_close_matches(name, known, n=1, cutoff=0.3)
         raise UsageError(f"{what} {name!r} is not in this result; did you mean {(near or known)[0]!r}?")

@@ -139,9 +139,9 @@ class Ego(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 class Mapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """A whole mapping file."""
 
-    description: str
     time: Time
     columns: Columns
+    description: str = ""
     table: Table = Table()
     frame: Frame = Frame()
     reference: Reference = Reference()

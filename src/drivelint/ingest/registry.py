@@ -196,7 +196,8 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
     if b"<OpenDRIVE" in probe.head:
         raise TraceError(f"{path}: this is a map, not a log: give it with --map, beside a log")
     raise TraceError(
-        f"{path}: no reader for this file, which begins with {probe.head[:16]!r}: give MCAP, Parquet or CSV"
+        f"{path}: no reader for this file, which begins with {probe.head[:16]!r}: give MCAP, OSI, Parquet, CSV, "
+        "SUMO's floating car data or a CommonRoad scenario"
     )
 
 

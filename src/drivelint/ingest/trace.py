@@ -58,6 +58,10 @@ class EgoSize(NamedTuple):
     forward_m: float = 0.0
 
 
+LOSSES = ("dropped_row", "malformed_row")
+"""Checks that found parts of the log that could not be read: what is judged is what was left."""
+
+
 @dataclass(frozen=True)
 class IngestOptions:
     """What the command line says about reading: each None means what the log or the mapping says.

@@ -143,16 +143,24 @@ class MapLibrary:
         return self._ways[environment.environment_id]
 
     def _only_fitting(self, shelf: Shelf, log: Path, shift: tuple[float, float], states: pa.Table) -> MapSource:
-        """Return the one map on which the drive lies. Errors: `MapError` where none or several are."""
+        """Return the one map on which the drive lies, of those that can be read. Errors: `MapError` where none or several are."""
         fitting = []
+        unread: list[MapError] = []
         for source in shelf.sources():
-            environment = self._load(source, shift, None)
+            try:
+                environment = self._load(source, shift, None)
+            except MapError as error:
+                unread.append(error)
+                continue
             if not _elsewhere(environment, self._ground(environment), states):
                 fitting.append(source)
         if len(fitting) == 1:
             return fitting[0]
         what = "none of its maps is of" if not fitting else f"{listed([s.name for s in fitting])} are all of"
-        raise MapError(f"{shelf.folder}: {what} the place of {log.name}: name its map in {shelf.folder / MANIFEST}")
+        besides = f" ({len(unread)} could not be read, the first: {unread[0]})" if unread else ""
+        raise MapError(
+            f"{shelf.folder}: {what} the place of {log.name}{besides}: name its map in {shelf.folder / MANIFEST}"
+        )
 
     def _ground(self, environment: Environment) -> shapely.STRtree:
         if environment.environment_id not in self._grounds:

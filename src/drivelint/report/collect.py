@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import pyarrow as pa
 
+from drivelint.ingest.trace import LOSSES
 from drivelint.report.contract import arrow_schema, conform
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ WITH
             'map ' || e.name || coalesce(', ' || m.lanelet_id, '') || ': ' || m.message
         FROM data_log l JOIN map_quality m USING (environment_id) JOIN environment e USING (environment_id)),
     defects AS (
-        SELECT drive_id,
+        SELECT drive_id, bool_or(list_contains($losses, check_id)) AS lossy,
             list({'check_id': check_id, 'severity': severity, 'actor_id': actor_id, 'n': n, 't_first_ns': t_first_ns,
                 'message': message} ORDER BY check_id, actor_id NULLS FIRST, t_first_ns NULLS FIRST, message) AS quality
         FROM defect GROUP BY drive_id),
@@ -56,7 +57,7 @@ SELECT l.drive_id, l.file_name, l.sha256, l.format, l.environment_id, e.name AS 
     e.handedness, e.handedness_source, l.utc_start_ns, l.t_start_ns, (l.t_end_ns - l.t_start_ns) / 1e9 AS duration_s,
     coalesce(list_sum([x.km FOR x IN w.exposure]), 0.0::DOUBLE) AS km, l.n_states,
     coalesce(list_sum([x.n_steps FOR x IN w.exposure]), 0)::BIGINT AS n_steps, coalesce(len(w.exposure), 0) AS n_egos,
-    'judged' AS status, NULL::VARCHAR AS status_reason, false AS lossy,
+    'judged' AS status, NULL::VARCHAR AS status_reason, coalesce(d.lossy, false) AS lossy,
     coalesce(c.conditions, []) AS conditions,
     coalesce(w.exposure, []) AS exposure, coalesce(o.occasions, []) AS occasions, coalesce(d.quality, []) AS quality,
     coalesce(g.not_judged, []) AS not_judged
@@ -87,7 +88,7 @@ def findings(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> p
 
 def drives(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.Table:
     """Return one row of the table `drive` per log in the database, or per named one: judged, and on what; ordered."""
-    return conform(con.execute(_DRIVES, {"only": only}).to_arrow_table(), "drive")
+    return conform(con.execute(_DRIVES, {"only": only, "losses": LOSSES}).to_arrow_table(), "drive")
 
 
 def unjudged(drive_id: str, file_name: str, reason: str, sha256: str | None = None) -> pa.Table:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import pyarrow.parquet as pq
 
-from drivelint.errors import DriveLintError, ExitCode
+from drivelint.errors import DriveLintError, ExitCode, UsageError
 from drivelint.report.contract import OUTPUT_SCHEMA, conform
 from drivelint.store import schema
 
@@ -56,8 +56,10 @@ def parquet_bytes(rows: pa.Table, table: str) -> bytes:
 def prepare(out: Path) -> None:
     """Make the folder for results and make sure that files can be written there, before hours of work are done for it.
 
-    Errors: `OutputError`.
+    Errors: `UsageError` where it is a file, `OutputError`.
     """
+    if out.exists() and not out.is_dir():
+        raise UsageError(f"--out {out}: is a file: give a folder for the results")
     probe = out / f".drivelint.{os.getpid()}.tmp"
     try:
         out.mkdir(parents=True, exist_ok=True)

@@ -93,6 +93,10 @@ def _outcomes(result: Result) -> Iterator[Outcome]:
         yield Outcome(ExitCode.LOSSY, "judged on lossy input: parts of a log were lost")
     if result.fail_on == "never":
         yield Outcome(ExitCode.OK, "failures do not gate (--fail-on never)")
+    if _count(result.verdicts, "unknown") == result.verdicts.num_rows > 0:
+        yield Outcome(
+            ExitCode.OK, "nothing failed, as nothing could be decided: every verdict is unknown (--strict makes it 4)"
+        )
     new = "new " if result.gate is not None and result.gate.baseline is not None else ""
     yield Outcome(ExitCode.OK, f"nothing {new}failed at or above severity {result.fail_on}{let_through}")
 

@@ -9,7 +9,7 @@ import pyarrow.compute as pc
 
 from drivelint.report import counts
 from drivelint.report.html.anchors import rule_anchor
-from drivelint.report.text import seconds, tied
+from drivelint.report.text import number, seconds, tied
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -93,14 +93,20 @@ def contacts(result: Result, lines: Sequence[tuple[Row, Measured]]) -> Contacts 
     }
     hrefs = {row["finding_id"]: line.href for row, line in lines if line.kind == "fail"}
     rows = result.findings.filter(pc.is_in(result.findings["rule_id"], value_set=_CONTACT))
-    told: dict[tuple[str, frozenset[str | None]], tuple[str, str]] = {}
-    for row in rows.sort_by([("drive_id", "ascending"), ("t_worst_ns", "ascending")]).to_pylist():
-        drive_id, ego_id, object_id = row["drive_id"], row["ego_id"], row["object_id"]
-        who = f"ego {ego_id}" if object_id is None else f"ego {ego_id} and object {object_id}"
-        where = f", {drive_id}" if len(starts) > 1 else ""
-        said = f"{who} at {tied(seconds(row['t_worst_ns'], starts[drive_id]))}{where}"
-        told.setdefault((drive_id, frozenset((ego_id, object_id))), (said, hrefs.get(row["finding_id"], "")))
-    named = list(told.values())
+    rows = rows.sort_by([("drive_id", "ascending"), ("t_worst_ns", "ascending")])
+    met: dict[tuple[str, frozenset[str | None]], list[Row]] = {}
+    for row in rows.to_pylist():
+        met.setdefault((row["drive_id"], frozenset((row["ego_id"], row["object_id"]))), []).append(row)
+    named = []
+    for found in met.values():
+        first = found[0]
+        who = f"ego {first['ego_id']}" + ("" if first["object_id"] is None else f" and object {first['object_id']}")
+        # a centimetre may be the recorder's error
+        depths = [-row["observed"] for row in found if row["unit"] == "m" and row["observed"] is not None]
+        deep = f", {tied(number(max(depths), 'm'))} deep" if depths else ""
+        where = f", {first['drive_id']}" if len(starts) > 1 else ""
+        said = f"{who} at {tied(seconds(first['t_worst_ns'], starts[first['drive_id']]))}{deep}{where}"
+        named.append((said, hrefs.get(first["finding_id"], "")))
     return Contacts(named[:_NAMED], len(named) - len(named[:_NAMED])) if named else None
 
 
