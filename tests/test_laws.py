@@ -258,6 +258,14 @@ def test_where_and_when_does_not_matter(moves: list[Elsewhere]) -> None:
         as_at_home(found[f"{no}"], found[move.hand], move.t_s)
 
 
+def test_reasons_tell_seconds_of_the_drive_whatever_the_logs_clock() -> None:
+    drives = [Elsewhere("rht").drive("now"), Elsewhere("rht", t_s=1_700_000_000).drive("then")]
+    found = of_each(judged(drives, rules=RULES, profiles=PROFILES))
+    said = [[row["reason"] for row in found[name]] for name in ("now", "then")]
+    assert said[0] == said[1]
+    assert sum(" at " in reason for reason in said[0]) > 10
+
+
 def as_at_home(moved: Sequence[Row], home: Sequence[Row], later_s: int) -> None:
     """Hold that the verdicts are the same, so many seconds later."""
     assert len(moved) == len(home) > 0

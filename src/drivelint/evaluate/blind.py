@@ -39,10 +39,10 @@ SELECT b.rule_no, b.drive_id, b.ego_id, min(b.a_ns) AS t_start_ns, min({'a': b.a
         ELSE 'log_hole' END}).code AS code,
     min({'a': b.a_ns, 'what': format('Not judged: {} between {:.3f} s and {:.3f} s', CASE signal
         WHEN 'indicator' THEN 'the ego''s indicator is not known' WHEN 'registration' THEN 'the ego has no position or heading'
-        ELSE 'the log has a hole' END, b.a_ns / 1e9, b.b_ns / 1e9)}).what
+        ELSE 'the log has a hole' END, (b.a_ns - b.start_ns) / 1e9, (b.b_ns - b.start_ns) / 1e9)}).what
         || CASE WHEN count(*) > 1 THEN format(', and in {} more such stretches', count(*) - 1) ELSE '' END || '.' AS reason
 FROM (
-    SELECT r.rule_no, b.*, s.max_gap_ns
+    SELECT r.rule_no, b.*, s.max_gap_ns, s.start_ns
     FROM _blind b
     JOIN _subject s ON s.drive_id = b.drive_id AND s.ego_id = b.ego_id
     JOIN _rule r ON b.signal IS NULL AND r.kind <> 'invariant'

@@ -6,7 +6,9 @@ from typing import Final
 
 from drivelint.evaluate import blind, findings
 
-_AT = "format('{:.3f} s', t_decides_ns / 1e9)"
+# a person counts from the drive's first time stamp, as every other output does: the log's clock may be that of 1970
+_AT = "format('{:.3f} s', (t_decides_ns - start_ns) / 1e9)"
+_FROM_TO = "(t_start_ns - start_ns) / 1e9, (t_end_ns - start_ns) / 1e9"
 _OBSERVED = "format('{:.6g}', observed) || coalesce(' ' || unit, '')"
 _REQUIRED = """CASE sense WHEN '>' THEN 'more than ' WHEN '>=' THEN 'at least ' WHEN '<' THEN 'less than '
             ELSE 'at most ' END
@@ -47,10 +49,8 @@ SENTENCE = f"""CASE
         WHEN 'beyond_sensor_range' THEN 'Not judged: nobody was seen at ' || {_AT}
             || ', but the sensors do not reach everywhere.'
         WHEN 'window_truncated' THEN format(
-            'Not judged: the window from {{:.3f}} s to {{:.3f}} s reaches beyond the log.',
-            t_start_ns / 1e9, t_end_ns / 1e9)
-        WHEN 'log_hole' THEN format('Not judged: the log has a hole between {{:.3f}} s and {{:.3f}} s.',
-            t_start_ns / 1e9, t_end_ns / 1e9)
+            'Not judged: the window from {{:.3f}} s to {{:.3f}} s reaches beyond the log.', {_FROM_TO})
+        WHEN 'log_hole' THEN format('Not judged: the log has a hole between {{:.3f}} s and {{:.3f}} s.', {_FROM_TO})
         WHEN 'lost_near_ego' THEN 'Not judged: the track of the object ends close to the ego at ' || {_AT} || '.'
         WHEN 'lost_in_range' THEN 'Not judged: the track of the object ends within sensor range at ' || {_AT} || '.'
         WHEN 'lost_on_road' THEN 'Not judged: the track of the object ends on the road at ' || {_AT} || '.'
@@ -106,7 +106,8 @@ _PLACE = "LEFT JOIN ego_state p ON p.drive_id = v.drive_id AND p.ego_id = v.ego_
 _VERDICTS = f"""
 INSERT INTO verdict BY NAME
 WITH _named AS (SELECT v.* REPLACE (nullif(v.profile, '') AS profile, nullif(v.object_id, '') AS object_id,
-    nullif(v.label, '') AS label), r.* EXCLUDE (rule_no) FROM _closed v JOIN _rule r USING (rule_no)),
+    nullif(v.label, '') AS label), r.* EXCLUDE (rule_no), coalesce(s.start_ns, 0) AS start_ns
+    FROM _closed v JOIN _rule r USING (rule_no) LEFT JOIN _subject s ON s.drive_id = v.drive_id AND s.ego_id = v.ego_id),
 _numbered AS (
     SELECT *, row_number() OVER (PARTITION BY drive_id, ego_id, rule_id, profile, object_id
         ORDER BY coalesce(t_ref_ns, t_start_ns) NULLS LAST, t_start_ns NULLS LAST, t_end_ns NULLS LAST,
@@ -125,19 +126,19 @@ _FINDINGS = f"""
 INSERT INTO finding BY NAME
 WITH _named AS (
     SELECT f.* REPLACE (nullif(f.profile, '') AS profile, nullif(f.object_id, '') AS object_id), r.* EXCLUDE (rule_no),
-        f.t_worst_ns AS t_decides_ns, 'fail' AS verdict
-    FROM _stretch f JOIN _rule r USING (rule_no)
+        f.t_worst_ns AS t_decides_ns, 'fail' AS verdict, s.start_ns, s.sha256
+    FROM _stretch f JOIN _rule r USING (rule_no) JOIN _subject s ON s.drive_id = f.drive_id AND s.ego_id = f.ego_id
     ANTI JOIN _error e ON e.rule_no = f.rule_no AND e.drive_id = f.drive_id AND e.ego_id = f.ego_id
 ), _numbered AS (
     SELECT *, (row_number() OVER (PARTITION BY drive_id, ego_id, rule_id, profile, object_id
         ORDER BY t_start_ns, t_end_ns, ref_id NULLS LAST) - 1)::INTEGER AS occurrence, {SENTENCE} AS sentence
     FROM _named)
-SELECT sha256(to_json([s.sha256, v.ego_id, rule_id, profile, object_id,
+SELECT sha256(to_json([v.sha256, v.ego_id, rule_id, profile, object_id,
     v.occurrence::VARCHAR])::VARCHAR)[:16] AS finding_id,
     v.drive_id, v.ego_id, rule_id, rule_version, kind, profile, severity, object_id, v.occurrence, ref_id,
     v.t_start_ns, v.t_end_ns, t_worst_ns, sentence AS reason, observed, required, margin, unit, p.x_m, p.y_m,
         p.lanelet_id
-FROM _numbered v JOIN _subject s ON s.drive_id = v.drive_id AND s.ego_id = v.ego_id {_PLACE}
+FROM _numbered v {_PLACE}
 """
 
 _MARGINS = """

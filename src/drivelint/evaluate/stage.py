@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 _KEYS = "rule_no INTEGER, drive_id VARCHAR, ego_id VARCHAR"
 _TABLES = f"""
 CREATE OR REPLACE TEMP TABLE _subject AS
-    SELECT c.drive_id, c.ego_id, c.period_ns, c.max_gap_ns, c.t_start_ns, c.t_end_ns, l.sha256, l.sensor_range_m
+    SELECT c.drive_id, c.ego_id, c.period_ns, c.max_gap_ns, c.t_start_ns, c.t_end_ns, l.sha256, l.sensor_range_m,
+        coalesce(l.t_start_ns, 0) AS start_ns
     FROM clock c LEFT JOIN data_log l ON c.drive_id = l.drive_id;
 CREATE OR REPLACE TEMP TABLE _segment AS
     SELECT drive_id, ego_id, seg, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns, min(k) AS k_first
