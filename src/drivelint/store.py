@@ -44,9 +44,8 @@ def connect(
     con.execute("SET GLOBAL python_enable_replacements=false")  # for its cursors too
     con.execute("SET enable_progress_bar=false")
     con.execute("SET preserve_insertion_order=false")
-    if (
-        path is None
-    ):  # there is nothing to write, but a checkpoint packs the tables anew: a tenth of the time to derive them
+    if path is None:
+        # there is nothing to write down, but a checkpoint packs the tables anew: a tenth of the time to derive them
         con.execute("SET GLOBAL checkpoint_threshold='1TB'")
     if threads:
         con.execute(f"SET threads={int(threads)}")
