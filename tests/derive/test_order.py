@@ -61,10 +61,10 @@ def test_what_fails_is_named_and_what_runs_beside_it_is_stopped(
     only(monkeypatch, {"visited_cell": (SLOW, set()), "step": (STEP.replace("0 AS seg", "'x'::INTEGER AS seg"), set())})
     fill = derive._fill
 
-    def late(con: duckdb.DuckDBPyConnection, step: derive.Derivation) -> None:
+    def late(con: duckdb.DuckDBPyConnection, step: derive.Derivation) -> int:
         if begins_late and step.table == "visited_cell":
             time.sleep(0.3)
-        fill(con, step)
+        return fill(con, step)
 
     monkeypatch.setattr(derive, "_fill", late)
     with pytest.raises(DriveLintError, match=r"^queries/derive/step\.sql: .*'x'"):

@@ -75,7 +75,14 @@ def test_none_or_two_of_the_place_is_an_error_that_says_what_to_do(tmp_path: Pat
 def test_a_map_that_cannot_be_read_is_passed_over_where_another_is_of_the_place(tmp_path: Path) -> None:
     put(tmp_path, "a.xml")
     (tmp_path / "broken.xodr").write_text("<OpenDRIVE/>")
-    assert found(tmp_path) == "a"
+    library, log = MapLibrary(None, None, "auto", folder=tmp_path), Path("logs/drive.mcap")
+    environment = library.find(log, None, None, states(5.0))
+    assert environment is not None
+    assert environment.environment_id.startswith("a-")
+    assert "1 cannot, the first: " in library.doubts(log, environment, states(5.0))["map_unread"]
+    (tmp_path / "broken.xodr").unlink()
+    assert not MapLibrary(None, None, "auto", folder=tmp_path).doubts(log, environment, states(5.0))
+    (tmp_path / "broken.xodr").write_text("<OpenDRIVE/>")
     with pytest.raises(MapError, match=r"none of its maps .* \(1 could not be read, the first: .*broken\.xodr"):
         found(tmp_path, x=5000.0)
 

@@ -57,6 +57,7 @@ class MapLibrary:
         self._grounds: dict[str, shapely.STRtree] = {}
         self._ways: dict[str, Ways] = {}
         self._loaded: dict[tuple[str, tuple[float, float], str | None], Environment] = {}
+        self._unread: dict[Path, str] = {}
 
     def find(
         self,
@@ -96,13 +97,16 @@ class MapLibrary:
     def doubts(
         self, log: Path, environment: Environment | None, states: pa.Table, reference: str | None = None
     ) -> dict[str, str]:
-        """Return what speaks against a map: against its geo reference, or the side of the road by its or the user's word.
+        """Return what speaks against a map: its geo reference, the side of the road by its or the user's word, others not looked at.
 
         Keys name the check. Errors: `MapError` where the traffic shows that the lanes run the other way.
         """
         if environment is None:
             return {}
-        found = {"handedness_disagrees": self._side_doubt(log, environment, states)}
+        found = {
+            "handedness_disagrees": self._side_doubt(log, environment, states),
+            "map_unread": self._unread.get(log),
+        }
         theirs = environment.tables["environment"]["geo_reference"][0].as_py()
         if reference and theirs and not geo.same(reference, theirs) and geo.comparable(reference, theirs):
             found["geo_reference_differs"] = (
@@ -155,6 +159,11 @@ class MapLibrary:
             if not _elsewhere(environment, self._ground(environment), states):
                 fitting.append(source)
         if len(fitting) == 1:
+            if unread:  # it may have been the right one
+                self._unread[log] = (
+                    f"{fitting[0].name} is the only map of the place among those that can be read; {len(unread)} cannot, the first: "
+                    f"{unread[0]}"
+                )
             return fitting[0]
         what = "none of its maps is of" if not fitting else f"{listed([s.name for s in fitting])} are all of"
         besides = f" ({len(unread)} could not be read, the first: {unread[0]})" if unread else ""
