@@ -7,6 +7,7 @@ CREATE TABLE ego_condition (
     t_ns BIGINT NOT NULL,             -- the step
     road_type VARCHAR,                -- motorway, rural, town, ...: of the lanelet, or as given; NULL: not known
     carriageway VARCHAR,              -- single or dual: whether the two directions of its road are apart, or as given; NULL: not known
+    lanes_each_way BIGINT,            -- drivable lanes of its road in the direction that has fewer; NULL: not known, or one direction only
     area VARCHAR,                     -- built_up or open: by road type, or as given; NULL: not known
     nation VARCHAR,                   -- gb, gb-eng, gb-wls, gb-sct, de, ...; NULL: not given
     weather VARCHAR,                  -- dry, wet or ice; NULL: not given
@@ -41,10 +42,22 @@ CREATE TABLE hidden (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
     object_id VARCHAR NOT NULL,       -- somebody who is or may be there and has no place in the corridor: no position or box, lost, beyond the map's end, or straight on from where the ego's lane ends without a link, or in a hole between two lanes
-    actor_class VARCHAR,              -- see actor
+    actor_class VARCHAR,              -- see road_user
     vehicle BOOLEAN NOT NULL,         -- it may be a vehicle
     least_m DOUBLE NOT NULL,          -- box to box it is at least so far away, by when and where it is seen
     ahead BOOLEAN                     -- it is ahead of the ego; NULL: it may be or not
+);
+
+CREATE TABLE in_way (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step; every step has one row
+    object_id VARCHAR,                -- the nearest actor of any class in the ego's way or heading into it; NULL: nobody is, as far as is known
+    actor_class VARCHAR,              -- see actor; NULL also where nobody is
+    gap_m DOUBLE,                     -- along the road from the ego's front to it, none alongside; NULL: nobody is
+    along_mps DOUBLE,                 -- its speed along the road, positive away from the ego; NULL: nobody is, or not known
+    need_mps2 DOUBLE NOT NULL,        -- the hardest deceleration that anybody in the way asked for within the last 2 s, to stay 5 m off him; 0: nobody did
+    known BOOLEAN NOT NULL            -- within the last 2 s nobody else can have been in the way: everybody near enough has a place, and no one beside the way could step into it
 );
 
 CREATE TABLE neighbour (
@@ -54,7 +67,7 @@ CREATE TABLE neighbour (
     k INTEGER NOT NULL,               -- see step
     seg INTEGER NOT NULL,             -- see step
     object_id VARCHAR NOT NULL,       -- an actor in the corridor's strip, at most 30 m away, box to box
-    actor_class VARCHAR,              -- see actor
+    actor_class VARCHAR,              -- see road_user
     chain_id INTEGER NOT NULL,        -- the ego's running chain
     ahead_m DOUBLE NOT NULL,          -- its front to the ego's front, positive ahead
     gap_ahead_m DOUBLE NOT NULL,      -- its rear to the ego's front
@@ -67,7 +80,8 @@ CREATE TABLE neighbour (
     gap_m DOUBLE NOT NULL,            -- see beside
     clearance_m DOUBLE,               -- see pair
     ego_speed_mps DOUBLE,             -- ego's speed
-    speed_mps DOUBLE                  -- its speed
+    speed_mps DOUBLE,                 -- its speed
+    ego_left_mps DOUBLE               -- ego's speed across the corridor, to the left of the way that this leads: from its velocity where that is known, else from speed and heading
 );
 
 CREATE TABLE follower (
@@ -134,19 +148,21 @@ CREATE TABLE cut_in (
 CREATE TABLE beside (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    t_ns BIGINT NOT NULL,             -- a step at which the two boxes overlap along the corridor, or may: then the rest is NULL
+    t_ns BIGINT NOT NULL,             -- a step at which the two boxes overlap along the corridor, or after which they go past each other before the next; or may overlap: then the rest is NULL
     object_id VARCHAR NOT NULL,       -- any other actor
-    actor_class VARCHAR,              -- see actor
+    actor_class VARCHAR,              -- see road_user
     side VARCHAR,                     -- left or right of the ego
-    gap_m DOUBLE,                     -- gap between the two boxes across the corridor; negative: overlap
-    clearance_m DOUBLE,               -- box to box, see pair
+    gap_m DOUBLE,                     -- gap between the two boxes across the corridor; negative: overlap; past each other between two steps: the mean of those at both
+    clearance_m DOUBLE,               -- box to box, see pair; past each other between two steps: the gap across
+    blur_m DOUBLE,                    -- how much nearer the two may have been between this step and its neighbours, if both swerve by 3 m/s2; 0 in a log of about ten samples a second and more
     ahead_m DOUBLE,                   -- its front to the ego's front along the corridor, positive ahead
     ego_speed_mps DOUBLE,             -- ego's speed
     speed_mps DOUBLE,                 -- its speed
     ego_lat_mps DOUBLE,               -- ego's speed across the corridor, towards it positive
     lat_mps DOUBLE,                   -- its speed across the corridor, towards the ego positive
+    cycle_lane VARCHAR,               -- it is on a cycle lane of the carriageway: the marking between that and the lane of motor vehicles, unsaid where the map has none; NULL: it is on none
     along BOOLEAN,                    -- it heads as the corridor runs (within 45 degrees: who crosses it at 89 does not go the same way)
-    on_carriageway BOOLEAN            -- its box reaches into the ego's running lane or a drivable lane beside it, or its centre is on any; NULL: not known
+    on_carriageway BOOLEAN            -- its box reaches into the ego's running lane or a drivable lane beside it, or its centre is on any, or on a cycle lane that adjoins one (a verge, kerb or footway between them makes it a track); NULL: not known
 );
 
 CREATE TABLE passing (
@@ -154,7 +170,7 @@ CREATE TABLE passing (
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order; ego and another road user that heads the same way change their order, or a vehicle that cannot be placed may have
     object_id VARCHAR NOT NULL,       -- the other
-    actor_class VARCHAR,              -- see actor
+    actor_class VARCHAR,              -- see road_user
     ego_passes BOOLEAN,               -- the ego's front got ahead of its front by more than 0.25 m; false: its front got ahead of the ego's; NULL: one of the two, or nothing: it may be beside the ego and has no place
     t_ns BIGINT NOT NULL,             -- first step in the new order; the last one at which it may be beside the ego
     t_unseen_ns BIGINT,               -- last step in the old order, if the order may have changed unseen since then; the first one at which it may be beside the ego; NULL: t_ns is when it changed
@@ -176,13 +192,18 @@ CREATE TABLE line_step (
     out_m DOUBLE NOT NULL,            -- how far the furthest corner is over it
     marking VARCHAR,                  -- see lane_boundary: as seen from the running lane, at the ego's centre; NULL: the map does not say
     forbidden BOOLEAN,                -- from this lane it must not be crossed: solid, or double with the nearer one solid; NULL: marking not known
-    beyond VARCHAR,                   -- what lies beyond it: same or opposing (a drivable lane, by its direction), else its lane_type; NULL: nothing in the map
+    beyond VARCHAR,                   -- what lies beyond it (see lane_beside): same or opposing (a drivable lane, by its direction), else its lane_type; NULL: nothing in the map
+    middle BOOLEAN,                   -- it is the middle of the road: traffic beyond it comes the other way; NULL: it may be, as on the overtaking side the map has nothing beyond it (and the road is no motorway), or a gap of more than 1 m, which may be a central reservation
     t_since_ns BIGINT NOT NULL,       -- first step of this stretch over it; a line is one stretch, whichever of its two lanes is the running one
     begin_seen BOOLEAN NOT NULL,      -- the step before that is there and inside
     manoeuvre BOOLEAN NOT NULL,       -- the stretch is (part of) a lane change or an overtake, see lane_departure
-    passing_id VARCHAR,               -- a vehicle standing, or a cyclist, animal or works vehicle at most at 4.47 m/s, in the running lane or on its edge, that is being passed: from 30 m ahead of the ego to 10 m behind; NULL: none
+    t_astride_ns BIGINT,              -- first step since when the box has been on the line, whichever of its two lanes is the running one: more than 0.05 m of it on either side; NULL: at this step it is not
+    astride_begin_seen BOOLEAN,       -- the step before that is there; NULL: not on the line
+    changes BOOLEAN,                  -- in that time the centre gets from one side of the line to the other, and stays there: a lane change, or a part of an overtake; NULL: the end is not seen and it may go back, or not on the line
+    overtaking BOOLEAN,               -- the ego is overtaking somebody, from 10 m and 5 s at its speed (at least 30 m) before it to 10 m and 5 s past it; NULL: it may be, but that one is lost meanwhile, or the side to overtake on is not known
+    passing_id VARCHAR,               -- a vehicle standing, or a cyclist or animal at most at 4.47 m/s, in the running lane or on its edge, that is being passed (from 10 m and 5 s at the ego's speed, at least 30 m, ahead of the ego to 10 m and 5 s behind) and leaves too little room to be passed on this side of the line; NULL: none, or in this stretch the ego overtakes somebody that drives
     passing_known BOOLEAN NOT NULL,   -- nobody else may be passed: everybody near was placed
-    access BOOLEAN                    -- within 30 m the ego goes on to, or comes from, a way beside the road (leaves the lanes); NULL: not known
+    access BOOLEAN                    -- within 30 m the ego goes on to, or comes from, a way beside the road on the far side of the line: it leaves the lanes at 20 mph or less, and turns off, stands there or gets further than 10 m from the running lane's centre line; NULL: not known
 );
 
 CREATE TABLE overtake_place (
@@ -193,10 +214,10 @@ CREATE TABLE overtake_place (
     crossing_m DOUBLE,                -- the same to the next pedestrian crossing
     marking_out VARCHAR,              -- marking of the boundary crossed at t0, seen from the running lane; NULL: the map does not say
     marking_back VARCHAR,             -- marking of the boundary crossed back at t3, seen from the overtaking lane; NULL: the map does not say, or never back
-    no_overtaking BOOLEAN,            -- a no-overtaking sign holds at t0, until its end is said or the next junction; NULL: the map has no such signs at all, or the way behind was not seen far enough
+    no_overtaking BOOLEAN,            -- a no-overtaking sign holds at t0, until its end is said or the next junction; NULL: the map has no such signs at all, or neither a sign nor a junction on the way behind: one may stand further back, or where the map begins
     rear_id VARCHAR,                  -- vehicle behind or beside, in the overtaking lane or moving into it, at t0; NULL: nobody
     rear_gap_m DOUBLE,                -- its front to the ego's rear; negative: alongside
-    rear_ttc_s DOUBLE,                -- time until it gets to the ego's rear at both speeds; infinite: never, or nobody; 0: alongside
+    rear_ttc_s DOUBLE,                -- time until it gets to the ego's rear at the ego's speed and the highest of its own in the 2 s before; infinite: never, or nobody; 0: alongside
     rear_known BOOLEAN NOT NULL       -- every vehicle behind, within 200 m, was placed, and its speed known
 );
 
@@ -205,7 +226,7 @@ CREATE TABLE following (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- every step
     object_id VARCHAR,                -- see lead; NULL: nobody ahead, or cannot be told
-    follows BOOLEAN,                  -- the ego is behind it and goes its way: in its lane, no overtake or lane change under way, and the other neither oncoming nor beside: what stands is in the way of the ego's box, what moves is so too or has its centre in the lane; NULL: cannot be told
+    follows BOOLEAN,                  -- the ego is behind it and goes its way: in its lane, no overtake or lane change (of up to 10 s astride the line) under way, and the other neither oncoming nor beside: what stands is in the way of the ego's box now and when the ego is there, what moves is in its way too, or has its centre in the lane and is more than 3 s from being passed; NULL: cannot be told
     gap_m DOUBLE,                     -- see lead
     ego_speed_mps DOUBLE,             -- ego's speed
     speed_mps DOUBLE,                 -- its speed

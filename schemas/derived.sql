@@ -33,8 +33,30 @@ CREATE TABLE lane_near (
 CREATE TABLE lane_next (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet
-    ahead_id VARCHAR,                 -- the one that continues it straightest; NULL: the map ends
-    behind_id VARCHAR                 -- the one that it continues straightest; NULL: the map ends
+    ahead_id VARCHAR,                 -- the one that continues it straightest; NULL: none does
+    behind_id VARCHAR,                -- the one that it continues straightest; NULL: it continues none
+    map_ends BOOLEAN NOT NULL,        -- nothing continues it, nor any lane beside it that is driven the same way: what comes there is not in the map
+    map_begins BOOLEAN NOT NULL       -- it continues none, nor does any lane beside it that is driven the same way
+);
+
+CREATE TABLE lane_apart (
+    environment_id VARCHAR NOT NULL,  -- the map
+    lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet
+    other_id VARCHAR NOT NULL         -- one of another road that lies over or under it, as far as the map tells: no junction or link joins the two, and their heights there differ by more than 2.5 m or are not known; each pair both ways round
+);
+
+CREATE TABLE lane_beside (
+    environment_id VARCHAR NOT NULL,  -- the map
+    lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet
+    side VARCHAR NOT NULL,            -- left or right of the driver
+    s_start_m DOUBLE NOT NULL,        -- from here, along the lanelet's centre line; no row: nothing lies beyond that boundary in the map
+    s_end_m DOUBLE NOT NULL,          -- to here
+    beside_id VARCHAR NOT NULL,       -- the lanelet beyond that boundary: as the map names it, else the drivable one that runs along it, at most 2 m away, of whatever road
+    against BOOLEAN NOT NULL,         -- that one is driven the other way
+    gap_m DOUBLE NOT NULL,            -- from the boundary to its nearer bound; 0: the map names it
+    drivable BOOLEAN NOT NULL,        -- see lanelet
+    lane_type VARCHAR NOT NULL,       -- see lanelet
+    width_m DOUBLE NOT NULL           -- its width
 );
 
 CREATE TABLE strip_cell (
@@ -87,6 +109,13 @@ CREATE TABLE clock (
     t_end_ns BIGINT NOT NULL          -- the ego's last sample
 );
 
+CREATE TABLE ego_part (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    object_id VARCHAR NOT NULL,       -- an actor that is the ego itself, and no other road user
+    part VARCHAR NOT NULL             -- trailer: the ego draws it; successor, predecessor: the id under which the ego's own track goes on or was before
+);
+
 CREATE TABLE step (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -109,15 +138,23 @@ CREATE TABLE registration (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     n_steps BIGINT NOT NULL,          -- ego steps with a position
-    n_on_lane BIGINT NOT NULL,        -- of them, centre on a drivable lane
+    n_on_lane BIGINT NOT NULL,        -- of them, centre on a drivable lane, or on a shoulder, lay-by, border, parking, restricted or cycle lane
     n_moving BIGINT NOT NULL,         -- of those on a lane, moving faster than 1 m/s, and not overtaking in an opposing lane
     n_with_direction BIGINT NOT NULL, -- of the moving ones, heading within 90 degrees of the lane's direction
     lateral_median_m DOUBLE,          -- median distance from the centre line of the lane; NULL: never on a lane
-    ok BOOLEAN NOT NULL,              -- good enough for rules that need the map
+    ok BOOLEAN NOT NULL,              -- good enough for rules that need the map: the ego fits, or is against its lane and three of four other vehicles are with theirs
     reason VARCHAR NOT NULL           -- why, or why not
 );
 
 -- ---- where everybody is
+
+CREATE TABLE road_user (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    actor_id VARCHAR NOT NULL,        -- the actor
+    actor_class VARCHAR,              -- its class as far as it is known: the recorded one; vehicle also for one without a class that is longer than 3 m; object only for a thing that stays within 1 m in the whole log; NULL: it may be anything
+    length_m DOUBLE,                  -- box
+    width_m DOUBLE                    -- box
+);
 
 CREATE TABLE state_dynamics (
     drive_id VARCHAR NOT NULL,        -- the drive
@@ -125,14 +162,16 @@ CREATE TABLE state_dynamics (
     t_ns BIGINT NOT NULL,             -- time stamp
     x_m DOUBLE,                       -- box centre
     y_m DOUBLE,                       -- box centre
+    z_m DOUBLE,                       -- box centre, up; NULL: not recorded, or the same all the while as in a flat simulation
     yaw_rad DOUBLE,                   -- heading
+    travel_rad DOUBLE,                -- direction of travel: of the motion where it moves (a vehicle: its heading, or the opposite one where it reverses), else the heading
     vx_mps DOUBLE,                    -- velocity east
     vy_mps DOUBLE,                    -- velocity north
     speed_mps DOUBLE,                 -- length of the velocity vector
-    accel_mps2 DOUBLE,                -- backward difference of speed at the log's own rate, unfiltered; NULL: first sample or after a hole
+    accel_mps2 DOUBLE,                -- backward difference of speed at the log's own rate, unfiltered; NULL: first sample, after a hole, or its velocity is derived by a filter (quality velocity_filtered)
     length_m DOUBLE,                  -- box
     width_m DOUBLE,                   -- box
-    actor_class VARCHAR,              -- see actor
+    actor_class VARCHAR,              -- see road_user
     indicator VARCHAR                 -- see actor_state
 );
 
@@ -159,6 +198,17 @@ CREATE TABLE ego_lane (
     with_direction BOOLEAN            -- heading within 90 degrees of the lane's direction
 );
 
+CREATE TABLE ego_aside (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- a step at which it is on no drivable lane, but on a way beside one
+    lanelet_id VARCHAR NOT NULL,      -- the nearest such way: a shoulder, border, parking or cycle lane
+    lane_type VARCHAR NOT NULL,       -- see lanelet
+    road_type VARCHAR,                -- see lanelet
+    off_m DOUBLE NOT NULL,            -- distance from its centre line
+    with_direction BOOLEAN            -- heading within 90 degrees of its direction; NULL: heading not known
+);
+
 CREATE TABLE chain (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -180,7 +230,7 @@ CREATE TABLE corridor (
     s_start_m DOUBLE NOT NULL,        -- see chain
     length_m DOUBLE NOT NULL,         -- see chain
     side INTEGER,                     -- overtaking side: 1 left (right-hand traffic), -1 right; NULL: handedness unknown
-    over_width_m DOUBLE,              -- width of the lane beside it on the overtaking side; through a junction, that of the lane before or after it; NULL: there is none
+    over_width_m DOUBLE,              -- width of the lane beside it on the overtaking side (see lane_beside), with the gap between the two, if it is there along more than half of the lanelet; through a junction, that of the lane before or after it; NULL: there is none
     over_against BOOLEAN              -- that lane is driven the other way
 );
 
@@ -238,6 +288,7 @@ CREATE TABLE ego_state (
     t_ns BIGINT NOT NULL,             -- the step
     x_m DOUBLE,                       -- box centre
     y_m DOUBLE,                       -- box centre
+    z_m DOUBLE,                       -- see state_dynamics
     yaw_rad DOUBLE,                   -- heading
     speed_mps DOUBLE,                 -- speed
     accel_mps2 DOUBLE,                -- see state_dynamics
@@ -245,6 +296,7 @@ CREATE TABLE ego_state (
     travel_m DOUBLE,                  -- way made since the first step
     length_m DOUBLE,                  -- box
     width_m DOUBLE,                   -- box
+    combination_m DOUBLE,             -- length with the trailer that it draws; NULL: the trailer is not placed
     indicator VARCHAR,                -- off, left, right, hazard; NULL: not known
     lanelet_id VARCHAR,               -- see ego_lane
     with_direction BOOLEAN,           -- see ego_lane
@@ -255,7 +307,7 @@ CREATE TABLE ego_state (
     s_m DOUBLE,                       -- chain station of the centre
     d_m DOUBLE,                       -- offset from the running lane's centre line, left positive
     front_s_m DOUBLE,                 -- chain station of the front bumper
-    rear_s_m DOUBLE,                  -- chain station of the rear bumper
+    rear_s_m DOUBLE,                  -- chain station of the rear bumper, the trailer's if it draws one
     lat_half_m DOUBLE,                -- half the extent of the box across the corridor
     heading_diff_rad DOUBLE           -- heading against the corridor
 );
@@ -271,17 +323,18 @@ CREATE TABLE pair (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the ego's step
-    object_id VARCHAR NOT NULL,       -- an actor present: one row per step from its first to its last sample
-    actor_class VARCHAR,              -- see actor
-    x_m DOUBLE,                       -- its box centre; NULL: present but not placed (no position, stale, or a hole in its track)
+    object_id VARCHAR NOT NULL,       -- an actor present, and no part of the ego: one row per step from its first to its last sample
+    actor_class VARCHAR,              -- see road_user
+    x_m DOUBLE,                       -- its box centre; NULL: present but not placed (no position, stale, a hole in its track, or off_level)
     y_m DOUBLE,                       -- its box centre
-    yaw_rad DOUBLE,                   -- its heading
+    yaw_rad DOUBLE,                   -- its heading; of a vehicle that reverses the opposite one: decided by its motion, see travel_rad of state_dynamics
     speed_mps DOUBLE,                 -- its speed
     accel_mps2 DOUBLE,                -- see state_dynamics
     length_m DOUBLE,                  -- box
     width_m DOUBLE,                   -- box
     distance_m DOUBLE,                -- centre to centre
-    clearance_m DOUBLE,               -- box to box; negative: depth of overlap; beyond 30 m a lower bound
+    off_level BOOLEAN NOT NULL,       -- over or under the ego's road there, or it may be: by its height, or by the map where heights are not recorded
+    clearance_m DOUBLE,               -- box to box, the trailer's box being the ego's too; negative: depth of overlap; beyond 30 m a lower bound, and off_level, where an overlap in plan is NULL
     clearance_is_bound BOOLEAN,       -- clearance_m is only a lower bound
     s_m DOUBLE,                       -- station of its centre on the ego's running chain; NULL: not in the corridor's strip
     d_m DOUBLE,                       -- its offset from the running lane's centre line, left positive
@@ -294,13 +347,31 @@ CREATE TABLE pair (
     over_against BOOLEAN              -- see corridor
 );
 
+CREATE TABLE between_steps (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- a step; the boxes are apart at it and at the next, and may have touched between the two: they came nearer than at either
+    t_next_ns BIGINT NOT NULL,        -- the next step, not beyond a hole
+    object_id VARCHAR NOT NULL,       -- the other actor
+    least_m DOUBLE NOT NULL,          -- least clearance between the two steps, both moved along the cubic through place and velocity at both (the chord where the velocities contradict it); negative: depth of overlap
+    blur_m DOUBLE NOT NULL            -- how far off that may be: nobody brakes or swerves by more than 8 m/s2; smaller than -least_m: contact for sure; smaller than least_m: none, and no row
+);
+
+CREATE TABLE clearance_least (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- a step at which the clearance in pair is not known
+    object_id VARCHAR NOT NULL,       -- the other actor
+    least_m DOUBLE NOT NULL           -- positive: it is no smaller, after where the two were seen before and where they are seen next
+);
+
 CREATE TABLE lost_object (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     object_id VARCHAR NOT NULL,       -- an actor whose track ends while it could still have been there
     t_from_ns BIGINT NOT NULL,        -- unknown from here
     t_to_ns BIGINT NOT NULL,          -- to here
-    reason VARCHAR NOT NULL           -- lost_near_ego, lost_in_range
+    code VARCHAR NOT NULL             -- lost_near_ego, lost_in_range
 );
 
 CREATE TABLE unplaced (
@@ -308,7 +379,19 @@ CREATE TABLE unplaced (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
     object_id VARCHAR NOT NULL,       -- a vehicle that may be on the road ahead and cannot be placed on it
-    reason VARCHAR NOT NULL           -- why, for a person
+    code VARCHAR NOT NULL,            -- no_position, off_level (may be over or under the road), no_heading, no_size, off_lanes (moves beside every lane), or see unseen
+    reason VARCHAR NOT NULL           -- the code in words
+);
+
+CREATE TABLE unseen (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- a step at which the log does not have the actor
+    object_id VARCHAR NOT NULL,       -- an actor whose track ends before, or begins after, near enough to matter
+    near BOOLEAN NOT NULL,            -- it was close by, in the sensor's range or coming towards the ego: it may be anywhere on the road
+    code VARCHAR NOT NULL,            -- lost, lost_behind (driving away), appeared, beyond_map (400 m or more ahead, over the end of the map)
+    ahead_m DOUBLE,                   -- it came in, or left, over the far end of the map, which is so far ahead of the ego's front; else NULL
+    behind_m DOUBLE                   -- the same over the near end, so far behind the ego's rear
 );
 
 CREATE TABLE oncoming (
@@ -329,9 +412,9 @@ CREATE TABLE lead (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
-    object_id VARCHAR,                -- nearest vehicle ahead in the running lane, not one that moves across it by its own way through a junction, nor one of the next lane that reaches over the line beside the ego's way and does not come nearer to it; NULL: nobody there; no row: cannot be told
-    actor_class VARCHAR,              -- see actor
-    gap_m DOUBLE,                     -- bumper to bumper along the corridor
+    object_id VARCHAR,                -- nearest vehicle ahead in the running lane, not one that moves across it by its own way through a junction, nor one of the next lane that reaches over the line beside the ego's way and does not come nearer to it, nor one beside the ego's box; NULL: nobody there; no row: cannot be told
+    actor_class VARCHAR,              -- see road_user
+    gap_m DOUBLE,                     -- bumper to bumper along the corridor; negative: the two boxes overlap
     speed_mps DOUBLE,                 -- its speed
     accel_mps2 DOUBLE,                -- its acceleration, mean over the 0.5 s up to the step; NULL: not known
     ego_speed_mps DOUBLE,             -- the ego's speed
@@ -340,8 +423,9 @@ CREATE TABLE lead (
     across_m DOUBLE,                  -- gap between the two boxes across the corridor; negative: overlap
     ego_across_mps DOUBLE,            -- ego's speed across the corridor, towards it positive
     across_mps DOUBLE,                -- its speed across the corridor, towards the ego positive
+    error_mps DOUBLE NOT NULL,        -- what the difference of the two speeds may be off by: 0.25 m/s for each that ingest derives by a filter (quality velocity_filtered), else 0
     t_since_ns BIGINT,                -- first step of the unbroken stretch in which it has been the nearest one
-    joined BOOLEAN                    -- the stretch began with one of the two changing lanes; false: it was ahead in the lane before (behind another, or further away), or the log begins there
+    joined BOOLEAN                    -- the stretch began with one of the two changing lanes, or one beside coming ahead; false: it was ahead in the lane before (behind another, or further away), or the log begins there
 );
 
 -- ---- the overtake (paper, Appendix A)
@@ -426,7 +510,7 @@ CREATE TABLE overtake_sda (
     da_m DOUBLE,                      -- distance ahead; NULL: unknown, or more than sda_m while a nearer OV is not ruled out
     at_least BOOLEAN NOT NULL,        -- da_m is only a lower bound (a sight line)
     nobody BOOLEAN NOT NULL,          -- every vehicle placed, and no OV as far as da_m
-    sda_m DOUBLE,                     -- safe distance ahead; NULL: undefined
+    sda_m DOUBLE,                     -- safe distance ahead; observed, where da_m is no more than what the ego and the OV covered while the ego was out and the OV's stopping distance: at least that; NULL: undefined
     spare_m DOUBLE,                   -- da_m - sda_m
     spare_s DOUBLE,                   -- the time in which it closes, at v_AV + v_OV
     zone VARCHAR,                     -- A unsafe, B under 0.5 s, C 0.5 to 2.5 s, D over 2.5 s; NULL: unknown

@@ -89,6 +89,7 @@ CREATE TABLE traffic_signal (
     value DOUBLE,                     -- the number on it, in the map's own unit
     unit VARCHAR,                     -- that unit
     dynamic BOOLEAN NOT NULL,         -- changes its state
+    turns VARCHAR[],                  -- of a traffic light: the turns it holds for, of left, straight, right and u_turn: those of its arrow, or all four for a full light; NULL: the map does not say
     road_id VARCHAR NOT NULL,         -- road it is listed on
     road_s_m DOUBLE NOT NULL,         -- station on that road
     lanelet_id VARCHAR NOT NULL,      -- a lanelet it holds for; one row each

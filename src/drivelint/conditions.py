@@ -34,8 +34,24 @@ WORDS: dict[str, tuple[str, ...]] = {
 GIVEN: dict[str, tuple[str, ...]] = {**WORDS, "engaged": ("yes", "no")}
 """What may be given for a drive: those, and whether the automated driver drives."""
 
+SAYS: dict[str, str] = {
+    "road_type": "the road is of this type; not given: as the map says",
+    "carriageway": "something lies between the two directions (dual) or not; not given: as the map's lanes show",
+    "area": "the road lies in a town or village (built_up) or not; not given: by the road type",
+    "nation": "whose law holds, of Great Britain or one of its nations, or any other country's two letters (ISO 3166-1)",
+    "weather": "how the road is",
+    "light": "whether it is dark",
+    "vehicle_class": (
+        "what the ego is for the law: goods vehicles of up to 7.5 t or more, a car that tows; not given: car, bus or motorcycle by "
+        "the ego's class, and not known for any other"
+    ),
+    "engaged": "the automated driver drives all along, or never; not given: as the event `engaged` says, and without one it drives",
+}
+"""Condition -> what its words say."""
+
 _WIDER = {"gb": BRITAIN, "town": TOWN}
 _COUNTRY = re.compile(r"[a-z]{2}")
+_SPELLED = {name.casefold(): name for name in GIVEN}
 
 
 def problem(condition: str, word: str) -> str | None:
@@ -51,6 +67,14 @@ def problem(condition: str, word: str) -> str | None:
     return f"{word!r} is no {condition.replace('_', ' ')}; {hint}"
 
 
+def spelled(condition: str, word: str) -> tuple[str, str]:
+    """Return a condition and its word as they are spelled here, whatever their case; what is not known stays as it is."""
+    condition = _SPELLED.get(condition.casefold(), condition)
+    words = {known.casefold(): known for known in GIVEN.get(condition, ())}
+    country = condition == "nation" and _COUNTRY.fullmatch(word.casefold())
+    return condition, words.get(word.casefold(), word.casefold() if country else word)
+
+
 def covered(words: tuple[str, ...]) -> list[str]:
     """Return these words and those that they include: gb holds in gb-sct, town in townLocal."""
     return sorted({part for word in words for part in (word, *_WIDER.get(word, ()))})
@@ -63,7 +87,7 @@ def undecided(words: tuple[str, ...]) -> list[str]:
 
 
 def parse(settings: Iterable[str]) -> tuple[tuple[str, str], ...]:
-    """Read `KEY=VALUE` settings of `--env` into (condition, word), in order of the conditions.
+    """Read `KEY=VALUE` settings of `--env`, in any case, into (condition, word), in order of the conditions.
 
     Errors: `UsageError` for a setting without '=', an unknown key or word (with the nearest one), or two words for one key.
     """
@@ -72,6 +96,7 @@ def parse(settings: Iterable[str]) -> tuple[tuple[str, str], ...]:
         key, equals, word = (part.strip() for part in setting.partition("="))
         if not equals:
             raise UsageError(f"--env {setting!r}: write KEY=VALUE, such as weather=wet")
+        key, word = spelled(key, word)
         if wrong := unknown(key) or problem(key, word):
             raise UsageError(f"--env {setting!r}: {wrong}")
         if found.setdefault(key, word) != word:

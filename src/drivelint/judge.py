@@ -212,7 +212,7 @@ class Bench:
 
     def _refuse_short_memory(self, ids: Sequence[str]) -> None:
         """A rule that ran out of memory under the usual limit is not at fault yet."""
-        short = "SELECT count(*) FROM verdict WHERE verdict = 'error' AND reason LIKE '%Out of Memory%' AND list_contains(?, drive_id)"
+        short = "SELECT count(*) FROM verdict WHERE verdict = 'error' AND reason_code = 'out_of_memory' AND list_contains(?, drive_id)"
         if self._limited and self._con.execute(short, [list(ids)]).fetchall()[0][0]:
             raise duckdb.OutOfMemoryException("a rule needs more than the usual memory")
 

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-DEFAULT = "nominal"
+DEFAULT = ("nominal", "observed")
+"""What an overtake is judged by if nobody says else: how it is planned, and how it was driven."""
 
 
 class Profile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -50,11 +51,11 @@ def load_profiles(dirs: Sequence[Path] = ()) -> dict[str, Profile]:
 
 
 def profile_table(profiles: dict[str, Profile], selected: Sequence[str]) -> pa.Table:
-    """Return the rows of the library table `profile`; nothing selected means `nominal`.
+    """Return the rows of the library table `profile`; nothing selected means `DEFAULT`.
 
     Errors: `UsageError` for a name that no profile has, with the nearest one.
     """
-    chosen = set(selected) or {DEFAULT}
+    chosen = set(selected or DEFAULT)
     for name in sorted(chosen - profiles.keys()):
         near = get_close_matches(name, profiles, n=1)
         hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(profiles)}"

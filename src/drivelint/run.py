@@ -91,7 +91,7 @@ def check(settings: Settings, progress: Progress) -> Result:
 
     with TemporaryDirectory(prefix="drivelint-") as spill, store.connect(memory_limit=MEMORY, spill=Path(spill)) as con:
         store.insert(con, "profile", profiles)
-        table = rule_table(rules, params, settings.profiles or (DEFAULT,))
+        table = rule_table(rules, params, settings.profiles or DEFAULT)
         bench = Bench(
             con,
             rules,

@@ -79,6 +79,8 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     reference: str | None = None
     exempt_after_s: Seconds = 0.0
     merge_gap_s: Seconds = 1.0
+    law: tuple[str, ...] = ()
+    """The nations whose law the rule is: it is not applicable where the nation is known to be another; empty: no nation's own."""
     applies: Conditions = Conditions()
     params: dict[str, Param] = {}
 
@@ -180,6 +182,7 @@ def _contradiction(h: Header) -> tuple[str, str] | None:
         (not _NAME.fullmatch(name), name, f"parameter {name!r}: use lower-case letters, digits and _, a letter first")
         for name in h.params
     ]
+    checks += [(True, "law", f"law: {wrong}") for word in h.law if (wrong := conditions.problem("nation", word))]
     for name, words in h.applies.words.items():
         checks += [(True, name, f"[applies] {wrong}") for word in words if (wrong := conditions.problem(name, word))]
     least, most = h.applies.limit_min_mps, h.applies.limit_max_mps

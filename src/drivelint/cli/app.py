@@ -75,7 +75,11 @@ def check(
     ] = None,
     profile: Annotated[
         list[str] | None,
-        typer.Option("--profile", metavar="NAME", help="relaxed, nominal (default), aggressive, observed. Repeatable."),
+        typer.Option(
+            "--profile",
+            metavar="NAME",
+            help="relaxed, nominal, aggressive, observed, or your own. Repeatable. Default: nominal and observed.",
+        ),
     ] = None,
     param: Annotated[
         list[str] | None, typer.Option("--param", metavar="RULE.PARAM=V", help="Set a rule's parameter. Repeatable.")

@@ -82,7 +82,8 @@ def page_(
 ) -> None:
     """Write the catalogue as one Markdown page.
 
-    A table per pack: what each rule asserts and needs, its numbers and where they are from; and by clause what is covered.
+    A table per pack: what each rule asserts and needs, its numbers and where they are from; by clause what is covered; and the
+    words that logs and maps have for what rules ask.
     """
     from drivelint.catalogue import load
     from drivelint.report.catalogue_page import page

@@ -50,7 +50,7 @@ FROM (
 ) b
 LEFT JOIN _watched w ON w.drive_id = b.drive_id AND w.ego_id = b.ego_id
 LEFT JOIN (
-    SELECT rule_no, drive_id, ego_id, bool_and(code = 'outside_conditions') AS elsewhere FROM _kept GROUP BY ALL
+    SELECT rule_no, drive_id, ego_id, bool_and(code IN ('other_nation', 'outside_conditions')) AS elsewhere FROM _kept GROUP BY ALL
 ) k ON k.rule_no = b.rule_no AND k.drive_id = b.drive_id AND k.ego_id = b.ego_id
 ANTI JOIN _kept u ON u.rule_no = b.rule_no AND u.drive_id = b.drive_id AND u.ego_id = b.ego_id
     AND (u.verdict = 'error' OR u.verdict = 'unknown' AND coalesce(

@@ -59,6 +59,7 @@ SENTENCE = f"""CASE
         WHEN 'no_anchor' THEN 'Not applicable: the time or place at which it must hold never came.'
         WHEN 'nobody_there' THEN 'Not applicable: nobody was there.'
         WHEN 'not_engaged' THEN 'Not applicable: the automated driver never drives in this drive.'
+        WHEN 'other_nation' THEN 'Not applicable: the law of another nation.'
         WHEN 'outside_conditions' THEN 'Not applicable: outside the conditions of the rule.'
         ELSE 'Not applicable: what the rule is about never happened in this drive.' END
     WHEN code = 'nobody_there' THEN 'Nobody was there at ' || {_AT} || '.'
@@ -90,6 +91,8 @@ WITH _rows AS (
         FROM _error GROUP BY ALL
     UNION ALL BY NAME
     SELECT rule_no, drive_id, ego_id, 'unknown' AS verdict, 'missing_' || signal AS code, reason FROM _gated
+    UNION ALL BY NAME
+    SELECT rule_no, drive_id, ego_id, 'not_applicable' AS verdict, 'other_nation' AS code FROM _foreign
 ), _seen AS (
     SELECT * FROM _kept UNION ALL BY NAME
     ({blind.OUTCOMES})

@@ -272,7 +272,7 @@ INSERT INTO _outcome BY NAME
 SELECT $_no AS rule_no, l.drive_id, l.ego_id, l.object_id, {"p.profile" if rule.profiled else "''"} AS profile,
     l.t_from_ns AS t_start_ns, l.t_to_ns AS t_end_ns, l.t_from_ns AS t_worst_ns, l.t_from_ns AS t_decides_ns,
         'unknown' AS verdict,
-    l.reason AS code, greatest(1, (l.t_to_ns - l.t_from_ns) // greatest(s.period_ns, 1)) AS n_expected, 0 AS n_judged
+    l.code, greatest(1, (l.t_to_ns - l.t_from_ns) // greatest(s.period_ns, 1)) AS n_expected, 0 AS n_judged
 FROM lost_object l JOIN _subject s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id {profiles}
 {restricted.joins(rule, "l", "l.t_from_ns", watching=watching)}
 {terms.todo(partial, "l")}

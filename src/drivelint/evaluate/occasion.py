@@ -144,7 +144,7 @@ def _crowd(combined: bool) -> str:
     LEFT JOIN pair q ON q.drive_id = p.drive_id AND q.ego_id = p.ego_id AND q.t_ns = p.t_ns
     WHERE {"true" if combined else "q.object_id IS NOT NULL OR p.t_ns IS NULL"}
     UNION ALL BY NAME
-    SELECT p.* REPLACE (l.object_id AS object_id), false AS nobody, NULL::DOUBLE AS sensor_range_m, min(l.reason) AS lost
+    SELECT p.* REPLACE (l.object_id AS object_id), false AS nobody, NULL::DOUBLE AS sensor_range_m, min(l.code) AS lost
     FROM reference_step p JOIN lost_object l ON l.drive_id = p.drive_id AND l.ego_id = p.ego_id
         AND p.t_ns >= l.t_from_ns AND p.t_ns <= l.t_to_ns
     ANTI JOIN pair q ON q.drive_id = p.drive_id AND q.ego_id = p.ego_id AND q.t_ns = p.t_ns AND q.object_id = l.object_id

@@ -178,9 +178,10 @@ class Run:
 
     def _blame(self, binding: Binding, error: duckdb.Error) -> None:
         """Make this rule an error for every subject that it was to judge."""
+        code = "out_of_memory" if isinstance(error, duckdb.OutOfMemoryException) else "rule_error"
         self._con.execute(
-            "INSERT INTO _error SELECT rule_no, drive_id, ego_id, 'rule_error', $reason FROM _todo WHERE rule_no = $no",
-            {"no": binding.no, "reason": f"rule {binding.rule.id}: {str(error).splitlines()[0]}"},
+            "INSERT INTO _error SELECT rule_no, drive_id, ego_id, $code, $reason FROM _todo WHERE rule_no = $no",
+            {"no": binding.no, "code": code, "reason": f"rule {binding.rule.id}: {str(error).splitlines()[0]}"},
         )
 
 

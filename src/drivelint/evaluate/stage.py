@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from drivelint import store
+from drivelint import conditions, store
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,6 +28,7 @@ CREATE OR REPLACE TEMP TABLE _rule (rule_no INTEGER, rule_id VARCHAR, rule_versi
     severity VARCHAR,
     sense VARCHAR, unit VARCHAR, observes VARCHAR, near_margin DOUBLE);
 CREATE OR REPLACE TEMP TABLE _needs (rule_no INTEGER, pos INTEGER, signal VARCHAR);
+CREATE OR REPLACE TEMP TABLE _law (rule_no INTEGER, nation VARCHAR);
 CREATE OR REPLACE TEMP TABLE _error ({_KEYS}, code VARCHAR, reason VARCHAR);
 CREATE OR REPLACE TEMP TABLE _group ({_KEYS}, object_id VARCHAR, clean BOOLEAN, t_start_ns BIGINT, t_end_ns BIGINT,
     n BIGINT,
@@ -45,6 +46,16 @@ CREATE OR REPLACE TEMP TABLE _course ({_KEYS}, profile VARCHAR, object_id VARCHA
     near BOOLEAN, t_ns BIGINT, observed DOUBLE, required DOUBLE, margin DOUBLE, holds BOOLEAN);
 """
 
+# the law of one nation says nothing about a drive in another; where the nation is not known, it is judged
+_FOREIGN = """
+CREATE OR REPLACE TEMP TABLE _foreign AS
+SELECT r.rule_no, n.drive_id, n.ego_id
+FROM (SELECT DISTINCT rule_no FROM _law) r
+CROSS JOIN (SELECT DISTINCT drive_id, ego_id, nation FROM ego_condition) n
+LEFT JOIN _law l ON l.rule_no = r.rule_no AND l.nation = n.nation
+GROUP BY ALL
+HAVING bool_and(n.nation IS NOT NULL AND l.nation IS NULL)
+"""
 # the first of a rule's required signals that the log cannot give; a signal nobody answered for is not there
 _GATED = """
 CREATE OR REPLACE TEMP TABLE _gated AS
@@ -55,17 +66,20 @@ SELECT rule_no, drive_id, ego_id, first.signal AS signal, first.reason AS reason
     FROM _needs n CROSS JOIN _subject s
     LEFT JOIN capability c ON c.drive_id = s.drive_id AND c.ego_id = s.ego_id AND c.signal = n.signal
     WHERE c.available IS DISTINCT FROM true
-    GROUP BY ALL)
+    GROUP BY ALL) g
+ANTI JOIN _foreign f ON f.rule_no = g.rule_no AND f.drive_id = g.drive_id AND f.ego_id = g.ego_id
 """
 _TODO = """
 CREATE OR REPLACE TEMP TABLE _todo AS
 SELECT r.rule_no, s.drive_id, s.ego_id FROM _rule r CROSS JOIN _subject s
 ANTI JOIN _gated g ON g.rule_no = r.rule_no AND g.drive_id = s.drive_id AND g.ego_id = s.ego_id
+ANTI JOIN _foreign f ON f.rule_no = r.rule_no AND f.drive_id = s.drive_id AND f.ego_id = s.ego_id
 """
 OUTCOMES = ("_error", "_group", "_outcome", "_stretch", "_course", "_margin")
 """What rules leave behind: what another connection judged is brought together with."""
 _NAMES = (
-    "_subject", "_watched", "_segment", "_rule", "_needs", "_error", "_group", "_outcome", "_stretch", "_margin", "_course", "_gated",
+    "_subject", "_watched", "_segment", "_rule", "_needs", "_law", "_error", "_group", "_outcome", "_stretch", "_margin", "_course",
+    "_foreign", "_gated",
     "_todo", "_grid_group", "_asked", "_blind", "_closed", "_judged", "_profile_set", "_raw_reference", "reference", "_occasion",
     "reference_step",
 )  # fmt: skip
@@ -77,6 +91,8 @@ def prepare(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> dict
     # as Arrow tables: lists bound as parameters took a tenth of a second each
     store.insert(con, "_rule", _rules(bindings))
     store.insert(con, "_needs", _needs(bindings))
+    store.insert(con, "_law", _laws(bindings))
+    con.execute(_FOREIGN)
     con.execute(_GATED)
     con.execute(_TODO)
     counts = con.execute("SELECT rule_no, count(*) FROM _todo GROUP BY rule_no").fetchall()
@@ -106,6 +122,18 @@ def _needs(bindings: Sequence[Binding]) -> pa.Table:
             "rule_no": pa.array([no for no, _, _ in needs], pa.int32()),
             "pos": pa.array([pos for _, pos, _ in needs], pa.int32()),
             "signal": pa.array([signal for _, _, signal in needs], pa.string()),
+        }
+    )
+
+
+def _laws(bindings: Sequence[Binding]) -> pa.Table:
+    laws = [
+        (b.no, word) for b in bindings for word in (*conditions.covered(b.rule.law), *conditions.undecided(b.rule.law))
+    ]
+    return pa.table(
+        {
+            "rule_no": pa.array([no for no, _ in laws], pa.int32()),
+            "nation": pa.array([word for _, word in laws], pa.string()),
         }
     )
 

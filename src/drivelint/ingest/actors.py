@@ -11,6 +11,8 @@ from drivelint.ingest.order import listed
 from drivelint.ingest.trace import CLASSES, SIZES, Finding
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import pyarrow as pa
     from numpy.typing import NDArray
 
@@ -65,9 +67,13 @@ def from_states(states: States) -> tuple[Actors, list[Finding]]:
     return Actors(states.ids, classes, sizes), findings
 
 
-def from_table(table: pa.Table, states: States) -> Actors:
-    """Read the log's own actor table (first row of each id); actors that only have states are added as unknown."""
+def from_table(table: pa.Table, states: States, alias: Mapping[str, str]) -> Actors:
+    """Read the log's own actor table (first row of each id); actors that only have states are added as unknown.
+
+    `alias`: an id that the table does not have -> the one whose row is its own (see `contradiction`).
+    """
     rows = {str(row["actor_id"]): row for row in reversed(table.to_pylist()) if row["actor_id"] not in {None, ""}}
+    rows |= {new: rows[old] for new, old in alias.items() if old in rows}
     ids = sorted({*rows, *states.ids})
     nothing: dict[str, object] = {}
     classes = [str(value) if (value := rows.get(i, nothing).get("actor_class")) else None for i in ids]

@@ -1,8 +1,8 @@
 """Objects that are sampled at other times than the ego, such as tracks beside odometry: their states at the ego's steps.
 
 Every rule asks who is where at a step of the ego. Between two samples an object is where the straight line puts it (at 10 Hz and
-5 m/s2 that is 6 mm off), for no more than a sample's time before its first and after its last where its own velocity does. In a
-hole of its track it has no state: there, but unknown.
+5 m/s2 that is 6 mm off). Before its first sample and after its last it has no state, and none in a hole of its track. Only where
+the log itself begins or ends within a sample's time, its velocity moves it on to there: the recorder's next frame is all that lacks.
 """
 
 from __future__ import annotations
@@ -39,14 +39,16 @@ def aligned(states: States, egos: list[str]) -> tuple[States, list[Finding]]:
     if len(grid) < 2:
         return states, []
     period = float(np.median(np.diff(grid)))
+    log_ns = int(states.t_ns.min()), int(states.t_ns.max())
     kept, added, names, longest = np.ones(len(states), np.bool_), [], [], 0
     for i, name in enumerate(states.ids):
         span = slice(int(starts[i]), int(starts[i + 1]))
         own = _own_period(states.t_ns[span], grid, period)
         if own is None:
             continue
-        kept[span] = own < period  # a finer track keeps its samples beside those at the ego's steps
-        track = _at_steps(states, span, grid, own)
+        # a finer track keeps its samples beside those at the ego's steps, every track those of before and after the ego's
+        kept[span] = (own < period) | (states.t_ns[span] < grid[0]) | (states.t_ns[span] > grid[-1])
+        track = _at_steps(states, span, grid, own, log_ns)
         added.append(track.take(~np.isin(track.t_ns, states.t_ns[span])) if own < period else track)
         names.append(name)
         longest = max(longest, own)
@@ -73,15 +75,17 @@ def _own_period(t_ns: Times, grid: Times, period_ns: float) -> int | None:
         return None
     steps = grid[first : np.searchsorted(grid, t_ns[-1], side="right")]
     shared = len(np.intersect1d(steps, t_ns, assume_unique=True))
-    if len(steps) and shared >= COVERED * len(steps):
+    if shared >= COVERED * len(steps):  # as where there is no step of the ego's at all
         return None
     return own if own > RARER * period_ns or shared < 0.5 * n else None
 
 
-def _at_steps(states: States, span: slice, grid: Times, own_ns: int) -> States:
-    """Return the states of one track at the steps where they are known."""
+def _at_steps(states: States, span: slice, grid: Times, own_ns: int, log_ns: tuple[int, int]) -> States:
+    """Return the states of one track at the steps where they are known. `log_ns`: the first and the last time of the log."""
     t_ns = states.t_ns[span]
-    steps = grid[np.searchsorted(grid, t_ns[0] - own_ns) : np.searchsorted(grid, t_ns[-1] + own_ns, side="right")]
+    first = log_ns[0] if t_ns[0] - log_ns[0] <= own_ns else t_ns[0]
+    last = log_ns[1] if log_ns[1] - t_ns[-1] <= own_ns else t_ns[-1]
+    steps = grid[np.searchsorted(grid, first) : np.searchsorted(grid, last, side="right")]
     before = np.searchsorted(t_ns, steps, side="right") - 1
     inside = (before >= 0) & (steps <= t_ns[-1])
     before = np.clip(before, 0, len(t_ns) - 1)

@@ -31,7 +31,9 @@ if TYPE_CHECKING:
 
 REQUIRED = ("t_ns", "actor_id", "x_m", "y_m", "yaw_rad")
 """What makes a Parquet table canonical; every other column may be missing and is then unknown."""
-_WORDS = {"indicator": INDICATORS, "brake_light": BRAKE_LIGHTS, "actor_class": CLASSES}
+_OF_A_STATE = {"indicator": INDICATORS, "brake_light": BRAKE_LIGHTS, "actor_class": CLASSES}
+_WORDS = {**_OF_A_STATE, "state": SIGNAL_STATES}
+"""Column -> its words; a log may write them in any case."""
 
 
 def has_columns(path: Path) -> bool:
@@ -56,10 +58,10 @@ def read(path: Path) -> Recording:
         ]
     recording.signals = _extra(path / "signal_state.parquet", ("signal_id", "t_ns"), ("state",))
     recording.events = _extra(path / "declared_event.parquet", ("actor_id", "t_ns", "event"), ("value",))
-    _check_words(recording.signals, path / "signal_state.parquet")
     recording.conditions = _conditions(path / "drive_condition.parquet")
     if (path / "data_log.parquet").is_file():
         log = (parquet.table(path / "data_log.parquet").to_pylist() or [{}])[0]
+        _whole(path, log.get("n_states"), len(states) + sum(f.n for f in findings if f.check_id == "dropped_row"))
         recording.sensor_range_m, recording.utc_start_ns = log.get("sensor_range_m"), log.get("utc_start_ns")
         offset = log.get("map_offset_x_m"), log.get("map_offset_y_m")
         if offset != (None, None):
@@ -69,6 +71,15 @@ def read(path: Path) -> Recording:
         recording.embedded_map = (path / "map.xodr").read_bytes()
     recording.findings += _quality(path / "quality.parquet")
     return recording
+
+
+def _whole(path: Path, counted: object, found: int) -> None:
+    """Refuse a folder whose states are not those that its log counted: nobody knows who is missing, and when."""
+    if counted is not None and counted != found:
+        raise TraceError(
+            f"{path / 'actor_state.parquet'}: {found} rows, and data_log.parquet counts {counted} states: copy or convert "
+            "the folder again"
+        )
 
 
 def _offset(path: Path, offset: tuple[object, object]) -> tuple[float, float]:
@@ -131,7 +142,7 @@ def _states(path: Path) -> tuple[States, list[str], list[Finding]]:
             not_finite |= odd & column.is_valid().to_numpy(zero_copy_only=False)
     codes = {
         name: _codes(path, _column(path, table, name, pa.string()), name)
-        for name in _WORDS
+        for name in _OF_A_STATE
         if name in table.schema.names
     }
     egos: list[str] = []
@@ -153,11 +164,16 @@ def _codes(path: Path, column: pa.Array, name: str) -> NDArray[np.int8]:
     encoded = pc.dictionary_encode(column)
     table = []
     for word in encoded.dictionary.to_pylist():
-        if word not in words:
+        if word.casefold() not in words:
             raise TraceError(f"{path}: {name} is {word!r}: use one of {', '.join(words)}, or NULL for unknown")
-        table.append(words.index(word))
+        table.append(words.index(word.casefold()))
     lookup = np.array([*table, -1], np.int8)
     return np.asarray(lookup[pc.fill_null(encoded.indices, len(table)).to_numpy(zero_copy_only=False)], np.int8)
+
+
+def _spelled(path: Path, column: pa.Array, name: str) -> pa.Array:
+    codes = _codes(path, column, name)
+    return pa.DictionaryArray.from_arrays(pa.array(codes, mask=codes < 0), pa.array(_WORDS[name])).cast(pa.string())
 
 
 def _actors(path: Path) -> pa.Table:
@@ -168,8 +184,7 @@ def _actors(path: Path) -> pa.Table:
         if name in table.schema.names:
             columns[name] = _column(path, table, name, pa.float64())
     if "actor_class" in table.schema.names:
-        columns["actor_class"] = _column(path, table, "actor_class", pa.string())
-        _codes(path, columns["actor_class"], "actor_class")
+        columns["actor_class"] = _spelled(path, _column(path, table, "actor_class", pa.string()), "actor_class")
     if "is_ego" in table.schema.names:
         columns["is_ego"] = _column(path, table, "is_ego", pa.bool_())
     return pa.table(columns)
@@ -185,6 +200,8 @@ def _extra(path: Path, required: tuple[str, ...], optional: tuple[str, ...]) -> 
     for name in optional:
         present = name in table.schema.names
         columns[name] = _column(path, table, name, pa.string()) if present else pa.nulls(table.num_rows, pa.string())
+    if "state" in columns:
+        columns["state"] = _spelled(path, columns["state"], "state")
     for name, column in columns.items():
         if name in required and column.null_count:
             raise TraceError(f"{path}: {column.null_count} rows have no {name}: give every row one")
@@ -198,11 +215,3 @@ def _conditions(path: Path) -> dict[str, str]:
     _need(path, table, ("condition", "value"))
     names, words = (_column(path, table, name, pa.string()).to_pylist() for name in ("condition", "value"))
     return conditions_of(path, zip(names, words, strict=True))
-
-
-def _check_words(signals: pa.Table | None, path: Path) -> None:
-    if signals is None:
-        return
-    for word in pc.unique(signals.column("state")).to_pylist():
-        if word is not None and word not in SIGNAL_STATES:
-            raise TraceError(f"{path}: state is {word!r}: use one of {', '.join(SIGNAL_STATES)}, or NULL for unknown")

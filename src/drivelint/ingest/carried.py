@@ -131,11 +131,15 @@ def events(path: Path, messages: Sequence[bytes]) -> pa.Table | None:
 
 
 def conditions_of(path: Path, rows: Iterable[tuple[str | None, str | None]]) -> dict[str, str]:
-    """Return what a log says of its drive, condition -> word. Errors: `TraceError` for what is not understood."""
+    """Return what a log says of its drive in any case, condition -> word.
+
+    Errors: `TraceError` for what is not understood.
+    """
     found: dict[str, str] = {}
-    for name, word in rows:
-        if name is None or word is None:
+    for given in rows:
+        if given[0] is None or given[1] is None:
             raise TraceError(f"{path}: a condition of the drive without a name or a value: give both")
+        name, word = conditions.spelled(given[0], given[1])
         if wrong := conditions.unknown(name) or conditions.problem(name, word):
             raise TraceError(f"{path}: condition of the drive: {wrong}")
         if found.setdefault(name, word) != word:

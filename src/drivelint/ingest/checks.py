@@ -232,7 +232,11 @@ def _yaw(states: States, actors: Actors) -> list[Finding]:
         wrong = moving & (off > YAW_MISMATCH_RAD)
         backwards = wrong & (off > REVERSING_RAD) & (speed < REVERSING_MPS)
     forwards = np.bincount(states.actor[moving & ~wrong], minlength=len(states.ids)) > 0
-    wrong &= ~(backwards & forwards[states.actor])
+    # of one that never drives forwards, in company that does, or alone, it is the heading that is right
+    fast = np.bincount(states.actor[wrong & ~backwards], minlength=len(states.ids)) > 0
+    only = (np.bincount(states.actor[backwards], minlength=len(states.ids)) > 0) & ~forwards & ~fast
+    reverses = forwards | only if forwards.any() or only.sum() == 1 else forwards
+    wrong &= ~(backwards & reverses[states.actor])
     n, n_moving = int(wrong.sum()), int(moving.sum())
     if n_moving >= MOVING_SAMPLES and n > FLAWED_SHARE * n_moving:
         degrees = float(np.rad2deg(np.median(off[wrong])))

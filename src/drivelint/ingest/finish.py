@@ -10,10 +10,11 @@ import pyarrow as pa
 
 from drivelint.errors import TraceError
 from drivelint.ingest import actors as actor_rows
-from drivelint.ingest import checks, ego
+from drivelint.ingest import checks, contradiction, ego
 from drivelint.ingest.align import aligned
 from drivelint.ingest.motion import complete_motion
 from drivelint.ingest.order import in_order, listed, steps, without_duplicates, wrapped
+from drivelint.ingest.restart import without_restarts
 from drivelint.ingest.trace import BRAKE_LIGHTS, EPOCH_NS, INDICATORS, NUMBERS, SIZES, Finding, Trace
 
 if TYPE_CHECKING:
@@ -53,29 +54,35 @@ def finish(path: Path, identity: Identity, recording: Recording, options: Ingest
     """Order, complete and check what a reader found. Errors: `TraceError` when nothing can be judged."""
     if not len(recording.states):
         raise TraceError(f"{path}: no actor states in this log: nothing can be judged")
-    states, findings = without_duplicates(in_order(recording.states))
+    states, restarts = without_restarts(recording.states)
+    states, findings = without_duplicates(in_order(states))
+    assumed = any(f.check_id == "assumed_motion" for f in recording.findings)
+    named = recording.ego_ids if options.ego is None else [options.ego]
     step = steps(states)
+    parted = contradiction.part(states, step, whole=named) if not assumed else contradiction.UNPARTED
+    if parted.alias:
+        states = in_order(states)
+        step = steps(states)
     _wrap_heading(states)
     motion = complete_motion(states, step, most=_replaceable(recording))
-    actors, varying = (
-        actor_rows.from_states(states)
-        if recording.actors is None
-        else (actor_rows.from_table(recording.actors, states), [])
-    )
+    actors, varying = _actors(recording, states, parted.alias)
     egos, chosen = ego.choose(path, actors, options.ego, recording.ego_ids, needed=options.need_ego)
     chosen += ego.sized(actors, egos, options.ego_size)
     derived = any(f.check_id == "velocity_derived" and f.n == len(states) for f in [*recording.findings, *motion])
     checked = checks.run(states, step, actors, derived=derived)
-    if recording.strict_units:
-        _refuse_wrong_units(path, checked)
+    _refuse_wrong_units(path, recording, checked)
+    unclear = contradiction.resolve(states, step, actors, derived=derived) if not assumed else []
     states, moved = aligned(states, egos)
     is_ego = np.isin(np.arange(len(states.ids)), [i for i, name in enumerate(states.ids) if name in egos])[states.actor]
     findings = [
         *recording.findings,
+        *restarts,
         *findings,
+        *parted.findings,
         *motion,
         *varying,
         *checked,
+        *unclear,
         *chosen,
         *moved,
         *_lights(states, egos, is_ego),
@@ -102,6 +109,12 @@ def finish(path: Path, identity: Identity, recording: Recording, options: Ingest
     )
 
 
+def _actors(recording: Recording, states: States, alias: Mapping[str, str]) -> tuple[Actors, list[Finding]]:
+    if recording.actors is None:
+        return actor_rows.from_states(states)
+    return actor_rows.from_table(recording.actors, states, alias), []
+
+
 def with_finding(trace: Trace, finding: Finding) -> Trace:
     """Return the trace with one more row in `quality`."""
     rows = pa.concat_tables([trace.tables["quality"], _quality(trace.drive_id, [finding])])
@@ -124,10 +137,16 @@ def _wrap_heading(states: States) -> None:
         states.numbers["yaw_rad"] = wrapped(states.numbers["yaw_rad"])
 
 
-def _refuse_wrong_units(path: Path, findings: list[Finding]) -> None:
+def _refuse_wrong_units(path: Path, recording: Recording, findings: list[Finding]) -> None:
+    """Refuse a log whose motion and headings or velocities are of two units or frames: any verdict on it would be chance."""
+    remedy = (
+        "correct the mapping's units or frame"
+        if recording.strict_units
+        else "record or convert it again in its format's"
+    )
     for finding in findings:
         if finding.severity == "error":
-            raise TraceError(f"{path}: {finding.message}: correct the mapping's units or frame")
+            raise TraceError(f"{path}: {finding.message}: {remedy}")
 
 
 def _lights(states: States, egos: list[str], is_ego: NDArray[np.bool_]) -> list[Finding]:

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.ingest.order import Steps, listed, rate
+from drivelint.ingest.order import Steps, listed
 from drivelint.ingest.trace import Finding
+from drivelint.ingest.velocity import KNOWN_MPS, derived
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -67,9 +68,11 @@ def _velocity(states: States, step: Steps, starts: NDArray[np.intp], most: float
             continue
         ids = [states.ids[i] for i in states.actor[starts[which]]]
         rows = _rows_of(which, starts, len(states))
-        numbers["vx_mps"] = np.where(rows, rate(numbers["x_m"], step), numbers["vx_mps"])
-        numbers["vy_mps"] = np.where(rows, rate(numbers["y_m"], step), numbers["vy_mps"])
-        message = f"{why} ({listed(ids)}): velocity is derived from positions by central differences"
+        motion = derived(states.t_ns, states.actor, numbers["x_m"], numbers["y_m"], step)
+        numbers["vx_mps"] = np.where(rows, motion.vx, numbers["vx_mps"])
+        numbers["vy_mps"] = np.where(rows, motion.vy, numbers["vy_mps"])
+        message = f"{why} ({listed(ids)}): velocity is derived from positions"
+        findings += _filtered(states, rows & motion.filtered)
         findings.append(
             Finding(
                 check,
@@ -81,6 +84,23 @@ def _velocity(states: States, step: Steps, starts: NDArray[np.intp], most: float
             )
         )
     return findings
+
+
+def _filtered(states: States, rows: NDArray[np.bool_]) -> list[Finding]:
+    """Name each actor whose positions tremble: what a filter hides, and what its error leaves open, is unknown of it."""
+    found = []
+    for number in np.unique(states.actor[rows]):
+        of = rows & (states.actor == number)
+        message = (
+            f"the positions of {states.ids[number]} tremble: its velocity is a mean over up to two seconds, known to {KNOWN_MPS:g} m/s, "
+            "its acceleration is not known"
+        )
+        found.append(
+            Finding(
+                "velocity_filtered", "warning", message, int(of.sum()), int(states.t_ns[of].min()), states.ids[number]
+            )
+        )
+    return found
 
 
 def _astray(states: States, step: Steps, most: float) -> NDArray[np.bool_]:
@@ -104,7 +124,8 @@ def _astray(states: States, step: Steps, most: float) -> NDArray[np.bool_]:
     with np.errstate(invalid="ignore"):
         fastest = np.maximum(moved, told)
         moving = (unusable[k:] == unusable[:-k]) & (fastest > WRONG_MPS * span)
-        bad = moving & (off > WRONG_MPS * span + WRONG_SHARE * fastest)
+        # positions that stand still do not tell how somebody moves: see `contradiction`
+        bad = moving & (moved > WRONG_MPS * span) & (off > WRONG_MPS * span + WRONG_SHARE * fastest)
     seconds, astray = (np.bincount(states.actor[:-k][rows], minlength=len(states.ids)) for rows in (moving, bad))
     wrong = (astray >= WRONG_WINDOWS) & (2 * astray > seconds)
     return wrong & bool(seconds[wrong].sum() <= most * seconds.sum())

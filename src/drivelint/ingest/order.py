@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drivelint.ingest.trace import Finding, States
+from drivelint.ingest.trace import NUMBERS, Finding, States
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from drivelint.ingest.trace import Severity
+
 MAX_GAP_PERIODS = 2.5
 """Samples further apart than this many periods are not continuous (DESIGN.md, Verdicts)."""
+UNKNOWN = np.int8(-1)
 LISTED = 5
 """How many ids a message names before it says how many more there are."""
 
@@ -47,18 +50,53 @@ def _rising(t_ns: NDArray[np.int64]) -> bool:
 
 
 def without_duplicates(states: States) -> tuple[States, list[Finding]]:
-    """Keep the first of several states of one actor at one time (states in order), and report the others."""
+    """Keep one of several states of an actor at one time (states in order): what they do not agree on is unknown.
+
+    An actor that is in two places, or has two headings or velocities, is present and has none.
+    """
     repeated = np.zeros(len(states), np.bool_)
     repeated[1:] = (states.actor[1:] == states.actor[:-1]) & (states.t_ns[1:] == states.t_ns[:-1])
-    n = int(repeated.sum())
-    if n == 0:
+    if not repeated.any():
         return states, []
-    ids = [states.ids[i] for i in np.unique(states.actor[repeated])]
-    message = f"an actor appears again at the same time in {n} states ({listed(ids)}): only the first is judged"
-    finding = Finding(
-        "duplicate_state", "error", message, n, int(states.t_ns[repeated].min()), ids[0] if len(ids) == 1 else None
-    )
-    return states.take(~repeated), [finding]
+    of = np.cumsum(~repeated) - 1
+    kept = states.take(~repeated)
+    differ = {name: np.bincount(of[repeated & rows], minlength=len(kept)) > 0 for name, rows in changes(states).items()}
+    moved = _any([differ[name] for name in NUMBERS if name in differ])
+    for name, values in kept.numbers.items():
+        values[differ[name] | moved if name in NUMBERS else differ[name]] = np.nan
+    for name, codes in kept.codes.items():
+        codes[differ[name]] = UNKNOWN
+    differing = repeated & _any(list(differ.values()))[of]
+    return kept, [
+        *_repeated(states, differing, "error", "differ: what they do not agree on is unknown there"),
+        *_repeated(states, repeated & ~differing, "info", "are the same: they count once"),
+    ]
+
+
+def _any(rows: list[NDArray[np.bool_]]) -> NDArray[np.bool_]:
+    found: NDArray[np.bool_] = np.any(rows, axis=0)
+    return found
+
+
+def changes(states: States) -> dict[str, NDArray[np.bool_]]:
+    """Say of each column where its value is another than in the row before; unknown is a value here."""
+    found = {}
+    columns: dict[str, NDArray[Any]] = {**states.numbers, **states.codes}
+    for name, values in columns.items():
+        unknown = np.isnan(values)
+        found[name] = np.zeros(len(values), np.bool_)
+        found[name][1:] = (values[1:] != values[:-1]) & ~(unknown[1:] & unknown[:-1])
+    return found
+
+
+def _repeated(states: States, rows: NDArray[np.bool_], severity: Severity, what: str) -> list[Finding]:
+    n = int(rows.sum())
+    if n == 0:
+        return []
+    ids = [states.ids[i] for i in np.unique(states.actor[rows])]
+    message = f"an actor appears again at the same time in {n} states ({listed(ids)}), which {what}"
+    only = ids[0] if len(ids) == 1 else None
+    return [Finding("duplicate_state", severity, message, n, int(states.t_ns[rows].min()), only)]
 
 
 @dataclass(frozen=True)

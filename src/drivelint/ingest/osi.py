@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -162,11 +163,12 @@ def joined(batches: list[Frames], log_ns: NDArray[np.uint64]) -> Recording:
     offsets = np.cumsum([0, *(len(batch.t_ns) for batch in batches)])
     frame = np.concatenate([batch.frame + offset for batch, offset in zip(batches, offsets, strict=False)])
     unique, actor = np.unique(np.concatenate([batch.ids for batch in batches]), return_inverse=True)
+    zeroed = _zeros(batches)
     states = States(
         [str(number) for number in unique],
         actor.astype(np.int32),
         t_ns[frame],
-        {name: np.concatenate([batch.numbers[name] for batch in batches]) for name in batches[0].numbers},
+        {name: np.concatenate([numbers[name] for numbers in zeroed]) for name in zeroed[0]},
         {name: np.concatenate([batch.codes[name] for batch in batches]) for name in batches[0].codes},
         np.concatenate([batch.not_finite for batch in batches]),
     )
@@ -183,6 +185,22 @@ def joined(batches: list[Frames], log_ns: NDArray[np.uint64]) -> Recording:
         utc_start_ns=int(log_ns.min()) if log_ns.min() >= EPOCH_NS else None,
         frame_times=FrameTimes(t_ns, log_ns),
     )
+
+
+def _zeros(batches: list[Frames]) -> list[dict[str, NDArray[np.float64]]]:
+    """Return the numbers of each batch, with 0 for coordinates that the log leaves out if it never writes a zero.
+
+    Some writers leave zeros out, as proto3 does. One that writes zeros means by a coordinate without a value that it is not known.
+    """
+    if any(batch.says_zero for batch in batches):
+        return [batch.numbers for batch in batches]
+    return [
+        {
+            name: np.where(batch.left_out[name], 0.0, v) if name in batch.left_out else v
+            for name, v in batch.numbers.items()
+        }
+        for batch in batches
+    ]
 
 
 def _clock(batches: list[Frames], log_ns: NDArray[np.int64], findings: list[Finding]) -> NDArray[np.int64]:
@@ -204,17 +222,22 @@ def _clock(batches: list[Frames], log_ns: NDArray[np.int64], findings: list[Find
 
 
 def _host(hosts: list[int | None], t_ns: NDArray[np.int64], findings: list[Finding]) -> list[str]:
-    """Return the host vehicle's id, the first one said if it changes."""
-    said = [i for i, host in enumerate(hosts) if host is not None]
+    """Return the host vehicle's id, that of most frames if it changes; of several that are as often said, the first."""
+    said = Counter(host for host in hosts if host is not None)
     if not said:
         return []
-    first = min(said, key=lambda i: (t_ns[i], i))
-    distinct = {host for host in hosts if host is not None}
-    if len(distinct) > 1:
-        names = listed(sorted(map(str, distinct)))
-        message = f"the log names {len(distinct)} host vehicles ({names}): the first, {hosts[first]}, is the ego"
-        findings.append(Finding("ego_count", "warning", message, len(distinct), actor_id=str(hosts[first])))
-    return [str(hosts[first])]
+    first: dict[int, int] = {}
+    for host, at in zip(hosts, t_ns.tolist(), strict=True):
+        if host is not None:
+            first[host] = min(first.get(host, at), at)
+    ego = min(said, key=lambda host: (-said[host], first[host], host))
+    if len(said) > 1:
+        frames, n = said.total(), said.total() - said[ego]
+        names = listed(sorted(map(str, said)))
+        message = f"the log names {len(said)} host vehicles ({names}): {ego} is the ego, which {n} of {frames} frames do not name"
+        since = min(at for host, at in first.items() if host != ego)
+        findings.append(Finding("ego_count", "warning", message, n, since, str(ego)))
+    return [str(ego)]
 
 
 def _signals(batches: list[Frames], offsets: NDArray[np.int64], t_ns: NDArray[np.int64]) -> pa.Table | None:

@@ -64,13 +64,17 @@ VECTORS: dict[str, dict[str, str]] = {
     "dimension": {"length_m": "length", "width_m": "width", "height_m": "height"},
 }
 """Vector of `moving_object.base` -> our column -> its coordinate."""
+_NEVER_ZERO = frozenset({"position", "dimension"})
+"""Vectors that say nothing without any coordinate, even of a writer that leaves zeros out."""
 
 
 @dataclass(frozen=True)
 class Frames:
     """A decoded batch. Per frame: the message's time and whether it says one, the host's id (None: not said).
 
-    Per object: its frame, id (`known`: it has one), columns of `NUMBERS` and `SIZES` (NaN: unknown), codes.
+    Per object: its frame, id (`known`: it has one), columns of `NUMBERS` and `SIZES` (NaN: unknown), codes. `left_out`: the
+    coordinates that a vector does not have and that a writer which leaves zeros out may mean as 0, by column. `says_zero`: some
+    coordinate is written as 0, so that this is no such writer.
     """
 
     t_ns: NDArray[np.int64]
@@ -82,6 +86,8 @@ class Frames:
     numbers: dict[str, NDArray[np.float64]]
     codes: dict[str, NDArray[np.int8]]
     not_finite: NDArray[np.bool_]
+    left_out: dict[str, NDArray[np.bool_]]
+    says_zero: bool
     bulbs: Bulbs
 
 
@@ -116,12 +122,20 @@ class Decoder:
         objects = lists.flatten()
         counts = pc.fill_null(pc.list_value_length(lists), 0).to_numpy(zero_copy_only=False)
         base = child(objects, "base")
-        numbers, not_finite = {}, np.zeros(len(objects), np.bool_)
+        numbers, left_out, not_finite = {}, {}, np.zeros(len(objects), np.bool_)
+        says_zero = False
         for vector, columns in VECTORS.items():
             values = child(base, vector)
+            present = values.is_valid().to_numpy(zero_copy_only=False)
             for column, coordinate in columns.items():
-                numbers[column], odd = _coordinate(values, coordinate)
-                not_finite |= odd
+                numbers[column], said = _coordinate(values, coordinate)
+                left_out[column] = present & ~said
+                not_finite |= said & np.isnan(numbers[column])
+                says_zero = says_zero or bool((numbers[column] == 0.0).any())
+            if vector in _NEVER_ZERO:
+                empty = np.logical_and.reduce([left_out[column] for column in columns])
+                left_out |= {column: left_out[column] & ~empty for column in columns}
+        left_out = {column: rows for column, rows in left_out.items() if rows.any()}
         ids = child(objects, "id")
         frame = np.repeat(np.arange(len(packets)), counts)
         number = pc.fill_null(child(ids, "value").cast(pa.uint64()), 0).to_numpy(zero_copy_only=False)
@@ -130,9 +144,12 @@ class Decoder:
             known = ids.is_valid().to_numpy(zero_copy_only=False)
             frame, number, not_finite = frame[known], number[known], not_finite[known]
             numbers = {name: column[known] for name, column in numbers.items()}
+            left_out = {name: rows[known] for name, rows in left_out.items()}
             codes = {name: column[known] for name, column in codes.items()}
         bulbs = bulbs_of(self._words, child(truth, "traffic_light"))
-        return Frames(t_ns, timed, hosts, frame, number, ids.null_count, numbers, codes, not_finite, bulbs)
+        return Frames(
+            t_ns, timed, hosts, frame, number, ids.null_count, numbers, codes, not_finite, left_out, says_zero, bulbs
+        )
 
     def _decode(self, packets: list[Packet]) -> pa.StructArray:
         try:
@@ -198,17 +215,11 @@ def _inner(fields: pa.Schema | pa.DataType | None, name: str) -> pa.DataType | N
 
 
 def _coordinate(vector: pa.Array, name: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Return a coordinate and where it is not finite.
-
-    It is 0 where a present vector leaves it out (writers drop zeros) and NaN where there is no vector.
-    """
-    values = pc.fill_null(child(vector, name).cast(pa.float64()), 0.0).to_numpy(zero_copy_only=False)
-    odd = ~np.isfinite(values)
-    if odd.any():
-        values = np.where(odd, np.nan, values)
-    if vector.null_count:
-        values = np.where(vector.is_valid().to_numpy(zero_copy_only=False), values, np.nan)
-    return values, odd
+    """Return a coordinate, NaN where it is not said or not finite, and where it is said."""
+    values = child(vector, name).cast(pa.float64())
+    said = values.is_valid().to_numpy(zero_copy_only=False)
+    numbers = pc.fill_null(values, float("nan")).to_numpy(zero_copy_only=False)
+    return np.where(np.isfinite(numbers), numbers, np.nan), said
 
 
 def _times(message: pa.Array) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:

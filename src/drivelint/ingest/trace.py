@@ -59,7 +59,9 @@ class EgoSize(NamedTuple):
 
 
 LOSSES = ("dropped_row", "malformed_row")
-"""Checks that found parts of the log that could not be read: what is judged is what was left."""
+"""Checks that found parts of the log that could not be read, whatever their severity: what is judged is what was left.
+
+An error of any other check is a loss too."""
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from drivelint.declared import MODES
 from drivelint.inspect.model import Missing, Undecided
 
 if TYPE_CHECKING:
@@ -40,14 +41,7 @@ ADVICE: Final = {
     "modes": "the ego's modes, as declared events with the values on and off: {declared_events}",
     **{
         f"mode_{mode}": f"when {mode} is on, as declared events {mode} with the values on and off: {{declared_events}}"
-        for mode in (
-            "engaged",
-            "emergency_manoeuvre",
-            "minimal_risk_manoeuvre",
-            "lane_change_procedure",
-            "headlights",
-            "horn",
-        )
+        for mode in MODES
     },
 }
 _WHERE: Final = {

@@ -16,7 +16,7 @@ from drivelint.errors import MapError
 from drivelint.maps.bounded import BoundedLane, build, crossings, side_driven_on, tables
 from drivelint.maps.contract import Environment, MapSource, Request, environment_id
 from drivelint.maps.quality import Quality
-from drivelint.maps.signcodes import kind_of
+from drivelint.maps.signcodes import kind_of, turns_in_direction
 from drivelint.maps.tables import from_rows
 
 if TYPE_CHECKING:
@@ -222,6 +222,7 @@ def _signals(root: etree._Element, lanes: Sequence[BoundedLane], offset: tuple[f
         said = [_number(part.text) for part in element.iterfind(".//additionalValue")]
         value = next((v for v in said if v), None)
         stands = _points(element.find("position"))
+        turns = turns_in_direction((element.findtext("direction") or "").strip()) if light else None
         for lane in holds.get(element.get("id", ""), ()):
             end = float(lane.line.s[-1])
             where = stands[0] + offset if len(stands) else lane.line.centre[-1]
@@ -234,7 +235,7 @@ def _signals(root: etree._Element, lanes: Sequence[BoundedLane], offset: tuple[f
                 {
                     "signal_id": element.get("id", ""), "kind": kind_of("de", code.strip(), ""), "country": "de",
                     "type": code.strip(), "subtype": None, "value": value, "unit": "m/s" if value is not None else None,
-                    "dynamic": light, "road_id": lane.road_id, "road_s_m": s if lane.along > 0 else end - s,
+                    "dynamic": light, "turns": turns, "road_id": lane.road_id, "road_s_m": s if lane.along > 0 else end - s,
                     "lanelet_id": lane.lanelet_id, "lane_s_m": s, "x_m": float(where[0]), "y_m": float(where[1]),
                 }
                 for code in codes

@@ -294,7 +294,7 @@ def _signals(layers: Any, lanes: Sequence[BoundedLane]) -> list[dict[str, Any]]:
                 {
                     "signal_id": str(element.id), "kind": kind, "country": _attribute(x, "region") or None,
                     "type": _attribute(element, "subtype"), "subtype": None, "value": None, "unit": None,
-                    "dynamic": kind == "traffic_light", "road_id": lane.road_id, "road_s_m": end if lane.along > 0 else 0.0,
+                    "dynamic": kind == "traffic_light", "turns": None, "road_id": lane.road_id, "road_s_m": end if lane.along > 0 else 0.0,
                     "lanelet_id": lane.lanelet_id, "lane_s_m": end,
                     "x_m": float(lane.line.centre[-1, 0]), "y_m": float(lane.line.centre[-1, 1]),
                 }

@@ -19,6 +19,26 @@ _LIGHTS = {
     "1000012": "traffic_light",
     "1000013": "bicycle_light",
 }
+_ALL_TURNS = ("left", "straight", "right", "u_turn")
+_FULL_LIGHTS = {"1000001": {"", "-1", "0", "none"}, "1000009": {"", "-1", "10", "20", "30"}}  # and their subtypes
+_ARROW_LIGHTS = {"1000010", "1000011", "1000012"}
+_ARROWS = {
+    "10": ("left",),
+    "20": ("right",),
+    "30": ("straight",),
+    "40": ("left", "straight"),
+    "50": ("straight", "right"),
+}
+# CommonRoad's words
+_DIRECTIONS = {
+    "all": _ALL_TURNS,
+    "left": ("left",),
+    "straight": ("straight",),
+    "right": ("right",),
+    "leftStraight": ("left", "straight"),
+    "straightRight": ("straight", "right"),
+    "leftRight": ("left", "right"),
+}
 _STVO = {
     "205": "give_way",
     "206": "stop",
@@ -70,6 +90,7 @@ _TSRGD = {
     "671": "restrictions_end",
     "672": "minimum_speed",
 }
+_DOTTED = re.compile(r"\d\.\d{3}\.\d{3}")
 _COUNTRIES = {
     **dict.fromkeys(("", "opendrive", "de", "deu", "germany"), _LIGHTS | _STVO),
     **dict.fromkeys(("gb", "gbr", "uk", "united kingdom"), _LIGHTS | _TSRGD),
@@ -95,9 +116,40 @@ _NAMES = [
 def kind_of(country: str, code: str, name: str) -> str | None:
     """Return the kind of a signal by country (any case), code and name; None: not recognised."""
     codes = _COUNTRIES.get(country.lower(), _LIGHTS)
-    plain = code.removesuffix(".0")
+    plain = _plain(code)
     for candidate in (plain, plain.partition("-")[0]):
         if candidate in codes:
             return codes[candidate]
     lowered = name.lower().replace(" ", "_").replace("-", "_")
     return next((kind for pattern, kind in _NAMES if pattern.search(lowered)), None)
+
+
+def codes_of(kind: str) -> dict[str, list[str]]:
+    """Return the codes of a kind of signal by whose list they are: OpenDRIVE's, de, gb; lists without one are left out."""
+    lists = {"OpenDRIVE": _LIGHTS, "de": _STVO, "gb": _TSRGD}
+    found = {name: [code for code, meant in codes.items() if meant == kind] for name, codes in lists.items()}
+    return {name: codes for name, codes in found.items() if codes}
+
+
+def turns_of(code: str, subtype: str) -> list[str] | None:
+    """Return the turns that an OpenDRIVE traffic light holds for by its code; None: it does not say.
+
+    Source: the signal list of OpenDRIVE as openPASS reads it (1.000.011: arrows 10 left, 20 right, 30 straight, 40 left
+    and straight, 50 right and straight) and SUMO writes it.
+    """
+    plain, finer = _plain(code), subtype.lower().removesuffix(".0")
+    if finer in _FULL_LIGHTS.get(plain, ()):
+        return list(_ALL_TURNS)
+    found = _ARROWS.get(finer) if plain in _ARROW_LIGHTS else None
+    return list(found) if found else None
+
+
+def turns_in_direction(word: str) -> list[str] | None:
+    """Return the turns that a CommonRoad traffic light holds for by its `direction`; None: it does not say."""
+    found = _DIRECTIONS.get(word)
+    return list(found) if found else None
+
+
+def _plain(code: str) -> str:
+    """Return a code without the dots between thousands and without a decimal."""
+    return code.replace(".", "") if _DOTTED.fullmatch(code) else code.removesuffix(".0")

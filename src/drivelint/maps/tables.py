@@ -22,6 +22,7 @@ _TYPES = {
     "INTEGER": pa.int32(),
     "BIGINT": pa.int64(),
     "DOUBLE[]": pa.list_(pa.float64()),
+    "VARCHAR[]": pa.list_(pa.string()),
 }
 
 

@@ -1,4 +1,4 @@
-"""The catalogue as one Markdown page: a table per pack, and for the Highway Code a table by clause.
+"""The catalogue as one Markdown page: a table per pack, for the Highway Code a table by clause, and the words of logs and maps.
 
 `queries/README.md` is this page for the shipped packs; a test holds it to be current. A pack that has a `clauses.toml`
 beside its rules gets the table by clause: what covers each clause, what is a draft, and what cannot be decided and why.
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import msgspec
 
 from drivelint.errors import RuleError
+from drivelint.report import vocabulary
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -27,7 +28,24 @@ INTRODUCTION = """# The rule catalogue
 
 Written by `drivelint rules page`; edit the rules, not this page. A rule is a `.sql` file in `assertions/<pack>/` with its
 cases beside it; `drivelint rules show ID` prints one with its SQL. Only *stable* rules gate; a *draft* is checked when it
-is asked for. Packs are never merged into one verdict: they ask different things of the same gap.
+is asked for. *law* names the nation whose law a rule is: in a drive of another nation it is not applicable. Packs are never
+merged into one verdict: they ask different things of the same gap. At the end: [what a log can say](#what-a-log-can-say) and
+[what a map must have](#what-a-map-must-have).
+"""
+LOG = """## What a log can say
+
+The words of its tables and of `--env CONDITION=VALUE`, in capital or small letters. What is not said is not known.
+"""
+CONDITIONS = """What holds in the whole drive: `drive_condition.parquet` (`condition`, `value`), or `--env`, which counts more.
+"""
+EVENTS = """What the ego declares: `declared_event.parquet` (`actor_id`, `t_ns`, `event`, `value`). An event that is on or
+off holds until it is declared again, and is not known before the first time. Where a log never declares a look or a decision,
+rules that ask for one are unknown.
+"""
+MAP = """## What a map must have
+
+In OpenDRIVE's terms. A `signal` is recognised by its `country` and `type` (no country: OpenDRIVE's and the German numbers), else by its
+name, in capital or small letters. What a map does not say is not known.
 """
 
 
@@ -109,6 +127,10 @@ def page(rules: Iterable[Rule], folder: Path) -> str:
         parts.append(_pack(pack, mine))
         if table := clauses(folder / pack):
             parts.append(_clauses(by_clause(rules, table)))
+    parts += [LOG, "\n".join(vocabulary.words()) + "\n"]
+    parts += [CONDITIONS, _table(*vocabulary.conditions_said(rules))]
+    parts += [EVENTS, _table(*vocabulary.events_said(rules))]
+    parts += [MAP, _table(*vocabulary.map_needed(rules))]
     return "\n".join(parts)
 
 
@@ -145,7 +167,7 @@ def _kind(rule: Rule) -> str:
 
 
 def _applies(rule: Rule) -> str:
-    conditions = msgspec.structs.asdict(rule.applies)
+    conditions = {"law": rule.law, **msgspec.structs.asdict(rule.applies)}
     said = [
         f"{name} {' or '.join(map(str, value)) if isinstance(value, tuple) else value}"
         for name, value in conditions.items()

@@ -36,13 +36,15 @@ WITH
                 ORDER BY rule_id, profile NULLS FIRST) AS occasions
         FROM applied GROUP BY drive_id),
     defect AS (
-        SELECT drive_id, check_id, severity, actor_id, n, t_first_ns, message FROM quality
+        SELECT drive_id, check_id, severity, actor_id, n, t_first_ns, message,
+            severity = 'error' OR list_contains($losses, check_id) AS loss
+        FROM quality
         UNION ALL
         SELECT l.drive_id, m.check_id, m.severity, NULL, m.n, NULL,
-            'map ' || e.name || coalesce(', ' || m.lanelet_id, '') || ': ' || m.message
+            'map ' || e.name || coalesce(', ' || m.lanelet_id, '') || ': ' || m.message, false
         FROM data_log l JOIN map_quality m USING (environment_id) JOIN environment e USING (environment_id)),
     defects AS (
-        SELECT drive_id, bool_or(list_contains($losses, check_id)) AS lossy,
+        SELECT drive_id, bool_or(loss) AS lossy,
             list({'check_id': check_id, 'severity': severity, 'actor_id': actor_id, 'n': n, 't_first_ns': t_first_ns,
                 'message': message} ORDER BY check_id, actor_id NULLS FIRST, t_first_ns NULLS FIRST, message) AS quality
         FROM defect GROUP BY drive_id),

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from drivelint.maps.opendrive.placement import place_one
 from drivelint.maps.opendrive.xml import MalformedError, integer, number
-from drivelint.maps.signcodes import kind_of
+from drivelint.maps.signcodes import kind_of, turns_of
 
 if TYPE_CHECKING:
     from lxml import etree
@@ -76,6 +76,7 @@ class _Reader:
         lanes = [lane for lane in self.lanes.get(road.road_id, []) if _at(lane, s)]
         x, y = _position(home, signal, self.offset)
         kind = kind_of(signal.get("country", ""), signal.get("type", ""), signal.get("name", ""))
+        turns = turns_of(signal.get("type", ""), signal.get("subtype", "")) if kind == "traffic_light" else None
         value = 0.0 if signal.get("value") in {None, "", "None"} else number(signal, "value")
         self.signals += [
             {
@@ -87,6 +88,7 @@ class _Reader:
                 "value": value if value > 0.0 else None,  # writers say -1 or 0 where there is nothing to say
                 "unit": signal.get("unit"),
                 "dynamic": signal.get("dynamic") == "yes",
+                "turns": turns,
                 "road_id": road.road_id,
                 "road_s_m": s,
                 "lanelet_id": lane.lanelet_id,
