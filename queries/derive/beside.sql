@@ -1,18 +1,25 @@
 -- Whose box overlaps the ego's along the corridor, how far apart across it. Speeds across come from the velocity where a sample of the
 -- step's time is there, else from speed and heading.
-WITH placed AS (
-    SELECT n.*, e.d_m AS ego_d_m, e.s_m AS ego_s_m, e.speed_mps * sin(e.heading_diff_rad) AS ego_drift_mps, e.yaw_rad - e.heading_diff_rad AS way_rad
+WITH
+-- past each other between two steps: beside each other in none
+jumped AS (
+    SELECT n.* REPLACE ((n.gap_m + m.gap_m) / 2 AS gap_m, (n.gap_m + m.gap_m) / 2 AS clearance_m)
     FROM neighbour n
+    JOIN clock c USING (drive_id, ego_id)
+    JOIN neighbour m ON m.drive_id = n.drive_id AND m.ego_id = n.ego_id AND m.object_id = n.object_id AND m.k = n.k + 1 AND m.seg = n.seg AND m.chain_id = n.chain_id
+    WHERE greatest(n.gap_ahead_m, n.gap_behind_m) > 0 AND greatest(n.gap_ahead_m, n.gap_behind_m) < (coalesce(n.ego_speed_mps, fast_mps()) + coalesce(n.speed_mps, fast_mps())) * c.max_gap_ns / 1e9
+        AND (n.gap_ahead_m > 0 AND m.gap_behind_m > 0 OR n.gap_behind_m > 0 AND m.gap_ahead_m > 0)
+),
+placed AS (
+    SELECT n.*, e.d_m AS ego_d_m, e.s_m AS ego_s_m, e.yaw_rad - e.heading_diff_rad AS way_rad
+    FROM (FROM neighbour WHERE gap_ahead_m <= 0 AND gap_behind_m <= 0 UNION ALL FROM jumped) n
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
-    WHERE n.gap_ahead_m <= 0 AND n.gap_behind_m <= 0
 ),
 moving AS (
     SELECT
-        n.*, coalesce(s.vy_mps * cos(n.way_rad) - s.vx_mps * sin(n.way_rad), n.speed_mps * sin(n.heading_diff_rad)) AS drift_mps,
-        coalesce(g.vy_mps * cos(n.way_rad) - g.vx_mps * sin(n.way_rad), n.ego_drift_mps) AS ego_left_mps
+        n.*, coalesce(s.vy_mps * cos(n.way_rad) - s.vx_mps * sin(n.way_rad), n.speed_mps * sin(n.heading_diff_rad)) AS drift_mps
     FROM placed n
     LEFT JOIN state_dynamics s ON s.drive_id = n.drive_id AND s.actor_id = n.object_id AND s.t_ns = n.t_ns
-    JOIN state_dynamics g ON g.drive_id = n.drive_id AND g.actor_id = n.ego_id AND g.t_ns = n.t_ns
 ),
 -- the lane beside the running one on the object's side
 lane AS (
@@ -24,6 +31,25 @@ lane AS (
     JOIN lanelet r ON r.environment_id = g.environment_id AND r.lanelet_id = c.lanelet_id
     JOIN lanelet b ON b.environment_id = g.environment_id AND b.lanelet_id = CASE WHEN n.d_m > 0 THEN r.left_id ELSE r.right_id END
     WHERE b.drivable
+    GROUP BY ALL
+),
+-- a cycle lane belongs to the carriageway, a cycle track behind a verge or kerb does not
+cycle_lane AS (
+    SELECT n.environment_id, n.lanelet_id, coalesce(min(b.marking), 'unsaid') AS marking
+    FROM lanelet n
+    CROSS JOIN (VALUES ('left'), ('right')) AS v(side)
+    JOIN lanelet m ON m.environment_id = n.environment_id AND m.drivable AND m.lanelet_id = CASE v.side WHEN 'left' THEN n.left_id ELSE n.right_id END
+    LEFT JOIN lane_boundary b ON b.environment_id = n.environment_id AND b.lanelet_id = n.lanelet_id AND b.side = v.side
+    WHERE n.lane_type = 'biking'
+    GROUP BY n.environment_id, n.lanelet_id
+    HAVING coalesce(bool_and(b.marking NOT IN ('curb', 'grass')), true)
+),
+on_cycle_lane AS (
+    SELECT n.drive_id, n.ego_id, n.t_ns, n.object_id, min(y.marking) AS marking
+    FROM placed n
+    JOIN data_log g ON g.drive_id = n.drive_id
+    JOIN lane_occupancy o ON o.drive_id = n.drive_id AND o.actor_id = n.object_id AND o.t_ns = n.t_ns
+    JOIN cycle_lane y ON y.environment_id = g.environment_id AND y.lanelet_id = o.lanelet_id
     GROUP BY ALL
 ),
 on_lane AS (
@@ -43,13 +69,17 @@ doubt AS (
         AND p.clearance_m < may_be_beside_m() AND (e.front_s_m IS NULL OR p.clearance_m < may_be_beside_m() / 2)
 )
 SELECT
-    m.drive_id, m.ego_id, m.t_ns, m.object_id, m.actor_class, m.side, m.gap_m, m.clearance_m, m.ahead_m, m.ego_speed_mps, m.speed_mps,
+    m.drive_id, m.ego_id, m.t_ns, m.object_id, m.actor_class, m.side, m.gap_m, m.clearance_m,
+    -- two that each swerve as hard as one does in a bend, and back before the next step
+    CASE WHEN k.period_ns > 110_000_000 THEN 2 * bend_mps2() * (k.period_ns / 1e9) ** 2 / 8 ELSE 0.0 END AS blur_m, m.ahead_m, m.ego_speed_mps, m.speed_mps,
     CASE WHEN m.d_m > m.ego_d_m THEN m.ego_left_mps ELSE -m.ego_left_mps END AS ego_lat_mps,
     CASE WHEN m.d_m > m.ego_d_m THEN -m.drift_mps ELSE m.drift_mps END AS lat_mps,
-    abs(m.heading_diff_rad) < pi() / 4 AS along,
-    o.object_id IS NOT NULL OR abs(m.d_m) - m.lat_half_m < m.half_width_m + coalesce(l.width_m, 0.0) AS on_carriageway
+    abs(m.heading_diff_rad) < pi() / 4 AS along, y.marking AS cycle_lane,
+    o.object_id IS NOT NULL OR y.object_id IS NOT NULL OR abs(m.d_m) - m.lat_half_m < m.half_width_m + coalesce(l.width_m, 0.0) AS on_carriageway
 FROM moving m
+JOIN clock k USING (drive_id, ego_id)
 LEFT JOIN lane l USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN on_lane o USING (drive_id, ego_id, t_ns, object_id)
+LEFT JOIN on_cycle_lane y USING (drive_id, ego_id, t_ns, object_id)
 UNION ALL BY NAME
 SELECT drive_id, ego_id, t_ns, object_id, actor_class FROM doubt

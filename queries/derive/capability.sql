@@ -6,6 +6,7 @@ WITH subject AS (
         EXISTS (FROM declared_event d WHERE d.drive_id = c.drive_id AND d.actor_id = c.ego_id) AS events,
         EXISTS (FROM signal_state l WHERE l.drive_id = c.drive_id AND l.state IS NOT NULL) AS signals,
         EXISTS (FROM drive_condition x WHERE x.drive_id = c.drive_id AND x.condition = 'road_type') AS road_type_given,
+        EXISTS (FROM drive_condition x WHERE x.drive_id = c.drive_id AND x.condition = 'engaged') AS engaged_given,
         EXISTS (FROM actor o WHERE o.drive_id = c.drive_id AND o.actor_id <> c.ego_id) AS others,
         EXISTS (FROM actor o WHERE o.drive_id = c.drive_id AND o.actor_id <> c.ego_id AND o.actor_class <> 'vehicle') AS classes
     FROM clock c
@@ -66,8 +67,9 @@ answer AS (
         {'signal': 'modes', 'of_map': false, 'available': d.modes IS NOT NULL, 'yes': 'the log says when the ego''s modes are on: ' || array_to_string(list_sort(d.modes), ', '),
             'no': 'the log declares no modes of the ego: record them as events that are on and off'}
     ] || [
-        {'signal': 'mode_' || mode, 'of_map': false, 'available': coalesce(list_contains(d.modes, mode), false), 'yes': 'the log says when ' || mode || ' is on',
-            'no': 'the log does not tell about ' || replace(mode, '_', ' ') || ': record the event ' || mode || ', on and off'}
+        {'signal': 'mode_' || mode, 'of_map': false, 'available': coalesce(list_contains(d.modes, mode), false) OR mode = 'engaged' AND s.engaged_given,
+            'yes': CASE WHEN mode = 'engaged' AND s.engaged_given THEN 'whether the automated driver drives is given' ELSE 'the log says when ' || mode || ' is on' END,
+            'no': 'the log does not tell about ' || replace(mode, '_', ' ') || ': record the event ' || mode || ', on and off' || CASE WHEN mode = 'engaged' THEN ', or give --env engaged=yes' ELSE '' END}
         FOR mode IN ['engaged', 'emergency_manoeuvre', 'minimal_risk_manoeuvre', 'lane_change_procedure', 'headlights', 'horn']
     ], recursive := true)
     FROM subject s

@@ -7,9 +7,9 @@ part AS (
 ),
 box AS NOT MATERIALIZED (
     SELECT
-        s.drive_id, s.actor_id, s.t_ns, s.x_m, s.y_m, meeting_cell(s.x_m, s.y_m, g.cell_m) AS cell, meeting_slot(s.t_ns) AS slot,
-        heading_step(going_rad(s.actor_class, s.speed_mps, s.vx_mps, s.vy_mps, s.yaw_rad)) AS heading,
-        going_rad(s.actor_class, s.speed_mps, s.vx_mps, s.vy_mps, s.yaw_rad) AS dir_rad,
+        s.drive_id, s.actor_id, s.t_ns, s.x_m, s.y_m, s.z_m, meeting_cell(s.x_m, s.y_m, g.cell_m) AS cell, meeting_slot(s.t_ns) AS slot,
+        heading_step(s.travel_rad) AS heading,
+        s.travel_rad AS dir_rad,
         swept_half_m(s.length_m, s.speed_mps, g.period_s) AS hl, s.width_m / 2 AS hw, cos(s.yaw_rad) AS c, sin(s.yaw_rad) AS s
     FROM state_dynamics s
     JOIN scale g USING (drive_id)
@@ -39,7 +39,7 @@ angled AS MATERIALIZED (
     FROM close o
     JOIN ego e ON e.drive_id = o.drive_id AND e.actor_id = o.ego_id AND e.cell = o.ego_cell AND e.slot = o.ego_slot AND e.heading = o.ego_heading
     WHERE boxes_meet(o.x_m - e.x_m, o.y_m - e.y_m, e.c, e.s, o.c, o.s, e.hl, e.hw, o.hl, o.hw)
-        AND abs(e.t_ns - o.t_ns) <= conflict_ns() AND abs(wrap_rad(o.dir_rad - e.dir_rad)) > conflict_angle_rad()
+        AND same_level(o.z_m, e.z_m) AND abs(e.t_ns - o.t_ns) <= conflict_ns() AND abs(wrap_rad(o.dir_rad - e.dir_rad)) > conflict_angle_rad()
 ),
 -- In a tight bend even a follower's box lies across the ego's of another moment: what counts is the angle against the ego's way where that
 -- comes nearest.
@@ -57,7 +57,8 @@ met AS (
         }) AS near
     FROM reached o
     JOIN ego e ON e.drive_id = o.drive_id AND e.actor_id = o.ego_id AND e.cell = o.near_cell AND e.slot = o.near_slot
-    WHERE boxes_meet(o.x_m - e.x_m, o.y_m - e.y_m, e.c, e.s, o.c, o.s, e.hl, e.hw, o.hl, o.hw) AND abs(e.t_ns - o.t_ns) <= conflict_ns()
+    WHERE boxes_meet(o.x_m - e.x_m, o.y_m - e.y_m, e.c, e.s, o.c, o.s, e.hl, e.hw, o.hl, o.hw) AND same_level(o.z_m, e.z_m)
+        AND abs(e.t_ns - o.t_ns) <= conflict_ns()
     GROUP BY ALL
 ),
 shared AS MATERIALIZED (
@@ -117,6 +118,9 @@ moving AS MATERIALIZED (
     FROM encounter e
     SEMI JOIN state_dynamics s ON s.drive_id = e.drive_id AND s.actor_id = e.object_id
         AND s.t_ns >= e.t_object_in_ns AND s.t_ns <= e.t_object_out_ns AND coalesce(s.speed_mps > standing_mps(), true)
+    -- over or under the ego's road, nobody meets it; who may be there is in pair without a place
+    ANTI JOIN (FROM pair WHERE off_level) p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.object_id = e.object_id
+        AND p.t_ns >= e.t_object_in_ns AND p.t_ns <= e.t_object_out_ns
 ),
 -- the mean over the half second before each sample, where that is seen
 slowing AS (

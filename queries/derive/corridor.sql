@@ -1,18 +1,21 @@
 -- The running chain with the lane beside it on the overtaking side.
-WITH beside AS (
+WITH over AS (
+    SELECT e.environment_id, o.lanelet_id, o.against, of_pm(sum(whole_pm(o.s_end_m - o.s_start_m))) AS along_m, max(o.gap_m + o.width_m) AS width_m
+    FROM environment e
+    JOIN lane_beside o ON o.environment_id = e.environment_id AND o.drivable AND o.side = overtaking_side(e.handedness)
+    GROUP BY ALL
+),
+beside AS (
     SELECT
         c.drive_id, c.ego_id, c.chain_id, c.seq, c.lanelet_id, c.s_start_m, c.length_m, n.junction_id,
         -- by the default alone the side is a guess, and what needs it must not count on it
         CASE WHEN e.handedness_source <> 'default' THEN CASE e.handedness WHEN 'lht' THEN -1 ELSE 1 END END AS side,
-        CASE WHEN b.width_m IS NOT NULL THEN
-            {'width_m': b.width_m, 'against': CASE e.handedness WHEN 'lht' THEN n.right_against ELSE n.left_against END}
-        END AS lane
+        CASE WHEN o.width_m IS NOT NULL THEN {'width_m': o.width_m, 'against': o.against} END AS lane
     FROM chain c
     JOIN data_log l USING (drive_id)
     JOIN environment e USING (environment_id)
     JOIN lanelet n ON n.environment_id = e.environment_id AND n.lanelet_id = c.lanelet_id
-    LEFT JOIN lanelet b ON b.environment_id = e.environment_id AND b.drivable
-        AND b.lanelet_id = CASE e.handedness WHEN 'lht' THEN n.right_id ELSE n.left_id END
+    LEFT JOIN over o ON o.environment_id = e.environment_id AND o.lanelet_id = c.lanelet_id AND o.along_m > n.length_m / 2
 ),
 carried AS (
     SELECT

@@ -1,9 +1,10 @@
--- Who is on a pedestrian crossing, half by half: stretches of samples without a hole.
+-- Actors that may be on foot on a pedestrian crossing, half by half: stretches of samples without a hole. What stands on it in the whole log and is
+-- said to be a thing may be somebody who waits.
 WITH walker AS (
     SELECT a.drive_id, a.actor_id, c.max_gap_ns
-    FROM actor a
+    FROM road_user a
     JOIN (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id) c USING (drive_id)
-    WHERE a.actor_class = 'pedestrian' OR a.actor_class IS NULL
+    WHERE may_walk(a.actor_class) OR a.actor_class = 'object'
 ),
 on_it AS (
     SELECT DISTINCT o.drive_id, x.crossing_id, o.actor_id AS object_id, n.along_road, o.t_ns, w.max_gap_ns

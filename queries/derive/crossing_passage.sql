@@ -48,11 +48,11 @@ visit AS (
 occupied AS (
     SELECT
         v.drive_id, v.ego_id, v.mark_id, v.t_ns,
-        min({'t_ns': o.t_from_ns, 'id': o.object_id}) FILTER (a.actor_class IS NOT NULL) AS who, bool_or(a.actor_class IS NULL) AS classless
+        min({'t_ns': o.t_from_ns, 'id': o.object_id}) FILTER (a.actor_class = 'pedestrian') AS who, bool_or(a.actor_class IS DISTINCT FROM 'pedestrian') AS classless
     FROM visit v
     JOIN crossing_occupancy o ON o.drive_id = v.drive_id AND o.crossing_id = v.mark_id AND o.along_road = v.along_road AND o.object_id <> v.ego_id
         AND o.t_from_ns <= v.t_b_ns AND o.t_to_ns >= coalesce(v.t_in_ns, v.t_ns)
-    JOIN actor a ON a.drive_id = o.drive_id AND a.actor_id = o.object_id
+    JOIN road_user a ON a.drive_id = o.drive_id AND a.actor_id = o.object_id
     GROUP BY v.drive_id, v.ego_id, v.mark_id, v.t_ns
 ),
 -- on the other half, and what becomes of them: who went straight on came to the ego's half, who had been there or left it there did not
@@ -63,13 +63,13 @@ beyond AS (
     FROM visit v
     JOIN crossing_occupancy o ON o.drive_id = v.drive_id AND o.crossing_id = v.mark_id AND o.along_road = -v.along_road AND o.object_id <> v.ego_id
         AND o.t_from_ns <= v.t_in_ns AND o.t_to_ns >= v.t_in_ns
-    JOIN actor a ON a.drive_id = o.drive_id AND a.actor_id = o.object_id
+    JOIN road_user a ON a.drive_id = o.drive_id AND a.actor_id = o.object_id
     LEFT JOIN crossing_occupancy q ON q.drive_id = o.drive_id AND q.crossing_id = o.crossing_id AND q.object_id = o.object_id AND q.along_road = v.along_road
     GROUP BY ALL
 ),
 coming AS (
-    SELECT drive_id, ego_id, mark_id, t_ns, min(object_id) FILTER (comes AND actor_class IS NOT NULL) AS coming_id,
-        bool_and(comes IS NOT NULL AND NOT (comes AND actor_class IS NULL)) AS known
+    SELECT drive_id, ego_id, mark_id, t_ns, min(object_id) FILTER (comes AND actor_class = 'pedestrian') AS coming_id,
+        bool_and(comes IS NOT NULL AND NOT (comes AND actor_class IS DISTINCT FROM 'pedestrian')) AS known
     FROM (
         SELECT *, CASE WHEN t_next_ns - t_to_ns <= straight_on_ns() THEN true WHEN came OR t_to_ns < t_seen_ns THEN false END AS comes FROM beyond
     )
@@ -92,7 +92,7 @@ kerb AS (
     ASOF JOIN lane_point p ON p.environment_id = o.environment_id AND p.lanelet_id = o.lanelet_id AND p.s_m <= o.s_start_m
 ),
 standing AS (
-    SELECT v.drive_id, v.ego_id, v.mark_id, v.t_ns, v.t_in_ns, v.max_gap_ns, s.actor_id, s.t_ns AS t_at_ns, s.speed_mps <= standing_mps() AS stands,
+    SELECT v.drive_id, v.ego_id, v.mark_id, v.t_ns, v.t_in_ns, v.max_gap_ns, s.actor_id, s.actor_class, s.t_ns AS t_at_ns, s.speed_mps <= standing_mps() AS stands,
         min(end_distance_m(s.x_m, s.y_m, k.x0, k.y0, k.tx, k.ty, k.s_start_m - k.s_m, k.s_end_m - k.s_m)) AS off_m
     FROM visit v
     JOIN state_dynamics s ON s.drive_id = v.drive_id AND s.actor_id <> v.ego_id AND s.t_ns >= v.t_a_ns AND s.t_ns <= v.t_in_ns
@@ -100,15 +100,15 @@ standing AS (
     -- who is on it waits no more
     ANTI JOIN crossing_occupancy o ON o.drive_id = v.drive_id AND o.crossing_id = v.mark_id AND o.object_id = s.actor_id
         AND o.t_from_ns <= v.t_in_ns AND o.t_to_ns >= v.t_a_ns
-    WHERE s.actor_class = 'pedestrian'
+    WHERE may_walk(s.actor_class)
     GROUP BY ALL
 ),
 waiting AS (
-    SELECT drive_id, ego_id, mark_id, t_ns, min(actor_id) AS waiting_id
+    SELECT drive_id, ego_id, mark_id, t_ns, min(actor_id) FILTER (actor_class = 'pedestrian') AS waiting_id, bool_and(actor_class IS NOT NULL) AS known
     FROM (
-        SELECT drive_id, ego_id, mark_id, t_ns, actor_id
+        SELECT drive_id, ego_id, mark_id, t_ns, actor_id, actor_class
         FROM standing
-        GROUP BY drive_id, ego_id, mark_id, t_ns, t_in_ns, max_gap_ns, actor_id
+        GROUP BY drive_id, ego_id, mark_id, t_ns, t_in_ns, max_gap_ns, actor_id, actor_class
         HAVING bool_and(coalesce(stands AND off_m <= 2, false)) AND min(t_at_ns) <= t_in_ns - 2_000_000_000 + max_gap_ns AND max(t_at_ns) >= t_in_ns - max_gap_ns
     )
     GROUP BY drive_id, ego_id, mark_id, t_ns
@@ -119,7 +119,7 @@ blind AS (
         CASE WHEN o.actor_class IS NULL THEN 30.0 ELSE 3.0 END * count(*) * any_value(c.period_ns) / 1e9 AS reach_m
     FROM visit v
     JOIN clock c USING (drive_id, ego_id)
-    JOIN (FROM pair WHERE (x_m IS NULL OR y_m IS NULL) AND (actor_class IS NULL OR actor_class = 'pedestrian')) o
+    JOIN (FROM pair WHERE (x_m IS NULL OR y_m IS NULL) AND may_walk(actor_class)) o
         ON o.drive_id = v.drive_id AND o.ego_id = v.ego_id AND o.t_ns >= v.t_a_ns AND o.t_ns <= v.t_b_ns
     GROUP BY v.drive_id, v.ego_id, v.mark_id, v.t_ns, o.object_id, o.actor_class, v.x_m, v.y_m, v.t_a_ns, v.t_b_ns
 ),
@@ -135,10 +135,11 @@ blind_near AS (
     ) k USING (drive_id, ego_id, mark_id, t_ns, object_id)
     WHERE k.least_m IS NULL OR k.least_m < meeting_near_m() + b.reach_m
 ),
+-- tracks that begin or end (a jump ends one as well), by their first and last places
 edge AS (
     SELECT s.drive_id, s.actor_id, min(s.t_ns) AS t_first_ns, max(s.t_ns) AS t_last_ns
     FROM state_dynamics s
-    WHERE s.actor_class IS NULL OR s.actor_class = 'pedestrian'
+    WHERE may_walk(s.actor_class) AND s.x_m IS NOT NULL AND s.y_m IS NOT NULL
     GROUP BY s.drive_id, s.actor_id
 ),
 broken AS (
@@ -146,10 +147,14 @@ broken AS (
     FROM visit v
     JOIN clock c USING (drive_id, ego_id)
     JOIN edge d ON d.drive_id = v.drive_id AND d.actor_id <> v.ego_id
-    CROSS JOIN LATERAL (VALUES (d.t_first_ns), (d.t_last_ns)) AS w(t_at_ns)
+    CROSS JOIN LATERAL (
+        VALUES (d.t_first_ns, greatest(0, d.t_first_ns - v.t_b_ns), d.t_first_ns - v.t_a_ns), (d.t_last_ns, greatest(0, v.t_a_ns - d.t_last_ns), v.t_b_ns - d.t_last_ns)
+    ) AS w(t_at_ns, apart_ns, walk_ns)
     JOIN state_dynamics s ON s.drive_id = v.drive_id AND s.actor_id = d.actor_id AND s.t_ns = w.t_at_ns
-    WHERE w.t_at_ns >= v.t_a_ns AND w.t_at_ns <= v.t_b_ns AND w.t_at_ns > c.t_start_ns + c.max_gap_ns AND w.t_at_ns < c.t_end_ns - c.max_gap_ns
-        AND coalesce(sqrt((s.x_m - v.x_m) ** 2 + (s.y_m - v.y_m) ** 2) < meeting_near_m(), true)
+    WHERE w.walk_ns >= 0 AND w.apart_ns <= conflict_ns() AND w.t_at_ns > c.t_start_ns + c.max_gap_ns AND w.t_at_ns < c.t_end_ns - c.max_gap_ns
+        -- seen while the ego passed: near is near enough; before or after it: as far as it walks until then
+        AND sqrt((s.x_m - v.x_m) ** 2 + (s.y_m - v.y_m) ** 2)
+            < CASE WHEN w.apart_ns = 0 THEN meeting_near_m() ELSE greatest(5.0, 3.0 * w.walk_ns / 1e9) END
 ),
 holed AS (
     SELECT v.drive_id, v.ego_id, v.mark_id, v.t_ns
@@ -183,14 +188,14 @@ halted AS (
 lit AS (
     SELECT v.drive_id, v.ego_id, v.mark_id, v.t_ns, f.state
     FROM visit v
-    JOIN signal_phase f ON f.drive_id = v.drive_id AND f.signal_id = v.signal_id
-        AND f.t_from_ns <= v.t_in_ns AND v.t_in_ns < coalesce(f.t_to_ns, v.t_in_ns + 1)
+    JOIN mark_phase f USING (drive_id, ego_id, chain_id, mark_id, s_start_m)
+    WHERE f.kind = 'crossing' AND f.t_from_ns <= v.t_in_ns AND v.t_in_ns < coalesce(f.t_to_ns, v.t_in_ns + 1)
 )
 SELECT
     v.drive_id, v.ego_id, (row_number() OVER (PARTITION BY v.drive_id, v.ego_id ORDER BY v.t_ns, v.mark_id) - 1)::INTEGER AS occurrence,
     v.mark_id AS crossing_id, coalesce(s.kind, CASE WHEN v.signal_id IS NOT NULL THEN 'signalled' END) AS kind,
     v.t_in_ns, CASE WHEN v.t_last_ns IS NOT NULL OR v.t_in_ns IS NOT NULL THEN v.t_out_ns END AS t_out_ns,
-    o.who.id AS on_id, o.who.t_ns AS t_on_ns, f.coming_id, coalesce(f.known, true) AS coming_known, w.waiting_id, u.t_ns IS NULL AS known,
+    o.who.id AS on_id, o.who.t_ns AS t_on_ns, f.coming_id, coalesce(f.known, true) AS coming_known, w.waiting_id, coalesce(w.known, true) AS waiting_known, u.t_ns IS NULL AS known,
     v.signal_id, l.state, h.stood_before
 FROM visit v
 LEFT JOIN said s ON s.environment_id = v.environment_id AND s.crossing_id = v.mark_id

@@ -9,7 +9,7 @@ WITH ahead AS (
     FROM pair p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     JOIN step st USING (drive_id, ego_id, t_ns)
-    WHERE may_be_vehicle(p.actor_class) AND p.front_s_m > e.front_s_m AND p.rear_s_m - e.front_s_m <= 150
+    WHERE is_vehicle(p.actor_class) AND p.front_s_m > e.front_s_m AND p.rear_s_m - e.front_s_m <= 150
         AND abs(p.heading_diff_rad) < pi() / 2 AND abs(p.d_m) < 10
 ),
 -- who is in the lane all the time, or never, does not cut in

@@ -8,33 +8,32 @@ WITH given AS (
         max(value) FILTER (condition = 'vehicle_class') AS vehicle_class, max(value) FILTER (condition = 'engaged') AS engaged
     FROM drive_condition GROUP BY drive_id
 ),
--- a cross-section: its two directions run side by side, or something lies between them, or there is only one
-facing AS (
-    SELECT environment_id, lanelet_id, left_id AS beside_id FROM lanelet WHERE drivable AND left_against
-    UNION ALL
-    SELECT environment_id, lanelet_id, right_id FROM lanelet WHERE drivable AND right_against
-),
+-- a cross-section: its two directions run side by side, or something lies or may lie between them, or there is only one
 road AS (
     SELECT
         n.environment_id, n.road_id, n.section,
-        coalesce(bool_or(n.drivable AND n.bidirectional OR b.drivable), false) AS touching,
+        coalesce(bool_or(n.drivable AND n.bidirectional OR b.gap_m <= reservation_m()), false) AS touching,
+        coalesce(bool_or(b.gap_m > reservation_m()), false) AS near,
         count(DISTINCT n.along_road) FILTER (n.drivable) = 2 AS both_ways,
+        least(count(DISTINCT n.lanelet_id) FILTER (n.drivable AND n.along_road = 1), count(DISTINCT n.lanelet_id) FILTER (n.drivable AND n.along_road = -1)) AS lanes_each_way,
         bool_or(n.lane_type = 'median') AS median
     FROM lanelet n
-    LEFT JOIN facing f ON f.environment_id = n.environment_id AND f.lanelet_id = n.lanelet_id
-    LEFT JOIN lanelet b ON b.environment_id = f.environment_id AND b.lanelet_id = f.beside_id
+    LEFT JOIN lane_beside b ON b.environment_id = n.environment_id AND b.lanelet_id = n.lanelet_id AND b.against AND b.drivable
     GROUP BY ALL
 ),
 here AS (
     SELECT
-        st.drive_id, st.ego_id, st.t_ns, coalesce(g.road_type, e.road_type) AS road_type, e.limit_mps,
+        st.drive_id, st.ego_id, st.t_ns, coalesce(g.road_type, e.road_type, a.road_type) AS road_type, e.limit_mps,
         CASE WHEN n.junction_id IS NULL THEN r.touching END AS touching,
+        CASE WHEN n.junction_id IS NULL THEN r.near END AS near,
         CASE WHEN n.junction_id IS NULL THEN r.both_ways END AS both_ways,
+        CASE WHEN n.junction_id IS NULL AND r.both_ways THEN r.lanes_each_way END AS lanes_each_way,
         CASE WHEN n.junction_id IS NULL THEN r.median END AS median
     FROM step st
     JOIN data_log l ON l.drive_id = st.drive_id
     LEFT JOIN given g ON g.drive_id = st.drive_id
     LEFT JOIN ego_state e ON e.drive_id = st.drive_id AND e.ego_id = st.ego_id AND e.t_ns = st.t_ns
+    LEFT JOIN ego_aside a ON a.drive_id = st.drive_id AND a.ego_id = st.ego_id AND a.t_ns = st.t_ns
     LEFT JOIN lanelet n ON n.environment_id = l.environment_id AND n.lanelet_id = e.lanelet_id
     LEFT JOIN road r ON r.environment_id = n.environment_id AND r.road_id = n.road_id AND r.section = n.section
 ),
@@ -44,11 +43,14 @@ declares AS (
 SELECT
     h.drive_id, h.ego_id, h.t_ns, h.road_type,
     coalesce(g.carriageway, CASE
+        -- the directions of a motorway are apart, however near to each other a map draws their two roads
+        WHEN NOT h.both_ways AND h.road_type = 'motorway' THEN 'dual'
         WHEN h.touching THEN 'single'
         WHEN h.both_ways THEN CASE WHEN h.median OR h.road_type = 'motorway' THEN 'dual' END
         -- out of town a road of one direction is half of one; in town it may as well be a one-way street
-        WHEN NOT h.both_ways AND h.road_type IN ('motorway', 'rural') THEN 'dual'
+        WHEN NOT h.both_ways AND NOT h.near AND h.road_type = 'rural' THEN 'dual'
     END) AS carriageway,
+    h.lanes_each_way,
     coalesce(g.area, CASE
         WHEN h.road_type = 'townExpressway' THEN NULL
         WHEN starts_with(h.road_type, 'town') OR h.road_type = 'lowSpeed' THEN 'built_up'

@@ -1,7 +1,7 @@
 -- The ego's own motion, filtered before it is differentiated: an acceleration is the least-squares slope of v_long over the samples within
 -- 0.25 s on either side (2.2 periods where that is more: always two samples), jerk the same over the accelerations, and the yaw rate the
 -- same over the heading. At 20 Hz that is a mean over half a second: a spike of one sample is seen at a third of its height, not hidden.
--- NULL where a sample within is not known, where the samples do not reach 0.7 of that to both sides (the log's ends, a hole), and in logs
+-- NULL where the velocity itself comes from a filter (quality velocity_filtered), where a sample within is not known, where the samples do not reach 0.7 of that to both sides (the log's ends, a hole), and in logs
 -- with less than 5 samples a second, where it would be a mean over so long a time that a harsh braking vanishes in it.
 -- The sums are those of whole numbers (nm/s, nrad, ns), hence exact: the same in every order, alone and in a crowd.
 WITH sample AS (
@@ -12,11 +12,11 @@ WITH sample AS (
         round(1e9 * s.yaw_rad)::BIGINT AS yaw,
         round(1e9 * wrap_rad(s.yaw_rad - lag(s.yaw_rad) OVER (PARTITION BY st.drive_id, st.ego_id, st.seg ORDER BY st.t_ns)))::BIGINT AS turned,
         st.t_ns - min(st.t_ns) OVER (PARTITION BY st.drive_id, st.ego_id, st.seg) AS age_ns,
-        -- a period of 200 ms may be one of 201
-        CASE WHEN c.period_ns <= 210_000_000 THEN greatest(250_000_000, (2.2 * c.period_ns)::BIGINT) END AS half_ns
+        CASE WHEN q.actor_id IS NULL THEN filter_half_ns(c.period_ns) END AS half_ns
     FROM step st
     JOIN clock c USING (drive_id, ego_id)
     JOIN state_dynamics s ON s.drive_id = st.drive_id AND s.actor_id = st.ego_id AND s.t_ns = st.t_ns
+    LEFT JOIN (SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'velocity_filtered') q ON q.drive_id = st.drive_id AND q.actor_id = st.ego_id
 ),
 unwrapped AS (
     SELECT

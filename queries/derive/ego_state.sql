@@ -1,6 +1,16 @@
 -- Every step of the ego with all that is known of it. Its running chain is that of the last lanelet it drove with the traffic, so
 -- an overtake in the lane beside is seen from the lane that was left; before the first one, it is the first one's.
-WITH running AS (
+WITH
+-- the trailer's rear is the combination's: so far behind the ego's middle, unknown while the trailer is not seen
+drawn AS (
+    SELECT p.drive_id, p.ego_id, e.t_ns, max(sqrt((s.x_m - e.x_m) ** 2 + (s.y_m - e.y_m) ** 2) + s.length_m / 2) AS reach_m
+    FROM ego_part p
+    JOIN state_dynamics e ON e.drive_id = p.drive_id AND e.actor_id = p.ego_id
+    LEFT JOIN state_dynamics s ON s.drive_id = p.drive_id AND s.actor_id = p.object_id AND s.t_ns = e.t_ns
+    WHERE p.part = 'trailer'
+    GROUP BY ALL
+),
+running AS (
     SELECT st.drive_id, st.ego_id, st.t_ns, st.travel_m, coalesce(c.chain_id, f.chain_id) AS chain_id
     FROM step st
     ASOF LEFT JOIN (SELECT * FROM chain WHERE t_first_ns IS NOT NULL) c
@@ -19,16 +29,21 @@ limited AS (
     GROUP BY ALL
 )
 SELECT
-    r.drive_id, r.ego_id, r.t_ns, s.x_m, s.y_m, s.yaw_rad, s.speed_mps, s.accel_mps2,
+    r.drive_id, r.ego_id, r.t_ns, s.x_m, s.y_m, s.z_m, s.yaw_rad, s.speed_mps, s.accel_mps2,
     max(s.speed_mps) OVER (PARTITION BY r.drive_id, r.ego_id ORDER BY r.t_ns RANGE BETWEEN 3_000_000_000 PRECEDING AND CURRENT ROW) AS fastest_3s_mps,
-    r.travel_m, s.length_m, s.width_m, s.indicator,
+    r.travel_m, s.length_m, s.width_m, CASE WHEN t.t_ns IS NULL THEN s.length_m ELSE s.length_m / 2 + t.reach_m END AS combination_m, s.indicator,
     e.lanelet_id, e.with_direction,
     CASE WHEN n.lanelet_id IS NOT NULL THEN n.junction_id IS NOT NULL END AS in_junction,
     n.road_type, v.limit_mps,
-    r.chain_id, c.s_m, c.d_m, c.front_s_m, c.rear_s_m, c.lat_half_m, c.heading_diff_rad
+    r.chain_id, c.s_m, c.d_m,
+    -- driven against the corridor, its tail is its furthest station
+    CASE WHEN t.t_ns IS NULL OR abs(c.heading_diff_rad) <= pi() / 2 THEN c.front_s_m ELSE c.s_m + t.reach_m END AS front_s_m,
+    CASE WHEN t.t_ns IS NULL OR abs(c.heading_diff_rad) > pi() / 2 THEN c.rear_s_m ELSE c.s_m - t.reach_m END AS rear_s_m,
+    c.lat_half_m, c.heading_diff_rad
 FROM running r
 JOIN data_log l USING (drive_id)
 JOIN state_dynamics s ON s.drive_id = r.drive_id AND s.actor_id = r.ego_id AND s.t_ns = r.t_ns
+LEFT JOIN drawn t ON t.drive_id = r.drive_id AND t.ego_id = r.ego_id AND t.t_ns = r.t_ns
 LEFT JOIN ego_lane e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id AND e.t_ns = r.t_ns
 LEFT JOIN lanelet n ON n.environment_id = l.environment_id AND n.lanelet_id = e.lanelet_id
 LEFT JOIN limited v ON v.drive_id = r.drive_id AND v.ego_id = r.ego_id AND v.t_ns = r.t_ns

@@ -16,7 +16,7 @@ sample AS (
     SELECT
         *,
         out_m > over_boundary_m() AS over,
-        lag({'k': k, 'seg': seg, 'over': out_m > over_boundary_m(), 'lateral_m': lateral_m}) OVER w AS before,
+        lag({'k': k, 'seg': seg, 't_ns': t_ns, 'over': out_m > over_boundary_m(), 'lateral_m': lateral_m}) OVER w AS before,
         lead({'k': k, 'seg': seg, 't_ns': t_ns}) OVER w AS after
     FROM side
     WINDOW w AS (PARTITION BY drive_id, ego_id, chain_id, side ORDER BY k)
@@ -25,6 +25,7 @@ stretch AS (
     SELECT
         *,
         coalesce(before.k = k - 1 AND before.seg = seg, false) AS joined,
+        coalesce(before.over AND before.seg = seg AND (before.k = k - 1 OR t_ns - before.t_ns <= no_return_ns()), false) AS goes_on,
         CASE WHEN before.k = k - 1 AND before.seg = seg THEN (lateral_m - before.lateral_m) / (dt_ns / 1e9) END AS lateral_mps
     FROM sample
     WHERE over
@@ -32,7 +33,7 @@ stretch AS (
 numbered AS (
     SELECT
         *,
-        sum((NOT (joined AND before.over))::INTEGER)
+        sum((NOT goes_on)::INTEGER)
             OVER (PARTITION BY drive_id, ego_id, chain_id, side ORDER BY k ROWS UNBOUNDED PRECEDING) AS n
     FROM stretch
 ),

@@ -1,16 +1,29 @@
--- Whom the ego follows at every step: lead, without those that it meets, overtakes or goes past inside its lane.
+-- Whom the ego follows at every step: lead, without those that it meets, overtakes or goes past inside its lane; who is beside it is not ahead.
 WITH changing AS (
-    SELECT DISTINCT drive_id, ego_id, t_ns FROM line_step WHERE manoeuvre
+    SELECT drive_id, ego_id, t_ns, bool_or(sure) AS sure
+    FROM (
+        -- astride for longer than a lane change takes, and round nobody, the ego is in its lane and in the next
+        SELECT *, t_astride_ns IS NULL OR t_ns - t_astride_ns <= longest_change_ns() OR passing_id IS NOT NULL OR overtaking AS sure
+        FROM line_step
+        WHERE manoeuvre
+    )
+    WHERE sure IS DISTINCT FROM false
+    GROUP BY ALL
 )
 SELECT
     s.drive_id, s.ego_id, s.t_ns, l.object_id, l.gap_m, l.ego_speed_mps, l.speed_mps,
     CASE WHEN l.joined THEN l.t_since_ns END AS joined_ns,
     CASE
         WHEN l.t_ns IS NULL THEN NULL
-        WHEN l.object_id IS NULL OR c.t_ns IS NOT NULL THEN false
-        ELSE l.in_lane AND NOT l.oncoming
-            -- one parked at the lane's edge is passed, one in the next lane that reaches over the line is beside: neither is in the ego's way
-            AND (abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m OR l.speed_mps > standing_mps() AND abs(p.d_m) <= p.half_width_m)
+        WHEN l.object_id IS NULL OR c.sure THEN false
+        ELSE CASE WHEN c.t_ns IS NULL THEN true END AND l.in_lane AND l.gap_m >= 0 AND NOT l.oncoming AND (
+            -- one that stands is in the ego's way, now and when the ego is there: else the ego steers round it, or passes it at the lane's edge
+            l.across_m < 0 AND (l.speed_mps > standing_mps() OR on_course(
+                l.gap_m, ttc_s(l.gap_m, l.ego_speed_mps), e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, 0.0
+            ))
+            -- one that moves beside the ego's way has its centre in the lane, and is not about to be passed
+            OR l.speed_mps > standing_mps() AND abs(p.d_m) <= p.half_width_m AND l.gap_m >= drift_s() * (l.ego_speed_mps - l.speed_mps)
+        )
     END AS follows
 FROM step s
 LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns

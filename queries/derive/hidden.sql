@@ -1,32 +1,49 @@
--- Whoever is or may be there and has no place in the corridor, with the least distance that he can have: from where he was seen last and
--- where he is seen next, nobody comes faster than 60 m/s. Who moves off the lanes has a place as long as the corridor reaches past him.
-WITH unseen AS (
-    SELECT drive_id, ego_id, t_ns, object_id, actor_class FROM pair WHERE x_m IS NULL OR y_m IS NULL
+-- Every actor that is or may be there and has no place in the corridor, with the least distance that it can have: from where it was seen
+-- last and where it is seen next it comes no nearer than 60 m/s and its tyres allow. An actor off the lanes has a place as long as the
+-- corridor reaches past it.
+WITH missing AS (
+    SELECT drive_id, ego_id, t_ns, object_id, actor_class, NULL::DOUBLE AS ahead_m, NULL::DOUBLE AS behind_m FROM pair WHERE x_m IS NULL OR y_m IS NULL
     UNION ALL
-    SELECT u.drive_id, u.ego_id, u.t_ns, u.object_id, a.actor_class
-    FROM unplaced u
-    JOIN actor a ON a.drive_id = u.drive_id AND a.actor_id = u.object_id
-    WHERE u.reason IN (
-        'was lost from the log nearby', 'was lost behind, driving away', 'appeared in the log nearby', 'came in over the end of the map'
-    )
+    SELECT u.drive_id, u.ego_id, u.t_ns, u.object_id, a.actor_class, u.ahead_m, u.behind_m
+    FROM unseen u
+    JOIN road_user a ON a.drive_id = u.drive_id AND a.actor_id = u.object_id
 ),
 seen AS (
-    SELECT p.drive_id, p.ego_id, p.object_id, p.t_ns, p.distance_m
-    FROM (SELECT DISTINCT drive_id, ego_id, object_id FROM unseen) u
+    SELECT
+        p.drive_id, p.ego_id, p.object_id, p.t_ns, p.distance_m, p.x_m, p.y_m,
+        CASE WHEN p.actor_class = 'pedestrian' THEN 0.0 ELSE p.speed_mps * cos(p.yaw_rad) END AS vx_mps,
+        CASE WHEN p.actor_class = 'pedestrian' THEN 0.0 ELSE p.speed_mps * sin(p.yaw_rad) END AS vy_mps,
+        -- along the corridor, of what goes the ego's way
+        CASE WHEN abs(p.heading_diff_rad) < pi() / 4 AND p.actor_class IS DISTINCT FROM 'pedestrian' THEN
+            {'chain_id': e.chain_id, 'front_m': p.front_s_m, 'rear_m': p.rear_s_m, 'v_mps': p.speed_mps} END AS along
+    FROM (SELECT DISTINCT drive_id, ego_id, object_id FROM missing) u
     JOIN pair p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.object_id = u.object_id
+    JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
     WHERE p.distance_m IS NOT NULL
+),
+-- from where it was seen last and where it is seen next: how far it is at least, straight on and braking or turning as hard as tyres do
+sighted AS (
+    SELECT
+        m.*, e.front_s_m, e.rear_s_m, CASE WHEN b.along.chain_id = e.chain_id THEN b.along END AS before, CASE WHEN a.along.chain_id = e.chain_id THEN a.along END AS after,
+        b.distance_m - unseen_closing_mps() * (m.t_ns - b.t_ns) / 1e9 AS before_m, a.distance_m - unseen_closing_mps() * (a.t_ns - m.t_ns) / 1e9 AS after_m,
+        (m.t_ns - b.t_ns) / 1e9 AS before_s, (a.t_ns - m.t_ns) / 1e9 AS after_s,
+        b.x_m + b.vx_mps * before_s - e.x_m AS before_x_m, b.y_m + b.vy_mps * before_s - e.y_m AS before_y_m, a.x_m - a.vx_mps * after_s - e.x_m AS after_x_m, a.y_m - a.vy_mps * after_s - e.y_m AS after_y_m
+    FROM missing m
+    ASOF LEFT JOIN seen b ON b.drive_id = m.drive_id AND b.ego_id = m.ego_id AND b.object_id = m.object_id AND b.t_ns <= m.t_ns
+    ASOF LEFT JOIN seen a ON a.drive_id = m.drive_id AND a.ego_id = m.ego_id AND a.object_id = m.object_id AND a.t_ns >= m.t_ns
+    JOIN ego_state e ON e.drive_id = m.drive_id AND e.ego_id = m.ego_id AND e.t_ns = m.t_ns
 ),
 bounded AS (
     SELECT
-        u.*,
-        -- greatest() leaves out the one that is not there, as it should here
-        greatest(
-            b.distance_m - unseen_closing_mps() * (u.t_ns - b.t_ns) / 1e9,
-            a.distance_m - unseen_closing_mps() * (a.t_ns - u.t_ns) / 1e9
-        ) AS distance_m
-    FROM unseen u
-    ASOF LEFT JOIN seen b ON b.drive_id = u.drive_id AND b.ego_id = u.ego_id AND b.object_id = u.object_id AND b.t_ns <= u.t_ns
-    ASOF LEFT JOIN seen a ON a.drive_id = u.drive_id AND a.ego_id = u.ego_id AND a.object_id = u.object_id AND a.t_ns >= u.t_ns
+        drive_id, ego_id, t_ns, object_id, actor_class,
+        -- greatest() leaves out what is not there, as it should here
+        greatest(before_m, after_m, sqrt(before_x_m ** 2 + before_y_m ** 2) - strays_m(actor_class, before_s), sqrt(after_x_m ** 2 + after_y_m ** 2) - strays_m(actor_class, after_s), ahead_m, behind_m) AS distance_m,
+        -- what goes the ego's way does not turn round
+        CASE
+            WHEN ahead_m > 0 OR before.rear_m > front_s_m OR after.rear_m - after.v_mps * after_s - strays_m(actor_class, after_s) > front_s_m THEN true
+            WHEN behind_m > 0 OR after.front_m < rear_s_m OR before.front_m + before.v_mps * before_s + strays_m(actor_class, before_s) < rear_s_m THEN false
+        END AS ahead
+    FROM sighted
 ),
 incomplete AS (
     SELECT drive_id, ego_id, t_ns, object_id, actor_class, distance_m, x_m, y_m
@@ -43,7 +60,7 @@ beyond AS (
     JOIN pair p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.t_ns = u.t_ns AND p.object_id = u.object_id
     JOIN ego_state e ON e.drive_id = u.drive_id AND e.ego_id = u.ego_id AND e.t_ns = u.t_ns
     JOIN reach r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
-    WHERE u.reason = 'moves off the lanes' AND p.s_m IS NULL AND p.distance_m > least(r.end_m - e.s_m, e.s_m - r.begin_m)
+    WHERE u.code = 'off_lanes' AND p.s_m IS NULL AND p.distance_m > least(r.end_m - e.s_m, e.s_m - r.begin_m)
 ),
 -- where the lanes of a chain do not meet: an end without a link though the map goes on, and holes between one and the next
 last_piece AS (
@@ -80,7 +97,7 @@ in_hole AS (
 )
 SELECT
     drive_id, ego_id, t_ns, object_id, actor_class, may_be_vehicle(actor_class) AS vehicle,
-    greatest(0.0::DOUBLE, coalesce(distance_m, 0.0) - two_half_boxes_m()) AS least_m, NULL::BOOLEAN AS ahead
+    greatest(0.0::DOUBLE, coalesce(distance_m, 0.0) - two_half_boxes_m()) AS least_m, ahead
 FROM bounded
 UNION ALL
 SELECT

@@ -79,12 +79,25 @@ branch AS (
     GROUP BY environment_id, junction_id
 ),
 signed AS (SELECT DISTINCT environment_id FROM traffic_signal WHERE kind IN ('traffic_light', 'stop', 'give_way')),
+-- the map begins so near to the junction that a signal may stand before that
+cropped AS (
+    SELECT w.drive_id, w.ego_id, w.t_first_ns
+    FROM driven w
+    JOIN data_log g USING (drive_id)
+    JOIN chain c ON c.drive_id = w.drive_id AND c.ego_id = w.ego_id AND c.chain_id = w.entry.chain_id AND c.seq <= w.entry.seq
+    JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = c.lanelet_id
+    JOIN lane_next l ON l.environment_id = g.environment_id AND l.lanelet_id = c.lanelet_id
+    GROUP BY w.drive_id, w.ego_id, w.t_first_ns, w.entry
+    HAVING min({'seq': c.seq, 'begins': l.map_begins}).begins AND w.entry.s_m - min(c.s_start_m) < governed_m()
+        AND NOT bool_or(n.junction_id IS NOT NULL AND c.seq < w.entry.seq)
+),
 whole AS (
     SELECT
         i.*, e.t_in_ns, o.t_out_ns, b.lanelet_id AS from_id, a.lanelet_id AS to_id,
         CASE WHEN v.handedness_source <> 'default' THEN v.handedness END AS hand,
-        CASE WHEN e.t_in_ns IS NOT NULL AND o.t_out_ns IS NOT NULL THEN wrap_rad(ea.first_rad - eb.last_rad) END AS turn_rad,
-        CASE WHEN g.environment_id IS NOT NULL AND w.entry IS NOT NULL THEN coalesce(w.entry.control, 'none') END AS control
+        -- with its centre on the lane after it, where it goes is seen, though the log may end before its rear is past
+        CASE WHEN e.t_in_ns IS NOT NULL AND (o.t_out_ns IS NOT NULL OR a.t_first_ns > i.t_last_ns) THEN wrap_rad(ea.first_rad - eb.last_rad) END AS turn_rad,
+        CASE WHEN g.environment_id IS NOT NULL AND w.entry IS NOT NULL THEN coalesce(w.entry.control, CASE WHEN x.t_first_ns IS NULL THEN 'none' END) END AS control
     FROM inside i
     JOIN environment v USING (environment_id)
     LEFT JOIN driven w USING (drive_id, ego_id, t_first_ns)
@@ -95,6 +108,7 @@ whole AS (
     LEFT JOIN edge eb ON eb.environment_id = i.environment_id AND eb.lanelet_id = b.lanelet_id
     LEFT JOIN edge ea ON ea.environment_id = i.environment_id AND ea.lanelet_id = a.lanelet_id
     LEFT JOIN signed g ON g.environment_id = i.environment_id
+    LEFT JOIN cropped x ON x.drive_id = i.drive_id AND x.ego_id = i.ego_id AND x.t_first_ns = i.t_first_ns
 ),
 turned AS (
     SELECT

@@ -78,11 +78,12 @@ width AS (
 there AS MATERIALIZED (
     SELECT
         c.drive_id, c.ego_id, c.occurrence, p.object_id, p.speed_mps, p.s_m > c.s_m AS ahead,
-        p.rear_s_m - c.front_s_m AS ahead_gap_m, c.rear_s_m - p.front_s_m AS behind_gap_m, p.heading_diff_rad
+        p.rear_s_m - c.front_s_m AS ahead_gap_m, c.rear_s_m - p.front_s_m AS behind_gap_m, p.heading_diff_rad,
+        is_vehicle(p.actor_class) IS NOT DISTINCT FROM true AS vehicle
     FROM change c
     JOIN width w USING (drive_id, ego_id, occurrence)
     JOIN pair p ON p.drive_id = c.drive_id AND p.ego_id = c.ego_id AND p.t_ns = c.t_start_ns
-    WHERE may_be_vehicle(p.actor_class)
+    WHERE (may_be_vehicle(p.actor_class) OR p.actor_class = 'object' AND p.s_m > c.s_m)
         AND CASE
             WHEN c.inside THEN in_lane(p.d_m, p.lat_half_m, p.half_width_m)
             ELSE in_lane(c.side * p.d_m - p.half_width_m - w.width_m / 2, p.lat_half_m, w.width_m / 2)
@@ -91,13 +92,13 @@ there AS MATERIALIZED (
 leader AS (
     SELECT drive_id, ego_id, occurrence, min({'gap_m': ahead_gap_m, 'object_id': object_id, 'speed_mps': speed_mps}) AS o
     FROM there
-    WHERE ahead AND (abs(heading_diff_rad) < 2 * pi() / 3 OR speed_mps <= standing_mps())
+    WHERE vehicle AND ahead AND (abs(heading_diff_rad) < 2 * pi() / 3 OR speed_mps <= standing_mps())
     GROUP BY ALL
 ),
 follower AS (
     SELECT drive_id, ego_id, occurrence, min({'gap_m': behind_gap_m, 'object_id': object_id, 'speed_mps': speed_mps}) AS o
     FROM there
-    WHERE NOT ahead AND abs(heading_diff_rad) < pi() / 2
+    WHERE vehicle AND NOT ahead AND abs(heading_diff_rad) < pi() / 2
     GROUP BY ALL
 ),
 -- what the follower does in the 4 s from there
@@ -153,7 +154,10 @@ narrowing AS (
     JOIN last_point q ON q.environment_id = c.environment_id AND q.lanelet_id = b.lanelet_id
 ),
 doubt AS (
-    SELECT DISTINCT drive_id, ego_id, t_ns FROM hidden WHERE vehicle AND least_m < lane_change_near_m()
+    SELECT drive_id, ego_id, t_ns FROM hidden WHERE vehicle AND least_m < lane_change_near_m()
+    UNION
+    SELECT drive_id, ego_id, t_start_ns FROM there JOIN change USING (drive_id, ego_id, occurrence)
+    WHERE NOT vehicle AND greatest(ahead_gap_m, behind_gap_m) < lane_change_near_m()
 )
 SELECT
     c.drive_id, c.ego_id, c.occurrence, c.t_start_ns, c.begin_seen, c.t_cross_ns, c.t_done_ns,

@@ -13,8 +13,12 @@ behind AS (
     FROM link l LEFT JOIN turning t USING (environment_id, from_id)
     GROUP BY ALL
 )
-SELECT n.environment_id, n.lanelet_id, ahead_id, behind_id
+SELECT
+    n.environment_id, n.lanelet_id, ahead_id, behind_id,
+    -- a lane that ends or begins beside others that go on is no end of the map
+    bool_and(ahead_id IS NULL) OVER beside AS map_ends, bool_and(behind_id IS NULL) OVER beside AS map_begins
 FROM lanelet n
 LEFT JOIN ahead USING (environment_id, lanelet_id)
 LEFT JOIN behind USING (environment_id, lanelet_id)
 WHERE n.drivable
+WINDOW beside AS (PARTITION BY n.environment_id, n.road_id, n.section, n.along_road)

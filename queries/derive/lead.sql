@@ -1,5 +1,5 @@
--- The nearest vehicle ahead in the running lane, or the certainty that there is none: a step at which somebody without a place may be
--- nearer, or the ego itself has none, has no row.
+-- The nearest vehicle ahead in the running lane, or the certainty that there is none: a step at which somebody without a place, or of no
+-- known class, may be nearer, or the ego itself has no place, has no row.
 WITH
 -- who follows a junction's lane of his own that leads across the ego's way crosses it: see conflict
 crossing AS (
@@ -16,11 +16,14 @@ ahead AS (
             'gap_m': p.rear_s_m - e.front_s_m, 'object_id': p.object_id, 'speed_mps': p.speed_mps, 'actor_class': p.actor_class,
             'oncoming': abs(p.heading_diff_rad) > pi() / 2, 'across_m': abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m,
             'ego_across_mps': sign(p.d_m - e.d_m) * e.speed_mps * sin(e.heading_diff_rad), 'across_mps': sign(e.d_m - p.d_m) * p.speed_mps * sin(p.heading_diff_rad)
-        }) AS near
+        }) FILTER (is_vehicle(p.actor_class)) AS near,
+        min(p.rear_s_m - e.front_s_m) FILTER (is_vehicle(p.actor_class) IS DISTINCT FROM true AND p.rear_s_m - e.front_s_m < unsure_reach_m(e.speed_mps)) AS unsure_m
     FROM pair p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     LEFT JOIN crossing c ON c.drive_id = p.drive_id AND c.object_id = p.object_id AND c.t_ns = p.t_ns
-    WHERE may_be_vehicle(p.actor_class) AND p.s_m > e.s_m AND in_lane(p.d_m, p.lat_half_m, p.half_width_m)
+    WHERE may_be_ahead(p.actor_class, p.d_m - e.d_m, p.lat_half_m + e.lat_half_m) AND p.s_m > e.s_m AND in_lane(p.d_m, p.lat_half_m, p.half_width_m)
+        -- one beside the ego's box is not ahead, whatever of it is in the lane; where the two overlap they have met
+        AND (p.rear_s_m >= e.front_s_m OR abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m)
         -- in the lane with its centre, or in the ego's way, now or soon at the present speeds across (who comes towards the ego: now): a
         -- vehicle that only reaches over the line must not hide whom the ego follows
         AND (abs(p.d_m) <= p.half_width_m OR abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m
@@ -30,6 +33,7 @@ ahead AS (
         AND (c.t_ns IS NULL OR abs(p.heading_diff_rad) < pi() / 4 OR p.speed_mps <= standing_mps())
     GROUP BY ALL
 ),
+filtered AS (SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'velocity_filtered'),
 doubt AS (
     SELECT drive_id, ego_id, t_ns, min(least_m) AS least_m FROM hidden WHERE vehicle AND ahead IS DISTINCT FROM false GROUP BY ALL
 ),
@@ -41,7 +45,7 @@ told AS (
         ) AS t_half_ns,
         lag(e.t_ns) OVER (PARTITION BY e.drive_id, e.ego_id ORDER BY st.k) AS t_before_ns,
         lag(st.seg) OVER (PARTITION BY e.drive_id, e.ego_id ORDER BY st.k) = st.seg AS goes_on,
-        e.front_s_m IS NOT NULL AND coalesce(d.least_m >= coalesce(a.near.gap_m, corridor_ahead_m()), true) AS known
+        e.front_s_m IS NOT NULL AND coalesce(least(d.least_m, a.unsure_m) >= coalesce(a.near.gap_m, lead_reach_m(e.speed_mps)), true) AS known
     FROM ego_state e
     JOIN step st USING (drive_id, ego_id, t_ns)
     LEFT JOIN ahead a USING (drive_id, ego_id, t_ns)
@@ -65,14 +69,14 @@ begun AS (
 ),
 -- where the nearest one was one step before it became that: in the lane ahead already, or not; half a second ago how fast
 past AS (
-    SELECT r.drive_id, r.ego_id, r.t_ns, p.t_ns AS t_past_ns, p.speed_mps, p.s_m, in_lane(p.d_m, p.lat_half_m, p.half_width_m) AS in_lane
+    SELECT r.drive_id, r.ego_id, r.t_ns, p.t_ns AS t_past_ns, p.speed_mps, p.rear_s_m, in_lane(p.d_m, p.lat_half_m, p.half_width_m) AS in_lane
     FROM (
         SELECT drive_id, ego_id, t_ns, near.object_id AS object_id, unnest(list_distinct([t_half_ns, t_before_ns])) AS t_past_ns FROM run WHERE near.object_id IS NOT NULL
     ) r
     JOIN pair p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_ns = r.t_past_ns AND p.object_id = r.object_id
 ),
 origin AS (
-    SELECT b.drive_id, b.ego_id, b.n, NOT (p.s_m > e.s_m AND p.in_lane) AS joined
+    SELECT b.drive_id, b.ego_id, b.n, NOT (p.rear_s_m >= e.front_s_m AND p.in_lane) AS joined
     FROM begun b
     JOIN run r ON r.drive_id = b.drive_id AND r.ego_id = b.ego_id AND r.t_ns = b.t_since_ns
     JOIN past p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_ns = r.t_ns AND p.t_past_ns = r.t_before_ns
@@ -83,12 +87,15 @@ SELECT
     r.drive_id, r.ego_id, r.t_ns, r.near.object_id AS object_id, r.near.actor_class AS actor_class, r.near.gap_m AS gap_m,
     r.near.speed_mps AS speed_mps,
     -- a mean over half a second; less than 0.4 s of it at the log's begin is none
-    CASE WHEN r.t_ns - r.t_half_ns >= 400_000_000 THEN 1e9 * (r.near.speed_mps - h.speed_mps) / (r.t_ns - r.t_half_ns) END AS accel_mps2,
+    CASE WHEN f.actor_id IS NULL AND r.t_ns - r.t_half_ns >= 400_000_000 THEN 1e9 * (r.near.speed_mps - h.speed_mps) / (r.t_ns - r.t_half_ns) END AS accel_mps2,
     r.ego_speed_mps, x.left_in_m < 0 AND x.right_in_m < 0 AS in_lane, r.near.oncoming AS oncoming,
     r.near.across_m AS across_m, r.near.ego_across_mps AS ego_across_mps, r.near.across_mps AS across_mps,
+    filtered_error_mps() * ((f.actor_id IS NOT NULL)::INTEGER + (g.actor_id IS NOT NULL)::INTEGER) AS error_mps,
     b.t_since_ns, CASE WHEN b.k = 0 THEN false ELSE o.joined END AS joined
 FROM run r
 LEFT JOIN ego_corridor x ON x.drive_id = r.drive_id AND x.ego_id = r.ego_id AND x.chain_id = r.chain_id AND x.t_ns = r.t_ns
 LEFT JOIN past h ON h.drive_id = r.drive_id AND h.ego_id = r.ego_id AND h.t_ns = r.t_ns AND h.t_past_ns = r.t_half_ns
 LEFT JOIN begun b ON b.drive_id = r.drive_id AND b.ego_id = r.ego_id AND b.n = r.n
+LEFT JOIN filtered f ON f.drive_id = r.drive_id AND f.actor_id = r.near.object_id
+LEFT JOIN filtered g ON g.drive_id = r.drive_id AND g.actor_id = r.ego_id
 LEFT JOIN origin o ON o.drive_id = r.drive_id AND o.ego_id = r.ego_id AND o.n = r.n

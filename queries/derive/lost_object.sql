@@ -10,7 +10,12 @@ ended AS (
     WHERE n.t_last_ns + c.max_gap_ns < c.t_end_ns
 )
 SELECT e.drive_id, e.ego_id, e.object_id, e.t_last_ns + 1 AS t_from_ns, e.t_end_ns AS t_to_ns,
-    CASE WHEN p.distance_m < lost_near_m() OR p.distance_m IS NULL THEN 'lost_near_ego' ELSE 'lost_in_range' END AS reason
+    CASE WHEN p.distance_m < x.near_m OR p.distance_m IS NULL THEN 'lost_near_ego' ELSE 'lost_in_range' END AS code
 FROM ended e
 JOIN pair p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.object_id = e.object_id AND p.t_ns = e.t_last_ns
-WHERE p.distance_m IS NULL OR p.distance_m < lost_near_m() OR p.distance_m < e.sensor_range_m
+JOIN ego_state s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.t_ns = e.t_last_ns
+-- two that come towards each other meet soon
+CROSS JOIN LATERAL (
+    SELECT CASE WHEN abs(p.heading_diff_rad) > pi() / 2 AND p.front_s_m > s.rear_s_m THEN greatest(lost_near_m(), 2 * (p.speed_mps + s.speed_mps)) ELSE lost_near_m() END AS near_m
+) x
+WHERE p.distance_m IS NULL OR p.distance_m < x.near_m OR p.distance_m < e.sensor_range_m

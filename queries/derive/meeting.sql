@@ -17,7 +17,7 @@ grid AS (
 box AS (
     SELECT
         s.drive_id, s.actor_id, s.x_m, s.y_m, g.period_s, g.cell_m, meeting_cell(s.x_m, s.y_m, g.cell_m) AS cell, meeting_slot(s.t_ns) AS slot,
-        heading_step(going_rad(s.actor_class, s.speed_mps, s.vx_mps, s.vy_mps, s.yaw_rad)) AS heading,
+        heading_step(s.travel_rad) AS heading,
         swept_half_m(s.length_m, s.speed_mps, g.period_s) AS hl, s.width_m / 2 AS hw, abs(cos(s.yaw_rad)) AS c, abs(sin(s.yaw_rad)) AS s
     FROM state_dynamics s
     JOIN grid g USING (drive_id)
@@ -42,4 +42,5 @@ SELECT
     o.actor_id AS object_id, o.cell AS object_cell, o.slot AS object_slot, o.heading AS object_heading
 FROM around e
 JOIN visit o ON o.drive_id = e.drive_id AND o.cell = e.near_cell AND o.slot = e.near_slot AND o.actor_id <> e.actor_id
+ANTI JOIN ego_part p ON p.drive_id = e.drive_id AND p.ego_id = e.actor_id AND p.object_id = o.actor_id
 WHERE steps_apart(o.heading, e.heading) > 3 AND o.x0 <= e.x1 AND o.x1 >= e.x0 AND o.y0 <= e.y1 AND o.y1 >= e.y0

@@ -5,8 +5,10 @@ SELECT
     p.d_m, p.lat_half_m, p.half_width_m, p.heading_diff_rad,
     -- heading against the corridor, the ego has its left on the other side
     CASE WHEN (p.d_m > e.d_m) = (abs(e.heading_diff_rad) <= pi() / 2) THEN 'left' ELSE 'right' END AS side,
-    abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m AS gap_m, p.clearance_m, e.speed_mps AS ego_speed_mps, p.speed_mps
+    abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m AS gap_m, p.clearance_m, e.speed_mps AS ego_speed_mps, p.speed_mps,
+    coalesce(g.vy_mps * cos(e.yaw_rad - e.heading_diff_rad) - g.vx_mps * sin(e.yaw_rad - e.heading_diff_rad), e.speed_mps * sin(e.heading_diff_rad)) AS ego_left_mps
 FROM pair p
 JOIN ego_state e USING (drive_id, ego_id, t_ns)
 JOIN step st USING (drive_id, ego_id, t_ns)
+JOIN state_dynamics g ON g.drive_id = e.drive_id AND g.actor_id = e.ego_id AND g.t_ns = e.t_ns
 WHERE NOT p.clearance_is_bound AND p.front_s_m IS NOT NULL AND e.front_s_m IS NOT NULL

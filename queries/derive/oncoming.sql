@@ -19,7 +19,7 @@ ego AS (
     WHERE e.front_s_m IS NOT NULL AND x.side IS NOT NULL
 ),
 against AS (
-    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.rear_s_m, p.speed_mps, p.rear_s_m - e.front_s_m AS da_m
+    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.rear_s_m, p.speed_mps, p.rear_s_m - e.front_s_m AS da_m, is_vehicle(p.actor_class) AS vehicle
     FROM pair p
     JOIN ego e USING (drive_id, ego_id, t_ns)
     WHERE may_be_vehicle(p.actor_class) AND p.s_m > e.s_m AND abs(p.heading_diff_rad) > 2 * pi() / 3
@@ -28,7 +28,7 @@ against AS (
         AND e.side * p.d_m + p.lat_half_m > CASE WHEN p.speed_mps <= standing_mps() THEN p.half_width_m + over_boundary_m() ELSE -p.half_width_m END
 ),
 entry AS (
-    SELECT drive_id, ego_id, object_id, min({'t_ns': t_ns, 's_m': rear_s_m}) AS e FROM against GROUP BY ALL
+    SELECT drive_id, ego_id, object_id, min({'t_ns': t_ns, 's_m': rear_s_m}) AS e FROM against WHERE vehicle GROUP BY ALL
 ),
 -- the way that it still had to make, from each of the steps before it got there
 approach AS (
@@ -52,7 +52,7 @@ coming AS (
 nearest AS (
     SELECT drive_id, ego_id, t_ns, min({'da_m': da_m, 'object_id': object_id, 'speed_mps': speed_mps, 'way': way}) AS o
     FROM (
-        SELECT drive_id, ego_id, t_ns, object_id, speed_mps, da_m, false AS way FROM against
+        SELECT drive_id, ego_id, t_ns, object_id, speed_mps, da_m, false AS way FROM against WHERE vehicle
         UNION ALL BY NAME
         SELECT *, true AS way FROM coming
     )
@@ -60,10 +60,14 @@ nearest AS (
 ),
 hidden AS (
     SELECT u.drive_id, u.ego_id, u.t_ns, count(*) AS n, min({'id': u.object_id, 'reason': u.reason}) AS u
-    FROM unplaced u
+    FROM (
+        SELECT drive_id, ego_id, t_ns, object_id, code, reason FROM unplaced
+        UNION ALL
+        SELECT drive_id, ego_id, t_ns, object_id, 'no_class', 'comes, and its class is not known' FROM against WHERE vehicle IS NULL
+    ) u
     LEFT JOIN nearest n ON n.drive_id = u.drive_id AND n.ego_id = u.ego_id AND n.t_ns = u.t_ns
     -- free_m ends where the map does, and who was met is behind; of one that came from off the lanes nobody knows which way it was to make
-    WHERE u.reason NOT IN ('came in over the end of the map', 'was lost behind, driving away') AND (n.o.object_id IS NULL OR n.o.object_id <> u.object_id OR n.o.way)
+    WHERE u.code NOT IN ('beyond_map', 'lost_behind') AND (n.o.object_id IS NULL OR n.o.object_id <> u.object_id OR n.o.way)
     GROUP BY ALL
 )
 SELECT

@@ -3,7 +3,7 @@
 -- than the lead up to the limit.
 WITH held AS (
     SELECT
-        l.drive_id, l.ego_id, l.t_ns, st.k, st.seg, l.object_id, l.speed_mps AS v_vbp, e.length_m AS l_av, x.half_width_m * 2 AS w,
+        l.drive_id, l.ego_id, l.t_ns, st.k, st.seg, l.object_id, l.speed_mps AS v_vbp, e.combination_m AS l_av, x.half_width_m * 2 AS w,
         greatest(e.speed_mps, least(e.limit_mps, l.speed_mps + 4.4704)) AS v_av, e.limit_mps
     FROM lead l
     JOIN ego_state e USING (drive_id, ego_id, t_ns)

@@ -2,7 +2,7 @@
 -- if it is passed, or is within 100 m and the ego's centre was over the line: less is a wobble, if all of it was seen. Every further
 -- vehicle passed in the same go counts too.
 WITH gone AS (
-    SELECT x.*, b.k - st.k + 1 AS n_steps, e.front_s_m, e.rear_s_m, e.s_m, e.speed_mps, e.length_m, e.limit_mps
+    SELECT x.*, b.k - st.k + 1 AS n_steps, e.front_s_m, e.rear_s_m, e.s_m, e.d_m, e.lat_half_m, e.speed_mps, e.combination_m AS length_m, e.limit_mps
     FROM excursion x
     JOIN ego_state e ON e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns = x.t0_ns
     JOIN step st ON st.drive_id = x.drive_id AND st.ego_id = x.ego_id AND st.t_ns = x.t0_ns
@@ -22,14 +22,15 @@ seen AS MATERIALIZED (
     ) p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.t_ns = e.t_ns
 ),
 ahead AS (
-    SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, p.object_id, p.rear_s_m - g.front_s_m AS gap_m, p.speed_mps, p.length_m, true AS placed,
-        p.rear_s_m - g.front_s_m AS near_m
+    SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, p.object_id, CASE WHEN is_vehicle(p.actor_class) THEN p.rear_s_m - g.front_s_m END AS gap_m, p.speed_mps,
+        p.length_m, is_vehicle(p.actor_class) IS NOT DISTINCT FROM true AS placed, p.rear_s_m - g.front_s_m AS near_m
     FROM gone g
     JOIN seen p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.chain_id = g.chain_id AND p.t0_ns = g.t0_ns AND p.t_ns = g.t0_ns
-    WHERE may_be_vehicle(p.actor_class) AND p.s_m > g.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m - over_boundary_m()
+    WHERE may_be_ahead(p.actor_class, p.d_m - g.d_m, p.lat_half_m + g.lat_half_m) AND p.s_m > g.s_m
+        AND abs(p.d_m) - p.lat_half_m < p.half_width_m - over_boundary_m()
         AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps())
 ),
--- who comes into the log only later, and towards the ego, is not the one that is overtaken
+-- vehicles first seen after t0 that come towards the ego are not the overtaken vehicle
 met AS (
     SELECT drive_id, ego_id, t0_ns, object_id
     FROM (

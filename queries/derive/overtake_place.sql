@@ -44,7 +44,8 @@ crossed AS (
     WHERE w.s_start_m + x.s_end_m > w.rear_s_m
     GROUP BY ALL
 ),
--- the last word before the ego: a sign holds until its end is said, or until the next junction
+-- the last word before the ego: a sign holds until its end is said, or until the next junction. Where there is none, one may stand further
+-- back than the corridor reaches, or where the map begins.
 sign AS (
     SELECT drive_id, ego_id, occurrence, max({'s_m': s_m, 'holds': holds}).holds AS holds
     FROM (
@@ -62,13 +63,6 @@ sign AS (
     WHERE s_m <= front_s_m
     GROUP BY ALL
 ),
--- a chain that begins on the way has not seen every sign behind it
-begun AS (
-    SELECT w.drive_id, w.ego_id, w.occurrence, min({'s_m': w.s_start_m, 'ends': l.behind_id IS NULL}).ends AS at_map_end
-    FROM way w
-    JOIN lane_next l ON l.environment_id = w.environment_id AND l.lanelet_id = w.lanelet_id
-    GROUP BY ALL
-),
 signed AS (SELECT DISTINCT environment_id FROM traffic_signal WHERE kind IN ('no_overtaking', 'no_overtaking_end')),
 -- the running lane's own boundary on the overtaking side, when it is left and when it is come back over
 line AS (
@@ -84,6 +78,13 @@ line AS (
         AND b.s_start_m <= x.s_m - c.s_start_m AND x.s_m - c.s_start_m < b.s_end_m
     GROUP BY ALL
 ),
+-- how fast everybody was just before: who comes up in the overtaking lane may have begun to brake as the ego began to move over
+before AS (
+    SELECT g.drive_id, g.ego_id, g.occurrence, p.object_id, max(p.speed_mps) AS fastest_mps
+    FROM gone g
+    JOIN pair p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns >= g.t0_ns - braked_for_ns() AND p.t_ns <= g.t0_ns
+    GROUP BY ALL
+),
 -- in the overtaking lane, or in the running one and moving over at more than 0.3 m/s
 rear AS (
     SELECT
@@ -91,14 +92,16 @@ rear AS (
         min({
             'ttc_s': CASE
                 WHEN p.front_s_m >= g.rear_s_m THEN 0.0::DOUBLE
-                WHEN p.speed_mps > g.speed_mps THEN (g.rear_s_m - p.front_s_m) / (p.speed_mps - g.speed_mps)
-                WHEN p.speed_mps <= g.speed_mps THEN 'infinity'::DOUBLE
+                WHEN p.speed_mps IS NULL THEN NULL
+                WHEN f.fastest_mps > g.speed_mps THEN (g.rear_s_m - p.front_s_m) / (f.fastest_mps - g.speed_mps)
+                WHEN f.fastest_mps <= g.speed_mps THEN 'infinity'::DOUBLE
             END,
             'gap_m': g.rear_s_m - p.front_s_m, 'object_id': p.object_id
-        }) AS o,
-        bool_and(p.speed_mps IS NOT NULL OR p.front_s_m >= g.rear_s_m) AS known
+        }) FILTER (is_vehicle(p.actor_class)) AS o,
+        bool_and((p.speed_mps IS NOT NULL OR p.front_s_m >= g.rear_s_m) AND is_vehicle(p.actor_class) IS NOT NULL) AS known
     FROM gone g
     JOIN pair p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns = g.t0_ns
+    JOIN before f ON f.drive_id = g.drive_id AND f.ego_id = g.ego_id AND f.occurrence = g.occurrence AND f.object_id = p.object_id
     WHERE may_be_vehicle(p.actor_class) AND p.s_m <= g.s_m AND abs(p.heading_diff_rad) < pi() / 2 AND g.rear_s_m - p.front_s_m <= follower_m()
         AND (
             in_lane(g.side * p.d_m - 2 * p.half_width_m, p.lat_half_m, p.half_width_m)
@@ -112,7 +115,7 @@ doubt AS (
 SELECT
     g.drive_id, g.ego_id, g.occurrence, coalesce(j.m, 'infinity'::DOUBLE) AS junction_m, coalesce(x.m, 'infinity'::DOUBLE) AS crossing_m,
     o.marking AS marking_out, seen_from_beyond(b.marking) AS marking_back,
-    CASE WHEN d.environment_id IS NOT NULL THEN coalesce(s.holds, CASE WHEN u.at_map_end THEN false END) END AS no_overtaking,
+    CASE WHEN d.environment_id IS NOT NULL THEN s.holds END AS no_overtaking,
     r.o.object_id AS rear_id, r.o.gap_m AS rear_gap_m, CASE WHEN r.o.object_id IS NULL THEN 'infinity'::DOUBLE ELSE r.o.ttc_s END AS rear_ttc_s,
     h.t_ns IS NULL AND coalesce(r.known, true) AS rear_known
 FROM gone g
@@ -122,6 +125,5 @@ LEFT JOIN (FROM line WHERE NOT back) o USING (drive_id, ego_id, occurrence)
 LEFT JOIN (FROM line WHERE back) b USING (drive_id, ego_id, occurrence)
 LEFT JOIN signed d ON d.environment_id = g.environment_id
 LEFT JOIN sign s USING (drive_id, ego_id, occurrence)
-LEFT JOIN begun u USING (drive_id, ego_id, occurrence)
 LEFT JOIN rear r USING (drive_id, ego_id, occurrence)
 LEFT JOIN doubt h ON h.drive_id = g.drive_id AND h.ego_id = g.ego_id AND h.t_ns = g.t0_ns

@@ -1,21 +1,46 @@
--- Distance ahead against safe distance ahead for every profile, observed among them: the angles and gaps that this overtake had.
--- Of several vehicles passed in one go, each is as long to pass as the row of them up to its front.
-WITH input AS (
+-- Distance ahead against safe distance ahead for every profile, observed among them: the angles and gaps that this overtake had, and what
+-- was driven of it. Of several vehicles passed in one go, each is as long to pass as the row of them up to its front.
+WITH closed AS (
+    SELECT o.drive_id, o.ego_id, o.occurrence, o.da_m - min(n.da_m) AS closed_m
+    FROM overtake o
+    JOIN oncoming n ON n.drive_id = o.drive_id AND n.ego_id = o.ego_id AND n.object_id = o.ov_id AND n.t_ns >= o.t0_ns AND n.t_ns <= o.t_end_ns
+    GROUP BY o.drive_id, o.ego_id, o.occurrence, o.da_m
+),
+-- what the ego and the OV covered while the ego was out (the OV at its speed at t0, or faster where it was), and the OV's stopping
+-- distance: where the overtake was broken off, by the ego, the log or a collision, the whole of it would have needed more
+driven AS (
     SELECT
-        o.*, p.profile,
+        o.drive_id, o.ego_id, o.occurrence, (o.t_end_ns - o.t0_ns) / 1e9 AS out_s,
+        greatest(b.front_s_m - a.front_s_m + o.v_ov_mps * (o.t_end_ns - o.t0_ns) / 1e9, c.closed_m) + stopping_distance_m(o.v_ov_mps) AS driven_m
+    FROM overtake o
+    LEFT JOIN ego_corridor a ON a.drive_id = o.drive_id AND a.ego_id = o.ego_id AND a.chain_id = o.chain_id AND a.t_ns = o.t0_ns
+    LEFT JOIN ego_corridor b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.chain_id = o.chain_id AND b.t_ns = o.t_end_ns
+    LEFT JOIN closed c ON c.drive_id = o.drive_id AND c.ego_id = o.ego_id AND c.occurrence = o.occurrence
+),
+input AS (
+    SELECT
+        o.*, d.out_s, p.profile,
+        CASE WHEN p.profile = 'observed' THEN d.driven_m END AS driven_m,
         CASE WHEN p.profile <> 'observed' THEN p.pull_out_angle_rad WHEN o.status = 'completed' THEN o.pull_out_angle_rad END AS beta,
         CASE p.profile WHEN 'observed' THEN o.cut_in_angle_rad ELSE p.cut_in_angle_rad END AS theta,
         CASE p.profile WHEN 'observed' THEN o.vbp_gap_m - o.span_m + o.l_vbp_m ELSE p.pull_out_headroom_m END AS headroom,
         CASE p.profile WHEN 'observed' THEN o.t2_gap_m ELSE p.cut_in_clearance_m END AS clearance
-    FROM overtake o CROSS JOIN profile p
+    FROM overtake o
+    JOIN driven d USING (drive_id, ego_id, occurrence)
+    CROSS JOIN profile p
 ),
-required AS (
+planned AS (
     SELECT
         *, begin_seen AND vbp_placed AND opposing IS NOT NULL AS told,
         CASE WHEN beta > 0 AND theta > 0 AND v_av_mps > v_vbp_mps THEN
             safe_distance_ahead_m(lane_width_m, beta, theta, headroom, clearance, l_av_m, span_m, v_av_mps, v_vbp_mps, v_ov_mps)
-        END AS sda_m
+        END AS planned_m
     FROM input
+),
+required AS (
+    -- where DA is not even more than that, it counts; of an overtake that was not completed nobody knows what else would have been enough
+    SELECT *, CASE WHEN da_m <= driven_m THEN greatest(planned_m, driven_m) ELSE planned_m END AS sda_m
+    FROM planned
 )
 SELECT
     drive_id, ego_id, occurrence, profile, t0_ns,
@@ -30,12 +55,13 @@ SELECT
         WHEN NOT vbp_placed THEN 'actor ' || vbp_id || ', who may be the vehicle passed, has no position'
         WHEN opposing IS NULL THEN 'the map has no lane beside the running lane on the overtaking side'
         WHEN da_m IS NULL THEN 'the ego is not placed on its corridor'
-        WHEN v_av_mps <= v_vbp_mps THEN 'undefined: the ego was not faster than the vehicle it passed'
-        WHEN profile = 'observed' AND status <> 'completed' THEN 'the overtake was not completed, so its own angles are not known'
+        WHEN sda_m IS NULL AND v_av_mps <= v_vbp_mps THEN 'undefined: the ego was not faster than the vehicle it passed'
+        WHEN sda_m IS NULL AND profile = 'observed' AND status <> 'completed' THEN 'the overtake was not completed, so its own angles are not known'
         WHEN sda_m IS NULL AND ov_id IS NULL AND v_ov_mps IS NULL THEN 'no oncoming vehicle is seen and the map has no speed limit to assume for one'
         WHEN sda_m IS NULL THEN 'a speed, size or angle is not known'
         WHEN n_unplaced > 0 AND da_m > sda_m THEN unplaced_reason
         WHEN ov_id IS NULL AND da_m <= sda_m THEN 'no oncoming vehicle as far as can be told, but that is only ' || round(da_m, 1)::VARCHAR || ' m (' || free_reason || ')'
         WHEN ov_id IS NULL THEN 'no oncoming vehicle within ' || round(da_m, 1)::VARCHAR || ' m'
+        WHEN da_m <= sda_m AND sda_m = driven_m THEN 'the ego was out of its lane for ' || round(out_s, 1)::VARCHAR || ' s'
     END AS reason
 FROM required

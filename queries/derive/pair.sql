@@ -1,11 +1,13 @@
 -- The ego and every other actor, one row per ego step from the actor's first sample to its last. A sample of another time than the
--- step's is moved on by its own velocity while it is fresh; beyond that the actor is there but not placed.
+-- step's is moved on by its own velocity while it is fresh; beyond that the actor is there but not placed. So is who is over or under the
+-- ego's road, or may be: as far as the ground plan shows it is on the road, and it is not known to be met there.
 WITH same_time AS (
     SELECT
-        e.drive_id, e.ego_id, e.t_ns, e.k, s.actor_id AS object_id, s.actor_class, s.x_m, s.y_m, s.yaw_rad, s.speed_mps, s.accel_mps2,
-        s.length_m, s.width_m
+        e.drive_id, e.ego_id, e.t_ns, e.k, s.actor_id AS object_id, s.actor_class, s.t_ns AS t_at_ns, s.x_m, s.y_m, s.z_m,
+        turned_to(s.yaw_rad, s.travel_rad) AS yaw_rad, s.speed_mps, s.accel_mps2, s.length_m, s.width_m
     FROM step e
     JOIN state_dynamics s ON s.drive_id = e.drive_id AND s.t_ns = e.t_ns AND s.actor_id <> e.ego_id
+    ANTI JOIN ego_part g ON g.drive_id = e.drive_id AND g.ego_id = e.ego_id AND g.object_id = s.actor_id
 ),
 track AS (
     SELECT c.drive_id, c.ego_id, s.object_id, s.t_first_ns, s.t_last_ns, s.n
@@ -13,6 +15,7 @@ track AS (
     JOIN (
         SELECT drive_id, actor_id AS object_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns, count(*) AS n FROM state_dynamics GROUP BY ALL
     ) s ON s.drive_id = c.drive_id AND s.object_id <> c.ego_id
+    ANTI JOIN ego_part g ON g.drive_id = c.drive_id AND g.ego_id = c.ego_id AND g.object_id = s.object_id
 ),
 met AS (
     SELECT drive_id, ego_id, object_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns, max(k) - min(k) + 1 AS span, count(*) AS n
@@ -33,7 +36,7 @@ missed AS (
     ANTI JOIN same_time s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.t_ns = e.t_ns AND s.object_id = r.object_id
 ),
 held AS (
-    SELECT m.drive_id, m.ego_id, m.t_ns, m.object_id, (m.t_ns - s.t_ns) / 1e9 AS age_s, m.t_ns - s.t_ns <= c.max_gap_ns AS fresh, s.* EXCLUDE (drive_id, actor_id, t_ns)
+    SELECT m.drive_id, m.ego_id, m.t_ns, m.object_id, (m.t_ns - s.t_ns) / 1e9 AS age_s, m.t_ns - s.t_ns <= c.max_gap_ns AS fresh, s.t_ns AS t_at_ns, s.* EXCLUDE (drive_id, actor_id, t_ns)
     FROM missed m
     JOIN clock c USING (drive_id, ego_id)
     -- sorting every track for the sake of none would cost more than all the rest
@@ -46,14 +49,14 @@ sampled AS (
     SELECT * EXCLUDE (k) FROM same_time
     UNION ALL BY NAME
     SELECT
-        drive_id, ego_id, t_ns, object_id, actor_class, length_m, width_m,
+        drive_id, ego_id, t_ns, object_id, actor_class, length_m, width_m, t_at_ns, z_m,
         CASE WHEN fresh THEN x_m + vx_mps * age_s END AS x_m, CASE WHEN fresh THEN y_m + vy_mps * age_s END AS y_m,
-        CASE WHEN fresh THEN yaw_rad END AS yaw_rad, CASE WHEN fresh THEN speed_mps END AS speed_mps, CASE WHEN fresh THEN accel_mps2 END AS accel_mps2
+        CASE WHEN fresh THEN turned_to(yaw_rad, travel_rad) END AS yaw_rad, CASE WHEN fresh THEN speed_mps END AS speed_mps, CASE WHEN fresh THEN accel_mps2 END AS accel_mps2
     FROM held
 ),
 apart AS MATERIALIZED (
     SELECT
-        o.*, e.chain_id, e.s_m AS ego_s_m, e.yaw_rad AS ego_yaw_rad, e.length_m / 2 AS hla, e.width_m / 2 AS hwa,
+        o.*, e.chain_id, e.s_m AS ego_s_m, e.z_m AS ego_z_m, e.yaw_rad AS ego_yaw_rad, e.length_m / 2 AS hla, e.width_m / 2 AS hwa,
         o.length_m / 2 AS hlb, o.width_m / 2 AS hwb, o.x_m - e.x_m AS ex, o.y_m - e.y_m AS ey,
         sqrt((o.x_m - e.x_m) ** 2 + (o.y_m - e.y_m) ** 2) AS distance_m,
         row_number() OVER () AS pair_no
@@ -65,13 +68,19 @@ cleared AS (
         *,
         CASE
             WHEN least_m > exact_clearance_m() THEN least_m
-            WHEN least_m IS NOT NULL AND yaw_rad IS NOT NULL AND ego_yaw_rad IS NOT NULL THEN box_clearance(
-                ex * cos(ego_yaw_rad) + ey * sin(ego_yaw_rad), ey * cos(ego_yaw_rad) - ex * sin(ego_yaw_rad),
-                cos(yaw_rad - ego_yaw_rad), sin(yaw_rad - ego_yaw_rad), hla, hwa, hlb, hwb
-            )
+            WHEN least_m + dx + c IS NOT NULL THEN box_clearance(dx, dy, c, s, hla, hwa, hlb, hwb)
         END AS clearance_m,
         CASE WHEN least_m IS NOT NULL THEN least_m > exact_clearance_m() END AS clearance_is_bound
-    FROM (SELECT *, distance_m - sqrt(hla * hla + hwa * hwa) - sqrt(hlb * hlb + hwb * hwb) AS least_m FROM apart)
+    FROM (
+        -- the other's box in the frame of the ego's: columns, for a macro writes its arguments out wherever it uses them
+        SELECT
+            *, CASE WHEN near THEN ex * cos(ego_yaw_rad) + ey * sin(ego_yaw_rad) END AS dx, CASE WHEN near THEN ey * cos(ego_yaw_rad) - ex * sin(ego_yaw_rad) END AS dy,
+            CASE WHEN near THEN cos(yaw_rad - ego_yaw_rad) END AS c, CASE WHEN near THEN sin(yaw_rad - ego_yaw_rad) END AS s
+        FROM (
+            SELECT *, least_m <= exact_clearance_m() AS near
+            FROM (SELECT *, distance_m - sqrt(hla * hla + hwa * hwa) - sqrt(hlb * hlb + hwb * hwb) AS least_m FROM apart)
+        )
+    )
 ),
 candidate AS (
     SELECT
@@ -100,7 +109,7 @@ lap AS (
 ),
 on_chain AS MATERIALIZED (
     SELECT
-        b.pair_no, c.s_start_m + b.lane_s_m AS s_m, b.d_m, b.half_width_m, b.psi, c.over_width_m, c.over_against,
+        b.pair_no, c.s_start_m + b.lane_s_m AS s_m, b.d_m, b.half_width_m, b.psi, c.over_width_m, c.over_against, b.lanelet_id,
         abs(c.s_start_m + b.lane_s_m - b.ego_s_m)
         -- beside the road only if it is nowhere on it: the legs of a hairpin lie in each other's strip
         + CASE WHEN abs(b.d_m) > b.half_width_m + coalesce(c.over_width_m, 2 * b.half_width_m) THEN 1e8 ELSE 0.0 END
@@ -121,7 +130,8 @@ settled AS (
     SELECT
         pair_no,
         min({
-            's_m': s_m, 'd_m': d_m, 'half_width_m': half_width_m, 'psi': psi, 'over_width_m': over_width_m, 'over_against': over_against
+            's_m': s_m, 'd_m': d_m, 'half_width_m': half_width_m, 'psi': psi, 'over_width_m': over_width_m, 'over_against': over_against,
+            'lanelet_id': lanelet_id
         }) AS p
     FROM nearest SEMI JOIN twice USING (pair_no)
     GROUP BY pair_no
@@ -130,15 +140,96 @@ placed AS (
     SELECT * EXCLUDE (off) FROM nearest ANTI JOIN twice USING (pair_no)
     UNION ALL
     SELECT pair_no, unnest(p) FROM settled
+),
+-- ---- levels: whose box is in plan over the running lane or one lane's width beside it, where there is something to tell
+crossed AS (SELECT DISTINCT g.drive_id FROM data_log g SEMI JOIN lane_apart l ON l.environment_id = g.environment_id),
+over AS MATERIALIZED (
+    SELECT a.pair_no, a.drive_id, a.ego_id, a.chain_id, a.object_id, a.t_at_ns, a.z_m, p.s_m, p.psi, p.lanelet_id
+    FROM apart a
+    JOIN placed p USING (pair_no)
+    LEFT JOIN crossed r USING (drive_id)
+    WHERE (a.z_m IS NOT NULL OR r.drive_id IS NOT NULL)
+        AND abs(p.d_m) - coalesce(a.hlb * abs(sin(p.psi)) + a.hwb * abs(cos(p.psi)), 0.0) < p.half_width_m + greatest(coalesce(p.over_width_m, 0.0), 2 * p.half_width_m)
+),
+-- one height for each place, or while the ego stands it would be any
+way AS (SELECT drive_id, ego_id, chain_id, s_m, min(z_m) AS z_m FROM ego_state WHERE s_m IS NOT NULL AND z_m IS NOT NULL GROUP BY ALL),
+-- its height against the ego's where the ego comes nearest to that place, be it before or after
+height AS (
+    SELECT
+        pair_no, abs(dz_m) > level_m() + steepest() * along_m AS is_apart, abs(dz_m) <= level_m() AND steepest() * along_m <= level_m() AS is_same
+    FROM (
+        SELECT
+            o.pair_no, o.z_m - CASE WHEN b.s_m IS NULL OR a.s_m - o.s_m < o.s_m - b.s_m THEN a.z_m ELSE b.z_m END AS dz_m,
+            -- least() leaves out the one that is not there, as it should here
+            least(a.s_m - o.s_m, o.s_m - b.s_m) AS along_m
+        FROM over o
+        ASOF LEFT JOIN way b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.chain_id = o.chain_id AND b.s_m <= o.s_m
+        ASOF LEFT JOIN way a ON a.drive_id = o.drive_id AND a.ego_id = o.ego_id AND a.chain_id = o.chain_id AND a.s_m >= o.s_m
+        WHERE o.z_m IS NOT NULL
+    )
+),
+off AS (
+    SELECT pair_no FROM height WHERE is_apart
+    UNION
+    -- in a lane over or under the ego's, as far as the map tells, and not along the ego's alone
+    SELECT v.pair_no
+    FROM over v
+    JOIN data_log g USING (drive_id)
+    JOIN lane_occupancy o ON o.drive_id = v.drive_id AND o.actor_id = v.object_id AND o.t_ns = v.t_at_ns
+    JOIN lane_apart l ON l.environment_id = g.environment_id AND l.lanelet_id = v.lanelet_id AND l.other_id = o.lanelet_id
+    ANTI JOIN (FROM height WHERE is_same) h ON h.pair_no = v.pair_no
+    WHERE coalesce(NOT along_lane(v.psi) OR along_lane(o.heading_diff_rad), true)
+),
+-- ---- the trailer's box is the ego's too: the nearer of the two counts
+drawn AS (
+    SELECT
+        a.pair_no,
+        min(CASE
+            WHEN l.least_m > exact_clearance_m() THEN l.least_m
+            WHEN l.least_m + a.yaw_rad + s.yaw_rad IS NOT NULL THEN box_clearance(
+                (a.x_m - s.x_m) * cos(s.yaw_rad) + (a.y_m - s.y_m) * sin(s.yaw_rad), (a.y_m - s.y_m) * cos(s.yaw_rad) - (a.x_m - s.x_m) * sin(s.yaw_rad),
+                cos(a.yaw_rad - s.yaw_rad), sin(a.yaw_rad - s.yaw_rad), s.length_m / 2, s.width_m / 2, a.hlb, a.hwb
+            )
+        END) AS clearance_m
+    FROM apart a
+    JOIN (FROM ego_part WHERE part = 'trailer') g ON g.drive_id = a.drive_id AND g.ego_id = a.ego_id
+    LEFT JOIN state_dynamics s ON s.drive_id = g.drive_id AND s.actor_id = g.object_id AND s.t_ns = a.t_ns
+    CROSS JOIN LATERAL (
+        SELECT sqrt((a.x_m - s.x_m) ** 2 + (a.y_m - s.y_m) ** 2) - sqrt((s.length_m / 2) ** 2 + (s.width_m / 2) ** 2) - sqrt(a.hlb ** 2 + a.hwb ** 2) AS least_m
+    ) l
+    GROUP BY a.pair_no
+),
+combined AS (
+    SELECT
+        c.* EXCLUDE (clearance_m, clearance_is_bound),
+        CASE WHEN d.pair_no IS NULL THEN c.clearance_is_bound ELSE r.m > exact_clearance_m() END AS clearance_is_bound, r.m AS clearance_m
+    FROM cleared c
+    LEFT JOIN drawn d USING (pair_no)
+    -- a contact of one of the two is one; that there is none takes both
+    CROSS JOIN LATERAL (
+        SELECT CASE
+            WHEN d.pair_no IS NULL OR c.clearance_m <= 0 THEN c.clearance_m
+            WHEN d.clearance_m <= 0 OR c.clearance_m + d.clearance_m IS NOT NULL THEN least(c.clearance_m, d.clearance_m)
+        END AS m
+    ) r
 )
 SELECT
-    c.drive_id, c.ego_id, c.t_ns, c.object_id, c.actor_class, c.x_m, c.y_m, c.yaw_rad, c.speed_mps, c.accel_mps2,
-    c.length_m, c.width_m, c.distance_m, c.clearance_m, c.clearance_is_bound,
+    c.drive_id, c.ego_id, c.t_ns, c.object_id, c.actor_class, l.off_level,
+    CASE WHEN NOT l.off_level THEN c.x_m END AS x_m, CASE WHEN NOT l.off_level THEN c.y_m END AS y_m, c.yaw_rad, c.speed_mps, c.accel_mps2,
+    c.length_m, c.width_m, c.distance_m,
+    -- on another level it is at least as far away as in plan
+    CASE WHEN NOT l.off_level OR c.clearance_m > 0 THEN c.clearance_m END AS clearance_m,
+    CASE WHEN NOT l.off_level THEN c.clearance_is_bound WHEN c.clearance_m > 0 THEN true END AS clearance_is_bound,
     p.s_m AS s_m, p.d_m AS d_m,
     p.s_m + c.hlb * abs(cos(p.psi)) + c.hwb * abs(sin(p.psi)) AS front_s_m,
     p.s_m - c.hlb * abs(cos(p.psi)) - c.hwb * abs(sin(p.psi)) AS rear_s_m,
     c.hlb * abs(sin(p.psi)) + c.hwb * abs(cos(p.psi)) AS lat_half_m,
     p.psi AS heading_diff_rad,
     p.half_width_m AS half_width_m, p.over_width_m AS over_width_m, p.over_against AS over_against
-FROM cleared c
-LEFT JOIN placed p USING (pair_no)
+FROM combined c
+LEFT JOIN off o USING (pair_no)
+LEFT JOIN (FROM placed ANTI JOIN off USING (pair_no)) p USING (pair_no)
+-- where it has no place on the ego's road, its level matters only in a contact
+CROSS JOIN LATERAL (
+    SELECT o.pair_no IS NOT NULL OR coalesce(p.pair_no IS NULL AND c.clearance_m <= 0 AND NOT same_level(c.z_m, c.ego_z_m), false) AS off_level
+) l

@@ -12,18 +12,18 @@ met AS (
     SELECT
         p.drive_id, p.ego_id, p.occurrence, p.heading_rad, c.object_id, c.actor_class, c.pet_s, c.decel_mps2, c.t_object_in_ns,
         -- who has no class may be either
-        c.actor_class IS NULL OR c.actor_class = 'pedestrian' AS on_foot, c.actor_class IS DISTINCT FROM 'pedestrian' AND e.t_ns <= p.t_b_ns AS driven
+        may_walk(c.actor_class) AS on_foot, c.actor_class IS DISTINCT FROM 'pedestrian' AND e.t_ns <= p.t_b_ns AS driven
     FROM passed p
     JOIN conflict c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id AND c.t_ego_out_ns >= p.t_a_ns
     JOIN ego_state e ON e.drive_id = c.drive_id AND e.ego_id = c.ego_id AND e.t_ns = c.t_ego_in_ns
-    WHERE (e.t_ns <= p.t_b_ns OR (c.actor_class IS NOT DISTINCT FROM 'pedestrian' AND e.travel_m <= p.travel_m + 12))
+    WHERE (e.t_ns <= p.t_b_ns OR (may_walk(c.actor_class) AND e.travel_m <= p.travel_m + 12))
         -- and into whom it went: somebody still walking there
-        AND (c.ego_first OR (c.pet_s < 0 AND c.actor_class IS NOT DISTINCT FROM 'pedestrian'))
+        AND (c.ego_first OR (c.pet_s < 0 AND may_walk(c.actor_class)))
         AND c.actor_class IS DISTINCT FROM 'object'
 ),
 -- where they came from: their heading two seconds before they came, against the ego's on its way in
 came AS (
-    SELECT m.drive_id, m.ego_id, m.occurrence, m.object_id, m.t_object_in_ns, wrap_rad(min({'t_ns': s.t_ns, 'yaw_rad': s.yaw_rad}).yaw_rad - m.heading_rad) AS from_rad
+    SELECT m.drive_id, m.ego_id, m.occurrence, m.object_id, m.t_object_in_ns, wrap_rad(min({'t_ns': s.t_ns, 'travel_rad': s.travel_rad}).travel_rad - m.heading_rad) AS from_rad
     FROM met m
     JOIN state_dynamics s ON s.drive_id = m.drive_id AND s.actor_id = m.object_id
         AND s.t_ns >= m.t_object_in_ns - 2_000_000_000 AND s.t_ns <= m.t_object_in_ns
@@ -31,28 +31,51 @@ came AS (
     GROUP BY m.drive_id, m.ego_id, m.occurrence, m.object_id, m.t_object_in_ns, m.heading_rad
 ),
 related AS (
-    SELECT drive_id, ego_id, occurrence, 'pedestrian' AS relation, object_id, pet_s, decel_mps2 FROM met WHERE on_foot
+    SELECT drive_id, ego_id, occurrence, 'pedestrian' AS relation, object_id, actor_class, pet_s, decel_mps2 FROM met WHERE on_foot
     UNION ALL
     SELECT
         m.drive_id, m.ego_id, m.occurrence,
-        CASE
-            WHEN abs(c.from_rad) >= radians(135) THEN 'oncoming' WHEN abs(c.from_rad) <= radians(45) THEN 'ahead_going'
-            WHEN c.from_rad < 0 THEN 'from_left' ELSE 'from_right'
-        END,
-        m.object_id, m.pet_s, m.decel_mps2
+        relation_of(c.from_rad),
+        m.object_id, m.actor_class, m.pet_s, m.decel_mps2
     FROM met m JOIN came c USING (drive_id, ego_id, occurrence, object_id, t_object_in_ns)
     WHERE m.driven
 ),
 nearest AS (
-    SELECT drive_id, ego_id, occurrence, relation, min({'pet_s': pet_s, 'object_id': object_id, 'decel_mps2': decel_mps2}) AS who
+    SELECT drive_id, ego_id, occurrence, relation, min({'pet_s': pet_s, 'object_id': object_id, 'actor_class': actor_class, 'decel_mps2': decel_mps2}) AS who
     FROM related
+    GROUP BY drive_id, ego_id, occurrence, relation
+),
+-- those who braked where their way led onto the ego's: of each relation the one with the least to have braked for otherwise
+forced AS (
+    SELECT
+        p.drive_id, p.ego_id, p.occurrence, f.object_id, f.pet_s, f.decel_mps2, f.other_cause,
+        may_walk(f.actor_class) AS on_foot, f.actor_class IS DISTINCT FROM 'pedestrian' AND e.t_ns <= p.t_b_ns AS driven,
+        relation_of(wrap_rad(s.yaw_rad - p.heading_rad)) AS relation
+    FROM passed p
+    JOIN forced_braking f ON f.drive_id = p.drive_id AND f.ego_id = p.ego_id AND f.t_ego_out_ns >= p.t_a_ns
+    JOIN ego_state e ON e.drive_id = f.drive_id AND e.ego_id = f.ego_id AND e.t_ns = f.t_ego_in_ns
+    JOIN state_dynamics s ON s.drive_id = f.drive_id AND s.actor_id = f.object_id AND s.t_ns = f.t_from_ns
+    WHERE (e.t_ns <= p.t_b_ns OR (f.actor_class IS NOT DISTINCT FROM 'pedestrian' AND e.travel_m <= p.travel_m + 12))
+        AND f.actor_class IS DISTINCT FROM 'object'
+),
+hardest AS (
+    SELECT
+        drive_id, ego_id, occurrence, relation,
+        min({
+            'other': other_cause IS NOT NULL, 'ease_mps2': -decel_mps2, 'pet_s': pet_s, 'object_id': object_id, 'decel_mps2': decel_mps2, 'other_cause': other_cause
+        }) AS braked
+    FROM (
+        SELECT * FROM forced WHERE driven
+        UNION ALL
+        SELECT * REPLACE ('pedestrian' AS relation) FROM forced WHERE on_foot
+    )
     GROUP BY drive_id, ego_id, occurrence, relation
 ),
 -- ---- what stands against "nobody else": somebody present who cannot be compared
 blind AS (
     SELECT
         drive_id, ego_id, t_ns, object_id, actor_class, x_m, y_m, x_m IS NULL OR y_m IS NULL AS nowhere,
-        CASE WHEN x_m IS NULL OR y_m IS NULL THEN 'has no position' WHEN yaw_rad IS NULL THEN 'has no heading' ELSE 'has no size' END AS what
+        CASE WHEN off_level THEN 'may be over or under the road' WHEN x_m IS NULL OR y_m IS NULL THEN 'has no position' WHEN yaw_rad IS NULL THEN 'has no heading' ELSE 'has no size' END AS what
     FROM pair
     WHERE (x_m IS NULL OR y_m IS NULL OR yaw_rad IS NULL OR length_m IS NULL OR width_m IS NULL) AND actor_class IS DISTINCT FROM 'object'
 ),
@@ -81,7 +104,7 @@ unclear_near AS (
 edge AS (
     SELECT s.drive_id, s.actor_id, s.actor_class, min(s.t_ns) AS t_first_ns, max(s.t_ns) AS t_last_ns
     FROM state_dynamics s
-    WHERE s.actor_class IS DISTINCT FROM 'object'
+    WHERE s.actor_class IS DISTINCT FROM 'object' AND s.x_m IS NOT NULL AND s.y_m IS NOT NULL
     GROUP BY s.drive_id, s.actor_id, s.actor_class
 ),
 broken AS (
@@ -92,7 +115,7 @@ broken AS (
     JOIN clock c USING (drive_id, ego_id)
     JOIN edge d ON d.drive_id = p.drive_id AND d.actor_id <> p.ego_id
     CROSS JOIN LATERAL (VALUES ('appeared in the log nearby', d.t_first_ns, 0), ('was lost from the log nearby', d.t_last_ns, 1)) AS v(what, t_ns, lost)
-    WHERE v.t_ns >= p.t_a_ns - v.lost * watched_ns() AND v.t_ns <= p.t_b_ns + conflict_ns() AND v.t_ns > c.t_start_ns + c.max_gap_ns AND v.t_ns < c.t_end_ns - c.max_gap_ns
+    WHERE v.t_ns >= p.t_a_ns - v.lost * conflict_ns() AND v.t_ns <= p.t_b_ns + conflict_ns() AND v.t_ns > c.t_start_ns + c.max_gap_ns AND v.t_ns < c.t_end_ns - c.max_gap_ns
 ),
 broken_near AS (
     SELECT b.drive_id, b.ego_id, b.occurrence, b.object_id, b.actor_class, b.what
@@ -123,7 +146,7 @@ own AS (
 doubt AS (
     SELECT drive_id, ego_id, occurrence, on_foot, min({'id': object_id, 'what': what}) AS who
     FROM (
-        SELECT *, true AS on_foot FROM (FROM unclear_near UNION ALL FROM broken_near) WHERE actor_class IS NULL OR actor_class = 'pedestrian'
+        SELECT *, true AS on_foot FROM (FROM unclear_near UNION ALL FROM broken_near) WHERE may_walk(actor_class)
         UNION ALL
         SELECT *, false FROM (FROM unclear_near UNION ALL FROM broken_near) WHERE actor_class IS DISTINCT FROM 'pedestrian'
     )
@@ -135,16 +158,18 @@ asked AS (
 ),
 answered AS (
     SELECT
-        a.drive_id, a.ego_id, a.occurrence, a.relation, n.who,
+        a.drive_id, a.ego_id, a.occurrence, a.relation, n.who, h.braked,
         coalesce(o.reason, 'actor ' || d.who.id || ' ' || d.who.what) AS reason
     FROM asked a
     JOIN own o USING (drive_id, ego_id, occurrence)
     LEFT JOIN nearest n USING (drive_id, ego_id, occurrence, relation)
+    LEFT JOIN hardest h USING (drive_id, ego_id, occurrence, relation)
     LEFT JOIN doubt d USING (drive_id, ego_id, occurrence, on_foot)
 )
 SELECT
-    drive_id, ego_id, occurrence, relation, who.object_id AS object_id,
+    drive_id, ego_id, occurrence, relation, who.object_id AS object_id, who.actor_class AS actor_class,
     CASE WHEN who IS NOT NULL THEN who.pet_s WHEN reason IS NULL THEN 'inf'::DOUBLE END AS pet_s,
     CASE WHEN who IS NOT NULL THEN who.decel_mps2 WHEN reason IS NULL THEN 0.0 END AS decel_mps2,
+    braked.object_id AS braked_id, braked.pet_s AS braked_pet_s, braked.decel_mps2 AS braked_mps2, braked.other_cause AS braked_cause,
     reason
 FROM answered

@@ -26,13 +26,10 @@ known AS (
     WHERE s.gap_ns IS NULL OR s.gap_ns > c.max_gap_ns
 ),
 changed AS (
-    SELECT *, row_number() OVER w AS n, lag(state) OVER w AS before
+    SELECT *
     FROM known
     WINDOW w AS (PARTITION BY drive_id, signal_id ORDER BY t_ns)
-    QUALIFY n = 1 OR state IS DISTINCT FROM before
+    QUALIFY row_number() OVER w = 1 OR state IS DISTINCT FROM lag(state) OVER w
 )
-SELECT
-    drive_id, signal_id, t_ns AS t_from_ns, lead(t_ns) OVER w AS t_to_ns, state, before AS state_before, before IS NOT NULL AND state IS NOT NULL AS begin_seen,
-    CASE WHEN lag(before) OVER w IS NOT NULL THEN lag(t_ns) OVER w END AS t_before_ns
+SELECT drive_id, signal_id, t_ns AS t_from_ns, lead(t_ns) OVER (PARTITION BY drive_id, signal_id ORDER BY t_ns) AS t_to_ns, state
 FROM changed
-WINDOW w AS (PARTITION BY drive_id, signal_id ORDER BY t_ns)

@@ -27,7 +27,7 @@ there AS (
     LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = e.lanelet_id
 ),
 mark AS (
-    SELECT t.drive_id, t.ego_id, t.t_start_ns, t.front_s_m, t.rear_s_m, m.kind, m.mark_id, m.s_start_m, m.s_end_m, m.control, m.signal_id
+    SELECT t.drive_id, t.ego_id, t.t_start_ns, t.front_s_m, t.rear_s_m, m.kind, m.mark_id, m.s_start_m, m.s_end_m, m.control
     FROM there t
     JOIN way_mark m ON m.drive_id = t.drive_id AND m.ego_id = t.ego_id AND m.chain_id = t.chain_id
     WHERE t.front_s_m IS NOT NULL AND m.s_end_m > t.rear_s_m - 3
@@ -35,10 +35,10 @@ mark AS (
 around AS (
     SELECT
         drive_id, ego_id, t_start_ns,
-        min({'s_m': s_start_m, 'id': mark_id}) FILTER (kind = 'junction' AND s_start_m < front_s_m AND s_end_m > rear_s_m).id AS junction_id,
+        min({'s_m': s_start_m, 'id': mark_id, 'clear_m': s_end_m - rear_s_m}) FILTER (kind = 'junction' AND s_start_m < front_s_m AND s_end_m > rear_s_m) AS junction,
         min(s_start_m - front_s_m) FILTER (kind = 'junction' AND s_start_m >= front_s_m) AS junction_m,
-        min({'s_m': s_start_m, 'id': mark_id}) FILTER (kind = 'crossing' AND s_start_m < front_s_m AND s_end_m > rear_s_m).id AS crossing_id,
-        min({'off_m': abs(s_start_m - front_s_m), 'id': mark_id, 'm': s_start_m - front_s_m, 'control': control, 'signal_id': signal_id})
+        min({'s_m': s_start_m, 'id': mark_id, 'clear_m': s_end_m - rear_s_m}) FILTER (kind = 'crossing' AND s_start_m < front_s_m AND s_end_m > rear_s_m) AS crossing,
+        min({'off_m': abs(s_start_m - front_s_m), 'id': mark_id, 'm': s_start_m - front_s_m, 's_start_m': s_start_m, 'control': control})
             FILTER (kind = 'stop_line' AND s_start_m - front_s_m BETWEEN -3 AND 20) AS line
     FROM mark
     GROUP BY drive_id, ego_id, t_start_ns
@@ -52,7 +52,8 @@ turning AS (
 ),
 placed AS (
     SELECT
-        t.*, coalesce(a.junction_id, t.lane_junction_id) AS junction_id, a.crossing_id, a.line,
+        t.*, coalesce(a.junction.id, t.lane_junction_id) AS junction_id, a.junction.clear_m AS junction_clear_m, a.crossing.id AS crossing_id,
+        a.crossing.clear_m AS crossing_clear_m, a.line,
         CASE WHEN t.front_s_m IS NOT NULL THEN coalesce(a.junction_m, 'inf'::DOUBLE) END AS junction_m
     FROM there t
     LEFT JOIN around a USING (drive_id, ego_id, t_start_ns)
@@ -60,14 +61,14 @@ placed AS (
 lit AS (
     SELECT p.drive_id, p.ego_id, p.t_start_ns, f.state
     FROM placed p
-    JOIN signal_phase f ON f.drive_id = p.drive_id AND f.signal_id = p.line.signal_id
+    JOIN mark_phase f ON f.drive_id = p.drive_id AND f.ego_id = p.ego_id AND f.chain_id = p.chain_id AND f.kind = 'stop_line'
+        AND f.mark_id = p.line.id AND f.s_start_m = p.line.s_start_m
         AND f.t_from_ns <= p.t_start_ns AND p.t_start_ns < coalesce(f.t_to_ns, p.t_start_ns + 1)
-    WHERE p.line.control = 'traffic_light'
 )
 SELECT
     p.drive_id, p.ego_id, (row_number() OVER (PARTITION BY p.drive_id, p.ego_id ORDER BY p.t_start_ns) - 1)::INTEGER AS occurrence,
     p.t_start_ns, p.t_end_ns, coalesce(b.v_mps >= stood_mps(), false) AS begin_seen, coalesce(a.v_mps >= stood_mps(), false) AS end_seen,
-    p.road_type, p.lanelet_id, p.junction_id, u.p.turn AS turn, u.p.across AS across, p.junction_m, p.crossing_id,
+    p.road_type, p.lanelet_id, p.junction_id, p.junction_clear_m, u.p.turn AS turn, u.p.across AS across, p.junction_m, p.crossing_id, p.crossing_clear_m,
     p.line.id AS stop_line_id, p.line.m AS stop_line_m, p.line.control AS control, l.state,
     d.object_id AS ahead_id, d.gap_m AS ahead_gap_m, d.speed_mps AS ahead_speed_mps, d.t_ns IS NOT NULL AS ahead_known
 FROM placed p

@@ -62,10 +62,8 @@ lit AS (
         c.drive_id, c.ego_id, c.chain_id, c.mark_id, c.s_start_m, c.t_ns, p.state, p.state_before, CASE WHEN p.begin_seen THEN p.t_from_ns END AS t_state_ns,
         CASE WHEN p.state = 'amber' AND p.begin_seen THEN p.t_from_ns WHEN p.state = 'red' AND p.state_before = 'amber' THEN p.t_before_ns END AS t_amber_ns
     FROM crossed c
-    JOIN way_mark m USING (drive_id, ego_id, chain_id, mark_id, s_start_m)
-    JOIN signal_phase p ON p.drive_id = c.drive_id AND p.signal_id = m.signal_id
-        AND p.t_from_ns <= c.t_ns AND c.t_ns < coalesce(p.t_to_ns, c.t_ns + 1)
-    WHERE m.kind = 'stop_line' AND m.control = 'traffic_light'
+    JOIN mark_phase p USING (drive_id, ego_id, chain_id, mark_id, s_start_m)
+    WHERE p.kind = 'stop_line' AND p.t_from_ns <= c.t_ns AND c.t_ns < coalesce(p.t_to_ns, c.t_ns + 1)
 ),
 at_amber AS (
     SELECT

@@ -4,6 +4,11 @@
 CREATE OR REPLACE MACRO exact_slope(n, sum_t, sum_y, sum_ty, sum_tt) AS
     (n * sum_ty - sum_t * sum_y)::DOUBLE / nullif(n * sum_tt - sum_t * sum_t, 0)::DOUBLE;
 
+-- Half width of the window over which the ego's motion is filtered: 0.25 s, or 2.2 periods where that is more. A period of 200 ms may be one
+-- of 201; NULL in logs with less than 5 samples a second.
+CREATE OR REPLACE MACRO filter_half_ns(period_ns) AS
+    CASE WHEN period_ns <= 210_000_000 THEN greatest(250_000_000, (2.2 * period_ns)::BIGINT) END;
+
 -- Whether the samples of a window reach 0.7 of its half width to both sides.
 CREATE OR REPLACE MACRO whole_window(t_ns, first_ns, last_ns, half_ns) AS
     t_ns - first_ns >= 0.7 * half_ns AND last_ns - t_ns >= 0.7 * half_ns;
@@ -11,6 +16,22 @@ CREATE OR REPLACE MACRO whole_window(t_ns, first_ns, last_ns, half_ns) AS
 -- Nobody comes nearer to the ego than at this speed while unseen, and no two boxes reach further than this from their centres.
 CREATE OR REPLACE MACRO unseen_closing_mps() AS 60.0;
 CREATE OR REPLACE MACRO two_half_boxes_m() AS 12.0;
+
+-- How far an actor can be from where its last (or next) velocity leads, t seconds away: nothing on wheels or hooves changes its velocity
+-- faster than 10 m/s2; people on foot go nowhere faster than 10 m/s; an unknown class is either.
+CREATE OR REPLACE MACRO strays_m(actor_class, t_s) AS
+    CASE
+        WHEN actor_class = 'pedestrian' THEN 10.0 * t_s
+        WHEN actor_class IS NULL OR actor_class = 'object' THEN greatest(10.0 * t_s, 5.0 * t_s * t_s)
+        ELSE 5.0 * t_s * t_s
+    END;
+
+-- Why an actor cannot be placed, in words.
+CREATE OR REPLACE MACRO unplaced_words(code) AS CASE code
+    WHEN 'no_position' THEN 'has no position (or no fresh one)' WHEN 'off_level' THEN 'may be over or under the road' WHEN 'off_lanes' THEN 'moves off the lanes'
+    WHEN 'no_heading' THEN 'has no heading' WHEN 'no_size' THEN 'has no size' WHEN 'lost' THEN 'was lost from the log nearby'
+    WHEN 'lost_behind' THEN 'was lost behind, driving away' WHEN 'appeared' THEN 'appeared in the log nearby'
+    WHEN 'beyond_map' THEN 'came in over the end of the map' END;
 
 -- Somebody who cannot be placed may be beside the ego if he may be this near.
 CREATE OR REPLACE MACRO may_be_beside_m() AS 10.0;
@@ -36,3 +57,54 @@ CREATE OR REPLACE MACRO cut_in_m() AS 0.3;
 -- A marking as the lane on its other side sees it: of a double line the nearer one is named first.
 CREATE OR REPLACE MACRO seen_from_beyond(marking) AS
     CASE marking WHEN 'solid_broken' THEN 'broken_solid' WHEN 'broken_solid' THEN 'solid_broken' ELSE marking END;
+
+-- The ego's way: what is so near beside its box is in it; who is in it within so many seconds, at the present speeds across, is heading
+-- into it; somebody on foot so near beside it may step into it.
+CREATE OR REPLACE MACRO way_beside_m() AS 0.5;
+CREATE OR REPLACE MACRO enters_s() AS 4.0;
+CREATE OR REPLACE MACRO may_step_m() AS 2.0;
+-- How far ahead anybody is looked for: from 70 m/s it takes 2 m/s2 some 600 m to stop.
+CREATE OR REPLACE MACRO way_reach_m() AS 600.0;
+-- How far away somebody can be a reason to brake at all hard (2 m/s2), with two seconds to see it and 10 m to spare.
+CREATE OR REPLACE MACRO way_look_m(v_mps) AS 10.0 + 2.0 * v_mps + v_mps ** 2 / 4.0;
+-- Deceleration that keeps the ego 5 m off somebody ahead, after a second to see it; speeds along the road, none where nothing closes in.
+CREATE OR REPLACE MACRO need_mps2(gap_m, v_mps, along_mps) AS
+    CASE WHEN v_mps > along_mps THEN (v_mps - along_mps) ** 2 / (2 * greatest(gap_m - (v_mps - along_mps) - 5.0, 0.1)) WHEN v_mps IS NOT NULL THEN 0.0::DOUBLE END;
+-- A driver who has braked for somebody lets the brake go within so long after he has gone.
+CREATE OR REPLACE MACRO let_go_ns() AS 2_000_000_000;
+
+-- Whether somebody in the way, who asks for a deceleration of `need_mps2`, is a reason to brake harder than `abrupt_mps2`. `known`: nobody
+-- else may be in the way; NULL: not known.
+CREATE OR REPLACE MACRO asks_to_brake(need_mps2, known, abrupt_mps2) AS need_mps2 >= abrupt_mps2 OR CASE WHEN known THEN false END;
+
+-- Whether the ego stands because of somebody in its way: a vehicle within `queue_m` that is no faster than `slow_mps`, or somebody on foot,
+-- an animal or a thing within `hazard_m`. `known`: nobody else may be; NULL: not known.
+CREATE OR REPLACE MACRO stands_for(object_id, actor_class, gap_m, along_mps, known, queue_m, hazard_m, slow_mps) AS
+    CASE WHEN object_id IS NOT NULL AND NOT may_be_vehicle(actor_class) AND gap_m <= hazard_m THEN true
+        WHEN object_id IS NOT NULL AND gap_m <= queue_m AND along_mps <= slow_mps THEN true
+        WHEN object_id IS NOT NULL AND actor_class IS NULL AND gap_m <= hazard_m THEN NULL
+        WHEN object_id IS NOT NULL AND gap_m <= queue_m AND along_mps IS NULL THEN NULL
+        WHEN known THEN false END;
+
+-- A distance that was sampled is kept only if what lies between the samples does not matter.
+CREATE OR REPLACE MACRO kept_between(seen_m, blur_m, required_m) AS CASE WHEN seen_m < required_m OR seen_m - coalesce(blur_m, 0.0) >= required_m THEN seen_m END;
+
+-- Faster than this nobody turns into premises or a side road (20 mph: a bend of 12 m radius then asks for 6.7 m/s2), nor without turning
+-- by as much as this.
+CREATE OR REPLACE MACRO access_mps() AS 8.94;
+CREATE OR REPLACE MACRO turned_off_rad() AS pi() / 6;
+-- Without a place for so long the ego has not been back in its lane and out of it again.
+CREATE OR REPLACE MACRO no_return_ns() AS 500_000_000;
+
+-- Our default: an overtake on the opposing side takes no longer (the case study's take 6 s at 5 m/s). An ego against its lane
+-- for less, since the log began, may be in one.
+CREATE OR REPLACE MACRO longest_overtake_ns() AS 15_000_000_000;
+-- Our default: nor a lane change.
+CREATE OR REPLACE MACRO longest_change_ns() AS 10_000_000_000;
+-- Our default: so long before an overtake the one behind may have begun to brake for it.
+CREATE OR REPLACE MACRO braked_for_ns() AS 2_000_000_000;
+
+-- How far before somebody, and how far past it, a driver who goes round it may be over the line: 10 m and 5 s at its own speed, and as it
+-- waits behind it, 30 m.
+CREATE OR REPLACE MACRO passing_after_m(v_mps) AS 10.0 + 5.0 * coalesce(v_mps, 0.0);
+CREATE OR REPLACE MACRO passing_before_m(v_mps) AS greatest(30.0, passing_after_m(v_mps));

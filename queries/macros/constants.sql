@@ -12,12 +12,24 @@ CREATE OR REPLACE MACRO exact_clearance_m() AS 30.0;
 CREATE OR REPLACE MACRO lost_near_m() AS 50.0;
 -- Slower than this is standing: positions of parked vehicles jitter.
 CREATE OR REPLACE MACRO standing_mps() AS 0.5;
+-- What a velocity that ingest derives by a filter may be off by (ingest/velocity.py).
+CREATE OR REPLACE MACRO filtered_error_mps() AS 0.25;
+-- Positions that spread by no more than this are those of something that stays where it is.
+CREATE OR REPLACE MACRO moved_m() AS 1.0;
 -- From so far away of the end of the map, who is beyond it is nothing to reckon with yet: two vehicles at 60 mph that brake for each other
 -- need some 150 m to stop, and 350 m by the most careful of the models.
 CREATE OR REPLACE MACRO beyond_map_m() AS 400.0;
 -- Samples closer than this many periods are continuous.
 CREATE OR REPLACE MACRO max_gap_periods() AS 2.5;
+-- How near to the ego a vehicle that leaves or enters the log matters: as far as the faster of the two goes in 10 s. No rule looks further
+-- ahead or behind for a vehicle that goes the same way (RSS asks for 4 s, stopping in the wet for 7 s at 70 mph). Unknown speeds: 70 mph.
+CREATE OR REPLACE MACRO reach_m(v_object_mps, v_ego_mps) AS
+    greatest(lost_near_m(), 10 * greatest(coalesce(v_object_mps, 31.3), coalesce(v_ego_mps, 31.3)));
+-- Nobody ahead: nobody as near as the ego goes in 10 s, at 50 km/h and more, and 50 m. An unseen vehicle beyond that breaks no rule.
+CREATE OR REPLACE MACRO lead_reach_m(v_ego_mps) AS lost_near_m() + 10 * greatest(coalesce(v_ego_mps, 31.3), 14.0);
 -- How long a vehicle that left or has not yet entered the log may be on the road ahead all the same: twice the time to meet it at both
--- speeds, between 10 and 60 s.
-CREATE OR REPLACE MACRO unseen_ns(distance_m, v_object_mps, v_ego_mps) AS
-    (1e9 * least(60.0, greatest(10.0, 2 * coalesce(distance_m / nullif(v_object_mps + v_ego_mps, 0), 30.0))))::BIGINT;
+-- speeds, between `least_s` and 60 s.
+CREATE OR REPLACE MACRO unseen_ns(distance_m, v_object_mps, v_ego_mps, least_s) AS
+    (1e9 * least(60.0, greatest(least_s, 2 * coalesce(distance_m / nullif(v_object_mps + v_ego_mps, 0), 30.0))))::BIGINT;
+-- Two directions further apart than this, with nothing between them in the map, may have a central reservation between them.
+CREATE OR REPLACE MACRO reservation_m() AS 1.0;

@@ -11,6 +11,11 @@ CREATE OR REPLACE MACRO ttc_s(gap_m, closing_mps) AS
 CREATE OR REPLACE MACRO or_never(time_s, required_s) AS
     CASE WHEN time_s > greatest(600.0, required_s) THEN 'inf'::DOUBLE ELSE time_s END;
 
+-- A value whose worst and best (by the error of what it is made of) are on the same side of what is required; of a value that is to be at
+-- least that, or with `most`, at most.
+CREATE OR REPLACE MACRO sure(value, worst, best, required) AS CASE WHEN worst >= required OR best < required THEN value END;
+CREATE OR REPLACE MACRO sure_most(value, worst, best, required) AS CASE WHEN worst <= required OR best > required THEN value END;
+
 -- Time headway: until the ego's front is where the other's rear is now.
 CREATE OR REPLACE MACRO thw_s(gap_m, v_mps) AS
     CASE WHEN v_mps > 0 THEN gap_m / v_mps WHEN v_mps <= 0 AND gap_m IS NOT NULL THEN 'inf'::DOUBLE END;

@@ -3,6 +3,22 @@
 -- Angle wrapped to [-pi, pi).
 CREATE OR REPLACE MACRO wrap_rad(a) AS a - 2 * pi() * floor((a + pi()) / (2 * pi()));
 
+-- Direction in which an actor travels: of its motion where it moves, else of its heading. A vehicle goes where it is turned or straight
+-- back (`backs`: its velocity leads backwards, and did so at the sample before and does at the one after: a blow lasts one sample); an actor
+-- that is or may be on foot goes anywhere. Below this speed a motion is noise.
+CREATE OR REPLACE MACRO moves_mps() AS 1.5;
+CREATE OR REPLACE MACRO travel_rad(actor_class, speed_mps, vx_mps, vy_mps, yaw_rad, backs) AS
+    CASE
+        WHEN may_walk(actor_class) AND speed_mps > standing_mps() THEN atan2(vy_mps, vx_mps)
+        WHEN speed_mps > moves_mps() AND backs THEN wrap_rad(yaw_rad + pi())
+        ELSE yaw_rad
+    END;
+-- The heading of a box, turned round if it travels backwards: a box is the same from both ends.
+CREATE OR REPLACE MACRO turned_to(yaw_rad, travel_rad) AS CASE WHEN cos(travel_rad - yaw_rad) < 0 THEN wrap_rad(yaw_rad + pi()) ELSE yaw_rad END;
+
+-- By how much a box turns, in [-pi/2, pi/2): one that is turned round lies as it lay.
+CREATE OR REPLACE MACRO box_turn_rad(a) AS a - pi() * floor((a + pi() / 2) / pi());
+
 -- Keys of the 2 m grid that finds lanes and of the 4 m grid that finds corridors.
 -- The factor keeps cells of one map apart: no map is 4,000 km high.
 CREATE OR REPLACE MACRO cell_key(ix, iy) AS ix::BIGINT * 1000003 + iy::BIGINT;
@@ -20,7 +36,7 @@ CREATE OR REPLACE MACRO offset_left(x, y, u, x0, y0, tx0, ty0, x1, y1, tx1, ty1)
 
 -- Squared distance from a point, given in a box's own frame, to that box of half lengths hl, hw.
 CREATE OR REPLACE MACRO outside2(px, py, hl, hw) AS
-    CASE WHEN abs(px) > hl THEN (abs(px) - hl) ** 2 ELSE 0.0 END + CASE WHEN abs(py) > hw THEN (abs(py) - hw) ** 2 ELSE 0.0 END;
+    greatest(abs(px) - hl, 0.0) ** 2 + greatest(abs(py) - hw, 0.0) ** 2;
 
 -- Least squared distance from the four corners of box b to box a. (dx, dy): centre of b in the frame of a; (c, s): cosine and
 -- sine of b's heading in that frame.
@@ -59,3 +75,28 @@ CREATE OR REPLACE MACRO inside3(a, b, c) AS CASE WHEN a IS NOT NULL AND b IS NOT
 -- (A sum of doubles over a window is not: how it is split depends on what else is in the table.)
 CREATE OR REPLACE MACRO whole_pm(x_m) AS round(1e12 * x_m)::HUGEINT;
 CREATE OR REPLACE MACRO of_pm(x_pm) AS x_pm / 1e12;
+
+-- What happens between two samples. Nobody brakes or swerves harder than this: that is what tyres give.
+CREATE OR REPLACE MACRO swerve_mps2() AS 8.0;
+-- A speed that is not known may be this.
+CREATE OR REPLACE MACRO fast_mps() AS 40.0;
+
+-- The way of one box from one sample to the next, as a cubic: (x, y) the way, p and q how far it is off the chord by the velocities at its
+-- ends. Velocities that no tyres make of that way are left out (then told is false).
+CREATE OR REPLACE MACRO between_way(x0, y0, x1, y1, vx0, vy0, vx1, vy1, dt_s) AS
+    CASE
+        WHEN coalesce(greatest((vx0 * dt_s - x1 + x0) ** 2 + (vy0 * dt_s - y1 + y0) ** 2, (vx1 * dt_s - x1 + x0) ** 2 + (vy1 * dt_s - y1 + y0) ** 2)
+            <= (swerve_mps2() * dt_s ** 2 / 2) ** 2, false)
+        THEN {
+            'told': true, 'x': x1 - x0, 'y': y1 - y0, 'px': vx0 * dt_s - x1 + x0, 'py': vy0 * dt_s - y1 + y0, 'qx': vx1 * dt_s - x1 + x0, 'qy': vy1 * dt_s - y1 + y0,
+            'long_m': (sqrt(vx0 ** 2 + vy0 ** 2) + sqrt(vx1 ** 2 + vy1 ** 2)) * dt_s / 2
+        }
+        ELSE {
+            'told': false, 'x': x1 - x0, 'y': y1 - y0, 'px': 0.0::DOUBLE, 'py': 0.0::DOUBLE, 'qx': 0.0::DOUBLE, 'qy': 0.0::DOUBLE,
+            'long_m': sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2)
+        }
+    END;
+-- How far it may be off that: the most that f'' <= a allows between f and its cubic (Peano kernel: a dt^2 / 16), or its chord (a dt^2 / 8).
+CREATE OR REPLACE MACRO between_blur_m(way, dt_s) AS swerve_mps2() * dt_s ** 2 / CASE WHEN way.told THEN 16 ELSE 8 END;
+-- Where the other is after the fraction u of that time, seen from the ego, on one axis: a at its start, g the change of that, p and q as above.
+CREATE OR REPLACE MACRO between_offset(u, a, g, p, q) AS a + g * u + p * u * (1 - u) ** 2 - q * u ** 2 * (1 - u);

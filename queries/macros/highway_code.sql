@@ -28,46 +28,50 @@ CREATE OR REPLACE MACRO safe_distance_ahead_m(w, beta, theta, headroom, clearanc
 CREATE OR REPLACE MACRO overtake_zone(spare_m, spare_s) AS
     CASE WHEN spare_m <= 0 THEN 'A' WHEN spare_s < 0.5 THEN 'B' WHEN spare_s <= 2.5 THEN 'C' WHEN spare_s > 2.5 THEN 'D' END;
 
--- Could be driven: everything that is not known to be on foot, an animal or a thing.
-CREATE OR REPLACE MACRO may_be_vehicle(actor_class) AS coalesce(actor_class NOT IN ('pedestrian', 'animal', 'object'), true);
+-- Whether an actor may be passed over a line that must not be crossed (UKHC R129): what stands, and cyclists and horses at 10 mph or less.
+CREATE OR REPLACE MACRO passed_over_any_line(actor_class, length_m, speed_mps) AS
+    is_vehicle(actor_class) AND speed_mps <= standing_mps()
+    OR (is_bicycle(actor_class, length_m) OR is_class(actor_class, 'animal')) AND speed_mps <= 4.4704;
+
+-- Room to leave beside them: a door's width, 1.5 m for a cyclist and 2 m for a horse (UKHC R163).
+CREATE OR REPLACE MACRO passing_room_m(actor_class) AS CASE actor_class WHEN 'animal' THEN 2.0 WHEN 'bicycle' THEN 1.5 ELSE 1.0 END;
 
 -- How many times the stopping distance and the two seconds grow with the weather: twice in the wet (Rule 227), up to ten times on ice
 -- (Rule 230). Weather that is not known counts as dry: who is too close then is too close in any weather.
 CREATE OR REPLACE MACRO stopping_factor(weather) AS CASE weather WHEN 'wet' THEN 2.0::DOUBLE WHEN 'ice' THEN 10.0::DOUBLE ELSE 1.0::DOUBLE END;
 
+-- Somebody whose class is not known matters to who is ahead if the ego gets there so soon: the two seconds grow to 20 on ice.
+CREATE OR REPLACE MACRO unsure_reach_m(v_mps) AS greatest(lost_near_m(), 20.0 * coalesce(v_mps, 70.0));
+
 -- The side on which one overtakes, where traffic keeps to the other.
 CREATE OR REPLACE MACRO overtaking_side(handedness) AS CASE handedness WHEN 'lht' THEN 'right' WHEN 'rht' THEN 'left' END;
 
--- Whether an actor is of this class; unknown for one whose class is not known or only that it is a vehicle of some kind.
-CREATE OR REPLACE MACRO is_class(actor_class, word) AS CASE WHEN actor_class <> 'vehicle' THEN actor_class = word END;
-
--- Speed limits of Rule 124 for a class of vehicle outside built-up areas, in mph. road: single, dual or motorway.
-CREATE OR REPLACE MACRO class_limit_mph(vehicle_class, nation, road) AS
+-- Speed limits of Rule 124 for a class of vehicle outside built-up areas, in mph. road: single, dual or motorway. 70 mph on
+-- motorways is for buses of up to 12 m.
+CREATE OR REPLACE MACRO class_limit_mph(vehicle_class, length_m, nation, road) AS
     CASE
         WHEN vehicle_class IN ('car', 'motorcycle') THEN CASE road WHEN 'single' THEN 60 ELSE 70 END
-        WHEN vehicle_class IN ('bus', 'goods_7t5') THEN CASE road WHEN 'single' THEN 50 WHEN 'dual' THEN 60 ELSE 70 END
+        WHEN vehicle_class = 'goods_7t5' OR vehicle_class = 'bus' AND length_m <= 12 THEN CASE road WHEN 'single' THEN 50 WHEN 'dual' THEN 60 ELSE 70 END
         WHEN vehicle_class = 'goods_over_7t5' AND nation = 'gb-sct' THEN CASE road WHEN 'single' THEN 40 WHEN 'dual' THEN 50 ELSE 60 END
         ELSE CASE road WHEN 'single' THEN 50 ELSE 60 END
     END;
 
--- The highest and the lowest limit of Rule 124, in m/s, that can hold where some of this is not known; NULL: another country's law. signed:
+-- The highest and the lowest limit of Rule 124, in m/s, that can hold where some of this is not known. signed:
 -- the map gives a limit, which then counts instead of the built-up one (20 mph in Wales, else 30; a map of a town that gives none may be of
 -- anywhere, so somebody must have said that it is in Britain).
-CREATE OR REPLACE MACRO most_limit_mps(vehicle_class, nation, road_type, carriageway, area, signed) AS
+CREATE OR REPLACE MACRO most_limit_mps(vehicle_class, length_m, nation, road_type, carriageway, area, signed) AS
     0.44704 * CASE
-        WHEN nation NOT IN ('gb', 'gb-eng', 'gb-wls', 'gb-sct') THEN NULL
         WHEN NOT signed AND area = 'built_up' AND nation IS NOT NULL THEN CASE nation WHEN 'gb-wls' THEN 20 ELSE 30 END
         ELSE class_limit_mph(
-            coalesce(vehicle_class, 'car'), coalesce(nation, 'gb'),
+            coalesce(vehicle_class, 'car'), coalesce(length_m, 0.0), coalesce(nation, 'gb'),
             CASE WHEN coalesce(road_type, 'motorway') = 'motorway' AND coalesce(carriageway, 'dual') = 'dual' THEN 'motorway' ELSE coalesce(carriageway, 'dual') END
         )
     END;
-CREATE OR REPLACE MACRO least_limit_mps(vehicle_class, nation, road_type, carriageway, area, signed) AS
+CREATE OR REPLACE MACRO least_limit_mps(vehicle_class, length_m, nation, road_type, carriageway, area, signed) AS
     0.44704 * CASE
-        WHEN nation NOT IN ('gb', 'gb-eng', 'gb-wls', 'gb-sct') THEN NULL
         WHEN NOT signed AND coalesce(area, 'built_up') = 'built_up' THEN CASE WHEN coalesce(nation, 'gb') IN ('gb', 'gb-wls') THEN 20 ELSE 30 END
         ELSE class_limit_mph(
-            coalesce(vehicle_class, 'goods_over_7t5'), CASE WHEN coalesce(nation, 'gb') = 'gb' THEN 'gb-sct' ELSE nation END,
+            coalesce(vehicle_class, 'goods_over_7t5'), coalesce(length_m, 'inf'::DOUBLE), CASE WHEN coalesce(nation, 'gb') = 'gb' THEN 'gb-sct' ELSE nation END,
             CASE WHEN road_type = 'motorway' THEN 'motorway' ELSE coalesce(carriageway, 'single') END
         )
     END;

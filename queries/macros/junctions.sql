@@ -18,9 +18,6 @@ CREATE OR REPLACE MACRO straight_on_ns() AS 3_000_000_000;
 CREATE OR REPLACE MACRO boxes_meet(dx, dy, ca, sa, cb, sb, hla, hwa, hlb, hwb) AS
     dx * dx + dy * dy <= (hla + hwa + hlb + hwb) * (hla + hwa + hlb + hwb)
     AND box_separation(dx * ca + dy * sa, dy * ca - dx * sa, ca * cb + sa * sb, ca * sb - sa * cb, hla, hwa, hlb, hwb) <= 0;
--- Where somebody goes: people on foot go where they go, whichever way they are turned.
-CREATE OR REPLACE MACRO going_rad(actor_class, speed_mps, vx_mps, vy_mps, yaw_rad) AS
-    CASE WHEN actor_class = 'pedestrian' AND speed_mps > standing_mps() THEN atan2(vy_mps, vx_mps) ELSE yaw_rad END;
 -- Half length of the ground that a box covers from one sample to the next: a log of few samples a second leaves no ground between two.
 CREATE OR REPLACE MACRO swept_half_m(length_m, speed_mps, period_s) AS greatest(length_m, least(coalesce(speed_mps, 0.0), 70.0) * period_s) / 2;
 -- Grid of a drive, its cells as wide as two boxes reach: what touches has its centres in one cell or in neighbours.
@@ -28,6 +25,16 @@ CREATE OR REPLACE MACRO meeting_cell(x_m, y_m, cell_m) AS cell_key(floor(x_m / c
 CREATE OR REPLACE MACRO meeting_slot(t_ns) AS (t_ns // conflict_ns())::INTEGER;
 -- A signal and a stop line this far apart along the way belong together.
 CREATE OR REPLACE MACRO line_reach_m() AS 30.0;
+-- An arrow this far before a junction, or nearer, is for the turn there.
+CREATE OR REPLACE MACRO turn_reach_m() AS 60.0;
+-- What a change of heading (left positive) may be called by who set up the lights: a bend is called straight on here and a turn there.
+CREATE OR REPLACE MACRO possible_turns(turn_rad) AS
+    CASE WHEN abs(turn_rad) <= radians(45) THEN ['straight'] ELSE [] END
+    || CASE WHEN turn_rad BETWEEN radians(10) AND radians(170) THEN ['left'] ELSE [] END
+    || CASE WHEN turn_rad BETWEEN radians(-170) AND radians(-10) THEN ['right'] ELSE [] END
+    || CASE WHEN abs(turn_rad) >= radians(135) THEN ['u_turn'] ELSE [] END;
+-- A signal this far before a junction, and none in between, governs the way in.
+CREATE OR REPLACE MACRO governed_m() AS 50.0;
 -- Steps are kept from this far before a mark to as far beyond it.
 CREATE OR REPLACE MACRO near_mark_m() AS 10.0;
 -- "Nobody came" asks for the log to go on at least this long after the ego has left (twice what rules ask for).
@@ -39,3 +46,21 @@ CREATE OR REPLACE MACRO end_distance_m(x, y, x0, y0, tx, ty, a, b) AS
     sqrt(
         ((x - x0) * tx + (y - y0) * ty - greatest(a, least(b, (x - x0) * tx + (y - y0) * ty))) ** 2 + ((y - y0) * tx - (x - x0) * ty) ** 2
     );
+-- Braking that is more than letting off the accelerator: the least that any rule asks about.
+CREATE OR REPLACE MACRO least_force_mps2() AS 1.5;
+-- A vehicle may have braked for the ego if, at the speed that it had, it would have arrived within this time before or after the ego.
+CREATE OR REPLACE MACRO forced_apart_ns() AS 4_000_000_000;
+CREATE OR REPLACE MACRO forced_slot(t_ns) AS t_ns // (2 * forced_apart_ns());
+-- Within 30 degrees of the ego's way turned round, somebody comes head on.
+CREATE OR REPLACE MACRO head_on_rad() AS 5 * pi() / 6;
+CREATE OR REPLACE MACRO forced_near_m() AS 200.0;
+-- Drivers stop within this distance before a light or a queue.
+CREATE OR REPLACE MACRO forced_beyond_m() AS 20.0;
+-- A vehicle that would have more lateral acceleration than this in a bend slows down for the bend.
+CREATE OR REPLACE MACRO bend_mps2() AS 3.0;
+-- Where somebody came from at a junction, by its heading against the ego's on its way in.
+CREATE OR REPLACE MACRO relation_of(from_rad) AS
+    CASE
+        WHEN abs(from_rad) >= radians(135) THEN 'oncoming' WHEN abs(from_rad) <= radians(45) THEN 'ahead_going'
+        WHEN from_rad < 0 THEN 'from_left' WHEN from_rad IS NOT NULL THEN 'from_right'
+    END;

@@ -10,7 +10,7 @@
 -- unit = "m"
 -- observes = "gap to the vehicle ahead"
 -- near_margin = 0.5
--- reads = ["following", "lead"]
+-- reads = ["following", "lead", "pair"]
 -- requires = ["mode_engaged", "map", "registration", "ego_size"]
 --
 -- [params.v_max_mps]
@@ -31,7 +31,10 @@
 
 -- @condition
 SELECT f.drive_id, f.ego_id, f.t_ns, f.gap_m AS observed, r157_gap_m(f.ego_speed_mps) AS required,
-    f.follows AND f.ego_speed_mps > stood_mps() AND f.ego_speed_mps <= $v_max_mps AND coalesce(f.t_ns - f.joined_ns >= $restore_s * 1e9, true)
+    f.follows AND f.ego_speed_mps > stood_mps() AND f.ego_speed_mps <= $v_max_mps
+        -- where the two meet in that time, it is not known whether the ego restored the gap as soon as it could
+        AND CASE WHEN coalesce(f.t_ns - f.joined_ns >= $restore_s * 1e9, true) THEN true
+            WHEN c.t_ns - f.joined_ns < $restore_s * 1e9 THEN CASE WHEN f.gap_m >= r157_gap_m(f.ego_speed_mps) THEN true END ELSE false END
         AND CASE WHEN b.braked THEN false WHEN f.gap_m >= r157_gap_m(f.ego_speed_mps) OR NOT b.unsure THEN true END AS applies
 FROM following f
 LEFT JOIN (
@@ -39,3 +42,5 @@ LEFT JOIN (
     FROM lead
     WINDOW w AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns RANGE BETWEEN ($restore_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW)
 ) b USING (drive_id, ego_id, t_ns)
+ASOF LEFT JOIN (SELECT drive_id, ego_id, object_id, t_ns FROM pair WHERE clearance_m <= 0) c
+    ON c.drive_id = f.drive_id AND c.ego_id = f.ego_id AND c.object_id = f.object_id AND c.t_ns >= f.t_ns

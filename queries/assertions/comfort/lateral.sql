@@ -1,6 +1,6 @@
 -- title = "Lateral acceleration"
--- clause = "UN R79 5.6.2.1.3 (lane keeping): no more lateral acceleration than passengers bear"
--- hypothesis = "At every step, was the ego's lateral acceleration at most 3 m/s2?"
+-- clause = "UN R79 5.6.2.1.3 (lane keeping): no more lateral acceleration than the system may be specified for: 3 m/s2 for cars and vans, 2.5 m/s2 for buses and lorries"
+-- hypothesis = "At every step, was the ego's lateral acceleration at most 3 m/s2, a lorry's or bus's at most 2.5 m/s2?"
 -- kind = "invariant"
 -- derivation = "model"
 -- severity = "minor"
@@ -10,13 +10,19 @@
 -- unit = "m/s2"
 -- observes = "lateral acceleration"
 -- near_margin = 0.3
--- reads = ["clock", "ego_motion"]
+-- reads = ["actor", "clock", "ego_condition", "ego_motion"]
 --
 -- [params.most_mps2]
 -- default = 3.0
 -- unit = "m/s2"
--- why = "the most that a lane keeping system may ask for"
--- source = "UN R79 5.6.2.1.3 (not seen)"
+-- why = "the most that a lane keeping system of a car or van (M1, N1) may ask for"
+-- source = "UN R79 5.6.2.1.3, 03 series (not seen)"
+--
+-- [params.heavy_mps2]
+-- default = 2.5
+-- unit = "m/s2"
+-- why = "the most of a bus or lorry (M2, M3, N2, N3)"
+-- source = "UN R79 5.6.2.1.3, 03 series (not seen)"
 --
 -- [params.edge_s]
 -- default = 0.5
@@ -24,8 +30,17 @@
 -- why = "our default: so near to the ends of the log the filter's window is not whole"
 
 -- @condition
--- filtered before it is differentiated, see ego_motion
-SELECT m.drive_id, m.ego_id, m.t_ns, abs(m.lat_accel_mps2) AS observed, $most_mps2 AS required,
-    judged_inside(m.lat_accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies
+-- filtered before it is differentiated, see ego_motion; of a vehicle whose kind is not known, what both kinds may is kept, and what neither may is not
+SELECT m.drive_id, m.ego_id, m.t_ns, abs(m.lat_accel_mps2) AS observed,
+    CASE WHEN k.heavy OR abs(m.lat_accel_mps2) <= $heavy_mps2 AND k.heavy IS NULL THEN $heavy_mps2
+        WHEN NOT k.heavy OR abs(m.lat_accel_mps2) > $most_mps2 THEN $most_mps2 END AS required,
+    judged_inside(m.lat_accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
+    CASE WHEN k.heavy IS NULL THEN 'whether the ego is a bus or lorry is not known' END AS reason
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
+LEFT JOIN ego_condition o ON o.drive_id = m.drive_id AND o.ego_id = m.ego_id AND o.t_ns = m.t_ns
+LEFT JOIN actor a ON a.drive_id = m.drive_id AND a.actor_id = m.ego_id
+CROSS JOIN LATERAL (
+    SELECT CASE WHEN o.vehicle_class IN ('bus', 'goods_7t5', 'goods_over_7t5') THEN true WHEN o.vehicle_class IS NOT NULL THEN false
+        WHEN a.actor_class = 'truck' THEN true WHEN a.actor_class IN ('van', 'bicycle') THEN false END AS heavy
+) k

@@ -3,7 +3,7 @@
 -- hypothesis = "Where the ways of the ego and of another crossed at 45 degrees or more, was there at least 1.5 s between the two?"
 -- kind = "execution"
 -- derivation = "model"
--- severity = "major"
+-- severity = "minor"
 -- legal = "should"
 -- status = "stable"
 -- sense = ">="
@@ -27,8 +27,8 @@
 -- @reference
 SELECT drive_id, ego_id, t_ego_in_ns AS t_ns, object_id, occurrence FROM conflict
 UNION ALL
--- whose track ends close by, who is not placed for a while, or moves and lacks heading or size, may have crossed the ego's way unseen
-SELECT drive_id, ego_id, t_from_ns, object_id, NULL FROM lost_object WHERE reason = 'lost_near_ego'
+-- an actor may have crossed the ego's way unseen if its track ends close by, if it has no place for a while, or if it moves and lacks heading or size
+SELECT drive_id, ego_id, t_from_ns, object_id, NULL FROM lost_object WHERE code = 'lost_near_ego'
 UNION ALL
 SELECT drive_id, ego_id, min(t_ns), object_id, NULL
 FROM pair

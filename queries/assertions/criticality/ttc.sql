@@ -35,6 +35,8 @@ LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.t_ns =
 LEFT JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
 
 -- @condition
+-- where a speed is not known exactly, neither is what hangs on it
 SELECT drive_id, ego_id, t_ns, object_id, $least_s AS required,
-    CASE WHEN object_id IS NULL THEN 'inf'::DOUBLE ELSE or_never(ttc_s(gap_m, ego_speed_mps - along_mps(speed_mps, oncoming)), $least_s) END AS observed
+    CASE WHEN object_id IS NULL THEN 'inf'::DOUBLE ELSE sure(or_never(ttc_s(gap_m, k.closing_mps), $least_s), ttc_s(gap_m, k.closing_mps + error_mps), ttc_s(gap_m, k.closing_mps - error_mps), $least_s) END AS observed
 FROM lead
+CROSS JOIN LATERAL (SELECT ego_speed_mps - along_mps(speed_mps, oncoming) AS closing_mps) k

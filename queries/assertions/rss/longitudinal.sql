@@ -3,9 +3,9 @@
 -- hypothesis = "At every step, was the gap to the vehicle ahead at least the safe longitudinal distance of RSS?"
 -- kind = "invariant"
 -- derivation = "model"
--- severity = "major"
+-- severity = "minor"
 -- legal = "should"
--- status = "stable"
+-- status = "draft"
 -- sense = ">="
 -- unit = "m"
 -- observes = "gap to the vehicle ahead"
@@ -60,6 +60,8 @@
 -- unit = "m"
 -- why = "vehicles do not hold their line exactly"
 -- source = "ad-rss-lib, parameter discussion (fluctuation margin)"
+--
+-- # Draft: the model calls an ordinary gap of two seconds dangerous, and a calm approach, and a gap that somebody else took.
 
 -- @applies
 -- RSS calls a situation dangerous where the distances along and across are both unsafe: who is passed inside the lane may be safe across. A

@@ -3,7 +3,7 @@
 -- hypothesis = "At every step with the ego in the opposing lane, or an oncoming vehicle in the ego's, could both have stopped in time?"
 -- kind = "invariant"
 -- derivation = "model"
--- severity = "major"
+-- severity = "minor"
 -- legal = "should"
 -- status = "stable"
 -- sense = ">="

@@ -5,14 +5,14 @@
 -- subtype = "temporal"
 -- window_s = "window_s"
 -- derivation = "model"
--- severity = "major"
+-- severity = "minor"
 -- legal = "should"
--- status = "stable"
+-- status = "draft"
 -- sense = ">="
 -- unit = "m/s2"
 -- observes = "deceleration"
 -- near_margin = 0.5
--- reads = ["ego_motion", "lead", "step"]
+-- reads = ["clock", "ego_motion", "lead", "step"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [params.rho_s]
@@ -67,6 +67,8 @@
 -- default = 5.0
 -- unit = "s"
 -- why = "our default: the response time and four seconds of braking, which take 16 m/s off"
+--
+-- # Draft: it asks for braking wherever rss.longitudinal finds a gap too small, which ordinary driving does not do.
 
 -- @reference
 WITH judged AS (
@@ -86,8 +88,17 @@ UNION ALL
 SELECT drive_id, ego_id, NULL, NULL, NULL FROM judged WHERE unsafe IS NULL GROUP BY drive_id, ego_id
 
 -- @condition
-SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, -m.accel_mps2 AS observed, $brake_min_mps2 AS required,
-    s.t_ns >= r.t_ns + $rho_s * 1_000_000_000 AND s.t_ns <= r.t_last_ns AS applies
+-- An acceleration is a mean over the filter's window: only where that lies wholly within the time in which to brake it tells whether the
+-- ego did. In a danger that is over sooner the mean may be too small of a braking that was hard enough.
+SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, $brake_min_mps2 AS required,
+    CASE WHEN w.whole OR -m.accel_mps2 >= $brake_min_mps2 THEN -m.accel_mps2 END AS observed,
+    s.t_ns >= w.t_from_ns AND s.t_ns <= w.t_to_ns AS applies
 FROM reference_step s
 JOIN reference r USING (ref_id)
+JOIN clock c ON c.drive_id = s.drive_id AND c.ego_id = s.ego_id
+CROSS JOIN LATERAL (SELECT r.t_ns + ($rho_s * 1e9)::BIGINT AS t_due_ns, coalesce(filter_half_ns(c.period_ns), 0) AS half_ns) d
+CROSS JOIN LATERAL (
+    SELECT l.whole, d.t_due_ns + CASE WHEN l.whole THEN d.half_ns ELSE 0 END AS t_from_ns, r.t_last_ns - CASE WHEN l.whole THEN d.half_ns ELSE 0 END AS t_to_ns
+    FROM (SELECT r.t_last_ns - d.t_due_ns >= 2 * d.half_ns + c.period_ns AS whole) l
+) w
 LEFT JOIN ego_motion m ON m.drive_id = s.drive_id AND m.ego_id = s.ego_id AND m.t_ns = s.t_ns

@@ -1,16 +1,17 @@
 -- title = "No unnecessary hard braking"
 -- clause = "StVO 4(1) (R_G2 of Maierhofer et al. 2020): do not brake hard without a compelling reason"
--- hypothesis = "At every step, did the ego brake no harder than allowed, unless a vehicle ahead was too near or itself braked?"
+-- hypothesis = "At every step, did the ego brake no harder than allowed, unless a vehicle ahead was too near or had itself braked, or somebody was in the way?"
 -- kind = "invariant"
 -- derivation = "model"
 -- severity = "major"
 -- legal = "must"
 -- status = "stable"
+-- law = ["de"]
 -- sense = ">="
 -- unit = "m/s2"
 -- observes = "acceleration"
 -- near_margin = 0.2
--- reads = ["clock", "ego_motion", "lead"]
+-- reads = ["clock", "ego_motion", "in_way", "lead"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [applies]
@@ -21,6 +22,11 @@
 -- unit = "m/s2"
 -- why = "deceleration beyond which braking is abrupt, alone and against the vehicle ahead"
 -- source = "Maierhofer et al. 2020, Table II (a_abrupt)"
+--
+-- [params.lately_s]
+-- default = 1.0
+-- unit = "s"
+-- why = "our default: the ego brakes so much later than the vehicle ahead, and goes on when that has stopped braking"
 --
 -- [params.reaction_s]
 -- default = 0.3
@@ -47,10 +53,18 @@
 
 -- @condition
 SELECT m.drive_id, m.ego_id, m.t_ns, m.accel_mps2 AS observed, -$abrupt_mps2 AS required,
-    -- braking for a vehicle that is too near, or that brakes itself, has its reason; no row of lead: it may have one
-    judged_inside(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AND NOT (m.accel_mps2 < -$abrupt_mps2 AND CASE WHEN l.t_ns IS NOT NULL THEN l.object_id IS NOT NULL AND (
-        l.gap_m < stvo_safe_gap_m(l.ego_speed_mps, l.speed_mps, $reaction_s, $brake_mps2, $brake_lead_mps2)
-        OR m.accel_mps2 - l.accel_mps2 >= -$abrupt_mps2) END) AS applies
+    -- braking for a vehicle that is too near, or that brakes itself, has its reason, and so has braking for whoever else is in the way (a
+    -- person, an animal, a thing); no row of lead: there may be one
+    judged_inside(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AND NOT (m.accel_mps2 < -$abrupt_mps2 AND (
+        CASE WHEN l.t_ns IS NOT NULL THEN l.object_id IS NOT NULL AND (
+            l.gap_m < stvo_safe_gap_m(l.ego_speed_mps, l.speed_mps, $reaction_s, $brake_mps2, $brake_lead_mps2)
+            OR m.accel_mps2 - l.hardest_mps2 >= -$abrupt_mps2 OR CASE WHEN l.known THEN false END) END
+        OR asks_to_brake(w.need_mps2, w.known, $abrupt_mps2))) AS applies
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
-LEFT JOIN lead l ON l.drive_id = m.drive_id AND l.ego_id = m.ego_id AND l.t_ns = m.t_ns
+LEFT JOIN (
+    SELECT *, min(accel_mps2) OVER lately AS hardest_mps2, bool_and(accel_mps2 IS NOT NULL) OVER lately AS known
+    FROM lead
+    WINDOW lately AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns RANGE BETWEEN ($lately_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW)
+) l ON l.drive_id = m.drive_id AND l.ego_id = m.ego_id AND l.t_ns = m.t_ns
+LEFT JOIN in_way w ON w.drive_id = m.drive_id AND w.ego_id = m.ego_id AND w.t_ns = m.t_ns

@@ -6,46 +6,73 @@
 -- severity = "major"
 -- legal = "must"
 -- status = "stable"
+-- law = ["de"]
 -- sense = "<="
 -- unit = "m/s"
 -- observes = "speed"
 -- merge_gap_s = 5.0
 -- reads = ["ego_condition", "ego_state"]
--- requires = ["map", "registration", "speed_limits"]
---
--- [applies]
--- road_type = ["motorway"]
+-- requires = ["map", "registration"]
 --
 -- [params.tolerance_mps]
 -- default = 0.83
 -- unit = "m/s"
 -- why = "our default: the 3 km/h that German police take off below 100 km/h"
 --
+-- [params.town_mps]
+-- default = 13.89
+-- unit = "m/s"
+-- why = "50 km/h in built-up areas"
+-- source = "StVO 3(3) no. 1"
+--
+-- [params.open_mps]
+-- default = 27.78
+-- unit = "m/s"
+-- why = "100 km/h elsewhere, but on roads whose directions are apart and on those with two lanes each way"
+-- source = "StVO 3(3) no. 2 c"
+--
 -- [params.heavy_mps]
 -- default = 22.22
 -- unit = "m/s"
--- why = "80 km/h on motorways for vehicles over 3.5 t, buses and cars with trailers"
--- source = "StVO 18(5) no. 1"
+-- why = "80 km/h on motorways for vehicles over 3.5 t, buses and cars with trailers; on other roads for buses and cars with trailers"
+-- source = "StVO 18(5) no. 1, 3(3) no. 2 a"
+--
+-- [params.heaviest_mps]
+-- default = 16.67
+-- unit = "m/s"
+-- why = "60 km/h on roads other than motorways for vehicles over 7.5 t, lorries with trailers, and buses in which people stand"
+-- source = "StVO 3(3) no. 2 b"
 --
 -- [params.coach_mps]
 -- default = 27.78
 -- unit = "m/s"
--- why = "100 km/h for coaches approved for it, and by exemption for cars with trailers: neither is in a trace"
+-- why = "100 km/h on motorways for coaches approved for it, and by exemption for cars with trailers: neither is in a trace"
 -- source = "StVO 18(5) no. 3"
 
 -- @condition
--- vans of up to 3.5 t have no limit of their own; coaches, and cars with trailers by the 9th exemption, may be allowed 100 km/h
+-- A sign counts instead of what holds for every car; the limits of heavier vehicles outside built-up areas hold under it too. Between what
+-- the kind of vehicle, road and area at least allow and at most allow, nothing is known; nor is anything kept where the map may lack a sign.
 SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed,
-    CASE WHEN e.speed_mps > least(k.most_mps, c.limit_mps) + $tolerance_mps THEN least(k.most_mps, c.limit_mps)
-        WHEN c.limit_mps IS NOT NULL AND e.speed_mps <= least(k.least_mps, c.limit_mps) + $tolerance_mps THEN least(k.least_mps, c.limit_mps)
-    END + $tolerance_mps AS required,
-    CASE WHEN c.limit_mps IS NULL THEN 'the map gives no limit here' WHEN c.vehicle_class IS NULL THEN 'kind of vehicle not known'
-        WHEN e.speed_mps > k.least_mps THEN 'whether this vehicle may drive faster than 80 km/h is not known' END AS reason
+    CASE WHEN e.speed_mps > k.most_mps + $tolerance_mps THEN k.most_mps WHEN e.speed_mps <= k.least_mps + $tolerance_mps THEN k.least_mps END + $tolerance_mps AS required,
+    CASE WHEN required IS NOT NULL THEN NULL WHEN c.limit_mps IS NULL THEN 'the map gives no limit here' WHEN c.vehicle_class IS NULL THEN 'kind of vehicle not known'
+        ELSE 'the limit depends on the kind of vehicle or road, not all of which is known' END AS reason
 FROM ego_state e
 JOIN ego_condition c USING (drive_id, ego_id, t_ns)
 CROSS JOIN LATERAL (
+    SELECT CASE WHEN c.road_type = 'motorway' THEN 'motorway' WHEN c.area = 'built_up' THEN 'town' WHEN c.road_type IS NOT NULL AND c.area = 'open' THEN 'open' END AS place
+) p
+CROSS JOIN LATERAL (
     SELECT
-        CASE WHEN c.vehicle_class IN ('car', 'motorcycle') THEN 'inf'::DOUBLE ELSE $heavy_mps END AS least_mps,
-        CASE WHEN c.vehicle_class = 'goods_over_7t5' THEN $heavy_mps WHEN c.vehicle_class IN ('bus', 'car_towing') THEN $coach_mps
-            ELSE 'inf'::DOUBLE END AS most_mps
+        coalesce(c.limit_mps, CASE WHEN p.place = 'town' THEN $town_mps
+            WHEN p.place = 'open' AND c.carriageway = 'single' AND c.lanes_each_way = 1 THEN $open_mps ELSE 'inf'::DOUBLE END) AS road_mps,
+        CASE WHEN p.place = 'town' OR c.vehicle_class IN ('car', 'motorcycle') THEN 'inf'::DOUBLE
+            WHEN p.place = 'motorway' OR c.vehicle_class = 'car_towing' THEN $heavy_mps ELSE $heaviest_mps END AS class_least_mps,
+        CASE
+            WHEN p.place = 'motorway' THEN CASE WHEN c.vehicle_class = 'goods_over_7t5' THEN $heavy_mps WHEN c.vehicle_class IN ('bus', 'car_towing') THEN $coach_mps END
+            WHEN p.place = 'open' THEN CASE WHEN c.vehicle_class = 'goods_over_7t5' THEN $heaviest_mps WHEN c.vehicle_class IN ('bus', 'car_towing') THEN $heavy_mps END
+        END AS class_most_mps
+) l
+CROSS JOIN LATERAL (
+    -- least() leaves out the one that is not there, as it should here
+    SELECT least(l.road_mps, l.class_most_mps) AS most_mps, CASE WHEN c.limit_mps IS NOT NULL THEN least(c.limit_mps, l.class_least_mps) END AS least_mps
 ) k

@@ -1,13 +1,14 @@
 -- title = "Not stopping on a motorway"
--- clause = "StVO 18(8) (R_I1 of Maierhofer et al. 2020): stopping on motorways is forbidden, but in a queue"
--- hypothesis = "When the ego came to stand on a motorway, was there a slow or standing vehicle close ahead?"
+-- clause = "StVO 18(8) (R_I1 of Maierhofer et al. 2020): stopping on motorways is forbidden; standing in a queue, for somebody in the way or with a breakdown (15) is not stopping"
+-- hypothesis = "When the ego came to stand on a motorway, was there a slow or standing vehicle close ahead, or somebody in the way?"
 -- kind = "execution"
 -- derivation = "direct"
 -- severity = "major"
 -- legal = "must"
 -- status = "stable"
+-- law = ["de"]
 -- sense = "holds"
--- reads = ["standstill"]
+-- reads = ["ego_mode", "ego_state", "in_way", "standstill"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [applies]
@@ -23,11 +24,33 @@
 -- default = 30.0
 -- unit = "m"
 -- why = "our default: who stops further behind than this does not stop for the queue"
+--
+-- [params.lights_s]
+-- default = 10.0
+-- unit = "s"
+-- why = "our default: time in which the hazard lights of one that breaks down are on, which StVO 15 asks for at once"
 
 -- @reference
-SELECT drive_id, ego_id, t_start_ns AS t_ns, ahead_id AS object_id, ahead_gap_m, ahead_speed_mps, ahead_known
+SELECT drive_id, ego_id, t_start_ns AS t_ns, ahead_id AS object_id, ahead_gap_m, ahead_speed_mps, ahead_known, t_end_ns
 FROM standstill
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, ref_id, object_id, queued(object_id, ahead_gap_m, ahead_speed_mps, ahead_known, $queue_m, $queue_mps) AS holds
-FROM reference
+-- to stop is to halt of one's own will: who stands for somebody in the way does not, nor does one that broke down, which its hazard lights say
+WITH broken_down AS (
+    SELECT r.ref_id
+    FROM reference r
+    JOIN ego_state e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id AND e.t_ns <= least(r.t_end_ns, r.t_ns + ($lights_s * 1e9)::BIGINT)
+        AND e.t_ns >= r.t_ns - ($lights_s * 1e9)::BIGINT
+    LEFT JOIN ego_mode m ON m.drive_id = e.drive_id AND m.ego_id = e.ego_id AND m.t_ns = e.t_ns
+        AND m.mode IN ('minimal_risk_manoeuvre', 'emergency_manoeuvre') AND m.is_on
+    WHERE e.indicator = 'hazard' OR m.t_ns IS NOT NULL
+    GROUP BY r.ref_id
+)
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.object_id,
+    queued(r.object_id, r.ahead_gap_m, r.ahead_speed_mps, r.ahead_known, $queue_m, $queue_mps)
+        OR stands_for(w.object_id, w.actor_class, w.gap_m, w.along_mps, w.known, $queue_m, $queue_m, $queue_mps)
+        OR CASE WHEN b.ref_id IS NULL THEN false END AS holds,
+    CASE WHEN b.ref_id IS NOT NULL THEN 'it had its hazard lights on, or declared a manoeuvre of emergency: whether it broke down is for a person to say' END AS reason
+FROM reference r
+LEFT JOIN in_way w ON w.drive_id = r.drive_id AND w.ego_id = r.ego_id AND w.t_ns = r.t_ns
+LEFT JOIN broken_down b ON b.ref_id = r.ref_id

@@ -6,6 +6,7 @@
 -- severity = "major"
 -- legal = "must"
 -- status = "stable"
+-- law = ["de"]
 -- sense = "holds"
 -- reads = ["data_log", "ego_corridor", "ego_state", "lanelet", "pair", "passing"]
 -- requires = ["map", "registration", "ego_size", "handedness"]

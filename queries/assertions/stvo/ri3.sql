@@ -6,6 +6,7 @@
 -- severity = "critical"
 -- legal = "must"
 -- status = "stable"
+-- law = ["de"]
 -- sense = "holds"
 -- merge_gap_s = 5.0
 -- reads = ["ego_motion", "ego_state"]

@@ -6,6 +6,7 @@
 -- severity = "minor"
 -- legal = "must"
 -- status = "draft"
+-- law = ["de"]
 -- sense = "<="
 -- unit = "m"
 -- observes = "distance to the border to keep to"

@@ -6,6 +6,7 @@
 -- severity = "major"
 -- legal = "must"
 -- status = "draft"
+-- law = ["de"]
 -- sense = "holds"
 -- reads = ["data_log", "lane_change", "lane_occupancy", "lanelet", "pair"]
 -- requires = ["map", "registration", "ego_size"]

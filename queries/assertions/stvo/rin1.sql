@@ -1,11 +1,12 @@
--- title = "Three seconds at the stop sign"
--- clause = "StVO 41(1), Anlage 2 no. 3, sign 206 (R_IN1 of Maierhofer et al. 2022): at a stop sign halt at the line"
--- hypothesis = "Before the ego crossed a stop line with a stop sign, did it stand close before it for the whole time?"
+-- title = "A complete halt at the stop sign"
+-- clause = "StVO 41(1), Anlage 2 no. 3, sign 206 (R_IN1 of Maierhofer et al. 2022): at a stop sign halt at the line; the law names no time"
+-- hypothesis = "Before the ego crossed a stop line with a stop sign, did it stand close before it, so long that it could be seen?"
 -- kind = "execution"
--- derivation = "direct"
--- severity = "major"
--- legal = "must"
+-- derivation = "model"
+-- severity = "minor"
+-- legal = "should"
 -- status = "stable"
+-- law = ["de"]
 -- sense = ">="
 -- unit = "s"
 -- observes = "time stood before the stop line"
@@ -13,10 +14,9 @@
 -- requires = ["map", "registration", "ego_size", "stop_lines"]
 --
 -- [params.stand_s]
--- default = 3.0
+-- default = 1.0
 -- unit = "s"
--- why = "how long a halt lasts: the law names no time"
--- source = "Maierhofer et al. 2022 (t_slw = 3 s, standing within 1 m of the line)"
+-- why = "our default: a complete halt that can be seen; the law asks for a halt of any length, the model for 3 s (t_slw)"
 
 -- @reference
 SELECT drive_id, ego_id, t_ns, control, begin_seen, stood_s

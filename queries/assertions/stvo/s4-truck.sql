@@ -6,6 +6,7 @@
 -- severity = "major"
 -- legal = "must"
 -- status = "stable"
+-- law = ["de"]
 -- sense = ">="
 -- unit = "m"
 -- observes = "gap to the vehicle ahead"

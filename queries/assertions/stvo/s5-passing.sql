@@ -6,11 +6,12 @@
 -- severity = "critical"
 -- legal = "must"
 -- status = "stable"
+-- law = ["de"]
 -- sense = ">="
 -- unit = "m"
 -- observes = "gap to the side"
 -- near_margin = 0.2
--- reads = ["beside", "ego_condition", "standstill"]
+-- reads = ["beside", "ego_condition", "road_user", "standstill"]
 -- requires = ["map", "registration", "ego_size", "actor_classes"]
 --
 -- [params.built_up_m]
@@ -31,9 +32,11 @@
 -- why = "our default: who drew up beside the standing ego need not be given the distance when traffic starts again (StVO 5(4) sentence 4)"
 
 -- @applies
+-- a cyclist on a cycle lane behind a solid line is beside the carriageway: whether passing it is overtaking is disputed
 SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id,
-    b.actor_class IN ('bicycle', 'pedestrian') AND b.along AND b.on_carriageway AND b.ego_speed_mps > b.speed_mps AND w.object_id IS NULL AS applies
+    (is_bicycle(b.actor_class, a.length_m) OR is_class(b.actor_class, 'pedestrian')) AND b.along AND b.on_carriageway AND CASE WHEN coalesce(b.cycle_lane, 'broken') = 'broken' THEN true END AND b.ego_speed_mps > b.speed_mps AND w.object_id IS NULL AS applies
 FROM beside b
+LEFT JOIN road_user a ON a.drive_id = b.drive_id AND a.actor_id = b.object_id
 LEFT JOIN (
     SELECT DISTINCT s.drive_id, s.ego_id, o.object_id, s.t_start_ns, s.t_end_ns
     FROM standstill s
@@ -42,8 +45,9 @@ LEFT JOIN (
     AND b.t_ns >= w.t_start_ns AND b.t_ns <= w.t_end_ns + ($waited_s * 1e9)::BIGINT
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, object_id, b.gap_m AS observed,
-    CASE c.area WHEN 'built_up' THEN $built_up_m WHEN 'open' THEN $open_m END AS required,
-    CASE WHEN c.area IS NULL THEN 'whether the area is built up is not known' END AS reason
+SELECT drive_id, ego_id, t_ns, object_id, CASE c.area WHEN 'built_up' THEN $built_up_m WHEN 'open' THEN $open_m END AS required,
+    kept_between(b.gap_m, b.blur_m, required) AS observed,
+    CASE WHEN c.area IS NULL THEN 'whether the area is built up is not known'
+        WHEN observed IS NULL AND b.gap_m IS NOT NULL THEN 'the steps are too far apart to tell how near it came between them' END AS reason
 FROM beside b
 JOIN ego_condition c USING (drive_id, ego_id, t_ns)

@@ -10,7 +10,7 @@
 -- unit = "m/s2"
 -- observes = "deceleration of the ego or the other"
 -- merge_gap_s = 1.0
--- reads = ["ego_state", "lost_object", "pair", "step", "clock"]
+-- reads = ["between_steps", "ego_state", "lost_object", "pair", "step", "clock"]
 -- requires = ["ego_size"]
 --
 -- [params.within_m]
@@ -22,6 +22,11 @@
 -- default = 12.0
 -- unit = "m/s2"
 -- why = "dry tyres give about 10; our default leaves room for noise of one backward difference"
+--
+-- [params.jolt_s]
+-- default = 0.1
+-- unit = "s"
+-- why = "our default: so long an impact lasts; over a longer step its loss of speed looks like braking"
 
 -- @applies
 SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN clearance_m IS NOT NULL THEN true END AS applies
@@ -32,7 +37,10 @@ UNION ALL
 SELECT l.drive_id, l.ego_id, s.t_ns, l.object_id, NULL
 FROM lost_object l
 ASOF JOIN step s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id AND l.t_from_ns <= s.t_ns
-WHERE l.reason = 'lost_near_ego'
+WHERE l.code = 'lost_near_ego'
+UNION ALL
+-- so may whoever came near between two steps
+SELECT drive_id, ego_id, t_next_ns, object_id, NULL FROM between_steps
 UNION ALL
 -- so may whoever is close by when a hole of the log ends
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, NULL
@@ -42,10 +50,13 @@ JOIN pair p USING (drive_id, ego_id, t_ns)
 WHERE s.dt_ns > c.max_gap_ns AND p.clearance_m < lost_near_m()
 
 -- @condition
+-- greatest() leaves a NULL out: one side alone can show a contact, but not that there was none; nor can a step in which a jolt may hide
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, $tyre_mps2 AS required,
-    -- greatest() leaves a NULL out: one side alone can show a contact, but not that there was none
-    CASE WHEN p.accel_mps2 + e.accel_mps2 IS NOT NULL OR greatest(-p.accel_mps2, -e.accel_mps2) >= $tyre_mps2
-        THEN greatest(-p.accel_mps2, -e.accel_mps2) END AS observed,
-    CASE WHEN -p.accel_mps2 >= $tyre_mps2 AND e.fastest_3s_mps < standing_mps() THEN 'the ego stood still: it was struck, if anything' END AS reason
+    CASE WHEN lost_mps2 >= $tyre_mps2 OR p.accel_mps2 + e.accel_mps2 IS NOT NULL AND NOT coalesce(hides, false) THEN lost_mps2 END AS observed,
+    CASE WHEN -p.accel_mps2 >= $tyre_mps2 AND e.fastest_3s_mps < standing_mps() THEN 'the ego stood still: it was struck, if anything'
+        WHEN hides AND lost_mps2 < $tyre_mps2 THEN format('a step of {:.2f} s is too long to tell a jolt from braking', st.dt_ns / 1e9) END AS reason
 FROM pair p
 JOIN ego_state e USING (drive_id, ego_id, t_ns)
+JOIN step st USING (drive_id, ego_id, t_ns)
+CROSS JOIN LATERAL (SELECT greatest(-p.accel_mps2, -e.accel_mps2) AS lost_mps2) l
+CROSS JOIN LATERAL (SELECT st.dt_ns > $jolt_s * 1.5e9 AND lost_mps2 * st.dt_ns / 1e9 >= $tyre_mps2 * $jolt_s AS hides) h

@@ -1,6 +1,6 @@
 -- title = "Clear of everybody else"
 -- clause = "UKHC R144: do not drive dangerously or without care for others; a collision is the plainest breach"
--- hypothesis = "At every step, was the ego's box clear of every other actor's box?"
+-- hypothesis = "At every step and between one and the next, was the ego's box clear of every other actor's box?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "critical"
@@ -11,13 +11,20 @@
 -- observes = "distance between the two"
 -- near_margin = 0.5
 -- merge_gap_s = 2.0
--- reads = ["ego_state", "pair"]
+-- reads = ["between_steps", "clearance_least", "ego_state", "pair"]
 -- requires = ["ego_size"]
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, object_id, clearance_m AS observed, 0.0 AS required, clearance_is_bound AS at_least, NULL AS reason
-FROM pair
-WHERE coalesce(clearance_m > 0 OR clearance_is_bound, true)
+SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id,
+    -- between two steps it is a contact only if it is deeper than what is not known of the way there
+    CASE WHEN b.least_m < -b.blur_m THEN b.least_m WHEN b.least_m IS NULL THEN coalesce(p.clearance_m, l.least_m) END AS observed, 0.0 AS required,
+    (p.clearance_is_bound OR p.clearance_m IS NULL) AND b.least_m IS NULL AS at_least,
+    CASE WHEN b.least_m < -b.blur_m THEN format('contact between this step and the next, {:.2f} m deep', -b.least_m)
+        WHEN b.least_m IS NOT NULL THEN format('contact between this step and the next, {:.2f} s later, cannot be ruled out', (b.t_next_ns - b.t_ns) / 1e9) END AS reason
+FROM pair p
+LEFT JOIN between_steps b USING (drive_id, ego_id, t_ns, object_id)
+LEFT JOIN clearance_least l USING (drive_id, ego_id, t_ns, object_id)
+WHERE coalesce(p.clearance_m > 0 OR p.clearance_is_bound, true)
 UNION ALL
 -- contact: whether the ego moved is part of the answer
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.clearance_m, 0.0, false,

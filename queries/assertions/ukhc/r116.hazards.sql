@@ -6,6 +6,7 @@
 -- severity = "minor"
 -- legal = "must"
 -- status = "stable"
+-- law = ["gb"]
 -- sense = "holds"
 -- reads = ["ego_condition", "ego_state"]
 -- requires = ["indicator"]

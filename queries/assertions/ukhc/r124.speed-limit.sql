@@ -6,6 +6,7 @@
 -- severity = "major"
 -- legal = "must"
 -- status = "stable"
+-- law = ["gb"]
 -- sense = "<="
 -- unit = "m/s"
 -- observes = "speed"
@@ -22,10 +23,10 @@
 -- where class, nation or kind of road are not known, the limit lies between two: a speed between them is neither kept nor broken
 WITH limits AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps, e.lanelet_id, e.limit_mps,
-        least(e.limit_mps, most_limit_mps(c.vehicle_class, c.nation, c.road_type, c.carriageway, c.area, e.limit_mps IS NOT NULL)) + $tolerance_mps AS most_mps,
+        least(e.limit_mps, most_limit_mps(c.vehicle_class, e.length_m, c.nation, c.road_type, c.carriageway, c.area, e.limit_mps IS NOT NULL)) + $tolerance_mps AS most_mps,
         -- a sign that the map does not have may say anything: without its limit nothing is kept
         CASE WHEN e.limit_mps IS NOT NULL
-            THEN least(e.limit_mps, least_limit_mps(c.vehicle_class, c.nation, c.road_type, c.carriageway, c.area, true)) + $tolerance_mps END AS least_mps
+            THEN least(e.limit_mps, least_limit_mps(c.vehicle_class, e.length_m, c.nation, c.road_type, c.carriageway, c.area, true)) + $tolerance_mps END AS least_mps
     FROM ego_state e
     LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)
 )

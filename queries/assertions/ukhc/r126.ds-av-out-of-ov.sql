@@ -3,7 +3,7 @@
 -- hypothesis = "At every step of the overtake, was the ego outside the space that the oncoming vehicle needs to stop?"
 -- kind = "invariant"
 -- derivation = "model"
--- severity = "critical"
+-- severity = "major"
 -- legal = "should"
 -- status = "stable"
 -- sense = "<"

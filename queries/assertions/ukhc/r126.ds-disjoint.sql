@@ -3,7 +3,7 @@
 -- hypothesis = "At every step of the overtake, could both the ego and the oncoming vehicle have stopped without meeting?"
 -- kind = "invariant"
 -- derivation = "model"
--- severity = "major"
+-- severity = "minor"
 -- legal = "should"
 -- status = "stable"
 -- sense = "<"

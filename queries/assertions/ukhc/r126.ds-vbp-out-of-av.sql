@@ -3,7 +3,7 @@
 -- hypothesis = "At every step of the overtake, was the vehicle being passed outside the space that the ego needs to stop?"
 -- kind = "invariant"
 -- derivation = "model"
--- severity = "critical"
+-- severity = "minor"
 -- legal = "should"
 -- status = "stable"
 -- sense = "<"

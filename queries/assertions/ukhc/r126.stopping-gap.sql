@@ -3,9 +3,9 @@
 -- hypothesis = "At every step behind a vehicle, was the gap to it at least the ego's stopping distance?"
 -- kind = "invariant"
 -- derivation = "model"
--- severity = "major"
+-- severity = "minor"
 -- legal = "should"
--- status = "stable"
+-- status = "draft"
 -- sense = ">="
 -- unit = "m"
 -- observes = "gap to the vehicle ahead"
@@ -18,6 +18,9 @@
 -- default = 10.0
 -- unit = "s"
 -- why = "our default: time to make the gap anew after one of the two changed into the lane, as for the two seconds; the weather counts as dry where it is not known: too close in the dry is too close in any weather"
+--
+-- # Draft: in the dry the two seconds of the same rule 126 are less than the stopping distance above 40 mph: which of the two a driver keeps
+-- # is a judgement.
 
 -- @applies
 SELECT drive_id, ego_id, t_ns, object_id, follows AND (joined_ns IS NULL OR t_ns - joined_ns >= ($settle_s * 1e9)::BIGINT) AS applies

@@ -21,19 +21,22 @@ GROUP BY o.drive_id, o.ego_id, o.t0_ns, o.t3_ns, o.t_end_ns, o.opposing, o.side
 
 -- @anchor
 -- where the line became solid under it, or where it was back
-SELECT r.ref_id, coalesce(min(l.t_ns) FILTER (l.forbidden AND l.passing_id IS NULL), r.t3_ns) AS t_ns
+SELECT r.ref_id, coalesce(min(l.t_ns) FILTER (l.forbidden AND l.passing_id IS NULL AND l.passing_known), r.t3_ns) AS t_ns
 FROM reference r
 LEFT JOIN line_step l ON l.drive_id = r.drive_id AND l.ego_id = r.ego_id AND l.side = r.side AND l.t_ns >= r.t_ns AND l.t_ns <= r.t_end_ns
 GROUP BY r.ref_id, r.t3_ns
 
 -- @condition
-SELECT r.drive_id, r.ego_id, coalesce(min(l.t_ns) FILTER (l.forbidden AND l.passing_id IS NULL), r.t3_ns) AS t_ns, r.ref_id,
+WITH over AS (
+    SELECT drive_id, ego_id, t_ns, side, forbidden AND CASE WHEN passing_id IS NOT NULL THEN false WHEN passing_known THEN true END AS solid FROM line_step
+)
+SELECT r.drive_id, r.ego_id, coalesce(min(l.t_ns) FILTER (l.solid), r.t3_ns) AS t_ns, r.ref_id,
     CASE
         -- without a lane beside it, the line may be the edge of the road
         WHEN r.opposing IS NULL THEN NULL
-        WHEN coalesce(bool_or(l.forbidden AND l.passing_id IS NULL), false) THEN false
-        WHEN count(l.t_ns) > 0 AND count(l.t_ns) = count(l.forbidden AND l.passing_id IS NULL) THEN true
+        WHEN bool_or(l.solid) THEN false
+        WHEN count(l.t_ns) > 0 AND count(l.t_ns) = count(l.solid) THEN true
     END AS holds
 FROM reference r
-LEFT JOIN line_step l ON l.drive_id = r.drive_id AND l.ego_id = r.ego_id AND l.side = r.side AND l.t_ns >= r.t_ns AND l.t_ns <= r.t_end_ns
+LEFT JOIN over l ON l.drive_id = r.drive_id AND l.ego_id = r.ego_id AND l.side = r.side AND l.t_ns >= r.t_ns AND l.t_ns <= r.t_end_ns
 GROUP BY r.drive_id, r.ego_id, r.ref_id, r.t3_ns, r.opposing

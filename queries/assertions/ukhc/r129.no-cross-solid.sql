@@ -8,23 +8,25 @@
 -- status = "stable"
 -- sense = "holds"
 -- merge_gap_s = 2.0
--- reads = ["data_log", "ego_corridor", "ego_state", "environment", "line_step"]
+-- reads = ["data_log", "ego_state", "environment", "line_step"]
 -- requires = ["map", "registration", "handedness", "markings", "ego_size"]
 
 -- @condition
--- the middle of the road is the boundary on the overtaking side, if the lane beyond is driven the other way; all others are edges and dividers
+-- edges and the lines between lanes of one direction are the business of other rules
+WITH over AS (
+    SELECT l.drive_id, l.ego_id, l.t_ns, l.out_m, l.marking, l.middle,
+        l.middle AND l.forbidden AND NOT l.access AND CASE WHEN l.passing_id IS NOT NULL THEN false WHEN l.passing_known THEN true END AS crosses
+    FROM line_step l
+    JOIN data_log g USING (drive_id)
+    JOIN environment m USING (environment_id)
+    WHERE l.side = overtaking_side(m.handedness)
+)
 SELECT e.drive_id, e.ego_id, e.t_ns,
-    CASE
-        WHEN e.front_s_m IS NULL THEN NULL
-        WHEN l.t_ns IS NULL OR NOT coalesce(c.over_against, false) THEN true
-        ELSE NOT (l.forbidden AND l.passing_id IS NULL AND NOT l.access)
-    END AS holds,
+    CASE WHEN e.front_s_m IS NULL THEN NULL WHEN l.t_ns IS NULL THEN true ELSE NOT l.crosses END AS holds,
     CASE
         WHEN e.front_s_m IS NULL THEN 'the ego is not placed on the road'
-        WHEN l.forbidden AND l.passing_id IS NULL AND NOT l.access THEN format('{:.2f} m over a line marked {}', l.out_m, l.marking)
+        WHEN l.crosses THEN format('{:.2f} m over a line marked {}', l.out_m, l.marking)
+        WHEN l.t_ns IS NOT NULL AND l.crosses IS NULL AND l.middle IS NULL THEN 'the map has nothing beyond the line: whether it is the middle of the road is not known'
     END AS reason
 FROM ego_state e
-JOIN data_log g USING (drive_id)
-JOIN environment m USING (environment_id)
-LEFT JOIN ego_corridor c USING (drive_id, ego_id, chain_id, t_ns)
-LEFT JOIN line_step l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.t_ns = e.t_ns AND l.side = overtaking_side(m.handedness)
+LEFT JOIN over l USING (drive_id, ego_id, t_ns)

@@ -16,25 +16,43 @@
 -- [params.astride_s]
 -- default = 5.0
 -- unit = "s"
--- why = "our default: longer is no correction any more; time standing does not count"
+-- why = "our default: longer is no correction any more; time standing, or round somebody, does not count"
+--
+-- [params.change_s]
+-- default = 10.0
+-- unit = "s"
+-- why = "UN R79 5.6.4.6.5 gives a lane change by the system 5 s, that of a bus or lorry 10 s; here a driver has 10 s whatever it drives"
 
 -- @condition
 WITH astride AS (
-    SELECT drive_id, ego_id, l.t_ns, l.marking, l.begin_seen, l.manoeuvre, l.passing_id,
-        sum(CASE WHEN l.t_ns = l.t_since_ns OR e.speed_mps <= standing_mps() THEN 0 ELSE s.dt_ns END)
-            OVER (PARTITION BY drive_id, ego_id, l.side, l.t_since_ns ORDER BY l.t_ns ROWS UNBOUNDED PRECEDING) / 1e9 AS moving_s
-    FROM line_step l
+    SELECT drive_id, ego_id, l.t_ns, l.marking, l.astride_begin_seen, l.changes, l.overtaking OR l.passing_id IS NOT NULL AS excused,
+        CASE WHEN l.t_ns = l.t_astride_ns OR excused OR e.speed_mps <= standing_mps() THEN 0 ELSE s.dt_ns END AS counted_ns,
+        sum(counted_ns) OVER w / 1e9 AS most_s, coalesce(sum(counted_ns) FILTER (l.passing_known AND excused IS NOT NULL) OVER w, 0) / 1e9 AS least_s
+    -- over both lines at once: a lane that is too narrow for it
+    FROM (FROM line_step QUALIFY count(*) OVER (PARTITION BY drive_id, ego_id, t_ns) = 1) l
     JOIN step s USING (drive_id, ego_id, t_ns)
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
-    -- over both lines at once: a lane that is too narrow for it
-    QUALIFY count(*) OVER (PARTITION BY drive_id, ego_id, l.t_ns) = 1
-)
-SELECT e.drive_id, e.ego_id, e.t_ns, $astride_s AS required, coalesce(NOT a.begin_seen, false) AS at_least,
-    CASE WHEN e.front_s_m IS NULL THEN NULL WHEN a.t_ns IS NULL THEN 0.0::DOUBLE WHEN a.marking IS NOT NULL OR a.moving_s <= $astride_s THEN a.moving_s END AS observed,
-    CASE WHEN e.front_s_m IS NULL THEN 'the ego is not placed on the road' END AS reason
-FROM ego_state e
-LEFT JOIN (
+    WHERE l.t_astride_ns IS NOT NULL
+    WINDOW w AS (PARTITION BY drive_id, ego_id, l.t_astride_ns ORDER BY l.t_ns ROWS UNBOUNDED PRECEDING)
+),
+-- between the time that it was surely not going round somebody and all of the time
+judged AS (
+    SELECT *, CASE WHEN NOT changes THEN $astride_s ELSE $change_s END AS required,
+        CASE
+            WHEN most_s <= $astride_s THEN most_s
+            WHEN marking IS NULL OR changes IS NULL AND least_s <= $change_s THEN NULL
+            WHEN most_s <= required THEN most_s
+            WHEN least_s > required THEN least_s
+        END AS observed
     FROM astride
-    WHERE NOT manoeuvre AND passing_id IS NULL
-        AND coalesce(marking IN ('broken', 'broken_broken', 'broken_solid', 'solid_broken', 'botts_dots'), true)
-) a USING (drive_id, ego_id, t_ns)
+    WHERE excused IS DISTINCT FROM true AND coalesce(marking IN ('broken', 'broken_broken', 'broken_solid', 'solid_broken', 'botts_dots'), true)
+)
+SELECT e.drive_id, e.ego_id, e.t_ns, coalesce(a.required, $astride_s) AS required, coalesce(NOT a.astride_begin_seen, false) AS at_least,
+    CASE WHEN e.front_s_m IS NULL THEN NULL WHEN a.t_ns IS NULL THEN 0.0::DOUBLE ELSE a.observed END AS observed,
+    CASE
+        WHEN e.front_s_m IS NULL THEN 'the ego is not placed on the road'
+        WHEN a.t_ns IS NOT NULL AND a.changes IS NULL THEN 'the log ends before it shows whether this is a lane change'
+        WHEN a.observed IS NULL AND a.least_s <= a.required THEN 'the ego may be going round somebody whose place is not known'
+    END AS reason
+FROM ego_state e
+LEFT JOIN judged a USING (drive_id, ego_id, t_ns)

@@ -1,6 +1,6 @@
 -- title = "With the direction of the lane"
 -- clause = "UKHC R143, R160 and R263: you must travel in the direction of a one-way road; on a motorway you must not reverse or drive against the traffic; on other roads you should keep to your side"
--- hypothesis = "At every step outside an overtake, did the ego drive forwards and with the direction of its lane?"
+-- hypothesis = "At every step outside an overtake, and where nothing that stands closes its lane, did the ego drive forwards and with the direction of its lane?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "critical"
@@ -8,7 +8,7 @@
 -- status = "stable"
 -- sense = "holds"
 -- merge_gap_s = 5.0
--- reads = ["data_log", "ego_motion", "ego_state", "excursion", "lanelet", "line_step", "overtake_step", "step"]
+-- reads = ["data_log", "ego_aside", "ego_condition", "ego_motion", "ego_state", "excursion", "hidden", "lane_occupancy", "lanelet", "line_step", "overtake_step", "pair", "step"]
 -- requires = ["map", "registration", "handedness", "ego_size"]
 --
 -- [params.reverse_mps]
@@ -25,30 +25,91 @@
 -- default = 10.0
 -- unit = "s"
 -- why = "our default: time in the opposing lane to get past something that the log does not show, such as road works"
+--
+-- [params.closed_s]
+-- default = 5.0
+-- unit = "s"
+-- why = "our default: so long before and after something that stands in its own lane, and after an overtaken vehicle, the ego may be in the opposing lane, at its present speed"
+--
+-- [params.closed_m]
+-- default = 10.0
+-- unit = "m"
+-- why = "our default: and so much further, however slow it is"
+
+-- [params.junction_s]
+-- default = 2.0
+-- unit = "s"
+-- why = "our default: in a junction lanes of all directions overlap; against every one of them for so long, as the wrong way round a roundabout, is against the traffic"
+--
+-- [params.against_rad]
+-- default = 2.618
+-- unit = "rad"
+-- why = "our default: within 30 degrees of straight against a lane of a junction; a turn that is cut is not"
 
 -- @applies
--- not in junctions, where lanes of all directions overlap, and not off every lane, as in a car park
-WITH passing_by AS (
-    SELECT drive_id, ego_id, t_ns FROM overtake_step
+-- not off every lane, as in a car park
+WITH ego AS (
+    SELECT drive_id, ego_id, t_ns, front_s_m, rear_s_m, with_direction, $closed_m + $closed_s * speed_mps AS reach_m FROM ego_state
+),
+-- an overtake excuses the ego until the overtaken vehicle is left behind
+passing_by AS (
+    SELECT o.drive_id, o.ego_id, o.t_ns
+    FROM overtake_step o
+    JOIN ego e USING (drive_id, ego_id, t_ns)
+    LEFT JOIN pair p ON p.drive_id = o.drive_id AND p.ego_id = o.ego_id AND p.t_ns = o.t_ns AND p.object_id = o.vbp_id
+    WHERE coalesce(p.front_s_m >= e.rear_s_m - e.reach_m, true)
     UNION
     SELECT drive_id, ego_id, t_ns FROM line_step WHERE passing_id IS NOT NULL
-    UNION
-    SELECT s.drive_id, s.ego_id, s.t_ns
+),
+out_for_a_while AS (
+    SELECT DISTINCT s.drive_id, s.ego_id, s.t_ns
     FROM excursion x
     JOIN step s ON s.drive_id = x.drive_id AND s.ego_id = x.ego_id AND s.t_ns >= x.t0_ns AND s.t_ns <= x.t_end_ns
         AND s.t_ns < x.t0_ns + ($passing_s * 1e9)::BIGINT
+),
+wrong AS (
+    SELECT * FROM ego WHERE NOT with_direction
+),
+-- what stands in the ego's lane, such as a row of cones, closes it
+closed AS (
+    SELECT w.drive_id, w.ego_id, w.t_ns,
+        CASE WHEN bool_or(p.speed_mps <= standing_mps()) THEN true WHEN count(h.object_id) = 0 AND count(p.object_id) = count(p.speed_mps) THEN false END AS closed
+    FROM wrong w
+    LEFT JOIN pair p ON p.drive_id = w.drive_id AND p.ego_id = w.ego_id AND p.t_ns = w.t_ns
+        AND in_lane(p.d_m, coalesce(p.lat_half_m, 0.0), p.half_width_m) AND p.s_m >= w.rear_s_m - w.reach_m AND p.s_m <= w.front_s_m + w.reach_m
+    LEFT JOIN hidden h ON h.drive_id = w.drive_id AND h.ego_id = w.ego_id AND h.t_ns = w.t_ns AND h.least_m < w.reach_m
+    GROUP BY ALL
+),
+-- against every lane of a junction, and for how long it has been so
+round AS (
+    SELECT drive_id, ego_id, t_ns, t_ns - max(t_ns) FILTER (NOT against) OVER w >= ($junction_s * 1e9)::BIGINT AS against
+    FROM (
+        SELECT e.drive_id, e.ego_id, e.t_ns, coalesce(bool_and(abs(o.heading_diff_rad) > $against_rad), false) AS against
+        FROM ego_state e
+        LEFT JOIN lane_occupancy o ON e.in_junction AND o.drive_id = e.drive_id AND o.actor_id = e.ego_id AND o.t_ns = e.t_ns AND o.drivable
+        GROUP BY ALL
+    )
+    WINDOW w AS (PARTITION BY drive_id, ego_id ORDER BY t_ns)
 )
 SELECT e.drive_id, e.ego_id, e.t_ns,
-    (p.t_ns IS NULL OR e.with_direction) AND NOT (e.x_m IS NOT NULL AND e.lanelet_id IS NULL) AND NOT e.in_junction
-        AND (abs(m.v_long_mps) > $manoeuvring_mps OR coalesce(e.road_type, '') = 'motorway') AS applies
+    -- out for a while past what the log does not show: whether there was anything is not known
+    (c.t_ns IS NULL OR CASE WHEN p.t_ns IS NOT NULL OR c.closed THEN false WHEN x.t_ns IS NOT NULL AND NOT e.in_junction THEN NULL ELSE NOT c.closed END)
+        AND (e.x_m IS NULL OR e.lanelet_id IS NOT NULL OR a.t_ns IS NOT NULL AND w.road_type = 'motorway') AND (NOT e.in_junction OR a.t_ns IS NOT NULL OR coalesce(r.against, false))
+        AND CASE WHEN abs(m.v_long_mps) > $manoeuvring_mps OR w.road_type = 'motorway' THEN true WHEN abs(m.v_long_mps) <= $manoeuvring_mps AND w.road_type IS NOT NULL THEN false END AS applies
 FROM ego_state e
 LEFT JOIN ego_motion m USING (drive_id, ego_id, t_ns)
+LEFT JOIN ego_condition w USING (drive_id, ego_id, t_ns)
+LEFT JOIN ego_aside a USING (drive_id, ego_id, t_ns)
 LEFT JOIN passing_by p USING (drive_id, ego_id, t_ns)
+LEFT JOIN out_for_a_while x USING (drive_id, ego_id, t_ns)
+LEFT JOIN round r USING (drive_id, ego_id, t_ns)
+LEFT JOIN closed c USING (drive_id, ego_id, t_ns)
 
 -- @condition
-SELECT e.drive_id, e.ego_id, e.t_ns, (n.bidirectional OR e.with_direction) AND m.v_long_mps >= -$reverse_mps AS holds,
-    format('{:.1f} m/s along its own heading, {} lane {}', m.v_long_mps, CASE WHEN n.bidirectional OR e.with_direction THEN 'with' ELSE 'against' END, e.lanelet_id) AS reason
+SELECT e.drive_id, e.ego_id, e.t_ns, (n.bidirectional OR coalesce(e.with_direction, a.with_direction)) AND m.v_long_mps >= -$reverse_mps AS holds,
+    format('{:.1f} m/s along its own heading, {} lane {}', m.v_long_mps, CASE WHEN n.bidirectional OR coalesce(e.with_direction, a.with_direction) THEN 'with' ELSE 'against' END, coalesce(e.lanelet_id, a.lanelet_id)) AS reason
 FROM ego_state e
 JOIN data_log g USING (drive_id)
 LEFT JOIN ego_motion m USING (drive_id, ego_id, t_ns)
-LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = e.lanelet_id
+LEFT JOIN ego_aside a USING (drive_id, ego_id, t_ns)
+LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = coalesce(e.lanelet_id, a.lanelet_id)

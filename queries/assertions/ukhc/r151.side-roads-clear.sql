@@ -20,6 +20,11 @@
 -- default = 1.0
 -- unit = "m/s"
 -- why = "our default: slower than this moves up in a queue"
+--
+-- [params.long_s]
+-- default = 5.0
+-- unit = "s"
+-- why = "our default: shorter is a pause in traffic"
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, junction_id, t_out_ns, across
@@ -39,7 +44,10 @@ JOIN standstill s ON s.drive_id = r.drive_id AND s.ego_id = r.ego_id AND s.junct
 SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
     -- who turns across may wait for the oncoming traffic, or behind one who does, or for a full exit: which of these is not known
     s.t_start_ns IS NULL OR NOT e.in_junction
-        OR NOT queued(s.ahead_id, s.ahead_gap_m, s.ahead_speed_mps, s.ahead_known, $near_m, $slow_mps) OR CASE WHEN NOT r.across THEN false END AS holds,
+        OR NOT exit_full(
+            s.ahead_id, s.ahead_gap_m, s.ahead_speed_mps, s.ahead_known, s.junction_clear_m, CASE WHEN r.across THEN 0 ELSE s.t_end_ns - s.t_start_ns END,
+            $near_m, $slow_mps, $long_s
+        ) OR CASE WHEN NOT r.across THEN false END AS holds,
     CASE WHEN s.t_start_ns IS NOT NULL THEN 'the ego stood in the junction' || coalesce(' behind ' || s.ahead_id, '')
         || CASE WHEN r.across THEN '; turning across, it may have waited for the oncoming traffic' ELSE '' END END AS reason
 FROM reference_step g

@@ -23,26 +23,29 @@ QUALIFY occurrence = max(occurrence) OVER (PARTITION BY drive_id, ego_id, t0_ns)
 -- @condition
 -- without a vehicle there, the space reaches at least as far as the corridor and the sensors
 WITH ahead AS (
-    SELECT r.ref_id, v.front_s_m, min(a.rear_s_m) AS rear_s_m
+    SELECT r.ref_id, v.front_s_m, min(a.rear_s_m) - v.front_s_m AS gap_m, min(a.rear_s_m) FILTER (is_vehicle(a.actor_class)) - v.front_s_m AS vehicle_gap_m
     FROM reference r
     JOIN pair v ON v.drive_id = r.drive_id AND v.ego_id = r.ego_id AND v.t_ns = r.t_ns AND v.object_id = r.object_id
     LEFT JOIN (
         FROM pair
-        WHERE may_be_vehicle(actor_class) AND abs(d_m) - lat_half_m < half_width_m - over_boundary_m()
+        WHERE (may_be_vehicle(actor_class) OR actor_class = 'object' AND abs(d_m) <= half_width_m) AND abs(d_m) - lat_half_m < half_width_m - over_boundary_m()
             AND (abs(heading_diff_rad) < pi() / 2 OR speed_mps <= standing_mps())
     ) a ON a.drive_id = r.drive_id AND a.ego_id = r.ego_id AND a.t_ns = r.t_ns AND a.s_m > v.s_m
     GROUP BY r.ref_id, v.front_s_m
 )
-SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, h.rear_s_m IS NULL AS at_least,
-    o.l_av_m + thinking_distance_m(o.v_vbp_mps) + thinking_distance_m(o.v_av_mps) AS required,
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, h.gap_m IS NULL AS at_least, needs.m AS required,
     CASE
         WHEN NOT o.begin_seen THEN NULL
-        WHEN h.rear_s_m IS NULL THEN CASE WHEN o.n_unplaced = 0 THEN n.free_m - (h.front_s_m - e.front_s_m) END
-        WHEN o.n_unplaced = 0 OR h.rear_s_m - h.front_s_m < o.l_av_m + thinking_distance_m(o.v_vbp_mps) + thinking_distance_m(o.v_av_mps) THEN h.rear_s_m - h.front_s_m
+        WHEN h.gap_m IS NULL THEN CASE WHEN o.n_unplaced = 0 THEN n.free_m - (h.front_s_m - e.front_s_m) END
+        -- somebody nearer whose class is not known may be no vehicle
+        WHEN h.vehicle_gap_m < needs.m THEN h.vehicle_gap_m
+        WHEN o.n_unplaced = 0 AND h.gap_m >= needs.m THEN h.gap_m
     END AS observed,
-    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began' WHEN o.n_unplaced > 0 THEN o.unplaced_reason END AS reason
+    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began' WHEN o.n_unplaced > 0 THEN o.unplaced_reason
+        WHEN h.gap_m < needs.m THEN 'the class of somebody there is not known' END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
+CROSS JOIN LATERAL (SELECT o.l_av_m + thinking_distance_m(o.v_vbp_mps) + thinking_distance_m(o.v_av_mps) AS m) needs
 LEFT JOIN ahead h USING (ref_id)
 LEFT JOIN ego_state e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id AND e.t_ns = r.t_ns
 LEFT JOIN oncoming n ON n.drive_id = r.drive_id AND n.ego_id = r.ego_id AND n.t_ns = r.t_ns

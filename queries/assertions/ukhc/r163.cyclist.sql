@@ -6,12 +6,13 @@
 -- severity = "critical"
 -- legal = "should"
 -- status = "stable"
+-- law = ["gb"]
 -- sense = ">="
 -- unit = "m"
 -- observes = "distance to the cyclist"
 -- near_margin = 0.2
 -- merge_gap_s = 2.0
--- reads = ["actor", "beside"]
+-- reads = ["beside", "road_user"]
 -- requires = ["map", "registration", "actor_classes", "ego_size"]
 --
 -- [params.clearance_m]
@@ -30,21 +31,16 @@
 -- unit = "m/s"
 -- why = "30 mph"
 -- source = "UKHC R163"
---
--- [params.longest_m]
--- default = 2.5
--- unit = "m"
--- why = "our default: what is of no known class and longer than this is no cycle"
 
 -- @applies
 -- a cyclist that overtakes the ego, or comes towards it, is not passed
 SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id,
-    coalesce(is_class(b.actor_class, 'bicycle'), CASE WHEN a.length_m > $longest_m THEN false END)
-        AND b.along AND b.on_carriageway AND b.ego_speed_mps > b.speed_mps AS applies
+    is_bicycle(b.actor_class, a.length_m) AND b.along AND b.on_carriageway AND b.ego_speed_mps > b.speed_mps AS applies
 FROM beside b
-LEFT JOIN actor a ON a.drive_id = b.drive_id AND a.actor_id = b.object_id
+LEFT JOIN road_user a ON a.drive_id = b.drive_id AND a.actor_id = b.object_id
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, object_id, clearance_m AS observed,
-    CASE WHEN ego_speed_mps <= $fast_mps THEN $clearance_m ELSE $fast_clearance_m END AS required
+SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN ego_speed_mps <= $fast_mps THEN $clearance_m ELSE $fast_clearance_m END AS required,
+    kept_between(clearance_m, blur_m, required) AS observed,
+    CASE WHEN observed IS NULL AND clearance_m IS NOT NULL THEN 'the steps are too far apart to tell how near it came between them' END AS reason
 FROM beside

@@ -1,13 +1,13 @@
 -- title = "Giving way to oncoming traffic when passing an obstruction"
 -- clause = "UKHC R163: give way to oncoming vehicles before you pass parked vehicles or other obstructions on your side of the road"
--- hypothesis = "When the ego went into the opposing lane round a standing vehicle, did no oncoming vehicle have to brake or come close?"
+-- hypothesis = "When the ego went into the opposing lane round a standing vehicle, did no oncoming vehicle come close, have to brake, or have to wait?"
 -- kind = "execution"
 -- derivation = "model"
 -- severity = "major"
 -- legal = "should"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["clock", "conflict", "overtake"]
+-- reads = ["clock", "conflict", "forced_braking", "overtake"]
 -- requires = ["map", "registration", "handedness", "ego_size"]
 --
 -- [params.pet_s]
@@ -26,7 +26,7 @@
 -- why = "our default: within 30 degrees of head on"
 
 -- @reference
-SELECT drive_id, ego_id, t0_ns AS t_ns, vbp_id AS object_id, occurrence
+SELECT drive_id, ego_id, t0_ns AS t_ns, t_end_ns, vbp_id AS object_id, occurrence
 FROM overtake
 WHERE opposing IS DISTINCT FROM false
 -- a row of parked vehicles is one obstruction
@@ -34,18 +34,36 @@ QUALIFY occurrence = min(occurrence) OVER (PARTITION BY drive_id, ego_id, t0_ns)
 
 -- @condition
 -- kept is only what was seen to its end: nobody unplaced, back in its lane, and the time after that too
+WITH braked AS (
+    SELECT
+        r.ref_id, made_to_brake(f.decel_mps2, f.pet_s, f.other_cause, $decel_mps2, $pet_s) AS made,
+        braked_words(f.object_id, f.pet_s, f.decel_mps2, f.other_cause) AS words
+    FROM reference r
+    JOIN forced_braking f ON f.drive_id = r.drive_id AND f.ego_id = r.ego_id AND abs(f.angle_rad) >= $oncoming_rad
+        AND f.t_ego_in_ns >= r.t_ns AND f.t_ego_in_ns <= r.t_end_ns
+),
+-- one who had to brake is enough
+forced AS (
+    SELECT ref_id, CASE WHEN bool_or(made) THEN true WHEN count(made) = count(*) THEN false END AS made,
+        coalesce(min(words) FILTER (made), min(words) FILTER (made IS NULL)) AS words
+    FROM braked
+    GROUP BY ref_id
+)
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps <= standing_mps() AS applies,
     CASE
-        WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false) THEN false
+        WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false) OR f.made THEN false
+        WHEN f.ref_id IS NOT NULL AND f.made IS NULL THEN NULL
         WHEN o.begin_seen AND o.n_unplaced = 0 AND count(c.object_id) = count(c.decel_mps2) AND k.t_end_ns >= o.t3_ns + ($pet_s * 1e9)::BIGINT THEN true
     END AS holds,
     CASE
         WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false)
             THEN format('an oncoming vehicle came {:.1f} s after the ego, or braked by {:.1f} m/s2', min(c.pet_s), coalesce(max(c.decel_mps2), 0))
+        WHEN f.words IS NOT NULL THEN f.words
         WHEN o.t3_ns IS NULL THEN 'the ego was not seen back in its lane' END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 JOIN clock k USING (drive_id, ego_id)
+LEFT JOIN forced f USING (ref_id)
 LEFT JOIN (FROM conflict WHERE ego_first AND abs(angle_rad) >= $oncoming_rad) c
-    ON c.drive_id = r.drive_id AND c.ego_id = r.ego_id AND c.t_ego_in_ns >= r.t_ns AND c.t_ego_in_ns <= o.t_end_ns
-GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.t3_ns, k.t_end_ns
+    ON c.drive_id = r.drive_id AND c.ego_id = r.ego_id AND c.t_ego_in_ns >= r.t_ns AND c.t_ego_in_ns <= r.t_end_ns
+GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.t3_ns, k.t_end_ns, f.ref_id, f.made, f.words

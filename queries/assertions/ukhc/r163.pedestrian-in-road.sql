@@ -6,6 +6,7 @@
 -- severity = "critical"
 -- legal = "should"
 -- status = "draft"
+-- law = ["gb"]
 -- sense = "holds"
 -- merge_gap_s = 2.0
 -- reads = ["beside", "conflict"]
@@ -32,12 +33,12 @@
 -- @applies
 -- who crosses and stops in the ego's way, or is struck there, was crossing still
 SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id,
-    b.actor_class = 'pedestrian' AND b.on_carriageway AND b.ego_speed_mps > standing_mps() AND abs(b.lat_mps) <= $across_mps AND c.object_id IS NULL AS applies
+    is_class(b.actor_class, 'pedestrian') AND b.on_carriageway AND b.ego_speed_mps > standing_mps() AND abs(b.lat_mps) <= $across_mps AND c.object_id IS NULL AS applies
 FROM beside b
 LEFT JOIN (SELECT DISTINCT drive_id, ego_id, object_id, t_object_in_ns, t_object_out_ns FROM conflict WHERE abs(sin(angle_rad)) >= sin(pi() / 4)) c
     ON c.drive_id = b.drive_id AND c.ego_id = b.ego_id AND c.object_id = b.object_id AND c.t_object_in_ns <= b.t_ns AND b.t_ns <= c.t_object_out_ns
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, object_id, clearance_m >= $clearance_m AND ego_speed_mps <= $speed_mps AS holds,
+SELECT drive_id, ego_id, t_ns, object_id, kept_between(clearance_m, blur_m, $clearance_m) >= $clearance_m AND ego_speed_mps <= $speed_mps AS holds,
     format('{:.2f} m away at {:.1f} m/s', clearance_m, ego_speed_mps) AS reason
 FROM beside

@@ -3,7 +3,7 @@
 -- hypothesis = "When the ego first left its lane, was it further from the vehicle being passed than its stopping distance?"
 -- kind = "execution"
 -- derivation = "direct"
--- severity = "major"
+-- severity = "minor"
 -- legal = "should"
 -- status = "stable"
 -- sense = ">"

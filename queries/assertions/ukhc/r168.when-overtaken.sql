@@ -1,6 +1,6 @@
 -- title = "Steady while being overtaken"
 -- clause = "UKHC R168: if a driver is trying to overtake you, keep a steady course and speed, and slow down if need be to let them pass"
--- hypothesis = "At every step at which a vehicle overtook it in the opposing lane, did the ego neither accelerate nor drift towards it?"
+-- hypothesis = "At every step at which a vehicle overtook it in the opposing lane, or came up there to do so, did the ego neither accelerate nor drift towards it?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "minor"
@@ -8,7 +8,7 @@
 -- status = "stable"
 -- sense = "holds"
 -- merge_gap_s = 2.0
--- reads = ["beside", "data_log", "ego_corridor", "ego_motion", "ego_state", "environment"]
+-- reads = ["beside", "data_log", "ego_corridor", "ego_motion", "ego_state", "environment", "neighbour"]
 -- requires = ["map", "registration", "handedness", "ego_size"]
 --
 -- [params.accel_mps2]
@@ -25,20 +25,40 @@
 -- default = 4.47
 -- unit = "m/s"
 -- why = "our default: at 10 mph and less the ego moves in a queue that two-wheelers go past"
+--
+-- [params.coming_s]
+-- default = 4.0
+-- unit = "s"
+-- why = "our default, that of r162.not-being-overtaken: who is out in the opposing lane and there so soon is overtaking the ego"
 
 -- @applies
--- where the lane beside is driven the other way, whoever is beside the ego there and drives its way is overtaking it
+-- where the lane beside is driven the other way, whoever is beside the ego there and drives its way is overtaking it, and so is whoever comes
+-- up there
+WITH near AS (
+    SELECT drive_id, ego_id, t_ns, object_id, actor_class, side, along, ego_speed_mps, speed_mps FROM beside
+    UNION ALL
+    SELECT drive_id, ego_id, t_ns, object_id, actor_class, side, abs(heading_diff_rad) < pi() / 4 AS along, ego_speed_mps, speed_mps
+    FROM neighbour
+    WHERE gap_behind_m > 0 AND gap_behind_m <= $coming_s * (speed_mps - ego_speed_mps) AND abs(d_m) > half_width_m AND gap_m > 0
+)
 SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id,
     b.along AND b.side = overtaking_side(m.handedness) AND coalesce(c.over_against, false) AND b.speed_mps > standing_mps()
-        AND may_be_vehicle(b.actor_class) AND b.ego_speed_mps > $queue_mps AS applies
-FROM beside b
+        AND is_vehicle(b.actor_class) AND b.ego_speed_mps > $queue_mps AS applies
+FROM near b
 JOIN data_log g USING (drive_id)
 JOIN environment m USING (environment_id)
 LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
 LEFT JOIN ego_corridor c ON c.drive_id = b.drive_id AND c.ego_id = b.ego_id AND c.t_ns = b.t_ns AND c.chain_id = e.chain_id
 
 -- @condition
+WITH near AS (
+    SELECT drive_id, ego_id, t_ns, object_id, ego_lat_mps FROM beside
+    UNION ALL
+    SELECT drive_id, ego_id, t_ns, object_id, CASE side WHEN 'left' THEN ego_left_mps ELSE -ego_left_mps END
+    FROM neighbour
+    WHERE gap_behind_m > 0
+)
 SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id, a.accel_mps2 <= $accel_mps2 AND b.ego_lat_mps <= $drift_mps AS holds,
     format('accelerates by {:.2f} m/s2, drifts towards it at {:.2f} m/s', a.accel_mps2, b.ego_lat_mps) AS reason
-FROM beside b
+FROM near b
 LEFT JOIN ego_motion a USING (drive_id, ego_id, t_ns)

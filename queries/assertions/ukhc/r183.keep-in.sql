@@ -1,6 +1,6 @@
 -- title = "Keep in when turning to the near side"
 -- clause = "UKHC R183: when turning left keep as close to the left as is safe and practicable"
--- hypothesis = "When the ego had turned to the near side, was it wholly on its own side of the road that it entered?"
+-- hypothesis = "When the ego had turned to the near side, was there little room between it and the near edge of the lane that it entered?"
 -- kind = "execution"
 -- derivation = "direct"
 -- severity = "minor"
@@ -8,14 +8,19 @@
 -- status = "stable"
 -- sense = "<="
 -- unit = "m"
--- observes = "reach over the middle of the road entered"
--- reads = ["ego_corridor", "ego_state", "junction_passage"]
+-- observes = "room to the near edge of the lane entered"
+-- reads = ["data_log", "ego_corridor", "ego_state", "junction_passage", "lane_beside", "pair"]
 -- requires = ["map", "registration", "ego_size"]
 --
--- [params.tolerance_m]
--- default = 0.3
+-- [params.near_m]
+-- default = 1.5
 -- unit = "m"
--- why = "our default: a wheel on the line is not yet the other side of the road"
+-- why = "our default: a car has 0.9 m left in the middle of a lane of 3.5 m; nobody else can drive in less than this"
+--
+-- [params.passing_m]
+-- default = 30.0
+-- unit = "m"
+-- why = "our default: who is at the near edge up to so far ahead, or beside the ego, may have to be passed with room"
 
 -- @reference
 SELECT drive_id, ego_id, t_out_ns AS t_ns, occurrence, turn, across
@@ -23,9 +28,29 @@ FROM junction_passage
 WHERE across IS DISTINCT FROM true AND turn IS DISTINCT FROM 'straight'
 
 -- @condition
-SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $tolerance_m AS required,
-    CASE k.side WHEN 1 THEN k.left_out_m WHEN -1 THEN k.right_out_m END AS observed,
-    CASE WHEN r.across IS NULL THEN NULL WHEN k.over_width_m IS NULL THEN false ELSE k.over_against END AS applies
-FROM reference r
-JOIN ego_state e USING (drive_id, ego_id, t_ns)
-JOIN ego_corridor k USING (drive_id, ego_id, chain_id, t_ns)
+WITH placed AS (
+    SELECT r.ref_id, r.across, e.*, k.half_width_m, k.side, CASE k.side WHEN 1 THEN -k.right_out_m WHEN -1 THEN -k.left_out_m END AS room_m
+    FROM reference r
+    JOIN ego_state e USING (drive_id, ego_id, t_ns)
+    JOIN ego_corridor k USING (drive_id, ego_id, chain_id, t_ns)
+),
+-- actors that stand or ride there, or may, and a lane of the ego's direction that others turn into
+aside AS (
+    SELECT DISTINCT w.ref_id
+    FROM placed w
+    JOIN pair p USING (drive_id, ego_id, t_ns)
+    WHERE p.x_m IS NULL OR p.front_s_m IS NOT NULL AND -w.side * (p.d_m - w.d_m) > 0 AND abs(p.d_m) - p.lat_half_m < p.half_width_m + 0.5
+        AND p.front_s_m >= w.rear_s_m AND p.rear_s_m <= w.front_s_m + $passing_m
+    UNION
+    SELECT w.ref_id
+    FROM placed w
+    JOIN data_log g USING (drive_id)
+    JOIN lane_beside b ON b.environment_id = g.environment_id AND b.lanelet_id = w.lanelet_id AND b.drivable AND NOT b.against
+        AND b.side = CASE w.side WHEN 1 THEN 'right' ELSE 'left' END
+)
+SELECT w.drive_id, w.ego_id, w.t_ns, w.ref_id, $near_m AS required,
+    CASE WHEN w.room_m <= $near_m OR a.ref_id IS NULL THEN w.room_m END AS observed,
+    CASE WHEN w.across IS NOT NULL THEN true END AS applies,
+    CASE WHEN w.room_m > $near_m AND a.ref_id IS NOT NULL THEN 'somebody, or another lane of its direction, is or may be at the near side' END AS reason
+FROM placed w
+LEFT JOIN aside a USING (ref_id)

@@ -1,5 +1,5 @@
 -- title = "No stopping on a crossing"
--- clause = "UKHC R191 and R240: you must not stop or park on a pedestrian crossing"
+-- clause = "UKHC R191 and R240: you must not stop or park on a pedestrian crossing; to stand for somebody in the way, or in a queue, is neither"
 -- hypothesis = "Did the ego get over the crossing without standing on it for long of its own accord?"
 -- kind = "postcondition"
 -- subtype = "physical"
@@ -8,7 +8,7 @@
 -- legal = "must"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["crossing_passage", "standstill"]
+-- reads = ["crossing_passage", "in_way", "standstill"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [params.stop_s]
@@ -43,8 +43,10 @@ JOIN standstill s ON s.drive_id = r.drive_id AND s.ego_id = r.ego_id AND s.cross
 SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
     CASE WHEN s.t_start_ns IS NULL THEN true
         WHEN s.t_end_ns - s.t_start_ns > $stop_s * 1e9 THEN queued(s.ahead_id, s.ahead_gap_m, s.ahead_speed_mps, s.ahead_known, $near_m, $slow_mps)
+            OR stands_for(w.object_id, w.actor_class, w.gap_m, w.along_mps, w.known, $near_m, $near_m, $slow_mps)
         WHEN s.end_seen THEN true END AS holds,
     format('the ego stood on the crossing for {:.1f} s', (s.t_end_ns - s.t_start_ns) / 1e9) AS reason
 FROM reference_step g
 JOIN reference r USING (ref_id)
 LEFT JOIN standstill s ON s.drive_id = g.drive_id AND s.ego_id = g.ego_id AND s.t_start_ns = g.t_ns AND s.crossing_id = r.crossing_id
+LEFT JOIN in_way w ON w.drive_id = g.drive_id AND w.ego_id = g.ego_id AND w.t_ns = g.t_ns

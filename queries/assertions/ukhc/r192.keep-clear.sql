@@ -20,6 +20,11 @@
 -- default = 1.0
 -- unit = "m/s"
 -- why = "our default: slower than this moves up in a queue"
+--
+-- [params.long_s]
+-- default = 5.0
+-- unit = "s"
+-- why = "our default: shorter is a pause in traffic"
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, crossing_id, t_out_ns
@@ -36,7 +41,7 @@ JOIN standstill s ON s.drive_id = r.drive_id AND s.ego_id = r.ego_id AND s.cross
 
 -- @condition
 SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
-    s.t_start_ns IS NULL OR NOT queued(s.ahead_id, s.ahead_gap_m, s.ahead_speed_mps, s.ahead_known, $near_m, $slow_mps) AS holds,
+    s.t_start_ns IS NULL OR NOT exit_full(s.ahead_id, s.ahead_gap_m, s.ahead_speed_mps, s.ahead_known, s.crossing_clear_m, s.t_end_ns - s.t_start_ns, $near_m, $slow_mps, $long_s) AS holds,
     CASE WHEN s.t_start_ns IS NOT NULL THEN 'the ego stood on the crossing' || coalesce(' behind ' || s.ahead_id, '') END AS reason
 FROM reference_step g
 JOIN reference r USING (ref_id)

@@ -23,7 +23,7 @@ SELECT drive_id, ego_id, t_ns, ref_id,
         WHEN known AND coming_known AND coming_id IS NULL THEN true END AS holds,
     CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns
         THEN object_id || ' was on it' || CASE WHEN kind IS NULL THEN '; the map does not say what kind of crossing it is' ELSE '' END
-        WHEN NOT known THEN 'somebody on foot nearby cannot be placed'
+        WHEN NOT known THEN 'somebody nearby who may be on foot cannot be placed, or its class is not known'
         WHEN coming_id IS NOT NULL THEN coming_id || ' came over from the other half: whether an island parts the crossing is not known'
         WHEN NOT coming_known THEN 'whether somebody on the other half came over was not seen' END AS reason
 FROM reference

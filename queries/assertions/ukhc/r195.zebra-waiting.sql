@@ -12,7 +12,7 @@
 -- requires = ["map", "registration", "ego_size"]
 
 -- @reference
-SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, crossing_id, kind, waiting_id AS object_id, known
+SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, crossing_id, kind, waiting_id AS object_id, known AND waiting_known AS known
 FROM crossing_passage
 WHERE coalesce(kind, 'zebra') = 'zebra'
 
@@ -21,5 +21,5 @@ SELECT drive_id, ego_id, t_ns, ref_id,
     CASE WHEN object_id IS NOT NULL THEN CASE WHEN kind = 'zebra' THEN false END WHEN known THEN true END AS holds,
     CASE WHEN object_id IS NOT NULL
         THEN object_id || ' stood at its end' || CASE WHEN kind IS NULL THEN '; the map does not say what kind of crossing it is' ELSE '' END
-        WHEN NOT known THEN 'somebody on foot nearby cannot be placed' END AS reason
+        WHEN NOT known THEN 'somebody nearby who may be on foot cannot be placed, or its class is not known' END AS reason
 FROM reference

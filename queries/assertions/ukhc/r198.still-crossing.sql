@@ -21,6 +21,6 @@ SELECT drive_id, ego_id, t_ns, ref_id, state = 'green' AS applies,
     CASE WHEN state IS NULL THEN 'the light''s state is not known'
         WHEN object_id IS NOT NULL AND t_on_ns <= t_ns THEN object_id || ' was on it'
         WHEN coming_id IS NOT NULL THEN coming_id || ' came over from the other half'
-        WHEN NOT known THEN 'somebody on foot nearby cannot be placed'
+        WHEN NOT known THEN 'somebody nearby who may be on foot cannot be placed, or its class is not known'
         WHEN NOT coming_known THEN 'whether somebody on the other half came over was not seen' END AS reason
 FROM reference

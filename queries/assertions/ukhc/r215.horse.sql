@@ -6,6 +6,7 @@
 -- severity = "critical"
 -- legal = "should"
 -- status = "stable"
+-- law = ["gb"]
 -- sense = "holds"
 -- merge_gap_s = 2.0
 -- reads = ["actor", "beside"]
@@ -30,11 +31,11 @@
 
 -- @applies
 SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id,
-    b.actor_class = 'animal' AND a.length_m >= $length_m AND b.on_carriageway AND b.ego_speed_mps > standing_mps() AS applies
+    is_class(b.actor_class, 'animal') AND a.length_m >= $length_m AND b.on_carriageway AND b.ego_speed_mps > standing_mps() AS applies
 FROM beside b
 LEFT JOIN actor a ON a.drive_id = b.drive_id AND a.actor_id = b.object_id
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, object_id, clearance_m >= $clearance_m AND ego_speed_mps <= $speed_mps AS holds,
+SELECT drive_id, ego_id, t_ns, object_id, kept_between(clearance_m, blur_m, $clearance_m) >= $clearance_m AND ego_speed_mps <= $speed_mps AS holds,
     format('{:.2f} m away at {:.1f} m/s', clearance_m, ego_speed_mps) AS reason
 FROM beside

@@ -1,13 +1,13 @@
 -- title = "No stopping on a motorway"
 -- clause = "UKHC R240 and R271: you must not stop on the carriageway of a motorway, nor on a clearway, but in an emergency or when told to"
--- hypothesis = "At every step on a motorway, had the ego not stood for long with nobody close ahead?"
+-- hypothesis = "At every step on a motorway, had the ego not stood for long with nobody in its way?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "major"
 -- legal = "must"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["ego_mode", "ego_state", "lead", "standstill"]
+-- reads = ["ego_mode", "ego_state", "in_way", "standstill"]
 -- requires = ["map", "registration", "ego_size", "road_types"]
 --
 -- [applies]
@@ -22,15 +22,26 @@
 -- default = 10.0
 -- unit = "m"
 -- why = "our default: who stands closer than this behind somebody stands because of them"
+--
+-- [params.hazard_m]
+-- default = 30.0
+-- unit = "m"
+-- why = "our default: so far off somebody on foot, an animal or a thing in the way the ego may have stopped for it"
+--
+-- [params.queue_mps]
+-- default = 2.78
+-- unit = "m/s"
+-- why = "10 km/h: a vehicle as slow as this is in congestion (as R_I1 of Maierhofer et al. 2020)"
 
 -- @condition
 -- clearways and zig-zags are not in map tables; crossings have r191.no-stopping
 WITH stood AS (
-    SELECT e.drive_id, e.ego_id, e.t_ns, s.t_start_ns, s.begin_seen, e.speed_mps, l.t_ns IS NULL AS doubt,
+    SELECT e.drive_id, e.ego_id, e.t_ns, s.t_start_ns, s.begin_seen, e.speed_mps, r.is_so IS NULL AS doubt,
         max(CASE WHEN e.indicator = 'hazard' OR x.t_ns IS NOT NULL THEN e.t_ns END) OVER w IS NOT NULL AS emergency,
-        max(CASE WHEN l.gap_m <= $near_m THEN e.t_ns END) OVER w AS t_queue_ns, max(CASE WHEN l.t_ns IS NULL THEN e.t_ns END) OVER w AS t_doubt_ns
+        max(CASE WHEN r.is_so THEN e.t_ns END) OVER w AS t_queue_ns, max(CASE WHEN r.is_so IS NULL THEN e.t_ns END) OVER w AS t_doubt_ns
     FROM ego_state e
-    LEFT JOIN lead l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.t_ns = e.t_ns
+    LEFT JOIN in_way l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.t_ns = e.t_ns
+    CROSS JOIN LATERAL (SELECT stands_for(l.object_id, l.actor_class, l.gap_m, l.along_mps, l.known, $near_m, $hazard_m, $queue_mps) AS is_so) r
     LEFT JOIN standstill s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.t_start_ns <= e.t_ns AND s.t_end_ns >= e.t_ns
     LEFT JOIN (SELECT DISTINCT drive_id, ego_id, t_ns FROM ego_mode WHERE mode IN ('minimal_risk_manoeuvre', 'emergency_manoeuvre') AND is_on) x
         ON x.drive_id = e.drive_id AND x.ego_id = e.ego_id AND x.t_ns = e.t_ns
@@ -42,7 +53,7 @@ SELECT drive_id, ego_id, t_ns,
         WHEN t_ns - t_queue_ns <= ($stop_s * 1e9)::BIGINT OR begin_seen AND t_ns - t_start_ns <= ($stop_s * 1e9)::BIGINT THEN true
         WHEN t_ns - t_start_ns > ($stop_s * 1e9)::BIGINT AND (t_doubt_ns IS NULL OR t_ns - t_doubt_ns > ($stop_s * 1e9)::BIGINT) THEN CASE WHEN NOT emergency THEN false END END AS holds,
     CASE WHEN t_start_ns IS NOT NULL AND emergency THEN 'it stands with its hazard lights on, or at the end of a manoeuvre that it declared: whether it was an emergency is for a person to say'
-        WHEN t_start_ns IS NOT NULL AND doubt THEN 'the ego stands, and not everybody ahead can be placed'
+        WHEN t_start_ns IS NOT NULL AND doubt THEN 'the ego stands, and not everybody who may be in its way can be placed'
         WHEN NOT begin_seen AND t_ns - t_start_ns <= ($stop_s * 1e9)::BIGINT THEN 'the log does not show since when the ego has stood'
         WHEN t_start_ns IS NOT NULL THEN format('the ego has stood for {:.1f} s', (t_ns - t_start_ns) / 1e9) END AS reason
 FROM stood

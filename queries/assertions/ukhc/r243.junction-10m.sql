@@ -7,6 +7,7 @@
 -- severity = "minor"
 -- legal = "should"
 -- status = "draft"
+-- law = ["gb"]
 -- sense = ">="
 -- unit = "m"
 -- observes = "way to the next junction"

@@ -9,6 +9,7 @@
 -- severity = "minor"
 -- legal = "should"
 -- status = "draft"
+-- law = ["gb"]
 -- sense = "holds"
 -- reads = ["data_log", "ego_state", "environment", "lane_change", "lanelet", "pair", "passing"]
 -- requires = ["map", "registration", "handedness", "ego_size"]

@@ -6,6 +6,7 @@
 -- severity = "major"
 -- legal = "should"
 -- status = "draft"
+-- law = ["gb"]
 -- sense = "holds"
 -- reads = ["data_log", "ego_state", "environment", "lanelet", "passing"]
 -- requires = ["map", "registration", "handedness", "ego_size"]

@@ -10,6 +10,21 @@
 -- merge_gap_s = 5.0
 -- reads = ["data_log", "ego_condition", "ego_mode", "ego_state", "lane_occupancy", "lanelet"]
 -- requires = ["map", "registration"]
+--
+-- [params.warns_s]
+-- default = 10.0
+-- unit = "s"
+-- why = "our default: who has to stop there puts the hazard lights on within this time of getting there, or of standing"
+--
+-- [params.stops_mps2]
+-- default = 2.0
+-- unit = "m/s2"
+-- why = "our default: braking in comfort; who takes longer to stop drives along it"
+--
+-- [params.rejoins_s]
+-- default = 20.0
+-- unit = "s"
+-- why = "our default: time to build up speed on it after a breakdown, which R276 asks for"
 
 -- @condition
 -- an emergency: hazard lights, or a mode that says so
@@ -22,14 +37,41 @@ WITH lane AS (
     GROUP BY ALL
 ),
 emergency AS (
-    SELECT DISTINCT drive_id, ego_id, t_ns FROM ego_mode WHERE mode IN ('minimal_risk_manoeuvre', 'emergency_manoeuvre') AND is_on
+    SELECT drive_id, ego_id, t_ns FROM ego_mode WHERE mode IN ('minimal_risk_manoeuvre', 'emergency_manoeuvre') AND is_on
+    UNION
+    SELECT drive_id, ego_id, t_ns FROM ego_state WHERE indicator = 'hazard'
+),
+stay AS (
+    SELECT
+        e.drive_id, e.ego_id, e.t_ns, e.speed_mps, l.shoulder, x.t_ns IS NOT NULL AS warns, x.t_ns IS NOT NULL AND e.speed_mps <= standing_mps() AS stands,
+        max(e.t_ns) OVER (PARTITION BY e.drive_id, e.ego_id) AS t_end_ns,
+        row_number() OVER (PARTITION BY e.drive_id, e.ego_id ORDER BY e.t_ns) - row_number() OVER (PARTITION BY e.drive_id, e.ego_id, l.shoulder ORDER BY e.t_ns) AS n
+    FROM ego_state e
+    LEFT JOIN lane l USING (drive_id, ego_id, t_ns)
+    LEFT JOIN emergency x USING (drive_id, ego_id, t_ns)
+),
+-- one that gets there, or stops there, and warns soon, and one that builds up speed after it stood there
+excused AS (
+    SELECT
+        drive_id, ego_id, t_ns,
+        CASE
+            WHEN bool_or(warns) OVER (w RANGE BETWEEN CURRENT ROW AND ($warns_s * 1e9)::BIGINT FOLLOWING) THEN true
+            WHEN bool_or(stands) OVER (w RANGE BETWEEN CURRENT ROW AND (($warns_s + coalesce(speed_mps, 0.0) / $stops_mps2) * 1e9)::BIGINT FOLLOWING) THEN true
+            WHEN bool_or(stands) OVER (w RANGE BETWEEN ($rejoins_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW) THEN true
+            WHEN last_value(t_ns) OVER (w ROWS BETWEEN CURRENT ROW AND UNBOUNDED FOLLOWING) < t_end_ns OR t_ns + ($warns_s * 1e9)::BIGINT <= t_end_ns THEN false
+        END AS excused
+    FROM stay
+    WHERE shoulder
+    WINDOW w AS (PARTITION BY drive_id, ego_id, n ORDER BY t_ns)
 )
 -- off all that the map knows, there may be a shoulder; what kind of road it is matters only on one
 SELECT e.drive_id, e.ego_id, e.t_ns, NOT l.shoulder AS holds,
-    CASE WHEN x.t_ns IS NOT NULL OR e.indicator = 'hazard' THEN false
+    CASE WHEN m.t_ns IS NOT NULL OR x.excused THEN false
         WHEN NOT l.shoulder OR e.x_m IS NOT NULL AND l.shoulder IS NULL THEN coalesce(c.road_type, l.road_type, '') = 'motorway'
-        ELSE coalesce(c.road_type, l.road_type) = 'motorway' END AS applies
+        ELSE coalesce(c.road_type, l.road_type) = 'motorway' AND NOT x.excused END AS applies,
+    CASE WHEN l.shoulder AND x.excused IS NULL THEN 'the log ends before it shows whether hazard lights are put on' END AS reason
 FROM ego_state e
 LEFT JOIN lane l USING (drive_id, ego_id, t_ns)
-LEFT JOIN emergency x USING (drive_id, ego_id, t_ns)
+LEFT JOIN emergency m USING (drive_id, ego_id, t_ns)
+LEFT JOIN excused x USING (drive_id, ego_id, t_ns)
 LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)

@@ -1,0 +1,62 @@
+-- The actor nearest in the ego's way, per ego step: a person, an animal, a thing or a vehicle, for each is a reason to brake or to stop.
+-- The way is the running lane and the strip that the ego's box takes, with half a metre to both sides. An actor that comes across is in
+-- the way if its velocity, not its heading, brings it into the strip within some seconds.
+WITH ahead AS (
+    SELECT
+        p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class,
+        greatest(0.0, coalesce(p.rear_s_m, p.s_m) - e.front_s_m) AS gap_m, e.speed_mps AS ego_mps,
+        abs(p.d_m - e.d_m) - coalesce(p.lat_half_m, 0.0) - e.lat_half_m AS across_m,
+        -- one without a size has at least its middle, and may be as large as any
+        CASE WHEN p.lat_half_m IS NULL THEN two_half_boxes_m() / 2 ELSE 0.0 END AS unsure_m,
+        in_lane(p.d_m, coalesce(p.lat_half_m, 0.0), p.half_width_m) AS in_lane,
+        -- a standing actor needs no heading
+        coalesce(s.vx_mps * cos(p.yaw_rad - p.heading_diff_rad) + s.vy_mps * sin(p.yaw_rad - p.heading_diff_rad), CASE WHEN p.speed_mps <= standing_mps() THEN 0.0 END) AS along_mps,
+        sign(p.d_m - e.d_m) * (
+            e.speed_mps * sin(e.heading_diff_rad) - (s.vy_mps * cos(p.yaw_rad - p.heading_diff_rad) - s.vx_mps * sin(p.yaw_rad - p.heading_diff_rad))
+        ) AS towards_mps
+    FROM pair p
+    JOIN ego_state e USING (drive_id, ego_id, t_ns)
+    LEFT JOIN state_dynamics s ON s.drive_id = p.drive_id AND s.actor_id = p.object_id AND s.t_ns = p.t_ns
+    WHERE p.s_m > e.s_m AND p.s_m - e.s_m < way_reach_m()
+),
+told AS (
+    SELECT
+        *,
+        across_m < way_beside_m() OR in_lane OR across_m <= enters_s() * towards_mps AS in_way,
+        -- somebody on foot beside the way may step into it; so may one whose class or velocity is not known
+        across_m < way_beside_m() + unsure_m OR across_m < may_step_m() AND (actor_class IS NULL OR NOT may_be_vehicle(actor_class) OR towards_mps IS NULL) AS may_be,
+        need_mps2(gap_m, ego_mps, along_mps) AS need_mps2
+    FROM ahead
+),
+met AS (
+    SELECT
+        drive_id, ego_id, t_ns,
+        min({'gap_m': gap_m, 'object_id': object_id, 'actor_class': actor_class, 'along_mps': along_mps}) FILTER (in_way) AS near,
+        max(need_mps2) FILTER (in_way) AS need_mps2,
+        bool_or(along_mps IS NULL OR in_way IS DISTINCT FROM true) AS doubt
+    FROM told
+    WHERE in_way OR may_be
+    GROUP BY ALL
+),
+unseen AS (
+    SELECT h.drive_id, h.ego_id, h.t_ns, min(h.least_m) AS least_m
+    FROM hidden h
+    LEFT JOIN pair p ON p.drive_id = h.drive_id AND p.ego_id = h.ego_id AND p.t_ns = h.t_ns AND p.object_id = h.object_id
+    WHERE h.ahead IS DISTINCT FROM false AND p.d_m IS NULL
+    GROUP BY ALL
+),
+step_by_step AS (
+    SELECT
+        e.drive_id, e.ego_id, e.t_ns, m.near, coalesce(m.need_mps2, 0.0) AS need_mps2,
+        e.front_s_m IS NOT NULL AND e.speed_mps IS NOT NULL AND NOT coalesce(m.doubt, false)
+            AND coalesce(u.least_m > way_look_m(e.speed_mps), true) AS known
+    FROM ego_state e
+    LEFT JOIN met m USING (drive_id, ego_id, t_ns)
+    LEFT JOIN unseen u USING (drive_id, ego_id, t_ns)
+)
+SELECT
+    drive_id, ego_id, t_ns, near.object_id AS object_id, near.actor_class AS actor_class, near.gap_m AS gap_m, near.along_mps AS along_mps,
+    max(need_mps2) OVER lately AS need_mps2, bool_and(known) OVER lately AS known
+FROM step_by_step
+-- a driver releases the brake some time after the way is clear
+WINDOW lately AS (PARTITION BY drive_id, ego_id ORDER BY t_ns RANGE BETWEEN let_go_ns() PRECEDING AND CURRENT ROW)

@@ -1,0 +1,62 @@
+-- Actors whose track ends or begins while the log goes on, near enough to matter: when they may be on the road all the same.
+-- `near`: close by, within the sensor's range, or on the way towards the ego when it was seen: it may be anywhere in between.
+WITH edge AS (
+    SELECT drive_id, ego_id, object_id, actor_class, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns FROM pair GROUP BY ALL
+),
+-- where the map ends ahead of the ego's corridor and behind it
+map_end AS (
+    SELECT
+        r.drive_id, r.ego_id, r.chain_id, CASE WHEN n.ahead_id IS NULL THEN r.last.end_m END AS end_m, CASE WHEN f.behind_id IS NULL THEN r.first.begin_m END AS begin_m
+    FROM (
+        SELECT
+            drive_id, ego_id, chain_id, max({'end_m': s_start_m + length_m, 'id': lanelet_id}) AS last, min({'begin_m': s_start_m, 'id': lanelet_id}) AS first
+        FROM corridor
+        GROUP BY ALL
+    ) r
+    JOIN data_log g USING (drive_id)
+    JOIN lane_next n ON n.environment_id = g.environment_id AND n.lanelet_id = r.last.id
+    JOIN lane_next f ON f.environment_id = g.environment_id AND f.lanelet_id = r.first.id
+),
+seen AS (
+    SELECT
+        e.drive_id, e.ego_id, e.object_id, v.lost, p.t_ns, s.chain_id, p.distance_m, p.speed_mps, s.speed_mps AS ego_mps, g.sensor_range_m,
+        p.front_s_m, p.rear_s_m, s.rear_s_m AS ego_rear_m, p.s_m > s.s_m AS ahead, abs(p.heading_diff_rad) > pi() / 2 AS towards,
+        abs(p.heading_diff_rad) > 2 * pi() / 3 AND p.speed_mps > standing_mps() AS oncoming, p.speed_mps * c.max_gap_ns / 1e9 AS step_m, m.end_m, m.begin_m
+    FROM edge e
+    JOIN clock c USING (drive_id, ego_id)
+    JOIN data_log g USING (drive_id)
+    CROSS JOIN LATERAL (VALUES (true, e.t_last_ns), (false, e.t_first_ns)) AS v(lost, t_ns)
+    JOIN pair p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.object_id = e.object_id AND p.t_ns = v.t_ns
+    JOIN ego_state s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.t_ns = v.t_ns
+    LEFT JOIN map_end m ON m.drive_id = s.drive_id AND m.ego_id = s.ego_id AND m.chain_id = s.chain_id
+    WHERE CASE WHEN v.lost THEN v.t_ns + c.max_gap_ns < c.t_end_ns ELSE v.t_ns > c.t_start_ns + c.max_gap_ns END
+),
+told AS (
+    SELECT
+        *,
+        CASE
+            WHEN lost AND front_s_m < ego_rear_m AND oncoming THEN 'lost_behind' WHEN lost THEN 'lost' ELSE 'appeared'
+        END AS code,
+        -- what comes into a finite sensor's range at its edge was outside it before
+        coalesce(
+            distance_m IS NULL OR distance_m < lost_near_m() OR distance_m < CASE WHEN lost THEN 1.0 ELSE 0.8 END * sensor_range_m
+            OR ((lost OR sensor_range_m IS NULL) AND ahead AND towards),
+            false
+        ) AS near,
+        -- a sample earlier, or later, it was not on the map
+        CASE WHEN towards <> lost AND front_s_m + step_m >= end_m THEN end_m END AS beyond_end_m,
+        CASE WHEN towards = lost AND rear_s_m - step_m <= begin_m THEN begin_m END AS beyond_begin_m
+    FROM seen
+)
+SELECT
+    t.drive_id, t.ego_id, st.t_ns, t.object_id, t.near AND abs(st.t_ns - t.t_ns) <= reach.soon_ns AS near, CASE WHEN x.ahead_m >= beyond_map_m() THEN 'beyond_map' ELSE t.code END AS code,
+    x.ahead_m, x.behind_m
+FROM told t
+CROSS JOIN LATERAL (
+    SELECT unseen_ns(t.distance_m, t.speed_mps, t.ego_mps, 20.0) AS ns, unseen_ns(t.distance_m, t.speed_mps, t.ego_mps, 10.0) AS soon_ns
+) reach
+JOIN step st ON st.drive_id = t.drive_id AND st.ego_id = t.ego_id
+    AND CASE WHEN t.lost THEN st.t_ns > t.t_ns AND st.t_ns <= t.t_ns + reach.ns ELSE st.t_ns < t.t_ns AND st.t_ns >= t.t_ns - reach.ns END
+LEFT JOIN ego_state e ON e.drive_id = st.drive_id AND e.ego_id = st.ego_id AND e.t_ns = st.t_ns AND e.chain_id = t.chain_id
+CROSS JOIN LATERAL (SELECT t.beyond_end_m - e.front_s_m AS ahead_m, e.rear_s_m - t.beyond_begin_m AS behind_m) x
+WHERE t.near OR t.distance_m < reach_m(t.speed_mps, t.ego_mps)
