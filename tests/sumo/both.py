@@ -17,7 +17,7 @@ def both(folder: Path, seconds: int, seed: int, per_kind: int) -> tuple[dict[str
     log = reading.read_log(files.log, files.routes, net)
     read, touched = reading.overtakes(log, net), contacts.contacts(log)
     checked = compare.check(files, folder / "out")
-    differ, counts = compare.differences(read, checked)
+    differ, counts = compare.differences(read, checked, reading.jumps(log))
     differ += compare.other_contacts(touched, checked.contacts)
     known = checked.overtakes
     apart = [abs(o.da_m - known[key]["da_m"]) for o in read if (key := compare.known_by(o)) in known]
@@ -32,7 +32,8 @@ def both(folder: Path, seconds: int, seed: int, per_kind: int) -> tuple[dict[str
     planted = files._replace(log=folder / "planted.fcd.xml")
     contacts.write(log, chosen, files.log, planted.log)
     found = compare.check(planted, folder / "planted", rules=(compare.COLLISIONS,))
-    expected = touched + [contacts.expected(log, plant) for plant in chosen if plant.touches]
+    expected = contacts.contacts(reading.read_log(planted.log, files.routes, net))
+    differ += contacts.as_planted(chosen, expected)
     differ += compare.other_contacts(expected, found.contacts)
     return figures | {
         "planted contacts": sum(plant.touches for plant in chosen),

@@ -25,6 +25,7 @@ OVER_M = 0.05  # a corner further over the line than that has left the lane
 LOOK_M = 1000.0  # with nobody coming, how far the road counts as looked at
 NEAR_M = 100.0  # who is pulled out behind, though not passed in the end
 WELL_OVER_M = 0.5
+JUMP_M = 1.0
 STANDING_MPS = 0.5
 PROFILES = {"relaxed": (10.0, 9.10), "nominal": (20.0, 4.65), "aggressive": (40.0, 1.11)}
 """Angle of pulling out and cutting in (degrees), headroom and clearance (m)."""
@@ -64,12 +65,13 @@ class Net:
 class Log:
     """Rows by step: `step` counts tenths of a second; `who` indexes `ids`; corners (row, 4).
 
-    `sizes`: length and width by vehicle. `x`, `y`: the middle of the front bumper; `heading` counter-clockwise from east.
+    `kinds`, `sizes`: type, length and width by vehicle. `x`, `y`: the middle of the front bumper; `heading` counter-clockwise from east.
     `against`: it drives the way of `ba`. `along`: on the middle of its own lane; `offset` from the centre line, positive on
     its own side; `met`: where those who come towards it have it, on the middle of theirs.
     """
 
     ids: tuple[str, ...]
+    kinds: tuple[str, ...]
     sizes: Floats
     step: NDArray[np.int64]
     who: NDArray[np.int64]
@@ -86,7 +88,10 @@ class Log:
         return self._take(self.who == who)
 
     def at(self, step: int) -> Log:
-        return self._take(slice(*np.searchsorted(self.step, (step, step + 1))))
+        return self.during(step, step)
+
+    def during(self, first: int, last: int) -> Log:
+        return self._take(slice(*np.searchsorted(self.step, (first, last + 1))))
 
     def seen_by(self, against: bool) -> Log:
         """Return it with `along` and `offset` as those have them who drive the one way or the other."""
@@ -163,7 +168,19 @@ def read_log(log: Path, routes: Path, net: Net) -> Log:
     offset = offset + net.lane_m / 2  # each lane lies to the left of the centre line in its direction
     steps = step.astype(np.int64)
     return Log(
-        tuple(numbers), np.array([length, width]).T, steps, who, x, y, heading, against, speed, along, met, offset
+        tuple(numbers),
+        tuple(kinds),
+        np.array([length, width]).T,
+        steps,
+        who,
+        x,
+        y,
+        heading,
+        against,
+        speed,
+        along,
+        met,
+        offset,
     )
 
 
@@ -177,6 +194,18 @@ def _vehicles(log: Path) -> Iterator[tuple[int, dict[str, str]]]:
                 element.clear()
         elif element.tag == "vehicle" and event == "start":
             yield step, dict(element.attrib)
+
+
+def jumps(log: Log) -> set[tuple[str, int]]:
+    """Return who is elsewhere at a step than its speed led by more than a metre: SUMO does that where a change of lanes is given up."""
+    found = set()
+    for who, name in enumerate(log.ids):
+        own = log.of(who)
+        way = np.hypot(np.diff(own.x), np.diff(own.y))
+        behind = np.cos(own.heading[1:]) * np.diff(own.x) + np.sin(own.heading[1:]) * np.diff(own.y) < 0
+        off = np.abs(np.where(behind, -way, way) - 0.1 * own.speed[1:]) > JUMP_M
+        found |= {(name, int(step)) for step in own.step[1:][off & (np.diff(own.step) == 1)]}
+    return found
 
 
 def overtakes(log: Log, net: Net) -> list[Overtake]:

@@ -44,7 +44,7 @@ def test_contacts_of_boxes(gap: float, touches: bool) -> None:
     """Two boxes of 4 m by 2 m: one behind the other, and one across before the other."""
     nothing = np.zeros(4)
     log = reading.Log(
-        ("a", "b"), np.array([[4.0, 2.0], [4.0, 2.0]]), np.array([0, 0, 9, 9]), np.array([0, 1, 0, 1]),
+        ("a", "b"), ("car", "car"), np.array([[4.0, 2.0], [4.0, 2.0]]), np.array([0, 0, 9, 9]), np.array([0, 1, 0, 1]),
         x=np.array([0.0, 4.0 + gap, 0.0, 1.0 + gap]), y=np.array([0.0, 0.0, 0.0, 2.0]),
         heading=np.array([0.0, 0.0, 0.0, np.pi / 2]), against=nothing > 0,
         speed=nothing, along=nothing, met=nothing, offset=nothing,

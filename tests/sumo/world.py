@@ -11,13 +11,17 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
-from typing import NamedTuple
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from drivelint.demo.line import left, right, straight
 from drivelint.demo.opendrive import opendrive
 from drivelint.demo.road import LANE_M, MPH, Road
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 LIMIT_MPH = 60.0
 CHORD_M = 2.0  # of the net's polyline in a bend: 1 mm off the arc at most
@@ -45,6 +49,14 @@ _KINDS = {
 }
 
 
+ORDINARY = {
+    "lorry": ('vClass="truck" length="9.5" width="2.4" maxSpeed="20"', 1 / 200),
+    "tractor": ('vClass="truck" length="6.2" width="2.1" maxSpeed="9"', 1 / 400),
+    "car": ('length="4.6" width="1.8"', 1 / 25),
+}
+"""SUMO's default drivers, whose every parameter but size and top speed is SUMO's own."""
+
+
 class Files(NamedTuple):
     """Where one simulation lies."""
 
@@ -63,18 +75,20 @@ def tool(name: str) -> str | None:
     )
 
 
-def simulate(folder: Path, *, seconds: int, seed: int = 1) -> Files:
+def simulate(
+    folder: Path, *, seconds: int, seed: int = 1, kinds: Mapping[str, tuple[str, float]] = MappingProxyType(_KINDS)
+) -> Files:
     """Drive so many seconds of traffic, 10 Hz, into `folder`. The same seed gives the same log."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / MAP).write_text(opendrive(ROAD, "road"), "utf-8")
-    (folder / ROUTES).write_text(_routes(seconds), "utf-8")
+    (folder / ROUTES).write_text(_routes(seconds, kinds), "utf-8")
     (folder / "road.nod.xml").write_text(_nodes(), "utf-8")
     (folder / "road.edg.xml").write_text(_edges(), "utf-8")
-    _run(
+    run(
         "netconvert", "--node-files", "road.nod.xml", "--edge-files", "road.edg.xml", "--output-file", NET,
         "--lefthand", "--opposites.guess", "--no-turnarounds", "--offset.disable-normalization", "--precision", "4", cwd=folder,
     )  # fmt: skip
-    _run(
+    run(
         "sumo", "--net-file", NET, "--route-files", ROUTES, "--step-length", "0.1", "--end", str(seconds), "--seed", str(seed),
         "--collision.mingap-factor", "0", "--collision.action", "warn", "--lanechange.duration", "3", "--precision", "3", "--no-step-log",
         "--fcd-output", LOG, "--fcd-output.signals", "--fcd-output.acceleration", "--time-to-teleport", "-1", cwd=folder,
@@ -108,18 +122,19 @@ def _edges() -> str:
     return f"<edges>{edge('a', 'b', points)}{edge('b', 'a', points[::-1])}</edges>\n"
 
 
-def _routes(seconds: int) -> str:
-    types = [f'<vType id="{name}" {said}/>' for name, (said, _) in _KINDS.items()]
+def _routes(seconds: int, kinds: Mapping[str, tuple[str, float]]) -> str:
+    types = [f'<vType id="{name}" {said}/>' for name, (said, _) in kinds.items()]
     flows = [
         f'<flow id="{name}-{way}" type="{name}" from="{way}" to="{way}" begin="0" end="{seconds}" period="exp({rate:.6f})"'
         ' departSpeed="max"/>'
         for way in ("ab", "ba")
-        for name, (_, rate) in _KINDS.items()
+        for name, (_, rate) in kinds.items()
     ]
     return "\n".join(["<routes>", *types, *flows, "</routes>", ""])
 
 
-def _run(name: str, *arguments: str, cwd: Path) -> None:
+def run(name: str, *arguments: str, cwd: Path) -> None:
+    """Run one of SUMO's programs in `cwd`. Errors: `FileNotFoundError` without SUMO, `RuntimeError` with what it said."""
     program = tool(name)
     if program is None:
         raise FileNotFoundError(f"{name} is not installed (pip install eclipse-sumo, or set SUMO_HOME)")
