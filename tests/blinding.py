@@ -10,6 +10,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.batch import Drive
+from tests.ingested import ingested
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -79,6 +80,46 @@ def moved(drive: Drive, actor: str, span: Span, by_m: float) -> Drive:
         return _with(_with(states, "x_m", hit, pa.array(x)), "y_m", hit, pa.array(y))
 
     return changed(drive, "actor_state", change)
+
+
+def turned(drive: Drive, actor: str, span: Span) -> Drive:
+    """Turn the actor's heading by pi wherever it moves at more than 1 m/s, as a tracker does that takes the tail for the nose."""
+
+    def change(states: pa.Table) -> pa.Table:
+        yaw, vx, vy = (states[c].to_numpy(zero_copy_only=False) for c in ("yaw_rad", "vx_mps", "vy_mps"))
+        hit = _hit(states, actor, span) & (np.hypot(vx, vy) > 1.0)
+        return _with(states, "yaw_rad", hit, pa.array(np.arctan2(-np.sin(yaw), -np.cos(yaw)), from_pandas=True))
+
+    return ingested(changed(drive, "actor_state", change))
+
+
+def frozen(drive: Drive, actor: str, span: Span) -> Drive:
+    """Hold the actor's position at that of the span's first sample; its velocity goes on."""
+
+    def change(states: pa.Table) -> pa.Table:
+        hit = _hit(states, actor, span)
+        rows = np.flatnonzero(hit)
+        for column in ("x_m", "y_m"):
+            values = states[column].to_numpy(zero_copy_only=False)
+            held = np.full(len(hit), values[rows[0]] if len(rows) else np.nan)
+            states = _with(states, column, hit, pa.array(held, from_pandas=True))
+        return states
+
+    return ingested(changed(drive, "actor_state", change))
+
+
+def jumped(drive: Drive, actor: str, span: Span, by_m: float = 150.0) -> Drive:
+    """Move the actor that far back along its way, as where an id is given to another vehicle for a while."""
+
+    def change(states: pa.Table) -> pa.Table:
+        hit = _hit(states, actor, span)
+        yaw = states["yaw_rad"].to_numpy(zero_copy_only=False)
+        for column, part in (("x_m", np.cos(yaw)), ("y_m", np.sin(yaw))):
+            there = states[column].to_numpy(zero_copy_only=False) - by_m * part
+            states = _with(states, column, hit, pa.array(there, from_pandas=True))
+        return states
+
+    return ingested(changed(drive, "actor_state", change))
 
 
 def cut(drive: Drive, span: Span) -> Drive:

@@ -67,18 +67,24 @@ def measure(
 ) -> Measure:
     """Return a step's measures by their definitions.
 
-    The lead is the nearest vehicle ahead in the lane (its centre ahead of the ego's) and in the way: its centre in the
-    lane, or the two boxes overlapping across it, now or within DRIFT_S at the present speeds across. TTC = gap / closing speed
-    (Hayward 1972), headway = gap / speed, DRAC = closing speed squared / twice the gap, time to brake = TTC less half the time of
-    a full braking from the closing speed. Headway is defined behind a lead that is not alongside and whose box overlaps
-    the ego's across the lane, and from 5 m/s on; the others where the two will overlap when the ego is there, at the
-    present speeds across, and one of them moves. `doubt_rad`: how exactly the lane's heading is known.
+    The lead is the nearest vehicle ahead in the lane (its centre ahead of the ego's, and not alongside: its rear ahead
+    of the ego's front, or the two boxes overlapping across the lane) and in the way: its centre in the lane, or the two
+    boxes overlapping across it, now or within DRIFT_S at the present speeds across. TTC = gap / closing speed (Hayward
+    1972), headway = gap / speed, DRAC = closing speed squared / twice the gap, time to brake = TTC less half the time
+    of a full braking from the closing speed. Headway is defined behind a lead that is not alongside and whose box
+    overlaps the ego's across the lane (of one that stands: then too), and from 5 m/s on; the others where the two will
+    overlap when the ego is there, at the present speeds across, and one of them moves. `doubt_rad`: how exactly the lane's
+    heading is known.
     """
     others = list(others)
-    reaching = [o for o in others if o.ahead and o.in_by > OVER_M and not o.comes]
+    near = [o for o in others if o.ahead and o.in_by > OVER_M and not o.comes]
+    reaching = [o for o in near if o.gap >= 0 or _overlap(across, o.across) > 0]
     late = {o.name: _comes_in_by(drift, across, o) for o in reaching}
     inside = [o for o in reaching if o.centre_in_by >= 0 or late[o.name] > 0]
     close_call = any(o.ahead and abs(o.in_by - OVER_M) < CLOSE_CALL_M for o in others)
+    close_call |= any(
+        abs(o.gap) < CLOSE_CALL_M or (o.gap < 0 and abs(_overlap(across, o.across)) < CLOSE_CALL_M) for o in near
+    )
     # nobody further away than the lead could be it
     least = min((o.gap for o in inside), default=math.inf)
     far = CLOSE_CALL_M + doubt_rad * speed * DRIFT_S
@@ -96,13 +102,14 @@ def measure(
     far = doubt_rad * speed * min(ttc, DRIFT_S) if math.isfinite(ttc) else 0.0
     close_call |= min(abs(lead.gap), abs(now), abs(then) - far) < CLOSE_CALL_M or abs(speed - 5.0) < 1e-3
     ttb = drac = thw = None
-    on_course = lead.gap >= 0 and then > 0 and max(speed, lead.speed) > COMES_MPS
-    if on_course:
+    on_course = lead.gap >= 0 and then > 0
+    timed = on_course and max(speed, lead.speed) > COMES_MPS
+    if timed:
         drac = closing**2 / (2 * lead.gap) if closing > 0 else 0.0
         ttb = _or_never(ttc - closing / (2 * FULL_BRAKING_MPS2)) if closing > 0 else math.inf
-    if lead.gap >= 0 and now > 0 and speed >= 5.0:
+    if lead.gap >= 0 and now > 0 and speed >= 5.0 and (lead.speed > COMES_MPS or on_course):
         thw = lead.gap / speed
-    return Measure(lead.name, _or_never(ttc) if on_course else None, thw, drac, ttb, close_call)
+    return Measure(lead.name, _or_never(ttc) if timed else None, thw, drac, ttb, close_call)
 
 
 def _or_never(time: float) -> float:

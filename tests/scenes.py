@@ -277,11 +277,6 @@ def saying(scene: Drive, events: Sequence[Event] = (), by: str = "ego", **given:
     return replace(scene, trace=replace(scene.trace, tables=tables))
 
 
-@cache
-def _database() -> duckdb.DuckDBPyConnection:
-    return store.connect(threads=1)
-
-
 def clear(con: duckdb.DuckDBPyConnection, *, but: Iterable[str] = ()) -> None:
     """Empty every table but these."""
     filled = con.execute("SELECT table_name FROM duckdb_tables() WHERE NOT temporary AND estimated_size > 0").fetchall()
@@ -307,7 +302,9 @@ def _place(drives: Iterable[Drive]) -> _Place:
     found = next((p for p in _PLACES if {*map(id, p.maps)} == {*map(id, maps)}), None)
     if found:
         _PLACES.remove(found)
-        clear(found.con, but=(*_of_the_map(), "profile"))
+        clear(found.con, but=_of_the_map())
+        found.con.execute("DELETE FROM profile")
+        store.insert(found.con, "profile", profile_table(load_profiles(), ()))
     else:
         con = _PLACES.pop(0).con if len(_PLACES) >= 8 else store.connect(threads=1)
         clear(con)
@@ -350,6 +347,11 @@ def derived(
     return con
 
 
+@cache
+def _rules() -> dict[str, catalogue.Rule]:
+    return catalogue.load()
+
+
 def judged(
     *batches: Sequence[Drive],
     rules: Sequence[str] = (),
@@ -358,12 +360,25 @@ def judged(
     order: str = "drive_id, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, occurrence",
 ) -> list[Row]:
     """Return the verdict rows of these batches of drives; the database keeps the results."""
-    con = con or _database()
-    clear(con)
+    place = None
+    if con is None:
+        place = _place(one for batch in batches for one in batch)
+        con = place.con
+        con.execute("DELETE FROM profile")
+    else:
+        clear(con)
     store.insert(con, "profile", profile_table(load_profiles(), profiles))
-    bench = Bench(con, catalogue.select(catalogue.load(), tuple(rules), ()), {}, None)
+    bench = Bench(con, catalogue.select(_rules(), tuple(rules), ()), {}, None)
+    if place:
+        of_the_map = {d.table for d in needed(bench._tables) if d.of_the_map}
+        if of_the_map <= place.bench._tables:  # they stand there already
+            bench._maps = place.bench._maps
+        place.bench._tables |= of_the_map
+        bench._tables |= place.bench._tables
     for batch in batches:
         bench.judge(batch)
+    if place:
+        place.bench._maps = bench._maps
     return rows(con, f"SELECT * FROM verdict ORDER BY {order}")
 
 

@@ -245,6 +245,52 @@ def test_a_log_of_which_a_row_could_not_be_read_is_3(tmp_path: Path, ran: Ran) -
     assert (code, "lossy" in out) == (0, False)
 
 
+def spoilt(tmp_path: Path, name: str) -> tuple[Path, Path]:
+    """Return the log of the near miss with one thing wrong with it, and the log as it is."""
+    head, *lines = Path(TRACES[1]).read_text(encoding="utf-8").splitlines()
+    ghosts = [",".join([cells[0], cells[1], cells[2], "900.0", "90.0", *cells[5:]]) for cells in map(_cells, lines)]
+    oncoming = [line for line in ghosts if line.split(",")[1] == "oncoming"]
+    again = [
+        ",".join([f"{float(cells[0]) + 0.05:.2f}", *cells[1:3], f"{float(cells[3]) + 600:.3f}", *cells[4:]])
+        for cells in map(_cells, lines)
+        if float(cells[0]) < 17.5
+    ]
+    text = {"ghost": [*oncoming, *lines], "restart": [*lines, *again], "restart before": [*again, *lines]}[name]
+    path = tmp_path / f"{name}.csv"
+    path.write_text("\n".join([head, *text]) + "\n", encoding="utf-8")
+    return path, Path(TRACES[1])
+
+
+def _cells(line: str) -> list[str]:
+    return line.split(",")
+
+
+@pytest.mark.parametrize("name", ["ghost", "restart", "restart before"])
+def test_data_known_to_be_bad_make_no_pass_of_a_fail(name: str, tmp_path: Path, ran: Ran) -> None:
+    """A second oncoming car of the same id, far away; another drive over the same time: 3, never 0."""
+    bad, good = spoilt(tmp_path, name)
+    rules = [*ON_ROAD, "--rules", "ukhc", "--no-annotate"]
+    assert ran("check", str(good), *rules, "--out", str(tmp_path / "good"))[0] == 1
+    code, out, _ = ran("check", str(bad), *rules, "--out", str(tmp_path / "bad"))
+    assert (code, "(lossy)" in out) == (3, True)
+    failed = {
+        (row["rule_id"], row["profile"])
+        for row in pq.read_table(tmp_path / "good" / "verdicts.parquet").to_pylist()
+        if row["verdict"] == "fail"
+    }
+    rows = pq.read_table(tmp_path / "bad" / "verdicts.parquet").to_pylist()
+    assert failed
+    assert not [row for row in rows if (row["rule_id"], row["profile"]) in failed and row["verdict"] == "pass"]
+
+
+def test_headings_in_another_unit_are_4(tmp_path: Path, refused: Refused) -> None:
+    lines = Path(TRACES[0]).read_text(encoding="utf-8").splitlines()
+    turned = [lines[0], *(",".join([*c[:5], f"{float(c[5]) + 60:.3f}", *c[6:]]) for c in map(_cells, lines[1:]))]
+    (tmp_path / "turned.csv").write_text("\n".join(turned) + "\n", encoding="utf-8")
+    code, line = refused("check", str(tmp_path / "turned.csv"), *ON_ROAD, *SDA)
+    assert (code, "heading is off the direction of motion" in line) == (4, True)
+
+
 def test_rules_list_is_for_programs_too(ran: Ran) -> None:
     rows = json.loads(ran("rules", "list", "--format", "json")[1])
     assert {"ukhc.r162.safe-distance-ahead", "ukhc.no-collision"} <= {row["id"] for row in rows}

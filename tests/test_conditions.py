@@ -32,7 +32,9 @@ OVERTAKE = ROOT / "fixtures" / "overtake"
         (["weather="], "'' is no weather; known are dry, wet, ice"),
         (["light=dusk"], "known are day, night"),
         (["nation=uk"], "use 'gb'"),
-        (["nation=GB"], "did you mean 'gb'"),
+        (["nation=GBR"], "did you mean 'gb'"),
+        (["nation=UK"], "use 'gb'"),
+        (["nation=GB", "nation=DE"], "nation is 'gb' already"),
         (["engaged=true"], "known are yes, no"),
         (["weather=wet", "weather=dry"], "weather is 'wet' already: a drive has one weather"),
     ],
@@ -45,6 +47,14 @@ def test_what_is_not_understood_is_refused_with_the_nearest(settings: list[str],
 def test_conditions_come_in_one_order_and_once() -> None:
     given = ["weather=wet", " nation = gb-sct ", "weather=wet", "engaged=no"]
     assert conditions.parse(given) == (("engaged", "no"), ("nation", "gb-sct"), ("weather", "wet"))
+
+
+def test_words_are_taken_in_any_case() -> None:
+    given = ["Nation=GB", "WEATHER=Wet", "road_type=TOWNLOCAL", "vehicle_class=Goods_7t5", "engaged=Yes"]
+    assert conditions.parse(given) == (
+        ("engaged", "yes"), ("nation", "gb"), ("road_type", "townLocal"), ("vehicle_class", "goods_7t5"), ("weather", "wet"),
+    )  # fmt: skip
+    assert conditions.parse(["nation=FR"]) == (("nation", "fr"),)
 
 
 def checked(tmp_path: Path, *env: str) -> Result:

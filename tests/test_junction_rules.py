@@ -180,6 +180,28 @@ def scenes(hand: str) -> dict[str, tuple[Callable[[str], Drive], tuple[str, ...]
             scene(minor["we"], inside, going(minor["we"], halting(209), "other")),
             ("r151.side-roads-clear", "r174.box"),
         ),
+        "stands in the junction for long with its way out full 15 m ahead": (
+            scene(
+                light["we"],
+                going(light["we"], halting(202, 21)),
+                going(light["we"], halting(222, 21), "other"),
+                signal_state=lit((0, "green")),
+            ),
+            ("r174.box", "r176.green-exit-clear"),
+        ),
+        "stands in a junction without lights for long with its way out full 15 m ahead": (
+            scene(minor["we"], going(minor["we"], halting(202, 21)), going(minor["we"], halting(222, 21), "other")),
+            ("r151.side-roads-clear", "r174.box"),
+        ),
+        "pauses in the junction with room to get out behind somebody": (
+            scene(
+                light["we"],
+                going(light["we"], halting(202)),
+                going(light["we"], halting(226), "other"),
+                signal_state=lit((0, "green")),
+            ),
+            (),
+        ),
         "stands in the junction": (scene(light["we"], inside, signal_state=lit((0, "green"))), ()),
         "waits to turn right behind somebody": (
             scene(
@@ -228,6 +250,14 @@ def scenes(hand: str) -> dict[str, tuple[Callable[[str], Drive], tuple[str, ...]
                 going(zebra["we"], halting(WALK + 12, 20), "other"),
             ),
             ("r192.keep-clear",),
+        ),
+        "stands on the crossing for long behind somebody 12 m ahead": (
+            scene(
+                zebra["we"],
+                going(zebra["we"], halting(WALK + 4, 20)),
+                going(zebra["we"], halting(WALK + 20.8, 20), "other"),
+            ),
+            ("r191.no-stopping", "r192.keep-clear"),
         ),
         "stands on the crossing": (
             scene(zebra["we"], going(zebra["we"], halting(WALK + 4, 20))),

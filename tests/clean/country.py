@@ -104,8 +104,8 @@ def overtake(
     w.indicates("nearside", back - 2.0 * v, back + across)
 
     def scene() -> None:
-        # a map with such signs somewhere shows that there is none here
-        w.route.sign(s + 50.0 if sign else w.route.length - 20.0, "no_overtaking")
+        # without its end one may have been put up before, further back than anybody looks
+        w.route.sign(s + 50.0, "no_overtaking" if sign else "no_overtaking_end")
         t0 = w.when(out)
         w.meets(
             steady(w.t, out + gap + 4.8, slow, t0),

@@ -26,6 +26,7 @@ STUB = 150.0  # length of the roads that lead away from the ego's way
 SIGNS = {
     "stop": {"lht": ("gb", "601.1"), "rht": ("de", "206")},
     "no_overtaking": {"lht": ("gb", "632"), "rht": ("de", "276")},
+    "no_overtaking_end": {"lht": ("OpenDRIVE", "280"), "rht": ("de", "280")},
 }
 
 

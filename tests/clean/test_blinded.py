@@ -44,7 +44,10 @@ EVIDENCE = {
     ("end of the others", "ukhc.r162.return-gap"): "the same",
     ("end of the others", "ukhc.r165.no-overtaking-sign"): "the same",
     ("end of the others", "ukhc.r163.obstruction-give-way"): "the same, 65 m ahead",
-    ("end of the others", "ukhc.r215.horse"): "the same",
+    (
+        "others that jump for ever",
+        "ukhc.h3.no-cut-across",
+    ): "on the road for 0.4 s before it jumps: it is at the other place for all the rest",
 }
 
 
@@ -87,6 +90,7 @@ def blinded(drive: Drive, row: Row, span: Span) -> Iterator[tuple[str, Drive]]:
     yield "ego's heading", blinding.without(drive, "actor_state", ("yaw_rad",), "ego", long)
     yield "ego's speed", blinding.without(drive, "actor_state", SPEED, "ego")
     yield "ego's size", blinding.without(drive, "actor", SIZE, "ego")
+    yield "ego's nose for a second", blinding.turned(drive, "ego", (span[0] - 0.5, span[0] + 0.5))
     yield "indicator", blinding.without(drive, "actor_state", ("indicator",), "ego", (span[0] - 7, span[1] + 7))
     if others:
         yield "place of the others", each(blinding.nulled, long)
@@ -95,6 +99,11 @@ def blinded(drive: Drive, row: Row, span: Span) -> Iterator[tuple[str, Drive]]:
         yield "speed of the others", lacking("actor_state", SPEED)
         yield "size of the others", lacking("actor", SIZE)
         yield "class of the others", lacking("actor", ("actor_class",))
+        yield "nose of the others", each(blinding.turned, EVER)
+        yield "nose of the others for a second", each(blinding.turned, (span[0] - 0.5, span[0] + 0.5))
+        yield "others that freeze", each(blinding.frozen, long)
+        yield "others that jump", each(blinding.jumped, long)
+        yield "others that jump for ever", each(blinding.jumped, (span[0] - 0.35, 1e6))
         rest = each(blinding.dropped, (span[0] - 0.35, 1e6))
         if rest.trace.tables["actor"].num_rows == len(everybody):
             yield "end of the others", rest
@@ -143,7 +152,9 @@ def test_what_is_kept_is_never_broken_by_not_being_seen(rule: str) -> None:
     row, span = found(planted)
     whole = on_the_road(planted.drives()[planted.clean]())
     part = blinding.cut(whole, (span[0] - BEFORE_S, span[1] + AFTER_S))
-    drives = [blinding.renamed(one, what) for what, one in blinded(part, row | {"object_id": None}, span)]
+    less = blinded(part, row | {"object_id": None}, span)
+    # a track that goes on elsewhere is somebody there, and may well be in the ego's way
+    drives = [blinding.renamed(one, what) for what, one in less if not what.startswith("others that jump")]
     rows = judged_by(drives, rules=stable(["ukhc", "rss", "criticality"]))
     broken = {(r["drive_id"], r["rule_id"], r["reason"]) for r in rows if r["verdict"] in {"fail", "error"}}
     assert not broken

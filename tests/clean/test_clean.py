@@ -30,7 +30,6 @@ NOT_KEPT = {
     "ukhc.r248.parked-at-night": "nobody parks",
     "ukhc.r215.horse": "no horse",
     "ukhc.r265.right-lane-ban": "for heavy vehicles",
-    "rss.proper-response": "it is never too near",
     "declared.r202.checks-before-reversing": "it never reverses",
     "stvo.ri2": "nobody is passed on the inner side",
     "stvo.s4-truck": "for heavy vehicles",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -86,3 +87,45 @@ def tapering() -> Road:
         )
     )
     return Road(load_map(MapSource("tapering.xodr", text.encode())), ((600.0, 0.0),))
+
+
+@cache
+def apart(hand: str, gap: float = 0.0, centre: str = "solid", kind: str = "rural", since: float = 0.0) -> Road:
+    """Return a road whose two directions are roads of their own, as city maps often have them, `gap` metres apart.
+
+    `since`: the one that comes the other way ends (begins, as it is driven) only there.
+    """
+    side = 1 if hand == "lht" else -1
+
+    def one(number: str, pose: tuple[float, float, float], length: float) -> str:
+        lane = linked(side).replace("</lane>", mark("solid") + "</lane>")
+        text = limited(60).replace("rural", kind)
+        section = xodr.section(0, lane, centre=mark(centre))
+        rule = f'rule="{hand.upper()}"'
+        return xodr.road(number, plan(((length, 0.0),), pose), section, length, attributes=rule, more=text)
+
+    roads = [one("1", (0.0, 0.0, 0.0), 600.0)]
+    if gap < 50.0:
+        roads.append(one("2", (600.0, -side * gap, math.pi), 600.0 - since))
+    text = xodr.xodr(*roads)
+    name = f"apart-{hand}-{gap}-{centre}-{kind}-{since}.xodr"
+    return Road(load_map(MapSource(name, text.encode()), handedness=hand), ((600.0, 0.0),))
+
+
+@cache
+def shouldered(hand: str, lanes: int = 1, length: float = 600.0, cuts: tuple[float, ...] = ()) -> Road:
+    """Return one carriageway of a motorway: `lanes` lanes and a hard shoulder, in sections that begin at `cuts`."""
+    side = 1 if hand == "lht" else -1
+    numbers = [side * n for n in range(1, lanes + 2)]
+    parts = [linked(n, kind="shoulder" if abs(n) > lanes else "driving") for n in sorted(numbers, reverse=True)]
+    text = xodr.xodr(
+        xodr.road(
+            geometry=plan(((length, 0.0),)),
+            lanes="".join(xodr.section(s, *parts) for s in (0, *cuts)),
+            length=length,
+            attributes=f'rule="{hand.upper()}"',
+            more=limited(70).replace("rural", "motorway"),
+        )
+    )
+    name = f"shouldered-{hand}-{lanes}-{length}-{cuts}.xodr"
+    return Road(load_map(MapSource(name, text.encode()), handedness=hand), ((length, 0.0),))

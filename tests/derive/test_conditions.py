@@ -5,14 +5,32 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pyarrow as pa
 import pytest
 
 from drivelint import catalogue
 from drivelint.inspect.advice import OF_THE_MAP
 from drivelint.maps import MapSource, load_map
+from tests.derive.marked import shouldered
 from tests.maps import xodr
-from tests.scenes import LANE, Actor, Event, Road, derived, drive, linked, moving, plan, road, rows, saying, tee, times
+from tests.scenes import (
+    LANE,
+    Actor,
+    Event,
+    Road,
+    derived,
+    drive,
+    judged,
+    linked,
+    moving,
+    plan,
+    road,
+    rows,
+    saying,
+    tee,
+    times,
+)
 
 if TYPE_CHECKING:
     import duckdb
@@ -172,6 +190,24 @@ def signals(scene: Drive) -> dict[str, bool]:
     return {row["signal"]: row["available"] for row in capabilities(scene)}
 
 
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_the_hard_shoulder_is_a_part_of_the_motorway(hand: str) -> None:
+    """The ego stops on it and reverses by 25 m: the road is known there, and reversing is no manoeuvre that is excused."""
+    way, t = shouldered(hand), times(20.0)
+    v = np.interp(t, [0, 4, 10, 12, 19, 20], [20, 20, 0, -4, -4, 0])
+    s = 50 + np.concatenate([[0.0], np.cumsum((v[1:] + v[:-1]) / 2 * np.diff(t))])
+    side = 1 if hand == "lht" else -1
+    ego = moving("ego", way, t, s, side * LANE * (0.5 + np.clip((t - 2) / 4, 0, 1)))
+    # backwards its nose still points the way that it came
+    ego = replace(ego, yaw=0 * t, vx=v, vy=0 * t)
+    scene = drive([ego], way.environment)
+    assert only(derived(scene, tables=["ego_condition"]), "road_type") == "motorway"
+    found = judged([scene], rules=["ukhc.r143.direction", "ukhc.r263.no-reverse"])
+    assert {row["rule_id"]: row["verdict"] for row in found} == {
+        "ukhc.r143.direction": "fail", "ukhc.r263.no-reverse": "fail",
+    }  # fmt: skip
+
+
 def capabilities(scene: Drive) -> list[dict[str, Any]]:
     return rows(derived(scene, tables=["capability"]), "FROM capability")
 
@@ -197,6 +233,8 @@ def test_what_the_log_declares_can_be_required() -> None:
     said = signals(loud)
     assert [said[s] for s in ("declared_events", "modes", "mode_horn", "mode_engaged")] == [True, True, True, False]
     assert not signals(saying(quiet, [(0.0, "overtake_go", None)]))["modes"]
+    given = signals(saying(quiet, (), engaged="yes"))
+    assert [given["mode_engaged"], given["mode_horn"]] == [True, False]
 
 
 def test_what_the_others_are_is_known_if_it_is_of_any_of_them_or_nobody_is_there() -> None:

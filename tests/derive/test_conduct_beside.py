@@ -10,7 +10,7 @@ import pytest
 from shapely import affinity
 from shapely.geometry import Polygon, box
 
-from tests.scenes import LANE, Actor, Road, derived, drive, moving, road, rows, seconds, standing, swing, times
+from tests.scenes import LANE, Actor, Road, derived, drive, judged, moving, road, rows, seconds, standing, swing, times
 
 HANDS = pytest.mark.parametrize("hand", ["rht", "lht"])
 
@@ -130,19 +130,20 @@ def test_who_may_be_beside_is_a_row_without_numbers() -> None:
     assert len(unseen) == 20
     assert all(row["side"] is None and row["along"] is None and row["on_carriageway"] is None for row in unseen)
     hidden = rows(con, "FROM hidden WHERE object_id = 'far' ORDER BY t_ns")
-    assert hidden[0]["least_m"] == pytest.approx(300 - 12 - 6, abs=0.2)
+    # 300 m away across and along at the last sample, going the ego's way: 5 cm nearer after 0.1 s at the most
+    assert hidden[0]["least_m"] == pytest.approx(math.hypot(300, LANE) - 12 - 0.05, abs=1e-3)
     assert {row["vehicle"] for row in rows(con, "FROM hidden WHERE object_id = 'walker'")} == {False}
 
 
 def test_seen_again_soon_it_was_not_far() -> None:
-    """0.5 s without a place, 40 m ahead before and after: at 60 m/s it was 10 m away at least."""
+    """0.5 s without a place, 40 m ahead before and after: braking with 10 m/s2 it was 39.5 m away at least."""
     way = road()
     t = times(4.0)
     ego = moving("ego", way, t, 100 + 10 * t, way.own)
     other = moving("x", way, t, 140 + 10 * t, way.own).lost((t > 1.95) & (t < 2.45))
     con = derived(drive([ego, other], way.environment), tables=["beside", "hidden"])
     least = [row["least_m"] for row in rows(con, "FROM hidden ORDER BY t_ns")]
-    assert least == pytest.approx([40 - 12 - 6 * min(k, 6 - k) for k in (1, 2, 3, 4, 5)], abs=1e-6)
+    assert least == pytest.approx([40 - 12 - 5 * (0.1 * min(k, 6 - k)) ** 2 for k in (1, 2, 3, 4, 5)], abs=1e-6)
     assert not rows(con, "FROM beside")
 
 
@@ -244,9 +245,11 @@ def test_who_has_no_place_beside_the_ego_may_have_been_passed() -> None:
     t = times(12.0)
     ego = moving("ego", way, t, 100 + 15 * t, -1.5 * LANE)
     slow = moving("x", way, t, 160 + 5 * t, -0.5 * LANE)
-    blind = slow.lost((t > 1.95) & (t < 9.95))  # from 40 m ahead to 40 m behind, near after 0.4 s at the earliest
+    blind = slow.lost(
+        (t > 1.95) & (t < 9.95)
+    )  # from 40 m ahead to 40 m behind; braking or speeding up with 10 m/s2 it is near after 1.2 s
     ever = slow.lost(t > -1)
-    for other, begin, end in ((blind, 2.3, 9.6), (slow.lost(t < 9.95), 0.0, 9.6), (ever, 0.0, 12.0)):
+    for other, begin, end in ((blind, 3.2, 8.8), (slow.lost(t < 9.95), 0.0, 8.8), (ever, 0.0, 12.0)):
         (found,) = passings(way, ego, other)
         assert (found["ego_passes"], found["side"], found["same_lane"], found["whole"]) == (None, None, None, False)
         assert (found["occurrence"], found["gap_m"]) == (0, None)
@@ -257,3 +260,32 @@ def test_who_has_no_place_beside_the_ego_may_have_been_passed() -> None:
     assert [row["ego_passes"] for row in passings(way, ego, slow.lost((t > 3.45) & (t < 8.45)))] == [True]
     oncoming = moving("o", way, t, 300 - 5 * t, 0.5 * LANE)
     assert not passings(way, ego, oncoming.lost((t > 4.95) & (t < 11.45)))
+
+
+STEADY = "ukhc.r168.when-overtaken"
+
+
+def overtaken(hand: str, *, drift: float, out: bool = True, at: float = 6.0, follows: float = 22.0) -> str:
+    """Return the verdict on an ego at 18 m/s that moves over by `drift` metres in the 2 s after `at`, before a car that comes up.
+
+    The car is out in the opposing lane, and 15 m behind the ego at 7 s, or follows in the ego's lane, at `follows` m/s.
+    """
+    way = road(((900.0, 0.0),), hand)
+    t = times(20.0)
+    u = np.clip((t - at) / 2, 0, 1)
+    ego = moving("ego", way, t, 80 + 18 * t, way.own + way.over * drift * u * u * (3 - 2 * u))
+    behind = 80 + 18 * 7 - 4.8 - 15 + follows * (t - 7)
+    if not out:
+        behind = 80 + 18 * t - 20
+    other = moving("x", way, t, behind, np.full(len(t), way.other if out else way.own))
+    (row,) = judged([drive([ego, other], way.environment)], rules=[STEADY])
+    return str(row["verdict"])
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_steady_as_soon_as_somebody_out_in_the_opposing_lane_comes_up(hand: str) -> None:
+    assert overtaken(hand, drift=0.7) == "fail"
+    assert overtaken(hand, drift=0.0) == "pass"
+    assert overtaken(hand, drift=-0.7) == "pass"  # it makes room
+    assert overtaken(hand, drift=0.7, at=1.0) == "pass"  # 33 m and more behind
+    assert overtaken(hand, drift=0.7, out=False) == "not_applicable"

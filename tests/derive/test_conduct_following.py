@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
+from tests import blinding
 from tests.scenes import LANE, derived, drive, moving, road, rows, standing, swing, times
 
 if TYPE_CHECKING:
@@ -77,6 +79,98 @@ def test_one_that_reaches_over_the_line_is_beside_until_its_centre_is_in(inside:
     other = moving("x", way, t, 112 + 10 * t, -LANE - inside, width=1.8 if inside < 0 else 0.8)
     seen = "x" if follows else None
     assert {(row["object_id"], row["follows"]) for row in following(way, ego, other)} == {(seen, follows)}
+
+
+@HANDS
+@pytest.mark.parametrize("aside", [1.6, -1.6])
+@pytest.mark.parametrize("speed", [5.0, 9.5])
+def test_a_cyclist_in_the_lane_is_followed_until_it_is_about_to_be_passed(
+    hand: str, aside: float, speed: float
+) -> None:
+    """The cyclist rides at the lane's edge, 0.4 m beside the ego's way; the ego passes it without leaving its lane."""
+    way = road(hand=hand)
+    t = times(10.0)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    # its length is 1.8 m, so that the ego's front reaches its rear after 5 s
+    rides = partial(moving, "x", way, t, d=way.own + aside, width=0.6, length=1.8, kind="bicycle")
+    found = following(way, ego, rides(s=100 + 2.4 + 0.9 + 5 * (10 - speed) + speed * t))
+    assert {row["follows"] for row in found if row["t_ns"] <= 1_900_000_000} == {True}
+    assert {row["follows"] for row in found if row["t_ns"] >= 2_100_000_000} == {False}
+    assert {row["object_id"] for row in found if row["t_ns"] >= 5_200_000_000} == {None}, "beside is not ahead"
+    kept = following(way, ego, rides(s=106 + 10 * t))
+    assert {row["follows"] for row in kept} == {True}, "as fast as the ego it is followed"
+
+
+@HANDS
+def test_astride_for_longer_than_a_lane_change_takes_is_following(hand: str) -> None:
+    """The ego weaves along the line between two lanes, 8 m behind one that does so too: that is no lane change for ever."""
+    way = road(((2000.0, 0.0),), hand=hand, lanes=(0, 2) if hand == "rht" else (2, 0))
+    t = times(25.0)
+    line = LANE if hand == "lht" else -LANE
+    ego = moving("ego", way, t, 100 + 20 * t, line + 0.3 * np.sin(2 * np.pi * t / 5))
+    ahead = moving("x", way, t, 112.8 + 20 * t, line + 0.3)
+    found = following(way, ego, ahead)
+    assert {row["object_id"] for row in found} == {"x"}
+    assert {row["follows"] for row in found if row["t_ns"] > 10_500_000_000} == {True}
+    # where it is not known on which side one overtakes, it may be an overtake
+    unsure = blinding.remade(way.environment, "no side", environment=blinding.guessed)
+    con = derived(drive([ego, ahead], unsure), tables=["following"])
+    late = rows(con, "FROM following WHERE t_ns > 10_500_000_000")
+    assert {row["follows"] for row in late} == {None}
+
+
+@HANDS
+def test_one_beside_hides_nobody_ahead(hand: str) -> None:
+    way = road(hand=hand)
+    t = times(3.0)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    beside = moving("x", way, t, 101 + 10 * t, way.own + 1.6, width=0.6, length=1.8, kind="bicycle")
+    lead = moving("y", way, t, 112 + 10 * t, way.own)
+    assert {(row["object_id"], row["follows"]) for row in following(way, ego, beside, lead)} == {("y", True)}
+
+
+@HANDS
+def test_one_that_drew_up_beside_makes_a_new_gap_when_it_goes_ahead(hand: str) -> None:
+    way = road(hand=hand)
+    t = times(12.0)
+    ego = moving("ego", way, t, 100 + np.clip(t - 9, 0, None), way.own)
+    # it comes from behind to beside the standing ego, and goes first
+    s = 85 + np.clip(4 * t, 0, 16) + 4 * np.clip(t - 7.0, 0, None)
+    found = following(way, ego, moving("x", way, t, s, way.own + 1.6, width=0.6, length=1.8, kind="bicycle"))
+    ahead = next(k for k, row in enumerate(found) if row["object_id"] == "x")
+    assert t[ahead] == pytest.approx(7.7, abs=0.15)
+    assert {row["joined_ns"] for row in found[ahead:]} == {found[ahead]["t_ns"]}
+
+
+@HANDS
+@pytest.mark.parametrize(("aside", "follows"), [(1.0, True), (-1.0, True), (0.0, True)])
+def test_a_car_offset_in_its_lane_is_followed(hand: str, aside: float, follows: bool) -> None:
+    way = road(hand=hand)
+    t = times(4.0)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    found = following(way, ego, moving("x", way, t, 112 + 8 * t, way.own + aside))
+    apart = [row for row in found if row["gap_m"] is not None and row["gap_m"] >= 0]
+    assert {row["follows"] for row in apart} == {follows}
+    met = [row for row in found if row["gap_m"] is not None and row["gap_m"] < 0]
+    assert met, "where the boxes overlap they have met"
+    assert {(row["object_id"], row["follows"]) for row in met if row["gap_m"] > -4} == {("x", False)}
+
+
+@HANDS
+def test_a_standing_car_is_followed_until_the_ego_steers_round_it(hand: str) -> None:
+    way = road(hand=hand)
+    sign = 1 if hand == "rht" else -1
+    t = times(6.0)
+    parked = standing("x", way, t, 160, way.own)
+    s = 100 + 10 * t
+    out = np.clip((s - 135) / 18, 0, 1) * 2.2 * sign
+    found = following(way, moving("ego", way, t, s, way.own + out), parked)
+    # the front is 22.6 m from its rear when it begins to steer; the boxes overlap still
+    assert {row["follows"] for row in found if row["t_ns"] <= 3_300_000_000} == {True}
+    steers = [row for row in found if 3_700_000_000 <= row["t_ns"] <= 4_400_000_000]
+    assert {(row["object_id"], row["follows"]) for row in steers} == {("x", False)}
+    straight = following(way, moving("ego", way, t, s, way.own), parked)
+    assert {row["follows"] for row in straight if row["t_ns"] <= 5_000_000_000} == {True}
 
 
 @pytest.mark.parametrize("at", ["parked at the edge", "in the next lane"])

@@ -133,3 +133,22 @@ def test_each_ego_has_its_own() -> None:
     two = columns(a, b, egos=("a", "b"), ego="b")["accel_mps2"]
     assert one[5:-5] == pytest.approx(2.0)
     assert two[5:-5] == pytest.approx(-2.0)
+
+
+def test_a_blow_turns_nobody_round() -> None:
+    """Thrown back for one sample it still goes where it is turned; going back for a second it reverses."""
+    way, t = road(((1000.0, 0.0),)), times(10.0)
+    ego = moving("ego", way, t, 100 + 8 * t, way.own)
+
+    def turned(n: int) -> int:
+        back = (np.arange(len(t)) >= 50) & (np.arange(len(t)) < 50 + n)
+        other = moving("b", way, t, 400 - 6 * t, way.other)
+        struck = replace(other, vx=np.where(back, -0.5 * other.vx, other.vx))
+        found = rows(
+            derived(drive([ego, struck], way.environment), tables=["state_dynamics"]),
+            "FROM state_dynamics ORDER BY t_ns",
+        )
+        return sum(abs(row["travel_rad"]) < 1.0 for row in found if row["actor_id"] == "b")
+
+    assert turned(1) == 0
+    assert turned(10) == 8

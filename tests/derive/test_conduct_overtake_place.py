@@ -94,6 +94,21 @@ def test_who_comes_up_from_behind(  # noqa: PLR0917
         assert found["rear_ttc_s"] == pytest.approx(ttc, rel=0.05)
 
 
+@HANDS
+def test_who_brakes_as_the_ego_goes_out_was_faster_just_before(hand: str) -> None:
+    """It comes up at 25 m/s in the overtaking lane, and brakes with 8 m/s2 in the second before the ego is over the line."""
+    way = road(hand=hand)
+    ego, vbp = scene(way)
+    t0 = rows(derived(drive([ego, vbp], way.environment), tables=["overtake"]), "FROM overtake")[0]["t0_ns"] / 1e9
+    t = ego.t_s
+    v = 25 - 8 * np.clip(t - (t0 - 1), 0, 1.5)
+    s = np.concatenate([[0.0], np.cumsum((v[1:] + v[:-1]) / 2 * np.diff(t))])
+    s += 50 + 12 * t0 - 4.8 - 10 - np.interp(t0, t, s)
+    (found,) = place(way, ego, vbp, moving("r", way, t, s, way.other))
+    assert found["rear_gap_m"] == pytest.approx(10, abs=0.3)
+    assert found["rear_ttc_s"] == pytest.approx(10 / (25 - 12), rel=0.05)
+
+
 def test_who_may_come_is_not_ruled_out() -> None:
     way = road()
     ego, vbp = scene(way)
@@ -142,7 +157,7 @@ def sign(s: float, code: str, number: int = 1) -> str:
     ("signs", "holds"),
     [
         (sign(40, "276"), True),
-        (sign(140, "276"), False),  # it comes later
+        (sign(140, "276"), None),  # it comes later; another may stand before the map begins
         (sign(20, "276") + sign(60, "280", 2), False),  # its end is said
         (sign(20, "280") + sign(60, "276", 2), True),
         (sign(20, "274"), None),  # no such sign anywhere

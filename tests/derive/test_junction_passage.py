@@ -10,8 +10,9 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
+from tests.cropping import beyond, cropped
 from tests.derive.junction_scenes import ARM, TURN, R, cross, signal
-from tests.scenes import Actor, Road, derived, drive, moving, rows, times
+from tests.scenes import Actor, Road, derived, drive, judged, moving, rows, times
 
 if TYPE_CHECKING:
     from tests.scenes import Row
@@ -76,6 +77,44 @@ def test_a_log_that_begins_or_ends_inside() -> None:
     assert not passages(going(way, end=7.0), way=way)
 
 
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize("name", ["we", "ws", "wn"])
+def test_the_turn_is_known_as_soon_as_its_centre_is_on_the_lane_after_it(hand: str, name: str) -> None:
+    """The log ends with its rear still in the junction; 0.2 s before that it shows no turn yet."""
+    way = cross(hand)[name]
+    out = (ARM + LENGTH[turned(*name)] - 120) / 8
+    (row,) = passages(going(way, end=round(out + 0.15, 1)), way=way)
+    assert (row["t_out_ns"], row["turn"]) == (None, turned(*name))
+    assert row["across"] == (turned(*name) == ("right" if hand == "lht" else "left"))
+    (row,) = passages(going(way, end=round(out - 0.1, 1)), way=way)
+    assert (row["turn"], row["across"]) == (None, None)
+
+
+def standing_in_it(hand: str, name: str, *, end: float = 26.7, rolls: bool = False) -> str:
+    """Return the verdict on an ego that stands 12 s in a junction without lights, 3 m behind a queue past it.
+
+    `rolls`: the queue does, until the ego is in. The log ends with the ego's rear still inside.
+    """
+    way = cross(hand)[name]
+    t = times(end)
+    s = np.interp(t, [0, 10, 13, 22, 30], [120, 190, 196, 196, 228])
+    ego = moving("ego", way, t, s, way.own)
+    ahead = np.interp(t, [0, 11, 20, 30], [190 if rolls else 203.8, 203.8, 203.8, 260])
+    queue = moving("q", way, t, ahead, way.own)
+    found = judged([drive([ego, queue], way.environment)], rules=["ukhc.r151.side-roads-clear"])
+    return str(found[0]["verdict"])
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize("rolls", [False, True])
+def test_straight_on_into_a_junction_behind_a_queue(hand: str, rolls: bool) -> None:
+    assert standing_in_it(hand, "we", rolls=rolls, end=27.2) == "fail"
+    # turning across the oncoming traffic it may wait for that
+    assert standing_in_it(hand, "wn" if hand == "rht" else "ws", rolls=rolls, end=27.2) == "unknown"
+    # it stands there still as the log ends: it may be about to turn
+    assert standing_in_it(hand, "we", rolls=rolls, end=21.0) == "unknown"
+
+
 def test_a_hole_inside_makes_two_halves() -> None:
     way = cross()["we"]
     ego = going(way)
@@ -125,6 +164,23 @@ def test_what_governs_the_way_in(hand: str, code: str, control: str, minor: bool
 def test_only_what_holds_for_the_last_fifty_metres(s: float, orientation: str, control: str) -> None:
     way = cross("rht", (("1", signal("a", s, "206", orientation=orientation)),))["we"]
     (row,) = passages(going(way), way=way)
+    assert row["control"] == control
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(
+    ("code", "begins", "control"),
+    [("206", 165, "stop"), ("206", 175, None), ("274", 134, "none"), ("274", 136, None), ("206", 134, "stop")],
+)
+def test_where_the_map_begins_shortly_before_the_junction(
+    hand: str, code: str, begins: float, control: str | None
+) -> None:
+    """What stood at 170 m is in the map or was cut off with what lies before; 50 m before the junction is far enough."""
+    signals = (("1", signal("a", 170.0, code)), ("3", signal("far", 100.0, "205", orientation="-")))
+    way = cross(hand, signals)["we"]
+    x, y, heading = (float(v) for v in way.at(begins))
+    short = replace(way, environment=cropped(way.environment, "short", beyond(x, y, heading, -1e-9)))
+    (row,) = passages(going(way, s0=max(begins, 120.0) + 1), way=short)
     assert row["control"] == control
 
 

@@ -138,11 +138,20 @@ def test_who_is_still_walking_there_counts_though_they_were_first_but_not_who_is
     assert not seen(answers(going(ways["wn"]), through, way=ways["we"]))
 
 
-def test_without_a_class_it_may_be_either() -> None:
+@pytest.mark.parametrize(
+    ("kind", "length", "relations"),
+    [
+        (None, 1.8, {"oncoming", "pedestrian"}),
+        ("object", 1.8, {"oncoming", "pedestrian"}),  # a thing that moves
+        (None, 4.8, {"oncoming"}),
+        ("vehicle", 1.8, {"oncoming"}),
+        ("pedestrian", 1.8, {"pedestrian"}),
+    ],
+)
+def test_without_a_class_it_may_be_either(kind: str | None, length: float, relations: set[str]) -> None:
     ways = cross()
-    found = answers(going(ways["wn"]), going(ways["ew"], s0=92.0, name="o", kind=None), way=ways["we"])
-    assert seen(found) == {"oncoming": "o", "pedestrian": "o"}
-    assert not seen(answers(going(ways["wn"]), going(ways["ew"], s0=92.0, name="o", kind="object"), way=ways["we"]))
+    other = going(ways["ew"], s0=92.0, name="o", kind=kind, length=length)
+    assert seen(answers(going(ways["wn"]), other, way=ways["we"])) == dict.fromkeys(relations, "o")
 
 
 def test_somebody_without_a_position_may_be_the_one() -> None:
@@ -213,8 +222,10 @@ def test_a_track_that_ends_on_its_way_to_the_junction_or_begins_on_its_way_from_
     """The ego is in the junction from 7.8 to 11.4 s; they come 40 m and more from its middle."""
     ways = cross()
     t = times(24)
-    comes = moving("p", ways["ew"], t, 80 + 12 * t, ways["ew"].own)  # 48 m away at 6 s
-    for kept, doubt in ((t < 6, True), (t < 3.5, False)):
+    comes = moving("p", ways["ew"], t, 80 + 12 * t, ways["ew"].own)  # 48 m away at 6 s, 78 m at 3.5 s: there at 10 s
+    stays = standing("q", ways["ew"], t, 122.0, ways["ew"].own)
+    assert answers(going(ways["wn"]), stays.keep(t < 3.5), way=ways["we"])["oncoming"]["reason"] is None
+    for kept, doubt in ((t < 6, True), (t < 3.5, True)):
         reason = answers(going(ways["wn"]), comes.keep(kept), way=ways["we"])["oncoming"]["reason"]
         assert reason == ("actor p was lost from the log nearby" if doubt else None)
     # 52 m beyond it at 13 s, it was there 4.3 s before

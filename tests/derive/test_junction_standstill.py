@@ -48,6 +48,16 @@ def test_a_stop_on_the_open_road() -> None:
     assert row["ahead_known"] is True
 
 
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_how_far_it_has_to_go_to_be_out(hand: str) -> None:
+    """The junction ends at 215 m, the crossing at 103 m; the rear is 4.8 m behind the front."""
+    way = cross(hand, (), (("1", crosswalk("walk", 100.0)),))["we"]
+    inside, on, before = (only(drive([halting(way, at)], way.environment)) for at in (202.0, 104.0, 98.0))
+    assert (inside["junction_clear_m"], inside["crossing_clear_m"]) == (pytest.approx(215 - 197.2), None)
+    assert (on["junction_clear_m"], on["crossing_clear_m"]) == (None, pytest.approx(103 - 99.2))
+    assert (before["junction_clear_m"], before["crossing_clear_m"]) == (None, None)
+
+
 @pytest.mark.parametrize(("until", "n"), [(6.3, 1), (6.0, 0)])
 def test_for_at_least_a_second(until: float, n: int) -> None:
     way = cross()["we"]

@@ -11,7 +11,7 @@ from shapely import affinity
 from shapely.geometry import LineString, Point, box
 
 from tests import blinding
-from tests.scenes import LANE, derived, drive, moving, road, rows, standing, swing, tee, times
+from tests.scenes import LANE, derived, drive, judged, moving, road, rows, standing, swing, tee, times
 
 
 def test_a_centre_is_on_every_lanelet_that_holds_it() -> None:
@@ -185,3 +185,44 @@ def test_registration_is_checked_before_blame(lateral: float, wrong_way: bool, o
     assert found["ok"] is ok
     assert found["n_steps"] == len(t)
     assert (found["n_on_lane"] == len(t)) is (lateral < 1.77)
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(
+    ("others", "ok"),
+    [
+        ((), False),
+        ((("own", 15.0),), True),
+        ((("own", 15.0), ("other", -12.0)), True),
+        ((("own", 0.0),), True),
+        # against its lane, beside the lanes, half of them
+        ((("own", -15.0),), False),
+        ((("beside", 15.0),), False),
+        ((("own", 15.0), ("own", -15.0)), False),
+    ],
+)
+def test_other_vehicles_tell_whether_the_map_or_the_ego_is_elsewhere(
+    hand: str, others: tuple[tuple[str, float], ...], ok: bool
+) -> None:
+    """The ego drives against the traffic all the time: a map of the wrong hand looks the same, but not to the others."""
+    way, t = road(((2000.0, 0.0),), hand=hand), times(25.0)
+    beside = {"own": way.own, "other": way.other, "beside": 3 * way.own}
+    actors = [moving("ego", way, t, 600 - 12 * t, way.own)]
+    for n, (lane, speed) in enumerate(others):
+        s = 900 + 100 * n + speed * t
+        one = moving(f"o{n}", way, t, s, beside[lane]) if speed else standing(f"o{n}", way, t, 950.0, beside[lane])
+        actors.append(one)
+    con = derived(drive(actors, way.environment), tables=["registration"])
+    (found,) = rows(con, "FROM registration")
+    assert found["ok"] is ok
+    wrong = {row["verdict"] for row in judged([drive(actors, way.environment)], rules=["ukhc.r143.direction"])}
+    assert wrong == ({"fail"} if ok else {"unknown"})
+
+
+@pytest.mark.parametrize(("seconds", "ok"), [(14.5, False), (15.5, True)])
+def test_a_log_may_begin_in_the_middle_of_an_overtake(seconds: float, ok: bool) -> None:
+    """Against its lane for no longer than an overtake takes: the other vehicles tell nothing about the ego then."""
+    way, t = road(((2000.0, 0.0),), hand="rht"), times(seconds)
+    actors = [moving("ego", way, t, 600 - 12 * t, way.own), moving("o", way, t, 900 + 15 * t, way.own)]
+    (found,) = rows(derived(drive(actors, way.environment), tables=["registration"]), "FROM registration")
+    assert found["ok"] is ok

@@ -45,13 +45,25 @@ def test_every_vehicle_counts_and_an_unknown_kind_may_be_one(kind: str | None) -
     assert {row["object_id"] for row in rows(con, "FROM oncoming")} == {"x"}
 
 
-@pytest.mark.parametrize("kind", ["pedestrian", "animal", "object"])
+@pytest.mark.parametrize("kind", ["pedestrian", "animal"])
 def test_who_walks_is_no_oncoming_vehicle(kind: str) -> None:
     way = road()
     t = times(0.3)
     ego, other = moving("ego", way, t, 100 + 10 * t, way.own), moving("x", way, t, 300 - t, way.other, kind=kind)
     con = derived(drive([ego, other], way.environment), tables=["oncoming"])
     assert {row["object_id"] for row in rows(con, "FROM oncoming")} == {None}
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize("kind", [None, "object"])
+def test_who_comes_and_may_be_on_foot_or_a_vehicle_is_unplaced(hand: str, kind: str | None) -> None:
+    way = road(hand=hand)
+    t = times(0.3)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    other = moving("x", way, t, 300 - 3 * t, way.other, kind=kind, length=1.8, width=0.6)
+    found = rows(derived(drive([ego, other], way.environment), tables=["oncoming"]), "FROM oncoming")
+    assert {(row["object_id"], row["n_unplaced"]) for row in found} == {(None, 1)}
+    assert {row["unplaced_reason"] for row in found} == {"actor x comes, and its class is not known"}
 
 
 def test_the_nearest_counts() -> None:
@@ -225,7 +237,7 @@ def test_the_end_of_another_chain_tells_nothing() -> None:
 def test_who_was_met_and_lost_after_it_is_not_ahead(s: float, lane: str, v: float, doubted: bool) -> None:
     """The ego's rear is at 102.6 m when the other is seen last, 5 s into the log."""
     way = road(((900.0, 0.0),))
-    t = times(20.0)
+    t = times(30.0)
     ego = moving("ego", way, t, 80 + 5 * t, way.own)
     other = moving("x", way, t, s + v * (t - 5.0), getattr(way, lane)).keep(t < 5.01)
     con = derived(drive([ego, other], way.environment), tables=["oncoming", "unplaced"])

@@ -142,6 +142,21 @@ def test_an_overtake_that_begins_before_the_log(start: float) -> None:
         assert {row["da_m"] for row in one(late, way, "overtake_sda")} == {None}
 
 
+@pytest.mark.parametrize(("hand", "lost_s", "n"), [("rht", 0.4, 1), ("lht", 0.4, 1), ("rht", 0.7, 2), ("lht", 0.7, 2)])
+def test_a_short_hole_over_the_line_does_not_part_an_overtake(hand: str, lost_s: float, n: int) -> None:
+    way, actors = scene(hand)
+    (whole,) = one(actors, way, "overtake")
+    middle = (whole["t0_ns"] + whole["t3_ns"]) / 2e9
+    lost = [a.lost((a.t_s > middle) & (a.t_s < middle + lost_s - 0.05)) if a.actor_id == "ego" else a for a in actors]
+    found = one(lost, way, "excursion")
+    assert len(found) == n
+    if n == 1:
+        (held,) = one(lost, way, "overtake")
+        assert {key: held[key] for key in ("t0_ns", "t3_ns", "passed", "da_m")} == {
+            key: whole[key] for key in ("t0_ns", "t3_ns", "passed", "da_m")
+        }
+
+
 def test_a_hole_before_t0_hides_where_it_began() -> None:
     way, actors = scene()
     (whole,) = one(actors, way, "overtake")
@@ -470,3 +485,101 @@ def test_the_rules_agree_with_the_tables(rules: tuple[str, ...]) -> None:
     verdicts = scenes.judged([drive(actors, way.environment)], rules=rules, profiles=["nominal"])
     assert {row["verdict"] for row in verdicts if "r162" in row["rule_id"]} == {"pass"}
     assert "error" not in {row["verdict"] for row in verdicts}
+
+
+SDA = "ukhc.r162.safe-distance-ahead"
+
+
+def crash(way: Road, then: str, start: float = 0.0) -> list[Actor]:
+    """Out at 10 s well behind the car ahead, past it at 22 m/s in 9.2 s, and into the oncoming car, which comes at 25 m/s.
+
+    `then`: the log ends there, both stand there, or the ego is drawn back into its lane. `start`: metres that the ego starts
+    nearer to the car ahead, so that it has passed it by then.
+    """
+    t = times(26.0)
+    s = 50 + 22 * t
+    out = 50 + 22 * 10.0
+    met = out + 22 * 9.2
+    d = swing(way, s, out, met + 5 if then == "back" else None)
+    ego = moving("ego", way, t, s, d)
+    vbp = moving("vbp", way, t, out + 45 - start + 17 * (t - 10), way.own)
+    ov = moving("ov", way, t, met + 3 + 25 * (19.2 - t), way.other)
+    if then == "end":
+        return [a.keep(t < 19.25) for a in (ego, vbp, ov)]
+    if then == "stand":
+        stopped = np.minimum(t, 19.2)
+        ego = moving("ego", way, t, 50 + 22 * stopped, swing(way, 50 + 22 * stopped, out, None))
+        ov = moving("ov", way, t, met + 3 + 25 * (19.2 - stopped), way.other)
+    return [ego, vbp, ov]
+
+
+@pytest.mark.parametrize("then", ["end", "stand", "back"])
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_an_overtake_that_ends_in_a_head_on_crash_fails_by_default(hand: str, then: str) -> None:
+    """The nominal plan is over in half of the time and has road enough; what was driven had not."""
+    way = road(((2000.0, 0.0),), hand)
+    found = {row["profile"]: row for row in scenes.judged([drive(crash(way, then), way.environment)], rules=[SDA])}
+    assert {profile: row["verdict"] for profile, row in found.items()} == {"nominal": "pass", "observed": "fail"}
+    assert found["nominal"]["margin"] > 100
+    assert found["observed"]["observed"] == found["nominal"]["observed"]
+    assert found["observed"]["margin"] < 0
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_what_was_driven_of_a_broken_off_overtake_is_the_least_that_it_needed(hand: str) -> None:
+    way = road(((2000.0, 0.0),), hand)
+    actors = crash(way, "end")
+    con = derived(drive(actors, way.environment), tables=["overtake_sda"])
+    (o,) = rows(con, "FROM overtake")
+    (row,) = rows(con, "FROM overtake_sda WHERE profile = 'observed'")
+    seconds = (o["t_end_ns"] - o["t0_ns"]) / 1e9
+    front = {k: max(actors[0].x[k] + 2.4 * math.cos(actors[0].yaw[k]) + b * 0.9 * math.sin(actors[0].yaw[k]) for b in (1, -1))
+             for k in (round(o["t0_ns"] / 1e8), round(o["t_end_ns"] / 1e8))}  # fmt: skip
+    way_m = max(front.values()) - min(front.values())
+    assert o["status"] == "truncated"
+    assert row["sda_m"] == pytest.approx(way_m + 25 * seconds + stopping(25.0), abs=1e-6)
+    assert row["zone"] == "A"
+    assert "out of its lane" in row["reason"]
+
+
+@pytest.mark.parametrize("end", [13.0, 15.0, 16.5])
+def test_as_long_as_the_road_would_do_a_broken_off_overtake_is_unknown(end: float) -> None:
+    way = road(((2000.0, 0.0),))
+    actors = [a.keep(a.t_s < end + 0.05) for a in crash(way, "end")]
+    found = {row["profile"]: row for row in scenes.judged([drive(actors, way.environment)], rules=[SDA])}
+    assert {profile: row["verdict"] for profile, row in found.items()} == {"nominal": "pass", "observed": "unknown"}
+    assert "not completed" in found["observed"]["reason"]
+
+
+def test_an_oncoming_vehicle_that_speeds_up_counts_with_the_way_that_it_made() -> None:
+    """It comes at 5 m/s when the ego goes out, and at 35 m/s when they meet."""
+    way = road(((2000.0, 0.0),))
+    ego, vbp, _ = crash(way, "end")
+    t = ego.t_s
+    v = np.clip(5 + 12 * (t - 11), 5, 35)
+    made = np.concatenate([[0.0], np.cumsum((v[1:] + v[:-1]) / 2 * np.diff(t))])
+    ov = moving("ov", way, t, ego.x[-1] + 3 + made[-1] - made, way.other)
+    (row,) = (r for r in one([ego, vbp, ov], way, "overtake_sda") if r["profile"] == "observed")
+    assert row["da_m"] <= row["sda_m"]
+    calm = moving("ov", way, t, ego.x[-1] + 3 + made[-1] - 5 * t, way.other)
+    (row,) = (r for r in one([ego, vbp, calm], way, "overtake_sda") if r["profile"] == "observed")
+    assert row["sda_m"] is None
+
+
+@pytest.mark.parametrize("nearer", [False, True])
+def test_an_aborted_overtake_fails_where_even_what_was_driven_of_it_was_too_long(nearer: bool) -> None:
+    """Back in its lane 8 m before the oncoming car, which would have stopped in 12 m; else 300 m before it."""
+    way, (ego, vbp, ov) = scene(abort=True)
+    t = ego.t_s
+    actors = [ego, vbp, moving("ov", way, t, 300 - 9 * t, way.other) if nearer else ov]
+    (found,) = one(actors, way, "overtake")
+    (row,) = (r for r in one(actors, way, "overtake_sda") if r["profile"] == "observed")
+    assert (found["status"], found["ov_id"]) == ("aborted", "ov")
+    assert (row["zone"], row["sda_m"] is None) == (("A", False) if nearer else (None, True))
+
+
+def test_a_profile_that_is_named_is_the_only_one() -> None:
+    way, actors = scene()
+    for asked in ([], ["relaxed"], ["nominal"], ["aggressive", "relaxed"]):
+        found = scenes.judged([drive(actors, way.environment)], rules=[SDA], profiles=asked)
+        assert {row["profile"] for row in found} == set(asked or ["nominal", "observed"])

@@ -142,7 +142,7 @@ def test_an_object_is_there_from_its_first_sample_to_its_last() -> None:
 
 
 def lost(con_rows: list[dict[str, object]]) -> list[tuple[object, ...]]:
-    return [(row["object_id"], row["reason"]) for row in con_rows]
+    return [(row["object_id"], row["code"]) for row in con_rows]
 
 
 def test_a_track_that_ends_is_lost_where_it_could_still_have_been_seen() -> None:
@@ -162,7 +162,7 @@ def test_a_track_that_ends_is_lost_where_it_could_still_have_been_seen() -> None
         (100.0, [("far", "lost_in_range"), ("near", "lost_near_ego"), ("nowhere", "lost_near_ego")]),
     ):
         con = derived(drive([ego, *others], way.environment, sensor_range_m=range_m), tables=["lost_object"])
-        found = rows(con, "FROM lost_object WHERE reason LIKE 'lost%' ORDER BY object_id")
+        found = rows(con, "FROM lost_object WHERE code LIKE 'lost%' ORDER BY object_id")
         assert lost(found) == expected
         assert {row["t_from_ns"] for row in found} == {5_000_000_001}
         assert {row["t_to_ns"] for row in found} == {10_000_000_000}

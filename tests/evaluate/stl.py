@@ -223,6 +223,7 @@ def _comfort(dice: Dice, at: int) -> Trace:
     signals = {"a": walk(dice, -5, 3), "lat": walk(dice, -6, 6), "jerk": walk(dice, -5, 5)}
     given = {
         "ego_state": _steps(speed_mps=8),
+        "ego_condition": _steps(vehicle_class="car", engaged=True),
         "ego_motion": _steps(accel_mps2=signals["a"], lat_accel_mps2=signals["lat"], jerk_mps3=signals["jerk"]),
     }
     return Trace(signals, at, given)

@@ -109,6 +109,44 @@ def test_a_rule_holds_where_all_its_conditions_do(
     assert tuple(brief(verdicts(rule, scene)) for rule in rules) == tuple([end] for end in wanted)
 
 
+@pytest.mark.parametrize(
+    ("law", "nation", "judged"),
+    [
+        ("de", "de", True),
+        ("de", "gb", False),
+        ("de", "gb-sct", False),
+        ("de", None, True),
+        ("gb", "gb-sct", True),
+        ("gb-sct", "gb", True),  # may be Scotland
+        ("gb-sct", "gb-eng", False),
+        ("gb", "fr", False),
+    ],
+)
+def test_the_law_of_a_nation_is_not_applied_in_another(
+    tmp_path: Path, law: str, nation: str | None, judged: bool
+) -> None:
+    """What fails there fails still where the nation is not known; a signal that is missing too does not matter."""
+    scene = drive([9, 12, 9], at=0.2, nation=nation)
+    rules = invariant(tmp_path, law=f'["{law}"]'), at_event(tmp_path, kind=EXECUTION | {"law": f'["{law}"]'})
+    foreign = ("not_applicable", "other_nation")
+    for rule in rules:
+        (row,) = verdicts(rule, scene)
+        assert (row["verdict"], row["reason_code"]) == (("fail", row["reason_code"]) if judged else foreign)
+        assert len(findings(rule, scene)) == judged
+    needs = invariant(tmp_path, law=f'["{law}"]', requires='["map"]')
+    (row,) = verdicts(needs, scene, missing=("map",))
+    assert (row["verdict"], row["reason_code"]) == (("unknown", "missing_map") if judged else foreign)
+
+
+def test_each_drive_has_its_own_nation(tmp_path: Path) -> None:
+    scene = {
+        "ego_state": [{"ego_id": e, "t_s": [0.0, 0.1], "speed_mps": [9, 12]} for e in "abc"],
+        "ego_condition": [{"ego_id": e, "t_s": [0.0, 0.1], "nation": n} for e, n in (("a", "de"), ("b", "gb"))],
+    }
+    rows = verdicts(invariant(tmp_path, law='["de"]'), scene)
+    assert [(r["ego_id"], r["verdict"]) for r in rows] == [("a", "fail"), ("b", "not_applicable"), ("c", "fail")]
+
+
 def test_what_is_not_known_is_named_and_how_to_give_it(tmp_path: Path) -> None:
     said = {
         "weather_unknown": "the weather is not known at 0.000 s: give --env weather=dry",
@@ -171,7 +209,7 @@ def test_objects_beside_a_human_are_not_judged(tmp_path: Path) -> None:
         "step": {"t_s": times},
         "pair": [{"t_s": times, "object_id": who, "clearance_m": [0, 2, 2, 2]} for who in "ab"],
         "ego_condition": {"t_s": times, "engaged": [False, True, True, True]},
-        "lost_object": {"object_id": "c", "t_from_s": 0.0, "t_to_s": 0.3, "reason": "lost_near_ego"},
+        "lost_object": {"object_id": "c", "t_from_s": 0.0, "t_to_s": 0.3, "code": "lost_near_ego"},
     }
     assert [(r["object_id"], r["verdict"], r["n_expected"]) for r in verdicts(rule, scene)] == [
         ("a", "pass", 3), ("b", "pass", 3),

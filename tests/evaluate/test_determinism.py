@@ -64,7 +64,7 @@ def database(drives: tuple[str, ...], *, threads: int, order: str) -> duckdb.Duc
     con.execute(
         f"""INSERT INTO pair BY NAME
         SELECT drive_id, ego_id, t_ns, 'o' || o AS object_id, CASE WHEN k = 500 + o AND o % 7 = 0 THEN NULL
-            ELSE round(2 + 1.6 * sin(k / 50.0 + o), 1) END AS clearance_m
+            ELSE round(2 + 1.6 * sin(k / 50.0 + o), 1) END AS clearance_m, false AS off_level
         FROM s, range({N_OBJECTS}) q(o) WHERE o % 5 > 0 OR k // 1000 % 2 = 0 ORDER BY {order},
             o * {1 if order == "k" else -1}"""
     )

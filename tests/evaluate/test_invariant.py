@@ -248,7 +248,7 @@ def test_a_pair_that_the_condition_leaves_out_is_unknown(tmp_path: Path) -> None
 def test_lost_objects_are_unknown_from_there_on(tmp_path: Path) -> None:
     rule = write(tmp_path, INVARIANT | MEASURED | GAP, {"condition": GAP_SQL})
     given = pairs([3, 3, 3, 3, 3, 3], [2, 2, 2, "absent", "absent", "absent"])
-    given["lost_object"] = {"object_id": "2", "t_from_s": 0.2, "t_to_s": 0.5, "reason": "lost_near_ego"}
+    given["lost_object"] = {"object_id": "2", "t_from_s": 0.2, "t_to_s": 0.5, "code": "lost_near_ego"}
     rows = verdicts(rule, given)
     assert [(r["object_id"], r["verdict"], r["reason_code"]) for r in rows] == [
         ("1", "pass", "kept"), ("2", "pass", "kept"), ("2", "unknown", "lost_near_ego"),

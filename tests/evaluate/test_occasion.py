@@ -411,7 +411,7 @@ def test_an_object_that_was_lost_may_still_be_there(
             {"t_s": times, "object_id": "a", "clearance_m": 3},
             {"t_s": "0..1.5 by 0.1", "object_id": "b", "clearance_m": 5},
         ],
-        "lost_object": {"object_id": "b", "t_from_s": 1.5, "t_to_s": 3, "reason": "lost_near_ego"},
+        "lost_object": {"object_id": "b", "t_from_s": 1.5, "t_to_s": 3, "code": "lost_near_ego"},
     }
     rows = verdicts(rule, given)
     assert [(r["object_id"], r["verdict"], r["reason_code"]) for r in rows] == expected

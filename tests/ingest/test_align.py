@@ -66,10 +66,27 @@ def test_in_a_hole_it_has_none(tmp_path: Path) -> None:
     assert times(short, "b") == list(range(0, 4_000, 20))  # one sample is missing: 0.2 s
 
 
-def test_a_track_that_ends_goes_on_for_a_sample(tmp_path: Path) -> None:
+def test_nobody_is_there_before_its_first_sample_or_after_its_last(tmp_path: Path) -> None:
     trace = load(tmp_path, {"a": np.arange(0, 4_000, 20), "b": np.arange(1_033, 2_000, 100)})
-    assert (times(trace, "b")[0], times(trace, "b")[-1]) == (940, 2_020)
+    assert (times(trace, "b")[0], times(trace, "b")[-1]) == (1_040, 1_920)
     assert max(off(row) for row in states(trace, "b")) < 0.02
+
+
+def test_a_track_goes_on_to_the_ends_of_the_log(tmp_path: Path) -> None:
+    """At 50 ms and at 3,970 ms only the next frame lacks."""
+    trace = load(tmp_path, {"a": np.arange(0, 4_000, 20), "b": np.arange(50, 3_971, 100)})
+    assert (times(trace, "b")[0], times(trace, "b")[-1]) == (0, 3_980)
+    assert max(off(row) for row in states(trace, "b")) < 0.02
+
+
+def test_the_ego_under_another_id_is_not_there_before(tmp_path: Path) -> None:
+    """The ego's id changes after 2 s: its successor has no state at its last step."""
+    trace = load(
+        tmp_path, {"a": np.arange(0, 2_000, 50), "b": np.arange(2_000, 4_000, 50), "c": np.arange(0, 4_000, 50)}
+    )
+    assert times(trace, "a")[-1] == 1_950
+    assert times(trace, "b") == list(range(2_000, 4_000, 50))
+    assert "aligned" not in quality(trace)
 
 
 @pytest.mark.parametrize(

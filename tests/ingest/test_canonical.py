@@ -91,6 +91,36 @@ def test_conditions_that_are_not_understood_are_refused(
         conditions(tmp_path / "a", source, [*rows, {"condition": condition, "value": value}])
 
 
+def test_words_are_read_in_any_case(tmp_path: Path, source: Trace) -> None:
+    """Tables written in capitals are those written in small letters."""
+    small = read(folder(tmp_path / "small", source))
+    loud = folder(tmp_path / "loud", source)
+    for name in ("actor", "actor_state", "signal_state"):
+        table = source.tables[name]
+        for column in {"actor_class", "indicator", "brake_light", "state"} & set(table.column_names):
+            words = pa.array([word and word.upper() for word in table[column].to_pylist()], pa.string())
+            assert words.null_count < len(words)
+            table = table.set_column(table.column_names.index(column), column, words)
+        pq.write_table(table, loud / f"{name}.parquet")
+    read_loud = read(loud)
+    for name in ("actor", "actor_state", "signal_state"):
+        assert read_loud.tables[name].drop_columns("drive_id") == small.tables[name].drop_columns("drive_id"), name
+    given: list[dict[str, str | None]] = [
+        {"condition": "Nation", "value": "GB"}, {"condition": "road_type", "value": "townlocal"},
+    ]  # fmt: skip
+    assert conditions(tmp_path / "c", source, given) == [
+        ("nation", "gb", "trace"), ("road_type", "townLocal", "trace"),
+    ]  # fmt: skip
+
+
+def test_a_signal_state_that_is_no_word_is_refused(tmp_path: Path, source: Trace) -> None:
+    path = folder(tmp_path / "d", source)
+    states = source.tables["signal_state"].to_pylist()
+    pq.write_table(pa.Table.from_pylist([states[0] | {"state": "REDD"}]), path / "signal_state.parquet")
+    with pytest.raises(TraceError, match=r"signal_state\.parquet: state is 'REDD': use one of red"):
+        read(path)
+
+
 def test_tables_go_into_the_database(source: Trace) -> None:
     con = connect()
     for name, rows in source.tables.items():
@@ -170,3 +200,16 @@ def test_the_drive_is_its_tables(tmp_path: Path, source: Trace) -> None:
     assert read(tmp_path / "d").drive_id == one.drive_id
     (tmp_path / "d" / "signal_state.parquet").unlink()
     assert read(tmp_path / "d").drive_id != one.drive_id
+
+
+@pytest.mark.parametrize("rows", [1, 3])
+def test_a_table_of_states_that_is_not_the_one_counted_is_refused(rows: int, tmp_path: Path) -> None:
+    state = {"t_ns": 0, "actor_id": "a", "x_m": 0.0, "y_m": 0.0, "yaw_rad": 0.0, "is_ego": True}
+    pq.write_table(
+        pa.Table.from_pylist([state | {"t_ns": k * 100_000_000} for k in range(rows)]), tmp_path / "actor_state.parquet"
+    )
+    pq.write_table(pa.Table.from_pylist([{"n_states": 2}]), tmp_path / "data_log.parquet")
+    with pytest.raises(TraceError, match=rf"actor_state\.parquet: {rows} rows, and data_log\.parquet counts 2 states"):
+        read(tmp_path)
+    pq.write_table(pa.Table.from_pylist([{"n_states": rows}]), tmp_path / "data_log.parquet")
+    assert len(states(read(tmp_path))) == rows

@@ -150,44 +150,90 @@ def test_host_of_value_zero_is_actor_zero(tmp_path: Path) -> None:
     assert actors(read(write(tmp_path, frames)))["0"]["is_ego"]
 
 
-def test_host_that_changes_is_reported(tmp_path: Path) -> None:
-    frames = osi_log.drive(3)
-    frames[2].host_vehicle_id.value = 2
+@pytest.mark.parametrize("odd", [0, 2])
+def test_the_host_is_that_of_most_frames(odd: int, tmp_path: Path) -> None:
+    frames = osi_log.drive(5)
+    frames[odd].host_vehicle_id.value = 2
     trace = read(write(tmp_path, frames))
-    assert actors(trace)["0"]["is_ego"]
-    assert "2 host vehicles (0, 2)" in quality(trace)["ego_count"]["message"]
+    assert [k for k, v in actors(trace).items() if v["is_ego"]] == ["0"]
+    found = quality(trace)["ego_count"]
+    assert "2 host vehicles (0, 2): 0 is the ego, which 1 of 5 frames do not name" in found["message"]
+    assert (found["severity"], found["actor_id"], found["t_first_ns"]) == ("warning", "0", odd * 100_000_000)
 
 
-def test_absent_vectors_are_unknown_and_dropped_zeros_are_zero(tmp_path: Path) -> None:
+def test_of_hosts_named_equally_often_the_first_is_the_ego(tmp_path: Path) -> None:
     frames = osi_log.drive(4)
+    for truth in frames[:2]:
+        truth.host_vehicle_id.value = 2
+    assert [k for k, v in actors(read(write(tmp_path, frames))).items() if v["is_ego"]] == ["2"]
+
+
+VECTORS = ("position", "orientation", "velocity", "dimension")
+
+
+def without(frames: list[Any], vector: str, *, empty: bool) -> list[Any]:
+    """Take a vector of actor 1 out of every frame, or all that is in it."""
     for truth in frames:
         base = truth.moving_object[1].base
-        base.ClearField("orientation")
-        base.ClearField("dimension")
-        base.position.ClearField("x")  # as proto3 writers leave out 0.0
-        base.velocity.Clear()
-        base.velocity.SetInParent()
-        truth.moving_object[2].base.ClearField("position")
-    trace = read(write(tmp_path, frames))
-    row = at(trace, "1", 0.1)
-    assert (row["x_m"], row["y_m"], row["yaw_rad"], row["vx_mps"]) == (0.0, 4.0, None, 0.0)
-    assert (actors(trace)["1"]["length_m"], at(trace, "2", 0.1)["x_m"]) == (None, None)
-    assert {"no_position", "no_yaw", "no_size"} <= set(quality(trace))
+        base.ClearField(vector)
+        if empty:
+            getattr(base, vector).SetInParent()
+    return frames
 
 
-def test_velocities_all_zero_are_derived(tmp_path: Path) -> None:
-    trace = read(write(tmp_path, osi_log.drive(v=(0.0, 0.0), a=(0.0, 0.0))))
-    assert [row["vx_mps"] for row in states(trace)] == pytest.approx([10.0] * 90)
-    assert quality(trace)["velocity_derived"]["n"] == 90
+@pytest.mark.parametrize("empty", [True, False])
+@pytest.mark.parametrize("vector", VECTORS)
+def test_a_vector_that_says_nothing_is_unknown(vector: str, empty: bool, tmp_path: Path) -> None:
+    """The log writes zeros (the ego is at y = 0), so that what it leaves out is no zero."""
+    trace = read(write(tmp_path, without(osi_log.drive(4), vector, empty=empty)))
+    row = at(trace, "1", 0.1) | actors(trace)["1"]
+    columns = {
+        "position": {"x_m", "y_m", "z_m"},
+        "orientation": {"yaw_rad"},
+        "dimension": {"length_m", "width_m", "height_m"},
+    }
+    known = {name for name in set().union(*columns.values()) if row[name] is not None}
+    assert known == set().union(*columns.values()) - columns.get(vector, set())
+    said = {"position": "no_position", "orientation": "no_yaw", "dimension": "no_size", "velocity": "velocity_derived"}
+    assert set(quality(trace)) & {*said.values(), "not_finite"} == {said[vector]}
 
 
-def test_not_finite_values(tmp_path: Path) -> None:
+def test_a_coordinate_that_is_left_out_where_zeros_are_written_is_unknown(tmp_path: Path) -> None:
     frames = osi_log.drive(4)
-    frames[1].moving_object[2].base.velocity.x = float("nan")
-    frames[2].moving_object[2].base.position.x = float("inf")
+    for truth in frames:
+        truth.moving_object[1].base.position.ClearField("x")
+    row = at(read(write(tmp_path, frames)), "1", 0.1)
+    assert (row["x_m"], row["y_m"]) == (None, 4.0)
+
+
+def drop_zeros(frames: list[Any]) -> list[Any]:
+    """Leave out every coordinate that is 0, as proto3 writers do (esmini's logs are such)."""
+    for truth in frames:
+        for item in truth.moving_object:
+            for vector in (*VECTORS, "acceleration"):
+                if item.base.HasField(vector):
+                    inner = getattr(item.base, vector)
+                    for field, value in list(inner.ListFields()):
+                        if value == 0.0:
+                            inner.ClearField(field.name)
+    return frames
+
+
+def test_dropped_zeros_are_zero_where_no_zero_is_written(tmp_path: Path) -> None:
+    frames = osi_log.drive(4)
+    whole = states(read(osi_log.write(tmp_path / "w.mcap", osi_log.truths(frames))))
+    dropped = states(read(osi_log.write(tmp_path / "z.mcap", osi_log.truths(drop_zeros(frames)))))
+    assert [row | {"drive_id": ""} for row in dropped] == [row | {"drive_id": ""} for row in whole]
+    assert {row["yaw_rad"] for row in dropped} == {0.0}
+
+
+def test_even_where_zeros_are_dropped_an_empty_position_is_no_place(tmp_path: Path) -> None:
+    frames = drop_zeros(osi_log.drive(4))
+    for vector in ("position", "dimension"):
+        without(frames, vector, empty=True)
     trace = read(write(tmp_path, frames))
-    assert (at(trace, "2", 0.1)["vx_mps"], at(trace, "2", 0.2)["x_m"]) == (None, None)
-    assert quality(trace)["not_finite"]["n"] == 2
+    assert (at(trace, "1", 0.1)["x_m"], actors(trace)["1"]["length_m"]) == (None, None)
+    assert {"no_position", "no_size"} <= set(quality(trace))
 
 
 def test_objects_without_id_are_counted(tmp_path: Path) -> None:
@@ -225,12 +271,41 @@ def test_a_clock_that_goes_backwards(tmp_path: Path) -> None:
     )
 
 
-def test_repeated_ids_in_a_frame(tmp_path: Path) -> None:
+@pytest.mark.parametrize("ghost_first", [True, False])
+def test_repeated_ids_in_a_frame(ghost_first: bool, tmp_path: Path) -> None:
     frames = osi_log.drive(4)
-    osi_log.moving(frames[2], 1, 77.0)
+    ghost = osi_log.moving(frames[2], 1, 77.0)
+    if ghost_first:
+        others = [ghost, *frames[2].moving_object[:3]]
+        kept = [item.SerializeToString() for item in others]
+        del frames[2].moving_object[:]
+        for data in kept:
+            frames[2].moving_object.add().ParseFromString(data)
     trace = read(write(tmp_path, frames))
-    assert (quality(trace)["duplicate_state"]["actor_id"], quality(trace)["duplicate_state"]["n"]) == ("1", 1)
-    assert at(trace, "1", 0.2)["x_m"] == 2.0
+    found = quality(trace)["duplicate_state"]
+    assert (found["actor_id"], found["n"], found["severity"]) == ("1", 1, "error")
+    assert (at(trace, "1", 0.2)["x_m"], at(trace, "1", 0.1)["x_m"]) == (None, 1.0)
+
+
+def test_a_clock_that_starts_again(tmp_path: Path) -> None:
+    """Stamps of 0 to 1.9 s, then of 1 to 2.9 s again, of another drive: the second that is told twice is nobody's."""
+    frames, again = osi_log.drive(20), osi_log.drive(20)
+    for truth in again:
+        truth.timestamp.seconds += 1
+    trace = read(write(tmp_path, frames + again))
+    assert quality(trace)["clock_restart"]["severity"] == "error"
+    assert {row["t_ns"] for row in states(trace) if row["x_m"] is None} == {k * 100_000_000 for k in range(10, 20)}
+
+
+def test_headings_in_degrees_are_refused(tmp_path: Path) -> None:
+    frames = osi_log.drive(30)
+    for i, truth in enumerate(frames):
+        for item in truth.moving_object:
+            base = item.base
+            base.position.x, base.position.y = 5.0 * i, 8.66 * i + 5.0 * item.id.value
+            base.velocity.x, base.velocity.y, base.orientation.yaw = 50.0, 86.6, 60.0
+    with pytest.raises(TraceError, match=r"heading is off the direction of motion .*: record or convert it again"):
+        read(write(tmp_path, frames))
 
 
 def bulb(truth: Any, number: int, color: int, mode: int, signal: str | None = None) -> None:

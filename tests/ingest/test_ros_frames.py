@@ -35,13 +35,13 @@ def chain() -> list[ros.Message]:
 
 
 def test_chain(tmp_path: Path) -> None:
-    # too short for the checks to see that it drives with its frame, and not with its velocity
-    objects = [ros.things(t_s, ros.thing(9, 30.0, 1.0, 0.2, 5.0), frame="lidar") for t_s in ticks(39)]
+    # it drives with its frame, 10 m/s to the map's north, and says so
+    objects = [ros.things(t_s, ros.thing(9, 30.0, 1.0, 0.05, 10.0), frame="lidar") for t_s in ticks(19)]
     trace = seen(tmp_path, [*chain(), *objects], ego="9")
-    state = at(trace, "9", T0 + 1.0)
-    assert (state["x_m"], state["y_m"]) == pytest.approx((100.0 - 1.0, 50.0 + 10.0 + 2.0 + 30.0))
-    assert state["yaw_rad"] == pytest.approx(math.pi / 2 + 0.2)
-    assert (state["vx_mps"], state["vy_mps"]) == pytest.approx((-5.0 * math.sin(0.2), 5.0 * math.cos(0.2)))
+    state = at(trace, "9", T0 + 0.5)
+    assert (state["x_m"], state["y_m"]) == pytest.approx((100.0 - 1.0, 50.0 + 5.0 + 2.0 + 30.0))
+    assert state["yaw_rad"] == pytest.approx(math.pi / 2 + 0.05)
+    assert (state["vx_mps"], state["vy_mps"]) == pytest.approx((-10.0 * math.sin(0.05), 10.0 * math.cos(0.05)))
     assert "frame_unresolved" not in quality(trace)
 
 

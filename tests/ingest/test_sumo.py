@@ -93,16 +93,19 @@ def test_csv_written_anew_with_quotes(tmp_path: Path) -> None:
 
 def test_front_bumper_and_compass(tmp_path: Path) -> None:
     put(tmp_path / "r.rou.xml", TYPES)
-    turned = [row | {"angle": angle} for row, angle in zip(ROWS[1:8:2], (90.0, 0.0, 180.0, 270.0), strict=True)]
-    trace = read(put(tmp_path / "a.xml", xml(turned)), ego="a.0")
-    seen = [(row["x_m"] - t, row["y_m"], round(row["yaw_rad"], 6)) for t, row in enumerate(states(trace))]
+    seen = []
+    for angle in (90.0, 0.0, 180.0, 270.0):
+        stands = [row | {"angle": angle, "x": 0.0, "speed": 0.0} for row in ROWS[1:8:2]]
+        row = states(read(put(tmp_path / f"{angle}.xml", xml(stands)), ego="a.0"))[0]
+        seen.append((row["x_m"], row["y_m"], round(row["yaw_rad"], 6)))
     assert seen == [
         (pytest.approx(-2.0), pytest.approx(3.5), 0.0),
         (pytest.approx(0.0), pytest.approx(1.5), 1.570796),
         (pytest.approx(0.0), pytest.approx(5.5), -1.570796),
         (pytest.approx(2.0), pytest.approx(3.5), pytest.approx(-3.141593)),
     ]
-    row = states(trace)[1]
+    north = [row | {"angle": 0.0, "x": 0.0, "y": 3.5 + t} for t, row in enumerate(ROWS[1:8:2])]
+    row = states(read(put(tmp_path / "north.xml", xml(north)), ego="a.0"))[1]
     assert (row["vx_mps"], row["vy_mps"], row["ay_mps2"]) == pytest.approx((0.0, 10.0, 0.5), abs=1e-9)
 
 

@@ -146,6 +146,25 @@ def test_a_signal_that_holds_for_nobody_is_named() -> None:
     assert checks(environment)["signal_without_lane"] == ["1"]
 
 
+@pytest.mark.parametrize(
+    ("code", "subtype", "turns"),
+    [
+        ("1000001", "-1", ["left", "straight", "right", "u_turn"]),
+        ("1000001", "10", None),
+        ("1000011", "10", ["left"]),
+        ("1.000.011", "20", ["right"]),
+        ("1000011", "30.0", ["straight"]),
+        ("1000011", "40", ["left", "straight"]),
+        ("1000011", "50", ["straight", "right"]),
+        ("1000011", "-1", None),
+        ("206", "-1", None),
+    ],
+)
+def test_turns_that_a_light_holds_for(code: str, subtype: str, turns: list[str] | None) -> None:
+    (row, *_) = rows(load(road(more=f"<signals>{signal(30, type=code, subtype=subtype)}</signals>")), "traffic_signal")
+    assert (row["kind"], row["turns"]) == ("stop" if code == "206" else "traffic_light", turns)
+
+
 def test_values_and_missing_values() -> None:
     for value, expected in (("50", 50.0), ("-1.0", None), ("", None)):
         environment = load(road(more=f"<signals>{signal(30, type='274', value=value, unit='km/h')}</signals>"))

@@ -69,6 +69,23 @@ def test_lanelets_and_what_lies_on_them() -> None:
 
 
 @pytest.mark.parametrize(
+    ("direction", "turns"),
+    [
+        ("<direction>leftStraight</direction>", ["left", "straight"]),
+        ("<direction>right</direction>", ["right"]),
+        ("<direction>all</direction>", ["left", "straight", "right", "u_turn"]),
+        ("", None),
+    ],
+)
+def test_turns_that_a_light_holds_for(direction: str, turns: list[str] | None) -> None:
+    environment = load(
+        scenario(lanelet(1, 0.0, '<trafficLightRef ref="90"/>'), f'<trafficLight id="90">{direction}</trafficLight>')
+    )
+    (row,) = environment.tables["traffic_signal"].to_pylist()
+    assert (row["kind"], row["turns"]) == ("traffic_light", turns)
+
+
+@pytest.mark.parametrize(
     ("parts", "benchmark", "options", "expected"),
     [
         ([lanelet(1, 0.0)], "ZAM_Test-1", {}, ("rht", "default")),

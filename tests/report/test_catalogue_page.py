@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from drivelint.catalogue import load
+from drivelint.conditions import GIVEN, SAYS
+from drivelint.declared import EVENTS, MODES
 from drivelint.errors import RuleError
+from drivelint.maps.signcodes import kind_of
+from drivelint.report import vocabulary
 from drivelint.report.catalogue_page import Clause, by_clause, cited, clauses, page
 from drivelint.resources import folder
 
@@ -23,6 +29,13 @@ def test_every_rule_stands_on_the_page_and_every_number_with_it() -> None:
     for rule in rules:
         assert f"| `{rule.id.removeprefix(rule.pack + '.')}` | {rule.hypothesis} |" in text
         assert all(f"`{name}` " in text for name in rule.params)
+
+
+def test_the_nation_of_a_law_stands_beside_the_conditions() -> None:
+    rows = {line.split("`")[1]: line for line in page(load().values(), PACKS).splitlines() if line.startswith("| `")}
+    assert "[law de, road_type motorway]" in rows["rg1"]
+    assert "[law gb]" in rows["r124.speed-limit"]
+    assert "law" not in rows["no-collision"].split("|")[3]
 
 
 def test_every_clause_from_89_to_307_has_one_entry() -> None:
@@ -49,3 +62,45 @@ def test_a_rule_that_cites_a_clause_without_entry_is_refused() -> None:
 def test_what_is_no_clause_is_refused() -> None:
     with pytest.raises(RuleError, match="write H1, 103 or 89-94"):
         Clause("R103", "signals").names  # noqa: B018 - the property refuses
+
+
+def compared(sql: str, column: str) -> set[str]:
+    """Return the words that SQL holds a column against."""
+    lists = re.findall(rf"\b{column} (?:=|IN) (\[[^\]]*\]|\([^)]*\)|'[a-z_]+')", sql)
+    return {word for one in lists for word in re.findall(r"'([a-z_]+)'", one)}
+
+
+def test_every_event_that_a_rule_or_a_derivation_asks_for_is_on_the_page() -> None:
+    asked: set[str] = set()
+    for file in sorted(folder("queries").glob("**/*.sql")):
+        sql = file.read_text(encoding="utf-8")
+        asked |= compared(sql, "event") if "declared_event" in sql else set()
+        asked |= compared(sql, "mode") if "ego_mode" in sql else set()
+    assert asked == EVENTS.keys()
+
+
+def test_the_modes_that_the_log_is_looked_through_for_are_those_of_the_vocabulary() -> None:
+    sql = (folder("queries") / "derive" / "capability.sql").read_text(encoding="utf-8")
+    assert compared(sql, "mode") == MODES.keys()
+    required = {signal for rule in load().values() for signal in rule.requires if signal.startswith("mode_")}
+    assert required <= {f"mode_{mode}" for mode in MODES}
+
+
+def test_every_condition_is_explained() -> None:
+    assert SAYS.keys() == GIVEN.keys()
+
+
+def test_a_signal_is_recognised_by_the_name_that_the_page_gives() -> None:
+    assert {kind: kind_of("", "", name) for kind, name in vocabulary.NAMES.items()} == {k: k for k in vocabulary.NAMES}
+
+
+def test_what_a_map_must_have_is_asked_for_by_some_rule() -> None:
+    _, rows = vocabulary.map_needed(list(load().values()))
+    assert [name for name, _, asking in rows if asking == "no rule yet"] == []
+
+
+def test_a_zebra_is_one_by_name() -> None:
+    _, rows = vocabulary.map_needed(list(load().values()))
+    (zebra,) = (row for row in rows if row[0] == "zebra")
+    assert "zebra in its `name` or `subtype`" in zebra[1]
+    assert "`ukhc.r195.zebra-on`" in zebra[2]

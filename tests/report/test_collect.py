@@ -95,6 +95,22 @@ def test_a_drive_is_told_with_map_way_and_what_is_missing(con: duckdb.DuckDBPyCo
     assert (empty["drive_id"], empty["n_egos"], empty["map_name"], empty["duration_s"]) == ("d0", 0, None, None)
 
 
+@pytest.mark.parametrize(
+    ("check", "severity", "lossy"),
+    [
+        ("duplicate_state", "error", True), ("duplicate_state", "info", False), ("teleport", "warning", False),
+        ("malformed_row", "warning", True),
+    ],
+)  # fmt: skip
+def test_an_error_or_a_lost_row_of_the_log_makes_a_drive_lossy(
+    check: str, severity: str, lossy: bool, con: duckdb.DuckDBPyConnection
+) -> None:
+    assert [row["lossy"] for row in collect.drives(con).to_pylist()] == [False, False]
+    con.execute("UPDATE map_quality SET severity = 'error'")  # a map that is wrong somewhere loses nothing of the log
+    insert(con, "quality", [{"drive_id": "d1", "check_id": check, "severity": severity, "n": 1, "message": "bad"}])
+    assert [row["lossy"] for row in collect.drives(con).to_pylist()] == [False, lossy]
+
+
 def test_verdicts_come_in_total_order(con: duckdb.DuckDBPyConnection) -> None:
     assert [(r["profile"], r["occurrence"]) for r in collect.verdicts(con).to_pylist()] == [
         (None, 0),

@@ -1,0 +1,211 @@
+"""Whom the ego made to brake: who would have come to its ground at the speed before, whether it came late or never."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from tests.derive.junction_scenes import cross, lit, signal
+from tests.scenes import Actor, Road, derived, drive, judged, moving, road, rows, standing, swing, times
+
+if TYPE_CHECKING:
+    from drivelint.batch import Drive
+    from tests.scenes import Floats, Row
+
+END = 40.0
+
+
+def way_of(v: Floats, s0: float, t: Floats) -> Floats:
+    """Return the stations of somebody with these speeds."""
+    gone: Floats = s0 + np.concatenate([[0.0], np.cumsum((v[1:] + v[:-1]) / 2 * np.diff(t))])
+    return gone
+
+
+def stopping(t: Floats, v: float, at: float, by: float, again: float | None = None) -> Floats:
+    """Return speeds of who brakes at `at` by `by` m/s2 to a stand, and goes on at `again` (None: never)."""
+    speeds: Floats = np.clip(v - by * np.clip(t - at, 0, None), 0, v)
+    return speeds if again is None else np.where(t > again, np.clip(2 * (t - again), 0, v), speeds)
+
+
+def flipped(name: str, hand: str) -> str:
+    """Return the way through the crossroads as it is where the left is driven on."""
+    return name.translate(str.maketrans("ns", "sn")) if hand == "lht" else name
+
+
+def turning(
+    hand: str = "rht", *, by: float = 6.0, at: float = 8.0, again: float | None = None, s0: float = 46.0, period: float = 0.1,
+    more: tuple[Actor, ...] = (), ways: dict[str, Road] | None = None, drive_id: str = "d", **other: Any,
+) -> Drive:  # fmt: skip
+    """Return the ego's turn across the oncoming traffic (in the junction from 7.9 s on) before one at 14 m/s that brakes at 8 s."""
+    ways = ways or cross(hand)
+    t = times(END, period=period)
+    own, across = ways["we"].own, flipped("wn", hand)
+    ego = moving("ego", ways[across], t, 120 + 8 * t, own)
+    braking = moving("o", ways["ew"], t, way_of(stopping(t, 14.0, at, by, again), s0, t), own)
+    return drive([ego, replace(braking, **other), *more], ways["we"].environment, drive_id=drive_id)
+
+
+def forced(scene: Drive) -> list[Row]:
+    return rows(derived(scene, tables=["forced_braking"]), "FROM forced_braking ORDER BY t_from_ns")
+
+
+def verdicts(scene: Drive, rule: str) -> list[tuple[str, Any]]:
+    return [(row["verdict"], row["object_id"]) for row in judged([scene], rules=[rule]) if row["ego_id"] == "ego"]
+
+
+GAP = "ukhc.r180.right-turn-gap"
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize("again", [None, 14.0, 25.0])
+def test_who_has_to_stop_for_the_turn_is_forced_whether_it_comes_late_or_never(hand: str, again: float | None) -> None:
+    scene = turning(hand, again=again)
+    (row,) = forced(scene)
+    assert row["object_id"] == "o"
+    assert row["decel_mps2"] == pytest.approx(6.0, abs=0.05)
+    assert row["speed_mps"] == pytest.approx(14.0)
+    assert row["pet_s"] < 2
+    assert row["other_cause"] is None
+    assert verdicts(scene, GAP) == [("fail", "o")]
+
+
+@pytest.mark.parametrize("period", [0.05, 0.2, 0.5, 1.0])
+def test_at_every_rate(period: float) -> None:
+    scene = turning(period=period, at=8.0)
+    assert forced(scene)[0]["decel_mps2"] > 4
+    assert verdicts(scene, GAP) == [("fail", "o")]
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_who_eases_off_or_was_far_away_is_not_forced(hand: str) -> None:
+    # 1.4 m/s2 all the way
+    assert not forced(turning(hand, by=1.4, at=4.0))
+    assert verdicts(turning(hand, by=1.4, at=4.0, s0=20.0), GAP) == [("pass", None)]
+    # at 14 m/s it would have come seven seconds later
+    assert not forced(turning(hand, s0=-40.0))
+    assert verdicts(turning(hand, s0=-40.0), GAP) == [("pass", None)]
+
+
+def test_who_stops_before_the_ego_moves_off_lets_it_go() -> None:
+    """The ego waits in the junction; the other stops for it, and only then it turns."""
+    ways = cross()
+    t = times(END)
+    v = np.where(t < 5, 8.0, np.clip(8 - 3 * (t - 5), 0, 8)) + np.where(t > 14, np.clip(2 * (t - 14), 0, 8), 0.0)
+    ego = moving("ego", ways["wn"], t, way_of(v, 138.0, t), ways["wn"].own)
+    other = moving("o", ways["ew"], t, way_of(stopping(t, 14.0, 11.0, 4.0), 5.0, t), ways["ew"].own)
+    scene = drive([ego, other], ways["we"].environment)
+    found = forced(scene)
+    assert not found or {row["other_cause"] for row in found} == {"let_go"}
+    assert all(verdict != "fail" for verdict, _ in verdicts(scene, GAP))
+
+
+def test_who_brakes_for_somebody_before_it_is_in_doubt() -> None:
+    ways = cross()
+    t = times(END)
+    queue = standing("q", ways["ew"], t, 178.0, ways["ew"].own)
+    scene = turning(more=(queue,))
+    assert [row["other_cause"] for row in forced(scene)] == ["somebody_else"]
+    assert verdicts(scene, GAP) == [("unknown", None)]
+    # parked beside its way it is none
+    beside = standing("q", ways["ew"], t, 178.0, 2.2 * ways["ew"].own)
+    assert verdicts(turning(more=(beside,)), GAP) == [("fail", "o")]
+    # and a follower is not before it
+    follower = moving("f", ways["ew"], t, way_of(stopping(t, 14.0, 8.5, 6.0), 20.0, t), ways["ew"].own)
+    assert verdicts(turning(more=(follower,)), GAP) == [("fail", "o")]
+
+
+@pytest.mark.parametrize(("state", "cause"), [("green", None), ("red", "signal"), (None, "signal")])
+def test_who_brakes_for_a_light_is_in_doubt_unless_it_is_green(state: str | None, cause: str | None) -> None:
+    # road 2 leads away from the junction: who comes along it drives against its line
+    ways = cross(signals=(("2", signal("light", 4.0, "1000001", t=-5.0, orientation="-")),))
+    scene = lit(turning(ways=ways), "light", *(((0.0, state), (39.0, state)) if state else ()))
+    assert [row["other_cause"] for row in forced(scene)] == [cause]
+    assert verdicts(scene, GAP) == [("unknown", None) if cause else ("fail", "o")]
+
+
+def test_who_brakes_for_its_own_bend_is_in_doubt() -> None:
+    """It turns into the same road as the ego: at 14 m/s it could not."""
+    ways = cross()
+    t = times(END)
+    v = np.maximum(stopping(t, 14.0, 7.0, 3.0), 5.0)
+    ego = moving("ego", ways["wn"], t, 120 + 8 * t, ways["wn"].own)
+    other = moving("o", ways["en"], t, way_of(v, 60.0, t), ways["en"].own)
+    found = forced(drive([ego, other], ways["we"].environment))
+    assert all(row["other_cause"] == "bend" for row in found)
+
+
+def test_a_follower_who_brakes_behind_the_turning_ego_is_not_forced() -> None:
+    ways = cross()
+    t = times(END)
+    ego = moving("ego", ways["ws"], t, 120 + 8 * t, ways["ws"].own)
+    follower = moving("f", ways["ws"], t, way_of(np.maximum(stopping(t, 12.0, 5.0, 3.0), 8.0), 80.0, t), ways["ws"].own)
+    assert not forced(drive([ego, follower], ways["we"].environment))
+
+
+def passing(hand: str, *, by: float = 6.5, at: float = 11.0, from_m: float = 380.0, v: float = 16.0) -> Drive:
+    """Return the ego's way round a parked car at 200 m, at 10 m/s, and somebody oncoming who stops for it."""
+    way = road(((600.0, 0.0),), hand)
+    t = times(END)
+    s = 50 + 10 * t
+    ego = moving("ego", way, t, s, swing(way, s, 170.0, 215.0))
+    parked = standing("p", way, t, 200.0, way.own)
+    other = moving("o", way, t, from_m - way_of(stopping(t, v, at, by), 0.0, t), way.other)
+    return drive([ego, parked, other], way.environment)
+
+
+GIVE_WAY = "ukhc.r163.obstruction-give-way"
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_who_has_to_stop_for_the_ego_round_an_obstruction(hand: str) -> None:
+    scene = passing(hand)
+    (row,) = forced(scene)
+    assert (row["object_id"], row["other_cause"]) == ("o", None)
+    assert abs(row["angle_rad"]) > 2.6
+    assert row["decel_mps2"] == pytest.approx(6.5, abs=0.1)
+    assert verdicts(scene, GIVE_WAY) == [("fail", "p")]
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_who_stops_far_away_or_softly_is_not_forced(hand: str) -> None:
+    assert verdicts(passing(hand, from_m=590.0, at=14.0), GIVE_WAY) == [("pass", "p")]
+    assert verdicts(passing(hand, by=1.0, at=2.0), GIVE_WAY) == [("pass", "p")]
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize("at", [6.0, 8.0])
+def test_who_stops_before_the_ego_is_over_the_line_waits_for_it_all_the_same(hand: str, at: float) -> None:
+    """It brakes up to 7 s before the ego is on its ground, and stands until the ego is back; far off it would have passed first."""
+    scene = passing(hand, by=4.0, at=at, from_m=350.0 + 12 * (at - 8), v=12.0)
+    assert [(row["other_cause"], row["decel_mps2"] > 3.5) for row in forced(scene)] == [(None, True)]
+    assert verdicts(scene, GIVE_WAY) == [("fail", "p")]
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_who_slows_early_and_goes_on_or_stops_far_off_does_not_wait_for_the_ego(hand: str) -> None:
+    way = road(((600.0, 0.0),), hand)
+    t = times(END)
+    s = 50 + 10 * t
+    ego = moving("ego", way, t, s, swing(way, s, 170.0, 215.0))
+    parked = standing("p", way, t, 200.0, way.own)
+    slowed = np.clip(16 - 3 * np.clip(t - 4, 0, None), 6, 16)
+    other = moving("o", way, t, 420 - way_of(slowed, 0.0, t), way.other)
+    assert verdicts(drive([ego, parked, other], way.environment), GIVE_WAY) == [("pass", "p")]
+    assert verdicts(passing(hand, by=4.0, at=6.0, from_m=550.0, v=12.0), GIVE_WAY) == [("pass", "p")]
+
+
+def test_without_a_heading_or_a_size_it_is_in_doubt() -> None:
+    for lacks in ({"length": None}, {"yaw": np.full(len(times(END)), np.nan)}):
+        scene = turning(**lacks)
+        assert [row["other_cause"] for row in forced(scene)] == ["incomplete"]
+        assert verdicts(scene, GAP) == [("unknown", None)]
+
+
+def test_every_ego_and_every_drive_for_itself() -> None:
+    one, two = turning(), turning(by=4.0, drive_id="e")
+    together = rows(derived(one, two, tables=["forced_braking"]), "FROM forced_braking ORDER BY drive_id")
+    assert [row["drive_id"] for row in together] == ["d", "e"]
+    assert [together[0]] == forced(one)

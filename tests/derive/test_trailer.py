@@ -1,0 +1,198 @@
+"""What belongs to the ego: the trailer that it draws, the id under which its track goes on; and who does not, however close."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from tests.scenes import Actor, Road, derived, drive, judged, moving, road, rows, standing, times
+
+if TYPE_CHECKING:
+    import duckdb
+    from numpy.typing import NDArray
+
+    from drivelint.batch import Drive
+
+HANDS = pytest.mark.parametrize("hand", ["lht", "rht"])
+CRASH = "ukhc.no-collision"
+BEND = ((150.0, 0.0), (60.0, 1 / 40), (300.0, 0.0))
+
+
+def drawn(actor_id: str, tractor: Actor, hitch_m: float = 0.5, length: float = 6.0, **more: Any) -> Actor:
+    """Return a trailer: its middle rolls after an eye `hitch_m` behind the tractor's rear and as far before its own front."""
+    reach = (tractor.length or 0.0) / 2 + hitch_m
+    hx, hy = tractor.x - reach * np.cos(tractor.yaw), tractor.y - reach * np.sin(tractor.yaw)
+    bar = length / 2 + hitch_m
+    yaw = tractor.yaw.copy()
+    for i in range(1, len(yaw)):
+        step = np.array([hx[i] - hx[i - 1], hy[i] - hy[i - 1]])
+        yaw[i] = yaw[i - 1] + math.asin(
+            np.clip((step[1] * np.cos(yaw[i - 1]) - step[0] * np.sin(yaw[i - 1])) / bar, -1, 1)
+        )
+    x, y = hx - bar * np.cos(yaw), hy - bar * np.sin(yaw)
+    t = tractor.t_s
+    return Actor(actor_id, t, x, y, yaw, np.gradient(x, t), np.gradient(y, t), length, 2.2, **more)
+
+
+def parts(scene: Drive) -> dict[str, str]:
+    con = derived(scene, tables=["ego_part"])
+    return {row["object_id"]: row["part"] for row in rows(con, "FROM ego_part")}
+
+
+def there(con: duckdb.DuckDBPyConnection) -> set[str]:
+    return {row["object_id"] for row in rows(con, "SELECT DISTINCT object_id FROM pair")}
+
+
+@pytest.mark.parametrize(("hitch", "length"), [(0.5, 6.0), (1.2, 4.0), (-1.0, 12.0)])
+@pytest.mark.parametrize("kind", ["trailer", None])
+@HANDS
+def test_the_trailer_is_the_ego(hand: str, kind: str | None, hitch: float, length: float) -> None:
+    """Round a bend of 40 m: behind a drawbar, and over a fifth wheel, where the boxes overlap."""
+    way = road(BEND, hand)
+    t = times(20.0)
+    ego = moving("ego", way, t, 40 + 10 * t, way.own, length=6.0, width=2.4)
+    scene = drive([ego, drawn("t", ego, hitch, length, kind=kind)], way.environment)
+    touches = hitch < 0
+    if kind == "trailer" or touches:
+        assert parts(scene) == {"t": "trailer"}
+        con = derived(scene, tables=["pair", "conflict", "ego_state", "unplaced", "follower"])
+        assert not rows(con, "FROM pair")
+        assert not rows(con, "FROM conflict")
+        for row in rows(con, "FROM ego_state"):
+            assert row["combination_m"] == pytest.approx(6 + length + 2 * hitch, abs=0.4)
+            assert row["front_s_m"] - row["rear_s_m"] == pytest.approx(row["combination_m"], abs=0.5)
+        assert {row["verdict"] for row in judged([scene], rules=[CRASH])} == {"not_applicable"}
+    else:
+        assert parts(scene) == {}
+
+
+@HANDS
+def test_the_trailer_s_box_is_the_ego_s(hand: str) -> None:
+    """Who stands in its way is struck though the ego is past, and the ego's rear is the trailer's."""
+    way = road(((600.0, 0.0),), hand)
+    t = times(10.0)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    behind = moving("behind", way, t, 60 + 10 * t, way.own)
+    wide = replace(drawn("t", ego, kind="trailer"), width=3.0)
+    beside = standing("beside", way, t, 150, way.own + 2.2, width=1.6)
+    scene = drive([ego, wide, behind, beside], way.environment)
+    con = derived(scene, tables=["pair", "follower"])
+    assert there(con) == {"behind", "beside"}
+    assert {round(r["gap_m"], 1) for r in rows(con, "FROM follower WHERE lane = 'own' AND object_id = 'behind'")} == {
+        28.2
+    }
+    found = {row["object_id"]: row["verdict"] for row in judged([scene], rules=[CRASH])}
+    assert found == {"behind": "pass", "beside": "fail"}
+    # while the trailer is not placed, nobody knows
+    lost = drive([ego, wide.lost((t > 4) & (t < 6)), behind, beside], way.environment)
+    found = {row["object_id"]: row["verdict"] for row in judged([lost], rules=[CRASH])}
+    assert found["behind"] == "unknown"
+
+
+TAILGATERS = [
+    ("a car at half a metre", 0.5, "car", "ego"),
+    ("a vehicle at half a metre", 0.5, "vehicle", "ego"),
+    ("a truck at a decimetre and a half, which brakes away", 0.15, "truck", "brakes"),
+    ("a trailer that stays behind", 0.5, "trailer", "brakes"),
+    ("a trailer of another lane", 0.5, "trailer", "beside"),
+]
+
+
+@pytest.mark.parametrize(("what", "gap", "kind", "how"), TAILGATERS)
+@HANDS
+def test_who_is_no_trailer(hand: str, what: str, gap: float, kind: str, how: str) -> None:
+    way = road(((600.0, 0.0),), hand)
+    t = times(15.0)
+    ego = moving("ego", way, t, 60 + 15 * t, way.own)
+    s = 60 + 15 * t - 4.8 - gap - (np.maximum(t - 10, 0) ** 2 if how == "brakes" else 0)
+    other = moving("x", way, t, s, way.other if how == "beside" else way.own, kind=kind)
+    scene = drive([ego, other], way.environment)
+    assert parts(scene) == {}
+    assert there(derived(scene, tables=["pair"])) == {"x"}
+
+
+@HANDS
+def test_a_tailgater_round_a_bend_is_none_either(hand: str) -> None:
+    """Its box follows the lane, not the ego's hitch, and does not touch."""
+    way = road(BEND, hand)
+    t = times(20.0)
+    ego = moving("ego", way, t, 40 + 10 * t, way.own)
+    for kind in ("car", "vehicle", None):
+        assert parts(drive([ego, moving("x", way, t, 40 + 10 * t - 5.1, way.own, kind=kind)], way.environment)) == {}
+
+
+def test_who_is_struck_and_pushed_is_no_trailer() -> None:
+    """It stood there, was struck from behind and shoved on; seen from it, the ego came from behind and touched it from then on."""
+    way = road(((600.0, 0.0),))
+    t = times(12.0)
+    pusher = np.where(t < 4, 15 * t, 60 + 8 * (t - 4))
+    struck = moving("ego", way, t, 164.8 + np.where(t < 4, 0, 8 * (t - 4)), way.own)
+    scene = drive([struck, moving("x", way, t, 100 + pusher, way.own, kind="vehicle")], way.environment)
+    assert parts(scene) == {}
+
+
+# ---- ids
+
+
+def renamed(
+    way: Road, at: NDArray[np.float64], early: NDArray[np.bool_], late: NDArray[np.bool_], **more: Any
+) -> list[Actor]:
+    """Return one vehicle under two ids: in the samples of the one mask, and in those of the other."""
+    whole = moving("ego", way, at, 50 + 18 * at, way.own)
+    return [whole.keep(early), replace(whole.keep(late), actor_id="next", **more)]
+
+
+@pytest.mark.parametrize("overlap", [-1, 0, 1, 2])
+@pytest.mark.parametrize("ego", ["ego", "next"])
+@HANDS
+def test_the_ego_under_another_id_is_no_collision(hand: str, ego: str, overlap: int) -> None:
+    """The tracks share samples, or there is a sample between them: seen from either of the two."""
+    way = road(((600.0, 0.0),), hand)
+    t = times(12.0)
+    k = np.arange(len(t))
+    both = [*renamed(way, t, k < 60, k >= 60 - overlap), moving("other", way, t, 520 - 15 * t, way.other)]
+    scene = drive(both, way.environment, egos=[ego])
+    assert parts(scene) == {("next" if ego == "ego" else "ego"): "successor" if ego == "ego" else "predecessor"}
+    con = derived(scene, tables=["pair", "conflict", "lost_object", "unplaced"])
+    assert there(con) == {"other"}
+    assert not rows(con, "FROM conflict")
+    assert {row["object_id"] for row in judged([scene], rules=[CRASH])} <= {"other"}
+    assert "fail" not in {row["verdict"] for row in judged([scene], rules=[CRASH])}
+
+
+OTHERS = [
+    ("beside", {"shift": (0.0, 3.5)}),
+    ("a length ahead", {"shift": (5.0, 0.0)}),
+    ("into the ego, half over it", {"shift": (2.5, 0.3)}),
+    ("a truck", {"length": 9.0}),
+    ("a walker", {"kind": "pedestrian", "length": 0.5, "width": 0.5}),
+]
+
+
+@pytest.mark.parametrize(("what", "change"), OTHERS)
+@HANDS
+def test_who_appears_where_the_ego_ends_is_somebody(hand: str, what: str, change: dict[str, Any]) -> None:
+    way = road(((600.0, 0.0),), hand)
+    t = times(12.0)
+    k = np.arange(len(t))
+    more = dict(change)
+    dx, dy = more.pop("shift", (0.0, 0.0))
+    first, then = renamed(way, t, k < 60, k >= 59, **more)
+    scene = drive([first, replace(then, x=then.x + dx, y=then.y + dy)], way.environment)
+    assert parts(scene) == {}
+    if what.startswith("into"):
+        assert {row["verdict"] for row in judged([scene], rules=[CRASH])} == {"fail"}
+
+
+def test_who_was_there_before_is_no_successor() -> None:
+    """A real collision: its track begins long before the ego's ends."""
+    way = road(((600.0, 0.0),))
+    t = times(12.0)
+    ego = moving("ego", way, t, 50 + 10 * t, way.own).keep(t < 6)
+    other = moving("next", way, t, 50 + 10 * t, way.own).keep(t > 4)
+    assert parts(drive([ego, other], way.environment)) == {}
+    assert "fail" in {r["verdict"] for r in judged([drive([ego, other], way.environment)], rules=[CRASH])}

@@ -1,0 +1,91 @@
+"""Actors that leave or enter the log near enough to matter: for how long, and how near they may be."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.scenes import LANE, derived, drive, judged, moving, road, rows, swing, times
+
+FOLLOWING = ("criticality.ttc", "criticality.thw", "ukhc.r126.thinking-gap")
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize("gap", [52.0, 99.0])
+def test_a_braking_lead_that_is_lost_is_not_nobody(hand: str, gap: float) -> None:
+    """31 m/s; the lead brakes with 6 m/s2 from 5 s on and is lost at 5.5 s."""
+    way = road(((3000.0, 0.0),), hand=hand)
+    t = times(25.0)
+    ego = moving("ego", way, t, 100 + 31 * t, way.own)
+    s = 100 + 4.8 + gap + 31 * t - 3 * np.clip(t - 5, 0, None) ** 2
+    lead = moving("x", way, t, s, way.own).keep(t < 5.55)
+    scene = drive([ego, lead], way.environment)
+    found = {round(r["t_ns"] / 1e8) for r in rows(derived(scene, tables=["lead"]), "FROM lead WHERE t_ns > 5.6e9")}
+    # the brakes of the lost one may be harder than those of the ego, which has not got so far yet
+    assert not found & set(range(100, 250))
+    for rule in FOLLOWING:
+        verdicts = {r["verdict"] for r in judged([scene], rules=[rule]) if r["t_end_ns"] > 15e9}
+        assert "unknown" in verdicts, rule
+
+
+def test_just_after_it_was_lost_a_lead_far_away_is_still_far() -> None:
+    """99 m ahead at 31 m/s: half a second later it has got 1.25 m nearer at the most."""
+    way = road(((3000.0, 0.0),))
+    t = times(10.0)
+    ego = moving("ego", way, t, 100 + 31 * t, way.own)
+    lead = moving("x", way, t, 203.8 + 31 * t, way.own).keep(t < 5.05)
+    con = derived(drive([ego, lead], way.environment), tables=["hidden", "unseen", "unplaced"])
+    hidden = {round(r["t_ns"] / 1e8): r for r in rows(con, "FROM hidden")}
+    assert hidden[55]["least_m"] == pytest.approx(103.8 - 5 * 0.25 - 12, abs=1e-3)
+    assert hidden[55]["ahead"] is True
+    # it goes the ego's way, too far away to be anything but a lead
+    assert {(r["code"], r["near"]) for r in rows(con, "FROM unseen")} == {("lost", False)}
+    assert not rows(con, "FROM unplaced")
+
+
+def test_one_that_leaves_over_the_end_of_the_map_is_beyond_it() -> None:
+    way = road(((500.0, 0.0),))
+    t = times(35.0)
+    ego = moving("ego", way, t, 50 + 12 * t, way.own)
+    lead = moving("x", way, t, 120 + 14 * t, way.own).keep(t < 26.95)
+    con = derived(drive([ego, lead], way.environment), tables=["hidden", "ego_state"])
+    sql = "FROM hidden h JOIN ego_state e USING (drive_id, ego_id, t_ns) WHERE h.t_ns < 35e9 ORDER BY t_ns"
+    found = rows(con, f"SELECT h.least_m, 500 - e.front_s_m AS end_m, h.ahead {sql}")
+    assert found
+    assert all(r["ahead"] and r["least_m"] >= r["end_m"] - 12 - 1e-6 for r in found if r["end_m"] > 0)
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_a_fast_vehicle_that_appears_behind_just_after_t0_may_have_been_overtaking(hand: str) -> None:
+    """The ego pulls out at 11 m/s; a car at 33 m/s is seen first 53 m behind it, 0.3 s later."""
+    way = road(((1500.0, 0.0),), hand=hand)
+    t = times(30.0)
+    s = 300 + 11 * t
+    ego = moving("ego", way, t, s, swing(way, s, 390, 480))
+    vbp = moving("vbp", way, t, 380 + 6 * t, way.own)
+    fast = moving("fast", way, t, 200 + 33 * (t - 5), way.other)
+    whole = drive([ego, vbp, fast], way.environment)
+    rule = "ukhc.r162.not-being-overtaken"
+    (t0,) = {r["t0_ns"] for r in rows(derived(whole, tables=["overtake"]), "FROM overtake")}
+    at = t0 / 1e9 + 0.3
+    late = moving("fast", way, t, 300 + 11 * at - 4.8 - 53 + 33 * (t - at), way.other).keep(
+        (t > at - 0.05) & (t < at + 6)
+    )
+    (row,) = judged([drive([ego, vbp, late], way.environment)], rules=[rule])
+    assert row["verdict"] in {"unknown", "fail"}
+    (row,) = judged([drive([ego, vbp], way.environment)], rules=[rule])
+    assert row["verdict"] == "pass"
+
+
+def test_one_lost_on_foot_is_where_it_can_walk_to() -> None:
+    way = road()
+    t = times(6.0)
+    ego = moving("ego", way, t, 100 + 5 * t, way.own)
+    walker = moving("w", way, t, 130 + 0 * t, way.own - LANE + t, kind="pedestrian", length=0.5, width=0.5).keep(
+        t < 2.05
+    )
+    found = rows(derived(drive([ego, walker], way.environment), tables=["hidden"]), "FROM hidden ORDER BY t_ns")
+    assert found
+    assert {r["vehicle"] for r in found} == {False}
+    first = found[0]
+    assert first["least_m"] == pytest.approx(np.hypot(130 - 110.5, LANE - 2) - 10 * 0.1 - 12, abs=0.05)
