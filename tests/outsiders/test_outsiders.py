@@ -18,7 +18,6 @@ KNOWN: Final = {
     "zebra_ignored_far_side ukhc.r195.zebra-on": "the map does not say whether an island parts the crossing",
     "left_turn_wide ukhc.r183.keep-in": "the ego left the junction over the wrong lane: the end of its turn is not known",
     "gb_exit_unsignalled_early ukhc.exit-sign-signal": "the ego was in the exit lane before the first sign",
-    "de_mway_breakdown stvo.rg2": "it brakes with 3.1 m/s2, for a defect that no log tells",
     "de_ghost_driver stvo.ri3": "nobody else is there: a map of the other hand looks the same",
     "gb_wrong_side ukhc.r143.direction": "nobody else is there: a map of the other hand looks the same",
     "footway ukhc.r145.off-road": "off the lanes for so long, the ego does not vouch for the map",

@@ -11,7 +11,7 @@
 -- unit = "m/s2"
 -- observes = "acceleration"
 -- near_margin = 0.2
--- reads = ["clock", "ego_motion", "in_way", "lead"]
+-- reads = ["clock", "ego_mode", "ego_motion", "ego_state", "in_way", "lead"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [applies]
@@ -54,12 +54,13 @@
 -- @condition
 SELECT m.drive_id, m.ego_id, m.t_ns, m.accel_mps2 AS observed, -$abrupt_mps2 AS required,
     -- braking for a vehicle that is too near, or that brakes itself, has its reason, and so has braking for whoever else is in the way (a
-    -- person, an animal, a thing); no row of lead: there may be one
+    -- person, an animal, a thing); no row of lead: there may be one. Why hazard lights were on, or an emergency declared, is for a person to say
     judged_inside(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AND NOT (m.accel_mps2 < -$abrupt_mps2 AND (
         CASE WHEN l.t_ns IS NOT NULL THEN l.object_id IS NOT NULL AND (
             l.gap_m < stvo_safe_gap_m(l.ego_speed_mps, l.speed_mps, $reaction_s, $brake_mps2, $brake_lead_mps2)
             OR m.accel_mps2 - l.hardest_mps2 >= -$abrupt_mps2 OR CASE WHEN l.known THEN false END) END
-        OR asks_to_brake(w.need_mps2, w.known, $abrupt_mps2))) AS applies
+        OR asks_to_brake(w.need_mps2, w.known, $abrupt_mps2)
+        OR CASE WHEN coalesce(e.indicator = 'hazard', false) OR d.t_ns IS NOT NULL THEN NULL ELSE false END)) AS applies
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
 LEFT JOIN (
@@ -68,3 +69,7 @@ LEFT JOIN (
     WINDOW lately AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns RANGE BETWEEN ($lately_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW)
 ) l ON l.drive_id = m.drive_id AND l.ego_id = m.ego_id AND l.t_ns = m.t_ns
 LEFT JOIN in_way w ON w.drive_id = m.drive_id AND w.ego_id = m.ego_id AND w.t_ns = m.t_ns
+LEFT JOIN ego_state e ON e.drive_id = m.drive_id AND e.ego_id = m.ego_id AND e.t_ns = m.t_ns
+LEFT JOIN (
+    SELECT DISTINCT drive_id, ego_id, t_ns FROM ego_mode WHERE mode IN ('minimal_risk_manoeuvre', 'emergency_manoeuvre') AND is_on
+) d ON d.drive_id = m.drive_id AND d.ego_id = m.ego_id AND d.t_ns = m.t_ns
