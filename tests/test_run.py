@@ -191,6 +191,18 @@ def test_memory_that_does_not_do_is_no_error(monkeypatch: pytest.MonkeyPatch) ->
     assert again.verdicts.equals(usual.verdicts)
 
 
+def test_the_memory_limit_is_really_lifted() -> None:
+    """What the setting says is not enough: a table that did not fit has to fit in a database that is locked already."""
+    large = "CREATE OR REPLACE TEMP TABLE large AS SELECT list(i) AS all FROM range(20_000_000) r(i)"
+    with store.connect(memory_limit="100MB") as con:
+        con.execute("SET temp_directory=''")
+        store.lock(con)
+        with pytest.raises(duckdb.OutOfMemoryException):
+            con.execute(large)
+        store.lift_memory_limit(con)
+        con.execute(large)
+
+
 def test_the_same_log_twice_is_judged_once(tmp_path: Path) -> None:
     copy = tmp_path / "safe.csv"
     shutil.copy(FIXTURE / "safe.csv", copy)

@@ -102,7 +102,7 @@ class Bench:
             self._judge(drives)
         except duckdb.OutOfMemoryException:
             # the usual limit keeps long drives small; what cannot be spilled to disk may take what the machine has
-            self._con.execute("RESET memory_limit")
+            store.lift_memory_limit(self._con)
             self._limited = False
             self._judge(drives)
         self._seen.update(drive.trace.drive_id for drive in drives)

@@ -78,6 +78,13 @@ def lock(con: duckdb.DuckDBPyConnection) -> None:
         con.execute(f"SET {setting}")
 
 
+def lift_memory_limit(con: duckdb.DuckDBPyConnection) -> None:
+    """Let a database take as much memory as DuckDB would by default: 80 % of the machine's."""
+    con.execute("RESET memory_limit")
+    # RESET changes what the setting says, and only SET tells the buffer manager
+    con.execute("SET memory_limit=?", con.execute("SELECT current_setting('memory_limit')").fetchall()[0])
+
+
 def opened(path: Path | None = None, *, read_only: bool = False) -> duckdb.DuckDBPyConnection:
     """Open a database as it is (None: an empty one in memory), with spatial loaded from its wheel.
 

@@ -91,7 +91,9 @@ way AS (
     SELECT a.drive_id, a.ego_id, a.at_ns AS t_ns, s.actor_id,
         list({'t_ns': a.t_ns, 'x_m': round(s.x_m, 2), 'y_m': round(s.y_m, 2), 'yaw_rad': round(s.yaw_rad, 3)} ORDER BY a.t_ns) AS path
     FROM _around a
-    JOIN state s ON s.drive_id = a.drive_id AND s.ego_id = a.ego_id AND s.t_ns = a.t_ns AND s.x_m IS NOT NULL AND s.y_m IS NOT NULL
+    JOIN present p ON p.drive_id = a.drive_id AND p.ego_id = a.ego_id AND p.t_ns = a.at_ns  -- the others are not drawn
+    JOIN state s ON s.drive_id = a.drive_id AND s.ego_id = a.ego_id AND s.t_ns = a.t_ns AND s.actor_id = p.actor_id
+    WHERE s.x_m IS NOT NULL AND s.y_m IS NOT NULL
     GROUP BY ALL
 ),
 cast_ AS (
