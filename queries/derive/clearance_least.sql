@@ -1,7 +1,15 @@
 -- Steps at which the clearance of a pair is not known, for one of the two has no place, heading or size: no less than what is left of the
--- clearance seen before, and of the one seen after, once both have driven at each other for the time between.
-WITH lost AS (
-    SELECT drive_id, ego_id, t_ns, object_id FROM pair WHERE clearance_m IS NULL
+-- clearance seen before, and of the one seen after, once both have driven at each other for the time between. Nothing bounds an actor that the
+-- log put upon another one, though its track contradicts that.
+WITH doubted AS (
+    SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'jumps_onto'
+),
+lost AS (
+    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id
+    FROM pair p
+    ANTI JOIN doubted o ON o.drive_id = p.drive_id AND o.actor_id = p.object_id
+    ANTI JOIN doubted e ON e.drive_id = p.drive_id AND e.actor_id = p.ego_id
+    WHERE p.clearance_m IS NULL
 ),
 seen AS (
     SELECT drive_id, ego_id, t_ns, object_id, clearance_m

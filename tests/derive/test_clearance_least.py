@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
+from tests.ingested import ingested
 from tests.scenes import derived, drive, judged, moving, road, rows, times
 
 if TYPE_CHECKING:
@@ -44,3 +46,15 @@ def test_one_that_never_has_a_place_may_be_anywhere() -> None:
     scene = drive([moving("ego", way, t, 100 + 10 * t, way.own), other.lost(t >= 0)], way.environment)
     assert rows(derived(scene), "FROM clearance_least") == []
     assert [row["verdict"] for row in judged([scene], rules=["ukhc.no-collision"])] == ["unknown"]
+
+
+@pytest.mark.parametrize("who", ["ego", "b"])
+@pytest.mark.parametrize(("off_m", "verdict"), [(1.0, "unknown"), (60.0, "pass")])
+def test_who_jumps_onto_the_other_may_have_met_it(who: str, off_m: float, verdict: str) -> None:
+    """150 m apart all along, but for one sample that puts one of them upon, or near, the other."""
+    way, t = road(((2000.0, 0.0),)), times(20.0)
+    actors = {"ego": moving("ego", way, t, 100 + 10 * t, way.own), "b": moving("b", way, t, 250 + 10 * t, way.own)}
+    other = actors["b" if who == "ego" else "ego"]
+    actors[who] = replace(actors[who], x=np.where(np.arange(len(t)) == 100, other.x + off_m, actors[who].x))
+    scene = ingested(drive(list(actors.values()), way.environment))
+    assert [row["verdict"] for row in judged([scene], rules=["ukhc.no-collision"])] == [verdict]

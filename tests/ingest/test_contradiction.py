@@ -57,6 +57,29 @@ def test_one_sample_elsewhere_is_unknown_with_its_neighbours() -> None:
     assert "track_parted" not in checks(trace)
 
 
+@pytest.mark.parametrize(("off_m", "upon"), [(0.0, True), (4.0, True), (9.0, False), (-600.0, False)])
+@pytest.mark.parametrize("at", [50, 0, 99])
+def test_a_sample_upon_another_actor_is_said(at: int, off_m: float, upon: bool) -> None:
+    """Off the ego by so much: boxes of 4.8 m and 1.9 m overlap within 5.2 m between their middles at the most."""
+    other = moving("x", WAY, T, 200 + 10 * T, WAY.own)
+    there = np.arange(len(T)) == at
+    trace = read(replace(other, x=np.where(there, 100 + 10 * T + off_m, other.x)))
+    said = [row for row in trace.tables["quality"].to_pylist() if row["check_id"] == "jumps_onto"]
+    assert [(row["actor_id"], row["n"], row["t_first_ns"]) for row in said] == [("x", 1, at * 10**8)] * upon
+    assert not upon or "lies upon ego" in said[0]["message"]
+
+
+def test_the_ego_that_jumps_onto_another_is_said_and_a_parted_track_is_not_upon_itself() -> None:
+    other, there = moving("x", WAY, T, 200 + 10 * T, WAY.own), np.arange(len(T)) == 50
+    ego = moving("ego", WAY, T, 100 + 10 * T, WAY.own)
+    trace = ingested(drive([replace(ego, x=np.where(there, other.x, ego.x)), other], WAY.environment)).trace
+    assert {(r["check_id"], r["actor_id"]) for r in trace.tables["quality"].to_pylist()} >= {("jumps_onto", "ego")}
+    parted = replace(other, y=other.y + 5.0 * (T > 4.95))
+    trace = read(parted)
+    assert "track_parted" in checks(trace)
+    assert "jumps_onto" not in checks(trace)
+
+
 @pytest.mark.parametrize("derived", [False, True])
 def test_a_second_elsewhere_is_unknown(derived: bool) -> None:
     other = moving("x", WAY, T, 200 + 10 * T, WAY.own)

@@ -1,6 +1,6 @@
 -- title = "Keeping the traffic flowing"
 -- clause = "StVO 3(2) (R_G4 of Maierhofer et al. 2020): without good reason do not drive so slowly that you hinder the traffic"
--- hypothesis = "At every step without a slow vehicle ahead, or somebody else in the way, was the ego less than the allowed difference below the speed limit?"
+-- hypothesis = "At every step without a slow vehicle ahead or in the lane beside, or somebody else in the way, was the ego less than the allowed difference below the speed limit?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "minor"
@@ -12,7 +12,7 @@
 -- observes = "speed"
 -- exempt_after_s = "settle_s"
 -- merge_gap_s = 5.0
--- reads = ["ego_condition", "ego_mode", "ego_state", "in_way", "lead"]
+-- reads = ["ego_condition", "ego_mode", "ego_state", "in_way", "lead", "neighbour"]
 -- requires = ["map", "registration", "ego_size", "speed_limits"]
 --
 -- [applies]
@@ -39,21 +39,42 @@
 -- unit = "m/s"
 -- why = "130 km/h, the recommended speed: no more is asked for"
 -- source = "Autobahn-Richtgeschwindigkeits-Verordnung 1"
+--
+-- [params.heavy_mps]
+-- default = 22.22
+-- unit = "m/s"
+-- why = "80 km/h: no more is allowed to vehicles over 3.5 t, buses and cars with trailers, nor asked of them"
+-- source = "StVO 18(5) no. 1"
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed, c.top_mps - $slower_mps AS required,
+-- the kind of vehicle may allow less than the road: between what is asked of the slowest and the fastest that it may be, nothing is known
+SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed,
+    CASE WHEN e.speed_mps > c.most_mps THEN c.most_mps WHEN e.speed_mps <= c.least_mps THEN c.least_mps END AS required,
+    CASE WHEN required IS NULL AND c.least_mps IS NOT NULL THEN 'how fast its kind of vehicle may be is not known' END AS reason,
     -- a vehicle ahead that is as slow itself is the reason; no row of lead: there may be one
-    -- somebody on foot, an animal or a thing in the way is one too
+    -- somebody on foot, an animal or a thing in the way is one too, and so is a slow vehicle in the lane beside (StVO 7(2a))
     -- nor does one hinder by choice that speeds up from standing, or declares a minimal risk manoeuvre
-    CASE WHEN e.stood AND e.speed_mps > standing_mps() OR r.is_on OR NOT may_be_vehicle(w.actor_class) THEN false WHEN l.t_ns IS NOT NULL THEN l.object_id IS NULL OR l.speed_mps > c.top_mps - $slower_mps
-        WHEN e.speed_mps > c.top_mps - $slower_mps THEN true END AS applies
+    CASE WHEN e.stood AND e.speed_mps > standing_mps() OR r.is_on OR b.t_ns IS NOT NULL OR NOT may_be_vehicle(w.actor_class) THEN false
+        WHEN l.t_ns IS NOT NULL THEN l.object_id IS NULL OR l.speed_mps > c.most_mps WHEN e.speed_mps > c.most_mps THEN true END AS applies
 FROM (
     SELECT *, bool_or(speed_mps <= standing_mps()) OVER (
         PARTITION BY drive_id, ego_id ORDER BY t_ns RANGE BETWEEN ($start_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW
     ) AS stood
     FROM ego_state
 ) e
-JOIN (SELECT *, CASE WHEN limit_mps > $desired_mps THEN $desired_mps ELSE limit_mps END AS top_mps FROM ego_condition) c USING (drive_id, ego_id, t_ns)
+JOIN (
+    -- least() leaves NULL out: without a limit nothing is asked
+    SELECT *, CASE WHEN limit_mps IS NOT NULL THEN least(limit_mps, $desired_mps) END - $slower_mps AS road_mps, $heavy_mps - $slower_mps AS heavy_mps,
+        CASE WHEN vehicle_class IN ('car', 'motorcycle') THEN road_mps WHEN road_mps IS NOT NULL THEN least(road_mps, heavy_mps) END AS least_mps,
+        CASE WHEN vehicle_class = 'goods_over_7t5' THEN least_mps ELSE road_mps END AS most_mps
+    FROM ego_condition
+) c USING (drive_id, ego_id, t_ns)
 LEFT JOIN lead l USING (drive_id, ego_id, t_ns)
 LEFT JOIN in_way w USING (drive_id, ego_id, t_ns)
+LEFT JOIN (
+    SELECT DISTINCT n.drive_id, n.ego_id, n.t_ns
+    FROM neighbour n
+    JOIN ego_condition c USING (drive_id, ego_id, t_ns)
+    WHERE may_be_vehicle(n.actor_class) AND abs(n.heading_diff_rad) < pi() / 2 AND n.gap_m > 0 AND n.speed_mps <= least(c.limit_mps, $desired_mps) - $slower_mps
+) b USING (drive_id, ego_id, t_ns)
 LEFT JOIN (SELECT * FROM ego_mode WHERE mode = 'minimal_risk_manoeuvre') r USING (drive_id, ego_id, t_ns)

@@ -19,7 +19,7 @@
 -- [params.stops_mps2]
 -- default = 2.0
 -- unit = "m/s2"
--- why = "our default: braking in comfort; who takes longer to stop drives along it"
+-- why = "our default: braking in comfort; who takes longer to stop drives along it, and with hazard lights on only a person can say why"
 --
 -- [params.rejoins_s]
 -- default = 20.0
@@ -27,7 +27,7 @@
 -- why = "our default: time to build up speed on it after a breakdown, which R276 asks for"
 
 -- @condition
--- an emergency: hazard lights, or a mode that says so
+-- an emergency: a mode that says so, or hazard lights on one that stops
 WITH lane AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, bool_and(n.lane_type IN ('shoulder', 'stop')) AS shoulder, min(n.road_type) AS road_type
     FROM ego_state e
@@ -37,13 +37,17 @@ WITH lane AS (
     GROUP BY ALL
 ),
 emergency AS (
-    SELECT drive_id, ego_id, t_ns FROM ego_mode WHERE mode IN ('minimal_risk_manoeuvre', 'emergency_manoeuvre') AND is_on
-    UNION
-    SELECT drive_id, ego_id, t_ns FROM ego_state WHERE indicator = 'hazard'
+    SELECT drive_id, ego_id, t_ns, bool_or(declared) AS declared
+    FROM (
+        SELECT drive_id, ego_id, t_ns, true AS declared FROM ego_mode WHERE mode IN ('minimal_risk_manoeuvre', 'emergency_manoeuvre') AND is_on
+        UNION ALL
+        SELECT drive_id, ego_id, t_ns, false FROM ego_state WHERE indicator = 'hazard'
+    )
+    GROUP BY ALL
 ),
 stay AS (
     SELECT
-        e.drive_id, e.ego_id, e.t_ns, e.speed_mps, l.shoulder, x.t_ns IS NOT NULL AS warns, x.t_ns IS NOT NULL AND e.speed_mps <= standing_mps() AS stands,
+        e.drive_id, e.ego_id, e.t_ns, e.speed_mps, l.shoulder, x.t_ns IS NOT NULL AS warns, coalesce(x.declared, false) AS declared, x.t_ns IS NOT NULL AND e.speed_mps <= standing_mps() AS stands,
         max(e.t_ns) OVER (PARTITION BY e.drive_id, e.ego_id) AS t_end_ns,
         row_number() OVER (PARTITION BY e.drive_id, e.ego_id ORDER BY e.t_ns) - row_number() OVER (PARTITION BY e.drive_id, e.ego_id, l.shoulder ORDER BY e.t_ns) AS n
     FROM ego_state e
@@ -55,21 +59,24 @@ excused AS (
     SELECT
         drive_id, ego_id, t_ns,
         CASE
-            WHEN bool_or(warns) OVER (w RANGE BETWEEN CURRENT ROW AND ($warns_s * 1e9)::BIGINT FOLLOWING) THEN true
+            WHEN bool_or(declared) OVER soon THEN true
             WHEN bool_or(stands) OVER (w RANGE BETWEEN CURRENT ROW AND (($warns_s + coalesce(speed_mps, 0.0) / $stops_mps2) * 1e9)::BIGINT FOLLOWING) THEN true
             WHEN bool_or(stands) OVER (w RANGE BETWEEN ($rejoins_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW) THEN true
+            WHEN bool_or(warns) OVER soon THEN NULL
             WHEN last_value(t_ns) OVER (w ROWS BETWEEN CURRENT ROW AND UNBOUNDED FOLLOWING) < t_end_ns OR t_ns + ($warns_s * 1e9)::BIGINT <= t_end_ns THEN false
         END AS excused
     FROM stay
     WHERE shoulder
-    WINDOW w AS (PARTITION BY drive_id, ego_id, n ORDER BY t_ns)
+    WINDOW w AS (PARTITION BY drive_id, ego_id, n ORDER BY t_ns),
+        soon AS (PARTITION BY drive_id, ego_id, n ORDER BY t_ns RANGE BETWEEN CURRENT ROW AND ($warns_s * 1e9)::BIGINT FOLLOWING)
 )
 -- off all that the map knows, there may be a shoulder; what kind of road it is matters only on one
 SELECT e.drive_id, e.ego_id, e.t_ns, NOT l.shoulder AS holds,
-    CASE WHEN m.t_ns IS NOT NULL OR x.excused THEN false
+    CASE WHEN m.declared OR x.excused OR m.t_ns IS NOT NULL AND l.shoulder IS DISTINCT FROM true THEN false
         WHEN NOT l.shoulder OR e.x_m IS NOT NULL AND l.shoulder IS NULL THEN coalesce(c.road_type, l.road_type, '') = 'motorway'
         ELSE coalesce(c.road_type, l.road_type) = 'motorway' AND NOT x.excused END AS applies,
-    CASE WHEN l.shoulder AND x.excused IS NULL THEN 'the log ends before it shows whether hazard lights are put on' END AS reason
+    CASE WHEN l.shoulder AND x.excused IS NULL THEN CASE WHEN m.t_ns IS NOT NULL THEN 'it drove along the hard shoulder with its hazard lights on: whether that was an emergency is for a person to say'
+        ELSE 'the log does not show whether it stops with its hazard lights on' END END AS reason
 FROM ego_state e
 LEFT JOIN lane l USING (drive_id, ego_id, t_ns)
 LEFT JOIN emergency m USING (drive_id, ego_id, t_ns)

@@ -3,6 +3,7 @@
 Positions decide over velocities and headings as long as they are a track. Where a position jumps, or stands while the velocity
 moves on, the state is unknown (no position, heading or velocity). A track that goes on elsewhere after a jump is another actor's.
 A heading that turns round from one sample to the next while the motion goes on is turned back; one across the motion is unknown.
+A place that is not believed and lies upon another actor is said: whoever bounds how near the two came must know.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from drivelint.ingest.order import listed, wrapped
 from drivelint.ingest.trace import MOTOR_VEHICLES, Finding
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Mapping
 
     from numpy.typing import NDArray
 
@@ -61,7 +62,25 @@ SPIN_RAD: Final = np.deg2rad(45.0)
 """No heading turns round between two samples; and no vehicle spins further than this, which is 450 degrees/s at 10 Hz."""
 LONG_KINDS: Final = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle", None))
 """Actors whose heading is that of their motion; people and animals face where they like, things have no front."""
+HALF_BOX_M: Final = 6.0
+"""No box reaches further than this from its middle, where its size is not known."""
 STATE: Final = ("x_m", "y_m", "z_m", "yaw_rad", "vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
+
+
+@dataclass(frozen=True)
+class Refused:
+    """Places that the log gives and that are not believed: parallel arrays, `actor_ids` those of the finished drive."""
+
+    actor_ids: NDArray[np.str_]
+    t_ns: NDArray[np.int64]
+    x_m: Numbers
+    y_m: Numbers
+
+    @classmethod
+    def of(cls, states: States, rows: Mask) -> Refused:
+        """Take the places of these rows."""
+        names = np.array(states.ids, dtype=np.str_)[states.actor[rows]]
+        return cls(names, states.t_ns[rows], states.numbers["x_m"][rows], states.numbers["y_m"][rows])
 
 
 @dataclass(frozen=True)
@@ -70,6 +89,7 @@ class Parted:
 
     findings: list[Finding]
     alias: dict[str, str]
+    refused: Refused | None = None
 
 
 UNPARTED: Final = Parted([], {})
@@ -87,24 +107,31 @@ def part(states: States, step: Steps, *, whole: Collection[str]) -> Parted:
         return UNPARTED
     unknown, pieces = _around_jumps(states, jump)
     findings = _report(states, unknown, "teleport", "the position jumps: they are unknown around it")
+    alias = _renamed(states, pieces, whole, findings)
+    refused = Refused.of(states, unknown)
     _forget(states, unknown)
-    return Parted(findings, _renamed(states, pieces, whole, findings))
+    return Parted(findings, alias, refused)
 
 
-def resolve(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[Finding]:
+def resolve(states: States, step: Steps, actors: Actors, *, derived: bool, parted: Parted = UNPARTED) -> list[Finding]:
     """Make what contradicts the motion unknown, in place (states in order, velocities complete).
 
-    `derived`: velocities come from the positions, and contradict nobody.
+    `derived`: velocities come from the positions, and contradict nobody. `parted`: what was not believed before.
     """
     if len(states) < 3:
         return []
     findings: list[Finding] = []
+    places = [parted.refused] if parted.refused else []
     if not derived:
         frozen = _frozen(states, step)
+        if frozen.any():
+            places.append(Refused.of(states, frozen))
         findings += _report(
             states, frozen, "motion_unknown", "position and velocity contradict each other: they are unknown"
         )
         _forget(states, frozen)
+    for each in places:
+        findings += _upon_others(states, step, actors, each, parted.alias)
     turned, sideways = _headings(states, step, actors)
     yaw = states.numbers["yaw_rad"]
     if turned.any():
@@ -122,6 +149,42 @@ def _forget(states: States, rows: Mask) -> None:
     if rows.any():
         for name in set(STATE) & states.numbers.keys():
             states.numbers[name] = np.where(rows, np.nan, states.numbers[name])
+
+
+def _upon_others(
+    states: States, step: Steps, actors: Actors, refused: Refused, alias: Mapping[str, str]
+) -> list[Finding]:
+    """Report the actors of whose refused places one is so near to another actor's place that their boxes may overlap."""
+    index = {name: i for i, name in enumerate(actors.ids)}
+    half = np.hypot(actors.sizes["length_m"], actors.sizes["width_m"]) / 2
+    half = np.where(np.isfinite(half), half, HALF_BOX_M)
+    half_of = half[[index[name] for name in states.ids]][states.actor]
+    placed = np.flatnonzero(np.isfinite(states.numbers["x_m"]) & np.isfinite(states.numbers["y_m"]))
+    placed = placed[np.argsort(states.t_ns[placed], kind="stable")]
+    t_ns, beside = states.t_ns[placed], max(step.period_ns, 1)
+    first = np.searchsorted(t_ns, refused.t_ns - beside)
+    n = np.searchsorted(t_ns, refused.t_ns + beside, side="right") - first
+    place = np.repeat(np.arange(len(n)), n)
+    other = placed[np.arange(len(place)) - np.repeat(np.cumsum(n) - n, n) + first[place]]
+    away = np.hypot(
+        refused.x_m[place] - states.numbers["x_m"][other], refused.y_m[place] - states.numbers["y_m"][other]
+    )
+    own = half[[index[name] for name in refused.actor_ids.tolist()]][place] if len(n) else np.zeros(0)
+    names = np.array(states.ids, dtype=np.str_)
+    # the track that goes on after the jump is the same actor's in the log
+    in_log = np.array([alias.get(name, name) for name in states.ids], dtype=np.str_)
+    own_in_log = np.array([alias.get(name, name) for name in refused.actor_ids.tolist()], dtype=np.str_)
+    upon = (away <= own + half_of[other]) & (in_log[states.actor[other]] != own_in_log[place])
+    findings = []
+    for name in np.unique(refused.actor_ids[place[upon]]).tolist():
+        rows = upon & (refused.actor_ids[place] == name)
+        others = np.unique(names[states.actor[other[rows]]]).tolist()
+        times = np.unique(refused.t_ns[place[rows]])
+        message = (
+            f"a place of {name} that is not believed lies upon {listed(others)}: whether they met there is unknown"
+        )
+        findings.append(Finding("jumps_onto", "warning", message, len(times), int(times[0]), name))
+    return findings
 
 
 def _report(states: States, rows: Mask, check: str, text: str) -> list[Finding]:
@@ -176,6 +239,7 @@ def _around_jumps(states: States, jump: Mask) -> tuple[Mask, NDArray[np.int32]]:
         for first, end in pairwise(bounds):
             if (states.t_ns[end - 1] - states.t_ns[first]) * 1e-9 < SHORT_S and len(bounds) > 2:
                 unknown[first:end] = True
+                pieces[first:end] = number
                 continue
             if last is not None and not _goes_on(states, last, first):
                 number += 1

@@ -71,7 +71,7 @@ def finish(path: Path, identity: Identity, recording: Recording, options: Ingest
     derived = any(f.check_id == "velocity_derived" and f.n == len(states) for f in [*recording.findings, *motion])
     checked = checks.run(states, step, actors, derived=derived)
     _refuse_wrong_units(path, recording, checked)
-    unclear = contradiction.resolve(states, step, actors, derived=derived) if not assumed else []
+    unclear = contradiction.resolve(states, step, actors, derived=derived, parted=parted) if not assumed else []
     states, moved = aligned(states, egos)
     is_ego = np.isin(np.arange(len(states.ids)), [i for i, name in enumerate(states.ids) if name in egos])[states.actor]
     findings = [
