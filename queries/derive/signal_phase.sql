@@ -9,11 +9,14 @@ WITH sample AS (
     GROUP BY drive_id, signal_id, t_ns
 ),
 spaced AS (
-    SELECT *, lead(t_ns) OVER (PARTITION BY drive_id, signal_id ORDER BY t_ns) - t_ns AS gap_ns FROM sample
+    SELECT *, lead(t_ns) OVER w - t_ns AS gap_ns, lead(state) OVER w IS NOT DISTINCT FROM state AS goes_on FROM sample
+    WINDOW w AS (PARTITION BY drive_id, signal_id ORDER BY t_ns)
 ),
+-- one that says the same again and again is recorded all the time; amber after a second is a change
 cadence AS (
     SELECT drive_id, signal_id, (max_gap_periods() * quantile_disc(gap_ns, 0.5))::BIGINT AS max_gap_ns
     FROM spaced
+    WHERE goes_on
     GROUP BY drive_id, signal_id
     HAVING quantile_disc(gap_ns, 0.5) <= 1_000_000_000
 ),

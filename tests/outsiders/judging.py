@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple, Protocol
 from drivelint import catalogue
 from drivelint.report.progress import Silent
 from drivelint.run import Settings, check
-from tests.outsiders import first, fourth, second, third
+from tests.outsiders import fifth, first, fourth, second, sixth, third
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -81,7 +81,7 @@ class Judged(NamedTuple):
 
 def drives() -> list[Drive]:
     """Return the drives of all outsiders."""
-    return [drive for each in (first, second, third, fourth) for drive in each.drives()]
+    return [drive for each in (first, second, third, fourth, fifth, sixth) for drive in each.drives()]
 
 
 def judge(folder: Path) -> Judged:

@@ -32,6 +32,18 @@ KNOWN: Final = {
     "de_alks_cut_in_avoided stvo.rg2": "it brakes with 3.5 m/s2 for a slower car that moves in, not yet too near by its source's formula",
     "de_stops_on_motorway stvo.rg2": "it brakes with 3 m/s2: the rule's source asks for a reason from 2 m/s2 on",
     "gb_astride_4 ukhc.r131.keep-in-lane": "between two lanes for so long, the ego does not vouch for the map",
+    "gb_mway_astride_g ukhc.r131.keep-in-lane": "between two lanes for so long, the ego does not vouch for the map",
+    "gb_horse_near_g ukhc.r215.horse": "off its lane's middle for half of the time, the ego does not vouch for the map",
+    "gb_keeps_right_g ukhc.r143.direction": "nobody else is there: a map of the other hand looks the same",
+    "gb_footway_passes_queue_g ukhc.r145.off-road": "off the lanes for so long, the ego does not vouch for the map",
+    "gb_cyclist_no_size_g ukhc.r163.cyclist": "the cyclist's width is not known, nor with it whether the two were ever beside each other",
+    "gb_declares_all_g declared.r125.chosen-speed-kept": "what was chosen before the first word is not known",
+    "gb_shoulder_hazards_on_g ukhc.r269.hard-shoulder": "with its hazard lights on it may have been an emergency",
+    "gb_m_astride_h ukhc.r131.keep-in-lane": "between two lanes for so long, the ego does not vouch for the map",
+    "gb_m_astride_h ukhc.r269.hard-shoulder": "the same",
+    "gb_over_pavement_h ukhc.r145.off-road": "off the lanes for so long, the ego does not vouch for the map",
+    "gb_right_corner_cut_h ukhc.r180.corner-cut": "the ego leaves its own road's lanes before the junction: where it entered that is not known",
+    "gb_bridge_over_h ukhc.no-collision": "how far one level is above another is not measured: unknown while the boxes overlap in plan",
 }
 """Where product and outsider still differ, as `scene rule`, and why; never a breach that passes."""
 SCENES: Final = [drive.scene for drive in drives()]

@@ -41,7 +41,7 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, h.gap_m IS NULL AS at_least, need
         WHEN h.vehicle_gap_m < needs.m THEN h.vehicle_gap_m
         WHEN o.n_unplaced = 0 AND h.gap_m >= needs.m THEN h.gap_m
     END AS observed,
-    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began' WHEN o.n_unplaced > 0 THEN o.unplaced_reason
+    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began' WHEN h.vehicle_gap_m < needs.m THEN NULL WHEN o.n_unplaced > 0 THEN o.unplaced_reason
         WHEN h.gap_m < needs.m THEN 'the class of somebody there is not known' END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
