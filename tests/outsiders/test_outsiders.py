@@ -42,7 +42,7 @@ KNOWN: Final = {
     "gb_m_astride_h ukhc.r131.keep-in-lane": "between two lanes for so long, the ego does not vouch for the map",
     "gb_m_astride_h ukhc.r269.hard-shoulder": "the same",
     "gb_over_pavement_h ukhc.r145.off-road": "off the lanes for so long, the ego does not vouch for the map",
-    "gb_right_corner_cut_h ukhc.r180.corner-cut": "the ego leaves its own road's lanes before the junction: where it entered that is not known",
+    "gb_right_corner_cut_h ukhc.r180.corner-cut": "the ego leaves its road before the junction: where it entered that is not known",
     "gb_bridge_over_h ukhc.no-collision": "how far one level is above another is not measured: unknown while the boxes overlap in plan",
 }
 """Where product and outsider still differ, as `scene rule`, and why; never a breach that passes."""
