@@ -184,7 +184,10 @@ def test_an_amber_whose_onset_was_not_seen() -> None:
         (tuple((0.1 * k, "red") for k in range(200)), "red"),
         (tuple((0.1 * k, "red") for k in range(60)), None),  # recorded ten times a second, and then no more
         (((0.0, "red"), (0.0, "green")), None),
-        (((0.0, "red"), (23.0, "red_amber"), (24.0, "green")), "red"),  # said at its changes, two of them a second apart
+        (
+            ((0.0, "red"), (23.0, "red_amber"), (24.0, "green")),
+            "red",
+        ),  # said at its changes, two of them a second apart
         (((0.0, "red"), (0.1, "red"), (23.0, "red_amber"), (24.0, "green")), None),
     ],
 )
