@@ -507,10 +507,10 @@ CREATE TABLE overtake_sda (
     occurrence INTEGER NOT NULL,      -- see overtake
     profile VARCHAR NOT NULL,         -- see profile; every one, selected or not
     t0_ns BIGINT NOT NULL,            -- see overtake
-    da_m DOUBLE,                      -- distance ahead; NULL: unknown, or more than sda_m while a nearer OV is not ruled out
+    da_m DOUBLE,                      -- distance ahead; NULL: unknown, or more than sda_m while a nearer OV is not ruled out, or too little at the ego's speed at t0 and enough at its mean speed
     at_least BOOLEAN NOT NULL,        -- da_m is only a lower bound (a sight line)
     nobody BOOLEAN NOT NULL,          -- every vehicle placed, and no OV as far as da_m
-    sda_m DOUBLE,                     -- safe distance ahead; observed, where da_m is no more than what the ego and the OV covered while the ego was out and the OV's stopping distance: at least that; NULL: undefined
+    sda_m DOUBLE,                     -- safe distance ahead, at the ego's speed at t0; observed: at its mean speed, if completed, and where da_m is no more than what the ego and the OV covered while the ego was out and the OV's stopping distance: at least that; NULL: undefined
     spare_m DOUBLE,                   -- da_m - sda_m
     spare_s DOUBLE,                   -- the time in which it closes, at v_AV + v_OV
     zone VARCHAR,                     -- A unsafe, B under 0.5 s, C 0.5 to 2.5 s, D over 2.5 s; NULL: unknown

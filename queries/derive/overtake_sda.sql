@@ -1,5 +1,7 @@
 -- Distance ahead against safe distance ahead for every profile, observed among them: the angles and gaps that this overtake had, and what
 -- was driven of it. Of several vehicles passed in one go, each is as long to pass as the row of them up to its front.
+-- The formula takes one speed for the whole manoeuvre: that at t0, of an overtake that was completed the mean one for the profile observed. An
+-- ego that sped up to overtake would have needed less than its speed at t0 says, and which of the two it planned with is not known.
 WITH closed AS (
     SELECT o.drive_id, o.ego_id, o.occurrence, o.da_m - min(n.da_m) AS closed_m
     FROM overtake o
@@ -11,15 +13,18 @@ WITH closed AS (
 driven AS (
     SELECT
         o.drive_id, o.ego_id, o.occurrence, (o.t_end_ns - o.t0_ns) / 1e9 AS out_s,
+        CASE WHEN o.status = 'completed' THEN (f.travel_m - e.travel_m) / nullif((o.t_end_ns - o.t0_ns) / 1e9, 0) END AS v_mean_mps,
         greatest(b.front_s_m - a.front_s_m + o.v_ov_mps * (o.t_end_ns - o.t0_ns) / 1e9, c.closed_m) + stopping_distance_m(o.v_ov_mps) AS driven_m
     FROM overtake o
     LEFT JOIN ego_corridor a ON a.drive_id = o.drive_id AND a.ego_id = o.ego_id AND a.chain_id = o.chain_id AND a.t_ns = o.t0_ns
     LEFT JOIN ego_corridor b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.chain_id = o.chain_id AND b.t_ns = o.t_end_ns
+    LEFT JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns = o.t0_ns
+    LEFT JOIN ego_state f ON f.drive_id = o.drive_id AND f.ego_id = o.ego_id AND f.t_ns = o.t_end_ns
     LEFT JOIN closed c ON c.drive_id = o.drive_id AND c.ego_id = o.ego_id AND c.occurrence = o.occurrence
 ),
 input AS (
     SELECT
-        o.*, d.out_s, p.profile,
+        o.* REPLACE (CASE WHEN p.profile = 'observed' THEN coalesce(d.v_mean_mps, o.v_av_mps) ELSE o.v_av_mps END AS v_av_mps), d.out_s, p.profile, d.v_mean_mps,
         CASE WHEN p.profile = 'observed' THEN d.driven_m END AS driven_m,
         CASE WHEN p.profile <> 'observed' THEN p.pull_out_angle_rad WHEN o.status = 'completed' THEN o.pull_out_angle_rad END AS beta,
         CASE p.profile WHEN 'observed' THEN o.cut_in_angle_rad ELSE p.cut_in_angle_rad END AS theta,
@@ -34,22 +39,25 @@ planned AS (
         *, begin_seen AND vbp_placed AND opposing IS NOT NULL AS told,
         CASE WHEN beta > 0 AND theta > 0 AND v_av_mps > v_vbp_mps THEN
             safe_distance_ahead_m(lane_width_m, beta, theta, headroom, clearance, l_av_m, span_m, v_av_mps, v_vbp_mps, v_ov_mps)
-        END AS planned_m
+        END AS planned_m,
+        CASE WHEN beta > 0 AND theta > 0 AND v_mean_mps > v_av_mps AND v_mean_mps > v_vbp_mps THEN
+            safe_distance_ahead_m(lane_width_m, beta, theta, headroom, clearance, l_av_m, span_m, v_mean_mps, v_vbp_mps, v_ov_mps)
+        END AS sped_up_m
     FROM input
 ),
 required AS (
     -- where DA is not even more than that, it counts; of an overtake that was not completed nobody knows what else would have been enough
-    SELECT *, CASE WHEN da_m <= driven_m THEN greatest(planned_m, driven_m) ELSE planned_m END AS sda_m
+    SELECT *, CASE WHEN da_m <= driven_m THEN greatest(planned_m, driven_m) ELSE planned_m END AS sda_m, coalesce(da_m <= sda_m AND da_m > sped_up_m, false) AS sped_up
     FROM planned
 )
 SELECT
     drive_id, ego_id, occurrence, profile, t0_ns,
-    CASE WHEN told AND (n_unplaced = 0 OR da_m <= sda_m) THEN da_m END AS da_m,
+    CASE WHEN told AND NOT sped_up AND (n_unplaced = 0 OR da_m <= sda_m) THEN da_m END AS da_m,
     ov_id IS NULL AS at_least,
     ov_id IS NULL AND n_unplaced = 0 AS nobody,
     sda_m, da_m - sda_m AS spare_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0) AS spare_s,
     -- a sight line too short, or somebody who cannot be placed, leaves open how much worse it was: only A can be told then
-    CASE WHEN told AND CASE WHEN ov_id IS NULL THEN n_unplaced = 0 AND da_m > sda_m ELSE n_unplaced = 0 OR da_m <= sda_m END THEN overtake_zone(da_m - sda_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0)) END AS zone,
+    CASE WHEN told AND NOT sped_up AND CASE WHEN ov_id IS NULL THEN n_unplaced = 0 AND da_m > sda_m ELSE n_unplaced = 0 OR da_m <= sda_m END THEN overtake_zone(da_m - sda_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0)) END AS zone,
     CASE
         WHEN NOT begin_seen THEN 'the log does not show where the overtake began'
         WHEN NOT vbp_placed THEN 'actor ' || vbp_id || ', who may be the vehicle passed, has no position'
@@ -59,6 +67,7 @@ SELECT
         WHEN sda_m IS NULL AND profile = 'observed' AND status <> 'completed' THEN 'the overtake was not completed, so its own angles are not known'
         WHEN sda_m IS NULL AND ov_id IS NULL AND v_ov_mps IS NULL THEN 'no oncoming vehicle is seen and the map has no speed limit to assume for one'
         WHEN sda_m IS NULL THEN 'a speed, size or angle is not known'
+        WHEN sped_up THEN format('it sped up: at {:.1f} m/s, its speed at t0, it would have needed {:.0f} m, at {:.1f} m/s, its mean one, {:.0f} m, and {:.0f} m were there', v_av_mps, sda_m, v_mean_mps, sped_up_m, da_m)
         WHEN n_unplaced > 0 AND da_m > sda_m THEN unplaced_reason
         WHEN ov_id IS NULL AND da_m <= sda_m THEN 'no oncoming vehicle as far as can be told, but that is only ' || round(da_m, 1)::VARCHAR || ' m (' || free_reason || ')'
         WHEN ov_id IS NULL THEN 'no oncoming vehicle within ' || round(da_m, 1)::VARCHAR || ' m'

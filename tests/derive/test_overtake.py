@@ -358,8 +358,30 @@ def test_the_observed_profile_takes_what_this_overtake_had() -> None:
     (row,) = rows(con, "FROM overtake_sda WHERE profile = 'observed'")
     k = o["vbp_gap_m"] + o["l_vbp_m"] + o["t2_gap_m"] + o["l_av_m"]
     angles = o["pull_out_angle_rad"], o["cut_in_angle_rad"]
-    expected = safe_distance(LANE, *angles, k, o["v_av_mps"], o["v_vbp_mps"], o["v_ov_mps"])
-    assert row["sda_m"] == pytest.approx(expected, rel=1e-9)
+    made = np.cumsum(np.hypot(np.diff(actors[0].x), np.diff(actors[0].y)))
+    k0, k3 = round(o["t0_ns"] / 1e8), round(o["t3_ns"] / 1e8)
+    mean = (made[k3 - 1] - made[k0 - 1]) / (0.1 * (k3 - k0))
+    expected = safe_distance(LANE, *angles, k, mean, o["v_vbp_mps"], o["v_ov_mps"])
+    assert row["sda_m"] == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize(("far", "verdict"), [(700.0, ("unknown", "pass")), (200.0, ("fail", "fail"))])
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_an_ego_that_speeds_up_to_overtake_is_not_held_to_its_speed_at_the_start(
+    hand: str, far: float, verdict: tuple[str, str]
+) -> None:
+    """It pulls out at 9.5 m/s behind a tractor at 9 m/s, and is past it in some ten seconds: at 9.5 m/s it would take a minute."""
+    way, t = road(((3000.0, 0.0),), hand), times(40.0)
+    v = np.clip(9.5 + 2.0 * (t - 14), 9.5, 25.0)
+    s = 50 + np.concatenate([[0.0], np.cumsum((v[1:] + v[:-1]) / 2 * np.diff(t))])
+    out = float(np.interp(10.0, t, s))
+    back = float(np.interp(22.0, t, s))
+    ego = moving("ego", way, t, s, swing(way, s, out, back))
+    vbp = moving("vbp", way, t, out + 20 + 9 * (t - 10), way.own)
+    ov = moving("ov", way, t, out + far + 25 * (10 - t), way.other)
+    found = {row["profile"]: row for row in scenes.judged([drive([ego, vbp, ov], way.environment)], rules=[SDA])}
+    assert (found["nominal"]["verdict"], found["observed"]["verdict"]) == verdict
+    assert ("sped up" in found["nominal"]["reason"]) == (verdict[0] == "unknown")
 
 
 def test_without_anybody_the_distance_is_a_bound_and_the_limit_is_assumed() -> None:

@@ -247,14 +247,24 @@ def _excursion(log: Log, net: Net, own: Log, first: int, end: int) -> list[Overt
         v_ov = net.limit_mps if ov is None else v_ov
         # the row of vehicles from the nearest one's rear to this one's front; one that is alone has its own length
         row_m = float(there.along[at].max() - row_begin)
-        needed = {
-            name: _safe_distance(
-                net.lane_m, math.radians(angle), 2 * gap + row_m + log.sizes[me, 0],
-                (float(own.speed[first]), float(there.speed[at]), v_ov),
-            )
-            for name, (angle, gap) in PROFILES.items()
-        }  # fmt: skip
-        verdicts = {name: _verdict(da, sda, seen=ov is not None, begin=first > 0) for name, sda in needed.items()}
+        # one that sped up to overtake: whether it planned with the speed that it had or with the one that it got to is not known
+        mean = _mean_speed(own, first, end) if back and passed else math.nan
+        needed, least = (
+            {
+                name: _safe_distance(
+                    net.lane_m, math.radians(angle), 2 * gap + row_m + log.sizes[me, 0],
+                    (speed, float(there.speed[at]), v_ov),
+                )
+                for name, (angle, gap) in PROFILES.items()
+            }
+            for speed in (float(own.speed[first]), max(float(own.speed[first]), mean))
+        )  # fmt: skip
+        verdicts = {
+            name: "unknown"
+            if (sda or 0) >= da > (least[name] or math.inf)
+            else _verdict(da, sda, seen=ov is not None, begin=first > 0)
+            for name, sda in needed.items()
+        }
         found.append(
             Overtake(
                 log.ids[me], step / 10, int(own.step[end]) / 10 if back else None, log.ids[vbp], passed,
@@ -262,6 +272,12 @@ def _excursion(log: Log, net: Net, own: Log, first: int, end: int) -> list[Overt
             )
         )  # fmt: skip
     return found
+
+
+def _mean_speed(own: Log, first: int, end: int) -> float:
+    """Return the speed at which the vehicle covers the way of its rows from `first` to `end`."""
+    way = np.hypot(np.diff(own.x[first : end + 1]), np.diff(own.y[first : end + 1])).sum()
+    return float(way / (0.1 * (own.step[end] - own.step[first])))
 
 
 def _passed(own: Log, other: Log, first: int, end: int) -> bool:
