@@ -26,8 +26,9 @@ WHERE coalesce(c.kind, 'signalled') = 'signalled'
 GROUP BY c.drive_id, c.ego_id, c.t_in_ns, c.occurrence, c.on_id, c.t_on_ns, c.known, c.coming_id, c.coming_known, c.state
 
 -- @condition
+-- a light that is off allows nothing and forbids nothing: with somebody there a person has to say
 SELECT drive_id, ego_id, t_ns, ref_id,
-    NOT forbids(state) AND (state <> 'flashing'
-        OR CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns OR coming_id IS NOT NULL THEN false WHEN known AND coming_known THEN true END) AS holds,
+    NOT forbids(state) AND (state NOT IN ('flashing', 'off')
+        OR CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns OR coming_id IS NOT NULL THEN CASE WHEN state = 'flashing' THEN false END WHEN known AND coming_known THEN true END) AS holds,
     'the light was ' || coalesce(replace(state, '_', ' and '), 'not known') || coalesce(', and ' || coalesce(object_id, coming_id) || ' on the crossing', '') AS reason
 FROM reference
