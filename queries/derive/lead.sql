@@ -67,16 +67,18 @@ run AS (
 begun AS (
     SELECT drive_id, ego_id, n, min(t_ns) AS t_since_ns, min(k) AS k FROM run WHERE near.object_id IS NOT NULL GROUP BY ALL
 ),
--- where the nearest one was one step before it became that: in the lane ahead already, or not; half a second ago how fast
+-- where the nearest one was one step before it became that; half a second ago how fast
 past AS (
-    SELECT r.drive_id, r.ego_id, r.t_ns, p.t_ns AS t_past_ns, p.speed_mps, p.rear_s_m, in_lane(p.d_m, p.lat_half_m, p.half_width_m) AS in_lane
+    SELECT r.drive_id, r.ego_id, r.t_ns, p.t_ns AS t_past_ns, p.speed_mps, p.rear_s_m, p.d_m, p.lat_half_m, p.half_width_m
     FROM (
         SELECT drive_id, ego_id, t_ns, near.object_id AS object_id, unnest(list_distinct([t_half_ns, t_before_ns])) AS t_past_ns FROM run WHERE near.object_id IS NOT NULL
     ) r
     JOIN pair p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_ns = r.t_past_ns AND p.object_id = r.object_id
 ),
+-- ahead already, with its centre in the lane or in the ego's way, or not: one that only reached over the line joins as it comes in
 origin AS (
-    SELECT b.drive_id, b.ego_id, b.n, NOT (p.rear_s_m >= e.front_s_m AND p.in_lane) AS joined
+    SELECT b.drive_id, b.ego_id, b.n,
+        NOT (p.rear_s_m >= e.front_s_m AND in_lane(p.d_m, p.lat_half_m, p.half_width_m) AND (abs(p.d_m) <= p.half_width_m OR abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m)) AS joined
     FROM begun b
     JOIN run r ON r.drive_id = b.drive_id AND r.ego_id = b.ego_id AND r.t_ns = b.t_since_ns
     JOIN past p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_ns = r.t_ns AND p.t_past_ns = r.t_before_ns

@@ -26,6 +26,23 @@ def shift(t: np.ndarray, begin: float, lasts: float = 2.0) -> np.ndarray:
 
 
 @HANDS
+def test_one_that_comes_in_without_turning_joins_as_it_gets_into_the_ego_s_way(hand: str) -> None:
+    """Simulators move vehicles sideways with straight headings: over the line long before the two boxes are in line, 1.8 m apart."""
+    way = road(hand=hand, lanes=lanes(hand))
+    t = times(10.0)
+    sign = 1 if hand == "rht" else -1
+    slow, fast = -1.5 * LANE * sign, -0.5 * LANE * sign
+    ego = moving("ego", way, t, 100 + 10 * t, slow)
+    other = moving("x", way, t, 130 + 10 * t, fast + (slow - fast) * shift(t, 2.0, 4.0))
+    con = derived(drive([ego, replace(other, yaw=ego.yaw)], way.environment), tables=["lead"])
+    found = rows(con, "FROM lead ORDER BY t_ns")
+    joins = next(k for k, row in enumerate(found) if row["object_id"] == "x")
+    assert t[joins] == pytest.approx(4.0, abs=0.15)
+    assert {row["joined"] for row in found[joins:]} == {True}
+    assert {row["t_since_ns"] for row in found[joins:]} == {found[joins]["t_ns"]}
+
+
+@HANDS
 def test_a_lead_that_cut_in_joined_then(hand: str) -> None:
     """From the lane beside into the ego's: turned by 10 degrees, it is 2.6 m across, and in when its centre is 3.0 m from the lane's."""
     way = road(hand=hand, lanes=lanes(hand))
