@@ -1,0 +1,348 @@
+"""Great Britain: overtaking, and round parked vans."""
+
+from __future__ import annotations
+
+import math
+
+from tests.outsiders.eighth.drive import Drive, draw
+from tests.outsiders.eighth.movement import car, ego, who
+from tests.outsiders.eighth.road import Map
+from tests.outsiders.eighth.worlds import lane, oncoming, straight
+
+
+def british_overtaking() -> list[Drive]:
+    return [
+        draw(
+            "gb_ot_ample_j",
+            "The ego overtakes a lorry with more than a kilometre to the oncoming car.",
+            "not fail r162.safe-distance-ahead | pass no-collision r126.ds-disjoint rss.opposite",
+            Map((straight(1600, centre="broken"),)),
+            [
+                ego(
+                    lane(1),
+                    60,
+                    22,
+                    [(2.5, 0), (5, -3.5), (13.5, -3.5), (16, 0)],
+                    blink=[(0, "off"), (0.5, "right"), (5, "off"), (13, "left"), (16, "off")],
+                ),
+                who("slow", "truck", lane(1), 170, 12),
+                car("on", oncoming(1600), 190, 18),
+            ],
+            30,
+            weather="dry",
+        ),
+        draw(
+            "gb_ot_tight_j",
+            "The ego overtakes a lorry and meets the oncoming car before it is wholly back.",
+            "fail r162.safe-distance-ahead r126.ds-disjoint rss.opposite",
+            Map((straight(1600, centre="broken"),)),
+            [
+                ego(
+                    lane(1),
+                    60,
+                    22,
+                    [(2.5, 0), (5, -3.5), (13.5, -3.5), (16, 0)],
+                    blink=[(0, "off"), (0.5, "right"), (5, "off"), (13, "left"), (16, "off")],
+                ),
+                who("slow", "truck", lane(1), 155, 12),
+                car("on", oncoming(1600), 820, 26),
+            ],
+            30,
+            weather="dry",
+        ),
+        draw(
+            "gb_ot_head_on_j",
+            "The ego overtakes a lorry and runs head on into the oncoming car.",
+            "fail no-collision r162.safe-distance-ahead",
+            Map((straight(1600, centre="broken"),)),
+            [
+                ego(
+                    lane(1),
+                    60,
+                    22,
+                    [(2.5, 0), (5, -3.5), (13.5, -3.5), (16, 0)],
+                    blink=[(0, "off"), (0.5, "right"), (5, "off"), (13, "left"), (16, "off")],
+                ),
+                who("slow", "truck", lane(1), 155, 12),
+                car("on", oncoming(1600), 940, 26),
+            ],
+            30,
+            weather="dry",
+        ),
+        draw(
+            "gb_ot_late_oncoming_j",
+            "As in gb_ot_tight, but the oncoming car is in the log only from 9 s on.",
+            "not pass r162.safe-distance-ahead | fail rss.opposite",
+            Map((straight(1600, centre="broken"),)),
+            [
+                ego(
+                    lane(1),
+                    60,
+                    22,
+                    [(2.5, 0), (5, -3.5), (13.5, -3.5), (16, 0)],
+                    blink=[(0, "off"), (0.5, "right"), (5, "off"), (13, "left"), (16, "off")],
+                ),
+                who("slow", "truck", lane(1), 155, 12),
+                car("on", oncoming(1600), 820, 26, there=(9, math.inf)),
+            ],
+            30,
+            weather="dry",
+        ),
+        draw(
+            "gb_ot_oncoming_turned_j",
+            "As in gb_ot_tight, but the oncoming car's heading is turned by pi.",
+            "not pass r162.safe-distance-ahead rss.opposite",
+            Map((straight(1600, centre="broken"),)),
+            [
+                ego(
+                    lane(1),
+                    60,
+                    22,
+                    [(2.5, 0), (5, -3.5), (13.5, -3.5), (16, 0)],
+                    blink=[(0, "off"), (0.5, "right"), (5, "off"), (13, "left"), (16, "off")],
+                ),
+                who("slow", "truck", lane(1), 155, 12),
+                car("on", oncoming(1600), 820, 26, turned=True),
+            ],
+            30,
+            weather="dry",
+        ),
+        draw(
+            "gb_ot_given_up_j",
+            "The ego pulls out with an oncoming car ten seconds away, gives up and falls back.",
+            "pass no-collision | not pass r162.safe-distance-ahead",
+            Map((straight(1600),)),
+            [
+                ego(lane(1), 60, [(0, 21), (7, 21), (11, 12), (30, 12)], [(2.5, 0), (5, -3.5), (7.5, -3.5), (10.5, 0)]),
+                who("slow", "truck", lane(1), 185, 12),
+                car("on", oncoming(1600), 900, 26),
+            ],
+            30,
+            weather="dry",
+        ),
+        draw(
+            "gb_ot_platoon_three_j",
+            "The ego overtakes three vehicles at once and meets the oncoming car before it is back.",
+            "fail r162.safe-distance-ahead rss.opposite",
+            Map((straight(2200),)),
+            [
+                ego(lane(1), 60, 24, [(2.5, 0), (5, -3.5), (22, -3.5), (24.5, 0)]),
+                who("v0", "truck", lane(1), 165, 14),
+                car("v1", lane(1), 200, 14),
+                who("v2", "van", lane(1), 230, 14),
+                car("on", oncoming(2200), 990, 25),
+            ],
+            40,
+            weather="dry",
+        ),
+        draw(
+            "gb_ot_pulls_out_close_j",
+            "The ego pulls out ten metres behind the lorry that it overtakes.",
+            "fail r163.pull-out-separation",
+            Map((straight(1600, centre="broken"),)),
+            [
+                ego(
+                    lane(1),
+                    60,
+                    22,
+                    [(2.2, 0), (4.7, -3.5), (7.5, -3.5), (10, 0)],
+                    blink=[(0, "off"), (0.2, "right"), (4.7, "off"), (7, "left"), (10, "off")],
+                ),
+                who("slow", "truck", lane(1), 107, 12),
+                car("on", oncoming(1600), 190, 15),
+            ],
+            30,
+            weather="dry",
+        ),
+        draw(
+            "gb_ot_no_gap_ahead_j",
+            "The ego overtakes a lorry with 13 m to the car ahead of that, and squeezes in.",
+            "fail r162.return-gap",
+            Map((straight(1600, centre="broken"),)),
+            [
+                ego(
+                    lane(1),
+                    60,
+                    [(0, 22), (11, 22), (13, 12), (30, 12)],
+                    [(2.5, 0), (4.5, -3.5), (11.2, -3.5), (13.2, 0)],
+                    blink=[(0, "off"), (0.5, "right"), (4.5, "off"), (10.7, "left"), (13.2, "off")],
+                ),
+                who("slow", "truck", lane(1), 170, 12),
+                car("on", oncoming(1600), 160, 12),
+                car("f", lane(1), 190, 12),
+            ],
+            30,
+            weather="dry",
+        ),
+        draw(
+            "gb_ot_being_overtaken_j",
+            "The ego pulls out while a motorcycle comes from behind in the opposing lane.",
+            "fail r162.not-being-overtaken",
+            Map((straight(1600, centre="broken"),)),
+            [
+                ego(
+                    lane(1),
+                    60,
+                    22,
+                    [(2.5, 0), (5, -3.5), (13.5, -3.5), (16, 0)],
+                    blink=[(0, "off"), (0.5, "right"), (5, "off"), (13, "left"), (16, "off")],
+                ),
+                who("slow", "truck", lane(1), 170, 12),
+                car("on", oncoming(1600), 160, 12),
+                who("fast", "motorcycle", lane(-1), 3, [(0, 31), (3.4, 31), (5.4, 21), (30, 21)]),
+            ],
+            30,
+            weather="dry",
+        ),
+        draw(
+            "gb_ot_sign_j",
+            "The ego overtakes a lorry after a no-overtaking sign.",
+            "fail r165.no-overtaking-sign",
+            Map((straight(1600).sign("n1", 30, 1, ("no_overtaking", "632", "GB")),)),
+            [
+                ego(
+                    lane(1),
+                    60,
+                    22,
+                    [(2.5, 0), (5, -3.5), (13.5, -3.5), (16, 0)],
+                    blink=[(0, "off"), (0.5, "right"), (5, "off"), (13, "left"), (16, "off")],
+                ),
+                who("slow", "truck", lane(1), 170, 12),
+                car("on", oncoming(1600), 160, 12),
+            ],
+            30,
+            weather="dry",
+        ),
+        draw(
+            "gb_ot_sign_other_way_j",
+            "The ego overtakes a lorry; a no-overtaking sign stands for the other direction.",
+            "not fail r165.no-overtaking-sign",
+            Map((straight(1600).sign("n1", 1500, -1, ("no_overtaking", "632", "GB")),)),
+            [
+                ego(
+                    lane(1),
+                    60,
+                    22,
+                    [(2.5, 0), (5, -3.5), (13.5, -3.5), (16, 0)],
+                    blink=[(0, "off"), (0.5, "right"), (5, "off"), (13, "left"), (16, "off")],
+                ),
+                who("slow", "truck", lane(1), 170, 12),
+                car("on", oncoming(1600), 160, 12),
+            ],
+            30,
+            weather="dry",
+        ),
+        draw(
+            "gb_ot_solid_j",
+            "The ego overtakes a lorry across double white lines.",
+            "fail r129.no-cross-solid",
+            Map((straight(1600, centre="solid solid"),)),
+            [
+                ego(
+                    lane(1),
+                    60,
+                    22,
+                    [(2.5, 0), (5, -3.5), (13.5, -3.5), (16, 0)],
+                    blink=[(0, "off"), (0.5, "right"), (5, "off"), (13, "left"), (16, "off")],
+                ),
+                who("slow", "truck", lane(1), 170, 12),
+                car("on", oncoming(1600), 160, 12),
+            ],
+            30,
+            weather="dry",
+        ),
+        draw(
+            "gb_ot_until_solid_j",
+            "The ego overtakes a lorry across a broken line that turns solid while it is out.",
+            "fail r128.back-before-solid r129.no-cross-solid",
+            Map((straight(1600, centre=[(0, "broken"), (290, "solid solid")]),)),
+            [
+                ego(
+                    lane(1),
+                    60,
+                    22,
+                    [(2.5, 0), (5, -3.5), (13.5, -3.5), (16, 0)],
+                    blink=[(0, "off"), (0.5, "right"), (5, "off"), (13, "left"), (16, "off")],
+                ),
+                who("slow", "truck", lane(1), 170, 12),
+                car("on", oncoming(1600), 160, 12),
+            ],
+            30,
+            weather="dry",
+        ),
+        draw(
+            "gb_solid_round_cyclist_j",
+            "The ego crosses double white lines to pass a cyclist who rides at 8 mph, with 2.2 m between.",
+            "pass r129.no-cross-solid r163.cyclist no-collision",
+            Map((straight(900, centre="solid solid"),)),
+            [
+                ego(lane(1), 40, [(0, 12), (4, 12), (7, 8), (30, 8)], [(4, 0), (7, -2.2), (16, -2.2), (19, 0)]),
+                who("c", "bicycle", lane(1), 95, 3.6, 1.2),
+            ],
+            30,
+        ),
+        draw(
+            "gb_solid_round_fast_cyclist_j",
+            "The ego crosses double white lines to pass a cyclist who rides at 15 mph.",
+            "fail r129.no-cross-solid",
+            Map((straight(900, centre="solid solid"),)),
+            [
+                ego(lane(1), 40, 13, [(4, 0), (7, -2.4), (14, -2.4), (17, 0)]),
+                who("c", "bicycle", lane(1), 95, 6.6, 1.2),
+            ],
+            30,
+        ),
+        draw(
+            "gb_parked_forces_j",
+            "The ego goes round a parked van and makes an oncoming car brake from 27 mph to 5.",
+            "fail r163.obstruction-give-way",
+            Map((straight(700, "town"),)),
+            [
+                ego(lane(1), 40, 10, [(3.5, 0), (6, -2.9), (9.5, -2.9), (12, 0)]),
+                who("pk", "van", lane(1), 118, 0, 0.6),
+                car("on", oncoming(700), 425, [(0, 12), (5, 12), (8, 2), (14, 2), (18, 10)]),
+            ],
+            28,
+        ),
+        draw(
+            "gb_parked_waits_j",
+            "The ego waits behind a parked van until an oncoming car has passed.",
+            "pass r163.obstruction-give-way",
+            Map((straight(700, "town"),)),
+            [
+                ego(
+                    lane(1),
+                    40,
+                    [(0, 10), (3.5, 10), (8, 0), (17, 0), (20, 6), (28, 6)],
+                    [(17.5, 0), (21.5, -2.9), (25, -2.9), (28, 0)],
+                ),
+                who("pk", "van", lane(1), 118, 0, 0.6),
+                car("on", oncoming(700), 400, 13),
+            ],
+            34,
+        ),
+        draw(
+            "gb_parked_clear_j",
+            "The ego goes round a parked van while the oncoming car is still 20 s away.",
+            "not fail r163.obstruction-give-way",
+            Map((straight(700, "town"),)),
+            [
+                ego(lane(1), 40, 9, [(3.5, 0), (6, -2.9), (9.5, -2.9), (12, 0)]),
+                who("pk", "van", lane(1), 118, 0, 0.6),
+                car("on", oncoming(700), 140, 10),
+            ],
+            28,
+        ),
+        draw(
+            "gb_parked_near_miss_j",
+            "The ego goes round a parked van; the oncoming car is 2.5 s away when it has left its lane.",
+            "pass r163.obstruction-give-way",
+            Map((straight(700, "town"),)),
+            [
+                ego(lane(1), 40, 10, [(3.5, 0), (6, -2.9), (9.5, -2.9), (12, 0)]),
+                who("pk", "van", lane(1), 118, 0, 0.6),
+                car("on", oncoming(700), 413, 9.5),
+            ],
+            28,
+        ),
+    ]
