@@ -156,7 +156,8 @@ def compared(folder: Path) -> Compared:
     verdicts: dict[str, list[str]] = {}
     for row in judged([told(folder)], rules=(_RULE,)):
         if row["t_ref_ns"] is not None:
-            verdicts.setdefault(row["ego_id"], []).append(row["verdict"])
+            # SUMO moves who stands into the next lane at once: from there on the vehicle is "id#2"
+            verdicts.setdefault(row["ego_id"].partition("#")[0], []).append(row["verdict"])
     counts = Compared(Counter(), Counter(), Counter())
     for c in crossings(folder):
         said = verdicts.get(c.vehicle, [])  # nobody comes twice
