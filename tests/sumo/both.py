@@ -17,7 +17,7 @@ def both(folder: Path, seconds: int, seed: int, per_kind: int) -> tuple[dict[str
     log = reading.read_log(files.log, files.routes, net)
     read, touched = reading.overtakes(log, net), contacts.contacts(log)
     checked = compare.check(files, folder / "out")
-    differ, counts = compare.differences(read, checked, reading.jumps(log))
+    differ, counts = compare.differences(read, checked, log)
     differ += compare.other_contacts(touched, checked.contacts)
     known = checked.overtakes
     apart = [abs(o.da_m - known[key]["da_m"]) for o in read if (key := compare.known_by(o)) in known]

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import duckdb
 
 from tests.sumo.contacts import Contact
-from tests.sumo.reading import PROFILES, Overtake
+from tests.sumo.reading import PROFILES, Overtake, entries, jumps
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from tests.sumo.reading import Log
     from tests.sumo.world import Files
 
 DA_M = 0.5
@@ -98,8 +99,9 @@ def known_by(overtake: Overtake) -> tuple[str, int, str]:
     return overtake.ego, round(overtake.t0 * 10), overtake.vbp
 
 
-def differences(read: list[Overtake], checked: Checked, jumps: set[tuple[str, int]]) -> tuple[list[str], Counter[str]]:
-    """Return what differs, and a count of what was compared. `jumps`: where SUMO moved a vehicle against its speed."""
+def differences(read: list[Overtake], checked: Checked, log: Log) -> tuple[list[str], Counter[str]]:
+    """Return what differs, and a count of what was compared."""
+    moves, first = jumps(log), entries(log)
     counts: Counter[str] = Counter()
     expected = {known_by(o): o for o in read}
     found = [
@@ -129,9 +131,19 @@ def differences(read: list[Overtake], checked: Checked, jumps: set[tuple[str, in
                 counts["open, near the road's end"] += 1
                 continue
             # drivelint takes the place of a vehicle that SUMO moves for unknown then
-            moved = any(who in theirs["unplaced"] and abs(step - key[1]) <= 1 for who, step in jumps)
+            moved = any(who in theirs["unplaced"] and abs(step - key[1]) <= 1 for who, step in moves)
             if (mine.verdicts[profile], verdict) == ("pass", "unknown") and moved:
                 counts["SUMO moves somebody just then"] += 1
+                continue
+            # and does not know from how far off the ego, moved just then, first saw another
+            at_entry = any(
+                f"actor {other} appeared" in reason and abs(step - first[other]) <= 1
+                for who, step in moves
+                if who == key[0]
+                for other in first
+            )
+            if (mine.verdicts[profile], verdict) == ("pass", "unknown") and at_entry:
+                counts["SUMO moves the ego as somebody enters"] += 1
                 continue
             found.append(f"{key} {profile}: {mine.verdicts[profile]} read, {verdict} found ({reason})")
     return found, counts

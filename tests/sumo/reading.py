@@ -208,6 +208,11 @@ def jumps(log: Log) -> set[tuple[str, int]]:
     return found
 
 
+def entries(log: Log) -> dict[str, int]:
+    """Return the first step of every vehicle."""
+    return {name: int(log.of(who).step[0]) for who, name in enumerate(log.ids)}
+
+
 def overtakes(log: Log, net: Net) -> list[Overtake]:
     """Return every overtake of every vehicle."""
     found = []
