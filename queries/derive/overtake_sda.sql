@@ -1,7 +1,8 @@
 -- Distance ahead against safe distance ahead for every profile, observed among them: the angles and gaps that this overtake had, and what
 -- was driven of it. Of several vehicles passed in one go, each is as long to pass as the row of them up to its front.
 -- The formula takes one speed for the whole manoeuvre: that at t0, of an overtake that was completed the mean one for the profile observed. An
--- ego that sped up to overtake would have needed less than its speed at t0 says, and which of the two it planned with is not known.
+-- ego that sped up to overtake would have needed less than its speed at t0 says, and which of the two it planned with is not known; where the
+-- log ends before it is back, the speed that it had reached by then stands for the mean one.
 WITH closed AS (
     SELECT o.drive_id, o.ego_id, o.occurrence, o.da_m - min(n.da_m) AS closed_m
     FROM overtake o
@@ -10,9 +11,16 @@ WITH closed AS (
 ),
 -- what the ego and the OV covered while the ego was out (the OV at its speed at t0, or faster where it was), and the OV's stopping
 -- distance: where the overtake was broken off, by the ego, the log or a collision, the whole of it would have needed more
+top AS (
+    SELECT o.drive_id, o.ego_id, o.occurrence, max(e.speed_mps) AS v_top_mps
+    FROM overtake o
+    JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns >= o.t0_ns AND e.t_ns <= o.t_end_ns
+    WHERE o.status = 'truncated'
+    GROUP BY ALL
+),
 driven AS (
     SELECT
-        o.drive_id, o.ego_id, o.occurrence, (o.t_end_ns - o.t0_ns) / 1e9 AS out_s,
+        o.drive_id, o.ego_id, o.occurrence, m.v_top_mps, (o.t_end_ns - o.t0_ns) / 1e9 AS out_s,
         CASE WHEN o.status = 'completed' THEN (f.travel_m - e.travel_m) / nullif((o.t_end_ns - o.t0_ns) / 1e9, 0) END AS v_mean_mps,
         greatest(b.front_s_m - a.front_s_m + o.v_ov_mps * (o.t_end_ns - o.t0_ns) / 1e9, c.closed_m) + stopping_distance_m(o.v_ov_mps) AS driven_m
     FROM overtake o
@@ -21,10 +29,11 @@ driven AS (
     LEFT JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns = o.t0_ns
     LEFT JOIN ego_state f ON f.drive_id = o.drive_id AND f.ego_id = o.ego_id AND f.t_ns = o.t_end_ns
     LEFT JOIN closed c ON c.drive_id = o.drive_id AND c.ego_id = o.ego_id AND c.occurrence = o.occurrence
+    LEFT JOIN top m ON m.drive_id = o.drive_id AND m.ego_id = o.ego_id AND m.occurrence = o.occurrence
 ),
 input AS (
     SELECT
-        o.* REPLACE (CASE WHEN p.profile = 'observed' THEN coalesce(d.v_mean_mps, o.v_av_mps) ELSE o.v_av_mps END AS v_av_mps), d.out_s, p.profile, d.v_mean_mps,
+        o.* REPLACE (CASE WHEN p.profile = 'observed' THEN coalesce(d.v_mean_mps, o.v_av_mps) ELSE o.v_av_mps END AS v_av_mps), d.out_s, p.profile, coalesce(d.v_mean_mps, d.v_top_mps) AS v_later_mps,
         CASE WHEN p.profile = 'observed' THEN d.driven_m END AS driven_m,
         CASE WHEN p.profile <> 'observed' THEN p.pull_out_angle_rad WHEN o.status = 'completed' THEN o.pull_out_angle_rad END AS beta,
         CASE p.profile WHEN 'observed' THEN o.cut_in_angle_rad ELSE p.cut_in_angle_rad END AS theta,
@@ -40,8 +49,8 @@ planned AS (
         CASE WHEN beta > 0 AND theta > 0 AND v_av_mps > v_vbp_mps THEN
             safe_distance_ahead_m(lane_width_m, beta, theta, headroom, clearance, l_av_m, span_m, v_av_mps, v_vbp_mps, v_ov_mps)
         END AS planned_m,
-        CASE WHEN beta > 0 AND theta > 0 AND v_mean_mps > v_av_mps AND v_mean_mps > v_vbp_mps THEN
-            safe_distance_ahead_m(lane_width_m, beta, theta, headroom, clearance, l_av_m, span_m, v_mean_mps, v_vbp_mps, v_ov_mps)
+        CASE WHEN beta > 0 AND theta > 0 AND v_later_mps > v_av_mps AND v_later_mps > v_vbp_mps THEN
+            safe_distance_ahead_m(lane_width_m, beta, theta, headroom, clearance, l_av_m, span_m, v_later_mps, v_vbp_mps, v_ov_mps)
         END AS sped_up_m
     FROM input
 ),
@@ -67,7 +76,7 @@ SELECT
         WHEN sda_m IS NULL AND profile = 'observed' AND status <> 'completed' THEN 'the overtake was not completed, so its own angles are not known'
         WHEN sda_m IS NULL AND ov_id IS NULL AND v_ov_mps IS NULL THEN 'no oncoming vehicle is seen and the map has no speed limit to assume for one'
         WHEN sda_m IS NULL THEN 'a speed, size or angle is not known'
-        WHEN sped_up THEN format('it sped up: at {:.1f} m/s, its speed at t0, it would have needed {:.0f} m, at {:.1f} m/s, its mean one, {:.0f} m, and {:.0f} m were there', v_av_mps, sda_m, v_mean_mps, sped_up_m, da_m)
+        WHEN sped_up THEN format('it sped up: at {:.1f} m/s, its speed at t0, it would have needed {:.0f} m, at {:.1f} m/s, {} {:.0f} m, and {:.0f} m were there', v_av_mps, sda_m, v_later_mps, CASE status WHEN 'truncated' THEN 'which it had reached when the log ended,' ELSE 'its mean one,' END, sped_up_m, da_m)
         WHEN n_unplaced > 0 AND da_m > sda_m THEN unplaced_reason
         WHEN ov_id IS NULL AND da_m <= sda_m THEN 'no oncoming vehicle as far as can be told, but that is only ' || round(da_m, 1)::VARCHAR || ' m (' || free_reason || ')'
         WHEN ov_id IS NULL THEN 'no oncoming vehicle within ' || round(da_m, 1)::VARCHAR || ' m'

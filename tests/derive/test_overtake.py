@@ -371,17 +371,29 @@ def test_an_ego_that_speeds_up_to_overtake_is_not_held_to_its_speed_at_the_start
     hand: str, far: float, verdict: tuple[str, str]
 ) -> None:
     """It pulls out at 9.5 m/s behind a tractor at 9 m/s, and is past it in some ten seconds: at 9.5 m/s it would take a minute."""
+    found = _judged_speeding_up(hand, far, until_s=40.0)
+    assert (found["nominal"]["verdict"], found["observed"]["verdict"]) == verdict
+    assert ("its mean one" in found["nominal"]["reason"]) == (verdict[0] == "unknown")
+
+
+@pytest.mark.parametrize(("far", "verdict"), [(700.0, "unknown"), (120.0, "fail")])
+def test_nor_is_one_that_is_still_out_when_the_log_ends(far: float, verdict: str) -> None:
+    found = _judged_speeding_up("lht", far, until_s=20.0)
+    assert found["nominal"]["verdict"] == verdict
+    assert ("had reached when the log ended" in found["nominal"]["reason"]) == (verdict == "unknown")
+
+
+def _judged_speeding_up(hand: str, far: float, until_s: float) -> dict[str, Row]:
     way, t = road(((3000.0, 0.0),), hand), times(40.0)
     v = np.clip(9.5 + 2.0 * (t - 14), 9.5, 25.0)
     s = 50 + np.concatenate([[0.0], np.cumsum((v[1:] + v[:-1]) / 2 * np.diff(t))])
     out = float(np.interp(10.0, t, s))
     back = float(np.interp(22.0, t, s))
-    ego = moving("ego", way, t, s, swing(way, s, out, back))
-    vbp = moving("vbp", way, t, out + 20 + 9 * (t - 10), way.own)
-    ov = moving("ov", way, t, out + far + 25 * (10 - t), way.other)
-    found = {row["profile"]: row for row in scenes.judged([drive([ego, vbp, ov], way.environment)], rules=[SDA])}
-    assert (found["nominal"]["verdict"], found["observed"]["verdict"]) == verdict
-    assert ("sped up" in found["nominal"]["reason"]) == (verdict[0] == "unknown")
+    seen = slice(0, round(until_s / 0.1))
+    ego = moving("ego", way, t[seen], s[seen], swing(way, s, out, back)[seen])
+    vbp = moving("vbp", way, t[seen], (out + 20 + 9 * (t - 10))[seen], way.own)
+    ov = moving("ov", way, t[seen], (out + far + 25 * (10 - t))[seen], way.other)
+    return {row["profile"]: row for row in scenes.judged([drive([ego, vbp, ov], way.environment)], rules=[SDA])}
 
 
 def test_without_anybody_the_distance_is_a_bound_and_the_limit_is_assumed() -> None:

@@ -253,7 +253,11 @@ def _excursion(log: Log, net: Net, own: Log, first: int, end: int) -> list[Overt
         # the row of vehicles from the nearest one's rear to this one's front; one that is alone has its own length
         row_m = float(there.along[at].max() - row_begin)
         # one that sped up to overtake: whether it planned with the speed that it had or with the one that it got to is not known
-        mean = _mean_speed(own, first, end) if back and passed else math.nan
+        later = math.nan
+        if not back:
+            later = float(own.speed[first:].max())
+        elif passed:
+            later = _mean_speed(own, first, end)
         needed, least = (
             {
                 name: _safe_distance(
@@ -262,7 +266,7 @@ def _excursion(log: Log, net: Net, own: Log, first: int, end: int) -> list[Overt
                 )
                 for name, (angle, gap) in PROFILES.items()
             }
-            for speed in (float(own.speed[first]), max(float(own.speed[first]), mean))
+            for speed in (float(own.speed[first]), max(float(own.speed[first]), later))
         )  # fmt: skip
         verdicts = {
             name: "unknown"
