@@ -218,5 +218,11 @@ CREATE TABLE standstill (
     ahead_id VARCHAR,                 -- nearest vehicle ahead in its lane at t_start; NULL: nobody, see ahead_known
     ahead_gap_m DOUBLE,               -- gap to it
     ahead_speed_mps DOUBLE,           -- its speed
-    ahead_known BOOLEAN NOT NULL      -- see lead
+    ahead_known BOOLEAN NOT NULL,     -- see lead
+    blocking_id VARCHAR,              -- of the vehicles ahead in its lane while it stood the nearest one, one at 1 m/s or less before a quicker one; NULL: nobody, see blocking_known
+    blocking_gap_m DOUBLE,            -- the least gap to it
+    blocking_speed_mps DOUBLE,        -- its speed then
+    blocking_known BOOLEAN NOT NULL,  -- see lead, at every step
+    idle_ns BIGINT NOT NULL,          -- for how long at least it stood with nobody in its way within 10 m who stood or moved up at 1 m/s or less, see in_way
+    idle_at_most_ns BIGINT NOT NULL   -- for how long at most: as long as that is not known counts too
 );

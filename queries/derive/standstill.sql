@@ -64,14 +64,44 @@ lit AS (
     JOIN mark_phase f ON f.drive_id = p.drive_id AND f.ego_id = p.ego_id AND f.chain_id = p.chain_id AND f.kind = 'stop_line'
         AND f.mark_id = p.line.id AND f.s_start_m = p.line.s_start_m
         AND f.t_from_ns <= p.t_start_ns AND p.t_start_ns < coalesce(f.t_to_ns, p.t_start_ns + 1)
+),
+-- ---- whom it stood behind, and how long it stood on when nobody was in its way any more
+during AS (
+    SELECT
+        s.drive_id, s.ego_id, s.t_start_ns, e.t_ns, d.object_id, d.gap_m, d.speed_mps, d.t_ns IS NOT NULL AS known,
+        queued(d.object_id, d.gap_m, d.speed_mps, d.t_ns IS NOT NULL, stands_near_m(), moves_up_mps())
+            OR stands_for(w.object_id, w.actor_class, w.gap_m, w.along_mps, w.known, stands_near_m(), stands_near_m(), moves_up_mps()) AS held
+    FROM stood s
+    JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns >= s.t_start_ns AND e.t_ns <= s.t_end_ns
+    LEFT JOIN lead d ON d.drive_id = e.drive_id AND d.ego_id = e.ego_id AND d.t_ns = e.t_ns
+    LEFT JOIN in_way w ON w.drive_id = e.drive_id AND w.ego_id = e.ego_id AND w.t_ns = e.t_ns
+),
+blocked AS (
+    SELECT
+        drive_id, ego_id, t_start_ns, bool_and(known) AS known,
+        min({'quick': coalesce(speed_mps > moves_up_mps(), true), 'gap_m': gap_m, 'id': object_id, 'speed_mps': speed_mps}) FILTER (object_id IS NOT NULL) AS o
+    FROM during
+    GROUP BY ALL
+),
+idle AS (
+    SELECT drive_id, ego_id, t_start_ns, max(t_ns - coalesce(t_maybe_ns, t_start_ns)) AS idle_ns, max(t_ns - coalesce(t_held_ns, t_start_ns)) AS idle_at_most_ns
+    FROM (
+        SELECT *, max(t_ns) FILTER (held) OVER w AS t_held_ns, max(t_ns) FILTER (held IS DISTINCT FROM false) OVER w AS t_maybe_ns
+        FROM during
+        WINDOW w AS (PARTITION BY drive_id, ego_id, t_start_ns ORDER BY t_ns ROWS UNBOUNDED PRECEDING)
+    )
+    GROUP BY ALL
 )
 SELECT
     p.drive_id, p.ego_id, (row_number() OVER (PARTITION BY p.drive_id, p.ego_id ORDER BY p.t_start_ns) - 1)::INTEGER AS occurrence,
     p.t_start_ns, p.t_end_ns, coalesce(b.v_mps >= stood_mps(), false) AS begin_seen, coalesce(a.v_mps >= stood_mps(), false) AS end_seen,
     p.road_type, p.lanelet_id, p.junction_id, p.junction_clear_m, u.p.turn AS turn, u.p.across AS across, p.junction_m, p.crossing_id, p.crossing_clear_m,
     p.line.id AS stop_line_id, p.line.m AS stop_line_m, p.line.control AS control, l.state,
-    d.object_id AS ahead_id, d.gap_m AS ahead_gap_m, d.speed_mps AS ahead_speed_mps, d.t_ns IS NOT NULL AS ahead_known
+    d.object_id AS ahead_id, d.gap_m AS ahead_gap_m, d.speed_mps AS ahead_speed_mps, d.t_ns IS NOT NULL AS ahead_known,
+    k.o.id AS blocking_id, k.o.gap_m AS blocking_gap_m, k.o.speed_mps AS blocking_speed_mps, k.known AS blocking_known, i.idle_ns, i.idle_at_most_ns
 FROM placed p
+JOIN blocked k ON k.drive_id = p.drive_id AND k.ego_id = p.ego_id AND k.t_start_ns = p.t_start_ns
+JOIN idle i ON i.drive_id = p.drive_id AND i.ego_id = p.ego_id AND i.t_start_ns = p.t_start_ns
 LEFT JOIN moved b ON b.drive_id = p.drive_id AND b.ego_id = p.ego_id AND b.seg = p.seg AND b.k = p.k_first - 1
 LEFT JOIN moved a ON a.drive_id = p.drive_id AND a.ego_id = p.ego_id AND a.seg = p.seg AND a.k = p.k_last + 1
 LEFT JOIN turning u ON u.drive_id = p.drive_id AND u.ego_id = p.ego_id AND u.t_start_ns = p.t_start_ns AND u.junction_id = p.junction_id

@@ -3,6 +3,10 @@
 -- Whether a light forbids to go on (Highway Code Rule 175): red, and red with amber.
 CREATE OR REPLACE MACRO forbids(light) AS light IN ('red', 'red_amber');
 
+-- Who stands closer than this behind somebody stands because of them; slower than this moves up in a queue.
+CREATE OR REPLACE MACRO stands_near_m() AS 10.0;
+CREATE OR REPLACE MACRO moves_up_mps() AS 1.0;
+
 -- Whether the ego stands in a queue: somebody slow close ahead in its lane. `known`: nobody else can be nearer; NULL: not known.
 CREATE OR REPLACE MACRO queued(ahead_id, ahead_gap_m, ahead_speed_mps, known, near_m, slow_mps) AS
     ((ahead_id IS NOT NULL AND ahead_gap_m <= near_m AND ahead_speed_mps <= slow_mps) OR CASE WHEN known THEN false END);

@@ -46,10 +46,10 @@ SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
         -- who turns across may wait for the oncoming traffic, or behind one who does, or for a full exit: which of these is not known
         THEN s.t_start_ns IS NULL OR NOT e.in_junction
             OR NOT exit_full(
-                s.ahead_id, s.ahead_gap_m, s.ahead_speed_mps, s.ahead_known, s.junction_clear_m, CASE WHEN r.across THEN 0 ELSE s.t_end_ns - s.t_start_ns END,
+                s.blocking_id, s.blocking_gap_m, s.blocking_speed_mps, s.blocking_known, s.junction_clear_m, CASE WHEN r.across THEN 0 ELSE s.t_end_ns - s.t_start_ns END,
                 $near_m, $slow_mps, $long_s
             ) OR CASE WHEN NOT r.across THEN false END END AS holds,
-    CASE WHEN s.t_start_ns IS NOT NULL THEN 'the ego stood in the junction' || coalesce(' behind ' || s.ahead_id, '')
+    CASE WHEN s.t_start_ns IS NOT NULL THEN 'the ego stood in the junction' || coalesce(' behind ' || s.blocking_id, '')
         || CASE WHEN r.across THEN '; turning across, it may have waited for the oncoming traffic' ELSE '' END END AS reason
 FROM reference_step g
 JOIN reference r USING (ref_id)

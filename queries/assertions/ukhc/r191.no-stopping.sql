@@ -8,27 +8,28 @@
 -- legal = "must"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["crossing_passage", "in_way", "standstill"]
+-- reads = ["crossing_passage", "standstill"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [params.stop_s]
 -- default = 5.0
 -- unit = "s"
 -- why = "our default: shorter is a pause, such as for somebody on foot"
---
--- [params.near_m]
--- default = 10.0
--- unit = "m"
--- why = "our default: who stands closer than this behind somebody stands because of them"
---
--- [params.slow_mps]
--- default = 1.0
--- unit = "m/s"
--- why = "our default: slower than this moves up in a queue"
 
 -- @reference
-SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, crossing_id, t_out_ns
-FROM crossing_passage
+-- who reverses onto it and stands there has not passed over it
+WITH on_its_way AS (
+    SELECT s.drive_id, s.ego_id, s.t_start_ns
+    FROM standstill s
+    JOIN crossing_passage p USING (drive_id, ego_id, crossing_id)
+    WHERE coalesce(p.t_in_ns, s.t_start_ns) <= s.t_start_ns AND coalesce(p.t_out_ns, s.t_start_ns) >= s.t_start_ns
+)
+SELECT drive_id, ego_id, t_ns, (row_number() OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns NULLS FIRST, crossing_id) - 1)::INTEGER AS occurrence, crossing_id, t_out_ns
+FROM (
+    SELECT drive_id, ego_id, t_in_ns AS t_ns, crossing_id, t_out_ns FROM crossing_passage
+    UNION ALL
+    SELECT drive_id, ego_id, t_start_ns, crossing_id, t_end_ns FROM standstill ANTI JOIN on_its_way USING (drive_id, ego_id, t_start_ns) WHERE crossing_id IS NOT NULL
+)
 
 -- @anchor
 SELECT ref_id, t_out_ns AS t_ns
@@ -42,11 +43,10 @@ JOIN standstill s ON s.drive_id = r.drive_id AND s.ego_id = r.ego_id AND s.cross
 -- @condition
 SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
     CASE WHEN s.t_start_ns IS NULL THEN true
-        WHEN s.t_end_ns - s.t_start_ns > $stop_s * 1e9 THEN queued(s.ahead_id, s.ahead_gap_m, s.ahead_speed_mps, s.ahead_known, $near_m, $slow_mps)
-            OR stands_for(w.object_id, w.actor_class, w.gap_m, w.along_mps, w.known, $near_m, $near_m, $slow_mps)
+        WHEN s.idle_ns > $stop_s * 1e9 THEN false
+        WHEN s.idle_at_most_ns > $stop_s * 1e9 THEN NULL
         WHEN s.end_seen THEN true END AS holds,
-    format('the ego stood on the crossing for {:.1f} s', (s.t_end_ns - s.t_start_ns) / 1e9) AS reason
+    format('the ego stood on the crossing for {:.1f} s, of which {:.1f} s with nobody in its way', (s.t_end_ns - s.t_start_ns) / 1e9, s.idle_ns / 1e9) AS reason
 FROM reference_step g
 JOIN reference r USING (ref_id)
 LEFT JOIN standstill s ON s.drive_id = g.drive_id AND s.ego_id = g.ego_id AND s.t_start_ns = g.t_ns AND s.crossing_id = r.crossing_id
-LEFT JOIN in_way w ON w.drive_id = g.drive_id AND w.ego_id = g.ego_id AND w.t_ns = g.t_ns

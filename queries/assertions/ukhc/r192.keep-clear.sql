@@ -41,8 +41,8 @@ JOIN standstill s ON s.drive_id = r.drive_id AND s.ego_id = r.ego_id AND s.cross
 
 -- @condition
 SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
-    s.t_start_ns IS NULL OR NOT exit_full(s.ahead_id, s.ahead_gap_m, s.ahead_speed_mps, s.ahead_known, s.crossing_clear_m, s.t_end_ns - s.t_start_ns, $near_m, $slow_mps, $long_s) AS holds,
-    CASE WHEN s.t_start_ns IS NOT NULL THEN 'the ego stood on the crossing' || coalesce(' behind ' || s.ahead_id, '') END AS reason
+    s.t_start_ns IS NULL OR NOT exit_full(s.blocking_id, s.blocking_gap_m, s.blocking_speed_mps, s.blocking_known, s.crossing_clear_m, s.t_end_ns - s.t_start_ns, $near_m, $slow_mps, $long_s) AS holds,
+    CASE WHEN s.t_start_ns IS NOT NULL THEN 'the ego stood on the crossing' || coalesce(' behind ' || s.blocking_id, '') END AS reason
 FROM reference_step g
 JOIN reference r USING (ref_id)
 LEFT JOIN standstill s ON s.drive_id = g.drive_id AND s.ego_id = g.ego_id AND s.t_start_ns = g.t_ns AND s.crossing_id = r.crossing_id
