@@ -394,6 +394,17 @@ CREATE TABLE unseen (
     behind_m DOUBLE                   -- the same over the near end, so far behind the ego's rear
 );
 
+CREATE TABLE oncoming_vehicle (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step
+    object_id VARCHAR NOT NULL,       -- who comes towards the ego on the lane that it would overtake in, or is parked the wrong way round in the ego's
+    vehicle BOOLEAN,                  -- NULL: its class is not known
+    da_m DOUBLE,                      -- along the corridor, the ego's front to its nearest corner; on its way: what it has yet to go as well
+    speed_mps DOUBLE,                 -- its speed
+    on_its_way BOOLEAN NOT NULL       -- it is not on the corridor yet and gets there within 15 s
+);
+
 CREATE TABLE oncoming (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -507,7 +518,8 @@ CREATE TABLE overtake_sda (
     occurrence INTEGER NOT NULL,      -- see overtake
     profile VARCHAR NOT NULL,         -- see profile; every one, selected or not
     t0_ns BIGINT NOT NULL,            -- see overtake
-    da_m DOUBLE,                      -- distance ahead; NULL: unknown, or more than sda_m while a nearer OV is not ruled out, or too little at the ego's speed at t0 and enough at its mean speed
+    ov_id VARCHAR,                    -- of the oncoming vehicles at t0 the one that leaves the least, see oncoming_vehicle; NULL: none
+    da_m DOUBLE,                      -- distance ahead to it; NULL: unknown, or more than sda_m while another OV is not ruled out, or too little at the ego's speed at t0 and enough at its mean speed (or the one that it had reached when the log ended)
     at_least BOOLEAN NOT NULL,        -- da_m is only a lower bound (a sight line)
     nobody BOOLEAN NOT NULL,          -- every vehicle placed, and no OV as far as da_m
     sda_m DOUBLE,                     -- safe distance ahead, at the ego's speed at t0; observed: at its mean speed, if completed, and where da_m is no more than what the ego and the OV covered while the ego was out and the OV's stopping distance: at least that; NULL: undefined
@@ -526,8 +538,8 @@ CREATE TABLE overtake_step (
     vbp_id VARCHAR NOT NULL,          -- the vehicle being passed
     free_m DOUBLE,                    -- how far ahead of the ego's front the corridor and the sensor reach at t0
     free_reason VARCHAR,              -- what ends it: map_end, corridor_end, sensor_range
-    ov_id VARCHAR,                    -- nearest oncoming vehicle at this step; NULL: none
-    ov_known BOOLEAN NOT NULL,        -- no other vehicle may be nearer: every one is placed
+    ov_id VARCHAR,                    -- of the oncoming vehicles at this step the one whose danger space reaches furthest into the ego's, see oncoming_vehicle; NULL: none
+    ov_known BOOLEAN NOT NULL,        -- no other vehicle may come: every one is placed
     sd_av_m DOUBLE,                   -- stopping distance of the ego: length of its danger space
     ds_av_d_m DOUBLE,                 -- middle of that danger space across the corridor: where the front bumper's middle is, left positive
     ds_av_half_m DOUBLE,              -- half its width: half the vehicle's
@@ -535,9 +547,9 @@ CREATE TABLE overtake_step (
     ds_ov_d_m DOUBLE,                 -- middle of its danger space across the corridor
     ds_ov_half_m DOUBLE,              -- half its width
     vbp_in_ds_av_m DOUBLE,            -- along the corridor, how far the VBP is inside the ego's danger space (negative: clear of it by that much)
-    ov_in_ds_av_m DOUBLE,             -- the OV inside the ego's
-    av_in_ds_ov_m DOUBLE,             -- the ego inside the OV's
-    ds_overlap_m DOUBLE               -- the two danger spaces inside each other
+    ov_in_ds_av_m DOUBLE,             -- an OV inside the ego's, the most of any; NULL: not known of one, and of the others none is inside
+    av_in_ds_ov_m DOUBLE,             -- likewise the ego inside an OV's
+    ds_overlap_m DOUBLE               -- likewise the two danger spaces inside each other
 );
 
 CREATE TABLE opportunity (

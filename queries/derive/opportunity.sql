@@ -18,19 +18,26 @@ numbered AS (
 ),
 judged AS (
     SELECT
-        h.*, p.profile, coalesce(o.da_m, o.free_m) AS da_m, o.n_unplaced, o.object_id IS NULL AS free,
+        h.*, p.profile, coalesce(v.da_m, o.free_m) AS da_m, o.n_unplaced, o.object_id IS NULL AS free, v.object_id AS ov_id,
         CASE WHEN h.v_av > h.v_vbp THEN safe_distance_ahead_m(
             h.w, p.pull_out_angle_rad, p.cut_in_angle_rad, p.pull_out_headroom_m, p.cut_in_clearance_m, h.l_av, a.length_m, h.v_av, h.v_vbp,
-            CASE WHEN o.object_id IS NULL THEN h.limit_mps ELSE o.speed_mps END
+            CASE WHEN o.object_id IS NULL THEN h.limit_mps ELSE v.speed_mps END
         ) END AS sda_m,
-        h.v_av + CASE WHEN o.object_id IS NULL THEN h.limit_mps ELSE o.speed_mps END AS closing_mps
+        h.v_av + CASE WHEN o.object_id IS NULL THEN h.limit_mps ELSE v.speed_mps END AS closing_mps
     FROM numbered h
     JOIN actor a ON a.drive_id = h.drive_id AND a.actor_id = h.object_id
     CROSS JOIN (SELECT * FROM profile WHERE profile <> 'observed') p
     LEFT JOIN oncoming o ON o.drive_id = h.drive_id AND o.ego_id = h.ego_id AND o.t_ns = h.t_ns
+    LEFT JOIN oncoming_vehicle v ON v.drive_id = h.drive_id AND v.ego_id = h.ego_id AND v.t_ns = h.t_ns AND v.vehicle
+),
+-- of several oncoming vehicles the one that leaves the least, see overtake_sda
+worst AS (
+    SELECT *
+    FROM judged
+    QUALIFY row_number() OVER (PARTITION BY drive_id, ego_id, t_ns, profile ORDER BY da_m - sda_m NULLS FIRST, ov_id) = 1
 ),
 spared AS (
-    SELECT *, CASE WHEN n_unplaced = 0 AND NOT (free AND da_m <= sda_m) THEN da_m - sda_m END AS spare_m FROM judged
+    SELECT *, CASE WHEN n_unplaced = 0 AND NOT (free AND da_m <= sda_m) THEN da_m - sda_m END AS spare_m FROM worst
 ),
 episode AS (
     SELECT

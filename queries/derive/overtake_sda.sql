@@ -3,14 +3,20 @@
 -- The formula takes one speed for the whole manoeuvre: that at t0, of an overtake that was completed the mean one for the profile observed. An
 -- ego that sped up to overtake would have needed less than its speed at t0 says, and which of the two it planned with is not known; where the
 -- log ends before it is back, the speed that it had reached by then stands for the mean one.
-WITH closed AS (
-    SELECT o.drive_id, o.ego_id, o.occurrence, o.da_m - min(n.da_m) AS closed_m
+WITH other AS (
+    SELECT o.drive_id, o.ego_id, o.occurrence, v.object_id AS ov_id, v.da_m, v.speed_mps AS v_ov_mps
     FROM overtake o
-    JOIN oncoming n ON n.drive_id = o.drive_id AND n.ego_id = o.ego_id AND n.object_id = o.ov_id AND n.t_ns >= o.t0_ns AND n.t_ns <= o.t_end_ns
-    GROUP BY o.drive_id, o.ego_id, o.occurrence, o.da_m
+    JOIN oncoming_vehicle v ON v.drive_id = o.drive_id AND v.ego_id = o.ego_id AND v.t_ns = o.t0_ns AND v.vehicle
+    UNION ALL
+    SELECT drive_id, ego_id, occurrence, NULL, da_m, v_ov_mps FROM overtake WHERE ov_id IS NULL
 ),
--- what the ego and the OV covered while the ego was out (the OV at its speed at t0, or faster where it was), and the OV's stopping
--- distance: where the overtake was broken off, by the ego, the log or a collision, the whole of it would have needed more
+closed AS (
+    SELECT v.drive_id, v.ego_id, v.occurrence, v.ov_id, v.da_m - min(n.da_m) AS closed_m
+    FROM overtake o
+    JOIN other v USING (drive_id, ego_id, occurrence)
+    JOIN oncoming_vehicle n ON n.drive_id = o.drive_id AND n.ego_id = o.ego_id AND n.object_id = v.ov_id AND n.t_ns >= o.t0_ns AND n.t_ns <= o.t_end_ns
+    GROUP BY v.drive_id, v.ego_id, v.occurrence, v.ov_id, v.da_m
+),
 top AS (
     SELECT o.drive_id, o.ego_id, o.occurrence, max(e.speed_mps) AS v_top_mps
     FROM overtake o
@@ -18,22 +24,29 @@ top AS (
     WHERE o.status = 'truncated'
     GROUP BY ALL
 ),
+-- what the ego and the OV covered while the ego was out (the OV at its speed at t0, or faster where it was), and the OV's stopping
+-- distance: where the overtake was broken off, by the ego, the log or a collision, the whole of it would have needed more
 driven AS (
     SELECT
-        o.drive_id, o.ego_id, o.occurrence, m.v_top_mps, (o.t_end_ns - o.t0_ns) / 1e9 AS out_s,
+        o.drive_id, o.ego_id, o.occurrence, v.ov_id, v.da_m, v.v_ov_mps, m.v_top_mps, (o.t_end_ns - o.t0_ns) / 1e9 AS out_s,
         CASE WHEN o.status = 'completed' THEN (f.travel_m - e.travel_m) / nullif((o.t_end_ns - o.t0_ns) / 1e9, 0) END AS v_mean_mps,
-        greatest(b.front_s_m - a.front_s_m + o.v_ov_mps * (o.t_end_ns - o.t0_ns) / 1e9, c.closed_m) + stopping_distance_m(o.v_ov_mps) AS driven_m
+        greatest(b.front_s_m - a.front_s_m + v.v_ov_mps * (o.t_end_ns - o.t0_ns) / 1e9, c.closed_m) + stopping_distance_m(v.v_ov_mps) AS driven_m
     FROM overtake o
+    JOIN other v USING (drive_id, ego_id, occurrence)
     LEFT JOIN ego_corridor a ON a.drive_id = o.drive_id AND a.ego_id = o.ego_id AND a.chain_id = o.chain_id AND a.t_ns = o.t0_ns
     LEFT JOIN ego_corridor b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.chain_id = o.chain_id AND b.t_ns = o.t_end_ns
     LEFT JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns = o.t0_ns
     LEFT JOIN ego_state f ON f.drive_id = o.drive_id AND f.ego_id = o.ego_id AND f.t_ns = o.t_end_ns
-    LEFT JOIN closed c ON c.drive_id = o.drive_id AND c.ego_id = o.ego_id AND c.occurrence = o.occurrence
+    LEFT JOIN closed c ON c.drive_id = o.drive_id AND c.ego_id = o.ego_id AND c.occurrence = o.occurrence AND c.ov_id = v.ov_id
     LEFT JOIN top m ON m.drive_id = o.drive_id AND m.ego_id = o.ego_id AND m.occurrence = o.occurrence
 ),
 input AS (
     SELECT
-        o.* REPLACE (CASE WHEN p.profile = 'observed' THEN coalesce(d.v_mean_mps, o.v_av_mps) ELSE o.v_av_mps END AS v_av_mps), d.out_s, p.profile, coalesce(d.v_mean_mps, d.v_top_mps) AS v_later_mps,
+        o.* REPLACE (
+            CASE WHEN p.profile = 'observed' THEN coalesce(d.v_mean_mps, o.v_av_mps) ELSE o.v_av_mps END AS v_av_mps,
+            d.ov_id AS ov_id, d.da_m AS da_m, d.v_ov_mps AS v_ov_mps
+        ),
+        o.ov_id AS nearest_id, d.out_s, p.profile, coalesce(d.v_mean_mps, d.v_top_mps) AS v_later_mps,
         CASE WHEN p.profile = 'observed' THEN d.driven_m END AS driven_m,
         CASE WHEN p.profile <> 'observed' THEN p.pull_out_angle_rad WHEN o.status = 'completed' THEN o.pull_out_angle_rad END AS beta,
         CASE p.profile WHEN 'observed' THEN o.cut_in_angle_rad ELSE p.cut_in_angle_rad END AS theta,
@@ -56,11 +69,21 @@ planned AS (
 ),
 required AS (
     -- where DA is not even more than that, it counts; of an overtake that was not completed nobody knows what else would have been enough
-    SELECT *, CASE WHEN da_m <= driven_m THEN greatest(planned_m, driven_m) ELSE planned_m END AS sda_m, coalesce(da_m <= sda_m AND da_m > sped_up_m, false) AS sped_up
+    SELECT
+        *, CASE WHEN da_m <= driven_m THEN greatest(planned_m, driven_m) ELSE planned_m END AS sda_m, coalesce(da_m <= sda_m AND da_m > sped_up_m, false) AS sped_up
     FROM planned
+),
+-- of several oncoming vehicles: one that leaves too little before one of which that is not known, and the one that leaves the least
+worst AS (
+    SELECT *
+    FROM required
+    QUALIFY row_number() OVER (
+        PARTITION BY drive_id, ego_id, occurrence, profile
+        ORDER BY CASE WHEN da_m <= sda_m AND NOT sped_up THEN 0 WHEN da_m > sda_m THEN 2 ELSE 1 END, da_m - sda_m, ov_id
+    ) = 1
 )
 SELECT
-    drive_id, ego_id, occurrence, profile, t0_ns,
+    drive_id, ego_id, occurrence, profile, t0_ns, ov_id,
     CASE WHEN told AND NOT sped_up AND (n_unplaced = 0 OR da_m <= sda_m) THEN da_m END AS da_m,
     ov_id IS NULL AS at_least,
     ov_id IS NULL AND n_unplaced = 0 AS nobody,
@@ -81,5 +104,6 @@ SELECT
         WHEN ov_id IS NULL AND da_m <= sda_m THEN 'no oncoming vehicle as far as can be told, but that is only ' || round(da_m, 1)::VARCHAR || ' m (' || free_reason || ')'
         WHEN ov_id IS NULL THEN 'no oncoming vehicle within ' || round(da_m, 1)::VARCHAR || ' m'
         WHEN da_m <= sda_m AND sda_m = driven_m THEN 'the ego was out of its lane for ' || round(out_s, 1)::VARCHAR || ' s'
+        WHEN ov_id <> nearest_id THEN format('{} comes behind {}, and leaves the least: {:.1f} m, where more than {:.1f} m is required', ov_id, nearest_id, da_m, sda_m)
     END AS reason
-FROM required
+FROM worst

@@ -19,17 +19,40 @@ WITH stage AS (
 met AS (
     SELECT *, danger_space_m(speed_mps) AS sd_m, d_m + length_m / 2 * sin(heading_diff_rad) AS fd, width_m / 2 AS fh
     FROM pair SEMI JOIN stage USING (t_ns)
+),
+-- every oncoming vehicle: the worst of them counts, of each distance. One whose place across the corridor is not known, for it is still on its
+-- way there or has no size, may be the worst unless the danger spaces do not even reach so far
+against AS (
+    SELECT
+        s.drive_id, s.ego_id, s.occurrence, s.t_ns, v.object_id, v.da_m, o.sd_m, o.fd, o.fh,
+        coalesce(inside3(s.ef + s.sd_av_m - o.rear_s_m, o.front_s_m - s.ef, s.fh + o.lat_half_m - abs(s.fd - o.d_m)), short_of(s.sd_av_m - v.da_m)) AS ov_in_m,
+        coalesce(inside3(s.ef - o.rear_s_m + o.sd_m, o.rear_s_m - s.er, s.eh + o.fh - abs(s.ed - o.fd)), short_of(danger_space_m(v.speed_mps) - v.da_m)) AS av_in_m,
+        coalesce(
+            inside3(s.ef + s.sd_av_m - o.rear_s_m + o.sd_m, o.rear_s_m - s.ef, s.fh + o.fh - abs(s.fd - o.fd)),
+            short_of(s.sd_av_m + danger_space_m(v.speed_mps) - v.da_m)
+        ) AS overlap_m
+    FROM stage s
+    JOIN oncoming_vehicle v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns AND v.vehicle
+    LEFT JOIN met o ON o.drive_id = s.drive_id AND o.ego_id = s.ego_id AND o.t_ns = s.t_ns AND o.object_id = v.object_id
+),
+worst AS (
+    SELECT
+        drive_id, ego_id, occurrence, t_ns,
+        min({'out_m': -coalesce(overlap_m, '-inf'::DOUBLE), 'da_m': da_m, 'id': object_id, 'sd_m': sd_m, 'fd': fd, 'fh': fh}) AS o,
+        CASE WHEN count(ov_in_m) = count(*) OR max(ov_in_m) >= 0 THEN max(ov_in_m) END AS ov_in_m,
+        CASE WHEN count(av_in_m) = count(*) OR max(av_in_m) >= 0 THEN max(av_in_m) END AS av_in_m,
+        CASE WHEN count(overlap_m) = count(*) OR max(overlap_m) >= 0 THEN max(overlap_m) END AS overlap_m
+    FROM against
+    GROUP BY ALL
 )
 SELECT
-    s.drive_id, s.ego_id, s.occurrence, s.t_ns, s.stage, s.vbp_id, n.object_id AS ov_id,
+    s.drive_id, s.ego_id, s.occurrence, s.t_ns, s.stage, s.vbp_id, w.o.id AS ov_id,
     -- nobody is there only as far as can be told: an unseen vehicle at the limit (70 mph where the map has none) must be out of reach
     coalesce(n.n_unplaced = 0 AND (n.object_id IS NOT NULL OR n.free_m > s.sd_av_m + danger_space_m(coalesce(s.limit_mps, 31.3))), false) AS ov_known,
-    s.sd_av_m, s.fd AS ds_av_d_m, s.fh AS ds_av_half_m, v.sd_m AS sd_ov_m, v.fd AS ds_ov_d_m, v.fh AS ds_ov_half_m,
+    s.sd_av_m, s.fd AS ds_av_d_m, s.fh AS ds_av_half_m, w.o.sd_m AS sd_ov_m, w.o.fd AS ds_ov_d_m, w.o.fh AS ds_ov_half_m,
     inside3(s.ef + s.sd_av_m - b.rear_s_m, b.front_s_m - s.ef, s.fh + b.lat_half_m - abs(s.fd - b.d_m)) AS vbp_in_ds_av_m,
-    inside3(s.ef + s.sd_av_m - v.rear_s_m, v.front_s_m - s.ef, s.fh + v.lat_half_m - abs(s.fd - v.d_m)) AS ov_in_ds_av_m,
-    inside3(s.ef - v.rear_s_m + v.sd_m, v.rear_s_m - s.er, s.eh + v.fh - abs(s.ed - v.fd)) AS av_in_ds_ov_m,
-    inside3(s.ef + s.sd_av_m - v.rear_s_m + v.sd_m, v.rear_s_m - s.ef, s.fh + v.fh - abs(s.fd - v.fd)) AS ds_overlap_m
+    w.ov_in_m AS ov_in_ds_av_m, w.av_in_m AS av_in_ds_ov_m, w.overlap_m AS ds_overlap_m
 FROM stage s
 LEFT JOIN met b ON b.drive_id = s.drive_id AND b.ego_id = s.ego_id AND b.t_ns = s.t_ns AND b.object_id = s.vbp_id
 LEFT JOIN oncoming n ON n.drive_id = s.drive_id AND n.ego_id = s.ego_id AND n.t_ns = s.t_ns
-LEFT JOIN met v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns AND v.object_id = n.object_id
+LEFT JOIN worst w ON w.drive_id = s.drive_id AND w.ego_id = s.ego_id AND w.occurrence = s.occurrence AND w.t_ns = s.t_ns

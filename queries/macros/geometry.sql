@@ -71,6 +71,9 @@ CREATE OR REPLACE MACRO box_clearance(dx, dy, c, s, hla, hwa, hlb, hwb) AS
 -- Depth of an overlap from its three one-sided depths; unknown as soon as one is (least() alone would leave it out).
 CREATE OR REPLACE MACRO inside3(a, b, c) AS CASE WHEN a IS NOT NULL AND b IS NOT NULL AND c IS NOT NULL THEN least(a, b, c) END;
 
+-- An overlap along one axis as the overlap of two boxes whose other axis is not known: only if it is none.
+CREATE OR REPLACE MACRO short_of(along_m) AS CASE WHEN along_m < 0 THEN along_m END;
+
 -- Lengths as whole picometres, and back: their running sums are the same to the last bit in every order and beside any other drive.
 -- (A sum of doubles over a window is not: how it is split depends on what else is in the table.)
 CREATE OR REPLACE MACRO whole_pm(x_m) AS round(1e12 * x_m)::HUGEINT;

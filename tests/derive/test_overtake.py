@@ -396,6 +396,32 @@ def _judged_speeding_up(hand: str, far: float, until_s: float) -> dict[str, Row]
     return {row["profile"]: row for row in scenes.judged([drive([ego, vbp, ov], way.environment)], rules=[SDA])}
 
 
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize("beside", ["parked", "cyclist"])
+def test_of_several_that_come_the_worst_counts(beside: str, hand: str) -> None:
+    """A car at the opposing kerb, or a cyclist that comes slowly, is met first: it hides nobody who comes behind it."""
+    way, (ego, vbp, ov) = scene(hand)
+    t = ego.t_s
+    edge_d = way.other + np.sign(way.other) * 1.2
+    others = {
+        "parked": standing("near", way, t, 330.0, edge_d, turned=math.pi),
+        "cyclist": moving("near", way, t, 400 - 3 * t, edge_d, kind="bicycle", length=1.8, width=0.6),
+    }
+    near, fast = others[beside], moving("fast", way, t, 560 - 8 * t, way.other)
+    told = [drive([ego, vbp, *who], way.environment) for who in ([near], [ov], [fast], [near, ov, fast])]
+    sda = [
+        {row["profile"]: row for row in rows(derived(d, tables=["overtake_sda"]), "FROM overtake_sda")} for d in told
+    ]
+    for profile, row in sda[-1].items():
+        alone = min((each[profile]["spare_m"], each[profile]["ov_id"]) for each in sda[:-1])
+        assert (row["spare_m"], row["ov_id"]) == (pytest.approx(alone[0]), alone[1])
+    steps = [rows(derived(d, tables=["overtake_step"]), "FROM overtake_step ORDER BY t_ns") for d in told]
+    for column in ("ov_in_ds_av_m", "av_in_ds_ov_m", "ds_overlap_m"):
+        for *alone, together in zip(*steps, strict=True):
+            seen = [row[column] for row in alone if row["ov_id"] is not None]
+            assert together[column] == (pytest.approx(max(seen)) if seen else None)
+
+
 def test_without_anybody_the_distance_is_a_bound_and_the_limit_is_assumed() -> None:
     """The road ends at 600 m; SDA is worked out for an oncoming vehicle at 60 mph."""
     way, (ego, vbp, _) = scene()

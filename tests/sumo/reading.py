@@ -116,7 +116,6 @@ class Overtake(NamedTuple):
     ov: str | None
     da_m: float
     end_m: float  # how far the road goes on
-    sda_m: dict[str, float | None]
     verdicts: dict[str, str]
 
 
@@ -248,8 +247,8 @@ def _excursion(log: Log, net: Net, own: Log, first: int, end: int) -> list[Overt
         if not passed and not (rank == 0 and gaps[0] <= NEAR_M and well):
             continue
         line = net.lines["ba_0" if own.against[first] else "ab_0"]
-        da, v_ov, ov = _oncoming(there, line, bool(own.against[first]), float(front), float(centre))
-        v_ov = net.limit_mps if ov is None else v_ov
+        others = _oncoming(there, line, bool(own.against[first]), float(front), float(centre))
+        da, _, ov = others[0]
         # the row of vehicles from the nearest one's rear to this one's front; one that is alone has its own length
         row_m = float(there.along[at].max() - row_begin)
         # one that sped up to overtake: whether it planned with the speed that it had or with the one that it got to is not known
@@ -258,26 +257,27 @@ def _excursion(log: Log, net: Net, own: Log, first: int, end: int) -> list[Overt
             later = float(own.speed[first:].max())
         elif passed:
             later = _mean_speed(own, first, end)
-        needed, least = (
-            {
-                name: _safe_distance(
-                    net.lane_m, math.radians(angle), 2 * gap + row_m + log.sizes[me, 0],
-                    (speed, float(there.speed[at]), v_ov),
+        speeds = float(own.speed[first]), max(float(own.speed[first]), later)
+        verdicts: dict[str, str] = {}
+        for name, (angle, gap) in PROFILES.items():
+            way_m = 2 * gap + row_m + log.sizes[me, 0]
+            said = set()
+            for other_da, speed, who in others:
+                v_ov = net.limit_mps if who is None else speed
+                needed, least = (
+                    _safe_distance(net.lane_m, math.radians(angle), way_m, (v, float(there.speed[at]), v_ov))
+                    for v in speeds
                 )
-                for name, (angle, gap) in PROFILES.items()
-            }
-            for speed in (float(own.speed[first]), max(float(own.speed[first]), later))
-        )  # fmt: skip
-        verdicts = {
-            name: "unknown"
-            if (sda or 0) >= da > (least[name] or math.inf)
-            else _verdict(da, sda, seen=ov is not None, begin=first > 0)
-            for name, sda in needed.items()
-        }
+                if (needed or 0) >= other_da > (least or math.inf):
+                    said.add("unknown")
+                else:
+                    said.add(_verdict(other_da, needed, seen=who is not None, begin=first > 0))
+            # everybody who comes counts, not the nearest alone
+            verdicts[name] = next(verdict for verdict in ("fail", "unknown", "pass") if verdict in said)
         found.append(
             Overtake(
                 log.ids[me], step / 10, int(own.step[end]) / 10 if back else None, log.ids[vbp], passed,
-                None if ov is None else log.ids[ov], da, float(line.s[-1] - front), needed, verdicts,
+                None if ov is None else log.ids[ov], da, float(line.s[-1] - front), verdicts,
             )
         )  # fmt: skip
     return found
@@ -295,14 +295,20 @@ def _passed(own: Log, other: Log, first: int, end: int) -> bool:
     return bool((own.along[first:end].max(axis=1)[mine] > other.along.max(axis=1)[theirs]).any())
 
 
-def _oncoming(there: Log, line: Line, against: bool, front: float, centre: float) -> tuple[float, float, int | None]:
-    """Return DA, the speed to reckon with, and who comes; nobody: the road's end  (or as far as is looked) and no speed."""
+def _oncoming(
+    there: Log, line: Line, against: bool, front: float, centre: float
+) -> list[tuple[float, float, int | None]]:
+    """Return DA, the speed to reckon with, and who it is, of everybody who comes, the nearest first.
+
+    Nobody: the road's end (or as far as is looked) and no speed.
+    """
     coming = (there.against != against) & (there.along.mean(axis=1) > centre)
     coming &= (there.speed > STANDING_MPS) | (there.offset.min(axis=1) < -OVER_M)  # or it is parked in the own lane
     if not coming.any():
-        return min(float(line.s[-1]) - front, LOOK_M), math.nan, None
-    k = np.flatnonzero(coming)[np.argmin(there.along[coming].min(axis=1))]
-    return float(there.along[k].min() - front), float(there.speed[k]), int(there.who[k])
+        return [(min(float(line.s[-1]) - front, LOOK_M), math.nan, None)]
+    das = there.along.min(axis=1) - front
+    found = np.flatnonzero(coming)
+    return [(float(das[k]), float(there.speed[k]), int(there.who[k])) for k in found[np.argsort(das[found])]]
 
 
 def _safe_distance(lane_m: float, angle: float, way_m: float, speeds: tuple[float, float, float]) -> float | None:
