@@ -25,7 +25,7 @@
 
 -- @condition
 WITH astride AS (
-    SELECT drive_id, ego_id, l.t_ns, l.marking, l.astride_begin_seen, l.changes, l.overtaking OR l.passing_id IS NOT NULL AS excused,
+    SELECT drive_id, ego_id, l.t_ns, l.marking, l.beyond, l.astride_begin_seen, l.changes, l.overtaking OR l.passing_id IS NOT NULL AS excused,
         CASE WHEN l.t_ns = l.t_astride_ns OR excused OR e.speed_mps <= standing_mps() THEN 0 ELSE s.dt_ns END AS counted_ns,
         sum(counted_ns) OVER w / 1e9 AS most_s, coalesce(sum(counted_ns) FILTER (l.passing_known AND excused IS NOT NULL) OVER w, 0) / 1e9 AS least_s
     -- over both lines at once: a lane that is too narrow for it
@@ -45,7 +45,9 @@ judged AS (
             WHEN least_s > required THEN least_s
         END AS observed
     FROM astride
-    WHERE excused IS DISTINCT FROM true AND coalesce(marking IN ('broken', 'broken_broken', 'broken_solid', 'solid_broken', 'botts_dots'), true)
+    -- a solid line divides lanes too where both go the same way; else it is the edge, or the middle of the road
+    WHERE excused IS DISTINCT FROM true
+        AND coalesce(marking IN ('broken', 'broken_broken', 'broken_solid', 'solid_broken', 'botts_dots') OR marking IN ('solid', 'solid_solid') AND beyond IS NOT DISTINCT FROM 'same', true)
 )
 SELECT e.drive_id, e.ego_id, e.t_ns, coalesce(a.required, $astride_s) AS required, coalesce(NOT a.astride_begin_seen, false) AS at_least,
     CASE WHEN e.front_s_m IS NULL THEN NULL WHEN a.t_ns IS NULL THEN 0.0::DOUBLE ELSE a.observed END AS observed,
