@@ -398,7 +398,7 @@ CREATE TABLE oncoming_vehicle (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
-    object_id VARCHAR NOT NULL,       -- who comes towards the ego on the lane that it would overtake in, or is parked the wrong way round in the ego's
+    object_id VARCHAR NOT NULL,       -- who comes towards the ego on the lane that it would overtake in, a vehicle or an animal, or is parked the wrong way round in the ego's
     vehicle BOOLEAN,                  -- NULL: its class is not known
     da_m DOUBLE,                      -- along the corridor, the ego's front to its nearest corner; on its way: what it has yet to go as well
     speed_mps DOUBLE,                 -- its speed

@@ -1,5 +1,5 @@
 -- Everybody who comes towards the ego on the lane that it would overtake in, per ego step (paper: OV and DA). The nearest of them need not be
--- the one that matters most: one that is parked, or slow, is reached without haste.
+-- the one that matters most: one that is parked, or slow, is reached without haste. A horse on the road comes like a vehicle.
 -- A vehicle that comes from another lane counts from 15 s before it gets there, at the distance that it then really made.
 WITH ego AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, e.s_m, e.front_s_m, x.side, x.over_width_m
@@ -8,10 +8,10 @@ WITH ego AS (
     WHERE e.front_s_m IS NOT NULL AND x.side IS NOT NULL
 ),
 against AS (
-    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.rear_s_m, p.speed_mps, p.rear_s_m - e.front_s_m AS da_m, is_vehicle(p.actor_class) AS vehicle
+    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.rear_s_m, p.speed_mps, p.rear_s_m - e.front_s_m AS da_m, is_vehicle(p.actor_class) OR p.actor_class = 'animal' AS vehicle
     FROM pair p
     JOIN ego e USING (drive_id, ego_id, t_ns)
-    WHERE may_be_vehicle(p.actor_class) AND p.s_m > e.s_m AND abs(p.heading_diff_rad) > 2 * pi() / 3
+    WHERE (may_be_vehicle(p.actor_class) OR p.actor_class = 'animal') AND p.s_m > e.s_m AND abs(p.heading_diff_rad) > 2 * pi() / 3
         AND e.side * p.d_m - p.lat_half_m < p.half_width_m + coalesce(p.over_width_m, e.over_width_m, 2 * p.half_width_m)
         -- standing the wrong way round in the running lane it is parked there; moving it is oncoming
         AND e.side * p.d_m + p.lat_half_m > CASE WHEN p.speed_mps <= standing_mps() THEN p.half_width_m + over_boundary_m() ELSE -p.half_width_m END

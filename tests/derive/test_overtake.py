@@ -397,15 +397,16 @@ def _judged_speeding_up(hand: str, far: float, until_s: float) -> dict[str, Row]
 
 
 @pytest.mark.parametrize("hand", ["rht", "lht"])
-@pytest.mark.parametrize("beside", ["parked", "cyclist"])
+@pytest.mark.parametrize("beside", ["parked", "cyclist", "horse"])
 def test_of_several_that_come_the_worst_counts(beside: str, hand: str) -> None:
-    """A car at the opposing kerb, or a cyclist that comes slowly, is met first: it hides nobody who comes behind it."""
+    """A car at the opposing kerb, or a cyclist that comes slowly, or a horse, is met first: it counts, and hides nobody who comes behind it."""
     way, (ego, vbp, ov) = scene(hand)
     t = ego.t_s
     edge_d = way.other + np.sign(way.other) * 1.2
     others = {
         "parked": standing("near", way, t, 330.0, edge_d, turned=math.pi),
         "cyclist": moving("near", way, t, 400 - 3 * t, edge_d, kind="bicycle", length=1.8, width=0.6),
+        "horse": moving("near", way, t, 400 - 3 * t, way.other, kind="animal", length=2.4, width=0.8),
     }
     near, fast = others[beside], moving("fast", way, t, 560 - 8 * t, way.other)
     told = [drive([ego, vbp, *who], way.environment) for who in ([near], [ov], [fast], [near, ov, fast])]
@@ -413,8 +414,8 @@ def test_of_several_that_come_the_worst_counts(beside: str, hand: str) -> None:
         {row["profile"]: row for row in rows(derived(d, tables=["overtake_sda"]), "FROM overtake_sda")} for d in told
     ]
     for profile, row in sda[-1].items():
-        alone = min((each[profile]["spare_m"], each[profile]["ov_id"]) for each in sda[:-1])
-        assert (row["spare_m"], row["ov_id"]) == (pytest.approx(alone[0]), alone[1])
+        least, worst = min((each[profile]["spare_m"], each[profile]["ov_id"]) for each in sda[:-1])
+        assert (row["spare_m"], row["ov_id"]) == (pytest.approx(least), worst)
     steps = [rows(derived(d, tables=["overtake_step"]), "FROM overtake_step ORDER BY t_ns") for d in told]
     for column in ("ov_in_ds_av_m", "av_in_ds_ov_m", "ds_overlap_m"):
         for *alone, together in zip(*steps, strict=True):
