@@ -226,3 +226,35 @@ def test_a_log_may_begin_in_the_middle_of_an_overtake(seconds: float, ok: bool) 
     actors = [moving("ego", way, t, 600 - 12 * t, way.own), moving("o", way, t, 900 + 15 * t, way.own)]
     (found,) = rows(derived(drive(actors, way.environment), tables=["registration"]), "FROM registration")
     assert found["ok"] is ok
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(
+    ("pieces", "well_until", "well_from", "ok"),
+    [
+        (((1000.0, 0.0),), 90.0, 800.0, True),
+        # never, only before, only after, or not for long
+        (((1000.0, 0.0),), 0.0, 2000.0, False),
+        (((1000.0, 0.0),), 200.0, 2000.0, False),
+        (((1000.0, 0.0),), 0.0, 700.0, False),
+        (((1000.0, 0.0),), 55.0, 800.0, False),
+        # a map that lies to the north of the road fits on the parts that lead north, too
+        (((220.0, 0.0), (157.0, 1 / 100), (360.0, 0.0), (157.0, -1 / 100), (300.0, 0.0)), 180.0, 950.0, False),
+        # of two roads that cross both fit: it lies right
+        (((220.0, 0.0), (157.0, 1 / 100), (300.0, 0.0), (157.0, -1 / 100), (900.0, 0.0)), 500.0, 1500.0, True),
+    ],
+)
+def test_an_ego_that_keeps_to_its_lane_before_and_after_vouches_for_the_map(
+    hand: str, pieces: tuple[tuple[float, float], ...], well_until: float, well_from: float, ok: bool
+) -> None:
+    """Most of the time it is 1.5 m beside the middle of its lane; is that the map or the ego?"""
+    way = road(pieces, hand=hand)
+    t = times((sum(length for length, _ in pieces) - 60) / 14)
+    s = 30 + 14 * t
+    d = way.own + np.sign(way.own) * np.where((s < well_until) | (s > well_from), 0.0, 1.5)
+    (found,) = rows(
+        derived(drive([moving("ego", way, t, s, d)], way.environment), tables=["registration"]), "FROM registration"
+    )
+    assert found["lateral_median_m"] > 1.2
+    assert found["ok"] is ok
+    assert ("before and after" in found["reason"]) is ok
