@@ -218,7 +218,7 @@ CREATE TABLE overtake_place (
     rear_id VARCHAR,                  -- vehicle behind or beside, in the overtaking lane or moving into it, at t0; NULL: nobody
     rear_gap_m DOUBLE,                -- its front to the ego's rear; negative: alongside
     rear_ttc_s DOUBLE,                -- time until it gets to the ego's rear at the ego's speed and the highest of its own in the 2 s before; infinite: never, or nobody; 0: alongside
-    rear_known BOOLEAN NOT NULL       -- every vehicle behind, within 200 m, was placed, and its speed known
+    rear_known BOOLEAN NOT NULL       -- every vehicle behind or beside, within 200 m, was placed, and its speed known
 );
 
 CREATE TABLE following (

@@ -63,6 +63,9 @@ REAR = [
     ("overtaking lane, faster", 70.0, 20.0, 1.0, 0.0, True),
     ("overtaking lane, slower", 70.0, 10.0, 1.0, 0.0, True),
     ("alongside in it", 96.0, 12.0, 1.0, 0.0, True),
+    ("alongside in it, its middle ahead of the ego's", 102.5, 20.0, 1.0, 0.0, True),
+    ("alongside in it, its tail beside the ego's front", 105.0, 20.0, 1.0, 0.0, True),
+    ("just past the ego in it", 112.0, 20.0, 1.0, 0.0, False),
     ("own lane", 70.0, 20.0, 0.0, 0.0, False),
     ("own lane, pulling out", 70.0, 20.0, 0.1, 0.5, True),
     ("own lane, drawing in", 70.0, 20.0, 0.1, -0.5, False),
@@ -92,6 +95,21 @@ def test_who_comes_up_from_behind(  # noqa: PLR0917
         assert found["rear_gap_m"] == pytest.approx(gap, abs=0.3)  # a box that turns reaches further
         ttc = 0.0 if gap < 0 else gap / (speed - 12) if speed > 12 else math.inf
         assert found["rear_ttc_s"] == pytest.approx(ttc, rel=0.05)
+
+
+@HANDS
+@pytest.mark.parametrize(("speed", "counts"), [(20.0, True), (8.0, False)])
+def test_a_narrow_one_beside_the_ego_in_its_own_lane(hand: str, speed: float, counts: bool) -> None:
+    """Its middle 0.8 m ahead, it moves over at 0.5 m/s: a faster one overtakes the ego, a slower one is passed."""
+    way = road(hand=hand)
+    ego, vbp = scene(way)
+    t0 = rows(derived(drive([ego, vbp], way.environment), tables=["overtake"]), "FROM overtake")[0]["t0_ns"] / 1e9
+    t = ego.t_s
+    s = 50 + 12 * t0 + 0.8 + speed * (t - t0)
+    d = way.own * 1.3 + np.sign(way.other) * 0.5 * (t - t0)
+    rider = moving("r", way, t, s, d, kind="motorcycle", length=2.2, width=0.8)
+    (found, *_) = place(way, ego, vbp, rider)
+    assert found["rear_id"] == ("r" if counts else None)
 
 
 @HANDS
