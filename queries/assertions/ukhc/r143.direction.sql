@@ -49,17 +49,30 @@
 -- @applies
 -- not off every lane, as in a car park
 WITH ego AS (
-    SELECT drive_id, ego_id, t_ns, front_s_m, rear_s_m, with_direction, $closed_m + $closed_s * speed_mps AS reach_m FROM ego_state
+    SELECT drive_id, ego_id, t_ns, front_s_m, rear_s_m, speed_mps, with_direction, $closed_m + $closed_s * speed_mps AS reach_m FROM ego_state
 ),
--- an overtake excuses the ego until the overtaken vehicle is left behind
+-- an overtake excuses the ego beside the overtaken vehicle, on its way up to it, and until it is left behind. A vehicle that it does not gain
+-- on is not being overtaken: it excuses the ego no longer than an overtake takes. Whether one is, is not known of somebody without a place.
 passing_by AS (
-    SELECT o.drive_id, o.ego_id, o.t_ns
-    FROM overtake_step o
-    JOIN ego e USING (drive_id, ego_id, t_ns)
-    LEFT JOIN pair p ON p.drive_id = o.drive_id AND p.ego_id = o.ego_id AND p.t_ns = o.t_ns AND p.object_id = o.vbp_id
-    WHERE coalesce(p.front_s_m >= e.rear_s_m - e.reach_m, true)
-    UNION
-    SELECT drive_id, ego_id, t_ns FROM line_step WHERE passing_id IS NOT NULL
+    SELECT drive_id, ego_id, t_ns, CASE WHEN bool_or(excused) THEN true WHEN count(excused) = count(*) THEN false END AS excused
+    FROM (
+        SELECT
+            o.drive_id, o.ego_id, o.t_ns,
+            coalesce(
+                p.front_s_m >= e.rear_s_m - e.reach_m AND (
+                    p.rear_s_m <= e.front_s_m AND p.front_s_m >= e.rear_s_m
+                    OR o.early AND p.rear_s_m - e.front_s_m <= e.reach_m
+                    OR e.speed_mps - p.speed_mps > standing_mps() AND 1e9 * (p.rear_s_m - e.front_s_m) <= longest_overtake_ns() * (e.speed_mps - p.speed_mps)
+                ),
+                CASE WHEN o.early THEN true END
+            ) AS excused
+        FROM (SELECT *, t_ns - min(t_ns) OVER (PARTITION BY drive_id, ego_id, occurrence) <= longest_overtake_ns() AS early FROM overtake_step) o
+        JOIN ego e USING (drive_id, ego_id, t_ns)
+        LEFT JOIN pair p ON p.drive_id = o.drive_id AND p.ego_id = o.ego_id AND p.t_ns = o.t_ns AND p.object_id = o.vbp_id
+        UNION ALL
+        SELECT drive_id, ego_id, t_ns, true FROM line_step WHERE passing_id IS NOT NULL
+    )
+    GROUP BY ALL
 ),
 out_for_a_while AS (
     SELECT DISTINCT s.drive_id, s.ego_id, s.t_ns
@@ -93,7 +106,7 @@ round AS (
 )
 SELECT e.drive_id, e.ego_id, e.t_ns,
     -- out for a while past what the log does not show: whether there was anything is not known
-    (c.t_ns IS NULL OR CASE WHEN p.t_ns IS NOT NULL OR c.closed THEN false WHEN x.t_ns IS NOT NULL AND NOT e.in_junction THEN NULL ELSE NOT c.closed END)
+    (c.t_ns IS NULL OR CASE WHEN p.excused OR c.closed THEN false WHEN p.t_ns IS NOT NULL AND p.excused IS NULL OR x.t_ns IS NOT NULL AND NOT e.in_junction THEN NULL ELSE NOT c.closed END)
         AND (e.x_m IS NULL OR e.lanelet_id IS NOT NULL OR a.t_ns IS NOT NULL AND w.road_type = 'motorway') AND (NOT e.in_junction OR a.t_ns IS NOT NULL OR coalesce(r.against, false))
         AND CASE WHEN abs(m.v_long_mps) > $manoeuvring_mps OR w.road_type = 'motorway' THEN true WHEN abs(m.v_long_mps) <= $manoeuvring_mps AND w.road_type IS NOT NULL THEN false END AS applies
 FROM ego_state e
