@@ -29,8 +29,10 @@
 SELECT drive_id, ego_id, t0_ns AS t_ns, t_end_ns, vbp_id AS object_id, occurrence
 FROM overtake
 WHERE opposing IS DISTINCT FROM false
--- a row of parked vehicles is one obstruction
-QUALIFY occurrence = min(occurrence) OVER (PARTITION BY drive_id, ego_id, t0_ns)
+-- a row of parked vehicles is one obstruction, whoever moves and is overtaken in the same go
+QUALIFY row_number() OVER (
+    PARTITION BY drive_id, ego_id, t0_ns ORDER BY coalesce(v_vbp_mps > standing_mps(), false), v_vbp_mps IS NULL, occurrence
+) = 1
 
 -- @condition
 -- kept is only what was seen to its end: nobody unplaced, back in its lane, and the time after that too
