@@ -38,7 +38,7 @@ CREATE TABLE conflict (
 CREATE TABLE forced_braking (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    object_id VARCHAR NOT NULL,       -- another actor that slowed by more than 1.5 m/s2 (mean over 0.5 s, or one period), beginning at most 4 s before the ego came onto ground that its way led to at an angle (more than 20 degrees, see conflict), or earlier if it came head on (within 30 degrees) and stood before the ego had left that ground: its way as it drove it, straight on where that ends; at the speed that it had it would have come there within 4 s of the ego; it came after the ego, or never
+    object_id VARCHAR NOT NULL,       -- another actor that slowed by more than 1.5 m/s2 (mean over 0.5 s, or one period), beginning at most 4 s before the ego came onto ground that its way led to at an angle (more than 20 degrees, see conflict), or earlier if it came head on (within 30 degrees) and stood before the ego had left that ground (where the ego was out in the opposing lane meanwhile, however gently it braked): its way as it drove it, straight on where that ends; at the speed that it had it would have come there within 4 s of the ego; it came after the ego, or never
     actor_class VARCHAR,              -- see actor
     t_from_ns BIGINT NOT NULL,        -- it begins to brake
     t_to_ns BIGINT NOT NULL,          -- last sample at which it still does
@@ -48,7 +48,8 @@ CREATE TABLE forced_braking (
     decel_mps2 DOUBLE NOT NULL,       -- its strongest mean deceleration over 0.5 s (or one period) until the ego has left
     pet_s DOUBLE NOT NULL,            -- post-encroachment time that there would have been at that speed; negative: both there at once
     angle_rad DOUBLE NOT NULL,        -- its way against the ego's where it would have come to it first, see conflict
-    other_cause VARCHAR               -- why it may not be the ego that it braked for: incomplete (it has no heading or size: taken for a car that heads where it goes), let_go (the ego stood, and not on that ground, as it began), somebody_else (before it or across its way), signal (a line, or a light not seen to be green), bend (too tight for its speed); NULL: nothing else is seen
+    other_cause VARCHAR,              -- why it may not be the ego that it braked for: incomplete (it has no heading or size: taken for a car that heads where it goes), let_go (the ego stood, and not on that ground, as it began), somebody_else (before it or across its way), signal (a line, or a light not seen to be green), bend (too tight for its speed); NULL: nothing else is seen
+    waited BOOLEAN                   -- it stood before the ego had left that ground and went on (faster than 1.5 m/s) at most 2 s before or 5 s after that; false: it did not stand, or stood on; NULL: it went on earlier, or was not seen to go on
 );
 
 CREATE TABLE way_mark (

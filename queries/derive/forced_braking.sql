@@ -5,11 +5,22 @@ WITH
 seed AS MATERIALIZED (
     SELECT drive_id, ego_id, object_id, t_ns FROM pair WHERE accel_mps2 < -least_force_mps2() AND distance_m < forced_near_m()
 ),
+-- head on, it stands while the ego is out in its lane: however gently it braked before that, it may have waited
+halted AS MATERIALIZED (
+    SELECT p.drive_id, p.ego_id, p.object_id, x.t0_ns, min(p.t_ns) AS t_ns
+    FROM excursion x
+    JOIN pair p ON p.drive_id = x.drive_id AND p.ego_id = x.ego_id AND p.t_ns >= x.t0_ns AND p.t_ns <= coalesce(x.t_back_ns, x.t_end_ns)
+    WHERE x.overtaking AND x.over_against IS DISTINCT FROM false
+        AND abs(p.heading_diff_rad) >= head_on_rad() AND p.speed_mps <= standing_mps() AND p.distance_m < forced_near_m()
+    GROUP BY ALL
+),
 near_seed AS (
-    SELECT DISTINCT drive_id, object_id AS actor_id, t_ns // 1_000_000_000 + d.i AS second FROM seed CROSS JOIN (VALUES (-1), (0), (1)) AS d(i)
+    SELECT drive_id, object_id AS actor_id, t_ns // 1_000_000_000 + d.i AS second FROM seed CROSS JOIN (VALUES (-1), (0), (1)) AS d(i)
+    UNION
+    SELECT drive_id, object_id, t_ns // 1_000_000_000 - d.i FROM halted CROSS JOIN range(2 * conflict_ns() // 1_000_000_000) AS d(i)
 ),
 -- the mean over the half second before each sample, or over one period where that is longer
-slowing AS MATERIALIZED (
+easing AS MATERIALIZED (
     SELECT *, (before.speed_mps - speed_mps) / ((t_ns - before.t_ns) / 1e9) AS decel_mps2
     FROM (
         SELECT
@@ -24,19 +35,32 @@ slowing AS MATERIALIZED (
     )
     JOIN (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id) USING (drive_id)
     WHERE t_ns - before.t_ns BETWEEN 400_000_000 AND greatest(max_gap_ns, 500_000_000)
-        AND (before.speed_mps - speed_mps) / ((t_ns - before.t_ns) / 1e9) > least_force_mps2()
+        AND (before.speed_mps - speed_mps) / ((t_ns - before.t_ns) / 1e9) > gentle_mps2()
 ),
-braking AS MATERIALIZED (
+slowing AS (
+    SELECT e.*, false AS gentle FROM easing e WHERE e.decel_mps2 > least_force_mps2()
+    UNION ALL
+    SELECT e.*, true
+    FROM easing e
+    WHERE EXISTS (FROM halted h WHERE h.drive_id = e.drive_id AND h.object_id = e.object_id AND e.t_ns <= h.t_ns AND e.t_ns >= h.t_ns - 2 * conflict_ns())
+),
+stretch AS (
     SELECT
-        drive_id, object_id, min(before).t_ns AS t_from_ns, min(before).speed_mps AS speed_mps, max(t_ns) AS t_to_ns,
+        drive_id, object_id, gentle, min(before).t_ns AS t_from_ns, min(before).speed_mps AS speed_mps, max(t_ns) AS t_to_ns,
         -- going on like this it would have stood after so many metres: what lies far beyond that it did not brake for
         min(before).speed_mps ** 2 * (max(t_ns) - min(before).t_ns) / 1e9 / (2 * (min(before).speed_mps - max({'t_ns': t_ns, 'speed_mps': speed_mps}).speed_mps))
             + forced_beyond_m() AS reach_m
     FROM (
-        SELECT *, sum((t_ns - last_ns > 1_000_000_000)::INTEGER) OVER (PARTITION BY drive_id, object_id ORDER BY t_ns) AS n
-        FROM (SELECT *, lag(t_ns, 1, t_ns) OVER (PARTITION BY drive_id, object_id ORDER BY t_ns) AS last_ns FROM slowing)
+        SELECT *, sum((t_ns - last_ns > 1_000_000_000)::INTEGER) OVER (PARTITION BY drive_id, object_id, gentle ORDER BY t_ns) AS n
+        FROM (SELECT *, lag(t_ns, 1, t_ns) OVER (PARTITION BY drive_id, object_id, gentle ORDER BY t_ns) AS last_ns FROM slowing)
     )
-    GROUP BY drive_id, object_id, n
+    GROUP BY drive_id, object_id, gentle, n
+),
+-- a gentle braking that became a stronger one is that one
+braking AS MATERIALIZED (
+    FROM stretch b
+    WHERE NOT b.gentle
+        OR NOT EXISTS (FROM stretch o WHERE NOT o.gentle AND o.drive_id = b.drive_id AND o.object_id = b.object_id AND o.t_from_ns <= b.t_to_ns AND o.t_to_ns >= b.t_from_ns)
 ),
 -- ---- its way
 driven AS (
@@ -134,7 +158,8 @@ taken AS (
         m.drive_id, m.actor_id AS ego_id, m.object_id, m.t_from_ns, m.t2, min(m.t1) FILTER (abs(m.angle_rad) > conflict_angle_rad()) AS t1_first,
         max(m.t1) FILTER (abs(m.angle_rad) > conflict_angle_rad()) AS t1_last, min({'d2': m.d2, 't1': m.t1, 'angle_rad': m.angle_rad}).angle_rad AS angle_rad
     FROM met m
-    SEMI JOIN seed s ON s.drive_id = m.drive_id AND s.ego_id = m.actor_id AND s.object_id = m.object_id
+    SEMI JOIN (SELECT drive_id, ego_id, object_id FROM seed UNION SELECT drive_id, ego_id, object_id FROM halted) s
+        ON s.drive_id = m.drive_id AND s.ego_id = m.actor_id AND s.object_id = m.object_id
     WHERE coalesce(m.t1 < m.t_came_ns, true)
     GROUP BY m.drive_id, m.actor_id, m.object_id, m.t_from_ns, m.t2
     HAVING t1_first IS NOT NULL AND abs(min({'d2': m.d2, 't1': m.t1, 'angle_rad': m.angle_rad}).angle_rad) > conflict_angle_rad()
@@ -150,14 +175,24 @@ stood AS (
 led AS MATERIALIZED (
     SELECT
         t.drive_id, t.ego_id, t.object_id, t.t_from_ns, b.t_to_ns, b.speed_mps, b.reach_m, min(t.t1_first) AS t_ego_in_ns, max(t.t1_last) AS t_ego_out_ns,
-        (greatest(min(t.t1_first), min(t.t2)) - least(max(t.t1_last), max(t.t2))) / 1e9 AS pet_s, min({'t2': t.t2, 'angle_rad': t.angle_rad}).angle_rad AS angle_rad
+        (greatest(min(t.t1_first), min(t.t2)) - least(max(t.t1_last), max(t.t2))) / 1e9 AS pet_s, min({'t2': t.t2, 'angle_rad': t.angle_rad}).angle_rad AS angle_rad,
+        min(w.t_stood_ns) AS t_stood_ns
     FROM taken t
     JOIN braking b USING (drive_id, object_id, t_from_ns)
     LEFT JOIN stood w USING (drive_id, object_id, t_from_ns)
-    GROUP BY t.drive_id, t.ego_id, t.object_id, t.t_from_ns, b.t_to_ns, b.speed_mps, b.reach_m
-    HAVING t.t_from_ns >= min(t.t1_first) - forced_apart_ns()
+    GROUP BY t.drive_id, t.ego_id, t.object_id, t.t_from_ns, b.t_to_ns, b.speed_mps, b.reach_m, b.gentle
+    HAVING NOT b.gentle AND t.t_from_ns >= min(t.t1_first) - forced_apart_ns()
         -- an oncoming driver sees the ego from afar, and stops before the ego is there
-        OR min(w.t_stood_ns) <= max(t.t1_last) AND abs(min({'t2': t.t2, 'angle_rad': t.angle_rad}).angle_rad) >= head_on_rad()
+        OR min(w.t_stood_ns) <= CASE WHEN b.gentle THEN least(max(t.t1_last), b.t_to_ns + waits_ns()) ELSE max(t.t1_last) END
+            AND abs(min({'t2': t.t2, 'angle_rad': t.angle_rad}).angle_rad) >= head_on_rad()
+),
+-- who waited for the ego goes on when that has left, or a moment before; who stands on stands for something else
+went_on AS (
+    SELECT l.drive_id, l.ego_id, l.object_id, l.t_from_ns, min(s.t_ns) FILTER (s.speed_mps > moves_mps()) AS t_on_ns, max(s.t_ns) AS t_seen_ns
+    FROM led l
+    JOIN state_dynamics s ON s.drive_id = l.drive_id AND s.actor_id = l.object_id AND s.t_ns >= l.t_stood_ns AND s.t_ns <= l.t_ego_out_ns + goes_on_ns()
+    WHERE l.t_stood_ns <= l.t_ego_out_ns AND s.speed_mps IS NOT NULL
+    GROUP BY ALL
 ),
 -- ---- what else it may have braked for
 -- somebody before it, or across its way
@@ -228,8 +263,14 @@ SELECT
         WHEN w.t_from_ns IS NOT NULL THEN 'somebody_else'
         WHEN s.t_from_ns IS NOT NULL THEN 'signal'
         WHEN d.t_from_ns IS NOT NULL THEN 'bend'
-    END AS other_cause
+    END AS other_cause,
+    CASE
+        WHEN n.t_from_ns IS NULL THEN false
+        WHEN n.t_on_ns >= l.t_ego_out_ns - waits_ns() THEN true
+        WHEN n.t_on_ns IS NULL AND n.t_seen_ns >= l.t_ego_out_ns + goes_on_ns() - c.max_gap_ns THEN false
+    END AS waited
 FROM led l
+JOIN clock c USING (drive_id, ego_id)
 JOIN hardest h USING (drive_id, ego_id, object_id, t_from_ns)
 JOIN road_user a ON a.drive_id = l.drive_id AND a.actor_id = l.object_id
 LEFT JOIN guessed u USING (drive_id, object_id, t_from_ns)
@@ -237,3 +278,4 @@ LEFT JOIN let_go g USING (drive_id, ego_id, object_id, t_from_ns)
 LEFT JOIN behind w USING (drive_id, ego_id, object_id, t_from_ns)
 LEFT JOIN signed s USING (drive_id, object_id, t_from_ns)
 LEFT JOIN bend d USING (drive_id, object_id, t_from_ns)
+LEFT JOIN went_on n USING (drive_id, ego_id, object_id, t_from_ns)

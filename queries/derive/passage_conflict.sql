@@ -56,7 +56,7 @@ forced AS (
     JOIN ego_state e ON e.drive_id = f.drive_id AND e.ego_id = f.ego_id AND e.t_ns = f.t_ego_in_ns
     JOIN state_dynamics s ON s.drive_id = f.drive_id AND s.actor_id = f.object_id AND s.t_ns = f.t_from_ns
     WHERE (e.t_ns <= p.t_b_ns OR (f.actor_class IS NOT DISTINCT FROM 'pedestrian' AND e.travel_m <= p.travel_m + 12))
-        AND f.actor_class IS DISTINCT FROM 'object'
+        AND f.actor_class IS DISTINCT FROM 'object' AND f.decel_mps2 > least_force_mps2()
 ),
 hardest AS (
     SELECT

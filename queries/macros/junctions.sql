@@ -48,6 +48,11 @@ CREATE OR REPLACE MACRO end_distance_m(x, y, x0, y0, tx, ty, a, b) AS
     );
 -- Braking that is more than letting off the accelerator: the least that any rule asks about.
 CREATE OR REPLACE MACRO least_force_mps2() AS 1.5;
+-- Our default: slowing that is not noise; a driver who sees from afar that he will have to wait lets the vehicle roll out.
+CREATE OR REPLACE MACRO gentle_mps2() AS 0.3;
+-- Our default: who waits goes on when the ego has as good as left, so long before, or has left, so long after.
+CREATE OR REPLACE MACRO waits_ns() AS 2_000_000_000;
+CREATE OR REPLACE MACRO goes_on_ns() AS 5_000_000_000;
 -- A vehicle may have braked for the ego if, at the speed that it had, it would have arrived within this time before or after the ego.
 CREATE OR REPLACE MACRO forced_apart_ns() AS 4_000_000_000;
 CREATE OR REPLACE MACRO forced_slot(t_ns) AS t_ns // (2 * forced_apart_ns());

@@ -145,15 +145,26 @@ def test_a_follower_who_brakes_behind_the_turning_ego_is_not_forced() -> None:
     assert not forced(drive([ego, follower], ways["we"].environment))
 
 
-def passing(hand: str, *, by: float = 6.5, at: float = 11.0, from_m: float = 380.0, v: float = 16.0) -> Drive:
+def passing(  # noqa: PLR0917
+    hand: str,
+    *,
+    by: float = 6.5,
+    at: float = 11.0,
+    from_m: float = 380.0,
+    v: float = 16.0,
+    again: float | None = None,
+    more: tuple[Actor, ...] = (),
+    end: float = END,
+    **other_has: Any,
+) -> Drive:
     """Return the ego's way round a parked car at 200 m, at 10 m/s, and somebody oncoming who stops for it."""
     way = road(((600.0, 0.0),), hand)
-    t = times(END)
+    t = times(end)
     s = 50 + 10 * t
     ego = moving("ego", way, t, s, swing(way, s, 170.0, 215.0))
     parked = standing("p", way, t, 200.0, way.own)
-    other = moving("o", way, t, from_m - way_of(stopping(t, v, at, by), 0.0, t), way.other)
-    return drive([ego, parked, other], way.environment)
+    other = moving("o", way, t, from_m - way_of(stopping(t, v, at, by, again), 0.0, t), way.other, **other_has)
+    return drive([ego, parked, other, *more], way.environment)
 
 
 GIVE_WAY = "ukhc.r163.obstruction-give-way"
@@ -195,6 +206,67 @@ def test_who_slows_early_and_goes_on_or_stops_far_off_does_not_wait_for_the_ego(
     other = moving("o", way, t, 420 - way_of(slowed, 0.0, t), way.other)
     assert verdicts(drive([ego, parked, other], way.environment), GIVE_WAY) == [("pass", "p")]
     assert verdicts(passing(hand, by=4.0, at=6.0, from_m=550.0, v=12.0), GIVE_WAY) == [("pass", "p")]
+
+
+# it brakes at 8.5 s, 330 m up the road, by 1.4 m/s2 from 12 m/s, and stands 51 m further on from 17.1 s; the ego is back at 18.4 s or so
+GENTLY: dict[str, Any] = {"by": 1.4, "at": 8.5, "from_m": 405.0, "v": 12.0}
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_who_stops_gently_and_waits_for_the_ego_is_forced(hand: str) -> None:
+    """It goes on 20 s into the log; one that goes on much later, or stands on, stands there for something else."""
+    scene = passing(hand, again=19.0, **GENTLY)
+    (row,) = forced(scene)
+    assert (row["object_id"], row["other_cause"], row["waited"]) == ("o", None, True)
+    assert row["decel_mps2"] == pytest.approx(1.4, abs=0.05)
+    assert row["speed_mps"] == pytest.approx(12.0, abs=0.2)
+    assert verdicts(scene, GIVE_WAY) == [("fail", "p")]
+    for again in (28.0, None):
+        scene = passing(hand, again=again, **GENTLY)
+        assert [row["waited"] for row in forced(scene)] == [False]
+        assert verdicts(scene, GIVE_WAY) == [("pass", "p")]
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_whether_it_waited_may_not_be_clear(hand: str) -> None:
+    """The log ends while it stands; it is a bus; somebody walks across before it."""
+    scene = passing(hand, end=21.5, **GENTLY)
+    assert [row["waited"] for row in forced(scene)] == [None]
+    assert verdicts(scene, GIVE_WAY) == [("unknown", "p")]
+    assert verdicts(passing(hand, again=19.0, kind="bus", **GENTLY), GIVE_WAY) == [("unknown", "p")]
+    way = road(((600.0, 0.0),), hand)
+    t = times(END)
+    d = way.other * (2.5 - 0.6 * np.clip(t - 8, 0, 8))
+    walker = moving("w", way, t, np.full(t.shape, 272.0), d, kind="pedestrian", length=0.5, width=0.5)
+    scene = passing(hand, again=19.0, more=(walker,), **GENTLY)
+    assert [row["other_cause"] for row in forced(scene) if row["object_id"] == "o"] == ["somebody_else"]
+    assert verdicts(scene, GIVE_WAY) == [("unknown", "p")]
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_who_stops_gently_far_off_or_while_the_ego_keeps_its_lane_does_not_wait(hand: str) -> None:
+    far = {**GENTLY, "from_m": 560.0}
+    assert not forced(passing(hand, again=19.0, **far))
+    assert verdicts(passing(hand, again=19.0, **far), GIVE_WAY) == [("pass", "p")]
+    way = road(((600.0, 0.0),), hand)
+    t = times(END)
+    other = moving("o", way, t, 405 - way_of(stopping(t, 12.0, 8.5, 1.4, 19.0), 0.0, t), way.other)
+    assert not forced(drive([moving("ego", way, t, 50 + 10 * t, way.own), other], way.environment))
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(("evades", "verdict"), [(0.8, "fail"), (2.5, "pass")])
+def test_who_comes_by_with_hardly_any_room(hand: str, evades: float, verdict: str) -> None:
+    """It swerves on to the verge as it meets the ego beside the parked car; their ways share no ground."""
+    way = road(((600.0, 0.0),), hand)
+    t = times(END)
+    s = 50 + 10 * t
+    ego = moving("ego", way, t, s, swing(way, s, 170.0, 215.0, share=0.6))
+    parked = standing("p", way, t, 200.0, way.own * 1.4)
+    there = 345 - 10 * t
+    d = way.other + np.sign(way.other) * evades * (np.clip((there - 255) / -20, 0, 1) - np.clip((there - 160) / -20, 0, 1))
+    other = moving("o", way, t, there, d)
+    assert verdicts(drive([ego, parked, other], way.environment), GIVE_WAY) == [(verdict, "p")]
 
 
 def test_without_a_heading_or_a_size_it_is_in_doubt() -> None:

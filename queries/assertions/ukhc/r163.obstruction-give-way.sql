@@ -7,7 +7,7 @@
 -- legal = "should"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["clock", "conflict", "forced_braking", "overtake"]
+-- reads = ["clock", "conflict", "ego_state", "forced_braking", "overtake", "pair"]
 -- requires = ["map", "registration", "handedness", "ego_size"]
 --
 -- [params.pet_s]
@@ -24,6 +24,16 @@
 -- default = 2.6
 -- unit = "rad"
 -- why = "our default: within 30 degrees of head on"
+--
+-- [params.close_m]
+-- default = 0.5
+-- unit = "m"
+-- why = "our default: mirrors take 0.2 m of it on each side"
+--
+-- [params.closing_mps]
+-- default = 8.94
+-- unit = "m/s"
+-- why = "our default: slower, at 10 mph each, two drivers can squeeze past each other with care"
 
 -- @reference
 SELECT drive_id, ego_id, t0_ns AS t_ns, t_end_ns, vbp_id AS object_id, occurrence
@@ -38,8 +48,15 @@ QUALIFY row_number() OVER (
 -- kept is only what was seen to its end: nobody unplaced, back in its lane, and the time after that too
 WITH braked AS (
     SELECT
-        r.ref_id, made_to_brake(f.decel_mps2, f.pet_s, f.other_cause, $decel_mps2, $pet_s) AS made,
-        braked_words(f.object_id, f.pet_s, f.decel_mps2, f.other_cause) AS words
+        r.ref_id,
+        CASE
+            WHEN made_to_brake(f.decel_mps2, f.pet_s, f.other_cause, $decel_mps2, $pet_s) THEN true
+            -- however gently it came to a stand; a bus may stand at its stop
+            WHEN f.waited IS DISTINCT FROM false AND f.pet_s < $pet_s AND is_vehicle(f.actor_class) IS DISTINCT FROM false
+                THEN CASE WHEN f.waited AND f.other_cause IS NULL AND f.actor_class <> 'bus' THEN true END
+            ELSE made_to_brake(f.decel_mps2, f.pet_s, f.other_cause, $decel_mps2, $pet_s)
+        END AS made,
+        braked_words(f.object_id, f.pet_s, f.decel_mps2, f.other_cause) || CASE WHEN f.waited THEN ', and it stood until then' ELSE '' END AS words
     FROM reference r
     JOIN forced_braking f ON f.drive_id = r.drive_id AND f.ego_id = r.ego_id AND abs(f.angle_rad) >= $oncoming_rad
         AND f.t_ego_in_ns >= r.t_ns AND f.t_ego_in_ns <= r.t_end_ns
@@ -50,22 +67,40 @@ forced AS (
         coalesce(min(words) FILTER (made), min(words) FILTER (made IS NULL)) AS words
     FROM braked
     GROUP BY ref_id
+),
+-- one who came by with hardly any room; not if it reached over the line itself
+squeezed AS (
+    SELECT ref_id, CASE WHEN bool_or(close) THEN true END AS made, min({'room_m': clearance_m, 'object_id': object_id}) AS least
+    FROM (
+        SELECT
+            r.ref_id, p.object_id, p.clearance_m,
+            p.speed_mps > standing_mps() AND e.speed_mps + p.speed_mps > $closing_mps AND is_vehicle(p.actor_class)
+                AND CASE WHEN NOT in_lane(p.d_m, p.lat_half_m, p.half_width_m) THEN true END AS close
+        FROM reference r
+        JOIN pair p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_ns >= r.t_ns AND p.t_ns <= r.t_end_ns
+        JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
+        WHERE p.clearance_m < $close_m AND abs(p.heading_diff_rad) >= $oncoming_rad
+    )
+    WHERE close IS DISTINCT FROM false
+    GROUP BY ref_id
 )
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps <= standing_mps() AS applies,
     CASE
-        WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false) OR f.made THEN false
-        WHEN f.ref_id IS NOT NULL AND f.made IS NULL THEN NULL
+        WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false) OR f.made OR z.made THEN false
+        WHEN f.ref_id IS NOT NULL AND f.made IS NULL OR z.ref_id IS NOT NULL THEN NULL
         WHEN o.begin_seen AND o.n_unplaced = 0 AND count(c.object_id) = count(c.decel_mps2) AND k.t_end_ns >= o.t3_ns + ($pet_s * 1e9)::BIGINT THEN true
     END AS holds,
     CASE
         WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false)
             THEN format('an oncoming vehicle came {:.1f} s after the ego, or braked by {:.1f} m/s2', min(c.pet_s), coalesce(max(c.decel_mps2), 0))
+        WHEN z.ref_id IS NOT NULL AND f.made IS DISTINCT FROM true THEN format('{} came by with {:.2f} m between', z.least.object_id, z.least.room_m)
         WHEN f.words IS NOT NULL THEN f.words
         WHEN o.t3_ns IS NULL THEN 'the ego was not seen back in its lane' END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 JOIN clock k USING (drive_id, ego_id)
 LEFT JOIN forced f USING (ref_id)
+LEFT JOIN squeezed z USING (ref_id)
 LEFT JOIN (FROM conflict WHERE ego_first AND abs(angle_rad) >= $oncoming_rad) c
     ON c.drive_id = r.drive_id AND c.ego_id = r.ego_id AND c.t_ego_in_ns >= r.t_ns AND c.t_ego_in_ns <= r.t_end_ns
-GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.t3_ns, k.t_end_ns, f.ref_id, f.made, f.words
+GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.t3_ns, k.t_end_ns, f.ref_id, f.made, f.words, z.ref_id, z.made, z.least
