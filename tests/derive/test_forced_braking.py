@@ -145,7 +145,7 @@ def test_a_follower_who_brakes_behind_the_turning_ego_is_not_forced() -> None:
     assert not forced(drive([ego, follower], ways["we"].environment))
 
 
-def passing(  # noqa: PLR0917
+def passing(
     hand: str,
     *,
     by: float = 6.5,

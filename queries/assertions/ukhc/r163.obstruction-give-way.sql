@@ -7,7 +7,7 @@
 -- legal = "should"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["clock", "conflict", "ego_state", "forced_braking", "overtake", "pair"]
+-- reads = ["clock", "conflict", "ego_state", "forced_braking", "hidden", "overtake", "pair", "unplaced"]
 -- requires = ["map", "registration", "handedness", "ego_size"]
 --
 -- [params.pet_s]
@@ -83,24 +83,38 @@ squeezed AS (
     )
     WHERE close IS DISTINCT FROM false
     GROUP BY ref_id
+),
+-- one without a place, that does not just stand, may have come as near as that until those two seconds are over
+lost AS (
+    SELECT r.ref_id, min(u.object_id || ' ' || u.reason) AS words
+    FROM reference r
+    JOIN unplaced u ON u.drive_id = r.drive_id AND u.ego_id = r.ego_id AND u.t_ns >= r.t_ns AND u.t_ns <= r.t_end_ns + ($pet_s * 1e9)::BIGINT
+        AND u.code NOT IN ('beyond_map', 'lost_behind')
+    JOIN hidden h ON h.drive_id = u.drive_id AND h.ego_id = u.ego_id AND h.t_ns = u.t_ns AND h.object_id = u.object_id
+    JOIN ego_state e ON e.drive_id = u.drive_id AND e.ego_id = u.ego_id AND e.t_ns = u.t_ns
+    LEFT JOIN pair p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.t_ns = u.t_ns AND p.object_id = u.object_id
+    WHERE h.vehicle AND h.ahead IS DISTINCT FROM false AND h.least_m < $pet_s * coalesce(e.speed_mps, fast_mps()) AND coalesce(p.speed_mps > standing_mps(), true)
+    GROUP BY r.ref_id
 )
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps <= standing_mps() AS applies,
     CASE
         WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false) OR f.made OR z.made THEN false
         WHEN f.ref_id IS NOT NULL AND f.made IS NULL OR z.ref_id IS NOT NULL THEN NULL
-        WHEN o.begin_seen AND o.n_unplaced = 0 AND count(c.object_id) = count(c.decel_mps2) AND k.t_end_ns >= o.t3_ns + ($pet_s * 1e9)::BIGINT THEN true
+        WHEN o.begin_seen AND o.n_unplaced = 0 AND l.ref_id IS NULL AND count(c.object_id) = count(c.decel_mps2) AND k.t_end_ns >= o.t3_ns + ($pet_s * 1e9)::BIGINT THEN true
     END AS holds,
     CASE
         WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false)
             THEN format('an oncoming vehicle came {:.1f} s after the ego, or braked by {:.1f} m/s2', min(c.pet_s), coalesce(max(c.decel_mps2), 0))
         WHEN z.ref_id IS NOT NULL AND f.made IS DISTINCT FROM true THEN format('{} came by with {:.2f} m between', z.least.object_id, z.least.room_m)
         WHEN f.words IS NOT NULL THEN f.words
-        WHEN o.t3_ns IS NULL THEN 'the ego was not seen back in its lane' END AS reason
+        WHEN o.t3_ns IS NULL THEN 'the ego was not seen back in its lane'
+        WHEN l.ref_id IS NOT NULL THEN l.words END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 JOIN clock k USING (drive_id, ego_id)
 LEFT JOIN forced f USING (ref_id)
 LEFT JOIN squeezed z USING (ref_id)
+LEFT JOIN lost l USING (ref_id)
 LEFT JOIN (FROM conflict WHERE ego_first AND abs(angle_rad) >= $oncoming_rad) c
     ON c.drive_id = r.drive_id AND c.ego_id = r.ego_id AND c.t_ego_in_ns >= r.t_ns AND c.t_ego_in_ns <= r.t_end_ns
-GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.t3_ns, k.t_end_ns, f.ref_id, f.made, f.words, z.ref_id, z.made, z.least
+GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.t3_ns, k.t_end_ns, f.ref_id, f.made, f.words, z.ref_id, z.made, z.least, l.ref_id, l.words
