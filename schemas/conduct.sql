@@ -12,7 +12,7 @@ CREATE TABLE ego_condition (
     nation VARCHAR,                   -- gb, gb-eng, gb-wls, gb-sct, de, ...; NULL: not given
     weather VARCHAR,                  -- dry, wet or ice; NULL: not given
     light VARCHAR,                    -- day or night; NULL: not given
-    vehicle_class VARCHAR,            -- car, car_towing, bus, goods_7t5, goods_over_7t5, motorcycle: of the ego, as given or by its class; NULL: not known
+    vehicle_class VARCHAR,            -- car, car_towing, bus, goods_7t5, goods_over_7t5, motorcycle: of the ego, as given or by its class; a car that draws a trailer (see ego_part) is car_towing; NULL: not known, or another that draws one
     limit_mps DOUBLE,                 -- speed limit of the map where the ego is; NULL: the map does not say
     engaged BOOLEAN                   -- the automated driver drives: by its mode flag, or as given; true where neither is there; NULL: there are flags, and none is known here
 );

@@ -39,6 +39,9 @@ here AS (
 ),
 declares AS (
     SELECT DISTINCT drive_id, ego_id FROM ego_mode WHERE mode = 'engaged'
+),
+towing AS (
+    SELECT DISTINCT drive_id, ego_id FROM ego_part WHERE part = 'trailer'
 )
 SELECT
     h.drive_id, h.ego_id, h.t_ns, h.road_type,
@@ -57,8 +60,11 @@ SELECT
         WHEN h.road_type IN ('motorway', 'rural') THEN 'open'
     END) AS area,
     g.nation, g.weather, g.light,
-    -- a van may be a car-derived one or a goods vehicle, a lorry may be of any weight
-    coalesce(g.vehicle_class, CASE WHEN a.actor_class IN ('car', 'bus', 'motorcycle') THEN a.actor_class END) AS vehicle_class,
+    -- a van may be a car-derived one or a goods vehicle, a lorry may be of any weight; who draws a trailer is no longer of its own class
+    coalesce(g.vehicle_class, CASE
+        WHEN t.ego_id IS NULL THEN CASE WHEN a.actor_class IN ('car', 'bus', 'motorcycle') THEN a.actor_class END
+        WHEN a.actor_class = 'car' THEN 'car_towing'
+    END) AS vehicle_class,
     h.limit_mps,
     CASE
         WHEN g.engaged IS NOT NULL THEN g.engaged = 'yes'
@@ -68,5 +74,6 @@ SELECT
 FROM here h
 JOIN actor a ON a.drive_id = h.drive_id AND a.actor_id = h.ego_id
 LEFT JOIN given g ON g.drive_id = h.drive_id
+LEFT JOIN towing t ON t.drive_id = h.drive_id AND t.ego_id = h.ego_id
 LEFT JOIN declares d ON d.drive_id = h.drive_id AND d.ego_id = h.ego_id
 LEFT JOIN ego_mode m ON m.drive_id = h.drive_id AND m.ego_id = h.ego_id AND m.t_ns = h.t_ns AND m.mode = 'engaged'

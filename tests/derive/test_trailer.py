@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from tests.scenes import Actor, Road, derived, drive, judged, moving, road, rows, standing, times
+from tests.scenes import Actor, Road, derived, drive, judged, moving, road, rows, saying, standing, times
 
 if TYPE_CHECKING:
     import duckdb
@@ -91,6 +91,33 @@ def test_the_trailer_s_box_is_the_ego_s(hand: str) -> None:
     lost = drive([ego, wide.lost((t > 4) & (t < 6)), behind, beside], way.environment)
     found = {row["object_id"]: row["verdict"] for row in judged([lost], rules=[CRASH])}
     assert found["behind"] == "unknown"
+
+
+@pytest.mark.parametrize(
+    ("kind", "expected"),
+    [("car", "car_towing"), ("bus", None), ("motorcycle", None), ("van", None), ("truck", None), (None, None)],
+)
+@HANDS
+def test_a_car_that_draws_a_trailer_is_one_that_tows(hand: str, kind: str | None, expected: str | None) -> None:
+    way = road(((600.0, 0.0),), hand)
+    t = times(10.0)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own, kind=kind)
+    con = derived(drive([ego, drawn("t", ego, kind="trailer")], way.environment), tables=["ego_condition"])
+    assert {row["vehicle_class"] for row in rows(con, "FROM ego_condition")} == {expected}
+
+
+@pytest.mark.parametrize(("mph", "expected"), [(49, "pass"), (58, "fail")])
+@HANDS
+def test_a_car_with_a_trailer_keeps_to_its_own_limit(hand: str, mph: float, expected: str) -> None:
+    """R124: 50 mph on a single carriageway, though its sign says 60, which holds for the same car without."""
+    way = road(((600.0, 0.0),), hand)
+    t = times(10.0)
+    ego = moving("ego", way, t, 100 + mph * 0.44704 * t, way.own)
+    given = {"nation": "gb"}
+    alone, towing = drive([ego], way.environment), drive([ego, drawn("t", ego, kind="trailer")], way.environment)
+    limit = ["ukhc.r124.speed-limit"]
+    assert {row["verdict"] for row in judged([saying(alone, **given)], rules=limit)} == {"pass"}
+    assert {row["verdict"] for row in judged([saying(towing, **given)], rules=limit)} == {expected}
 
 
 TAILGATERS = [
