@@ -162,7 +162,8 @@ CREATE TABLE beside (
     lat_mps DOUBLE,                   -- its speed across the corridor, towards the ego positive
     cycle_lane VARCHAR,               -- it is on a cycle lane of the carriageway: the marking between that and the lane of motor vehicles, unsaid where the map has none; NULL: it is on none
     along BOOLEAN,                    -- it heads as the corridor runs (within 45 degrees: who crosses it at 89 does not go the same way)
-    on_carriageway BOOLEAN            -- its box reaches into the ego's running lane or a drivable lane beside it, or its centre is on any, or on a cycle lane that adjoins one (a verge, kerb or footway between them makes it a track); NULL: not known
+    on_carriageway BOOLEAN,           -- its box reaches into the ego's running lane or a drivable lane beside it, or its centre is on any, or on a cycle lane that adjoins one (a verge, kerb or footway between them makes it a track); NULL: not known
+    on_strip BOOLEAN                  -- its centre is beside the drivable lanes, with no kerb or verge between: on a shoulder, stop, border, parking, restricted or cycle lane; NULL: not known, as behind a border, which may be a kerb
 );
 
 CREATE TABLE passing (

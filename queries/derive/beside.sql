@@ -1,6 +1,6 @@
 -- Whose box overlaps the ego's along the corridor, how far apart across it. Speeds across come from the velocity where a sample of the
 -- step's time is there, else from speed and heading.
-WITH
+WITH RECURSIVE
 -- past each other between two steps: beside each other in none
 jumped AS (
     SELECT n.* REPLACE ((n.gap_m + m.gap_m) / 2 AS gap_m, (n.gap_m + m.gap_m) / 2 AS clearance_m)
@@ -52,6 +52,26 @@ on_cycle_lane AS (
     JOIN cycle_lane y ON y.environment_id = g.environment_id AND y.lanelet_id = o.lanelet_id
     GROUP BY ALL
 ),
+-- what lies beside a drivable lane without a kerb or verge between: people ride there, too. A border may be a kerb, and nobody drives over
+-- restricted ground: whether what lies behind them belongs to the road is not known
+strip AS (
+    SELECT environment_id, lanelet_id, lane_type, true AS sure FROM lanelet WHERE drivable
+    UNION
+    SELECT n.environment_id, n.lanelet_id, n.lane_type, r.sure AND r.lane_type NOT IN ('border', 'restricted')
+    FROM strip r
+    JOIN lanelet n ON n.environment_id = r.environment_id AND (n.left_id = r.lanelet_id OR n.right_id = r.lanelet_id) AND NOT n.drivable
+        AND n.lane_type IN ('shoulder', 'stop', 'border', 'parking', 'restricted', 'biking')
+    ANTI JOIN lane_boundary b ON b.environment_id = n.environment_id AND b.lanelet_id = n.lanelet_id AND b.marking IN ('curb', 'grass')
+        AND b.side = CASE WHEN n.left_id = r.lanelet_id THEN 'left' ELSE 'right' END
+),
+on_strip AS (
+    SELECT n.drive_id, n.ego_id, n.t_ns, n.object_id, bool_or(y.sure) AS sure
+    FROM placed n
+    JOIN data_log g ON g.drive_id = n.drive_id
+    JOIN lane_occupancy o ON o.drive_id = n.drive_id AND o.actor_id = n.object_id AND o.t_ns = n.t_ns AND NOT o.drivable
+    JOIN strip y ON y.environment_id = g.environment_id AND y.lanelet_id = o.lanelet_id
+    GROUP BY ALL
+),
 on_lane AS (
     SELECT DISTINCT n.drive_id, n.ego_id, n.t_ns, n.object_id
     FROM placed n
@@ -75,11 +95,13 @@ SELECT
     CASE WHEN m.d_m > m.ego_d_m THEN m.ego_left_mps ELSE -m.ego_left_mps END AS ego_lat_mps,
     CASE WHEN m.d_m > m.ego_d_m THEN -m.drift_mps ELSE m.drift_mps END AS lat_mps,
     abs(m.heading_diff_rad) < pi() / 4 AS along, y.marking AS cycle_lane,
-    o.object_id IS NOT NULL OR y.object_id IS NOT NULL OR abs(m.d_m) - m.lat_half_m < m.half_width_m + coalesce(l.width_m, 0.0) AS on_carriageway
+    o.object_id IS NOT NULL OR y.object_id IS NOT NULL OR abs(m.d_m) - m.lat_half_m < m.half_width_m + coalesce(l.width_m, 0.0) AS on_carriageway,
+    CASE WHEN z.object_id IS NULL THEN false WHEN z.sure THEN true END AS on_strip
 FROM moving m
 JOIN clock k USING (drive_id, ego_id)
 LEFT JOIN lane l USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN on_lane o USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN on_cycle_lane y USING (drive_id, ego_id, t_ns, object_id)
+LEFT JOIN on_strip z USING (drive_id, ego_id, t_ns, object_id)
 UNION ALL BY NAME
 SELECT drive_id, ego_id, t_ns, object_id, actor_class FROM doubt

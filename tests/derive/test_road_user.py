@@ -7,6 +7,7 @@ import pytest
 
 from drivelint.maps import MapSource, load_map
 from tests.derive.junction_scenes import cross, crosswalk
+from tests.derive.marked import marked
 from tests.maps import xodr
 from tests.scenes import LANE, Actor, Road, derived, drive, judged, moving, plan, road, rows, standing, times
 
@@ -171,16 +172,20 @@ def cycle_road(hand: str, between: str | None, mark: str = "broken") -> Road:
 
 @HANDS
 @pytest.mark.parametrize(
-    ("between", "mark", "cycle_lane", "british", "german"),
+    ("between", "mark", "cycle_lane", "on_strip", "british", "german"),
     [
-        (None, "broken", "broken", "fail", "fail"),
-        (None, "solid", "solid", "fail", "unknown"),
-        (None, "curb", None, "not_applicable", "not_applicable"),
-        ("border", "solid", None, "not_applicable", "not_applicable"),
+        (None, "broken", "broken", True, "fail", "fail"),
+        (None, "solid", "solid", True, "fail", "unknown"),
+        (None, "curb", None, False, "not_applicable", "not_applicable"),
+        # what the map calls a border may be a kerb
+        ("border", "solid", None, None, "unknown", "not_applicable"),
+        ("border", "curb", None, False, "not_applicable", "not_applicable"),
+        ("shoulder", "solid", None, True, "fail", "not_applicable"),
+        ("sidewalk", "solid", None, False, "not_applicable", "not_applicable"),
     ],
 )
 def test_a_cyclist_on_a_cycle_lane(  # noqa: PLR0917
-    hand: str, between: str | None, mark: str, cycle_lane: str | None, british: str, german: str
+    hand: str, between: str | None, mark: str, cycle_lane: str | None, on_strip: bool | None, british: str, german: str
 ) -> None:
     """Passed at 1.05 m: on the carriageway's lane it counts, on a track behind a verge or kerb it does not."""
     way = cycle_road(hand, between, mark)
@@ -191,7 +196,25 @@ def test_a_cyclist_on_a_cycle_lane(  # noqa: PLR0917
     con = derived(told, tables=["beside"])
     found = rows(con, "FROM beside")
     assert found
-    assert {(r["cycle_lane"], r["on_carriageway"]) for r in found} == {(cycle_lane, british == "fail")}
+    assert {(r["cycle_lane"], r["on_carriageway"]) for r in found} == {(cycle_lane, cycle_lane is not None)}
+    assert {r["on_strip"] for r in found} == {on_strip}
     assert all(r["clearance_m"] == pytest.approx(1.05, abs=0.01) for r in found)
     said = {r["rule_id"]: r["verdict"] for r in judged([told], rules=["ukhc.r163.cyclist", "stvo.s5-passing"])}
     assert said == {"ukhc.r163.cyclist": british, "stvo.s5-passing": german}
+
+
+@HANDS
+@pytest.mark.parametrize("kind", ["shoulder", "stop", "parking", "border", "restricted"])
+@pytest.mark.parametrize(
+    ("gap", "slow", "expected"),
+    [(0.75, False, "fail"), (2.05, False, "pass"), (0.75, True, "unknown"), (2.05, True, "not_applicable")],
+)
+def test_a_cyclist_beside_the_lanes(hand: str, kind: str, gap: float, slow: bool, expected: str) -> None:
+    """Passed on the strip outside the edge line as on the lane; a bicycle that stands there may be parked."""
+    way = marked(hand, beyond=kind)
+    side, speed = -way.over, 0.0 if slow else 5.0
+    ego = moving("ego", way, T, 20 + 16 * T, side * (LANE - 0.3 - 0.9))
+    other = moving("b", way, T, 60 + speed * T, side * (LANE - 0.3 + gap + 0.3), kind="bicycle", length=1.8, width=0.6)
+    told = drive([ego, other], way.environment)
+    assert {r["on_strip"] for r in rows(derived(told, tables=["beside"]), "FROM beside")} == {True}
+    assert {r["verdict"] for r in judged([told], rules=["ukhc.r163.cyclist"])} == {expected}

@@ -33,9 +33,13 @@
 -- source = "UKHC R163"
 
 -- @applies
--- a cyclist that overtakes the ego, or comes towards it, is not passed
+-- a cyclist that overtakes the ego, or comes towards it, is not passed; a bicycle that stands beside the lanes may be a parked one
 SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id,
-    is_bicycle(b.actor_class, a.length_m) AND b.along AND b.on_carriageway AND b.ego_speed_mps > b.speed_mps AS applies
+    is_bicycle(b.actor_class, a.length_m) AND b.along AND b.ego_speed_mps > b.speed_mps AND (b.on_carriageway OR CASE
+        WHEN b.on_strip AND b.speed_mps > standing_mps() THEN true
+        WHEN b.on_strip IS DISTINCT FROM false AND coalesce(b.clearance_m - coalesce(b.blur_m, 0.0) < $fast_clearance_m, true) THEN NULL
+        ELSE false
+    END) AS applies
 FROM beside b
 LEFT JOIN road_user a ON a.drive_id = b.drive_id AND a.actor_id = b.object_id
 

@@ -31,7 +31,7 @@
 
 -- @applies
 SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id,
-    is_class(b.actor_class, 'animal') AND a.length_m >= $length_m AND b.on_carriageway AND b.ego_speed_mps > standing_mps() AS applies
+    is_class(b.actor_class, 'animal') AND a.length_m >= $length_m AND (b.on_carriageway OR b.on_strip) AND b.ego_speed_mps > standing_mps() AS applies
 FROM beside b
 LEFT JOIN actor a ON a.drive_id = b.drive_id AND a.actor_id = b.object_id
 
