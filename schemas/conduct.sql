@@ -204,7 +204,7 @@ CREATE TABLE line_step (
     overtaking BOOLEAN,               -- the ego is overtaking somebody, from 10 m and 5 s at its speed (at least 30 m) before it to 10 m and 5 s past it; NULL: it may be, but that one is lost meanwhile, or the side to overtake on is not known
     passing_id VARCHAR,               -- a vehicle standing, or a cyclist or animal at most at 4.47 m/s, in the running lane or on its edge, that is being passed (from 10 m and 5 s at the ego's speed, at least 30 m, ahead of the ego to 10 m and 5 s behind) and leaves too little room to be passed on this side of the line; NULL: none, or in this stretch the ego overtakes somebody that drives
     passing_known BOOLEAN NOT NULL,   -- nobody else may be passed: everybody near was placed
-    access BOOLEAN                    -- within 30 m the ego goes on to, or comes from, a way beside the road on the far side of the line: it leaves the lanes at 20 mph or less, and turns off, stands there or gets further than 10 m from the running lane's centre line; NULL: not known
+    access BOOLEAN                    -- within 30 m the ego goes on to, or comes from, a way beside the road on the far side of the line: it leaves the lanes at 20 mph or less, and turns off, stands there or gets further than 10 m from the running lane's centre line; a shoulder, bay or cycle lane of the same road is no such way; NULL: not known, as where it turns off and comes back the other way
 );
 
 CREATE TABLE overtake_place (

@@ -6,7 +6,7 @@ WITH ego AS (
         g.environment_id, v.handedness, v.handedness_source <> 'default' AS hand_known, n.lanelet_id, n.road_type,
         least(greatest(x.s_m - c.s_start_m, 0.0), c.length_m - 1e-6) AS lane_s_m,
         coalesce(n.junction_id IS NOT NULL, false) AS in_junction,
-        e.x_m IS NOT NULL AND e.lanelet_id IS NULL AS off_lanes,
+        e.x_m IS NOT NULL AND e.lanelet_id IS NULL AS off_lanes, a.t_ns IS NOT NULL AS aside, y.road_id IS NOT NULL AND y.road_id = n.road_id AS on_its_road, e.yaw_rad - x.heading_diff_rad AS way_rad,
         -- the running lane counted from the first one to the left
         coalesce(sum(l.side) OVER (w ROWS UNBOUNDED PRECEDING), 0) AS lane
     FROM ego_state e
@@ -18,6 +18,8 @@ WITH ego AS (
         AND c.s_start_m <= x.s_m AND x.s_m < c.s_start_m + c.length_m
     LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = c.lanelet_id
     LEFT JOIN lane_crossing l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.t_ns = e.t_ns
+    LEFT JOIN ego_aside a ON a.drive_id = e.drive_id AND a.ego_id = e.ego_id AND a.t_ns = e.t_ns
+    LEFT JOIN lanelet y ON y.environment_id = g.environment_id AND y.lanelet_id = a.lanelet_id
     WINDOW w AS (PARTITION BY e.drive_id, e.ego_id ORDER BY st.k)
 ),
 around AS (
@@ -26,6 +28,7 @@ around AS (
         lag({'seg': seg, 'seen': left_out_m IS NOT NULL AND NOT in_junction}) OVER w AS before,
         lead({'seg': seg, 'seen': left_out_m IS NOT NULL}) OVER w AS after,
         coalesce(lag(lane) OVER w, lane) AS lane_before, coalesce(lead(lane) OVER w, lane) AS lane_after,
+        lag(way_rad) OVER w AS way_before_rad, lead(way_rad) OVER w AS way_after_rad, lag(k) OVER w IS NULL OR lead(k) OVER w IS NULL AS outermost,
         -- how far the way behind and ahead was looked at
         travel_m - min(travel_m) OVER s AS seen_behind_m, max(travel_m) OVER s - travel_m AS seen_ahead_m
     FROM ego
@@ -113,13 +116,17 @@ met AS (
         AND x.allowed IS DISTINCT FROM false AND NOT coalesce(o.moving, false)
     GROUP BY ALL
 ),
--- stretches off the lanes; there the ego has got to a way of another kind if it turned off, stood, or went further than 10 m
+-- stretches off the lanes; there the ego has got to a way of another kind if it turned off, stood, or went further than 10 m. A shoulder,
+-- bay or cycle lane is part of the road itself: whoever stands along it, or comes back from it to lanes that run as those before, was not
+-- elsewhere. And whoever turns beside the lanes and comes back to such lanes may only have turned round.
 off AS (
     SELECT
         drive_id, ego_id, seg, run, min(travel_m) AS from_m, max(travel_m) AS to_m,
         min({'k': k, 'd_m': d_m, 'half_width_m': half_width_m, 'v': speed_mps}) AS first, max({'k': k, 'd_m': d_m, 'half_width_m': half_width_m, 'v': speed_mps}) AS last,
         coalesce(bool_or(abs(heading_diff_rad) BETWEEN turned_off_rad() AND pi() - turned_off_rad()), false) AS turned,
-        coalesce(bool_or(speed_mps <= standing_mps() OR abs(d_m) > 10), false) AS away,
+        coalesce(bool_or(speed_mps <= standing_mps()), false) AS stood, coalesce(bool_or(abs(d_m) > 10), false) AS away, bool_and(aside) AS aside,
+        coalesce(bool_and(on_its_road), false) AS on_its_road, bool_or(outermost) AS outermost,
+        abs(cos(max({'k': k, 'rad': way_after_rad}).rad - min({'k': k, 'rad': way_before_rad}).rad)) <= cos(turned_off_rad()) AS elsewhere,
         min(seen_behind_m) > 0 AS begin_seen, min(seen_ahead_m) > 0 AS end_seen
     FROM (
         SELECT *, k - row_number() OVER (PARTITION BY drive_id, ego_id, seg ORDER BY k) AS run FROM around WHERE off_lanes
@@ -133,7 +140,11 @@ reached AS (
         CASE
             WHEN n.side * v.edge.d_m <= v.edge.half_width_m THEN false
             WHEN v.edge.v > access_mps() THEN CASE WHEN NOT o.turned THEN false END
-            WHEN v.edge.d_m IS NOT NULL AND v.edge.v IS NOT NULL THEN CASE WHEN o.turned OR o.away THEN true WHEN o.begin_seen AND o.end_seen THEN false END
+            WHEN v.edge.d_m IS NULL OR v.edge.v IS NULL THEN NULL
+            WHEN o.away AND NOT o.on_its_road THEN true
+            WHEN o.aside THEN CASE WHEN o.turned AND o.elsewhere THEN true WHEN NOT o.elsewhere OR o.stood AND NOT o.turned THEN false END
+            WHEN o.stood OR o.turned AND (o.outermost OR o.elsewhere) THEN true
+            WHEN NOT o.turned AND o.begin_seen AND o.end_seen THEN false
         END AS access
     FROM numbered n
     JOIN off o USING (drive_id, ego_id, seg)

@@ -193,6 +193,56 @@ def test_along_the_verge_and_back_is_no_access() -> None:
     assert True in {row["access"] for row in rows(tables(way, there), "FROM line_step")}
 
 
+def turning_round(way: Road, radius: float = 4.7) -> Actor:
+    """Return an ego that drives 200 m in its lane, turns round over the other side of the road and drives back along that."""
+    arc = math.pi * radius
+    t = times(90.0)
+    way_m = 5.0 * t
+    angle = np.clip((way_m - 200) / radius, 0, math.pi)
+    x = 100 + np.minimum(way_m, 200) + radius * np.sin(angle) - np.maximum(way_m - 200 - arc, 0)
+    home = ease((way_m - 200 - arc) / 30)  # from beside its new lane into it
+    off = -2.5 + radius * (1 - np.cos(angle))
+    y = way.over * (off + (LANE / 2 - off) * home)
+    vx, vy = np.gradient(x, t), np.gradient(y, t)
+    return Actor("ego", t, x, y, np.arctan2(vy, vx), vx, vy)
+
+
+@HANDS
+@pytest.mark.parametrize("radius", [4.7, 5.2])
+@pytest.mark.parametrize("beyond", ["shoulder", "parking", "biking", "sidewalk", None])
+def test_turning_round_is_no_access(hand: str, beyond: str | None, radius: float) -> None:
+    """Its middle is off the lanes for a moment, before it is across the road or after that."""
+    way = marked(hand, beyond=beyond)
+    found = rows(tables(way, turning_round(way, radius)), "FROM line_step ORDER BY t_ns")
+    over = {row["access"] for row in found if row["side"] == ("left" if hand == "rht" else "right")}
+    assert False in over or beyond in {"sidewalk", None}
+    assert True not in over
+
+
+@HANDS
+@pytest.mark.parametrize("beyond", ["shoulder", "stop", "parking", "border", "restricted", "biking"])
+def test_a_stop_along_the_other_side_is_no_access(hand: str, beyond: str) -> None:
+    """On a strip of the road itself: whoever parks there, or sets off from there, has not reached or left premises."""
+    way = marked(hand, beyond=beyond)
+    t = times(60.0)
+    s = np.minimum(100 + 5 * t, 260)
+    across = ease((s - 200) / 40)
+    there = moving("ego", way, t, s, way.over * (-0.5 + 5.75 * across))
+    assert accesses(way, there) == {False}
+    away = moving("ego", way, t, 100 + 260 - s[::-1], way.over * (-0.5 + 5.75 * across[::-1]))
+    found = rows(tables(way, away), "FROM line_step ORDER BY t_ns")
+    assert {row["access"] for row in found if 40 < row["t_ns"] / 1e9 < 47} == {False}
+
+
+@HANDS
+def test_over_the_shoulder_to_premises_is_access(hand: str) -> None:
+    """Across it and on; where the log ends on it, at an angle, it may be on the way there."""
+    way = marked(hand, beyond="shoulder")
+    ego = leaving(way, 5.0, math.pi / 2)
+    assert accesses(way, ego) == {True}
+    assert accesses(way, ego.keep(np.abs(ego.y) < 1.8 * LANE)) == {None}
+
+
 def test_off_on_the_near_side_is_no_reason_to_cross_the_middle() -> None:
     way = marked("rht")
     t = times(30.0)
