@@ -1,6 +1,6 @@
 -- title = "Stop at a signalled crossing"
 -- clause = "UKHC R196 and R197: at a signalled crossing you must stop on red, and give way to people on it while amber flashes, to those from beyond an island too"
--- hypothesis = "When the ego went onto the crossing, did the light allow it, and was nobody on its half, or about to come onto it, while amber flashed?"
+-- hypothesis = "When the ego went onto the crossing, did the light allow it, and was nobody on its half, or about to come onto it, while amber flashed or, with the line behind it, on red?"
 -- kind = "execution"
 -- derivation = "direct"
 -- severity = "critical"
@@ -16,9 +16,9 @@
 -- why = "our default: a stop line crossed longer ago is not the one before this crossing"
 
 -- @reference
--- where the crossing has a stop line, it is there that the light had to be kept
-SELECT c.drive_id, c.ego_id, c.t_in_ns AS t_ns, c.occurrence, c.on_id AS object_id, c.t_on_ns, c.known, c.coming_id, c.coming_known,
-    CASE WHEN count(l.t_ns) > 0 THEN max({'t': l.t_ns, 'state': l.state}).state ELSE c.state END AS state
+-- where the crossing has a stop line, it is there that the light had to be kept; what it shows since says whether to give way
+SELECT c.drive_id, c.ego_id, c.t_in_ns AS t_ns, c.occurrence, c.on_id AS object_id, c.t_on_ns, c.known, c.coming_id, c.coming_known, c.state,
+    count(l.t_ns) > 0 AS has_line, max({'t': l.t_ns, 'state': l.state}).state AS line_state
 FROM crossing_passage c
 LEFT JOIN stop_line_crossing l ON l.drive_id = c.drive_id AND l.ego_id = c.ego_id AND l.signal_id = c.signal_id
     AND l.t_ns <= c.t_in_ns AND l.t_ns >= c.t_in_ns - ($past_line_s * 1e9)::BIGINT
@@ -26,9 +26,13 @@ WHERE coalesce(c.kind, 'signalled') = 'signalled'
 GROUP BY c.drive_id, c.ego_id, c.t_in_ns, c.occurrence, c.on_id, c.t_on_ns, c.known, c.coming_id, c.coming_known, c.state
 
 -- @condition
--- a light that is off allows nothing and forbids nothing: with somebody there a person has to say
+-- a light that is off allows nothing and forbids nothing: with somebody there a person has to say; on green and amber it is another rule's question
 SELECT drive_id, ego_id, t_ns, ref_id,
-    NOT forbids(state) AND (state NOT IN ('flashing', 'off')
-        OR CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns OR coming_id IS NOT NULL THEN CASE WHEN state = 'flashing' THEN false END WHEN known AND coming_known THEN true END) AS holds,
-    'the light was ' || coalesce(replace(state, '_', ' and '), 'not known') || coalesce(', and ' || coalesce(object_id, coming_id) || ' on the crossing', '') AS reason
+    NOT forbids(CASE WHEN has_line THEN line_state ELSE state END)
+        AND (coalesce(state IN ('green', 'amber'), false)
+            OR CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns OR coming_id IS NOT NULL THEN CASE WHEN state = 'flashing' OR forbids(state) THEN false END
+                WHEN known AND coming_known THEN true END) AS holds,
+    'the light was ' || coalesce(replace(CASE WHEN has_line THEN line_state ELSE state END, '_', ' and '), 'not known')
+        || CASE WHEN has_line AND line_state IS DISTINCT FROM state THEN ' at the line and ' || coalesce(replace(state, '_', ' and '), 'not known') || ' at the crossing' ELSE '' END
+        || coalesce(', and ' || coalesce(object_id, coming_id) || ' on the crossing', '') AS reason
 FROM reference
