@@ -183,10 +183,10 @@ CREATE TABLE crossing_passage (
     kind VARCHAR,                     -- zebra, signalled, other, as the map says, or signalled where a light governs it; NULL: the map does not say
     t_in_ns BIGINT,                   -- first step with its front on it; NULL: the log, or a hole, begins with the ego on it
     t_out_ns BIGINT,                  -- first step with its rear past it; NULL: the log, or a hole, ends with the ego on it
-    on_id VARCHAR,                    -- somebody on foot on the ego's half at any time from t_in to t_out, the first of them; NULL: nobody
+    on_id VARCHAR,                    -- somebody on foot on the ego's half at any time from t_in to t_out, or on the other one if its middle was over that as well, the first of them; NULL: nobody
     t_on_ns BIGINT,                   -- since when
     coming_id VARCHAR,                -- somebody on foot on the other half at t_in who goes straight on to the ego's (within 3 s: longer is a wait on an island); NULL: nobody
-    coming_known BOOLEAN NOT NULL,    -- of everybody on the other half at t_in it is known whether they came from the ego's, leave there, or come
+    coming_known BOOLEAN NOT NULL,    -- of everybody on the other half at t_in it is known whether they came from the ego's, leave there, or come; not where the ego's side reached over it
     waiting_id VARCHAR,               -- somebody on foot who stands (0.5 m/s) off the lanes it lies on, within 2 m of its end on the ego's side, throughout the 2 s before t_in; NULL: nobody
     waiting_known BOOLEAN NOT NULL,   -- nobody without a class stands there so
     known BOOLEAN NOT NULL,           -- everybody on foot nearby was placed from 2 s before t_in to t_out: no track with a hole, or that begins or ends within 30 m then; nobody without a class is on it

@@ -34,7 +34,7 @@ passed AS (
 said AS (SELECT environment_id, crossing_id, min(kind) AS kind FROM crossing GROUP BY environment_id, crossing_id),
 visit AS (
     SELECT
-        p.*, g.environment_id, g.sensor_range_m, n.along_road, m.control, m.signal_id, c.max_gap_ns, c.t_start_ns, c.t_end_ns,
+        p.*, g.environment_id, g.sensor_range_m, n.along_road, m.lanelet_id, m.s_end_m, m.control, m.signal_id, c.max_gap_ns, c.t_start_ns, c.t_end_ns,
         p.t_in_ns - 2_000_000_000 AS t_a_ns, coalesce(p.t_out_ns, p.t_last_ns, p.t_ns) AS t_b_ns, e.x_m, e.y_m
     FROM passed p
     JOIN data_log g USING (drive_id)
@@ -45,12 +45,33 @@ visit AS (
     WHERE m.kind = 'crossing'
 ),
 -- ---- on it, and at its end
+-- the ego's middle on the other half, or only its side
+other AS (
+    SELECT
+        v.drive_id, v.ego_id, v.mark_id, v.t_ns, -v.along_road AS along_road,
+        bool_or(v.side * x.d_m - x.half_width_m > o.gap_m) AS driven,
+        bool_or(coalesce(CASE v.side WHEN 1 THEN x.left_out_m ELSE x.right_out_m END > o.gap_m + over_boundary_m(), true)) AS reached
+    FROM (FROM visit CROSS JOIN (VALUES (1), (-1)) AS b(side)) v
+    JOIN (
+        SELECT environment_id, lanelet_id, side, min(gap_m) AS gap_m FROM lane_beside WHERE against GROUP BY ALL
+    ) o ON o.environment_id = v.environment_id AND o.lanelet_id = v.lanelet_id AND o.side = CASE v.side WHEN 1 THEN 'left' ELSE 'right' END
+    JOIN ego_corridor x ON x.drive_id = v.drive_id AND x.ego_id = v.ego_id AND x.chain_id = v.chain_id
+        AND x.t_ns >= coalesce(v.t_in_ns, v.t_ns) AND x.t_ns <= v.t_b_ns
+    -- its middle past it, it may move over behind it
+    WHERE x.s_m <= v.s_end_m OR x.t_ns = v.t_in_ns
+    GROUP BY ALL
+),
+half AS (
+    SELECT drive_id, ego_id, mark_id, t_ns, along_road FROM visit
+    UNION SELECT drive_id, ego_id, mark_id, t_ns, along_road FROM other WHERE driven
+),
 occupied AS (
     SELECT
         v.drive_id, v.ego_id, v.mark_id, v.t_ns,
         min({'t_ns': o.t_from_ns, 'id': o.object_id}) FILTER (a.actor_class = 'pedestrian') AS who, bool_or(a.actor_class IS DISTINCT FROM 'pedestrian') AS classless
     FROM visit v
-    JOIN crossing_occupancy o ON o.drive_id = v.drive_id AND o.crossing_id = v.mark_id AND o.along_road = v.along_road AND o.object_id <> v.ego_id
+    JOIN half h USING (drive_id, ego_id, mark_id, t_ns)
+    JOIN crossing_occupancy o ON o.drive_id = v.drive_id AND o.crossing_id = v.mark_id AND o.along_road = h.along_road AND o.object_id <> v.ego_id
         AND o.t_from_ns <= v.t_b_ns AND o.t_to_ns >= coalesce(v.t_in_ns, v.t_ns)
     JOIN road_user a ON a.drive_id = o.drive_id AND a.actor_id = o.object_id
     GROUP BY v.drive_id, v.ego_id, v.mark_id, v.t_ns
@@ -59,8 +80,10 @@ occupied AS (
 beyond AS (
     SELECT
         v.drive_id, v.ego_id, v.mark_id, v.t_ns, o.object_id, a.actor_class, o.t_to_ns, v.t_end_ns - v.max_gap_ns AS t_seen_ns,
-        min(q.t_from_ns) FILTER (q.t_from_ns > v.t_in_ns) AS t_next_ns, coalesce(bool_or(q.t_from_ns <= v.t_in_ns), false) AS came
+        min(q.t_from_ns) FILTER (q.t_from_ns > v.t_in_ns) AS t_next_ns, coalesce(bool_or(q.t_from_ns <= v.t_in_ns), false) AS came,
+        coalesce(x.reached, false) AS reached
     FROM visit v
+    LEFT JOIN other x ON x.drive_id = v.drive_id AND x.ego_id = v.ego_id AND x.mark_id = v.mark_id AND x.t_ns = v.t_ns
     JOIN crossing_occupancy o ON o.drive_id = v.drive_id AND o.crossing_id = v.mark_id AND o.along_road = -v.along_road AND o.object_id <> v.ego_id
         AND o.t_from_ns <= v.t_in_ns AND o.t_to_ns >= v.t_in_ns
     JOIN road_user a ON a.drive_id = o.drive_id AND a.actor_id = o.object_id
@@ -71,7 +94,7 @@ coming AS (
     SELECT drive_id, ego_id, mark_id, t_ns, min(object_id) FILTER (comes AND actor_class = 'pedestrian') AS coming_id,
         bool_and(comes IS NOT NULL AND NOT (comes AND actor_class IS DISTINCT FROM 'pedestrian')) AS known
     FROM (
-        SELECT *, CASE WHEN t_next_ns - t_to_ns <= straight_on_ns() THEN true WHEN came OR t_to_ns < t_seen_ns THEN false END AS comes FROM beyond
+        SELECT *, CASE WHEN t_next_ns - t_to_ns <= straight_on_ns() THEN true WHEN reached THEN NULL WHEN came OR t_to_ns < t_seen_ns THEN false END AS comes FROM beyond
     )
     GROUP BY drive_id, ego_id, mark_id, t_ns
 ),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.derive.junction_scenes import cross, crosswalk, lit, signal
-from tests.scenes import Actor, Road, derived, drive, moving, rows, seconds, times
+from tests.scenes import Actor, Road, derived, drive, moving, rows, seconds, swing, times
 
 if TYPE_CHECKING:
     from drivelint.batch import Drive
@@ -126,6 +126,44 @@ def test_somebody_on_the_other_half(hand: str, out: float, v: float, comes: bool
     t = times(14)
     (row,) = passages(drive([going(way), walker("w", t, SIDE[hand] * (out + v * (t - 9.7)))], way.environment))
     assert (row["coming_id"], row["coming_known"]) == ("w" if comes else None, known)
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(
+    ("off", "on", "known"),
+    [
+        (0.0, None, True),
+        (0.85, None, True),  # its side at the middle line
+        (0.95, None, False),
+        (2.0, "w", True),  # its middle on the other half
+        (3.5, "w", True),
+    ],
+)
+def test_the_ego_on_the_other_half(hand: str, off: float, on: str | None, known: bool) -> None:
+    """It goes over the crossing `off` metres nearer to the other half, where somebody who came from the ego's walks off."""
+    way = zebra(hand)
+    t = times(14)
+    s = 20 + 8 * t
+    ego = moving("ego", way, t, s, swing(way, s, 40.0, None, share=off / 3.5))
+    leaves = walker("w", t, SIDE[hand] * (-2.5 - 1.2 * (t - 9.7)))
+    (row,) = passages(drive([ego, leaves], way.environment))
+    assert (row["on_id"], row["coming_id"]) == (on, None)
+    assert row["coming_known"] is (known and on is None)
+    (row,) = passages(drive([ego], way.environment))
+    assert (row["on_id"], row["coming_known"], row["known"]) == (None, True, True)
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(("out", "on"), [(60.0, "w"), (103.0, None)])
+def test_the_other_half_counts_while_its_middle_is_not_past(hand: str, out: float, on: str | None) -> None:
+    """It moves over before the crossing, or as its rear is on it still: from 100 to 103 m."""
+    way = zebra(hand)
+    t = times(14)
+    s = 20 + 8 * t
+    ego = moving("ego", way, t, s, swing(way, s, out, None, 12.0))
+    leaves = walker("w", t, SIDE[hand] * (-2.5 - 1.2 * (t - 9.7)))
+    (row,) = passages(drive([ego, leaves], way.environment))
+    assert (row["on_id"], row["coming_known"]) == (on, on is None)
 
 
 def test_who_waits_between_the_halves_or_has_no_class_or_is_a_car() -> None:

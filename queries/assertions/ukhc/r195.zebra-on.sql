@@ -25,5 +25,5 @@ SELECT drive_id, ego_id, t_ns, ref_id,
         THEN object_id || ' was on it' || CASE WHEN kind IS NULL THEN '; the map does not say what kind of crossing it is' ELSE '' END
         WHEN NOT known THEN 'somebody nearby who may be on foot cannot be placed, or its class is not known'
         WHEN coming_id IS NOT NULL THEN coming_id || ' came over from the other half: whether an island parts the crossing is not known'
-        WHEN NOT coming_known THEN 'whether somebody on the other half came over was not seen' END AS reason
+        WHEN NOT coming_known THEN 'whether somebody on the other half came over, or was in the way of the ego''s side, is not known' END AS reason
 FROM reference

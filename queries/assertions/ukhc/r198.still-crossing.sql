@@ -22,5 +22,5 @@ SELECT drive_id, ego_id, t_ns, ref_id, state = 'green' AS applies,
         WHEN object_id IS NOT NULL AND t_on_ns <= t_ns THEN object_id || ' was on it'
         WHEN coming_id IS NOT NULL THEN coming_id || ' came over from the other half'
         WHEN NOT known THEN 'somebody nearby who may be on foot cannot be placed, or its class is not known'
-        WHEN NOT coming_known THEN 'whether somebody on the other half came over was not seen' END AS reason
+        WHEN NOT coming_known THEN 'whether somebody on the other half came over, or was in the way of the ego''s side, is not known' END AS reason
 FROM reference
