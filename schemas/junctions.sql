@@ -123,6 +123,7 @@ CREATE TABLE junction_passage (
     to_lanelet_id VARCHAR,            -- lanelet after it
     turn VARCHAR,                     -- left, right, straight, u_turn: by the change of heading from one to the other (straight within 30 degrees, u_turn beyond 150); NULL: not seen from its front's way in until its centre was on the lane after it
     turn_rad DOUBLE,                  -- that change, left positive
+    straightest_rad DOUBLE,           -- that change on the straightest of all ways out of the road that the ego came by; NULL: that road is not known
     across BOOLEAN,                   -- the turn crosses the oncoming traffic (right where the left is driven on; any u_turn); NULL: handedness or turn not known
     branches INTEGER NOT NULL,        -- roads that meet in the junction: 2 is no junction for a driver
     control VARCHAR,                  -- what governs the ego's way in, see way_mark: traffic_light, stop, give_way, none; NULL: cannot be told, as the map has none of these anywhere, or begins less than 50 m before the junction
@@ -133,7 +134,7 @@ CREATE TABLE passage_conflict (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- see junction_passage; one row for each of its relations
-    relation VARCHAR NOT NULL,        -- oncoming (from the road ahead), from_left, from_right, ahead_going (a cyclist, animal or vehicle along the ego's own road that goes on while the ego turns), by their heading 2 s before against the ego's on its way in; pedestrian (on foot, in the junction or within 12 m past it: over the road that the ego turns into); who has no class may be either
+    relation VARCHAR NOT NULL,        -- oncoming (from the road ahead, also where it leads off at an angle and no other is as straight; such a one is from_left or from_right as well), from_left, from_right, ahead_going (a cyclist, animal or vehicle along the ego's own road that goes on while the ego turns), by their heading 2 s before against the ego's on its way in; pedestrian (on foot, in the junction or within 12 m past it: over the road that the ego turns into); who has no class may be either
     object_id VARCHAR,                -- of those before whom the ego went (or, on foot, into whom: still there as it came), the one with the least PET; NULL: nobody
     actor_class VARCHAR,              -- see road_user; what it is decides whether a low PET breaks a rule
     pet_s DOUBLE,                     -- its PET, also where reason says that another one may be lower; infinite: nobody within 10 s, or until the log ends, 4 s later at least; NULL: cannot be told

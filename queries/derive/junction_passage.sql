@@ -60,6 +60,24 @@ edge AS (
     FROM lane_point
     GROUP BY environment_id, lanelet_id
 ),
+-- of all ways out of the road that the ego came by, the one that turns least: a connecting road is one road from end to end
+straightest AS (
+    SELECT environment_id, junction_id, road_id, along_road, min({'off_rad': abs(turn_rad), 'turn_rad': turn_rad}).turn_rad AS turn_rad
+    FROM (
+        SELECT j.environment_id, j.junction_id, f.road_id, f.along_road, wrap_rad(eo.first_rad - ef.last_rad) AS turn_rad
+        FROM lanelet j
+        JOIN lane_link i ON i.environment_id = j.environment_id AND i.to_id = j.lanelet_id
+        JOIN lanelet f ON f.environment_id = j.environment_id AND f.lanelet_id = i.from_id
+        JOIN lanelet k ON k.environment_id = j.environment_id AND k.junction_id = j.junction_id AND k.road_id = j.road_id AND k.along_road = j.along_road
+        JOIN lane_link l ON l.environment_id = j.environment_id AND l.from_id = k.lanelet_id
+        JOIN lanelet o ON o.environment_id = j.environment_id AND o.lanelet_id = l.to_id
+        JOIN edge ef ON ef.environment_id = j.environment_id AND ef.lanelet_id = f.lanelet_id
+        JOIN edge eo ON eo.environment_id = j.environment_id AND eo.lanelet_id = o.lanelet_id
+        WHERE j.junction_id IS NOT NULL AND j.drivable AND k.drivable AND f.drivable AND o.drivable
+            AND f.junction_id IS DISTINCT FROM j.junction_id AND o.junction_id IS DISTINCT FROM j.junction_id
+    )
+    GROUP BY environment_id, junction_id, road_id, along_road
+),
 -- both ends of a road may lead to the same junction
 branch AS (
     SELECT environment_id, junction_id, count(*) AS n
@@ -122,8 +140,10 @@ turned AS (
 SELECT
     t.drive_id, t.ego_id, (row_number() OVER (PARTITION BY t.drive_id, t.ego_id ORDER BY t.t_first_ns) - 1)::INTEGER AS occurrence,
     t.junction_id, t.t_in_ns, t.t_out_ns, t.t_first_ns, t.t_last_ns, t.from_id AS from_lanelet_id, t.via_id AS via_lanelet_id, t.to_id AS to_lanelet_id,
-    t.turn, t.turn_rad,
+    t.turn, t.turn_rad, s.turn_rad AS straightest_rad,
     CASE WHEN t.hand IS NOT NULL THEN t.turn = 'u_turn' OR t.turn = CASE t.hand WHEN 'lht' THEN 'right' ELSE 'left' END END AS across,
     coalesce(n.n, 0)::INTEGER AS branches, t.control, t.control IN ('stop', 'give_way') AS minor
 FROM turned t
 LEFT JOIN branch n USING (environment_id, junction_id)
+LEFT JOIN lanelet f ON f.environment_id = t.environment_id AND f.lanelet_id = t.from_id
+LEFT JOIN straightest s ON s.environment_id = f.environment_id AND s.junction_id = t.junction_id AND s.road_id = f.road_id AND s.along_road = f.along_road

@@ -2,7 +2,7 @@
 WITH passed AS (
     SELECT
         p.drive_id, p.ego_id, p.occurrence, p.t_in_ns, p.t_out_ns, coalesce(p.t_in_ns, p.t_first_ns) AS t_a_ns, coalesce(p.t_out_ns, p.t_last_ns) AS t_b_ns,
-        a.yaw_rad AS heading_rad, b.travel_m, b.x_m, b.y_m
+        a.yaw_rad AS heading_rad, p.straightest_rad, b.travel_m, b.x_m, b.y_m
     FROM junction_passage p
     JOIN ego_state a ON a.drive_id = p.drive_id AND a.ego_id = p.ego_id AND a.t_ns = coalesce(p.t_in_ns, p.t_first_ns)
     JOIN ego_state b ON b.drive_id = p.drive_id AND b.ego_id = p.ego_id AND b.t_ns = p.t_last_ns
@@ -10,7 +10,7 @@ WITH passed AS (
 -- those who came to ground that the ego went over in the junction, people on foot up to 12 m beyond: the mouth of the road that it turns into
 met AS (
     SELECT
-        p.drive_id, p.ego_id, p.occurrence, p.heading_rad, c.object_id, c.actor_class, c.pet_s, c.decel_mps2, c.t_object_in_ns,
+        p.drive_id, p.ego_id, p.occurrence, p.heading_rad, p.straightest_rad, c.object_id, c.actor_class, c.pet_s, c.decel_mps2, c.t_object_in_ns,
         -- who has no class may be either
         may_walk(c.actor_class) AS on_foot, c.actor_class IS DISTINCT FROM 'pedestrian' AND e.t_ns <= p.t_b_ns AS driven
     FROM passed p
@@ -33,10 +33,7 @@ came AS (
 related AS (
     SELECT drive_id, ego_id, occurrence, 'pedestrian' AS relation, object_id, actor_class, pet_s, decel_mps2 FROM met WHERE on_foot
     UNION ALL
-    SELECT
-        m.drive_id, m.ego_id, m.occurrence,
-        relation_of(c.from_rad),
-        m.object_id, m.actor_class, m.pet_s, m.decel_mps2
+    SELECT m.drive_id, m.ego_id, m.occurrence, unnest(relations_of(c.from_rad, m.straightest_rad)), m.object_id, m.actor_class, m.pet_s, m.decel_mps2
     FROM met m JOIN came c USING (drive_id, ego_id, occurrence, object_id, t_object_in_ns)
     WHERE m.driven
 ),
@@ -50,7 +47,7 @@ forced AS (
     SELECT
         p.drive_id, p.ego_id, p.occurrence, f.object_id, f.pet_s, f.decel_mps2, f.other_cause,
         may_walk(f.actor_class) AS on_foot, f.actor_class IS DISTINCT FROM 'pedestrian' AND e.t_ns <= p.t_b_ns AS driven,
-        relation_of(wrap_rad(s.yaw_rad - p.heading_rad)) AS relation
+        relations_of(wrap_rad(s.yaw_rad - p.heading_rad), p.straightest_rad) AS relations
     FROM passed p
     JOIN forced_braking f ON f.drive_id = p.drive_id AND f.ego_id = p.ego_id AND f.t_ego_out_ns >= p.t_a_ns
     JOIN ego_state e ON e.drive_id = f.drive_id AND e.ego_id = f.ego_id AND e.t_ns = f.t_ego_in_ns
@@ -65,9 +62,9 @@ hardest AS (
             'other': other_cause IS NOT NULL, 'ease_mps2': -decel_mps2, 'pet_s': pet_s, 'object_id': object_id, 'decel_mps2': decel_mps2, 'other_cause': other_cause
         }) AS braked
     FROM (
-        SELECT * FROM forced WHERE driven
+        SELECT *, unnest(relations) AS relation FROM forced WHERE driven
         UNION ALL
-        SELECT * REPLACE ('pedestrian' AS relation) FROM forced WHERE on_foot
+        SELECT *, 'pedestrian' FROM forced WHERE on_foot
     )
     GROUP BY drive_id, ego_id, occurrence, relation
 ),

@@ -69,3 +69,10 @@ CREATE OR REPLACE MACRO relation_of(from_rad) AS
         WHEN abs(from_rad) >= radians(135) THEN 'oncoming' WHEN abs(from_rad) <= radians(45) THEN 'ahead_going'
         WHEN from_rad < 0 THEN 'from_left' WHEN from_rad IS NOT NULL THEN 'from_right'
     END;
+-- A way out that turns by so much more than another one leaves the road.
+CREATE OR REPLACE MACRO fork_rad() AS radians(10);
+-- Whether it came by the road that the ego's own goes on into: a bent one leads off at an angle, but not one that lies across (80 degrees).
+CREATE OR REPLACE MACRO comes_by_road_ahead(from_rad, straightest_rad) AS
+    abs(from_rad) >= pi() - least(greatest(radians(45), abs(straightest_rad) + fork_rad()), radians(80));
+CREATE OR REPLACE MACRO relations_of(from_rad, straightest_rad) AS
+    CASE WHEN comes_by_road_ahead(from_rad, straightest_rad) AND relation_of(from_rad) <> 'oncoming' THEN [relation_of(from_rad), 'oncoming'] ELSE [relation_of(from_rad)] END;

@@ -11,7 +11,7 @@ import pyarrow as pa
 import pytest
 
 from tests.cropping import beyond, cropped
-from tests.derive.junction_scenes import ARM, TURN, R, cross, signal
+from tests.derive.junction_scenes import ARM, TURN, R, cross, signal, star
 from tests.scenes import Actor, Road, derived, drive, judged, moving, rows, times
 
 if TYPE_CHECKING:
@@ -52,6 +52,27 @@ def test_every_way_through_a_crossroads(hand: str, name: str) -> None:
     assert len(row["via_lanelet_id"].split(".")[0]) == 2
     # no signal of these kinds in the whole map: nobody can tell
     assert (row["control"], row["minor"]) == (None, None)
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(
+    ("arms", "way", "turn", "straightest"),
+    [
+        ((180, -50, 60), (1, 3), 60, -50),
+        ((180, -50, 60), (1, 2), -50, -50),
+        ((180, -50, 60), (2, 3), -70, 50),
+        ((180, 0, -25), (1, 3), -25, 0),
+        ((180, 80, -95), (1, 3), -95, 80),
+        ((180, 10, -20), (1, 2), 10, 10),
+    ],
+)
+def test_the_straightest_way_out(
+    hand: str, arms: tuple[float, ...], way: tuple[int, int], turn: float, straightest: float
+) -> None:
+    road = star(hand, arms)[way]
+    (row,) = passages(going(road), way=road)
+    assert np.degrees(row["turn_rad"]) == pytest.approx(turn, abs=0.1)
+    assert np.degrees(row["straightest_rad"]) == pytest.approx(straightest, abs=0.1)
 
 
 def test_first_and_last_step_are_exact() -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from tests.derive.junction_scenes import ARM, R, cross
+from tests.derive.junction_scenes import ARM, R, cross, star
 from tests.scenes import Actor, Road, derived, drive, moving, rows, standing, times
 
 if TYPE_CHECKING:
@@ -70,6 +70,42 @@ def test_where_they_came_from(hand: str, ego: str, other: str, relation: str | N
                 relation != "oncoming" or other == "ew"
             ):  # who turns at a constant rate along the line between the lanes is slower in the bend
                 assert row["decel_mps2"] == pytest.approx(0, abs=1e-6)
+
+
+BENT = (180.0, -50.0, 60.0)  # the road leads off by 50 degrees, another one by 60 to the other side
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(
+    ("arms", "ego", "other", "relations"),
+    [
+        (BENT, (1, 3), (2, 1), {"from_right", "oncoming"}),
+        ((180.0, -70.0, 80.0), (1, 3), (2, 1), {"from_right", "oncoming"}),
+        ((180.0, -62.0, 55.0), (1, 3), (2, 1), {"from_right", "oncoming"}),  # as straight as the ego's own way
+        ((180.0, -75.0, 60.0), (1, 3), (2, 1), {"from_right"}),  # the ego keeps to the straighter one
+        ((180.0, -60.0, 80.0, 0.0), (1, 3), (2, 1), {"from_right"}),  # there is one straight ahead
+        ((180.0, -60.0, 80.0, 0.0), (1, 3), (4, 1), {"oncoming"}),
+        ((180.0, -85.0, 95.0), (1, 3), (2, 1), {"from_right"}),  # they lie across
+    ],
+)
+def test_the_road_ahead_may_bend(
+    hand: str, arms: tuple[float, ...], ego: tuple[int, int], other: tuple[int, int], relations: set[str]
+) -> None:
+    """The ego turns across the lanes of those who come by the other arm to the ego's road."""
+    if hand == "lht":
+        arms = tuple(-a for a in arms)
+        relations = {{"from_right": "from_left"}.get(r, r) for r in relations}
+    ways = star(hand, arms)
+    found = answers(going(ways[ego]), going(ways[other], s0=104.0, name="other"), way=ways[ego])
+    assert seen(found) == dict.fromkeys(relations, "other")
+
+
+def test_who_brakes_on_the_bent_road_ahead() -> None:
+    ways = star("rht", BENT)
+    t = times(24)
+    brakes = moving("other", ways[2, 1], t, np.interp(t, (0, 8, 10, 24), (90, 154, 160, 160)), ways[2, 1].own)
+    found = answers(going(ways[1, 3]), brakes, way=ways[1, 3])
+    assert {relation for relation, row in found.items() if row["braked_id"]} == {"from_right", "oncoming"}
 
 
 def test_only_those_before_whom_the_ego_went() -> None:
