@@ -179,11 +179,11 @@ CREATE TABLE crossing_occupancy (
 CREATE TABLE crossing_passage (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    occurrence INTEGER NOT NULL,      -- 0.. in time order; the ego goes over a pedestrian crossing
+    occurrence INTEGER NOT NULL,      -- 0.. in time order; the ego goes over a pedestrian crossing, forwards or reversing onto it
     crossing_id VARCHAR NOT NULL,     -- the crossing
     kind VARCHAR,                     -- zebra, signalled, other, as the map says, or signalled where a light governs it; NULL: the map does not say
-    t_in_ns BIGINT,                   -- first step with its front on it; NULL: the log, or a hole, begins with the ego on it
-    t_out_ns BIGINT,                  -- first step with its rear past it; NULL: the log, or a hole, ends with the ego on it
+    t_in_ns BIGINT,                   -- first step with its front on it, reversing with its rear; NULL: the log, or a hole, begins with the ego on it
+    t_out_ns BIGINT,                  -- first step with its rear past it, or its front back before it if it came reversing; NULL: the log, or a hole, ends with the ego on it
     on_id VARCHAR,                    -- somebody on foot on the ego's half at any time from t_in to t_out, or on the other one if its middle was over that as well, the first of them; NULL: nobody
     t_on_ns BIGINT,                   -- since when
     coming_id VARCHAR,                -- somebody on foot on the other half at t_in who goes straight on to the ego's (within 3 s: longer is a wait on an island); NULL: nobody
@@ -193,7 +193,7 @@ CREATE TABLE crossing_passage (
     known BOOLEAN NOT NULL,           -- everybody on foot nearby was placed from 2 s before t_in to t_out: no track with a hole, or that begins or ends within 30 m then; nobody without a class is on it
     signal_id VARCHAR,                -- the light for vehicles, see way_mark; NULL: none in the map
     state VARCHAR,                    -- its state at t_in; NULL: not known
-    stood_before BOOLEAN              -- the ego stood within 5 m before it during the 10 s before t_in; NULL: not seen
+    stood_before BOOLEAN              -- the ego stood within 5 m before it during the 10 s before t_in; NULL: not seen, or it came reversing
 );
 
 CREATE TABLE standstill (

@@ -1,35 +1,43 @@
 -- The ego goes over a pedestrian crossing: when, and who was on its half, or stood at its end.
-WITH near AS (
+WITH placed AS (
     SELECT
-        *, running AND front_m >= 0 AND ((rear_m < 0 AND NOT joined) OR front_before_m < 0) AS begins,
-        count(*) FILTER (running AND front_m >= 0 AND ((rear_m < 0 AND NOT joined) OR front_before_m < 0))
-            OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS n
+        *, running AND front_m >= 0 AND ((rear_m < 0 AND NOT joined) OR front_before_m < 0) AS forwards,
+        -- it comes back over the far edge
+        coalesce(running AND joined AND rear_m < 0 AND rear_before_m >= 0 AND front_m >= 0 AND front_before_m >= 0, false) AS backwards
     FROM near_mark
     WHERE kind = 'crossing'
 ),
+near AS (
+    SELECT
+        *, forwards OR backwards AS begins,
+        count(*) FILTER (forwards OR backwards) OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS n
+    FROM placed
+),
 -- what trembles at its edge has entered it once, see stop_line_crossing
 back AS (
-    SELECT drive_id, ego_id, chain_id, mark_id, s_start_m, n + 1 AS n, min(front_m) < -0.5 AS was_back
+    SELECT drive_id, ego_id, chain_id, mark_id, s_start_m, n + 1 AS n, min(front_m) < -0.5 AS was_before, max(rear_m) > 0.5 AS was_past
     FROM near
     GROUP BY drive_id, ego_id, chain_id, mark_id, s_start_m, n
 ),
 began AS (
-    SELECT o.drive_id, o.ego_id, o.chain_id, o.mark_id, o.s_start_m, o.t_ns, o.seg, CASE WHEN o.joined AND o.front_before_m < 0 THEN o.t_ns END AS t_in_ns
+    SELECT o.drive_id, o.ego_id, o.chain_id, o.mark_id, o.s_start_m, o.t_ns, o.seg, o.backwards,
+        CASE WHEN o.joined AND (o.backwards OR o.front_before_m < 0) THEN o.t_ns END AS t_in_ns
     FROM near o
     LEFT JOIN back b USING (drive_id, ego_id, chain_id, mark_id, s_start_m, n)
-    WHERE o.begins AND (o.n = 1 OR b.was_back OR NOT o.joined)
+    WHERE o.begins AND (o.n = 1 OR CASE WHEN o.backwards THEN b.was_past ELSE b.was_before END OR NOT o.joined)
 ),
 bounded AS (
     SELECT *, lead(t_ns, 1, 9223372036854775807) OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m ORDER BY t_ns) AS t_next_ns FROM began
 ),
 passed AS (
     SELECT
-        b.drive_id, b.ego_id, b.chain_id, b.mark_id, b.s_start_m, b.t_ns, b.t_in_ns,
-        min(n.t_ns) FILTER (n.rear_m >= 0 AND n.seg = b.seg) AS t_out_ns, max(n.t_ns) FILTER (n.rear_m < 0 AND n.seg = b.seg) AS t_last_ns
+        b.drive_id, b.ego_id, b.chain_id, b.mark_id, b.s_start_m, b.t_ns, b.t_in_ns, b.backwards,
+        min(n.t_ns) FILTER ((n.rear_m >= 0 OR (b.backwards AND n.front_m < 0)) AND n.seg = b.seg) AS t_out_ns,
+        max(n.t_ns) FILTER (n.rear_m < 0 AND NOT (b.backwards AND n.front_m < 0) AND n.seg = b.seg) AS t_last_ns
     FROM bounded b
     JOIN near n ON n.drive_id = b.drive_id AND n.ego_id = b.ego_id AND n.chain_id = b.chain_id AND n.mark_id = b.mark_id AND n.s_start_m = b.s_start_m
         AND n.t_ns >= b.t_ns AND n.t_ns < b.t_next_ns
-    GROUP BY b.drive_id, b.ego_id, b.chain_id, b.mark_id, b.s_start_m, b.t_ns, b.t_in_ns
+    GROUP BY b.drive_id, b.ego_id, b.chain_id, b.mark_id, b.s_start_m, b.t_ns, b.t_in_ns, b.backwards
 ),
 said AS (SELECT environment_id, crossing_id, min(kind) AS kind FROM crossing GROUP BY environment_id, crossing_id),
 visit AS (
@@ -205,7 +213,7 @@ halted AS (
     JOIN near n ON n.drive_id = v.drive_id AND n.ego_id = v.ego_id AND n.chain_id = v.chain_id AND n.mark_id = v.mark_id AND n.s_start_m = v.s_start_m
         AND n.t_ns < v.t_in_ns AND n.t_ns >= v.t_in_ns - 10_000_000_000
     JOIN ego_state e ON e.drive_id = n.drive_id AND e.ego_id = n.ego_id AND e.t_ns = n.t_ns
-    WHERE n.front_m < 0
+    WHERE n.front_m < 0 AND NOT v.backwards
     GROUP BY v.drive_id, v.ego_id, v.mark_id, v.t_ns, v.t_in_ns, v.max_gap_ns
 ),
 lit AS (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -283,6 +284,43 @@ def test_trembling_at_its_edge_is_one_passage() -> None:
     t = times(30)
     s = np.interp(t, [0, 5, 15, 30], [100 - 42.4, 100 - 2.4, 100 - 2.4, 200]) + 0.02 * np.sin(5 * t)
     assert len(passages(drive([moving("ego", way, t, s, way.own)], way.environment))) == 1
+
+
+def backing(way: Road, *points: tuple[float, float], end: float = 40.0) -> Actor:
+    """Return the ego at these (time, s of its centre), heading along the road all the while; crossing at s = 100 to 103."""
+    t = times(end)
+    whole = moving("ego", way, t, np.interp(t, *np.array(points).T), way.own)
+    return replace(whole, yaw=np.full(t.shape, way.at(0.0)[2]))
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize("through", [False, True])
+def test_reversing_onto_it(hand: str, through: bool) -> None:
+    """It drives over it, stops with its rear 5 m past it and comes back at 2 m/s: at 17.5 s its rear is over the far edge again."""
+    way = zebra(hand)
+    stays = ((20.0, 100.4), (28.0, 100.4), (33.0, 120.0), (40.0, 120.0))
+    ego = backing(way, (0, 22.4), (11, 110.4), (15, 110.4), *(((26.0, 88.4), (40.0, 88.4)) if through else stays))
+    on = walker("w", ego.t_s, SIDE[hand] * np.where((ego.t_s > 16) & (ego.t_s < 19), 2.0, 6.0))
+    one, two = passages(drive([ego, on], way.environment))
+    assert (one["on_id"], two["on_id"]) == (None, "w")
+    assert seconds([two], "t_in_ns") == [pytest.approx(17.5, abs=0.11)]
+    # its front back before the near edge, or its rear past the far one once more
+    assert seconds([two], "t_out_ns") == [pytest.approx(21.4 if through else 29.3, abs=0.2)]
+    assert two["stood_before"] is None
+    assert (one["known"], two["known"], two["occurrence"]) == (True, True, 1)
+
+
+def test_reversing_over_it_and_going_over_it_again_is_three_passages() -> None:
+    way = zebra()
+    ego = backing(way, (0, 22.4), (11, 110.4), (15, 110.4), (26, 88.4), (28, 88.4), (34, 130.4), (40, 130.4))
+    assert len(passages(drive([ego], way.environment))) == 3
+
+
+def test_rolling_back_a_hand_s_breadth_past_it_is_no_passage() -> None:
+    """Its rear is 0.3 m past it, and back over its edge by as much."""
+    way = zebra()
+    ego = backing(way, (0, 17.7), (11, 105.7), (15, 105.7), (16, 105.1), (18, 105.1), (30, 200))
+    assert len(passages(drive([ego], way.environment))) == 1
 
 
 def test_the_light_for_vehicles() -> None:
