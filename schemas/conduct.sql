@@ -226,10 +226,10 @@ CREATE TABLE following (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- every step
-    object_id VARCHAR,                -- see lead; NULL: nobody ahead, or cannot be told
+    object_id VARCHAR,                -- of those ahead the nearest that it follows, else the lead; NULL: nobody ahead, or cannot be told
     follows BOOLEAN,                  -- the ego is behind it and goes its way: in its lane, no overtake or lane change (of up to 10 s astride the line) under way, and the other neither oncoming nor beside: what stands is in the way of the ego's box now and when the ego is there, what moves is in its way too, or has its centre in the lane and is more than 3 s from being passed; NULL: cannot be told
     gap_m DOUBLE,                     -- see lead
     ego_speed_mps DOUBLE,             -- ego's speed
     speed_mps DOUBLE,                 -- its speed
-    joined_ns BIGINT                  -- since when it is the nearest one ahead, if one of the two then changed lanes: the gap is new; NULL: it was ahead before, or how it came was not seen
+    joined_ns BIGINT                  -- see vehicle_ahead; since when the gap is new; NULL: it was ahead before, or how it came was not seen
 );

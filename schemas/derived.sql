@@ -439,6 +439,41 @@ CREATE TABLE lead (
     joined BOOLEAN                    -- the stretch began with one of the two changing lanes, or one beside coming ahead; false: it was ahead in the lane before (behind another, or further away), or the log begins there
 );
 
+CREATE TABLE lane_ahead (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step
+    object_id VARCHAR NOT NULL,       -- whoever is ahead in the running lane, or reaches into it and is in the ego's way or heading into it; not on foot, no animal, and a thing only where it is in the way; see lead
+    actor_class VARCHAR,              -- see road_user
+    gap_m DOUBLE,                     -- bumper to bumper along the corridor; negative: the two boxes overlap
+    speed_mps DOUBLE,                 -- its speed
+    oncoming BOOLEAN,                 -- it heads against the corridor
+    across_m DOUBLE,                  -- gap between the two boxes across the corridor; negative: overlap, it is in the ego's way
+    ego_across_mps DOUBLE,            -- ego's speed across the corridor, towards it positive
+    across_mps DOUBLE,                -- its speed across the corridor, towards the ego positive
+    soon BOOLEAN                      -- it is in the ego's way, or will be within 3 s at the present speeds across
+);
+
+CREATE TABLE vehicle_ahead (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step; none: it cannot be told who is ahead
+    object_id VARCHAR,                -- the nearest vehicle ahead in the running lane (lead), and those whom that may hide: the nearest one in the ego's way, one nearer that is heading into it, and the nearest that comes towards the ego; NULL: nobody there, or see known
+    nearest BOOLEAN NOT NULL,         -- it is the lead, or there is none
+    known BOOLEAN NOT NULL,           -- false: the lead is beside the ego's way, and somebody without a place or of no known class may be in it
+    gap_m DOUBLE,                     -- see lead
+    speed_mps DOUBLE,                 -- its speed
+    accel_mps2 DOUBLE,                -- its acceleration, mean over the 0.5 s up to the step; NULL: not known
+    ego_speed_mps DOUBLE,             -- the ego's speed
+    in_lane BOOLEAN,                  -- some of the ego's box is in the running lane
+    oncoming BOOLEAN,                 -- it heads against the corridor
+    across_m DOUBLE,                  -- gap between the two boxes across the corridor; negative: overlap
+    ego_across_mps DOUBLE,            -- ego's speed across the corridor, towards it positive
+    across_mps DOUBLE,                -- its speed across the corridor, towards the ego positive
+    error_mps DOUBLE NOT NULL,        -- see lead
+    joined_ns BIGINT                  -- since when it is the lead, if one of the two then changed lanes; of another the last cut-in of it or lane change of the ego; NULL: it was ahead before, or how it came was not seen
+);
+
 -- ---- the overtake (paper, Appendix A)
 
 CREATE TABLE profile (

@@ -1,36 +1,16 @@
 -- The nearest vehicle ahead in the running lane, or the certainty that there is none: a step at which somebody without a place, or of no
 -- known class, may be nearer, or the ego itself has no place, has no row.
 WITH
--- who follows a junction's lane of his own that leads across the ego's way crosses it: see conflict
-crossing AS (
-    SELECT DISTINCT o.drive_id, o.actor_id AS object_id, o.t_ns
-    FROM lane_occupancy o
-    JOIN data_log g USING (drive_id)
-    JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = o.lanelet_id
-    WHERE n.drivable AND n.junction_id IS NOT NULL AND abs(o.heading_diff_rad) < own_way_rad()
-),
 ahead AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns,
         min({
-            'gap_m': p.rear_s_m - e.front_s_m, 'object_id': p.object_id, 'speed_mps': p.speed_mps, 'actor_class': p.actor_class,
-            'oncoming': abs(p.heading_diff_rad) > pi() / 2, 'across_m': abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m,
-            'ego_across_mps': sign(p.d_m - e.d_m) * e.speed_mps * sin(e.heading_diff_rad), 'across_mps': sign(e.d_m - p.d_m) * p.speed_mps * sin(p.heading_diff_rad)
+            'gap_m': p.gap_m, 'object_id': p.object_id, 'speed_mps': p.speed_mps, 'actor_class': p.actor_class, 'oncoming': p.oncoming,
+            'across_m': p.across_m, 'ego_across_mps': p.ego_across_mps, 'across_mps': p.across_mps
         }) FILTER (is_vehicle(p.actor_class)) AS near,
-        min(p.rear_s_m - e.front_s_m) FILTER (is_vehicle(p.actor_class) IS DISTINCT FROM true AND p.rear_s_m - e.front_s_m < unsure_reach_m(e.speed_mps)) AS unsure_m
-    FROM pair p
+        min(p.gap_m) FILTER (is_vehicle(p.actor_class) IS DISTINCT FROM true AND p.gap_m < unsure_reach_m(e.speed_mps)) AS unsure_m
+    FROM lane_ahead p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
-    LEFT JOIN crossing c ON c.drive_id = p.drive_id AND c.object_id = p.object_id AND c.t_ns = p.t_ns
-    WHERE may_be_ahead(p.actor_class, p.d_m - e.d_m, p.lat_half_m + e.lat_half_m) AND p.s_m > e.s_m AND in_lane(p.d_m, p.lat_half_m, p.half_width_m)
-        -- one beside the ego's box is not ahead, whatever of it is in the lane; where the two overlap they have met
-        AND (p.rear_s_m >= e.front_s_m OR abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m)
-        -- in the lane with its centre, or in the ego's way, now or soon at the present speeds across (who comes towards the ego: now): a
-        -- vehicle that only reaches over the line must not hide whom the ego follows
-        AND (abs(p.d_m) <= p.half_width_m OR abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m
-            < CASE WHEN abs(p.heading_diff_rad) < 2 * pi() / 3 THEN
-                drift_s() * greatest(0.0, sign(p.d_m - e.d_m) * (e.speed_mps * sin(e.heading_diff_rad) - p.speed_mps * sin(p.heading_diff_rad)))
-            ELSE 0.0 END)
-        AND (c.t_ns IS NULL OR abs(p.heading_diff_rad) < pi() / 4 OR p.speed_mps <= standing_mps())
     GROUP BY ALL
 ),
 filtered AS (SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'velocity_filtered'),

@@ -192,7 +192,60 @@ def test_one_that_is_about_to_come_in_the_way_is_ahead_before(across: float, see
     ego = moving("ego", way, t, 100 + 10 * t, -1.5 * LANE)
     other = moving("x", way, t, 112 + 10 * t, -1.5 * LANE + 0.9 + 0.65 + 0.9 - across * t)
     lead = moving("y", way, t, 140 + 10 * t, -1.5 * LANE)
-    assert following(way, ego, other, lead)[0]["object_id"] == seen
+    con = derived(drive([ego, other, lead], way.environment), tables=["following", "lead"])
+    assert rows(con, "FROM lead ORDER BY t_ns")[0]["object_id"] == seen
+    # until it is in the way the ego follows the one beyond it
+    assert {(row["object_id"], row["follows"]) for row in rows(con, "FROM following")} == {("y", True)}
+
+
+@HANDS
+@pytest.mark.parametrize("edge", [0.2, -0.2])
+def test_one_at_the_lanes_edge_hides_nobody_who_is_in_the_way(hand: str, edge: float) -> None:
+    """x stands so far beside the ego's way, y stands in it, and z beyond y at the edge again."""
+    way = road(hand=hand)
+    t = times(0.5)
+    sign = 1 if hand == "rht" else -1
+    beside = way.own - sign * (0.9 + 0.35 + edge)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    x, z = (standing(name, way, t, s, beside, kind="motorcycle", width=0.7) for name, s in (("x", 120), ("z", 160)))
+    y = standing("y", way, t, 140, way.own)
+    con = derived(drive([ego, x, y, z], way.environment), tables=["following", "lead", "vehicle_ahead"])
+    assert {row["object_id"] for row in rows(con, "FROM lead")} == {"x"}
+    told = rows(con, "SELECT DISTINCT object_id, nearest, known FROM vehicle_ahead ORDER BY ALL")
+    in_way = "y" if edge > 0 else "x"
+    assert [tuple(row.values()) for row in told] == sorted({("x", True, True), (in_way, in_way == "x", True)})
+    assert {(row["object_id"], row["follows"]) for row in rows(con, "FROM following")} == {(in_way, True)}
+
+
+def test_one_that_rides_at_the_edge_hides_neither_the_follower_s_lead_nor_who_comes() -> None:
+    """The nearest moves beside the way and is followed; of the others each is there once, with its own motion."""
+    way = road()
+    t = times(3.0)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    rider = moving("x", way, t, 130 + 10 * t, way.own - 1.4, kind="bicycle", width=0.7)
+    lead = moving("y", way, t, 170 + 8 * t - t * t / 2, way.own)
+    comes = moving("z", way, t, 300 - 10 * t, way.own)
+    con = derived(drive([ego, rider, lead, comes], way.environment), tables=["following", "vehicle_ahead"])
+    found = rows(con, "FROM vehicle_ahead WHERE t_ns = 2_000_000_000 ORDER BY gap_m")
+    assert [(row["object_id"], row["nearest"], row["oncoming"]) for row in found] == [
+        ("x", True, False), ("y", False, False), ("z", False, True)
+    ]  # fmt: skip
+    assert found[1]["accel_mps2"] == pytest.approx(-1.0, abs=0.05)
+    assert found[0]["gap_m"] < found[1]["gap_m"] < found[2]["gap_m"]
+    assert {(row["object_id"], row["follows"]) for row in rows(con, "FROM following")} == {("x", True)}
+
+
+@pytest.mark.parametrize(("at", "known"), [(200.0, False), (60.0, True), (400.0, True)])
+def test_behind_one_at_the_edge_an_actor_without_a_place_may_be_in_the_way(at: float, known: bool) -> None:
+    way = road()
+    t = times(0.5)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    rider = standing("x", way, t, 130, way.own - 1.4, kind="bicycle", width=0.7)
+    lost = standing("u", way, t, at, way.own, turned=math.nan)
+    con = derived(drive([ego, rider, lost], way.environment), tables=["following", "vehicle_ahead"])
+    assert {row["object_id"] for row in rows(con, "FROM vehicle_ahead WHERE nearest")} == {"x"}
+    assert {row["known"] for row in rows(con, "FROM vehicle_ahead WHERE NOT nearest")} == (set() if known else {False})
+    assert {row["follows"] for row in rows(con, "FROM following")} == {False if known else None}
 
 
 def test_one_that_cuts_in_makes_a_new_gap() -> None:

@@ -10,7 +10,7 @@
 -- unit = "m"
 -- observes = "gap to the vehicle ahead"
 -- near_margin = 0.5
--- reads = ["following", "lead", "pair"]
+-- reads = ["following", "pair", "vehicle_ahead"]
 -- requires = ["mode_engaged", "map", "registration", "ego_size"]
 --
 -- [params.v_max_mps]
@@ -38,9 +38,9 @@ SELECT f.drive_id, f.ego_id, f.t_ns, f.gap_m AS observed, r157_gap_m(f.ego_speed
         AND CASE WHEN b.braked THEN false WHEN f.gap_m >= r157_gap_m(f.ego_speed_mps) OR NOT b.unsure THEN true END AS applies
 FROM following f
 LEFT JOIN (
-    SELECT drive_id, ego_id, t_ns, bool_or(accel_mps2 <= -$lead_brakes_mps2) OVER w AS braked, bool_or(accel_mps2 IS NULL) OVER w AS unsure
-    FROM lead
+    SELECT drive_id, ego_id, t_ns, object_id, bool_or(accel_mps2 <= -$lead_brakes_mps2) OVER w AS braked, bool_or(accel_mps2 IS NULL) OVER w AS unsure
+    FROM vehicle_ahead
     WINDOW w AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns RANGE BETWEEN ($restore_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW)
-) b USING (drive_id, ego_id, t_ns)
+) b ON b.drive_id = f.drive_id AND b.ego_id = f.ego_id AND b.t_ns = f.t_ns AND b.object_id = f.object_id
 ASOF LEFT JOIN (SELECT drive_id, ego_id, object_id, t_ns FROM pair WHERE clearance_m <= 0) c
     ON c.drive_id = f.drive_id AND c.ego_id = f.ego_id AND c.object_id = f.object_id AND c.t_ns >= f.t_ns

@@ -11,7 +11,7 @@
 -- observes = "modified time to collision"
 -- near_margin = 0.5
 -- merge_gap_s = 1.0
--- reads = ["clock", "ego_motion", "ego_state", "lead", "pair", "step"]
+-- reads = ["clock", "ego_motion", "ego_state", "pair", "step", "vehicle_ahead"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [params.least_s]
@@ -25,15 +25,15 @@
 -- why = "our default: so near to the ends of the log the windows of the accelerations are not whole"
 
 -- @applies
--- a step without a row in `lead` is one at which nobody knows who leads
+-- a step without a row in `vehicle_ahead` is one at which nobody knows who leads
 SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
     CASE WHEN l.object_id IS NOT NULL THEN on_course(
         l.gap_m, ttc_s(l.gap_m, l.ego_speed_mps - along_mps(l.speed_mps, l.oncoming)),
         e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, p.speed_mps * sin(p.heading_diff_rad)
     ) AND either_moves(l.ego_speed_mps, l.speed_mps)
-    WHEN l.t_ns IS NOT NULL THEN true END AS applies
+    WHEN l.known THEN true END AS applies
 FROM step s
-LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+LEFT JOIN vehicle_ahead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
 LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.t_ns = l.t_ns AND p.object_id = l.object_id
 LEFT JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
 
@@ -44,6 +44,6 @@ SELECT l.drive_id, l.ego_id, l.t_ns, l.object_id, $least_s AS required, l.object
         ELSE or_never(
             mttc_s(l.gap_m, l.ego_speed_mps, m.accel_mps2, along_mps(l.speed_mps, l.oncoming), along_mps(l.accel_mps2, l.oncoming)), $least_s
         ) END AS observed
-FROM lead l
+FROM vehicle_ahead l
 JOIN clock c ON c.drive_id = l.drive_id AND c.ego_id = l.ego_id
 JOIN ego_motion m ON m.drive_id = l.drive_id AND m.ego_id = l.ego_id AND m.t_ns = l.t_ns

@@ -10,7 +10,7 @@
 -- unit = "m"
 -- observes = "gap to the vehicle ahead"
 -- near_margin = 2.0
--- reads = ["lead", "step"]
+-- reads = ["step", "vehicle_ahead"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [params.rho_s]
@@ -65,15 +65,15 @@
 
 -- @applies
 -- RSS calls a situation dangerous where the distances along and across are both unsafe: who is passed inside the lane may be safe across. A
--- standing ego does already what RSS asks of it. A step without a row in `lead` is one at which nobody knows who leads.
+-- standing ego does already what RSS asks of it. A step without a row in `vehicle_ahead` is one at which nobody knows who leads.
 SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
     CASE WHEN l.object_id IS NOT NULL THEN follows(l.in_lane, l.gap_m, l.speed_mps, l.oncoming) AND l.ego_speed_mps > standing_mps()
         AND l.across_m < rss_across_m(l.ego_across_mps, $rho_s, l.across_mps, l.speed_mps, $rho_other_s, $lat_accel_mps2, $lat_brake_mps2, $mu_m)
-        WHEN l.t_ns IS NOT NULL THEN false END AS applies
+        WHEN l.known THEN false END AS applies
 FROM step s
-LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+LEFT JOIN vehicle_ahead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, object_id, gap_m AS observed,
     rss_longitudinal_m(ego_speed_mps, ahead_mps(speed_mps, oncoming), $rho_s, $accel_mps2, $brake_min_mps2, $brake_max_mps2) AS required
-FROM lead
+FROM vehicle_ahead

@@ -10,7 +10,7 @@
 -- unit = "m"
 -- observes = "distance to the oncoming vehicle"
 -- near_margin = 2.0
--- reads = ["ego_state", "excursion", "lane_departure", "lead", "oncoming", "step"]
+-- reads = ["ego_state", "excursion", "lane_departure", "oncoming", "step", "vehicle_ahead"]
 -- requires = ["map", "registration", "handedness", "ego_size"]
 --
 -- [params.rho_s]
@@ -75,12 +75,12 @@ UNION ALL
 SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
     CASE WHEN l.object_id IS NOT NULL THEN meets(l.in_lane, l.gap_m, l.speed_mps, l.oncoming)
         AND l.across_m < rss_across_m(l.ego_across_mps, $rho_s, l.across_mps, l.speed_mps, $rho_other_s, $lat_accel_mps2, $lat_brake_mps2, $mu_m)
-        WHEN l.t_ns IS NOT NULL THEN false END
+        WHEN l.known THEN false END
 FROM step s
-LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+LEFT JOIN vehicle_ahead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
 
 -- @condition
-WITH wrong AS (FROM lead WHERE object_id IS NOT NULL AND meets(in_lane, gap_m, speed_mps, oncoming) IS DISTINCT FROM false)
+WITH wrong AS (FROM vehicle_ahead WHERE object_id IS NOT NULL AND meets(in_lane, gap_m, speed_mps, oncoming) IS DISTINCT FROM false)
 SELECT drive_id, ego_id, t_ns, object_id, gap_m AS observed,
     rss_way_m(ego_speed_mps, $rho_s, $accel_mps2, $brake_correct_mps2) + rss_way_m(speed_mps, $rho_other_s, $accel_mps2, $brake_min_mps2) AS required
 FROM wrong

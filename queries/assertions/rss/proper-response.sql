@@ -12,7 +12,7 @@
 -- unit = "m/s2"
 -- observes = "deceleration"
 -- near_margin = 0.5
--- reads = ["clock", "ego_motion", "lead", "step"]
+-- reads = ["clock", "ego_motion", "step", "vehicle_ahead"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [params.rho_s]
@@ -76,9 +76,9 @@ WITH judged AS (
         CASE WHEN l.object_id IS NOT NULL THEN follows(l.in_lane, l.gap_m, l.speed_mps, l.oncoming) AND l.ego_speed_mps > standing_mps()
             AND l.gap_m < rss_longitudinal_m(l.ego_speed_mps, ahead_mps(l.speed_mps, l.oncoming), $rho_s, $accel_mps2, $brake_min_mps2, $brake_max_mps2)
             AND l.across_m < rss_across_m(l.ego_across_mps, $rho_s, l.across_mps, l.speed_mps, $rho_other_s, $lat_accel_mps2, $lat_brake_mps2, $mu_m)
-        WHEN l.t_ns IS NOT NULL THEN false END AS unsafe
+        WHEN l.known THEN false END AS unsafe
     FROM step s
-    LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+    LEFT JOIN vehicle_ahead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
 )
 SELECT drive_id, ego_id, min(t_ns) AS t_ns, object_id, max(t_ns) AS t_last_ns
 FROM (SELECT *, k - row_number() OVER (PARTITION BY drive_id, ego_id, object_id, seg ORDER BY k) AS run FROM judged WHERE unsafe)

@@ -1,0 +1,62 @@
+-- Every vehicle ahead in the running lane that the ego may hit or follow: the nearest one (lead), and where that is beside the ego's way, or
+-- goes the ego's way, those whom it hides: the nearest one in the ego's way, one nearer that is heading into it, and the nearest that comes.
+WITH
+chosen AS (
+    SELECT
+        p.drive_id, p.ego_id, p.t_ns,
+        [
+            min({'gap_m': p.gap_m, 'id': p.object_id}) FILTER (is_vehicle(p.actor_class) AND p.across_m < 0).id,
+            min({'gap_m': p.gap_m, 'id': p.object_id}) FILTER (is_vehicle(p.actor_class) AND p.soon).id,
+            min({'gap_m': p.gap_m, 'id': p.object_id}) FILTER (is_vehicle(p.actor_class) AND p.oncoming AND p.speed_mps <= standing_mps() IS DISTINCT FROM true).id
+        ] AS ids,
+        min(p.gap_m) FILTER (is_vehicle(p.actor_class) AND p.across_m < 0) AS way_gap_m,
+        min(p.gap_m) FILTER (is_vehicle(p.actor_class) IS DISTINCT FROM true AND p.gap_m < unsure_reach_m(e.speed_mps)) AS unsure_m
+    FROM lane_ahead p
+    JOIN ego_state e USING (drive_id, ego_id, t_ns)
+    GROUP BY ALL
+),
+doubt AS (
+    SELECT drive_id, ego_id, t_ns, min(least_m) AS least_m FROM hidden WHERE vehicle AND ahead IS DISTINCT FROM false GROUP BY ALL
+),
+more AS (
+    SELECT l.drive_id, l.ego_id, l.t_ns, l.ego_speed_mps, l.in_lane, unnest(list_distinct(c.ids)) AS object_id
+    FROM lead l
+    JOIN chosen c USING (drive_id, ego_id, t_ns)
+    WHERE l.object_id IS NOT NULL
+),
+filtered AS (SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'velocity_filtered'),
+half AS (
+    SELECT
+        drive_id, ego_id, t_ns,
+        first_value(t_ns) OVER (PARTITION BY drive_id, ego_id, seg ORDER BY t_ns RANGE BETWEEN 500_000_000 PRECEDING AND CURRENT ROW) AS t_half_ns
+    FROM step
+)
+SELECT
+    drive_id, ego_id, t_ns, object_id, true AS nearest, true AS known, gap_m, speed_mps, accel_mps2, ego_speed_mps, in_lane, oncoming, across_m,
+    ego_across_mps, across_mps, error_mps, CASE WHEN joined THEN t_since_ns END AS joined_ns
+FROM lead
+UNION ALL BY NAME
+SELECT
+    m.drive_id, m.ego_id, m.t_ns, m.object_id, false AS nearest, true AS known, p.gap_m, p.speed_mps,
+    CASE WHEN f.actor_id IS NULL AND m.t_ns - h.t_half_ns >= 400_000_000 THEN 1e9 * (p.speed_mps - b.speed_mps) / (m.t_ns - h.t_half_ns) END AS accel_mps2,
+    m.ego_speed_mps, m.in_lane, p.oncoming, p.across_m, p.ego_across_mps, p.across_mps,
+    filtered_error_mps() * ((f.actor_id IS NOT NULL)::INTEGER + (g.actor_id IS NOT NULL)::INTEGER) AS error_mps,
+    -- greatest() leaves out what is not there, as it should here
+    greatest(i.t_ns, x.t_ns) AS joined_ns
+FROM more m
+JOIN lead l ON l.drive_id = m.drive_id AND l.ego_id = m.ego_id AND l.t_ns = m.t_ns AND l.object_id <> m.object_id
+JOIN lane_ahead p ON p.drive_id = m.drive_id AND p.ego_id = m.ego_id AND p.t_ns = m.t_ns AND p.object_id = m.object_id
+JOIN half h ON h.drive_id = m.drive_id AND h.ego_id = m.ego_id AND h.t_ns = m.t_ns
+LEFT JOIN pair b ON b.drive_id = m.drive_id AND b.ego_id = m.ego_id AND b.t_ns = h.t_half_ns AND b.object_id = m.object_id
+LEFT JOIN filtered f ON f.drive_id = m.drive_id AND f.actor_id = m.object_id
+LEFT JOIN filtered g ON g.drive_id = m.drive_id AND g.actor_id = m.ego_id
+ASOF LEFT JOIN cut_in i ON i.drive_id = m.drive_id AND i.ego_id = m.ego_id AND i.object_id = m.object_id AND i.t_ns <= m.t_ns
+ASOF LEFT JOIN lane_crossing x ON x.drive_id = m.drive_id AND x.ego_id = m.ego_id AND x.t_ns <= m.t_ns
+UNION ALL BY NAME
+-- somebody without a place, or of no known class, may be in the way behind one that is beside it
+SELECT l.drive_id, l.ego_id, l.t_ns, NULL::VARCHAR AS object_id, false AS nearest, false AS known, l.ego_speed_mps, l.in_lane, 0.0 AS error_mps
+FROM lead l
+LEFT JOIN chosen c USING (drive_id, ego_id, t_ns)
+LEFT JOIN doubt d USING (drive_id, ego_id, t_ns)
+WHERE l.object_id IS NOT NULL AND l.in_lane IS DISTINCT FROM false
+    AND least(d.least_m, c.unsure_m) < coalesce(c.way_gap_m, lead_reach_m(l.ego_speed_mps))
