@@ -269,6 +269,25 @@ def test_who_comes_by_with_hardly_any_room(hand: str, evades: float, verdict: st
     assert verdicts(drive([ego, parked, other], way.environment), GIVE_WAY) == [(verdict, "p")]
 
 
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_who_comes_without_a_place_may_have_come_too_near(hand: str) -> None:
+    """It meets the ego 2 s after that is back; its heading or its position is lost while the ego is out, or once they have passed."""
+    way = road(((600.0, 0.0),), hand)
+    t = times(END)
+    s = 50 + 10 * t
+    ego = moving("ego", way, t, s, swing(way, s, 170.0, 215.0))
+    parked = standing("p", way, t, 200.0, way.own)
+    other = moving("o", way, t, 460 - 10 * t, way.other)
+
+    def found(comes: Actor) -> list[tuple[str, Any]]:
+        return verdicts(drive([ego, parked, comes], way.environment), GIVE_WAY)
+
+    assert found(other) == [("pass", "p")]
+    assert found(other.lost(t > 14)) == [("unknown", "p")]
+    assert found(replace(other, yaw=np.where(t > 14, np.nan, other.yaw))) == [("unknown", "p")]
+    assert found(replace(other, yaw=np.where(t > 26, np.nan, other.yaw))) == [("pass", "p")]
+
+
 def test_without_a_heading_or_a_size_it_is_in_doubt() -> None:
     for lacks in ({"length": None}, {"yaw": np.full(len(times(END)), np.nan)}):
         scene = turning(**lacks)
