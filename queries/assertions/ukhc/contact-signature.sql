@@ -1,6 +1,6 @@
 -- title = "No jolt such as only an impact gives"
 -- clause = "UKHC R144: do not drive dangerously or without care for others; a contact that the boxes miss shows in the speeds"
--- hypothesis = "While another actor was within reach, did ego and actor lose speed no faster than tyres can?"
+-- hypothesis = "While another actor was within reach, did ego and actor lose or gain speed no faster than tyres can?"
 -- kind = "invariant"
 -- derivation = "model"
 -- severity = "critical"
@@ -8,7 +8,7 @@
 -- status = "stable"
 -- sense = "<"
 -- unit = "m/s2"
--- observes = "deceleration of the ego or the other"
+-- observes = "change of speed of the ego or the other"
 -- merge_gap_s = 1.0
 -- reads = ["between_steps", "ego_state", "lost_object", "pair", "step", "clock"]
 -- requires = ["ego_size"]
@@ -27,6 +27,11 @@
 -- default = 0.1
 -- unit = "s"
 -- why = "our default: so long an impact lasts; over a longer step its loss of speed looks like braking"
+--
+-- [params.walk_mps]
+-- default = 3.0
+-- unit = "m/s"
+-- why = "our default: people walk at 2 m/s at most, recorded ones from one step to the next; a gain counts of one who is faster than even a hurried one"
 
 -- @applies
 SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN clearance_m IS NOT NULL THEN true END AS applies
@@ -52,11 +57,13 @@ WHERE s.dt_ns > c.max_gap_ns AND p.clearance_m < lost_near_m()
 -- @condition
 -- greatest() leaves a NULL out: one side alone can show a contact, but not that there was none; nor can a step in which a jolt may hide
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, $tyre_mps2 AS required,
-    CASE WHEN lost_mps2 >= $tyre_mps2 OR p.accel_mps2 + e.accel_mps2 IS NOT NULL AND NOT coalesce(hides, false) THEN lost_mps2 END AS observed,
-    CASE WHEN -p.accel_mps2 >= $tyre_mps2 AND e.fastest_3s_mps < standing_mps() THEN 'the ego stood still: it was struck, if anything'
-        WHEN hides AND lost_mps2 < $tyre_mps2 THEN format('a step of {:.2f} s is too long to tell a jolt from braking', st.dt_ns / 1e9) END AS reason
+    CASE WHEN jolt_mps2 >= $tyre_mps2 OR p.accel_mps2 + e.accel_mps2 IS NOT NULL AND NOT coalesce(hides, false) THEN jolt_mps2 END AS observed,
+    CASE WHEN other_mps2 >= $tyre_mps2 AND e.fastest_3s_mps < standing_mps() THEN 'the ego stood still: it was struck, if anything'
+        WHEN hides AND jolt_mps2 < $tyre_mps2 THEN format('a step of {:.2f} s is too long to tell a jolt from braking', st.dt_ns / 1e9) END AS reason
 FROM pair p
 JOIN ego_state e USING (drive_id, ego_id, t_ns)
 JOIN step st USING (drive_id, ego_id, t_ns)
-CROSS JOIN LATERAL (SELECT greatest(-p.accel_mps2, -e.accel_mps2) AS lost_mps2) l
-CROSS JOIN LATERAL (SELECT st.dt_ns > $jolt_s * 1.5e9 AND lost_mps2 * st.dt_ns / 1e9 >= $tyre_mps2 * $jolt_s AS hides) h
+-- who is struck from behind, or off its feet, gains speed
+CROSS JOIN LATERAL (SELECT greatest(-p.accel_mps2, CASE WHEN NOT may_walk(p.actor_class) OR p.speed_mps > $walk_mps THEN p.accel_mps2 END) AS other_mps2) o
+CROSS JOIN LATERAL (SELECT greatest(other_mps2, abs(e.accel_mps2)) AS jolt_mps2) l
+CROSS JOIN LATERAL (SELECT st.dt_ns > $jolt_s * 1.5e9 AND jolt_mps2 * st.dt_ns / 1e9 >= $tyre_mps2 * $jolt_s AS hides) h
