@@ -215,7 +215,7 @@ CREATE TABLE overtake_place (
     crossing_m DOUBLE,                -- the same to the next pedestrian crossing
     marking_out VARCHAR,              -- marking of the boundary crossed at t0, seen from the running lane; NULL: the map does not say
     marking_back VARCHAR,             -- marking of the boundary crossed back at t3, seen from the overtaking lane; NULL: the map does not say, or never back
-    no_overtaking BOOLEAN,            -- a no-overtaking sign holds at t0, until its end is said or the next junction; NULL: the map has no such signs at all, or neither a sign nor a junction on the way behind: one may stand further back, or where the map begins
+    no_overtaking BOOLEAN,            -- a no-overtaking sign holds at t0, or where the ego's front draws level with the rear of a vehicle that it passes, until its end is said or the next junction; NULL: the map has no such signs at all, or neither a sign nor a junction on the way behind: one may stand further back, or where the map begins
     rear_id VARCHAR,                  -- vehicle behind or beside, in the overtaking lane or moving into it, at t0; NULL: nobody
     rear_gap_m DOUBLE,                -- its front to the ego's rear; negative: alongside
     rear_ttc_s DOUBLE,                -- time until it gets to the ego's rear at the ego's speed and the highest of its own in the 2 s before; infinite: never, or nobody; 0: alongside

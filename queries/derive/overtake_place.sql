@@ -1,7 +1,7 @@
 -- Where an overtake begins and ends, and who comes up from behind when it begins.
 WITH gone AS (
     SELECT
-        o.drive_id, o.ego_id, o.occurrence, o.chain_id, o.side, o.t0_ns, o.t3_ns, g.environment_id, e.s_m, e.front_s_m, e.rear_s_m, e.speed_mps
+        o.drive_id, o.ego_id, o.occurrence, o.chain_id, o.side, o.vbp_id, o.passed, o.t0_ns, o.t3_ns, o.t_end_ns, g.environment_id, e.s_m, e.front_s_m, e.rear_s_m, e.speed_mps
     FROM overtake o
     JOIN data_log g USING (drive_id)
     JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns = o.t0_ns
@@ -44,23 +44,38 @@ crossed AS (
     WHERE w.s_start_m + x.s_end_m > w.rear_s_m
     GROUP BY ALL
 ),
+-- where the ego's front is at t0, and later where it draws level with the vehicle that it passes
+front AS (
+    SELECT drive_id, ego_id, occurrence, false AS level, front_s_m FROM gone
+    UNION ALL
+    SELECT l.drive_id, l.ego_id, l.occurrence, true, x.front_s_m
+    FROM (
+        SELECT g.drive_id, g.ego_id, g.occurrence, g.chain_id, min(e.t_ns) AS t_ns
+        FROM gone g
+        JOIN ego_state e ON e.drive_id = g.drive_id AND e.ego_id = g.ego_id AND e.t_ns >= g.t0_ns AND e.t_ns <= g.t_end_ns
+        JOIN pair p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.t_ns = e.t_ns AND p.object_id = g.vbp_id
+        WHERE g.passed AND e.front_s_m > coalesce(p.rear_s_m, p.s_m)
+        GROUP BY ALL
+    ) l
+    JOIN ego_corridor x ON x.drive_id = l.drive_id AND x.ego_id = l.ego_id AND x.chain_id = l.chain_id AND x.t_ns = l.t_ns
+),
 -- the last word before the ego: a sign holds until its end is said, or until the next junction. Where there is none, one may stand further
 -- back than the corridor reaches, or where the map begins.
 sign AS (
-    SELECT drive_id, ego_id, occurrence, max({'s_m': s_m, 'holds': holds}).holds AS holds
+    SELECT w.drive_id, w.ego_id, w.occurrence, f.level, max({'s_m': w.s_m, 'holds': w.holds}).holds AS holds
     FROM (
-        SELECT w.drive_id, w.ego_id, w.occurrence, w.s_start_m + t.lane_s_m AS s_m, t.kind = 'no_overtaking' AS holds, w.front_s_m
+        SELECT w.drive_id, w.ego_id, w.occurrence, w.s_start_m + t.lane_s_m AS s_m, t.kind = 'no_overtaking' AS holds
         FROM way w
         JOIN traffic_signal t ON t.environment_id = w.environment_id AND t.lanelet_id = w.lanelet_id
         WHERE t.kind IN ('no_overtaking', 'no_overtaking_end')
         UNION ALL
-        SELECT w.drive_id, w.ego_id, w.occurrence, w.s_start_m + w.length_m, false, w.front_s_m
+        SELECT w.drive_id, w.ego_id, w.occurrence, w.s_start_m + w.length_m, false
         FROM way w
         JOIN lanelet n ON n.environment_id = w.environment_id AND n.lanelet_id = w.lanelet_id
         JOIN roads r ON r.environment_id = n.environment_id AND r.junction_id = n.junction_id
         WHERE r.n > 2
-    )
-    WHERE s_m <= front_s_m
+    ) w
+    JOIN front f ON f.drive_id = w.drive_id AND f.ego_id = w.ego_id AND f.occurrence = w.occurrence AND w.s_m <= f.front_s_m
     GROUP BY ALL
 ),
 signed AS (SELECT DISTINCT environment_id FROM traffic_signal WHERE kind IN ('no_overtaking', 'no_overtaking_end')),
@@ -117,7 +132,7 @@ doubt AS (
 SELECT
     g.drive_id, g.ego_id, g.occurrence, coalesce(j.m, 'infinity'::DOUBLE) AS junction_m, coalesce(x.m, 'infinity'::DOUBLE) AS crossing_m,
     o.marking AS marking_out, seen_from_beyond(b.marking) AS marking_back,
-    CASE WHEN d.environment_id IS NOT NULL THEN s.holds END AS no_overtaking,
+    CASE WHEN d.environment_id IS NOT NULL THEN s.holds OR CASE WHEN u.front_s_m IS NOT NULL OR NOT g.passed THEN coalesce(v.holds, false) END END AS no_overtaking,
     r.o.object_id AS rear_id, r.o.gap_m AS rear_gap_m, CASE WHEN r.o.object_id IS NULL THEN 'infinity'::DOUBLE ELSE r.o.ttc_s END AS rear_ttc_s,
     h.t_ns IS NULL AND coalesce(r.known, true) AS rear_known
 FROM gone g
@@ -126,6 +141,8 @@ LEFT JOIN crossed x USING (drive_id, ego_id, occurrence)
 LEFT JOIN (FROM line WHERE NOT back) o USING (drive_id, ego_id, occurrence)
 LEFT JOIN (FROM line WHERE back) b USING (drive_id, ego_id, occurrence)
 LEFT JOIN signed d ON d.environment_id = g.environment_id
-LEFT JOIN sign s USING (drive_id, ego_id, occurrence)
+LEFT JOIN (FROM sign WHERE NOT level) s USING (drive_id, ego_id, occurrence)
+LEFT JOIN (FROM sign WHERE level) v USING (drive_id, ego_id, occurrence)
+LEFT JOIN (FROM front WHERE level) u USING (drive_id, ego_id, occurrence)
 LEFT JOIN rear r USING (drive_id, ego_id, occurrence)
 LEFT JOIN doubt h ON h.drive_id = g.drive_id AND h.ego_id = g.ego_id AND h.t_ns = g.t0_ns

@@ -175,7 +175,11 @@ def sign(s: float, code: str, number: int = 1) -> str:
     ("signs", "holds"),
     [
         (sign(40, "276"), True),
-        (sign(140, "276"), None),  # it comes later; another may stand before the map begins
+        (sign(140, "276"), True),  # the ego comes to it before it draws level with the vehicle that it passes
+        (sign(160, "276"), None),  # level by then; another may stand before the map begins
+        (sign(60, "280") + sign(140, "276", 2), True),
+        (sign(60, "280") + sign(160, "276", 2), False),
+        (sign(60, "276") + sign(140, "280", 2), True),  # out before it ends
         (sign(20, "276") + sign(60, "280", 2), False),  # its end is said
         (sign(20, "280") + sign(60, "276", 2), True),
         (sign(20, "274"), None),  # no such sign anywhere
@@ -185,6 +189,16 @@ def test_a_sign_that_forbids_it(signs: str, holds: bool | None) -> None:
     way = signed(signs)
     (found,) = place(way, *scene(way))
     assert found["no_overtaking"] is holds
+
+
+def test_a_sign_before_which_the_ego_turns_back() -> None:
+    """It goes out at 100 m, and comes back behind a vehicle that goes as fast as itself: it passes nobody after the sign."""
+    way = signed(sign(60, "280") + sign(140, "276", 2))
+    t = times(25.0)
+    s = 50 + 12 * t
+    vbp = moving("vbp", way, t, 80 + 12 * t, way.own)
+    (found,) = place(way, moving("ego", way, t, s, swing(way, s, 100, 180)), vbp)
+    assert found["no_overtaking"] is False
 
 
 @HANDS

@@ -1,6 +1,6 @@
 -- title = "No overtaking where a sign forbids it"
 -- clause = "UKHC R165: you must not overtake after a no-overtaking sign, until the sign that cancels it"
--- hypothesis = "When the ego pulled out to overtake a moving vehicle, did no no-overtaking sign hold?"
+-- hypothesis = "When the ego pulled out to overtake a moving vehicle, and when it drew level with one that it passed, did no no-overtaking sign hold?"
 -- kind = "execution"
 -- derivation = "direct"
 -- severity = "major"
