@@ -194,7 +194,7 @@ CREATE TABLE line_step (
     marking VARCHAR,                  -- see lane_boundary: as seen from the running lane, at the ego's centre; NULL: the map does not say
     forbidden BOOLEAN,                -- from this lane it must not be crossed: solid, or double with the nearer one solid; NULL: marking not known
     beyond VARCHAR,                   -- what lies beyond it (see lane_beside): same or opposing (a drivable lane, by its direction), else its lane_type; NULL: nothing in the map
-    middle BOOLEAN,                   -- it is the middle of the road: traffic beyond it comes the other way; NULL: it may be, as on the overtaking side the map has nothing beyond it (and the road is no motorway), or a gap of more than 1 m, which may be a central reservation
+    middle BOOLEAN,                   -- it is the middle of the road: traffic beyond it comes the other way; NULL: it may be, as on the overtaking side the map has nothing beyond it (and the road is no motorway), or a gap of more than 1 m or a strip that it calls a median, which may be a central reservation
     t_since_ns BIGINT NOT NULL,       -- first step of this stretch over it; a line is one stretch, whichever of its two lanes is the running one
     begin_seen BOOLEAN NOT NULL,      -- the step before that is there and inside
     manoeuvre BOOLEAN NOT NULL,       -- the stretch is (part of) a lane change or an overtake, see lane_departure

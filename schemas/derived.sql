@@ -51,9 +51,10 @@ CREATE TABLE lane_beside (
     side VARCHAR NOT NULL,            -- left or right of the driver
     s_start_m DOUBLE NOT NULL,        -- from here, along the lanelet's centre line; no row: nothing lies beyond that boundary in the map
     s_end_m DOUBLE NOT NULL,          -- to here
-    beside_id VARCHAR NOT NULL,       -- the lanelet beyond that boundary: as the map names it, else the drivable one that runs along it, at most 2 m away, of whatever road
+    beside_id VARCHAR NOT NULL,       -- the lanelet beyond that boundary: as the map names it, else the drivable one that runs along it, at most 2 m away, of whatever road; the opposing lane behind a narrow strip
     against BOOLEAN NOT NULL,         -- that one is driven the other way
     gap_m DOUBLE NOT NULL,            -- from the boundary to its nearer bound; 0: the map names it
+    strip VARCHAR,                    -- what the map draws as a lane between the two directions, and is looked through: median (at most 1 m wide), border or restricted (2 m); NULL: nothing
     drivable BOOLEAN NOT NULL,        -- see lanelet
     lane_type VARCHAR NOT NULL,       -- see lanelet
     width_m DOUBLE NOT NULL           -- its width

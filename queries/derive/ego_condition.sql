@@ -12,7 +12,7 @@ WITH given AS (
 road AS (
     SELECT
         n.environment_id, n.road_id, n.section,
-        coalesce(bool_or(n.drivable AND n.bidirectional OR b.gap_m <= reservation_m()), false) AS touching,
+        coalesce(bool_or(n.drivable AND n.bidirectional OR b.strip IS NULL AND b.gap_m <= reservation_m()), false) AS touching,
         coalesce(bool_or(b.gap_m > reservation_m()), false) AS near,
         count(DISTINCT n.along_road) FILTER (n.drivable) = 2 AS both_ways,
         least(count(DISTINCT n.lanelet_id) FILTER (n.drivable AND n.along_road = 1), count(DISTINCT n.lanelet_id) FILTER (n.drivable AND n.along_road = -1)) AS lanes_each_way,

@@ -1,18 +1,41 @@
 -- What lies beyond each boundary of a drivable lanelet. Where the map names no neighbour, the lane that is driven beside it, in pieces of at
 -- most 10 m: maps with one road per direction, and those that cut or number the two directions apart, name none. Not in junctions, where
--- lanes of all directions overlap.
-WITH side AS (
+-- lanes of all directions overlap. A narrow strip that the map draws as a lane between the two directions is looked through, as lines that
+-- are painted apart are.
+WITH RECURSIVE side AS (
     SELECT n.environment_id, n.lanelet_id, n.length_m, v.side, CASE v.side WHEN 1 THEN n.left_id ELSE n.right_id END AS beside_id,
         CASE v.side WHEN 1 THEN n.left_against ELSE n.right_against END AS against
     FROM lanelet n
     CROSS JOIN (VALUES (1), (-1)) AS v(side)
     WHERE n.drivable
 ),
+through AS (
+    SELECT environment_id, lanelet_id, side, lanelet_id AS from_id, beside_id, against, 0.0::DOUBLE AS gap_m, NULL::VARCHAR AS strip FROM side WHERE beside_id IS NOT NULL
+    UNION ALL
+    SELECT
+        t.environment_id, t.lanelet_id, t.side, t.beside_id, CASE WHEN b.left_id = t.from_id THEN b.right_id ELSE b.left_id END,
+        t.against <> CASE WHEN b.left_id = t.from_id THEN b.right_against ELSE b.left_against END, t.gap_m + b.width_m,
+        CASE WHEN t.strip = 'median' OR b.lane_type = 'none' THEN coalesce(t.strip, b.lane_type) ELSE b.lane_type END
+    FROM through t
+    JOIN lanelet b ON b.environment_id = t.environment_id AND b.lanelet_id = t.beside_id AND NOT b.drivable
+        AND b.lane_type IN ('median', 'border', 'restricted', 'none') AND t.gap_m + b.width_m <= CASE b.lane_type WHEN 'median' THEN reservation_m() ELSE 2.0 END
+),
+opposing AS (
+    SELECT t.environment_id, t.lanelet_id, t.side, t.beside_id, t.gap_m, t.strip, b.lane_type, b.width_m
+    FROM through t
+    JOIN lanelet b ON b.environment_id = t.environment_id AND b.lanelet_id = t.beside_id AND b.drivable
+    WHERE t.against AND t.strip <> 'none'
+),
 named AS (
-    SELECT s.environment_id, s.lanelet_id, s.side, 0.0::DOUBLE AS s_start_m, s.length_m AS s_end_m, s.beside_id, s.against, 0.0::DOUBLE AS gap_m, b.drivable, b.lane_type, b.width_m
+    SELECT s.environment_id, s.lanelet_id, s.side, 0.0::DOUBLE AS s_start_m, s.length_m AS s_end_m, s.beside_id, s.against, 0.0::DOUBLE AS gap_m, NULL::VARCHAR AS strip, b.drivable, b.lane_type, b.width_m
     FROM side s
     -- a lane of no type is no lane: a strip that some maps draw between the directions
     JOIN lanelet b ON b.environment_id = s.environment_id AND b.lanelet_id = s.beside_id AND b.lane_type <> 'none'
+    ANTI JOIN opposing o ON o.environment_id = s.environment_id AND o.lanelet_id = s.lanelet_id AND o.side = s.side
+    UNION ALL
+    SELECT s.environment_id, s.lanelet_id, s.side, 0.0::DOUBLE, s.length_m, o.beside_id, true, round(o.gap_m, 3), o.strip, true, o.lane_type, o.width_m
+    FROM side s
+    JOIN opposing o ON o.environment_id = s.environment_id AND o.lanelet_id = s.lanelet_id AND o.side = s.side
 ),
 piece AS (
     SELECT g.*, s.side, z.z_m, ceil(len_m / 10) AS n, unnest(range(ceil(len_m / 10)::BIGINT)) AS i
@@ -72,10 +95,10 @@ nearest AS (
     WHERE gap_m > -0.5
     GROUP BY ALL
 )
-SELECT environment_id, lanelet_id, CASE side WHEN 1 THEN 'left' ELSE 'right' END AS side, s_start_m, s_end_m, beside_id, against, gap_m, drivable, lane_type, width_m
+SELECT environment_id, lanelet_id, CASE side WHEN 1 THEN 'left' ELSE 'right' END AS side, s_start_m, s_end_m, beside_id, against, gap_m, strip, drivable, lane_type, width_m
 FROM named
 UNION ALL
 SELECT
-    k.environment_id, k.lanelet_id, CASE k.side WHEN 1 THEN 'left' ELSE 'right' END, k.s_start_m, k.s_end_m, k.b.id, k.b.against, greatest(k.b.gap_m, 0.0), n.drivable, n.lane_type, k.b.width_m
+    k.environment_id, k.lanelet_id, CASE k.side WHEN 1 THEN 'left' ELSE 'right' END, k.s_start_m, k.s_end_m, k.b.id, k.b.against, greatest(k.b.gap_m, 0.0), NULL, n.drivable, n.lane_type, k.b.width_m
 FROM nearest k
 JOIN lanelet n ON n.environment_id = k.environment_id AND n.lanelet_id = k.b.id

@@ -163,7 +163,8 @@ SELECT
     CASE WHEN NOT y.drivable THEN y.lane_type WHEN y.against THEN 'opposing' WHEN y.drivable THEN 'same' END AS beyond,
     -- the directions of a motorway are apart
     CASE
-        WHEN y.beside_id IS NOT NULL THEN y.drivable AND y.against AND CASE WHEN y.gap_m <= reservation_m() THEN true END
+        WHEN y.strip = 'median' AND n.road_type = 'motorway' THEN false
+        WHEN y.beside_id IS NOT NULL THEN y.drivable AND y.against AND CASE WHEN y.gap_m <= reservation_m() AND y.strip IS DISTINCT FROM 'median' THEN true END
         WHEN n.road_type = 'motorway' OR n.side_name <> overtaking_side(n.handedness) THEN false
     END AS middle,
     s.t_since_ns, s.begin_seen, s.manoeuvre OR o.run IS NOT NULL AS manoeuvre,

@@ -7,13 +7,30 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from tests.derive.marked import apart, ease, marked, shouldered
-from tests.scenes import LANE, derived, drive, judged, moving, road, rows, saying, standing, swing, times
+from drivelint.maps import MapSource, load_map
+from tests.derive.marked import apart, ease, mark, marked, shouldered
+from tests.maps import xodr
+from tests.scenes import (
+    LANE,
+    Road,
+    derived,
+    drive,
+    judged,
+    limited,
+    moving,
+    plan,
+    road,
+    rows,
+    saying,
+    standing,
+    swing,
+    times,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from tests.scenes import Actor, Road
+    from tests.scenes import Actor
 
 HANDS = pytest.mark.parametrize("hand", ["rht", "lht"])
 SOLID = "ukhc.r129.no-cross-solid"
@@ -73,6 +90,57 @@ def test_not_further_away_nor_where_there_is_none() -> None:
     assert not beside(apart("rht", 2.4))
     found = [r for r in beside(apart("rht", since=200.0)) if r["lanelet_id"][0] == "1"]
     assert min(r["s_start_m"] for r in found) == pytest.approx(200.0)
+
+
+def divided(hand: str, kind: str, width: float, road_type: str = "rural", centre: str = "solid") -> Road:
+    """Return a two-way road with a strip between its directions, drawn as a lane of its own, a line on either side of it."""
+    inside = '<link><predecessor id="{0}"/><successor id="{0}"/></link><width sOffset="0" a="{1}"/>' + mark(centre)
+    side = 1 if hand == "lht" else -1
+    # the ego's lane lies at its usual place: the strip is on the other side of the reference line
+    lanes = {side: ("driving", LANE), -side: (kind, width), -2 * side: ("driving", LANE)}
+    parts = [xodr.lane(n, inside.format(n, w), what) for n, (what, w) in sorted(lanes.items(), reverse=True)]
+    text = xodr.xodr(
+        xodr.road(
+            geometry=plan(((600.0, 0.0),)),
+            lanes=xodr.section(0, *parts, centre=mark(centre)),
+            length=600.0,
+            attributes=f'rule="{hand.upper()}"',
+            more=limited(60).replace("rural", road_type),
+        )
+    )
+    name = f"divided-{hand}-{kind}-{width}-{road_type}-{centre}.xodr"
+    return Road(load_map(MapSource(name, text.encode())), ((600.0, 0.0),))
+
+
+@HANDS
+@pytest.mark.parametrize(
+    ("kind", "width", "expected"),
+    [
+        ("restricted", 0.5, "fail"),
+        ("border", 1.0, "fail"),
+        ("restricted", 1.5, "unknown"),
+        ("restricted", 2.5, "pass"),  # an island, or a reservation
+        ("median", 0.5, "unknown"),
+        ("median", 1.5, "pass"),
+        ("none", 0.5, "fail"),
+    ],
+)
+def test_a_narrow_strip_between_the_directions_is_looked_through(
+    hand: str, kind: str, width: float, expected: str
+) -> None:
+    """Over the solid line on its near side; what a map calls a median may be one that nobody can cross."""
+    way = divided(hand, kind, width)
+    assert said(way, wobble(way)) == {expected}
+    own = [r for r in beside(way) if r["lanelet_id"] == f"1.0.{'' if hand == 'lht' else '-'}1"]
+    if kind != "none":
+        through = expected != "pass"
+        assert {(r["drivable"], r["against"], r["strip"]) for r in own} == {(through, True, kind if through else None)}
+        assert {r["gap_m"] for r in own} == {width if through else 0.0}
+    broken = divided(hand, kind, width, centre="broken")
+    assert said(broken, wobble(broken)) == {"pass"}
+    if kind == "median":
+        motorway = divided(hand, kind, width, "motorway")
+        assert said(motorway, wobble(motorway)) == {"pass"}
 
 
 @HANDS
