@@ -12,7 +12,23 @@ import pytest
 from drivelint.maps import MapSource, load_map
 from tests.derive.marked import ease, marked, offsets, tables, tapering
 from tests.maps import xodr
-from tests.scenes import LANE, Actor, Road, limited, linked, moving, plan, road, rows, seconds, standing, swing, times
+from tests.scenes import (
+    LANE,
+    Actor,
+    Road,
+    drive,
+    judged,
+    limited,
+    linked,
+    moving,
+    plan,
+    road,
+    rows,
+    seconds,
+    standing,
+    swing,
+    times,
+)
 
 HANDS = pytest.mark.parametrize("hand", ["rht", "lht"])
 ROW = dict[str, Any]
@@ -458,3 +474,17 @@ def test_each_ego_has_its_own_changes() -> None:
     b = moving("b", way, t, 60 + 12 * t, offsets(way, t, 4.0, start=0.5, to=1.5))
     found = rows(tables(way, a, b, egos=("a", "b")), "FROM lane_change ORDER BY ego_id")
     assert [(row["ego_id"], row["occurrence"], row["side"]) for row in found] == [("a", 0, "left"), ("b", 0, "right")]
+
+
+@HANDS
+@pytest.mark.parametrize(("reach", "expected"), [(0.15, "fail"), (1.2, "pass")])
+def test_parked_cars_that_leave_room_do_not_close_the_lane(hand: str, reach: float, expected: str) -> None:
+    """On the wrong side of the road for 400 m, past cars on the verge that reach so far into its lane."""
+    way = road(((800.0, 0.0),), hand)
+    t = times(36.0)
+    s = 20 + 15 * t
+    ego = moving("ego", way, t, s, way.own + (way.other - way.own) * ease((s - 80) / 40) * (1 - ease((s - 500) / 40)))
+    edge = -way.over * (LANE + 0.9 - reach)
+    cars = [standing(f"p{k}", way, t, 150 + 80 * k, edge) for k in range(5)]
+    found = judged([drive([ego, *cars], way.environment)], rules=["ukhc.r143.direction"])
+    assert ("fail" in {row["verdict"] for row in found}) is (expected == "fail")

@@ -49,7 +49,7 @@
 -- @applies
 -- not off every lane, as in a car park
 WITH ego AS (
-    SELECT drive_id, ego_id, t_ns, front_s_m, rear_s_m, speed_mps, with_direction, $closed_m + $closed_s * speed_mps AS reach_m FROM ego_state
+    SELECT drive_id, ego_id, t_ns, front_s_m, rear_s_m, width_m, speed_mps, with_direction, $closed_m + $closed_s * speed_mps AS reach_m FROM ego_state
 ),
 -- an overtake excuses the ego beside the overtaken vehicle, on its way up to it, and until it is left behind. A vehicle that it does not gain
 -- on is not being overtaken: it excuses the ego no longer than an overtake takes. Whether one is, is not known of somebody without a place.
@@ -58,14 +58,18 @@ passing_by AS (
     FROM (
         SELECT
             o.drive_id, o.ego_id, o.t_ns,
-            coalesce(
-                p.front_s_m >= e.rear_s_m - e.reach_m AND (
-                    p.rear_s_m <= e.front_s_m AND p.front_s_m >= e.rear_s_m
-                    OR o.early AND p.rear_s_m - e.front_s_m <= e.reach_m
-                    OR e.speed_mps - p.speed_mps > standing_mps() AND 1e9 * (p.rear_s_m - e.front_s_m) <= longest_overtake_ns() * (e.speed_mps - p.speed_mps)
-                ),
-                CASE WHEN o.early THEN true END
-            ) AS excused
+            CASE
+                -- one parked at the edge, with room to pass it within the lane, is none
+                WHEN p.speed_mps <= standing_mps() AND is_vehicle(p.actor_class) AND p.half_width_m + abs(p.d_m) - p.lat_half_m >= e.width_m + passing_room_m(p.actor_class) THEN false
+                ELSE coalesce(
+                    p.front_s_m >= e.rear_s_m - e.reach_m AND (
+                        p.rear_s_m <= e.front_s_m AND p.front_s_m >= e.rear_s_m
+                        OR o.early AND p.rear_s_m - e.front_s_m <= e.reach_m
+                        OR e.speed_mps - p.speed_mps > standing_mps() AND 1e9 * (p.rear_s_m - e.front_s_m) <= longest_overtake_ns() * (e.speed_mps - p.speed_mps)
+                    ),
+                    CASE WHEN o.early THEN true END
+                )
+            END AS excused
         FROM (SELECT *, t_ns - min(t_ns) OVER (PARTITION BY drive_id, ego_id, occurrence) <= longest_overtake_ns() AS early FROM overtake_step) o
         JOIN ego e USING (drive_id, ego_id, t_ns)
         LEFT JOIN pair p ON p.drive_id = o.drive_id AND p.ego_id = o.ego_id AND p.t_ns = o.t_ns AND p.object_id = o.vbp_id
@@ -83,14 +87,20 @@ out_for_a_while AS (
 wrong AS (
     SELECT * FROM ego WHERE NOT with_direction
 ),
--- what stands in the ego's lane, such as a row of cones, closes it, and so does somebody who walks along in it
+-- what stands in the ego's lane, such as a row of cones, closes it, and so does somebody who walks along in it; a vehicle parked at its edge
+-- does not where there is room to pass it within the lane
 closed AS (
     SELECT w.drive_id, w.ego_id, w.t_ns,
-        CASE WHEN bool_or(p.closes) THEN true WHEN count(h.object_id) = 0 AND count(p.object_id) = count(p.closes) THEN false END AS closed
+        CASE WHEN bool_or(c.closes) THEN true WHEN count(h.object_id) = 0 AND count(p.object_id) = count(c.closes) THEN false END AS closed
     FROM wrong w
-    LEFT JOIN (SELECT *, speed_mps <= standing_mps() OR is_class(actor_class, 'pedestrian') AND speed_mps <= $manoeuvring_mps AS closes FROM pair) p ON p.drive_id = w.drive_id AND p.ego_id = w.ego_id AND p.t_ns = w.t_ns
+    LEFT JOIN pair p ON p.drive_id = w.drive_id AND p.ego_id = w.ego_id AND p.t_ns = w.t_ns
         AND in_lane(p.d_m, coalesce(p.lat_half_m, 0.0), p.half_width_m) AND p.s_m >= w.rear_s_m - w.reach_m AND p.s_m <= w.front_s_m + w.reach_m
     LEFT JOIN hidden h ON h.drive_id = w.drive_id AND h.ego_id = w.ego_id AND h.t_ns = w.t_ns AND h.least_m < w.reach_m
+    CROSS JOIN LATERAL (
+        SELECT p.speed_mps <= standing_mps() AND (NOT is_vehicle(p.actor_class)
+                OR p.half_width_m + abs(p.d_m) - coalesce(p.lat_half_m, 0.0) < w.width_m + passing_room_m(p.actor_class) OR CASE WHEN p.lat_half_m IS NOT NULL THEN false END)
+            OR is_class(p.actor_class, 'pedestrian') AND p.speed_mps <= $manoeuvring_mps AS closes
+    ) c
     GROUP BY ALL
 ),
 -- against every lane of a junction, and for how long it has been so
