@@ -136,7 +136,7 @@ CREATE TABLE cut_in (
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order; another vehicle moves from beside into the running lane ahead of the ego, or may: for a second or longer it cannot be told who is ahead
     object_id VARCHAR,                -- that vehicle; NULL: somebody may have, and the rest is NULL
-    t_ns BIGINT NOT NULL,             -- first step at which it cannot be told, or first step with its box more than 0.3 m inside the running lane, from at most 0.05 m; within 45 degrees of it, at most 150 m ahead
+    t_ns BIGINT NOT NULL,             -- first step at which it cannot be told, or first step with its box more than 0.3 m inside the running lane, from at most 0.05 m; within 45 degrees of it, at most 150 m ahead. Of one that overtook the ego, and was further in all the time that its front was ahead: first step as the nearest one ahead (lead.joined)
     begin_seen BOOLEAN NOT NULL,      -- the step before is there and it is placed: else it may have come in earlier
     side VARCHAR,                     -- left or right: where it came from
     gap_m DOUBLE,                     -- ego front to its rear at that step, along the corridor

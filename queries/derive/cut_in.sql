@@ -1,6 +1,7 @@
 -- Another vehicle comes from beside into the running lane ahead of the ego: from less than 0.05 m inside it to more than 0.3 m, along the
 -- lane (within 45 degrees), at most 150 m ahead. What the ego does by changing lanes itself is none. Where it was lost to sight in
--- between, t is the first step at which it is seen there. Where it cannot be told for a second who is ahead, somebody may have come in.
+-- between, t is the first step at which it is seen there. One that overtakes the ego and reaches over the line already as it gets ahead cuts in
+-- where it becomes the nearest one ahead. Where it cannot be told for a second who is ahead, somebody may have come in.
 WITH ahead AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, st.k, st.seg, p.object_id, e.chain_id, p.rear_s_m - e.front_s_m AS gap_m, e.speed_mps AS ego_speed_mps,
@@ -73,8 +74,36 @@ named AS (
     LEFT JOIN placed p USING (drive_id, ego_id, object_id, chain_id, run, n)
     WHERE c.begins
 ),
+-- over the line from the moment at which its front got ahead; the ego in one lane all that time
+squeezed AS (
+    SELECT DISTINCT l.drive_id, l.ego_id, l.object_id, l.t_ns, a.chain_id
+    FROM passing p
+    JOIN (
+        SELECT drive_id, ego_id, object_id, t_ns FROM lead WHERE joined AND t_ns = t_since_ns
+    ) l ON l.drive_id = p.drive_id AND l.ego_id = p.ego_id AND l.object_id = p.object_id AND l.t_ns >= p.t_ns
+    JOIN ahead a ON a.drive_id = l.drive_id AND a.ego_id = l.ego_id AND a.object_id = l.object_id AND a.t_ns = l.t_ns AND a.along
+    ANTI JOIN ahead b ON b.drive_id = l.drive_id AND b.ego_id = l.ego_id AND b.object_id = l.object_id AND b.t_ns >= p.t_ns AND b.t_ns <= l.t_ns
+        AND (b.inside_m <= over_boundary_m() OR b.chain_id <> a.chain_id)
+    ANTI JOIN named n ON n.drive_id = l.drive_id AND n.ego_id = l.ego_id AND n.object_id = l.object_id AND n.t_ns >= p.t_from_ns AND n.t_ns <= l.t_ns
+    WHERE NOT p.ego_passes
+    QUALIFY l.t_ns = min(l.t_ns) OVER (PARTITION BY p.drive_id, p.ego_id, p.occurrence)
+),
 found AS (
     SELECT * FROM named
+    UNION ALL BY NAME
+    SELECT
+        q.drive_id, q.ego_id, q.object_id, q.t_ns, true AS begin_seen, CASE WHEN a.d_m > e.d_m THEN 'left' ELSE 'right' END AS side,
+        a.gap_m, a.ego_speed_mps, a.speed_mps, i.t_ns AS in_place_ns
+    FROM squeezed q
+    JOIN ahead a USING (drive_id, ego_id, object_id, t_ns)
+    JOIN ego_state e USING (drive_id, ego_id, t_ns)
+    LEFT JOIN (
+        SELECT q.drive_id, q.ego_id, q.object_id, q.t_ns AS t_join_ns, min(c.t_ns) AS t_ns
+        FROM squeezed q
+        JOIN ahead c USING (drive_id, ego_id, object_id, chain_id)
+        WHERE c.t_ns >= q.t_ns AND c.centre_in
+        GROUP BY ALL
+    ) i ON i.drive_id = q.drive_id AND i.ego_id = q.ego_id AND i.object_id = q.object_id AND i.t_join_ns = q.t_ns
     UNION ALL BY NAME
     SELECT b.drive_id, b.ego_id, b.t_ns, false AS begin_seen
     FROM blind b

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.derive.marked import ease, marked, offsets, tables, tapering
-from tests.scenes import LANE, Actor, Road, moving, rows, times
+from tests.scenes import LANE, Actor, Road, drive, judged, moving, rows, times
 
 ROW = dict[str, Any]
 
@@ -122,3 +122,48 @@ def test_where_it_cannot_be_told_who_is_ahead_somebody_may_have_come_in() -> Non
     (only,) = cuts(way, ego, other.lost((t > 1.95) & (t < 2.95)))
     assert only["object_id"] == "x"
     assert [row["object_id"] for row in cuts(way, ego.lost((t > 8) & (t < 10)), other)] == ["x", None]
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(
+    ("what", "reach", "to", "cut"),
+    [
+        ("reaches over the line as it overtakes, then moves in", 0.4, 1.5, True),
+        ("reaches over by less than counts, then moves in", 0.2, 1.5, True),
+        ("overtakes in the lane itself", 1.2, 1.2, True),
+        ("reaches over the line and stays so", 0.4, None, False),
+    ],
+)
+def test_who_overtakes_over_the_line_cuts_in(hand: str, what: str, reach: float, to: float | None, cut: bool) -> None:
+    """The ego keeps to the far edge of its lane; the other is ahead from 6 s on and moves in at 8 s."""
+    way = marked(hand, lanes=2)
+    t = times(20.0)
+    side = np.sign(way.own)
+    ego = moving("ego", way, t, 100 + 15 * t, side * (2 * LANE - 0.95))
+    s = 70 + np.where(t < 9, 20 * t, 180 + 15 * (t - 9))
+    narrow = to is not None and to < 1.5  # a motorcycle within the lane
+    begin = LANE + reach - (0.4 if narrow else 0.9)
+    d = begin if to is None or narrow else begin + (1.5 * LANE - begin) * ease((t - 8) / 2)
+    size = {"kind": "motorcycle", "length": 2.2, "width": 0.8} if narrow else {}
+    found = cuts(way, ego, moving("x", way, t, s, side * d, **size))
+    assert [row["object_id"] for row in found] == ["x"] * cut
+    if cut:
+        assert (found[0]["side"], found[0]["begin_seen"]) == ("left" if hand == "rht" else "right", True)
+        assert 6.0 < found[0]["t_ns"] / 1e9 < 9.0
+        assert found[0]["in_place_ns"] >= found[0]["t_ns"]
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(("v", "verdict"), [(15.0, "fail"), (12.0, "pass")])
+def test_dropping_back_from_one_that_reached_over(hand: str, v: float, verdict: str) -> None:
+    """It moves in at 8 s, some 10 m ahead; the ego keeps its speed, or lets the gap grow."""
+    way = marked(hand, lanes=2)
+    t = times(24.0)
+    side = np.sign(way.own)
+    slow = np.where(t < 9, 15 * t, 135 + v * (t - 9))
+    ego = moving("ego", way, t, 100 + slow, side * (2 * LANE - 0.95))
+    s = 70 + np.where(t < 9, 20 * t, 180 + 15 * (t - 9))
+    d = LANE - 0.5 + (0.5 * LANE + 0.5) * ease((t - 8) / 2)
+    scene = drive([ego, moving("x", way, t, s, side * d)], way.environment)
+    found = [row for row in judged([scene], rules=["ukhc.r168.drop-back"]) if row["object_id"] == "x"]
+    assert [row["verdict"] for row in found] == [verdict]
