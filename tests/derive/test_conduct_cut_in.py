@@ -167,3 +167,18 @@ def test_dropping_back_from_one_that_reached_over(hand: str, v: float, verdict: 
     scene = drive([ego, moving("x", way, t, s, side * d)], way.environment)
     found = [row for row in judged([scene], rules=["ukhc.r168.drop-back"]) if row["object_id"] == "x"]
     assert [row["verdict"] for row in found] == [verdict]
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(("stays", "verdict"), [(False, "fail"), (True, "pass")])
+def test_one_between_for_a_moment_restores_no_gap(hand: str, stays: bool, verdict: str) -> None:
+    """The cutter stays 14 m ahead; a motorcycle comes between the two, and goes out again on the other side, or stays."""
+    way = marked(hand, lanes=2)
+    t = times(30.0)
+    ego = moving("ego", way, t, 60 + 18 * t, offsets(way, t, 99.0))
+    x = moving("x", way, t, 60 + 18.8 + 18 * t, offsets(way, t, 4.0, 3.0, start=0.5, to=1.5))
+    goes = 0.0 if stays else 1.2 * ease((t - 11) / 1.5)
+    d = offsets(way, t, 9.0, 2.0, start=0.5, to=1.5) + np.sign(way.own) * LANE * goes
+    m = moving("m", way, t, 60 + 9.0 + 18 * t, d, kind="motorcycle", length=2.2, width=0.8)
+    found = judged([drive([ego, x, m], way.environment)], rules=["ukhc.r168.drop-back"])
+    assert [row["verdict"] for row in found if row["object_id"] == "x"] == [verdict]

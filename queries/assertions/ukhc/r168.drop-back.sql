@@ -23,20 +23,32 @@
 -- unit = "s"
 -- why = "the Code's two seconds, twice that in the wet; the weather counts as dry where it is not known"
 -- source = "UKHC R126 and R168"
+--
+-- [params.gone_s]
+-- default = 2.0
+-- unit = "s"
+-- why = "our default: who is between the two for less than this may only be passing through"
 
 -- @reference
 SELECT drive_id, ego_id, t_ns, object_id, coalesce(in_place_ns, t_ns) AS in_place_ns, occurrence FROM cut_in
 
 -- @condition
--- gone again, or behind another that moved in too: nothing is left to restore
+-- gone again, or behind another that moved in too: nothing is left to restore. Who is ahead again later was only hidden by one between
+WITH told AS (
+    SELECT s.*, r.in_place_ns, r.object_id AS cutter_id, l.t_ns IS NOT NULL AS known, l.object_id AS ahead_id, l.gap_m, l.ego_speed_mps,
+        max(s.t_ns) FILTER (l.object_id = r.object_id) OVER (PARTITION BY s.ref_id) AS t_last_ns,
+        max(s.t_ns) FILTER (l.t_ns IS NULL OR l.object_id = r.object_id) OVER (PARTITION BY s.ref_id ORDER BY s.t_ns) AS t_not_gone_ns
+    FROM reference_step s
+    JOIN reference r USING (ref_id)
+    LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+)
 SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id,
-    CASE WHEN r.object_id IS NULL THEN NULL
+    CASE WHEN s.cutter_id IS NULL OR NOT s.known THEN NULL
         -- once the two have met there is no gap to restore, and nobody who has gone
         WHEN bool_or(coalesce(p.clearance_m <= 0, false)) OVER (PARTITION BY s.ref_id ORDER BY s.t_ns) THEN NULL
-        WHEN l.object_id = r.object_id THEN l.gap_m >= $time_gap_s * stopping_factor(c.weather) * l.ego_speed_mps
-        WHEN l.t_ns > r.in_place_ns THEN true WHEN l.t_ns IS NOT NULL THEN false END AS holds
-FROM reference_step s
-JOIN reference r USING (ref_id)
-LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+        WHEN s.ahead_id = s.cutter_id THEN s.gap_m >= $time_gap_s * stopping_factor(c.weather) * s.ego_speed_mps
+        WHEN s.t_ns < s.t_last_ns OR s.t_ns <= s.in_place_ns THEN false
+        WHEN s.t_ns - greatest(s.in_place_ns, s.t_not_gone_ns) >= $gone_s * 1e9 THEN true END AS holds
+FROM told s
 LEFT JOIN ego_condition c ON c.drive_id = s.drive_id AND c.ego_id = s.ego_id AND c.t_ns = s.t_ns
-LEFT JOIN pair p ON p.drive_id = s.drive_id AND p.ego_id = s.ego_id AND p.t_ns = s.t_ns AND p.object_id = r.object_id
+LEFT JOIN pair p ON p.drive_id = s.drive_id AND p.ego_id = s.ego_id AND p.t_ns = s.t_ns AND p.object_id = s.cutter_id
