@@ -79,7 +79,7 @@ CREATE TABLE near_mark (
     k INTEGER NOT NULL,               -- see step
     seg INTEGER NOT NULL,             -- see step
     front_m DOUBLE NOT NULL,          -- front bumper beyond its start; negative: before it
-    rear_m DOUBLE NOT NULL,           -- rear bumper beyond its end
+    rear_m DOUBLE NOT NULL,           -- rear bumper beyond its end, a trailer's where the ego draws one
     front_before_m DOUBLE,            -- front_m at the last step before that was placed on this chain; NULL: none
     rear_before_m DOUBLE,             -- rear_m then
     joined BOOLEAN NOT NULL,          -- that is the step before, without a hole

@@ -1,13 +1,27 @@
--- The ego's steps around the marks of its chains, with its bumpers before the step and at it. A step after a hole counts for all that lies
--- in between.
-WITH moved AS (
+-- The ego's steps around the marks of its chains, with its bumpers before the step and at it, the rear one at the end of its trailer. A step
+-- after a hole counts for all that lies in between.
+WITH
+-- how far a trailer reaches behind the ego's middle, see ego_state; while it is not seen, as far as it ever does
+drawn AS (
+    SELECT drive_id, ego_id, t_ns, coalesce(reach_m, max(reach_m) OVER (PARTITION BY drive_id, ego_id)) AS reach_m
+    FROM (SELECT *, CASE WHEN combination_m <> length_m THEN combination_m - length_m / 2 END AS reach_m FROM ego_state)
+),
+placed AS (
     SELECT
-        c.drive_id, c.ego_id, c.chain_id, c.t_ns, s.k, s.seg, c.front_s_m, c.rear_s_m, abs(c.d_m) - c.lat_half_m - c.half_width_m AS beside_m,
-        lag({'k': s.k, 'seg': s.seg, 'front_s_m': c.front_s_m, 'rear_s_m': c.rear_s_m}) OVER (PARTITION BY c.drive_id, c.ego_id, c.chain_id ORDER BY c.t_ns) AS before
+        c.drive_id, c.ego_id, c.chain_id, c.t_ns, s.k, s.seg, abs(c.d_m) - c.lat_half_m - c.half_width_m AS beside_m,
+        -- driven against the corridor, its tail is its furthest station
+        CASE WHEN t.reach_m IS NULL OR abs(c.heading_diff_rad) <= pi() / 2 THEN c.front_s_m ELSE c.s_m + t.reach_m END AS front_s_m,
+        CASE WHEN t.reach_m IS NULL OR abs(c.heading_diff_rad) > pi() / 2 THEN c.rear_s_m ELSE c.s_m - t.reach_m END AS rear_s_m
     FROM ego_corridor c
     JOIN step s USING (drive_id, ego_id, t_ns)
+    JOIN drawn t USING (drive_id, ego_id, t_ns)
     SEMI JOIN way_mark m ON m.drive_id = c.drive_id AND m.ego_id = c.ego_id AND m.chain_id = c.chain_id
     WHERE c.front_s_m IS NOT NULL
+),
+moved AS (
+    SELECT
+        *, lag({'k': k, 'seg': seg, 'front_s_m': front_s_m, 'rear_s_m': rear_s_m}) OVER (PARTITION BY drive_id, ego_id, chain_id ORDER BY t_ns) AS before
+    FROM placed
 )
 SELECT
     w.drive_id, w.ego_id, w.chain_id, m.kind, m.mark_id, m.s_start_m, w.t_ns, w.k, w.seg,

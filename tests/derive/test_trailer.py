@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
+from tests.derive.junction_scenes import cross, crosswalk
 from tests.scenes import Actor, Road, derived, drive, judged, moving, road, rows, saying, standing, times
 
 if TYPE_CHECKING:
@@ -118,6 +119,26 @@ def test_a_car_with_a_trailer_keeps_to_its_own_limit(hand: str, mph: float, expe
     limit = ["ukhc.r124.speed-limit"]
     assert {row["verdict"] for row in judged([saying(alone, **given)], rules=limit)} == {"pass"}
     assert {row["verdict"] for row in judged([saying(towing, **given)], rules=limit)} == {expected}
+
+
+@pytest.mark.parametrize("unseen", [False, True])
+@HANDS
+def test_its_rear_is_past_a_mark_when_the_trailer_s_is(hand: str, unseen: bool) -> None:
+    """A crossing at 100 m, 3 m wide, and a junction from 185 to 215 m: the ego's rear is 2.4 m behind its middle, the trailer's 9.4 m."""
+    way = cross(hand, (), (("1", crosswalk("walk", 100.0)),))["we"]
+    t = times(24.0)
+    ego = moving("ego", way, t, 60 + 8 * t, way.own)
+    trailer = drawn("t", ego, kind="trailer")
+    if unseen:
+        trailer = trailer.lost((t > 5) & (t < 20.5))
+    for parts_, reach in (([ego], 2.4), ([ego, trailer], 9.4)):
+        con = derived(drive(parts_, way.environment), tables=["crossing_passage", "junction_passage"])
+        (over,) = rows(con, "FROM crossing_passage")
+        (through,) = rows(con, "FROM junction_passage")
+        assert over["t_in_ns"] / 1e9 == pytest.approx((100 - 2.4 - 60) / 8, abs=0.11)
+        assert over["t_out_ns"] / 1e9 == pytest.approx((103 + reach - 60) / 8, abs=0.11)
+        assert through["t_in_ns"] / 1e9 == pytest.approx((185 - 2.4 - 60) / 8, abs=0.11)
+        assert through["t_out_ns"] / 1e9 == pytest.approx((215 + reach - 60) / 8, abs=0.11)
 
 
 TAILGATERS = [
