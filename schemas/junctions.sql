@@ -208,6 +208,7 @@ CREATE TABLE standstill (
     lanelet_id VARCHAR,               -- see ego_lane; NULL: on none
     junction_id VARCHAR,              -- the junction that some of its box is in, by front or rear bumper; NULL: none
     junction_clear_m DOUBLE,          -- what its rear has yet to go to be out of that junction; NULL: none, or not placed on its way
+    junction_inside_m DOUBLE,         -- how much of its length, a trailer's with it, is in that junction; NULL: none, or not placed on its way
     turn VARCHAR,                     -- the turn that the ego makes there, see junction_passage; NULL: none, or not known
     across BOOLEAN,                   -- see junction_passage
     junction_m DOUBLE,                -- front bumper to the next junction along its way; infinite: none within the corridor; NULL: not known

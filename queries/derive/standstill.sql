@@ -35,7 +35,8 @@ mark AS (
 around AS (
     SELECT
         drive_id, ego_id, t_start_ns,
-        min({'s_m': s_start_m, 'id': mark_id, 'clear_m': s_end_m - rear_s_m}) FILTER (kind = 'junction' AND s_start_m < front_s_m AND s_end_m > rear_s_m) AS junction,
+        min({'s_m': s_start_m, 'id': mark_id, 'clear_m': s_end_m - rear_s_m, 'inside_m': least(front_s_m, s_end_m) - greatest(rear_s_m, s_start_m)})
+            FILTER (kind = 'junction' AND s_start_m < front_s_m AND s_end_m > rear_s_m) AS junction,
         min(s_start_m - front_s_m) FILTER (kind = 'junction' AND s_start_m >= front_s_m) AS junction_m,
         min({'s_m': s_start_m, 'id': mark_id, 'clear_m': s_end_m - rear_s_m}) FILTER (kind = 'crossing' AND s_start_m < front_s_m AND s_end_m > rear_s_m) AS crossing,
         min({'off_m': abs(s_start_m - front_s_m), 'id': mark_id, 'm': s_start_m - front_s_m, 's_start_m': s_start_m, 'control': control})
@@ -52,7 +53,7 @@ turning AS (
 ),
 placed AS (
     SELECT
-        t.*, coalesce(a.junction.id, t.lane_junction_id) AS junction_id, a.junction.clear_m AS junction_clear_m, a.crossing.id AS crossing_id,
+        t.*, coalesce(a.junction.id, t.lane_junction_id) AS junction_id, a.junction.clear_m AS junction_clear_m, a.junction.inside_m AS junction_inside_m, a.crossing.id AS crossing_id,
         a.crossing.clear_m AS crossing_clear_m, a.line,
         CASE WHEN t.front_s_m IS NOT NULL THEN coalesce(a.junction_m, 'inf'::DOUBLE) END AS junction_m
     FROM there t
@@ -95,7 +96,7 @@ idle AS (
 SELECT
     p.drive_id, p.ego_id, (row_number() OVER (PARTITION BY p.drive_id, p.ego_id ORDER BY p.t_start_ns) - 1)::INTEGER AS occurrence,
     p.t_start_ns, p.t_end_ns, coalesce(b.v_mps >= stood_mps(), false) AS begin_seen, coalesce(a.v_mps >= stood_mps(), false) AS end_seen,
-    p.road_type, p.lanelet_id, p.junction_id, p.junction_clear_m, u.p.turn AS turn, u.p.across AS across, p.junction_m, p.crossing_id, p.crossing_clear_m,
+    p.road_type, p.lanelet_id, p.junction_id, p.junction_clear_m, p.junction_inside_m, u.p.turn AS turn, u.p.across AS across, p.junction_m, p.crossing_id, p.crossing_clear_m,
     p.line.id AS stop_line_id, p.line.m AS stop_line_m, p.line.control AS control, l.state,
     d.object_id AS ahead_id, d.gap_m AS ahead_gap_m, d.speed_mps AS ahead_speed_mps, d.t_ns IS NOT NULL AS ahead_known,
     k.o.id AS blocking_id, k.o.gap_m AS blocking_gap_m, k.o.speed_mps AS blocking_speed_mps, k.known AS blocking_known, i.idle_ns, i.idle_at_most_ns

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -56,6 +57,19 @@ def test_how_far_it_has_to_go_to_be_out(hand: str) -> None:
     assert (inside["junction_clear_m"], inside["crossing_clear_m"]) == (pytest.approx(215 - 197.2), None)
     assert (on["junction_clear_m"], on["crossing_clear_m"]) == (None, pytest.approx(103 - 99.2))
     assert (before["junction_clear_m"], before["crossing_clear_m"]) == (None, None)
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(
+    ("at", "length", "inside"), [(186.5, 4.8, 1.5), (202.0, 4.8, 4.8), (217.0, 4.8, 2.8), (225.0, 18.0, 8.0), (220.0, 40.0, 30.0)]
+)
+def test_how_much_of_it_is_in_the_junction(hand: str, at: float, length: float, inside: float) -> None:
+    """The junction is from 185 to 215 m."""
+    way = cross(hand)["we"]
+    ego = replace(halting(way, at), length=length)
+    back = length / 2 - 2.4  # `halting` takes a car's front
+    row = only(drive([replace(ego, x=ego.x - back)], way.environment))
+    assert (row["junction_id"], row["junction_inside_m"]) == ("9", pytest.approx(inside, abs=0.01))
 
 
 @pytest.mark.parametrize(("until", "n"), [(6.3, 1), (6.0, 0)])
