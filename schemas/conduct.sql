@@ -231,5 +231,6 @@ CREATE TABLE following (
     gap_m DOUBLE,                     -- see lead
     ego_speed_mps DOUBLE,             -- ego's speed
     speed_mps DOUBLE,                 -- its speed
-    joined_ns BIGINT                  -- see vehicle_ahead; since when the gap is new; NULL: it was ahead before, or how it came was not seen
+    joined_ns BIGINT,                 -- see vehicle_ahead; since when the gap is new; NULL: it was ahead before, or how it came was not seen
+    let_in_ns BIGINT                  -- see vehicle_ahead; since when the gap is new, if it was not the ego that changed lanes
 );

@@ -472,7 +472,8 @@ CREATE TABLE vehicle_ahead (
     ego_across_mps DOUBLE,            -- ego's speed across the corridor, towards it positive
     across_mps DOUBLE,                -- its speed across the corridor, towards the ego positive
     error_mps DOUBLE NOT NULL,        -- see lead
-    joined_ns BIGINT                  -- since when it is the lead, if one of the two then changed lanes; of another the last cut-in of it or lane change of the ego; NULL: it was ahead before, or how it came was not seen
+    joined_ns BIGINT,                 -- since when it is the lead, if one of the two then changed lanes; of another the last cut-in of it or lane change of the ego; NULL: it was ahead before, or how it came was not seen
+    let_in_ns BIGINT                  -- joined_ns, where it was not the ego that changed lanes; of another than the lead its last cut-in
 );
 
 -- ---- the overtake (paper, Appendix A)

@@ -32,9 +32,12 @@ half AS (
     FROM step
 )
 SELECT
-    drive_id, ego_id, t_ns, object_id, true AS nearest, true AS known, gap_m, speed_mps, accel_mps2, ego_speed_mps, in_lane, oncoming, across_m,
-    ego_across_mps, across_mps, error_mps, CASE WHEN joined THEN t_since_ns END AS joined_ns
-FROM lead
+    l.drive_id, l.ego_id, l.t_ns, l.object_id, true AS nearest, true AS known, l.gap_m, l.speed_mps, l.accel_mps2, l.ego_speed_mps, l.in_lane, l.oncoming, l.across_m,
+    l.ego_across_mps, l.across_mps, l.error_mps, CASE WHEN l.joined THEN l.t_since_ns END AS joined_ns,
+    -- into its lane the ego has changed by itself
+    CASE WHEN x.t_ns IS NULL THEN joined_ns END AS let_in_ns
+FROM lead l
+LEFT JOIN lane_crossing x ON x.drive_id = l.drive_id AND x.ego_id = l.ego_id AND x.t_ns = l.t_since_ns
 UNION ALL BY NAME
 SELECT
     m.drive_id, m.ego_id, m.t_ns, m.object_id, false AS nearest, true AS known, p.gap_m, p.speed_mps,
@@ -42,7 +45,7 @@ SELECT
     m.ego_speed_mps, m.in_lane, p.oncoming, p.across_m, p.ego_across_mps, p.across_mps,
     filtered_error_mps() * ((f.actor_id IS NOT NULL)::INTEGER + (g.actor_id IS NOT NULL)::INTEGER) AS error_mps,
     -- greatest() leaves out what is not there, as it should here
-    greatest(i.t_ns, x.t_ns) AS joined_ns
+    greatest(i.t_ns, x.t_ns) AS joined_ns, i.t_ns AS let_in_ns
 FROM more m
 JOIN lead l ON l.drive_id = m.drive_id AND l.ego_id = m.ego_id AND l.t_ns = m.t_ns AND l.object_id <> m.object_id
 JOIN lane_ahead p ON p.drive_id = m.drive_id AND p.ego_id = m.ego_id AND p.t_ns = m.t_ns AND p.object_id = m.object_id

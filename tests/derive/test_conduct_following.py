@@ -256,6 +256,20 @@ def test_one_that_cuts_in_makes_a_new_gap() -> None:
     found = following(way, ego, other)
     joins = next(k for k, row in enumerate(found) if row["object_id"] == "x")
     assert {row["joined_ns"] for row in found[joins:]} == {found[joins]["t_ns"]}
+    assert {row["let_in_ns"] for row in found[joins:]} == {found[joins]["t_ns"]}
+    assert found[-1]["follows"] is True
+
+
+@HANDS
+def test_the_ego_that_changes_lanes_makes_a_new_gap_itself(hand: str) -> None:
+    way = road(hand=hand, lanes=(0, 2) if hand == "rht" else (2, 0))
+    t = times(8.0)
+    sign = 1 if hand == "rht" else -1
+    ego = moving("ego", way, t, 100 + 10 * t, sign * LANE * (np.clip((t - 3.0) / 2.0, 0, 1) - 1.5))
+    found = following(way, ego, moving("x", way, t, 130 + 10 * t, -0.5 * LANE * sign))
+    joins = next(k for k, row in enumerate(found) if row["object_id"] == "x")
+    assert {row["joined_ns"] for row in found[joins:]} == {found[joins]["t_ns"]}
+    assert {row["let_in_ns"] for row in found[joins:]} == {None}
     assert found[-1]["follows"] is True
 
 

@@ -38,11 +38,11 @@
 -- [params.cut_in_s]
 -- default = 3.0
 -- unit = "s"
--- why = "time to restore the distance after somebody changed lane in front"
+-- why = "time to restore the distance after somebody changed lane in front; an ego that changes lanes itself keeps it at once"
 -- source = "Maierhofer et al. 2020, R_G1"
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, gap_m AS observed,
     stvo_safe_gap_m(ego_speed_mps, speed_mps, $reaction_s, $brake_mps2, $brake_lead_mps2) AS required,
-    follows AND coalesce(t_ns - joined_ns >= $cut_in_s * 1e9, true) AS applies
+    follows AND coalesce(t_ns - let_in_ns >= $cut_in_s * 1e9, true) AS applies
 FROM following
