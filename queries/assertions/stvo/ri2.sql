@@ -31,6 +31,12 @@
 -- unit = "vehicles"
 -- why = "so many slow vehicles in the other lanes are a queue"
 -- source = "Maierhofer et al. 2020, Table II"
+--
+-- [params.queue_m]
+-- default = 137.5
+-- unit = "m"
+-- why = "our default: no further from the one that is passed; three lorries of 18.75 m with the 50 m between them that they keep"
+-- source = "StVO 4(3), StVZO 32(4)"
 
 -- @reference
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.occurrence, p.speed_mps, p.ego_speed_mps, CASE WHEN p.ego_passes THEN c.side END AS side, n.lane_type
@@ -39,8 +45,8 @@ JOIN data_log g ON g.drive_id = p.drive_id
 JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
 LEFT JOIN ego_corridor c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.chain_id = e.chain_id AND c.t_ns = e.t_ns
 LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = e.lanelet_id
--- who may have been passed has no side
-WHERE coalesce(p.ego_passes AND NOT p.same_lane AND c.side = CASE p.side WHEN 'left' THEN 1 WHEN 'right' THEN -1 END, true)
+-- who may have been passed has no side; things are passed on either side
+WHERE may_be_vehicle(p.actor_class) AND coalesce(p.ego_passes AND NOT p.same_lane AND c.side = CASE p.side WHEN 'left' THEN 1 WHEN 'right' THEN -1 END, true)
 
 -- @condition
 -- on the way in one may be faster than the through lanes; on the way out too, beside a broad line, which the map may not have
@@ -51,9 +57,15 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.object_id, coalesce(r.lane_type
     CASE WHEN r.lane_type IN ('exit', 'offRamp') THEN 'the ego was on lane type ' || r.lane_type || ': whether a broad line parted it from the through lanes is not known' END AS reason
 FROM reference r
 JOIN (
-    SELECT b.ref_id, count(*) FILTER (o.d_m * b.side > o.half_width_m AND o.speed_mps <= $queue_mps AND abs(o.heading_diff_rad) < pi() / 2) AS n,
-        count(*) FILTER (o.x_m IS NULL OR o.speed_mps IS NULL) AS n_unknown
+    SELECT b.ref_id, count(*) FILTER (l.slow_there) AS n,
+        -- who stands off the lanes has no place along them and is in no queue
+        count(*) FILTER (may_be_vehicle(o.actor_class) AND (o.x_m IS NULL OR o.speed_mps IS NULL OR o.s_m IS NOT NULL AND l.slow_there IS NULL)) AS n_unknown
     FROM reference b
     JOIN pair o USING (drive_id, ego_id, t_ns)
+    LEFT JOIN pair v ON v.drive_id = b.drive_id AND v.ego_id = b.ego_id AND v.t_ns = b.t_ns AND v.object_id = b.object_id
+    CROSS JOIN LATERAL (
+        SELECT is_vehicle(o.actor_class) AND o.d_m * b.side > o.half_width_m AND o.speed_mps <= $queue_mps AND abs(o.heading_diff_rad) < pi() / 2
+            AND abs(o.s_m - v.s_m) <= $queue_m AS slow_there
+    ) l
     GROUP BY b.ref_id
 ) q USING (ref_id)
