@@ -12,7 +12,7 @@
 -- sense = ">="
 -- unit = "m"
 -- observes = "gap to the vehicle that cut in"
--- reads = ["cut_in", "ego_state", "lead", "pair"]
+-- reads = ["cut_in", "ego_state", "lead", "pair", "vehicle_ahead"]
 -- requires = ["mode_engaged", "map", "registration", "ego_size"]
 --
 -- [params.window_s]
@@ -37,12 +37,18 @@ SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id, e.speed_mps <= $v_ma
         WHEN s.t_ns = r.t_ns THEN r.gap_m
         -- once the two have met there is no distance to restore, and nobody who has gone
         WHEN bool_or(coalesce(p.clearance_m <= 0, false)) OVER (PARTITION BY s.ref_id ORDER BY s.t_ns) THEN NULL
+        WHEN l.t_ns IS NULL THEN NULL
         WHEN l.object_id = s.object_id THEN l.gap_m
+        WHEN v.object_id IS NOT NULL THEN v.gap_m
+        -- it hesitates at the line: some of it is in the lane still, and nobody nearer
+        WHEN in_lane(p.d_m, p.lat_half_m, p.half_width_m) AND p.front_s_m > e.front_s_m AND (l.object_id IS NULL OR p.rear_s_m - e.front_s_m < l.gap_m)
+            THEN p.rear_s_m - e.front_s_m
         -- later somebody else ahead, or nobody: it has gone again
-        WHEN l.t_ns IS NOT NULL THEN 'inf'::DOUBLE
+        ELSE 'inf'::DOUBLE
     END AS observed
 FROM reference_step s
 JOIN reference r USING (ref_id)
 JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
 LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+LEFT JOIN vehicle_ahead v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns AND v.object_id = s.object_id
 LEFT JOIN pair p ON p.drive_id = s.drive_id AND p.ego_id = s.ego_id AND p.t_ns = s.t_ns AND p.object_id = s.object_id

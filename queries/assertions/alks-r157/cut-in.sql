@@ -12,7 +12,7 @@
 -- unit = "m"
 -- observes = "clearance to the vehicle that cut in"
 -- near_margin = 0.5
--- reads = ["cut_in", "lost_object", "pair"]
+-- reads = ["cut_in", "ego_state", "lost_object", "pair"]
 -- requires = ["mode_engaged", "map", "registration", "ego_size"]
 --
 -- [params.window_s]
@@ -38,19 +38,32 @@
 -- why = "so long the system is to have seen it move over"
 -- source = "UN R157 5.2.5.2"
 --
+-- [params.pause_s]
+-- default = 2.0
+-- unit = "s"
+-- why = "our default: one whose centre comes into the lane later than that, at less than 0.5 m/s across, comes in then once more"
+--
 -- [params.moved_m]
 -- default = 0.05
 -- unit = "m"
 -- why = "our default: further to the side than it is moves a vehicle that begins to come over; who had not, jumps out"
 
 -- @reference
-SELECT drive_id, ego_id, t_ns, object_id
-FROM cut_in
+SELECT drive_id, ego_id, t_ns, object_id, again
+FROM (
+    SELECT drive_id, ego_id, t_ns, object_id, false AS again, gap_m, ego_speed_mps, speed_mps FROM cut_in
+    UNION ALL
+    SELECT c.drive_id, c.ego_id, c.in_place_ns, c.object_id, true, p.rear_s_m - e.front_s_m, e.speed_mps, p.speed_mps
+    FROM cut_in c
+    LEFT JOIN ego_state e ON e.drive_id = c.drive_id AND e.ego_id = c.ego_id AND e.t_ns = c.in_place_ns
+    LEFT JOIN pair p ON p.drive_id = c.drive_id AND p.ego_id = c.ego_id AND p.t_ns = c.in_place_ns AND p.object_id = c.object_id
+    WHERE c.in_place_ns - c.t_ns > $pause_s * 1e9
+)
 -- only where the time to collision leaves the system a chance; speeds that are not known may be such
 WHERE coalesce(gap_m > (ego_speed_mps - speed_mps) * ((ego_speed_mps - speed_mps) / (2 * $brake_mps2) + $delay_s), true)
 
 -- @condition
--- who is seen beside, and that long before not yet any nearer than in the three seconds before, leaves the system no chance
+-- who is seen beside, not at the line already, and that long before not yet any nearer than in the three seconds before, leaves the system no chance
 WITH before AS (
     SELECT r.ref_id, max({'t_ns': p.t_ns, 'off_m': abs(p.d_m)}).off_m < max(abs(p.d_m)) - $moved_m AS moved
     FROM reference r
@@ -59,10 +72,11 @@ WITH before AS (
     WHERE p.d_m IS NOT NULL
     GROUP BY r.ref_id
 )
-SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id, 0 AS required, p.clearance_is_bound AS at_least, coalesce(b.moved, true) AS applies,
+SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id, 0 AS required, p.clearance_is_bound AS at_least, r.again OR coalesce(b.moved, true) AS applies,
     -- one that has gone for good, in sight and far away, is no longer touched
     CASE WHEN s.object_id IS NULL THEN NULL WHEN p.object_id IS NOT NULL THEN p.clearance_m WHEN l.object_id IS NULL THEN 'inf'::DOUBLE END AS observed
 FROM reference_step s
+JOIN reference r USING (ref_id)
 LEFT JOIN before b USING (ref_id)
-LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
+LEFT JOIN pair p ON p.drive_id = s.drive_id AND p.ego_id = s.ego_id AND p.t_ns = s.t_ns AND p.object_id = s.object_id
 LEFT JOIN lost_object l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.object_id = s.object_id AND s.t_ns >= l.t_from_ns AND s.t_ns <= l.t_to_ns
