@@ -35,8 +35,8 @@
 -- why = "our default: so near to the ends of the log the filter's window is not whole"
 
 -- @condition
--- filtered before it is differentiated, see ego_motion
-SELECT m.drive_id, m.ego_id, m.t_ns, m.accel_mps2 AS observed, iso15622_limit(m.v_long_mps, $slow_mps2, $fast_mps2) + $tolerance_mps2 AS required,
+-- filtered before it is differentiated, see ego_motion; reversing, it speeds up where the speed along its heading falls
+SELECT m.drive_id, m.ego_id, m.t_ns, CASE WHEN m.v_long_mps < -standing_mps() THEN -m.accel_mps2 ELSE m.accel_mps2 END AS observed, iso15622_limit(abs(m.v_long_mps), $slow_mps2, $fast_mps2) + $tolerance_mps2 AS required,
     judged_inside(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
