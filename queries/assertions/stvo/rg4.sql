@@ -51,11 +51,11 @@
 SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed,
     CASE WHEN e.speed_mps > c.most_mps THEN c.most_mps WHEN e.speed_mps <= c.least_mps THEN c.least_mps END AS required,
     CASE WHEN required IS NULL AND c.least_mps IS NOT NULL THEN 'how fast its kind of vehicle may be is not known' END AS reason,
-    -- a vehicle ahead that is as slow itself is the reason; no row of lead: there may be one
+    -- a vehicle ahead that is as slow itself is the reason, if it is near for an ego that goes as fast as it may; no row of lead: there may be one
     -- somebody on foot, an animal or a thing in the way is one too, and so is a slow vehicle in the lane beside (StVO 7(2a))
     -- nor does one hinder by choice that speeds up from standing, or declares a minimal risk manoeuvre
     CASE WHEN e.stood AND e.speed_mps > standing_mps() OR r.is_on OR b.t_ns IS NOT NULL OR NOT may_be_vehicle(w.actor_class) THEN false
-        WHEN l.t_ns IS NOT NULL THEN l.object_id IS NULL OR l.speed_mps > c.most_mps WHEN e.speed_mps > c.most_mps THEN true END AS applies
+        WHEN l.t_ns IS NOT NULL THEN l.object_id IS NULL OR l.speed_mps > c.most_mps OR l.gap_m > lead_reach_m(c.most_mps + $slower_mps) WHEN e.speed_mps > c.most_mps THEN true END AS applies
 FROM (
     SELECT *, bool_or(speed_mps <= standing_mps()) OVER (
         PARTITION BY drive_id, ego_id ORDER BY t_ns RANGE BETWEEN ($start_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW
