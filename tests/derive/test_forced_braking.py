@@ -264,7 +264,9 @@ def test_who_comes_by_with_hardly_any_room(hand: str, evades: float, verdict: st
     ego = moving("ego", way, t, s, swing(way, s, 170.0, 215.0, share=0.6))
     parked = standing("p", way, t, 200.0, way.own * 1.4)
     there = 345 - 10 * t
-    d = way.other + np.sign(way.other) * evades * (np.clip((there - 255) / -20, 0, 1) - np.clip((there - 160) / -20, 0, 1))
+    d = way.other + np.sign(way.other) * evades * (
+        np.clip((there - 255) / -20, 0, 1) - np.clip((there - 160) / -20, 0, 1)
+    )
     other = moving("o", way, t, there, d)
     assert verdicts(drive([ego, parked, other], way.environment), GIVE_WAY) == [(verdict, "p")]
 
