@@ -25,6 +25,11 @@
 -- default = 5.0
 -- unit = "s"
 -- why = "our default: shorter is a pause in traffic"
+--
+-- [params.rear_m]
+-- default = 3.0
+-- unit = "m"
+-- why = "our default: so much of a long vehicle's rear, or of its trailer, may be in the junction once its front is out of it: others get past"
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, junction_id, t_out_ns, across
@@ -43,7 +48,7 @@ JOIN standstill s ON s.drive_id = r.drive_id AND s.ego_id = r.ego_id AND s.junct
 -- @condition
 SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
     -- who turns across may wait for the oncoming traffic, or behind one who does, or for a full exit: which of these is not known
-    s.t_start_ns IS NULL OR NOT e.in_junction
+    s.t_start_ns IS NULL OR NOT (e.in_junction OR s.junction_clear_m > $rear_m AND s.junction_clear_m < e.front_s_m - e.rear_s_m)
         OR NOT exit_full(
             s.blocking_id, s.blocking_gap_m, s.blocking_speed_mps, s.blocking_known, s.junction_clear_m, CASE WHEN r.across THEN 0 ELSE s.t_end_ns - s.t_start_ns END,
             $near_m, $slow_mps, $long_s
