@@ -115,7 +115,7 @@ CREATE TABLE junction_passage (
     occurrence INTEGER NOT NULL,      -- 0.. in time order; the ego goes through a junction, entered by a lane that ends there
     junction_id VARCHAR NOT NULL,     -- the junction
     t_in_ns BIGINT,                   -- first step with the ego's front bumper in it; NULL: the log, or a hole, begins inside
-    t_out_ns BIGINT,                  -- first step with its rear bumper past it; NULL: the log, or a hole, ends inside
+    t_out_ns BIGINT,                  -- first step with its rear bumper, or that of its trailer, past it; NULL: the log, or a hole, ends inside, or the trailer is not seen then
     t_first_ns BIGINT NOT NULL,       -- first step with its centre on a connecting lanelet
     t_last_ns BIGINT NOT NULL,        -- last one
     from_lanelet_id VARCHAR,          -- lanelet before it

@@ -234,3 +234,14 @@ def test_with_the_handedness_unknown_nobody_knows_which_turn_crosses_the_traffic
     guessed = replace(way.environment, tables={**way.environment.tables, "environment": said})
     (row,) = passages(going(way), way=replace(way, environment=guessed))
     assert (row["turn"], row["across"]) == ("left", None)
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize("length", [6.0, 14.0])
+def test_it_is_out_when_its_trailer_is(hand: str, length: float) -> None:
+    way = cross(hand)["we"]
+    ego = going(way)
+    behind = 2.4 + 0.5 + length / 2
+    trailer = moving("t", way, ego.t_s, 120 - behind + 8 * ego.t_s, way.own, length=length, kind="trailer")
+    (row,) = passages(ego, trailer, way=way)
+    assert row["t_out_ns"] / 1e9 == pytest.approx((ARM + 2 * R + behind + length / 2 - 120) / 8, abs=0.11)
