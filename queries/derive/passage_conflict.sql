@@ -12,13 +12,20 @@ met AS (
     SELECT
         p.drive_id, p.ego_id, p.occurrence, p.heading_rad, p.straightest_rad, c.object_id, c.actor_class, c.pet_s, c.decel_mps2, c.t_object_in_ns,
         -- who has no class may be either
-        may_walk(c.actor_class) AS on_foot, c.actor_class IS DISTINCT FROM 'pedestrian' AND e.t_ns <= p.t_b_ns AS driven
+        may_walk(c.actor_class) AS on_foot,
+        -- and into whose side it drove: the ego's front came onto its way before its rear was past
+        c.actor_class IS DISTINCT FROM 'pedestrian' AND e.t_ns <= p.t_b_ns AND (c.ego_first OR coalesce(
+            (e.x_m + e.length_m / 2 * cos(e.yaw_rad) - s.x_m) * cos(s.yaw_rad) + (e.y_m + e.length_m / 2 * sin(e.yaw_rad) - s.y_m) * sin(s.yaw_rad)
+                + e.width_m / 2 * abs(sin(e.yaw_rad - s.yaw_rad)) > -s.length_m / 2,
+            true
+        )) AS driven
     FROM passed p
     JOIN conflict c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id AND c.t_ego_out_ns >= p.t_a_ns
     JOIN ego_state e ON e.drive_id = c.drive_id AND e.ego_id = c.ego_id AND e.t_ns = c.t_ego_in_ns
+    ASOF LEFT JOIN state_dynamics s ON s.drive_id = c.drive_id AND s.actor_id = c.object_id AND s.t_ns <= c.t_ego_in_ns
     WHERE (e.t_ns <= p.t_b_ns OR (may_walk(c.actor_class) AND e.travel_m <= p.travel_m + 12))
-        -- and into whom it went: somebody still walking there
-        AND (c.ego_first OR (c.pet_s < 0 AND may_walk(c.actor_class)))
+        -- and into whom it went: somebody still there
+        AND (c.ego_first OR c.pet_s < 0)
         AND c.actor_class IS DISTINCT FROM 'object'
 ),
 -- where they came from: their heading two seconds before they came, against the ego's on its way in

@@ -143,6 +143,31 @@ def test_a_cyclist_along_the_egos_road_goes_on_while_the_ego_turns() -> None:
     assert found["ahead_going"]["pet_s"] < 2.0
 
 
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize("kind", ["bicycle", "animal", "car"])
+@pytest.mark.parametrize(("ahead", "hit"), [(2.5, True), (-1.0, True), (4.5, False), (6.0, False), (15.0, False)])
+def test_who_was_there_first_and_is_driven_into(hand: str, kind: str, ahead: float, hit: bool) -> None:
+    """It goes straight on beside the ego, its middle so far ahead of the ego's, which turns to its side; 3.3 m ahead, its rear is past."""
+    ways = cross(hand)
+    ego, side = ("ws", -1) if hand == "rht" else ("wn", 1)
+    t = times(24)
+    other = moving("c", ways["we"], t, 120 + ahead + 8.0 * t, side * 3.7, kind=kind, length=1.8, width=0.6)
+    found = answers(going(ways[ego]), other, way=ways["we"])
+    assert seen(found) == ({"ahead_going": "c"} if hit else {})
+    if hit:
+        assert found["ahead_going"]["pet_s"] < 0
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(("s0", "hit"), [(129.0, True), (138.0, False)])
+def test_an_oncoming_one_who_was_there_first(hand: str, s0: float, hit: bool) -> None:
+    """The ego turns across it: into its side, or when it is past."""
+    ways = cross(hand)
+    ego = "wn" if hand == "rht" else "ws"
+    found = answers(going(ways[ego], s0=118.0), going(ways["ew"], s0=s0, name="other"), way=ways["we"])
+    assert seen(found) == ({"oncoming": "other"} if hit else {})
+
+
 def walker(y: np.ndarray | float, x: np.ndarray | float, t: np.ndarray, **more: object) -> Actor:
     x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float), t)[:2]
     vx, vy = np.gradient(x, t), np.gradient(y, t)
