@@ -116,7 +116,7 @@ scale AS (
     SELECT c.drive_id, max(c.hl) + max(c.hw) + any_value(g.reach_m) AS cell_m
     FROM course c
     JOIN (
-        SELECT s.drive_id, max(swept_half_m(s.length_m, s.speed_mps, k.period_s)) + max(s.width_m) / 2 AS reach_m
+        SELECT s.drive_id, max(swept_half_m(s.length_m, s.speed_mps, k.period_s)) + max(s.width_m) / 2 + hardly_room_m() AS reach_m
         FROM state_dynamics s
         JOIN (SELECT drive_id, max(period_ns) / 1e9 AS period_s FROM ego_clock GROUP BY drive_id) k USING (drive_id)
         SEMI JOIN braking b ON b.drive_id = s.drive_id
@@ -142,15 +142,25 @@ box AS NOT MATERIALIZED (
     JOIN (SELECT drive_id, max(period_ns) / 1e9 AS period_s FROM ego_clock GROUP BY drive_id) k USING (drive_id)
     WHERE s.x_m IS NOT NULL AND s.y_m IS NOT NULL AND s.yaw_rad IS NOT NULL AND s.length_m IS NOT NULL AND s.width_m IS NOT NULL
 ),
+-- nobody drives on head on past an ego that is out in its lane with hardly any room, even if the two would just have missed each other
+ego_box AS NOT MATERIALIZED (
+    SELECT b.*, b.hw + CASE WHEN x.t0_ns IS NULL THEN 0.0 ELSE hardly_room_m() END AS out_hw
+    FROM box b
+    SEMI JOIN clock c ON c.drive_id = b.drive_id AND c.ego_id = b.actor_id
+    LEFT JOIN (FROM excursion WHERE overtaking AND over_against IS DISTINCT FROM false) x
+        ON x.drive_id = b.drive_id AND x.ego_id = b.actor_id AND b.t_ns >= x.t0_ns AND b.t_ns <= coalesce(x.t_back_ns, x.t_end_ns)
+),
 -- where it would have met the ego, at the speed that it had
 met AS MATERIALIZED (
     SELECT
         r.drive_id, r.object_id, r.t_from_ns, b.actor_id, b.t_ns AS t1, r.at_ns AS t2, r.t_ns AS t_came_ns,
         (r.x_m - b.x_m) ** 2 + (r.y_m - b.y_m) ** 2 AS d2, wrap_rad(r.dir_rad - b.dir_rad) AS angle_rad
     FROM reached r
-    JOIN (SELECT b.* FROM box b SEMI JOIN clock c ON c.drive_id = b.drive_id AND c.ego_id = b.actor_id) b
-        ON b.drive_id = r.drive_id AND b.cell = r.cell AND b.slot = r.slot AND b.actor_id <> r.object_id
-    WHERE b.t_ns >= r.t_from_ns AND abs(b.t_ns - r.at_ns) <= forced_apart_ns() AND boxes_meet(r.x_m - b.x_m, r.y_m - b.y_m, b.c, b.s, r.c, r.s, b.hl, b.hw, r.hl, r.hw)
+    JOIN (SELECT drive_id, object_id, t_from_ns, bool_and(gentle) AS gentle FROM braking GROUP BY ALL) g USING (drive_id, object_id, t_from_ns)
+    JOIN ego_box b ON b.drive_id = r.drive_id AND b.cell = r.cell AND b.slot = r.slot AND b.actor_id <> r.object_id
+    WHERE b.t_ns >= r.t_from_ns AND abs(b.t_ns - r.at_ns) <= forced_apart_ns() AND boxes_meet(
+        r.x_m - b.x_m, r.y_m - b.y_m, b.c, b.s, r.c, r.s, b.hl, CASE WHEN NOT g.gentle AND abs(wrap_rad(r.dir_rad - b.dir_rad)) >= head_on_rad() THEN b.out_hw ELSE b.hw END, r.hl, r.hw
+    )
 ),
 -- as in conflict, what counts is the angle against the ego's way where that comes nearest; and only ground that the ego took first
 taken AS (

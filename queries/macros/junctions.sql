@@ -58,6 +58,8 @@ CREATE OR REPLACE MACRO forced_apart_ns() AS 4_000_000_000;
 CREATE OR REPLACE MACRO forced_slot(t_ns) AS t_ns // (2 * forced_apart_ns());
 -- Within 30 degrees of the ego's way turned round, somebody comes head on.
 CREATE OR REPLACE MACRO head_on_rad() AS 5 * pi() / 6;
+-- Between the sides of two that meet head on, less is hardly room: mirrors take 0.2 m of it on each side.
+CREATE OR REPLACE MACRO hardly_room_m() AS 0.5;
 CREATE OR REPLACE MACRO forced_near_m() AS 200.0;
 -- Drivers stop within this distance before a light or a queue.
 CREATE OR REPLACE MACRO forced_beyond_m() AS 20.0;

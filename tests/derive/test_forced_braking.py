@@ -183,7 +183,7 @@ def test_who_has_to_stop_for_the_ego_round_an_obstruction(hand: str) -> None:
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 def test_who_stops_far_away_or_softly_is_not_forced(hand: str) -> None:
     assert verdicts(passing(hand, from_m=590.0, at=14.0), GIVE_WAY) == [("pass", "p")]
-    assert verdicts(passing(hand, by=1.0, at=2.0), GIVE_WAY) == [("pass", "p")]
+    assert verdicts(passing(hand, from_m=440.0, by=1.0, at=2.0), GIVE_WAY) == [("pass", "p")]
 
 
 @pytest.mark.parametrize("hand", ["rht", "lht"])
@@ -302,3 +302,21 @@ def test_every_ego_and_every_drive_for_itself() -> None:
     together = rows(derived(one, two, tables=["forced_braking"]), "FROM forced_braking ORDER BY drive_id")
     assert [row["drive_id"] for row in together] == ["d", "e"]
     assert [together[0]] == forced(one)
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(("room", "verdict"), [(0.1, "fail"), (0.4, "fail"), (0.7, "pass")])
+def test_who_brakes_hard_to_squeeze_by_is_forced_though_it_would_just_have_missed(
+    hand: str, room: float, verdict: str
+) -> None:
+    """It keeps to its edge; the boxes would have been so far apart had it come on at its speed."""
+    way = road(((600.0, 0.0),), hand)
+    t = times(END)
+    s = 50 + 10 * t
+    ego = moving("ego", way, t, s, swing(way, s, 170.0, 215.0, share=0.6))
+    parked = standing("p", way, t, 200.0, way.own * 1.4)
+    v = np.clip(16 - 5 * np.clip(t - 12, 0, None), 3, 16)
+    # the middle of the road is at 0, the ego's side at 0.35 + 0.9 m beyond it
+    d = np.sign(way.other) * (1.25 + room + 0.9)
+    other = moving("o", way, t, 400 - way_of(v, 0.0, t), d)
+    assert verdicts(drive([ego, parked, other], way.environment), GIVE_WAY) == [(verdict, "p")]
