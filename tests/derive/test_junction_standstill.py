@@ -61,7 +61,8 @@ def test_how_far_it_has_to_go_to_be_out(hand: str) -> None:
 
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize(
-    ("at", "length", "inside"), [(186.5, 4.8, 1.5), (202.0, 4.8, 4.8), (217.0, 4.8, 2.8), (225.0, 18.0, 8.0), (220.0, 40.0, 30.0)]
+    ("at", "length", "inside"),
+    [(186.5, 4.8, 1.5), (202.0, 4.8, 4.8), (217.0, 4.8, 2.8), (225.0, 18.0, 8.0), (220.0, 40.0, 30.0)],
 )
 def test_how_much_of_it_is_in_the_junction(hand: str, at: float, length: float, inside: float) -> None:
     """The junction is from 185 to 215 m."""
