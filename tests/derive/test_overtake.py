@@ -399,7 +399,7 @@ def _judged_speeding_up(hand: str, far: float, until_s: float) -> dict[str, Row]
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize("beside", ["parked", "cyclist", "horse"])
 def test_of_several_that_come_the_worst_counts(beside: str, hand: str) -> None:
-    """A car at the opposing kerb, or a cyclist that comes slowly, or a horse, is met first: it counts, and hides nobody who comes behind it."""
+    """A car at the opposing kerb, a cyclist or a horse that comes slowly is met first: it counts, and hides nobody behind it."""
     way, (ego, vbp, ov) = scene(hand)
     t = ego.t_s
     edge_d = way.other + np.sign(way.other) * 1.2

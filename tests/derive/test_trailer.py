@@ -114,11 +114,10 @@ def test_a_car_with_a_trailer_keeps_to_its_own_limit(hand: str, mph: float, expe
     way = road(((600.0, 0.0),), hand)
     t = times(10.0)
     ego = moving("ego", way, t, 100 + mph * 0.44704 * t, way.own)
-    given = {"nation": "gb"}
     alone, towing = drive([ego], way.environment), drive([ego, drawn("t", ego, kind="trailer")], way.environment)
     limit = ["ukhc.r124.speed-limit"]
-    assert {row["verdict"] for row in judged([saying(alone, **given)], rules=limit)} == {"pass"}
-    assert {row["verdict"] for row in judged([saying(towing, **given)], rules=limit)} == {expected}
+    assert {row["verdict"] for row in judged([saying(alone, nation="gb")], rules=limit)} == {"pass"}
+    assert {row["verdict"] for row in judged([saying(towing, nation="gb")], rules=limit)} == {expected}
 
 
 @pytest.mark.parametrize("unseen", [False, True])
