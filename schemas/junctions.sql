@@ -134,7 +134,7 @@ CREATE TABLE passage_conflict (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- see junction_passage; one row for each of its relations
-    relation VARCHAR NOT NULL,        -- oncoming (from the road ahead, also where it leads off at an angle and no other is as straight; such a one is from_left or from_right as well), from_left, from_right, ahead_going (a cyclist, animal or vehicle along the ego's own road that goes on while the ego turns), by their heading 2 s before against the ego's on its way in; pedestrian (on foot, in the junction or within 12 m past it: over the road that the ego turns into); who has no class may be either
+    relation VARCHAR NOT NULL,        -- oncoming (from the road ahead, also where it leads off at an angle and no other is as straight; such a one is from_left or from_right as well), from_left, from_right, ahead_going (a cyclist, animal or vehicle along the ego's own road that goes on while the ego turns), by their heading 2 s before against the ego's on its way in; pedestrian (on foot, in the junction or within 12 m before or past it: over the roads that the ego turns out of and into); who has no class may be either
     object_id VARCHAR,                -- of those before whom the ego went (or into whom: on foot still there as it came, driven not yet past its front), the one with the least PET; NULL: nobody
     actor_class VARCHAR,              -- see road_user; what it is decides whether a low PET breaks a rule
     pet_s DOUBLE,                     -- its PET, also where reason says that another one may be lower; infinite: nobody within 10 s, or until the log ends, 4 s later at least; NULL: cannot be told

@@ -2,28 +2,30 @@
 WITH passed AS (
     SELECT
         p.drive_id, p.ego_id, p.occurrence, p.t_in_ns, p.t_out_ns, coalesce(p.t_in_ns, p.t_first_ns) AS t_a_ns, coalesce(p.t_out_ns, p.t_last_ns) AS t_b_ns,
-        a.yaw_rad AS heading_rad, p.straightest_rad, b.travel_m, b.x_m, b.y_m
+        a.yaw_rad AS heading_rad, p.straightest_rad, a.travel_m AS travel_in_m, b.travel_m, b.x_m, b.y_m
     FROM junction_passage p
     JOIN ego_state a ON a.drive_id = p.drive_id AND a.ego_id = p.ego_id AND a.t_ns = coalesce(p.t_in_ns, p.t_first_ns)
     JOIN ego_state b ON b.drive_id = p.drive_id AND b.ego_id = p.ego_id AND b.t_ns = p.t_last_ns
 ),
--- those who came to ground that the ego went over in the junction, people on foot up to 12 m beyond: the mouth of the road that it turns into
+-- those who came to ground that the ego went over in the junction, people on foot up to 12 m before and beyond as well: the mouths of the roads
+-- that it turns out of and into
 met AS (
     SELECT
         p.drive_id, p.ego_id, p.occurrence, p.heading_rad, p.straightest_rad, c.object_id, c.actor_class, c.pet_s, c.decel_mps2, c.t_object_in_ns,
         -- who has no class may be either
         may_walk(c.actor_class) AS on_foot,
         -- and into whose side it drove: the ego's front came onto its way before its rear was past
-        c.actor_class IS DISTINCT FROM 'pedestrian' AND e.t_ns <= p.t_b_ns AND (c.ego_first OR coalesce(
+        c.actor_class IS DISTINCT FROM 'pedestrian' AND c.t_ego_out_ns >= p.t_a_ns AND e.t_ns <= p.t_b_ns AND (c.ego_first OR coalesce(
             (e.x_m + e.length_m / 2 * cos(e.yaw_rad) - s.x_m) * cos(s.yaw_rad) + (e.y_m + e.length_m / 2 * sin(e.yaw_rad) - s.y_m) * sin(s.yaw_rad)
                 + e.width_m / 2 * abs(sin(e.yaw_rad - s.yaw_rad)) > -s.length_m / 2,
             true
         )) AS driven
     FROM passed p
-    JOIN conflict c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id AND c.t_ego_out_ns >= p.t_a_ns
+    JOIN conflict c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id
     JOIN ego_state e ON e.drive_id = c.drive_id AND e.ego_id = c.ego_id AND e.t_ns = c.t_ego_in_ns
     ASOF LEFT JOIN state_dynamics s ON s.drive_id = c.drive_id AND s.actor_id = c.object_id AND s.t_ns <= c.t_ego_in_ns
-    WHERE (e.t_ns <= p.t_b_ns OR (may_walk(c.actor_class) AND e.travel_m <= p.travel_m + 12))
+    WHERE ((c.t_ego_out_ns >= p.t_a_ns AND e.t_ns <= p.t_b_ns)
+            OR (may_walk(c.actor_class) AND e.travel_m <= p.travel_m + mouth_m() AND e.travel_m >= p.travel_in_m - mouth_m()))
         -- and into whom it went: somebody still there
         AND (c.ego_first OR c.pet_s < 0)
         AND c.actor_class IS DISTINCT FROM 'object'
@@ -59,7 +61,7 @@ forced AS (
     JOIN forced_braking f ON f.drive_id = p.drive_id AND f.ego_id = p.ego_id AND f.t_ego_out_ns >= p.t_a_ns
     JOIN ego_state e ON e.drive_id = f.drive_id AND e.ego_id = f.ego_id AND e.t_ns = f.t_ego_in_ns
     JOIN state_dynamics s ON s.drive_id = f.drive_id AND s.actor_id = f.object_id AND s.t_ns = f.t_from_ns
-    WHERE (e.t_ns <= p.t_b_ns OR (f.actor_class IS NOT DISTINCT FROM 'pedestrian' AND e.travel_m <= p.travel_m + 12))
+    WHERE (e.t_ns <= p.t_b_ns OR (f.actor_class IS NOT DISTINCT FROM 'pedestrian' AND e.travel_m <= p.travel_m + mouth_m()))
         AND f.actor_class IS DISTINCT FROM 'object' AND f.decel_mps2 > least_force_mps2()
 ),
 hardest AS (
@@ -88,7 +90,9 @@ unclear AS (
         count(*) FILTER (b.nowhere) * any_value(c.period_ns) / 1e9 AS nowhere_s
     FROM passed p
     JOIN clock c USING (drive_id, ego_id)
-    JOIN blind b ON b.drive_id = p.drive_id AND b.ego_id = p.ego_id AND b.t_ns >= p.t_a_ns AND b.t_ns <= p.t_b_ns + conflict_ns()
+    JOIN blind b ON b.drive_id = p.drive_id AND b.ego_id = p.ego_id AND b.t_ns <= p.t_b_ns + conflict_ns()
+        -- on foot it may have crossed the mouth behind the ego before that
+        AND b.t_ns >= p.t_a_ns - CASE WHEN may_walk(b.actor_class) THEN 2_000_000_000 ELSE 0 END
     GROUP BY p.drive_id, p.ego_id, p.occurrence, b.object_id, b.actor_class, p.x_m, p.y_m, p.t_a_ns, p.t_b_ns
 ),
 -- seen before or after at a place from which it cannot have come (30 m/s), it does not matter

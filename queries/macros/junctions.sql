@@ -71,6 +71,8 @@ CREATE OR REPLACE MACRO relation_of(from_rad) AS
         WHEN abs(from_rad) >= radians(135) THEN 'oncoming' WHEN abs(from_rad) <= radians(45) THEN 'ahead_going'
         WHEN from_rad < 0 THEN 'from_left' WHEN from_rad IS NOT NULL THEN 'from_right'
     END;
+-- So far from a junction people on foot still cross the mouth of the road.
+CREATE OR REPLACE MACRO mouth_m() AS 12.0;
 -- A way out that turns by so much more than another one leaves the road.
 CREATE OR REPLACE MACRO fork_rad() AS radians(10);
 -- Whether it came by the road that the ego's own goes on into: a bent one leads off at an angle, but not one that lies across (80 degrees).

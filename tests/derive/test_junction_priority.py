@@ -187,6 +187,20 @@ def test_somebody_on_foot_over_the_mouth_of_the_road_turned_into(past: float, co
         assert found["pedestrian"]["pet_s"] > 0
 
 
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(("before", "counts"), [(3.0, True), (8.0, True), (30.0, False)])
+def test_somebody_on_foot_over_the_mouth_of_the_road_turned_out_of(hand: str, before: float, counts: bool) -> None:
+    """The walker goes over road 1, `before` metres before the junction, and comes to the ego's way about a second after it."""
+    ways = cross(hand)
+    t = times(24)
+    past = (ARM - before + 3 - 120) / 8
+    y = ways["we"].own + (1.2 + 1.4 * (past + 1 - t)) * (-1 if hand == "rht" else 1)
+    found = answers(going(ways["wn"]), walker(y, -R - before, t), way=ways["we"])
+    assert seen(found) == ({"pedestrian": "w"} if counts else {})
+    if counts:
+        assert 0 < found["pedestrian"]["pet_s"] < 2
+
+
 def test_who_is_still_walking_there_counts_though_they_were_first_but_not_who_is_through() -> None:
     ways = cross()
     t = times(24)

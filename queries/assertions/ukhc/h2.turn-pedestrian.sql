@@ -1,6 +1,6 @@
--- title = "Give way to people crossing the road turned into"
+-- title = "Give way to people crossing the road turned into or out of"
 -- clause = "UKHC H2 and R170: at a junction give way to people on foot who cross the road that you turn into or out of"
--- hypothesis = "When the ego turned into a road before somebody on foot, was there time for both?"
+-- hypothesis = "When the ego turned into a road, or out of one, before somebody on foot, was there time for both?"
 -- kind = "execution"
 -- derivation = "direct"
 -- severity = "critical"
