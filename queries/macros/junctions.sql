@@ -80,3 +80,6 @@ CREATE OR REPLACE MACRO comes_by_road_ahead(from_rad, straightest_rad) AS
     abs(from_rad) >= pi() - least(greatest(radians(45), abs(straightest_rad) + fork_rad()), radians(80));
 CREATE OR REPLACE MACRO relations_of(from_rad, straightest_rad) AS
     CASE WHEN comes_by_road_ahead(from_rad, straightest_rad) AND relation_of(from_rad) <> 'oncoming' THEN [relation_of(from_rad), 'oncoming'] ELSE [relation_of(from_rad)] END;
+-- It went nearly straight on, but another way out goes on straighter: whether it turned off or its road bends there, maps do not say.
+CREATE OR REPLACE MACRO at_fork(turn, turn_rad, straightest_rad) AS coalesce(turn = 'straight' AND abs(turn_rad) > abs(straightest_rad) + fork_rad(), false);
+CREATE OR REPLACE MACRO fork_words() AS 'whether the ego turned off at the fork, or its road bends there, is not known';

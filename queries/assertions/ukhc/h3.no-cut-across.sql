@@ -22,7 +22,7 @@
 
 -- @reference
 WITH met AS (
-    SELECT p.drive_id, p.ego_id, p.t_in_ns, p.occurrence, p.turn, k.relation, c.object_id, c.actor_class, c.decel_mps2, c.reason, b.actor_class AS braked_class,
+    SELECT p.drive_id, p.ego_id, p.t_in_ns, p.occurrence, p.turn, at_fork(p.turn, p.turn_rad, p.straightest_rad) AS fork, k.relation, c.object_id, c.actor_class, c.decel_mps2, c.reason, b.actor_class AS braked_class,
         made_to_brake(c.braked_mps2, c.braked_pet_s, c.braked_cause, $decel_mps2, $pet_s) AS braked,
         braked_words(c.braked_id, c.braked_pet_s, c.braked_mps2, c.braked_cause) AS braked_reason,
         pet_known(c.pet_s, c.reason, $pet_s, true) AS pet_s
@@ -30,17 +30,18 @@ WITH met AS (
     CROSS JOIN (VALUES ('ahead_going'), ('oncoming')) AS k(relation)
     LEFT JOIN passage_conflict c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id AND c.occurrence = p.occurrence AND c.relation = k.relation
     LEFT JOIN road_user b ON b.drive_id = p.drive_id AND b.actor_id = c.braked_id
-    WHERE p.turn IS DISTINCT FROM 'straight'
+    WHERE p.turn IS DISTINCT FROM 'straight' OR at_fork(p.turn, p.turn_rad, p.straightest_rad)
 ),
 judged AS (
     SELECT
         *,
         -- another vehicle that came sooner may hide a cyclist behind it: then only what is kept is known
         CASE WHEN turn IS NULL THEN NULL
-            WHEN braked AND braked_class IN ('bicycle', 'animal') THEN false
+            WHEN braked AND braked_class IN ('bicycle', 'animal') THEN CASE WHEN NOT fork THEN false END
             WHEN actor_class IN ('bicycle', 'animal') OR (pet_s >= $pet_s AND decel_mps2 <= $decel_mps2)
-            THEN pet_s >= $pet_s AND decel_mps2 <= $decel_mps2 AND CASE WHEN NOT braked THEN true END END AS kept,
+            THEN pet_s >= $pet_s AND decel_mps2 <= $decel_mps2 AND CASE WHEN NOT braked THEN true END OR CASE WHEN NOT fork THEN false END END AS kept,
         CASE WHEN turn IS NULL THEN 'the log does not show which way the ego turned'
+            WHEN fork AND object_id IS NOT NULL AND kept IS NULL THEN fork_words()
             WHEN braked IS DISTINCT FROM false THEN braked_reason
             ELSE coalesce(met_words(object_id, pet_s, decel_mps2), reason) END AS reason_given
     FROM met

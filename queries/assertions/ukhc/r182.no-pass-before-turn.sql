@@ -18,14 +18,16 @@
 -- why = "our default: whom the ego got ahead of longer ago has seen it signal and slow down"
 
 -- @reference
-SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, turn, across
+SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, across, at_fork(turn, turn_rad, straightest_rad) AS fork,
+    CASE WHEN turn = 'straight' THEN CASE WHEN turn_rad > 0 THEN 'left' ELSE 'right' END ELSE turn END AS side
 FROM junction_passage
-WHERE across IS DISTINCT FROM true AND turn IS DISTINCT FROM 'straight'
+WHERE across IS DISTINCT FROM true AND (turn IS DISTINCT FROM 'straight' OR at_fork(turn, turn_rad, straightest_rad))
 
 -- @condition
 SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
-    CASE WHEN r.across IS NULL OR (p.t_ns IS NULL AND b.t_ns IS NOT NULL) THEN NULL ELSE p.t_ns IS NULL END AS holds,
+    CASE WHEN r.across IS NULL OR (p.t_ns IS NULL AND b.t_ns IS NOT NULL) THEN NULL WHEN p.t_ns IS NOT NULL THEN CASE WHEN NOT r.fork THEN false END ELSE true END AS holds,
     CASE WHEN r.across IS NULL THEN 'which way the ego turned, or the side of the road, is not known'
+        WHEN p.t_ns IS NOT NULL AND r.fork THEN fork_words()
         WHEN p.t_ns IS NOT NULL THEN 'the ego got ahead of ' || p.object_id
         WHEN b.t_ns IS NOT NULL THEN 'somebody who may be beside the ego cannot be placed' END AS reason
 FROM reference_step g
@@ -36,6 +38,6 @@ LEFT JOIN (
     WHERE ego_passes AND coalesce(speed_mps > standing_mps(), true)
     GROUP BY drive_id, ego_id, t_ns, side
 ) p
-    ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns = g.t_ns AND p.side = r.turn
+    ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns = g.t_ns AND p.side = r.side
 LEFT JOIN (SELECT DISTINCT drive_id, ego_id, t_ns FROM beside WHERE gap_m IS NULL AND coalesce(actor_class, '') <> 'pedestrian') b
     ON b.drive_id = g.drive_id AND b.ego_id = g.ego_id AND b.t_ns = g.t_ns
