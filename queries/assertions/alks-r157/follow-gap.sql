@@ -28,6 +28,11 @@
 -- default = 1.0
 -- unit = "m/s2"
 -- why = "our default: so the vehicle ahead takes distance away by braking"
+--
+-- [params.faster_mps]
+-- default = 0.5
+-- unit = "m/s"
+-- why = "our default: so much faster than when the vehicle ahead braked the ego closes in by its own doing; a held speed trembles by less"
 
 -- @condition
 SELECT f.drive_id, f.ego_id, f.t_ns, f.gap_m AS observed, r157_gap_m(f.ego_speed_mps) AS required,
@@ -35,10 +40,12 @@ SELECT f.drive_id, f.ego_id, f.t_ns, f.gap_m AS observed, r157_gap_m(f.ego_speed
         -- where the two meet in that time, it is not known whether the ego restored the gap as soon as it could
         AND CASE WHEN coalesce(f.t_ns - f.joined_ns >= $restore_s * 1e9, true) THEN true
             WHEN c.t_ns - f.joined_ns < $restore_s * 1e9 THEN CASE WHEN f.gap_m >= r157_gap_m(f.ego_speed_mps) THEN true END ELSE false END
-        AND CASE WHEN b.braked THEN false WHEN f.gap_m >= r157_gap_m(f.ego_speed_mps) OR NOT b.unsure THEN true END AS applies
+        AND CASE WHEN f.ego_speed_mps > b.then_mps + $faster_mps THEN true WHEN b.braked THEN false WHEN f.gap_m >= r157_gap_m(f.ego_speed_mps) OR NOT b.unsure THEN true END AS applies
 FROM following f
 LEFT JOIN (
-    SELECT drive_id, ego_id, t_ns, object_id, bool_or(accel_mps2 <= -$lead_brakes_mps2) OVER w AS braked, bool_or(accel_mps2 IS NULL) OVER w AS unsure
+    SELECT drive_id, ego_id, t_ns, object_id, bool_or(accel_mps2 <= -$lead_brakes_mps2) OVER w AS braked,
+        -- how fast the ego was when it braked, or may have
+        max(ego_speed_mps) FILTER (accel_mps2 <= -$lead_brakes_mps2 OR accel_mps2 IS NULL) OVER w AS then_mps, bool_or(accel_mps2 IS NULL) OVER w AS unsure
     FROM vehicle_ahead
     WINDOW w AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns RANGE BETWEEN ($restore_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW)
 ) b ON b.drive_id = f.drive_id AND b.ego_id = f.ego_id AND b.t_ns = f.t_ns AND b.object_id = f.object_id
