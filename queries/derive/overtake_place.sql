@@ -101,7 +101,7 @@ before AS (
     GROUP BY ALL
 ),
 -- in the overtaking lane, or in the running one and moving over at more than 0.3 m/s. As long as some of it is beside the ego it is not yet
--- past; one in the running lane whose middle is ahead may be the one that the ego passes, unless it is faster.
+-- past; but one whose middle is ahead is one that the ego passes, or drives beside, unless it is faster.
 rear AS (
     SELECT
         g.drive_id, g.ego_id, g.occurrence,
@@ -119,10 +119,10 @@ rear AS (
     JOIN pair p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns = g.t0_ns
     JOIN before f ON f.drive_id = g.drive_id AND f.ego_id = g.ego_id AND f.occurrence = g.occurrence AND f.object_id = p.object_id
     WHERE may_be_vehicle(p.actor_class) AND p.rear_s_m <= g.front_s_m AND abs(p.heading_diff_rad) < pi() / 2 AND g.rear_s_m - p.front_s_m <= follower_m()
+        AND (p.s_m <= g.s_m OR coalesce(p.speed_mps > g.speed_mps, true))
         AND (
             in_lane(g.side * p.d_m - 2 * p.half_width_m, p.lat_half_m, p.half_width_m)
-            OR (in_lane(p.d_m, p.lat_half_m, p.half_width_m) AND g.side * p.speed_mps * sin(p.heading_diff_rad) > 0.3
-                AND (p.s_m <= g.s_m OR p.speed_mps > g.speed_mps))
+            OR (in_lane(p.d_m, p.lat_half_m, p.half_width_m) AND g.side * p.speed_mps * sin(p.heading_diff_rad) > 0.3)
         )
     GROUP BY ALL
 ),

@@ -65,6 +65,7 @@ REAR = [
     ("alongside in it", 96.0, 12.0, 1.0, 0.0, True),
     ("alongside in it, its middle ahead of the ego's", 102.5, 20.0, 1.0, 0.0, True),
     ("alongside in it, its tail beside the ego's front", 105.0, 20.0, 1.0, 0.0, True),
+    ("alongside in it, its middle ahead, no faster than the ego", 102.5, 11.0, 1.0, 0.0, False),
     ("just past the ego in it", 112.0, 20.0, 1.0, 0.0, False),
     ("own lane", 70.0, 20.0, 0.0, 0.0, False),
     ("own lane, pulling out", 70.0, 20.0, 0.1, 0.5, True),
