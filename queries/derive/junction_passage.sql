@@ -51,9 +51,7 @@ left_behind AS (
     JOIN driven w USING (drive_id, ego_id, t_first_ns)
     JOIN near_mark n ON n.drive_id = i.drive_id AND n.ego_id = i.ego_id AND n.chain_id = w.leave.chain_id AND n.kind = 'junction'
         AND n.mark_id = i.junction_id AND n.s_start_m = w.leave.s_m AND n.seg = i.seg AND n.t_ns >= i.t_last_ns
-    -- the trailer's rear is the ego's
-    JOIN ego_state e ON e.drive_id = n.drive_id AND e.ego_id = n.ego_id AND e.t_ns = n.t_ns
-    WHERE n.rear_m >= e.combination_m - e.length_m AND n.rear_before_m < e.combination_m - e.length_m AND n.joined
+    WHERE n.rear_m >= 0 AND n.rear_before_m < 0 AND n.joined
     GROUP BY i.drive_id, i.ego_id, i.t_first_ns
 ),
 -- headings of the way in and the way out

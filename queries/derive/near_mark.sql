@@ -32,7 +32,5 @@ SELECT
     e.chain_id IS NOT DISTINCT FROM w.chain_id AND w.beside_m < 4 AS running
 FROM moved w
 JOIN way_mark m ON m.drive_id = w.drive_id AND m.ego_id = w.ego_id AND m.chain_id = w.chain_id
-    AND w.front_s_m >= m.s_start_m - near_mark_m()
+    AND w.front_s_m >= m.s_start_m - near_mark_m() AND coalesce(least(w.before.rear_s_m, w.rear_s_m), w.rear_s_m) <= m.s_end_m + near_mark_m()
 JOIN ego_state e ON e.drive_id = w.drive_id AND e.ego_id = w.ego_id AND e.t_ns = w.t_ns
--- until its trailer is past as well
-WHERE coalesce(least(w.before.rear_s_m, w.rear_s_m), w.rear_s_m) <= m.s_end_m + near_mark_m() + coalesce(e.combination_m - e.length_m, 0.0)
