@@ -36,8 +36,8 @@ def test_who_is_oncoming(hand: str, lanes: tuple[int, int], d: float, counts: bo
     assert {row["n_unplaced"] for row in found} == ({1} if d == 5.0 else {0})
 
 
-@pytest.mark.parametrize("kind", ["car", "truck", "motorcycle", "bicycle", None])
-def test_every_vehicle_counts_and_an_unknown_kind_may_be_one(kind: str | None) -> None:
+@pytest.mark.parametrize("kind", ["car", "truck", "motorcycle", "bicycle", "animal", None])
+def test_every_vehicle_and_animal_counts_and_an_unknown_kind_may_be_one(kind: str | None) -> None:
     way = road()
     t = times(0.3)
     ego, other = moving("ego", way, t, 100 + 10 * t, way.own), moving("x", way, t, 300 - 9 * t, way.other, kind=kind)
@@ -45,11 +45,13 @@ def test_every_vehicle_counts_and_an_unknown_kind_may_be_one(kind: str | None) -
     assert {row["object_id"] for row in rows(con, "FROM oncoming")} == {"x"}
 
 
-@pytest.mark.parametrize("kind", ["pedestrian", "animal"])
-def test_who_walks_is_no_oncoming_vehicle(kind: str) -> None:
+def test_who_walks_is_no_oncoming_vehicle() -> None:
     way = road()
     t = times(0.3)
-    ego, other = moving("ego", way, t, 100 + 10 * t, way.own), moving("x", way, t, 300 - t, way.other, kind=kind)
+    ego, other = (
+        moving("ego", way, t, 100 + 10 * t, way.own),
+        moving("x", way, t, 300 - t, way.other, kind="pedestrian"),
+    )
     con = derived(drive([ego, other], way.environment), tables=["oncoming"])
     assert {row["object_id"] for row in rows(con, "FROM oncoming")} == {None}
 
