@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple, Protocol
 from drivelint import catalogue
 from drivelint.report.progress import Silent
 from drivelint.run import Settings, check
-from tests.outsiders import eighth, fifth, first, fourth, ninth, second, seventh, sixth, tenth, third
+from tests.outsiders import eighth, eleventh, fifth, first, fourth, ninth, second, seventh, sixth, tenth, third, twelfth
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from tests.outsiders.log import Scene
     from tests.scenes import Row
 
-PERSONS: Final = (first, second, third, fourth, fifth, sixth, seventh, eighth, ninth, tenth)
+PERSONS: Final = (first, second, third, fourth, fifth, sixth, seventh, eighth, ninth, tenth, eleventh, twelfth)
 FAILS: Final = Path(__file__).with_name("fails.txt")
 REFUSED: Final = "refused"
 """The verdict on a drive that could not be judged."""

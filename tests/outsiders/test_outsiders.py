@@ -53,6 +53,14 @@ KNOWN: Final = {
     "gb_dual_astride_two_lanes_l ukhc.r131.keep-in-lane": "between two lanes for so long, the ego does not vouch for the map",
     "gb_roundabout_wrong_way_round_l ukhc.r143.direction": "nobody else is there: a map of the other hand looks the same",
     "gb_town_twenty_at_twenty_six_heading_turned_l ukhc.r124.speed-limit": "the ego's heading is turned round: the log is refused",
+    "gb_wrong_way_m ukhc.r143.direction": "against its lane all the time, and the one other vehicle there does not keep to its own",
+    "gb_ring_wrong_way_m ukhc.r143.direction": "the log ends on the ring: the ego vouches for the map before that only",
+    "de_ring_wrong_way_m ukhc.r143.direction": "the log ends on the ring: the ego vouches for the map before that only",
+    "gb_green_blocked_m ukhc.r176.green-exit-clear": "which way out the ego was to take, and whether that one was full, is not known",
+    "gb_teleport_m ukhc.no-collision": "where a track that jumps was meanwhile is not known",
+    "de_queue_on_the_right_m stvo.rg4": "a slow vehicle in the lane beside is a reason from 30 m on (our default)",
+    "de_139_in_120_short_map_n stvo.rg3": "beyond the map for much of the time, the ego does not vouch for it",
+    "de_crawler_night_n stvo.rg4": "a map's `no limit` is read as none given: a sign may stand there that the map lacks",
 }
 """Where product and outsider still differ, as `scene rule`, and why; never a breach that passes."""
 SCENES: Final = [drive.scene for drive in drives()]
