@@ -63,6 +63,7 @@ def judged(trace_file: Path, map_file: Path, ego: str) -> dict[tuple[str, int], 
     with store.connect(threads=1) as con:
         scenes.derived(Drive(trace, environment), tables=tables, con=con)
         for name, rule in rules.items():
+            leads = {row[:2]: row[2] for row in con.execute("SELECT ego_id, t_ns, object_id FROM lead").fetchall()}
 
             def rows(section: str, columns: str, rule: catalogue.Rule = rule) -> list[tuple[Any, ...]]:
                 sql = f"SELECT {columns} FROM ({rule.sections[section]})"
@@ -71,6 +72,9 @@ def judged(trace_file: Path, map_file: Path, ego: str) -> dict[tuple[str, int], 
 
             values = {row[:3]: row[3] for row in rows("condition", "ego_id, t_ns, object_id, observed")}
             for who, t, other, applies in rows("applies", "ego_id, t_ns, object_id, applies"):
+                # those whom the lead may hide are judged as well; the other reading knows the lead only
+                if other != leads.get((who, t), other):
+                    continue
                 value = values.get((who, t, other)) if applies else None
                 found.setdefault((who, t), {})[name] = (other, applies, value)
     return found
