@@ -196,7 +196,7 @@ led AS MATERIALIZED (
         OR min(w.t_stood_ns) <= CASE WHEN b.gentle THEN least(max(t.t1_last), b.t_to_ns + waits_ns()) ELSE max(t.t1_last) END
             AND abs(min({'t2': t.t2, 'angle_rad': t.angle_rad}).angle_rad) >= head_on_rad()
 ),
--- who waited for the ego goes on when that has left, or a moment before; who stands on stands for something else
+-- an actor that waited for the ego moves off when the ego has left, or a moment before. One that keeps standing has another reason
 went_on AS (
     SELECT l.drive_id, l.ego_id, l.object_id, l.t_from_ns, min(s.t_ns) FILTER (s.speed_mps > moves_mps()) AS t_on_ns, max(s.t_ns) AS t_seen_ns
     FROM led l

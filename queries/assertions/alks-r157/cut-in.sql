@@ -63,7 +63,7 @@ FROM (
 WHERE coalesce(gap_m > (ego_speed_mps - speed_mps) * ((ego_speed_mps - speed_mps) / (2 * $brake_mps2) + $delay_s), true)
 
 -- @condition
--- who is seen beside, not at the line already, and that long before not yet any nearer than in the three seconds before, leaves the system no chance
+-- a vehicle leaves the system no chance if it came no nearer to the line, over the three seconds that end visible_s before the cut-in
 WITH before AS (
     SELECT r.ref_id, max({'t_ns': p.t_ns, 'off_m': abs(p.d_m)}).off_m < max(abs(p.d_m)) - $moved_m AS moved
     FROM reference r

@@ -45,7 +45,7 @@ JOIN data_log g ON g.drive_id = p.drive_id
 JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
 LEFT JOIN ego_corridor c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.chain_id = e.chain_id AND c.t_ns = e.t_ns
 LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = e.lanelet_id
--- who may have been passed has no side; things are passed on either side
+-- an actor without a place may have been passed, and its side is not known; a thing is no traffic and may be passed on either side
 WHERE may_be_vehicle(p.actor_class) AND coalesce(p.ego_passes AND NOT p.same_lane AND c.side = CASE p.side WHEN 'left' THEN 1 WHEN 'right' THEN -1 END, true)
 
 -- @condition
@@ -58,7 +58,7 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.object_id, coalesce(r.lane_type
 FROM reference r
 JOIN (
     SELECT b.ref_id, count(*) FILTER (l.slow_there) AS n,
-        -- who stands off the lanes has no place along them and is in no queue
+        -- an actor off the lanes has no place along them: it is in no queue
         count(*) FILTER (may_be_vehicle(o.actor_class) AND (o.x_m IS NULL OR o.speed_mps IS NULL OR o.s_m IS NOT NULL AND l.slow_there IS NULL)) AS n_unknown
     FROM reference b
     JOIN pair o USING (drive_id, ego_id, t_ns)

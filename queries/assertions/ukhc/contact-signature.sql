@@ -63,7 +63,7 @@ SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, $tyre_mps2 AS required,
 FROM pair p
 JOIN ego_state e USING (drive_id, ego_id, t_ns)
 JOIN step st USING (drive_id, ego_id, t_ns)
--- who is struck from behind, or off its feet, gains speed
+-- an impact from behind, or against a pedestrian, adds speed
 CROSS JOIN LATERAL (SELECT greatest(-p.accel_mps2, CASE WHEN NOT may_walk(p.actor_class) OR p.speed_mps > $walk_mps THEN p.accel_mps2 END) AS other_mps2) o
 CROSS JOIN LATERAL (SELECT greatest(other_mps2, abs(e.accel_mps2)) AS jolt_mps2) l
 CROSS JOIN LATERAL (SELECT st.dt_ns > $jolt_s * 1.5e9 AND jolt_mps2 * st.dt_ns / 1e9 >= $tyre_mps2 * $jolt_s AS hides) h

@@ -17,7 +17,7 @@
 -- why = "our default: shorter is a pause, such as for somebody on foot"
 
 -- @reference
--- who reverses onto it and stands there has not passed over it
+-- an ego that reverses onto the crossing and stands there has no passage: its stand is the reference
 WITH on_its_way AS (
     SELECT s.drive_id, s.ego_id, s.t_start_ns
     FROM standstill s
