@@ -25,7 +25,7 @@ CREATE TABLE conflict (
     t_ego_out_ns BIGINT NOT NULL,     -- last one
     t_object_in_ns BIGINT NOT NULL,   -- first sample of the other on ground that the ego's box was or will be on
     t_object_out_ns BIGINT NOT NULL,  -- last one
-    pet_s DOUBLE NOT NULL,            -- post-encroachment time: later entry minus earlier exit; negative: both in it at once
+    pet_s DOUBLE NOT NULL,            -- post-encroachment time: later entry minus earlier exit, both taken between samples, as near to each other as the speeds allow; negative: both in it at once
     ego_first BOOLEAN NOT NULL,       -- the ego entered first (a tie: true)
     angle_rad DOUBLE NOT NULL,        -- where the other enters: its heading against the ego's way there, -pi..pi: near pi oncoming, negative: it comes from the left
     ego_speed_mps DOUBLE,             -- ego's speed on entering

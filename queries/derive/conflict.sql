@@ -122,6 +122,50 @@ moving AS MATERIALIZED (
     ANTI JOIN (FROM pair WHERE off_level) p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.object_id = e.object_id
         AND p.t_ns >= e.t_object_in_ns AND p.t_ns <= e.t_object_out_ns
 ),
+-- Between the last sample off the common ground and the first one on it, a box comes as near as its speed allows: an entry is at most so much
+-- before its sample, an exit so much after it.
+edge AS (
+    SELECT
+        m.drive_id, m.ego_id, m.object_id, m.t_ego_in_ns, m.t_object_in_ns, v.*, c.period_ns, v.t_ns - v.sense * c.max_gap_ns AS t_far_ns
+    FROM moving m
+    JOIN clock c USING (drive_id, ego_id)
+    CROSS JOIN LATERAL (VALUES
+        ('ego_in', 1, m.ego_id, m.t_ego_in_ns, m.object_id, m.t_object_in_ns, m.t_object_out_ns),
+        ('ego_out', -1, m.ego_id, m.t_ego_out_ns, m.object_id, m.t_object_in_ns, m.t_object_out_ns),
+        ('object_in', 1, m.object_id, m.t_object_in_ns, m.ego_id, m.t_ego_in_ns, m.t_ego_out_ns),
+        ('object_out', -1, m.object_id, m.t_object_out_ns, m.ego_id, m.t_ego_in_ns, m.t_ego_out_ns)
+    ) AS v(side, sense, actor_id, t_ns, on_id, from_ns, to_ns)
+),
+-- the sample off the ground that is next to the one on it
+off AS (
+    SELECT e.drive_id, e.ego_id, e.object_id, e.t_ego_in_ns, e.t_object_in_ns, e.side, min({'ns': e.sense * (e.t_ns - s.t_ns), 't_ns': s.t_ns}).t_ns AS t_off_ns
+    FROM edge e
+    JOIN state_dynamics s ON s.drive_id = e.drive_id AND s.actor_id = e.actor_id
+        AND s.t_ns >= least(e.t_ns, e.t_far_ns) AND s.t_ns <= greatest(e.t_ns, e.t_far_ns) AND s.t_ns <> e.t_ns
+    GROUP BY ALL
+),
+sooner AS (
+    SELECT
+        e.drive_id, e.ego_id, e.object_id, e.t_ego_in_ns, e.t_object_in_ns, e.side,
+        greatest(0, abs(e.t_ns - a.t_ns) - coalesce(round(1e9 * min(greatest(0.0, box_separation(
+            (b.x_m - a.x_m) * cos(a.yaw_rad) + (b.y_m - a.y_m) * sin(a.yaw_rad), (b.y_m - a.y_m) * cos(a.yaw_rad) - (b.x_m - a.x_m) * sin(a.yaw_rad),
+            cos(b.yaw_rad - a.yaw_rad), sin(b.yaw_rad - a.yaw_rad),
+            a.length_m / 2, a.width_m / 2, swept_half_m(b.length_m, b.speed_mps, e.period_ns / 1e9), b.width_m / 2
+        ))) / nullif(greatest(a.speed_mps, i.speed_mps), 0)), 0))::BIGINT AS by_ns
+    FROM edge e
+    JOIN off o USING (drive_id, ego_id, object_id, t_ego_in_ns, t_object_in_ns, side)
+    JOIN state_dynamics a ON a.drive_id = e.drive_id AND a.actor_id = e.actor_id AND a.t_ns = o.t_off_ns
+    JOIN state_dynamics i ON i.drive_id = e.drive_id AND i.actor_id = e.actor_id AND i.t_ns = e.t_ns
+    JOIN state_dynamics b ON b.drive_id = e.drive_id AND b.actor_id = e.on_id AND b.t_ns >= e.from_ns - e.period_ns AND b.t_ns <= e.to_ns + e.period_ns
+    GROUP BY e.drive_id, e.ego_id, e.object_id, e.t_ego_in_ns, e.t_object_in_ns, e.side, e.t_ns, a.t_ns, a.speed_mps, i.speed_mps
+),
+timed AS (
+    SELECT
+        drive_id, ego_id, object_id, t_ego_in_ns, t_object_in_ns,
+        (max(e.t_ns - coalesce(s.by_ns, 0)) FILTER (e.sense = 1) - min(e.t_ns + coalesce(s.by_ns, 0)) FILTER (e.sense = -1)) / 1e9 AS pet_s
+    FROM edge e LEFT JOIN sooner s USING (drive_id, ego_id, object_id, t_ego_in_ns, t_object_in_ns, side)
+    GROUP BY drive_id, ego_id, object_id, t_ego_in_ns, t_object_in_ns
+),
 -- the mean over the half second before each sample, where that is seen
 slowing AS (
     SELECT
@@ -176,7 +220,7 @@ SELECT
     m.drive_id, m.ego_id,
     (row_number() OVER (PARTITION BY m.drive_id, m.ego_id ORDER BY m.t_ego_in_ns, m.t_object_in_ns, m.object_id) - 1)::INTEGER AS occurrence,
     m.object_id, o.actor_class, m.t_ego_in_ns, m.t_ego_out_ns, m.t_object_in_ns, m.t_object_out_ns,
-    (greatest(m.t_ego_in_ns, m.t_object_in_ns) - least(m.t_ego_out_ns, m.t_object_out_ns)) / 1e9 AS pet_s,
+    p.pet_s,
     m.t_ego_in_ns <= m.t_object_in_ns AS ego_first, m.angle_rad,
     a.speed_mps AS ego_speed_mps, o.speed_mps,
     CASE WHEN d.whole THEN d.decel_mps2 END AS decel_mps2,
@@ -184,6 +228,7 @@ SELECT
 FROM moving m
 JOIN state_dynamics a ON a.drive_id = m.drive_id AND a.actor_id = m.ego_id AND a.t_ns = m.t_ego_in_ns
 JOIN state_dynamics o ON o.drive_id = m.drive_id AND o.actor_id = m.object_id AND o.t_ns = m.t_object_in_ns
+JOIN timed p ON p.drive_id = m.drive_id AND p.ego_id = m.ego_id AND p.object_id = m.object_id AND p.t_ego_in_ns = m.t_ego_in_ns AND p.t_object_in_ns = m.t_object_in_ns
 LEFT JOIN slowing d ON d.drive_id = m.drive_id AND d.ego_id = m.ego_id AND d.object_id = m.object_id
     AND d.t_ego_in_ns = m.t_ego_in_ns AND d.t_object_in_ns = m.t_object_in_ns
 LEFT JOIN junction_there j ON j.drive_id = m.drive_id AND j.ego_id = m.ego_id AND j.t_ego_in_ns = m.t_ego_in_ns

@@ -53,7 +53,7 @@ def test_the_other_crosses_behind_the_ego() -> None:
     assert seconds([row], "t_ego_out_ns") == [pytest.approx(5.3)]
     assert seconds([row], "t_object_in_ns") == [pytest.approx(7.4)]
     assert seconds([row], "t_object_out_ns") == [pytest.approx(8.6)]
-    assert row["pet_s"] == pytest.approx(7.4 - 5.3)
+    assert row["pet_s"] == pytest.approx(8 - 3.3 / 5 - (5 + 3.3 / 10))
     assert (row["ego_first"], row["occurrence"], row["actor_class"]) == (True, 0, "car")
     assert row["angle_rad"] == pytest.approx(math.pi / 2)
     assert (row["ego_speed_mps"], row["speed_mps"]) == (pytest.approx(10), pytest.approx(5))
@@ -63,14 +63,14 @@ def test_the_other_crosses_behind_the_ego() -> None:
 
 def test_the_other_crosses_first_from_the_left() -> None:
     (row,) = conflicts(east(), across(-15 + 5 * times(12), way=SOUTH))
-    assert row["pet_s"] == pytest.approx(4.7 - 3.6)
+    assert row["pet_s"] == pytest.approx(5 - 3.3 / 10 - (3 + 3.3 / 5))
     assert row["ego_first"] is False
     assert row["angle_rad"] == pytest.approx(-math.pi / 2)
 
 
 def test_both_in_it_at_once_is_negative() -> None:
     (row,) = conflicts(east(), across(-28 + 5 * times(12)))
-    assert row["pet_s"] == pytest.approx(5.0 - 5.3)
+    assert row["pet_s"] == pytest.approx(5.6 - 3.3 / 5 - (5 + 3.3 / 10))
 
 
 def test_more_than_ten_seconds_apart_is_no_conflict() -> None:
@@ -111,7 +111,8 @@ def test_merging_onto_the_egos_way_is_a_conflict_while_it_is_at_an_angle() -> No
     assert row["ego_first"] is True
     # the other's front corner reaches the ego's side (y = -0.9) on the bend, its heading still well off
     assert 0.4 < abs(row["angle_rad"]) < 1.2
-    assert row["pet_s"] == pytest.approx((row["t_object_in_ns"] - row["t_ego_out_ns"]) / 1e9)
+    between = (row["t_object_in_ns"] - row["t_ego_out_ns"]) / 1e9
+    assert between - 0.2 <= row["pet_s"] <= between
 
 
 def test_parked_across_the_way_is_no_partner_but_a_walker_who_pauses_is() -> None:
@@ -327,6 +328,6 @@ def as_swept(each: Meeting, row: Row) -> None:
     span = max(on_ego[-1], on_other[-1]) - min(on_ego[0], on_other[0])
     if span < 10:  # beyond that the pairs more than ten seconds apart are left out
         assert times_ == pytest.approx([on_ego[0], on_ego[-1], on_other[0], on_other[-1]], abs=tolerance), each
-    assert row["pet_s"] == pytest.approx(pet, abs=2 * tolerance), each
+    assert pet - 2 * tolerance <= row["pet_s"] <= pet + 0.05, each  # never longer than it was, but for the step of the polygons
     assert row["ego_first"] == (row["t_ego_in_ns"] <= row["t_object_in_ns"]), each
     assert row["angle_rad"] == pytest.approx(each.heading), each
