@@ -8,7 +8,7 @@
 -- legal = "should"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["ego_state", "junction_passage", "standstill"]
+-- reads = ["junction_passage", "standstill"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [params.near_m]
@@ -26,10 +26,10 @@
 -- unit = "s"
 -- why = "our default: shorter is a pause in traffic"
 --
--- [params.rear_m]
--- default = 3.0
+-- [params.inside_m]
+-- default = 2.5
 -- unit = "m"
--- why = "our default: so much of a long vehicle's rear, or of its trailer, may be in the junction once its front is out of it: others get past"
+-- why = "our default: about half a car; less of it in the junction is a bumper over its edge"
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, junction_id, t_out_ns, across
@@ -48,7 +48,7 @@ JOIN standstill s ON s.drive_id = r.drive_id AND s.ego_id = r.ego_id AND s.junct
 -- @condition
 SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
     -- who turns across may wait for the oncoming traffic, or behind one who does, or for a full exit: which of these is not known
-    s.t_start_ns IS NULL OR NOT (e.in_junction OR s.junction_clear_m > $rear_m AND s.junction_clear_m < e.front_s_m - e.rear_s_m)
+    s.t_start_ns IS NULL OR coalesce(s.junction_inside_m < $inside_m, false)
         OR NOT exit_full(
             s.blocking_id, s.blocking_gap_m, s.blocking_speed_mps, s.blocking_known, s.junction_clear_m, CASE WHEN r.across THEN 0 ELSE s.t_end_ns - s.t_start_ns END,
             $near_m, $slow_mps, $long_s
@@ -57,5 +57,4 @@ SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
         || CASE WHEN r.across THEN '; turning across, it may have waited for the oncoming traffic' ELSE '' END END AS reason
 FROM reference_step g
 JOIN reference r USING (ref_id)
-JOIN ego_state e ON e.drive_id = g.drive_id AND e.ego_id = g.ego_id AND e.t_ns = g.t_ns
 LEFT JOIN standstill s ON s.drive_id = g.drive_id AND s.ego_id = g.ego_id AND s.t_start_ns = g.t_ns AND s.junction_id = r.junction_id
