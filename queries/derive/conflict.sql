@@ -1,9 +1,11 @@
 -- Where the ground that the ego's box sweeps is swept by another's as well, at an angle, not more than 10 s apart.
 WITH scale AS (SELECT drive_id, max(period_s) AS period_s, max(cell_m) AS cell_m FROM meeting GROUP BY drive_id),
+-- the trailer that it draws is the ego
+own AS (SELECT drive_id, ego_id, ego_id AS actor_id FROM clock UNION ALL SELECT drive_id, ego_id, object_id FROM ego_part WHERE part = 'trailer'),
 part AS (
     SELECT drive_id, object_id AS actor_id, object_slot AS slot FROM meeting
     UNION
-    SELECT drive_id, ego_id, meeting_slot(t_ns) FROM step
+    SELECT o.drive_id, o.actor_id, meeting_slot(s.t_ns) FROM step s JOIN own o USING (drive_id, ego_id)
 ),
 box AS NOT MATERIALIZED (
     SELECT
@@ -16,7 +18,9 @@ box AS NOT MATERIALIZED (
     SEMI JOIN part p ON p.drive_id = s.drive_id AND p.actor_id = s.actor_id AND p.slot = meeting_slot(s.t_ns)
     WHERE s.x_m IS NOT NULL AND s.y_m IS NOT NULL AND s.yaw_rad IS NOT NULL AND s.length_m IS NOT NULL AND s.width_m IS NOT NULL
 ),
-ego AS MATERIALIZED (SELECT b.* FROM box b SEMI JOIN clock c ON c.drive_id = b.drive_id AND c.ego_id = b.actor_id),
+ego AS MATERIALIZED (
+    SELECT o.ego_id, b.* FROM box b JOIN own o USING (drive_id, actor_id) SEMI JOIN step s ON s.drive_id = b.drive_id AND s.ego_id = o.ego_id AND s.t_ns = b.t_ns
+),
 other AS MATERIALIZED (
     SELECT b.*
     FROM box b
@@ -37,7 +41,7 @@ close AS MATERIALIZED (
 angled AS MATERIALIZED (
     SELECT o.drive_id, o.ego_id, o.actor_id AS object_id, e.t_ns AS t1, o.t_ns AS t2
     FROM close o
-    JOIN ego e ON e.drive_id = o.drive_id AND e.actor_id = o.ego_id AND e.cell = o.ego_cell AND e.slot = o.ego_slot AND e.heading = o.ego_heading
+    JOIN ego e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.cell = o.ego_cell AND e.slot = o.ego_slot AND e.heading = o.ego_heading
     WHERE boxes_meet(o.x_m - e.x_m, o.y_m - e.y_m, e.c, e.s, o.c, o.s, e.hl, e.hw, o.hl, o.hw)
         AND same_level(o.z_m, e.z_m) AND abs(e.t_ns - o.t_ns) <= conflict_ns() AND abs(wrap_rad(o.dir_rad - e.dir_rad)) > conflict_angle_rad()
 ),
@@ -56,7 +60,7 @@ met AS (
             'd2': (o.x_m - e.x_m) ** 2 + (o.y_m - e.y_m) ** 2, 't1': e.t_ns, 't2': o.t_ns, 'angle_rad': wrap_rad(o.dir_rad - e.dir_rad)
         }) AS near
     FROM reached o
-    JOIN ego e ON e.drive_id = o.drive_id AND e.actor_id = o.ego_id AND e.cell = o.near_cell AND e.slot = o.near_slot
+    JOIN ego e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.cell = o.near_cell AND e.slot = o.near_slot
     WHERE boxes_meet(o.x_m - e.x_m, o.y_m - e.y_m, e.c, e.s, o.c, o.s, e.hl, e.hw, o.hl, o.hw) AND same_level(o.z_m, e.z_m)
         AND abs(e.t_ns - o.t_ns) <= conflict_ns()
     GROUP BY ALL
@@ -147,17 +151,18 @@ off AS (
 sooner AS (
     SELECT
         e.drive_id, e.ego_id, e.object_id, e.t_ego_in_ns, e.t_object_in_ns, e.side,
-        greatest(0, abs(e.t_ns - a.t_ns) - coalesce(round(1e9 * min(greatest(0.0, box_separation(
+        greatest(0, abs(e.t_ns - o.t_off_ns) - coalesce(round(1e9 * min(greatest(0.0, box_separation(
             (b.x_m - a.x_m) * cos(a.yaw_rad) + (b.y_m - a.y_m) * sin(a.yaw_rad), (b.y_m - a.y_m) * cos(a.yaw_rad) - (b.x_m - a.x_m) * sin(a.yaw_rad),
             cos(b.yaw_rad - a.yaw_rad), sin(b.yaw_rad - a.yaw_rad),
             a.length_m / 2, a.width_m / 2, swept_half_m(b.length_m, b.speed_mps, e.period_ns / 1e9), b.width_m / 2
-        ))) / nullif(greatest(a.speed_mps, i.speed_mps), 0)), 0))::BIGINT AS by_ns
+        )) / nullif(greatest(a.speed_mps, i.speed_mps), 0))), 0))::BIGINT AS by_ns
     FROM edge e
     JOIN off o USING (drive_id, ego_id, object_id, t_ego_in_ns, t_object_in_ns, side)
-    JOIN state_dynamics a ON a.drive_id = e.drive_id AND a.actor_id = e.actor_id AND a.t_ns = o.t_off_ns
+    LEFT JOIN own w ON w.drive_id = e.drive_id AND w.ego_id = e.ego_id AND e.actor_id = e.ego_id
+    JOIN state_dynamics a ON a.drive_id = e.drive_id AND a.actor_id = coalesce(w.actor_id, e.actor_id) AND a.t_ns = o.t_off_ns
     JOIN state_dynamics i ON i.drive_id = e.drive_id AND i.actor_id = e.actor_id AND i.t_ns = e.t_ns
     JOIN state_dynamics b ON b.drive_id = e.drive_id AND b.actor_id = e.on_id AND b.t_ns >= e.from_ns - e.period_ns AND b.t_ns <= e.to_ns + e.period_ns
-    GROUP BY e.drive_id, e.ego_id, e.object_id, e.t_ego_in_ns, e.t_object_in_ns, e.side, e.t_ns, a.t_ns, a.speed_mps, i.speed_mps
+    GROUP BY e.drive_id, e.ego_id, e.object_id, e.t_ego_in_ns, e.t_object_in_ns, e.side, e.t_ns, o.t_off_ns
 ),
 timed AS (
     SELECT

@@ -142,22 +142,25 @@ box AS NOT MATERIALIZED (
     JOIN (SELECT drive_id, max(period_ns) / 1e9 AS period_s FROM ego_clock GROUP BY drive_id) k USING (drive_id)
     WHERE s.x_m IS NOT NULL AND s.y_m IS NOT NULL AND s.yaw_rad IS NOT NULL AND s.length_m IS NOT NULL AND s.width_m IS NOT NULL
 ),
+-- the trailer that it draws is the ego
+own AS (SELECT drive_id, ego_id, ego_id AS actor_id FROM clock UNION ALL SELECT drive_id, ego_id, object_id FROM ego_part WHERE part = 'trailer'),
 -- nobody drives on head on past an ego that is out in its lane with hardly any room, even if the two would just have missed each other
 ego_box AS NOT MATERIALIZED (
-    SELECT b.*, b.hw + CASE WHEN x.t0_ns IS NULL THEN 0.0 ELSE hardly_room_m() END AS out_hw
+    SELECT o.ego_id, b.*, b.hw + CASE WHEN x.t0_ns IS NULL THEN 0.0 ELSE hardly_room_m() END AS out_hw
     FROM box b
-    SEMI JOIN clock c ON c.drive_id = b.drive_id AND c.ego_id = b.actor_id
+    JOIN own o USING (drive_id, actor_id)
+    SEMI JOIN step s ON s.drive_id = b.drive_id AND s.ego_id = o.ego_id AND s.t_ns = b.t_ns
     LEFT JOIN (FROM excursion WHERE overtaking AND over_against IS DISTINCT FROM false) x
-        ON x.drive_id = b.drive_id AND x.ego_id = b.actor_id AND b.t_ns >= x.t0_ns AND b.t_ns <= coalesce(x.t_back_ns, x.t_end_ns)
+        ON x.drive_id = b.drive_id AND x.ego_id = o.ego_id AND b.t_ns >= x.t0_ns AND b.t_ns <= coalesce(x.t_back_ns, x.t_end_ns)
 ),
 -- where it would have met the ego, at the speed that it had
 met AS MATERIALIZED (
     SELECT
-        r.drive_id, r.object_id, r.t_from_ns, b.actor_id, b.t_ns AS t1, r.at_ns AS t2, r.t_ns AS t_came_ns,
+        r.drive_id, r.object_id, r.t_from_ns, b.ego_id, b.t_ns AS t1, r.at_ns AS t2, r.t_ns AS t_came_ns,
         (r.x_m - b.x_m) ** 2 + (r.y_m - b.y_m) ** 2 AS d2, wrap_rad(r.dir_rad - b.dir_rad) AS angle_rad
     FROM reached r
     JOIN (SELECT drive_id, object_id, t_from_ns, bool_and(gentle) AS gentle FROM braking GROUP BY ALL) g USING (drive_id, object_id, t_from_ns)
-    JOIN ego_box b ON b.drive_id = r.drive_id AND b.cell = r.cell AND b.slot = r.slot AND b.actor_id <> r.object_id
+    JOIN ego_box b ON b.drive_id = r.drive_id AND b.cell = r.cell AND b.slot = r.slot AND b.ego_id <> r.object_id
     WHERE b.t_ns >= r.t_from_ns AND abs(b.t_ns - r.at_ns) <= forced_apart_ns() AND boxes_meet(
         r.x_m - b.x_m, r.y_m - b.y_m, b.c, b.s, r.c, r.s, b.hl, CASE WHEN NOT g.gentle AND abs(wrap_rad(r.dir_rad - b.dir_rad)) >= head_on_rad() THEN b.out_hw ELSE b.hw END, r.hl, r.hw
     )
@@ -165,13 +168,13 @@ met AS MATERIALIZED (
 -- as in conflict, what counts is the angle against the ego's way where that comes nearest; and only ground that the ego took first
 taken AS (
     SELECT
-        m.drive_id, m.actor_id AS ego_id, m.object_id, m.t_from_ns, m.t2, min(m.t1) FILTER (abs(m.angle_rad) > conflict_angle_rad()) AS t1_first,
+        m.drive_id, m.ego_id, m.object_id, m.t_from_ns, m.t2, min(m.t1) FILTER (abs(m.angle_rad) > conflict_angle_rad()) AS t1_first,
         max(m.t1) FILTER (abs(m.angle_rad) > conflict_angle_rad()) AS t1_last, min({'d2': m.d2, 't1': m.t1, 'angle_rad': m.angle_rad}).angle_rad AS angle_rad
     FROM met m
     SEMI JOIN (SELECT drive_id, ego_id, object_id FROM seed UNION SELECT drive_id, ego_id, object_id FROM halted) s
-        ON s.drive_id = m.drive_id AND s.ego_id = m.actor_id AND s.object_id = m.object_id
+        ON s.drive_id = m.drive_id AND s.ego_id = m.ego_id AND s.object_id = m.object_id
     WHERE coalesce(m.t1 < m.t_came_ns, true)
-    GROUP BY m.drive_id, m.actor_id, m.object_id, m.t_from_ns, m.t2
+    GROUP BY m.drive_id, m.ego_id, m.object_id, m.t_from_ns, m.t2
     HAVING t1_first IS NOT NULL AND abs(min({'d2': m.d2, 't1': m.t1, 'angle_rad': m.angle_rad}).angle_rad) > conflict_angle_rad()
 ),
 -- it stopped, as one does that waits for the ego to come out of its lane
@@ -211,7 +214,8 @@ behind AS (
     FROM led l
     JOIN reached r ON r.drive_id = l.drive_id AND r.object_id = l.object_id AND r.t_from_ns = l.t_from_ns AND r.way_m <= r.reach_m
     JOIN (SELECT b.* FROM box b SEMI JOIN led l ON l.drive_id = b.drive_id AND b.t_ns >= l.t_from_ns AND b.t_ns <= l.t_from_ns + 2 * conflict_ns()) b
-        ON b.drive_id = r.drive_id AND b.cell = r.cell AND b.slot = r.slot AND b.actor_id <> l.object_id AND b.actor_id <> l.ego_id
+        ON b.drive_id = r.drive_id AND b.cell = r.cell AND b.slot = r.slot AND b.actor_id <> l.object_id
+    ANTI JOIN own o ON o.drive_id = l.drive_id AND o.ego_id = l.ego_id AND o.actor_id = b.actor_id
     WHERE b.t_ns >= r.t_from_ns AND abs(b.t_ns - r.at_ns) <= forced_apart_ns() / 2
         AND boxes_meet(r.x_m - b.x_m, r.y_m - b.y_m, b.c, b.s, r.c, r.s, b.hl, b.hw, r.hl, r.hw)
         AND (b.t_ns <= r.at_ns OR abs(wrap_rad(r.dir_rad - b.dir_rad)) > conflict_angle_rad())

@@ -31,16 +31,22 @@ visit AS MATERIALIZED (
     FROM box
     GROUP BY drive_id, actor_id, cell, slot, heading
 ),
+-- the trailer that it draws is the ego
+own AS (SELECT drive_id, ego_id, ego_id AS actor_id FROM clock UNION ALL SELECT drive_id, ego_id, object_id FROM ego_part WHERE part = 'trailer'),
+ego_visit AS (
+    SELECT o.ego_id, v.* EXCLUDE (actor_id, x0, x1, y0, y1), min(v.x0) AS x0, max(v.x1) AS x1, min(v.y0) AS y0, max(v.y1) AS y1
+    FROM visit v JOIN own o USING (drive_id, actor_id)
+    GROUP BY ALL
+),
 around AS (
     SELECT v.*, v.cell + cell_key(x.i, y.i) AS near_cell, v.slot + t.i AS near_slot
-    FROM visit v
-    SEMI JOIN clock c ON c.drive_id = v.drive_id AND c.ego_id = v.actor_id
+    FROM ego_visit v
     CROSS JOIN (VALUES (-1), (0), (1)) AS x(i) CROSS JOIN (VALUES (-1), (0), (1)) AS y(i) CROSS JOIN (VALUES (-1), (0), (1)) AS t(i)
 )
 SELECT
-    e.drive_id, e.actor_id AS ego_id, e.period_s, e.cell_m, e.cell, e.slot, e.heading,
+    e.drive_id, e.ego_id, e.period_s, e.cell_m, e.cell, e.slot, e.heading,
     o.actor_id AS object_id, o.cell AS object_cell, o.slot AS object_slot, o.heading AS object_heading
 FROM around e
-JOIN visit o ON o.drive_id = e.drive_id AND o.cell = e.near_cell AND o.slot = e.near_slot AND o.actor_id <> e.actor_id
-ANTI JOIN ego_part p ON p.drive_id = e.drive_id AND p.ego_id = e.actor_id AND p.object_id = o.actor_id
+JOIN visit o ON o.drive_id = e.drive_id AND o.cell = e.near_cell AND o.slot = e.near_slot AND o.actor_id <> e.ego_id
+ANTI JOIN ego_part p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.object_id = o.actor_id
 WHERE steps_apart(o.heading, e.heading) > 3 AND o.x0 <= e.x1 AND o.x1 >= e.x0 AND o.y0 <= e.y1 AND o.y1 >= e.y0

@@ -140,6 +140,37 @@ def test_its_rear_is_past_a_mark_when_the_trailer_s_is(hand: str, unseen: bool) 
         assert through["t_out_ns"] / 1e9 == pytest.approx((215 + reach - 60) / 8, abs=0.11)
 
 
+@pytest.mark.parametrize(("trailer", "left_s"), [(False, 5 + 3.3 / 10), (True, 5 + (9.4 + 0.9) / 10)])
+def test_common_ground_is_left_when_the_trailer_leaves_it(trailer: bool, left_s: float) -> None:
+    """The other goes north at 5 m/s and is at the ego's lane at 8 s: until its front touches the side of the wider of the two boxes."""
+    t = times(12.0)
+    east, north = Road(None, ((1000.0, 0.0),), (0.0, 0.0, 0.0)), Road(None, ((1000.0, 0.0),), (0.0, 0.0, math.pi / 2))  # type: ignore[arg-type]
+    ego, other = moving("ego", east, t, -50 + 10 * t, 0.0), moving("other", north, t, -40 + 5 * t, 0.0)
+    scene = [ego, other, drawn("t", ego, kind="trailer")] if trailer else [ego, other]
+    (row,) = rows(derived(drive(scene, None), tables=["conflict"]), "FROM conflict")
+    assert (row["object_id"], row["ego_first"]) == ("other", True)
+    half_m = 1.1 if trailer else 0.9
+    assert row["pet_s"] == pytest.approx(8 - (2.4 + half_m) / 5 - left_s, abs=1e-6)
+
+
+@HANDS
+def test_the_trailer_is_not_somebody_else_to_brake_for(hand: str) -> None:
+    """The ego is across in time, its trailer is not, and the oncoming car brakes for that."""
+    ways = cross(hand)
+    t = times(30.0)
+    way = ways["wn".translate(str.maketrans("ns", "sn")) if hand == "lht" else "wn"]
+    ego = moving("ego", way, t, 120 + 8 * t, way.own)
+    speed = np.clip(14.0 - 6.0 * np.clip(t - 8.0, 0, None), 0, 14.0)
+    came = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2 * np.diff(t))])
+    other = moving("o", ways["ew"], t, 56 + came, ways["we"].own)
+    trailer = drawn("t", ego, length=8.0, kind="trailer")
+    for actors, pet_s in (([ego, other], 0.51), ([ego, trailer, other], -0.59)):
+        con = derived(drive(actors, ways["we"].environment), tables=["forced_braking"])
+        (row,) = rows(con, "FROM forced_braking")
+        assert (row["object_id"], row["other_cause"]) == ("o", None)
+        assert row["pet_s"] == pytest.approx(pet_s, abs=0.11)
+
+
 TAILGATERS = [
     ("a car at half a metre", 0.5, "car", "ego"),
     ("a vehicle at half a metre", 0.5, "vehicle", "ego"),
