@@ -497,6 +497,7 @@ CREATE TABLE excursion (
     side INTEGER NOT NULL,            -- 1 over the left boundary, -1 over the right
     overtaking BOOLEAN,               -- that is the side to overtake on; NULL: handedness unknown
     t0_ns BIGINT NOT NULL,            -- first step with a corner more than 0.05 m over the boundary
+    t_pull_ns BIGINT NOT NULL,        -- t0; where the ego stayed over the boundary with its centre in the lane first, the last step at which it gained less than 0.1 m in a second
     begin_seen BOOLEAN NOT NULL,      -- the step before it is there and inside the lane
     t_end_ns BIGINT NOT NULL,         -- last step over it
     t_back_ns BIGINT,                 -- the step after that, wholly inside again; NULL: the log, a hole or the corridor ends first
@@ -521,7 +522,7 @@ CREATE TABLE overtake (
     vbp_id VARCHAR NOT NULL,          -- the vehicle being passed, or one that may be it
     vbp_placed BOOLEAN NOT NULL,      -- it was placed at t0; else only its presence is known
     begin_seen BOOLEAN NOT NULL,      -- t0 lies in the log: the step before it is there and inside the lane
-    t0_ns BIGINT NOT NULL,            -- first step with a corner more than 0.05 m over the boundary
+    t0_ns BIGINT NOT NULL,            -- t_pull of the excursion: first step with a corner more than 0.05 m over the boundary, or, after a look past the vehicle ahead, when it pulls out
     t1_ns BIGINT,                     -- first step wholly in the overtaking lane
     t_out_ns BIGINT NOT NULL,         -- end of pulling out: t1, or for an overtake astride the line the first step within 0.1 m of its furthest
     t2_ns BIGINT,                     -- lateral speed turns back

@@ -56,6 +56,20 @@ settled AS (
     WHERE s.out_m >= w.max_out_m - 0.1
     GROUP BY ALL
 ),
+-- an ego that looks past the vehicle ahead stays at the line, its centre in the lane, and pulls out later
+peek AS (
+    SELECT w.drive_id, w.ego_id, w.chain_id, w.side, w.n, max(s.t_ns) AS t_pull_ns
+    FROM whole w
+    JOIN settled e USING (drive_id, ego_id, chain_id, side, n)
+    JOIN (
+        SELECT *, first_value({'t_ns': t_ns, 'out_m': out_m}) OVER (
+            PARTITION BY drive_id, ego_id, chain_id, side, n ORDER BY t_ns RANGE BETWEEN 1_000_000_000 PRECEDING AND CURRENT ROW
+        ) AS earlier
+        FROM numbered
+    ) s USING (drive_id, ego_id, chain_id, side, n)
+    WHERE s.t_ns < coalesce(w.t_over_ns, e.t_set_ns) AND s.lateral_m <= s.half_width_m AND s.t_ns - s.earlier.t_ns >= 900_000_000 AND s.out_m - s.earlier.out_m < 0.1
+    GROUP BY ALL
+),
 -- turning back: the last step over the line whose lateral speed was not yet towards home
 turn AS (
     SELECT w.drive_id, w.ego_id, w.chain_id, w.side, w.n, max(s.t_ns) AS t_turn_ns
@@ -66,7 +80,7 @@ turn AS (
     GROUP BY ALL
 )
 SELECT
-    w.drive_id, w.ego_id, w.chain_id, w.side, w.first.overtaking AS overtaking, w.t0_ns, w.first.joined AS begin_seen, w.t_end_ns,
+    w.drive_id, w.ego_id, w.chain_id, w.side, w.first.overtaking AS overtaking, w.t0_ns, coalesce(p.t_pull_ns, w.t0_ns) AS t_pull_ns, w.first.joined AS begin_seen, w.t_end_ns,
     CASE WHEN w.last.after.k = w.last.k + 1 AND w.last.after.seg = w.last.seg THEN w.last.after.t_ns END AS t_back_ns,
     w.t_over_ns, coalesce(w.t_over_ns, e.t_set_ns) AS t_out_ns,
     CASE WHEN w.last.after.k = w.last.k + 1 AND w.last.after.seg = w.last.seg THEN t.t_turn_ns END AS t_turn_ns,
@@ -75,4 +89,5 @@ SELECT
     CASE WHEN w.first.overtaking THEN w.first.over_against END AS over_against
 FROM whole w
 JOIN settled e USING (drive_id, ego_id, chain_id, side, n)
+LEFT JOIN peek p USING (drive_id, ego_id, chain_id, side, n)
 LEFT JOIN turn t USING (drive_id, ego_id, chain_id, side, n)

@@ -2,10 +2,10 @@
 -- if it is passed, or is within 100 m and the ego's centre was over the line: less is a wobble, if all of it was seen. Every further
 -- vehicle passed in the same go counts too.
 WITH gone AS (
-    SELECT x.*, b.k - st.k + 1 AS n_steps, e.front_s_m, e.rear_s_m, e.s_m, e.d_m, e.lat_half_m, e.speed_mps, e.combination_m AS length_m, e.limit_mps
+    SELECT x.* REPLACE (x.t_pull_ns AS t0_ns), b.k - st.k + 1 AS n_steps, e.front_s_m, e.rear_s_m, e.s_m, e.d_m, e.lat_half_m, e.speed_mps, e.combination_m AS length_m, e.limit_mps
     FROM excursion x
-    JOIN ego_state e ON e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns = x.t0_ns
-    JOIN step st ON st.drive_id = x.drive_id AND st.ego_id = x.ego_id AND st.t_ns = x.t0_ns
+    JOIN ego_state e ON e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns = x.t_pull_ns
+    JOIN step st ON st.drive_id = x.drive_id AND st.ego_id = x.ego_id AND st.t_ns = x.t_pull_ns
     LEFT JOIN step b ON b.drive_id = x.drive_id AND b.ego_id = x.ego_id AND b.t_ns = x.t_back_ns
     -- at t0 the running chain is still the one that is left; seen from a lane not yet driven, the ego is always outside
     WHERE x.overtaking AND e.chain_id = x.chain_id

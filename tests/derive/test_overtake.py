@@ -243,6 +243,27 @@ def test_a_look_past_the_vehicle_ahead_is_no_overtake_if_all_of_it_was_seen(hand
     assert [row["status"] for row in one(late, way, "overtake")] == ["truncated"]
 
 
+@pytest.mark.parametrize("reach", [0.3, 0.7])
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_an_ego_that_stays_at_the_line_overtakes_when_it_pulls_out(hand: str, reach: float) -> None:
+    """From 60 to 300 m it is `reach` over the line behind the car ahead; the car that comes is far away then, and near when it pulls out."""
+    way = road(((1200.0, 0.0),), hand)
+    t = times(40.0)
+    s = 50 + 10 * t
+    share = (LANE / 2 - 0.9 + reach) / LANE
+    far, near = swing(way, s, 300, 400), swing(way, s, 60, 400, share=share)
+    ego = moving("ego", way, t, s, way.own + (near - way.own) + (far - way.own) * (1 - share))
+    vbp = moving("vbp", way, t, np.where(t < 24, 66 + 10 * t, 306 + 2 * (t - 24)), way.own)
+    ov = moving("ov", way, t, 850 - 8 * t, way.other)
+    (found,) = one([ego, vbp, ov], way, "overtake")
+    # at 25 s it begins to move over; a tenth of a metre in a second is soon reached
+    assert found["t0_ns"] / 1e9 == pytest.approx(25.2, abs=0.2)
+    assert found["da_m"] == pytest.approx(800 - 18 * found["t0_ns"] / 1e9 - 4.8, abs=0.5)
+    (nominal,) = [row for row in one([ego, vbp, ov], way, "overtake_sda") if row["profile"] == "nominal"]
+    assert nominal["da_m"] is not None
+    assert nominal["sda_m"] is not None
+
+
 @pytest.mark.parametrize("lacks", ["yaw", "length", "width"])
 def test_who_lacks_heading_or_size_ahead_may_be_the_one(lacks: str) -> None:
     """Nearer than another who is placed: the overtake is not that one's alone."""
