@@ -86,15 +86,26 @@ doubt AS (
     JOIN numbered n USING (drive_id, ego_id, t_ns)
     WHERE h.least_m < passing_before_m(n.speed_mps) AND (h.vehicle OR is_class(h.actor_class, 'animal'))
 ),
--- near the one that it overtakes, or may: where that one is lost meanwhile, whether it was passed is not known
+-- near the one that it overtakes, or may (where that one is lost meanwhile, whether it was passed is not known), or near somebody on foot in its lane
 beside AS (
-    SELECT n.drive_id, n.ego_id, n.t_ns, bool_or(CASE WHEN o.passed THEN true END) AS overtaking
+    SELECT n.drive_id, n.ego_id, n.t_ns, bool_or(CASE WHEN r.passed AND d.near THEN true END) AS overtaking
     FROM numbered n
-    JOIN overtake o ON o.drive_id = n.drive_id AND o.ego_id = n.ego_id AND o.t0_ns <= n.t_ns AND o.t_end_ns >= n.t_ns
+    JOIN (
+        SELECT drive_id, ego_id, t0_ns, t_end_ns, vbp_id AS object_id, passed, false AS on_foot FROM overtake
+        UNION ALL
+        SELECT drive_id, ego_id, min(t_ns), max(t_ns), object_id, true, true FROM pair WHERE is_class(actor_class, 'pedestrian') AND in_lane(d_m, lat_half_m, half_width_m) GROUP BY ALL
+    ) r ON r.drive_id = n.drive_id AND r.ego_id = n.ego_id AND r.t0_ns <= n.t_ns AND r.t_end_ns >= n.t_ns
     JOIN ego_state e ON e.drive_id = n.drive_id AND e.ego_id = n.ego_id AND e.t_ns = n.t_ns
-    LEFT JOIN pair p ON p.drive_id = n.drive_id AND p.ego_id = n.ego_id AND p.t_ns = n.t_ns AND p.object_id = o.vbp_id
-    WHERE (o.passed OR EXISTS (FROM doubt d WHERE d.drive_id = o.drive_id AND d.ego_id = o.ego_id AND d.t_ns >= o.t0_ns AND d.t_ns <= o.t_end_ns))
-        AND coalesce(p.rear_s_m - e.front_s_m <= passing_before_m(e.speed_mps) AND e.rear_s_m - p.front_s_m <= passing_after_m(e.speed_mps), true)
+    LEFT JOIN pair p ON p.drive_id = n.drive_id AND p.ego_id = n.ego_id AND p.t_ns = n.t_ns AND p.object_id = r.object_id
+    -- off the ego's way it has a distance only
+    CROSS JOIN LATERAL (
+        SELECT coalesce(
+            p.rear_s_m - e.front_s_m <= passing_before_m(e.speed_mps) AND e.rear_s_m - p.front_s_m <= passing_after_m(e.speed_mps),
+            p.distance_m <= greatest(passing_before_m(e.speed_mps), passing_after_m(e.speed_mps))
+        ) AS near
+    ) d
+    WHERE (r.passed OR EXISTS (FROM doubt d WHERE d.drive_id = r.drive_id AND d.ego_id = r.ego_id AND d.t_ns >= r.t0_ns AND d.t_ns <= r.t_end_ns))
+        AND d.near IS DISTINCT FROM false AND (NOT r.on_foot OR coalesce(in_lane(p.d_m, p.lat_half_m, p.half_width_m), false))
     GROUP BY ALL
 ),
 -- an actor that the ego may pass over any line, and that leaves too little room to be passed on this side of the line; in a go in which the

@@ -97,6 +97,31 @@ def test_astride_is_lawful_as_long_as_somebody_is_overtaken(hand: str) -> None:
     assert verdict(KEEP, way, ego, rider) == "fail"
 
 
+@HANDS
+def test_the_overtaken_cyclist_excuses_nothing_once_it_has_turned_off(hand: str) -> None:
+    """On the line from 16 to 40 s, the cyclist passed at 22 s and gone across the fields from 24 s on."""
+    way = marked(hand, "broken")
+    t = times(45.0)
+    s = 50 + 8 * t
+    sign = np.sign(way.own)
+    ego = moving("ego", way, t, s, sign * (LANE / 2 - LANE / 2 * ease((t - 16) / 2) * (1 - ease((t - 38) / 2))))
+    away = np.clip(t - 24, 0, None)
+    rider = moving("c", way, t, 160 + 3 * np.minimum(t, 24.0), sign * (LANE - 0.5 + 12 * away), kind="bicycle", length=1.8, width=0.6)
+    assert verdict(KEEP, way, ego, rider) == "fail"
+    assert verdict(KEEP, way, ego, rider.keep(t < 25)) == "unknown"
+
+
+@HANDS
+@pytest.mark.parametrize(("aside", "expected"), [(0.5, "pass"), (-0.4, "fail")])
+def test_astride_round_somebody_on_foot_in_the_lane(hand: str, aside: float, expected: str) -> None:
+    way = marked(hand, "broken")
+    t = times(30.0)
+    sign = np.sign(way.own)
+    ego = moving("ego", way, t, 50 + 9 * t, sign * (LANE / 2 - LANE / 2 * ease((t - 4) / 2) * (1 - ease((t - 12) / 2))))
+    walker = moving("w", way, t, 120 + 1.4 * t, sign * (LANE - aside), kind="pedestrian", length=0.5, width=0.5)
+    assert verdict(KEEP, way, ego, walker) == expected
+
+
 # ---- over a solid line round somebody
 
 

@@ -26,7 +26,7 @@
 -- [params.lately_s]
 -- default = 1.0
 -- unit = "s"
--- why = "our default: the ego brakes so much later than the vehicle ahead, and goes on when that has stopped braking"
+-- why = "our default: the ego brakes so much later than the vehicle ahead, and goes on when that has stopped braking, or is no longer too near"
 --
 -- [params.reaction_s]
 -- default = 0.3
@@ -53,18 +53,18 @@
 
 -- @condition
 SELECT m.drive_id, m.ego_id, m.t_ns, m.accel_mps2 AS observed, -$abrupt_mps2 AS required,
-    -- braking for a vehicle that is too near, or that brakes itself, has its reason, and so has braking for whoever else is in the way (a
+    -- braking for a vehicle that is too near, or was until a moment ago, or that brakes itself, has its reason, and so has braking for whoever else is in the way (a
     -- person, an animal, a thing); no row of lead: there may be one. Why hazard lights were on, or an emergency declared, is for a person to say
     judged_inside(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AND NOT (m.accel_mps2 < -$abrupt_mps2 AND (
         CASE WHEN l.t_ns IS NOT NULL THEN l.object_id IS NOT NULL AND (
-            l.gap_m < stvo_safe_gap_m(l.ego_speed_mps, l.speed_mps, $reaction_s, $brake_mps2, $brake_lead_mps2)
-            OR m.accel_mps2 - l.hardest_mps2 >= -$abrupt_mps2 OR CASE WHEN l.known THEN false END) END
+            l.near OR m.accel_mps2 - l.hardest_mps2 >= -$abrupt_mps2 OR CASE WHEN l.known THEN false END) END
         OR asks_to_brake(w.need_mps2, w.known, $abrupt_mps2)
         OR CASE WHEN coalesce(e.indicator = 'hazard', false) OR d.t_ns IS NOT NULL THEN NULL ELSE false END)) AS applies
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
 LEFT JOIN (
-    SELECT *, min(accel_mps2) OVER lately AS hardest_mps2, bool_and(accel_mps2 IS NOT NULL) OVER lately AS known
+    SELECT *, bool_or(gap_m < stvo_safe_gap_m(ego_speed_mps, speed_mps, $reaction_s, $brake_mps2, $brake_lead_mps2)) OVER lately AS near,
+        min(accel_mps2) OVER lately AS hardest_mps2, bool_and(accel_mps2 IS NOT NULL) OVER lately AS known
     FROM lead
     WINDOW lately AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns RANGE BETWEEN ($lately_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW)
 ) l ON l.drive_id = m.drive_id AND l.ego_id = m.ego_id AND l.t_ns = m.t_ns

@@ -66,7 +66,8 @@ def state(rule: Rule) -> str:
     """
     has = rule.has
     measured = rule.sense != "holds"
-    number = "CASE WHEN isnan({0}::DOUBLE) THEN NULL ELSE {0}::DOUBLE END AS {0}"
+    # a nanometre decides nothing: what geometry computes to be 1.5 m is 1.5 m
+    number = "CASE WHEN isnan({0}::DOUBLE) THEN NULL ELSE round({0}::DOUBLE, 9) END AS {0}"
     columns = [
         "drive_id::VARCHAR AS drive_id", "ego_id::VARCHAR AS ego_id", "t_ns::BIGINT AS t_ns",
         f"{'object_id' if has('object_id') else 'NULL'}::VARCHAR AS object_id",
