@@ -106,7 +106,16 @@ def test_the_overtaken_cyclist_excuses_nothing_once_it_has_turned_off(hand: str)
     sign = np.sign(way.own)
     ego = moving("ego", way, t, s, sign * (LANE / 2 - LANE / 2 * ease((t - 16) / 2) * (1 - ease((t - 38) / 2))))
     away = np.clip(t - 24, 0, None)
-    rider = moving("c", way, t, 160 + 3 * np.minimum(t, 24.0), sign * (LANE - 0.5 + 12 * away), kind="bicycle", length=1.8, width=0.6)
+    rider = moving(
+        "c",
+        way,
+        t,
+        160 + 3 * np.minimum(t, 24.0),
+        sign * (LANE - 0.5 + 12 * away),
+        kind="bicycle",
+        length=1.8,
+        width=0.6,
+    )
     assert verdict(KEEP, way, ego, rider) == "fail"
     assert verdict(KEEP, way, ego, rider.keep(t < 25)) == "unknown"
 

@@ -171,6 +171,24 @@ def test_who_reverses_keeps_the_heading() -> None:
     assert np.abs(column(trace, "yaw_rad")[70:]) == pytest.approx(np.pi)
 
 
+@pytest.mark.parametrize("later", [False, True])
+def test_who_is_seen_to_set_off_backwards_may_be_fast(later: bool) -> None:
+    """Forwards, a standstill, back at up to 11 m/s, gaining 3 m/s every second; or the other way about."""
+    speed = np.where(T < 3, 6.0 - 2 * T, -np.clip(3 * (T - 4), 0, 11))
+    if later:
+        speed = -speed[::-1]
+        speed = np.where(T > T[-1] - 3, 2 * (T - T[-1] + 3), -np.clip(3 * (T[-1] - 4 - T), 0, 11))
+    s = 500 + np.cumsum(speed) * 0.1
+    other = replace(moving("x", WAY, T, s, WAY.own), yaw=np.zeros(len(T)))
+    assert np.array_equal(column(read(other), "yaw_rad"), np.zeros(len(T)))
+    # with its box turned meanwhile it is a heading turned round
+    back = replace(other, yaw=np.where(speed < -0.5, np.pi, 0.0))
+    assert np.abs(column(read(back), "vx_mps")).max() > 10
+    # nor is it reversing if nobody saw it go forwards
+    alone = read(other.keep(speed <= 0))
+    assert np.abs(column(alone, "yaw_rad")).max() == pytest.approx(np.pi)
+
+
 def test_who_only_reverses_keeps_the_heading() -> None:
     """From a standstill back at up to 4 m/s: the ego alone, and beside another that drives forwards."""
     s = 300 - np.cumsum(np.clip(T - 2, 0, 4)) * 0.1

@@ -52,7 +52,10 @@ LED_M: Final = 0.4
 LED_SHARE: Final = 0.5
 """A motion has a direction if within a second around it leads 0.4 m on, and half as far as its speed says."""
 REVERSING_MPS: Final = 8.0
-"""Nobody reverses faster than this (29 km/h)."""
+"""Nobody reverses faster than this (29 km/h),"""
+FAST_REVERSING_MPS: Final = 20.0
+STARTING_MPS: Final = 3.0
+"""unless it is seen to stop and to set off backwards: at its first moving sample it is no faster than 3 m/s, and never than 72 km/h."""
 BACKWARDS_RAD: Final = np.deg2rad(150.0)
 SIDEWAYS_RAD: Final = np.deg2rad(30.0)
 SIDEWAYS_MPS: Final = 3.0
@@ -349,8 +352,9 @@ def _leads(states: States, rows: Mask) -> Mask:
 def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
     """Return the samples whose heading is turned round against the motion, and those at which it lies across it.
 
-    A stretch in which a vehicle moves backwards is reversing if it is slow throughout and is entered and left by a standstill or
-    with the log, without a turn of the heading; a stretch across the motion is a slide if the heading turns into it and out of it
+    A stretch in which a vehicle moves backwards is reversing if it is entered and left by a standstill or with the log, without a
+    turn of the heading, and is slow throughout, or the vehicle is seen to go forwards with that heading before or after, and to
+    gain speed from the standstill between; a stretch across the motion is a slide if the heading turns into it and out of it
     as far as a vehicle can.
     """
     n, numbers = len(states), states.numbers
@@ -369,6 +373,20 @@ def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
     backwards, across = _leads(states, backwards), _leads(states, across)
     forwards = moving & ~backwards & ~across
     turned, sideways = nothing, nothing.copy()
+    row = np.arange(n)
+    # the last row before, and the first one after, at which its vehicle goes forwards; and how often headings have turned until a row
+    went = np.maximum.accumulate(np.where(forwards, row, -1))
+    goes = np.minimum.accumulate(np.where(forwards, row, n)[::-1])[::-1]
+    turns_until = np.r_[0, np.cumsum(turn > TURN_RAD)]
+
+    def shown(end: int, forth: int) -> bool:
+        return bool(
+            0 <= forth < n
+            and states.actor[forth] == states.actor[end]
+            and turns_until[forth] == turns_until[end]
+            and speed[end] < STARTING_MPS
+        )
+
     for rows, out, most in ((backwards, turned, TURN_RAD), (across, sideways, SPIN_RAD)):
         turns = turn > most
         for first, last in _runs(states, rows):
@@ -376,7 +394,8 @@ def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
             broken = (seam[0] and turns[first - 1]) or (seam[1] and turns[last])
             beside = (seam[0] and forwards[first - 1]) or (seam[1] and forwards[last + 1])
             if out is turned:
-                real = speed[first : last + 1].max() < REVERSING_MPS and not broken and not beside
+                fastest = FAST_REVERSING_MPS if shown(first, went[first]) or shown(last, goes[last]) else REVERSING_MPS
+                real = speed[first : last + 1].max() < fastest and not broken and not beside
             else:
                 real = beside and not broken and not turns[first:last].any()
             if not real:
