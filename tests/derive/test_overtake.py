@@ -246,7 +246,7 @@ def test_a_look_past_the_vehicle_ahead_is_no_overtake_if_all_of_it_was_seen(hand
 @pytest.mark.parametrize("reach", [0.3, 0.7])
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 def test_an_ego_that_stays_at_the_line_overtakes_when_it_pulls_out(hand: str, reach: float) -> None:
-    """From 60 to 300 m it is `reach` over the line behind the car ahead; the car that comes is far away then, and near when it pulls out."""
+    """From 60 to 300 m it is `reach` over the line behind the car ahead; the car that comes is near when it pulls out."""
     way = road(((1200.0, 0.0),), hand)
     t = times(40.0)
     s = 50 + 10 * t

@@ -177,7 +177,7 @@ def test_who_is_seen_to_set_off_backwards_may_be_fast(later: bool) -> None:
     speed = np.where(T < 3, 6.0 - 2 * T, -np.clip(3 * (T - 4), 0, 11))
     if later:
         speed = -speed[::-1]
-        speed = np.where(T > T[-1] - 3, 2 * (T - T[-1] + 3), -np.clip(3 * (T[-1] - 4 - T), 0, 11))
+        speed = np.where(T[-1] - 3 < T, 2 * (T - T[-1] + 3), -np.clip(3 * (T[-1] - 4 - T), 0, 11))
     s = 500 + np.cumsum(speed) * 0.1
     other = replace(moving("x", WAY, T, s, WAY.own), yaw=np.zeros(len(T)))
     assert np.array_equal(column(read(other), "yaw_rad"), np.zeros(len(T)))
