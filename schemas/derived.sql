@@ -218,7 +218,7 @@ CREATE TABLE chain (
     lanelet_id VARCHAR NOT NULL,      -- the lanelet
     s_start_m DOUBLE NOT NULL,        -- chain station of its start; 0 = start of the first lanelet the ego was on
     length_m DOUBLE NOT NULL,         -- its length
-    t_first_ns BIGINT,                -- the ego drove it with the traffic from this step; NULL: not driven, the way continued straight on
+    t_first_ns BIGINT,                -- the ego drove it with the traffic from this step; NULL: not driven, the way continued straight on, or the ego cut the corner beside it
     t_last_ns BIGINT                  -- to this one
 );
 

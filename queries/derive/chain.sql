@@ -21,12 +21,29 @@ visit AS (
 ),
 visited AS (SELECT DISTINCT v.drive_id, v.ego_id, l.environment_id, v.lanelet_id FROM visit v JOIN data_log l USING (drive_id)),
 -- where the ego went on is known: a link between two lanelets that it drove comes before straight on
-went AS (
-    SELECT a.drive_id, a.ego_id, a.lanelet_id, min({'turn': abs(l.turn_rad), 'id': l.to_id}).id AS next_id
+linked AS (
+    SELECT a.drive_id, a.ego_id, a.lanelet_id, {'beside': false, 'turn': abs(l.turn_rad), 'id': l.to_id} AS next
     FROM visited a
     JOIN lane_link l ON l.environment_id = a.environment_id AND l.from_id = a.lanelet_id
     JOIN visited b ON b.drive_id = a.drive_id AND b.ego_id = a.ego_id AND b.lanelet_id = l.to_id
-    GROUP BY ALL
+),
+-- and so is the way through a junction that it drove beside its own lane there, as one does that cuts the corner
+cut AS (
+    SELECT a.drive_id, a.ego_id, a.lanelet_id, {'beside': true, 'turn': abs(l.turn_rad), 'id': l.to_id} AS next
+    FROM visit a
+    JOIN visit b ON b.drive_id = a.drive_id AND b.ego_id = a.ego_id AND b.v = a.v + 1
+    JOIN data_log g ON g.drive_id = a.drive_id
+    JOIN lane_link l ON l.environment_id = g.environment_id AND l.from_id = a.lanelet_id
+    JOIN lanelet j ON j.environment_id = l.environment_id AND j.lanelet_id = l.to_id AND j.junction_id IS NOT NULL
+    JOIN lane_link o ON o.environment_id = l.environment_id AND o.from_id = l.to_id AND o.to_id = b.lanelet_id
+    SEMI JOIN (
+        SELECT e.drive_id, e.ego_id, e.t_ns, n.junction_id
+        FROM ego_lane e JOIN data_log x ON x.drive_id = e.drive_id JOIN lanelet n ON n.environment_id = x.environment_id AND n.lanelet_id = e.lanelet_id
+        WHERE n.junction_id IS NOT NULL
+    ) e ON e.drive_id = a.drive_id AND e.ego_id = a.ego_id AND e.junction_id = j.junction_id AND e.t_ns > a.t_last_ns AND e.t_ns < b.t_first_ns
+),
+went AS (
+    SELECT drive_id, ego_id, lanelet_id, min(next).id AS next_id FROM (FROM linked UNION ALL FROM cut) GROUP BY drive_id, ego_id, lanelet_id
 ),
 ahead AS (
     SELECT v.drive_id, v.ego_id, v.v, 0 AS hop, l.environment_id, v.lanelet_id, 0.0::DOUBLE AS beyond_m

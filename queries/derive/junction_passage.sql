@@ -24,6 +24,13 @@ inside AS (
     WHERE junction_id IS NOT NULL
     GROUP BY drive_id, ego_id, environment_id, seg, junction_id, run
 ),
+-- a lanelet of the ego's way that it drove beside, at the corner of a junction, it passed between those before and after
+on_chain AS (
+    SELECT
+        drive_id, ego_id, chain_id, seq, coalesce(t_first_ns, lag(t_last_ns IGNORE NULLS) OVER w) AS t_first_ns, coalesce(t_last_ns, lead(t_first_ns IGNORE NULLS) OVER w) AS t_last_ns
+    FROM chain
+    WINDOW w AS (PARTITION BY drive_id, ego_id, chain_id ORDER BY seq)
+),
 -- the junction on the chains by which the ego drove it: one may end in it and the next begin
 driven AS (
     SELECT
@@ -31,7 +38,7 @@ driven AS (
         min({'t_ns': c.t_first_ns, 'chain_id': m.chain_id, 's_m': m.s_start_m, 'seq': m.seq_first, 'control': m.control}) AS entry,
         max({'t_ns': c.t_first_ns, 'chain_id': m.chain_id, 's_m': m.s_start_m, 'seq': m.seq_last}) AS leave
     FROM inside i
-    JOIN chain c ON c.drive_id = i.drive_id AND c.ego_id = i.ego_id AND c.t_first_ns <= i.t_last_ns AND c.t_last_ns >= i.t_first_ns
+    JOIN on_chain c ON c.drive_id = i.drive_id AND c.ego_id = i.ego_id AND c.t_first_ns <= i.t_last_ns AND c.t_last_ns >= i.t_first_ns
     JOIN way_mark m ON m.drive_id = c.drive_id AND m.ego_id = c.ego_id AND m.chain_id = c.chain_id AND m.kind = 'junction'
         AND m.mark_id = i.junction_id AND c.seq >= m.seq_first AND c.seq <= m.seq_last
     GROUP BY i.drive_id, i.ego_id, i.t_first_ns

@@ -55,6 +55,26 @@ def test_every_way_through_a_crossroads(hand: str, name: str) -> None:
 
 
 @pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize("deep", [1.5, 3.0])
+def test_a_turn_that_cuts_the_corner_is_that_turn_however_deep(hand: str, deep: float) -> None:
+    """From 16 m before the junction on it is so far beside its way; by 3 m its centre is in the opposing lane."""
+    name = "wn" if hand == "rht" else "ws"
+    way = cross(hand)[name]
+    t = times(24.0)
+    s = 110 + 6 * t
+    on = np.clip((s - (ARM - 16)) / 12, 0, 1) * np.clip((ARM + TURN + 14 - s) / 12, 0, 1)
+    ego = moving("ego", way, t, s, way.own + (-np.sign(way.own) * deep) * on)
+    (row,) = passages(ego, way=way)
+    (mild,) = passages(moving("ego", way, t, s, way.own), way=way)
+    for column in ("turn", "across", "junction_id", "from_lanelet_id", "to_lanelet_id", "branches"):
+        assert row[column] == mild[column]
+    assert row["t_in_ns"] / 1e9 == pytest.approx((ARM - 2.4 - 110) / 6, abs=0.25)
+    assert row["t_out_ns"] is not None
+    corner = [row["verdict"] for row in judged([drive([ego], way.environment)], rules=["ukhc.r180.corner-cut"])]
+    assert corner == ["fail"]
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize(
     ("arms", "way", "turn", "straightest"),
     [
