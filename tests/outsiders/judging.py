@@ -9,7 +9,24 @@ from typing import TYPE_CHECKING, Final, NamedTuple, Protocol
 from drivelint import catalogue
 from drivelint.report.progress import Silent
 from drivelint.run import Settings, check
-from tests.outsiders import eighth, eleventh, fifth, first, fourth, ninth, second, seventh, sixth, tenth, third, twelfth
+from tests.outsiders import (
+    eighth,
+    eleventh,
+    fifteenth,
+    fifth,
+    first,
+    fourteenth,
+    fourth,
+    ninth,
+    second,
+    seventh,
+    sixteenth,
+    sixth,
+    tenth,
+    third,
+    thirteenth,
+    twelfth,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -17,7 +34,24 @@ if TYPE_CHECKING:
     from tests.outsiders.log import Scene
     from tests.scenes import Row
 
-PERSONS: Final = (first, second, third, fourth, fifth, sixth, seventh, eighth, ninth, tenth, eleventh, twelfth)
+PERSONS: Final = (
+    first,
+    second,
+    third,
+    fourth,
+    fifth,
+    sixth,
+    seventh,
+    eighth,
+    ninth,
+    tenth,
+    eleventh,
+    twelfth,
+    thirteenth,
+    fourteenth,
+    fifteenth,
+    sixteenth,
+)
 FAILS: Final = Path(__file__).with_name("fails.txt")
 REFUSED: Final = "refused"
 """The verdict on a drive that could not be judged."""

@@ -38,12 +38,26 @@ LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.t_ns =
 LEFT JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
 
 -- @condition
--- at the ends of the log the windows of the accelerations are not whole, which says nothing about the drive
-SELECT l.drive_id, l.ego_id, l.t_ns, l.object_id, $least_s AS required, l.object_id IS NULL OR judged_inside(m.accel_mps2 + l.accel_mps2, l.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
+-- at the ends of the log the windows of the accelerations are not whole, which says nothing about the drive. They smooth: the ego's begins to
+-- count before it begins, the other's after; where that makes the difference, it is not known
+SELECT l.drive_id, l.ego_id, l.t_ns, l.object_id, $least_s AS required, l.object_id IS NULL OR judged_inside(m.accel_mps2 + l.other_mps2, l.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
     CASE WHEN l.object_id IS NULL THEN 'inf'::DOUBLE
-        ELSE or_never(
-            mttc_s(l.gap_m, l.ego_speed_mps, m.accel_mps2, along_mps(l.speed_mps, l.oncoming), along_mps(l.accel_mps2, l.oncoming)), $least_s
+        ELSE sure(
+            or_never(mttc_s(l.gap_m, l.ego_speed_mps, m.accel_mps2, l.away_mps, l.other_mps2), $least_s),
+            mttc_s(l.gap_m, l.ego_speed_mps, m.most_mps2, l.away_mps, l.least_mps2),
+            mttc_s(l.gap_m, l.ego_speed_mps, m.accel_mps2, l.away_mps, l.other_mps2), $least_s
         ) END AS observed
-FROM vehicle_ahead l
+FROM (
+    SELECT *, along_mps(speed_mps, oncoming) AS away_mps, along_mps(accel_mps2, oncoming) AS other_mps2,
+        min(along_mps(accel_mps2, oncoming)) OVER (
+            PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns RANGE BETWEEN CURRENT ROW AND ($edge_s * 1e9)::BIGINT FOLLOWING
+        ) AS least_mps2
+    FROM vehicle_ahead
+) l
 JOIN clock c ON c.drive_id = l.drive_id AND c.ego_id = l.ego_id
-JOIN ego_motion m ON m.drive_id = l.drive_id AND m.ego_id = l.ego_id AND m.t_ns = l.t_ns
+JOIN (
+    SELECT *, max(accel_mps2) OVER (
+        PARTITION BY drive_id, ego_id ORDER BY t_ns RANGE BETWEEN ($edge_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW
+    ) AS most_mps2
+    FROM ego_motion
+) m ON m.drive_id = l.drive_id AND m.ego_id = l.ego_id AND m.t_ns = l.t_ns
