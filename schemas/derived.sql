@@ -427,7 +427,7 @@ CREATE TABLE lead (
     object_id VARCHAR,                -- nearest vehicle ahead in the running lane, not one that moves across it by its own way through a junction, nor one of the next lane that reaches over the line beside the ego's way and does not come nearer to it, nor one beside the ego's box; NULL: nobody there; no row: cannot be told
     actor_class VARCHAR,              -- see road_user
     gap_m DOUBLE,                     -- bumper to bumper along the corridor; negative: the two boxes overlap
-    speed_mps DOUBLE,                 -- its speed
+    speed_mps DOUBLE,                 -- its speed along the lane, whichever way
     accel_mps2 DOUBLE,                -- its acceleration, mean over the 0.5 s up to the step; NULL: not known
     ego_speed_mps DOUBLE,             -- the ego's speed
     in_lane BOOLEAN,                  -- some of the ego's box is in the running lane: it follows, and does not overtake beside it
@@ -463,7 +463,7 @@ CREATE TABLE vehicle_ahead (
     nearest BOOLEAN NOT NULL,         -- it is the lead, or there is none
     known BOOLEAN NOT NULL,           -- false: the lead is beside the ego's way, and somebody without a place or of no known class may be in it
     gap_m DOUBLE,                     -- see lead
-    speed_mps DOUBLE,                 -- its speed
+    speed_mps DOUBLE,                 -- its speed along the lane, whichever way
     accel_mps2 DOUBLE,                -- its acceleration, mean over the 0.5 s up to the step; NULL: not known
     ego_speed_mps DOUBLE,             -- the ego's speed
     in_lane BOOLEAN,                  -- some of the ego's box is in the running lane

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 OVER_M = 0.05  # a box this far over a lane's boundary is in the lane
+MOST_SHARE = 0.2  # of a closing speed: beyond that a lane's inexact heading decides it
 DRIFT_S = 3.0  # so long a present speed across the lane counts
 CLOSE_CALL_M = 0.03  # nearer to that than this, two honest computations may differ
 NEVER_S = 600.0  # so far off, nobody meets
@@ -51,7 +52,8 @@ class Seen(NamedTuple):
 class Measure(NamedTuple):
     """One step: who leads, and time to collision, headway, braking and time to brake; None: not defined, infinite: never.
 
-    `close_call`: whether somebody is in the lane, or the ego on course, hangs on less than CLOSE_CALL_M.
+    `close_call`: whether somebody is in the lane, or the ego on course, hangs on less than CLOSE_CALL_M, or the closing speed on the
+    lane's heading. `share`: so much of the closing speed that heading may change.
     """
 
     lead: str | None
@@ -60,6 +62,7 @@ class Measure(NamedTuple):
     drac: float | None
     ttb: float | None
     close_call: bool
+    share: float
 
 
 def measure(
@@ -92,9 +95,13 @@ def measure(
         if o.gap <= least and o.centre_in_by < CLOSE_CALL_M:
             close_call |= o.centre_in_by > -CLOSE_CALL_M or abs(late[o.name]) < far
     if not inside:
-        return Measure(None, math.inf, math.inf, 0.0, math.inf, close_call)
+        return Measure(None, math.inf, math.inf, 0.0, math.inf, close_call, 0.0)
     lead = min(inside, key=lambda o: o.gap)
-    closing = speed - lead.speed
+    # what it does across the lane takes it no further away; of a lane whose heading is not exact, neither is the share along it
+    closing = speed - math.sqrt(max(0.0, lead.speed**2 - lead.drift**2))
+    unsure = doubt_rad * abs(lead.drift) + doubt_rad**2 * lead.speed / 2
+    share = unsure / abs(closing) if closing else math.inf if unsure else 0.0
+    close_call |= share > MOST_SHARE
     ttc = lead.gap / closing if closing > 0 else math.inf
     now = _overlap(across, lead.across)
     shift = (drift - lead.drift) * min(ttc, DRIFT_S) if math.isfinite(ttc) else 0.0
@@ -109,7 +116,7 @@ def measure(
         ttb = _or_never(ttc - closing / (2 * FULL_BRAKING_MPS2)) if closing > 0 else math.inf
     if lead.gap >= 0 and now > 0 and speed >= 5.0 and (lead.speed > COMES_MPS or on_course):
         thw = lead.gap / speed
-    return Measure(lead.name, _or_never(ttc) if timed else None, thw, drac, ttb, close_call)
+    return Measure(lead.name, _or_never(ttc) if timed else None, thw, drac, ttb, close_call, share)
 
 
 def _or_never(time: float) -> float:

@@ -81,7 +81,7 @@ def judged(trace_file: Path, map_file: Path, ego: str) -> dict[tuple[str, int], 
 
 
 def differences(found: Judged, expected: followers.Measure) -> list[str]:
-    """Return in words how a step differs: another lead, defined for one only, or apart by more than 1 % and 0.01."""
+    """Return in words how a step differs: another lead, defined for one only, or apart by more than 1 %, the lane's heading and 0.01."""
     said = []
     for name in MEASURES:
         other, _, value = found[name]
@@ -89,7 +89,7 @@ def differences(found: Judged, expected: followers.Measure) -> list[str]:
         same = (
             value is None
             if wanted is None
-            else value is not None and math.isclose(value, wanted, rel_tol=0.01, abs_tol=0.01)
+            else value is not None and math.isclose(value, wanted, rel_tol=0.01 + 3 * expected.share, abs_tol=0.01)
         )
         if other != expected.lead or not same:
             said.append(f"{name} {value} behind {other}, expected {wanted} behind {expected.lead}")

@@ -10,7 +10,7 @@ crossing AS (
 ),
 placed AS (
     SELECT
-        p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.rear_s_m - e.front_s_m AS gap_m, p.speed_mps,
+        p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.rear_s_m - e.front_s_m AS gap_m, along_lane_mps(p.speed_mps, p.heading_diff_rad) AS speed_mps,
         abs(p.heading_diff_rad) > pi() / 2 AS oncoming, abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m AS across_m,
         sign(p.d_m - e.d_m) * e.speed_mps * sin(e.heading_diff_rad) AS ego_across_mps, sign(e.d_m - p.d_m) * p.speed_mps * sin(p.heading_diff_rad) AS across_mps,
         abs(p.d_m) <= p.half_width_m AS centre_in,

@@ -49,7 +49,7 @@ begun AS (
 ),
 -- where the nearest one was one step before it became that; half a second ago how fast
 past AS (
-    SELECT r.drive_id, r.ego_id, r.t_ns, p.t_ns AS t_past_ns, p.speed_mps, p.rear_s_m, p.d_m, p.lat_half_m, p.half_width_m
+    SELECT r.drive_id, r.ego_id, r.t_ns, p.t_ns AS t_past_ns, CASE WHEN p.heading_diff_rad IS NOT NULL THEN along_lane_mps(p.speed_mps, p.heading_diff_rad) END AS speed_mps, p.rear_s_m, p.d_m, p.lat_half_m, p.half_width_m
     FROM (
         SELECT drive_id, ego_id, t_ns, near.object_id AS object_id, unnest(list_distinct([t_half_ns, t_before_ns])) AS t_past_ns FROM run WHERE near.object_id IS NOT NULL
     ) r

@@ -1,5 +1,8 @@
 -- Measures of how near a rear-end collision is (Westhofen et al. 2023 collect the definitions). Gap in m, speeds in m/s; infinite: never.
 
+-- Speed along the lane, whichever way: somebody who crosses it has none.
+CREATE OR REPLACE MACRO along_lane_mps(speed_mps, heading_diff_rad) AS speed_mps * coalesce(abs(cos(heading_diff_rad)), 1.0);
+
 -- Speed along the corridor of a vehicle that heads with it or against it.
 CREATE OR REPLACE MACRO along_mps(speed_mps, oncoming) AS CASE WHEN oncoming THEN -speed_mps WHEN NOT oncoming THEN speed_mps END;
 

@@ -10,7 +10,7 @@ import pyarrow.compute as pc
 import pytest
 
 from tests.derive.junction_scenes import cross
-from tests.scenes import LANE, Actor, derived, drive, moving, road, rows, seconds, standing, swing, times
+from tests.scenes import LANE, Actor, derived, drive, judged, moving, road, rows, seconds, standing, swing, times
 
 HANDS = pytest.mark.parametrize("hand", ["rht", "lht"])
 
@@ -254,6 +254,33 @@ def test_one_that_comes_in_the_egos_lane_is_ahead_and_one_that_touches_the_line_
     assert ahead(-0.5 * LANE) == {("x", True)}
     assert ahead(0.9 - 0.1) == {("old", False)}
     assert ahead(0.5 * LANE) == {("old", False)}
+
+
+@pytest.mark.parametrize("turned", [math.pi / 2, math.pi / 3, -2.0])
+def test_the_speed_of_one_ahead_is_that_along_the_lane(turned: float) -> None:
+    """A bus slides over the lane ahead at 18 m/s, turned so: away from the ego it goes with the cosine of that."""
+    way = road()
+    t = times(8.0)
+    ego = moving("ego", way, t, 100 + 18 * t, way.own)
+    s, d = 190 + 18 * math.cos(turned) * (t - 4), way.own + 18 * math.sin(turned) * (t - 4)
+    bus = replace(moving("bus", way, t, s, d, length=11.0, width=2.5), yaw=np.full(len(t), turned))
+    found = rows(
+        derived(drive([ego, bus], way.environment), tables=["vehicle_ahead"]),
+        "FROM vehicle_ahead WHERE object_id = 'bus'",
+    )
+    assert found
+    for row in found:
+        assert row["speed_mps"] == pytest.approx(18 * abs(math.cos(turned)), abs=0.02)
+        assert row["oncoming"] == (abs(turned) > math.pi / 2)
+        if row["accel_mps2"] is not None:
+            assert row["accel_mps2"] == pytest.approx(0, abs=0.1)
+    if turned == math.pi / 2:
+        worst = [
+            r
+            for r in judged([drive([ego, bus], way.environment)], rules=["criticality.ttc"])
+            if r["object_id"] == "bus"
+        ]
+        assert "pass" not in {row["verdict"] for row in worst}
 
 
 @HANDS

@@ -10,6 +10,7 @@ from drivelint import catalogue
 from drivelint.report.progress import Silent
 from drivelint.run import Settings, check
 from tests.outsiders import (
+    eighteenth,
     eighth,
     eleventh,
     fifteenth,
@@ -19,6 +20,7 @@ from tests.outsiders import (
     fourth,
     ninth,
     second,
+    seventeenth,
     seventh,
     sixteenth,
     sixth,
@@ -51,6 +53,8 @@ PERSONS: Final = (
     fourteenth,
     fifteenth,
     sixteenth,
+    seventeenth,
+    eighteenth,
 )
 FAILS: Final = Path(__file__).with_name("fails.txt")
 REFUSED: Final = "refused"

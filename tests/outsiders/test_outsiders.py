@@ -69,6 +69,16 @@ KNOWN: Final = {
     "s5-open-narrow_r stvo.s5-passing": "off its lane's middle for half of the time, the ego does not vouch for the map",
     "gb-cyclist-fast-1m7_r ukhc.r163.cyclist": "off its lane's middle for half of the time, the ego does not vouch for the map",
     "mirror-after-signal_r declared.r161.mirrors-before-signal": "before the first look the log does not show whether looks are declared",
+    "breakdown_on_shoulder_t stvo.rg4": "hazard lights on the way to the shoulder are no reason yet",
+    "reverse_on_lane_t stvo.rg4": "it stands as the log begins, which may be in a jam that has gone",
+    "alks_cut_in_hit_t stvo.rg4": "it is slow as the log begins: whether it has just joined is not asked",
+    "alks_cut_in_kept_t stvo.rg4": "the same",
+    "mrm_hard_t stvo.rg4": "the same",
+    "mrm_no_lamp_t stvo.rg4": "the same",
+    "accel_hard_t stvo.rg4": "the same",
+    "shoulder_past_queue_t stvo.ri2": "on the hard shoulder the ego has no lane to the right of the one that it gets ahead of",
+    "ghost_driver_t stvo.ri3": "against its lane all the time: that one other vehicle keeps to the lanes does not vouch for the map",
+    "ghost_driver_t ukhc.r143.direction": "the same",
 }
 """Where product and outsider still differ, as `scene rule`, and why; never a breach that passes."""
 SCENES: Final = [drive.scene for drive in drives()]
