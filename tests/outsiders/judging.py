@@ -1,4 +1,4 @@
-"""The outsiders' drives judged in one run by every stable rule and those that they name, as planned and as driven."""
+"""Each outsider's drives judged in one run by every stable rule and those that they name, as planned and as driven."""
 
 from __future__ import annotations
 
@@ -32,11 +32,12 @@ from tests.outsiders import (
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from types import ModuleType
 
     from tests.outsiders.log import Scene
     from tests.scenes import Row
 
-PERSONS: Final = (
+PERSONS: Final[tuple[ModuleType, ...]] = (
     first,
     second,
     third,
@@ -83,7 +84,7 @@ class Drive(Protocol):
 
 
 class Judged(NamedTuple):
-    """All scenes, and the rows of verdicts by scene and rule."""
+    """The scenes of an outsider, and the rows of verdicts by scene and rule."""
 
     scenes: list[Scene]
     rows: dict[Key, list[Row]]
@@ -118,14 +119,9 @@ class Judged(NamedTuple):
         return "; ".join(sorted({row["reason"] for row in self.rows.get(key, ()) if row["verdict"] == verdict}))
 
 
-def drives() -> list[Drive]:
-    """Return the drives of all outsiders."""
-    return [drive for each in PERSONS for drive in each.drives()]
-
-
-def judge(folder: Path) -> Judged:
-    """Write the drives into an empty folder and judge them."""
-    drawn = drives()
+def judge(person: ModuleType, folder: Path) -> Judged:
+    """Write the drives of an outsider's package into an empty folder and judge them."""
+    drawn: list[Drive] = person.drives()
     for drive in drawn:
         drive.write(folder)
     scenes = [drive.scene for drive in drawn]

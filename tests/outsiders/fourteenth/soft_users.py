@@ -44,10 +44,7 @@ def soft_users_a() -> Iterator[Drive]:
         "passes at 1.1 m in a bend, box turned",
         bend,
         ((0, 12),),
-        [
-            (cyc, "fail", "1.1 m"),
-            ("ukhc.r131.keep-in-lane", "fail", "0.2 m over the middle for 20 s, near the cyclist for 4 s"),
-        ],
+        [(cyc, "fail", "1.1 m")],
         u=0.7,
         others=bike(bend),
         hz=5.0,
