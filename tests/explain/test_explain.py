@@ -84,7 +84,9 @@ def test_a_failed_verdict_says_what_why_and_what_would_change_it(folder: Path) -
     assert "It was judged at one moment only." in text
     assert [rows.table for rows in found.rows] == ["overtake", "overtake_sda", "profile"]
     (sda,) = found.rows[1].rows
-    assert (sda["da_m"], sda["sda_m"]) == pytest.approx((found.verdict["observed"], found.verdict["required"]), abs=1e-9)
+    assert (sda["da_m"], sda["sda_m"]) == pytest.approx(
+        (found.verdict["observed"], found.verdict["required"]), abs=1e-9
+    )
     assert found.decides_ns == found.verdict["t_ref_ns"]
 
 
