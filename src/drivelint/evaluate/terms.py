@@ -66,8 +66,9 @@ def state(rule: Rule) -> str:
     """
     has = rule.has
     measured = rule.sense != "holds"
-    # a nanometre decides nothing: what geometry computes to be 1.5 m is 1.5 m
-    number = "CASE WHEN isnan({0}::DOUBLE) THEN NULL ELSE round({0}::DOUBLE, 9) END AS {0}"
+    # at least 1.5 m is kept by what geometry computes to be a nanometre less; more than 0 m is kept by whatever is more
+    exact = "{0}::DOUBLE" if rule.sense in {">", "<"} else "round({0}::DOUBLE, 9)"
+    number = f"CASE WHEN isnan({{0}}::DOUBLE) THEN NULL ELSE {exact} END AS {{0}}"
     columns = [
         "drive_id::VARCHAR AS drive_id", "ego_id::VARCHAR AS ego_id", "t_ns::BIGINT AS t_ns",
         f"{'object_id' if has('object_id') else 'NULL'}::VARCHAR AS object_id",
