@@ -328,8 +328,7 @@ def as_swept(each: Meeting, row: Row) -> None:
     span = max(on_ego[-1], on_other[-1]) - min(on_ego[0], on_other[0])
     if span < 10:  # beyond that the pairs more than ten seconds apart are left out
         assert times_ == pytest.approx([on_ego[0], on_ego[-1], on_other[0], on_other[-1]], abs=tolerance), each
-    assert pet - 2 * tolerance <= row["pet_s"] <= pet + 0.05, (
-        each
-    )  # never longer than it was, but for the step of the polygons
+    # never longer than it was, but for the step of the polygons
+    assert pet - 2 * tolerance <= row["pet_s"] <= pet + 0.05, each
     assert row["ego_first"] == (row["t_ego_in_ns"] <= row["t_object_in_ns"]), each
     assert row["angle_rad"] == pytest.approx(each.heading), each

@@ -64,7 +64,7 @@ FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
 LEFT JOIN (
     SELECT *, bool_or(gap_m < stvo_safe_gap_m(ego_speed_mps, speed_mps, $reaction_s, $brake_mps2, $brake_lead_mps2)) OVER lately AS near,
-        min(accel_mps2) OVER lately AS hardest_mps2, bool_and(accel_mps2 IS NOT NULL) OVER lately AS known
+        min(accel_mps2) OVER lately AS hardest_mps2, bool_and(accel_mps2 + gap_m + speed_mps + ego_speed_mps IS NOT NULL) OVER lately AS known
     FROM lead
     WINDOW lately AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns RANGE BETWEEN ($lately_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW)
 ) l ON l.drive_id = m.drive_id AND l.ego_id = m.ego_id AND l.t_ns = m.t_ns
