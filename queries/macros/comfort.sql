@@ -8,3 +8,7 @@ CREATE OR REPLACE MACRO iso15622_limit(v_mps, slow, fast) AS
 -- of the log its window is not whole, which says nothing about the drive.
 CREATE OR REPLACE MACRO judged_inside(value, t_ns, t_start_ns, t_end_ns, edge_s) AS
     value IS NOT NULL OR (t_ns - t_start_ns >= edge_s * 1_000_000_000 AND t_end_ns - t_ns >= edge_s * 1_000_000_000);
+
+-- A filtered value where it decides: too much as it is, or within the limit even if the filter flattened its peak; else NULL.
+CREATE OR REPLACE MACRO decided_at_most(value, peak, most) AS
+    CASE WHEN value > most OR value + peak <= most THEN value END;

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 COLUMNS = ("v_long_mps", "accel_mps2", "lat_accel_mps2", "jerk_mps3", "accel_2s_mps2", "jerk_1s_mps3")
+PEAKS = ("accel_peak_mps2", "lat_peak_mps2", "jerk_peak_mps3")
 
 
 def free(t: Floats, speed: Floats, yaw: Floats, slip: float = 0.0) -> Actor:
@@ -43,7 +44,7 @@ def slope(t: Floats, y: Floats, half: float) -> Floats:
 def columns(*actors: Actor, egos: tuple[str, ...] = ("ego",), ego: str = "ego") -> dict[str, Floats]:
     con = derived(drive(actors, None, egos=egos), tables=["ego_motion"])
     found = rows(con, "FROM ego_motion WHERE ego_id = $ego ORDER BY t_ns", {"ego": ego})
-    return {name: np.array([row[name] for row in found], float) for name in COLUMNS}
+    return {name: np.array([row[name] for row in found], float) for name in (*COLUMNS, *PEAKS)}
 
 
 @pytest.mark.parametrize("period", [0.02, 0.05, 0.1, 0.15, 0.2])
@@ -152,3 +153,36 @@ def test_a_blow_turns_nobody_round() -> None:
 
     assert turned(1) == 0
     assert turned(10) == 8
+
+
+@pytest.mark.parametrize("rises", [0.5, 0.7, 1.5])
+@pytest.mark.parametrize("shape", ["pointed", "round"])
+def test_a_peak_is_not_hidden_by_the_filter(shape: str, rises: float) -> None:
+    """What the filter shows of a peak is too low; with what it may have flattened it is not."""
+    t = times(12.0, period=0.05)
+    middle = 6.0
+
+    def bump(at: Floats) -> Floats:
+        far = np.abs(at - middle) / rises
+        return np.where(far < 1, 1 - far if shape == "pointed" else (1 + np.cos(math.pi * far)) / 2, 0.0)
+
+    fine = np.linspace(0, t[-1], 20 * (len(t) - 1) + 1)
+    total = np.concatenate([[0], np.cumsum((bump(fine[1:]) + bump(fine[:-1])) / 2 * np.diff(fine))])
+    gained = np.interp(t, fine, total)
+    along = columns(free(t, 20 - 3 * gained, np.zeros(t.shape)))
+    across = columns(free(t, np.full(t.shape, 10.0), 0.3 * gained))
+    for found, value, peak in ((along, "accel_mps2", "accel_peak_mps2"), (across, "lat_accel_mps2", "lat_peak_mps2")):
+        seen = np.abs(found[value])
+        assert np.nanmax(seen) < 2.99
+        assert np.nanmax(seen + found[peak]) >= 3.0 - 1e-6
+        assert np.nanmax(seen + found[peak]) < 3.0 * (1 + 0.2 / rises)
+
+
+def test_nothing_was_flattened_where_it_does_not_stand_out() -> None:
+    """A steady acceleration, and one that grows all the while."""
+    t = times(6.0)
+    steady = columns(free(t, 5 + 2 * t, np.zeros(t.shape)))
+    assert set(np.round(steady["accel_peak_mps2"], 6)) == {0.0}
+    growing = columns(free(t, 5 + t * t, np.zeros(t.shape)))
+    assert set(np.round(growing["accel_peak_mps2"], 6)) == {0.0}
+    assert set(np.round(growing["jerk_peak_mps3"], 6)) == {0.0}

@@ -31,11 +31,10 @@
 
 -- @condition
 -- filtered before it is differentiated, see ego_motion; of a vehicle whose kind is not known, what both kinds may is kept, and what neither may is not
-SELECT m.drive_id, m.ego_id, m.t_ns, abs(m.lat_accel_mps2) AS observed,
-    CASE WHEN k.heavy OR abs(m.lat_accel_mps2) <= $heavy_mps2 AND k.heavy IS NULL THEN $heavy_mps2
-        WHEN NOT k.heavy OR abs(m.lat_accel_mps2) > $most_mps2 THEN $most_mps2 END AS required,
+SELECT m.drive_id, m.ego_id, m.t_ns, decided_at_most(l.lat_mps2, m.lat_peak_mps2, w.most_mps2) AS observed, w.most_mps2 AS required,
     judged_inside(m.lat_accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
-    CASE WHEN k.heavy IS NULL THEN 'whether the ego is a bus or lorry is not known' END AS reason
+    CASE WHEN w.most_mps2 IS NULL THEN 'whether the ego is a bus or lorry is not known'
+        WHEN l.lat_mps2 <= w.most_mps2 THEN 'the filter may have flattened a peak that was over the limit' END AS reason
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
 LEFT JOIN ego_condition o ON o.drive_id = m.drive_id AND o.ego_id = m.ego_id AND o.t_ns = m.t_ns
@@ -44,3 +43,8 @@ CROSS JOIN LATERAL (
     SELECT CASE WHEN o.vehicle_class IN ('bus', 'goods_7t5', 'goods_over_7t5') THEN true WHEN o.vehicle_class IS NOT NULL THEN false
         WHEN a.actor_class = 'truck' THEN true WHEN a.actor_class IN ('van', 'bicycle') THEN false END AS heavy
 ) k
+CROSS JOIN LATERAL (SELECT abs(m.lat_accel_mps2) AS lat_mps2) l
+CROSS JOIN LATERAL (
+    SELECT CASE WHEN k.heavy OR l.lat_mps2 + m.lat_peak_mps2 <= $heavy_mps2 AND k.heavy IS NULL THEN $heavy_mps2
+        WHEN NOT k.heavy OR l.lat_mps2 > $most_mps2 THEN $most_mps2 END AS most_mps2
+) w
