@@ -452,14 +452,15 @@ CREATE TABLE lane_ahead (
     across_m DOUBLE,                  -- gap between the two boxes across the corridor; negative: overlap, it is in the ego's way
     ego_across_mps DOUBLE,            -- ego's speed across the corridor, towards it positive
     across_mps DOUBLE,                -- its speed across the corridor, towards the ego positive
-    soon BOOLEAN                      -- it is in the ego's way, or will be within 3 s at the present speeds across
+    soon BOOLEAN,                     -- it is in the ego's way, or will be within 3 s at the present speeds across
+    outside BOOLEAN                   -- nothing of it is in the running lane: it is turned towards the ego, which is in its way beside the lane
 );
 
 CREATE TABLE vehicle_ahead (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step; none: it cannot be told who is ahead
-    object_id VARCHAR,                -- the nearest vehicle ahead in the running lane (lead), and those whom that may hide: the nearest one in the ego's way, one nearer that is heading into it, and the nearest that comes towards the ego; NULL: nobody there, or see known
+    object_id VARCHAR,                -- the nearest vehicle ahead in the running lane (lead), and those whom that may hide: the nearest one in the ego's way, one nearer that is heading into it, and the nearest that comes towards the ego, in the running lane or in the ego's way beside it; NULL: nobody there, or see known
     nearest BOOLEAN NOT NULL,         -- it is the lead, or there is none
     known BOOLEAN NOT NULL,           -- false: the lead is beside the ego's way, and somebody without a place or of no known class may be in it
     gap_m DOUBLE,                     -- see lead

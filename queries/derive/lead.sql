@@ -11,6 +11,7 @@ ahead AS (
         min(p.gap_m) FILTER (is_vehicle(p.actor_class) IS DISTINCT FROM true AND p.gap_m < unsure_reach_m(e.speed_mps)) AS unsure_m
     FROM lane_ahead p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
+    WHERE p.outside IS DISTINCT FROM true
     GROUP BY ALL
 ),
 filtered AS (SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'velocity_filtered'),

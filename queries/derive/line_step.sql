@@ -97,10 +97,11 @@ beside AS (
     ) r ON r.drive_id = n.drive_id AND r.ego_id = n.ego_id AND r.t0_ns <= n.t_ns AND r.t_end_ns >= n.t_ns
     JOIN ego_state e ON e.drive_id = n.drive_id AND e.ego_id = n.ego_id AND e.t_ns = n.t_ns
     LEFT JOIN pair p ON p.drive_id = n.drive_id AND p.ego_id = n.ego_id AND p.t_ns = n.t_ns AND p.object_id = r.object_id
+    CROSS JOIN LATERAL (SELECT passing_mps(e.speed_mps, p.speed_mps, p.heading_diff_rad) AS mps) c
     -- off the ego's way it has a distance only
     CROSS JOIN LATERAL (
         SELECT coalesce(
-            p.rear_s_m - e.front_s_m <= passing_before_m(e.speed_mps) AND e.rear_s_m - p.front_s_m <= passing_after_m(e.speed_mps),
+            p.rear_s_m - e.front_s_m <= passing_before_m(c.mps) AND e.rear_s_m - p.front_s_m <= passing_after_m(c.mps),
             p.distance_m <= greatest(passing_before_m(e.speed_mps), passing_after_m(e.speed_mps))
         ) AS near
     ) d

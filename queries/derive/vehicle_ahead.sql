@@ -1,5 +1,6 @@
 -- Every vehicle ahead in the running lane that the ego may hit or follow: the nearest one (lead), and where that is beside the ego's way, or
--- goes the ego's way, those whom it hides: the nearest one in the ego's way, one nearer that is heading into it, and the nearest that comes.
+-- goes the ego's way, those whom it hides: the nearest one in the ego's way, one nearer that is heading into it, and the nearest that comes,
+-- in the lane or in the ego's way beside it.
 WITH
 chosen AS (
     SELECT
@@ -22,7 +23,6 @@ more AS (
     SELECT l.drive_id, l.ego_id, l.t_ns, l.ego_speed_mps, l.in_lane, unnest(list_distinct(c.ids)) AS object_id
     FROM lead l
     JOIN chosen c USING (drive_id, ego_id, t_ns)
-    WHERE l.object_id IS NOT NULL
 ),
 filtered AS (SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'velocity_filtered'),
 half AS (
@@ -47,7 +47,7 @@ SELECT
     -- greatest() leaves out what is not there, as it should here
     greatest(i.t_ns, x.t_ns) AS joined_ns, i.t_ns AS let_in_ns
 FROM more m
-JOIN lead l ON l.drive_id = m.drive_id AND l.ego_id = m.ego_id AND l.t_ns = m.t_ns AND l.object_id <> m.object_id
+JOIN lead l ON l.drive_id = m.drive_id AND l.ego_id = m.ego_id AND l.t_ns = m.t_ns AND l.object_id IS DISTINCT FROM m.object_id
 JOIN lane_ahead p ON p.drive_id = m.drive_id AND p.ego_id = m.ego_id AND p.t_ns = m.t_ns AND p.object_id = m.object_id
 JOIN half h ON h.drive_id = m.drive_id AND h.ego_id = m.ego_id AND h.t_ns = m.t_ns
 LEFT JOIN pair b ON b.drive_id = m.drive_id AND b.ego_id = m.ego_id AND b.t_ns = h.t_half_ns AND b.object_id = m.object_id

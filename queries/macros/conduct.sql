@@ -110,7 +110,9 @@ CREATE OR REPLACE MACRO longest_change_ns() AS 10_000_000_000;
 -- Our default: so long before an overtake the one behind may have begun to brake for it.
 CREATE OR REPLACE MACRO braked_for_ns() AS 2_000_000_000;
 
--- How far before somebody, and how far past it, a driver who goes round it may be over the line: 10 m and 5 s at its own speed, and as it
--- waits behind it, 30 m.
+-- How far before somebody, and how far past it, a driver who goes round it may be over the line: 10 m and 5 s at the speed at which it comes
+-- nearer (at its own speed, where the other stands or goes at a walking pace, or how fast is not known), and as it waits behind it, 30 m.
+CREATE OR REPLACE MACRO passing_mps(ego_mps, other_mps, heading_diff_rad) AS
+    greatest(0.0, coalesce(ego_mps - other_mps * cos(heading_diff_rad), ego_mps));
 CREATE OR REPLACE MACRO passing_after_m(v_mps) AS 10.0 + 5.0 * coalesce(v_mps, 0.0);
 CREATE OR REPLACE MACRO passing_before_m(v_mps) AS greatest(30.0, passing_after_m(v_mps));

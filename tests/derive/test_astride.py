@@ -98,6 +98,19 @@ def test_astride_is_lawful_as_long_as_somebody_is_overtaken(hand: str) -> None:
 
 
 @HANDS
+@pytest.mark.parametrize(("until", "expected"), [(14.0, "pass"), (25.0, "fail")])
+def test_a_cyclist_is_being_overtaken_for_some_seconds_and_no_longer(hand: str, until: float, expected: str) -> None:
+    """Over the line from 4 s on; at 7 m/s more than the cyclist the ego is beside it at 10 s."""
+    way = marked(hand, "broken")
+    t = times(30.0)
+    sign = np.sign(way.own)
+    on = ease((t - 4) / 2) * (1 - ease((t - until) / 2))
+    ego = moving("ego", way, t, 50 + 12 * t, sign * (LANE / 2 - 0.3 * LANE * on))
+    rider = moving("c", way, t, 120 + 5 * t, sign * (LANE - 0.5), kind="bicycle", length=1.8, width=0.6)
+    assert verdict(KEEP, way, ego, rider) == expected
+
+
+@HANDS
 def test_the_overtaken_cyclist_excuses_nothing_once_it_has_turned_off(hand: str) -> None:
     """On the line from 16 to 40 s, the cyclist passed at 22 s and gone across the fields from 24 s on."""
     way = marked(hand, "broken")

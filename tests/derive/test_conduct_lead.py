@@ -256,6 +256,25 @@ def test_one_that_comes_in_the_egos_lane_is_ahead_and_one_that_touches_the_line_
     assert ahead(0.5 * LANE) == {("old", False)}
 
 
+@pytest.mark.parametrize("hand", ["right", "left"])
+def test_one_that_comes_in_the_lane_in_which_the_ego_overtakes_is_ahead_of_it(hand: str) -> None:
+    """Out of its lane the ego has no lead there, and yet one in its way; once back, that one is beside its way."""
+    way = road(lanes=(1, 1), hand=hand)
+    t = times(12.0)
+    s = 50 + 12 * t
+    ego = moving("ego", way, t, s, swing(way, s, 70, 150, share=1.0))
+    other = moving("x", way, t, 400 - 12 * t, -way.own)
+    con = derived(drive([ego, other], way.environment), tables=["lead", "vehicle_ahead"])
+    assert {row["object_id"] for row in rows(con, "FROM lead")} == {None}
+    ahead = {row["t_ns"]: row for row in rows(con, "FROM vehicle_ahead WHERE object_id = 'x'")}
+    for k, at in enumerate(t):
+        beside = abs(float(ego.y[k] - other.y[k]))
+        if beside < 1.5 or beside > 2.6:
+            assert (round(float(at) * 1e9) in ahead) == (beside < 1.5 and ego.x[k] < other.x[k]), at
+    assert all(row["oncoming"] and not row["nearest"] for row in ahead.values())
+    assert ahead[4_000_000_000]["gap_m"] == pytest.approx(400 - 48 - (50 + 48) - 4.8, abs=0.01)
+
+
 @pytest.mark.parametrize("turned", [math.pi / 2, math.pi / 3, -2.0])
 def test_the_speed_of_one_ahead_is_that_along_the_lane(turned: float) -> None:
     """A bus slides over the lane ahead at 18 m/s, turned so: away from the ego it goes with the cosine of that."""

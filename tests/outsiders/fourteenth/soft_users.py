@@ -44,7 +44,7 @@ def soft_users_a() -> Iterator[Drive]:
         "passes at 1.1 m in a bend, box turned",
         bend,
         ((0, 12),),
-        [(cyc, "fail", "1.1 m")],
+        [(cyc, "fail", "1.1 m"), ("ukhc.r131.keep-in-lane", "fail", "0.2 m over the line for 20 s")],
         u=0.7,
         others=bike(bend),
         hz=5.0,
