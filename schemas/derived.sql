@@ -117,6 +117,12 @@ CREATE TABLE ego_part (
     part VARCHAR NOT NULL             -- trailer: the ego draws it; successor, predecessor: the id under which the ego's own track goes on or was before
 );
 
+CREATE TABLE ego_actor (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    actor_id VARCHAR NOT NULL         -- the ego, or a trailer that it draws: boxes that are the ego's at one time
+);
+
 CREATE TABLE step (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego

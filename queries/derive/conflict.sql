@@ -1,11 +1,10 @@
 -- Where the ground that the ego's box sweeps is swept by another's as well, at an angle, not more than 10 s apart.
 WITH scale AS (SELECT drive_id, max(period_s) AS period_s, max(cell_m) AS cell_m FROM meeting GROUP BY drive_id),
 -- the trailer that it draws is the ego
-own AS (SELECT drive_id, ego_id, ego_id AS actor_id FROM clock UNION ALL SELECT drive_id, ego_id, object_id FROM ego_part WHERE part = 'trailer'),
 part AS (
     SELECT drive_id, object_id AS actor_id, object_slot AS slot FROM meeting
     UNION
-    SELECT o.drive_id, o.actor_id, meeting_slot(s.t_ns) FROM step s JOIN own o USING (drive_id, ego_id)
+    SELECT o.drive_id, o.actor_id, meeting_slot(s.t_ns) FROM step s JOIN ego_actor o USING (drive_id, ego_id)
 ),
 box AS NOT MATERIALIZED (
     SELECT
@@ -19,7 +18,7 @@ box AS NOT MATERIALIZED (
     WHERE s.x_m IS NOT NULL AND s.y_m IS NOT NULL AND s.yaw_rad IS NOT NULL AND s.length_m IS NOT NULL AND s.width_m IS NOT NULL
 ),
 ego AS MATERIALIZED (
-    SELECT o.ego_id, b.* FROM box b JOIN own o USING (drive_id, actor_id) SEMI JOIN step s ON s.drive_id = b.drive_id AND s.ego_id = o.ego_id AND s.t_ns = b.t_ns
+    SELECT o.ego_id, b.* FROM box b JOIN ego_actor o USING (drive_id, actor_id) SEMI JOIN step s ON s.drive_id = b.drive_id AND s.ego_id = o.ego_id AND s.t_ns = b.t_ns
 ),
 other AS MATERIALIZED (
     SELECT b.*
@@ -158,7 +157,7 @@ sooner AS (
         )) / nullif(greatest(a.speed_mps, i.speed_mps), 0))), 0))::BIGINT AS by_ns
     FROM edge e
     JOIN off o USING (drive_id, ego_id, object_id, t_ego_in_ns, t_object_in_ns, side)
-    LEFT JOIN own w ON w.drive_id = e.drive_id AND w.ego_id = e.ego_id AND e.actor_id = e.ego_id
+    LEFT JOIN ego_actor w ON w.drive_id = e.drive_id AND w.ego_id = e.ego_id AND e.actor_id = e.ego_id
     JOIN state_dynamics a ON a.drive_id = e.drive_id AND a.actor_id = coalesce(w.actor_id, e.actor_id) AND a.t_ns = o.t_off_ns
     JOIN state_dynamics i ON i.drive_id = e.drive_id AND i.actor_id = e.actor_id AND i.t_ns = e.t_ns
     JOIN state_dynamics b ON b.drive_id = e.drive_id AND b.actor_id = e.on_id AND b.t_ns >= e.from_ns - e.period_ns AND b.t_ns <= e.to_ns + e.period_ns

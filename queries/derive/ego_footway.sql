@@ -1,14 +1,15 @@
--- The ego's outline (corners and middles of the sides) on footways. A point that is also on a drivable lanelet is on the carriageway:
+-- The ego's outline (corners and middles of the sides), and that of a trailer that it draws, on footways. A point that is also on a drivable lanelet is on the carriageway:
 -- in junctions the footways of connecting roads lie across other roads.
 WITH ego AS (
-    SELECT st.drive_id, st.ego_id, st.t_ns, s.x_m, s.y_m, s.yaw_rad, s.length_m / 2 AS hl, s.width_m / 2 AS hw, g.environment_id
+    SELECT st.drive_id, st.ego_id, st.t_ns, o.actor_id, s.x_m, s.y_m, s.yaw_rad, s.length_m / 2 AS hl, s.width_m / 2 AS hw, g.environment_id
     FROM step st
-    JOIN state_dynamics s ON s.drive_id = st.drive_id AND s.actor_id = st.ego_id AND s.t_ns = st.t_ns
+    JOIN ego_actor o USING (drive_id, ego_id)
+    LEFT JOIN state_dynamics s ON s.drive_id = st.drive_id AND s.actor_id = o.actor_id AND s.t_ns = st.t_ns
     JOIN data_log g ON g.drive_id = st.drive_id
 ),
 point AS (
     SELECT
-        e.drive_id, e.ego_id, e.t_ns, c.p, e.environment_id,
+        e.drive_id, e.ego_id, e.t_ns, e.actor_id, c.p, e.environment_id,
         x_m + c.l * hl * cos(yaw_rad) - c.w * hw * sin(yaw_rad) AS x_m,
         y_m + c.l * hl * sin(yaw_rad) + c.w * hw * cos(yaw_rad) AS y_m
     FROM ego e CROSS JOIN (VALUES (1, 1, 1), (2, 1, -1), (3, -1, 1), (4, -1, -1), (5, 0, 1), (6, 0, -1), (7, 1, 0), (8, -1, 0)) AS c(p, l, w)
@@ -16,7 +17,7 @@ point AS (
 ),
 candidate AS (
     SELECT
-        a.drive_id, a.ego_id, a.t_ns, a.p, a.x_m, a.y_m, c.* EXCLUDE (environment_id, cell),
+        a.drive_id, a.ego_id, a.t_ns, a.actor_id, a.p, a.x_m, a.y_m, c.* EXCLUDE (environment_id, cell),
         along0(a.x_m, a.y_m, c.x0_m, c.y0_m, c.tx0, c.ty0) AS a0,
         along1(a.x_m, a.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) AS a1
     FROM point a
@@ -24,7 +25,7 @@ candidate AS (
 ),
 inside AS (
     SELECT
-        drive_id, ego_id, t_ns, p, bool_or(drivable) AS on_carriageway, max(depth_m) FILTER (footway) AS depth_m
+        drive_id, ego_id, t_ns, actor_id, p, bool_or(drivable) AS on_carriageway, max(depth_m) FILTER (footway) AS depth_m
     FROM (
         SELECT
             *,
@@ -37,11 +38,12 @@ inside AS (
     GROUP BY ALL
 ),
 deepest AS (
-    SELECT drive_id, ego_id, t_ns, count(*) AS n, max(depth_m) FILTER (NOT on_carriageway) AS depth_m FROM inside GROUP BY ALL
+    SELECT drive_id, ego_id, t_ns, actor_id, count(*) AS n, max(depth_m) FILTER (NOT on_carriageway) AS depth_m FROM inside GROUP BY ALL
 )
 SELECT
     e.drive_id, e.ego_id, e.t_ns,
     -- a point on nothing that the map knows may be on a footway that it lost
-    CASE WHEN d.depth_m > 0 OR d.n = 8 THEN greatest(coalesce(d.depth_m, 0.0), 0.0) END AS depth_m
+    CASE WHEN max(d.depth_m) > 0 OR bool_and(coalesce(d.n = 8, false)) THEN greatest(coalesce(max(d.depth_m), 0.0), 0.0) END AS depth_m
 FROM ego e
-LEFT JOIN deepest d USING (drive_id, ego_id, t_ns)
+LEFT JOIN deepest d USING (drive_id, ego_id, t_ns, actor_id)
+GROUP BY ALL

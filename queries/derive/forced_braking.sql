@@ -143,12 +143,11 @@ box AS NOT MATERIALIZED (
     WHERE s.x_m IS NOT NULL AND s.y_m IS NOT NULL AND s.yaw_rad IS NOT NULL AND s.length_m IS NOT NULL AND s.width_m IS NOT NULL
 ),
 -- the trailer that it draws is the ego
-own AS (SELECT drive_id, ego_id, ego_id AS actor_id FROM clock UNION ALL SELECT drive_id, ego_id, object_id FROM ego_part WHERE part = 'trailer'),
 -- nobody drives on head on past an ego that is out in its lane with hardly any room, even if the two would just have missed each other
 ego_box AS NOT MATERIALIZED (
     SELECT o.ego_id, b.*, b.hw + CASE WHEN x.t0_ns IS NULL THEN 0.0 ELSE hardly_room_m() END AS out_hw
     FROM box b
-    JOIN own o USING (drive_id, actor_id)
+    JOIN ego_actor o USING (drive_id, actor_id)
     SEMI JOIN step s ON s.drive_id = b.drive_id AND s.ego_id = o.ego_id AND s.t_ns = b.t_ns
     LEFT JOIN (FROM excursion WHERE overtaking AND over_against IS DISTINCT FROM false) x
         ON x.drive_id = b.drive_id AND x.ego_id = o.ego_id AND b.t_ns >= x.t0_ns AND b.t_ns <= coalesce(x.t_back_ns, x.t_end_ns)
@@ -215,7 +214,7 @@ behind AS (
     JOIN reached r ON r.drive_id = l.drive_id AND r.object_id = l.object_id AND r.t_from_ns = l.t_from_ns AND r.way_m <= r.reach_m
     JOIN (SELECT b.* FROM box b SEMI JOIN led l ON l.drive_id = b.drive_id AND b.t_ns >= l.t_from_ns AND b.t_ns <= l.t_from_ns + 2 * conflict_ns()) b
         ON b.drive_id = r.drive_id AND b.cell = r.cell AND b.slot = r.slot AND b.actor_id <> l.object_id
-    ANTI JOIN own o ON o.drive_id = l.drive_id AND o.ego_id = l.ego_id AND o.actor_id = b.actor_id
+    ANTI JOIN ego_actor o ON o.drive_id = l.drive_id AND o.ego_id = l.ego_id AND o.actor_id = b.actor_id
     WHERE b.t_ns >= r.t_from_ns AND abs(b.t_ns - r.at_ns) <= forced_apart_ns() / 2
         AND boxes_meet(r.x_m - b.x_m, r.y_m - b.y_m, b.c, b.s, r.c, r.s, b.hl, b.hw, r.hl, r.hw)
         AND (b.t_ns <= r.at_ns OR abs(wrap_rad(r.dir_rad - b.dir_rad)) > conflict_angle_rad())

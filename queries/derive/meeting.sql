@@ -32,10 +32,9 @@ visit AS MATERIALIZED (
     GROUP BY drive_id, actor_id, cell, slot, heading
 ),
 -- the trailer that it draws is the ego
-own AS (SELECT drive_id, ego_id, ego_id AS actor_id FROM clock UNION ALL SELECT drive_id, ego_id, object_id FROM ego_part WHERE part = 'trailer'),
 ego_visit AS (
     SELECT o.ego_id, v.* EXCLUDE (actor_id, x0, x1, y0, y1), min(v.x0) AS x0, max(v.x1) AS x1, min(v.y0) AS y0, max(v.y1) AS y1
-    FROM visit v JOIN own o USING (drive_id, actor_id)
+    FROM visit v JOIN ego_actor o USING (drive_id, actor_id)
     GROUP BY ALL
 ),
 around AS (

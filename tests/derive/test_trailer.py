@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from tests.derive.junction_scenes import cross, crosswalk
+from tests.derive.marked import marked
 from tests.scenes import Actor, Road, derived, drive, judged, moving, road, rows, saying, standing, times
 
 if TYPE_CHECKING:
@@ -274,3 +275,18 @@ def test_who_was_there_before_is_no_successor() -> None:
     other = moving("next", way, t, 50 + 10 * t, way.own).keep(t > 4)
     assert parts(drive([ego, other], way.environment)) == {}
     assert "fail" in {r["verdict"] for r in judged([drive([ego, other], way.environment)], rules=[CRASH])}
+
+
+@HANDS
+@pytest.mark.parametrize(("kind", "turned"), [("trailer", 0.0), ("trailer", 0.25), ("car", 0.25)])
+def test_a_trailer_that_swings_over_the_footway_is_the_ego_there(hand: str, kind: str, turned: float) -> None:
+    """Its tail 0.4 m further out than the road is wide; a car behind on the same way is not the ego."""
+    way = marked(hand, beyond="sidewalk")
+    t = times(12.0)
+    ego = moving("ego", way, t, 60 + 8 * t, way.own, length=6.0, width=2.0)
+    out = np.sign(way.own)
+    far = 3.0 + (0.5 if kind == "trailer" else 12.0)
+    behind = moving("t", way, t, 60 + 8 * t - far - 3.0, way.own, length=6.0, width=2.2, kind=kind)
+    swung = replace(behind, yaw=behind.yaw - out * turned, y=behind.y + out * 3.0 * math.sin(turned))
+    found = rows(derived(drive([ego, swung], way.environment), tables=["ego_footway"]), "FROM ego_footway")
+    assert {row["depth_m"] > 0 for row in found} == {kind == "trailer" and turned > 0}
