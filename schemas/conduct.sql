@@ -36,8 +36,7 @@ CREATE TABLE ego_motion (
     accel_2s_mps2 DOUBLE,             -- mean acceleration over the 2 s that end at this step
     jerk_1s_mps3 DOUBLE,              -- mean jerk over the 1 s that ends at this step
     accel_peak_mps2 DOUBLE NOT NULL,  -- the true longitudinal acceleration may be higher by so much, as the filter flattens peaks
-    lat_peak_mps2 DOUBLE NOT NULL,    -- the same of the lateral acceleration
-    jerk_peak_mps3 DOUBLE NOT NULL    -- the same of the jerk
+    lat_peak_mps2 DOUBLE NOT NULL     -- the same of the lateral acceleration
 );
 
 CREATE TABLE hidden (

@@ -66,8 +66,8 @@ before AS (
         v_long_mps * yaw_rate_radps AS lat_accel_mps2,
         first_value({'t_ns': t_ns, 'v': v_long_mps}) OVER (w RANGE BETWEEN 2_000_000_000 PRECEDING AND CURRENT ROW) AS at_2s,
         first_value({'t_ns': t_ns, 'a': accel_mps2}) OVER (w RANGE BETWEEN 1_000_000_000 PRECEDING AND CURRENT ROW) AS at_1s,
-        first_value({'accel': accel_mps2, 'lat': v_long_mps * yaw_rate_radps, 'jerk': jerk_mps3}) OVER (w RANGE BETWEEN coalesce(half_ns, 0) PRECEDING AND CURRENT ROW) AS past,
-        last_value({'accel': accel_mps2, 'lat': v_long_mps * yaw_rate_radps, 'jerk': jerk_mps3}) OVER (w RANGE BETWEEN CURRENT ROW AND coalesce(half_ns, 0) FOLLOWING) AS next
+        first_value({'accel': accel_mps2, 'lat': v_long_mps * yaw_rate_radps}) OVER (w RANGE BETWEEN coalesce(half_ns, 0) PRECEDING AND CURRENT ROW) AS past,
+        last_value({'accel': accel_mps2, 'lat': v_long_mps * yaw_rate_radps}) OVER (w RANGE BETWEEN CURRENT ROW AND coalesce(half_ns, 0) FOLLOWING) AS next
     FROM jerked
     WINDOW w AS (PARTITION BY drive_id, ego_id, seg ORDER BY t_ns)
 )
@@ -76,6 +76,5 @@ SELECT
     CASE WHEN half_ns IS NOT NULL AND age_ns >= 2_000_000_000 THEN 1e9 * (v_long_mps - at_2s.v) / (t_ns - at_2s.t_ns) END AS accel_2s_mps2,
     CASE WHEN half_ns IS NOT NULL AND age_ns >= 1_000_000_000 THEN 1e9 * (accel_mps2 - at_1s.a) / (t_ns - at_1s.t_ns) END AS jerk_1s_mps3,
     0.7 * peak_rise(accel_mps2, past.accel, next.accel) AS accel_peak_mps2,
-    0.7 * peak_rise(lat_accel_mps2, past.lat, next.lat) AS lat_peak_mps2,
-    peak_rise(jerk_mps3, past.jerk, next.jerk) AS jerk_peak_mps3
+    0.7 * peak_rise(lat_accel_mps2, past.lat, next.lat) AS lat_peak_mps2
 FROM before

@@ -1,5 +1,5 @@
 -- Does the trace fit the map? Checked before any blame: on a lane (or a shoulder, where some drives are for most of the time) for at least 80 % of the steps, with the traffic for at least 60 % of
--- those in motion (steps of an overtake in the opposing lane left out: a short drive may be little else), and in the median within 1.2 m of the centre line (half a lane: a map shifted by one lane keeps 100 % on a lane);
+-- those in motion (steps of an overtake in the opposing lane left out: a short drive may be little else), and in the median (of what it drives beside such an overtake, where that is enough) within 1.2 m of the centre line (half a lane: a map shifted by one lane keeps 100 % on a lane);
 -- or three of four other vehicles drive with their lanes, and the ego was against its own for longer than an overtake takes: then the map
 -- fits, and it is the ego that is on the wrong side; or the ego keeps to the middle of a lane before and after all that, on a road that runs as
 -- the other does: the map fits there, and a log does not slip away from it and back.
@@ -24,7 +24,10 @@ counted AS (
         count(*) FILTER (e.lanelet_id IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_moving,
         count(*) FILTER (e.with_direction AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_with_direction,
         sum(st.dt_ns) FILTER (NOT e.with_direction AND s.speed_mps > 1 AND x.t_ns IS NULL) AS against_ns,
-        quantile_disc(e.off_m, 0.5) AS lateral_median_m
+        -- a short log may be half an overtake: what it drives beside that tells, if it is 5 s and a third of the log
+        CASE WHEN coalesce(sum(st.dt_ns) FILTER (e.off_m IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL), 0) >= 5_000_000_000
+            AND 3 * count(e.off_m) FILTER (s.speed_mps > 1 AND x.t_ns IS NULL) >= count(s.x_m)
+            THEN quantile_disc(e.off_m, 0.5) FILTER (s.speed_mps > 1 AND x.t_ns IS NULL) ELSE quantile_disc(e.off_m, 0.5) END AS lateral_median_m
     FROM step st
     JOIN state_dynamics s ON s.drive_id = st.drive_id AND s.actor_id = st.ego_id AND s.t_ns = st.t_ns
     LEFT JOIN placed e ON e.drive_id = st.drive_id AND e.ego_id = st.ego_id AND e.t_ns = st.t_ns

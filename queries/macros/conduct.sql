@@ -11,7 +11,7 @@ CREATE OR REPLACE MACRO filter_half_ns(period_ns) AS
 
 -- By how much a value stands out over the values half a window before and after it, on the side away from zero; 0 where it does not, or one
 -- of them is not known. A mean over a window (a slope's weights fall off as a parabola) lowers a pointed peak by at most 0.7 of this (at
--- 20 samples a second or more), a round one by 0.2; the mean of such means by at most all of it.
+-- 20 samples a second or more), a round one by 0.2.
 CREATE OR REPLACE MACRO peak_rise(value, past, next) AS
     CASE WHEN value + past + next IS NOT NULL THEN greatest(0.0, abs(value) - greatest(sign(value) * past, sign(value) * next)) ELSE 0.0 END;
 

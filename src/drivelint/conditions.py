@@ -45,7 +45,7 @@ SAYS: dict[str, str] = {
         "what the ego is for the law: goods vehicles of up to 7.5 t or more, a car that tows; not given: car, bus or motorcycle by "
         "the ego's class, and not known for any other"
     ),
-    "engaged": "the automated driver drives all along, or never; not given: as the event `engaged` says, and without one it drives",
+    "engaged": "the automated driver drives all along, or never; else as events say, and without one it drives (`alks-r157`: unknown)",
 }
 """Condition -> what its words say."""
 

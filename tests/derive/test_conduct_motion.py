@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 COLUMNS = ("v_long_mps", "accel_mps2", "lat_accel_mps2", "jerk_mps3", "accel_2s_mps2", "jerk_1s_mps3")
-PEAKS = ("accel_peak_mps2", "lat_peak_mps2", "jerk_peak_mps3")
+PEAKS = ("accel_peak_mps2", "lat_peak_mps2")
 
 
 def free(t: Floats, speed: Floats, yaw: Floats, slip: float = 0.0) -> Actor:
@@ -185,4 +185,3 @@ def test_nothing_was_flattened_where_it_does_not_stand_out() -> None:
     assert set(np.round(steady["accel_peak_mps2"], 6)) == {0.0}
     growing = columns(free(t, 5 + t * t, np.zeros(t.shape)))
     assert set(np.round(growing["accel_peak_mps2"], 6)) == {0.0}
-    assert set(np.round(growing["jerk_peak_mps3"], 6)) == {0.0}

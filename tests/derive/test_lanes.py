@@ -258,3 +258,21 @@ def test_an_ego_that_keeps_to_its_lane_before_and_after_vouches_for_the_map(
     assert found["lateral_median_m"] > 1.2
     assert found["ok"] is ok
     assert ("before and after" in found["reason"]) is ok
+
+
+@pytest.mark.parametrize(
+    ("shift", "back", "ok"),
+    [(0.0, 210, True), (0.0, 150, True), (1.5, 150, False), (-1.5, 150, False), (0.0, 290, False)],
+)
+@pytest.mark.parametrize("hand", ["lht", "rht"])
+def test_a_short_log_half_of_which_is_an_overtake_fits_the_map(hand: str, shift: float, back: float, ok: bool) -> None:
+    """Over the middle from 2 s on for some time; with the map 1.5 m aside, or hardly in its lane at all, it may not fit."""
+    way = road(hand=hand)
+    t = times(16.0)
+    s = 50 + 15 * t
+    aside = shift * np.sign(way.own)
+    ego = moving("ego", way, t, s, swing(way, s, 65, back, change=30.0, share=0.5) + aside)
+    rider = moving("c", way, t, 130 + 3 * t, way.own * 1.6 + aside, kind="bicycle", length=1.8, width=0.6)
+    scene = drive([ego, rider], way.environment)
+    (found,) = rows(derived(scene, tables=["registration"]), "FROM registration WHERE ego_id = 'ego'")
+    assert found["ok"] is ok, found["reason"]

@@ -18,6 +18,7 @@ from tests.outsiders import (
     first,
     fourteenth,
     fourth,
+    nineteenth,
     ninth,
     second,
     seventeenth,
@@ -28,6 +29,7 @@ from tests.outsiders import (
     third,
     thirteenth,
     twelfth,
+    twentieth,
 )
 
 if TYPE_CHECKING:
@@ -56,6 +58,8 @@ PERSONS: Final[tuple[ModuleType, ...]] = (
     sixteenth,
     seventeenth,
     eighteenth,
+    nineteenth,
+    twentieth,
 )
 FAILS: Final = Path(__file__).with_name("fails.txt")
 REFUSED: Final = "refused"

@@ -32,7 +32,6 @@ KNOWN: Final = {
     "de_alks_cut_in_avoided stvo.rg2": "it brakes with 3.5 m/s2 for a slower car that moves in, not yet too near by its source's formula",
     "de_stops_on_motorway stvo.rg2": "it brakes with 3 m/s2: the rule's source asks for a reason from 2 m/s2 on",
     "gb_mway_astride_g ukhc.r131.keep-in-lane": "between two lanes for so long, the ego does not vouch for the map",
-    "gb_horse_near_g ukhc.r215.horse": "off its lane's middle for half of the time, the ego does not vouch for the map",
     "gb_keeps_right_g ukhc.r143.direction": "nobody else is there: a map of the other hand looks the same",
     "gb_cyclist_no_size_g ukhc.r163.cyclist": "the cyclist's width is not known, nor with it whether the two were ever beside each other",
     "gb_declares_all_g declared.r125.chosen-speed-kept": "what was chosen before the first word is not known",
@@ -70,8 +69,6 @@ KNOWN: Final = {
     "gb-town-reverse-fast_p comfort.accel-iso15622": "3 m/s2 at 12.8 m/s is a little more than the limit there",
     "lead_brakes_q criticality.mttc": "the ego's filtered acceleration does not say at which of two samples it began to brake",
     "shoulder-as-lane_r stvo.ri2": "on the hard shoulder the ego has no lane to the right of the one that it gets ahead of",
-    "s5-open-narrow_r stvo.s5-passing": "off its lane's middle for half of the time, the ego does not vouch for the map",
-    "gb-cyclist-fast-1m7_r ukhc.r163.cyclist": "off its lane's middle for half of the time, the ego does not vouch for the map",
     "mirror-after-signal_r declared.r161.mirrors-before-signal": "before the first look the log does not show whether looks are declared",
     "breakdown_on_shoulder_t stvo.rg4": "hazard lights on the way to the shoulder are no reason yet",
     "reverse_on_lane_t stvo.rg4": "it stands as the log begins, which may be in a jam that has gone",
@@ -83,6 +80,7 @@ KNOWN: Final = {
     "shoulder_past_queue_t stvo.ri2": "on the hard shoulder the ego has no lane to the right of the one that it gets ahead of",
     "ghost_driver_t stvo.ri3": "against its lane all the time: that one other vehicle keeps to the lanes does not vouch for the map",
     "ghost_driver_t ukhc.r143.direction": "the same",
+    "walk_stops_v ukhc.h2.turn-pedestrian": "whether somebody on foot stopped for the ego, nobody can tell",
 }
 """Where product and outsider still differ, as `scene rule`, and why; never a breach that passes."""
 DRAWN: Final = [(person, drive.scene) for person in PERSONS for drive in person.drives()]

@@ -1,6 +1,6 @@
 -- title = "Modified time to collision"
 -- clause = "Ozbay, Yang, Bartin, Mudigonda 2008: the time until ego and leading vehicle would collide at their present accelerations"
--- hypothesis = "At every step behind a vehicle in its lane, was the ego at least 1.5 s from hitting it if both went on as they were?"
+-- hypothesis = "At every step behind a vehicle in its lane, or in the way of one that comes towards it, was the ego at least 1.5 s from hitting it if both went on as they were?"
 -- kind = "invariant"
 -- derivation = "model"
 -- severity = "major"

@@ -37,10 +37,11 @@
 
 -- @applies
 -- a step without a row in `vehicle_ahead` is one at which nobody knows who leads; a speed held at the limit trembles in its last digits
--- one that stands is not followed where the ego steers round it
+-- one that stands is not followed where the ego steers round it, and one that goes across the lane is not followed at all
 SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
     CASE WHEN l.object_id IS NOT NULL THEN behind(l.gap_m, e.d_m, e.lat_half_m, p.d_m, p.lat_half_m) AND NOT comes(l.speed_mps, l.oncoming) AND round(l.ego_speed_mps, 2) >= $slowest_mps
-        AND (l.speed_mps > standing_mps() OR on_course(l.gap_m, ttc_s(l.gap_m, l.ego_speed_mps), e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, 0.0))
+        AND (l.speed_mps > standing_mps() OR p.speed_mps <= standing_mps()
+            AND on_course(l.gap_m, ttc_s(l.gap_m, l.ego_speed_mps), e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, 0.0))
         AND NOT coalesce(s.t_ns - c.t_ns < $settle_s * 1e9 AND l.ego_speed_mps <= c.ego_speed_mps + $faster_mps, false)
     WHEN l.known THEN true END AS applies
 FROM step s

@@ -1,6 +1,6 @@
 -- title = "Time to collision"
 -- clause = "Hayward 1972: the time until ego and leading vehicle would collide at their present speeds"
--- hypothesis = "At every step behind a vehicle in its lane, was the ego at least 1.5 s from hitting it at the present speeds?"
+-- hypothesis = "At every step behind a vehicle in its lane, or in the way of one that comes towards it, was the ego at least 1.5 s from hitting it at the present speeds?"
 -- kind = "invariant"
 -- derivation = "model"
 -- severity = "major"
