@@ -1,5 +1,5 @@
--- Whoever is ahead of the ego in the running lane, or in its way there: of these lead is the nearest vehicle. And who is turned towards an ego
--- that is out of its lane, in its way in the other.
+-- Vehicles and things ahead of the ego in its running lane, or in its way there; lead is the nearest vehicle of them. An ego that is out of its
+-- lane also has ahead of it whatever is turned towards it, in its way beside the lane (`outside`).
 WITH
 -- who follows a junction's lane of his own that leads across the ego's way crosses it: see conflict
 crossing AS (
