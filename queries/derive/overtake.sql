@@ -46,8 +46,9 @@ met AS (
     GROUP BY ALL
     HAVING min(t_ns) > t0_ns AND min({'t_ns': t_ns, 'towards': towards}).towards
 ),
--- somebody without a position, heading or size, or whose track ended or begins nearby, may be the one that is overtaken
-hidden AS (
+-- somebody without a position, heading or size, or whose track ended or begins nearby, may be the one that is overtaken, unless it was
+-- further away or behind (table `hidden`)
+placeless AS (
     SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, u.object_id, NULL::DOUBLE AS gap_m, p.speed_mps, a.length_m, false AS placed,
         p.s_m - g.front_s_m AS near_m
     FROM gone g
@@ -58,6 +59,8 @@ hidden AS (
         AND p.t_ns = g.t0_ns AND p.object_id = u.object_id
     WHERE p.front_s_m IS NULL AND p.s_m > g.s_m AND abs(p.d_m) < 2 * p.half_width_m
         OR (p.x_m IS NULL OR p.y_m IS NULL)
+            AND EXISTS (FROM hidden h WHERE h.drive_id = u.drive_id AND h.ego_id = u.ego_id AND h.t_ns = u.t_ns AND h.object_id = u.object_id
+                AND h.least_m <= 100 AND h.ahead IS DISTINCT FROM false)
             AND NOT EXISTS (FROM ahead a WHERE a.drive_id = g.drive_id AND a.ego_id = g.ego_id AND a.chain_id = g.chain_id AND a.t0_ns = g.t0_ns AND a.near_m <= 100)
 ),
 -- and so was who has a place only later, ahead in the lane, and is passed
@@ -73,11 +76,11 @@ candidate AS (
     FROM (
         SELECT * FROM ahead
         UNION ALL
-        SELECT * FROM hidden
+        SELECT * FROM placeless
         UNION ALL
         SELECT l.* FROM late l
         ANTI JOIN seen p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.chain_id = l.chain_id AND p.t0_ns = l.t0_ns AND p.t_ns = l.t0_ns AND p.object_id = l.object_id AND p.front_s_m IS NOT NULL
-        ANTI JOIN hidden h ON h.drive_id = l.drive_id AND h.ego_id = l.ego_id AND h.chain_id = l.chain_id AND h.t0_ns = l.t0_ns AND h.object_id = l.object_id
+        ANTI JOIN placeless h ON h.drive_id = l.drive_id AND h.ego_id = l.ego_id AND h.chain_id = l.chain_id AND h.t0_ns = l.t0_ns AND h.object_id = l.object_id
     )
 ),
 passing AS (

@@ -11,6 +11,7 @@ chosen AS (
             min({'gap_m': p.gap_m, 'id': p.object_id}) FILTER (is_vehicle(p.actor_class) AND p.oncoming AND p.speed_mps <= standing_mps() IS DISTINCT FROM true).id
         ] AS ids,
         min(p.gap_m) FILTER (is_vehicle(p.actor_class) AND p.across_m < 0) AS way_gap_m,
+        min(p.gap_m) FILTER (is_vehicle(p.actor_class) IS NULL AND p.outside) AS outside_m,
         min(p.gap_m) FILTER (is_vehicle(p.actor_class) IS DISTINCT FROM true AND p.gap_m < unsure_reach_m(e.speed_mps)) AS unsure_m
     FROM lane_ahead p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
@@ -63,3 +64,5 @@ LEFT JOIN chosen c USING (drive_id, ego_id, t_ns)
 LEFT JOIN doubt d USING (drive_id, ego_id, t_ns)
 WHERE l.object_id IS NOT NULL AND l.in_lane IS DISTINCT FROM false
     AND least(d.least_m, c.unsure_m) < coalesce(c.way_gap_m, lead_reach_m(l.ego_speed_mps))
+    -- out of its lane the ego may meet it, whoever is in the lane
+    OR c.outside_m < coalesce(c.way_gap_m, lead_reach_m(l.ego_speed_mps))

@@ -273,6 +273,15 @@ def test_one_that_comes_in_the_lane_in_which_the_ego_overtakes_is_ahead_of_it(ha
             assert (round(float(at) * 1e9) in ahead) == (beside < 1.5 and ego.x[k] < other.x[k]), at
     assert all(row["oncoming"] and not row["nearest"] for row in ahead.values())
     assert ahead[4_000_000_000]["gap_m"] == pytest.approx(400 - 48 - (50 + 48) - 4.8, abs=0.01)
+    assert not rows(con, "FROM vehicle_ahead WHERE NOT known")
+    # one that is short and of no known class may be a vehicle: every such step is unknown
+    small = replace(other, kind=None, length=2.0)
+    con = derived(drive([ego, small], way.environment), tables=["lane_ahead", "vehicle_ahead"])
+    near = {row["t_ns"] for row in rows(con, "FROM lane_ahead WHERE gap_m < lead_reach_m(12.0)")}
+    unknown = {row["t_ns"] for row in rows(con, "FROM vehicle_ahead WHERE NOT known")}
+    assert near
+    assert near == unknown
+    assert not rows(con, "FROM vehicle_ahead WHERE object_id = 'x'")
 
 
 @pytest.mark.parametrize("turned", [math.pi / 2, math.pi / 3, -2.0])

@@ -156,7 +156,22 @@ def _later(read: float | None, found: float | None) -> str:
     return {0: "at the same step", 1: "one step apart"}.get(abs(round(10 * (read - found))), "differs")
 
 
-def other_contacts(read: list[Contact], found: list[tuple[str, str, int, int]]) -> list[str]:
-    """Return the contacts that only one of the two knows: each is one of both vehicles."""
+def other_contacts(
+    read: list[Contact], found: list[tuple[str, str, int, int]], moves: set[tuple[str, int]]
+) -> tuple[list[str], int]:
+    """Return the contacts that only one of the two knows, and how many differ by steps at which SUMO moves a vehicle.
+
+    Each contact is one of both vehicles. A place that contradicts the velocity is unknown to drivelint, so a contact may begin
+    later and end earlier by steps at which one of both is moved.
+    """
     both = {(a, b, c.first, c.last) for c in read for a, b in ((c.one, c.other), (c.other, c.one))}
-    return [f"{c}: contact only {'read' if c in both else 'found'}" for c in sorted(both ^ set(found))]
+    only_read, only_found = both - set(found), set(found) - both
+    moved = set()
+    for one, other, first, last in sorted(only_read):
+        for there in sorted(c for c in only_found if c[:2] == (one, other) and first <= c[2] <= c[3] <= last):
+            left_out = [*range(first, there[2]), *range(there[3] + 1, last + 1)]
+            # a jump contradicts the place before it as it does the one after it
+            if all(moves & {(who, at) for who in (one, other) for at in (step, step + 1)} for step in left_out):
+                moved |= {(one, other, first, last), there}
+    differ = sorted((only_read | only_found) - moved)
+    return [f"{c}: contact only {'read' if c in both else 'found'}" for c in differ], len(moved) // 2

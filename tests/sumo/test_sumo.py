@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from tests.sumo import contacts, reading, world
+from tests.sumo import compare, contacts, reading, world
 from tests.sumo.both import both
 
 if TYPE_CHECKING:
@@ -50,3 +50,13 @@ def test_contacts_of_boxes(gap: float, touches: bool) -> None:
         speed=nothing, along=nothing, met=nothing, offset=nothing,
     )  # fmt: skip
     assert contacts.contacts(log) == ([contacts.Contact("a", "b", 0, 9)] if touches else [])
+
+
+@pytest.mark.parametrize(
+    ("moves", "same"), [({("b", 3)}, True), ({("b", 4)}, False), ({("c", 3)}, False), (set(), False)]
+)
+def test_a_contact_may_be_shorter_by_the_steps_around_a_jump_alone(moves: set[tuple[str, int]], same: bool) -> None:
+    read, found = [contacts.Contact("a", "b", 2, 9)], [("a", "b", 4, 9), ("b", "a", 4, 9)]
+    differ, moved = compare.other_contacts(read, found, moves)
+    assert (not differ, moved) == (same, 2 * same)
+    assert len(compare.other_contacts(read, [("a", "b", 2, 9)], moves)[0]) == 1
