@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import duckdb
 
 from tests.sumo.contacts import Contact
-from tests.sumo.reading import PROFILES, Overtake, entries, jumps
+from tests.sumo.reading import PROFILES, Overtake, edges, jumps
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -101,7 +101,7 @@ def known_by(overtake: Overtake) -> tuple[str, int, str]:
 
 def differences(read: list[Overtake], checked: Checked, log: Log) -> tuple[list[str], Counter[str]]:
     """Return what differs, and a count of what was compared."""
-    moves, first = jumps(log), entries(log)
+    moves, ends = jumps(log), edges(log)
     counts: Counter[str] = Counter()
     expected = {known_by(o): o for o in read}
     found = [
@@ -135,15 +135,16 @@ def differences(read: list[Overtake], checked: Checked, log: Log) -> tuple[list[
             if (mine.verdicts[profile], verdict) == ("pass", "unknown") and moved:
                 counts["SUMO moves somebody just then"] += 1
                 continue
-            # and does not know from how far off the ego, moved just then, first saw another
-            at_entry = any(
-                f"actor {other} appeared" in reason and abs(step - first[other]) <= 1
+            # and does not know how far off another entered or left, as the ego is moved just then
+            at_edge = any(
+                f"actor {other} {what}" in reason and abs(step - at) <= 1
                 for who, step in moves
                 if who == key[0]
-                for other in first
+                for other, both in ends.items()
+                for what, at in zip(("appeared", "was lost"), both, strict=True)
             )
-            if (mine.verdicts[profile], verdict) == ("pass", "unknown") and at_entry:
-                counts["SUMO moves the ego as somebody enters"] += 1
+            if (mine.verdicts[profile], verdict) == ("pass", "unknown") and at_edge:
+                counts["SUMO moves the ego as somebody enters or leaves"] += 1
                 continue
             found.append(f"{key} {profile}: {mine.verdicts[profile]} read, {verdict} found ({reason})")
     return found, counts

@@ -207,9 +207,9 @@ def jumps(log: Log) -> set[tuple[str, int]]:
     return found
 
 
-def entries(log: Log) -> dict[str, int]:
-    """Return the first step of every vehicle."""
-    return {name: int(log.of(who).step[0]) for who, name in enumerate(log.ids)}
+def edges(log: Log) -> dict[str, tuple[int, int]]:
+    """Return the first step of every vehicle and its last."""
+    return {name: (int(own.step[0]), int(own.step[-1])) for who, name in enumerate(log.ids) for own in [log.of(who)]}
 
 
 def overtakes(log: Log, net: Net) -> list[Overtake]:
