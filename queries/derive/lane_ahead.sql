@@ -24,7 +24,15 @@ placed AS (
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     LEFT JOIN crossing c ON c.drive_id = p.drive_id AND c.object_id = p.object_id AND c.t_ns = p.t_ns
     WHERE may_be_ahead(p.actor_class, p.d_m - e.d_m, p.lat_half_m + e.lat_half_m) AND p.s_m > e.s_m
-        AND (in_lane(p.d_m, p.lat_half_m, p.half_width_m) OR abs(p.heading_diff_rad) > 2 * pi() / 3 AND abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m)
+        AND (
+            in_lane(p.d_m, p.lat_half_m, p.half_width_m)
+            OR abs(p.heading_diff_rad) > 2 * pi() / 3 AND abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m
+                -- the ego's front alone comes to what stands there; the rest of its box follows the front
+                AND (
+                    (p.speed_mps <= standing_mps()) IS NOT true
+                    OR abs(p.d_m - e.d_m - e.length_m / 2 * sin(e.heading_diff_rad)) < p.lat_half_m + e.width_m / 2 * cos(e.heading_diff_rad)
+                )
+        )
         -- one beside the ego's box is not ahead, whatever of it is in the lane; where the two overlap they have met
         AND (p.rear_s_m >= e.front_s_m OR abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m)
         AND (c.t_ns IS NULL OR abs(p.heading_diff_rad) < pi() / 4 OR p.speed_mps <= standing_mps())

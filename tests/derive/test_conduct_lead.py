@@ -284,6 +284,25 @@ def test_one_that_comes_in_the_lane_in_which_the_ego_overtakes_is_ahead_of_it(ha
     assert not rows(con, "FROM vehicle_ahead WHERE object_id = 'x'")
 
 
+@pytest.mark.parametrize(("v", "ahead"), [(0.0, False), (2.0, True)])
+@pytest.mark.parametrize("hand", ["right", "left"])
+def test_the_end_of_a_turned_box_meets_only_who_comes(hand: str, v: float, ahead: bool) -> None:
+    """A lorry of 12 m is back in its lane with its front; its rear, 15 degrees off, still lies in that of one that faces it."""
+    way = road(lanes=(1, 1), hand=hand)
+    t = times(1.0)
+    side = math.copysign(1.0, way.own)
+    turned = side * math.pi / 12
+    # the middle of the front lies in the middle of its lane
+    ego = moving("ego", way, t, 100 + 0 * t, way.own - 6 * math.sin(turned) + 0 * t, length=12.0, width=2.5)
+    ego = replace(ego, yaw=ego.yaw + turned, vx=5 * np.cos(ego.yaw + turned), vy=5 * np.sin(ego.yaw + turned))
+    ego = replace(ego, x=ego.x + ego.vx * (t - 0.5), y=ego.y + ego.vy * (t - 0.5))
+    other = moving("x", way, t, 112 - 2 * (t - 0.5), -way.own)
+    if not v:
+        other = replace(other, x=0 * t + other.x[5], y=0 * t + other.y[5], vx=0 * t, vy=0 * t)
+    con = derived(drive([ego, other], way.environment), tables=["lane_ahead"])
+    assert bool(rows(con, "FROM lane_ahead WHERE object_id = 'x' AND t_ns = 500000000")) == ahead
+
+
 @pytest.mark.parametrize("turned", [math.pi / 2, math.pi / 3, -2.0])
 def test_the_speed_of_one_ahead_is_that_along_the_lane(turned: float) -> None:
     """A bus slides over the lane ahead at 18 m/s, turned so: away from the ego it goes with the cosine of that."""

@@ -14,6 +14,7 @@ from drivelint.ingest import checks, contradiction, ego
 from drivelint.ingest.align import aligned
 from drivelint.ingest.motion import complete_motion
 from drivelint.ingest.order import in_order, listed, steps, without_duplicates, wrapped
+from drivelint.ingest.removed import without_removed
 from drivelint.ingest.restart import without_restarts
 from drivelint.ingest.trace import BRAKE_LIGHTS, EPOCH_NS, INDICATORS, NUMBERS, SIZES, Finding, Trace
 
@@ -59,6 +60,10 @@ def finish(path: Path, identity: Identity, recording: Recording, options: Ingest
     assumed = any(f.check_id == "assumed_motion" for f in recording.findings)
     named = recording.ego_ids if options.ego is None else [options.ego]
     step = steps(states)
+    gone: list[Finding] = []
+    if not assumed:
+        states, gone = without_removed(states, step, whole=named)
+        step = steps(states) if gone else step
     parted = contradiction.part(states, step, whole=named) if not assumed else contradiction.UNPARTED
     if parted.alias:
         states = in_order(states)
@@ -78,6 +83,7 @@ def finish(path: Path, identity: Identity, recording: Recording, options: Ingest
         *recording.findings,
         *restarts,
         *findings,
+        *gone,
         *parted.findings,
         *motion,
         *varying,
