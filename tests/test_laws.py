@@ -192,6 +192,7 @@ def busy(seed: int, others: int = 24, steps: int = 13_500) -> Drive:
     return drive(actors, way.environment, drive_id=f"busy-{seed}")
 
 
+@pytest.mark.slow
 def test_a_million_states() -> None:
     """Sums and ties vary with threads only at this size (1.6 M rows, not 40,000)."""
     drives = [busy(seed) for seed in range(3)]
@@ -208,6 +209,7 @@ def test_a_million_states() -> None:
     assert len({row["finding_id"] for row in findings}) == len(findings)
 
 
+@pytest.mark.slow
 def test_derived_rows_of_a_hundred_thousand_states() -> None:
     one = busy(7, steps=4_500)
     first = prints(derived(one))
@@ -332,6 +334,7 @@ def as_at_home(moved: Sequence[Row], home: Sequence[Row], later_s: int) -> None:
             assert a[column] == (None if b[column] is None else pytest.approx(b[column], abs=2e-3)), (column, a, b)
 
 
+@pytest.mark.slow
 def test_the_file_is_the_same_bytes_for_the_same_set(tmp_path: Path) -> None:
     """Named in another order, from another place, with margins or without: verdicts.parquet and findings.parquet agree."""
     fixture = ROOT / "fixtures" / "overtake"

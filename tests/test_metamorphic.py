@@ -172,6 +172,7 @@ def same(before: Mapping[str, list[Row]], after: Mapping[str, list[Row]], later_
                 assert y == (None if x is None else pytest.approx(x, abs=2e-3)), (name, a, b)
 
 
+@pytest.mark.slow
 def test_the_world_in_a_mirror_elsewhere_and_later() -> None:
     """All at once: mirrored, turned and moved, its clock set, its rows shuffled. Every other case: all take twice as long."""
     some = dict(list(cases().items())[::2])

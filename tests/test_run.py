@@ -53,6 +53,7 @@ class Notes(Silent):
         self.said.append(text)
 
 
+@pytest.mark.slow
 def test_batches_of_one_drive_give_the_same_rows(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = check(settings(*logs()), Silent())
     monkeypatch.setattr(batch, "STATES", 1)
@@ -74,6 +75,7 @@ def ragged(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_where_the_egos_are_cut_does_not_show(ragged: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every file of the results has the same bytes, and every table of the kept database the same rows."""
     found = []

@@ -136,6 +136,7 @@ def said(pack: str, chapter: str) -> dict[str, set[str]]:
     return verdicts
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("planted", STORIES, ids=lambda p: p.rule)
 def test_what_was_broken_is_broken_or_unknown(planted: Planted) -> None:
     every = said(planted.pack, planted.chapter)

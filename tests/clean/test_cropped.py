@@ -68,6 +68,7 @@ def said(pack: str, chapter: str) -> dict[str, dict[str, set[str]]]:
 EVIDENCE: dict[tuple[str, str], str] = {}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("planted", [p for p in STORIES if p.pack in PACKS], ids=lambda p: p.rule)
 def test_what_was_broken_is_broken_or_unknown(planted: Planted) -> None:
     mine = said(planted.pack, planted.chapter)[planted.rule]

@@ -95,6 +95,7 @@ def test_the_scene_has_every_kind_of_verdict(crowd: dict[str, list[tuple[Any, ..
     assert len(crowd["finding"]) > 300
 
 
+@pytest.mark.slow
 def test_order_of_rows_and_number_of_threads_do_not_matter(
     crowd: dict[str, list[tuple[Any, ...]]], rules: list[Rule]
 ) -> None:

@@ -229,6 +229,7 @@ def test_without_errors_every_copy_is_the_drive(folder: Path) -> None:
         assert re.search(r"(Fails|Passes) in 3 of 3", said(found))
 
 
+@pytest.mark.slow
 def test_the_kept_database_says_the_same_as_the_log(folder: Path, tmp_path: Path) -> None:
     check(tmp_path, keep_db=True)
     errors = Errors(1.0, 0.1, 0.1, 5)
@@ -346,6 +347,7 @@ def test_a_folder_without_a_result(tmp_path: Path) -> None:
         of(tmp_path, "x")
 
 
+@pytest.mark.slow
 def test_a_long_drive_is_judged_in_part_where_the_verdict_is_the_same(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -84,7 +84,17 @@ KNOWN: Final = {
 }
 """Where product and outsider still differ, as `scene rule`, and why; never a breach that passes."""
 DRAWN: Final = [(person, drive.scene) for person in PERSONS for drive in person.drives()]
-by_person = pytest.mark.parametrize("person", PERSONS, ids=lambda person: person.__name__.rpartition(".")[-1])
+QUICK: Final = PERSONS[-1:]
+"""Of whom every run judges the scenes; the others take half a minute each."""
+
+
+def marks(person: ModuleType) -> list[pytest.MarkDecorator]:
+    return [] if person in QUICK else [pytest.mark.slow]
+
+
+by_person = pytest.mark.parametrize(
+    "person", [pytest.param(p, marks=marks(p), id=p.__name__.rpartition(".")[-1]) for p in PERSONS]
+)
 
 
 @cache
@@ -98,7 +108,9 @@ def differing(person: ModuleType) -> dict[tuple[str, str], str]:
     return judged(person).differing()
 
 
-@pytest.mark.parametrize(("person", "scene"), DRAWN, ids=[scene.name for _, scene in DRAWN])
+@pytest.mark.parametrize(
+    ("person", "scene"), [pytest.param(person, scene, marks=marks(person), id=scene.name) for person, scene in DRAWN]
+)
 def test_the_verdicts_are_those_that_the_outsider_expected(person: ModuleType, scene: Scene) -> None:
     differs = {f"{name} {rule}": what for (name, rule), what in differing(person).items() if name == scene.name}
     known = {key for key in KNOWN if key.startswith(f"{scene.name} ")}
