@@ -291,6 +291,35 @@ def test_wrong_units_are_refused(tmp_path: Path) -> None:
         read(table(tmp_path / "d.csv", lines), mapping=mapping(tmp_path))
 
 
+@pytest.mark.parametrize(("turns", "fits"), [(1.9, True), (2.1, False)])
+def test_degrees_are_not_read_as_radians(tmp_path: Path, turns: float, fits: bool) -> None:
+    """An unwrapped heading may go beyond a turn; 170 degrees are no radians."""
+    yaw = 2 * math.pi * turns
+    lines = ["t,id,x,y,yaw,vx,vy", *(f"{i / 10},a,{i * math.cos(yaw)},{i * math.sin(yaw)},{yaw},," for i in range(40))]
+    name = mapping(tmp_path)
+    if fits:
+        assert not math.isnan(
+            read(table(tmp_path / "d.csv", lines), mapping=name).tables["actor_state"]["yaw_rad"][0].as_py()
+        )
+        return
+    with pytest.raises(TraceError, match=r"'yaw' goes up to 13\.1947, which is no angle in radians: .*\"deg\""):
+        read(table(tmp_path / "d.csv", lines), mapping=name)
+
+
+@pytest.mark.parametrize(("without", "refused"), [(19, False), (21, True)])
+def test_a_table_of_which_most_rows_are_lost_is_refused(tmp_path: Path, without: int, refused: bool) -> None:
+    lines = [
+        "t,id,x,y,yaw,vx,vy",
+        *(f"{i / 10},{'' if i < without else 'a'},{i},0,0,10,0" for i in range(40)),
+    ]
+    name = mapping(tmp_path)
+    if refused:
+        with pytest.raises(TraceError, match=r"mapping 'mapping' cannot read 21 of 40 rows \(.*actor id is missing"):
+            read(table(tmp_path / "d.csv", lines), mapping=name)
+    else:
+        assert read(table(tmp_path / "d.csv", lines), mapping=name).tables["actor_state"].num_rows == 40 - without
+
+
 def test_a_flipped_heading_is_refused(tmp_path: Path) -> None:
     lines = ["t,id,x,y,yaw,vx,vy", *(f"{i / 10},a,{i * 0.6},{i * 0.8},{-math.atan2(0.8, 0.6)},6,8" for i in range(40))]
     with pytest.raises(TraceError, match=r"heading is off the direction of motion in 100 % .*sign"):

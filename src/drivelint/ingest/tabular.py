@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 from difflib import get_close_matches
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pyarrow as pa
@@ -16,7 +16,7 @@ from drivelint.ingest import mapping as mappings
 from drivelint.ingest.geometry import to_map_frame
 from drivelint.ingest.mapping import GROUP, QUANTITY, UNITS
 from drivelint.ingest.sheets import CsvSheet, ParquetSheet, places
-from drivelint.ingest.trace import CLASSES, MOTOR_VEHICLES, Finding, Recording, States
+from drivelint.ingest.trace import CLASSES, LOSSES, MOTOR_VEHICLES, Finding, Recording, States
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
     from drivelint.ingest.mapping import Field, Mapping, Words
     from drivelint.ingest.sheets import Sheet
+
+MOST_RAD: Final = 4 * np.pi
+"""A heading that is never wrapped goes beyond one turn, on a roundabout or a ramp of a car park."""
 
 
 def read(path: Path, name: str | None) -> Recording:
@@ -42,12 +45,27 @@ def read(path: Path, name: str | None) -> Recording:
     groups = _groups(path, name, mapping, sheet)
     body = _Body(path, mapping, sheet, groups)
     recording = body.read()
+    _refuse_misread(path, name, recording)
     recording.format = name
     recording.notes = said
     if mapping.frame.map_offset_m is not None:
         dx, dy = recording.map_offset = mapping.frame.map_offset_m
         recording.notes.append(f"mapping {name!r} moves the map by ({dx:+g}, {dy:+g}) m")
     return recording
+
+
+def _refuse_misread(path: Path, name: str, recording: Recording) -> None:
+    """Refuse a table of which the mapping cannot read most rows: it is of another kind, and what is left of it misleads.
+
+    Errors: `TraceError`.
+    """
+    lost = sum(finding.n for finding in recording.findings if finding.check_id in LOSSES)
+    kept = len(recording.states)
+    if lost > kept > 0:
+        why = next(finding.message for finding in recording.findings if finding.check_id in LOSSES)
+        raise TraceError(
+            f"{path}: mapping {name!r} cannot read {lost} of {lost + kept} rows ({why}): give the right one with --mapping"
+        )
 
 
 def _open(path: Path, mapping: Mapping) -> Sheet:
@@ -168,7 +186,18 @@ class _Body:
         if odd.any():
             values = np.where(odd, np.nan, values)
             odd &= self.sheet.filled(column) & ~bad
+        if QUANTITY[name] == "angle" and factor == 1.0:
+            self._refuse_degrees(column, values)
         return (values * factor if factor != 1.0 else values), odd
+
+    def _refuse_degrees(self, column: str, values: NDArray[np.float64]) -> None:
+        """Refuse a heading beyond two turns: nobody writes that in radians. Errors: `TraceError`."""
+        largest = float(np.nanmax(np.abs(values), initial=0.0))
+        if largest > MOST_RAD:
+            raise TraceError(
+                f"{self.path}: column {column!r} goes up to {largest:g}, which is no angle in radians: "
+                'give a mapping with --mapping in which its unit is "deg"; drivelint inspect drafts one'
+            )
 
     def _codes(self, spec: Words, allowed: tuple[str, ...], k: str) -> NDArray[np.int8]:
         """Translate texts to indices into `allowed`: each distinct text once."""

@@ -105,6 +105,9 @@ def _columns(found: Mapping[str, str]) -> list[str]:
             units = UNITS.get(QUANTITY.get(name, ""), {})
             unit = _unit(found[name], units)
             column = _text(found[name])
+            if name == "yaw" and unit is None:
+                lines.append(f'yaw = {{ column = {column}, unit = "rad" }}  # or "deg"')
+                continue
             lines.append(
                 f'{name} = {{ column = {column}, unit = "{unit}" }}'
                 if unit and unit != next(iter(units))
