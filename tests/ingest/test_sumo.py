@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
+import pyarrow.csv as pa_csv
 import pyarrow.parquet as pq
 import pytest
 
@@ -171,3 +172,22 @@ def test_a_log_without_vehicles(tmp_path: Path) -> None:
 def test_a_types_file_without_types(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="has no vType"):
         read(put(tmp_path / "a.xml", xml()), ego="a.0", mapping=str(put(tmp_path / "t.xml", "<routes/>")))
+
+
+@pytest.mark.parametrize("form", ["csv", "parquet"])
+def test_a_step_at_which_nobody_is_there_is_no_loss(tmp_path: Path, form: str) -> None:
+    """SUMO writes a row with the time alone; a row with a place and no name is a loss."""
+    put(tmp_path / "r.rou.xml", TYPES)
+
+    def written(**row: Any) -> str:
+        text = csv() + ";".join(str(row.get(name, "")) for name in ("time", *list(ROWS[0])[1:])) + "\n"
+        put(tmp_path / "a.csv", text)
+        if form == "parquet":
+            parsed = pa_csv.read_csv(tmp_path / "a.csv", parse_options=pa_csv.ParseOptions(delimiter=";"))
+            pq.write_table(parsed, tmp_path / "a.parquet")
+        return f"a.{form}"
+
+    empty = read(tmp_path / written(time=5.0), ego="a.0")
+    assert "dropped_row" not in quality(empty)
+    assert len(states(empty)) == 40
+    assert quality(read(tmp_path / written(time=5.0, x=3.0), ego="a.0"))["dropped_row"]["n"] == 1

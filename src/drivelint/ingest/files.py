@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from drivelint.errors import TraceError, UsageError
+from drivelint.ingest import sumo
 from drivelint.ingest.bag import METADATA, is_bag
 from drivelint.ingest.bag import files as files_of_bag
 
@@ -29,7 +30,8 @@ CANONICAL = (
 )
 """The files of a canonical folder, in name order; all but `actor_state.parquet` may be missing."""
 TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi"})
-"""What a folder of traces is searched for."""
+"""What a folder of traces is searched for, besides XML that is SUMO's: maps and routes lie there as XML too."""
+_HEAD_BYTES = 4096
 RESULTS = frozenset(
     f"{name}.parquet"
     for name in (
@@ -74,8 +76,8 @@ def expand(traces: Sequence[str]) -> list[Path]:
     """Return the traces that files, globs and folders name, sorted, each file once.
 
     A path that exists is always taken literally, `[`, `*` and `?` in its name included. A folder with
-    `actor_state.parquet` or of rosbag2 is one drive; any other is searched, with subfolders, for MCAP, Parquet, CSV and OSI files, except
-    for what an earlier check wrote there.
+    `actor_state.parquet` or of rosbag2 is one drive; any other is searched, with subfolders, for MCAP, Parquet, CSV, OSI and
+    SUMO's FCD files, except for what an earlier check wrote there.
     Errors: `UsageError` for a URI or an empty name, `TraceError` for something that matches nothing.
     """
     found: dict[Path, Path] = {}
@@ -117,18 +119,24 @@ def _inside(path: Path) -> list[Path]:
         files = [
             file
             for file in path.rglob("*")
-            if file.suffix.lower() in TRACE_SUFFIXES
+            if file.suffix.lower() in {*TRACE_SUFFIXES, ".xml"}
             and file.is_file()
             and inside.isdisjoint(file.parents)
             and not _is_result(file, path)
+            and (file.suffix.lower() in TRACE_SUFFIXES or _is_fcd(file))
         ]
     except OSError as error:  # such as a folder that went while it was looked through
         raise TraceError(f"{path}: cannot be searched: {error.filename}: {error.strerror}: try again") from error
     if not drives and not files:
         raise TraceError(
-            f"{path}: no trace in this folder (looked for {', '.join(sorted(TRACE_SUFFIXES))}): check the path"
+            f"{path}: no trace in this folder (looked for {', '.join(sorted(TRACE_SUFFIXES))}, and SUMO's .xml): check the path"
         )
     return drives + files
+
+
+def _is_fcd(file: Path) -> bool:
+    with file.open("rb") as opened:
+        return sumo.looks_like(file, opened.read(_HEAD_BYTES))
 
 
 def _is_result(file: Path, searched: Path) -> bool:

@@ -79,9 +79,11 @@ def read(path: Path, types_file: str | None) -> Recording:
     Errors: `TraceError` for a file that cannot be understood, `UsageError` for a types file that has no vType.
     """
     table = _rows(path)
-    lost = pc.fill_null(pc.equal(_text(table, "id"), ""), fill_value=True)
-    dropped = pc.sum(lost).as_py() or 0
-    table = table.filter(pc.invert(lost)) if dropped else table
+    nameless = pc.fill_null(pc.equal(_text(table, "id"), ""), fill_value=True).to_numpy()
+    # a step at which nobody is there is a row with its time alone
+    filled = np.any([np.isfinite(_floats(table, name)) for name in ("x", "y", "angle", "speed")], axis=0)
+    dropped = int((nameless & filled).sum())
+    table = table.filter(pa.array(~nameless)) if nameless.any() else table
     if not table.num_rows:
         raise TraceError(f"{path}: no vehicle in this log")
     types, notes = _types(path, types_file)
@@ -89,7 +91,7 @@ def read(path: Path, types_file: str | None) -> Recording:
     recording.notes += notes
     if dropped:
         message = f"rows without an id: {dropped}: they are not judged"
-        recording.findings.append(Finding("dropped_row", "error", message, int(dropped)))
+        recording.findings.append(Finding("dropped_row", "error", message, dropped))
     return recording
 
 
