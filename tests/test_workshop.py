@@ -74,8 +74,11 @@ def test_ci_takes_the_test_command_from_the_readme() -> None:
     assert "<!-- command: test -->" in script
     assert ".venv/bin/pytest" not in script
     assert "pytest" in command("test")
-    for tool in ("ruff check", "ruff format --check", "mypy", "lint-imports", "drivelint rules test --mutate"):
+    for tool in ("ruff check", "ruff format --check", "mypy", "lint-imports", "drivelint rules test"):
         assert f"step .venv/bin/{tool}" in script
+    full = (ROOT / ".ci" / "full").read_text(encoding="utf-8")
+    for tool in ("pytest -n 2 --dist worksteal -m slow", "drivelint rules test --mutate"):
+        assert f"step .venv/bin/{tool}" in full
 
 
 def test_the_fixture_is_what_its_script_makes() -> None:
