@@ -1,8 +1,8 @@
 """The shipped catalogue: every rule's header, SQL and plan, its cases, and whether the cases would notice a wrong
 rule.
 
-CI also runs `drivelint rules test` (each case alone, and all as egos of one drive) and `drivelint rules test --mutate` (every
-mutant of every rule); here all cases of a rule are judged as drives of one database, and of the rest there is a sample.
+`.ci/full` also runs `drivelint rules test` (each case alone, and all as egos of one drive) and `drivelint rules test --mutate`
+(every mutant of every rule); here all cases of a rule are judged as drives of one database, and of the rest there is a sample.
 """
 
 from __future__ import annotations
