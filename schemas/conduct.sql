@@ -39,6 +39,23 @@ CREATE TABLE ego_motion (
     lat_peak_mps2 DOUBLE NOT NULL     -- the same of the lateral acceleration
 );
 
+CREATE TABLE track_end (
+    drive_id VARCHAR NOT NULL,        -- the drive; only where data_log.in_sight holds
+    ego_id VARCHAR NOT NULL,          -- the ego
+    object_id VARCHAR NOT NULL,       -- an actor
+    lost BOOLEAN NOT NULL,            -- its track, or the part of it before a hole, ends here; false: it begins here
+    t_ns BIGINT NOT NULL,             -- the last sample with a place, or the first
+    plain_ns BIGINT NOT NULL          -- after this, or before it, whoever is not recorded is not in plain view
+);
+
+CREATE TABLE sight (
+    drive_id VARCHAR NOT NULL,        -- the drive; only where data_log.in_sight holds
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- a step at which somebody is or may be there who has no place
+    around_m DOUBLE NOT NULL,         -- nearer to the ego's middle than this nothing stands in the way of sight: the nearest box, or the sensor's range
+    lane_m DOUBLE NOT NULL            -- so far ahead of the ego's front its lane is in plain view
+);
+
 CREATE TABLE hidden (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -46,8 +63,11 @@ CREATE TABLE hidden (
     object_id VARCHAR NOT NULL,       -- somebody who is or may be there and has no place in the corridor: no position or box, lost, beyond the map's end, or straight on from where the ego's lane ends without a link, or in a hole between two lanes
     actor_class VARCHAR,              -- see road_user
     vehicle BOOLEAN NOT NULL,         -- it may be a vehicle
-    least_m DOUBLE NOT NULL,          -- box to box it is at least so far away, by when and where it is seen
-    ahead BOOLEAN                     -- it is ahead of the ego; NULL: it may be or not
+    least_m DOUBLE NOT NULL,          -- box to box it is at least so far away, by when and where it is seen, and, if late, by what is in plain view
+    ahead BOOLEAN,                    -- it is ahead of the ego; NULL: it may be or not
+    along BOOLEAN NOT NULL,           -- it goes the ego's way: where it was seen last or is seen next on the corridor
+    late BOOLEAN NOT NULL,            -- it is not in plain view, for it would have been recorded: see track_end
+    lane_m DOUBLE NOT NULL            -- in the ego's lane ahead of it, it is at least so far away: least_m, or, if late, as far as that lane is in plain view
 );
 
 CREATE TABLE in_way (
@@ -234,5 +254,6 @@ CREATE TABLE following (
     ego_speed_mps DOUBLE,             -- ego's speed
     speed_mps DOUBLE,                 -- its speed
     joined_ns BIGINT,                 -- see vehicle_ahead; since when the gap is new; NULL: it was ahead before, or how it came was not seen
-    let_in_ns BIGINT                  -- see vehicle_ahead; since when the gap is new, if it was not the ego that changed lanes
+    let_in_ns BIGINT,                 -- see vehicle_ahead; since when the gap is new, if it was not the ego that changed lanes
+    free_m DOUBLE                     -- see vehicle_ahead: where it cannot be told, nobody is nearer than this
 );

@@ -377,7 +377,7 @@ CREATE TABLE lost_object (
     ego_id VARCHAR NOT NULL,          -- the ego
     object_id VARCHAR NOT NULL,       -- an actor whose track ends while it could still have been there
     t_from_ns BIGINT NOT NULL,        -- unknown from here
-    t_to_ns BIGINT NOT NULL,          -- to here
+    t_to_ns BIGINT NOT NULL,          -- to here: the log's end, or where data_log.in_sight holds, when it would have been recorded again
     code VARCHAR NOT NULL             -- lost_near_ego, lost_in_range
 );
 
@@ -468,7 +468,7 @@ CREATE TABLE vehicle_ahead (
     t_ns BIGINT NOT NULL,             -- the step; none: it cannot be told who is ahead
     object_id VARCHAR,                -- the nearest vehicle ahead in the running lane (lead), and those whom that may hide: the nearest one in the ego's way, one nearer that is heading into it, and the nearest that comes towards the ego, in the running lane or in the ego's way beside it; NULL: nobody there, or see known
     nearest BOOLEAN NOT NULL,         -- it is the lead, or there is none
-    known BOOLEAN NOT NULL,           -- false: the lead is beside the ego's way, and somebody without a place or of no known class may be in it
+    known BOOLEAN NOT NULL,           -- false: nobody is seen, or the lead is beside the ego's way, and somebody without a place or of no known class may be in it: further away than free_m
     gap_m DOUBLE,                     -- see lead
     speed_mps DOUBLE,                 -- its speed along the lane, whichever way
     accel_mps2 DOUBLE,                -- its acceleration, mean over the 0.5 s up to the step; NULL: not known
@@ -480,7 +480,9 @@ CREATE TABLE vehicle_ahead (
     across_mps DOUBLE,                -- its speed across the corridor, towards the ego positive
     error_mps DOUBLE NOT NULL,        -- see lead
     joined_ns BIGINT,                 -- since when it is the lead, if one of the two then changed lanes; of another the last cut-in of it or lane change of the ego; NULL: it was ahead before, or how it came was not seen
-    let_in_ns BIGINT                  -- joined_ns, where it was not the ego that changed lanes; of another than the lead its last cut-in
+    let_in_ns BIGINT,                 -- joined_ns, where it was not the ego that changed lanes; of another than the lead its last cut-in
+    free_m DOUBLE,                    -- where not known: nobody is nearer to the ego's front in its lane than this
+    free_mps DOUBLE                   -- where not known: nobody comes nearer faster than this: one that stands, or one that comes at 70 mph, unless it goes the ego's way
 );
 
 -- ---- the overtake (paper, Appendix A)

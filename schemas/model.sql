@@ -16,7 +16,8 @@ CREATE TABLE data_log (
     map_offset_y_m DOUBLE,            -- the same for y
     has_indicator BOOLEAN NOT NULL,   -- the ego's indicator is known in at least one state
     has_brake_light BOOLEAN NOT NULL, -- the ego's brake light is known in at least one state
-    has_acceleration BOOLEAN NOT NULL -- acceleration was recorded, not derived
+    has_acceleration BOOLEAN NOT NULL, -- acceleration was recorded, not derived
+    in_sight BOOLEAN NOT NULL         -- whoever is not recorded for a while is taken not to be in plain view of the recorder (check --visibility)
 );
 
 CREATE TABLE actor (

@@ -106,7 +106,8 @@ def measure(
     now = _overlap(across, lead.across)
     shift = (drift - lead.drift) * min(ttc, DRIFT_S) if math.isfinite(ttc) else 0.0
     then = _overlap((across[0] + shift, across[1] + shift), lead.across)
-    far = doubt_rad * speed * min(ttc, DRIFT_S) if math.isfinite(ttc) else 0.0
+    # the heading of the lane is not exact where the ego is, nor where its lead is
+    far = doubt_rad * (speed + lead.speed) * min(ttc, DRIFT_S) if math.isfinite(ttc) else 0.0
     close_call |= min(abs(lead.gap), abs(now), abs(then) - far) < CLOSE_CALL_M or abs(speed - 5.0) < 1e-3
     ttb = drac = thw = None
     on_course = lead.gap >= 0 and then > 0

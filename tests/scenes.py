@@ -221,6 +221,7 @@ def drive(
     drive_id: str = "d",
     egos: Sequence[str] = ("ego",),
     sensor_range_m: float | None = None,
+    in_sight: bool = False,
 ) -> Drive:
     """Return one drive, ready for the bench."""
     actors = sorted(actors, key=lambda a: a.actor_id)
@@ -243,6 +244,7 @@ def drive(
         "drive_id": drive_id, "file_name": f"{drive_id}.parquet", "sha256": f"hash of {drive_id}", "format": "scene",
         "environment_id": None, "t_start_ns": int(t.min()), "t_end_ns": int(t.max()), "utc_start_ns": None, "n_states": n,
         "sensor_range_m": sensor_range_m, "has_indicator": known, "has_brake_light": False, "has_acceleration": False,
+        "in_sight": in_sight,
     }  # fmt: skip
     who = [
         {

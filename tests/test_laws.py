@@ -62,7 +62,9 @@ def crowd() -> tuple[Drive, ...]:
     found.append(saying(by_hand, [(2.0, "engaged", "on"), (9.0, "engaged", "off")], weather="wet"))
     found.append(drive(actors, None, drive_id="no-map"))
     ego, vbp, ov = actors
-    found.append(drive([ego, vbp.keep(vbp.t_s < 9), ov.keep(ov.t_s < 20)], way.environment, drive_id="lost"))
+    lost = [ego, vbp.keep(vbp.t_s < 9), ov.keep(ov.t_s < 20)]
+    found.append(drive(lost, way.environment, drive_id="lost"))
+    found.append(drive(lost, way.environment, drive_id="out-of-sight", in_sight=True))
     leaving = exit_road()
     lights = tuple("right" if 7 < t < 15 else "off" for t in leaver(leaving).t_s)
     found.append(drive([replace(leaver(leaving), indicator=lights)], leaving.environment, drive_id="exit"))

@@ -22,7 +22,7 @@ behind AS (
     GROUP BY ALL
 ),
 doubt AS (
-    SELECT drive_id, ego_id, t_ns, min(least_m) AS least_m FROM hidden WHERE vehicle AND ahead IS DISTINCT FROM true GROUP BY ALL
+    SELECT drive_id, ego_id, t_ns, min(least_m) FILTER (NOT late) AS least_m, min(least_m) AS any_m FROM hidden WHERE vehicle AND ahead IS DISTINCT FROM true GROUP BY ALL
 )
 SELECT
     e.drive_id, e.ego_id, e.t_ns, v.lane, b.near.object_id AS object_id, b.near.gap_m AS gap_m, b.near.speed_mps AS speed_mps,
@@ -31,4 +31,4 @@ FROM ego_state e
 CROSS JOIN (VALUES ('own'), ('left'), ('right')) AS v(lane)
 LEFT JOIN behind b ON b.drive_id = e.drive_id AND b.ego_id = e.ego_id AND b.t_ns = e.t_ns AND b.lane = v.lane
 LEFT JOIN doubt d ON d.drive_id = e.drive_id AND d.ego_id = e.ego_id AND d.t_ns = e.t_ns
-WHERE e.rear_s_m IS NOT NULL AND coalesce(least(d.least_m, b.unsure_m) >= coalesce(b.near.gap_m, follower_m()), true)
+WHERE e.rear_s_m IS NOT NULL AND coalesce(least(CASE WHEN b.near IS NULL THEN d.any_m ELSE d.least_m END, b.unsure_m) >= coalesce(b.near.gap_m, follower_m()), true)

@@ -13,7 +13,7 @@ WITH changing AS (
 ),
 judged AS (
     SELECT
-        s.drive_id, s.ego_id, s.t_ns, l.object_id, l.gap_m, l.ego_speed_mps, l.speed_mps, l.joined_ns, l.let_in_ns, l.nearest,
+        s.drive_id, s.ego_id, s.t_ns, l.object_id, l.gap_m, l.ego_speed_mps, l.speed_mps, l.joined_ns, l.let_in_ns, l.nearest, l.free_m,
         CASE
             WHEN l.t_ns IS NULL OR NOT l.known THEN NULL
             WHEN l.object_id IS NULL OR c.sure THEN false
@@ -32,7 +32,7 @@ judged AS (
     LEFT JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
     LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.t_ns = l.t_ns AND p.object_id = l.object_id
 )
-SELECT drive_id, ego_id, t_ns, object_id, gap_m, ego_speed_mps, speed_mps, joined_ns, let_in_ns, follows
+SELECT drive_id, ego_id, t_ns, object_id, gap_m, ego_speed_mps, speed_mps, joined_ns, let_in_ns, follows, free_m
 FROM (
     SELECT *, row_number() OVER (
         PARTITION BY drive_id, ego_id, t_ns

@@ -1,16 +1,31 @@
 -- Every actor that is or may be there and has no place in the corridor, with the least distance that it can have: from where it was seen
--- last and where it is seen next it comes no nearer than 60 m/s and its tyres allow. An actor off the lanes has a place as long as the
--- corridor reaches past it.
-WITH missing AS (
-    SELECT drive_id, ego_id, t_ns, object_id, actor_class, NULL::DOUBLE AS ahead_m, NULL::DOUBLE AS behind_m FROM pair WHERE x_m IS NULL OR y_m IS NULL
+-- last and where it is seen next it comes no nearer than 60 m/s and its tyres allow. Where the log is taken to have whoever is in plain view
+-- (data_log.in_sight), one that is not recorded for a while is not there. An actor off the lanes has a place as long as the corridor reaches
+-- past it.
+WITH nowhere AS (
+    SELECT drive_id, ego_id, t_ns, object_id, actor_class, off_level FROM pair WHERE x_m IS NULL OR y_m IS NULL
+),
+sample AS (
+    SELECT s.drive_id, s.actor_id, s.t_ns
+    FROM state_dynamics s
+    SEMI JOIN nowhere n ON n.drive_id = s.drive_id AND n.object_id = s.actor_id
+),
+missing AS (
+    -- a sample without a place says that it is there
+    SELECT
+        n.drive_id, n.ego_id, n.t_ns, n.object_id, n.actor_class, NOT n.off_level AND n.t_ns - s.t_ns > c.max_gap_ns AS unrecorded,
+        NULL::DOUBLE AS ahead_m, NULL::DOUBLE AS behind_m
+    FROM nowhere n
+    JOIN clock c USING (drive_id, ego_id)
+    ASOF LEFT JOIN sample s ON s.drive_id = n.drive_id AND s.actor_id = n.object_id AND s.t_ns <= n.t_ns
     UNION ALL
-    SELECT u.drive_id, u.ego_id, u.t_ns, u.object_id, a.actor_class, u.ahead_m, u.behind_m
+    SELECT u.drive_id, u.ego_id, u.t_ns, u.object_id, a.actor_class, true, u.ahead_m, u.behind_m
     FROM unseen u
     JOIN road_user a ON a.drive_id = u.drive_id AND a.actor_id = u.object_id
 ),
 seen AS (
     SELECT
-        p.drive_id, p.ego_id, p.object_id, p.t_ns, p.distance_m, p.x_m, p.y_m,
+        p.drive_id, p.ego_id, p.object_id, p.t_ns, p.distance_m, p.x_m, p.y_m, half_box_m(p.length_m, p.width_m) AS half_m,
         CASE WHEN p.actor_class = 'pedestrian' THEN 0.0 ELSE p.speed_mps * cos(p.yaw_rad) END AS vx_mps,
         CASE WHEN p.actor_class = 'pedestrian' THEN 0.0 ELSE p.speed_mps * sin(p.yaw_rad) END AS vy_mps,
         -- along the corridor, of what goes the ego's way
@@ -24,7 +39,12 @@ seen AS (
 -- from where it was seen last and where it is seen next: how far it is at least, straight on and braking or turning as hard as tyres do
 sighted AS (
     SELECT
-        m.*, e.front_s_m, e.rear_s_m, CASE WHEN b.along.chain_id = e.chain_id THEN b.along END AS before, CASE WHEN a.along.chain_id = e.chain_id THEN a.along END AS after,
+        m.*, e.front_s_m, e.rear_s_m, e.length_m, e.width_m, e.combination_m, coalesce(greatest(b.half_m, a.half_m), half_box_m(NULL, NULL)) AS half_m,
+        coalesce(
+            g.in_sight AND m.unrecorded AND coalesce(b.t_ns, a.t_ns) IS NOT NULL
+            AND (b.t_ns IS NULL OR m.t_ns > tb.plain_ns) AND (a.t_ns IS NULL OR m.t_ns < ta.plain_ns), false
+        ) AS late,
+        CASE WHEN b.along.chain_id = e.chain_id THEN b.along END AS before, CASE WHEN a.along.chain_id = e.chain_id THEN a.along END AS after,
         b.distance_m - unseen_closing_mps() * (m.t_ns - b.t_ns) / 1e9 AS before_m, a.distance_m - unseen_closing_mps() * (a.t_ns - m.t_ns) / 1e9 AS after_m,
         (m.t_ns - b.t_ns) / 1e9 AS before_s, (a.t_ns - m.t_ns) / 1e9 AS after_s,
         b.x_m + b.vx_mps * before_s - e.x_m AS before_x_m, b.y_m + b.vy_mps * before_s - e.y_m AS before_y_m, a.x_m - a.vx_mps * after_s - e.x_m AS after_x_m, a.y_m - a.vy_mps * after_s - e.y_m AS after_y_m
@@ -32,17 +52,22 @@ sighted AS (
     ASOF LEFT JOIN seen b ON b.drive_id = m.drive_id AND b.ego_id = m.ego_id AND b.object_id = m.object_id AND b.t_ns <= m.t_ns
     ASOF LEFT JOIN seen a ON a.drive_id = m.drive_id AND a.ego_id = m.ego_id AND a.object_id = m.object_id AND a.t_ns >= m.t_ns
     JOIN ego_state e ON e.drive_id = m.drive_id AND e.ego_id = m.ego_id AND e.t_ns = m.t_ns
+    JOIN data_log g ON g.drive_id = m.drive_id
+    LEFT JOIN track_end tb ON tb.drive_id = m.drive_id AND tb.ego_id = m.ego_id AND tb.object_id = m.object_id AND tb.lost AND tb.t_ns = b.t_ns
+    LEFT JOIN track_end ta ON ta.drive_id = m.drive_id AND ta.ego_id = m.ego_id AND ta.object_id = m.object_id AND NOT ta.lost AND ta.t_ns = a.t_ns
 ),
 bounded AS (
     SELECT
-        drive_id, ego_id, t_ns, object_id, actor_class,
+        drive_id, ego_id, t_ns, object_id, actor_class, late,
+        half_m + greatest(half_box_m(length_m, width_m), CASE WHEN combination_m = length_m THEN 0.0 ELSE coalesce(combination_m, 2 * two_half_boxes_m()) - length_m / 2 END) AS halves_m,
         -- greatest() leaves out what is not there, as it should here
         greatest(before_m, after_m, sqrt(before_x_m ** 2 + before_y_m ** 2) - strays_m(actor_class, before_s), sqrt(after_x_m ** 2 + after_y_m ** 2) - strays_m(actor_class, after_s), ahead_m, behind_m) AS distance_m,
         -- what goes the ego's way does not turn round
         CASE
             WHEN ahead_m > 0 OR before.rear_m > front_s_m OR after.rear_m - after.v_mps * after_s - strays_m(actor_class, after_s) > front_s_m THEN true
             WHEN behind_m > 0 OR after.front_m < rear_s_m OR before.front_m + before.v_mps * before_s + strays_m(actor_class, before_s) < rear_s_m THEN false
-        END AS ahead
+        END AS ahead,
+        coalesce(before, after) IS NOT NULL AS along
     FROM sighted
 ),
 incomplete AS (
@@ -97,12 +122,15 @@ in_hole AS (
 )
 SELECT
     drive_id, ego_id, t_ns, object_id, actor_class, may_be_vehicle(actor_class) AS vehicle,
-    greatest(0.0::DOUBLE, coalesce(distance_m, 0.0) - two_half_boxes_m()) AS least_m, ahead
+    greatest(0.0::DOUBLE, coalesce(distance_m, 0.0) - halves_m, CASE WHEN late THEN coalesce(g.around_m, 0.0) - halves_m END) AS least_m, ahead, along, late,
+    greatest(least_m, CASE WHEN late THEN g.lane_m END) AS lane_m
 FROM bounded
+LEFT JOIN sight g USING (drive_id, ego_id, t_ns)
 UNION ALL
 SELECT
     h.drive_id, h.ego_id, h.t_ns, h.object_id, h.actor_class, may_be_vehicle(h.actor_class),
     greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - two_half_boxes_m()),
-    CASE WHEN h.distance_m > two_half_boxes_m() THEN (h.x_m - e.x_m) * cos(e.yaw_rad) + (h.y_m - e.y_m) * sin(e.yaw_rad) > 0 END
+    CASE WHEN h.distance_m > two_half_boxes_m() THEN (h.x_m - e.x_m) * cos(e.yaw_rad) + (h.y_m - e.y_m) * sin(e.yaw_rad) > 0 END,
+    false, false, greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - two_half_boxes_m())
 FROM (SELECT * FROM incomplete UNION ALL SELECT * FROM beyond UNION SELECT * FROM in_hole) h
 JOIN ego_state e USING (drive_id, ego_id, t_ns)

@@ -39,7 +39,7 @@ met AS (
     GROUP BY ALL
 ),
 unseen AS (
-    SELECT h.drive_id, h.ego_id, h.t_ns, min(h.least_m) AS least_m
+    SELECT h.drive_id, h.ego_id, h.t_ns, min(h.lane_m) AS least_m
     FROM hidden h
     LEFT JOIN pair p ON p.drive_id = h.drive_id AND p.ego_id = h.ego_id AND p.t_ns = h.t_ns AND p.object_id = h.object_id
     WHERE h.ahead IS DISTINCT FROM false AND p.d_m IS NULL

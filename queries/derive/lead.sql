@@ -16,7 +16,10 @@ ahead AS (
 ),
 filtered AS (SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'velocity_filtered'),
 doubt AS (
-    SELECT drive_id, ego_id, t_ns, min(least_m) AS least_m FROM hidden WHERE vehicle AND ahead IS DISTINCT FROM false GROUP BY ALL
+    SELECT drive_id, ego_id, t_ns, min(least_m) FILTER (NOT late) AS least_m, min(lane_m) FILTER (late) AS late_m
+    FROM hidden
+    WHERE vehicle AND ahead IS DISTINCT FROM false
+    GROUP BY ALL
 ),
 told AS (
     SELECT
@@ -26,7 +29,9 @@ told AS (
         ) AS t_half_ns,
         lag(e.t_ns) OVER (PARTITION BY e.drive_id, e.ego_id ORDER BY st.k) AS t_before_ns,
         lag(st.seg) OVER (PARTITION BY e.drive_id, e.ego_id ORDER BY st.k) = st.seg AS goes_on,
-        e.front_s_m IS NOT NULL AND coalesce(least(d.least_m, a.unsure_m) >= coalesce(a.near.gap_m, lead_reach_m(e.speed_mps)), true) AS known
+        e.front_s_m IS NOT NULL AND coalesce(least(d.least_m, a.unsure_m) >= coalesce(a.near.gap_m, lead_reach_m(e.speed_mps)), true)
+            -- up to the one that is seen the lane is in plain view
+            AND coalesce(a.near.gap_m IS NOT NULL OR d.late_m >= lead_reach_m(e.speed_mps), true) AS known
     FROM ego_state e
     JOIN step st USING (drive_id, ego_id, t_ns)
     LEFT JOIN ahead a USING (drive_id, ego_id, t_ns)

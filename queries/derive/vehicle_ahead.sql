@@ -10,7 +10,7 @@ chosen AS (
             min({'gap_m': p.gap_m, 'id': p.object_id}) FILTER (is_vehicle(p.actor_class) AND p.soon).id,
             min({'gap_m': p.gap_m, 'id': p.object_id}) FILTER (is_vehicle(p.actor_class) AND p.oncoming AND p.speed_mps <= standing_mps() IS DISTINCT FROM true).id
         ] AS ids,
-        min(p.gap_m) FILTER (is_vehicle(p.actor_class) AND p.across_m < 0) AS way_gap_m,
+        count(*) FILTER (is_vehicle(p.actor_class)) AS n, min(p.gap_m) FILTER (is_vehicle(p.actor_class) AND p.across_m < 0) AS way_gap_m,
         min(p.gap_m) FILTER (is_vehicle(p.actor_class) IS NULL AND p.outside) AS outside_m,
         min(p.gap_m) FILTER (is_vehicle(p.actor_class) IS DISTINCT FROM true AND p.gap_m < unsure_reach_m(e.speed_mps)) AS unsure_m
     FROM lane_ahead p
@@ -18,7 +18,10 @@ chosen AS (
     GROUP BY ALL
 ),
 doubt AS (
-    SELECT drive_id, ego_id, t_ns, min(least_m) AS least_m FROM hidden WHERE vehicle AND ahead IS DISTINCT FROM false GROUP BY ALL
+    SELECT drive_id, ego_id, t_ns, min(least_m) FILTER (NOT late) AS least_m, min(lane_m) FILTER (late) AS late_m, bool_and(along) AS along
+    FROM hidden
+    WHERE vehicle AND ahead IS DISTINCT FROM false
+    GROUP BY ALL
 ),
 more AS (
     SELECT l.drive_id, l.ego_id, l.t_ns, l.ego_speed_mps, l.in_lane, unnest(list_distinct(c.ids)) AS object_id
@@ -58,11 +61,22 @@ ASOF LEFT JOIN cut_in i ON i.drive_id = m.drive_id AND i.ego_id = m.ego_id AND i
 ASOF LEFT JOIN lane_crossing x ON x.drive_id = m.drive_id AND x.ego_id = m.ego_id AND x.t_ns <= m.t_ns
 UNION ALL BY NAME
 -- somebody without a place, or of no known class, may be in the way behind one that is beside it
-SELECT l.drive_id, l.ego_id, l.t_ns, NULL::VARCHAR AS object_id, false AS nearest, false AS known, l.ego_speed_mps, l.in_lane, 0.0 AS error_mps
+SELECT l.drive_id, l.ego_id, l.t_ns, NULL::VARCHAR AS object_id, false AS nearest, false AS known, l.ego_speed_mps, l.in_lane, 0.0 AS error_mps,
+    least(d.least_m, d.late_m, c.unsure_m, c.outside_m) AS free_m, l.ego_speed_mps + CASE WHEN d.along AND c.unsure_m IS NULL AND c.outside_m IS NULL THEN 0.0 ELSE fastest_mps() END AS free_mps
 FROM lead l
 LEFT JOIN chosen c USING (drive_id, ego_id, t_ns)
 LEFT JOIN doubt d USING (drive_id, ego_id, t_ns)
 WHERE l.object_id IS NOT NULL AND l.in_lane IS DISTINCT FROM false
-    AND least(d.least_m, c.unsure_m) < coalesce(c.way_gap_m, lead_reach_m(l.ego_speed_mps))
+    AND (least(d.least_m, c.unsure_m) < coalesce(c.way_gap_m, lead_reach_m(l.ego_speed_mps)) OR c.way_gap_m IS NULL AND d.late_m < lead_reach_m(l.ego_speed_mps))
     -- out of its lane the ego may meet it, whoever is in the lane
     OR c.outside_m < coalesce(c.way_gap_m, lead_reach_m(l.ego_speed_mps))
+UNION ALL BY NAME
+-- nobody is seen ahead, and somebody may be there
+SELECT
+    e.drive_id, e.ego_id, e.t_ns, NULL::VARCHAR AS object_id, true AS nearest, false AS known, e.speed_mps AS ego_speed_mps, 0.0 AS error_mps,
+    least(d.least_m, d.late_m, c.unsure_m) AS free_m, e.speed_mps + CASE WHEN d.along AND c.unsure_m IS NULL THEN 0.0 ELSE fastest_mps() END AS free_mps
+FROM ego_state e
+ANTI JOIN lead l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.t_ns = e.t_ns
+LEFT JOIN chosen c USING (drive_id, ego_id, t_ns)
+LEFT JOIN doubt d USING (drive_id, ego_id, t_ns)
+WHERE e.front_s_m IS NOT NULL AND coalesce(c.n, 0) = 0 AND c.outside_m IS NULL AND least(d.least_m, d.late_m, c.unsure_m) IS NOT NULL

@@ -23,6 +23,23 @@ CREATE OR REPLACE MACRO whole_window(t_ns, first_ns, last_ns, half_ns) AS
 CREATE OR REPLACE MACRO unseen_closing_mps() AS 60.0;
 CREATE OR REPLACE MACRO two_half_boxes_m() AS 12.0;
 
+-- A recorder that loses an actor in plain view has it again within this time, and has a new one so long after it came into view.
+CREATE OR REPLACE MACRO tracker_loses_ns() AS 2_500_000_000;
+CREATE OR REPLACE MACRO tracker_begins_ns() AS 500_000_000;
+-- A recorded position may be off by this.
+CREATE OR REPLACE MACRO sight_error_m() AS 1.0;
+-- A lane whose middle leaves its tangent by less than this is straight: nothing beside it stands between two places on it.
+CREATE OR REPLACE MACRO straight_m() AS 0.5;
+-- Places on a lane at which it is looked whether they are in sight are so far apart: the shadow of a box between two hides no vehicle.
+CREATE OR REPLACE MACRO sight_step_m() AS 2.0;
+-- Whether a box at (x, y) from the eye stands in the line to the place at (dx, dy) from it.
+CREATE OR REPLACE MACRO in_line(x_m, y_m, dx_m, dy_m, yaw_rad, length_m, width_m) AS
+    x_m * dx_m + y_m * dy_m BETWEEN 0 AND dx_m ** 2 + dy_m ** 2
+    AND abs(x_m * dy_m - y_m * dx_m)
+        < length_m / 2 * abs(sin(yaw_rad) * dx_m - cos(yaw_rad) * dy_m) + width_m / 2 * abs(cos(yaw_rad) * dx_m + sin(yaw_rad) * dy_m);
+-- Half the diagonal of a box; of one whose size is not known, as large as any.
+CREATE OR REPLACE MACRO half_box_m(length_m, width_m) AS coalesce(sqrt(length_m ** 2 + width_m ** 2) / 2, two_half_boxes_m() / 2);
+
 -- How far an actor can be from where its last (or next) velocity leads, t seconds away: nothing on wheels or hooves changes its velocity
 -- faster than 10 m/s2; people on foot go nowhere faster than 10 m/s; an unknown class is either.
 CREATE OR REPLACE MACRO strays_m(actor_class, t_s) AS

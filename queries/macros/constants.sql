@@ -10,6 +10,8 @@ CREATE OR REPLACE MACRO corridor_behind_m() AS 200.0;
 CREATE OR REPLACE MACRO exact_clearance_m() AS 30.0;
 -- An object whose track ends this close to the ego did not just drive away.
 CREATE OR REPLACE MACRO lost_near_m() AS 50.0;
+-- A recorder whose range nobody says sees this far.
+CREATE OR REPLACE MACRO sight_m(sensor_range_m) AS coalesce(sensor_range_m, lost_near_m());
 -- Slower than this is standing: positions of parked vehicles jitter.
 CREATE OR REPLACE MACRO standing_mps() AS 0.5;
 -- What a velocity that ingest derives by a filter may be off by (ingest/velocity.py).
@@ -31,5 +33,7 @@ CREATE OR REPLACE MACRO lead_reach_m(v_ego_mps) AS lost_near_m() + 10 * greatest
 -- speeds, between `least_s` and 60 s.
 CREATE OR REPLACE MACRO unseen_ns(distance_m, v_object_mps, v_ego_mps, least_s) AS
     (1e9 * least(60.0, greatest(least_s, 2 * coalesce(distance_m / nullif(v_object_mps + v_ego_mps, 0), 30.0))))::BIGINT;
+-- Nobody who is not seen comes faster than this: 70 mph.
+CREATE OR REPLACE MACRO fastest_mps() AS 31.3;
 -- Two directions further apart than this, with nothing between them in the map, may have a central reservation between them.
 CREATE OR REPLACE MACRO reservation_m() AS 1.0;

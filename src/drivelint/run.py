@@ -55,6 +55,7 @@ class Settings:
     map_origin: tuple[float, float] | None = None
     handedness: str = "auto"
     sensor_range_m: float | None = None
+    visibility: str = "line-of-sight"
     ego_size: EgoSize | None = None
     env: tuple[str, ...] = ()
     rules_dirs: tuple[Path, ...] = field(default=())
@@ -84,6 +85,7 @@ def check(settings: Settings, progress: Progress) -> Result:
         settings.sensor_range_m,
         conditions=conditions.parse(settings.env),
         ego_size=settings.ego_size,
+        in_sight=settings.visibility == "line-of-sight",
     )
     library = MapLibrary(
         settings.map, settings.map_offset, settings.handedness, origin=settings.map_origin, folder=settings.map_dir
@@ -157,6 +159,7 @@ def _asked(settings: Settings, places: dict[str, str]) -> Asked:
         mapping=settings.mapping,
         topic=settings.topic,
         sensor_range_m=settings.sensor_range_m,
+        visibility=settings.visibility,
         ego_size=settings.ego_size,
         env=settings.env,
         profiles=settings.profiles,

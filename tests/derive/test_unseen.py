@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -36,7 +38,7 @@ def test_just_after_it_was_lost_a_lead_far_away_is_still_far() -> None:
     lead = moving("x", way, t, 203.8 + 31 * t, way.own).keep(t < 5.05)
     con = derived(drive([ego, lead], way.environment), tables=["hidden", "unseen", "unplaced"])
     hidden = {round(r["t_ns"] / 1e8): r for r in rows(con, "FROM hidden")}
-    assert hidden[55]["least_m"] == pytest.approx(103.8 - 5 * 0.25 - 12, abs=1e-3)
+    assert hidden[55]["least_m"] == pytest.approx(103.8 - 5 * 0.25 - math.hypot(4.8, 1.8), abs=1e-3)
     assert hidden[55]["ahead"] is True
     # it goes the ego's way, too far away to be anything but a lead
     assert {(r["code"], r["near"]) for r in rows(con, "FROM unseen")} == {("lost", False)}
@@ -88,4 +90,6 @@ def test_one_lost_on_foot_is_where_it_can_walk_to() -> None:
     assert found
     assert {r["vehicle"] for r in found} == {False}
     first = found[0]
-    assert first["least_m"] == pytest.approx(np.hypot(130 - 110.5, LANE - 2) - 10 * 0.1 - 12, abs=0.05)
+    assert first["least_m"] == pytest.approx(
+        np.hypot(130 - 110.5, LANE - 2) - 10 * 0.1 - math.hypot(4.8, 1.8) / 2 - math.hypot(0.5, 0.5) / 2, abs=0.05
+    )

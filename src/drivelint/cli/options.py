@@ -59,6 +59,13 @@ class FailOn(StrEnum):
     never = "never"
 
 
+class Visibility(StrEnum):
+    """What the log is taken to say of whoever it does not have."""
+
+    line_of_sight = "line-of-sight"
+    none = "none"
+
+
 class Handedness(StrEnum):
     """The side of the road that is driven on."""
 
@@ -96,6 +103,13 @@ SensorRange = Annotated[
     float | None,
     typer.Option(
         "--sensor-range", metavar="M", min=0, help="Range in which the recorder sees everybody. Default: all."
+    ),
+]
+InSight = Annotated[
+    Visibility,
+    typer.Option(
+        "--visibility",
+        help="Whoever is not recorded: line-of-sight, not in plain view of the recorder (2.5 s after it was lost); none, anywhere.",
     ),
 ]
 EgoBox = Annotated[

@@ -34,7 +34,7 @@ SCHEMAS: dict[str, dict[str, pa.DataType]] = {
         "drive_id": _S, "file_name": _S, "sha256": _S, "format": _S, "environment_id": _S,
         "t_start_ns": _I, "t_end_ns": _I, "utc_start_ns": _I, "n_states": _I, "sensor_range_m": _F,
         "map_offset_x_m": _F, "map_offset_y_m": _F,
-        "has_indicator": _B, "has_brake_light": _B, "has_acceleration": _B,
+        "has_indicator": _B, "has_brake_light": _B, "has_acceleration": _B, "in_sight": _B,
     },
     "actor": {"drive_id": _S, "actor_id": _S, "actor_class": _S, **dict.fromkeys(SIZES, _F), "is_ego": _B},
     "actor_state": {
@@ -193,6 +193,7 @@ def _data_log(
         "has_indicator": known["indicator"],
         "has_brake_light": known["brake_light"],
         "has_acceleration": not bool(np.isnan(states.numbers["ax_mps2"][is_ego]).all()),
+        "in_sight": options.in_sight,
     }
     return _table("data_log", {name: [value] for name, value in row.items()})
 

@@ -79,6 +79,8 @@ class IngestOptions:
     conditions: tuple[tuple[str, str], ...] = ()
     """What holds in the drive, as (condition, word): see `drivelint.conditions`."""
     ego_size: EgoSize | None = None
+    in_sight: bool = False
+    """Whoever is not recorded for a while is taken not to be in plain view."""
 
 
 class FrameTimes(NamedTuple):
