@@ -43,7 +43,8 @@ SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
         AND (l.speed_mps > standing_mps() OR p.speed_mps <= standing_mps()
             AND on_course(l.gap_m, ttc_s(l.gap_m, l.ego_speed_mps), e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, 0.0))
         AND NOT coalesce(s.t_ns - c.t_ns < $settle_s * 1e9 AND l.ego_speed_mps <= c.ego_speed_mps + $faster_mps, false)
-    WHEN l.known THEN true END AS applies
+    -- one that is not seen is further away than the way that is free
+    WHEN l.known OR thw_s(l.free_m, l.ego_speed_mps) >= $least_s THEN true END AS applies
 FROM step s
 LEFT JOIN vehicle_ahead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
 LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.t_ns = l.t_ns AND p.object_id = l.object_id

@@ -44,5 +44,7 @@
 -- @condition
 SELECT drive_id, ego_id, t_ns, gap_m AS observed,
     stvo_safe_gap_m(ego_speed_mps, speed_mps, $reaction_s, $brake_mps2, $brake_lead_mps2) AS required,
-    follows AND coalesce(t_ns - let_in_ns >= $cut_in_s * 1e9, true) AS applies
+    -- one that is not seen is further away than the way that is free
+    CASE WHEN follows IS NULL AND free_m >= stvo_safe_gap_m(ego_speed_mps, 0.0, $reaction_s, $brake_mps2, $brake_lead_mps2) THEN false
+        ELSE follows AND coalesce(t_ns - let_in_ns >= $cut_in_s * 1e9, true) END AS applies
 FROM following
