@@ -27,7 +27,8 @@ CREATE TABLE verdict (
     n_judged BIGINT NOT NULL,         -- steps that were
     x_m DOUBLE,                       -- ego at the worst step
     y_m DOUBLE,                       -- ego at the worst step
-    lanelet_id VARCHAR                -- ego's lanelet at the worst step
+    lanelet_id VARCHAR,               -- ego's lanelet at the worst step
+    assumes VARCHAR                   -- what it rests on; line_of_sight: by the end of the judged interval somebody was lost, or somebody came later, who is taken not to be in plain view while not recorded (check --visibility); NULL: nothing
 );
 
 CREATE TABLE finding (

@@ -79,15 +79,21 @@ def derivations() -> Mapping[str, Derivation]:
     return {name: found[name] for name in order}
 
 
-def needed(tables: Iterable[str]) -> list[Derivation]:
-    """Return the derivations behind these tables, in order."""
-    wanted: set[str] = set()
-    todo = [*tables, *ALWAYS]
+def behind(tables: Iterable[str]) -> set[str]:
+    """Return these tables and the library tables from which they are derived."""
+    found: set[str] = set()
+    todo = [*tables]
     while todo:
         table = todo.pop()
-        if table in derivations() and table not in wanted:
-            wanted.add(table)
-            todo.extend(derivations()[table].reads)
+        if table not in found:
+            found.add(table)
+            todo.extend(derivations()[table].reads if table in derivations() else ())
+    return found
+
+
+def needed(tables: Iterable[str]) -> list[Derivation]:
+    """Return the derivations behind these tables, in order."""
+    wanted = behind([*tables, *ALWAYS])
     return [d for name, d in derivations().items() if name in wanted]
 
 

@@ -106,23 +106,57 @@ ANTI JOIN _seen k ON k.rule_no = r.rule_no AND k.drive_id = s.drive_id AND k.ego
 
 _PLACE = "LEFT JOIN ego_state p ON p.drive_id = v.drive_id AND p.ego_id = v.ego_id AND p.t_ns = v.t_worst_ns"
 
+# the first time at which the log loses somebody, and the last at which somebody comes into it
+_SIGHT = """
+SELECT drive_id, ego_id, min(t_ns) FILTER (lost) AS gone_ns, max(t_ns) FILTER (NOT lost) AS to_come_ns
+FROM track_end GROUP BY ALL
+"""
+
+_NO_CAUSE = "('missing_step', 'null_value', 'applies_unknown')"
+"""Codes that say at what time something is not known, and not why."""
+
+# the nearest of those who have no place at that time: in most drives the reason
+_CAUSE = f"""
+SELECT drive_id, ego_id, t_ns AS t_decides_ns, min({{'m': h.lane_m, 'id': h.object_id, 'code': coalesce(u.code,
+    CASE WHEN p.off_level THEN 'off_level' WHEN p.x_m IS NULL OR p.y_m IS NULL THEN 'no_position' WHEN p.yaw_rad IS NULL THEN 'no_heading'
+        WHEN p.length_m IS NULL OR p.width_m IS NULL THEN 'no_size' ELSE 'off_lanes' END)}}) AS nearest
+FROM (
+    SELECT DISTINCT drive_id, ego_id, t_decides_ns AS t_ns FROM _named
+    WHERE of_hidden AND verdict = 'unknown' AND reason IS NULL AND code IN {_NO_CAUSE}
+)
+JOIN hidden h USING (drive_id, ego_id, t_ns)
+LEFT JOIN unseen u USING (drive_id, ego_id, t_ns, object_id)
+LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
+GROUP BY drive_id, ego_id, t_ns
+"""
+_BECAUSE = """format('; the nearest without a place is object {}, which {}{}.', nearest.id, unplaced_words(nearest.code),
+    CASE WHEN nearest.m >= 1 THEN format(', at least {:.0f} m away', floor(nearest.m)) ELSE '' END)"""
+
 _VERDICTS = f"""
 INSERT INTO verdict BY NAME
-WITH _named AS (SELECT v.* REPLACE (nullif(v.profile, '') AS profile, nullif(v.object_id, '') AS object_id,
+WITH _sight AS ({_SIGHT}),
+_named AS (SELECT v.* REPLACE (nullif(v.profile, '') AS profile, nullif(v.object_id, '') AS object_id,
     nullif(v.label, '') AS label), r.* EXCLUDE (rule_no), coalesce(s.start_ns, 0) AS start_ns
     FROM _closed v JOIN _rule r USING (rule_no) LEFT JOIN _subject s ON s.drive_id = v.drive_id AND s.ego_id = v.ego_id),
+_cause AS ({_CAUSE}),
 _numbered AS (
     SELECT *, row_number() OVER (PARTITION BY drive_id, ego_id, rule_id, profile, object_id
         ORDER BY coalesce(t_ref_ns, t_start_ns) NULLS LAST, t_start_ns NULLS LAST, t_end_ns NULLS LAST,
             ref_id NULLS LAST, code) - 1 AS occurrence,
-        coalesce(replace(label, '_', ' ') || ': ', '') || {SENTENCE} AS sentence
-    FROM _named)
+        coalesce(replace(label, '_', ' ') || ': ', '') || {SENTENCE} AS told,
+        CASE WHEN nearest IS NOT NULL AND of_hidden AND verdict = 'unknown' AND reason IS NULL AND code IN {_NO_CAUSE}
+            THEN rtrim(told, '.') || {_BECAUSE} ELSE told END AS sentence
+    FROM _named LEFT JOIN _cause USING (drive_id, ego_id, t_decides_ns))
 SELECT v.drive_id, v.ego_id, rule_id, rule_version, kind, profile, severity, object_id,
     occurrence::INTEGER AS occurrence, ref_id, t_ref_ns, t_start_ns, t_end_ns,
     t_worst_ns, verdict, code AS reason_code, sentence AS reason, observed, required, margin, unit,
     coalesce(verdict = 'pass' AND {findings.NEAR}, false) AS near_miss,
-    coalesce(n_expected, 0) AS n_expected, coalesce(n_judged, 0) AS n_judged, p.x_m, p.y_m, p.lanelet_id
+    coalesce(n_expected, 0) AS n_expected, coalesce(n_judged, 0) AS n_judged, p.x_m, p.y_m, p.lanelet_id,
+    CASE WHEN of_others AND verdict IN ('pass', 'fail', 'not_applicable') AND code <> 'other_nation'
+        AND (coalesce(g.gone_ns <= t_end_ns, g.gone_ns IS NOT NULL) OR coalesce(g.to_come_ns >= t_start_ns, g.to_come_ns IS NOT NULL))
+        THEN 'line_of_sight' END AS assumes
 FROM _numbered v {_PLACE}
+LEFT JOIN _sight g ON g.drive_id = v.drive_id AND g.ego_id = v.ego_id
 """
 
 _FINDINGS = f"""

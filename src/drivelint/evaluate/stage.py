@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 
 from drivelint import conditions, store
+from drivelint.derive import behind
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,7 +27,7 @@ CREATE OR REPLACE TEMP TABLE _segment AS
         FROM step GROUP BY ALL;
 CREATE OR REPLACE TEMP TABLE _rule (rule_no INTEGER, rule_id VARCHAR, rule_version VARCHAR, kind VARCHAR,
     severity VARCHAR,
-    sense VARCHAR, unit VARCHAR, observes VARCHAR, near_margin DOUBLE);
+    sense VARCHAR, unit VARCHAR, observes VARCHAR, near_margin DOUBLE, of_others BOOLEAN, of_hidden BOOLEAN);
 CREATE OR REPLACE TEMP TABLE _needs (rule_no INTEGER, pos INTEGER, signal VARCHAR);
 CREATE OR REPLACE TEMP TABLE _law (rule_no INTEGER, nation VARCHAR);
 CREATE OR REPLACE TEMP TABLE _error ({_KEYS}, code VARCHAR, reason VARCHAR);
@@ -101,6 +102,7 @@ def prepare(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> dict
 
 def _rules(bindings: Sequence[Binding]) -> pa.Table:
     rules = [b.rule for b in bindings]
+    derived = [behind(r.reads) for r in rules]
     columns = {
         "rule_id": [r.id for r in rules], "rule_version": [r.version for r in rules], "kind": [r.kind for r in rules],
         "severity": [r.severity for r in rules], "sense": [r.sense for r in rules], "unit": [r.unit for r in rules],
@@ -111,6 +113,8 @@ def _rules(bindings: Sequence[Binding]) -> pa.Table:
             "rule_no": pa.array([b.no for b in bindings], pa.int32()),
             **{name: pa.array(values, pa.string()) for name, values in columns.items()},
             "near_margin": pa.array([r.near_margin for r in rules], pa.float64()),
+            "of_others": pa.array(["pair" in tables for tables in derived], pa.bool_()),
+            "of_hidden": pa.array(["hidden" in tables for tables in derived], pa.bool_()),
         }
     )
 

@@ -68,6 +68,7 @@ def _read(asked: Asked, path: Path, map_: Path | None, drive_id: str, ego_id: st
         asked.sensor_range_m,
         conditions=conditions.parse(asked.env),
         ego_size=None if asked.ego_size is None else EgoSize(*asked.ego_size),
+        in_sight=asked.visibility == "line-of-sight",
     )
     read = read_trace(path, options)
     if read.drive_id.rpartition("-")[2] != drive_id.rpartition("-")[2]:

@@ -104,6 +104,10 @@ def _happened(found: Explanation) -> list[str]:
         lines.append(
             f"Kept, but with less to spare than {_measure(found.rule['near_margin'], row['unit'])}: a near miss."
         )
+    if row["assumes"] == "line_of_sight":
+        lines.append(
+            "Assumed: whoever the log does not have is not in plain view of the ego; without that: check --visibility none."
+        )
     if row["n_expected"]:
         lines.append(f"{row['n_judged']} of {row['n_expected']} steps that had to be judged could be.")
     lines += found.notes
