@@ -32,6 +32,8 @@ class Asked:
     mapping: str | None = None
     topic: str | None = None
     sensor_range_m: float | None = None
+    visibility: str = "none"
+    """What results of an older version were judged by."""
     ego_size: tuple[float, float, float] | None = None
     env: tuple[str, ...] = ()
     profiles: tuple[str, ...] = ()

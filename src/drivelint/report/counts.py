@@ -24,6 +24,11 @@ def tally(rows: pa.Table, values: tuple[str, ...], column: str) -> dict[str, int
     return {value: found.get(value, 0) for value in values}
 
 
+def assuming(verdicts: pa.Table, what: str) -> int:
+    """Return how many verdicts rest on that assumption: see the column `assumes`."""
+    return tally(verdicts, (what,), "assumes")[what]
+
+
 def by(verdicts: pa.Table, key: str) -> dict[str, dict[str, int]]:
     """Return key's value -> verdict -> number of rows; keys without rows are absent."""
     counted: dict[str, dict[str, int]] = {}

@@ -224,6 +224,10 @@ def _end(result: Result, out: str | None) -> Text:
     given = {f"{c['condition']}={c['value']}" for cs in result.drives["conditions"].to_pylist() for c in cs or ()}
     if given:
         text.append(f"\njudged in: {', '.join(sorted(given))}")
+    assumed = counts.assuming(result.verdicts, "line_of_sight")
+    if assumed:
+        verb = "verdict assumes" if assumed == 1 else "verdicts assume"
+        text.append(f"\n{assumed} {verb} that whoever a log does not have is not in plain view (--visibility)", "dim")
     text.append(f"\nexit {int(end.code)}: {end.why}", style=style)
     if told["unknown"]:
         text.append(

@@ -105,6 +105,7 @@ def content(result: Result) -> dict[str, Any]:
         "n_overtakes": result.overtakes.num_rows,
         "gate": view(result.gate, result.findings["finding_id"].to_pylist()),
         "n_near": int(pc.sum(result.verdicts["near_miss"]).as_py() or 0),
+        "n_assumed": counts.assuming(result.verdicts, "line_of_sight"),
         "broken": broken,
         "words": words(front.texts(broken, told_of, [line for _, line in lines])),
         "several_egos": len({(row["drive_id"], row["ego_id"]) for row, _ in lines + close}) > len(listed),

@@ -18,6 +18,7 @@ MOST: Final = 60
 _NUMBER = r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
 _ASIDE: Final = (
     (re.compile(rf" \({_NUMBER}[^()]*\)"), ""),  # measured values in brackets
+    (re.compile(rf", at least {_NUMBER} m away"), ""),
     (re.compile(rf" (?:at|from|between) {_NUMBER} s(?: (?:to|and) {_NUMBER} s)?"), ""),
     (re.compile(r"\b(lanelet|object|actor|vehicle|crossing|junction|lane) [\w.:-]*\d[\w.:-]*"), r"a \1"),
     (re.compile(rf"\b{_NUMBER}\b"), "some"),
