@@ -6,6 +6,7 @@ changed but sizes and top speeds of lorries and slow cars), so they keep a gap o
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,16 +14,18 @@ import numpy as np
 from tests.sumo.world import ORDINARY, Files, run, simulate
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    Kinds = Mapping[str, tuple[str, float]]
+
 STEP_S = 0.1
-_KINDS = (
-    '<vType id="car" length="4.6" width="1.8"/>',
-    '<vType id="slow" length="4.2" width="1.7" speedFactor="normc(0.8,0.05,0.6,0.9)"/>',
-    '<vType id="lorry" vClass="truck" length="9.5" width="2.4" maxSpeed="24.6"/>',
-)
-_SHARES = {"car": 0.75, "slow": 0.13, "lorry": 0.12}
+KINDS = {
+    "car": ('length="4.6" width="1.8"', 0.75),
+    "slow": ('length="4.2" width="1.7" speedFactor="normc(0.8,0.05,0.6,0.9)"', 0.13),
+    "lorry": ('vClass="truck" length="9.5" width="2.4" maxSpeed="24.6"', 0.12),
+}
+"""SUMO's default drivers: what SUMO is told of each kind, and its share of the traffic."""
 _LIMIT_MPS = 31.29  # 70 mph
 _NODES = {
     "a": (0, 0), "b": (2500, 0), "c": (2800, 0), "d": (4300, 0), "e": (4600, 0), "f": (6500, 0), "r": (2000, -120), "q": (5100, -120),
@@ -31,7 +34,7 @@ _EDGES = {"ab": 3, "bc": 4, "cd": 3, "de": 4, "ef": 3, "rb": 1, "eq": 1}
 _WAYS = {("ab", "ef"): 0.7, ("rb", "ef"): 0.15, ("ab", "eq"): 0.15}
 
 
-def motorway(folder: Path, *, seconds: int, seed: int = 1) -> Files:
+def motorway(folder: Path, *, seconds: int, seed: int = 1, kinds: Kinds = MappingProxyType(KINDS)) -> Files:
     """Drive so many seconds on 6.5 km of three lanes with a way in and a way out, 500 vehicles an hour, 10 Hz."""
     folder.mkdir(parents=True, exist_ok=True)
     nodes = "".join(f'<node id="{name}" x="{x}" y="{y}"/>' for name, (x, y) in _NODES.items())
@@ -50,11 +53,11 @@ def motorway(folder: Path, *, seconds: int, seed: int = 1) -> Files:
     xodr = (folder / "road.xodr").read_text("utf-8").replace('type="town"', 'type="motorway"')
     (folder / "road.xodr").write_text(xodr, "utf-8")
     rng = np.random.default_rng(seed)
-    pick = rng.choice(len(_WAYS), size=_count(seconds, 500), p=list(_WAYS.values()))
-    return _driven(folder, [list(_WAYS)[k] for k in pick], seconds, rng, seed)
+    pick = rng.choice(len(_WAYS), size=count(seconds, 500), p=list(_WAYS.values()))
+    return driven(folder, [list(_WAYS)[k] for k in pick], seconds, rng, seed, kinds)
 
 
-def town(folder: Path, *, seconds: int, seed: int = 1) -> Files:
+def town(folder: Path, *, seconds: int, seed: int = 1, kinds: Kinds = MappingProxyType(KINDS)) -> Files:
     """Drive so many seconds in a grid of sixteen junctions, two of them signalled, the rest with priority roads; 900 vehicles an hour."""
     folder.mkdir(parents=True, exist_ok=True)
     run(
@@ -68,10 +71,10 @@ def town(folder: Path, *, seconds: int, seed: int = 1) -> Files:
     ends += [(f"{side}{k}", f"{inner[k]}{at}") for k in range(4) for side, at in (("bottom", 0), ("top", 3))]
     rng = np.random.default_rng(seed)
     ways = []
-    for _ in range(_count(seconds, 900)):
+    for _ in range(count(seconds, 900)):
         (a, at), (b, to) = (ends[k] for k in rng.choice(len(ends), size=2, replace=False))
         ways.append((a + at, to + b))
-    return _driven(folder, ways, seconds, rng, seed)
+    return driven(folder, ways, seconds, rng, seed, kinds)
 
 
 def rural(folder: Path, *, seconds: int, seed: int = 1) -> Files:
@@ -79,18 +82,22 @@ def rural(folder: Path, *, seconds: int, seed: int = 1) -> Files:
     return simulate(folder, seconds=seconds, seed=seed, kinds=ORDINARY)
 
 
-def _count(seconds: int, per_hour: int) -> int:
+def count(seconds: int, per_hour: int) -> int:
     return round(seconds * per_hour / 3600)
 
 
-def _driven(folder: Path, ways: Sequence[tuple[str, str]], seconds: int, rng: np.random.Generator, seed: int) -> Files:
+def driven(  # noqa: PLR0917
+    folder: Path, ways: Sequence[tuple[str, str]], seconds: int, rng: np.random.Generator, seed: int, kinds: Kinds
+) -> Files:
+    """Drive these ways, each from its first edge to its last, on the net `road.net.xml` of `folder`."""
     departs = np.sort(rng.uniform(0.0, seconds, len(ways)))
-    kinds = rng.choice(list(_SHARES), size=len(ways), p=list(_SHARES.values()))
+    drawn = rng.choice(list(kinds), size=len(ways), p=[share for _, share in kinds.values()])
+    types = [f'<vType id="{name}" {said}/>' for name, (said, _) in kinds.items()]
     trips = [
         f'<trip id="{n}" type="{kind}" depart="{depart:.1f}" from="{a}" to="{b}" departSpeed="max" departLane="best"/>'
-        for n, ((a, b), depart, kind) in enumerate(zip(ways, departs, kinds, strict=True))
+        for n, ((a, b), depart, kind) in enumerate(zip(ways, departs, drawn, strict=True))
     ]
-    (folder / "road.rou.xml").write_text("\n".join(["<routes>", *_KINDS, *trips, "</routes>", ""]), "utf-8")
+    (folder / "road.rou.xml").write_text("\n".join(["<routes>", *types, *trips, "</routes>", ""]), "utf-8")
     run(
         "sumo", "--net-file", "road.net.xml", "--route-files", "road.rou.xml", "--step-length", str(STEP_S), "--end", str(seconds),
         "--seed", str(seed), "--lanechange.duration", "3", "--precision", "3", "--no-step-log", "--fcd-output", "traffic.fcd.xml",

@@ -46,6 +46,11 @@ class Tally(NamedTuple):
         return self.n(("pass", "fail"), ("pass", "fail", "unknown", "not_applicable", "error"))
 
     @property
+    def fails(self) -> int:
+        """How many breaches there were."""
+        return self.n(("fail",), ("pass", "fail", "unknown", "not_applicable", "error"))
+
+    @property
     def judged(self) -> int:
         """How many of those the recording decides as well."""
         return self.n(("pass", "fail"), ("pass", "fail"))
@@ -54,6 +59,11 @@ class Tally(NamedTuple):
     def false_passes(self) -> int:
         """How many breaches the recording calls a pass."""
         return self.n(("fail",), ("pass",))
+
+    @property
+    def missed(self) -> int:
+        """How many breaches the recording calls not applicable."""
+        return self.n(("fail",), ("not_applicable",))
 
     @property
     def false_fails(self) -> int:
