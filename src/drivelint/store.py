@@ -54,8 +54,7 @@ def connect(
     if spill:
         con.execute("SET temp_directory=?", [str(spill)])
     create_tables(con, comments=path is not None)
-    for macro in sorted((folder("queries") / "macros").glob("*.sql")):
-        con.execute(macro.read_text(encoding="utf-8"))
+    create_macros(con)
     return con
 
 
@@ -167,6 +166,12 @@ def _codes(con: duckdb.DuckDBPyConnection) -> list[int]:
 def _bodies() -> dict[str, str]:
     files = sorted(folder("schemas").glob("*.sql"))
     return dict(each for file in files for each in _TABLE.findall(file.read_text(encoding="utf-8")))
+
+
+def create_macros(con: duckdb.DuckDBPyConnection) -> None:
+    """Create every macro of `queries/macros`, which derivations, rules and the reasons of verdicts call."""
+    for macro in sorted((folder("queries") / "macros").glob("*.sql")):
+        con.execute(macro.read_text(encoding="utf-8"))
 
 
 def create_tables(con: duckdb.DuckDBPyConnection, *, comments: bool = False) -> None:

@@ -43,6 +43,7 @@ def database(drives: tuple[str, ...], *, threads: int, order: str) -> duckdb.Duc
     con = duckdb.connect(config={"threads": threads})
     con.execute("SET preserve_insertion_order=false")
     store.create_tables(con)
+    store.create_macros(con)
     con.execute("CREATE TEMP TABLE drives AS SELECT unnest($drives) AS drive_id", {"drives": list(drives)})
     con.execute(
         f"""CREATE TEMP TABLE s AS

@@ -27,6 +27,7 @@ READS = {"reads": '["ego_state"]'}
 def con() -> Iterator[duckdb.DuckDBPyConnection]:
     with duckdb.connect() as con:
         store.create_tables(con)
+        store.create_macros(con)
         for drive, ego in (("a", "1"), ("a", "2"), ("b", "1")):
             who = {"drive_id": drive, "ego_id": ego}
             fill(con, "clock", [who | {"period_ns": 10, "max_gap_ns": 25, "t_start_ns": 0, "t_end_ns": 20}])

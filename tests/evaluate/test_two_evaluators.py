@@ -31,6 +31,7 @@ BOTH = {"reads": '["ego_state", "exit_taken"]'}
 def con() -> duckdb.DuckDBPyConnection:
     con = duckdb.connect(config={"threads": 2})
     store.create_tables(con)
+    store.create_macros(con)
     return con
 
 

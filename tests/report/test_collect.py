@@ -17,7 +17,7 @@ def con() -> duckdb.DuckDBPyConnection:
     con = duckdb.connect()
     store.create_tables(con)
     log = {"file_name": "f.csv", "sha256": "aa", "format": "x", "n_states": 30}
-    log |= {"has_indicator": False, "has_brake_light": False, "has_acceleration": False}
+    log |= {"has_indicator": False, "has_brake_light": False, "has_acceleration": False, "in_sight": False}
     insert(
         con, "data_log", [log | {"drive_id": "d1", "environment_id": "e", "t_start_ns": 5, "t_end_ns": 2_000_000_005}]
     )
