@@ -52,7 +52,8 @@ WITH ego AS (
     SELECT drive_id, ego_id, t_ns, front_s_m, rear_s_m, width_m, speed_mps, with_direction, $closed_m + $closed_s * speed_mps AS reach_m FROM ego_state
 ),
 -- an overtake excuses the ego beside the overtaken vehicle, on its way up to it, and until it is left behind. A vehicle that it does not gain
--- on is not being overtaken: it excuses the ego no longer than an overtake takes. Whether one is, is not known of somebody without a place.
+-- on is not being overtaken: it excuses the ego no longer than an overtake takes. Of one without a place this is unknown, unless it is known to
+-- be left behind.
 passing_by AS (
     SELECT drive_id, ego_id, t_ns, CASE WHEN bool_or(excused) THEN true WHEN count(excused) = count(*) THEN false END AS excused
     FROM (
@@ -67,12 +68,13 @@ passing_by AS (
                         OR o.early AND p.rear_s_m - e.front_s_m <= e.reach_m
                         OR e.speed_mps - p.speed_mps > standing_mps() AND 1e9 * (p.rear_s_m - e.front_s_m) <= longest_overtake_ns() * (e.speed_mps - p.speed_mps)
                     ),
-                    CASE WHEN o.early THEN true END
+                    CASE WHEN NOT h.ahead AND h.least_m > e.reach_m THEN false END
                 )
             END AS excused
         FROM (SELECT *, t_ns - min(t_ns) OVER (PARTITION BY drive_id, ego_id, occurrence) <= longest_overtake_ns() AS early FROM overtake_step) o
         JOIN ego e USING (drive_id, ego_id, t_ns)
         LEFT JOIN pair p ON p.drive_id = o.drive_id AND p.ego_id = o.ego_id AND p.t_ns = o.t_ns AND p.object_id = o.vbp_id
+        LEFT JOIN hidden h ON h.drive_id = o.drive_id AND h.ego_id = o.ego_id AND h.t_ns = o.t_ns AND h.object_id = o.vbp_id
         UNION ALL
         SELECT drive_id, ego_id, t_ns, true FROM line_step WHERE passing_id IS NOT NULL
     )
