@@ -86,6 +86,8 @@ def test_a_rule_is_its_file(tmp_path: Path) -> None:
             "",
             "merge_gap_s = 'nothing' must be a number or the name of a numeric parameter",
         ),
+        ({"without_time": '"no sign"'}, {}, "", "an invariant has no reference point"),
+        ({"without_anchor": '"no sign"'}, {}, "", "without_anchor is for physical conditions"),
         ({"merge_gap_s": "-1"}, {}, "", "merge_gap_s must be a number of seconds"),
         ({"reads": "[]"}, {}, "", "reads must name the tables"),
         ({"reads": '["ego_state", "pair"]'}, {}, "", ":11: reads does not match the SQL: remove pair"),

@@ -34,21 +34,21 @@
 -- why = "our default: people walk at 2 m/s at most, recorded ones from one step to the next; a gain counts of one who is faster than even a hurried one"
 
 -- @applies
-SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN clearance_m IS NOT NULL THEN true END AS applies
+SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN clearance_m IS NOT NULL THEN true END AS applies, NULL AS reason
 FROM pair
 WHERE clearance_m IS NULL OR clearance_m <= $within_m
 UNION ALL
 -- whose track ends close by may have touched unseen: one step for each, not judged
-SELECT l.drive_id, l.ego_id, s.t_ns, l.object_id, NULL
+SELECT l.drive_id, l.ego_id, s.t_ns, l.object_id, NULL, format('the track of object {} ends close to the ego', l.object_id)
 FROM lost_object l
 ASOF JOIN step s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id AND l.t_from_ns <= s.t_ns
 WHERE l.code = 'lost_near_ego'
 UNION ALL
 -- so may whoever came near between two steps
-SELECT drive_id, ego_id, t_next_ns, object_id, NULL FROM between_steps
+SELECT drive_id, ego_id, t_next_ns, object_id, NULL, format('object {} came close between two samples', object_id) FROM between_steps
 UNION ALL
 -- so may whoever is close by when a hole of the log ends
-SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, NULL
+SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, NULL, format('object {} is close by where a hole of the log ends', p.object_id)
 FROM step s
 JOIN clock c USING (drive_id, ego_id)
 JOIN pair p USING (drive_id, ego_id, t_ns)

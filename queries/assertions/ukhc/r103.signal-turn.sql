@@ -10,6 +10,7 @@
 -- sense = "holds"
 -- reads = ["ego_state", "junction_passage"]
 -- requires = ["map", "registration", "ego_size", "indicator"]
+-- without_time = "the log does not show the ego on its way into the junction"
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, turn

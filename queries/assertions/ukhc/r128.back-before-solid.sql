@@ -10,6 +10,7 @@
 -- sense = "holds"
 -- reads = ["line_step", "overtake"]
 -- requires = ["map", "registration", "handedness", "markings", "ego_size"]
+-- without_anchor = "the log does not show the ego back in its lane"
 
 -- @reference
 SELECT o.drive_id, o.ego_id, o.t0_ns AS t_ns, max(o.vbp_id) AS object_id, o.t3_ns, o.t_end_ns, o.opposing, CASE o.side WHEN 1 THEN 'left' ELSE 'right' END AS side

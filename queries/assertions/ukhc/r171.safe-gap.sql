@@ -10,6 +10,7 @@
 -- sense = "holds"
 -- reads = ["junction_passage", "passage_conflict"]
 -- requires = ["map", "registration", "ego_size"]
+-- without_time = "the log does not show the ego on its way into the junction"
 --
 -- [params.pet_s]
 -- default = 2.0

@@ -12,6 +12,7 @@
 -- observes = "least speed just before the stop line"
 -- reads = ["junction_passage", "stop_line_crossing"]
 -- requires = ["map", "registration", "ego_size"]
+-- without_time = "the log does not show the ego on its way into the junction"
 --
 -- [params.standing_mps]
 -- default = 0.1

@@ -10,6 +10,8 @@
 -- sense = "holds"
 -- reads = ["junction_passage", "standstill"]
 -- requires = ["map", "registration", "ego_size", "traffic_lights"]
+-- without_time = "the log does not show the ego on its way into the junction"
+-- without_anchor = "the log does not show the ego on its way out of the junction"
 --
 -- [params.near_m]
 -- default = 10.0

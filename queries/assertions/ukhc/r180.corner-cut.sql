@@ -11,6 +11,7 @@
 -- observes = "reach over the middle of the road entered"
 -- reads = ["ego_corridor", "ego_state", "junction_passage"]
 -- requires = ["map", "registration", "ego_size"]
+-- without_time = "the log does not show the ego on its way out of the junction"
 --
 -- [params.tolerance_m]
 -- default = 0.3

@@ -11,6 +11,7 @@
 -- sense = "holds"
 -- reads = ["beside", "junction_passage", "passing"]
 -- requires = ["map", "registration", "ego_size"]
+-- without_time = "the log does not show the ego on its way into the junction"
 --
 -- [params.window_s]
 -- default = 5.0

@@ -11,6 +11,7 @@
 -- observes = "room to the near edge of the lane entered"
 -- reads = ["data_log", "ego_corridor", "ego_state", "junction_passage", "lane_beside", "pair"]
 -- requires = ["map", "registration", "ego_size"]
+-- without_time = "the log does not show the ego on its way out of the junction"
 --
 -- [params.near_m]
 -- default = 1.5

@@ -77,6 +77,10 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     reads: tuple[str, ...]
     requires: tuple[str, ...] = ()
     reference: str | None = None
+    without_time: str | None = None
+    """What the log does not show where the time of a reference point is not known, as a clause."""
+    without_anchor: str | None = None
+    """The same for an anchor without a time."""
     exempt_after_s: Seconds = 0.0
     merge_gap_s: Seconds = 1.0
     law: tuple[str, ...] = ()
@@ -175,6 +179,12 @@ def _contradiction(h: Header) -> tuple[str, str] | None:
             h.observes is not None and (h.sense == "holds" or not h.observes.strip()),
             "observes",
             "observes names what a measured condition observes, as a short noun phrase; sense = 'holds' observes nothing",
+        ),
+        (h.kind == "invariant" and h.without_time is not None, "without_time", "an invariant has no reference point"),
+        (
+            h.subtype != "physical" and h.without_anchor is not None,
+            "without_anchor",
+            "without_anchor is for physical conditions: no other has an anchor",
         ),
         (not h.reads, "reads", "reads must name the tables that the rule reads"),
     ]

@@ -158,7 +158,7 @@ def _check_sections(header: Header, sections: dict[str, Section], queries: dict[
     measured = ("holds",) if header.sense == "holds" else ("observed", "required")
     contracts: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         "condition": ((*_KEYS, *measured), _CONDITION),
-        "applies": (_KEYS, (*_KEYS, "object_id", "episode", "applies")),
+        "applies": (_KEYS, (*_KEYS, "object_id", "episode", "applies", "reason")),
         "anchor": (("ref_id", "t_ns"), ("ref_id", "drive_id", "ego_id", "t_ns")),
     }
     for name, query in queries.items():

@@ -35,17 +35,20 @@ _NOT_KNOWN = "\n        ".join(
 )
 
 SENTENCE = f"""CASE
-    WHEN reason IS NOT NULL THEN reason
+    WHEN reason IS NOT NULL AND (verdict <> 'unknown' OR code <> 'applies_unknown') THEN reason
     WHEN verdict = 'unknown' THEN CASE code
         WHEN 'missing_step' THEN 'Not judged: the rule''s data has no row at ' || {_AT} || '.'
         WHEN 'null_value' THEN 'Not judged: a value that it needs is not known at ' || {_AT} || '.'
         WHEN 'only_a_bound' THEN 'Not decided: only a bound is known at ' || {_AT}
             || coalesce(' (' || {_OBSERVED} || ', required ' || {_REQUIRED} || ')', '') || '.'
-        WHEN 'applies_unknown' THEN 'Not judged: whether the rule applies is not known at ' || {_AT} || '.'
+        WHEN 'applies_unknown' THEN 'Not judged: whether the rule applies is not known' || coalesce(' at ' || {_AT}, '')
+            || coalesce(': ' || reason, '') || '.'
         {_NOT_KNOWN}
         WHEN 'not_engaged' THEN 'Not judged: the automated driver does not drive' || coalesce(' at ' || {_AT}, '') || '.'
-        WHEN 'reference_time_unknown' THEN 'Not judged: the time of the assertion reference point is not known.'
-        WHEN 'anchor_unknown' THEN 'Not judged: it is not known when or where the condition had to hold.'
+        WHEN 'reference_time_unknown' THEN 'Not judged: '
+            || coalesce(without_time, 'the time of the assertion reference point is not known') || '.'
+        WHEN 'anchor_unknown' THEN 'Not judged: '
+            || coalesce(without_anchor, 'it is not known when or where the condition had to hold') || '.'
         WHEN 'beyond_sensor_range' THEN 'Not judged: nobody was seen at ' || {_AT}
             || ', but the sensors do not reach everywhere.'
         WHEN 'window_truncated' THEN format(
@@ -112,25 +115,40 @@ SELECT drive_id, ego_id, min(t_ns) FILTER (lost) AS gone_ns, max(t_ns) FILTER (N
 FROM track_end GROUP BY ALL
 """
 
+_LACKS = """CASE WHEN p.off_level THEN 'off_level' WHEN p.x_m IS NULL OR p.y_m IS NULL THEN 'no_position'
+        WHEN p.yaw_rad IS NULL THEN 'no_heading' WHEN p.length_m IS NULL OR p.width_m IS NULL THEN 'no_size' END"""
+"""Why an object has no place, as a code."""
+
 _NO_CAUSE = "('missing_step', 'null_value', 'applies_unknown')"
 """Codes that say at what time something is not known, and not why."""
 
-# the nearest of those who have no place at that time: in most drives the reason
+# why: the ego has no place, or the object of the verdict, or somebody near; where all have one, an ego that is off the lanes
 _CAUSE = f"""
-SELECT drive_id, ego_id, t_ns AS t_decides_ns, min({{'m': h.lane_m, 'id': h.object_id, 'code': coalesce(u.code,
-    CASE WHEN p.off_level THEN 'off_level' WHEN p.x_m IS NULL OR p.y_m IS NULL THEN 'no_position' WHEN p.yaw_rad IS NULL THEN 'no_heading'
-        WHEN p.length_m IS NULL OR p.width_m IS NULL THEN 'no_size' ELSE 'off_lanes' END)}}) AS nearest
-FROM (
-    SELECT DISTINCT drive_id, ego_id, t_decides_ns AS t_ns FROM _named
-    WHERE of_hidden AND verdict = 'unknown' AND reason IS NULL AND code IN {_NO_CAUSE}
+WITH _doubted AS (
+    SELECT DISTINCT drive_id, ego_id, t_decides_ns AS t_ns, object_id, of_hidden, of_lanes
+    FROM _named
+    WHERE verdict = 'unknown' AND reason IS NULL AND code IN {_NO_CAUSE}
+), _near AS (
+    SELECT drive_id, ego_id, t_ns, min({{'m': h.lane_m, 'id': h.object_id, 'code': coalesce(u.code, {_LACKS}, 'off_lanes')}}) AS nearest
+    FROM (SELECT DISTINCT drive_id, ego_id, t_ns FROM _doubted WHERE of_hidden)
+    JOIN hidden h USING (drive_id, ego_id, t_ns)
+    LEFT JOIN unseen u USING (drive_id, ego_id, t_ns, object_id)
+    LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
+    GROUP BY drive_id, ego_id, t_ns
 )
-JOIN hidden h USING (drive_id, ego_id, t_ns)
-LEFT JOIN unseen u USING (drive_id, ego_id, t_ns, object_id)
+SELECT {{'drive_id': d.drive_id, 'ego_id': d.ego_id, 't_ns': d.t_ns, 'object_id': coalesce(d.object_id, ''), 'of_hidden': d.of_hidden,
+    'of_lanes': d.of_lanes}} AS key, CASE
+    WHEN e.x_m IS NULL OR e.y_m IS NULL THEN 'the ego ' || unplaced_words('no_position')
+    WHEN e.yaw_rad IS NULL THEN 'the ego ' || unplaced_words('no_heading')
+    WHEN p.object_id IS NOT NULL AND {_LACKS} IS NOT NULL THEN format('object {{}} {{}}', p.object_id, unplaced_words({_LACKS}))
+    WHEN n.nearest IS NOT NULL AND d.of_hidden THEN format('the nearest without a place is object {{}}, which {{}}{{}}', nearest.id,
+        unplaced_words(nearest.code), CASE WHEN nearest.m >= 1 THEN format(', at least {{:.0f}} m away', floor(nearest.m)) ELSE '' END)
+    WHEN e.lanelet_id IS NULL AND d.of_lanes THEN 'the ego is not on a lane of the map' END AS because
+FROM _doubted d
+LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
 LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
-GROUP BY drive_id, ego_id, t_ns
+LEFT JOIN _near n USING (drive_id, ego_id, t_ns)
 """
-_BECAUSE = """format('; the nearest without a place is object {}, which {}{}.', nearest.id, unplaced_words(nearest.code),
-    CASE WHEN nearest.m >= 1 THEN format(', at least {:.0f} m away', floor(nearest.m)) ELSE '' END)"""
 
 _VERDICTS = f"""
 INSERT INTO verdict BY NAME
@@ -144,9 +162,10 @@ _numbered AS (
         ORDER BY coalesce(t_ref_ns, t_start_ns) NULLS LAST, t_start_ns NULLS LAST, t_end_ns NULLS LAST,
             ref_id NULLS LAST, code) - 1 AS occurrence,
         coalesce(replace(label, '_', ' ') || ': ', '') || {SENTENCE} AS told,
-        CASE WHEN nearest IS NOT NULL AND of_hidden AND verdict = 'unknown' AND reason IS NULL AND code IN {_NO_CAUSE}
-            THEN rtrim(told, '.') || {_BECAUSE} ELSE told END AS sentence
-    FROM _named LEFT JOIN _cause USING (drive_id, ego_id, t_decides_ns))
+        CASE WHEN because IS NOT NULL AND verdict = 'unknown' AND reason IS NULL AND code IN {_NO_CAUSE}
+            THEN format('{{}}; {{}}.', rtrim(told, '.'), because) ELSE told END AS sentence
+    FROM _named n LEFT JOIN _cause c ON c.key.drive_id = n.drive_id AND c.key.ego_id = n.ego_id AND c.key.t_ns = n.t_decides_ns
+        AND c.key.object_id = coalesce(n.object_id, '') AND c.key.of_hidden = n.of_hidden AND c.key.of_lanes = n.of_lanes)
 SELECT v.drive_id, v.ego_id, rule_id, rule_version, kind, profile, severity, object_id,
     occurrence::INTEGER AS occurrence, ref_id, t_ref_ns, t_start_ns, t_end_ns,
     t_worst_ns, verdict, code AS reason_code, sentence AS reason, observed, required, margin, unit,

@@ -107,24 +107,27 @@ SELECT s.drive_id, s.ego_id, '' FROM _subject s ANTI JOIN _known k ON s.drive_id
 
 
 def _grid(rule: Rule, partial: bool, unsettled: bool, watching: bool) -> str:
-    """CTEs ending in `_grid`: drive_id, ego_id, t_ns, object_id, label, k, seg, applies, doubt (why it is NULL)."""
+    """CTEs ending in `_grid`: drive_id, ego_id, t_ns, object_id, label, k, seg, applies, doubt and why (the code and the author's
+    reason where it is NULL)."""
     if "applies" not in rule.sections:
-        first = f"_base AS (SELECT *, NULL::VARCHAR AS label, true AS applies FROM ({_default_grid(rule.per_object)}))"
+        first = "_base AS (SELECT *, NULL::VARCHAR AS label, true AS applies, NULL::VARCHAR AS why"
+        first += f" FROM ({_default_grid(rule.per_object)}))"
     else:
         own = rule.columns["applies"]
         who = "object_id" if "object_id" in own else "NULL::VARCHAR AS object_id"
         label = "episode::VARCHAR AS label" if "episode" in own else "NULL::VARCHAR AS label"
         three = "applies" if "applies" in own else "true"
+        why = f"min(reason) FILTER (({three}) IS NULL)" if "reason" in own else "NULL::VARCHAR"
         crowd = rule.per_object and "object_id" not in own
         first = f"""_applies AS (
 {rule.sections["applies"]}
 ), _distinct AS (
     SELECT drive_id, ego_id, t_ns, {who}, {label}, CASE WHEN bool_or(coalesce({three}, false)) THEN true
         WHEN bool_or({three} IS NULL) THEN NULL
-        ELSE false END AS applies
+        ELSE false END AS applies, {why} AS why
     FROM _applies GROUP BY ALL
 ), _base AS (
-    SELECT a.drive_id, a.ego_id, a.t_ns, {"p" if crowd else "a"}.object_id, a.label, b.k, b.seg, a.applies
+    SELECT a.drive_id, a.ego_id, a.t_ns, {"p" if crowd else "a"}.object_id, a.label, b.k, b.seg, a.applies, a.why
     FROM _distinct a LEFT JOIN step b ON {_SAME}
     {"JOIN pair p ON a.drive_id = p.drive_id AND a.ego_id = p.ego_id AND a.t_ns = p.t_ns" if crowd else ""})"""
     keep = ""
@@ -187,7 +190,7 @@ WITH {terms.state(rule)}, {grid}, _joined AS (
         g.applies AND (v.t_ns IS NULL OR v.applies) AS applies, v.holds, v.gain, v.observed, v.required,
         CASE WHEN g.applies IS NULL THEN g.doubt WHEN v.t_ns IS NULL THEN 'missing_step'
             WHEN v.applies IS NULL THEN coalesce(v.code, 'applies_unknown') ELSE v.code END AS code,
-        CASE WHEN g.applies THEN v.reason END AS reason
+        CASE WHEN g.applies THEN v.reason WHEN g.applies IS NULL AND g.doubt = 'applies_unknown' THEN g.why END AS reason
     FROM _grid g {profiles}
     LEFT JOIN _state v ON g.drive_id = v.drive_id AND g.ego_id = v.ego_id AND g.t_ns = v.t_ns{who}{profile}
 ), _steps AS (SELECT * REPLACE (CASE WHEN applies THEN holds END AS holds) FROM _joined

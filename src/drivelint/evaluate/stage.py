@@ -27,7 +27,8 @@ CREATE OR REPLACE TEMP TABLE _segment AS
         FROM step GROUP BY ALL;
 CREATE OR REPLACE TEMP TABLE _rule (rule_no INTEGER, rule_id VARCHAR, rule_version VARCHAR, kind VARCHAR,
     severity VARCHAR,
-    sense VARCHAR, unit VARCHAR, observes VARCHAR, near_margin DOUBLE, of_others BOOLEAN, of_hidden BOOLEAN);
+    sense VARCHAR, unit VARCHAR, observes VARCHAR, near_margin DOUBLE, without_time VARCHAR, without_anchor VARCHAR,
+    of_others BOOLEAN, of_hidden BOOLEAN, of_lanes BOOLEAN);
 CREATE OR REPLACE TEMP TABLE _needs (rule_no INTEGER, pos INTEGER, signal VARCHAR);
 CREATE OR REPLACE TEMP TABLE _law (rule_no INTEGER, nation VARCHAR);
 CREATE OR REPLACE TEMP TABLE _error ({_KEYS}, code VARCHAR, reason VARCHAR);
@@ -106,7 +107,8 @@ def _rules(bindings: Sequence[Binding]) -> pa.Table:
     columns = {
         "rule_id": [r.id for r in rules], "rule_version": [r.version for r in rules], "kind": [r.kind for r in rules],
         "severity": [r.severity for r in rules], "sense": [r.sense for r in rules], "unit": [r.unit for r in rules],
-        "observes": [r.observes for r in rules],
+        "observes": [r.observes for r in rules], "without_time": [r.without_time for r in rules],
+        "without_anchor": [r.without_anchor for r in rules],
     }  # fmt: skip
     return pa.table(
         {
@@ -115,6 +117,7 @@ def _rules(bindings: Sequence[Binding]) -> pa.Table:
             "near_margin": pa.array([r.near_margin for r in rules], pa.float64()),
             "of_others": pa.array(["pair" in tables for tables in derived], pa.bool_()),
             "of_hidden": pa.array(["hidden" in tables for tables in derived], pa.bool_()),
+            "of_lanes": pa.array(["registration" in r.requires for r in rules], pa.bool_()),
         }
     )
 
