@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import ptars
@@ -18,6 +18,7 @@ from drivelint.ingest.osi_words import Bulbs, bulbs_of, child, state_codes, word
 from drivelint.ingest.trace import Finding
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -31,6 +32,7 @@ SENSOR_VIEW = "osi3.SensorView"
 _XY: Tree = {"x": None, "y": None}
 _ID: Tree = {"value": None}
 _TIMESTAMP: Tree = {"seconds": None, "nanos": None}
+_LAMPS: Tree = {"indicator_state": None, "brake_light_state": None, "head_light": None, "high_beam": None}
 _TRUTH: Tree = {
     "timestamp": _TIMESTAMP,
     "host_vehicle_id": _ID,
@@ -44,7 +46,7 @@ _TRUTH: Tree = {
             "velocity": _XY,
             "acceleration": _XY,
         },
-        "vehicle_classification": {"type": None, "light_state": {"indicator_state": None, "brake_light_state": None}},
+        "vehicle_classification": {"type": None, "light_state": _LAMPS},
     },
     "traffic_light": {
         "id": _ID,
@@ -64,6 +66,8 @@ VECTORS: dict[str, dict[str, str]] = {
     "dimension": {"length_m": "length", "width_m": "width", "height_m": "height"},
 }
 """Vector of `moving_object.base` -> our column -> its coordinate."""
+_LANES = ("lane_boundary", "lane", "reference_line", "logical_lane_boundary", "logical_lane")
+_BESIDE = ("traffic_sign", "traffic_light", "road_marking")
 _NEVER_ZERO = frozenset({"position", "dimension"})
 """Vectors that say nothing without any coordinate, even of a writer that leaves zeros out."""
 
@@ -179,7 +183,8 @@ class Head(NamedTuple):
 def head_of(data: bytes, name: str) -> Head:
     """Return lanes and geo reference (a PROJ string) of a ground truth, or of the one in a sensor view.
 
-    Lanes without boundaries have no width, and nothing can be placed on them: they are told, and make no map.
+    The lanes go with their boundaries, signs, lights and road markings. Lanes without boundaries have no width, and nothing can be
+    placed on them: they are told, and make no map.
     """
     try:
         outer = osi_schema.message(name.removeprefix("osi3.")).FromString(data)
@@ -187,16 +192,22 @@ def head_of(data: bytes, name: str) -> Head:
         return Head()  # whether the message is damaged, who reads its objects says
     truth = outer.global_ground_truth if name == SENSOR_VIEW else outer
     reference = str(truth.proj_string) or None
-    if not truth.lane_boundary:
-        n = len(truth.lane)
+    if not (truth.lane_boundary or truth.logical_lane_boundary):
+        n = len(truth.lane) + len(truth.logical_lane)
         message = f"lanes in the log: {n}, all of them centre lines without boundaries: without a width they make no map: give --map"
         return Head(None, reference, (Finding("lanes_without_width", "info", message, n),) if n else ())
-    if not truth.lane:
+    if not (truth.lane or truth.logical_lane):
         return Head(None, reference)
+    # a map is known by the tag that it begins with, so that lanes stand before what stands beside them
+    return Head(b"".join(_copied(truth, names) for names in (_LANES, _BESIDE)), reference)
+
+
+def _copied(truth: Any, names: Iterable[str]) -> bytes:
+    """Return the named lists of a ground truth as the bytes of one that has nothing else."""
     kept = osi_schema.message("GroundTruth")()
-    kept.lane.extend(truth.lane)
-    kept.lane_boundary.extend(truth.lane_boundary)
-    return Head(bytes(kept.SerializeToString(deterministic=True)), reference)
+    for name in names:
+        getattr(kept, name).extend(getattr(truth, name))
+    return bytes(kept.SerializeToString(deterministic=True))
 
 
 def malformed(path: Path, packet: Packet, error: ValueError) -> TraceError:

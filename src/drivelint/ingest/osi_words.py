@@ -10,6 +10,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.ingest.descriptors import enum_names
+from drivelint.ingest.lamps import HEADLIGHTS
 from drivelint.ingest.trace import BRAKE_LIGHTS, CLASSES, INDICATORS
 
 if TYPE_CHECKING:
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
     from drivelint.ingest.descriptors import Types
 
+OFF, ON, OTHER = 0, 1, 2
 _KINDS = {"TYPE_VEHICLE": "vehicle", "TYPE_PEDESTRIAN": "pedestrian", "TYPE_ANIMAL": "animal"}
 _VEHICLES = {
     "TYPE_SMALL_CAR": "car", "TYPE_COMPACT_CAR": "car", "TYPE_CAR": "car", "TYPE_MEDIUM_CAR": "car",
@@ -32,6 +34,10 @@ _INDICATORS = {
     "INDICATOR_STATE_WARNING": "hazard",
 }
 _BRAKE_LIGHTS = {"BRAKE_LIGHT_STATE_OFF": "off", "BRAKE_LIGHT_STATE_NORMAL": "on", "BRAKE_LIGHT_STATE_STRONG": "strong"}
+_LAMPS = {
+    "GENERIC_LIGHT_STATE_OFF": OFF, "GENERIC_LIGHT_STATE_ON": ON,
+    **dict.fromkeys((f"GENERIC_LIGHT_STATE_{word}" for word in ("OTHER", "FLASHING_BLUE", "FLASHING_BLUE_AND_RED", "FLASHING_AMBER")), OTHER),
+}  # fmt: skip
 # one bulb each: bits of a traffic light's lit colours
 RED, AMBER, GREEN, FLASHING, UNKNOWN = 1, 2, 4, 8, 16
 _COLORS = {"COLOR_RED": RED, "COLOR_YELLOW": AMBER, "COLOR_GREEN": GREEN}
@@ -47,6 +53,7 @@ class Words:
     vehicle: NDArray[np.int8]
     indicator: NDArray[np.int8]
     brake_light: NDArray[np.int8]
+    lamp: NDArray[np.int8]
     color: NDArray[np.int8]
     mode: dict[str, int]
 
@@ -71,6 +78,7 @@ def words_of(types: Types, truth: str) -> Words:
             enum_names(types, truth, *lights, "brake_light_state"),
             {n: BRAKE_LIGHTS.index(w) for n, w in _BRAKE_LIGHTS.items()},
         ),
+        _table(enum_names(types, truth, *lights, "head_light"), _LAMPS),
         _table(enum_names(types, truth, "traffic_light", "classification", "color"), _COLORS),
         {name: number for number, name in modes.items()},
     )
@@ -98,7 +106,7 @@ def child(parent: pa.Array, name: str) -> pa.Array:
 
 
 def state_codes(words: Words, objects: pa.Array) -> dict[str, NDArray[np.int8]]:
-    """Return class, indicator and brake light of moving objects as codes. A vehicle of unsaid kind is a `vehicle`."""
+    """Return class, indicator, brake light and headlights of moving objects as codes. A vehicle of unsaid kind is a `vehicle`."""
     vehicle = child(objects, "vehicle_classification")
     lights = child(vehicle, "light_state")
     kind = _look(words.kind, child(objects, "type"))
@@ -108,7 +116,19 @@ def state_codes(words: Words, objects: pa.Array) -> dict[str, NDArray[np.int8]]:
         "actor_class": np.where(is_vehicle & (finer >= 0), finer, kind),
         "indicator": _look(words.indicator, child(lights, "indicator_state")),
         "brake_light": _look(words.brake_light, child(lights, "brake_light_state")),
+        HEADLIGHTS: _headlights(
+            _look(words.lamp, child(lights, "head_light")), _look(words.lamp, child(lights, "high_beam"))
+        ),
     }
+
+
+def _headlights(dipped: NDArray[np.int8], main: NDArray[np.int8]) -> NDArray[np.int8]:
+    """Return whether the headlights are on: dipped or main beam. Off: `head_light` says so and `high_beam` nothing else.
+
+    A state of another kind, flashing or OTHER, is not known.
+    """
+    off = (dipped == OFF) & np.isin(main, (OFF, -1))
+    return np.where((dipped == ON) | (main == ON), ON, np.where(off, OFF, -1)).astype(np.int8)
 
 
 @dataclass(frozen=True)
