@@ -134,7 +134,11 @@ _READ_MESSAGES: Final[dict[str, tuple[tuple[str, int, str], ...]]] = {
         ("logical_lane_boundary", 18, "LogicalLaneBoundary[]"),
         ("logical_lane", 19, "LogicalLane[]"),
     ),
-    _LIGHTS: (*MESSAGES[_LIGHTS], ("head_light", 4, f"{_LIGHTS}.GenericLightState"), ("high_beam", 5, f"{_LIGHTS}.GenericLightState")),
+    _LIGHTS: (
+        *MESSAGES[_LIGHTS],
+        ("head_light", 4, f"{_LIGHTS}.GenericLightState"),
+        ("high_beam", 5, f"{_LIGHTS}.GenericLightState"),
+    ),
     "BaseStationary": (
         ("dimension", 1, "Dimension3d"),
         ("position", 2, "Vector3d"),
@@ -281,6 +285,10 @@ _READ_ENUMS: Final[dict[str, dict[str, int]]] = {
 PACKAGE: Final = "osi3"
 GROUND_TRUTH: Final = f"{PACKAGE}.GroundTruth"
 OPEN_DRIVE: Final = f"{PACKAGE}.MapAsamOpenDrive"
+OPEN_DRIVE_REFERENCE: Final = "net.asam.opendrive"
+"""Type of an `ExternalReference` to what is in an OpenDRIVE map."""
+LIGHT_REFERENCE: Final = "drivelint.light"
+"""Type of ours that names the light to which a bulb belongs that refers to no OpenDRIVE signal."""
 VERSION: Final = (3, 7, 0)
 """The version of OSI that is written."""
 

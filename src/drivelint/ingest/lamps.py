@@ -29,8 +29,8 @@ def with_lamps(events: pa.Table | None, states: States) -> pa.Table | None:
     first[1:] = states.actor[1:] != states.actor[:-1]
     changed = first.copy()
     changed[1:] |= codes[1:] != codes[:-1]
-    declared = set() if events is None else set(
-        events.filter(pc.equal(events["event"], HEADLIGHTS))["actor_id"].to_pylist()
+    declared = (
+        set() if events is None else set(events.filter(pc.equal(events["event"], HEADLIGHTS))["actor_id"].to_pylist())
     )
     told = np.zeros(len(states.ids), np.bool_)
     told[np.unique(states.actor[codes >= 0])] = True

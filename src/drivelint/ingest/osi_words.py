@@ -12,8 +12,11 @@ import pyarrow.compute as pc
 from drivelint.ingest.descriptors import enum_names
 from drivelint.ingest.lamps import HEADLIGHTS
 from drivelint.ingest.trace import BRAKE_LIGHTS, CLASSES, INDICATORS
+from drivelint.osi_schema import OPEN_DRIVE_REFERENCE
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from drivelint.ingest.descriptors import Types
@@ -35,14 +38,17 @@ _INDICATORS = {
 }
 _BRAKE_LIGHTS = {"BRAKE_LIGHT_STATE_OFF": "off", "BRAKE_LIGHT_STATE_NORMAL": "on", "BRAKE_LIGHT_STATE_STRONG": "strong"}
 _LAMPS = {
-    "GENERIC_LIGHT_STATE_OFF": OFF, "GENERIC_LIGHT_STATE_ON": ON,
-    **dict.fromkeys((f"GENERIC_LIGHT_STATE_{word}" for word in ("OTHER", "FLASHING_BLUE", "FLASHING_BLUE_AND_RED", "FLASHING_AMBER")), OTHER),
-}  # fmt: skip
+    "GENERIC_LIGHT_STATE_OFF": OFF,
+    "GENERIC_LIGHT_STATE_ON": ON,
+    "GENERIC_LIGHT_STATE_OTHER": OTHER,
+    "GENERIC_LIGHT_STATE_FLASHING_BLUE": OTHER,
+    "GENERIC_LIGHT_STATE_FLASHING_BLUE_AND_RED": OTHER,
+    "GENERIC_LIGHT_STATE_FLASHING_AMBER": OTHER,
+}
 # one bulb each: bits of a traffic light's lit colours
 RED, AMBER, GREEN, FLASHING, UNKNOWN = 1, 2, 4, 8, 16
 _COLORS = {"COLOR_RED": RED, "COLOR_YELLOW": AMBER, "COLOR_GREEN": GREEN}
 _LIT = {0: "off", RED: "red", RED | AMBER: "red_amber", AMBER: "amber", GREEN: "green"}
-OPEN_DRIVE_REFERENCE = "net.asam.opendrive"
 
 
 @dataclass(frozen=True)
@@ -140,8 +146,11 @@ class Bulbs:
     bits: NDArray[np.int8]
 
 
-def bulbs_of(words: Words, lights: pa.Array) -> Bulbs:
-    """Read the bulbs of `traffic_light` lists: each belongs to the OpenDRIVE signal it refers to, else is its own."""
+def bulbs_of(words: Words, lights: pa.Array, joined: Mapping[str, str]) -> Bulbs:
+    """Read the bulbs of `traffic_light` lists: each belongs to the OpenDRIVE signal it refers to, else to the light that `joined` names.
+
+    Of others each is its own.
+    """
     if not pa.types.is_list(lights.type):
         return Bulbs(np.zeros(0, np.intp), [], np.zeros(0, np.int8))
     bulbs = lights.flatten()
@@ -154,10 +163,10 @@ def bulbs_of(words: Words, lights: pa.Array) -> Bulbs:
     bits[mode == words.mode.get("MODE_OFF", -2)] = 0
     bits[mode == words.mode.get("MODE_FLASHING", -2)] = FLASHING
     bits[lit & (color > 0)] = color[lit & (color > 0)]
-    return Bulbs(np.repeat(np.arange(len(lights)), counts), _signal_ids(bulbs), bits)
+    return Bulbs(np.repeat(np.arange(len(lights)), counts), _signal_ids(bulbs, joined), bits)
 
 
-def _signal_ids(bulbs: pa.Array) -> list[str]:
+def _signal_ids(bulbs: pa.Array, joined: Mapping[str, str]) -> list[str]:
     own = pc.fill_null(child(child(bulbs, "id"), "value").cast(pa.uint64()), 0).to_pylist()
     references = child(bulbs, "source_reference").to_pylist()
     ids = []
@@ -165,7 +174,7 @@ def _signal_ids(bulbs: pa.Array) -> list[str]:
         names = [
             s["identifier"][0] for s in sources or [] if s.get("type") == OPEN_DRIVE_REFERENCE and s.get("identifier")
         ]
-        ids.append(names[0] if names else str(number))
+        ids.append(names[0] if names else joined.get(str(number), str(number)))
     return ids
 
 

@@ -10,6 +10,7 @@ import shapely
 
 from drivelint.maps import osi_kinds as kinds
 from drivelint.maps.signcodes import kind_of
+from drivelint.osi_schema import LIGHT_REFERENCE, OPEN_DRIVE_REFERENCE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -24,9 +25,6 @@ if TYPE_CHECKING:
 
 _ON_ROAD_M = 1.0  # what is painted lies no further than this above or below the lane
 _ACROSS = 0.7  # sine of the least angle between a stop line and its lane
-_OPEN_DRIVE = "net.asam.opendrive"
-HEAD = "drivelint.head"
-"""Type of the reference by which the reader of the trace joins the bulbs of a light that is in no OpenDRIVE map."""
 
 
 def read(
@@ -44,11 +42,13 @@ def read(
     crossings: list[Row] = []
     for mark in truth.road_marking:
         said = mark.classification
-        if said.is_out_of_service:
+        if said.is_out_of_service or not np.isfinite(_outline(mark, road)).all():
             continue
         if said.type == kinds.SYMBOL and said.traffic_main_sign_type == kinds.ZEBRA:
             crossings += _zebra(mark, road)
-        elif (said.type == kinds.SYMBOL and said.traffic_main_sign_type == kinds.STOP_SIGN) or _code(said) == "stop_line":
+        elif (said.type == kinds.SYMBOL and said.traffic_main_sign_type == kinds.STOP_SIGN) or _code(
+            said
+        ) == "stop_line":
             stops += _stop_line(mark, road, quality)
     return {
         "traffic_signal": sorted(signals, key=lambda r: (r["signal_id"], r["type"] or "", r["lanelet_id"])),
@@ -152,7 +152,7 @@ def _heads(bulbs: Iterable[Any]) -> dict[str, list[Any]]:
     heads: dict[str, list[Any]] = {}
     for bulb in bulbs:
         named = {ref.type: ref.identifier[0] for ref in reversed(bulb.source_reference) if ref.identifier}
-        name = named.get(_OPEN_DRIVE) or named.get(HEAD) or str(bulb.id.value)
+        name = named.get(OPEN_DRIVE_REFERENCE) or named.get(LIGHT_REFERENCE) or str(bulb.id.value)
         if not bulb.classification.is_out_of_service:
             heads.setdefault(name, []).append(bulb)
     return heads
@@ -191,7 +191,8 @@ def _outline(mark: Any, road: _Road) -> Floats:
     size = mark.base.dimension
     half = np.array([size.length, size.width, size.height]) / 2
     signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1)
-    return (road.place(mark.base)[:, None] + rotation(mark.base) @ (half[:, None] * signs))[:2].T
+    corners: Floats = (road.place(mark.base)[:, None] + rotation(mark.base) @ (half[:, None] * signs))[:2].T
+    return corners
 
 
 def _over(mark: Any, area: Any, road: _Road) -> list[tuple[BoundedLane, float]]:
@@ -232,7 +233,10 @@ def _stop_line(mark: Any, road: _Road, quality: Quality) -> Iterable[Row]:
     name = str(mark.id.value)
     if not across:
         quality.add("stop_line_without_lane", "warning", None, f"stop line {name} lies across no lane for driving")
-    return [{"stop_line_id": name, "lanelet_id": lane.lanelet_id, "lane_s_m": s, "source": "object"} for lane, s, _ in across]
+    return [
+        {"stop_line_id": name, "lanelet_id": lane.lanelet_id, "lane_s_m": s, "source": "object"}
+        for lane, s, _ in across
+    ]
 
 
 def _zebra(mark: Any, road: _Road) -> Iterable[Row]:

@@ -46,17 +46,19 @@ class OsiLanesReader:
         logical = osi_logical.read(truth, quality)
         physical = osi_physical.read(truth, quality)
         covers = _covers(logical, physical)
-        alone = {name: lane for name, lane in physical.items() if name not in covers}
-        for name in sorted(alone.keys() & logical.keys()):
-            message = f"lane {name} is left out: a logical lane of another place has the same id"
-            quality.add("invalid_lane", "error", str(name), message)
-            del alone[name]
+        alone = {i: lane for i, lane in physical.items() if i not in covers}
+        for i in sorted(alone.keys() & logical.keys()):
+            message = f"lane {i} is left out: a logical lane of another place has the same id"
+            quality.add("invalid_lane", "error", str(i), message)
+            del alone[i]
         ways = osi_physical.ways(truth, alone)
         read = [*osi_logical.lanelets(logical, truth), *osi_physical.lanelets(alone, truth, ways)]
         lanes = build(read, request.offset, quality)
         if not any(lane.drivable for lane in lanes):
             raise MapError(f"map {source.name}: {_why_none(truth, quality)}")
-        heights = {str(name): lane.centre for name, lane in {**alone, **logical}.items()}
+        heights = {str(i): lane.centre for i, lane in alone.items()} | {
+            str(i): lane.centre for i, lane in logical.items()
+        }
         heights |= {way.lanelet_id: osi_physical.way_heights(way.lanelet_id, alone) for way in ways}
         for lane in lanes:
             lane.z_m = _height(heights[lane.lanelet_id], lane.line.centre - request.offset)
@@ -85,17 +87,24 @@ def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalL
         for ref in lane.physical:
             covers.setdefault(ref, []).append(name)
     names = list(logical)
-    areas = [shapely.Polygon(np.vstack([lane.left[:, :2], lane.right[::-1, :2]])).buffer(0.0) for lane in logical.values()]
+    areas = [
+        shapely.Polygon(np.vstack([lane.left[:, :2], lane.right[::-1, :2]])).buffer(0.0) for lane in logical.values()
+    ]
     tree = shapely.STRtree(areas)
-    for name, lane in physical.items():
-        if name in covers or not names:
+    for ref, drawn in physical.items():
+        if ref in covers or not names:
             continue
-        points = _middles(lane.centre)
+        points = _middles(drawn.centre)
         over, under = tree.query(shapely.points(points[:, :2]), predicate="within")
-        level = np.array([abs(points[p, 2] - _height(logical[names[a]].centre, points[p : p + 1, :2])[0]) for p, a in zip(over, under, strict=True)])
+        level = np.array(
+            [
+                abs(points[p, 2] - _height(logical[names[a]].centre, points[p : p + 1, :2])[0])
+                for p, a in zip(over, under, strict=True)
+            ]
+        )
         same = level < _SAME_SURFACE_M
         if len(set(over[same].tolist())) > len(points) / 2:
-            covers[name] = sorted({names[a] for a in under[same].tolist()})
+            covers[ref] = sorted({names[a] for a in under[same].tolist()})
     return covers
 
 
@@ -116,11 +125,13 @@ def _height(line: Floats, points: Floats) -> Floats:
 def _why_none(truth: Any, quality: Quality) -> str:
     """Say why no lane for driving could be built: the most frequent reason."""
     n = len(truth.logical_lane) + len(truth.lane)
-    reasons = Counter(row["message"].partition(" is left out: ")[2] for row in quality.rows if row["check_id"] == "invalid_lane")
+    reasons = Counter(
+        row["message"].partition(" is left out: ")[2] for row in quality.rows if row["check_id"] == "invalid_lane"
+    )
     if not reasons:
         return f"none of the log's own {n} lanes is one for driving"
     reason, most = min(reasons.items(), key=lambda item: (-item[1], item[0]))
-    return f"none of the log's own {n} lanes can be driven on by what it says; of {most}: {reason}"
+    return f"none of the log's own {n} lanes is one for driving that can be built, {most} of them because {reason}: give --map"
 
 
 def _handedness(lanes: list[BoundedLane], request: Request, quality: Quality) -> tuple[str, str]:

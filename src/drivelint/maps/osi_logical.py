@@ -120,7 +120,9 @@ def _lane(message: Any, bounds: Mapping[int, Any]) -> LogicalLane:
         raise UnbuildableError("its boundaries have no length")
     stations = np.concatenate([left[:, 3], right[:, 3]])
     at = np.unique(np.concatenate([[begin, end], stations[(stations > begin) & (stations < end)]]))
-    first, second = (np.column_stack([np.interp(at, side[:, 3], side[:, k]) for k in range(3)]) for side in (left, right))
+    first, second = (
+        np.column_stack([np.interp(at, side[:, 3], side[:, k]) for k in range(3)]) for side in (left, right)
+    )
     if way == kinds.DECREASING:
         return LogicalLane(message, second[::-1], first[::-1], (begin, end), -1)
     return LogicalLane(message, first, second, (begin, end), 1)
@@ -131,11 +133,15 @@ def _side(ids: Iterable[Any], bounds: Mapping[int, Any], word: str) -> Floats:
     names = [i.value for i in ids]
     lost = [str(i) for i in names if i not in bounds]
     if not names or lost:
-        raise UnbuildableError(f"its {word} boundary {', '.join(lost)} is not in the log" if lost else f"it has no {word} boundary")
+        raise UnbuildableError(
+            f"its {word} boundary {', '.join(lost)} is not in the log" if lost else f"it has no {word} boundary"
+        )
     parts = []
     for name in names:
         line = bounds[name].boundary_line
-        points = np.array([(p.position.x, p.position.y, p.position.z, p.s_position) for p in line], np.float64).reshape(-1, 4)
+        points = np.array([(p.position.x, p.position.y, p.position.z, p.s_position) for p in line], np.float64).reshape(
+            -1, 4
+        )
         if len(points) < 2 or not np.isfinite(points).all():
             raise UnbuildableError(f"its {word} boundary {name} has fewer than two points with finite coordinates")
         parts.append(points)
@@ -143,7 +149,8 @@ def _side(ids: Iterable[Any], bounds: Mapping[int, Any], word: str) -> Floats:
     if (np.diff(joined[:, 3]) < -1e-3).any() or joined[0, 3] >= joined[-1, 3]:
         raise UnbuildableError(f"the s positions of its {word} boundary do not ascend")
     # where a boundary steps aside, two points have one station
-    joined[:, 3] = np.maximum.accumulate(joined[:, 3]) + np.arange(len(joined)) * 1e-9
+    joined[:, 3] = np.maximum.accumulate(joined[:, 3])
+    joined[1:, 3] += np.cumsum(np.diff(joined[:, 3]) == 0) * 1e-9
     return joined
 
 
@@ -178,7 +185,9 @@ def _neighbour(
     """Return the lane that is beside a lane for longest, and whether it is driven the other way."""
     begin, end = lane.span
     length = {
-        r.other_lane_id.value: min(r.end_s, end) - max(r.start_s, begin) for r in relations if r.other_lane_id.value in lanes
+        r.other_lane_id.value: min(r.end_s, end) - max(r.start_s, begin)
+        for r in relations
+        if r.other_lane_id.value in lanes
     }
     if not length:
         return None, None
@@ -201,7 +210,9 @@ def _marks(lane: LogicalLane, bounds: Mapping[int, Any], types: Mapping[int, int
             begin, end = sorted((lane.share(min(stations)), lane.share(max(stations))))
             if end <= begin:
                 continue
-            physical = [types.get(p.value) for p in bound.physical_boundary_id]  # from right to left of the reference line
+            physical = [
+                types.get(p.value) for p in bound.physical_boundary_id
+            ]  # from right to left of the reference line
             marking = kinds.marking(physical if nearest_first else physical[::-1])
             if not physical and told:
                 marking = "none"

@@ -93,7 +93,9 @@ def _turned(lane: Any, bounds: Mapping[int, Any], *, drops: bool) -> PhysicalLan
     """Return a lane in the direction of travel. Errors: `UnbuildableError` saying what it lacks."""
     said = lane.classification
     ids = said.left_lane_boundary_id, said.right_lane_boundary_id
-    lines = [[_xyz(p.position for p in bounds[i.value].boundary_line) for i in side if i.value in bounds] for side in ids]
+    lines = [
+        [_xyz(p.position for p in bounds[i.value].boundary_line) for i in side if i.value in bounds] for side in ids
+    ]
     if not (lines[0] and lines[1]):
         lacks = "no boundaries" if not (lines[0] or lines[1]) else f"no {'right' if lines[0] else 'left'} boundary"
         raise UnbuildableError(f"it has {lacks}, and so no width")
@@ -251,7 +253,9 @@ def _linked(plain: Mapping[int, PhysicalLane]) -> list[tuple[int, int]]:
     return sorted((a, b) for a, b in pairs if a in plain and b in plain and _follows(plain[a], plain[b]))
 
 
-def _neighbour(lane: PhysicalLane, ids: Sequence[Any], plain: Mapping[int, PhysicalLane]) -> tuple[str | None, bool | None]:
+def _neighbour(
+    lane: PhysicalLane, ids: Sequence[Any], plain: Mapping[int, PhysicalLane]
+) -> tuple[str | None, bool | None]:
     for i in ids:
         if i.value in plain:
             other = plain[i.value]
