@@ -3,7 +3,8 @@ WITH subject AS (
     SELECT
         c.drive_id, c.ego_id, g.environment_id, g.has_indicator, g.has_brake_light,
         a.length_m IS NOT NULL AND a.width_m IS NOT NULL AS ego_size,
-        EXISTS (FROM declared_event d WHERE d.drive_id = c.drive_id AND d.actor_id = c.ego_id) AS events,
+        -- a log may record lamps without anything that the ego declares of what it looks at or means to do
+        EXISTS (FROM declared_event d WHERE d.drive_id = c.drive_id AND d.actor_id = c.ego_id AND d.event <> 'headlights') AS events,
         EXISTS (FROM signal_state l WHERE l.drive_id = c.drive_id AND l.state IS NOT NULL) AS signals,
         EXISTS (FROM drive_condition x WHERE x.drive_id = c.drive_id AND x.condition = 'road_type') AS road_type_given,
         EXISTS (FROM drive_condition x WHERE x.drive_id = c.drive_id AND x.condition = 'engaged') AS engaged_given,

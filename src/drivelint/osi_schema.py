@@ -125,10 +125,109 @@ _READ_MESSAGES: Final[dict[str, tuple[tuple[str, int, str], ...]]] = {
     **MESSAGES,
     "GroundTruth": (
         *MESSAGES["GroundTruth"],
+        ("traffic_sign", 6, "TrafficSign[]"),
+        ("road_marking", 8, "RoadMarking[]"),
         ("lane_boundary", 9, "LaneBoundary[]"),
         ("lane", 10, "Lane[]"),
         ("proj_string", 14, "string"),
+        ("reference_line", 17, "ReferenceLine[]"),
+        ("logical_lane_boundary", 18, "LogicalLaneBoundary[]"),
+        ("logical_lane", 19, "LogicalLane[]"),
     ),
+    _LIGHTS: (
+        *MESSAGES[_LIGHTS],
+        ("head_light", 4, f"{_LIGHTS}.GenericLightState"),
+        ("high_beam", 5, f"{_LIGHTS}.GenericLightState"),
+    ),
+    "BaseStationary": (
+        ("dimension", 1, "Dimension3d"),
+        ("position", 2, "Vector3d"),
+        ("orientation", 3, "Orientation3d"),
+    ),
+    "LogicalLaneAssignment": (("assigned_lane_id", 1, "Identifier"), ("s_position", 2, "double")),
+    "TrafficLight": (*MESSAGES["TrafficLight"], ("base", 2, "BaseStationary")),
+    "TrafficLight.Classification": (
+        *MESSAGES["TrafficLight.Classification"],
+        ("icon", 2, "uint32"),
+        ("assigned_lane_id", 5, "Identifier[]"),
+        ("is_out_of_service", 6, "bool"),
+        ("logical_lane_assignment", 7, "LogicalLaneAssignment[]"),
+    ),
+    "TrafficSignValue": (("value", 1, "double"), ("value_unit", 2, "uint32")),
+    "TrafficSign": (("id", 1, "Identifier"), ("main_sign", 2, "TrafficSign.MainSign")),
+    "TrafficSign.MainSign": (
+        ("base", 1, "BaseStationary"),
+        ("classification", 2, "TrafficSign.MainSign.Classification"),
+    ),
+    "TrafficSign.MainSign.Classification": (
+        ("variability", 1, "uint32"),
+        ("type", 2, "uint32"),
+        ("value", 3, "TrafficSignValue"),
+        ("assigned_lane_id", 5, "Identifier[]"),
+        ("is_out_of_service", 7, "bool"),
+        ("country", 8, "string"),
+        ("code", 10, "string"),
+        ("sub_code", 11, "string"),
+        ("logical_lane_assignment", 12, "LogicalLaneAssignment[]"),
+    ),
+    "RoadMarking": (
+        ("id", 1, "Identifier"),
+        ("base", 2, "BaseStationary"),
+        ("classification", 3, "RoadMarking.Classification"),
+    ),
+    "RoadMarking.Classification": (
+        ("type", 1, "uint32"),
+        ("traffic_main_sign_type", 2, "uint32"),
+        ("assigned_lane_id", 6, "Identifier[]"),
+        ("is_out_of_service", 7, "bool"),
+        ("country", 8, "string"),
+        ("code", 10, "string"),
+        ("logical_lane_assignment", 12, "LogicalLaneAssignment[]"),
+    ),
+    "ReferenceLine": (("id", 1, "Identifier"),),
+    "LogicalLaneBoundary": (
+        ("id", 1, "Identifier"),
+        ("boundary_line", 2, "LogicalLaneBoundary.LogicalBoundaryPoint[]"),
+        ("reference_line_id", 3, "Identifier"),
+        ("physical_boundary_id", 4, "Identifier[]"),
+        ("passing_rule", 5, "uint32"),
+    ),
+    "LogicalLaneBoundary.LogicalBoundaryPoint": (("position", 1, "Vector3d"), ("s_position", 2, "double")),
+    "LogicalLane": (
+        ("id", 1, "Identifier"),
+        ("type", 2, "uint32"),
+        ("physical_lane_reference", 4, "LogicalLane.PhysicalLaneReference[]"),
+        ("reference_line_id", 5, "Identifier"),
+        ("start_s", 6, "double"),
+        ("end_s", 7, "double"),
+        ("move_direction", 8, "uint32"),
+        ("right_adjacent_lane", 9, "LogicalLane.LaneRelation[]"),
+        ("left_adjacent_lane", 10, "LogicalLane.LaneRelation[]"),
+        ("right_boundary_id", 12, "Identifier[]"),
+        ("left_boundary_id", 13, "Identifier[]"),
+        ("predecessor_lane", 14, "LogicalLane.LaneConnection[]"),
+        ("successor_lane", 15, "LogicalLane.LaneConnection[]"),
+        ("traffic_rule", 17, "LogicalLane.TrafficRule[]"),
+    ),
+    "LogicalLane.PhysicalLaneReference": (("physical_lane_id", 1, "Identifier"),),
+    "LogicalLane.LaneRelation": (
+        ("other_lane_id", 1, "Identifier"),
+        ("start_s", 2, "double"),
+        ("end_s", 3, "double"),
+    ),
+    "LogicalLane.LaneConnection": (("other_lane_id", 1, "Identifier"),),
+    "LogicalLane.TrafficRule": (
+        ("traffic_rule_type", 1, "uint32"),
+        ("traffic_rule_validity", 2, "LogicalLane.TrafficRule.Validity"),
+        ("speed_limit", 3, "LogicalLane.TrafficRule.SpeedLimit"),
+    ),
+    "LogicalLane.TrafficRule.Validity": (
+        ("start_s", 1, "double"),
+        ("end_s", 2, "double"),
+        ("valid_for_type", 3, "LogicalLane.TrafficRule.Validity.TypeValidity[]"),
+    ),
+    "LogicalLane.TrafficRule.Validity.TypeValidity": (("type", 1, "uint32"), ("vehicle_type", 2, "uint32")),
+    "LogicalLane.TrafficRule.SpeedLimit": (("speed_limit_value", 1, "TrafficSignValue"),),
     "LaneBoundary": (
         ("id", 1, "Identifier"),
         ("boundary_line", 2, "LaneBoundary.BoundaryPoint[]"),
@@ -172,11 +271,24 @@ _READ_ENUMS: Final[dict[str, dict[str, int]]] = {
         "TYPE_SEMITRACTOR": 16,
         "TYPE_STANDUP_SCOOTER": 17,
     },
+    f"{_LIGHTS}.GenericLightState": {
+        "GENERIC_LIGHT_STATE_UNKNOWN": 0,
+        "GENERIC_LIGHT_STATE_OTHER": 1,
+        "GENERIC_LIGHT_STATE_OFF": 2,
+        "GENERIC_LIGHT_STATE_ON": 3,
+        "GENERIC_LIGHT_STATE_FLASHING_BLUE": 4,
+        "GENERIC_LIGHT_STATE_FLASHING_BLUE_AND_RED": 5,
+        "GENERIC_LIGHT_STATE_FLASHING_AMBER": 6,
+    },
     "TrafficLight.Classification.Mode": {**ENUMS["TrafficLight.Classification.Mode"], "MODE_COUNTING": 5},
 }
 PACKAGE: Final = "osi3"
 GROUND_TRUTH: Final = f"{PACKAGE}.GroundTruth"
 OPEN_DRIVE: Final = f"{PACKAGE}.MapAsamOpenDrive"
+OPEN_DRIVE_REFERENCE: Final = "net.asam.opendrive"
+"""Type of an `ExternalReference` to what is in an OpenDRIVE map."""
+LIGHT_REFERENCE: Final = "drivelint.light"
+"""Type of ours that names the light to which a bulb belongs that refers to no OpenDRIVE signal."""
 VERSION: Final = (3, 7, 0)
 """The version of OSI that is written."""
 

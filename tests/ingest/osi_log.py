@@ -35,7 +35,12 @@ MESSAGES: dict[str, list[tuple[str, int, str]]] = {
         ("acceleration", 5, "Vector3d"),
         ("base_polygon", 7, "[Vector3d]"),
     ],
-    "LightState": [("indicator_state", 1, "E:Indicator"), ("brake_light_state", 4, "E:Brake")],
+    "LightState": [
+        ("indicator_state", 1, "E:Indicator"),
+        ("brake_light_state", 4, "E:Brake"),
+        ("head_light", 20, "E:Generic"),
+        ("high_beam", 21, "E:Generic"),
+    ],
     "VehicleClassification": [("type", 1, "E:VehicleType"), ("light_state", 2, "LightState")],
     "MovingObject": [
         ("id", 1, "Identifier"),
@@ -44,10 +49,21 @@ MESSAGES: dict[str, list[tuple[str, int, str]]] = {
         ("vehicle_classification", 6, "VehicleClassification"),
         ("model_reference", 7, "string"),
     ],
-    "LightClassification": [("color", 1, "E:Color"), ("icon", 2, "uint32"), ("mode", 3, "E:Mode")],
+    "BaseStationary": [
+        ("dimension", 1, "Dimension3d"),
+        ("position", 2, "Vector3d"),
+        ("orientation", 3, "Orientation3d"),
+    ],
+    "LightClassification": [
+        ("color", 1, "E:Color"),
+        ("icon", 2, "uint32"),
+        ("mode", 3, "E:Mode"),
+        ("assigned_lane_id", 5, "[Identifier]"),
+    ],
     "ExternalReference": [("reference", 1, "string"), ("type", 2, "string"), ("identifier", 3, "[string]")],
     "TrafficLight": [
         ("id", 1, "Identifier"),
+        ("base", 2, "BaseStationary"),
         ("classification", 3, "LightClassification"),
         ("source_reference", 5, "[ExternalReference]"),
     ],
@@ -80,6 +96,13 @@ ENUMS: dict[str, dict[str, int]] = {
         "BRAKE_LIGHT_STATE_OFF": 2,
         "BRAKE_LIGHT_STATE_NORMAL": 3,
         "BRAKE_LIGHT_STATE_STRONG": 4,
+    },
+    "Generic": {
+        "GENERIC_LIGHT_STATE_UNKNOWN": 0,
+        "GENERIC_LIGHT_STATE_OTHER": 1,
+        "GENERIC_LIGHT_STATE_OFF": 2,
+        "GENERIC_LIGHT_STATE_ON": 3,
+        "GENERIC_LIGHT_STATE_FLASHING_AMBER": 6,
     },
     "Color": {"COLOR_UNKNOWN": 0, "COLOR_RED": 2, "COLOR_YELLOW": 3, "COLOR_GREEN": 4},
     "Mode": {"MODE_UNKNOWN": 0, "MODE_OFF": 2, "MODE_CONSTANT": 3, "MODE_FLASHING": 4},
@@ -132,6 +155,8 @@ def moving(
     vehicle: int = 4,
     indicator: int = 0,
     brake: int = 0,
+    head: int | None = None,
+    beam: int | None = None,
 ) -> Any:
     """Add a moving object to a ground truth and return it."""
     item = truth.moving_object.add()
@@ -149,6 +174,10 @@ def moving(
     if kind == 2:
         item.vehicle_classification.light_state.indicator_state = indicator
         item.vehicle_classification.light_state.brake_light_state = brake
+    if head is not None:
+        item.vehicle_classification.light_state.head_light = head
+    if beam is not None:
+        item.vehicle_classification.light_state.high_beam = beam
     return item
 
 

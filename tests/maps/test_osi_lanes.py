@@ -36,20 +36,24 @@ class Trace:
         points(bound.boundary_line, line)
 
     def lane(
-        self, name: int, middle: list[tuple[float, float]], *, left: int = 0, right: int = 0, ahead: bool = True,
-        kind: int = 2, subtype: int = 2, pairs: tuple[tuple[int | None, int | None], ...] = (), beside: tuple[int, int] = (0, 0),
+        self, name: int, middle: list[tuple[float, float]], *, left: int | tuple[int, ...] = 0, right: int | tuple[int, ...] = 0,
+        ahead: bool | None = True, kind: int = 2, subtype: int = 2, pairs: tuple[tuple[int | None, int | None], ...] = (),
+        beside: tuple[int, int] = (0, 0),
     ) -> None:  # fmt: skip
         lane = self.truth.lane.add()
         lane.id.value = name
         said = lane.classification
-        said.type, said.subtype, said.centerline_is_driving_direction = kind, subtype, ahead
+        said.type, said.subtype = kind, subtype
+        if ahead is not None:
+            said.centerline_is_driving_direction = ahead
         points(said.centerline, middle)
         for field, value in (
             (said.left_lane_boundary_id, left), (said.right_lane_boundary_id, right),
             (said.left_adjacent_lane_id, beside[0]), (said.right_adjacent_lane_id, beside[1]),
         ):  # fmt: skip
-            if value:
-                field.add().value = value
+            for number in (value,) if isinstance(value, int) else value:
+                if number:
+                    field.add().value = number
         for before, after in pairs:
             pair = said.lane_pairing.add()
             if before is not None:
@@ -171,6 +175,103 @@ def test_lanes_without_boundaries_make_no_map() -> None:
     trace.lane(1, row(0.0))
     with pytest.raises(MapError, match="no boundaries"):
         trace.load()
+
+
+def bounded(ahead: bool | None = True) -> Trace:
+    """A lane 1 that is wider from 300 to 310 m, beside it a lane 2 from there on, and a hard shoulder 3: all without centre lines."""
+    trace = Trace()
+    trace.bound(11, row(1.5, x0=0.0, x1=300.0))
+    trace.bound(12, row(1.5, x0=303.0, x1=600.0), 4)  # from the first dash on
+    trace.bound(13, row(-1.5, x0=-50.0, x1=600.0))
+    trace.bound(14, [(300.0, 1.5), (310.0, 4.5)])
+    trace.bound(15, row(4.5, x0=310.0, x1=600.0))
+    trace.bound(16, row(-4.5, x0=0.0, x1=600.0), 12)
+    trace.lane(1, [], left=(12, 11), right=13, ahead=ahead)
+    trace.lane(2, [], left=(14, 15), right=12, ahead=ahead)
+    trace.lane(3, [], left=13, right=16, ahead=None, kind=3, subtype=6)
+    return trace
+
+
+@pytest.mark.parametrize("ahead", [True, False])
+def test_lanes_by_their_bounds_alone(ahead: bool) -> None:
+    tables = bounded(ahead).load(handedness="rht").tables
+    rows = {r["lanelet_id"]: r for r in tables["lanelet"].to_pylist()}
+    assert {k: (r["lane_type"], r["drivable"]) for k, r in rows.items()} == {
+        "1": ("driving", True), "2": ("driving", True), "3": ("stop", False),
+    }  # fmt: skip
+    assert [rows[k]["length_m"] for k in "123"] == pytest.approx([600.0, 297.0, 600.0], abs=1.0)
+    assert [rows[k]["width_m"] for k in "123"] == pytest.approx([3.0, 3.0, 3.0], abs=0.05)
+    points = {k: [r for r in tables["lane_point"].to_pylist() if r["lanelet_id"] == k] for k in "12"}
+    first, last = points["1"][0], points["1"][-1]
+    assert (first["x_m"], last["x_m"]) == pytest.approx((0.0, 600.0) if ahead else (600.0, 0.0))
+    assert (first["left_y_m"], first["right_y_m"]) == pytest.approx((1.5, -1.5) if ahead else (-1.5, 1.5))
+    assert max(p["half_width_m"] for p in points["2"]) == pytest.approx(1.5, abs=0.05)
+
+
+def test_a_lane_without_centre_line_and_direction_is_not_guessed_at() -> None:
+    with pytest.raises(MapError, match=r"3 lanes .* 2 of them because nothing says in which direction it is driven"):
+        bounded(None).load()
+    trace = bounded()
+    trace.truth.lane[0].classification.centerline_is_driving_direction = False
+    trace.truth.lane[1].classification.ClearField("centerline_is_driving_direction")
+    environment = trace.load(handedness="rht")
+    assert environment.tables["lanelet"]["lanelet_id"].to_pylist() == ["1", "3"]
+    (problem,) = [r for r in environment.tables["map_quality"].to_pylist() if r["severity"] == "error"]
+    assert (problem["lanelet_id"], "in which direction" in problem["message"]) == ("2", True)
+
+
+def test_a_writer_that_leaves_out_what_is_false_means_false() -> None:
+    """esmini: some lanes say true, none says false."""
+    trace = two_way()
+    trace.truth.lane[1].classification.ClearField("centerline_is_driving_direction")
+    first = next(r for r in trace.load().tables["lane_point"].to_pylist() if r["lanelet_id"] == "2")
+    assert first["tx"] == -1.0
+
+
+def gap(trace: Trace) -> None:
+    trace.truth.lane_boundary[0].boundary_line[2].position.x = 260.0
+
+
+def reversed_side(trace: Trace) -> None:
+    for point in trace.truth.lane_boundary[2].boundary_line:
+        point.position.x = -point.position.x
+
+
+@pytest.mark.parametrize(
+    ("spoil", "what"),
+    [
+        (lambda trace: trace.truth.lane_boundary.pop(1), "not all of its boundaries"),
+        (lambda trace: trace.truth.lane[0].classification.ClearField("left_lane_boundary_id"), "no left boundary"),
+        (gap, "43 m between"),
+        (reversed_side, "same order"),
+    ],
+)
+def test_a_lane_whose_bounds_make_no_shape_is_left_out_and_named(spoil: Any, what: str) -> None:
+    trace = bounded()
+    trace.bound(21, row(50.0))
+    trace.bound(22, row(46.5))
+    trace.lane(9, row(48.25), left=21, right=22)
+    spoil(trace)
+    tables = trace.load(handedness="rht").tables
+    problems = {r["lanelet_id"]: r["message"] for r in tables["map_quality"].to_pylist() if r["severity"] == "error"}
+    assert what in problems["1"]
+    assert "1" not in tables["lanelet"]["lanelet_id"].to_pylist()
+
+
+def test_the_lanes_of_a_real_log_have_boundaries_and_no_direction() -> None:
+    trace = read_trace(shared("osi/sensorDataDetectedLaneBoundaries.mcap"), IngestOptions())
+    assert trace.embedded_map is not None
+    truth = message("GroundTruth").FromString(trace.embedded_map)
+    assert (len(truth.lane), len(truth.lane_boundary)) == (4, 7)
+    with pytest.raises(
+        MapError, match=r"own 4 lanes .* 3 of them because nothing says in which direction it is driven"
+    ):
+        load_map(MapSource("embedded", trace.embedded_map))
+    for lane in truth.lane:  # if it said that they are driven as their boundaries run, as the host drives
+        lane.classification.centerline_is_driving_direction = True
+    environment = load_map(MapSource("embedded", truth.SerializeToString(deterministic=True)))
+    rows = {r["lanelet_id"]: (r["drivable"], round(r["length_m"])) for r in environment.tables["lanelet"].to_pylist()}
+    assert rows == {"1": (True, 800), "2": (True, 800), "3": (True, 300), "4": (False, 510)}
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from drivelint.errors import TraceError
 from drivelint.ingest import actors as actor_rows
 from drivelint.ingest import checks, contradiction, ego
 from drivelint.ingest.align import aligned
+from drivelint.ingest.lamps import with_lamps
 from drivelint.ingest.motion import complete_motion
 from drivelint.ingest.order import in_order, listed, steps, without_duplicates, wrapped
 from drivelint.ingest.removed import without_removed
@@ -99,7 +100,7 @@ def finish(path: Path, identity: Identity, recording: Recording, options: Ingest
         "actor": _actor_table(drive, actors, egos),
         "actor_state": _state_table(drive, states),
         "signal_state": _extra(drive, "signal_state", recording.signals),
-        "declared_event": _extra(drive, "declared_event", recording.events),
+        "declared_event": _extra(drive, "declared_event", with_lamps(recording.events, states)),
         "drive_condition": _conditions(drive, recording.conditions, dict(options.conditions)),
         "quality": _quality(drive, findings),
     }

@@ -128,6 +128,7 @@ class _Source:
         schema = self.container.schemas[self.waiting[0].channel.schema_id]
         if self.decoder is None or self.decoder.schema_id != schema.id:
             self.decoder = Decoder(self.container.path, schema.id, schema.name, schema.data)
+            self.decoder.lights = self.head.lights
         self.batches.append(self.decoder.frames(self.waiting))
         self.waiting, self.size = [], 0
 

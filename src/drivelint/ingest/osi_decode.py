@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -13,11 +14,12 @@ from google.protobuf.message import DecodeError
 
 from drivelint import osi_schema
 from drivelint.errors import TraceError
-from drivelint.ingest import descriptors
+from drivelint.ingest import descriptors, osi_heads
 from drivelint.ingest.osi_words import Bulbs, bulbs_of, child, state_codes, words_of
 from drivelint.ingest.trace import Finding
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -31,6 +33,7 @@ SENSOR_VIEW = "osi3.SensorView"
 _XY: Tree = {"x": None, "y": None}
 _ID: Tree = {"value": None}
 _TIMESTAMP: Tree = {"seconds": None, "nanos": None}
+_LAMPS: Tree = {"indicator_state": None, "brake_light_state": None, "head_light": None, "high_beam": None}
 _TRUTH: Tree = {
     "timestamp": _TIMESTAMP,
     "host_vehicle_id": _ID,
@@ -44,7 +47,7 @@ _TRUTH: Tree = {
             "velocity": _XY,
             "acceleration": _XY,
         },
-        "vehicle_classification": {"type": None, "light_state": {"indicator_state": None, "brake_light_state": None}},
+        "vehicle_classification": {"type": None, "light_state": _LAMPS},
     },
     "traffic_light": {
         "id": _ID,
@@ -64,6 +67,7 @@ VECTORS: dict[str, dict[str, str]] = {
     "dimension": {"length_m": "length", "width_m": "width", "height_m": "height"},
 }
 """Vector of `moving_object.base` -> our column -> its coordinate."""
+_LANES = ("lane_boundary", "lane", "reference_line", "logical_lane_boundary", "logical_lane")
 _NEVER_ZERO = frozenset({"position", "dimension"})
 """Vectors that say nothing without any coordinate, even of a writer that leaves zeros out."""
 
@@ -97,6 +101,7 @@ class Decoder:
     def __init__(self, path: Path, schema_id: int, name: str, descriptor_set: bytes) -> None:
         """Prune the schema. Errors: `TraceError` where it lacks the fields without which nothing can be judged."""
         self._path, self._name, self.schema_id = path, name, schema_id
+        self.lights: Mapping[str, str] = {}  # of the head: which bulbs are one light
         types = descriptors.parse(path, name, descriptor_set)
         descriptor = descriptors.pruned(path, types, name, TREES[name])
         self._handler = ptars.HandlerPool([descriptor.file]).get_for_message(descriptor)
@@ -146,7 +151,7 @@ class Decoder:
             numbers = {name: column[known] for name, column in numbers.items()}
             left_out = {name: rows[known] for name, rows in left_out.items()}
             codes = {name: column[known] for name, column in codes.items()}
-        bulbs = bulbs_of(self._words, child(truth, "traffic_light"))
+        bulbs = bulbs_of(self._words, child(truth, "traffic_light"), self.lights)
         return Frames(
             t_ns, timed, hosts, frame, number, ids.null_count, numbers, codes, not_finite, left_out, says_zero, bulbs
         )
@@ -169,17 +174,22 @@ class Decoder:
 
 
 class Head(NamedTuple):
-    """What the first message alone says: lanes as a message of their own, the geo reference, lanes that have no width."""
+    """What the first message alone says: lanes as a message of their own, the geo reference, lanes that have no width.
+
+    `lights`: see `osi_heads.heads`.
+    """
 
     lanes: bytes | None = None
     reference: str | None = None
     findings: tuple[Finding, ...] = ()
+    lights: Mapping[str, str] = MappingProxyType({})
 
 
 def head_of(data: bytes, name: str) -> Head:
     """Return lanes and geo reference (a PROJ string) of a ground truth, or of the one in a sensor view.
 
-    Lanes without boundaries have no width, and nothing can be placed on them: they are told, and make no map.
+    The lanes go with their boundaries, signs, lights and road markings. Lanes without boundaries have no width, and nothing can be
+    placed on them: they are told, and make no map.
     """
     try:
         outer = osi_schema.message(name.removeprefix("osi3.")).FromString(data)
@@ -187,16 +197,22 @@ def head_of(data: bytes, name: str) -> Head:
         return Head()  # whether the message is damaged, who reads its objects says
     truth = outer.global_ground_truth if name == SENSOR_VIEW else outer
     reference = str(truth.proj_string) or None
-    if not truth.lane_boundary:
-        n = len(truth.lane)
+    lights = osi_heads.heads(truth.traffic_light)
+    if not (truth.lane_boundary or truth.logical_lane_boundary):
+        n = len(truth.lane) + len(truth.logical_lane)
         message = f"lanes in the log: {n}, all of them centre lines without boundaries: without a width they make no map: give --map"
-        return Head(None, reference, (Finding("lanes_without_width", "info", message, n),) if n else ())
-    if not truth.lane:
-        return Head(None, reference)
-    kept = osi_schema.message("GroundTruth")()
-    kept.lane.extend(truth.lane)
-    kept.lane_boundary.extend(truth.lane_boundary)
-    return Head(bytes(kept.SerializeToString(deterministic=True)), reference)
+        return Head(None, reference, (Finding("lanes_without_width", "info", message, n),) if n else (), lights)
+    if not (truth.lane or truth.logical_lane):
+        return Head(None, reference, lights=lights)
+    lanes, beside = osi_schema.message("GroundTruth")(), osi_schema.message("GroundTruth")()
+    for each in _LANES:
+        getattr(lanes, each).extend(getattr(truth, each))
+    beside.traffic_sign.extend(truth.traffic_sign)
+    beside.traffic_light.extend(osi_heads.named(bulb, lights) for bulb in truth.traffic_light)
+    beside.road_marking.extend(truth.road_marking)
+    # a map is known by the tag that it begins with, so that lanes stand before what stands beside them
+    content = b"".join(part.SerializeToString(deterministic=True) for part in (lanes, beside))
+    return Head(content, reference, lights=lights)
 
 
 def malformed(path: Path, packet: Packet, error: ValueError) -> TraceError:

@@ -48,6 +48,7 @@ def read(path: Path) -> Recording:
             if decoder is None:
                 decoder, name = _decoder(path, packets)
                 head = head_of(packets[0].data, name)
+                decoder.lights = head.lights
             batches.append(decoder.frames(packets))
     n = sum(len(batch.t_ns) for batch in batches)
     untimed = n - sum(int(batch.timed.sum()) for batch in batches)

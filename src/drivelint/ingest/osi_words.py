@@ -10,13 +10,18 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.ingest.descriptors import enum_names
+from drivelint.ingest.lamps import HEADLIGHTS
 from drivelint.ingest.trace import BRAKE_LIGHTS, CLASSES, INDICATORS
+from drivelint.osi_schema import OPEN_DRIVE_REFERENCE
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from drivelint.ingest.descriptors import Types
 
+OFF, ON, OTHER = 0, 1, 2
 _KINDS = {"TYPE_VEHICLE": "vehicle", "TYPE_PEDESTRIAN": "pedestrian", "TYPE_ANIMAL": "animal"}
 _VEHICLES = {
     "TYPE_SMALL_CAR": "car", "TYPE_COMPACT_CAR": "car", "TYPE_CAR": "car", "TYPE_MEDIUM_CAR": "car",
@@ -32,11 +37,18 @@ _INDICATORS = {
     "INDICATOR_STATE_WARNING": "hazard",
 }
 _BRAKE_LIGHTS = {"BRAKE_LIGHT_STATE_OFF": "off", "BRAKE_LIGHT_STATE_NORMAL": "on", "BRAKE_LIGHT_STATE_STRONG": "strong"}
+_LAMPS = {
+    "GENERIC_LIGHT_STATE_OFF": OFF,
+    "GENERIC_LIGHT_STATE_ON": ON,
+    "GENERIC_LIGHT_STATE_OTHER": OTHER,
+    "GENERIC_LIGHT_STATE_FLASHING_BLUE": OTHER,
+    "GENERIC_LIGHT_STATE_FLASHING_BLUE_AND_RED": OTHER,
+    "GENERIC_LIGHT_STATE_FLASHING_AMBER": OTHER,
+}
 # one bulb each: bits of a traffic light's lit colours
 RED, AMBER, GREEN, FLASHING, UNKNOWN = 1, 2, 4, 8, 16
 _COLORS = {"COLOR_RED": RED, "COLOR_YELLOW": AMBER, "COLOR_GREEN": GREEN}
 _LIT = {0: "off", RED: "red", RED | AMBER: "red_amber", AMBER: "amber", GREEN: "green"}
-OPEN_DRIVE_REFERENCE = "net.asam.opendrive"
 
 
 @dataclass(frozen=True)
@@ -47,6 +59,7 @@ class Words:
     vehicle: NDArray[np.int8]
     indicator: NDArray[np.int8]
     brake_light: NDArray[np.int8]
+    lamp: NDArray[np.int8]
     color: NDArray[np.int8]
     mode: dict[str, int]
 
@@ -71,6 +84,7 @@ def words_of(types: Types, truth: str) -> Words:
             enum_names(types, truth, *lights, "brake_light_state"),
             {n: BRAKE_LIGHTS.index(w) for n, w in _BRAKE_LIGHTS.items()},
         ),
+        _table(enum_names(types, truth, *lights, "head_light"), _LAMPS),
         _table(enum_names(types, truth, "traffic_light", "classification", "color"), _COLORS),
         {name: number for number, name in modes.items()},
     )
@@ -98,7 +112,7 @@ def child(parent: pa.Array, name: str) -> pa.Array:
 
 
 def state_codes(words: Words, objects: pa.Array) -> dict[str, NDArray[np.int8]]:
-    """Return class, indicator and brake light of moving objects as codes. A vehicle of unsaid kind is a `vehicle`."""
+    """Return class, indicator, brake light and headlights of moving objects as codes. A vehicle of unsaid kind is a `vehicle`."""
     vehicle = child(objects, "vehicle_classification")
     lights = child(vehicle, "light_state")
     kind = _look(words.kind, child(objects, "type"))
@@ -108,7 +122,19 @@ def state_codes(words: Words, objects: pa.Array) -> dict[str, NDArray[np.int8]]:
         "actor_class": np.where(is_vehicle & (finer >= 0), finer, kind),
         "indicator": _look(words.indicator, child(lights, "indicator_state")),
         "brake_light": _look(words.brake_light, child(lights, "brake_light_state")),
+        HEADLIGHTS: _headlights(
+            _look(words.lamp, child(lights, "head_light")), _look(words.lamp, child(lights, "high_beam"))
+        ),
     }
+
+
+def _headlights(dipped: NDArray[np.int8], main: NDArray[np.int8]) -> NDArray[np.int8]:
+    """Return whether the headlights are on: dipped or main beam. Off: `head_light` says so and `high_beam` nothing else.
+
+    A state of another kind, flashing or OTHER, is not known.
+    """
+    off = (dipped == OFF) & np.isin(main, (OFF, -1))
+    return np.where((dipped == ON) | (main == ON), ON, np.where(off, OFF, -1)).astype(np.int8)
 
 
 @dataclass(frozen=True)
@@ -120,8 +146,11 @@ class Bulbs:
     bits: NDArray[np.int8]
 
 
-def bulbs_of(words: Words, lights: pa.Array) -> Bulbs:
-    """Read the bulbs of `traffic_light` lists: each belongs to the OpenDRIVE signal it refers to, else is its own."""
+def bulbs_of(words: Words, lights: pa.Array, joined: Mapping[str, str]) -> Bulbs:
+    """Read the bulbs of `traffic_light` lists: each belongs to the OpenDRIVE signal it refers to, else to the light that `joined` names.
+
+    Of others each is its own.
+    """
     if not pa.types.is_list(lights.type):
         return Bulbs(np.zeros(0, np.intp), [], np.zeros(0, np.int8))
     bulbs = lights.flatten()
@@ -134,10 +163,10 @@ def bulbs_of(words: Words, lights: pa.Array) -> Bulbs:
     bits[mode == words.mode.get("MODE_OFF", -2)] = 0
     bits[mode == words.mode.get("MODE_FLASHING", -2)] = FLASHING
     bits[lit & (color > 0)] = color[lit & (color > 0)]
-    return Bulbs(np.repeat(np.arange(len(lights)), counts), _signal_ids(bulbs), bits)
+    return Bulbs(np.repeat(np.arange(len(lights)), counts), _signal_ids(bulbs, joined), bits)
 
 
-def _signal_ids(bulbs: pa.Array) -> list[str]:
+def _signal_ids(bulbs: pa.Array, joined: Mapping[str, str]) -> list[str]:
     own = pc.fill_null(child(child(bulbs, "id"), "value").cast(pa.uint64()), 0).to_pylist()
     references = child(bulbs, "source_reference").to_pylist()
     ids = []
@@ -145,7 +174,7 @@ def _signal_ids(bulbs: pa.Array) -> list[str]:
         names = [
             s["identifier"][0] for s in sources or [] if s.get("type") == OPEN_DRIVE_REFERENCE and s.get("identifier")
         ]
-        ids.append(names[0] if names else str(number))
+        ids.append(names[0] if names else joined.get(str(number), str(number)))
     return ids
 
 

@@ -43,6 +43,7 @@ ADVICE: Final = {
         f"mode_{mode}": f"when {mode} is on, as declared events {mode} with the values on and off: {{declared_events}}"
         for mode in MODES
     },
+    "mode_headlights": "when the headlights are on: {headlights}",
 }
 _WHERE: Final = {
     "osi-mcap": {
@@ -52,6 +53,7 @@ _WHERE: Final = {
         "actor_classes": "type and vehicle_classification.type of the moving objects",
         "signals": "traffic_light of the ground truth, with ids as the map has them",
         "declared_events": "a channel of JSON messages drivelint.DeclaredEvent",
+        "headlights": "vehicle_classification.light_state.head_light of the host vehicle (not UNKNOWN)",
     },
     "canonical-parquet": {
         "indicator": "the column indicator of actor_state.parquet",
@@ -60,6 +62,7 @@ _WHERE: Final = {
         "actor_classes": "the column actor_class of actor.parquet",
         "signals": "signal_state.parquet",
         "declared_events": "declared_event.parquet",
+        "headlights": "events headlights in declared_event.parquet, with the values on and off",
     },
     "": {
         "indicator": "[indicator] in the mapping, and a column to read it from",
@@ -68,6 +71,7 @@ _WHERE: Final = {
         "actor_classes": "[class] in the mapping, and a column to read it from",
         "signals": "drivelint convert --to parquet, and signal_state.parquet beside it",
         "declared_events": "drivelint convert --to parquet, and declared_event.parquet beside it",
+        "headlights": "drivelint convert --to parquet, and events headlights in declared_event.parquet beside it, on and off",
     },
 }
 

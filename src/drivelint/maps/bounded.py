@@ -6,7 +6,7 @@ Such maps have no roads: the lanes that lie side by side are taken as one, numbe
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -27,6 +27,16 @@ _SPACING_M = 4.0  # points of a lane are no further apart: its cells are looked 
 _WIDEST_M = 60.0  # wider is a mistake in the bounds
 
 
+class Mark(NamedTuple):
+    """The marking of one side from one share of the lane's length (0 to 1) to another. None: not known."""
+
+    side: str
+    begin: float
+    end: float
+    marking: str | None
+    lane_change: str | None = None
+
+
 class _UnbuildableError(ValueError):
     """A lane whose bounds make no area; caught where the lane is named."""
 
@@ -35,8 +45,10 @@ class _UnbuildableError(ValueError):
 class BoundedLane:
     """One lane. `left`, `right`: bounds (n, 2), (m, 2) in metres, in the direction of travel; the rest as in `lanelet`.
 
-    `left_against`: the lane on that side is driven the other way. A marking of None is not known. `limit_mps` is None
-    where there is none or the map does not say, which `limit_known` tells.
+    `left_against`: the lane on that side is driven the other way. A marking of None is not known; `marks` are given instead of
+    `left_marking` and `right_marking` where a side's marking changes along the lane. `limit_mps` is None where there is none or the
+    map does not say, which `limit_known` tells; `limits` are given instead where it changes: from one share of the length to
+    another, in m/s. `z_m`: height of each point of `line`; None: not known.
     """
 
     lanelet_id: str
@@ -56,10 +68,13 @@ class BoundedLane:
     right_marking: str | None = None
     limit_mps: float | None = None
     limit_known: bool = False
+    marks: tuple[Mark, ...] = ()
+    limits: tuple[tuple[float, float, float], ...] = ()
     road_id: str = ""
     lane_no: int = 0
     along: int = 1
     line: Line = field(init=False)
+    z_m: Floats | None = field(init=False, default=None)
 
 
 @dataclass(frozen=True)
@@ -214,11 +229,7 @@ def tables(name: str, lanes: Sequence[BoundedLane]) -> dict[str, pa.Table]:
         for lane in lanes
         for to in sorted(set(lane.successors))
     ]
-    limits = [
-        {"lanelet_id": lane.lanelet_id, "s_start_m": 0.0, "s_end_m": float(lane.line.s[-1]), "limit_mps": lane.limit_mps, "source": "sign"}
-        for lane in lanes
-        if lane.limit_known
-    ]  # fmt: skip
+    limits = [row for lane in lanes for row in _limits(lane)]
     return {
         "lanelet": from_rows("lanelet", name, [_lanelet(lane) for lane in lanes]),
         "lane_point": _points(name, lanes),
@@ -239,11 +250,26 @@ def _lanelet(lane: BoundedLane) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _boundaries(lane: BoundedLane) -> list[dict[str, Any]]:
+def _limits(lane: BoundedLane) -> list[dict[str, Any]]:
+    spans = lane.limits or (((0.0, 1.0, lane.limit_mps),) if lane.limit_known else ())
+    length = float(lane.line.s[-1])
     return [
-        {"lanelet_id": lane.lanelet_id, "side": side, "s_start_m": 0.0, "s_end_m": float(lane.line.s[-1]),
-         "marking": marking, "color": None, "lane_change": None}
-        for side, marking in (("left", lane.left_marking), ("right", lane.right_marking))
+        {"lanelet_id": lane.lanelet_id, "s_start_m": begin * length, "s_end_m": end * length, "limit_mps": limit,
+         "source": "lane" if lane.limits else "sign"}
+        for begin, end, limit in spans
+    ]  # fmt: skip
+
+
+def _boundaries(lane: BoundedLane) -> list[dict[str, Any]]:
+    marks = lane.marks or (
+        Mark("left", 0.0, 1.0, lane.left_marking),
+        Mark("right", 0.0, 1.0, lane.right_marking),
+    )
+    length = float(lane.line.s[-1])
+    return [
+        {"lanelet_id": lane.lanelet_id, "side": mark.side, "s_start_m": mark.begin * length, "s_end_m": mark.end * length,
+         "marking": mark.marking, "color": None, "lane_change": mark.lane_change}
+        for mark in marks
     ]  # fmt: skip
 
 
@@ -253,7 +279,7 @@ def _points(name: str, lanes: Sequence[BoundedLane]) -> pa.Table:
         "s_m": np.concatenate([lane.line.s for lane in lanes]),
         "half_width_m": np.concatenate([lane.line.half_width for lane in lanes]),
         "road_s_m": np.concatenate([s if lane.along > 0 else s[-1] - s for lane in lanes for s in (lane.line.s,)]),
-        "z_m": pa.nulls(sum(counts), pa.float64()),
+        "z_m": pa.array(np.concatenate([_heights(lane) for lane in lanes]), pa.float64(), from_pandas=True),
         "k": np.concatenate([np.arange(n, dtype=np.int32) for n in counts]),
         "lanelet_id": repeated([lane.lanelet_id for lane in lanes], counts),
     }
@@ -266,6 +292,10 @@ def _points(name: str, lanes: Sequence[BoundedLane]) -> pa.Table:
         both = np.vstack([getattr(lane.line, attribute) for lane in lanes])
         columns[x], columns[y] = both[:, 0], both[:, 1]
     return from_columns("lane_point", name, columns, sum(counts))
+
+
+def _heights(lane: BoundedLane) -> Floats:
+    return lane.z_m if lane.z_m is not None else np.full(len(lane.line.s), np.nan)
 
 
 def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:

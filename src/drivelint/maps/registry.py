@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
 MAX_BYTES = 512 * 2**20  # a city of 2,000 km of lanes is about 200 MB; beyond that the file is a mistake or an attack
 
-OSI_TAGS = (b"\x4a", b"\x52")  # what the lanes of an OSI trace begin with: the tags of lane_boundary and lane
+# what the lanes of an OSI trace begin with: the tags of lane_boundary, lane, reference_line, logical_lane_boundary, logical_lane
+OSI_TAGS = (b"\x4a", b"\x52", b"\x8a", b"\x92", b"\x9a")
 _SKIP = re.compile(r"\s*(?:<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^\[>]*(?:\[.*?\]\s*)?>)", re.DOTALL | re.IGNORECASE)
 _ROOT = re.compile(r"\s*<(?:[\w.-]+:)?([A-Za-z_][\w.-]*)")
 _LOOKS = {

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.ingest.osi_words import OPEN_DRIVE_REFERENCE
 from drivelint.ingest.trace import BRAKE_LIGHTS, CLASSES, INDICATORS
-from drivelint.osi_schema import ENUMS, VERSION
+from drivelint.osi_schema import ENUMS, OPEN_DRIVE_REFERENCE, VERSION
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
