@@ -13,6 +13,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from drivelint import batch, store
+from drivelint.convert import Order, convert
 from drivelint.errors import MapError, TraceError, UsageError
 from drivelint.evaluate import evaluate as plain
 from drivelint.ingest import IngestOptions, read_trace
@@ -227,6 +228,39 @@ def test_none_judged_is_an_error_of_its_own(tmp_path: Path) -> None:
 def test_a_map_of_another_place_is_refused(offset: tuple[float, float], told: str) -> None:
     with pytest.raises(MapError, match=r"of another place than safe\.csv: .*" + told):
         check(settings(FIXTURE / "safe.csv", map_offset=offset), Silent())
+
+
+@pytest.mark.parametrize(
+    ("road", "told"),
+    [
+        (lambda _: b"road works", "is not XML"),
+        (lambda text: text[:1000], "not well-formed"),
+        (
+            lambda text: text.replace(b'<geometry s="0', b'<geometry s="nan').replace(b"<width", b"<w"),
+            "no lane that can be built",
+        ),
+        (lambda text: text.replace(b' x="', b' x="70'), "of another place"),
+        (lambda text: text.replace(b'rule="LHT"', b'rule="RHT"'), "runs against its lanes"),
+    ],
+)
+def test_a_map_of_the_log_itself_that_cannot_be_used_leaves_the_other_rules(
+    tmp_path: Path, road: Any, told: str
+) -> None:
+    order = Order(
+        str(FIXTURE / "safe.csv"), "parquet", tmp_path / "d", mapping=str(FIXTURE / "mapping.toml"), ego="ego"
+    )
+    folder = convert(order).path
+    (folder / "map.xodr").write_bytes(road((FIXTURE / "road.xodr").read_bytes()))
+    result = check(settings(folder, map=None, mapping=None, rules=FEW), Silent())
+    judged = {row["rule_id"]: row for row in result.verdicts.to_pylist()}
+    assert judged["ukhc.no-collision"]["verdict"] == "pass"
+    assert judged["ukhc.r162.safe-distance-ahead"]["verdict"] == "unknown"
+    assert judged["ukhc.r162.safe-distance-ahead"]["reason_code"] == "missing_map"
+    assert judged["ukhc.r162.safe-distance-ahead"]["reason"].startswith("the log's own map is not used: ")
+    assert told in judged["ukhc.r162.safe-distance-ahead"]["reason"]
+    assert [row["map_name"] for row in result.drives.to_pylist()] == [None]
+    again = convert(Order(str(folder), "mcap", tmp_path / "again"))
+    assert any("the log's own map" in note for note in again.notes)
 
 
 def test_the_map_and_the_host_that_an_omega_prime_table_holds(tmp_path: Path) -> None:

@@ -1,7 +1,10 @@
 -- What each drive can be judged by; a rule whose `requires` is not here with available = true is unknown, before it runs.
 WITH subject AS (
     SELECT
-        c.drive_id, c.ego_id, g.environment_id, g.has_indicator, g.has_brake_light,
+        c.drive_id, c.ego_id, g.environment_id,
+        coalesce((
+            SELECT min(q.message) FROM quality q WHERE q.drive_id = c.drive_id AND q.check_id IN ('own_map_unusable', 'lanes_without_width')
+        ), 'no map: give one with --map') AS no_map, g.has_indicator, g.has_brake_light,
         a.length_m IS NOT NULL AND a.width_m IS NOT NULL AS ego_size,
         -- a log may record lamps without anything that the ego declares of what it looks at or means to do
         EXISTS (FROM declared_event d WHERE d.drive_id = c.drive_id AND d.actor_id = c.ego_id AND d.event <> 'headlights') AS events,
@@ -34,9 +37,9 @@ map AS (
 ),
 -- per signal: whether it is there, whether the map must give it, and what to say where it is and where it is not
 answer AS (
-    SELECT s.drive_id, s.ego_id, s.environment_id, unnest([
+    SELECT s.drive_id, s.ego_id, s.environment_id, s.no_map, unnest([
         {'signal': 'map', 'of_map': true, 'available': m.environment_id IS NOT NULL, 'yes': 'map ' || m.environment_id, 'no': NULL},
-        {'signal': 'registration', 'of_map': false, 'available': r.ok, 'yes': r.reason, 'no': coalesce(r.reason, 'the ego has no position')},
+        {'signal': 'registration', 'of_map': false, 'available': r.ok, 'yes': r.reason, 'no': CASE WHEN s.environment_id IS NULL THEN s.no_map ELSE coalesce(r.reason, 'the ego has no position') END},
         {'signal': 'handedness', 'of_map': true, 'available': m.handedness_source <> 'default',
             'yes': 'side of the road (' || m.handedness || ') by ' || m.handedness_source,
             'no': 'side of the road (' || m.handedness || ') by ' || m.handedness_source || ': give it with --handedness'},
@@ -80,5 +83,5 @@ answer AS (
 )
 SELECT
     drive_id, ego_id, signal, coalesce(available, false) AS available,
-    CASE WHEN available THEN yes WHEN of_map AND environment_id IS NULL THEN 'no map: give one with --map' ELSE coalesce(no, 'no map: give one with --map') END AS reason
+    CASE WHEN available THEN yes WHEN of_map AND environment_id IS NULL THEN no_map ELSE coalesce(no, no_map) END AS reason
 FROM answer

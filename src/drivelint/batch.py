@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pyarrow.compute as pc
 
-from drivelint.errors import DriveLintError
-from drivelint.ingest import Finding, IngestOptions, Trace, read_trace, with_finding
+from drivelint.errors import DriveLintError, MapError
+from drivelint.ingest import Finding, IngestOptions, Trace, own_map, read_trace, with_finding
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -137,10 +137,19 @@ def _meetings(trace: Trace, egos: set[str]) -> dict[str, int]:
 
 
 def on_its_map(trace: Trace, library: MapLibrary) -> Drive:
-    """Find the map of a drive. Errors: `MapError` if it cannot be read, or shows another place or side of the road."""
+    """Find the map of a drive. A map of its own that cannot be used is a finding, and the drive is judged without.
+
+    Errors: `MapError` if a map that was given cannot be read, or shows another place or side of the road.
+    """
     states = trace.tables["actor_state"]
-    environment = library.find(trace.path, trace.embedded_map, trace.map_offset, states, trace.geo_reference)
-    for check, doubt in library.doubts(trace.path, environment, states, trace.geo_reference).items():
+    try:
+        environment = library.find(trace.path, trace.embedded_map, trace.map_offset, states, trace.geo_reference)
+        doubts = library.doubts(trace.path, environment, states, trace.geo_reference)
+    except MapError as error:
+        if not library.takes_own(trace.path, trace.embedded_map):
+            raise
+        return Drive(with_finding(trace, own_map.unusable(f"the log's own map is not used: {error}")), None)
+    for check, doubt in doubts.items():
         trace = with_finding(trace, Finding(check, "warning", doubt))
     return Drive(trace, environment)
 

@@ -16,6 +16,8 @@ from tests.ingest.logs import actors, at, log, quality, read, states
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from drivelint.ingest import Trace
+
 EPOCH = 1_700_000_000_000_000_000
 
 
@@ -351,8 +353,28 @@ def test_embedded_map(tmp_path: Path) -> None:
     assert trace.embedded_map == "<OpenDRIVE>é</OpenDRIVE>".encode()
     chart.open_drive_xml_content = "<OpenDRIVE/>"
     messages.append(osi_log.Out("osi3.MapAsamOpenDrive", "other", 0, chart.SerializeToString()))
-    with pytest.raises(TraceError, match="2 different OpenDRIVE maps"):
-        read(osi_log.write(tmp_path / "e.mcap", messages))
+    several = read(osi_log.write(tmp_path / "e.mcap", messages))
+    assert several.embedded_map is None
+    assert unusable(several) == [
+        "the log has 2 different OpenDRIVE maps (topics /ground_truth_map, other), and none is used: keep one"
+    ]
+
+
+@pytest.mark.parametrize(("content", "why"), [(b"", "is empty"), (b"\xff\xff", "cannot be decoded")])
+def test_a_map_message_without_a_map_is_told(tmp_path: Path, content: bytes, why: str) -> None:
+    messages = [
+        osi_log.Out("osi3.MapAsamOpenDrive", "/m", 0, content),
+        *osi_log.truths(osi_log.drive(3), "/ground_truth"),
+    ]
+    trace = read(osi_log.write(tmp_path / "d.mcap", messages))
+    assert trace.embedded_map is None
+    (message,) = unusable(trace)
+    assert why in message
+
+
+def unusable(trace: Trace) -> list[str]:
+    rows = trace.tables["quality"].to_pylist()
+    return [row["message"] for row in rows if row["check_id"] == "own_map_unusable"]
 
 
 def test_topics(tmp_path: Path) -> None:

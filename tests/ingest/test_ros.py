@@ -227,8 +227,9 @@ def test_map_in_the_log(tmp_path: Path) -> None:
     trace = seen(tmp_path, [world("<OpenDRIVE/>"), world(""), *ego(), world("<OpenDRIVE/>", "/again")])
     assert trace.embedded_map == b"<OpenDRIVE/>"
     assert seen(tmp_path, ego()).embedded_map is None
-    with pytest.raises(TraceError, match="2 different OpenDRIVE maps"):
-        seen(tmp_path, [world("<OpenDRIVE/>"), world("<OpenDRIVE></OpenDRIVE>"), *ego()])
+    several = seen(tmp_path, [world("<OpenDRIVE/>"), world("<OpenDRIVE></OpenDRIVE>"), *ego()])
+    assert several.embedded_map is None
+    assert "2 different OpenDRIVE maps" in quality(several)["own_map_unusable"]["message"]
 
 
 def test_ego_size(tmp_path: Path) -> None:

@@ -212,6 +212,61 @@ def test_stop_lines_as_objects_and_as_painted_signals() -> None:
     assert checks(environment)["object_without_lane"] == ["1"]
 
 
+FOUR_LANES = section(0, *(lane(n) for n in (2, 1, -1, -2)))  # 3.5 m wide each
+
+
+@pytest.mark.parametrize(
+    ("orientation", "t", "width", "validity", "held"),
+    [
+        ("-", "0", "3.5", "", ["1.0.1", "1.0.2"]),  # drawn beside the reference line on which it is placed
+        ("-", "0", "14", "", ["1.0.1", "1.0.2"]),
+        ("-", "1.75", "3.5", "", ["1.0.1"]),
+        ("+", "-3.5", "7", "", ["1.0.-1", "1.0.-2"]),
+        ("+", "-9", "0.6", "", ["1.0.-1", "1.0.-2"]),  # placed beside the road, without saying how long it is
+        ("none", "-1.75", "3.5", "", ["1.0.-1"]),
+        ("none", "-9", "0.6", "", ["1.0.-1", "1.0.-2", "1.0.1", "1.0.2"]),
+        ("-", "0", "7", (0, 4), ["1.0.1", "1.0.2"]),
+        ("-", "0", "3.5", (2, 2), ["1.0.2"]),
+        ("none", "0", "14", (-2, -1), ["1.0.-1", "1.0.-2"]),
+    ],
+)
+def test_a_painted_stop_line_holds_for_the_lanes_of_its_orientation_and_validity(
+    orientation: str, t: str, width: str, validity: tuple[int, int] | str, held: list[str]
+) -> None:
+    inside = f'<validity fromLane="{validity[0]}" toLane="{validity[1]}"/>' if validity else ""
+    line = signal(70, orientation, inside, type="294", t=t, width=width)
+    environment = load(road(lanes=FOUR_LANES, more=f"<signals>{line}</signals>"))
+    found = {r["lanelet_id"]: round(r["lane_s_m"], 6) for r in rows(environment, "stop_line")}
+    assert found == {name: 70.0 if "-" in name else 30.0 for name in held}
+    assert "signal_orientation" not in checks(environment)
+
+
+def test_a_stop_line_across_the_other_direction_alone_holds_there_and_that_is_named() -> None:
+    line = signal(70, "-", type="294", t="-3.5", width="7")
+    environment = load(road(lanes=FOUR_LANES, more=f"<signals>{line}</signals>"))
+    assert [r["lanelet_id"] for r in rows(environment, "stop_line")] == ["1.0.-1", "1.0.-2"]
+    assert "signal_orientation" in checks(environment)
+
+
+def test_a_stop_line_holds_where_it_is_referred_to() -> None:
+    line = signal(98, "+", type="294", t="-1.75", width="3.5", id="S")
+    reference = '<signalReference id="S" s="2" t="-1.75" orientation="+"/>'
+    environment = load(
+        road(more=f"<signals>{line}</signals>"),
+        road("2", LINE.replace('x="0"', 'x="100"'), more=f"<signals>{reference}</signals>"),
+    )
+    assert [(r["stop_line_id"], r["lanelet_id"], r["lane_s_m"]) for r in rows(environment, "stop_line")] == [
+        ("S", "1.0.-1", 98.0),
+        ("S", "2.0.-1", 2.0),
+    ]
+
+
+def test_two_signs_of_one_id_on_one_post_are_two() -> None:
+    both = signal(30, type="274", value="50") + signal(30, type="276")
+    environment = load(road(more=f"<signals>{both}</signals>"))
+    assert {r["kind"] for r in rows(environment, "traffic_signal")} == {"speed_limit", "no_overtaking"}
+
+
 def test_crossings_lie_across_drivable_lanes_only() -> None:
     outline = "".join(f'<cornerRoad s="{s}" t="{t}"/>' for s, t in ((20, -9), (24, -9), (24, 9), (20, 9)))
     crossing = object_("crosswalk", 22, 0, name="Zebra", inside=f"<outlines><outline>{outline}</outline></outlines>")

@@ -21,7 +21,8 @@ ORIGIN = (49.0, 8.4)
 class Drawing:
     """Collects nodes, ways and relations of an OSM file; coordinates in metres from the origin."""
 
-    def __init__(self, *, local: bool = False) -> None:
+    def __init__(self, *, local: bool = False, globe: bool = True) -> None:
+        self.globe = globe  # whether latitude and longitude are there
         self.local, self.parts, self.nodes = local, [], {}  # type: ignore[var-annotated]
         self.count = 0
 
@@ -32,7 +33,8 @@ class Drawing:
         lat = ORIGIN[0] + math.degrees(y / 6_366_000)
         lon = ORIGIN[1] + math.degrees(x / (6_388_000 * math.cos(math.radians(ORIGIN[0]))))
         tags = f'<tag k="local_x" v="{x}"/><tag k="local_y" v="{y}"/>' if self.local else ""
-        self.parts.append(f'<node id="{self.count}" lat="{lat:.11f}" lon="{lon:.11f}">{tags}</node>')
+        place = f'lat="{lat:.11f}" lon="{lon:.11f}"' if self.globe else 'lat="" lon=""'
+        self.parts.append(f'<node id="{self.count}" {place}>{tags}</node>')
         self.nodes[x, y] = self.count
         return self.count
 
@@ -53,6 +55,14 @@ class Drawing:
             f'<member type="way" ref="{right}" role="right"/>{more}{text}</relation>'
         )
         return self.count
+
+    def element(self, **members: list[int]) -> str:
+        """Add a regulatory element that is a sign; return it as a member of a lanelet."""
+        self.count += 1
+        inside = "".join(f'<member type="way" ref="{i}" role="{role}"/>' for role, ids in members.items() for i in ids)
+        said = '<tag k="type" v="regulatory_element"/><tag k="subtype" v="traffic_sign"/>'
+        self.parts.append(f'<relation id="{self.count}">{inside}{said}</relation>')
+        return f'<member type="relation" ref="{self.count}" role="regulatory_element"/>'
 
     def load(self, **options: object) -> Environment:
         order = sorted(self.parts, key=lambda part: ["<n", "<w", "<r"].index(part[:2]))
@@ -140,6 +150,57 @@ def test_local_coordinates_come_before_the_globe() -> None:
     assert (first["x_m"], first["y_m"]) == (0.0, -1.75)
 
 
+def test_local_coordinates_need_no_latitude_and_longitude() -> None:
+    """As Autoware writes it: which bound is the left one and which way a lane runs follows from the local coordinates."""
+    drawing = Drawing(local=True, globe=False)
+    ids = road(drawing)
+    environment = drawing.load(origin=None, offset=(10.0, 0.0))
+    points = environment.tables["lane_point"].to_pylist()
+    way = {name: [(r["x_m"], r["y_m"], r["tx"]) for r in points if r["lanelet_id"] == str(ids[name])] for name in ids}
+    assert way["inner"][0] == (10.0, -1.75, 1.0)
+    assert way["back"][0] == (60.0, 1.75, -1.0)
+    assert (environment.handedness, environment.handedness_source) == ("rht", "lanes")
+    assert environment.tables["map_quality"].num_rows == 0
+    assert environment.tables["environment"]["geo_reference"].to_pylist() == [None]
+
+
+def test_local_coordinates_go_before_an_origin_and_that_is_said() -> None:
+    drawing = Drawing(local=True)
+    road(drawing)
+    environment = drawing.load(origin=(35.0, 139.0))
+    assert environment.tables["map_quality"]["check_id"].to_pylist() == ["map_origin_unused"]
+    assert environment.tables["environment"]["geo_reference"].to_pylist() == [None]
+
+
+def test_a_lane_with_a_node_that_has_no_place_is_named_and_no_other() -> None:
+    drawing = Drawing(local=True, globe=False)
+    ids = road(drawing)
+    at = drawing.nodes[(50.0, -7.0)]
+    drawing.parts[next(i for i, part in enumerate(drawing.parts) if part.startswith(f'<node id="{at}"'))] = (
+        f'<node id="{at}" lat="49.1" lon="8.1"><tag k="local_x" v=""/></node>'
+    )
+    tables = drawing.load(origin=None).tables
+    lost = {(r["check_id"], r["lanelet_id"]) for r in tables["map_quality"].to_pylist()}
+    assert lost == {("unplaced_node", None), ("invalid_lane", str(ids["outer"]))}
+    assert tables["lanelet"].num_rows == 3
+
+
+def test_a_stop_line_and_its_sign_hold_for_the_lanes_that_refer_to_them() -> None:
+    drawing = Drawing(local=True, globe=False)
+    line = drawing.way([(40.2, 1.0), (40.2, -4.5)], "stop_line", "solid")
+    sign = drawing.way([(41.0, -5.0), (41.0, -5.4)], "traffic_sign", "stop_sign")
+    element = drawing.element(refers=[sign], ref_line=[line])
+    lefts = [drawing.way([(0.0, 0.0), (40.0, 0.0)]), drawing.way([(40.0, 0.0), (60.0, 0.0)])]
+    rights = [drawing.way([(0.0, -3.5), (40.0, -3.5)]), drawing.way([(40.0, -3.5), (60.0, -3.5)])]
+    before = str(drawing.lanelet(lefts[0], rights[0], element, speed_limit="15"))
+    drawing.lanelet(lefts[1], rights[1])
+    tables = drawing.load(origin=None).tables
+    assert [(r["lanelet_id"], r["lane_s_m"]) for r in tables["stop_line"].to_pylist()] == [(before, 40.0)]
+    (row,) = tables["traffic_signal"].to_pylist()
+    assert (row["kind"], row["lanelet_id"], row["lane_s_m"], row["x_m"]) == ("stop", before, 40.0, 40.0)
+    assert [round(r["limit_mps"] * 3.6, 6) for r in tables["speed_limit"].to_pylist()] == [15.0]
+
+
 def test_a_map_on_the_globe_needs_its_origin() -> None:
     drawing = Drawing()
     road(drawing)
@@ -174,4 +235,32 @@ def test_the_real_map() -> None:
         "give_way",
         "priority_here",
     }
-    assert (tables["stop_line"].num_rows, tables["crossing"].num_rows, tables["lane_link"].num_rows) == (33, 14, 321)
+    assert (tables["stop_line"].num_rows, tables["crossing"].num_rows, tables["lane_link"].num_rows) == (29, 14, 321)
+    # a line between two lanes stands at the end of the first, and is there once
+    ends = {row["lanelet_id"] for row in tables["stop_line"].to_pylist() if row["lane_s_m"] > 1.0}
+    links = {(row["from_id"], row["to_id"]) for row in tables["lane_link"].to_pylist()}
+    starts = {row["lanelet_id"] for row in tables["stop_line"].to_pylist() if row["lane_s_m"] == 0.0}
+    assert not {(a, b) for a, b in links if a in ends and b in starts}
+
+
+@pytest.mark.parametrize(
+    ("file", "counts", "limits", "stops", "crossings"),
+    [
+        ("autoware_cargo_transport_map.osm", (88, 91), {30: 88}, 0, 0),
+        # one of its seven crossings lies across a footpath only
+        ("autoware_zalazone_smart_city.osm", (218, 261), {30: 203, 10: 13, 15: 2}, 37, 6),
+    ],
+)
+def test_real_maps_of_autoware_need_no_origin(
+    file: str, counts: tuple[int, int], limits: dict[int, int], stops: int, crossings: int
+) -> None:
+    environment = load_map(read_source(shared(f"maps/{file}")))
+    tables = environment.tables
+    assert not [row for row in tables["map_quality"].to_pylist() if row["severity"] == "error"]
+    assert (tables["lanelet"].num_rows, tables["lane_link"].num_rows) == counts
+    assert Counter(round(row["limit_mps"] * 3.6) for row in tables["speed_limit"].to_pylist()) == limits
+    signs = {(r["lanelet_id"], r["lane_s_m"]) for r in tables["traffic_signal"].to_pylist() if r["kind"] == "stop"}
+    lines = {(r["lanelet_id"], r["lane_s_m"]) for r in tables["stop_line"].to_pylist()}
+    assert signs == lines
+    assert (len(lines), tables["stop_line"].num_rows) == (stops, stops)
+    assert len(set(tables["crossing"]["crossing_id"].to_pylist())) == crossings

@@ -28,6 +28,7 @@ MAPS = {
     "maps/curves_elevation.xodr": ("rht", "default", 1, 6, 0),
     "maps/e6mini-lht.xodr": ("lht", "attribute", 1, 14, 0),
     "maps/fabriksgatan_traffic_lights.xodr": ("rht", "junctions", 16, 44, 40),
+    "maps/multi_intersections.xodr": ("rht", "junctions", 63, 242, 240),
     "maps/parking_demo.xodr": ("rht", "attribute", 7, 31, 21),
     "maps/straight_500m_signs.xodr": ("rht", "default", 1, 6, 0),
     "maps/two_plus_one.xodr": ("rht", "attribute", 1, 17, 12),
@@ -43,6 +44,8 @@ MAPS = {
 }
 # what is wrong with them, seen by hand: an exit lane of soderleden that its file links to the lane beside the next one
 FLAWS = {"osi/soderleden.xodr": {("0.0.-3", "0.1.-2")}}
+# lanes beside the carriageway whose continuation the file places metres away
+GAPS = {"maps/multi_intersections.xodr": {"229.0.-4", "284.0.4"}}
 every_map = pytest.mark.parametrize("file", MAPS)
 
 
@@ -143,7 +146,8 @@ def test_links_are_exactly_the_lanes_that_touch(file: str) -> None:
     linked = {(row["from_id"], row["to_id"]) for row in rows(read(file), "lane_link") if row["from_id"] in ends}
     assert linked - touching == FLAWS.get(file, set())
     assert touching <= linked
-    assert set(checks(read(file)).get("link_gap", [])) == {a for a, _ in FLAWS.get(file, set())}
+    flawed = {a for a, _ in FLAWS.get(file, set())} | GAPS.get(file, set())
+    assert set(checks(read(file)).get("link_gap", [])) == flawed
 
 
 @every_map
@@ -242,3 +246,17 @@ def test_town_stop_lines_lie_across_lanes_before_the_junction() -> None:
         )
         assert d < 8.0
         assert lanes[row["lanelet_id"]]["drivable"]
+
+
+def test_stop_lines_given_as_signals_hold_for_the_lanes_that_lead_into_the_junction() -> None:
+    """All 17 lines stand before a junction, with orientation -; the one of road 202 is valid for its two lanes."""
+    crossroads = read("maps/multi_intersections.xodr")
+    lanes = lanelets(crossroads)
+    leads_to = {row["from_id"]: row["to_id"] for row in rows(crossroads, "lane_link")}
+    lines = rows(crossroads, "stop_line")
+    assert len(lines) == 18
+    assert len({lanes[row["lanelet_id"]]["road_id"] for row in lines}) == 17
+    assert {row["lanelet_id"] for row in lines if row["lanelet_id"].startswith("202.")} == {"202.0.1", "202.0.2"}
+    for row in lines:
+        assert lanes[row["lanelet_id"]]["length_m"] - row["lane_s_m"] == pytest.approx(4.0, abs=0.1)
+        assert lanes[leads_to[row["lanelet_id"]]]["junction_id"] is not None

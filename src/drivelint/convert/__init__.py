@@ -10,7 +10,7 @@ import pyarrow as pa
 
 from drivelint.convert.guard import refuse_to_overwrite
 from drivelint.convert.tables import MAP_FILE, parquet_bytes
-from drivelint.errors import UsageError
+from drivelint.errors import MapError, UsageError
 from drivelint.ingest import IngestOptions, expand, read_trace
 from drivelint.ingest.carried import findings
 from drivelint.ingest.files import CANONICAL
@@ -62,8 +62,9 @@ class Written:
 def convert(order: Order) -> Written:
     """Read a trace and write it anew: the folder `out` itself holds the tables, or `<stem>.mcap`.
 
-    Errors: `TraceError` where the trace cannot be read, `UsageError` where something else would be overwritten or the map
-    cannot go along, `MapError` for a map that cannot be read, `OutputError` where the folder cannot be written.
+    The log's own map goes along as it is; where it cannot, or cannot be used, a note says so.
+    Errors: `TraceError` where the trace cannot be read, `UsageError` where something else would be overwritten or the given
+    map cannot go along, `MapError` for a given map that cannot be read, `OutputError` where the folder cannot be written.
     """
     paths = expand([order.trace])
     if len(paths) != 1:
@@ -81,10 +82,10 @@ def convert(order: Order) -> Written:
     trace = read_trace(path, options)
     if order.map_offset is not None:
         trace = _moved(trace, order.map_offset)
-    road = _road(order, trace)
+    road, told = _road(order, trace)
     prepare(order.out)
     files = _mcap(target, trace, road) if order.to == "mcap" else _parquet(target, trace, road)
-    notes = trace.notes
+    notes = [*trace.notes, *told]
     has_ego = any(trace.tables["actor"]["is_ego"].to_pylist())
     if not has_ego:
         notes = [
@@ -110,29 +111,47 @@ def _moved(trace: Trace, offset: tuple[float, float]) -> Trace:
     return replace(trace, tables={**trace.tables, "data_log": log}, map_offset=offset)
 
 
-def _road(order: Order, trace: Trace) -> MapSource | None:
-    """Return the map that goes along: the user's, else the log's own. Errors: as `convert`."""
-    if order.map is None and trace.embedded_map is None:
-        return None
-    content = trace.embedded_map or b"" if order.map is None else read_source(order.map).content
-    if order.to == "mcap" and (root_element(content) or "").lower() != "opendrive":
-        raise UsageError(
-            "only an OpenDRIVE map can go along in MCAP (OSI has no message for another): use --to parquet"
-        )
+def _road(order: Order, trace: Trace) -> tuple[MapSource | None, list[str]]:
+    """Return the map that goes along, the user's, else the log's own, and what to tell about it. Errors: as `convert`."""
+    if order.map is None:
+        return (None, []) if trace.embedded_map is None else _own_road(order, trace, trace.embedded_map)
+    road = read_source(order.map)
+    if order.to == "mcap" and (why := _unfit_for_mcap(road)):
+        raise UsageError(why)
     # read here so that a wrong map is refused now, not by whoever checks the converted log
-    MapLibrary(order.map, None, "auto").find(
-        trace.path, trace.embedded_map, trace.map_offset, trace.tables["actor_state"]
-    )
-    road = read_source(order.map) if order.map is not None else MapSource(MAP_FILE, trace.embedded_map or b"")
-    if order.to == "mcap":
-        try:
-            road.content.decode("utf-8")
-        except UnicodeDecodeError as error:
-            raise UsageError(
-                f"map {road.name} is not UTF-8 ({error.reason} at byte {error.start}), as OSI's texts are: save it as UTF-8, "
-                "or use --to parquet"
-            ) from error
-    return road
+    library = MapLibrary(order.map, None, "auto")
+    library.find(trace.path, trace.embedded_map, trace.map_offset, trace.tables["actor_state"])
+    return road, []
+
+
+def _own_road(order: Order, trace: Trace, content: bytes) -> tuple[MapSource | None, list[str]]:
+    """Return the log's own map as it is, whether it can be used or not: who converts a log loses nothing by it."""
+    road = MapSource(MAP_FILE, content)
+    notes = []
+    states = trace.tables["actor_state"]
+    library = MapLibrary(None, None, "auto")
+    try:
+        environment = library.find(trace.path, content, trace.map_offset, states, trace.geo_reference)
+        library.doubts(trace.path, environment, states, trace.geo_reference)
+    except MapError as error:
+        notes.append(f"the log's own map cannot be used: {error}")
+    if order.to == "mcap" and (why := _unfit_for_mcap(road)):
+        return None, [*notes, f"the log's own map is left out: {why}"]
+    return road, notes
+
+
+def _unfit_for_mcap(road: MapSource) -> str | None:
+    """Return why a map cannot go along in MCAP; None: it can."""
+    if (root_element(road.content) or "").lower() != "opendrive":
+        return "only an OpenDRIVE map can go along in MCAP (OSI has no message for another): use --to parquet"
+    try:
+        road.content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        return (
+            f"map {road.name} is not UTF-8 ({error.reason} at byte {error.start}), as OSI's texts are: save it as UTF-8, "
+            "or use --to parquet"
+        )
+    return None
 
 
 def _mcap(target: Path, trace: Trace, road: MapSource | None) -> dict[str, int]:

@@ -10,10 +10,10 @@ import numpy as np
 import ptars
 
 from drivelint.errors import TraceError
-from drivelint.ingest import carried, descriptors
+from drivelint.ingest import carried, descriptors, own_map
 from drivelint.ingest.container import Container
 from drivelint.ingest.order import listed
-from drivelint.ingest.osi_decode import GROUND_TRUTH, SENSOR_VIEW, TREES, Decoder, Head, head_of, malformed
+from drivelint.ingest.osi_decode import GROUND_TRUTH, SENSOR_VIEW, TREES, Decoder, Head, head_of
 from drivelint.ingest.osi_words import Bulbs, signal_states
 from drivelint.ingest.trace import EPOCH_NS, Finding, FrameTimes, Recording, States
 
@@ -35,27 +35,30 @@ BATCH_BYTES = 32 * 1024 * 1024
 def read(path: Path, topic: str | None) -> Recording:
     """Read the ground truth of an MCAP file, and the OpenDRIVE beside it if there is one.
 
-    Errors: `TraceError` for a damaged file, no or several ground-truth topics, or a schema without the fields needed.
+    Of several different OpenDRIVE maps none is taken. Errors: `TraceError` for a damaged file, no or several ground-truth
+    topics, or a schema without the fields needed.
     """
     container = Container(path)
     source = _Source(container, topic)
     maps: dict[bytes, str] = {}
     events: list[bytes] = []
+    lost: list[Finding] = []
     for packet in container.packets():
         kind = _kind(container, packet.channel)
         if kind in TREES:
             source.take(packet, kind)
         elif kind == OPEN_DRIVE:
-            maps.setdefault(_map_text(container, packet), packet.channel.topic)
+            text, trouble = _map_text(container, packet)
+            lost += trouble
+            if text is not None:
+                maps.setdefault(text, packet.channel.topic)
         elif _is_event(container, packet.channel):
             events.append(packet.data)
-    if len(maps) > 1:
-        raise TraceError(
-            f"{path}: {len(maps)} different OpenDRIVE maps (topics {listed(sorted(maps.values()))}): keep one"
-        )
     recording = source.recording()
     recording.findings += container.findings
-    recording.embedded_map = next(iter(maps), source.head.lanes)
+    own, several = own_map.only(maps)
+    recording.embedded_map = own if maps else source.head.lanes
+    recording.findings += [*lost[:1], *several]
     recording.geo_reference = source.head.reference
     recording.findings += () if maps else source.head.findings
     recording.events = carried.events(path, events)
@@ -77,19 +80,22 @@ def _is_event(container: Container, channel: Channel) -> bool:
     return schema is not None and schema.name == carried.EVENT and channel.message_encoding == "json"
 
 
-def _map_text(container: Container, packet: Packet) -> bytes:
+def _map_text(container: Container, packet: Packet) -> tuple[bytes | None, tuple[Finding, ...]]:
+    """Return the OpenDRIVE of a message, and why there is none."""
     types = descriptors.parse(container.path, OPEN_DRIVE, container.schemas[packet.channel.schema_id].data)
     descriptor = descriptors.pruned(container.path, types, OPEN_DRIVE, {"open_drive_xml_content": None})
     try:
         rows = ptars.HandlerPool([descriptor.file]).get_for_message(descriptor).list_to_record_batch([packet.data])
     except ValueError as error:
-        raise malformed(container.path, packet, error) from error
-    text = rows.column(0)[0].as_py() if rows.num_columns else None
+        text, why = None, f"cannot be decoded ({error})"
+    else:
+        text, why = rows.column(0)[0].as_py() if rows.num_columns else None, "is empty"
     if not text:
-        raise TraceError(
-            f"{container.path}: the OpenDRIVE map on topic {packet.channel.topic!r} is empty (byte {packet.offset})"
+        message = (
+            f"the log's own map is not used: the one on topic {packet.channel.topic!r}, byte {packet.offset}, {why}"
         )
-    return text if isinstance(text, bytes) else str(text).encode()
+        return None, (own_map.unusable(message),)
+    return text if isinstance(text, bytes) else str(text).encode(), ()
 
 
 @dataclass

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drivelint.errors import TraceError
-from drivelint.ingest import bag, cdr, ros_ego, ros_types
+from drivelint.ingest import bag, cdr, own_map, ros_ego, ros_types
 from drivelint.ingest.container import Container
 from drivelint.ingest.frames import Frames, clean, fixed_frame
 from drivelint.ingest.order import listed
@@ -205,7 +205,8 @@ def read(path: Path, options: IngestOptions) -> Recording:
             codes[mine] = ros_ego.indicators(recording.states.t_ns[mine], reports)
             recording.states.codes["indicator"] = codes
         recording.events = ros_ego.engagement(reports, ego)
-    recording.embedded_map = _map(log)
+    recording.embedded_map, trouble = own_map.only(_maps(log))
+    recording.findings += trouble
     recording.frame_times, recording.utc_start_ns = clocks(list(parts.values()))
     recording.notes.append(f"positions are in the frame {fixed!r}")
     return recording
@@ -258,15 +259,11 @@ def _infos(log: _Log) -> dict[str, str]:
     return found
 
 
-def _map(log: _Log) -> bytes | None:
+def _maps(log: _Log) -> dict[bytes, str]:
     texts: dict[bytes, str] = {}
     for topic, source in sorted(log.topics.get(WORLD_INFO, {}).items()):
         for table, _ in source.parts:
             for text in table.columns["opendrive"].tolist():
                 if text.strip():
                     texts.setdefault(text, topic)
-    if len(texts) > 1:
-        raise TraceError(
-            f"{log.path}: {len(texts)} different OpenDRIVE maps (topics {listed(sorted(texts.values()))}): keep one"
-        )
-    return next(iter(texts), None)
+    return texts

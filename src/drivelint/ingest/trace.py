@@ -58,6 +58,8 @@ class EgoSize(NamedTuple):
     forward_m: float = 0.0
 
 
+OWN_MAP_UNUSABLE = "own_map_unusable"
+"""The check that found that the log's own map cannot be used: rules that need a map are unknown for its reason."""
 LOSSES = ("dropped_row", "malformed_row")
 """Checks that found parts of the log that could not be read, whatever their severity: what is judged is what was left.
 

@@ -13,7 +13,7 @@ from drivelint.batch import on_its_map
 from drivelint.errors import ExitCode, MapError, TraceError, UsageError
 from drivelint.ingest import IngestOptions, expand, read_trace
 from drivelint.ingest.order import listed
-from drivelint.ingest.trace import FORMATS
+from drivelint.ingest.trace import FORMATS, OWN_MAP_UNUSABLE
 from drivelint.inspect import advice, model, tracks
 from drivelint.inspect.content import content, size
 from drivelint.judge import Bench
@@ -149,7 +149,9 @@ def _on_its_map(trace: Trace, library: MapLibrary) -> tuple[Trace, Environment |
         found = on_its_map(trace, library)
     except MapError as error:
         return trace, None, str(error)
-    return found.trace, found.environment, None
+    rows = found.trace.tables["quality"].to_pylist()
+    own = next((row["message"] for row in rows if row["check_id"] == OWN_MAP_UNUSABLE), None)
+    return found.trace, found.environment, own if found.environment is None else None
 
 
 def _judgeable(

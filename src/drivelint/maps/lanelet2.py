@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections import defaultdict
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import shapely
 
-from drivelint import markup
 from drivelint.errors import MapError
-from drivelint.maps.bounded import BoundedLane, build, crossings, side_driven_on, tables
+from drivelint.maps.bounded import BoundedLane, build, side_driven_on, tables
 from drivelint.maps.contract import Environment, MapSource, Request, environment_id
+from drivelint.maps.lanelet2_file import attribute, load, xy
+from drivelint.maps.lanelet2_furniture import furniture
 from drivelint.maps.quality import Quality
 from drivelint.maps.tables import from_rows
 
@@ -27,19 +26,12 @@ if TYPE_CHECKING:
 _KINDS = {
     "road": "driving", "highway": "driving", "play_street": "driving", "bus_lane": "bus", "exit": "exit",
     "emergency_lane": "stop", "bicycle_lane": "biking", "walkway": "sidewalk", "shared_walkway": "sidewalk",
-    "stairs": "sidewalk", "rail": "rail",
+    "stairs": "sidewalk", "pedestrian_lane": "sidewalk", "road_shoulder": "shoulder", "rail": "rail",
 }  # fmt: skip
 _DRIVEN = frozenset({"driving", "bus", "exit"})
 _LINES = {"solid": "solid", "dashed": "broken", "solid_solid": "solid_solid", "dashed_dashed": "broken_broken"}
 _EDGES = {"curbstone": "curb", "virtual": "none"}
 _LEFT_DRIVEN = frozenset({"gb", "uk", "ie", "au", "nz", "jp", "in", "za", "sg", "my", "th", "hk", "cy", "mt"})
-_SIGNS = {
-    "de205": "give_way",
-    "de206": "stop",
-    "de301": "priority_here",
-    "de306": "priority_road",
-    "de276": "no_overtaking",
-}
 
 
 class Lanelet2Reader:
@@ -54,7 +46,7 @@ class Lanelet2Reader:
         log's frame lies on the globe.
         """
         quality = Quality()
-        layers = _load(source, request, quality)
+        layers, local = load(source, request, quality)
         lanes = build(list(_lanes(layers)), request.offset, quality)
         if not lanes:
             raise MapError(f"map {source.name} has no lanelet that can be built: is it a plain OpenStreetMap extract?")
@@ -67,68 +59,18 @@ class Lanelet2Reader:
                 {
                     "name": source.name, "sha256": source.sha256, "format": self.format,
                     "offset_x_m": request.offset[0], "offset_y_m": request.offset[1], "handedness": handedness,
-                    "handedness_source": how, "geo_reference": _reference(request),
+                    "handedness_source": how, "geo_reference": _reference(request, local=local),
                 }
             ],
-            "traffic_signal": _signals(layers, lanes),
-            "stop_line": _stop_lines(layers, lanes, request.offset),
-            "road_object": [],
-            "crossing": crossings(_walks(layers), lanes, request.offset),
+            **furniture(layers, lanes, request.offset, quality),
         }  # fmt: skip
         result |= {table: from_rows(table, name, content) for table, content in rows.items()}
         result["map_quality"] = quality.table(name)
         return Environment(name, handedness, how, result)
 
 
-def _reference(request: Request) -> str | None:
-    return None if request.origin is None else f"origin {request.origin[0]:g},{request.origin[1]:g}"
-
-
-def _load(source: MapSource, request: Request, quality: Quality) -> Any:
-    """Return the library's map, read robustly: what it complains of is in `quality`."""
-    try:
-        import lanelet2
-    except ImportError as error:
-        raise MapError(
-            f"map {source.name} is a Lanelet2 map, and the package lanelet2 is not installed: pip install 'drivelint[lanelet2]'"
-        ) from error
-    try:
-        root = markup.parse(source.content)  # it is not the library that refuses entities
-    except markup.RefusedError as error:
-        raise MapError(f"map {source.name} {error}") from None
-    local = root.find("node/tag[@k='local_x']") is not None
-    if request.origin is None and not local:
-        raise MapError(
-            f"map {source.name} is in latitude and longitude: say which point is 0,0 in the log with --map-origin LAT,LON"
-        )
-    origin = lanelet2.io.Origin(*(request.origin or (0.0, 0.0)))
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "map.osm"
-        path.write_bytes(source.content)
-        try:
-            layers, errors = lanelet2.io.loadRobust(str(path), lanelet2.projection.LocalCartesianProjector(origin))
-        except RuntimeError as error:
-            raise MapError(f"map {source.name} cannot be read as Lanelet2: {' '.join(str(error).split())}") from error
-    for message in errors:
-        quality.add("invalid_element", "error", None, " ".join(str(message).split()))
-    return layers
-
-
-def _xy(bound: Any) -> Floats:
-    """Return the points (n, 2) of a line: where nodes say local coordinates (Autoware), those."""
-    return np.array(
-        [
-            (float(p.attributes["local_x"]), float(p.attributes["local_y"]))
-            if "local_x" in p.attributes
-            else (p.x, p.y)
-            for p in bound
-        ],
-        np.float64,
-    ).reshape(-1, 2)
-
-
-def _attribute(element: Any, name: str) -> str:
-    return str(element.attributes[name]) if name in element.attributes else ""
+def _reference(request: Request, *, local: bool) -> str | None:
+    return None if request.origin is None or local else f"origin {request.origin[0]:g},{request.origin[1]:g}"
 
 
 class _Bound(NamedTuple):
@@ -143,7 +85,7 @@ def _bound(line: Any) -> _Bound:
 
 
 def _is_lane(element: Any) -> bool:
-    return _attribute(element, "subtype") in _KINDS
+    return attribute(element, "subtype") in _KINDS
 
 
 def _lanes(layers: Any) -> Iterable[BoundedLane]:
@@ -158,11 +100,11 @@ def _lanes(layers: Any) -> Iterable[BoundedLane]:
         rights[_bound(x.rightBound)].append(x)
     limit = _limits()
     for x in mine:
-        kind = _KINDS[_attribute(x, "subtype")]
+        kind = _KINDS[attribute(x, "subtype")]
         limit_mps, known = limit(x)
         lane = BoundedLane(
-            str(x.id), _xy(x.leftBound), _xy(x.rightBound), kind, kind in _DRIVEN,
-            bidirectional=kind in _DRIVEN and _attribute(x, "one_way") in {"no", "false"},
+            str(x.id), xy(x.leftBound), xy(x.rightBound), kind, kind in _DRIVEN,
+            bidirectional=kind in _DRIVEN and attribute(x, "one_way") in {"no", "false"},
             road_type=_road_type(x),
             successors=tuple(sorted(starts[x.leftBound[-1].id, x.rightBound[-1].id])),
             left_marking=_marking(x.leftBound, near_left=False), right_marking=_marking(x.rightBound, near_left=True),
@@ -187,9 +129,9 @@ def _beside(own: Any, same: Sequence[Any], against: Sequence[Any]) -> tuple[str 
 
 
 def _road_type(x: Any) -> str | None:
-    if _attribute(x, "subtype") == "highway":
-        return "motorway" if _attribute(x, "location") != "urban" else "town"
-    return {"urban": "town", "nonurban": "rural"}.get(_attribute(x, "location"))
+    if attribute(x, "subtype") == "highway":
+        return "motorway" if attribute(x, "location") != "urban" else "town"
+    return {"urban": "town", "nonurban": "rural"}.get(attribute(x, "location"))
 
 
 def _limits() -> Any:
@@ -201,7 +143,7 @@ def _limits() -> Any:
     )
 
     def limit(x: Any) -> tuple[float | None, bool]:
-        signed = any(_attribute(r, "subtype") == "speed_limit" for r in x.regulatoryElements)
+        signed = any(attribute(r, "subtype") == "speed_limit" for r in x.regulatoryElements)
         if not signed and "speed_limit" not in x.attributes:
             return None, False
         return float(rules.speedLimit(x).speedLimit) / 3.6, True
@@ -211,7 +153,7 @@ def _limits() -> Any:
 
 def _marking(bound: Any, *, near_left: bool) -> str | None:
     """Return the marking of a bound; of a double line, named left first along the bound, the nearer half comes first."""
-    kind, style = _attribute(bound, "type"), _attribute(bound, "subtype")
+    kind, style = attribute(bound, "type"), attribute(bound, "subtype")
     if kind in _EDGES:
         return _EDGES[kind]
     if kind not in {"line_thin", "line_thick"}:
@@ -249,7 +191,7 @@ def _junctions(lanes: Sequence[BoundedLane]) -> None:
 
 
 def _handedness(layers: Any, lanes: Sequence[BoundedLane], request: Request, quality: Quality) -> tuple[str, str]:
-    regions = {_attribute(x, "region") for x in layers.laneletLayer} - {""}
+    regions = {attribute(x, "region") for x in layers.laneletLayer} - {""}
     by_region = {"lht" if region[:2].lower() in _LEFT_DRIVEN else "rht" for region in regions}
     said = [
         (how, side)
@@ -270,84 +212,3 @@ def _handedness(layers: Any, lanes: Sequence[BoundedLane], request: Request, qua
         quality.add("handedness_default", "warning", None, message)
         return "rht", "default"
     return said[0][1], said[0][0]
-
-
-def _station(lane: BoundedLane, points: Floats) -> float:
-    found = shapely.line_locate_point(shapely.LineString(lane.line.centre), shapely.points(points))
-    return float(np.mean(found))
-
-
-def _signals(layers: Any, lanes: Sequence[BoundedLane]) -> list[dict[str, Any]]:
-    """Return a row for each lane and regulatory element that lights, gives way or has priority there."""
-    by_id = {lane.lanelet_id: lane for lane in lanes}
-    rows = []
-    for x in sorted(layers.laneletLayer, key=lambda x: x.id):
-        lane = by_id.get(str(x.id))
-        if lane is None:
-            continue
-        for element in sorted(x.regulatoryElements, key=lambda r: r.id):
-            kind = _kind(element, x)
-            if kind is None:
-                continue
-            end = float(lane.line.s[-1])
-            rows.append(
-                {
-                    "signal_id": str(element.id), "kind": kind, "country": _attribute(x, "region") or None,
-                    "type": _attribute(element, "subtype"), "subtype": None, "value": None, "unit": None,
-                    "dynamic": kind == "traffic_light", "turns": None, "road_id": lane.road_id, "road_s_m": end if lane.along > 0 else 0.0,
-                    "lanelet_id": lane.lanelet_id, "lane_s_m": end,
-                    "x_m": float(lane.line.centre[-1, 0]), "y_m": float(lane.line.centre[-1, 1]),
-                }
-            )  # fmt: skip
-    return rows
-
-
-def _kind(element: Any, lanelet: Any) -> str | None:
-    subtype = _attribute(element, "subtype")
-    if subtype == "right_of_way":
-        yields = {x.id for x in element.parameters["yield"]} if "yield" in element.parameters else set()
-        return "give_way" if lanelet.id in yields else "priority_here"
-    if subtype == "traffic_sign":
-        return next((_SIGNS[s] for s in map(_sign, element.parameters["refers"]) if s in _SIGNS), None)
-    return subtype if subtype == "traffic_light" else None
-
-
-def _sign(line: Any) -> str:
-    return _attribute(line, "subtype")
-
-
-def _stop_lines(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, float]) -> list[dict[str, Any]]:
-    """Return a row for each drivable lane whose centre line a stop line crosses."""
-    driven = [lane for lane in lanes if lane.drivable]
-    lines = [shapely.LineString(lane.line.centre) for lane in driven]
-    tree = shapely.STRtree(lines)
-    rows = []
-    for line in sorted(layers.lineStringLayer, key=lambda x: x.id):
-        if _attribute(line, "type") != "stop_line" or len(line) < 2:
-            continue
-        points = _xy(line) + offset
-        across = shapely.LineString(points)
-        for i in sorted(int(i) for i in tree.query(across, predicate="intersects")):
-            at = shapely.get_coordinates(shapely.intersection(across, lines[i]))
-            rows.append(
-                {
-                    "stop_line_id": str(line.id),
-                    "lanelet_id": driven[i].lanelet_id,
-                    "lane_s_m": _station(driven[i], at),
-                    "source": "object",
-                }
-            )
-    return sorted(rows, key=lambda r: (r["stop_line_id"], r["lanelet_id"]))
-
-
-def _walks(layers: Any) -> list[BoundedLane]:
-    found = []
-    for x in sorted(layers.laneletLayer, key=lambda x: x.id):
-        if _attribute(x, "subtype") == "crosswalk":
-            marks = {_attribute(bound, "type") for bound in (x.leftBound, x.rightBound)}
-            found.append(
-                BoundedLane(
-                    str(x.id), _xy(x.leftBound), _xy(x.rightBound), "zebra" if "zebra_marking" in marks else "crossing"
-                )
-            )
-    return found

@@ -74,7 +74,7 @@ class MapLibrary:
         Errors: `MapError` if the map cannot be read, or is of another place.
         """
         shift = self._offset or offset or (0.0, 0.0)
-        source = self._given or (MapSource("embedded", embedded) if embedded else None)
+        source = self._given or (MapSource("embedded", embedded) if embedded is not None else None)
         if self._shelf is not None:
             source = (
                 self._shelf.named(log)
@@ -93,6 +93,10 @@ class MapLibrary:
         if environment.handedness_source == "default" and (sensed := self._sensed(environment, states)):
             return self._load(source, shift, sensed)
         return environment
+
+    def takes_own(self, log: Path, embedded: bytes | None) -> bool:
+        """Say whether the map in the log is the one that `find` takes."""
+        return embedded is not None and self._given is None and (self._shelf is None or not self._shelf.named(log))
 
     def doubts(
         self, log: Path, environment: Environment | None, states: pa.Table, reference: str | None = None

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from drivelint.maps.opendrive.network import Network, Road
     from drivelint.maps.quality import Quality
 
+MIN_LINE_M = 1.0  # a stop line said to be narrower than this does not say how far it goes across
+MIN_OWN_SHARE = 0.25  # of a stop line's width, on lanes of its orientation: less is on the others' lanes
 OFF_ROAD_M = 1.0  # a signal further beyond its road's end than this is a mistake worth a warning
 Rows = list[dict[str, Any]]
 
@@ -30,13 +32,13 @@ def signal_rows(net: Network, lanes: list[Lanelet], offset: tuple[float, float],
             if listing.tag in {"signal", "signalReference"}:
                 reader.read(road, listing)
     reader.report()
-    signals = _unique(reader.signals, ("signal_id", "road_id", "road_s_m", "lanelet_id"))
+    signals = _unique(reader.signals, ("signal_id", "road_id", "road_s_m", "lanelet_id", "type", "subtype"))
     return signals, _unique(reader.stop_lines, ("stop_line_id", "lanelet_id", "lane_s_m"))
 
 
 def _unique(rows: Rows, key: tuple[str, ...]) -> Rows:
     """Return the rows ordered by their key, each once."""
-    found = {tuple(row[k] for k in key): row for row in rows}
+    found = {tuple("" if row[k] is None else row[k] for k in key): row for row in rows}
     return [found[k] for k in sorted(found)]
 
 
@@ -98,8 +100,16 @@ class _Reader:
             }
             for lane in self._held(listing, lanes)
         ]
-        if kind == "stop_line" and listing is signal:
-            self.stop_lines += _painted(listing, s, lanes)
+        if kind == "stop_line":
+            self.stop_lines += [
+                {
+                    "stop_line_id": listing.get("id", ""),
+                    "lanelet_id": lane.lanelet_id,
+                    "lane_s_m": lane.at(s),
+                    "source": "signal",
+                }
+                for lane in self._stopped(listing, signal, s, lanes)
+            ]
 
     def _held(self, listing: etree._Element, lanes: list[Lanelet]) -> list[Lanelet]:
         """Return the lanelets that a signal holds for.
@@ -117,6 +127,32 @@ class _Reader:
             self.contradictions.append(listing.get("id", ""))
             return lanes
         return held
+
+    def _stopped(
+        self, listing: etree._Element, signal: etree._Element, s: float, lanes: list[Lanelet]
+    ) -> list[Lanelet]:
+        """Return the lanelets that a painted stop line holds for.
+
+        Those of its validity, if it has any; else those of its orientation's direction that it lies across by its place
+        and width; where it lies across none of them, all of that direction: many a line is placed on the reference line
+        and drawn beside it. A line that lies across lanes of the other direction only holds for those: its orientation
+        is then the way that it faces.
+        """
+        held = self._held(listing, lanes)
+        width = number(signal, "width", 0.0)
+        oriented = listing.get("orientation") in {"+", "-"}
+        if listing.find("validity") is not None or (oriented and width < MIN_LINE_M):
+            return held
+        t, half = number(listing, "t", 0.0), max(0.5 * width, 1e-3)
+        ranges = [(lane, *lane.lateral_range(s)) for lane in lanes]
+        shared = [(lane, min(high, t + half) - max(low, t - half), high - low) for lane, low, high in ranges]
+        across = [lane for lane, common, wide in shared if common > min(0.5 * wide, half)]
+        if not across or any(lane in held for lane in across):
+            return [lane for lane in across if lane in held] or held
+        if sum(common for lane, common, _ in shared if lane in held and common > 0.0) > MIN_OWN_SHARE * width:
+            return held
+        self.contradictions.append(listing.get("id", ""))
+        return across
 
     def report(self) -> None:
         """Report contradictions, and signals that neither hold for a lane themselves nor by a reference."""
@@ -144,16 +180,3 @@ def _at(lane: Lanelet, s: float) -> bool:
     """Tell whether the lanelet holds a road station; of two that meet there the later one does."""
     end = lane.strip.end_m
     return lane.strip.start_m <= s < end or (s >= end >= lane.road.length_m - 1e-3)
-
-
-def _painted(signal: etree._Element, s: float, lanes: list[Lanelet]) -> Rows:
-    """Return the lanelets that a painted line lies across: by its place and width, whatever its orientation."""
-    t = number(signal, "t", 0.0)
-    half = max(0.5 * number(signal, "width", 0.0), 1e-3)
-    rows = []
-    for lane in lanes:
-        low, high = lane.lateral_range(s)
-        if min(high, t + half) - max(low, t - half) > min(0.5 * (high - low), half):
-            row = {"stop_line_id": signal.get("id", ""), "lanelet_id": lane.lanelet_id, "lane_s_m": lane.at(s)}
-            rows.append({**row, "source": "signal"})
-    return rows
