@@ -152,7 +152,8 @@ SELECT e.drive_id, e.ego_id, e.t_ns,
     (c.t_ns IS NULL OR CASE WHEN p.excused OR c.closed THEN false WHEN p.t_ns IS NOT NULL AND p.excused IS NULL OR x.t_ns IS NOT NULL AND NOT e.in_junction THEN NULL ELSE NOT c.closed END)
         AND (e.x_m IS NULL OR e.lanelet_id IS NOT NULL OR a.t_ns IS NOT NULL AND w.road_type = 'motorway') AND (NOT e.in_junction OR a.t_ns IS NOT NULL OR coalesce(r.against, false))
         AND CASE WHEN abs(m.v_long_mps) > $manoeuvring_mps OR w.road_type = 'motorway' OR d.against AND d.least_m > $manoeuvring_m THEN true
-            WHEN abs(m.v_long_mps) <= $manoeuvring_mps AND w.road_type IS NOT NULL AND NOT coalesce(d.against AND d.most_m > $manoeuvring_m, false) THEN false END AS applies
+            -- with its lane, what kind of road it is does not matter
+            WHEN abs(m.v_long_mps) <= $manoeuvring_mps AND (w.road_type IS NOT NULL OR e.with_direction AND m.v_long_mps >= -$reverse_mps) AND NOT coalesce(d.against AND d.most_m > $manoeuvring_m, false) THEN false END AS applies
 FROM ego_state e
 LEFT JOIN ego_motion m USING (drive_id, ego_id, t_ns)
 LEFT JOIN ego_condition w USING (drive_id, ego_id, t_ns)
