@@ -53,7 +53,8 @@ CREATE TABLE sight (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- a step at which somebody is or may be there who has no place
     around_m DOUBLE NOT NULL,         -- nearer to the ego's middle than this nothing stands in the way of sight: the nearest box, or the sensor's range
-    lane_m DOUBLE NOT NULL            -- so far ahead of the ego's front its lane is in plain view
+    lane_m DOUBLE NOT NULL,           -- so far ahead of the ego's front its lane is in plain view
+    vehicle_lane_m DOUBLE NOT NULL    -- so far ahead of it no vehicle stands unseen in its lane: a box that reaches less than half a metre into it hides none
 );
 
 CREATE TABLE hidden (
@@ -225,8 +226,8 @@ CREATE TABLE line_step (
     changes BOOLEAN,                  -- in that time the centre gets from one side of the line to the other, and stays there: a lane change, or a part of an overtake; NULL: the end is not seen and it may go back, or not on the line
     overtaking BOOLEAN,               -- the ego is overtaking somebody, or going round somebody on foot in its lane, from 10 m and 5 s at the speed at which it comes nearer (at least 30 m) before it to the same past it; NULL: it may be, but that one is lost meanwhile, or the side to overtake on is not known
     passing_id VARCHAR,               -- a vehicle standing, or a cyclist or animal at most at 4.47 m/s, in the running lane or on its edge, that is being passed (from 10 m and 5 s at the ego's speed, at least 30 m, ahead of the ego to 10 m and 5 s behind) and leaves too little room to be passed on this side of the line; NULL: none, or in this stretch the ego overtakes somebody that drives
-    passing_known BOOLEAN NOT NULL,   -- nobody else may be passed: everybody near was placed
-    access BOOLEAN                    -- within 30 m the ego goes on to, or comes from, a way beside the road on the far side of the line: it leaves the lanes at 20 mph or less, and turns off, stands there or gets further than 10 m from the running lane's centre line; a shoulder, bay or cycle lane of the same road is no such way; NULL: not known, as where it turns off and comes back the other way
+    passing_known BOOLEAN NOT NULL,   -- nobody else may be passed: everybody near was placed, or is not in plain view and the lane ahead is
+    access BOOLEAN                    -- within 30 m the ego goes on to, or comes from, a way beside the road on the far side of the line: it leaves the lanes at 20 mph or less, and turns off, stands there or gets further than 10 m from the running lane's centre line; a shoulder, bay or cycle lane of the same road is no such way, and who was or gets back by 0.25 m on the same lane was on no such way; NULL: not known, as where it turns off and comes back the other way
 );
 
 CREATE TABLE overtake_place (

@@ -56,6 +56,49 @@ def test_past_a_row_of_cones_the_ego_is_not_on_the_wrong_side(hand: str, kind: s
     assert "fail" in said(by_the_works(hand, kind, [220.0, 230.0]), "ukhc.r143.direction")
 
 
+# ---- slowly, for a little or for long
+
+
+def slowly(hand: str, what: str) -> Drive:
+    """Return an ego at 3 m/s among four others that keep to their lanes: what it does against its lane, for how long."""
+    way = road(((1500.0, 0.0),), hand=hand)
+    t = times(60.0)
+    out = way.other - way.own
+    s, d = 300 + 3 * t, np.full(t.shape, way.own)
+    if what == "out":  # 75 m in the opposing lane
+        d = way.own + out * (np.clip((t - 10) / 3, 0, 1) - np.clip((t - 38) / 3, 0, 1))
+    elif what == "all along":
+        d = np.full(t.shape, way.other)
+    elif what == "parks":  # across the road to the other edge, and stands there
+        s = 300 + 3 * np.clip(t, 0, 20)
+        d = way.own + 1.2 * out * np.clip((t - 14) / 4, 0, 1)
+    elif what == "turned round":
+        s = 300 - 3 * t
+    elif what in {"backs", "backs a little"}:
+        s = 300 - 3 * np.clip(t - 10, 0, 40 if what == "backs" else 5)
+    ego = moving("ego", way, t, s, d)
+    if what.startswith("backs"):
+        ego = replace(ego, yaw=np.full(t.shape, 0.0))
+    starts = ((20.0, 1), (400.0, 1), (900.0, -1), (1100.0, -1))
+    rest = [
+        moving(f"o{k}", way, t, at + 8 * ahead * t, way.own if ahead > 0 else way.other)
+        for k, (at, ahead) in enumerate(starts)
+    ]
+    return drive([ego, *rest], way.environment)
+
+
+@HANDS
+@pytest.mark.parametrize("what", ["out", "all along", "turned round", "backs"])
+def test_a_slow_drive_on_the_wrong_side_is_one(hand: str, what: str) -> None:
+    assert "fail" in said(slowly(hand, what), "ukhc.r143.direction")
+
+
+@HANDS
+@pytest.mark.parametrize("what", ["keeps", "parks", "backs a little"])
+def test_parking_and_reversing_a_little_is_not_driving_on_the_wrong_side(hand: str, what: str) -> None:
+    assert "fail" not in said(slowly(hand, what), "ukhc.r143.direction")
+
+
 # ---- a parked car before a zebra
 
 

@@ -34,6 +34,19 @@ around AS (
     FROM ego
     WINDOW w AS (PARTITION BY drive_id, ego_id ORDER BY k), s AS (PARTITION BY drive_id, ego_id, seg)
 ),
+-- the least that it is over each of its lane's boundaries before and after, as long as it keeps to that lane
+least_out AS (
+    SELECT
+        drive_id, ego_id, t_ns, v.side, min(v.out_m) OVER (r ROWS UNBOUNDED PRECEDING) AS before_m,
+        min(v.out_m) OVER (r ROWS BETWEEN CURRENT ROW AND UNBOUNDED FOLLOWING) AS after_m
+    FROM (
+        SELECT *, k - row_number() OVER (PARTITION BY drive_id, ego_id, seg, lane ORDER BY k) AS run
+        FROM ego
+        WHERE left_out_m IS NOT NULL AND NOT in_junction
+    )
+    CROSS JOIN LATERAL (VALUES (1, left_out_m), (-1, right_out_m)) AS v(side, out_m)
+    WINDOW r AS (PARTITION BY drive_id, ego_id, seg, lane, run, v.side ORDER BY k)
+),
 over AS (
     SELECT
         a.*, v.side, CASE v.side WHEN 1 THEN 'left' ELSE 'right' END AS side_name, CASE v.side WHEN 1 THEN left_out_m ELSE right_out_m END AS out_m,
@@ -85,6 +98,27 @@ doubt AS (
     FROM hidden h
     JOIN numbered n USING (drive_id, ego_id, t_ns)
     WHERE h.least_m < passing_before_m(n.speed_mps) AND (h.vehicle OR is_class(h.actor_class, 'animal'))
+),
+-- one that is lost for a while, and stands in the ego's lane, or may, where it is seen
+stood AS (
+    SELECT DISTINCT p.drive_id, p.ego_id, p.object_id
+    FROM pair p
+    SEMI JOIN hidden h ON h.drive_id = p.drive_id AND h.ego_id = p.ego_id AND h.object_id = p.object_id AND h.late
+    WHERE abs(p.d_m) - p.lat_half_m < p.half_width_m + 0.5 AND passed_over_any_line(p.actor_class, p.length_m, p.speed_mps) IS DISTINCT FROM false
+),
+-- somebody without a place may be the one that is passed; a vehicle that is not in plain view is not in the part of the lane ahead that is,
+-- and, behind, was not passed
+may_pass AS (
+    SELECT DISTINCT n.drive_id, n.ego_id, n.t_ns
+    FROM hidden h
+    JOIN numbered n USING (drive_id, ego_id, t_ns)
+    LEFT JOIN sight v USING (drive_id, ego_id, t_ns)
+    LEFT JOIN stood s ON s.drive_id = h.drive_id AND s.ego_id = h.ego_id AND s.object_id = h.object_id
+    WHERE h.least_m < passing_before_m(n.speed_mps) AND (h.vehicle OR is_class(h.actor_class, 'animal'))
+        AND NOT (
+            h.late AND is_vehicle(h.actor_class) AND NOT is_bicycle(h.actor_class, NULL) AND s.object_id IS NULL
+            AND (h.ahead IS NOT DISTINCT FROM false OR coalesce(v.vehicle_lane_m >= passing_before_m(n.speed_mps), false))
+        )
 ),
 -- near the one that it overtakes, or may (where that one is lost meanwhile, whether it was passed is not known), or near somebody on foot in its lane
 beside AS (
@@ -181,11 +215,12 @@ SELECT
     END AS middle,
     s.t_since_ns, s.begin_seen, s.manoeuvre OR o.run IS NOT NULL AS manoeuvre,
     a.t_since_ns AS t_astride_ns, a.begin_seen AS astride_begin_seen, a.changes, CASE WHEN w.t_ns IS NOT NULL THEN w.overtaking WHEN n.hand_known THEN false END AS overtaking,
-    m.passing_id, m.passing_id IS NOT NULL OR d.t_ns IS NULL AND NOT coalesce(m.unsure, false) AS passing_known,
+    m.passing_id, m.passing_id IS NOT NULL OR u.t_ns IS NULL AND NOT coalesce(m.unsure, false) AS passing_known,
     CASE
         WHEN r.reached THEN true
         WHEN r.may_be THEN NULL
-        WHEN (n.seen_behind_m >= 30 OR r.behind) AND (n.seen_ahead_m >= 30 OR r.ahead) THEN false
+        -- whoever goes on to a way beyond the line does not come back from it
+        WHEN (n.seen_behind_m >= 30 OR r.behind OR lo.before_m <= n.out_m - back_m()) AND (n.seen_ahead_m >= 30 OR r.ahead OR lo.after_m <= n.out_m - back_m()) THEN false
     END AS access
 FROM numbered n
 JOIN stretch s USING (drive_id, ego_id, seg, line, run)
@@ -197,5 +232,6 @@ LEFT JOIN lane_boundary b ON b.environment_id = n.environment_id AND b.lanelet_i
 LEFT JOIN lane_beside y ON y.environment_id = n.environment_id AND y.lanelet_id = n.lanelet_id
     AND y.side = n.side_name AND y.s_start_m <= n.lane_s_m AND n.lane_s_m < y.s_end_m
 LEFT JOIN met m ON m.drive_id = n.drive_id AND m.ego_id = n.ego_id AND m.t_ns = n.t_ns AND m.side = n.side
-LEFT JOIN doubt d ON d.drive_id = n.drive_id AND d.ego_id = n.ego_id AND d.t_ns = n.t_ns
+LEFT JOIN may_pass u ON u.drive_id = n.drive_id AND u.ego_id = n.ego_id AND u.t_ns = n.t_ns
+LEFT JOIN least_out lo ON lo.drive_id = n.drive_id AND lo.ego_id = n.ego_id AND lo.t_ns = n.t_ns AND lo.side = n.side
 LEFT JOIN access r ON r.drive_id = n.drive_id AND r.ego_id = n.ego_id AND r.t_ns = n.t_ns AND r.side = n.side

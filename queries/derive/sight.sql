@@ -17,7 +17,8 @@ eye AS (
 near AS (
     SELECT
         e.drive_id, e.ego_id, e.t_ns, min(p.distance_m - half_box_m(p.length_m, p.width_m)) AS around_m,
-        min(p.rear_s_m - e.front_s_m) FILTER (p.s_m > e.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m) AS lane_m
+        min(p.rear_s_m - e.front_s_m) FILTER (p.s_m > e.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m) AS lane_m,
+        min(p.rear_s_m - e.front_s_m) FILTER (p.s_m > e.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m - hides_vehicle_m()) AS vehicle_m
     FROM eye e
     JOIN pair p USING (drive_id, ego_id, t_ns)
     WHERE p.distance_m < e.range_m
@@ -70,7 +71,11 @@ SELECT
     greatest(0.0, CASE
         WHEN r.t_ns IS NOT NULL OR b.t_ns IS NOT NULL THEN least(n.lane_m, least(b.along_m, e.range_m - two_half_boxes_m() / 2) - e.length_m / 2)
         ELSE least(n.around_m, e.range_m) - e.length_m / 2
-    END) AS lane_m
+    END) AS lane_m,
+    greatest(0.0, CASE
+        WHEN r.t_ns IS NOT NULL OR b.t_ns IS NOT NULL THEN least(n.vehicle_m, least(b.along_m, e.range_m - two_half_boxes_m() / 2) - e.length_m / 2)
+        ELSE least(n.around_m, e.range_m) - e.length_m / 2
+    END) AS vehicle_lane_m
 FROM eye e
 LEFT JOIN near n USING (drive_id, ego_id, t_ns)
 LEFT JOIN straight r USING (drive_id, ego_id, t_ns)

@@ -32,6 +32,8 @@ CREATE OR REPLACE MACRO sight_error_m() AS 1.0;
 CREATE OR REPLACE MACRO straight_m() AS 0.5;
 -- Places on a lane at which it is looked whether they are in sight are so far apart: the shadow of a box between two hides no vehicle.
 CREATE OR REPLACE MACRO sight_step_m() AS 2.0;
+-- Our default: a box that reaches less into a lane hides no vehicle that stands in it.
+CREATE OR REPLACE MACRO hides_vehicle_m() AS 0.5;
 -- Whether a box at (x, y) from the eye stands in the line to the place at (dx, dy) from it.
 CREATE OR REPLACE MACRO in_line(x_m, y_m, dx_m, dy_m, yaw_rad, length_m, width_m) AS
     x_m * dx_m + y_m * dy_m BETWEEN 0 AND dx_m ** 2 + dy_m ** 2
@@ -116,6 +118,8 @@ CREATE OR REPLACE MACRO kept_between(seen_m, blur_m, required_m) AS CASE WHEN se
 -- by as much as this.
 CREATE OR REPLACE MACRO access_mps() AS 8.94;
 CREATE OR REPLACE MACRO turned_off_rad() AS pi() / 6;
+-- Our default: back by so much (noise is 0.05 m) the ego does not go on over a line, nor come from beyond it.
+CREATE OR REPLACE MACRO back_m() AS 0.25;
 -- Without a place for so long the ego has not been back in its lane and out of it again.
 CREATE OR REPLACE MACRO no_return_ns() AS 500_000_000;
 

@@ -13,8 +13,8 @@ KEEP = "ukhc.r131.keep-in-lane"
 SOLID = "ukhc.r129.no-cross-solid"
 
 
-def verdict(rule: str, way: Road, *actors: Actor) -> str:
-    (row,) = judged([drive(actors, way.environment)], rules=[rule])
+def verdict(rule: str, way: Road, *actors: Actor, in_sight: bool = False) -> str:
+    (row,) = judged([drive(actors, way.environment, in_sight=in_sight)], rules=[rule])
     return str(row["verdict"])
 
 
@@ -199,3 +199,16 @@ def test_somebody_hidden_so_far_ahead_may_be_the_reason(hand: str) -> None:
     ego, parked = over_line(way, rider=0.0, out=60.0, back=10.0)
     seen = parked.keep(parked.t_s < float(ego.t_s[np.abs(ego.x - 130.0).argmin()]))
     assert verdict(SOLID, way, ego, seen) == "unknown"
+
+
+@HANDS
+def test_who_went_away_ahead_and_is_out_of_sight_is_no_reason(hand: str) -> None:
+    """The lane ahead is in plain view: nobody stands in it. A parked car that is lost meanwhile may have been passed."""
+    way = marked(hand, length=1500.0)
+    (ego,) = over_line(way, rider=None, speed=6.0, at=100.0)
+    left = moving("x", way, ego.t_s, 60 + 8 * ego.t_s, way.own).keep(ego.t_s < 3.05)
+    assert verdict(SOLID, way, ego, left, in_sight=True) == "fail"
+    assert verdict(SOLID, way, ego, left) == "unknown"
+    ego, parked = over_line(way, rider=0.0, out=60.0, back=10.0)
+    seen = parked.keep(parked.t_s < float(ego.t_s[np.abs(ego.x - 130.0).argmin()]))
+    assert verdict(SOLID, way, ego, seen, in_sight=True) == "unknown"

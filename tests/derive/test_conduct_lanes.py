@@ -209,6 +209,21 @@ def test_along_the_verge_and_back_is_no_access() -> None:
     assert True in {row["access"] for row in rows(tables(way, there), "FROM line_step")}
 
 
+@HANDS
+def test_who_comes_back_from_over_the_line_was_on_no_way_beyond_it(hand: str) -> None:
+    """A log of 40 m: over the line by 0.5 m in its middle, and back; where the log ends before that, nobody knows."""
+    way = marked(hand)
+    t = times(8.0)
+    bump = ease((t - 2) / 2) * (1 - ease((t - 4) / 2))
+    ego = moving("ego", way, t, 200 + 5 * t, way.own + way.over * 1.35 * bump)
+    found = rows(tables(way, ego), "FROM line_step ORDER BY t_ns")
+    assert {row["access"] for row in found} == {False}
+    cut = rows(tables(way, ego.keep(t < 4.05)), "FROM line_step ORDER BY t_ns")
+    assert {row["access"] for row in cut} == {None}
+    late = rows(tables(way, ego.keep(t > 3.95)), "FROM line_step ORDER BY t_ns")
+    assert {row["access"] for row in late} == {None}
+
+
 def turning_round(way: Road, radius: float = 4.7) -> Actor:
     """Return an ego that drives 200 m in its lane, turns round over the other side of the road and drives back along that."""
     arc = math.pi * radius

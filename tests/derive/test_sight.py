@@ -95,6 +95,19 @@ def test_a_straight_lane_is_seen_past_who_is_beside_it() -> None:
     assert open_["around_m"] == 100.0
 
 
+@pytest.mark.parametrize(("into_m", "hides"), [(0.4, False), (0.6, True)])
+def test_a_box_that_hardly_reaches_into_the_lane_hides_no_vehicle_in_it(into_m: float, hides: bool) -> None:
+    way = road(((340.0, 0.0),), lanes=(1, 2))
+    t = times(3.0)
+    ego = moving("ego", way, t, 10 + 1 * t, -0.5 * LANE)
+    gone = moving("gone", way, t, 150 + 0 * t, -0.5 * LANE).lost(t > 1.05)
+    lorry = standing("lorry", way, t, 62, -LANE - 1.25 + into_m, length=12.0, width=2.5)
+    scene = drive([ego, gone, lorry], way.environment, in_sight=True, sensor_range_m=100.0)
+    row = rows(derived(scene, tables=["sight"]), "FROM sight ORDER BY t_ns DESC")[0]
+    assert row["lane_m"] == pytest.approx(62 - 6 - 13 - 2.4)
+    assert row["vehicle_lane_m"] == pytest.approx(row["lane_m"] if hides else 100 - 6 - 2.4, abs=2.1)
+
+
 def test_behind_a_box_inside_a_bend_nobody_is_seen() -> None:
     """Rays from the ego's middle to the middle of the lane: the first that the lorry stops."""
     way = road(((40.0, 0.0), (300.0, -1 / 60)), lanes=(1, 2))

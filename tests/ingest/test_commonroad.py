@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
+    from drivelint.ingest.trace import Trace
+
 
 def state(tag: str, t: int, x: float, *, v: float = 10.0, yaw: float = 0.0, more: str = "") -> str:
     return (
@@ -158,3 +160,69 @@ def test_real_trajectories_read_either_way(name: str, monkeypatch: pytest.Monkey
     first = read(path, need_ego=False)
     monkeypatch.setattr(commonroad, "cut", lambda _content: None)
     assert first.tables == read(path, need_ego=False).tables
+
+
+def light(name: int, *phases: tuple[int, str], offset: str = "", more: str = "") -> str:
+    inner = "".join(f"<cycleElement><duration>{n}</duration><color>{c}</color></cycleElement>" for n, c in phases)
+    said = f"<timeOffset>{offset}</timeOffset>" if offset else ""
+    return f'<trafficLight id="{name}"><cycle>{inner}{said}</cycle>{more}</trafficLight>'
+
+
+def lit(trace: Trace) -> list[tuple[str, float, str | None]]:
+    rows = trace.tables["signal_state"].to_pylist()
+    return [(row["signal_id"], row["t_ns"] / 1e9, row["state"]) for row in rows]
+
+
+FULL = ((6, "green"), (2, "yellow"), (7, "red"), (1, "redYellow"))
+
+
+@pytest.mark.parametrize(
+    ("of", "expected"),
+    [
+        (light(7, *FULL), "0.0 green, 0.6 amber, 0.8 red, 1.5 red_amber, 1.6 green"),
+        # the cycle begins at step 3: before that it is in the last cycle
+        (light(7, *FULL, offset="3"), "0.0 red, 0.2 red_amber, 0.3 green, 0.9 amber, 1.1 red, 1.8 red_amber, 1.9 green"),
+        (light(7, *FULL, offset="35"), "0.0 red, 0.2 red_amber, 0.3 green, 0.9 amber, 1.1 red, 1.8 red_amber, 1.9 green"),
+        (light(7, *FULL, more="<timeOffset>16</timeOffset>"), "0.0 green, 0.6 amber, 0.8 red, 1.5 red_amber, 1.6 green"),
+        (light(7, (400, "green")), "0.0 green"),
+        (light(7, (5, "red"), (5, "red")), "0.0 red"),
+        (light(7, *FULL, more="<active>false</active>"), "0.0 off"),
+        (light(7, *FULL, more="<active>true</active>", offset="-10"), "0.0 red, 0.5 red_amber, 0.6 green, 1.2 amber, 1.4 red"),
+        (light(7, (9, "green"), (30, "inactive")), "0.0 green, 0.9 off"),
+    ],
+)  # fmt: skip
+def test_the_cycle_of_a_light_over_the_time_of_the_log(of: str, expected: str, tmp_path: Path) -> None:
+    trace = read(write(tmp_path, moving(), of), ego="1")
+    assert ", ".join(f"{t} {state}" for _, t, state in lit(trace)) == expected
+    assert "signal_cycle" not in quality(trace)
+
+
+@pytest.mark.parametrize(
+    ("of", "expected", "why"),
+    [
+        (light(7), [], "7 are not known: it has no cycle"),
+        (light(7, (0, "green")), [], "has no duration"),
+        (light(7, (5, "green"), offset="soon"), [], "time offset is no number"),
+        (light(7, (5, "green"), (90, "blue")), [(0.0, "green"), (0.5, None)], "not known: blue"),
+    ],
+)
+def test_a_light_that_cannot_be_read_is_named(
+    of: str, expected: list[tuple[float, str | None]], why: str, tmp_path: Path
+) -> None:
+    trace = read(write(tmp_path, moving(), of, light(8, (99, "red"))), ego="1")
+    assert lit(trace) == [*(("7", t, state) for t, state in expected), ("8", 0.0, "red")]
+    (message,) = [row["message"] for row in trace.tables["quality"].to_pylist() if row["check_id"] == "signal_cycle"]
+    assert why in message
+
+
+def test_the_lights_of_a_real_scenario() -> None:
+    """Four lights with a cycle of 400 green, 30 yellow, 570 red: offset 590 is step 410 of the cycle at 0, 1090 is step 910."""
+    trace = read(shared("commonroad/USA_Peach-4_8_T-1.xml"), need_ego=False)
+    assert lit(trace) == [
+        ("43918", 0.0, "amber"),
+        ("43918", 2.0, "red"),
+        ("43919", 0.0, "red"),
+        ("43920", 0.0, "amber"),
+        ("43920", 2.0, "red"),
+        ("43921", 0.0, "red"),
+    ]

@@ -21,6 +21,16 @@
 -- unit = "m/s"
 -- why = "our default: at 10 mph and less vehicles turn round, park and reverse, which R200 to R203 allow with care; on a motorway nothing excuses it"
 --
+-- [params.manoeuvring_m]
+-- default = 30.0
+-- unit = "m"
+-- why = "our default: whoever turns round, parks or reverses goes no further against its lane than this; further is driving, however slow (R203: no further than necessary)"
+--
+-- [params.manoeuvring_s]
+-- default = 30.0
+-- unit = "s"
+-- why = "our default: so long before and after, what it goes against its lane is added up, so that going again and again is driving too"
+--
 -- [params.passing_s]
 -- default = 10.0
 -- unit = "s"
@@ -105,6 +115,29 @@ closed AS (
     ) c
     GROUP BY ALL
 ),
+-- how far it goes the wrong way within that time: for sure, and at most, where nobody knows whether something excused it
+wrong_way AS (
+    SELECT
+        e.drive_id, e.ego_id, e.t_ns, w.against,
+        sum(w.way_m) FILTER (w.against AND (p.t_ns IS NULL OR NOT p.excused) AND (c.t_ns IS NULL OR NOT c.closed)) OVER about AS least_m,
+        sum(w.way_m) FILTER (w.against AND NOT coalesce(p.excused OR c.closed, false)) OVER about AS most_m
+    FROM ego_state e
+    JOIN step st USING (drive_id, ego_id, t_ns)
+    JOIN data_log g USING (drive_id)
+    LEFT JOIN ego_motion m USING (drive_id, ego_id, t_ns)
+    LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = e.lanelet_id
+    LEFT JOIN passing_by p USING (drive_id, ego_id, t_ns)
+    LEFT JOIN closed c USING (drive_id, ego_id, t_ns)
+    CROSS JOIN LATERAL (
+        SELECT
+            abs(m.v_long_mps) * st.dt_ns / 1e9 AS way_m,
+            coalesce(NOT e.in_junction AND NOT n.bidirectional AND CASE WHEN e.with_direction THEN m.v_long_mps < -$reverse_mps ELSE m.v_long_mps > $reverse_mps END, false) AS against
+    ) w
+    WINDOW about AS (
+        PARTITION BY e.drive_id, e.ego_id ORDER BY e.t_ns
+        RANGE BETWEEN ($manoeuvring_s * 1e9)::BIGINT PRECEDING AND ($manoeuvring_s * 1e9)::BIGINT FOLLOWING
+    )
+),
 -- against every lane of a junction, and for how long it has been so
 round AS (
     SELECT drive_id, ego_id, t_ns, t_ns - max(t_ns) FILTER (NOT against) OVER w >= ($junction_s * 1e9)::BIGINT AS against
@@ -120,7 +153,9 @@ SELECT e.drive_id, e.ego_id, e.t_ns,
     -- out for a while past what the log does not show: whether there was anything is not known
     (c.t_ns IS NULL OR CASE WHEN p.excused OR c.closed THEN false WHEN p.t_ns IS NOT NULL AND p.excused IS NULL OR x.t_ns IS NOT NULL AND NOT e.in_junction THEN NULL ELSE NOT c.closed END)
         AND (e.x_m IS NULL OR e.lanelet_id IS NOT NULL OR a.t_ns IS NOT NULL AND w.road_type = 'motorway') AND (NOT e.in_junction OR a.t_ns IS NOT NULL OR coalesce(r.against, false))
-        AND CASE WHEN abs(m.v_long_mps) > $manoeuvring_mps OR w.road_type = 'motorway' THEN true WHEN abs(m.v_long_mps) <= $manoeuvring_mps AND w.road_type IS NOT NULL THEN false END AS applies
+        AND CASE WHEN abs(m.v_long_mps) > $manoeuvring_mps OR w.road_type = 'motorway' OR d.against AND d.least_m > $manoeuvring_m THEN true
+            -- with its lane, what kind of road it is does not matter
+            WHEN abs(m.v_long_mps) <= $manoeuvring_mps AND (w.road_type IS NOT NULL OR e.with_direction AND m.v_long_mps >= -$reverse_mps) AND NOT coalesce(d.against AND d.most_m > $manoeuvring_m, false) THEN false END AS applies
 FROM ego_state e
 LEFT JOIN ego_motion m USING (drive_id, ego_id, t_ns)
 LEFT JOIN ego_condition w USING (drive_id, ego_id, t_ns)
@@ -129,6 +164,7 @@ LEFT JOIN passing_by p USING (drive_id, ego_id, t_ns)
 LEFT JOIN out_for_a_while x USING (drive_id, ego_id, t_ns)
 LEFT JOIN round r USING (drive_id, ego_id, t_ns)
 LEFT JOIN closed c USING (drive_id, ego_id, t_ns)
+LEFT JOIN wrong_way d USING (drive_id, ego_id, t_ns)
 
 -- @condition
 SELECT e.drive_id, e.ego_id, e.t_ns, (n.bidirectional OR coalesce(e.with_direction, a.with_direction)) AND m.v_long_mps >= -$reverse_mps AS holds,

@@ -1,4 +1,4 @@
-"""CommonRoad scenarios (XML, 2018b and 2020a): their obstacles as a drive, the file itself as its map.
+"""CommonRoad scenarios (XML, 2018b and 2020a): their obstacles and lights as a drive, the file itself as its map.
 
 A scenario has no ego but the start of a planning problem: say who it is with --ego.
 """
@@ -14,6 +14,7 @@ from lxml import etree
 
 from drivelint import markup
 from drivelint.errors import TraceError
+from drivelint.ingest.commonroad_lights import signal_states
 from drivelint.ingest.commonroad_text import cut
 from drivelint.ingest.order import listed
 from drivelint.ingest.trace import CLASSES, Finding, Recording, States
@@ -89,6 +90,9 @@ def read(path: Path) -> Recording:
         np.zeros(sum(counts), np.bool_),
     )  # fmt: skip
     recording = Recording("commonroad", states, embedded_map=content if root.find("lanelet") is not None else None)
+    if len(states):
+        recording.signals, findings = signal_states(root, step_s, columns["step"].min(), columns["step"].max())
+        recording.findings += findings
     uncertain = int(float(str(root.xpath("count(.//state//intervalStart)"))))
     if uncertain:
         message = f"values of obstacles given as intervals: {uncertain}: they are not known"

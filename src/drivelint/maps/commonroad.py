@@ -5,27 +5,21 @@ Read with lxml: commonroad-io pins a protobuf of 2022, which cannot be installed
 
 from __future__ import annotations
 
-import math
+from collections import Counter
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
-import shapely
 
 from drivelint import markup
 from drivelint.errors import MapError
 from drivelint.maps.bounded import BoundedLane, build, crossings, side_driven_on, tables
+from drivelint.maps.commonroad_signs import Signs, points, read_signs, refs, signal_rows, stop_line_rows
 from drivelint.maps.contract import Environment, MapSource, Request, environment_id
 from drivelint.maps.quality import Quality
-from drivelint.maps.signcodes import kind_of, turns_in_direction
 from drivelint.maps.tables import from_rows
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from lxml import etree
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
 
 _KINDS = {
     "sidewalk": "sidewalk", "busLane": "bus", "bicycleLane": "biking", "exitRamp": "exit", "accessRamp": "entry",
@@ -33,6 +27,7 @@ _KINDS = {
 }  # fmt: skip
 _NOT_DRIVEN = frozenset({"sidewalk", "biking", "shoulder", "border", "parking", "restricted"})
 _ROADS = {"interstate": "motorway", "highway": "motorway", "country": "rural", "urban": "town"}
+_TYPES = {*_KINDS, *_ROADS, "crosswalk", "mainCarriageWay", "driveWay", "intersection", "busStop"}
 _MARKINGS = {
     "solid": "solid", "broad_solid": "solid", "dashed": "broken", "broad_dashed": "broken", "curb": "curb",
     "lowered_curb": "curb", "solid_solid": "solid_solid", "dashed_dashed": "broken_broken", "no_marking": "none",
@@ -56,7 +51,7 @@ class CommonRoadReader:
         except markup.RefusedError as error:
             raise MapError(f"map {source.name} {error}") from None
         quality = Quality()
-        signs = _signs(root)
+        signs = read_signs(root, _country(root), quality)
         read: list[BoundedLane] = []
         walks: list[BoundedLane] = []
         for element in root.findall("lanelet"):
@@ -66,6 +61,8 @@ class CommonRoadReader:
             except (ValueError, KeyError) as error:
                 name = element.get("id") or f"in line {element.sourceline}"
                 quality.add("invalid_lane", "error", name, f"lanelet {name} is left out: {error}")
+        signs.report(root.findall("lanelet"), [light.get("id", "") for light in root.findall("trafficLight")])
+        _report_words(root, quality)
         _junctions(root, read)
         lanes = build(read, request.offset, quality)
         if not lanes:
@@ -76,8 +73,8 @@ class CommonRoadReader:
         result = tables(name, lanes)
         rows: dict[str, list[dict[str, Any]]] = {
             "environment": [_environment(source, request, handedness, how)],
-            "traffic_signal": _signals(root, lanes, request.offset),
-            "stop_line": _stop_lines(root, lanes, request.offset),
+            "traffic_signal": signal_rows(root, signs, lanes, request.offset),
+            "stop_line": stop_line_rows(root, lanes, request.offset),
             "road_object": [],
             "crossing": crossings(walks, lanes, request.offset),
         }
@@ -94,37 +91,17 @@ def _environment(source: MapSource, request: Request, handedness: str, how: str)
     }  # fmt: skip
 
 
-def _points(parent: etree._Element | None) -> Floats:
-    """Return the points (n, 2) below an element. Errors: `ValueError` where one is not two finite numbers."""
-    found = [] if parent is None else [(p.findtext("x"), p.findtext("y")) for p in parent.iterfind(".//point")]
-    points = np.array([(float(x or "nan"), float(y or "nan")) for x, y in found], np.float64).reshape(-1, 2)
-    if not np.isfinite(points).all():
-        raise ValueError("a point without finite coordinates")
-    return points
-
-
-def _refs(element: etree._Element, name: str) -> list[str]:
-    return [ref for child in element.findall(name) if (ref := child.get("ref")) is not None]
-
-
-def _lane(
-    element: etree._Element, kinds: Sequence[str], signs: dict[str, list[tuple[str, float | None]]]
-) -> BoundedLane:
+def _lane(element: etree._Element, kinds: Sequence[str], signs: Signs) -> BoundedLane:
     kind = next((_KINDS[k] for k in kinds if k in _KINDS), "driving")
-    limits = [
-        value
-        for ref in _refs(element, "trafficSignRef")
-        for code, value in signs.get(ref, ())
-        if code == "274" and value
-    ]
+    limit = signs.limit(element)
     left, right = element.find("leftBound"), element.find("rightBound")
     lane = BoundedLane(
-        str(element.attrib["id"]), _points(left), _points(right), kind, kind not in _NOT_DRIVEN,
+        str(element.attrib["id"]), points(left), points(right), kind, kind not in _NOT_DRIVEN,
         bidirectional=len(element.findall("userOneWay")) == 0 and len(element.findall("userBidirectional")) > 0,
         road_type=next((_ROADS[k] for k in kinds if k in _ROADS), None),
-        successors=tuple(_refs(element, "successor")),
+        successors=tuple(refs(element, "successor")),
         left_marking=_marking(left), right_marking=_marking(right),
-        limit_mps=min(limits) if limits else None, limit_known=bool(limits),
+        limit_mps=limit.limit_mps, limit_known=limit.limit_mps is not None, limit_source=limit.source,
     )  # fmt: skip
     for side in ("Left", "Right"):
         beside = element.find(f"adjacent{side}")
@@ -142,24 +119,19 @@ def _marking(bound: etree._Element | None) -> str | None:
     return _MARKINGS.get(said or "")
 
 
-def _signs(root: etree._Element) -> dict[str, list[tuple[str, float | None]]]:
-    """Return sign id -> (code, value) of its elements; the value of a limit is in m/s."""
-    found: dict[str, list[tuple[str, float | None]]] = {}
-    for sign in root.findall("trafficSign"):
-        parts = []
-        for part in sign.findall("trafficSignElement"):
-            value = part.findtext("additionalValue")
-            parts.append(((part.findtext("trafficSignID") or "").strip(), _number(value)))
-        found[sign.get("id", "")] = parts
-    return found
+def _report_words(root: etree._Element, quality: Quality) -> None:
+    """Name the markings and types of lanelets that are not read."""
+    for tag, known, what in (("lineMarking", _MARKINGS, "markings"), ("laneletType", _TYPES, "types of lanelets")):
+        said = Counter((e.text or "").strip() for e in root.iterfind(f"lanelet//{tag}"))
+        unread = {word: n for word, n in sorted(said.items()) if word not in known and word != "unknown"}
+        if unread:
+            listed = ", ".join(f"{word or 'no word'} ({n})" for word, n in unread.items())
+            quality.add("unknown_word", "info", None, f"{what} that are not read: {listed}", sum(unread.values()))
 
 
-def _number(text: str | None) -> float | None:
-    try:
-        value = float(text or "nan")
-    except ValueError:
-        return None
-    return value if math.isfinite(value) else None
+def _country(root: etree._Element) -> str:
+    """Return the three letters of the country in the scenario's name; ZAM stands for none."""
+    return (root.get("benchmarkID") or "").removeprefix("C-")[:3].upper()
 
 
 def _junctions(root: etree._Element, lanes: Sequence[BoundedLane]) -> None:
@@ -168,7 +140,7 @@ def _junctions(root: etree._Element, lanes: Sequence[BoundedLane]) -> None:
     for crossing in root.findall("intersection"):
         for way in crossing.findall("incoming"):
             for name in ("successorsLeft", "successorsStraight", "successorsRight"):
-                inside.update(dict.fromkeys(_refs(way, name), crossing.get("id", "")))
+                inside.update(dict.fromkeys(refs(way, name), crossing.get("id", "")))
     ends = {to for lane in lanes for to in lane.successors}
     for lane in lanes:
         if lane.lanelet_id in inside and lane.lanelet_id in ends:
@@ -179,7 +151,7 @@ def _handedness(
     root: etree._Element, lanes: Sequence[BoundedLane], request: Request, quality: Quality
 ) -> tuple[str, str]:
     """Return the side driven on and how it was found: option, lanes beside each other, country, default."""
-    country = (root.get("benchmarkID") or "").removeprefix("C-")[:3].upper()
+    country = _country(root)
     by_country = None if country in {"", "ZAM", "TES"} else "lht" if country in _LEFT_DRIVEN else "rht"
     said = [
         (how, side)
@@ -200,72 +172,3 @@ def _handedness(
         quality.add("handedness_default", "warning", None, message)
         return "rht", "default"
     return said[0][1], said[0][0]
-
-
-def _signals(root: etree._Element, lanes: Sequence[BoundedLane], offset: tuple[float, float]) -> list[dict[str, Any]]:
-    """Return a row for each lanelet that refers to a sign or light."""
-    holds: dict[str, list[BoundedLane]] = {}
-    refs: dict[str, list[str]] = {}
-    for element in root.findall("lanelet"):
-        refs[element.get("id", "")] = _refs(element, "trafficSignRef") + _refs(element, "trafficLightRef")
-    for lane in lanes:
-        for ref in refs.get(lane.lanelet_id, ()):
-            holds.setdefault(ref, []).append(lane)
-    rows = []
-    for element in [*root.findall("trafficSign"), *root.findall("trafficLight")]:
-        light = element.tag == "trafficLight"
-        codes = (
-            ["1000001"]
-            if light
-            else [part.findtext("trafficSignID") or "" for part in element.findall("trafficSignElement")]
-        )
-        said = [_number(part.text) for part in element.iterfind(".//additionalValue")]
-        value = next((v for v in said if v), None)
-        stands = _points(element.find("position"))
-        turns = turns_in_direction((element.findtext("direction") or "").strip()) if light else None
-        for lane in holds.get(element.get("id", ""), ()):
-            end = float(lane.line.s[-1])
-            where = stands[0] + offset if len(stands) else lane.line.centre[-1]
-            s = (
-                float(shapely.line_locate_point(shapely.LineString(lane.line.centre), shapely.Point(where)))
-                if len(stands)
-                else end
-            )
-            rows += [
-                {
-                    "signal_id": element.get("id", ""), "kind": kind_of("de", code.strip(), ""), "country": "de",
-                    "type": code.strip(), "subtype": None, "value": value, "unit": "m/s" if value is not None else None,
-                    "dynamic": light, "turns": turns, "road_id": lane.road_id, "road_s_m": s if lane.along > 0 else end - s,
-                    "lanelet_id": lane.lanelet_id, "lane_s_m": s, "x_m": float(where[0]), "y_m": float(where[1]),
-                }
-                for code in codes
-            ]  # fmt: skip
-    return sorted(rows, key=lambda r: (r["signal_id"], r["type"], r["lanelet_id"]))
-
-
-def _stop_lines(
-    root: etree._Element, lanes: Sequence[BoundedLane], offset: tuple[float, float]
-) -> list[dict[str, Any]]:
-    by_id = {lane.lanelet_id: lane for lane in lanes}
-    rows = []
-    for element in root.findall("lanelet"):
-        line, lane = element.find("stopLine"), by_id.get(element.get("id", ""))
-        if line is None or lane is None:
-            continue
-        points = _points(line)
-        s = float(lane.line.s[-1])
-        if len(points):  # without points it lies at the lanelet's end
-            s = float(
-                np.mean(
-                    shapely.line_locate_point(shapely.LineString(lane.line.centre), shapely.points(points + offset))
-                )
-            )
-        rows.append(
-            {
-                "stop_line_id": f"{lane.lanelet_id}.stop",
-                "lanelet_id": lane.lanelet_id,
-                "lane_s_m": s,
-                "source": "object",
-            }
-        )
-    return sorted(rows, key=lambda r: r["stop_line_id"])

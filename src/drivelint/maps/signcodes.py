@@ -1,8 +1,8 @@
 """What a signal's code means, in the words of the `traffic_signal` table.
 
 OpenDRIVE's own list (numbers from 1000001), the German catalogue (StVO sign numbers, which RoadRunner and CARLA also
-use under the country OpenDRIVE) and the British one (TSRGD diagram numbers), as far as rules ask for them. Where the
-code is not known, the signal's name may say it.
+use under the country OpenDRIVE), the British one (TSRGD diagram numbers), the American one (MUTCD) and the Spanish one
+(Reglamento General de Circulacion), as far as rules ask for them. Where the code is not known, the signal's name may say it.
 """
 
 from __future__ import annotations
@@ -90,10 +90,53 @@ _TSRGD = {
     "671": "restrictions_end",
     "672": "minimum_speed",
 }
+_MUTCD = {
+    "R1-1": "stop",
+    "R1-2": "give_way",
+    "R2-1": "speed_limit",
+    "R2-4": "minimum_speed",
+    "R2-4P": "minimum_speed",
+    "R4-1": "no_overtaking",
+    "R4-2": "no_overtaking_end",
+    "R5-1": "no_entry",
+    "R5-1A": "no_entry",
+    "R6-1": "one_way",
+    "R6-1L": "one_way",
+    "R6-1R": "one_way",
+    "R6-2": "one_way",
+    "R6-2L": "one_way",
+    "R6-2R": "one_way",
+    "R7-1": "no_parking",
+    "R7-107": "no_parking",
+    "R8-3": "no_parking",
+}
+_SPAIN = {
+    "R1": "give_way",
+    "R2": "stop",
+    "R3": "priority_road",
+    "R4": "priority_road_end",
+    "R5": "give_way_to_oncoming",
+    "R6": "priority_over_oncoming",
+    "R100": "no_vehicles",
+    "R101": "no_entry",
+    "R301": "speed_limit",
+    "R305": "no_overtaking",
+    "R306": "no_overtaking_trucks",
+    "R307": "no_stopping",
+    "R308": "no_parking",
+    "R411": "minimum_speed",
+    "R500": "restrictions_end",
+    "R501": "speed_limit_end",
+    "R502": "no_overtaking_end",
+    "R503": "no_overtaking_trucks_end",
+    "S13": "crossing",
+}
 _DOTTED = re.compile(r"\d\.\d{3}\.\d{3}")
 _COUNTRIES = {
     **dict.fromkeys(("", "opendrive", "de", "deu", "germany"), _LIGHTS | _STVO),
     **dict.fromkeys(("gb", "gbr", "uk", "united kingdom"), _LIGHTS | _TSRGD),
+    **dict.fromkeys(("us", "usa"), _LIGHTS | _MUTCD),
+    **dict.fromkeys(("es", "esp", "spain"), _LIGHTS | _SPAIN),
 }
 _NAMES = [
     (re.compile(pattern), kind)
@@ -116,8 +159,8 @@ _NAMES = [
 def kind_of(country: str, code: str, name: str) -> str | None:
     """Return the kind of a signal by country (any case), code and name; None: not recognised."""
     codes = _COUNTRIES.get(country.lower(), _LIGHTS)
-    plain = _plain(code)
-    for candidate in (plain, plain.partition("-")[0]):
+    plain = _plain(code).upper()
+    for candidate in (plain, plain.partition("-")[0] if plain[:1].isdecimal() else plain.replace("-", "")):
         if candidate in codes:
             return codes[candidate]
     lowered = name.lower().replace(" ", "_").replace("-", "_")
@@ -125,8 +168,8 @@ def kind_of(country: str, code: str, name: str) -> str | None:
 
 
 def codes_of(kind: str) -> dict[str, list[str]]:
-    """Return the codes of a kind of signal by whose list they are: OpenDRIVE's, de, gb; lists without one are left out."""
-    lists = {"OpenDRIVE": _LIGHTS, "de": _STVO, "gb": _TSRGD}
+    """Return the codes of a kind of signal by whose list they are: OpenDRIVE's, de, gb, us, es; lists without one are left out."""
+    lists = {"OpenDRIVE": _LIGHTS, "de": _STVO, "gb": _TSRGD, "us": _MUTCD, "es": _SPAIN}
     found = {name: [code for code, meant in codes.items() if meant == kind] for name, codes in lists.items()}
     return {name: codes for name, codes in found.items() if codes}
 

@@ -1,0 +1,55 @@
+"""Real CommonRoad scenarios from file to verdict: limits, lights and a solid line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from drivelint.report.progress import Silent
+from drivelint.run import Settings, check
+from tests.shared_data import shared
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+LIMIT, RED, SOLID = "ukhc.r124.speed-limit", "ukhc.r175.red", "ukhc.r129.no-cross-solid"
+
+
+def verdicts(name: str, *rules: str) -> Mapping[tuple[str, str], str]:
+    """Return (ego, rule) -> verdict of every vehicle of a scenario."""
+    path = str(shared(f"commonroad/{name}.xml"))
+    result = check(Settings((path,), rules=rules, ego="all"), Silent())
+    return {(row["ego_id"], row["rule_id"]): row["verdict"] for row in result.verdicts.to_pylist()}
+
+
+@pytest.fixture(scope="module")
+def peach() -> Mapping[tuple[str, str], str]:
+    return verdicts("USA_Peach-4_8_T-1", LIMIT, RED, SOLID)
+
+
+def test_limits_of_an_american_map_are_judged(peach: Mapping[tuple[str, str], str]) -> None:
+    assert {verdict for (_, rule), verdict in peach.items() if rule == LIMIT} == {"pass"}
+
+
+def test_a_light_is_red_by_its_cycle(peach: Mapping[tuple[str, str], str]) -> None:
+    """All four come from the north; the light there is amber until 2 s, then red: they cross at 1.4, 2.8, 3.8 and 4.0 s."""
+    found = {ego: verdict for (ego, rule), verdict in peach.items() if rule == RED and verdict != "not_applicable"}
+    assert found == {"560": "pass", "564": "fail", "566": "fail", "569": "fail"}
+
+
+def test_the_vehicle_that_crosses_a_solid_line_fails(peach: Mapping[tuple[str, str], str]) -> None:
+    """By shapely, boxes against bounds: 569 is 0.53 m over the line between the directions at 3.2 s, 512 0.34 m as the log ends.
+
+    564 is over a line between two lanes of one direction.
+    """
+    found = {ego: verdict for (ego, rule), verdict in peach.items() if rule == SOLID}
+    assert found["569"] == "fail"
+    assert found["512"] == "unknown"
+    assert "fail" not in {verdict for ego, verdict in found.items() if ego != "569"}
+
+
+def test_limits_of_an_older_scenario_are_judged() -> None:
+    found = verdicts("USA_Lanker-1_1_T-1", LIMIT)
+    assert sum(verdict in {"pass", "fail"} for verdict in found.values()) == 23
+    assert found["1230", LIMIT] == "unknown"  # its place does not fit the map
