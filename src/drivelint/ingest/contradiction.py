@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from drivelint.ingest.off_track import off_track
 from drivelint.ingest.order import listed, wrapped
 from drivelint.ingest.trace import MOTOR_VEHICLES, Finding
 
@@ -85,6 +86,11 @@ class Refused:
         names = np.array(states.ids, dtype=np.str_)[states.actor[rows]]
         return cls(names, states.t_ns[rows], states.numbers["x_m"][rows], states.numbers["y_m"][rows])
 
+    def with_more(self, more: Refused) -> Refused:
+        """Return these places and those."""
+        pairs = ((getattr(self, name), getattr(more, name)) for name in ("actor_ids", "t_ns", "x_m", "y_m"))
+        return Refused(*map(np.concatenate, pairs))
+
 
 @dataclass(frozen=True)
 class Parted:
@@ -106,14 +112,21 @@ def part(states: States, step: Steps, *, whole: Collection[str]) -> Parted:
     if len(states) < 3 or not {"x_m", "y_m"} <= states.numbers.keys():
         return UNPARTED
     jump = jumps(states, step)
-    if not jump.any():
-        return UNPARTED
+    findings: list[Finding] = []
+    alias: dict[str, str] = {}
     unknown, pieces = _around_jumps(states, jump)
-    findings = _report(states, unknown, "teleport", "the position jumps: they are unknown around it")
-    alias = _renamed(states, pieces, whole, findings)
+    if jump.any():
+        findings = _report(states, unknown, "teleport", "the position jumps: they are unknown around it")
+        alias = _renamed(states, pieces, whole, findings)
     refused = Refused.of(states, unknown)
     _forget(states, unknown)
-    return Parted(findings, alias, refused)
+    beside = off_track(states, step)
+    if beside.any():
+        text = "the position is beside its track, for a sample or by a step that nobody drives: they are unknown there"
+        findings += _report(states, beside, "teleport", text)
+        refused = refused.with_more(Refused.of(states, beside))
+        _forget(states, beside)
+    return Parted(findings, alias, refused) if findings else UNPARTED
 
 
 def resolve(states: States, step: Steps, actors: Actors, *, derived: bool, parted: Parted = UNPARTED) -> list[Finding]:
