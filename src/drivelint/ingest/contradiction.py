@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from drivelint.ingest.contrary import contrary
 from drivelint.ingest.off_track import off_track
 from drivelint.ingest.order import listed, wrapped
 from drivelint.ingest.trace import MOTOR_VEHICLES, Finding
@@ -68,7 +69,8 @@ LONG_KINDS: Final = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle", None))
 """Actors whose heading is that of their motion; people and animals face where they like, things have no front."""
 HALF_BOX_M: Final = 6.0
 """No box reaches further than this from its middle, where its size is not known."""
-STATE: Final = ("x_m", "y_m", "z_m", "yaw_rad", "vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
+VELOCITY: Final = ("vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
+STATE: Final = ("x_m", "y_m", "z_m", "yaw_rad", *VELOCITY)
 
 
 @dataclass(frozen=True)
@@ -146,6 +148,10 @@ def resolve(states: States, step: Steps, actors: Actors, *, derived: bool, parte
             states, frozen, "motion_unknown", "position and velocity contradict each other: they are unknown"
         )
         _forget(states, frozen)
+        astray = contrary(states, step)
+        text = "for half a second and longer the velocity leads elsewhere than the positions: it is unknown"
+        findings += _report(states, astray, "velocity_unknown", text)
+        _forget(states, astray, VELOCITY)
     for each in places:
         findings += _upon_others(states, step, actors, each, parted.alias)
     turned, sideways = _headings(states, step, actors)
@@ -161,9 +167,9 @@ def resolve(states: States, step: Steps, actors: Actors, *, derived: bool, parte
     return findings
 
 
-def _forget(states: States, rows: Mask) -> None:
+def _forget(states: States, rows: Mask, what: tuple[str, ...] = STATE) -> None:
     if rows.any():
-        for name in set(STATE) & states.numbers.keys():
+        for name in set(what) & states.numbers.keys():
             states.numbers[name] = np.where(rows, np.nan, states.numbers[name])
 
 

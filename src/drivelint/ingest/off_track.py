@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from drivelint.ingest.velocity import FEWEST, Runs, noise
+from drivelint.ingest.velocity import FEWEST, MOVED_M, Runs, noise
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -42,22 +42,31 @@ def off_track(states: States, step: Steps) -> Mask:
     if n < FEWEST or not {"x_m", "y_m"} <= states.numbers.keys():
         return nothing
     place = np.stack([states.numbers["x_m"], states.numbers["y_m"]])
-    told = np.all([np.isfinite(states.numbers.get(name, np.full(n, np.nan))) for name in ("vx_mps", "vy_mps")], axis=0)
-    still = told & (np.hypot(states.numbers.get("vx_mps", np.nan), states.numbers.get("vy_mps", np.nan)) == 0.0)
+    told = _told(states, place)
     moves = _Motion.of(place, step)
     # the noise of the positions is worth its time only where without any somebody is off its track
     exact, any_error = np.zeros(n), np.full(n, np.inf)
     if not (
-        _beside(place, moves, told, exact, any_error).any()
-        or _stepped(moves, told & ~still, exact, any_error, nothing).any()
+        _beside(place, moves, told, exact, any_error).any() or _stepped(moves, told, exact, any_error, nothing).any()
     ):
         return nothing
-    runs = Runs.of(states.t_ns, *place, step)
+    runs = Runs.of(states.t_ns, place[0], place[1], step)
     sigma = np.maximum(noise(place[0], runs, states.actor), noise(place[1], runs, states.actor))[states.actor]
     few = np.bincount(states.actor, minlength=len(states.ids))[states.actor] < FEWEST
     sigma = np.where(few, np.inf, sigma)
     beside = _beside(place, moves, told, sigma, sigma)
-    return beside | _stepped(moves, told & ~still, sigma, sigma, beside)
+    return beside | _stepped(moves, told, sigma, sigma, beside)
+
+
+def _told(states: States, place: Numbers) -> Mask:
+    """Say of each sample whether its velocity is recorded; one that is zero throughout although the positions move is not."""
+    v = [states.numbers.get(name, np.full(len(states), np.nan)) for name in ("vx_mps", "vy_mps")]
+    starts = np.flatnonzero(np.r_[True, states.actor[1:] != states.actor[:-1]])
+    still = np.logical_and.reduceat((v[0] == 0.0) & (v[1] == 0.0), starts)
+    extent = np.fmax.reduceat(place, starts, axis=1) - np.fmin.reduceat(place, starts, axis=1)
+    false_zero = still & (np.nan_to_num(extent).max(axis=0) > MOVED_M)
+    told: Mask = np.isfinite(v[0]) & np.isfinite(v[1]) & ~np.repeat(false_zero, np.diff(np.r_[starts, len(states)]))
+    return told
 
 
 class _Motion(NamedTuple):

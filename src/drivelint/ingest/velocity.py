@@ -27,6 +27,8 @@ WIDTHS_S: Final = (0.25, 0.5, 1.0)
 """Half widths of the filter, after central differences; a braking of 10 m/s3 of jerk is 0.06, 0.25 and 1 m/s off in its middle."""
 SLOWEST_NS: Final = 210_000_000
 """Positions that come more rarely change by the motion as much as by noise: central differences, as exact ones."""
+MOVED_M: Final = 1.0
+"""An actor whose positions spread by more moves; below it a parked car's position noise would become a speed."""
 FEWEST: Final = 8
 """Of fewer samples no noise is estimated."""
 
@@ -87,6 +89,7 @@ class Runs(NamedTuple):
 
     @classmethod
     def of(cls, t_ns: NDArray[np.int64], x: Floats, y: Floats, step: Steps) -> Runs:
+        """Part the states (n, in order) where there is a hole, or no place."""
         usable = np.isfinite(x) & np.isfinite(y)
         starts = np.flatnonzero(np.r_[True, ~(step.continuous & usable[1:] & usable[:-1])])
         of = np.repeat(np.arange(len(starts)), np.diff(np.r_[starts, len(t_ns)]))
