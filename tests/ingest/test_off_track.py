@@ -74,8 +74,10 @@ def teleports(trace: Trace) -> list[int]:
     return [row["n"] for row in trace.tables["quality"].to_pylist() if row["check_id"] == "teleport"]
 
 
-BACK_STEPS: Final = [(kind, hz) for kind in ("back0.5", "back1", "back3", "side0.5", "side2") for hz in (10, 20)]
-BACK_STEPS += [("back2", 2), ("back3", 2), ("side2", 2)]
+BACK_STEPS: Final = [
+    *((kind, hz) for kind in ("back0.5", "back1", "back3", "side0.5", "side2") for hz in (10, 20)),
+    *((kind, 2) for kind in ("back2", "back3", "side2")),
+]
 
 
 @pytest.mark.parametrize("told", [True, False])
