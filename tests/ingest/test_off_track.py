@@ -144,10 +144,13 @@ def test_noise_and_hard_manoeuvres_are_on_their_track() -> None:
 
 @pytest.mark.parametrize("told", [True, False])
 def test_an_impact_is_no_back_step(told: bool) -> None:
-    """From one sample to the next the ego is struck: it has another speed from there on, and for one sample more of it."""
+    """From one sample to the next the ego is struck: it has another speed from there on, and for one sample more of it.
+
+    The last is a standing vehicle of cav_loop into which somebody walks.
+    """
     t = times(10.0)
-    for speeds in ((10.0, 2.0, 2.0), (0.0, 5.0, 3.0), (10.0, -2.0, 0.0)):
-        v = np.select([t < 5.0, t < 5.1], speeds[:2], speeds[2])
+    for speeds in ((10.0, 2.0, 2.0), (0.0, 5.0, 3.0), (10.0, -2.0, 0.0), (0.4, 4.6, 2.6)):
+        v = np.select([t < 4.95, t < 5.05], speeds[:2], speeds[2])
         x = 200 + np.r_[0.0, np.cumsum(v[:-1]) * 0.1]
         struck: Actor = replace(moving("ego", WAY, t, x, WAY.own), vx=v if told else np.full(len(t), np.nan))
         struck = replace(struck, vy=struck.vx * 0.0, yaw=np.zeros(len(t)))

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 TYRE_MPS2: Final = 12.0
 """Nobody changes speed and back again by more (see `ukhc.contact-signature`); an impact changes it for good."""
+SAME_SHARE: Final = 0.25
+"""After a step the speed is the one before, but for this share of what the step makes of it."""
 SIGMAS: Final = 6.0
 """So many standard deviations of its positions' noise a sample is off before it counts."""
 LEAST_M: Final = 0.15
@@ -124,7 +126,10 @@ def _stepped(moves: _Motion, told: Mask, sigma: Numbers, error: Numbers, beside:
         near, far = np.hypot(*from_before), np.hypot(*from_after)
         limit = np.maximum(LEAST_M, np.maximum(TYRE_MPS2 * dt_here**2, SIGMAS * 2.45 * s))
         same = np.sum(from_before * from_after, axis=0) > near * far / 2
-        goes_on = _can(before, after, (dt_before + dt_after) / 2 + dt_here, 2.0 * e / np.minimum(dt_before, dt_after))
+        error_mps = 2.0 * e / np.minimum(dt_before, dt_after)
+        goes_on = _can(before, after, (dt_before + dt_after) / 2 + dt_here, error_mps)
+        # who is struck has another speed afterwards
+        goes_on &= np.hypot(*(after - before)) <= SAME_SHARE * np.minimum(near, far) / dt_here + SIGMAS * error_mps
         rows = np.flatnonzero((np.minimum(near, far) > limit) & same & goes_on & whole) + 1
     found[rows] = found[rows + 1] = True
     return found
