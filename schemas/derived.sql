@@ -481,6 +481,7 @@ CREATE TABLE vehicle_ahead (
     error_mps DOUBLE NOT NULL,        -- see lead
     joined_ns BIGINT,                 -- since when it is the lead, if one of the two then changed lanes; of another the last cut-in of it or lane change of the ego; NULL: it was ahead before, or how it came was not seen
     let_in_ns BIGINT,                 -- joined_ns, where it was not the ego that changed lanes; of another than the lead its last cut-in
+    passes_by BOOLEAN,                -- at the present velocities the two boxes pass each other by: where lanes turn or cross, who is ahead along the lane is not in the way; NULL: it takes over 3 s, or is not known
     free_m DOUBLE,                    -- where not known: nobody is nearer to the ego's front in its lane than this
     free_mps DOUBLE                   -- where not known: nobody comes nearer faster than this: one that stands, or one that comes at 70 mph, unless it goes the ego's way
 );
@@ -530,6 +531,7 @@ CREATE TABLE overtake (
     side INTEGER NOT NULL,            -- 1 left, -1 right
     vbp_id VARCHAR NOT NULL,          -- the vehicle being passed, or one that may be it
     vbp_placed BOOLEAN NOT NULL,      -- it was placed at t0; else only its presence is known
+    sure BOOLEAN NOT NULL,            -- it is an overtake: two of the three hold, the VBP was placed at t0, the ego passed it, the ego's centre was over the line; else it may be one
     begin_seen BOOLEAN NOT NULL,      -- t0 lies in the log: the step before it is there and inside the lane
     t0_ns BIGINT NOT NULL,            -- t_pull of the excursion: first step with a corner more than 0.05 m over the boundary, or, after a look past the vehicle ahead, when it pulls out
     t1_ns BIGINT,                     -- first step wholly in the overtaking lane
@@ -583,6 +585,7 @@ CREATE TABLE overtake_step (
     t_ns BIGINT NOT NULL,             -- a step from t0 to t_end
     stage VARCHAR NOT NULL,           -- pulling_out, passing, cutting_in
     vbp_id VARCHAR NOT NULL,          -- the vehicle being passed
+    sure BOOLEAN NOT NULL,            -- see overtake
     free_m DOUBLE,                    -- how far ahead of the ego's front the corridor and the sensor reach at t0
     free_reason VARCHAR,              -- what ends it: map_end, corridor_end, sensor_range
     ov_id VARCHAR,                    -- of the oncoming vehicles at this step the one whose danger space reaches furthest into the ego's, see oncoming_vehicle; NULL: none

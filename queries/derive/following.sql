@@ -19,7 +19,7 @@ judged AS (
             WHEN l.object_id IS NULL OR c.sure THEN false
             ELSE CASE WHEN c.t_ns IS NULL THEN true END AND l.in_lane AND l.gap_m >= 0 AND NOT l.oncoming AND (
                 -- one that stands is in the ego's way, now and when the ego is there: else the ego steers round it, or passes it at the lane's edge
-                l.across_m < 0 AND (l.speed_mps > standing_mps() OR on_course(
+                l.across_m < 0 AND (l.speed_mps > standing_mps() OR l.passes_by IS DISTINCT FROM true AND on_course(
                     l.gap_m, ttc_s(l.gap_m, l.ego_speed_mps), e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, 0.0
                 ))
                 -- one that moves beside the ego's way has its centre in the lane, and is not about to be passed

@@ -2,7 +2,7 @@
 -- as its stopping distance. How far one box is inside another in corridor coordinates is the least of the overlaps along and across.
 WITH stage AS (
     SELECT
-        o.drive_id, o.ego_id, o.occurrence, o.vbp_id, e.t_ns,
+        o.drive_id, o.ego_id, o.occurrence, o.vbp_id, o.sure, e.t_ns,
         CASE
             WHEN e.t_ns < o.t_out_ns THEN 'pulling_out'
             WHEN o.t2_ns IS NULL OR e.t_ns < o.t2_ns THEN 'passing'
@@ -20,7 +20,7 @@ met AS (
     SELECT *, danger_space_m(speed_mps) AS sd_m, d_m + length_m / 2 * sin(heading_diff_rad) AS fd, width_m / 2 AS fh
     FROM pair SEMI JOIN stage USING (t_ns)
 ),
--- every oncoming vehicle: the worst of them counts, of each distance. One whose place across the corridor is not known, for it is still on its
+-- every oncoming vehicle but the one that is passed, which stands the wrong way round: the worst of them counts, of each distance. One whose place across the corridor is not known, for it is still on its
 -- way there or has no size, may be the worst unless the danger spaces do not even reach so far
 against AS (
     SELECT
@@ -32,7 +32,7 @@ against AS (
             short_of(s.sd_av_m + danger_space_m(v.speed_mps) - v.da_m)
         ) AS overlap_m
     FROM stage s
-    JOIN oncoming_vehicle v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns AND v.vehicle
+    JOIN oncoming_vehicle v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns AND v.vehicle AND v.object_id <> s.vbp_id
     LEFT JOIN met o ON o.drive_id = s.drive_id AND o.ego_id = s.ego_id AND o.t_ns = s.t_ns AND o.object_id = v.object_id
 ),
 worst AS (
@@ -46,7 +46,7 @@ worst AS (
     GROUP BY ALL
 )
 SELECT
-    s.drive_id, s.ego_id, s.occurrence, s.t_ns, s.stage, s.vbp_id, w.o.id AS ov_id,
+    s.drive_id, s.ego_id, s.occurrence, s.t_ns, s.stage, s.vbp_id, s.sure, w.o.id AS ov_id,
     -- nobody is there only as far as can be told: an unseen vehicle at the limit (70 mph where the map has none) must be out of reach
     coalesce(n.n_unplaced = 0 AND (n.object_id IS NOT NULL OR n.free_m > s.sd_av_m + danger_space_m(coalesce(s.limit_mps, 31.3))), false) AS ov_known,
     s.sd_av_m, s.fd AS ds_av_d_m, s.fh AS ds_av_half_m, w.o.sd_m AS sd_ov_m, w.o.fd AS ds_ov_d_m, w.o.fh AS ds_ov_half_m,

@@ -34,49 +34,84 @@ half AS (
         drive_id, ego_id, t_ns,
         first_value(t_ns) OVER (PARTITION BY drive_id, ego_id, seg ORDER BY t_ns RANGE BETWEEN 500_000_000 PRECEDING AND CURRENT ROW) AS t_half_ns
     FROM step
+),
+told AS (
+    SELECT
+        l.drive_id, l.ego_id, l.t_ns, l.object_id, true AS nearest, true AS known, l.gap_m, l.speed_mps, l.accel_mps2, l.ego_speed_mps, l.in_lane, l.oncoming, l.across_m,
+        l.ego_across_mps, l.across_mps, l.error_mps, CASE WHEN l.joined THEN l.t_since_ns END AS joined_ns,
+        -- into its lane the ego has changed by itself
+        CASE WHEN x.t_ns IS NULL THEN joined_ns END AS let_in_ns
+    FROM lead l
+    LEFT JOIN lane_crossing x ON x.drive_id = l.drive_id AND x.ego_id = l.ego_id AND x.t_ns = l.t_since_ns
+    UNION ALL BY NAME
+    SELECT
+        m.drive_id, m.ego_id, m.t_ns, m.object_id, false AS nearest, true AS known, p.gap_m, p.speed_mps,
+        CASE WHEN f.actor_id IS NULL AND b.heading_diff_rad IS NOT NULL AND m.t_ns - h.t_half_ns >= 400_000_000 THEN 1e9 * (p.speed_mps - along_lane_mps(b.speed_mps, b.heading_diff_rad)) / (m.t_ns - h.t_half_ns) END AS accel_mps2,
+        m.ego_speed_mps, m.in_lane, p.oncoming, p.across_m, p.ego_across_mps, p.across_mps,
+        filtered_error_mps() * ((f.actor_id IS NOT NULL)::INTEGER + (g.actor_id IS NOT NULL)::INTEGER) AS error_mps,
+        -- greatest() leaves out what is not there, as it should here
+        greatest(i.t_ns, x.t_ns) AS joined_ns, i.t_ns AS let_in_ns
+    FROM more m
+    JOIN lead l ON l.drive_id = m.drive_id AND l.ego_id = m.ego_id AND l.t_ns = m.t_ns AND l.object_id IS DISTINCT FROM m.object_id
+    JOIN lane_ahead p ON p.drive_id = m.drive_id AND p.ego_id = m.ego_id AND p.t_ns = m.t_ns AND p.object_id = m.object_id
+    JOIN half h ON h.drive_id = m.drive_id AND h.ego_id = m.ego_id AND h.t_ns = m.t_ns
+    LEFT JOIN pair b ON b.drive_id = m.drive_id AND b.ego_id = m.ego_id AND b.t_ns = h.t_half_ns AND b.object_id = m.object_id
+    LEFT JOIN filtered f ON f.drive_id = m.drive_id AND f.actor_id = m.object_id
+    LEFT JOIN filtered g ON g.drive_id = m.drive_id AND g.actor_id = m.ego_id
+    ASOF LEFT JOIN cut_in i ON i.drive_id = m.drive_id AND i.ego_id = m.ego_id AND i.object_id = m.object_id AND i.t_ns <= m.t_ns
+    ASOF LEFT JOIN lane_crossing x ON x.drive_id = m.drive_id AND x.ego_id = m.ego_id AND x.t_ns <= m.t_ns
+    UNION ALL BY NAME
+    -- somebody without a place, or of no known class, may be in the way behind one that is beside it
+    SELECT l.drive_id, l.ego_id, l.t_ns, NULL::VARCHAR AS object_id, false AS nearest, false AS known, l.ego_speed_mps, l.in_lane, 0.0 AS error_mps,
+        least(d.least_m, d.late_m, c.unsure_m, c.outside_m) AS free_m, l.ego_speed_mps + CASE WHEN d.along AND c.unsure_m IS NULL AND c.outside_m IS NULL THEN 0.0 ELSE fastest_mps() END AS free_mps
+    FROM lead l
+    LEFT JOIN chosen c USING (drive_id, ego_id, t_ns)
+    LEFT JOIN doubt d USING (drive_id, ego_id, t_ns)
+    WHERE l.object_id IS NOT NULL AND l.in_lane IS DISTINCT FROM false
+        AND (least(d.least_m, c.unsure_m) < coalesce(c.way_gap_m, lead_reach_m(l.ego_speed_mps)) OR c.way_gap_m IS NULL AND d.late_m < lead_reach_m(l.ego_speed_mps))
+        -- out of its lane the ego may meet it, whoever is in the lane
+        OR c.outside_m < coalesce(c.way_gap_m, lead_reach_m(l.ego_speed_mps))
+    UNION ALL BY NAME
+    -- nobody is seen ahead, and somebody may be there
+    SELECT
+        e.drive_id, e.ego_id, e.t_ns, NULL::VARCHAR AS object_id, true AS nearest, false AS known, e.speed_mps AS ego_speed_mps, 0.0 AS error_mps,
+        least(d.least_m, d.late_m, c.unsure_m) AS free_m, e.speed_mps + CASE WHEN d.along AND c.unsure_m IS NULL THEN 0.0 ELSE fastest_mps() END AS free_mps
+    FROM ego_state e
+    ANTI JOIN lead l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.t_ns = e.t_ns
+    LEFT JOIN chosen c USING (drive_id, ego_id, t_ns)
+    LEFT JOIN doubt d USING (drive_id, ego_id, t_ns)
+    WHERE e.front_s_m IS NOT NULL AND coalesce(c.n, 0) = 0 AND c.outside_m IS NULL AND least(d.least_m, d.late_m, c.unsure_m) IS NOT NULL
+),
+-- the two boxes in the frame of the ego's, and how one moves against the other, at the present velocities
+framed AS (
+    SELECT
+        t.drive_id, t.ego_id, t.t_ns, t.object_id, ttc_s(t.gap_m, t.ego_speed_mps - along_mps(t.speed_mps, t.oncoming)) AS ttc_s,
+        ex * cos(e.yaw_rad) + ey * sin(e.yaw_rad) AS dx, ey * cos(e.yaw_rad) - ex * sin(e.yaw_rad) AS dy, cos(turn_rad) AS c, sin(turn_rad) AS s,
+        p.speed_mps * cos(turn_rad) - v.vx_mps * cos(e.yaw_rad) - v.vy_mps * sin(e.yaw_rad) AS ux,
+        p.speed_mps * sin(turn_rad) - v.vy_mps * cos(e.yaw_rad) + v.vx_mps * sin(e.yaw_rad) AS uy,
+        -- as far as the lane bends up to there, the ego need not go straight on
+        least_apart_m() + abs(t.gap_m * wrap_rad(turn_rad + e.heading_diff_rad - p.heading_diff_rad)) AS room_m,
+        e.length_m / 2 AS hla, e.width_m / 2 AS hwa, p.length_m / 2 AS hlb, p.width_m / 2 AS hwb
+    FROM told t
+    JOIN ego_state e USING (drive_id, ego_id, t_ns)
+    JOIN pair p ON p.drive_id = t.drive_id AND p.ego_id = t.ego_id AND p.t_ns = t.t_ns AND p.object_id = t.object_id
+    JOIN state_dynamics v ON v.drive_id = t.drive_id AND v.actor_id = t.ego_id AND v.t_ns = t.t_ns
+    CROSS JOIN LATERAL (SELECT p.x_m - e.x_m AS ex, p.y_m - e.y_m AS ey, p.yaw_rad - e.yaw_rad AS turn_rad) f
+    WHERE t.gap_m >= 0
+),
+-- while the boxes overlap along each of the four directions of their sides, they touch
+touching AS (
+    SELECT
+        drive_id, ego_id, t_ns, object_id, ttc_s,
+        [
+            within_s(dx, ux, room_m + hla + hlb * abs(c) + hwb * abs(s)), within_s(dy, uy, room_m + hwa + hlb * abs(s) + hwb * abs(c)),
+            within_s(dx * c + dy * s, ux * c + uy * s, room_m + hlb + hla * abs(c) + hwa * abs(s)),
+            within_s(dy * c - dx * s, uy * c - ux * s, room_m + hwb + hla * abs(s) + hwa * abs(c))
+        ] AS w
+    FROM framed
 )
 SELECT
-    l.drive_id, l.ego_id, l.t_ns, l.object_id, true AS nearest, true AS known, l.gap_m, l.speed_mps, l.accel_mps2, l.ego_speed_mps, l.in_lane, l.oncoming, l.across_m,
-    l.ego_across_mps, l.across_mps, l.error_mps, CASE WHEN l.joined THEN l.t_since_ns END AS joined_ns,
-    -- into its lane the ego has changed by itself
-    CASE WHEN x.t_ns IS NULL THEN joined_ns END AS let_in_ns
-FROM lead l
-LEFT JOIN lane_crossing x ON x.drive_id = l.drive_id AND x.ego_id = l.ego_id AND x.t_ns = l.t_since_ns
-UNION ALL BY NAME
-SELECT
-    m.drive_id, m.ego_id, m.t_ns, m.object_id, false AS nearest, true AS known, p.gap_m, p.speed_mps,
-    CASE WHEN f.actor_id IS NULL AND b.heading_diff_rad IS NOT NULL AND m.t_ns - h.t_half_ns >= 400_000_000 THEN 1e9 * (p.speed_mps - along_lane_mps(b.speed_mps, b.heading_diff_rad)) / (m.t_ns - h.t_half_ns) END AS accel_mps2,
-    m.ego_speed_mps, m.in_lane, p.oncoming, p.across_m, p.ego_across_mps, p.across_mps,
-    filtered_error_mps() * ((f.actor_id IS NOT NULL)::INTEGER + (g.actor_id IS NOT NULL)::INTEGER) AS error_mps,
-    -- greatest() leaves out what is not there, as it should here
-    greatest(i.t_ns, x.t_ns) AS joined_ns, i.t_ns AS let_in_ns
-FROM more m
-JOIN lead l ON l.drive_id = m.drive_id AND l.ego_id = m.ego_id AND l.t_ns = m.t_ns AND l.object_id IS DISTINCT FROM m.object_id
-JOIN lane_ahead p ON p.drive_id = m.drive_id AND p.ego_id = m.ego_id AND p.t_ns = m.t_ns AND p.object_id = m.object_id
-JOIN half h ON h.drive_id = m.drive_id AND h.ego_id = m.ego_id AND h.t_ns = m.t_ns
-LEFT JOIN pair b ON b.drive_id = m.drive_id AND b.ego_id = m.ego_id AND b.t_ns = h.t_half_ns AND b.object_id = m.object_id
-LEFT JOIN filtered f ON f.drive_id = m.drive_id AND f.actor_id = m.object_id
-LEFT JOIN filtered g ON g.drive_id = m.drive_id AND g.actor_id = m.ego_id
-ASOF LEFT JOIN cut_in i ON i.drive_id = m.drive_id AND i.ego_id = m.ego_id AND i.object_id = m.object_id AND i.t_ns <= m.t_ns
-ASOF LEFT JOIN lane_crossing x ON x.drive_id = m.drive_id AND x.ego_id = m.ego_id AND x.t_ns <= m.t_ns
-UNION ALL BY NAME
--- somebody without a place, or of no known class, may be in the way behind one that is beside it
-SELECT l.drive_id, l.ego_id, l.t_ns, NULL::VARCHAR AS object_id, false AS nearest, false AS known, l.ego_speed_mps, l.in_lane, 0.0 AS error_mps,
-    least(d.least_m, d.late_m, c.unsure_m, c.outside_m) AS free_m, l.ego_speed_mps + CASE WHEN d.along AND c.unsure_m IS NULL AND c.outside_m IS NULL THEN 0.0 ELSE fastest_mps() END AS free_mps
-FROM lead l
-LEFT JOIN chosen c USING (drive_id, ego_id, t_ns)
-LEFT JOIN doubt d USING (drive_id, ego_id, t_ns)
-WHERE l.object_id IS NOT NULL AND l.in_lane IS DISTINCT FROM false
-    AND (least(d.least_m, c.unsure_m) < coalesce(c.way_gap_m, lead_reach_m(l.ego_speed_mps)) OR c.way_gap_m IS NULL AND d.late_m < lead_reach_m(l.ego_speed_mps))
-    -- out of its lane the ego may meet it, whoever is in the lane
-    OR c.outside_m < coalesce(c.way_gap_m, lead_reach_m(l.ego_speed_mps))
-UNION ALL BY NAME
--- nobody is seen ahead, and somebody may be there
-SELECT
-    e.drive_id, e.ego_id, e.t_ns, NULL::VARCHAR AS object_id, true AS nearest, false AS known, e.speed_mps AS ego_speed_mps, 0.0 AS error_mps,
-    least(d.least_m, d.late_m, c.unsure_m) AS free_m, e.speed_mps + CASE WHEN d.along AND c.unsure_m IS NULL THEN 0.0 ELSE fastest_mps() END AS free_mps
-FROM ego_state e
-ANTI JOIN lead l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.t_ns = e.t_ns
-LEFT JOIN chosen c USING (drive_id, ego_id, t_ns)
-LEFT JOIN doubt d USING (drive_id, ego_id, t_ns)
-WHERE e.front_s_m IS NOT NULL AND coalesce(c.n, 0) = 0 AND c.outside_m IS NULL AND least(d.least_m, d.late_m, c.unsure_m) IS NOT NULL
+    t.*,
+    CASE WHEN c.ttc_s < drift_s() AND w[1] IS NOT NULL AND w[2] IS NOT NULL AND w[3] IS NOT NULL AND w[4] IS NOT NULL THEN greatest(0.0, w[1].from_s, w[2].from_s, w[3].from_s, w[4].from_s) > least(w[1].to_s, w[2].to_s, w[3].to_s, w[4].to_s) END AS passes_by
+FROM told t
+LEFT JOIN touching c ON c.drive_id = t.drive_id AND c.ego_id = t.ego_id AND c.t_ns = t.t_ns AND c.object_id = t.object_id

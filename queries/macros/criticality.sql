@@ -65,6 +65,16 @@ CREATE OR REPLACE MACRO on_course(gap_m, ttc_s, d_m, lat_half_m, lat_mps, lead_d
     gap_m >= 0 AND abs(d_m - lead_d_m + (lat_mps - lead_lat_mps) * CASE WHEN isinf(ttc_s) THEN 0.0 WHEN ttc_s < drift_s() THEN ttc_s WHEN ttc_s >= drift_s() THEN drift_s() END)
         < lat_half_m + lead_lat_half_m;
 
+-- When something at p, moving at v, is within r of the origin; never: an empty time.
+CREATE OR REPLACE MACRO within_s(p, v, r) AS
+    CASE
+        WHEN abs(v) > 1e-6 THEN {'from_s': (-r * sign(v) - p) / v, 'to_s': (r * sign(v) - p) / v}
+        WHEN abs(p) <= r THEN {'from_s': '-inf'::DOUBLE, 'to_s': 'inf'::DOUBLE}
+        WHEN abs(p) > r THEN {'from_s': 'inf'::DOUBLE, 'to_s': '-inf'::DOUBLE}
+    END;
+-- Boxes that pass each other at less than this may touch: headings are not known better.
+CREATE OR REPLACE MACRO least_apart_m() AS 0.1;
+
 -- Whether at least one of the two moves: standing vehicles, in contact even, have recorded speeds that tremble.
 CREATE OR REPLACE MACRO either_moves(ego_mps, lead_mps) AS ego_mps > standing_mps() OR lead_mps > standing_mps();
 

@@ -312,6 +312,31 @@ def test_who_comes_into_the_log_later_towards_the_ego_is_not_overtaken(stops: bo
     assert [(row["vbp_id"], row["vbp_placed"]) for row in found] == [("vbp", True)]
 
 
+def test_what_may_be_an_overtake_is_not_surely_one() -> None:
+    """The ego passes somebody, turns back behind it, or sways over the line for an oncoming car while one ahead is lost."""
+    way, (ego, vbp, ov) = scene()
+    (whole,) = one([ego, vbp, ov], way, "overtake")
+    assert whole["sure"]
+    _, aborted = scene(abort=True)
+    assert [(row["sure"], row["status"]) for row in one(aborted, way, "overtake")] == [(True, "aborted")]
+    late = vbp.keep(vbp.t_s * 1e9 > whole["t0_ns"] + 3e8)
+    assert [(row["sure"], row["vbp_placed"]) for row in one([ego, late, ov], way, "overtake")] == [(True, False)]
+    s = 50 + 12 * ego.t_s
+    sways = moving("ego", way, ego.t_s, s, swing(way, s, 150, 190, share=0.4))
+    lost = moving("vbp", way, ego.t_s, 80 + 12 * ego.t_s, way.own).keep(ego.t_s < 8.0)
+    con = derived(drive([sways, lost, ov], way.environment), tables=["overtake_step"])
+    assert {(row["vbp_id"], row["sure"]) for row in rows(con, "FROM overtake_step")} == {("vbp", False)}
+    found = scenes.judged([drive([sways, lost, ov], way.environment)], rules=["ukhc.r126.ds*"])
+    assert not [row["reason"] for row in found if row["verdict"] == "fail"]
+
+
+def test_who_is_passed_parked_the_wrong_way_round_does_not_come() -> None:
+    way, (ego, _, _) = scene()
+    parked = standing("vbp", way, ego.t_s, 215.0, way.own + 1.2 * way.over, turned=np.pi)
+    found = one([ego, parked], way, "overtake_step")
+    assert {(row["vbp_id"], row["ov_id"]) for row in found} == {("vbp", None)}
+
+
 def test_a_wobble_over_the_line_is_an_excursion_and_nothing_else() -> None:
     way, (ego, vbp, ov) = scene()
     d = swing(way, ego.x, 70, 100, share=0.28)  # 0.1 m over

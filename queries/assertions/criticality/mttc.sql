@@ -30,7 +30,7 @@ SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
     CASE WHEN l.object_id IS NOT NULL THEN on_course(
         l.gap_m, ttc_s(l.gap_m, l.ego_speed_mps - along_mps(l.speed_mps, l.oncoming)),
         e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, p.speed_mps * sin(p.heading_diff_rad)
-    ) AND either_moves(l.ego_speed_mps, l.speed_mps)
+    ) AND l.passes_by IS DISTINCT FROM true AND either_moves(l.ego_speed_mps, l.speed_mps)
     -- one that is not seen is further away than the way that is free, and the two close in no faster than tyres allow
     WHEN l.known OR gone_s(l.free_m, l.free_mps, 10.0) >= $least_s THEN true END AS applies
 FROM step s

@@ -16,7 +16,8 @@
 
 -- @applies
 SELECT drive_id, ego_id, t_ns, ov_id AS object_id, stage AS episode,
-    CASE WHEN ov_id IS NOT NULL THEN true WHEN ov_known THEN false END AS applies
+    -- what may be an overtake breaks nothing
+    CASE WHEN ov_id IS NOT NULL THEN CASE WHEN sure OR ov_in_ds_av_m < 0 THEN true END WHEN ov_known THEN false END AS applies
 FROM overtake_step
 
 -- @condition

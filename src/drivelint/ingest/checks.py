@@ -161,8 +161,9 @@ def _displacement(states: States) -> NDArray[np.float64]:
 
 
 def _jumps(states: States, step: Steps) -> NDArray[np.bool_]:
-    speed = np.nan_to_num(np.hypot(states.numbers["vx_mps"], states.numbers["vy_mps"]))
-    reach = TELEPORT_M + TELEPORT_FACTOR * np.maximum(speed[1:], speed[:-1]) * step.dt_s
+    speed = np.hypot(states.numbers["vx_mps"], states.numbers["vy_mps"])
+    # where neither speed is known, none says that it is a jump
+    reach = TELEPORT_M + TELEPORT_FACTOR * np.fmax(speed[1:], speed[:-1]) * step.dt_s
     jump = np.zeros(len(states), np.bool_)
     with np.errstate(invalid="ignore"):
         jump[1:] = step.continuous & (_displacement(states) > reach)

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from drivelint.ingest.contrary import contrary
+from drivelint.ingest.off_track import off_track
 from drivelint.ingest.order import listed, wrapped
 from drivelint.ingest.trace import MOTOR_VEHICLES, Finding
 
@@ -67,7 +69,8 @@ LONG_KINDS: Final = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle", None))
 """Actors whose heading is that of their motion; people and animals face where they like, things have no front."""
 HALF_BOX_M: Final = 6.0
 """No box reaches further than this from its middle, where its size is not known."""
-STATE: Final = ("x_m", "y_m", "z_m", "yaw_rad", "vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
+VELOCITY: Final = ("vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
+STATE: Final = ("x_m", "y_m", "z_m", "yaw_rad", *VELOCITY)
 
 
 @dataclass(frozen=True)
@@ -84,6 +87,11 @@ class Refused:
         """Take the places of these rows."""
         names = np.array(states.ids, dtype=np.str_)[states.actor[rows]]
         return cls(names, states.t_ns[rows], states.numbers["x_m"][rows], states.numbers["y_m"][rows])
+
+    def with_more(self, more: Refused) -> Refused:
+        """Return these places and those."""
+        pairs = ((getattr(self, name), getattr(more, name)) for name in ("actor_ids", "t_ns", "x_m", "y_m"))
+        return Refused(*map(np.concatenate, pairs))
 
 
 @dataclass(frozen=True)
@@ -106,14 +114,21 @@ def part(states: States, step: Steps, *, whole: Collection[str]) -> Parted:
     if len(states) < 3 or not {"x_m", "y_m"} <= states.numbers.keys():
         return UNPARTED
     jump = jumps(states, step)
-    if not jump.any():
-        return UNPARTED
+    findings: list[Finding] = []
+    alias: dict[str, str] = {}
     unknown, pieces = _around_jumps(states, jump)
-    findings = _report(states, unknown, "teleport", "the position jumps: they are unknown around it")
-    alias = _renamed(states, pieces, whole, findings)
+    if jump.any():
+        findings = _report(states, unknown, "teleport", "the position jumps: they are unknown around it")
+        alias = _renamed(states, pieces, whole, findings)
     refused = Refused.of(states, unknown)
     _forget(states, unknown)
-    return Parted(findings, alias, refused)
+    beside = off_track(states, step)
+    if beside.any():
+        text = "the position is beside its track, for a sample or by a step that nobody drives: they are unknown there"
+        findings += _report(states, beside, "teleport", text)
+        refused = refused.with_more(Refused.of(states, beside))
+        _forget(states, beside)
+    return Parted(findings, alias, refused) if findings else UNPARTED
 
 
 def resolve(states: States, step: Steps, actors: Actors, *, derived: bool, parted: Parted = UNPARTED) -> list[Finding]:
@@ -133,6 +148,10 @@ def resolve(states: States, step: Steps, actors: Actors, *, derived: bool, parte
             states, frozen, "motion_unknown", "position and velocity contradict each other: they are unknown"
         )
         _forget(states, frozen)
+        astray = contrary(states, step)
+        text = "for half a second and longer the velocity leads elsewhere than the positions: it is unknown"
+        findings += _report(states, astray, "velocity_unknown", text)
+        _forget(states, astray, VELOCITY)
     for each in places:
         findings += _upon_others(states, step, actors, each, parted.alias)
     turned, sideways = _headings(states, step, actors)
@@ -148,9 +167,9 @@ def resolve(states: States, step: Steps, actors: Actors, *, derived: bool, parte
     return findings
 
 
-def _forget(states: States, rows: Mask) -> None:
+def _forget(states: States, rows: Mask, what: tuple[str, ...] = STATE) -> None:
     if rows.any():
-        for name in set(STATE) & states.numbers.keys():
+        for name in set(what) & states.numbers.keys():
             states.numbers[name] = np.where(rows, np.nan, states.numbers[name])
 
 

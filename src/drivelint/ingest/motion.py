@@ -8,7 +8,7 @@ import numpy as np
 
 from drivelint.ingest.order import Steps, listed
 from drivelint.ingest.trace import Finding
-from drivelint.ingest.velocity import KNOWN_MPS, derived
+from drivelint.ingest.velocity import KNOWN_MPS, MOVED_M, derived
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,8 +21,6 @@ WRONG_SHARE = 0.15
 WRONG_SECOND_NS = 1_000_000_000
 WRONG_WINDOWS = 20
 """Over a second the trembling of positions averages out, which step by step is worse than any velocity: so many must be wrong."""
-MOVED_M = 1.0
-"""An actor whose positions spread by more moves; below it a parked car's position noise would become a speed."""
 
 
 def complete_motion(states: States, step: Steps, *, most: float = 1.0) -> list[Finding]:

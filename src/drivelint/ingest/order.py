@@ -117,8 +117,14 @@ def steps(states: States) -> Steps:
     """Measure the steps between neighbouring states (in order, no duplicates)."""
     same = states.actor[1:] == states.actor[:-1]
     dt = np.diff(states.t_ns)
-    period = int(np.median(dt[same])) if same.any() else 0
-    return Steps(same, dt * 1e-9, same & (dt <= MAX_GAP_PERIODS * period), period)
+    return steps_between(states.t_ns, states.actor, int(np.median(dt[same])) if same.any() else 0)
+
+
+def steps_between(t_ns: NDArray[np.int64], actor: NDArray[np.int32], period_ns: int) -> Steps:
+    """Measure the steps between these samples (n, in order) of a log of that period."""
+    same = actor[1:] == actor[:-1]
+    dt = np.diff(t_ns)
+    return Steps(same, dt * 1e-9, same & (dt <= MAX_GAP_PERIODS * period_ns), period_ns)
 
 
 def rate(values: NDArray[np.float64], step: Steps) -> NDArray[np.float64]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from drivelint.ingest.order import rate
+from drivelint.ingest.order import rate, steps_between
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,6 +27,8 @@ WIDTHS_S: Final = (0.25, 0.5, 1.0)
 """Half widths of the filter, after central differences; a braking of 10 m/s3 of jerk is 0.06, 0.25 and 1 m/s off in its middle."""
 SLOWEST_NS: Final = 210_000_000
 """Positions that come more rarely change by the motion as much as by noise: central differences, as exact ones."""
+MOVED_M: Final = 1.0
+"""An actor whose positions spread by more moves; below it a parked car's position noise would become a speed."""
 FEWEST: Final = 8
 """Of fewer samples no noise is estimated."""
 
@@ -43,27 +45,41 @@ def derived(t_ns: NDArray[np.int64], actor: NDArray[np.int32], x: Floats, y: Flo
     """Derive velocities from positions (n, in order, metres; `actor`: which one, 0..)."""
     vx, vy = rate(x, step), rate(y, step)
     filtered = np.zeros(len(x), np.bool_)
-    if not 0 < step.period_ns <= SLOWEST_NS:
+    placed = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
+    if not 0 < step.period_ns <= SLOWEST_NS or not len(placed):
         return Derived(vx, vy, filtered)
-    runs = _Runs.of(t_ns, x, y, step)
-    noise = np.maximum(_noise(x, runs, actor), _noise(y, runs, actor))[actor]
+    # a filter needs no sample at every step: over a hole of one it goes on
+    of = steps_between(t_ns[placed], actor[placed], step.period_ns)
+    found = _filtered(t_ns[placed], actor[placed], x[placed], y[placed], of, (vx[placed], vy[placed]))
+    vx[placed], vy[placed], filtered[placed] = found
+    return Derived(vx, vy, filtered)
+
+
+def _filtered(  # noqa: PLR0917
+    t_ns: NDArray[np.int64], actor: NDArray[np.int32], x: Floats, y: Floats, step: Steps, central: tuple[Floats, Floats]
+) -> Derived:
+    """Return the velocities (n) of samples that all have a place; `central`: those by central differences."""
+    vx, vy = central
+    filtered = np.zeros(len(x), np.bool_)
+    runs = Runs.of(t_ns, x, y, step)
+    sigma = np.maximum(noise(x, runs, actor), noise(y, runs, actor))[actor]
     with np.errstate(invalid="ignore", divide="ignore"):
-        known = 3.0 * noise * np.sqrt(2.0) / (2.0 * step.period_ns * 1e-9) <= KNOWN_MPS
+        known = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.period_ns * 1e-9) <= KNOWN_MPS
         vx, vy = np.where(known, vx, np.nan), np.where(known, vy, np.nan)
         for width in WIDTHS_S:
             if known.all():
                 break
-            wx, wy, error = runs.slopes(x, y, width, noise)
+            wx, wy, error = runs.slopes(x, y, width, sigma)
             now = ~known & (error <= KNOWN_MPS)
             vx, vy, known, filtered = np.where(now, wx, vx), np.where(now, wy, vy), known | now, filtered | now
         # the widest tells who stands, at the ends of a track by one side alone
-        wx, wy, error = runs.slopes(x, y, WIDTHS_S[-1], noise, both_sides=False)
-        stands = (noise > 0.0) & (error <= KNOWN_MPS) & (np.abs(wx) <= error) & (np.abs(wy) <= error)
-    filtered |= ~known & ~stands & np.isfinite(x)
+        wx, wy, error = runs.slopes(x, y, WIDTHS_S[-1], sigma, both_sides=False)
+        stands = (sigma > 0.0) & (error <= KNOWN_MPS) & (np.abs(wx) <= error) & (np.abs(wy) <= error)
+    filtered |= ~known & ~stands
     return Derived(np.where(stands, 0.0, vx), np.where(stands, 0.0, vy), filtered)
 
 
-class _Runs(NamedTuple):
+class Runs(NamedTuple):
     """Stretches of states of one actor without a hole: of each row its first and last row, and the time since its run's first."""
 
     first: NDArray[np.intp]
@@ -72,7 +88,8 @@ class _Runs(NamedTuple):
     t_s: Floats
 
     @classmethod
-    def of(cls, t_ns: NDArray[np.int64], x: Floats, y: Floats, step: Steps) -> _Runs:
+    def of(cls, t_ns: NDArray[np.int64], x: Floats, y: Floats, step: Steps) -> Runs:
+        """Part the states (n, in order) where there is a hole, or no place."""
         usable = np.isfinite(x) & np.isfinite(y)
         starts = np.flatnonzero(np.r_[True, ~(step.continuous & usable[1:] & usable[:-1])])
         of = np.repeat(np.arange(len(starts)), np.diff(np.r_[starts, len(t_ns)]))
@@ -83,7 +100,7 @@ class _Runs(NamedTuple):
         return cls(first, last, key, since.astype(np.float64) * 1e-9)
 
     def slopes(
-        self, x: Floats, y: Floats, width_s: float, noise: Floats, *, both_sides: bool = True
+        self, x: Floats, y: Floats, width_s: float, sigma: Floats, *, both_sides: bool = True
     ) -> tuple[Floats, Floats, Floats]:
         """Return slopes over the samples within `width_s` (`both_sides`: as far to one as to the other), and three standard errors."""
         to_edge = np.minimum(self.t_s - self.t_s[self.first], self.t_s[self.last] - self.t_s)
@@ -103,10 +120,10 @@ class _Runs(NamedTuple):
         spread = over(t * t) - n * mean_t * mean_t
         spread = np.where(spread > 1e-9, spread, np.nan)
         wx, wy = ((over(t * p) - mean_t * over(p)) / spread for p in (px, py))
-        return wx, wy, np.where(np.isfinite(spread), 3.0 * noise / np.sqrt(spread), np.inf)
+        return wx, wy, np.where(np.isfinite(spread), 3.0 * sigma / np.sqrt(spread), np.inf)
 
 
-def _noise(values: Floats, runs: _Runs, actor: NDArray[np.int32]) -> Floats:
+def noise(values: Floats, runs: Runs, actor: NDArray[np.int32]) -> Floats:
     """Return the standard deviation of each actor's position noise (m), by the median; 0 where there are too few samples.
 
     A sample beside the line between its neighbours is off by noise or by acceleration; the difference of two such on end is free of
