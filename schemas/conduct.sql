@@ -130,6 +130,14 @@ CREATE TABLE lane_crossing (
     side INTEGER NOT NULL             -- 1 to the left, -1 to the right
 );
 
+CREATE TABLE ego_road (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    chain_id INTEGER NOT NULL,        -- a running chain, see chain
+    road INTEGER NOT NULL,            -- 1.. in time order; chains that the ego changed between, over a line, are one road
+    offset_m DOUBLE NOT NULL          -- add to a station of the chain for the station along the road
+);
+
 CREATE TABLE lane_change (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego

@@ -30,6 +30,7 @@ RULES: Final = (
     "ukhc.r162.*", "ukhc.r163.*", "ukhc.r168.*", "ukhc.r264.*", "ukhc.r268.*",
 )  # fmt: skip
 """The rules that ask who is ahead, behind, beside, oncoming, or was passed."""
+_EDGE_M: Final = 10.0
 _RANK: Final = "list_position(['error', 'fail', 'unknown', 'pass', 'not_applicable'], verdict)"
 # a rule's verdict at a reference point, or the worst one of its episodes
 _WORST: Final = f"""
@@ -57,9 +58,9 @@ class Pair(NamedTuple):
 
     @property
     def contradicts(self) -> bool:
-        """Whether the part says something else than the whole. What the whole does not decide contradicts nothing."""
+        """Whether a breach is none on the part, or one only there. A rule that does not apply there, for nobody is left, is no contradiction."""
         said = {self.whole.verdict, self.part.verdict}
-        return len(said) == 2 and "unknown" not in said
+        return len(said) == 2 and "fail" in said and "unknown" not in said
 
 
 def between(first: float, last: float) -> cropping.Inside:
@@ -76,7 +77,10 @@ def compared(
     part = cropping.cropped(road, f"{road.environment_id} {span[0]:.0f} {span[1]:.0f}", inside)
     everybody = tracks(files.log, files.routes)
     there = [track.take(inside(track.x, track.y)) for track in everybody]
-    egos = [track for track in there if len(track.t_ns) and (track.t_ns[-1] - track.t_ns[0]) * 1e-9 >= LEAST_S]
+    # the whole of the ego's box is on the map
+    on = between(span[0] + _EDGE_M, span[1] - _EDGE_M)
+    egos = [track.take(on(track.x, track.y)) for track in there]
+    egos = [track for track in egos if len(track.t_ns) and (track.t_ns[-1] - track.t_ns[0]) * 1e-9 >= LEAST_S]
     if most is not None and len(egos) > most:
         egos = [egos[k] for k in np.linspace(0, len(egos) - 1, most).astype(int)]
     whole = judged(_drives(egos, everybody, folder / "whole", files.map, road), rules)
