@@ -399,7 +399,8 @@ CREATE TABLE unseen (
     code VARCHAR NOT NULL,            -- lost, lost_behind (driving away), appeared, beyond_map (400 m or more away, over an end of the map)
     ahead_m DOUBLE,                   -- it came in, or left, over the far end of the map, which is so far ahead of the ego's front; else NULL
     behind_m DOUBLE,                  -- the same over the near end, so far behind the ego's rear
-    off_m DOUBLE                      -- it came in, or left, over an end of the map, be it on another road: it is not on the ego's corridor, which reaches so far, ahead or behind; else NULL
+    off_ahead_m DOUBLE,               -- it came in, or left, over an end of the map, be it on another road: it is not on the ego's corridor, which reaches so far ahead of the ego's front; else NULL
+    off_behind_m DOUBLE               -- and so far behind the ego's rear
 );
 
 CREATE TABLE oncoming_vehicle (

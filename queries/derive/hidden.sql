@@ -15,12 +15,12 @@ missing AS (
     -- a sample without a place says that it is there
     SELECT
         n.drive_id, n.ego_id, n.t_ns, n.object_id, n.actor_class, NOT n.off_level AND n.t_ns - s.t_ns > c.max_gap_ns AS unrecorded,
-        NULL::DOUBLE AS ahead_m, NULL::DOUBLE AS behind_m, NULL::DOUBLE AS off_m
+        NULL::DOUBLE AS ahead_m, NULL::DOUBLE AS behind_m, NULL::DOUBLE AS off_ahead_m, NULL::DOUBLE AS off_behind_m
     FROM nowhere n
     JOIN clock c USING (drive_id, ego_id)
     ASOF LEFT JOIN sample s ON s.drive_id = n.drive_id AND s.actor_id = n.object_id AND s.t_ns <= n.t_ns
     UNION ALL
-    SELECT u.drive_id, u.ego_id, u.t_ns, u.object_id, a.actor_class, true, u.ahead_m, u.behind_m, u.off_m
+    SELECT u.drive_id, u.ego_id, u.t_ns, u.object_id, a.actor_class, true, u.ahead_m, u.behind_m, u.off_ahead_m, u.off_behind_m
     FROM unseen u
     JOIN road_user a ON a.drive_id = u.drive_id AND a.actor_id = u.object_id
 ),
@@ -86,8 +86,8 @@ bounded AS (
     SELECT
         drive_id, ego_id, t_ns, object_id, actor_class, late,
         half_m + greatest(half_box_m(length_m, width_m), CASE WHEN combination_m = length_m THEN 0.0 ELSE coalesce(combination_m, 2 * two_half_boxes_m()) - length_m / 2 END) AS halves_m,
-        greatest(before_m, after_m, sqrt(before_x_m ** 2 + before_y_m ** 2) - strays_m(actor_class, before_s), sqrt(after_x_m ** 2 + after_y_m ** 2) - strays_m(actor_class, after_s), ahead_m, behind_m, off_m) AS distance_m,
-        greatest(from_m - front_m, rear_m - to_m) AS along_m,
+        greatest(before_m, after_m, sqrt(before_x_m ** 2 + before_y_m ** 2) - strays_m(actor_class, before_s), sqrt(after_x_m ** 2 + after_y_m ** 2) - strays_m(actor_class, after_s), ahead_m, behind_m, CASE WHEN off_ahead_m IS NOT NULL THEN least(off_ahead_m, off_behind_m) END) AS distance_m,
+        greatest(from_m - front_m, rear_m - to_m) AS along_m, off_ahead_m - half_m AS off_ahead_m,
         CASE WHEN ahead_m > 0 OR from_m > front_m THEN true WHEN behind_m > 0 OR to_m < rear_m THEN false END AS ahead,
         coalesce(CASE WHEN seen_before THEN before.way = 1 ELSE true END AND CASE WHEN seen_after THEN after.way = 1 ELSE true END AND (seen_before OR seen_after), false) AS along
     FROM stretch
@@ -145,7 +145,7 @@ in_hole AS (
 SELECT
     drive_id, ego_id, t_ns, object_id, actor_class, may_be_vehicle(actor_class) AS vehicle,
     greatest(0.0::DOUBLE, coalesce(distance_m, 0.0) - halves_m, along_m, CASE WHEN late THEN coalesce(g.around_m, 0.0) - halves_m END) AS least_m, ahead, along, late,
-    greatest(least_m, CASE WHEN late THEN g.lane_m END) AS lane_m
+    greatest(least_m, off_ahead_m, CASE WHEN late THEN g.lane_m END) AS lane_m
 FROM bounded
 LEFT JOIN sight g USING (drive_id, ego_id, t_ns)
 UNION ALL

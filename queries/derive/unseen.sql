@@ -72,7 +72,8 @@ told AS (
 )
 SELECT
     t.drive_id, t.ego_id, st.t_ns, t.object_id, t.near AND abs(st.t_ns - t.t_ns) <= reach.soon_ns AS near,
-    CASE WHEN x.ahead_m >= beyond_map_m() OR x.off_m >= beyond_map_m() THEN 'beyond_map' ELSE t.code END AS code, x.ahead_m, x.behind_m, x.off_m
+    CASE WHEN x.ahead_m >= beyond_map_m() OR least(x.off_ahead_m, x.off_behind_m) >= beyond_map_m() THEN 'beyond_map' ELSE t.code END AS code,
+    x.ahead_m, x.behind_m, x.off_ahead_m, x.off_behind_m
 FROM told t
 CROSS JOIN LATERAL (
     SELECT unseen_ns(t.distance_m, t.speed_mps, t.ego_mps, 20.0) AS ns, unseen_ns(t.distance_m, t.speed_mps, t.ego_mps, 10.0) AS soon_ns
@@ -87,6 +88,7 @@ CROSS JOIN LATERAL (
     SELECT
         t.beyond_end_m + y.shift_m - y.apart_m - e.front_s_m AS ahead_m, e.rear_s_m - t.beyond_begin_m - y.shift_m - y.apart_m AS behind_m,
         -- whoever is not on the map is on no lane of the corridor
-        CASE WHEN t.off_map AND m.last_m - e.front_s_m > 0 AND e.rear_s_m - m.first_m > 0 THEN least(m.last_m - e.front_s_m, e.rear_s_m - m.first_m) END AS off_m
+        CASE WHEN t.off_map AND e.rear_s_m > m.first_m AND e.front_s_m < m.last_m THEN m.last_m - e.front_s_m END AS off_ahead_m,
+        CASE WHEN t.off_map AND e.rear_s_m > m.first_m AND e.front_s_m < m.last_m THEN e.rear_s_m - m.first_m END AS off_behind_m
 ) x
 WHERE t.near OR t.distance_m < reach_m(t.speed_mps, t.ego_mps)

@@ -76,7 +76,9 @@ def compared(
     road = load_map(MapSource(files.map.name, files.map.read_bytes()), handedness=hand)
     part = cropping.cropped(road, f"{road.environment_id} {span[0]:.0f} {span[1]:.0f}", inside)
     everybody = tracks(files.log, files.routes)
-    there = [track.take(inside(track.x, track.y)) for track in everybody]
+    # a lane ends up to a metre before the edge, for it is cut between two of its points
+    recorded = between(span[0] + 1.5, span[1] - 1.5)
+    there = [track.take(recorded(track.x, track.y)) for track in everybody]
     # the whole of the ego's box is on the map
     on = between(span[0] + _EDGE_M, span[1] - _EDGE_M)
     egos = [track.take(on(track.x, track.y)) for track in there]
