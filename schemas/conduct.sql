@@ -68,7 +68,7 @@ CREATE TABLE hidden (
     ahead BOOLEAN,                    -- it is ahead of the ego; NULL: it may be or not
     along BOOLEAN NOT NULL,           -- it goes the ego's way: where it was seen last or is seen next on the corridor
     late BOOLEAN NOT NULL,            -- it is not in plain view, for it would have been recorded: see track_end
-    lane_m DOUBLE NOT NULL            -- in the ego's lane ahead of it, it is at least so far away: least_m, or, if late, as far as that lane is in plain view
+    lane_m DOUBLE NOT NULL            -- in the ego's lane ahead of it, it is at least so far away: least_m; if late, as far as that lane is in plain view; if it is not on the map, as far as the corridor reaches
 );
 
 CREATE TABLE in_way (
@@ -131,6 +131,14 @@ CREATE TABLE lane_crossing (
     side INTEGER NOT NULL             -- 1 to the left, -1 to the right
 );
 
+CREATE TABLE ego_road (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    chain_id INTEGER NOT NULL,        -- a running chain, see chain
+    road INTEGER NOT NULL,            -- 1.. in time order; chains that the ego changed between, over a line, are one road
+    offset_m DOUBLE NOT NULL          -- add to a station of the chain for the station along the road
+);
+
 CREATE TABLE lane_change (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -151,21 +159,23 @@ CREATE TABLE lane_change (
     follower_gap_m DOUBLE,            -- its front to the ego's rear; negative: alongside
     follower_speed_mps DOUBLE,        -- its speed
     follower_decel_mps2 DOUBLE,       -- its strongest mean deceleration over 0.5 s in the 4 s after t_start (positive: it slowed); NULL: not seen whole, or nobody
-    known BOOLEAN NOT NULL            -- every vehicle nearby was placed at t_start: nobody else is leader or follower
+    known BOOLEAN NOT NULL,           -- every vehicle nearby was placed at t_start: nobody else is leader or follower
+    unseen_m DOUBLE                   -- whoever else may be behind in the new lane at t_start, for he was not placed, is at least so far away; infinite: nobody; NULL: the ego was not placed
 );
 
 CREATE TABLE cut_in (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order; another vehicle moves from beside into the running lane ahead of the ego, or may: for a second or longer it cannot be told who is ahead
-    object_id VARCHAR,                -- that vehicle; NULL: somebody may have, and the rest is NULL
+    object_id VARCHAR,                -- that vehicle; NULL: somebody may have, and of the rest only ego_speed_mps (the highest) and free_m may be known
     t_ns BIGINT NOT NULL,             -- first step at which it cannot be told, or first step with its box more than 0.3 m inside the running lane, from at most 0.05 m; within 45 degrees of it, at most 150 m ahead. Of one that overtook the ego, and was further in all the time that its front was ahead: first step as the nearest one ahead (lead.joined)
     begin_seen BOOLEAN NOT NULL,      -- the step before is there and it is placed: else it may have come in earlier
     side VARCHAR,                     -- left or right: where it came from
     gap_m DOUBLE,                     -- ego front to its rear at that step, along the corridor
     ego_speed_mps DOUBLE,             -- ego's speed then
     speed_mps DOUBLE,                 -- its speed then
-    in_place_ns BIGINT                -- first step with its centre in the running lane; NULL: never
+    in_place_ns BIGINT,               -- first step with its centre in the running lane; NULL: never
+    free_m DOUBLE                     -- where it cannot be told who is ahead: so far, at the least, nobody is, at every such step; NULL: not known
 );
 
 CREATE TABLE beside (
@@ -242,7 +252,8 @@ CREATE TABLE overtake_place (
     rear_id VARCHAR,                  -- vehicle behind or beside, in the overtaking lane or moving into it, at t0; NULL: nobody
     rear_gap_m DOUBLE,                -- its front to the ego's rear; negative: alongside
     rear_ttc_s DOUBLE,                -- time until it gets to the ego's rear at the ego's speed and the highest of its own in the 2 s before; infinite: never, or nobody; 0: alongside
-    rear_known BOOLEAN NOT NULL       -- every vehicle behind or beside, within 200 m, was placed, and its speed known
+    rear_known BOOLEAN NOT NULL,      -- every vehicle behind or beside, within 200 m, was placed, and its speed known
+    rear_unseen_m DOUBLE              -- who was not placed, and may be behind or beside, is at least so far away; NULL: there is none such, or one that was placed has no class or speed
 );
 
 CREATE TABLE following (

@@ -396,9 +396,11 @@ CREATE TABLE unseen (
     t_ns BIGINT NOT NULL,             -- a step at which the log does not have the actor
     object_id VARCHAR NOT NULL,       -- an actor whose track ends before, or begins after, near enough to matter
     near BOOLEAN NOT NULL,            -- it was close by, in the sensor's range or coming towards the ego: it may be anywhere on the road
-    code VARCHAR NOT NULL,            -- lost, lost_behind (driving away), appeared, beyond_map (400 m or more ahead, over the end of the map)
+    code VARCHAR NOT NULL,            -- lost, lost_behind (driving away), appeared, beyond_map (400 m or more away, over an end of the map)
     ahead_m DOUBLE,                   -- it came in, or left, over the far end of the map, which is so far ahead of the ego's front; else NULL
-    behind_m DOUBLE                   -- the same over the near end, so far behind the ego's rear
+    behind_m DOUBLE,                  -- the same over the near end, so far behind the ego's rear
+    off_ahead_m DOUBLE,               -- it came in, or left, over an end of the map, be it on another road: it is not on the ego's corridor, which reaches so far ahead of the ego's front; else NULL
+    off_behind_m DOUBLE               -- and so far behind the ego's rear
 );
 
 CREATE TABLE oncoming_vehicle (

@@ -56,15 +56,31 @@ cut AS (
 placed AS (
     SELECT drive_id, ego_id, object_id, chain_id, run, n, min(t_ns) AS t_ns FROM cut WHERE centre_in GROUP BY ALL
 ),
-blind AS (
-    SELECT drive_id, ego_id, min(t_ns) AS t_ns, max(t_ns) AS t_to_ns
+-- so far the lane ahead is free of anybody who is not seen, or may be no vehicle
+free AS (
+    SELECT drive_id, ego_id, t_ns, min(m) AS m
     FROM (
-        SELECT st.*, st.k - row_number() OVER (PARTITION BY st.drive_id, st.ego_id, st.seg ORDER BY st.k) AS run
+        SELECT drive_id, ego_id, t_ns, lane_m AS m FROM hidden WHERE vehicle AND ahead IS DISTINCT FROM false
+        UNION ALL
+        SELECT drive_id, ego_id, t_ns, gap_m FROM lane_ahead WHERE is_vehicle(actor_class) IS DISTINCT FROM true
+    )
+    GROUP BY ALL
+),
+blind AS (
+    SELECT
+        drive_id, ego_id, min(t_ns) AS t_ns, max(t_ns) AS t_to_ns,
+        CASE WHEN count(free_m) = count(*) AND count(speed_mps) = count(*) THEN min(free_m) END AS free_m, max(speed_mps) AS ego_speed_mps
+    FROM (
+        SELECT
+            st.*, e.speed_mps, CASE WHEN e.front_s_m IS NOT NULL THEN f.m END AS free_m,
+            st.k - row_number() OVER (PARTITION BY st.drive_id, st.ego_id, st.seg ORDER BY st.k) AS run
         FROM step st
+        JOIN ego_state e USING (drive_id, ego_id, t_ns)
+        LEFT JOIN free f USING (drive_id, ego_id, t_ns)
         ANTI JOIN lead l ON l.drive_id = st.drive_id AND l.ego_id = st.ego_id AND l.t_ns = st.t_ns
     )
     GROUP BY drive_id, ego_id, seg, run
-    HAVING max(t_ns) - min(t_ns) >= 1_000_000_000
+    HAVING max(t_ns) - min(t_ns) >= 1_000_000_000 AND coalesce(CASE WHEN count(free_m) = count(*) THEN min(free_m) END < 150, true)
 ),
 named AS (
     SELECT
@@ -105,7 +121,7 @@ found AS (
         GROUP BY ALL
     ) i ON i.drive_id = q.drive_id AND i.ego_id = q.ego_id AND i.object_id = q.object_id AND i.t_join_ns = q.t_ns
     UNION ALL BY NAME
-    SELECT b.drive_id, b.ego_id, b.t_ns, false AS begin_seen
+    SELECT b.drive_id, b.ego_id, b.t_ns, false AS begin_seen, b.ego_speed_mps, b.free_m
     FROM blind b
     JOIN clock c USING (drive_id, ego_id)
     -- who is there when it can be told again has come in

@@ -1,5 +1,6 @@
 -- Every actor that is or may be there and has no place in the corridor, with the least distance that it can have: from where it was seen
--- last and where it is seen next it comes no nearer than 60 m/s and its tyres allow. Where the log is taken to have whoever is in plain view
+-- last and where it is seen next it comes no nearer than 60 m/s and its tyres allow; what drives along the road, the ego's way or against it,
+-- neither turns round nor backs. Where the log is taken to have whoever is in plain view
 -- (data_log.in_sight), one that is not recorded for a while is not there. An actor off the lanes has a place as long as the corridor reaches
 -- past it.
 WITH nowhere AS (
@@ -14,12 +15,12 @@ missing AS (
     -- a sample without a place says that it is there
     SELECT
         n.drive_id, n.ego_id, n.t_ns, n.object_id, n.actor_class, NOT n.off_level AND n.t_ns - s.t_ns > c.max_gap_ns AS unrecorded,
-        NULL::DOUBLE AS ahead_m, NULL::DOUBLE AS behind_m
+        NULL::DOUBLE AS ahead_m, NULL::DOUBLE AS behind_m, NULL::DOUBLE AS off_ahead_m, NULL::DOUBLE AS off_behind_m
     FROM nowhere n
     JOIN clock c USING (drive_id, ego_id)
     ASOF LEFT JOIN sample s ON s.drive_id = n.drive_id AND s.actor_id = n.object_id AND s.t_ns <= n.t_ns
     UNION ALL
-    SELECT u.drive_id, u.ego_id, u.t_ns, u.object_id, a.actor_class, true, u.ahead_m, u.behind_m
+    SELECT u.drive_id, u.ego_id, u.t_ns, u.object_id, a.actor_class, true, u.ahead_m, u.behind_m, u.off_ahead_m, u.off_behind_m
     FROM unseen u
     JOIN road_user a ON a.drive_id = u.drive_id AND a.actor_id = u.object_id
 ),
@@ -28,23 +29,32 @@ seen AS (
         p.drive_id, p.ego_id, p.object_id, p.t_ns, p.distance_m, p.x_m, p.y_m, half_box_m(p.length_m, p.width_m) AS half_m,
         CASE WHEN p.actor_class = 'pedestrian' THEN 0.0 ELSE p.speed_mps * cos(p.yaw_rad) END AS vx_mps,
         CASE WHEN p.actor_class = 'pedestrian' THEN 0.0 ELSE p.speed_mps * sin(p.yaw_rad) END AS vy_mps,
-        -- along the corridor, of what goes the ego's way
-        CASE WHEN abs(p.heading_diff_rad) < pi() / 4 AND p.actor_class IS DISTINCT FROM 'pedestrian' THEN
-            {'chain_id': e.chain_id, 'front_m': p.front_s_m, 'rear_m': p.rear_s_m, 'v_mps': p.speed_mps} END AS along
+        -- along the road, of what drives the ego's way (1), or moves against it (-1)
+        CASE
+            WHEN p.actor_class IS NOT DISTINCT FROM 'pedestrian' THEN NULL
+            WHEN abs(p.heading_diff_rad) < pi() / 4
+                THEN {'road': r.road, 'chain_id': r.chain_id, 'way': 1, 'front_m': p.front_s_m + r.offset_m, 'rear_m': p.rear_s_m + r.offset_m, 'v_mps': p.speed_mps}
+            WHEN abs(p.heading_diff_rad) > 3 * pi() / 4 AND p.speed_mps > moves_mps() AND is_vehicle(p.actor_class)
+                THEN {'road': r.road, 'chain_id': r.chain_id, 'way': -1, 'front_m': p.front_s_m + r.offset_m, 'rear_m': p.rear_s_m + r.offset_m, 'v_mps': p.speed_mps}
+        END AS along
     FROM (SELECT DISTINCT drive_id, ego_id, object_id FROM missing) u
     JOIN pair p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.object_id = u.object_id
     JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
+    LEFT JOIN ego_road r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
     WHERE p.distance_m IS NOT NULL
 ),
 -- from where it was seen last and where it is seen next: how far it is at least, straight on and braking or turning as hard as tyres do
 sighted AS (
     SELECT
-        m.*, e.front_s_m, e.rear_s_m, e.length_m, e.width_m, e.combination_m, coalesce(greatest(b.half_m, a.half_m), half_box_m(NULL, NULL)) AS half_m,
+        m.*, e.front_s_m + r.offset_m AS front_m, e.rear_s_m + r.offset_m AS rear_m, e.length_m, e.width_m, e.combination_m, coalesce(greatest(b.half_m, a.half_m), half_box_m(NULL, NULL)) AS half_m,
         coalesce(
             g.in_sight AND m.unrecorded AND coalesce(b.t_ns, a.t_ns) IS NOT NULL
             AND (b.t_ns IS NULL OR m.t_ns > tb.plain_ns) AND (a.t_ns IS NULL OR m.t_ns < ta.plain_ns), false
         ) AS late,
-        CASE WHEN b.along.chain_id = e.chain_id THEN b.along END AS before, CASE WHEN a.along.chain_id = e.chain_id THEN a.along END AS after,
+        b.t_ns IS NOT NULL AS seen_before, a.t_ns IS NOT NULL AS seen_after,
+        CASE WHEN b.along.road = r.road THEN b.along END AS before, CASE WHEN a.along.road = r.road THEN a.along END AS after,
+        CASE WHEN b.along.chain_id = r.chain_id THEN 0.0 ELSE lanes_apart_m() END AS before_apart_m,
+        CASE WHEN a.along.chain_id = r.chain_id THEN 0.0 ELSE lanes_apart_m() END AS after_apart_m,
         b.distance_m - unseen_closing_mps() * (m.t_ns - b.t_ns) / 1e9 AS before_m, a.distance_m - unseen_closing_mps() * (a.t_ns - m.t_ns) / 1e9 AS after_m,
         (m.t_ns - b.t_ns) / 1e9 AS before_s, (a.t_ns - m.t_ns) / 1e9 AS after_s,
         b.x_m + b.vx_mps * before_s - e.x_m AS before_x_m, b.y_m + b.vy_mps * before_s - e.y_m AS before_y_m, a.x_m - a.vx_mps * after_s - e.x_m AS after_x_m, a.y_m - a.vy_mps * after_s - e.y_m AS after_y_m
@@ -53,22 +63,34 @@ sighted AS (
     ASOF LEFT JOIN seen a ON a.drive_id = m.drive_id AND a.ego_id = m.ego_id AND a.object_id = m.object_id AND a.t_ns >= m.t_ns
     JOIN ego_state e ON e.drive_id = m.drive_id AND e.ego_id = m.ego_id AND e.t_ns = m.t_ns
     JOIN data_log g ON g.drive_id = m.drive_id
+    LEFT JOIN ego_road r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
     LEFT JOIN track_end tb ON tb.drive_id = m.drive_id AND tb.ego_id = m.ego_id AND tb.object_id = m.object_id AND tb.lost AND tb.t_ns = b.t_ns
     LEFT JOIN track_end ta ON ta.drive_id = m.drive_id AND ta.ego_id = m.ego_id AND ta.object_id = m.object_id AND NOT ta.lost AND ta.t_ns = a.t_ns
+),
+-- between which stations it can be
+stretch AS (
+    SELECT
+        *,
+        -- greatest() and least() leave out what is not there, as they should here
+        greatest(
+            before.rear_m - before_apart_m + CASE before.way WHEN 1 THEN drives_least_m(before.v_mps, before_s) ELSE -drives_most_m(before.v_mps, before_s) END,
+            after.rear_m - after_apart_m + CASE after.way WHEN 1 THEN -drives_most_m(after.v_mps, after_s) ELSE drives_least_m(after.v_mps, after_s) END
+        ) AS from_m,
+        least(
+            before.front_m + before_apart_m + CASE before.way WHEN 1 THEN drives_most_m(before.v_mps, before_s) ELSE -drives_least_m(before.v_mps, before_s) END,
+            after.front_m + after_apart_m + CASE after.way WHEN 1 THEN -drives_least_m(after.v_mps, after_s) ELSE drives_most_m(after.v_mps, after_s) END
+        ) AS to_m
+    FROM sighted
 ),
 bounded AS (
     SELECT
         drive_id, ego_id, t_ns, object_id, actor_class, late,
         half_m + greatest(half_box_m(length_m, width_m), CASE WHEN combination_m = length_m THEN 0.0 ELSE coalesce(combination_m, 2 * two_half_boxes_m()) - length_m / 2 END) AS halves_m,
-        -- greatest() leaves out what is not there, as it should here
-        greatest(before_m, after_m, sqrt(before_x_m ** 2 + before_y_m ** 2) - strays_m(actor_class, before_s), sqrt(after_x_m ** 2 + after_y_m ** 2) - strays_m(actor_class, after_s), ahead_m, behind_m) AS distance_m,
-        -- what goes the ego's way does not turn round
-        CASE
-            WHEN ahead_m > 0 OR before.rear_m > front_s_m OR after.rear_m - after.v_mps * after_s - strays_m(actor_class, after_s) > front_s_m THEN true
-            WHEN behind_m > 0 OR after.front_m < rear_s_m OR before.front_m + before.v_mps * before_s + strays_m(actor_class, before_s) < rear_s_m THEN false
-        END AS ahead,
-        coalesce(before, after) IS NOT NULL AS along
-    FROM sighted
+        greatest(before_m, after_m, sqrt(before_x_m ** 2 + before_y_m ** 2) - strays_m(actor_class, before_s), sqrt(after_x_m ** 2 + after_y_m ** 2) - strays_m(actor_class, after_s), ahead_m, behind_m, CASE WHEN off_ahead_m IS NOT NULL THEN least(off_ahead_m, off_behind_m) END) AS distance_m,
+        greatest(from_m - front_m, rear_m - to_m) AS along_m, off_ahead_m - half_m AS off_ahead_m,
+        CASE WHEN ahead_m > 0 OR from_m > front_m THEN true WHEN behind_m > 0 OR to_m < rear_m THEN false END AS ahead,
+        coalesce(CASE WHEN seen_before THEN before.way = 1 ELSE true END AND CASE WHEN seen_after THEN after.way = 1 ELSE true END AND (seen_before OR seen_after), false) AS along
+    FROM stretch
 ),
 incomplete AS (
     SELECT drive_id, ego_id, t_ns, object_id, actor_class, distance_m, x_m, y_m
@@ -122,8 +144,8 @@ in_hole AS (
 )
 SELECT
     drive_id, ego_id, t_ns, object_id, actor_class, may_be_vehicle(actor_class) AS vehicle,
-    greatest(0.0::DOUBLE, coalesce(distance_m, 0.0) - halves_m, CASE WHEN late THEN coalesce(g.around_m, 0.0) - halves_m END) AS least_m, ahead, along, late,
-    greatest(least_m, CASE WHEN late THEN g.lane_m END) AS lane_m
+    greatest(0.0::DOUBLE, coalesce(distance_m, 0.0) - halves_m, along_m, CASE WHEN late THEN coalesce(g.around_m, 0.0) - halves_m END) AS least_m, ahead, along, late,
+    greatest(least_m, off_ahead_m, CASE WHEN late THEN g.lane_m END) AS lane_m
 FROM bounded
 LEFT JOIN sight g USING (drive_id, ego_id, t_ns)
 UNION ALL

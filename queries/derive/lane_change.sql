@@ -154,10 +154,14 @@ narrowing AS (
     JOIN last_point q ON q.environment_id = c.environment_id AND q.lanelet_id = b.lanelet_id
 ),
 doubt AS (
-    SELECT drive_id, ego_id, t_ns FROM hidden WHERE vehicle AND least_m < lane_change_near_m()
-    UNION
-    SELECT drive_id, ego_id, t_start_ns FROM there JOIN change USING (drive_id, ego_id, occurrence)
-    WHERE NOT vehicle AND greatest(ahead_gap_m, behind_gap_m) < lane_change_near_m()
+    SELECT drive_id, ego_id, t_ns, min(least_m) AS near_m, min(least_m) FILTER (ahead IS DISTINCT FROM true) AS behind_m
+    FROM (
+        SELECT drive_id, ego_id, t_ns, least_m, ahead FROM hidden WHERE vehicle
+        UNION ALL
+        SELECT drive_id, ego_id, t_start_ns, greatest(ahead_gap_m, behind_gap_m), ahead FROM there JOIN change USING (drive_id, ego_id, occurrence)
+        WHERE NOT vehicle
+    )
+    GROUP BY ALL
 )
 SELECT
     c.drive_id, c.ego_id, c.occurrence, c.t_start_ns, c.begin_seen, c.t_cross_ns, c.t_done_ns,
@@ -170,7 +174,8 @@ SELECT
     c.ego_speed_mps, l.o.object_id AS leader_id, l.o.gap_m AS leader_gap_m, l.o.speed_mps AS leader_speed_mps,
     b.o.object_id AS follower_id, b.o.gap_m AS follower_gap_m, b.o.speed_mps AS follower_speed_mps,
     CASE WHEN s.whole THEN s.decel_mps2 END AS follower_decel_mps2,
-    c.front_s_m IS NOT NULL AND d.t_ns IS NULL AS known
+    c.front_s_m IS NOT NULL AND coalesce(d.near_m >= lane_change_near_m(), true) AS known,
+    CASE WHEN c.front_s_m IS NOT NULL THEN coalesce(d.behind_m, 'inf'::DOUBLE) END AS unseen_m
 FROM change c
 LEFT JOIN leader l USING (drive_id, ego_id, occurrence)
 LEFT JOIN follower b USING (drive_id, ego_id, occurrence)

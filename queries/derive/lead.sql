@@ -16,7 +16,7 @@ ahead AS (
 ),
 filtered AS (SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'velocity_filtered'),
 doubt AS (
-    SELECT drive_id, ego_id, t_ns, min(least_m) FILTER (NOT late) AS least_m, min(lane_m) FILTER (late) AS late_m
+    SELECT drive_id, ego_id, t_ns, min(lane_m) FILTER (NOT late) AS least_m, min(lane_m) FILTER (late) AS late_m
     FROM hidden
     WHERE vehicle AND ahead IS DISTINCT FROM false
     GROUP BY ALL

@@ -23,13 +23,18 @@ nearest AS (
     WHERE vehicle
     GROUP BY ALL
 ),
-hidden AS (
+-- who is behind, or goes the ego's way, whenever it is seen, does not come
+no_oncoming AS (
+    SELECT drive_id, ego_id, t_ns, object_id FROM hidden WHERE NOT ahead OR along
+),
+doubt AS (
     SELECT u.drive_id, u.ego_id, u.t_ns, count(*) AS n, min({'id': u.object_id, 'reason': u.reason}) AS u
     FROM (
         SELECT drive_id, ego_id, t_ns, object_id, code, reason FROM unplaced
         UNION ALL
         SELECT drive_id, ego_id, t_ns, object_id, 'no_class', 'comes, and its class is not known' FROM oncoming_vehicle WHERE vehicle IS NULL
     ) u
+    ANTI JOIN no_oncoming b ON b.drive_id = u.drive_id AND b.ego_id = u.ego_id AND b.t_ns = u.t_ns AND b.object_id = u.object_id
     LEFT JOIN nearest n ON n.drive_id = u.drive_id AND n.ego_id = u.ego_id AND n.t_ns = u.t_ns
     -- free_m ends where the map does, and who was met is behind; of one that came from off the lanes nobody knows which way it was to make
     WHERE u.code NOT IN ('beyond_map', 'lost_behind') AND (n.o.object_id IS NULL OR n.o.object_id <> u.object_id OR n.o.way)
@@ -44,4 +49,4 @@ SELECT
     CASE WHEN h.n > 0 THEN 'actor ' || h.u.id || ' ' || h.u.reason END AS unplaced_reason
 FROM ego e
 LEFT JOIN nearest n USING (drive_id, ego_id, t_ns)
-LEFT JOIN hidden h USING (drive_id, ego_id, t_ns)
+LEFT JOIN doubt h USING (drive_id, ego_id, t_ns)

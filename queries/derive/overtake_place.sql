@@ -127,14 +127,14 @@ rear AS (
     GROUP BY ALL
 ),
 doubt AS (
-    SELECT DISTINCT drive_id, ego_id, t_ns FROM hidden WHERE vehicle AND ahead IS DISTINCT FROM true AND least_m < follower_m()
+    SELECT drive_id, ego_id, t_ns, min(least_m) AS least_m FROM hidden WHERE vehicle AND ahead IS DISTINCT FROM true AND least_m < follower_m() GROUP BY ALL
 )
 SELECT
     g.drive_id, g.ego_id, g.occurrence, coalesce(j.m, 'infinity'::DOUBLE) AS junction_m, coalesce(x.m, 'infinity'::DOUBLE) AS crossing_m,
     o.marking AS marking_out, seen_from_beyond(b.marking) AS marking_back,
     CASE WHEN d.environment_id IS NOT NULL THEN s.holds OR CASE WHEN u.front_s_m IS NOT NULL OR NOT g.passed THEN coalesce(v.holds, false) END END AS no_overtaking,
     r.o.object_id AS rear_id, r.o.gap_m AS rear_gap_m, CASE WHEN r.o.object_id IS NULL THEN 'infinity'::DOUBLE ELSE r.o.ttc_s END AS rear_ttc_s,
-    h.t_ns IS NULL AND coalesce(r.known, true) AS rear_known
+    h.t_ns IS NULL AND coalesce(r.known, true) AS rear_known, CASE WHEN coalesce(r.known, true) THEN h.least_m END AS rear_unseen_m
 FROM gone g
 LEFT JOIN junction j USING (drive_id, ego_id, occurrence)
 LEFT JOIN crossed x USING (drive_id, ego_id, occurrence)

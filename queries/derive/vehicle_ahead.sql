@@ -10,7 +10,8 @@ chosen AS (
             min({'gap_m': p.gap_m, 'id': p.object_id}) FILTER (is_vehicle(p.actor_class) AND p.soon).id,
             min({'gap_m': p.gap_m, 'id': p.object_id}) FILTER (is_vehicle(p.actor_class) AND p.oncoming AND p.speed_mps <= standing_mps() IS DISTINCT FROM true).id
         ] AS ids,
-        count(*) FILTER (is_vehicle(p.actor_class)) AS n, min(p.gap_m) FILTER (is_vehicle(p.actor_class) AND p.across_m < 0) AS way_gap_m,
+        min(p.gap_m) FILTER (is_vehicle(p.actor_class)) AS gap_m, max(p.speed_mps) FILTER (is_vehicle(p.actor_class) AND p.oncoming) AS coming_mps,
+        coalesce(bool_or(p.oncoming IS DISTINCT FROM false) FILTER (is_vehicle(p.actor_class)), false) AS coming, min(p.gap_m) FILTER (is_vehicle(p.actor_class) AND p.across_m < 0) AS way_gap_m,
         min(p.gap_m) FILTER (is_vehicle(p.actor_class) IS NULL AND p.outside) AS outside_m,
         min(p.gap_m) FILTER (is_vehicle(p.actor_class) IS DISTINCT FROM true AND p.gap_m < unsure_reach_m(e.speed_mps)) AS unsure_m
     FROM lane_ahead p
@@ -18,7 +19,7 @@ chosen AS (
     GROUP BY ALL
 ),
 doubt AS (
-    SELECT drive_id, ego_id, t_ns, min(least_m) FILTER (NOT late) AS least_m, min(lane_m) FILTER (late) AS late_m, bool_and(along) AS along
+    SELECT drive_id, ego_id, t_ns, min(lane_m) FILTER (NOT late) AS least_m, min(lane_m) FILTER (late) AS late_m, bool_and(along) AS along
     FROM hidden
     WHERE vehicle AND ahead IS DISTINCT FROM false
     GROUP BY ALL
@@ -72,15 +73,16 @@ told AS (
         -- out of its lane the ego may meet it, whoever is in the lane
         OR c.outside_m < coalesce(c.way_gap_m, lead_reach_m(l.ego_speed_mps))
     UNION ALL BY NAME
-    -- nobody is seen ahead, and somebody may be there
+    -- somebody may be there, nearer than whoever is seen
     SELECT
         e.drive_id, e.ego_id, e.t_ns, NULL::VARCHAR AS object_id, true AS nearest, false AS known, e.speed_mps AS ego_speed_mps, 0.0 AS error_mps,
-        least(d.least_m, d.late_m, c.unsure_m) AS free_m, e.speed_mps + CASE WHEN d.along AND c.unsure_m IS NULL THEN 0.0 ELSE fastest_mps() END AS free_mps
+        least(d.least_m, d.late_m, c.unsure_m, c.gap_m) AS free_m,
+        e.speed_mps + CASE WHEN d.along AND c.unsure_m IS NULL AND NOT coalesce(c.coming, false) THEN 0.0 ELSE greatest(fastest_mps(), c.coming_mps) END AS free_mps
     FROM ego_state e
     ANTI JOIN lead l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.t_ns = e.t_ns
     LEFT JOIN chosen c USING (drive_id, ego_id, t_ns)
     LEFT JOIN doubt d USING (drive_id, ego_id, t_ns)
-    WHERE e.front_s_m IS NOT NULL AND coalesce(c.n, 0) = 0 AND c.outside_m IS NULL AND least(d.least_m, d.late_m, c.unsure_m) IS NOT NULL
+    WHERE e.front_s_m IS NOT NULL AND c.outside_m IS NULL AND least(d.least_m, d.late_m, c.unsure_m) IS NOT NULL
 ),
 -- the two boxes in the frame of the ego's, and how one moves against the other, at the present velocities
 framed AS (

@@ -84,9 +84,9 @@ def compared(  # noqa: PLR0917
     """Judge what was there and what each ego records of it; return a tally by rule and the hours that egos drove."""
     chosen = egos(tracks, most)
     for number, ego in enumerate(chosen):
-        _write(folder / "truth" / ego.actor_id, ego, _around(ego, tracks), road, None)
+        write(folder / "truth" / ego.actor_id, ego, _around(ego, tracks), road, None)
         others = [track for track in tracks if track.actor_id != ego.actor_id]
-        _write(folder / "seen" / ego.actor_id, *_split(recorded(ego, others, recorder, number)), road, recorder.range_m)
+        write(folder / "seen" / ego.actor_id, *_split(recorded(ego, others, recorder, number)), road, recorder.range_m)
     truth, seen = (_judged(folder / name, options) for name in ("truth", "seen"))
     tallies: dict[str, Counter[tuple[str, str]]] = defaultdict(Counter)
     for key in truth.keys() | seen.keys():
@@ -106,7 +106,7 @@ def _split(tracks: Sequence[Track]) -> tuple[Track, list[Track]]:
     return tracks[0], list(tracks[1:])
 
 
-def _write(folder: Path, ego: Track, others: Sequence[Track], road: Path, range_m: float | None) -> None:
+def write(folder: Path, ego: Track, others: Sequence[Track], road: Path, range_m: float | None) -> None:
     """Write a drive as a folder of Parquet tables."""
     folder.mkdir(parents=True)
     (folder / "map.xodr").write_bytes(road.read_bytes())

@@ -27,8 +27,8 @@ QUALIFY o.occurrence = min(o.occurrence) OVER (PARTITION BY o.drive_id, o.ego_id
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $ttc_s AS required,
-    -- somebody else who was not placed could only make it worse
-    CASE WHEN o.begin_seen AND (p.rear_known OR p.rear_ttc_s < $ttc_s)
+    -- somebody else who was not placed could only make it worse, unless he is too far away to be there in time
+    CASE WHEN o.begin_seen AND (p.rear_known OR p.rear_ttc_s < $ttc_s OR p.rear_unseen_m > 0 AND p.rear_unseen_m >= $ttc_s * greatest(0.0, fast_mps() - o.v_av_mps))
         -- over the line ahead of nobody who was seen it may have overtaken nobody: a corner that trembles, a lane change
         AND (o.vbp_placed OR o.passed OR p.rear_ttc_s >= $ttc_s) THEN or_never(p.rear_ttc_s, $ttc_s) END AS observed,
     CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began'

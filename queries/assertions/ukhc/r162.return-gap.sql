@@ -10,7 +10,7 @@
 -- unit = "m"
 -- observes = "space ahead of the vehicle being passed"
 -- near_margin = 2.0
--- reads = ["ego_state", "oncoming", "overtake", "pair"]
+-- reads = ["ego_state", "hidden", "oncoming", "overtake", "pair", "unplaced"]
 -- requires = ["map", "registration", "handedness", "ego_size"]
 
 -- @reference
@@ -32,20 +32,33 @@ WITH ahead AS (
             AND (abs(heading_diff_rad) < pi() / 2 OR speed_mps <= standing_mps())
     ) a ON a.drive_id = r.drive_id AND a.ego_id = r.ego_id AND a.t_ns = r.t_ns AND a.s_m > v.s_m
     GROUP BY r.ref_id, v.front_s_m
+),
+-- somebody who has no place may be in it, unless he is behind or further ahead
+doubt AS (
+    SELECT r.ref_id, min({'lane_m': d.lane_m, 'object_id': d.object_id, 'reason': coalesce(u.reason, 'has no place')}) AS o
+    FROM reference r
+    JOIN hidden d ON d.drive_id = r.drive_id AND d.ego_id = r.ego_id AND d.t_ns = r.t_ns AND d.vehicle AND d.ahead IS DISTINCT FROM false
+    LEFT JOIN unplaced u ON u.drive_id = d.drive_id AND u.ego_id = d.ego_id AND u.t_ns = d.t_ns AND u.object_id = d.object_id
+    GROUP BY r.ref_id
 )
-SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, h.gap_m IS NULL AS at_least, needs.m AS required,
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, needs.m AS required,
+    coalesce(h.gap_m IS NULL OR free.unseen_m < h.gap_m, false) AND NOT coalesce(h.vehicle_gap_m < needs.m, false) AS at_least,
     CASE
         WHEN NOT o.begin_seen THEN NULL
-        WHEN h.gap_m IS NULL THEN CASE WHEN o.n_unplaced = 0 THEN n.free_m - (h.front_s_m - e.front_s_m) END
         -- somebody nearer whose class is not known may be no vehicle
         WHEN h.vehicle_gap_m < needs.m THEN h.vehicle_gap_m
-        WHEN o.n_unplaced = 0 AND h.gap_m >= needs.m THEN h.gap_m
+        -- least() leaves out nobody, as it should here
+        WHEN h.gap_m IS NULL THEN CASE WHEN free.seen_m IS NOT NULL THEN greatest(0.0, least(free.seen_m, free.unseen_m)) END
+        WHEN h.gap_m >= needs.m THEN greatest(0.0, least(h.gap_m, free.unseen_m))
     END AS observed,
-    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began' WHEN h.vehicle_gap_m < needs.m THEN NULL WHEN o.n_unplaced > 0 THEN o.unplaced_reason
+    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began' WHEN h.vehicle_gap_m < needs.m THEN NULL
+        WHEN free.unseen_m < needs.m THEN format('actor {}, who may be there, {}', d.o.object_id, d.o.reason)
         WHEN h.gap_m < needs.m THEN 'the class of somebody there is not known' END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 CROSS JOIN LATERAL (SELECT o.l_av_m + thinking_distance_m(o.v_vbp_mps) + thinking_distance_m(o.v_av_mps) AS m) needs
 LEFT JOIN ahead h USING (ref_id)
+LEFT JOIN doubt d USING (ref_id)
 LEFT JOIN ego_state e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id AND e.t_ns = r.t_ns
 LEFT JOIN oncoming n ON n.drive_id = r.drive_id AND n.ego_id = r.ego_id AND n.t_ns = r.t_ns
+CROSS JOIN LATERAL (SELECT n.free_m - (h.front_s_m - e.front_s_m) AS seen_m, d.o.lane_m - (h.front_s_m - e.front_s_m) AS unseen_m) free

@@ -30,7 +30,11 @@
 -- why = "our default: who is between the two for less than this may only be passing through"
 
 -- @reference
-SELECT drive_id, ego_id, t_ns, object_id, coalesce(in_place_ns, t_ns) AS in_place_ns, occurrence FROM cut_in
+-- not seen, but further away than the gap to keep: nothing to restore
+SELECT drive_id, ego_id, t_ns, object_id, coalesce(in_place_ns, t_ns) AS in_place_ns, occurrence
+FROM cut_in
+LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)
+WHERE coalesce(free_m < $time_gap_s * stopping_factor(c.weather) * ego_speed_mps, true)
 
 -- @condition
 -- gone again, or behind another that moved in too: nothing is left to restore. Who is ahead again later was only hidden by one between
