@@ -2,7 +2,7 @@
 -- A lanelet is one lane of one lane section. Its points run in the direction of travel, so left and right are the driver's.
 
 CREATE TABLE environment (
-    environment_id VARCHAR NOT NULL,  -- <map stem>-<first 8 hex of sha256><offset, if any><@lht or @rht, with ? if only by default>
+    environment_id VARCHAR NOT NULL,  -- <map stem>-<first 8 hex of sha256><offset, if any><@lht or @rht, with ? if only by default, with ~ if the lanes run the other way than its rule says>
     name VARCHAR NOT NULL,            -- file name of the map, or the log it was embedded in
     sha256 VARCHAR NOT NULL,          -- hash of the map's bytes
     format VARCHAR NOT NULL,          -- opendrive, lanelet2, commonroad, osi

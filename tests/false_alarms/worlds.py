@@ -49,8 +49,9 @@ def motorway(folder: Path, *, seconds: int, seed: int = 1, kinds: Kinds = Mappin
         "--opendrive-output", "road.xodr", "--no-turnarounds", "--offset.disable-normalization", "--default.lanewidth", "3.6",
         cwd=folder,
     )  # fmt: skip
-    # SUMO calls every road a town's
+    # SUMO calls every road a town's, and does not say which side is driven on, which one carriageway does not show
     xodr = (folder / "road.xodr").read_text("utf-8").replace('type="town"', 'type="motorway"')
+    xodr = xodr.replace("<road ", '<road rule="RHT" ')
     (folder / "road.xodr").write_text(xodr, "utf-8")
     rng = np.random.default_rng(seed)
     pick = rng.choice(len(_WAYS), size=count(seconds, 500), p=list(_WAYS.values()))

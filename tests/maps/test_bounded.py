@@ -87,8 +87,8 @@ def test_the_left_is_driven_on_where_the_oncoming_lane_is_on_the_right() -> None
         straight("1", 0.0, right_id="2", right_against=True),
         straight("2", -3.5, right_id="1", right_against=True),
     )
-    assert side_driven_on([one, other]) == "lht"
-    assert side_driven_on([straight("1", 0.0)]) is None
+    assert side_driven_on(build([one, other], (0.0, 0.0), Quality())) == "lht"
+    assert side_driven_on(build([straight("1", 0.0)], (0.0, 0.0), Quality())) is None
     other.bidirectional = True  # beside a lane that is driven both ways nothing is said
     assert side_driven_on([one, other]) is None
 

@@ -59,6 +59,7 @@ class Net:
     lines: dict[str, Line]
     lane_m: float
     limit_mps: float
+    side: int  # 1: the left is driven on, -1: the right
 
 
 @dataclass(frozen=True)
@@ -121,8 +122,11 @@ class Overtake(NamedTuple):
 
 def read_net(path: Path) -> Net:
     """Read the net: its two lanes."""
-    lanes = [lane.attrib for lane in ET.parse(path).getroot().iter("lane")]  # noqa: S314
-    return Net({lane["id"]: _line(lane["shape"]) for lane in lanes}, float(lanes[0]["width"]), float(lanes[0]["speed"]))
+    root = ET.parse(path).getroot()  # noqa: S314
+    lanes = [lane.attrib for lane in root.iter("lane")]
+    side = 1 if root.get("lefthand") == "true" else -1
+    shapes = {lane["id"]: _line(lane["shape"]) for lane in lanes}
+    return Net(shapes, float(lanes[0]["width"]), float(lanes[0]["speed"]), side)
 
 
 def _line(shape: str) -> Line:
@@ -164,7 +168,7 @@ def read_log(log: Path, routes: Path, net: Net) -> Log:
     (along, offset), (met, _) = (
         np.where(against[:, None], found[one], found[other]) for one, other in (("ba_0", "ab_0"), ("ab_0", "ba_0"))
     )
-    offset = offset + net.lane_m / 2  # each lane lies to the left of the centre line in its direction
+    offset = net.side * offset + net.lane_m / 2  # each lane lies to that side of the centre line in its direction
     steps = step.astype(np.int64)
     return Log(
         tuple(numbers),

@@ -13,6 +13,8 @@ from tests.sumo.both import both
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from drivelint.demo.road import Hand
+
 needs_sumo = pytest.mark.skipif(
     world.tool("sumo") is None or world.tool("netconvert") is None,
     reason="SUMO is not installed (pip install eclipse-sumo, or set SUMO_HOME)",
@@ -28,6 +30,20 @@ def test_overtakes_and_contacts_are_those_of_an_independent_reading(tmp_path: Pa
     for name in ("passed", "not passed", "nominal: pass", "nominal: fail", "nominal: unknown"):
         assert figures[name] >= 3, name
     assert figures["contacts found, SUMO's own with them"] >= figures["planted contacts"] == 6
+
+
+@needs_sumo
+@pytest.mark.parametrize("hand", ["left", "right"])
+def test_overtakes_on_the_map_that_sumo_writes(tmp_path: Path, hand: Hand) -> None:
+    """It has a road for each direction and no word on the side that is driven on: the traffic tells."""
+    files = world.simulate(tmp_path, seconds=80, seed=6, hand=hand)
+    net = reading.read_net(files.net)
+    log = reading.read_log(files.log, files.routes, net)
+    one_way = files._replace(map=tmp_path / world.ONE_WAY_MAP)
+    checked = compare.check(one_way, tmp_path / "out", rules=(compare.OVERTAKES,))
+    differ, counts = compare.differences(reading.overtakes(log, net), checked, log)
+    assert not differ
+    assert counts["nominal: pass"] == 2
 
 
 def test_the_reading_measures_along_a_bend_and_over_the_line() -> None:

@@ -1,6 +1,7 @@
-"""A two-way two-lane road twice, as OpenDRIVE and as a SUMO net of the same line, and the traffic that SUMO drives on it.
+"""A two-way two-lane road, as OpenDRIVE, as a SUMO net of the same line and as SUMO writes that as OpenDRIVE, and the traffic on it.
 
-Left-hand traffic; straights and bends. Slow and fast vehicles in both directions make SUMO overtake on the opposite lane.
+Left-hand traffic unless it is asked otherwise; straights and bends. Slow and fast vehicles in both directions make SUMO overtake on the
+opposite lane.
 SUMO (PyPI: eclipse-sumo) is no dependency: it is looked for in `$SUMO_HOME/bin`, on PATH and beside this interpreter.
 """
 
@@ -10,6 +11,7 @@ import os
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
@@ -18,7 +20,7 @@ import numpy as np
 
 from drivelint.demo.line import left, right, straight
 from drivelint.demo.opendrive import opendrive
-from drivelint.demo.road import LANE_M, MPH, Road
+from drivelint.demo.road import LANE_M, MPH, Hand, Road
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -39,6 +41,8 @@ ROAD = Road(
     beside="shoulder",
 )
 NET, ROUTES, LOG, MAP = "road.net.xml", "road.rou.xml", "traffic.fcd.xml", "road.xodr"
+ONE_WAY_MAP = "sumo.xodr"
+"""What SUMO writes of its net: a road for each direction, and not a word on the side that is driven on."""
 _KINDS = {
     # id: (what SUMO is told, share of the traffic in vehicles per second and direction)
     "lorry": ('vClass="truck" length="9.5" width="2.4" maxSpeed="13"', 1 / 150),
@@ -76,17 +80,23 @@ def tool(name: str) -> str | None:
 
 
 def simulate(
-    folder: Path, *, seconds: int, seed: int = 1, kinds: Mapping[str, tuple[str, float]] = MappingProxyType(_KINDS)
+    folder: Path,
+    *,
+    seconds: int,
+    seed: int = 1,
+    kinds: Mapping[str, tuple[str, float]] = MappingProxyType(_KINDS),
+    hand: Hand = "left",
 ) -> Files:
     """Drive so many seconds of traffic, 10 Hz, into `folder`. The same seed gives the same log."""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / MAP).write_text(opendrive(ROAD, "road"), "utf-8")
+    (folder / MAP).write_text(opendrive(replace(ROAD, hand=hand), "road"), "utf-8")
     (folder / ROUTES).write_text(_routes(seconds, kinds), "utf-8")
     (folder / "road.nod.xml").write_text(_nodes(), "utf-8")
     (folder / "road.edg.xml").write_text(_edges(), "utf-8")
     run(
         "netconvert", "--node-files", "road.nod.xml", "--edge-files", "road.edg.xml", "--output-file", NET,
-        "--lefthand", "--opposites.guess", "--no-turnarounds", "--offset.disable-normalization", "--precision", "4", cwd=folder,
+        *(("--lefthand",) if hand == "left" else ()), "--opendrive-output", ONE_WAY_MAP, "--opposites.guess",
+        "--no-turnarounds", "--offset.disable-normalization", "--precision", "4", cwd=folder,
     )  # fmt: skip
     run(
         "sumo", "--net-file", NET, "--route-files", ROUTES, "--step-length", "0.1", "--end", str(seconds), "--seed", str(seed),

@@ -17,6 +17,7 @@ _SOURCES: Final = {
     "option": "as --handedness says",
     "attribute": "as the map says",
     "junctions": "as the map's junctions are linked",
+    "lanes": "as its lanes lie beside each other",
     "traces": "as the log's traffic drives",
     "default": "only by the standard's default: say it with --handedness",
 }

@@ -12,6 +12,7 @@ import numpy as np
 import pyarrow as pa
 import shapely
 
+from drivelint.maps import layout
 from drivelint.maps.tables import from_columns, from_rows, repeated
 
 if TYPE_CHECKING:
@@ -302,12 +303,19 @@ def _heights(lane: BoundedLane) -> Floats:
 def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
     """Return lht or rht by the lanes beside each other that are driven in opposite directions; None: there are none.
 
-    Where the left is driven on, the oncoming lane is the one on the right.
+    Where the left is driven on, the oncoming lane is the one on the right. Where the map names none, its geometry tells.
     """
     one_way = {lane.lanelet_id: lane for lane in lanes if lane.drivable and not lane.bidirectional}
     left = sum(lane.left_against is True and lane.left_id in one_way for lane in one_way.values())
     right = sum(lane.right_against is True and lane.right_id in one_way for lane in one_way.values())
-    return None if left == right else "rht" if left > right else "lht"
+    if left != right:
+        return "rht" if left > right else "lht"
+    return layout.side_driven_on([_course(lane.line) for lane in one_way.values() if lane.junction_id is None])
+
+
+def _course(line: Line) -> layout.Course:
+    (x, y), (tx, ty) = line.centre.T, line.tangent.T
+    return layout.Course(x, y, np.full(len(line.s), np.nan), tx, ty, line.half_width)
 
 
 def crossings(

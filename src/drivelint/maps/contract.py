@@ -28,9 +28,9 @@ class MapSource:
 class Request:
     """What the caller knows beside the map.
 
-    `offset` in metres is added to all coordinates; `handedness` is the user's option (auto, lht, rht); `sensed` is what
-    the traces voted (lht, rht), used only where neither option nor map decides. `origin`: latitude and longitude
-    (degrees) of the point that is 0,0 in the log, for maps that lie on the globe.
+    `offset` in metres is added to all coordinates; `handedness` is the user's option (auto, lht, rht); `sensed` is the side by whose
+    rule the lanes run as the traces drive (lht, rht; see `Environment.lanes`), used only where neither option nor map decides.
+    `origin`: latitude and longitude (degrees) of the point that is 0,0 in the log, for maps that lie on the globe.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
@@ -41,12 +41,19 @@ class Request:
 
 @dataclass(frozen=True)
 class Environment:
-    """A map as rows: every table of `schemas/map.sql`, its columns and types exactly, rows totally ordered."""
+    """A map as rows: every table of `schemas/map.sql`, its columns and types exactly, rows totally ordered.
+
+    `lanes`: the side (lht, rht) by whose rule the lanes' directions were read, which on roads of one direction alone need not be
+    the side that is driven on; None: the map gives each lane's direction. `lanes_source` tells how it was found, as
+    `handedness_source` does; default: a guess that the traces may correct.
+    """
 
     environment_id: str
     handedness: str  # lht | rht
     handedness_source: str  # option | attribute | junctions | traces | default
     tables: dict[str, pa.Table] = field(repr=False)
+    lanes: str | None = None
+    lanes_source: str | None = None
 
 
 class MapReader(Protocol):
@@ -59,11 +66,15 @@ class MapReader(Protocol):
         ...
 
 
-def environment_id(source: MapSource, offset: tuple[float, float], handedness: str, *, guessed: bool = False) -> str:
+def environment_id(
+    source: MapSource, offset: tuple[float, float], handedness: str, *, guessed: bool = False, turned: bool = False
+) -> str:
     """Return `<map stem>-<first 8 hex of sha256><offset, if any>@<lht or rht>`; the same on every machine.
 
-    A handedness that is only the standard's default has a question mark: the traces of another drive may tell it for sure.
+    A handedness that is only the standard's default has a question mark: the traces of another drive may tell it for sure. `turned`: the
+    lanes run the other way than its rule says, which the traces may have told; then the id ends in a tilde.
     """
     x, y = (float(v) + 0.0 for v in offset)
     shift = f"{x:+}{y:+}" if x or y else ""
-    return f"{PurePath(source.name).stem}-{source.sha256[:8]}{shift}@{handedness}{'?' if guessed else ''}"
+    marks = f"{'?' if guessed else ''}{'~' if turned else ''}"
+    return f"{PurePath(source.name).stem}-{source.sha256[:8]}{shift}@{handedness}{marks}"

@@ -90,7 +90,7 @@ class MapLibrary:
                 f"map {environment.environment_id} is of another place than {log.name}: {trouble}; "
                 "give the right --map, or --map-offset"
             )
-        if environment.handedness_source == "default" and (sensed := self._sensed(environment, states)):
+        if environment.lanes_source == "default" and (sensed := self._sensed(environment, states)):
             return self._load(source, shift, sensed)
         return environment
 
@@ -120,7 +120,7 @@ class MapLibrary:
         return {check: text for check, text in found.items() if text}
 
     def _side_doubt(self, log: Path, environment: Environment, states: pa.Table) -> str | None:
-        if environment.handedness_source in {"default", "traces"}:
+        if (environment.lanes_source or environment.handedness_source) in {"default", "traces"}:
             return None
         seen = self._headings(environment, states, DOUBT_SAMPLES)
         if road := reversed_road(self._lanes(environment), seen):
@@ -137,7 +137,8 @@ class MapLibrary:
         )
 
     def _sensed(self, environment: Environment, states: pa.Table) -> str | None:
-        return vote(environment.handedness, self._headings(environment, states, SAMPLES))
+        assert environment.lanes is not None  # noqa: S101 - a reader that guesses says what
+        return vote(environment.lanes, self._headings(environment, states, SAMPLES))
 
     def _headings(self, environment: Environment, states: pa.Table, most: int) -> Headings:
         speed = np.hypot(_floats(states, "vx_mps"), _floats(states, "vy_mps"))

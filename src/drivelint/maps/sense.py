@@ -19,6 +19,8 @@ SAMPLES: Final = 400  # moving states looked at, evenly spread: enough to vote, 
 LEAST_VOTES: Final = 20
 FEW, MANY = 20, 2000  # positions looked at to see whether a drive is on its map
 EACH_WAY: Final = 5  # so many of them against their lane in both directions of a road: nobody overtakes both ways
+BESIDE_M: Final = 8.0  # so near lie the middles of two lanes of one road, with what may be between them
+FACING: Final = 0.9
 AGREEMENT: Final = 0.8  # an overtake drives against its lane for a while, a drive does not
 
 
@@ -69,10 +71,7 @@ def headings(
     single = np.bincount(state, minlength=len(chosen))[state] == 1
     state, lane = state[single], lane[single]
     line = lanes.lines[lane]
-    at = shapely.line_locate_point(line, points[state])
-    ahead = shapely.get_coordinates(shapely.line_interpolate_point(line, at + 0.5))
-    behind = shapely.get_coordinates(shapely.line_interpolate_point(line, np.maximum(at - 0.5, 0.0)))
-    direction = np.arctan2(ahead[:, 1] - behind[:, 1], ahead[:, 0] - behind[:, 0])
+    direction = _direction(line, shapely.line_locate_point(line, points[state]))
     return Headings(np.cos(yaw_rad[chosen][state] - direction) > 0, lane)
 
 
@@ -89,7 +88,10 @@ def vote(handedness: str, seen: Headings) -> str | None:
 
 
 def reversed_road(lanes: Ways, seen: Headings) -> str | None:
-    """Return a road on which there is traffic both ways and nearly all of it, as on the whole map, runs against its lane."""
+    """Return a road on which there is traffic both ways and nearly all of it, as on the whole map, runs against its lane.
+
+    Two roads of one direction each, one beside the other, count as one.
+    """
     if len(seen.agree) < LEAST_VOTES or float(np.mean(seen.agree)) > 1 - AGREEMENT:
         return None
     against = seen.lane[~seen.agree]
@@ -97,7 +99,26 @@ def reversed_road(lanes: Ways, seen: Headings) -> str | None:
         here = against[lanes.road[against] == road]
         if min(int((lanes.along[here] == way).sum()) for way in (1, -1)) >= EACH_WAY:
             return road
-    return None
+    lane, counts = np.unique(against, return_counts=True)
+    often = lane[counts >= EACH_WAY]
+    one, other = (often[k] for k in np.triu_indices(len(often), 1))
+    near = shapely.shortest_line(lanes.lines[one], lanes.lines[other])
+    facing = np.cos(_heading(lanes.lines[one], near, 0) - _heading(lanes.lines[other], near, -1)) < -FACING
+    found = facing & (shapely.length(near) < BESIDE_M)
+    return min((str(lanes.road[k]) for k in one[found]), default=None)
+
+
+def _heading(line: NDArray[np.object_], joins: NDArray[np.object_], end: int) -> NDArray[np.float64]:
+    """Return the heading (rad) of each line where the first (0) or last (-1) point of a join lies on it."""
+    at = shapely.line_locate_point(line, shapely.get_point(joins, end))
+    return _direction(line, at)
+
+
+def _direction(line: NDArray[np.object_], at: NDArray[np.float64]) -> NDArray[np.float64]:
+    ahead = shapely.get_coordinates(shapely.line_interpolate_point(line, at + 0.5))
+    behind = shapely.get_coordinates(shapely.line_interpolate_point(line, np.maximum(at - 0.5, 0.0)))
+    found: NDArray[np.float64] = np.arctan2(ahead[:, 1] - behind[:, 1], ahead[:, 0] - behind[:, 0])
+    return found
 
 
 def ground(environment: Environment) -> shapely.STRtree:

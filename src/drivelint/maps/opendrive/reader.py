@@ -9,9 +9,10 @@ import pyarrow as pa
 
 from drivelint.errors import MapError
 from drivelint.maps.contract import Environment, MapSource, Request, environment_id
+from drivelint.maps.layout import Course, side_driven_on
 from drivelint.maps.opendrive import xml
 from drivelint.maps.opendrive.attributes import boundary_rows, road_type, speed_rows
-from drivelint.maps.opendrive.direction import decide
+from drivelint.maps.opendrive.direction import Witnesses, report_exceptions
 from drivelint.maps.opendrive.furniture import furniture
 from drivelint.maps.opendrive.lanes import build
 from drivelint.maps.opendrive.links import Link, links
@@ -22,6 +23,8 @@ from drivelint.maps.tables import from_columns, from_rows, repeated
 if TYPE_CHECKING:
     from drivelint.maps.opendrive.direction import Direction
     from drivelint.maps.opendrive.lanelet import Lanelet
+    from drivelint.maps.opendrive.lanes import Lanes
+    from drivelint.maps.opendrive.network import Network
 
 
 class OpenDriveReader:
@@ -33,13 +36,15 @@ class OpenDriveReader:
         """Return the map's tables; `MapError` where the file is not XML or nothing in it can be built."""
         quality = Quality()
         net = network(xml.parse(source), quality)
-        direction = decide(net, request, quality)
-        lanes = build(net, direction, request.offset, quality)
+        direction, lanes = _built(net, request, quality)
         if not lanes.built:
             first = next((row["message"] for row in quality.rows if row["severity"] == "error"), "it has no roads")
             raise MapError(f"map {source.name} has no lane that can be built: {first}")
         joined = links(net, lanes, quality)
-        name = environment_id(source, request.offset, direction.handedness, guessed=direction.source == "default")
+        name = environment_id(
+            source, request.offset, direction.handedness, guessed=direction.source == "default",
+            turned=direction.forward != (direction.handedness == "rht"),
+        )  # fmt: skip
         built = sorted(lanes.built.values(), key=lambda lane: lane.key)
         rows = {
             "environment": [_environment_row(source, request, direction, net.geo_reference)],
@@ -52,7 +57,35 @@ class OpenDriveReader:
         tables = {table: from_rows(table, name, content) for table, content in rows.items()}
         tables["lane_point"] = _points(name, built)
         tables["map_quality"] = quality.table(name)
-        return Environment(name, direction.handedness, direction.source, tables)
+        return Environment(
+            name, direction.handedness, direction.source, tables,
+            lanes="rht" if direction.forward else "lht", lanes_source=direction.forward_source,
+        )  # fmt: skip
+
+
+def _built(net: Network, request: Request, quality: Quality) -> tuple[Direction, Lanes]:
+    """Build the lanes as they run: as on roads with both directions, and once more if their layout shows that this is not one."""
+    witnesses = Witnesses.of(net, request)
+    first, noted = witnesses.first(), len(quality.rows)
+    lanes = build(net, first, request.offset, quality)
+    side = side_driven_on(
+        [
+            Course(lane.x, lane.y, lane.z, lane.tx, lane.ty, lane.half_width)
+            for lane in sorted(lanes.built.values(), key=lambda lane: lane.key)
+            if lane.drivable and not lane.bidirectional and lane.road.junction_id is None
+        ]
+    )
+    if side is not None and not first.forward:
+        side = "lht" if side == "rht" else "rht"
+    built = quality.rows[noted:]
+    del quality.rows[noted:]
+    direction = witnesses.settle(side, quality)
+    if (direction.forward, direction.travel) != (first.forward, first.travel):
+        lanes = build(net, direction, request.offset, quality)
+    else:
+        quality.rows += built
+    report_exceptions(net, direction, quality)
+    return direction, lanes
 
 
 def _environment_row(
