@@ -87,7 +87,8 @@ def test_the_headlights_of_a_real_log() -> None:
     trace = read(shared("osi/MovingHostWithStopLineVariations.mcap"), conditions=NIGHT)
     assert events(trace) == [("0", 0.0, "headlights", "off")]
     (found,) = judged([Drive(trace, None)], rules=["ukhc.r113.headlights"])
-    assert found["verdict"] == "fail"
+    assert (found["verdict"], found["reason_code"]) == ("fail", "violated")
+    assert "not known" not in found["reason"]
 
 
 def hung(

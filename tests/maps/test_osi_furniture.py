@@ -55,6 +55,7 @@ def test_a_line_over_two_lanes_holds_for_those_that_it_is_assigned_to() -> None:
         ({"width": 0.8}, True),  # a short line on one side of the lane
         ({"at": (80.0, -0.2, 0.0), "width": 1.0}, True),
         ({"at": (80.0, -4.0, 0.0), "width": 1.0}, False),  # most of it on the footway
+        ({"width": 0.0, "length": 0.0}, False),  # a point
         ({"kind": 4}, False),  # the word STOP
         ({"sign": 16}, False),  # a triangle
     ],
@@ -64,8 +65,20 @@ def test_where_a_stop_line_lies(changes: dict[str, Any], lies: bool) -> None:
     road.marking(50, **{"at": (80.0, -1.75, 0.0), **changes})
     environment = road.load()
     assert [lane for _, lane, _ in stops(environment)] == (["1"] if lies else [])
-    told = changes.keys() <= {"at", "yaw", "width"}
+    told = changes.keys() <= {"at", "yaw", "width", "length"}
     assert warned(environment) == ([] if lies or not told else ["stop_line_without_lane"])
+
+
+@pytest.mark.parametrize("lost", ["position", "yaw"])
+def test_a_marking_that_lies_nobody_knows_where_is_told(lost: str) -> None:
+    road = two_way()
+    base = road.marking(50, (80.0, -1.75, 0.0)).base
+    if lost == "yaw":
+        base.orientation.yaw = math.nan
+    else:
+        base.ClearField("position")
+    environment = road.load()
+    assert (stops(environment), warned(environment)) == ([], ["road_marking_without_place"])
 
 
 def test_what_is_out_of_service_does_not_hold() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from typing import Any
 
@@ -232,6 +233,12 @@ def gap(trace: Trace) -> None:
     trace.truth.lane_boundary[0].boundary_line[2].position.x = 260.0
 
 
+def moved(trace: Trace, x: float) -> None:
+    """Let the lane's right side and the first of its left one begin at `x`."""
+    for k in (0, 2):
+        trace.truth.lane_boundary[k].boundary_line[0].position.x = x
+
+
 def reversed_side(trace: Trace) -> None:
     for point in trace.truth.lane_boundary[2].boundary_line:
         point.position.x = -point.position.x
@@ -244,6 +251,8 @@ def reversed_side(trace: Trace) -> None:
         (lambda trace: trace.truth.lane[0].classification.ClearField("left_lane_boundary_id"), "no left boundary"),
         (gap, "43 m between"),
         (reversed_side, "same order"),
+        (lambda trace: moved(trace, math.nan), "not finite"),
+        (lambda trace: moved(trace, -1e9), "km long"),
     ],
 )
 def test_a_lane_whose_bounds_make_no_shape_is_left_out_and_named(spoil: Any, what: str) -> None:

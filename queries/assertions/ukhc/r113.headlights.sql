@@ -24,6 +24,7 @@
 SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps > standing_mps() AS applies,
     CASE WHEN m.is_on THEN true WHEN NOT m.is_on AND (coalesce(c.road_type, '') = 'motorway' OR c.limit_mps > $lit_mps) THEN false END AS holds,
     CASE WHEN m.is_on IS NULL THEN 'the log has not yet said whether the headlights are on'
+        WHEN m.is_on OR c.road_type = 'motorway' THEN NULL
         WHEN NOT m.is_on AND c.limit_mps <= $lit_mps THEN 'the headlights were off, and whether the street was lit is not known'
         WHEN NOT m.is_on AND c.limit_mps IS NULL THEN 'the headlights were off, and whether lamps may have excused it is not known without the limit' END AS reason
 FROM ego_state e

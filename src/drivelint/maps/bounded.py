@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 _SPACING_M = 4.0  # points of a lane are no further apart: its cells are looked up by segment
 _WIDEST_M = 60.0  # wider is a mistake in the bounds
+_LONGEST_M = 100_000.0  # so is longer
 
 
 class Mark(NamedTuple):
@@ -145,6 +146,9 @@ def _line(left: Floats, right: Floats) -> Line:
     left, right, centre = left[keep], right[keep], centre[keep]
     if len(centre) < 2:
         raise _UnbuildableError("it has no length")
+    total_m = float(np.hypot(*np.diff(centre, axis=0).T).sum())
+    if total_m > _LONGEST_M:
+        raise _UnbuildableError(f"it is {total_m / 1000:.0f} km long")
     left, right = _dense(centre, left), _dense(centre, right)
     centre = (left + right) / 2
     step = np.diff(centre, axis=0)

@@ -42,9 +42,12 @@ def read(
     crossings: list[Row] = []
     for mark in truth.road_marking:
         said = mark.classification
-        if said.is_out_of_service or not np.isfinite(_outline(mark, road)).all():
+        if said.is_out_of_service:
             continue
-        if said.type == kinds.SYMBOL and said.traffic_main_sign_type == kinds.ZEBRA:
+        if not np.isfinite(_outline(mark, road)).all():
+            message = f"road marking {mark.id.value} is left out: the log does not say where it lies"
+            quality.add("road_marking_without_place", "warning", None, message)
+        elif said.type == kinds.SYMBOL and said.traffic_main_sign_type == kinds.ZEBRA:
             crossings += _zebra(mark, road)
         elif (said.type == kinds.SYMBOL and said.traffic_main_sign_type == kinds.STOP_SIGN) or _code(
             said
@@ -65,10 +68,10 @@ class _Road:
     covers: Mapping[int, Sequence[int]]
     offset: Floats
 
-    def place(self, base: Any) -> Floats:
-        """Return where something stands, x and y on the map and the height."""
-        at = base.position
-        return np.array([at.x + self.offset[0], at.y + self.offset[1], at.z])
+    def place(self, base: Any) -> Floats | None:
+        """Return where something stands, x and y on the map and the height; None: the log does not say it."""
+        at = np.array([base.position.x + self.offset[0], base.position.y + self.offset[1], base.position.z])
+        return at if base.HasField("position") and np.isfinite(at).all() else None
 
     def assigned(self, said: Any, base: Any) -> list[BoundedLane]:
         """Return the lanes that a sign, light or marking is assigned to; of the logical lanes on a physical one those beside it."""
@@ -80,13 +83,16 @@ class _Road:
         for ref in said.assigned_lane_id:
             if ref.value in self.covers:
                 held = [by_id[str(name)] for name in self.covers[ref.value] if str(name) in by_id]
-                found += _facing(base, self._beside(held, self.place(base)[:2]))
+                found += _facing(base, self._beside(held, self.place(base)))
             elif str(ref.value) in by_id:
                 found.append(by_id[str(ref.value)])
         return _once(found)
 
-    def _beside(self, lanes: list[BoundedLane], place: Floats) -> list[BoundedLane]:
-        """Return the lanes that begin before and end after a place, or else the nearest ones."""
+    def _beside(self, lanes: list[BoundedLane], stands: Floats | None) -> list[BoundedLane]:
+        """Return the lanes that begin before and end after a place, or else the nearest ones; all where it is not known."""
+        if stands is None:
+            return lanes
+        place = stands[:2]
         ends = {lane.lanelet_id: _station(lane, place) for lane in lanes}
         inside = [lane for lane in lanes if 0.0 < ends[lane.lanelet_id] < lane.line.s[-1]]
         if inside or not lanes:
@@ -101,8 +107,10 @@ def _once(lanes: list[BoundedLane]) -> list[BoundedLane]:
 
 def _facing(base: Any, lanes: list[BoundedLane]) -> list[BoundedLane]:
     """Return the lanes whose traffic sees the front of a sign, if there are any: its x axis points towards who reads it."""
+    if not np.isfinite([base.orientation.roll, base.orientation.pitch, base.orientation.yaw]).all():
+        return lanes
     normal = rotation(base)[:2, 0]
-    if not base.HasField("orientation") or np.hypot(*normal) < _ACROSS:
+    if not (base.HasField("orientation") and np.hypot(*normal) >= _ACROSS):
         return lanes
     seen = [lane for lane in lanes if float(np.dot(normal, lane.line.tangent[-1])) < 0]
     return seen or lanes
@@ -144,7 +152,7 @@ def _sign(sign: Any, road: _Road, quality: Quality) -> Iterable[Row]:
         "unit": kinds.UNITS.get(said.value.value_unit) if said.value.value > 0 else None,
         "dynamic": said.variability in kinds.CHANGING, "turns": None,
     }  # fmt: skip
-    return [_placed(row, lane, road.place(base) if base.HasField("position") else None) for lane in lanes]
+    return [_placed(row, lane, road.place(base)) for lane in lanes]
 
 
 def _heads(bulbs: Iterable[Any]) -> dict[str, list[Any]]:
@@ -171,8 +179,8 @@ def _light(name: str, bulbs: Sequence[Any], road: _Road, quality: Quality) -> It
         "country": "osi", "type": None, "subtype": None, "value": None, "unit": None, "dynamic": True,
         "turns": sorted(turns) if turns and icons <= kinds.TURNS.keys() else None,
     }  # fmt: skip
-    base = next((bulb.base for bulb in bulbs if bulb.base.HasField("position")), None)
-    return [_placed(row, lane, None if base is None else road.place(base)) for lane in lanes]
+    place = next((at for bulb in bulbs if (at := road.place(bulb.base)) is not None), None)
+    return [_placed(row, lane, place) for lane in lanes]
 
 
 def _placed(row: Row, lane: BoundedLane, place: Floats | None) -> Row:
@@ -187,23 +195,28 @@ def _placed(row: Row, lane: BoundedLane, place: Floats | None) -> Row:
 
 
 def _outline(mark: Any, road: _Road) -> Floats:
-    """Return the eight corners (8, 2) of a marking's box on the map."""
+    """Return the eight corners (8, 2) of a marking's box on the map; NaN where the log does not say them."""
+    middle = road.place(mark.base)
     size = mark.base.dimension
     half = np.array([size.length, size.width, size.height]) / 2
+    angles = mark.base.orientation.roll, mark.base.orientation.pitch, mark.base.orientation.yaw
+    if middle is None or not np.isfinite([*half, *angles]).all():
+        return np.full((8, 2), np.nan)
     signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1)
-    corners: Floats = (road.place(mark.base)[:, None] + rotation(mark.base) @ (half[:, None] * signs))[:2].T
+    corners: Floats = (middle[:, None] + rotation(mark.base) @ (half[:, None] * signs))[:2].T
     return corners
 
 
 def _over(mark: Any, area: Any, road: _Road) -> list[tuple[BoundedLane, float]]:
     """Return the lanes for driving that an area is painted on, and the area's station on each."""
     found = []
-    z = road.place(mark.base)[2]
+    z = mark.base.position.z
     for lane in road.lanes:
         shape = shapely.Polygon(np.vstack([lane.line.right, lane.line.left[::-1]])).buffer(0.0)
-        if not (lane.drivable and shape.intersects(area)):
+        common = shapely.intersection(shape, area)
+        if not lane.drivable or common.is_empty:
             continue
-        s = _station(lane, shapely.get_coordinates(shapely.intersection(shape, area).centroid)[0])
+        s = _station(lane, shapely.get_coordinates(common.centroid)[0])
         if lane.z_m is None or abs(float(np.interp(s, lane.line.s, lane.z_m)) - z) <= _ON_ROAD_M:
             found.append((lane, s))
     return found

@@ -100,6 +100,8 @@ def _turned(lane: Any, bounds: Mapping[int, Any], *, drops: bool) -> PhysicalLan
         lacks = "no boundaries" if not (lines[0] or lines[1]) else f"no {'right' if lines[0] else 'left'} boundary"
         raise UnbuildableError(f"it has {lacks}, and so no width")
     centre = _xyz(said.centerline)
+    if not all(np.isfinite(points).all() for points in (centre, *lines[0], *lines[1])):
+        raise UnbuildableError("a point of it has a coordinate that is not finite")
     if len(centre) < 2:
         if any(i.value not in bounds for side in ids for i in side):
             raise UnbuildableError("it has no centre line, and not all of its boundaries are in the log")
