@@ -5,7 +5,7 @@ CREATE TABLE environment (
     environment_id VARCHAR NOT NULL,  -- <map stem>-<first 8 hex of sha256><offset, if any><@lht or @rht, with ? if only by default, with ~ if the lanes run the other way than its rule says>
     name VARCHAR NOT NULL,            -- file name of the map, or the log it was embedded in
     sha256 VARCHAR NOT NULL,          -- hash of the map's bytes
-    format VARCHAR NOT NULL,          -- opendrive, lanelet2, commonroad, osi
+    format VARCHAR NOT NULL,          -- opendrive, lanelet2, commonroad, sumo, osi
     offset_x_m DOUBLE NOT NULL,       -- added to the map's coordinates
     offset_y_m DOUBLE NOT NULL,       -- added to the map's coordinates
     handedness VARCHAR NOT NULL,      -- lht or rht: the side of the road that is driven on
@@ -103,7 +103,7 @@ CREATE TABLE stop_line (
     stop_line_id VARCHAR NOT NULL,    -- id in the map
     lanelet_id VARCHAR NOT NULL,      -- a lanelet it crosses; one row each
     lane_s_m DOUBLE NOT NULL,         -- where, along that lanelet
-    source VARCHAR NOT NULL           -- object, signal: what in the map says so
+    source VARCHAR NOT NULL           -- object, signal, connection (of a SUMO net: where a lane with a light or a stop sign ends): what in the map says so
 );
 
 CREATE TABLE road_object (

@@ -46,7 +46,7 @@ def test_a_file_name_is_exactly_that_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "says"),
     [
-        ("<net/>", "SUMO"),
+        ("<OpenSCENARIO/>", "OpenSCENARIO"),
         ("<!DOCTYPE html>\n<html><body>404</body></html>", "HTML"),
         ("<roads/>", "<roads>"),
         (b"\x89MCAP0\r\n", "not XML"),

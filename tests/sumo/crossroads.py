@@ -9,8 +9,6 @@ import xml.etree.ElementTree as ET
 from collections import Counter
 from typing import TYPE_CHECKING, NamedTuple
 
-import pyarrow as pa
-
 from drivelint.batch import Drive
 from drivelint.ingest import IngestOptions, read_trace
 from drivelint.maps import MapSource, load_map
@@ -138,23 +136,16 @@ def crossings(folder: Path) -> list[Crossing]:
     return found
 
 
-def told(folder: Path) -> Drive:
-    """Return the log with every vehicle as ego, the states of the lights, and the map that SUMO wrote."""
+def told(folder: Path, road: str) -> Drive:
+    """Return the log, every vehicle an ego, with the lights' states beside it, on the map `road`: c.xodr or c.net.xml."""
     trace = read_trace(folder / "c.fcd.xml", IngestOptions(ego="all", mapping=str(folder / "c.rou.xml")))
-    name, table = trace.drive_id, trace.tables["signal_state"]
-    rows = [
-        {"drive_id": name, "signal_id": f"c_{i}", "t_ns": round(float(s.attrib["time"]) * 1e9), "state": _STATES[state]}
-        for s in _read(folder / "c.tls.xml").iterfind("tlsState")
-        for i, state in enumerate(s.attrib["state"])
-    ]
-    trace.tables["signal_state"] = pa.Table.from_pylist(rows, schema=table.schema)
-    return Drive(trace, load_map(MapSource("c.xodr", (folder / "c.xodr").read_bytes())))
+    return Drive(trace, load_map(MapSource(road, (folder / road).read_bytes())))
 
 
-def compared(folder: Path) -> Compared:
+def compared(folder: Path, road: str) -> Compared:
     """Hold the verdicts on red lights against SUMO's own states."""
     verdicts: dict[str, list[str]] = {}
-    for row in judged([told(folder)], rules=(_RULE,)):
+    for row in judged([told(folder, road)], rules=(_RULE,)):
         if row["t_ref_ns"] is not None:
             # SUMO moves who stands into the next lane at once: from there on the vehicle is "id#2"
             verdicts.setdefault(row["ego_id"].partition("#")[0], []).append(row["verdict"])

@@ -20,7 +20,8 @@ needs_sumo = pytest.mark.skipif(
 @needs_sumo
 def test_heads_of_shared_lanes_are_those_of_the_turn(tmp_path: Path) -> None:
     crossroads.simulate(tmp_path, seconds=150, seed=1)
-    found = crossroads.compared(tmp_path)
-    assert set(found.lawful) == {"pass"}
-    assert set(found.on_red) == {"fail"}
-    assert min(found.lawful.total(), found.lawful_turns.total(), found.on_red.total()) >= 3
+    for road in ("c.xodr", "c.net.xml"):
+        found = crossroads.compared(tmp_path, road)
+        assert set(found.lawful) == {"pass"}
+        assert set(found.on_red) == {"fail"}
+        assert min(found.lawful.total(), found.lawful_turns.total(), found.on_red.total()) >= 3

@@ -76,7 +76,9 @@ class Handedness(StrEnum):
 
 MapFile = Annotated[
     Path | None,
-    typer.Option("--map", metavar="MAP", help="The road, as OpenDRIVE, Lanelet2 or CommonRoad: most rules need it."),
+    typer.Option(
+        "--map", metavar="MAP", help="The road, as OpenDRIVE, Lanelet2, CommonRoad or a SUMO net: most rules need it."
+    ),
 ]
 EgoId = Annotated[
     str | None, typer.Option("--ego", metavar="ID|all", help="The vehicle under test, or every vehicle in turn.")

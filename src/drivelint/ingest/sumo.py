@@ -1,7 +1,7 @@
 """SUMO's floating car data (`--fcd-output`, XML, CSV or Parquet), with the vehicle types of its route files.
 
 A position is the middle of the front bumper, an angle runs clockwise from north. FCD has no sizes: they stand in the
-`vType` elements of a route or additional file, given with --mapping or lying beside the log.
+`vType` elements of a route or additional file, given with --mapping or lying beside the log; states of lights see `sumo_lights`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import pyarrow.csv as pa_csv
 
 from drivelint import markup
 from drivelint.errors import TraceError, UsageError
-from drivelint.ingest import parquet
+from drivelint.ingest import parquet, sumo_lights
 from drivelint.ingest.order import listed
 from drivelint.ingest.trace import BRAKE_LIGHTS, CLASSES, INDICATORS, Finding, Recording, States
 
@@ -88,11 +88,19 @@ def read(path: Path, types_file: str | None) -> Recording:
         raise TraceError(f"{path}: no vehicle in this log")
     types, notes = _types(path, types_file)
     recording = _recording(table, types)
-    recording.notes += notes
+    lights = sumo_lights.beside(path, _is_log)
+    recording.signals = lights.signals
+    recording.notes += [*notes, *lights.notes]
+    recording.findings += lights.findings
     if dropped:
         message = f"rows without an id: {dropped}: they are not judged"
         recording.findings.append(Finding("dropped_row", "error", message, dropped))
     return recording
+
+
+def _is_log(file: Path) -> bool:
+    with file.open("rb") as opened:
+        return looks_like(file, opened.read(HEAD_BYTES))
 
 
 def _rows(path: Path) -> pa.Table:

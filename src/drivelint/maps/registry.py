@@ -20,7 +20,6 @@ OSI_TAGS = (b"\x4a", b"\x52", b"\x8a", b"\x92", b"\x9a")
 _SKIP = re.compile(r"\s*(?:<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^\[>]*(?:\[.*?\]\s*)?>)", re.DOTALL | re.IGNORECASE)
 _ROOT = re.compile(r"\s*<(?:[\w.-]+:)?([A-Za-z_][\w.-]*)")
 _LOOKS = {
-    "net": "a SUMO network",
     "openscenario": "an OpenSCENARIO scenario, not its road network",
     "html": "an HTML page, as a failed download leaves behind",
 }
@@ -44,8 +43,19 @@ def _lanelet2() -> MapReader:
     return Lanelet2Reader()
 
 
+def _sumo_net() -> MapReader:
+    from drivelint.maps.sumo_net import SumoNetReader
+
+    return SumoNetReader()
+
+
 # by root element, lower case
-READERS: dict[str, Callable[[], MapReader]] = {"opendrive": _opendrive, "commonroad": _commonroad, "osm": _lanelet2}
+READERS: dict[str, Callable[[], MapReader]] = {
+    "opendrive": _opendrive,
+    "commonroad": _commonroad,
+    "osm": _lanelet2,
+    "net": _sumo_net,
+}
 
 
 def read_source(path: Path) -> MapSource:
@@ -110,7 +120,7 @@ def _reader(source: MapSource) -> MapReader:
         looks = _LOOKS.get(root.lower(), f"XML with the root element <{root}>")
         raise MapError(
             f"map {source.name} looks like {looks}; supported: OpenDRIVE (root element <OpenDRIVE>), "
-            "CommonRoad (<commonRoad>) and Lanelet2 (<osm>)"
+            "CommonRoad (<commonRoad>), Lanelet2 (<osm>) and SUMO networks (<net>)"
         )
     return READERS[root.lower()]()
 
