@@ -28,7 +28,8 @@
 -- a step without a row in `vehicle_ahead` is one at which nobody knows who leads
 SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
     CASE WHEN l.object_id IS NOT NULL THEN on_course(
-        l.gap_m, ttc_s(l.gap_m, l.ego_speed_mps - along_mps(l.speed_mps, l.oncoming)),
+        -- at the present speeds across they are moved on to when the gap is gone at the present accelerations
+        l.gap_m, coalesce(mttc_s(l.gap_m, l.ego_speed_mps, m.accel_mps2, k.away_mps, k.other_mps2), ttc_s(l.gap_m, l.ego_speed_mps - k.away_mps)),
         e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, p.speed_mps * sin(p.heading_diff_rad)
     ) AND l.passes_by IS DISTINCT FROM true AND either_moves(l.ego_speed_mps, l.speed_mps)
     -- one that is not seen is further away than the way that is free, and the two close in no faster than tyres allow
@@ -37,6 +38,8 @@ FROM step s
 LEFT JOIN vehicle_ahead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
 LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.t_ns = l.t_ns AND p.object_id = l.object_id
 LEFT JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
+LEFT JOIN ego_motion m ON m.drive_id = s.drive_id AND m.ego_id = s.ego_id AND m.t_ns = s.t_ns
+CROSS JOIN LATERAL (SELECT along_mps(l.speed_mps, l.oncoming) AS away_mps, along_mps(l.accel_mps2, l.oncoming) AS other_mps2) k
 
 -- @condition
 -- at the ends of the log the windows of the accelerations are not whole, which says nothing about the drive. They smooth: the ego's begins to
