@@ -4,15 +4,47 @@
 CREATE TABLE meeting (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    period_s DOUBLE NOT NULL,         -- time from sample to sample in which a box goes on
+    actor_id VARCHAR NOT NULL,        -- its box: its own, or that of its trailer
     cell_m DOUBLE NOT NULL,           -- width of the drive's grid cells: as far as two boxes reach
-    cell BIGINT NOT NULL,             -- ego's visit: the cell its centre is in
+    cell BIGINT NOT NULL,             -- visit of that box: the cell its centre is in
     slot INTEGER NOT NULL,            -- the 10 s
     heading INTEGER NOT NULL,         -- the 5 degrees of heading
     object_id VARCHAR NOT NULL,       -- another actor that moves at some time
     object_cell BIGINT NOT NULL,      -- its visit, the same way: the boxes around both overlap, the headings may differ by more than 20 degrees
     object_slot INTEGER NOT NULL,     -- the 10 s
     object_heading INTEGER NOT NULL   -- the 5 degrees of heading
+);
+
+CREATE TABLE swept_box (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    actor_id VARCHAR NOT NULL,        -- an actor of meeting, ego or not, in the cells of its visits and those around them
+    t_ns BIGINT NOT NULL,             -- a sample with position, heading and size, or a moment between two that are continuous
+    t_sample_ns BIGINT NOT NULL,      -- the sample next to it
+    cell BIGINT NOT NULL,             -- visit of that sample, see meeting
+    slot INTEGER NOT NULL,            -- the 10 s
+    heading INTEGER NOT NULL,         -- the 5 degrees of heading
+    ix INTEGER NOT NULL,              -- column of the drive's grid that the box's centre is in at that moment
+    iy INTEGER NOT NULL,              -- row
+    cell_m DOUBLE NOT NULL,           -- width of that grid's cells
+    x_m DOUBLE NOT NULL,              -- centre of the box
+    y_m DOUBLE NOT NULL,              -- its other coordinate
+    z_m DOUBLE,                       -- height, see state_dynamics
+    travel_rad DOUBLE NOT NULL,       -- direction in which it travels, see state_dynamics
+    half_length_m DOUBLE NOT NULL,    -- half the box's length
+    half_width_m DOUBLE NOT NULL,     -- half its width
+    cos_yaw DOUBLE NOT NULL,          -- cosine of its heading
+    sin_yaw DOUBLE NOT NULL,          -- sine
+    t_before_ns BIGINT,               -- the moment before; NULL: the track begins, or there was a hole
+    t_after_ns BIGINT                 -- the moment after; NULL: it ends, or there is a hole
+);
+
+CREATE TABLE common_ground (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    actor_id VARCHAR NOT NULL,        -- its box: its own, or that of its trailer
+    object_id VARCHAR NOT NULL,       -- another actor
+    t_ego_ns BIGINT NOT NULL,         -- a moment of that box, see swept_box
+    t_object_ns BIGINT NOT NULL       -- a moment of the other's box, at most 10 s apart, at which it covers the same ground, at more than 20 degrees
 );
 
 CREATE TABLE conflict (
@@ -26,6 +58,7 @@ CREATE TABLE conflict (
     t_object_in_ns BIGINT NOT NULL,   -- first sample of the other on ground that the ego's box was or will be on
     t_object_out_ns BIGINT NOT NULL,  -- last one
     pet_s DOUBLE NOT NULL,            -- post-encroachment time: later entry minus earlier exit, both taken between samples, as near to each other as the speeds allow; negative: both in it at once
+    pet_at_most BOOLEAN,              -- it was no more than that: a track begins, or goes on after a hole, where the later one enters, or ends where the earlier one leaves
     ego_first BOOLEAN NOT NULL,       -- the ego entered first (a tie: true)
     angle_rad DOUBLE NOT NULL,        -- where the other enters: its heading against the ego's way there, -pi..pi: near pi oncoming, negative: it comes from the left
     ego_speed_mps DOUBLE,             -- ego's speed on entering

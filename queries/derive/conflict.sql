@@ -1,185 +1,144 @@
--- Where the ground that the ego's box sweeps is swept by another's as well, at an angle, not more than 10 s apart.
-WITH scale AS (SELECT drive_id, max(period_s) AS period_s, max(cell_m) AS cell_m FROM meeting GROUP BY drive_id),
--- the trailer that it draws is the ego
-part AS (
-    SELECT drive_id, object_id AS actor_id, object_slot AS slot FROM meeting
-    UNION
-    SELECT o.drive_id, o.actor_id, meeting_slot(s.t_ns) FROM step s JOIN ego_actor o USING (drive_id, ego_id)
-),
-box AS NOT MATERIALIZED (
+-- Encounters of two on common ground: when each came and left, and how much time was between them. None of that depends on which is the ego.
+WITH
+scale AS (SELECT drive_id, max(period_ns) AS period_ns, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id),
+-- Encounters. Stretches of the moments of the actor with the lesser id, and in each those of the other's, without a pause ...
+turned AS MATERIALIZED (
     SELECT
-        s.drive_id, s.actor_id, s.t_ns, s.x_m, s.y_m, s.z_m, meeting_cell(s.x_m, s.y_m, g.cell_m) AS cell, meeting_slot(s.t_ns) AS slot,
-        heading_step(s.travel_rad) AS heading,
-        s.travel_rad AS dir_rad,
-        swept_half_m(s.length_m, s.speed_mps, g.period_s) AS hl, s.width_m / 2 AS hw, cos(s.yaw_rad) AS c, sin(s.yaw_rad) AS s
-    FROM state_dynamics s
+        drive_id, ego_id, object_id, actor_id, ego_id < object_id AS ego_is_u, CASE WHEN ego_is_u THEN t_ego_ns ELSE t_object_ns END AS u_ns, CASE WHEN ego_is_u THEN t_object_ns ELSE t_ego_ns END AS v_ns
+    FROM common_ground
+),
+stretch AS MATERIALIZED (
+    SELECT p.*, sum((u_ns - before_ns > g.max_gap_ns)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY u_ns) AS nu
+    FROM (
+        SELECT *, lag(u_ns, 1, u_ns) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY u_ns) AS before_ns
+        FROM (SELECT DISTINCT drive_id, ego_id, object_id, u_ns FROM turned)
+    ) p
     JOIN scale g USING (drive_id)
-    SEMI JOIN part p ON p.drive_id = s.drive_id AND p.actor_id = s.actor_id AND p.slot = meeting_slot(s.t_ns)
-    WHERE s.x_m IS NOT NULL AND s.y_m IS NOT NULL AND s.yaw_rad IS NOT NULL AND s.length_m IS NOT NULL AND s.width_m IS NOT NULL
 ),
-ego AS MATERIALIZED (
-    SELECT o.ego_id, b.* FROM box b JOIN ego_actor o USING (drive_id, actor_id) SEMI JOIN step s ON s.drive_id = b.drive_id AND s.ego_id = o.ego_id AND s.t_ns = b.t_ns
-),
-other AS MATERIALIZED (
-    SELECT b.*
-    FROM box b
-    SEMI JOIN meeting m
-        ON m.drive_id = b.drive_id AND m.object_id = b.actor_id AND m.object_cell = b.cell AND m.object_slot = b.slot AND m.object_heading = b.heading
-),
-around AS (
-    SELECT cell_key(x.i, y.i) AS cell, t.i AS slot
-    FROM (VALUES (-1), (0), (1)) AS x(i) CROSS JOIN (VALUES (-1), (0), (1)) AS y(i) CROSS JOIN (VALUES (-1), (0), (1)) AS t(i)
-),
--- step by step, or the planner, which cannot know how few they are, would compare everybody with everybody
-close AS MATERIALIZED (
-    SELECT m.ego_id, m.cell AS ego_cell, m.slot AS ego_slot, m.heading AS ego_heading, o.*
-    FROM meeting m
-    JOIN other o ON o.drive_id = m.drive_id AND o.actor_id = m.object_id AND o.cell = m.object_cell AND o.slot = m.object_slot
-        AND o.heading = m.object_heading
-),
-angled AS MATERIALIZED (
-    SELECT o.drive_id, o.ego_id, o.actor_id AS object_id, e.t_ns AS t1, o.t_ns AS t2
-    FROM close o
-    JOIN ego e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.cell = o.ego_cell AND e.slot = o.ego_slot AND e.heading = o.ego_heading
-    WHERE boxes_meet(o.x_m - e.x_m, o.y_m - e.y_m, e.c, e.s, o.c, o.s, e.hl, e.hw, o.hl, o.hw)
-        AND same_level(o.z_m, e.z_m) AND abs(e.t_ns - o.t_ns) <= conflict_ns() AND abs(wrap_rad(o.dir_rad - e.dir_rad)) > conflict_angle_rad()
-),
--- In a tight bend even a follower's box lies across the ego's of another moment: what counts is the angle against the ego's way where that
--- comes nearest.
-there AS MATERIALIZED (
-    SELECT b.*, a.ego_id
-    FROM (SELECT DISTINCT drive_id, ego_id, object_id, t2 FROM angled) a
-    JOIN other b ON b.drive_id = a.drive_id AND b.actor_id = a.object_id AND b.t_ns = a.t2
-),
-reached AS MATERIALIZED (SELECT b.*, b.cell + n.cell AS near_cell, b.slot + n.slot AS near_slot FROM there b CROSS JOIN around n),
-met AS (
-    SELECT
-        o.drive_id, o.ego_id, o.actor_id AS object_id, o.t_ns AS t2,
-        min({
-            'd2': (o.x_m - e.x_m) ** 2 + (o.y_m - e.y_m) ** 2, 't1': e.t_ns, 't2': o.t_ns, 'angle_rad': wrap_rad(o.dir_rad - e.dir_rad)
-        }) AS near
-    FROM reached o
-    JOIN ego e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.cell = o.near_cell AND e.slot = o.near_slot
-    WHERE boxes_meet(o.x_m - e.x_m, o.y_m - e.y_m, e.c, e.s, o.c, o.s, e.hl, e.hw, o.hl, o.hw) AND same_level(o.z_m, e.z_m)
-        AND abs(e.t_ns - o.t_ns) <= conflict_ns()
-    GROUP BY ALL
-),
-shared AS MATERIALIZED (
-    SELECT a.*, m.near
-    FROM angled a JOIN met m USING (drive_id, ego_id, object_id, t2)
-    WHERE abs(m.near.angle_rad) > conflict_angle_rad()
-),
--- encounters: stretches of the ego's steps, and in each those of the other's samples
-stretch AS (
-    SELECT drive_id, ego_id, object_id, t1, sum((t1 - before > conflict_apart_ns())::INTEGER) OVER w AS n1
+parted AS MATERIALIZED (
+    SELECT *, sum((v_ns - before_ns > max_gap_ns)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id, nu ORDER BY v_ns) AS nv
     FROM (
-        SELECT *, lag(t1, 1, t1) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY t1) AS before
-        FROM (SELECT DISTINCT drive_id, ego_id, object_id, t1 FROM shared)
-    )
-    WINDOW w AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t1)
-),
-parted AS (
-    SELECT drive_id, ego_id, object_id, p.n1, s.t2, min(t1) AS t1_first, max(t1) AS t1_last, min(near) AS near
-    FROM shared s JOIN stretch p USING (drive_id, ego_id, object_id, t1)
-    GROUP BY ALL
-),
--- samples without a pause, and what follows soon after on the same ground (an angle that comes and goes at its edge)
-piece AS (
-    SELECT
-        drive_id, ego_id, object_id, n1, n2, max_gap_ns, min(t1_first) AS t1_first, max(t1_last) AS t1_last, min(t2) AS t2_first, max(t2) AS t2_last,
-        min({'t2': t2, 'angle_rad': near.angle_rad}) AS entry
-    FROM (
-        SELECT *, sum((t2 - before > max_gap_ns)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id, n1 ORDER BY t2) AS n2
+        SELECT p.*, g.max_gap_ns, lag(v_ns, 1, v_ns) OVER (PARTITION BY drive_id, ego_id, object_id, nu ORDER BY v_ns) AS before_ns
         FROM (
-            SELECT p.*, c.max_gap_ns, lag(p.t2, 1, p.t2) OVER (PARTITION BY p.drive_id, p.ego_id, p.object_id, p.n1 ORDER BY p.t2) AS before
-            FROM parted p JOIN clock c USING (drive_id, ego_id)
-        )
+            SELECT t.drive_id, t.ego_id, t.object_id, t.actor_id, t.ego_is_u, s.nu, t.v_ns, min(t.u_ns) AS u_first_ns, max(t.u_ns) AS u_last_ns
+            FROM turned t JOIN stretch s USING (drive_id, ego_id, object_id, u_ns)
+            GROUP BY ALL
+        ) p
+        JOIN scale g USING (drive_id)
     )
-    GROUP BY drive_id, ego_id, object_id, n1, n2, max_gap_ns
 ),
-encounter AS (
+piece AS MATERIALIZED (
     SELECT
-        drive_id, ego_id, object_id, min(t1_first) AS t_ego_in_ns, max(t1_last) AS t_ego_out_ns, min(t2_first) AS t_object_in_ns, max(t2_last) AS t_object_out_ns,
-        min(entry).angle_rad AS angle_rad
+        drive_id, ego_id, object_id, nu, nv, any_value(max_gap_ns) AS max_gap_ns, min(u_first_ns) AS u_first_ns, max(u_last_ns) AS u_last_ns,
+        min(v_ns) AS v_first_ns, max(v_ns) AS v_last_ns
+    FROM parted
+    GROUP BY drive_id, ego_id, object_id, nu, nv
+),
+-- ... and with them what follows soon after where one of the two has not left meanwhile: an angle that comes and goes at its edge, a step aside
+numbered AS MATERIALIZED (
+    SELECT drive_id, ego_id, object_id, nu, nv, sum((NOT joined)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY nu, nv) AS n
     FROM (
         SELECT
-            *,
-            sum((t2_first - before.t2_last > conflict_apart_ns() OR t1_first > before.t1_last + max_gap_ns OR t1_last < before.t1_first - max_gap_ns)::INTEGER)
-                OVER (PARTITION BY drive_id, ego_id, object_id, n1 ORDER BY n2) AS n
+            *, greatest(u_first_ns - b.u_last_ns, b.u_first_ns - u_last_ns) AS u_gap_ns, greatest(v_first_ns - b.v_last_ns, b.v_first_ns - v_last_ns) AS v_gap_ns,
+            coalesce(least(u_gap_ns, v_gap_ns) <= max_gap_ns AND greatest(u_gap_ns, v_gap_ns) <= conflict_apart_ns(), true) AS joined
         FROM (
             SELECT
-                *,
-                lag({'t1_first': t1_first, 't1_last': t1_last, 't2_last': t2_last}) OVER (PARTITION BY drive_id, ego_id, object_id, n1 ORDER BY n2) AS before
+                *, lag({'u_first_ns': u_first_ns, 'u_last_ns': u_last_ns, 'v_first_ns': v_first_ns, 'v_last_ns': v_last_ns})
+                    OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY nu, nv) AS b
             FROM piece
         )
     )
-    GROUP BY drive_id, ego_id, object_id, n1, coalesce(n, 0)
+),
+-- first and last moment of each of the ego's boxes on the common ground, and of the other on theirs
+on_it AS MATERIALIZED (
+    SELECT
+        drive_id, ego_id, object_id, n, actor_id, CASE WHEN ego_is_u THEN min(u_first_ns) ELSE min(v_ns) END AS t1_first_ns, CASE WHEN ego_is_u THEN max(u_last_ns) ELSE max(v_ns) END AS t1_last_ns,
+        CASE WHEN ego_is_u THEN min(v_ns) ELSE min(u_first_ns) END AS t2_first_ns, CASE WHEN ego_is_u THEN max(v_ns) ELSE max(u_last_ns) END AS t2_last_ns
+    FROM parted JOIN numbered USING (drive_id, ego_id, object_id, nu, nv)
+    GROUP BY drive_id, ego_id, object_id, n, actor_id, ego_is_u
+),
+-- whose entry (sense 1) or exit (-1), and on whose ground of when that is
+edge AS MATERIALIZED (
+    SELECT p.* EXCLUDE (t_in_ns, t_out_ns), g.period_ns, x.sense, b.t_ns AS t_on_ns, b.t_sample_ns AS k_ns, CASE WHEN x.sense = 1 THEN b.t_before_ns ELSE b.t_after_ns END AS t_off_ns
+    FROM (
+        SELECT
+            drive_id, ego_id, object_id, n, true AS ego, actor_id, t1_first_ns AS t_in_ns, t1_last_ns AS t_out_ns,
+            object_id AS on_id, min(t2_first_ns) OVER w AS t_from_ns, max(t2_last_ns) OVER w AS t_to_ns
+        FROM on_it
+        WINDOW w AS (PARTITION BY drive_id, ego_id, object_id, n)
+        UNION ALL
+        SELECT drive_id, ego_id, object_id, n, false, object_id, min(t2_first_ns) OVER v, max(t2_last_ns) OVER v, actor_id, t1_first_ns, t1_last_ns
+        FROM on_it
+        WINDOW v AS (PARTITION BY drive_id, ego_id, object_id, n)
+    ) p
+    JOIN scale g USING (drive_id)
+    CROSS JOIN (VALUES (1), (-1)) AS x(sense)
+    JOIN swept_box b ON b.drive_id = p.drive_id AND b.actor_id = p.actor_id AND b.t_ns = CASE x.sense WHEN 1 THEN p.t_in_ns ELSE p.t_out_ns END
+),
+edge_box AS MATERIALIZED (
+    SELECT e.*, i, f
+    FROM edge e
+    JOIN swept_box i ON i.drive_id = e.drive_id AND i.actor_id = e.actor_id AND i.t_ns = e.t_on_ns
+    LEFT JOIN swept_box f ON f.drive_id = e.drive_id AND f.actor_id = e.actor_id AND f.t_ns = e.t_off_ns
+),
+-- how far it is from that ground at the moment off it, and how deep in it at the one on it; its way against the other's where that comes nearest
+apart AS MATERIALIZED (
+    SELECT
+        e.drive_id, e.ego_id, e.object_id, e.n, e.ego, e.actor_id, e.sense, e.k_ns, e.t_on_ns, e.t_off_ns,
+        greatest(0.0, min(boxes_apart_m(b.x_m - f.x_m, b.y_m - f.y_m, f.cos_yaw, f.sin_yaw, b.cos_yaw, b.sin_yaw, f.half_length_m, f.half_width_m, b.half_length_m, b.half_width_m))) AS off_m,
+        least(0.0, min(boxes_apart_m(b.x_m - i.x_m, b.y_m - i.y_m, i.cos_yaw, i.sin_yaw, b.cos_yaw, b.sin_yaw, i.half_length_m, i.half_width_m, b.half_length_m, b.half_width_m))) AS on_m,
+        min({'d2': (b.x_m - i.x_m) ** 2 + (b.y_m - i.y_m) ** 2, 't_ns': b.t_ns, 'angle_rad': wrap_rad(b.travel_rad - i.travel_rad)}) FILTER (
+            abs(wrap_rad(b.travel_rad - i.travel_rad)) > conflict_angle_rad()
+            AND boxes_meet(b.x_m - i.x_m, b.y_m - i.y_m, i.cos_yaw, i.sin_yaw, b.cos_yaw, b.sin_yaw, i.half_length_m, i.half_width_m, b.half_length_m, b.half_width_m)
+        ).angle_rad AS angle_rad
+    FROM edge_box e
+    JOIN swept_box b ON b.drive_id = e.drive_id AND b.actor_id = e.on_id AND b.t_ns >= e.t_from_ns - e.period_ns AND b.t_ns <= e.t_to_ns + e.period_ns
+    GROUP BY e.drive_id, e.ego_id, e.object_id, e.n, e.ego, e.actor_id, e.sense, e.k_ns, e.t_on_ns, e.t_off_ns
+),
+-- between the two moments in proportion: what goes straight on does so. Where it is an angle that ends the common ground, at the one off it. An edge
+-- without a moment off the ground was not seen.
+timed AS MATERIALIZED (
+    SELECT
+        drive_id, ego_id, object_id, n, ego, sense, min(sense * k_ns) AS k_ns,
+        min({
+            'ns': sense * (t_on_ns - coalesce(round((1 - coalesce(off_m / nullif(off_m - on_m, 0), 0)) * (t_on_ns - t_off_ns)), 0)::BIGINT), 'known': t_off_ns IS NOT NULL,
+            'off_rad': -abs(angle_rad), 'angle_rad': CASE WHEN ego THEN angle_rad ELSE -angle_rad END
+        }) AS edge
+    FROM apart
+    GROUP BY drive_id, ego_id, object_id, n, ego, sense
+),
+encounter AS MATERIALIZED (
+    SELECT
+        drive_id, ego_id, object_id, n, min(k_ns) FILTER (ego AND sense = 1) AS t_ego_in_ns, min(-k_ns) FILTER (ego AND sense = -1) AS t_ego_out_ns,
+        min(k_ns) FILTER (NOT ego AND sense = 1) AS t_object_in_ns, min(-k_ns) FILTER (NOT ego AND sense = -1) AS t_object_out_ns,
+        max({'ns': edge.ns, 'unknown': NOT edge.known, 'off_rad': -edge.off_rad, 'angle_rad': edge.angle_rad}) FILTER (sense = 1) AS late_in,
+        min({'ns': -edge.ns, 'known': edge.known}) FILTER (sense = -1) AS early_out
+    FROM timed
+    GROUP BY drive_id, ego_id, object_id, n
 ),
 -- what stands there all the while is in the way, not on its way
 moving AS MATERIALIZED (
-    SELECT e.*
+    SELECT
+        e.*, (late_in.ns - early_out.ns) / 1e9 AS pet_s, late_in.unknown OR NOT early_out.known AS pet_at_most, late_in.angle_rad AS angle_rad
     FROM encounter e
     SEMI JOIN state_dynamics s ON s.drive_id = e.drive_id AND s.actor_id = e.object_id
         AND s.t_ns >= e.t_object_in_ns AND s.t_ns <= e.t_object_out_ns AND coalesce(s.speed_mps > standing_mps(), true)
+    SEMI JOIN state_dynamics o ON o.drive_id = e.drive_id AND o.actor_id = e.ego_id
+        AND o.t_ns >= e.t_ego_in_ns AND o.t_ns <= e.t_ego_out_ns AND coalesce(o.speed_mps > standing_mps(), true)
     -- over or under the ego's road, nobody meets it; who may be there is in pair without a place
     ANTI JOIN (FROM pair WHERE off_level) p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.object_id = e.object_id
         AND p.t_ns >= e.t_object_in_ns AND p.t_ns <= e.t_object_out_ns
 ),
--- Between the last sample off the common ground and the first one on it, a box comes as near as its speed allows: an entry is at most so much
--- before its sample, an exit so much after it.
-edge AS (
-    SELECT
-        m.drive_id, m.ego_id, m.object_id, m.t_ego_in_ns, m.t_object_in_ns, v.*, c.period_ns, v.t_ns - v.sense * c.max_gap_ns AS t_far_ns
-    FROM moving m
-    JOIN clock c USING (drive_id, ego_id)
-    CROSS JOIN LATERAL (VALUES
-        ('ego_in', 1, m.ego_id, m.t_ego_in_ns, m.object_id, m.t_object_in_ns, m.t_object_out_ns),
-        ('ego_out', -1, m.ego_id, m.t_ego_out_ns, m.object_id, m.t_object_in_ns, m.t_object_out_ns),
-        ('object_in', 1, m.object_id, m.t_object_in_ns, m.ego_id, m.t_ego_in_ns, m.t_ego_out_ns),
-        ('object_out', -1, m.object_id, m.t_object_out_ns, m.ego_id, m.t_ego_in_ns, m.t_ego_out_ns)
-    ) AS v(side, sense, actor_id, t_ns, on_id, from_ns, to_ns)
-),
--- the sample off the ground that is next to the one on it
-off AS (
-    SELECT e.drive_id, e.ego_id, e.object_id, e.t_ego_in_ns, e.t_object_in_ns, e.side, min({'ns': e.sense * (e.t_ns - s.t_ns), 't_ns': s.t_ns}).t_ns AS t_off_ns
-    FROM edge e
-    JOIN state_dynamics s ON s.drive_id = e.drive_id AND s.actor_id = e.actor_id
-        AND s.t_ns >= least(e.t_ns, e.t_far_ns) AND s.t_ns <= greatest(e.t_ns, e.t_far_ns) AND s.t_ns <> e.t_ns
-    GROUP BY ALL
-),
-sooner AS (
-    SELECT
-        e.drive_id, e.ego_id, e.object_id, e.t_ego_in_ns, e.t_object_in_ns, e.side,
-        greatest(0, abs(e.t_ns - o.t_off_ns) - coalesce(round(1e9 * min(greatest(0.0, box_separation(
-            (b.x_m - a.x_m) * cos(a.yaw_rad) + (b.y_m - a.y_m) * sin(a.yaw_rad), (b.y_m - a.y_m) * cos(a.yaw_rad) - (b.x_m - a.x_m) * sin(a.yaw_rad),
-            cos(b.yaw_rad - a.yaw_rad), sin(b.yaw_rad - a.yaw_rad),
-            a.length_m / 2, a.width_m / 2, swept_half_m(b.length_m, b.speed_mps, e.period_ns / 1e9), b.width_m / 2
-        )) / nullif(greatest(a.speed_mps, i.speed_mps), 0))), 0))::BIGINT AS by_ns
-    FROM edge e
-    JOIN off o USING (drive_id, ego_id, object_id, t_ego_in_ns, t_object_in_ns, side)
-    LEFT JOIN ego_actor w ON w.drive_id = e.drive_id AND w.ego_id = e.ego_id AND e.actor_id = e.ego_id
-    JOIN state_dynamics a ON a.drive_id = e.drive_id AND a.actor_id = coalesce(w.actor_id, e.actor_id) AND a.t_ns = o.t_off_ns
-    JOIN state_dynamics i ON i.drive_id = e.drive_id AND i.actor_id = e.actor_id AND i.t_ns = e.t_ns
-    JOIN state_dynamics b ON b.drive_id = e.drive_id AND b.actor_id = e.on_id AND b.t_ns >= e.from_ns - e.period_ns AND b.t_ns <= e.to_ns + e.period_ns
-    GROUP BY e.drive_id, e.ego_id, e.object_id, e.t_ego_in_ns, e.t_object_in_ns, e.side, e.t_ns, o.t_off_ns
-),
-timed AS (
-    SELECT
-        drive_id, ego_id, object_id, t_ego_in_ns, t_object_in_ns,
-        (max(e.t_ns - coalesce(s.by_ns, 0)) FILTER (e.sense = 1) - min(e.t_ns + coalesce(s.by_ns, 0)) FILTER (e.sense = -1)) / 1e9 AS pet_s
-    FROM edge e LEFT JOIN sooner s USING (drive_id, ego_id, object_id, t_ego_in_ns, t_object_in_ns, side)
-    GROUP BY drive_id, ego_id, object_id, t_ego_in_ns, t_object_in_ns
-),
 -- the mean over the half second before each sample, where that is seen
 slowing AS (
     SELECT
-        drive_id, ego_id, object_id, t_ego_in_ns, t_object_in_ns, max(decel_mps2) AS decel_mps2,
+        drive_id, ego_id, object_id, n, max(decel_mps2) AS decel_mps2,
         -- every stretch of it was seen
         bool_and(coalesce(gap_ns <= max_gap_ns, true)) AND min(t_ns) - (t_ego_in_ns - 4_000_000_000) <= period_ns
             AND max(t_ns) = t_object_in_ns AND bool_and(speed_mps IS NOT NULL) AS whole
     FROM (
         SELECT
-            m.drive_id, m.ego_id, m.object_id, m.t_ego_in_ns, m.t_object_in_ns, s.t_ns, s.speed_mps, c.max_gap_ns, c.period_ns,
+            m.drive_id, m.ego_id, m.object_id, m.n, m.t_ego_in_ns, m.t_object_in_ns, s.t_ns, s.speed_mps, c.max_gap_ns, c.period_ns,
             s.t_ns - lag(s.t_ns) OVER w AS gap_ns,
             CASE WHEN s.t_ns - first_value(s.t_ns) OVER half >= 500_000_000 - c.period_ns // 2 THEN
                 (first_value(s.speed_mps) OVER half - s.speed_mps) / ((s.t_ns - first_value(s.t_ns) OVER half) / 1e9)
@@ -189,13 +148,13 @@ slowing AS (
         JOIN state_dynamics s ON s.drive_id = m.drive_id AND s.actor_id = m.object_id
             AND s.t_ns >= m.t_ego_in_ns - 4_000_000_000 AND s.t_ns <= m.t_object_in_ns
         WINDOW
-            w AS (PARTITION BY m.drive_id, m.ego_id, m.object_id, m.t_ego_in_ns, m.t_object_in_ns ORDER BY s.t_ns),
+            w AS (PARTITION BY m.drive_id, m.ego_id, m.object_id, m.n ORDER BY s.t_ns),
             half AS (
-                PARTITION BY m.drive_id, m.ego_id, m.object_id, m.t_ego_in_ns, m.t_object_in_ns ORDER BY s.t_ns
+                PARTITION BY m.drive_id, m.ego_id, m.object_id, m.n ORDER BY s.t_ns
                 RANGE BETWEEN 500_000_000 PRECEDING AND CURRENT ROW
             )
     )
-    GROUP BY drive_id, ego_id, object_id, t_ego_in_ns, t_object_in_ns, period_ns
+    GROUP BY drive_id, ego_id, object_id, n, t_ego_in_ns, t_object_in_ns, period_ns
 ),
 -- the ego enters the area with its front: what that is on counts
 entered AS (
@@ -222,9 +181,9 @@ crossing_there AS (
 )
 SELECT
     m.drive_id, m.ego_id,
-    (row_number() OVER (PARTITION BY m.drive_id, m.ego_id ORDER BY m.t_ego_in_ns, m.t_object_in_ns, m.object_id) - 1)::INTEGER AS occurrence,
+    (row_number() OVER (PARTITION BY m.drive_id, m.ego_id ORDER BY m.t_ego_in_ns, m.t_object_in_ns, m.object_id, m.n) - 1)::INTEGER AS occurrence,
     m.object_id, o.actor_class, m.t_ego_in_ns, m.t_ego_out_ns, m.t_object_in_ns, m.t_object_out_ns,
-    p.pet_s,
+    m.pet_s, m.pet_at_most,
     m.t_ego_in_ns <= m.t_object_in_ns AS ego_first, m.angle_rad,
     a.speed_mps AS ego_speed_mps, o.speed_mps,
     CASE WHEN d.whole THEN d.decel_mps2 END AS decel_mps2,
@@ -232,8 +191,6 @@ SELECT
 FROM moving m
 JOIN state_dynamics a ON a.drive_id = m.drive_id AND a.actor_id = m.ego_id AND a.t_ns = m.t_ego_in_ns
 JOIN state_dynamics o ON o.drive_id = m.drive_id AND o.actor_id = m.object_id AND o.t_ns = m.t_object_in_ns
-JOIN timed p ON p.drive_id = m.drive_id AND p.ego_id = m.ego_id AND p.object_id = m.object_id AND p.t_ego_in_ns = m.t_ego_in_ns AND p.t_object_in_ns = m.t_object_in_ns
-LEFT JOIN slowing d ON d.drive_id = m.drive_id AND d.ego_id = m.ego_id AND d.object_id = m.object_id
-    AND d.t_ego_in_ns = m.t_ego_in_ns AND d.t_object_in_ns = m.t_object_in_ns
+LEFT JOIN slowing d ON d.drive_id = m.drive_id AND d.ego_id = m.ego_id AND d.object_id = m.object_id AND d.n = m.n
 LEFT JOIN junction_there j ON j.drive_id = m.drive_id AND j.ego_id = m.ego_id AND j.t_ego_in_ns = m.t_ego_in_ns
 LEFT JOIN crossing_there x ON x.drive_id = m.drive_id AND x.ego_id = m.ego_id AND x.t_ego_in_ns = m.t_ego_in_ns

@@ -9,16 +9,16 @@ mover AS (
     HAVING bool_or(coalesce(speed_mps > standing_mps(), true))
 ),
 grid AS (
-    SELECT drive_id, max(period_s) AS period_s, 2 * max(sqrt(swept_half_m(length_m, speed_mps, period_s) ** 2 + (width_m / 2) ** 2)) + 0.1 AS cell_m
-    FROM mover JOIN (SELECT drive_id, max(period_ns) / 1e9 AS period_s FROM ego_clock GROUP BY drive_id) USING (drive_id)
+    SELECT drive_id, max(max_gap_s) AS max_gap_s, 2 * max(sqrt(driven_half_m(length_m, speed_mps, max_gap_s) ** 2 + (width_m / 2) ** 2)) + 0.1 AS cell_m
+    FROM mover JOIN (SELECT drive_id, max(max_gap_ns) / 1e9 AS max_gap_s FROM ego_clock GROUP BY drive_id) USING (drive_id)
     GROUP BY drive_id
     HAVING cell_m IS NOT NULL
 ),
 box AS (
     SELECT
-        s.drive_id, s.actor_id, s.x_m, s.y_m, g.period_s, g.cell_m, meeting_cell(s.x_m, s.y_m, g.cell_m) AS cell, meeting_slot(s.t_ns) AS slot,
+        s.drive_id, s.actor_id, s.x_m, s.y_m, g.cell_m, meeting_cell(s.x_m, s.y_m, g.cell_m) AS cell, meeting_slot(s.t_ns) AS slot,
         heading_step(s.travel_rad) AS heading,
-        swept_half_m(s.length_m, s.speed_mps, g.period_s) AS hl, s.width_m / 2 AS hw, abs(cos(s.yaw_rad)) AS c, abs(sin(s.yaw_rad)) AS s
+        driven_half_m(s.length_m, s.speed_mps, g.max_gap_s) AS hl, s.width_m / 2 AS hw, abs(cos(s.yaw_rad)) AS c, abs(sin(s.yaw_rad)) AS s
     FROM state_dynamics s
     JOIN grid g USING (drive_id)
     SEMI JOIN mover m USING (drive_id, actor_id)
@@ -26,24 +26,20 @@ box AS (
 ),
 visit AS MATERIALIZED (
     SELECT
-        drive_id, actor_id, cell, slot, heading, max(period_s) AS period_s, max(cell_m) AS cell_m,
+        drive_id, actor_id, cell, slot, heading, max(cell_m) AS cell_m,
         min(x_m - hl * c - hw * s) AS x0, max(x_m + hl * c + hw * s) AS x1, min(y_m - hl * s - hw * c) AS y0, max(y_m + hl * s + hw * c) AS y1
     FROM box
     GROUP BY drive_id, actor_id, cell, slot, heading
 ),
 -- the trailer that it draws is the ego
-ego_visit AS (
-    SELECT o.ego_id, v.* EXCLUDE (actor_id, x0, x1, y0, y1), min(v.x0) AS x0, max(v.x1) AS x1, min(v.y0) AS y0, max(v.y1) AS y1
-    FROM visit v JOIN ego_actor o USING (drive_id, actor_id)
-    GROUP BY ALL
-),
+ego_visit AS (SELECT o.ego_id, v.* FROM visit v JOIN ego_actor o USING (drive_id, actor_id)),
 around AS (
     SELECT v.*, v.cell + cell_key(x.i, y.i) AS near_cell, v.slot + t.i AS near_slot
     FROM ego_visit v
     CROSS JOIN (VALUES (-1), (0), (1)) AS x(i) CROSS JOIN (VALUES (-1), (0), (1)) AS y(i) CROSS JOIN (VALUES (-1), (0), (1)) AS t(i)
 )
 SELECT
-    e.drive_id, e.ego_id, e.period_s, e.cell_m, e.cell, e.slot, e.heading,
+    e.drive_id, e.ego_id, e.actor_id, e.cell_m, e.cell, e.slot, e.heading,
     o.actor_id AS object_id, o.cell AS object_cell, o.slot AS object_slot, o.heading AS object_heading
 FROM around e
 JOIN visit o ON o.drive_id = e.drive_id AND o.cell = e.near_cell AND o.slot = e.near_slot AND o.actor_id <> e.ego_id

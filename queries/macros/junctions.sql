@@ -13,13 +13,20 @@ CREATE OR REPLACE MACRO steps_apart(a, b) AS abs(((a - b + 36) % 72 + 72) % 72 -
 CREATE OR REPLACE MACRO stood_mps() AS 0.1;
 -- From one half of a pedestrian crossing to the other; who takes longer waits on an island between them.
 CREATE OR REPLACE MACRO straight_on_ns() AS 3_000_000_000;
--- Two boxes overlap or touch: (dx, dy) from the first one's centre to the second one's in map axes, (ca, sa) and (cb, sb) the cosine and
+-- How far two boxes are apart (negative: how deep one is in the other) on the axis on which that is most, of the four of their sides: (dx, dy) from the first one's centre to the second one's in map axes, (ca, sa) and (cb, sb) the cosine and
 -- sine of their headings.
+CREATE OR REPLACE MACRO boxes_apart_m(dx, dy, ca, sa, cb, sb, hla, hwa, hlb, hwb) AS
+    box_separation(dx * ca + dy * sa, dy * ca - dx * sa, ca * cb + sa * sb, ca * sb - sa * cb, hla, hwa, hlb, hwb);
+-- Two boxes overlap or touch.
 CREATE OR REPLACE MACRO boxes_meet(dx, dy, ca, sa, cb, sb, hla, hwa, hlb, hwb) AS
     dx * dx + dy * dy <= (hla + hwa + hlb + hwb) * (hla + hwa + hlb + hwb)
-    AND box_separation(dx * ca + dy * sa, dy * ca - dx * sa, ca * cb + sa * sb, ca * sb - sa * cb, hla, hwa, hlb, hwb) <= 0;
+    AND boxes_apart_m(dx, dy, ca, sa, cb, sb, hla, hwa, hlb, hwb) <= 0;
+-- Faster than this nothing drives: it is a jump in the log.
+CREATE OR REPLACE MACRO jump_mps() AS 70.0;
 -- Half length of the ground that a box covers from one sample to the next: a log of few samples a second leaves no ground between two.
-CREATE OR REPLACE MACRO swept_half_m(length_m, speed_mps, period_s) AS greatest(length_m, least(coalesce(speed_mps, 0.0), 70.0) * period_s) / 2;
+CREATE OR REPLACE MACRO swept_half_m(length_m, speed_mps, period_s) AS greatest(length_m, least(coalesce(speed_mps, 0.0), jump_mps()) * period_s) / 2;
+-- The same with the whole box where it is at any moment halfway to the sample before and to the one after.
+CREATE OR REPLACE MACRO driven_half_m(length_m, speed_mps, gap_s) AS (length_m + least(coalesce(speed_mps, 0.0), jump_mps()) * gap_s) / 2;
 -- Grid of a drive, its cells as wide as two boxes reach: what touches has its centres in one cell or in neighbours.
 CREATE OR REPLACE MACRO meeting_cell(x_m, y_m, cell_m) AS cell_key(floor(x_m / cell_m), floor(y_m / cell_m));
 CREATE OR REPLACE MACRO meeting_slot(t_ns) AS (t_ns // conflict_ns())::INTEGER;
