@@ -100,7 +100,7 @@ class Bench:
     @property
     def margins_file(self) -> Path | None:
         """Where the margins are; None: nobody asked for them."""
-        return self._margins and self._margins.path
+        return None if self._margins is None else self._margins.path
 
     def knows(self, drive: Drive) -> bool:
         """Whether this very log was judged before."""
@@ -219,8 +219,7 @@ class Bench:
         for table in tables:
             whole = again and ("ego_id" not in store.schema()[table] or table == "ego_clock")
             known = f" EXCEPT FROM kept.{table}" if whole else ""
-            sql = f"INSERT INTO kept.{table} SELECT * FROM {table}{known}"
-            self._memory.enough(lambda con, sql=sql: con.execute(sql), self._con)
+            self._memory.execute(f"INSERT INTO kept.{table} SELECT * FROM {table}{known}")
 
     def _keep_maps(self, ids: Iterable[str]) -> None:
         new = sorted(ids)

@@ -54,6 +54,10 @@ class Memory:
         self._note(f"{worded(self._limit)} of memory do not do (--memory): the database may take up to {given}")
         return True
 
+    def execute(self, sql: str) -> None:
+        """Run one statement, with more memory if that is short."""
+        self.enough(lambda con: con.execute(sql), self._con)
+
     def enough(self, job: Callable[[duckdb.DuckDBPyConnection], T], con: duckdb.DuckDBPyConnection) -> T:
         """Return what a job on a connection to the database does, which leaves nothing if it fails: with more memory if that is short."""
         try:

@@ -11,7 +11,7 @@ import pyarrow as pa
 from drivelint import catalogue, conditions, store
 from drivelint.annotate import Annotator
 from drivelint.batch import Drive, Refused, cut, in_order, read
-from drivelint.errors import DriveLintError, TraceError, UsageError
+from drivelint.errors import DriveLintError, MemoryShortError, TraceError, UsageError
 from drivelint.ingest import IngestOptions, expand
 from drivelint.judge import Bench
 from drivelint.maps.library import MapLibrary
@@ -226,8 +226,7 @@ def _failed(drive: Drive, error: Exception) -> Refused:
     if isinstance(error, DriveLintError):
         return Refused(drive.trace.path, error)
     if isinstance(error, duckdb.OutOfMemoryException):
-        lacks = "needs more memory than this machine has: use a larger one, or ask for fewer --rules"
-        return Refused(drive.trace.path, TraceError(f"{drive.trace.path}: {lacks}"))
+        return Refused(drive.trace.path, MemoryShortError(str(drive.trace.path)))
     return Refused(drive.trace.path, TraceError(f"{drive.trace.path}: {str(error).splitlines()[0]}"))
 
 

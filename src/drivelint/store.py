@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import duckdb
 
-from drivelint.errors import DriveLintError
+from drivelint.errors import DriveLintError, MemoryShortError
 from drivelint.resources import folder
 
 if TYPE_CHECKING:
@@ -64,11 +64,14 @@ def connect(
 def workspace(memory: int | None) -> Iterator[duckdb.DuckDBPyConnection]:
     """Open a database in memory that goes to a temporary folder, removed afterwards, beyond `memory` bytes.
 
-    None: beyond 80 % of the machine's. Errors: as those of `connect`.
+    None: beyond 80 % of the machine's. Errors: as those of `connect`; `MemoryShortError` for what does not even fit so.
     """
     limit = None if memory is None else f"{memory}B"
     with TemporaryDirectory(prefix="drivelint-") as spill, connect(memory_limit=limit, spill=Path(spill)) as con:
-        yield con
+        try:
+            yield con
+        except duckdb.OutOfMemoryException as error:
+            raise MemoryShortError("the database") from error
 
 
 def lock(con: duckdb.DuckDBPyConnection) -> None:

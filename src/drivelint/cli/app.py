@@ -215,6 +215,7 @@ def inspect(
         typer.Option("--rules", metavar="SEL", help="Rules to ask about, as in check. Repeatable. Default: ukhc."),
     ] = None,
     rules_dir: options.RulesDirs = None,
+    memory: options.MemorySize = None,
     format_: options.Printed = options.Format.text,
 ) -> None:
     """Show what is in a log and what it can decide.
@@ -238,6 +239,7 @@ def inspect(
         env=tuple(env or ()),
         rules=tuple(rules or ()),
         rules_dirs=tuple(rules_dir or ()),
+        memory=values.memory(memory),
     )
     found = interruptible(lambda: inspection.inspect(order))
     if format_ is options.Format.json:
