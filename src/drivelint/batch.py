@@ -103,20 +103,21 @@ def cut(drives: Iterable[Drive | Refused]) -> Iterator[list[Drive | Refused]]:
         yield batch
 
 
-def parts(drives: Sequence[Drive]) -> list[list[str]]:
+def parts(drives: Sequence[Drive], room: int | None = None) -> list[list[str]]:
     """Return, for each part in which a batch is judged, the egos that are not judged in it; a part has at least one ego.
 
-    Only a drive alone is cut, with its egos in the order of their ids; what comes out does not depend on where.
+    Only a drive alone is cut, with its egos in the order of their ids, into parts of at most `room` meetings (default: `MEETINGS`);
+    what comes out does not depend on where.
     """
     meetings = drives[0].meetings if len(drives) == 1 else {}
     found: list[list[str]] = []
-    room = 0
+    left = 0
     for ego, n in meetings.items():
-        if not found or n > room:
+        if not found or n > left:
             found.append([])
-            room = MEETINGS
+            left = MEETINGS if room is None else room
         found[-1].append(ego)
-        room -= n
+        left -= n
     return [[ego for ego in meetings if ego not in part] for part in map(set, found)] or [[]]
 
 

@@ -37,6 +37,15 @@ class MapError(DriveLintError):
     exit_code = ExitCode.NOT_JUDGED
 
 
+class MemoryShortError(DriveLintError):
+    """The machine has less memory than one vehicle of a drive needs, alone: a larger one, or fewer rules."""
+
+    exit_code = ExitCode.NOT_JUDGED
+
+    def __init__(self, what: str) -> None:
+        super().__init__(f"{what}: needs more memory than this machine has: use a larger one, or fewer --rules")
+
+
 class TraceError(DriveLintError):
     """A log is missing, unreadable, or holds nothing that can be judged."""
 

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Final, Protocol
 import duckdb
 import pyarrow as pa
 import pyarrow.compute as pc
-import pyarrow.parquet as pq
 
 from drivelint import store
 from drivelint.batch import parts
 from drivelint.derive import derivations, derive
 from drivelint.errors import RuleError
 from drivelint.evaluate import evaluate
+from drivelint.margins import MarginFile
+from drivelint.memory import Memory
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -43,9 +44,14 @@ _RESULTS: Final = (
     "opportunity_record",
     "profile",
 )
-_MARGIN_ORDER: Final = "drive_id, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, ref_id NULLS FIRST, t_ns"
-_MARGIN: Final = "* REPLACE (drive_id::VARCHAR AS drive_id, ego_id::VARCHAR AS ego_id, object_id::VARCHAR AS object_id)"
-_MARGIN_BLOCK: Final = 1 << 20
+
+
+class _PartTooLargeError(Exception):
+    """A part of a drive ran out of memory, and has several egos: judge fewer at once."""
+
+    def __init__(self, meetings: int) -> None:
+        super().__init__(meetings)
+        self.meetings = meetings
 
 
 class Witness(Protocol):
@@ -61,6 +67,7 @@ class Bench:
 
     A drive of many egos is judged some of them at a time, so that its tables stay small whatever their number.
     `out` is where `margins_file` and the kept database go. `witnesses` are called after each part while its tables are there.
+    `memory` says how many, and gives way where there is too little (default: the database has no limit of ours).
     """
 
     def __init__(
@@ -73,72 +80,98 @@ class Bench:
         margins: bool = False,
         keep_db: bool = False,
         witnesses: Sequence[Witness] = (),
+        memory: Memory | None = None,
     ) -> None:
         self._con = con
         self._rules = rules
         self._params = params
         self._witnesses = witnesses
         self._tables = {table for rule in rules for table in rule.reads}
-        self._margins: pq.ParquetWriter | None = None
+        self._memory = memory or Memory(con, None)
         self._seen: set[str] = set()
-        self._limited = True
         self._maps: frozenset[str] = frozenset()
         self._kept_maps: set[str] = set()
-        self.margins_file = out / ".margins.parquet" if margins and out else None
+        self._margins = MarginFile(out / ".margins.parquet") if margins and out else None
         self._kept = out / "drivelint.duckdb" if keep_db and out else None
         if self._kept:
             self._attach(self._kept)
         store.lock(con)  # from here on rules of anybody may run in it
+
+    @property
+    def margins_file(self) -> Path | None:
+        """Where the margins are; None: nobody asked for them."""
+        return None if self._margins is None else self._margins.path
 
     def knows(self, drive: Drive) -> bool:
         """Whether this very log was judged before."""
         return drive.trace.drive_id in self._seen
 
     def judge(self, drives: Sequence[Drive]) -> None:
-        """Judge a batch of drives; if it fails, nothing of it stays behind."""
+        """Judge a batch of drives; if it fails, nothing of it stays behind.
+
+        Errors: `duckdb.OutOfMemoryException` for several drives, which may fit one by one, and for one that does not fit with
+        all the memory there is, each of its egos alone.
+        """
         if not drives:
             return
+        while not self._fits(drives):
+            pass
+        self._seen.update(drive.trace.drive_id for drive in drives)
+        if self._margins:
+            self._margins.add(self._con, self._memory)
+        self._clear()
+
+    def _fits(self, drives: Sequence[Drive]) -> bool:
+        """Judge a batch. Return False if memory ran out: the next try needs less at once, or may have more."""
         try:
             self._judge(drives)
+        except _PartTooLargeError as part:
+            self._memory.halve(part.meetings)
+            return False
         except duckdb.OutOfMemoryException:
-            # the usual limit keeps long drives small; what cannot be spilled to disk may take what the machine has
-            store.lift_memory_limit(self._con)
-            self._limited = False
-            self._judge(drives)
-        self._seen.update(drive.trace.drive_id for drive in drives)
-        self._write_margins()
-        self._clear()
+            # what one ego needs and cannot be spilled to disk may take what the machine has
+            if len(drives) > 1 or not self._memory.lift():
+                raise
+            return False
+        return True
 
     def _judge(self, drives: Sequence[Drive]) -> None:
         ids = [drive.trace.drive_id for drive in drives]
         with ExitStack() as undo:
             undo.callback(self._forget, ids)
             self._load(drives)
-            todo = parts(drives)
+            todo = parts(drives, self._memory.room)
             for no, resting in enumerate(todo):
                 if no:
                     store.renew(self._con, [*_part_tables(drives[0]), "resting_ego"])
                 if resting:
                     store.insert(self._con, "resting_ego", _egos(drives[0], resting))
-                self._judge_part(ids)
-                for witness in self._witnesses:
-                    witness(self._con, drives, first=no == 0, last=no + 1 == len(todo))
+                judged = {ego: n for ego, n in drives[0].meetings.items() if ego not in set(resting)}
+                cuttable = len(drives) == 1 and len(judged) > 1
+                try:
+                    self._judge_part(ids, may_retry=len(drives) > 1 or cuttable or self._memory.limited)
+                    for witness in self._witnesses:
+                        witness(self._con, drives, first=no == 0, last=no + 1 == len(todo))
+                except duckdb.OutOfMemoryException as error:
+                    if cuttable:
+                        raise _PartTooLargeError(sum(judged.values())) from error
+                    raise
                 trace_tables = [t for t in drives[0].trace.tables if t not in _RESULTS and not no]
                 self._keep([*trace_tables, *_part_tables(drives[0])], again=no > 0)
             self._keep(["margin"])
             undo.pop_all()
 
-    def _judge_part(self, ids: Sequence[str]) -> None:
+    def _judge_part(self, ids: Sequence[str], *, may_retry: bool) -> None:
         """Judge the egos that do not rest."""
         derive(self._con, self._tables, of_the_map=False)
         evaluate(
             self._con,
             self._rules,
             self._params,
-            margins=self.margins_file is not None,
+            margins=self._margins is not None,
             courses=bool(self._witnesses),
+            may_retry=may_retry,
         )
-        self._refuse_short_memory(ids)
         self._refuse_shared_error(ids)
 
     def close(self) -> None:
@@ -171,19 +204,6 @@ class Bench:
             rows = pa.concat_tables([_on_map(d) if table == "data_log" else d.trace.tables[table] for d in drives])
             store.insert(self._con, table, rows)
 
-    def _write_margins(self) -> None:
-        if not self.margins_file:
-            return
-        # block by block: those of a drive of many egos are too many to hold at once
-        blocks = self._con.execute(f"SELECT {_MARGIN} FROM margin ORDER BY {_MARGIN_ORDER}").to_arrow_reader(
-            _MARGIN_BLOCK
-        )
-        if self._margins is None:
-            self.margins_file.parent.mkdir(parents=True, exist_ok=True)
-            self._margins = pq.ParquetWriter(self.margins_file, blocks.schema, compression="zstd")
-        for block in blocks:
-            self._margins.write_batch(block)
-
     def _attach(self, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.unlink(missing_ok=True)
@@ -199,7 +219,7 @@ class Bench:
         for table in tables:
             whole = again and ("ego_id" not in store.schema()[table] or table == "ego_clock")
             known = f" EXCEPT FROM kept.{table}" if whole else ""
-            self._con.execute(f"INSERT INTO kept.{table} SELECT * FROM {table}{known}")
+            self._memory.execute(f"INSERT INTO kept.{table} SELECT * FROM {table}{known}")
 
     def _keep_maps(self, ids: Iterable[str]) -> None:
         new = sorted(ids)
@@ -209,12 +229,6 @@ class Bench:
                     f"INSERT INTO kept.{table} SELECT * FROM {table} WHERE list_contains(?, environment_id)", [new]
                 )
             self._kept_maps.update(new)
-
-    def _refuse_short_memory(self, ids: Sequence[str]) -> None:
-        """A rule that ran out of memory under the usual limit is not at fault yet."""
-        short = "SELECT count(*) FROM verdict WHERE verdict = 'error' AND reason_code = 'out_of_memory' AND list_contains(?, drive_id)"
-        if self._limited and self._con.execute(short, [list(ids)]).fetchall()[0][0]:
-            raise duckdb.OutOfMemoryException("a rule needs more than the usual memory")
 
     def _refuse_shared_error(self, ids: Sequence[str]) -> None:
         """Let a rule that erred on a crowd be tried on each drive alone: the fault of one is not the others'."""

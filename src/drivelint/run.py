@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import duckdb
 import pyarrow as pa
@@ -13,10 +11,12 @@ import pyarrow as pa
 from drivelint import catalogue, conditions, store
 from drivelint.annotate import Annotator
 from drivelint.batch import Drive, Refused, cut, in_order, read
-from drivelint.errors import DriveLintError, TraceError, UsageError
+from drivelint.errors import DriveLintError, MemoryShortError, TraceError, UsageError
 from drivelint.ingest import IngestOptions, expand
 from drivelint.judge import Bench
 from drivelint.maps.library import MapLibrary
+from drivelint.memory import DEFAULT as DEFAULT_MEMORY
+from drivelint.memory import Memory
 from drivelint.profiles import DEFAULT, load_profiles, profile_table
 from drivelint.report import collect, evidence
 from drivelint.report.asked import Asked
@@ -26,14 +26,11 @@ from drivelint.report.rulebook import rule_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
+    from pathlib import Path
 
     from drivelint.ingest.trace import EgoSize
     from drivelint.judge import Witness
     from drivelint.report.progress import Progress
-
-# what the database keeps in memory before it uses the disk: measured to cost nothing on a drive of 600,000 states, and to hold
-# one of 4.8 million in 2.3 GB instead of 13.7
-MEMORY: Final = "1200MB"
 
 
 @dataclass(frozen=True)
@@ -64,6 +61,8 @@ class Settings:
     margins: bool = False
     keep_db: bool = False
     annotate: bool = True
+    memory: int | None = DEFAULT_MEMORY
+    """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
 
 
 def check(settings: Settings, progress: Progress) -> Result:
@@ -91,7 +90,8 @@ def check(settings: Settings, progress: Progress) -> Result:
         settings.map, settings.map_offset, settings.handedness, origin=settings.map_origin, folder=settings.map_dir
     )
 
-    with TemporaryDirectory(prefix="drivelint-") as spill, store.connect(memory_limit=MEMORY, spill=Path(spill)) as con:
+    with store.workspace(settings.memory) as con:
+        memory = Memory(con, settings.memory, progress.note)
         store.insert(con, "profile", profiles)
         table = rule_table(rules, params, settings.profiles or DEFAULT)
         bench = Bench(
@@ -102,6 +102,7 @@ def check(settings: Settings, progress: Progress) -> Result:
             margins=settings.margins,
             keep_db=settings.keep_db,
             witnesses=_witnesses(settings, table),
+            memory=memory,
         )
         progress.stage("checking", len(paths))
         refused: list[Refused] = []
@@ -119,20 +120,20 @@ def check(settings: Settings, progress: Progress) -> Result:
         if len(refused) == len(paths):
             raise _none_judged(refused)
         unjudged = [collect.unjudged(r.path.stem, r.path.name, str(r.error)) for r in refused]
-        drives = pa.concat_tables([collect.drives(con), *unjudged]).sort_by(
+        drives = pa.concat_tables([memory.enough(collect.drives, con), *unjudged]).sort_by(
             [("drive_id", "ascending"), ("file_name", "ascending")]
         )
         return Result(
-            verdicts=collect.verdicts(con),
-            findings=collect.findings(con),
+            verdicts=memory.enough(collect.verdicts, con),
+            findings=memory.enough(collect.findings, con),
             drives=drives,
             rules=table,
-            scenes=evidence.scenes(con),
-            lanes=evidence.lanes(con),
-            spaces=evidence.spaces(con),
-            courses=evidence.courses(con),
-            overtakes=evidence.overtakes(con),
-            opportunities=evidence.opportunities(con),
+            scenes=memory.enough(evidence.scenes, con),
+            lanes=memory.enough(evidence.lanes, con),
+            spaces=memory.enough(evidence.spaces, con),
+            courses=memory.enough(evidence.courses, con),
+            overtakes=memory.enough(evidence.overtakes, con),
+            opportunities=memory.enough(evidence.opportunities, con),
             margins_file=bench.margins_file,
             fail_on=settings.fail_on,
             strict=settings.strict,
@@ -200,31 +201,32 @@ def _judge(bench: Bench, batch: Iterable[Drive | Refused], progress: Progress, s
                 if note not in said:
                     progress.note(f"{item.trace.path.name}: {note}")
             said.update(item.trace.notes)
-    try:
-        bench.judge(drives)
-    except OutputError:
-        raise  # the folder for the results fails, not the drive
-    except (DriveLintError, duckdb.Error) as whole:
-        refused += [_failed(drives[0], whole)] if len(drives) == 1 else _one_by_one(bench, drives)
+    refused += _judged(bench, drives)
     progress.advance(len(drives) + len(refused))
     return refused
 
 
-def _one_by_one(bench: Bench, drives: Iterable[Drive]) -> list[Refused]:
-    refused: list[Refused] = []
-    for drive in drives:
-        try:
-            bench.judge([drive])
-        except OutputError:
-            raise
-        except (DriveLintError, duckdb.Error) as error:
-            refused.append(_failed(drive, error))
-    return refused
+def _judged(bench: Bench, drives: Sequence[Drive]) -> list[Refused]:
+    try:
+        bench.judge(drives)
+    except OutputError:
+        raise  # the folder for the results fails, not the drive
+    except (DriveLintError, duckdb.Error) as error:
+        if len(drives) == 1:
+            return [_failed(drives[0], error)]
+        # in the order of a batch's rows: files that grow with the batches have the same rows in the same order however they are cut
+        drives = sorted(drives, key=lambda drive: drive.trace.drive_id)
+        many = len(drives) // 2 if isinstance(error, duckdb.OutOfMemoryException) else 1
+        pieces = [drives[at : at + many] for at in range(0, len(drives), many)]
+        return [each for piece in pieces for each in _judged(bench, piece)]
+    return []
 
 
 def _failed(drive: Drive, error: Exception) -> Refused:
     if isinstance(error, DriveLintError):
         return Refused(drive.trace.path, error)
+    if isinstance(error, duckdb.OutOfMemoryException):
+        return Refused(drive.trace.path, MemoryShortError(str(drive.trace.path)))
     return Refused(drive.trace.path, TraceError(f"{drive.trace.path}: {str(error).splitlines()[0]}"))
 
 

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import re
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import duckdb
 
-from drivelint.errors import DriveLintError
+from drivelint.errors import DriveLintError, MemoryShortError
 from drivelint.resources import folder
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     import pyarrow as pa
 
@@ -58,6 +60,20 @@ def connect(
     return con
 
 
+@contextmanager
+def workspace(memory: int | None) -> Iterator[duckdb.DuckDBPyConnection]:
+    """Open a database in memory that goes to a temporary folder, removed afterwards, beyond `memory` bytes.
+
+    None: beyond 80 % of the machine's. Errors: as those of `connect`; `MemoryShortError` for what does not even fit so.
+    """
+    limit = None if memory is None else f"{memory}B"
+    with TemporaryDirectory(prefix="drivelint-") as spill, connect(memory_limit=limit, spill=Path(spill)) as con:
+        try:
+            yield con
+        except duckdb.OutOfMemoryException as error:
+            raise MemoryShortError("the database") from error
+
+
 def lock(con: duckdb.DuckDBPyConnection) -> None:
     """Shut a database off from files and network, and its settings from change, before rules run in it.
 
@@ -77,11 +93,13 @@ def lock(con: duckdb.DuckDBPyConnection) -> None:
         con.execute(f"SET {setting}")
 
 
-def lift_memory_limit(con: duckdb.DuckDBPyConnection) -> None:
-    """Let a database take as much memory as DuckDB would by default: 80 % of the machine's."""
+def lift_memory_limit(con: duckdb.DuckDBPyConnection) -> str:
+    """Let a database take as much memory as DuckDB would by default, 80 % of the machine's; return how much that is."""
     con.execute("RESET memory_limit")
     # RESET changes what the setting says, and only SET tells the buffer manager
-    con.execute("SET memory_limit=?", con.execute("SELECT current_setting('memory_limit')").fetchall()[0])
+    (most,) = con.execute("SELECT current_setting('memory_limit')").fetchall()[0]
+    con.execute("SET memory_limit=?", [most])
+    return str(most)
 
 
 def opened(path: Path | None = None, *, read_only: bool = False) -> duckdb.DuckDBPyConnection:

@@ -114,6 +114,7 @@ def check(
     baseline: options.Baseline = None,
     waivers: options.Waivers = None,
     today: options.Today = None,
+    memory: options.MemorySize = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
     """Judge recorded drives against the rules.
@@ -128,6 +129,7 @@ def check(
     rule unknown); 75 the machine failed, try again; 130 interrupted.
     """
     from drivelint import run
+    from drivelint.memory import peak, worded
     from drivelint.report.files import prepare
     from drivelint.report.gate import Keeper
     from drivelint.report.outputs import write
@@ -160,6 +162,7 @@ def check(
         keep_db=keep_db,
         annotate=annotate,
         topic=topic,
+        memory=values.memory(memory),
     )
     if out is not None:
         prepare(out)
@@ -169,6 +172,8 @@ def check(
             result = keeper.gate(result)
         if out is not None:
             write(result, out)
+        if memory is not None and (most := peak()) is not None:
+            progress.note(f"{worded(most)} of memory were taken at most, with everything that is not the database's")
     _print(result, format_, out)
     raise typer.Exit(int(exit_code(result)))
 
@@ -210,6 +215,7 @@ def inspect(
         typer.Option("--rules", metavar="SEL", help="Rules to ask about, as in check. Repeatable. Default: ukhc."),
     ] = None,
     rules_dir: options.RulesDirs = None,
+    memory: options.MemorySize = None,
     format_: options.Printed = options.Format.text,
 ) -> None:
     """Show what is in a log and what it can decide.
@@ -233,6 +239,7 @@ def inspect(
         env=tuple(env or ()),
         rules=tuple(rules or ()),
         rules_dirs=tuple(rules_dir or ()),
+        memory=values.memory(memory),
     )
     found = interruptible(lambda: inspection.inspect(order))
     if format_ is options.Format.json:

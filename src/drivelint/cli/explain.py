@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from drivelint.cli import options
+from drivelint.cli import options, values
 from drivelint.cli.shell import interruptible, say
 
 
@@ -49,6 +49,7 @@ def explain(
         int, typer.Option("--samples", min=0, max=100_000, help="Copies with such errors; 0 leaves them out.")
     ] = 100,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Another one draws other errors.")] = 0,
+    memory: options.MemorySize = None,
     format_: options.Printed = options.Format.text,
 ) -> None:
     """Show why one verdict is what it is.
@@ -70,6 +71,7 @@ def explain(
         trace,
         map_,
         Errors(position, time, of_map, samples, seed),
+        values.memory(memory),
     )
     found = interruptible(lambda: explained(order))
     if format_ is options.Format.json:

@@ -146,6 +146,15 @@ Today = Annotated[
     str | None,
     typer.Option("--today", metavar="DATE", help="The day that waivers are held against. Default: the system's."),
 ]
+MemorySize = Annotated[
+    str | None,
+    typer.Option(
+        "--memory",
+        metavar="SIZE|none",
+        help="What the database keeps to before it uses the disk: 512MB, 2GB; none, 80 % of the machine's. Results do not depend "
+        "on it; what cannot go to disk takes more, which is said. The program itself takes some 300 MB more. Default: 1200MB.",
+    ),
+]
 Printed = Annotated[Format, typer.Option("--format", help="What is printed on stdout.")]
 RulesDirs = Annotated[
     list[Path] | None,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from datetime import date, datetime
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,24 @@ def today(text: str | None) -> date:
         return date.fromisoformat(text)
     except ValueError as error:
         raise UsageError(f"--today {text!r}: write a day such as 2027-03-31") from error
+
+
+def memory(text: str | None) -> int | None:
+    """Read how many bytes the database keeps to, None for `none`; the default if nothing is given. Errors: `UsageError`."""
+    from drivelint.memory import DEFAULT, LEAST
+
+    if text is None:
+        return DEFAULT
+    if text.strip().lower() == "none":
+        return None
+    said = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*([KMGT])(i?)B\s*", text, re.IGNORECASE)
+    if said is None:
+        raise UsageError(f"--memory {text!r}: write a size such as 512MB or 1.5GB, or none")
+    number, prefix, binary = said.groups()
+    size = int(float(number) * (1024 if binary else 1000) ** ("KMGT".index(prefix.upper()) + 1))
+    if size < LEAST:
+        raise UsageError(f"--memory {text}: the least is {LEAST // 10**6}MB")
+    return size
 
 
 def offset(text: str | None) -> tuple[float, float] | None:

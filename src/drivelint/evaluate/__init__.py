@@ -31,12 +31,15 @@ def evaluate(
     *,
     margins: bool = False,
     courses: bool = False,
+    may_retry: bool = False,
 ) -> None:
     """Judge every (drive_id, ego_id) of `clock` by `rules`; append to `verdict`, `finding` and, if asked for, `margin`, `course`.
 
     `con` holds the tables of schemas/*.sql, filled, and is not inside a transaction. `params` is rule id -> parameter
     -> value.
-    A failing statement costs its rule only. Errors: `UsageError` for parameters of rules or names that do not exist.
+    A failing statement costs its rule only. With `may_retry`, running out of memory is no failure of the rule but raised, and the
+    tables are then of no use. Errors: `UsageError` for parameters of rules or names that do not exist;
+    `duckdb.OutOfMemoryException`.
     """
     params = params or {}
     strange = sorted(params.keys() - {rule.id for rule in rules})
@@ -45,7 +48,7 @@ def evaluate(
     if not rules:
         return
     bindings = [Binding(rule, no, params.get(rule.id, {})) for no, rule in enumerate(rules)]
-    run = Run(con, bindings, margins=margins, courses=courses)
+    run = Run(con, bindings, margins=margins, courses=courses, may_retry=may_retry)
     try:
         run.judge()
     finally:

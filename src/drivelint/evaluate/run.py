@@ -26,12 +26,19 @@ class Run:
     """A connection, the rules to judge on it, and what they share."""
 
     def __init__(
-        self, con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding], *, margins: bool, courses: bool = False
+        self,
+        con: duckdb.DuckDBPyConnection,
+        bindings: Sequence[Binding],
+        *,
+        margins: bool,
+        courses: bool = False,
+        may_retry: bool = False,
     ) -> None:
         self._con = con
         self._bindings = bindings
         self._margins = margins
         self._courses = courses
+        self._may_retry = may_retry
         self._n_todo: dict[int, int] = {}
         self._n_subjects = 0
         self._has_holes = False
@@ -53,7 +60,7 @@ class Run:
     def _share(self, todo: deque[Binding]) -> None:
         """Judge on a second connection too: on so few rows a statement is planned and run on one core."""
         with ThreadPoolExecutor(1) as pool, self._con.cursor() as other:
-            helper = Run(other, self._bindings, margins=self._margins, courses=self._courses)
+            helper = Run(other, self._bindings, margins=self._margins, courses=self._courses, may_retry=self._may_retry)
             helped = pool.submit(helper.assist, todo)
             try:
                 self._work(todo)
@@ -177,11 +184,18 @@ class Run:
         return int(row[0]) if row else 0
 
     def _blame(self, binding: Binding, error: duckdb.Error) -> None:
-        """Make this rule an error for every subject that it was to judge."""
-        code = "out_of_memory" if isinstance(error, duckdb.OutOfMemoryException) else "rule_error"
+        """Make this rule an error for every subject that it was to judge; raise what another try may not meet."""
+        code, words = "rule_error", str(error).splitlines()[0]
+        if isinstance(error, duckdb.OutOfMemoryException):
+            if self._may_retry:
+                raise error
+            code, words = (
+                "out_of_memory",
+                "needs more memory than there is",
+            )  # the database tells of blocks, ever others
         self._con.execute(
             "INSERT INTO _error SELECT rule_no, drive_id, ego_id, $code, $reason FROM _todo WHERE rule_no = $no",
-            {"no": binding.no, "code": code, "reason": f"rule {binding.rule.id}: {str(error).splitlines()[0]}"},
+            {"no": binding.no, "code": code, "reason": f"rule {binding.rule.id}: {words}"},
         )
 
 

@@ -20,6 +20,7 @@ from drivelint.explain.outcome import first_unknown
 from drivelint.explain.sensitivity import Errors, copies, counted
 from drivelint.explain.source import open_drive
 from drivelint.explain.target import Wanted, find
+from drivelint.memory import DEFAULT
 from drivelint.profiles import load_profiles, profile_table
 from drivelint.report import asked as asking
 from drivelint.report.load import load
@@ -48,6 +49,8 @@ class Order:
     trace: Path | None = None
     map: Path | None = None
     errors: Errors = field(default_factory=Errors)
+    memory: int | None = DEFAULT
+    """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
 
 
 def explain(order: Order) -> Explanation:
@@ -58,7 +61,7 @@ def explain(order: Order) -> Explanation:
     result = load(order.folder)
     asked = asking.load(order.folder)
     target = find(result, order.name, order.wanted)
-    case = _case(asked, target)
+    case = _case(asked, target, order.memory)
     row = target.row
     drive, source = open_drive(order.folder, asked, row["drive_id"], row["ego_id"], trace=order.trace, map_=order.map)
     with ExitStack() as opened:
@@ -99,7 +102,7 @@ def explain(order: Order) -> Explanation:
     )
 
 
-def _case(asked: Asked, target: Target) -> Case:
+def _case(asked: Asked, target: Target, memory: int | None) -> Case:
     """Return the rule of a verdict, as it was set in that run."""
     folders = [Path(folder) for folder in asked.rules_dirs]
     known = catalogue.load(folders)
@@ -110,7 +113,7 @@ def _case(asked: Asked, target: Target) -> Case:
     mine = [setting for setting in asked.params if setting.partition("=")[0].strip().rpartition(".")[0] == rule_id]
     set_ = catalogue.parse_params([rule], mine).get(rule_id, {})
     params = {name: set_.get(name, param.default) for name, param in rule.params.items()}
-    return Case(rule, target, params, profile_table(load_profiles(folders), asked.profiles))
+    return Case(rule, target, params, profile_table(load_profiles(folders), asked.profiles), memory)
 
 
 def _decides(target: Target, series: list[Step], now: str) -> int | None:

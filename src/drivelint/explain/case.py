@@ -29,10 +29,11 @@ class Case:
     target: Target
     params: Mapping[str, object]
     profiles: pa.Table
+    memory: int | None
 
     def lab(self, drives: Sequence[Drive]) -> Lab:
         """Return a database with these drives, derived for the rule."""
-        return Lab(self.rule, drives, self.profiles)
+        return Lab(self.rule, drives, self.profiles, self.memory)
 
     def verdict(self, lab: Lab, params: Mapping[str, object] | None = None) -> str:
         """Return the verdict on the one drive in a lab, with other parameters if they are given."""

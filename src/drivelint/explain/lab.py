@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import re
+from contextlib import ExitStack
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, Self
 
+import duckdb
 import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint import store
-from drivelint.derive import derive, needed
+from drivelint.derive import derivations, derive, needed
 from drivelint.evaluate import evaluate
+from drivelint.memory import Memory
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -22,7 +25,6 @@ if TYPE_CHECKING:
     from drivelint.explain.model import Row
 
 _JUDGED: Final = ("verdict", "finding", "margin")
-MEMORY: Final = "1200MB"
 _READS_PROFILE: Final = re.compile(r"\b(?:FROM|JOIN)\s+profile\b", re.IGNORECASE)
 
 
@@ -36,28 +38,47 @@ class Judged(NamedTuple):
 class Lab:
     """One rule over some copies of a drive, derived once. Use it as a context manager.
 
-    `drives` share one map. The shipped or user's `profiles` are the rows of the table `profile`.
+    `drives` share one map. The shipped or user's `profiles` are the rows of the table `profile`. `memory` is the limit of the
+    database in bytes (None: 80 % of the machine's), which is lifted where it does not do.
     """
 
-    def __init__(self, rule: Rule, drives: Sequence[Drive], profiles: pa.Table) -> None:
+    def __init__(self, rule: Rule, drives: Sequence[Drive], profiles: pa.Table, memory: int | None) -> None:
         self._rule = rule
         self.drive_id = drives[0].trace.drive_id
-        self.con = store.connect(memory_limit=MEMORY)
-        store.insert(self.con, "profile", profiles)
+        with ExitStack() as stack:
+            self.con = stack.enter_context(store.workspace(memory))
+            self._memory = Memory(self.con, memory)
+            self._insert("profile", profiles)
+            self._fill(drives)
+            self._derive()
+            self._opened = stack.pop_all()
+
+    def _insert(self, table: str, rows: pa.Table) -> None:
+        self._memory.enough(lambda con: store.insert(con, table, rows), self.con)
+
+    def _fill(self, drives: Sequence[Drive]) -> None:
         environment = drives[0].environment
         if environment is not None:
             for table, rows in environment.tables.items():
-                store.insert(self.con, table, rows)
+                self._insert(table, rows)
         store.lock(self.con)
-        derive(self.con, rule.reads, of_the_map=True)
         place = pa.array([environment.environment_id if environment else None], pa.string())
         for table in drives[0].trace.tables:
             rows = pa.concat_tables([drive.trace.tables[table] for drive in drives])
             if table == "data_log":
                 at = rows.schema.get_field_index("environment_id")
                 rows = rows.set_column(at, "environment_id", pa.concat_arrays([place] * rows.num_rows))
-            store.insert(self.con, table, rows)
-        derive(self.con, rule.reads, of_the_map=False)
+            self._insert(table, rows)
+
+    def _derive(self) -> None:
+        try:
+            for of_the_map in (True, False):
+                derive(self.con, self._rule.reads, of_the_map=of_the_map)
+        except duckdb.OutOfMemoryException:
+            if not self._memory.lift():
+                raise
+            store.renew(self.con, derivations())
+            self._derive()
 
     def __enter__(self) -> Self:
         return self
@@ -65,13 +86,17 @@ class Lab:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self.con.close()
+        self._opened.close()
 
     def judge(self, params: Mapping[str, object]) -> Judged:
         """Judge every copy by the rule with these parameters."""
+        return self._memory.enough(lambda _con: self._judged(params), self.con)
+
+    def _judged(self, params: Mapping[str, object]) -> Judged:
         for table in _JUDGED:
             self.con.execute(f"DELETE FROM {table}")
-        evaluate(self.con, [self._rule], {self._rule.id: params}, margins=True)
+        given = {self._rule.id: params}
+        evaluate(self.con, [self._rule], given, margins=True, may_retry=self._memory.limited)
         return Judged(
             self.rows("SELECT * FROM verdict ORDER BY drive_id, t_start_ns, occurrence, profile, object_id"),
             self.rows("SELECT * FROM margin ORDER BY drive_id, t_ns, profile, object_id, ref_id"),
@@ -86,7 +111,7 @@ class Lab:
             if derivation.reads & stale or _READS_PROFILE.search(derivation.sql):
                 stale.add(derivation.table)
                 self.con.execute(f"DELETE FROM {derivation.table}")
-                self.con.execute(f"INSERT INTO {derivation.table} BY NAME {derivation.sql}")
+                self._memory.execute(f"INSERT INTO {derivation.table} BY NAME {derivation.sql}")
 
     def rows(self, sql: str, values: Sequence[Any] = ()) -> list[Row]:
         """Return the rows of a query as dictionaries."""

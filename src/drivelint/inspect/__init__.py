@@ -18,6 +18,7 @@ from drivelint.inspect import advice, model, tracks
 from drivelint.inspect.content import content, size
 from drivelint.judge import Bench
 from drivelint.maps.library import MapLibrary
+from drivelint.memory import DEFAULT, Memory
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,6 +53,8 @@ class Order:
     env: tuple[str, ...] = ()
     rules: tuple[str, ...] = ()
     rules_dirs: tuple[Path, ...] = ()
+    memory: int | None = DEFAULT
+    """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
 
 
 def inspect(order: Order) -> model.Inspection:
@@ -122,12 +125,14 @@ def _drive(
 ) -> model.Drive:
     trace, environment, road_problem = _on_its_map(trace, library)
     everybody = tracks.actors(trace)
-    egos, quality = _judgeable(trace, environment, everybody, rules, road_problem)
+    egos, quality = _judgeable(trace, environment, everybody, rules, road_problem, memory=order.memory)
     supposed, candidates = None, []
     if not egos:
         candidates = tracks.candidates(everybody)
         supposing = _options(order, candidates[0].actor_id)
-        ((supposed,), _) = _judgeable(read_trace(trace.path, supposing), environment, everybody, rules, road_problem)
+        ((supposed,), _) = _judgeable(
+            read_trace(trace.path, supposing), environment, everybody, rules, road_problem, memory=order.memory
+        )
     return model.Drive(
         clock=tracks.clock(trace),
         states=trace.tables["actor_state"].num_rows,
@@ -160,10 +165,12 @@ def _judgeable(
     everybody: Sequence[model.Actor],
     rules: Sequence[Rule],
     road_problem: str | None,
+    *,
+    memory: int | None,
 ) -> tuple[list[model.Ego], list[model.Quality]]:
     """Lay the drive on the bench without a rule, and ask what the library says of its egos and its data."""
-    with store.connect() as con:
-        bench = Bench(con, (), {}, None)
+    with store.workspace(memory) as con:
+        bench = Bench(con, (), {}, None, memory=Memory(con, memory))
         bench.judge([Judgeable(trace, environment)])
         rows = {table: _rows(con, f"FROM {table}") for table in ("capability", "registration", "exposure")}
         start = trace.tables["data_log"]["t_start_ns"][0].as_py()

@@ -1,0 +1,322 @@
+"""Memory does not decide: the results are the same under any limit, and what runs out of memory is judged in another way."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import duckdb
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from drivelint import batch, margins, store
+from drivelint.cli import values
+from drivelint.derive import derive as derived
+from drivelint.errors import UsageError
+from drivelint.evaluate import evaluate as evaluated
+from drivelint.evaluate.run import Run
+from drivelint.memory import DEFAULT, LEAST, Memory
+from drivelint.report.evidence import gather as gathered
+from drivelint.report.outputs import write
+from drivelint.report.progress import Silent
+from drivelint.run import Settings, check
+from tests.bench import traffic
+from tests.shared_data import shared
+
+FIXTURE = Path(__file__).resolve().parents[1] / "fixtures" / "overtake"
+FEW = ("ukhc.no-collision", "ukhc.r162.safe-distance-ahead")
+SHORT = duckdb.OutOfMemoryException("could not allocate block of size 256.0 KiB (1.1 GiB/1.1 GiB used)")
+
+
+class Notes(Silent):
+    """Keeps what the pipeline says."""
+
+    def __init__(self) -> None:
+        self.said: list[str] = []
+
+    def note(self, text: str) -> None:
+        self.said.append(text)
+
+
+@pytest.fixture(autouse=True)
+def halved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Return the meetings of the parts that did not fit."""
+    found: list[int] = []
+    halve = Memory.halve
+
+    def told(self: Memory, meetings: int) -> None:
+        found.append(meetings)
+        halve(self, meetings)
+
+    monkeypatch.setattr(Memory, "halve", told)
+    return found
+
+
+def overtakes(*names: str, **options: Any) -> Settings:
+    """Return settings for the fixture's logs, with each of their three vehicles as ego."""
+    given = {"rules": FEW, "ego": "all", **options}
+    mapping = str(FIXTURE / "mapping.toml")
+    return Settings(
+        tuple(str(FIXTURE / f"{n}.csv") for n in names), map=FIXTURE / "road.xodr", mapping=mapping, **given
+    )
+
+
+def files(asked: Settings) -> dict[str, bytes]:
+    """Check, write the results, and return every file of them."""
+    assert asked.out is not None
+    write(check(asked, Silent()), asked.out)
+    return {str(f.relative_to(asked.out)): f.read_bytes() for f in sorted(asked.out.rglob("*")) if f.is_file()}
+
+
+def same(found: dict[str, bytes], wanted: dict[str, bytes]) -> None:
+    assert found.keys() == wanted.keys()
+    assert [name for name in found if found[name] != wanted[name]] == []
+
+
+@pytest.fixture(scope="module")
+def crowd(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """Return a log of 30 vehicles, whose pairs of one part do not fit into the least memory, and its road."""
+    folder = tmp_path_factory.mktemp("crowd")
+    (folder / "ring.xodr").write_text(traffic.ring(), encoding="utf-8")
+    return traffic.write_folder(folder / "crowd", traffic.Shape(20.0, 10, 30)), folder / "ring.xodr"
+
+
+def crowded(crowd: tuple[Path, Path], **options: Any) -> Settings:
+    return Settings((str(crowd[0]),), map=crowd[1], ego="all", **options)
+
+
+@pytest.mark.slow
+def test_any_limit_gives_the_same_files(crowd: tuple[Path, Path], tmp_path: Path, halved: list[int]) -> None:
+    asked = {"rules": ("ukhc",), "margins": True}
+    usual = files(crowded(crowd, out=tmp_path / "a", memory=None, **asked))
+    assert not halved
+    for no, limit in enumerate((LEAST, 150_000_000, LEAST, DEFAULT, LEAST)):
+        same(files(crowded(crowd, out=tmp_path / f"b{no}", memory=limit, **asked)), usual)
+    assert halved, "the least memory does not do for as many at once as are tried first"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("limit", [512_000_000, DEFAULT])
+def test_a_real_log_of_many_egos_gives_the_same_files(limit: int, tmp_path: Path) -> None:
+    """The log whose checks ended at random (exit code 1, or 4 and out of memory)."""
+    asked: dict[str, Any] = {
+        "traces": (str(shared("cav_loop/TEST003.csv")),),
+        "map": shared("cav_loop/loop_geo_RHD.xodr"),
+        "mapping": str(shared("cav_loop/mapping.toml")),
+        "handedness": "lht",
+        "rules": ("all",),
+        "ego": "all",
+    }
+    wanted = files(Settings(**asked, out=tmp_path / "a", memory=None))
+    same(files(Settings(**asked, out=tmp_path / "b", memory=limit)), wanted)
+
+
+def test_what_does_not_fit_is_judged_with_fewer_egos_at_once(crowd: tuple[Path, Path], halved: list[int]) -> None:
+    """For real: the table of pairs is larger than the limit, and in use."""
+    notes = Notes()
+    short = check(crowded(crowd, rules=("ukhc.no-collision",), memory=LEAST), notes)
+    assert halved
+    assert notes.said == [], "an ego alone fits"
+    assert short.verdicts.equals(check(crowded(crowd, rules=("ukhc.no-collision",), memory=None), Silent()).verdicts)
+
+
+STEPS = {
+    "drivelint.judge.derive": derived,
+    "drivelint.judge.evaluate": evaluated,
+    "drivelint.run.evidence.gather": gathered,
+}
+
+
+@pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("fits", ["one ego", "no limit"])
+def test_memory_that_does_not_do_is_no_error(
+    step: str, fits: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, halved: list[int]
+) -> None:
+    usual = files(overtakes("near_miss", out=tmp_path / "a", margins=True, annotate=False))
+
+    def short(con: duckdb.DuckDBPyConnection, *args: Any, **options: Any) -> None:
+        ((n_egos,),) = con.execute(
+            "SELECT count(DISTINCT actor_id) FROM actor WHERE is_ego AND actor_id NOT IN (SELECT ego_id FROM resting_ego)"
+        ).fetchall()
+        ((limit,),) = con.execute("SELECT current_setting('memory_limit')").fetchall()
+        STEPS[step](con, *args, **options)
+        if n_egos > 1 or (fits == "no limit" and limit == "1.1 GiB" and not options.get("of_the_map")):
+            raise SHORT
+
+    monkeypatch.setattr(step, short)
+    again = overtakes("near_miss", out=tmp_path / "b", margins=True, annotate=False)
+    notes = Notes()
+    write(check(again, notes), tmp_path / "b")
+    same({str(f.relative_to(tmp_path / "b")): f.read_bytes() for f in sorted((tmp_path / "b").iterdir())}, usual)
+    assert halved
+    if fits == "one ego":
+        assert notes.said == [], "the limit is lifted only where nothing else helps"
+    else:
+        assert re.fullmatch(
+            r"1\.2 GB of memory do not do \(--memory\): the database may take up to .* GiB", notes.said[0]
+        )
+        assert len(notes.said) == 1
+
+
+def test_a_batch_that_does_not_fit_is_cut(monkeypatch: pytest.MonkeyPatch) -> None:
+    names = ("safe", "near_miss", "collision")
+    usual = check(overtakes(*names, ego=None), Silent())
+    sizes: list[int] = []
+
+    def short(con: duckdb.DuckDBPyConnection, *args: Any, **options: Any) -> None:
+        sizes.append(con.execute("SELECT count(*) FROM data_log SEMI JOIN actor USING (drive_id)").fetchall()[0][0])
+        if sizes[-1] > 1:
+            raise SHORT
+        evaluated(con, *args, **options)
+
+    monkeypatch.setattr("drivelint.judge.evaluate", short)
+    notes = Notes()
+    again = check(overtakes(*names, ego=None), notes)
+    assert sizes == [3, 1, 1, 1]
+    assert notes.said == []
+    assert again.verdicts.equals(usual.verdicts)
+    assert again.drives.equals(usual.drives)
+
+
+def test_a_rule_that_runs_out_of_memory_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = check(overtakes("safe"), Silent())
+    rule = Run.rule
+
+    def short(self: Run, binding: Any) -> None:
+        ((limit,),) = self._con.execute("SELECT current_setting('memory_limit')").fetchall()
+        if binding.rule.id == FEW[0] and limit == "1.1 GiB":
+            raise SHORT
+        rule(self, binding)
+
+    monkeypatch.setattr(Run, "rule", short)
+    assert check(overtakes("safe"), Silent()).verdicts.equals(usual.verdicts)
+
+
+@pytest.mark.parametrize("memory", [DEFAULT, None])
+def test_a_rule_for_which_no_memory_does_is_an_error_in_the_same_words(
+    memory: int | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rule = Run.rule
+
+    def short(self: Run, binding: Any) -> None:
+        if binding.rule.id == FEW[0]:
+            raise SHORT
+        rule(self, binding)
+
+    monkeypatch.setattr(Run, "rule", short)
+    rows = check(overtakes("safe", memory=memory), Silent()).verdicts.to_pylist()
+    mine = [row for row in rows if row["rule_id"] == FEW[0]]
+    assert {row["ego_id"] for row in mine} == {row["ego_id"] for row in rows}
+    assert {(row["verdict"], row["reason_code"], row["reason"]) for row in mine} == {
+        ("error", "out_of_memory", f"rule {FEW[0]}: needs more memory than there is")
+    }
+    assert "error" not in {row["verdict"] for row in rows if row["rule_id"] != FEW[0]}
+
+
+def test_results_that_do_not_fit_are_read_with_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = check(overtakes("safe"), Silent())
+    from drivelint.report import collect
+
+    verdicts, calls = collect.verdicts, []
+
+    def short(con: duckdb.DuckDBPyConnection) -> pa.Table:
+        calls.append(1)
+        if len(calls) == 1:
+            raise SHORT
+        return verdicts(con)
+
+    monkeypatch.setattr(collect, "verdicts", short)
+    notes = Notes()
+    assert check(overtakes("safe"), notes).verdicts.equals(usual.verdicts)
+    assert len(calls) == 2
+    assert len(notes.said) == 1
+
+
+def test_the_memory_limit_is_really_lifted() -> None:
+    """What the setting says is not enough: a table that did not fit has to fit in a database that is locked already."""
+    large = "CREATE OR REPLACE TEMP TABLE large AS SELECT list(i) AS all FROM range(20_000_000) r(i)"
+    with store.connect(memory_limit="100MB") as con:
+        con.execute("SET temp_directory=''")
+        store.lock(con)
+        with pytest.raises(duckdb.OutOfMemoryException):
+            con.execute(large)
+        store.lift_memory_limit(con)
+        con.execute(large)
+
+
+def test_the_database_spills_into_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """DuckDB's own choice is a folder where the user is."""
+    monkeypatch.chdir(tmp_path)
+    with store.workspace(LEAST) as con:
+        store.lock(con)
+        ((spill,),) = con.execute("SELECT current_setting('temp_directory')").fetchall()
+        con.execute("CREATE TABLE large AS SELECT i, hash(i) AS h FROM range(10_000_000) r(i)")
+        assert os.listdir(spill)
+    assert not Path(spill).exists()
+    assert not list(tmp_path.iterdir())
+
+
+def test_margins_have_the_same_bytes_however_batches_are_cut(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(margins, "BLOCK", 1000)
+    found = []
+    for states in (batch.STATES, 1):
+        monkeypatch.setattr(batch, "STATES", states)
+        result = check(
+            overtakes("safe", "near_miss", out=tmp_path / str(states), margins=True, annotate=False), Silent()
+        )
+        assert result.margins_file is not None
+        found.append(result.margins_file.read_bytes())
+        groups = pq.ParquetFile(result.margins_file).metadata
+        assert [groups.row_group(n).num_rows for n in range(groups.num_row_groups - 1)] == [1000] * (
+            groups.num_row_groups - 1
+        )
+        assert groups.num_row_groups > 2
+    assert found[0] == found[1]
+
+
+def test_margins_go_on_where_memory_ran_out() -> None:
+    """Once rows come, Arrow's reader says of a database's error only that there was one."""
+
+    class Rows:
+        def __init__(self, sent: int) -> None:
+            self.sent = sent
+
+        def to_arrow_reader(self, _rows: int) -> Iterator[pa.RecordBatch]:
+            yield pa.record_batch({"t_ns": range(self.sent, self.sent + 2)})
+            if not self.sent:
+                raise OSError("Out of Memory Error: could not allocate block")
+
+    class Connection:
+        def execute(self, sql: str, values: list[int] | None = None) -> Any:
+            return Rows(values[0]) if values else store_.execute(sql)
+
+    with store.connect(memory_limit="200MB") as store_:
+        blocks = margins._blocks(Connection(), Memory(store_, 200_000_000))  # type: ignore[arg-type]
+        assert [t for block in blocks for t in block["t_ns"].to_pylist()] == [0, 1, 2, 3]
+        blocks = margins._blocks(Connection(), Memory(store_, None))  # type: ignore[arg-type]
+        with pytest.raises(OSError, match="Out of Memory"):
+            list(blocks)
+
+
+@pytest.mark.parametrize(
+    ("text", "n_bytes"),
+    [
+        (None, DEFAULT),
+        ("none", None),
+        ("512MB", 512_000_000),
+        ("1.5 gb", 1_500_000_000),
+        ("1GiB", 2**30),
+    ],
+)
+def test_sizes(text: str | None, n_bytes: int | None) -> None:
+    assert values.memory(text) == n_bytes
+
+
+@pytest.mark.parametrize("text", ["", "512", "-1GB", "much", "99MB", "0GB", "1 GB 2"])
+def test_what_is_no_size_is_refused(text: str) -> None:
+    with pytest.raises(UsageError, match="--memory"):
+        values.memory(text)
