@@ -14,7 +14,7 @@ import pyarrow.parquet as pq
 from .recorder import recorded
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
     from .recorder import Recorder
@@ -79,20 +79,33 @@ def egos(tracks: Sequence[Track], most: int | None) -> list[Track]:
 
 
 def compared(  # noqa: PLR0917
-    tracks: Sequence[Track], road: Path, folder: Path, recorder: Recorder, most: int | None, options: Sequence[str]
-) -> tuple[dict[str, Tally], float]:
-    """Judge what was there and what each ego records of it; return a tally by rule and the hours that egos drove."""
+    tracks: Sequence[Track],
+    road: Path,
+    folder: Path,
+    recorders: Mapping[str, Recorder],
+    most: int | None,
+    options: Sequence[str],
+) -> tuple[dict[str, dict[str, Tally]], float]:
+    """Judge what was there, once, and what each ego records of it; return by level a tally by rule, and the hours that egos drove."""
     chosen = egos(tracks, most)
     for number, ego in enumerate(chosen):
         write(folder / "truth" / ego.actor_id, ego, _around(ego, tracks), road, None)
         others = [track for track in tracks if track.actor_id != ego.actor_id]
-        write(folder / "seen" / ego.actor_id, *_split(recorded(ego, others, recorder, number)), road, recorder.range_m)
-    truth, seen = (_judged(folder / name, options) for name in ("truth", "seen"))
-    tallies: dict[str, Counter[tuple[str, str]]] = defaultdict(Counter)
-    for key in truth.keys() | seen.keys():
-        tallies[key[1]][truth.get(key, "not_applicable"), seen.get(key, "not_applicable")] += 1
+        for level, recorder in recorders.items():
+            seen = _split(recorded(ego, others, recorder, number))
+            write(folder / level / ego.actor_id, *seen, road, recorder.range_m)
+    truth = _judged(folder / "truth", options)
+    tallies = {level: _tallies(truth, _judged(folder / level, options)) for level in recorders}
     hours = sum(float(ego.t_ns[-1] - ego.t_ns[0]) for ego in chosen) / 3.6e12
-    return {rule: Tally(tallies[rule]) for rule in sorted(tallies)}, hours
+    return tallies, hours
+
+
+def _tallies(truth: Mapping[Key, str], seen: Mapping[Key, str]) -> dict[str, Tally]:
+    """Return by rule how its verdicts on what was there became those on the recording."""
+    pairs: dict[str, Counter[tuple[str, str]]] = defaultdict(Counter)
+    for key in truth.keys() | seen.keys():
+        pairs[key[1]][truth.get(key, "not_applicable"), seen.get(key, "not_applicable")] += 1
+    return {rule: Tally(pairs[rule]) for rule in sorted(pairs)}
 
 
 def _around(ego: Track, tracks: Sequence[Track]) -> list[Track]:

@@ -93,7 +93,7 @@ def lanelets(lanes: Mapping[int, LogicalLane], truth: Any) -> Iterator[BoundedLa
             junction_id=next((f"j{i}" for i in lane.physical if i in areas), None),
             successors=tuple(str(b) for a, b in linked if a == name),
             left_id=beside[0][0], left_against=beside[0][1], right_id=beside[1][0], right_against=beside[1][1],
-            marks=tuple(_marks(lane, bounds, types, told=told)), limits=tuple(_limits(lane)),
+            marks=tuple(_marks(lane, bounds, types, told=told)), limits=tuple(_limits(lane)), limit_source="lane",
         )  # fmt: skip
 
 
