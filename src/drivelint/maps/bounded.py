@@ -36,7 +36,7 @@ class BoundedLane:
     """One lane. `left`, `right`: bounds (n, 2), (m, 2) in metres, in the direction of travel; the rest as in `lanelet`.
 
     `left_against`: the lane on that side is driven the other way. A marking of None is not known. `limit_mps` is None
-    where there is none or the map does not say, which `limit_known` tells.
+    where there is none or the map does not say, which `limit_known` tells, or says it in a way that cannot be read.
     """
 
     lanelet_id: str
@@ -56,6 +56,7 @@ class BoundedLane:
     right_marking: str | None = None
     limit_mps: float | None = None
     limit_known: bool = False
+    limit_readable: bool = True
     road_id: str = ""
     lane_no: int = 0
     along: int = 1
@@ -215,7 +216,8 @@ def tables(name: str, lanes: Sequence[BoundedLane]) -> dict[str, pa.Table]:
         for to in sorted(set(lane.successors))
     ]
     limits = [
-        {"lanelet_id": lane.lanelet_id, "s_start_m": 0.0, "s_end_m": float(lane.line.s[-1]), "limit_mps": lane.limit_mps, "source": "sign"}
+        {"lanelet_id": lane.lanelet_id, "s_start_m": 0.0, "s_end_m": float(lane.line.s[-1]), "limit_mps": lane.limit_mps,
+         "source": "sign" if lane.limit_readable else "unread"}
         for lane in lanes
         if lane.limit_known
     ]  # fmt: skip
