@@ -309,7 +309,8 @@ CREATE TABLE ego_state (
     with_direction BOOLEAN,           -- see ego_lane
     in_junction BOOLEAN,              -- on a junction's lanelet; NULL: on none
     road_type VARCHAR,                -- of the lanelet; NULL: the map does not say
-    limit_mps DOUBLE,                 -- speed limit where it is; NULL: the map does not say
+    limit_mps DOUBLE,                 -- speed limit where it is; NULL: see limit_source
+    limit_source VARCHAR,             -- what says so: lane, road_type, sign; none: the map says that there is no limit; unread: it gives one that cannot be read; NULL: it does not say
     chain_id INTEGER,                 -- its running chain at this step; NULL: none
     s_m DOUBLE,                       -- chain station of the centre
     d_m DOUBLE,                       -- offset from the running lane's centre line, left positive

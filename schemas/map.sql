@@ -75,8 +75,8 @@ CREATE TABLE speed_limit (
     lanelet_id VARCHAR NOT NULL,      -- the lanelet
     s_start_m DOUBLE NOT NULL,        -- from here, along the lanelet's centre line
     s_end_m DOUBLE NOT NULL,          -- to here
-    limit_mps DOUBLE,                 -- the limit; NULL: said to have none
-    source VARCHAR NOT NULL           -- lane, road_type, sign
+    limit_mps DOUBLE,                 -- the limit; NULL: said to have none, or not readable
+    source VARCHAR NOT NULL           -- lane, road_type, sign; unread: the map gives a limit that cannot be read
 );
 
 CREATE TABLE traffic_signal (

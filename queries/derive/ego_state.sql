@@ -19,7 +19,8 @@ running AS (
         ON f.drive_id = st.drive_id AND f.ego_id = st.ego_id
 ),
 limited AS (
-    SELECT e.drive_id, e.ego_id, e.t_ns, min(v.limit_mps) AS limit_mps
+    SELECT e.drive_id, e.ego_id, e.t_ns, min(v.limit_mps) AS limit_mps,
+        coalesce(arg_min(v.source, {'m': v.limit_mps, 'by': v.source}) FILTER (v.limit_mps IS NOT NULL), CASE WHEN bool_or(v.source = 'unread') THEN 'unread' ELSE 'none' END) AS limit_source
     FROM ego_lane e
     JOIN data_log l USING (drive_id)
     JOIN lanelet n ON n.environment_id = l.environment_id AND n.lanelet_id = e.lanelet_id
@@ -34,7 +35,7 @@ SELECT
     r.travel_m, s.length_m, s.width_m, CASE WHEN t.t_ns IS NULL THEN s.length_m ELSE s.length_m / 2 + t.reach_m END AS combination_m, s.indicator,
     e.lanelet_id, e.with_direction,
     CASE WHEN n.lanelet_id IS NOT NULL THEN n.junction_id IS NOT NULL END AS in_junction,
-    n.road_type, v.limit_mps,
+    n.road_type, v.limit_mps, v.limit_source,
     r.chain_id, c.s_m, c.d_m,
     -- driven against the corridor, its tail is its furthest station
     CASE WHEN t.t_ns IS NULL OR abs(c.heading_diff_rad) <= pi() / 2 THEN c.front_s_m ELSE c.s_m + t.reach_m END AS front_s_m,

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 import pytest
 
+from drivelint.conditions import WORDS
 from drivelint.errors import ExitCode, UsageError
 from drivelint.inspect import Order, exit_code, inspect, to_json
 from drivelint.inspect.advice import ADVICE, provide
@@ -83,19 +85,45 @@ def test_which_rules_can_be_decided_and_why_not_the_others() -> None:
 
 @pytest.mark.parametrize("road", [ROAD, None], ids=["map", "no map"])
 def test_what_cannot_be_decided_is_what_check_calls_missing(road: Path | None) -> None:
-    """inspect and check must not tell different stories: the rules whose verdict is `missing_...` are those named here."""
+    """inspect and check must not tell different stories.
+
+    The rules whose verdict is `missing_...` are named here; of the others that are, none is kept, and one is broken only
+    where it was said that it can be.
+    """
     (ego,) = looked(FIXTURE / "safe.csv", map=road, mapping=MAPPING).egos
     rows = check(Settings((str(FIXTURE / "safe.csv"),), map=road, mapping=MAPPING, rules=("ukhc",)), Silent()).verdicts
     lacking = {row["rule_id"] for row in rows.to_pylist() if row["reason_code"].startswith("missing_")}
+    named = {rule.rule_id: rule for rule in ego.cannot}
     assert lacking or road
-    assert lacking == {rule.rule_id for rule in ego.cannot}
+    assert lacking <= named.keys()
+    decided = {(row["rule_id"], row["verdict"]) for row in rows.to_pylist()}
+    assert not [rule for rule, verdict in decided if verdict == "pass" and rule in named]
+    assert not [
+        rule for rule, verdict in decided if verdict == "fail" and rule in named and not named[rule].breach_only
+    ]
+
+
+def test_a_map_without_limits_and_road_types_promises_no_rule_about_them(tmp_path: Path) -> None:
+    bare = re.sub(r"<type .*?</type>|<speed [^>]*>", "", ROAD.read_text("utf-8"), flags=re.DOTALL)
+    (tmp_path / "bare.xodr").write_text(bare, "utf-8")
+    chosen = ("ukhc.r124.*", "ukhc.r265.*", "ukhc.r162.safe-distance-ahead")
+    for env, missing in (((), {"r124", "r265"}), (("road_type=rural",), {"r124"})):
+        drive = looked(FIXTURE / "safe.csv", map=tmp_path / "bare.xodr", mapping=MAPPING, rules=chosen, env=env)
+        (ego,) = drive.egos
+        named = {rule.rule_id.split(".")[1]: rule for rule in ego.cannot}
+        assert named.keys() == missing
+        assert (named["r124"].missing, named["r124"].breach_only) == (["speed_limits"], True)
+        assert (
+            next(item for item in ego.missing if item.signal == "speed_limits").reason == "the map has no speed limits"
+        )
+        assert "r265" not in named or (named["r265"].missing, named["r265"].breach_only) == (["road_types"], False)
 
 
 def test_without_a_map_it_is_the_map_that_is_missing() -> None:
     drive = looked(FIXTURE / "safe.csv", mapping=MAPPING)
     (ego,) = drive.egos
     assert (drive.road, ego.registration) == (None, None)
-    assert {signal for rule in ego.cannot for signal in rule.missing} <= {"map", *SAID_BY_THE_LOG}
+    assert {signal for rule in ego.cannot for signal in rule.missing} <= {"map", *SAID_BY_THE_LOG, *WORDS}
     assert next(item for item in ego.missing if item.signal == "map").provide.endswith("--map FILE")
 
 
@@ -176,7 +204,7 @@ def test_a_table_that_no_mapping_fits_gets_one_to_start_from(tmp_path: Path) -> 
     assert mine.egos[0].actor.way_m == good.egos[0].actor.way_m
     assert not [q for q in mine.quality if q.severity == "error"]
     lacking = {item.signal for item in mine.egos[0].missing}
-    assert {"map", "ego_size"} <= lacking <= {"map", *SAID_BY_THE_LOG}  # which the table does not have
+    assert {"map", "ego_size"} <= lacking <= {"map", *SAID_BY_THE_LOG, *WORDS}  # which the table does not have
 
 
 @pytest.mark.parametrize(
@@ -229,7 +257,7 @@ def test_every_signal_that_the_library_tells_has_advice() -> None:
     )
     signals = {row["signal"] for row in told}
     assert "registration" in signals
-    assert signals == set(ADVICE)
+    assert signals | WORDS.keys() == set(ADVICE)
     for signal in signals:
         for log_format in ("osi-mcap", "canonical-parquet", "esmini"):
             assert "{" not in provide(signal, log_format)

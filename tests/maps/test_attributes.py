@@ -55,7 +55,7 @@ def test_a_limit_without_a_unit_is_in_metres_per_second_and_nonsense_is_named() 
     plain = load(road(lanes=section(0, lane(-1, WIDTH + '<speed sOffset="0" max="9"/>'))))
     assert limits(plain, "1.0.-1") == [(0, 100, 9.0, "lane")]
     broken = load(road(lanes=section(0, lane(-1, WIDTH + '<speed sOffset="0" max="fast" unit="mph"/>'))))
-    assert limits(broken, "1.0.-1") == []
+    assert limits(broken, "1.0.-1") == [(0, 100, None, "unread")]
     assert "invalid_speed" in checks(broken)
     assert "1.0.-1" in lanelets(broken)
 

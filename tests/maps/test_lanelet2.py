@@ -142,6 +142,16 @@ def test_what_follows_limits_stop_lines_lights_and_crossings() -> None:
     assert (row["s_start_m"], row["s_end_m"]) == pytest.approx((22, 25), abs=0.1)
 
 
+@pytest.mark.parametrize("said", ["", "walk", "-5", "inf"])
+def test_a_limit_that_cannot_be_read_is_no_limit_of_zero(said: str) -> None:
+    drawing = Drawing()
+    left, right = (drawing.way([(0.0, y), (50.0, y)]) for y in (0.0, -3.5))
+    lane = str(drawing.lanelet(left, right, speed_limit=said))
+    tables = drawing.load().tables
+    assert [(r["limit_mps"], r["source"]) for r in tables["speed_limit"].to_pylist()] == [(None, "unread")]
+    assert ("invalid_speed", lane) in {(r["check_id"], r["lanelet_id"]) for r in tables["map_quality"].to_pylist()}
+
+
 def test_local_coordinates_come_before_the_globe() -> None:
     drawing = Drawing(local=True)
     ids = road(drawing)

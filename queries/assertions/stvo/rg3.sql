@@ -13,6 +13,7 @@
 -- merge_gap_s = 5.0
 -- reads = ["ego_condition", "ego_state"]
 -- requires = ["map", "registration"]
+-- pass_requires = ["speed_limits"]
 --
 -- [params.tolerance_mps]
 -- default = 0.83
@@ -54,7 +55,7 @@
 -- the kind of vehicle, road and area at least allow and at most allow, nothing is known; nor is anything kept where the map may lack a sign.
 SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed,
     CASE WHEN e.speed_mps > k.most_mps + $tolerance_mps THEN k.most_mps WHEN e.speed_mps <= k.least_mps + $tolerance_mps THEN k.least_mps END + $tolerance_mps AS required,
-    CASE WHEN required IS NOT NULL THEN NULL WHEN c.limit_mps IS NULL THEN 'the map gives no limit here' WHEN c.vehicle_class IS NULL THEN 'kind of vehicle not known'
+    CASE WHEN required IS NOT NULL THEN NULL WHEN c.limit_mps IS NULL THEN coalesce(limit_doubt(e.limit_source, e.lanelet_id), 'the ego is on no lane, for which there is no limit') WHEN c.vehicle_class IS NULL THEN 'kind of vehicle not known'
         ELSE 'the limit depends on the kind of vehicle or road, not all of which is known' END AS reason
 FROM ego_state e
 JOIN ego_condition c USING (drive_id, ego_id, t_ns)

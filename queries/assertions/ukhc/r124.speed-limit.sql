@@ -13,6 +13,7 @@
 -- merge_gap_s = 5.0
 -- reads = ["ego_condition", "ego_state"]
 -- requires = ["map", "registration"]
+-- pass_requires = ["speed_limits"]
 --
 -- [params.tolerance_mps]
 -- default = 0.45
@@ -22,7 +23,7 @@
 -- @condition
 -- where class, nation or kind of road are not known, the limit lies between two: a speed between them is neither kept nor broken
 WITH limits AS (
-    SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps, e.lanelet_id, e.limit_mps,
+    SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps, e.lanelet_id, e.limit_mps, e.limit_source,
         least(e.limit_mps, most_limit_mps(c.vehicle_class, e.length_m, c.nation, c.road_type, c.carriageway, c.area, e.limit_mps IS NOT NULL)) + $tolerance_mps AS most_mps,
         -- a sign that the map does not have may say anything: without its limit nothing is kept
         CASE WHEN e.limit_mps IS NOT NULL
@@ -33,6 +34,6 @@ WITH limits AS (
 SELECT drive_id, ego_id, t_ns, speed_mps AS observed,
     CASE WHEN speed_mps > most_mps THEN most_mps WHEN speed_mps <= least_mps THEN least_mps END AS required,
     CASE WHEN (speed_mps > least_mps) IS DISTINCT FROM false AND (speed_mps > most_mps) IS DISTINCT FROM true THEN
-        CASE WHEN lanelet_id IS NULL THEN 'the ego is on no lane' WHEN limit_mps IS NULL THEN 'the map gives no limit for lanelet ' || lanelet_id
+        CASE WHEN lanelet_id IS NULL THEN 'the ego is on no lane' WHEN limit_mps IS NULL THEN limit_doubt(limit_source, lanelet_id)
             ELSE 'the limit depends on the class of the vehicle and the kind of road, not all of which is known' END END AS reason
 FROM limits

@@ -76,6 +76,8 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     near_margin: float | None = None
     reads: tuple[str, ...]
     requires: tuple[str, ...] = ()
+    pass_requires: tuple[str, ...] = ()
+    """Signals without which the rule can be found broken, but not kept."""
     reference: str | None = None
     without_time: str | None = None
     """What the log does not show where the time of a reference point is not known, as a clause."""

@@ -169,8 +169,9 @@ def _judgeable(
     memory: int | None,
 ) -> tuple[list[model.Ego], list[model.Quality]]:
     """Lay the drive on the bench without a rule, and ask what the library says of its egos and its data."""
+    known = _Knowledge()
     with store.workspace(memory) as con:
-        bench = Bench(con, (), {}, None, memory=Memory(con, memory))
+        bench = Bench(con, (), {}, None, witnesses=[known], memory=Memory(con, memory))
         bench.judge([Judgeable(trace, environment)])
         rows = {table: _rows(con, f"FROM {table}") for table in ("capability", "registration", "exposure")}
         start = trace.tables["data_log"]["t_start_ns"][0].as_py()
@@ -185,20 +186,35 @@ def _judgeable(
         lacking = {signal: row["reason"] for signal, row in mine.items() if not row["available"]}
         if road_problem is not None:
             lacking["map"] = "the map is not used (see above)"
-        cannot = advice.undecided(rules, lacking)
-        known = {rule.rule_id for rule in cannot}
+        never = advice.never_known(known.of[ego_id], lacking)
+        cannot = advice.undecided(rules, lacking, never)
+        undecided = {rule.rule_id for rule in cannot}
         egos.append(
             model.Ego(
                 actor=by_id[ego_id],
                 km=way["km"],
                 steps=way["n_steps"],
                 registration=None if environment is None else _registration(registrations.get(ego_id)),
-                can=[rule.id for rule in rules if rule.id not in known],
+                can=[rule.id for rule in rules if rule.id not in undecided],
                 cannot=cannot,
-                missing=advice.missing(cannot, lacking, log_format),
+                missing=advice.missing(cannot, {**never, **lacking}, log_format),
             )
         )
     return egos, quality
+
+
+class _Knowledge:
+    """Looks, while the tables are there, at what is known of each ego at some step: conditions, and the limit."""
+
+    def __init__(self) -> None:
+        self.of: dict[str, dict[str, bool]] = {}
+
+    def __call__(self, con: duckdb.DuckDBPyConnection, _drives: Sequence[Judgeable], **_part: bool) -> None:
+        columns = {**dict.fromkeys(conditions.WORDS), "limit": None}
+        known = ", ".join(f'count({"limit_mps" if c == "limit" else c}) > 0 AS "{c}"' for c in columns)
+        for row in _rows(con, f"SELECT ego_id::VARCHAR AS ego_id, {known} FROM ego_condition GROUP BY ego_id"):
+            ego = row.pop("ego_id")
+            self.of[ego] = {c: row[c] or self.of.get(ego, {}).get(c, False) for c in row}
 
 
 def _registration(row: dict[str, Any] | None) -> model.Registration | None:

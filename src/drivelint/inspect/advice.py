@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from drivelint.conditions import SAYS, WORDS
 from drivelint.declared import MODES
 from drivelint.inspect.model import Missing, Undecided
 
@@ -40,10 +41,20 @@ ADVICE: Final = {
     "declared_events": "the events that the ego declares: {declared_events}",
     "modes": "the ego's modes, as declared events with the values on and off: {declared_events}",
     **{
+        name: f"{SAYS[name].partition(';')[0]}: --env {name}={words[0]} ({', '.join(words[1:])})"
+        for name, words in WORDS.items()
+    },
+    **{
         f"mode_{mode}": f"when {mode} is on, as declared events {mode} with the values on and off: {{declared_events}}"
         for mode in MODES
     },
     "mode_headlights": "when the headlights are on: {headlights}",
+}
+SIGNAL_OF: Final = {"road_type": "road_types", "limit": "speed_limits"}
+"""Conditions that the map gives under another name."""
+WHERE_IT_IS: Final = {
+    "road_types": "the map does not say of what kind the roads are that the ego drives on",
+    "speed_limits": "the map gives no limit that can be read for the lanes that the ego drives on",
 }
 _WHERE: Final = {
     "osi-mcap": {
@@ -82,15 +93,30 @@ def provide(signal: str, log_format: str) -> str:
     return ADVICE.get(signal, "see what the rules that need it say: drivelint rules show ID").format_map(where)
 
 
-def undecided(rules: Sequence[Rule], lacking: Mapping[str, str]) -> list[Undecided]:
-    """Return the rules that require any of the signals that are lacking (signal -> why)."""
+def never_known(knowledge: Mapping[str, bool], lacking: Mapping[str, str]) -> dict[str, str]:
+    """Return what is known of the ego at no step, signal or condition -> why; `knowledge`: condition, or limit, -> known at some step.
+
+    What the log or the map lacks as a whole, `lacking` says already.
+    """
+    found = {}
+    for name in (name for name, known in knowledge.items() if not known):
+        signal = SIGNAL_OF.get(name, name)
+        found[signal] = lacking.get(signal, WHERE_IT_IS.get(signal, f"nothing says the {name.replace('_', ' ')}"))
+    return found
+
+
+def undecided(rules: Sequence[Rule], lacking: Mapping[str, str], never: Mapping[str, str]) -> list[Undecided]:
+    """Return the rules for which something is lacking (signal -> why), or never known of the ego."""
     found = []
     for rule in rules:
-        missing = set(rule.requires) & lacking.keys()
+        conditions = {SIGNAL_OF.get(name, name) for name in rule.applies.words}
+        conditions |= {"speed_limits"} if rule.applies.limited else set()
+        needed = set(rule.requires) & lacking.keys() | conditions & never.keys()
+        missing = needed | set(rule.pass_requires) & never.keys()
         if "map" in missing:
             missing -= OF_THE_MAP
         if missing:
-            found.append(Undecided(rule_id=rule.id, title=rule.title, missing=sorted(missing)))
+            found.append(Undecided(rule_id=rule.id, title=rule.title, missing=sorted(missing), breach_only=not needed))
     return found
 
 

@@ -123,11 +123,14 @@ class Registration(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Undecided(msgspec.Struct, frozen=True, kw_only=True):
-    """A rule that will be unknown."""
+    """A rule that will be unknown, or that can at most be found broken."""
 
     rule_id: str
     title: str
-    missing: Annotated[list[str], Meta(description="signals; without a map only `map` for all that is of the map")]
+    missing: Annotated[
+        list[str], Meta(description="signals and conditions; without a map only `map` for all that is of the map")
+    ]
+    breach_only: Annotated[bool, Meta(description="it can be found broken all the same, but not kept")] = False
 
 
 class Missing(msgspec.Struct, frozen=True, kw_only=True):

@@ -74,7 +74,9 @@ def _by_rule(ego: Ego) -> Table:
     grid = _grid()
     waiting: dict[tuple[str, ...], list[str]] = {}
     for rule in ego.cannot:
-        waiting.setdefault(tuple(rule.missing), []).append(rule.rule_id)
+        waiting.setdefault(tuple(rule.missing), []).append(
+            f"{rule.rule_id} (can be broken, not kept)" if rule.breach_only else rule.rule_id
+        )
     for missing, ids in sorted(waiting.items(), key=lambda item: (-len(item[1]), item[0])):
         grid.add_row(" + ".join(missing), Text(", ".join(ids)))
     return grid

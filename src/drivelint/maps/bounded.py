@@ -49,8 +49,9 @@ class BoundedLane:
 
     `left_against`: the lane on that side is driven the other way. A marking of None is not known; `marks` are given instead of
     `left_marking` and `right_marking` where a side's marking changes along the lane. `limit_mps` is None where there is none or the
-    map does not say, which `limit_known` tells; `limits` are given instead where it changes: from one share of the length to
-    another, in m/s; `limit_source` is the source of `speed_limit`. `z_m`: height of each point of `line`; None: not known.
+    map does not say, which `limit_known` tells, or says it in a way that cannot be read (not `limit_readable`); `limits` are given
+    instead where it changes: from one share of the length to another, in m/s; `limit_source` is the source of `speed_limit`. `z_m`:
+    height of each point of `line`; None: not known.
     """
 
     lanelet_id: str
@@ -70,6 +71,7 @@ class BoundedLane:
     right_marking: str | None = None
     limit_mps: float | None = None
     limit_known: bool = False
+    limit_readable: bool = True
     limit_source: str = "sign"
     marks: tuple[Mark, ...] = ()
     limits: tuple[tuple[float, float, float], ...] = ()
@@ -261,7 +263,7 @@ def _limits(lane: BoundedLane) -> list[dict[str, Any]]:
     length = float(lane.line.s[-1])
     return [
         {"lanelet_id": lane.lanelet_id, "s_start_m": begin * length, "s_end_m": end * length, "limit_mps": limit,
-         "source": lane.limit_source}
+         "source": lane.limit_source if lane.limit_readable else "unread"}
         for begin, end, limit in spans
     ]  # fmt: skip
 

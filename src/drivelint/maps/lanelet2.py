@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -47,7 +48,7 @@ class Lanelet2Reader:
         """
         quality = Quality()
         layers, local = load(source, request, quality)
-        lanes = build(list(_lanes(layers)), request.offset, quality)
+        lanes = build(list(_lanes(layers, quality)), request.offset, quality)
         if not lanes:
             raise MapError(f"map {source.name} has no lanelet that can be built: is it a plain OpenStreetMap extract?")
         _junctions(lanes)
@@ -88,7 +89,7 @@ def _is_lane(element: Any) -> bool:
     return attribute(element, "subtype") in _KINDS
 
 
-def _lanes(layers: Any) -> Iterable[BoundedLane]:
+def _lanes(layers: Any, quality: Quality) -> Iterable[BoundedLane]:
     """Yield the lanes. Neighbours share a bound, what follows begins at the points where a lane ends."""
     mine = sorted((x for x in layers.laneletLayer if _is_lane(x)), key=lambda x: x.id)
     starts: dict[tuple[int, int], list[str]] = defaultdict(list)
@@ -102,13 +103,18 @@ def _lanes(layers: Any) -> Iterable[BoundedLane]:
     for x in mine:
         kind = _KINDS[attribute(x, "subtype")]
         limit_mps, known = limit(x)
+        readable = limit_mps is None or (math.isfinite(limit_mps) and limit_mps > 0.0)
+        if not readable:
+            said = attribute(x, "speed_limit")[:20]
+            message = f"{said!r} is no speed limit: taken as unknown"
+            quality.add("invalid_speed", "warning", str(x.id), message)
         lane = BoundedLane(
             str(x.id), xy(x.leftBound), xy(x.rightBound), kind, kind in _DRIVEN,
             bidirectional=kind in _DRIVEN and attribute(x, "one_way") in {"no", "false"},
             road_type=_road_type(x),
             successors=tuple(sorted(starts[x.leftBound[-1].id, x.rightBound[-1].id])),
             left_marking=_marking(x.leftBound, near_left=False), right_marking=_marking(x.rightBound, near_left=True),
-            limit_mps=limit_mps, limit_known=known,
+            limit_mps=limit_mps if readable else None, limit_known=known, limit_readable=readable,
         )  # fmt: skip
         turned = (
             _Bound(x.leftBound.id, not x.leftBound.inverted()),

@@ -8,7 +8,7 @@ from drivelint.maps.opendrive.network import spans
 
 if TYPE_CHECKING:
     from drivelint.maps.opendrive.lanelet import Lanelet
-    from drivelint.maps.opendrive.network import Mark
+    from drivelint.maps.opendrive.network import Mark, Speed
 
 
 def road_type(lanelet: Lanelet) -> str | None:
@@ -28,19 +28,20 @@ def speed_rows(lanelet: Lanelet) -> list[dict[str, Any]]:
     start, end = lanelet.strip.start_m, lanelet.strip.end_m
     for i, a, b in spans((s.start_m for s in lanelet.lane.speeds), start, end):
         if i >= 0 and lanelet.lane.speeds[i].known:
-            rows += _speed_row(lanelet, [(0, a, b)], lanelet.lane.speeds[i].limit_mps, "lane")
+            rows += _speed_row(lanelet, [(0, a, b)], lanelet.lane.speeds[i], "lane")
             continue
         for j, c, d in spans((s.start_m for s in lanelet.road.speeds), a, b):
             if j >= 0 and lanelet.road.speeds[j].known:
-                rows += _speed_row(lanelet, [(0, c, d)], lanelet.road.speeds[j].limit_mps, "road_type")
+                rows += _speed_row(lanelet, [(0, c, d)], lanelet.road.speeds[j], "road_type")
     return sorted(rows, key=lambda row: float(row["s_start_m"]))
 
 
 def _speed_row(
-    lanelet: Lanelet, span: list[tuple[int, float, float]], limit: float | None, source: str
+    lanelet: Lanelet, span: list[tuple[int, float, float]], speed: Speed, source: str
 ) -> list[dict[str, Any]]:
+    limit, said = speed.limit_mps, source if speed.readable else "unread"
     return [
-        {"lanelet_id": lanelet.lanelet_id, "s_start_m": a, "s_end_m": b, "limit_mps": limit, "source": source}
+        {"lanelet_id": lanelet.lanelet_id, "s_start_m": a, "s_end_m": b, "limit_mps": limit, "source": said}
         for _, a, b in lanelet.ranges(span)
     ]
 

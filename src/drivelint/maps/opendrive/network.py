@@ -40,11 +40,15 @@ class Mark:
 
 @dataclass(frozen=True)
 class Speed:
-    """A limit from `start_m` (road station) to the next one's; `limit_mps` None: no limit; `known` False: not said."""
+    """A limit from `start_m` (road station) to the next one's; `limit_mps` None: no limit.
+
+    `known` False: not said; `readable` False: said, but not in a way that can be read.
+    """
 
     start_m: float
     limit_mps: float | None
     known: bool
+    readable: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -280,7 +284,7 @@ def _speeds(
             speeds.append(Speed(start, None, known=True))
         else:
             limit = _limit(speed)
-            speeds.append(Speed(start, limit, known=limit is not None))
+            speeds.append(Speed(start, limit, known=True, readable=limit is not None))
             if limit is None:
                 said = f"{word[:20]} {speed.get('unit', 'm/s')[:20]}"
                 quality.add(

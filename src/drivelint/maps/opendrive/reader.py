@@ -17,6 +17,7 @@ from drivelint.maps.opendrive.furniture import furniture
 from drivelint.maps.opendrive.lanes import build
 from drivelint.maps.opendrive.links import Link, links
 from drivelint.maps.opendrive.network import network
+from drivelint.maps.opendrive.signlimits import sign_limits
 from drivelint.maps.quality import Quality
 from drivelint.maps.tables import from_columns, from_rows, repeated
 
@@ -46,13 +47,17 @@ class OpenDriveReader:
             turned=direction.forward != (direction.handedness == "rht"),
         )  # fmt: skip
         built = sorted(lanes.built.values(), key=lambda lane: lane.key)
+        places = {lane.lanelet_id: n for n, lane in enumerate(built)}
+        recorded = [row for lane in built for row in speed_rows(lane)]
+        beside = furniture(net, built, request.offset, quality)
+        signed = sign_limits(built, joined, beside["traffic_signal"], recorded)
         rows = {
             "environment": [_environment_row(source, request, direction, net.geo_reference)],
             "lanelet": [_lanelet_row(lane) for lane in built],
             "lane_link": [_link_row(link) for link in joined],
             "lane_boundary": [row for lane in built for row in boundary_rows(lane)],
-            "speed_limit": [row for lane in built for row in speed_rows(lane)],
-            **furniture(net, built, request.offset, quality),
+            "speed_limit": sorted([*recorded, *signed], key=lambda row: places[row["lanelet_id"]]),
+            **beside,
         }
         tables = {table: from_rows(table, name, content) for table, content in rows.items()}
         tables["lane_point"] = _points(name, built)
