@@ -60,6 +60,13 @@ CREATE TABLE lane_beside (
     width_m DOUBLE NOT NULL           -- its width
 );
 
+CREATE TABLE road_half (
+    environment_id VARCHAR NOT NULL,  -- the map
+    road_id VARCHAR NOT NULL,         -- a road of one direction
+    of_road_id VARCHAR NOT NULL,      -- the road of the other direction beside it, before it by its id: the two are one road for a driver
+    turned BOOLEAN NOT NULL           -- their reference lines run in opposite directions: what one begins with the other ends with
+);
+
 CREATE TABLE strip_cell (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet

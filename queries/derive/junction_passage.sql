@@ -87,7 +87,7 @@ straightest AS (
 ),
 -- both ends of a road may lead to the same junction
 branch AS (
-    SELECT environment_id, junction_id, count(*) AS n
+    SELECT environment_id, junction_id, count(DISTINCT {'road': coalesce(h.of_road_id, r.road_id), 'by_its_end': r.by_its_end <> coalesce(h.turned, false)}) AS n
     FROM (
         SELECT j.environment_id, j.junction_id, o.road_id, o.along_road = -1 AS by_its_end
         FROM lanelet j
@@ -100,7 +100,8 @@ branch AS (
         JOIN lane_link l ON l.environment_id = j.environment_id AND l.to_id = j.lanelet_id
         JOIN lanelet o ON o.environment_id = j.environment_id AND o.lanelet_id = l.from_id
         WHERE j.junction_id IS NOT NULL AND j.drivable AND o.drivable AND o.junction_id IS DISTINCT FROM j.junction_id
-    )
+    ) r
+    LEFT JOIN road_half h USING (environment_id, road_id)
     GROUP BY environment_id, junction_id
 ),
 signed AS (SELECT DISTINCT environment_id FROM traffic_signal WHERE kind IN ('traffic_light', 'stop', 'give_way')),

@@ -8,7 +8,7 @@ WITH gone AS (
 ),
 -- two roads that meet in a junction are one for a driver
 roads AS (
-    SELECT environment_id, junction_id, count(DISTINCT road_id) AS n
+    SELECT environment_id, junction_id, count(DISTINCT coalesce(h.of_road_id, r.road_id)) AS n
     FROM (
         SELECT l.environment_id, a.junction_id, b.road_id
         FROM lane_link l
@@ -21,7 +21,8 @@ roads AS (
         JOIN lanelet a ON a.environment_id = l.environment_id AND a.lanelet_id = l.from_id
         JOIN lanelet b ON b.environment_id = l.environment_id AND b.lanelet_id = l.to_id
         WHERE b.junction_id IS NOT NULL AND a.junction_id IS NULL
-    )
+    ) r
+    LEFT JOIN road_half h USING (environment_id, road_id)
     GROUP BY ALL
 ),
 way AS (

@@ -1,0 +1,24 @@
+-- Roads of one direction alone that are halves of one road: the other direction is a road of its own beside it, along most of a lane. The
+-- first of the two by its id stands for both.
+WITH way AS (
+    SELECT environment_id, road_id, min(along_road) AS along_road
+    FROM lanelet
+    WHERE drivable AND junction_id IS NULL
+    GROUP BY ALL
+    HAVING min(along_road) = max(along_road) AND NOT bool_or(bidirectional)
+),
+beside AS (
+    SELECT b.environment_id, n.road_id, m.road_id AS of_road_id
+    FROM lane_beside b
+    JOIN lanelet n ON n.environment_id = b.environment_id AND n.lanelet_id = b.lanelet_id
+    JOIN lanelet m ON m.environment_id = b.environment_id AND m.lanelet_id = b.beside_id
+    WHERE b.against AND b.drivable AND m.road_id < n.road_id
+    GROUP BY b.environment_id, n.lanelet_id, n.length_m, n.road_id, m.road_id
+    HAVING sum(whole_pm(b.s_end_m - b.s_start_m)) > whole_pm(n.length_m / 2)
+)
+SELECT b.environment_id, b.road_id, min({'road': b.of_road_id, 'turned': a.along_road = o.along_road}).road AS of_road_id,
+    min({'road': b.of_road_id, 'turned': a.along_road = o.along_road}).turned AS turned
+FROM beside b
+JOIN way a ON a.environment_id = b.environment_id AND a.road_id = b.road_id
+JOIN way o ON o.environment_id = b.environment_id AND o.road_id = b.of_road_id
+GROUP BY b.environment_id, b.road_id
