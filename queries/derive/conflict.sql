@@ -57,34 +57,40 @@ on_it AS MATERIALIZED (
     FROM parted JOIN numbered USING (drive_id, ego_id, object_id, nu, nv)
     GROUP BY drive_id, ego_id, object_id, n, actor_id, ego_is_u
 ),
+both_on_it AS MATERIALIZED (
+    SELECT
+        drive_id, ego_id, object_id, n, min(t1_first_ns) AS t1_first_ns, max(t1_last_ns) AS t1_last_ns, min(t2_first_ns) AS t2_first_ns, max(t2_last_ns) AS t2_last_ns
+    FROM on_it
+    GROUP BY drive_id, ego_id, object_id, n
+),
 -- whose entry (sense 1) or exit (-1), and on whose ground of when that is
 edge AS MATERIALIZED (
-    SELECT p.* EXCLUDE (t_in_ns, t_out_ns), g.period_ns, x.sense, b.t_ns AS t_on_ns, b.t_sample_ns AS k_ns, CASE WHEN x.sense = 1 THEN b.t_before_ns ELSE b.t_after_ns END AS t_off_ns
+    SELECT
+        p.drive_id, p.ego_id, p.object_id, p.n, p.ego, p.on_id, p.t_from_ns - g.period_ns AS t_from_ns, p.t_to_ns + g.period_ns AS t_to_ns, p.sense, i,
+        CASE WHEN p.sense = 1 THEN i.t_before_ns ELSE i.t_after_ns END AS t_off_ns
     FROM (
         SELECT
-            drive_id, ego_id, object_id, n, true AS ego, actor_id, t1_first_ns AS t_in_ns, t1_last_ns AS t_out_ns,
-            object_id AS on_id, min(t2_first_ns) OVER w AS t_from_ns, max(t2_last_ns) OVER w AS t_to_ns
-        FROM on_it
-        WINDOW w AS (PARTITION BY drive_id, ego_id, object_id, n)
+            o.drive_id, o.ego_id, o.object_id, o.n, true AS ego, o.actor_id, o.object_id AS on_id, w.t2_first_ns AS t_from_ns, w.t2_last_ns AS t_to_ns,
+            unnest([1, -1]) AS sense, unnest([o.t1_first_ns, o.t1_last_ns]) AS t_ns
+        FROM on_it o JOIN both_on_it w USING (drive_id, ego_id, object_id, n)
         UNION ALL
-        SELECT drive_id, ego_id, object_id, n, false, object_id, min(t2_first_ns) OVER v, max(t2_last_ns) OVER v, actor_id, t1_first_ns, t1_last_ns
-        FROM on_it
-        WINDOW v AS (PARTITION BY drive_id, ego_id, object_id, n)
+        SELECT
+            o.drive_id, o.ego_id, o.object_id, o.n, false, o.object_id, o.actor_id, o.t1_first_ns, o.t1_last_ns,
+            unnest([1, -1]), unnest([w.t2_first_ns, w.t2_last_ns])
+        FROM on_it o JOIN both_on_it w USING (drive_id, ego_id, object_id, n)
     ) p
     JOIN scale g USING (drive_id)
-    CROSS JOIN (VALUES (1), (-1)) AS x(sense)
-    JOIN swept_box b ON b.drive_id = p.drive_id AND b.actor_id = p.actor_id AND b.t_ns = CASE x.sense WHEN 1 THEN p.t_in_ns ELSE p.t_out_ns END
+    JOIN swept_box i ON i.drive_id = p.drive_id AND i.actor_id = p.actor_id AND i.t_ns = p.t_ns
 ),
 edge_box AS MATERIALIZED (
-    SELECT e.*, i, f
+    SELECT e.*, f
     FROM edge e
-    JOIN swept_box i ON i.drive_id = e.drive_id AND i.actor_id = e.actor_id AND i.t_ns = e.t_on_ns
-    LEFT JOIN swept_box f ON f.drive_id = e.drive_id AND f.actor_id = e.actor_id AND f.t_ns = e.t_off_ns
+    LEFT JOIN swept_box f ON f.drive_id = e.drive_id AND f.actor_id = e.i.actor_id AND f.t_ns = e.t_off_ns
 ),
 -- how far it is from that ground at the moment off it, and how deep in it at the one on it; its way against the other's where that comes nearest
 apart AS MATERIALIZED (
     SELECT
-        e.drive_id, e.ego_id, e.object_id, e.n, e.ego, e.actor_id, e.sense, e.k_ns, e.t_on_ns, e.t_off_ns,
+        e.drive_id, e.ego_id, e.object_id, e.n, e.ego, i.actor_id AS actor_id, e.sense, i.t_sample_ns AS t_sample_ns, i.t_ns AS t_on_ns, e.t_off_ns,
         greatest(0.0, min(boxes_apart_m(b.x_m - f.x_m, b.y_m - f.y_m, f.cos_yaw, f.sin_yaw, b.cos_yaw, b.sin_yaw, f.half_length_m, f.half_width_m, b.half_length_m, b.half_width_m))) AS off_m,
         least(0.0, min(boxes_apart_m(b.x_m - i.x_m, b.y_m - i.y_m, i.cos_yaw, i.sin_yaw, b.cos_yaw, b.sin_yaw, i.half_length_m, i.half_width_m, b.half_length_m, b.half_width_m))) AS on_m,
         min({'d2': (b.x_m - i.x_m) ** 2 + (b.y_m - i.y_m) ** 2, 't_ns': b.t_ns, 'angle_rad': wrap_rad(b.travel_rad - i.travel_rad)}) FILTER (
@@ -92,14 +98,14 @@ apart AS MATERIALIZED (
             AND boxes_meet(b.x_m - i.x_m, b.y_m - i.y_m, i.cos_yaw, i.sin_yaw, b.cos_yaw, b.sin_yaw, i.half_length_m, i.half_width_m, b.half_length_m, b.half_width_m)
         ).angle_rad AS angle_rad
     FROM edge_box e
-    JOIN swept_box b ON b.drive_id = e.drive_id AND b.actor_id = e.on_id AND b.t_ns >= e.t_from_ns - e.period_ns AND b.t_ns <= e.t_to_ns + e.period_ns
-    GROUP BY e.drive_id, e.ego_id, e.object_id, e.n, e.ego, e.actor_id, e.sense, e.k_ns, e.t_on_ns, e.t_off_ns
+    JOIN swept_box b ON b.drive_id = e.drive_id AND b.actor_id = e.on_id AND b.t_ns >= e.t_from_ns AND b.t_ns <= e.t_to_ns
+    GROUP BY e.drive_id, e.ego_id, e.object_id, e.n, e.ego, i.actor_id, e.sense, i.t_sample_ns, i.t_ns, e.t_off_ns
 ),
 -- between the two moments in proportion: what goes straight on does so. Where it is an angle that ends the common ground, at the one off it. An edge
 -- without a moment off the ground was not seen.
 timed AS MATERIALIZED (
     SELECT
-        drive_id, ego_id, object_id, n, ego, sense, min(sense * k_ns) AS k_ns,
+        drive_id, ego_id, object_id, n, ego, sense, min(sense * t_sample_ns) AS k_ns,
         min({
             'ns': sense * (t_on_ns - coalesce(round((1 - coalesce(off_m / nullif(off_m - on_m, 0), 0)) * (t_on_ns - t_off_ns)), 0)::BIGINT), 'known': t_off_ns IS NOT NULL,
             'off_rad': -abs(angle_rad), 'angle_rad': CASE WHEN ego THEN angle_rad ELSE -angle_rad END
