@@ -541,7 +541,7 @@ CREATE TABLE overtake (
     side INTEGER NOT NULL,            -- 1 left, -1 right
     vbp_id VARCHAR NOT NULL,          -- the vehicle being passed, or one that may be it
     vbp_placed BOOLEAN NOT NULL,      -- it was placed at t0; else only its presence is known
-    sure BOOLEAN NOT NULL,            -- it is an overtake: two of the three hold, the VBP was placed at t0, the ego passed it, the ego's centre was over the line; else it may be one
+    sure BOOLEAN NOT NULL,            -- it is an overtake: two of the three hold, the VBP was placed at t0, the ego passed it, the ego's centre was over the line or the ego stayed astride of it for 3 s; else it may be one
     begin_seen BOOLEAN NOT NULL,      -- t0 lies in the log: the step before it is there and inside the lane
     t0_ns BIGINT NOT NULL,            -- t_pull of the excursion: first step with a corner more than 0.05 m over the boundary, or, after a look past the vehicle ahead, when it pulls out
     t1_ns BIGINT,                     -- first step wholly in the overtaking lane

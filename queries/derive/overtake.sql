@@ -121,7 +121,7 @@ angle AS (
 SELECT
     k.drive_id, k.ego_id,
     (row_number() OVER (PARTITION BY k.drive_id, k.ego_id ORDER BY k.t0_ns, k.chain_id, k.gap_m, k.object_id) - 1)::INTEGER AS occurrence,
-    k.chain_id, k.over_against AS opposing, k.side, k.object_id AS vbp_id, k.placed AS vbp_placed, k.placed::INTEGER + k.passed::INTEGER + k.centre_over::INTEGER >= 2 AS sure, k.begin_seen,
+    k.chain_id, k.over_against AS opposing, k.side, k.object_id AS vbp_id, k.placed AS vbp_placed, k.placed::INTEGER + k.passed::INTEGER + (k.centre_over OR coalesce(k.t_turn_ns, k.t_end_ns) - k.t_out_ns >= stays_out_ns())::INTEGER >= 2 AS sure, k.begin_seen,
     k.t0_ns, k.t_over_ns AS t1_ns, k.t_out_ns, k.t_turn_ns AS t2_ns, k.t_back_ns AS t3_ns, coalesce(k.t_back_ns, k.t_end_ns) AS t_end_ns, k.passed,
     CASE
         WHEN k.t_back_ns IS NOT NULL AND k.passed THEN 'completed'

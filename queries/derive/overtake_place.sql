@@ -94,9 +94,10 @@ line AS (
         AND b.s_start_m <= x.s_m - c.s_start_m AND x.s_m - c.s_start_m < b.s_end_m
     GROUP BY ALL
 ),
--- how fast everybody was just before: who comes up in the overtaking lane may have begun to brake as the ego began to move over
+-- how fast everybody was just before, as far as it is known: who comes up in the overtaking lane may have begun to brake as the ego began to
+-- move over
 before AS (
-    SELECT g.drive_id, g.ego_id, g.occurrence, p.object_id, max(p.speed_mps) AS fastest_mps
+    SELECT g.drive_id, g.ego_id, g.occurrence, p.object_id, max(p.speed_mps) AS fastest_mps, count(p.speed_mps) = count(*) AS whole
     FROM gone g
     JOIN pair p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns >= g.t0_ns - braked_for_ns() AND p.t_ns <= g.t0_ns
     GROUP BY ALL
@@ -111,11 +112,11 @@ rear AS (
                 WHEN p.front_s_m >= g.rear_s_m THEN 0.0::DOUBLE
                 WHEN p.speed_mps IS NULL THEN NULL
                 WHEN f.fastest_mps > g.speed_mps THEN (g.rear_s_m - p.front_s_m) / (f.fastest_mps - g.speed_mps)
-                WHEN f.fastest_mps <= g.speed_mps THEN 'infinity'::DOUBLE
+                WHEN f.fastest_mps <= g.speed_mps AND f.whole THEN 'infinity'::DOUBLE
             END,
             'gap_m': g.rear_s_m - p.front_s_m, 'object_id': p.object_id
         }) FILTER (is_vehicle(p.actor_class)) AS o,
-        bool_and((p.speed_mps IS NOT NULL OR p.front_s_m >= g.rear_s_m) AND is_vehicle(p.actor_class) IS NOT NULL) AS known
+        bool_and((f.whole OR p.front_s_m >= g.rear_s_m) AND is_vehicle(p.actor_class) IS NOT NULL) AS known
     FROM gone g
     JOIN pair p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns = g.t0_ns
     JOIN before f ON f.drive_id = g.drive_id AND f.ego_id = g.ego_id AND f.occurrence = g.occurrence AND f.object_id = p.object_id

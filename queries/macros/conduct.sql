@@ -135,6 +135,8 @@ CREATE OR REPLACE MACRO no_return_ns() AS 500_000_000;
 CREATE OR REPLACE MACRO longest_overtake_ns() AS 15_000_000_000;
 -- Our default: nor a lane change.
 CREATE OR REPLACE MACRO longest_change_ns() AS 10_000_000_000;
+-- Who stays astride of the line behind a vehicle for so long (our default) has pulled out to pass it; who sways over it comes back at once.
+CREATE OR REPLACE MACRO stays_out_ns() AS 3_000_000_000;
 -- Our default: so long before an overtake the one behind may have begun to brake for it.
 CREATE OR REPLACE MACRO braked_for_ns() AS 2_000_000_000;
 

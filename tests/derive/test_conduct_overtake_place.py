@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -126,6 +127,21 @@ def test_who_brakes_as_the_ego_goes_out_was_faster_just_before(hand: str) -> Non
     (found,) = place(way, ego, vbp, moving("r", way, t, s, way.other))
     assert found["rear_gap_m"] == pytest.approx(10, abs=0.3)
     assert found["rear_ttc_s"] == pytest.approx(10 / (25 - 12), rel=0.05)
+
+
+def test_whose_speed_just_before_is_not_known_may_have_been_faster() -> None:
+    """It comes up at 11 m/s behind the ego at 12 m/s; half a second before t0 its velocity is not known, and a place is."""
+    way = road()
+    ego, vbp = scene(way)
+    t0 = rows(derived(drive([ego, vbp], way.environment), tables=["overtake"]), "FROM overtake")[0]["t0_ns"] / 1e9
+    other = moving("r", way, ego.t_s, 50 + 12 * t0 - 20 + 11 * (ego.t_s - t0), way.other)
+    (found,) = place(way, ego, vbp, other)
+    assert (found["rear_id"], found["rear_ttc_s"], found["rear_known"]) == ("r", math.inf, True)
+    gone = np.abs(ego.t_s - t0 + 0.6) < 0.25
+    (found,) = place(
+        way, ego, vbp, replace(other, vx=np.where(gone, np.nan, other.vx), vy=np.where(gone, np.nan, other.vy))
+    )
+    assert (found["rear_id"], found["rear_ttc_s"], found["rear_known"]) == ("r", None, False)
 
 
 def test_who_may_come_is_not_ruled_out() -> None:

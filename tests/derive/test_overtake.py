@@ -326,6 +326,10 @@ def test_what_may_be_an_overtake_is_not_surely_one() -> None:
     lost = moving("vbp", way, ego.t_s, 80 + 12 * ego.t_s, way.own).keep(ego.t_s < 8.0)
     con = derived(drive([sways, lost, ov], way.environment), tables=["overtake_step"])
     assert {(row["vbp_id"], row["sure"]) for row in rows(con, "FROM overtake_step")} == {("vbp", False)}
+    # one that stays astride for 3 s has pulled out, whoever is placed only later
+    astride = moving("ego", way, ego.t_s, s, swing(way, s, 150, 240, share=0.4)).keep(ego.t_s >= 9.9)
+    con = derived(drive([astride, vbp, ov], way.environment), tables=["overtake"])
+    assert [(row["begin_seen"], row["sure"]) for row in rows(con, "FROM overtake")] == [(False, True)]
     found = scenes.judged([drive([sways, lost, ov], way.environment)], rules=["ukhc.r126.ds*"])
     assert not [row["reason"] for row in found if row["verdict"] == "fail"]
 

@@ -27,8 +27,8 @@ SAME_SHARE: Final = 0.25
 """After a step the speed is the one before, but for this share of what the step makes of it."""
 SIGMAS: Final = 6.0
 """So many standard deviations of its positions' noise a sample is off before it counts."""
-LEAST_M: Final = 0.15
-"""Where velocities are derived, a step of less may be rounding."""
+LEAST_M: Final = (0.05, 0.25)
+"""Where velocities are derived, a step counts from 24 m/s2 dt2 on, within these bounds: of less no jolt of 12 m/s2 is made."""
 LEAST_TOLD_M: Final = 0.4
 """Where velocities are recorded nothing hangs on the step but the place: less is within what boxes are known to."""
 
@@ -98,7 +98,7 @@ def _beside(place: Numbers, moves: _Motion, told: Mask, sigma: Numbers, error: N
         off = (to - without) * dt_to
         size = np.hypot(*off)
         s, e = sigma[2:-2], error[2:-2]
-        least = np.where(told[2:-2], LEAST_TOLD_M, LEAST_M / 2)
+        least = np.where(told[2:-2], LEAST_TOLD_M, _least_m(dt_to))
         limit = np.maximum(least, np.maximum(TYRE_MPS2 * dt_to * dt_away / 2, SIGMAS * 1.22 * s))
         # there and back: both neighbours bend the other way
         there = np.sum((to - before) * off, axis=0) * dt_to > size**2 / 2
@@ -124,7 +124,7 @@ def _stepped(moves: _Motion, told: Mask, sigma: Numbers, error: Numbers, beside:
         s, e = sigma[1:-2], error[1:-2]
         from_before, from_after = (here - before) * dt_here, (here - after) * dt_here
         near, far = np.hypot(*from_before), np.hypot(*from_after)
-        limit = np.maximum(LEAST_M, np.maximum(TYRE_MPS2 * dt_here**2, SIGMAS * 2.45 * s))
+        limit = np.maximum(_least_m(dt_here), np.maximum(TYRE_MPS2 * dt_here**2, SIGMAS * 2.45 * s))
         same = np.sum(from_before * from_after, axis=0) > near * far / 2
         error_mps = 2.0 * e / np.minimum(dt_before, dt_after)
         goes_on = _can(before, after, (dt_before + dt_after) / 2 + dt_here, error_mps)
@@ -139,3 +139,8 @@ def _can(one: Numbers, other: Numbers, time_s: Numbers, error_mps: Numbers) -> M
     """Say whether somebody can have gone from one velocity to the other in that time."""
     can: Mask = np.hypot(*(one - other)) <= TYRE_MPS2 * time_s + SIGMAS * error_mps
     return can
+
+
+def _least_m(dt_s: Numbers) -> Numbers:
+    least: Numbers = np.clip(2.0 * TYRE_MPS2 * dt_s**2, *LEAST_M)
+    return least
