@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
-from tests.scenes import LANE, derived, drive, judged, moving, road, rows, swing, times
+from tests.scenes import LANE, derived, drive, judged, moving, road, rows, swing, tee, times
+
+if TYPE_CHECKING:
+    from tests.scenes import Actor, Floats, Road
 
 FOLLOWING = ("criticality.ttc", "criticality.thw", "ukhc.r126.thinking-gap")
 
@@ -93,3 +97,75 @@ def test_one_lost_on_foot_is_where_it_can_walk_to() -> None:
     assert first["least_m"] == pytest.approx(
         np.hypot(130 - 110.5, LANE - 2) - 10 * 0.1 - math.hypot(4.8, 1.8) / 2 - math.hypot(0.5, 0.5) / 2, abs=0.05
     )
+
+
+def _entering(hand: str) -> tuple[Road, Floats, Actor]:
+    """Return two lanes each way, the times, and an ego that is over the near end of the map at 0.4 s and changes lanes from 4 s to 7 s."""
+    way = road(((2000.0, 0.0),), hand=hand, lanes=(2, 2), limit_mph=70)
+    t = times(20.0)
+    d = way.own + LANE * way.over * -1 * (1 - np.clip((t - 4) / 3, 0, 1))
+    return way, t, moving("ego", way, t, 10 + 25 * t, d)
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize("lane", [0, 1])
+def test_who_comes_in_behind_was_behind_in_whichever_lane(hand: str, lane: int) -> None:
+    """It is over the near end at 9 s and drives with the ego: no step leaves it open whether it was ahead, was passed or comes."""
+    way, t, ego = _entering(hand)
+    other = moving("x", way, t, 3 + 28 * (t - 9), way.own - lane * LANE * way.over).keep(t > 8.99)
+    con = derived(drive([ego, other], way.environment), tables=["hidden", "oncoming", "passing", "lane_change", "lead"])
+    hidden = rows(con, "FROM hidden WHERE t_ns > 1e9 ORDER BY t_ns")
+    assert len(hidden) > 70
+    assert {(row["ahead"], row["along"]) for row in hidden} == {(False, True)}
+    # at 5 s the ego's rear is at 132.6 m, and the other over the end 4 s later
+    (at5,) = (row for row in hidden if round(row["t_ns"] / 1e8) == 50)
+    assert at5["least_m"] > 132.6 + 28**2 / 20 - 12
+    assert not rows(con, "FROM passing")
+    assert len(rows(con, "FROM lead WHERE t_ns > 1e9")) == len(t) - 11
+    (change,) = rows(con, "FROM lane_change")
+    assert change["unseen_m"] > 100
+
+
+def test_who_is_lost_behind_on_the_way_back_is_overtaken_by_nobody() -> None:
+    """It was met, and is lost 20 m behind; 4 s later the ego goes over the line and back, round nobody."""
+    way = road(((900.0, 0.0),))
+    t = times(20.0)
+    d = way.own + way.over * LANE * (np.clip((t - 9) / 2, 0, 1) - np.clip((t - 13) / 2, 0, 1))
+    ego = moving("ego", way, t, 100 + 12 * t, d)
+    other = moving("x", way, t, 150 - 12 * (t - 4.6) + 12 * 4.6, way.other).keep(t < 7.05)
+    con = derived(drive([ego, other], way.environment), tables=["overtake", "hidden"])
+    assert {row["ahead"] for row in rows(con, "FROM hidden WHERE t_ns > 7.05e9")} == {False}
+    assert not rows(con, "FROM overtake")
+
+
+def test_who_comes_in_on_another_road_was_on_no_lane_of_the_ego() -> None:
+    """The ego goes straight on; the other comes in over the end of the side road ahead of it."""
+    ways = tee()
+    t = times(12.0)
+    ego = moving("ego", ways["straight"], t, 60 + 20 * t, ways["straight"].own)
+    south = ways["south"]
+    end = sum(length for length, _ in south.pieces)
+    other = moving("x", south, t, end - 2.6 - 8 * (t - 5.0), south.other).keep(t > 4.99)
+    con = derived(drive([ego, other], ways["straight"].environment), tables=["hidden", "unseen", "ego_state"])
+    unseen = rows(con, "FROM unseen WHERE off_ahead_m IS NOT NULL ORDER BY t_ns")
+    assert len(unseen) == 50
+    assert {row["ahead_m"] for row in unseen} == {None}
+    assert unseen[0]["off_behind_m"] == pytest.approx(60 - 2.4, abs=0.5)
+    hidden = rows(con, "FROM hidden h JOIN unseen u USING (drive_id, ego_id, t_ns, object_id)")
+    assert all(row["lane_m"] > row["off_ahead_m"] - 6 for row in hidden)
+
+
+def test_somebody_unseen_ahead_of_whom_is_seen_far_away_leaves_the_way_free_as_far_as_he_must_be() -> None:
+    """80 m ahead one is lost, and another is seen 400 m ahead: at 20 m/s nobody is near enough to follow closely."""
+    way = road(((3000.0, 0.0),))
+    t = times(7.0)
+    ego = moving("ego", way, t, 100 + 20 * t, way.own)
+    lost = moving("x", way, t, 184.8 + 20 * t, way.own).keep(t < 5.05)
+    far = moving("y", way, t, 504.8 + 20 * t, way.own)
+    con = derived(drive([ego, lost, far], way.environment), tables=["vehicle_ahead", "hidden"])
+    (row,) = rows(con, "FROM vehicle_ahead WHERE t_ns = 6000000000")
+    assert (row["object_id"], row["known"]) == (None, False)
+    assert row["free_m"] == pytest.approx(80 - 5, abs=0.5)
+    assert row["free_mps"] == pytest.approx(20, abs=0.1)
+    verdicts = {r["verdict"] for r in judged([drive([ego, lost, far], way.environment)], rules=["ukhc.r126.thinking-gap"])}
+    assert verdicts == {"pass"}
