@@ -26,7 +26,7 @@ REAL: dict[str, tuple[str, str | None, tuple[str, ...]]] = {
     "cav loop": ("cav_loop/TEST003.csv", "cav_loop/loop_geo_RHD.xodr", _CAV),
     "osi acc-test": ("osi/acc-test.osi", "osi/straight_500m.xodr", ()),
     "osi alks cut-in": ("osi/alks_cut-in.osi", None, ()),
-    "osi highway merge": ("osi/highway_merge.osi", "osi/soderleden.xodr", ()),
+    "osi highway merge": ("osi/highway_merge.osi", "osi/soderleden.xodr", ("--handedness", "rht")),
     "osi centerline": ("osi/osi_centerline_example.mcap", None, ()),
     "osi stop lines": ("osi/MovingHostWithStopLineVariations.mcap", None, ()),
     "osi pedestrian": ("osi/pedestrian.osi", "osi/fabriksgatan.xodr", ()),
