@@ -46,12 +46,11 @@ seen AS (
 -- from where it was seen last and where it is seen next: how far it is at least, straight on and braking or turning as hard as tyres do
 sighted AS (
     SELECT
-        m.*, e.front_s_m + r.offset_m AS front_m, e.rear_s_m + r.offset_m AS rear_m, e.length_m, e.width_m, e.combination_m, coalesce(greatest(b.half_m, a.half_m), half_box_m(NULL, NULL)) AS half_m,
+        m.*, b.t_ns AS t_before_ns, a.t_ns AS t_after_ns, r.road, e.speed_mps, e.front_s_m + r.offset_m AS front_m, e.rear_s_m + r.offset_m AS rear_m, e.length_m, e.width_m, e.combination_m, coalesce(greatest(b.half_m, a.half_m), half_box_m(NULL, NULL)) AS half_m,
         coalesce(
             g.in_sight AND m.unrecorded AND coalesce(b.t_ns, a.t_ns) IS NOT NULL
             AND (b.t_ns IS NULL OR m.t_ns > tb.plain_ns) AND (a.t_ns IS NULL OR m.t_ns < ta.plain_ns), false
         ) AS late,
-        b.t_ns IS NOT NULL AS seen_before, a.t_ns IS NOT NULL AS seen_after,
         CASE WHEN b.along.road = r.road THEN b.along END AS before, CASE WHEN a.along.road = r.road THEN a.along END AS after,
         CASE WHEN b.along.chain_id = r.chain_id THEN 0.0 ELSE lanes_apart_m() END AS before_apart_m,
         CASE WHEN a.along.chain_id = r.chain_id THEN 0.0 ELSE lanes_apart_m() END AS after_apart_m,
@@ -84,13 +83,41 @@ stretch AS (
 ),
 bounded AS (
     SELECT
-        drive_id, ego_id, t_ns, object_id, actor_class, late,
+        drive_id, ego_id, t_ns, object_id, actor_class, late, t_before_ns, t_after_ns, road, speed_mps, coalesce(before, after) IS NOT NULL AS on_road,
         half_m + greatest(half_box_m(length_m, width_m), CASE WHEN combination_m = length_m THEN 0.0 ELSE coalesce(combination_m, 2 * two_half_boxes_m()) - length_m / 2 END) AS halves_m,
         greatest(before_m, after_m, sqrt(before_x_m ** 2 + before_y_m ** 2) - strays_m(actor_class, before_s), sqrt(after_x_m ** 2 + after_y_m ** 2) - strays_m(actor_class, after_s), ahead_m, behind_m, CASE WHEN off_ahead_m IS NOT NULL THEN least(off_ahead_m, off_behind_m) END) AS distance_m,
         greatest(from_m - front_m, rear_m - to_m) AS along_m, off_ahead_m - half_m AS off_ahead_m,
         CASE WHEN ahead_m > 0 OR from_m > front_m THEN true WHEN behind_m > 0 OR to_m < rear_m THEN false END AS ahead,
-        coalesce(CASE WHEN seen_before THEN before.way = 1 ELSE true END AND CASE WHEN seen_after THEN after.way = 1 ELSE true END AND (seen_before OR seen_after), false) AS along
+        coalesce(CASE WHEN t_before_ns IS NOT NULL THEN before.way = 1 ELSE true END AND CASE WHEN t_after_ns IS NOT NULL THEN after.way = 1 ELSE true END AND coalesce(t_before_ns, t_after_ns) IS NOT NULL, false) AS along
     FROM stretch
+),
+-- where all around the ego is in plain view, nobody drives past it unseen: whoever was, or will be, ahead or behind is so until then
+watched AS (
+    SELECT
+        b.*, g.around_m, g.lane_m AS in_view_m,
+        b.late AND coalesce(g.around_m >= watched_m(b.speed_mps, greatest(b.t_ns - lag(b.t_ns) OVER w, lead(b.t_ns) OVER w - b.t_ns) / 1e9), false) AS in_view
+    FROM bounded b
+    LEFT JOIN sight g USING (drive_id, ego_id, t_ns)
+    WINDOW w AS (PARTITION BY b.drive_id, b.ego_id, b.object_id ORDER BY b.t_ns)
+),
+counted AS (
+    SELECT
+        *, sum((NOT in_view)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id, road, t_before_ns ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS n_since,
+        sum((NOT in_view)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id, road, t_after_ns ORDER BY t_ns DESC ROWS UNBOUNDED PRECEDING) AS n_until
+    FROM watched
+),
+ordered AS (
+    SELECT
+        * REPLACE (coalesce(ahead, CASE WHEN on_road AND was.n = n_since THEN was.ahead END, CASE WHEN on_road AND will_be.n = n_until THEN will_be.ahead END) AS ahead)
+    FROM (
+        SELECT
+            *,
+            last_value(CASE WHEN ahead IS NOT NULL AND on_road THEN {'ahead': ahead, 'n': n_since} END IGNORE NULLS)
+                OVER (PARTITION BY drive_id, ego_id, object_id, road, t_before_ns ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS was,
+            last_value(CASE WHEN ahead IS NOT NULL AND on_road THEN {'ahead': ahead, 'n': n_until} END IGNORE NULLS)
+                OVER (PARTITION BY drive_id, ego_id, object_id, road, t_after_ns ORDER BY t_ns DESC ROWS UNBOUNDED PRECEDING) AS will_be
+        FROM counted
+    )
 ),
 incomplete AS (
     SELECT drive_id, ego_id, t_ns, object_id, actor_class, distance_m, x_m, y_m
@@ -144,10 +171,9 @@ in_hole AS (
 )
 SELECT
     drive_id, ego_id, t_ns, object_id, actor_class, may_be_vehicle(actor_class) AS vehicle,
-    greatest(0.0::DOUBLE, coalesce(distance_m, 0.0) - halves_m, along_m, CASE WHEN late THEN coalesce(g.around_m, 0.0) - halves_m END) AS least_m, ahead, along, late,
-    greatest(least_m, off_ahead_m, CASE WHEN late THEN g.lane_m END) AS lane_m
-FROM bounded
-LEFT JOIN sight g USING (drive_id, ego_id, t_ns)
+    greatest(0.0::DOUBLE, coalesce(distance_m, 0.0) - halves_m, along_m, CASE WHEN late THEN coalesce(around_m, 0.0) - halves_m END) AS least_m, ahead, along, late,
+    greatest(least_m, off_ahead_m, CASE WHEN late THEN in_view_m END) AS lane_m
+FROM ordered
 UNION ALL
 SELECT
     h.drive_id, h.ego_id, h.t_ns, h.object_id, h.actor_class, may_be_vehicle(h.actor_class),

@@ -51,10 +51,6 @@ CREATE OR REPLACE MACRO strays_m(actor_class, t_s) AS
         ELSE 5.0 * t_s * t_s
     END;
 
--- The least and the most that a vehicle with the speed v drives in the t seconds after, or before: it brakes, or speeds up, by 10 m/s2 at the
--- most, neither turns round nor backs, and goes no faster than 40 m/s unless it did already.
-CREATE OR REPLACE MACRO drives_least_m(v_mps, t_s) AS CASE WHEN 10.0 * t_s < v_mps THEN v_mps * t_s - 5.0 * t_s * t_s ELSE v_mps * v_mps / 20.0 END;
-CREATE OR REPLACE MACRO drives_most_m(v_mps, t_s) AS least(v_mps * t_s + 5.0 * t_s * t_s, greatest(v_mps, fast_mps()) * t_s);
 -- Stations along a road that were measured in two of its lanes differ by no more than this: a lane's width in a quarter turn.
 CREATE OR REPLACE MACRO lanes_apart_m() AS 6.0;
 

@@ -83,6 +83,14 @@ CREATE OR REPLACE MACRO of_pm(x_pm) AS x_pm / 1e12;
 CREATE OR REPLACE MACRO swerve_mps2() AS 8.0;
 -- A speed that is not known may be this.
 CREATE OR REPLACE MACRO fast_mps() AS 40.0;
+-- The least and the most that a vehicle with the speed v drives in the t seconds after, or before: it brakes, or speeds up, by 10 m/s2 at the
+-- most, neither turns round nor backs, and goes no faster than 40 m/s unless it did already.
+CREATE OR REPLACE MACRO drives_least_m(v_mps, t_s) AS CASE WHEN 10.0 * t_s < v_mps THEN v_mps * t_s - 5.0 * t_s * t_s ELSE v_mps * v_mps / 20.0 END;
+CREATE OR REPLACE MACRO drives_most_m(v_mps, t_s) AS least(v_mps * t_s + 5.0 * t_s * t_s, greatest(v_mps, fast_mps()) * t_s);
+-- So far around the ego all must be in plain view for nobody to drive past it unseen in two lanes on either side: somebody is so near for longer
+-- than a tracker needs, and than a step takes, at the greatest speed at which the two can pass each other on the same way.
+CREATE OR REPLACE MACRO watched_m(v_mps, step_s) AS
+    sqrt(7.0 ** 2 + (greatest(v_mps, fast_mps() - v_mps) * (tracker_begins_ns() / 1e9 + step_s) / 2) ** 2);
 
 -- The way of one box from one sample to the next, as a cubic: (x, y) the way, p and q how far it is off the chord by the velocities at its
 -- ends. Velocities that no tyres make of that way are left out (then told is false).
