@@ -14,6 +14,8 @@ from hypothesis import strategies as st
 from tests.scenes import Actor, Road, derived, drive, moving, rows, seconds, standing, tee, times
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike
 
     from drivelint.batch import Drive
@@ -272,7 +274,7 @@ class Meeting(NamedTuple):
             "other", t, x, y, np.full(t.shape, self.heading), v * math.cos(self.heading), v * math.sin(self.heading),
             length=self.length, width=self.width,
         )  # fmt: skip
-        return drive([moving("ego", line(), t, self.ego_v * (t - 20), 0.0), other], None, drive_id=drive_id)
+        return drive([moving("ego", line(), t, self.ego_v * (t - 20), 0.0), other], None, drive_id=drive_id, egos=("ego", "other"))
 
 
 def boxes(centres: np.ndarray, heading: float, length: float, width: float) -> np.ndarray:
@@ -302,33 +304,59 @@ meetings = st.builds(
 @given(st.lists(meetings, min_size=14, max_size=14))
 @example([Meeting(90, 10, 10, 0.0, 4.8, 1.8)])
 def test_the_times_are_those_of_the_swept_polygons(found: list[Meeting]) -> None:
-    """Entry and exit by shapely: first and last moment that a box touches the ground that the other's covers, at 50 Hz.
+    """Entry and exit by shapely: first and last moment that a box touches the ground that the other's covers; whoever is the ego.
 
     Each meeting is a drive of its own, all derived at once.
     """
     con = derived(*(each.drive(f"{no:02}") for no, each in enumerate(found)), tables=["conflict"])
-    told = rows(con, "FROM conflict ORDER BY drive_id")
-    assert [row["drive_id"] for row in told] == [f"{no:02}" for no in range(len(found))]
-    for each, row in zip(found, told, strict=True):
+    told = rows(con, "FROM conflict ORDER BY drive_id, ego_id")
+    assert [(row["drive_id"], row["ego_id"]) for row in told] == [
+        (f"{no:02}", who) for no in range(len(found)) for who in ("ego", "other")
+    ]
+    for each, row, turned in zip(found, told[::2], told[1::2], strict=True):
         as_swept(each, row)
+        assert mirrored(row) == same(turned), each
+
+
+SAME = ("t_ego_in_ns", "t_ego_out_ns", "t_object_in_ns", "t_object_out_ns", "pet_s", "pet_at_most", "angle_rad")
+
+
+def same(row: Row) -> Row:
+    """Return what both see of an encounter."""
+    return {name: row[name] for name in SAME}
+
+
+def mirrored(row: Row) -> Row:
+    """Return what the other sees of it, the ego and the object having changed places."""
+    t1, t2, t3, t4, pet, at_most, angle = same(row).values()
+    return dict(zip(SAME, (t3, t4, t1, t2, pet, at_most, -angle), strict=True))
+
+
+def touching(each: Meeting, place: Callable[[np.ndarray], np.ndarray], on: shapely.Geometry) -> tuple[float, float]:
+    """Return the first and the last moment that this box touches that ground, to a millisecond."""
+    heading, length, width = (0.0, 4.8, 1.8) if place == each.ego else (each.heading, each.length, each.width)
+
+    def touches(t: np.ndarray) -> np.ndarray:
+        found: np.ndarray = t[shapely.intersects(boxes(place(t), heading, length, width), on)]
+        return found
+
+    coarse = touches(np.arange(0, 40.001, 0.02))
+    fine = np.arange(-0.02, 0.0201, 0.001)
+    return float(touches(coarse[0] + fine)[0]), float(touches(coarse[-1] + fine)[-1])
 
 
 def as_swept(each: Meeting, row: Row) -> None:
     """Hold that the conflict has the times of the polygons."""
-    fine = np.arange(0, 40.001, 0.02)
-    ego_boxes = boxes(each.ego(fine), 0.0, 4.8, 1.8)
-    other_boxes = boxes(each.other(fine), each.heading, each.length, each.width)
-    on_ego = fine[shapely.intersects(ego_boxes, ground(other_boxes))]
-    on_other = fine[shapely.intersects(other_boxes, ground(ego_boxes))]
-
-    pet = max(on_ego[0], on_other[0]) - min(on_ego[-1], on_other[-1])
+    ends = np.array([0.0, 40.0])
+    on_ego = touching(each, each.ego, ground(boxes(each.other(ends), each.heading, each.length, each.width)))
+    on_other = touching(each, each.other, ground(boxes(each.ego(ends), 0.0, 4.8, 1.8)))
+    pet = max(on_ego[0], on_other[0]) - min(on_ego[1], on_other[1])
     times_ = [row[f"t_{who}_{end}_ns"] / 1e9 for who in ("ego", "object") for end in ("in", "out")]
     # a sample of 10 Hz at most, and where the ends of two slender boxes barely touch one more of the other's
     tolerance = 0.13 + 0.1 * max(each.ego_v / each.other_v, each.other_v / each.ego_v)
-    span = max(on_ego[-1], on_other[-1]) - min(on_ego[0], on_other[0])
-    if span < 10:  # beyond that the pairs more than ten seconds apart are left out
-        assert times_ == pytest.approx([on_ego[0], on_ego[-1], on_other[0], on_other[-1]], abs=tolerance), each
-    # never longer than it was, but for the step of the polygons
-    assert pet - 2 * tolerance <= row["pet_s"] <= pet + 0.05, each
+    if max(on_ego[1], on_other[1]) - min(on_ego[0], on_other[0]) < 10:  # pairs more than ten seconds apart are left out
+        assert times_ == pytest.approx([*on_ego, *on_other], abs=tolerance), each
+    assert row["pet_s"] == pytest.approx(pet, abs=0.005), each
+    assert row["pet_at_most"] is False
     assert row["ego_first"] == (row["t_ego_in_ns"] <= row["t_object_in_ns"]), each
     assert row["angle_rad"] == pytest.approx(each.heading), each
