@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -52,7 +53,8 @@ def drivers(draw: st.DrawFn, name: str) -> Actor:
     v, at, waits = draw(st.integers(3, 12)), draw(st.integers(80, 125)), draw(st.sampled_from([0, 0, 1, 5]))
     came = draw(st.integers(6, 12))  # seconds: when it is there
     s = np.interp(T, [came - 20, came, came + waits, came + waits + 20], [at - 20 * v, at, at, at + 20 * v])
-    size = draw(st.sampled_from([{}, {"length": 12.0, "width": 2.5}, {"length": 1.8, "width": 0.6, "kind": "bicycle"}]))
+    sizes: list[dict[str, Any]] = [{}, {"length": 12.0, "width": 2.5}, {"length": 1.8, "width": 0.6, "kind": "bicycle"}]
+    size = draw(st.sampled_from(sizes))
     return moving(name, road, T, s, 0.0, **size)
 
 
@@ -60,7 +62,10 @@ def drivers(draw: st.DrawFn, name: str) -> Actor:
 @given(st.lists(st.tuples(drivers("ego"), drivers("other")), min_size=12, max_size=12))
 def test_both_see_the_same(pairs: list[tuple[Actor, Actor]]) -> None:
     """Turning across each other, merging, parting, following, standing: the same encounters, times, angle and time between."""
-    con = derived(*(drive(pair, None, drive_id=f"{no:02}", egos=("ego", "other")) for no, pair in enumerate(pairs)), tables=["conflict"])
+    con = derived(
+        *(drive(pair, None, drive_id=f"{no:02}", egos=("ego", "other")) for no, pair in enumerate(pairs)),
+        tables=["conflict"],
+    )
     for no in range(len(pairs)):
         seen = rows(con, "FROM conflict WHERE drive_id = ? ORDER BY t_object_in_ns", [f"{no:02}"])
         of_ego, of_other = ([row for row in seen if row["ego_id"] == who] for who in ("ego", "other"))
@@ -76,7 +81,7 @@ def test_the_ids_do_not_matter() -> None:
 
 
 def test_merging_behind_somebody_counts_from_its_rear() -> None:
-    """The other turns into the ego's lane behind it: from when the ego's rear has left the ground that it turns over, until its corner is there."""
+    """The time between runs from when the ego's rear has left the ground over which the other turns, until the other's corner is there."""
     a = moving("ego", WAYS["east"], T, 10 * T, 0.0)
     b = moving("other", WAYS["north, right to east"], T, 5 * T - 5, 0.0)
     (row,) = of_both(a, b)

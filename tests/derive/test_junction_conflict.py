@@ -274,7 +274,12 @@ class Meeting(NamedTuple):
             "other", t, x, y, np.full(t.shape, self.heading), v * math.cos(self.heading), v * math.sin(self.heading),
             length=self.length, width=self.width,
         )  # fmt: skip
-        return drive([moving("ego", line(), t, self.ego_v * (t - 20), 0.0), other], None, drive_id=drive_id, egos=("ego", "other"))
+        return drive(
+            [moving("ego", line(), t, self.ego_v * (t - 20), 0.0), other],
+            None,
+            drive_id=drive_id,
+            egos=("ego", "other"),
+        )
 
 
 def boxes(centres: np.ndarray, heading: float, length: float, width: float) -> np.ndarray:

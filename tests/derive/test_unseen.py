@@ -167,5 +167,7 @@ def test_somebody_unseen_ahead_of_whom_is_seen_far_away_leaves_the_way_free_as_f
     assert (row["object_id"], row["known"]) == (None, False)
     assert row["free_m"] == pytest.approx(80 - 5, abs=0.5)
     assert row["free_mps"] == pytest.approx(20, abs=0.1)
-    verdicts = {r["verdict"] for r in judged([drive([ego, lost, far], way.environment)], rules=["ukhc.r126.thinking-gap"])}
+    verdicts = {
+        r["verdict"] for r in judged([drive([ego, lost, far], way.environment)], rules=["ukhc.r126.thinking-gap"])
+    }
     assert verdicts == {"pass"}

@@ -1,4 +1,7 @@
-"""`python -m tests.map_ends [--seconds 300] [--seed 1] [--egos 60] [--roads rural motorway] [--folder DIR]`: what the ends of log and map change."""
+"""What the ends of log and map change.
+
+`python -m tests.map_ends [--seconds 300] [--seed 1] [--egos 60] [--roads rural motorway] [--folder DIR]`
+"""
 
 from __future__ import annotations
 
@@ -36,7 +39,9 @@ def main() -> int:
             print(f"{road:36}{'decided':>9}{'decided on the part':>22}{'contradicted':>15}{'unknown on both':>18}")
             for rule, counts in counted(pairs).items():
                 decided = sum(n for (whole, _), n in counts.items() if whole in {"pass", "fail"})
-                both = sum(n for (whole, part), n in counts.items() if whole in {"pass", "fail"} and part in {"pass", "fail"})
+                both = sum(
+                    n for (whole, part), n in counts.items() if whole in {"pass", "fail"} and part in {"pass", "fail"}
+                )
                 wrong = sum(p.contradicts for (_, r, *_), p in pairs.items() if r == rule)
                 print(f"{rule:36}{decided:9}{both:22}{wrong:15}{counts['unknown', 'unknown']:18}")
                 contradicted += wrong

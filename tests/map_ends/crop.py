@@ -34,7 +34,8 @@ _EDGE_M: Final = 10.0
 _RANK: Final = "list_position(['error', 'fail', 'unknown', 'pass', 'not_applicable'], verdict)"
 # a rule's verdict at a reference point, or the worst one of its episodes
 _WORST: Final = f"""
-    SELECT drive_id, rule_id, coalesce(profile, ''), coalesce(t_ref_ns, -1), min({{'rank': {_RANK}, 'verdict': verdict, 'reason': reason}}) AS worst
+    SELECT drive_id, rule_id, coalesce(profile, ''), coalesce(t_ref_ns, -1),
+        min({{'rank': {_RANK}, 'verdict': verdict, 'reason': reason}}) AS worst
     FROM verdict WHERE NOT (verdict = 'not_applicable' AND t_ref_ns IS NULL) GROUP BY ALL ORDER BY ALL
 """
 Key = tuple[str, str, str, int]  # ego, rule, profile, time of the reference point (-1: none)
@@ -58,18 +59,27 @@ class Pair(NamedTuple):
 
     @property
     def contradicts(self) -> bool:
-        """Whether a breach is none on the part, or one only there. A rule that does not apply there, for nobody is left, is no contradiction."""
+        """Whether a breach is none on the part, or one only there.
+
+        A rule that does not apply on the part, because nobody is left there, contradicts nothing but a breach.
+        """
         said = {self.whole.verdict, self.part.verdict}
         return len(said) == 2 and "fail" in said and "unknown" not in said
 
 
 def between(first: float, last: float) -> cropping.Inside:
     """Return what of the plane lies between two values of x, in metres."""
-    return lambda x, y: (x >= first) & (x <= last)
+    return lambda x, _y: (x >= first) & (x <= last)
 
 
 def compared(
-    files: Files, folder: Path, span: tuple[float, float], hand: str, *, most: int | None = None, rules: Sequence[str] = RULES
+    files: Files,
+    folder: Path,
+    span: tuple[float, float],
+    hand: str,
+    *,
+    most: int | None = None,
+    rules: Sequence[str] = RULES,
 ) -> dict[Key, Pair]:
     """Return the verdicts of those who drive on the part between two values of x for a while (at most so many), each as ego."""
     inside = between(*span)
@@ -90,7 +100,9 @@ def compared(
     return {key: Pair(whole.get(key, NOTHING), less.get(key, NOTHING)) for key in sorted(whole.keys() | less.keys())}
 
 
-def _drives(egos: Sequence[Track], others: Sequence[Track], folder: Path, road: Path, on: Environment) -> Iterator[Drive]:
+def _drives(
+    egos: Sequence[Track], others: Sequence[Track], folder: Path, road: Path, on: Environment
+) -> Iterator[Drive]:
     """Yield one drive per ego, with what the others do meanwhile; its id is the ego's."""
     for ego in egos:
         now = [t.take((t.t_ns >= ego.t_ns[0]) & (t.t_ns <= ego.t_ns[-1])) for t in others if t.actor_id != ego.actor_id]
@@ -107,13 +119,14 @@ def judged(drives: Iterator[Drive], rules: Sequence[str]) -> dict[Key, Verdict]:
 
         def noted() -> Iterator[Drive]:
             for drive in drives:
-                names[drive.trace.drive_id] = drive.trace.tables["actor"].filter(drive.trace.tables["actor"]["is_ego"])["actor_id"][0].as_py()
+                actor = drive.trace.tables["actor"]
+                names[drive.trace.drive_id] = actor.filter(actor["is_ego"])["actor_id"][0].as_py()
                 yield drive
 
         for batch in cut(noted()):
             bench.judge([one for one in batch if isinstance(one, Drive)])
         rows = con.execute(_WORST).fetchall()
-    return {(names[drive], *key): Verdict(worst["verdict"], worst["reason"]) for drive, *key, worst in rows}  # type: ignore[misc]
+    return {(names[drive], *key): Verdict(worst["verdict"], worst["reason"]) for drive, *key, worst in rows}
 
 
 def counted(pairs: dict[Key, Pair]) -> dict[str, Counter[tuple[str, str]]]:
