@@ -58,7 +58,7 @@ CREATE TABLE conflict (
     t_object_in_ns BIGINT NOT NULL,   -- first sample of the other on ground that the ego's box was or will be on
     t_object_out_ns BIGINT NOT NULL,  -- last one
     pet_s DOUBLE NOT NULL,            -- post-encroachment time: later entry minus earlier exit, both taken between samples, as near to each other as the speeds allow; negative: both in it at once
-    pet_at_most BOOLEAN,              -- it was no more than that: a track begins, or goes on after a hole, where the later one enters, or ends where the earlier one leaves
+    pet_at_most BOOLEAN NOT NULL,     -- it was no more than that: a track begins, or goes on after a hole, where the later one enters, or ends where the earlier one leaves
     ego_first BOOLEAN NOT NULL,       -- the ego entered first (a tie: true)
     angle_rad DOUBLE NOT NULL,        -- where the other enters: its heading against the ego's way there, -pi..pi: near pi oncoming, negative: it comes from the left
     ego_speed_mps DOUBLE,             -- ego's speed on entering

@@ -25,19 +25,24 @@
 -- why = "our default: 45 degrees; ways that meet at less merge or part, as in a lane change, where the follower's headway and time to collision say how close it was"
 
 -- @reference
-SELECT drive_id, ego_id, t_ego_in_ns AS t_ns, object_id, occurrence FROM conflict
+SELECT drive_id, ego_id, t_ego_in_ns AS t_ns, object_id, occurrence, NULL AS code FROM conflict
 UNION ALL
 -- an actor may have crossed the ego's way unseen if its track ends close by, if it has no place for a while, or if it moves and lacks heading or size
-SELECT drive_id, ego_id, t_from_ns, object_id, NULL FROM lost_object WHERE code = 'lost_near_ego'
+SELECT drive_id, ego_id, t_from_ns, object_id, NULL, code FROM lost_object WHERE code = 'lost_near_ego'
 UNION ALL
-SELECT drive_id, ego_id, min(t_ns), object_id, NULL
+SELECT drive_id, ego_id, min(t_ns), object_id, NULL, NULL
 FROM pair
 WHERE x_m IS NULL OR y_m IS NULL OR (yaw_rad IS NULL OR length_m IS NULL OR width_m IS NULL) AND (speed_mps > standing_mps()) IS DISTINCT FROM false
 GROUP BY drive_id, ego_id, object_id
 UNION ALL
-SELECT drive_id, ego_id, min(t_ns), NULL, NULL FROM ego_state WHERE x_m IS NULL OR y_m IS NULL OR yaw_rad IS NULL GROUP BY drive_id, ego_id
+SELECT drive_id, ego_id, min(t_ns), NULL, NULL, NULL FROM ego_state WHERE x_m IS NULL OR y_m IS NULL OR yaw_rad IS NULL GROUP BY drive_id, ego_id
 
 -- @condition
-SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, c.pet_s AS observed, $least_s AS required, abs(c.angle_rad) >= $crossing_rad AS applies
+SELECT
+    r.drive_id, r.ego_id, r.t_ns, r.ref_id, $least_s AS required, r.code AS reason_code, r.occurrence IS NULL OR abs(c.angle_rad) >= $crossing_rad AS applies,
+    -- a time of which only the most is known shows too little, never enough
+    CASE WHEN c.pet_s < $least_s OR NOT c.pet_at_most THEN c.pet_s END AS observed,
+    CASE WHEN c.pet_s >= $least_s AND c.pet_at_most THEN
+        format('Not decided: at most {:.1f} s were between the two, but one of them was not seen all the time.', c.pet_s) END AS reason
 FROM reference r
-JOIN conflict c USING (drive_id, ego_id, occurrence)
+LEFT JOIN conflict c USING (drive_id, ego_id, occurrence)
