@@ -25,10 +25,11 @@ from tests import blinding, scenes
 from tests.clean.judging import told
 from tests.derive.marked import shouldered
 from tests.derive.test_exits import exit_road, leaver
+from tests.derive.test_lane_beside import jointed
 from tests.derive.test_levels import bridge, lifted
 from tests.derive.test_overtake import scene
 from tests.derive.test_trailer import drawn
-from tests.scenes import LANE, Actor, derived, drive, judged, moving, road, saying, standing, tee, times
+from tests.scenes import LANE, Actor, derived, drive, judged, moving, road, saying, standing, swing, tee, times
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
@@ -75,6 +76,13 @@ def crowd() -> tuple[Drive, ...]:
     found.append(drive([ego, ov.keep(t < 18)], ways["straight"].environment, drive_id="tee"))
     beside = shouldered("rht")
     found.append(drive([moving("ego", beside, t, 20 + 8 * t, -1.5 * LANE)], beside.environment, drive_id="shoulder"))
+    halves = jointed("rht")
+    s = 5 + 12 * times(33.0)
+    actors = [
+        moving("ego", halves, times(33.0), s, swing(halves, s, 100, 195)),
+        standing("x", halves, times(33.0), 150, halves.own),
+    ]
+    found.append(drive(actors, halves.environment, drive_id="halves"))
     return (*found, rarely(), *bridged(), *streets())
 
 

@@ -122,9 +122,11 @@ def parts(drives: Sequence[Drive], room: int | None = None) -> list[list[str]]:
 
 
 def _meetings(trace: Trace, egos: set[str]) -> dict[str, int]:
-    states = trace.tables["actor_state"]  # by actor, then by time
+    states = trace.tables["actor_state"]
     coded = pc.dictionary_encode(states["actor_id"].combine_chunks())
     names, code, t_ns = coded.dictionary.to_pylist(), coded.indices.to_numpy(), states["t_ns"].to_numpy()
+    order = np.lexsort((t_ns, code))
+    code, t_ns = code[order], t_ns[order]
     ends = np.r_[np.flatnonzero(np.diff(code)), len(code) - 1]
     starts = np.r_[0, ends[:-1] + 1]
     first, last = np.sort(t_ns[starts]), np.sort(t_ns[ends])

@@ -103,16 +103,16 @@ def test_how_it_came_is_not_known_after_a_hole_or_where_it_had_no_place() -> Non
 
 
 def test_one_without_a_place_far_away_leaves_the_near_lead() -> None:
-    """Unseen from 3 s on, 200 m ahead: braking with 10 m/s2 it may be nearer than the lead at 25 m only after 5.8 s."""
+    """Unseen from 3 s on, 200 m ahead: braking with 10 m/s2 it stops after 5 m, where the lead comes as near as that only after 20 s."""
     way = road()
-    t = times(10.0)
+    t = times(24.0)
     ego = moving("ego", way, t, 100 + 10 * t, way.own)
     lead = moving("x", way, t, 130 + 10 * t, way.own)
     lost = moving("far", way, t, 300 + 10 * t, way.own).lost(t > 2.95)
     found = rows(derived(drive([ego, lead, lost], way.environment), tables=["lead"]), "FROM lead ORDER BY t_ns")
     assert {row["object_id"] for row in found} == {"x"}
-    # 200 - 5.1 - 5 s2 >= 25.2, s = 5.8 after the last sample at 2.9
-    assert found[-1]["t_ns"] == 8_700_000_000
+    # its rear is at 326.6 m after 2.9 s, so at 331.6 m where it stops: the lead's rear is there at 20.4 s
+    assert found[-1]["t_ns"] == 20_300_000_000
 
 
 def test_one_off_the_lanes_with_a_place_hides_nobody() -> None:
