@@ -29,7 +29,10 @@ def peach() -> Mapping[tuple[str, str], str]:
 
 
 def test_limits_of_an_american_map_are_judged(peach: Mapping[tuple[str, str], str]) -> None:
-    assert {verdict for (_, rule), verdict in peach.items() if rule == LIMIT} == {"pass"}
+    """605's recorded speed leads elsewhere than its positions from 4.3 to 5.1 s."""
+    found = {ego: verdict for (ego, rule), verdict in peach.items() if rule == LIMIT}
+    assert {ego for ego, verdict in found.items() if verdict == "unknown"} == {"605"}
+    assert set(found.values()) == {"pass", "unknown"}
 
 
 def test_a_light_is_red_by_its_cycle(peach: Mapping[tuple[str, str], str]) -> None:
@@ -50,6 +53,8 @@ def test_the_vehicle_that_crosses_a_solid_line_fails(peach: Mapping[tuple[str, s
 
 
 def test_limits_of_an_older_scenario_are_judged() -> None:
-    found = verdicts("USA_Lanker-1_1_T-1", LIMIT)
-    assert sum(verdict in {"pass", "fail"} for verdict in found.values()) == 23
-    assert found["1230", LIMIT] == "unknown"  # its place does not fit the map
+    """Unknown: 1230, whose place does not fit the map, and nine whose recorded speeds their positions contradict for a while."""
+    found = {ego: verdict for (ego, _), verdict in verdicts("USA_Lanker-1_1_T-1", LIMIT).items()}
+    assert sum(verdict in {"pass", "fail"} for verdict in found.values()) == 14
+    contradicted = {"1219", "1221", "1231", "1240", "1242", "1245", "1253", "1254", "1266"}
+    assert {ego for ego, verdict in found.items() if verdict == "unknown"} == {"1230", *contradicted}
