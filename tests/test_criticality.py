@@ -66,6 +66,8 @@ def judged(trace_file: Path, map_file: Path, ego: str) -> dict[tuple[str, int], 
     found: dict[tuple[str, int], Judged] = {}
     with store.connect(threads=1) as con:
         scenes.derived(Drive(trace, environment), tables=tables, con=con)
+        # somebody may be nearer than whoever is seen: what is free may be enough for a rule, and nobody is said to lead
+        doubted = set(con.execute("SELECT ego_id, t_ns FROM vehicle_ahead WHERE nearest AND NOT known").fetchall())
         for name, rule in rules.items():
             leads = {row[:2]: row[2] for row in con.execute("SELECT ego_id, t_ns, object_id FROM lead").fetchall()}
 
@@ -80,7 +82,7 @@ def judged(trace_file: Path, map_file: Path, ego: str) -> dict[tuple[str, int], 
                 if other != leads.get((who, t), other):
                     continue
                 value = values.get((who, t, other)) if applies else None
-                found.setdefault((who, t), {})[name] = (other, applies, value)
+                found.setdefault((who, t), {})[name] = (other, None if (who, t) in doubted else applies, value)
     return found
 
 
