@@ -11,8 +11,10 @@ from tests.evaluate.packs import EXECUTION, HOLDS, INVARIANT, MEASURED, PLACE_BE
 if TYPE_CHECKING:
     from pathlib import Path
 
-SPEED = "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, 10 AS required FROM ego_state"
-STATE = {"t_s": [0.0, 0.1, 0.2], "speed_mps": [12, None, 12], "yaw_rad": 0.0, "lanelet_id": "l"}
+SPEED = "SELECT drive_id, ego_id, t_ns, fastest_3s_mps AS observed, 10 AS required FROM ego_state"
+STATE = {
+    "t_s": [0.0, 0.1, 0.2], "fastest_3s_mps": [12, None, 12], "speed_mps": 12, "yaw_rad": 0.0, "lanelet_id": "l", "front_s_m": 5.0,
+}  # fmt: skip
 
 
 def test_the_authors_reason_of_an_unknown_applicability(tmp_path: Path) -> None:
@@ -20,7 +22,7 @@ def test_the_authors_reason_of_an_unknown_applicability(tmp_path: Path) -> None:
         "SELECT drive_id, ego_id, t_ns, in_junction AS applies, 'the map has no junctions' AS reason FROM ego_state"
     )
     rule = write(tmp_path, INVARIANT | MEASURED | {"reads": '["ego_state"]'}, {"applies": applies, "condition": SPEED})
-    given = {"ego_state": {**STATE, "speed_mps": 12, "in_junction": [True, None, True]}}
+    given = {"ego_state": {**STATE, "fastest_3s_mps": 12, "in_junction": [True, None, True]}}
     (row,) = verdicts(rule, given)
     assert row["reason"] == "Not judged: whether the rule applies is not known at 0.100 s: the map has no junctions."
     given["ego_state"]["in_junction"] = [True, True, False]
@@ -33,6 +35,9 @@ def test_the_authors_reason_of_an_unknown_applicability(tmp_path: Path) -> None:
         ({"x_m": [1, None, 3], "y_m": 0.0}, "the ego has no position (or no fresh one)"),
         ({"x_m": 1.0, "y_m": 0.0, "yaw_rad": [0, None, 0]}, "the ego has no heading"),
         ({"x_m": 1.0, "y_m": 0.0, "lanelet_id": ["l", None, "l"]}, "the ego is not on a lane of the map"),
+        ({"x_m": 1.0, "y_m": 0.0, "front_s_m": [5, None, 5]}, "the ego reaches beyond the lanes of the map"),
+        ({"x_m": 1.0, "y_m": 0.0, "speed_mps": [12, None, 12]}, "the speed of the ego is not known"),
+        ({"x_m": 1.0, "y_m": 0.0, "speed_mps": [12, 12, None]}, "the speed of the ego is not known within 1 s of that"),
         ({"x_m": 1.0, "y_m": 0.0}, None),
     ],
 )
@@ -47,20 +52,24 @@ def test_an_ego_without_a_place(tmp_path: Path, state: dict[str, Any], because: 
 @pytest.mark.parametrize(
     ("lacks", "because"),
     [
-        ({"x_m": [1, None]}, "has no position (or no fresh one)"),
-        ({"yaw_rad": [0, None]}, "has no heading"),
-        ({"length_m": [4, None]}, "has no size"),
-        ({"off_level": [False, True]}, "may be over or under the road"),
+        ({"x_m": [1, None]}, "object o has no position (or no fresh one)"),
+        ({"yaw_rad": [0, None]}, "object o has no heading"),
+        ({"length_m": [4, None]}, "object o has no size"),
+        ({"off_level": [False, True]}, "object o may be over or under the road"),
+        ({"speed_mps": [4, None]}, "the speed of object o is not known"),
+        ({"actor_class": ["car", None]}, "the class of object o is not known"),
     ],
 )
-def test_an_object_without_a_place(tmp_path: Path, lacks: dict[str, Any], because: str) -> None:
+def test_an_object_of_which_something_is_not_known(tmp_path: Path, lacks: dict[str, Any], because: str) -> None:
     sql = "SELECT drive_id, ego_id, t_ns, object_id, clearance_m AS observed, 0 AS required FROM pair"
     rule = write(tmp_path, INVARIANT | MEASURED | {"reads": '["pair"]'}, {"condition": sql})
-    there = {"x_m": 1.0, "y_m": 0.0, "yaw_rad": 0.0, "length_m": 4.0, "width_m": 2.0}
+    there = {
+        "x_m": 1.0, "y_m": 0.0, "yaw_rad": 0.0, "length_m": 4.0, "width_m": 2.0, "speed_mps": 3.0, "actor_class": "car",
+    }  # fmt: skip
     pair = there | {"t_s": [0.0, 0.1], "object_id": "o", "clearance_m": [3, None]} | lacks
-    ego = {"t_s": [0.0, 0.1], "x_m": 0.0, "y_m": 0.0, "yaw_rad": 0.0}
+    ego = {"t_s": [0.0, 0.1], "x_m": 0.0, "y_m": 0.0, "yaw_rad": 0.0, "speed_mps": 3.0}
     (row,) = verdicts(rule, {"ego_state": ego, "pair": pair})
-    assert row["reason"] == f"Not judged: a value that it needs is not known at 0.100 s; object o {because}."
+    assert row["reason"] == f"Not judged: a value that it needs is not known at 0.100 s; {because}."
 
 
 def test_what_the_log_lacks_where_a_reference_point_has_no_time(tmp_path: Path) -> None:

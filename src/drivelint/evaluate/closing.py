@@ -8,6 +8,7 @@ from drivelint.evaluate import blind, findings
 
 # a person counts from the drive's first time stamp, as every other output does: the log's clock may be that of 1970
 _AT = "format('{:.3f} s', (t_decides_ns - start_ns) / 1e9)"
+_OBJECT = "coalesce('object ' || object_id, 'an object')"
 _FROM_TO = "(t_start_ns - start_ns) / 1e9, (t_end_ns - start_ns) / 1e9"
 _OBSERVED = "format('{:.6g}', observed) || coalesce(' ' || unit, '')"
 _REQUIRED = """CASE sense WHEN '>' THEN 'more than ' WHEN '>=' THEN 'at least ' WHEN '<' THEN 'less than '
@@ -54,9 +55,9 @@ SENTENCE = f"""CASE
         WHEN 'window_truncated' THEN format(
             'Not judged: the window from {{:.3f}} s to {{:.3f}} s reaches beyond the log.', {_FROM_TO})
         WHEN 'log_hole' THEN format('Not judged: the log has a hole between {{:.3f}} s and {{:.3f}} s.', {_FROM_TO})
-        WHEN 'lost_near_ego' THEN 'Not judged: the track of the object ends close to the ego at ' || {_AT} || '.'
-        WHEN 'lost_in_range' THEN 'Not judged: the track of the object ends within sensor range at ' || {_AT} || '.'
-        WHEN 'lost_on_road' THEN 'Not judged: the track of the object ends on the road at ' || {_AT} || '.'
+        WHEN 'lost_near_ego' THEN 'Not judged: the track of ' || {_OBJECT} || ' ends close to the ego at ' || {_AT} || '.'
+        WHEN 'lost_in_range' THEN 'Not judged: the track of ' || {_OBJECT} || ' ends within sensor range at ' || {_AT} || '.'
+        WHEN 'lost_on_road' THEN 'Not judged: the track of ' || {_OBJECT} || ' ends on the road at ' || {_AT} || '.'
         ELSE 'Not judged at ' || coalesce({_AT}, 'an unknown time') || ': ' || replace(code, '_', ' ') || '.' END
     WHEN verdict = 'not_applicable' THEN CASE code
         WHEN 'no_anchor' THEN 'Not applicable: the time or place at which it must hold never came.'
@@ -122,7 +123,7 @@ _LACKS = """CASE WHEN p.off_level THEN 'off_level' WHEN p.x_m IS NULL OR p.y_m I
 _NO_CAUSE = "('missing_step', 'null_value', 'applies_unknown')"
 """Codes that say at what time something is not known, and not why."""
 
-# why: the ego has no place, or the object of the verdict, or somebody near; where all have one, an ego that is off the lanes
+# why: the ego lacks something, or the object of the verdict, or somebody near has no place; else an ego that is off the lanes
 _CAUSE = f"""
 WITH _doubted AS (
     SELECT DISTINCT drive_id, ego_id, t_decides_ns AS t_ns, object_id, of_hidden, of_lanes
@@ -135,19 +136,32 @@ WITH _doubted AS (
     LEFT JOIN unseen u USING (drive_id, ego_id, t_ns, object_id)
     LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
     GROUP BY drive_id, ego_id, t_ns
+), _speedless AS (
+    -- what is measured over a while lacks the speed somewhere in it
+    SELECT DISTINCT d.drive_id, d.ego_id, d.t_ns
+    FROM _doubted d
+    JOIN ego_state e ON e.drive_id = d.drive_id AND e.ego_id = d.ego_id AND e.speed_mps IS NULL
+        AND e.t_ns >= d.t_ns - 1_000_000_000 AND e.t_ns <= d.t_ns + 1_000_000_000
 )
 SELECT {{'drive_id': d.drive_id, 'ego_id': d.ego_id, 't_ns': d.t_ns, 'object_id': coalesce(d.object_id, ''), 'of_hidden': d.of_hidden,
     'of_lanes': d.of_lanes}} AS key, CASE
     WHEN e.x_m IS NULL OR e.y_m IS NULL THEN 'the ego ' || unplaced_words('no_position')
     WHEN e.yaw_rad IS NULL THEN 'the ego ' || unplaced_words('no_heading')
     WHEN p.object_id IS NOT NULL AND {_LACKS} IS NOT NULL THEN format('object {{}} {{}}', p.object_id, unplaced_words({_LACKS}))
+    WHEN e.speed_mps IS NULL THEN 'the speed of the ego is not known'
+    WHEN p.object_id IS NOT NULL AND p.speed_mps IS NULL THEN format('the speed of object {{}} is not known', p.object_id)
+    WHEN p.object_id IS NOT NULL AND p.actor_class IS NULL THEN format('the class of object {{}} is not known', p.object_id)
     WHEN n.nearest IS NOT NULL AND d.of_hidden THEN format('the nearest without a place is object {{}}, which {{}}{{}}', nearest.id,
         unplaced_words(nearest.code), CASE WHEN nearest.m >= 1 THEN format(', at least {{:.0f}} m away', floor(nearest.m)) ELSE '' END)
-    WHEN e.lanelet_id IS NULL AND d.of_lanes THEN 'the ego is not on a lane of the map' END AS because
+    WHEN d.of_lanes AND e.lanelet_id IS NULL THEN 'the ego is not on a lane of the map'
+    WHEN d.of_lanes AND e.front_s_m IS NULL THEN 'the ego reaches beyond the lanes of the map'
+    WHEN d.of_lanes AND p.object_id IS NOT NULL AND p.s_m IS NULL THEN format('object {{}} has no place along the road', p.object_id)
+    WHEN b.drive_id IS NOT NULL THEN 'the speed of the ego is not known within 1 s of that' END AS because
 FROM _doubted d
 LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
 LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN _near n USING (drive_id, ego_id, t_ns)
+LEFT JOIN _speedless b USING (drive_id, ego_id, t_ns)
 """
 
 _VERDICTS = f"""
