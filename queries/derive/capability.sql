@@ -6,6 +6,7 @@ WITH subject AS (
             SELECT min(q.message) FROM quality q WHERE q.drive_id = c.drive_id AND q.check_id IN ('own_map_unusable', 'lanes_without_width')
         ), 'no map: give one with --map') AS no_map, g.has_indicator, g.has_brake_light,
         a.length_m IS NOT NULL AND a.width_m IS NOT NULL AS ego_size,
+        NOT EXISTS (FROM quality q WHERE q.drive_id = c.drive_id AND q.check_id = 'assumed_motion') AS speeds,
         -- a log may record lamps without anything that the ego declares of what it looks at or means to do
         EXISTS (FROM declared_event d WHERE d.drive_id = c.drive_id AND d.actor_id = c.ego_id AND d.event <> 'headlights') AS events,
         EXISTS (FROM signal_state l WHERE l.drive_id = c.drive_id AND l.state IS NOT NULL) AS signals,
@@ -64,6 +65,7 @@ answer AS (
         {'signal': 'indicator', 'of_map': false, 'available': s.has_indicator, 'yes': 'the log has the ego''s indicators', 'no': 'the log has no indicators of the ego'},
         {'signal': 'brake_light', 'of_map': false, 'available': s.has_brake_light, 'yes': 'the log has the ego''s brake lights', 'no': 'the log has no brake lights of the ego'},
         {'signal': 'ego_size', 'of_map': false, 'available': s.ego_size, 'yes': 'the ego''s box is known', 'no': 'the ego''s length or width is not known'},
+        {'signal': 'speeds', 'of_map': false, 'available': s.speeds, 'yes': 'speeds are recorded, or follow from the positions', 'no': 'the mapping assumes the speeds: give a log that has them'},
         -- a vehicle of no kind may be a bicycle; where nobody else is, there is nobody to know the class of
         {'signal': 'actor_classes', 'of_map': false, 'available': s.classes OR NOT s.others,
             'yes': CASE WHEN s.others THEN 'the log says what the others are' ELSE 'nobody else is in the log' END, 'no': 'the log does not say what the others are: give their classes'},

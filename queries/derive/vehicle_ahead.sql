@@ -89,31 +89,40 @@ framed AS (
     SELECT
         t.drive_id, t.ego_id, t.t_ns, t.object_id, ttc_s(t.gap_m, t.ego_speed_mps - along_mps(t.speed_mps, t.oncoming)) AS ttc_s,
         ex * cos(e.yaw_rad) + ey * sin(e.yaw_rad) AS dx, ey * cos(e.yaw_rad) - ex * sin(e.yaw_rad) AS dy, cos(turn_rad) AS c, sin(turn_rad) AS s,
-        p.speed_mps * cos(turn_rad) - v.vx_mps * cos(e.yaw_rad) - v.vy_mps * sin(e.yaw_rad) AS ux,
-        p.speed_mps * sin(turn_rad) - v.vy_mps * cos(e.yaw_rad) + v.vx_mps * sin(e.yaw_rad) AS uy,
-        -- as far as the lane bends up to there, the ego need not go straight on
+        (o.vx_mps - v.vx_mps) * cos(e.yaw_rad) + (o.vy_mps - v.vy_mps) * sin(e.yaw_rad) AS ux,
+        (o.vy_mps - v.vy_mps) * cos(e.yaw_rad) - (o.vx_mps - v.vx_mps) * sin(e.yaw_rad) AS uy,
+        -- as far as the lane bends up to there, the ego need not go straight on: by so much they may come nearer
         least_apart_m() + abs(t.gap_m * wrap_rad(turn_rad + e.heading_diff_rad - p.heading_diff_rad)) AS room_m,
         e.length_m / 2 AS hla, e.width_m / 2 AS hwa, p.length_m / 2 AS hlb, p.width_m / 2 AS hwb
     FROM told t
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     JOIN pair p ON p.drive_id = t.drive_id AND p.ego_id = t.ego_id AND p.t_ns = t.t_ns AND p.object_id = t.object_id
     JOIN state_dynamics v ON v.drive_id = t.drive_id AND v.actor_id = t.ego_id AND v.t_ns = t.t_ns
+    ASOF JOIN state_dynamics o ON o.drive_id = t.drive_id AND o.actor_id = t.object_id AND o.t_ns <= t.t_ns
     CROSS JOIN LATERAL (SELECT p.x_m - e.x_m AS ex, p.y_m - e.y_m AS ey, p.yaw_rad - e.yaw_rad AS turn_rad) f
-    WHERE t.gap_m >= 0
+    WHERE t.gap_m >= 0 AND p.speed_mps IS NOT NULL
 ),
--- while the boxes overlap along each of the four directions of their sides, they touch
+-- while the boxes overlap along each of the four directions of their sides, they touch: as they are, and with that room around them
 touching AS (
-    SELECT
-        drive_id, ego_id, t_ns, object_id, ttc_s,
-        [
-            within_s(dx, ux, room_m + hla + hlb * abs(c) + hwb * abs(s)), within_s(dy, uy, room_m + hwa + hlb * abs(s) + hwb * abs(c)),
-            within_s(dx * c + dy * s, ux * c + uy * s, room_m + hlb + hla * abs(c) + hwa * abs(s)),
-            within_s(dy * c - dx * s, uy * c - ux * s, room_m + hwb + hla * abs(s) + hwa * abs(c))
-        ] AS w
-    FROM framed
+    SELECT drive_id, ego_id, t_ns, object_id, with_room, greatest(0.0, w[1].from_s, w[2].from_s, w[3].from_s, w[4].from_s) > least(w[1].to_s, w[2].to_s, w[3].to_s, w[4].to_s) AS miss
+    FROM (
+        SELECT
+            drive_id, ego_id, t_ns, object_id, with_room,
+            [
+                within_s(dx, ux, m + hla + hlb * abs(c) + hwb * abs(s)), within_s(dy, uy, m + hwa + hlb * abs(s) + hwb * abs(c)),
+                within_s(dx * c + dy * s, ux * c + uy * s, m + hlb + hla * abs(c) + hwa * abs(s)),
+                within_s(dy * c - dx * s, uy * c - ux * s, m + hwb + hla * abs(s) + hwa * abs(c))
+            ] AS w
+        FROM framed CROSS JOIN LATERAL (VALUES (false, 0.0), (true, room_m)) AS v(with_room, m)
+        WHERE ttc_s < drift_s()
+    )
+    WHERE w[1] IS NOT NULL AND w[2] IS NOT NULL AND w[3] IS NOT NULL AND w[4] IS NOT NULL
+),
+missed AS (
+    SELECT drive_id, ego_id, t_ns, object_id, bool_and(miss) AS passes_by, bool_or(miss) AND NOT bool_and(miss) AS grazes
+    FROM touching
+    GROUP BY drive_id, ego_id, t_ns, object_id
 )
-SELECT
-    t.*,
-    CASE WHEN c.ttc_s < drift_s() AND w[1] IS NOT NULL AND w[2] IS NOT NULL AND w[3] IS NOT NULL AND w[4] IS NOT NULL THEN greatest(0.0, w[1].from_s, w[2].from_s, w[3].from_s, w[4].from_s) > least(w[1].to_s, w[2].to_s, w[3].to_s, w[4].to_s) END AS passes_by
+SELECT t.*, c.passes_by, c.grazes
 FROM told t
-LEFT JOIN touching c ON c.drive_id = t.drive_id AND c.ego_id = t.ego_id AND c.t_ns = t.t_ns AND c.object_id = t.object_id
+LEFT JOIN missed c ON c.drive_id = t.drive_id AND c.ego_id = t.ego_id AND c.t_ns = t.t_ns AND c.object_id = t.object_id

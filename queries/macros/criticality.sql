@@ -19,6 +19,9 @@ CREATE OR REPLACE MACRO or_never(time_s, required_s) AS
 CREATE OR REPLACE MACRO sure(value, worst, best, required) AS CASE WHEN worst >= required OR best < required THEN value END;
 CREATE OR REPLACE MACRO sure_most(value, worst, best, required) AS CASE WHEN worst <= required OR best > required THEN value END;
 
+-- Whether two are on a collision course still, where it is known that they pass each other by, or may graze each other.
+CREATE OR REPLACE MACRO may_touch(passes_by, grazes) AS CASE WHEN passes_by THEN false WHEN grazes THEN NULL ELSE true END;
+
 -- Time headway: until the ego's front is where the other's rear is now.
 CREATE OR REPLACE MACRO thw_s(gap_m, v_mps) AS
     CASE WHEN v_mps > 0 THEN gap_m / v_mps WHEN v_mps <= 0 AND gap_m IS NOT NULL THEN 'inf'::DOUBLE END;

@@ -122,6 +122,15 @@ def test_a_lower_bound_proves_what_it_can(
     assert (row["margin"] is None) == (row["verdict"] == "unknown")
 
 
+def test_the_bound_that_is_told_is_that_of_the_undecided_step(tmp_path: Path) -> None:
+    """The least margin of those that are decided is another step's."""
+    sql = SPEED_SQL.replace(" FROM", ", with_direction AS at_least FROM")
+    rule = write(tmp_path, INVARIANT | {"sense": '">"', "unit": '"m/s"'} | SPEED, {"condition": sql})
+    (row,) = verdicts(rule, speeds([10.5, 8.0], with_direction=[False, True]))
+    assert (row["reason_code"], row["observed"]) == ("only_a_bound", 10.5)
+    assert row["reason"].startswith("Not decided: only a bound is known at 0.100 s (8 m/s, required more than 10 m/s)")
+
+
 def test_a_row_that_an_inner_join_lost_is_unknown(tmp_path: Path) -> None:
     sql = SPEED_SQL + " WHERE limit_mps IS NOT NULL"
     rule = write(tmp_path, INVARIANT | MEASURED | SPEED, {"condition": sql})
@@ -259,6 +268,8 @@ def test_lost_objects_are_unknown_from_there_on(tmp_path: Path) -> None:
         3,
         0,
     )
+    assert rows[2]["t_worst_ns"] == 199_999_999  # the last step at which it is there, in a real log
+    assert rows[2]["reason"] == "Not judged: object 2 is recorded until 0.200 s only, the ego until 0.500 s."
 
 
 def test_own_grid_labels_episodes(tmp_path: Path) -> None:

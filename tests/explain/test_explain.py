@@ -182,6 +182,8 @@ def test_an_unknown_verdict_for_want_of_a_signal(folder: Path) -> None:
     (table,) = found.rows
     assert (table.table, table.rows[0]["available"]) == ("capability", False)
     assert table.rows[0]["reason"] in text
+    assert "What would decide it" in said(found)
+    assert "as drivelint inspect says" in text
 
 
 def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
@@ -205,6 +207,7 @@ def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
     assert pair.rows[0]["clearance_m"] is None
     text = said(found)
     assert re.search(r"clearance_m\s+NULL", text)
+    assert "where the log lacks it, record it" in flat(text)
     assert "?" in text[text.index("Margin over time") :]
 
 
@@ -314,6 +317,8 @@ MISTAKES = [
     ("no-collision", {"object_id": "9"}, "no verdict for object '9'"),
     ("r162.safe", {"profile": "aggressive"}, "there are nominal, relaxed"),
     ("no-collision", {"at_s": 1e6}, "about the time 1e+06 s"),
+    ("no-collision", {"ego_id": "x"}, "no verdict for ego 'x'; there are ego"),
+    ("no-collision", {"verdict": "unknown"}, "no verdict for verdict 'unknown'; there are fail, pass"),
     ("ukhc", {}, "the beginning of several rules"),
 ]
 
@@ -340,6 +345,7 @@ def test_the_worst_verdict_is_meant_unless_one_is_asked_for(folder: Path) -> Non
     assert found.verdict["verdict"] == "fail"
     at = of(folder, "no-collision@safe", at_s=1.0)
     assert at.verdict["t_start_ns"] <= 1e9 <= at.verdict["t_end_ns"]
+    assert of(folder, "no-collision", verdict="pass", ego_id="ego").verdict["verdict"] == "pass"
 
 
 def test_a_folder_without_a_result(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@
 -- observes = "acceleration"
 -- near_margin = 0.3
 -- reads = ["clock", "ego_motion"]
+-- requires = ["speeds"]
 --
 -- [params.slow_mps2]
 -- default = 4.0

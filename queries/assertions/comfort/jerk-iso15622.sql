@@ -11,6 +11,7 @@
 -- observes = "growth of the deceleration over 1 s"
 -- near_margin = 0.5
 -- reads = ["clock", "ego_motion"]
+-- requires = ["speeds"]
 --
 -- [params.slow_mps3]
 -- default = 5.0

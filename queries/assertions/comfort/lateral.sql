@@ -11,6 +11,7 @@
 -- observes = "lateral acceleration"
 -- near_margin = 0.3
 -- reads = ["actor", "clock", "ego_condition", "ego_motion"]
+-- requires = ["speeds"]
 --
 -- [params.most_mps2]
 -- default = 3.0

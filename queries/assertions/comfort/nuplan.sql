@@ -11,6 +11,7 @@
 -- observes = "largest of acceleration, braking, lateral acceleration and jerk, each as a share of its bound,"
 -- near_margin = 0.1
 -- reads = ["clock", "ego_motion"]
+-- requires = ["speeds"]
 --
 -- [params.accel_mps2]
 -- default = 2.4

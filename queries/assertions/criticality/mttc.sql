@@ -12,7 +12,7 @@
 -- near_margin = 0.5
 -- merge_gap_s = 1.0
 -- reads = ["clock", "ego_motion", "ego_state", "pair", "step", "vehicle_ahead"]
--- requires = ["map", "registration", "ego_size"]
+-- requires = ["map", "registration", "ego_size", "speeds"]
 --
 -- [params.least_s]
 -- default = 1.5
@@ -25,13 +25,14 @@
 -- why = "our default: so near to the ends of the log the windows of the accelerations are not whole"
 
 -- @applies
+-- who is beside the ego's way and does not close in yet comes into it only as its heading says at that step: that alone is not known well enough
 -- a step without a row in `vehicle_ahead` is one at which nobody knows who leads
 SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
     CASE WHEN l.object_id IS NOT NULL THEN on_course(
         -- at the present speeds across they are moved on to when the gap is gone at the present accelerations
-        l.gap_m, coalesce(mttc_s(l.gap_m, l.ego_speed_mps, m.accel_mps2, k.away_mps, k.other_mps2), ttc_s(l.gap_m, l.ego_speed_mps - k.away_mps)),
+        l.gap_m, coalesce(mttc_s(l.gap_m, l.ego_speed_mps, m.accel_mps2, k.away_mps, k.other_mps2), k.ttc_s),
         e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, p.speed_mps * sin(p.heading_diff_rad)
-    ) AND l.passes_by IS DISTINCT FROM true AND either_moves(l.ego_speed_mps, l.speed_mps)
+    ) AND may_touch(l.passes_by, l.grazes) AND CASE WHEN l.across_m < 0 OR k.ttc_s < 'inf' THEN true END AND either_moves(l.ego_speed_mps, l.speed_mps)
     -- one that is not seen is further away than the way that is free, and the two close in no faster than tyres allow
     WHEN l.known OR gone_s(l.free_m, l.free_mps, 10.0) >= $least_s THEN true END AS applies
 FROM step s
@@ -39,29 +40,27 @@ LEFT JOIN vehicle_ahead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND
 LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.t_ns = l.t_ns AND p.object_id = l.object_id
 LEFT JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
 LEFT JOIN ego_motion m ON m.drive_id = s.drive_id AND m.ego_id = s.ego_id AND m.t_ns = s.t_ns
-CROSS JOIN LATERAL (SELECT along_mps(l.speed_mps, l.oncoming) AS away_mps, along_mps(l.accel_mps2, l.oncoming) AS other_mps2) k
+CROSS JOIN LATERAL (SELECT along_mps(l.speed_mps, l.oncoming) AS away_mps, along_mps(l.accel_mps2, l.oncoming) AS other_mps2, ttc_s(l.gap_m, l.ego_speed_mps - along_mps(l.speed_mps, l.oncoming)) AS ttc_s) k
 
 -- @condition
 -- at the ends of the log the windows of the accelerations are not whole, which says nothing about the drive. They smooth: the ego's begins to
--- count before it begins, the other's after; where that makes the difference, it is not known
+-- count before it begins, the other's after, and still counts when it is over; where that makes the difference, it is not known
 SELECT l.drive_id, l.ego_id, l.t_ns, l.object_id, $least_s AS required, l.object_id IS NULL OR judged_inside(m.accel_mps2 + l.other_mps2, l.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
     CASE WHEN l.object_id IS NULL THEN 'inf'::DOUBLE
         ELSE sure(
             or_never(mttc_s(l.gap_m, l.ego_speed_mps, m.accel_mps2, l.away_mps, l.other_mps2), $least_s),
             mttc_s(l.gap_m, l.ego_speed_mps, m.most_mps2, l.away_mps, l.least_mps2),
-            mttc_s(l.gap_m, l.ego_speed_mps, m.accel_mps2, l.away_mps, l.other_mps2), $least_s
+            mttc_s(l.gap_m, l.ego_speed_mps, m.least_mps2, l.away_mps, l.most_mps2), $least_s
         ) END AS observed
 FROM (
     SELECT *, along_mps(speed_mps, oncoming) AS away_mps, along_mps(accel_mps2, oncoming) AS other_mps2,
-        min(along_mps(accel_mps2, oncoming)) OVER (
-            PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns RANGE BETWEEN CURRENT ROW AND ($edge_s * 1e9)::BIGINT FOLLOWING
-        ) AS least_mps2
+        min(along_mps(accel_mps2, oncoming)) OVER w AS least_mps2, max(along_mps(accel_mps2, oncoming)) OVER w AS most_mps2
     FROM vehicle_ahead
+    WINDOW w AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns RANGE BETWEEN CURRENT ROW AND ($edge_s * 1e9)::BIGINT FOLLOWING)
 ) l
 JOIN clock c ON c.drive_id = l.drive_id AND c.ego_id = l.ego_id
 JOIN (
-    SELECT *, max(accel_mps2) OVER (
-        PARTITION BY drive_id, ego_id ORDER BY t_ns RANGE BETWEEN ($edge_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW
-    ) AS most_mps2
+    SELECT *, max(accel_mps2) OVER w AS most_mps2, min(accel_mps2) OVER w AS least_mps2
     FROM ego_motion
+    WINDOW w AS (PARTITION BY drive_id, ego_id ORDER BY t_ns RANGE BETWEEN ($edge_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW)
 ) m ON m.drive_id = l.drive_id AND m.ego_id = l.ego_id AND m.t_ns = l.t_ns

@@ -12,7 +12,7 @@
 -- near_margin = 0.5
 -- merge_gap_s = 1.0
 -- reads = ["ego_state", "pair", "step", "vehicle_ahead"]
--- requires = ["map", "registration", "ego_size"]
+-- requires = ["map", "registration", "ego_size", "speeds"]
 --
 -- [params.least_s]
 -- default = 1.0
@@ -32,7 +32,7 @@ SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
     CASE WHEN l.object_id IS NOT NULL THEN on_course(
         l.gap_m, ttc_s(l.gap_m, l.ego_speed_mps - along_mps(l.speed_mps, l.oncoming)),
         e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, p.speed_mps * sin(p.heading_diff_rad)
-    ) AND l.passes_by IS DISTINCT FROM true AND either_moves(l.ego_speed_mps, l.speed_mps) AND NOT comes(l.speed_mps, l.oncoming)
+    ) AND may_touch(l.passes_by, l.grazes) AND either_moves(l.ego_speed_mps, l.speed_mps) AND NOT comes(l.speed_mps, l.oncoming)
     -- one that is not seen is further away than the way that is free
     WHEN l.known OR ttb_s(l.free_m, l.ego_speed_mps, $brake_mps2) >= $least_s THEN true END AS applies
 FROM step s

@@ -12,7 +12,7 @@
 -- observes = "speed"
 -- merge_gap_s = 5.0
 -- reads = ["ego_condition", "ego_state"]
--- requires = ["map", "registration"]
+-- requires = ["map", "registration", "speeds"]
 -- pass_requires = ["speed_limits"]
 --
 -- [params.tolerance_mps]

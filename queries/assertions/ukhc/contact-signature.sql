@@ -11,7 +11,7 @@
 -- observes = "change of speed of the ego or the other"
 -- merge_gap_s = 1.0
 -- reads = ["between_steps", "ego_state", "lost_object", "pair", "step", "clock"]
--- requires = ["ego_size"]
+-- requires = ["ego_size", "speeds"]
 --
 -- [params.within_m]
 -- default = 0.5

@@ -13,12 +13,12 @@
 -- without_anchor = "the log does not show the ego back in its lane"
 
 -- @reference
-SELECT o.drive_id, o.ego_id, o.t0_ns AS t_ns, max(o.vbp_id) AS object_id, o.t3_ns, o.t_end_ns, o.opposing, CASE o.side WHEN 1 THEN 'left' ELSE 'right' END AS side
+SELECT o.drive_id, o.ego_id, o.t0_ns AS t_ns, max(o.vbp_id) AS object_id, bool_or(o.sure) AS sure, o.begin_seen, o.t3_ns, o.t_end_ns, o.opposing, CASE o.side WHEN 1 THEN 'left' ELSE 'right' END AS side
 FROM overtake o
 LEFT JOIN line_step f ON f.drive_id = o.drive_id AND f.ego_id = o.ego_id AND f.t_ns = o.t0_ns AND f.side = CASE o.side WHEN 1 THEN 'left' ELSE 'right' END
 -- a line that was solid from the start is the business of r129.no-cross-solid, unless the start was not seen
 WHERE o.opposing IS DISTINCT FROM false AND (f.forbidden IS DISTINCT FROM true OR NOT o.begin_seen)
-GROUP BY o.drive_id, o.ego_id, o.t0_ns, o.t3_ns, o.t_end_ns, o.opposing, o.side
+GROUP BY o.drive_id, o.ego_id, o.t0_ns, o.begin_seen, o.t3_ns, o.t_end_ns, o.opposing, o.side
 
 -- @anchor
 -- where the line became solid under it, or where it was back
@@ -35,9 +35,10 @@ SELECT r.drive_id, r.ego_id, coalesce(min(l.t_ns) FILTER (l.solid), r.t3_ns) AS 
     CASE
         -- without a lane beside it, the line may be the edge of the road
         WHEN r.opposing IS NULL THEN NULL
-        WHEN bool_or(l.solid) THEN false
+        -- one that was solid when it is first seen may have been so as the ego crossed it, if it did
+        WHEN bool_or(l.solid) THEN CASE WHEN r.sure AND (r.begin_seen OR min(l.t_ns) FILTER (NOT l.solid) < min(l.t_ns) FILTER (l.solid)) THEN false END
         WHEN count(l.t_ns) > 0 AND count(l.t_ns) = count(l.solid) THEN true
     END AS holds
 FROM reference r
 LEFT JOIN over l ON l.drive_id = r.drive_id AND l.ego_id = r.ego_id AND l.side = r.side AND l.t_ns >= r.t_ns AND l.t_ns <= r.t_end_ns
-GROUP BY r.drive_id, r.ego_id, r.ref_id, r.t3_ns, r.opposing
+GROUP BY r.drive_id, r.ego_id, r.ref_id, r.sure, r.begin_seen, r.t3_ns, r.opposing

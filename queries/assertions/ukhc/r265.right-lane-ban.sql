@@ -26,7 +26,9 @@
 -- joining, and where none leads on the map ends
 WITH open AS (
     SELECT environment_id, road_id, section, along_road,
-        count(*) FILTER (ahead_id IS NOT NULL OR map_ends AND length_m >= $through_m) AS n_least, count(*) FILTER (ahead_id IS NOT NULL OR map_ends) AS n_most
+        -- two that lead into the same lane are one
+        count(DISTINCT ahead_id) + count(*) FILTER (ahead_id IS NULL AND map_ends AND length_m >= $through_m) AS n_least,
+        count(DISTINCT ahead_id) + count(*) FILTER (ahead_id IS NULL AND map_ends) AS n_most
     FROM lanelet
     JOIN lane_next USING (environment_id, lanelet_id)
     WHERE lane_type = 'driving'

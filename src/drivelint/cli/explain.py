@@ -27,6 +27,10 @@ def explain(
     object_: Annotated[
         str | None, typer.Option("--object", metavar="ID", help="The rule's verdict about this actor.")
     ] = None,
+    ego: Annotated[str | None, typer.Option("--ego", metavar="ID", help="The rule's verdict on this ego.")] = None,
+    verdict: Annotated[
+        str | None, typer.Option("--verdict", metavar="WORD", help="A verdict of this kind, such as unknown.")
+    ] = None,
     at: Annotated[
         float | None, typer.Option("--at", metavar="S", help="The rule's verdict about this second of the drive.")
     ] = None,
@@ -56,7 +60,7 @@ def explain(
 
     The clause, the SQL with its numbers, the rows that it read, the margin over time, the least change of a number that
     changes the verdict, and how often it stays the same when positions, clocks and map are a little off. Of several
-    verdicts of a rule the worst is shown, unless --profile, --object or --at choose.
+    verdicts of a rule the worst is shown, unless --ego, --verdict, --profile, --object or --at choose.
 
     The drive is judged anew by that rule, from the database that check --keep-db kept, else from its log.
     """
@@ -67,7 +71,7 @@ def explain(
     order = Order(
         name,
         folder,
-        Wanted(profile, object_, at),
+        Wanted(profile, object_, at, ego, verdict),
         trace,
         map_,
         Errors(position, time, of_map, samples, seed),

@@ -104,7 +104,10 @@ DrivenSide = Annotated[Handedness, typer.Option("--handedness", help="Side of th
 SensorRange = Annotated[
     float | None,
     typer.Option(
-        "--sensor-range", metavar="M", min=0, help="Range in which the recorder sees everybody. Default: all."
+        "--sensor-range",
+        metavar="M",
+        min=0,
+        help="Range in which the recorder sees everybody. Default: what the log says, else 50 m.",
     ),
 ]
 InSight = Annotated[

@@ -14,18 +14,23 @@ _OBSERVED = "format('{:.6g}', observed) || coalesce(' ' || unit, '')"
 _REQUIRED = """CASE sense WHEN '>' THEN 'more than ' WHEN '>=' THEN 'at least ' WHEN '<' THEN 'less than '
             ELSE 'at most ' END
         || format('{:.6g}', required) || coalesce(' ' || unit, '')"""
+# those of the step that is not decided, not of the worst one that is
+_BOUND, _ASKED = _OBSERVED.replace("observed", "bound"), _REQUIRED.replace("required", "asked")
 _MARGIN = "format('{:.6g}', abs(margin)) || coalesce(' ' || unit, '')"
 
 _WHAT = "CASE WHEN observes IS NULL THEN '' ELSE upper(observes[1]) || observes[2:] || ' ' END"
 
 _CONDITIONS: Final = {
     "engaged": ("whether the automated driver drives", "the log''s mode flag engaged, or --env engaged=yes"),
-    "road_type": ("what kind of road this is", "a map that says it, or --env road_type=rural"),
+    "road_type": (
+        "what kind of road this is",
+        "a map that says it, or what it was, such as --env road_type=motorway, rural or town",
+    ),
     "carriageway": ("whether this is a single or a dual carriageway", "--env carriageway=single"),
     "area": ("whether this is a built-up area", "a map with road types, or --env area=built_up"),
     "nation": ("in which country this is", "--env nation=gb"),
     "weather": ("the weather", "--env weather=dry"),
-    "light": ("whether it is day or night", "--env light=day"),
+    "light": ("whether it is day or night", "--env light=day or light=night"),
     "vehicle_class": ("which class of vehicle the ego is", "--env vehicle_class=car"),
     "limit": ("the speed limit", "a map with speed limits"),
 }
@@ -41,7 +46,7 @@ SENTENCE = f"""CASE
         WHEN 'missing_step' THEN 'Not judged: the rule''s data has no row at ' || {_AT} || '.'
         WHEN 'null_value' THEN 'Not judged: a value that it needs is not known at ' || {_AT} || '.'
         WHEN 'only_a_bound' THEN 'Not decided: only a bound is known at ' || {_AT}
-            || coalesce(' (' || {_OBSERVED} || ', required ' || {_REQUIRED} || ')', '') || '.'
+            || coalesce(' (' || {_BOUND} || ', required ' || {_ASKED} || ')', '') || '.'
         WHEN 'applies_unknown' THEN 'Not judged: whether the rule applies is not known' || coalesce(' at ' || {_AT}, '')
             || coalesce(': ' || reason, '') || '.'
         {_NOT_KNOWN}
@@ -53,7 +58,8 @@ SENTENCE = f"""CASE
         WHEN 'beyond_sensor_range' THEN 'Not judged: nobody was seen at ' || {_AT}
             || ', but the sensors do not reach everywhere.'
         WHEN 'window_truncated' THEN format(
-            'Not judged: the window from {{:.3f}} s to {{:.3f}} s reaches beyond the log.', {_FROM_TO})
+            'Not judged: the window from {{:.3f}} s to {{:.3f}} s reaches beyond the log of the ego, from {{:.3f}} s to {{:.3f}} s.',
+            {_FROM_TO}, (ego_from_ns - start_ns) / 1e9, (ego_to_ns - start_ns) / 1e9)
         WHEN 'log_hole' THEN format('Not judged: the log has a hole between {{:.3f}} s and {{:.3f}} s.', {_FROM_TO})
         WHEN 'lost_near_ego' THEN 'Not judged: the track of ' || {_OBJECT} || ' ends close to the ego at ' || {_AT} || '.'
         WHEN 'lost_in_range' THEN 'Not judged: the track of ' || {_OBJECT} || ' ends within sensor range at ' || {_AT} || '.'
@@ -168,7 +174,8 @@ _VERDICTS = f"""
 INSERT INTO verdict BY NAME
 WITH _sight AS ({_SIGHT}),
 _named AS (SELECT v.* REPLACE (nullif(v.profile, '') AS profile, nullif(v.object_id, '') AS object_id,
-    nullif(v.label, '') AS label), r.* EXCLUDE (rule_no), coalesce(s.start_ns, 0) AS start_ns
+    nullif(v.label, '') AS label), r.* EXCLUDE (rule_no), coalesce(s.start_ns, 0) AS start_ns,
+    s.t_start_ns AS ego_from_ns, s.t_end_ns AS ego_to_ns
     FROM _closed v JOIN _rule r USING (rule_no) LEFT JOIN _subject s ON s.drive_id = v.drive_id AND s.ego_id = v.ego_id),
 _cause AS ({_CAUSE}),
 _numbered AS (
@@ -196,7 +203,8 @@ _FINDINGS = f"""
 INSERT INTO finding BY NAME
 WITH _named AS (
     SELECT f.* REPLACE (nullif(f.profile, '') AS profile, nullif(f.object_id, '') AS object_id), r.* EXCLUDE (rule_no),
-        f.t_worst_ns AS t_decides_ns, 'fail' AS verdict, s.start_ns, s.sha256
+        f.t_worst_ns AS t_decides_ns, 'fail' AS verdict, s.start_ns, s.sha256, s.t_start_ns AS ego_from_ns, s.t_end_ns AS ego_to_ns,
+        NULL::DOUBLE AS bound, NULL::DOUBLE AS asked
     FROM _stretch f JOIN _rule r USING (rule_no) JOIN _subject s ON s.drive_id = f.drive_id AND s.ego_id = f.ego_id
     ANTI JOIN _error e ON e.rule_no = f.rule_no AND e.drive_id = f.drive_id AND e.ego_id = f.ego_id
 ), _numbered AS (

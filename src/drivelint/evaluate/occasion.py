@@ -258,6 +258,6 @@ SELECT $_no AS rule_no, drive_id, ego_id, profile, {who} AS object_id, ref_no AS
     coded[1] AS verdict, coalesce(coded[2], CASE coded[1] WHEN 'pass' THEN 'kept' ELSE 'violated' END) AS code,
     CASE WHEN coded[1] IN ('pass', 'fail') THEN worst.reason WHEN coded[1] = 'unknown' AND coded[2] IS NOT DISTINCT
         FROM unknown.code THEN unknown.reason END AS reason,
-    {terms.numbers(rule, "worst.")}, n_expected, n_judged
+    {terms.numbers(rule, "worst.")}, {terms.finite("unknown.observed")} AS bound, unknown.required AS asked, n_expected, n_judged
 FROM _coded
 """

@@ -39,7 +39,7 @@ CREATE OR REPLACE TEMP TABLE _outcome ({_KEYS}, profile VARCHAR, object_id VARCH
     t_ref_ns BIGINT,
     t_start_ns BIGINT, t_end_ns BIGINT, t_worst_ns BIGINT, t_decides_ns BIGINT, verdict VARCHAR, code VARCHAR,
         reason VARCHAR,
-    observed DOUBLE, required DOUBLE, margin DOUBLE, n_expected BIGINT, n_judged BIGINT);
+    observed DOUBLE, required DOUBLE, margin DOUBLE, bound DOUBLE, asked DOUBLE, n_expected BIGINT, n_judged BIGINT);
 CREATE OR REPLACE TEMP TABLE _stretch ({_KEYS}, profile VARCHAR, object_id VARCHAR, ref_id INTEGER, t_start_ns BIGINT,
     t_end_ns BIGINT, t_worst_ns BIGINT, code VARCHAR, reason VARCHAR, observed DOUBLE, required DOUBLE, margin DOUBLE);
 CREATE OR REPLACE TEMP TABLE _margin ({_KEYS}, profile VARCHAR, object_id VARCHAR, ref_id INTEGER, t_ns BIGINT,

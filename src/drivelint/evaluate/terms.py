@@ -136,10 +136,11 @@ def pick(good: int, bad: int, unknown: int, sign: str = "", *, combined: bool = 
 
 
 def first_unknown(rule: Rule) -> str:
-    """Return the aggregate that picks the earliest step that could not be judged: (t, code, [who,] reason)."""
+    """Return the aggregate that picks the earliest step that could not be judged: (t, code, [who,] reason, observed, required)."""
     who = "'who': coalesce(who, ''), " if rule.combine != "each" else ""
     return (
-        f"min({{'t': coalesce(t_ns, {NEVER}), 'code': coalesce(code, 'null_value'), {who}'reason': reason}}) "
+        f"min({{'t': coalesce(t_ns, {NEVER}), 'code': coalesce(code, 'null_value'), {who}'reason': reason, "
+        "'observed': observed, 'required': required}) "
         "FILTER (holds IS NULL)"
     )
 

@@ -44,6 +44,8 @@ class Wanted:
     profile: str | None = None
     object_id: str | None = None
     at_s: float | None = None
+    ego_id: str | None = None
+    verdict: str | None = None
 
 
 def find(result: Result, name: str, wanted: Wanted) -> Target:
@@ -87,7 +89,7 @@ def _under(finding: Row, verdicts: Iterable[Row]) -> list[Row]:
 
 
 def _asked(rows: list[Row], wanted: Wanted, starts: dict[str, int | None]) -> list[Row]:
-    for key in ("profile", "object_id"):
+    for key in ("ego_id", "profile", "object_id", "verdict"):
         value = getattr(wanted, key)
         if value is not None:
             known = sorted({row[key] for row in rows if row[key] is not None})

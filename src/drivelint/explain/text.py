@@ -15,6 +15,7 @@ from rich.text import Text
 from drivelint import store
 from drivelint.explain.case import is_gated
 from drivelint.explain.plot import plot
+from drivelint.explain.remedy import remedy
 from drivelint.explain.sensitivity import VERDICTS
 from drivelint.report.text import seconds
 
@@ -66,6 +67,7 @@ def render(found: Explanation, width: int) -> Group:
     parts: list[RenderableType] = [*_title(found, width)]
     sections = [
         ("What happened", _happened(found)),
+        ("What would decide it", _decides(found)),
         ("What the rule asks", _asks(found)),
         ("How it was judged", _sql(found)),
         ("What it was judged on", _rows(found)),
@@ -114,6 +116,7 @@ def _happened(found: Explanation) -> list[str]:
     if found.others:
         told = [
             f"{other['verdict'].replace('_', ' ')}"
+            + (f" for ego {other['ego_id']}" if other["ego_id"] != row["ego_id"] else "")
             + (f" with profile {other['profile']}" if other["profile"] else "")
             + (f" for object {other['object_id']}" if other["object_id"] else "")
             + (
@@ -126,6 +129,12 @@ def _happened(found: Explanation) -> list[str]:
         more = f"; {len(found.others) - OTHERS} more" if len(found.others) > OTHERS else ""
         lines.append(f"The same rule elsewhere in this drive: {'; '.join(told)}{more}.")
     return lines
+
+
+def _decides(found: Explanation) -> list[str]:
+    row = found.verdict
+    told = remedy(row["reason_code"], row["object_id"]) if row["verdict"] == "unknown" else None
+    return [f"{told[0].upper()}{told[1:]}."] if told else []
 
 
 def _asks(found: Explanation) -> list[str]:

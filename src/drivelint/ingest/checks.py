@@ -171,30 +171,32 @@ def _jumps(states: States, step: Steps) -> NDArray[np.bool_]:
 
 
 def _velocity(states: States, step: Steps, jump: NDArray[np.bool_]) -> list[Finding]:
-    """Compare each step in position with the mean of the velocities at its ends."""
-    numbers = states.numbers
-    dt = np.where(step.dt_s > 0.0, step.dt_s, np.nan)
-    moved = np.hypot(np.diff(numbers["x_m"]), np.diff(numbers["y_m"])) / dt
-    speed = np.hypot(numbers["vx_mps"], numbers["vy_mps"])
-    told = 0.5 * (speed[1:] + speed[:-1])
-    error = np.hypot(
-        np.diff(numbers["x_m"]) / dt - 0.5 * (numbers["vx_mps"][1:] + numbers["vx_mps"][:-1]),
-        np.diff(numbers["y_m"]) / dt - 0.5 * (numbers["vy_mps"][1:] + numbers["vy_mps"][:-1]),
-    )
+    """Compare each step in position with the mean of the velocities at its ends.
+
+    Whether units or frame are wrong is asked over a second, where noise in the positions is small against the way.
+    """
+    error, told, moved, usable = _against_positions(states, step, jump, 1)
     wrong = np.zeros(len(states), np.bool_)
     with np.errstate(invalid="ignore"):
-        usable = step.continuous & ~jump[1:]
         wrong[1:] = usable & (error > VELOCITY_MISMATCH_MPS + VELOCITY_MISMATCH_SHARE * np.maximum(moved, told))
-        moving = usable & (np.maximum(moved, told) > YAW_SPEED_MPS)
-    n, n_moving = int(wrong.sum()), int(moving.sum())
-    if n_moving >= MOVING_SAMPLES and int((wrong[1:] & moving).sum()) > FLAWED_SHARE * n_moving:
-        with np.errstate(invalid="ignore", divide="ignore"):
-            ratio = float(np.nanmedian((told / moved)[moving]))
-        text = (
-            f"velocity disagrees with the steps in position in {100.0 * n / max(n, n_moving):.0f} % "
-            f"of the moving samples (speed is {ratio:.3g} times the step): {_cause(ratio)}"
-        )
-        return _report(states, wrong, "velocity_mismatch", "error", text.replace("{", "{{").replace("}", "}}"))
+    second = max(1, round(1e9 / step.period_ns)) if step.period_ns else 1
+    for n_steps in {second: None, 1: None}:
+        error, told, moved, usable = _against_positions(states, step, jump, n_steps)
+        with np.errstate(invalid="ignore"):
+            moving = usable & (np.maximum(moved, told) > YAW_SPEED_MPS)
+            off = moving & (error > VELOCITY_MISMATCH_MPS + VELOCITY_MISMATCH_SHARE * np.maximum(moved, told))
+        n, n_moving = int(off.sum()), int(moving.sum())
+        if n_moving < MOVING_SAMPLES:
+            continue  # tracks shorter than a second
+        if n > FLAWED_SHARE * n_moving:
+            with np.errstate(invalid="ignore", divide="ignore"):
+                ratio = float(np.nanmedian((told / moved)[moving]))
+            text = (
+                f"velocity disagrees with the steps in position in {100.0 * n / n_moving:.0f} % "
+                f"of the moving samples (speed is {ratio:.3g} times the step): {_cause(ratio)}"
+            )
+            return _report(states, wrong, "velocity_mismatch", "error", text.replace("{", "{{").replace("}", "}}"))
+        break
     return _report(
         states,
         wrong,
@@ -202,6 +204,36 @@ def _velocity(states: States, step: Steps, jump: NDArray[np.bool_]) -> list[Find
         "warning",
         "velocity disagrees with the step in position in {n} of {of} states ({ids})",
     )
+
+
+def _against_positions(
+    states: States, step: Steps, jump: NDArray[np.bool_], n_steps: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+    """Compare the way over every `n_steps` steps of a track with the way that the velocities lead, in m/s.
+
+    Returns by first row (n - n_steps): how far the two ways are apart, the mean speed that is told, the way's speed, and where
+    no jump or hole lies between.
+    """
+    numbers, n = states.numbers, len(states)
+    told_mps = np.hypot(numbers["vx_mps"], numbers["vy_mps"])
+    known = step.continuous & ~jump[1:]
+    for name in ("x_m", "y_m", "vx_mps", "vy_mps"):
+        known = known & np.isfinite(numbers[name][1:]) & np.isfinite(numbers[name][:-1])
+    first = np.arange(max(0, n - n_steps))
+    last = first + n_steps
+    unknown = np.r_[0, np.cumsum(~known)]
+    usable: NDArray[np.bool_] = unknown[first] == unknown[last]
+    span_s = (states.t_ns[last] - states.t_ns[first]) * 1e-9
+    span_s = np.where(span_s > 0.0, span_s, np.nan)
+
+    def led(rate: NDArray[np.float64]) -> NDArray[np.float64]:
+        total = np.r_[0.0, np.cumsum(np.where(known, 0.5 * (rate[1:] + rate[:-1]) * step.dt_s, 0.0))]
+        mean: NDArray[np.float64] = (total[last] - total[first]) / span_s
+        return mean
+
+    way = [(numbers[name][last] - numbers[name][first]) / span_s for name in ("x_m", "y_m")]
+    error = np.hypot(way[0] - led(numbers["vx_mps"]), way[1] - led(numbers["vy_mps"]))
+    return error, led(told_mps), np.hypot(*way), usable
 
 
 def _cause(ratio: float) -> str:

@@ -36,6 +36,7 @@ ADVICE: Final = {
     "indicator": "the ego's indicators: {indicator}",
     "brake_light": "the ego's brake lights: {brake_light}",
     "ego_size": "the ego's length and width: {ego_size}",
+    "speeds": "a log of positions or speeds: the film's mapping assumes the speeds",
     "actor_classes": "what the others are, such as car or bicycle: {actor_classes}",
     "signals": "the states of the traffic lights: {signals}",
     "declared_events": "the events that the ego declares: {declared_events}",

@@ -63,6 +63,7 @@ class CommonRoadReader:
                 quality.add("invalid_lane", "error", name, f"lanelet {name} is left out: {error}")
         signs.report(root.findall("lanelet"), [light.get("id", "") for light in root.findall("trafficLight")])
         _report_words(root, quality)
+        _without_towns(root, read, quality)
         _junctions(root, read)
         lanes = build(read, request.offset, quality)
         if not lanes:
@@ -117,6 +118,17 @@ def _lane(element: etree._Element, kinds: Sequence[str], signs: Signs) -> Bounde
 def _marking(bound: etree._Element | None) -> str | None:
     said = None if bound is None else bound.findtext("lineMarking")
     return _MARKINGS.get(said or "")
+
+
+def _without_towns(root: etree._Element, lanes: Sequence[BoundedLane], quality: Quality) -> None:
+    """Take away the type `urban` of a scenario that is tagged as one of a highway: converters write it of every lanelet."""
+    tags = {tag.tag for parent in root.findall("scenarioTags") for tag in parent}
+    towns = [lane for lane in lanes if lane.road_type == "town"]
+    if towns and tags & {"highway", "interstate"} and "urban" not in tags:
+        for lane in towns:
+            lane.road_type = None
+        message = "lanelets are urban and the scenario's tags say highway: of what kind the road is, is not known"
+        quality.add("road_type_contradicted", "warning", None, message, len(towns))
 
 
 def _report_words(root: etree._Element, quality: Quality) -> None:

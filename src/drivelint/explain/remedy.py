@@ -1,0 +1,36 @@
+"""What would have decided an unknown verdict, by its reason code: what to record, or to provide."""
+
+from __future__ import annotations
+
+from typing import Final
+
+_LONGER = "a log that begins before that and goes on until it is over"
+_NAMED = (
+    "what the reason names, at that time: where the log lacks it, record it (position, heading, size, class and speed of every actor "
+    "near, without holes); where the map lacks it, give a map that has it; rows with NULL below show which value it is"
+)
+REMEDIES: Final = {
+    "lost_near_ego": "record {object} for as long as the ego, or until it is out of the ego's reach",
+    "lost_in_range": "record {object} for as long as the ego, or say with --sensor-range how far the recorder sees",
+    "lost_on_road": "record {object} for as long as the ego",
+    "window_truncated": "a log in which the ego is recorded over the whole window",
+    "log_hole": "a log without that hole",
+    "reference_time_unknown": _LONGER,
+    "anchor_unknown": _LONGER,
+    "only_a_bound": "more of the road: a map that goes on, or sensors that reach further (--sensor-range, if they do)",
+    "beyond_sensor_range": "sensors that reach further (--sensor-range, if they do)",
+    "ego_not_placed": "the ego's position and heading at every step",
+    "indicator_unknown": "the ego's indicators at every step",
+    "missing_step": _NAMED,
+    "null_value": _NAMED,
+    "applies_unknown": _NAMED,
+}
+"""Reason code -> what to do. Codes of conditions (`road_type_unknown`) say it in the reason itself."""
+
+
+def remedy(code: str, object_id: str | None) -> str | None:
+    """Return what would decide an unknown verdict with this reason code; None where the reason says it."""
+    if code.startswith("missing_") and code not in REMEDIES:
+        return "provide it as drivelint inspect says for this log's format"
+    found = REMEDIES.get(code)
+    return found and found.format(object="the object" if object_id is None else f"object {object_id}")
