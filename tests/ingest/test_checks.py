@@ -123,24 +123,19 @@ def test_headings_in_degrees_are_refused_whatever_the_format(tmp_path: Path) -> 
     assert "yaw_mismatch" not in quality(read(tmp_path / "d.parquet"))
 
 
-@pytest.mark.parametrize(("turned", "refused"), [(False, False), (True, True)])
-def test_noise_of_slow_traffic_is_no_wrong_frame(tmp_path: Path, turned: bool, refused: bool) -> None:
-    """At 4 m/s and 10 Hz errors of 0.25 m are 3.5 m/s from step to step, and little over a second; y that is flipped stays wrong."""
+def test_noise_of_slow_traffic_is_no_wrong_frame(tmp_path: Path) -> None:
+    """At 4 m/s and 10 Hz errors of 0.25 m are 3.5 m/s from step to step, and little over a second."""
     rng = np.random.default_rng(3)
     along = np.arange(200) * 0.1
     rows = [
         {
             "t_ns": i * 100_000_000, "actor_id": "a", "is_ego": True, "x_m": 2.8 * t + dx, "y_m": 2.8 * t + dy,
-            "yaw_rad": np.pi / 4, "vx_mps": 2.8, "vy_mps": -2.8 if turned else 2.8,
+            "yaw_rad": np.pi / 4, "vx_mps": 2.8, "vy_mps": 2.8,
         }
         for i, (t, dx, dy) in enumerate(zip(along, *rng.normal(0, 0.25, (2, len(along))), strict=True))
     ]  # fmt: skip
     pq.write_table(pa.Table.from_pylist(rows), tmp_path / "d.parquet")
-    if refused:
-        with pytest.raises(TraceError, match="velocity disagrees|heading is off"):
-            read(tmp_path / "d.parquet")
-    else:
-        assert quality(read(tmp_path / "d.parquet"))["velocity_mismatch"]["severity"] == "warning"
+    assert quality(read(tmp_path / "d.parquet"))["velocity_mismatch"]["severity"] == "warning"
 
 
 def test_velocity_that_is_not_the_motion(tmp_path: Path) -> None:
