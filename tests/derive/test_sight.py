@@ -161,7 +161,7 @@ def test_one_lost_before_its_eyes_is_not_nobody(rule: str) -> None:
     assert {r["assumes"] for r in unknown} == {None}
     # the reason says who it is
     assert any(
-        "; the nearest without a place is object x, which was lost from the log nearby" in r["reason"] for r in unknown
+        "; it is not known where object x is, which was lost from the log nearby" in r["reason"] for r in unknown
     )
     con = derived(follows_nobody(in_sight=True, gap=8.0), tables=["vehicle_ahead"])
     ahead = {round(r["t_ns"] / 1e8): r for r in rows(con, "FROM vehicle_ahead ORDER BY t_ns")}

@@ -183,7 +183,7 @@ def test_an_unknown_verdict_for_want_of_a_signal(folder: Path) -> None:
     assert (table.table, table.rows[0]["available"]) == ("capability", False)
     assert table.rows[0]["reason"] in text
     assert "What would decide it" in said(found)
-    assert "as drivelint inspect says" in text
+    assert "drivelint inspect TRACE --rules ukhc.r112.horn says how to provide it" in text
 
 
 def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:

@@ -23,7 +23,7 @@ _WHAT = "CASE WHEN observes IS NULL THEN '' ELSE upper(observes[1]) || observes[
 _CONDITIONS: Final = {
     "engaged": ("whether the automated driver drives", "the log''s mode flag engaged, or --env engaged=yes"),
     "road_type": (
-        "what kind of road this is",
+        "the kind of road",
         "a map that says it, or what it was, such as --env road_type=motorway, rural or town",
     ),
     "carriageway": ("whether this is a single or a dual carriageway", "--env carriageway=single"),
@@ -129,6 +129,12 @@ _LACKS = """CASE WHEN p.off_level THEN 'off_level' WHEN p.x_m IS NULL OR p.y_m I
 _NO_CAUSE = "('missing_step', 'null_value', 'applies_unknown')"
 """Codes that say at what time something is not known, and not why."""
 
+_HIDDEN = """format('it is not known where object {} is, which {}{}', nearest.id, unplaced_words(nearest.code),
+        CASE WHEN nearest.m >= 1 THEN format(', at least {:.0f} m away', floor(nearest.m)) ELSE '' END)"""
+_UNBELIEVED = (
+    "CASE WHEN c.drive_id IS NOT NULL THEN ' (velocities that contradict the positions are not used)' ELSE '' END"
+)
+
 # why: the ego lacks something, or the object of the verdict, or somebody near has no place; else an ego that is off the lanes
 _CAUSE = f"""
 WITH _doubted AS (
@@ -154,20 +160,23 @@ SELECT {{'drive_id': d.drive_id, 'ego_id': d.ego_id, 't_ns': d.t_ns, 'object_id'
     WHEN e.x_m IS NULL OR e.y_m IS NULL THEN 'the ego ' || unplaced_words('no_position')
     WHEN e.yaw_rad IS NULL THEN 'the ego ' || unplaced_words('no_heading')
     WHEN p.object_id IS NOT NULL AND {_LACKS} IS NOT NULL THEN format('object {{}} {{}}', p.object_id, unplaced_words({_LACKS}))
-    WHEN e.speed_mps IS NULL THEN 'the speed of the ego is not known'
-    WHEN p.object_id IS NOT NULL AND p.speed_mps IS NULL THEN format('the speed of object {{}} is not known', p.object_id)
+    -- a rule that finds its object itself does not know whom
+    WHEN n.nearest IS NOT NULL AND d.of_hidden AND d.object_id IS NULL THEN {_HIDDEN}
+    WHEN e.speed_mps IS NULL THEN 'the speed of the ego is not known' || {_UNBELIEVED}
+    WHEN p.object_id IS NOT NULL AND p.speed_mps IS NULL
+        THEN format('the speed of object {{}} is not known{{}}', p.object_id, {_UNBELIEVED})
     WHEN p.object_id IS NOT NULL AND p.actor_class IS NULL THEN format('the class of object {{}} is not known', p.object_id)
-    WHEN n.nearest IS NOT NULL AND d.of_hidden THEN format('the nearest without a place is object {{}}, which {{}}{{}}', nearest.id,
-        unplaced_words(nearest.code), CASE WHEN nearest.m >= 1 THEN format(', at least {{:.0f}} m away', floor(nearest.m)) ELSE '' END)
+    WHEN n.nearest IS NOT NULL AND d.of_hidden THEN {_HIDDEN}
     WHEN d.of_lanes AND e.lanelet_id IS NULL THEN 'the ego is not on a lane of the map'
     WHEN d.of_lanes AND e.front_s_m IS NULL THEN 'the ego reaches beyond the lanes of the map'
     WHEN d.of_lanes AND p.object_id IS NOT NULL AND p.s_m IS NULL THEN format('object {{}} has no place along the road', p.object_id)
-    WHEN b.drive_id IS NOT NULL THEN 'the speed of the ego is not known within 1 s of that' END AS because
+    WHEN b.drive_id IS NOT NULL THEN 'the speed of the ego is not known within 1 s of that' || {_UNBELIEVED} END AS because
 FROM _doubted d
 LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
 LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN _near n USING (drive_id, ego_id, t_ns)
 LEFT JOIN _speedless b USING (drive_id, ego_id, t_ns)
+LEFT JOIN (SELECT DISTINCT drive_id FROM quality WHERE check_id = 'velocity_unknown') c USING (drive_id)
 """
 
 _VERDICTS = f"""

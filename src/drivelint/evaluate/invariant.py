@@ -276,8 +276,10 @@ SELECT $_no AS rule_no, l.drive_id, l.ego_id, l.object_id, {"p.profile" if rule.
     l.t_from_ns AS t_start_ns, l.t_to_ns AS t_end_ns, t.t_ns AS t_worst_ns, t.t_ns AS t_decides_ns, 'unknown' AS verdict, l.code,
     format('Not judged: object {{}} is recorded until {{:.3f}} s only, {{}}the ego until {{:.3f}} s.',
         l.object_id, (t.t_ns - s.start_ns) / 1e9,
-        coalesce(format('{{:.0f}} m away from the ego then, ', q.distance_m), ''), (s.t_end_ns - s.start_ns) / 1e9) AS reason,
-    greatest(1, (l.t_to_ns - l.t_from_ns) // greatest(s.period_ns, 1)) AS n_expected, 0 AS n_judged
+        coalesce(format('{{:.0f}} m away from the ego then, ',
+            CASE WHEN q.clearance_is_bound THEN q.distance_m ELSE coalesce(q.clearance_m, q.distance_m) END), ''),
+        (s.t_end_ns - s.start_ns) / 1e9) AS reason,
+    greatest(1, (l.t_to_ns - t.t_ns) // greatest(s.period_ns, 1)) AS n_expected, 0 AS n_judged
 FROM lost_object l JOIN _subject s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id {profiles}
 CROSS JOIN LATERAL (SELECT l.t_from_ns - 1 AS t_ns) t
 LEFT JOIN pair q ON q.drive_id = l.drive_id AND q.ego_id = l.ego_id AND q.object_id = l.object_id AND q.t_ns = t.t_ns

@@ -83,7 +83,12 @@ def explain(order: Order) -> Explanation:
                 sensitivity = _sensitivity(case, part, order.errors, span)
     rule = case.rule
     return Explanation(
-        rule={"rule_id": rule.id, "rule_version": rule.version, **{key: getattr(rule, key) for key in _RULE}},
+        rule={
+            "rule_id": rule.id,
+            "rule_version": rule.version,
+            **{key: getattr(rule, key) for key in _RULE},
+            "applies": rule.applies.words,
+        },
         drive=_drive(result, row["drive_id"]),
         verdict={**row, "judged_anew": now},
         others=target.others,
@@ -120,7 +125,8 @@ def _decides(target: Target, series: list[Step], now: str) -> int | None:
     """Return the step that the verdict hangs on; None: it is about no step."""
     times: list[int | None] = [target.row["t_worst_ns"], target.row["t_start_ns"]]
     if now == "unknown":
-        times = [first_unknown(series), target.row["t_start_ns"]]
+        # somebody who is lost has no step after the last one: that is the one to show
+        times = [first_unknown(series), target.row["t_worst_ns"], target.row["t_start_ns"]]
     return next((t_ns for t_ns in times if t_ns is not None), None)
 
 

@@ -6,14 +6,14 @@ from typing import Final
 
 _LONGER = "a log that begins before that and goes on until it is over"
 _NAMED = (
-    "what the reason names, at that time: where the log lacks it, record it (position, heading, size, class and speed of every actor "
-    "near, without holes); where the map lacks it, give a map that has it; rows with NULL below show which value it is"
+    "what the reason names: where the log lacks it, record it (position, heading, size, class and speed of every actor near, "
+    "without holes); where the map lacks it, give a map that has it. It is the first step that is not known: others may lack something else"
 )
 REMEDIES: Final = {
     "lost_near_ego": "record {object} for as long as the ego, or until it is out of the ego's reach",
     "lost_in_range": "record {object} for as long as the ego, or say with --sensor-range how far the recorder sees",
     "lost_on_road": "record {object} for as long as the ego",
-    "window_truncated": "a log in which the ego is recorded over the whole window",
+    "window_truncated": "a log in which the ego, and whoever is near it, is recorded over the whole window",
     "log_hole": "a log without that hole",
     "reference_time_unknown": _LONGER,
     "anchor_unknown": _LONGER,
@@ -28,9 +28,10 @@ REMEDIES: Final = {
 """Reason code -> what to do. Codes of conditions (`road_type_unknown`) say it in the reason itself."""
 
 
-def remedy(code: str, object_id: str | None) -> str | None:
+def remedy(rule_id: str, code: str, object_id: str | None) -> str | None:
     """Return what would decide an unknown verdict with this reason code; None where the reason says it."""
     if code.startswith("missing_") and code not in REMEDIES:
-        return "provide it as drivelint inspect says for this log's format"
+        signal = code.removeprefix("missing_")
+        return f"the signal {signal}: drivelint inspect TRACE --rules {rule_id} says how to provide it"
     found = REMEDIES.get(code)
     return found and found.format(object="the object" if object_id is None else f"object {object_id}")

@@ -133,7 +133,7 @@ def _happened(found: Explanation) -> list[str]:
 
 def _decides(found: Explanation) -> list[str]:
     row = found.verdict
-    told = remedy(row["reason_code"], row["object_id"]) if row["verdict"] == "unknown" else None
+    told = remedy(row["rule_id"], row["reason_code"], row["object_id"]) if row["verdict"] == "unknown" else None
     return [f"{told[0].upper()}{told[1:]}."] if told else []
 
 
@@ -142,6 +142,9 @@ def _asks(found: Explanation) -> list[str]:
     lines = [rule["clause"], rule["hypothesis"]]
     draft = "" if rule["status"] == "stable" else f", {rule['status']}: it never fails a gate"
     lines.append(f"It {_WHEN[rule['kind']]}. {rule['severity'].capitalize()}; a '{rule['legal']}' of the Code{draft}.")
+    if rule["applies"]:
+        told = (f"{name.replace('_', ' ')} {' or '.join(words)}" for name, words in rule["applies"].items())
+        lines.append(f"It applies only with {', and '.join(told)}.")
     if rule["sense"] != "holds":
         what = rule["observes"] or "what is observed"
         lines.append(f"Kept where {what} is {_SENSE[rule['sense']]} what is required, in {rule['unit']}.")
