@@ -38,7 +38,10 @@ SELECT r.drive_id, r.ego_id, coalesce(min(l.t_ns) FILTER (l.solid), r.t3_ns) AS 
         -- one that was solid when it is first seen may have been so as the ego crossed it, if it did
         WHEN bool_or(l.solid) THEN CASE WHEN r.sure AND (r.begin_seen OR min(l.t_ns) FILTER (NOT l.solid) < min(l.t_ns) FILTER (l.solid)) THEN false END
         WHEN count(l.t_ns) > 0 AND count(l.t_ns) = count(l.solid) THEN true
-    END AS holds
+    END AS holds,
+    CASE WHEN r.opposing IS NULL THEN 'the map has no lane beside the line, which may be the edge of the road'
+        WHEN bool_or(l.solid) AND NOT r.sure THEN 'the line was solid, but whether the ego overtook is not sure'
+        WHEN bool_or(l.solid) AND NOT r.begin_seen THEN 'the log does not show the ego cross the line, which was solid when it is first seen' END AS reason
 FROM reference r
 LEFT JOIN over l ON l.drive_id = r.drive_id AND l.ego_id = r.ego_id AND l.side = r.side AND l.t_ns >= r.t_ns AND l.t_ns <= r.t_end_ns
 GROUP BY r.drive_id, r.ego_id, r.ref_id, r.sure, r.begin_seen, r.t3_ns, r.opposing
