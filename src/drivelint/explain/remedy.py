@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
-_LONGER = "a log that begins before that and goes on until it is over"
+from drivelint.conditions import GIVEN
+
+_LONGER = "a log that shows what the reason names: one that begins earlier, or goes on for longer"
 _NAMED = (
     "what the reason names: where the log lacks it, record it (position, heading, size, class and speed of every actor near, "
     "without holes); where the map lacks it, give a map that has it. It is the first step that is not known: others may lack something else"
@@ -25,13 +27,17 @@ REMEDIES: Final = {
     "null_value": _NAMED,
     "applies_unknown": _NAMED,
 }
-"""Reason code -> what to do. Codes of conditions (`road_type_unknown`) say it in the reason itself."""
+"""Reason code -> what to do."""
 
 
-def remedy(rule_id: str, code: str, object_id: str | None) -> str | None:
+def remedy(rule_id: str, code: str, reason: str, object_id: str | None) -> str | None:
     """Return what would decide an unknown verdict with this reason code; None where the reason says it."""
     if code.startswith("missing_") and code not in REMEDIES:
         signal = code.removeprefix("missing_")
         return f"the signal {signal}: drivelint inspect TRACE --rules {rule_id} says how to provide it"
+    if code.removesuffix("_unknown") in GIVEN or code == "limit_unknown":
+        return "what the reason says to give, to drivelint check"
+    if code == "only_a_bound" and not reason.startswith("Not decided: only a bound"):
+        code = "null_value"  # the rule's own reason names the cause
     found = REMEDIES.get(code)
     return found and found.format(object="the object" if object_id is None else f"object {object_id}")
