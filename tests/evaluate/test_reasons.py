@@ -32,12 +32,21 @@ def test_the_authors_reason_of_an_unknown_applicability(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("state", "because"),
     [
-        ({"x_m": [1, None, 3], "y_m": 0.0}, "the ego has no position (or no fresh one)"),
-        ({"x_m": 1.0, "y_m": 0.0, "yaw_rad": [0, None, 0]}, "the ego has no heading"),
-        ({"x_m": 1.0, "y_m": 0.0, "lanelet_id": ["l", None, "l"]}, "the ego is not on a lane of the map"),
-        ({"x_m": 1.0, "y_m": 0.0, "front_s_m": [5, None, 5]}, "the ego reaches beyond the lanes of the map"),
-        ({"x_m": 1.0, "y_m": 0.0, "speed_mps": [12, None, 12]}, "the speed of the ego is not known"),
-        ({"x_m": 1.0, "y_m": 0.0, "speed_mps": [12, 12, None]}, "the speed of the ego is not known within 1 s of that"),
+        ({"x_m": [1, None, 3], "y_m": 0.0}, "the ego has no position (or no fresh one): record it"),
+        ({"x_m": 1.0, "y_m": 0.0, "yaw_rad": [0, None, 0]}, "the ego has no heading: record it"),
+        (
+            {"x_m": 1.0, "y_m": 0.0, "lanelet_id": ["l", None, "l"]},
+            "the ego is not on a lane of the map: give a map that has its lane",
+        ),
+        (
+            {"x_m": 1.0, "y_m": 0.0, "front_s_m": [5, None, 5]},
+            "the ego's box reaches beyond the lanes of the map: give a map whose lanes go on",
+        ),
+        ({"x_m": 1.0, "y_m": 0.0, "speed_mps": [12, None, 12]}, "the speed of the ego is not known: record it"),
+        (
+            {"x_m": 1.0, "y_m": 0.0, "speed_mps": [12, 12, None]},
+            "the speed of the ego is not known within 1 s of that: record it",
+        ),
         ({"x_m": 1.0, "y_m": 0.0}, None),
     ],
 )
@@ -52,12 +61,12 @@ def test_an_ego_without_a_place(tmp_path: Path, state: dict[str, Any], because: 
 @pytest.mark.parametrize(
     ("lacks", "because"),
     [
-        ({"x_m": [1, None]}, "object o has no position (or no fresh one)"),
-        ({"yaw_rad": [0, None]}, "object o has no heading"),
-        ({"length_m": [4, None]}, "object o has no size"),
-        ({"off_level": [False, True]}, "object o may be over or under the road"),
-        ({"speed_mps": [4, None]}, "the speed of object o is not known"),
-        ({"actor_class": ["car", None]}, "the class of object o is not known"),
+        ({"x_m": [1, None]}, "object o has no position (or no fresh one): record it"),
+        ({"yaw_rad": [0, None]}, "object o has no heading: record it"),
+        ({"length_m": [4, None]}, "object o has no size: record it"),
+        ({"off_level": [False, True]}, "object o may be over or under the road: record it"),
+        ({"speed_mps": [4, None]}, "the speed of object o is not known: record it"),
+        ({"actor_class": ["car", None]}, "the class of object o is not known: record it"),
     ],
 )
 def test_an_object_of_which_something_is_not_known(tmp_path: Path, lacks: dict[str, Any], because: str) -> None:

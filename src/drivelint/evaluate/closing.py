@@ -130,9 +130,10 @@ _NO_CAUSE = "('missing_step', 'null_value', 'applies_unknown')"
 """Codes that say at what time something is not known, and not why."""
 
 _HIDDEN = """format('it is not known where object {} is, which {}{}', nearest.id, unplaced_words(nearest.code),
-        CASE WHEN nearest.m >= 1 THEN format(', at least {:.0f} m away', floor(nearest.m)) ELSE '' END)"""
+        CASE WHEN nearest.m >= 1 THEN format(', at least {:.0f} m away', floor(nearest.m)) ELSE '' END) || ': record it without a break'"""
 _UNBELIEVED = (
-    "CASE WHEN c.drive_id IS NOT NULL THEN ' (velocities that contradict the positions are not used)' ELSE '' END"
+    "CASE WHEN c.drive_id IS NOT NULL THEN ' (velocities that contradict the positions are not used): correct or leave out the velocity' "
+    "ELSE ': record it' END"
 )
 
 # why: the ego lacks something, or the object of the verdict, or somebody near has no place; else an ego that is off the lanes
@@ -157,19 +158,20 @@ WITH _doubted AS (
 )
 SELECT {{'drive_id': d.drive_id, 'ego_id': d.ego_id, 't_ns': d.t_ns, 'object_id': coalesce(d.object_id, ''), 'of_hidden': d.of_hidden,
     'of_lanes': d.of_lanes}} AS key, CASE
-    WHEN e.x_m IS NULL OR e.y_m IS NULL THEN 'the ego ' || unplaced_words('no_position')
-    WHEN e.yaw_rad IS NULL THEN 'the ego ' || unplaced_words('no_heading')
-    WHEN p.object_id IS NOT NULL AND {_LACKS} IS NOT NULL THEN format('object {{}} {{}}', p.object_id, unplaced_words({_LACKS}))
+    WHEN e.x_m IS NULL OR e.y_m IS NULL THEN 'the ego ' || unplaced_words('no_position') || ': record it'
+    WHEN e.yaw_rad IS NULL THEN 'the ego ' || unplaced_words('no_heading') || ': record it'
+    WHEN p.object_id IS NOT NULL AND {_LACKS} IS NOT NULL THEN format('object {{}} {{}}: record it', p.object_id, unplaced_words({_LACKS}))
     -- a rule that finds its object itself does not know whom
     WHEN n.nearest IS NOT NULL AND d.of_hidden AND d.object_id IS NULL THEN {_HIDDEN}
     WHEN e.speed_mps IS NULL THEN 'the speed of the ego is not known' || {_UNBELIEVED}
     WHEN p.object_id IS NOT NULL AND p.speed_mps IS NULL
         THEN format('the speed of object {{}} is not known{{}}', p.object_id, {_UNBELIEVED})
-    WHEN p.object_id IS NOT NULL AND p.actor_class IS NULL THEN format('the class of object {{}} is not known', p.object_id)
+    WHEN p.object_id IS NOT NULL AND p.actor_class IS NULL THEN format('the class of object {{}} is not known: record it', p.object_id)
     WHEN n.nearest IS NOT NULL AND d.of_hidden THEN {_HIDDEN}
-    WHEN d.of_lanes AND e.lanelet_id IS NULL THEN 'the ego is not on a lane of the map'
-    WHEN d.of_lanes AND e.front_s_m IS NULL THEN 'the ego reaches beyond the lanes of the map'
-    WHEN d.of_lanes AND p.object_id IS NOT NULL AND p.s_m IS NULL THEN format('object {{}} has no place along the road', p.object_id)
+    WHEN d.of_lanes AND e.lanelet_id IS NULL THEN 'the ego is not on a lane of the map: give a map that has its lane'
+    WHEN d.of_lanes AND e.front_s_m IS NULL THEN 'the ego''s box reaches beyond the lanes of the map: give a map whose lanes go on'
+    WHEN d.of_lanes AND p.object_id IS NOT NULL AND p.s_m IS NULL
+        THEN format('object {{}} has no place along the road: give a map that has its lane', p.object_id)
     WHEN b.drive_id IS NOT NULL THEN 'the speed of the ego is not known within 1 s of that' || {_UNBELIEVED} END AS because
 FROM _doubted d
 LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)

@@ -133,11 +133,7 @@ def _happened(found: Explanation) -> list[str]:
 
 def _decides(found: Explanation) -> list[str]:
     row = found.verdict
-    told = (
-        remedy(row["rule_id"], row["reason_code"], row["reason"], row["object_id"])
-        if row["verdict"] == "unknown"
-        else None
-    )
+    told = remedy(row["rule_id"], row["reason_code"], row["object_id"]) if row["verdict"] == "unknown" else None
     return [f"{told[0].upper()}{told[1:]}."] if told else []
 
 
