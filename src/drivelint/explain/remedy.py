@@ -16,7 +16,7 @@ REMEDIES: Final = {
     "log_hole": "a log without that hole",
     "reference_time_unknown": _LONGER,
     "anchor_unknown": _LONGER,
-    "only_a_bound": "what the reason names; where it names nothing, a map that goes on, or sensors that reach further (check --sensor-range)",
+    "only_a_bound": "what the reason names; where it names nothing, a map that goes on, or a longer --sensor-range of check",
     "beyond_sensor_range": "sensors that reach further (check --sensor-range, if they do)",
     "ego_not_placed": "the ego's position and heading at every step",
     "indicator_unknown": "the ego's indicators at every step",
