@@ -25,7 +25,7 @@
 -- why = "our default: so near to the ends of the log the windows of the accelerations are not whole"
 
 -- @applies
--- who is beside the ego's way and does not close in yet comes into it only as its heading says at that step: that alone is not known well enough
+-- A vehicle beside the ego's way that does not close in yet: only its heading of that step puts it into the way, and one heading is no proof.
 -- a step without a row in `vehicle_ahead` is one at which nobody knows who leads
 SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
     CASE WHEN l.object_id IS NOT NULL THEN on_course(

@@ -150,7 +150,7 @@ WITH _doubted AS (
     LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
     GROUP BY drive_id, ego_id, t_ns
 ), _speedless AS (
-    -- what is measured over a while lacks the speed somewhere in it
+    -- a measure over some time needs every speed in that time
     SELECT DISTINCT d.drive_id, d.ego_id, d.t_ns
     FROM _doubted d
     JOIN ego_state e ON e.drive_id = d.drive_id AND e.ego_id = d.ego_id AND e.speed_mps IS NULL
