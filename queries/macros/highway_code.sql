@@ -6,8 +6,8 @@ CREATE OR REPLACE MACRO mph(v_mps) AS v_mps / 0.44704;
 CREATE OR REPLACE MACRO thinking_distance_m(v_mps) AS 0.300 * mph(v_mps);
 CREATE OR REPLACE MACRO stopping_distance_m(v_mps) AS 0.300 * mph(v_mps) + 0.058 - 0.011 * mph(v_mps) + 0.015 * mph(v_mps) ** 2;
 
--- Length of a danger space: the stopping distance; none for a vehicle that stands (the fit would leave 6 cm and more).
-CREATE OR REPLACE MACRO danger_space_m(v_mps) AS CASE WHEN v_mps <= standing_mps() THEN 0.0 ELSE stopping_distance_m(v_mps) END;
+-- Length of a danger space: the stopping distance; none for a vehicle that stands (the fit's constant would leave 6 cm).
+CREATE OR REPLACE MACRO danger_space_m(v_mps) AS CASE WHEN v_mps < 0.05 THEN 0.0 ELSE stopping_distance_m(v_mps) END;
 
 -- Safe distance ahead (the paper's Appendix A). w: lane width; beta, theta: pull-out and cut-in angle; headroom, clearance: gaps to the
 -- VBP when pulling out and cutting in start; undefined (NULL) where the ego is not faster than the VBP.

@@ -36,7 +36,7 @@ SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
     -- one that is not seen is further away than the way that is free, and the two close in no faster than tyres allow
     WHEN l.known OR gone_s(l.free_m, l.free_mps, 10.0) >= $least_s THEN true END AS applies,
     CASE WHEN l.grazes THEN format('whether the ego passes {} by, or touches it, is not known', l.object_id)
-        WHEN l.across_m >= 0 THEN format('{} is beside the ego''s way, and the two do not close in yet', l.object_id) END AS reason
+        WHEN l.across_m >= 0 AND k.ttc_s = 'inf' THEN format('{} is beside the ego''s way, and the two do not close in yet', l.object_id) END AS reason
 FROM step s
 LEFT JOIN vehicle_ahead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
 LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.t_ns = l.t_ns AND p.object_id = l.object_id
