@@ -602,9 +602,11 @@ CREATE TABLE overtake_step (
     ov_id VARCHAR,                    -- of the oncoming vehicles at this step the one whose danger space reaches furthest into the ego's, see oncoming_vehicle; NULL: none
     ov_known BOOLEAN NOT NULL,        -- no other vehicle may come: every one is placed
     sd_av_m DOUBLE,                   -- stopping distance of the ego: length of its danger space
+    ds_av_s_m DOUBLE,                 -- where that danger space begins along the corridor: the middle of the front bumper
     ds_av_d_m DOUBLE,                 -- middle of that danger space across the corridor: where the front bumper's middle is, left positive
     ds_av_half_m DOUBLE,              -- half its width: half the vehicle's
     sd_ov_m DOUBLE,                   -- stopping distance of the oncoming vehicle
+    ds_ov_s_m DOUBLE,                 -- where its danger space begins, reaching against the corridor
     ds_ov_d_m DOUBLE,                 -- middle of its danger space across the corridor
     ds_ov_half_m DOUBLE,              -- half its width
     vbp_in_ds_av_m DOUBLE,            -- along the corridor, how far the VBP is inside the ego's danger space (negative: clear of it by that much)

@@ -57,6 +57,10 @@ CREATE OR REPLACE MACRO box_separation(dx, dy, c, s, hla, hwa, hlb, hwb) AS
         abs(dy * c - dx * s) - hwb - hla * abs(s) - hwa * abs(c)
     );
 
+-- How deep two boxes are inside each other, negative: apart; NULL as soon as one argument is (greatest() alone would leave it out).
+CREATE OR REPLACE MACRO box_depth(dx, dy, c, s, hla, hwa, hlb, hwb) AS
+    CASE WHEN dx + dy + c + s + hla + hwa + hlb + hwb IS NOT NULL THEN -box_separation(dx, dy, c, s, hla, hwa, hlb, hwb) END;
+
 -- Exact distance between two boxes; overlapping: minus the depth. Arguments as above; every one must be known.
 -- Of two convex boxes apart, the nearest pair has a corner of one of them.
 CREATE OR REPLACE MACRO box_clearance(dx, dy, c, s, hla, hwa, hlb, hwb) AS

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from shapely import affinity
 from shapely.geometry import box
 
 from tests import scenes
@@ -495,15 +496,21 @@ def test_an_unlimited_road_gives_no_speed_to_assume() -> None:
     assert "no speed limit" in " ".join(row["reason"] for row in found)
 
 
-def spaces(way: Road, a: Actor, k: int, reach: float, forward: int) -> tuple[Any, Any]:
-    """Return an actor's box on a straight road as the rectangle that it takes up along and across, and its danger space."""
-    c, s = abs(math.cos(a.yaw[k])), abs(math.sin(a.yaw[k]))
-    half, across = 2.4 * c + 0.9 * s, 2.4 * s + 0.9 * c
-    own = box(a.x[k] - half, a.y[k] - across, a.x[k] + half, a.y[k] + across)
-    near = a.x[k] + forward * half
-    # as wide as the vehicle, from the middle of its front bumper on
-    front = a.y[k] + 2.4 * math.sin(a.yaw[k])
-    return own, box(min(near, near + forward * reach), front - 0.9, max(near, near + forward * reach), front + 0.9)
+def spaces(a: Actor, k: int, reach: float, forward: int) -> tuple[Any, Any]:
+    """Return an actor's box, turned as it is, and its danger space: from the middle of its front bumper along the road."""
+    own = affinity.rotate(box(a.x[k] - 2.4, a.y[k] - 0.9, a.x[k] + 2.4, a.y[k] + 0.9), a.yaw[k], use_radians=True)
+    x, y = a.x[k] + 2.4 * math.cos(a.yaw[k]), a.y[k] + 2.4 * math.sin(a.yaw[k])
+    return own, box(min(x, x + forward * reach), y - 0.9, max(x, x + forward * reach), y + 0.9)
+
+
+def depth_of(one: Any, two: Any) -> float:
+    """How far one polygon must be moved to be clear of the other; negative: how far they are apart, along the axis that says most."""
+    depths = []
+    for edges in (np.diff(np.array(p.exterior.coords), axis=0) for p in (one, two)):
+        for along in edges / np.linalg.norm(edges, axis=1)[:, None]:
+            a, b = (np.array(p.exterior.coords) @ along for p in (one, two))
+            depths.append(min(a.max() - b.min(), b.max() - a.min()))
+    return float(min(depths))
 
 
 def stopping(v: float) -> float:
@@ -531,17 +538,15 @@ def test_danger_spaces_on_a_straight_road_are_rectangles() -> None:
         assert row["sd_av_m"] == pytest.approx(sd_av)
         stage = "pulling_out" if row["t_ns"] < o["t1_ns"] else "passing" if row["t_ns"] < o["t2_ns"] else "cutting_in"
         assert row["stage"] == stage
-        av, ds_av = spaces(way, ego, k, sd_av, 1)
-        passed, _ = spaces(way, vbp, k, 0, 1)
-        other, ds_ov = spaces(way, ov, k, sd_ov, -1)
+        av, ds_av = spaces(ego, k, sd_av, 1)
+        passed, _ = spaces(vbp, k, 0, 1)
+        other, ds_ov = spaces(ov, k, sd_ov, -1)
         pairs: list[tuple[str, Any, Any]] = [("vbp_in_ds_av_m", passed, ds_av)]
         if row["ov_id"] is not None:
             assert row["sd_ov_m"] == pytest.approx(sd_ov)
             pairs += [("ov_in_ds_av_m", other, ds_av), ("av_in_ds_ov_m", av, ds_ov), ("ds_overlap_m", ds_av, ds_ov)]
         for column, one_, two in pairs:
-            (ax0, ay0, ax1, ay1), (bx0, by0, bx1, by1) = one_.bounds, two.bounds
-            # how far one must be moved to be clear of the other, along or across; negative: how far they are apart
-            depth = min(ax1 - bx0, bx1 - ax0, ay1 - by0, by1 - ay0)
+            depth = depth_of(one_, two)
             assert row[column] == pytest.approx(depth, abs=1e-6), (column, k)
             if abs(depth) > 1e-6:
                 assert (row[column] > 0) is (one_.intersection(two).area > 0)

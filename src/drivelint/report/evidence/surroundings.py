@@ -131,17 +131,17 @@ WITH frame AS (
 ),
 extent AS (
     SELECT DISTINCT m.drive_id, m.ego_id, m.t_ns, m.environment_id, e.chain_id, m.ego_id AS actor_id, o.sd_av_m AS length_m,
-        e.front_s_m AS s0, e.front_s_m + o.sd_av_m AS s1, o.ds_av_d_m AS d_m, o.ds_av_half_m AS half_m
+        o.ds_av_s_m AS s0, o.ds_av_s_m + o.sd_av_m AS s1, o.ds_av_d_m AS d_m, o.ds_av_half_m AS half_m
     FROM frame m
     JOIN overtake_step o USING (drive_id, ego_id, t_ns)
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     UNION
-    SELECT DISTINCT m.drive_id, m.ego_id, m.t_ns, m.environment_id, e.chain_id, p.object_id, o.sd_ov_m,
-        p.rear_s_m - o.sd_ov_m, p.rear_s_m, o.ds_ov_d_m, o.ds_ov_half_m
+    SELECT DISTINCT m.drive_id, m.ego_id, m.t_ns, m.environment_id, e.chain_id, o.ov_id, o.sd_ov_m,
+        o.ds_ov_s_m - o.sd_ov_m, o.ds_ov_s_m, o.ds_ov_d_m, o.ds_ov_half_m
     FROM frame m
     JOIN overtake_step o USING (drive_id, ego_id, t_ns)
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
-    JOIN pair p ON p.drive_id = m.drive_id AND p.ego_id = m.ego_id AND p.t_ns = m.t_ns AND p.object_id = o.ov_id
+    WHERE o.ov_id IS NOT NULL
 ),
 piece AS (  -- the corridor's segments under a danger space, cut at its ends
     SELECT x.*, c.s_start_m + g.s0_m AS at_m, g.len_m, g.x0_m, g.y0_m, g.x1_m, g.y1_m, g.tx0, g.ty0, g.tx1, g.ty1,
