@@ -601,6 +601,7 @@ CREATE TABLE overtake_step (
     free_reason VARCHAR,              -- what ends it: map_end, corridor_end, sensor_range
     ov_id VARCHAR,                    -- of the oncoming vehicles at this step the one whose danger space reaches furthest into the ego's, see oncoming_vehicle; NULL: none
     ov_known BOOLEAN NOT NULL,        -- no other vehicle may come: every one is placed
+    ov_reason VARCHAR,                -- why that is not known, and what to provide; said where it is known, too
     sd_av_m DOUBLE,                   -- stopping distance of the ego: length of its danger space
     ds_av_s_m DOUBLE,                 -- where that danger space begins along the corridor: the middle of the front bumper
     ds_av_d_m DOUBLE,                 -- middle of that danger space across the corridor: where the front bumper's middle is, left positive

@@ -91,17 +91,17 @@ SELECT
     -- a sight line too short, or somebody who cannot be placed, leaves open how much worse it was: only A can be told then
     CASE WHEN told AND NOT sped_up AND CASE WHEN ov_id IS NULL THEN n_unplaced = 0 AND da_m > sda_m ELSE n_unplaced = 0 OR da_m <= sda_m END THEN overtake_zone(da_m - sda_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0)) END AS zone,
     CASE
-        WHEN NOT begin_seen THEN 'the log does not show where the overtake began'
-        WHEN NOT vbp_placed THEN 'actor ' || vbp_id || ', who may be the vehicle passed, has no position'
-        WHEN opposing IS NULL THEN 'the map has no lane beside the running lane on the overtaking side'
-        WHEN da_m IS NULL THEN 'the ego is not placed on its corridor'
+        WHEN NOT begin_seen THEN 'the log does not show where the overtake began: record the ego from before it'
+        WHEN NOT vbp_placed THEN 'actor ' || vbp_id || ', who may be the vehicle passed, has no position where the overtake began: record it'
+        WHEN opposing IS NULL THEN 'the map has no lane beside the running lane on the overtaking side: give a map with the lanes of both directions'
+        WHEN da_m IS NULL THEN 'the ego is not placed on its lane where the overtake began: record its position, on a map that has its lane'
         WHEN sda_m IS NULL AND v_av_mps <= v_vbp_mps THEN 'undefined: the ego was not faster than the vehicle it passed'
-        WHEN sda_m IS NULL AND profile = 'observed' AND status <> 'completed' THEN 'the overtake was not completed, so its own angles are not known'
+        WHEN sda_m IS NULL AND profile = 'observed' AND status <> 'completed' THEN 'the overtake was ' || CASE status WHEN 'truncated' THEN 'not recorded to its end, so its own angles are not known: record it for longer' ELSE 'not completed, and has no angles of its own: the other profiles tell more' END
         WHEN sda_m IS NULL AND ov_id IS NULL AND v_ov_mps IS NULL THEN 'no oncoming vehicle is seen and the map has no speed limit to assume for one'
-        WHEN sda_m IS NULL THEN 'a speed, size or angle is not known'
+        WHEN sda_m IS NULL THEN 'a speed, size or angle of the two is not known: record speeds and sizes'
         WHEN sped_up THEN format('it sped up: at {:.1f} m/s, its speed at t0, it would have needed {:.0f} m, at {:.1f} m/s, {} {:.0f} m, and {:.0f} m were there', v_av_mps, sda_m, v_later_mps, CASE status WHEN 'truncated' THEN 'which it had reached when the log ended,' ELSE 'its mean one,' END, sped_up_m, da_m)
-        WHEN n_unplaced > 0 AND da_m > sda_m THEN unplaced_reason
-        WHEN ov_id IS NULL AND da_m <= sda_m THEN 'no oncoming vehicle as far as can be told, but that is only ' || round(da_m, 1)::VARCHAR || ' m (' || free_reason || ')'
+        WHEN n_unplaced > 0 AND da_m > sda_m THEN unplaced_reason || ': record it without a break'
+        WHEN ov_id IS NULL AND da_m <= sda_m THEN 'no oncoming vehicle as far as can be told, but that is only ' || round(da_m, 1)::VARCHAR || ' m: ' || CASE free_reason WHEN 'sensor_range' THEN 'the sensors reach no further' ELSE 'give a map that goes on' END
         WHEN ov_id IS NULL THEN 'no oncoming vehicle within ' || round(da_m, 1)::VARCHAR || ' m'
         WHEN da_m <= sda_m AND sda_m = driven_m THEN 'the ego was out of its lane for ' || round(out_s, 1)::VARCHAR || ' s'
         WHEN ov_id <> nearest_id THEN format('{} comes behind {}, and leaves the least: {:.1f} m, where more than {:.1f} m is required', ov_id, nearest_id, da_m, sda_m)

@@ -14,7 +14,7 @@ WITH stage AS (
         d.drive_id IS NOT NULL AS drawing, e.front_s_m AS ef, e.rear_s_m AS er, e.lat_half_m AS eh,
         -- the danger space is as wide as the vehicle and begins at the middle of its front bumper
         e.s_m + e.length_m / 2 * cos(e.heading_diff_rad) AS fs, e.d_m + e.length_m / 2 * sin(e.heading_diff_rad) AS fd,
-        danger_space_m(e.speed_mps) AS sd_av_m, e.limit_mps
+        danger_space_m(e.speed_mps) AS sd_av_m, e.limit_mps, ego_lacks(e.x_m, e.yaw_rad, e.lanelet_id, e.front_s_m) AS lacks
     FROM overtake o
     JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns >= o.t0_ns AND e.t_ns <= o.t_end_ns
     LEFT JOIN (SELECT DISTINCT drive_id, ego_id FROM ego_part WHERE part = 'trailer') d ON d.drive_id = o.drive_id AND d.ego_id = o.ego_id
@@ -62,6 +62,12 @@ SELECT
     s.drive_id, s.ego_id, s.occurrence, s.t_ns, s.stage, s.vbp_id, s.sure, w.o.id AS ov_id,
     -- nobody is there only as far as can be told: an unseen vehicle at the limit (70 mph where the map has none) must be out of reach
     coalesce(n.n_unplaced = 0 AND (n.object_id IS NOT NULL OR n.free_m > s.sd_av_m + danger_space_m(coalesce(s.limit_mps, 31.3))), false) AS ov_known,
+    CASE WHEN n.t_ns IS NULL THEN 'whether somebody comes is not known: ' || coalesce(s.lacks, 'the side that is driven on is not, give it with --handedness')
+        WHEN n.n_unplaced > 0 THEN n.unplaced_reason || ': record it'
+        ELSE format(
+            'nobody is seen to come, but only {:.0f} m are seen: {}', n.free_m,
+            CASE n.free_reason WHEN 'sensor_range' THEN 'the sensors reach no further (--sensor-range, if they do)' ELSE 'give a map that goes on' END
+        ) END AS ov_reason,
     s.sd_av_m, s.fs AS ds_av_s_m, s.fd AS ds_av_d_m, s.hw AS ds_av_half_m,
     w.o.sd_m AS sd_ov_m, w.o.fs AS ds_ov_s_m, w.o.fd AS ds_ov_d_m, w.o.hw AS ds_ov_half_m,
     box_depth(b.s_m - s.fs - s.sd_av_m / 2, b.d_m - s.fd, b.c, b.s, s.sd_av_m / 2, s.hw, b.hl, b.hw) AS vbp_in_ds_av_m,

@@ -122,7 +122,7 @@ broken AS (
     FROM passed p
     JOIN clock c USING (drive_id, ego_id)
     JOIN edge d ON d.drive_id = p.drive_id AND d.actor_id <> p.ego_id
-    CROSS JOIN LATERAL (VALUES ('appeared in the log nearby', d.t_first_ns, 0), ('was lost from the log nearby', d.t_last_ns, 1)) AS v(what, t_ns, lost)
+    CROSS JOIN LATERAL (VALUES (unplaced_words('appeared'), d.t_first_ns, 0), (unplaced_words('lost'), d.t_last_ns, 1)) AS v(what, t_ns, lost)
     WHERE v.t_ns >= p.t_a_ns - v.lost * conflict_ns() AND v.t_ns <= p.t_b_ns + conflict_ns() AND v.t_ns > c.t_start_ns + c.max_gap_ns AND v.t_ns < c.t_end_ns - c.max_gap_ns
 ),
 broken_near AS (

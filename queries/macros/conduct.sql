@@ -57,9 +57,24 @@ CREATE OR REPLACE MACRO lanes_apart_m() AS 6.0;
 -- Why an actor cannot be placed, in words.
 CREATE OR REPLACE MACRO unplaced_words(code) AS CASE code
     WHEN 'no_position' THEN 'has no position (or no fresh one)' WHEN 'off_level' THEN 'may be over or under the road' WHEN 'off_lanes' THEN 'moves off the lanes'
-    WHEN 'no_heading' THEN 'has no heading' WHEN 'no_size' THEN 'has no size' WHEN 'lost' THEN 'was lost from the log nearby'
-    WHEN 'lost_behind' THEN 'was lost behind, driving away' WHEN 'appeared' THEN 'appeared in the log nearby'
+    WHEN 'no_heading' THEN 'has no heading' WHEN 'no_size' THEN 'has no size' WHEN 'lost' THEN 'is no longer recorded'
+    WHEN 'lost_behind' THEN 'drove away behind and is no longer recorded' WHEN 'appeared' THEN 'is not yet recorded'
     WHEN 'beyond_map' THEN 'came in over the end of the map' END;
+
+-- What the place of the ego lacks, and what to provide; NULL: nothing.
+CREATE OR REPLACE MACRO ego_lacks(x_m, yaw_rad, lanelet_id, front_s_m) AS CASE
+    WHEN x_m IS NULL THEN 'the ego ' || unplaced_words('no_position') || ': record it'
+    WHEN yaw_rad IS NULL THEN 'the ego ' || unplaced_words('no_heading') || ': record it'
+    WHEN lanelet_id IS NULL THEN 'the ego is not on a lane of the map: give a map that has its lane'
+    WHEN front_s_m IS NULL THEN 'the ego''s box reaches beyond the lanes of the map: give a map whose lanes go on' END;
+
+-- What is asked where two boxes pass each other by, or touch.
+CREATE OR REPLACE MACRO graze_words(object_id) AS
+    format('whether the ego passes {} by, or touches it, is a matter of centimetres: record positions, headings and sizes more exactly', object_id);
+
+-- What is asked where it is not sure that the ego overtook this one.
+CREATE OR REPLACE MACRO overtake_doubt(vbp_id) AS
+    format('whether the ego overtook {} is not sure: record both from before the ego leaves its lane until it is back in it', vbp_id);
 
 -- Somebody who cannot be placed may be beside the ego if he may be this near.
 CREATE OR REPLACE MACRO may_be_beside_m() AS 10.0;

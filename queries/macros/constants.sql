@@ -37,9 +37,9 @@ CREATE OR REPLACE MACRO unseen_ns(distance_m, v_object_mps, v_ego_mps, least_s) 
 CREATE OR REPLACE MACRO fastest_mps() AS 31.3;
 -- Why there is no limit to judge by.
 CREATE OR REPLACE MACRO limit_doubt(limit_source, lanelet_id) AS CASE limit_source
-    WHEN 'unread' THEN 'the map gives a limit for lanelet ' || lanelet_id || ' that cannot be read'
-    WHEN 'none' THEN 'the map says that lanelet ' || lanelet_id || ' has no limit of its own'
-    ELSE 'the map gives no limit for lanelet ' || lanelet_id
+    WHEN 'unread' THEN 'the map gives a limit for lanelet ' || lanelet_id || ' that cannot be read: give one with limits in a known unit'
+    WHEN 'none' THEN 'the map says that lanelet ' || lanelet_id || ' has no limit of its own: give one that says which limit holds'
+    ELSE 'the map gives no limit for lanelet ' || lanelet_id || ': give one with speed limits'
 END;
 -- Two directions further apart than this, with nothing between them in the map, may have a central reservation between them.
 CREATE OR REPLACE MACRO reservation_m() AS 1.0;

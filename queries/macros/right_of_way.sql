@@ -48,4 +48,4 @@ CREATE OR REPLACE MACRO braked_words(object_id, pet_s, decel_mps2, other_cause) 
         WHEN 'signal' THEN ', but there was a line or a light for it' WHEN 'bend' THEN ', but there was a bend before it' ELSE '' END;
 
 -- Of whom it is not known whether the rule is about it.
-CREATE OR REPLACE MACRO unsure_words(object_id) AS 'the class of ' || object_id || ' is not known';
+CREATE OR REPLACE MACRO unsure_words(object_id) AS 'the class of ' || object_id || ' is not known: record it';

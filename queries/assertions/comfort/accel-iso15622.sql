@@ -39,7 +39,7 @@
 -- filtered before it is differentiated, see ego_motion; reversing, it speeds up where the speed along its heading falls
 SELECT m.drive_id, m.ego_id, m.t_ns, decided_at_most(w.accel_mps2, m.accel_peak_mps2, w.most_mps2) AS observed, w.most_mps2 AS required,
     judged_inside(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
-    CASE WHEN w.accel_mps2 <= w.most_mps2 AND w.accel_mps2 + m.accel_peak_mps2 > w.most_mps2 THEN 'the filter may have flattened a peak that was over the limit' END AS reason
+    CASE WHEN w.accel_mps2 <= w.most_mps2 AND w.accel_mps2 + m.accel_peak_mps2 > w.most_mps2 THEN 'the filter that takes the noise out may have flattened a peak over the limit: no recording decides that' END AS reason
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
 CROSS JOIN LATERAL (

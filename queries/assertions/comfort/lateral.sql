@@ -34,8 +34,8 @@
 -- filtered before it is differentiated, see ego_motion; of a vehicle whose kind is not known, what both kinds may is kept, and what neither may is not
 SELECT m.drive_id, m.ego_id, m.t_ns, decided_at_most(l.lat_mps2, m.lat_peak_mps2, w.most_mps2) AS observed, w.most_mps2 AS required,
     judged_inside(m.lat_accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
-    CASE WHEN k.heavy IS NULL AND w.most_mps2 IS NULL THEN 'whether the ego is a bus or lorry is not known'
-        WHEN l.lat_mps2 <= w.most_mps2 AND l.lat_mps2 + m.lat_peak_mps2 > w.most_mps2 THEN 'the filter may have flattened a peak that was over the limit' END AS reason
+    CASE WHEN k.heavy IS NULL AND w.most_mps2 IS NULL THEN 'whether the ego is a bus or lorry is not known: give --env vehicle_class=...'
+        WHEN l.lat_mps2 <= w.most_mps2 AND l.lat_mps2 + m.lat_peak_mps2 > w.most_mps2 THEN 'the filter that takes the noise out may have flattened a peak over the limit: no recording decides that' END AS reason
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
 LEFT JOIN ego_condition o ON o.drive_id = m.drive_id AND o.ego_id = m.ego_id AND o.t_ns = m.t_ns

@@ -46,7 +46,7 @@
 -- filtered before it is differentiated, see ego_motion
 SELECT m.drive_id, m.ego_id, m.t_ns, w.share AS observed, 1.0::DOUBLE AS required,
     judged_inside(coalesce(w.share, m.accel_mps2 + m.lat_accel_mps2 + m.jerk_mps3), m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
-    CASE WHEN g.most <= 1 AND g.perhaps > 1 THEN 'the filter may have flattened a peak that was over the bound' END AS reason
+    CASE WHEN g.most <= 1 AND g.perhaps > 1 THEN 'the filter that takes the noise out may have flattened a peak over the bound: no recording decides that' END AS reason
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
 -- nuPlan's own jerk is that of a wider filter: what ours flattens of it is no matter

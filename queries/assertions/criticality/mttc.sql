@@ -35,8 +35,8 @@ SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
     ) AND may_touch(l.passes_by, l.grazes) AND CASE WHEN l.across_m < 0 OR k.ttc_s < 'inf' THEN true END AND either_moves(l.ego_speed_mps, l.speed_mps)
     -- one that is not seen is further away than the way that is free, and the two close in no faster than tyres allow
     WHEN l.known OR gone_s(l.free_m, l.free_mps, 10.0) >= $least_s THEN true END AS applies,
-    CASE WHEN l.grazes THEN format('whether the ego passes {} by, or touches it, is not known', l.object_id)
-        WHEN l.across_m >= 0 AND k.ttc_s = 'inf' THEN format('{} is beside the ego''s way, and the two do not close in yet', l.object_id) END AS reason
+    CASE WHEN l.grazes THEN graze_words(l.object_id)
+        WHEN l.across_m >= 0 AND k.ttc_s = 'inf' THEN format('{} is beside the ego''s way and does not close in, but its heading at this step points into the way: record headings more exactly', l.object_id) END AS reason
 FROM step s
 LEFT JOIN vehicle_ahead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
 LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.t_ns = l.t_ns AND p.object_id = l.object_id
@@ -48,12 +48,9 @@ CROSS JOIN LATERAL (SELECT along_mps(l.speed_mps, l.oncoming) AS away_mps, along
 -- at the ends of the log the windows of the accelerations are not whole, which says nothing about the drive. They smooth: the ego's begins to
 -- count before it begins, the other's after, and still counts when it is over; where that makes the difference, it is not known
 SELECT l.drive_id, l.ego_id, l.t_ns, l.object_id, $least_s AS required, l.object_id IS NULL OR judged_inside(m.accel_mps2 + l.other_mps2, l.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
-    CASE WHEN l.object_id IS NULL THEN 'inf'::DOUBLE
-        ELSE sure(
-            or_never(mttc_s(l.gap_m, l.ego_speed_mps, m.accel_mps2, l.away_mps, l.other_mps2), $least_s),
-            mttc_s(l.gap_m, l.ego_speed_mps, m.most_mps2, l.away_mps, l.least_mps2),
-            mttc_s(l.gap_m, l.ego_speed_mps, m.least_mps2, l.away_mps, l.most_mps2), $least_s
-        ) END AS observed
+    v.observed,
+    CASE WHEN v.observed IS NULL AND l.gap_m + m.accel_mps2 + l.other_mps2 IS NOT NULL
+        THEN 'the accelerations are means over half a second, which leave open on which side of the limit it is: no recording decides that' END AS reason
 FROM (
     SELECT *, along_mps(speed_mps, oncoming) AS away_mps, along_mps(accel_mps2, oncoming) AS other_mps2,
         min(along_mps(accel_mps2, oncoming)) OVER w AS least_mps2, max(along_mps(accel_mps2, oncoming)) OVER w AS most_mps2
@@ -66,3 +63,11 @@ JOIN (
     FROM ego_motion
     WINDOW w AS (PARTITION BY drive_id, ego_id ORDER BY t_ns RANGE BETWEEN ($edge_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW)
 ) m ON m.drive_id = l.drive_id AND m.ego_id = l.ego_id AND m.t_ns = l.t_ns
+CROSS JOIN LATERAL (
+    SELECT CASE WHEN l.object_id IS NULL THEN 'inf'::DOUBLE
+        ELSE sure(
+            or_never(mttc_s(l.gap_m, l.ego_speed_mps, m.accel_mps2, l.away_mps, l.other_mps2), $least_s),
+            mttc_s(l.gap_m, l.ego_speed_mps, m.most_mps2, l.away_mps, l.least_mps2),
+            mttc_s(l.gap_m, l.ego_speed_mps, m.least_mps2, l.away_mps, l.most_mps2), $least_s
+        ) END AS observed
+) v

@@ -35,7 +35,7 @@ SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
     ) AND may_touch(l.passes_by, l.grazes) AND either_moves(l.ego_speed_mps, l.speed_mps) AND NOT comes(l.speed_mps, l.oncoming)
     -- one that is not seen is further away than the way that is free
     WHEN l.known OR ttb_s(l.free_m, l.ego_speed_mps, $brake_mps2) >= $least_s THEN true END AS applies,
-    CASE WHEN l.grazes THEN format('whether the ego passes {} by, or touches it, is not known', l.object_id) END AS reason
+    CASE WHEN l.grazes THEN graze_words(l.object_id) END AS reason
 FROM step s
 LEFT JOIN vehicle_ahead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
 LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.t_ns = l.t_ns AND p.object_id = l.object_id

@@ -28,9 +28,9 @@
 SELECT DISTINCT drive_id, ego_id, t_start_ns AS t_ns, object_id, occurrence FROM opportunity
 
 -- @condition
-SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.profile, CASE WHEN o.taken THEN 0.0::DOUBLE ELSE o.spare_s END AS observed, $spare_s AS required,
-    o.taken OR o.t_end_ns - o.t_start_ns >= $notice_s * 1_000_000_000 AS applies
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, p.profile, CASE WHEN o.taken THEN 0.0::DOUBLE ELSE o.spare_s END AS observed, $spare_s AS required,
+    -- the ego's own overtake is none of the profiles that an opportunity is asked for with
+    p.profile <> 'observed' AND (o.taken OR o.t_end_ns - o.t_start_ns >= $notice_s * 1_000_000_000) AS applies
 FROM reference r
-JOIN opportunity o USING (drive_id, ego_id, occurrence)
-JOIN profile p USING (profile)
-WHERE p.selected
+CROSS JOIN (FROM profile WHERE selected) p
+LEFT JOIN opportunity o ON o.drive_id = r.drive_id AND o.ego_id = r.ego_id AND o.occurrence = r.occurrence AND o.profile = p.profile

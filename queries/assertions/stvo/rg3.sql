@@ -55,8 +55,8 @@
 -- the kind of vehicle, road and area at least allow and at most allow, nothing is known; nor is anything kept where the map may lack a sign.
 SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed,
     CASE WHEN e.speed_mps > k.most_mps + $tolerance_mps THEN k.most_mps WHEN e.speed_mps <= k.least_mps + $tolerance_mps THEN k.least_mps END + $tolerance_mps AS required,
-    CASE WHEN required IS NOT NULL THEN NULL WHEN c.limit_mps IS NULL THEN coalesce(limit_doubt(e.limit_source, e.lanelet_id), 'the ego is on no lane, for which there is no limit') WHEN c.vehicle_class IS NULL THEN 'kind of vehicle not known'
-        ELSE 'the limit depends on the kind of vehicle or road, not all of which is known' END AS reason
+    CASE WHEN required IS NOT NULL THEN NULL WHEN c.limit_mps IS NULL THEN coalesce(limit_doubt(e.limit_source, e.lanelet_id), 'the ego is on no lane, for which there is no limit') WHEN c.vehicle_class IS NULL THEN 'which class of vehicle the ego is is not known: give --env vehicle_class=...'
+        ELSE 'the limit depends on the class of vehicle and the kind of road, not all of which is known: give them, such as --env vehicle_class=car and --env road_type=rural' END AS reason
 FROM ego_state e
 JOIN ego_condition c USING (drive_id, ego_id, t_ns)
 CROSS JOIN LATERAL (

@@ -39,7 +39,7 @@ FROM pair
 WHERE clearance_m IS NULL OR clearance_m <= $within_m
 UNION ALL
 -- whose track ends close by may have touched unseen: one step for each, not judged
-SELECT l.drive_id, l.ego_id, s.t_ns, l.object_id, NULL, format('the track of object {} ends close to the ego', l.object_id)
+SELECT l.drive_id, l.ego_id, s.t_ns, l.object_id, NULL, format('the track of object {} ends close to the ego: record it for as long as the ego', l.object_id)
 FROM lost_object l
 ASOF JOIN step s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id AND l.t_from_ns <= s.t_ns
 WHERE l.code = 'lost_near_ego'
@@ -59,6 +59,8 @@ WHERE s.dt_ns > c.max_gap_ns AND p.clearance_m < lost_near_m()
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, $tyre_mps2 AS required,
     CASE WHEN jolt_mps2 >= $tyre_mps2 OR p.accel_mps2 + e.accel_mps2 IS NOT NULL AND NOT coalesce(hides, false) THEN jolt_mps2 END AS observed,
     CASE WHEN other_mps2 >= $tyre_mps2 AND e.fastest_3s_mps < standing_mps() THEN 'the ego stood still: it was struck, if anything'
+        WHEN (jolt_mps2 >= $tyre_mps2) IS DISTINCT FROM true AND (e.accel_mps2 IS NULL AND e.speed_mps IS NOT NULL OR p.accel_mps2 IS NULL AND p.speed_mps IS NOT NULL)
+            THEN format('how hard {} braked is not known here: that takes a sample just before: begin recording earlier', CASE WHEN e.accel_mps2 IS NULL THEN 'the ego' ELSE 'object ' || p.object_id END)
         WHEN hides AND jolt_mps2 < $tyre_mps2 THEN format('a step of {:.2f} s is too long to tell a jolt from braking', st.dt_ns / 1e9) END AS reason
 FROM pair p
 JOIN ego_state e USING (drive_id, ego_id, t_ns)

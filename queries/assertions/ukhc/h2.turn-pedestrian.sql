@@ -12,7 +12,7 @@
 -- near_margin = 1.0
 -- reads = ["junction_passage", "passage_conflict"]
 -- requires = ["map", "registration", "ego_size"]
--- without_time = "the log does not show the ego on its way into the junction"
+-- without_time = "the log does not show the ego on its way into the junction: begin recording before it"
 --
 -- [params.pet_s]
 -- default = 2.0
@@ -36,7 +36,7 @@ WHERE p.turn IS DISTINCT FROM 'straight' OR at_fork(p.turn, p.turn_rad, p.straig
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, CASE WHEN turn IS NOT NULL AND NOT (fork AND pet_s < $pet_s) THEN pet_s END AS observed, $pet_s AS required,
-    CASE WHEN turn IS NULL THEN 'the log does not show which way the ego turned'
+    CASE WHEN turn IS NULL THEN 'the log does not show which way the ego turned: record it until it has left the junction'
         WHEN fork AND pet_s < $pet_s THEN fork_words()
         WHEN pet_s IS NULL THEN reason END AS reason
 FROM reference

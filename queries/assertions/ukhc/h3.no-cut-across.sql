@@ -9,7 +9,7 @@
 -- sense = "holds"
 -- reads = ["junction_passage", "passage_conflict", "road_user"]
 -- requires = ["map", "registration", "ego_size"]
--- without_time = "the log does not show the ego on its way into the junction"
+-- without_time = "the log does not show the ego on its way into the junction: begin recording before it"
 --
 -- [params.pet_s]
 -- default = 2.0
@@ -41,7 +41,7 @@ judged AS (
             WHEN braked AND braked_class IN ('bicycle', 'animal') THEN CASE WHEN NOT fork THEN false END
             WHEN actor_class IN ('bicycle', 'animal') OR (pet_s >= $pet_s AND decel_mps2 <= $decel_mps2)
             THEN pet_s >= $pet_s AND decel_mps2 <= $decel_mps2 AND CASE WHEN NOT braked THEN true END OR CASE WHEN NOT fork THEN false END END AS kept,
-        CASE WHEN turn IS NULL THEN 'the log does not show which way the ego turned'
+        CASE WHEN turn IS NULL THEN 'the log does not show which way the ego turned: record it until it has left the junction'
             WHEN fork AND object_id IS NOT NULL AND kept IS NULL THEN fork_words()
             WHEN braked IS DISTINCT FROM false THEN braked_reason
             ELSE coalesce(met_words(object_id, pet_s, decel_mps2), reason) END AS reason_given

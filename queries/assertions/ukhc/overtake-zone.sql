@@ -31,7 +31,8 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $margin_s AS required, bool_or(s.
         CASE WHEN bool_and(coalesce(s.zone IN ('A', 'B'), false)) FILTER (s.profile <> 'observed') THEN max(s.spare_s) END
     ) AS observed,
     'zones: ' || string_agg(s.profile || ' ' || coalesce(s.zone, 'unknown'), ', ' ORDER BY p.style, s.profile) || '; best choice: '
-        || coalesce(min({'style': p.style, 'profile': s.profile}) FILTER (s.zone = 'C' AND s.profile <> 'observed').profile, 'none in zone C') AS reason
+        || coalesce(min({'style': p.style, 'profile': s.profile}) FILTER (s.zone = 'C' AND s.profile <> 'observed').profile, 'none in zone C')
+        || coalesce('; observed unknown: ' || min(s.reason) FILTER (s.profile = 'observed' AND s.zone IS NULL), '') AS reason
 FROM reference r
 JOIN overtake_sda s USING (drive_id, ego_id, occurrence)
 JOIN profile p USING (profile)

@@ -34,6 +34,6 @@ WITH limits AS (
 SELECT drive_id, ego_id, t_ns, speed_mps AS observed,
     CASE WHEN speed_mps > most_mps THEN most_mps WHEN speed_mps <= least_mps THEN least_mps END AS required,
     CASE WHEN (speed_mps > least_mps) IS DISTINCT FROM false AND (speed_mps > most_mps) IS DISTINCT FROM true THEN
-        CASE WHEN speed_mps IS NULL THEN 'the ego''s speed is not known' WHEN lanelet_id IS NULL THEN 'the ego is on no lane' WHEN limit_mps IS NULL THEN limit_doubt(limit_source, lanelet_id)
+        CASE WHEN speed_mps IS NULL THEN 'the ego''s speed is not known, or contradicts its positions: record it, or correct it' WHEN lanelet_id IS NULL THEN 'the ego is on no lane' WHEN limit_mps IS NULL THEN limit_doubt(limit_source, lanelet_id)
             ELSE 'the limit depends on the class of the vehicle and the kind of road, not all of which is known' END END AS reason
 FROM limits

@@ -16,7 +16,9 @@
 
 -- @applies
 -- what may be an overtake breaks nothing
-SELECT drive_id, ego_id, t_ns, vbp_id AS object_id, stage AS episode, CASE WHEN sure OR vbp_in_ds_av_m < 0 THEN true END AS applies FROM overtake_step
+SELECT drive_id, ego_id, t_ns, vbp_id AS object_id, stage AS episode, CASE WHEN sure OR vbp_in_ds_av_m < 0 THEN true END AS applies,
+    overtake_doubt(vbp_id) AS reason
+FROM overtake_step
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, vbp_id AS object_id, vbp_in_ds_av_m AS observed, 0.0 AS required FROM overtake_step

@@ -18,7 +18,10 @@
 
 -- @condition
 SELECT e.drive_id, e.ego_id, e.t_ns, o.free_m AS observed, stopping_factor(c.weather) * stopping_distance_m(e.speed_mps) AS required,
-    o.free_reason <> 'sensor_range' AS at_least
+    o.free_reason <> 'sensor_range' AS at_least,
+    CASE WHEN e.front_s_m IS NOT NULL AND o.t_ns IS NULL THEN 'how far the road leads on is not known, for the side that is driven on is not: give it with --handedness'
+        WHEN o.free_m < stopping_factor(c.weather) * stopping_distance_m(e.speed_mps) AND o.free_reason <> 'sensor_range'
+            THEN format('the map shows the road for {:.0f} m only: give one that goes on', o.free_m) END AS reason
 FROM ego_state e
 LEFT JOIN oncoming o USING (drive_id, ego_id, t_ns)
 LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)

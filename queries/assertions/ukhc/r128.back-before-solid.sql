@@ -10,7 +10,7 @@
 -- sense = "holds"
 -- reads = ["line_step", "overtake"]
 -- requires = ["map", "registration", "handedness", "markings", "ego_size"]
--- without_anchor = "the log does not show the ego back in its lane"
+-- without_anchor = "the log does not show the ego back in its lane: record it until it is"
 
 -- @reference
 SELECT o.drive_id, o.ego_id, o.t0_ns AS t_ns, max(o.vbp_id) AS object_id, bool_or(o.sure) AS sure, o.begin_seen, o.t3_ns, o.t_end_ns, o.opposing, CASE o.side WHEN 1 THEN 'left' ELSE 'right' END AS side
@@ -39,8 +39,8 @@ SELECT r.drive_id, r.ego_id, coalesce(min(l.t_ns) FILTER (l.solid), r.t3_ns) AS 
         WHEN bool_or(l.solid) THEN CASE WHEN r.sure AND (r.begin_seen OR min(l.t_ns) FILTER (NOT l.solid) < min(l.t_ns) FILTER (l.solid)) THEN false END
         WHEN count(l.t_ns) > 0 AND count(l.t_ns) = count(l.solid) THEN true
     END AS holds,
-    CASE WHEN r.opposing IS NULL THEN 'the map has no lane beside the line, which may be the edge of the road'
-        WHEN bool_or(l.solid) AND NOT r.sure THEN 'the line was solid, but whether the ego overtook is not sure'
+    CASE WHEN r.opposing IS NULL THEN 'the map has no lane beyond the line, which may be the edge of the road: give a map with the lanes of both directions'
+        WHEN bool_or(l.solid) AND NOT r.sure THEN 'the line was solid, but whether the ego overtook is not sure: record all vehicles from before the ego leaves its lane until it is back in it'
         WHEN bool_or(l.solid) AND NOT r.begin_seen THEN 'the log does not show the ego cross the line, which was solid when it is first seen' END AS reason
 FROM reference r
 LEFT JOIN over l ON l.drive_id = r.drive_id AND l.ego_id = r.ego_id AND l.side = r.side AND l.t_ns >= r.t_ns AND l.t_ns <= r.t_end_ns

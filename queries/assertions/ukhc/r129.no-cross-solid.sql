@@ -24,9 +24,9 @@ WITH over AS (
 SELECT e.drive_id, e.ego_id, e.t_ns,
     CASE WHEN e.front_s_m IS NULL THEN NULL WHEN l.t_ns IS NULL THEN true ELSE NOT l.crosses END AS holds,
     CASE
-        WHEN e.front_s_m IS NULL THEN 'the ego is not placed on the road'
+        WHEN e.front_s_m IS NULL THEN ego_lacks(e.x_m, e.yaw_rad, e.lanelet_id, e.front_s_m)
         WHEN l.crosses THEN format('{:.2f} m over a line marked {}', l.out_m, l.marking)
-        WHEN l.t_ns IS NOT NULL AND l.crosses IS NULL AND l.middle IS NULL THEN 'the map has nothing beyond the line, or what may be a central reservation: whether it is the middle of the road is not known'
+        WHEN l.t_ns IS NOT NULL AND l.crosses IS NULL AND l.middle IS NULL THEN 'whether the line is the middle of the road is not known, for the map has nothing beyond it, or what may be a central reservation: give a map with the lanes of both directions'
     END AS reason
 FROM ego_state e
 LEFT JOIN over l USING (drive_id, ego_id, t_ns)

@@ -155,7 +155,11 @@ SELECT e.drive_id, e.ego_id, e.t_ns,
         AND (e.x_m IS NULL OR e.lanelet_id IS NOT NULL OR a.t_ns IS NOT NULL AND w.road_type = 'motorway') AND (NOT e.in_junction OR a.t_ns IS NOT NULL OR coalesce(r.against, false))
         AND CASE WHEN abs(m.v_long_mps) > $manoeuvring_mps OR w.road_type = 'motorway' OR d.against AND d.least_m > $manoeuvring_m THEN true
             -- with its lane, what kind of road it is does not matter
-            WHEN abs(m.v_long_mps) <= $manoeuvring_mps AND (w.road_type IS NOT NULL OR e.with_direction AND m.v_long_mps >= -$reverse_mps) AND NOT coalesce(d.against AND d.most_m > $manoeuvring_m, false) THEN false END AS applies
+            WHEN abs(m.v_long_mps) <= $manoeuvring_mps AND (w.road_type IS NOT NULL OR e.with_direction AND m.v_long_mps >= -$reverse_mps) AND NOT coalesce(d.against AND d.most_m > $manoeuvring_m, false) THEN false END AS applies,
+    CASE WHEN c.t_ns IS NULL OR p.excused OR c.closed THEN NULL
+        WHEN p.t_ns IS NOT NULL AND p.excused IS NULL THEN 'whether it is on its way past another vehicle is not known: record that from before to after'
+        WHEN x.t_ns IS NOT NULL THEN format('in the opposing lane for less than {:g} s, it may pass something that the log does not show: record what stands in the lane, such as road works', $passing_s)
+        WHEN c.closed IS NULL THEN 'whether something closes its lane is not known: record what stands or walks there' END AS reason
 FROM ego_state e
 LEFT JOIN ego_motion m USING (drive_id, ego_id, t_ns)
 LEFT JOIN ego_condition w USING (drive_id, ego_id, t_ns)

@@ -51,9 +51,9 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, needs.m AS required,
         WHEN h.gap_m IS NULL THEN CASE WHEN free.seen_m IS NOT NULL THEN greatest(0.0, least(free.seen_m, free.unseen_m)) END
         WHEN h.gap_m >= needs.m THEN greatest(0.0, least(h.gap_m, free.unseen_m))
     END AS observed,
-    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began' WHEN h.vehicle_gap_m < needs.m THEN NULL
-        WHEN free.unseen_m < needs.m THEN format('actor {}, who may be there, {}', d.o.object_id, d.o.reason)
-        WHEN h.gap_m < needs.m THEN 'the class of somebody there is not known' END AS reason
+    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began: record the ego from before it' WHEN h.vehicle_gap_m < needs.m THEN NULL
+        WHEN free.unseen_m < needs.m THEN format('actor {}, who may be there, {}: record it without a break', d.o.object_id, d.o.reason)
+        WHEN h.gap_m < needs.m THEN 'the class of somebody there is not known: record it' END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 CROSS JOIN LATERAL (SELECT o.l_av_m + thinking_distance_m(o.v_vbp_mps) + thinking_distance_m(o.v_av_mps) AS m) needs

@@ -11,7 +11,7 @@
 -- observes = "gap to the vehicle passed"
 -- near_margin = 1.0
 -- reads = ["overtake"]
--- without_time = "the log does not show the ego back in its lane"
+-- without_time = "the log does not show the ego back in its lane: record it until it is"
 -- requires = ["map", "registration", "handedness", "ego_size"]
 
 -- @reference

@@ -107,8 +107,11 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps <= standing_mps() AS 
             THEN format('an oncoming vehicle came {:.1f} s after the ego, or braked by {:.1f} m/s2', min(c.pet_s), coalesce(max(c.decel_mps2), 0))
         WHEN z.ref_id IS NOT NULL AND f.made IS DISTINCT FROM true THEN format('{} came by with {:.2f} m between', z.least.object_id, z.least.room_m)
         WHEN f.words IS NOT NULL THEN f.words
-        WHEN o.t3_ns IS NULL THEN 'the ego was not seen back in its lane'
-        WHEN l.ref_id IS NOT NULL THEN l.words END AS reason
+        WHEN o.t3_ns IS NULL THEN 'the log does not show the ego back in its lane: record it until it is'
+        WHEN l.ref_id IS NOT NULL THEN format('object {}: record it without a break', l.words)
+        WHEN NOT o.begin_seen THEN 'the log does not show where the ego pulled out: record it from before that'
+        WHEN o.n_unplaced > 0 THEN o.unplaced_reason || ': record it without a break'
+        WHEN k.t_end_ns < o.t3_ns + ($pet_s * 1e9)::BIGINT THEN format('the log ends within {:g} s after the ego was back in its lane: record it for longer', $pet_s) END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 JOIN clock k USING (drive_id, ego_id)
@@ -117,4 +120,4 @@ LEFT JOIN squeezed z USING (ref_id)
 LEFT JOIN lost l USING (ref_id)
 LEFT JOIN (FROM conflict WHERE ego_first AND abs(angle_rad) >= $oncoming_rad) c
     ON c.drive_id = r.drive_id AND c.ego_id = r.ego_id AND c.t_ego_in_ns >= r.t_ns AND c.t_ego_in_ns <= r.t_end_ns
-GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.t3_ns, k.t_end_ns, f.ref_id, f.made, f.words, z.ref_id, z.made, z.least, l.ref_id, l.words
+GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.unplaced_reason, o.t3_ns, k.t_end_ns, f.ref_id, f.made, f.words, z.ref_id, z.made, z.least, l.ref_id, l.words

@@ -52,7 +52,9 @@ SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id,
         WHEN bool_or(coalesce(p.clearance_m <= 0, false)) OVER (PARTITION BY s.ref_id ORDER BY s.t_ns) THEN NULL
         WHEN s.ahead_id = s.cutter_id THEN s.gap_m >= $time_gap_s * stopping_factor(c.weather) * s.ego_speed_mps
         WHEN s.t_ns < s.t_last_ns OR s.t_ns <= s.in_place_ns THEN false
-        WHEN s.t_ns - greatest(s.in_place_ns, s.t_not_gone_ns) >= $gone_s * 1e9 THEN true END AS holds
+        WHEN s.t_ns - greatest(s.in_place_ns, s.t_not_gone_ns) >= $gone_s * 1e9 THEN true END AS holds,
+    CASE WHEN bool_or(coalesce(p.clearance_m <= 0, false)) OVER (PARTITION BY s.ref_id ORDER BY s.t_ns)
+        THEN format('the boxes of the ego and {} overlap, or did before, which leaves no gap to restore: correct them, or see ukhc.no-collision', s.cutter_id) END AS reason
 FROM told s
 LEFT JOIN ego_condition c ON c.drive_id = s.drive_id AND c.ego_id = s.ego_id AND c.t_ns = s.t_ns
 LEFT JOIN pair p ON p.drive_id = s.drive_id AND p.ego_id = s.ego_id AND p.t_ns = s.t_ns AND p.object_id = s.cutter_id

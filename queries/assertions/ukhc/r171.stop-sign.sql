@@ -12,7 +12,7 @@
 -- observes = "least speed just before the stop line"
 -- reads = ["junction_passage", "stop_line_crossing"]
 -- requires = ["map", "registration", "ego_size"]
--- without_time = "the log does not show the ego on its way into the junction"
+-- without_time = "the log does not show the ego on its way into the junction: begin recording before it"
 --
 -- [params.standing_mps]
 -- default = 0.1
@@ -43,7 +43,7 @@ FROM reference
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, $standing_mps AS required,
     CASE WHEN begin_seen OR slowest_mps <= $standing_mps THEN slowest_mps END AS observed,
-    CASE WHEN control IS NULL THEN 'the map does not say what governs the way in'
+    CASE WHEN control IS NULL THEN 'the map does not say what governs the way in: give one with its signs, lights and priorities'
         WHEN stop_line_id IS NULL THEN 'the map has a stop sign here and no stop line'
         WHEN NOT begin_seen THEN 'the log does not show how the ego came to the stop line' END AS reason
 FROM reference

@@ -11,8 +11,8 @@
 -- sense = "holds"
 -- reads = ["junction_passage", "standstill"]
 -- requires = ["map", "registration", "ego_size"]
--- without_time = "the log does not show the ego on its way into the junction"
--- without_anchor = "the log does not show the ego on its way out of the junction"
+-- without_time = "the log does not show the ego on its way into the junction: begin recording before it"
+-- without_anchor = "the log does not show the ego on its way out of the junction: record it until it has left"
 --
 -- [params.near_m]
 -- default = 10.0

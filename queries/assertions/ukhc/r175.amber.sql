@@ -26,5 +26,5 @@ WHERE control = 'traffic_light' AND coalesce(state, 'amber') = 'amber'
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, $decel_mps2 AS required,
     CASE WHEN state IS NULL THEN NULL WHEN room_m <= 0 THEN 'inf'::DOUBLE ELSE v ** 2 / (2 * room_m) END AS observed,
-    CASE WHEN state IS NULL THEN 'the light''s state is not known' WHEN room_m IS NULL THEN 'the log does not show when the light turned amber' END AS reason
+    CASE WHEN state IS NULL THEN 'the light''s state is not known: record it at every step' WHEN room_m IS NULL THEN 'the log does not show when the light turned amber: record its state from before that' END AS reason
 FROM reference

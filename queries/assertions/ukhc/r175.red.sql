@@ -23,7 +23,7 @@ WHERE c.control = 'traffic_light'
 SELECT drive_id, ego_id, t_ns, ref_id,
     CASE WHEN begin_seen AND NOT coalesce(state = 'off' AND forbids(state_before), false) AND (NOT coalesce(changed, false) OR forbids(state_before) = forbids(state)) THEN NOT forbids(state) END AS holds,
     CASE WHEN NOT begin_seen THEN 'the log does not show when the ego crossed the stop line'
-        WHEN state IS NULL THEN 'the light''s state is not known'
+        WHEN state IS NULL THEN 'the light''s state is not known: record it at every step'
         WHEN state = 'off' AND forbids(state_before) THEN 'the light was red and then off: whether it failed or its record did is not known'
         WHEN changed THEN 'the light turned ' || replace(state, '_', ' and ') || ' while the ego was crossing the stop line'
         ELSE 'the light was ' || replace(state, '_', ' and ') END AS reason

@@ -11,7 +11,7 @@
 -- observes = "reach over the middle of the road entered"
 -- reads = ["ego_corridor", "ego_state", "junction_passage"]
 -- requires = ["map", "registration", "ego_size"]
--- without_time = "the log does not show the ego on its way out of the junction"
+-- without_time = "the log does not show the ego on its way out of the junction: record it until it has left"
 --
 -- [params.tolerance_m]
 -- default = 0.3
@@ -26,7 +26,8 @@ WHERE across IS DISTINCT FROM false AND turn IS DISTINCT FROM 'u_turn'
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $tolerance_m AS required,
     CASE k.side WHEN 1 THEN k.left_out_m WHEN -1 THEN k.right_out_m END AS observed,
-    CASE WHEN r.across IS NULL THEN NULL WHEN k.over_width_m IS NULL THEN false ELSE k.over_against END AS applies
+    CASE WHEN r.across IS NULL THEN NULL WHEN k.over_width_m IS NULL THEN false ELSE k.over_against END AS applies,
+    CASE WHEN r.across IS NULL THEN 'which way the ego turned across the road is not known: record it until it has left the junction, and give the side that is driven on with --handedness' END AS reason
 FROM reference r
 JOIN ego_state e USING (drive_id, ego_id, t_ns)
 JOIN ego_corridor k USING (drive_id, ego_id, chain_id, t_ns)

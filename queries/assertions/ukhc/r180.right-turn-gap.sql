@@ -12,7 +12,7 @@
 -- near_margin = 1.0
 -- reads = ["junction_passage", "passage_conflict"]
 -- requires = ["map", "registration", "ego_size"]
--- without_time = "the log does not show the ego on its way into the junction"
+-- without_time = "the log does not show the ego on its way into the junction: begin recording before it"
 --
 -- [params.pet_s]
 -- default = 2.0
@@ -36,6 +36,6 @@ WHERE p.across IS DISTINCT FROM false
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, CASE WHEN across THEN pet_s END AS observed, $pet_s AS required,
-    CASE WHEN across IS NULL THEN 'which way the ego turned, or the side of the road, is not known'
+    CASE WHEN across IS NULL THEN 'which way the ego turned across the road is not known: record it until it has left the junction, and give the side that is driven on with --handedness'
         WHEN pet_s IS NULL OR forced THEN reason END AS reason
 FROM reference

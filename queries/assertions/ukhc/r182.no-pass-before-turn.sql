@@ -11,7 +11,7 @@
 -- sense = "holds"
 -- reads = ["beside", "junction_passage", "passing"]
 -- requires = ["map", "registration", "ego_size"]
--- without_time = "the log does not show the ego on its way into the junction"
+-- without_time = "the log does not show the ego on its way into the junction: begin recording before it"
 --
 -- [params.window_s]
 -- default = 5.0
@@ -27,7 +27,7 @@ WHERE across IS DISTINCT FROM true AND (turn IS DISTINCT FROM 'straight' OR at_f
 -- @condition
 SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
     CASE WHEN r.across IS NULL OR (p.t_ns IS NULL AND b.t_ns IS NOT NULL) THEN NULL WHEN p.t_ns IS NOT NULL THEN CASE WHEN NOT r.fork THEN false END ELSE true END AS holds,
-    CASE WHEN r.across IS NULL THEN 'which way the ego turned, or the side of the road, is not known'
+    CASE WHEN r.across IS NULL THEN 'which way the ego turned across the road is not known: record it until it has left the junction, and give the side that is driven on with --handedness'
         WHEN p.t_ns IS NOT NULL AND r.fork THEN fork_words()
         WHEN p.t_ns IS NOT NULL THEN 'the ego got ahead of ' || p.object_id
         WHEN b.t_ns IS NOT NULL THEN 'somebody who may be beside the ego cannot be placed' END AS reason

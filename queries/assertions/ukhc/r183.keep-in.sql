@@ -11,7 +11,7 @@
 -- observes = "room to the near edge of the lane entered"
 -- reads = ["data_log", "ego_corridor", "ego_state", "junction_passage", "lane_beside", "pair"]
 -- requires = ["map", "registration", "ego_size"]
--- without_time = "the log does not show the ego on its way out of the junction"
+-- without_time = "the log does not show the ego on its way out of the junction: record it until it has left"
 --
 -- [params.near_m]
 -- default = 1.5
@@ -52,6 +52,7 @@ aside AS (
 SELECT w.drive_id, w.ego_id, w.t_ns, w.ref_id, $near_m AS required,
     CASE WHEN w.room_m <= $near_m OR a.ref_id IS NULL THEN w.room_m END AS observed,
     CASE WHEN w.across IS NOT NULL THEN true END AS applies,
-    CASE WHEN w.room_m > $near_m AND a.ref_id IS NOT NULL THEN 'somebody, or another lane of its direction, is or may be at the near side' END AS reason
+    CASE WHEN w.across IS NULL THEN 'which way the ego turned across the road is not known: record it until it has left the junction, and give the side that is driven on with --handedness'
+        WHEN w.room_m > $near_m AND a.ref_id IS NOT NULL THEN 'the near side is, or may be, somebody else''s, or has another lane of the ego''s direction, which keeps the ego from it: no recording decides that' END AS reason
 FROM placed w
 LEFT JOIN aside a USING (ref_id)

@@ -51,10 +51,11 @@ counted AS (
 )
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.kind <> 'other' AS applies,
     CASE WHEN bool_or(c.seen AND c.counts) THEN false WHEN i.travel_m >= $zigzag_m AND count(c.object_id) FILTER (c.counts IS DISTINCT FROM false) = 0 THEN true END AS holds,
-    CASE WHEN bool_or(c.seen AND c.counts) THEN 'passed ' || string_agg(DISTINCT c.object_id, ', ' ORDER BY c.object_id) FILTER (c.seen AND c.counts) || ' before crossing ' || r.crossing_id
+    CASE WHEN r.kind IS NULL THEN format('the map does not say whether crossing {} is a zebra, has lights, or neither: give one that does', r.crossing_id)
+        WHEN bool_or(c.seen AND c.counts) THEN 'passed ' || string_agg(DISTINCT c.object_id, ', ' ORDER BY c.object_id) FILTER (c.seen AND c.counts) || ' before crossing ' || r.crossing_id
         WHEN bool_or(c.seen AND c.counts IS NULL) THEN format('whether {} stood before crossing {} to give way is not known', min(c.object_id) FILTER (c.seen AND c.counts IS NULL), r.crossing_id)
         WHEN count(c.object_id) FILTER (c.counts IS DISTINCT FROM false) > 0 THEN format('actor {} may have been passed before crossing {}', min(c.object_id) FILTER (c.counts IS DISTINCT FROM false), r.crossing_id)
-        WHEN i.travel_m < $zigzag_m THEN 'the log does not show the way to the crossing' END AS reason
+        WHEN i.travel_m < $zigzag_m THEN format('the log does not show the {:g} m before the crossing: begin recording before them', $zigzag_m) END AS reason
 FROM reference r
 JOIN step i USING (drive_id, ego_id, t_ns)
 LEFT JOIN counted c USING (ref_id)

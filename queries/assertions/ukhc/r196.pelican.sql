@@ -34,5 +34,6 @@ SELECT drive_id, ego_id, t_ns, ref_id,
                 WHEN known AND coming_known THEN true END) AS holds,
     'the light was ' || coalesce(replace(CASE WHEN has_line THEN line_state ELSE state END, '_', ' and '), 'not known')
         || CASE WHEN has_line AND line_state IS DISTINCT FROM state THEN ' at the line and ' || coalesce(replace(state, '_', ' and '), 'not known') || ' at the crossing' ELSE '' END
-        || coalesce(', and ' || coalesce(object_id, coming_id) || ' on the crossing', '') AS reason
+        || coalesce(', and ' || coalesce(object_id, coming_id) || ' on the crossing', '')
+        || CASE WHEN state IS NULL OR has_line AND line_state IS NULL THEN ': record the light''s state at every step' ELSE '' END AS reason
 FROM reference

@@ -18,7 +18,7 @@ WHERE coalesce(kind, 'signalled') = 'signalled'
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, state = 'green' AS applies,
     CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns OR coming_id IS NOT NULL THEN false WHEN known AND coming_known THEN true END AS holds,
-    CASE WHEN state IS NULL THEN 'the light''s state is not known'
+    CASE WHEN state IS NULL THEN 'the light''s state is not known: record it at every step'
         WHEN object_id IS NOT NULL AND t_on_ns <= t_ns THEN object_id || ' was on it'
         WHEN coming_id IS NOT NULL THEN coming_id || ' came over from the other half'
         WHEN NOT known THEN 'somebody nearby who may be on foot cannot be placed, or its class is not known'

@@ -58,10 +58,11 @@ SENTENCE = f"""CASE
         WHEN 'beyond_sensor_range' THEN 'Not judged: nobody was seen at ' || {_AT}
             || ', but the sensors do not reach everywhere.'
         WHEN 'window_truncated' THEN format(
-            'Not judged: the window from {{:.3f}} s to {{:.3f}} s reaches beyond the log of the ego, from {{:.3f}} s to {{:.3f}} s.',
+            'Not judged: the window from {{:.3f}} s to {{:.3f}} s reaches beyond the log of the ego, from {{:.3f}} s to {{:.3f}} s: record all of it.',
             {_FROM_TO}, (ego_from_ns - start_ns) / 1e9, (ego_to_ns - start_ns) / 1e9)
         WHEN 'log_hole' THEN format('Not judged: the log has a hole between {{:.3f}} s and {{:.3f}} s.', {_FROM_TO})
-        WHEN 'lost_near_ego' THEN 'Not judged: the track of ' || {_OBJECT} || ' ends close to the ego at ' || {_AT} || '.'
+        WHEN 'lost_near_ego' THEN 'Not judged: the track of ' || {_OBJECT} || ' ends close to the ego at ' || {_AT}
+            || ': record it for as long as the ego.'
         WHEN 'lost_in_range' THEN 'Not judged: the track of ' || {_OBJECT} || ' ends within sensor range at ' || {_AT} || '.'
         WHEN 'lost_on_road' THEN 'Not judged: the track of ' || {_OBJECT} || ' ends on the road at ' || {_AT} || '.'
         ELSE 'Not judged at ' || coalesce({_AT}, 'an unknown time') || ': ' || replace(code, '_', ' ') || '.' END
@@ -130,7 +131,7 @@ _NO_CAUSE = "('missing_step', 'null_value', 'applies_unknown')"
 """Codes that say at what time something is not known, and not why."""
 
 _HIDDEN = """format('it is not known where object {} is, which {}{}', nearest.id, unplaced_words(nearest.code),
-        CASE WHEN nearest.m >= 1 THEN format(', at least {:.0f} m away', floor(nearest.m)) ELSE '' END) || ': record it without a break'"""
+        CASE WHEN nearest.m >= 1 THEN format(', but is at least {:.0f} m away', floor(nearest.m)) ELSE '' END) || ': record it without a break'"""
 _UNBELIEVED = (
     "CASE WHEN c.drive_id IS NOT NULL THEN ' (velocities that contradict the positions are not used): correct or leave out the velocity' "
     "ELSE ': record it' END"
@@ -155,11 +156,21 @@ WITH _doubted AS (
     FROM _doubted d
     JOIN ego_state e ON e.drive_id = d.drive_id AND e.ego_id = d.ego_id AND e.speed_mps IS NULL
         AND e.t_ns >= d.t_ns - 1_000_000_000 AND e.t_ns <= d.t_ns + 1_000_000_000
+), _ahead AS (
+    -- who is in the lane ahead and is no vehicle, or may be none
+    SELECT drive_id, ego_id, t_ns, n.id AS object_id, n.actor_class AS actor_class
+    FROM (
+        SELECT drive_id, ego_id, t_ns, min({{'s_m': p.rear_s_m, 'id': p.object_id, 'actor_class': p.actor_class}}) AS n
+        FROM (SELECT DISTINCT drive_id, ego_id, t_ns FROM _doubted WHERE of_hidden AND of_lanes AND object_id IS NULL)
+        JOIN ego_state e USING (drive_id, ego_id, t_ns)
+        JOIN pair p USING (drive_id, ego_id, t_ns)
+        WHERE is_vehicle(p.actor_class) IS DISTINCT FROM true AND in_lane(p.d_m, p.lat_half_m, p.half_width_m) AND p.front_s_m > e.rear_s_m
+        GROUP BY drive_id, ego_id, t_ns
+    )
 )
 SELECT {{'drive_id': d.drive_id, 'ego_id': d.ego_id, 't_ns': d.t_ns, 'object_id': coalesce(d.object_id, ''), 'of_hidden': d.of_hidden,
     'of_lanes': d.of_lanes}} AS key, CASE
-    WHEN e.x_m IS NULL OR e.y_m IS NULL THEN 'the ego ' || unplaced_words('no_position') || ': record it'
-    WHEN e.yaw_rad IS NULL THEN 'the ego ' || unplaced_words('no_heading') || ': record it'
+    WHEN e.x_m + e.y_m + e.yaw_rad IS NULL THEN ego_lacks(e.x_m + e.y_m, e.yaw_rad, e.lanelet_id, e.front_s_m)
     WHEN p.object_id IS NOT NULL AND {_LACKS} IS NOT NULL THEN format('object {{}} {{}}: record it', p.object_id, unplaced_words({_LACKS}))
     -- a rule that finds its object itself does not know whom
     WHEN n.nearest IS NOT NULL AND d.of_hidden AND d.object_id IS NULL THEN {_HIDDEN}
@@ -168,16 +179,19 @@ SELECT {{'drive_id': d.drive_id, 'ego_id': d.ego_id, 't_ns': d.t_ns, 'object_id'
         THEN format('the speed of object {{}} is not known{{}}', p.object_id, {_UNBELIEVED})
     WHEN p.object_id IS NOT NULL AND p.actor_class IS NULL THEN format('the class of object {{}} is not known: record it', p.object_id)
     WHEN n.nearest IS NOT NULL AND d.of_hidden THEN {_HIDDEN}
-    WHEN d.of_lanes AND e.lanelet_id IS NULL THEN 'the ego is not on a lane of the map: give a map that has its lane'
-    WHEN d.of_lanes AND e.front_s_m IS NULL THEN 'the ego''s box reaches beyond the lanes of the map: give a map whose lanes go on'
+    WHEN d.of_lanes AND (e.lanelet_id IS NULL OR e.front_s_m IS NULL) THEN ego_lacks(e.x_m, e.yaw_rad, e.lanelet_id, e.front_s_m)
     WHEN d.of_lanes AND p.object_id IS NOT NULL AND p.s_m IS NULL
         THEN format('object {{}} has no place along the road: give a map that has its lane', p.object_id)
+    WHEN d.of_hidden AND d.of_lanes AND d.object_id IS NULL AND f.object_id IS NOT NULL THEN CASE
+        WHEN f.actor_class IS NULL THEN format('object {{}}, ahead in the lane, may be a vehicle: record its class', f.object_id)
+        ELSE format('object {{}} is in the way, nearer than any vehicle, and gaps are kept to vehicles: no recording decides that', f.object_id) END
     WHEN b.drive_id IS NOT NULL THEN 'the speed of the ego is not known within 1 s of that' || {_UNBELIEVED} END AS because
 FROM _doubted d
 LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
 LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN _near n USING (drive_id, ego_id, t_ns)
 LEFT JOIN _speedless b USING (drive_id, ego_id, t_ns)
+LEFT JOIN _ahead f USING (drive_id, ego_id, t_ns)
 LEFT JOIN (SELECT DISTINCT drive_id FROM quality WHERE check_id = 'velocity_unknown') c USING (drive_id)
 """
 

@@ -274,7 +274,7 @@ def lost_objects(rule: Rule, partial: bool, watching: bool) -> str:
 INSERT INTO _outcome BY NAME
 SELECT $_no AS rule_no, l.drive_id, l.ego_id, l.object_id, {"p.profile" if rule.profiled else "''"} AS profile,
     l.t_from_ns AS t_start_ns, l.t_to_ns AS t_end_ns, t.t_ns AS t_worst_ns, t.t_ns AS t_decides_ns, 'unknown' AS verdict, l.code,
-    format('Not judged: object {{}} is recorded until {{:.3f}} s only, {{}}the ego until {{:.3f}} s.',
+    format('Not judged: object {{}} is recorded until {{:.3f}} s only, {{}}the ego until {{:.3f}} s: record it for as long.',
         l.object_id, (t.t_ns - s.start_ns) / 1e9,
         coalesce(format('{{:.0f}} m away from the ego then, ',
             CASE WHEN q.clearance_is_bound THEN q.distance_m ELSE coalesce(q.clearance_m, q.distance_m) END), ''),
