@@ -183,7 +183,7 @@ def test_an_unknown_verdict_for_want_of_a_signal(folder: Path) -> None:
     assert (table.table, table.rows[0]["available"]) == ("capability", False)
     assert table.rows[0]["reason"] in text
     assert "What would decide it" in said(found)
-    assert "drivelint inspect TRACE --rules ukhc.r112.horn says how to provide it" in text
+    assert "When horn is on, as declared events horn with the values on and off" in text
 
 
 def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
@@ -207,7 +207,7 @@ def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
     assert pair.rows[0]["clearance_m"] is None
     text = said(found)
     assert re.search(r"clearance_m\s+NULL", text)
-    assert "What the reason names; it does so of the first step that is not known" in flat(text)
+    assert "What the reason asks for; it speaks of the first step that is not known" in flat(text)
     assert "?" in text[text.index("Margin over time") :]
 
 

@@ -12,8 +12,8 @@ import pytest
 from drivelint.conditions import WORDS
 from drivelint.errors import ExitCode, UsageError
 from drivelint.inspect import Order, exit_code, inspect, to_json
-from drivelint.inspect.advice import ADVICE, provide
 from drivelint.inspect.model import Inspection, json_schema
+from drivelint.reasons.signals import ADVICE, provide
 from drivelint.report.progress import Silent
 from drivelint.resources import folder
 from drivelint.run import Settings, check

@@ -58,7 +58,8 @@ SENTENCE = f"""CASE
         WHEN 'beyond_sensor_range' THEN 'Not judged: nobody was seen at ' || {_AT}
             || ', but the sensors do not reach everywhere.'
         WHEN 'window_truncated' THEN format(
-            'Not judged: the window from {{:.3f}} s to {{:.3f}} s reaches beyond the log of the ego, from {{:.3f}} s to {{:.3f}} s: record all of it.',
+            'Not judged: the window from {{:.3f}} s to {{:.3f}} s reaches beyond the log of the ego, from {{:.3f}} s to {{:.3f}} s'
+            || ': record all of it.',
             {_FROM_TO}, (ego_from_ns - start_ns) / 1e9, (ego_to_ns - start_ns) / 1e9)
         WHEN 'log_hole' THEN format('Not judged: the log has a hole between {{:.3f}} s and {{:.3f}} s.', {_FROM_TO})
         WHEN 'lost_near_ego' THEN 'Not judged: the track of ' || {_OBJECT} || ' ends close to the ego at ' || {_AT}
@@ -131,7 +132,8 @@ _NO_CAUSE = "('missing_step', 'null_value', 'applies_unknown')"
 """Codes that say at what time something is not known, and not why."""
 
 _HIDDEN = """format('it is not known where object {} is, which {}{}', nearest.id, unplaced_words(nearest.code),
-        CASE WHEN nearest.m >= 1 THEN format(', but is at least {:.0f} m away', floor(nearest.m)) ELSE '' END) || ': record it without a break'"""
+        CASE WHEN nearest.m >= 1 THEN format(', but is at least {:.0f} m away', floor(nearest.m)) ELSE '' END)
+    || ': record it without a break'"""
 _UNBELIEVED = (
     "CASE WHEN c.drive_id IS NOT NULL THEN ' (velocities that contradict the positions are not used): correct or leave out the velocity' "
     "ELSE ': record it' END"
@@ -184,7 +186,8 @@ SELECT {{'drive_id': d.drive_id, 'ego_id': d.ego_id, 't_ns': d.t_ns, 'object_id'
         THEN format('object {{}} has no place along the road: give a map that has its lane', p.object_id)
     WHEN d.of_hidden AND d.of_lanes AND d.object_id IS NULL AND f.object_id IS NOT NULL THEN CASE
         WHEN f.actor_class IS NULL THEN format('object {{}}, ahead in the lane, may be a vehicle: record its class', f.object_id)
-        ELSE format('object {{}} is in the way, nearer than any vehicle, and gaps are kept to vehicles: no recording decides that', f.object_id) END
+        ELSE format('object {{}}, no vehicle, is nearer than any vehicle, and gaps are kept to vehicles: no recording decides that',
+            f.object_id) END
     WHEN b.drive_id IS NOT NULL THEN 'the speed of the ego is not known within 1 s of that' || {_UNBELIEVED} END AS because
 FROM _doubted d
 LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)

@@ -155,5 +155,5 @@ def _sensitivity(case: Case, drive: Drive, errors: Errors, span: tuple[int, int]
 
 
 def _drive(result: Result, drive_id: str) -> Row:
-    keys = ["drive_id", "file_name", "t_start_ns", "duration_s", "map_name"]
+    keys = ["drive_id", "file_name", "format", "t_start_ns", "duration_s", "map_name"]
     return next(row for row in result.drives.select(keys).to_pylist() if row["drive_id"] == drive_id)

@@ -13,10 +13,11 @@ from rich.console import Group
 from rich.text import Text
 
 from drivelint import store
+from drivelint.declared import EVENTS
 from drivelint.explain.case import is_gated
 from drivelint.explain.plot import plot
-from drivelint.explain.remedy import remedy
 from drivelint.explain.sensitivity import VERDICTS
+from drivelint.reasons.remedies import remedy
 from drivelint.report.text import seconds
 
 if TYPE_CHECKING:
@@ -133,8 +134,13 @@ def _happened(found: Explanation) -> list[str]:
 
 def _decides(found: Explanation) -> list[str]:
     row = found.verdict
-    told = remedy(row["rule_id"], row["reason_code"], row["object_id"]) if row["verdict"] == "unknown" else None
-    return [f"{told[0].upper()}{told[1:]}."] if told else []
+    if row["verdict"] != "unknown":
+        return []
+    told = remedy(row["reason_code"], row["object_id"], found.drive["format"])
+    text = "\n".join(found.sql.values())
+    events = [event for event in EVENTS if f"'{event}'" in text]
+    named = [f"The rule asks for the events {', '.join(events)}."] if events else []
+    return [f"{told[0].upper()}{told[1:]}.", *named]
 
 
 def _asks(found: Explanation) -> list[str]:

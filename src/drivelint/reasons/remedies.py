@@ -1,0 +1,40 @@
+"""What would decide an unknown verdict, by its reason code: what to record, or to provide."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from drivelint.conditions import GIVEN
+from drivelint.reasons.signals import SIGNAL_OF, provide
+
+_LONGER = "a log that begins earlier, or ends later: it has to show what the reason names"
+_NAMED = (
+    "what the reason asks for; it speaks of the first step that is not known, and later ones may lack something else"
+)
+REMEDIES: Final = {
+    "lost_near_ego": "record {object} for as long as the ego, or until it is out of the ego's reach",
+    "lost_in_range": "record {object} for as long as the ego, or say with check --sensor-range how far the recorder sees",
+    "lost_on_road": "record {object} for as long as the ego",
+    "window_truncated": "a log in which the ego, and whoever is near it, is recorded over the whole window",
+    "log_hole": "a log without that hole",
+    "reference_time_unknown": _LONGER,
+    "anchor_unknown": _LONGER,
+    "only_a_bound": "what the reason asks for; where it asks for nothing, a map that goes on, or a longer --sensor-range of check",
+    "beyond_sensor_range": "sensors that reach further (check --sensor-range, if they do)",
+    "ego_not_placed": "the ego's position and heading at every step",
+    "indicator_unknown": "the ego's indicators at every step",
+    "missing_step": _NAMED,
+    "null_value": _NAMED,
+    "applies_unknown": _NAMED,
+}
+"""Reason code -> what to do."""
+
+
+def remedy(code: str, object_id: str | None, log_format: str) -> str:
+    """Return what would decide an unknown verdict with this reason code, for a log of this format."""
+    if code.startswith("missing_") and code not in REMEDIES:
+        return provide(code.removeprefix("missing_"), log_format)
+    condition = code.removesuffix("_unknown")
+    if condition in GIVEN or condition == "limit":
+        return provide({**SIGNAL_OF, "engaged": "mode_engaged"}.get(condition, condition), log_format)
+    return REMEDIES.get(code, _NAMED).format(object="the object" if object_id is None else f"object {object_id}")

@@ -1,0 +1,84 @@
+"""What to provide so that a signal that rules require is there."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from drivelint.conditions import SAYS, WORDS
+from drivelint.declared import MODES
+
+ADVICE: Final = {
+    "map": "the road as OpenDRIVE: --map FILE",
+    "registration": (
+        "the map of this place (--map), where it lies in the log's frame (--map-offset DX,DY), "
+        "or the side that is driven on (--handedness)"
+    ),
+    "handedness": "the side of the road that is driven on: --handedness lht or rht",
+    "lane_types": "a map that has the footways, kerbs, borders or shoulders beside the carriageway",
+    "markings": "a map with road markings (OpenDRIVE: roadMark)",
+    "speed_limits": "a map with speed limits (OpenDRIVE: speed, of a road's type or of a lane)",
+    "exit_signs": "a map with its exit signs (OpenDRIVE: signals, such as type 332, 333, 448 or 449)",
+    "road_types": "a map with road types (OpenDRIVE: type of a road), or --env road_type=rural (motorway, town, ...)",
+    "junctions": "a map with its junctions (OpenDRIVE: junction)",
+    "traffic_lights": "a map with its traffic lights (OpenDRIVE: signals, such as type 1000001)",
+    "stop_lines": "a map with its stop lines (OpenDRIVE: signal 294, or objects)",
+    "crossings": "a map with its pedestrian crossings (OpenDRIVE: objects of type crosswalk)",
+    "indicator": "the ego's indicators: {indicator}",
+    "brake_light": "the ego's brake lights: {brake_light}",
+    "ego_size": "the ego's length and width: {ego_size}",
+    "speeds": "a log of positions or speeds: the film's mapping assumes the speeds",
+    "actor_classes": "what the others are, such as car or bicycle: {actor_classes}",
+    "signals": "the states of the traffic lights: {signals}",
+    "declared_events": "the events that the ego declares: {declared_events}",
+    "modes": "the ego's modes, as declared events with the values on and off: {declared_events}",
+    **{
+        name: f"{SAYS[name].partition(';')[0]}: --env {name}={words[0]} ({', '.join(words[1:])})"
+        for name, words in WORDS.items()
+    },
+    **{
+        f"mode_{mode}": f"when {mode} is on, as declared events {mode} with the values on and off: {{declared_events}}"
+        for mode in MODES
+    },
+    "mode_engaged": (
+        "when the automated driver drives: as declared events engaged with the values on and off ({declared_events}), "
+        "or --env engaged=yes"
+    ),
+    "mode_headlights": "when the headlights are on: {headlights}",
+}
+SIGNAL_OF: Final = {"road_type": "road_types", "limit": "speed_limits"}
+"""Conditions that the map gives under another name."""
+_WHERE: Final = {
+    "osi-mcap": {
+        "indicator": "vehicle_classification.light_state.indicator_state of the host vehicle (not UNKNOWN)",
+        "brake_light": "vehicle_classification.light_state.brake_light_state of the host vehicle (not UNKNOWN)",
+        "ego_size": "base.dimension of the host vehicle",
+        "actor_classes": "type and vehicle_classification.type of the moving objects",
+        "signals": "traffic_light of the ground truth, with ids as the map has them",
+        "declared_events": "a channel of JSON messages drivelint.DeclaredEvent",
+        "headlights": "vehicle_classification.light_state.head_light of the host vehicle (not UNKNOWN)",
+    },
+    "canonical-parquet": {
+        "indicator": "the column indicator of actor_state.parquet",
+        "brake_light": "the column brake_light of actor_state.parquet",
+        "ego_size": "length_m and width_m in actor.parquet",
+        "actor_classes": "the column actor_class of actor.parquet",
+        "signals": "signal_state.parquet",
+        "declared_events": "declared_event.parquet",
+        "headlights": "events headlights in declared_event.parquet, with the values on and off",
+    },
+    "": {
+        "indicator": "[indicator] in the mapping, and a column to read it from",
+        "brake_light": "[brake_light] in the mapping, and a column to read it from",
+        "ego_size": "length and width in the mapping's [columns], as columns or as numbers",
+        "actor_classes": "[class] in the mapping, and a column to read it from",
+        "signals": "drivelint convert --to parquet, and signal_state.parquet beside it",
+        "declared_events": "drivelint convert --to parquet, and declared_event.parquet beside it",
+        "headlights": "drivelint convert --to parquet, and events headlights in declared_event.parquet beside it, on and off",
+    },
+}
+
+
+def provide(signal: str, log_format: str) -> str:
+    """Say what to give so that the signal is there, in the words of the log's format."""
+    where = _WHERE.get("osi-mcap" if log_format == "osi-file" else log_format, _WHERE[""])
+    return ADVICE.get(signal, "see what the rules that need it say: drivelint rules show ID").format_map(where)

@@ -1,0 +1,43 @@
+"""What would decide an unknown verdict, by its reason code."""
+
+from __future__ import annotations
+
+import pytest
+
+from drivelint.conditions import GIVEN
+from drivelint.reasons.remedies import REMEDIES, remedy
+
+
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        ("lost_near_ego", "record object o for as long as the ego"),
+        ("missing_map", "the road as OpenDRIVE: --map FILE"),
+        ("missing_indicator", "the ego's indicators: [indicator] in the mapping"),
+        ("missing_step", "what the reason asks for"),
+        ("only_a_bound", "what the reason asks for; where it asks for nothing, a map that goes on"),
+        ("limit_unknown", "a map with speed limits"),
+        ("road_type_unknown", "a map with road types"),
+        ("engaged_unknown", "when the automated driver drives"),
+        ("light_unknown", "whether it is dark: --env light=day"),
+        ("a_code_of_a_rule_of_somebody_else", "what the reason asks for"),
+    ],
+)
+def test_by_code(code: str, told: str) -> None:
+    assert remedy(code, "o", "carla-testbench").startswith(told)
+
+
+def test_the_words_of_the_format() -> None:
+    assert "indicator_state of the host vehicle" in remedy("missing_indicator", None, "osi-mcap")
+    assert "the column indicator of actor_state.parquet" in remedy("missing_indicator", None, "canonical-parquet")
+
+
+def test_every_condition_has_its_own() -> None:
+    told = {name: remedy(f"{name}_unknown", None, "") for name in GIVEN}
+    assert len(set(told.values())) == len(told)
+    assert not any(text.startswith("see what the rules") for text in told.values())
+
+
+def test_without_an_object() -> None:
+    assert "record the object" in remedy("lost_near_ego", None, "")
+    assert all("{" not in remedy(code, None, "") for code in REMEDIES)
