@@ -1,6 +1,7 @@
 -- The actor nearest in the ego's way, per ego step: a person, an animal, a thing or a vehicle, for each is a reason to brake or to stop.
 -- The way is the running lane and the strip that the ego's box takes, with half a metre to both sides. An actor that comes across is in
--- the way if its velocity, not its heading, brings it into the strip within some seconds.
+-- the way if its velocity, not its heading, brings it into the strip within some seconds, now and in the moments before: one velocity is no
+-- proof, for recorded ones tremble, but it may be.
 WITH ahead AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class,
@@ -22,11 +23,15 @@ WITH ahead AS (
 told AS (
     SELECT
         *,
-        across_m < way_beside_m() OR in_lane OR across_m <= enters_s() * towards_mps AS in_way,
+        across_m < way_beside_m() OR in_lane OR across_m <= enters_s() * least(towards_mps, least_mps) AND before_mps IS NOT NULL AS in_way,
         -- somebody on foot beside the way may step into it; so may one whose class or velocity is not known
-        across_m < way_beside_m() + unsure_m OR across_m < may_step_m() AND (actor_class IS NULL OR NOT may_be_vehicle(actor_class) OR towards_mps IS NULL) AS may_be,
+        across_m < way_beside_m() + unsure_m OR across_m <= enters_s() * towards_mps OR across_m < may_step_m() AND (actor_class IS NULL OR NOT may_be_vehicle(actor_class) OR towards_mps IS NULL) AS may_be,
         need_mps2(gap_m, ego_mps, along_mps) AS need_mps2
-    FROM ahead
+    FROM (
+        SELECT *, least(min(towards_mps) OVER (w RANGE BETWEEN comes_ns() PRECEDING AND CURRENT ROW), before_mps) AS least_mps
+        FROM (SELECT *, lag(towards_mps) OVER w AS before_mps FROM ahead WINDOW w AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns))
+        WINDOW w AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns)
+    )
 ),
 met AS (
     SELECT

@@ -115,6 +115,8 @@ CREATE OR REPLACE MACRO need_mps2(gap_m, v_mps, along_mps) AS
     CASE WHEN v_mps > along_mps THEN (v_mps - along_mps) ** 2 / (2 * greatest(gap_m - (v_mps - along_mps) - 5.0, 0.1)) WHEN v_mps IS NOT NULL THEN 0.0::DOUBLE END;
 -- A driver who has braked for somebody lets the brake go within so long after he has gone.
 CREATE OR REPLACE MACRO let_go_ns() AS 2_000_000_000;
+-- For so long somebody must have been coming across, and at the sample before.
+CREATE OR REPLACE MACRO comes_ns() AS 300_000_000;
 
 -- Whether somebody in the way, who asks for a deceleration of `need_mps2`, is a reason to brake harder than `abrupt_mps2`. `known`: nobody
 -- else may be in the way; NULL: not known.

@@ -284,7 +284,7 @@ def test_a_track_that_begins_or_ends_near_while_the_ego_passes() -> None:
     ways = cross()
     t = times(24)
     near = standing("p", ways["ew"], t, ARM + 20, 12.0)
-    for kept, reason in ((t > 10, "appeared in the log nearby"), (t < 10, "was lost from the log nearby")):
+    for kept, reason in ((t > 10, "is not yet recorded"), (t < 10, "is no longer recorded")):
         found = answers(going(ways["wn"]), near.keep(kept), way=ways["we"])
         assert found["oncoming"]["reason"] == f"actor p {reason}"
         assert found["pedestrian"]["reason"] is None
@@ -302,12 +302,12 @@ def test_a_track_that_ends_on_its_way_to_the_junction_or_begins_on_its_way_from_
     assert answers(going(ways["wn"]), stays.keep(t < 3.5), way=ways["we"])["oncoming"]["reason"] is None
     for kept, doubt in ((t < 6, True), (t < 3.5, True)):
         reason = answers(going(ways["wn"]), comes.keep(kept), way=ways["we"])["oncoming"]["reason"]
-        assert reason == ("actor p was lost from the log nearby" if doubt else None)
+        assert reason == ("actor p is no longer recorded" if doubt else None)
     # 52 m beyond it at 13 s, it was there 4.3 s before
     leaves = moving("p", ways["ew"], t, 96 + 12 * t, ways["ew"].own)
     for kept, doubt in ((t > 13, True), (t > 2, False)):
         found = answers(going(ways["wn"]), leaves.keep(kept), way=ways["we"])["oncoming"]
-        assert (found["reason"] == "actor p appeared in the log nearby") is doubt
+        assert (found["reason"] == "actor p is not yet recorded") is doubt
     backwards = moving("p", ways["we"], t, 330 + 2 * t, ways["we"].own)  # far past it, and further away
     assert answers(going(ways["wn"]), backwards.keep(t < 9), way=ways["we"])["oncoming"]["reason"] is None
 

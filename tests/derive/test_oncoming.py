@@ -164,9 +164,9 @@ def test_where_the_road_goes_on_the_corridor_ends() -> None:
 
 
 DOUBTS = [
-    ("lost ahead, towards the ego", 400.0, "other", -8.0, (0.0, 5.0), "was lost from the log nearby", range(51, 201)),
+    ("lost ahead, towards the ego", 400.0, "other", -8.0, (0.0, 5.0), "is no longer recorded", range(51, 201)),
     ("lost far away, on its own way", 500.0, "own", 8.0, (0.0, 5.0), None, range(0)),
-    ("began ahead, towards the ego", 450.0, "other", -8.0, (12.0, 20.0), "appeared in the log nearby", range(120)),
+    ("began ahead, towards the ego", 450.0, "other", -8.0, (12.0, 20.0), "is not yet recorded", range(120)),
     ("behind, driving away, lost", 20.0, "other", -1.0, (0.0, 5.0), None, range(0)),
 ]
 
@@ -224,7 +224,7 @@ def test_the_end_of_another_chain_tells_nothing() -> None:
     s = 160 + 5 * math.pi + 0.1 - 8 * (t - 20.0)
     other = moving("x", ways["south"], t, s + 187.4, ways["straight"].other).keep(t > 19.99)
     con = derived(drive([ego, other], ways["south"].environment), tables=["unplaced"])
-    assert {row["reason"] for row in rows(con, "FROM unplaced")} == {"appeared in the log nearby"}
+    assert {row["reason"] for row in rows(con, "FROM unplaced")} == {"is not yet recorded"}
 
 
 @pytest.mark.parametrize(

@@ -58,8 +58,8 @@ SENTENCE = f"""CASE
         WHEN 'beyond_sensor_range' THEN 'Not judged: nobody was seen at ' || {_AT}
             || ', but the sensors do not reach everywhere.'
         WHEN 'window_truncated' THEN format(
-            'Not judged: the window from {{:.3f}} s to {{:.3f}} s reaches beyond the log of the ego, from {{:.3f}} s to {{:.3f}} s'
-            || ': record all of it.',
+            'Not judged: the rule looks at {{:.3f}} s to {{:.3f}} s, and the log has the ego from {{:.3f}} s to {{:.3f}} s only'
+            || ': record the ego, and who is near it, over all of that.',
             {_FROM_TO}, (ego_from_ns - start_ns) / 1e9, (ego_to_ns - start_ns) / 1e9)
         WHEN 'log_hole' THEN format('Not judged: the log has a hole between {{:.3f}} s and {{:.3f}} s.', {_FROM_TO})
         WHEN 'lost_near_ego' THEN 'Not judged: the track of ' || {_OBJECT} || ' ends close to the ego at ' || {_AT}
@@ -131,9 +131,14 @@ _LACKS = """CASE WHEN p.off_level THEN 'off_level' WHEN p.x_m IS NULL OR p.y_m I
 _NO_CAUSE = "('missing_step', 'null_value', 'applies_unknown')"
 """Codes that say at what time something is not known, and not why."""
 
-_HIDDEN = """format('it is not known where object {} is, which {}{}', nearest.id, unplaced_words(nearest.code),
-        CASE WHEN nearest.m >= 1 THEN format(', but is at least {:.0f} m away', floor(nearest.m)) ELSE '' END)
-    || ': record it without a break'"""
+_HIDDEN = """format('where object {} is at that time is not known: {}{}: record it {}', nearest.id,
+        CASE nearest.code
+            WHEN 'lost' THEN format('its track ends at {:.3f} s', (nearest.to_ns - d.start_ns) / 1e9)
+            WHEN 'lost_behind' THEN format('its track ends at {:.3f} s, behind', (nearest.to_ns - d.start_ns) / 1e9)
+            WHEN 'appeared' THEN format('its track begins only at {:.3f} s', (nearest.from_ns - d.start_ns) / 1e9)
+            ELSE 'it ' || unplaced_words(nearest.code) END,
+        CASE WHEN nearest.m >= 1 THEN format(', and it may be as near as {:.0f} m', floor(nearest.m)) ELSE '' END,
+        CASE WHEN nearest.code IN ('lost', 'lost_behind') THEN 'for longer' WHEN nearest.code = 'appeared' THEN 'from earlier on' ELSE 'at every step' END)"""
 _UNBELIEVED = (
     "CASE WHEN c.drive_id IS NOT NULL THEN ' (velocities that contradict the positions are not used): correct or leave out the velocity' "
     "ELSE ': record it' END"
@@ -142,14 +147,21 @@ _UNBELIEVED = (
 # why: the ego lacks something, or the object of the verdict, or somebody near has no place; else an ego that is off the lanes
 _CAUSE = f"""
 WITH _doubted AS (
-    SELECT DISTINCT drive_id, ego_id, t_decides_ns AS t_ns, object_id, of_hidden, of_lanes
+    SELECT DISTINCT drive_id, ego_id, start_ns, t_decides_ns AS t_ns, object_id, of_hidden, of_lanes
     FROM _named
     WHERE verdict = 'unknown' AND reason IS NULL AND code IN {_NO_CAUSE}
+), _tracked AS (
+    SELECT drive_id, ego_id, object_id, min(t_ns) AS from_ns, max(t_ns) AS to_ns
+    FROM pair SEMI JOIN _doubted d USING (drive_id, ego_id)
+    GROUP BY ALL
 ), _near AS (
-    SELECT drive_id, ego_id, t_ns, min({{'m': h.lane_m, 'id': h.object_id, 'code': coalesce(u.code, {_LACKS}, 'off_lanes')}}) AS nearest
+    SELECT drive_id, ego_id, t_ns, min({{
+        'm': h.lane_m, 'id': h.object_id, 'code': coalesce(u.code, {_LACKS}, 'off_lanes'), 'from_ns': k.from_ns, 'to_ns': k.to_ns
+    }}) AS nearest
     FROM (SELECT DISTINCT drive_id, ego_id, t_ns FROM _doubted WHERE of_hidden)
     JOIN hidden h USING (drive_id, ego_id, t_ns)
     LEFT JOIN unseen u USING (drive_id, ego_id, t_ns, object_id)
+    LEFT JOIN _tracked k USING (drive_id, ego_id, object_id)
     LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
     GROUP BY drive_id, ego_id, t_ns
 ), _speedless AS (

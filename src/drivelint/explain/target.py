@@ -7,6 +7,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from drivelint.errors import UsageError
+from drivelint.report.text import seconds
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from drivelint.explain.model import Row
     from drivelint.report.result import Result
 
+OTHERS = 6
 _WEIGHT = {"error": 0, "fail": 1, "unknown": 2, "pass": 3, "not_applicable": 4}
 
 
@@ -102,8 +104,16 @@ def _asked(rows: list[Row], wanted: Wanted, starts: dict[str, int | None]) -> li
         return rows
     around = [row for row in rows if _covers(row, wanted.at_s, starts)]
     if not around:
-        raise UsageError(f"no verdict of {rows[0]['rule_id']} is about the time {wanted.at_s:g} s")
+        told = sorted({_span(row, starts) for row in rows if row["t_start_ns"] is not None})
+        raise UsageError(
+            f"no such verdict of {rows[0]['rule_id']} is about {wanted.at_s:g} s of the drive; there are {', '.join(told[:OTHERS]) or 'none with a time'}"
+        )
     return around
+
+
+def _span(row: Row, starts: dict[str, int | None]) -> str:
+    start, end = (seconds(row[key], starts[row["drive_id"]]) for key in ("t_start_ns", "t_end_ns"))
+    return start if start == end else f"{start} to {end}"
 
 
 def _covers(row: Row, at_s: float, starts: dict[str, int | None]) -> bool:

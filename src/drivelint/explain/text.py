@@ -137,9 +137,15 @@ def _decides(found: Explanation) -> list[str]:
     if row["verdict"] != "unknown":
         return []
     told = remedy(row["reason_code"], row["object_id"], found.drive["format"])
+    unknown = [step.t_ns for step in found.series if step.holds is None]
+    if len(unknown) > 1 and not is_gated(row["verdict"], row["reason_code"]):
+        start, end = (seconds(t, found.drive["t_start_ns"]) for t in (unknown[0], unknown[-1]))
+        told += f"; the reason speaks of the first of {len(unknown)} steps that are not known, from {start} to {end}"
     text = "\n".join(found.sql.values())
     events = [event for event in EVENTS if f"'{event}'" in text]
-    named = [f"The rule asks for the events {', '.join(events)}."] if events else []
+    named = [
+        f"The rule reads the event {event} (value: {EVENTS[event].value}): {EVENTS[event].says}." for event in events
+    ]
     return [f"{told[0].upper()}{told[1:]}.", *named]
 
 

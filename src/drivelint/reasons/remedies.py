@@ -7,15 +7,14 @@ from typing import Final
 from drivelint.conditions import GIVEN
 from drivelint.reasons.signals import SIGNAL_OF, provide
 
-_LONGER = "a log that begins earlier, or ends later: it has to show what the reason names"
-_NAMED = (
-    "what the reason asks for; it speaks of the first step that is not known, and later ones may lack something else"
-)
+_LONGER = "a log that shows what the reason names"
+_NAMED = "what the reason asks for"
+_AGAIN = "; then check again: what else the rule needs is not looked at without it"
 REMEDIES: Final = {
     "lost_near_ego": "record {object} for as long as the ego, or until it is out of the ego's reach",
     "lost_in_range": "record {object} for as long as the ego, or say with check --sensor-range how far the recorder sees",
     "lost_on_road": "record {object} for as long as the ego",
-    "window_truncated": "a log in which the ego, and whoever is near it, is recorded over the whole window",
+    "window_truncated": "a log that has the ego, and whoever is near it, over all of that time",
     "log_hole": "a log without that hole",
     "reference_time_unknown": _LONGER,
     "anchor_unknown": _LONGER,
@@ -33,8 +32,8 @@ REMEDIES: Final = {
 def remedy(code: str, object_id: str | None, log_format: str) -> str:
     """Return what would decide an unknown verdict with this reason code, for a log of this format."""
     if code.startswith("missing_") and code not in REMEDIES:
-        return provide(code.removeprefix("missing_"), log_format)
+        return provide(code.removeprefix("missing_"), log_format) + _AGAIN
     condition = code.removesuffix("_unknown")
     if condition in GIVEN or condition == "limit":
-        return provide({**SIGNAL_OF, "engaged": "mode_engaged"}.get(condition, condition), log_format)
+        return provide({**SIGNAL_OF, "engaged": "mode_engaged"}.get(condition, condition), log_format) + _AGAIN
     return REMEDIES.get(code, _NAMED).format(object="the object" if object_id is None else f"object {object_id}")

@@ -6,6 +6,7 @@ from typing import Final
 
 from drivelint.conditions import SAYS, WORDS
 from drivelint.declared import MODES
+from drivelint.ingest.trace import FORMATS
 
 ADVICE: Final = {
     "map": "the road as OpenDRIVE: --map FILE",
@@ -47,6 +48,16 @@ ADVICE: Final = {
 }
 SIGNAL_OF: Final = {"road_type": "road_types", "limit": "speed_limits"}
 """Conditions that the map gives under another name."""
+_DECLARED = "declared_event.parquet (columns drive_id, actor_id, t_ns, event, value)"
+_TABLES: Final = {
+    "indicator": "the column indicator of actor_state.parquet (off, left, right or hazard)",
+    "brake_light": "the column brake_light of actor_state.parquet (off, on or strong)",
+    "ego_size": "length_m and width_m in actor.parquet",
+    "actor_classes": "the column actor_class of actor.parquet",
+    "signals": "signal_state.parquet",
+    "declared_events": _DECLARED,
+    "headlights": f"events headlights in {_DECLARED}, with the values on and off",
+}
 _WHERE: Final = {
     "osi-mcap": {
         "indicator": "vehicle_classification.light_state.indicator_state of the host vehicle (not UNKNOWN)",
@@ -57,28 +68,25 @@ _WHERE: Final = {
         "declared_events": "a channel of JSON messages drivelint.DeclaredEvent",
         "headlights": "vehicle_classification.light_state.head_light of the host vehicle (not UNKNOWN)",
     },
-    "canonical-parquet": {
-        "indicator": "the column indicator of actor_state.parquet",
-        "brake_light": "the column brake_light of actor_state.parquet",
-        "ego_size": "length_m and width_m in actor.parquet",
-        "actor_classes": "the column actor_class of actor.parquet",
-        "signals": "signal_state.parquet",
-        "declared_events": "declared_event.parquet",
-        "headlights": "events headlights in declared_event.parquet, with the values on and off",
-    },
-    "": {
-        "indicator": "[indicator] in the mapping, and a column to read it from",
-        "brake_light": "[brake_light] in the mapping, and a column to read it from",
-        "ego_size": "length and width in the mapping's [columns], as columns or as numbers",
-        "actor_classes": "[class] in the mapping, and a column to read it from",
-        "signals": "drivelint convert --to parquet, and signal_state.parquet beside it",
-        "declared_events": "drivelint convert --to parquet, and declared_event.parquet beside it",
-        "headlights": "drivelint convert --to parquet, and events headlights in declared_event.parquet beside it, on and off",
+    "canonical-parquet": _TABLES,
+    "mapped": {
+        "indicator": "a column of the log that holds off, left, right or hazard, named under [indicator] in the mapping (check --mapping FILE)",
+        "brake_light": "a column of the log that holds off, on or strong, named under [brake_light] in the mapping (check --mapping FILE)",
+        "ego_size": "length and width under [columns] of the mapping (check --mapping FILE), as columns or as numbers",
+        "actor_classes": "a column of the log, named under [class] in the mapping (check --mapping FILE)",
     },
 }
+_CONVERTED = "in the tables that drivelint convert --to parquet writes: "
 
 
 def provide(signal: str, log_format: str) -> str:
-    """Say what to give so that the signal is there, in the words of the log's format."""
-    where = _WHERE.get("osi-mcap" if log_format == "osi-file" else log_format, _WHERE[""])
-    return ADVICE.get(signal, "see what the rules that need it say: drivelint rules show ID").format_map(where)
+    """Say what to give so that the signal is there, in the words of the log's format: a reader's name, or a mapping's."""
+    return ADVICE.get(signal, "see what the rules that need it say: drivelint rules show ID").format_map(
+        _where(log_format)
+    )
+
+
+def _where(log_format: str) -> dict[str, str]:
+    name = "osi-mcap" if log_format == "osi-file" else log_format if log_format in FORMATS else "mapped"
+    # what a format has no place for goes into its tables
+    return {key: _CONVERTED + where for key, where in _TABLES.items()} | _WHERE.get(name, {})
