@@ -13,7 +13,7 @@ from drivelint.reasons.remedies import REMEDIES, remedy
     [
         ("lost_near_ego", "record object o for as long as the ego"),
         ("missing_map", "the road as OpenDRIVE: --map FILE"),
-        ("missing_indicator", "the ego's indicators: [indicator] in the mapping"),
+        ("missing_indicator", "the ego's indicators: a column of off, left, right and hazard"),
         ("missing_step", "what the reason asks for"),
         ("only_a_bound", "what the reason asks for; where it asks for nothing, a map that goes on"),
         ("limit_unknown", "a map with speed limits"),

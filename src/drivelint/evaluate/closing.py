@@ -138,7 +138,8 @@ _HIDDEN = """format('where object {} is at that time is not known: {}{}: record 
             WHEN 'appeared' THEN format('its track begins only at {:.3f} s', (nearest.from_ns - d.start_ns) / 1e9)
             ELSE 'it ' || unplaced_words(nearest.code) END,
         CASE WHEN nearest.m >= 1 THEN format(', and it may be as near as {:.0f} m', floor(nearest.m)) ELSE '' END,
-        CASE WHEN nearest.code IN ('lost', 'lost_behind') THEN 'for longer' WHEN nearest.code = 'appeared' THEN 'from earlier on' ELSE 'at every step' END)"""
+        CASE WHEN nearest.code IN ('lost', 'lost_behind') THEN 'for longer' WHEN nearest.code = 'appeared' THEN 'from earlier on'
+            ELSE 'at every step' END)"""
 _UNBELIEVED = (
     "CASE WHEN c.drive_id IS NOT NULL THEN ' (velocities that contradict the positions are not used): correct or leave out the velocity' "
     "ELSE ': record it' END"

@@ -105,8 +105,9 @@ def _asked(rows: list[Row], wanted: Wanted, starts: dict[str, int | None]) -> li
     around = [row for row in rows if _covers(row, wanted.at_s, starts)]
     if not around:
         told = sorted({_span(row, starts) for row in rows if row["t_start_ns"] is not None})
+        there = ", ".join(told[:OTHERS]) or "none with a time"
         raise UsageError(
-            f"no such verdict of {rows[0]['rule_id']} is about {wanted.at_s:g} s of the drive; there are {', '.join(told[:OTHERS]) or 'none with a time'}"
+            f"no such verdict of {rows[0]['rule_id']} is about {wanted.at_s:g} s of the drive; there are {there}"
         )
     return around
 

@@ -70,13 +70,13 @@ _WHERE: Final = {
     },
     "canonical-parquet": _TABLES,
     "mapped": {
-        "indicator": "a column of the log that holds off, left, right or hazard, named under [indicator] in the mapping (check --mapping FILE)",
-        "brake_light": "a column of the log that holds off, on or strong, named under [brake_light] in the mapping (check --mapping FILE)",
+        "indicator": "a column of off, left, right and hazard, named under [indicator] in the mapping (check --mapping FILE)",
+        "brake_light": "a column of off, on and strong, named under [brake_light] in the mapping (check --mapping FILE)",
         "ego_size": "length and width under [columns] of the mapping (check --mapping FILE), as columns or as numbers",
         "actor_classes": "a column of the log, named under [class] in the mapping (check --mapping FILE)",
     },
 }
-_CONVERTED = "in the tables that drivelint convert --to parquet writes: "
+_CONVERTED = "drivelint convert --to parquet, and in its tables "
 
 
 def provide(signal: str, log_format: str) -> str:
