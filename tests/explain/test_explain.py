@@ -207,7 +207,7 @@ def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
     assert pair.rows[0]["clearance_m"] is None
     text = said(found)
     assert re.search(r"clearance_m\s+NULL", text)
-    assert "What the reason asks for; the reason speaks of the first of" in flat(text)
+    assert "What is asked for above; that is for the first of" in flat(text)
     assert "?" in text[text.index("Margin over time") :]
 
 

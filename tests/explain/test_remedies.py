@@ -14,13 +14,13 @@ from drivelint.reasons.remedies import REMEDIES, remedy
         ("lost_near_ego", "record object o for as long as the ego"),
         ("missing_map", "the road as OpenDRIVE: --map FILE"),
         ("missing_indicator", "the ego's indicators: a column of off, left, right and hazard"),
-        ("missing_step", "what the reason asks for"),
-        ("only_a_bound", "what the reason asks for; where it asks for nothing, a map that goes on"),
+        ("missing_step", "what is asked for above"),
+        ("only_a_bound", "what is asked for above; where nothing is, a map that goes on"),
         ("limit_unknown", "a map with speed limits"),
         ("road_type_unknown", "a map with road types"),
-        ("engaged_unknown", "when the automated driver drives"),
+        ("engaged_unknown", "whether the automated driver drives: --env engaged=yes or no"),
         ("light_unknown", "whether it is dark: --env light=day"),
-        ("a_code_of_a_rule_of_somebody_else", "what the reason asks for"),
+        ("a_code_of_a_rule_of_somebody_else", "what is asked for above"),
     ],
 )
 def test_by_code(code: str, told: str) -> None:

@@ -140,9 +140,11 @@ def _decides(found: Explanation) -> list[str]:
     unknown = [step.t_ns for step in found.series if step.holds is None]
     if len(unknown) > 1 and not is_gated(row["verdict"], row["reason_code"]):
         start, end = (seconds(t, found.drive["t_start_ns"]) for t in (unknown[0], unknown[-1]))
-        told += f"; the reason speaks of the first of {len(unknown)} steps that are not known, from {start} to {end}"
+        told += f"; that is for the first of {len(unknown)} steps that are not known, from {start} to {end}: "
+        told += "later ones may lack something else"
     text = "\n".join(found.sql.values())
-    events = [event for event in EVENTS if f"'{event}'" in text]
+    asked = row["reason_code"].startswith(("missing_declared", "missing_mode"))
+    events = [event for event in EVENTS if asked and f"'{event}'" in text]
     named = [
         f"The rule reads the event {event} (value: {EVENTS[event].value}): {EVENTS[event].says}." for event in events
     ]

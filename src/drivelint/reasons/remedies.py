@@ -7,9 +7,9 @@ from typing import Final
 from drivelint.conditions import GIVEN
 from drivelint.reasons.signals import SIGNAL_OF, provide
 
-_LONGER = "a log that shows what the reason names"
-_NAMED = "what the reason asks for"
-_AGAIN = "; then check again: what else the rule needs is not looked at without it"
+_LONGER = "a log that shows what is not shown, as said above"
+_NAMED = "what is asked for above"
+_AGAIN = "; run drivelint check with it: what else the rule needs is not looked at before"
 REMEDIES: Final = {
     "lost_near_ego": "record {object} for as long as the ego, or until it is out of the ego's reach",
     "lost_in_range": "record {object} for as long as the ego, or say with check --sensor-range how far the recorder sees",
@@ -18,7 +18,7 @@ REMEDIES: Final = {
     "log_hole": "a log without that hole",
     "reference_time_unknown": _LONGER,
     "anchor_unknown": _LONGER,
-    "only_a_bound": "what the reason asks for; where it asks for nothing, a map that goes on, or a longer --sensor-range of check",
+    "only_a_bound": "what is asked for above; where nothing is, a map that goes on, or a longer --sensor-range of check",
     "beyond_sensor_range": "sensors that reach further (check --sensor-range, if they do)",
     "ego_not_placed": "the ego's position and heading at every step",
     "indicator_unknown": "the ego's indicators at every step",

@@ -41,8 +41,8 @@ ADVICE: Final = {
         for mode in MODES
     },
     "mode_engaged": (
-        "when the automated driver drives: as declared events engaged with the values on and off ({declared_events}), "
-        "or --env engaged=yes"
+        "whether the automated driver drives: --env engaged=yes or no for the whole drive, "
+        "or declared events engaged with the values on and off: {declared_events}"
     ),
     "mode_headlights": "when the headlights are on: {headlights}",
 }
