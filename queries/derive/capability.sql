@@ -77,7 +77,7 @@ answer AS (
     ] || [
         {'signal': 'mode_' || mode, 'of_map': false, 'available': coalesce(list_contains(d.modes, mode), false) OR mode = 'engaged' AND s.engaged_given,
             'yes': CASE WHEN mode = 'engaged' AND s.engaged_given THEN 'whether the automated driver drives is given' ELSE 'the log says when ' || mode || ' is on' END,
-            'no': 'the log does not tell about ' || replace(mode, '_', ' ') || ': record the event ' || mode || ', on and off' || CASE WHEN mode = 'engaged' THEN ', or give --env engaged=yes' ELSE '' END}
+            'no': 'the log does not tell about ' || replace(mode, '_', ' ') || ': record the event ' || mode || ', on and off' || CASE WHEN mode = 'engaged' THEN ', or give --env engaged=yes or no' ELSE '' END}
         FOR mode IN ['engaged', 'emergency_manoeuvre', 'minimal_risk_manoeuvre', 'lane_change_procedure', 'headlights', 'horn']
     ], recursive := true)
     FROM subject s

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -165,6 +166,33 @@ def test_one_lost_before_its_eyes_is_not_nobody(rule: str) -> None:
     ahead = {round(r["t_ns"] / 1e8): r for r in rows(con, "FROM vehicle_ahead ORDER BY t_ns")}
     assert all(k not in ahead or (not ahead[k]["known"] and ahead[k]["free_m"] < 15) for k in range(31, 56))
     assert ahead[57]["free_m"] > 70
+
+
+def test_the_reason_is_the_objects_own_track() -> None:
+    """Two beside the ego are lost, the nearer one later: each verdict speaks of its own object."""
+    t = times(12.0)
+    ego = moving("ego", LONG, t, 100 + 15 * t, -0.5 * LANE)
+    one, two = (
+        moving(name, LONG, t, s + 15 * t, 0.5 * LANE).keep(t < end)
+        for name, s, end in (("one", 101, 3.05), ("two", 106, 5.05))
+    )
+    found = judged([drive([ego, one, two], LONG.environment, in_sight=True)], rules=["rss.lateral"])
+    told = {r["object_id"]: r["reason"] for r in found if r["verdict"] == "unknown"}
+    assert "the track of object one ends at 3.000 s: record it for longer" in told["one"]
+    assert "the track of object two ends at 5.000 s: record it for longer" in told["two"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "speed", "asked"), [(None, 0.5, "record its class"), ("object", 0.0, "no recording decides that")]
+)
+def test_what_is_or_may_be_no_vehicle_in_the_lane_ahead(kind: str | None, speed: float, asked: str) -> None:
+    t = times(4.0)
+    ego = moving("ego", LONG, t, 100 + 5 * t, -0.5 * LANE)
+    ahead = replace(moving("x", LONG, t, 127 + speed * t, -0.5 * LANE), kind=kind, length=0.5, width=0.5)
+    found = judged([drive([ego, ahead], LONG.environment)], rules=["criticality.ttc"])
+    assert [r["verdict"] for r in found] == ["unknown"]
+    assert "object x" in found[0]["reason"]
+    assert asked in found[0]["reason"]
 
 
 def test_a_rule_about_the_ego_alone_assumes_nothing() -> None:

@@ -140,6 +140,7 @@ _HIDDEN = """format('where object {} is at that time is not known: {}{}: record 
         CASE WHEN nearest.m >= 1 THEN format(', and it may be as near as {:.0f} m', floor(nearest.m)) ELSE '' END,
         CASE WHEN nearest.code IN ('lost', 'lost_behind') THEN 'for longer' WHEN nearest.code = 'appeared' THEN 'from earlier on'
             ELSE 'at every step' END)"""
+_TRACK = "format('the track of object {{}} {0} at {{:.3f}} s: record it {2}', d.object_id, ({1} - d.start_ns) / 1e9)"
 _UNBELIEVED = (
     "CASE WHEN c.drive_id IS NOT NULL THEN ' (velocities that contradict the positions are not used): correct or leave out the velocity' "
     "ELSE ': record it' END"
@@ -187,6 +188,8 @@ SELECT {{'drive_id': d.drive_id, 'ego_id': d.ego_id, 't_ns': d.t_ns, 'object_id'
     'of_lanes': d.of_lanes}} AS key, CASE
     WHEN e.x_m + e.y_m + e.yaw_rad IS NULL THEN ego_lacks(e.x_m + e.y_m, e.yaw_rad, e.lanelet_id, e.front_s_m)
     WHEN p.object_id IS NOT NULL AND {_LACKS} IS NOT NULL THEN format('object {{}} {{}}: record it', p.object_id, unplaced_words({_LACKS}))
+    WHEN p.object_id IS NULL AND o.to_ns < d.t_ns THEN {_TRACK.format("ends", "o.to_ns", "for longer")}
+    WHEN p.object_id IS NULL AND o.from_ns > d.t_ns THEN {_TRACK.format("begins only", "o.from_ns", "from earlier on")}
     -- a rule that finds its object itself does not know whom
     WHEN n.nearest IS NOT NULL AND d.of_hidden AND d.object_id IS NULL THEN {_HIDDEN}
     WHEN e.speed_mps IS NULL THEN 'the speed of the ego is not known' || {_UNBELIEVED}
@@ -208,6 +211,7 @@ LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN _near n USING (drive_id, ego_id, t_ns)
 LEFT JOIN _speedless b USING (drive_id, ego_id, t_ns)
 LEFT JOIN _ahead f USING (drive_id, ego_id, t_ns)
+LEFT JOIN _tracked o USING (drive_id, ego_id, object_id)
 LEFT JOIN (SELECT DISTINCT drive_id FROM quality WHERE check_id = 'velocity_unknown') c USING (drive_id)
 """
 

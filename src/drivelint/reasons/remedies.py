@@ -7,7 +7,6 @@ from typing import Final
 from drivelint.conditions import GIVEN
 from drivelint.reasons.signals import SIGNAL_OF, provide
 
-_LONGER = "a log that shows what is not shown, as said above"
 _NAMED = "what is asked for above"
 _AGAIN = "; run drivelint check with it: what else the rule needs is not looked at before"
 REMEDIES: Final = {
@@ -16,8 +15,8 @@ REMEDIES: Final = {
     "lost_on_road": "record {object} for as long as the ego",
     "window_truncated": "a log that has the ego, and whoever is near it, over all of that time",
     "log_hole": "a log without that hole",
-    "reference_time_unknown": _LONGER,
-    "anchor_unknown": _LONGER,
+    "reference_time_unknown": _NAMED,
+    "anchor_unknown": _NAMED,
     "only_a_bound": "what is asked for above; where nothing is, a map that goes on, or a longer --sensor-range of check",
     "beyond_sensor_range": "sensors that reach further (check --sensor-range, if they do)",
     "ego_not_placed": "the ego's position and heading at every step",
