@@ -96,7 +96,7 @@ SELECT
         WHEN opposing IS NULL THEN 'the map has no lane beside the running lane on the overtaking side: give a map with the lanes of both directions'
         WHEN da_m IS NULL THEN 'the ego is not placed on its lane where the overtake began: record its position, on a map that has its lane'
         WHEN sda_m IS NULL AND v_av_mps <= v_vbp_mps THEN 'undefined: the ego was not faster than the vehicle it passed'
-        WHEN sda_m IS NULL AND profile = 'observed' AND status <> 'completed' THEN 'the overtake was ' || CASE status WHEN 'truncated' THEN 'not recorded to its end, so its own angles are not known: record it for longer' ELSE 'not completed, and has no angles of its own: the other profiles tell more' END
+        WHEN sda_m IS NULL AND profile = 'observed' AND status <> 'completed' THEN 'the overtake was ' || CASE status WHEN 'truncated' THEN 'not completed in the log, so its own angles are not known: record it for longer' ELSE 'not completed, and has no angles of its own: the other profiles tell more' END
         WHEN sda_m IS NULL AND ov_id IS NULL AND v_ov_mps IS NULL THEN 'no oncoming vehicle is seen and the map has no speed limit to assume for one'
         WHEN sda_m IS NULL THEN 'a speed, size or angle of the two is not known: record speeds and sizes'
         WHEN sped_up THEN format('it sped up: at {:.1f} m/s, its speed at t0, it would have needed {:.0f} m, at {:.1f} m/s, {} {:.0f} m, and {:.0f} m were there', v_av_mps, sda_m, v_later_mps, CASE status WHEN 'truncated' THEN 'which it had reached when the log ended,' ELSE 'its mean one,' END, sped_up_m, da_m)
