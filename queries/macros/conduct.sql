@@ -68,11 +68,11 @@ CREATE OR REPLACE MACRO ego_lacks(x_m, yaw_rad, lanelet_id, front_s_m) AS CASE
     WHEN lanelet_id IS NULL THEN 'the ego is not on a lane of the map: give a map that has its lane'
     WHEN front_s_m IS NULL THEN 'the ego''s box reaches beyond the lanes of the map: give a map whose lanes go on' END;
 
--- What is asked where two boxes pass each other by, or touch.
+-- The reason where nobody can tell whether two boxes touch.
 CREATE OR REPLACE MACRO graze_words(object_id) AS
     format('whether the ego passes {} by, or touches it, is a matter of centimetres: record positions, headings and sizes more exactly', object_id);
 
--- What is asked where it is not sure that the ego overtook this one.
+-- The reason where nobody can tell whether the ego overtook this vehicle.
 CREATE OR REPLACE MACRO overtake_doubt(vbp_id) AS
     format('whether the ego overtook {} is not sure: record both from before the ego leaves its lane until it is back in it', vbp_id);
 

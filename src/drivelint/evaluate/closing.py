@@ -173,7 +173,7 @@ WITH _doubted AS (
     JOIN ego_state e ON e.drive_id = d.drive_id AND e.ego_id = d.ego_id AND e.speed_mps IS NULL
         AND e.t_ns >= d.t_ns - 1_000_000_000 AND e.t_ns <= d.t_ns + 1_000_000_000
 ), _ahead AS (
-    -- who is in the lane ahead and is no vehicle, or may be none
+    -- the nearest actor in the lane ahead that is not known to be a vehicle
     SELECT drive_id, ego_id, t_ns, n.id AS object_id, n.actor_class AS actor_class
     FROM (
         SELECT drive_id, ego_id, t_ns, min({{'s_m': p.rear_s_m, 'id': p.object_id, 'actor_class': p.actor_class}}) AS n

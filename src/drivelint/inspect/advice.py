@@ -1,4 +1,4 @@
-"""Which rules a log and a map cannot decide, for want of which signal."""
+"""The rules that a log and a map cannot decide, and the signals that they lack."""
 
 from __future__ import annotations
 
