@@ -85,6 +85,23 @@ def test_who_runs_across_is_a_reason_by_his_velocity_not_by_his_heading(hand: st
 
 
 @HANDS
+@pytest.mark.parametrize("samples", [0, 1, 80])
+def test_one_velocity_is_no_proof_that_somebody_comes_across(hand: str, samples: int) -> None:
+    """A car in the next lane, ahead and slower; so many of its recorded velocities point into the ego's lane."""
+    way, d = motorway(hand)
+    ego = braked(way, d)
+    car = moving("x", way, ego.t_s, 335 + 15 * ego.t_s, -d / 3)
+    k = np.arange(len(ego.t_s))
+    across = np.where((k >= 50) & (k < 50 + samples), math.copysign(3.0, d - car.y[0]), 0.0)
+    con = derived(drive([ego, replace(car, vy=car.vy + across)], way.environment), tables=["in_way"])
+    found = {round(row["t_ns"] / 1e8): row for row in rows(con, "FROM in_way")}
+    assert (found[49]["need_mps2"], found[49]["known"]) == (0, True)
+    assert found[50]["known"] is (samples == 0)
+    assert found[50]["need_mps2"] == 0
+    assert (found[55]["need_mps2"] > 0) is (samples == 80)
+
+
+@HANDS
 def test_who_walks_along_beside_the_lane_or_has_no_place_leaves_it_unknown(hand: str) -> None:
     way, d = motorway(hand)
     ego = braked(way, d)
