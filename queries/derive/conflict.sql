@@ -87,12 +87,14 @@ edge_box AS MATERIALIZED (
     FROM edge e
     LEFT JOIN swept_box f ON f.drive_id = e.drive_id AND f.actor_id = e.i.actor_id AND f.t_ns = e.t_off_ns
 ),
--- how far it is from that ground at the moment off it, and how deep in it at the one on it; its way against the other's where that comes nearest
-apart AS MATERIALIZED (
+-- at which share of its way from the moment off that ground to the one on it it first touched it; its way against the other's where that comes nearest
+touched AS MATERIALIZED (
     SELECT
         e.drive_id, e.ego_id, e.object_id, e.n, e.ego, i.actor_id AS actor_id, e.sense, i.t_sample_ns AS t_sample_ns, i.t_ns AS t_on_ns, e.t_off_ns,
-        greatest(0.0, min(boxes_apart_m(b.x_m - f.x_m, b.y_m - f.y_m, f.cos_yaw, f.sin_yaw, b.cos_yaw, b.sin_yaw, f.half_length_m, f.half_width_m, b.half_length_m, b.half_width_m))) AS off_m,
-        least(0.0, min(boxes_apart_m(b.x_m - i.x_m, b.y_m - i.y_m, i.cos_yaw, i.sin_yaw, b.cos_yaw, b.sin_yaw, i.half_length_m, i.half_width_m, b.half_length_m, b.half_width_m))) AS on_m,
+        min(first_touch(
+            boxes_sides(b.x_m - f.x_m, b.y_m - f.y_m, f.cos_yaw, f.sin_yaw, b.cos_yaw, b.sin_yaw, f.half_length_m, f.half_width_m, b.half_length_m, b.half_width_m),
+            boxes_sides(b.x_m - i.x_m, b.y_m - i.y_m, i.cos_yaw, i.sin_yaw, b.cos_yaw, b.sin_yaw, i.half_length_m, i.half_width_m, b.half_length_m, b.half_width_m)
+        )) AS share,
         min({'d2': (b.x_m - i.x_m) ** 2 + (b.y_m - i.y_m) ** 2, 't_ns': b.t_ns, 'angle_rad': wrap_rad(b.travel_rad - i.travel_rad)}) FILTER (
             abs(wrap_rad(b.travel_rad - i.travel_rad)) > conflict_angle_rad()
             AND boxes_meet(b.x_m - i.x_m, b.y_m - i.y_m, i.cos_yaw, i.sin_yaw, b.cos_yaw, b.sin_yaw, i.half_length_m, i.half_width_m, b.half_length_m, b.half_width_m)
@@ -101,16 +103,15 @@ apart AS MATERIALIZED (
     JOIN swept_box b ON b.drive_id = e.drive_id AND b.actor_id = e.on_id AND b.t_ns >= e.t_from_ns AND b.t_ns <= e.t_to_ns
     GROUP BY e.drive_id, e.ego_id, e.object_id, e.n, e.ego, i.actor_id, e.sense, i.t_sample_ns, i.t_ns, e.t_off_ns
 ),
--- between the two moments in proportion: what goes straight on does so. Where it is an angle that ends the common ground, at the one off it. An edge
--- without a moment off the ground was not seen.
+-- Where it is an angle that ends the common ground, that is at the moment off it. An edge without a moment off the ground was not seen.
 timed AS MATERIALIZED (
     SELECT
         drive_id, ego_id, object_id, n, ego, sense, min(sense * t_sample_ns) AS k_ns,
         min({
-            'ns': sense * (t_on_ns - coalesce(round((1 - coalesce(off_m / nullif(off_m - on_m, 0), 0)) * (t_on_ns - t_off_ns)), 0)::BIGINT), 'known': t_off_ns IS NOT NULL,
+            'ns': sense * (t_on_ns - coalesce(round((1 - coalesce(share, 0)) * (t_on_ns - t_off_ns)), 0)::BIGINT), 'known': t_off_ns IS NOT NULL,
             'off_rad': -abs(angle_rad), 'angle_rad': CASE WHEN ego THEN angle_rad ELSE -angle_rad END
         }) AS edge
-    FROM apart
+    FROM touched
     GROUP BY drive_id, ego_id, object_id, n, ego, sense
 ),
 encounter AS MATERIALIZED (

@@ -61,6 +61,23 @@ CREATE OR REPLACE MACRO box_separation(dx, dy, c, s, hla, hwa, hlb, hwb) AS
 CREATE OR REPLACE MACRO box_depth(dx, dy, c, s, hla, hwa, hlb, hwb) AS
     CASE WHEN dx + dy + c + s + hla + hwa + hlb + hwb IS NOT NULL THEN -box_separation(dx, dy, c, s, hla, hwa, hlb, hwb) END;
 
+-- The same for each of the eight sides of the four axes, as a list: the boxes touch where none of it is positive.
+CREATE OR REPLACE MACRO box_sides(dx, dy, c, s, hla, hwa, hlb, hwb) AS
+    [
+        dx - hla - hlb * abs(c) - hwb * abs(s), -dx - hla - hlb * abs(c) - hwb * abs(s),
+        dy - hwa - hlb * abs(s) - hwb * abs(c), -dy - hwa - hlb * abs(s) - hwb * abs(c),
+        dx * c + dy * s - hlb - hla * abs(c) - hwa * abs(s), -dx * c - dy * s - hlb - hla * abs(c) - hwa * abs(s),
+        dy * c - dx * s - hwb - hla * abs(s) - hwa * abs(c), dx * s - dy * c - hwb - hla * abs(s) - hwa * abs(c)
+    ];
+
+-- At which share of its way from one moment to another a box that goes straight on first touches another box; NULL: nowhere on it. `a` and `b`
+-- are the sides (box_sides) at the two moments. Each changes in proportion: the boxes touch from the last side that lets go to the first that parts them.
+CREATE OR REPLACE MACRO lets_go(a, b) AS
+    list_max(list_transform(list_zip(a, b), lambda g: CASE WHEN g[1] <= 0 THEN 0.0 WHEN g[2] > 0 THEN 2.0 ELSE g[1] / (g[1] - g[2]) END));
+CREATE OR REPLACE MACRO parts(a, b) AS
+    list_min(list_transform(list_zip(a, b), lambda g: CASE WHEN g[2] <= 0 THEN 1.0 WHEN g[1] > 0 THEN -1.0 ELSE g[1] / (g[1] - g[2]) END));
+CREATE OR REPLACE MACRO first_touch(a, b) AS CASE WHEN lets_go(a, b) <= parts(a, b) THEN lets_go(a, b) END;
+
 -- Exact distance between two boxes; overlapping: minus the depth. Arguments as above; every one must be known.
 -- Of two convex boxes apart, the nearest pair has a corner of one of them.
 CREATE OR REPLACE MACRO box_clearance(dx, dy, c, s, hla, hwa, hlb, hwb) AS

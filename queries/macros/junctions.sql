@@ -17,6 +17,9 @@ CREATE OR REPLACE MACRO straight_on_ns() AS 3_000_000_000;
 -- sine of their headings.
 CREATE OR REPLACE MACRO boxes_apart_m(dx, dy, ca, sa, cb, sb, hla, hwa, hlb, hwb) AS
     box_separation(dx * ca + dy * sa, dy * ca - dx * sa, ca * cb + sa * sb, ca * sb - sa * cb, hla, hwa, hlb, hwb);
+-- The same for each of the eight sides (box_sides).
+CREATE OR REPLACE MACRO boxes_sides(dx, dy, ca, sa, cb, sb, hla, hwa, hlb, hwb) AS
+    box_sides(dx * ca + dy * sa, dy * ca - dx * sa, ca * cb + sa * sb, ca * sb - sa * cb, hla, hwa, hlb, hwb);
 -- Two boxes overlap or touch.
 CREATE OR REPLACE MACRO boxes_meet(dx, dy, ca, sa, cb, sb, hla, hwa, hlb, hwb) AS
     dx * dx + dy * dy <= (hla + hwa + hlb + hwb) * (hla + hwa + hlb + hwb)

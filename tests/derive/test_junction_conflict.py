@@ -308,6 +308,7 @@ meetings = st.builds(
 @settings(max_examples=3)
 @given(st.lists(meetings, min_size=14, max_size=14))
 @example([Meeting(90, 10, 10, 0.0, 4.8, 1.8)])
+@example([Meeting(27, 20, 1, 0.0, 0.6, 0.6)])  # the ego goes 2 m a sample, over a box of 0.6 m
 def test_the_times_are_those_of_the_swept_polygons(found: list[Meeting]) -> None:
     """Entry and exit by shapely: first and last moment that a box touches the ground that the other's covers; whoever is the ego.
 
@@ -361,7 +362,7 @@ def as_swept(each: Meeting, row: Row) -> None:
     tolerance = 0.13 + 0.1 * max(each.ego_v / each.other_v, each.other_v / each.ego_v)
     if max(on_ego[1], on_other[1]) - min(on_ego[0], on_other[0]) < 10:  # pairs more than ten seconds apart are left out
         assert times_ == pytest.approx([*on_ego, *on_other], abs=tolerance), each
-    assert row["pet_s"] == pytest.approx(pet, abs=0.005), each
+    assert row["pet_s"] == pytest.approx(pet, abs=0.0025), each  # the polygons' moments are whole milliseconds
     assert row["pet_at_most"] is False
     assert row["ego_first"] == (row["t_ego_in_ns"] <= row["t_object_in_ns"]), each
     assert row["angle_rad"] == pytest.approx(each.heading), each
