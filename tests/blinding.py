@@ -9,7 +9,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.batch import Drive
+from drivelint.engine.batch import Drive
 from tests.ingested import ingested
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from drivelint.maps import Environment
+    from drivelint.road.contract import Environment
 
 Span = tuple[float, float]
 EVER: Span = (-1.0, 1e6)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from drivelint.maps import Environment
+    from drivelint.road.contract import Environment
 
     Floats = NDArray[np.float64]
 

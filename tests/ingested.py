@@ -9,10 +9,9 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.batch import Drive
-from drivelint.ingest.files import Identity
-from drivelint.ingest.finish import finish
-from drivelint.ingest.trace import BRAKE_LIGHTS, INDICATORS, NUMBERS, IngestOptions, Recording, States
+from drivelint.drive.finish import finish
+from drivelint.drive.trace import BRAKE_LIGHTS, INDICATORS, NUMBERS, Identity, IngestOptions, Recording, States
+from drivelint.engine.batch import Drive
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

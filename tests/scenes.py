@@ -17,15 +17,18 @@ from unittest.mock import patch
 import numpy as np
 import pyarrow as pa
 
-from drivelint import catalogue, store
-from drivelint.batch import Drive
-from drivelint.derive import derivations, derive, needed
-from drivelint.ingest import Trace
-from drivelint.ingest.finish import SCHEMAS
-from drivelint.judge import Bench
-from drivelint.maps import Environment, MapSource, load_map
-from drivelint.profiles import load_profiles, profile_table
-from tests.maps import xodr
+from drivelint import catalogue
+from drivelint.drive.finish import SCHEMAS
+from drivelint.drive.trace import Trace
+from drivelint.engine.batch import Drive
+from drivelint.engine.derive import derive
+from drivelint.engine.profiles import load_profiles, profile_table
+from drivelint.engine.session import Bench
+from drivelint.formats import load_map
+from drivelint.road.contract import Environment, MapSource
+from drivelint.sql import store
+from drivelint.sql.derivations import derivations, needed
+from tests.formats.opendrive import xodr
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -339,7 +342,7 @@ def derived(
     con, bench, _ = place
     wanted = set(tables) or set(derivations())
     # what the engine always needs besides is not asked for here, and would take most of the time
-    with patch("drivelint.derive.ALWAYS", ()):
+    with patch("drivelint.engine.derive.ALWAYS", ()):
         of_the_map = {d.table for d in needed(wanted) if d.of_the_map}
         if not of_the_map <= bench._tables:
             bench._tables |= of_the_map

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from drivelint import store
 from drivelint.casefile import coverage, read_cases, run_cases, together
-from drivelint.casefile.crowd import KEYS
+from drivelint.casefile.merged_cases import KEYS
 from drivelint.casefile.mutation import prove, strangers
 from drivelint.catalogue import load
 from drivelint.evaluate import explain
+from drivelint.sql import store
 
 if TYPE_CHECKING:
     import duckdb

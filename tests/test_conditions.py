@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from drivelint import conditions
+from drivelint.drive import conditions
 from drivelint.errors import UsageError
 from drivelint.report.progress import Silent
 from drivelint.run import Settings, check
@@ -17,7 +17,7 @@ from tests.shared_data import ROOT
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from drivelint.report.result import Result
+    from drivelint.result.model import Result
 
 OVERTAKE = ROOT / "fixtures" / "overtake"
 

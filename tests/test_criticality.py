@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from drivelint import catalogue, store
-from drivelint.batch import Drive
-from drivelint.ingest import IngestOptions, read_trace
-from drivelint.maps import MapSource, load_map
+from drivelint import catalogue
+from drivelint.drive.trace import IngestOptions
+from drivelint.engine.batch import Drive
+from drivelint.formats import load_map, read_trace
+from drivelint.road.contract import MapSource
+from drivelint.sql import store
 from tests import followers, scenes
 from tests.shared_data import shared
 

@@ -12,9 +12,10 @@ import pytest
 from shapely import Polygon, box
 from shapely.affinity import rotate, translate
 
-from drivelint.batch import Drive
-from drivelint.ingest import IngestOptions, read_trace
-from drivelint.maps import MapSource, load_map
+from drivelint.drive.trace import IngestOptions
+from drivelint.engine.batch import Drive
+from drivelint.formats import load_map, read_trace
+from drivelint.road.contract import MapSource
 from tests import blinding, scenes
 from tests.blinding import EVER, Span
 from tests.shared_data import shared
@@ -22,7 +23,7 @@ from tests.shared_data import shared
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from drivelint.maps import Environment
+    from drivelint.road.contract import Environment
 
 RUNS = ("safe", "near_miss", "collision")
 EGO, VBP, OV = "1", "2", "3"

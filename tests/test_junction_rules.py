@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
     from tests.scenes import Road, Row
 
     Floats = NDArray[np.float64]

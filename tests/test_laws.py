@@ -19,8 +19,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from drivelint import batch, store
-from drivelint.derive import derivations
+from drivelint.engine import batch
+from drivelint.sql import store
+from drivelint.sql.derivations import derivations
 from tests import blinding, scenes
 from tests.clean.judging import told
 from tests.derive.marked import shouldered
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 
     import duckdb
 
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
 
 RULES = ("ukhc", "rss", "criticality")
 PROFILES = ("relaxed", "nominal", "observed")

@@ -12,17 +12,18 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from drivelint import batch, margins, store
 from drivelint.cli import values
-from drivelint.derive import derive as derived
+from drivelint.engine import batch, margins
+from drivelint.engine.derive import derive as derived
+from drivelint.engine.memory import DEFAULT, LEAST, Memory
 from drivelint.errors import UsageError
 from drivelint.evaluate import evaluate as evaluated
 from drivelint.evaluate.run import Run
-from drivelint.memory import DEFAULT, LEAST, Memory
-from drivelint.report.evidence import gather as gathered
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
+from drivelint.result.evidence import gather as gathered
 from drivelint.run import Settings, check
+from drivelint.sql import store
 from tests.bench import traffic
 from tests.shared_data import shared
 
@@ -129,8 +130,8 @@ def test_what_does_not_fit_is_judged_with_fewer_egos_at_once(tmp_path: Path, hal
 
 MANY: dict[str, Any] = {"ego": "all", "margins": True}
 STEPS: dict[str, Callable[..., None]] = {
-    "drivelint.judge.derive": derived,
-    "drivelint.judge.evaluate": evaluated,
+    "drivelint.engine.session.derive": derived,
+    "drivelint.engine.session.evaluate": evaluated,
     "drivelint.run.evidence.gather": gathered,
 }
 
@@ -143,7 +144,7 @@ def usual(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
 
 @pytest.mark.parametrize(
     ("step", "fits"),
-    [*((step, "one ego") for step in STEPS), ("drivelint.judge.evaluate", "no limit")],
+    [*((step, "one ego") for step in STEPS), ("drivelint.engine.session.evaluate", "no limit")],
 )
 def test_memory_that_does_not_do_is_no_error(
     step: str, fits: str, usual: dict[str, bytes], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, *, halved: list[int]
@@ -183,7 +184,7 @@ def test_a_batch_that_does_not_fit_is_halved(monkeypatch: pytest.MonkeyPatch, tm
             raise SHORT
         evaluated(con, *args, **options)
 
-    monkeypatch.setattr("drivelint.judge.evaluate", short)
+    monkeypatch.setattr("drivelint.engine.session.evaluate", short)
     notes = Notes()
     again = check(asked, notes)
     assert sizes == [4, 2, 2]
@@ -229,7 +230,7 @@ def test_a_rule_for_which_no_memory_does_is_an_error_in_the_same_words(
 
 def test_results_that_do_not_fit_are_read_with_more(monkeypatch: pytest.MonkeyPatch) -> None:
     usual = check(overtakes("safe"), Silent())
-    from drivelint.report import collect
+    from drivelint.result import collect
 
     verdicts, calls = collect.verdicts, []
 

@@ -19,11 +19,12 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from drivelint.batch import Drive
 from drivelint.demo import memory
 from drivelint.demo import scene as sampling
 from drivelint.demo.scenes import library
-from drivelint.maps import MapSource, load_map
+from drivelint.engine.batch import Drive
+from drivelint.formats import load_map
+from drivelint.road.contract import MapSource
 from tests.clean.chapters import CHAPTERS
 from tests.clean.judging import named
 from tests.clean.roads import open_road
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from drivelint.ingest import Trace
+    from drivelint.drive.trace import Trace
 
 STABLE = ("status:stable",)
 PROFILES = ("relaxed", "nominal", "aggressive", "observed")

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from drivelint.batch import Drive
+from drivelint.engine.batch import Drive
 from tests.derive.junction_scenes import cross, crosswalk
-from tests.ingest.logs import LONG, mapping, put, read
+from tests.formats.logs import LONG, mapping, put, read
 from tests.scenes import LANE, Actor, drive, judged, moving, road, standing, times
 
 if TYPE_CHECKING:

@@ -12,15 +12,17 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 import pytest
 
-from drivelint import batch, store
 from drivelint.convert import Order, convert
+from drivelint.drive.trace import IngestOptions
+from drivelint.engine import batch
 from drivelint.errors import MapError, TraceError, UsageError
 from drivelint.evaluate import evaluate as plain
-from drivelint.ingest import IngestOptions, read_trace
-from drivelint.report.evidence import surroundings
+from drivelint.formats import read_trace
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
+from drivelint.result.evidence import surroundings
 from drivelint.run import Settings, check
+from drivelint.sql import store
 
 OMEGA = {"x": "x_m", "y": "y_m", "yaw": "yaw_rad", "vel_x": "vx_mps", "vel_y": "vy_mps"}
 EGOS = ("ego", "once", "oncoming", "parked")
@@ -129,7 +131,7 @@ def test_a_drive_of_which_a_part_fails_leaves_nothing(
             raise duckdb.Error("the engine choked")
         plain(con, *args, **options)
 
-    monkeypatch.setattr("drivelint.judge.evaluate", third)
+    monkeypatch.setattr("drivelint.engine.session.evaluate", third)
     asked = settings(ragged, FIXTURE / "safe.csv", ego="all", out=tmp_path, keep_db=True, rules=FEW)
     result = check(asked, Silent())
     assert len(calls) == 3 + 3
@@ -159,7 +161,7 @@ def test_a_drive_that_cannot_be_read_harms_no_other(tmp_path: Path) -> None:
 
 
 def test_a_drive_that_the_engine_chokes_on_harms_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
-    from drivelint.derive import derive
+    from drivelint.engine.derive import derive
 
     def choking(con: duckdb.DuckDBPyConnection, *args: Any, **options: Any) -> None:
         if con.execute(
@@ -168,7 +170,7 @@ def test_a_drive_that_the_engine_chokes_on_harms_no_other(monkeypatch: pytest.Mo
             raise duckdb.OutOfMemoryException("no more")
         derive(con, *args, **options)
 
-    monkeypatch.setattr("drivelint.judge.derive", choking)
+    monkeypatch.setattr("drivelint.engine.session.derive", choking)
     result = check(settings(*logs(), rules=FEW), Silent())
     status = {row["file_name"]: (row["status"], row["status_reason"]) for row in result.drives.to_pylist()}
     assert status["safe.csv"][0] == "not_judged"

@@ -7,8 +7,8 @@ import re
 import duckdb
 import pytest
 
-from drivelint import store
 from drivelint.resources import folder
+from drivelint.sql import store
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,7 @@ from tests.scenes import judged
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
 
 UNSAID = (None, "object", "vehicle")
 CHAPTERS = sorted({(p.nation, p.chapter) for p in PLANTED if p.chapter})

@@ -8,28 +8,31 @@ from typing import TYPE_CHECKING
 import duckdb
 import pyarrow as pa
 
-from drivelint import catalogue, conditions, store
+from drivelint import catalogue
 from drivelint.annotate import Annotator
-from drivelint.batch import Drive, Refused, cut, in_order, read
+from drivelint.drive import conditions
+from drivelint.drive.trace import IngestOptions
+from drivelint.engine.batch import Drive, Refused, cut, in_order, read
+from drivelint.engine.map_library import MapLibrary
+from drivelint.engine.memory import DEFAULT as DEFAULT_MEMORY
+from drivelint.engine.memory import Memory
+from drivelint.engine.profiles import DEFAULT, load_profiles, profile_table
+from drivelint.engine.session import Bench
 from drivelint.errors import DriveLintError, MemoryShortError, TraceError, UsageError
-from drivelint.ingest import IngestOptions, expand
-from drivelint.judge import Bench
-from drivelint.maps.library import MapLibrary
-from drivelint.memory import DEFAULT as DEFAULT_MEMORY
-from drivelint.memory import Memory
-from drivelint.profiles import DEFAULT, load_profiles, profile_table
-from drivelint.report import collect, evidence
-from drivelint.report.asked import Asked
-from drivelint.report.files import OutputError
-from drivelint.report.result import Result
-from drivelint.report.rulebook import rule_table
+from drivelint.formats import expand
+from drivelint.result import collect, evidence
+from drivelint.result.files import OutputError
+from drivelint.result.model import Result
+from drivelint.result.request import Asked
+from drivelint.result.rulebook import rule_table
+from drivelint.sql import store
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
-    from drivelint.ingest.trace import EgoSize
-    from drivelint.judge import Witness
+    from drivelint.drive.trace import EgoSize
+    from drivelint.engine.session import Witness
     from drivelint.report.progress import Progress
 
 

@@ -8,7 +8,7 @@
     nation = "gb"
     weather = "dry"
 
-Waivers may stand there as well, as tables [[waiver]]: see `drivelint.report.gate.waivers`.
+Waivers may stand there as well, as tables [[waiver]]: see `drivelint.gate.waivers`.
 
 A key is an option's name without its dashes; the command line overrides it. The file is looked for in the current
 folder only, and relative paths in it start there too.

@@ -17,15 +17,17 @@ from mcap.writer import Writer
 from shapely.geometry import Point, Polygon
 from shapely.ops import unary_union
 
-from drivelint import __version__, batch
+from drivelint import __version__
 from drivelint.annotate import actors, events
 from drivelint.annotate.annotator import LAYOUT
+from drivelint.drive.trace import IngestOptions
+from drivelint.engine import batch
 from drivelint.errors import TraceError
 from drivelint.evaluate import evaluate
-from drivelint.ingest import IngestOptions, read_trace
-from drivelint.report.contract import FILES
-from drivelint.report.files import OutputError, parquet_bytes
+from drivelint.formats import read_trace
 from drivelint.report.progress import Silent
+from drivelint.result.contract import FILES
+from drivelint.result.files import OutputError, parquet_bytes
 from drivelint.run import Settings, check
 from tests.annotate.files import seeking, streaming, verify
 from tests.annotate.viewer import SCENES, messages, played, points, shown, yaw
@@ -373,7 +375,7 @@ def test_a_log_that_changes_while_it_is_judged_is_not_judged(tmp_path: Path, mon
         plain(*args, **options)
         path.write_bytes(path.read_bytes() + b"more")
 
-    monkeypatch.setattr("drivelint.judge.evaluate", meddling)
+    monkeypatch.setattr("drivelint.engine.session.evaluate", meddling)
     with pytest.raises(TraceError, match="changed while it was judged"):
         run(tmp_path / "out", path, map=SCENE / "overtake-road.xodr", mapping=None)
     assert not list((tmp_path / "out").rglob("*.mcap*"))

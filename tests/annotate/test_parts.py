@@ -12,10 +12,12 @@ from google.protobuf import descriptor_pb2, descriptor_pool, message_factory, ti
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from drivelint.annotate import clock, events, foxglove, wire
+from drivelint.annotate import clock, events
 from drivelint.annotate.tracks import tracks
+from drivelint.formats.foxglove import messages as foxglove
+from drivelint.formats.protobuf import wire
 from drivelint.resources import folder
-from drivelint.store import schema
+from drivelint.sql.store import schema
 
 VIEWER_TYPES = {"string", "number", "integer", "boolean"}
 """What Foxglove's and Lichtblick's readers of JSON Schema take for a plain field; a list of types or null ends the channel."""

@@ -15,7 +15,7 @@ from mcap.writer import CompressionType, Writer
 from tests.bench import stages, traffic
 from tests.bench.clock import by_stage, repeat
 from tests.bench.table import Bar, Row
-from tests.ingest import osi_log
+from tests.formats.osi import osi_log
 
 if TYPE_CHECKING:
     from pathlib import Path

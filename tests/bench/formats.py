@@ -13,7 +13,8 @@ import pyarrow.csv as pa_csv
 import pyarrow.parquet as pq
 from mcap.reader import make_reader
 
-from drivelint.ingest import IngestOptions, read_trace
+from drivelint.drive.trace import IngestOptions
+from drivelint.formats import read_trace
 from tests.bench import ros, traffic
 from tests.bench.clock import repeat
 from tests.bench.table import Bar, Row

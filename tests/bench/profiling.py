@@ -7,13 +7,15 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from drivelint import catalogue, store
-from drivelint.batch import Drive
-from drivelint.derive import needed
-from drivelint.ingest import IngestOptions, read_trace
-from drivelint.judge import Bench
-from drivelint.maps.library import MapLibrary
-from drivelint.profiles import load_profiles, profile_table
+from drivelint import catalogue
+from drivelint.drive.trace import IngestOptions
+from drivelint.engine.batch import Drive
+from drivelint.engine.map_library import MapLibrary
+from drivelint.engine.profiles import load_profiles, profile_table
+from drivelint.engine.session import Bench
+from drivelint.formats import read_trace
+from drivelint.sql import store
+from drivelint.sql.derivations import needed
 from tests.bench.table import Row
 
 if TYPE_CHECKING:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from mcap.writer import CompressionType, Writer
 
-from tests.ingest import foxglove_log, ros_log
+from tests.formats.foxglove import foxglove_log
+from tests.formats.ros2 import ros_log
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

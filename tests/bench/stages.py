@@ -6,12 +6,17 @@ import sys
 from functools import partial
 from typing import TYPE_CHECKING
 
-from drivelint import batch, catalogue, judge, run, store
+from drivelint import catalogue, run
 from drivelint.annotate import Annotator
-from drivelint.ingest import IngestOptions, read_trace
-from drivelint.maps.library import MapLibrary
-from drivelint.report import evidence, html, junit, outputs
+from drivelint.drive.trace import IngestOptions
+from drivelint.engine import batch
+from drivelint.engine import session as judge
+from drivelint.engine.map_library import MapLibrary
+from drivelint.formats import read_trace
+from drivelint.report import html, junit, outputs
 from drivelint.report.progress import Silent
+from drivelint.result import evidence
+from drivelint.sql import store
 from tests.bench import traffic
 from tests.bench.clock import Span, Stages, alone, by_stage, now, repeat
 from tests.bench.table import Bar, Row

@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tests.ingest import osi_log
+from tests.formats.osi import osi_log
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from drivelint.casefile import workshop
+from drivelint.casefile import commands as workshop
 from drivelint.catalogue import Rule, read_rule
 from drivelint.errors import ExitCode, RuleError, UsageError
 from tests.casefile.test_mutants import CASES, SPEED, measured, with_cases

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from drivelint import conditions
 from drivelint.catalogue import json_schema, load, read_rule
+from drivelint.drive import conditions
 from drivelint.errors import RuleError
 from drivelint.resources import folder
 from tests.evaluate.packs import BEFORE, EXECUTION, HEADER, HOLDS, INVARIANT, MEASURED, PLACE_BEFORE, text, write

@@ -9,11 +9,11 @@ import msgspec
 import pyarrow as pa
 import pytest
 
-from drivelint import store
 from drivelint.casefile import Case, judge
 from drivelint.catalogue import Rule, allowed
+from drivelint.engine.session import Bench
 from drivelint.errors import RuleError
-from drivelint.judge import Bench
+from drivelint.sql import store
 from tests.evaluate.packs import INVARIANT, MEASURED, write
 
 HEADER = INVARIANT | MEASURED | {"reads": '["ego_state"]'}

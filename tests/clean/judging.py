@@ -16,7 +16,7 @@ from tests.scenes import judged
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
     from tests.scenes import Row
 
 EVERYWHERE = ("rss", "criticality", "comfort", "performance", "declared")

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from drivelint.demo.line import Line, Piece, Pose
-from tests.maps import xodr
+from tests.formats.opendrive import xodr
 from tests.scenes import plan
 
 if TYPE_CHECKING:

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 
-from drivelint.batch import Drive
-from drivelint.maps import MapSource, load_map
+from drivelint.engine.batch import Drive
+from drivelint.formats import load_map
+from drivelint.road.contract import MapSource
 from tests import scenes
 from tests.clean.motion import CAR, HZ, Body, Plan, track
 from tests.clean.route import Route

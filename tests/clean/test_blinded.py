@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pyarrow.compute as pc
 import pytest
 
-from drivelint.batch import Drive
+from drivelint.engine.batch import Drive
 from tests import blinding
 from tests.blinding import EVER
 from tests.clean.judging import stable

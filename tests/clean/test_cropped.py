@@ -15,7 +15,7 @@ from tests.scenes import judged
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
     from tests.blinding import Span
     from tests.clean.test_planted import Planted
 

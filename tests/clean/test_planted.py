@@ -18,7 +18,7 @@ from tests.clean.judging import EVERYWHERE, PACKS, broken, named, stable, told, 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
     from tests.scenes import Row
 
 # stable rules that no planted violation breaks, and why

@@ -15,18 +15,19 @@ from hypothesis import strategies as st
 from mcap.reader import make_reader
 
 from drivelint.convert import Order, convert
+from drivelint.drive.trace import IngestOptions
 from drivelint.errors import TraceError, UsageError
-from drivelint.ingest import IngestOptions, read_trace
-from drivelint.osi.frames import varint
-from drivelint.osi.log import osi_ids
-from drivelint.report.files import OutputError
-from tests.ingest import osi_log
+from drivelint.formats import read_trace
+from drivelint.formats.osi.frames import varint
+from drivelint.formats.osi.log import osi_ids
+from drivelint.result.files import OutputError
+from tests.formats.osi import osi_log
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from drivelint.ingest import Trace
+    from drivelint.drive.trace import Trace
 
 FIXTURE = ROOT / "fixtures" / "overtake"
 ROAD = FIXTURE / "road.xodr"
@@ -196,7 +197,7 @@ def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.M
         sink.write(b"half")
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("drivelint.osi.log.write", full)
+    monkeypatch.setattr("drivelint.formats.osi.log.write", full)
     with pytest.raises(OutputError, match=r"safe\.mcap: cannot be written: No space left") as error:
         convert(Order(str(FIXTURE / "safe.csv"), "mcap", tmp_path, **SAFE))
     assert error.value.exit_code == 75

@@ -9,8 +9,9 @@ import pyarrow.compute as pc
 import pytest
 
 from drivelint.convert import Order, convert
-from drivelint.ingest import IngestOptions, read_trace
-from drivelint.ingest.carried import findings
+from drivelint.drive.trace import IngestOptions
+from drivelint.formats import read_trace
+from drivelint.formats.osi.extras import findings
 from drivelint.report.progress import Silent
 from drivelint.run import Settings, check
 from tests.shared_data import shared

@@ -14,8 +14,8 @@ import pytest
 from drivelint.demo import files
 from drivelint.demo.overtakes import LOGGED_MPS, distance_ahead_m, safe_distance_ahead_m
 from drivelint.demo.road import MPH
+from drivelint.engine.profiles import load_profiles
 from drivelint.errors import UsageError
-from drivelint.profiles import load_profiles
 from tests.demo.test_fixtures import TABLE_1
 
 PROGRAM = [sys.executable, "-m", "drivelint"]

@@ -12,10 +12,11 @@ from drivelint.demo import scenes
 from drivelint.demo.line import straight
 from drivelint.demo.opendrive import opendrive
 from drivelint.demo.road import LANE_M, MPH, Hand, Road, Sign
-from drivelint.maps import MapSource, load_map
+from drivelint.formats import load_map
+from drivelint.road.contract import MapSource
 
 if TYPE_CHECKING:
-    from drivelint.maps import Environment
+    from drivelint.road.contract import Environment
 
 ROADS = {"plain": Road((straight(400.0),)), "two lanes": scenes.TWO_LANES, "bend": scenes.BEND, "side road": scenes.SIDE_ROAD,
          "exit": scenes.EXIT, "country": scenes.COUNTRY}  # fmt: skip

@@ -16,7 +16,8 @@ from drivelint.demo.osi_log import mcap
 from drivelint.demo.road import Road
 from drivelint.demo.scene import Scene
 from drivelint.demo.scenes import library
-from drivelint.ingest import IngestOptions, read_trace
+from drivelint.drive.trace import IngestOptions
+from drivelint.formats import read_trace
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from drivelint.maps import MapSource, load_map
-from tests.maps import xodr
+from drivelint.formats import load_map
+from drivelint.road.contract import MapSource
+from tests.formats.opendrive import xodr
 from tests.scenes import LANE, Road, limited, linked, plan
 
 if TYPE_CHECKING:
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
 
 R = 15.0  # the junction is a square of +-15 m around the origin
 ARM = 185.0

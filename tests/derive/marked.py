@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.maps import MapSource, load_map
-from tests.maps import xodr
+from drivelint.formats import load_map
+from drivelint.road.contract import MapSource
+from tests.formats.opendrive import xodr
 from tests.scenes import LANE, Actor, Road, derived, drive, limited, linked, plan
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tests.scenes import Actor, Road, derived, drive, judged, moving, road, rows, standing, times
 
 if TYPE_CHECKING:
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
     from tests.scenes import Floats, Row
 
 RATES = (1.0, 2.0, 5.0, 10.0)

@@ -10,10 +10,11 @@ import pyarrow as pa
 import pytest
 
 from drivelint import catalogue
+from drivelint.formats import load_map
 from drivelint.inspect.advice import OF_THE_MAP
-from drivelint.maps import MapSource, load_map
+from drivelint.road.contract import MapSource
 from tests.derive.marked import shouldered
-from tests.maps import xodr
+from tests.formats.opendrive import xodr
 from tests.scenes import (
     LANE,
     Actor,
@@ -35,7 +36,7 @@ from tests.scenes import (
 if TYPE_CHECKING:
     import duckdb
 
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
 
 CONDITIONS = ("road_type", "carriageway", "area", "nation", "weather", "light", "vehicle_class", "limit_mps", "engaged")
 

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from drivelint.maps import MapSource, load_map
+from drivelint.formats import load_map
+from drivelint.road.contract import MapSource
 from tests.derive.marked import marked
-from tests.maps import xodr
+from tests.formats.opendrive import xodr
 from tests.scenes import (
     Actor,
     Road,

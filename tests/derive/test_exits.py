@@ -7,9 +7,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from drivelint.maps import MapSource, load_map
+from drivelint.formats import load_map
+from drivelint.road.contract import MapSource
 from tests import scenes
-from tests.maps import xodr
+from tests.formats.opendrive import xodr
 from tests.scenes import LANE, Actor, Road, derived, drive, linked, moving, plan, rows, standing, times
 from tests.shared_data import shared
 

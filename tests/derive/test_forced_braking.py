@@ -12,7 +12,7 @@ from tests.derive.junction_scenes import cross, lit, signal
 from tests.scenes import Actor, Road, derived, drive, judged, moving, road, rows, standing, swing, times
 
 if TYPE_CHECKING:
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
     from tests.scenes import Floats, Row
 
 END = 40.0

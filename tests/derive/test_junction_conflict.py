@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
     from tests.scenes import Row
 
 

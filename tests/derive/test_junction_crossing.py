@@ -12,7 +12,7 @@ from tests.derive.junction_scenes import cross, crosswalk, lit, signal
 from tests.scenes import Actor, Road, derived, drive, moving, rows, seconds, swing, times
 
 if TYPE_CHECKING:
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
     from tests.scenes import Row
 
 SIDE = {"rht": -1, "lht": 1}  # of the ego's half, along road 1

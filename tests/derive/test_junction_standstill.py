@@ -13,7 +13,7 @@ from tests.derive.junction_scenes import ARM, R, cross, crosswalk, lit, signal, 
 from tests.scenes import Actor, Road, derived, drive, moving, rows, seconds, standing, times
 
 if TYPE_CHECKING:
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
     from tests.scenes import Row
 
 

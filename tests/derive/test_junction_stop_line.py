@@ -11,7 +11,7 @@ from tests.derive.junction_scenes import ARM, cross, lit, signal, stop_line
 from tests.scenes import Actor, Road, derived, drive, moving, rows, seconds, times
 
 if TYPE_CHECKING:
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
     from tests.scenes import Row
 
 LINE = 180.0

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from drivelint.maps import MapSource, load_map
+from drivelint.formats import load_map
+from drivelint.road.contract import MapSource
 from tests.derive.marked import apart, ease, mark, marked, shouldered
-from tests.maps import xodr
+from tests.formats.opendrive import xodr
 from tests.scenes import (
     LANE,
     Road,

@@ -10,7 +10,7 @@ import pytest
 from shapely import affinity
 from shapely.geometry import LineString, Point, box
 
-from drivelint.maps.tables import from_rows
+from drivelint.road.tables import from_rows
 from tests import blinding
 from tests.scenes import LANE, derived, drive, judged, moving, road, rows, standing, swing, tee, times
 

@@ -11,13 +11,14 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from drivelint.maps import MapSource, load_map
+from drivelint.formats import load_map
+from drivelint.road.contract import MapSource
 from tests import blinding
-from tests.maps import xodr
+from tests.formats.opendrive import xodr
 from tests.scenes import Road, derived, drive, judged, linked, moving, plan, road, rows, standing, times
 
 if TYPE_CHECKING:
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
     from tests.scenes import Row
 
 HANDS = pytest.mark.parametrize("hand", ["lht", "rht"])

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 import duckdb
 import pytest
 
-from drivelint import derive, store
+from drivelint.engine import derive
 from drivelint.errors import DriveLintError
+from drivelint.sql import derivations, store
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -29,9 +30,9 @@ def con() -> Iterator[duckdb.DuckDBPyConnection]:
 
 
 def only(monkeypatch: pytest.MonkeyPatch, found: Mapping[str, tuple[str, set[str]]]) -> None:
-    monkeypatch.setattr(derive, "ALWAYS", ())
-    made = {table: derive.Derivation(table, sql, frozenset(reads)) for table, (sql, reads) in found.items()}
-    monkeypatch.setattr(derive, "derivations", lambda: made)
+    monkeypatch.setattr(derivations, "ALWAYS", ())
+    made = {table: derivations.Derivation(table, sql, frozenset(reads)) for table, (sql, reads) in found.items()}
+    monkeypatch.setattr(derivations, "derivations", lambda: made)
 
 
 CLOCK = """SELECT drive_id, ego_id, max(cell) AS period_ns, count(*) AS max_gap_ns, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns
@@ -61,7 +62,7 @@ def test_what_fails_is_named_and_what_runs_beside_it_is_stopped(
     only(monkeypatch, {"visited_cell": (SLOW, set()), "step": (STEP.replace("0 AS seg", "'x'::INTEGER AS seg"), set())})
     fill = derive._fill
 
-    def late(con: duckdb.DuckDBPyConnection, step: derive.Derivation) -> int:
+    def late(con: duckdb.DuckDBPyConnection, step: derivations.Derivation) -> int:
         if begins_late and step.table == "visited_cell":
             time.sleep(0.3)
         return fill(con, step)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from drivelint.maps import MapSource, load_map
+from drivelint.formats import load_map
+from drivelint.road.contract import MapSource
 from tests.derive.junction_scenes import cross, crosswalk
 from tests.derive.marked import marked
-from tests.maps import xodr
+from tests.formats.opendrive import xodr
 from tests.scenes import LANE, Actor, Road, derived, drive, judged, moving, plan, road, rows, standing, times
 
 HANDS = pytest.mark.parametrize("hand", ["rht", "lht"])

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tests.scenes import LANE, derived, drive, judged, moving, road, rows, standing, times
 
 if TYPE_CHECKING:
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
 
 LONG = road(((2000.0, 0.0),), lanes=(2, 2))
 AHEAD = ("criticality.ttc", "criticality.thw", "criticality.drac", "criticality.ttb", "criticality.mttc")

@@ -11,7 +11,7 @@ from tests.derive.junction_scenes import cross, crosswalk, lit, signal, stop_lin
 from tests.scenes import Actor, derived, drive, judged, moving, rows, times
 
 if TYPE_CHECKING:
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
     from tests.scenes import Road, Row
 
 LINE = 180.0

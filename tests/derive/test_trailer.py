@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import duckdb
     from numpy.typing import NDArray
 
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
 
 HANDS = pytest.mark.parametrize("hand", ["lht", "rht"])
 CRASH = "ukhc.no-collision"

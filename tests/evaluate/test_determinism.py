@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import duckdb
 import pytest
 
-from drivelint import store
 from drivelint.evaluate import evaluate, run
+from drivelint.sql import store
 from tests.evaluate.packs import BEFORE, EXECUTION, HOLDS, INVARIANT, MEASURED, write
 
 if TYPE_CHECKING:

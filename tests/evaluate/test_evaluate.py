@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import duckdb
 import pytest
 
-from drivelint import store
 from drivelint.casefile.scene import fill
 from drivelint.catalogue import Rule
 from drivelint.errors import UsageError
 from drivelint.evaluate import evaluate, explain
+from drivelint.sql import store
 from tests.evaluate.packs import EXECUTION, INVARIANT, MEASURED, write
 
 if TYPE_CHECKING:

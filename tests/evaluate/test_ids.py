@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import pyarrow.parquet as pq
 import pytest
 
-from drivelint import store
-from drivelint.judge import Bench
-from drivelint.profiles import load_profiles, profile_table
+from drivelint.engine.profiles import load_profiles, profile_table
+from drivelint.engine.session import Bench
+from drivelint.sql import store
 from tests.evaluate.packs import EXECUTION, INVARIANT, MEASURED, write
 from tests.scenes import drive, moving, road, rows, times
 

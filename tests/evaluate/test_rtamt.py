@@ -10,13 +10,13 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from drivelint.casefile.crowd import Member, judge, merge, share
+from drivelint.casefile.merged_cases import Member, judge, merge, share
 from drivelint.casefile.scene import scene
 from drivelint.catalogue import load
 from tests.evaluate.stl import FAR, PERIOD_S, SPECS, STEPS, Spec, Trace
 
 if TYPE_CHECKING:
-    from drivelint.casefile.crowd import Outcome
+    from drivelint.casefile.merged_cases import Outcome
 
 rtamt: Any = pytest.importorskip("rtamt", reason="rtamt is not installed (pip install rtamt)")
 

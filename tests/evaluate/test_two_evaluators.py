@@ -9,9 +9,9 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from drivelint import store
 from drivelint.casefile.scene import fill
 from drivelint.evaluate import evaluate
+from drivelint.sql import store
 from tests.evaluate import naive
 from tests.evaluate.packs import AFTER, BEFORE, EXECUTION, INVARIANT, MEASURED, PLACE_BEFORE, write
 

@@ -22,7 +22,7 @@ from drivelint.report.progress import Silent
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
-    from drivelint.report.result import Result
+    from drivelint.result.model import Result
 
 OVERTAKE = ROOT / "fixtures" / "overtake"
 RULES = (

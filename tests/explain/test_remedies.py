@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from drivelint.conditions import GIVEN
+from drivelint.drive.conditions import GIVEN
 from drivelint.reasons.remedies import REMEDIES, remedy
 
 

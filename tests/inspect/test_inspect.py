@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import pytest
 
-from drivelint.conditions import WORDS
+from drivelint.drive.conditions import WORDS
 from drivelint.errors import ExitCode, UsageError
 from drivelint.inspect import Order, exit_code, inspect, to_json
 from drivelint.inspect.model import Inspection, json_schema
@@ -17,7 +17,7 @@ from drivelint.reasons.signals import ADVICE, provide
 from drivelint.report.progress import Silent
 from drivelint.resources import folder
 from drivelint.run import Settings, check
-from tests.ingest import osi_log
+from tests.formats.osi import osi_log
 from tests.scenes import derived, road, rows, standing, times
 from tests.scenes import drive as scene
 from tests.shared_data import ROOT, shared

@@ -14,7 +14,7 @@ from rich.console import Console
 
 from drivelint.inspect import Order, inspect
 from drivelint.inspect.text import render
-from tests.ingest import osi_log
+from tests.formats.osi import osi_log
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:

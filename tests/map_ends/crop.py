@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from drivelint import catalogue, store
-from drivelint.batch import Drive, cut
-from drivelint.ingest import IngestOptions, read_trace
-from drivelint.judge import Bench
-from drivelint.maps import MapSource, load_map
-from drivelint.profiles import load_profiles, profile_table
+from drivelint import catalogue
+from drivelint.drive.trace import IngestOptions
+from drivelint.engine.batch import Drive, cut
+from drivelint.engine.profiles import load_profiles, profile_table
+from drivelint.engine.session import Bench
+from drivelint.formats import load_map, read_trace
+from drivelint.road.contract import MapSource
+from drivelint.sql import store
 from tests import cropping
 from tests.perception.compare import LEAST_S, write
 from tests.perception.traffic import tracks
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from drivelint.maps import Environment
+    from drivelint.road.contract import Environment
     from tests.perception.traffic import Track
     from tests.sumo.world import Files
 

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import pytest
 
 from drivelint.report.progress import Silent
-from drivelint.report.result import Result
+from drivelint.result.model import Result
 from drivelint.run import Settings, check
 from tests.report.browser import CHROMIUM, Page
 from tests.report.test_html import page

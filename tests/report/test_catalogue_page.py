@@ -7,13 +7,13 @@ import re
 import pytest
 
 from drivelint.catalogue import load
-from drivelint.conditions import GIVEN, SAYS
-from drivelint.declared import EVENTS, MODES
+from drivelint.drive.conditions import GIVEN, SAYS
+from drivelint.drive.declared import EVENTS, MODES
 from drivelint.errors import RuleError
-from drivelint.maps.signcodes import kind_of
 from drivelint.report import vocabulary
 from drivelint.report.catalogue_page import Clause, by_clause, cited, clauses, page
 from drivelint.resources import folder
+from drivelint.road.signcodes import kind_of
 
 PACKS = folder("queries") / "assertions"
 

@@ -16,12 +16,12 @@ import pyarrow as pa
 import pytest
 
 from drivelint.errors import UsageError
-from drivelint.report.contract import FILES
-from drivelint.report.load import load
 from drivelint.report.outputs import write
-from drivelint.report.result import Result
-from tests.report import test_evidence
+from drivelint.result.contract import FILES
+from drivelint.result.load import load
+from drivelint.result.model import Result
 from tests.report.synthetic import SECOND, drive, finding, result, rule, table, verdict
+from tests.result import test_evidence
 
 NASTY = "<script>alert(1)</script>\"'&</style></svg><img src=x onerror=alert(2)>"
 

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drivelint.report.result import Result
-from tests.report import test_evidence
+from drivelint.result.model import Result
 from tests.report.browser import CHROMIUM, Page
 from tests.report.test_html import nasty, page
+from tests.result import test_evidence
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 

@@ -11,14 +11,14 @@ from pathlib import Path
 import pyarrow.compute as pc
 import pytest
 
-from drivelint.report.gate import Keeper, Waiver
-from drivelint.report.load import load
+from drivelint.gate import Keeper, Waiver
 from drivelint.report.outputs import write
-from drivelint.report.result import Result
-from tests.report import test_evidence
+from drivelint.result.load import load
+from drivelint.result.model import Result
 from tests.report.browser import CHROMIUM, Page
 from tests.report.synthetic import finding, result, verdict
 from tests.report.test_html import NASTY, Parsed, page
+from tests.result import test_evidence
 
 TODAY = date(2026, 11, 20)
 WAIVERS = (

@@ -11,10 +11,10 @@ import pyarrow as pa
 import pytest
 
 from drivelint.report.html.notes import notes
-from drivelint.report.result import Result
-from tests.report import test_evidence
+from drivelint.result.model import Result
 from tests.report.synthetic import drive, finding, result, verdict
 from tests.report.test_html import Parsed, page
+from tests.result import test_evidence
 from tests.shared_data import shared
 
 

@@ -8,7 +8,7 @@ import pytest
 from lxml import etree
 
 from drivelint.report import junit
-from drivelint.report.result import Result
+from drivelint.result.model import Result
 from tests.report.synthetic import drive, finding, result, rule, verdict
 from tests.shared_data import shared
 

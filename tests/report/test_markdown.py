@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 from markdown_it import MarkdownIt
 
+from drivelint.gate import Keeper, Waiver, compared
 from drivelint.report import markdown
-from drivelint.report.gate import Keeper, Waiver, compared
-from drivelint.report.result import Result
+from drivelint.result.model import Result
 from tests.report.synthetic import SDA, SECOND, drive, finding, result, rule, verdict
 
 PARSER = MarkdownIt("commonmark").enable(["table", "strikethrough"])

@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
+from drivelint.gate import Keeper, Waiver
 from drivelint.report import sarif
-from drivelint.report.gate import Keeper, Waiver
-from drivelint.report.result import Result
+from drivelint.result.model import Result
 from tests.report.synthetic import SDA, SECOND, drive, finding, result, rule, verdict
 from tests.shared_data import shared
 

@@ -9,7 +9,7 @@ from rich.console import Console
 
 from drivelint.catalogue import load
 from drivelint.report import rules_text, terminal
-from drivelint.report.result import Result
+from drivelint.result.model import Result
 from tests.report.synthetic import drive, finding, result, rule, verdict
 
 WARNING = {

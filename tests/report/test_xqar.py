@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 from lxml import etree
 
+from drivelint.gate import Keeper, Waiver
 from drivelint.report import xqar
-from drivelint.report.gate import Keeper, Waiver
-from drivelint.report.result import Result
+from drivelint.result.model import Result
 from tests.report.synthetic import SDA, SECOND, drive, finding, result, rule, verdict
 from tests.shared_data import shared
 

@@ -9,9 +9,10 @@ import xml.etree.ElementTree as ET
 from collections import Counter
 from typing import TYPE_CHECKING, NamedTuple
 
-from drivelint.batch import Drive
-from drivelint.ingest import IngestOptions, read_trace
-from drivelint.maps import MapSource, load_map
+from drivelint.drive.trace import IngestOptions
+from drivelint.engine.batch import Drive
+from drivelint.formats import load_map, read_trace
+from drivelint.road.contract import MapSource
 from tests.scenes import judged
 from tests.sumo.world import run
 

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.annotate import draw, wire
+from drivelint.annotate import draw
 from drivelint.annotate.draw import Colour
+from drivelint.formats.protobuf import wire
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -11,8 +11,8 @@ from drivelint.annotate.evidence import gather, room
 from drivelint.annotate.road import Road
 from drivelint.annotate.write import Annotation, write
 from drivelint.report import summary
-from drivelint.report.files import OutputError
-from drivelint.report.result import Result
+from drivelint.result.files import OutputError
+from drivelint.result.model import Result
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
     from drivelint.annotate.evidence import Evidence, Room
-    from drivelint.batch import Drive
-    from drivelint.maps import Environment
+    from drivelint.engine.batch import Drive
+    from drivelint.road.contract import Environment
 
 LAYOUT = "viewer-layout.json"
 """Panels and topics as Foxglove and Lichtblick import them: there, topics are hidden until somebody asks for them."""

@@ -9,7 +9,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from drivelint.annotate import foxglove, wire
+from drivelint.formats.foxglove import messages as foxglove
+from drivelint.formats.protobuf import wire
 
 FRAME: Final = "map"
 _CUBES, _LINES, _TRIANGLES, _TEXTS, _ARROWS = 8, 11, 12, 13, 7

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import msgspec
 from mcap.records import Schema
 
-from drivelint.annotate import foxglove, wire
+from drivelint.formats.foxglove import messages as foxglove
+from drivelint.formats.protobuf import wire
 from drivelint.resources import folder
 
 if TYPE_CHECKING:

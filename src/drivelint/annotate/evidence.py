@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.report import collect
+from drivelint.result import collect
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

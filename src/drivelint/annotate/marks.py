@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
-from drivelint.annotate import draw, foxglove
+from drivelint.annotate import draw
 from drivelint.annotate.draw import Colour
 from drivelint.annotate.events import Message, headline
-from drivelint.report.counts import SEVERITIES
+from drivelint.formats.foxglove import messages as foxglove
+from drivelint.result.counts import SEVERITIES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

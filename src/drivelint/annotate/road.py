@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import shapely
 
-from drivelint.annotate import draw, foxglove
+from drivelint.annotate import draw
 from drivelint.annotate.draw import Colour
+from drivelint.formats.foxglove import messages as foxglove
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from drivelint.maps import Environment
+    from drivelint.road.contract import Environment
 
 NEAR_M: Final = 40.0
 """Lanes within this distance of anybody's way are drawn (the way is kept on a grid of the same size)."""

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import pyarrow.compute as pc
 
-from drivelint.annotate import draw, foxglove
+from drivelint.annotate import draw
 from drivelint.annotate.draw import Colour
 from drivelint.annotate.events import Message
+from drivelint.formats.foxglove import messages as foxglove
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -10,11 +10,12 @@ import duckdb
 import numpy as np
 
 from drivelint import __version__
-from drivelint.annotate import actors, clock, events, foxglove, marks, spaces
-from drivelint.annotate.original import Original, is_mcap
-from drivelint.annotate.sink import Sink
+from drivelint.annotate import actors, clock, events, marks, spaces
 from drivelint.annotate.tracks import tracks
-from drivelint.report.contract import OUTPUT_SCHEMA
+from drivelint.formats.foxglove import messages as foxglove
+from drivelint.formats.mcap.copy import Original, is_mcap
+from drivelint.formats.mcap.writer import Sink
+from drivelint.result.contract import OUTPUT_SCHEMA
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from drivelint.annotate.events import Message
     from drivelint.annotate.evidence import Evidence
     from drivelint.annotate.road import Road
-    from drivelint.ingest import Trace
+    from drivelint.drive.trace import Trace
 
 CHUNK_BYTES: Final = 1 << 20
 _TRANSFORMS: Final = ("FrameTransform", "FrameTransforms", "TFMessage", "tfMessage", "TransformStamped")

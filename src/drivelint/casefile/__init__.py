@@ -37,7 +37,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 import yaml
 
-from drivelint.casefile import crowd
+from drivelint.casefile import merged_cases as crowd
 from drivelint.casefile.scene import Row, column_of, scene
 from drivelint.errors import RuleError
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import msgspec
 
 from drivelint.casefile import difference, members, place, read_cases
-from drivelint.casefile.crowd import KEYS, crowds, judge, merge, share
+from drivelint.casefile.merged_cases import KEYS, crowds, judge, merge, share
 from drivelint.casefile.mutants import mutants
 from drivelint.errors import RuleError
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.casefile import Case
-    from drivelint.casefile.crowd import Member, Outcome
+    from drivelint.casefile.merged_cases import Member, Outcome
     from drivelint.casefile.mutants import Mutant
     from drivelint.catalogue import Rule
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import duckdb
 
-from drivelint import store
 from drivelint.errors import RuleError
+from drivelint.sql import store
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

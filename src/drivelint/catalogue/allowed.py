@@ -10,8 +10,8 @@ import re
 from functools import cache
 from typing import Final
 
-from drivelint import store
 from drivelint.resources import folder
+from drivelint.sql import store
 
 GIVEN: Final = frozenset({"reference", "reference_step"})
 """Tables that the engine makes for a rule: its reference points, and the steps at which each is judged."""

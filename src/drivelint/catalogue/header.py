@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import msgspec
 
-from drivelint import conditions
+from drivelint.drive import conditions
 from drivelint.errors import RuleError
 
 Kind = Literal["invariant", "execution", "precondition", "postcondition"]

@@ -8,12 +8,12 @@ from difflib import get_close_matches
 from pathlib import Path  # noqa: TC003 - msgspec looks the field types up when it needs them
 from typing import TYPE_CHECKING
 
-from drivelint import store
 from drivelint.catalogue.check import GIVEN, Query, inspect
 from drivelint.catalogue.header import Header, line_of, parse_header
 from drivelint.catalogue.sections import Section, split
 from drivelint.errors import RuleError
 from drivelint.resources import folder
+from drivelint.sql import store
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

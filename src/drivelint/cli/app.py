@@ -16,13 +16,13 @@ import typer
 
 from drivelint import __version__
 from drivelint.cli import explain as explain_
-from drivelint.cli import options, rules, values
+from drivelint.cli import options, results, rules, values
 from drivelint.cli.shell import interruptible, say
 from drivelint.cli.shell import progress as bar
 from drivelint.errors import DriveLintError, ExitCode
 
 if TYPE_CHECKING:
-    from drivelint.report.result import Result
+    from drivelint.result.model import Result
 
 app = typer.Typer(
     name="drivelint",
@@ -129,11 +129,11 @@ def check(
     rule unknown); 75 the machine failed, try again; 130 interrupted.
     """
     from drivelint import run
-    from drivelint.memory import peak, worded
-    from drivelint.report.files import prepare
-    from drivelint.report.gate import Keeper
+    from drivelint.engine.memory import peak, worded
+    from drivelint.gate import Keeper
     from drivelint.report.outputs import write
-    from drivelint.report.result import exit_code
+    from drivelint.result.files import prepare
+    from drivelint.result.model import exit_code
     from drivelint.settings import FILE
 
     keeper = Keeper.of(baseline, waivers, Path(FILE), values.today(today), out)
@@ -292,67 +292,9 @@ def convert(
     typer.echo(said(written))
 
 
-@app.command()
-def report(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="What check --out wrote.")],
-    to: Annotated[
-        options.Report,
-        typer.Option(
-            "--to",
-            help="html: one page that opens offline; junit, sarif (2.1.0), xqar (ASAM): for servers and viewers; "
-            "markdown: for a comment on a pull request.",
-        ),
-    ] = options.Report.html,
-) -> None:
-    """Write a report from a result folder, into it.
-
-    Files: report.html, junit.xml, report.sarif, report.xqar, report.md. Prints the name of the one that was written.
-    """
-    from drivelint.report.files import publish
-    from drivelint.report.load import load
-    from drivelint.report.targets import TARGETS
-
-    name, render = TARGETS[to.value]
-    publish(folder, {name: render(load(folder))}, {})
-    typer.echo(str(folder / name))
-
-
+app.command()(results.report)
 app.command()(explain_.explain)
-
-
-@app.command("diff")
-def diff_(
-    base: Annotated[Path, typer.Argument(metavar="BASE", help="What check --out wrote, earlier.")],
-    new: Annotated[Path, typer.Argument(metavar="NEW", help="What check --out wrote, later.")],
-    format_: Annotated[
-        options.Compared, typer.Option("--format", help="What is printed on stdout.")
-    ] = options.Compared.text,
-    fail_on: Annotated[
-        options.FailOn | None,
-        typer.Option("--fail-on", help="Least severity of a new finding that makes exit code 1. Default: NEW's."),
-    ] = None,
-) -> None:
-    """Compare two results: new, fixed, changed and unchanged findings.
-
-    What NEW did not judge is not fixed: it is listed apart, with the reason. Findings that NEW's run waived do not gate.
-
-    Exit codes: 0 no new finding of a stable rule at or above --fail-on; 1 there is one; 2 usage error.
-    """
-    from drivelint.report.gate import compared, words
-    from drivelint.report.load import load
-
-    earlier, later = load(base), load(new)
-    least = later.fail_on if fail_on is None else fail_on.value
-    found, failing = compared(earlier, later, (base.resolve().name, new.resolve().name), least)
-    if format_ is options.Compared.json:
-        typer.echo(words.to_json(found, failing, least))
-    elif format_ is options.Compared.markdown:
-        from drivelint.report import markdown
-
-        typer.echo(markdown.difference(found, failing, least, later.gate))
-    else:
-        typer.echo(words.text(found, failing, least, later.gate))
-    raise typer.Exit(int(ExitCode.FAILED if failing else ExitCode.OK))
+app.command("diff")(results.diff)
 
 
 def main() -> NoReturn:

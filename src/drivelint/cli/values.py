@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from drivelint.errors import UsageError
 
 if TYPE_CHECKING:
-    from drivelint.ingest.trace import EgoSize
+    from drivelint.drive.trace import EgoSize
 
 
 def today(text: str | None) -> date:
@@ -24,7 +24,7 @@ def today(text: str | None) -> date:
 
 def memory(text: str | None) -> int | None:
     """Read how many bytes the database keeps to, None for `none`; the default if nothing is given. Errors: `UsageError`."""
-    from drivelint.memory import DEFAULT, LEAST
+    from drivelint.engine.memory import DEFAULT, LEAST
 
     if text is None:
         return DEFAULT
@@ -55,7 +55,7 @@ def ego_size(text: str | None) -> EgoSize | None:
     """Read L,W[,AHEAD]. Errors: `UsageError`."""
     if text is None:
         return None
-    from drivelint.ingest.trace import EgoSize
+    from drivelint.drive.trace import EgoSize
 
     try:
         length, width, *rest = (float(part) for part in text.split(","))

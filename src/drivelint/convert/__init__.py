@@ -10,22 +10,22 @@ import pyarrow as pa
 
 from drivelint.convert.guard import refuse_to_overwrite
 from drivelint.convert.tables import MAP_FILE, parquet_bytes
+from drivelint.drive.order import listed
+from drivelint.drive.trace import IngestOptions
+from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import MapError, UsageError
-from drivelint.ingest import IngestOptions, expand, read_trace
-from drivelint.ingest.carried import findings
-from drivelint.ingest.files import CANONICAL
-from drivelint.ingest.order import listed
-from drivelint.maps import MapSource, read_source
-from drivelint.maps.library import MapLibrary
-from drivelint.maps.registry import root_element
-from drivelint.osi import log as osi_log
-from drivelint.report.files import OutputError, prepare, publish
+from drivelint.formats import expand, read_source, read_trace
+from drivelint.formats.files import CANONICAL
+from drivelint.formats.map_registry import root_element
+from drivelint.formats.osi import log as osi_log
+from drivelint.formats.osi.extras import findings
+from drivelint.result.files import OutputError, prepare, publish
+from drivelint.road.contract import MapSource
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from drivelint.ingest import Trace
-    from drivelint.ingest.trace import EgoSize
+    from drivelint.drive.trace import EgoSize, Trace
 
 TABLES: Final = ("actor", "actor_state", "data_log", "declared_event", "quality", "signal_state")
 

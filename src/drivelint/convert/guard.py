@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.convert.tables import is_converted
 from drivelint.errors import UsageError
-from drivelint.ingest.files import CANONICAL, is_canonical_folder
-from drivelint.osi.log import LIBRARY
+from drivelint.formats.files import CANONICAL, is_canonical_folder
+from drivelint.formats.osi.log import LIBRARY
 
 if TYPE_CHECKING:
     from pathlib import Path

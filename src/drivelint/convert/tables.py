@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 import pyarrow.parquet as pq
 
-from drivelint.ingest import parquet
-from drivelint.store import schema
+from drivelint.formats.tables import parquet
+from drivelint.sql.store import schema
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -11,7 +11,7 @@ from drivelint.demo.opendrive import MAKER
 from drivelint.demo.osi_log import mcap
 from drivelint.demo.overtakes import PROFILES, overtakes
 from drivelint.errors import UsageError
-from drivelint.report.files import publish
+from drivelint.result.files import publish
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -6,13 +6,13 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from drivelint.batch import Drive
 from drivelint.demo.osi_log import mcap
 from drivelint.demo.states import HOST_ID, states
-from drivelint.ingest.files import Identity
-from drivelint.ingest.finish import finish
-from drivelint.ingest.trace import IngestOptions, Recording
-from drivelint.maps import MapSource, load_map
+from drivelint.drive.finish import finish
+from drivelint.drive.trace import Identity, IngestOptions, Recording
+from drivelint.engine.batch import Drive
+from drivelint.formats import load_map
+from drivelint.road.contract import MapSource
 
 if TYPE_CHECKING:
     from drivelint.demo.scene import Scene

@@ -10,9 +10,9 @@ from mcap.writer import CompressionType, Writer
 
 from drivelint.demo.opendrive import MAKER
 from drivelint.demo.states import HOST_ID, states
-from drivelint.ingest.trace import NUMBERS, SIZES
-from drivelint.osi.frames import Objects, head, moving_objects
-from drivelint.osi_schema import GROUND_TRUTH, VERSION, descriptor_set
+from drivelint.drive.trace import NUMBERS, SIZES
+from drivelint.formats.osi.frames import Objects, head, moving_objects
+from drivelint.formats.osi.schema import GROUND_TRUTH, VERSION, descriptor_set
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

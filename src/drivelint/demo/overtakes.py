@@ -15,7 +15,7 @@ from drivelint.demo.actors import Actor, car
 from drivelint.demo.line import straight
 from drivelint.demo.road import LANE_M, MPH, Road
 from drivelint.demo.scene import Scene, coming, departure
-from drivelint.profiles import Profile, load_profiles
+from drivelint.engine.profiles import Profile, load_profiles
 
 LOGGED_MPS: Final = 5.22
 MEASURED_M: Final = {"safe": 76.43, "near-miss": 58.33, "collision": 35.63}

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.ingest.trace import BRAKE_LIGHTS, CLASSES, INDICATORS, States
+from drivelint.drive.trace import BRAKE_LIGHTS, CLASSES, INDICATORS, States
 
 if TYPE_CHECKING:
     from collections.abc import Callable

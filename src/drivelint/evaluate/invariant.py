@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from drivelint.evaluate import restricted, terms
+from drivelint.evaluate import applicability as restricted
+from drivelint.evaluate import terms
 
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule

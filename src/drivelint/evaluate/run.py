@@ -8,8 +8,11 @@ from typing import TYPE_CHECKING, Final
 
 import duckdb
 
-from drivelint import store
-from drivelint.evaluate import closing, findings, invariant, occasion, restricted, stage
+from drivelint.evaluate import applicability as restricted
+from drivelint.evaluate import finalize as closing
+from drivelint.evaluate import findings, invariant, stage
+from drivelint.evaluate import reference_points as occasion
+from drivelint.sql import store
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

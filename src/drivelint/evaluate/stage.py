@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from drivelint import conditions, store
-from drivelint.derive import behind
+from drivelint.drive import conditions
+from drivelint.sql import store
+from drivelint.sql.derivations import behind
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

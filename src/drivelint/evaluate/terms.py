@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from drivelint.errors import UsageError
-from drivelint.evaluate import restricted
+from drivelint.evaluate import applicability as restricted
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

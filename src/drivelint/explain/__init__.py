@@ -11,6 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from drivelint import catalogue
+from drivelint.engine.memory import DEFAULT
+from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.errors import UsageError
 from drivelint.explain import evidence
 from drivelint.explain.case import Case, around
@@ -20,17 +22,15 @@ from drivelint.explain.outcome import first_unknown
 from drivelint.explain.sensitivity import Errors, copies, counted
 from drivelint.explain.source import open_drive
 from drivelint.explain.target import Wanted, find
-from drivelint.memory import DEFAULT
-from drivelint.profiles import load_profiles, profile_table
-from drivelint.report import asked as asking
-from drivelint.report.load import load
+from drivelint.result import request as asking
+from drivelint.result.load import load
 
 if TYPE_CHECKING:
-    from drivelint.batch import Drive
+    from drivelint.engine.batch import Drive
     from drivelint.explain.model import Change, Row, Step
     from drivelint.explain.target import Target
-    from drivelint.report.asked import Asked
-    from drivelint.report.result import Result
+    from drivelint.result.model import Result
+    from drivelint.result.request import Asked
 
 __all__ = ["Errors", "Explanation", "Order", "Wanted", "explain"]
 

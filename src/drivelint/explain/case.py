@@ -6,18 +6,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from drivelint.explain import evidence
-from drivelint.explain.lab import Lab, cropped
 from drivelint.explain.outcome import outcomes
+from drivelint.explain.sandbox import Lab, cropped
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     import pyarrow as pa
 
-    from drivelint.batch import Drive
     from drivelint.catalogue import Rule
-    from drivelint.explain.lab import Judged
+    from drivelint.engine.batch import Drive
     from drivelint.explain.model import Step
+    from drivelint.explain.sandbox import Judged
     from drivelint.explain.target import Target
 
 

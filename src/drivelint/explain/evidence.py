@@ -5,14 +5,14 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint import store
 from drivelint.explain.model import Rows, Step
+from drivelint.sql import store
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from drivelint.catalogue import Rule
-    from drivelint.explain.lab import Judged, Lab
+    from drivelint.explain.sandbox import Judged, Lab
     from drivelint.explain.target import Target
 
 MAX_ROWS: Final = 6

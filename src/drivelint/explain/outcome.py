@@ -8,8 +8,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from drivelint.catalogue import Rule
-    from drivelint.explain.lab import Judged
     from drivelint.explain.model import Row, Step
+    from drivelint.explain.sandbox import Judged
     from drivelint.explain.target import Target
 
 NEAR_NS: Final = 2_000_000_000

@@ -14,7 +14,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.batch import STATES, Drive
+from drivelint.engine.batch import STATES, Drive
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -10,18 +10,19 @@ import duckdb
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint import conditions, store
-from drivelint.batch import Drive, on_its_map
+from drivelint.drive import conditions
+from drivelint.drive.finish import SCHEMAS
+from drivelint.drive.trace import EgoSize, IngestOptions, Trace
+from drivelint.engine.batch import Drive, on_its_map
+from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import DriveLintError, UsageError
-from drivelint.ingest import IngestOptions, Trace, read_trace
-from drivelint.ingest.finish import SCHEMAS
-from drivelint.ingest.trace import EgoSize
-from drivelint.maps import Environment
-from drivelint.maps.library import MapLibrary
-from drivelint.maps.tables import schemas
+from drivelint.formats import read_trace
+from drivelint.road.contract import Environment
+from drivelint.road.tables import schemas
+from drivelint.sql import store
 
 if TYPE_CHECKING:
-    from drivelint.report.asked import Asked
+    from drivelint.result.request import Asked
 
 DATABASE = "drivelint.duckdb"
 _OTHER = {"map_quality"}

@@ -7,13 +7,13 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from drivelint.errors import UsageError
-from drivelint.report.text import seconds
+from drivelint.result.text import seconds
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from drivelint.explain.model import Row
-    from drivelint.report.result import Result
+    from drivelint.result.model import Result
 
 OTHERS = 6
 _WEIGHT = {"error": 0, "fail": 1, "unknown": 2, "pass": 3, "not_applicable": 4}

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any, Final
 from rich.console import Group
 from rich.text import Text
 
-from drivelint import store
-from drivelint.declared import EVENTS
+from drivelint.drive.declared import EVENTS
 from drivelint.explain.case import is_gated
 from drivelint.explain.plot import plot
 from drivelint.explain.sensitivity import VERDICTS
 from drivelint.reasons.remedies import remedy
-from drivelint.report.text import seconds
+from drivelint.result.text import seconds
+from drivelint.sql import store
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

@@ -7,18 +7,20 @@ from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
-from drivelint import catalogue, conditions, store
-from drivelint.batch import Drive as Judgeable
-from drivelint.batch import on_its_map
+from drivelint import catalogue
+from drivelint.drive import conditions
+from drivelint.drive.order import listed
+from drivelint.drive.trace import FORMATS, OWN_MAP_UNUSABLE, IngestOptions
+from drivelint.engine.batch import Drive as Judgeable
+from drivelint.engine.batch import on_its_map
+from drivelint.engine.map_library import MapLibrary
+from drivelint.engine.memory import DEFAULT, Memory
+from drivelint.engine.session import Bench
 from drivelint.errors import ExitCode, MapError, TraceError, UsageError
-from drivelint.ingest import IngestOptions, expand, read_trace
-from drivelint.ingest.order import listed
-from drivelint.ingest.trace import FORMATS, OWN_MAP_UNUSABLE
+from drivelint.formats import expand, read_trace
 from drivelint.inspect import advice, model, tracks
 from drivelint.inspect.content import content, size
-from drivelint.judge import Bench
-from drivelint.maps.library import MapLibrary
-from drivelint.memory import DEFAULT, Memory
+from drivelint.sql import store
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,9 +29,8 @@ if TYPE_CHECKING:
     import duckdb
 
     from drivelint.catalogue import Rule
-    from drivelint.ingest import Trace
-    from drivelint.ingest.trace import EgoSize
-    from drivelint.maps import Environment
+    from drivelint.drive.trace import EgoSize, Trace
+    from drivelint.road.contract import Environment
 
 DEFAULT_RULES: Final = ("ukhc",)
 _SEVERITIES: Final = ("error", "warning", "info")

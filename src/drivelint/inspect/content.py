@@ -7,15 +7,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import TraceError
-from drivelint.ingest import bag, parquet, video_mapping
-from drivelint.ingest import mapping as mappings
-from drivelint.ingest.carried import EVENT
-from drivelint.ingest.container import MAGIC, Container
-from drivelint.ingest.files import CANONICAL
-from drivelint.ingest.mapping import GROUP, Mapping, Table
-from drivelint.ingest.osi import OPEN_DRIVE
-from drivelint.ingest.osi_decode import TREES
-from drivelint.ingest.sheets import CsvSheet, ParquetSheet
+from drivelint.formats.files import CANONICAL
+from drivelint.formats.film import mapping as video_mapping
+from drivelint.formats.mcap import bag
+from drivelint.formats.mcap.reader import MAGIC, Container
+from drivelint.formats.osi.decode import TREES
+from drivelint.formats.osi.extras import EVENT
+from drivelint.formats.osi.reader import OPEN_DRIVE
+from drivelint.formats.tables import mapping as mappings
+from drivelint.formats.tables import parquet
+from drivelint.formats.tables.mapping import GROUP, Mapping, Table
+from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet
 from drivelint.inspect.draft import draft
 from drivelint.inspect.model import Channel, Column, Content, Sheet
 
@@ -24,7 +26,7 @@ if TYPE_CHECKING:
 
     from mcap import records
 
-    from drivelint.ingest.video_mapping import Film
+    from drivelint.formats.film.mapping import Film
 
 _HEAD_BYTES: Final = 4096
 _OSI: Final = {(name, "protobuf"): "ground truth" for name in TREES} | {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final
 
-from drivelint.ingest.mapping import QUANTITY, TIME_UNITS, UNITS
+from drivelint.formats.tables.mapping import QUANTITY, TIME_UNITS, UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

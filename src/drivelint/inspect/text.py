@@ -10,8 +10,8 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from drivelint.ingest.mapping import GROUP
-from drivelint.ingest.trace import FORMATS
+from drivelint.drive.trace import FORMATS
+from drivelint.formats.tables.mapping import GROUP
 from drivelint.inspect.rules_text import rules
 from drivelint.inspect.words import amount, holes, many, metres, plural, side, size
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow.compute as pc
 
-from drivelint.ingest.order import MAX_GAP_PERIODS
-from drivelint.ingest.trace import MOTOR_VEHICLES
+from drivelint.drive.order import MAX_GAP_PERIODS
+from drivelint.drive.trace import MOTOR_VEHICLES
 from drivelint.inspect.model import Actor, ClassCount, Clock
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from drivelint.ingest import Trace
+    from drivelint.drive.trace import Trace
 
 MOVED_M = 1.0
 """Who moved by less stood: positions of parked cars are noisy."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from drivelint.conditions import GIVEN
+from drivelint.drive.conditions import GIVEN
 from drivelint.reasons.signals import SIGNAL_OF, provide
 
 _NAMED = "what is asked for above"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
-from drivelint.conditions import SAYS, WORDS
-from drivelint.declared import MODES
-from drivelint.ingest.trace import FORMATS
+from drivelint.drive.conditions import SAYS, WORDS
+from drivelint.drive.declared import MODES
+from drivelint.drive.trace import FORMATS
 
 ADVICE: Final = {
     "map": "the road as OpenDRIVE: --map FILE",

@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import pyarrow.compute as pc
 from lxml import etree
 
-from drivelint.report.gate import words
-from drivelint.report.text import line, times
+from drivelint.gate import words
 from drivelint.report.xml import xml
+from drivelint.result.text import line, times
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     import pyarrow as pa
 
-    from drivelint.report.gate.model import Gate
-    from drivelint.report.result import Result
-    from drivelint.report.text import Row
+    from drivelint.result.gate import Gate
+    from drivelint.result.model import Result
+    from drivelint.result.text import Row
 
 MAX_LINES: Final = 50
 """Findings or reasons listed per test case; the tables hold them all."""

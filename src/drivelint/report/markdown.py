@@ -9,18 +9,18 @@ from urllib.parse import quote
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.report import counts
-from drivelint.report.gate import words
+from drivelint.gate import words
 from drivelint.report.html.anchors import finding_anchor
-from drivelint.report.result import outcome
-from drivelint.report.text import number, seconds, subject, times
+from drivelint.result import counts
+from drivelint.result.model import outcome
+from drivelint.result.text import number, seconds, subject, times
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from drivelint.report.gate.model import Difference, Entry, Gate
-    from drivelint.report.result import Result
-    from drivelint.report.text import Row
+    from drivelint.result.gate import Difference, Entry, Gate
+    from drivelint.result.model import Result
+    from drivelint.result.text import Row
 
 MAX_ROWS: Final = 40
 """Rows per table."""

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from drivelint.report import asked, html, junit, summary
-from drivelint.report.contract import FILES
-from drivelint.report.files import parquet_bytes, publish
-from drivelint.report.gate import store
+from drivelint.report import html, junit, summary
 from drivelint.report.targets import TARGETS
+from drivelint.result import gate_file as store
+from drivelint.result import request as asked
+from drivelint.result.contract import FILES
+from drivelint.result.files import parquet_bytes, publish
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from drivelint.report.result import Result
+    from drivelint.result.model import Result
 
 
 def write(result: Result, out: Path) -> None:

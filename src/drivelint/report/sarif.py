@@ -16,16 +16,16 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint import __version__
-from drivelint.report import counts
-from drivelint.report.gate import words
-from drivelint.report.result import outcome
-from drivelint.report.text import comparison, number, seconds, subject, times
+from drivelint.gate import words
+from drivelint.result import counts
+from drivelint.result.model import outcome
+from drivelint.result.text import comparison, number, seconds, subject, times
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from drivelint.report.result import Result
-    from drivelint.report.text import Row
+    from drivelint.result.model import Result
+    from drivelint.result.text import Row
 
 SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 LEVELS: Final = {"critical": "error", "major": "warning", "minor": "note"}

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 import duckdb
 
 from drivelint import __version__
-from drivelint.report import counts
-from drivelint.report.contract import OUTPUT_SCHEMA
-from drivelint.report.gate import words
-from drivelint.report.result import outcome
+from drivelint.gate import words
+from drivelint.result import counts
+from drivelint.result.contract import OUTPUT_SCHEMA
+from drivelint.result.model import outcome
 
 if TYPE_CHECKING:
-    from drivelint.report.result import Result
+    from drivelint.result.model import Result
 
 
 def render(result: Result) -> bytes:

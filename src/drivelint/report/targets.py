@@ -9,7 +9,7 @@ from drivelint.report import html, junit, markdown, sarif, xqar
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from drivelint.report.result import Result
+    from drivelint.result.model import Result
 
 TARGETS: Final[Mapping[str, tuple[str, Callable[[Result], bytes]]]] = {
     "html": ("report.html", html.render),

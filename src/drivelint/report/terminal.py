@@ -13,15 +13,15 @@ from rich.table import Table
 from rich.text import Text
 
 from drivelint.errors import ExitCode
-from drivelint.report import counts
-from drivelint.report.gate import words
-from drivelint.report.result import outcome
-from drivelint.report.text import NONE, comparison, number, seconds, times
+from drivelint.gate import words
+from drivelint.result import counts
+from drivelint.result.model import outcome
+from drivelint.result.text import NONE, comparison, number, seconds, times
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from drivelint.report.result import Result
+    from drivelint.result.model import Result
 
 MAX_ROWS: Final = 20
 """Rows shown per section; the files hold them all."""

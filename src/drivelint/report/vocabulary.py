@@ -9,10 +9,10 @@ import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from drivelint.conditions import GIVEN, SAYS
-from drivelint.declared import EVENTS, MODES
-from drivelint.ingest.trace import BRAKE_LIGHTS, CLASSES, INDICATORS, SIGNAL_STATES
-from drivelint.maps.signcodes import codes_of
+from drivelint.drive.conditions import GIVEN, SAYS
+from drivelint.drive.declared import EVENTS, MODES
+from drivelint.drive.trace import BRAKE_LIGHTS, CLASSES, INDICATORS, SIGNAL_STATES
+from drivelint.road.signcodes import codes_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING, Any, Final
 from lxml import etree
 
 from drivelint import __version__
-from drivelint.report import counts
-from drivelint.report.gate import words
-from drivelint.report.text import line, seconds, subject, times
+from drivelint.gate import words
 from drivelint.report.xml import xml
+from drivelint.result import counts
+from drivelint.result.text import line, seconds, subject, times
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from drivelint.report.result import Result
-    from drivelint.report.text import Row
+    from drivelint.result.model import Result
+    from drivelint.result.text import Row
 
 LEVELS: Final = {"critical": "1", "major": "2", "minor": "3"}
 """Severity -> error, warning, information. Drafts and waived findings are information: they do not gate."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import shapely
 
-from drivelint import store
+from drivelint.sql import store
 from tests.bench import traffic
 from tests.bench.clock import Span, repeat
 from tests.bench.rivals.other import agree

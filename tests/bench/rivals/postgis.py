@@ -14,12 +14,14 @@ from typing import TYPE_CHECKING, Final
 
 import duckdb
 
-from drivelint import catalogue, store
-from drivelint.batch import Drive
-from drivelint.ingest import IngestOptions, read_trace
-from drivelint.judge import Bench
-from drivelint.maps.library import MapLibrary
-from drivelint.profiles import load_profiles, profile_table
+from drivelint import catalogue
+from drivelint.drive.trace import IngestOptions
+from drivelint.engine.batch import Drive
+from drivelint.engine.map_library import MapLibrary
+from drivelint.engine.profiles import load_profiles, profile_table
+from drivelint.engine.session import Bench
+from drivelint.formats import read_trace
+from drivelint.sql import store
 from tests.bench.clock import now, repeat
 from tests.bench.rivals.other import agree
 from tests.bench.rivals.postgres import database

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import pyarrow.compute as pc
 
-from drivelint.ingest import IngestOptions, read_trace
+from drivelint.drive.trace import IngestOptions
+from drivelint.formats import read_trace
 from tests.bench.clock import Span, median, repeat
 from tests.bench.rivals.other import agree, ask
 from tests.bench.table import Bar, Row

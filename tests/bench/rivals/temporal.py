@@ -6,7 +6,7 @@ import json
 from functools import partial
 from typing import TYPE_CHECKING
 
-from drivelint import store
+from drivelint.sql import store
 from tests.bench import traffic
 from tests.bench.clock import Span, median, repeat
 from tests.bench.rivals.other import agree, ask

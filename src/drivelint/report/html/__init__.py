@@ -18,12 +18,12 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from drivelint import __version__
-from drivelint.report.contract import OUTPUT_SCHEMA
 from drivelint.report.html import page
-from drivelint.report.text import number
+from drivelint.result.contract import OUTPUT_SCHEMA
+from drivelint.result.text import number
 
 if TYPE_CHECKING:
-    from drivelint.report.result import Result
+    from drivelint.result.model import Result
 
 _TEMPLATES: Final = Path(__file__).parent / "templates"
 

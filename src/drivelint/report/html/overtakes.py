@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from drivelint.report.html.anchors import drive_anchor, overtake_anchor
 from drivelint.report.html.scale import Axis
 from drivelint.report.html.svg import num
-from drivelint.report.text import number, seconds, tied
+from drivelint.result.text import number, seconds, tied
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

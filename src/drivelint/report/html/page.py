@@ -7,33 +7,33 @@ from typing import TYPE_CHECKING, Any, Final
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.report import counts
-from drivelint.report.html import front
+from drivelint.report.html import overview as front
 from drivelint.report.html.anchors import drive_anchor, rule_anchor
-from drivelint.report.html.courses import course
+from drivelint.report.html.baseline_status import standing, view
 from drivelint.report.html.glossary import words
-from drivelint.report.html.moments import leading, measured, moments, pictures
+from drivelint.report.html.incidents import leading, measured, moments, pictures
+from drivelint.report.html.involved_actors import parties
+from drivelint.report.html.margin_series import course
 from drivelint.report.html.notes import notes
 from drivelint.report.html.opportunities import opportunities
 from drivelint.report.html.overtakes import views
-from drivelint.report.html.parties import parties
 from drivelint.report.html.plan import shapes
 from drivelint.report.html.reasons import can_be_provided, plain, reasons
 from drivelint.report.html.replay import replays
 from drivelint.report.html.road import Road
-from drivelint.report.html.standing import standing, view
 from drivelint.report.html.timeline import Clock, nothing, shared, timelines
-from drivelint.report.result import outcome
-from drivelint.report.text import number
+from drivelint.result import counts
+from drivelint.result.model import outcome
+from drivelint.result.text import number
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from drivelint.report.html.courses import Course
-    from drivelint.report.html.moments import Key, Measured, Moment
-    from drivelint.report.html.parties import Party
+    from drivelint.report.html.incidents import Key, Measured, Moment
+    from drivelint.report.html.involved_actors import Party
+    from drivelint.report.html.margin_series import Course
     from drivelint.report.html.timeline import Timeline
-    from drivelint.report.result import Result
+    from drivelint.result.model import Result
 
     Row = Mapping[str, Any]
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 import hashlib
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from drivelint.report.counts import SEVERITIES
 from drivelint.report.html.anchors import finding_anchor, rule_anchor
 from drivelint.report.html.reasons import can_be_provided, named, plain
-from drivelint.report.text import number, seconds
+from drivelint.result.counts import SEVERITIES
+from drivelint.result.text import number, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence

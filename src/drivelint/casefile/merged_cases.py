@@ -1,0 +1,141 @@
+"""Cases judged together: as drives of one database, or as egos of one drive.
+
+A drive checked alone has the same rows as in a crowd: a rule whose join leaves out `drive_id` or `ego_id` mixes the
+cases up, and that shows. And many variants of a rule can be judged at once on tables that are filled once.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from drivelint.casefile.scene import Row, database, fill
+from drivelint.evaluate import evaluate
+from drivelint.sql.store import schema
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import duckdb
+
+    from drivelint.catalogue import Rule
+
+KEYS = {"drive_id": "drives of one database", "ego_id": "egos of one drive"}
+"""What tells the cases of a crowd apart, and what they are then."""
+
+_MARKED = ("drive_id", "ego_id", "environment_id")
+_FOUND = "drive_id, ego_id, t_start_ns, profile NULLS LAST, object_id NULLS LAST, occurrence"
+_ORDER = (
+    "drive_id, ego_id, coalesce(t_ref_ns, t_start_ns) NULLS LAST, profile NULLS LAST, object_id NULLS LAST, occurrence"
+)
+
+Scene = dict[str, list[Row]]
+
+
+class Outcome(NamedTuple):
+    """What one rule said about one case: its verdict rows, in the order that `expect` uses, and its finding rows."""
+
+    verdicts: list[Row]
+    findings: list[Row]
+
+
+class Member(NamedTuple):
+    """One case of a crowd: its number there, its tables and the parameters it sets."""
+
+    no: int
+    scene: Scene
+    params: Mapping[str, Any]
+
+
+def judge(rules: Sequence[Rule], scene: Scene, params: Mapping[str, Any]) -> dict[str, Outcome]:
+    """Fill a scene, judge it by all the rules and return rule id -> outcome.
+
+    Errors: `RuleError` for a value that does not fit its column.
+    """
+    con = database()
+    tables = [*scene, "verdict", "finding", "margin"]
+    try:
+        for table, rows in scene.items():
+            fill(con, table, rows)
+        evaluate(con, rules, {rule.id: params for rule in rules})
+        outcomes = {rule.id: Outcome([], []) for rule in rules}
+        for row in _fetch(con, f"SELECT * FROM verdict ORDER BY {_ORDER}"):
+            outcomes[row["rule_id"]].verdicts.append(row)
+        for row in _fetch(con, f"SELECT * FROM finding ORDER BY {_FOUND}"):
+            outcomes[row["rule_id"]].findings.append(row)
+        return outcomes
+    finally:
+        con.execute(";".join(f"DELETE FROM {table}" for table in tables))
+
+
+def crowds(members: Sequence[Member], key: str) -> list[list[Member]]:
+    """Group the cases that can share one database as different drives (or egos: `key` = ego_id).
+
+    They must agree on parameters and on the tables that the key does not tell apart.
+    """
+    groups: dict[str, list[Member]] = {}
+    for member in members:
+        shared = {t: rows for t, rows in member.scene.items() if not _is_apart(t, member.scene, key)}
+        groups.setdefault(repr((sorted(member.params.items()), sorted(shared.items()))), []).append(member)
+    return list(groups.values())
+
+
+def _is_apart(table: str, scene: Scene, key: str) -> bool:
+    """Whether the rows of two cases can stand in one table and be told apart by the key."""
+    names = {name for row in scene[table] for name in row}
+    if key == "drive_id":
+        return key in names or _of_the_map(table)
+    # a table of any actor that tells of egos only
+    return key in names or ("actor_id" in names and {row.get("actor_id") for row in scene[table]} <= _egos(scene))
+
+
+def _egos(scene: Scene) -> set[str]:
+    return {row["ego_id"] for row in scene["clock"]}
+
+
+@cache
+def _of_the_map(table: str) -> bool:
+    return "environment_id" in schema()[table] and "drive_id" not in schema()[table]
+
+
+def merge(crowd: Sequence[Member], key: str) -> Scene:
+    """Return the tables of all cases in one, each case's key beginning with its number."""
+    merged: Scene = {}
+    for member in crowd:
+        for table, rows in member.scene.items():
+            if _is_apart(table, member.scene, key):
+                merged.setdefault(table, []).extend(_marked(row, table, key, member.no) for row in rows)
+            else:
+                merged[table] = rows  # the same in every case of the crowd
+    return merged
+
+
+def _marked(row: Row, table: str, key: str, no: int) -> Row:
+    marked = dict(row)
+    keys = (key, "environment_id") if key == "drive_id" else (key if key in row else "actor_id",)
+    if _of_the_map(table):
+        marked.setdefault("environment_id", "")
+    for name in keys:
+        if marked.get(name) is not None:
+            marked[name] = f"{no}:{marked[name]}"
+    return marked
+
+
+def share(outcome: Outcome, no: int) -> Outcome:
+    """Return what an outcome says about case `no`, its keys as in that case."""
+    return Outcome(*([_unmarked(row, no) for row in rows if _is_of(row, no)] for rows in outcome))
+
+
+def _is_of(row: Row, no: int) -> bool:
+    return any(str(row.get(name)).startswith(f"{no}:") for name in _MARKED)
+
+
+def _unmarked(row: Row, no: int) -> Row:
+    plain = {name: row[name].removeprefix(f"{no}:") for name in _MARKED if isinstance(row.get(name), str)}
+    return {**row, **plain}
+
+
+def _fetch(con: duckdb.DuckDBPyConnection, sql: str) -> list[Row]:
+    result = con.execute(sql)
+    names = [column[0] for column in result.description or ()]
+    return [dict(zip(names, row, strict=True)) for row in result.fetchall()]

@@ -1,0 +1,120 @@
+"""Objects that are sampled at other times than the ego, such as tracks beside odometry: their states at the ego's steps.
+
+Every rule asks who is where at a step of the ego. Between two samples an object is where the straight line puts it (at 10 Hz and
+5 m/s2 that is 6 mm off). Before its first sample and after its last it has no state, and none in a hole of its track. Only where
+the log itself begins or ends within a sample's time, its velocity moves it on to there: the recorder's next frame is all that lacks.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from drivelint.drive.order import MAX_GAP_PERIODS, in_order, listed, wrapped
+from drivelint.drive.trace import NUMBERS, Finding, States
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Times = NDArray[np.int64]
+    Rows = NDArray[np.intp]
+
+SLOWEST_NS: Final = 250_000_000
+"""An object that is sampled more rarely is not aligned: half of that time on, a car that brakes is 8 cm beside the line."""
+RARER: Final = 1.5
+"""So many times the ego's period is another rate, less is a sample that is missing now and then."""
+COVERED: Final = 0.75
+"""A track that has a sample at so many of the ego's steps needs no others."""
+_MOVED: Final = (("x_m", "vx_mps"), ("y_m", "vy_mps"))
+
+
+def aligned(states: States, egos: list[str]) -> tuple[States, list[Finding]]:
+    """Return the states (in order, velocities complete) with those of other rates at the only ego's steps, and what was done."""
+    if len(egos) != 1 or egos[0] not in states.ids:
+        return states, []
+    starts = np.searchsorted(states.actor, np.arange(len(states.ids) + 1))
+    ego = states.ids.index(egos[0])
+    grid = states.t_ns[starts[ego] : starts[ego + 1]]
+    if len(grid) < 2:
+        return states, []
+    period = float(np.median(np.diff(grid)))
+    log_ns = int(states.t_ns.min()), int(states.t_ns.max())
+    kept, added, names, longest = np.ones(len(states), np.bool_), [], [], 0
+    for i, name in enumerate(states.ids):
+        span = slice(int(starts[i]), int(starts[i + 1]))
+        own = _own_period(states.t_ns[span], grid, period)
+        if own is None:
+            continue
+        # a finer track keeps its samples beside those at the ego's steps, every track those of before and after the ego's
+        kept[span] = (own < period) | (states.t_ns[span] < grid[0]) | (states.t_ns[span] > grid[-1])
+        track = _at_steps(states, span, grid, own, log_ns)
+        added.append(track.take(~np.isin(track.t_ns, states.t_ns[span])) if own < period else track)
+        names.append(name)
+        longest = max(longest, own)
+    if not names:
+        return states, []
+    message = (
+        f"actors sampled at other times than the ego ({listed(names)}): their states are interpolated at its steps, "
+        f"between samples no more than {MAX_GAP_PERIODS * longest / 1e9:g} s apart"
+    )
+    finding = Finding("aligned", "info", message, len(names), actor_id=names[0] if len(names) == 1 else None)
+    return in_order(_joined([states.take(kept), *added])), [finding]
+
+
+def _own_period(t_ns: Times, grid: Times, period_ns: float) -> int | None:
+    """Return the period of a track that has to be aligned, or None: its samples are the ego's steps, but for a few."""
+    n = len(t_ns)
+    if n < 2:
+        return None
+    first = int(np.searchsorted(grid, t_ns[0]))
+    if first + n <= len(grid) and np.array_equal(t_ns, grid[first : first + n]):
+        return None
+    own = int(np.median(np.diff(t_ns)))
+    if own > SLOWEST_NS:
+        return None
+    steps = grid[first : np.searchsorted(grid, t_ns[-1], side="right")]
+    shared = len(np.intersect1d(steps, t_ns, assume_unique=True))
+    if shared >= COVERED * len(steps):  # as where there is no step of the ego's at all
+        return None
+    return own if own > RARER * period_ns or shared < 0.5 * n else None
+
+
+def _at_steps(states: States, span: slice, grid: Times, own_ns: int, log_ns: tuple[int, int]) -> States:
+    """Return the states of one track at the steps where they are known. `log_ns`: the first and the last time of the log."""
+    t_ns = states.t_ns[span]
+    first = log_ns[0] if t_ns[0] - log_ns[0] <= own_ns else t_ns[0]
+    last = log_ns[1] if log_ns[1] - t_ns[-1] <= own_ns else t_ns[-1]
+    steps = grid[np.searchsorted(grid, first) : np.searchsorted(grid, last, side="right")]
+    before = np.searchsorted(t_ns, steps, side="right") - 1
+    inside = (before >= 0) & (steps <= t_ns[-1])
+    before = np.clip(before, 0, len(t_ns) - 1)
+    after = np.minimum(before + (inside & (t_ns[before] < steps)), len(t_ns) - 1)
+    known = t_ns[after] - t_ns[before] <= MAX_GAP_PERIODS * own_ns
+    steps, before, after, inside = steps[known], before[known], after[known], inside[known]
+    rows, later = span.start + before, span.start + after
+    apart = np.maximum(t_ns[after] - t_ns[before], 1)
+    share = np.where(inside, (steps - t_ns[before]) / apart, 0.0)
+    numbers = {name: values[rows] for name, values in states.numbers.items()}
+    for name in NUMBERS:
+        values = states.numbers[name]
+        rise = wrapped(values[later] - values[rows]) if name == "yaw_rad" else values[later] - values[rows]
+        numbers[name] = np.where(share > 0.0, values[rows] + share * rise, values[rows])
+    numbers["yaw_rad"] = wrapped(numbers["yaw_rad"])
+    age_s = np.where(inside, 0.0, (steps - t_ns[before]) / 1e9)
+    for place, velocity in _MOVED:
+        numbers[place] = np.where(inside, numbers[place], numbers[place] + age_s * numbers[velocity])
+    codes = {name: values[rows] for name, values in states.codes.items()}
+    return States(states.ids, states.actor[rows], steps, numbers, codes, states.not_finite[rows])
+
+
+def _joined(parts: list[States]) -> States:
+    first = parts[0]
+    return States(
+        first.ids,
+        np.concatenate([part.actor for part in parts]),
+        np.concatenate([part.t_ns for part in parts]),
+        {name: np.concatenate([part.numbers[name] for part in parts]) for name in first.numbers},
+        {name: np.concatenate([part.codes[name] for part in parts]) for name in first.codes},
+        np.concatenate([part.not_finite for part in parts]),
+    )

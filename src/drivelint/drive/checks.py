@@ -1,0 +1,287 @@
+"""The data-quality checks that every import runs: what a log says about itself that cannot all be true.
+
+Each check looks at states in order (by actor and time, no duplicates) and returns findings, one per check and drive.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from drivelint.drive.order import MAX_GAP_PERIODS, listed, wrapped
+from drivelint.drive.trace import MOTOR_VEHICLES, Finding
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from drivelint.drive.actors import Actors
+    from drivelint.drive.order import Steps
+    from drivelint.drive.trace import Severity, States
+
+VELOCITY_MISMATCH_MPS = 1.0
+VELOCITY_MISMATCH_SHARE = 0.15
+"""Velocity may differ from the step in position by 1 m/s + 15 %: millimetre rounding at 20 Hz gives 0.03 m/s, hard
+braking within a step (10 m/s2, 0.1 s) 0.5 m/s, while km/h read as m/s or a flipped axis differ by half or more."""
+YAW_MISMATCH_RAD = np.deg2rad(30.0)
+YAW_SPEED_MPS = 3.0
+"""Slip angles of a car stay below about 10 degrees; below 3 m/s reversing and rounding blur the direction of motion."""
+REVERSING_MPS = 8.0
+REVERSING_RAD = np.deg2rad(150.0)
+"""Nobody reverses faster than this (29 km/h), and whoever reverses also drives forwards somewhere in the log."""
+TELEPORT_M = 3.0
+TELEPORT_FACTOR = 2.0
+"""A step is a jump if longer than 3 m + twice what the higher of both speeds covers: no acceleration explains that."""
+FLAWED_SHARE = 0.5
+"""Where more than half of the moving samples disagree, the units or the frame are wrong, not the sensor."""
+MOVING_SAMPLES = 20
+"""Fewer moving samples than this are too few to blame units or frame."""
+LONG_KINDS = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle"))
+"""Actors whose box is longer than wide."""
+
+
+def run(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[Finding]:
+    """Run every check on states in order. `derived`: velocities come from the positions, comparing says nothing."""
+    findings = [*_not_finite(states), *_not_placed(states), *_sizes(actors), *_gaps(states, step)]
+    if len(states) > 1:
+        jump = _jumps(states, step)
+        findings += _report(
+            states,
+            jump,
+            "teleport",
+            "warning",
+            "position jumps further than any speed explains in {n} of {of} states ({ids})",
+        )
+        if not derived:
+            findings += _velocity(states, step, jump)
+        findings += _yaw(states, actors)
+    return findings
+
+
+def _report(states: States, rows: NDArray[np.bool_], check: str, severity: Severity, text: str) -> list[Finding]:
+    n = int(rows.sum())
+    if n == 0:
+        return []
+    ids = [states.ids[i] for i in np.unique(states.actor[rows])]
+    message = text.format(n=n, ids=listed(ids), of=len(states))
+    return [Finding(check, severity, message, n, int(states.t_ns[rows].min()), ids[0] if len(ids) == 1 else None)]
+
+
+def _not_finite(states: States) -> list[Finding]:
+    return _report(
+        states,
+        states.not_finite,
+        "not_finite",
+        "warning",
+        "NaN or infinity in {n} of {of} states ({ids}): those values are unknown",
+    )
+
+
+def _not_placed(states: States) -> list[Finding]:
+    lost = np.isnan(states.numbers["x_m"]) | np.isnan(states.numbers["y_m"])
+    turned = ~lost & np.isnan(states.numbers["yaw_rad"])
+    return [
+        *_report(
+            states,
+            lost,
+            "no_position",
+            "warning",
+            "no position in {n} of {of} states ({ids}): the actors are present but not placed",
+        ),
+        *_report(
+            states,
+            turned,
+            "no_yaw",
+            "warning",
+            "no heading in {n} of {of} states ({ids}): their boxes cannot be placed",
+        ),
+    ]
+
+
+def _sizes(actors: Actors) -> list[Finding]:
+    length, width = actors.sizes["length_m"], actors.sizes["width_m"]
+    findings = []
+    missing = [actors.ids[i] for i in np.flatnonzero(np.isnan(length) | np.isnan(width))]
+    if missing:
+        message = f"no length or width is known of {listed(missing)}: distances to their boxes are unknown"
+        findings.append(
+            Finding("no_size", "warning", message, len(missing), actor_id=missing[0] if len(missing) == 1 else None)
+        )
+    long_kind = np.array([kind in LONG_KINDS for kind in actors.classes], np.bool_)
+    swapped = [actors.ids[i] for i in np.flatnonzero(long_kind & (length < width))]
+    if swapped:
+        message = f"shorter than wide: {listed(swapped)}: length and width may be swapped"
+        findings.append(
+            Finding(
+                "length_below_width",
+                "warning",
+                message,
+                len(swapped),
+                actor_id=swapped[0] if len(swapped) == 1 else None,
+            )
+        )
+    return findings
+
+
+def _gaps(states: States, step: Steps) -> list[Finding]:
+    """Report holes of the whole log, and holes of single tracks that the log goes on recording through."""
+    import pyarrow as pa
+    import pyarrow.compute as pc
+
+    if step.period_ns <= 0:
+        return []
+    times = np.sort(pc.unique(pa.array(states.t_ns)).to_numpy())
+    dt = np.diff(times)
+    wide = dt > MAX_GAP_PERIODS * step.period_ns
+    findings = []
+    if wide.any():
+        n, first = int(wide.sum()), int(times[:-1][wide][0])
+        message = (
+            f"gaps in the log of more than {MAX_GAP_PERIODS} periods ({step.period_ns / 1e9:g} s each): {n}, "
+            f"the longest {dt.max() / 1e9:g} s, the first from {first / 1e9:g} s: nothing is judged across them"
+        )
+        findings.append(Finding("gap", "warning", message, n, first))
+    hole = np.zeros(len(states), np.bool_)
+    hole[:-1] = step.same & ~step.continuous
+    if findings:  # a hole that is a gap of the whole log is reported once
+        inside = np.searchsorted(times, states.t_ns[:-1][hole[:-1]])
+        hole[np.flatnonzero(hole)[wide[inside]]] = False
+    findings += _report(
+        states,
+        hole,
+        "track_gap",
+        "info",
+        "interruptions of single tracks: {n} ({ids}): those actors are unknown in between",
+    )
+    return findings
+
+
+def _displacement(states: States) -> NDArray[np.float64]:
+    return np.hypot(np.diff(states.numbers["x_m"]), np.diff(states.numbers["y_m"]))
+
+
+def _jumps(states: States, step: Steps) -> NDArray[np.bool_]:
+    speed = np.hypot(states.numbers["vx_mps"], states.numbers["vy_mps"])
+    # where neither speed is known, none says that it is a jump
+    reach = TELEPORT_M + TELEPORT_FACTOR * np.fmax(speed[1:], speed[:-1]) * step.dt_s
+    jump = np.zeros(len(states), np.bool_)
+    with np.errstate(invalid="ignore"):
+        jump[1:] = step.continuous & (_displacement(states) > reach)
+    return jump
+
+
+def _velocity(states: States, step: Steps, jump: NDArray[np.bool_]) -> list[Finding]:
+    """Compare each step in position with the mean of the velocities at its ends.
+
+    Whether units or frame are wrong is asked over a second, where noise in the positions is small against the way.
+    """
+    error, told, moved, usable = _against_positions(states, step, jump, 1)
+    wrong = np.zeros(len(states), np.bool_)
+    with np.errstate(invalid="ignore"):
+        wrong[1:] = usable & (error > VELOCITY_MISMATCH_MPS + VELOCITY_MISMATCH_SHARE * np.maximum(moved, told))
+    second = max(1, round(1e9 / step.period_ns)) if step.period_ns else 1
+    for n_steps in {second: None, 1: None}:
+        error, told, moved, usable = _against_positions(states, step, jump, n_steps)
+        with np.errstate(invalid="ignore"):
+            moving = usable & (np.maximum(moved, told) > YAW_SPEED_MPS)
+            off = moving & (error > VELOCITY_MISMATCH_MPS + VELOCITY_MISMATCH_SHARE * np.maximum(moved, told))
+        n, n_moving = int(off.sum()), int(moving.sum())
+        if n_moving < MOVING_SAMPLES:
+            continue  # tracks shorter than a second
+        if n > FLAWED_SHARE * n_moving:
+            with np.errstate(invalid="ignore", divide="ignore"):
+                ratio = float(np.nanmedian((told / moved)[moving]))
+            text = (
+                f"velocity disagrees with the steps in position in {100.0 * n / n_moving:.0f} % "
+                f"of the moving samples (speed is {ratio:.3g} times the step): {_cause(ratio)}"
+            )
+            return _report(states, wrong, "velocity_mismatch", "error", text.replace("{", "{{").replace("}", "}}"))
+        break
+    return _report(
+        states,
+        wrong,
+        "velocity_mismatch",
+        "warning",
+        "velocity disagrees with the step in position in {n} of {of} states ({ids})",
+    )
+
+
+def _against_positions(
+    states: States, step: Steps, jump: NDArray[np.bool_], n_steps: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+    """Compare the way over every `n_steps` steps of a track with the way that the velocities lead, in m/s.
+
+    Returns by first row (n - n_steps): how far the two ways are apart, the mean speed that is told, the way's speed, and where
+    no jump or hole lies between.
+    """
+    numbers, n = states.numbers, len(states)
+    told_mps = np.hypot(numbers["vx_mps"], numbers["vy_mps"])
+    known = step.continuous & ~jump[1:]
+    for name in ("x_m", "y_m", "vx_mps", "vy_mps"):
+        known = known & np.isfinite(numbers[name][1:]) & np.isfinite(numbers[name][:-1])
+    first = np.arange(max(0, n - n_steps))
+    last = first + n_steps
+    unknown = np.r_[0, np.cumsum(~known)]
+    usable: NDArray[np.bool_] = unknown[first] == unknown[last]
+    span_s = (states.t_ns[last] - states.t_ns[first]) * 1e-9
+    span_s = np.where(span_s > 0.0, span_s, np.nan)
+
+    def led(rate: NDArray[np.float64]) -> NDArray[np.float64]:
+        total = np.r_[0.0, np.cumsum(np.where(known, 0.5 * (rate[1:] + rate[:-1]) * step.dt_s, 0.0))]
+        mean: NDArray[np.float64] = (total[last] - total[first]) / span_s
+        return mean
+
+    way = [(numbers[name][last] - numbers[name][first]) / span_s for name in ("x_m", "y_m")]
+    error = np.hypot(way[0] - led(numbers["vx_mps"]), way[1] - led(numbers["vy_mps"]))
+    return error, led(told_mps), np.hypot(*way), usable
+
+
+def _cause(ratio: float) -> str:
+    """Guess what a wrong ratio of speed to motion comes from."""
+    for factor, cause in (
+        (3.6, "speeds in km/h read as m/s"),
+        (2.237, "speeds in mph read as m/s"),
+        (1 / 3.6, "speeds in m/s read as km/h"),
+        (0.447, "speeds in m/s read as mph"),
+    ):
+        if abs(ratio / factor - 1.0) < 0.03:
+            return cause
+    return (
+        "axes flipped differently for positions and velocities"
+        if abs(ratio - 1.0) < 0.1
+        else "units of speed, position or time are wrong"
+    )
+
+
+def _yaw(states: States, actors: Actors) -> list[Finding]:
+    """Compare the heading of vehicles with their direction of motion."""
+    numbers = states.numbers
+    place = {name: i for i, name in enumerate(actors.ids)}
+    long_kind = np.array([actors.classes[place[name]] in {*LONG_KINDS, None} for name in states.ids], np.bool_)
+    speed = np.hypot(numbers["vx_mps"], numbers["vy_mps"])
+    with np.errstate(invalid="ignore"):
+        moving = (speed > YAW_SPEED_MPS) & long_kind[states.actor] & ~np.isnan(numbers["yaw_rad"])
+        off = np.abs(wrapped(numbers["yaw_rad"] - np.arctan2(numbers["vy_mps"], numbers["vx_mps"])))
+        wrong = moving & (off > YAW_MISMATCH_RAD)
+        backwards = wrong & (off > REVERSING_RAD) & (speed < REVERSING_MPS)
+    forwards = np.bincount(states.actor[moving & ~wrong], minlength=len(states.ids)) > 0
+    # of one that never drives forwards, in company that does, or alone, it is the heading that is right
+    fast = np.bincount(states.actor[wrong & ~backwards], minlength=len(states.ids)) > 0
+    only = (np.bincount(states.actor[backwards], minlength=len(states.ids)) > 0) & ~forwards & ~fast
+    reverses = forwards | only if forwards.any() or only.sum() == 1 else forwards
+    wrong &= ~(backwards & reverses[states.actor])
+    n, n_moving = int(wrong.sum()), int(moving.sum())
+    if n_moving >= MOVING_SAMPLES and n > FLAWED_SHARE * n_moving:
+        degrees = float(np.rad2deg(np.median(off[wrong])))
+        text = (
+            f"heading is off the direction of motion in {100.0 * n / n_moving:.0f} % of the moving samples "
+            f"(by {degrees:.0f} degrees): the unit, sign or zero of the heading is wrong"
+        )
+        return _report(states, wrong, "yaw_mismatch", "error", text)
+    return _report(
+        states,
+        wrong,
+        "yaw_mismatch",
+        "warning",
+        "heading is more than 30 degrees off the direction of motion in {n} of {of} states ({ids})",
+    )

@@ -1,0 +1,270 @@
+"""What a log says about an actor that cannot all be true becomes unknown, so that no verdict is built on it.
+
+Positions decide over velocities and headings as long as they are a track. Where a position jumps, or stands while the velocity
+moves on, the state is unknown (no position, heading or velocity). A track that goes on elsewhere after a jump is another actor's.
+A heading that turns round from one sample to the next while the motion goes on is turned back; one across the motion is unknown.
+A place that is not believed and lies upon another actor is said: whoever bounds how near the two came must know.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from drivelint.drive.contrary import contrary
+from drivelint.drive.jumps import MOVING_MPS, UNPARTED, VELOCITY, Parted, Refused, forget, report
+from drivelint.drive.order import listed, wrapped
+from drivelint.drive.trace import MOTOR_VEHICLES, Finding
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from drivelint.drive.actors import Actors
+    from drivelint.drive.order import Steps
+    from drivelint.drive.trace import States
+
+    Mask = NDArray[np.bool_]
+    Numbers = NDArray[np.float64]
+
+FROZEN_M: Final = 1.0
+FROZEN_SHARE: Final = 0.15
+"""Positions contradict velocities if over a second they lead elsewhere by more than 1 m + 15 % of the way: noise of 0.3 m and
+velocities of 10 % error do not."""
+SHIFT_M: Final = 2.0
+"""A single step contradicts the velocities, whatever the next one does, from this on: six times the noise above."""
+WINDOW_S: Final = 0.5
+LED_M: Final = 0.4
+LED_SHARE: Final = 0.5
+"""A motion has a direction if within a second around it leads 0.4 m on, and half as far as its speed says."""
+REVERSING_MPS: Final = 8.0
+"""Nobody reverses faster than this (29 km/h),"""
+FAST_REVERSING_MPS: Final = 20.0
+STARTING_MPS: Final = 3.0
+"""unless it is seen to stop and to set off backwards: at its first moving sample it is no faster than 3 m/s, and never than 72 km/h."""
+BACKWARDS_RAD: Final = np.deg2rad(150.0)
+SIDEWAYS_RAD: Final = np.deg2rad(30.0)
+SIDEWAYS_MPS: Final = 3.0
+"""A heading this far off the motion is that of a slide, or wrong; slip angles of a car stay below 10 degrees."""
+TURN_RAD: Final = np.deg2rad(90.0)
+SPIN_RAD: Final = np.deg2rad(45.0)
+"""No heading turns round between two samples; and no vehicle spins further than this, which is 450 degrees/s at 10 Hz."""
+LONG_KINDS: Final = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle", None))
+"""Actors whose heading is that of their motion; people and animals face where they like, things have no front."""
+HALF_BOX_M: Final = 6.0
+"""No box reaches further than this from its middle, where its size is not known."""
+
+
+def resolve(states: States, step: Steps, actors: Actors, *, derived: bool, parted: Parted = UNPARTED) -> list[Finding]:
+    """Make what contradicts the motion unknown, in place (states in order, velocities complete).
+
+    `derived`: velocities come from the positions, and contradict nobody. `parted`: what was not believed before.
+    """
+    if len(states) < 3:
+        return []
+    findings: list[Finding] = []
+    places = [parted.refused] if parted.refused else []
+    if not derived:
+        frozen = _frozen(states, step)
+        if frozen.any():
+            places.append(Refused.of(states, frozen))
+        findings += report(
+            states, frozen, "motion_unknown", "position and velocity contradict each other: they are unknown"
+        )
+        forget(states, frozen)
+        astray = contrary(states, step)
+        text = "for half a second and longer the velocity leads elsewhere than the positions: it is unknown"
+        findings += report(states, astray, "velocity_unknown", text)
+        forget(states, astray, VELOCITY)
+    for each in places:
+        findings += _upon_others(states, step, actors, each, parted.alias)
+    turned, sideways = _headings(states, step, actors)
+    yaw = states.numbers["yaw_rad"]
+    if turned.any():
+        text = "the heading is turned round, the motion is not: the motion counts"
+        findings += report(states, turned, "heading_turned", text)
+        yaw = np.where(turned, wrapped(yaw + np.pi), yaw)
+    if sideways.any():
+        findings += report(states, sideways, "heading_unknown", "the heading is across the motion: it is unknown")
+        yaw = np.where(sideways, np.nan, yaw)
+    states.numbers["yaw_rad"] = yaw
+    return findings
+
+
+def _upon_others(
+    states: States, step: Steps, actors: Actors, refused: Refused, alias: Mapping[str, str]
+) -> list[Finding]:
+    """Report the actors of whose refused places one is so near to another actor's place that their boxes may overlap."""
+    index = {name: i for i, name in enumerate(actors.ids)}
+    half = np.hypot(actors.sizes["length_m"], actors.sizes["width_m"]) / 2
+    half = np.where(np.isfinite(half), half, HALF_BOX_M)
+    half_of = half[[index[name] for name in states.ids]][states.actor]
+    placed = np.flatnonzero(np.isfinite(states.numbers["x_m"]) & np.isfinite(states.numbers["y_m"]))
+    placed = placed[np.argsort(states.t_ns[placed], kind="stable")]
+    t_ns, beside = states.t_ns[placed], max(step.period_ns, 1)
+    first = np.searchsorted(t_ns, refused.t_ns - beside)
+    n = np.searchsorted(t_ns, refused.t_ns + beside, side="right") - first
+    place = np.repeat(np.arange(len(n)), n)
+    other = placed[np.arange(len(place)) - np.repeat(np.cumsum(n) - n, n) + first[place]]
+    away = np.hypot(
+        refused.x_m[place] - states.numbers["x_m"][other], refused.y_m[place] - states.numbers["y_m"][other]
+    )
+    own = half[[index[name] for name in refused.actor_ids.tolist()]][place] if len(n) else np.zeros(0)
+    names = np.array(states.ids, dtype=np.str_)
+    # the track that goes on after the jump is the same actor's in the log
+    in_log = np.array([alias.get(name, name) for name in states.ids], dtype=np.str_)
+    own_in_log = np.array([alias.get(name, name) for name in refused.actor_ids.tolist()], dtype=np.str_)
+    upon = (away <= own + half_of[other]) & (in_log[states.actor[other]] != own_in_log[place])
+    findings = []
+    for name in np.unique(refused.actor_ids[place[upon]]).tolist():
+        rows = upon & (refused.actor_ids[place] == name)
+        others = np.unique(names[states.actor[other[rows]]]).tolist()
+        times = np.unique(refused.t_ns[place[rows]])
+        message = (
+            f"a place of {name} that is not believed lies upon {listed(others)}: whether they met there is unknown"
+        )
+        findings.append(Finding("jumps_onto", "warning", message, len(times), int(times[0]), name))
+    return findings
+
+
+def _frozen(states: States, step: Steps) -> Mask:
+    """Return the samples at which positions and velocities contradict each other.
+
+    A sample is one if both steps beside it do, or one of them by far, or if half a second before and after it they lead elsewhere
+    without such steps.
+    """
+    numbers, n = states.numbers, len(states)
+    usable = step.continuous.copy()
+    for name in ("x_m", "y_m", "vx_mps", "vy_mps"):
+        usable &= np.isfinite(numbers[name][1:]) & np.isfinite(numbers[name][:-1])
+    went, led, slack = np.zeros((2, n - 1)), np.zeros((2, n - 1)), np.zeros(n - 1)
+    for i, (place, rate_of) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
+        v = numbers[rate_of]
+        went[i] = np.where(usable, np.diff(numbers[place]), 0.0)
+        led[i] = np.where(usable, 0.5 * (v[1:] + v[:-1]) * step.dt_s, 0.0)
+        # what the velocity did between two samples is not known
+        slack = np.hypot(slack, np.where(usable, 0.5 * np.abs(np.diff(v)) * step.dt_s, 0.0))
+
+    def contradict(way: Numbers, told: Numbers, either: Numbers) -> Mask:
+        fastest = np.maximum(np.hypot(*way), np.hypot(*told))
+        wrong: Mask = np.hypot(*(way - told)) > FROZEN_M + FROZEN_SHARE * fastest + either
+        return wrong
+
+    alone = contradict(went, led, slack)
+    if not alone.any() and not _drifts(went - led, step):
+        return np.zeros(n, np.bool_)
+    ends = np.ones(n + 1, np.bool_)  # beyond a track's end nothing vouches for its last sample
+    ends[1:-1] = alone | ~usable
+    both = ends[:-1] & ends[1:] & (np.r_[alone, False] | np.r_[False, alone])
+    moved = contradict(went, led, slack + SHIFT_M - FROZEN_M)
+    beside = both | np.r_[moved, False] | np.r_[False, moved]
+    went, led, slack = (np.where(alone, 0.0, values) for values in (went, led, slack))
+    first, last = _around(states, np.cumsum(np.r_[False, ~usable]), np.arange(n))
+    sums = {
+        name: np.concatenate([np.zeros((2, 1)), np.cumsum(values, axis=1)], axis=1)
+        for name, values in (("went", went), ("led", led))
+    }
+    loose = np.r_[0.0, np.cumsum(slack)]
+    around = contradict(
+        sums["went"][:, last] - sums["went"][:, first],
+        sums["led"][:, last] - sums["led"][:, first],
+        loose[last] - loose[first],
+    )
+    frozen: Mask = beside | around
+    return frozen
+
+
+def _drifts(rest: Numbers, step: Steps) -> bool:
+    """Look at every half second only: whether anybody's velocities may lead away from its positions at all."""
+    stride = max(1, round(WINDOW_S * 1e9 / step.period_ns)) if step.period_ns else 1
+    way = np.cumsum(rest, axis=1)[:, ::stride]
+    # a window of a second lies in three strides at the most: one of them has a third of what it has
+    return bool((np.hypot(*np.diff(way, axis=1)) > FROZEN_M / 3).any())
+
+
+def _around(
+    states: States, pieces: NDArray[np.integer], rows: NDArray[np.intp]
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return for each of these rows the first and the last row of its piece within half a second of it."""
+    key = pieces.astype(np.int64) * (int(np.ptp(states.t_ns)) + int(4e9)) + (states.t_ns - states.t_ns.min())
+    half = int(WINDOW_S * 1e9)
+    return np.searchsorted(key, key[rows] - half), np.searchsorted(key, key[rows] + half, side="right") - 1
+
+
+def _leads(states: States, rows: Mask) -> Mask:
+    """Keep those rows around which the positions lead on as the speed says: what trembles on the spot has no direction."""
+    found = np.flatnonzero(rows)
+    first, last = _around(states, states.actor, found)
+    numbers = states.numbers
+    speed = np.hypot(numbers["vx_mps"][found], numbers["vy_mps"][found])
+    way = np.hypot(numbers["x_m"][last] - numbers["x_m"][first], numbers["y_m"][last] - numbers["y_m"][first])
+    span = (states.t_ns[last] - states.t_ns[first]) * 1e-9
+    kept = rows.copy()
+    kept[found] = way > np.maximum(LED_M, LED_SHARE * speed * span)
+    return kept
+
+
+def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
+    """Return the samples whose heading is turned round against the motion, and those at which it lies across it.
+
+    A stretch in which a vehicle moves backwards is reversing if it is entered and left by a standstill or with the log, without a
+    turn of the heading, and is slow throughout, or the vehicle is seen to go forwards with that heading before or after, and to
+    gain speed from the standstill between; a stretch across the motion is a slide if the heading turns into it and out of it
+    as far as a vehicle can.
+    """
+    n, numbers = len(states), states.numbers
+    kinds = dict(zip(actors.ids, actors.classes, strict=True))
+    long_kind = np.array([kinds.get(name) in LONG_KINDS for name in states.ids], np.bool_)[states.actor]
+    yaw, speed = numbers["yaw_rad"], np.hypot(numbers["vx_mps"], numbers["vy_mps"])
+    with np.errstate(invalid="ignore"):
+        off = np.abs(wrapped(yaw - np.arctan2(numbers["vy_mps"], numbers["vx_mps"])))
+        moving = long_kind & (speed > MOVING_MPS) & np.isfinite(yaw)
+        backwards = moving & (off > BACKWARDS_RAD)
+        across = moving & (speed > SIDEWAYS_MPS) & (off > SIDEWAYS_RAD) & ~backwards
+        turn = np.where(step.same, np.abs(wrapped(np.diff(yaw))), 0.0)
+    nothing = np.zeros(n, np.bool_)
+    if not (backwards.any() or across.any()):
+        return nothing, nothing
+    backwards, across = _leads(states, backwards), _leads(states, across)
+    forwards = moving & ~backwards & ~across
+    turned, sideways = nothing, nothing.copy()
+    row = np.arange(n)
+    # the last row before, and the first one after, at which its vehicle goes forwards; and how often headings have turned until a row
+    went = np.maximum.accumulate(np.where(forwards, row, -1))
+    goes = np.minimum.accumulate(np.where(forwards, row, n)[::-1])[::-1]
+    turns_until = np.r_[0, np.cumsum(turn > TURN_RAD)]
+
+    def shown(end: int, forth: int) -> bool:
+        return bool(
+            0 <= forth < n
+            and states.actor[forth] == states.actor[end]
+            and turns_until[forth] == turns_until[end]
+            and speed[end] < STARTING_MPS
+        )
+
+    for rows, out, most in ((backwards, turned, TURN_RAD), (across, sideways, SPIN_RAD)):
+        turns = turn > most
+        for first, last in _runs(states, rows):
+            seam = (first > 0 and step.same[first - 1]), (last < n - 1 and step.same[last])
+            broken = (seam[0] and turns[first - 1]) or (seam[1] and turns[last])
+            beside = (seam[0] and forwards[first - 1]) or (seam[1] and forwards[last + 1])
+            if out is turned:
+                fastest = FAST_REVERSING_MPS if shown(first, went[first]) or shown(last, goes[last]) else REVERSING_MPS
+                real = speed[first : last + 1].max() < fastest and not broken and not beside
+            else:
+                real = beside and not broken and not turns[first:last].any()
+            if not real:
+                out[first : last + 1] = True
+    return turned, sideways
+
+
+def _runs(states: States, rows: Mask) -> list[tuple[int, int]]:
+    """Return the first and the last row of each stretch of marked rows of one actor."""
+    if not rows.any():
+        return []
+    same = np.r_[False, (states.actor[1:] == states.actor[:-1]) & rows[:-1] & rows[1:]]
+    first = np.flatnonzero(rows & ~same)
+    last = np.flatnonzero(rows & ~np.r_[same[1:], False])
+    return list(zip(first.tolist(), last.tolist(), strict=True))

@@ -1,0 +1,273 @@
+"""From a reader's recording to the tables of the contract: ordered, completed, checked, egos chosen."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyarrow as pa
+
+from drivelint.drive import actors as actor_rows
+from drivelint.drive import checks, contradiction, ego, jumps
+from drivelint.drive.align import aligned
+from drivelint.drive.headlights import with_lamps
+from drivelint.drive.motion import complete_motion
+from drivelint.drive.order import in_order, listed, steps, without_duplicates, wrapped
+from drivelint.drive.removed import without_removed
+from drivelint.drive.restart import without_restarts
+from drivelint.drive.trace import BRAKE_LIGHTS, EPOCH_NS, INDICATORS, NUMBERS, SIZES, Finding, Trace
+from drivelint.errors import TraceError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from drivelint.drive.actors import Actors
+    from drivelint.drive.trace import Identity, IngestOptions, Recording, States
+
+_S, _F, _I, _B = pa.string(), pa.float64(), pa.int64(), pa.bool_()
+SCHEMAS: dict[str, dict[str, pa.DataType]] = {
+    "data_log": {
+        "drive_id": _S, "file_name": _S, "sha256": _S, "format": _S, "environment_id": _S,
+        "t_start_ns": _I, "t_end_ns": _I, "utc_start_ns": _I, "n_states": _I, "sensor_range_m": _F,
+        "map_offset_x_m": _F, "map_offset_y_m": _F,
+        "has_indicator": _B, "has_brake_light": _B, "has_acceleration": _B, "in_sight": _B,
+    },
+    "actor": {"drive_id": _S, "actor_id": _S, "actor_class": _S, **dict.fromkeys(SIZES, _F), "is_ego": _B},
+    "actor_state": {
+        "drive_id": _S, "actor_id": _S, "t_ns": _I, **dict.fromkeys(NUMBERS, _F), "indicator": _S, "brake_light": _S,
+    },
+    "signal_state": {"drive_id": _S, "signal_id": _S, "t_ns": _I, "state": _S},
+    "declared_event": {"drive_id": _S, "actor_id": _S, "t_ns": _I, "event": _S, "value": _S},
+    "drive_condition": {"drive_id": _S, "condition": _S, "value": _S, "source": _S},
+    "quality": {
+        "drive_id": _S, "check_id": _S, "severity": _S, "actor_id": _S, "n": _I, "t_first_ns": _I, "message": _S,
+    },
+}  # fmt: skip
+"""Column names and types of the tables of `schemas/model.sql`, in its order."""
+_KEYS = {"signal_state": ("signal_id", "t_ns", "state"), "declared_event": ("t_ns", "actor_id", "event", "value")}
+
+
+def finish(path: Path, identity: Identity, recording: Recording, options: IngestOptions) -> Trace:
+    """Order, complete and check what a reader found. Errors: `TraceError` when nothing can be judged."""
+    if not len(recording.states):
+        raise TraceError(f"{path}: no actor states in this log: nothing can be judged")
+    states, restarts = without_restarts(recording.states)
+    states, findings = without_duplicates(in_order(states))
+    assumed = any(f.check_id == "assumed_motion" for f in recording.findings)
+    named = recording.ego_ids if options.ego is None else [options.ego]
+    step = steps(states)
+    gone: list[Finding] = []
+    if not assumed:
+        states, gone = without_removed(states, step, whole=named)
+        step = steps(states) if gone else step
+    parted = jumps.part(states, step, whole=named) if not assumed else jumps.UNPARTED
+    if parted.alias:
+        states = in_order(states)
+        step = steps(states)
+    _wrap_heading(states)
+    motion = complete_motion(states, step, most=_replaceable(recording))
+    actors, varying = _actors(recording, states, parted.alias)
+    egos, chosen = ego.choose(path, actors, options.ego, recording.ego_ids, needed=options.need_ego)
+    chosen += ego.sized(actors, egos, options.ego_size)
+    derived = any(f.check_id == "velocity_derived" and f.n == len(states) for f in [*recording.findings, *motion])
+    checked = checks.run(states, step, actors, derived=derived)
+    _refuse_wrong_units(path, recording, checked)
+    unclear = contradiction.resolve(states, step, actors, derived=derived, parted=parted) if not assumed else []
+    states, moved = aligned(states, egos)
+    is_ego = np.isin(np.arange(len(states.ids)), [i for i, name in enumerate(states.ids) if name in egos])[states.actor]
+    findings = [
+        *recording.findings,
+        *restarts,
+        *findings,
+        *gone,
+        *parted.findings,
+        *motion,
+        *varying,
+        *checked,
+        *unclear,
+        *chosen,
+        *moved,
+        *_lights(states, egos, is_ego),
+    ]
+    drive = identity.drive_id
+    tables = {
+        "data_log": _data_log(identity, recording, states, is_ego, options),
+        "actor": _actor_table(drive, actors, egos),
+        "actor_state": _state_table(drive, states),
+        "signal_state": _extra(drive, "signal_state", recording.signals),
+        "declared_event": _extra(drive, "declared_event", with_lamps(recording.events, states)),
+        "drive_condition": _conditions(drive, recording.conditions, dict(options.conditions)),
+        "quality": _quality(drive, findings),
+    }
+    return Trace(
+        drive,
+        path,
+        tables,
+        recording.embedded_map,
+        recording.map_offset,
+        recording.notes,
+        recording.frame_times,
+        recording.geo_reference,
+    )
+
+
+def _actors(recording: Recording, states: States, alias: Mapping[str, str]) -> tuple[Actors, list[Finding]]:
+    if recording.actors is None:
+        return actor_rows.from_states(states)
+    return actor_rows.from_table(recording.actors, states, alias), []
+
+
+def with_finding(trace: Trace, finding: Finding) -> Trace:
+    """Return the trace with one more row in `quality`."""
+    rows = pa.concat_tables([trace.tables["quality"], _quality(trace.drive_id, [finding])])
+    ordered = rows.sort_by([(name, "ascending") for name in ("check_id", "actor_id", "t_first_ns", "message")])
+    return replace(trace, tables={**trace.tables, "quality": ordered})
+
+
+def _replaceable(recording: Recording) -> float:
+    """Return the share of the motion for which velocities that disagree with it may be replaced.
+
+    What a film's mapping assumes is asked for; of most actors' velocities another mapping is at fault, and can be corrected.
+    """
+    if any(finding.check_id == "assumed_motion" for finding in recording.findings):
+        return 0.0
+    return 0.5 if recording.strict_units else 1.0
+
+
+def _wrap_heading(states: States) -> None:
+    if "yaw_rad" in states.numbers:
+        states.numbers["yaw_rad"] = wrapped(states.numbers["yaw_rad"])
+
+
+def _refuse_wrong_units(path: Path, recording: Recording, findings: list[Finding]) -> None:
+    """Refuse a log whose motion and headings or velocities are of two units or frames: any verdict on it would be chance."""
+    remedy = (
+        "correct the mapping's units or frame"
+        if recording.strict_units
+        else "record or convert it again in its format's"
+    )
+    for finding in findings:
+        if finding.severity == "error":
+            raise TraceError(f"{path}: {finding.message}: {remedy}")
+
+
+def _lights(states: States, egos: list[str], is_ego: NDArray[np.bool_]) -> list[Finding]:
+    findings = []
+    for column, what in (("indicator", "indicator"), ("brake_light", "brake light")):
+        codes = states.codes.get(column)
+        unknown = is_ego & (codes < 0) if codes is not None else is_ego
+        n, of = int(unknown.sum()), int(is_ego.sum())
+        if n == 0:
+            continue
+        message = (
+            f"the {what} of the ego ({listed(egos)}) is unknown in {n} of {of} states: rules that need it are unknown"
+        )
+        only = egos[0] if len(egos) == 1 else None
+        findings.append(Finding(f"no_{column}", "info", message, n, int(states.t_ns[unknown].min()), only))
+    return findings
+
+
+def _data_log(
+    identity: Identity, recording: Recording, states: States, is_ego: NDArray[np.bool_], options: IngestOptions
+) -> pa.Table:
+    start = int(states.t_ns.min())
+    offset = recording.map_offset or (None, None)
+    known = {c: c in states.codes and bool((states.codes[c][is_ego] >= 0).any()) for c in ("indicator", "brake_light")}
+    row = {
+        "drive_id": identity.drive_id,
+        "file_name": identity.file_name,
+        "sha256": identity.sha256,
+        "format": recording.format,
+        "environment_id": None,
+        "t_start_ns": start,
+        "t_end_ns": int(states.t_ns.max()),
+        "utc_start_ns": start if start >= EPOCH_NS else recording.utc_start_ns,
+        "n_states": len(states),
+        "sensor_range_m": recording.sensor_range_m if options.sensor_range_m is None else options.sensor_range_m,
+        "map_offset_x_m": offset[0],
+        "map_offset_y_m": offset[1],
+        "has_indicator": known["indicator"],
+        "has_brake_light": known["brake_light"],
+        "has_acceleration": not bool(np.isnan(states.numbers["ax_mps2"][is_ego]).all()),
+        "in_sight": options.in_sight,
+    }
+    return _table("data_log", {name: [value] for name, value in row.items()})
+
+
+def _actor_table(drive: str, actors: Actors, egos: list[str]) -> pa.Table:
+    columns = {
+        "drive_id": [drive] * len(actors.ids),
+        "actor_id": actors.ids,
+        "actor_class": actors.classes,
+        **{name: _nullable(actors.sizes[name]) for name in SIZES},
+        "is_ego": [name in egos for name in actors.ids],
+    }
+    return _table("actor", columns)
+
+
+def _state_table(drive: str, states: States) -> pa.Table:
+    n = len(states)
+    columns = {
+        "drive_id": pa.repeat(pa.scalar(drive, _S), n),
+        "actor_id": _words(states.actor, tuple(states.ids)),
+        "t_ns": states.t_ns,
+        **{name: _nullable(states.numbers[name]) for name in NUMBERS},
+        "indicator": _words(states.codes.get("indicator", np.full(n, -1, np.int8)), INDICATORS),
+        "brake_light": _words(states.codes.get("brake_light", np.full(n, -1, np.int8)), BRAKE_LIGHTS),
+    }
+    return _table("actor_state", columns)
+
+
+def _extra(drive: str, name: str, table: pa.Table | None) -> pa.Table:
+    """Bring a reader's signal states or events into the contract's columns and order, equal rows once."""
+    if table is None:
+        return _table(name, {column: [] for column in SCHEMAS[name]})
+    keys = _KEYS[name]
+    rows = (
+        table.select(keys)
+        .group_by(list(keys), use_threads=False)
+        .aggregate([])
+        .sort_by([(key, "ascending") for key in keys])
+    )
+    return _table(
+        name, {"drive_id": pa.repeat(pa.scalar(drive, _S), rows.num_rows), **{c: rows.column(c) for c in keys}}
+    )
+
+
+def _conditions(drive: str, trace: Mapping[str, str], env: Mapping[str, str]) -> pa.Table:
+    """Bring together what the log says and what the user gives, which counts more; one row per condition."""
+    rows = sorted({**{c: (v, "trace") for c, v in trace.items()}, **{c: (v, "env") for c, v in env.items()}}.items())
+    columns = {
+        "drive_id": [drive] * len(rows),
+        "condition": [condition for condition, _ in rows],
+        "value": [value for _, (value, _) in rows],
+        "source": [source for _, (_, source) in rows],
+    }
+    return _table("drive_condition", columns)
+
+
+def _quality(drive: str, findings: list[Finding]) -> pa.Table:
+    # a converted log brings findings that may be found again
+    rows = sorted(dict.fromkeys(findings), key=lambda f: (f.check_id, f.actor_id or "", f.t_first_ns or 0, f.message))
+    columns: dict[str, list[object]] = {"drive_id": [drive] * len(rows)}
+    for name in ("check_id", "severity", "actor_id", "n", "t_first_ns", "message"):
+        columns[name] = [getattr(row, name) for row in rows]
+    return _table("quality", columns)
+
+
+def _table(name: str, columns: Mapping[str, object]) -> pa.Table:
+    schema = pa.schema([pa.field(column, kind) for column, kind in SCHEMAS[name].items()])
+    return pa.table({column: columns[column] for column in SCHEMAS[name]}, schema=schema)
+
+
+def _nullable(values: NDArray[np.float64]) -> pa.Array:
+    return pa.array(values, from_pandas=True)
+
+
+def _words(codes: NDArray[np.int32] | NDArray[np.int8], words: tuple[str, ...]) -> pa.Array:
+    """Spell out codes as strings, -1 as NULL."""
+    return pa.DictionaryArray.from_arrays(pa.array(codes, mask=codes < 0), pa.array(words, _S)).cast(_S)

@@ -1,0 +1,47 @@
+"""A recorded state of the headlights as declared events: the one way in which rules hear of a mode of the vehicle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+if TYPE_CHECKING:
+    from drivelint.drive.trace import States
+
+HEADLIGHTS: Final = "headlights"
+"""Name of the code in `States.codes`, which indexes `OFF_ON`, and of the event."""
+OFF_ON: Final = ("off", "on")
+
+
+def with_lamps(events: pa.Table | None, states: States) -> pa.Table | None:
+    """Return the log's events with a row for each change of an actor's headlights; a value of NULL: not known from then on.
+
+    `states` in order of actor and time. An actor that declares its headlights itself is left as it is.
+    """
+    codes = states.codes.get(HEADLIGHTS)
+    if codes is None or not (codes >= 0).any():
+        return events
+    n = len(states)
+    first = np.ones(n, np.bool_)
+    first[1:] = states.actor[1:] != states.actor[:-1]
+    changed = first.copy()
+    changed[1:] |= codes[1:] != codes[:-1]
+    declared = (
+        set() if events is None else set(events.filter(pc.equal(events["event"], HEADLIGHTS))["actor_id"].to_pylist())
+    )
+    told = np.zeros(len(states.ids), np.bool_)
+    told[np.unique(states.actor[codes >= 0])] = True
+    told &= ~np.isin(states.ids, sorted(declared))
+    rows = np.flatnonzero(changed & told[states.actor])
+    lamps = pa.table(
+        {
+            "t_ns": pa.array(states.t_ns[rows], pa.int64()),
+            "actor_id": pa.array([states.ids[i] for i in states.actor[rows]], pa.string()),
+            "event": pa.array([HEADLIGHTS] * len(rows), pa.string()),
+            "value": pa.array([None if code < 0 else OFF_ON[code] for code in codes[rows]], pa.string()),
+        }
+    )
+    return lamps if events is None else pa.concat_tables([events.select(lamps.column_names), lamps])

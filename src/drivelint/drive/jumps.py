@@ -1,0 +1,214 @@
+"""Jumps of a position: the states around one are unknown, and a track that goes on elsewhere after one is another actor's."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from drivelint.drive.off_track import off_track
+from drivelint.drive.order import listed
+from drivelint.drive.trace import Finding
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from numpy.typing import NDArray
+
+    from drivelint.drive.order import Steps
+    from drivelint.drive.trace import States
+
+    Mask = NDArray[np.bool_]
+    Numbers = NDArray[np.float64]
+
+JUMP_M: Final = 3.0
+JUMP_MPS2: Final = 10.0
+"""A step is a jump if it is longer than both its neighbours foretell by 3 m + 10 m/s2 dt2: no tyre does that, and a full stop
+within one sample of 0.1 s, as simulators have it, only from more than 30 m/s."""
+SHORT_S: Final = 2.0
+"""A piece of a track between two jumps that is shorter than this is an outlier; a longer one is somebody's track."""
+CORRECTED_M: Final = 10.0
+CORRECTED_LEFT_M: Final = 1.5
+CORRECTED_MPS: Final = 3.0
+"""A place is put right by no more than this along the lane, and to its side, where no other lane is; the velocity goes on."""
+MOVING_MPS: Final = 1.0
+"""Below this the direction of motion is noise, and the heading is what there is."""
+VELOCITY: Final = ("vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
+STATE: Final = ("x_m", "y_m", "z_m", "yaw_rad", *VELOCITY)
+
+
+@dataclass(frozen=True)
+class Refused:
+    """Places that the log gives and that are not believed: parallel arrays, `actor_ids` those of the finished drive."""
+
+    actor_ids: NDArray[np.str_]
+    t_ns: NDArray[np.int64]
+    x_m: Numbers
+    y_m: Numbers
+
+    @classmethod
+    def of(cls, states: States, rows: Mask) -> Refused:
+        """Take the places of these rows."""
+        names = np.array(states.ids, dtype=np.str_)[states.actor[rows]]
+        return cls(names, states.t_ns[rows], states.numbers["x_m"][rows], states.numbers["y_m"][rows])
+
+    def with_more(self, more: Refused) -> Refused:
+        """Return these places and those."""
+        pairs = ((getattr(self, name), getattr(more, name)) for name in ("actor_ids", "t_ns", "x_m", "y_m"))
+        return Refused(*map(np.concatenate, pairs))
+
+
+@dataclass(frozen=True)
+class Parted:
+    """`alias`: new actor id -> the id in the log, where a track goes on elsewhere after a jump."""
+
+    findings: list[Finding]
+    alias: dict[str, str]
+    refused: Refused | None = None
+
+
+UNPARTED: Final = Parted([], {})
+
+
+def part(states: States, step: Steps, *, whole: Collection[str]) -> Parted:
+    """Make what lies at jumps unknown and give what goes on elsewhere an id of its own, in place (states in order).
+
+    `whole`: actors that keep their id (the egos that are named).
+    """
+    if len(states) < 3 or not {"x_m", "y_m"} <= states.numbers.keys():
+        return UNPARTED
+    jump = jumps(states, step)
+    findings: list[Finding] = []
+    alias: dict[str, str] = {}
+    unknown, pieces = _around_jumps(states, jump)
+    if jump.any():
+        findings = report(states, unknown, "teleport", "the position jumps: they are unknown around it")
+        alias = _renamed(states, pieces, whole, findings)
+    refused = Refused.of(states, unknown)
+    forget(states, unknown)
+    beside = off_track(states, step)
+    if beside.any():
+        text = "the position is beside its track, for a sample or by a step that nobody drives: they are unknown there"
+        findings += report(states, beside, "teleport", text)
+        refused = refused.with_more(Refused.of(states, beside))
+        forget(states, beside)
+    return Parted(findings, alias, refused) if findings else UNPARTED
+
+
+def forget(states: States, rows: Mask, what: tuple[str, ...] = STATE) -> None:
+    """Make these numbers of these rows unknown, in place."""
+    if rows.any():
+        for name in set(what) & states.numbers.keys():
+            states.numbers[name] = np.where(rows, np.nan, states.numbers[name])
+
+
+def report(states: States, rows: Mask, check: str, text: str) -> list[Finding]:
+    """Return a finding on these rows; none, where there are none."""
+    n = int(rows.sum())
+    if not n:
+        return []
+    ids = [states.ids[i] for i in np.unique(states.actor[rows])]
+    message = f"{n} of {len(states)} states ({listed(ids)}): {text}"
+    only = ids[0] if len(ids) == 1 else None
+    return [Finding(check, "warning", message, n, int(states.t_ns[rows].min()), only)]
+
+
+def jumps(states: States, step: Steps) -> Mask:
+    """Return per step (n - 1) whether it is a jump: longer than the step before it and the one after it foretell.
+
+    At a track's ends, and beside a hole, the only neighbour decides.
+    """
+    dx, dy = np.diff(states.numbers["x_m"]), np.diff(states.numbers["y_m"])
+    dt = np.where(step.dt_s > 0.0, step.dt_s, np.nan)
+    limit = JUMP_M + JUMP_MPS2 * dt**2
+    with np.errstate(invalid="ignore"):
+        far: Mask = step.continuous & (np.hypot(dx, dy) > limit)
+    rows = np.flatnonzero(far)
+    if not len(rows):
+        return far
+    told, against = np.zeros(len(rows), np.int8), np.zeros(len(rows), np.int8)
+    for side in (-1, 1):
+        beside = np.clip(rows + side, 0, len(dx) - 1)
+        known = (beside == rows + side) & step.continuous[beside] & np.isfinite(dx[beside])
+        scale = dt[rows] / dt[beside]
+        with np.errstate(invalid="ignore"):
+            off = np.hypot(dx[rows] - scale * dx[beside], dy[rows] - scale * dy[beside]) > limit[rows]
+        told += known
+        against += known & off
+    far[rows] = (told > 0) & (against == told)
+    return far
+
+
+def _around_jumps(states: States, jump: Mask) -> tuple[Mask, NDArray[np.int32]]:
+    """Return which samples jumps make unknown, and the number of each sample's piece of its track."""
+    n = len(states)
+    unknown, pieces = np.zeros(n, np.bool_), np.zeros(n, np.int32)
+    if not jump.any():
+        return unknown, pieces
+    unknown[:-1] |= jump
+    unknown[1:] |= jump
+    for actor in np.unique(states.actor[:-1][jump]):
+        span = slice(*np.searchsorted(states.actor, [actor, actor + 1]))
+        cuts = np.flatnonzero(jump[span.start : span.stop - 1]) + span.start + 1
+        bounds = [span.start, *cuts.tolist(), span.stop]
+        number, last = 0, None
+        for first, end in pairwise(bounds):
+            if (states.t_ns[end - 1] - states.t_ns[first]) * 1e-9 < SHORT_S and len(bounds) > 2:
+                unknown[first:end] = True
+                pieces[first:end] = number
+                continue
+            if last is not None and not _goes_on(states, last, first):
+                number += 1
+            pieces[first:end] = number
+            last = end - 1
+    return unknown, pieces
+
+
+def _goes_on(states: States, last: int, first: int) -> bool:
+    """Say whether the track that ends at row `last` can be that which begins at row `first`, at the velocities it had there.
+
+    Either it can have got there, or its place is put right along its lane, as maps and filters do, and it moves on as before.
+    """
+    x, y, t_s = states.numbers["x_m"], states.numbers["y_m"], states.t_ns * 1e-9
+    gap = t_s[first] - t_s[last]
+    if gap > 2 * SHORT_S:
+        return False
+    before, after = (np.array([x[i] - x[i - 1], y[i] - y[i - 1]]) / (t_s[i] - t_s[i - 1]) for i in (last, first + 1))
+    way = np.array([x[first] - x[last], y[first] - y[last]])
+    fastest = np.nan_to_num(np.hypot(*np.transpose([before, after]))).max()
+    if np.hypot(*way) <= JUMP_M + fastest * gap + JUMP_MPS2 * gap**2 / 2:
+        return True
+    speed = float(np.hypot(*before))
+    if not speed > MOVING_MPS or not np.hypot(*(after - before)) <= JUMP_MPS2 * gap + CORRECTED_MPS:
+        return False
+    ahead, left = before / speed @ way - speed * gap, (before[0] * way[1] - before[1] * way[0]) / speed
+    return bool(abs(ahead) <= CORRECTED_M and abs(left) <= CORRECTED_LEFT_M)
+
+
+def _renamed(
+    states: States, pieces: NDArray[np.int32], whole: Collection[str], findings: list[Finding]
+) -> dict[str, str]:
+    """Give each later piece of a track that jumped an id of its own, in place; return new id -> old id."""
+    alias: dict[str, str] = {}
+    if not pieces.any():
+        return alias
+    kept = {i for i, name in enumerate(states.ids) if name in whole}
+    keys = np.where(np.isin(states.actor, list(kept)), 0, pieces)
+    ids, actor = list(states.ids), states.actor.copy()
+    for i in np.unique(states.actor[keys > 0]):
+        for number in range(1, int(keys[states.actor == i].max()) + 1):
+            name = f"{states.ids[i]}#{number + 1}"
+            while name in ids:
+                name += "'"
+            actor[(states.actor == i) & (keys == number)] = len(ids)
+            ids.append(name)
+            alias[name] = states.ids[i]
+    if alias:
+        message = (
+            f"the track goes on elsewhere after a jump: from there on it is another actor's ({listed(sorted(alias))})"
+        )
+        findings.append(Finding("track_parted", "warning", message, len(alias), actor_id=None))
+    states.ids, states.actor = ids, actor
+    return alias

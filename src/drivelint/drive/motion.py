@@ -1,0 +1,178 @@
+"""Velocities that the log does not have, or that are not what its positions do: derived from these, never without saying so."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from drivelint.drive.order import Steps, listed
+from drivelint.drive.trace import Finding
+from drivelint.drive.velocity import KNOWN_MPS, MOVED_M, derived
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from drivelint.drive.trace import States
+
+WRONG_MPS = 1.0
+WRONG_SHARE = 0.15
+"""A velocity is not the motion if over a second it leads more than this elsewhere (see `checks.VELOCITY_MISMATCH_MPS`)."""
+WRONG_SECOND_NS = 1_000_000_000
+WRONG_WINDOWS = 20
+"""Over a second the trembling of positions averages out, which step by step is worse than any velocity: so many must be wrong."""
+
+
+def complete_motion(states: States, step: Steps, *, most: float = 1.0) -> list[Finding]:
+    """Fill velocities that are absent, zero although the actor moves, or of another motion than its positions'.
+
+    `most`: the share of the motion up to which it may be of another; beyond that all velocities stay. Accelerations that were
+    never measured are dropped. `states` in order, changed in place: every column of `NUMBERS` exists afterwards.
+    """
+    from drivelint.drive.trace import NUMBERS
+
+    n = len(states)
+    for name in NUMBERS:
+        states.numbers.setdefault(name, np.full(n, np.nan))
+    if n == 0:
+        return []
+    starts = np.flatnonzero(np.r_[True, ~step.same])
+    findings = _velocity(states, step, starts, most)
+    findings += _acceleration(states, starts)
+    return findings
+
+
+def _velocity(states: States, step: Steps, starts: NDArray[np.intp], most: float) -> list[Finding]:
+    numbers = states.numbers
+    vx, vy = numbers["vx_mps"], numbers["vy_mps"]
+    absent = np.logical_and.reduceat(np.isnan(vx) & np.isnan(vy), starts)
+    still = ~absent & np.logical_and.reduceat((vx == 0.0) & (vy == 0.0), starts)
+    astray = ~absent & _astray(states, step, most)[states.actor[starts]]
+    if not (absent.any() or still.any() or astray.any()):
+        return []
+    spread = np.zeros(len(starts))
+    for name in ("x_m", "y_m"):
+        values = numbers[name]
+        extent = np.fmax.reduceat(values, starts) - np.fmin.reduceat(values, starts)
+        spread = np.maximum(spread, np.nan_to_num(extent))
+    false_zero = still & (spread > MOVED_M)
+    findings = []
+    for check, which, why in (
+        ("velocity_derived", absent, "no velocity in the log"),
+        ("velocity_derived", false_zero, "velocity 0 throughout although the positions move"),
+        ("velocity_derived", astray & ~still, "velocity that is not the motion of the positions"),
+    ):
+        if not which.any():
+            continue
+        ids = [states.ids[i] for i in states.actor[starts[which]]]
+        rows = _rows_of(which, starts, len(states))
+        motion = derived(states.t_ns, states.actor, numbers["x_m"], numbers["y_m"], step)
+        numbers["vx_mps"] = np.where(rows, motion.vx, numbers["vx_mps"])
+        numbers["vy_mps"] = np.where(rows, motion.vy, numbers["vy_mps"])
+        message = f"{why} ({listed(ids)}): velocity is derived from positions"
+        findings += _filtered(states, rows & motion.filtered)
+        findings.append(
+            Finding(
+                check,
+                "warning",
+                message,
+                int(rows.sum()),
+                int(states.t_ns[rows].min()),
+                ids[0] if len(ids) == 1 else None,
+            )
+        )
+    return findings
+
+
+def _filtered(states: States, rows: NDArray[np.bool_]) -> list[Finding]:
+    """Name each actor whose positions tremble: what a filter hides, and what its error leaves open, is unknown of it."""
+    found = []
+    for number in np.unique(states.actor[rows]):
+        of = rows & (states.actor == number)
+        message = (
+            f"the positions of {states.ids[number]} tremble: its velocity is a mean over up to two seconds, known to {KNOWN_MPS:g} m/s, "
+            "its acceleration is not known"
+        )
+        found.append(
+            Finding(
+                "velocity_filtered", "warning", message, int(of.sum()), int(states.t_ns[of].min()), states.ids[number]
+            )
+        )
+    return found
+
+
+def _astray(states: States, step: Steps, most: float) -> NDArray[np.bool_]:
+    """Say of each actor whether its velocities lead elsewhere than its positions in most of the seconds in which it moves."""
+    wrong, n = np.zeros(len(states.ids), np.bool_), len(states)
+    k = max(1, round(WRONG_SECOND_NS / step.period_ns)) if step.period_ns else n
+    if n <= k or most == 0.0 or not _suspicious(states, k):
+        return wrong
+    t_ns, numbers = states.t_ns, states.numbers
+    off, moved, told = (np.zeros(n - k) for _ in range(3))
+    usable = step.continuous.copy()
+    for name in ("x_m", "y_m", "vx_mps", "vy_mps"):
+        usable &= np.isfinite(numbers[name][1:]) & np.isfinite(numbers[name][:-1])
+    unusable = np.r_[0, np.cumsum(~usable)]
+    for place, rate_of in (("x_m", "vx_mps"), ("y_m", "vy_mps")):
+        v = numbers[rate_of]
+        way = np.r_[0.0, np.cumsum(np.where(usable, 0.5 * (v[1:] + v[:-1]) * step.dt_s, 0.0))]
+        went, led = numbers[place][k:] - numbers[place][:-k], way[k:] - way[:-k]
+        off, moved, told = np.hypot(off, went - led), np.hypot(moved, went), np.hypot(told, led)
+    span = (t_ns[k:] - t_ns[:-k]) * 1e-9
+    with np.errstate(invalid="ignore"):
+        fastest = np.maximum(moved, told)
+        moving = (unusable[k:] == unusable[:-k]) & (fastest > WRONG_MPS * span)
+        # positions that stand still do not tell how somebody moves: see `contradiction`
+        bad = moving & (moved > WRONG_MPS * span) & (off > WRONG_MPS * span + WRONG_SHARE * fastest)
+    seconds, astray = (np.bincount(states.actor[:-k][rows], minlength=len(states.ids)) for rows in (moving, bad))
+    wrong = (astray >= WRONG_WINDOWS) & (2 * astray > seconds)
+    return wrong & bool(seconds[wrong].sum() <= most * seconds.sum())
+
+
+def _suspicious(states: States, k: int) -> bool:
+    """Look at every k-th state only, and by Simpson's rule: whether the velocities of somebody may well be wrong."""
+    first = np.arange(0, len(states) - k, k)
+    middle, last = first + k // 2, first + k
+    here = (states.actor[first] == states.actor[last]) & (states.t_ns[last] > states.t_ns[first])
+    first, middle, last = first[here], middle[here], last[here]
+    span, numbers = (states.t_ns[last] - states.t_ns[first]) * 1e-9, states.numbers
+    off = np.zeros(len(first))
+    for place, rate_of in (("x_m", "vx_mps"), ("y_m", "vy_mps")):
+        v = numbers[rate_of]
+        went = (numbers[place][last] - numbers[place][first]) / span
+        led = (v[first] + 4.0 * v[middle] + v[last]) / 6.0
+        off = np.hypot(off, went - led)
+    bad, n = (
+        np.bincount(states.actor[first][rows], minlength=len(states.ids)) for rows in (off > WRONG_MPS / 2, off >= 0.0)
+    )
+    return bool((3 * bad > n).any())
+
+
+def _acceleration(states: States, starts: NDArray[np.intp]) -> list[Finding]:
+    """Take accelerations that are zero for every actor, although velocities change, for what they are: not recorded."""
+    ax, ay = states.numbers["ax_mps2"], states.numbers["ay_mps2"]
+    known = ~(np.isnan(ax) & np.isnan(ay))
+    if not known.any() or (ax[known] != 0.0).any() or (ay[known] != 0.0).any():
+        return []
+    changes = False
+    for name in ("vx_mps", "vy_mps"):
+        values = states.numbers[name]
+        changes |= bool(np.any(np.fmax.reduceat(values, starts) - np.fmin.reduceat(values, starts) > 0.5))
+    if not changes:
+        return []
+    states.numbers["ax_mps2"] = np.full(len(states), np.nan)
+    states.numbers["ay_mps2"] = np.full(len(states), np.nan)
+    n = int(known.sum())
+    return [
+        Finding(
+            "acceleration_not_recorded",
+            "info",
+            f"acceleration is 0 in all {n} states although speeds change: it counts as not recorded",
+            n,
+            int(states.t_ns[known].min()),
+        )
+    ]
+
+
+def _rows_of(actors: NDArray[np.bool_], starts: NDArray[np.intp], n: int) -> NDArray[np.bool_]:
+    return np.repeat(actors, np.diff(np.r_[starts, n]))

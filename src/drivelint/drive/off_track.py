@@ -1,0 +1,146 @@
+"""Single samples beside their own track, and small steps of a track sideways or along it, that no motion explains.
+
+`contradiction` knows jumps of metres by their length. A back-step of half a metre in one sample is as wrong: from it a velocity of its own
+would be derived. It is told by what the samples around it do without it, and by the noise of the track's positions.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from drivelint.drive.velocity import FEWEST, MOVED_M, Runs, noise
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from drivelint.drive.order import Steps
+    from drivelint.drive.trace import States
+
+    Mask = NDArray[np.bool_]
+    Numbers = NDArray[np.float64]
+
+TYRE_MPS2: Final = 12.0
+"""Nobody changes speed and back again by more (see `ukhc.contact-signature`); an impact changes it for good."""
+SAME_SHARE: Final = 0.25
+"""After a step the speed is the one before, but for this share of what the step makes of it."""
+SIGMAS: Final = 6.0
+"""So many standard deviations of its positions' noise a sample is off before it counts."""
+LEAST_M: Final = (0.05, 0.25)
+"""Where velocities are derived, a step counts from 24 m/s2 dt2 on, within these bounds: of less no jolt of 12 m/s2 is made."""
+LEAST_TOLD_M: Final = 0.4
+"""Where velocities are recorded nothing hangs on the step but the place: less is within what boxes are known to."""
+
+
+def off_track(states: States, step: Steps) -> Mask:
+    """Return the samples (n, in order) whose place is beside their track, or at a step of it.
+
+    A sample is beside it if the two before and the two after it go on without it as somebody can drive, and it is further off their
+    way. Where no velocity is recorded, a step that both of its neighbours contradict alike makes its two ends such samples.
+    """
+    n = len(states)
+    nothing = np.zeros(n, np.bool_)
+    if n < FEWEST or not {"x_m", "y_m"} <= states.numbers.keys():
+        return nothing
+    place = np.stack([states.numbers["x_m"], states.numbers["y_m"]])
+    told = _told(states, place)
+    moves = _Motion.of(place, step)
+    # the noise of the positions is worth its time only where without any somebody is off its track
+    exact, any_error = np.zeros(n), np.full(n, np.inf)
+    if not (
+        _beside(place, moves, told, exact, any_error).any() or _stepped(moves, told, exact, any_error, nothing).any()
+    ):
+        return nothing
+    runs = Runs.of(states.t_ns, place[0], place[1], step)
+    sigma = np.maximum(noise(place[0], runs, states.actor), noise(place[1], runs, states.actor))[states.actor]
+    few = np.bincount(states.actor, minlength=len(states.ids))[states.actor] < FEWEST
+    sigma = np.where(few, np.inf, sigma)
+    beside = _beside(place, moves, told, sigma, sigma)
+    return beside | _stepped(moves, told, sigma, sigma, beside)
+
+
+def _told(states: States, place: Numbers) -> Mask:
+    """Say of each sample whether its velocity is recorded; one that is zero throughout although the positions move is not."""
+    v = [states.numbers.get(name, np.full(len(states), np.nan)) for name in ("vx_mps", "vy_mps")]
+    starts = np.flatnonzero(np.r_[True, states.actor[1:] != states.actor[:-1]])
+    still = np.logical_and.reduceat((v[0] == 0.0) & (v[1] == 0.0), starts)
+    extent = np.fmax.reduceat(place, starts, axis=1) - np.fmin.reduceat(place, starts, axis=1)
+    false_zero = still & (np.nan_to_num(extent).max(axis=0) > MOVED_M)
+    told: Mask = np.isfinite(v[0]) & np.isfinite(v[1]) & ~np.repeat(false_zero, np.diff(np.r_[starts, len(states)]))
+    return told
+
+
+class _Motion(NamedTuple):
+    """Steps between neighbouring samples (n - 1): their mean velocity (2, n - 1) and time; not finite where there is none."""
+
+    v: Numbers
+    dt_s: Numbers
+
+    @classmethod
+    def of(cls, place: Numbers, step: Steps) -> _Motion:
+        dt = np.where(step.continuous & (step.dt_s > 0.0), step.dt_s, np.nan)
+        return cls(np.diff(place, axis=1) / dt, dt)
+
+
+def _beside(place: Numbers, moves: _Motion, told: Mask, sigma: Numbers, error: Numbers) -> Mask:
+    """Return the samples that are off the way of the two before and the two after them, which are known to an `error` (n, metres)."""
+    n = place.shape[1]
+    found = np.zeros(n, np.bool_)
+    if n < 5:
+        return found
+    v, dt = moves
+    before, to, away, after = (v[:, i : n - 4 + i] for i in range(4))
+    dt_before, dt_to, dt_away, dt_after = (dt[i : n - 4 + i] for i in range(4))
+    across = dt_to + dt_away
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        without = (to * dt_to + away * dt_away) / across
+        off = (to - without) * dt_to
+        size = np.hypot(*off)
+        s, e = sigma[2:-2], error[2:-2]
+        least = np.where(told[2:-2], LEAST_TOLD_M, _least_m(dt_to))
+        limit = np.maximum(least, np.maximum(TYRE_MPS2 * dt_to * dt_away / 2, SIGMAS * 1.22 * s))
+        # there and back: both neighbours bend the other way
+        there = np.sum((to - before) * off, axis=0) * dt_to > size**2 / 2
+        back = np.sum((after - away) * off, axis=0) * dt_away > size**2 / 2
+        goes_on = _can(before, without, (dt_before + across) / 2, 1.9 * e / dt_to) & _can(
+            without, after, (dt_after + across) / 2, 1.9 * e / dt_away
+        )
+        found[2:-2] = (size > limit) & there & back & goes_on
+    return found
+
+
+def _stepped(moves: _Motion, told: Mask, sigma: Numbers, error: Numbers, beside: Mask) -> Mask:
+    """Return the ends of steps that both neighbours contradict by the same way, where no velocity is recorded."""
+    n = len(told)
+    found = np.zeros(n, np.bool_)
+    if n < 4:
+        return found
+    v, dt = moves
+    before, here, after = (v[:, i : n - 3 + i] for i in range(3))
+    dt_before, dt_here, dt_after = (dt[i : n - 3 + i] for i in range(3))
+    whole = ~np.any([told[i : n - 3 + i] | beside[i : n - 3 + i] for i in range(4)], axis=0)
+    with np.errstate(invalid="ignore", over="ignore"):
+        s, e = sigma[1:-2], error[1:-2]
+        from_before, from_after = (here - before) * dt_here, (here - after) * dt_here
+        near, far = np.hypot(*from_before), np.hypot(*from_after)
+        limit = np.maximum(_least_m(dt_here), np.maximum(TYRE_MPS2 * dt_here**2, SIGMAS * 2.45 * s))
+        same = np.sum(from_before * from_after, axis=0) > near * far / 2
+        error_mps = 2.0 * e / np.minimum(dt_before, dt_after)
+        goes_on = _can(before, after, (dt_before + dt_after) / 2 + dt_here, error_mps)
+        # who is struck has another speed afterwards
+        goes_on &= np.hypot(*(after - before)) <= SAME_SHARE * np.minimum(near, far) / dt_here + SIGMAS * error_mps
+        rows = np.flatnonzero((np.minimum(near, far) > limit) & same & goes_on & whole) + 1
+    found[rows] = found[rows + 1] = True
+    return found
+
+
+def _can(one: Numbers, other: Numbers, time_s: Numbers, error_mps: Numbers) -> Mask:
+    """Say whether somebody can have gone from one velocity to the other in that time."""
+    can: Mask = np.hypot(*(one - other)) <= TYRE_MPS2 * time_s + SIGMAS * error_mps
+    return can
+
+
+def _least_m(dt_s: Numbers) -> Numbers:
+    least: Numbers = np.clip(2.0 * TYRE_MPS2 * dt_s**2, *LEAST_M)
+    return least

@@ -1,0 +1,191 @@
+"""What goes into ingest (options), between its stages (states, a recording) and out of it (a trace of Arrow tables)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import numpy as np
+    import pyarrow as pa
+    from numpy.typing import NDArray
+
+Severity = Literal["info", "warning", "error"]
+
+NUMBERS = ("x_m", "y_m", "z_m", "yaw_rad", "vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
+"""The double columns of `actor_state`, in its order."""
+SIZES = ("length_m", "width_m", "height_m")
+"""The double columns of `actor`, in its order."""
+INDICATORS = ("off", "left", "right", "hazard")
+BRAKE_LIGHTS = ("off", "on", "strong")
+CLASSES = (
+    "car",
+    "van",
+    "truck",
+    "bus",
+    "motorcycle",
+    "bicycle",
+    "trailer",
+    "vehicle",
+    "pedestrian",
+    "animal",
+    "object",
+)
+MOTOR_VEHICLES = ("car", "van", "truck", "bus", "motorcycle", "vehicle")
+"""What `--ego all` takes as an ego: driven by an engine and by somebody of its own."""
+EPOCH_NS = 946_684_800_000_000_000
+"""2000-01-01 UTC: a clock beyond it counts from 1970 in UTC, a smaller one from the start of the recording."""
+FORMATS: dict[str, tuple[str, str]] = {
+    "osi-mcap": ("ASAM OSI in MCAP", "the log's host vehicle"),
+    "osi-file": ("ASAM OSI trace file", "the log's host vehicle"),
+    "commonroad": ("CommonRoad scenario", "said with --ego"),
+    "sumo-fcd": ("SUMO floating car data", "said with --ego"),
+    "ros2-mcap": ("ROS 2 in MCAP", "the odometry's vehicle"),
+    "foxglove-mcap": ("Foxglove scene in MCAP", "said with --ego"),
+    "canonical-parquet": ("drivelint's own Parquet tables", "marked is_ego in the log"),
+}
+"""What `data_log.format` may say beside a mapping's name -> its title, and how its ego is known."""
+SIGNAL_STATES = ("red", "red_amber", "amber", "green", "flashing", "off")
+
+
+@dataclass(frozen=True)
+class Identity:
+    """Name and hash of a drive."""
+
+    drive_id: str
+    file_name: str
+    sha256: str
+
+
+class EgoSize(NamedTuple):
+    """The ego's box where the log does not have it, in metres; `forward_m`: its centre ahead of the odometry's frame."""
+
+    length_m: float
+    width_m: float
+    forward_m: float = 0.0
+
+
+OWN_MAP_UNUSABLE = "own_map_unusable"
+"""The check that found that the log's own map cannot be used: rules that need a map are unknown for its reason."""
+LOSSES = ("dropped_row", "malformed_row")
+"""Checks that found parts of the log that could not be read, whatever their severity: what is judged is what was left.
+
+An error of any other check is a loss too."""
+
+
+@dataclass(frozen=True)
+class IngestOptions:
+    """What the command line says about reading: each None means what the log or the mapping says.
+
+    `need_ego`: a log without an ego is an error; else it is read with none, for whoever only looks at it or converts it.
+    """
+
+    mapping: str | None = None
+    ego: str | None = None
+    topic: str | None = None
+    sensor_range_m: float | None = None
+    need_ego: bool = True
+    conditions: tuple[tuple[str, str], ...] = ()
+    """What holds in the drive, as (condition, word): see `drivelint.drive.conditions`."""
+    ego_size: EgoSize | None = None
+    in_sight: bool = False
+    """Whoever is not recorded for a while is taken not to be in plain view."""
+
+
+class FrameTimes(NamedTuple):
+    """A log's frames in the order of the file: the time they speak of, and the container's time under which they lie."""
+
+    t_ns: NDArray[np.int64]
+    log_ns: NDArray[np.uint64]
+
+
+@dataclass(frozen=True)
+class Trace:
+    """One drive as tables of `schemas/model.sql` (data_log, actor, actor_state, signal_state, declared_event,
+    drive_condition, quality).
+
+    `data_log` has one row, its `environment_id` NULL. Rows are totally ordered: `actor_state` by actor_id and t_ns.
+    `embedded_map` is OpenDRIVE found in the log; `map_offset` (metres) is added to the map's coordinates. `frame_times`:
+    see `FrameTimes`; None where the log has one clock only. `geo_reference`: the projection of its coordinates, a PROJ string.
+    """
+
+    drive_id: str
+    path: Path
+    tables: dict[str, pa.Table]
+    embedded_map: bytes | None
+    map_offset: tuple[float, float] | None
+    notes: list[str]
+    frame_times: FrameTimes | None = None
+    geo_reference: str | None = None
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One row of `quality`, still without its drive."""
+
+    check_id: str
+    severity: Severity
+    message: str
+    n: int = 1
+    t_first_ns: int | None = None
+    actor_id: str | None = None
+
+
+@dataclass
+class States:
+    """Rows of `actor_state` as parallel arrays, SI units, box centres; NaN and code -1 mean unknown.
+
+    `ids` are distinct actor ids, `actor` holds each row's index into them. `numbers` holds some or all of `NUMBERS` and
+    of `SIZES`. The codes index `INDICATORS`, `BRAKE_LIGHTS` and `CLASSES`. `not_finite` marks rows in which the log had
+    NaN or infinity.
+    """
+
+    ids: list[str]
+    actor: NDArray[np.int32]
+    t_ns: NDArray[np.int64]
+    numbers: dict[str, NDArray[np.float64]]
+    codes: dict[str, NDArray[np.int8]]
+    not_finite: NDArray[np.bool_]
+
+    def __len__(self) -> int:
+        return len(self.t_ns)
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> States:
+        """Return the chosen rows (indices or a mask), ids unchanged."""
+        return States(
+            self.ids,
+            self.actor[rows],
+            self.t_ns[rows],
+            {name: values[rows] for name, values in self.numbers.items()},
+            {name: codes[rows] for name, codes in self.codes.items()},
+            self.not_finite[rows],
+        )
+
+
+@dataclass
+class Recording:
+    """What a reader hands over: rows in the log's own order, nothing sorted or checked yet.
+
+    `actors` is an Arrow table with the columns of `actor` where the log has one apart from its states. `ego_ids` are
+    the log's or mapping's egos, `conditions` what it says of the drive (condition -> word), `strict_units` is set where a
+    mapping the user can correct decided units and frame.
+    """
+
+    format: str
+    states: States
+    actors: pa.Table | None = None
+    signals: pa.Table | None = None
+    events: pa.Table | None = None
+    conditions: dict[str, str] = field(default_factory=dict)
+    ego_ids: list[str] = field(default_factory=list)
+    findings: list[Finding] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    embedded_map: bytes | None = None
+    map_offset: tuple[float, float] | None = None
+    utc_start_ns: int | None = None
+    sensor_range_m: float | None = None
+    strict_units: bool = False
+    frame_times: FrameTimes | None = None
+    geo_reference: str | None = None

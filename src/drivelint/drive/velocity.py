@@ -1,0 +1,147 @@
+"""Velocities from positions, by a filter that is as wide as the positions' noise asks for and whose error is known.
+
+The velocity at a state is the least-squares slope over the positions within some time to both sides: the narrowest of `WIDTHS_S`
+over which three standard errors are at most `KNOWN_MPS`. Exact positions (a simulator's) get central differences; five centimetres
+of noise at 10 Hz get half a second to both sides. What even a second does not tell is unknown. An actor that stays within its noise
+over two seconds stands: its velocity is zero.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from drivelint.drive.order import rate, steps_between
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from drivelint.drive.order import Steps
+
+    Floats = NDArray[np.float64]
+
+KNOWN_MPS: Final = 0.25
+"""Three standard errors of a velocity component that counts as known: half of what standing is (`standing_mps`)."""
+WIDTHS_S: Final = (0.25, 0.5, 1.0)
+"""Half widths of the filter, after central differences; a braking of 10 m/s3 of jerk is 0.06, 0.25 and 1 m/s off in its middle."""
+SLOWEST_NS: Final = 210_000_000
+"""Positions that come more rarely change by the motion as much as by noise: central differences, as exact ones."""
+MOVED_M: Final = 1.0
+"""An actor whose positions spread by more moves; below it a parked car's position noise would become a speed."""
+FEWEST: Final = 8
+"""Of fewer samples no noise is estimated."""
+
+
+class Derived(NamedTuple):
+    """Velocity components (n) in m/s, NaN where not known; `filtered` (n): a mean over more than the neighbours, or not known for noise."""
+
+    vx: Floats
+    vy: Floats
+    filtered: NDArray[np.bool_]
+
+
+def derived(t_ns: NDArray[np.int64], actor: NDArray[np.int32], x: Floats, y: Floats, step: Steps) -> Derived:
+    """Derive velocities from positions (n, in order, metres; `actor`: which one, 0..)."""
+    vx, vy = rate(x, step), rate(y, step)
+    filtered = np.zeros(len(x), np.bool_)
+    placed = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
+    if not 0 < step.period_ns <= SLOWEST_NS or not len(placed):
+        return Derived(vx, vy, filtered)
+    # a filter needs no sample at every step: over a hole of one it goes on
+    of = steps_between(t_ns[placed], actor[placed], step.period_ns)
+    found = _filtered(t_ns[placed], actor[placed], x[placed], y[placed], of, (vx[placed], vy[placed]))
+    vx[placed], vy[placed], filtered[placed] = found
+    return Derived(vx, vy, filtered)
+
+
+def _filtered(  # noqa: PLR0917
+    t_ns: NDArray[np.int64], actor: NDArray[np.int32], x: Floats, y: Floats, step: Steps, central: tuple[Floats, Floats]
+) -> Derived:
+    """Return the velocities (n) of samples that all have a place; `central`: those by central differences."""
+    vx, vy = central
+    filtered = np.zeros(len(x), np.bool_)
+    runs = Runs.of(t_ns, x, y, step)
+    sigma = np.maximum(noise(x, runs, actor), noise(y, runs, actor))[actor]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        known = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.period_ns * 1e-9) <= KNOWN_MPS
+        vx, vy = np.where(known, vx, np.nan), np.where(known, vy, np.nan)
+        for width in WIDTHS_S:
+            if known.all():
+                break
+            wx, wy, error = runs.slopes(x, y, width, sigma)
+            now = ~known & (error <= KNOWN_MPS)
+            vx, vy, known, filtered = np.where(now, wx, vx), np.where(now, wy, vy), known | now, filtered | now
+        # the widest tells who stands, at the ends of a track by one side alone
+        wx, wy, error = runs.slopes(x, y, WIDTHS_S[-1], sigma, both_sides=False)
+        stands = (sigma > 0.0) & (error <= KNOWN_MPS) & (np.abs(wx) <= error) & (np.abs(wy) <= error)
+    filtered |= ~known & ~stands
+    return Derived(np.where(stands, 0.0, vx), np.where(stands, 0.0, vy), filtered)
+
+
+class Runs(NamedTuple):
+    """Stretches of states of one actor without a hole: of each row its first and last row, and the time since its run's first."""
+
+    first: NDArray[np.intp]
+    last: NDArray[np.intp]
+    key: NDArray[np.int64]
+    t_s: Floats
+
+    @classmethod
+    def of(cls, t_ns: NDArray[np.int64], x: Floats, y: Floats, step: Steps) -> Runs:
+        """Part the states (n, in order) where there is a hole, or no place."""
+        usable = np.isfinite(x) & np.isfinite(y)
+        starts = np.flatnonzero(np.r_[True, ~(step.continuous & usable[1:] & usable[:-1])])
+        of = np.repeat(np.arange(len(starts)), np.diff(np.r_[starts, len(t_ns)]))
+        first = starts[of]
+        last = np.r_[starts[1:], len(t_ns)][of] - 1
+        since = t_ns - t_ns[first]
+        key = since + of.astype(np.int64) * (2 * int(since.max(initial=0)) + 4_000_000_000)
+        return cls(first, last, key, since.astype(np.float64) * 1e-9)
+
+    def slopes(
+        self, x: Floats, y: Floats, width_s: float, sigma: Floats, *, both_sides: bool = True
+    ) -> tuple[Floats, Floats, Floats]:
+        """Return slopes over the samples within `width_s` (`both_sides`: as far to one as to the other), and three standard errors."""
+        to_edge = np.minimum(self.t_s - self.t_s[self.first], self.t_s[self.last] - self.t_s)
+        half = np.round(np.minimum(width_s, to_edge if both_sides else width_s) * 1e9).astype(np.int64) + 1_000_000
+        low = np.maximum(np.searchsorted(self.key, self.key - half, side="left"), self.first)
+        end = np.minimum(np.searchsorted(self.key, self.key + half, side="right") - 1, self.last) + 1
+        n = (end - low).astype(np.float64)
+
+        def over(values: Floats) -> Floats:
+            sums = np.r_[0.0, np.cumsum(values)]
+            found: Floats = sums[end] - sums[low]
+            return found
+
+        # from the run's own begin, so that the sums keep their digits
+        t, px, py = self.t_s, np.nan_to_num(x - x[self.first]), np.nan_to_num(y - y[self.first])
+        mean_t = over(t) / n
+        spread = over(t * t) - n * mean_t * mean_t
+        spread = np.where(spread > 1e-9, spread, np.nan)
+        wx, wy = ((over(t * p) - mean_t * over(p)) / spread for p in (px, py))
+        return wx, wy, np.where(np.isfinite(spread), 3.0 * sigma / np.sqrt(spread), np.inf)
+
+
+def noise(values: Floats, runs: Runs, actor: NDArray[np.int32]) -> Floats:
+    """Return the standard deviation of each actor's position noise (m), by the median; 0 where there are too few samples.
+
+    A sample beside the line between its neighbours is off by noise or by acceleration; the difference of two such on end is free of
+    a steady acceleration, and has five times the variance of the noise.
+    """
+    n_actors = int(actor.max(initial=-1)) + 1
+    found = np.zeros(n_actors)
+    if len(values) < FEWEST:
+        return found
+    t = runs.t_s
+    inner = np.arange(1, len(values) - 1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share = (t[inner] - t[inner - 1]) / (t[inner + 1] - t[inner - 1])
+        beside = values[inner] - values[inner - 1] - share * (values[inner + 1] - values[inner - 1])
+    twice = np.abs(np.diff(beside))
+    whole = (runs.first[inner[:-1] - 1] == runs.first[inner[1:] + 1]) & np.isfinite(twice)
+    rows, who = twice[whole], actor[inner[:-1]][whole]
+    edges = np.searchsorted(who, np.arange(n_actors + 1))
+    for number in np.flatnonzero(np.diff(edges) >= FEWEST):
+        found[number] = 1.4826 * np.median(rows[edges[number] : edges[number + 1]]) / np.sqrt(5.0)
+    return found

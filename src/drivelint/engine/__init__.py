@@ -1,0 +1,1 @@
+"""Drives in batches: choose the map, derive the library tables, judge."""

@@ -1,0 +1,178 @@
+"""Drives in batches: read ahead, with the map each is judged on, cut by their size; and the parts of one that has many egos."""
+
+from __future__ import annotations
+
+from collections import deque
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cached_property
+from hashlib import sha256
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pyarrow.compute as pc
+
+from drivelint.drive import own_map
+from drivelint.drive.finish import with_finding
+from drivelint.drive.trace import Finding, IngestOptions, Trace
+from drivelint.errors import DriveLintError, MapError
+from drivelint.formats import read_trace
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+    from concurrent.futures import Future
+    from pathlib import Path
+
+    from drivelint.engine.map_library import MapLibrary
+    from drivelint.road.contract import Environment
+
+STATES: Final = 400_000  # a batch costs little more than its longest drive, and its tables still fit in a GiB
+MEETINGS: Final = 1_500_000
+"""A part of a drive of many egos has no more ego steps times the actors that are there then: the largest tables have so many rows."""
+AHEAD: Final = 4
+
+
+@dataclass(frozen=True)
+class Drive:
+    """One log that was read, and its map (None: none was given)."""
+
+    trace: Trace
+    environment: Environment | None
+
+    @property
+    def n_states(self) -> int:
+        """Rows of `actor_state`."""
+        return int(self.trace.tables["actor_state"].num_rows)
+
+    @cached_property
+    def meetings(self) -> dict[str, int]:
+        """Each ego -> its steps times the actors that are there then, by id. Empty: there are not several egos."""
+        actors = self.trace.tables["actor"]
+        egos = set(actors.filter(actors["is_ego"])["actor_id"].to_pylist())
+        return _meetings(self.trace, egos) if len(egos) > 1 else {}
+
+    @property
+    def size(self) -> int:
+        """How much room the drive takes: its states, or the meetings of its egos."""
+        return max(self.n_states, sum(self.meetings.values()))
+
+
+@dataclass(frozen=True)
+class Refused:
+    """One log that cannot be judged, and why."""
+
+    path: Path
+    error: DriveLintError
+
+
+def in_order(paths: Sequence[Path]) -> list[Path]:
+    """Return the logs in an order that does not depend on how they were named or where they lie: by stem, then by content."""
+    stems: dict[str, int] = {}
+    for path in paths:
+        stems[path.stem] = stems.get(path.stem, 0) + 1
+    return sorted(paths, key=lambda p: (p.stem, _digest(p) if stems[p.stem] > 1 else "", str(p)))
+
+
+def read(paths: Sequence[Path], options: IngestOptions, library: MapLibrary) -> Iterator[Drive | Refused]:
+    """Yield every log in the order of `paths`; a few are read ahead while others are judged."""
+    with ThreadPoolExecutor(max_workers=2) as pool:
+        waiting: deque[tuple[Path, Future[Trace]]] = deque()
+        todo = iter(paths)
+        try:
+            while True:
+                while len(waiting) < AHEAD and (path := next(todo, None)) is not None:
+                    waiting.append((path, pool.submit(read_trace, path, options)))
+                if not waiting:
+                    return
+                path, future = waiting.popleft()
+                yield _drive(path, future, library)
+        finally:
+            for _, future in waiting:
+                future.cancel()
+
+
+def cut(drives: Iterable[Drive | Refused]) -> Iterator[list[Drive | Refused]]:
+    """Cut into batches of at most `STATES` states or meetings, a longer drive being a batch of its own."""
+    batch: list[Drive | Refused] = []
+    states = 0
+    for drive in drives:
+        n = drive.size if isinstance(drive, Drive) else 0
+        if batch and states + n > STATES:
+            yield batch
+            batch, states = [], 0
+        batch.append(drive)
+        states += n
+    if batch:
+        yield batch
+
+
+def parts(drives: Sequence[Drive], room: int | None = None) -> list[list[str]]:
+    """Return, for each part in which a batch is judged, the egos that are not judged in it; a part has at least one ego.
+
+    Only a drive alone is cut, with its egos in the order of their ids, into parts of at most `room` meetings (default: `MEETINGS`);
+    what comes out does not depend on where.
+    """
+    meetings = drives[0].meetings if len(drives) == 1 else {}
+    found: list[list[str]] = []
+    left = 0
+    for ego, n in meetings.items():
+        if not found or n > left:
+            found.append([])
+            left = MEETINGS if room is None else room
+        found[-1].append(ego)
+        left -= n
+    return [[ego for ego in meetings if ego not in part] for part in map(set, found)] or [[]]
+
+
+def _meetings(trace: Trace, egos: set[str]) -> dict[str, int]:
+    states = trace.tables["actor_state"]
+    coded = pc.dictionary_encode(states["actor_id"].combine_chunks())
+    names, code, t_ns = coded.dictionary.to_pylist(), coded.indices.to_numpy(), states["t_ns"].to_numpy()
+    order = np.lexsort((t_ns, code))
+    code, t_ns = code[order], t_ns[order]
+    ends = np.r_[np.flatnonzero(np.diff(code)), len(code) - 1]
+    starts = np.r_[0, ends[:-1] + 1]
+    first, last = np.sort(t_ns[starts]), np.sort(t_ns[ends])
+    found = {}
+    for name, start, end in zip(names, starts, ends, strict=True):
+        if name in egos:
+            steps = t_ns[start : end + 1]
+            there = np.searchsorted(first, steps, side="right") - np.searchsorted(last, steps, side="left")
+            found[name] = int(there.sum())
+    return dict(sorted(found.items()))
+
+
+def on_its_map(trace: Trace, library: MapLibrary) -> Drive:
+    """Find the map of a drive. A map of its own that cannot be used is a finding, and the drive is judged without.
+
+    Errors: `MapError` if a map that was given cannot be read, or shows another place or side of the road.
+    """
+    states = trace.tables["actor_state"]
+    try:
+        environment = library.find(trace.path, trace.embedded_map, trace.map_offset, states, trace.geo_reference)
+        doubts = library.doubts(trace.path, environment, states, trace.geo_reference)
+    except MapError as error:
+        if not library.takes_own(trace.path, trace.embedded_map):
+            raise
+        return Drive(with_finding(trace, own_map.unusable(f"the log's own map is not used: {error}")), None)
+    for check, doubt in doubts.items():
+        trace = with_finding(trace, Finding(check, "warning", doubt))
+    return Drive(trace, environment)
+
+
+def _drive(path: Path, future: Future[Trace], library: MapLibrary) -> Drive | Refused:
+    try:
+        trace = future.result()
+        return on_its_map(trace, library)
+    except DriveLintError as error:
+        return Refused(path, error)
+
+
+def _digest(path: Path) -> str:
+    if path.is_dir():
+        return "".join(_digest(child) for child in sorted(path.iterdir()) if child.is_file())
+    with path.open("rb") as file:
+        digest = sha256()
+        while block := file.read(1 << 20):
+            digest.update(block)
+    return digest.hexdigest()

@@ -1,0 +1,90 @@
+"""Fill the library tables that are asked for, and those that they read. A table without rows leaves empty those that need it."""
+
+from __future__ import annotations
+
+from collections import deque
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import ExitStack
+from graphlib import TopologicalSorter
+from typing import TYPE_CHECKING, Final
+
+import duckdb
+
+from drivelint.errors import DriveLintError
+from drivelint.sql.derivations import needed
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from drivelint.sql.derivations import Derivation
+
+WORKERS: Final = 2
+LARGE: Final = 1_000_000
+"""States from which on there is one: a statement then uses all cores, and two would need twice the memory."""
+# a table whose rows were deleted may be missing here, which only costs time
+_EMPTY = "SELECT table_name FROM duckdb_tables() WHERE database_name = current_database() AND estimated_size = 0"
+
+
+def derive(
+    con: duckdb.DuckDBPyConnection,
+    tables: Iterable[str],
+    *,
+    of_the_map: bool,
+    advance: Callable[[str], None] = lambda _table: None,
+) -> None:
+    """Fill the library tables behind `tables`: those of the map, or those of the drives.
+
+    Two at a time, each on its own connection: most are so small that DuckDB plans and runs them on one core. Not inside a
+    transaction, whose rows the other connections do not see.
+    Errors: `DriveLintError` naming the table, if its SELECT fails.
+    """
+    todo = {step.table: step for step in needed(tables) if step.of_the_map is of_the_map}
+    graph = TopologicalSorter({table: sorted(step.reads & todo.keys()) for table, step in todo.items()})
+    graph.prepare()
+    (n_states,) = con.execute("SELECT count(*) FROM actor_state").fetchall()[0]
+    empty = {table for (table,) in con.execute(_EMPTY).fetchall()} - todo.keys()
+    workers = WORKERS if n_states < LARGE else 1
+    with ThreadPoolExecutor(workers) as pool, ExitStack() as stack:
+        free = [stack.enter_context(con.cursor()) for _ in range(workers)]
+        busy: dict[Future[int], tuple[str, duckdb.DuckDBPyConnection]] = {}
+        ready: deque[str] = deque()
+        stack.callback(_stop, tuple(free), busy)  # should one fail, or the user not want to wait
+        while graph.is_active():
+            ready.extend(sorted(graph.get_ready()))
+            filled: list[str] = []
+            while ready and free:
+                table = ready.popleft()
+                if todo[table].needs & empty:
+                    empty.add(table)
+                    filled.append(table)
+                else:
+                    cursor = free.pop()
+                    busy[pool.submit(_fill, cursor, todo[table])] = table, cursor
+            for done in wait(busy, return_when=FIRST_COMPLETED).done if not filled else ():
+                table, cursor = busy.pop(done)
+                if not done.result():
+                    empty.add(table)
+                free.append(cursor)
+                filled.append(table)
+            for table in filled:
+                graph.done(table)
+                advance(table)
+
+
+def _stop(cursors: Iterable[duckdb.DuckDBPyConnection], running: Iterable[Future[int]]) -> None:
+    """Interrupt until nothing runs: once is not enough, as an interrupt before a statement has begun is lost."""
+    left = set(running)
+    while left:
+        for cursor in cursors:
+            cursor.interrupt()
+        left = wait(left, timeout=0.05).not_done
+
+
+def _fill(con: duckdb.DuckDBPyConnection, step: Derivation) -> int:
+    """Return how many rows the table got."""
+    try:
+        return int(con.execute(f"INSERT INTO {step.table} BY NAME {step.sql}").fetchall()[0][0])
+    except duckdb.OutOfMemoryException:
+        raise  # no fault of the query: there may be more
+    except duckdb.Error as error:
+        raise DriveLintError(f"queries/derive/{step.table}.sql: {str(error).splitlines()[0]}") from error

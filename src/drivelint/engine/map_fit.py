@@ -1,0 +1,166 @@
+"""Which side of the road the traces drive on: the last witness, where neither the user nor the map says, and a doubt where they do."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+import pyarrow.compute as pc
+import shapely
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+    from numpy.typing import NDArray
+
+    from drivelint.road.contract import Environment
+
+DOUBT_SAMPLES: Final = 80  # where the side is known, every drive is looked at: it must cost next to nothing
+SAMPLES: Final = 400  # moving states looked at, evenly spread: enough to vote, cheap for a long log
+LEAST_VOTES: Final = 20
+FEW, MANY = 20, 2000  # positions looked at to see whether a drive is on its map
+EACH_WAY: Final = 5  # so many of them against their lane in both directions of a road: nobody overtakes both ways
+BESIDE_M: Final = 8.0  # so near lie the middles of two lanes of one road, with what may be between them
+FACING: Final = 0.9
+AGREEMENT: Final = 0.8  # an overtake drives against its lane for a while, a drive does not
+
+
+class Ways(NamedTuple):
+    """The one-way drivable lanelets of a map: their areas, looked up by place, centre lines, roads and direction along these."""
+
+    areas: shapely.STRtree
+    lines: NDArray[np.object_]
+    road: NDArray[np.object_]
+    along: NDArray[np.int64]
+
+
+class Headings(NamedTuple):
+    """Moving states that exactly one of `Ways` holds: whether each is headed along its lane, and which lane that is."""
+
+    agree: NDArray[np.bool_]
+    lane: NDArray[np.intp]
+
+
+def ways(environment: Environment) -> Ways:
+    """Return the lanes whose direction is compared with the traces'."""
+    lanelets = environment.tables["lanelet"]
+    one_way = lanelets.filter(pc.and_(lanelets["drivable"], pc.invert(lanelets["bidirectional"])))
+    one_way = one_way.sort_by("lanelet_id")
+    areas, lines = _shapes(environment, one_way["lanelet_id"])
+    shapely.prepare(areas)
+    return Ways(
+        shapely.STRtree(areas),
+        lines,
+        one_way["road_id"].to_numpy(zero_copy_only=False),
+        one_way["along_road"].to_numpy(),
+    )
+
+
+def headings(
+    lanes: Ways, x_m: NDArray[np.float64], y_m: NDArray[np.float64], yaw_rad: NDArray[np.float64], most: int
+) -> Headings:
+    """Compare headings with lanes. `x_m, y_m, yaw_rad`: moving states of any vehicles, shape (n,), in map coordinates.
+
+    Of them `most` are looked at, evenly spread.
+    """
+    known = np.flatnonzero(np.isfinite(x_m) & np.isfinite(y_m) & np.isfinite(yaw_rad))
+    if len(known) < LEAST_VOTES or not len(lanes.lines):
+        return Headings(np.zeros(0, np.bool_), np.zeros(0, np.intp))
+    chosen = known[np.unique(np.linspace(0, len(known) - 1, min(most, len(known))).astype(np.int64))]
+    points = np.asarray(shapely.points(x_m[chosen], y_m[chosen]))
+    state, lane = lanes.areas.query(points, predicate="intersects")
+    single = np.bincount(state, minlength=len(chosen))[state] == 1
+    state, lane = state[single], lane[single]
+    line = lanes.lines[lane]
+    direction = _direction(line, shapely.line_locate_point(line, points[state]))
+    return Headings(np.cos(yaw_rad[chosen][state] - direction) > 0, lane)
+
+
+def vote(handedness: str, seen: Headings) -> str | None:
+    """Return lht or rht as the headings of moving vehicles say, or None if they are too few or disagree."""
+    if len(seen.agree) < LEAST_VOTES:
+        return None
+    agree = float(np.mean(seen.agree))
+    if agree >= AGREEMENT:
+        return handedness
+    if agree <= 1 - AGREEMENT:
+        return "lht" if handedness == "rht" else "rht"
+    return None
+
+
+def reversed_road(lanes: Ways, seen: Headings) -> str | None:
+    """Return a road on which there is traffic both ways and nearly all of it, as on the whole map, runs against its lane.
+
+    Two roads of one direction each, one beside the other, count as one.
+    """
+    if len(seen.agree) < LEAST_VOTES or float(np.mean(seen.agree)) > 1 - AGREEMENT:
+        return None
+    against = seen.lane[~seen.agree]
+    for road in sorted({str(name) for name in lanes.road[against]}):
+        here = against[lanes.road[against] == road]
+        if min(int((lanes.along[here] == way).sum()) for way in (1, -1)) >= EACH_WAY:
+            return road
+    lane, counts = np.unique(against, return_counts=True)
+    often = lane[counts >= EACH_WAY]
+    one, other = (often[k] for k in np.triu_indices(len(often), 1))
+    near = shapely.shortest_line(lanes.lines[one], lanes.lines[other])
+    facing = np.cos(_heading(lanes.lines[one], near, 0) - _heading(lanes.lines[other], near, -1)) < -FACING
+    found = facing & (shapely.length(near) < BESIDE_M)
+    return min((str(lanes.road[k]) for k in one[found]), default=None)
+
+
+def _heading(line: NDArray[np.object_], joins: NDArray[np.object_], end: int) -> NDArray[np.float64]:
+    """Return the heading (rad) of each line where the first (0) or last (-1) point of a join lies on it."""
+    at = shapely.line_locate_point(line, shapely.get_point(joins, end))
+    return _direction(line, at)
+
+
+def _direction(line: NDArray[np.object_], at: NDArray[np.float64]) -> NDArray[np.float64]:
+    ahead = shapely.get_coordinates(shapely.line_interpolate_point(line, at + 0.5))
+    behind = shapely.get_coordinates(shapely.line_interpolate_point(line, np.maximum(at - 0.5, 0.0)))
+    found: NDArray[np.float64] = np.arctan2(ahead[:, 1] - behind[:, 1], ahead[:, 0] - behind[:, 0])
+    return found
+
+
+def ground(environment: Environment) -> shapely.STRtree:
+    """Return the areas of every lanelet of any type, to look positions up in."""
+    areas = _shapes(environment, environment.tables["lanelet"]["lanelet_id"])[0]
+    shapely.prepare(areas)
+    return shapely.STRtree(areas)
+
+
+def on_map(lanes: shapely.STRtree, x_m: NDArray[np.float64], y_m: NDArray[np.float64]) -> tuple[int, int]:
+    """Return how many known positions, evenly spread, are looked at, and how many of them lie on some lanelet.
+
+    A few do where one is found; before it is said that there is none, `MANY` are looked at.
+    """
+    known = np.flatnonzero(np.isfinite(x_m) & np.isfinite(y_m))
+    looked = found = 0
+    for most in (FEW, MANY):
+        if found or looked == len(known):
+            break
+        chosen = known[np.unique(np.linspace(0, len(known) - 1, min(most, len(known))).astype(np.int64))]
+        points = np.asarray(shapely.points(x_m[chosen], y_m[chosen]))
+        looked, found = len(chosen), len(np.unique(lanes.query(points, predicate="intersects")[0]))
+    return looked, found
+
+
+def _shapes(environment: Environment, wanted: pa.ChunkedArray) -> tuple[NDArray[np.object_], NDArray[np.object_]]:
+    """Return areas and centre lines of these lanelets."""
+    points = environment.tables["lane_point"]
+    points = points.filter(pc.is_in(points["lanelet_id"], value_set=wanted.combine_chunks())).sort_by(
+        [("lanelet_id", "ascending"), ("k", "ascending")]
+    )
+    ids = points["lanelet_id"].to_numpy(zero_copy_only=False)
+    if not len(ids):
+        return np.array([], dtype=object), np.array([], dtype=object)
+    _, index, counts = np.unique(ids, return_inverse=True, return_counts=True)
+    line = np.asarray(shapely.linestrings(_xy(points, "x_m", "y_m"), indices=index))
+    left, right = _xy(points, "left_x_m", "left_y_m"), _xy(points, "right_x_m", "right_y_m")
+    ends = np.cumsum(counts)
+    rings = [np.vstack([left[a:b], right[a:b][::-1]]) for a, b in zip(ends - counts, ends, strict=True)]
+    area = np.array([shapely.Polygon(ring) for ring in rings], dtype=object)
+    return area, line
+
+
+def _xy(points: object, x: str, y: str) -> NDArray[np.float64]:
+    return np.column_stack([points[x].to_numpy(), points[y].to_numpy()])  # type: ignore[index]

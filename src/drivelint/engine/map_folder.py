@@ -1,0 +1,91 @@
+"""A folder of maps, for logs of several places."""
+
+from __future__ import annotations
+
+import csv
+from fnmatch import fnmatchcase
+from typing import TYPE_CHECKING, Final
+
+from drivelint.errors import MapError
+from drivelint.formats.map_registry import READERS, read_source, root_element
+from drivelint.road import geo
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from drivelint.road.contract import MapSource
+
+MANIFEST: Final = "maps.csv"
+_HEAD_BYTES = 65536
+
+
+class Shelf:
+    """The maps of a folder, each read when it is asked for.
+
+    Errors: `MapError` for a folder that is none or has no maps, and for a manifest that cannot be understood.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        if not folder.is_dir():
+            raise MapError(f"--map-dir {folder}: no such folder")
+        self._files = {file.relative_to(folder).as_posix(): file for file in sorted(folder.rglob("*")) if _is_map(file)}
+        if not self._files:
+            raise MapError(f"--map-dir {folder}: no map in this folder (OpenDRIVE, CommonRoad or Lanelet2)")
+        self._manifest = self._read_manifest()
+        self._sources: dict[str, MapSource] = {}
+
+    def named(self, log: Path) -> MapSource | None:
+        """Return the map that the manifest gives the log, else one of its name or its folder's name; None: neither."""
+        for pattern, name in self._manifest:
+            if fnmatchcase(log.name, pattern):
+                return self._source(name)
+        for wanted in (log.stem, log.resolve().parent.name):
+            same = [name for name, file in self._files.items() if file.stem == wanted]
+            if len(same) == 1:
+                return self._source(same[0])
+        return None
+
+    def referenced(self, reference: str) -> MapSource | None:
+        """Return the map with this geo reference, if it is the only one that has it."""
+        found = [source for source in self.sources() if geo.same(geo.reference_of(source) or "", reference)]
+        return found[0] if len(found) == 1 else None
+
+    def sources(self) -> Sequence[MapSource]:
+        """Return every map, in order of name."""
+        return [self._source(name) for name in self._files]
+
+    def _source(self, name: str) -> MapSource:
+        if name not in self._sources:
+            self._sources[name] = read_source(self._files[name])
+        return self._sources[name]
+
+    def _read_manifest(self) -> list[tuple[str, str]]:
+        file = self.folder / MANIFEST
+        if not file.is_file():
+            return []
+        with file.open(encoding="utf-8-sig", newline="") as lines:
+            rows = csv.DictReader(lines, skipinitialspace=True)
+            if not {"log", "map"} <= set(rows.fieldnames or ()):
+                raise MapError(f"{file}: write the columns log,map: a file name (or a glob) and the map it belongs to")
+            found = [(row["log"] or "", row["map"] or "") for row in rows]
+        for n, (_, name) in enumerate(found, 2):
+            if name not in self._files:
+                raise MapError(
+                    f"{file}:{n}: there is no map {name!r} in {self.folder}; it has {listed(list(self._files))}"
+                )
+        return found
+
+
+def _is_map(file: Path) -> bool:
+    if not file.is_file() or file.suffix.lower() not in {".xodr", ".xml", ".osm"}:
+        return False
+    with file.open("rb") as content:
+        return (root_element(content.read(_HEAD_BYTES)) or "").lower() in READERS
+
+
+def listed(names: Sequence[str], most: int = 5) -> str:
+    """Return the names in one phrase, the last of many only counted."""
+    rest = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(names[:most]) + rest

@@ -1,0 +1,218 @@
+"""The maps of a run: each read once, whichever drives are judged on it.
+
+Of a folder of maps each drive gets its own: the one that `maps.csv` (columns log, map) names, else the one of the log's
+name or of its folder's, else the log's own, else the only one of the log's geo reference, else the only one on whose lanes the
+drive lies.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyarrow.compute as pc
+
+from drivelint.engine.map_fit import DOUBT_SAMPLES, SAMPLES, ground, headings, on_map, reversed_road, vote, ways
+from drivelint.engine.map_folder import MANIFEST, Shelf, listed
+from drivelint.errors import MapError, UsageError
+from drivelint.formats.map_registry import load_map, read_source
+from drivelint.road import geo
+from drivelint.road.contract import MapSource
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import pyarrow as pa
+    import shapely
+
+    from drivelint.engine.map_fit import Headings, Ways
+    from drivelint.road.contract import Environment
+
+MOVING_MPS = 1.0
+FAR_M = 50.0  # beyond the map's own lanes by this much, a drive is somewhere else
+
+
+class MapLibrary:
+    """Finds the environment of each drive: the user's map, or the one embedded in its log; `None` where there is neither.
+
+    `path` is one map for all, `folder` one that holds several; `origin` is the latitude and longitude of the log's 0,0.
+    """
+
+    def __init__(
+        self,
+        path: Path | None,
+        offset: tuple[float, float] | None,
+        handedness: str,
+        *,
+        origin: tuple[float, float] | None = None,
+        folder: Path | None = None,
+    ) -> None:
+        if path and folder:
+            raise UsageError("--map names one map and --map-dir many: give one of them")
+        self._given = read_source(path) if path else None
+        self._shelf = Shelf(folder) if folder else None
+        self._offset = offset
+        self._handedness = handedness
+        self._origin = origin
+        self._grounds: dict[str, shapely.STRtree] = {}
+        self._ways: dict[str, Ways] = {}
+        self._loaded: dict[tuple[str, tuple[float, float], str | None], Environment] = {}
+        self._unread: dict[Path, str] = {}
+
+    def find(
+        self,
+        log: Path,
+        embedded: bytes | None,
+        offset: tuple[float, float] | None,
+        states: pa.Table,
+        reference: str | None = None,
+    ) -> Environment | None:
+        """Return the environment for one drive.
+
+        `log` is the drive's file, `offset` is the mapping's (the user's `--map-offset` goes before it), `states` the drive's
+        `actor_state` rows, `reference` the geo reference of its coordinates, a PROJ string.
+        Errors: `MapError` if the map cannot be read, or is of another place.
+        """
+        shift = self._offset or offset or (0.0, 0.0)
+        source = self._given or (MapSource("embedded", embedded) if embedded is not None else None)
+        if self._shelf is not None:
+            source = (
+                self._shelf.named(log)
+                or source
+                or (self._shelf.referenced(reference) if reference else None)
+                or self._only_fitting(self._shelf, log, shift, states)
+            )
+        if source is None:
+            return None
+        environment = self._load(source, shift, None)
+        if trouble := _elsewhere(environment, self._ground(environment), states):
+            raise MapError(
+                f"map {environment.environment_id} is of another place than {log.name}: {trouble}; "
+                "give the right --map, or --map-offset"
+            )
+        if environment.lanes_source == "default" and (sensed := self._sensed(environment, states)):
+            return self._load(source, shift, sensed)
+        return environment
+
+    def takes_own(self, log: Path, embedded: bytes | None) -> bool:
+        """Say whether the map in the log is the one that `find` takes."""
+        return embedded is not None and self._given is None and (self._shelf is None or not self._shelf.named(log))
+
+    def doubts(
+        self, log: Path, environment: Environment | None, states: pa.Table, reference: str | None = None
+    ) -> dict[str, str]:
+        """Return what speaks against a map: its geo reference, the side of the road by its or the user's word, others not looked at.
+
+        Keys name the check. Errors: `MapError` where the traffic shows that the lanes run the other way.
+        """
+        if environment is None:
+            return {}
+        found = {
+            "handedness_disagrees": self._side_doubt(log, environment, states),
+            "map_unread": self._unread.get(log),
+        }
+        theirs = environment.tables["environment"]["geo_reference"][0].as_py()
+        if reference and theirs and not geo.same(reference, theirs) and geo.comparable(reference, theirs):
+            found["geo_reference_differs"] = (
+                f"the log's coordinates are {reference!r}, the map's {theirs!r}: if they are not of one place and frame, give the "
+                "right --map or --map-offset"
+            )
+        return {check: text for check, text in found.items() if text}
+
+    def _side_doubt(self, log: Path, environment: Environment, states: pa.Table) -> str | None:
+        if (environment.lanes_source or environment.handedness_source) in {"default", "traces"}:
+            return None
+        seen = self._headings(environment, states, DOUBT_SAMPLES)
+        if road := reversed_road(self._lanes(environment), seen):
+            raise MapError(
+                f"map {environment.environment_id}: the traffic of {log.name} runs against its lanes, on road {road} both ways: the "
+                f"side of the road ({environment.handedness} by {environment.handedness_source}) or the lanes' direction is wrong; "
+                "give --handedness, or another map"
+            )
+        if vote(environment.handedness, seen) in {None, environment.handedness}:
+            return None
+        return (
+            f"of {len(seen.agree)} headings looked at, {int((~seen.agree).sum())} are against the direction of their lane, though "
+            f"the side of the road is {environment.handedness} by {environment.handedness_source}: if that is wrong, give --handedness"
+        )
+
+    def _sensed(self, environment: Environment, states: pa.Table) -> str | None:
+        assert environment.lanes is not None  # noqa: S101 - a reader that guesses says what
+        return vote(environment.lanes, self._headings(environment, states, SAMPLES))
+
+    def _headings(self, environment: Environment, states: pa.Table, most: int) -> Headings:
+        speed = np.hypot(_floats(states, "vx_mps"), _floats(states, "vy_mps"))
+        moving = states.select(["x_m", "y_m", "yaw_rad"]).filter(np.nan_to_num(speed) > MOVING_MPS)
+        x_m, y_m, yaw_rad = (_floats(moving, name) for name in ("x_m", "y_m", "yaw_rad"))
+        return headings(self._lanes(environment), x_m, y_m, yaw_rad, most)
+
+    def _lanes(self, environment: Environment) -> Ways:
+        if environment.environment_id not in self._ways:
+            self._ways[environment.environment_id] = ways(environment)
+        return self._ways[environment.environment_id]
+
+    def _only_fitting(self, shelf: Shelf, log: Path, shift: tuple[float, float], states: pa.Table) -> MapSource:
+        """Return the one map on which the drive lies, of those that can be read. Errors: `MapError` where none or several are."""
+        fitting = []
+        unread: list[MapError] = []
+        for source in shelf.sources():
+            try:
+                environment = self._load(source, shift, None)
+            except MapError as error:
+                unread.append(error)
+                continue
+            if not _elsewhere(environment, self._ground(environment), states):
+                fitting.append(source)
+        if len(fitting) == 1:
+            if unread:  # it may have been the right one
+                self._unread[log] = (
+                    f"{fitting[0].name} is the only map of the place among those that can be read; {len(unread)} cannot, the first: "
+                    f"{unread[0]}"
+                )
+            return fitting[0]
+        what = "none of its maps is of" if not fitting else f"{listed([s.name for s in fitting])} are all of"
+        besides = f" ({len(unread)} could not be read, the first: {unread[0]})" if unread else ""
+        raise MapError(
+            f"{shelf.folder}: {what} the place of {log.name}{besides}: name its map in {shelf.folder / MANIFEST}"
+        )
+
+    def _ground(self, environment: Environment) -> shapely.STRtree:
+        if environment.environment_id not in self._grounds:
+            self._grounds[environment.environment_id] = ground(environment)
+        return self._grounds[environment.environment_id]
+
+    def _load(self, source: MapSource, offset: tuple[float, float], sensed: str | None) -> Environment:
+        key = (source.sha256, offset, sensed)
+        if key not in self._loaded:
+            self._loaded[key] = load_map(
+                source, offset=offset, handedness=self._handedness, sensed=sensed, origin=self._origin
+            )
+        return self._loaded[key]
+
+
+def _elsewhere(environment: Environment, lanes: shapely.STRtree, states: pa.Table) -> str | None:
+    """Return what shows that the map is of another place than the drive, or None."""
+    drive, roads = _extent(states), _extent(environment.tables["lane_point"])
+    if drive is None or roads is None:
+        return None
+    apart = max(drive[0] - roads[1], roads[0] - drive[1], drive[2] - roads[3], roads[2] - drive[3])
+    if apart > FAR_M:
+        return (
+            f"its lanes lie in x {roads[0]:.0f}..{roads[1]:.0f}, y {roads[2]:.0f}..{roads[3]:.0f} m, "
+            f"the drive in x {drive[0]:.0f}..{drive[1]:.0f}, y {drive[2]:.0f}..{drive[3]:.0f} m"
+        )
+    looked, found = on_map(lanes, _floats(states, "x_m"), _floats(states, "y_m"))
+    if looked and not found:
+        return f"of {looked} positions looked at, none is on anything that it knows"
+    return None
+
+
+def _extent(table: pa.Table) -> tuple[float, float, float, float] | None:
+    x, y = pc.min_max(table["x_m"]).as_py(), pc.min_max(table["y_m"]).as_py()
+    if x["min"] is None or y["min"] is None:
+        return None
+    return x["min"], x["max"], y["min"], y["max"]
+
+
+def _floats(table: pa.Table, column: str) -> np.ndarray:
+    return np.asarray(table[column].to_numpy(zero_copy_only=False), dtype=np.float64)

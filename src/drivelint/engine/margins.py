@@ -1,0 +1,71 @@
+"""The file of margins, which grows with the batches: in blocks of the same size, wherever batches and drives are cut."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import duckdb
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from drivelint.engine.memory import Memory
+
+BLOCK: Final = 1 << 20
+"""Rows of a row group: those of a drive of many egos are too many to hold at once."""
+_ORDER: Final = "drive_id, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, ref_id NULLS FIRST, t_ns"
+_COLUMNS: Final = (
+    "* REPLACE (drive_id::VARCHAR AS drive_id, ego_id::VARCHAR AS ego_id, object_id::VARCHAR AS object_id)"
+)
+
+
+class MarginFile:
+    """Writes the table `margin` of one batch after another to a Parquet file at `path`."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._file: pq.ParquetWriter | None = None
+        self._waiting: list[pa.RecordBatch] = []
+
+    def add(self, con: duckdb.DuckDBPyConnection, memory: Memory) -> None:
+        """Append the margins of the batch that was just judged, totally ordered."""
+        if self._file is None:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            schema = con.execute(f"SELECT {_COLUMNS} FROM margin LIMIT 0").to_arrow_table().schema
+            self._file = pq.ParquetWriter(self.path, schema, compression="zstd")
+        for block in _blocks(con, memory):
+            self._waiting.append(block)
+            while sum(rows.num_rows for rows in self._waiting) >= BLOCK:
+                self._write()
+
+    def close(self) -> None:
+        """Write what waits, and finish the file."""
+        if self._file:
+            self._write()
+            self._file.close()
+
+    def _write(self) -> None:
+        """Write one block of what waits, or all of it if that is less."""
+        if self._file and self._waiting:
+            rows = pa.Table.from_batches(self._waiting)
+            # as one piece: where it was cut would show in the pages
+            self._file.write_table(rows.slice(0, BLOCK).combine_chunks(), row_group_size=BLOCK)
+            self._waiting = rows.slice(BLOCK).to_batches()
+
+
+def _blocks(con: duckdb.DuckDBPyConnection, memory: Memory) -> Iterator[pa.RecordBatch]:
+    sent = 0
+    while True:
+        try:
+            rows = con.execute(f"SELECT {_COLUMNS} FROM margin ORDER BY {_ORDER} OFFSET ?", [sent])
+            for block in rows.to_arrow_reader(BLOCK):
+                yield block
+                sent += block.num_rows
+        except (duckdb.OutOfMemoryException, OSError):  # Arrow's reader has one class for whatever the database says
+            if not memory.lift():
+                raise
+        else:
+            return

@@ -1,0 +1,84 @@
+"""The memory of a run: what the database may take, and what gives way where that does not do. It never decides a verdict.
+
+A drive that runs out of memory is judged again with fewer egos at once, until each is judged alone; only then the limit is lifted.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Final, TypeVar
+
+import duckdb
+
+from drivelint.engine import batch
+from drivelint.sql import store
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+T = TypeVar("T")
+
+DEFAULT: Final = 1_200_000_000
+"""Bytes: measured to cost nothing on a drive of 600,000 states, and to hold one of 4.8 million in 2.3 GB instead of 13.7."""
+LEAST: Final = 100_000_000
+"""Bytes with which a database can be opened and a small drive be judged."""
+
+
+class Memory:
+    """What the database `con` may take (`limit` in bytes, None: 80 % of the machine's), and how much is judged at once.
+
+    A lower limit begins with smaller parts: what does not fit is then found less often. What gave way stays so for the run; that
+    the limit did is told to `note`.
+    """
+
+    def __init__(
+        self, con: duckdb.DuckDBPyConnection, limit: int | None, note: Callable[[str], None] = lambda _text: None
+    ) -> None:
+        self._con = con
+        self._limit = limit
+        self._note = note
+        self.limited = limit is not None
+        share = 1.0 if limit is None else min(1.0, limit / DEFAULT)
+        self.room = max(1, int(batch.MEETINGS * share))
+        """Meetings of one part of a drive: see `batch.parts`."""
+
+    def halve(self, meetings: int) -> None:
+        """Let the next try have parts of at most half of the meetings of the one that did not fit."""
+        self.room = max(1, meetings // 2)
+
+    def lift(self) -> bool:
+        """Let the database take what the machine has. Return whether that is more than before."""
+        if not self.limited or self._limit is None:
+            return False
+        self.limited = False
+        given = store.lift_memory_limit(self._con)
+        self._note(f"{worded(self._limit)} of memory do not do (--memory): the database may take up to {given}")
+        return True
+
+    def execute(self, sql: str) -> None:
+        """Run one statement, with more memory if that is short."""
+        self.enough(lambda con: con.execute(sql), self._con)
+
+    def enough(self, job: Callable[[duckdb.DuckDBPyConnection], T], con: duckdb.DuckDBPyConnection) -> T:
+        """Return what a job on a connection to the database does, which leaves nothing if it fails: with more memory if that is short."""
+        try:
+            return job(con)
+        except duckdb.OutOfMemoryException:
+            if not self.lift():
+                raise
+            return job(con)
+
+
+def peak() -> int | None:
+    """Return the most bytes of memory that this process has had; None where the system does not tell."""
+    try:
+        import resource
+    except ImportError:  # Windows
+        return None
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return most if sys.platform == "darwin" else most * 1024
+
+
+def worded(n_bytes: int) -> str:
+    """Return a number of bytes as a person says it."""
+    return f"{n_bytes / 1e9:.1f} GB" if n_bytes >= 1e9 else f"{n_bytes / 1e6:.0f} MB"

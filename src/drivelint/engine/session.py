@@ -1,0 +1,286 @@
+"""The bench on which drives are judged, batch by batch: fill the tables, derive, evaluate, clear."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from typing import TYPE_CHECKING, Final, Protocol
+
+import duckdb
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.engine.batch import parts
+from drivelint.engine.derive import derive
+from drivelint.engine.margins import MarginFile
+from drivelint.engine.memory import Memory
+from drivelint.errors import RuleError
+from drivelint.evaluate import evaluate
+from drivelint.sql import store
+from drivelint.sql.derivations import derivations
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+    from pathlib import Path
+
+    from drivelint.catalogue import Rule
+    from drivelint.engine.batch import Drive
+
+# small tables that say what was judged, and on what: they stay until the end of the run
+_RESULTS: Final = (
+    "data_log",
+    "quality",
+    "drive_condition",
+    "environment",
+    "map_quality",
+    "exposure",
+    "capability",
+    "registration",
+    "verdict",
+    "finding",
+    "scene",
+    "lane_shape",
+    "danger_space",
+    "course",
+    "overtake_record",
+    "opportunity_record",
+    "profile",
+)
+
+
+class _PartTooLargeError(Exception):
+    """A part of a drive ran out of memory, and has several egos: judge fewer at once."""
+
+    def __init__(self, meetings: int) -> None:
+        super().__init__(meetings)
+        self.meetings = meetings
+
+
+class Witness(Protocol):
+    """Who looks at what was judged while the tables are there."""
+
+    def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], /, *, first: bool, last: bool) -> None:
+        """Look at a batch, or at the egos of a part of one drive: `first` and `last` of its parts or not."""
+        ...
+
+
+class Bench:
+    """Judges batches of drives in one database, which is locked for that. Between batches only results stay in it.
+
+    A drive of many egos is judged some of them at a time, so that its tables stay small whatever their number.
+    `out` is where `margins_file` and the kept database go. `witnesses` are called after each part while its tables are there.
+    `memory` says how many, and gives way where there is too little (default: the database has no limit of ours).
+    """
+
+    def __init__(
+        self,
+        con: duckdb.DuckDBPyConnection,
+        rules: Sequence[Rule],
+        params: Mapping[str, Mapping[str, object]],
+        out: Path | None,
+        *,
+        margins: bool = False,
+        keep_db: bool = False,
+        witnesses: Sequence[Witness] = (),
+        memory: Memory | None = None,
+    ) -> None:
+        self._con = con
+        self._rules = rules
+        self._params = params
+        self._witnesses = witnesses
+        self._tables = {table for rule in rules for table in rule.reads}
+        self._memory = memory or Memory(con, None)
+        self._seen: set[str] = set()
+        self._maps: frozenset[str] = frozenset()
+        self._kept_maps: set[str] = set()
+        self._margins = MarginFile(out / ".margins.parquet") if margins and out else None
+        self._kept = out / "drivelint.duckdb" if keep_db and out else None
+        if self._kept:
+            self._attach(self._kept)
+        store.lock(con)  # from here on rules of anybody may run in it
+
+    @property
+    def margins_file(self) -> Path | None:
+        """Where the margins are; None: nobody asked for them."""
+        return None if self._margins is None else self._margins.path
+
+    def knows(self, drive: Drive) -> bool:
+        """Whether this very log was judged before."""
+        return drive.trace.drive_id in self._seen
+
+    def judge(self, drives: Sequence[Drive]) -> None:
+        """Judge a batch of drives; if it fails, nothing of it stays behind.
+
+        Errors: `duckdb.OutOfMemoryException` for several drives, which may fit one by one, and for one that does not fit with
+        all the memory there is, each of its egos alone.
+        """
+        if not drives:
+            return
+        while not self._fits(drives):
+            pass
+        self._seen.update(drive.trace.drive_id for drive in drives)
+        if self._margins:
+            self._margins.add(self._con, self._memory)
+        self._clear()
+
+    def _fits(self, drives: Sequence[Drive]) -> bool:
+        """Judge a batch. Return False if memory ran out: the next try needs less at once, or may have more."""
+        try:
+            self._judge(drives)
+        except _PartTooLargeError as part:
+            self._memory.halve(part.meetings)
+            return False
+        except duckdb.OutOfMemoryException:
+            # what one ego needs and cannot be spilled to disk may take what the machine has
+            if len(drives) > 1 or not self._memory.lift():
+                raise
+            return False
+        return True
+
+    def _judge(self, drives: Sequence[Drive]) -> None:
+        ids = [drive.trace.drive_id for drive in drives]
+        with ExitStack() as undo:
+            undo.callback(self._forget, ids)
+            self._load(drives)
+            todo = parts(drives, self._memory.room)
+            for no, resting in enumerate(todo):
+                if no:
+                    store.renew(self._con, [*_part_tables(drives[0]), "resting_ego"])
+                if resting:
+                    store.insert(self._con, "resting_ego", _egos(drives[0], resting))
+                judged = {ego: n for ego, n in drives[0].meetings.items() if ego not in set(resting)}
+                cuttable = len(drives) == 1 and len(judged) > 1
+                try:
+                    self._judge_part(ids, may_retry=len(drives) > 1 or cuttable or self._memory.limited)
+                    for witness in self._witnesses:
+                        witness(self._con, drives, first=no == 0, last=no + 1 == len(todo))
+                except duckdb.OutOfMemoryException as error:
+                    if cuttable:
+                        raise _PartTooLargeError(sum(judged.values())) from error
+                    raise
+                trace_tables = [t for t in drives[0].trace.tables if t not in _RESULTS and not no]
+                self._keep([*trace_tables, *_part_tables(drives[0])], again=no > 0)
+            self._keep(["margin"])
+            undo.pop_all()
+
+    def _judge_part(self, ids: Sequence[str], *, may_retry: bool) -> None:
+        """Judge the egos that do not rest."""
+        derive(self._con, self._tables, of_the_map=False)
+        evaluate(
+            self._con,
+            self._rules,
+            self._params,
+            margins=self._margins is not None,
+            courses=bool(self._witnesses),
+            may_retry=may_retry,
+        )
+        self._refuse_shared_error(ids)
+
+    def close(self) -> None:
+        """Finish the files that grew with the batches."""
+        if self._margins:
+            self._margins.close()
+        if self._kept:
+            self._keep(_RESULTS)
+            self._con.execute("DETACH kept")
+            self._kept = None
+
+    def _load(self, drives: Sequence[Drive]) -> None:
+        environments = {d.environment.environment_id: d.environment for d in drives if d.environment}
+        if not environments.keys() <= self._maps:
+            self._maps = frozenset()  # until the new ones are whole: a failure here must not leave half a map behind
+            for table in (*_map_tables(), *(t for t, d in derivations().items() if d.of_the_map)):
+                self._con.execute(f"DELETE FROM {table}")
+            for _, environment in sorted(environments.items()):
+                known = self._con.execute(
+                    "SELECT count(*) FROM environment WHERE environment_id = ?", [environment.environment_id]
+                ).fetchall()[0][0]
+                for table, rows in environment.tables.items():
+                    if not (known and table in _RESULTS):
+                        store.insert(self._con, table, rows)
+            derive(self._con, self._tables, of_the_map=True)
+            self._maps = frozenset(environments)
+            self._keep_maps(environments.keys() - self._kept_maps)
+        store.code_ids(self._con, _batch_tables(), (d.trace.drive_id for d in drives), _actors(drives))
+        for table in drives[0].trace.tables:
+            rows = pa.concat_tables([_on_map(d) if table == "data_log" else d.trace.tables[table] for d in drives])
+            store.insert(self._con, table, rows)
+
+    def _attach(self, path: Path) -> None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.unlink(missing_ok=True)
+        with store.connect(path):
+            pass
+        self._con.execute("RESET GLOBAL checkpoint_threshold")  # or its log would be as large as itself
+        self._con.execute(f"ATTACH '{str(path).replace(chr(39), chr(39) * 2)}' AS kept")
+
+    def _keep(self, tables: Iterable[str], *, again: bool = False) -> None:
+        """Copy tables to the kept database; `again`: what is the same for all parts of a drive is there already."""
+        if not self._kept:
+            return
+        for table in tables:
+            whole = again and ("ego_id" not in store.schema()[table] or table == "ego_clock")
+            known = f" EXCEPT FROM kept.{table}" if whole else ""
+            self._memory.execute(f"INSERT INTO kept.{table} SELECT * FROM {table}{known}")
+
+    def _keep_maps(self, ids: Iterable[str]) -> None:
+        new = sorted(ids)
+        if self._kept and new:
+            for table in (*_map_tables(), *(t for t, d in derivations().items() if d.of_the_map)):
+                self._con.execute(
+                    f"INSERT INTO kept.{table} SELECT * FROM {table} WHERE list_contains(?, environment_id)", [new]
+                )
+            self._kept_maps.update(new)
+
+    def _refuse_shared_error(self, ids: Sequence[str]) -> None:
+        """Let a rule that erred on a crowd be tried on each drive alone: the fault of one is not the others'."""
+        erred = "SELECT rule_id FROM verdict WHERE verdict = 'error' AND list_contains(?, drive_id) ORDER BY rule_id LIMIT 1"
+        if len(ids) > 1 and (row := self._con.execute(erred, [list(ids)]).fetchone()):
+            raise RuleError(f"{row[0]} erred on a batch of {len(ids)} drives")
+
+    def _clear(self) -> None:
+        store.renew(self._con, _batch_tables())
+
+    def _forget(self, ids: Sequence[str]) -> None:
+        self._clear()
+        for table in _RESULTS:
+            if "drive_id" in store.schema()[table]:
+                self._con.execute(f"DELETE FROM {table} WHERE list_contains(?, drive_id)", [list(ids)])
+        for table in _batch_tables() if self._kept else ():  # parts of it may be there
+            self._con.execute(f"DELETE FROM kept.{table} WHERE list_contains(?, drive_id)", [list(ids)])
+
+
+def _on_map(drive: Drive) -> pa.Table:
+    log = drive.trace.tables["data_log"]
+    name = pa.array([drive.environment.environment_id if drive.environment else None], pa.string())
+    return log.set_column(log.schema.get_field_index("environment_id"), "environment_id", name)
+
+
+def _actors(drives: Iterable[Drive]) -> set[str]:
+    held = set(_batch_tables())
+    tables = [d.trace.tables[name] for d in drives for name in d.trace.tables if name in held]
+    columns = [table.column(c) for table in tables for c in table.column_names if c in store.ACTOR_IDS]
+    return {each for column in columns for each in pc.unique(column).to_pylist() if each is not None}
+
+
+def _batch_tables() -> list[str]:
+    """Tables that hold one batch at a time."""
+    return [t for t, columns in store.schema().items() if "drive_id" in columns and t not in _RESULTS and t != "drive"]
+
+
+def _part_tables(drive: Drive) -> list[str]:
+    """Tables that hold one part of a drive at a time; margins wait for the whole of it."""
+    return [table for table in _batch_tables() if table not in {"margin", "resting_ego", *drive.trace.tables}]
+
+
+def _egos(drive: Drive, names: Sequence[str]) -> pa.Table:
+    return pa.table({"drive_id": [drive.trace.drive_id] * len(names), "ego_id": list(names)})
+
+
+def _map_tables() -> list[str]:
+    """Tables of the map itself, replaced when a batch needs other maps."""
+    derived = derivations()
+    return [
+        t
+        for t, columns in store.schema().items()
+        if next(iter(columns)) == "environment_id" and t not in _RESULTS and t not in derived
+    ]

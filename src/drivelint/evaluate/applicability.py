@@ -1,0 +1,97 @@
+"""Where a rule holds: the conditions of its header and the automated driver's engagement, three-valued, as SQL over `ego_condition e`.
+
+Engagement costs nothing where it says nothing: `_watched` names the subjects with a step at which the automated driver
+does not drive, or may not; for all others every step is engaged.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from drivelint.drive import conditions
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from drivelint.catalogue import Rule
+
+WATCHED = """
+CREATE OR REPLACE TEMP TABLE _watched AS
+SELECT s.drive_id, s.ego_id, bool_and(coalesce(NOT e.engaged, false)) AS never
+FROM step s
+LEFT JOIN ego_condition e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
+GROUP BY ALL HAVING bool_or(e.engaged IS DISTINCT FROM true)
+"""
+"""`never`: it drives at no step at all. A step without a row is a step at which it is not known."""
+
+ROUNDING_MPS = 0.01
+"""Speed limits are kilometres or miles per hour, rounded in one place and not in another: 50 km/h is 13.89 or 13.8889 m/s."""
+ENGAGED = "(w.ego_id IS NULL OR e.engaged)"
+
+
+def restricts(rule: Rule) -> bool:
+    """Whether the rule's header names any condition."""
+    return bool(rule.applies.words) or rule.applies.limited
+
+
+def engagement(alias: str) -> str:
+    """Return the joins that `ENGAGED` needs for rows with these keys and `t_ns`."""
+    return _joins(alias, f"{alias}.t_ns", watching=True)
+
+
+def joins(rule: Rule, alias: str, time: str, *, watching: bool) -> str:
+    """Return the joins that `holds` and `doubt` need for rows with these keys and this time; '' for none."""
+    if not (restricts(rule) or watching):
+        return ""
+    return _joins(alias, time, watching=watching)
+
+
+def holds(rule: Rule, *, watching: bool) -> str:
+    """Return whether the rule is in force: true, false or NULL. One condition that is false settles it."""
+    return " AND ".join(_terms(rule, watching=watching).values()) or "true"
+
+
+def doubt(rule: Rule, *, watching: bool) -> str:
+    """Return the reason code of the first condition that is not known, or NULL."""
+    terms = _terms(rule, watching=watching)
+    whens = " ".join(f"WHEN ({term}) IS NULL THEN '{name}_unknown'" for name, term in terms.items())
+    return f"CASE {whens} END" if terms else "NULL::VARCHAR"
+
+
+def bound(rule: Rule) -> dict[str, object]:
+    """Return the values that the conditions bind."""
+    least, most = rule.applies.limit_min_mps, rule.applies.limit_max_mps
+    values: dict[str, object] = {
+        "_limit_min": None if least is None else least - ROUNDING_MPS,
+        "_limit_max": None if most is None else most + ROUNDING_MPS,
+    }
+    for name, words in rule.applies.words.items():
+        values[f"_is_{name}"] = conditions.covered(words)
+        values[f"_may_{name}"] = conditions.undecided(words)
+    return values
+
+
+def _terms(rule: Rule, *, watching: bool) -> dict[str, str]:
+    """Return condition -> its three-valued SQL, the driver's engagement first."""
+    found = {"engaged": ENGAGED} if watching else {}
+    for name in rule.applies.words:
+        found[name] = (
+            f"CASE WHEN list_contains($_is_{name}, e.{name}) THEN true "
+            f"WHEN e.{name} IS NOT NULL AND NOT list_contains($_may_{name}, e.{name}) THEN false END"
+        )
+    if rule.applies.limited:
+        found["limit"] = " AND ".join(_limits(rule))
+    return found
+
+
+def _limits(rule: Rule) -> Iterable[str]:
+    if rule.applies.limit_min_mps is not None:
+        yield "e.limit_mps >= $_limit_min"
+    if rule.applies.limit_max_mps is not None:
+        yield "e.limit_mps <= $_limit_max"
+
+
+def _joins(alias: str, time: str, *, watching: bool) -> str:
+    same = "{0}.drive_id = {1}.drive_id AND {0}.ego_id = {1}.ego_id"
+    condition = f"LEFT JOIN ego_condition e ON {same.format('e', alias)} AND e.t_ns = {time}"
+    return f"{condition} LEFT JOIN _watched w ON {same.format('w', alias)}" if watching else condition

@@ -1,0 +1,139 @@
+"""A database with copies of one drive, where one rule is judged again and again: other numbers, the same facts."""
+
+from __future__ import annotations
+
+import re
+from contextlib import ExitStack
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Self
+
+import duckdb
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.engine.derive import derive
+from drivelint.engine.memory import Memory
+from drivelint.evaluate import evaluate
+from drivelint.sql import store
+from drivelint.sql.derivations import derivations, needed
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from types import TracebackType
+
+    from drivelint.catalogue import Rule
+    from drivelint.engine.batch import Drive
+    from drivelint.explain.model import Row
+
+_JUDGED: Final = ("verdict", "finding", "margin")
+_READS_PROFILE: Final = re.compile(r"\b(?:FROM|JOIN)\s+profile\b", re.IGNORECASE)
+
+
+class Judged(NamedTuple):
+    """What one judgement left: rows of `verdict`, and every step that was looked at."""
+
+    verdicts: list[Row]
+    steps: list[Row]
+
+
+class Lab:
+    """One rule over some copies of a drive, derived once. Use it as a context manager.
+
+    `drives` share one map. The shipped or user's `profiles` are the rows of the table `profile`. `memory` is the limit of the
+    database in bytes (None: 80 % of the machine's), which is lifted where it does not do.
+    """
+
+    def __init__(self, rule: Rule, drives: Sequence[Drive], profiles: pa.Table, memory: int | None) -> None:
+        self._rule = rule
+        self.drive_id = drives[0].trace.drive_id
+        with ExitStack() as stack:
+            self.con = stack.enter_context(store.workspace(memory))
+            self._memory = Memory(self.con, memory)
+            self._insert("profile", profiles)
+            self._fill(drives)
+            self._derive()
+            self._opened = stack.pop_all()
+
+    def _insert(self, table: str, rows: pa.Table) -> None:
+        self._memory.enough(lambda con: store.insert(con, table, rows), self.con)
+
+    def _fill(self, drives: Sequence[Drive]) -> None:
+        environment = drives[0].environment
+        if environment is not None:
+            for table, rows in environment.tables.items():
+                self._insert(table, rows)
+        store.lock(self.con)
+        place = pa.array([environment.environment_id if environment else None], pa.string())
+        for table in drives[0].trace.tables:
+            rows = pa.concat_tables([drive.trace.tables[table] for drive in drives])
+            if table == "data_log":
+                at = rows.schema.get_field_index("environment_id")
+                rows = rows.set_column(at, "environment_id", pa.concat_arrays([place] * rows.num_rows))
+            self._insert(table, rows)
+
+    def _derive(self) -> None:
+        try:
+            for of_the_map in (True, False):
+                derive(self.con, self._rule.reads, of_the_map=of_the_map)
+        except duckdb.OutOfMemoryException:
+            if not self._memory.lift():
+                raise
+            store.renew(self.con, derivations())
+            self._derive()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._opened.close()
+
+    def judge(self, params: Mapping[str, object]) -> Judged:
+        """Judge every copy by the rule with these parameters."""
+        return self._memory.enough(lambda _con: self._judged(params), self.con)
+
+    def _judged(self, params: Mapping[str, object]) -> Judged:
+        for table in _JUDGED:
+            self.con.execute(f"DELETE FROM {table}")
+        given = {self._rule.id: params}
+        evaluate(self.con, [self._rule], given, margins=True, may_retry=self._memory.limited)
+        return Judged(
+            self.rows("SELECT * FROM verdict ORDER BY drive_id, t_start_ns, occurrence, profile, object_id"),
+            self.rows("SELECT * FROM margin ORDER BY drive_id, t_ns, profile, object_id, ref_id"),
+        )
+
+    def set_profile(self, profile: str, column: str, value: float) -> None:
+        """Give one number of a profile another value, and derive anew what follows from it."""
+        self.con.execute(f"UPDATE profile SET {column} = ? WHERE profile = ?", [value, profile])
+        stale: set[str] = set()
+        for derivation in needed(self._rule.reads):
+            # the profiles are given, not derived: `reads` does not name them
+            if derivation.reads & stale or _READS_PROFILE.search(derivation.sql):
+                stale.add(derivation.table)
+                self.con.execute(f"DELETE FROM {derivation.table}")
+                self._memory.execute(f"INSERT INTO {derivation.table} BY NAME {derivation.sql}")
+
+    def rows(self, sql: str, values: Sequence[Any] = ()) -> list[Row]:
+        """Return the rows of a query as dictionaries."""
+        return [dict(row) for row in self.con.execute(sql, list(values)).to_arrow_table().to_pylist()]
+
+
+def cropped(drive: Drive, from_ns: int, to_ns: int) -> Drive:
+    """Return the part of a drive between two times."""
+    tables = dict(drive.trace.tables)
+    for name in ("actor_state", "signal_state", "declared_event"):
+        t_ns = tables[name]["t_ns"]
+        tables[name] = tables[name].filter(pc.and_(pc.greater_equal(t_ns, from_ns), pc.less_equal(t_ns, to_ns)))
+    seen = pc.unique(tables["actor_state"]["actor_id"])
+    tables["actor"] = tables["actor"].filter(pc.is_in(tables["actor"]["actor_id"], value_set=seen))
+    span = pc.min_max(tables["actor_state"]["t_ns"]).as_py()
+    log = tables["data_log"]
+    for column, value in (
+        ("t_start_ns", span["min"]),
+        ("t_end_ns", span["max"]),
+        ("n_states", tables["actor_state"].num_rows),
+    ):
+        log = log.set_column(log.schema.get_field_index(column), column, pa.array([value], pa.int64()))
+    tables["data_log"] = log
+    return replace(drive, trace=replace(drive.trace, tables=tables))

@@ -1,0 +1,1 @@
+"""CommonRoad scenarios: obstacles, lights, and the lanelets under them."""

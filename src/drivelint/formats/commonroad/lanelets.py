@@ -1,0 +1,186 @@
+"""CommonRoad scenarios (XML, 2018b and 2020a): their lanelets, signs, lights and stop lines.
+
+Read with lxml: commonroad-io pins a protobuf of 2022, which cannot be installed beside today's.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+from drivelint.errors import MapError
+from drivelint.formats import markup
+from drivelint.formats.commonroad.signs import Signs, points, read_signs, refs, signal_rows, stop_line_rows
+from drivelint.road.boundary_lanes import BoundedLane, build, crossings, side_driven_on, tables
+from drivelint.road.contract import Environment, MapSource, Request, environment_id
+from drivelint.road.quality import Quality
+from drivelint.road.tables import from_rows
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from lxml import etree
+
+_KINDS = {
+    "sidewalk": "sidewalk", "busLane": "bus", "bicycleLane": "biking", "exitRamp": "exit", "accessRamp": "entry",
+    "shoulder": "shoulder", "border": "border", "parking": "parking", "restricted": "restricted",
+}  # fmt: skip
+_NOT_DRIVEN = frozenset({"sidewalk", "biking", "shoulder", "border", "parking", "restricted"})
+_ROADS = {"interstate": "motorway", "highway": "motorway", "country": "rural", "urban": "town"}
+_TYPES = {*_KINDS, *_ROADS, "crosswalk", "mainCarriageWay", "driveWay", "intersection", "busStop"}
+_MARKINGS = {
+    "solid": "solid", "broad_solid": "solid", "dashed": "broken", "broad_dashed": "broken", "curb": "curb",
+    "lowered_curb": "curb", "solid_solid": "solid_solid", "dashed_dashed": "broken_broken", "no_marking": "none",
+}  # fmt: skip
+"""Our words; of a mixed double line the file does not say which side is nearer: not known."""
+_LEFT_DRIVEN = frozenset({
+    "AUS", "BGD", "CYP", "GBR", "HKG", "IDN", "IND", "IRL", "JPN", "KEN", "LKA", "MLT", "MYS", "NPL", "NZL", "PAK", "SGP",
+    "THA", "TZA", "UGA", "ZAF", "ZMB", "ZWE",
+})  # fmt: skip
+
+
+class CommonRoadReader:
+    """CommonRoad XML."""
+
+    format = "commonroad"
+
+    def read(self, source: MapSource, request: Request) -> Environment:
+        """Return the map's tables; `MapError` where the file is not XML or has no lanelet that can be built."""
+        try:
+            root = markup.parse(source.content)
+        except markup.RefusedError as error:
+            raise MapError(f"map {source.name} {error}") from None
+        quality = Quality()
+        signs = read_signs(root, _country(root), quality)
+        read: list[BoundedLane] = []
+        walks: list[BoundedLane] = []
+        for element in root.findall("lanelet"):
+            try:
+                kinds = [t.text or "" for t in element.findall("laneletType")]
+                (walks if "crosswalk" in kinds else read).append(_lane(element, kinds, signs))
+            except (ValueError, KeyError) as error:
+                name = element.get("id") or f"in line {element.sourceline}"
+                quality.add("invalid_lane", "error", name, f"lanelet {name} is left out: {error}")
+        signs.report(root.findall("lanelet"), [light.get("id", "") for light in root.findall("trafficLight")])
+        _report_words(root, quality)
+        _without_towns(root, read, quality)
+        _junctions(root, read)
+        lanes = build(read, request.offset, quality)
+        if not lanes:
+            first = next((row["message"] for row in quality.rows), "it has no <lanelet>")
+            raise MapError(f"map {source.name} has no lane that can be built: {first}")
+        handedness, how = _handedness(root, lanes, request, quality)
+        name = environment_id(source, request.offset, handedness, guessed=how == "default")
+        result = tables(name, lanes)
+        rows: dict[str, list[dict[str, Any]]] = {
+            "environment": [_environment(source, request, handedness, how)],
+            "traffic_signal": signal_rows(root, signs, lanes, request.offset),
+            "stop_line": stop_line_rows(root, lanes, request.offset),
+            "road_object": [],
+            "crossing": crossings(walks, lanes, request.offset),
+        }
+        result |= {table: from_rows(table, name, content) for table, content in rows.items()}
+        result["map_quality"] = quality.table(name)
+        return Environment(name, handedness, how, result)
+
+
+def _environment(source: MapSource, request: Request, handedness: str, how: str) -> dict[str, object]:
+    return {
+        "name": source.name, "sha256": source.sha256, "format": CommonRoadReader.format,
+        "offset_x_m": request.offset[0], "offset_y_m": request.offset[1],
+        "handedness": handedness, "handedness_source": how, "geo_reference": None,
+    }  # fmt: skip
+
+
+def _lane(element: etree._Element, kinds: Sequence[str], signs: Signs) -> BoundedLane:
+    kind = next((_KINDS[k] for k in kinds if k in _KINDS), "driving")
+    limit = signs.limit(element)
+    left, right = element.find("leftBound"), element.find("rightBound")
+    lane = BoundedLane(
+        str(element.attrib["id"]), points(left), points(right), kind, kind not in _NOT_DRIVEN,
+        bidirectional=len(element.findall("userOneWay")) == 0 and len(element.findall("userBidirectional")) > 0,
+        road_type=next((_ROADS[k] for k in kinds if k in _ROADS), None),
+        successors=tuple(refs(element, "successor")),
+        left_marking=_marking(left), right_marking=_marking(right),
+        limit_mps=limit.limit_mps, limit_known=limit.limit_mps is not None, limit_source=limit.source,
+    )  # fmt: skip
+    for side in ("Left", "Right"):
+        beside = element.find(f"adjacent{side}")
+        if beside is not None:
+            against = beside.get("drivingDir") != "same"
+            if side == "Left":
+                lane.left_id, lane.left_against = beside.get("ref"), against
+            else:
+                lane.right_id, lane.right_against = beside.get("ref"), against
+    return lane
+
+
+def _marking(bound: etree._Element | None) -> str | None:
+    said = None if bound is None else bound.findtext("lineMarking")
+    return _MARKINGS.get(said or "")
+
+
+def _without_towns(root: etree._Element, lanes: Sequence[BoundedLane], quality: Quality) -> None:
+    """Take away the type `urban` of a scenario that is tagged as one of a highway: converters write it of every lanelet."""
+    tags = {tag.tag for parent in root.findall("scenarioTags") for tag in parent}
+    towns = [lane for lane in lanes if lane.road_type == "town"]
+    if towns and tags & {"highway", "interstate"} and "urban" not in tags:
+        for lane in towns:
+            lane.road_type = None
+        message = "lanelets are urban and the scenario's tags say highway: of what kind the road is, is not known"
+        quality.add("road_type_contradicted", "warning", None, message, len(towns))
+
+
+def _report_words(root: etree._Element, quality: Quality) -> None:
+    """Name the markings and types of lanelets that are not read."""
+    for tag, known, what in (("lineMarking", _MARKINGS, "markings"), ("laneletType", _TYPES, "types of lanelets")):
+        said = Counter((e.text or "").strip() for e in root.iterfind(f"lanelet//{tag}"))
+        unread = {word: n for word, n in sorted(said.items()) if word not in known and word != "unknown"}
+        if unread:
+            listed = ", ".join(f"{word or 'no word'} ({n})" for word, n in unread.items())
+            quality.add("unknown_word", "info", None, f"{what} that are not read: {listed}", sum(unread.values()))
+
+
+def _country(root: etree._Element) -> str:
+    """Return the three letters of the country in the scenario's name; ZAM stands for none."""
+    return (root.get("benchmarkID") or "").removeprefix("C-")[:3].upper()
+
+
+def _junctions(root: etree._Element, lanes: Sequence[BoundedLane]) -> None:
+    """Mark what lies inside an intersection: the successors that it names, and lanelets of that type between its ways in."""
+    inside: dict[str, str] = {}
+    for crossing in root.findall("intersection"):
+        for way in crossing.findall("incoming"):
+            for name in ("successorsLeft", "successorsStraight", "successorsRight"):
+                inside.update(dict.fromkeys(refs(way, name), crossing.get("id", "")))
+    ends = {to for lane in lanes for to in lane.successors}
+    for lane in lanes:
+        if lane.lanelet_id in inside and lane.lanelet_id in ends:
+            lane.junction_id = inside[lane.lanelet_id]
+
+
+def _handedness(
+    root: etree._Element, lanes: Sequence[BoundedLane], request: Request, quality: Quality
+) -> tuple[str, str]:
+    """Return the side driven on and how it was found: option, lanes beside each other, country, default."""
+    country = _country(root)
+    by_country = None if country in {"", "ZAM", "TES"} else "lht" if country in _LEFT_DRIVEN else "rht"
+    said = [
+        (how, side)
+        for how, side in (
+            ("option", None if request.handedness == "auto" else request.handedness),
+            ("lanes", side_driven_on(lanes)),
+            ("attribute", by_country),
+        )
+        if side is not None
+    ]
+    if len({side for _, side in said}) > 1:
+        opinions = ", ".join(f"{how}: {side}" for how, side in said)
+        quality.add(
+            "handedness_disagrees", "warning", None, f"{opinions}; the first is taken: give --handedness if it is wrong"
+        )
+    if not said:
+        message = "nothing in the map says which side is driven on: right-hand traffic is a guess; give --handedness"
+        quality.add("handedness_default", "warning", None, message)
+        return "rht", "default"
+    return said[0][1], said[0][0]

@@ -1,0 +1,101 @@
+"""The traffic lights of a CommonRoad scenario: their cycles, unrolled over the time of the log."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyarrow as pa
+
+from drivelint.drive.trace import Finding
+
+if TYPE_CHECKING:
+    from lxml import etree
+    from numpy.typing import NDArray
+
+_STATES = {"red": "red", "redYellow": "red_amber", "yellow": "amber", "green": "green", "inactive": "off"}
+_LEAST_STEPS = 0.5  # a phase is a whole number of steps: a shorter one is a mistake
+
+
+class _UnreadError(ValueError):
+    """A light without a cycle that can be read; caught where the light is named."""
+
+
+def signal_states(
+    root: etree._Element, step_s: float, first: float, last: float
+) -> tuple[pa.Table | None, list[Finding]]:
+    """Return `signal_id`, `t_ns`, `state` of every light, and what could not be read; None: there are no lights.
+
+    `first` and `last` are the log's time steps, of `step_s` seconds each. A row stands at the log's first step and at every change.
+    """
+    ids: list[str] = []
+    times: list[NDArray[np.int64]] = []
+    states: list[str | None] = []
+    findings = []
+    for light in root.findall("trafficLight"):
+        name = light.get("id", "")
+        try:
+            steps, shown = _unrolled(light, first, last)
+        except _UnreadError as error:
+            findings.append(
+                Finding("signal_cycle", "warning", f"the states of traffic light {name} are not known: {error}")
+            )
+            continue
+        if None in shown:
+            words = sorted({w for w in _colours(light) if w not in _STATES})
+            message = f"traffic light {name} has colours that are not known: {', '.join(words)}"
+            findings.append(Finding("signal_cycle", "warning", message, len(words)))
+        ids += [name] * len(steps)
+        times.append(np.round(steps * step_s * 1e9).astype(np.int64))
+        states += shown
+    if not ids:
+        return None, findings
+    return pa.table(
+        {
+            "signal_id": pa.array(ids, pa.string()),
+            "t_ns": pa.array(np.concatenate(times)),
+            "state": pa.array(states, pa.string()),
+        }
+    ), findings
+
+
+def _unrolled(light: etree._Element, first: float, last: float) -> tuple[NDArray[np.float64], list[str | None]]:
+    """Return the time steps at which a light's state is known or changes, and its states.
+
+    The cycle begins at step `timeOffset` and goes on without end in both directions. A light that is not active is off.
+    """
+    if _said(light, "active").lower() in {"false", "0"}:
+        return np.array([first]), ["off"]
+    colours = _colours(light)
+    if not colours:
+        raise _UnreadError("it has no cycle")
+    durations = np.array([_number(e.findtext("duration")) for e in light.iterfind("cycle/cycleElement")], np.float64)
+    if not (durations >= _LEAST_STEPS).all():
+        raise _UnreadError("a phase of its cycle has no duration")
+    offset = _number(_said(light, "timeOffset") or "0")
+    if not math.isfinite(offset):
+        raise _UnreadError("its time offset is no number")
+    ends = np.cumsum(durations)
+    cycles = np.arange(np.floor((first - offset) / ends[-1]), np.floor((last - offset) / ends[-1]) + 1)
+    begins = (offset + cycles[:, None] * ends[-1] + np.r_[0.0, ends[:-1]]).ravel()
+    shown = [_STATES.get(word) for word in colours] * len(cycles)
+    at = int(np.searchsorted(begins, first, side="right")) - 1
+    keep = [i for i in range(at, len(begins)) if begins[i] <= last and (i == at or shown[i] != shown[i - 1])]
+    return np.maximum(begins[keep], first), [shown[i] for i in keep]
+
+
+def _colours(light: etree._Element) -> list[str]:
+    return [(e.findtext("color") or "").strip() for e in light.iterfind("cycle/cycleElement")]
+
+
+def _said(light: etree._Element, name: str) -> str:
+    """Return what a light says, or its cycle: writers differ in where they put it."""
+    return (light.findtext(name) or light.findtext(f"cycle/{name}") or "").strip()
+
+
+def _number(text: str | None) -> float:
+    try:
+        return float(text or "nan")
+    except ValueError:
+        return math.nan

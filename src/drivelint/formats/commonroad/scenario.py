@@ -1,0 +1,184 @@
+"""CommonRoad scenarios (XML, 2018b and 2020a): their obstacles and lights as a drive, the file itself as its map.
+
+A scenario has no ego but the start of a planning problem: say who it is with --ego.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from lxml import etree
+
+from drivelint.drive.order import listed
+from drivelint.drive.trace import CLASSES, Finding, Recording, States
+from drivelint.errors import TraceError
+from drivelint.formats import markup
+from drivelint.formats.commonroad.lights import signal_states
+from drivelint.formats.commonroad.text import cut
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+_CLASSES = {
+    "car": "car", "taxi": "car", "truck": "truck", "bus": "bus", "motorcycle": "motorcycle", "bicycle": "bicycle",
+    "pedestrian": "pedestrian", "priorityVehicle": "vehicle", "parkedVehicle": "vehicle", "train": "vehicle",
+    "constructionZone": "object", "roadBoundary": "object", "pillar": "object", "building": "object",
+    "median_strip": "object",
+}  # fmt: skip
+_FIELDS = {
+    "x_m": "position/point/x", "y_m": "position/point/y", "yaw_rad": "orientation/exact", "v": "velocity/exact",
+    "a": "acceleration/exact", "slip": "slipAngle/exact",
+}  # fmt: skip
+"""What is read of a state; a value given as an interval is not known."""
+_TIME = "time/exact"
+_STATES = "(initialState|trajectory/state)"
+_TEXTS = {place: etree.XPath(f"{_STATES}/{place}/text()", smart_strings=False) for place in (*_FIELDS.values(), _TIME)}
+
+
+def looks_like(head: bytes) -> bool:
+    """Say whether a file begins as a CommonRoad scenario."""
+    return b"<commonRoad" in head
+
+
+def read(path: Path) -> Recording:
+    """Read a scenario. Errors: `TraceError` for malformed XML, no obstacles, or times that cannot be understood."""
+    content = path.read_bytes()
+    fast = cut(content)
+    try:
+        root = markup.parse(content if fast is None else fast.rest)
+    except markup.RefusedError as error:
+        raise TraceError(f"{path} {error}") from None
+    step_s = _number(root.get("timeStepSize"))
+    if not step_s > 0.0:
+        raise TraceError(
+            f"{path}: timeStepSize is {root.get('timeStepSize')!r}: a scenario needs a positive number of seconds"
+        )
+    obstacles = [*root.findall("dynamicObstacle"), *root.findall("staticObstacle"), *root.findall("obstacle")]
+    if not obstacles:
+        raise TraceError(f"{path}: the scenario has no obstacles: there is nobody to judge")
+    ids = [str(o.get("id")) for o in obstacles]
+    if len(set(ids)) < len(ids):
+        raise TraceError(
+            f"{path}: two obstacles have the same id: {listed(sorted({i for i in ids if ids.count(i) > 1}))}"
+        )
+    trajectories = {} if fast is None else dict(zip(root.iter("trajectory"), fast.columns, strict=True))
+    parts = [_states(path, o, trajectories) for o in obstacles]
+    last = max((int(part["step"].max()) for part in parts if len(part["step"])), default=0)
+    parts = [_standing(o, part, last) for o, part in zip(obstacles, parts, strict=True)]
+    counts = [len(part["step"]) for part in parts]
+    columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    heading = columns["yaw_rad"] + np.nan_to_num(columns["slip"])
+    states = States(
+        ids,
+        np.repeat(np.arange(len(ids), dtype=np.int32), counts),
+        np.round(columns["step"] * step_s * 1e9).astype(np.int64),
+        {
+            "x_m": columns["x_m"], "y_m": columns["y_m"], "yaw_rad": columns["yaw_rad"],
+            "vx_mps": columns["v"] * np.cos(heading), "vy_mps": columns["v"] * np.sin(heading),
+            "ax_mps2": columns["a"] * np.cos(heading), "ay_mps2": columns["a"] * np.sin(heading),
+            "length_m": columns["length_m"], "width_m": columns["width_m"],
+        },
+        _codes(obstacles, counts),
+        np.zeros(sum(counts), np.bool_),
+    )  # fmt: skip
+    recording = Recording("commonroad", states, embedded_map=content if root.find("lanelet") is not None else None)
+    if len(states):
+        recording.signals, findings = signal_states(root, step_s, columns["step"].min(), columns["step"].max())
+        recording.findings += findings
+    uncertain = int(float(str(root.xpath("count(.//state//intervalStart)"))))
+    if uncertain:
+        message = f"values of obstacles given as intervals: {uncertain}: they are not known"
+        recording.findings.append(Finding("uncertain_value", "warning", message, uncertain))
+    return recording
+
+
+def _number(text: str | None) -> float:
+    try:
+        return float(text or "nan")
+    except ValueError:
+        return math.nan
+
+
+def _all_states(obstacle: etree._Element) -> list[etree._Element]:
+    return [*obstacle.findall("initialState"), *obstacle.findall("trajectory/state")]
+
+
+@cache
+def _lacking(places: tuple[str, ...]) -> etree.XPath:
+    """Return the question whether some state lacks one of these places."""
+    return etree.XPath(f"boolean({_STATES}[{' or '.join(f'not({place}/text())' for place in places)}])")
+
+
+def _numbers(obstacle: etree._Element, states: list[etree._Element]) -> dict[str, Floats]:
+    """Return every field of the states, NaN where it is not said: all at once where each state says it once or none does."""
+    texts = {place: list(read(obstacle)) for place, read in _TEXTS.items()}  # type: ignore[arg-type]
+    said = tuple(place for place, found in texts.items() if found)
+    if all(len(texts[place]) == len(states) for place in said) and not (said and _lacking(said)(obstacle)):
+        nothing = np.full(len(states), np.nan)
+        try:
+            return {
+                p: np.array(found, dtype=np.str_).astype(np.float64) if found else nothing for p, found in texts.items()
+            }
+        except ValueError:
+            pass  # one of them is no number: which, is seen below
+    return {place: np.array([_number(state.findtext(place)) for state in states], np.float64) for place in texts}
+
+
+def _states(
+    path: Path, obstacle: etree._Element, trajectories: Mapping[etree._Element, Mapping[str, Floats]]
+) -> dict[str, Floats]:
+    """Return the columns of an obstacle, (n,) each. Errors: `TraceError` for a state without an exact time."""
+    states = _all_states(obstacle)
+    found = _numbers(obstacle, states)
+    trajectory = obstacle.find("trajectory")
+    more = None if trajectory is None else trajectories.get(trajectory)
+    if more is not None:
+        nothing = np.full(len(next(iter(more.values()))), np.nan)
+        found = {place: np.concatenate([values, more.get(place, nothing)]) for place, values in found.items()}
+    columns = {name: found[place] for name, place in _FIELDS.items()}
+    columns["step"] = np.trunc(found[_TIME])
+    if not np.isfinite(columns["step"]).all():
+        raise TraceError(
+            f"{path}: obstacle {obstacle.get('id')}, line {obstacle.sourceline}: a state without an exact time"
+        )
+    return columns
+
+
+def _standing(obstacle: etree._Element, columns: dict[str, Floats], last: int) -> dict[str, Floats]:
+    """Add the sizes; one that stands has a state at every step of the scenario."""
+    n = len(columns["step"])
+    static = obstacle.tag == "staticObstacle" or obstacle.findtext("role") == "static"
+    if static and n == 1:
+        columns = {name: np.repeat(values, last + 1) for name, values in columns.items()}
+        columns["step"] = np.arange(last + 1, dtype=np.float64)
+        columns["v"] = np.zeros(last + 1)
+    length, width = _size(obstacle)
+    columns["length_m"] = np.full(len(columns["step"]), length)
+    columns["width_m"] = np.full(len(columns["step"]), width)
+    return columns
+
+
+def _size(obstacle: etree._Element) -> tuple[float, float]:
+    """Return length and width of a rectangle, or of the square around a circle; of other shapes: not known."""
+    box, circle = obstacle.find("shape/rectangle"), obstacle.find("shape/circle")
+    if box is not None:
+        return _number(box.findtext("length")), _number(box.findtext("width"))
+    diameter = 2 * _number(circle.findtext("radius")) if circle is not None else math.nan
+    return diameter, diameter
+
+
+def _codes(obstacles: list[etree._Element], counts: list[int]) -> dict[str, NDArray[np.int8]]:
+    classes = []
+    for obstacle in obstacles:
+        word = _CLASSES.get((obstacle.findtext("type") or "").strip())
+        classes.append(CLASSES.index(word) if word else -1)
+    unknown = np.full(sum(counts), -1, np.int8)
+    return {"actor_class": np.repeat(np.array(classes, np.int8), counts), "indicator": unknown, "brake_light": unknown}

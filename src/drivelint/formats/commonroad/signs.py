@@ -1,0 +1,292 @@
+"""Signs, lights and stop lines of a CommonRoad map: what they are, the lanelets that refer to them, the limits they give.
+
+A sign or light holds for the lanelets that refer to it, on their whole length. Codes of signs depend on the country:
+commonroad-io lists MUTCD codes for the USA, those of its traffic law for Spain, and StVO numbers for Germany and, as a
+stand-in, for every other country.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import shapely
+
+from drivelint.road.signcodes import kind_of, turns_in_direction
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from lxml import etree
+    from numpy.typing import NDArray
+
+    from drivelint.road.boundary_lanes import BoundedLane
+    from drivelint.road.quality import Quality
+
+    Floats = NDArray[np.float64]
+
+_LISTS = {"USA": "us", "ESP": "es"}  # codes of other countries: StVO numbers
+_LIGHT = "1000001"
+_LIMITS = frozenset({"speed_limit", "speed_zone"})
+_AT_THE_END = frozenset({"traffic_light", "stop", "give_way"})  # where the lanelet's traffic waits
+_SPEEDS = _LIMITS | {"minimum_speed"}
+_STVO = re.compile(r"1?\d{3}(\.\d)?(-\d+)?")  # of these, the codes that limit the speed are known
+_FASTEST_MPS = 45.0  # 160 km/h: no sign allows more, so a greater number is not in m/s
+_PLATES = frozenset(
+    {"1000", "1002", "1006", "1007", "1010", "1012"}
+)  # give a direction or a reason; others of 1xxx restrict a sign
+
+
+class Element(NamedTuple):
+    """One sign of those on a post. `value` is the first number on it, in the map's unit; None: none."""
+
+    code: str
+    kind: str | None
+    value: float | None
+
+
+@dataclass(frozen=True)
+class Limit:
+    """The limit of a lanelet in m/s, None where the map gives none that is sure; `source`: sign, or lane for its own element."""
+
+    limit_mps: float | None
+    source: str
+
+
+@dataclass
+class Signs:
+    """The signs of a map by their id; what cannot be read of them is a row of `quality`."""
+
+    country: str
+    quality: Quality
+    elements: dict[str, list[Element]] = field(default_factory=dict)
+
+    def limit(self, lanelet: etree._Element) -> Limit:
+        """Return the limit of a lanelet: the least of those on its signs and of its own (2018b).
+
+        One that holds only under a condition, by a plate, may be lower: then the limit is not known.
+        """
+        own = _number(lanelet.findtext("speedLimit"))
+        if own is not None and (trouble := _implausible(own)):
+            name = lanelet.get("id")
+            self.quality.add("invalid_speed", "warning", name, f"the limit of lanelet {name} is not taken: {trouble}")
+            own = None
+        sure = [own] if own is not None else []
+        perhaps: list[float] = []
+        for ref in refs(lanelet, "trafficSignRef"):
+            on_post = self.elements.get(ref, [])
+            found = [
+                e.value for e in on_post if e.kind in _LIMITS and e.value is not None and not _implausible(e.value)
+            ]
+            (perhaps if any(_restricts(e) for e in on_post) else sure).extend(found)
+        least = min(sure, default=None)
+        if perhaps and (least is None or min(perhaps) < least):
+            least = None
+        return Limit(least, "lane" if least is not None and least == own else "sign")
+
+    def report(self, lanelets: Sequence[etree._Element], lights: Iterable[str]) -> None:
+        """Name signs that are not read, and references to nothing."""
+        self._report_codes()
+        self._report_values()
+        known = {*self.elements, *lights}
+        lost = Counter(ref for lanelet in lanelets for ref in signal_refs(lanelet) if ref not in known)
+        if lost:
+            message = f"lanelets refer to signs or lights that the map does not have: {_counted(lost)}"
+            self.quality.add("missing_signal", "warning", None, message, lost.total())
+        held = {ref for lanelet in lanelets for ref in signal_refs(lanelet)}
+        if idle := sorted(known - held):
+            message = f"signs and lights to which no lanelet refers hold for no lane: {', '.join(idle)}"
+            self.quality.add("signal_without_lane", "info", None, message, len(idle))
+
+    def _report_codes(self) -> None:
+        unread = [e for on_post in self.elements.values() for e in on_post if e.kind is None]
+        numbered = Counter(e.code for e in unread if e.value is not None and not _STVO.fullmatch(e.code))
+        plain = Counter(e.code for e in unread) - numbered
+        if numbered:
+            message = (
+                f"signs with a number and a code that is not known ({self.country}): {_counted(numbered)}: "
+                "whether they limit the speed is not known"
+            )
+            self.quality.add("unknown_sign", "warning", None, message, numbered.total())
+        if plain:
+            message = f"signs that no rule reads ({self.country}): {_counted(plain)}"
+            self.quality.add("unknown_sign", "info", None, message, plain.total())
+
+    def _report_values(self) -> None:
+        for name, on_post in self.elements.items():
+            for element in on_post:
+                if element.kind not in _LIMITS:
+                    continue
+                trouble = "it has no number" if element.value is None else _implausible(element.value)
+                if trouble is None and any(_restricts(e) for e in on_post):
+                    trouble = f"it holds only as its plates say ({', '.join(e.code for e in on_post if _restricts(e))})"
+                if trouble:
+                    self.quality.add(
+                        "invalid_speed", "warning", None, f"the limit of sign {name} is not taken: {trouble}"
+                    )
+
+
+def read_signs(root: etree._Element, country: str, quality: Quality) -> Signs:
+    """Read the signs of a map; `country` is that of its name, by ISO 3166 (three letters)."""
+    signs = Signs(country or "no country", quality)
+    codes = _LISTS.get(country, "de")
+    for sign in root.findall("trafficSign"):
+        on_post = []
+        for part in sign.findall("trafficSignElement"):
+            code = (part.findtext("trafficSignID") or "").strip()
+            values = [_number(v.text) for v in part.findall("additionalValue")]
+            kind = kind_of(codes, code, "") or kind_of("de", code, "")
+            on_post.append(Element(code, kind, next((v for v in values if v is not None), None)))
+        signs.elements[sign.get("id", "")] = on_post
+    return signs
+
+
+def code_list(country: str) -> str:
+    """Return the list that the codes of a country's signs are from, as in `traffic_signal`."""
+    return _LISTS.get(country, "de")
+
+
+def refs(element: etree._Element, name: str) -> list[str]:
+    """Return what an element's children of this name refer to, in their order."""
+    return [ref for child in element.findall(name) if (ref := child.get("ref")) is not None]
+
+
+def signal_refs(lanelet: etree._Element) -> list[str]:
+    """Return the signs and lights that hold for a lanelet: its own, and those of its stop line."""
+    found = [refs(each, name) for each in _and_line(lanelet) for name in ("trafficSignRef", "trafficLightRef")]
+    return list(dict.fromkeys(ref for some in found for ref in some))
+
+
+def _and_line(lanelet: etree._Element) -> list[etree._Element]:
+    return [lanelet, *lanelet.findall("stopLine")]
+
+
+def signal_rows(
+    root: etree._Element, signs: Signs, lanes: Sequence[BoundedLane], offset: tuple[float, float]
+) -> list[dict[str, Any]]:
+    """Return rows of `traffic_signal`: one for each sign or light and lanelet that refers to it.
+
+    A light, stop sign or give-way sign stands at the lanelet's stop line if that refers to it, a light always there or, without a line, at
+    the lanelet's end: its own place may be beyond the junction.
+    """
+    lines = _lines(root, lanes, offset)
+    by_id = {lane.lanelet_id: lane for lane in lanes}
+    holds: dict[str, list[tuple[BoundedLane, float | None]]] = {}
+    for lanelet in root.findall("lanelet"):
+        lane = by_id.get(lanelet.get("id", ""))
+        if lane is None:
+            continue
+        at_line = {
+            ref
+            for line in lanelet.findall("stopLine")
+            for ref in (*refs(line, "trafficSignRef"), *refs(line, "trafficLightRef"))
+        }
+        lights = set(refs(lanelet, "trafficLightRef"))
+        for ref in signal_refs(lanelet):
+            holds.setdefault(ref, []).append((lane, lines.get(lane.lanelet_id) if ref in at_line | lights else None))
+    rows = []
+    for element in [*root.findall("trafficSign"), *root.findall("trafficLight")]:
+        light = element.tag == "trafficLight"
+        name = element.get("id", "")
+        elements = [Element(_LIGHT, "traffic_light", None)] if light else signs.elements[name]
+        place = points(element.find("position"))
+        stands = place[0] + offset if len(place) else None
+        turns = turns_in_direction((element.findtext("direction") or "").strip()) if light else None
+        for lane, line_s_m in holds.get(name, ()):
+            for part in elements:
+                s = _station(lane, part.kind, stands, line_s_m)
+                end = float(lane.line.s[-1])
+                unit = "m/s" if part.kind in _SPEEDS and part.value is not None else None
+                where = stands if stands is not None else lane.line.centre[-1 if s > end / 2 else 0]
+                rows.append(
+                    {
+                        "signal_id": name, "kind": part.kind, "country": code_list(signs.country),
+                        "type": part.code, "subtype": None, "value": part.value, "unit": unit,
+                        "dynamic": light, "turns": turns, "road_id": lane.road_id, "road_s_m": s if lane.along > 0 else end - s,
+                        "lanelet_id": lane.lanelet_id, "lane_s_m": s, "x_m": float(where[0]), "y_m": float(where[1]),
+                    }
+                )  # fmt: skip
+    return sorted(rows, key=lambda r: (r["signal_id"], r["type"], r["lanelet_id"]))
+
+
+def _station(lane: BoundedLane, kind: str | None, stands: Floats | None, line_s_m: float | None) -> float:
+    """Return where a sign or light holds along a lanelet: at its stop line, where it stands, or without a place at an end."""
+    end = float(lane.line.s[-1])
+    if kind in _AT_THE_END and line_s_m is not None:
+        return line_s_m
+    if kind == "traffic_light":
+        return end
+    if stands is not None:
+        return float(shapely.line_locate_point(shapely.LineString(lane.line.centre), shapely.Point(stands)))
+    return end if kind in _AT_THE_END else 0.0
+
+
+def _lines(root: etree._Element, lanes: Sequence[BoundedLane], offset: tuple[float, float]) -> dict[str, float]:
+    """Return the station of each lanelet's stop line: that of its points, else the lanelet's end."""
+    by_id = {lane.lanelet_id: lane for lane in lanes}
+    found = {}
+    for lanelet in root.findall("lanelet"):
+        line, lane = lanelet.find("stopLine"), by_id.get(lanelet.get("id", ""))
+        if line is None or lane is None:
+            continue
+        place = points(line)
+        s = shapely.line_locate_point(shapely.LineString(lane.line.centre), shapely.points(place + offset))
+        found[lane.lanelet_id] = float(np.mean(s)) if len(place) else float(lane.line.s[-1])
+    return found
+
+
+def stop_line_rows(
+    root: etree._Element, lanes: Sequence[BoundedLane], offset: tuple[float, float]
+) -> list[dict[str, Any]]:
+    """Return rows of `stop_line`, one for each lanelet that has one."""
+    rows = [
+        {"stop_line_id": f"{name}.stop", "lanelet_id": name, "lane_s_m": s, "source": "object"}
+        for name, s in _lines(root, lanes, offset).items()
+    ]
+    return sorted(rows, key=lambda r: str(r["stop_line_id"]))
+
+
+def points(parent: etree._Element | None) -> Floats:
+    """Return the points (n, 2) below an element. Errors: `ValueError` where one is not two finite numbers."""
+    found = [] if parent is None else [(p.findtext("x"), p.findtext("y")) for p in parent.iterfind(".//point")]
+    both = np.array([(float(x or "nan"), float(y or "nan")) for x, y in found], np.float64).reshape(-1, 2)
+    if not np.isfinite(both).all():
+        raise ValueError("a point without finite coordinates")
+    return both
+
+
+def _number(text: str | None) -> float | None:
+    try:
+        value = float(text or "nan")
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None
+
+
+def _implausible(limit_mps: float) -> str | None:
+    """Return why a number can be no speed limit in m/s, or None."""
+    if limit_mps <= 0:
+        return f"{limit_mps:g} m/s is no limit"
+    if limit_mps > _FASTEST_MPS:
+        return f"{limit_mps:g} m/s is more than any sign allows: it may be in km/h"
+    return None
+
+
+def _restricts(element: Element) -> bool:
+    """Tell whether an additional plate (StVO, 1000 to 1099) says when, where or for whom the sign above it holds."""
+    number = element.code.partition("-")[0]
+    return (
+        element.kind is None
+        and len(number) == 4
+        and number.isdecimal()
+        and number[:2] == "10"
+        and number not in _PLATES
+    )
+
+
+def _counted(found: Counter[str]) -> str:
+    return ", ".join(f"{code or 'no code'} ({n})" for code, n in sorted(found.items()))

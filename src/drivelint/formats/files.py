@@ -1,0 +1,172 @@
+"""Which files a command line means, and what a drive is called: by its content, not by where it lies."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from glob import glob
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from drivelint.drive.trace import Identity
+from drivelint.errors import TraceError, UsageError
+from drivelint.formats.mcap.bag import METADATA, is_bag
+from drivelint.formats.mcap.bag import files as files_of_bag
+from drivelint.formats.sumo import fcd as sumo
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+CANONICAL = (
+    "actor.parquet",
+    "actor_state.parquet",
+    "data_log.parquet",
+    "declared_event.parquet",
+    "drive_condition.parquet",
+    "map.xodr",
+    "quality.parquet",
+    "signal_state.parquet",
+)
+"""The files of a canonical folder, in name order; all but `actor_state.parquet` may be missing."""
+TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi"})
+"""What a folder of traces is searched for, besides XML that is SUMO's: maps and routes lie there as XML too."""
+_HEAD_BYTES = 4096
+RESULTS = frozenset(
+    f"{name}.parquet"
+    for name in (
+        "courses",
+        "drives",
+        "findings",
+        "lanes",
+        "margins",
+        "opportunities",
+        "overtakes",
+        "rules",
+        "scenes",
+        "spaces",
+        "verdicts",
+    )
+)
+"""What `check --out` writes and a folder of traces is not searched for, where it lies with its `summary.json`."""
+ANNOTATED = "annotated"
+"""The folder beside them: logs that were judged already."""
+
+
+def is_canonical_folder(path: Path) -> bool:
+    """Say whether `path` is a folder that holds one drive as canonical Parquet tables."""
+    return (path / "actor_state.parquet").is_file()
+
+
+def is_drive_folder(path: Path) -> bool:
+    """Say whether `path` is a folder that is one drive: canonical tables, or a bag of rosbag2."""
+    return is_canonical_folder(path) or is_bag(path)
+
+
+def expand(traces: Sequence[str]) -> list[Path]:
+    """Return the traces that files, globs and folders name, sorted, each file once.
+
+    A path that exists is always taken literally, `[`, `*` and `?` in its name included. A folder with
+    `actor_state.parquet` or of rosbag2 is one drive; any other is searched, with subfolders, for MCAP, Parquet, CSV, OSI and
+    SUMO's FCD files, except for what an earlier check wrote there.
+    Errors: `UsageError` for a URI or an empty name, `TraceError` for something that matches nothing.
+    """
+    found: dict[Path, Path] = {}
+    for text in traces:
+        for path in _matches(text):
+            found.setdefault(path.resolve(), path)
+    return [found[key] for key in sorted(found, key=str)]
+
+
+def _matches(text: str) -> list[Path]:
+    if not text.strip():
+        raise UsageError("an empty trace name was given: name a file, a glob or a folder")
+    path = Path(text)
+    if _exists(path):
+        return _inside(path)
+    if re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", text):
+        raise UsageError(f"{text}: URIs cannot be read yet: copy the log to this machine and name the file")
+    matches = [Path(match) for match in sorted(glob(text, recursive=True))]  # noqa: PTH207 (Path.glob refuses absolute patterns)
+    if not matches:
+        what = "no file matches this pattern" if re.search(r"[*?\[]", text) else "no such file or folder"
+        raise TraceError(f"{text}: {what}: check the path")
+    return [file for match in matches for file in _inside(match)]
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except (OSError, ValueError):  # a pattern can be longer than a file name may be
+        return False
+
+
+def _inside(path: Path) -> list[Path]:
+    if not path.is_dir() or is_drive_folder(path):
+        return [path]
+    try:
+        drives = [folder.parent for folder in path.rglob("actor_state.parquet")]
+        drives += [file.parent for file in path.rglob(METADATA) if is_bag(file.parent) and file.parent not in drives]
+        inside = frozenset(drives)
+        files = [
+            file
+            for file in path.rglob("*")
+            if file.suffix.lower() in {*TRACE_SUFFIXES, ".xml"}
+            and file.is_file()
+            and inside.isdisjoint(file.parents)
+            and not _is_result(file, path)
+            and (file.suffix.lower() in TRACE_SUFFIXES or _is_fcd(file))
+        ]
+    except OSError as error:  # such as a folder that went while it was looked through
+        raise TraceError(f"{path}: cannot be searched: {error.filename}: {error.strerror}: try again") from error
+    if not drives and not files:
+        raise TraceError(
+            f"{path}: no trace in this folder (looked for {', '.join(sorted(TRACE_SUFFIXES))}, and SUMO's .xml): check the path"
+        )
+    return drives + files
+
+
+def _is_fcd(file: Path) -> bool:
+    with file.open("rb") as opened:
+        return sumo.looks_like(file, opened.read(_HEAD_BYTES))
+
+
+def _is_result(file: Path, searched: Path) -> bool:
+    """Say whether an earlier check wrote the file: the logs that somebody recorded beside its results are none.
+
+    Who names the folder of annotated logs itself, means them.
+    """
+    if file.name in RESULTS:
+        return _checked(file.parent)
+    folder = file.parent.parent
+    return file.parent.name == ANNOTATED and folder.is_relative_to(searched) and _checked(folder)
+
+
+def _checked(folder: Path) -> bool:
+    return (folder / "summary.json").is_file() and (folder / "verdicts.parquet").is_file()
+
+
+def identify(path: Path) -> Identity:
+    """Hash a trace: a file's bytes, or a folder's tables in name order or parts in order, each with its name.
+
+    Errors: `TraceError` when it cannot be read.
+    """
+    try:
+        if path.is_dir():
+            folder = hashlib.sha256()
+            names = CANONICAL if is_canonical_folder(path) else [METADATA, *(file.name for file in files_of_bag(path))]
+            for name in names:
+                if (path / name).is_file():
+                    folder.update(f"{name}\0{_sha256(path / name)}\n".encode())
+            digest = folder.hexdigest()
+        else:
+            digest = _sha256(path)
+    except OSError as error:
+        raise TraceError(f"{path}: cannot be read: {error.strerror or error}") from error
+    name = Path(os.path.abspath(path)).name  # noqa: PTH100 (resolve would name the target of a link)
+    stem = name if path.is_dir() else Path(name).stem
+    return Identity(f"{stem}-{digest[:8]}", name, digest)
+
+
+def _sha256(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -1,0 +1,1 @@
+"""Filmed drives: what was detected in each frame."""

@@ -1,0 +1,98 @@
+"""Two-dimensional boxes in a film (`vision_msgs/Detection2DArray`, CDR in MCAP) to distances ahead, by the paper's geometry.
+
+A box of w pixels of somebody W metres wide is s = c W / w metres ahead, c being the camera's focal constant in pixels.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from drivelint.errors import TraceError, UsageError
+from drivelint.formats.film.sightings import Sightings
+from drivelint.formats.mcap import bag
+from drivelint.formats.mcap.reader import Container
+from drivelint.formats.ros2 import cdr
+from drivelint.formats.ros2 import types as ros_types
+from drivelint.formats.ros2.objects import HEADER, stamps
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from drivelint.formats.film.mapping import Film
+    from drivelint.formats.mcap.reader import Packet
+    from drivelint.formats.protobuf.descriptors import Tree
+
+MESSAGE: Final = "vision_msgs/Detection2DArray"
+_TREE: Final[Tree] = {
+    "header": HEADER,
+    "detections": {"bbox": {"size_x": None, "size_y": None}, "id": None, "tracking_id": None},
+}
+
+
+def read(path: Path, film: Film) -> Sightings:
+    """Return the distances ahead in every frame. Errors: `TraceError` without such messages, `UsageError` for the mapping."""
+    if film.camera is None:
+        raise UsageError(
+            "a film's boxes need [camera] focal_px in the mapping: the distance at which 1 m is 1 pixel wide"
+        )
+    if unsaid := [actor.id for actor in film.actor if actor.box is None]:
+        raise UsageError(f"mapping: actor {unsaid[0]} has no 'box', the id of his detections")
+    times: list[NDArray[np.int64]] = []
+    boxes: list[tuple[NDArray[np.int64], list[str], NDArray[np.float64]]] = []
+    for file in bag.files(path):
+        container = Container(file)
+        for number, packets in _packets(container).items():
+            schema = container.schemas[number]
+            types = ros_types.parse(file, schema.name, schema.data)
+            table = cdr.Decoder(file, schema.name, types, MESSAGE, _TREE).table(packets)
+            t_ns, _ = stamps(table, "header.stamp")
+            items = table.children["detections"]
+            ids = items.columns.get("id", items.columns.get("tracking_id"))
+            names = [] if ids is None else [str(name, "utf-8", "replace") for name in ids.tolist()]
+            times.append(t_ns)
+            boxes.append((t_ns[items.parent], names, items.columns["bbox.size_x"].astype(np.float64)))
+    if not times:
+        raise TraceError(f"{path}: no {MESSAGE} messages: this mapping reads the boxes of a film")
+    return _sightings(path, film, film.camera.focal_px, np.concatenate(times), boxes)
+
+
+def _packets(container: Container) -> dict[int, list[Packet]]:
+    """Return schema number -> the messages with boxes, in the order of the file."""
+    found: dict[int, list[Packet]] = {}
+    for packet in container.packets():
+        schema = container.schemas.get(packet.channel.schema_id)
+        if schema is not None and packet.channel.message_encoding == "cdr" and ros_types.short(schema.name) == MESSAGE:
+            found.setdefault(packet.channel.schema_id, []).append(packet)
+    return found
+
+
+def _sightings(
+    path: Path,
+    film: Film,
+    focal_px: float,
+    t_ns: NDArray[np.int64],
+    boxes: list[tuple[NDArray[np.int64], list[str], NDArray[np.float64]]],
+) -> Sightings:
+    """Bring times to frame numbers and widths to distances; of several boxes of one actor in a frame the nearest counts."""
+    start = int(t_ns.min())
+    numbers = _frames(t_ns, start, film)
+    whole = np.arange(0, int(numbers.max()) + 1)
+    ahead = []
+    for actor in film.actor:
+        distance = np.full(len(whole), np.inf)
+        for at_ns, names, width in boxes:
+            mine = np.array([name == actor.box for name in names], np.bool_) & (width > 0)
+            np.minimum.at(distance, _frames(at_ns[mine], start, film), focal_px * actor.width / width[mine])
+        ahead.append(np.where(np.isfinite(distance), distance, np.nan))
+    if not any(np.isfinite(each).any() for each in ahead):
+        wanted = ", ".join(str(actor.box) for actor in film.actor)
+        raise TraceError(f"{path}: no box has one of the ids of the mapping ({wanted})")
+    return Sightings(whole, ahead)
+
+
+def _frames(t_ns: NDArray[np.int64], start: int, film: Film) -> NDArray[np.int64]:
+    return np.rint((t_ns - start) / 1e9 * film.frames.rate_hz).astype(np.int64)

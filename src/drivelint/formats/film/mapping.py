@@ -1,0 +1,171 @@
+"""Mappings of filmed drives: which numbers of a frame are distances ahead, and what is assumed of all that is not measured.
+
+A film gives no positions. The drive is laid on a straight road with one lane each way: the ego moves along it at its
+assumed speed, and whoever is detected is placed at his measured distance ahead, in the middle of his lane.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Annotated, Any, Final, Literal
+
+import msgspec
+
+from drivelint.errors import UsageError
+from drivelint.formats.tables.mapping import UNITS
+
+SHIPPED: Final = Path(__file__).parent / "mappings"
+Metres = Annotated[float, msgspec.Meta(gt=0.0, lt=1000.0)]
+
+
+class Speed(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """A speed in any unit that other mappings know."""
+
+    value: Annotated[float, msgspec.Meta(ge=0.0)]
+    unit: str = "m/s"
+
+    @property
+    def mps(self) -> float:
+        """The speed in m/s."""
+        return self.value * UNITS["speed"][self.unit]
+
+
+class FrameColumn(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """How frames are counted: the column with their number (of a table), their rate, and when frame 0 is.
+
+    `every` n: only frames 0, n, 2n, ... are judged. `not_detected` are words for nothing seen.
+    """
+
+    rate_hz: Annotated[float, msgspec.Meta(gt=0.0)]
+    column: str = "frame"
+    start_s: float = 0.0
+    every: Annotated[int, msgspec.Meta(ge=1)] = 1
+    not_detected: list[str] = []
+
+
+class RoadShape(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """The assumed road."""
+
+    driven_on: Literal["left", "right"]
+    lane_width: Metres = 3.5
+
+
+class EgoCar(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """The vehicle with the camera, which is its front."""
+
+    speed: Speed
+    id: str = "ego"
+    length: Metres = 4.5
+    width: Metres = 1.8
+
+
+class Stages(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """First frames of the stages of an overtake that breaks off, and how far over the centre line it gets (its middle, metres)."""
+
+    pulling_out: int
+    passing: int
+    abort: int
+    back: int
+    offset: float = 0.0
+
+
+class Seen(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """Somebody who is detected: the column with his distance ahead (of a table), or the id and width of his box (of an MCAP)."""
+
+    id: str
+    lane: Literal["own", "opposing"]
+    speed: Speed
+    ahead: str | None = None
+    box: str | None = None
+    length: Metres = 4.5
+    width: Metres = 1.8
+    kind: Literal["car", "van", "truck", "bus", "motorcycle", "vehicle"] = "car"
+
+
+class Camera(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """The paper's monocular geometry: distance ahead = focal_px * real width / width in the picture (both in pixels)."""
+
+    focal_px: Annotated[float, msgspec.Meta(gt=0.0)]
+
+
+class Film(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """A whole mapping of this kind. Without `stages` the ego stays in the middle of its lane."""
+
+    description: str
+    frames: FrameColumn
+    road: RoadShape
+    ego: EgoCar
+    actor: list[Seen]
+    stages: Stages | None = None
+    camera: Camera | None = None
+    sensor_range_m: Metres | None = None
+
+
+# planned at import: logs are read in several threads, see drivelint.formats.tables.mapping
+PLANNED = msgspec.json.Decoder(Film)
+
+
+def shipped() -> list[str]:
+    """Return the names of those that come with drivelint."""
+    return sorted(file.stem for file in SHIPPED.glob("*.toml"))
+
+
+def is_film(name: str) -> bool:
+    """Tell whether a mapping, a file or a shipped one's name, is of this kind: it has a table [frames], or extends one that has."""
+    if name in shipped():
+        return True
+    try:
+        raw = tomllib.loads(Path(name).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return False  # whoever reads it as another mapping says what is wrong with it
+    return "frames" in raw or raw.get("extends") in shipped()
+
+
+def load(name: str) -> tuple[str, Film]:
+    """Return a mapping and its name. Errors: `UsageError` naming file and key."""
+    path = Path(name) if Path(name).is_file() else SHIPPED / f"{name}.toml"
+    raw = _raw(path)
+    if "extends" in raw:
+        base = raw.pop("extends")
+        if base not in shipped():
+            near = get_close_matches(str(base), shipped(), 1)
+            raise UsageError(f"mapping {path}: extends {base!r}: known are {', '.join(near or shipped())}")
+        raw = _merged(_raw(SHIPPED / f"{base}.toml"), raw)
+    try:
+        film = msgspec.convert(raw, Film)
+    except msgspec.ValidationError as error:
+        raise UsageError(f"mapping {path}: {error}") from error
+    _validate(path, film)
+    return path.stem, film
+
+
+def _raw(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UsageError(f"mapping {path}: cannot be read: {error.strerror or error}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise UsageError(f"mapping {path}: not valid TOML: {error}") from error
+
+
+def _merged(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
+    """Return `base` with what `over` says otherwise; tables are merged, lists replaced."""
+    both = {
+        key: _merged(base[key], value) if isinstance(value, dict) and isinstance(base.get(key), dict) else value
+        for key, value in over.items()
+    }
+    return {**base, **both}
+
+
+def _validate(path: Path, film: Film) -> None:
+    for speed in (film.ego.speed, *(actor.speed for actor in film.actor)):
+        if speed.unit not in UNITS["speed"]:
+            raise UsageError(f"mapping {path}: unknown unit {speed.unit!r}: use {', '.join(UNITS['speed'])}")
+    ids = [film.ego.id, *(actor.id for actor in film.actor)]
+    if len(set(ids)) < len(ids):
+        raise UsageError(f"mapping {path}: two actors have one id: {', '.join(ids)}")
+    stages = film.stages
+    if stages is not None and not stages.pulling_out < stages.passing < stages.abort < stages.back:
+        raise UsageError(f"mapping {path}: stages: pulling_out, passing, abort and back must come in this order")

@@ -1,0 +1,222 @@
+"""Filmed drives: what was detected in each frame, laid on a straight road as its mapping assumes it.
+
+Distances ahead are from bumper to bumper along the road. Where somebody is not detected in a frame he is there without a
+place; before he is first detected and after the last time nothing is claimed but the range of the detector.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from drivelint.drive.trace import CLASSES, Finding, Recording, States
+from drivelint.errors import TraceError, UsageError
+from drivelint.formats.film import boxes
+from drivelint.formats.film import mapping as video_mapping
+from drivelint.formats.film.sightings import Sightings
+from drivelint.formats.tables.mapping import Table
+from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, places
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from drivelint.formats.film.mapping import EgoCar, Film, Seen, Stages
+
+TOUCHES_M: Final = 0.06
+"""How far a corner is over the centre line in the first frame of pulling out: just more than counts as over it (0.05 m)."""
+SHORT_M: Final = 0.11
+"""How much the last frame of pulling out is short of passing: just more than counts as settled (0.1 m)."""
+BEYOND_M: Final = 400.0
+"""How much longer the road is than the ego's way, at both ends."""
+
+
+def fits(path: Path) -> str | None:
+    """Return the shipped mapping of a film whose columns a table has, that every frame is judged by; None: it is no such table."""
+    try:
+        names = CsvSheet(path, Table()).names
+    except TraceError:
+        return None
+    for name in video_mapping.shipped():
+        _, film = video_mapping.load(name)
+        if film.frames.every == 1 and set(_columns(film)) <= set(names):
+            return name
+    return None
+
+
+def read(path: Path, name: str) -> Recording:
+    """Read a table of detections through a mapping. Errors: `TraceError`, `UsageError`."""
+    stem, film = video_mapping.load(name)
+    with path.open("rb") as file:
+        head = file.read(5)
+    findings: list[Finding] = []
+    if head.startswith(b"\x89MCAP"):
+        seen = boxes.read(path, film)
+    else:
+        seen = _table(path, stem, film, findings, is_parquet=head.startswith(b"PAR1"))
+    return recorded(path, stem, film, seen, findings)
+
+
+def recorded(path: Path, name: str, film: Film, seen: Sightings, findings: list[Finding]) -> Recording:
+    """Lay what was seen on the road. Errors: `TraceError` where no frame is left."""
+    judged = seen.frames % film.frames.every == 0
+    frames = seen.frames[judged]
+    if not len(frames):
+        raise TraceError(f"{path}: no frame that mapping {name!r} judges: see its [frames]")
+    t_ns = np.rint((film.frames.start_s + frames / film.frames.rate_hz) * 1e9).astype(np.int64)
+    states, egos_x = _states(film, frames, t_ns, [ahead[judged] for ahead in seen.ahead_m])
+    assumed = "speeds, lanes and the ego's way across them"
+    message = f"mapping {name!r} assumes {assumed}; only distances ahead are measured: rules about anything else judge what is assumed"
+    recording = Recording(
+        name, states, ego_ids=[film.ego.id], findings=[*findings, Finding("assumed_motion", "warning", message)]
+    )
+    recording.embedded_map = _road(film, egos_x)
+    recording.sensor_range_m = film.sensor_range_m
+    recording.notes = [f"read through the mapping {name!r}: {assumed} are assumed"]
+    return recording
+
+
+def _columns(film: Film) -> list[str]:
+    return [film.frames.column, *(actor.ahead for actor in film.actor if actor.ahead is not None)]
+
+
+def _table(path: Path, name: str, film: Film, findings: list[Finding], *, is_parquet: bool) -> Sightings:
+    sheet = ParquetSheet(path) if is_parquet else CsvSheet(path, Table(null_values=film.frames.not_detected))
+    columns = _columns(film)
+    if missing := [column for column in columns if column not in sheet.names]:
+        raise TraceError(
+            f"{path}: no column {missing[0]!r}, which mapping {name!r} needs: it has {', '.join(sheet.names)}"
+        )
+    if unsaid := [actor.id for actor in film.actor if actor.ahead is None]:
+        raise UsageError(f"mapping {name!r}: actor {unsaid[0]} has no 'ahead', the column with his distance")
+    sheet.load(columns)
+    number, bad = sheet.number(film.frames.column)
+    bad |= ~np.isfinite(number) | (number != np.floor(number))
+    rows = np.flatnonzero(~bad)
+    frames, first = np.unique(number[rows].astype(np.int64), return_index=True)
+    if not len(frames):
+        raise TraceError(f"{path}: column {film.frames.column!r} holds no frame numbers")
+    whole = np.arange(frames[0], frames[-1] + 1)
+    at = np.searchsorted(whole, frames)
+    ahead = []
+    for actor in film.actor:
+        values, odd = sheet.number(str(actor.ahead))
+        _report(path, sheet, odd & ~bad, f"column {actor.ahead!r} is not a number: not detected there", findings)
+        distance = np.full(len(whole), np.nan)
+        distance[at] = values[rows[first]]
+        ahead.append(distance)
+    lost = sheet.bad_lines
+    if lost or bad.any():
+        n = len(lost) + int(bad.sum())
+        where = places("line", lost, len(lost)) if lost else sheet.where(np.flatnonzero(bad))
+        message = (
+            f"{path.name}, {where}: not the {len(sheet.names)} cells of the header: nobody has a place in these frames"
+        )
+        findings.append(Finding("malformed_row", "warning", message, n))
+    return Sightings(whole, ahead)
+
+
+def _report(
+    path: Path, sheet: CsvSheet | ParquetSheet, rows: NDArray[np.bool_], why: str, findings: list[Finding]
+) -> None:
+    if rows.any():
+        message = f"{path.name}, {sheet.where(np.flatnonzero(rows))}: {why}"
+        findings.append(Finding("malformed_cell", "warning", message, int(rows.sum())))
+
+
+def _states(
+    film: Film, frames: NDArray[np.int64], t_ns: NDArray[np.int64], ahead: list[NDArray[np.float64]]
+) -> tuple[States, tuple[float, float]]:
+    """Return everybody's states, and where the ego's way begins and ends along the road (x)."""
+    own = 1.0 if film.road.driven_on == "left" else -1.0  # its lane is to the left of the centre line, or to the right
+    middle = own * film.road.lane_width / 2
+    ego_x = film.ego.speed.mps * (t_ns - t_ns[0]) / 1e9
+    ego_y = np.full(len(frames), middle)
+    if film.stages is not None:
+        ego_y = -own * _across(film, film.stages, frames)
+    front = ego_x + film.ego.length / 2
+    parts = [(0, ego_x, ego_y, 0.0, film.ego.speed.mps, t_ns)]
+    for number, (actor, distance) in enumerate(zip(film.actor, ahead, strict=True), 1):
+        seen = np.flatnonzero(np.isfinite(distance))
+        if not len(seen):
+            continue
+        there = slice(seen[0], seen[-1] + 1)
+        along = actor.lane == "own"
+        x = (front + distance + actor.length / 2)[there]
+        y = np.where(np.isfinite(x), middle if along else -middle, np.nan)
+        parts.append((number, x, y, 0.0 if along else np.pi, actor.speed.mps * (1 if along else -1), t_ns[there]))
+    everybody: list[EgoCar | Seen] = [film.ego, *film.actor]
+    kinds = ["car", *(actor.kind for actor in film.actor)]
+    who = np.concatenate([np.full(len(x), number, np.int32) for number, x, *_ in parts])
+    placed = np.isfinite(np.concatenate([x for _, x, *_ in parts]))
+
+    def per_part(at: int) -> NDArray[np.float64]:
+        """Return a number that is the same for every state of an actor, unknown where he has no place."""
+        values = np.concatenate([np.full(len(part[1]), part[at], np.float64) for part in parts])
+        return np.where(placed, values, np.nan)
+
+    numbers = {
+        "x_m": np.concatenate([part[1] for part in parts]),
+        "y_m": np.concatenate([part[2] for part in parts]),
+        "yaw_rad": per_part(3),
+        "vx_mps": per_part(4),
+        "vy_mps": np.where(placed, 0.0, np.nan),
+        "length_m": np.array([each.length for each in everybody])[who],
+        "width_m": np.array([each.width for each in everybody])[who],
+    }
+    codes = {"actor_class": np.array([CLASSES.index(kind) for kind in kinds], np.int8)[who]}
+    states = States(
+        [each.id for each in everybody],
+        who,
+        np.concatenate([part[5] for part in parts]),
+        numbers,
+        codes,
+        np.zeros(len(who), np.bool_),
+    )
+    return states, (float(ego_x[0]), float(ego_x[-1]))
+
+
+def _across(film: Film, stages: Stages, frames: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return how far beyond the centre line the ego's middle is in each frame: such that the stages begin where they are said to.
+
+    Straight from touching the line to just short of passing, level, and from the first frame of the abort back to the
+    middle of its lane.
+    """
+    home = -film.road.lane_width / 2
+    touching = TOUCHES_M - film.ego.width / 2
+    pulling = frames[(frames >= stages.pulling_out) & (frames < stages.passing)]
+    leaving = frames[frames >= stages.abort]
+    points: list[tuple[float, float]] = []
+    if len(pulling):
+        if pulling[0] > frames[0]:
+            points.append((float(pulling[0] - 1), min(home, touching - 2 * TOUCHES_M)))
+        points += [(float(pulling[0]), touching), (float(pulling[-1]), max(touching, stages.offset - SHORT_M))]
+    points.append((float(stages.passing), stages.offset))
+    if len(leaving):
+        points += [(float(leaving[0]), stages.offset), (float(max(stages.back, leaving[0] + 1)), home)]
+    at = np.array([point[0] for point in points])
+    values = np.array([point[1] for point in points])
+    return np.asarray(np.interp(frames.astype(np.float64), at, values), np.float64)
+
+
+def _road(film: Film, ego_x: tuple[float, float]) -> bytes:
+    """Return the assumed road as OpenDRIVE: straight, one lane each way, the ego's along it."""
+    start, length = ego_x[0] - BEYOND_M, ego_x[1] - ego_x[0] + 2 * BEYOND_M
+    lane = (
+        '<lane id="{}" type="driving" level="false"><link/><width sOffset="0" a="{}" b="0" c="0" d="0"/>'
+        '<roadMark sOffset="0" type="solid" weight="standard" color="white" width="0.12" laneChange="none"/></lane>'
+    )
+    left, right = (lane.format(number, repr(film.road.lane_width)) for number in (1, -1))
+    rule = "LHT" if film.road.driven_on == "left" else "RHT"
+    return (
+        '<?xml version="1.0" encoding="UTF-8"?>\n<OpenDRIVE>'
+        '<header revMajor="1" revMinor="7" name="assumed straight road" version="1.00"/>'
+        f'<road name="assumed" length="{length!r}" id="1" junction="-1" rule="{rule}">'
+        f'<planView><geometry s="0" x="{start!r}" y="0" hdg="0" length="{length!r}"><line/></geometry></planView>'
+        f'<lanes><laneSection s="0"><left>{left}</left>'
+        '<center><lane id="0" type="none" level="false">'
+        '<roadMark sOffset="0" type="broken" weight="standard" color="white" width="0.12" laneChange="both"/></lane></center>'
+        f"<right>{right}</right></laneSection></lanes></road></OpenDRIVE>\n"
+    ).encode()

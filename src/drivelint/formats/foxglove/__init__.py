@@ -1,0 +1,1 @@
+"""Foxglove scenes in MCAP."""

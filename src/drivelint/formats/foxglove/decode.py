@@ -1,0 +1,163 @@
+"""Foxglove messages to Arrow structs, a batch at a time: protobuf by a pruned schema, JSON by the same fields.
+
+Schemas: https://docs.foxglove.dev/docs/visualization/message-schemas. Times are `seconds` and `nanos` in protobuf, `sec` and
+`nsec` in JSON, each an integer or not.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import ptars
+import pyarrow as pa
+import pyarrow.compute as pc
+from pyarrow import json
+
+from drivelint.formats.osi.decode import malformed
+from drivelint.formats.osi.words import child
+from drivelint.formats.protobuf import descriptors
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from drivelint.formats.frames import Vectors
+    from drivelint.formats.mcap.reader import Packet
+    from drivelint.formats.protobuf.descriptors import Tree
+
+SCENE: Final = "foxglove.SceneUpdate"
+TRANSFORM: Final = "foxglove.FrameTransform"
+TRANSFORMS: Final = "foxglove.FrameTransforms"
+_TIME: Final = {"seconds": None, "nanos": None, "sec": None, "nsec": None}
+_XYZ: Final = {"x": None, "y": None, "z": None}
+_TURN: Final = {**_XYZ, "w": None}
+_ONE: Final = {
+    "timestamp": _TIME, "parent_frame_id": None, "child_frame_id": None, "translation": _XYZ, "rotation": _TURN,
+}  # fmt: skip
+TREES: Final[dict[str, Tree]] = {
+    SCENE: {
+        "deletions": {"timestamp": _TIME, "type": None, "id": None},
+        "entities": {
+            "timestamp": _TIME,
+            "frame_id": None,
+            "id": None,
+            "lifetime": _TIME,
+            "frame_locked": None,
+            "metadata": {"key": None, "value": None},
+            "cubes": {"pose": {"position": _XYZ, "orientation": _TURN}, "size": _XYZ},
+        },
+    },
+    TRANSFORM: _ONE,
+    TRANSFORMS: {"transforms": _ONE},
+}
+_LISTS: Final = frozenset({"deletions", "entities", "metadata", "cubes", "transforms"})
+_WORDS: Final = frozenset({"id", "frame_id", "key", "value", "parent_frame_id", "child_frame_id"})
+_BLOCK: Final = 1 << 20
+_WHOLE_SECONDS: Final = ("seconds", "sec")
+_NANOSECONDS: Final = ("nanos", "nsec")
+
+
+class Decoder:
+    """Decodes messages of one schema record."""
+
+    def __init__(self, path: Path, name: str, encoding: str, schema: bytes) -> None:
+        """Prepare for `protobuf` or `json`. Errors: `TraceError` where the log's description is none of the message."""
+        self._path, self._name = path, name
+        self._json: Any = None
+        if encoding == "json":
+            self._json = pa.schema(_json_type(TREES[name]))
+        else:
+            types = descriptors.parse(path, name, schema)
+            descriptor = descriptors.pruned(path, types, name, TREES[name])
+            self._handler = ptars.HandlerPool([descriptor.file]).get_for_message(descriptor)
+
+    def rows(self, packets: list[Packet]) -> pa.StructArray:
+        """Decode a batch, one struct per message. Errors: `TraceError` naming the first message that cannot be decoded."""
+        try:
+            return self._rows(packets)
+        except ValueError:
+            for packet in packets:
+                try:
+                    self._rows([packet])
+                except ValueError as error:
+                    raise malformed(self._path, packet, ValueError(str(error).splitlines()[0])) from error
+            raise
+
+    def _rows(self, packets: list[Packet]) -> pa.StructArray:
+        if self._json is None:
+            batch = self._handler.list_to_record_batch([packet.data for packet in packets])
+            return pa.StructArray.from_arrays(batch.columns, fields=list(batch.schema))
+        # within JSON's texts a line's end is written otherwise, so that one message can be put on one line
+        lines = [packet.data.replace(b"\n", b" ").replace(b"\r", b" ") for packet in packets]
+        parse = json.ParseOptions(explicit_schema=self._json, unexpected_field_behavior="ignore")
+        block = json.ReadOptions(block_size=max(_BLOCK, 2 * max(map(len, lines)) + 2))
+        table = json.read_json(pa.BufferReader(b"\n".join(lines)), block, parse).combine_chunks()
+        if table.num_rows != len(packets):
+            raise ValueError(f"{len(packets)} messages hold {table.num_rows} JSON objects")
+        columns = [table.column(name).chunk(0) for name in self._json.names]
+        return pa.StructArray.from_arrays(columns, fields=list(self._json))
+
+
+def _json_type(tree: Tree) -> list[pa.Field]:
+    fields = []
+    for name, subtree in tree.items():
+        if subtree is not None:
+            inner = pa.struct(_json_type(subtree))
+            kind = pa.list_(inner) if name in _LISTS else inner
+        elif name in _WORDS:
+            kind = pa.string()
+        else:
+            kind = pa.bool_() if name == "frame_locked" else pa.float64()
+        fields.append(pa.field(name, kind))
+    return fields
+
+
+def items(rows: pa.Array, name: str) -> tuple[pa.Array, NDArray[np.intp]]:
+    """Return the items of all lists called `name`, and the row that each is in."""
+    lists = child(rows, name)
+    if pa.types.is_null(lists.type):
+        return pa.nulls(0), np.zeros(0, np.intp)
+    counts = pc.fill_null(pc.list_value_length(lists), 0).to_numpy(zero_copy_only=False)
+    return lists.flatten(), np.repeat(np.arange(len(rows)), counts)
+
+
+def times(stamp: pa.Array) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    """Return times or durations in nanoseconds (0 where there is none), and where there is one."""
+    whole, rest = (_first(stamp, names) for names in (_WHOLE_SECONDS, _NANOSECONDS))
+    seconds = np.floor(whole)
+    t_ns = seconds.astype(np.int64) * 1_000_000_000 + np.rint((whole - seconds) * 1e9 + rest).astype(np.int64)
+    return t_ns, stamp.is_valid().to_numpy(zero_copy_only=False)
+
+
+def _first(parent: pa.Array, names: tuple[str, ...]) -> NDArray[np.float64]:
+    """Return the first of several members that is there; 0 where none is (protobuf does not write zeros)."""
+    result = np.zeros(len(parent))
+    for name in reversed(names):
+        values = numbers(parent, name)
+        result = np.where(np.isfinite(values), values, result)
+    return result
+
+
+def numbers(parent: pa.Array, name: str) -> NDArray[np.float64]:
+    """Return a member as doubles, NaN where it is not there."""
+    values: NDArray[np.float64] = child(parent, name).cast(pa.float64()).to_numpy(zero_copy_only=False)
+    return values
+
+
+def vectors(parent: pa.Array, name: str, axes: str = "xyz") -> Vectors:
+    """Return a vector's coordinates as columns: 0 where a vector that is there leaves one out, NaN where there is none."""
+    inner = child(parent, name)
+    there = inner.is_valid().to_numpy(zero_copy_only=False)
+    columns = [np.nan_to_num(numbers(inner, axis), nan=0.0, posinf=np.inf, neginf=-np.inf) for axis in axes]
+    return np.where(there[:, None], np.stack(columns, axis=1), np.nan)
+
+
+def words(parent: pa.Array, name: str) -> tuple[list[str], NDArray[np.int32]]:
+    """Return the distinct texts of a member ('' where it is not there) and each row's index into them."""
+    column = child(parent, name)
+    if pa.types.is_null(column.type):
+        return [""], np.zeros(len(column), np.int32)
+    coded = pc.fill_null(column.cast(pa.string()), "").dictionary_encode()
+    return coded.dictionary.to_pylist(), coded.indices.to_numpy(zero_copy_only=False)

@@ -1,0 +1,300 @@
+"""Foxglove scenes in MCAP: an entity's first cube is a road user's box. No velocities, no ego: both are said elsewhere."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.drive.order import listed
+from drivelint.drive.trace import Finding, Recording
+from drivelint.errors import TraceError
+from drivelint.formats.foxglove.decode import SCENE, TRANSFORM, TREES, Decoder, items, numbers, times, vectors, words
+from drivelint.formats.foxglove.scene_life import Deletions, Entities, held
+from drivelint.formats.frames import Frames, Poses, clean, fixed_frame, unit
+from drivelint.formats.mcap import bag
+from drivelint.formats.mcap.reader import Container
+from drivelint.formats.osi.words import child
+from drivelint.formats.ros2.objects import class_of
+from drivelint.formats.ros2.rows import Rows, blank, clocks, common_clock, distinct, joined, placed
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from mcap.records import Channel
+    from numpy.typing import NDArray
+
+    from drivelint.drive.trace import Severity
+    from drivelint.formats.mcap.reader import Packet
+
+BATCH_BYTES = 32 * 1024 * 1024
+KINDS: Final = ("class", "type", "classification", "category", "label", "object_class", "object_type")
+"""Keys of the metadata that say what an entity is, where the value is a word that is known."""
+ALL: Final = 1
+
+
+@dataclass
+class _Scene:
+    """What was read of one topic: rows, and beside each the entity's lifetime and whether it goes with its frame."""
+
+    rows: list[Rows] = field(default_factory=list)
+    lifetime: list[NDArray[np.int64]] = field(default_factory=list)
+    locked: list[NDArray[np.bool_]] = field(default_factory=list)
+    deletions: list[tuple[NDArray[np.int64], NDArray[np.bool_], NDArray[np.int64], list[str], NDArray[np.bool_]]] = (
+        field(default_factory=list)
+    )
+    messages: list[NDArray[np.int64]] = field(default_factory=list)
+    without_box: int = 0
+
+
+def read(path: Path, topic: str | None) -> Recording:
+    """Read the scene of one topic. Errors: `TraceError` for damage, no scene, several topics, or nothing that can be placed."""
+    scenes: dict[str, _Scene] = {}
+    transforms: list[tuple[pa.Array, NDArray[np.int64]]] = []
+    findings: list[Finding] = []
+    for file in bag.files(path):
+        container = Container(file)
+        for channel, name, packets in _batches(container):
+            decoder = _decoder(container, channel, name)
+            log_ns = np.array([packet.log_time_ns for packet in packets], np.int64)
+            decoded = decoder.rows(packets)
+            if name == SCENE:
+                _take(scenes.setdefault(channel.topic, _Scene()), decoded, log_ns)
+            elif name == TRANSFORM:
+                transforms.append((decoded, log_ns))
+            else:
+                inner, parent = items(decoded, "transforms")
+                transforms.append((inner, log_ns[parent]))
+        findings += container.findings
+    name = _chosen(path, scenes, topic)
+    return _recording(path, name, scenes[name], transforms, findings)
+
+
+def _kind(container: Container, channel: Channel) -> str | None:
+    schema = container.schemas.get(channel.schema_id)
+    if schema is None or channel.message_encoding not in {"protobuf", "json"} or schema.name not in TREES:
+        return None
+    return schema.name
+
+
+def _batches(container: Container) -> Iterator[tuple[Channel, str, list[Packet]]]:
+    """Yield the messages of each channel, some tens of megabytes at a time."""
+    waiting: dict[int, list[Packet]] = {}
+    sizes: dict[int, int] = {}
+    for packet in container.packets():
+        kind = _kind(container, packet.channel)
+        if kind is None:
+            continue
+        number = packet.channel.id
+        waiting.setdefault(number, []).append(packet)
+        sizes[number] = sizes.get(number, 0) + len(packet.data)
+        if sizes[number] >= BATCH_BYTES:
+            yield packet.channel, kind, waiting.pop(number)
+            sizes[number] = 0
+    for packets in waiting.values():
+        channel = packets[0].channel
+        yield channel, str(_kind(container, channel)), packets
+
+
+def _decoder(container: Container, channel: Channel, name: str) -> Decoder:
+    return Decoder(container.path, name, channel.message_encoding, container.schemas[channel.schema_id].data)
+
+
+def _chosen(path: Path, scenes: dict[str, _Scene], topic: str | None) -> str:
+    names = sorted(scenes)
+    if topic is not None:
+        if topic not in scenes:
+            raise TraceError(f"{path}: no scene on topic {topic!r}: {SCENE} is on {listed(names) or 'none'}")
+        return topic
+    if len(names) != 1:
+        what = (
+            f"on {len(names)} topics ({', '.join(names)}): choose one with --topic"
+            if names
+            else "in none of its messages"
+        )
+        raise TraceError(f"{path}: {SCENE} {what}")
+    return names[0]
+
+
+def _take(scene: _Scene, decoded: pa.StructArray, log_ns: NDArray[np.int64]) -> None:
+    """Read a batch of scene updates."""
+    entities, message = items(decoded, "entities")
+    lists = child(entities, "cubes")
+    none = pa.types.is_null(lists.type)
+    count = np.zeros(len(entities), np.int64) if none else pc.fill_null(pc.list_value_length(lists), 0).to_numpy()
+    boxed = count > 0
+    scene.without_box += int((~boxed).sum())
+    cubes = pa.nulls(0) if none else lists.flatten()
+    cubes = cubes.take(pa.array((np.cumsum(count) - count)[boxed]))
+    entities = entities.filter(pa.array(boxed))
+    message = message[boxed]
+    n = len(entities)
+    stamp, stamped = times(child(entities, "timestamp"))
+    names, which = words(entities, "id")
+    frames, frame = words(entities, "frame_id")
+    pose = child(cubes, "pose")
+    rows = Rows(
+        stamp_ns=stamp,
+        stamped=stamped,
+        log_ns=log_ns[message],
+        ids=np.array([name.encode() for name in names] or [b""])[which],
+        frames=np.array([name.encode() for name in frames] or [b""])[frame],
+        place=vectors(pose, "position"),
+        turn=vectors(pose, "orientation", "xyzw"),
+        size=vectors(cubes, "size"),
+        classes=_classes(entities),
+        along=np.zeros(n, np.bool_),
+        faces=np.ones(n, np.bool_),
+        velocity=blank(n),
+        acceleration=blank(n),
+        t_ns=stamp,
+    )
+    scene.rows.append(rows)
+    scene.lifetime.append(times(child(entities, "lifetime"))[0])
+    scene.locked.append(
+        pc.fill_null(child(entities, "frame_locked").cast(pa.bool_()), False).to_numpy(zero_copy_only=False)
+    )
+    scene.messages.append(log_ns)
+    gone, message = items(decoded, "deletions")
+    if len(gone):
+        t_ns, timed = times(child(gone, "timestamp"))
+        names, which = words(gone, "id")
+        every = np.nan_to_num(numbers(gone, "type")) == ALL
+        scene.deletions.append((t_ns, timed & (t_ns != 0), log_ns[message], [names[i] for i in which], every))
+
+
+def _classes(entities: pa.Array) -> NDArray[np.int8]:
+    """Return what the metadata say an entity is, by the first key that says it in a word that is known."""
+    codes = np.full(len(entities), -1, np.int8)
+    pairs, parent = items(entities, "metadata")
+    if not len(pairs):
+        return codes
+    keys, key = words(pairs, "key")
+    telling = np.array([name.lower() in KINDS for name in keys], np.bool_)[key]
+    values, value = words(pairs, "value")
+    known = np.array([class_of(text) for text in values], np.int8)[value]
+    rows = np.flatnonzero(telling & (known >= 0))[::-1]
+    codes[parent[rows]] = known[rows]
+    return codes
+
+
+def _recording(
+    path: Path, topic: str, scene: _Scene, transforms: list[tuple[pa.Array, NDArray[np.int64]]], findings: list[Finding]
+) -> Recording:
+    rows = joined(scene.rows)
+    lifetime, locked = np.concatenate(scene.lifetime), np.concatenate(scene.locked)
+    named = rows.ids != b""
+    if not named.all():
+        n = int((~named).sum())
+        findings.append(
+            Finding("dropped_row", "error", f"{topic}: entities without an id: {n}: they are not judged", n)
+        )
+        rows, lifetime, locked = rows.take(named), lifetime[named], locked[named]
+    if not len(rows):
+        raise TraceError(f"{path}: no entity on {topic!r} has a cube and an id: nothing can be judged")
+    if scene.without_box:
+        message = f"{topic}: entities without a cube: {scene.without_box}: they are taken for no road users"
+        findings.append(Finding("no_box", "info", message, scene.without_box))
+    own_times = common_clock({topic: rows}, findings)
+    frames = _frames(transforms, own_times=own_times)
+    rows = _alive(rows, (lifetime, locked), _deletions(scene, rows, own_times=own_times), findings, topic)
+    used = [clean(name) for name in sorted(distinct(rows.frames)[0])]
+    fixed = fixed_frame(frames, used)
+    states, found = placed(rows, frames, fixed, topic)
+    findings += found
+    if not np.isfinite(states.numbers["x_m"]).any():
+        raise TraceError(f"{path}: nothing can be placed: {found[-1].message if found else 'no positions'}")
+    frame_times, utc_start_ns = clocks([rows])
+    return Recording(
+        "foxglove-mcap",
+        states,
+        findings=findings,
+        notes=[f"positions are in the frame {fixed!r}"],
+        utc_start_ns=utc_start_ns,
+        frame_times=frame_times,
+    )
+
+
+def _deletions(
+    scene: _Scene, rows: Rows, *, own_times: bool
+) -> list[tuple[NDArray[np.int64], list[str], NDArray[np.bool_]]]:
+    """Return (time, id, whether all are meant). One without a time has that of its message, in the entities' clock."""
+    order = np.argsort(rows.log_ns, kind="stable")
+    log_ns, latest = rows.log_ns[order], np.maximum.accumulate(rows.t_ns[order])
+    found = []
+    for t_ns, timed, sent_ns, names, every in scene.deletions:
+        at = np.searchsorted(log_ns, sent_ns, side="right") - 1
+        last = np.where(at >= 0, latest[np.maximum(at, 0)], np.iinfo(np.int64).min)
+        found.append((np.where(timed & own_times, t_ns, last if own_times else sent_ns), names, every))
+    return found
+
+
+def _alive(
+    rows: Rows,
+    manner: tuple[NDArray[np.int64], NDArray[np.bool_]],
+    gone: list[tuple[NDArray[np.int64], list[str], NDArray[np.bool_]]],
+    findings: list[Finding],
+    topic: str,
+) -> Rows:
+    """Add the states of entities that are there without an update: where they were if they stood still, else not placed.
+
+    `manner`: each row's lifetime, and whether it goes with its frame.
+    """
+    lifetime, locked = manner
+    unique, actor = distinct(rows.ids)
+    number = {name: i for i, name in enumerate(unique)}
+    whom = [
+        -1 if all_ else number.get(name, len(unique))
+        for _, names, every in gone
+        for name, all_ in zip(names, every, strict=True)
+    ]
+    deletions = Deletions(
+        np.array(whom, np.int32), np.concatenate([t_ns for t_ns, _, _ in gone]) if gone else np.zeros(0, np.int64)
+    )
+    entities = Entities(
+        actor,
+        rows.t_ns,
+        lifetime,
+        np.concatenate([rows.place, rows.turn, rows.size], axis=1),
+    )
+    new = np.r_[True, rows.t_ns[1:] != rows.t_ns[:-1]]  # what is all but sorted and single is sorted faster
+    more = held(entities, deletions, np.unique(np.concatenate([rows.t_ns[new], deletions.t_ns])))
+    if not len(more.row):
+        return rows
+    extra = rows.take(more.row)
+    extra.t_ns = more.t_ns
+    extra.at_ns = np.where(locked[more.row], more.t_ns, rows.t_ns[more.row])
+    extra.place = np.where(more.still[:, None], extra.place, np.nan)
+    rows.at_ns = rows.t_ns
+    kinds: tuple[tuple[NDArray[np.bool_], str, Severity, str], ...] = (
+        (more.still, "entity_held", "info", "stood still and are where they were"),
+        (~more.still, "entity_stale", "warning", "moved before and are there but not placed"),
+    )
+    for still, check, severity, what in kinds:
+        if still.any():
+            names = sorted({unique[i] for i in np.unique(entities.actor[more.row[still]])})
+            message = f"{topic}: {int(still.sum())} states of entities that are not updated nor gone ({listed(names)}): they {what}"
+            findings.append(Finding(check, severity, message, int(still.sum()), int(more.t_ns[still].min())))
+    return joined([rows, extra])
+
+
+def _frames(transforms: list[tuple[pa.Array, NDArray[np.int64]]], *, own_times: bool) -> Frames:
+    """Collect transforms. One that is always the same holds always: a scene says it once, when it begins."""
+    found: dict[tuple[str, str], list[tuple[NDArray[np.int64], Any, Any]]] = {}
+    for rows, log_ns in transforms:
+        t_ns = times(child(rows, "timestamp"))[0] if own_times else log_ns
+        place, turn = vectors(rows, "translation"), vectors(rows, "rotation", "xyzw")
+        (parents, parent), (children, inner) = words(rows, "parent_frame_id"), words(rows, "child_frame_id")
+        for i, j in sorted(set(zip(inner.tolist(), parent.tolist(), strict=True))):
+            here = (inner == i) & (parent == j)
+            found.setdefault((clean(children[i]), clean(parents[j])), []).append((t_ns[here], place[here], turn[here]))
+    frames = Frames()
+    for (name, parent_name), parts in found.items():
+        t_ns, place, turn = (np.concatenate([part[k] for part in parts]) for k in range(3))
+        same = bool((place == place[0]).all() and (turn == turn[0]).all())
+        frames.add(name, parent_name, t_ns, Poses(place, unit(turn)), static=same)
+    return frames

@@ -1,0 +1,103 @@
+"""How long the entities of a scene are there: until they are replaced, deleted or expired.
+
+Who is still there without a message of its own has states too. One that stood still is where it was; of one that moved
+nobody knows where it is now: it is there but not placed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from drivelint.errors import TraceError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from drivelint.formats.frames import Vectors
+
+MAX_HELD: Final = 20_000_000
+"""More states than this are not made up: nobody records so many road users that stand still."""
+FRESH_NS: Final = 500_000_000
+"""An entity that moves and is not updated for so long is not placed: until then its last state speaks for it."""
+_NEVER: Final = np.iinfo(np.int64).max
+
+
+@dataclass(frozen=True)
+class Entities:
+    """n updates: actor index, time, lifetime (0: for ever), box (place, turn and size as columns)."""
+
+    actor: NDArray[np.int32]
+    t_ns: NDArray[np.int64]
+    lifetime_ns: NDArray[np.int64]
+    box: Vectors
+
+
+@dataclass(frozen=True)
+class Deletions:
+    """Times of deletion: of one actor (index), or of all (-1). Who was updated at that time or later stays."""
+
+    actor: NDArray[np.int32]
+    t_ns: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Held:
+    """States between updates: which update each goes back to, its time, and whether the entity stood still."""
+
+    row: NDArray[np.intp]
+    t_ns: NDArray[np.int64]
+    still: NDArray[np.bool_]
+
+
+def held(entities: Entities, deletions: Deletions, grid_ns: NDArray[np.int64]) -> Held:
+    """Return the states at the messages' times (`grid_ns`, rising, distinct) of entities that those do not update."""
+    n = len(entities.t_ns)
+    order = np.lexsort((np.arange(n), entities.t_ns, entities.actor))
+    actor, t_ns, box = entities.actor[order], entities.t_ns[order], entities.box[order]
+    same, alike = actor[1:] == actor[:-1], _alike(box)
+    follows = np.r_[np.where(same, t_ns[1:], _NEVER), np.full(min(n, 1), _NEVER)]
+    lifetime = entities.lifetime_ns[order]
+    # a lifetime of centuries would overflow
+    gone = np.where((lifetime > 0) & (lifetime < _NEVER - np.abs(t_ns)), t_ns + lifetime, _NEVER)
+    gone = np.minimum(gone, _deleted(actor, t_ns, deletions))
+    replaced = (follows <= gone) & (follows < _NEVER)
+    # between two places the entity moved: the samples themselves say so, and nothing is put between them
+    stays, alone = np.zeros(min(n, 1), np.bool_), np.ones(min(n, 1), np.bool_)
+    still = np.asarray(np.where(replaced, np.r_[same & alike, stays], np.r_[alone, alike | ~same]), np.bool_)
+    wanted = still | ~replaced
+    first = np.searchsorted(grid_ns, t_ns + np.where(still, 0, FRESH_NS), side="right")
+    last = np.searchsorted(grid_ns, np.minimum(follows, gone), side="left")
+    count = np.where(wanted, np.maximum(last - first, 0), 0)
+    total = int(count.sum())
+    if total > MAX_HELD:
+        raise TraceError(f"entities that are never deleted would have {total} states: record them with a lifetime")
+    row = np.repeat(np.arange(n), count)
+    step = np.arange(total) - np.repeat(np.cumsum(count) - count, count)
+    return Held(order[row], grid_ns[first[row] + step], still[row])
+
+
+def _alike(box: Vectors) -> NDArray[np.bool_]:
+    """Say of each pair of neighbouring rows whether their boxes are the same."""
+    before, after = box[:-1], box[1:]
+    result: NDArray[np.bool_] = np.asarray(((before == after) | (np.isnan(before) & np.isnan(after))).all(axis=1))
+    return result
+
+
+def _deleted(actor: NDArray[np.int32], t_ns: NDArray[np.int64], deletions: Deletions) -> NDArray[np.int64]:
+    """Return when each update is deleted: by the first deletion of its actor, or of all, with a later time."""
+    every = np.sort(deletions.t_ns[deletions.actor < 0])
+    result: NDArray[np.int64] = np.r_[every, _NEVER][np.searchsorted(every, t_ns, side="right")]
+    one = np.flatnonzero(deletions.actor >= 0)
+    if len(one):
+        one = one[np.lexsort((deletions.t_ns[one], deletions.actor[one]))]
+        who, when = deletions.actor[one], deletions.t_ns[one]
+        for name in np.unique(who):
+            mine = np.flatnonzero(actor == name)
+            times = when[who == name]
+            result[mine] = np.minimum(
+                result[mine], np.r_[times, _NEVER][np.searchsorted(times, t_ns[mine], side="right")]
+            )
+    return result

@@ -1,0 +1,115 @@
+"""The file of a Lanelet2 map, read by the library of that name; where it has local coordinates (Autoware), by those."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from lxml import etree
+
+from drivelint.errors import MapError
+from drivelint.formats import markup
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from drivelint.road.contract import MapSource, Request
+    from drivelint.road.quality import Quality
+
+    Floats = NDArray[np.float64]
+
+_EARTH_M = 6_378_137.0
+
+
+def load(source: MapSource, request: Request, quality: Quality) -> tuple[Any, bool]:
+    """Return the library's map, read robustly, and whether its coordinates are local: what it complains of is in `quality`.
+
+    Errors: `MapError` where the library is not installed, the file is none of Lanelet2's, or nothing says where the
+    log's frame lies on the globe.
+    """
+    try:
+        import lanelet2
+    except ImportError as error:
+        raise MapError(
+            f"map {source.name} is a Lanelet2 map, and the package lanelet2 is not installed: pip install 'drivelint[lanelet2]'"
+        ) from error
+    try:
+        root = markup.parse(source.content)  # it is not the library that refuses entities
+    except markup.RefusedError as error:
+        raise MapError(f"map {source.name} {error}") from None
+    local = root.find("node/tag[@k='local_x']") is not None
+    if local:
+        _place_locally(root, quality)
+        if request.origin is not None:
+            message = "the map has local coordinates, which are taken: --map-origin is not used"
+            quality.add("map_origin_unused", "info", None, message)
+    elif request.origin is None:
+        raise MapError(
+            f"map {source.name} is in latitude and longitude: say which point is 0,0 in the log with --map-origin LAT,LON"
+        )
+    latitude, longitude = (0.0, 0.0) if local or request.origin is None else request.origin
+    origin = lanelet2.io.Origin(latitude, longitude)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "map.osm"
+        path.write_bytes(etree.tostring(root) if local else source.content)
+        try:
+            layers, errors = lanelet2.io.loadRobust(str(path), lanelet2.projection.LocalCartesianProjector(origin))
+        except RuntimeError as error:
+            raise MapError(f"map {source.name} cannot be read as Lanelet2: {' '.join(str(error).split())}") from error
+    for message in errors:
+        quality.add("invalid_element", "error", None, " ".join(str(message).split()))
+    return layers, local
+
+
+def _place_locally(root: etree._Element, quality: Quality) -> None:
+    """Give every node a latitude and longitude that say where its local coordinates are.
+
+    In maps of Autoware these are empty or of another frame, and the library tells by them which bound of a lane is the
+    left one and which way it runs. A node without local coordinates has no place.
+    """
+    lost = 0
+    first: tuple[float, float] | None = None
+    for node in root.iterfind("node"):
+        tags = {tag.get("k"): tag for tag in node.iterfind("tag")}
+        x, y = (_number(tags[k].get("v") if k in tags else None) for k in ("local_x", "local_y"))
+        if not (math.isfinite(x) and math.isfinite(y)):
+            lost += 1
+            x = y = math.nan
+        elif first is None:
+            first = x, y
+        for k, value in (("local_x", x), ("local_y", y)):
+            (tags[k] if k in tags else etree.SubElement(node, "tag", k=k)).set("v", repr(value))
+        east, north = (0.0, 0.0) if first is None or math.isnan(x) else (x - first[0], y - first[1])
+        node.set("lon", repr(math.degrees(east / _EARTH_M)))
+        node.set("lat", repr(math.degrees(north / _EARTH_M)))
+    if lost:
+        message = "nodes have no local_x and local_y, as the others have: what they belong to is left out"
+        quality.add("unplaced_node", "warning", None, message, lost)
+
+
+def _number(text: str | None) -> float:
+    try:
+        return float(text or "nan")
+    except ValueError:
+        return math.nan
+
+
+def xy(bound: Any) -> Floats:
+    """Return the points (n, 2) of a line: where nodes say local coordinates (Autoware), those."""
+    return np.array(
+        [
+            (float(p.attributes["local_x"]), float(p.attributes["local_y"]))
+            if "local_x" in p.attributes
+            else (p.x, p.y)
+            for p in bound
+        ],
+        np.float64,
+    ).reshape(-1, 2)
+
+
+def attribute(element: Any, name: str) -> str:
+    """Return the text of a tag, empty where the element has none of that name."""
+    return str(element.attributes[name]) if name in element.attributes else ""

@@ -1,0 +1,176 @@
+"""What lies on or beside the lanes of a Lanelet2 map: lights, signs, stop lines and crossings."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+
+from drivelint.formats.lanelet2.file import attribute, xy
+from drivelint.road.boundary_lanes import BoundedLane, crossings
+from drivelint.road.signcodes import kind_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from drivelint.road.quality import Quality
+
+    Floats = NDArray[np.float64]
+    Rows = list[dict[str, Any]]
+
+NEAR_M = 1.0  # a stop line that misses the end of a lane by less is drawn between two lanes
+_SIGN = re.compile(r"([a-z]{2})(\d.*)")  # a code of a national catalogue, as in de274-60
+
+
+def furniture(
+    layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: Quality
+) -> dict[str, Rows]:
+    """Return rows of `traffic_signal`, `stop_line`, `road_object` and `crossing`."""
+    return {
+        "traffic_signal": _signals(layers, lanes, offset),
+        "stop_line": _stop_lines(layers, lanes, offset, quality),
+        "road_object": [],
+        "crossing": _crossings(layers, lanes, offset, quality),
+    }
+
+
+def _signals(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, float]) -> Rows:
+    """Return a row for each lane and regulatory element that lights, gives way, has priority or is a sign there.
+
+    It holds where its stop line is, else at the end of the lane.
+    """
+    by_id = {lane.lanelet_id: lane for lane in lanes}
+    rows = []
+    for x in sorted(layers.laneletLayer, key=lambda x: x.id):
+        lane = by_id.get(str(x.id))
+        if lane is None:
+            continue
+        for element in sorted(x.regulatoryElements, key=lambda r: r.id):
+            s = _where(element, lane, offset)
+            x_m, y_m = (float(np.interp(s, lane.line.s, c)) for c in lane.line.centre.T)
+            rows += [
+                {
+                    "signal_id": str(element.id), "kind": kind, "country": attribute(x, "region") or None,
+                    "type": attribute(element, "subtype"), "subtype": None, "value": None, "unit": None,
+                    "dynamic": kind == "traffic_light", "turns": None,
+                    "road_id": lane.road_id, "road_s_m": s if lane.along > 0 else float(lane.line.s[-1]) - s,
+                    "lanelet_id": lane.lanelet_id, "lane_s_m": s, "x_m": x_m, "y_m": y_m,
+                }
+                for kind in _kinds(element, x)
+            ]  # fmt: skip
+    return rows
+
+
+def _where(element: Any, lane: BoundedLane, offset: tuple[float, float]) -> float:
+    """Return the station on a lane at which a regulatory element holds."""
+    for line in sorted((x for x in _parameter(element, "ref_line") if len(x) > 1), key=lambda x: x.id):
+        at = _crossed(lane, xy(line) + offset)
+        if at is not None:
+            return at
+    return float(lane.line.s[-1])
+
+
+def _kinds(element: Any, lanelet: Any) -> list[str]:
+    """Return what a regulatory element means for a lanelet, each kind once."""
+    subtype = attribute(element, "subtype")
+    if subtype == "right_of_way":
+        yields = {x.id for x in _parameter(element, "yield")}
+        return ["give_way" if lanelet.id in yields else "priority_here"]
+    if subtype == "traffic_sign":
+        signs = _parameter(element, "refers")
+        return sorted({kind for sign in signs if (kind := _sign_kind(attribute(sign, "subtype"))) is not None})
+    return [subtype] if subtype == "traffic_light" else []
+
+
+def _sign_kind(word: str) -> str | None:
+    """Return the kind of a sign by its subtype: a national code, as de206, or a word, as stop_sign (Autoware)."""
+    code = _SIGN.fullmatch(word.lower())
+    return kind_of(code[1], code[2], "") if code else kind_of("", "", word)
+
+
+def _parameter(element: Any, role: str) -> Any:
+    return element.parameters[role] if role in element.parameters else ()  # noqa: SIM401 - the library's maps have no get
+
+
+def _crossed(lane: BoundedLane, line: Floats, near_m: float = NEAR_M) -> float | None:
+    """Return the station (m) at which a line (n, 2) lies across a lane; None: it does not.
+
+    Where it misses the centre line's end by less than `near_m`, it lies across the end.
+    """
+    if not np.isfinite(line).all():
+        return None
+    across, centre = shapely.LineString(line), shapely.LineString(lane.line.centre)
+    if not shapely.dwithin(across, centre, near_m):
+        return None
+    common = shapely.get_coordinates(shapely.intersection(across, centre))
+    if len(common):
+        return float(np.mean(shapely.line_locate_point(centre, shapely.points(common))))
+    s = float(shapely.line_locate_point(centre, shapely.Point(shapely.shortest_line(centre, across).coords[0])))
+    return s if s in {0.0, centre.length} else None
+
+
+def _stop_lines(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: Quality) -> Rows:
+    """Return a row for each drivable lane for which a stop line holds.
+
+    Those whose regulatory elements refer to it, if it lies across any of them, else all whose centre line it crosses;
+    between two lanes it stands at the end of the first.
+    """
+    driven = [lane for lane in lanes if lane.drivable]
+    tree = shapely.STRtree([shapely.LineString(lane.line.centre) for lane in driven])
+    referring = _referring(layers)
+    rows = []
+    for line in sorted(layers.lineStringLayer, key=lambda x: x.id):
+        points = xy(line) + offset
+        if attribute(line, "type") != "stop_line" or len(line) < 2 or not np.isfinite(points).all():
+            continue
+        near = [driven[i] for i in sorted(int(i) for i in tree.query(shapely.LineString(points).buffer(NEAR_M)))]
+        own = [
+            (lane, s)
+            for lane in near
+            if lane.lanelet_id in referring[line.id] and (s := _crossed(lane, points)) is not None
+        ]
+        found = own or [(lane, s) for lane in near if (s := _crossed(lane, points, near_m=0.0)) is not None]
+        followers = {name for lane, _ in found for name in lane.successors}
+        rows += [
+            {"stop_line_id": str(line.id), "lanelet_id": lane.lanelet_id, "lane_s_m": s, "source": "object"}
+            for lane, s in found
+            if s > 0.0 or lane.lanelet_id not in followers
+        ]
+        if not found:
+            message = f"stop line {line.id} lies across no lane that vehicles drive on"
+            quality.add("object_without_lane", "info", None, message)
+    return sorted(rows, key=lambda r: (r["stop_line_id"], r["lanelet_id"]))
+
+
+def _referring(layers: Any) -> dict[int, set[str]]:
+    """Return line -> the lanes of whose regulatory elements it is the stop line."""
+    found: dict[int, set[str]] = defaultdict(set)
+    for x in layers.laneletLayer:
+        for element in x.regulatoryElements:
+            for line in _parameter(element, "ref_line"):
+                found[line.id].add(str(x.id))
+    return found
+
+
+def _crossings(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: Quality) -> Rows:
+    walks = _walks(layers)
+    rows = crossings(walks, lanes, offset)
+    for lost in sorted({walk.lanelet_id for walk in walks} - {row["crossing_id"] for row in rows}):
+        message = f"crossing {lost} lies across no lane that vehicles drive on"
+        quality.add("object_without_lane", "info", None, message)
+    return rows
+
+
+def _walks(layers: Any) -> list[BoundedLane]:
+    found = []
+    for x in sorted(layers.laneletLayer, key=lambda x: x.id):
+        left, right = xy(x.leftBound), xy(x.rightBound)
+        if attribute(x, "subtype") == "crosswalk" and np.isfinite(left).all() and np.isfinite(right).all():
+            marks = {attribute(bound, "type") for bound in (x.leftBound, x.rightBound)}
+            found.append(BoundedLane(str(x.id), left, right, "zebra" if "zebra_marking" in marks else "crossing"))
+    return found

@@ -1,0 +1,220 @@
+"""Lanelet2 maps (`.osm`), through the library of that name: lanes, neighbours, limits, lights, stop lines, crossings."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import shapely
+
+from drivelint.errors import MapError
+from drivelint.formats.lanelet2.file import attribute, load, xy
+from drivelint.formats.lanelet2.furniture import furniture
+from drivelint.road.boundary_lanes import BoundedLane, build, side_driven_on, tables
+from drivelint.road.contract import Environment, MapSource, Request, environment_id
+from drivelint.road.quality import Quality
+from drivelint.road.tables import from_rows
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+_KINDS = {
+    "road": "driving", "highway": "driving", "play_street": "driving", "bus_lane": "bus", "exit": "exit",
+    "emergency_lane": "stop", "bicycle_lane": "biking", "walkway": "sidewalk", "shared_walkway": "sidewalk",
+    "stairs": "sidewalk", "pedestrian_lane": "sidewalk", "road_shoulder": "shoulder", "rail": "rail",
+}  # fmt: skip
+_DRIVEN = frozenset({"driving", "bus", "exit"})
+_LINES = {"solid": "solid", "dashed": "broken", "solid_solid": "solid_solid", "dashed_dashed": "broken_broken"}
+_EDGES = {"curbstone": "curb", "virtual": "none"}
+_LEFT_DRIVEN = frozenset({"gb", "uk", "ie", "au", "nz", "jp", "in", "za", "sg", "my", "th", "hk", "cy", "mt"})
+
+
+class Lanelet2Reader:
+    """Lanelet2 in the format of OpenStreetMap."""
+
+    format = "lanelet2"
+
+    def read(self, source: MapSource, request: Request) -> Environment:
+        """Return the map's tables.
+
+        Errors: `MapError` where the library is not installed, the file is none of Lanelet2's, or nothing says where the
+        log's frame lies on the globe.
+        """
+        quality = Quality()
+        layers, local = load(source, request, quality)
+        lanes = build(list(_lanes(layers, quality)), request.offset, quality)
+        if not lanes:
+            raise MapError(f"map {source.name} has no lanelet that can be built: is it a plain OpenStreetMap extract?")
+        _junctions(lanes)
+        handedness, how = _handedness(layers, lanes, request, quality)
+        name = environment_id(source, request.offset, handedness, guessed=how == "default")
+        result = tables(name, lanes)
+        rows: dict[str, list[dict[str, Any]]] = {
+            "environment": [
+                {
+                    "name": source.name, "sha256": source.sha256, "format": self.format,
+                    "offset_x_m": request.offset[0], "offset_y_m": request.offset[1], "handedness": handedness,
+                    "handedness_source": how, "geo_reference": _reference(request, local=local),
+                }
+            ],
+            **furniture(layers, lanes, request.offset, quality),
+        }  # fmt: skip
+        result |= {table: from_rows(table, name, content) for table, content in rows.items()}
+        result["map_quality"] = quality.table(name)
+        return Environment(name, handedness, how, result)
+
+
+def _reference(request: Request, *, local: bool) -> str | None:
+    return None if request.origin is None or local else f"origin {request.origin[0]:g},{request.origin[1]:g}"
+
+
+class _Bound(NamedTuple):
+    """A line as it bounds a lane: which, and whether it runs the other way round than it was drawn."""
+
+    line: int
+    inverted: bool
+
+
+def _bound(line: Any) -> _Bound:
+    return _Bound(line.id, bool(line.inverted()))
+
+
+def _is_lane(element: Any) -> bool:
+    return attribute(element, "subtype") in _KINDS
+
+
+def _lanes(layers: Any, quality: Quality) -> Iterable[BoundedLane]:
+    """Yield the lanes. Neighbours share a bound, what follows begins at the points where a lane ends."""
+    mine = sorted((x for x in layers.laneletLayer if _is_lane(x)), key=lambda x: x.id)
+    starts: dict[tuple[int, int], list[str]] = defaultdict(list)
+    lefts: dict[_Bound, list[Any]] = defaultdict(list)
+    rights: dict[_Bound, list[Any]] = defaultdict(list)
+    for x in mine:
+        starts[x.leftBound[0].id, x.rightBound[0].id].append(str(x.id))
+        lefts[_bound(x.leftBound)].append(x)
+        rights[_bound(x.rightBound)].append(x)
+    limit = _limits()
+    for x in mine:
+        kind = _KINDS[attribute(x, "subtype")]
+        limit_mps, known = limit(x)
+        readable = limit_mps is None or (math.isfinite(limit_mps) and limit_mps > 0.0)
+        if not readable:
+            said = attribute(x, "speed_limit")[:20]
+            message = f"{said!r} is no speed limit: taken as unknown"
+            quality.add("invalid_speed", "warning", str(x.id), message)
+        lane = BoundedLane(
+            str(x.id), xy(x.leftBound), xy(x.rightBound), kind, kind in _DRIVEN,
+            bidirectional=kind in _DRIVEN and attribute(x, "one_way") in {"no", "false"},
+            road_type=_road_type(x),
+            successors=tuple(sorted(starts[x.leftBound[-1].id, x.rightBound[-1].id])),
+            left_marking=_marking(x.leftBound, near_left=False), right_marking=_marking(x.rightBound, near_left=True),
+            limit_mps=limit_mps if readable else None, limit_known=known, limit_readable=readable,
+        )  # fmt: skip
+        turned = (
+            _Bound(x.leftBound.id, not x.leftBound.inverted()),
+            _Bound(x.rightBound.id, not x.rightBound.inverted()),
+        )
+        lane.left_id, lane.left_against = _beside(x, rights[_bound(x.leftBound)], lefts[turned[0]])
+        lane.right_id, lane.right_against = _beside(x, lefts[_bound(x.rightBound)], rights[turned[1]])
+        yield lane
+
+
+def _beside(own: Any, same: Sequence[Any], against: Sequence[Any]) -> tuple[str | None, bool | None]:
+    """Return the neighbour across a bound: `same` have it as their other bound, `against` as the same one, turned round."""
+    for lanes, other_way in ((same, False), (against, True)):
+        for x in lanes:
+            if x.id != own.id:
+                return str(x.id), other_way
+    return None, None
+
+
+def _road_type(x: Any) -> str | None:
+    if attribute(x, "subtype") == "highway":
+        return "motorway" if attribute(x, "location") != "urban" else "town"
+    return {"urban": "town", "nonurban": "rural"}.get(attribute(x, "location"))
+
+
+def _limits() -> Any:
+    """Return a function lanelet -> (limit in m/s, whether the map says one): by its signs, not by a nation's default."""
+    import lanelet2
+
+    rules = lanelet2.traffic_rules.create(
+        lanelet2.traffic_rules.Locations.Germany, lanelet2.traffic_rules.Participants.Vehicle
+    )
+
+    def limit(x: Any) -> tuple[float | None, bool]:
+        signed = any(attribute(r, "subtype") == "speed_limit" for r in x.regulatoryElements)
+        if not signed and "speed_limit" not in x.attributes:
+            return None, False
+        return float(rules.speedLimit(x).speedLimit) / 3.6, True
+
+    return limit
+
+
+def _marking(bound: Any, *, near_left: bool) -> str | None:
+    """Return the marking of a bound; of a double line, named left first along the bound, the nearer half comes first."""
+    kind, style = attribute(bound, "type"), attribute(bound, "subtype")
+    if kind in _EDGES:
+        return _EDGES[kind]
+    if kind not in {"line_thin", "line_thick"}:
+        return None
+    if style in {"solid_dashed", "dashed_solid"}:
+        first_solid = (style == "solid_dashed") != bool(bound.inverted())
+        return "solid_broken" if first_solid == near_left else "broken_solid"
+    return _LINES.get(style)
+
+
+def _junctions(lanes: Sequence[BoundedLane]) -> None:
+    """Mark lanes for driving whose areas overlap another's, that do not lie side by side, as parts of one junction."""
+    driven = [lane for lane in lanes if lane.drivable]
+    areas = [shapely.Polygon(np.vstack([lane.line.right, lane.line.left[::-1]])).buffer(0.0) for lane in driven]
+    tree = shapely.STRtree(areas)
+    parent = list(range(len(driven)))
+
+    def root(i: int) -> int:
+        while parent[i] != i:
+            i = parent[i]
+        return i
+
+    overlaps: set[int] = set()
+    for i, j in sorted(
+        {(int(min(a, b)), int(max(a, b))) for a, b in tree.query(areas, predicate="intersects").T if a != b}
+    ):
+        a, b = driven[i], driven[j]
+        if b.lanelet_id in {a.left_id, a.right_id, *a.successors} or a.lanelet_id in b.successors:
+            continue
+        if shapely.area(shapely.intersection(areas[i], areas[j])) > 1.0:
+            overlaps |= {i, j}
+            parent[max(root(i), root(j))] = min(root(i), root(j))
+    for i in sorted(overlaps):
+        driven[i].junction_id = f"j{driven[root(i)].lanelet_id}"
+
+
+def _handedness(layers: Any, lanes: Sequence[BoundedLane], request: Request, quality: Quality) -> tuple[str, str]:
+    regions = {attribute(x, "region") for x in layers.laneletLayer} - {""}
+    by_region = {"lht" if region[:2].lower() in _LEFT_DRIVEN else "rht" for region in regions}
+    said = [
+        (how, side)
+        for how, side in (
+            ("option", None if request.handedness == "auto" else request.handedness),
+            ("lanes", side_driven_on(lanes)),
+            ("attribute", next(iter(by_region)) if len(by_region) == 1 else None),
+        )
+        if side is not None
+    ]
+    if len({side for _, side in said}) > 1:
+        opinions = ", ".join(f"{how}: {side}" for how, side in said)
+        quality.add(
+            "handedness_disagrees", "warning", None, f"{opinions}; the first is taken: give --handedness if it is wrong"
+        )
+    if not said:
+        message = "nothing in the map says which side is driven on: right-hand traffic is a guess; give --handedness"
+        quality.add("handedness_default", "warning", None, message)
+        return "rht", "default"
+    return said[0][1], said[0][0]

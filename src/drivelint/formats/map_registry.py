@@ -1,0 +1,137 @@
+"""Map formats, told by what a file holds and never by its name."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING
+
+from drivelint.errors import MapError, UsageError
+from drivelint.road.contract import Environment, MapReader, MapSource, Request
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+MAX_BYTES = 512 * 2**20  # a city of 2,000 km of lanes is about 200 MB; beyond that the file is a mistake or an attack
+
+# what the lanes of an OSI trace begin with: the tags of lane_boundary, lane, reference_line, logical_lane_boundary, logical_lane
+OSI_TAGS = (b"\x4a", b"\x52", b"\x8a", b"\x92", b"\x9a")
+_SKIP = re.compile(r"\s*(?:<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^\[>]*(?:\[.*?\]\s*)?>)", re.DOTALL | re.IGNORECASE)
+_ROOT = re.compile(r"\s*<(?:[\w.-]+:)?([A-Za-z_][\w.-]*)")
+_LOOKS = {
+    "openscenario": "an OpenSCENARIO scenario, not its road network",
+    "html": "an HTML page, as a failed download leaves behind",
+}
+
+
+def _opendrive() -> MapReader:
+    from drivelint.formats.opendrive.reader import OpenDriveReader
+
+    return OpenDriveReader()
+
+
+def _commonroad() -> MapReader:
+    from drivelint.formats.commonroad.lanelets import CommonRoadReader
+
+    return CommonRoadReader()
+
+
+def _lanelet2() -> MapReader:
+    from drivelint.formats.lanelet2.reader import Lanelet2Reader
+
+    return Lanelet2Reader()
+
+
+def _sumo_net() -> MapReader:
+    from drivelint.formats.sumo.net import SumoNetReader
+
+    return SumoNetReader()
+
+
+# by root element, lower case
+READERS: dict[str, Callable[[], MapReader]] = {
+    "opendrive": _opendrive,
+    "commonroad": _commonroad,
+    "osm": _lanelet2,
+    "net": _sumo_net,
+}
+
+
+def read_source(path: Path) -> MapSource:
+    """Return the file's name and bytes; `MapError` when it is missing, unreadable, empty or far too large."""
+    try:
+        size = path.stat().st_size
+        content = path.read_bytes() if size <= MAX_BYTES else b""
+    except FileNotFoundError:
+        raise MapError(f"map {path} does not exist: give the path of an OpenDRIVE file with --map") from None
+    except OSError as error:
+        raise MapError(
+            f"map {path} cannot be read ({error.strerror or error}): give a readable OpenDRIVE file with --map"
+        ) from error
+    if size > MAX_BYTES:
+        raise _too_large(str(path), size)
+    if not content:
+        raise MapError(f"map {path} is empty: give the complete file")
+    return MapSource(path.name, content)
+
+
+def _too_large(name: str, size: int) -> MapError:
+    return MapError(f"map {name} has {size} bytes, more than the {MAX_BYTES} that are read: give a smaller extract")
+
+
+def load_map(
+    source: MapSource,
+    *,
+    offset: tuple[float, float] = (0, 0),
+    handedness: str = "auto",
+    sensed: str | None = None,
+    origin: tuple[float, float] | None = None,
+) -> Environment:
+    """Return the map as the tables of `schemas/map.sql`.
+
+    `offset` (metres) is added to all coordinates; `handedness` is the user's option, `sensed` what the traces voted
+    (used only when neither the option nor the map decides), `origin` the latitude and longitude (degrees) of the log's 0,0.
+    `MapError`: unknown format or unreadable content;
+    `UsageError`: an option that has no meaning.
+    """
+    if handedness not in {"auto", "lht", "rht"}:
+        raise UsageError(f"handedness {handedness!r} is not known: use auto, lht or rht")
+    if sensed not in {None, "lht", "rht"}:
+        raise ValueError(f"sensed={sensed!r}")
+    if not all(math.isfinite(v) for v in offset):
+        raise UsageError(f"map offset {offset} is not two finite numbers of metres")
+    if len(source.content) > MAX_BYTES:
+        raise _too_large(source.name, len(source.content))
+    request = Request((float(offset[0]), float(offset[1])), handedness, sensed, origin)
+    return _reader(source).read(source, request)
+
+
+def _reader(source: MapSource) -> MapReader:
+    if source.content[:1] in OSI_TAGS:
+        from drivelint.formats.osi.map_lanes import OsiLanesReader
+
+        return OsiLanesReader()
+    root = root_element(source.content)
+    if root is None:
+        shown = source.content[:24]
+        raise MapError(f"map {source.name} is not XML (it begins with {shown!r}): give an OpenDRIVE file (.xodr)")
+    if root.lower() not in READERS:
+        looks = _LOOKS.get(root.lower(), f"XML with the root element <{root}>")
+        raise MapError(
+            f"map {source.name} looks like {looks}; supported: OpenDRIVE (root element <OpenDRIVE>), "
+            "CommonRoad (<commonRoad>), Lanelet2 (<osm>) and SUMO networks (<net>)"
+        )
+    return READERS[root.lower()]()
+
+
+def root_element(content: bytes) -> str | None:
+    """Return the local name of the first element, or None if this is not XML."""
+    head = content[:65536]
+    encoding = "utf-16" if head[:2] in {b"\xff\xfe", b"\xfe\xff"} else "utf-8"
+    text = head.decode(encoding, errors="replace").lstrip("\ufeff")
+    at = 0
+    while skipped := _SKIP.match(text, at):
+        at = skipped.end()
+    found = _ROOT.match(text, at)
+    return found.group(1) if found else None

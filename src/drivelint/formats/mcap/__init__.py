@@ -1,0 +1,1 @@
+"""MCAP files: read record by record, copied byte by byte, written."""

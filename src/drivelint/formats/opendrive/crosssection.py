@@ -1,0 +1,139 @@
+"""Where the edges of a strip's lanes lie, and at which stations they have to be sampled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from drivelint.formats.opendrive.xml import MalformedError
+
+if TYPE_CHECKING:
+    from drivelint.formats.opendrive.cubic import Floats
+    from drivelint.formats.opendrive.network import Lane, Road, Strip
+    from drivelint.formats.opendrive.planview import Line
+
+CHORD_M = 0.01  # furthest that a bound may be from the chord between two of its points
+SPACING_M = 5.0  # furthest that two points may be apart
+JUMP_M = 0.01  # a larger step in an edge is kept as a step
+MAX_POINTS = 100_000  # per strip: 100 km in steps of a metre
+MAX_REACH_M = 1000.0  # no lane lies further from its reference line
+_SNAP_M = 1e-3  # break points closer than this are one
+_INSIDE_M = 1e-6  # how far inside its section a record must begin to hold there
+
+
+@dataclass(frozen=True, eq=False)
+class Edges:
+    """Lane edges at stations: rows are the lanes' outer edges and lane 0's line, by lane number descending."""
+
+    line: Line  # the reference line, (n,)
+    t: Floats  # (m, n) offset from it, left positive
+    dt: Floats  # (m, n) its slope
+    x: Floats  # (m, n)
+    y: Floats  # (m, n)
+
+
+class Evaluator:
+    """Evaluates the edges of one strip."""
+
+    def __init__(self, road: Road, strip: Strip) -> None:
+        self.road, self.strip = road, strip
+        usable = [lane for lane in strip.lanes if lane.invalid is None]
+        self.left = [lane for lane in usable if lane.number > 0]
+        self.right = [lane for lane in usable if lane.number < 0][::-1]
+        self.numbers = [*(lane.number for lane in self.left[::-1]), 0, *(lane.number for lane in self.right)]
+        self.negative_m: dict[int, float] = {}
+
+    def edges(self, s: Floats, at: Floats | None = None) -> Edges:
+        """Return the edges at stations `s` (n,), ascending; `at`: where records and geometries are looked up."""
+        if at is None:
+            at = np.clip(s + _INSIDE_M, self.strip.start_m + _INSIDE_M, self.strip.end_m - _INSIDE_M)
+        line = self.road.plan.evaluate(s, at)
+        centre = self.road.offset.evaluate(s, at)
+        left, right = self._outward(self.left, 1.0, centre, s, at), self._outward(self.right, -1.0, centre, s, at)
+        rows = [*left[::-1], centre, *right]
+        t, dt = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
+        if not float(np.abs(t).max(initial=0.0)) < MAX_REACH_M:
+            raise MalformedError(f"an edge lies {float(np.abs(t).max()):.3g} m from the reference line")
+        return Edges(line, t, dt, line.x - line.sin * t, line.y + line.cos * t)
+
+    def _outward(
+        self, lanes: list[Lane], side: float, centre: tuple[Floats, Floats], s: Floats, at: Floats
+    ) -> list[tuple[Floats, Floats]]:
+        edges = []
+        t, dt = centre
+        for lane in lanes:
+            if lane.widths is not None:
+                width, slope = lane.widths.evaluate(s, at)
+            else:
+                assert lane.borders is not None  # noqa: S101 - network.py sees to it
+                border, slope = lane.borders.evaluate(s, at)
+                # the standard counts borders from the reference line with the sign of t; some writers give the distance
+                sign = side if border.sum() * side < 0.0 else 1.0
+                width, slope = side * (sign * border - t), side * (sign * slope - dt)
+            low = float(width.min(initial=0.0))
+            if low < 0.0:
+                self.negative_m[lane.number] = min(low, self.negative_m.get(lane.number, 0.0))
+                width, slope = np.maximum(width, 0.0), np.where(width < 0.0, 0.0, slope)
+            t, dt = t + side * width, dt + side * slope
+            edges.append((t, dt))
+        return edges
+
+    def breaks(self) -> Floats:
+        """Return the strip's ends and every station between where a geometry, an offset or a width begins."""
+        start, end = self.strip.start_m, self.strip.end_m
+        profiles = [lane.widths or lane.borders for lane in (*self.left, *self.right)]
+        stations = np.concatenate(
+            [self.road.plan.s, self.road.offset.start, *(p.start for p in profiles if p is not None)]
+        )
+        stations = np.unique(stations[(stations > start + _SNAP_M) & (stations < end - _SNAP_M)])
+        apart = np.diff(stations, prepend=-np.inf) > _SNAP_M
+        return np.concatenate([[start], stations[apart], [end]])
+
+    def steps(self, breaks: Floats) -> tuple[Floats, Floats]:
+        """Return the inner break points where an edge steps sideways, and by how much (m)."""
+        inner = breaks[1:-1]
+        if not len(inner):
+            return inner, inner
+        before, after = self.edges(inner, inner - 2 * _INSIDE_M), self.edges(inner, inner + _INSIDE_M)
+        step = np.hypot(before.x - after.x, before.y - after.y).max(axis=0)
+        return inner[step > JUMP_M], step[step > JUMP_M]
+
+
+def stations(evaluator: Evaluator, breaks: Floats) -> Floats:
+    """Return stations, breaks included, at most SPACING_M apart and with chords within CHORD_M of every edge."""
+    s = _divide(breaks, np.ceil(np.diff(breaks) / SPACING_M - 1e-9))
+    for _ in range(10):
+        parts = _deviation(evaluator, s)
+        if (parts <= 1).all():
+            break
+        s = _divide(s, parts)
+    return s
+
+
+def _divide(s: Floats, parts: Floats) -> Floats:
+    """Return the stations with each interval cut into equal parts."""
+    count = np.maximum(parts, 1).astype(np.int64)
+    if count.sum() > MAX_POINTS:
+        raise MalformedError(f"its edges need {count.sum()} points: its numbers make no sense")
+    first = np.repeat(s[:-1], count)
+    place = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+    return np.append(first + place * np.repeat(np.diff(s) / count, count), s[-1])
+
+
+def _deviation(evaluator: Evaluator, s: Floats) -> Floats:
+    """Return into how many parts each interval has to be cut (1: good as it is)."""
+    edges = evaluator.edges(_divide(s, np.full(len(s) - 1, 4.0)))
+    x, y = edges.x, edges.y
+    ax, ay, dx, dy = x[:, :-1:4], y[:, :-1:4], np.diff(x[:, ::4]), np.diff(y[:, ::4])
+    square = np.maximum(dx * dx + dy * dy, 1e-18)
+    off = np.zeros(len(s) - 1)
+    for i in (1, 2, 3):
+        px, py = x[:, i::4] - ax, y[:, i::4] - ay
+        along = np.clip((px * dx + py * dy) / square, 0.0, 1.0)
+        off = np.maximum(off, np.hypot(px - along * dx, py - along * dy).max(axis=0))
+    by_chord = np.where(off > CHORD_M, np.ceil(np.sqrt(off / CHORD_M)), 1.0)
+    by_length = np.ceil(np.sqrt(square.max(axis=0)) / SPACING_M - 1e-3)
+    # a step that chords cannot follow would be cut for ever
+    return np.where(np.diff(s) > 2 * _SNAP_M, np.clip(np.maximum(by_chord, by_length), 1.0, 16.0), 1.0)

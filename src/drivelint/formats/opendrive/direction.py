@@ -1,0 +1,199 @@
+"""Which side of the road is driven on, and which way each lane goes."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
+
+from drivelint.formats.opendrive.network import DRIVABLE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from drivelint.formats.opendrive.network import Lane, Network
+    from drivelint.road.contract import Request
+    from drivelint.road.quality import Quality
+
+_DECISIVE = 2 / 3  # some maps list both ends of every connecting lane: half the votes each way say nothing
+
+
+@dataclass(frozen=True)
+class Direction:
+    """The side that is driven on, which way the lanes run, and how both were found.
+
+    `forward`: lanes with negative numbers run along the reference line, as the standard has it for right-hand traffic; `travel`: the
+    lanes' own travel directions mostly agree with that.
+    """
+
+    handedness: str
+    source: str
+    forward: bool
+    forward_source: str
+    travel: bool
+
+    def of(self, lane: Lane) -> tuple[int, bool]:
+        """Return 1 or -1 (along or against the reference line) and whether the lane is driven both ways."""
+        keep = 1 if self.forward else -1
+        if lane.kind == "bidirectional" or lane.direction == "both":
+            return keep, True
+        if self.travel and lane.travel in {"forward", "backward"} and lane.kind in DRIVABLE:
+            return (1 if lane.travel == "forward" else -1), False
+        along = keep if lane.number < 0 else -keep
+        return (-along if lane.direction == "reversed" else along), False
+
+
+class Witness(NamedTuple):
+    """What something says: of the side that is driven on, or of the lanes' direction (the side by whose rule they run)."""
+
+    source: str
+    side: str
+    text: str
+    of_lanes: bool
+
+
+@dataclass(frozen=True)
+class Witnesses:
+    """All that say something, the first the most trusted."""
+
+    said: tuple[Witness, ...]
+    rules: Counter[str]
+    travel: str | None
+
+    @classmethod
+    def of(cls, net: Network, request: Request) -> Witnesses:
+        """Ask the option, the roads' rule attribute, the junctions, the lanes' travel direction (RoadRunner's userData), the traces."""
+        roads = Counter(road.rule for road in net.roads.values() if road.rule)
+        junctions, travel = _junction_votes(net), _travel_votes(net)
+        option = None if request.handedness == "auto" else request.handedness
+        found = [
+            ("option", option, "the option --handedness", False),
+            ("attribute", _winner(roads), f"the rule attribute of {roads.total()} roads", False),
+            ("junctions", _winner(junctions), f"{junctions.total()} lane links of junctions", True),
+            ("attribute", _winner(travel), f"the travel direction of {travel.total()} lanes (userData)", True),
+            ("traces", request.sensed, "the headings of the traces", True),
+        ]
+        said = tuple(Witness(source, side, text, of) for source, side, text, of in found if side is not None)
+        return cls(said, roads, _winner(travel))
+
+    def first(self) -> Direction:
+        """Return what holds for roads with both directions: there the side that is driven on and the lanes' direction are one thing."""
+        return self._direction("rht", self.said[0] if self.said else None)
+
+    def settle(self, layout: str | None, quality: Quality) -> Direction:
+        """Return what holds, and report what disagrees.
+
+        `layout`: the side that is driven on by the lanes beside each other, if the lanes with negative numbers run along the reference
+        line. lht: each direction is a road of its own, and they lie the other way round than on one road, as SUMO writes its left-hand
+        nets; None: no lane has an opposing one beside it, so the lanes' direction does not tell the side that is driven on.
+        """
+        if len(self.rules) > 1:
+            counts = ", ".join(f"{side} {n}" for side, n in sorted(self.rules.items()))
+            quality.add(
+                "handedness_mixed", "warning", None, f"roads of both rules in one map ({counts}): one is taken for all"
+            )
+        found = self._without_opposing(quality) if layout is None else self._with_layout(layout, quality)
+        if found.source == "default":
+            message = (
+                "nothing in the map says which side is driven on: right-hand traffic is a guess; give --handedness"
+            )
+            if layout is None and found.forward_source != "default":
+                message = (
+                    f"which way the lanes run is known by {found.forward_source}, but none has one of the other direction beside it: "
+                    "that right-hand traffic drives on them is a guess; give --handedness"
+                )
+            quality.add("handedness_default", "warning", None, message)
+        return found
+
+    def _with_layout(self, layout: str, quality: Quality) -> Direction:
+        said = list(self.said)
+        if layout == "lht" and (rule := next((w for w in said if w.source == "attribute" and not w.of_lanes), None)):
+            said.remove(rule)  # by it, the lanes run so that the other side is driven on
+            message = (
+                f"{rule.text} says {rule.side}, but by its rule the lanes run so that the oncoming ones lie on the other side: it is "
+                "not counted; give --handedness if the side is wrong"
+            )
+            quality.add("handedness_disagrees", "warning", None, message)
+        said = [w._replace(side=w.side if layout == "rht" or not w.of_lanes else _other(w.side)) for w in said]
+        _disagreements(said, quality)
+        return self._direction(layout, said[0] if said else None)
+
+    def _without_opposing(self, quality: Quality) -> Direction:
+        _disagreements(self.said, quality)
+        side = next((w for w in self.said if not w.of_lanes), None)
+        option = next((w for w in self.said if w.source == "option"), None)
+        rule = next((w for w in self.said if w.source == "attribute" and not w.of_lanes), None)
+        # the rule defines the direction, unless the user says that it is wrong
+        ways = [w for w in (rule,) if w and (option is None or option.side == w.side)]
+        ways += [w for w in self.said if w.of_lanes]
+        way = ways[0] if ways else side
+        forward = way is None or way.side == "rht"
+        return Direction(
+            side.side if side else "rht",
+            side.source if side else "default",
+            forward,
+            "default" if way is None or not ways else way.source,
+            self.travel == ("rht" if forward else "lht"),
+        )
+
+    def _direction(self, layout: str, said: Witness | None) -> Direction:
+        side, source = (said.side, said.source) if said else (layout, "default")
+        forward = side == layout
+        return Direction(side, source, forward, source, self.travel == ("rht" if forward else "lht"))
+
+
+def _other(side: str) -> str:
+    return "lht" if side == "rht" else "rht"
+
+
+def _disagreements(said: Sequence[Witness], quality: Quality) -> None:
+    if len({w.side for w in said}) > 1:
+        opinions = "; ".join(f"{w.text}: {w.side}" for w in said)
+        quality.add(
+            "handedness_disagrees",
+            "warning",
+            None,
+            f"{opinions}. {said[0].side} is taken: if that is wrong, every direction is; give --handedness",
+        )
+
+
+def _winner(votes: Counter[str]) -> str | None:
+    if not votes:
+        return None
+    side, n = max(votes.items(), key=lambda item: (item[1], item[0]))
+    return side if n >= _DECISIVE * votes.total() else None
+
+
+def _junction_votes(net: Network) -> Counter[str]:
+    """Return the votes of the lanes by which junctions are entered: traffic runs away from the end that is entered."""
+    votes: Counter[str] = Counter()
+    for connection in net.connections:
+        road = net.roads.get(connection.connecting)
+        if road is None or road.junction_id is None:
+            continue
+        kinds = {lane.number: lane.kind for strip in road.strips for lane in strip.lanes}
+        for _, to in connection.lanes:
+            if kinds.get(to) in DRIVABLE - {"bidirectional"}:
+                votes["rht" if (connection.contact == "start") == (to < 0) else "lht"] += 1
+    return votes
+
+
+def _travel_votes(net: Network) -> Counter[str]:
+    lanes = (lane for road in net.roads.values() for strip in road.strips for lane in strip.lanes)
+    return Counter(
+        "rht" if (lane.travel == "forward") == (lane.number < 0) else "lht"
+        for lane in lanes
+        if lane.kind in DRIVABLE and lane.travel in {"forward", "backward"}
+    )
+
+
+def report_exceptions(net: Network, direction: Direction, quality: Quality) -> None:
+    """Name the lanes whose own direction is not that of their side."""
+    plain = replace(direction, travel=False)
+    for road in net.roads.values():
+        for strip in road.strips:
+            for lane in strip.lanes:
+                if lane.invalid is None and direction.of(lane) != plain.of(lane):
+                    name = f"{road.road_id}.{strip.section}.{lane.number}"
+                    message = f"lane {name} is driven {lane.travel}, as its userData says, against the rule of its side"
+                    quality.add("direction_exception", "warning", name, message)

@@ -1,0 +1,129 @@
+"""What lies on or beside the lanes: signals, stop lines, objects and crossings, laid over the lanelets."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+
+from drivelint.formats.opendrive.objects import Placed, placed_objects
+from drivelint.formats.opendrive.signals import signal_rows
+
+if TYPE_CHECKING:
+    from drivelint.formats.opendrive.cubic import Floats
+    from drivelint.formats.opendrive.lanelet import Lanelet
+    from drivelint.formats.opendrive.network import Network
+    from drivelint.road.quality import Quality
+
+MIN_SHARE = 0.5  # a stop line that covers less of a lane's width is another lane's
+MIN_ANGLE_RAD = 0.87  # 50 degrees: a line more along the lane than this is not one to stop at
+MIN_AREA_M2 = 0.5  # a crossing that only touches a lane does not lie across it
+Rows = list[dict[str, Any]]
+
+
+def furniture(net: Network, lanes: list[Lanelet], offset: tuple[float, float], quality: Quality) -> dict[str, Rows]:
+    """Return rows of `traffic_signal`, `stop_line`, `road_object` and `crossing`."""
+    signals, painted = signal_rows(net, lanes, offset, quality)
+    objects = placed_objects(net, offset, quality)
+    stop_lines, crossings = _laid_over(objects, [lane for lane in lanes if lane.drivable], quality)
+    return {
+        "traffic_signal": signals,
+        "stop_line": sorted([*painted, *stop_lines], key=lambda r: (r["stop_line_id"], r["lanelet_id"], r["lane_s_m"])),
+        "road_object": [placed.row() for placed in objects],
+        "crossing": crossings,
+    }
+
+
+def _laid_over(objects: list[Placed], lanes: list[Lanelet], quality: Quality) -> tuple[Rows, Rows]:
+    """Return the stop lines and crossings among the objects, one row per drivable lanelet that they lie across."""
+    flat = [p for p in objects if p.kind in {"stop_line", "crossing"} and p.outline is not None and len(p.outline) > 1]
+    if not flat:
+        return [], []
+    tree = shapely.STRtree([_area(lane) for lane in lanes])
+    stop_lines: Rows = []
+    crossings: Rows = []
+    for placed in flat:
+        rows = []
+        shape = _shape(placed)
+        for i in sorted(int(i) for i in tree.query(shape)):
+            lane = lanes[i]
+            common = shapely.intersection(shape, tree.geometries[i])
+            if not common.is_empty:
+                rows += (
+                    _stop_line(placed, lane, common) if placed.kind == "stop_line" else _crossing(placed, lane, common)
+                )
+        if not rows:
+            name = f"{placed.kind} {placed.object_id} of road {placed.road.road_id}"
+            message = f"{name} lies across no lane that vehicles drive on"
+            quality.add("object_without_lane", "info", placed.road.road_id, message)
+        (stop_lines if placed.kind == "stop_line" else crossings).extend(rows)
+    return stop_lines, crossings
+
+
+def _area(lane: Lanelet) -> shapely.Geometry:
+    x = np.concatenate([lane.right_x, lane.left_x[::-1]])
+    y = np.concatenate([lane.right_y, lane.left_y[::-1]])
+    polygon = shapely.Polygon(np.column_stack([x, y]))
+    return polygon if polygon.is_valid else polygon.buffer(0.0)
+
+
+def _shape(placed: Placed) -> shapely.Geometry:
+    """Return the object's area; a line that was drawn without a width stays a line."""
+    assert placed.outline is not None  # noqa: S101 - the caller's filter
+    corners = placed.outline
+    if len(corners) > 2:
+        polygon = shapely.Polygon(corners)
+        if polygon.area > 0.005 * polygon.length**2:  # a square has 0.0625; 0.2 m by 3.5 m has 0.013
+            return polygon if polygon.is_valid else polygon.buffer(0.0)
+    axis = np.linalg.svd(corners - corners.mean(axis=0))[2][0]
+    reach = (corners - corners.mean(axis=0)) @ axis
+    return shapely.LineString([corners.mean(axis=0) + r * axis for r in (reach.min(), reach.max())])
+
+
+def _stations(lane: Lanelet, points: Floats) -> tuple[Floats, Floats, float]:
+    """Return station and offset (left positive) of points on a lanelet, and the lane's width there."""
+    line = shapely.LineString(np.column_stack([lane.x, lane.y]))
+    s = np.atleast_1d(shapely.line_locate_point(line, shapely.points(points)))
+    middle = float(np.mean(s))
+    x, y, tx, ty, half = (
+        float(np.interp(middle, lane.s, a)) for a in (lane.x, lane.y, lane.tx, lane.ty, lane.half_width)
+    )
+    norm = max(float(np.hypot(tx, ty)), 1e-9)
+    d = ((points[:, 1] - y) * tx - (points[:, 0] - x) * ty) / norm
+    return s, d, 2.0 * half
+
+
+def _stop_line(placed: Placed, lane: Lanelet, common: shapely.Geometry) -> Rows:
+    assert placed.outline is not None  # noqa: S101 - the caller's filter
+    s, d, width = _stations(lane, shapely.get_coordinates(common))
+    axis = np.linalg.svd(placed.outline - placed.outline.mean(axis=0))[2][0]
+    middle = float(np.mean(s))
+    tx, ty = float(np.interp(middle, lane.s, lane.tx)), float(np.interp(middle, lane.s, lane.ty))
+    across = abs(float(axis[0] * ty - axis[1] * tx)) / max(float(np.hypot(tx, ty)), 1e-9)
+    if float(d.max() - d.min()) < MIN_SHARE * width or across < np.sin(MIN_ANGLE_RAD):
+        return []
+    row = {
+        "stop_line_id": placed.object_id,
+        "lanelet_id": lane.lanelet_id,
+        "lane_s_m": float(s.min()),
+        "source": "object",
+    }
+    return [row]
+
+
+def _crossing(placed: Placed, lane: Lanelet, common: shapely.Geometry) -> Rows:
+    if float(shapely.area(common)) < MIN_AREA_M2:
+        return []
+    s, _, _ = _stations(lane, shapely.get_coordinates(common))
+    said = f"{placed.subtype or ''} {placed.name or ''}".lower()
+    kind = "zebra" if "zebra" in said else "signalled" if "signal" in said else None
+    return [
+        {
+            "crossing_id": placed.object_id,
+            "lanelet_id": lane.lanelet_id,
+            "s_start_m": float(s.min()),
+            "s_end_m": float(s.max()),
+            "kind": kind,
+        }
+    ]

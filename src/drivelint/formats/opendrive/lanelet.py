@@ -1,0 +1,100 @@
+"""One lane of one lane section, evaluated."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from drivelint.formats.opendrive.network import DRIVABLE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from drivelint.formats.opendrive.cubic import Floats
+    from drivelint.formats.opendrive.network import Lane, Road, Strip
+
+LaneKey = tuple[str, int, int]  # road, section, lane number
+
+
+def lanelet_id(key: LaneKey) -> str:
+    """Return the id of a lane in the tables."""
+    return f"{key[0]}.{key[1]}.{key[2]}"
+
+
+@dataclass(eq=False)
+class Lanelet:
+    """A lane of a section as arrays, all (n,), in the direction of travel."""
+
+    key: LaneKey
+    lane: Lane
+    road: Road
+    strip: Strip
+    along: int
+    bidirectional: bool
+    road_s: Floats
+    x: Floats
+    y: Floats
+    z: Floats
+    tx: Floats
+    ty: Floats
+    half_width: Floats
+    left_x: Floats
+    left_y: Floats
+    right_x: Floats
+    right_y: Floats
+    s: Floats
+    t: Floats  # of the centre line, in road coordinates
+    left: Lanelet | None = None
+    right: Lanelet | None = None
+
+    @property
+    def lanelet_id(self) -> str:
+        """The id, road.section.lane."""
+        return lanelet_id(self.key)
+
+    @property
+    def drivable(self) -> bool:
+        """Motor vehicles may drive here."""
+        return self.lane.kind in DRIVABLE
+
+    @property
+    def length_m(self) -> float:
+        """Length along the centre line."""
+        return float(self.s[-1])
+
+    def at(self, road_s: float) -> float:
+        """Return the lanelet station (m) of a road station (m), held within the lanelet."""
+        step = self.along
+        return float(np.interp(road_s, self.road_s[::step], self.s[::step]))
+
+    def lateral_range(self, road_s: float) -> tuple[float, float]:
+        """Return the road coordinates t between which the lanelet lies at a road station (m)."""
+        s = self.at(road_s)
+        t, half = float(np.interp(s, self.s, self.t)), float(np.interp(s, self.s, self.half_width))
+        return t - half, t + half
+
+    def ranges(self, spans: Iterable[tuple[int, float, float]]) -> list[tuple[int, float, float]]:
+        """Return (index, from, to) spans of road stations as spans of the lanelet, in the direction of travel."""
+        found = [(i, self.at(a), self.at(b)) for i, a, b in spans]
+        ordered = [(i, min(a, b), max(a, b)) for i, a, b in found if abs(b - a) > 1e-6]
+        return sorted(ordered, key=lambda r: r[1])
+
+    def turn(self) -> float:
+        """Return the heading change over the lanelet (rad), left positive."""
+        cross = self.tx[:-1] * self.ty[1:] - self.ty[:-1] * self.tx[1:]
+        dot = self.tx[:-1] * self.tx[1:] + self.ty[:-1] * self.ty[1:]
+        return float(np.arctan2(cross, dot).sum())
+
+    def area(self) -> float:
+        """Return the area between the bounds (m2)."""
+        x = np.concatenate([self.right_x, self.left_x[::-1]])
+        y = np.concatenate([self.right_y, self.left_y[::-1]])
+        x, y = x - x[0], y - y[0]
+        return abs(0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)))
+
+    def mean_width(self) -> float:
+        """Return the mean distance between the bounds (m)."""
+        ds = np.diff(self.s)
+        return float(((self.half_width[:-1] + self.half_width[1:]) * ds).sum() / ds.sum()) if ds.sum() > 0 else 0.0

@@ -1,0 +1,242 @@
+"""Lanelets: one per road, section and lane, its points in the direction of travel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from drivelint.formats.opendrive.crosssection import Edges, Evaluator, stations
+from drivelint.formats.opendrive.lanelet import LaneKey, Lanelet, lanelet_id
+from drivelint.formats.opendrive.network import DRIVABLE
+from drivelint.formats.opendrive.xml import MalformedError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from drivelint.formats.opendrive.cubic import Floats
+    from drivelint.formats.opendrive.direction import Direction
+    from drivelint.formats.opendrive.network import Lane, Network, Road, Strip
+    from drivelint.road.quality import Quality
+
+NARROW_M = 0.05  # a lane that is nowhere wider is a line, not a lane
+SHORT_M = 1e-3  # a shorter section is a rounding error: links go through it
+
+
+@dataclass(eq=False)
+class Lanes:
+    """What was built, and what was not and why."""
+
+    built: dict[LaneKey, Lanelet] = field(default_factory=dict)
+    short: set[LaneKey] = field(default_factory=set)  # links pass through these
+    narrow: set[LaneKey] = field(default_factory=set)
+    failed: set[LaneKey] = field(default_factory=set)
+
+
+def build(net: Network, direction: Direction, offset: tuple[float, float], quality: Quality) -> Lanes:
+    """Build every lane of the network; whatever is left out is a row of `quality`."""
+    lanes = Lanes()
+    for road in net.roads.values():
+        _check_plan(road, quality)
+        for strip in road.strips:
+            _StripBuilder(road, strip, direction, offset, lanes, quality).build()
+        _join_sides(road, lanes)
+    return lanes
+
+
+def _check_plan(road: Road, quality: Quality) -> None:
+    gap, kink = road.plan.joints()
+    name = f"the geometries of road {road.road_id}"
+    if (gap > 0.05).any():
+        message = f"{name} leave gaps of up to {float(gap.max()):.2f} m"
+        quality.add("reference_gap", "warning", road.road_id, message, int((gap > 0.05).sum()))
+    if (kink > 0.05).any():
+        message = f"{name} turn on the spot by up to {float(np.degrees(kink.max())):.1f} degrees"
+        quality.add("reference_kink", "warning", road.road_id, message, int((kink > 0.05).sum()))
+    if abs(road.plan.end - road.said_length_m) > 0.01:
+        message = (
+            f"{name} are {road.plan.end:.2f} m long, the road says {road.said_length_m:.2f} m: the shorter one holds"
+        )
+        quality.add("length_mismatch", "warning", road.road_id, message)
+
+
+@dataclass(eq=False)
+class _StripBuilder:
+    """Builds the lanelets of one strip into `lanes`."""
+
+    road: Road
+    strip: Strip
+    direction: Direction
+    offset: tuple[float, float]
+    lanes: Lanes
+    quality: Quality
+
+    def build(self) -> None:
+        strip, road = self.strip, self.road
+        keys = [self._key(lane) for lane in strip.lanes]
+        length = strip.end_m - strip.start_m
+        if length < SHORT_M:
+            self.lanes.short.update(keys)
+            message = (
+                f"section {strip.section} of road {road.road_id} is {length:.4f} m long: left out, links pass through"
+            )
+            self.quality.add("short_section", "info", road.road_id, message, max(len(keys), 1))
+            return
+        self._fail(_unbuildable(strip))
+        try:
+            evaluator = Evaluator(road, strip)
+            breaks = evaluator.breaks()
+            at, step = evaluator.steps(breaks)
+            s = stations(evaluator, np.sort(np.concatenate([breaks, at - SHORT_M])))
+            edges = evaluator.edges(s)
+        except MalformedError as error:
+            self._fail({lane.number: str(error) for lane in strip.lanes if self._key(lane) not in self.lanes.failed})
+            return
+        if len(at):
+            worst = float(step.max())
+            message = (
+                f"lane edges in section {strip.section} of road {road.road_id} step sideways by up to {worst:.2f} m"
+            )
+            self.quality.add("edge_step", "warning", road.road_id, message, len(at))
+        self._cut(evaluator, edges, s)
+        for number, low in sorted(evaluator.negative_m.items()):
+            if low < -0.01:
+                name = lanelet_id((road.road_id, strip.section, number))
+                message = f"the width of lane {name} falls to {low:.2f} m: taken as 0 there"
+                self.quality.add("negative_width", "warning", name, message)
+
+    def _cut(self, evaluator: Evaluator, edges: Edges, s: Floats) -> None:
+        """Make a lanelet between each lane's edges, from left to right, and adjoin each to the next."""
+        row = {number: i for i, number in enumerate(evaluator.numbers)}
+        made: list[Lanelet] = []
+        for lane in self.strip.lanes[::-1]:
+            key = self._key(lane)
+            if key in self.lanes.failed:
+                continue
+            outer, inner = row[lane.number], row[lane.number] + (1 if lane.number > 0 else -1)
+            if float(np.abs(edges.t[outer] - edges.t[inner]).max()) < NARROW_M:
+                self.lanes.narrow.add(key)
+                message = f"lane {lanelet_id(key)} is nowhere wider than {NARROW_M} m: left out, its neighbours adjoin"
+                self.quality.add("narrow_lane", "info", lanelet_id(key), message)
+                continue
+            made.append(self._lanelet(lane, edges, s, (min(outer, inner), max(outer, inner))))
+        for a, b in pairwise(made):
+            _adjoin(a, b)
+        self.lanes.built.update((lanelet.key, lanelet) for lanelet in made)
+
+    def _lanelet(self, lane: Lane, edges: Edges, s: Floats, rows: tuple[int, int]) -> Lanelet:
+        """Return one lane as arrays; `rows` are those of its left and right edge, seen along the reference line."""
+        i, j = rows
+        along, bidirectional = self.direction.of(lane)
+        line, (dx, dy) = edges.line, self.offset
+        t, dt = 0.5 * (edges.t[i] + edges.t[j]), 0.5 * (edges.dt[i] + edges.dt[j])
+        x, y = line.x - line.sin * t, line.y + line.cos * t
+        forward = line.speed * (1.0 - line.curvature * t)
+        tx, ty = forward * line.cos - dt * line.sin, forward * line.sin + dt * line.cos
+        norm = np.hypot(tx, ty)
+        still = norm < 1e-6
+        if still.any():  # the centre line turns on the spot: its chords have a direction all the same
+            tx, ty = np.where(still, np.gradient(x), tx), np.where(still, np.gradient(y), ty)
+            norm = np.maximum(np.hypot(tx, ty), 1e-12)
+        self._check_fold(lane, np.any(line.curvature * edges.t[[i, j]] > 1.0, axis=0, keepdims=True)[0], forward)
+        z = self.road.elevation.evaluate(s, s)[0] if len(self.road.elevation.start) else np.full_like(s, np.nan)
+        order = slice(None, None, along)
+        left, right = (i, j) if along > 0 else (j, i)
+        x, y = x[order] + dx, y[order] + dy
+        return Lanelet(
+            key=self._key(lane),
+            lane=lane,
+            road=self.road,
+            strip=self.strip,
+            along=along,
+            bidirectional=bidirectional,
+            road_s=s[order],
+            x=x,
+            y=y,
+            z=z[order],
+            tx=(along * tx / norm)[order],
+            ty=(along * ty / norm)[order],
+            half_width=(0.5 * (edges.t[i] - edges.t[j]))[order],
+            left_x=edges.x[left][order] + dx,
+            left_y=edges.y[left][order] + dy,
+            right_x=edges.x[right][order] + dx,
+            right_y=edges.y[right][order] + dy,
+            s=np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))]),
+            t=t[order],
+        )
+
+    def _check_fold(self, lane: Lane, folded: NDArray[np.bool_], forward: Floats) -> None:
+        if folded.any():
+            name = lanelet_id(self._key(lane))
+            severity = "error" if lane.kind in DRIVABLE and (forward <= 0.0).any() else "warning"
+            message = (
+                f"an edge of lane {name} folds back on itself: the bend is tighter than the edge is far from its line"
+            )
+            self.quality.add("folded_lane", severity, name, message, int(folded.sum()))
+
+    def _key(self, lane: Lane) -> LaneKey:
+        return (self.road.road_id, self.strip.section, lane.number)
+
+    def _fail(self, reasons: dict[int, str]) -> None:
+        for number, reason in sorted(reasons.items()):
+            key = (self.road.road_id, self.strip.section, number)
+            self.lanes.failed.add(key)
+            message = f"lane {lanelet_id(key)} cannot be built: {reason}"
+            self.quality.add("invalid_lane", "error", lanelet_id(key), message)
+
+
+def _unbuildable(strip: Strip) -> dict[int, str]:
+    """Return lane number -> reason; a lane that lies outside an invalid one has no place either."""
+    reasons: dict[int, str] = {}
+    for side in (1, -1):
+        broken: Lane | None = None
+        for lane in sorted((lane for lane in strip.lanes if lane.number * side > 0), key=lambda lane: abs(lane.number)):
+            if lane.invalid is not None:
+                reasons[lane.number] = lane.invalid
+                broken = broken or lane
+            elif broken is not None and lane.borders is None:
+                reasons[lane.number] = f"lane {broken.number}, on whose edge it lies, is invalid"
+    return reasons
+
+
+def _adjoin(a: Lanelet, b: Lanelet) -> None:
+    """Make `b` the neighbour of `a` on the right of the reference line."""
+    if a.along > 0:
+        a.right = b
+    else:
+        a.left = b
+    if b.along > 0:
+        b.left = a
+    else:
+        b.right = a
+
+
+def _join_sides(road: Road, lanes: Lanes) -> None:
+    """Adjoin the innermost lanes of strips that hold one side only to the lane across that they lie longest beside."""
+    built = [
+        lane
+        for strip in road.strips
+        for n in strip.lanes
+        if (lane := lanes.built.get((road.road_id, strip.section, n.number)))
+    ]
+    for a in built:
+        inward = "right" if (a.lane.number > 0) == (a.along > 0) else "left"
+        if getattr(a, inward) is not None:
+            continue
+        across = [b for b in built if b.lane.number * a.lane.number < 0 and _innermost(b, built)]
+        across = [b for b in across if _overlap(a, b) > SHORT_M]
+        if across and _innermost(a, built):
+            setattr(a, inward, max(across, key=lambda b: (_overlap(a, b), -b.strip.section)))
+
+
+def _innermost(a: Lanelet, built: list[Lanelet]) -> bool:
+    return not any(
+        b.strip is a.strip and b.lane.number * a.lane.number > 0 and abs(b.lane.number) < abs(a.lane.number)
+        for b in built
+    )
+
+
+def _overlap(a: Lanelet, b: Lanelet) -> float:
+    return min(a.strip.end_m, b.strip.end_m) - max(a.strip.start_m, b.strip.start_m)

@@ -1,0 +1,225 @@
+"""Which lanelet continues which, in the direction of travel.
+
+Every link that the file declares, from either lane, a road's end or a junction, is the same thing: two lane ends that
+touch. Directions are applied once, to the touching ends; so it does not matter which side declared a link, or if both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+
+from drivelint.formats.opendrive.lanelet import LaneKey, Lanelet, lanelet_id
+from drivelint.formats.opendrive.network import END, START
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from drivelint.formats.opendrive.lanes import Lanes
+    from drivelint.formats.opendrive.network import Connection, Network, Road, Strip
+    from drivelint.road.quality import Quality
+
+GAP_M = 0.5  # linked ends further apart than this are reported
+TOUCH_M = 0.1  # a lane that begins this close to another's end, in the same direction, should be linked to it
+TOUCH_COS = 0.98
+LaneEnd = tuple[LaneKey, str]
+_OTHER = {START: END, END: START}
+
+
+@dataclass(frozen=True)
+class Link:
+    """One lanelet continues another."""
+
+    source: Lanelet
+    target: Lanelet
+
+
+def links(net: Network, lanes: Lanes, quality: Quality) -> list[Link]:
+    """Return the links, each once, ordered by ids; links to nowhere and over gaps are rows of `quality`."""
+    declared = {
+        (road.road_id, strip.section, lane.number)
+        for road in net.roads.values()
+        for strip in road.strips
+        for lane in strip.lanes
+    }
+    touching: set[tuple[LaneEnd, LaneEnd]] = set()
+    for a, b in _declared_contacts(net, quality):
+        if b[0] in declared:
+            touching.add((min(a, b), max(a, b)))
+        else:
+            _missing(lanes, a, f"lane {lanelet_id(b[0])}, which does not exist", quality)
+    found: dict[tuple[str, str], Link] = {}
+    for a, b in sorted(_through_short(touching, lanes.short)):
+        link = _directed(a, b, lanes, quality)
+        if link is not None:
+            found[link.source.lanelet_id, link.target.lanelet_id] = link
+    result = [found[key] for key in sorted(found)]
+    for link in result:
+        _check_gap(link, quality)
+    _check_unlinked(sorted(lanes.built.values(), key=lambda lane: lane.key), found, quality)
+    return result
+
+
+def _declared_contacts(net: Network, quality: Quality) -> Iterator[tuple[LaneEnd, LaneEnd]]:
+    for road in net.roads.values():
+        for side in (1, -1):
+            strips = road.strips_of(side)
+            for k, strip in enumerate(strips):
+                for lane in strip.lanes:
+                    if lane.number * side > 0 and lane.invalid is None:
+                        key = (road.road_id, strip.section, lane.number)
+                        before = strips[k - 1] if k else None
+                        after = strips[k + 1] if k + 1 < len(strips) else None
+                        yield from _contacts_at(net, road, (key, START), lane.predecessors, before, quality=quality)
+                        yield from _contacts_at(net, road, (key, END), lane.successors, after, quality=quality)
+    for connection in net.connections:
+        yield from _junction_contacts(net, connection, quality)
+
+
+def _contacts_at(
+    net: Network, road: Road, at: LaneEnd, targets: tuple[int, ...], beside: Strip | None, *, quality: Quality
+) -> Iterator[tuple[LaneEnd, LaneEnd]]:
+    """Yield what a lane's end touches: in the next section of its road, or in the next road."""
+    key, end = at
+    if beside is not None:
+        for target in targets:
+            yield (key, end), ((road.road_id, beside.section, target), _OTHER[end])
+        return
+    join = road.joins.get(end)
+    if join is None or join.is_junction or not targets:
+        return
+    other = net.roads.get(join.element_id)
+    if other is None:
+        yield from (((key, end), ((join.element_id, 0, target), START)) for target in targets)
+        return
+    contact = join.contact or _contact_back(other, road.road_id)
+    if contact is None:
+        name = lanelet_id(key)
+        quality.add(
+            "missing_link",
+            "error",
+            name,
+            f"lane {name} goes on in road {join.element_id}, but the file does not say at which end",
+        )
+        return
+    for target in targets:
+        yield (key, end), (_lane_at(other, contact, target), contact)
+
+
+def _contact_back(other: Road, road_id: str) -> str | None:
+    ends = [end for end, join in other.joins.items() if not join.is_junction and join.element_id == road_id]
+    return ends[0] if len(ends) == 1 else None
+
+
+def _lane_at(road: Road, contact: str, lane_no: int) -> LaneKey:
+    strips = road.strips_of(lane_no)
+    if not strips:
+        return (road.road_id, 0, lane_no)
+    return (road.road_id, strips[0 if contact == START else -1].section, lane_no)
+
+
+def _junction_contacts(net: Network, connection: Connection, quality: Quality) -> Iterator[tuple[LaneEnd, LaneEnd]]:
+    incoming, connecting = net.roads.get(connection.incoming), net.roads.get(connection.connecting)
+    if incoming is None or connecting is None:
+        gone = connection.incoming if incoming is None else connection.connecting
+        message = f"junction {connection.junction_id} connects road {gone}, which is not there"
+        quality.add("missing_link", "error", gone, message, max(len(connection.lanes), 1))
+        return
+    end = _end_at_junction(incoming, connecting, connection)
+    for source, target in connection.lanes:
+        yield (
+            (_lane_at(incoming, end, source), end),
+            (_lane_at(connecting, connection.contact, target), connection.contact),
+        )
+
+
+def _end_at_junction(incoming: Road, connecting: Road, connection: Connection) -> str:
+    """Return the end of the incoming road at the junction: as it says, as the connecting road says, or the nearer."""
+    ends = [e for e, join in incoming.joins.items() if join.is_junction and join.element_id == connection.junction_id]
+    if len(ends) == 1:
+        return ends[0]
+    back = connecting.joins.get(connection.contact)
+    if back is not None and not back.is_junction and back.element_id == incoming.road_id and back.contact is not None:
+        return back.contact
+    at = _road_end(connecting, connection.contact)
+    return min((START, END), key=lambda e: float(np.hypot(*(_road_end(incoming, e) - at))))
+
+
+def _road_end(road: Road, end: str) -> np.ndarray:
+    s = np.array([0.0 if end == START else road.length_m])
+    line = road.plan.evaluate(s, np.clip(s, 1e-6, max(road.length_m - 1e-6, 1e-6)))
+    return np.array([line.x[0], line.y[0]])
+
+
+def _through_short(touching: set[tuple[LaneEnd, LaneEnd]], short: set[LaneKey]) -> set[tuple[LaneEnd, LaneEnd]]:
+    """Join what touches the two ends of a section that was left out as too short."""
+    result = set(touching)
+    for key in sorted(short):
+        beside: dict[str, set[LaneEnd]] = {START: set(), END: set()}
+        for pair in [p for p in result if key in {p[0][0], p[1][0]}]:
+            result.discard(pair)
+            for mine, other in (pair, pair[::-1]):
+                if mine[0] == key and other[0] != key:
+                    beside[mine[1]].add(other)
+        result |= {(min(a, b), max(a, b)) for a in beside[START] for b in beside[END]}
+    return result
+
+
+def _directed(a: LaneEnd, b: LaneEnd, lanes: Lanes, quality: Quality) -> Link | None:
+    """Return the link in the direction of travel; None where a lane was left out or the directions clash (reported)."""
+    first, second = lanes.built.get(a[0]), lanes.built.get(b[0])
+    if first is None or second is None:
+        for end, other in ((a, b), (b, a)):
+            if other[0] in lanes.failed and end[0] in lanes.built:
+                _missing(lanes, end, f"lane {lanelet_id(other[0])}, which could not be built", quality)
+        return None
+    leaves, enters = _exit(first) == a[1], _exit(second) != b[1]
+    if leaves and enters:
+        return Link(first, second)
+    if not leaves and not enters:
+        return Link(second, first)
+    if not (first.bidirectional or second.bidirectional) and first.drivable and second.drivable:
+        message = (
+            f"{first.lanelet_id} and {second.lanelet_id} are linked, but are driven towards each other: not linked"
+        )
+        quality.add("direction_conflict", "warning", first.lanelet_id, message)
+    return None
+
+
+def _exit(lane: Lanelet) -> str:
+    return END if lane.along > 0 else START
+
+
+def _missing(lanes: Lanes, end: LaneEnd, what: str, quality: Quality) -> None:
+    lane = lanes.built.get(end[0])
+    if end[0] in lanes.narrow:
+        return
+    severity = "error" if lane is None or lane.drivable else "warning"
+    name = lanelet_id(end[0])
+    quality.add("missing_link", severity, name, f"lane {name} is linked at its {end[1]} to {what}")
+
+
+def _check_gap(link: Link, quality: Quality) -> None:
+    a, b = link.source, link.target
+    gap = float(np.hypot(a.x[-1] - b.x[0], a.y[-1] - b.y[0]))
+    if gap > GAP_M:
+        message = f"lane {b.lanelet_id} begins {gap:.2f} m away from the end of lane {a.lanelet_id} that it continues"
+        quality.add("link_gap", "warning" if a.drivable else "info", a.lanelet_id, message)
+
+
+def _check_unlinked(lanes: list[Lanelet], found: dict[tuple[str, str], Link], quality: Quality) -> None:
+    """Report drivable lanes that plainly go on in another one without a link: chains would end there."""
+    lanes = [lane for lane in lanes if lane.drivable]
+    if not lanes:
+        return
+    ends, starts = ([(lane.x[k], lane.y[k]) for lane in lanes] for k in (-1, 0))
+    touching = shapely.STRtree(shapely.points(starts)).query(shapely.points(ends), "dwithin", TOUCH_M)
+    for i, j in sorted(touching.T.tolist()):
+        a, b = lanes[i], lanes[j]
+        same = float(a.tx[-1] * b.tx[0] + a.ty[-1] * b.ty[0]) > TOUCH_COS
+        if same and (a.lanelet_id, b.lanelet_id) not in found:
+            message = f"lane {b.lanelet_id} begins where lane {a.lanelet_id} ends, but the map does not link them"
+            quality.add("unlinked_end", "error", a.lanelet_id, message)

@@ -1,0 +1,339 @@
+"""The road network as the file has it: roads, lane sections, lanes, junctions. No geometry is evaluated here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from drivelint.formats.opendrive.cubic import Cubics, cubics
+from drivelint.formats.opendrive.planview import PlanView, planview
+from drivelint.formats.opendrive.xml import MalformedError, integer, number, text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from lxml import etree
+
+    from drivelint.road.quality import Quality
+
+MAX_ROAD_M = 1e6  # a longer road is a unit mistake, and would be millions of points
+START, END = "start", "end"
+
+# Where motor vehicles may drive (ASAM OpenDRIVE e_laneType, with the names of older versions). The hard shoulder
+# ("stop"), parking, biking, tram and everything beside the carriageway are not.
+DRIVABLE = frozenset({
+    "driving", "entry", "exit", "onRamp", "offRamp", "connectingRamp", "slipLane", "bidirectional",
+    "bus", "taxi", "HOV", "carpool", "shared", "mwyEntry", "mwyExit",
+})  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A road mark from `start_m` (road station) to the next one's."""
+
+    start_m: float
+    marking: str | None
+    color: str | None
+    lane_change: str | None
+
+
+@dataclass(frozen=True)
+class Speed:
+    """A limit from `start_m` (road station) to the next one's; `limit_mps` None: no limit.
+
+    `known` False: not said; `readable` False: said, but not in a way that can be read.
+    """
+
+    start_m: float
+    limit_mps: float | None
+    known: bool
+    readable: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Lane:
+    """One lane of one section; `invalid` says why it cannot be built."""
+
+    number: int
+    kind: str
+    predecessors: tuple[int, ...] = ()
+    successors: tuple[int, ...] = ()
+    widths: Cubics | None = None
+    borders: Cubics | None = None
+    marks: tuple[Mark, ...] = ()
+    speeds: tuple[Speed, ...] = ()
+    travel: str | None = None  # RoadRunner's userData: forward, backward, undirected
+    direction: str | None = None  # OpenDRIVE 1.8: standard, reversed, both
+    invalid: str | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Strip:
+    """Lanes that begin and end together: a lane section, or one side of it where the sides are cut differently."""
+
+    section: int
+    start_m: float
+    end_m: float
+    lanes: tuple[Lane, ...]  # ascending by number, lane 0 left out
+    centre_marks: tuple[Mark, ...]
+
+
+@dataclass(frozen=True)
+class Contact:
+    """What a road joins at one of its ends."""
+
+    is_junction: bool
+    element_id: str
+    contact: str | None  # start or end of the other road; None: the file does not say
+
+
+@dataclass(frozen=True, eq=False)
+class Road:
+    """One road and everything that is needed to build its lanes."""
+
+    road_id: str
+    length_m: float  # what its geometries cover of the length it says
+    said_length_m: float
+    junction_id: str | None
+    rule: str | None  # lht, rht
+    joins: dict[str, Contact]  # by own end
+    types: tuple[tuple[float, str], ...]  # (from station, type)
+    speeds: tuple[Speed, ...]
+    plan: PlanView
+    elevation: Cubics
+    offset: Cubics
+    strips: tuple[Strip, ...]
+    element: etree._Element = field(repr=False)
+
+    def strips_of(self, lane_no: int) -> list[Strip]:
+        """Return the strips that hold lanes of that side, in order of station."""
+        return [s for s in self.strips if any((lane.number > 0) == (lane_no > 0) for lane in s.lanes)]
+
+
+@dataclass(frozen=True)
+class Connection:
+    """A way into a junction: from lanes of one road to lanes of another."""
+
+    junction_id: str
+    incoming: str
+    connecting: str
+    contact: str  # end of the connecting road that is entered
+    lanes: tuple[tuple[int, int], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Network:
+    """The whole file."""
+
+    roads: dict[str, Road]
+    connections: tuple[Connection, ...]
+    geo_reference: str | None
+
+
+def network(root: etree._Element, quality: Quality) -> Network:
+    """Read the file; a road that cannot be understood is named in `quality` and left out, never silently."""
+    roads: dict[str, Road] = {}
+    for element in root.findall("road"):
+        name = element.get("id") or f"in line {element.sourceline}"
+        try:
+            road = _road(element, roads, quality)
+        except MalformedError as error:
+            lanes = sum(1 for lane in element.iterfind("lanes/laneSection//lane") if lane.get("id") != "0")
+            quality.add(
+                "invalid_road", "error", name, f"road {name} is left out with its {lanes} lanes: {error}", max(lanes, 1)
+            )
+        else:
+            roads[road.road_id] = road
+    reference = root.findtext("header/geoReference")
+    return Network(roads, tuple(_connections(root, quality)), reference.strip() or None if reference else None)
+
+
+def _road(element: etree._Element, others: dict[str, Road], quality: Quality) -> Road:
+    if element.get("id") in others:
+        raise MalformedError("another road has the same id")
+    length = number(element, "length")
+    if not 0.0 < length <= MAX_ROAD_M:
+        raise MalformedError(f"its length is {length:g} m")
+    junction = element.get("junction", "-1")
+    rule = (element.get("rule") or "").lower()
+    plan = planview(element.find("planView"))
+    types = sorted(
+        ((number(t, "s", 0.0), t.get("type", "unknown")) for t in element.findall("type")), key=lambda t: t[0]
+    )
+    return Road(
+        road_id=text(element, "id"),
+        length_m=min(length, plan.end),
+        said_length_m=length,
+        junction_id=None if junction in {"-1", ""} else junction,
+        rule=rule if rule in {"lht", "rht"} else None,
+        joins=_joins(element),
+        types=tuple(types),
+        speeds=_speeds(element.findall("type"), "s", 0.0, quality, child="speed"),
+        plan=plan,
+        elevation=cubics(element.findall("elevationProfile/elevation"), "s"),
+        offset=cubics(element.findall("lanes/laneOffset"), "s"),
+        strips=_strips(element, min(length, plan.end), quality),
+        element=element,
+    )
+
+
+def _joins(element: etree._Element) -> dict[str, Contact]:
+    joins = {}
+    for end, name in ((START, "predecessor"), (END, "successor")):
+        link = element.find(f"link/{name}")
+        if link is not None and link.get("elementId") is not None:
+            contact = link.get("contactPoint")
+            joins[end] = Contact(
+                link.get("elementType") == "junction",
+                text(link, "elementId"),
+                contact if contact in {START, END} else None,
+            )
+    return joins
+
+
+def _strips(element: etree._Element, length: float, quality: Quality) -> tuple[Strip, ...]:
+    sections = sorted(enumerate(element.findall("lanes/laneSection")), key=lambda item: number(item[1], "s"))
+    if not sections:
+        raise MalformedError("it has no <laneSection>")
+    strips = []
+    ends = {side: _section_ends([s for _, s in sections], side, length) for side in ("left", "right")}
+    for index, section in sections:
+        sides = [side for side in ("left", "right") if section in ends[side]]
+        start = number(section, "s")
+        marks = tuple(m for centre in section.findall("center/lane") for m in _marks(centre, start))
+        together = len({ends[side][section] for side in sides}) == 1
+        groups = [sides] if together else [[side] for side in sides]
+        for group in groups:
+            end = ends[group[0]][section]
+            lanes = [_lane(lane, start, quality) for side in group for lane in section.findall(f"{side}/lane")]
+            numbers = [lane.number for lane in lanes]
+            if len(set(numbers)) < len(numbers):
+                raise MalformedError(f"section {index} has the same lane twice")
+            strips.append(Strip(index, start, end, tuple(sorted(lanes, key=lambda lane: lane.number)), marks))
+    return tuple(strips)
+
+
+def _section_ends(sections: list[etree._Element], side: str, length: float) -> dict[etree._Element, float]:
+    """Return where each section ends that says something about this side of the road (`singleSide` ones may not)."""
+    other = "left" if side == "right" else "right"
+    mine = [s for s in sections if s.get("singleSide") != "true" or s.find(side) is not None or s.find(other) is None]
+    ends = [min(number(s, "s"), length) for s in mine[1:]] + [length]
+    return dict(zip(mine, ends, strict=True))
+
+
+def _lane(element: etree._Element, section_start: float, quality: Quality) -> Lane:
+    lane_no = integer(element, "id")
+    try:
+        return _valid_lane(element, lane_no, section_start, quality)
+    except MalformedError as error:
+        return Lane(lane_no, element.get("type", "none"), invalid=str(error))
+
+
+def _valid_lane(element: etree._Element, lane_no: int, section_start: float, quality: Quality) -> Lane:
+    parent = element.getparent()
+    side = "" if parent is None else str(parent.tag)
+    if (side == "left") != (lane_no > 0) or lane_no == 0:
+        raise MalformedError(f"lane {lane_no} stands on the wrong side, under <{side}>")
+    widths, borders = element.findall("width"), element.findall("border")
+    if not widths and not borders:
+        raise MalformedError("it has neither <width> nor <border>")
+    user = next(iter(element.iterfind("userData//vectorLane")), None)
+    return Lane(
+        number=lane_no,
+        kind=element.get("type", "none"),
+        predecessors=tuple(integer(e, "id") for e in element.findall("link/predecessor")),
+        successors=tuple(integer(e, "id") for e in element.findall("link/successor")),
+        widths=cubics(widths, "sOffset", section_start) if widths else None,
+        borders=None if widths else cubics(borders, "sOffset", section_start),
+        marks=tuple(_marks(element, section_start)),
+        speeds=_speeds(element.findall("speed"), "sOffset", section_start, quality),
+        travel=None if user is None else user.get("travelDir"),
+        direction=element.get("direction"),
+    )
+
+
+def _marks(lane: etree._Element, section_start: float) -> list[Mark]:
+    marks = [
+        Mark(
+            section_start + number(mark, "sOffset", 0.0),
+            "_".join(mark.get("type", "none").split()),
+            mark.get("color"),
+            mark.get("laneChange"),
+        )
+        for mark in lane.findall("roadMark")
+    ]
+    return sorted(marks, key=lambda mark: mark.start_m)
+
+
+_UNITS = {"m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
+
+
+def _speeds(
+    elements: Iterable[etree._Element], station: str, origin: float, quality: Quality, child: str | None = None
+) -> tuple[Speed, ...]:
+    """Read limits; with `child` the station stands on an element around them, whose lack of a limit is a record too."""
+    speeds = []
+    for element in elements:
+        start = origin + number(element, station, 0.0)
+        speed = element.find(child) if child else element
+        word = "undefined" if speed is None else speed.get("max", "undefined").strip().lower()
+        if speed is None or word == "undefined":
+            speeds.append(Speed(start, None, known=False))
+        elif word in {"no limit", "nolimit", "unlimited"}:
+            speeds.append(Speed(start, None, known=True))
+        else:
+            limit = _limit(speed)
+            speeds.append(Speed(start, limit, known=True, readable=limit is not None))
+            if limit is None:
+                said = f"{word[:20]} {speed.get('unit', 'm/s')[:20]}"
+                quality.add(
+                    "invalid_speed",
+                    "warning",
+                    None,
+                    f"line {speed.sourceline}: {said} is no speed limit: taken as unknown",
+                )
+    return tuple(sorted(speeds, key=lambda s: s.start_m))
+
+
+def _limit(speed: etree._Element) -> float | None:
+    try:
+        limit = number(speed, "max") * _UNITS[speed.get("unit", "m/s")]
+    except (MalformedError, KeyError):
+        return None
+    return limit if limit > 0.0 else None
+
+
+def _connections(root: etree._Element, quality: Quality) -> Iterable[Connection]:
+    for junction in root.findall("junction"):
+        name = junction.get("id", f"in line {junction.sourceline}")
+        if junction.get("type") == "virtual":
+            message = f"junction {name} is virtual: its links in mid-road are left out"
+            quality.add("virtual_junction", "warning", name, message)
+            continue
+        for element in junction.findall("connection"):
+            try:
+                yield _connection(name, element)
+            except MalformedError as error:
+                message = f"a connection of junction {name} is left out: {error}"
+                quality.add("invalid_connection", "error", name, message)
+
+
+def _connection(junction_id: str, element: etree._Element) -> Connection:
+    contact = text(element, "contactPoint")
+    if contact not in {START, END}:
+        raise MalformedError(f"<connection> in line {element.sourceline}: contactPoint={contact!r}")
+    return Connection(
+        junction_id=junction_id,
+        incoming=text(element, "incomingRoad"),
+        connecting=element.get("connectingRoad") or text(element, "linkedRoad"),
+        contact=contact,
+        lanes=tuple((integer(link, "from"), integer(link, "to")) for link in element.findall("laneLink")),
+    )
+
+
+def spans(starts: Iterable[float], start: float, end: float) -> list[tuple[int, float, float]]:
+    """Return (record index, from, to) of the records that hold between two stations; index -1: before the first."""
+    edges = [float("-inf"), *starts, float("inf")]
+    cut = [(i - 1, max(a, start), min(b, end)) for i, (a, b) in enumerate(pairwise(edges))]
+    return [(i, a, b) for i, a, b in cut if b - a > 1e-6]

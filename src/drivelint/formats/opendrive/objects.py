@@ -1,0 +1,194 @@
+"""Things beside and on the road: where they stand and what shape they have."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from drivelint.formats.opendrive.placement import place
+from drivelint.formats.opendrive.xml import MalformedError, number, text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from lxml import etree
+
+    from drivelint.formats.opendrive.cubic import Floats
+    from drivelint.formats.opendrive.network import Network, Road
+    from drivelint.road.quality import Quality
+
+MAX_REPEATS = 10_000  # of one object
+_BAND_STEP_M = 5.0
+_BAND_WIDTH_M = 0.05  # of a fence or railing that has no width of its own
+
+_BY_TYPE = {
+    "crosswalk": "crossing", "parkingSpace": "parking_space", "obstacle": "obstacle", "barrier": "barrier",
+    "railing": "barrier", "guardRail": "barrier", "soundBarrier": "barrier", "wall": "barrier", "pole": "pole",
+    "streetLamp": "pole", "signalPole": "pole", "rail-pole": "pole", "guide-post": "pole", "tree": "tree",
+    "vegetation": "tree", "building": "building", "trafficIsland": "island", "roadMark": "marking",
+    "stopLine": "stop_line",
+}  # fmt: skip
+_BY_NAME = (
+    ("stopline_pedestrian", "marking"),  # RoadRunner's edge of a pedestrian crossing, right across the road
+    ("stopline", "stop_line"), ("stop_line", "stop_line"), ("crosswalk", "crossing"), ("zebra", "crossing"),
+    ("parking", "parking_space"), ("stencil", "marking"), ("crosshatch", "marking"), ("chevron", "marking"),
+    ("solid", "marking"), ("dashed", "marking"), ("signpost", "pole"), ("pole", "pole"), ("building", "building"),
+    ("tree", "tree"), ("island", "island"), ("barrier", "barrier"), ("fence", "barrier"), ("railing", "barrier"),
+)  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """One object in the map; the outline is (n, 2) map metres, None for a point."""
+
+    object_id: str
+    kind: str
+    name: str | None
+    subtype: str | None
+    road: Road
+    s: float
+    x: float
+    y: float
+    outline: Floats | None
+
+    def row(self) -> dict[str, Any]:
+        """Return the row of `road_object`."""
+        outline = None if self.outline is None else counter_clockwise(self.outline)
+        return {
+            "object_id": self.object_id,
+            "kind": self.kind,
+            "name": self.name,
+            "road_id": self.road.road_id,
+            "road_s_m": self.s,
+            "x_m": self.x,
+            "y_m": self.y,
+            "outline_x_m": None if outline is None else outline[:, 0].tolist(),
+            "outline_y_m": None if outline is None else outline[:, 1].tolist(),
+        }
+
+
+def counter_clockwise(outline: Floats) -> Floats:
+    """Return the corners with the inside on the left; a closing corner that repeats the first is dropped."""
+    if len(outline) > 1 and np.allclose(outline[0], outline[-1], atol=1e-6):
+        outline = outline[:-1]
+    x, y = (outline - outline[0]).T
+    area = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+    return outline if area >= -1e-6 else outline[::-1]  # a line has no sense of turning, but rounding has
+
+
+def placed_objects(net: Network, offset: tuple[float, float], quality: Quality) -> list[Placed]:
+    """Return every object, repetitions one by one; one that cannot be placed is a row of `quality`."""
+    placed: list[Placed] = []
+    for road in net.roads.values():
+        for element in road.element.iterfind("objects/object"):
+            try:
+                placed += _placed(road, element, offset)
+            except MalformedError as error:
+                message = f"object {element.get('id')} of road {road.road_id} is left out: {error}"
+                quality.add("invalid_object", "warning", road.road_id, message)
+    return sorted(placed, key=lambda p: (p.object_id, p.road.road_id, p.s, p.x, p.y))
+
+
+def kind_of_object(element: etree._Element) -> str:
+    """Return the kind of an `<object>` by its type, else by its name."""
+    kind = _BY_TYPE.get(element.get("type", ""))
+    if kind is None:
+        name = (element.get("name") or "").lower()
+        kind = next((kind for part, kind in _BY_NAME if part in name), "other")
+    return kind
+
+
+def _placed(road: Road, element: etree._Element, offset: tuple[float, float]) -> Iterator[Placed]:
+    repeats = element.findall("repeat")
+    if not repeats:
+        s, t = np.array([number(element, "s")]), np.array([number(element, "t", 0.0)])
+        yield from _instances(road, element, s, t, offset, numbered=False)
+    counted = 0
+    for repeat in repeats:
+        distance, length = number(repeat, "distance", 0.0), number(repeat, "length", 0.0)
+        start = number(repeat, "s", number(element, "s"))
+        ends = [number(repeat, end, number(element, "t", 0.0)) for end in ("tStart", "tEnd")]
+        if distance <= 0.0:
+            yield _band(road, element, repeat, offset)
+            continue
+        steps = np.arange(min(int(length / distance + 1e-6) + 1, MAX_REPEATS + 1)) * distance
+        counted += len(steps)
+        if counted > MAX_REPEATS:
+            raise MalformedError(f"it is repeated more than {MAX_REPEATS} times")
+        t = np.interp(steps, [0.0, max(length, 1e-9)], ends)
+        yield from _instances(road, element, start + steps.astype(np.float64), t, offset, numbered=True)
+
+
+def _instances(
+    road: Road, element: etree._Element, s: Floats, t: Floats, offset: tuple[float, float], *, numbered: bool
+) -> Iterator[Placed]:
+    x, y, heading = place(road, s, t, offset)
+    local = _local_outline(element)
+    on_road = _road_outline(element)
+    turned = heading + number(element, "hdg", 0.0)
+    for i in range(len(s)):
+        outline = None
+        if on_road is not None:
+            shift = np.array([s[i] - number(element, "s"), t[i] - number(element, "t", 0.0)]) if numbered else 0.0
+            corners = on_road + shift
+            outline = np.column_stack(place(road, corners[:, 0], corners[:, 1], offset)[:2])
+        elif local is not None:
+            cos, sin = np.cos(turned[i]), np.sin(turned[i])
+            outline = np.array([x[i], y[i]]) + local @ np.array([[cos, sin], [-sin, cos]])
+        name = text(element, "id") + (f"/{i}" if numbered else "")
+        yield _make(road, element, name, (float(s[i]), float(x[i]), float(y[i])), outline)
+
+
+def _make(
+    road: Road, element: etree._Element, name: str, at: tuple[float, float, float], outline: Floats | None
+) -> Placed:
+    return Placed(
+        name, kind_of_object(element), element.get("name") or None, element.get("subtype") or None, road, *at, outline
+    )
+
+
+def _band(road: Road, element: etree._Element, repeat: etree._Element, offset: tuple[float, float]) -> Placed:
+    """Return an object that runs along the road without gaps."""
+    start, length = number(repeat, "s", number(element, "s")), number(repeat, "length", 0.0)
+    if not 0.0 < length <= 1e5:
+        raise MalformedError(f"it is repeated over {length:g} m")
+    along = np.linspace(0.0, 1.0, int(np.ceil(length / _BAND_STEP_M)) + 1)
+    t0 = number(element, "t", 0.0)
+    t = np.interp(along, [0.0, 1.0], [number(repeat, "tStart", t0), number(repeat, "tEnd", t0)])
+    width = number(element, "width", 0.0)
+    half = np.interp(along, [0.0, 1.0], [number(repeat, "widthStart", width), number(repeat, "widthEnd", width)]) / 2
+    half = np.maximum(half, 0.5 * _BAND_WIDTH_M)
+    s = np.minimum(start + along * length, road.length_m)
+    right, left = (np.column_stack(place(road, s, t + side, offset)[:2]) for side in (-half, half))
+    x, y, _ = place(road, s[:1], t[:1], offset)
+    outline = np.concatenate([right, left[::-1]])
+    return _make(road, element, text(element, "id"), (float(s[0]), float(x[0]), float(y[0])), outline)
+
+
+def _corners(element: etree._Element, tag: str, axes: tuple[str, str]) -> Floats | None:
+    for path in (f"outline/{tag}", f"outlines/outline/{tag}"):
+        found = element.findall(path)
+        if found:
+            mine = [c for c in found if c.getparent() is found[0].getparent()]  # the first outline of several
+            return np.array([[number(c, axis) for axis in axes] for c in mine])
+    return None
+
+
+def _road_outline(element: etree._Element) -> Floats | None:
+    return _corners(element, "cornerRoad", ("s", "t"))
+
+
+def _local_outline(element: etree._Element) -> Floats | None:
+    """Return the corners in the object's frame: as listed, else its rectangle, else its circle; None: a point."""
+    listed = _corners(element, "cornerLocal", ("u", "v"))
+    if listed is not None:
+        return listed
+    length, width, radius = (number(element, a, 0.0) for a in ("length", "width", "radius"))
+    if length > 0.0 and width > 0.0:
+        return 0.5 * np.array([[length, width], [-length, width], [-length, -width], [length, -width]])
+    if radius > 0.0:
+        angle = np.arange(12) * (np.pi / 6)
+        return radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    return None

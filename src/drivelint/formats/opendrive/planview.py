@@ -1,0 +1,216 @@
+"""The reference line: line, arc, spiral, poly3 and paramPoly3, evaluated at many stations at once.
+
+Lines, arcs and spirals are one kind: a curvature that is linear in s. Its position is the integral of (cos, sin) of a
+quadratic heading, taken by Gauss-Legendre quadrature over panels of at most half a radian (error below 1e-12 of the
+length); constant curvature has the closed form. Polynomials are a curve c(p) with its own parameter.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from drivelint.formats.opendrive.xml import MalformedError, number
+
+if TYPE_CHECKING:
+    from lxml import etree
+
+    from drivelint.formats.opendrive.cubic import Floats
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+_BLOCK = 2**20  # nodes at a time: bounds the memory that a long spiral takes
+_MAX_TURN_RAD = 200.0  # a loop ramp turns 5 rad; more than 30 turns in one geometry is nonsense
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """The reference line at some stations: position, unit tangent, curvature, and metres of curve per metre of s."""
+
+    x: Floats
+    y: Floats
+    cos: Floats
+    sin: Floats
+    curvature: Floats
+    speed: Floats
+
+
+class Shape(Protocol):
+    """One geometry in its own frame: starts at the origin along the u axis."""
+
+    def evaluate(self, ds: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
+        """Return u, v, cos and sin of the heading, curvature, speed, each (n,), at distances `ds` from the start."""
+        ...
+
+
+@dataclass(frozen=True)
+class Clothoid:
+    """Line, arc or spiral: curvature linear in s."""
+
+    start: float  # 1/m
+    rate: float  # 1/m^2
+
+    def evaluate(self, ds: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
+        """See Shape."""
+        heading = (self.start + 0.5 * self.rate * ds) * ds
+        u, v = self._constant(ds) if self.rate == 0.0 else self._integral(ds)
+        return u, v, np.cos(heading), np.sin(heading), self.start + self.rate * ds, np.ones_like(ds)
+
+    def _constant(self, ds: Floats) -> tuple[Floats, Floats]:
+        # sinc keeps full precision where the curvature is tiny, and is the straight line where it is 0
+        half = 0.5 * self.start * ds
+        chord = ds * np.sinc(half / np.pi)
+        return chord * np.cos(half), chord * np.sin(half)
+
+    def _integral(self, ds: Floats) -> tuple[Floats, Floats]:
+        turn = np.abs(self.start * ds) + np.abs(0.5 * self.rate * ds * ds)
+        panels = max(1, int(np.ceil(2.0 * float(turn.max(initial=0.0)))))
+        at = (np.arange(panels)[:, None] + 0.5 * (_NODES + 1.0)).ravel() / panels  # fractions of ds
+        weight = np.tile(0.5 * _WEIGHTS, panels) / panels
+        u, v = np.empty_like(ds), np.empty_like(ds)
+        block = max(1, _BLOCK // len(at))
+        for i in range(0, len(ds), block):
+            part = ds[i : i + block]
+            q = part[:, None] * at
+            phi = (self.start + 0.5 * self.rate * q) * q
+            u[i : i + block], v[i : i + block] = part * (np.cos(phi) @ weight), part * (np.sin(phi) @ weight)
+        return u, v
+
+
+@dataclass(frozen=True, eq=False)
+class Polynomial:
+    """A planar cubic (u(p), v(p)); `table` maps arc length to p where p is not the arc length itself."""
+
+    u: Floats  # (4,) ascending powers
+    v: Floats
+    table: tuple[Floats, Floats] | None  # (arc length, p), ascending
+    stretch: float = 1.0  # metres of curve per metre of s, where the table is used
+
+    def evaluate(self, ds: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
+        """See Shape."""
+        p = ds if self.table is None else self._parameter(ds * self.stretch)
+        (u, du, ddu), (v, dv, ddv) = _powers(self.u, p), _powers(self.v, p)
+        norm = np.hypot(du, dv)
+        if not (norm > 1e-9).all():
+            raise MalformedError("a polynomial geometry stands still: its derivative is zero")
+        speed = norm if self.table is None else np.full_like(ds, self.stretch)
+        return u, v, du / norm, dv / norm, (du * ddv - dv * ddu) / norm**3, speed
+
+    def _parameter(self, ds: Floats) -> Floats:
+        assert self.table is not None  # noqa: S101 - the caller's branch
+        length, p_at = self.table
+        k = np.clip(np.searchsorted(length, ds, side="right") - 1, 0, len(length) - 2)
+        p = np.interp(ds, length, p_at)
+        for _ in range(3):
+            p = p - (length[k] + _arc(self.u, self.v, p_at[k], p) - ds) / _rate(self.u, self.v, p)
+        return p
+
+
+def _powers(coef: Floats, p: Floats) -> tuple[Floats, Floats, Floats]:
+    a, b, c, d = coef
+    return ((d * p + c) * p + b) * p + a, (3 * d * p + 2 * c) * p + b, 6 * d * p + 2 * c
+
+
+def _rate(u: Floats, v: Floats, p: Floats) -> Floats:
+    rate = np.hypot(_powers(u, p)[1], _powers(v, p)[1])
+    return np.maximum(rate, 1e-9)
+
+
+def _arc(u: Floats, v: Floats, p0: Floats, p1: Floats) -> Floats:
+    half = 0.5 * (p1 - p0)
+    nodes = p0[:, None] + half[:, None] * (_NODES + 1.0)
+    return half * (_rate(u, v, nodes) @ _WEIGHTS)
+
+
+def by_arc_length(u: Floats, v: Floats, p_max: float, length: float | None = None) -> Polynomial:
+    """Return the curve by arc length; with `length`, p_max is reached there even if the curve is not as long."""
+    p_at = np.linspace(0.0, p_max, 257)
+    along = np.concatenate([[0.0], np.cumsum(_arc(u, v, p_at[:-1], p_at[1:]))])
+    if not along[-1] > 1e-6:
+        raise MalformedError("a polynomial geometry has no length")
+    return Polynomial(u, v, (along, p_at), 1.0 if length is None else float(along[-1]) / length)
+
+
+@dataclass(frozen=True, eq=False)
+class PlanView:
+    """The geometries of one road, in order of station."""
+
+    s: Floats
+    x: Floats
+    y: Floats
+    heading: Floats
+    length: Floats
+    shapes: tuple[Shape, ...]
+
+    @property
+    def end(self) -> float:
+        """Station at which the last geometry ends."""
+        return float(self.s[-1] + self.length[-1])
+
+    def evaluate(self, s: Floats, at: Floats) -> Line:
+        """Return the line at stations `s` (n,), ascending, taking the geometries that hold at stations `at` (n,)."""
+        k = np.clip(np.searchsorted(self.s, at, side="right") - 1, 0, len(self.s) - 1)
+        ds = s - self.s[k]
+        inside = np.clip(ds, 0.0, self.length[k])
+        local = np.empty((6, len(s)))
+        for i in np.unique(k):
+            mine = k == i
+            local[:, mine] = self.shapes[i].evaluate(inside[mine])
+        u, v, cos, sin, curvature, speed = local
+        beyond = ds - inside  # a hole in the stations is bridged straight on; its far end is reported as a gap
+        u, v, curvature = u + beyond * cos, v + beyond * sin, np.where(np.abs(beyond) > 1e-3, 0.0, curvature)
+        c, n = np.cos(self.heading)[k], np.sin(self.heading)[k]
+        return Line(
+            self.x[k] + c * u - n * v, self.y[k] + n * u + c * v, c * cos - n * sin, n * cos + c * sin, curvature, speed
+        )
+
+    def joints(self) -> tuple[Floats, Floats]:
+        """Return distance (m) and turn (rad) between each geometry's end and the next one's start, both (n - 1,)."""
+        if len(self.s) < 2:
+            return np.zeros(0), np.zeros(0)
+        end = self.evaluate(self.s[1:], self.s[:-1])
+        turn = np.arctan2(end.sin, end.cos) - self.heading[1:]
+        return np.hypot(end.x - self.x[1:], end.y - self.y[1:]), np.abs(np.arctan2(np.sin(turn), np.cos(turn)))
+
+
+def planview(element: etree._Element | None) -> PlanView:
+    """Read `<planView>`; `MalformedError` for a geometry that is missing, unknown or impossible."""
+    found = [] if element is None else sorted(element.findall("geometry"), key=lambda g: number(g, "s"))
+    found = [g for g in found if number(g, "length") > 0.0]
+    if not found:
+        raise MalformedError("the road has no <geometry> with a length")
+    s, x, y, heading, length = np.array([[number(g, a) for a in ("s", "x", "y", "hdg", "length")] for g in found]).T
+    return PlanView(s, x, y, heading, length, tuple(_shape(g) for g in found))
+
+
+def _shape(geometry: etree._Element) -> Shape:
+    length = number(geometry, "length")
+    kind = next(iter(geometry), None)
+    if kind is None:
+        raise MalformedError(f"<geometry> in line {geometry.sourceline} is empty")
+    match kind.tag:
+        case "line":
+            return Clothoid(0.0, 0.0)
+        case "arc":
+            return _clothoid(length, number(kind, "curvature"), number(kind, "curvature"))
+        case "spiral":
+            return _clothoid(length, number(kind, "curvStart"), number(kind, "curvEnd"))
+        case "poly3":
+            u, v = np.array([0.0, 1.0, 0.0, 0.0]), np.array([number(kind, c) for c in "abcd"])
+            return by_arc_length(u, v, length)
+        case "paramPoly3":
+            u, v = (np.array([number(kind, c + axis) for c in "abcd"]) for axis in "UV")
+            if kind.get("pRange") == "arcLength":
+                return Polynomial(u, v, None)
+            return by_arc_length(u, v, 1.0, length)
+        case other:
+            raise MalformedError(f"<geometry> in line {geometry.sourceline} is of an unknown kind: {other}")
+
+
+def _clothoid(length: float, start: float, end: float) -> Clothoid:
+    if max(abs(start), abs(end)) * length > _MAX_TURN_RAD:
+        raise MalformedError(
+            f"a geometry of {length:g} m with curvatures {start:g} and {end:g} 1/m turns beyond {_MAX_TURN_RAD:g} rad"
+        )
+    return Clothoid(start, (end - start) / length)

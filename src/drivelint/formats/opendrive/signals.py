@@ -1,0 +1,182 @@
+"""Signs, lights and painted signals: one row for every lanelet that each holds for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from drivelint.formats.opendrive.placement import place_one
+from drivelint.formats.opendrive.xml import MalformedError, integer, number
+from drivelint.road.signcodes import kind_of, turns_of
+
+if TYPE_CHECKING:
+    from lxml import etree
+
+    from drivelint.formats.opendrive.lanelet import Lanelet
+    from drivelint.formats.opendrive.network import Network, Road
+    from drivelint.road.quality import Quality
+
+MIN_LINE_M = 1.0  # a stop line said to be narrower than this does not say how far it goes across
+MIN_OWN_SHARE = 0.25  # of a stop line's width, on lanes of its orientation: less is on the others' lanes
+OFF_ROAD_M = 1.0  # a signal further beyond its road's end than this is a mistake worth a warning
+Rows = list[dict[str, Any]]
+
+
+def signal_rows(net: Network, lanes: list[Lanelet], offset: tuple[float, float], quality: Quality) -> tuple[Rows, Rows]:
+    """Return rows of `traffic_signal`, and those of `stop_line` that signals paint on the road (StVO 294)."""
+    reader = _Reader(net, offset, quality)
+    for lane in lanes:
+        if lane.drivable:
+            reader.lanes.setdefault(lane.road.road_id, []).append(lane)
+    for road in net.roads.values():
+        for listing in road.element.iterfind("signals/*"):
+            if listing.tag in {"signal", "signalReference"}:
+                reader.read(road, listing)
+    reader.report()
+    signals = _unique(reader.signals, ("signal_id", "road_id", "road_s_m", "lanelet_id", "type", "subtype"))
+    return signals, _unique(reader.stop_lines, ("stop_line_id", "lanelet_id", "lane_s_m"))
+
+
+def _unique(rows: Rows, key: tuple[str, ...]) -> Rows:
+    """Return the rows ordered by their key, each once."""
+    found = {tuple("" if row[k] is None else row[k] for k in key): row for row in rows}
+    return [found[k] for k in sorted(found)]
+
+
+class _Reader:
+    """Collects signals; what cannot be placed is a row of `quality`."""
+
+    def __init__(self, net: Network, offset: tuple[float, float], quality: Quality) -> None:
+        self.offset, self.quality = offset, quality
+        self.lanes: dict[str, list[Lanelet]] = {}  # drivable ones by road
+        self.defined = {
+            signal.get("id", ""): (road, signal)
+            for road in net.roads.values()
+            for signal in road.element.iterfind("signals/signal")
+        }
+        self.signals: Rows = []
+        self.stop_lines: Rows = []
+        self.contradictions: list[str] = []
+
+    def read(self, road: Road, listing: etree._Element) -> None:
+        """Read a `<signal>`, or a `<signalReference>` to one that stands elsewhere."""
+        name = listing.get("id", "")
+        home, signal = (road, listing) if listing.tag == "signal" else self.defined.get(name, (road, None))
+        try:
+            self._read(road, listing, home, signal)
+        except MalformedError as error:
+            message = f"{listing.tag} {name} of road {road.road_id} is left out: {error}"
+            self.quality.add("invalid_signal", "error", road.road_id, message)
+
+    def _read(self, road: Road, listing: etree._Element, home: Road, signal: etree._Element | None) -> None:
+        if signal is None:
+            raise MalformedError("it refers to a signal that is not defined")
+        said = number(listing, "s")
+        s = min(max(said, 0.0), road.length_m)
+        if abs(said - s) > OFF_ROAD_M:
+            message = f"signal {listing.get('id')} is listed at {said:.1f} m of a road of {road.length_m:.1f} m"
+            self.quality.add("signal_off_road", "warning", road.road_id, message)
+        lanes = [lane for lane in self.lanes.get(road.road_id, []) if _at(lane, s)]
+        x, y = _position(home, signal, self.offset)
+        kind = kind_of(signal.get("country", ""), signal.get("type", ""), signal.get("name", ""))
+        turns = turns_of(signal.get("type", ""), signal.get("subtype", "")) if kind == "traffic_light" else None
+        value = 0.0 if signal.get("value") in {None, "", "None"} else number(signal, "value")
+        self.signals += [
+            {
+                "signal_id": listing.get("id", ""),
+                "kind": kind,
+                "country": (signal.get("country") or "").lower() or None,
+                "type": signal.get("type"),
+                "subtype": signal.get("subtype"),
+                "value": value if value > 0.0 else None,  # writers say -1 or 0 where there is nothing to say
+                "unit": signal.get("unit"),
+                "dynamic": signal.get("dynamic") == "yes",
+                "turns": turns,
+                "road_id": road.road_id,
+                "road_s_m": s,
+                "lanelet_id": lane.lanelet_id,
+                "lane_s_m": lane.at(s),
+                "x_m": x,
+                "y_m": y,
+            }
+            for lane in self._held(listing, lanes)
+        ]
+        if kind == "stop_line":
+            self.stop_lines += [
+                {
+                    "stop_line_id": listing.get("id", ""),
+                    "lanelet_id": lane.lanelet_id,
+                    "lane_s_m": lane.at(s),
+                    "source": "signal",
+                }
+                for lane in self._stopped(listing, signal, s, lanes)
+            ]
+
+    def _held(self, listing: etree._Element, lanes: list[Lanelet]) -> list[Lanelet]:
+        """Return the lanelets that a signal holds for.
+
+        By direction (orientation + or -: traffic along or against the reference line) among the lanes of its validity,
+        if it has any. Where the two contradict each other (RoadRunner's always do: its orientation is the way that the
+        sign faces) the validity is taken, since it names the lanes.
+        """
+        valid = [sorted((integer(v, "fromLane"), integer(v, "toLane"))) for v in listing.findall("validity")]
+        if valid:
+            lanes = [lane for lane in lanes if any(low <= lane.lane.number <= high for low, high in valid)]
+        along = {"+": 1, "-": -1}.get(listing.get("orientation", "none"))
+        held = [lane for lane in lanes if along is None or lane.along == along or lane.bidirectional]
+        if valid and lanes and not held:
+            self.contradictions.append(listing.get("id", ""))
+            return lanes
+        return held
+
+    def _stopped(
+        self, listing: etree._Element, signal: etree._Element, s: float, lanes: list[Lanelet]
+    ) -> list[Lanelet]:
+        """Return the lanelets that a painted stop line holds for.
+
+        Those of its validity, if it has any; else those of its orientation's direction that it lies across by its place
+        and width; where it lies across none of them, all of that direction: many a line is placed on the reference line
+        and drawn beside it. A line that lies across lanes of the other direction only holds for those: its orientation
+        is then the way that it faces.
+        """
+        held = self._held(listing, lanes)
+        width = number(signal, "width", 0.0)
+        oriented = listing.get("orientation") in {"+", "-"}
+        if listing.find("validity") is not None or (oriented and width < MIN_LINE_M):
+            return held
+        t, half = number(listing, "t", 0.0), max(0.5 * width, 1e-3)
+        ranges = [(lane, *lane.lateral_range(s)) for lane in lanes]
+        shared = [(lane, min(high, t + half) - max(low, t - half), high - low) for lane, low, high in ranges]
+        across = [lane for lane, common, wide in shared if common > min(0.5 * wide, half)]
+        if not across or any(lane in held for lane in across):
+            return [lane for lane in across if lane in held] or held
+        if sum(common for lane, common, _ in shared if lane in held and common > 0.0) > MIN_OWN_SHARE * width:
+            return held
+        self.contradictions.append(listing.get("id", ""))
+        return across
+
+    def report(self) -> None:
+        """Report contradictions, and signals that neither hold for a lane themselves nor by a reference."""
+        if self.contradictions:
+            message = (
+                f"the orientation of signals contradicts their lanes (the first: {self.contradictions[0]}): lanes taken"
+            )
+            self.quality.add("signal_orientation", "warning", None, message, len(self.contradictions))
+        placed = {row["signal_id"] for row in self.signals}
+        for name, (road, _) in self.defined.items():
+            if name not in placed:
+                message = f"signal {name} of road {road.road_id} holds for no lane that vehicles drive on"
+                self.quality.add("signal_without_lane", "info", road.road_id, message)
+
+
+def _position(road: Road, signal: etree._Element, offset: tuple[float, float]) -> tuple[float, float]:
+    """Return where the signal stands: its own inertial position, if it has one, else beside its road."""
+    inertial = signal.find("positionInertial")
+    if inertial is not None:
+        return number(inertial, "x") + offset[0], number(inertial, "y") + offset[1]
+    return place_one(road, number(signal, "s"), number(signal, "t", 0.0), offset)
+
+
+def _at(lane: Lanelet, s: float) -> bool:
+    """Tell whether the lanelet holds a road station; of two that meet there the later one does."""
+    end = lane.strip.end_m
+    return lane.strip.start_m <= s < end or (s >= end >= lane.road.length_m - 1e-3)

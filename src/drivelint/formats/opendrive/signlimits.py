@@ -1,0 +1,84 @@
+"""Speed limits that only signs give: from the sign along its lane to the next sign or junction.
+
+Beyond a junction nothing is known: nations differ in whether the limit goes on there. Where the map records a limit of the
+lane or of the road, that is taken, and no sign is looked at.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from drivelint.formats.opendrive.lanelet import Lanelet
+    from drivelint.formats.opendrive.links import Link
+
+Rows = list[dict[str, Any]]
+BEGINS = frozenset({"speed_limit", "speed_zone"})
+ENDS = BEGINS | {
+    "speed_limit_end", "speed_zone_end", "restrictions_end", "town_entrance", "town_exit", "motorway", "motorway_end",
+    "expressway", "expressway_end",
+}  # fmt: skip
+_UNITS = {"m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
+
+
+class _Stretch(NamedTuple):
+    """What is left to go along: from where on a lanelet, under which limit (m/s; None: it cannot be read)."""
+
+    lanelet_id: str
+    start_m: float
+    limit_mps: float | None
+
+
+def sign_limits(lanes: Sequence[Lanelet], joined: Sequence[Link], signals: Rows, recorded: Rows) -> Rows:
+    """Return the rows of `speed_limit` that signs give for lanelets without a recorded one."""
+    by_id = {lane.lanelet_id: lane for lane in lanes}
+    silent = by_id.keys() - {row["lanelet_id"] for row in recorded}
+    after: dict[str, list[str]] = {}
+    for link in joined:
+        after.setdefault(link.source.lanelet_id, []).append(link.target.lanelet_id)
+    posts: dict[str, list[float]] = {}
+    for row in signals:
+        if row["kind"] in ENDS:
+            posts.setdefault(row["lanelet_id"], []).append(row["lane_s_m"])
+    todo = [_Stretch(row["lanelet_id"], row["lane_s_m"], _limit(row)) for row in signals if row["kind"] in BEGINS]
+    rows: Rows = []
+    seen: set[_Stretch] = set()
+    while todo:
+        stretch = todo.pop()
+        if stretch in seen or stretch.lanelet_id not in silent:
+            continue
+        seen.add(stretch)
+        lane = by_id[stretch.lanelet_id]
+        posted = min((s for s in posts.get(stretch.lanelet_id, ()) if s > stretch.start_m), default=None)
+        end = lane.length_m if posted is None else posted
+        if end > stretch.start_m:
+            rows.append(_row(stretch, end))
+        if posted is None:
+            todo += _beyond(stretch, after, by_id, posts)
+    return sorted(rows, key=lambda r: (r["lanelet_id"], r["s_start_m"], r["s_end_m"], r["limit_mps"] or 0.0))
+
+
+def _beyond(
+    stretch: _Stretch, after: Mapping[str, list[str]], by_id: Mapping[str, Lanelet], posts: Mapping[str, list[float]]
+) -> list[_Stretch]:
+    """Return the lanelets on which the limit goes on."""
+    return [
+        _Stretch(name, 0.0, stretch.limit_mps)
+        for name in after.get(stretch.lanelet_id, ())
+        if by_id[name].road.junction_id is None and 0.0 not in posts.get(name, ())
+    ]
+
+
+def _row(stretch: _Stretch, end_m: float) -> dict[str, Any]:
+    return {
+        "lanelet_id": stretch.lanelet_id, "s_start_m": stretch.start_m, "s_end_m": end_m, "limit_mps": stretch.limit_mps,
+        "source": "unread" if stretch.limit_mps is None else "sign",
+    }  # fmt: skip
+
+
+def _limit(row: Mapping[str, Any]) -> float | None:
+    """Return the limit on a sign (m/s); None: it has no number or no unit, or it changes."""
+    unit = _UNITS.get(row["unit"] or "")
+    return None if unit is None or row["value"] is None or row["dynamic"] else float(row["value"]) * unit

@@ -1,0 +1,68 @@
+"""XML as untrusted input: no entities, no network, no DTD; numbers are finite or refused."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from drivelint.errors import MapError
+from drivelint.formats import markup
+
+if TYPE_CHECKING:
+    from lxml import etree
+
+    from drivelint.road.contract import MapSource
+
+
+class MalformedError(ValueError):
+    """An element that cannot be understood; caught where the road or lane concerned is named."""
+
+
+def parse(source: MapSource) -> etree._Element:
+    """Return the root element, tags without namespaces; `MapError` for a DOCTYPE or malformed XML, naming the line."""
+    try:
+        return markup.parse(source.content)
+    except markup.RefusedError as error:
+        raise MapError(f"map {source.name} {error}") from None
+
+
+LIMIT = 1e9  # no length, coordinate or coefficient of a road is larger; beyond it arithmetic loses the millimetres
+
+
+def number(element: etree._Element, name: str, default: float | None = None) -> float:
+    """Return an attribute as a finite number, or the default if it is absent."""
+    said = element.get(name)
+    if said is None:
+        if default is None:
+            raise MalformedError(f"<{element.tag}> in line {element.sourceline} has no attribute {name}")
+        return default
+    try:
+        value = float(said)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise MalformedError(f"{_where(element, name)} is not a finite number")
+    if abs(value) > LIMIT:
+        raise MalformedError(f"{_where(element, name)} is larger than anything on a road")
+    return value
+
+
+def integer(element: etree._Element, name: str) -> int:
+    """Return an attribute as an integer."""
+    value = number(element, name)
+    if value != int(value):
+        raise MalformedError(f"{_where(element, name)} is not an integer")
+    return int(value)
+
+
+def text(element: etree._Element, name: str) -> str:
+    """Return an attribute that has to be there."""
+    value = element.get(name)
+    if value is None:
+        raise MalformedError(f"<{element.tag}> in line {element.sourceline} has no attribute {name}")
+    return value
+
+
+def _where(element: etree._Element, name: str) -> str:
+    said = (element.get(name) or "")[:40]
+    return f"<{element.tag}> in line {element.sourceline}: {name}={said!r}"

@@ -1,0 +1,254 @@
+"""OSI messages to arrays: a batch of ground truth or sensor views decoded at once by a pruned schema."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import ptars
+import pyarrow as pa
+import pyarrow.compute as pc
+from google.protobuf.message import DecodeError
+
+from drivelint.drive.trace import Finding
+from drivelint.errors import TraceError
+from drivelint.formats.osi import heads as osi_heads
+from drivelint.formats.osi import schema as osi_schema
+from drivelint.formats.osi.words import Bulbs, bulbs_of, child, state_codes, words_of
+from drivelint.formats.protobuf import descriptors
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from drivelint.formats.mcap.reader import Packet
+    from drivelint.formats.protobuf.descriptors import Tree
+
+GROUND_TRUTH = "osi3.GroundTruth"
+SENSOR_VIEW = "osi3.SensorView"
+
+_XY: Tree = {"x": None, "y": None}
+_ID: Tree = {"value": None}
+_TIMESTAMP: Tree = {"seconds": None, "nanos": None}
+_LAMPS: Tree = {"indicator_state": None, "brake_light_state": None, "head_light": None, "high_beam": None}
+_TRUTH: Tree = {
+    "timestamp": _TIMESTAMP,
+    "host_vehicle_id": _ID,
+    "moving_object": {
+        "id": _ID,
+        "type": None,
+        "base": {
+            "dimension": {"length": None, "width": None, "height": None},
+            "position": {**_XY, "z": None},
+            "orientation": {"yaw": None},
+            "velocity": _XY,
+            "acceleration": _XY,
+        },
+        "vehicle_classification": {"type": None, "light_state": _LAMPS},
+    },
+    "traffic_light": {
+        "id": _ID,
+        "classification": {"color": None, "mode": None},
+        "source_reference": {"type": None, "identifier": None},
+    },
+}
+TREES: dict[str, Tree] = {
+    GROUND_TRUTH: _TRUTH,
+    SENSOR_VIEW: {"timestamp": _TIMESTAMP, "host_vehicle_id": _ID, "global_ground_truth": _TRUTH},
+}
+VECTORS: dict[str, dict[str, str]] = {
+    "position": {"x_m": "x", "y_m": "y", "z_m": "z"},
+    "orientation": {"yaw_rad": "yaw"},
+    "velocity": {"vx_mps": "x", "vy_mps": "y"},
+    "acceleration": {"ax_mps2": "x", "ay_mps2": "y"},
+    "dimension": {"length_m": "length", "width_m": "width", "height_m": "height"},
+}
+"""Vector of `moving_object.base` -> our column -> its coordinate."""
+_LANES = ("lane_boundary", "lane", "reference_line", "logical_lane_boundary", "logical_lane")
+_NEVER_ZERO = frozenset({"position", "dimension"})
+"""Vectors that say nothing without any coordinate, even of a writer that leaves zeros out."""
+
+
+@dataclass(frozen=True)
+class Frames:
+    """A decoded batch. Per frame: the message's time and whether it says one, the host's id (None: not said).
+
+    Per object: its frame, id (`known`: it has one), columns of `NUMBERS` and `SIZES` (NaN: unknown), codes. `left_out`: the
+    coordinates that a vector does not have and that a writer which leaves zeros out may mean as 0, by column. `says_zero`: some
+    coordinate is written as 0, so that this is no such writer.
+    """
+
+    t_ns: NDArray[np.int64]
+    timed: NDArray[np.bool_]
+    hosts: list[int | None]
+    frame: NDArray[np.intp]
+    ids: NDArray[np.uint64]
+    nameless: int
+    numbers: dict[str, NDArray[np.float64]]
+    codes: dict[str, NDArray[np.int8]]
+    not_finite: NDArray[np.bool_]
+    left_out: dict[str, NDArray[np.bool_]]
+    says_zero: bool
+    bulbs: Bulbs
+
+
+class Decoder:
+    """Decodes messages of one schema record."""
+
+    def __init__(self, path: Path, schema_id: int, name: str, descriptor_set: bytes) -> None:
+        """Prune the schema. Errors: `TraceError` where it lacks the fields without which nothing can be judged."""
+        self._path, self._name, self.schema_id = path, name, schema_id
+        self.lights: Mapping[str, str] = {}  # of the head: which bulbs are one light
+        types = descriptors.parse(path, name, descriptor_set)
+        descriptor = descriptors.pruned(path, types, name, TREES[name])
+        self._handler = ptars.HandlerPool([descriptor.file]).get_for_message(descriptor)
+        truth = _inner(self._handler.schema(), "global_ground_truth") if name == SENSOR_VIEW else self._handler.schema()
+        base = _inner(_inner(truth, "moving_object"), "base")
+        if _inner(base, "position") is None or _inner(_inner(truth, "moving_object"), "id") is None:
+            raise TraceError(
+                f"{path}: the schema {name} in the log has no moving_object with id and base.position: not OSI 3"
+            )
+        self._words = words_of(types, GROUND_TRUTH)
+
+    def frames(self, packets: list[Packet]) -> Frames:
+        """Decode a batch. Errors: `TraceError` naming topic and byte of the first message that cannot be decoded."""
+        message = self._decode(packets)
+        truth = child(message, "global_ground_truth") if self._name == SENSOR_VIEW else message
+        t_ns, timed = _times(truth)
+        hosts = _hosts(truth)
+        if self._name == SENSOR_VIEW:
+            outer_t, outer_timed = _times(message)
+            t_ns, timed = np.where(timed, t_ns, outer_t), timed | outer_timed
+            hosts = [inner if inner is not None else outer for inner, outer in zip(hosts, _hosts(message), strict=True)]
+        lists = child(truth, "moving_object")
+        objects = lists.flatten()
+        counts = pc.fill_null(pc.list_value_length(lists), 0).to_numpy(zero_copy_only=False)
+        base = child(objects, "base")
+        numbers, left_out, not_finite = {}, {}, np.zeros(len(objects), np.bool_)
+        says_zero = False
+        for vector, columns in VECTORS.items():
+            values = child(base, vector)
+            present = values.is_valid().to_numpy(zero_copy_only=False)
+            for column, coordinate in columns.items():
+                numbers[column], said = _coordinate(values, coordinate)
+                left_out[column] = present & ~said
+                not_finite |= said & np.isnan(numbers[column])
+                says_zero = says_zero or bool((numbers[column] == 0.0).any())
+            if vector in _NEVER_ZERO:
+                empty = np.logical_and.reduce([left_out[column] for column in columns])
+                left_out |= {column: left_out[column] & ~empty for column in columns}
+        left_out = {column: rows for column, rows in left_out.items() if rows.any()}
+        ids = child(objects, "id")
+        frame = np.repeat(np.arange(len(packets)), counts)
+        number = pc.fill_null(child(ids, "value").cast(pa.uint64()), 0).to_numpy(zero_copy_only=False)
+        codes = state_codes(self._words, objects)
+        if ids.null_count:
+            known = ids.is_valid().to_numpy(zero_copy_only=False)
+            frame, number, not_finite = frame[known], number[known], not_finite[known]
+            numbers = {name: column[known] for name, column in numbers.items()}
+            left_out = {name: rows[known] for name, rows in left_out.items()}
+            codes = {name: column[known] for name, column in codes.items()}
+        bulbs = bulbs_of(self._words, child(truth, "traffic_light"), self.lights)
+        return Frames(
+            t_ns, timed, hosts, frame, number, ids.null_count, numbers, codes, not_finite, left_out, says_zero, bulbs
+        )
+
+    def _decode(self, packets: list[Packet]) -> pa.StructArray:
+        try:
+            rows = self._handler.list_to_record_batch([packet.data for packet in packets])
+        except ValueError as error:
+            self._blame(packets)
+            raise TraceError(f"{self._path}: {len(packets)} messages cannot be decoded together: {error}") from error
+        return pa.StructArray.from_arrays(rows.columns, fields=list(rows.schema))
+
+    def _blame(self, packets: list[Packet]) -> None:
+        """Find the message that spoilt a batch."""
+        for packet in packets:
+            try:
+                self._handler.list_to_record_batch([packet.data])
+            except ValueError as error:
+                raise malformed(self._path, packet, error) from error
+
+
+class Head(NamedTuple):
+    """What the first message alone says: lanes as a message of their own, the geo reference, lanes that have no width.
+
+    `lights`: see `osi_heads.heads`.
+    """
+
+    lanes: bytes | None = None
+    reference: str | None = None
+    findings: tuple[Finding, ...] = ()
+    lights: Mapping[str, str] = MappingProxyType({})
+
+
+def head_of(data: bytes, name: str) -> Head:
+    """Return lanes and geo reference (a PROJ string) of a ground truth, or of the one in a sensor view.
+
+    The lanes go with their boundaries, signs, lights and road markings. Lanes without boundaries have no width, and nothing can be
+    placed on them: they are told, and make no map.
+    """
+    try:
+        outer = osi_schema.message(name.removeprefix("osi3.")).FromString(data)
+    except DecodeError:
+        return Head()  # whether the message is damaged, who reads its objects says
+    truth = outer.global_ground_truth if name == SENSOR_VIEW else outer
+    reference = str(truth.proj_string) or None
+    lights = osi_heads.heads(truth.traffic_light)
+    if not (truth.lane_boundary or truth.logical_lane_boundary):
+        n = len(truth.lane) + len(truth.logical_lane)
+        message = f"lanes in the log: {n}, all of them centre lines without boundaries: without a width they make no map: give --map"
+        return Head(None, reference, (Finding("lanes_without_width", "info", message, n),) if n else (), lights)
+    if not (truth.lane or truth.logical_lane):
+        return Head(None, reference, lights=lights)
+    lanes, beside = osi_schema.message("GroundTruth")(), osi_schema.message("GroundTruth")()
+    for each in _LANES:
+        getattr(lanes, each).extend(getattr(truth, each))
+    beside.traffic_sign.extend(truth.traffic_sign)
+    beside.traffic_light.extend(osi_heads.named(bulb, lights) for bulb in truth.traffic_light)
+    beside.road_marking.extend(truth.road_marking)
+    # a map is known by the tag that it begins with, so that lanes stand before what stands beside them
+    content = b"".join(part.SerializeToString(deterministic=True) for part in (lanes, beside))
+    return Head(content, reference, lights=lights)
+
+
+def malformed(path: Path, packet: Packet, error: ValueError) -> TraceError:
+    """Say which message cannot be decoded."""
+    where = f"topic {packet.channel.topic!r}, log time {packet.log_time_ns} ns, record at byte {packet.offset}"
+    return TraceError(f"{path}: {where}: {error}: record or copy the log again")
+
+
+def _inner(fields: pa.Schema | pa.DataType | None, name: str) -> pa.DataType | None:
+    """Return the struct type of a field, or that of its items; None where there is no such field."""
+    if fields is None or fields.get_field_index(name) < 0:
+        return None
+    kind = fields.field(fields.get_field_index(name)).type
+    kind = kind.value_type if pa.types.is_list(kind) else kind
+    return kind if pa.types.is_struct(kind) else None
+
+
+def _coordinate(vector: pa.Array, name: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Return a coordinate, NaN where it is not said or not finite, and where it is said."""
+    values = child(vector, name).cast(pa.float64())
+    said = values.is_valid().to_numpy(zero_copy_only=False)
+    numbers = pc.fill_null(values, float("nan")).to_numpy(zero_copy_only=False)
+    return np.where(np.isfinite(numbers), numbers, np.nan), said
+
+
+def _times(message: pa.Array) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    stamp = child(message, "timestamp")
+    seconds, nanos = (
+        pc.fill_null(child(stamp, name).cast(pa.int64()), 0).to_numpy(zero_copy_only=False)
+        for name in ("seconds", "nanos")
+    )
+    return seconds * 1_000_000_000 + nanos, stamp.is_valid().to_numpy(zero_copy_only=False)
+
+
+def _hosts(message: pa.Array) -> list[int | None]:
+    host = child(message, "host_vehicle_id")
+    value = pc.fill_null(child(host, "value").cast(pa.uint64()), 0)
+    return list(pc.if_else(host.is_valid(), value, pa.scalar(None, pa.uint64())).to_pylist())

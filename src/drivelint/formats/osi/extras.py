@@ -1,0 +1,192 @@
+"""What OSI has no field for, carried in a converted log beside its messages, written and read here.
+
+Two MCAP metadata records. `drivelint.trace`: where the log is from, the map offset and sensor range that its mapping said,
+what holds in the drive, what was found when it was read. `drivelint.actors`: OSI id -> the row of `actor` in JSON, since
+OSI's ids are numbers and its classes and hosts are fewer than ours. One channel of JSON messages, `drivelint.DeclaredEvent`,
+for declared events.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Final
+
+import msgspec
+import numpy as np
+import pyarrow as pa
+
+from drivelint.drive import conditions
+from drivelint.drive.trace import CLASSES, SIZES, Finding
+from drivelint.errors import TraceError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+    from pathlib import Path
+
+    from drivelint.drive.trace import Recording, Trace
+
+TRACE: Final = "drivelint.trace"
+ACTORS: Final = "drivelint.actors"
+EVENT: Final = "drivelint.DeclaredEvent"
+OF_THE_EGO: Final = frozenset({"no_ego", "ego_count", "no_indicator", "no_brake_light"})
+"""Findings about whoever was the ego: found anew for whoever is, and so not carried."""
+OPTIONAL: Final = ("z_m",)
+"""Coordinates that OSI has no way to leave out of a vector; named in the record where no state has them."""
+
+
+class _Actor(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):
+    actor_id: str
+    actor_class: str | None = None
+    length_m: float | None = None
+    width_m: float | None = None
+    height_m: float | None = None
+    is_ego: bool = False
+
+
+class _Said(msgspec.Struct, frozen=True, kw_only=True):
+    """The record `drivelint.trace`: MCAP keeps texts, each of these is JSON. Unknown keys are of newer versions."""
+
+    map_offset_m: tuple[float, float] | None = None
+    sensor_range_m: float | None = None
+    utc_start_ns: int | None = None
+    unknown: tuple[str, ...] = ()
+    conditions: dict[str, str] = {}
+    quality: tuple[Finding, ...] = ()
+
+
+class Event(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):
+    """One message of the channel of declared events: a row of `declared_event`."""
+
+    t_ns: int
+    actor_id: str
+    event: str
+    value: str | None = None
+
+
+# planned here, under the import's lock: see ingest.mapping
+PLANNED: Final = tuple(msgspec.json.Decoder(kind) for kind in (_Actor, _Said, Event))
+EVENT_SCHEMA: Final = msgspec.json.encode(msgspec.json.schema(Event), order="sorted")
+
+
+def records(trace: Trace, numbers: Mapping[str, int]) -> dict[str, dict[str, str]]:
+    """Return the metadata records of a trace; `numbers`: actor id -> OSI id."""
+    log = trace.tables["data_log"].to_pylist()[0]
+    states = trace.tables["actor_state"]
+    said: dict[str, Any] = {
+        "source": log["file_name"],
+        "source_sha256": log["sha256"],
+        "source_format": log["format"],
+        "quality": findings(trace).drop_columns("drive_id").to_pylist(),
+        "unknown": [name for name in OPTIONAL if states[name].null_count == states.num_rows],
+    }
+    holds = {r["condition"]: r["value"] for r in trace.tables["drive_condition"].to_pylist() if r["source"] == "trace"}
+    if holds:
+        said["conditions"] = holds
+    if trace.map_offset is not None:
+        said["map_offset_m"] = trace.map_offset
+    for name in ("sensor_range_m", "utc_start_ns"):
+        if log[name] is not None:
+            said[name] = log[name]
+    actors = trace.tables["actor"].drop_columns("drive_id").to_pylist()
+    return {
+        TRACE: {name: msgspec.json.encode(value).decode() for name, value in said.items()},
+        ACTORS: {str(numbers[row["actor_id"]]): msgspec.json.encode(row).decode() for row in actors},
+    }
+
+
+def findings(trace: Trace) -> pa.Table:
+    """Return the rows of `quality` that a converted log carries: those that do not depend on who is the ego."""
+    rows = trace.tables["quality"]
+    return rows.filter(pa.array([check not in OF_THE_EGO for check in rows["check_id"].to_pylist()], pa.bool_()))
+
+
+def apply(path: Path, metadata: Mapping[str, Mapping[str, str]], recording: Recording) -> None:
+    """Give a recording of OSI messages what its metadata records add. Errors: `TraceError` where they do not fit it."""
+    if TRACE in metadata:
+        _apply_trace(path, _read(path, TRACE, metadata[TRACE], _Said), recording)
+    if ACTORS in metadata:
+        rows = {
+            number: _read(path, f"{ACTORS}, actor {number}", text, _Actor) for number, text in metadata[ACTORS].items()
+        }
+        _apply_actors(path, rows, recording)
+
+
+def events(path: Path, messages: Sequence[bytes]) -> pa.Table | None:
+    """Return declared events as rows; None for no message. Errors: `TraceError` for one that cannot be read."""
+    if not messages:
+        return None
+    try:
+        rows = [msgspec.json.decode(message, type=Event) for message in messages]
+    except (msgspec.ValidationError, msgspec.DecodeError) as error:
+        raise TraceError(f"{path}: a declared event cannot be read ({error}): convert the log again") from error
+    return pa.table(
+        {
+            "t_ns": pa.array([row.t_ns for row in rows], pa.int64()),
+            **{
+                name: pa.array([getattr(row, name) for row in rows], pa.string())
+                for name in ("actor_id", "event", "value")
+            },
+        }
+    )
+
+
+def conditions_of(path: Path, rows: Iterable[tuple[str | None, str | None]]) -> dict[str, str]:
+    """Return what a log says of its drive in any case, condition -> word.
+
+    Errors: `TraceError` for what is not understood.
+    """
+    found: dict[str, str] = {}
+    for given in rows:
+        if given[0] is None or given[1] is None:
+            raise TraceError(f"{path}: a condition of the drive without a name or a value: give both")
+        name, word = conditions.spelled(given[0], given[1])
+        if wrong := conditions.unknown(name) or conditions.problem(name, word):
+            raise TraceError(f"{path}: condition of the drive: {wrong}")
+        if found.setdefault(name, word) != word:
+            raise TraceError(f"{path}: the drive's {name} is both {found[name]!r} and {word!r}: give one")
+    return found
+
+
+def _apply_trace(path: Path, said: _Said, recording: Recording) -> None:
+    recording.conditions = conditions_of(path, said.conditions.items())
+    if said.map_offset_m is not None:
+        dx, dy = recording.map_offset = said.map_offset_m
+        recording.notes.append(f"the log moves the map by ({dx:+g}, {dy:+g}) m")
+    if said.sensor_range_m is not None:
+        recording.sensor_range_m = said.sensor_range_m
+    if said.utc_start_ns is not None:
+        recording.utc_start_ns = said.utc_start_ns
+    for name in set(said.unknown) & set(OPTIONAL):
+        recording.states.numbers[name] = np.full(len(recording.states), np.nan)
+    recording.findings += said.quality
+
+
+def _apply_actors(path: Path, rows: Mapping[str, _Actor], recording: Recording) -> None:
+    names = [rows[number].actor_id if number in rows else number for number in recording.states.ids]
+    if len(set(names)) < len(names) or len({row.actor_id for row in rows.values()}) < len(rows):
+        raise TraceError(f"{path}: the metadata record {ACTORS} gives two actors one name: convert the log again")
+    for row in rows.values():
+        if row.actor_class is not None and row.actor_class not in CLASSES:
+            raise TraceError(f"{path}: the metadata record {ACTORS} has the class {row.actor_class!r}: not one of ours")
+    recording.states.ids = names
+    known = sorted(rows.values(), key=lambda row: row.actor_id)
+    columns = ("actor_id", "actor_class", *SIZES, "is_ego")
+    recording.actors = pa.table({name: [getattr(row, name) for row in known] for name in columns})
+    recording.ego_ids = [row.actor_id for row in known if row.is_ego]
+
+
+def _read(path: Path, what: str, text: Mapping[str, str] | str, kind: type[Any]) -> Any:
+    try:
+        if isinstance(text, str):
+            value = msgspec.json.decode(text, type=kind)
+        else:
+            value = msgspec.convert({key: msgspec.json.decode(item) for key, item in text.items()}, kind)
+    except (msgspec.ValidationError, msgspec.DecodeError) as error:
+        raise TraceError(
+            f"{path}: the metadata record {what} cannot be read ({error}): convert the log again"
+        ) from error
+    if isinstance(value, _Said) and not all(map(math.isfinite, value.map_offset_m or ())):
+        raise TraceError(
+            f"{path}: the metadata record {what} has the map offset {value.map_offset_m}: convert the log again"
+        )
+    return value

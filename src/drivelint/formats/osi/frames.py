@@ -1,0 +1,241 @@
+"""Ground-truth messages from whole columns: moving objects of one shape are laid out together, byte for byte.
+
+A moving object's bytes depend on its values only where a number stands; what is present and how long its id is decides the
+rest. So objects that agree in this *shape* are one table of bytes, into which numpy writes the columns of numbers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from drivelint.drive.trace import BRAKE_LIGHTS, CLASSES, INDICATORS
+from drivelint.formats.osi.schema import ENUMS, OPEN_DRIVE_REFERENCE, VERSION
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+ROWS: Final = 1 << 14
+"""Objects laid out at a time: enough to be quick, few enough to need only some tens of MB."""
+_VARINT, _FIXED64, _BYTES = 0, 1, 2
+_VECTORS: Final[dict[str, tuple[int, tuple[tuple[int, str], ...]]]] = {
+    "dimension": (1, ((1, "length_m"), (2, "width_m"), (3, "height_m"))),
+    "position": (2, ((1, "x_m"), (2, "y_m"), (3, "z_m"))),
+    "orientation": (3, ((3, "yaw_rad"),)),
+    "velocity": (4, ((1, "vx_mps"), (2, "vy_mps"))),
+    "acceleration": (5, ((1, "ax_mps2"), (2, "ay_mps2"))),
+}
+"""Vector of `MovingObject.base` -> its field number and coordinates (field number, our column)."""
+_OPTIONAL: Final = frozenset({"length_m", "width_m", "height_m", "z_m"})
+"""Coordinates that may be left out of a vector; without any other one the whole vector is."""
+_ALL: Final = tuple(column for _, parts in _VECTORS.values() for _, column in parts)
+
+
+def _names(message: str, prefix: str, words: Mapping[str, str]) -> dict[str, int]:
+    return {word: ENUMS[message][f"{prefix}_{name}"] for word, name in words.items()}
+
+
+_KIND: Final = ENUMS["MovingObject.Type"]
+_VEHICLE: Final = _names(
+    "MovingObject.VehicleClassification.Type",
+    "TYPE",
+    {
+        "car": "MEDIUM_CAR", "van": "DELIVERY_VAN", "truck": "HEAVY_TRUCK", "bus": "BUS", "motorcycle": "MOTORBIKE",
+        "bicycle": "BICYCLE", "trailer": "TRAILER", "vehicle": "UNKNOWN",
+    },
+)  # fmt: skip
+_TYPE: Final = {
+    "pedestrian": _KIND["TYPE_PEDESTRIAN"],
+    "animal": _KIND["TYPE_ANIMAL"],
+    "object": _KIND["TYPE_OTHER"],
+    **dict.fromkeys(_VEHICLE, _KIND["TYPE_VEHICLE"]),
+}
+_LIGHT_STATE = "MovingObject.VehicleClassification.LightState"
+_INDICATOR: Final = _names(
+    f"{_LIGHT_STATE}.IndicatorState",
+    "INDICATOR_STATE",
+    {"off": "OFF", "left": "LEFT", "right": "RIGHT", "hazard": "WARNING"},
+)
+_BRAKE: Final = _names(
+    f"{_LIGHT_STATE}.BrakeLightState", "BRAKE_LIGHT_STATE", {"off": "OFF", "on": "NORMAL", "strong": "STRONG"}
+)
+_COLOR: Final = ENUMS["TrafficLight.Classification.Color"]
+_MODE: Final = ENUMS["TrafficLight.Classification.Mode"]
+_BULBS: Final[dict[str | None, tuple[tuple[str, str], ...]]] = {
+    "red": (("RED", "CONSTANT"),),
+    "red_amber": (("RED", "CONSTANT"), ("YELLOW", "CONSTANT")),
+    "amber": (("YELLOW", "CONSTANT"),),
+    "green": (("GREEN", "CONSTANT"),),
+    "flashing": (("YELLOW", "FLASHING"),),
+    "off": (("YELLOW", "OFF"),),
+    None: (("UNKNOWN", "UNKNOWN"),),
+}
+
+
+@dataclass(frozen=True)
+class Objects:
+    """Moving objects as columns, one row each: OSI id, the columns of `_VECTORS` (NaN: unknown), codes (-1: unknown).
+
+    `codes`: `actor_class`, `indicator` and `brake_light` as indices into the words of ingest. `heights`: the log has
+    heights, so that z is written as NaN where it is not known (left out, it would read as 0).
+    """
+
+    number: NDArray[np.uint64]
+    values: Mapping[str, NDArray[np.float64]]
+    codes: Mapping[str, NDArray[np.int8]]
+    heights: bool
+
+    def __len__(self) -> int:
+        return len(self.number)
+
+
+@dataclass(frozen=True)
+class Slot:
+    """Where a number goes in an object's bytes: `name` is a column or a code, or `number`, the id."""
+
+    name: str
+    size: int
+
+
+Part = bytes | Slot
+
+
+def varint(value: int) -> bytes:
+    """Return a non-negative integer in base 128, least significant group first."""
+    out = bytearray()
+    while value > 0x7F:
+        out.append(value & 0x7F | 0x80)
+        value >>= 7
+    return bytes([*out, value])
+
+
+def _tag(number: int, kind: int) -> bytes:
+    return varint(number << 3 | kind)
+
+
+def nested(number: int, content: bytes) -> bytes:
+    """Return a field that holds a message or text."""
+    return _tag(number, _BYTES) + varint(len(content)) + content
+
+
+def whole(number: int, value: int) -> bytes:
+    """Return a field that holds a non-negative integer or an enumeration."""
+    return _tag(number, _VARINT) + varint(value)
+
+
+def _nested(number: int, parts: Sequence[Part]) -> list[Part]:
+    size = sum(len(part) if isinstance(part, bytes) else part.size for part in parts)
+    return [_tag(number, _BYTES) + varint(size), *parts]
+
+
+def head(t_ns: int, host: int | None) -> bytes:
+    """Return the beginning of a ground truth: version, time stamp and, where there is one, the host vehicle's id."""
+    version = b"".join(whole(number, value) for number, value in enumerate(VERSION, 1))
+    seconds, nanos = divmod(t_ns, 1_000_000_000)
+    # a negative int64 is written as its two's complement
+    stamp = whole(1, seconds % (1 << 64)) + whole(2, nanos)
+    return nested(1, version) + nested(2, stamp) + (b"" if host is None else nested(3, whole(1, host)))
+
+
+def traffic_light(signal_id: str, state: str | None, numbers: Sequence[int]) -> bytes:
+    """Return a signal's state as fields of a ground truth: a bulb per lit colour, each naming the signal of the map.
+
+    `numbers`: an id for each of its bulbs, at most two.
+    """
+    reference = nested(5, nested(2, OPEN_DRIVE_REFERENCE.encode()) + nested(3, signal_id.encode()))
+    bulbs = (
+        nested(1, whole(1, number))
+        + nested(3, whole(1, _COLOR[f"COLOR_{color}"]) + whole(3, _MODE[f"MODE_{mode}"]))
+        + reference
+        for number, (color, mode) in zip(numbers, _BULBS[state], strict=False)
+    )
+    return b"".join(nested(7, bulb) for bulb in bulbs)
+
+
+def moving_objects(objects: Objects) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
+    """Return the bytes of all objects in order, each a field of a ground truth, and where each begins (n + 1 offsets)."""
+    shapes, shape = np.unique(_shape(objects), return_inverse=True)
+    layouts = [_layout(int(key)) for key in shapes]
+    sizes = np.array([sum(map(_size, layout)) for layout in layouts], np.int64)
+    starts = np.concatenate([[0], np.cumsum(sizes[shape])]) if len(objects) else np.zeros(1, np.int64)
+    data = np.empty(int(starts[-1]), np.uint8)
+    for k, layout in enumerate(layouts):
+        rows = np.flatnonzero(shape == k)
+        for first in range(0, len(rows), ROWS):
+            some = rows[first : first + ROWS]
+            data[starts[some][:, None] + np.arange(sizes[k])] = _filled(layout, objects, some)
+    return data, starts
+
+
+def _shape(objects: Objects) -> NDArray[np.int64]:
+    """Return a number per object that says which coordinates and lights it has, and how many bytes its id takes."""
+    key = np.ones(len(objects), np.int64)
+    key += sum((objects.number >> np.uint64(7 * k) > 0).astype(np.int64) for k in range(1, 10))
+    for i, column in enumerate(_ALL, 4):
+        known = np.isfinite(objects.values[column])
+        key |= (known | (column == "z_m" and objects.heights)).astype(np.int64) << i
+    for i, code in enumerate(("indicator", "brake_light"), 4 + len(_ALL)):
+        key |= (objects.codes[code] >= 0).astype(np.int64) << i
+    vehicle = np.array([*(word in _VEHICLE for word in CLASSES), False])[objects.codes["actor_class"]]
+    return key | vehicle.astype(np.int64) << (6 + len(_ALL))
+
+
+def _layout(key: int) -> list[Part]:
+    """Return the parts of an object of one shape, from the tag of the field that holds it on."""
+    known = {column for i, column in enumerate(_ALL, 4) if key >> i & 1}
+    parts: list[Part] = _nested(1, [_tag(1, _VARINT), Slot("number", key & 15)])
+    base: list[Part] = []
+    for number, coordinates in _VECTORS.values():
+        must = {column for _, column in coordinates} - _OPTIONAL
+        written = [(n, column) for n, column in coordinates if column in known]
+        if written and must <= known:
+            fields = [part for n, column in written for part in (_tag(n, _FIXED64), Slot(column, 8))]
+            base += _nested(number, fields)
+    parts += _nested(2, base)
+    parts += [_tag(3, _VARINT), Slot("type", 1)]
+    if not (lit := key >> (4 + len(_ALL))):
+        return _nested(5, parts)
+    classification: list[Part] = [_tag(1, _VARINT), Slot("vehicle", 1)]
+    if lit & 3:
+        lights: list[Part] = [_tag(1, _VARINT), Slot("indicator", 1)] if lit & 1 else []
+        lights += [_tag(7, _VARINT), Slot("brake_light", 1)] if lit & 2 else []
+        classification += _nested(2, lights)
+    parts += _nested(6, classification)
+    return _nested(5, parts)
+
+
+def _size(part: Part) -> int:
+    return len(part) if isinstance(part, bytes) else part.size
+
+
+def _filled(layout: Sequence[Part], objects: Objects, rows: NDArray[np.intp]) -> NDArray[np.uint8]:
+    """Return the bytes of objects of one shape, a row each."""
+    template = b"".join(part if isinstance(part, bytes) else bytes(part.size) for part in layout)
+    table = np.tile(np.frombuffer(template, np.uint8), (len(rows), 1))
+    at = 0
+    for part in layout:
+        if isinstance(part, Slot):
+            table[:, at : at + part.size] = _numbers(part, objects, rows)
+        at += _size(part)
+    return table
+
+
+def _numbers(slot: Slot, objects: Objects, rows: NDArray[np.intp]) -> NDArray[np.uint8]:
+    if slot.name == "number":
+        groups = objects.number[rows][:, None] >> (np.arange(slot.size, dtype=np.uint64) * np.uint64(7))
+        more = np.where(np.arange(slot.size) < slot.size - 1, 0x80, 0).astype(np.uint64)
+        return (groups & np.uint64(0x7F) | more).astype(np.uint8)
+    if slot.name in objects.values:
+        return np.ascontiguousarray(objects.values[slot.name][rows], "<f8").view(np.uint8).reshape(-1, 8)
+    words, known, code = {
+        "type": (CLASSES, _TYPE, "actor_class"),
+        "vehicle": (CLASSES, _VEHICLE, "actor_class"),
+        "indicator": (INDICATORS, _INDICATOR, "indicator"),
+        "brake_light": (BRAKE_LIGHTS, _BRAKE, "brake_light"),
+    }[slot.name]
+    table = np.array([*(known.get(word, 0) for word in words), 0], np.uint8)  # the last is for code -1, unknown
+    return table[objects.codes[code][rows]][:, None]

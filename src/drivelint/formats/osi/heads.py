@@ -1,0 +1,64 @@
+"""Traffic lights of OSI, which are single bulbs, as the lights that drivers see.
+
+A bulb that refers to an OpenDRIVE signal belongs to that one. Of others, those that hold for the same lanes, show the same icon,
+face the same way and hang beside each other are one light.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.formats.osi.schema import LIGHT_REFERENCE, OPEN_DRIVE_REFERENCE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+_BESIDE_M: Final = 0.6  # from the middle of a bulb to that of the next one
+_TURNED_RAD: Final = 0.2
+
+
+def heads(bulbs: Iterable[Any]) -> dict[str, str]:
+    """Return the id of each bulb that belongs to a light of several -> that light's id, the smallest of its bulbs' ids."""
+    rows: dict[Any, list[Any]] = {}
+    for bulb in bulbs:
+        said = bulb.classification
+        refers = any(ref.type == OPEN_DRIVE_REFERENCE and ref.identifier for ref in bulb.source_reference)
+        lanes = (
+            tuple(sorted(i.value for i in said.assigned_lane_id)),
+            tuple(sorted(each.assigned_lane_id.value for each in said.logical_lane_assignment)),
+        )
+        if not refers and bulb.base.HasField("position"):
+            rows.setdefault((lanes, said.icon), []).append(bulb)
+    found: dict[str, str] = {}
+    for row in rows.values():
+        waiting = sorted(row, key=lambda bulb: bulb.id.value)
+        while waiting:
+            light = [waiting.pop(0)]
+            for bulb in light:  # grows while it is gone through
+                near = [each for each in waiting if _beside(bulb, each)]
+                light += near
+                waiting = [each for each in waiting if each not in near]
+            if len(light) > 1:
+                found |= {str(bulb.id.value): str(light[0].id.value) for bulb in light}
+    return found
+
+
+def named(bulb: Any, names: Mapping[str, str]) -> Any:
+    """Return a bulb for a map: with its light's id, if it belongs to one of `names`, and without what it shows just now."""
+    kept = type(bulb).FromString(bulb.SerializeToString())
+    for field in ("color", "mode"):
+        kept.classification.ClearField(field)
+    light = names.get(str(bulb.id.value))
+    if light is not None:
+        reference = kept.source_reference.add()
+        reference.type = LIGHT_REFERENCE
+        reference.identifier.append(light)
+    return kept
+
+
+def _beside(a: Any, b: Any) -> bool:
+    p, q = a.base.position, b.base.position
+    apart = math.dist((p.x, p.y, p.z), (q.x, q.y, q.z))
+    turned = math.remainder(a.base.orientation.yaw - b.base.orientation.yaw, math.tau)
+    return apart <= _BESIDE_M and abs(turned) <= _TURNED_RAD

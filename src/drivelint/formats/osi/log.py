@@ -1,0 +1,162 @@
+"""A trace as an MCAP log of ASAM OSI ground truth: any OSI tool reads the messages, drivelint also what they cannot say."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, BinaryIO, Final
+
+import msgspec
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+from mcap.writer import CompressionType, Writer
+
+from drivelint.drive.trace import BRAKE_LIGHTS, CLASSES, INDICATORS, NUMBERS, SIZES
+from drivelint.formats.osi import extras as carried
+from drivelint.formats.osi.frames import Objects, head, moving_objects, nested, traffic_light
+from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, VERSION, descriptor_set
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from drivelint.drive.trace import Trace
+    from drivelint.road.contract import MapSource
+
+LIBRARY: Final = "drivelint convert"
+TOPIC: Final = "ground_truth"
+MAP_TOPIC: Final = "ground_truth_map"
+EVENT_TOPIC: Final = "declared_event"
+BATCH_STATES: Final = 200_000
+"""States encoded at a time, cut between frames: bounds the memory that a long log needs."""
+_MAX_ID: Final = (1 << 64) - 1
+
+
+def write(sink: BinaryIO, trace: Trace, road: MapSource | None) -> int:
+    """Write the log and return the number of ground-truth messages: one per time stamp of any actor or signal.
+
+    The same trace and map give the same bytes. `road` must be UTF-8, as OSI's text fields are. A vector of which x or y is
+    not known is left out as a whole.
+    """
+    numbers = osi_ids(trace.tables["actor"]["actor_id"].to_pylist())
+    writer = Writer(sink, compression=CompressionType.ZSTD, enable_crcs=True, enable_data_crcs=True)
+    writer.start(library=LIBRARY)
+    version = ".".join(map(str, VERSION))
+    bounds = dict.fromkeys(("version", "min_osi_version", "max_osi_version"), version)
+    writer.add_metadata("net.asam.osi.trace", {**bounds, "description": trace.path.name})
+    for name, content in carried.records(trace, numbers).items():
+        writer.add_metadata(name, content)
+    described = {"net.asam.osi.trace.channel.osi_version": version}
+    truth = writer.register_channel(
+        TOPIC, "protobuf", writer.register_schema(GROUND_TRUTH, "protobuf", descriptor_set()), described
+    )
+    earliest = _earliest(trace)
+    if road is not None:
+        schema = writer.register_schema(OPEN_DRIVE, "protobuf", descriptor_set())
+        channel = writer.register_channel(MAP_TOPIC, "protobuf", schema, described)
+        message = nested(1, road.name.encode()) + nested(2, road.content)
+        writer.add_message(channel, max(earliest, 0), message, max(earliest, 0))
+    shift = min(earliest, 0)  # log times are unsigned; the messages' own are not
+    count = 0
+    for t_ns, message in _frames(trace, numbers):
+        writer.add_message(truth, t_ns - shift, message, t_ns - shift)
+        count += 1
+    _events(writer, trace, shift)
+    writer.finish()  # type: ignore[no-untyped-call]
+    return count
+
+
+def osi_ids(actors: list[str]) -> dict[str, int]:
+    """Return actor id -> OSI id: the number that the id is, where all are numbers, else 1, 2, ... in order of the ids."""
+    if all(name.isascii() and name.isdigit() and str(int(name)) == name and int(name) <= _MAX_ID for name in actors):
+        return {name: int(name) for name in actors}
+    return {name: number for number, name in enumerate(sorted(actors), 1)}
+
+
+def _earliest(trace: Trace) -> int:
+    times = [pc.min(trace.tables[name]["t_ns"]).as_py() for name in ("actor_state", "signal_state", "declared_event")]
+    return int(min(t for t in times if t is not None))
+
+
+def _frames(trace: Trace, numbers: dict[str, int]) -> Iterator[tuple[int, bytes]]:
+    """Yield time and message of every frame, in order of time."""
+    states = trace.tables["actor_state"]
+    t_ns = states["t_ns"].to_numpy()
+    lights = _lights(trace.tables["signal_state"])
+    order = np.argsort(t_ns, kind="stable")  # within a frame by actor, as the table is
+    times = np.unique(np.concatenate([t_ns, np.fromiter(lights, np.int64, len(lights))]))
+    first = np.searchsorted(t_ns[order], times)
+    last = np.append(first[1:], len(order))
+    actor, columns, codes = _columns(trace, numbers)
+    host = min(
+        (numbers[row["actor_id"]] for row in trace.tables["actor"].to_pylist() if row["is_ego"]),
+        key=str,
+        default=None,
+    )
+    heights = not bool(np.isnan(columns["z_m"]).all())
+    begin = 0
+    while begin < len(times):
+        end = max(int(np.searchsorted(last, first[begin] + BATCH_STATES, side="right")), begin + 1)
+        rows = order[first[begin] : last[end - 1]]
+        objects = Objects(
+            actor[rows],
+            {name: values[rows] for name, values in columns.items()},
+            {name: words[rows] for name, words in codes.items()},
+            heights,
+        )
+        data, starts = moving_objects(objects)
+        content = data.tobytes()
+        for k in range(begin, end):
+            a, b = starts[first[k] - first[begin]], starts[last[k] - first[begin]]
+            t = int(times[k])
+            yield t, b"".join((head(t, host), content[a:b], *lights.get(t, ())))
+        begin = end
+
+
+def _columns(
+    trace: Trace, numbers: dict[str, int]
+) -> tuple[NDArray[np.uint64], dict[str, NDArray[np.float64]], dict[str, NDArray[np.int8]]]:
+    """Return each state's OSI id, its numbers and sizes (NaN: unknown) and its codes (-1: unknown)."""
+    states, actors = trace.tables["actor_state"], trace.tables["actor"]
+    row = pc.index_in(states["actor_id"], value_set=actors["actor_id"].combine_chunks()).to_numpy()
+    ids = np.array([numbers[name] for name in actors["actor_id"].to_pylist()], np.uint64)
+    columns = {name: _floats(states[name]) for name in NUMBERS}
+    columns |= {name: _floats(actors[name])[row] for name in SIZES}
+    codes = {
+        "actor_class": _codes(actors["actor_class"], CLASSES)[row],
+        "indicator": _codes(states["indicator"], INDICATORS),
+        "brake_light": _codes(states["brake_light"], BRAKE_LIGHTS),
+    }
+    return ids[row], columns, codes
+
+
+def _floats(column: pa.ChunkedArray) -> NDArray[np.float64]:
+    return np.asarray(pc.fill_null(column, float("nan")).to_numpy(), np.float64)
+
+
+def _codes(column: pa.ChunkedArray, words: tuple[str, ...]) -> NDArray[np.int8]:
+    found = pc.index_in(column, value_set=pa.array(words, pa.string()))
+    return np.asarray(pc.fill_null(found, -1).to_numpy(), np.int8)
+
+
+def _lights(signals: pa.Table) -> dict[int, list[bytes]]:
+    """Return time -> the traffic lights of that frame. Signals are few; actor states never come this way."""
+    place = {name: 2 * k + 1 for k, name in enumerate(sorted(set(signals["signal_id"].to_pylist())))}
+    encoded: dict[tuple[str, Any], bytes] = {}
+    frames: dict[int, list[bytes]] = {}
+    for row in signals.select(["t_ns", "signal_id", "state"]).to_pylist():
+        key = (row["signal_id"], row["state"])
+        if key not in encoded:
+            encoded[key] = traffic_light(*key, (place[key[0]], place[key[0]] + 1))
+        frames.setdefault(row["t_ns"], []).append(encoded[key])
+    return frames
+
+
+def _events(writer: Writer, trace: Trace, shift: int) -> None:
+    rows = trace.tables["declared_event"].drop_columns("drive_id").to_pylist()
+    if not rows:
+        return
+    schema = writer.register_schema(carried.EVENT, "jsonschema", carried.EVENT_SCHEMA)
+    channel = writer.register_channel(EVENT_TOPIC, "json", schema)
+    for row in rows:
+        writer.add_message(channel, row["t_ns"] - shift, msgspec.json.encode(row), row["t_ns"] - shift)

@@ -1,0 +1,271 @@
+"""Signs, lights and road markings of an OSI trace, on the lanes that it assigns them to; painted lines on those they lie across."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+
+from drivelint.formats.osi import map_kinds as kinds
+from drivelint.formats.osi.schema import LIGHT_REFERENCE, OPEN_DRIVE_REFERENCE
+from drivelint.road.signcodes import kind_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from drivelint.road.boundary_lanes import BoundedLane
+    from drivelint.road.quality import Quality
+
+    Floats = NDArray[np.float64]
+    Row = dict[str, Any]
+
+_ON_ROAD_M = 1.0  # what is painted lies no further than this above or below the lane
+_ACROSS = 0.7  # sine of the least angle between a stop line and its lane
+
+
+def read(
+    truth: Any,
+    lanes: Sequence[BoundedLane],
+    covers: Mapping[int, Sequence[int]],
+    offset: tuple[float, float],
+    quality: Quality,
+) -> dict[str, list[Row]]:
+    """Return the rows of traffic_signal, stop_line and crossing. `covers`: physical lane -> logical lanes in its place."""
+    road = _Road(lanes, covers, np.array(offset))
+    signals = [row for sign in truth.traffic_sign for row in _sign(sign, road, quality)]
+    signals += [row for bulbs in _heads(truth.traffic_light).items() for row in _light(*bulbs, road, quality)]
+    stops: list[Row] = []
+    crossings: list[Row] = []
+    for mark in truth.road_marking:
+        said = mark.classification
+        if said.is_out_of_service:
+            continue
+        if not np.isfinite(_outline(mark, road)).all():
+            message = f"road marking {mark.id.value} is left out: the log does not say where it lies"
+            quality.add("road_marking_without_place", "warning", None, message)
+        elif said.type == kinds.SYMBOL and said.traffic_main_sign_type == kinds.ZEBRA:
+            crossings += _zebra(mark, road)
+        elif (said.type == kinds.SYMBOL and said.traffic_main_sign_type == kinds.STOP_SIGN) or _code(
+            said
+        ) == "stop_line":
+            stops += _stop_line(mark, road, quality)
+    return {
+        "traffic_signal": sorted(signals, key=lambda r: (r["signal_id"], r["type"] or "", r["lanelet_id"])),
+        "stop_line": sorted(stops, key=lambda r: (r["stop_line_id"], r["lanelet_id"])),
+        "crossing": sorted(crossings, key=lambda r: (r["crossing_id"], r["lanelet_id"])),
+    }
+
+
+@dataclass(frozen=True)
+class _Road:
+    """The lanes of the map."""
+
+    lanes: Sequence[BoundedLane]
+    covers: Mapping[int, Sequence[int]]
+    offset: Floats
+
+    def place(self, base: Any) -> Floats | None:
+        """Return where something stands, x and y on the map and the height; None: the log does not say it."""
+        at = np.array([base.position.x + self.offset[0], base.position.y + self.offset[1], base.position.z])
+        return at if base.HasField("position") and np.isfinite(at).all() else None
+
+    def assigned(self, said: Any, base: Any) -> list[BoundedLane]:
+        """Return the lanes that a sign, light or marking is assigned to; of the logical lanes on a physical one those beside it."""
+        by_id = {lane.lanelet_id: lane for lane in self.lanes}
+        names = [str(each.assigned_lane_id.value) for each in said.logical_lane_assignment]
+        found = [by_id[name] for name in names if name in by_id]
+        if found:
+            return _once(found)
+        for ref in said.assigned_lane_id:
+            if ref.value in self.covers:
+                held = [by_id[str(name)] for name in self.covers[ref.value] if str(name) in by_id]
+                found += _facing(base, self._beside(held, self.place(base)))
+            elif str(ref.value) in by_id:
+                found.append(by_id[str(ref.value)])
+        return _once(found)
+
+    def _beside(self, lanes: list[BoundedLane], stands: Floats | None) -> list[BoundedLane]:
+        """Return the lanes that begin before and end after a place, or else the nearest ones; all where it is not known."""
+        if stands is None:
+            return lanes
+        place = stands[:2]
+        ends = {lane.lanelet_id: _station(lane, place) for lane in lanes}
+        inside = [lane for lane in lanes if 0.0 < ends[lane.lanelet_id] < lane.line.s[-1]]
+        if inside or not lanes:
+            return inside
+        away = [float(np.hypot(*(lane.line.centre - place).T).min()) for lane in lanes]
+        return [lane for lane, d in zip(lanes, away, strict=True) if d <= min(away) + 1e-6]
+
+
+def _once(lanes: list[BoundedLane]) -> list[BoundedLane]:
+    return sorted({lane.lanelet_id: lane for lane in lanes}.values(), key=lambda lane: lane.lanelet_id)
+
+
+def _facing(base: Any, lanes: list[BoundedLane]) -> list[BoundedLane]:
+    """Return the lanes whose traffic sees the front of a sign, if there are any: its x axis points towards who reads it."""
+    if not np.isfinite([base.orientation.roll, base.orientation.pitch, base.orientation.yaw]).all():
+        return lanes
+    normal = rotation(base)[:2, 0]
+    if not (base.HasField("orientation") and np.hypot(*normal) >= _ACROSS):
+        return lanes
+    seen = [lane for lane in lanes if float(np.dot(normal, lane.line.tangent[-1])) < 0]
+    return seen or lanes
+
+
+def rotation(base: Any) -> Floats:
+    """Return the axes (columns) of something that is turned by roll, pitch and yaw, in this order, in the frame of the road."""
+    roll, pitch, yaw = base.orientation.roll, base.orientation.pitch, base.orientation.yaw
+    cr, sr, cp, sp, cy, sy = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch), np.cos(yaw), np.sin(yaw)
+    return np.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr],
+        ]
+    )
+
+
+def _station(lane: BoundedLane, place: Floats) -> float:
+    return float(shapely.line_locate_point(shapely.LineString(lane.line.centre), shapely.Point(place)))
+
+
+def _code(said: Any) -> str | None:
+    return kind_of(said.country, said.code, "") if said.country and said.code else None
+
+
+def _sign(sign: Any, road: _Road, quality: Quality) -> Iterable[Row]:
+    said, base = sign.main_sign.classification, sign.main_sign.base
+    if said.is_out_of_service:
+        return []
+    lanes = road.assigned(said, base)
+    if not lanes:
+        message = f"traffic sign {sign.id.value} is assigned to no lane of the map: nobody knows for whom it holds"
+        quality.add("signal_without_lane", "warning", None, message)
+    row = {
+        "signal_id": str(sign.id.value), "kind": kinds.SIGNS.get(said.type) or _code(said),
+        "country": said.country.lower() or None if said.code else "osi", "type": said.code or str(said.type),
+        "subtype": said.sub_code or None, "value": said.value.value if said.value.value > 0 else None,
+        "unit": kinds.UNITS.get(said.value.value_unit) if said.value.value > 0 else None,
+        "dynamic": said.variability in kinds.CHANGING, "turns": None,
+    }  # fmt: skip
+    return [_placed(row, lane, road.place(base)) for lane in lanes]
+
+
+def _heads(bulbs: Iterable[Any]) -> dict[str, list[Any]]:
+    """Return signal id -> its bulbs that are in service, named as the states of the log are."""
+    heads: dict[str, list[Any]] = {}
+    for bulb in bulbs:
+        named = {ref.type: ref.identifier[0] for ref in reversed(bulb.source_reference) if ref.identifier}
+        name = named.get(OPEN_DRIVE_REFERENCE) or named.get(LIGHT_REFERENCE) or str(bulb.id.value)
+        if not bulb.classification.is_out_of_service:
+            heads.setdefault(name, []).append(bulb)
+    return heads
+
+
+def _light(name: str, bulbs: Sequence[Any], road: _Road, quality: Quality) -> Iterable[Row]:
+    lanes = _once([lane for bulb in bulbs for lane in road.assigned(bulb.classification, bulb.base)])
+    if not lanes:
+        message = f"traffic light {name} is assigned to no lane of the map: nobody knows for whom it holds"
+        quality.add("signal_without_lane", "warning", None, message)
+    icons = {int(bulb.classification.icon) for bulb in bulbs}
+    arrows = icons - {kinds.FULL}
+    turns = {turn for icon in arrows or icons for turn in kinds.TURNS.get(icon, ())}
+    row = {
+        "signal_id": name, "kind": next((kinds.LIGHTS[icon] for icon in sorted(icons) if icon in kinds.LIGHTS), None),
+        "country": "osi", "type": None, "subtype": None, "value": None, "unit": None, "dynamic": True,
+        "turns": sorted(turns) if turns and icons <= kinds.TURNS.keys() else None,
+    }  # fmt: skip
+    place = next((at for bulb in bulbs if (at := road.place(bulb.base)) is not None), None)
+    return [_placed(row, lane, place) for lane in lanes]
+
+
+def _placed(row: Row, lane: BoundedLane, place: Floats | None) -> Row:
+    """Return the row of a signal for one lane; where it stands is the lane's end if the log does not say it."""
+    end = float(lane.line.s[-1])
+    at = lane.line.centre[-1] if place is None else place[:2]
+    s = end if place is None else _station(lane, at)
+    return {
+        **row, "road_id": lane.road_id, "road_s_m": s if lane.along > 0 else end - s, "lanelet_id": lane.lanelet_id,
+        "lane_s_m": s, "x_m": float(at[0]), "y_m": float(at[1]),
+    }  # fmt: skip
+
+
+def _outline(mark: Any, road: _Road) -> Floats:
+    """Return the eight corners (8, 2) of a marking's box on the map; NaN where the log does not say them."""
+    middle = road.place(mark.base)
+    size = mark.base.dimension
+    half = np.array([size.length, size.width, size.height]) / 2
+    angles = mark.base.orientation.roll, mark.base.orientation.pitch, mark.base.orientation.yaw
+    if middle is None or not np.isfinite([*half, *angles]).all():
+        return np.full((8, 2), np.nan)
+    signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1)
+    corners: Floats = (middle[:, None] + rotation(mark.base) @ (half[:, None] * signs))[:2].T
+    return corners
+
+
+def _over(mark: Any, area: Any, road: _Road) -> list[tuple[BoundedLane, float]]:
+    """Return the lanes for driving that an area is painted on, and the area's station on each."""
+    found = []
+    z = mark.base.position.z
+    for lane in road.lanes:
+        shape = shapely.Polygon(np.vstack([lane.line.right, lane.line.left[::-1]])).buffer(0.0)
+        common = shapely.intersection(shape, area)
+        if not lane.drivable or common.is_empty:
+            continue
+        s = _station(lane, shapely.get_coordinates(common.centroid)[0])
+        if lane.z_m is None or abs(float(np.interp(s, lane.line.s, lane.z_m)) - z) <= _ON_ROAD_M:
+            found.append((lane, s))
+    return found
+
+
+def _stop_line(mark: Any, road: _Road, quality: Quality) -> Iterable[Row]:
+    """Return a row for each lane that a stop line lies across: on half of the lane's width, or with half of its own."""
+    corners = _outline(mark, road)
+    middle = corners.mean(axis=0)
+    way = np.linalg.eigh(np.cov((corners - middle).T))[1][:, -1]  # the longer side of its outline
+    reach = float(np.abs((corners - middle) @ way).max())
+    line = shapely.LineString([middle - way * reach, middle + way * reach])
+    held = {lane.lanelet_id for lane in road.assigned(mark.classification, mark.base)}
+    upwards = rotation(mark.base)[:2, 2]
+    across: list[tuple[BoundedLane, float, float]] = []
+    for lane, s in _over(mark, line, road):
+        tangent = np.array([np.interp(s, lane.line.s, lane.line.tangent[:, k]) for k in (0, 1)])
+        shape = shapely.Polygon(np.vstack([lane.line.right, lane.line.left[::-1]])).buffer(0.0)
+        width = 2 * float(np.interp(s, lane.line.s, lane.line.half_width))
+        enough = shapely.intersection(shape, line).length > 0.5 * min(width, 2 * reach)
+        if enough and abs(way[0] * tangent[1] - way[1] * tangent[0]) > _ACROSS:
+            across.append((lane, s, float(upwards @ tangent)))
+    if held & {lane.lanelet_id for lane, _, _ in across}:
+        across = [each for each in across if each[0].lanelet_id in held]
+    elif any(along > _ACROSS for _, _, along in across):  # its picture stands upright for whom it holds
+        across = [each for each in across if each[2] > 0]
+    name = str(mark.id.value)
+    if not across:
+        quality.add("stop_line_without_lane", "warning", None, f"stop line {name} lies across no lane for driving")
+    return [
+        {"stop_line_id": name, "lanelet_id": lane.lanelet_id, "lane_s_m": s, "source": "object"}
+        for lane, s, _ in across
+    ]
+
+
+def _zebra(mark: Any, road: _Road) -> Iterable[Row]:
+    area = shapely.MultiPoint(_outline(mark, road)).convex_hull
+    rows = []
+    for lane, _ in _over(mark, area, road):
+        common = shapely.get_coordinates(shapely.intersection(area, shapely.LineString(lane.line.centre)))
+        if len(common):
+            s = [_station(lane, point) for point in common]
+            rows.append(
+                {
+                    "crossing_id": str(mark.id.value),
+                    "lanelet_id": lane.lanelet_id,
+                    "s_start_m": min(s),
+                    "s_end_m": max(s),
+                    "kind": "zebra",
+                }
+            )
+    return rows

@@ -1,0 +1,237 @@
+"""Logical lanes of an OSI trace (OSI 3.5 and later): lanes by their two bounds along a reference line.
+
+OSI says left, right, begin and end along the reference line; here all is turned into the direction of travel.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from drivelint.formats.osi import map_kinds as kinds
+from drivelint.road.boundary_lanes import BoundedLane, Mark
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from drivelint.road.quality import Quality
+
+    Floats = NDArray[np.float64]
+
+_SHORT_M = 0.5  # a boundary that ends further than this before its lane does not reach its end
+NEAR_M = 5.0  # a lane that begins further away from where another ends does not follow it
+
+
+class UnbuildableError(ValueError):
+    """A lane that has no shape or no direction; caught where the lane is named."""
+
+
+@dataclass(frozen=True)
+class LogicalLane:
+    """A lane in the direction of travel: its message, bounds (n, 3) and span of s; `along` -1: against the reference line."""
+
+    message: Any
+    left: Floats
+    right: Floats
+    span: tuple[float, float]
+    along: int
+
+    @property
+    def name(self) -> int:
+        """Its id in the trace."""
+        return int(self.message.id.value)
+
+    @property
+    def centre(self) -> Floats:
+        """The middle between its bounds (n, 3)."""
+        return (self.left + self.right) / 2
+
+    @property
+    def physical(self) -> list[int]:
+        """Ids of the physical lanes that it lies on."""
+        return [ref.physical_lane_id.value for ref in self.message.physical_lane_reference]
+
+    def share(self, s: float) -> float:
+        """Return a station on the reference line as a share of the lane's length, in the direction of travel."""
+        begin, end = self.span
+        at = min(max((s - begin) / (end - begin), 0.0), 1.0)
+        return at if self.along > 0 else 1.0 - at
+
+
+def read(truth: Any, quality: Quality) -> dict[int, LogicalLane]:
+    """Return the logical lanes that have a shape and a direction, by id; what is wrong with the others goes to `quality`."""
+    bounds = {bound.id.value: bound for bound in truth.logical_lane_boundary}
+    found: dict[int, LogicalLane] = {}
+    for message in truth.logical_lane:
+        if message.type == kinds.CURB:
+            continue
+        try:
+            found[message.id.value] = _lane(message, bounds)
+        except UnbuildableError as error:
+            name = str(message.id.value)
+            quality.add("invalid_lane", "error", name, f"logical lane {name} is left out: {error}")
+    return found
+
+
+def lanelets(lanes: Mapping[int, LogicalLane], truth: Any) -> Iterator[BoundedLane]:
+    """Yield the lanes as the map has them, with links, neighbours and markings."""
+    bounds = {bound.id.value: bound for bound in truth.logical_lane_boundary}
+    types = {bound.id.value: int(bound.classification.type) for bound in truth.lane_boundary}
+    areas = {lane.id.value for lane in truth.lane if lane.classification.type == kinds.INTERSECTION}
+    told = any(bound.physical_boundary_id for bound in bounds.values())
+    linked = _linked(lanes)
+    for name, lane in lanes.items():
+        kind = kinds.LANES.get(lane.message.type, "none")
+        beside = [_neighbour(lane, side, lanes) for side in _sides(lane, "adjacent_lane")]
+        yield BoundedLane(
+            str(name), lane.left[:, :2], lane.right[:, :2], kind, kind in kinds.DRIVEN,
+            bidirectional=kind in kinds.DRIVEN and lane.message.move_direction == kinds.BOTH,
+            junction_id=next((f"j{i}" for i in lane.physical if i in areas), None),
+            successors=tuple(str(b) for a, b in linked if a == name),
+            left_id=beside[0][0], left_against=beside[0][1], right_id=beside[1][0], right_against=beside[1][1],
+            marks=tuple(_marks(lane, bounds, types, told=told)), limits=tuple(_limits(lane)), limit_source="lane",
+        )  # fmt: skip
+
+
+def _lane(message: Any, bounds: Mapping[int, Any]) -> LogicalLane:
+    """Return a lane in the direction of travel. Errors: `UnbuildableError` saying what it lacks."""
+    driven = kinds.LANES.get(message.type) in kinds.DRIVEN
+    way = message.move_direction
+    if driven and way not in {kinds.INCREASING, kinds.DECREASING, kinds.BOTH}:
+        raise UnbuildableError("its move_direction does not say in which direction it is driven")
+    left, right = (
+        _side(ids, bounds, word)
+        for ids, word in ((message.left_boundary_id, "left"), (message.right_boundary_id, "right"))
+    )
+    begin, end = message.start_s, message.end_s
+    low, high = max(left[0, 3], right[0, 3]), min(left[-1, 3], right[-1, 3])
+    if not end > begin:
+        raise UnbuildableError(f"it ends at {end:g} m of its reference line and begins at {begin:g} m")
+    if low > begin + _SHORT_M or high < end - _SHORT_M:
+        raise UnbuildableError(
+            f"its boundaries reach from {low:g} to {high:g} m of its reference line, the lane from {begin:g} to {end:g} m"
+        )
+    begin, end = max(begin, low), min(end, high)
+    if not end > begin:
+        raise UnbuildableError("its boundaries have no length")
+    stations = np.concatenate([left[:, 3], right[:, 3]])
+    at = np.unique(np.concatenate([[begin, end], stations[(stations > begin) & (stations < end)]]))
+    first, second = (
+        np.column_stack([np.interp(at, side[:, 3], side[:, k]) for k in range(3)]) for side in (left, right)
+    )
+    if way == kinds.DECREASING:
+        return LogicalLane(message, second[::-1], first[::-1], (begin, end), -1)
+    return LogicalLane(message, first, second, (begin, end), 1)
+
+
+def _side(ids: Iterable[Any], bounds: Mapping[int, Any], word: str) -> Floats:
+    """Return the points (n, 4) of one side: x, y, z and, ascending, s. Errors: `UnbuildableError`."""
+    names = [i.value for i in ids]
+    lost = [str(i) for i in names if i not in bounds]
+    if not names or lost:
+        raise UnbuildableError(
+            f"its {word} boundary {', '.join(lost)} is not in the log" if lost else f"it has no {word} boundary"
+        )
+    parts = []
+    for name in names:
+        line = bounds[name].boundary_line
+        points = np.array([(p.position.x, p.position.y, p.position.z, p.s_position) for p in line], np.float64).reshape(
+            -1, 4
+        )
+        if len(points) < 2 or not np.isfinite(points).all():
+            raise UnbuildableError(f"its {word} boundary {name} has fewer than two points with finite coordinates")
+        parts.append(points)
+    joined = np.vstack(parts)
+    if (np.diff(joined[:, 3]) < -1e-3).any() or joined[0, 3] >= joined[-1, 3]:
+        raise UnbuildableError(f"the s positions of its {word} boundary do not ascend")
+    # where a boundary steps aside, two points have one station
+    joined[:, 3] = np.maximum.accumulate(joined[:, 3])
+    joined[1:, 3] += np.cumsum(np.diff(joined[:, 3]) == 0) * 1e-9
+    return joined
+
+
+def _sides(lane: LogicalLane, what: str) -> tuple[Any, Any]:
+    """Return what the message says on the driver's left and right."""
+    both = getattr(lane.message, f"left_{what}"), getattr(lane.message, f"right_{what}")
+    return both if lane.along > 0 else both[::-1]
+
+
+def _linked(lanes: Mapping[int, LogicalLane]) -> list[tuple[int, int]]:
+    """Return (a, b) where b follows a, as either of the two says."""
+    said = {
+        pair
+        for name, lane in lanes.items()
+        for field in ("predecessor_lane", "successor_lane")
+        for other in getattr(lane.message, field)
+        for pair in ((name, other.other_lane_id.value), (other.other_lane_id.value, name))
+    }
+    return sorted((a, b) for a, b in said if a in lanes and b in lanes and a != b and _follows(lanes[a], lanes[b]))
+
+
+def _follows(lane: LogicalLane, other: LogicalLane) -> bool:
+    """Say whether a lane ends where another begins and not, as two that run towards each other, where it ends."""
+    end = lane.centre[-1, :2]
+    to_begin, to_end = (float(np.linalg.norm(end - other.centre[k, :2])) for k in (0, -1))
+    return to_begin < NEAR_M and to_begin <= to_end
+
+
+def _neighbour(
+    lane: LogicalLane, relations: Iterable[Any], lanes: Mapping[int, LogicalLane]
+) -> tuple[str | None, bool | None]:
+    """Return the lane that is beside a lane for longest, and whether it is driven the other way."""
+    begin, end = lane.span
+    length = {
+        r.other_lane_id.value: min(r.end_s, end) - max(r.start_s, begin)
+        for r in relations
+        if r.other_lane_id.value in lanes
+    }
+    if not length:
+        return None, None
+    other = lanes[min(length, key=lambda name: (-length[name], name))]
+    if lane.message.reference_line_id.value == other.message.reference_line_id.value:
+        against = lane.along != other.along
+    else:
+        ways = [each.centre[-1, :2] - each.centre[0, :2] for each in (lane, other)]
+        against = float(np.dot(*ways)) < 0
+    return str(other.name), against or other.message.move_direction == kinds.BOTH
+
+
+def _marks(lane: LogicalLane, bounds: Mapping[int, Any], types: Mapping[int, int], *, told: bool) -> Iterator[Mark]:
+    """Yield the markings of both sides. `told`: the log says which markings the boundaries have, so that one without has none."""
+    sides = _sides(lane, "boundary_id")
+    for word, ids, nearest_first in (("left", sides[0], lane.along > 0), ("right", sides[1], lane.along < 0)):
+        for i in ids:
+            bound = bounds[i.value]
+            stations = [p.s_position for p in bound.boundary_line]
+            begin, end = sorted((lane.share(min(stations)), lane.share(max(stations))))
+            if end <= begin:
+                continue
+            physical = [
+                types.get(p.value) for p in bound.physical_boundary_id
+            ]  # from right to left of the reference line
+            marking = kinds.marking(physical if nearest_first else physical[::-1])
+            if not physical and told:
+                marking = "none"
+            yield Mark(word, begin, end, marking, kinds.PASSING.get(bound.passing_rule))
+
+
+def _limits(lane: LogicalLane) -> Iterator[tuple[float, float, float]]:
+    """Yield the speed limits for all vehicles: from and to which share of the lane, and the limit in m/s."""
+    for rule in lane.message.traffic_rule:
+        said = rule.speed_limit.speed_limit_value
+        unit = kinds.MPS.get(kinds.UNITS.get(said.value_unit, ""))
+        where = rule.traffic_rule_validity
+        if rule.traffic_rule_type or unit is None or said.value <= 0 or not _for_all(where.valid_for_type):
+            continue
+        begin, end = sorted((lane.share(where.start_s), lane.share(where.end_s)))
+        if end > begin:
+            yield begin, end, said.value * unit
+
+
+def _for_all(valid: Sequence[Any]) -> bool:
+    """Say whether a rule holds for vehicles of any type: it names none, or vehicles as such."""
+    return not valid or any(each.type == 2 and not each.HasField("vehicle_type") for each in valid)

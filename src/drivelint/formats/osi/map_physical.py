@@ -1,0 +1,319 @@
+"""Physical lanes of an OSI trace (`lane` and `lane_boundary`): by their centre line and bounds, or by their bounds alone.
+
+An intersection is one area with pairs of lanes that lead into and out of it: a way is drawn for each pair, as smooth as their
+ends allow.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+
+from drivelint.formats.osi import map_kinds as kinds
+from drivelint.formats.osi.map_logical import NEAR_M, UnbuildableError
+from drivelint.road.boundary_lanes import BoundedLane
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from drivelint.road.quality import Quality
+
+    Floats = NDArray[np.float64]
+
+_DRIVING, _NONDRIVING = 2, 3
+_CUT_M = 0.2  # a side that ends further than this from the lane's end is not whole
+_DASH_GAP_M = 15.0  # a dashed boundary is drawn up to its last dash: the next one begins no further away than this
+_WAY_POINTS = 13
+
+
+@dataclass(frozen=True)
+class PhysicalLane:
+    """A lane of the trace turned into the direction of travel: its message, centre line (n, 3), bounds (n, 2)."""
+
+    message: Any
+    centre: Floats
+    left: Floats
+    right: Floats
+    turned: bool
+
+
+def read(truth: Any, quality: Quality) -> dict[int, PhysicalLane]:
+    """Return the lanes that have a shape and a direction, by id; what is wrong with the others goes to `quality`.
+
+    Areas of intersections are not among them.
+    """
+    bounds = {b.id.value: b for b in truth.lane_boundary}
+    drops = _drops_false(truth.lane)
+    found: dict[int, PhysicalLane] = {}
+    for lane in truth.lane:
+        said = lane.classification
+        if said.type == kinds.INTERSECTION and (len(said.lane_pairing) > 1 or len(said.centerline) < 2):
+            continue
+        try:
+            found[lane.id.value] = _turned(lane, bounds, drops=drops)
+        except UnbuildableError as error:
+            name = str(lane.id.value)
+            quality.add("invalid_lane", "error", name, f"lane {name} is left out: {error}")
+    return found
+
+
+def _drops_false(lanes: Iterable[Any]) -> bool:
+    """Say whether the log's writer leaves out what is false: some lane says true, none says false."""
+    said = {
+        lane.classification.centerline_is_driving_direction
+        for lane in lanes
+        if lane.classification.HasField("centerline_is_driving_direction")
+    }
+    return said == {True}
+
+
+def _ascending(said: Any, *, drops: bool) -> bool:
+    """Say whether a lane is driven in the order of its points. Errors: `UnbuildableError` where nobody knows."""
+    if said.HasField("centerline_is_driving_direction"):
+        return bool(said.centerline_is_driving_direction)
+    if drops:
+        return False
+    if _kind(said)[1]:
+        raise UnbuildableError(
+            "nothing says in which direction it is driven (centerline_is_driving_direction is not set)"
+        )
+    return True
+
+
+def _xyz(points: Iterable[Any]) -> Floats:
+    return np.array([(p.x, p.y, p.z) for p in points], np.float64).reshape(-1, 3)
+
+
+def _turned(lane: Any, bounds: Mapping[int, Any], *, drops: bool) -> PhysicalLane:
+    """Return a lane in the direction of travel. Errors: `UnbuildableError` saying what it lacks."""
+    said = lane.classification
+    ids = said.left_lane_boundary_id, said.right_lane_boundary_id
+    lines = [
+        [_xyz(p.position for p in bounds[i.value].boundary_line) for i in side if i.value in bounds] for side in ids
+    ]
+    if not (lines[0] and lines[1]):
+        lacks = "no boundaries" if not (lines[0] or lines[1]) else f"no {'right' if lines[0] else 'left'} boundary"
+        raise UnbuildableError(f"it has {lacks}, and so no width")
+    centre = _xyz(said.centerline)
+    if not all(np.isfinite(points).all() for points in (centre, *lines[0], *lines[1])):
+        raise UnbuildableError("a point of it has a coordinate that is not finite")
+    if len(centre) < 2:
+        if any(i.value not in bounds for side in ids for i in side):
+            raise UnbuildableError("it has no centre line, and not all of its boundaries are in the log")
+        first, second = _between(_chain(lines[0]), _chain(lines[1]))
+        centre, left, right = (first + second) / 2, first[:, :2], second[:, :2]
+    else:
+        left, right = (_bound(centre[:, :2], np.vstack(side)[:, :2]) for side in lines)
+    if _ascending(said, drops=drops):
+        return PhysicalLane(lane, centre, left, right, turned=False)
+    return PhysicalLane(lane, centre[::-1], right[::-1], left[::-1], turned=True)
+
+
+def _chain(parts: list[Floats]) -> Floats:
+    """Return one side's boundaries (n, 3) one after another, in the order of their points. Errors: `UnbuildableError`."""
+    parts = [part for part in parts if len(part) > 1]
+    if not parts:
+        raise UnbuildableError("a boundary has fewer than two points")
+    gaps = np.array([[np.hypot(*(b[0] - a[-1])[:2]) for b in parts] for a in parts])
+    np.fill_diagonal(gaps, np.inf)
+    at = int(np.argmax(gaps.min(axis=0))) if len(parts) > 1 else 0  # the one that follows none
+    chain, left = [parts[at]], set(range(len(parts))) - {at}
+    while left:
+        follows = min(left, key=lambda k: (gaps[at, k], k))
+        if gaps[at, follows] > _DASH_GAP_M:
+            raise UnbuildableError(f"there are {gaps[at, follows]:.0f} m between its boundaries of one side")
+        chain.append(parts[follows])
+        left.remove(follows)
+        at = follows
+    return np.vstack(chain)
+
+
+def _between(left: Floats, right: Floats) -> tuple[Floats, Floats]:
+    """Return the parts (n, 3) of two boundaries that lie beside each other, at equal shares of their lengths."""
+    left = _along(left, right)
+    right = _along(right, left)
+    sides = []
+    for side in (left, right):
+        s = _stations(side)
+        sides.append((side, s / s[-1]))
+    at = np.unique(np.round(np.concatenate([share for _, share in sides]), 6))
+    first, second = (np.column_stack([np.interp(at, share, side[:, k]) for k in range(3)]) for side, share in sides)
+    return first, second
+
+
+def _along(side: Floats, other: Floats) -> Floats:
+    """Return the part of a boundary that another lies beside. Errors: `UnbuildableError` where there is none."""
+    s = _stations(side)
+    line = shapely.LineString(side[:, :2])
+    begin, end = (float(line.project(shapely.Point(p))) for p in (other[0, :2], other[-1, :2]))
+    if end - begin < 1e-3:
+        raise UnbuildableError("its two boundaries do not lie beside each other in the same order")
+    at = np.unique(np.concatenate([[begin, end], s[(s > begin) & (s < end)]]))
+    return np.column_stack([np.interp(at, s, side[:, k]) for k in range(3)])
+
+
+def _stations(line: Floats) -> Floats:
+    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))])
+
+
+def _bound(centre: Floats, points: Floats) -> Floats:
+    """Return one side's points in the order of the centre line. Errors: `UnbuildableError`: fewer than two beside it."""
+    line = shapely.LineString(centre)
+    station = np.asarray(shapely.line_locate_point(line, shapely.points(points)), np.float64)
+    order = np.argsort(station, kind="stable")
+    points, station = points[order], station[order]
+    # of what lies before or beyond the lane only the nearest point belongs to it
+    inside = (station > 1e-6) & (station < line.length - 1e-6)
+    first, last = points[station <= 1e-6], points[station >= line.length - 1e-6]
+    kept = np.vstack([_nearest(first, centre[:1]), points[inside], _nearest(last, centre[-1:])])
+    if len(kept) < 2:
+        raise UnbuildableError("a boundary has fewer than two points beside it")
+    return _whole(kept, centre)
+
+
+def _whole(side: Floats, centre: Floats) -> Floats:
+    """Return a side (n, 2) led on beside the centre line (m, 2) to both of its ends: what is cut off is no gap in the road.
+
+    esmini draws a boundary up to its last marked point, which may be metres before the lane's end.
+    """
+    way = np.gradient(centre, axis=0)
+    left = np.column_stack([-way[:, 1], way[:, 0]]) / np.maximum(np.hypot(*way.T), 1e-9)[:, None]
+    line = shapely.LineString(centre)
+    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(centre, axis=0).T))])
+    begin, end = (float(line.project(shapely.Point(p))) for p in (side[0], side[-1]))
+    missing = (at < begin - _CUT_M), (at > end + _CUT_M)
+    before, after = (
+        centre[m] + left[m] * _offset(p, centre, left, s, at)
+        for m, p, s in zip(missing, (side[0], side[-1]), (begin, end), strict=True)
+    )
+    return np.vstack([before, side, after])
+
+
+def _offset(point: Floats, centre: Floats, left: Floats, station: float, at: Floats) -> float:
+    """Return how far a point is to the left of the centre line."""
+    k = int(np.argmin(np.abs(at - station)))
+    return float(np.dot(point - centre[k], left[k]))
+
+
+def _nearest(points: Floats, to: Floats) -> Floats:
+    """Return the one point (1, 2) nearest to another (1, 2), or none (0, 2)."""
+    if not len(points):
+        return points
+    return points[[int(np.argmin(np.hypot(*(points - to).T)))]]
+
+
+def _kind(said: Any) -> tuple[str, bool]:
+    if said.type in {_DRIVING, kinds.INTERSECTION}:
+        kind = kinds.LANES.get(said.subtype, "driving")
+        return (kind if kind in kinds.DRIVEN else "driving"), True
+    kind = kinds.LANES.get(said.subtype, "none")
+    return kind if said.type == _NONDRIVING and kind != "driving" else "none", False
+
+
+def lanelets(plain: Mapping[int, PhysicalLane], truth: Any, ways: Sequence[BoundedLane]) -> Iterable[BoundedLane]:
+    """Yield the lanes, then the ways; where a lane ends at an intersection, the ways drawn from it follow."""
+    bounds = {b.id.value: b for b in truth.lane_boundary}
+    linked = _linked(plain)
+    for i, lane in plain.items():
+        said = lane.message.classification
+        kind, drivable = _kind(said)
+        ids = [said.left_lane_boundary_id, said.right_lane_boundary_id]
+        beside = [said.left_adjacent_lane_id, said.right_adjacent_lane_id]
+        if lane.turned:
+            ids, beside = ids[::-1], beside[::-1]
+        neighbours = [_neighbour(lane, side, plain) for side in beside]
+        yield BoundedLane(
+            str(i), lane.left, lane.right, kind, drivable,
+            junction_id=f"j{i}" if said.type == kinds.INTERSECTION else None,
+            successors=(
+                *(str(b) for a, b in linked if a == i),
+                *(way.lanelet_id for way in ways if way.lanelet_id.split(".")[1] == str(i)),
+            ),
+            left_id=neighbours[0][0], left_against=neighbours[0][1],
+            right_id=neighbours[1][0], right_against=neighbours[1][1],
+            left_marking=_marking(ids[0], bounds), right_marking=_marking(ids[1], bounds),
+        )  # fmt: skip
+    yield from ways
+
+
+def _linked(plain: Mapping[int, PhysicalLane]) -> list[tuple[int, int]]:
+    """Return (a, b) where b follows a, as either of the two says: esmini names some links only at the later lane."""
+    pairs = set()
+    for i, lane in plain.items():
+        names = ["antecessor_lane_id", "successor_lane_id"]
+        before, after = names[::-1] if lane.turned else names
+        for pair in lane.message.classification.lane_pairing:
+            if pair.HasField(before):
+                pairs.add((getattr(pair, before).value, i))
+            if pair.HasField(after):
+                pairs.add((i, getattr(pair, after).value))
+    return sorted((a, b) for a, b in pairs if a in plain and b in plain and _follows(plain[a], plain[b]))
+
+
+def _neighbour(
+    lane: PhysicalLane, ids: Sequence[Any], plain: Mapping[int, PhysicalLane]
+) -> tuple[str | None, bool | None]:
+    for i in ids:
+        if i.value in plain:
+            other = plain[i.value]
+            same = float(np.dot(*(each.centre[-1, :2] - each.centre[0, :2] for each in (lane, other)))) > 0
+            return str(i.value), not same
+    return None, None
+
+
+def _marking(ids: Iterable[Any], bounds: Mapping[int, Any]) -> str | None:
+    """Return the marking of a side; None where it is not known or changes along the lane."""
+    found = {bounds[i.value].classification.type for i in ids if i.value in bounds}
+    return kinds.marking(sorted(found)) if len(found) == 1 else None
+
+
+def _follows(lane: PhysicalLane, other: PhysicalLane) -> bool:
+    return bool(np.linalg.norm((lane.centre[-1] - other.centre[0])[:2]) < NEAR_M)
+
+
+def ways(truth: Any, plain: Mapping[int, PhysicalLane]) -> list[BoundedLane]:
+    """Return a lane for each pair that an intersection's area joins."""
+    found = []
+    for area in truth.lane:
+        if area.classification.type != kinds.INTERSECTION or area.id.value in plain:
+            continue
+        pairs = {(p.antecessor_lane_id.value, p.successor_lane_id.value) for p in area.classification.lane_pairing}
+        for into, out in sorted(pairs):
+            way = _way(plain.get(into), plain.get(out))
+            if way is not None:
+                name = f"{area.id.value}.{into}.{out}"
+                found.append(BoundedLane(name, *way, junction_id=f"j{area.id.value}", successors=(str(out),)))
+    return found
+
+
+def way_heights(name: str, plain: Mapping[int, PhysicalLane]) -> Floats:
+    """Return two points (2, 3) between which a way through an intersection rises or falls; `name`: its id in the map."""
+    _, into, out = name.split(".")
+    return np.vstack([plain[int(into)].centre[-1], plain[int(out)].centre[0]])
+
+
+def _way(a: PhysicalLane | None, b: PhysicalLane | None) -> tuple[Floats, Floats] | None:
+    """Return both bounds of a smooth way from where a lane ends to where another begins; None: not two lanes for driving."""
+    if a is None or b is None or not (_kind(a.message.classification)[1] and _kind(b.message.classification)[1]):
+        return None
+    left, right = (_curve(p[-1], p[-1] - p[-2], q[0], q[1] - q[0]) for p, q in ((a.left, b.left), (a.right, b.right)))
+    return left, right
+
+
+def _curve(start: Floats, leaving: Floats, end: Floats, arriving: Floats) -> Floats:
+    """Return points (n, 2) of the cubic with these ends and directions, each (1, 2)."""
+    reach = float(np.linalg.norm(end - start))
+    v0 = leaving / max(float(np.linalg.norm(leaving)), 1e-9) * reach
+    v1 = arriving / max(float(np.linalg.norm(arriving)), 1e-9) * reach
+    u = np.linspace(0.0, 1.0, _WAY_POINTS)[:, None]
+    return (
+        (2 * u**3 - 3 * u**2 + 1) * start
+        + (u**3 - 2 * u**2 + u) * v0
+        + (3 * u**2 - 2 * u**3) * end
+        + (u**3 - u**2) * v1
+    )

@@ -1,0 +1,201 @@
+"""OSI's enumerations in our words. Numbers come from the log's own schema, so only the names are fixed here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.drive.headlights import HEADLIGHTS
+from drivelint.drive.trace import BRAKE_LIGHTS, CLASSES, INDICATORS
+from drivelint.formats.osi.schema import OPEN_DRIVE_REFERENCE
+from drivelint.formats.protobuf.descriptors import enum_names
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from drivelint.formats.protobuf.descriptors import Types
+
+OFF, ON, OTHER = 0, 1, 2
+_KINDS = {"TYPE_VEHICLE": "vehicle", "TYPE_PEDESTRIAN": "pedestrian", "TYPE_ANIMAL": "animal"}
+_VEHICLES = {
+    "TYPE_SMALL_CAR": "car", "TYPE_COMPACT_CAR": "car", "TYPE_CAR": "car", "TYPE_MEDIUM_CAR": "car",
+    "TYPE_LUXURY_CAR": "car", "TYPE_DELIVERY_VAN": "van", "TYPE_HEAVY_TRUCK": "truck", "TYPE_SEMITRACTOR": "truck",
+    "TYPE_SEMITRAILER": "trailer",
+    "TYPE_TRAILER": "trailer", "TYPE_MOTORBIKE": "motorcycle", "TYPE_BICYCLE": "bicycle", "TYPE_BUS": "bus",
+    "TYPE_WHEELCHAIR": "pedestrian", "TYPE_STANDUP_SCOOTER": "bicycle",
+}  # fmt: skip
+_INDICATORS = {
+    "INDICATOR_STATE_OFF": "off",
+    "INDICATOR_STATE_LEFT": "left",
+    "INDICATOR_STATE_RIGHT": "right",
+    "INDICATOR_STATE_WARNING": "hazard",
+}
+_BRAKE_LIGHTS = {"BRAKE_LIGHT_STATE_OFF": "off", "BRAKE_LIGHT_STATE_NORMAL": "on", "BRAKE_LIGHT_STATE_STRONG": "strong"}
+_LAMPS = {
+    "GENERIC_LIGHT_STATE_OFF": OFF,
+    "GENERIC_LIGHT_STATE_ON": ON,
+    "GENERIC_LIGHT_STATE_OTHER": OTHER,
+    "GENERIC_LIGHT_STATE_FLASHING_BLUE": OTHER,
+    "GENERIC_LIGHT_STATE_FLASHING_BLUE_AND_RED": OTHER,
+    "GENERIC_LIGHT_STATE_FLASHING_AMBER": OTHER,
+}
+# one bulb each: bits of a traffic light's lit colours
+RED, AMBER, GREEN, FLASHING, UNKNOWN = 1, 2, 4, 8, 16
+_COLORS = {"COLOR_RED": RED, "COLOR_YELLOW": AMBER, "COLOR_GREEN": GREEN}
+_LIT = {0: "off", RED: "red", RED | AMBER: "red_amber", AMBER: "amber", GREEN: "green"}
+
+
+@dataclass(frozen=True)
+class Words:
+    """Lookup tables number -> code for one schema; numbers beyond a table are unknown."""
+
+    kind: NDArray[np.int8]
+    vehicle: NDArray[np.int8]
+    indicator: NDArray[np.int8]
+    brake_light: NDArray[np.int8]
+    lamp: NDArray[np.int8]
+    color: NDArray[np.int8]
+    mode: dict[str, int]
+
+
+def words_of(types: Types, truth: str) -> Words:
+    """Build the tables from the enumerations of the ground-truth message `truth`."""
+    moving = ("moving_object",)
+    lights = (*moving, "vehicle_classification", "light_state")
+    classes = {word: i for i, word in enumerate(CLASSES)}
+    modes = enum_names(types, truth, "traffic_light", "classification", "mode")
+    return Words(
+        _table(enum_names(types, truth, *moving, "type"), {name: classes[word] for name, word in _KINDS.items()}),
+        _table(
+            enum_names(types, truth, *moving, "vehicle_classification", "type"),
+            {name: classes[word] for name, word in _VEHICLES.items()},
+        ),
+        _table(
+            enum_names(types, truth, *lights, "indicator_state"),
+            {n: INDICATORS.index(w) for n, w in _INDICATORS.items()},
+        ),
+        _table(
+            enum_names(types, truth, *lights, "brake_light_state"),
+            {n: BRAKE_LIGHTS.index(w) for n, w in _BRAKE_LIGHTS.items()},
+        ),
+        _table(enum_names(types, truth, *lights, "head_light"), _LAMPS),
+        _table(enum_names(types, truth, "traffic_light", "classification", "color"), _COLORS),
+        {name: number for number, name in modes.items()},
+    )
+
+
+def _table(names: dict[int, str], codes: dict[str, int]) -> NDArray[np.int8]:
+    """Return an array number -> code, -1 for every name that is not among `codes` (UNKNOWN, OTHER, newer ones)."""
+    table = np.full(max(names, default=0) + 2, -1, np.int8)
+    for number, name in names.items():
+        if number >= 0:
+            table[number] = codes.get(name, -1)
+    return table
+
+
+def _look(table: NDArray[np.int8], numbers: pa.Array) -> NDArray[np.int8]:
+    index = pc.fill_null(numbers.cast(pa.int32()), -1).to_numpy(zero_copy_only=False)
+    return np.asarray(table[np.where((index < 0) | (index >= len(table)), len(table) - 1, index)], np.int8)
+
+
+def child(parent: pa.Array, name: str) -> pa.Array:
+    """Return a field of a struct array, null where the parent is; all null where the schema has no such field."""
+    if pa.types.is_struct(parent.type) and parent.type.get_field_index(name) >= 0:
+        return pc.struct_field(parent, [parent.type.get_field_index(name)])
+    return pa.nulls(len(parent))
+
+
+def state_codes(words: Words, objects: pa.Array) -> dict[str, NDArray[np.int8]]:
+    """Return class, indicator, brake light and headlights of moving objects as codes. A vehicle of unsaid kind is a `vehicle`."""
+    vehicle = child(objects, "vehicle_classification")
+    lights = child(vehicle, "light_state")
+    kind = _look(words.kind, child(objects, "type"))
+    finer = _look(words.vehicle, child(vehicle, "type"))
+    is_vehicle = kind == CLASSES.index("vehicle")
+    return {
+        "actor_class": np.where(is_vehicle & (finer >= 0), finer, kind),
+        "indicator": _look(words.indicator, child(lights, "indicator_state")),
+        "brake_light": _look(words.brake_light, child(lights, "brake_light_state")),
+        HEADLIGHTS: _headlights(
+            _look(words.lamp, child(lights, "head_light")), _look(words.lamp, child(lights, "high_beam"))
+        ),
+    }
+
+
+def _headlights(dipped: NDArray[np.int8], main: NDArray[np.int8]) -> NDArray[np.int8]:
+    """Return whether the headlights are on: dipped or main beam. Off: `head_light` says so and `high_beam` nothing else.
+
+    A state of another kind, flashing or OTHER, is not known.
+    """
+    off = (dipped == OFF) & np.isin(main, (OFF, -1))
+    return np.where((dipped == ON) | (main == ON), ON, np.where(off, OFF, -1)).astype(np.int8)
+
+
+@dataclass(frozen=True)
+class Bulbs:
+    """Lit bulbs of traffic lights, one row per message and bulb: frame, the signal's id, bits of what it shows."""
+
+    frame: NDArray[np.intp]
+    signal_id: list[str]
+    bits: NDArray[np.int8]
+
+
+def bulbs_of(words: Words, lights: pa.Array, joined: Mapping[str, str]) -> Bulbs:
+    """Read the bulbs of `traffic_light` lists: each belongs to the OpenDRIVE signal it refers to, else to the light that `joined` names.
+
+    Of others each is its own.
+    """
+    if not pa.types.is_list(lights.type):
+        return Bulbs(np.zeros(0, np.intp), [], np.zeros(0, np.int8))
+    bulbs = lights.flatten()
+    counts = pc.fill_null(pc.list_value_length(lights), 0).to_numpy(zero_copy_only=False)
+    seen = child(bulbs, "classification")
+    mode = pc.fill_null(child(seen, "mode").cast(pa.int32()), -1).to_numpy(zero_copy_only=False)
+    color = _look(words.color, child(seen, "color"))
+    lit = np.isin(mode, [words.mode.get(name, -2) for name in ("MODE_CONSTANT", "MODE_COUNTING")])
+    bits = np.full(len(bulbs), UNKNOWN, np.int8)
+    bits[mode == words.mode.get("MODE_OFF", -2)] = 0
+    bits[mode == words.mode.get("MODE_FLASHING", -2)] = FLASHING
+    bits[lit & (color > 0)] = color[lit & (color > 0)]
+    return Bulbs(np.repeat(np.arange(len(lights)), counts), _signal_ids(bulbs, joined), bits)
+
+
+def _signal_ids(bulbs: pa.Array, joined: Mapping[str, str]) -> list[str]:
+    own = pc.fill_null(child(child(bulbs, "id"), "value").cast(pa.uint64()), 0).to_pylist()
+    references = child(bulbs, "source_reference").to_pylist()
+    ids = []
+    for number, sources in zip(own, references, strict=True):  # bulbs are few; actor states never come this way
+        names = [
+            s["identifier"][0] for s in sources or [] if s.get("type") == OPEN_DRIVE_REFERENCE and s.get("identifier")
+        ]
+        ids.append(names[0] if names else joined.get(str(number), str(number)))
+    return ids
+
+
+def signal_states(bulbs: Bulbs, t_ns: NDArray[np.int64]) -> pa.Table | None:
+    """Join the bulbs of each signal and frame into its state: `t_ns` is the time of each frame."""
+    if not len(bulbs.frame):
+        return None
+    encoded = pc.dictionary_encode(pa.array(bulbs.signal_id, pa.string()))
+    names, code = encoded.dictionary, encoded.indices.to_numpy().astype(np.int64)
+    key = bulbs.frame * len(names) + code
+    order = np.argsort(key, kind="stable")
+    starts = np.flatnonzero(np.r_[True, np.diff(key[order]) != 0])
+    bits = np.bitwise_or.reduceat(bulbs.bits[order], starts)
+    states = [
+        None if value & UNKNOWN else "flashing" if value & FLASHING else _LIT.get(int(value)) for value in range(32)
+    ]
+    rows = order[starts]
+    return pa.table(
+        {
+            "signal_id": names.take(pa.array(code[rows])),
+            "t_ns": pa.array(t_ns[bulbs.frame[rows]]),
+            "state": pa.array(states, pa.string()).take(pa.array(bits)),
+        }
+    )

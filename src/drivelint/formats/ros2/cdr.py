@@ -1,0 +1,346 @@
+"""CDR messages (ROS 2) to columns: a batch of messages is read in step, each by a cursor of its own.
+
+A message definition is compiled into a few steps; numpy takes every step for all messages at once, and within a sequence
+for its first items, then its second ones, and so on. So strings and sequences may be of any length, and no message is
+read by itself. Rules of alignment: CDR of the OMG (XCDR1), positions counted behind the four bytes of the header.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from drivelint.errors import TraceError
+from drivelint.formats.ros2.types import CODES, SEQUENCE, TEXTS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from drivelint.formats.mcap.reader import Packet
+    from drivelint.formats.protobuf.descriptors import Tree
+    from drivelint.formats.ros2.types import Types
+
+HEADER = 4
+ORDERS: Final = {0: ">", 1: "<"}
+"""Second byte of the header -> byte order; others are encodings that ROS 2 recorders do not write."""
+FIRST = 3
+"""How many numbers of a sequence are kept: a box has three dimensions."""
+_MAX_ALIGN = 8
+
+
+@dataclass
+class Table:
+    """Members of all messages, or of all items of a sequence, as columns.
+
+    `columns`: member path, joined by dots -> values, one row per item; of an array of numbers, one row of them. Texts are
+    bytes. `parent`: each item's row in the table above it. `children`: path of a sequence -> its items.
+    """
+
+    n: int
+    columns: dict[str, NDArray[Any]] = field(default_factory=dict)
+    parent: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, np.intp))
+    children: dict[str, Table] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class _Align:
+    to: int
+
+
+@dataclass
+class _Block:
+    """Bytes of a known number, and what to keep of them: (path, numpy code, offset, how many or None for one)."""
+
+    size: int = 0
+    keep: list[tuple[str, str, int, int | None]] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class _Text:
+    keep: str | None
+
+
+@dataclass(frozen=True)
+class _Numbers:
+    """A sequence of primitives of `size` bytes, `per_item` of them to an item; kept are the first `FIRST`, NaN where fewer."""
+
+    code: str
+    size: int
+    per_item: int
+    keep: str | None
+
+
+@dataclass(frozen=True)
+class _Items:
+    keep: str | None
+    program: list[Any]
+
+
+class _Compiler:
+    """Turns a type into steps, offsets fixed wherever the alignment is known: the cursor is `rest` modulo `modulus`."""
+
+    def __init__(self, types: Types) -> None:
+        self._types = types
+
+    def program(self, kind: str, tree: Tree | None) -> list[Any]:
+        self._steps: list[Any] = []
+        self._modulus, self._rest = 1, 0
+        self._members(kind, tree, "")
+        return self._steps
+
+    def _members(self, kind: str, tree: Tree | None, prefix: str) -> None:
+        members = self._types[kind]
+        if not members:  # an empty message is sent as one byte
+            self._primitive("u1", None, None)
+        for member in members:
+            wanted = tree is not None and member.name in tree
+            subtree = tree[member.name] if tree is not None and wanted else None
+            path = f"{prefix}{member.name}"
+            if member.count == SEQUENCE:
+                self._sequence(member.kind, path, subtree, wanted=wanted)
+            elif member.kind in CODES:
+                self._primitive(CODES[member.kind], path if wanted else None, member.count)
+            else:
+                for _ in range(1 if member.count is None else member.count):
+                    if member.kind in TEXTS:
+                        self._then(_Text(path if wanted and member.count is None else None))
+                    else:
+                        self._members(member.kind, subtree if member.count is None else None, f"{path}.")
+
+    def _primitive(self, code: str, keep: str | None, count: int | None) -> None:
+        size = int(code[1])
+        if self._modulus < size:
+            self._steps.append(_Align(size))
+            self._modulus, self._rest = size, 0
+        if not self._steps or not isinstance(self._steps[-1], _Block):
+            self._steps.append(_Block())
+        block: _Block = self._steps[-1]
+        pad = -self._rest % size
+        if keep is not None:
+            block.keep.append((keep, code, block.size + pad, count))
+        length = pad + size * (1 if count is None else count)
+        block.size += length
+        self._rest = (self._rest + length) % self._modulus
+
+    def _sequence(self, kind: str, path: str, subtree: Tree | None, *, wanted: bool) -> None:
+        keep = path if wanted else None
+        if kind in CODES:
+            self._then(_Numbers(CODES[kind], int(CODES[kind][1]), 1, keep))
+            return
+        if not wanted and (uniform := self._uniform(kind)) is not None:
+            self._then(_Numbers(*uniform, None))
+            return
+        if kind in TEXTS:
+            self._then(_Items(None, [_Text(None)]))
+        else:
+            self._then(_Items(keep, _Compiler(self._types).program(kind, subtree)))
+
+    def _uniform(self, kind: str) -> tuple[str, int, int] | None:
+        """Return code, size and number of the primitives of a type that has nothing but primitives of one size."""
+        if kind in TEXTS or not all(isinstance(s, _Align | _Block) for s in _Compiler(self._types).program(kind, None)):
+            return None
+        sizes = self._sizes(kind)
+        return (f"u{sizes[0]}", sizes[0], len(sizes)) if sizes and len(set(sizes)) == 1 else None
+
+    def _sizes(self, kind: str) -> list[int]:
+        found: list[int] = []
+        for member in self._types[kind]:
+            inner = [int(CODES[member.kind][1])] if member.kind in CODES else self._sizes(member.kind)
+            found += inner * (1 if member.count is None else member.count)
+        return found
+
+    def _then(self, step: Any) -> None:
+        """Add a step behind which nothing is known of the alignment."""
+        self._steps.append(step)
+        self._modulus, self._rest = 1, 0
+
+
+class Decoder:
+    """Decodes messages of one type."""
+
+    def __init__(self, path: Path, name: str, types: Types, kind: str, tree: Tree) -> None:
+        """Compile the definition; of `tree` is kept what the definition has."""
+        self._path, self._name = path, name
+        self._program = _Compiler(types).program(kind, tree)
+
+    def table(self, packets: Sequence[Packet]) -> Table:
+        """Decode a batch. Errors: `TraceError` naming topic and byte of the first message that does not fit its definition."""
+        return _Batch(self._path, self._name, packets).table(self._program)
+
+
+class _Batch:
+    """Messages in one buffer, each beginning at a multiple of eight bytes, so that every number lies where numpy wants it."""
+
+    def __init__(self, path: Path, name: str, packets: Sequence[Packet]) -> None:
+        self._path, self._name, self._packets = path, name, packets
+        sizes = np.array([len(packet.data) - HEADER for packet in packets], np.int64)
+        if len(sizes) and sizes.min() < 0:
+            raise self._misfit(int(np.argmin(sizes)), "is shorter than its header")
+        orders = {packet.data[:2] for packet in packets}
+        if len(orders) > 1 or any(head[0] != 0 or head[1] not in ORDERS for head in orders):
+            odd = next(i for i, p in enumerate(packets) if p.data[:2] != packets[0].data[:2] or p.data[1] not in ORDERS)
+            raise self._misfit(
+                odd, f"is encoded otherwise than plain CDR like the others (header {packets[odd].data[:4].hex()})"
+            )
+        self._order = ORDERS[packets[0].data[1]] if packets else "<"
+        padded = -(-sizes // _MAX_ALIGN) * _MAX_ALIGN
+        self._start = np.concatenate([[0], np.cumsum(padded)])[:-1]
+        self._end = self._start + sizes
+        buffer = np.zeros(int(padded.sum()) + _MAX_ALIGN, np.uint8)
+        joined = b"".join(
+            packet.data[HEADER:] + b"\0" * int(pad) for packet, pad in zip(packets, padded - sizes, strict=True)
+        )
+        buffer[: len(joined)] = np.frombuffer(joined, np.uint8)
+        self._bytes = buffer
+        self._views = {code: buffer.view(f"{self._order}{code}") for code in set(CODES.values())}
+
+    def table(self, program: list[Any]) -> Table:
+        messages = np.arange(len(self._packets))
+        cursor, table = self._run(program, self._start.copy(), messages)
+        left = self._end - cursor
+        # writers may pad the end of a message
+        if (left >= _MAX_ALIGN).any():
+            i = int(np.argmax(left >= _MAX_ALIGN))
+            raise self._misfit(i, f"has {left[i]} bytes more than its definition")
+        return table
+
+    def _run(
+        self, program: list[Any], cursor: NDArray[np.int64], message: NDArray[np.intp]
+    ) -> tuple[NDArray[np.int64], Table]:
+        """Take the steps from each cursor on (owned, changed in place); `message`: the message each is in."""
+        table = Table(len(cursor))
+        end = self._end[message]
+        for step in program:
+            if isinstance(step, _Block):
+                self._check(cursor + step.size, end, message)
+                for path, code, offset, count in step.keep:
+                    table.columns[path] = self._taken(code, cursor + offset, count)
+                cursor += step.size
+            elif isinstance(step, _Align):
+                cursor += -cursor % step.to
+            elif isinstance(step, _Text):
+                length = self._length(cursor, end, message, 1)
+                if step.keep is not None:
+                    table.columns[step.keep] = self._texts(cursor, length)
+                cursor += length
+            elif isinstance(step, _Numbers):
+                self._numbers(step, cursor, end, message, table)
+            else:
+                self._items(step, cursor, end, message, table)
+        return cursor, table
+
+    def _numbers(
+        self, step: _Numbers, cursor: NDArray[np.int64], end: NDArray[np.int64], message: NDArray[np.intp], table: Table
+    ) -> None:
+        length = self._length(cursor, end, message, step.size * step.per_item)
+        cursor += np.where(length > 0, -cursor % step.size, 0)
+        size = length * step.size * step.per_item
+        self._check(cursor + size, end, message)
+        if step.keep is not None:
+            first = np.full((len(cursor), FIRST), np.nan)
+            for k in range(FIRST):
+                has = np.flatnonzero(length > k)
+                first[has, k] = self._taken(step.code, cursor[has] + k * step.size, None)
+            table.columns[step.keep] = first
+        cursor += size
+
+    def _items(
+        self, step: _Items, cursor: NDArray[np.int64], end: NDArray[np.int64], message: NDArray[np.intp], table: Table
+    ) -> None:
+        length = self._length(cursor, end, message, 1)
+        parts: list[Table] = []
+        for k in range(int(length.max(initial=0))):
+            active = np.flatnonzero(length > k)
+            after, part = self._run(step.program, cursor[active], message[active])
+            cursor[active] = after
+            part.parent = active
+            parts.append(part)
+        if step.keep is not None:
+            table.children[step.keep] = _joined(parts, step.program)
+
+    def _taken(self, code: str, at: NDArray[np.int64], count: int | None) -> NDArray[Any]:
+        view, index = self._views[code], at // int(code[1])
+        return view[index] if count is None else view[index[:, None] + np.arange(count)]
+
+    def _length(
+        self, cursor: NDArray[np.int64], end: NDArray[np.int64], message: NDArray[np.intp], item_bytes: int
+    ) -> NDArray[np.int64]:
+        """Read a length, move on behind it, and check that so many items can follow (an item has a byte at least)."""
+        cursor += -cursor % 4
+        self._check(cursor + 4, end, message)
+        length = self._taken("u4", cursor, None).astype(np.int64)
+        cursor += 4
+        self._check(cursor + length * item_bytes, end, message)
+        return length
+
+    def _texts(self, start: NDArray[np.int64], length: NDArray[np.int64]) -> NDArray[Any]:
+        """Return texts as fixed-width bytes; numpy drops the zero at their ends."""
+        width = max(int(length.max(initial=0)), 1)
+        place = np.arange(width)
+        index = np.minimum(start[:, None] + place, len(self._bytes) - 1)
+        letters = np.where(place < length[:, None], self._bytes[index], np.uint8(0))
+        return np.ascontiguousarray(letters).view(f"S{width}").reshape(-1)
+
+    def _check(self, reach: NDArray[np.int64], end: NDArray[np.int64], message: NDArray[np.intp]) -> None:
+        beyond = reach > end
+        if beyond.any():
+            i = int(message[np.argmax(beyond)])
+            raise self._misfit(i, "ends before its definition does")
+
+    def _misfit(self, i: int, what: str) -> TraceError:
+        packet = self._packets[i]
+        where = f"topic {packet.channel.topic!r}, log time {packet.log_time_ns} ns, record at byte {packet.offset}"
+        return TraceError(f"{self._path}: {where}: the {self._name} {what}: record or copy the log again")
+
+
+def _joined(parts: list[Table], program: list[Any]) -> Table:
+    """Put the first, second, ... items of all sequences into the order of their sequences."""
+    if not parts:
+        return empty(program)
+    parent = np.concatenate([part.parent for part in parts])
+    order = np.argsort(parent, kind="stable")
+    place = np.empty_like(order)
+    place[order] = np.arange(len(order))
+    offsets = np.concatenate([[0], np.cumsum([part.n for part in parts])])
+    table = Table(len(parent), parent=parent[order])
+    for path in parts[0].columns:
+        table.columns[path] = np.concatenate([part.columns[path] for part in parts])[order]
+    for path in parts[0].children:
+        table.children[path] = _stacked([part.children[path] for part in parts], offsets, place)
+    return table
+
+
+def _stacked(parts: list[Table], offsets: NDArray[np.int64], place: NDArray[np.intp]) -> Table:
+    """Join tables one level further down; `place`: where each row above has gone."""
+    parent = place[np.concatenate([part.parent + offset for part, offset in zip(parts, offsets, strict=False)])]
+    order = np.argsort(parent, kind="stable")
+    moved = np.empty_like(order)
+    moved[order] = np.arange(len(order))
+    below = np.concatenate([[0], np.cumsum([part.n for part in parts])])
+    return Table(
+        len(parent),
+        {path: np.concatenate([part.columns[path] for part in parts])[order] for path in parts[0].columns},
+        parent[order],
+        {path: _stacked([part.children[path] for part in parts], below, moved) for path in parts[0].children},
+    )
+
+
+def empty(program: list[Any]) -> Table:
+    """Return the table of no item."""
+    table = Table(0)
+    for step in program:
+        if isinstance(step, _Block):
+            for path, code, _, count in step.keep:
+                table.columns[path] = np.zeros(0 if count is None else (0, count), code)
+        elif isinstance(step, _Text) and step.keep is not None:
+            table.columns[step.keep] = np.zeros(0, "S1")
+        elif isinstance(step, _Numbers) and step.keep is not None:
+            table.columns[step.keep] = np.zeros((0, FIRST))
+        elif isinstance(step, _Items) and step.keep is not None:
+            table.children[step.keep] = empty(step.program)
+    return table

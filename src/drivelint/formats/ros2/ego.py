@@ -1,0 +1,166 @@
+"""The messages of ROS 2 about the ego and its surroundings: odometry, transforms, lights, who drives, the CARLA bridge's own."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import pyarrow as pa
+
+from drivelint.drive.trace import CLASSES, INDICATORS
+from drivelint.formats.frames import Frames, Poses, clean, unit
+from drivelint.formats.ros2.objects import HEADER, POSE, STAMP, XYZ, stamps, vectors
+from drivelint.formats.ros2.rows import Rows, blank
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from drivelint.formats.protobuf.descriptors import Tree
+    from drivelint.formats.ros2.cdr import Table
+
+ODOMETRY: Final = "nav_msgs/Odometry"
+TRANSFORMS: Final = "tf2_msgs/TFMessage"
+EGO_INFO: Final = "carla_msgs/CarlaEgoVehicleInfo"
+WORLD_INFO: Final = "carla_msgs/CarlaWorldInfo"
+TURN: Final = "autoware_vehicle_msgs/TurnIndicatorsReport"
+HAZARD: Final = "autoware_vehicle_msgs/HazardLightsReport"
+MODE: Final = "autoware_vehicle_msgs/ControlModeReport"
+ENGAGE: Final = "autoware_vehicle_msgs/Engage"
+TREES: Final[dict[str, Tree]] = {
+    ODOMETRY: {
+        "header": HEADER,
+        "child_frame_id": None,
+        "pose": {"pose": POSE},
+        "twist": {"twist": {"linear": XYZ, "angular": XYZ}},
+    },
+    TRANSFORMS: {
+        "transforms": {
+            "header": HEADER,
+            "child_frame_id": None,
+            "transform": {"translation": XYZ, "rotation": {**XYZ, "w": None}},
+        }
+    },
+    EGO_INFO: {"id": None, "rolename": None},
+    WORLD_INFO: {"map_name": None, "opendrive": None},
+    TURN: {"stamp": STAMP, "report": None},
+    HAZARD: {"stamp": STAMP, "report": None},
+    MODE: {"stamp": STAMP, "mode": None},
+    ENGAGE: {"stamp": STAMP, "engage": None},
+}
+STALE_NS: Final = 1_000_000_000
+"""A report of lights holds for no longer than this: vehicles report them ten times a second or more."""
+_AUTONOMOUS = 1
+_HAZARD_ON = 2
+_OFF, _HAZARD = INDICATORS.index("off"), INDICATORS.index("hazard")
+_INDICATOR: Final = {1: _OFF, 2: INDICATORS.index("left"), 3: INDICATORS.index("right")}
+
+
+def odometry(table: Table, log_ns: NDArray[np.int64], forward_m: float) -> Rows:
+    """Return the poses of an odometry as rows of one actor without a name; `forward_m`: its box centre lies so far ahead.
+
+    Twist is in the child frame, as the message says; in the header's where that is what the child frame is called.
+    """
+    stamp, stamped = stamps(table, "header.stamp")
+    n = table.n
+    frames = table.columns["header.frame_id"]
+    child = table.columns["child_frame_id"]
+    turn = unit(vectors(table, "pose.pose.orientation", "xyzw"))
+    velocity = vectors(table, "twist.twist.linear")
+    yaw_rate = vectors(table, "twist.twist.angular")[:, 2]
+    along = (child != b"") & (child != frames)
+    inside = Poses(vectors(table, "pose.pose.position"), turn)
+    place = inside.place
+    if forward_m != 0.0:
+        lever = Poses(np.tile([forward_m, 0.0, 0.0], (n, 1)), np.tile([0.0, 0.0, 0.0, 1.0], (n, 1)))
+        place = inside.of(lever).place
+        sideways = np.nan_to_num(yaw_rate) * forward_m
+        yaw = inside.yaw
+        velocity[:, 0] += np.where(along, 0.0, -np.sin(yaw) * sideways)
+        velocity[:, 1] += np.where(along, sideways, np.cos(yaw) * sideways)
+    return Rows(
+        stamp_ns=stamp,
+        stamped=stamped,
+        log_ns=log_ns,
+        ids=np.full(n, b"ego"),
+        frames=frames,
+        place=place,
+        turn=turn,
+        size=blank(n),
+        classes=np.full(n, CLASSES.index("vehicle"), np.int8),
+        along=along,
+        faces=np.ones(n, np.bool_),
+        velocity=velocity,
+        acceleration=blank(n),
+        t_ns=stamp,
+    )
+
+
+def add_transforms(frames: Frames, table: Table, log_ns: NDArray[np.int64], *, static: bool, own_times: bool) -> None:
+    """Add the transforms of TFMessages, in the order of the log."""
+    items = table.children["transforms"]
+    if not items.n:
+        return
+    t_ns = stamps(items, "header.stamp")[0] if own_times else log_ns[items.parent]
+    places = vectors(items, "transform.translation")
+    turns = unit(vectors(items, "transform.rotation", "xyzw"))
+    pairs = np.stack([items.columns["child_frame_id"].astype("S255"), items.columns["header.frame_id"].astype("S255")])
+    unique, which = np.unique(pairs, axis=1, return_inverse=True)
+    which = which.reshape(-1)
+    for i, (child, parent) in enumerate(unique.T.tolist()):
+        here = which == i
+        frames.add(
+            clean(child.decode("utf-8", "replace")),
+            clean(parent.decode("utf-8", "replace")),
+            t_ns[here],
+            Poses(places[here], turns[here]),
+            static=static,
+        )
+
+
+def indicators(t_ns: NDArray[np.int64], reports: dict[str, tuple[NDArray[np.int64], NDArray[Any]]]) -> NDArray[np.int8]:
+    """Return the ego's indicator at given times, by the last reports no older than `STALE_NS`; -1 where not known.
+
+    Hazard lights count before a side; a hazard report alone does not tell that no side is on.
+    """
+    side, hazard = (_last(t_ns, reports.get(name)) for name in (TURN, HAZARD))
+    result = np.full(len(t_ns), -1, np.int8)
+    for number, code in _INDICATOR.items():
+        result[side == number] = code
+    if HAZARD in reports:  # a vehicle that reports hazard lights may have them on while no report is there
+        result[hazard < 0] = -1
+    result[hazard == _HAZARD_ON] = _HAZARD
+    return result
+
+
+def _last(t_ns: NDArray[np.int64], reports: tuple[NDArray[np.int64], NDArray[Any]] | None) -> NDArray[np.int64]:
+    if reports is None or not len(reports[0]):
+        return np.full(len(t_ns), -1, np.int64)
+    order = np.argsort(reports[0], kind="stable")
+    times, values = reports[0][order], reports[1][order].astype(np.int64)
+    at = np.searchsorted(times, t_ns, side="right") - 1
+    fresh = (at >= 0) & (t_ns - times[np.maximum(at, 0)] <= STALE_NS)
+    return np.where(fresh, values[np.maximum(at, 0)], -1)
+
+
+def engagement(reports: dict[str, tuple[NDArray[np.int64], NDArray[Any]]], ego: str) -> pa.Table | None:
+    """Return who drives as declared events `engaged` on and off, where it changes; None where nobody says.
+
+    What the vehicle reports counts before what it was told to do. Only full automation is engaged.
+    """
+    if MODE in reports:
+        t_ns, on = reports[MODE][0], reports[MODE][1] == _AUTONOMOUS
+    elif ENGAGE in reports:
+        t_ns, on = reports[ENGAGE][0], reports[ENGAGE][1] != 0
+    else:
+        return None
+    order = np.argsort(t_ns, kind="stable")
+    t_ns, on = t_ns[order], on[order]
+    changes = np.flatnonzero(np.r_[True, on[1:] != on[:-1]]) if len(on) else np.zeros(0, np.intp)
+    return pa.table(
+        {
+            "t_ns": pa.array(t_ns[changes], pa.int64()),
+            "actor_id": pa.array([ego] * len(changes), pa.string()),
+            "event": pa.array(["engaged"] * len(changes), pa.string()),
+            "value": pa.array(["on" if value else "off" for value in on[changes]], pa.string()),
+        }
+    )

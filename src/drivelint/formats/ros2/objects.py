@@ -1,0 +1,240 @@
+"""The messages of ROS 2 that list other road users, each read into the same rows.
+
+Definitions: astuff_sensor_msgs/derived_object_msgs (as the CARLA bridge fills them), autoware_msgs/autoware_perception_msgs,
+ros-perception/vision_msgs (before and after its version 4).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from drivelint.drive.trace import CLASSES
+from drivelint.formats.ros2.rows import Rows, blank, distinct
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from drivelint.formats.frames import Vectors
+    from drivelint.formats.protobuf.descriptors import Tree
+    from drivelint.formats.ros2.cdr import Table
+
+STAMP: Final[Tree] = {"sec": None, "nanosec": None, "nsec": None}
+HEADER: Final[Tree] = {"stamp": STAMP, "frame_id": None}
+XYZ: Final[Tree] = {"x": None, "y": None, "z": None}
+POSE: Final[Tree] = {"position": XYZ, "orientation": {**XYZ, "w": None}}
+_HYPOTHESIS: Final[Tree] = {"class_id": None, "score": None}
+_BOX, _SPHERE, _CYLINDER = 1, 2, 3
+_NO_ORIENTATION, _EITHER_WAY = 0, 1
+_UNKNOWN = -1
+
+
+def codes(*words: str | None) -> NDArray[np.int8]:
+    """Return our class codes of a numbered list of words."""
+    return np.array([_UNKNOWN if word is None else CLASSES.index(word) for word in words], np.int8)
+
+
+_DERIVED = codes(
+    None, None, None, None, "pedestrian", "bicycle", "car", "truck", "motorcycle", "vehicle", "object", "object"
+)
+_AUTOWARE = codes(
+    None,
+    "car",
+    "truck",
+    "bus",
+    "trailer",
+    "motorcycle",
+    "bicycle",
+    "pedestrian",
+    "animal",
+    "object",
+    "object",
+    "object",
+)
+_WORDS: Final = {
+    **{word: word for word in CLASSES},
+    "person": "pedestrian", "bike": "bicycle", "cyclist": "bicycle", "motorbike": "motorcycle", "lorry": "truck",
+}  # fmt: skip
+
+
+def class_of(word: str) -> int:
+    """Return our class code of a word such as `Car`, `vehicle.car` or `PERSON`; -1 for one that is not known."""
+    known = _WORDS.get(word.strip().lower().replace("/", ".").rsplit(".", 1)[-1])
+    return _UNKNOWN if known is None else CLASSES.index(known)
+
+
+def stamps(table: Table, path: str) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    """Return a time in nanoseconds, from seconds and nanoseconds or one number of seconds, and whether there is one."""
+    columns = table.columns
+    whole = columns.get(f"{path}.sec", columns.get(path))
+    if whole is None:
+        return np.zeros(table.n, np.int64), np.zeros(table.n, np.bool_)
+    rest = columns.get(f"{path}.nanosec", columns.get(f"{path}.nsec", np.zeros(table.n, np.int64)))
+    if whole.dtype.kind == "f":
+        t_ns = np.rint(np.nan_to_num(whole) * 1e9).astype(np.int64) + rest.astype(np.int64)
+    else:
+        t_ns = whole.astype(np.int64) * 1_000_000_000 + rest.astype(np.int64)
+    return t_ns, np.ones(table.n, np.bool_)
+
+
+def vectors(table: Table, path: str, axes: str = "xyz") -> Vectors:
+    """Return the coordinates of a vector as columns; NaN for those that the definition does not have."""
+    missing = np.full(table.n, np.nan)
+    return np.stack(
+        [table.columns.get(f"{path}.{axis}", missing).astype(np.float64, copy=False) for axis in axes], axis=1
+    )
+
+
+@dataclass(frozen=True)
+class Kind:
+    """How one message type is read: what of it, the path of its list, and (messages, their items) -> rows, in that order.
+
+    `Rows.log_ns` is each row's message: whoever has the container's times puts them there.
+    """
+
+    tree: Tree
+    items: str
+    rows: Callable[[Table, Table], Rows]
+
+
+def _rows(top: Table, items: Table, ids: NDArray[Any], frame: str | None, pose: str) -> Rows:
+    """Fill in what all kinds have alike: times and frames of the message, unless an item says its own frame, and poses."""
+    stamp, stamped = stamps(top, "header.stamp")
+    frames = top.columns.get("header.frame_id", np.zeros(top.n, "S1"))[items.parent]
+    own = items.columns.get(frame) if frame is not None else None
+    if own is not None:
+        frames = np.where(own == b"", frames, own)
+    n = items.n
+    return Rows(
+        stamp_ns=stamp[items.parent],
+        stamped=stamped[items.parent],
+        log_ns=items.parent.astype(np.int64),
+        ids=ids,
+        frames=frames,
+        place=vectors(items, f"{pose}.position"),
+        turn=vectors(items, f"{pose}.orientation", "xyzw"),
+        size=blank(n),
+        classes=np.full(n, _UNKNOWN, np.int8),
+        along=np.zeros(n, np.bool_),
+        faces=np.ones(n, np.bool_),
+        velocity=blank(n),
+        acceleration=blank(n),
+        t_ns=stamp[items.parent],
+    )
+
+
+def _derived(top: Table, items: Table) -> Rows:
+    rows = _rows(top, items, items.columns["id"], "header.frame_id", "pose")
+    rows.velocity, rows.acceleration = vectors(items, "twist.linear"), vectors(items, "accel.linear")
+    form, numbers = items.columns["shape.type"], items.columns["shape.dimensions"]
+    rows.size = np.where((form == _BOX)[:, None], numbers, np.nan)
+    round_ = np.stack([2.0 * numbers[:, 1], 2.0 * numbers[:, 1], numbers[:, 0]], axis=1)  # height, radius
+    rows.size = np.where((form == _CYLINDER)[:, None], round_, rows.size)
+    rows.size = np.where((form == _SPHERE)[:, None], 2.0 * numbers[:, :1], rows.size)
+    rows.classes = _looked_up(_DERIVED, items.columns["classification"])
+    return rows
+
+
+def _autoware(top: Table, items: Table) -> Rows:
+    ids = np.ascontiguousarray(items.columns["object_id.uuid"]).view("V16").reshape(-1)
+    pose, twist, accel = (f"kinematics.{name}_with_covariance" for name in ("pose", "twist", "acceleration"))
+    rows = _rows(top, items, ids, None, f"{pose}.pose")
+    rows.along[:] = True
+    rows.velocity, rows.acceleration = vectors(items, f"{twist}.twist.linear"), vectors(items, f"{accel}.accel.linear")
+    rows.size = vectors(items, "shape.dimensions")
+    rows.classes = _looked_up(_AUTOWARE, _likeliest(items, "classification", "label", "probability", 0))
+    said = items.columns.get("kinematics.orientation_availability")
+    if said is not None:
+        rows.turn[said == _NO_ORIENTATION] = np.nan
+        rows.faces = said != _EITHER_WAY
+    return rows
+
+
+def _detections(top: Table, items: Table) -> Rows:
+    name = next((c for c in ("id", "tracking_id") if c in items.columns), None)
+    ids = items.columns[name] if name is not None else np.zeros(items.n, "S1")
+    rows = _rows(top, items, ids, "header.frame_id", "bbox.center")
+    rows.size = vectors(items, "bbox.size")
+    results = items.children["results"]
+    key = next((c for c in ("hypothesis.class_id", "id") if c in results.columns), None)
+    score = next((c for c in ("hypothesis.score", "score") if c in results.columns), None)
+    if key is not None and score is not None and results.columns[key].dtype.kind == "S":
+        word = _likeliest(items, "results", key, score, b"")
+        words, which = distinct(word)
+        rows.classes = np.array([class_of(each) for each in words], np.int8)[which]
+    return rows
+
+
+def _likeliest(items: Table, path: str, label: str, score: str, none: Any) -> NDArray[Any]:
+    """Return, per item, the label with the highest score of those listed in it, the first of equals; `none` for none."""
+    listed = items.children[path]
+    labels = listed.columns[label]
+    result = np.full(items.n, none, labels.dtype)
+    order = np.lexsort((np.arange(listed.n), -listed.columns[score], listed.parent))
+    parents, first = np.unique(listed.parent[order], return_index=True)
+    result[parents] = labels[order[first]]
+    return result
+
+
+def _looked_up(known: NDArray[np.int8], numbers: NDArray[Any]) -> NDArray[np.int8]:
+    inside = (numbers >= 0) & (numbers < len(known))
+    result: NDArray[np.int8] = np.where(inside, known[np.where(inside, numbers, 0)], np.int8(_UNKNOWN)).astype(np.int8)
+    return result
+
+
+_TRACKED: Final = Kind(
+    {
+        "header": HEADER,
+        "objects": {
+            "object_id": {"uuid": None},
+            "classification": {"label": None, "probability": None},
+            "kinematics": {
+                "pose_with_covariance": {"pose": POSE},
+                "twist_with_covariance": {"twist": {"linear": XYZ}},
+                "acceleration_with_covariance": {"accel": {"linear": XYZ}},
+                "orientation_availability": None,
+            },
+            "shape": {"dimensions": XYZ},
+        },
+    },
+    "objects",
+    _autoware,
+)
+KINDS: Final[dict[str, Kind]] = {
+    "derived_object_msgs/ObjectArray": Kind(
+        {
+            "header": HEADER,
+            "objects": {
+                "header": {"frame_id": None},
+                "id": None,
+                "pose": POSE,
+                "twist": {"linear": XYZ},
+                "accel": {"linear": XYZ},
+                "shape": {"type": None, "dimensions": None},
+                "classification": None,
+            },
+        },
+        "objects",
+        _derived,
+    ),
+    "autoware_perception_msgs/TrackedObjects": _TRACKED,
+    "vision_msgs/Detection3DArray": Kind(
+        {
+            "header": HEADER,
+            "detections": {
+                "header": {"frame_id": None},
+                "results": {"hypothesis": _HYPOTHESIS, "id": None, "score": None},
+                "bbox": {"center": POSE, "size": XYZ},
+                "id": None,
+                "tracking_id": None,
+            },
+        },
+        "detections",
+        _detections,
+    ),
+}
+"""Message type -> how it is read."""

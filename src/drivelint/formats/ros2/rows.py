@@ -1,0 +1,259 @@
+"""Poses as recorded, each in a frame and at a time of its own, and their way into the states of the fixed frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyarrow as pa
+
+from drivelint.drive.order import rate, steps
+from drivelint.drive.trace import EPOCH_NS, NUMBERS, SIZES, Finding, FrameTimes, States
+from drivelint.formats.frames import Poses, clean, rotated, unit
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    from drivelint.formats.frames import Frames, Vectors
+
+MOVING_MPS = 2.0
+"""Below this speed the two ways to read a velocity differ by no more than positions tremble."""
+CLEARLY = 3.0
+"""A velocity is read in the other frame where that fits the positions this many times better, and well."""
+FITS_MPS = 0.5
+ASKED = 8
+"""Of so many actors, those that move most."""
+ENOUGH = 20
+"""So many moving samples tell in which frame velocities are."""
+
+
+@dataclass
+class Rows:
+    """n poses in the order of the log. Vectors have three columns; NaN: unknown.
+
+    `stamp_ns` is the messages' own time (`stamped`: they have one), `log_ns` the container's. `ids` and `frames` are bytes.
+    `along`: velocity and acceleration are given along the actor's own axes, else along those of `frames`. `faces`: the
+    front is known, not only the axis. `classes` index `CLASSES`, -1: unknown. `t_ns` is filled in by `common_clock`.
+    `at_ns`: when a frame that moves is looked up, if not at the pose's own time.
+    """
+
+    stamp_ns: NDArray[np.int64]
+    stamped: NDArray[np.bool_]
+    log_ns: NDArray[np.int64]
+    ids: NDArray[Any]
+    frames: NDArray[Any]
+    place: Vectors
+    turn: Vectors
+    size: Vectors
+    classes: NDArray[np.int8]
+    along: NDArray[np.bool_]
+    faces: NDArray[np.bool_]
+    velocity: Vectors
+    acceleration: Vectors
+    t_ns: NDArray[np.int64]
+    at_ns: NDArray[np.int64] | None = None
+
+    def __len__(self) -> int:
+        return len(self.stamp_ns)
+
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Rows:
+        """Return the chosen rows."""
+        return Rows(**_columns(lambda name: None if (v := getattr(self, name)) is None else v[rows]))
+
+
+def joined(parts: Sequence[Rows]) -> Rows:
+    """Return the rows of several batches."""
+    lists = {item.name: [getattr(part, item.name) for part in parts] for item in fields(Rows)}
+    return Rows(**_columns(lambda name: None if lists[name][0] is None else np.concatenate(lists[name])))
+
+
+def _columns(of: Callable[[str], Any]) -> dict[str, Any]:
+    return {item.name: of(item.name) for item in fields(Rows)}
+
+
+def blank(n: int) -> Vectors:
+    """Return vectors of which nothing is known."""
+    return np.full((n, 3), np.nan)
+
+
+def named(rows: Rows) -> tuple[list[str], NDArray[np.int32]]:
+    """Return the distinct ids as text, and each row's index into them."""
+    return distinct(rows.ids)
+
+
+def distinct(values: NDArray[Any]) -> tuple[list[str], NDArray[np.int32]]:
+    """Return the distinct values as text, in the order in which they appear, and each row's index into them.
+
+    Bytes are texts, or UUIDs where they are sixteen of any value (numpy's kind V). Hashed, not sorted: four times faster.
+    """
+    if not len(values):
+        return [], np.zeros(0, np.int32)
+    if values.dtype.kind in "SV":
+        width = pa.binary(values.dtype.itemsize)
+        column = pa.FixedSizeBinaryArray.from_buffers(
+            width, len(values), [None, pa.py_buffer(np.ascontiguousarray(values))]
+        )
+    else:
+        column = pa.array(values.astype(values.dtype.newbyteorder("="), copy=False))
+    coded = column.dictionary_encode()
+    words = coded.dictionary.to_pylist()
+    if values.dtype.kind == "V":
+        words = [f"{h[:8]}-{h[8:12]}-{h[12:16]}-{h[16:20]}-{h[20:]}" for h in (word.hex() for word in words)]
+    elif values.dtype.kind == "S":
+        words = [word.rstrip(b"\0").decode("utf-8", "backslashreplace") for word in words]
+    return [str(word) for word in words], coded.indices.to_numpy(zero_copy_only=False)
+
+
+def placed(rows: Rows, frames: Frames, fixed: str, what: str) -> tuple[States, list[Finding]]:
+    """Bring poses into the fixed frame. Those whose frame cannot be followed at their time stay in without a place.
+
+    `what` they are is said in the findings.
+    """
+    ids, actor = named(rows)
+    place, turn = rows.place.copy(), unit(rows.turn)
+    along = rows.along[:, None]
+    outward = rotated(turn, rows.velocity)
+    velocity, swapped = np.where(along, outward, rows.velocity), np.where(along, rows.velocity, outward)
+    acceleration = np.where(along, rotated(turn, rows.acceleration), rows.acceleration)
+    findings: list[Finding] = []
+    names, which = distinct(rows.frames)
+    at_ns = rows.t_ns if rows.at_ns is None else rows.at_ns
+    for i, frame in enumerate(map(clean, names)):
+        if frame == fixed:
+            continue
+        here = np.flatnonzero(which == i)
+        outer = frames.into(fixed, frame, at_ns[here])
+        inner = outer.of(Poses(place[here], turn[here]))
+        place[here], turn[here] = inner.place, inner.turn
+        for vectors in (velocity, acceleration, swapped):
+            vectors[here] = rotated(outer.turn, vectors[here])
+        lost = np.isnan(outer.place[:, 0])
+        if lost.any():
+            findings.append(_lost(what, frame, fixed, frames, rows.t_ns[here[lost]]))
+    states = States(
+        ids,
+        actor,
+        rows.t_ns,
+        {
+            **dict(zip(NUMBERS[:3], place.T.copy(), strict=True)),
+            "yaw_rad": np.where(rows.faces, Poses(place, turn).yaw, np.nan),
+            "vx_mps": velocity[:, 0].copy(), "vy_mps": velocity[:, 1].copy(),
+            "ax_mps2": acceleration[:, 0].copy(), "ay_mps2": acceleration[:, 1].copy(),
+            **{name: rows.size[:, k].astype(np.float64) for k, name in enumerate(SIZES)},
+        },
+        {"actor_class": rows.classes},
+        _odd(rows.place) | _odd(rows.velocity),
+    )  # fmt: skip
+    for name, values in states.numbers.items():
+        states.numbers[name] = np.where(np.isfinite(values), values, np.nan)
+    findings += _other_frame(states, swapped, rows.along, what)
+    return states, findings
+
+
+def _odd(vectors: Vectors) -> NDArray[np.bool_]:
+    odd: NDArray[np.bool_] = np.asarray(np.isinf(vectors).any(axis=1))
+    return odd
+
+
+def _lost(what: str, frame: str, fixed: str, frames: Frames, t_ns: NDArray[np.int64]) -> Finding:
+    if frame in frames.ambiguous:
+        why = f"several frames say that they hold {frame!r}"
+    elif frames.chain(frame, fixed) is None:
+        why = f"no transform leads from {frame!r} to {fixed!r}"
+    else:
+        why = f"the transform from {frame!r} to {fixed!r} is not recorded at their time"
+    first = int(t_ns.min())
+    message = f"{what}: {len(t_ns)} poses from {first / 1e9:g} s on cannot be placed, since {why}: they are present but not placed"
+    return Finding("frame_unresolved", "error", message, len(t_ns), first)
+
+
+def _other_frame(states: States, swapped: Vectors, along: NDArray[np.bool_], what: str) -> list[Finding]:
+    """Read velocities in the other frame where they then are what the positions do, and are not as they should be given."""
+    vx, vy = states.numbers["vx_mps"], states.numbers["vy_mps"]
+    fast = np.bincount(states.actor[np.hypot(swapped[:, 0], swapped[:, 1]) > MOVING_MPS], minlength=len(states.ids))
+    chosen = np.zeros(len(states.ids), np.bool_)
+    chosen[np.argsort(-fast, kind="stable")[:ASKED]] = True
+    some = np.flatnonzero(chosen[states.actor])
+    order = some[np.lexsort((states.t_ns[some], states.actor[some]))]
+    track = states.take(order)
+    if len(track) < ENOUGH:
+        return []
+    step = steps(track)
+    dx, dy = rate(track.numbers["x_m"], step), rate(track.numbers["y_m"], step)
+    moving = np.hypot(dx, dy) > MOVING_MPS
+    wrong = np.hypot(track.numbers["vx_mps"] - dx, track.numbers["vy_mps"] - dy)[moving]
+    other = np.hypot(swapped[order, 0] - dx, swapped[order, 1] - dy)[moving]
+    known = np.isfinite(wrong) & np.isfinite(other)
+    if int(known.sum()) < ENOUGH:
+        return []
+    off, fit = float(np.median(wrong[known])), float(np.median(other[known]))
+    if fit > FITS_MPS or off < max(CLEARLY * fit, FITS_MPS):
+        return []
+    states.numbers["vx_mps"] = np.where(np.isfinite(swapped[:, 0]), swapped[:, 0], vx)
+    states.numbers["vy_mps"] = np.where(np.isfinite(swapped[:, 1]), swapped[:, 1], vy)
+    ways = ("along the actor's axes", "in the frame of the positions")
+    given, is_ = ways if bool(along[0]) else reversed(ways)
+    message = (
+        f"{what}: velocities should be given {given} and then miss the positions' changes by {off:.2f} m/s (median); "
+        f"they are {is_} ({fit:.2f} m/s), and are read so"
+    )
+    return [Finding("twist_frame", "warning", message, len(states), int(states.t_ns.min()))]
+
+
+def common_clock(parts: dict[str, Rows], findings: list[Finding]) -> bool:
+    """Say whether the messages' own times can be used: all have one, it runs, and all count from the same moment.
+
+    Else the times of the container count, for all of them, and a finding says why. Fills `t_ns` of the rows.
+    """
+    why = None
+    ranges = []
+    for what, rows in parts.items():
+        if not len(rows):
+            continue
+        # 0 is a time where a simulation's clock starts, and none where the others count from 1970
+        missing = ~rows.stamped | ((rows.stamp_ns == 0) & (rows.stamp_ns.max() >= EPOCH_NS))
+        if missing.any():
+            why = f"{what}: {int(missing.sum())} of {len(rows)} poses are without a time stamp"
+        elif len(rows) > 1 and rows.stamp_ns.min() == rows.stamp_ns.max() and rows.log_ns.min() < rows.log_ns.max():
+            why = f"the time stamps of {what} stand still"
+        else:
+            ranges.append((int(rows.stamp_ns.min()), int(rows.stamp_ns.max()), what))
+    if why is None and len(ranges) > 1:
+        latest, earliest = max(ranges), min(ranges, key=lambda item: item[1])
+        if latest[0] > earliest[1]:
+            why = f"the time stamps of {latest[2]} and {earliest[2]} have no moment in common: two clocks"
+    for rows in parts.values():
+        rows.t_ns = rows.stamp_ns if why is None else rows.log_ns
+    if why is not None:
+        n = sum(len(rows) for rows in parts.values())
+        first = min((int(rows.t_ns.min()) for rows in parts.values() if len(rows)), default=0)
+        message = f"{why}: the log times of the container are used for all messages"
+        findings.append(Finding("log_time_used", "warning", message, n, first))
+    return why is None
+
+
+def clocks(parts: Sequence[Rows]) -> tuple[FrameTimes, int | None]:
+    """Return each message once, in the order of the file, and when the log begins in UTC where its clock tells."""
+    t_ns, log_ns = np.concatenate([part.t_ns for part in parts]), np.concatenate([part.log_ns for part in parts])
+    new = np.r_[True, (t_ns[1:] != t_ns[:-1]) | (log_ns[1:] != log_ns[:-1])]
+    pairs = np.unique(np.stack([log_ns[new], t_ns[new]]), axis=1)
+    first = int(pairs[0, 0])
+    return FrameTimes(pairs[1], pairs[0].astype(np.uint64)), first if first >= EPOCH_NS else None
+
+
+def same_actor(ego: States, others: States) -> list[str]:
+    """Return the ids of actors that are where the ego is, always: the ego among the objects."""
+    times, first = np.unique(ego.t_ns, return_index=True)
+    if len(times) < 2 or not len(others):
+        return []
+    with np.errstate(invalid="ignore"):
+        x = np.interp(others.t_ns, times, ego.numbers["x_m"][first], left=np.nan, right=np.nan)
+        y = np.interp(others.t_ns, times, ego.numbers["y_m"][first], left=np.nan, right=np.nan)
+        off = np.hypot(others.numbers["x_m"] - x, others.numbers["y_m"] - y)
+    known = np.isfinite(off)
+    n = np.bincount(others.actor[known], minlength=len(others.ids))
+    near = np.bincount(others.actor[known & (off < 0.5)], minlength=len(others.ids))
+    return [others.ids[i] for i in np.flatnonzero((n >= 2) & (near >= 0.95 * n))]

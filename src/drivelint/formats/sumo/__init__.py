@@ -1,0 +1,1 @@
+"""SUMO: floating car data, traffic light states, networks."""

@@ -1,0 +1,369 @@
+"""SUMO's floating car data (`--fcd-output`, XML, CSV or Parquet), with the vehicle types of its route files.
+
+A position is the middle of the front bumper, an angle runs clockwise from north. FCD has no sizes: they stand in the
+`vType` elements of a route or additional file, given with --mapping or lying beside the log; states of lights see `sumo_lights`.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.csv as pa_csv
+
+from drivelint.drive.order import listed
+from drivelint.drive.trace import BRAKE_LIGHTS, CLASSES, INDICATORS, Finding, Recording, States
+from drivelint.errors import TraceError, UsageError
+from drivelint.formats import markup
+from drivelint.formats.sumo import lights as sumo_lights
+from drivelint.formats.tables import parquet
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+HEAD_BYTES = 65536
+_COLUMNS = ("timestep_time", "vehicle_id", "vehicle_x", "vehicle_y", "vehicle_angle")
+_FIELDS = ("id", "x", "y", "angle", "type", "speed", "signals", "acceleration")
+_BESIDE = ("*.rou.xml", "*.add.xml", "*vtype*.xml")
+_CLASSES = {
+    "passenger": "car", "private": "car", "taxi": "car", "evehicle": "car", "hov": "car", "custom1": "vehicle",
+    "custom2": "vehicle", "delivery": "van", "emergency": "vehicle", "authority": "vehicle", "army": "vehicle",
+    "vip": "car", "truck": "truck", "trailer": "truck", "bus": "bus", "coach": "bus", "motorcycle": "motorcycle",
+    "moped": "motorcycle", "bicycle": "bicycle", "scooter": "bicycle", "pedestrian": "pedestrian", "wheelchair": "pedestrian",
+}  # fmt: skip
+_SIZES = {
+    "passenger": (5.0, 1.8), "private": (5.0, 1.8), "taxi": (5.0, 1.8), "hov": (5.0, 1.8), "evehicle": (5.0, 1.8),
+    "delivery": (6.5, 2.16), "emergency": (6.5, 2.16), "truck": (7.1, 2.4), "trailer": (16.5, 2.55), "bus": (12.0, 2.5),
+    "coach": (14.0, 2.6), "motorcycle": (2.2, 0.9), "moped": (2.1, 0.8), "bicycle": (1.6, 0.65), "pedestrian": (0.215, 0.478),
+}  # fmt: skip
+"""SUMO's own sizes by vClass, where a vType says none (sumo.dlr.de, Vehicle Type Parameter Defaults)."""
+_DEFAULTS = {
+    "DEFAULT_VEHTYPE": "passenger", "DEFAULT_PEDTYPE": "pedestrian", "DEFAULT_BIKETYPE": "bicycle", "DEFAULT_TAXITYPE": "taxi",
+}  # fmt: skip
+_RIGHT, _LEFT, _EMERGENCY, _BRAKE = 1, 2, 4, 8
+
+
+@dataclass(frozen=True)
+class VehicleType:
+    """What a vType says: our class, length and width in metres; NaN: not known."""
+
+    actor_class: str | None
+    length_m: float
+    width_m: float
+
+
+def looks_like(path: Path, head: bytes) -> bool:
+    """Say whether a file is FCD: an <fcd-export> element, or a table with its columns."""
+    if head.startswith(b"PAR1"):
+        return set(_COLUMNS) <= set(parquet.schema(path).names)
+    if _is_csv(head):
+        names = re.split(r"[;,\t]", head.split(b"\n", 1)[0].decode("utf-8-sig", "replace").strip())
+        return set(_COLUMNS) <= {name.strip('"') for name in names}
+    if b"<fcd-export" in head:
+        return True
+    if head.lstrip()[:1] != b"<" or b"sumo" not in head.lower():
+        return False
+    with path.open("rb") as file:  # its comment with the configuration may be long
+        return b"<fcd-export" in file.read(HEAD_BYTES)
+
+
+def read(path: Path, types_file: str | None) -> Recording:
+    """Read a log; `types_file` is the file with its vTypes, None: those beside it.
+
+    Errors: `TraceError` for a file that cannot be understood, `UsageError` for a types file that has no vType.
+    """
+    table = _rows(path)
+    nameless = pc.fill_null(pc.equal(_text(table, "id"), ""), fill_value=True).to_numpy()
+    # a step at which nobody is there is a row with its time alone
+    filled = np.any([np.isfinite(_floats(table, name)) for name in ("x", "y", "angle", "speed")], axis=0)
+    dropped = int((nameless & filled).sum())
+    table = table.filter(pa.array(~nameless)) if nameless.any() else table
+    if not table.num_rows:
+        raise TraceError(f"{path}: no vehicle in this log")
+    types, notes = _types(path, types_file)
+    recording = _recording(table, types)
+    lights = sumo_lights.beside(path, _is_log)
+    recording.signals = lights.signals
+    recording.notes += [*notes, *lights.notes]
+    recording.findings += lights.findings
+    if dropped:
+        message = f"rows without an id: {dropped}: they are not judged"
+        recording.findings.append(Finding("dropped_row", "error", message, dropped))
+    return recording
+
+
+def _is_log(file: Path) -> bool:
+    with file.open("rb") as opened:
+        return looks_like(file, opened.read(HEAD_BYTES))
+
+
+def _rows(path: Path) -> pa.Table:
+    """Return the log as a table with the columns of SUMO's CSV, those that it has."""
+    with path.open("rb") as file:
+        start = file.read(16)
+    if start.startswith(b"PAR1"):
+        return parquet.table(path)
+    return _csv(path) if _is_csv(start) else _xml(path)
+
+
+def _is_csv(head: bytes) -> bool:
+    """Say whether a file begins with SUMO's first column; other programs that wrote it anew may quote it."""
+    return head.lstrip(b'\xef\xbb\xbf"').startswith(b"timestep_t")
+
+
+def _recording(table: pa.Table, types: dict[str, VehicleType]) -> Recording:
+    ids = pc.dictionary_encode(_text(table, "id")).combine_chunks()
+    kinds = pc.dictionary_encode(pc.fill_null(_text(table, "type"), "")).combine_chunks()
+    said = [types.get(name) or _by_default(name) for name in kinds.dictionary.to_pylist()]
+    code = kinds.indices.to_numpy()
+    length, width = (np.array([getattr(t, side) for t in said], np.float64)[code] for side in ("length_m", "width_m"))
+    yaw = np.pi / 2 - np.radians(_floats(table, "angle"))
+    yaw = np.arctan2(np.sin(yaw), np.cos(yaw))
+    cos, sin = np.cos(yaw), np.sin(yaw)
+    speed, accel = _floats(table, "speed"), _floats(table, "acceleration")
+    half = np.nan_to_num(length) / 2  # of unknown length: the bumper, and the length stays unknown
+    numbers = {
+        "x_m": _floats(table, "x") - half * cos, "y_m": _floats(table, "y") - half * sin, "yaw_rad": yaw,
+        "vx_mps": speed * cos, "vy_mps": speed * sin, "ax_mps2": accel * cos, "ay_mps2": accel * sin,
+        "length_m": length, "width_m": width,
+    }  # fmt: skip
+    classes = [-1 if t.actor_class is None else CLASSES.index(t.actor_class) for t in said]
+    signals = _floats(table, "signals")
+    states = States(
+        [str(i) for i in ids.dictionary.to_pylist()],
+        ids.indices.to_numpy().astype(np.int32),
+        np.round(_floats(table, "time") * 1e9).astype(np.int64),
+        numbers,
+        {"actor_class": np.array(classes, np.int8)[code], **_lights(signals)},
+        np.zeros(len(table), np.bool_),
+    )
+    recording = Recording("sumo-fcd", states)
+    unknown = sorted({name for name, t in zip(kinds.dictionary.to_pylist(), said, strict=True) if np.isnan(t.length_m)})
+    if unknown:
+        message = (
+            f"no size is known of the vehicle types {listed([n or 'without a name' for n in unknown])}: give the route file "
+            "with their vType elements with --mapping; until then their positions are those of the front bumper"
+        )
+        recording.findings.append(Finding("bumper_position", "warning", message, int(np.isnan(length).sum())))
+    return recording
+
+
+def _lights(signals: Floats) -> dict[str, NDArray[np.int8]]:
+    known = ~np.isnan(signals)
+    bits = np.nan_to_num(signals).astype(np.int64)
+    indicator = np.full(len(bits), INDICATORS.index("off"), np.int8)
+    for bit, word in ((_RIGHT, "right"), (_LEFT, "left"), (_EMERGENCY, "hazard")):
+        indicator[bits & bit > 0] = INDICATORS.index(word)
+    indicator[(bits & _RIGHT > 0) & (bits & _LEFT > 0)] = INDICATORS.index("hazard")
+    brake = np.where(bits & _BRAKE > 0, BRAKE_LIGHTS.index("on"), BRAKE_LIGHTS.index("off")).astype(np.int8)
+    return {"indicator": np.where(known, indicator, np.int8(-1)), "brake_light": np.where(known, brake, np.int8(-1))}
+
+
+def _by_default(name: str) -> VehicleType:
+    kind = _DEFAULTS.get(name)
+    return _of_class(kind) if kind else VehicleType(None, np.nan, np.nan)
+
+
+def _of_class(kind: str) -> VehicleType:
+    return VehicleType(_CLASSES.get(kind, "vehicle"), *_SIZES.get(kind, (np.nan, np.nan)))
+
+
+def _types(path: Path, types_file: str | None) -> tuple[dict[str, VehicleType], list[str]]:
+    """Return vType id -> what it says, and a note on where from."""
+    if types_file is not None:
+        file = Path(types_file)
+        found = _read_types(file)
+        if not found:
+            raise UsageError(
+                f"--mapping {types_file}: has no vType: give the route or additional file of the simulation"
+            )
+        return found, []
+    types: dict[str, VehicleType] = {}
+    used = []
+    for file in sorted({file for pattern in _BESIDE for file in path.parent.glob(pattern)}):
+        if found := _read_types(file):
+            types |= found
+            used.append(file.name)
+    return types, [
+        f"{path.name}: sizes of vehicles are those of the vTypes in {listed(used)} beside it"
+    ] if used else []
+
+
+def _read_types(file: Path) -> dict[str, VehicleType]:
+    try:
+        root = markup.parse(file.read_bytes())
+    except OSError as error:
+        raise UsageError(f"--mapping {file}: cannot be read: {error.strerror or error}") from error
+    except markup.RefusedError as error:
+        raise UsageError(f"--mapping {file}: {error}") from None
+    found = {}
+    for element in root.iter("vType"):
+        default = _of_class(element.get("vClass", "passenger"))
+        found[element.get("id", "")] = VehicleType(
+            default.actor_class,
+            _positive(element.get("length"), default.length_m),
+            _positive(element.get("width"), default.width_m),
+        )
+    return found
+
+
+def _positive(text: str | None, default: float) -> float:
+    try:
+        value = float(text) if text is not None else default
+    except ValueError:
+        return float("nan")
+    return value if value > 0 else float("nan")
+
+
+def _text(table: pa.Table, name: str) -> pa.ChunkedArray:
+    column = _column(table, name)
+    return pa.nulls(len(table), pa.string()) if column is None else pc.fill_null(column.cast(pa.string()), "")
+
+
+def _column(table: pa.Table, name: str) -> pa.ChunkedArray | None:
+    wanted = "timestep_time" if name == "time" else f"vehicle_{name}"
+    return table.column(wanted) if wanted in table.schema.names else None
+
+
+def _floats(table: pa.Table, name: str) -> Floats:
+    """Return a column as numbers, NaN where it is absent or empty."""
+    column = _column(table, name)
+    if column is None:
+        return np.full(len(table), np.nan)
+    if pa.types.is_string(column.type) or pa.types.is_binary(column.type):
+        column = column.cast(pa.string())
+        column = pc.if_else(pc.equal(column, ""), pa.scalar(None, pa.string()), column)
+    return np.asarray(pc.fill_null(column.cast(pa.float64()), float("nan")).to_numpy(), np.float64)
+
+
+def _csv(path: Path) -> pa.Table:
+    with path.open("rb") as file:
+        first = file.readline()
+    delimiter = max(";,\t", key=lambda d: first.count(d.encode()))
+    try:
+        return pa_csv.read_csv(
+            path,
+            parse_options=pa_csv.ParseOptions(delimiter=delimiter),
+            convert_options=pa_csv.ConvertOptions(
+                column_types={"vehicle_id": pa.string(), "vehicle_type": pa.string()}
+            ),
+        )
+    except pa.ArrowInvalid as error:
+        raise TraceError(f"{path}: {' '.join(str(error).split())}") from error
+
+
+def _xml(path: Path) -> pa.Table:
+    """Read XML: where all vehicles look like the first, line by line, else by one expression, else by the parser."""
+    content = path.read_bytes()
+    begin = content.find(b"<fcd-export")
+    lines = _lines(content, begin) if b"&" not in content else None
+    if lines is not None:
+        return lines
+    first = re.search(rb"<vehicle\s([^<>]*?)/?>", content[begin:])
+    if first is not None and b"&" not in content:
+        names = [name.decode() for name in re.findall(rb'([\w:]+)="', first[1])]
+        groups = rb"\s+".join(name.encode() + rb'="([^"<]*)"' for name in names)
+        rows = re.findall(rb'<timestep\s+time="([^"<]*)"|<vehicle\s+' + groups + rb"\s*/?>", content[begin:])
+        steps = sum(1 for _ in re.finditer(rb"<timestep\b", content))
+        others = (
+            content.count(b"<vehicle ", begin)
+            + content.count(b"<person ", begin)
+            + content.count(b"<container ", begin)
+        )
+        if len(rows) == steps + others and content.rstrip().endswith(b"</fcd-export>"):
+            return _table(rows, names)
+    return _parsed(path, content)
+
+
+def _lines(content: bytes, begin: int) -> pa.Table | None:
+    """Read a log with an element on each line as a table that quotation marks cut; None where one looks otherwise."""
+    first = re.search(rb"^[ \t]*<vehicle [^\n]*/>$", content[begin:], re.MULTILINE)
+    if first is None or not content.rstrip().endswith(b"</fcd-export>"):
+        return None
+    parts = first[0].decode("utf-8", "replace").split('"')
+    names = [part.strip().removeprefix("<vehicle ").removesuffix("=") for part in parts[:-1:2]]
+    columns = [f"{i}" for i in range(len(parts))]
+    others: list[tuple[int, str]] = []
+
+    def other(row: Any) -> str:
+        others.append((row.number, row.text))
+        return "skip"
+
+    wanted = [c for i, c in enumerate(columns) if i % 2 == 0 or names[i // 2] in _FIELDS]
+    try:
+        table = pa_csv.read_csv(
+            pa.BufferReader(memoryview(content)[begin:]),
+            # one thread: the numbers of lines are only known then
+            pa_csv.ReadOptions(column_names=columns, use_threads=False, block_size=1 << 24),
+            pa_csv.ParseOptions(delimiter='"', quote_char=False, ignore_empty_lines=False, invalid_row_handler=other),
+            pa_csv.ConvertOptions(
+                column_types=dict.fromkeys(wanted, pa.string()), include_columns=wanted, strings_can_be_null=False
+            ),
+        )
+    except pa.ArrowInvalid:
+        return None
+    for column, literal in zip(columns[::2], parts[::2], strict=True):
+        if pc.any(pc.not_equal(table.column(column), literal)).as_py():
+            return None
+    return _timed(table, names, others)
+
+
+def _timed(table: pa.Table, names: list[str], others: list[tuple[int, str]]) -> pa.Table | None:
+    """Give each vehicle the time of the line with a step above it; None where the other lines are not those of steps."""
+    marks, stamps = [], []
+    for number, text in others:
+        line = text.strip()
+        if line.startswith("<timestep") and (step := re.fullmatch(r'<timestep\s+time="([^"<]*)"\s*/?>', line)):
+            marks.append(number)
+            stamps.append(float(step[1]))
+        elif line and not line.startswith(("</timestep>", "<fcd-export", "</fcd-export>")):
+            return None
+    taken = np.array([number for number, _ in others], np.int64)
+    # the n-th vehicle's line: so many lines of other kinds are above it
+    above = np.searchsorted(taken - np.arange(len(taken)), np.arange(table.num_rows) + 1, side="right")
+    at = np.searchsorted(np.array(marks, np.int64), np.arange(table.num_rows) + 1 + above) - 1
+    if not marks or (at < 0).any():
+        return None
+    made: dict[str, Any] = {"timestep_time": pa.array(np.array(stamps, np.float64)[at])}
+    for i, name in enumerate(names):
+        if name in _FIELDS:
+            made[f"vehicle_{name}"] = table.column(f"{2 * i + 1}")
+    return pa.table(made)
+
+
+def _table(rows: list[tuple[bytes, ...]], names: list[str]) -> pa.Table:
+    """Return the table of rows (time of a step, or '' and a vehicle's attributes)."""
+    columns = dict(zip(["time", *names], zip(*rows, strict=True), strict=True))
+    time = np.array(columns["time"], dtype=object)
+    is_step = time != b""
+    stamps = np.array([float(t) for t in time[is_step]], np.float64)
+    at = np.cumsum(is_step)[~is_step] - 1
+    keep = pa.array(~is_step)
+    wanted = [name for name in _FIELDS if name in columns]
+    made: dict[str, Any] = {"timestep_time": pa.array(stamps[at])}
+    for name in wanted:
+        made[f"vehicle_{name}"] = pa.array(columns[name], pa.binary()).filter(keep).cast(pa.string())
+    return pa.table(made)
+
+
+def _parsed(path: Path, content: bytes) -> pa.Table:
+    try:
+        root = markup.parse(content)
+    except markup.RefusedError as error:
+        raise TraceError(f"{path} {error}") from None
+    rows: dict[str, list[Any]] = {"timestep_time": [], **{f"vehicle_{name}": [] for name in _FIELDS}}
+    for step in root.iter("timestep"):
+        for item in step:
+            if item.tag not in {"vehicle", "person", "container"}:
+                continue
+            rows["timestep_time"].append(step.get("time"))
+            for name in _FIELDS:
+                rows[f"vehicle_{name}"].append(item.get(name))
+    return pa.table({name: pa.array(values, pa.string()) for name, values in rows.items()})

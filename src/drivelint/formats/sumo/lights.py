@@ -1,0 +1,127 @@
+"""SUMO's light states (`SaveTLSStates` and `SaveTLSSwitchStates`, XML) that lie beside its floating car data.
+
+A state has a letter for each connection that the light controls; that of connection 3 of light `c` is the signal `c_3`, as in SUMO's
+nets and in the OpenDRIVE that it writes.
+Source: SUMO's documentation of "Simulation/Output/Traffic Lights" and "Simulation/Traffic Lights".
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+import pyarrow as pa
+
+from drivelint.drive.order import listed
+from drivelint.drive.trace import SIGNAL_STATES, Finding
+from drivelint.formats import markup
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+    from pathlib import Path
+
+    from lxml import etree
+
+_BESIDE: Final = "*tls*.xml"
+_HEAD_BYTES: Final = 65536
+_LETTERS: Final = {
+    "r": "red", "u": "red_amber", "y": "amber", "Y": "amber", "g": "green", "G": "green", "o": "flashing", "O": "off",
+}  # fmt: skip
+"""s, green for those who turn right after a stop, is none of our words: not known."""
+
+
+class Lights(NamedTuple):
+    """Rows of signal_id, t_ns and state, None where there are none; what is to be said of them."""
+
+    signals: pa.Table | None
+    notes: list[str]
+    findings: list[Finding]
+
+
+def beside(log: Path, is_log: Callable[[Path], bool]) -> Lights:
+    """Read the states that belong to a log.
+
+    They are in a file named as the log is up to the first dot, or in the only one in a folder with this log alone; `is_log` says
+    whether a file is one. Of others there is a note.
+    """
+    files = [file for file in sorted(log.parent.glob(_BESIDE)) if file != log and _has_states(file)]
+    named = [file for file in files if _first_part(file) == _first_part(log)]
+    if (
+        not named
+        and len(files) == 1
+        and not any(is_log(file) for file in log.parent.iterdir() if file.is_file() and file != log)
+    ):
+        named = files
+    if len(named) != 1:
+        if not files:
+            return Lights(None, [], [])
+        what = "which of them is its own is not known" if named else "none is named as it is"
+        names = listed([file.name for file in named or files])
+        note = f"{log.name}: light states in {names} are not read: {what}: call it {_first_part(log)}.tls.xml"
+        return Lights(None, [note], [])
+    return _read(named[0])
+
+
+def _first_part(file: Path) -> str:
+    return file.name.partition(".")[0]
+
+
+def _has_states(file: Path) -> bool:
+    with file.open("rb") as opened:
+        return b"<tlsStates" in opened.read(_HEAD_BYTES)
+
+
+def _read(file: Path) -> Lights:
+    try:
+        root = markup.parse(file.read_bytes())
+    except markup.RefusedError as error:
+        return Lights(
+            None, [], [Finding("lights_unread", "warning", f"light states of {file.name} are not read: it {error}", 1)]
+        )
+    table, dropped = _rows(root.iter("tlsState"))
+    findings = []
+    if dropped:
+        message = f"light states of {file.name} without a time, light or state: {dropped}: they are left out"
+        findings.append(Finding("malformed_row", "warning", message, dropped))
+    return Lights(table, [f"the states of traffic lights are those of {file.name} beside it"], findings)
+
+
+def _rows(states: Iterable[etree._Element]) -> tuple[pa.Table | None, int]:
+    """Return the rows of all connections, and how many states cannot be understood."""
+    found: dict[tuple[str, int], tuple[list[float], list[str]]] = {}
+    dropped = 0
+    for element in states:
+        light, letters, at = element.get("id"), element.get("state"), _seconds(element.get("time"))
+        if not light or not letters or not letters.isascii() or at is None:
+            dropped += 1
+            continue
+        times, shown = found.setdefault((light, len(letters)), ([], []))
+        times.append(at)
+        shown.append(letters)
+    if not found:
+        return None, dropped
+    words = np.full(256, -1, np.int8)
+    for letter, word in _LETTERS.items():
+        words[ord(letter)] = SIGNAL_STATES.index(word)
+    parts = [
+        _table(light, n, np.array(times), words[np.frombuffer("".join(shown).encode(), np.uint8)])
+        for (light, n), (times, shown) in sorted(found.items())
+    ]
+    return pa.concat_tables(parts), dropped
+
+
+def _table(light: str, n: int, times: np.ndarray, codes: np.ndarray) -> pa.Table:
+    """Return the rows of one light with `n` connections: `times` (t,) in seconds, `codes` (t * n,) of SIGNAL_STATES, -1: not known."""
+    number = pa.array(np.tile(np.arange(n, dtype=np.int32), len(times)))
+    names = pa.DictionaryArray.from_arrays(number, pa.array([f"{light}_{k}" for k in range(n)]))
+    states = pa.DictionaryArray.from_arrays(pa.array(codes, mask=codes < 0), pa.array(list(SIGNAL_STATES)))
+    t_ns = np.repeat(np.round(times * 1e9).astype(np.int64), n)
+    return pa.table({"signal_id": names.cast(pa.string()), "t_ns": t_ns, "state": states.cast(pa.string())})
+
+
+def _seconds(text: str | None) -> float | None:
+    try:
+        value = float(text or "nan")
+    except ValueError:
+        return None
+    return value if abs(value) < 1e9 else None

@@ -1,0 +1,273 @@
+"""SUMO networks (`.net.xml`): the lanes, ways through junctions, limits, lights and priorities that SUMO itself drives by.
+
+Edges have lanes with a middle line and a width; index 0 is the one next to the edge of the road. Edges whose id begins with a colon lie
+inside a junction. What a net has no word for, markings, kerbs and crossings' kinds, is not known. Source: SUMO's documentation of
+"SUMO Road Networks", "VClasses" and "Plain XML".
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from drivelint.errors import MapError
+from drivelint.formats import markup
+from drivelint.formats.sumo.rights import Rows, control_rows
+from drivelint.road.boundary_lanes import BoundedLane, build, crossings, tables
+from drivelint.road.contract import Environment, MapSource, Request, environment_id
+from drivelint.road.quality import Quality
+from drivelint.road.tables import from_rows
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from lxml import etree
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+WIDTH_M: Final = 3.2  # SUMO's, where a lane says none
+_LONGEST_MITRE: Final = 3.0
+_BEGUN_M: Final = 0.5
+_LEAST_COS: Final = 0.85
+_KINDS: Final = (
+    # the first of these that may drive on a lane says what it is
+    ("driving", {"passenger", "private", "truck", "delivery", "motorcycle", "evehicle", "trailer"}),
+    ("bus", {"bus", "coach"}),
+    ("taxi", {"taxi"}),
+    ("HOV", {"hov"}),
+    ("tram", {"tram", "cable_car"}),
+    ("rail", {"rail", "rail_urban", "rail_electric", "rail_fast", "subway"}),
+    ("biking", {"bicycle", "moped", "scooter"}),
+    ("sidewalk", {"pedestrian", "wheelchair"}),
+    ("restricted", {"emergency", "authority", "army", "vip", "custom1", "custom2", "container"}),
+)
+_EVERYBODY: Final = frozenset().union(*(classes for _, classes in _KINDS))
+_DRIVABLE: Final = frozenset({"driving", "bus", "taxi", "HOV"})
+_ROADS: Final = {
+    "motorway": "motorway",
+    "motorway_link": "motorway",
+    "residential": "town",
+    "living_street": "town",
+    "pedestrian": "pedestrian",
+}
+
+
+@dataclass
+class _Net:
+    """The file's lanes by id, and the edges that they belong to, in order of index."""
+
+    lanes: dict[str, BoundedLane] = field(default_factory=dict)
+    edges: dict[str, list[str]] = field(default_factory=dict)
+    internal: set[str] = field(default_factory=set)  # edges
+    walks: list[BoundedLane] = field(default_factory=list)
+
+
+class SumoNetReader:
+    """SUMO's own road networks."""
+
+    format = "sumo"
+
+    def read(self, source: MapSource, request: Request) -> Environment:
+        """Return the map's tables; `MapError` where the file is not XML or nothing in it can be built."""
+        try:
+            root = markup.parse(source.content)
+        except markup.RefusedError as error:
+            raise MapError(f"map {source.name} {error}") from None
+        quality = Quality()
+        left = root.get("lefthand") in {"true", "1"}
+        net = _read(root, left=left, quality=quality)
+        _connect(root, net)
+        lanes = build(net.lanes.values(), request.offset, quality)
+        if not lanes:
+            first = next((row["message"] for row in quality.rows), "it has no <lane>")
+            raise MapError(f"map {source.name} has no lane that can be built: {first}")
+        handedness, how = _handedness(request, "lht" if left else "rht", quality)
+        name = environment_id(source, request.offset, handedness)
+        signals, stop_lines = control_rows(root, {lane.lanelet_id: lane for lane in lanes})
+        rows: dict[str, Rows] = {
+            "environment": [_environment(source, request, handedness, how)],
+            "traffic_signal": signals,
+            "stop_line": stop_lines,
+            "road_object": [],
+            "crossing": crossings(net.walks, lanes, request.offset),
+        }
+        result = tables(name, lanes)
+        result |= {table: from_rows(table, name, content) for table, content in rows.items()}
+        result["map_quality"] = quality.table(name)
+        return Environment(name, handedness, how, result)
+
+
+def _environment(source: MapSource, request: Request, handedness: str, how: str) -> dict[str, Any]:
+    return {
+        "name": source.name, "sha256": source.sha256, "format": SumoNetReader.format,
+        "offset_x_m": request.offset[0], "offset_y_m": request.offset[1],
+        "handedness": handedness, "handedness_source": how, "geo_reference": None,
+    }  # fmt: skip
+
+
+def _handedness(request: Request, said: str, quality: Quality) -> tuple[str, str]:
+    """Return the side that is driven on: a net says so where it is the left, and nothing where it is the right."""
+    if request.handedness == "auto":
+        return said, "attribute"
+    if request.handedness != said:
+        message = f"the option --handedness: {request.handedness}; the net: {said}; the option is taken"
+        quality.add("handedness_disagrees", "warning", None, message)
+    return request.handedness, "option"
+
+
+def _read(root: etree._Element, *, left: bool, quality: Quality) -> _Net:
+    net = _Net()
+    for edge in root.iterfind("edge"):
+        name, function = edge.get("id", ""), edge.get("function", "normal")
+        if function in {"walkingarea", "connector"}:
+            continue
+        made = []
+        for element in edge.iterfind("lane"):
+            try:
+                made.append((int(element.attrib["index"]), _lane(edge, element)))
+            except (ValueError, KeyError) as error:
+                lane = element.get("id") or f"in line {element.sourceline}"
+                quality.add("invalid_lane", "error", lane, f"lane {lane} is left out: {error}")
+        lanes = [lane for _, lane in sorted(made, key=lambda item: item[0])]
+        if function == "crossing":
+            net.walks += lanes
+            continue
+        net.edges[name] = [lane.lanelet_id for lane in lanes]
+        net.lanes |= {lane.lanelet_id: lane for lane in lanes}
+        if function == "internal":
+            net.internal.add(name)
+        for outer, inner in pairwise(lanes):
+            _adjoin(outer, inner.lanelet_id, inward=True, left=left, against=False)
+            _adjoin(inner, outer.lanelet_id, inward=False, left=left, against=False)
+        for element in edge.iterfind("lane"):
+            opposite, lane_id = element.find("neigh"), element.get("id", "")
+            if opposite is not None and lane_id in net.lanes:
+                _adjoin(net.lanes[lane_id], opposite.get("lane", ""), inward=True, left=left, against=True)
+    return net
+
+
+def _adjoin(lane: BoundedLane, beside: str, *, inward: bool, left: bool, against: bool) -> None:
+    """Name the lane beside another, towards the middle of the road or away from it."""
+    if inward != left:
+        lane.left_id, lane.left_against = beside, against
+    else:
+        lane.right_id, lane.right_against = beside, against
+
+
+def _lane(edge: etree._Element, element: etree._Element) -> BoundedLane:
+    """Return a lane. Errors: `KeyError`, `ValueError` where it cannot be understood."""
+    middle = _points(str(element.attrib["shape"]))
+    half = float(element.get("width") or WIDTH_M) / 2
+    kind = _kind(element.get("allow"), element.get("disallow"))
+    inside = edge.get("function") == "internal"
+    limit = float(element.attrib["speed"])
+    return BoundedLane(
+        str(element.attrib["id"]), left=_beside(middle, half), right=_beside(middle, -half), kind=kind, drivable=kind in _DRIVABLE,
+        road_type=_ROADS.get((edge.get("type") or "").removeprefix("highway.")),
+        junction_id=edge.get("id", "").removeprefix(":").rpartition("_")[0] if inside else None,
+        # inside a junction the speed is what the bend allows, not a limit
+        limit_mps=None if inside else limit, limit_known=not inside,
+    )  # fmt: skip
+
+
+def _kind(allow: str | None, disallow: str | None) -> str:
+    if allow is not None:
+        may = _EVERYBODY if allow == "all" else set(allow.split())
+    else:
+        may = _EVERYBODY - (_EVERYBODY if disallow == "all" else set((disallow or "").split()))
+    return next((kind for kind, classes in _KINDS if classes & may), "none")
+
+
+def _points(shape: str) -> Floats:
+    """Return the points (n, 2) of a shape, heights left out, each once. Errors: `ValueError`."""
+    points = np.array([[float(v) for v in point.split(",")[:2]] for point in shape.split()], np.float64).reshape(-1, 2)
+    if not np.isfinite(points).all():
+        raise ValueError("a point without finite coordinates")
+    points = points[np.r_[True, np.hypot(*np.diff(points, axis=0).T) > 1e-3]]
+    if len(points) < 2:
+        raise ValueError("its shape has no length")
+    return points
+
+
+def _beside(line: Floats, off: float) -> Floats:
+    """Return a line at a distance from another, positive on the left, with as many points."""
+    step = np.diff(line, axis=0)
+    unit = step / np.hypot(*step.T)[:, None]
+    normal = np.column_stack([-unit[:, 1], unit[:, 0]])
+    before, after = np.vstack([normal[:1], normal]), np.vstack([normal, normal[-1:]])
+    between = before + after
+    # as far from both pieces that meet in a point
+    size = np.maximum((between * before).sum(1), 2 / _LONGEST_MITRE**2)
+    found: Floats = line + off * between / size[:, None]
+    return found
+
+
+def _connect(root: etree._Element, net: _Net) -> None:
+    """Give the lanes their successors, and those inside junctions the limit of the lane that they continue."""
+    follows: dict[str, list[str]] = defaultdict(list)
+    for link in root.iterfind("connection"):
+        source = _at(net, link.get("from", ""), link.get("fromLane", ""))
+        target = link.get("via") or _at(net, link.get("to", ""), link.get("toLane", ""))
+        if source in net.lanes and target in net.lanes:
+            follows[source].append(target)
+    for name, targets in follows.items():
+        net.lanes[name].successors = tuple(dict.fromkeys(targets))
+    _bend(net)
+    inside = [lane for edge in net.edges if edge in net.internal for lane in net.edges[edge]]
+    for _ in range(2):  # a way through a junction has two parts where it is waited in the middle
+        _limits(net.lanes, follows, inside)
+
+
+def _bend(net: _Net) -> None:
+    """Let the ways through junctions begin and end in the direction of the lanes that they join.
+
+    Their shapes are chords of a bend: between two that meet at an angle a wedge would be on neither.
+    """
+    inside = {lane for edge in net.internal for lane in net.edges[edge]}
+    before: dict[str, list[str]] = defaultdict(list)
+    for name, lane in net.lanes.items():
+        for to in lane.successors:
+            before[to].append(name)
+    for name in sorted(inside):
+        lane = net.lanes[name]
+        middle, half = (lane.left + lane.right) / 2, float(np.hypot(*(lane.left - lane.right)[0])) / 2
+        for end, others in ((0, before[name]), (-1, [to for to in lane.successors if to not in inside])):
+            if len(others) == 1:
+                middle = _begun(middle, net.lanes[others[0]], end)
+        lane.left, lane.right = _beside(middle, half), _beside(middle, -half)
+
+
+def _begun(middle: Floats, other: BoundedLane, end: int) -> Floats:
+    """Return a line with a point more near its first (0) or last (-1), in the direction of the lane that it joins there."""
+    line = (other.left + other.right) / 2
+    step = line[-1] - line[-2] if end == 0 else line[0] - line[1]
+    step = step / np.hypot(*step)
+    own = middle[1] - middle[0] if end == 0 else middle[-2] - middle[-1]
+    length = float(np.hypot(*own))
+    if length < 2 * _BEGUN_M or float(own @ step) < _LEAST_COS * length:
+        return middle
+    at = 1 if end == 0 else len(middle) - 1
+    return np.insert(middle, at, middle[end] + _BEGUN_M * step, axis=0)
+
+
+def _limits(lanes: Mapping[str, BoundedLane], follows: Mapping[str, Iterable[str]], inside: Iterable[str]) -> None:
+    waiting = {name for name in inside if not lanes[name].limit_known}
+    found: dict[str, list[float | None]] = defaultdict(list)
+    for name, targets in follows.items():
+        for to in targets:
+            if to in waiting and lanes[name].limit_known:
+                found[to].append(lanes[name].limit_mps)
+    for to, limits in found.items():
+        if len(set(limits)) == 1:
+            lanes[to].limit_mps, lanes[to].limit_known = limits[0], True
+
+
+def _at(net: _Net, edge: str, index: str) -> str:
+    """Return the id of a lane of an edge by its index, '' where there is none."""
+    known = net.edges.get(edge, [])
+    return f"{edge}_{index}" if f"{edge}_{index}" in known else ""

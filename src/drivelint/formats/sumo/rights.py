@@ -1,0 +1,104 @@
+"""Who may go in a SUMO network: lights by connection, stop and give-way signs by junction.
+
+A connection's `state` says which of two that meet goes first: M (major) or m (minor), also of those who turn across oncoming traffic on
+a major road. Only an edge none of whose ways on is major is a lesser road, with signs.
+Source: SUMO's documentation of "SUMO Road Networks".
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING, Any, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from lxml import etree
+
+    from drivelint.road.boundary_lanes import BoundedLane
+
+Rows = list[dict[str, Any]]
+
+_TURNS: Final = {
+    "s": ("straight",), "l": ("left",), "r": ("right",), "t": ("u_turn",), "L": ("left", "straight"), "R": ("right", "straight"),
+}  # fmt: skip
+_SIGNED: Final = frozenset({"priority", "priority_stop", "allway_stop"})
+"""Types of junctions with signs on the lesser roads; at others right goes before left, or lights or nobody say who goes first."""
+_SIGNS: Final = {"s": "stop", "w": "stop", "m": "give_way"}
+_TURNED_ROUND: Final = "t"
+
+
+def control_rows(root: etree._Element, lanes: Mapping[str, BoundedLane]) -> tuple[Rows, Rows]:
+    """Return rows of `traffic_signal` and of `stop_line`: a line is where a lane with a light or a stop sign ends."""
+    links = [link for link in root.iterfind("connection") if not link.get("from", "").startswith(":")]
+    signals, lines = _lights(links, lanes)
+    signed, stops = _signs(root, links, lanes)
+    lines |= stops
+    rows = [
+        {
+            "stop_line_id": f"end of {name}",
+            "lanelet_id": name,
+            "lane_s_m": float(lanes[name].line.s[-1]),
+            "source": "connection",
+        }
+        for name in sorted(lines)
+    ]
+    return sorted([*signals, *signed], key=lambda row: (row["signal_id"], row["lanelet_id"])), rows
+
+
+def _lights(links: list[etree._Element], lanes: Mapping[str, BoundedLane]) -> tuple[Rows, set[str]]:
+    """Return the heads, each on the lanelets through the junction that it holds for, and the lanes that end at one.
+
+    A head's id is `<light>_<link index>`, as SUMO writes it into OpenDRIVE.
+    """
+    turns: dict[tuple[str, str, float], set[str]] = defaultdict(set)
+    ends = set()
+    for link in links:
+        light, source = link.get("tl"), f"{link.get('from')}_{link.get('fromLane')}"
+        if light is None or source not in lanes:
+            continue
+        via = link.get("via")
+        at, s = (via, 0.0) if via in lanes else (source, float(lanes[source].line.s[-1]))
+        turns[f"{light}_{link.get('linkIndex')}", str(at), s].update(_TURNS.get(link.get("dir", ""), ()))
+        if lanes[source].drivable:
+            ends.add(source)
+    rows = [
+        _row(name, "traffic_light", lanes[at], s, turns=sorted(said) or None)
+        for (name, at, s), said in sorted(turns.items())
+        if lanes[at].drivable
+    ]
+    return rows, ends
+
+
+def _signs(
+    root: etree._Element, links: list[etree._Element], lanes: Mapping[str, BoundedLane]
+) -> tuple[Rows, set[str]]:
+    kinds = {junction.get("id"): junction.get("type") for junction in root.iterfind("junction")}
+    ends = {edge.get("id"): kinds.get(edge.get("to")) for edge in root.iterfind("edge") if edge.get("to")}
+    states: dict[str, set[str]] = defaultdict(set)
+    for link in links:
+        if link.get("tl") is None and link.get("dir") != _TURNED_ROUND and ends.get(link.get("from")) in _SIGNED:
+            states[link.get("from", "")].add(link.get("state", ""))
+    rows: Rows = []
+    stops = set()
+    for edge, said in sorted(states.items()):
+        found = {_SIGNS.get(state) for state in said}
+        if None in found or not found:
+            continue
+        kind = "stop" if "stop" in found else "give_way"
+        for name, lane in sorted(lanes.items()):
+            if lane.drivable and name.rpartition("_")[0] == edge:
+                rows.append(_row(f"{kind} {edge}", kind, lane, float(lane.line.s[-1]), turns=None))
+                if kind == "stop":
+                    stops.add(name)
+    return rows, stops
+
+
+def _row(name: str, kind: str, lane: BoundedLane, s: float, *, turns: list[str] | None) -> dict[str, Any]:
+    x, y = lane.line.centre[0 if s == 0.0 else -1]
+    return {
+        "signal_id": name, "kind": kind, "country": None, "type": None, "subtype": None, "value": None, "unit": None,
+        "dynamic": kind == "traffic_light", "turns": turns, "road_id": lane.road_id,
+        "road_s_m": s if lane.along > 0 else float(lane.line.s[-1]) - s,
+        "lanelet_id": lane.lanelet_id, "lane_s_m": s, "x_m": float(x), "y_m": float(y),
+    }  # fmt: skip

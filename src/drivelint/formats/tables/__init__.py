@@ -1,0 +1,1 @@
+"""CSV and Parquet tables, through a mapping; the canonical Parquet tables."""

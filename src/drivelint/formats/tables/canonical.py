@@ -1,0 +1,217 @@
+"""Canonical Parquet: the tables of `schemas/model.sql` as files, a folder of them or a single `actor_state` one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import msgspec
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.drive.trace import (
+    BRAKE_LIGHTS,
+    CLASSES,
+    INDICATORS,
+    NUMBERS,
+    SIGNAL_STATES,
+    SIZES,
+    Finding,
+    Recording,
+    States,
+)
+from drivelint.errors import TraceError
+from drivelint.formats.osi.extras import conditions_of
+from drivelint.formats.tables import parquet
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+REQUIRED = ("t_ns", "actor_id", "x_m", "y_m", "yaw_rad")
+"""What makes a Parquet table canonical; every other column may be missing and is then unknown."""
+_OF_A_STATE = {"indicator": INDICATORS, "brake_light": BRAKE_LIGHTS, "actor_class": CLASSES}
+_WORDS = {**_OF_A_STATE, "state": SIGNAL_STATES}
+"""Column -> its words; a log may write them in any case."""
+
+
+def has_columns(path: Path) -> bool:
+    """Say whether a Parquet file has the columns of `actor_state`. Errors: `TraceError` where it is damaged."""
+    return set(REQUIRED) <= set(parquet.schema(path).names)
+
+
+def read(path: Path) -> Recording:
+    """Read a canonical folder or file.
+
+    Errors: `TraceError` for damaged files, missing or ill-typed columns, several drives in one.
+    """
+    states, egos, findings = _states(path / "actor_state.parquet" if path.is_dir() else path)
+    recording = Recording("canonical-parquet", states, ego_ids=egos, findings=findings)
+    if not path.is_dir():
+        return recording
+    if (path / "actor.parquet").is_file():
+        recording.actors = _actors(path / "actor.parquet")
+        ego_column = recording.actors.column("is_ego").to_pylist() if "is_ego" in recording.actors.schema.names else []
+        recording.ego_ids += [
+            i for i, is_ego in zip(recording.actors.column("actor_id").to_pylist(), ego_column, strict=False) if is_ego
+        ]
+    recording.signals = _extra(path / "signal_state.parquet", ("signal_id", "t_ns"), ("state",))
+    recording.events = _extra(path / "declared_event.parquet", ("actor_id", "t_ns", "event"), ("value",))
+    recording.conditions = _conditions(path / "drive_condition.parquet")
+    if (path / "data_log.parquet").is_file():
+        log = (parquet.table(path / "data_log.parquet").to_pylist() or [{}])[0]
+        _whole(path, log.get("n_states"), len(states) + sum(f.n for f in findings if f.check_id == "dropped_row"))
+        recording.sensor_range_m, recording.utc_start_ns = log.get("sensor_range_m"), log.get("utc_start_ns")
+        offset = log.get("map_offset_x_m"), log.get("map_offset_y_m")
+        if offset != (None, None):
+            dx, dy = recording.map_offset = _offset(path, offset)
+            recording.notes.append(f"the log moves the map by ({dx:+g}, {dy:+g}) m")
+    if (path / "map.xodr").is_file():
+        recording.embedded_map = (path / "map.xodr").read_bytes()
+    recording.findings += _quality(path / "quality.parquet")
+    return recording
+
+
+def _whole(path: Path, counted: object, found: int) -> None:
+    """Refuse a folder whose states are not those that its log counted: nobody knows who is missing, and when."""
+    if counted is not None and counted != found:
+        raise TraceError(
+            f"{path / 'actor_state.parquet'}: {found} rows, and data_log.parquet counts {counted} states: copy or convert "
+            "the folder again"
+        )
+
+
+def _offset(path: Path, offset: tuple[object, object]) -> tuple[float, float]:
+    match offset:
+        case (float(x), float(y)) if np.isfinite([x, y]).all():
+            return x, y
+    raise TraceError(f"{path / 'data_log.parquet'}: map_offset_x_m and map_offset_y_m are {offset}: give two numbers")
+
+
+def _quality(path: Path) -> list[Finding]:
+    """Read what was found when the log was converted: what was mended then cannot be seen any more."""
+    if not path.is_file():
+        return []
+    rows = parquet.table(path)
+    _need(path, rows, ("check_id", "severity", "message"))
+    try:
+        return [
+            msgspec.convert({name: value for name, value in row.items() if name != "drive_id"}, Finding)
+            for row in rows.to_pylist()
+        ]
+    except msgspec.ValidationError as error:
+        raise TraceError(f"{path}: not rows of the table quality: {error}") from error
+
+
+def _column(path: Path, table: pa.Table, name: str, kind: pa.DataType) -> pa.Array:
+    column = parquet.column(table, name)
+    try:
+        return column.cast(kind)
+    except pa.ArrowException as error:
+        raise TraceError(
+            f"{path}: column {name!r} is {column.type}, not {kind}: {' '.join(str(error).split())}"
+        ) from error
+
+
+def _need(path: Path, table: pa.Table, names: tuple[str, ...]) -> None:
+    missing = [name for name in names if name not in table.schema.names]
+    if missing:
+        raise TraceError(f"{path}: no column {', '.join(missing)}: a canonical table needs {', '.join(names)}")
+    drives = pc.unique(table.column("drive_id")) if "drive_id" in table.schema.names else []
+    if len(drives) > 1:
+        raise TraceError(f"{path}: holds {len(drives)} drives: write one folder or file per drive")
+
+
+def _states(path: Path) -> tuple[States, list[str], list[Finding]]:
+    table = parquet.table(path)
+    _need(path, table, REQUIRED)
+    ids = _column(path, table, "actor_id", pa.string())
+    times = _column(path, table, "t_ns", pa.int64())
+    lost = pc.or_(pc.or_(pc.is_null(ids), pc.equal(pc.fill_null(ids, ""), "")), pc.is_null(times)).to_numpy(
+        zero_copy_only=False
+    )
+    n = len(ids)
+    numbers, not_finite = {}, np.zeros(n, np.bool_)
+    for name in (*NUMBERS, *SIZES):
+        if name in table.schema.names:
+            column = _column(path, table, name, pa.float64())
+            values = pc.fill_null(column, float("nan")).to_numpy(zero_copy_only=False)
+            odd = ~np.isfinite(values)
+            numbers[name] = np.where(odd, np.nan, values)
+            not_finite |= odd & column.is_valid().to_numpy(zero_copy_only=False)
+    codes = {
+        name: _codes(path, _column(path, table, name, pa.string()), name)
+        for name in _OF_A_STATE
+        if name in table.schema.names
+    }
+    egos: list[str] = []
+    if "is_ego" in table.schema.names:
+        chosen = pc.fill_null(_column(path, table, "is_ego", pa.bool_()), fill_value=False)
+        egos = [i for i in pc.unique(ids.filter(chosen)).to_pylist() if i]
+    encoded = pc.dictionary_encode(pc.fill_null(ids, ""))
+    actor = encoded.indices.to_numpy()
+    t_ns = pc.fill_null(times, 0).to_numpy(zero_copy_only=False)
+    states = States(encoded.dictionary.to_pylist(), actor, t_ns, numbers, codes, not_finite)
+    if not lost.any():
+        return states, egos, []
+    message = f"{path.name}: rows without actor or time: {int(lost.sum())}: they are not judged"
+    return states.take(~lost), egos, [Finding("dropped_row", "error", message, int(lost.sum()))]
+
+
+def _codes(path: Path, column: pa.Array, name: str) -> NDArray[np.int8]:
+    words = _WORDS[name]
+    encoded = pc.dictionary_encode(column)
+    table = []
+    for word in encoded.dictionary.to_pylist():
+        if word.casefold() not in words:
+            raise TraceError(f"{path}: {name} is {word!r}: use one of {', '.join(words)}, or NULL for unknown")
+        table.append(words.index(word.casefold()))
+    lookup = np.array([*table, -1], np.int8)
+    return np.asarray(lookup[pc.fill_null(encoded.indices, len(table)).to_numpy(zero_copy_only=False)], np.int8)
+
+
+def _spelled(path: Path, column: pa.Array, name: str) -> pa.Array:
+    codes = _codes(path, column, name)
+    return pa.DictionaryArray.from_arrays(pa.array(codes, mask=codes < 0), pa.array(_WORDS[name])).cast(pa.string())
+
+
+def _actors(path: Path) -> pa.Table:
+    table = parquet.table(path)
+    _need(path, table, ("actor_id",))
+    columns = {"actor_id": _column(path, table, "actor_id", pa.string())}
+    for name in SIZES:
+        if name in table.schema.names:
+            columns[name] = _column(path, table, name, pa.float64())
+    if "actor_class" in table.schema.names:
+        columns["actor_class"] = _spelled(path, _column(path, table, "actor_class", pa.string()), "actor_class")
+    if "is_ego" in table.schema.names:
+        columns["is_ego"] = _column(path, table, "is_ego", pa.bool_())
+    return pa.table(columns)
+
+
+def _extra(path: Path, required: tuple[str, ...], optional: tuple[str, ...]) -> pa.Table | None:
+    if not path.is_file():
+        return None
+    table = parquet.table(path)
+    _need(path, table, required)
+    types = {"t_ns": pa.int64()}
+    columns = {name: _column(path, table, name, types.get(name, pa.string())) for name in required}
+    for name in optional:
+        present = name in table.schema.names
+        columns[name] = _column(path, table, name, pa.string()) if present else pa.nulls(table.num_rows, pa.string())
+    if "state" in columns:
+        columns["state"] = _spelled(path, columns["state"], "state")
+    for name, column in columns.items():
+        if name in required and column.null_count:
+            raise TraceError(f"{path}: {column.null_count} rows have no {name}: give every row one")
+    return pa.table(columns)
+
+
+def _conditions(path: Path) -> dict[str, str]:
+    if not path.is_file():
+        return {}
+    table = parquet.table(path)
+    _need(path, table, ("condition", "value"))
+    names, words = (_column(path, table, name, pa.string()).to_pylist() for name in ("condition", "value"))
+    return conditions_of(path, zip(names, words, strict=True))

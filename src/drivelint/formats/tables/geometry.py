@@ -1,0 +1,87 @@
+"""From a log's own frame and reference point to the right-handed map frame and box centres."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from drivelint.drive.order import rate, steps, wrapped
+from drivelint.drive.trace import NUMBERS, SIZES, States
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from drivelint.formats.tables.mapping import Mapping
+
+_SOURCE = {
+    "x": "x_m", "y": "y_m", "z": "z_m", "yaw": "yaw_rad", "vx": "vx_mps", "vy": "vy_mps",
+    "ax": "ax_mps2", "ay": "ay_mps2", "length": "length_m", "width": "width_m", "height": "height_m",
+}  # fmt: skip
+
+
+def to_map_frame(states: States, mapping: Mapping) -> None:
+    """Replace the mapping's quantities (SI, log's frame and reference point) by the columns of `NUMBERS` and `SIZES`.
+
+    Order: axes and heading are turned, velocities given along the vehicle brought into the world frame, the reference
+    point moved to the box centre. The centre's velocity is that of the reference point plus yaw rate times lever; the
+    yaw rate is the log's or, without one, the heading's derivative. Accelerations are kept as recorded.
+    """
+    log = states.numbers
+    n = len(states)
+    nothing = np.full(n, np.nan)
+    if mapping.frame.flip_y:
+        for name in {"y", "vy", "ay"} & log.keys():
+            log[name] = -log[name]
+    if "yaw" in log:
+        sign = -1.0 if mapping.frame.flip_yaw else 1.0
+        log["yaw"] = sign * log["yaw"] + (np.pi / 2.0 if mapping.frame.yaw_zero == "north" else 0.0)
+        if "yaw_rate" in log:
+            log["yaw_rate"] = sign * log["yaw_rate"]
+    if "speed" in log:
+        log["vx"], log["vy"] = log["speed"] * np.cos(log["yaw"]), log["speed"] * np.sin(log["yaw"])
+    elif mapping.frame.velocity == "vehicle":
+        for east, north in (("vx", "vy"), ("ax", "ay")):
+            if east in log:
+                log[east], log[north] = _turned(log[east], log[north], log["yaw"])
+    if mapping.reference.point != "centre":
+        _to_centre(states, mapping)
+    states.numbers = {ours: log.get(theirs, nothing) for theirs, ours in _SOURCE.items() if ours in {*NUMBERS, *SIZES}}
+
+
+def _turned(
+    forward: NDArray[np.float64], left: NDArray[np.float64], yaw: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Rotate a vector from the vehicle's axes into the world's."""
+    cos, sin = np.cos(yaw), np.sin(yaw)
+    return forward * cos - left * sin, forward * sin + left * cos
+
+
+def _to_centre(states: States, mapping: Mapping) -> None:
+    log = states.numbers
+    zero = np.zeros(len(states))
+    forward = -0.5 * log["length"] if mapping.reference.point == "front_bumper" else log["forward"]
+    east, north = _turned(forward, log.get("left", zero), log["yaw"])
+    log["x"], log["y"] = log["x"] + east, log["y"] + north
+    if "z" in log:
+        log["z"] = log["z"] + log.get("up", zero)
+    if "vx" in log:
+        turning = log["yaw_rate"] if "yaw_rate" in log else _yaw_rate(states)
+        turning = np.where(
+            np.isnan(turning), 0.0, turning
+        )  # a single sample has no rate; its lever's share is then left out
+        log["vx"], log["vy"] = log["vx"] - turning * north, log["vy"] + turning * east
+
+
+def _yaw_rate(states: States) -> NDArray[np.float64]:
+    """Differentiate the heading along each actor's track, rows in any order."""
+    order = np.lexsort((states.t_ns, states.actor))
+    track = states.take(order)
+    step = steps(track)
+    yaw = track.numbers["yaw"].copy()
+    turns = wrapped(np.diff(yaw)) - np.diff(yaw)
+    # a new track or an unknown heading starts afresh: its sum of turns must not carry over
+    unwrapped = yaw + np.r_[0.0, np.cumsum(np.where(step.same & np.isfinite(turns), turns, 0.0))]
+    result = np.empty(len(states))
+    result[order] = rate(unwrapped, step)
+    return result

@@ -1,0 +1,329 @@
+"""Mapping files: how the columns of a table become actor states. TOML, checked key by key, shipped ones found by name.
+
+A field is a column name (`x = "pos_x"`), a constant in SI (`length = 4.8`) or a table
+`{ column = "v", unit = "km/h" }` / `{ value = "7" }`. `{k}` in a column name stands for the number of a column group:
+such a table is wide, one group per actor.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+import msgspec
+
+from drivelint.drive.trace import BRAKE_LIGHTS, CLASSES, INDICATORS
+from drivelint.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Set as AbstractSet
+
+SHIPPED = Path(__file__).parent / "mappings"
+
+UNITS: dict[str, dict[str, float]] = {
+    "length": {"m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "ft": 0.3048},
+    "angle": {"rad": 1.0, "deg": 0.017453292519943295},
+    "speed": {"m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704, "kn": 1852.0 / 3600.0, "ft/s": 0.3048},
+    "acceleration": {"m/s2": 1.0, "g": 9.80665, "ft/s2": 0.3048},
+    "rate": {"rad/s": 1.0, "deg/s": 0.017453292519943295},
+}
+"""Quantity -> unit -> factor to SI; the first unit of each is SI and the default."""
+TIME_UNITS = {"s": 1_000_000_000, "ms": 1_000_000, "us": 1_000, "ns": 1, "min": 60_000_000_000}
+"""Unit of time -> nanoseconds."""
+GROUP = "{k}"
+
+
+class Field(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """Where one quantity comes from: a column or a constant `value`, in `unit` (default: SI)."""
+
+    column: str | None = None
+    value: str | float | None = None
+    unit: str | None = None
+
+
+FieldSpec = str | float | Field
+
+
+class Table(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """How the text is laid out: cell separator, lines before the header, words that mean no value."""
+
+    separator: str = ","
+    skip_rows: int = 0
+    null_values: list[str] = []
+
+
+class Time(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """The time column and its unit."""
+
+    column: str
+    unit: Literal["s", "ms", "us", "ns", "min"] = "s"
+
+
+class Frame(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """The log's frame and how it lies to the map's.
+
+    `flip_y` turns y, vy and ay, `flip_yaw` the heading's sign; `yaw_zero` is where heading 0 points; `velocity` says
+    whether velocity and acceleration are given in the world frame or along the vehicle's own axes; `map_offset_m` is
+    added to the map's coordinates to bring it to the log.
+    """
+
+    flip_y: bool = False
+    flip_yaw: bool = False
+    yaw_zero: Literal["east", "north"] = "east"
+    velocity: Literal["world", "vehicle"] = "world"
+    map_offset_m: tuple[float, float] | None = None
+
+
+class Reference(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """What the position is of, and where the box centre lies from there: forward, left and up of the vehicle."""
+
+    point: Literal["centre", "rear_axle", "front_bumper"] = "centre"
+    forward: FieldSpec | None = None
+    left: FieldSpec | None = None
+    up: FieldSpec | None = None
+
+
+class Columns(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """The quantities of an actor state. Velocity: `vx` and `vy`, `speed` along the heading, or none (then derived)."""
+
+    actor_id: FieldSpec
+    x: FieldSpec
+    y: FieldSpec
+    z: FieldSpec | None = None
+    yaw: FieldSpec | None = None
+    vx: FieldSpec | None = None
+    vy: FieldSpec | None = None
+    speed: FieldSpec | None = None
+    ax: FieldSpec | None = None
+    ay: FieldSpec | None = None
+    yaw_rate: FieldSpec | None = None
+    length: FieldSpec | None = None
+    width: FieldSpec | None = None
+    height: FieldSpec | None = None
+
+
+class Pattern(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """A regular expression, searched in the column's text, and the word it stands for."""
+
+    match: str
+    word: str = msgspec.field(name="is")
+
+
+class Words(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """Text to one of our words: exact `values` first, then `patterns` in order, then `default`; else unknown.
+
+    Several columns are joined by `/` before they are looked up.
+    """
+
+    column: str | list[str]
+    values: dict[str, str] = {}
+    patterns: list[Pattern] = []
+    default: str | None = None
+
+    @property
+    def columns(self) -> list[str]:
+        """The columns as a list."""
+        return [self.column] if isinstance(self.column, str) else self.column
+
+
+class Ego(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """Ids of the ego, the first present counts; `otherwise = "first"` takes the first column group with a vehicle."""
+
+    ids: list[str] = []
+    otherwise: Literal["first"] | None = None
+
+
+class Mapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """A whole mapping file."""
+
+    time: Time
+    columns: Columns
+    description: str = ""
+    table: Table = Table()
+    frame: Frame = Frame()
+    reference: Reference = Reference()
+    actor_class: Words | None = msgspec.field(default=None, name="class")
+    indicator: Words | None = None
+    brake_light: Words | None = None
+    ego: Ego = Ego()
+
+
+# logs are read in several threads, and msgspec plans a type at its first use without a lock: two threads at once crash
+PLANNED = msgspec.json.Decoder(Mapping)
+QUANTITY = {
+    "x": "length", "y": "length", "z": "length", "yaw": "angle", "vx": "speed", "vy": "speed", "speed": "speed",
+    "ax": "acceleration", "ay": "acceleration", "yaw_rate": "rate",
+    "length": "length", "width": "length", "height": "length", "forward": "length", "left": "length", "up": "length",
+}  # fmt: skip
+"""Field -> quantity, which decides its units."""
+
+
+def shipped() -> list[str]:
+    """Return the names of the mappings that come with drivelint."""
+    return sorted(file.stem for file in SHIPPED.glob("*.toml"))
+
+
+def load(name: str) -> tuple[str, Mapping]:
+    """Return a mapping and its name: that of a file, else of a shipped mapping.
+
+    Errors: `UsageError` naming file, key and the nearest valid one.
+    """
+    path = Path(name)
+    if not path.is_file():
+        if name not in shipped():
+            known = sorted([*shipped(), *(file.stem for file in (SHIPPED / "video").glob("*.toml"))])
+            near = get_close_matches(name, known, 1)
+            hint = f"did you mean {near[0]!r}?" if near else f"shipped: {', '.join(known)}"
+            raise UsageError(f"mapping {name!r}: neither a file nor a shipped mapping: {hint}")
+        path = SHIPPED / f"{name}.toml"
+    try:
+        raw = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UsageError(f"mapping {path}: cannot be read: {error.strerror or error}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise UsageError(f"mapping {path}: not valid TOML: {error}") from error
+    _refuse_unknown(path, raw, Mapping, "")
+    try:
+        mapping = msgspec.convert(raw, Mapping)
+    except msgspec.ValidationError as error:
+        raise UsageError(f"mapping {path}: {error}") from error
+    _validate(path, mapping)
+    return path.stem, mapping
+
+
+def field_of(spec: FieldSpec) -> Field:
+    """Bring the three ways to write a field into one."""
+    if isinstance(spec, Field):
+        return spec
+    return Field(column=spec) if isinstance(spec, str) else Field(value=spec)
+
+
+def fields(mapping: Mapping) -> dict[str, Field]:
+    """Return every field that the mapping sets, the offsets of the reference point among them."""
+    specs = {**msgspec.structs.asdict(mapping.columns), **msgspec.structs.asdict(mapping.reference)}
+    return {name: field_of(spec) for name, spec in specs.items() if spec is not None and name != "point"}
+
+
+def words(mapping: Mapping) -> dict[str, tuple[Words, tuple[str, ...]]]:
+    """Return the column of our tables -> how it is spelled in the log, and which words we allow."""
+    found = {
+        "actor_class": (mapping.actor_class, CLASSES),
+        "indicator": (mapping.indicator, INDICATORS),
+        "brake_light": (mapping.brake_light, BRAKE_LIGHTS),
+    }
+    return {name: (spec, allowed) for name, (spec, allowed) in found.items() if spec is not None}
+
+
+def needed(mapping: Mapping) -> list[str]:
+    """Return every column name the mapping reads, `{k}` left in, in the order of the file."""
+    names = [mapping.time.column, *(f.column for f in fields(mapping).values() if f.column is not None)]
+    names += [name for spec, _ in words(mapping).values() for name in spec.columns]
+    return list(dict.fromkeys(names))
+
+
+def _refuse_unknown(path: Path, raw: Any, kind: Any, where: str) -> None:
+    struct = _struct_of(kind)
+    if struct is None or not isinstance(raw, dict):
+        if isinstance(raw, list) and Pattern in _parts(kind):
+            for item in raw:
+                _refuse_unknown(path, item, Pattern, where)
+        return
+    known = {info.encode_name: info for info in msgspec.structs.fields(struct)}
+    for key, value in raw.items():
+        if key not in known:
+            near = get_close_matches(key, known, 1, 0.5)
+            hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(known)}"
+            raise UsageError(f"mapping {path}: unknown key {where + key!r}: {hint}")
+        _refuse_unknown(path, value, known[key].type, f"{where}{key}.")
+
+
+def _parts(kind: Any) -> tuple[Any, ...]:
+    inner = get_args(kind)
+    return (kind, *(part for item in inner for part in _parts(item))) if inner else (kind,)
+
+
+def _struct_of(kind: Any) -> type[msgspec.Struct] | None:
+    if any(getattr(part, "__origin__", None) is list for part in _parts(kind)) and not isinstance(kind, type):
+        return None
+    for part in _parts(kind):
+        if isinstance(part, type) and issubclass(part, msgspec.Struct):
+            return part
+    return None
+
+
+def _validate(path: Path, mapping: Mapping) -> None:
+    """Refuse what the types let through. Errors: `UsageError`."""
+    if len(mapping.table.separator) != 1 or mapping.table.skip_rows < 0:
+        raise UsageError(f"mapping {path}: table.separator must be one character and table.skip_rows not negative")
+    for name, spec in fields(mapping).items():
+        _validate_field(path, name, spec)
+    for is_wrong, what in _contradictions(mapping, fields(mapping).keys()):
+        if is_wrong:
+            raise UsageError(f"mapping {path}: {what}")
+    for name, (choice, allowed) in words(mapping).items():
+        _validate_words(path, name, choice, allowed)
+
+
+def _validate_field(path: Path, name: str, spec: Field) -> None:
+    units = UNITS.get(QUANTITY.get(name, ""), {})
+    if (spec.column is None) == (spec.value is None):
+        raise UsageError(f"mapping {path}: {name}: give either a column or a value")
+    if spec.unit is not None and spec.unit not in units:
+        raise UsageError(f"mapping {path}: {name}: unknown unit {spec.unit!r}: use {', '.join(units) or 'none'}")
+    if name in QUANTITY and isinstance(spec.value, str):
+        raise UsageError(f"mapping {path}: {name}: the value {spec.value!r} is not a number")
+
+
+def _contradictions(mapping: Mapping, given: AbstractSet[str]) -> list[tuple[bool, str]]:
+    """List what cannot go together, each with whether it is so here."""
+    point = mapping.reference.point
+    heading = "speed" in given or mapping.frame.velocity == "vehicle" or point != "centre"
+    grouped = any(GROUP in name for name in needed(mapping))
+    return [
+        (
+            ("vx" in given) != ("vy" in given) or ("ax" in given) != ("ay" in given),
+            "vx and vy, and ax and ay, go in pairs",
+        ),
+        ("vx" in given and "speed" in given, "give vx and vy or speed, not both"),
+        (
+            heading and "yaw" not in given,
+            "speed, frame.velocity = 'vehicle' and a reference point other than the centre need columns.yaw",
+        ),
+        (point == "rear_axle" and "forward" not in given, "reference.point = 'rear_axle' needs reference.forward"),
+        (
+            point == "front_bumper" and ("length" not in given or "forward" in given),
+            "reference.point = 'front_bumper' needs columns.length and takes no reference.forward",
+        ),
+        (
+            point == "centre" and not given.isdisjoint({"forward", "left", "up"}),
+            "reference.forward, left and up need reference.point = 'rear_axle'",
+        ),
+        (
+            mapping.ego.otherwise is not None and not grouped,
+            "ego.otherwise = 'first' needs column groups ({k}): the rows of a long table have no first actor",
+        ),
+    ]
+
+
+def _validate_words(path: Path, name: str, spec: Words, allowed: tuple[str, ...]) -> None:
+    for word in (
+        *spec.values.values(),
+        *(p.word for p in spec.patterns),
+        *([spec.default] if spec.default is not None else []),
+    ):
+        if word not in allowed:
+            near = get_close_matches(word, allowed, 1)
+            raise UsageError(
+                f"mapping {path}: {name}: {word!r} is not one of {', '.join(allowed)}"
+                + (f": did you mean {near[0]!r}?" if near else "")
+            )
+    for pattern in spec.patterns:
+        try:
+            re.compile(pattern.match)
+        except re.error as error:
+            raise UsageError(
+                f"mapping {path}: {name}: pattern {pattern.match!r} is not a regular expression: {error}"
+            ) from error

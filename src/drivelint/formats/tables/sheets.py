@@ -1,0 +1,263 @@
+"""A table on disk, one column at a time: CSV (checked line by line) and Parquet behind one face."""
+
+from __future__ import annotations
+
+import codecs
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+import polars as pl
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.drive.order import LISTED
+from drivelint.errors import TraceError
+from drivelint.formats.tables import parquet
+from drivelint.formats.tables.mapping import TIME_UNITS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from drivelint.formats.tables.mapping import Table
+
+MAX_NS = 2.0**63
+TEXT_BLOCK = 1 << 20
+
+
+class Sheet(Protocol):
+    """Columns by name. An empty cell gives NaN or null; `bad` marks cells that are not what was asked for."""
+
+    names: list[str]
+    """Column names, without padding."""
+    bad_lines: list[int]
+    """Lines whose number of cells is wrong; they are not among the rows."""
+    metadata: dict[bytes, bytes]
+
+    def load(self, names: Iterable[str]) -> int:
+        """Read these columns and return the number of rows."""
+        ...
+
+    def text(self, name: str) -> pa.Array:
+        """Return the column as trimmed strings, empty ones as null."""
+        ...
+
+    def filled(self, name: str) -> NDArray[np.bool_]:
+        """Say which cells hold anything."""
+        ...
+
+    def number(self, name: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """Return values (NaN: empty or bad) and which cells are not numbers."""
+        ...
+
+    def time(self, name: str, unit: str) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """Return nanoseconds and which cells are empty or not times."""
+        ...
+
+    def where(self, rows: NDArray[np.intp]) -> str:
+        """Return where the first of these rows stand, for a message."""
+        ...
+
+
+class CsvSheet:
+    """A CSV file of UTF-8 text. Every cell is read as text first: nothing is guessed, nothing dropped unseen."""
+
+    def __init__(self, path: Path, layout: Table) -> None:
+        """Read the header. Errors: `TraceError` where there is none."""
+        self._path, self._layout = path, layout
+        self.bad_lines: list[int] = []
+        self.metadata: dict[bytes, bytes] = {}
+        self._skipped: list[int] = []
+        self._columns: dict[str, pl.Series] = {}
+        header, following = self._first_lines()
+        self.names = [name.strip() for name in header]
+        # a comma at the end of every line but the header's is a habit of some writers, not a broken line
+        self._spare = int(len(following) == len(header) + 1 and not following[-1].strip())
+
+    def _first_lines(self) -> tuple[list[str], list[str]]:
+        import csv
+
+        try:
+            with self._path.open(encoding="utf-8-sig", newline="") as file:
+                for _ in range(self._layout.skip_rows):
+                    file.readline()
+                lines = csv.reader((line.rstrip("\r\n") for line in file), delimiter=self._layout.separator)
+                header = next(lines, [])
+                following = next((line for line in lines if any(cell.strip() for cell in line)), [])
+        except UnicodeDecodeError:
+            self._check_text()
+            raise
+        except csv.Error as error:
+            raise TraceError(f"{self._path}: not a CSV table: {error}") from error
+        if not any(name.strip() for name in header):
+            raise TraceError(f"{self._path}: line {self._layout.skip_rows + 1} should name the columns and is blank")
+        return header, following
+
+    def _check_text(self) -> None:
+        """Refuse what is not UTF-8, naming the byte: the CSV parser itself would pass over it in broken lines."""
+        decoder, at = codecs.getincrementaldecoder("utf-8")(), 0
+        with self._path.open("rb") as file:
+            while True:
+                block = file.read(TEXT_BLOCK)
+                pending = len(decoder.getstate()[0])
+                try:
+                    decoder.decode(block, final=not block)
+                except UnicodeDecodeError as error:
+                    place = at - pending + error.start
+                    raise TraceError(f"{self._path}: not UTF-8 text at byte {place}: save it as UTF-8") from error
+                if not block:
+                    return
+                at += len(block)
+
+    def load(self, names: Iterable[str]) -> int:
+        """Read these columns as text."""
+        import pyarrow.csv as arrow_csv
+
+        self._check_text()
+        width = len(self.names) + self._spare
+        wanted = {str(self.names.index(name)): name for name in names}
+        options = {
+            "read_options": arrow_csv.ReadOptions(
+                skip_rows=self._layout.skip_rows + 1, column_names=[str(i) for i in range(width)], use_threads=False
+            ),
+            "parse_options": arrow_csv.ParseOptions(
+                delimiter=self._layout.separator, invalid_row_handler=self._refuse, ignore_empty_lines=False
+            ),
+            "convert_options": arrow_csv.ConvertOptions(
+                include_columns=list(wanted), column_types=dict.fromkeys(wanted, pa.string()), strings_can_be_null=False
+            ),
+        }
+        try:
+            with self._path.open("rb") as file:
+                table = arrow_csv.read_csv(file, **options)
+        except pa.ArrowInvalid as error:
+            if "Empty CSV" in str(error):
+                raise TraceError(f"{self._path}: no row follows the header: nothing can be judged") from error
+            raise TraceError(f"{self._path}: not a CSV table: {' '.join(str(error).split())}") from error
+        self._columns = {name: _trimmed(table.column(key), self._layout.null_values) for key, name in wanted.items()}
+        return int(table.num_rows)
+
+    def _refuse(self, row: Any) -> str:
+        """Note a line with the wrong number of cells (pyarrow's callback); blank lines are no loss."""
+        if row.text.strip(f" \t\r\n{self._layout.separator}"):
+            self.bad_lines.append(row.number)
+        self._skipped.append(row.number)
+        return "skip"
+
+    def text(self, name: str) -> pa.Array:
+        """Return the column as trimmed strings, empty ones as null."""
+        return self._columns[name].to_arrow().cast(pa.string())
+
+    def filled(self, name: str) -> NDArray[np.bool_]:
+        """Say which cells hold anything but blanks."""
+        return self._columns[name].is_not_null().to_numpy()
+
+    def number(self, name: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """Return values and which cells are not numbers."""
+        column = self._columns[name]
+        values = column.cast(pl.Float64, strict=False)
+        return values.fill_null(float("nan")).to_numpy(), (column.is_not_null() & values.is_null()).to_numpy()
+
+    def time(self, name: str, unit: str) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """Return nanoseconds, whole ones exactly, and which cells are not times."""
+        t_ns, bad = _nanoseconds(*self.number(name), factor=TIME_UNITS[unit])
+        if TIME_UNITS[unit] > 1:
+            return t_ns, bad
+        exact = self._columns[name].cast(pl.Int64, strict=False)  # beyond 2^53 a double is not exact to the nanosecond
+        return np.where(exact.is_not_null().to_numpy(), exact.fill_null(0).to_numpy(), t_ns), bad
+
+    def where(self, rows: NDArray[np.intp]) -> str:
+        """Return the line numbers of the first of these rows."""
+        return places("line", [self._line(int(row)) for row in rows[:LISTED]], len(rows))
+
+    def _line(self, row: int) -> int:
+        line = row + self._layout.skip_rows + 2
+        for skipped in self._skipped:
+            line += skipped <= line
+        return line
+
+
+class ParquetSheet:
+    """A Parquet file, opened by its handle so that no part of its path is taken for data."""
+
+    def __init__(self, path: Path) -> None:
+        """Read the schema. Errors: `TraceError` where the file is damaged."""
+        self._path = path
+        self.bad_lines: list[int] = []
+        schema = parquet.schema(path)
+        self.names = list(schema.names)
+        self.metadata: dict[bytes, bytes] = dict(schema.metadata or {})
+
+    def load(self, names: Iterable[str]) -> int:
+        """Read these columns."""
+        self._table = parquet.table(self._path, names)
+        return int(self._table.num_rows)
+
+    def _column(self, name: str) -> pa.Array:
+        return parquet.column(self._table, name)
+
+    def text(self, name: str) -> pa.Array:
+        """Return the column as trimmed strings; whole numbers without a decimal point."""
+        column = self._column(name)
+        try:
+            if pa.types.is_floating(column.type) and not pc.any(pc.not_equal(column, pc.floor(column))).as_py():
+                column = column.cast(pa.int64())
+            return _trimmed(column.cast(pa.string()), []).to_arrow().cast(pa.string())
+        except pa.ArrowException as error:
+            raise TraceError(f"{self._path}: column {name!r} is {column.type}, not text: map another column") from error
+
+    def filled(self, name: str) -> NDArray[np.bool_]:
+        """Say which cells are not null."""
+        return np.asarray(self._column(name).is_valid().to_numpy(zero_copy_only=False), np.bool_)
+
+    def number(self, name: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """Return values; the type of the column decides whether they are numbers."""
+        column = self._column(name)
+        try:
+            values = column.cast(pa.float64(), safe=False)
+        except pa.ArrowException as error:
+            raise TraceError(
+                f"{self._path}: column {name!r} is {column.type}, not a number: map another column"
+            ) from error
+        return pc.fill_null(values, float("nan")).to_numpy(zero_copy_only=False), np.zeros(len(column), np.bool_)
+
+    def time(self, name: str, unit: str) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """Return nanoseconds; a column of time stamps or durations knows its own unit."""
+        column = self._column(name)
+        if pa.types.is_timestamp(column.type):
+            column, unit = column.cast(pa.timestamp("ns", column.type.tz)).cast(pa.int64()), "ns"
+        elif pa.types.is_duration(column.type):
+            column, unit = column.cast(pa.duration("ns")).cast(pa.int64()), "ns"
+        if not pa.types.is_integer(column.type):
+            return _nanoseconds(*self.number(name), factor=TIME_UNITS[unit])
+        whole = pc.fill_null(column.cast(pa.int64(), safe=False), 0).to_numpy(zero_copy_only=False)
+        factor = TIME_UNITS[unit]
+        beyond = np.abs(whole) > int(MAX_NS) // factor
+        return np.where(beyond, 0, whole) * factor, beyond | column.is_null().to_numpy(zero_copy_only=False)
+
+    def where(self, rows: NDArray[np.intp]) -> str:
+        """Return the numbers of the first of these rows."""
+        return places("row", [int(row) + 1 for row in rows[:LISTED]], len(rows))
+
+
+def places(what: str, first: list[int], n: int) -> str:
+    """Return the first of `n` places as text: `line 7`, `lines 7, 9`, `lines 1, 2, 3, 4, 5 and 12 more`."""
+    more = n - len(first[:LISTED])
+    return f"{what}{'s' * (n > 1)} {', '.join(map(str, first[:LISTED]))}" + (f" and {more} more" if more else "")
+
+
+def _trimmed(column: pa.Array | pa.ChunkedArray, nothing: list[str]) -> pl.Series:
+    series = pl.Series(column).str.strip_chars()
+    return series.set(series.is_in(["", *nothing]) if nothing else series == "", None)
+
+
+def _nanoseconds(
+    values: NDArray[np.float64], bad: NDArray[np.bool_], *, factor: int
+) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    """Scale to nanoseconds and round: 8.3 s is 8,300,000,000 ns."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        scaled = np.rint(values * float(factor))
+        lost = bad | ~(np.abs(scaled) < MAX_NS)
+    return np.where(lost, 0.0, scaled).astype(np.int64), lost

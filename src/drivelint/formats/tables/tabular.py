@@ -1,0 +1,284 @@
+"""Any CSV or Parquet table through a mapping: long (a row per actor and step) or wide (a column group per actor)."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.drive.trace import CLASSES, LOSSES, MOTOR_VEHICLES, Finding, Recording, States
+from drivelint.errors import TraceError
+from drivelint.formats.tables import mapping as mappings
+from drivelint.formats.tables.geometry import to_map_frame
+from drivelint.formats.tables.mapping import GROUP, QUANTITY, UNITS
+from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, places
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from drivelint.formats.tables.mapping import Field, Mapping, Words
+    from drivelint.formats.tables.sheets import Sheet
+
+MOST_RAD: Final = 4 * np.pi
+"""A heading that is never wrapped goes beyond one turn, on a roundabout or a ramp of a car park."""
+
+
+def read(path: Path, name: str | None) -> Recording:
+    """Read a table through the mapping `name`, or through the only shipped mapping whose columns it has.
+
+    Errors: `UsageError` for a bad mapping, `TraceError` for a table that does not fit it or cannot be read.
+    """
+    if name is None:
+        name, mapping, sheet = _fitting(path)
+        said = [f"read through the shipped mapping {name!r}, the only one whose columns the file has"]
+    else:
+        name, mapping = mappings.load(name)
+        sheet = _open(path, mapping)
+        said = []
+    groups = _groups(path, name, mapping, sheet)
+    body = _Body(path, mapping, sheet, groups)
+    recording = body.read()
+    _refuse_misread(path, name, recording)
+    recording.format = name
+    recording.notes = said
+    if mapping.frame.map_offset_m is not None:
+        dx, dy = recording.map_offset = mapping.frame.map_offset_m
+        recording.notes.append(f"mapping {name!r} moves the map by ({dx:+g}, {dy:+g}) m")
+    return recording
+
+
+def _refuse_misread(path: Path, name: str, recording: Recording) -> None:
+    """Refuse a table of which the mapping cannot read most rows: it is of another kind, and what is left of it misleads.
+
+    Errors: `TraceError`.
+    """
+    lost = sum(finding.n for finding in recording.findings if finding.check_id in LOSSES)
+    kept = len(recording.states)
+    if lost > kept > 0:
+        why = next(finding.message for finding in recording.findings if finding.check_id in LOSSES)
+        raise TraceError(
+            f"{path}: mapping {name!r} cannot read {lost} of {lost + kept} rows ({why}): give the right one with --mapping"
+        )
+
+
+def _open(path: Path, mapping: Mapping) -> Sheet:
+    with path.open("rb") as file:
+        is_parquet = file.read(4) == b"PAR1"
+    return ParquetSheet(path) if is_parquet else CsvSheet(path, mapping.table)
+
+
+def _fitting(path: Path) -> tuple[str, Mapping, Sheet]:
+    fits = []
+    for name in mappings.shipped():
+        _, mapping = mappings.load(name)
+        try:
+            sheet = _open(path, mapping)
+            _groups(path, name, mapping, sheet)
+        except TraceError:
+            continue  # it is not this table; if none fits, the user is told
+        fits.append((name, mapping, sheet))
+    if len(fits) == 1:
+        return fits[0]
+    names = ", ".join(name for name, _, _ in fits) if fits else ", ".join(mappings.shipped())
+    what = (
+        f"several mappings fit ({names})"
+        if fits
+        else f"read as a table, no shipped mapping fits its columns (shipped: {names})"
+    )
+    raise TraceError(f"{path}: {what}: say how to read it with --mapping FILE|NAME; drivelint inspect drafts one")
+
+
+def _groups(path: Path, name: str, mapping: Mapping, sheet: Sheet) -> list[str]:
+    """Return the numbers of the column groups ('' alone for a long table), every needed column being there.
+
+    Errors: `TraceError` naming the column that is missing or there twice.
+    """
+    columns = mappings.needed(mapping)
+    templates = [column for column in columns if GROUP in column]
+    groups = [""]
+    if templates:
+        shape = re.compile(re.escape(templates[0]).replace(re.escape(GROUP), r"(\d+)"))
+        groups = sorted({match[1] for column in sheet.names if (match := shape.fullmatch(column))}, key=int) or ["1"]
+    for column in (column.replace(GROUP, k) for column in columns for k in groups):
+        count = sheet.names.count(column)
+        if count != 1:
+            near = get_close_matches(column, sheet.names, 1)
+            seen = ", ".join(sheet.names[:8]) + (" ..." if len(sheet.names) > 8 else "")
+            hint = f"did you mean {near[0]!r}?" if near else f"it has {seen}"
+            what = (
+                f"the column {column!r} is there {count} times"
+                if count
+                else f"no column {column!r}, which mapping {name!r} needs: {hint}"
+            )
+            raise TraceError(f"{path}: {what}")
+    return groups
+
+
+@dataclass
+class _Body:
+    """The rows of a table that fits its mapping."""
+
+    path: Path
+    mapping: Mapping
+    sheet: Sheet
+    groups: list[str]
+    findings: list[Finding] = field(default_factory=list)
+
+    def read(self) -> Recording:
+        columns = mappings.needed(self.mapping)
+        n = self.sheet.load(dict.fromkeys(column.replace(GROUP, k) for k in self.groups for column in columns))
+        t_ns, bad_time = self.sheet.time(self.mapping.time.column, self.mapping.time.unit)
+        blank = self._blank(columns, n)
+        self._report_rows(bad_time & ~blank, "the time is missing or not a number", "dropped_row")
+        self._report_lines(n)
+        parts, texts = [], []
+        for k in self.groups:
+            ids = self._ids(k, n)
+            absent = ids.is_null().to_numpy(zero_copy_only=False)
+            if k == "":
+                self._report_rows(absent & ~blank & ~bad_time, "the actor id is missing", "dropped_row")
+            keep = ~(absent | bad_time)
+            texts.append(ids.filter(pa.array(keep)))
+            parts.append(self._rows(k, n, t_ns, keep))
+        ids = pc.dictionary_encode(pa.concat_arrays(texts))
+        states = _joined(ids.dictionary.to_pylist(), ids.indices.to_numpy(), parts)
+        to_map_frame(states, self.mapping)
+        return Recording(
+            format="",
+            states=states,
+            ego_ids=self._egos(states),
+            findings=self.findings,
+            embedded_map=self.sheet.metadata.get(b"xodr"),
+            strict_units=True,
+        )
+
+    def _rows(self, k: str, n: int, t_ns: NDArray[np.int64], keep: NDArray[np.bool_]) -> States:
+        numbers, not_finite = {}, np.zeros(n, np.bool_)
+        for name, spec in mappings.fields(self.mapping).items():
+            if name in QUANTITY:
+                values, odd = self._values(name, spec, k, n, keep)
+                not_finite |= odd
+                numbers[name] = values[keep]
+        codes = {
+            name: self._codes(spec, allowed, k)[keep] for name, (spec, allowed) in mappings.words(self.mapping).items()
+        }
+        return States([], np.zeros(0, np.int32), t_ns[keep], numbers, codes, not_finite[keep])
+
+    def _values(
+        self, name: str, spec: Field, k: str, n: int, keep: NDArray[np.bool_]
+    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """Return SI values, unknown as NaN, and where the log itself says NaN or infinity (an empty cell does not)."""
+        units = UNITS[QUANTITY[name]]
+        factor = units[spec.unit] if spec.unit is not None else 1.0
+        if spec.column is None:
+            return np.full(n, float(spec.value or 0.0) * factor), np.zeros(n, np.bool_)
+        column = spec.column.replace(GROUP, k)
+        values, bad = self.sheet.number(column)
+        self._report_rows(bad & keep, f"column {column!r} is not a number", "malformed_cell")
+        odd = ~np.isfinite(values)
+        if odd.any():
+            values = np.where(odd, np.nan, values)
+            odd &= self.sheet.filled(column) & ~bad
+        if QUANTITY[name] == "angle" and factor == 1.0:
+            self._refuse_degrees(column, values)
+        return (values * factor if factor != 1.0 else values), odd
+
+    def _refuse_degrees(self, column: str, values: NDArray[np.float64]) -> None:
+        """Refuse a heading beyond two turns: nobody writes that in radians. Errors: `TraceError`."""
+        largest = float(np.nanmax(np.abs(values), initial=0.0))
+        if largest > MOST_RAD:
+            raise TraceError(
+                f"{self.path}: column {column!r} goes up to {largest:g}, which is no angle in radians: "
+                'give a mapping with --mapping in which its unit is "deg"; drivelint inspect drafts one'
+            )
+
+    def _codes(self, spec: Words, allowed: tuple[str, ...], k: str) -> NDArray[np.int8]:
+        """Translate texts to indices into `allowed`: each distinct text once."""
+        texts = [self.sheet.text(column.replace(GROUP, k)) for column in spec.columns]
+        if len(texts) > 1:
+            texts = [pc.binary_join_element_wise(*texts, "/", null_handling="emit_null")]
+        encoded = pc.dictionary_encode(texts[0])
+        words = [_word(text, spec) for text in encoded.dictionary.to_pylist()]
+        table = np.array([allowed.index(word) if word is not None else -1 for word in words] + [-1], np.int8)
+        return np.asarray(table[pc.fill_null(encoded.indices, len(words)).to_numpy(zero_copy_only=False)], np.int8)
+
+    def _ids(self, k: str, n: int) -> pa.Array:
+        spec = mappings.field_of(self.mapping.columns.actor_id)
+        if spec.column is None:
+            value = spec.value if isinstance(spec.value, str) else f"{spec.value:g}"
+            return pa.repeat(pa.scalar(value.replace(GROUP, k), pa.string()), n)
+        return self.sheet.text(spec.column.replace(GROUP, k))
+
+    def _egos(self, states: States) -> list[str]:
+        for name in self.mapping.ego.ids:
+            if name in states.ids:
+                return [name]
+        # as omega-prime's Parquet has it
+        host = self.sheet.metadata.get(b"host_vehicle_idx", b"").decode("utf-8", "replace")
+        if host in states.ids:
+            return [host]
+        if self.mapping.ego.otherwise is None or not len(states):
+            return list(self.mapping.ego.ids)
+        motor = np.array([kind in MOTOR_VEHICLES for kind in CLASSES] + [False], np.bool_)
+        codes = states.codes.get("actor_class")
+        rows = np.flatnonzero(motor[codes]) if codes is not None else np.arange(len(states))
+        if not len(rows):
+            return []
+        first = states.ids[states.actor[rows[0]]]
+        names = " or ".join(self.mapping.ego.ids)
+        message = f"no actor is called {names}: the first vehicle of the file, {first}, is taken as the ego"
+        self.findings.append(Finding("ego_assumed", "info", message, actor_id=first))
+        return [first]
+
+    def _blank(self, columns: list[str], n: int) -> NDArray[np.bool_]:
+        """Say which rows hold nothing in any mapped column."""
+        blank = np.ones(n, np.bool_)
+        for column in columns:
+            for k in self.groups:
+                blank &= ~self.sheet.filled(column.replace(GROUP, k))
+        return blank
+
+    def _report_rows(self, rows: NDArray[np.bool_], why: str, check: str) -> None:
+        n = int(rows.sum())
+        if n:
+            follows = "not judged" if check == "dropped_row" else "those values are unknown"
+            message = f"{self.path.name}, {self.sheet.where(np.flatnonzero(rows))}: {why}: {follows}"
+            self.findings.append(Finding(check, "warning" if check == "malformed_cell" else "error", message, n))
+
+    def _report_lines(self, n: int) -> None:
+        lines = self.sheet.bad_lines
+        if not lines:
+            return
+        what = f"{places('line', lines, len(lines))}: not the {len(self.sheet.names)} cells of the header"
+        if n == 0:
+            raise TraceError(f"{self.path}: {what}: no row is left; check the mapping's separator and skip_rows")
+        self.findings.append(Finding("malformed_row", "error", f"{self.path.name}, {what}: not judged", len(lines)))
+
+
+def _word(text: str, spec: Words) -> str | None:
+    if text in spec.values:
+        return spec.values[text]
+    return next((pattern.word for pattern in spec.patterns if re.search(pattern.match, text)), spec.default)
+
+
+def _joined(ids: list[str], actor: NDArray[np.int32], parts: list[States]) -> States:
+    if len(parts) == 1:
+        parts[0].ids, parts[0].actor = ids, actor
+        return parts[0]
+    numbers = {name: np.concatenate([part.numbers[name] for part in parts]) for name in parts[0].numbers}
+    codes = {name: np.concatenate([part.codes[name] for part in parts]) for name in parts[0].codes}
+    return States(
+        ids,
+        actor,
+        np.concatenate([part.t_ns for part in parts]),
+        numbers,
+        codes,
+        np.concatenate([part.not_finite for part in parts]),
+    )

@@ -1,0 +1,121 @@
+"""What a result says of a moment at which another result has a finding: nothing is fixed that was not looked at."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from drivelint.gate import match
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from drivelint.gate.match import Stretch
+    from drivelint.result.model import Result
+
+    Row = Mapping[str, Any]
+
+_WEIGHT = ("error", "fail", "unknown", "pass")
+"""Of several verdicts at one moment the first of these is what is said."""
+
+
+class Said(NamedTuple):
+    """What a result says of a moment: a verdict, or `none` where it did not look, and why."""
+
+    verdict: str
+    why: str
+
+
+class Witness:
+    """One result, asked about moments of its drives."""
+
+    def __init__(self, result: Result) -> None:
+        self.drives: dict[str, Row] = {}
+        for drive in result.drives.to_pylist():
+            self.drives.setdefault(drive["drive_id"], drive)
+        self.rules: dict[str, Row] = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
+        self._rows: dict[tuple[str, str, str], list[Row]] = defaultdict(list)
+        self._egos: dict[str, set[str]] = defaultdict(set)
+        self._objects: dict[str, set[str]] = defaultdict(set)
+        columns = (
+            "drive_id", "ego_id", "rule_id", "profile", "object_id", "verdict", "reason",
+            "t_ref_ns", "t_start_ns", "t_end_ns", "t_worst_ns", "n_expected", "n_judged",
+        )  # fmt: skip
+        for row in result.verdicts.select(columns).to_pylist():
+            self._rows[row["drive_id"], row["ego_id"], row["rule_id"]].append(row)
+            self._egos[row["drive_id"]].add(row["ego_id"])
+            self._objects[row["drive_id"]].add(row["object_id"])
+        self.findings: dict[str, list[Stretch]] = defaultdict(list)
+        for row in result.findings.to_pylist():
+            self.findings[row["drive_id"]].append(match.stretch(row, self.drives[row["drive_id"]]))
+
+    def said(self, drive_id: str | None, at: Stretch, *, same_log: bool) -> Said:
+        """Return what the result says where another one has the finding `at`; `drive_id` is this one's name of the drive."""
+        row = at.row
+        if gap := self._not_looked(drive_id, row):
+            return gap
+        assert drive_id is not None  # noqa: S101 - for the type checker: else there is a gap
+        drive = self.drives[drive_id]
+        if drive["duration_s"] is not None and at.worst > drive["duration_s"] + match.NEAR_S:
+            return Said("none", "the log ends before it")
+        rows = self._rows.get((drive_id, row["ego_id"], row["rule_id"]), [])
+        rows = [each for each in rows if each["profile"] in {row["profile"], None}]
+        if not rows:
+            return Said("none", "there is no verdict of this rule")
+        there = [each for each in rows if self._about(each, row, drive_id) and _overlaps(each, at, drive)]
+        said = [self._judged(each, at) for each in there]
+        for verdict in _WEIGHT:
+            for each in said:
+                if each.verdict == verdict:
+                    return each
+        if not same_log and row["object_id"] not in self._objects[drive_id]:
+            return Said("none", f"object {row['object_id']} is not in this log, or has another id")
+        return Said("not_applicable", there[0]["reason"] if there else "Not applicable: the rule does not apply there.")
+
+    def _judged(self, each: Row, at: Stretch) -> Said:
+        """Return what a verdict means for the moment: one that fails does so in its failing stretches only."""
+        if each["verdict"] != "fail":
+            return Said(each["verdict"], each["reason"])
+        mine = self.findings.get(each["drive_id"], ())
+        if any(match.key(other.row) == match.key(at.row) and match.gap(other, at) <= match.NEAR_S for other in mine):
+            return Said("fail", "the rule fails there still, at another step or place")
+        if each["n_judged"] == each["n_expected"]:
+            return Said("pass", "kept there, though not at another time of the same stretch of driving")
+        missing = each["n_expected"] - each["n_judged"]
+        return Said(
+            "unknown", f"the rule fails at another time, and {missing} of {each['n_expected']} steps were not judged"
+        )
+
+    def _not_looked(self, drive_id: str | None, row: Row) -> Said | None:
+        """Return why the rule was not judged in the drive at all; None: it was."""
+        if drive_id is None:
+            return Said("none", "the drive was not checked")
+        drive, rule = self.drives[drive_id], self.rules.get(row["rule_id"])
+        if drive["status"] == "not_judged":
+            return Said("unknown", f"the drive could not be judged: {drive['status_reason'] or 'no reason given'}")
+        if rule is None:
+            return Said("none", "the rule was not run")
+        if row["profile"] is not None and row["profile"] not in rule["profiles"]:
+            return Said("none", f"the profile {row['profile']} was not run")
+        if row["ego_id"] not in self._egos[drive_id]:
+            return Said("none", f"ego {row['ego_id']} was not judged")
+        return None
+
+    def _about(self, each: Row, row: Row, drive_id: str) -> bool:
+        """Return whether a verdict concerns the object of a finding; if that is gone here, any object that is not judged."""
+        if each["object_id"] is None or row["object_id"] is None or each["object_id"] == row["object_id"]:
+            return True
+        return each["verdict"] in {"unknown", "error"} and row["object_id"] not in self._objects[drive_id]
+
+
+def _overlaps(each: Row, at: Stretch, drive: Row) -> bool:
+    """Return whether a verdict covers a finding's time; one without times covers the drive."""
+    times = _times(each[name] for name in ("t_ref_ns", "t_start_ns", "t_end_ns", "t_worst_ns"))
+    if not times:
+        return True
+    start, end = match.seconds(min(times), drive), match.seconds(max(times), drive)
+    return start - match.NEAR_S <= at.end and at.start <= end + match.NEAR_S
+
+
+def _times(values: Iterable[int | None]) -> list[int]:
+    return [value for value in values if value is not None]

@@ -1,0 +1,164 @@
+"""Waivers: findings that somebody answers for, until a day.
+
+    [[waiver]]
+    rule = "ukhc.r162.*"           # a rule's id, or a glob over ids
+    drive = "near-miss-*"          # optional globs: drive_id, ego, object, profile
+    object = "3"
+    from_s = 8.0                   # optional: the failing stretch lies within, in seconds since the drive's first time stamp
+    to_s = 9.5
+    reason = "the test track's lane is wider than the map says: ticket 17"
+    owner = "jo@example.org"
+    expires = 2027-03-31           # the last day on which it counts
+
+They stand in a file of their own (`--waivers FILE`) or in `drivelint.toml`. A waived finding is shown, with the reason, and
+does not gate. A waiver that expired waives nothing; one that no finding matches is reported: it may be a slip of the pen.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections import Counter
+from dataclasses import replace
+from datetime import date, datetime
+from difflib import get_close_matches
+from fnmatch import fnmatchcase
+from itertools import pairwise
+from math import isfinite
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.errors import UsageError
+from drivelint.gate.match import seconds
+from drivelint.result.gate import Waiver
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from drivelint.result.model import Result
+
+    Row = Mapping[str, Any]
+
+_MUST: Final = ("rule", "reason", "owner", "expires")
+_PATTERNS: Final = ("drive", "ego", "object", "profile")
+_TIMES: Final = ("from_s", "to_s")
+_HEAD: Final = re.compile(r"\s*\[\[\s*(waiver|\"waiver\"|'waiver')\s*\]\]")
+
+
+def read(file: Path, *, alone: bool = True) -> list[Waiver]:
+    """Return the waivers of a TOML file, in its order.
+
+    `alone`: the file is for waivers only, else they stand beside other settings. Errors: `UsageError` with file and line for
+    bad TOML, an unknown key (with the nearest), a missing rule, reason, owner or expiry, or a value of another kind.
+    """
+    try:
+        text = file.read_text(encoding="utf-8")
+        content = tomllib.loads(text)
+    except FileNotFoundError as error:
+        raise UsageError(f"{file}: no such file of waivers") from error
+    except OSError as error:
+        raise UsageError(f"{file}: cannot be read: {error.strerror or error}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise UsageError(f"{file}: not TOML: {error}") from error
+    if alone and (excess := sorted(set(content) - {"waiver"})):
+        raise UsageError(f"{file}: unknown key {excess[0]!r}: it holds tables [[waiver]] only")
+    tables = content.get("waiver", [])
+    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
+        raise UsageError(f"{file}: waiver must be tables, each headed [[waiver]]")
+    if alone and not tables:
+        raise UsageError(f"{file}: no table [[waiver]] in it")
+    places = _places(text, len(tables))
+    return [_waiver(table, file, place) for table, place in zip(tables, places, strict=True)]
+
+
+def apply(waivers: Sequence[Waiver], result: Result, today: date) -> tuple[tuple[Waiver, ...], dict[str, int]]:
+    """Return the waivers with their state on that day, and finding_id -> index of the waiver that waives it."""
+    drives = {row["drive_id"]: row for row in result.drives.to_pylist()}
+    found: Counter[int] = Counter()
+    waived: dict[str, int] = {}
+    expired = [date.fromisoformat(waiver.expires) < today for waiver in waivers]
+    for row in result.findings.to_pylist():
+        for number, waiver in enumerate(waivers):
+            if _matches(waiver, row, drives[row["drive_id"]]):
+                found[number] += 1
+                if not expired[number]:
+                    waived.setdefault(row["finding_id"], number)
+    stated = (
+        replace(waiver, findings=found[n], state="expired" if expired[n] else "active" if found[n] else "unmatched")
+        for n, waiver in enumerate(waivers)
+    )
+    return tuple(stated), waived
+
+
+def _matches(waiver: Waiver, row: Row, drive: Row) -> bool:
+    """Return whether a finding is what a waiver is about: all of what it says."""
+    patterns = (
+        (waiver.rule, row["rule_id"]),
+        (waiver.ego, row["ego_id"]),
+        (waiver.object, row["object_id"]),
+        (waiver.profile, row["profile"]),
+    )
+    if any(pattern is not None and not fnmatchcase(text or "", pattern) for pattern, text in patterns):
+        return False
+    names = (row["drive_id"], drive["file_name"])
+    if waiver.drive is not None and not any(fnmatchcase(name, waiver.drive) for name in names):
+        return False
+    after = waiver.from_s is None or waiver.from_s <= seconds(row["t_start_ns"], drive)
+    return after and (waiver.to_s is None or seconds(row["t_end_ns"], drive) <= waiver.to_s)
+
+
+def _waiver(table: Row, file: Path, place: tuple[int, Mapping[str, int]]) -> Waiver:
+    head, lines = place
+
+    def refuse(key: str, why: str) -> UsageError:
+        return UsageError(f"{file}:{lines.get(key, head)}: waiver: {why}")
+
+    known = (*_MUST, *_PATTERNS, *_TIMES)
+    for key in table:
+        if key not in known:
+            near = get_close_matches(key, known, n=1)
+            hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(known)}"
+            raise refuse(key, f"unknown key {key!r}; {hint}")
+    if missing := [key for key in _MUST if key not in table]:
+        raise refuse("", f"{' and '.join(missing)} missing: somebody must answer for it, say why, and until when")
+    for key in ("rule", "reason", "owner", *_PATTERNS):
+        if key in table and not (isinstance(table[key], str) and table[key].strip()):
+            raise refuse(key, f"{key} = {table[key]!r}: must be a text, and not an empty one")
+    for key in _TIMES:
+        if key in table and (
+            isinstance(table[key], bool) or not isinstance(table[key], int | float) or not isfinite(table[key])
+        ):
+            raise refuse(key, f"{key} = {table[key]!r}: must be seconds since the drive's first time stamp")
+    if table.get("from_s", 0) > table.get("to_s", float("inf")):
+        raise refuse("to_s", "to_s is before from_s")
+    try:
+        expires = day(table["expires"])
+    except ValueError as error:
+        raise refuse("expires", f"expires = {table['expires']!r}: must be a day such as 2027-03-31") from error
+    words = {key: table[key] for key in ("rule", "reason", "owner", *_PATTERNS, *_TIMES) if key in table}
+    return Waiver(where=f"{file}:{head}", expires=expires.isoformat(), **words)
+
+
+def day(value: object) -> date:
+    """Return a day that is written as a TOML date or as text. Errors: `ValueError`."""
+    if isinstance(value, date) and not isinstance(value, datetime):
+        return value
+    if isinstance(value, str) and re.fullmatch(r"\d{4}-\d{2}-\d{2}", value):
+        return date.fromisoformat(value)
+    raise ValueError(value)
+
+
+def _places(text: str, n: int) -> list[tuple[int, dict[str, int]]]:
+    """Return for each waiver the line of its head, and of each of its keys; line 1 where the heads cannot be told apart."""
+    lines = text.splitlines()
+    heads = [number for number, line in enumerate(lines, 1) if _HEAD.match(line)]
+    if len(heads) != n:  # an inline array, or a head inside a text of several lines
+        return [(1, {})] * n
+    places = []
+    for head, end in pairwise([*heads, len(lines) + 1]):
+        keys: dict[str, int] = {}
+        for number in range(head + 1, end):
+            if key := re.match(r"\s*[\"']?([\w-]+)[\"']?\s*=", lines[number - 1]):
+                keys.setdefault(key.group(1), number)
+        places.append((head, keys))
+    return places

@@ -1,0 +1,203 @@
+"""A difference and waivers in words: for a terminal, for programs. Unknown and not applicable always stand beside the rest."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING, Any, Final
+
+import msgspec
+
+from drivelint.result import counts
+from drivelint.result.text import number
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from drivelint.result.gate import Difference, Entry, Gate, Opened, Waiver
+
+MAX_LINES: Final = 50
+"""Findings or reasons that a terminal shows of each kind; JSON has them all."""
+
+DIFF_SCHEMA: Final = 1
+"""Version of the JSON: raised when a key changes its meaning or goes."""
+
+TITLES: Final = {
+    "new": "New",
+    "changed": "Changed: known, but not as it was",
+    "unknown": "Not fixed: it cannot be told any more",
+    "lost": "Not fixed: not looked at any more",
+    "fixed": "Fixed",
+}
+"""Standing -> heading, in the order shown; unchanged findings are counted only."""
+
+
+def gating(difference: Difference, fail_on: str, gate: Gate | None = None) -> list[Entry]:
+    """Return the new findings of stable rules at or above a severity, without those that the newer result waives."""
+    if fail_on == "never":
+        return []
+    severe = counts.SEVERITIES[: counts.SEVERITIES.index(fail_on) + 1]
+    waived = gate.waived if gate else {}
+    return [e for e in difference.of("new") if e.stable and e.severity in severe and e.finding_id not in waived]
+
+
+def headline(difference: Difference) -> str:
+    """Return the counts in one sentence: what is new, what is fixed, and what is not fixed but gone."""
+    n = difference.counts()
+    kept = Counter(entry.there for entry in difference.of("fixed"))
+    worse = sum(_worse(entry) for entry in difference.of("changed"))
+    text = f"{n['new']} new, {n['changed']} changed ({worse} worse), {n['unchanged']} unchanged, "
+    text += f"{n['fixed']} fixed ({kept['pass']} now pass, {kept['not_applicable']} now not applicable)"
+    if n["unknown"] or n["lost"]:
+        text += f"; gone but not fixed: {n['unknown']} unknown now, {n['lost']} not looked at"
+    return text
+
+
+def text(difference: Difference, failing: Sequence[Entry], fail_on: str, gate: Gate | None = None) -> str:
+    """Return a difference for a person."""
+    waived = gate.waived if gate else {}
+    blocks = [list(_table(difference)), [headline(difference)]]
+    for standing, title in TITLES.items():
+        entries = difference.of(standing)
+        if entries:
+            lines = [f"{title} ({len(entries)})"]
+            lines += [f"  {line(e)}{' (waived)' if e.finding_id in waived else ''}" for e in entries[:MAX_LINES]]
+            blocks.append([*lines, *_more(len(entries))])
+    if difference.opened:
+        blocks.append(list(_opened(difference.opened)))
+    if difference.new_only or difference.base_only:
+        blocks.append(list(_drives(difference)))
+    blocks.append([verdict(failing, fail_on)])
+    return "\n\n".join("\n".join(block) for block in blocks)
+
+
+def verdict(failing: Sequence[Entry], fail_on: str) -> str:
+    """Return what a difference comes to, in one line."""
+    if fail_on == "never":
+        return "exit 0: new findings do not gate (--fail-on never)"
+    what = f"at or above severity {fail_on}"
+    if failing:
+        return f"exit 1: {many(len(failing), 'new finding')} {what}"
+    return f"exit 0: no new finding {what}"
+
+
+def to_json(difference: Difference, failing: Sequence[Entry], fail_on: str) -> str:
+    """Return a difference as JSON: all entries, and what it comes to."""
+    content = {
+        "diff_schema": DIFF_SCHEMA,
+        "exit": {"code": 1 if failing else 0, "why": verdict(failing, fail_on).partition(": ")[2]},
+        "fail_on": fail_on,
+        "counts": difference.counts(),
+        "gating": [entry.finding_id for entry in failing],
+        **msgspec.to_builtins(difference),
+    }
+    return msgspec.json.format(msgspec.json.encode(content), indent=2).decode()
+
+
+def line(entry: Entry) -> str:
+    """Return a finding in one line: how bad, where, what, and what the other result says there."""
+    profile = "" if entry.profile is None else f" [{entry.profile}]"
+    who = f"ego {entry.ego_id}" + ("" if entry.object_id is None else f", object {entry.object_id}")
+    draft = "" if entry.stable else ", draft"
+    margin = "" if entry.margin is None else f", margin {number(entry.margin, entry.unit)}"
+    head = f"{entry.severity}{draft}: {entry.drive_id} at {entry.t_s:.2f} s: {entry.rule_id}{profile}, {who}{margin}"
+    return f"{head}{_there(entry)}"
+
+
+def _there(entry: Entry) -> str:
+    if entry.standing == "changed":
+        return f": {entry.why}"
+    if entry.standing == "new":
+        return f" (the base says {_SAID[entry.there]}: {entry.why})"
+    return f" (now {_SAID[entry.there]}: {entry.why})"
+
+
+_SAID: Final = {"not_applicable": "not applicable", "none": "nothing"} | {
+    name: name for name in ("pass", "fail", "unknown", "error")
+}
+
+
+def waivers(gate: Gate) -> Iterator[str]:
+    """Yield what must be said of each waiver that does not do what it is for, and what the others let through."""
+    for waiver in gate.waivers:
+        if waiver.state == "expired":
+            yield f"{waiver.where}: expired {waiver.expires} ({waiver.owner}): it waives nothing{_would(waiver)}"
+        elif waiver.state == "unmatched":
+            yield f"{waiver.where}: no finding is like that: {about(waiver)} ({waiver.owner}); correct or drop it"
+
+
+def _would(waiver: Waiver) -> str:
+    return f"; {many(waiver.findings, 'finding')} like that" if waiver.findings else "; no finding is like that"
+
+
+def about(waiver: Waiver) -> str:
+    """Return what a waiver is about."""
+    parts = [("drive", waiver.drive), ("ego", waiver.ego), ("object", waiver.object), ("profile", waiver.profile)]
+    said = "".join(f", {name} {value}" for name, value in parts if value is not None)
+    since = "" if waiver.from_s is None else f", from {waiver.from_s:g} s"
+    return f"{waiver.rule}{said}{since}" + ("" if waiver.to_s is None else f", to {waiver.to_s:g} s")
+
+
+def excuse(waiver: Waiver) -> str:
+    """Return why a finding does not gate."""
+    return f"waived until {waiver.expires} by {waiver.owner}: {waiver.reason}"
+
+
+def summary(gate: Gate) -> dict[str, Any]:
+    """Return a gate's counts as plain data."""
+    states = Counter(waiver.state for waiver in gate.waivers)
+    return {
+        "today": gate.today,
+        "baseline": None if gate.baseline is None else {"name": gate.baseline.base_name} | gate.baseline.counts(),
+        "waived_findings": len(gate.waived),
+        "waivers": {state: states[state] for state in ("active", "expired", "unmatched")},
+        "notes": list(waivers(gate)),
+    }
+
+
+def many(n: int, noun: str) -> str:
+    """Return a number with its noun."""
+    return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
+
+
+def grouped(opened: Iterable[Opened]) -> list[tuple[str, list[str], int]]:
+    """Return reasons with the rules that gave them and the verdicts that more are unknown, most first."""
+    found: dict[str, tuple[set[str], int]] = {}
+    for each in opened:
+        rules, n = found.get(each.reason, (set(), 0))
+        found[each.reason] = (rules | {each.rule_id}, n + each.n - each.base_n)
+    return [(reason, sorted(rules), n) for reason, (rules, n) in sorted(found.items(), key=lambda i: (-i[1][1], i[0]))]
+
+
+def _table(difference: Difference) -> Iterator[str]:
+    names = (difference.base_name, difference.name)
+    width = max(len(name) for name in names)
+    yield " " * width + "".join(f"  {_HEAD[verdict]:>7}" for verdict in counts.VERDICTS)
+    for name, told in zip(names, (difference.base_verdicts, difference.verdicts), strict=True):
+        yield f"{name:<{width}}" + "".join(f"  {told[verdict]:>7}" for verdict in counts.VERDICTS)
+
+
+_HEAD: Final = {"not_applicable": "n/a"} | {name: name for name in ("pass", "fail", "unknown", "error")}
+
+
+def _opened(opened: Sequence[Opened]) -> Iterator[str]:
+    groups = grouped(opened)
+    yield f"More is unknown than was ({sum(n for _, _, n in groups)} verdicts): unknown is not pass"
+    for reason, rules, n in groups[:MAX_LINES]:
+        few = ", ".join(rules[:3]) + (f" and {len(rules) - 3} more rules" if len(rules) > 3 else "")
+        yield f"  {n}: {few}: {reason}"
+    yield from _more(len(groups))
+
+
+def _drives(difference: Difference) -> Iterator[str]:
+    for title, names in (("Only in the newer result", difference.new_only), ("Only in the base", difference.base_only)):
+        if names:
+            few = ", ".join(names[:MAX_LINES])
+            yield f"{title} ({many(len(names), 'drive')}): {few}{' ...' if len(names) > MAX_LINES else ''}"
+
+
+def _worse(entry: Entry) -> bool:
+    return entry.margin is not None and entry.base_margin is not None and entry.margin < entry.base_margin
+
+
+def _more(n: int) -> list[str]:
+    return [f"  ... and {n - MAX_LINES} more: --format json has them all"] if n > MAX_LINES else []

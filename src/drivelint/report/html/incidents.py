@@ -1,0 +1,261 @@
+"""Moments: what failed or nearly failed at one time in one drive, with its plan view and, per rule, what was measured."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from drivelint.report.html.anchors import drive_anchor, finding_anchor, moment_anchor, rule_anchor
+from drivelint.report.html.plan import Plan, plan
+from drivelint.report.html.replay import ticks
+from drivelint.report.html.svg import num
+from drivelint.result.counts import SEVERITIES
+from drivelint.result.text import NONE, number, seconds, tied
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping, Sequence
+
+    from drivelint.report.html.baseline_status import Standing
+    from drivelint.report.html.margin_series import Course
+    from drivelint.report.html.road import Road
+
+    Row = Mapping[str, Any]
+    Key = tuple[str, str, int]
+
+_OURS: Final = " is required: "
+"""What every sentence holds that the evaluation made of numbers; others are the rule's own."""
+_SENSE: Final = {">": "more than", ">=": "at least", "<": "less than", "<=": "at most"}
+_SPACES: Final = ("ukhc.r126.ds-",)
+"""Rules about danger spaces: their plan views show them."""
+KEY_MOMENTS: Final = 6
+"""Moments of a drive that the printed report shows with their plan views."""
+
+
+class Gauge(NamedTuple):
+    """Observed against required as percentages of a bar's width."""
+
+    zero: str
+    x: str
+    w: str
+    required: str
+
+
+class Measured(NamedTuple):
+    """One finding or near miss, as a row of the table and as a line of its moment; `keys`: what it is found by."""
+
+    anchor: str
+    href: str
+    kind: str
+    severity: str
+    keys: str
+    status: str
+    rule_id: str
+    title: str
+    profile: str
+    drive_id: str
+    drive_href: str
+    ego_id: str
+    object_id: str
+    time: str
+    stretch: str
+    observed: str
+    required: str
+    margin: str
+    missed: str
+    sense: str
+    gauge: Gauge | None
+    reason: str
+    told: str
+    course: Course | None
+    standing: Standing | None
+
+
+class Card(NamedTuple):
+    """What one rule says at a moment."""
+
+    rule: Row
+    rule_href: str
+    severity: str
+    lines: list[Measured]
+
+
+class Moment(NamedTuple):
+    """One time of one ego: a plan view (None: there is none, and why) and what the rules say there.
+
+    `t`: hundredths of a second since the drive's start; `leading`: it is among those that tell what happened.
+    """
+
+    anchor: str
+    time: str
+    t: int
+    keys: str
+    leading: bool
+    ego_id: str
+    objects: list[str]
+    kind: str
+    severity: str
+    titles: list[str]
+    plan: Plan | None
+    no_plan: str
+    cards: list[Card]
+
+
+def measured(
+    row: Row,
+    kind: str,
+    rule: Row,
+    start_ns: int | None,
+    *,
+    course: Course | None = None,
+    standing: Standing | None = None,
+) -> Measured:
+    """Return a finding (`fail`) or a near miss (`near`) in words; `standing`: how the finding stands to an earlier result."""
+    unit, long = row["unit"], row["t_end_ns"] is not None and row["t_end_ns"] != row["t_start_ns"]
+    sense = _SENSE.get(rule["sense"])
+    required = number(row["required"], unit)
+    if sense is not None:
+        required = "none" if row["required"] == 0 and rule["sense"][0] == "<" else f"{sense} {tied(required)}"
+    return Measured(
+        anchor=finding_anchor(row) if kind == "fail" else "",
+        href="#" + (finding_anchor(row) if kind == "fail" else moment_anchor(*key(row))),
+        kind=kind,
+        severity=row["severity"],
+        keys=" ".join((kind, row["severity"], rule["pack"], *([standing.key] if standing else []))),
+        status=rule["status"],
+        rule_id=row["rule_id"],
+        title=rule["title"],
+        profile=row["profile"] or "",
+        drive_id=row["drive_id"],
+        drive_href="#" + drive_anchor(row["drive_id"]),
+        ego_id=row["ego_id"],
+        object_id=NONE if row["object_id"] is None else row["object_id"],
+        time=tied(seconds(row["t_worst_ns"], start_ns)),
+        stretch=f"{seconds(row['t_start_ns'], start_ns)} to {seconds(row['t_end_ns'], start_ns)}" if long else "",
+        observed=tied(number(row["observed"], unit)),
+        required=required,
+        margin=tied(number(row["margin"], unit)),
+        missed=NONE if row["margin"] is None else tied(number(abs(row["margin"]), unit)),
+        sense=sense or "",
+        gauge=_gauge(row["observed"], row["required"]),
+        reason=row["reason"],
+        told=_told(row, rule, required) if sense else row["reason"],
+        course=course,
+        standing=standing,
+    )
+
+
+def _told(row: Row, rule: Row, required: str) -> str:
+    """Return in a sentence what was measured, what had to be, and what the rule itself says of it."""
+    what = f"{rule['observes']} " if rule["observes"] else ""
+    said = f"{what}{tied(number(row['observed'], row['unit']))}, must be {required}"
+    return said if _OURS in row["reason"] else f"{said} ({row['reason']})"
+
+
+def key(row: Row) -> Key:
+    """Return the moment that a finding or near miss belongs to."""
+    return row["drive_id"], row["ego_id"], row["t_worst_ns"]
+
+
+def leading(rows: Iterable[tuple[Row, Measured]]) -> set[Key]:
+    """Return the moments of one drive that tell what happened: of each rule its worst, the gravest rules first."""
+    first: dict[str, tuple[int, float, Key]] = {}
+    for row, line in rows:
+        if line.kind == "fail":
+            ratio = 0.0 if not row["required"] or row["margin"] is None else row["margin"] / abs(row["required"])
+            worst = (SEVERITIES.index(row["severity"]), ratio, key(row))
+            first[row["rule_id"]] = min(first.get(row["rule_id"], worst), worst)
+    told: dict[Key, None] = {}
+    for _, _, at in sorted(first.values()):
+        if len(told) < KEY_MOMENTS:
+            told[at] = None
+    return set(told)
+
+
+def moments(
+    rows: Sequence[tuple[Row, Measured]],
+    rules: Mapping[str, Row],
+    pictures: Mapping[Key, Plan],
+    start_ns: int,
+    told: Collection[Key],
+) -> list[Moment]:
+    """Return the moments of one drive, in time order, from its findings and near misses; `told`: those that lead."""
+    groups: dict[Key, list[tuple[Row, Measured]]] = {}
+    for row, line in rows:
+        groups.setdefault(key(row), []).append((row, line))
+    return [
+        _moment(at, found, rules, pictures.get(at), ticks(at[2], start_ns), leads=at in told)
+        for at, found in sorted(groups.items(), key=lambda item: (item[0][2], item[0][1]))
+    ]
+
+
+def pictures(
+    rows: Iterable[Row], scenes: Mapping[Key, Row], spaces: Mapping[Key, list[Row]], road: Road, most: int
+) -> dict[Key, Plan]:
+    """Return the plan views of the moments of `rows`, of the first `most` in their order."""
+    told: dict[Key, list[Row]] = {}
+    for row in rows:
+        told.setdefault(key(row), []).append(row)
+    drawn: dict[Key, Plan] = {}
+    for at, found in [(at, found) for at, found in told.items() if at in scenes][:most]:
+        concerned = {row["object_id"] for row in found if row["object_id"] is not None}
+        about = any(row["rule_id"].startswith(_SPACES) for row in found)
+        drawn[at] = plan(scenes[at], road, concerned, spaces.get(at, []) if about else [])
+    return drawn
+
+
+def _moment(
+    at: Key,
+    found: Sequence[tuple[Row, Measured]],
+    rules: Mapping[str, Row],
+    picture: Plan | None,
+    t: int,
+    *,
+    leads: bool,
+) -> Moment:
+    cards: dict[str, list[Measured]] = {}
+    for row, line in found:
+        cards.setdefault(row["rule_id"], []).append(line)
+    failed = [line for _, line in found if line.kind == "fail"]
+    keys = {name for _, line in found for name in line.keys.split()}
+    return Moment(
+        anchor=moment_anchor(*at),
+        time=found[0][1].time,
+        t=t,
+        keys=" ".join(sorted(keys)),
+        leading=leads,
+        ego_id=at[1],
+        objects=sorted({row["object_id"] for row, _ in found if row["object_id"] is not None}),
+        kind="fail" if failed else "near",
+        severity=min((line.severity for line in failed or [line for _, line in found]), key=SEVERITIES.index),
+        titles=list(dict.fromkeys(line.title for line in sorted(failed or [line for _, line in found], key=_grave))),
+        plan=picture,
+        no_plan="" if picture else "No picture: the ego's position is not known here, or too many findings are worse.",
+        cards=[
+            Card(rules[rule_id], "#" + rule_anchor(rule_id), lines[0].severity, lines)
+            for rule_id, lines in sorted(cards.items(), key=_weight)
+        ],
+    )
+
+
+def _grave(line: Measured) -> int:
+    return SEVERITIES.index(line.severity)
+
+
+def _weight(item: tuple[str, Sequence[Measured]]) -> tuple[bool, int, str]:
+    rule_id, lines = item
+    return lines[0].kind != "fail", SEVERITIES.index(lines[0].severity), rule_id
+
+
+def _gauge(observed: float | None, required: float | None) -> Gauge | None:
+    """Return the bar from zero to what was observed, and where what was required lies."""
+    if observed is None or required is None or not max(abs(observed), abs(required)) < float("inf"):
+        return None
+    low, high = min(0.0, observed, required), max(0.0, observed, required)
+    if high == low:
+        return None
+    low, high = low - 0.06 * (high - low), high + 0.06 * (high - low)
+
+    def at(value: float) -> float:
+        return 100 * (value - low) / (high - low)
+
+    start, end = sorted((at(0.0), at(observed)))
+    return Gauge(f"{num(at(0.0))}%", f"{num(start)}%", f"{num(max(end - start, 0.4))}%", f"{num(at(required))}%")

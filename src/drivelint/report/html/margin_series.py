@@ -1,0 +1,151 @@
+"""How the measure of a rule went around a finding: a chart of observed and required over time, and the rows behind it."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from drivelint.report.html.scale import Axis, around
+from drivelint.report.html.svg import num
+from drivelint.result.text import NONE, number
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    Row = Mapping[str, Any]
+
+WIDTH: Final = 420
+HEIGHT: Final = 132
+_LEFT, _RIGHT, _TOP, _BOTTOM = 42.0, WIDTH - 8.0, 8.0, HEIGHT - 20.0
+_ROWS: Final = 9
+_LEAST: Final = 3
+"""Fewer steps are not worth a chart."""
+
+
+class Span(NamedTuple):
+    """A stretch of the time axis: fail or unknown."""
+
+    kind: str
+    x: str
+    w: str
+
+
+class Chart(NamedTuple):
+    """Lines in a frame of 420 by 132; `t0`, `t1`: hundredths of a second at its ends."""
+
+    observed: str
+    required: str
+    spans: list[Span]
+    worst: tuple[str, str]
+    t_ticks: list[tuple[str, str]]
+    v_ticks: list[tuple[str, str]]
+    unit: str
+    t0: int
+    t1: int
+    words: str
+
+
+class Step(NamedTuple):
+    """One judged step in words; numbers in the unit of the course."""
+
+    time: str
+    observed: str
+    required: str
+    margin: str
+    kept: str
+    worst: bool
+
+
+class Course(NamedTuple):
+    """The chart (None: too few steps, or nothing is measured) and the steps around the worst one."""
+
+    chart: Chart | None
+    unit: str
+    steps: list[Step]
+    n_steps: int
+
+
+def course(row: Row, worst_ns: int, unit: str | None, start_ns: int) -> Course:
+    """Return the course of a finding from its row of the table `course`."""
+    t: list[int] = row["t_ns"]
+    worst = min(range(len(t)), key=lambda i: abs(t[i] - worst_ns))
+    first = max(0, min(worst - _ROWS // 2, len(t) - _ROWS))
+    steps = [_step(row, i, start_ns, worst=i == worst) for i in range(first, min(first + _ROWS, len(t)))]
+    measured = len(t) >= _LEAST and any(value is not None for value in row["observed"])
+    return Course(_chart(row, worst, unit, start_ns) if measured else None, unit or "", steps, len(t))
+
+
+def _step(row: Row, i: int, start_ns: int, *, worst: bool) -> Step:
+    kept = {True: "yes", False: "no", None: "unknown"}[row["holds"][i]]
+    observed, required, margin = (number(row[name][i]) for name in ("observed", "required", "margin"))
+    return Step(f"{(row['t_ns'][i] - start_ns) / 1e9:.2f}", observed, required, margin, kept, worst)
+
+
+def _chart(row: Row, worst: int, unit: str | None, start_ns: int) -> Chart:
+    t = [(t_ns - start_ns) / 1e9 for t_ns in row["t_ns"]]
+    x = Axis(t[0], t[-1], _LEFT, _RIGHT)
+    values = [v for name in ("observed", "required") for v in row[name] if v is not None]
+    y = around(values, _BOTTOM, _TOP) if values else None
+    seen = [row["observed"][worst]] if row["observed"][worst] is not None else []
+    return Chart(
+        observed=_line(t, row["observed"], x, y),
+        required=_line(t, row["required"], x, y),
+        spans=_spans(t, row["holds"], x),
+        worst=(num(x.at(t[worst])), num(y.at(seen[0]) if y and seen else (_TOP + _BOTTOM) / 2)),
+        t_ticks=x.ticks(6),
+        v_ticks=y.ticks(4) if y else [],
+        unit=unit or "",
+        t0=round(t[0] * 100),
+        t1=round(t[-1] * 100),
+        words=_words(row, t, unit),
+    )
+
+
+def _line(t: Sequence[float], values: Sequence[float | None], x: Axis, y: Axis | None) -> str:
+    """Return the path through the values, broken where there is none or where steps are missing."""
+    if y is None:
+        return ""
+    gap = 3 * _typical(t)
+    parts, last = [], None
+    for at, value in zip(t, values, strict=True):
+        if value is None:
+            last = None
+            continue
+        parts.append(f"{'M' if last is None or at - last > gap else 'L'}{num(x.at(at))},{num(y.at(value))}")
+        last = at
+    return "".join(parts)
+
+
+def _typical(t: Sequence[float]) -> float:
+    steps = sorted(b - a for a, b in pairwise(t))
+    return steps[len(steps) // 2] if steps else math.inf
+
+
+def _spans(t: Sequence[float], holds: Sequence[bool | None], x: Axis) -> list[Span]:
+    """Return the stretches that are not kept or not known, each as far as halfway to its neighbours."""
+    half, gap = _typical(t) / 2, 3 * _typical(t)
+    runs: list[tuple[str, float, float]] = []
+    for at, kept in zip(t, holds, strict=True):
+        kind = {True: "", False: "fail", None: "unknown"}[kept]
+        if runs and runs[-1][0] == kind and at - runs[-1][2] <= gap:
+            runs[-1] = kind, runs[-1][1], at
+        else:
+            runs.append((kind, at, at))
+    drawn = []
+    for kind, a, b in runs:
+        if kind:
+            left, right = max(x.at(a - half), _LEFT), min(x.at(b + half), _RIGHT)
+            drawn.append(Span(kind, num(left), num(max(right - left, 1.5))))
+    return drawn
+
+
+def _words(row: Row, t: Sequence[float], unit: str | None) -> str:
+    seen = [v for v in row["observed"] if v is not None]
+    between = f"observed between {number(min(seen), unit)} and {number(max(seen), unit)}, " if seen else ""
+    failed = sum(kept is False for kept in row["holds"])
+    last = next((v for v in reversed(row["required"]) if v is not None), None)
+    required = "" if last is None else f"required {number(last, unit)} at the end, "
+    return (
+        f"From {t[0]:.1f} s to {t[-1]:.1f} s: {between}{required}not kept at {failed} of {len(t)} steps" if t else NONE
+    )

@@ -1,0 +1,203 @@
+"""The first page: what came out in one sentence, what was not kept, how the packs fared; for readers who know no rule by its id."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.report.html.anchors import rule_anchor
+from drivelint.result import counts
+from drivelint.result.text import number, seconds, tied
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from drivelint.report.html.incidents import Measured, Moment
+    from drivelint.result.model import Result
+
+    Row = Mapping[str, Any]
+
+PACKS: Final = {
+    "ukhc": "UK Highway Code",
+    "stvo": "German road traffic regulations",
+    "rss": "Responsibility-Sensitive Safety",
+    "criticality": "criticality metrics",
+    "comfort": "comfort",
+    "performance": "performance",
+    "declared": "declared intentions",
+    "alks-r157": "UN Regulation 157 (lane keeping)",
+}
+"""What the packs that come with drivelint are about."""
+_CONTACT: Final = pa.array(["ukhc.no-collision", "ukhc.contact-signature"])
+"""Rules whose findings are contacts: of the boxes, or told by the speeds."""
+_NAMED: Final = 4
+_OPEN: Final = pa.array(["unknown", "error"])
+_STORY_DRIVES: Final = 6
+_STORY_PARTIES: Final = 6
+
+
+class Broken(NamedTuple):
+    """A rule that was not kept: how often, and the worst of it (None: not among the findings of the page)."""
+
+    rule: Row
+    href: str
+    n: int
+    n_drives: int
+    worst: Measured | None
+
+
+class Story(NamedTuple):
+    """What happened in one drive, in time order; `who`: the vehicles and people that the findings are about."""
+
+    drive_id: str
+    href: str
+    file_name: str
+    who: list[str]
+    n_more: int
+    moments: list[Moment]
+
+
+def headline(result: Result) -> tuple[str, str]:
+    """Return the sign and the sentence that stand on top."""
+    told, n = counts.total(result.verdicts), result.findings.num_rows
+    judged = int(pc.sum(pc.equal(result.drives["status"], "judged")).as_py() or 0)
+    open_ = told["unknown"] + told["error"]
+    if n:
+        drives, all_ = len(pc.unique(result.findings["drive_id"])), result.drives.num_rows
+        said = f"{n} {'finding' if n == 1 else 'findings'} in {drives} of {all_} {'drive' if all_ == 1 else 'drives'}"
+        return "fail", said + _of_these(result)
+    if not judged or not result.verdicts.num_rows:
+        return "unknown", "Nothing was judged"
+    if not told["pass"] and open_:
+        return "unknown", "Nothing could be decided"
+    if open_ > told["pass"]:
+        return "unknown", "Most could not be judged; no finding in the rest"
+    if open_ or judged < result.drives.num_rows:
+        return "unknown", "No finding, as far as it could be judged"
+    return "pass", "No finding"
+
+
+class Contacts(NamedTuple):
+    """The contacts that rules found, in words, each with the link to it; `n_more`: those that are not named."""
+
+    named: list[tuple[str, str]]
+    n_more: int
+
+
+def contacts(result: Result, lines: Sequence[tuple[Row, Measured]]) -> Contacts | None:
+    """Return who touched whom and when, by all findings; None: none is about a contact. `lines`: those of the page, to link to."""
+    starts = {
+        row["drive_id"]: row["t_start_ns"] for row in result.drives.select(["drive_id", "t_start_ns"]).to_pylist()
+    }
+    hrefs = {row["finding_id"]: line.href for row, line in lines if line.kind == "fail"}
+    rows = result.findings.filter(pc.is_in(result.findings["rule_id"], value_set=_CONTACT))
+    rows = rows.sort_by([("drive_id", "ascending"), ("t_worst_ns", "ascending")])
+    met: dict[tuple[str, frozenset[str | None]], list[Row]] = {}
+    for row in rows.to_pylist():
+        met.setdefault((row["drive_id"], frozenset((row["ego_id"], row["object_id"]))), []).append(row)
+    named = []
+    for found in met.values():
+        first = found[0]
+        who = f"ego {first['ego_id']}" + ("" if first["object_id"] is None else f" and object {first['object_id']}")
+        # a centimetre may be the recorder's error
+        depths = [-row["observed"] for row in found if row["unit"] == "m" and row["observed"] is not None]
+        deep = f", {tied(number(max(depths), 'm'))} deep" if depths else ""
+        where = f", {first['drive_id']}" if len(starts) > 1 else ""
+        said = f"{who} at {tied(seconds(first['t_worst_ns'], starts[first['drive_id']]))}{deep}{where}"
+        named.append((said, hrefs.get(first["finding_id"], "")))
+    return Contacts(named[:_NAMED], len(named) - len(named[:_NAMED])) if named else None
+
+
+def not_decided(result: Result) -> int:
+    """Return how many rules are unknown, or could not be run, somewhere."""
+    rows = result.verdicts.filter(pc.is_in(result.verdicts["verdict"], value_set=_OPEN))
+    return len(pc.unique(rows["rule_id"]))
+
+
+def _of_these(result: Result) -> str:
+    """Return how many findings an earlier result or a waiver does not account for; '' where they were held against nothing."""
+    gate = result.gate
+    if gate is None:
+        return ""
+    ids = result.findings["finding_id"].to_pylist()
+    left = sum(gate.gates(name) for name in ids)
+    return f", {left or 'none'} of them {'new' if gate.baseline is not None else 'not waived'}"
+
+
+def broken(result: Result, rules: Mapping[str, Row], lines: Sequence[tuple[Row, Measured]]) -> list[Broken]:
+    """Return the rules with findings, the gravest and most frequent first."""
+    drives: dict[str, set[str]] = {}
+    for row in result.findings.select(["rule_id", "drive_id"]).to_pylist():
+        drives.setdefault(row["rule_id"], set()).add(row["drive_id"])
+    worst: dict[str, tuple[float, int, Measured]] = {}
+    for n, (row, line) in enumerate(lines):
+        margin = float("-inf") if row["margin"] is None else row["margin"]
+        here = (margin, n, line)
+        worst[row["rule_id"]] = min(worst.get(row["rule_id"], here), here, key=lambda w: w[:2])
+    found = [
+        Broken(
+            rules[rule_id],
+            "#" + rule_anchor(rule_id),
+            n,
+            len(drives[rule_id]),
+            worst[rule_id][2] if rule_id in worst else None,
+        )
+        for rule_id, n in counts.rows_by(result.findings, "rule_id").items()
+    ]
+    return sorted(found, key=lambda b: (counts.SEVERITIES.index(b.rule["severity"]), -b.n, b.rule["rule_id"]))
+
+
+def packs(result: Result) -> list[dict[str, Any]]:
+    """Return how many verdicts of each kind every pack has, and of how many rules."""
+    told = counts.packs(result.rules, counts.by(result.verdicts, "rule_id"))
+    rules = counts.rows_by(result.rules, "pack")
+    return [
+        {
+            "pack": pack,
+            "about": PACKS.get(pack, ""),
+            "n_rules": rules[pack],
+            "verdicts": verdicts,
+            "shares": shares(verdicts),
+        }
+        for pack, verdicts in told.items()
+    ]
+
+
+def shares(told: Mapping[str, int]) -> list[dict[str, Any]]:
+    """Return the verdicts with their number and their stretch of a bar, in percent."""
+    total, at, found = sum(told.values()), 0.0, []
+    for verdict in ("fail", "error", "unknown", "pass", "not_applicable"):
+        width = 100 * told[verdict] / total if total else 0.0
+        found.append({"verdict": verdict, "n": told[verdict], "x": f"{at:.3f}%", "w": f"{width:.3f}%"})
+        at += width
+    return found
+
+
+def stories(sections: Sequence[Mapping[str, Any]], n_drives: int) -> list[Story]:
+    """Return what happened in each drive, if they are few enough to be told on the first page."""
+    if n_drives > _STORY_DRIVES:
+        return []
+    told = [_story(s) for s in sections]
+    return [story for story in told if story.moments]
+
+
+def _story(section: Mapping[str, Any]) -> Story:
+    who = [f"{party.name} ({party.what})" for party in section["parties"] if party.n]
+    return Story(
+        section["drive_id"],
+        "#" + section["anchor"],
+        section["file_name"],
+        who[:_STORY_PARTIES],
+        max(len(who) - _STORY_PARTIES, 0),
+        [moment for moment in section["moments"] if moment.leading],
+    )
+
+
+def texts(rules: Sequence[Broken], told: Sequence[Story], lines: Sequence[Measured]) -> list[str]:
+    """Return what the first page says of rules and findings, to be searched for words that need to be explained."""
+    worst = [line for b in rules if (line := b.worst) is not None]
+    leading = [line for story in told for moment in story.moments for card in moment.cards for line in card.lines]
+    profiles = {line.profile for line in lines}
+    return [b.rule["title"] for b in rules] + [line.told for line in worst + leading] + sorted(profiles)

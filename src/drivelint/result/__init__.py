@@ -1,0 +1,1 @@
+"""A result: the tables that a run writes, and reading them again."""

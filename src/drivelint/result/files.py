@@ -1,0 +1,117 @@
+"""Result files appear whole or not at all: temporary file in the same folder, fsync, rename."""
+
+from __future__ import annotations
+
+import io
+import os
+import shutil
+from typing import TYPE_CHECKING, Final
+
+import pyarrow.parquet as pq
+
+from drivelint.errors import DriveLintError, ExitCode, UsageError
+from drivelint.result.contract import OUTPUT_SCHEMA, conform
+from drivelint.sql.store import schema
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import pyarrow as pa
+
+ROW_GROUP: Final = 1 << 17
+
+
+class OutputError(DriveLintError):
+    """A result could not be written; nothing half-written is left under its final name."""
+
+    exit_code = ExitCode.TEMPFAIL
+
+
+def parquet_bytes(rows: pa.Table, table: str) -> bytes:
+    """Return a schema table as Parquet: the same bytes for the same rows, whatever their chunks and metadata were.
+
+    Every column carries its comment from `schemas/` as Arrow field metadata (`comment`).
+    """
+    comments = schema()[table]
+    rows = conform(rows, table)
+    described = rows.schema.with_metadata({"drivelint.table": table, "drivelint.output_schema": str(OUTPUT_SCHEMA)})
+    for i, field in enumerate(rows.schema):
+        described = described.set(i, field.with_metadata({"comment": comments[field.name]}))
+    sink = io.BytesIO()
+    pq.write_table(
+        rows.cast(described),
+        sink,
+        version="2.6",
+        data_page_version="1.0",
+        compression="zstd",
+        compression_level=3,
+        use_dictionary=True,
+        write_statistics=True,
+        row_group_size=ROW_GROUP,
+        store_schema=True,
+    )
+    return sink.getvalue()
+
+
+def prepare(out: Path) -> None:
+    """Make the folder for results and make sure that files can be written there, before hours of work are done for it.
+
+    Errors: `UsageError` where it is a file, `OutputError`.
+    """
+    if out.exists() and not out.is_dir():
+        raise UsageError(f"--out {out}: is a file: give a folder for the results")
+    probe = out / f".drivelint.{os.getpid()}.tmp"
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise _unwritable(out, error) from error
+
+
+def publish(out: Path, contents: dict[str, bytes], moved: dict[str, Path | None]) -> None:
+    """Write files into the folder `out`, all of them complete on disk before the first gets its name.
+
+    `contents`: name -> bytes; `moved`: name -> a finished file that is taken over, or None: what an earlier run left
+    under that name goes, because it is not of this run. Names are published in order, those of `moved` first.
+    Errors: `OutputError` when the folder cannot be written (exit 75).
+    """
+    staged: list[tuple[Path, Path]] = []
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        for name, source in moved.items():
+            if source is None:
+                (out / name).unlink(missing_ok=True)
+                continue
+            temporary = out / f".{name}.{os.getpid()}.tmp"
+            shutil.move(source, temporary)
+            staged.append((temporary, out / name))
+        for name, content in contents.items():
+            temporary = out / f".{name}.{os.getpid()}.tmp"
+            staged.append((temporary, out / name))
+            temporary.write_bytes(content)
+        for temporary, _ in staged:
+            _sync(temporary)
+        for temporary, final in staged:
+            temporary.replace(final)
+        _sync(out)
+    except OSError as error:
+        raise _unwritable(out, error) from error
+    finally:
+        for temporary, _ in staged:
+            temporary.unlink(missing_ok=True)
+
+
+def _unwritable(out: Path, error: OSError) -> OutputError:
+    return OutputError(
+        f"{out}: cannot write the results: {error.strerror or error}; free the disk or choose another --out"
+    )
+
+
+def _sync(path: Path) -> None:
+    """Force a file's content, or a folder's names, to the disk."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

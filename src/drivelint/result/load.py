@@ -1,0 +1,59 @@
+"""A result read back from its folder, so that reports can be made later, elsewhere."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from drivelint.errors import DriveLintError, UsageError
+from drivelint.result import gate_file as store
+from drivelint.result.contract import FILES, OUTPUT_SCHEMA
+from drivelint.result.model import Result
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def load(folder: Path) -> Result:
+    """Return the result that `check --out` wrote into a folder.
+
+    Errors: `UsageError` for a folder without a whole result, or one of another version.
+    """
+    summary = _summary(folder)
+    if summary.get("output_schema") != OUTPUT_SCHEMA:
+        raise UsageError(
+            f"{folder}: written with output schema {summary.get('output_schema')}, this drivelint reads {OUTPUT_SCHEMA}: "
+            "check the drives again"
+        )
+    tables = {name: _table(folder / f"{name}.parquet") for name in FILES}
+    gate = store.load(folder)
+    try:
+        return Result(**tables, fail_on=summary["fail_on"], strict=summary["strict"], gate=gate)
+    except DriveLintError as error:
+        raise UsageError(f"{folder}: of another version of drivelint ({error}): check the drives again") from error
+
+
+def _summary(folder: Path) -> dict[str, Any]:
+    try:
+        found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise UsageError(
+            f"{folder}: no result of drivelint check: summary.json {_why(error)}: name the folder that check --out wrote"
+        ) from error
+    if not isinstance(found, dict) or not {"fail_on", "strict"} <= found.keys():
+        raise UsageError(f"{folder}: no result of drivelint check: summary.json is of another program")
+    return found
+
+
+def _table(path: Path) -> pa.Table:
+    try:
+        return pq.read_table(path)
+    except (OSError, pa.ArrowException) as error:
+        raise UsageError(f"{path}: {_why(error)}: check the drives again") from error
+
+
+def _why(error: Exception) -> str:
+    return "is missing" if isinstance(error, FileNotFoundError) else "cannot be read"

@@ -1,0 +1,154 @@
+"""What a run comes to: its tables, its exit code with the reason, its files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.errors import ExitCode
+from drivelint.result.contract import FILES, conform, empty
+from drivelint.result.counts import SEVERITIES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from drivelint.result.gate import Gate
+    from drivelint.result.request import Asked
+
+
+class Outcome(NamedTuple):
+    """The exit code and, in one sentence, why."""
+
+    code: ExitCode
+    why: str
+
+
+@dataclass(frozen=True)
+class Result:
+    """The tables of one run, totally ordered, each with the columns of `schemas/verdict.sql`, `output.sql` or `evidence.sql`.
+
+    `scenes` to `opportunities`: the evidence for pictures and charts, empty where none was gathered.
+    `margins_file`: finished Parquet of every judged step, or None; `write` takes it over.
+    `fail_on`: critical, major, minor or never. `strict`: unknown is not good enough.
+    `gate`: what findings are known or waived, or None: all gate. `asked`: what the run was asked to do, if that is known.
+    Errors: `DriveLintError` when a table lacks a column or has one too many.
+    """
+
+    verdicts: pa.Table
+    findings: pa.Table
+    drives: pa.Table
+    rules: pa.Table
+    scenes: pa.Table = field(default_factory=lambda: empty("scene"))
+    lanes: pa.Table = field(default_factory=lambda: empty("lane_shape"))
+    spaces: pa.Table = field(default_factory=lambda: empty("danger_space"))
+    courses: pa.Table = field(default_factory=lambda: empty("course"))
+    overtakes: pa.Table = field(default_factory=lambda: empty("overtake_record"))
+    opportunities: pa.Table = field(default_factory=lambda: empty("opportunity_record"))
+    margins_file: Path | None = None
+    fail_on: str = "critical"
+    strict: bool = False
+    gate: Gate | None = None
+    asked: Asked | None = None
+
+    def __post_init__(self) -> None:
+        for name, table in FILES.items():
+            object.__setattr__(self, name, conform(getattr(self, name), table))
+
+    @property
+    def lossy(self) -> bool:
+        """Some judged drive had lost parts of its log."""
+        return bool(pc.any(pc.and_(self.drives["lossy"], pc.equal(self.drives["status"], "judged"))).as_py())
+
+
+def outcome(result: Result) -> Outcome:
+    """Return the exit code of DESIGN.md, by its precedence 2 > 1 > 4 > 3 > 0, and why.
+
+    Only stable rules gate: a draft's failure or unknown is shown, never an exit code. A rule that erred is always 2.
+    """
+    return next(_outcomes(result))
+
+
+def _outcomes(result: Result) -> Iterator[Outcome]:
+    """Yield what the run comes to, weightiest first."""
+    gating = _rows_of(result.verdicts, result.rules.filter(pc.equal(result.rules["status"], "stable")))
+    if errors := _count(result.verdicts, "error"):
+        yield Outcome(ExitCode.USAGE, f"{_many(errors, 'verdict')} in error: a rule could not be run")
+    let_through = ""
+    if result.gate is None:
+        if failed := _severe(gating, "fail", result.fail_on):
+            yield Outcome(ExitCode.FAILED, f"{_many(failed, 'verdict')} failed at or above severity {result.fail_on}")
+    else:
+        stopped, let_through = _gate(result, gating)
+        if stopped:
+            yield Outcome(ExitCode.FAILED, f"{stopped} at or above severity {result.fail_on}{let_through}")
+    if lost := int(pc.sum(pc.equal(result.drives["status"], "not_judged")).as_py() or 0):
+        yield Outcome(ExitCode.NOT_JUDGED, f"{lost} of {_many(result.drives.num_rows, 'drive')} could not be judged")
+    if result.strict and (unknown := _count(gating, "unknown")):
+        yield Outcome(ExitCode.NOT_JUDGED, f"{_many(unknown, 'verdict')} unknown, and --strict is set")
+    if result.lossy:
+        yield Outcome(ExitCode.LOSSY, "judged on lossy input: parts of a log were lost")
+    if result.fail_on == "never":
+        yield Outcome(ExitCode.OK, "failures do not gate (--fail-on never)")
+    if _count(result.verdicts, "unknown") == result.verdicts.num_rows > 0:
+        yield Outcome(
+            ExitCode.OK, "nothing failed, as nothing could be decided: every verdict is unknown (--strict makes it 4)"
+        )
+    new = "new " if result.gate is not None and result.gate.baseline is not None else ""
+    yield Outcome(ExitCode.OK, f"nothing {new}failed at or above severity {result.fail_on}{let_through}")
+
+
+def exit_code(result: Result) -> ExitCode:
+    """Return the exit code of DESIGN.md for a finished run."""
+    return outcome(result).code
+
+
+def _many(n: int, noun: str) -> str:
+    return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
+
+
+def _count(verdicts: pa.Table, verdict: str) -> int:
+    return int(pc.sum(pc.equal(verdicts["verdict"], verdict)).as_py() or 0)
+
+
+def _rows_of(verdicts: pa.Table, rules: pa.Table) -> pa.Table:
+    return verdicts.filter(pc.is_in(verdicts["rule_id"], value_set=rules["rule_id"].combine_chunks()))
+
+
+def _severe(verdicts: pa.Table, verdict: str, fail_on: str) -> int:
+    return _count(_at_or_above(verdicts, fail_on), verdict)
+
+
+def _at_or_above(rows: pa.Table, fail_on: str) -> pa.Table:
+    if fail_on == "never":
+        return rows.slice(0, 0)
+    return rows.filter(pc.is_in(rows["severity"], value_set=pa.array(SEVERITIES[: SEVERITIES.index(fail_on) + 1])))
+
+
+def _gate(result: Result, gating: pa.Table) -> tuple[str, str]:
+    """Return what a gate stops ('' for nothing) and what it lets through, in words.
+
+    It lets findings through, not verdicts: a failed verdict of a drive, ego, rule and profile without any finding is stopped.
+    """
+    gate = result.gate
+    assert gate is not None  # noqa: S101 - for the type checker
+    stable = result.rules.filter(pc.equal(result.rules["status"], "stable"))
+    findings = _at_or_above(_rows_of(result.findings, stable), result.fail_on)
+    ids = findings["finding_id"].to_pylist()
+    waived = sum(gate.waiver(name) is not None for name in ids)
+    known = sum(gate.waiver(name) is None and gate.known(name) for name in ids)
+    stopped = len(ids) - waived - known
+    keys = ["drive_id", "ego_id", "rule_id", "profile"]
+    told = {tuple(row.values()) for row in findings.select(keys).to_pylist()}
+    failed = _at_or_above(gating, result.fail_on)
+    failed = failed.filter(pc.equal(failed["verdict"], "fail")).select(keys)
+    bare = sum(tuple(row.values()) not in told for row in failed.to_pylist())
+    new = "new finding" if gate.baseline is not None else "finding"
+    parts = [_many(stopped, new)] if stopped else []
+    parts += [f"{_many(bare, 'failed verdict')} without a finding"] if bare else []
+    through = [f"{known} known"] if gate.baseline is not None else []
+    through += [f"{waived} waived"] if gate.waivers else []
+    return " and ".join(parts), f" ({', '.join(through)})" if through else ""

@@ -1,0 +1,349 @@
+"""Lanes given by their two bounds (Lanelet2, CommonRoad, OSI): each already runs in the direction of travel.
+
+Such maps have no roads: the lanes that lie side by side are taken as one, numbered from the middle outwards.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import pyarrow as pa
+import shapely
+
+from drivelint.road import layout
+from drivelint.road.tables import from_columns, from_rows, repeated
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from drivelint.road.quality import Quality
+
+    Floats = NDArray[np.float64]
+
+_SPACING_M = 4.0  # points of a lane are no further apart: its cells are looked up by segment
+_WIDEST_M = 60.0  # wider is a mistake in the bounds
+_LONGEST_M = 100_000.0  # so is longer
+
+
+class Mark(NamedTuple):
+    """The marking of one side from one share of the lane's length (0 to 1) to another. None: not known."""
+
+    side: str
+    begin: float
+    end: float
+    marking: str | None
+    lane_change: str | None = None
+
+
+class _UnbuildableError(ValueError):
+    """A lane whose bounds make no area; caught where the lane is named."""
+
+
+@dataclass(eq=False)
+class BoundedLane:
+    """One lane. `left`, `right`: bounds (n, 2), (m, 2) in metres, in the direction of travel; the rest as in `lanelet`.
+
+    `left_against`: the lane on that side is driven the other way. A marking of None is not known; `marks` are given instead of
+    `left_marking` and `right_marking` where a side's marking changes along the lane. `limit_mps` is None where there is none or the
+    map does not say, which `limit_known` tells, or says it in a way that cannot be read (not `limit_readable`); `limits` are given
+    instead where it changes: from one share of the length to another, in m/s; `limit_source` is the source of `speed_limit`. `z_m`:
+    height of each point of `line`; None: not known.
+    """
+
+    lanelet_id: str
+    left: Floats
+    right: Floats
+    kind: str = "driving"
+    drivable: bool = True
+    bidirectional: bool = False
+    road_type: str | None = None
+    junction_id: str | None = None
+    successors: tuple[str, ...] = ()
+    left_id: str | None = None
+    left_against: bool | None = None
+    right_id: str | None = None
+    right_against: bool | None = None
+    left_marking: str | None = None
+    right_marking: str | None = None
+    limit_mps: float | None = None
+    limit_known: bool = False
+    limit_readable: bool = True
+    limit_source: str = "sign"
+    marks: tuple[Mark, ...] = ()
+    limits: tuple[tuple[float, float, float], ...] = ()
+    road_id: str = ""
+    lane_no: int = 0
+    along: int = 1
+    line: Line = field(init=False)
+    z_m: Floats | None = field(init=False, default=None)
+
+
+@dataclass(frozen=True)
+class Line:
+    """A lane's points: stations s (n,), centre, left and right (n, 2), unit tangents (n, 2), half widths (n,)."""
+
+    s: Floats
+    centre: Floats
+    left: Floats
+    right: Floats
+    tangent: Floats
+    half_width: Floats
+
+    @property
+    def turn(self) -> float:
+        """Change of heading along the lane (rad), left positive."""
+        a, b = self.tangent[:-1], self.tangent[1:]
+        return float(np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(1)).sum())
+
+    @property
+    def area(self) -> float:
+        """Area between the bounds (m2)."""
+        ring = np.vstack([self.right, self.left[::-1]])
+        x, y = (ring - ring[0]).T
+        return abs(0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)))
+
+    @property
+    def width(self) -> float:
+        """Mean width (m)."""
+        return float(((self.half_width[:-1] + self.half_width[1:]) * np.diff(self.s)).sum() / self.s[-1])
+
+
+def build(lanes: Iterable[BoundedLane], offset: tuple[float, float], quality: Quality) -> list[BoundedLane]:
+    """Evaluate the lanes, sorted by id; one that cannot be built is named in `quality` and left out of all that refer to it."""
+    built: dict[str, BoundedLane] = {}
+    for lane in sorted(lanes, key=lambda lane: _by_number(lane.lanelet_id)):
+        try:
+            lane.line = _line(lane.left + offset, lane.right + offset)
+        except _UnbuildableError as error:
+            quality.add("invalid_lane", "error", lane.lanelet_id, f"lanelet {lane.lanelet_id} is left out: {error}")
+            continue
+        built[lane.lanelet_id] = lane
+    for lane in built.values():
+        lost = [name for name in lane.successors if name not in built]
+        if lost:
+            message = f"lanelet {lane.lanelet_id} leads to {', '.join(lost)}, which the map does not have"
+            quality.add("missing_link", "warning", lane.lanelet_id, message, len(lost))
+        lane.successors = tuple(name for name in lane.successors if name in built)
+        if lane.left_id not in built:
+            lane.left_id = lane.left_against = None
+        if lane.right_id not in built:
+            lane.right_id = lane.right_against = None
+    _roads(built)
+    return list(built.values())
+
+
+def _line(left: Floats, right: Floats) -> Line:
+    """Return the points of a lane. Errors: `_UnbuildableError` saying what is wrong with it."""
+    if len(left) < 2 or len(right) < 2:
+        raise _UnbuildableError("a bound has fewer than two points")
+    if not (np.isfinite(left).all() and np.isfinite(right).all()):
+        raise _UnbuildableError("a bound has a coordinate that is not finite")
+    left, right = _paired(left, right)
+    centre = (left + right) / 2
+    keep = np.r_[True, np.hypot(*np.diff(centre, axis=0).T) > 0.01]
+    left, right, centre = left[keep], right[keep], centre[keep]
+    if len(centre) < 2:
+        raise _UnbuildableError("it has no length")
+    total_m = float(np.hypot(*np.diff(centre, axis=0).T).sum())
+    if total_m > _LONGEST_M:
+        raise _UnbuildableError(f"it is {total_m / 1000:.0f} km long")
+    left, right = _dense(centre, left), _dense(centre, right)
+    centre = (left + right) / 2
+    step = np.diff(centre, axis=0)
+    length = np.hypot(*step.T)
+    direction = step / length[:, None]
+    tangent = np.vstack([direction[:1], direction[:-1] + direction[1:], direction[-1:]])
+    size = np.hypot(*tangent.T)
+    if (size < 0.1).any():
+        raise _UnbuildableError("its centre line turns back on itself")
+    tangent = tangent / size[:, None]
+    across = left - right
+    half = (tangent[:, 0] * across[:, 1] - tangent[:, 1] * across[:, 0]) / 2
+    if (half <= 0).all():
+        raise _UnbuildableError("its left bound lies on the right of its right bound")
+    half = np.maximum(half, 0.0)
+    if 2 * half.max() > _WIDEST_M:
+        raise _UnbuildableError(f"it is {2 * half.max():.0f} m wide")
+    return Line(np.r_[0.0, np.cumsum(length)], centre, left, right, tangent, half)
+
+
+def _paired(left: Floats, right: Floats) -> tuple[Floats, Floats]:
+    """Return the bounds with as many points each, one beside the other: as given, or at equal shares of their lengths."""
+    if len(left) == len(right):
+        return left, right
+    stations = [np.r_[0.0, np.cumsum(np.hypot(*np.diff(bound, axis=0).T))] for bound in (left, right)]
+    shares = [s / s[-1] if s[-1] > 0 else np.linspace(0.0, 1.0, len(s)) for s in stations]
+    at = np.unique(np.round(np.concatenate(shares), 6))
+    first, second = (
+        np.column_stack([np.interp(at, share, bound[:, 0]), np.interp(at, share, bound[:, 1])])
+        for share, bound in zip(shares, (left, right), strict=True)
+    )
+    return first, second
+
+
+def _dense(centre: Floats, bound: Floats) -> Floats:
+    """Return a bound with points added so that the centre line's are no more than `_SPACING_M` apart."""
+    length = np.hypot(*np.diff(centre, axis=0).T)
+    pieces = np.maximum(1, np.ceil(length / _SPACING_M)).astype(np.int64)
+    start = np.repeat(np.arange(len(pieces)), pieces)
+    share = (np.arange(len(start)) - np.repeat(np.cumsum(pieces) - pieces, pieces)) / pieces[start]
+    points = bound[start] + share[:, None] * (bound[start + 1] - bound[start])
+    return np.vstack([points, bound[-1:]])
+
+
+def _by_number(name: str) -> tuple[int, int, str]:
+    return (0, int(name), name) if name.isdecimal() else (1, 0, name)
+
+
+def _roads(lanes: Mapping[str, BoundedLane]) -> None:
+    """Number the lanes that lie side by side as one road: -1, -2, ... to the right of its middle, 1, 2, ... to the left."""
+    for first in lanes.values():
+        if first.road_id:
+            continue
+        row = _row(first, lanes)
+        name = f"r{first.lanelet_id}"
+        rightmost_left = max((i for i, (_, along) in enumerate(row) if along < 0), default=-1)
+        for i, (lane, along) in enumerate(row):
+            lane.road_id, lane.along = name, along
+            lane.lane_no = rightmost_left - i if i > rightmost_left else rightmost_left - i + 1
+
+
+def _row(first: BoundedLane, lanes: Mapping[str, BoundedLane]) -> list[tuple[BoundedLane, int]]:
+    """Return the lanes side by side from left to right, seen along the first; -1: driven the other way."""
+    row, seen = [(first, 1)], {first.lanelet_id}
+    for step in (1, -1):
+        lane, along = first, 1
+        while True:
+            to_left = (step < 0) == (along > 0)
+            name = lane.left_id if to_left else lane.right_id
+            against = lane.left_against if to_left else lane.right_against
+            if name is None or name in seen or name not in lanes or lanes[name].road_id:
+                break
+            lane, along = lanes[name], -along if against else along
+            seen.add(name)
+            row.insert(0, (lane, along)) if step < 0 else row.append((lane, along))
+    return row
+
+
+def tables(name: str, lanes: Sequence[BoundedLane]) -> dict[str, pa.Table]:
+    """Return lanelet, lane_point, lane_link, lane_boundary and speed_limit of lanes that `build` gave."""
+    by_id = {lane.lanelet_id: lane for lane in lanes}
+    links = [
+        {"from_id": lane.lanelet_id, "to_id": to, "turn_rad": by_id[to].line.turn}
+        for lane in lanes
+        for to in sorted(set(lane.successors))
+    ]
+    limits = [row for lane in lanes for row in _limits(lane)]
+    return {
+        "lanelet": from_rows("lanelet", name, [_lanelet(lane) for lane in lanes]),
+        "lane_point": _points(name, lanes),
+        "lane_link": from_rows("lane_link", name, links),
+        "lane_boundary": from_rows("lane_boundary", name, [row for lane in lanes for row in _boundaries(lane)]),
+        "speed_limit": from_rows("speed_limit", name, limits),
+    }
+
+
+def _lanelet(lane: BoundedLane) -> dict[str, Any]:
+    return {
+        "lanelet_id": lane.lanelet_id, "road_id": lane.road_id, "section": 0, "lane_no": lane.lane_no,
+        "lane_type": lane.kind, "drivable": lane.drivable, "bidirectional": lane.bidirectional,
+        "along_road": lane.along, "junction_id": lane.junction_id, "road_type": lane.road_type,
+        "length_m": float(lane.line.s[-1]), "width_m": lane.line.width, "area_m2": lane.line.area,
+        "left_id": lane.left_id, "left_against": lane.left_against,
+        "right_id": lane.right_id, "right_against": lane.right_against,
+    }  # fmt: skip
+
+
+def _limits(lane: BoundedLane) -> list[dict[str, Any]]:
+    spans = lane.limits or (((0.0, 1.0, lane.limit_mps),) if lane.limit_known else ())
+    length = float(lane.line.s[-1])
+    return [
+        {"lanelet_id": lane.lanelet_id, "s_start_m": begin * length, "s_end_m": end * length, "limit_mps": limit,
+         "source": lane.limit_source if lane.limit_readable else "unread"}
+        for begin, end, limit in spans
+    ]  # fmt: skip
+
+
+def _boundaries(lane: BoundedLane) -> list[dict[str, Any]]:
+    marks = lane.marks or (
+        Mark("left", 0.0, 1.0, lane.left_marking),
+        Mark("right", 0.0, 1.0, lane.right_marking),
+    )
+    length = float(lane.line.s[-1])
+    return [
+        {"lanelet_id": lane.lanelet_id, "side": mark.side, "s_start_m": mark.begin * length, "s_end_m": mark.end * length,
+         "marking": mark.marking, "color": None, "lane_change": mark.lane_change}
+        for mark in marks
+    ]  # fmt: skip
+
+
+def _points(name: str, lanes: Sequence[BoundedLane]) -> pa.Table:
+    counts = [len(lane.line.s) for lane in lanes]
+    columns: dict[str, Any] = {
+        "s_m": np.concatenate([lane.line.s for lane in lanes]),
+        "half_width_m": np.concatenate([lane.line.half_width for lane in lanes]),
+        "road_s_m": np.concatenate([s if lane.along > 0 else s[-1] - s for lane in lanes for s in (lane.line.s,)]),
+        "z_m": pa.array(np.concatenate([_heights(lane) for lane in lanes]), pa.float64(), from_pandas=True),
+        "k": np.concatenate([np.arange(n, dtype=np.int32) for n in counts]),
+        "lanelet_id": repeated([lane.lanelet_id for lane in lanes], counts),
+    }
+    for attribute, x, y in (
+        ("centre", "x_m", "y_m"),
+        ("tangent", "tx", "ty"),
+        ("left", "left_x_m", "left_y_m"),
+        ("right", "right_x_m", "right_y_m"),
+    ):
+        both = np.vstack([getattr(lane.line, attribute) for lane in lanes])
+        columns[x], columns[y] = both[:, 0], both[:, 1]
+    return from_columns("lane_point", name, columns, sum(counts))
+
+
+def _heights(lane: BoundedLane) -> Floats:
+    return lane.z_m if lane.z_m is not None else np.full(len(lane.line.s), np.nan)
+
+
+def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
+    """Return lht or rht by the lanes beside each other that are driven in opposite directions; None: there are none.
+
+    Where the left is driven on, the oncoming lane is the one on the right. Where the map names none, its geometry tells.
+    """
+    one_way = {lane.lanelet_id: lane for lane in lanes if lane.drivable and not lane.bidirectional}
+    left = sum(lane.left_against is True and lane.left_id in one_way for lane in one_way.values())
+    right = sum(lane.right_against is True and lane.right_id in one_way for lane in one_way.values())
+    if left != right:
+        return "rht" if left > right else "lht"
+    return layout.side_driven_on([_course(lane.line) for lane in one_way.values() if lane.junction_id is None])
+
+
+def _course(line: Line) -> layout.Course:
+    (x, y), (tx, ty) = line.centre.T, line.tangent.T
+    return layout.Course(x, y, np.full(len(line.s), np.nan), tx, ty, line.half_width)
+
+
+def crossings(
+    walks: Iterable[BoundedLane], lanes: Sequence[BoundedLane], offset: tuple[float, float]
+) -> list[dict[str, Any]]:
+    """Return the rows of `crossing`: one for each drivable lanelet that a lane for people on foot lies across."""
+    driven = [lane for lane in lanes if lane.drivable]
+    lines = [shapely.LineString(lane.line.centre) for lane in driven]
+    tree = shapely.STRtree(lines)
+    rows = []
+    for walk in walks:
+        area = shapely.Polygon(np.vstack([walk.right, walk.left[::-1]]) + offset).buffer(0.0)
+        for i in sorted(int(i) for i in tree.query(area, predicate="intersects")):
+            common = shapely.get_coordinates(shapely.intersection(area, lines[i]))
+            s = shapely.line_locate_point(lines[i], shapely.points(common))
+            rows.append(
+                {
+                    "crossing_id": walk.lanelet_id,
+                    "lanelet_id": driven[i].lanelet_id,
+                    "s_start_m": float(s.min()),
+                    "s_end_m": float(s.max()),
+                    "kind": "zebra" if walk.kind == "zebra" else None,
+                }
+            )
+    return sorted(rows, key=lambda r: (r["crossing_id"], r["lanelet_id"]))

@@ -1,0 +1,1 @@
+"""The DuckDB database, its tables, and the syntax trees of statements."""

@@ -1,0 +1,86 @@
+"""The library tables: each `queries/derive/<table>.sql` is one SELECT that fills the table of its name.
+
+The order follows from which tables each SELECT reads.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from graphlib import TopologicalSorter
+from typing import TYPE_CHECKING
+
+from drivelint.errors import DriveLintError
+from drivelint.resources import folder
+from drivelint.sql import syntax
+from drivelint.sql.store import schema
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+_GIVEN = {"profile"}  # filled from queries/profiles.toml
+# What the engine and the drive table read themselves, whatever the rules are.
+ALWAYS = (
+    "clock",
+    "step",
+    "ego_state",
+    "pair",
+    "lost_object",
+    "ego_condition",
+    "capability",
+    "registration",
+    "exposure",
+)
+
+
+@dataclass(frozen=True)
+class Derivation:
+    """One library table, the SELECT that fills it, the other library tables that it reads, and those without whose rows it has none."""
+
+    table: str
+    sql: str
+    reads: frozenset[str]
+    needs: frozenset[str] = frozenset()
+
+    @property
+    def of_the_map(self) -> bool:
+        """Whether the table is a property of the map alone, filled once per environment and not once per batch."""
+        return "drive_id" not in schema()[self.table]
+
+
+@cache
+def derivations() -> Mapping[str, Derivation]:
+    """Return every derivation, in an order in which each can be run after those before it."""
+    found: dict[str, Derivation] = {}
+    files = sorted((folder("queries") / "derive").glob("*.sql"))
+    names = {file.stem for file in files}
+    for file in files:
+        if file.stem not in schema():
+            raise DriveLintError(f"{file}: no table {file.stem!r} in schemas/")
+        sql = file.read_text(encoding="utf-8")
+        tree = syntax.parsed(sql, str(file))
+        found[file.stem] = Derivation(file.stem, sql, syntax.reads(tree) & names - {file.stem}, syntax.needs(tree))
+    if missing := sorted(schema("derived").keys() - names - _GIVEN):
+        raise DriveLintError(
+            f"queries/derive: no query for the library table {missing[0]!r} of schemas/derived.sql: reinstall drivelint"
+        )
+    order = TopologicalSorter({name: sorted(d.reads) for name, d in found.items()}).static_order()
+    return {name: found[name] for name in order}
+
+
+def behind(tables: Iterable[str]) -> set[str]:
+    """Return these tables and the library tables from which they are derived."""
+    found: set[str] = set()
+    todo = [*tables]
+    while todo:
+        table = todo.pop()
+        if table not in found:
+            found.add(table)
+            todo.extend(derivations()[table].reads if table in derivations() else ())
+    return found
+
+
+def needed(tables: Iterable[str]) -> list[Derivation]:
+    """Return the derivations behind these tables, in order."""
+    wanted = behind([*tables, *ALWAYS])
+    return [d for name, d in derivations().items() if name in wanted]

@@ -1,0 +1,115 @@
+"""A folder of maps: which one a log gets."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pyarrow as pa
+import pytest
+
+from drivelint.engine.map_folder import Shelf
+from drivelint.engine.map_library import MapLibrary
+from drivelint.errors import MapError, UsageError
+from tests.formats.commonroad.test_lanelets import lanelet, scenario
+
+
+def put(folder: Path, name: str, x: float = 0.0) -> None:
+    path = folder / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(scenario(lanelet(1, 0.0, x=x), benchmark="DEU_T-1"))
+
+
+def states(x: float) -> pa.Table:
+    return pa.table(
+        {
+            "x_m": [x + i for i in range(20)],
+            "y_m": [0.0] * 20,
+            "yaw_rad": [0.0] * 20,
+            "vx_mps": [10.0] * 20,
+            "vy_mps": [0.0] * 20,
+        }
+    )
+
+
+def found(folder: Path, log: str = "logs/drive.mcap", x: float = 5.0, embedded: bytes | None = None) -> str:
+    environment = MapLibrary(None, None, "auto", folder=folder).find(Path(log), embedded, None, states(x))
+    assert environment is not None
+    return environment.environment_id.split("-")[0]
+
+
+def test_the_manifest_comes_first(tmp_path: Path) -> None:
+    put(tmp_path, "drive.xml")
+    put(tmp_path, "deep/other.xml")
+    (tmp_path / "maps.csv").write_text("log, map\nx*.mcap, drive.xml\ndri*.mcap, deep/other.xml\n")
+    assert found(tmp_path) == "other"
+
+
+def test_then_the_logs_name_and_its_folders(tmp_path: Path) -> None:
+    put(tmp_path, "drive.xml")
+    put(tmp_path, "logs.xml")
+    assert found(tmp_path) == "drive"
+    assert found(tmp_path, "logs/b.mcap") == "logs"
+
+
+def test_then_the_logs_own_map(tmp_path: Path) -> None:
+    put(tmp_path, "a.xml")
+    embedded = scenario(lanelet(1, 0.0), benchmark="GBR_T-1").encode()
+    assert found(tmp_path, embedded=embedded) == "embedded"
+
+
+def test_then_the_only_one_of_the_place(tmp_path: Path) -> None:
+    put(tmp_path, "a.xml", x=0.0)
+    put(tmp_path, "b.xml", x=1000.0)
+    assert (found(tmp_path, x=5.0), found(tmp_path, x=1005.0)) == ("a", "b")
+
+
+def test_none_or_two_of_the_place_is_an_error_that_says_what_to_do(tmp_path: Path) -> None:
+    put(tmp_path, "a.xml")
+    with pytest.raises(MapError, match=r"none of its maps is of the place of drive\.mcap: name its map in .*maps\.csv"):
+        found(tmp_path, x=5000.0)
+    put(tmp_path, "b.xml", x=10.0)
+    with pytest.raises(MapError, match=r"a\.xml, b\.xml are all of the place"):
+        found(tmp_path, x=12.0)
+
+
+def test_a_map_that_cannot_be_read_is_passed_over_where_another_is_of_the_place(tmp_path: Path) -> None:
+    put(tmp_path, "a.xml")
+    (tmp_path / "broken.xodr").write_text("<OpenDRIVE/>")
+    library, log = MapLibrary(None, None, "auto", folder=tmp_path), Path("logs/drive.mcap")
+    environment = library.find(log, None, None, states(5.0))
+    assert environment is not None
+    assert environment.environment_id.startswith("a-")
+    assert "1 cannot, the first: " in library.doubts(log, environment, states(5.0))["map_unread"]
+    (tmp_path / "broken.xodr").unlink()
+    assert not MapLibrary(None, None, "auto", folder=tmp_path).doubts(log, environment, states(5.0))
+    (tmp_path / "broken.xodr").write_text("<OpenDRIVE/>")
+    with pytest.raises(MapError, match=r"none of its maps .* \(1 could not be read, the first: .*broken\.xodr"):
+        found(tmp_path, x=5000.0)
+
+
+@pytest.mark.parametrize(
+    ("manifest", "why"),
+    [
+        ("name,map\na,b\n", "write the columns log,map"),
+        ("log,map\na.mcap,gone.xodr\n", r"maps\.csv:2: there is no map 'gone\.xodr'"),
+    ],
+)
+def test_a_manifest_that_cannot_be_understood(tmp_path: Path, manifest: str, why: str) -> None:
+    put(tmp_path, "a.xml")
+    (tmp_path / "maps.csv").write_text(manifest)
+    with pytest.raises(MapError, match=why):
+        Shelf(tmp_path)
+
+
+def test_a_folder_without_maps(tmp_path: Path) -> None:
+    (tmp_path / "notes.xml").write_text("<notes/>")
+    with pytest.raises(MapError, match="no map in this folder"):
+        Shelf(tmp_path)
+    with pytest.raises(MapError, match="no such folder"):
+        Shelf(tmp_path / "gone")
+
+
+def test_one_map_or_many(tmp_path: Path) -> None:
+    put(tmp_path, "a.xml")
+    with pytest.raises(UsageError, match="give one of them"):
+        MapLibrary(tmp_path / "a.xml", None, "auto", folder=tmp_path)

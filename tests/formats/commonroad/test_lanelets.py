@@ -1,0 +1,319 @@
+"""CommonRoad maps: lanelets, junctions, markings, limits, stop lines, crosswalks, the side driven on."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+
+from drivelint.errors import MapError
+from drivelint.formats import load_map, read_source
+from drivelint.road.contract import Environment, MapSource
+from tests.shared_data import shared
+
+
+def bound(tag: str, points: list[tuple[float, float]], marking: str = "") -> str:
+    inner = "".join(f"<point><x>{x}</x><y>{y}</y></point>" for x, y in points)
+    return f"<{tag}>{inner}{f'<lineMarking>{marking}</lineMarking>' if marking else ''}</{tag}>"
+
+
+def lanelet(name: int, y: float, more: str = "", *, x: float = 0.0, left: str = "dashed", right: str = "solid") -> str:
+    a, b = [(x, y + 1.75), (x + 50, y + 1.75)], [(x, y - 1.75), (x + 50, y - 1.75)]
+    return f'<lanelet id="{name}">{bound("leftBound", a, left)}{bound("rightBound", b, right)}{more}</lanelet>'
+
+
+def scenario(*parts: str, benchmark: str = "ZAM_Test-1") -> str:
+    return f'<commonRoad commonRoadVersion="2020a" benchmarkID="{benchmark}" timeStepSize="0.1">{"".join(parts)}</commonRoad>'
+
+
+def load(text: str, **options: object) -> Environment:
+    return load_map(MapSource("a.xml", text.encode()), **options)  # type: ignore[arg-type]
+
+
+def test_lanelets_and_what_lies_on_them() -> None:
+    environment = load(
+        scenario(
+            lanelet(1, 0.0, '<successor ref="2"/><laneletType>country</laneletType><trafficSignRef ref="90"/>'
+                    "<stopLine><point><x>45</x><y>1.75</y></point><point><x>45</x><y>-1.75</y></point></stopLine>"),
+            lanelet(2, 0.0, "<laneletType>interstate</laneletType>", x=50.0),
+            lanelet(3, -3.5, '<laneletType>sidewalk</laneletType><adjacentLeft ref="1" drivingDir="same"/>'),
+            '<lanelet id="4">'
+            + bound("leftBound", [(20.0, 5.0), (20.0, -5.0)])
+            + bound("rightBound", [(17.0, 5.0), (17.0, -5.0)])
+            + "<laneletType>crosswalk</laneletType></lanelet>",
+            '<trafficSign id="90"><trafficSignElement><trafficSignID>274</trafficSignID>'
+            "<additionalValue>13.9</additionalValue></trafficSignElement>"
+            "<position><point><x>10</x><y>-4</y></point></position></trafficSign>",
+            '<intersection id="80"><incoming id="81"><incomingLanelet ref="1"/><successorsStraight ref="2"/></incoming></intersection>',
+        ),
+        offset=(100.0, 0.0),
+    )  # fmt: skip
+    rows = {table: content.to_pylist() for table, content in environment.tables.items()}
+    lanes = {row["lanelet_id"]: row for row in rows["lanelet"]}
+    assert set(lanes) == {"1", "2", "3"}
+    assert (lanes["1"]["road_type"], lanes["1"]["drivable"], lanes["1"]["junction_id"]) == ("rural", True, None)
+    assert (lanes["2"]["road_type"], lanes["2"]["junction_id"]) == ("motorway", "80")
+    assert (lanes["3"]["lane_type"], lanes["3"]["drivable"]) == ("sidewalk", False)
+    assert [(r["from_id"], r["to_id"]) for r in rows["lane_link"]] == [("1", "2")]
+    assert [(r["side"], r["marking"]) for r in rows["lane_boundary"] if r["lanelet_id"] == "1"] == [
+        ("left", "broken"),
+        ("right", "solid"),
+    ]
+    assert [(r["lanelet_id"], r["limit_mps"], r["source"]) for r in rows["speed_limit"]] == [("1", 13.9, "sign")]
+    assert [(r["stop_line_id"], r["lane_s_m"]) for r in rows["stop_line"]] == [("1.stop", pytest.approx(45.0))]
+    assert [(r["crossing_id"], r["lanelet_id"], r["s_start_m"], r["s_end_m"]) for r in rows["crossing"]] == [
+        ("4", "1", pytest.approx(17.0), pytest.approx(20.0))
+    ]
+    assert [(r["signal_id"], r["kind"], r["lane_s_m"]) for r in rows["traffic_signal"]] == [
+        ("90", "speed_limit", pytest.approx(10.0))
+    ]
+    assert rows["lane_point"][0]["x_m"] == 100.0
+
+
+@pytest.mark.parametrize(
+    ("direction", "turns"),
+    [
+        ("<direction>leftStraight</direction>", ["left", "straight"]),
+        ("<direction>right</direction>", ["right"]),
+        ("<direction>all</direction>", ["left", "straight", "right", "u_turn"]),
+        ("", None),
+    ],
+)
+def test_turns_that_a_light_holds_for(direction: str, turns: list[str] | None) -> None:
+    environment = load(
+        scenario(lanelet(1, 0.0, '<trafficLightRef ref="90"/>'), f'<trafficLight id="90">{direction}</trafficLight>')
+    )
+    (row,) = environment.tables["traffic_signal"].to_pylist()
+    assert (row["kind"], row["turns"]) == ("traffic_light", turns)
+
+
+@pytest.mark.parametrize(
+    ("parts", "benchmark", "options", "expected"),
+    [
+        ([lanelet(1, 0.0)], "ZAM_Test-1", {}, ("rht", "default")),
+        ([lanelet(1, 0.0)], "DEU_Test-1", {}, ("rht", "attribute")),
+        ([lanelet(1, 0.0)], "C-GBR_Test-1", {}, ("lht", "attribute")),
+        ([lanelet(1, 0.0)], "ZAM_Test-1", {"handedness": "lht"}, ("lht", "option")),
+        (
+            [lanelet(1, 0.0, '<adjacentRight ref="2" drivingDir="opposite"/>'), lanelet(2, -3.5)],
+            "ZAM_T-1",
+            {},
+            ("lht", "lanes"),
+        ),
+        # whoever drives along one-way lanes agrees with them on either side of the road
+        ([lanelet(1, 0.0)], "ZAM_Test-1", {"sensed": "lht"}, ("rht", "default")),
+    ],
+)
+def test_the_side_driven_on(
+    parts: list[str], benchmark: str, options: dict[str, str], expected: tuple[str, str]
+) -> None:
+    environment = load(scenario(*parts, benchmark=benchmark), **options)
+    assert (environment.handedness, environment.handedness_source) == expected
+    assert environment.environment_id.endswith("?") == (expected[1] == "default")
+
+
+def test_witnesses_that_disagree_are_reported() -> None:
+    environment = load(
+        scenario(lanelet(1, 0.0, '<adjacentLeft ref="2" drivingDir="opposite"/>'), lanelet(2, 3.5), benchmark="GBR_T-1")
+    )
+    assert environment.handedness == "rht"
+    assert [row["check_id"] for row in environment.tables["map_quality"].to_pylist()] == ["handedness_disagrees"]
+
+
+def test_a_lanelet_that_cannot_be_read_is_named() -> None:
+    environment = load(
+        scenario(lanelet(1, 0.0), '<lanelet id="9"><leftBound><point><x>a</x><y>1</y></point></leftBound></lanelet>')
+    )
+    assert [
+        (r["check_id"], r["lanelet_id"])
+        for r in environment.tables["map_quality"].to_pylist()
+        if r["severity"] == "error"
+    ] == [("invalid_lane", "9")]
+
+
+@pytest.mark.parametrize(
+    "text", ["<commonRoad/>", '<!DOCTYPE a [<!ENTITY b "c">]><commonRoad>&b;</commonRoad>', "<commonRoad>"]
+)
+def test_what_cannot_be_a_map_is_refused(text: str) -> None:
+    with pytest.raises(MapError, match=r"map a\.xml"):
+        load(text)
+
+
+@pytest.mark.parametrize(
+    ("name", "lanelets", "drivable", "found"),
+    [
+        ("commonroad/DEU_Gar-1_1_T-1.xml", 5, 5, ("rht", "attribute")),
+        ("commonroad/OSC_Overtake-1_1_T-1.xml", 124, 107, ("rht", "lanes")),
+        ("commonroad/OSC_PedestrianCollision-1_1_T-1.xml", 24, 20, ("rht", "lanes")),
+        ("commonroad/USA_US101-5_1_T-1.xml", 5, 5, ("rht", "attribute")),
+    ],
+)
+def test_real_maps(name: str, lanelets: int, drivable: int, found: tuple[str, str]) -> None:
+    environment = load_map(read_source(shared(name)))
+    rows = environment.tables["lanelet"].to_pylist()
+    assert (len(rows), sum(row["drivable"] for row in rows)) == (lanelets, drivable)
+    assert (environment.handedness, environment.handedness_source) == found
+    doubts = {row["check_id"] for row in environment.tables["map_quality"].to_pylist() if row["severity"] != "info"}
+    assert doubts == ({"road_type_contradicted"} if "US101" in name else set())
+    assert all(1.9 < row["width_m"] < 6.0 for row in rows if row["drivable"])
+
+
+def sign(name: int, *elements: tuple[str, str], more: str = "") -> str:
+    inner = "".join(
+        f"<trafficSignElement><trafficSignID>{code}</trafficSignID>"
+        f"{f'<additionalValue>{value}</additionalValue>' if value else ''}</trafficSignElement>"
+        for code, value in elements
+    )
+    return f'<trafficSign id="{name}">{inner}{more}</trafficSign>'
+
+
+def limits(environment: Environment) -> dict[str, tuple[float | None, str]]:
+    rows = environment.tables["speed_limit"].to_pylist()
+    return {row["lanelet_id"]: (row["limit_mps"], row["source"]) for row in rows}
+
+
+def said(environment: Environment) -> list[tuple[str, str]]:
+    rows = environment.tables["map_quality"].to_pylist()
+    return [(row["check_id"], row["message"]) for row in rows if row["check_id"] != "handedness_default"]
+
+
+@pytest.mark.parametrize(
+    ("country", "code", "kind"),
+    [
+        ("USA", "R2-1", "speed_limit"),
+        ("C-USA", "R2-1", "speed_limit"),
+        ("ESP", "r301", "speed_limit"),
+        ("ESP", "R-301", "speed_limit"),
+        ("DEU", "274", "speed_limit"),
+        ("ZAM", "274.1", "speed_zone"),
+        *(
+            (country, "274", "speed_limit")
+            for country in ("HRV", "CHN", "RUS", "ARG", "BEL", "FRA", "GRC", "ITA", "PRI", "USA")
+        ),
+        ("USA", "R1-1", "stop"),
+        ("USA", "R5-1a", "no_entry"),
+        ("ESP", "r1", "give_way"),
+        ("ESP", "r2", "stop"),
+        ("DEU", "283-10", "no_stopping"),
+        ("DEU", "R2-1", None),
+        ("ESP", "R2-1", None),
+    ],
+)
+def test_codes_of_signs_are_those_of_the_country(country: str, code: str, kind: str | None) -> None:
+    environment = load(
+        scenario(
+            lanelet(1, 0.0, '<trafficSignRef ref="90"/>'), sign(90, (code, "13.9")), benchmark=f"{country}_Test-1_1_T-1"
+        )
+    )
+    (row,) = environment.tables["traffic_signal"].to_pylist()
+    assert row["kind"] == kind
+    assert limits(environment) == ({"1": (13.9, "sign")} if kind in {"speed_limit", "speed_zone"} else {})
+    assert [check for check, _ in said(environment)] == ([] if kind else ["unknown_sign"])
+
+
+def test_the_least_limit_of_a_lanelet_and_that_of_older_files() -> None:
+    environment = load(
+        scenario(
+            lanelet(1, 0.0, '<trafficSignRef ref="90"/><trafficSignRef ref="91"/>'),
+            lanelet(2, 10.0, "<speedLimit>8.5</speedLimit>"),
+            lanelet(3, 20.0, '<speedLimit>8.5</speedLimit><trafficSignRef ref="91"/>'),
+            sign(90, ("274", "20")),
+            sign(91, ("274", "8"), more="<virtual>true</virtual>"),
+        )
+    )
+    assert limits(environment) == {"1": (8.0, "sign"), "2": (8.5, "lane"), "3": (8.0, "sign")}
+    assert said(environment) == []
+
+
+def test_a_limit_that_is_not_sure_is_not_taken_and_named() -> None:
+    environment = load(
+        scenario(
+            lanelet(1, 0.0, '<trafficSignRef ref="90"/>'),
+            lanelet(2, 10.0, '<trafficSignRef ref="91"/>'),
+            lanelet(3, 20.0, '<trafficSignRef ref="92"/>'),
+            lanelet(4, 30.0, '<trafficSignRef ref="92"/><trafficSignRef ref="94"/>'),
+            lanelet(5, 40.0, '<trafficSignRef ref="92"/><trafficSignRef ref="93"/>'),
+            lanelet(6, 50.0, '<trafficSignRef ref="95"/>'),
+            lanelet(7, 60.0, "<speedLimit>-1</speedLimit>"),
+            sign(90, ("274", "50")),
+            sign(91, ("274", "")),
+            sign(92, ("274", "12"), ("1053-35", "")),
+            sign(93, ("274", "10")),
+            sign(94, ("274", "20")),
+            sign(95, ("274", "9"), ("1012-50", "")),
+        )
+    )
+    assert limits(environment) == {"5": (10.0, "sign"), "6": (9.0, "sign")}
+    found = said(environment)
+    assert [message for check, message in found if check == "invalid_speed"] == [
+        "the limit of sign 90 is not taken: 50 m/s is more than any sign allows: it may be in km/h",
+        "the limit of sign 91 is not taken: it has no number",
+        "the limit of sign 92 is not taken: it holds only as its plates say (1053-35)",
+        "the limit of lanelet 7 is not taken: -1 m/s is no limit",
+    ]
+
+
+def test_what_is_not_read_is_named() -> None:
+    environment = load(
+        scenario(
+            lanelet(1, 0.0, '<trafficSignRef ref="90"/><trafficLightRef ref="7"/>', left="dashed_solid"),
+            sign(90, ("R9-9", "12"), ("R8-8", "")),
+            sign(91, ("R1-1", "")),
+            benchmark="USA_Test-1",
+        )
+    )
+    assert [message for _, message in said(environment)] == [
+        "lanelets refer to signs or lights that the map does not have: 7 (1)",
+        "signs with a number and a code that is not known (USA): R9-9 (1): whether they limit the speed is not known",
+        "signs and lights to which no lanelet refers hold for no lane: 91",
+        "signs that no rule reads (USA): R8-8 (1)",
+        "markings that are not read: dashed_solid (1)",
+    ]
+
+
+def test_a_light_and_a_stop_sign_hold_at_the_stop_line() -> None:
+    line = "<stopLine><point><x>45</x><y>1.75</y></point><point><x>45</x><y>-1.75</y></point>{}</stopLine>"
+    beyond = "<position><point><x>80</x><y>0</y></point></position>"
+    environment = load(
+        scenario(
+            lanelet(1, 0.0, line.format('<trafficLightRef ref="90"/><trafficSignRef ref="92"/>')),
+            lanelet(2, 10.0, '<trafficLightRef ref="90"/>' + line.format("").replace("1.75<", "11.75<")),
+            lanelet(3, 20.0, '<trafficLightRef ref="91"/><trafficSignRef ref="92"/><trafficSignRef ref="93"/>'),
+            f'<trafficLight id="90">{beyond}</trafficLight>',
+            f'<trafficLight id="91">{beyond}</trafficLight>',
+            sign(92, ("206", "")),
+            sign(93, ("276", "")),
+        )
+    )
+    rows = environment.tables["traffic_signal"].to_pylist()
+    assert {(row["signal_id"], row["lanelet_id"]): row["lane_s_m"] for row in rows} == {
+        ("90", "1"): pytest.approx(45.0),
+        ("90", "2"): pytest.approx(45.0, abs=0.5),
+        ("91", "3"): pytest.approx(50.0),
+        ("92", "1"): pytest.approx(45.0),
+        ("92", "3"): pytest.approx(50.0),
+        ("93", "3"): 0.0,
+    }
+
+
+@pytest.mark.parametrize(
+    ("name", "found"),
+    [
+        ("USA_Lanker-1_1_T-1", {(13.4112, "lane"): 74, (11.176, "lane"): 17}),
+        ("USA_Peach-4_8_T-1", {(15.6464, "sign"): 38, (11.176, "sign"): 41}),
+        ("HRV_Pula-27_3_T-1", {(13.8889, "sign"): 18}),
+        ("DEU_Moelln-10_2_T-1", {(13.8889, "sign"): 9}),
+        ("USA_US101-4_1_T-1", {}),
+    ],
+)
+def test_limits_of_real_maps(name: str, found: dict[tuple[float, str], int]) -> None:
+    environment = load_map(read_source(shared(f"commonroad/{name}.xml")))
+    assert Counter((round(limit or 0.0, 4), source) for limit, source in limits(environment).values()) == found
+    assert {check for check, _ in said(environment)} == ({"road_type_contradicted"} if "US101" in name else set())
+
+
+def test_urban_lanelets_of_a_scenario_that_is_tagged_as_of_a_highway_are_of_no_known_type() -> None:
+    """US101 is a freeway: every lanelet of the file is `urban`, its tags say highway. Peach's tags say urban."""
+    for name, types in (("USA_US101-4_1_T-1", {None}), ("USA_Peach-4_8_T-1", {"town"})):
+        environment = load_map(read_source(shared(f"commonroad/{name}.xml")))
+        assert {row["road_type"] for row in environment.tables["lanelet"].to_pylist()} == types

@@ -1,0 +1,276 @@
+"""Lanelet2 maps: neighbours and followers by their bounds, markings, signs, stop lines, crossings, where the map lies."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections import Counter
+
+import pytest
+
+from drivelint.errors import MapError
+from drivelint.formats import load_map, read_source
+from drivelint.road.contract import Environment, MapSource
+from tests.shared_data import shared
+
+pytest.importorskip("lanelet2", reason="the package lanelet2 is not installed (extra 'lanelet2')")
+
+ORIGIN = (49.0, 8.4)
+
+
+class Drawing:
+    """Collects nodes, ways and relations of an OSM file; coordinates in metres from the origin."""
+
+    def __init__(self, *, local: bool = False, globe: bool = True) -> None:
+        self.globe = globe  # whether latitude and longitude are there
+        self.local, self.parts, self.nodes = local, [], {}  # type: ignore[var-annotated]
+        self.count = 0
+
+    def node(self, x: float, y: float) -> int:
+        if (x, y) in self.nodes:
+            return int(self.nodes[x, y])
+        self.count += 1
+        lat = ORIGIN[0] + math.degrees(y / 6_366_000)
+        lon = ORIGIN[1] + math.degrees(x / (6_388_000 * math.cos(math.radians(ORIGIN[0]))))
+        tags = f'<tag k="local_x" v="{x}"/><tag k="local_y" v="{y}"/>' if self.local else ""
+        place = f'lat="{lat:.11f}" lon="{lon:.11f}"' if self.globe else 'lat="" lon=""'
+        self.parts.append(f'<node id="{self.count}" {place}>{tags}</node>')
+        self.nodes[x, y] = self.count
+        return self.count
+
+    def way(self, points: list[tuple[float, float]], kind: str = "line_thin", style: str = "dashed") -> int:
+        refs = "".join(f'<nd ref="{self.node(*p)}"/>' for p in points)
+        self.count += 1
+        self.parts.append(
+            f'<way id="{self.count}">{refs}<tag k="type" v="{kind}"/><tag k="subtype" v="{style}"/></way>'
+        )
+        return self.count
+
+    def lanelet(self, left: int, right: int, more: str = "", **tags: str) -> int:
+        said = {"type": "lanelet", "subtype": "road", "location": "urban", "one_way": "yes", "region": "de"} | tags
+        text = "".join(f'<tag k="{k}" v="{v}"/>' for k, v in said.items())
+        self.count += 1
+        self.parts.append(
+            f'<relation id="{self.count}"><member type="way" ref="{left}" role="left"/>'
+            f'<member type="way" ref="{right}" role="right"/>{more}{text}</relation>'
+        )
+        return self.count
+
+    def element(self, **members: list[int]) -> str:
+        """Add a regulatory element that is a sign; return it as a member of a lanelet."""
+        self.count += 1
+        inside = "".join(f'<member type="way" ref="{i}" role="{role}"/>' for role, ids in members.items() for i in ids)
+        said = '<tag k="type" v="regulatory_element"/><tag k="subtype" v="traffic_sign"/>'
+        self.parts.append(f'<relation id="{self.count}">{inside}{said}</relation>')
+        return f'<member type="relation" ref="{self.count}" role="regulatory_element"/>'
+
+    def load(self, **options: object) -> Environment:
+        order = sorted(self.parts, key=lambda part: ["<n", "<w", "<r"].index(part[:2]))
+        text = f"<?xml version='1.0'?><osm version='0.6'>{''.join(order)}</osm>"
+        return load_map(MapSource("a.osm", text.encode()), **({"origin": ORIGIN} | options))  # type: ignore[arg-type]
+
+
+def road(drawing: Drawing) -> dict[str, int]:
+    """A two-way road of two lanes each way along x, 50 m, the left of travel driven nowhere: right-hand traffic."""
+    ways = {y: drawing.way([(0.0, y), (50.0, y)], *look) for y, look in {
+        7.0: ("curbstone", "low"), 3.5: ("line_thin", "dashed"), 0.0: ("line_thick", "solid_dashed"),
+        -3.5: ("line_thin", "solid"), -7.0: ("road_border", ""),
+    }.items()}  # fmt: skip
+    return {
+        "inner": drawing.lanelet(ways[0.0], ways[-3.5], speed_limit="50"),
+        "outer": drawing.lanelet(ways[-3.5], ways[-7.0]),
+        "back": drawing.lanelet(ways[0.0], ways[3.5]),
+        "back outer": drawing.lanelet(ways[3.5], ways[7.0]),
+    }
+
+
+def test_lanes_side_by_side() -> None:
+    drawing = Drawing()
+    ids = {name: str(i) for name, i in road(drawing).items()}
+    environment = drawing.load()
+    rows = {row["lanelet_id"]: row for row in environment.tables["lanelet"].to_pylist()}
+    assert len(rows) == 4
+    inner, outer, back = rows[ids["inner"]], rows[ids["outer"]], rows[ids["back"]]
+    assert (inner["left_id"], inner["left_against"], inner["right_id"], inner["right_against"]) == (
+        ids["back"], True, ids["outer"], False,
+    )  # fmt: skip
+    assert (back["left_id"], back["left_against"], back["right_id"]) == (ids["inner"], True, ids["back outer"])
+    assert (outer["left_id"], outer["right_id"]) == (ids["inner"], None)
+    assert len({row["road_id"] for row in rows.values()}) == 1
+    assert (inner["along_road"], back["along_road"], inner["road_type"]) == (1, -1, "town")
+    assert (environment.handedness, environment.handedness_source) == ("rht", "lanes")
+    points = [row for row in environment.tables["lane_point"].to_pylist() if row["lanelet_id"] == ids["back"]]
+    assert (points[0]["x_m"], points[0]["y_m"]) == pytest.approx((50, 1.75), abs=0.15)
+    assert points[0]["tx"] == pytest.approx(-1, abs=1e-3)
+
+
+def test_markings_are_seen_from_the_lane() -> None:
+    drawing = Drawing()
+    ids = {name: str(i) for name, i in road(drawing).items()}
+    rows = drawing.load().tables["lane_boundary"].to_pylist()
+    seen = {(row["lanelet_id"], row["side"]): row["marking"] for row in rows}
+    # the middle line is solid on its left, which is the side of the lanes that go back
+    assert seen[ids["inner"], "left"] == "broken_solid"
+    assert seen[ids["back"], "left"] == "solid_broken"
+    assert seen[ids["inner"], "right"] == seen[ids["outer"], "left"] == "solid"
+    assert seen[ids["outer"], "right"] is None
+    assert seen[ids["back outer"], "right"] == "curb"
+    assert seen[ids["back outer"], "left"] == "broken"
+
+
+def test_what_follows_limits_stop_lines_lights_and_crossings() -> None:
+    drawing = Drawing()
+    ids = {name: str(i) for name, i in road(drawing).items()}
+    on = str(drawing.lanelet(drawing.way([(50.0, 0.0), (90.0, 0.0)]), drawing.way([(50.0, -3.5), (90.0, -3.5)])))
+    drawing.way([(48.0, 0.0), (48.0, -3.5)], "stop_line", "")
+    walk = drawing.lanelet(
+        drawing.way([(22.0, -9.0), (22.0, 9.0)], "zebra_marking"), drawing.way([(25.0, -9.0), (25.0, 9.0)], "zebra_marking"),
+        subtype="crosswalk",
+    )  # fmt: skip
+    tables = drawing.load().tables
+    assert [(r["from_id"], r["to_id"]) for r in tables["lane_link"].to_pylist()] == [(ids["inner"], on)]
+    assert [(r["lanelet_id"], round(r["limit_mps"] * 3.6)) for r in tables["speed_limit"].to_pylist()] == [
+        (ids["inner"], 50)
+    ]
+    assert [(r["lanelet_id"], r["lane_s_m"]) for r in tables["stop_line"].to_pylist()] == [
+        (ids["inner"], pytest.approx(48, abs=0.1))
+    ]
+    crossings = {r["lanelet_id"]: r for r in tables["crossing"].to_pylist()}
+    assert set(crossings) == set(ids.values())
+    row = crossings[ids["inner"]]
+    assert (row["crossing_id"], row["kind"]) == (str(walk), "zebra")
+    assert (row["s_start_m"], row["s_end_m"]) == pytest.approx((22, 25), abs=0.1)
+
+
+@pytest.mark.parametrize("said", ["", "walk", "-5", "inf"])
+def test_a_limit_that_cannot_be_read_is_no_limit_of_zero(said: str) -> None:
+    drawing = Drawing()
+    left, right = (drawing.way([(0.0, y), (50.0, y)]) for y in (0.0, -3.5))
+    lane = str(drawing.lanelet(left, right, speed_limit=said))
+    tables = drawing.load().tables
+    assert [(r["limit_mps"], r["source"]) for r in tables["speed_limit"].to_pylist()] == [(None, "unread")]
+    assert ("invalid_speed", lane) in {(r["check_id"], r["lanelet_id"]) for r in tables["map_quality"].to_pylist()}
+
+
+def test_local_coordinates_come_before_the_globe() -> None:
+    drawing = Drawing(local=True)
+    ids = road(drawing)
+    points = drawing.load(origin=None).tables["lane_point"].to_pylist()
+    first = next(row for row in points if row["lanelet_id"] == str(ids["inner"]))
+    assert (first["x_m"], first["y_m"]) == (0.0, -1.75)
+
+
+def test_local_coordinates_need_no_latitude_and_longitude() -> None:
+    """As Autoware writes it: which bound is the left one and which way a lane runs follows from the local coordinates."""
+    drawing = Drawing(local=True, globe=False)
+    ids = road(drawing)
+    environment = drawing.load(origin=None, offset=(10.0, 0.0))
+    points = environment.tables["lane_point"].to_pylist()
+    way = {name: [(r["x_m"], r["y_m"], r["tx"]) for r in points if r["lanelet_id"] == str(ids[name])] for name in ids}
+    assert way["inner"][0] == (10.0, -1.75, 1.0)
+    assert way["back"][0] == (60.0, 1.75, -1.0)
+    assert (environment.handedness, environment.handedness_source) == ("rht", "lanes")
+    assert environment.tables["map_quality"].num_rows == 0
+    assert environment.tables["environment"]["geo_reference"].to_pylist() == [None]
+
+
+def test_local_coordinates_go_before_an_origin_and_that_is_said() -> None:
+    drawing = Drawing(local=True)
+    road(drawing)
+    environment = drawing.load(origin=(35.0, 139.0))
+    assert environment.tables["map_quality"]["check_id"].to_pylist() == ["map_origin_unused"]
+    assert environment.tables["environment"]["geo_reference"].to_pylist() == [None]
+
+
+def test_a_lane_with_a_node_that_has_no_place_is_named_and_no_other() -> None:
+    drawing = Drawing(local=True, globe=False)
+    ids = road(drawing)
+    at = drawing.nodes[(50.0, -7.0)]
+    drawing.parts[next(i for i, part in enumerate(drawing.parts) if part.startswith(f'<node id="{at}"'))] = (
+        f'<node id="{at}" lat="49.1" lon="8.1"><tag k="local_x" v=""/></node>'
+    )
+    tables = drawing.load(origin=None).tables
+    lost = {(r["check_id"], r["lanelet_id"]) for r in tables["map_quality"].to_pylist()}
+    assert lost == {("unplaced_node", None), ("invalid_lane", str(ids["outer"]))}
+    assert tables["lanelet"].num_rows == 3
+
+
+def test_a_stop_line_and_its_sign_hold_for_the_lanes_that_refer_to_them() -> None:
+    drawing = Drawing(local=True, globe=False)
+    line = drawing.way([(40.2, 1.0), (40.2, -4.5)], "stop_line", "solid")
+    sign = drawing.way([(41.0, -5.0), (41.0, -5.4)], "traffic_sign", "stop_sign")
+    element = drawing.element(refers=[sign], ref_line=[line])
+    lefts = [drawing.way([(0.0, 0.0), (40.0, 0.0)]), drawing.way([(40.0, 0.0), (60.0, 0.0)])]
+    rights = [drawing.way([(0.0, -3.5), (40.0, -3.5)]), drawing.way([(40.0, -3.5), (60.0, -3.5)])]
+    before = str(drawing.lanelet(lefts[0], rights[0], element, speed_limit="15"))
+    drawing.lanelet(lefts[1], rights[1])
+    tables = drawing.load(origin=None).tables
+    assert [(r["lanelet_id"], r["lane_s_m"]) for r in tables["stop_line"].to_pylist()] == [(before, 40.0)]
+    (row,) = tables["traffic_signal"].to_pylist()
+    assert (row["kind"], row["lanelet_id"], row["lane_s_m"], row["x_m"]) == ("stop", before, 40.0, 40.0)
+    assert [round(r["limit_mps"] * 3.6, 6) for r in tables["speed_limit"].to_pylist()] == [15.0]
+
+
+def test_a_map_on_the_globe_needs_its_origin() -> None:
+    drawing = Drawing()
+    road(drawing)
+    with pytest.raises(MapError, match="--map-origin LAT,LON"):
+        drawing.load(origin=None)
+
+
+def test_a_plain_street_map_is_refused() -> None:
+    drawing = Drawing()
+    drawing.way([(0.0, 0.0), (50.0, 0.0)])
+    with pytest.raises(MapError, match="no lanelet"):
+        drawing.load()
+
+
+def test_the_package_that_is_missing_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "lanelet2", None)
+    drawing = Drawing()
+    road(drawing)
+    with pytest.raises(MapError, match=r"pip install 'drivelint\[lanelet2\]'"):
+        drawing.load()
+
+
+def test_the_real_map() -> None:
+    environment = load_map(read_source(shared("maps/lanelet2_mapping_example.osm")), origin=ORIGIN)
+    tables = environment.tables
+    lanes = tables["lanelet"].to_pylist()
+    kinds = Counter(row["lane_type"] for row in lanes)
+    assert kinds == {"driving": 345, "biking": 14, "rail": 2, "sidewalk": 2}
+    assert (environment.handedness, environment.handedness_source) == ("rht", "lanes")
+    assert {row["kind"] for row in tables["traffic_signal"].to_pylist()} == {
+        "traffic_light",
+        "give_way",
+        "priority_here",
+    }
+    assert (tables["stop_line"].num_rows, tables["crossing"].num_rows, tables["lane_link"].num_rows) == (29, 14, 321)
+    # a line between two lanes stands at the end of the first, and is there once
+    ends = {row["lanelet_id"] for row in tables["stop_line"].to_pylist() if row["lane_s_m"] > 1.0}
+    links = {(row["from_id"], row["to_id"]) for row in tables["lane_link"].to_pylist()}
+    starts = {row["lanelet_id"] for row in tables["stop_line"].to_pylist() if row["lane_s_m"] == 0.0}
+    assert not {(a, b) for a, b in links if a in ends and b in starts}
+
+
+@pytest.mark.parametrize(
+    ("file", "counts", "limits", "stops", "crossings"),
+    [
+        ("autoware_cargo_transport_map.osm", (88, 91), {30: 88}, 0, 0),
+        # one of its seven crossings lies across a footpath only
+        ("autoware_zalazone_smart_city.osm", (218, 261), {30: 203, 10: 13, 15: 2}, 37, 6),
+    ],
+)
+def test_real_maps_of_autoware_need_no_origin(
+    file: str, counts: tuple[int, int], limits: dict[int, int], stops: int, crossings: int
+) -> None:
+    environment = load_map(read_source(shared(f"maps/{file}")))
+    tables = environment.tables
+    assert not [row for row in tables["map_quality"].to_pylist() if row["severity"] == "error"]
+    assert (tables["lanelet"].num_rows, tables["lane_link"].num_rows) == counts
+    assert Counter(round(row["limit_mps"] * 3.6) for row in tables["speed_limit"].to_pylist()) == limits
+    signs = {(r["lanelet_id"], r["lane_s_m"]) for r in tables["traffic_signal"].to_pylist() if r["kind"] == "stop"}
+    lines = {(r["lanelet_id"], r["lane_s_m"]) for r in tables["stop_line"].to_pylist()}
+    assert signs == lines
+    assert (len(lines), tables["stop_line"].num_rows) == (stops, stops)
+    assert len(set(tables["crossing"]["crossing_id"].to_pylist())) == crossings

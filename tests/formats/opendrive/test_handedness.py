@@ -1,0 +1,90 @@
+"""Which side of the road: option, attribute, junctions, lanes' direction, traces, default; and disagreements."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.formats.opendrive.xodr import checks, lane, lanelets, load, road, section
+
+WIDTH = '<width sOffset="0" a="3.5"/>'
+
+
+def travelling(number: int, way: str) -> str:
+    return lane(number, f'{WIDTH}<userData><vectorLane travelDir="{way}"/></userData>')
+
+
+def junction(*links: tuple[str, int]) -> str:
+    connections = "".join(
+        f'<connection id="{i}" incomingRoad="1" connectingRoad="10" contactPoint="{contact}">'
+        f'<laneLink from="1" to="{to}"/></connection>'
+        for i, (contact, to) in enumerate(links)
+    )
+    return f'<junction id="9">{connections}</junction>'
+
+
+CONNECTING = road("10", junction="9")
+
+
+def test_the_option_comes_first() -> None:
+    environment = load(road(attributes='rule="RHT"'), handedness="lht", sensed="rht")
+    assert (environment.handedness, environment.handedness_source) == ("lht", "option")
+    assert "handedness_disagrees" in checks(environment)
+    assert lanelets(environment)["1.0.1"]["along_road"] == 1
+
+
+def test_then_the_attribute() -> None:
+    environment = load(road(attributes='rule="LHT"'), CONNECTING, junction(("start", -1)), sensed="rht")
+    assert (environment.handedness, environment.handedness_source) == ("lht", "attribute")
+    assert "handedness_disagrees" in checks(environment)
+
+
+@pytest.mark.parametrize(
+    ("contact", "to", "handedness"), [("start", -1, "rht"), ("start", 1, "lht"), ("end", 1, "rht"), ("end", -1, "lht")]
+)
+def test_then_the_junctions(contact: str, to: int, handedness: str) -> None:
+    environment = load(road(), CONNECTING, junction((contact, to)))
+    assert (environment.handedness, environment.handedness_source) == (handedness, "junctions")
+    assert "handedness_disagrees" not in checks(environment)
+
+
+def test_junctions_that_list_both_ends_say_nothing() -> None:
+    environment = load(road(), CONNECTING, junction(("start", -1), ("end", -1)), sensed="lht")
+    assert (environment.handedness, environment.handedness_source) == ("lht", "traces")
+
+
+def test_then_the_lanes_own_travel_direction() -> None:
+    environment = load(road(lanes=section(0, travelling(1, "forward"), travelling(-1, "backward"))), sensed="rht")
+    assert (environment.handedness, environment.handedness_source) == ("lht", "attribute")
+    assert "handedness_disagrees" in checks(environment)
+
+
+def test_then_the_traces_then_the_default_with_a_warning() -> None:
+    sensed = load(road(), sensed="lht")
+    assert (sensed.handedness, sensed.handedness_source) == ("lht", "traces")
+    assert "handedness_default" not in checks(sensed)
+    guessed = load(road())
+    assert (guessed.handedness, guessed.handedness_source) == ("rht", "default")
+    assert checks(guessed)["handedness_default"] == [None]
+
+
+def test_roads_that_disagree_are_named() -> None:
+    environment = load(road("1", attributes='rule="LHT"'), road("2", attributes='rule="RHT"'))
+    assert environment.handedness_source == "default"
+    assert "handedness_mixed" in checks(environment)
+
+
+def test_one_lane_against_the_rule_of_its_side_is_followed_and_named() -> None:
+    lanes = section(
+        0, travelling(1, "backward"), travelling(-1, "backward"), travelling(-2, "forward"), travelling(-3, "forward")
+    )
+    environment = load(road(lanes=lanes))
+    along = {name: row["along_road"] for name, row in lanelets(environment).items()}
+    assert along == {"1.0.-3": 1, "1.0.-2": 1, "1.0.-1": -1, "1.0.1": -1}
+    assert checks(environment)["direction_exception"] == ["1.0.-1"]
+    assert lanelets(environment)["1.0.-2"]["left_against"] is True
+
+
+def test_the_option_overrides_travel_directions_too() -> None:
+    lanes = section(0, travelling(1, "backward"), travelling(-1, "forward"))
+    along = {name: row["along_road"] for name, row in lanelets(load(road(lanes=lanes), handedness="lht")).items()}
+    assert along == {"1.0.-1": -1, "1.0.1": 1}

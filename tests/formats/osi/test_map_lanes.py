@@ -1,0 +1,347 @@
+"""Lanes that an OSI trace carries: turned into the direction of travel, ways through intersections, against OpenDRIVE."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+
+from drivelint.drive.trace import IngestOptions
+from drivelint.errors import MapError
+from drivelint.formats import load_map, read_source, read_trace
+from drivelint.formats.osi.schema import message
+from drivelint.road.contract import Environment, MapSource
+from tests.shared_data import shared
+
+
+def points(field: Any, line: list[tuple[float, float]]) -> None:
+    for x, y in line:
+        point = field.add()
+        point = getattr(point, "position", point)
+        point.x, point.y = x, y
+
+
+class Trace:
+    """Collects lanes of one ground truth."""
+
+    def __init__(self) -> None:
+        self.truth = message("GroundTruth")()
+
+    def bound(self, name: int, line: list[tuple[float, float]], kind: int = 3) -> None:
+        bound = self.truth.lane_boundary.add()
+        bound.id.value, bound.classification.type = name, kind
+        points(bound.boundary_line, line)
+
+    def lane(
+        self, name: int, middle: list[tuple[float, float]], *, left: int | tuple[int, ...] = 0, right: int | tuple[int, ...] = 0,
+        ahead: bool | None = True, kind: int = 2, subtype: int = 2, pairs: tuple[tuple[int | None, int | None], ...] = (),
+        beside: tuple[int, int] = (0, 0),
+    ) -> None:  # fmt: skip
+        lane = self.truth.lane.add()
+        lane.id.value = name
+        said = lane.classification
+        said.type, said.subtype = kind, subtype
+        if ahead is not None:
+            said.centerline_is_driving_direction = ahead
+        points(said.centerline, middle)
+        for field, value in (
+            (said.left_lane_boundary_id, left), (said.right_lane_boundary_id, right),
+            (said.left_adjacent_lane_id, beside[0]), (said.right_adjacent_lane_id, beside[1]),
+        ):  # fmt: skip
+            for number in (value,) if isinstance(value, int) else value:
+                if number:
+                    field.add().value = number
+        for before, after in pairs:
+            pair = said.lane_pairing.add()
+            if before is not None:
+                pair.antecessor_lane_id.value = before
+            if after is not None:
+                pair.successor_lane_id.value = after
+
+    def load(self, **options: Any) -> Environment:
+        kept = message("GroundTruth")()
+        kept.lane.extend(self.truth.lane)
+        kept.lane_boundary.extend(self.truth.lane_boundary)
+        return load_map(MapSource("embedded", kept.SerializeToString(deterministic=True)), **options)
+
+
+def row(y: float, *, x0: float = 0.0, x1: float = 40.0) -> list[tuple[float, float]]:
+    return [(x0, y), ((x0 + x1) / 2, y), (x1, y)]
+
+
+def two_way() -> Trace:
+    """Lanes 1 (along +x) and 2 (along -x, though its centre line runs along +x), and a footway 3."""
+    trace = Trace()
+    trace.bound(11, row(3.5), 4)
+    trace.bound(12, row(0.0)[::-1])  # drawn the other way round
+    trace.bound(13, row(-3.5), 12)
+    trace.bound(14, row(-5.0))
+    trace.lane(1, row(-1.75), left=12, right=13, beside=(2, 3))
+    trace.lane(2, row(1.75), left=11, right=12, ahead=False, beside=(0, 1))
+    trace.lane(3, row(-4.25), left=13, right=14, kind=3, subtype=4, beside=(1, 0))
+    return trace
+
+
+def test_lanes_run_in_the_direction_of_travel() -> None:
+    environment = two_way().load(offset=(100.0, 0.0))
+    rows = {r["lanelet_id"]: r for r in environment.tables["lanelet"].to_pylist()}
+    assert {k: (r["lane_type"], r["drivable"], round(r["width_m"], 3)) for k, r in rows.items()} == {
+        "1": ("driving", True, 3.5),
+        "2": ("driving", True, 3.5),
+        "3": ("sidewalk", False, 1.5),
+    }
+    assert (rows["1"]["left_id"], rows["1"]["left_against"], rows["1"]["right_id"], rows["1"]["right_against"]) == (
+        "2",
+        True,
+        "3",
+        False,
+    )
+    assert (rows["2"]["left_id"], rows["2"]["left_against"], rows["2"]["right_id"]) == ("1", True, None)
+    assert (environment.handedness, environment.handedness_source) == ("rht", "lanes")
+    first = {
+        r["lanelet_id"]: (r["x_m"], r["y_m"], r["tx"])
+        for r in environment.tables["lane_point"].to_pylist()
+        if r["k"] == 0
+    }
+    assert first["1"] == pytest.approx((100.0, -1.75, 1.0))
+    assert first["2"] == pytest.approx((140.0, 1.75, -1.0))
+    marks = {(r["lanelet_id"], r["side"]): r["marking"] for r in environment.tables["lane_boundary"].to_pylist()}
+    assert (marks["1", "left"], marks["1", "right"]) == ("solid", "curb")
+    assert (marks["2", "left"], marks["2", "right"]) == ("solid", "broken")
+
+
+def test_what_follows_is_turned_too() -> None:
+    trace = two_way()
+    for name, y in ((21, 3.5), (22, 0.0), (23, -3.5)):
+        trace.bound(name, row(y, x0=40.0, x1=80.0))
+    trace.lane(4, row(-1.75, x0=40.0, x1=80.0), left=22, right=23, pairs=((1, None),))
+    trace.lane(5, row(1.75, x0=40.0, x1=80.0), left=21, right=22, ahead=False, pairs=((2, None),))
+    for lane, after in ((trace.truth.lane[0], 4), (trace.truth.lane[1], 5)):
+        lane.classification.lane_pairing.add().successor_lane_id.value = after
+    links = [(r["from_id"], r["to_id"]) for r in trace.load().tables["lane_link"].to_pylist()]
+    assert links == [("1", "4"), ("5", "2")]
+
+
+@pytest.mark.parametrize(("ahead", "link"), [(True, ("1", "4")), (False, ("4", "1"))])
+@pytest.mark.parametrize("by", ["the first along the line", "the second", "both"])
+def test_a_link_is_said_by_either_lane(ahead: bool, link: tuple[str, str], by: str) -> None:
+    """esmini's lane before a junction names another one as its successor; only the lane after it tells."""
+    trace = Trace()
+    for name, y in ((11, 1.75), (12, -1.75)):
+        trace.bound(name, row(y, x1=80.0))
+    trace.lane(1, row(0.0), left=11, right=12, ahead=ahead, pairs=((None, 9 if by == "the second" else 4),))
+    later = row(0.0, x0=40.0, x1=80.0)
+    before = None if by == "the first along the line" else 1
+    trace.lane(4, later, left=11, right=12, ahead=ahead, pairs=((before, None),))
+    links = [(r["from_id"], r["to_id"]) for r in trace.load(handedness="rht").tables["lane_link"].to_pylist()]
+    assert links == [link]
+
+
+def test_a_boundary_that_reaches_beyond_the_lane_is_cut() -> None:
+    trace = Trace()
+    trace.bound(11, [(-50.0, 9.0), *row(1.75), (90.0, 9.0)])
+    trace.bound(12, row(-1.75))
+    trace.lane(1, row(0.0), left=11, right=12)
+    (lane,) = trace.load(handedness="rht").tables["lanelet"].to_pylist()
+    assert (lane["width_m"], lane["length_m"]) == pytest.approx((3.5, 40.0))
+
+
+def test_ways_through_an_intersection_are_drawn() -> None:
+    trace = Trace()
+    for name, line in (
+        (11, row(1.75)),
+        (12, row(-1.75)),
+        (13, [(58.25, 20.0), (58.25, 60.0)]),
+        (14, [(61.75, 20.0), (61.75, 60.0)]),
+    ):
+        trace.bound(name, line)
+    trace.lane(1, row(0.0), left=11, right=12, pairs=((None, 9),))
+    trace.lane(2, [(60.0, 20.0), (60.0, 60.0)], left=13, right=14, pairs=((9, None),))
+    trace.lane(9, [(40.0, 0.0), (60.0, 20.0)], kind=4, pairs=((1, 2), (2, 1)))
+    tables = trace.load(handedness="rht").tables
+    rows = {r["lanelet_id"]: r for r in tables["lanelet"].to_pylist()}
+    assert rows["9.1.2"]["junction_id"] == "j9"
+    assert 2.5 < rows["9.1.2"]["width_m"] < 4.5
+    links = {(r["from_id"], r["to_id"]): r["turn_rad"] for r in tables["lane_link"].to_pylist()}
+    assert {("1", "9.1.2"), ("9.1.2", "2")} <= set(links)
+    assert links["1", "9.1.2"] == pytest.approx(np.pi / 2, abs=0.2)
+
+
+def test_lanes_without_boundaries_make_no_map() -> None:
+    trace = Trace()
+    trace.lane(1, row(0.0))
+    with pytest.raises(MapError, match="no boundaries"):
+        trace.load()
+
+
+def bounded(ahead: bool | None = True) -> Trace:
+    """A lane 1 that is wider from 300 to 310 m, beside it a lane 2 from there on, and a hard shoulder 3: all without centre lines."""
+    trace = Trace()
+    trace.bound(11, row(1.5, x0=0.0, x1=300.0))
+    trace.bound(12, row(1.5, x0=303.0, x1=600.0), 4)  # from the first dash on
+    trace.bound(13, row(-1.5, x0=-50.0, x1=600.0))
+    trace.bound(14, [(300.0, 1.5), (310.0, 4.5)])
+    trace.bound(15, row(4.5, x0=310.0, x1=600.0))
+    trace.bound(16, row(-4.5, x0=0.0, x1=600.0), 12)
+    trace.lane(1, [], left=(12, 11), right=13, ahead=ahead)
+    trace.lane(2, [], left=(14, 15), right=12, ahead=ahead)
+    trace.lane(3, [], left=13, right=16, ahead=None, kind=3, subtype=6)
+    return trace
+
+
+@pytest.mark.parametrize("ahead", [True, False])
+def test_lanes_by_their_bounds_alone(ahead: bool) -> None:
+    tables = bounded(ahead).load(handedness="rht").tables
+    rows = {r["lanelet_id"]: r for r in tables["lanelet"].to_pylist()}
+    assert {k: (r["lane_type"], r["drivable"]) for k, r in rows.items()} == {
+        "1": ("driving", True), "2": ("driving", True), "3": ("stop", False),
+    }  # fmt: skip
+    assert [rows[k]["length_m"] for k in "123"] == pytest.approx([600.0, 297.0, 600.0], abs=1.0)
+    assert [rows[k]["width_m"] for k in "123"] == pytest.approx([3.0, 3.0, 3.0], abs=0.05)
+    points = {k: [r for r in tables["lane_point"].to_pylist() if r["lanelet_id"] == k] for k in "12"}
+    first, last = points["1"][0], points["1"][-1]
+    assert (first["x_m"], last["x_m"]) == pytest.approx((0.0, 600.0) if ahead else (600.0, 0.0))
+    assert (first["left_y_m"], first["right_y_m"]) == pytest.approx((1.5, -1.5) if ahead else (-1.5, 1.5))
+    assert max(p["half_width_m"] for p in points["2"]) == pytest.approx(1.5, abs=0.05)
+
+
+def test_a_lane_without_centre_line_and_direction_is_not_guessed_at() -> None:
+    with pytest.raises(MapError, match=r"3 lanes .* 2 of them because nothing says in which direction it is driven"):
+        bounded(None).load()
+    trace = bounded()
+    trace.truth.lane[0].classification.centerline_is_driving_direction = False
+    trace.truth.lane[1].classification.ClearField("centerline_is_driving_direction")
+    environment = trace.load(handedness="rht")
+    assert environment.tables["lanelet"]["lanelet_id"].to_pylist() == ["1", "3"]
+    (problem,) = [r for r in environment.tables["map_quality"].to_pylist() if r["severity"] == "error"]
+    assert (problem["lanelet_id"], "in which direction" in problem["message"]) == ("2", True)
+
+
+def test_a_writer_that_leaves_out_what_is_false_means_false() -> None:
+    """esmini: some lanes say true, none says false."""
+    trace = two_way()
+    trace.truth.lane[1].classification.ClearField("centerline_is_driving_direction")
+    first = next(r for r in trace.load().tables["lane_point"].to_pylist() if r["lanelet_id"] == "2")
+    assert first["tx"] == -1.0
+
+
+def gap(trace: Trace) -> None:
+    trace.truth.lane_boundary[0].boundary_line[2].position.x = 260.0
+
+
+def moved(trace: Trace, x: float) -> None:
+    """Let the lane's right side and the first of its left one begin at `x`."""
+    for k in (0, 2):
+        trace.truth.lane_boundary[k].boundary_line[0].position.x = x
+
+
+def reversed_side(trace: Trace) -> None:
+    for point in trace.truth.lane_boundary[2].boundary_line:
+        point.position.x = -point.position.x
+
+
+@pytest.mark.parametrize(
+    ("spoil", "what"),
+    [
+        (lambda trace: trace.truth.lane_boundary.pop(1), "not all of its boundaries"),
+        (lambda trace: trace.truth.lane[0].classification.ClearField("left_lane_boundary_id"), "no left boundary"),
+        (gap, "43 m between"),
+        (reversed_side, "same order"),
+        (lambda trace: moved(trace, math.nan), "not finite"),
+        (lambda trace: moved(trace, -1e9), "km long"),
+    ],
+)
+def test_a_lane_whose_bounds_make_no_shape_is_left_out_and_named(spoil: Any, what: str) -> None:
+    trace = bounded()
+    trace.bound(21, row(50.0))
+    trace.bound(22, row(46.5))
+    trace.lane(9, row(48.25), left=21, right=22)
+    spoil(trace)
+    tables = trace.load(handedness="rht").tables
+    problems = {r["lanelet_id"]: r["message"] for r in tables["map_quality"].to_pylist() if r["severity"] == "error"}
+    assert what in problems["1"]
+    assert "1" not in tables["lanelet"]["lanelet_id"].to_pylist()
+
+
+def test_the_lanes_of_a_real_log_have_boundaries_and_no_direction() -> None:
+    trace = read_trace(shared("osi/sensorDataDetectedLaneBoundaries.mcap"), IngestOptions())
+    assert trace.embedded_map is not None
+    truth = message("GroundTruth").FromString(trace.embedded_map)
+    assert (len(truth.lane), len(truth.lane_boundary)) == (4, 7)
+    with pytest.raises(
+        MapError, match=r"own 4 lanes .* 3 of them because nothing says in which direction it is driven"
+    ):
+        load_map(MapSource("embedded", trace.embedded_map))
+    for lane in truth.lane:  # if it said that they are driven as their boundaries run, as the host drives
+        lane.classification.centerline_is_driving_direction = True
+    environment = load_map(MapSource("embedded", truth.SerializeToString(deterministic=True)))
+    rows = {r["lanelet_id"]: (r["drivable"], round(r["length_m"])) for r in environment.tables["lanelet"].to_pylist()}
+    assert rows == {"1": (True, 800), "2": (True, 800), "3": (True, 300), "4": (False, 510)}
+
+
+@pytest.mark.parametrize(
+    ("name", "road"),
+    [
+        ("pedestrian", "osi/fabriksgatan.xodr"),
+        ("alks_cut-in", "osi/straight_500m.xodr"),
+        ("highway_merge", "osi/soderleden.xodr"),
+    ],
+)
+def test_real_lanes_lie_on_the_real_road(name: str, road: str) -> None:
+    """The trace's lanes for driving, outside intersections, against our own reading of the road's OpenDRIVE."""
+    trace = read_trace(shared(f"osi/{name}.osi"), IngestOptions(ego="0"))
+    assert trace.embedded_map is not None
+    carried = load_map(MapSource("embedded", trace.embedded_map))
+    own = load_map(read_source(shared(road)))
+    lanes = {
+        r["lanelet_id"]: r for r in carried.tables["lanelet"].to_pylist() if r["drivable"] and r["junction_id"] is None
+    }
+    drivable = {r["lanelet_id"] for r in own.tables["lanelet"].to_pylist() if r["drivable"]}
+    theirs = [r for r in own.tables["lane_point"].to_pylist() if r["lanelet_id"] in drivable]
+    tree = shapely.STRtree(shapely.points([(r["x_m"], r["y_m"]) for r in theirs]))
+    mine = [r for r in carried.tables["lane_point"].to_pylist() if r["lanelet_id"] in lanes]
+    near = tree.nearest(shapely.points([(r["x_m"], r["y_m"]) for r in mine]))
+    pairs = [(r, theirs[i]) for r, i in zip(mine, near, strict=True)]
+    across = np.array([abs((r["x_m"] - t["x_m"]) * t["ty"] - (r["y_m"] - t["y_m"]) * t["tx"]) for r, t in pairs])
+    along = np.array([r["tx"] * t["tx"] + r["ty"] * t["ty"] for r, t in pairs])
+    width = np.array([abs(r["half_width_m"] - t["half_width_m"]) for r, t in pairs])
+    assert len(mine) > 20
+    assert np.quantile(across, 0.9) < 0.3
+    assert (along > 0.9).mean() > 0.97
+    assert np.quantile(width, 0.9) < 0.2
+
+
+def test_the_lanes_of_the_merge_are_joined_up() -> None:
+    """Main carriageway 24, 31, 3, 11 and 25, 32, 4, 12; the slip road 18, 34, 5 runs into 12."""
+    trace = read_trace(shared("osi/highway_merge.osi"), IngestOptions(ego="0"))
+    assert trace.embedded_map is not None
+    carried = load_map(MapSource("embedded", trace.embedded_map))
+    links = {(r["from_id"], r["to_id"]) for r in carried.tables["lane_link"].to_pylist()}
+    for way in (("24", "31", "3", "11"), ("25", "32", "4", "12"), ("18", "34", "5", "12")):
+        assert set(pairwise(way)) <= links
+
+
+@pytest.mark.parametrize("ahead", [True, False])
+@pytest.mark.parametrize("bend", [0.0, 0.02])
+def test_a_side_that_ends_early_is_led_on_beside_the_middle(ahead: bool, bend: float) -> None:
+    """The left side is drawn from 3 to 34 m of 40; the lane is as long and as wide as its middle line says."""
+
+    def line(d: float, first: float, last: float) -> list[tuple[float, float]]:
+        s = np.linspace(first, last, 40)
+        x, y = (np.sin(bend * s) / bend, (1 - np.cos(bend * s)) / bend) if bend else (s, 0 * s)
+        return list(zip(x - d * np.sin(bend * s), y + d * np.cos(bend * s), strict=True))
+
+    trace = Trace()
+    trace.bound(11, line(1.75, 3.0, 34.0))
+    trace.bound(12, line(-1.75, 0.0, 40.0))
+    trace.lane(1, line(0.0, 0.0, 40.0), left=11, right=12, ahead=ahead)
+    environment = trace.load(handedness="rht")
+    (lane,) = environment.tables["lanelet"].to_pylist()
+    assert (lane["width_m"], lane["length_m"]) == (pytest.approx(3.5, abs=0.05), pytest.approx(40.0, abs=0.05))
+    places = [(r["x_m"], r["y_m"]) for r in environment.tables["lane_point"].to_pylist()]
+    ends = [line(0.0, 0.0, 40.0)[k] for k in ((0, -1) if ahead else (-1, 0))]
+    assert [places[0], places[-1]] == [pytest.approx(end, abs=0.05) for end in ends]

@@ -1,0 +1,251 @@
+"""Where and when: transforms, clocks, bags in parts, damaged and odd ROS 2 logs."""
+
+from __future__ import annotations
+
+import math
+import shutil
+from typing import TYPE_CHECKING
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from drivelint.errors import TraceError
+from drivelint.formats import expand
+from drivelint.inspect.content import content, size
+from tests.formats.logs import at, log, quality, read, states
+from tests.formats.ros2 import ros_log as ros
+from tests.formats.ros2.test_reader import T0, TURN, N, along, ego, others, seen, ticks
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.drive.trace import Trace
+
+MOVED = {"x_m": 100.0, "y_m": 50.0}
+
+
+def chain() -> list[ros.Message]:
+    """Return lidar in base (fixed), base in odom (moves east), odom in map (turned left, 100, 50)."""
+    return [
+        ros.transform(T0 - 50.0, "base", "/lidar", 2.0, topic="/tf_static"),
+        *[ros.transform(t_s - 0.01, "odom", "base", 10.0 * (t_s - 0.01 - T0)) for t_s in ticks(N + 2)],
+        *[ros.transform(t_s, "map", "odom", 100.0, 50.0, yaw=math.pi / 2) for t_s in ticks(N + 2)],
+    ]
+
+
+def test_chain(tmp_path: Path) -> None:
+    # it drives with its frame, 10 m/s to the map's north, and says so
+    objects = [ros.things(t_s, ros.thing(9, 30.0, 1.0, 0.05, 10.0), frame="lidar") for t_s in ticks(19)]
+    trace = seen(tmp_path, [*chain(), *objects], ego="9")
+    state = at(trace, "9", T0 + 0.5)
+    assert (state["x_m"], state["y_m"]) == pytest.approx((100.0 - 1.0, 50.0 + 5.0 + 2.0 + 30.0))
+    assert state["yaw_rad"] == pytest.approx(math.pi / 2 + 0.05)
+    assert (state["vx_mps"], state["vy_mps"]) == pytest.approx((-10.0 * math.sin(0.05), 10.0 * math.cos(0.05)))
+    assert "frame_unresolved" not in quality(trace)
+
+
+def test_odometry_in_odom(tmp_path: Path) -> None:
+    trace = seen(tmp_path, [*chain(), *ego(frame="odom"), *others()])
+    x, y = along(T0 + 1.0)
+    state = at(trace, "ego", T0 + 1.0)
+    assert (state["x_m"], state["y_m"]) == pytest.approx((100.0 - y, 50.0 + x))
+    assert (state["vx_mps"], state["vy_mps"]) == pytest.approx((-10.0 * math.sin(TURN), 10.0 * math.cos(TURN)))
+
+
+def test_unresolved_in_part(tmp_path: Path) -> None:
+    """Some objects are in a frame of which nothing is known: they are there, and nowhere."""
+    lost = [ros.things(t_s, ros.thing(12, 1.0, 2.0), frame="radar") for t_s in ticks()[10:]]
+    trace = seen(tmp_path, [*ego(), *others()[:10], *lost])
+    assert {row["x_m"] for row in states(trace, "12")[10:]} == {None}
+    found = quality(trace)["frame_unresolved"]
+    assert (found["n"], found["t_first_ns"], found["severity"]) == (N - 10, round(ticks()[10] * 1e9), "error")
+    assert "no transform leads from 'radar' to 'map'" in found["message"]
+
+
+def test_not_beyond_the_transforms_times_nor_in_holes(tmp_path: Path) -> None:
+    """A transform from 0.5 s to 1.5 s, with a hole of 0.6 s or of 0.4 s in it."""
+    objects = [ros.things(t_s, ros.thing(9, 30.0, 0.0), frame="base") for t_s in ticks()]
+
+    def placed(a: float, b: float) -> list[int]:
+        moving = [
+            ros.transform(t_s, "map", "base", t_s)
+            for t_s in ticks(201, 0.01)
+            if 0.499 <= t_s - T0 <= a + 1e-6 or b - 1e-6 <= t_s - T0 <= 1.501
+        ]
+        rows = states(seen(tmp_path, [*ego(), *moving, *objects]), "9")
+        return [i for i, row in enumerate(rows) if row["x_m"] is not None]
+
+    assert placed(1.0, 1.0) == list(range(10, 31))
+    assert placed(0.7, 1.1) == list(range(10, 31))
+    assert placed(0.7, 1.3) == [*range(10, 15), *range(26, 31)]
+
+
+def test_two_parents(tmp_path: Path) -> None:
+    both = [ros.transform(t_s, parent, "base", 5.0) for t_s in ticks() for parent in ("map", "odom")]
+    objects = [ros.things(t_s, ros.thing(9, 30.0, 0.0), frame="base") for t_s in ticks()]
+    trace = seen(tmp_path, [*ego(), *both, *objects])
+    assert {row["x_m"] for row in states(trace, "9")} == {None}
+    assert "several frames say that they hold 'base'" in quality(trace)["frame_unresolved"]["message"]
+
+
+def test_a_loop_of_frames_leads_nowhere(tmp_path: Path) -> None:
+    loop = [ros.transform(T0, *pair, topic="/tf_static") for pair in (("a", "b"), ("b", "a"))]
+    objects = [ros.things(t_s, ros.thing(9, 1.0, 0.0), frame="a") for t_s in ticks()]
+    trace = seen(tmp_path, [*loop, *objects, *ego(frame="site")])
+    assert {row["x_m"] for row in states(trace, "9")} == {None}
+    assert "no transform leads from 'a' to 'site'" in quality(trace)["frame_unresolved"]["message"]
+
+
+def test_nothing_placed(tmp_path: Path) -> None:
+    """Odometry in a frame that only its own transforms hold, none of them at its time."""
+    late = [ros.transform(T0 + 50.0, "map", "odom", 1.0)]
+    with pytest.raises(TraceError, match=r"nothing can be placed: .* 'odom' to 'map' is not recorded at their time"):
+        seen(tmp_path, [*late, *ego(frame="odom")])
+
+
+@pytest.mark.parametrize("frame", ["world", "odom", "site"])
+def test_fixed_frame_of_another_name(tmp_path: Path, frame: str) -> None:
+    """A log whose frames have all one root has it as its fixed frame."""
+    base = [ros.transform(T0, frame, "base", 5.0, topic="/tf_static")]
+    trace = seen(
+        tmp_path,
+        [*ego(frame=frame), *base, *[ros.things(t_s, ros.thing(9, 30.0, 0.0), frame="base") for t_s in ticks()]],
+    )
+    assert states(trace, "9")[0]["x_m"] == 35.0
+    assert f"positions are in the frame {frame!r}" in trace.notes
+
+
+def test_no_stamps(tmp_path: Path) -> None:
+    """Stamps that stand still, or that are there only in part: the container's times count, for all messages."""
+    for keep in (0, 7):
+        messages = [*ego(), *others()]
+        for i, message in enumerate(messages):
+            if i >= keep:
+                message[3]["header"]["stamp"] = {}
+        trace = seen(tmp_path, messages)
+        assert states(trace, "ego")[1]["t_ns"] == 100_050_000_000
+        assert "log times of the container" in quality(trace)["log_time_used"]["message"]
+
+
+def test_simulated_time_begins_at_zero(tmp_path: Path) -> None:
+    messages = [ros.odometry(i * 0.05, i * 0.5, 0.0, 0.0, 10.0, log_s=1.7e9 + i) for i in range(N)]
+    trace = seen(tmp_path, messages)
+    assert [row["t_ns"] for row in states(trace)][:2] == [0, 50_000_000]
+    assert log(trace)["utc_start_ns"] == 1_700_000_000 * 10**9
+
+
+def test_two_clocks(tmp_path: Path) -> None:
+    """Objects by the simulation's clock, the ego by the wall's: only the container has one for both."""
+    objects = [
+        (topic, name, t_s, {**content, "header": ros.header(t_s - 90.0)}) for topic, name, t_s, content in others()
+    ]
+    trace = seen(tmp_path, [*ego(), *objects])
+    assert states(trace, "9")[0]["t_ns"] == 100_000_000_000
+    assert "no moment in common: two clocks" in quality(trace)["log_time_used"]["message"]
+
+
+def test_float_stamps(tmp_path: Path) -> None:
+    """A recorder of its own kind, with seconds as a double."""
+    types = {**ros.BASE, "std_msgs/Header": "float64 stamp\nstring frame_id"}
+    messages = [
+        (topic, name, 5.0 + i, {**content, "header": {"stamp": t_s, "frame_id": "map"}})
+        for i, (topic, name, t_s, content) in enumerate(ego())
+    ]
+    trace = read(ros.write(tmp_path / "float.mcap", messages, types))
+    assert [row["t_ns"] for row in states(trace)][:2] == [100_000_000_000, 100_050_000_000]
+
+
+def bag(folder: Path, names: list[str], storage: str = "mcap") -> Path:
+    listed = "".join(f"    - {name}\n" for name in names)
+    text = (
+        f"rosbag2_bagfile_information:\n  version: 9\n  storage_identifier: {storage}\n  relative_file_paths:\n{listed}"
+    )
+    (folder / "metadata.yaml").write_text(text, encoding="utf-8")
+    return folder
+
+
+def parts(tmp_path: Path, n: int = 3) -> tuple[Path, list[ros.Message]]:
+    messages = sorted([*chain(), *ego(), *others()], key=lambda message: message[2])
+    folder = tmp_path / "drive"
+    folder.mkdir()
+    step = -(-len(messages) // n)
+    for i in range(n):
+        ros.write(folder / f"drive_{i}.mcap", messages[i * step : (i + 1) * step])
+    return bag(folder, [f"drive_{i}.mcap" for i in range(n)]), messages
+
+
+def rows(trace: Trace) -> list[dict[str, object]]:
+    return [{key: value for key, value in row.items() if key != "drive_id"} for row in states(trace)]
+
+
+def test_bag_in_parts(tmp_path: Path) -> None:
+    folder, messages = parts(tmp_path)
+    assert expand([str(folder)]) == expand([str(tmp_path)]) == [folder]
+    trace = read(folder)
+    assert trace.drive_id.startswith("drive-")
+    assert rows(trace) == rows(seen(tmp_path, messages))
+    before = trace.drive_id
+    shutil.copy(folder / "drive_0.mcap", folder / "drive_2.mcap")
+    assert read(folder).drive_id != before
+
+
+def test_what_a_bag_holds(tmp_path: Path) -> None:
+    folder, messages = parts(tmp_path)
+    assert size(folder) == sum(file.stat().st_size for file in folder.glob("*.mcap"))
+    found = {channel.topic: channel for channel in content(folder, None, [], read=True).channels}
+    assert {topic: channel.read_as for topic, channel in found.items()} == {
+        "/carla/hero/odometry": "odometry", "/carla/objects": "road users", "/tf": "frames", "/tf_static": "frames",
+    }  # fmt: skip
+    assert sum(channel.messages for channel in found.values()) == len(messages)
+    assert found["/carla/objects"].rate_hz == pytest.approx(20.0)
+
+
+def test_bag_with_a_part_missing(tmp_path: Path) -> None:
+    folder, _ = parts(tmp_path)
+    (folder / "drive_1.mcap").unlink()
+    with pytest.raises(TraceError, match=r"drive_1\.mcap, a part of this bag, is missing"):
+        read(folder)
+
+
+def test_bags_that_cannot_be_read(tmp_path: Path) -> None:
+    folder, _ = parts(tmp_path)
+    with pytest.raises(TraceError, match="a bag in sqlite3: convert it to MCAP"):
+        read(bag(folder, ["drive_0.db3"], "sqlite3"))
+    with pytest.raises(TraceError, match="lists no files"):
+        read(bag(folder, []))
+    (folder / "metadata.yaml").write_text("rosbag2_bagfile_information: 5\n", encoding="utf-8")
+    with pytest.raises(TraceError, match=r"its metadata\.yaml cannot be read"):
+        read(folder)
+
+
+@pytest.mark.parametrize("order", ["<", ">"])
+def test_byte_orders(tmp_path: Path, order: str) -> None:
+    messages = [*ego(), *others(), *chain()]
+    assert rows(read(ros.write(tmp_path / "x.mcap", messages, order=order))) == rows(seen(tmp_path, messages))
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.randoms(use_true_random=False))
+def test_order_of_messages_and_objects_changes_nothing(
+    tmp_path_factory: pytest.TempPathFactory, random: object
+) -> None:
+    folder = tmp_path_factory.mktemp("order")
+    messages = [*ego(), *others(), *chain()]
+    expected = rows(seen(folder, messages))
+    for message in messages:
+        random.shuffle(message[3].get("objects", []))  # type: ignore[attr-defined]
+    random.shuffle(messages)  # type: ignore[attr-defined]
+    assert rows(seen(folder, messages)) == expected
+
+
+def test_nothing_to_read(tmp_path: Path) -> None:
+    with pytest.raises(TraceError, match="no OSI ground truth in this file: it has tf2_msgs/msg/TFMessage in cdr"):
+        seen(tmp_path, chain())
+    with pytest.raises(TraceError, match="no road users and no odometry"):
+        seen(tmp_path, [ros.things(T0)])
+
+
+def test_definition_in_idl(tmp_path: Path) -> None:
+    with pytest.raises(TraceError, match=r"nav_msgs/msg/Odometry is described by ros2idl: only ros2msg is read"):
+        read(ros.write(tmp_path / "idl.mcap", ego(), encoding="ros2idl"))

@@ -1,0 +1,216 @@
+"""SUMO networks: lanes beside each other and in junctions, limits, who may drive there, lights, stop and give-way signs."""
+
+from __future__ import annotations
+
+import pytest
+
+from drivelint.errors import MapError
+from drivelint.formats import load_map
+from drivelint.road.contract import Environment, MapSource
+from tests.formats.opendrive.xodr import checks, lanelets, points, rows
+
+WIDTH = 3.2
+INNER = ' fromLane="1" toLane="1"'
+
+
+def lane(name: str, index: int, shape: str, more: str = "", inside: str = "") -> str:
+    return f'<lane id="{name}_{index}" index="{index}" speed="13.89" length="50" shape="{shape}" {more}>{inside}</lane>'
+
+
+def edge(name: str, *lanes: str, ends: tuple[str, str] | None = None, more: str = "") -> str:
+    way = f'from="{ends[0]}" to="{ends[1]}"' if ends else 'function="internal"'
+    return f'<edge id="{name}" {way} {more}>{"".join(lanes)}</edge>'
+
+
+def link(start: str, end: str, state: str, way: str = "s", more: str = "") -> str:
+    if "fromLane" not in more:
+        more += ' fromLane="0" toLane="0"'
+    return f'<connection from="{start}" to="{end}" dir="{way}" state="{state}" {more}/>'
+
+
+def net(*parts: str, more: str = "", **options: object) -> Environment:
+    text = f'<?xml version="1.0"?>\n<!-- made by hand -->\n<net version="1.20" {more}>{"".join(parts)}</net>'
+    return load_map(MapSource("small.net.xml", text.encode()), **options)  # type: ignore[arg-type]
+
+
+def tee(kind: str, stem: tuple[str, str], light: str = "", major: str = "M") -> Environment:
+    """Return a main road along x, its eastbound direction of two lanes, on which a side road from the south ends."""
+    tl = f'tl="{light}" linkIndex="%d"' if light else "%s"
+
+    def way(name: str, n: int) -> str:
+        return f'via="{name}" ' + (tl % n if light else "")
+
+    return net(
+        edge("we", lane("we", 0, "0,-4.8 50,-4.8"), lane("we", 1, "0,-1.6 50,-1.6"), ends=("w", "c")),
+        edge("ea", lane("ea", 0, "60,-4.8 110,-4.8"), lane("ea", 1, "60,-1.6 110,-1.6"), ends=("c", "e")),
+        edge("ew", lane("ew", 0, "110,1.6 60,1.6", inside='<neigh lane="ea_1"/>'), ends=("e", "c")),
+        edge("wa", lane("wa", 0, "50,1.6 0,1.6"), ends=("c", "w")),
+        edge("st", lane("st", 0, "56.6,-60 56.6,-10", 'width="3"'), ends=("s", "c")),
+        edge(":c_0", lane(":c_0", 0, "50,-4.8 60,-4.8"), lane(":c_0", 1, "50,-1.6 60,-1.6")),
+        edge(":c_2", lane(":c_2", 0, "60,1.6 50,1.6")),
+        edge(":c_3", lane(":c_3", 0, "56.6,-10 57,-7.5 58.4,-5.3 60,-4.8")),
+        edge(":c_4", lane(":c_4", 0, "56.6,-10 56,-3")),
+        edge(":c_5", lane(":c_5", 0, "56,-3 54,1 50,1.6")),
+        f'<junction id="c" type="{kind}" x="55" y="0"/><junction id="e" type="dead_end" x="110" y="0"/>',
+        link("we", "ea", major, more=way(":c_0_0", 0)),
+        link("we", "ea", major, more=way(":c_0_1", 1) + INNER),
+        link("ew", "wa", major, more=way(":c_2_0", 2)),
+        link("st", "ea", stem[0], "r", way(":c_3_0", 3)),
+        link("st", "wa", stem[1], "l", way(":c_4_0", 4)),
+        link(":c_0", "ea", "M"), link(":c_0", "ea", "M", more=INNER), link(":c_2", "wa", "M"),
+        link(":c_3", "ea", "M", "r"), link(":c_4", "wa", "m", "l", 'via=":c_5_0"'), link(":c_5", "wa", "M", "l"),
+    )  # fmt: skip
+
+
+def test_lanes_and_their_ways_on() -> None:
+    found = tee("priority", ("m", "m"))
+    assert (found.handedness, found.handedness_source) == ("rht", "attribute")
+    lanes = lanelets(found)
+    assert (lanes["we_0"]["left_id"], lanes["we_0"]["left_against"], lanes["we_0"]["right_id"]) == ("we_1", False, None)
+    assert (lanes["we_1"]["right_id"], lanes["we_1"]["right_against"], lanes["we_1"]["left_id"]) == (
+        "we_0",
+        False,
+        None,
+    )
+    assert (lanes["ew_0"]["left_id"], lanes["ew_0"]["left_against"]) == ("ea_1", True)
+    assert {name for name, row in lanes.items() if row["junction_id"] == "c"} == {n for n in lanes if n[0] == ":"}
+    assert {(row["from_id"], row["to_id"]) for row in rows(found, "lane_link")} >= {
+        ("we_0", ":c_0_0"), (":c_0_0", "ea_0"), ("st_0", ":c_4_0"), (":c_4_0", ":c_5_0"), (":c_5_0", "wa_0"),
+    }  # fmt: skip
+    assert (lanes["we_0"]["width_m"], lanes["st_0"]["width_m"]) == (pytest.approx(WIDTH), pytest.approx(3.0))
+    first = points(found)["we_0"][0]
+    assert [first[k] for k in ("left_x_m", "left_y_m", "right_y_m")] == pytest.approx([0.0, -3.2, -6.4])
+    assert not checks(found)
+    assert {row["marking"] for row in rows(found, "lane_boundary")} == {None}
+
+
+def test_the_limit_holds_through_a_junction() -> None:
+    limits = {row["lanelet_id"]: row["limit_mps"] for row in rows(tee("priority", ("m", "m")), "speed_limit")}
+    assert set(limits.values()) == {13.89}
+    assert {":c_4_0", ":c_5_0"} <= limits.keys()
+    ways = (
+        edge("a", lane("a", 0, "0,0 50,0"), ends=("a", "b")),
+        edge(":b_0", lane(":b_0", 0, "50,0 60,0").replace("13.89", "4")),
+    )
+    alone = {row["lanelet_id"]: row["limit_mps"] for row in rows(net(*ways), "speed_limit")}
+    assert alone == {"a_0": 13.89}  # what bends allow is no limit
+
+
+def test_where_the_ways_meet_there_is_no_wedge() -> None:
+    """A way through begins and ends in the direction of the lanes that it joins, as its chords do not."""
+    found = points(tee("priority", ("m", "m")))
+    for before, after in (("st_0", ":c_3_0"), (":c_3_0", "ea_0"), ("st_0", ":c_4_0"), (":c_5_0", "wa_0")):
+        a, b = found[before][-1], found[after][0]
+        assert a["tx"] * b["tx"] + a["ty"] * b["ty"] == pytest.approx(1.0), (before, after)
+
+
+@pytest.mark.parametrize(
+    ("kind", "stem", "sign"),
+    [
+        ("priority", ("m", "m"), "give_way"),
+        ("priority_stop", ("w", "w"), "stop"),
+        ("allway_stop", ("s", "s"), "stop"),
+        ("right_before_left", ("m", "m"), None),
+        ("unregulated", ("=", "="), None),
+    ],
+)
+def test_signs_of_the_lesser_road(kind: str, stem: tuple[str, str], sign: str | None) -> None:
+    found = tee(kind, stem)
+    signs = [(row["kind"], row["lanelet_id"]) for row in rows(found, "traffic_signal")]
+    assert signs == ([(sign, "st_0")] if sign else [])
+    lines = [(row["lanelet_id"], row["source"]) for row in rows(found, "stop_line")]
+    assert lines == ([("st_0", "connection")] if sign == "stop" else [])
+    for row in rows(found, "traffic_signal"):
+        assert (row["x_m"], row["y_m"], row["lane_s_m"]) == (
+            pytest.approx(56.6),
+            pytest.approx(-10.0),
+            pytest.approx(50.0),
+        )
+
+
+def test_who_turns_across_the_main_road_has_no_sign() -> None:
+    found = net(
+        edge("a", lane("a", 0, "0,0 50,0"), lane("a", 1, "0,3.2 50,3.2"), ends=("x", "c")),
+        edge("b", lane("b", 0, "60,0 99,0"), ends=("c", "y")),
+        edge("d", lane("d", 0, "55,9 55,60"), ends=("c", "z")),
+        '<junction id="c" type="priority"/>',
+        link("a", "b", "M"), link("a", "d", "m", "l", 'fromLane="1" toLane="0"'),
+    )  # fmt: skip
+    assert not rows(found, "traffic_signal")
+
+
+def test_lights_by_connection() -> None:
+    found = tee("traffic_light", ("o", "o"), light="L", major="O")
+    heads = {(row["signal_id"], row["lanelet_id"], *row["turns"]) for row in rows(found, "traffic_signal")}
+    assert heads == {
+        ("L_0", ":c_0_0", "straight"), ("L_1", ":c_0_1", "straight"), ("L_2", ":c_2_0", "straight"),
+        ("L_3", ":c_3_0", "right"), ("L_4", ":c_4_0", "left"),
+    }  # fmt: skip
+    assert [row["lanelet_id"] for row in rows(found, "stop_line")] == ["ew_0", "st_0", "we_0", "we_1"]
+    assert all(row["dynamic"] for row in rows(found, "traffic_signal"))
+    # without the lanes inside the junction, the heads stand at the ends of those before it
+    bare = net(
+        edge("a", lane("a", 0, "0,0 50,0"), ends=("x", "c")), edge("b", lane("b", 0, "60,0 99,0"), ends=("c", "y")),
+        link("a", "b", "o", more='tl="L" linkIndex="7"'),
+    )  # fmt: skip
+    (head,) = rows(bare, "traffic_signal")
+    assert (head["signal_id"], head["lanelet_id"], head["lane_s_m"]) == ("L_7", "a_0", pytest.approx(50.0))
+
+
+@pytest.mark.parametrize(
+    ("may", "kind", "drivable"),
+    [
+        ("", "driving", True),
+        ('allow="all"', "driving", True),
+        ('disallow="pedestrian"', "driving", True),
+        ('allow="bus taxi"', "bus", True),
+        ('allow="bicycle"', "biking", False),
+        ('allow="pedestrian"', "sidewalk", False),
+        ('allow="tram"', "tram", False),
+        ('allow="emergency"', "restricted", False),
+        ('disallow="all"', "none", False),
+    ],
+)
+def test_who_may_drive_on_a_lane(may: str, kind: str, drivable: bool) -> None:
+    found = lanelets(net(edge("a", lane("a", 0, "0,0 50,0", may), ends=("x", "y"))))["a_0"]
+    assert (found["lane_type"], found["drivable"]) == (kind, drivable)
+
+
+def test_left_hand_nets_say_so() -> None:
+    parts = edge(
+        "a", lane("a", 0, "0,4.8 50,4.8"), lane("a", 1, "0,1.6 50,1.6"), ends=("x", "y"), more='type="highway.motorway"'
+    )
+    found = net(parts, more='lefthand="true"')
+    assert (found.handedness, found.handedness_source) == ("lht", "attribute")
+    row = lanelets(found)["a_0"]
+    assert (row["right_id"], row["left_id"], row["road_type"]) == ("a_1", None, "motorway")
+    doubted = net(parts, more='lefthand="true"', handedness="rht")
+    assert (doubted.handedness, doubted.handedness_source) == ("rht", "option")
+    assert "handedness_disagrees" in checks(doubted)
+
+
+def test_what_is_broken_is_named() -> None:
+    good = edge("a", lane("a", 0, "0,0 50,0"), ends=("x", "y"))
+    for bad in ("0,0", "0,0 nan,1", "0,0 0,0", "x"):
+        found = net(good, edge("b", lane("b", 0, bad), ends=("x", "y")))
+        assert (checks(found)["invalid_lane"], list(lanelets(found))) == (["b_0"], ["a_0"])
+    with pytest.raises(MapError, match="has no lane that can be built"):
+        net(edge("b", lane("b", 0, "0,0"), ends=("x", "y")))
+    with pytest.raises(MapError, match="not well-formed"):
+        load_map(MapSource("x.net.xml", b"<net><edge></net>"))
+
+
+def test_crossings_lie_across_the_lanes() -> None:
+    walk = (
+        '<edge id=":c_c0" function="crossing" crossingEdges="a">'
+        + lane(":c_c0", 0, "20,-3 20,3", 'width="4" allow="pedestrian"')
+        + "</edge>"
+    )
+    found = net(edge("a", lane("a", 0, "0,0 50,0"), ends=("x", "y")), walk)
+    (row,) = rows(found, "crossing")
+    assert (row["crossing_id"], row["lanelet_id"], row["s_start_m"], row["s_end_m"]) == (
+        ":c_c0_0",
+        "a_0",
+        pytest.approx(18),
+        pytest.approx(22),
+    )

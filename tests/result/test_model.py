@@ -1,0 +1,83 @@
+"""The exit code follows DESIGN.md's meanings and precedence."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from drivelint.errors import DriveLintError, ExitCode
+from drivelint.result.contract import empty
+from drivelint.result.model import Result, exit_code, outcome
+from tests.report.synthetic import drive, result, rule, verdict
+
+LOST = drive("d2", status="not_judged", status_reason="d2.csv: no ego")
+LOSSY = drive(lossy=True)
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "drives", "settings", "code"),
+    [
+        pytest.param(["pass"], None, {}, ExitCode.OK, id="all kept"),
+        pytest.param(["not_applicable", "unknown"], None, {}, ExitCode.OK, id="unknown does not gate by default"),
+        pytest.param(["pass", "fail"], None, {}, ExitCode.FAILED, id="one failed"),
+        pytest.param(["fail"], None, {"fail_on": "never"}, ExitCode.OK, id="failures never gate"),
+        pytest.param(["pass", "unknown"], None, {"strict": True}, ExitCode.NOT_JUDGED, id="strict: unknown"),
+        pytest.param(["pass"], None, {"strict": True}, ExitCode.OK, id="strict: all kept"),
+        pytest.param(["pass"], [drive(), LOST], {}, ExitCode.NOT_JUDGED, id="a drive was not judged"),
+        pytest.param(["pass"], [LOSSY], {}, ExitCode.LOSSY, id="lossy input"),
+        pytest.param(["pass"], [LOSSY, LOST], {}, ExitCode.NOT_JUDGED, id="4 before 3"),
+        pytest.param(["fail"], [LOSSY, LOST], {}, ExitCode.FAILED, id="1 before 4"),
+        pytest.param(["fail", "error"], [LOSSY, LOST], {}, ExitCode.USAGE, id="2 before 1"),
+        pytest.param(["unknown"], [LOSSY], {"strict": True}, ExitCode.NOT_JUDGED, id="strict unknown before 3"),
+        pytest.param([], [drive(), LOST], {}, ExitCode.NOT_JUDGED, id="no verdict at all"),
+    ],
+)
+def test_exit_code(
+    verdicts: list[str], drives: list[dict[str, Any]] | None, settings: dict[str, Any], code: ExitCode
+) -> None:
+    run = result([verdict(said, occurrence=n) for n, said in enumerate(verdicts)], drives=drives, **settings)
+    assert exit_code(run) is code
+    assert outcome(run).why
+
+
+def test_it_is_said_that_nothing_could_be_decided() -> None:
+    assert "nothing could be decided" in outcome(result([verdict("unknown")])).why
+    for said in ("pass", "not_applicable"):
+        assert "decided" not in outcome(result([verdict("unknown"), verdict(said, occurrence=1)])).why
+
+
+@pytest.mark.parametrize("severity", ["critical", "major", "minor"])
+@pytest.mark.parametrize("fail_on", ["critical", "major", "minor", "never"])
+def test_only_failures_at_or_above_the_threshold_gate(severity: str, fail_on: str) -> None:
+    weight = {"critical": 3, "major": 2, "minor": 1, "never": 4}
+    run = result([verdict("fail", severity=severity)], rules=[rule(severity=severity)], fail_on=fail_on)
+    assert (exit_code(run) is ExitCode.FAILED) == (weight[severity] >= weight[fail_on])
+
+
+@pytest.mark.parametrize("status", ["draft", "deprecated"])
+def test_only_stable_rules_gate(status: str) -> None:
+    rows = [verdict("fail"), verdict("unknown", occurrence=1)]
+    assert exit_code(result(rows, rules=[rule(status=status)], strict=True)) is ExitCode.OK
+
+
+def test_an_error_of_a_draft_is_still_an_error() -> None:
+    assert exit_code(result([verdict("error")], rules=[rule(status="draft")])) is ExitCode.USAGE
+
+
+def test_a_lossy_drive_that_was_not_judged_is_no_lossy_verdict() -> None:
+    run = result([verdict("pass")], drives=[drive(), drive("d2", lossy=True, status="not_judged", status_reason="cut")])
+    assert not run.lossy
+
+
+def test_a_table_without_its_columns_is_refused() -> None:
+    short = empty("verdict").drop_columns(["margin"])
+    with pytest.raises(DriveLintError, match=r"verdict.*missing.*margin"):
+        Result(short, empty("finding"), empty("drive"), empty("rule"))
+
+
+def test_a_table_with_a_stray_column_is_refused() -> None:
+    rows = empty("finding")
+    stray = rows.append_column("mood", rows["rule_id"])
+    with pytest.raises(DriveLintError, match=r"finding.*excess.*mood"):
+        Result(empty("verdict"), stray, empty("drive"), empty("rule"))

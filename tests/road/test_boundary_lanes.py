@@ -1,0 +1,116 @@
+"""Lanes given by their bounds: geometry against shapely, roads made of what lies side by side, what cannot be built."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drivelint.road.boundary_lanes import BoundedLane, build, side_driven_on, tables
+from drivelint.road.quality import Quality
+
+
+def straight(
+    name: str, y: float, *, back: bool = False, width: float = 3.5, length: float = 10.0, **more: object
+) -> BoundedLane:
+    """A lane along x whose middle is at y; `back`: driven towards -x."""
+    left, right = (
+        np.array([[0.0, y + width / 2], [length, y + width / 2]]),
+        np.array([[0.0, y - width / 2], [length, y - width / 2]]),
+    )
+    if back:
+        left, right = right[::-1], left[::-1]
+    return BoundedLane(name, left, right, **more)  # type: ignore[arg-type]
+
+
+def test_a_straight_lane() -> None:
+    (lane,) = build([straight("1", 0.0)], (100.0, 50.0), Quality())
+    assert np.allclose(lane.line.centre, np.array([(100, 50), (100 + 10 / 3, 50), (100 + 20 / 3, 50), (110, 50)]))
+    assert np.allclose(lane.line.half_width, 1.75)
+    assert np.allclose(lane.line.tangent, [1, 0])
+    assert (lane.line.width, lane.line.area, lane.line.turn) == pytest.approx((3.5, 35.0, 0.0))
+
+
+@given(
+    radius=st.floats(8, 200),
+    angle=st.floats(0.2, 1.5),
+    left=st.integers(5, 40),
+    right=st.integers(5, 40),
+    turn=st.sampled_from([1, -1]),
+)
+def test_an_arc_with_differently_many_points(radius: float, angle: float, left: int, right: int, turn: int) -> None:
+    def bound(r: float, n: int) -> np.ndarray:
+        a = np.linspace(0.0, angle, n)
+        return np.column_stack([r * np.sin(a), turn * (radius - r * np.cos(a))])
+
+    inner, outer = (radius - 1.75, radius + 1.75) if turn > 0 else (radius + 1.75, radius - 1.75)
+    lane = BoundedLane("1", bound(inner, left), bound(outer, right))
+    quality = Quality()
+    (built,) = build([lane], (0.0, 0.0), quality)
+    area = shapely.Polygon(np.vstack([lane.right, lane.left[::-1]])).area
+    sagitta = (radius + 1.75) * (1 - np.cos(angle / (min(left, right) - 1) / 2))
+    assert built.line.area == pytest.approx(area, rel=0.02)
+    assert abs(built.line.s[-1] - radius * angle) < 0.02 * radius * angle + sagitta
+    assert built.line.turn == pytest.approx(turn * angle, abs=angle / 3)
+    assert abs(built.line.width - 3.5) < 2 * sagitta + 0.05
+    assert not quality.rows
+
+
+def test_what_lies_side_by_side_is_one_road() -> None:
+    lanes = build(
+        [
+            straight("10", -5.25, left_id="11", left_against=False),
+            straight("11", -1.75, left_id="12", left_against=True, right_id="10", right_against=False),
+            straight("12", 1.75, back=True, left_id="11", left_against=True, right_id="13", right_against=False),
+            straight("13", 5.25, back=True, left_id="12", left_against=False),
+            straight("20", 50.0),
+        ],
+        (0.0, 0.0),
+        Quality(),
+    )
+    assert {lane.lanelet_id: (lane.road_id, lane.lane_no, lane.along) for lane in lanes} == {
+        "10": ("r10", -2, 1),
+        "11": ("r10", -1, 1),
+        "12": ("r10", 1, -1),
+        "13": ("r10", 2, -1),
+        "20": ("r20", -1, 1),
+    }
+    assert side_driven_on(lanes) == "rht"
+    rows = tables("e", lanes)["lane_point"].to_pylist()
+    assert [row["road_s_m"] for row in rows if row["lanelet_id"] == "13"] == pytest.approx([10, 20 / 3, 10 / 3, 0])
+
+
+def test_the_left_is_driven_on_where_the_oncoming_lane_is_on_the_right() -> None:
+    one, other = (
+        straight("1", 0.0, right_id="2", right_against=True),
+        straight("2", -3.5, right_id="1", right_against=True),
+    )
+    assert side_driven_on(build([one, other], (0.0, 0.0), Quality())) == "lht"
+    assert side_driven_on(build([straight("1", 0.0)], (0.0, 0.0), Quality())) is None
+    other.bidirectional = True  # beside a lane that is driven both ways nothing is said
+    assert side_driven_on([one, other]) is None
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "why"),
+    [
+        ([[0, 1]], [[0, -1], [9, -1]], "fewer than two points"),
+        ([[0, 1], [float("nan"), 1]], [[0, -1], [9, -1]], "not finite"),
+        ([[0, 1], [0, 1]], [[0, -1], [0, -1]], "no length"),
+        ([[0, -1], [9, -1]], [[0, 1], [9, 1]], "on the right of its right bound"),
+        ([[0, 100], [9, 100]], [[0, -1], [9, -1]], "101 m wide"),
+        ([[0, 1], [9, 1], [0, 1]], [[0, -1], [9, -1], [0, -1]], "turns back on itself"),
+    ],
+)
+def test_a_lane_that_cannot_be_built_is_named_and_nobody_leads_to_it(left: list, right: list, why: str) -> None:  # type: ignore[type-arg]
+    quality = Quality()
+    bad = BoundedLane("7", np.array(left, float), np.array(right, float))
+    (good,) = build([straight("1", 0.0, successors=("7",), left_id="7", left_against=False), bad], (0.0, 0.0), quality)
+    assert (good.successors, good.left_id, good.left_against) == ((), None, None)
+    assert [(row["check_id"], row["lanelet_id"]) for row in quality.rows] == [
+        ("invalid_lane", "7"),
+        ("missing_link", "1"),
+    ]
+    assert why in quality.rows[0]["message"]

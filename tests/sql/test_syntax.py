@@ -1,0 +1,106 @@
+"""What a SELECT reads and needs, held against what DuckDB returns when the tables are empty."""
+
+from __future__ import annotations
+
+import duckdb
+import pytest
+
+from drivelint.errors import DriveLintError
+from drivelint.sql import syntax
+from drivelint.sql.derivations import Derivation, derivations
+
+TABLES = ("a", "b", "c")
+NEEDS = {
+    "FROM a": "a",
+    "SELECT 1": "",
+    "SELECT * FROM (VALUES (1)) v": "",
+    "SELECT * FROM range(3)": "",
+    "SELECT unnest([1, 2]) FROM a": "a",
+    "SELECT a.x FROM a JOIN b USING (x)": "a b",
+    "SELECT a.x FROM a, b CROSS JOIN c": "a b c",
+    "SELECT a.x FROM a LEFT JOIN b USING (x) JOIN c USING (x)": "a c",
+    "SELECT a.x FROM a RIGHT JOIN b USING (x)": "",  # b, but we have no such join
+    "SELECT a.x FROM a FULL JOIN b USING (x)": "",
+    "SELECT a.x FROM a POSITIONAL JOIN b": "",
+    "FROM a SEMI JOIN b USING (x)": "a b",
+    "FROM a ANTI JOIN (SELECT x + 1 AS x FROM b) USING (x)": "a",
+    "SELECT a.x FROM a ASOF JOIN b ON a.x >= b.x": "a b",
+    "SELECT a.x FROM a ASOF LEFT JOIN b ON a.x >= b.x": "a",
+    "SELECT x FROM a WHERE EXISTS (FROM b)": "a",  # b too, which would only save time
+    "SELECT x FROM a UNION ALL SELECT x FROM b": "",
+    "SELECT x FROM a JOIN c USING (x) UNION ALL BY NAME SELECT x FROM b JOIN c USING (x)": "c",
+    "FROM a EXCEPT SELECT x + 1 FROM b": "",  # a
+    "WITH w AS (SELECT a.x FROM a JOIN b USING (x)), v AS (FROM w) SELECT v.x FROM v LEFT JOIN c USING (x)": "a b",
+    "WITH a AS (FROM b) FROM a": "b",
+    "WITH b AS (FROM a) SELECT * FROM (WITH a AS (FROM c) FROM a JOIN b USING (x))": "a c",
+    "WITH RECURSIVE w AS (SELECT x FROM a UNION ALL SELECT w.x + 1 FROM w, b WHERE w.x < 3) FROM w": "a",
+    "WITH RECURSIVE w AS (SELECT x FROM a UNION SELECT x FROM b) FROM w": "",
+    "SELECT count(*) FROM a": "",
+    "SELECT max(x) + 1 FROM a": "",
+    "SELECT 1 FROM a HAVING count(*) >= 0": "",
+    "SELECT count(*) OVER () FROM a": "a",
+    "SELECT x, count(*) FROM a GROUP BY x": "a",
+    "SELECT count(*) FROM a GROUP BY x": "a",
+    "SELECT count(*) FROM a GROUP BY ()": "",
+    "SELECT count(*) FROM a GROUP BY ROLLUP (x)": "",
+    "SELECT x, count(*) FROM a GROUP BY ALL": "a",
+    "SELECT count(*) FROM a GROUP BY ALL": "",
+    "SELECT b.x FROM b JOIN (SELECT count(*) AS n FROM a) ON true": "b",
+    "SELECT DISTINCT x FROM a ORDER BY x LIMIT 1": "a",
+    "WITH A AS (SELECT 7 AS x) FROM a": "",
+    "WITH a AS (FROM b) FROM main.a": "a",
+    "SELECT x FROM B": "b",
+    "SELECT 1 FROM a HAVING true": "",
+    "SELECT 1 FROM a ORDER BY count(*)": "",
+    "SELECT DISTINCT ON (count(*)) 1 FROM a": "",
+    "SELECT 1 FROM a QUALIFY row_number() OVER (ORDER BY count(*)) = 1": "",
+    "SELECT count(*) AS n, n FROM a GROUP BY ALL": "",
+    "SELECT 5 AS k, k, count(*) FROM a GROUP BY ALL": "",
+    "SELECT l.n FROM b, LATERAL (SELECT b.x, count(*) AS n FROM a GROUP BY ALL) l": "b",
+    "SELECT geomean(x) FROM a": "",
+    "SELECT wavg(x, x) FROM a": "",
+    "SELECT b.x FROM b JOIN (SELECT x, count(*) AS n FROM a GROUP BY x) USING (x)": "a b",
+}
+
+
+@pytest.fixture(scope="module")
+def con() -> duckdb.DuckDBPyConnection:
+    con = duckdb.connect()
+    for table in TABLES:
+        con.execute(f"CREATE TABLE {table} AS SELECT 1 AS x")
+    return con
+
+
+@pytest.mark.parametrize("sql", NEEDS)
+def test_a_select_has_no_rows_without_those_of_what_it_needs(con: duckdb.DuckDBPyConnection, sql: str) -> None:
+    needs = syntax.needs(syntax.parsed(sql, "here"))
+    assert needs == set(NEEDS[sql].split())
+    assert con.execute(sql).fetchall()
+    for table in needs:
+        con.execute(f"BEGIN; DELETE FROM {table}")
+        assert not con.execute(sql).fetchall()
+        con.execute("ROLLBACK")
+
+
+def test_what_is_read() -> None:
+    tree = syntax.parsed("WITH a AS (FROM b) SELECT (SELECT max(x) FROM c) FROM a WHERE x IN (FROM d)", "here")
+    assert syntax.reads(tree) == {"b", "c", "d"}
+    tree = syntax.parsed("WITH a AS (FROM A WHERE x > 0) SELECT * FROM a, (WITH b AS (FROM a) FROM B), main.a", "here")
+    assert syntax.reads(tree) == {"a"}
+    tree = syntax.parsed("WITH b AS (FROM a) SELECT * FROM (WITH a AS (FROM c) FROM a JOIN b USING (x))", "here")
+    assert syntax.reads(tree) == {"a", "c"}
+
+
+@pytest.mark.parametrize("name", ["st_extent_agg", "ST_Union_Agg"])
+def test_the_aggregates_of_spatial_are_known(name: str) -> None:
+    assert not syntax.needs(syntax.parsed(f"SELECT {name}(x) FROM a", "here"))
+
+
+@pytest.mark.parametrize("step", derivations().values(), ids=lambda step: step.table)
+def test_what_a_derivation_needs_it_reads(step: Derivation) -> None:
+    assert step.needs & derivations().keys() <= step.reads
+
+
+def test_what_is_no_select_is_refused() -> None:
+    with pytest.raises(DriveLintError, match=r"^here\.sql: "):
+        syntax.parsed("SELEC 1", "here.sql")

@@ -1,0 +1,30 @@
+"""What keeps the code findable: no circle between files, no long file, no crowded folder. `lint-imports` holds the layers."""
+
+from __future__ import annotations
+
+from collections import Counter
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+import grimp
+import pytest
+
+SOURCE = Path(__file__).resolve().parents[1] / "src" / "drivelint"
+FILES = sorted(SOURCE.rglob("*.py"))
+
+
+def test_no_circle_between_files() -> None:
+    graph = grimp.build_graph("drivelint", cache_dir=None)
+    imports = {module: graph.find_modules_directly_imported_by(module) for module in graph.modules}
+    assert len(imports) == len(FILES)
+    TopologicalSorter(imports).prepare()  # raises CycleError, which names the circle
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(SOURCE)))
+def test_no_file_over_400_lines(file: Path) -> None:
+    assert len(file.read_text(encoding="utf-8").splitlines()) <= 400
+
+
+def test_no_folder_of_more_than_twenty_files() -> None:
+    n = Counter(file.parent for file in FILES if file.name != "__init__.py")
+    assert {str(folder.relative_to(SOURCE)): files for folder, files in n.items() if files > 20} == {}
