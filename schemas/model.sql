@@ -68,7 +68,7 @@ CREATE TABLE drive_condition (
     source VARCHAR NOT NULL           -- env: given on the command line or in the settings; trace: said by the log
 );
 
-CREATE TABLE resting_ego (
+CREATE TABLE deferred_ego (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL           -- an ego that is judged in another part of the run: nothing is derived for it now
 );

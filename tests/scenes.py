@@ -23,7 +23,7 @@ from drivelint.drive.trace import Trace
 from drivelint.engine.batch import Drive
 from drivelint.engine.derive import derive
 from drivelint.engine.profiles import load_profiles, profile_table
-from drivelint.engine.session import Bench
+from drivelint.engine.session import JudgingSession
 from drivelint.formats import load_map
 from drivelint.road.contract import Environment, MapSource
 from drivelint.sql import store
@@ -293,7 +293,7 @@ class _Place(NamedTuple):
     """A database in which the maps of some scenes lie, and its bench."""
 
     con: duckdb.DuckDBPyConnection
-    bench: Bench
+    bench: JudgingSession
     maps: list[Environment]
 
 
@@ -314,7 +314,7 @@ def _place(drives: Iterable[Drive]) -> _Place:
         con = _PLACES.pop(0).con if len(_PLACES) >= 8 else store.connect(threads=1)
         clear(con)
         store.insert(con, "profile", profile_table(load_profiles(), ()))
-        found = _Place(con, Bench(con, (), {}, None), maps)
+        found = _Place(con, JudgingSession(con, (), {}, None), maps)
     _PLACES.append(found)
     return found
 
@@ -336,13 +336,13 @@ def derived(
     if con:
         clear(con)
         store.insert(con, "profile", profile_table(load_profiles(), ()))
-        place = _Place(con, Bench(con, (), {}, None), [])
+        place = _Place(con, JudgingSession(con, (), {}, None), [])
     else:
         place = _place(drives)
     con, bench, _ = place
     wanted = set(tables) or set(derivations())
     # what the engine always needs besides is not asked for here, and would take most of the time
-    with patch("drivelint.engine.derive.ALWAYS", ()):
+    with patch("drivelint.sql.derivations.ALWAYS", ()):
         of_the_map = {d.table for d in needed(wanted) if d.of_the_map}
         if not of_the_map <= bench._tables:
             bench._tables |= of_the_map
@@ -373,7 +373,7 @@ def judged(
     else:
         clear(con)
     store.insert(con, "profile", profile_table(load_profiles(), profiles))
-    bench = Bench(con, catalogue.select(_rules(), tuple(rules), ()), {}, None)
+    bench = JudgingSession(con, catalogue.select(_rules(), tuple(rules), ()), {}, None)
     if place:
         of_the_map = {d.table for d in needed(bench._tables) if d.of_the_map}
         if of_the_map <= place.bench._tables:  # they stand there already

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import os
 import signal
@@ -12,8 +13,11 @@ from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
+import typer
 
 from drivelint import __version__, cli
+from drivelint.drive.trace import DriveInput
+from drivelint.result.request import RunRequest
 from tests.shared_data import ROOT
 
 OVERTAKE = ROOT / "fixtures" / "overtake"
@@ -380,3 +384,12 @@ def test_ctrl_c_is_answered_while_the_database_computes(tmp_path: Path) -> None:
             process.kill()
     assert (process.returncode, out) == (130, "")
     assert err.splitlines()[-1] == "drivelint: error: interrupted"
+
+
+def test_every_command_that_reads_a_log_takes_the_same_input() -> None:
+    """The options of `DriveInput`, and nothing of it left out."""
+    commands = typer.main.get_command(cli.app).commands  # type: ignore[attr-defined]
+    fields = {field.name for field in dataclasses.fields(DriveInput)}
+    for name in ("check", "inspect", "convert"):
+        assert fields <= {param.name for param in commands[name].params}, name
+    assert fields <= {field.name for field in dataclasses.fields(RunRequest)}

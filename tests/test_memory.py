@@ -151,7 +151,7 @@ def test_memory_that_does_not_do_is_no_error(
 ) -> None:
     def short(con: duckdb.DuckDBPyConnection, *args: Any, **options: Any) -> None:
         ((n_egos,),) = con.execute(
-            "SELECT count(DISTINCT actor_id) FROM actor WHERE is_ego AND actor_id NOT IN (SELECT ego_id FROM resting_ego)"
+            "SELECT count(DISTINCT actor_id) FROM actor WHERE is_ego AND actor_id NOT IN (SELECT ego_id FROM deferred_ego)"
         ).fetchall()
         ((limit,),) = con.execute("SELECT current_setting('memory_limit')").fetchall()
         STEPS[step](con, *args, **options)

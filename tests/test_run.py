@@ -12,7 +12,7 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 import pytest
 
-from drivelint.convert import Order, convert
+from drivelint.convert import ConvertRequest, convert
 from drivelint.drive.trace import IngestOptions
 from drivelint.engine import batch
 from drivelint.errors import MapError, TraceError, UsageError
@@ -220,7 +220,7 @@ def test_a_map_of_another_place_is_refused(offset: tuple[float, float], told: st
 def test_a_map_of_the_log_itself_that_cannot_be_used_leaves_the_other_rules(
     tmp_path: Path, road: Any, told: str
 ) -> None:
-    order = Order(
+    order = ConvertRequest(
         str(FIXTURE / "safe.csv"), "parquet", tmp_path / "d", mapping=str(FIXTURE / "mapping.toml"), ego="ego"
     )
     folder = convert(order).path
@@ -233,7 +233,7 @@ def test_a_map_of_the_log_itself_that_cannot_be_used_leaves_the_other_rules(
     assert judged["ukhc.r162.safe-distance-ahead"]["reason"].startswith("the log's own map is not used: ")
     assert told in judged["ukhc.r162.safe-distance-ahead"]["reason"]
     assert [row["map_name"] for row in result.drives.to_pylist()] == [None]
-    again = convert(Order(str(folder), "mcap", tmp_path / "again"))
+    again = convert(ConvertRequest(str(folder), "mcap", tmp_path / "again"))
     assert any("the log's own map" in note for note in again.notes)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import duckdb
@@ -10,20 +10,19 @@ import pyarrow as pa
 
 from drivelint import catalogue
 from drivelint.annotate import Annotator
-from drivelint.drive import conditions
-from drivelint.drive.trace import IngestOptions
+from drivelint.drive.trace import DriveInput
 from drivelint.engine.batch import Drive, Refused, cut, in_order, read
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import DEFAULT as DEFAULT_MEMORY
 from drivelint.engine.memory import Memory
 from drivelint.engine.profiles import DEFAULT, load_profiles, profile_table
-from drivelint.engine.session import Bench
+from drivelint.engine.session import JudgingSession
 from drivelint.errors import DriveLintError, MemoryShortError, TraceError, UsageError
 from drivelint.formats import expand
 from drivelint.result import collect, evidence
 from drivelint.result.files import OutputError
 from drivelint.result.model import Result
-from drivelint.result.request import Asked
+from drivelint.result.request import RunRequest
 from drivelint.result.rulebook import rule_table
 from drivelint.sql import store
 
@@ -31,34 +30,21 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
-    from drivelint.drive.trace import EgoSize
-    from drivelint.engine.session import Witness
+    from drivelint.engine.session import BatchObserver
     from drivelint.report.progress import Progress
 
 
 @dataclass(frozen=True)
-class Settings:
+class Settings(DriveInput):
     """What `check` is asked to do; the names are those of its options."""
 
     traces: tuple[str, ...]
-    map: Path | None = None
     out: Path | None = None
     rules: tuple[str, ...] = ()
     ignore: tuple[str, ...] = ()
     profiles: tuple[str, ...] = ()
     params: tuple[str, ...] = ()
-    ego: str | None = None
-    mapping: str | None = None
-    topic: str | None = None
-    map_offset: tuple[float, float] | None = None
-    map_dir: Path | None = None
-    map_origin: tuple[float, float] | None = None
-    handedness: str = "auto"
-    sensor_range_m: float | None = None
-    visibility: str = "line-of-sight"
-    ego_size: EgoSize | None = None
-    env: tuple[str, ...] = ()
-    rules_dirs: tuple[Path, ...] = field(default=())
+    rules_dirs: tuple[Path, ...] = ()
     fail_on: str = "critical"
     strict: bool = False
     margins: bool = False
@@ -80,31 +66,20 @@ def check(settings: Settings, progress: Progress) -> Result:
     if (settings.margins or settings.keep_db) and settings.out is None:
         raise UsageError("--margins and --keep-db write files: say where with --out DIR")
     paths = in_order(expand(settings.traces))
-    options = IngestOptions(
-        settings.mapping,
-        settings.ego,
-        settings.topic,
-        settings.sensor_range_m,
-        conditions=conditions.parse(settings.env),
-        ego_size=settings.ego_size,
-        in_sight=settings.visibility == "line-of-sight",
-    )
-    library = MapLibrary(
-        settings.map, settings.map_offset, settings.handedness, origin=settings.map_origin, folder=settings.map_dir
-    )
+    options, library = settings.options(), MapLibrary.of(settings)
 
     with store.workspace(settings.memory) as con:
         memory = Memory(con, settings.memory, progress.note)
         store.insert(con, "profile", profiles)
         table = rule_table(rules, params, settings.profiles or DEFAULT)
-        bench = Bench(
+        session = JudgingSession(
             con,
             rules,
             params,
             settings.out,
             margins=settings.margins,
             keep_db=settings.keep_db,
-            witnesses=_witnesses(settings, table),
+            observers=_observers(settings, table),
             memory=memory,
         )
         progress.stage("checking", len(paths))
@@ -113,13 +88,13 @@ def check(settings: Settings, progress: Progress) -> Result:
         places: dict[str, str] = {}
         try:
             for batch in cut(_noting(read(paths, options, library), places)):
-                failed = _judge(bench, batch, progress, said)
+                failed = _judge(session, batch, progress, said)
                 refused += failed
                 if len(paths) > 1:  # a single one is the error of the whole run
                     for each in failed:
                         progress.note(f"not judged: {each.error}")
         finally:
-            bench.close()
+            session.close()
         if len(refused) == len(paths):
             raise _none_judged(refused)
         unjudged = [collect.unjudged(r.path.stem, r.path.name, str(r.error)) for r in refused]
@@ -137,7 +112,7 @@ def check(settings: Settings, progress: Progress) -> Result:
             courses=memory.enough(evidence.courses, con),
             overtakes=memory.enough(evidence.overtakes, con),
             opportunities=memory.enough(evidence.opportunities, con),
-            margins_file=bench.margins_file,
+            margins_file=session.margins_file,
             fail_on=settings.fail_on,
             strict=settings.strict,
             asked=_asked(settings, places),
@@ -152,31 +127,17 @@ def _noting(drives: Iterable[Drive | Refused], places: dict[str, str]) -> Iterat
         yield drive
 
 
-def _asked(settings: Settings, places: dict[str, str]) -> Asked:
-    return Asked(
-        traces=places,
-        map=None if settings.map is None else str(settings.map),
-        map_dir=None if settings.map_dir is None else str(settings.map_dir),
-        map_offset=settings.map_offset,
-        map_origin=settings.map_origin,
-        handedness=settings.handedness,
-        mapping=settings.mapping,
-        topic=settings.topic,
-        sensor_range_m=settings.sensor_range_m,
-        visibility=settings.visibility,
-        ego_size=settings.ego_size,
-        env=settings.env,
-        profiles=settings.profiles,
-        params=settings.params,
-        rules_dirs=tuple(str(folder) for folder in settings.rules_dirs),
+def _asked(settings: Settings, places: dict[str, str]) -> RunRequest:
+    return RunRequest.of(
+        settings, traces=places, profiles=settings.profiles, params=settings.params, rules_dirs=settings.rules_dirs
     )
 
 
-def _witnesses(settings: Settings, rules: pa.Table) -> list[Witness]:
+def _observers(settings: Settings, rules: pa.Table) -> list[BatchObserver]:
     """Return who looks at each batch before its tables are cleared: the report, the annotated logs."""
     if settings.out is None:
         return []
-    seen: list[Witness] = [_gather]
+    seen: list[BatchObserver] = [_gather]
     if settings.annotate:
         seen.append(Annotator(settings.out / "annotated", rules, fail_on=settings.fail_on, strict=settings.strict))
     return seen
@@ -186,7 +147,9 @@ def _gather(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], **_part: b
     evidence.gather(con)
 
 
-def _judge(bench: Bench, batch: Iterable[Drive | Refused], progress: Progress, said: set[str]) -> list[Refused]:
+def _judge(
+    session: JudgingSession, batch: Iterable[Drive | Refused], progress: Progress, said: set[str]
+) -> list[Refused]:
     """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other. Return what could not be judged.
 
     `said`: notes of earlier logs, not to be repeated for each of a thousand.
@@ -196,7 +159,7 @@ def _judge(bench: Bench, batch: Iterable[Drive | Refused], progress: Progress, s
     for item in batch:
         if isinstance(item, Refused):
             refused.append(item)
-        elif bench.knows(item) or any(item.trace.drive_id == d.trace.drive_id for d in drives):
+        elif session.knows(item) or any(item.trace.drive_id == d.trace.drive_id for d in drives):
             progress.note(f"{item.trace.path}: the same log as one before ({item.trace.drive_id}), judged once")
         else:
             drives.append(item)
@@ -204,14 +167,14 @@ def _judge(bench: Bench, batch: Iterable[Drive | Refused], progress: Progress, s
                 if note not in said:
                     progress.note(f"{item.trace.path.name}: {note}")
             said.update(item.trace.notes)
-    refused += _judged(bench, drives)
+    refused += _judged(session, drives)
     progress.advance(len(drives) + len(refused))
     return refused
 
 
-def _judged(bench: Bench, drives: Sequence[Drive]) -> list[Refused]:
+def _judged(session: JudgingSession, drives: Sequence[Drive]) -> list[Refused]:
     try:
-        bench.judge(drives)
+        session.judge(drives)
     except OutputError:
         raise  # the folder for the results fails, not the drive
     except (DriveLintError, duckdb.Error) as error:
@@ -221,7 +184,7 @@ def _judged(bench: Bench, drives: Sequence[Drive]) -> list[Refused]:
         drives = sorted(drives, key=lambda drive: drive.trace.drive_id)
         many = len(drives) // 2 if isinstance(error, duckdb.OutOfMemoryException) else 1
         pieces = [drives[at : at + many] for at in range(0, len(drives), many)]
-        return [each for piece in pieces for each in _judged(bench, piece)]
+        return [each for piece in pieces for each in _judged(session, piece)]
     return []
 
 

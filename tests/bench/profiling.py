@@ -12,7 +12,7 @@ from drivelint.drive.trace import IngestOptions
 from drivelint.engine.batch import Drive
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.profiles import load_profiles, profile_table
-from drivelint.engine.session import Bench
+from drivelint.engine.session import JudgingSession
 from drivelint.formats import read_trace
 from drivelint.sql import store
 from drivelint.sql.derivations import needed
@@ -34,7 +34,7 @@ def profile(place: Place) -> list[Row]:
     road = MapLibrary(place.road, None, "auto").find(Path(), None, None, trace.tables["actor_state"])
     with store.connect() as con:
         store.insert(con, "profile", profile_table(load_profiles(()), ()))
-        bench = Bench(con, rules, catalogue.parse_params(rules, ()), None)
+        bench = JudgingSession(con, rules, catalogue.parse_params(rules, ()), None)
         bench._load([Drive(trace, road)])
         for step in needed(tables):
             if not step.of_the_map:

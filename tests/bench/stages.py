@@ -31,7 +31,7 @@ WATCHED = (
     (catalogue, "load", "catalogue read"),
     (batch, "_drive", "ingest"),  # waiting for the threads that read
     (MapLibrary, "find", "map"),
-    (judge.Bench, "_load", "tables filled"),
+    (judge.JudgingSession, "_load", "tables filled"),
     (judge, "derive", "derive"),
     (judge, "evaluate", "rules"),
     (evidence, "gather", "report"),

@@ -11,7 +11,7 @@ import pytest
 
 from drivelint.casefile import Case, judge
 from drivelint.catalogue import Rule, allowed
-from drivelint.engine.session import Bench
+from drivelint.engine.session import JudgingSession
 from drivelint.errors import RuleError
 from drivelint.sql import store
 from tests.evaluate.packs import INVARIANT, MEASURED, write
@@ -198,7 +198,7 @@ def test_the_database_refuses_what_the_checker_would_have_let_pass(tmp_path: Pat
 )
 def test_the_bench_on_which_rules_run_is_locked(tmp_path: Path, statement: str) -> None:
     with store.connect(threads=1) as con:
-        Bench(con, (), {}, None)
+        JudgingSession(con, (), {}, None)
         with pytest.raises(duckdb.Error):
             con.execute(statement.format(folder=tmp_path))
         con.execute("SET memory_limit = '1GB'")  # the one thing that the bench itself changes

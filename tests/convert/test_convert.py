@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mcap.reader import make_reader
 
-from drivelint.convert import Order, convert
+from drivelint.convert import ConvertRequest, convert
 from drivelint.drive.trace import IngestOptions
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import read_trace
@@ -89,7 +89,7 @@ def test_a_frame_as_others_read_it(tmp_path: Path) -> None:
             "is_ego": False,
         },
     ]
-    written = convert(Order(folder(tmp_path / "drive", states, actors), "mcap", tmp_path / "out"))
+    written = convert(ConvertRequest(folder(tmp_path / "drive", states, actors), "mcap", tmp_path / "out"))
     ((topic, log_time, truth),) = messages(written.path)
     assert (topic, log_time, truth.host_vehicle_id.value) == ("ground_truth", 0, 7)
     assert (truth.timestamp.seconds, truth.timestamp.nanos, truth.version.version_major) == (0, 0, 3)
@@ -146,7 +146,7 @@ def test_what_osi_cannot_say_comes_back(tmp_path: Path) -> None:
         tmp_path / "d", states, actors, signal_state=signals, declared_event=events, data_log=log, drive_condition=holds
     )
     original = again(tmp_path / "d")
-    mcap = convert(Order(given_folder, "mcap", tmp_path / "m")).path
+    mcap = convert(ConvertRequest(given_folder, "mcap", tmp_path / "m")).path
     back = again(mcap)
     for name in ("actor", "actor_state", "signal_state", "declared_event", "drive_condition"):
         assert back.tables[name].num_rows
@@ -164,7 +164,7 @@ def test_what_osi_cannot_say_comes_back(tmp_path: Path) -> None:
 def test_findings_are_carried_but_not_those_about_the_ego(tmp_path: Path) -> None:
     log = osi_log.write(tmp_path / "log.mcap", osi_log.truths(osi_log.drive(20, v=(0.0, 0.0))))
     for to, out in targets(tmp_path):
-        path = convert(Order(str(log), to, out)).path
+        path = convert(ConvertRequest(str(log), to, out)).path
         checks = {row["check_id"]: row for row in again(path).tables["quality"].to_pylist()}
         assert checks["velocity_derived"]["message"].startswith("velocity 0 throughout"), to
         other = read_trace(path, IngestOptions(ego="2")).tables["quality"].to_pylist()
@@ -175,20 +175,39 @@ def test_findings_are_carried_but_not_those_about_the_ego(tmp_path: Path) -> Non
 
 def test_map_and_offset_go_along(tmp_path: Path) -> None:
     for to, out in targets(tmp_path):
-        written = convert(Order(str(FIXTURE / "safe.csv"), to, out, map_offset=(0.25, -0.5), **SAFE))
+        written = convert(ConvertRequest(str(FIXTURE / "safe.csv"), to, out, map_offset=(0.25, -0.5), **SAFE))
         trace = again(written.path)
         assert (trace.embedded_map, trace.map_offset) == (ROAD.read_bytes(), (0.25, -0.5))
         assert trace.tables["data_log"]["map_offset_x_m"].to_pylist() == [0.25]
+
+
+def test_the_map_of_the_place_goes_along(tmp_path: Path) -> None:
+    """From a folder of maps, the one on which the drive lies."""
+    maps = tmp_path / "maps"
+    maps.mkdir()
+    (maps / "here.xodr").write_bytes(ROAD.read_bytes())
+    elsewhere = ROAD.read_text(encoding="utf-8").replace('x="0.0"', 'x="90000.0"')
+    assert elsewhere != ROAD.read_text(encoding="utf-8")
+    (maps / "there.xodr").write_text(elsewhere, encoding="utf-8")
+    for to, out in targets(tmp_path):
+        given = ConvertRequest(str(FIXTURE / "safe.csv"), to, out, map_dir=maps, mapping=SAFE["mapping"])
+        assert again(convert(given).path).embedded_map == ROAD.read_bytes()
+
+
+def test_a_converted_log_assumes_nothing_of_who_is_not_recorded(tmp_path: Path) -> None:
+    for to, out in targets(tmp_path):
+        given = ConvertRequest(str(FIXTURE / "safe.csv"), to, out, visibility="line-of-sight", **SAFE)
+        assert again(convert(given).path).tables["data_log"]["in_sight"].to_pylist() == [False]
 
 
 @pytest.mark.parametrize("to", ["mcap", "parquet"])
 def test_same_bytes_every_time(tmp_path: Path, to: Any) -> None:
     digests = []
     for out in (tmp_path / "a" / "x", tmp_path / "b" / "x"):
-        convert(Order(str(FIXTURE / "safe.csv"), to, out, **SAFE))
+        convert(ConvertRequest(str(FIXTURE / "safe.csv"), to, out, **SAFE))
         digests.append({file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in out.iterdir()})
     assert digests[0] == digests[1]
-    convert(Order(str(FIXTURE / "safe.csv"), to, tmp_path / "a" / "x", **SAFE))  # over its own earlier result
+    convert(ConvertRequest(str(FIXTURE / "safe.csv"), to, tmp_path / "a" / "x", **SAFE))  # over its own earlier result
     assert {f.name for f in (tmp_path / "a" / "x").iterdir()} == digests[0].keys()
 
 
@@ -199,14 +218,14 @@ def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.M
 
     monkeypatch.setattr("drivelint.formats.osi.log.write", full)
     with pytest.raises(OutputError, match=r"safe\.mcap: cannot be written: No space left") as error:
-        convert(Order(str(FIXTURE / "safe.csv"), "mcap", tmp_path, **SAFE))
+        convert(ConvertRequest(str(FIXTURE / "safe.csv"), "mcap", tmp_path, **SAFE))
     assert error.value.exit_code == 75
     assert list(tmp_path.iterdir()) == []
 
 
 def test_an_earlier_map_does_not_stay(tmp_path: Path) -> None:
-    convert(Order(str(FIXTURE / "safe.csv"), "parquet", tmp_path / "d", **SAFE))
-    convert(Order(str(FIXTURE / "near_miss.csv"), "parquet", tmp_path / "d", mapping=SAFE["mapping"]))
+    convert(ConvertRequest(str(FIXTURE / "safe.csv"), "parquet", tmp_path / "d", **SAFE))
+    convert(ConvertRequest(str(FIXTURE / "near_miss.csv"), "parquet", tmp_path / "d", mapping=SAFE["mapping"]))
     assert again(tmp_path / "d").embedded_map is None
 
 
@@ -232,7 +251,7 @@ def test_nothing_else_is_overwritten(tmp_path: Path, trace: str, to: Any, out: s
     (tmp_path / "notes" / "map.xodr").write_text("mine", encoding="utf-8")
     before = {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()}
     with pytest.raises(UsageError, match=message):
-        convert(Order(str(tmp_path / trace), to, tmp_path / out, mapping=SAFE["mapping"]))
+        convert(ConvertRequest(str(tmp_path / trace), to, tmp_path / out, mapping=SAFE["mapping"]))
     assert {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()} == before
 
 
@@ -240,11 +259,11 @@ def test_a_map_that_osi_cannot_hold(tmp_path: Path) -> None:
     text = ROAD.read_text(encoding="utf-8").replace("<header", "<!-- Straße --><header", 1)
     road = tmp_path / "latin.xodr"
     road.write_bytes(('<?xml version="1.0" encoding="ISO-8859-1"?>' + text.partition("?>")[2]).encode("latin-1"))
-    order = Order(str(FIXTURE / "safe.csv"), "mcap", tmp_path / "out", map=road, mapping=SAFE["mapping"])
+    order = ConvertRequest(str(FIXTURE / "safe.csv"), "mcap", tmp_path / "out", map=road, mapping=SAFE["mapping"])
     with pytest.raises(UsageError, match=r"latin\.xodr is not UTF-8"):
         convert(order)
     assert not (tmp_path / "out").exists()
-    parquet = convert(Order(order.trace, "parquet", tmp_path / "p", map=road, mapping=order.mapping))
+    parquet = convert(ConvertRequest(order.trace, "parquet", tmp_path / "p", map=road, mapping=order.mapping))
     assert again(parquet.path).embedded_map == road.read_bytes()
 
 

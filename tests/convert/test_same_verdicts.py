@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import pyarrow.compute as pc
 import pytest
 
-from drivelint.convert import Order, convert
+from drivelint.convert import ConvertRequest, convert
 from drivelint.drive.trace import IngestOptions
 from drivelint.formats import read_trace
 from drivelint.formats.osi.extras import findings
@@ -37,7 +37,7 @@ class Log(NamedTuple):
         return {"map": road, "mapping": self.mapping, "ego": self.ego}
 
     def convert(self, to: Target, out: Path) -> Path:
-        return convert(Order(str(shared(self.name)), to, out, **self.options())).path
+        return convert(ConvertRequest(str(shared(self.name)), to, out, **self.options())).path
 
 
 STUDY = [
@@ -98,10 +98,10 @@ def test_rows_stay(tmp_path: Path, to: Target, log: Log) -> None:
 
 def test_there_and_back(tmp_path: Path) -> None:
     """Parquet of the MCAP of the Parquet holds the same rows and the same map."""
-    given = Order(str(shared("esmini/cut-in.csv")), "parquet", tmp_path / "a", map=shared("osi/e6mini.xodr"))
+    given = ConvertRequest(str(shared("esmini/cut-in.csv")), "parquet", tmp_path / "a", map=shared("osi/e6mini.xodr"))
     first = read_trace(convert(given).path, IngestOptions())
-    mcap = convert(Order(str(tmp_path / "a"), "mcap", tmp_path / "b"))
-    second = read_trace(convert(Order(str(mcap.path), "parquet", tmp_path / "c")).path, IngestOptions())
+    mcap = convert(ConvertRequest(str(tmp_path / "a"), "mcap", tmp_path / "b"))
+    second = read_trace(convert(ConvertRequest(str(mcap.path), "parquet", tmp_path / "c")).path, IngestOptions())
     for name in (*TABLES, "quality"):
         assert first.tables[name].drop_columns("drive_id") == second.tables[name].drop_columns("drive_id"), name
     assert (first.embedded_map, first.map_offset) == (second.embedded_map, second.map_offset)

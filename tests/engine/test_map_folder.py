@@ -7,7 +7,7 @@ from pathlib import Path
 import pyarrow as pa
 import pytest
 
-from drivelint.engine.map_folder import Shelf
+from drivelint.engine.map_folder import MapFolder
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import MapError, UsageError
 from tests.formats.commonroad.test_lanelets import lanelet, scenario
@@ -98,15 +98,15 @@ def test_a_manifest_that_cannot_be_understood(tmp_path: Path, manifest: str, why
     put(tmp_path, "a.xml")
     (tmp_path / "maps.csv").write_text(manifest)
     with pytest.raises(MapError, match=why):
-        Shelf(tmp_path)
+        MapFolder(tmp_path)
 
 
 def test_a_folder_without_maps(tmp_path: Path) -> None:
     (tmp_path / "notes.xml").write_text("<notes/>")
     with pytest.raises(MapError, match="no map in this folder"):
-        Shelf(tmp_path)
+        MapFolder(tmp_path)
     with pytest.raises(MapError, match="no such folder"):
-        Shelf(tmp_path / "gone")
+        MapFolder(tmp_path / "gone")
 
 
 def test_one_map_or_many(tmp_path: Path) -> None:

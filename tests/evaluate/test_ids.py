@@ -8,7 +8,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from drivelint.engine.profiles import load_profiles, profile_table
-from drivelint.engine.session import Bench
+from drivelint.engine.session import JudgingSession
 from drivelint.sql import store
 from tests.evaluate.packs import EXECUTION, INVARIANT, MEASURED, write
 from tests.scenes import drive, moving, road, rows, times
@@ -27,9 +27,9 @@ def judged(rule: Rule, out: Path | None = None) -> dict[str | None, dict[str, An
     actors = [moving(name, way, t, s + 10 * t, way.own) for name, s in (("ego", 20), ("42", 60), ("042", 100))]
     with store.connect() as con:
         store.insert(con, "profile", profile_table(load_profiles(), ()))
-        bench = Bench(con, [rule], {}, out, margins=out is not None)
-        bench.judge([drive(actors, way.environment)])
-        bench.close()
+        session = JudgingSession(con, [rule], {}, out, margins=out is not None)
+        session.judge([drive(actors, way.environment)])
+        session.close()
         return {row["object_id"]: row for row in rows(con, "FROM verdict")}
 
 

@@ -14,7 +14,7 @@ from rich.console import Console
 
 from drivelint import run
 from drivelint.errors import UsageError
-from drivelint.explain import Errors, Explanation, Order, Wanted, explain
+from drivelint.explain import Errors, ExplainRequest, Explanation, Wanted, explain
 from drivelint.explain.target import _meant
 from drivelint.explain.text import render, to_json
 from drivelint.report.outputs import write
@@ -60,7 +60,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @cache  # several tests look at one explanation; no result is written anew into its folder
 def of(folder: Path, name: str, *, errors: Errors = NONE, **wanted: Any) -> Explanation:
-    return explain(Order(name, folder, Wanted(**wanted), errors=errors))
+    return explain(ExplainRequest(name, folder, Wanted(**wanted), errors=errors))
 
 
 def said(found: Explanation, width: int = 100) -> str:
@@ -213,7 +213,7 @@ def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
 
 def test_small_errors_are_counted_and_the_same_seed_draws_the_same(folder: Path) -> None:
     errors = Errors(position_m=0.6, time_s=0.2, map_m=0.1, samples=20, seed=3)
-    order = Order("r126.ds-av-out-of-ov@near_miss", folder, Wanted(), errors=errors)
+    order = ExplainRequest("r126.ds-av-out-of-ov@near_miss", folder, Wanted(), errors=errors)
     first, again = (explain(order).sensitivity for _ in range(2))
     assert first is not None
     assert first == again
@@ -251,11 +251,11 @@ def test_a_log_that_is_gone_is_asked_for_and_another_one_refused(tmp_path: Path)
     moved = log.rename(tmp_path / "moved.csv")
     with pytest.raises(UsageError, match="--trace"):
         of(tmp_path / "out", "r126.ds")
-    found = explain(Order("r126.ds", tmp_path / "out", trace=moved, errors=NONE))
+    found = explain(ExplainRequest("r126.ds", tmp_path / "out", trace=moved, errors=NONE))
     assert found.verdict["judged_anew"] == "fail"
     assert found.verdict["drive_id"].startswith("drive-")
     with pytest.raises(UsageError, match="is not the log that was judged"):
-        explain(Order("r126.ds", tmp_path / "out", trace=OVERTAKE / "safe.csv", errors=NONE))
+        explain(ExplainRequest("r126.ds", tmp_path / "out", trace=OVERTAKE / "safe.csv", errors=NONE))
 
 
 def test_a_folder_that_moves_with_its_logs_still_finds_them(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from drivelint.drive.conditions import WORDS
 from drivelint.errors import ExitCode, UsageError
-from drivelint.inspect import Order, exit_code, inspect, to_json
+from drivelint.inspect import InspectRequest, exit_code, inspect, to_json
 from drivelint.inspect.model import Inspection, json_schema
 from drivelint.reasons.signals import ADVICE, provide
 from drivelint.report.progress import Silent
@@ -37,7 +37,7 @@ LIGHTS = {"ukhc.r103.signal-before", "ukhc.r103.signal-means-go", "ukhc.signal-t
 
 def looked(trace: Path | str, **options: Any) -> Drive:
     """Return what is known of a log that is a drive."""
-    found = inspect(Order(str(trace), **options))
+    found = inspect(InspectRequest(str(trace), **options))
     assert found.problem is None
     assert found.drive is not None
     return found.drive
@@ -46,7 +46,7 @@ def looked(trace: Path | str, **options: Any) -> Drive:
 @pytest.fixture(scope="module")
 def study() -> Inspection:
     road = shared("overtake_case_study/t_junction.xodr")
-    return inspect(Order(str(shared("overtake_case_study/safe.csv")), map=road, mapping="carla-testbench"))
+    return inspect(InspectRequest(str(shared("overtake_case_study/safe.csv")), map=road, mapping="carla-testbench"))
 
 
 def test_the_case_study(study: Inspection) -> None:
@@ -128,7 +128,7 @@ def test_without_a_map_it_is_the_map_that_is_missing() -> None:
 
 
 def test_a_map_of_another_place_is_told_and_not_used() -> None:
-    found = inspect(Order(str(FIXTURE / "safe.csv"), map=ROAD, mapping=MAPPING, map_offset=(9000.0, 0.0)))
+    found = inspect(InspectRequest(str(FIXTURE / "safe.csv"), map=ROAD, mapping=MAPPING, map_offset=(9000.0, 0.0)))
     assert found.drive is not None
     assert "of another place" in (found.drive.road_problem or "")
     assert found.drive.road is None
@@ -170,7 +170,7 @@ def test_every_vehicle_in_turn_and_who_lacks_what(tmp_path: Path) -> None:
 def test_channels_are_counted_and_said_what_they_are_for(tmp_path: Path) -> None:
     more = [osi_log.Out("osi3.SensorView", "view", 500_000_000, b"")]
     path = osi_log.write(tmp_path / "log.mcap", [*osi_log.truths(osi_log.drive(11)), *more])
-    found = inspect(Order(str(path)))
+    found = inspect(InspectRequest(str(path)))
     assert "2 topics" in (found.problem or "")
     channels = {c.topic: c for c in found.content.channels}
     truth = channels["ground_truth"]
@@ -183,7 +183,7 @@ def test_channels_are_counted_and_said_what_they_are_for(tmp_path: Path) -> None
     assert truth.rate_hz == pytest.approx(10.0)
     assert (channels["view"].messages, channels["view"].rate_hz) == (1, None)
     assert exit_code(found) is ExitCode.NOT_JUDGED
-    assert exit_code(inspect(Order(str(path), topic="ground_truth"))) is ExitCode.OK
+    assert exit_code(inspect(InspectRequest(str(path), topic="ground_truth"))) is ExitCode.OK
 
 
 def test_holes(tmp_path: Path) -> None:
@@ -195,7 +195,7 @@ def test_holes(tmp_path: Path) -> None:
 
 
 def test_a_table_that_no_mapping_fits_gets_one_to_start_from(tmp_path: Path) -> None:
-    found = inspect(Order(str(FIXTURE / "safe.csv")))
+    found = inspect(InspectRequest(str(FIXTURE / "safe.csv")))
     assert "no shipped mapping fits" in (found.problem or "")
     draft = found.content.draft_mapping or ""
     (tmp_path / "draft.toml").write_text(draft.replace("ids = []", 'ids = ["ego"]'), encoding="utf-8")
@@ -219,7 +219,7 @@ def test_a_table_that_no_mapping_fits_gets_one_to_start_from(tmp_path: Path) -> 
 )  # fmt: skip
 def test_drafts(tmp_path: Path, columns: str, lines: list[str]) -> None:
     (tmp_path / "log.csv").write_text(columns + "\n", encoding="utf-8")
-    draft = inspect(Order(str(tmp_path / "log.csv"))).content.draft_mapping or ""
+    draft = inspect(InspectRequest(str(tmp_path / "log.csv"))).content.draft_mapping or ""
     for line in lines:
         assert line in draft
     assert ("\nvx = " in draft) == ("\nvy = " in draft)
@@ -239,7 +239,7 @@ def test_drafts(tmp_path: Path, columns: str, lines: list[str]) -> None:
 )
 def test_files_that_are_no_drives(tmp_path: Path, content: bytes, problem: str) -> None:
     (tmp_path / "log").write_bytes(content)
-    found = inspect(Order(str(tmp_path / "log")))
+    found = inspect(InspectRequest(str(tmp_path / "log")))
     assert problem in (found.problem or "")
     assert (found.drive, exit_code(found)) == (None, ExitCode.NOT_JUDGED)
 
@@ -248,7 +248,7 @@ def test_several_logs_are_refused(tmp_path: Path) -> None:
     for name in ("a.csv", "b.csv"):
         (tmp_path / name).write_text("x\n", encoding="utf-8")
     with pytest.raises(UsageError, match=r"2 logs \(a\.csv, b\.csv\)"):
-        inspect(Order(str(tmp_path)))
+        inspect(InspectRequest(str(tmp_path)))
 
 
 def test_every_signal_that_the_library_tells_has_advice() -> None:
@@ -273,5 +273,5 @@ def test_the_json_is_as_its_schema_says(study: Inspection) -> None:
 
 def test_the_same_every_time(study: Inspection) -> None:
     road = shared("overtake_case_study/t_junction.xodr")
-    again = inspect(Order(str(shared("overtake_case_study/safe.csv")), map=road, mapping="carla-testbench"))
+    again = inspect(InspectRequest(str(shared("overtake_case_study/safe.csv")), map=road, mapping="carla-testbench"))
     assert to_json(again) == to_json(study)

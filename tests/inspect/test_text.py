@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 from rich.console import Console
 
-from drivelint.inspect import Order, inspect
+from drivelint.inspect import InspectRequest, inspect
 from drivelint.inspect.text import render
 from tests.formats.osi import osi_log
 from tests.shared_data import ROOT
@@ -37,7 +37,7 @@ def run(*args: str, columns: int = 100, cwd: Path | None = None) -> subprocess.C
     )
 
 
-def text(order: Order, width: int = 100) -> str:
+def text(order: InspectRequest, width: int = 100) -> str:
     console = Console(file=io.StringIO(), width=width, color_system=None)
     console.print(render(inspect(order), order.trace))
     assert isinstance(console.file, io.StringIO)
@@ -46,13 +46,13 @@ def text(order: Order, width: int = 100) -> str:
 
 @pytest.mark.parametrize("width", [40, 80, 200])
 def test_nothing_is_cut_off(width: int) -> None:
-    shown = text(Order(LOG, **ON_ROAD), width)  # type: ignore[arg-type]
+    shown = text(InspectRequest(LOG, **ON_ROAD), width)  # type: ignore[arg-type]
     assert max(map(len, shown.splitlines())) <= width
     assert "…" not in shown
     whole = "".join(shown.split())
     for said in ("safe.csvcandecide", "road.xodr", "noholes"):
         assert said in whole
-    lacking = "".join(text(Order(LOG, mapping=str(ON_ROAD["mapping"])), width).split())
+    lacking = "".join(text(InspectRequest(LOG, mapping=str(ON_ROAD["mapping"])), width).split())
     for said in ("ukhc.r162.safe-distance-ahead", "theroadasOpenDRIVE:--mapFILE"):
         assert said in lacking
 
@@ -108,7 +108,7 @@ def test_convert_says_how_to_check(tmp_path: Path) -> None:
 def test_names_are_shown_as_they_are(tmp_path: Path) -> None:
     """Topics and ids may look like markup; they are text."""
     path = osi_log.write(tmp_path / "[red]x.mcap", osi_log.truths(osi_log.drive(5), topic="[bold]t[/bold]"))
-    shown = text(Order(str(path)))
+    shown = text(InspectRequest(str(path)))
     assert "[bold]t[/bold]: 5 messages" in shown
     assert "[red]x.mcap" in shown
 

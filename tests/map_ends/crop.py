@@ -11,7 +11,7 @@ from drivelint import catalogue
 from drivelint.drive.trace import IngestOptions
 from drivelint.engine.batch import Drive, cut
 from drivelint.engine.profiles import load_profiles, profile_table
-from drivelint.engine.session import Bench
+from drivelint.engine.session import JudgingSession
 from drivelint.formats import load_map, read_trace
 from drivelint.road.contract import MapSource
 from drivelint.sql import store
@@ -116,7 +116,7 @@ def judged(drives: Iterator[Drive], rules: Sequence[str]) -> dict[Key, Verdict]:
     """Return the verdicts of these drives, by ego."""
     with store.connect() as con:
         store.insert(con, "profile", profile_table(load_profiles(), ()))
-        bench = Bench(con, catalogue.select(catalogue.load(), tuple(rules), ()), {}, None)
+        session = JudgingSession(con, catalogue.select(catalogue.load(), tuple(rules), ()), {}, None)
         names: dict[str, str] = {}
 
         def noted() -> Iterator[Drive]:
@@ -126,7 +126,7 @@ def judged(drives: Iterator[Drive], rules: Sequence[str]) -> dict[Key, Verdict]:
                 yield drive
 
         for batch in cut(noted()):
-            bench.judge([one for one in batch if isinstance(one, Drive)])
+            session.judge([one for one in batch if isinstance(one, Drive)])
         rows = con.execute(_WORST).fetchall()
     return {(names[drive], *key): Verdict(worst["verdict"], worst["reason"]) for drive, *key, worst in rows}
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pyarrow.compute as pc
 import pytest
 
-from drivelint.gate import Keeper, Waiver
+from drivelint.gate import GateInputs, Waiver
 from drivelint.report.outputs import write
 from drivelint.result.load import load
 from drivelint.result.model import Result
@@ -36,7 +36,7 @@ def gated(tmp_path_factory: pytest.TempPathFactory) -> Result:
         name: (table := getattr(now, name)).filter(pc.invert(pc.starts_with(table["drive_id"], "collision")))
         for name in ("verdicts", "findings", "drives")
     }
-    return Keeper(TODAY, replace(now, **parts), "main", WAIVERS).gate(now)
+    return GateInputs(TODAY, replace(now, **parts), "main", WAIVERS).gate(now)
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +78,7 @@ def test_waivers_that_waive_nothing_are_shown_first(gated: Result) -> None:
 
 def test_what_is_gone_but_not_fixed_is_told() -> None:
     before = result([verdict("fail")], [finding()])
-    now = Keeper(TODAY, before, "main").gate(result([verdict("unknown", t_start_ns=None)]))
+    now = GateInputs(TODAY, before, "main").gate(result([verdict("unknown", t_start_ns=None)]))
     text = Parsed(page(now)).text
     assert "Not fixed: it cannot be told any more" in text
     assert "1 more verdict is unknown than in main" in text
@@ -92,7 +92,7 @@ def test_without_an_earlier_result_and_waivers_the_page_says_nothing_of_them() -
 
 
 def test_with_waivers_alone_nothing_is_called_new() -> None:
-    run = Keeper(TODAY, None, "", WAIVERS).gate(result([verdict("fail")], [finding()]))
+    run = GateInputs(TODAY, None, "", WAIVERS).gate(result([verdict("fail")], [finding()]))
     parsed = Parsed(page(run))
     assert "1 finding in 1 of 1 drive, 1 of them not waived" in parsed.text
     assert '"stands st-new"' not in page(run)
@@ -102,7 +102,7 @@ def test_with_waivers_alone_nothing_is_called_new() -> None:
 
 def test_markup_in_waivers_stays_text() -> None:
     waiver = Waiver(NASTY, "*", NASTY, NASTY, "2027-01-31")
-    run = Keeper(TODAY, result([]), NASTY, (waiver,)).gate(result([verdict("fail")], [finding()]))
+    run = GateInputs(TODAY, result([]), NASTY, (waiver,)).gate(result([verdict("fail")], [finding()]))
     parsed = Parsed(page(run))
     assert sum(tag == "script" for tag, _ in parsed.tags) == 1
     assert not any(tag == "img" for tag, _ in parsed.tags)

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from markdown_it import MarkdownIt
 
-from drivelint.gate import Keeper, Waiver, compared
+from drivelint.gate import GateInputs, Waiver, compared
 from drivelint.report import markdown
 from drivelint.result.model import Result
 from tests.report.synthetic import SDA, SECOND, drive, finding, result, rule, verdict
@@ -136,7 +136,7 @@ def test_words_begin_no_list_and_no_heading(words: str) -> None:
 def gated(base: list[dict[str, Any]], new: list[dict[str, Any]]) -> Result:
     waiver = Waiver("w.toml:1", "*", "ticket 17", "jo", "2027-01-31", object="4")
     expired = Waiver("w.toml:9", "none", "old", "al", "2026-01-31")
-    keeper = Keeper(date(2026, 11, 20), result([verdict("fail")], base), waivers=(waiver, expired))
+    keeper = GateInputs(date(2026, 11, 20), result([verdict("fail")], base), waivers=(waiver, expired))
     return keeper.gate(result([verdict("fail"), verdict("unknown", object_id="6")], new))
 
 

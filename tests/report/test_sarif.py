@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from drivelint.gate import Keeper, Waiver
+from drivelint.gate import GateInputs, Waiver
 from drivelint.report import sarif
 from drivelint.result.model import Result
 from tests.report.synthetic import SDA, SECOND, drive, finding, result, rule, verdict
@@ -33,7 +33,7 @@ def gated(*rows: dict[str, Any], base: list[dict[str, Any]] | None = None) -> Re
     waiver = Waiver("w:1", "*", "ticket 17", "jo", "2027-01-31", object="3")
     expired = Waiver("w:9", "*", "old", "al", "2026-01-31")
     baseline = None if base is None else result([verdict("fail")], base)
-    keeper = Keeper(date(2026, 11, 20), baseline, waivers=(waiver, expired))
+    keeper = GateInputs(date(2026, 11, 20), baseline, waivers=(waiver, expired))
     return keeper.gate(result([verdict("fail")], list(rows)))
 
 

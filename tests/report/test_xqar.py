@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from lxml import etree
 
-from drivelint.gate import Keeper, Waiver
+from drivelint.gate import GateInputs, Waiver
 from drivelint.report import xqar
 from drivelint.result.model import Result
 from tests.report.synthetic import SDA, SECOND, drive, finding, result, rule, verdict
@@ -110,14 +110,14 @@ def test_a_drive_that_was_not_judged_completed_nothing() -> None:
 def test_what_does_not_gate_is_information(severity: str, status: str, object_id: str, level: str) -> None:
     run = result([verdict("fail")], [finding(severity=severity, object_id=object_id)], rules=[rule(status=status)])
     waiver = Waiver("w:1", "*", "ticket 17", "jo", "2027-01-31", object="4")
-    (issue,) = checker(Keeper(date(2026, 11, 20), waivers=(waiver,)).gate(run)).iter("Issue")
+    (issue,) = checker(GateInputs(date(2026, 11, 20), waivers=(waiver,)).gate(run)).iter("Issue")
     assert issue.get("level") == level
     assert ("waived until 2027-01-31 by jo: ticket 17" in issue.get("description")) == (object_id == "4")
     assert ("draft, does not gate" in issue.get("description")) == (status == "draft")
 
 
 def test_what_the_baseline_has_is_told() -> None:
-    run = Keeper(date(2026, 11, 20), result([verdict("fail")], [finding()])).gate(
+    run = GateInputs(date(2026, 11, 20), result([verdict("fail")], [finding()])).gate(
         result([verdict("fail")], [finding()])
     )
     (issue,) = checker(run).iter("Issue")

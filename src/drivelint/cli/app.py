@@ -16,7 +16,7 @@ import typer
 
 from drivelint import __version__
 from drivelint.cli import explain as explain_
-from drivelint.cli import options, results, rules, values
+from drivelint.cli import inputs, options, results, rules, values
 from drivelint.cli.shell import interruptible, say
 from drivelint.cli.shell import progress as bar
 from drivelint.errors import DriveLintError, ExitCode
@@ -59,10 +59,11 @@ def _root(
 
 
 @app.command()
+@inputs.takes_drive_input
 def check(
     *,
     traces: Annotated[list[str], typer.Argument(metavar="TRACE", help="Recorded drives: files, globs or folders.")],
-    map_: options.MapFile = None,
+    drive: inputs.Given,
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for the result files.")] = None,
     rules: Annotated[
         list[str] | None,
@@ -84,17 +85,6 @@ def check(
     param: Annotated[
         list[str] | None, typer.Option("--param", metavar="RULE.PARAM=V", help="Set a rule's parameter. Repeatable.")
     ] = None,
-    ego: options.EgoId = None,
-    mapping: options.MappingName = None,
-    map_offset: options.MapOffset = None,
-    map_dir: options.MapDir = None,
-    map_origin: options.MapOrigin = None,
-    handedness: options.DrivenSide = options.Handedness.auto,
-    sensor_range: options.SensorRange = None,
-    visibility: options.InSight = options.Visibility.line_of_sight,
-    ego_size: options.EgoBox = None,
-    env: options.Conditions = None,
-    topic: options.Topic = None,
     rules_dir: options.RulesDirs = None,
     fail_on: Annotated[
         options.FailOn, typer.Option("--fail-on", help="Least severity that makes exit code 1.")
@@ -130,46 +120,35 @@ def check(
     """
     from drivelint import run
     from drivelint.engine.memory import peak, worded
-    from drivelint.gate import Keeper
+    from drivelint.gate import GateInputs
     from drivelint.report.outputs import write
     from drivelint.result.files import prepare
     from drivelint.result.model import exit_code
     from drivelint.settings import FILE
 
-    keeper = Keeper.of(baseline, waivers, Path(FILE), values.today(today), out)
+    gate_inputs = GateInputs.of(baseline, waivers, Path(FILE), values.today(today), out)
     settings = run.Settings(
         traces=tuple(traces),
-        map=map_,
+        **drive,
         out=out,
         rules=tuple(rules or ()),
         ignore=tuple(ignore or ()),
         profiles=tuple(profile or ()),
         params=tuple(param or ()),
-        ego=ego,
-        mapping=mapping,
-        map_offset=values.offset(map_offset),
-        map_dir=map_dir,
-        map_origin=values.origin(map_origin),
-        handedness=handedness.value,
-        sensor_range_m=sensor_range,
-        visibility=visibility.value,
-        ego_size=values.ego_size(ego_size),
-        env=tuple(env or ()),
         rules_dirs=tuple(rules_dir or ()),
         fail_on=fail_on.value,
         strict=strict,
         margins=margins,
         keep_db=keep_db,
         annotate=annotate,
-        topic=topic,
         memory=values.memory(memory),
     )
     if out is not None:
         prepare(out)
     with bar(quiet) as progress:
         result = interruptible(lambda: run.check(settings, progress))
-        if keeper is not None:
-            result = keeper.gate(result)
+        if gate_inputs is not None:
+            result = gate_inputs.gate(result)
         if out is not None:
             write(result, out)
         if memory is not None and (most := peak()) is not None:
@@ -196,20 +175,11 @@ def demo(
 
 
 @app.command()
+@inputs.takes_drive_input
 def inspect(
     *,
     trace: Annotated[str, typer.Argument(metavar="TRACE", help="One recorded drive.")],
-    map_: options.MapFile = None,
-    ego: options.EgoId = None,
-    mapping: options.MappingName = None,
-    map_offset: options.MapOffset = None,
-    map_dir: options.MapDir = None,
-    map_origin: options.MapOrigin = None,
-    handedness: options.DrivenSide = options.Handedness.auto,
-    sensor_range: options.SensorRange = None,
-    ego_size: options.EgoBox = None,
-    env: options.Conditions = None,
-    topic: options.Topic = None,
+    drive: inputs.Given,
     rules: Annotated[
         list[str] | None,
         typer.Option("--rules", metavar="SEL", help="Rules to ask about, as in check. Repeatable. Default: ukhc."),
@@ -224,24 +194,14 @@ def inspect(
     """
     from drivelint import inspect as inspection
 
-    order = inspection.Order(
+    request = inspection.InspectRequest(
         trace=trace,
-        map=map_,
-        mapping=mapping,
-        ego=ego,
-        topic=topic,
-        map_offset=values.offset(map_offset),
-        map_dir=map_dir,
-        map_origin=values.origin(map_origin),
-        handedness=handedness.value,
-        sensor_range_m=sensor_range,
-        ego_size=values.ego_size(ego_size),
-        env=tuple(env or ()),
+        **drive,
         rules=tuple(rules or ()),
         rules_dirs=tuple(rules_dir or ()),
         memory=values.memory(memory),
     )
-    found = interruptible(lambda: inspection.inspect(order))
+    found = interruptible(lambda: inspection.inspect(request))
     if format_ is options.Format.json:
         typer.echo(inspection.to_json(found))
     else:
@@ -252,6 +212,7 @@ def inspect(
 
 
 @app.command()
+@inputs.takes_drive_input
 def convert(
     *,
     trace: Annotated[str, typer.Argument(metavar="TRACE", help="One recorded drive.")],
@@ -259,13 +220,7 @@ def convert(
         options.Target, typer.Option("--to", help="mcap: one file of ASAM OSI; parquet: a folder of tables.")
     ],
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the converted log.")],
-    map_: options.MapFile = None,
-    ego: options.EgoId = None,
-    mapping: options.MappingName = None,
-    map_offset: options.MapOffset = None,
-    sensor_range: options.SensorRange = None,
-    ego_size: options.EgoBox = None,
-    topic: options.Topic = None,
+    drive: inputs.Given,
 ) -> None:
     """Write a log anew, as OSI in MCAP or as Parquet.
 
@@ -274,19 +229,13 @@ def convert(
     from drivelint import convert as converter
     from drivelint.convert.text import said
 
-    order = converter.Order(
+    request = converter.ConvertRequest(
         trace=trace,
         to=to.value,
         out=out,
-        map=map_,
-        map_offset=values.offset(map_offset),
-        mapping=mapping,
-        ego=ego,
-        topic=topic,
-        sensor_range_m=sensor_range,
-        ego_size=values.ego_size(ego_size),
+        **drive,
     )
-    written = interruptible(lambda: converter.convert(order))
+    written = interruptible(lambda: converter.convert(request))
     for note in written.notes:
         typer.echo(f"drivelint: {note}", err=True)
     typer.echo(said(written))

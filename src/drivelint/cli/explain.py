@@ -64,11 +64,11 @@ def explain(
 
     The drive is judged anew by that rule, from the database that check --keep-db kept, else from its log.
     """
-    from drivelint.explain import Errors, Order, Wanted
+    from drivelint.explain import Errors, ExplainRequest, Wanted
     from drivelint.explain import explain as explained
     from drivelint.explain.text import render, to_json
 
-    order = Order(
+    request = ExplainRequest(
         name,
         folder,
         Wanted(profile, object_, at, ego, verdict),
@@ -77,7 +77,7 @@ def explain(
         Errors(position, time, of_map, samples, seed),
         values.memory(memory),
     )
-    found = interruptible(lambda: explained(order))
+    found = interruptible(lambda: explained(request))
     if format_ is options.Format.json:
         typer.echo(to_json(found))
     else:

@@ -11,10 +11,10 @@ import pyarrow as pa
 from drivelint.convert.guard import refuse_to_overwrite
 from drivelint.convert.tables import MAP_FILE, parquet_bytes
 from drivelint.drive.order import listed
-from drivelint.drive.trace import IngestOptions
+from drivelint.drive.trace import DriveInput
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import MapError, UsageError
-from drivelint.formats import expand, read_source, read_trace
+from drivelint.formats import expand, read_trace
 from drivelint.formats.files import CANONICAL
 from drivelint.formats.map_registry import root_element
 from drivelint.formats.osi import log as osi_log
@@ -25,25 +25,18 @@ from drivelint.road.contract import MapSource
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from drivelint.drive.trace import EgoSize, Trace
+    from drivelint.drive.trace import Trace
 
 TABLES: Final = ("actor", "actor_state", "data_log", "declared_event", "quality", "signal_state")
 
 
 @dataclass(frozen=True)
-class Order:
+class ConvertRequest(DriveInput):
     """What `convert` is asked to do; the names are those of its options."""
 
     trace: str
     to: Literal["mcap", "parquet"]
     out: Path
-    map: Path | None = None
-    map_offset: tuple[float, float] | None = None
-    mapping: str | None = None
-    ego: str | None = None
-    topic: str | None = None
-    sensor_range_m: float | None = None
-    ego_size: EgoSize | None = None
 
 
 @dataclass(frozen=True)
@@ -59,32 +52,31 @@ class Written:
     notes: tuple[str, ...]
 
 
-def convert(order: Order) -> Written:
+def convert(request: ConvertRequest) -> Written:
     """Read a trace and write it anew: the folder `out` itself holds the tables, or `<stem>.mcap`.
 
     The log's own map goes along as it is; where it cannot, or cannot be used, a note says so.
     Errors: `TraceError` where the trace cannot be read, `UsageError` where something else would be overwritten or the given
     map cannot go along, `MapError` for a given map that cannot be read, `OutputError` where the folder cannot be written.
     """
-    paths = expand([order.trace])
+    paths = expand([request.trace])
     if len(paths) != 1:
         names = listed([each.name for each in paths])
         raise UsageError(
-            f"{order.trace}: {len(paths)} logs ({names}): convert takes one at a time, each with its own --out"
+            f"{request.trace}: {len(paths)} logs ({names}): convert takes one at a time, each with its own --out"
         )
     (path,) = paths
     stem = path.resolve().name if path.is_dir() else path.stem
-    target = order.out / f"{stem}.mcap" if order.to == "mcap" else order.out
-    refuse_to_overwrite(path, order.out, target)
-    options = IngestOptions(
-        order.mapping, order.ego, order.topic, order.sensor_range_m, need_ego=False, ego_size=order.ego_size
-    )
+    target = request.out / f"{stem}.mcap" if request.to == "mcap" else request.out
+    refuse_to_overwrite(path, request.out, target)
+    # what whoever is not recorded may do is the judge's assumption, and no part of the log
+    options = replace(request.options(need_ego=False), in_sight=False)
     trace = read_trace(path, options)
-    if order.map_offset is not None:
-        trace = _moved(trace, order.map_offset)
-    road, told = _road(order, trace)
-    prepare(order.out)
-    files = _mcap(target, trace, road) if order.to == "mcap" else _parquet(target, trace, road)
+    if request.map_offset is not None:
+        trace = _moved(trace, request.map_offset)
+    road, told = _road(request, trace)
+    prepare(request.out)
+    files = _mcap(target, trace, road) if request.to == "mcap" else _parquet(target, trace, road)
     notes = [*trace.notes, *told]
     has_ego = any(trace.tables["actor"]["is_ego"].to_pylist())
     if not has_ego:
@@ -111,20 +103,24 @@ def _moved(trace: Trace, offset: tuple[float, float]) -> Trace:
     return replace(trace, tables={**trace.tables, "data_log": log}, map_offset=offset)
 
 
-def _road(order: Order, trace: Trace) -> tuple[MapSource | None, list[str]]:
+def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, list[str]]:
     """Return the map that goes along, the user's, else the log's own, and what to tell about it. Errors: as `convert`."""
-    if order.map is None:
-        return (None, []) if trace.embedded_map is None else _own_road(order, trace, trace.embedded_map)
-    road = read_source(order.map)
-    if order.to == "mcap" and (why := _unfit_for_mcap(road)):
+    library, own = MapLibrary.of(request), trace.embedded_map
+    where = (trace.path, own, trace.map_offset, trace.tables["actor_state"], trace.geo_reference)
+    if library.takes_own(trace.path, own) or (road := library.source(*where)) is None:
+        return (None, []) if own is None else _own_road(request, trace, own)
+    if request.to == "mcap" and (why := _unfit_for_mcap(road)):
         raise UsageError(why)
-    # read here so that a wrong map is refused now, not by whoever checks the converted log
-    library = MapLibrary(order.map, None, "auto")
-    library.find(trace.path, trace.embedded_map, trace.map_offset, trace.tables["actor_state"])
-    return road, []
+    library.find(*where)  # a wrong map is refused now, not by whoever checks the converted log
+    notes = (
+        []
+        if request.map_origin is None
+        else ["the map's origin is not part of the log: give --map-origin in every check"]
+    )
+    return road, notes
 
 
-def _own_road(order: Order, trace: Trace, content: bytes) -> tuple[MapSource | None, list[str]]:
+def _own_road(request: ConvertRequest, trace: Trace, content: bytes) -> tuple[MapSource | None, list[str]]:
     """Return the log's own map as it is, whether it can be used or not: who converts a log loses nothing by it."""
     road = MapSource(MAP_FILE, content)
     notes = []
@@ -135,7 +131,7 @@ def _own_road(order: Order, trace: Trace, content: bytes) -> tuple[MapSource | N
         library.doubts(trace.path, environment, states, trace.geo_reference)
     except MapError as error:
         notes.append(f"the log's own map cannot be used: {error}")
-    if order.to == "mcap" and (why := _unfit_for_mcap(road)):
+    if request.to == "mcap" and (why := _unfit_for_mcap(road)):
         return None, [*notes, f"the log's own map is left out: {why}"]
     return road, notes
 

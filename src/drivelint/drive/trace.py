@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path  # noqa: TC003 - msgspec reads it
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
-if TYPE_CHECKING:
-    from pathlib import Path
+from drivelint.drive import conditions
 
+if TYPE_CHECKING:
     import numpy as np
     import pyarrow as pa
     from numpy.typing import NDArray
@@ -92,6 +93,37 @@ class IngestOptions:
     ego_size: EgoSize | None = None
     in_sight: bool = False
     """Whoever is not recorded for a while is taken not to be in plain view."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class DriveInput:
+    """How a log is read and on which map it is judged: what every command takes, by the names of its options."""
+
+    map: Path | None = None
+    map_dir: Path | None = None
+    map_offset: tuple[float, float] | None = None
+    map_origin: tuple[float, float] | None = None
+    handedness: str = "auto"
+    mapping: str | None = None
+    topic: str | None = None
+    ego: str | None = None
+    sensor_range_m: float | None = None
+    visibility: str = "line-of-sight"
+    ego_size: EgoSize | None = None
+    env: tuple[str, ...] = ()
+
+    def options(self, *, need_ego: bool = True) -> IngestOptions:
+        """Return what it says about reading. Errors: `UsageError` for a condition that does not exist."""
+        return IngestOptions(
+            self.mapping,
+            self.ego,
+            self.topic,
+            self.sensor_range_m,
+            need_ego=need_ego,
+            conditions=conditions.parse(self.env),
+            ego_size=self.ego_size,
+            in_sight=self.visibility == "line-of-sight",
+        )
 
 
 class FrameTimes(NamedTuple):

@@ -20,7 +20,7 @@ MANIFEST: Final = "maps.csv"
 _HEAD_BYTES = 65536
 
 
-class Shelf:
+class MapFolder:
     """The maps of a folder, each read when it is asked for.
 
     Errors: `MapError` for a folder that is none or has no maps, and for a manifest that cannot be understood.

@@ -13,7 +13,7 @@ import numpy as np
 import pyarrow.compute as pc
 
 from drivelint.engine.map_fit import DOUBT_SAMPLES, SAMPLES, ground, headings, on_map, reversed_road, vote, ways
-from drivelint.engine.map_folder import MANIFEST, Shelf, listed
+from drivelint.engine.map_folder import MANIFEST, MapFolder, listed
 from drivelint.errors import MapError, UsageError
 from drivelint.formats.map_registry import load_map, read_source
 from drivelint.road import geo
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
     import shapely
 
+    from drivelint.drive.trace import DriveInput
     from drivelint.engine.map_fit import Headings, Ways
     from drivelint.road.contract import Environment
 
@@ -50,7 +51,7 @@ class MapLibrary:
         if path and folder:
             raise UsageError("--map names one map and --map-dir many: give one of them")
         self._given = read_source(path) if path else None
-        self._shelf = Shelf(folder) if folder else None
+        self._map_folder = MapFolder(folder) if folder else None
         self._offset = offset
         self._handedness = handedness
         self._origin = origin
@@ -58,6 +59,11 @@ class MapLibrary:
         self._ways: dict[str, Ways] = {}
         self._loaded: dict[tuple[str, tuple[float, float], str | None], Environment] = {}
         self._unread: dict[Path, str] = {}
+
+    @classmethod
+    def of(cls, given: DriveInput) -> MapLibrary:
+        """Return the library that these options ask for. Errors: `MapError` for a map that cannot be read, `UsageError`."""
+        return cls(given.map, given.map_offset, given.handedness, origin=given.map_origin, folder=given.map_dir)
 
     def find(
         self,
@@ -74,14 +80,7 @@ class MapLibrary:
         Errors: `MapError` if the map cannot be read, or is of another place.
         """
         shift = self._offset or offset or (0.0, 0.0)
-        source = self._given or (MapSource("embedded", embedded) if embedded is not None else None)
-        if self._shelf is not None:
-            source = (
-                self._shelf.named(log)
-                or source
-                or (self._shelf.referenced(reference) if reference else None)
-                or self._only_fitting(self._shelf, log, shift, states)
-            )
+        source = self.source(log, embedded, offset, states, reference)
         if source is None:
             return None
         environment = self._load(source, shift, None)
@@ -94,9 +93,32 @@ class MapLibrary:
             return self._load(source, shift, sensed)
         return environment
 
+    def source(
+        self,
+        log: Path,
+        embedded: bytes | None,
+        offset: tuple[float, float] | None,
+        states: pa.Table,
+        reference: str | None = None,
+    ) -> MapSource | None:
+        """Return the map that `find` takes for one drive, as it was given. Errors: as there."""
+        own = MapSource("embedded", embedded) if embedded is not None else None
+        if self._map_folder is None:
+            return self._given or own
+        return (
+            self._map_folder.named(log)
+            or own
+            or (self._map_folder.referenced(reference) if reference else None)
+            or self._only_fitting(self._map_folder, log, self._offset or offset or (0.0, 0.0), states)
+        )
+
     def takes_own(self, log: Path, embedded: bytes | None) -> bool:
         """Say whether the map in the log is the one that `find` takes."""
-        return embedded is not None and self._given is None and (self._shelf is None or not self._shelf.named(log))
+        return (
+            embedded is not None
+            and self._given is None
+            and (self._map_folder is None or not self._map_folder.named(log))
+        )
 
     def doubts(
         self, log: Path, environment: Environment | None, states: pa.Table, reference: str | None = None
@@ -151,11 +173,11 @@ class MapLibrary:
             self._ways[environment.environment_id] = ways(environment)
         return self._ways[environment.environment_id]
 
-    def _only_fitting(self, shelf: Shelf, log: Path, shift: tuple[float, float], states: pa.Table) -> MapSource:
+    def _only_fitting(self, maps: MapFolder, log: Path, shift: tuple[float, float], states: pa.Table) -> MapSource:
         """Return the one map on which the drive lies, of those that can be read. Errors: `MapError` where none or several are."""
         fitting = []
         unread: list[MapError] = []
-        for source in shelf.sources():
+        for source in maps.sources():
             try:
                 environment = self._load(source, shift, None)
             except MapError as error:
@@ -173,7 +195,7 @@ class MapLibrary:
         what = "none of its maps is of" if not fitting else f"{listed([s.name for s in fitting])} are all of"
         besides = f" ({len(unread)} could not be read, the first: {unread[0]})" if unread else ""
         raise MapError(
-            f"{shelf.folder}: {what} the place of {log.name}{besides}: name its map in {shelf.folder / MANIFEST}"
+            f"{maps.folder}: {what} the place of {log.name}{besides}: name its map in {maps.folder / MANIFEST}"
         )
 
     def _ground(self, environment: Environment) -> shapely.STRtree:

@@ -1,4 +1,4 @@
-"""The bench on which drives are judged, batch by batch: fill the tables, derive, evaluate, clear."""
+"""The session on which drives are judged, batch by batch: fill the tables, derive, evaluate, clear."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class _PartTooLargeError(Exception):
         self.meetings = meetings
 
 
-class Witness(Protocol):
+class BatchObserver(Protocol):
     """Who looks at what was judged while the tables are there."""
 
     def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], /, *, first: bool, last: bool) -> None:
@@ -63,11 +63,11 @@ class Witness(Protocol):
         ...
 
 
-class Bench:
+class JudgingSession:
     """Judges batches of drives in one database, which is locked for that. Between batches only results stay in it.
 
     A drive of many egos is judged some of them at a time, so that its tables stay small whatever their number.
-    `out` is where `margins_file` and the kept database go. `witnesses` are called after each part while its tables are there.
+    `out` is where `margins_file` and the kept database go. `observers` are called after each part while its tables are there.
     `memory` says how many, and gives way where there is too little (default: the database has no limit of ours).
     """
 
@@ -80,13 +80,13 @@ class Bench:
         *,
         margins: bool = False,
         keep_db: bool = False,
-        witnesses: Sequence[Witness] = (),
+        observers: Sequence[BatchObserver] = (),
         memory: Memory | None = None,
     ) -> None:
         self._con = con
         self._rules = rules
         self._params = params
-        self._witnesses = witnesses
+        self._witnesses = observers
         self._tables = {table for rule in rules for table in rule.reads}
         self._memory = memory or Memory(con, None)
         self._seen: set[str] = set()
@@ -142,17 +142,17 @@ class Bench:
             undo.callback(self._forget, ids)
             self._load(drives)
             todo = parts(drives, self._memory.room)
-            for no, resting in enumerate(todo):
+            for no, deferred in enumerate(todo):
                 if no:
-                    store.renew(self._con, [*_part_tables(drives[0]), "resting_ego"])
-                if resting:
-                    store.insert(self._con, "resting_ego", _egos(drives[0], resting))
-                judged = {ego: n for ego, n in drives[0].meetings.items() if ego not in set(resting)}
+                    store.renew(self._con, [*_part_tables(drives[0]), "deferred_ego"])
+                if deferred:
+                    store.insert(self._con, "deferred_ego", _egos(drives[0], deferred))
+                judged = {ego: n for ego, n in drives[0].meetings.items() if ego not in set(deferred)}
                 cuttable = len(drives) == 1 and len(judged) > 1
                 try:
                     self._judge_part(ids, may_retry=len(drives) > 1 or cuttable or self._memory.limited)
-                    for witness in self._witnesses:
-                        witness(self._con, drives, first=no == 0, last=no + 1 == len(todo))
+                    for observer in self._witnesses:
+                        observer(self._con, drives, first=no == 0, last=no + 1 == len(todo))
                 except duckdb.OutOfMemoryException as error:
                     if cuttable:
                         raise _PartTooLargeError(sum(judged.values())) from error
@@ -269,7 +269,7 @@ def _batch_tables() -> list[str]:
 
 def _part_tables(drive: Drive) -> list[str]:
     """Tables that hold one part of a drive at a time; margins wait for the whole of it."""
-    return [table for table in _batch_tables() if table not in {"margin", "resting_ego", *drive.trace.tables}]
+    return [table for table in _batch_tables() if table not in {"margin", "deferred_ego", *drive.trace.tables}]
 
 
 def _egos(drive: Drive, names: Sequence[str]) -> pa.Table:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from drivelint import catalogue
@@ -26,13 +25,15 @@ from drivelint.result import request as asking
 from drivelint.result.load import load
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from drivelint.engine.batch import Drive
     from drivelint.explain.model import Change, Row, Step
     from drivelint.explain.target import Target
     from drivelint.result.model import Result
-    from drivelint.result.request import Asked
+    from drivelint.result.request import RunRequest
 
-__all__ = ["Errors", "Explanation", "Order", "Wanted", "explain"]
+__all__ = ["Errors", "ExplainRequest", "Explanation", "Wanted", "explain"]
 
 _RULE: Final = (
     "title", "clause", "hypothesis", "kind", "severity", "legal", "status", "sense", "unit", "observes", "near_margin",
@@ -40,7 +41,7 @@ _RULE: Final = (
 
 
 @dataclass(frozen=True)
-class Order:
+class ExplainRequest:
     """What `explain` is asked: a finding or rule, the result folder, and where log and map are if they were moved."""
 
     name: str
@@ -53,34 +54,36 @@ class Order:
     """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
 
 
-def explain(order: Order) -> Explanation:
+def explain(request: ExplainRequest) -> Explanation:
     """Explain one verdict of a result.
 
     Errors: `UsageError` for a finding, rule, folder or log that is not there.
     """
-    result = load(order.folder)
-    asked = asking.load(order.folder)
-    target = find(result, order.name, order.wanted)
-    case = _case(asked, target, order.memory)
+    result = load(request.folder)
+    asked = asking.load(request.folder)
+    target = find(result, request.name, request.wanted)
+    case = _case(asked, target, request.memory)
     row = target.row
-    drive, source = open_drive(order.folder, asked, row["drive_id"], row["ego_id"], trace=order.trace, map_=order.map)
+    drive, source = open_drive(
+        request.folder, asked, row["drive_id"], row["ego_id"], trace=request.trace, map_=request.map
+    )
     with ExitStack() as opened:
-        lab = opened.enter_context(case.lab([drive]))
-        judged = lab.judge(case.params)
-        now = case.told(judged, [lab.drive_id])[0]
+        sandbox = opened.enter_context(case.sandbox([drive]))
+        judged = sandbox.judge(case.params)
+        now = case.told(judged, [sandbox.drive_id])[0]
         series = evidence.series(case.rule, target, judged)
         decides = _decides(target, series, now)
         gate = row["reason_code"].removeprefix("missing_") if case.gated else None
-        rows = evidence.rows(case.rule, target, lab, decides, gate)
+        rows = evidence.rows(case.rule, target, sandbox, decides, gate)
         found: list[Change] = []
         sensitivity = None
         if not case.gated:
             part, span = around(case, drive, now)
             if part is not drive:
-                lab = opened.enter_context(case.lab([part]))
-            found = changes(case, lab, now)
-            if order.errors.samples:
-                sensitivity = _sensitivity(case, part, order.errors, span)
+                sandbox = opened.enter_context(case.sandbox([part]))
+            found = changes(case, sandbox, now)
+            if request.errors.samples:
+                sensitivity = _sensitivity(case, part, request.errors, span)
     rule = case.rule
     return Explanation(
         rule={
@@ -107,10 +110,9 @@ def explain(order: Order) -> Explanation:
     )
 
 
-def _case(asked: Asked, target: Target, memory: int | None) -> Case:
+def _case(asked: RunRequest, target: Target, memory: int | None) -> Case:
     """Return the rule of a verdict, as it was set in that run."""
-    folders = [Path(folder) for folder in asked.rules_dirs]
-    known = catalogue.load(folders)
+    known = catalogue.load(asked.rules_dirs)
     rule_id = target.row["rule_id"]
     if rule_id not in known:
         raise UsageError(f"rule {rule_id} is not in the catalogue any more: check the drives again")
@@ -118,7 +120,7 @@ def _case(asked: Asked, target: Target, memory: int | None) -> Case:
     mine = [setting for setting in asked.params if setting.partition("=")[0].strip().rpartition(".")[0] == rule_id]
     set_ = catalogue.parse_params([rule], mine).get(rule_id, {})
     params = {name: set_.get(name, param.default) for name, param in rule.params.items()}
-    return Case(rule, target, params, profile_table(load_profiles(folders), asked.profiles), memory)
+    return Case(rule, target, params, profile_table(load_profiles(asked.rules_dirs), asked.profiles), memory)
 
 
 def _decides(target: Target, series: list[Step], now: str) -> int | None:
@@ -146,8 +148,8 @@ def _notes(case: Case, now: str) -> list[str]:
 def _sensitivity(case: Case, drive: Drive, errors: Errors, span: tuple[int, int] | None) -> Sensitivity:
     found: list[str] = []
     for batch in copies(drive, errors):
-        with case.lab(batch) as lab:
-            found += case.told(lab.judge(case.params), [copy.trace.drive_id for copy in batch])
+        with case.sandbox(batch) as sandbox:
+            found += case.told(sandbox.judge(case.params), [copy.trace.drive_id for copy in batch])
     start, end = span or (None, None)
     return Sensitivity(
         errors.samples, errors.seed, errors.position_m, errors.time_s, errors.map_m, counted(found), start, end

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from drivelint.explain import evidence
 from drivelint.explain.outcome import outcomes
-from drivelint.explain.sandbox import Lab, cropped
+from drivelint.explain.sandbox import Sandbox, cropped
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -31,13 +31,13 @@ class Case:
     profiles: pa.Table
     memory: int | None
 
-    def lab(self, drives: Sequence[Drive]) -> Lab:
+    def sandbox(self, drives: Sequence[Drive]) -> Sandbox:
         """Return a database with these drives, derived for the rule."""
-        return Lab(self.rule, drives, self.profiles, self.memory)
+        return Sandbox(self.rule, drives, self.profiles, self.memory)
 
-    def verdict(self, lab: Lab, params: Mapping[str, object] | None = None) -> str:
-        """Return the verdict on the one drive in a lab, with other parameters if they are given."""
-        return self.told(lab.judge(self.params if params is None else params), [lab.drive_id])[0]
+    def verdict(self, sandbox: Sandbox, params: Mapping[str, object] | None = None) -> str:
+        """Return the verdict on the one drive in a sandbox, with other parameters if they are given."""
+        return self.told(sandbox.judge(self.params if params is None else params), [sandbox.drive_id])[0]
 
     def told(self, judged: Judged, drives: Sequence[str]) -> list[str]:
         """Return the verdict on each of these drives, in their order."""
@@ -71,9 +71,9 @@ def around(case: Case, drive: Drive, now: str) -> tuple[Drive, tuple[int, int] |
         if part == (log["t_start_ns"], log["t_end_ns"]):
             break
         small = cropped(drive, *part)
-        with case.lab([small]) as lab:
-            judged = lab.judge(case.params)
-            if case.told(judged, [lab.drive_id]) == [now] and _same_numbers(
+        with case.sandbox([small]) as sandbox:
+            judged = sandbox.judge(case.params)
+            if case.told(judged, [sandbox.drive_id]) == [now] and _same_numbers(
                 case, evidence.series(case.rule, case.target, judged)
             ):
                 return small, part

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from drivelint.explain.case import Case
-    from drivelint.explain.sandbox import Lab
+    from drivelint.explain.sandbox import Sandbox
 
 FACTORS: Final = (0.02, 0.1, 0.25, 0.5, 1.0, 3.0, 10.0)
 """How far to look in each direction, in parts of the value as it is (of 1 where it is 0)."""
@@ -42,13 +42,13 @@ class _Edge(NamedTuple):
     beyond: bool
 
 
-def changes(case: Case, lab: Lab, verdict: str) -> list[Change]:
-    """Return the nearest change of each number that changes `verdict` on the drive in `lab`, the least relative one first."""
-    found = [_nearest(number, verdict) for number in _numbers(case, lab)]
+def changes(case: Case, sandbox: Sandbox, verdict: str) -> list[Change]:
+    """Return the nearest change of each number that changes `verdict` on the drive in `sandbox`, the least relative one first."""
+    found = [_nearest(number, verdict) for number in _numbers(case, sandbox)]
     return sorted(found, key=lambda c: (c.found is None, abs((c.found or 0.0) - c.now) / (abs(c.now) or 1.0), c.name))
 
 
-def _numbers(case: Case, lab: Lab) -> Iterator[_Number]:
+def _numbers(case: Case, sandbox: Sandbox) -> Iterator[_Number]:
     for name, param in case.rule.params.items():
         now = case.params[name]
         if isinstance(now, bool) or not isinstance(now, int | float):
@@ -56,7 +56,7 @@ def _numbers(case: Case, lab: Lab) -> Iterator[_Number]:
 
         def with_param(value: float, name: str = name) -> str:
             try:
-                return case.verdict(lab, {**case.params, name: value})
+                return case.verdict(sandbox, {**case.params, name: value})
             except DriveLintError:  # no value for this parameter, such as a window of less than nothing
                 return "error"
 
@@ -64,21 +64,21 @@ def _numbers(case: Case, lab: Lab) -> Iterator[_Number]:
     profile = case.target.row["profile"]
     if not case.rule.profiled or profile is None:
         return
-    for row in lab.rows("SELECT * FROM profile WHERE profile = ?", [profile]):
+    for row in sandbox.rows("SELECT * FROM profile WHERE profile = ?", [profile]):
         for column, (unit, what) in _PROFILE.items():
             now = row[column]
             if now is None:
                 continue  # the profile that this overtake itself had
 
             def with_profile(value: float, column: str = column) -> str:
-                lab.set_profile(profile, column, value)
-                return case.verdict(lab)
+                sandbox.set_profile(profile, column, value)
+                return case.verdict(sandbox)
 
             most = math.pi / 2 if unit == "rad" else math.inf
             try:
                 yield _Number(f"{profile}.{column}", what, unit, float(now), most, with_profile)
             finally:
-                lab.set_profile(profile, column, now)
+                sandbox.set_profile(profile, column, now)
 
 
 def _nearest(number: _Number, verdict: str) -> Change:

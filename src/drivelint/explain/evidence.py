@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from drivelint.catalogue import Rule
-    from drivelint.explain.sandbox import Judged, Lab
+    from drivelint.explain.sandbox import Judged, Sandbox
     from drivelint.explain.target import Target
 
 MAX_ROWS: Final = 6
@@ -62,23 +62,23 @@ def series(rule: Rule, target: Target, judged: Judged) -> list[Step]:
     ]
 
 
-def rows(rule: Rule, target: Target, lab: Lab, t_ns: int | None, gate: str | None) -> list[Rows]:
+def rows(rule: Rule, target: Target, sandbox: Sandbox, t_ns: int | None, gate: str | None) -> list[Rows]:
     """Return what each table that the rule reads holds at one time (None: in the whole drive) for ego and object.
 
     `gate`: the signal for want of which the rule was not run; then only what is known about that.
     """
     if gate is not None:
         sql = "SELECT signal, available, reason FROM capability WHERE ego_id = ? AND signal = ?"
-        return [Rows("capability", lab.rows(sql, [target.row["ego_id"], gate]), 0)]
+        return [Rows("capability", sandbox.rows(sql, [target.row["ego_id"], gate]), 0)]
     found = []
     for table in rule.reads:
         columns = list(store.schema().get(table, {}))
         if "drive_id" in columns or table == "profile":
-            found.append(_of_table(target, lab, table, columns, t_ns))
+            found.append(_of_table(target, sandbox, table, columns, t_ns))
     return found
 
 
-def _of_table(target: Target, lab: Lab, table: str, columns: list[str], t_ns: int | None) -> Rows:
+def _of_table(target: Target, sandbox: Sandbox, table: str, columns: list[str], t_ns: int | None) -> Rows:
     row = target.row
     terms: list[str] = []
     values: list[Any] = []
@@ -97,8 +97,8 @@ def _of_table(target: Target, lab: Lab, table: str, columns: list[str], t_ns: in
             values += [row["object_id"]] * len(who)
     where = f" WHERE {' AND '.join(terms)}" if terms else ""
     # a table of the catalogue's own list, never a word of a user
-    everything = lab.rows(f"SELECT * FROM {table}{where} ORDER BY ALL LIMIT {MAX_ROWS}", values)
-    n = lab.rows(f"SELECT count(*) AS n FROM {table}{where}", values)[0]["n"]
+    everything = sandbox.rows(f"SELECT * FROM {table}{where} ORDER BY ALL LIMIT {MAX_ROWS}", values)
+    n = sandbox.rows(f"SELECT count(*) AS n FROM {table}{where}", values)[0]["n"]
     return Rows(table, [_plain(each) for each in everything], max(0, n - len(everything)))
 
 

@@ -36,7 +36,7 @@ class Judged(NamedTuple):
     steps: list[Row]
 
 
-class Lab:
+class Sandbox:
     """One rule over some copies of a drive, derived once. Use it as a context manager.
 
     `drives` share one map. The shipped or user's `profiles` are the rows of the table `profile`. `memory` is the limit of the

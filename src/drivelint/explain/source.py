@@ -10,9 +10,8 @@ import duckdb
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.drive import conditions
 from drivelint.drive.finish import SCHEMAS
-from drivelint.drive.trace import EgoSize, IngestOptions, Trace
+from drivelint.drive.trace import Trace
 from drivelint.engine.batch import Drive, on_its_map
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import DriveLintError, UsageError
@@ -22,7 +21,7 @@ from drivelint.road.tables import schemas
 from drivelint.sql import store
 
 if TYPE_CHECKING:
-    from drivelint.result.request import Asked
+    from drivelint.result.request import RunRequest
 
 DATABASE = "drivelint.duckdb"
 _OTHER = {"map_quality"}
@@ -37,7 +36,7 @@ class Source(NamedTuple):
 
 
 def open_drive(
-    folder: Path, asked: Asked, drive_id: str, ego_id: str, *, trace: Path | None, map_: Path | None
+    folder: Path, asked: RunRequest, drive_id: str, ego_id: str, *, trace: Path | None, map_: Path | None
 ) -> Source:
     """Return the drive that was judged. `trace`, `map_`: where log and map are now, if not where they were.
 
@@ -58,29 +57,19 @@ def open_drive(
     return Source(_read(asked, path, map_, drive_id, ego_id), f"the log {path.name}, read again")
 
 
-def _read(asked: Asked, path: Path, map_: Path | None, drive_id: str, ego_id: str) -> Drive:
-    given = map_ or (None if asked.map is None else Path(asked.map))
+def _read(asked: RunRequest, path: Path, map_: Path | None, drive_id: str, ego_id: str) -> Drive:
+    given = map_ or asked.map
     if given is not None and not given.exists():
         raise UsageError(f"the map {given} is not there any more: say where it is with --map FILE")
-    options = IngestOptions(
-        asked.mapping,
-        ego_id,
-        asked.topic,
-        asked.sensor_range_m,
-        conditions=conditions.parse(asked.env),
-        ego_size=None if asked.ego_size is None else EgoSize(*asked.ego_size),
-        in_sight=asked.visibility == "line-of-sight",
-    )
-    read = read_trace(path, options)
+    asked = replace(asked, ego=ego_id, map=given, map_dir=None if given is not None else asked.map_dir)
+    read = read_trace(path, asked.options())
     if read.drive_id.rpartition("-")[2] != drive_id.rpartition("-")[2]:
         raise UsageError(
             f"{path} is not the log that was judged ({drive_id}) but {read.drive_id}: give that one with --trace"
         )
     if read.drive_id != drive_id:  # the same bytes under another name
         read = _renamed(read, drive_id)
-    folder = None if given is not None or asked.map_dir is None else Path(asked.map_dir)
-    library = MapLibrary(given, asked.map_offset, asked.handedness, origin=asked.map_origin, folder=folder)
-    return on_its_map(read, library)
+    return on_its_map(read, MapLibrary.of(asked))
 
 
 def _renamed(trace: Trace, drive_id: str) -> Trace:

@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
     from drivelint.result.model import Result
 
-__all__ = ["Difference", "Entry", "Gate", "Keeper", "Waiver", "compared"]
+__all__ = ["Difference", "Entry", "Gate", "GateInputs", "Waiver", "compared"]
 
 
 @dataclass(frozen=True)
-class Keeper:
+class GateInputs:
     """What a run is held against: an earlier result, waivers, the day that counts."""
 
     today: date
@@ -33,7 +33,7 @@ class Keeper:
     @classmethod
     def of(
         cls, baseline: Path | None, waiver_file: Path | None, settings_file: Path | None, today: date, out: Path | None
-    ) -> Keeper | None:
+    ) -> GateInputs | None:
         """Return what these files say, before any drive is judged; None: nothing was given.
 
         `settings_file` may hold waivers beside other settings; None: there is none. Errors: `UsageError` for a file or folder

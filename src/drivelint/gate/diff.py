@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.gate import match
-from drivelint.gate.lookup import Said, Witness
+from drivelint.gate.lookup import LookupResult, ResultLookup
 from drivelint.result import counts
 from drivelint.result.gate import Difference, Entry, Opened
 from drivelint.result.text import number
@@ -35,7 +35,7 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
 
     Drives are the same by `drive_id`, else by their file's stem. NEW's findings come in their order, then what BASE had.
     """
-    had, has = Witness(base), Witness(new)
+    had, has = ResultLookup(base), ResultLookup(new)
     same = match.drives(list(had.drives.values()), list(has.drives.values()))
     before, after = had.findings, has.findings
     entries: list[Entry] = []
@@ -60,7 +60,7 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
     )
 
 
-def _drive(had: Witness, has: Witness, base_id: str | None, drive_id: str) -> tuple[list[Entry], list[Entry]]:
+def _drive(had: ResultLookup, has: ResultLookup, base_id: str | None, drive_id: str) -> tuple[list[Entry], list[Entry]]:
     """Return the entries of one drive: of NEW's findings, and of those that BASE had and NEW has not."""
     theirs = [] if base_id is None else had.findings.get(base_id, [])
     ours = has.findings.get(drive_id, [])
@@ -74,7 +74,7 @@ def _drive(had: Witness, has: Witness, base_id: str | None, drive_id: str) -> tu
         elif wholes := [j for j, each in enumerate(theirs) if match.within(now, each, same_log=same_log)]:
             told.add(wholes[0])
             was = theirs[wholes[0]]
-            entries.append(_entry("changed", now, was, has, Said("fail", f"a part of {was.id}, which was one")))
+            entries.append(_entry("changed", now, was, has, LookupResult("fail", f"a part of {was.id}, which was one")))
         else:
             said = had.said(base_id, now, same_log=same_log)
             entries.append(_entry("new", now, None, has, _noting_rule(said, now, had, has)))
@@ -82,22 +82,24 @@ def _drive(had: Witness, has: Witness, base_id: str | None, drive_id: str) -> tu
     for was in (each for j, each in enumerate(theirs) if j not in told):
         wholes = [i for i in sorted(pairs) if match.within(was, ours[i], same_log=same_log)]
         if wholes:
-            gone.append(_entry("changed", ours[wholes[0]], was, has, Said("fail", f"{was.id} is a part of it now")))
+            gone.append(
+                _entry("changed", ours[wholes[0]], was, has, LookupResult("fail", f"{was.id} is a part of it now"))
+            )
         else:
             said = _noting_rule(has.said(drive_id, was, same_log=same_log), was, had, has)
             gone.append(_gone(was, drive_id, said, had))
     return entries, gone
 
 
-def _noting_rule(said: Said, at: Stretch, had: Witness, has: Witness) -> Said:
+def _noting_rule(said: LookupResult, at: Stretch, had: ResultLookup, has: ResultLookup) -> LookupResult:
     """Add what may be the cause: that the two results had not the same rule."""
-    a, b = (witness.rules.get(at.row["rule_id"]) for witness in (had, has))
+    a, b = (lookup.rules.get(at.row["rule_id"]) for lookup in (had, has))
     if a is None or b is None or (a["rule_version"], a["params"]) == (b["rule_version"], b["params"]):
         return said
     return said._replace(why=f"{said.why} The rule or its parameters changed.")
 
 
-def _kept(now: Stretch, was: Stretch, has: Witness) -> Entry:
+def _kept(now: Stretch, was: Stretch, has: ResultLookup) -> Entry:
     """Return a finding that both results have, and how it changed."""
     notes = []
     if now.row["severity"] != was.row["severity"]:
@@ -107,7 +109,7 @@ def _kept(now: Stretch, was: Stretch, has: Witness) -> Entry:
         notes.append(f"margin {number(now.row['margin'], unit)}, was {number(was.row['margin'], unit)}")
     if max(abs(now.start - was.start), abs(now.end - was.end)) > INTERVAL_S:
         notes.append(f"{now.start:.2f} s to {now.end:.2f} s, was {was.start:.2f} s to {was.end:.2f} s")
-    return _entry("changed" if notes else "unchanged", now, was, has, Said("fail", "; ".join(notes)))
+    return _entry("changed" if notes else "unchanged", now, was, has, LookupResult("fail", "; ".join(notes)))
 
 
 def _differs(now: Row, was: Row) -> bool:
@@ -119,7 +121,7 @@ def _differs(now: Row, was: Row) -> bool:
     return not abs(a - b) <= allowed
 
 
-def _gone(was: Stretch, drive_id: str, said: Said, had: Witness) -> Entry:
+def _gone(was: Stretch, drive_id: str, said: LookupResult, had: ResultLookup) -> Entry:
     """Return a finding that only BASE has: fixed only if NEW looked there and found the rule kept, or not applicable."""
     standing = {"pass": "fixed", "not_applicable": "fixed", "none": "lost"}.get(said.verdict, "unknown")
     entry = _entry(standing, was, was, had, said)
@@ -130,9 +132,9 @@ def _renamed(entry: Entry, drive_id: str) -> Entry:
     return Entry(**{**entry.__dict__, "drive_id": drive_id})
 
 
-def _entry(standing: str, at: Stretch, was: Stretch | None, witness: Witness, said: Said) -> Entry:
+def _entry(standing: str, at: Stretch, was: Stretch | None, lookup: ResultLookup, said: LookupResult) -> Entry:
     row = at.row
-    rule = witness.rules.get(row["rule_id"])
+    rule = lookup.rules.get(row["rule_id"])
     return Entry(
         standing=standing,
         finding_id=at.id,
@@ -153,7 +155,7 @@ def _entry(standing: str, at: Stretch, was: Stretch | None, witness: Witness, sa
     )
 
 
-def _opened(base: Result, new: Result, same: Mapping[str, str], has: Witness) -> list[Opened]:
+def _opened(base: Result, new: Result, same: Mapping[str, str], has: ResultLookup) -> list[Opened]:
     """Return where more verdicts are unknown or in error than were."""
     was, _ = _unknown(base)
     now, reasons = _unknown(new)

@@ -19,14 +19,14 @@ _WEIGHT = ("error", "fail", "unknown", "pass")
 """Of several verdicts at one moment the first of these is what is said."""
 
 
-class Said(NamedTuple):
+class LookupResult(NamedTuple):
     """What a result says of a moment: a verdict, or `none` where it did not look, and why."""
 
     verdict: str
     why: str
 
 
-class Witness:
+class ResultLookup:
     """One result, asked about moments of its drives."""
 
     def __init__(self, result: Result) -> None:
@@ -49,7 +49,7 @@ class Witness:
         for row in result.findings.to_pylist():
             self.findings[row["drive_id"]].append(match.stretch(row, self.drives[row["drive_id"]]))
 
-    def said(self, drive_id: str | None, at: Stretch, *, same_log: bool) -> Said:
+    def said(self, drive_id: str | None, at: Stretch, *, same_log: bool) -> LookupResult:
         """Return what the result says where another one has the finding `at`; `drive_id` is this one's name of the drive."""
         row = at.row
         if gap := self._not_looked(drive_id, row):
@@ -57,11 +57,11 @@ class Witness:
         assert drive_id is not None  # noqa: S101 - for the type checker: else there is a gap
         drive = self.drives[drive_id]
         if drive["duration_s"] is not None and at.worst > drive["duration_s"] + match.NEAR_S:
-            return Said("none", "the log ends before it")
+            return LookupResult("none", "the log ends before it")
         rows = self._rows.get((drive_id, row["ego_id"], row["rule_id"]), [])
         rows = [each for each in rows if each["profile"] in {row["profile"], None}]
         if not rows:
-            return Said("none", "there is no verdict of this rule")
+            return LookupResult("none", "there is no verdict of this rule")
         there = [each for each in rows if self._about(each, row, drive_id) and _overlaps(each, at, drive)]
         said = [self._judged(each, at) for each in there]
         for verdict in _WEIGHT:
@@ -69,36 +69,40 @@ class Witness:
                 if each.verdict == verdict:
                     return each
         if not same_log and row["object_id"] not in self._objects[drive_id]:
-            return Said("none", f"object {row['object_id']} is not in this log, or has another id")
-        return Said("not_applicable", there[0]["reason"] if there else "Not applicable: the rule does not apply there.")
+            return LookupResult("none", f"object {row['object_id']} is not in this log, or has another id")
+        return LookupResult(
+            "not_applicable", there[0]["reason"] if there else "Not applicable: the rule does not apply there."
+        )
 
-    def _judged(self, each: Row, at: Stretch) -> Said:
+    def _judged(self, each: Row, at: Stretch) -> LookupResult:
         """Return what a verdict means for the moment: one that fails does so in its failing stretches only."""
         if each["verdict"] != "fail":
-            return Said(each["verdict"], each["reason"])
+            return LookupResult(each["verdict"], each["reason"])
         mine = self.findings.get(each["drive_id"], ())
         if any(match.key(other.row) == match.key(at.row) and match.gap(other, at) <= match.NEAR_S for other in mine):
-            return Said("fail", "the rule fails there still, at another step or place")
+            return LookupResult("fail", "the rule fails there still, at another step or place")
         if each["n_judged"] == each["n_expected"]:
-            return Said("pass", "kept there, though not at another time of the same stretch of driving")
+            return LookupResult("pass", "kept there, though not at another time of the same stretch of driving")
         missing = each["n_expected"] - each["n_judged"]
-        return Said(
+        return LookupResult(
             "unknown", f"the rule fails at another time, and {missing} of {each['n_expected']} steps were not judged"
         )
 
-    def _not_looked(self, drive_id: str | None, row: Row) -> Said | None:
+    def _not_looked(self, drive_id: str | None, row: Row) -> LookupResult | None:
         """Return why the rule was not judged in the drive at all; None: it was."""
         if drive_id is None:
-            return Said("none", "the drive was not checked")
+            return LookupResult("none", "the drive was not checked")
         drive, rule = self.drives[drive_id], self.rules.get(row["rule_id"])
         if drive["status"] == "not_judged":
-            return Said("unknown", f"the drive could not be judged: {drive['status_reason'] or 'no reason given'}")
+            return LookupResult(
+                "unknown", f"the drive could not be judged: {drive['status_reason'] or 'no reason given'}"
+            )
         if rule is None:
-            return Said("none", "the rule was not run")
+            return LookupResult("none", "the rule was not run")
         if row["profile"] is not None and row["profile"] not in rule["profiles"]:
-            return Said("none", f"the profile {row['profile']} was not run")
+            return LookupResult("none", f"the profile {row['profile']} was not run")
         if row["ego_id"] not in self._egos[drive_id]:
-            return Said("none", f"ego {row['ego_id']} was not judged")
+            return LookupResult("none", f"ego {row['ego_id']} was not judged")
         return None
 
     def _about(self, each: Row, row: Row, drive_id: str) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
@@ -10,12 +10,12 @@ import msgspec
 from drivelint import catalogue
 from drivelint.drive import conditions
 from drivelint.drive.order import listed
-from drivelint.drive.trace import FORMATS, OWN_MAP_UNUSABLE, IngestOptions
+from drivelint.drive.trace import FORMATS, OWN_MAP_UNUSABLE, DriveInput
 from drivelint.engine.batch import Drive as Judgeable
 from drivelint.engine.batch import on_its_map
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import DEFAULT, Memory
-from drivelint.engine.session import Bench
+from drivelint.engine.session import JudgingSession
 from drivelint.errors import ExitCode, MapError, TraceError, UsageError
 from drivelint.formats import expand, read_trace
 from drivelint.inspect import advice, model, tracks
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import duckdb
 
     from drivelint.catalogue import Rule
-    from drivelint.drive.trace import EgoSize, Trace
+    from drivelint.drive.trace import Trace
     from drivelint.road.contract import Environment
 
 DEFAULT_RULES: Final = ("ukhc",)
@@ -37,69 +37,45 @@ _SEVERITIES: Final = ("error", "warning", "info")
 
 
 @dataclass(frozen=True)
-class Order:
+class InspectRequest(DriveInput):
     """What `inspect` is asked to do; the names are those of its options."""
 
     trace: str
-    map: Path | None = None
-    mapping: str | None = None
-    ego: str | None = None
-    topic: str | None = None
-    map_offset: tuple[float, float] | None = None
-    map_dir: Path | None = None
-    map_origin: tuple[float, float] | None = None
-    handedness: str = "auto"
-    sensor_range_m: float | None = None
-    ego_size: EgoSize | None = None
-    env: tuple[str, ...] = ()
     rules: tuple[str, ...] = ()
     rules_dirs: tuple[Path, ...] = ()
     memory: int | None = DEFAULT
     """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
 
 
-def inspect(order: Order) -> model.Inspection:
+def inspect(request: InspectRequest) -> model.Inspection:
     """Find out what there is to know. A file that cannot be read as a drive is no error: `problem` says why.
 
     Errors: `TraceError` for a file that is not there, `UsageError`, `RuleError`, and `MapError` for a map that cannot be
     read; one of another place is told in the result.
     """
-    selection = order.rules or DEFAULT_RULES
-    rules = catalogue.select(catalogue.load(order.rules_dirs), selection, ())
-    paths = expand([order.trace])
+    selection = request.rules or DEFAULT_RULES
+    rules = catalogue.select(catalogue.load(request.rules_dirs), selection, ())
+    paths = expand([request.trace])
     if len(paths) != 1:
         raise UsageError(
-            f"{order.trace}: {len(paths)} logs ({listed([path.name for path in paths])}): inspect looks at one at a time"
+            f"{request.trace}: {len(paths)} logs ({listed([path.name for path in paths])}): inspect looks at one at a time"
         )
     (path,) = paths
-    library = MapLibrary(order.map, order.map_offset, order.handedness, origin=order.map_origin, folder=order.map_dir)
-    options = _options(order, order.ego)
+    library = MapLibrary.of(request)
+    options = request.options(need_ego=False)
     file = model.File(name=path.resolve().name, bytes=size(path))
     try:
         trace = read_trace(path, options)
     except TraceError as error:
         return model.Inspection(file=file, content=_content_of_unread(path), problem=str(error))
     log = trace.tables["data_log"].to_pylist()[0]
-    mapping = None if log["format"] in FORMATS else order.mapping or log["format"]
+    mapping = None if log["format"] in FORMATS else request.mapping or log["format"]
     return model.Inspection(
         file=model.File(
             name=file.name, bytes=file.bytes, sha256=log["sha256"], drive_id=trace.drive_id, format=log["format"]
         ),
         content=content(path, mapping, list(trace.notes), read=True),
-        drive=_drive(trace, library, rules, order, selection),
-    )
-
-
-def _options(order: Order, ego: str | None) -> IngestOptions:
-    given = conditions.parse(order.env)
-    return IngestOptions(
-        order.mapping,
-        ego,
-        order.topic,
-        order.sensor_range_m,
-        need_ego=False,
-        conditions=given,
-        ego_size=order.ego_size,
+        drive=_drive(trace, library, rules, request, selection),
     )
 
 
@@ -122,27 +98,27 @@ def _content_of_unread(path: Path) -> model.Content:
 
 
 def _drive(
-    trace: Trace, library: MapLibrary, rules: Sequence[Rule], order: Order, selection: Sequence[str]
+    trace: Trace, library: MapLibrary, rules: Sequence[Rule], request: InspectRequest, selection: Sequence[str]
 ) -> model.Drive:
     trace, environment, road_problem = _on_its_map(trace, library)
     everybody = tracks.actors(trace)
-    egos, quality = _judgeable(trace, environment, everybody, rules, road_problem, memory=order.memory)
+    egos, quality = _judgeable(trace, environment, everybody, rules, road_problem, memory=request.memory)
     supposed, candidates = None, []
     if not egos:
         candidates = tracks.candidates(everybody)
-        supposing = _options(order, candidates[0].actor_id)
+        supposing = replace(request, ego=candidates[0].actor_id).options(need_ego=False)
         ((supposed,), _) = _judgeable(
-            read_trace(trace.path, supposing), environment, everybody, rules, road_problem, memory=order.memory
+            read_trace(trace.path, supposing), environment, everybody, rules, road_problem, memory=request.memory
         )
     return model.Drive(
         clock=tracks.clock(trace),
         states=trace.tables["actor_state"].num_rows,
         classes=tracks.classes(everybody),
         egos=egos,
-        ego_source=_ego_source(trace, order.ego),
+        ego_source=_ego_source(trace, request.ego),
         candidates=candidates,
         supposed=supposed,
-        road=None if environment is None else _road(environment, given=order.map is not None),
+        road=None if environment is None else _road(environment, given=request.map is not None),
         road_problem=road_problem,
         quality=quality,
         rules=[rule.id for rule in rules],
@@ -169,11 +145,11 @@ def _judgeable(
     *,
     memory: int | None,
 ) -> tuple[list[model.Ego], list[model.Quality]]:
-    """Lay the drive on the bench without a rule, and ask what the library says of its egos and its data."""
+    """Lay the drive on the session without a rule, and ask what the library says of its egos and its data."""
     known = _Knowledge()
     with store.workspace(memory) as con:
-        bench = Bench(con, (), {}, None, witnesses=[known], memory=Memory(con, memory))
-        bench.judge([Judgeable(trace, environment)])
+        session = JudgingSession(con, (), {}, None, observers=[known], memory=Memory(con, memory))
+        session.judge([Judgeable(trace, environment)])
         rows = {table: _rows(con, f"FROM {table}") for table in ("capability", "registration", "exposure")}
         start = trace.tables["data_log"]["t_start_ns"][0].as_py()
         quality = _quality(con, start)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.result.gate import Gate
-    from drivelint.result.request import Asked
+    from drivelint.result.request import RunRequest
 
 
 class Outcome(NamedTuple):
@@ -52,7 +52,7 @@ class Result:
     fail_on: str = "critical"
     strict: bool = False
     gate: Gate | None = None
-    asked: Asked | None = None
+    asked: RunRequest | None = None
 
     def __post_init__(self) -> None:
         for name, table in FILES.items():

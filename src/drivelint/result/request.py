@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import json
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, Final
 
 import msgspec
 
+from drivelint.drive.trace import DriveInput
 from drivelint.errors import UsageError
 
 FILE: Final = "run.json"
@@ -20,52 +21,49 @@ _PATHS: Final = ("map", "map_dir")
 
 
 @dataclass(frozen=True)
-class Asked:
-    """The options of a check that bear on its verdicts, by their names there; `traces`: drive_id -> where its log lay."""
+class RunRequest(DriveInput):
+    """The options of a check that bear on its verdicts, by their names there; `traces`: drive_id -> where its log lay.
+
+    Its egos are those of the verdicts: `ego` is not kept.
+    """
 
     traces: dict[str, str] = field(default_factory=dict)
-    map: str | None = None
-    map_dir: str | None = None
-    map_offset: tuple[float, float] | None = None
-    map_origin: tuple[float, float] | None = None
-    handedness: str = "auto"
-    mapping: str | None = None
-    topic: str | None = None
-    sensor_range_m: float | None = None
-    visibility: str = "none"
-    """What results of an older version were judged by."""
-    ego_size: tuple[float, float, float] | None = None
-    env: tuple[str, ...] = ()
     profiles: tuple[str, ...] = ()
     params: tuple[str, ...] = ()
-    rules_dirs: tuple[str, ...] = ()
+    rules_dirs: tuple[Path, ...] = ()
+
+    @classmethod
+    def of(cls, given: DriveInput, **more: Any) -> RunRequest:
+        """Return what was asked with these options."""
+        return cls(**{each.name: getattr(given, each.name) for each in fields(DriveInput)}, **more)
 
 
-def render(asked: Asked, out: Path) -> bytes:
+def render(asked: RunRequest, out: Path) -> bytes:
     """Return it as UTF-8 JSON with a final newline, every path relative to the result folder `out`."""
-    plain: dict[str, Any] = msgspec.to_builtins(asked)
-    plain["traces"] = {drive: _relative(path, out) for drive, path in sorted(asked.traces.items())}
+    told: dict[str, Any] = msgspec.to_builtins(asked, enc_hook=str)
+    del told["ego"]
+    plain = {"traces": {drive: _relative(path, out) for drive, path in sorted(told.pop("traces").items())}, **told}
     plain |= {key: _relative(plain[key], out) for key in _PATHS if plain[key] is not None}
-    plain["rules_dirs"] = [_relative(path, out) for path in asked.rules_dirs]
+    plain["rules_dirs"] = [_relative(path, out) for path in plain["rules_dirs"]]
     if asked.mapping is not None and Path(asked.mapping).is_file():  # else the name of a shipped one
         plain["mapping"] = {"file": _relative(asked.mapping, out)}
     return (json.dumps(plain, indent=2, ensure_ascii=False) + "\n").encode()
 
 
-def load(folder: Path) -> Asked:
+def load(folder: Path) -> RunRequest:
     """Return what the check asked that wrote the result folder, its paths as they are found from here.
 
     Errors: `UsageError` where the folder does not say it.
     """
     file = folder / FILE
     try:
-        plain = json.loads(file.read_text(encoding="utf-8"))
+        plain = {"visibility": "none"} | json.loads(file.read_text(encoding="utf-8"))  # older results do not say it
         if isinstance(plain["mapping"], dict):
             plain["mapping"] = str(folder / plain["mapping"]["file"])
         plain["traces"] = {drive: str(folder / path) for drive, path in plain["traces"].items()}
         plain |= {key: str(folder / plain[key]) for key in _PATHS if plain[key] is not None}
         plain["rules_dirs"] = [str(folder / path) for path in plain["rules_dirs"]]
-        return msgspec.convert(plain, Asked)
+        return msgspec.convert(plain, RunRequest, dec_hook=lambda kind, value: kind(value))
     except FileNotFoundError as error:
         raise UsageError(
             f"{file} is missing: name the folder that check --out wrote, or check the drives again"

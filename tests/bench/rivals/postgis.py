@@ -19,7 +19,7 @@ from drivelint.drive.trace import IngestOptions
 from drivelint.engine.batch import Drive
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.profiles import load_profiles, profile_table
-from drivelint.engine.session import Bench
+from drivelint.engine.session import JudgingSession
 from drivelint.formats import read_trace
 from drivelint.sql import store
 from tests.bench.clock import now, repeat
@@ -151,7 +151,7 @@ def _ours(place: Place) -> Answer:
     rules = catalogue.select(catalogue.load(()), ("ukhc",), ())
     with store.connect() as con:
         store.insert(con, "profile", profile_table(load_profiles(()), ()))
-        bench = Bench(con, rules, catalogue.parse_params(rules, ()), None, witnesses=[witness])
+        bench = JudgingSession(con, rules, catalogue.parse_params(rules, ()), None, observers=[witness])
         bench.judge([_read(place)])
         bench.close()
     return found[0]

@@ -17,7 +17,7 @@ _STATES: Final = {"expired": "expired", "unmatched": "no such finding", "active"
 _LABELS: Final = {"new": "new", "known": "known", "waived": "waived", "open": "not waived"}
 
 
-class Standing(NamedTuple):
+class BaselineStatus(NamedTuple):
     """How a finding stands: new, known, waived (or, where there is no earlier result, open), and what there is to say of it."""
 
     kind: str
@@ -62,7 +62,7 @@ class View(NamedTuple):
     more_unknown: int
 
 
-def standing(gate: Gate | None, finding_id: str) -> Standing | None:
+def standing(gate: Gate | None, finding_id: str) -> BaselineStatus | None:
     """Return how a finding stands; None: it was held against nothing. A waiver says more than that it is known."""
     if gate is None:
         return None
@@ -100,8 +100,8 @@ def view(gate: Gate | None, finding_ids: list[str]) -> View | None:
     )
 
 
-def _as(kind: str, why: str) -> Standing:
-    return Standing(kind, _LABELS[kind], why)
+def _as(kind: str, why: str) -> BaselineStatus:
+    return BaselineStatus(kind, _LABELS[kind], why)
 
 
 def _held(waiver: Waiver) -> Held:

@@ -14,8 +14,8 @@ from drivelint.result.text import NONE, number, seconds, tied
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
-    from drivelint.report.html.baseline_status import Standing
-    from drivelint.report.html.margin_series import Course
+    from drivelint.report.html.baseline_status import BaselineStatus
+    from drivelint.report.html.margin_series import MarginSeries
     from drivelint.report.html.road import Road
 
     Row = Mapping[str, Any]
@@ -65,8 +65,8 @@ class Measured(NamedTuple):
     gauge: Gauge | None
     reason: str
     told: str
-    course: Course | None
-    standing: Standing | None
+    course: MarginSeries | None
+    standing: BaselineStatus | None
 
 
 class Card(NamedTuple):
@@ -78,7 +78,7 @@ class Card(NamedTuple):
     lines: list[Measured]
 
 
-class Moment(NamedTuple):
+class Incident(NamedTuple):
     """One time of one ego: a plan view (None: there is none, and why) and what the rules say there.
 
     `t`: hundredths of a second since the drive's start; `leading`: it is among those that tell what happened.
@@ -105,8 +105,8 @@ def measured(
     rule: Row,
     start_ns: int | None,
     *,
-    course: Course | None = None,
-    standing: Standing | None = None,
+    course: MarginSeries | None = None,
+    standing: BaselineStatus | None = None,
 ) -> Measured:
     """Return a finding (`fail`) or a near miss (`near`) in words; `standing`: how the finding stands to an earlier result."""
     unit, long = row["unit"], row["t_end_ns"] is not None and row["t_end_ns"] != row["t_start_ns"]
@@ -176,7 +176,7 @@ def moments(
     pictures: Mapping[Key, Plan],
     start_ns: int,
     told: Collection[Key],
-) -> list[Moment]:
+) -> list[Incident]:
     """Return the moments of one drive, in time order, from its findings and near misses; `told`: those that lead."""
     groups: dict[Key, list[tuple[Row, Measured]]] = {}
     for row, line in rows:
@@ -210,13 +210,13 @@ def _moment(
     t: int,
     *,
     leads: bool,
-) -> Moment:
+) -> Incident:
     cards: dict[str, list[Measured]] = {}
     for row, line in found:
         cards.setdefault(row["rule_id"], []).append(line)
     failed = [line for _, line in found if line.kind == "fail"]
     keys = {name for _, line in found for name in line.keys.split()}
-    return Moment(
+    return Incident(
         anchor=moment_anchor(*at),
         time=found[0][1].time,
         t=t,

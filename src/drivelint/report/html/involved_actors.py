@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _STANDS_MPS: Final = 0.1
 
 
-class Party(NamedTuple):
+class InvolvedActor(NamedTuple):
     """One actor in words; `n`: findings that are about it."""
 
     name: str
@@ -26,7 +26,7 @@ class Party(NamedTuple):
     n: int
 
 
-def parties(drive_id: str, rows: Sequence[tuple[Row, Any]], scenes: Mapping[Key, Row]) -> list[Party]:
+def parties(drive_id: str, rows: Sequence[tuple[Row, Any]], scenes: Mapping[Key, Row]) -> list[InvolvedActor]:
     """Return the egos and objects of one drive's findings and near misses, from their scenes; egos first."""
     findings: dict[tuple[bool, str], int] = {}
     seen: dict[str, list[Row]] = {}
@@ -41,7 +41,7 @@ def parties(drive_id: str, rows: Sequence[tuple[Row, Any]], scenes: Mapping[Key,
                     seen.setdefault(who, []).append(actors[who])
     egos = {who for is_object, who in findings if not is_object}
     return [
-        Party(
+        InvolvedActor(
             f"{'object' if is_object else 'ego'} {who}",
             next((a["actor_class"] for a in seen.get(who, []) if a["actor_class"]), "of unknown kind").replace(
                 "_", " "

@@ -57,7 +57,7 @@ class Step(NamedTuple):
     worst: bool
 
 
-class Course(NamedTuple):
+class MarginSeries(NamedTuple):
     """The chart (None: too few steps, or nothing is measured) and the steps around the worst one."""
 
     chart: Chart | None
@@ -66,14 +66,14 @@ class Course(NamedTuple):
     n_steps: int
 
 
-def course(row: Row, worst_ns: int, unit: str | None, start_ns: int) -> Course:
+def course(row: Row, worst_ns: int, unit: str | None, start_ns: int) -> MarginSeries:
     """Return the course of a finding from its row of the table `course`."""
     t: list[int] = row["t_ns"]
     worst = min(range(len(t)), key=lambda i: abs(t[i] - worst_ns))
     first = max(0, min(worst - _ROWS // 2, len(t) - _ROWS))
     steps = [_step(row, i, start_ns, worst=i == worst) for i in range(first, min(first + _ROWS, len(t)))]
     measured = len(t) >= _LEAST and any(value is not None for value in row["observed"])
-    return Course(_chart(row, worst, unit, start_ns) if measured else None, unit or "", steps, len(t))
+    return MarginSeries(_chart(row, worst, unit, start_ns) if measured else None, unit or "", steps, len(t))
 
 
 def _step(row: Row, i: int, start_ns: int, *, worst: bool) -> Step:

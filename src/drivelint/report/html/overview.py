@@ -14,7 +14,7 @@ from drivelint.result.text import number, seconds, tied
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from drivelint.report.html.incidents import Measured, Moment
+    from drivelint.report.html.incidents import Incident, Measured
     from drivelint.result.model import Result
 
     Row = Mapping[str, Any]
@@ -56,7 +56,7 @@ class Story(NamedTuple):
     file_name: str
     who: list[str]
     n_more: int
-    moments: list[Moment]
+    moments: list[Incident]
 
 
 def headline(result: Result) -> tuple[str, str]:

@@ -29,9 +29,9 @@ from drivelint.result.text import number
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from drivelint.report.html.incidents import Key, Measured, Moment
-    from drivelint.report.html.involved_actors import Party
-    from drivelint.report.html.margin_series import Course
+    from drivelint.report.html.incidents import Incident, Key, Measured
+    from drivelint.report.html.involved_actors import InvolvedActor
+    from drivelint.report.html.margin_series import MarginSeries
     from drivelint.report.html.timeline import Timeline
     from drivelint.result.model import Result
 
@@ -169,7 +169,7 @@ def _whose(row: Row) -> tuple[Any, ...]:
     return (row.get("finding_id"), *told)
 
 
-def _course(courses: Mapping[tuple[Any, ...], Row], row: Row, start_ns: int) -> Course | None:
+def _course(courses: Mapping[tuple[Any, ...], Row], row: Row, start_ns: int) -> MarginSeries | None:
     seen = courses.get(_whose(row))
     return None if seen is None else course(seen, row["t_worst_ns"], row["unit"], start_ns)
 
@@ -253,7 +253,7 @@ def _drive_row(
 
 
 def _section(
-    row: Row, tracks: Sequence[Timeline], seen: Sequence[Moment], involved: Sequence[Party], *, unfolded: bool
+    row: Row, tracks: Sequence[Timeline], seen: Sequence[Incident], involved: Sequence[InvolvedActor], *, unfolded: bool
 ) -> dict[str, Any]:
     """Return a drive with its egos: the timeline, the moments and the parties of each."""
     weight = {"error": 0, "warning": 1, "info": 2}
