@@ -1,6 +1,7 @@
 -- The library, second part: the conditions of a step, the ego's own motion, and what it does with the others on its road.
 -- As in derived.sql: what is present but cannot be placed is a row with NULL, never an absent row.
 
+-- lifetime: part
 CREATE TABLE ego_condition (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -17,6 +18,7 @@ CREATE TABLE ego_condition (
     engaged BOOLEAN                   -- the automated driver drives: by its mode flag, or as given; true where neither is there; NULL: there are flags, and none is known here
 );
 
+-- lifetime: part
 CREATE TABLE ego_mode (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -25,6 +27,7 @@ CREATE TABLE ego_mode (
     is_on BOOLEAN                     -- by the last declaration before the step; NULL: none yet
 );
 
+-- lifetime: part
 CREATE TABLE ego_motion (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -39,6 +42,7 @@ CREATE TABLE ego_motion (
     lat_peak_mps2 DOUBLE NOT NULL     -- the same of the lateral acceleration
 );
 
+-- lifetime: part
 CREATE TABLE track_end (
     drive_id VARCHAR NOT NULL,        -- the drive; only where data_log.in_sight holds
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -48,6 +52,7 @@ CREATE TABLE track_end (
     plain_ns BIGINT NOT NULL          -- after this, or before it, whoever is not recorded is not in plain view
 );
 
+-- lifetime: part
 CREATE TABLE sight (
     drive_id VARCHAR NOT NULL,        -- the drive; only where data_log.in_sight holds
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -57,6 +62,7 @@ CREATE TABLE sight (
     vehicle_lane_m DOUBLE NOT NULL    -- so far ahead of it no vehicle stands unseen in its lane: a box that reaches less than half a metre into it hides none
 );
 
+-- lifetime: part
 CREATE TABLE hidden (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -71,6 +77,7 @@ CREATE TABLE hidden (
     lane_m DOUBLE NOT NULL            -- in the ego's lane ahead of it, it is at least so far away: least_m; if late, as far as that lane is in plain view; if it is not on the map, as far as the corridor reaches
 );
 
+-- lifetime: part
 CREATE TABLE in_way (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -83,6 +90,7 @@ CREATE TABLE in_way (
     known BOOLEAN NOT NULL            -- within the last 2 s nobody else can have been in the way: everybody near enough has a place, and no one beside the way could step into it
 );
 
+-- lifetime: part
 CREATE TABLE neighbour (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -107,6 +115,7 @@ CREATE TABLE neighbour (
     ego_left_mps DOUBLE               -- ego's speed across the corridor, to the left of the way that this leads: from its velocity where that is known, else from speed and heading
 );
 
+-- lifetime: part
 CREATE TABLE follower (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -118,6 +127,7 @@ CREATE TABLE follower (
     closing_mps DOUBLE                -- its speed minus the ego's
 );
 
+-- lifetime: part
 CREATE TABLE lane_crossing (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -131,6 +141,7 @@ CREATE TABLE lane_crossing (
     side INTEGER NOT NULL             -- 1 to the left, -1 to the right
 );
 
+-- lifetime: part
 CREATE TABLE ego_road (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -139,6 +150,7 @@ CREATE TABLE ego_road (
     offset_m DOUBLE NOT NULL          -- add to a station of the chain for the station along the road
 );
 
+-- lifetime: part
 CREATE TABLE lane_change (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -163,6 +175,7 @@ CREATE TABLE lane_change (
     unseen_m DOUBLE                   -- whoever else may be behind in the new lane at t_start, for he was not placed, is at least so far away; infinite: nobody; NULL: the ego was not placed
 );
 
+-- lifetime: part
 CREATE TABLE cut_in (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -178,6 +191,7 @@ CREATE TABLE cut_in (
     free_m DOUBLE                     -- where it cannot be told who is ahead: so far, at the least, nobody is, at every such step; NULL: not known
 );
 
+-- lifetime: part
 CREATE TABLE beside (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -199,6 +213,7 @@ CREATE TABLE beside (
     on_strip BOOLEAN                  -- its centre is beside the drivable lanes, with no kerb or verge between: on a shoulder, stop, border, parking, restricted or cycle lane; NULL: not known, as behind a border, which may be a kerb
 );
 
+-- lifetime: part
 CREATE TABLE passing (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -218,6 +233,7 @@ CREATE TABLE passing (
     speed_mps DOUBLE                  -- its speed at t_ns; standing: at most 0.5
 );
 
+-- lifetime: part
 CREATE TABLE line_step (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -240,6 +256,7 @@ CREATE TABLE line_step (
     access BOOLEAN                    -- within 30 m the ego goes on to, or comes from, a way beside the road on the far side of the line: it leaves the lanes at 20 mph or less, and turns off, stands there or gets further than 10 m from the running lane's centre line; a shoulder, bay or cycle lane of the same road is no such way, and who was or gets back by 0.25 m on the same lane was on no such way; NULL: not known, as where it turns off and comes back the other way
 );
 
+-- lifetime: part
 CREATE TABLE overtake_place (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -256,6 +273,7 @@ CREATE TABLE overtake_place (
     rear_unseen_m DOUBLE              -- who was not placed, and may be behind or beside, is at least so far away; NULL: there is none such, or one that was placed has no class or speed
 );
 
+-- lifetime: part
 CREATE TABLE following (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego

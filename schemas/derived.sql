@@ -3,6 +3,7 @@
 
 -- ---- the map, prepared once per environment
 
+-- lifetime: map
 CREATE TABLE lane_segment (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- the lanelet
@@ -23,6 +24,7 @@ CREATE TABLE lane_segment (
     slack1_m DOUBLE NOT NULL          -- how far it reaches beyond its end
 );
 
+-- lifetime: map
 CREATE TABLE lane_near (
     environment_id VARCHAR NOT NULL,  -- the map
     from_id VARCHAR NOT NULL,         -- a drivable lanelet
@@ -30,6 +32,7 @@ CREATE TABLE lane_near (
     hops INTEGER NOT NULL             -- least number of links, 0 to 3
 );
 
+-- lifetime: map
 CREATE TABLE lane_next (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet
@@ -39,12 +42,14 @@ CREATE TABLE lane_next (
     map_begins BOOLEAN NOT NULL       -- it continues none, nor does any lane beside it that is driven the same way
 );
 
+-- lifetime: map
 CREATE TABLE lane_apart (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet
     other_id VARCHAR NOT NULL         -- one of another road that lies over or under it, as far as the map tells: no junction or link joins the two, and their heights there differ by more than 2.5 m or are not known; each pair both ways round
 );
 
+-- lifetime: map
 CREATE TABLE lane_beside (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet
@@ -60,6 +65,7 @@ CREATE TABLE lane_beside (
     width_m DOUBLE NOT NULL           -- its width
 );
 
+-- lifetime: map
 CREATE TABLE road_half (
     environment_id VARCHAR NOT NULL,  -- the map
     road_id VARCHAR NOT NULL,         -- a road of one direction
@@ -67,6 +73,7 @@ CREATE TABLE road_half (
     turned BOOLEAN NOT NULL           -- their reference lines run in opposite directions: what one begins with the other ends with
 );
 
+-- lifetime: map
 CREATE TABLE strip_cell (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet
@@ -74,6 +81,7 @@ CREATE TABLE strip_cell (
     cell BIGINT NOT NULL              -- 4 m grid cell that the strip of 15 m on both sides of it may touch
 );
 
+-- lifetime: map
 CREATE TABLE lane_cell (
     environment_id VARCHAR NOT NULL,  -- the map
     cell BIGINT NOT NULL,             -- 2 m grid cell that the segment's lane area may touch
@@ -99,6 +107,7 @@ CREATE TABLE lane_cell (
 
 -- ---- time, and what the drive can tell
 
+-- lifetime: part
 CREATE TABLE ego_clock (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- an ego of the drive, whether it is judged now or in another part of the run
@@ -108,6 +117,7 @@ CREATE TABLE ego_clock (
     t_end_ns BIGINT NOT NULL          -- the ego's last sample
 );
 
+-- lifetime: part
 CREATE TABLE clock (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -117,6 +127,7 @@ CREATE TABLE clock (
     t_end_ns BIGINT NOT NULL          -- the ego's last sample
 );
 
+-- lifetime: part
 CREATE TABLE ego_part (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -124,12 +135,14 @@ CREATE TABLE ego_part (
     part VARCHAR NOT NULL             -- trailer: the ego draws it; successor, predecessor: the id under which the ego's own track goes on or was before
 );
 
+-- lifetime: part
 CREATE TABLE ego_actor (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     actor_id VARCHAR NOT NULL         -- the ego, or a trailer that it draws: boxes that are the ego's at one time
 );
 
+-- lifetime: part
 CREATE TABLE step (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -140,6 +153,7 @@ CREATE TABLE step (
     travel_m DOUBLE NOT NULL          -- way made since the first step, between the positions that are known
 );
 
+-- lifetime: run
 CREATE TABLE capability (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -148,6 +162,7 @@ CREATE TABLE capability (
     reason VARCHAR NOT NULL           -- what is missing, or where it is from
 );
 
+-- lifetime: run
 CREATE TABLE registration (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -162,6 +177,7 @@ CREATE TABLE registration (
 
 -- ---- where everybody is
 
+-- lifetime: part
 CREATE TABLE road_user (
     drive_id VARCHAR NOT NULL,        -- the drive
     actor_id VARCHAR NOT NULL,        -- the actor
@@ -170,6 +186,7 @@ CREATE TABLE road_user (
     width_m DOUBLE                    -- box
 );
 
+-- lifetime: part
 CREATE TABLE state_dynamics (
     drive_id VARCHAR NOT NULL,        -- the drive
     actor_id VARCHAR NOT NULL,        -- the actor
@@ -189,6 +206,7 @@ CREATE TABLE state_dynamics (
     indicator VARCHAR                 -- see actor_state
 );
 
+-- lifetime: part
 CREATE TABLE lane_occupancy (
     drive_id VARCHAR NOT NULL,        -- the drive
     actor_id VARCHAR NOT NULL,        -- the actor
@@ -201,6 +219,7 @@ CREATE TABLE lane_occupancy (
     drivable BOOLEAN                  -- see lanelet
 );
 
+-- lifetime: part
 CREATE TABLE ego_lane (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -212,6 +231,7 @@ CREATE TABLE ego_lane (
     with_direction BOOLEAN            -- heading within 90 degrees of the lane's direction
 );
 
+-- lifetime: part
 CREATE TABLE ego_aside (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -223,6 +243,7 @@ CREATE TABLE ego_aside (
     with_direction BOOLEAN            -- heading within 90 degrees of its direction; NULL: heading not known
 );
 
+-- lifetime: part
 CREATE TABLE chain (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -235,6 +256,7 @@ CREATE TABLE chain (
     t_last_ns BIGINT                  -- to this one
 );
 
+-- lifetime: part
 CREATE TABLE corridor (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -248,11 +270,13 @@ CREATE TABLE corridor (
     over_against BOOLEAN              -- that lane is driven the other way
 );
 
+-- lifetime: part
 CREATE TABLE visited_cell (
     drive_id VARCHAR NOT NULL,        -- the drive
     cell BIGINT NOT NULL              -- 4 m grid cell in which some actor's centre, or a corner of an ego, ever was
 );
 
+-- lifetime: part
 CREATE TABLE corridor_cell (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -275,6 +299,7 @@ CREATE TABLE corridor_cell (
     slack1_m DOUBLE NOT NULL          -- see lane_segment
 );
 
+-- lifetime: part
 CREATE TABLE ego_corridor (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -296,6 +321,7 @@ CREATE TABLE ego_corridor (
     heading_diff_rad DOUBLE           -- ego's heading against the corridor, -pi..pi
 );
 
+-- lifetime: part
 CREATE TABLE ego_state (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -327,6 +353,7 @@ CREATE TABLE ego_state (
     heading_diff_rad DOUBLE           -- heading against the corridor
 );
 
+-- lifetime: part
 CREATE TABLE ego_footway (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -334,6 +361,7 @@ CREATE TABLE ego_footway (
     depth_m DOUBLE                    -- how far a corner or the middle of a side is inside a footway and on no carriageway; 0: not at all; NULL: the box is not known, or part of it is on nothing that the map knows
 );
 
+-- lifetime: part
 CREATE TABLE pair (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -362,6 +390,7 @@ CREATE TABLE pair (
     over_against BOOLEAN              -- see corridor
 );
 
+-- lifetime: part
 CREATE TABLE between_steps (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -372,6 +401,7 @@ CREATE TABLE between_steps (
     blur_m DOUBLE NOT NULL            -- how far off that may be: nobody brakes or swerves by more than 8 m/s2; smaller than -least_m: contact for sure; smaller than least_m: none, and no row
 );
 
+-- lifetime: part
 CREATE TABLE clearance_least (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -380,6 +410,7 @@ CREATE TABLE clearance_least (
     least_m DOUBLE NOT NULL           -- positive: it is no smaller, after where the two were seen before and where they are seen next
 );
 
+-- lifetime: part
 CREATE TABLE lost_object (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -389,6 +420,7 @@ CREATE TABLE lost_object (
     code VARCHAR NOT NULL             -- lost_near_ego, lost_in_range
 );
 
+-- lifetime: part
 CREATE TABLE unplaced (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -398,6 +430,7 @@ CREATE TABLE unplaced (
     reason VARCHAR NOT NULL           -- the code in words
 );
 
+-- lifetime: part
 CREATE TABLE unseen (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -411,6 +444,7 @@ CREATE TABLE unseen (
     off_behind_m DOUBLE               -- and so far behind the ego's rear
 );
 
+-- lifetime: part
 CREATE TABLE oncoming_vehicle (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -422,6 +456,7 @@ CREATE TABLE oncoming_vehicle (
     on_its_way BOOLEAN NOT NULL       -- it is not on the corridor yet and gets there within 15 s
 );
 
+-- lifetime: part
 CREATE TABLE oncoming (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -436,6 +471,7 @@ CREATE TABLE oncoming (
     unplaced_reason VARCHAR           -- one of them and why
 );
 
+-- lifetime: part
 CREATE TABLE lead (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -456,6 +492,7 @@ CREATE TABLE lead (
     joined BOOLEAN                    -- the stretch began with one of the two changing lanes, or one beside coming ahead; false: it was ahead in the lane before (behind another, or further away), or the log begins there
 );
 
+-- lifetime: part
 CREATE TABLE lane_ahead (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -472,6 +509,7 @@ CREATE TABLE lane_ahead (
     outside BOOLEAN                   -- nothing of it is in the running lane: it is turned towards the ego, which is in its way beside the lane
 );
 
+-- lifetime: part
 CREATE TABLE vehicle_ahead (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -499,6 +537,7 @@ CREATE TABLE vehicle_ahead (
 
 -- ---- the overtake (paper, Appendix A)
 
+-- lifetime: run
 CREATE TABLE profile (
     profile VARCHAR NOT NULL,         -- relaxed, nominal, aggressive, observed, or a user's own
     style INTEGER NOT NULL,           -- 0 = least aggressive
@@ -511,6 +550,7 @@ CREATE TABLE profile (
     selected BOOLEAN NOT NULL         -- asked for in this run
 );
 
+-- lifetime: part
 CREATE TABLE excursion (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -533,6 +573,7 @@ CREATE TABLE excursion (
     over_against BOOLEAN              -- that lane is driven the other way
 );
 
+-- lifetime: part
 CREATE TABLE overtake (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -572,6 +613,7 @@ CREATE TABLE overtake (
     cut_in_angle_rad DOUBLE           -- observed: the same from t2 to t3
 );
 
+-- lifetime: part
 CREATE TABLE overtake_sda (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -589,6 +631,7 @@ CREATE TABLE overtake_sda (
     reason VARCHAR                    -- why sda_m or da_m is NULL
 );
 
+-- lifetime: part
 CREATE TABLE overtake_step (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -616,6 +659,7 @@ CREATE TABLE overtake_step (
     ds_overlap_m DOUBLE               -- likewise the two danger spaces inside each other
 );
 
+-- lifetime: part
 CREATE TABLE opportunity (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -634,6 +678,7 @@ CREATE TABLE opportunity (
 
 -- ---- crossing boundaries, signalling, exits
 
+-- lifetime: part
 CREATE TABLE lane_departure (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -644,6 +689,7 @@ CREATE TABLE lane_departure (
     back BOOLEAN NOT NULL             -- it is the way back of an excursion: the boundary is crossed towards the running lane
 );
 
+-- lifetime: part
 CREATE TABLE indicator_on (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -654,6 +700,7 @@ CREATE TABLE indicator_on (
     at_log_start BOOLEAN NOT NULL     -- was on when the log began: t_on_ns is not its start
 );
 
+-- lifetime: map
 CREATE TABLE exit_lane (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a lanelet of a lane that leaves the main carriageway
@@ -661,6 +708,7 @@ CREATE TABLE exit_lane (
     side VARCHAR NOT NULL             -- on which side it leaves: left or right
 );
 
+-- lifetime: part
 CREATE TABLE exit_taken (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -672,6 +720,7 @@ CREATE TABLE exit_taken (
     sign_id VARCHAR                   -- that sign; NULL: the map has none on the way
 );
 
+-- lifetime: part
 CREATE TABLE exit_passed (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -683,6 +732,7 @@ CREATE TABLE exit_passed (
     taken BOOLEAN                     -- the ego was in the exit lane at its end; NULL: not reached
 );
 
+-- lifetime: run
 CREATE TABLE exposure (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego

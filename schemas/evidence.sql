@@ -1,6 +1,7 @@
 -- What a picture of a finding needs: who was where around its worst step, and the lanes there. Written beside the verdicts, so that
 -- reports can be made from the result folder alone.
 
+-- lifetime: run
 CREATE TABLE scene (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -11,6 +12,7 @@ CREATE TABLE scene (
     actors STRUCT(actor_id VARCHAR, actor_class VARCHAR, length_m DOUBLE, width_m DOUBLE, x_m DOUBLE, y_m DOUBLE, yaw_rad DOUBLE, speed_mps DOUBLE, path STRUCT(t_ns BIGINT, x_m DOUBLE, y_m DOUBLE, yaw_rad DOUBLE)[])[] NOT NULL -- the ego first, then everybody within reach and placed: box centre at the moment, and the way 5 s before and after it, at most 5 points a second and the moment itself
 );
 
+-- lifetime: run
 CREATE TABLE lane_shape (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a lanelet near a scene
@@ -25,6 +27,7 @@ CREATE TABLE lane_shape (
     right_y_m DOUBLE[] NOT NULL       -- right bound
 );
 
+-- lifetime: run
 CREATE TABLE danger_space (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -35,6 +38,7 @@ CREATE TABLE danger_space (
     y_m DOUBLE[] NOT NULL             -- the same
 );
 
+-- lifetime: run
 CREATE TABLE course (
     finding_id VARCHAR,               -- a finding; NULL: a near miss, one of the 20 closest of its ego, rule and profile
     drive_id VARCHAR NOT NULL,        -- the drive
@@ -50,6 +54,7 @@ CREATE TABLE course (
     holds BOOLEAN[] NOT NULL          -- kept there; NULL: unknown
 );
 
+-- lifetime: run
 CREATE TABLE overtake_record (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -75,6 +80,7 @@ CREATE TABLE overtake_record (
     stretches STRUCT(stage VARCHAR, t_start_ns BIGINT, t_end_ns BIGINT, n BIGINT, said VARCHAR[], worst_m DOUBLE[])[] NOT NULL -- runs of steps in which the four danger-space assertions say the same, in the order VBP outside DS_AV, OV outside DS_AV, AV outside DS_OV, DS_AV and DS_OV apart: pass, fail, unknown, nobody; and how far inside at worst (negative: clear of it)
 );
 
+-- lifetime: run
 CREATE TABLE opportunity_record (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego

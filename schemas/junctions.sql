@@ -1,6 +1,7 @@
 -- The library, third part: where ways meet. Junctions, stop lines, crossings, conflict areas, standing still.
 -- As in derived.sql: what is present but cannot be placed is a row with NULL, never an absent row.
 
+-- lifetime: part
 CREATE TABLE meeting (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -15,6 +16,7 @@ CREATE TABLE meeting (
     object_heading INTEGER NOT NULL   -- the 5 degrees of heading
 );
 
+-- lifetime: part
 CREATE TABLE swept_box (
     drive_id VARCHAR NOT NULL,        -- the drive
     actor_id VARCHAR NOT NULL,        -- an actor of meeting, ego or not, in the cells of its visits and those around them
@@ -38,6 +40,7 @@ CREATE TABLE swept_box (
     t_after_ns BIGINT                 -- the moment after; NULL: it ends, or there is a hole
 );
 
+-- lifetime: part
 CREATE TABLE common_ground (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -47,6 +50,7 @@ CREATE TABLE common_ground (
     t_object_ns BIGINT NOT NULL       -- a moment of the other's box, at most 10 s apart, at which it covers the same ground, at more than 20 degrees
 );
 
+-- lifetime: part
 CREATE TABLE conflict (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -68,6 +72,7 @@ CREATE TABLE conflict (
     crossing_id VARCHAR               -- pedestrian crossing that the ego's box is on then; NULL: none, or no map
 );
 
+-- lifetime: part
 CREATE TABLE forced_braking (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -85,6 +90,7 @@ CREATE TABLE forced_braking (
     waited BOOLEAN                   -- it stood before the ego had left that ground and went on (faster than 1.5 m/s) at most 2 s before or 5 s after that; false: it did not stand, or stood on; NULL: it went on earlier, or was not seen to go on
 );
 
+-- lifetime: part
 CREATE TABLE way_mark (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -101,6 +107,7 @@ CREATE TABLE way_mark (
     lights STRUCT(signal_id VARCHAR, fit VARCHAR)[] -- of a traffic light all heads, by id. fit own: for the ego's turn (its connecting lanelet, or its arrow), maybe: it may be (the turn is not driven to its end, or called one or the other), full: for every turn that has no arrow, unsaid: the map does not say, other: for other turns
 );
 
+-- lifetime: part
 CREATE TABLE near_mark (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -119,6 +126,7 @@ CREATE TABLE near_mark (
     running BOOLEAN NOT NULL          -- the chain is the ego's running chain at this step, and it is not beside the lane by more than 4 m
 );
 
+-- lifetime: part
 CREATE TABLE signal_phase (
     drive_id VARCHAR NOT NULL,        -- the drive
     signal_id VARCHAR NOT NULL,       -- see signal_state
@@ -127,6 +135,7 @@ CREATE TABLE signal_phase (
     state VARCHAR                     -- see signal_state; NULL: not known, also beyond the last sample of a light that was recorded once a second or oftener
 );
 
+-- lifetime: part
 CREATE TABLE mark_phase (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -142,6 +151,7 @@ CREATE TABLE mark_phase (
     t_before_ns BIGINT                -- since when the state before held; NULL: not seen
 );
 
+-- lifetime: part
 CREATE TABLE junction_passage (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -163,6 +173,7 @@ CREATE TABLE junction_passage (
     minor BOOLEAN                     -- by control stop or give_way the ego's road is the lesser one; NULL: control not known
 );
 
+-- lifetime: part
 CREATE TABLE passage_conflict (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -179,6 +190,7 @@ CREATE TABLE passage_conflict (
     reason VARCHAR                    -- why another one cannot be ruled out: somebody without position, heading or size, or whose track begins or ends within 30 m, or as far away as he comes from or goes to in that time; the log, a hole or the sensor's range ends too soon; NULL: nobody else
 );
 
+-- lifetime: part
 CREATE TABLE stop_line_crossing (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -200,6 +212,7 @@ CREATE TABLE stop_line_crossing (
     stood_s DOUBLE                    -- longest time that it stood (at most 0.1 m/s) with the front 0 to 1 m before the line, as far as seen; 0: it did not; NULL: the speed there is not known
 );
 
+-- lifetime: part
 CREATE TABLE crossing_occupancy (
     drive_id VARCHAR NOT NULL,        -- the drive
     crossing_id VARCHAR NOT NULL,     -- a pedestrian crossing of the map
@@ -209,6 +222,7 @@ CREATE TABLE crossing_occupancy (
     t_to_ns BIGINT NOT NULL           -- last sample there
 );
 
+-- lifetime: part
 CREATE TABLE crossing_passage (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -229,6 +243,7 @@ CREATE TABLE crossing_passage (
     stood_before BOOLEAN              -- the ego stood within 5 m before it during the 10 s before t_in; NULL: not seen, or it came reversing
 );
 
+-- lifetime: part
 CREATE TABLE standstill (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego

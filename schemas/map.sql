@@ -1,6 +1,7 @@
 -- The road, one format for all maps. Keyed by environment_id (map hash, offset and handedness), so a thousand drives share one.
 -- A lanelet is one lane of one lane section. Its points run in the direction of travel, so left and right are the driver's.
 
+-- lifetime: run
 CREATE TABLE environment (
     environment_id VARCHAR NOT NULL,  -- <map stem>-<first 8 hex of sha256><offset, if any><@lht or @rht, with ? if only by default, with ~ if the lanes run the other way than its rule says>
     name VARCHAR NOT NULL,            -- file name of the map, or the log it was embedded in
@@ -13,6 +14,7 @@ CREATE TABLE environment (
     geo_reference VARCHAR             -- projection string, if the map has one
 );
 
+-- lifetime: map
 CREATE TABLE lanelet (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- OpenDRIVE: road.section.lane
@@ -34,6 +36,7 @@ CREATE TABLE lanelet (
     right_against BOOLEAN             -- that one is driven the other way
 );
 
+-- lifetime: map
 CREATE TABLE lane_point (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- the lanelet
@@ -52,6 +55,7 @@ CREATE TABLE lane_point (
     road_s_m DOUBLE NOT NULL          -- station on the road's reference line
 );
 
+-- lifetime: map
 CREATE TABLE lane_link (
     environment_id VARCHAR NOT NULL,  -- the map
     from_id VARCHAR NOT NULL,         -- a lanelet
@@ -59,6 +63,7 @@ CREATE TABLE lane_link (
     turn_rad DOUBLE NOT NULL          -- heading change over to_id, left positive: smallest = straight on
 );
 
+-- lifetime: map
 CREATE TABLE lane_boundary (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- the lanelet
@@ -70,6 +75,7 @@ CREATE TABLE lane_boundary (
     lane_change VARCHAR               -- none, both, increase, decrease as the map says; NULL: it does not
 );
 
+-- lifetime: map
 CREATE TABLE speed_limit (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- the lanelet
@@ -79,6 +85,7 @@ CREATE TABLE speed_limit (
     source VARCHAR NOT NULL           -- lane, road_type, sign; unread: the map gives a limit that cannot be read
 );
 
+-- lifetime: map
 CREATE TABLE traffic_signal (
     environment_id VARCHAR NOT NULL,  -- the map
     signal_id VARCHAR NOT NULL,       -- id in the map
@@ -98,6 +105,7 @@ CREATE TABLE traffic_signal (
     y_m DOUBLE NOT NULL               -- where it stands
 );
 
+-- lifetime: map
 CREATE TABLE stop_line (
     environment_id VARCHAR NOT NULL,  -- the map
     stop_line_id VARCHAR NOT NULL,    -- id in the map
@@ -106,6 +114,7 @@ CREATE TABLE stop_line (
     source VARCHAR NOT NULL           -- object, signal, connection (of a SUMO net: where a lane with a light or a stop sign ends): what in the map says so
 );
 
+-- lifetime: map
 CREATE TABLE road_object (
     environment_id VARCHAR NOT NULL,  -- the map
     object_id VARCHAR NOT NULL,       -- id in the map
@@ -119,6 +128,7 @@ CREATE TABLE road_object (
     outline_y_m DOUBLE[]              -- its outline
 );
 
+-- lifetime: map
 CREATE TABLE crossing (
     environment_id VARCHAR NOT NULL,  -- the map
     crossing_id VARCHAR NOT NULL,     -- id in the map
@@ -128,6 +138,7 @@ CREATE TABLE crossing (
     kind VARCHAR                      -- zebra, signalled, other; NULL: the map does not say
 );
 
+-- lifetime: run
 CREATE TABLE map_quality (
     environment_id VARCHAR NOT NULL,  -- the map
     check_id VARCHAR NOT NULL,        -- invalid_lane, missing_link, handedness_disagrees, handedness_default, unknown_geometry, ...

@@ -1,6 +1,7 @@
 -- The trace as recorded: what ingest writes and nothing later changes.
 -- Frame: right-handed map metres, box centres. Time: integer nanoseconds of the log's own clock. Everything else SI.
 
+-- lifetime: run
 CREATE TABLE data_log (
     drive_id VARCHAR NOT NULL,        -- <file stem>-<first 8 hex of the content's sha256>
     file_name VARCHAR NOT NULL,       -- name of the log, without its folder
@@ -20,6 +21,7 @@ CREATE TABLE data_log (
     in_sight BOOLEAN NOT NULL         -- whoever is not recorded for a while is taken not to be in plain view of the recorder (check --visibility)
 );
 
+-- lifetime: drive
 CREATE TABLE actor (
     drive_id VARCHAR NOT NULL,        -- the drive
     actor_id VARCHAR NOT NULL,        -- the log's own id of the actor, as text
@@ -30,6 +32,7 @@ CREATE TABLE actor (
     is_ego BOOLEAN NOT NULL           -- selected as ego for this run
 );
 
+-- lifetime: drive
 CREATE TABLE actor_state (
     drive_id VARCHAR NOT NULL,        -- the drive
     actor_id VARCHAR NOT NULL,        -- the actor
@@ -46,6 +49,7 @@ CREATE TABLE actor_state (
     brake_light VARCHAR               -- off, on, strong; NULL: not known
 );
 
+-- lifetime: drive
 CREATE TABLE signal_state (
     drive_id VARCHAR NOT NULL,        -- the drive
     signal_id VARCHAR NOT NULL,       -- traffic signal, by the map's or the log's id
@@ -53,6 +57,7 @@ CREATE TABLE signal_state (
     state VARCHAR                     -- red, red_amber, amber, green, flashing, off; NULL: not known
 );
 
+-- lifetime: drive
 CREATE TABLE declared_event (
     drive_id VARCHAR NOT NULL,        -- the drive
     actor_id VARCHAR NOT NULL,        -- who declared it
@@ -61,6 +66,7 @@ CREATE TABLE declared_event (
     value VARCHAR                     -- its value as text, if any
 );
 
+-- lifetime: run
 CREATE TABLE drive_condition (
     drive_id VARCHAR NOT NULL,        -- the drive
     condition VARCHAR NOT NULL,       -- nation, weather, light, vehicle_class, road_type, carriageway, area, engaged
@@ -68,11 +74,13 @@ CREATE TABLE drive_condition (
     source VARCHAR NOT NULL           -- env: given on the command line or in the settings; trace: said by the log
 );
 
+-- lifetime: part
 CREATE TABLE deferred_ego (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL           -- an ego that is judged in another part of the run: nothing is derived for it now
 );
 
+-- lifetime: run
 CREATE TABLE quality (
     drive_id VARCHAR NOT NULL,        -- the drive
     check_id VARCHAR NOT NULL,        -- which check: duplicate_state, velocity_mismatch, yaw_mismatch, length_below_width, gap, clock_jump, not_finite, ...

@@ -1,5 +1,6 @@
 -- What is written beside verdicts.parquet and findings.parquet: drives.parquet and rules.parquet.
 
+-- lifetime: run
 CREATE TABLE drive (
     drive_id VARCHAR NOT NULL,        -- the drive; its file's stem where the file could not be read
     file_name VARCHAR NOT NULL,       -- name of the log, without its folder
@@ -27,6 +28,7 @@ CREATE TABLE drive (
     not_judged STRUCT(ego_id VARCHAR, signal VARCHAR, reason VARCHAR)[] NOT NULL -- signals that the log and map do not give: rules that require them are unknown
 );
 
+-- lifetime: run
 CREATE TABLE rule (
     rule_id VARCHAR NOT NULL,         -- pack and file name of the rule
     rule_version VARCHAR NOT NULL,    -- hash of the rule's file

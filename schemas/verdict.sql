@@ -1,5 +1,6 @@
 -- What evaluation writes.
 
+-- lifetime: run
 CREATE TABLE verdict (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego; '' where the drive has none
@@ -31,6 +32,7 @@ CREATE TABLE verdict (
     assumes VARCHAR                   -- what it rests on; line_of_sight: by the end of the judged interval somebody was lost, or somebody came later, who is taken not to be in plain view while not recorded (check --visibility); NULL: nothing
 );
 
+-- lifetime: run
 CREATE TABLE finding (
     finding_id VARCHAR NOT NULL,      -- hash of drive content, ego, rule, profile, object and occurrence
     drive_id VARCHAR NOT NULL,        -- the drive
@@ -56,6 +58,7 @@ CREATE TABLE finding (
     lanelet_id VARCHAR                -- ego's lanelet at the worst step
 );
 
+-- lifetime: drive
 CREATE TABLE margin (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego

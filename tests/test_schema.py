@@ -9,6 +9,7 @@ import pytest
 
 from drivelint.resources import folder
 from drivelint.sql import store
+from drivelint.sql.derivations import derivations
 
 
 @pytest.fixture(scope="module")
@@ -59,3 +60,14 @@ def test_only_the_wheels_extension_may_be_unsigned() -> None:
         assert con.execute("SELECT current_setting('allow_unsigned_extensions')").fetchall() == [(False,)]
         with pytest.raises(duckdb.InvalidInputException, match="while database is running"):
             con.execute("SET allow_unsigned_extensions=true")
+
+
+def test_every_table_says_how_long_its_rows_stay() -> None:
+    """A table of a map has no drive; what is derived for egos goes with its part of the drive, unless it is a result."""
+    assert set(store.lifetimes()) == set(store.schema())
+    for table, lifetime in store.lifetimes().items():
+        columns = store.schema()[table]
+        assert (lifetime == "map") <= ("environment_id" in columns and "drive_id" not in columns), table
+        assert (lifetime in {"drive", "part"}) <= ("drive_id" in columns), table
+    assert {store.lifetimes()[table] for table in derivations()} == {"map", "part", "run"}
+    assert store.living("drive") == ["actor", "actor_state", "signal_state", "declared_event", "margin"]

@@ -11,6 +11,7 @@ import msgspec
 
 from drivelint.drive import conditions
 from drivelint.errors import RuleError
+from drivelint.reasons import signals
 
 Kind = Literal["invariant", "execution", "precondition", "postcondition"]
 Seconds = float | str
@@ -194,6 +195,8 @@ def _contradiction(h: Header) -> tuple[str, str] | None:
         (not _NAME.fullmatch(name), name, f"parameter {name!r}: use lower-case letters, digits and _, a letter first")
         for name in h.params
     ]
+    for key in ("requires", "pass_requires"):
+        checks += [(True, key, f"{key}: {wrong}") for word in getattr(h, key) if (wrong := signals.problem(word))]
     checks += [(True, "law", f"law: {wrong}") for word in h.law if (wrong := conditions.problem("nation", word))]
     for name, words in h.applies.words.items():
         checks += [(True, name, f"[applies] {wrong}") for word in words if (wrong := conditions.problem(name, word))]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import duckdb
 import pyarrow as pa
@@ -16,7 +16,6 @@ from drivelint.engine.memory import Memory
 from drivelint.errors import RuleError
 from drivelint.evaluate import evaluate
 from drivelint.sql import store
-from drivelint.sql.derivations import derivations
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -26,25 +25,6 @@ if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
 
 # small tables that say what was judged, and on what: they stay until the end of the run
-_RESULTS: Final = (
-    "data_log",
-    "quality",
-    "drive_condition",
-    "environment",
-    "map_quality",
-    "exposure",
-    "capability",
-    "registration",
-    "verdict",
-    "finding",
-    "scene",
-    "lane_shape",
-    "danger_space",
-    "course",
-    "overtake_record",
-    "opportunity_record",
-    "profile",
-)
 
 
 class _PartTooLargeError(Exception):
@@ -144,7 +124,7 @@ class JudgingSession:
             todo = parts(drives, self._memory.room)
             for no, deferred in enumerate(todo):
                 if no:
-                    store.renew(self._con, [*_part_tables(drives[0]), "deferred_ego"])
+                    store.renew(self._con, store.living("part"))
                 if deferred:
                     store.insert(self._con, "deferred_ego", _egos(drives[0], deferred))
                 judged = {ego: n for ego, n in drives[0].meetings.items() if ego not in set(deferred)}
@@ -157,9 +137,9 @@ class JudgingSession:
                     if cuttable:
                         raise _PartTooLargeError(sum(judged.values())) from error
                     raise
-                trace_tables = [t for t in drives[0].trace.tables if t not in _RESULTS and not no]
-                self._keep([*trace_tables, *_part_tables(drives[0])], again=no > 0)
-            self._keep(["margin"])
+                # a kept database has every ego
+                self._keep((t for t in store.living("part") if t != "deferred_ego"), again=no > 0)
+            self._keep(store.living("drive"))
             undo.pop_all()
 
     def _judge_part(self, ids: Sequence[str], *, may_retry: bool) -> None:
@@ -180,7 +160,7 @@ class JudgingSession:
         if self._margins:
             self._margins.close()
         if self._kept:
-            self._keep(_RESULTS)
+            self._keep(store.living("run"))
             self._con.execute("DETACH kept")
             self._kept = None
 
@@ -188,19 +168,19 @@ class JudgingSession:
         environments = {d.environment.environment_id: d.environment for d in drives if d.environment}
         if not environments.keys() <= self._maps:
             self._maps = frozenset()  # until the new ones are whole: a failure here must not leave half a map behind
-            for table in (*_map_tables(), *(t for t, d in derivations().items() if d.of_the_map)):
+            for table in store.living("map"):
                 self._con.execute(f"DELETE FROM {table}")
             for _, environment in sorted(environments.items()):
                 known = self._con.execute(
                     "SELECT count(*) FROM environment WHERE environment_id = ?", [environment.environment_id]
                 ).fetchall()[0][0]
                 for table, rows in environment.tables.items():
-                    if not (known and table in _RESULTS):
+                    if not (known and store.lifetimes()[table] == "run"):
                         store.insert(self._con, table, rows)
             derive(self._con, self._tables, of_the_map=True)
             self._maps = frozenset(environments)
             self._keep_maps(environments.keys() - self._kept_maps)
-        store.code_ids(self._con, _batch_tables(), (d.trace.drive_id for d in drives), _actors(drives))
+        store.code_ids(self._con, store.living("drive", "part"), (d.trace.drive_id for d in drives), _actors(drives))
         for table in drives[0].trace.tables:
             rows = pa.concat_tables([_on_map(d) if table == "data_log" else d.trace.tables[table] for d in drives])
             store.insert(self._con, table, rows)
@@ -225,7 +205,7 @@ class JudgingSession:
     def _keep_maps(self, ids: Iterable[str]) -> None:
         new = sorted(ids)
         if self._kept and new:
-            for table in (*_map_tables(), *(t for t, d in derivations().items() if d.of_the_map)):
+            for table in store.living("map"):
                 self._con.execute(
                     f"INSERT INTO kept.{table} SELECT * FROM {table} WHERE list_contains(?, environment_id)", [new]
                 )
@@ -238,14 +218,14 @@ class JudgingSession:
             raise RuleError(f"{row[0]} erred on a batch of {len(ids)} drives")
 
     def _clear(self) -> None:
-        store.renew(self._con, _batch_tables())
+        store.renew(self._con, store.living("drive", "part"))
 
     def _forget(self, ids: Sequence[str]) -> None:
         self._clear()
-        for table in _RESULTS:
+        for table in store.living("run"):
             if "drive_id" in store.schema()[table]:
                 self._con.execute(f"DELETE FROM {table} WHERE list_contains(?, drive_id)", [list(ids)])
-        for table in _batch_tables() if self._kept else ():  # parts of it may be there
+        for table in store.living("drive", "part") if self._kept else ():  # parts of it may be there
             self._con.execute(f"DELETE FROM kept.{table} WHERE list_contains(?, drive_id)", [list(ids)])
 
 
@@ -256,31 +236,11 @@ def _on_map(drive: Drive) -> pa.Table:
 
 
 def _actors(drives: Iterable[Drive]) -> set[str]:
-    held = set(_batch_tables())
+    held = set(store.living("drive", "part"))
     tables = [d.trace.tables[name] for d in drives for name in d.trace.tables if name in held]
     columns = [table.column(c) for table in tables for c in table.column_names if c in store.ACTOR_IDS]
     return {each for column in columns for each in pc.unique(column).to_pylist() if each is not None}
 
 
-def _batch_tables() -> list[str]:
-    """Tables that hold one batch at a time."""
-    return [t for t, columns in store.schema().items() if "drive_id" in columns and t not in _RESULTS and t != "drive"]
-
-
-def _part_tables(drive: Drive) -> list[str]:
-    """Tables that hold one part of a drive at a time; margins wait for the whole of it."""
-    return [table for table in _batch_tables() if table not in {"margin", "deferred_ego", *drive.trace.tables}]
-
-
 def _egos(drive: Drive, names: Sequence[str]) -> pa.Table:
     return pa.table({"drive_id": [drive.trace.drive_id] * len(names), "ego_id": list(names)})
-
-
-def _map_tables() -> list[str]:
-    """Tables of the map itself, replaced when a batch needs other maps."""
-    derived = derivations()
-    return [
-        t
-        for t, columns in store.schema().items()
-        if next(iter(columns)) == "environment_id" and t not in _RESULTS and t not in derived
-    ]

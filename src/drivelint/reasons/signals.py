@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from typing import Final
 
 from drivelint.drive.conditions import SAYS, WORDS
@@ -46,6 +47,8 @@ ADVICE: Final = {
     ),
     "mode_headlights": "when the headlights are on: {headlights}",
 }
+SIGNALS: Final = ADVICE.keys() - WORDS.keys()
+"""What a rule may require: the signals of the table `capability`. The others are conditions of a drive."""
 SIGNAL_OF: Final = {"road_type": "road_types", "limit": "speed_limits"}
 """Conditions that the map gives under another name."""
 _DECLARED = "declared_event.parquet (columns drive_id, actor_id, t_ns, event, value)"
@@ -77,6 +80,16 @@ _WHERE: Final = {
     },
 }
 _CONVERTED = "drivelint convert --to parquet, and in its tables "
+
+
+def problem(signal: str) -> str | None:
+    """Return what is wrong with the name of a signal; None: it is one."""
+    if signal in SIGNALS:
+        return None
+    near = get_close_matches(signal, sorted(SIGNALS), n=1)
+    return f"{signal!r} is no signal; " + (
+        f"did you mean {near[0]!r}?" if near else f"known are {', '.join(sorted(SIGNALS))}"
+    )
 
 
 def provide(signal: str, log_format: str) -> str:

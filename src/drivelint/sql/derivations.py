@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from drivelint.errors import DriveLintError
 from drivelint.resources import folder
 from drivelint.sql import syntax
-from drivelint.sql.store import schema
+from drivelint.sql.store import lifetimes, schema
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -45,7 +45,7 @@ class Derivation:
     @property
     def of_the_map(self) -> bool:
         """Whether the table is a property of the map alone, filled once per environment and not once per batch."""
-        return "drive_id" not in schema()[self.table]
+        return lifetimes()[self.table] == "map"
 
 
 @cache

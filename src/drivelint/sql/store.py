@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import duckdb
 
@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 _TABLE = re.compile(r"^CREATE TABLE (\w+) \(\n(.*?)^\);", re.DOTALL | re.MULTILINE)
+_LIFETIME = re.compile(r"^-- lifetime: (\w+)\nCREATE TABLE (\w+) \(", re.MULTILINE)
+LIFETIMES: Final = ("map", "drive", "part", "run")
+"""How long the rows of a table stay: `map`, until a batch needs other maps; `drive`, while their batch is judged; `part`, while the
+egos of their part of a drive are judged; `run`, to the end."""
 ACTOR_IDS = frozenset({"ego_id", "object_id", "actor_id"})
 """Columns that hold the id of an actor."""
 _AS_TOLD = frozenset({"margin"})
@@ -141,6 +145,24 @@ def schema(file: str = "*") -> dict[str, dict[str, str]]:
         for name, body in _TABLE.findall(path.read_text(encoding="utf-8")):
             tables[name] = dict(_COLUMN.findall(body))
     return tables
+
+
+@cache
+def lifetimes() -> dict[str, str]:
+    """Return table -> its lifetime, as the line above it in `schemas/` says. Errors: `DriveLintError` for a table without one."""
+    text = "\n".join(file.read_text(encoding="utf-8") for file in sorted(folder("schemas").glob("*.sql")))
+    found = {table: lifetime for lifetime, table in _LIFETIME.findall(text)}
+    for table in schema():
+        if found.get(table) not in LIFETIMES:
+            raise DriveLintError(
+                f"schemas: table {table!r} has no lifetime: write -- lifetime: {' | '.join(LIFETIMES)} above it"
+            )
+    return found
+
+
+def living(*kinds: str) -> list[str]:
+    """Return the tables of these lifetimes, in the order of the files."""
+    return [table for table in schema() if lifetimes()[table] in kinds]
 
 
 def code_ids(
