@@ -7,6 +7,7 @@ import re
 import duckdb
 import pytest
 
+from drivelint.drive.order import MAX_GAP_PERIODS
 from drivelint.resources import folder
 from drivelint.sql import store
 from drivelint.sql.derivations import derivations
@@ -71,3 +72,8 @@ def test_every_table_says_how_long_its_rows_stay() -> None:
         assert (lifetime in {"drive", "part"}) <= ("drive_id" in columns), table
     assert {store.lifetimes()[table] for table in derivations()} == {"map", "part", "run"}
     assert store.living("drive") == ["actor", "actor_state", "signal_state", "declared_event", "margin"]
+
+
+def test_samples_are_continuous_for_python_and_for_sql_alike() -> None:
+    with store.connect() as con:
+        assert con.execute("SELECT max_gap_periods()").fetchall() == [(MAX_GAP_PERIODS,)]

@@ -16,11 +16,11 @@ folder only, and relative paths in it start there too.
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.errors import UsageError
+from drivelint.phrases import hint
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -47,9 +47,7 @@ def defaults(options: Mapping[str, tuple[str, bool]], file: Path = Path(FILE)) -
         if key == "waiver":
             continue  # read where the gate is
         if key not in options:
-            near = get_close_matches(key, options, n=1)
-            hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(sorted(options))}"
-            raise UsageError(f"{file}: unknown setting {key!r}; {hint}")
+            raise UsageError(f"{file}: unknown setting {key!r}; {hint(key, sorted(options))}")
         name, repeatable = options[key]
         value = _assignments(said, file) if key == "env" and isinstance(said, dict) else said
         if not _fits(value, repeatable):

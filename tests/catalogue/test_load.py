@@ -58,7 +58,12 @@ def test_a_rule_is_its_file(tmp_path: Path) -> None:
         ({}, {}, "[applies]\nnation = ['gb-eng', 'gb-nir']", "'gb-nir' is no nation"),
         ({"law": '["uk"]'}, {}, "", "law: 'uk' is no country code: use 'gb'"),
         ({"requires": '["map", "indikator"]'}, {}, "", "requires: 'indikator' is no signal; did you mean 'indicator'"),
-        ({"pass_requires": '["weather"]'}, {}, "", "pass_requires: 'weather' is no signal; known are actor_classes, .*"),
+        (
+            {"pass_requires": '["weather"]'},
+            {},
+            "",
+            "pass_requires: 'weather' is no signal; known are actor_classes, .*",
+        ),
         ({}, {}, "[applies]\nlimit_min_mps = -1", "limit_min_mps must be a speed in m/s, not -1"),
         ({}, {}, "[applies]\nlimit_max_mps = inf", "limit_max_mps must be a speed in m/s, not inf"),
         (

@@ -9,6 +9,7 @@ import numpy as np
 
 from drivelint.annotate import draw
 from drivelint.annotate.draw import Colour
+from drivelint.drive.order import MAX_GAP_PERIODS
 from drivelint.formats.protobuf import wire
 
 if TYPE_CHECKING:
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 BOXES: Final = 1_000_000
 """A drive with more states shows only every second, third ... step: about 30 MB of boxes are enough for any viewer."""
 CHUNK_BYTES: Final = 2 << 20
-LIFETIME_STEPS: Final = 2.5  # whoever has no box for that long is gone (as ingest's and the library's gaps)
 EGO_FRAME: Final = "base_link"
 """The name that viewers follow without being asked."""
 EGO = Colour(0.13, 0.45, 0.95)
@@ -151,7 +151,7 @@ class _Pieces:
 
 
 def _lifetime(t_ns: NDArray[np.int64]) -> int:
-    return int(LIFETIME_STEPS * float(np.median(np.diff(t_ns)))) if len(t_ns) > 1 else 0
+    return int(MAX_GAP_PERIODS * float(np.median(np.diff(t_ns)))) if len(t_ns) > 1 else 0
 
 
 def _heads(tracks: Tracks, lifetime_ns: int) -> list[bytes]:

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from drivelint.drive.order import MAX_GAP_PERIODS
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
-
-MAX_GAP: Final = 2.5  # a sample older than so many periods does not say where somebody is now
 
 
 class Places(NamedTuple):
@@ -63,7 +63,7 @@ class Tracks:
             return Places(nowhere, nowhere, nowhere, nowhere, np.nan, np.nan, np.nan)
         k = np.searchsorted(times, t_ns, side="right") - 1
         row = span.start + np.clip(k, 0, None)
-        gap = MAX_GAP * float(np.median(np.diff(times))) if len(times) > 1 else 0.0
+        gap = MAX_GAP_PERIODS * float(np.median(np.diff(times))) if len(times) > 1 else 0.0
         known = (k >= 0) & (t_ns - self.t_ns[row] <= gap)
         x, y, z, yaw = (np.where(known, column[row], np.nan) for column in (self.x, self.y, self.z, self.yaw))
         length, width, height = map(float, self.sizes[self.actor[span.start]])

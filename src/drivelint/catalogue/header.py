@@ -11,6 +11,7 @@ import msgspec
 
 from drivelint.drive import conditions
 from drivelint.errors import RuleError
+from drivelint.phrases import hint
 from drivelint.reasons import signals
 
 Kind = Literal["invariant", "execution", "precondition", "postcondition"]
@@ -122,8 +123,6 @@ def parse_header(text: str, where: str) -> Header:
 
 def _explained(error: msgspec.ValidationError, text: str, where: str) -> RuleError:
     """Turn msgspec's message into one line with file, line and the nearest known key."""
-    from difflib import get_close_matches
-
     message = str(error)
     place = re.search(r"at `\$\.?([^`]*)`", message)
     path = place[1] if place else ""
@@ -134,9 +133,8 @@ def _explained(error: msgspec.ValidationError, text: str, where: str) -> RuleErr
         line = 1 if missing and not path else line_of(text, key)
         return RuleError(f"{where}:{line}: header: {message}")
     known = Param if path.startswith("params") else Conditions if path.startswith("applies") else Header
-    near = get_close_matches(key, known.__struct_fields__, n=1)
-    hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(known.__struct_fields__)}"
-    return RuleError(f"{where}:{line_of(text, key)}: unknown key {key!r} in the header; {hint}")
+    nearest = hint(key, known.__struct_fields__)
+    return RuleError(f"{where}:{line_of(text, key)}: unknown key {key!r} in the header; {nearest}")
 
 
 def line_of(text: str, key: str) -> int:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import re
-from difflib import get_close_matches
 from pathlib import Path  # noqa: TC003 - msgspec looks the field types up when it needs them
 from typing import TYPE_CHECKING
 
@@ -12,6 +11,7 @@ from drivelint.catalogue.check import GIVEN, Query, inspect
 from drivelint.catalogue.header import Header, line_of, parse_header
 from drivelint.catalogue.sections import Section, split
 from drivelint.errors import RuleError
+from drivelint.phrases import hint
 from drivelint.resources import folder
 from drivelint.sql import store
 
@@ -184,11 +184,7 @@ def _check_columns(
         raise RuleError(f"{where} must return {', '.join(needed)}; {', '.join(missing)} missing")
     stray = [c for c in columns if c not in allowed]
     if stray:
-        near = get_close_matches(stray[0], allowed, n=1)
-        raise RuleError(
-            f"{where} returns the unknown column {stray[0]!r}; "
-            + (f"did you mean {near[0]!r}?" if near else f"known are {', '.join(allowed)}")
-        )
+        raise RuleError(f"{where} returns the unknown column {stray[0]!r}; {hint(stray[0], allowed)}")
 
 
 def _check_condition(header: Header, query: Query, where: str) -> None:

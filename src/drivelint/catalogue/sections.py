@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from difflib import get_close_matches
 from typing import NamedTuple
 
 from drivelint.errors import RuleError
+from drivelint.phrases import hint
 
 NAMES = ("applies", "reference", "condition", "anchor")
 _MARK = re.compile(r"^--\s*@(\S+)\s*$")
@@ -33,11 +33,7 @@ def split(text: str, where: str) -> tuple[str, dict[str, Section]]:
     ends = [n for n, _ in marks[1:]] + [len(lines)]
     for (start, name), end in zip(marks, ends, strict=False):
         if name not in NAMES:
-            near = get_close_matches(name, NAMES, n=1)
-            raise RuleError(
-                f"{where}:{start + 1}: unknown section @{name}; "
-                + (f"did you mean @{near[0]}?" if near else f"known are {', '.join(NAMES)}")
-            )
+            raise RuleError(f"{where}:{start + 1}: unknown section @{name}; {hint(name, NAMES, sign='@')}")
         if name in sections:
             raise RuleError(f"{where}:{start + 1}: section @{name} stands twice")
         below = lines[start + 1 : end]

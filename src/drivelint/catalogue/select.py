@@ -21,6 +21,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
+from drivelint.phrases import hint
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -74,9 +75,7 @@ def _being(rules: Mapping[str, Rule], part: str) -> list[Rule]:
 def _by_method(rules: Mapping[str, Rule], method: str, word: str) -> list[Rule]:
     """Return the rules of which this word is true. Errors: `UsageError` naming the methods, or the words in use."""
     if method not in _METHODS:
-        near = get_close_matches(method, _METHODS, n=1)
-        hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(_METHODS)}"
-        raise UsageError(f"rules are not selected by {method!r}; {hint}")
+        raise UsageError(f"rules are not selected by {method!r}; {hint(method, _METHODS)}")
     words = {rule.id: _METHODS[method](rule) for rule in rules.values()}
     found = [rules[rule_id] for rule_id, mine in words.items() if word.casefold() in mine]
     if not found:

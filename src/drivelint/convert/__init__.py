@@ -10,7 +10,6 @@ import pyarrow as pa
 
 from drivelint.convert.guard import refuse_to_overwrite
 from drivelint.convert.tables import MAP_FILE, parquet_bytes
-from drivelint.drive.order import listed
 from drivelint.drive.trace import DriveInput
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import MapError, UsageError
@@ -19,6 +18,7 @@ from drivelint.formats.files import CANONICAL
 from drivelint.formats.map_registry import root_element
 from drivelint.formats.osi import log as osi_log
 from drivelint.formats.osi.extras import findings
+from drivelint.phrases import listed
 from drivelint.result.files import OutputError, prepare, publish
 from drivelint.road.contract import MapSource
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import listed
 from drivelint.drive.trace import CLASSES, SIZES, Finding
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.order import MAX_GAP_PERIODS, in_order, listed, wrapped
+from drivelint.drive.order import MAX_GAP_PERIODS, in_order, wrapped
 from drivelint.drive.trace import NUMBERS, Finding, States
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

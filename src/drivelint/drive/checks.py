@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import MAX_GAP_PERIODS, listed, wrapped
+from drivelint.drive.order import MAX_GAP_PERIODS, wrapped
 from drivelint.drive.trace import MOTOR_VEHICLES, Finding
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

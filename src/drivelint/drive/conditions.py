@@ -7,10 +7,10 @@ One vocabulary for the rules' `[applies]`, for `--env` and for what a log may sa
 from __future__ import annotations
 
 import re
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from drivelint.errors import UsageError
+from drivelint.phrases import hint
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -61,10 +61,7 @@ def problem(condition: str, word: str) -> str | None:
         return None
     if condition == "nation" and word.lower() == "uk":
         return "'uk' is no country code: use 'gb', or gb-eng, gb-wls, gb-sct"
-    near = get_close_matches(word.lower(), [w.lower() for w in words], n=1)
-    meant = next((w for w in words if near and w.lower() == near[0]), None)
-    hint = f"did you mean {meant!r}?" if meant else f"known are {', '.join(words)}"
-    return f"{word!r} is no {condition.replace('_', ' ')}; {hint}"
+    return f"{word!r} is no {condition.replace('_', ' ')}; {hint(word, words)}"
 
 
 def spelled(condition: str, word: str) -> tuple[str, str]:
@@ -108,6 +105,4 @@ def unknown(condition: str) -> str | None:
     """Return what is wrong with this name of a condition, with the nearest good one; None: nothing."""
     if condition in GIVEN:
         return None
-    near = get_close_matches(condition.lower(), GIVEN, n=1)
-    hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(GIVEN)}"
-    return f"{condition!r} is no condition of a drive; {hint}"
+    return f"{condition!r} is no condition of a drive; {hint(condition, GIVEN)}"

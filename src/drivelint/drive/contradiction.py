@@ -14,8 +14,9 @@ import numpy as np
 
 from drivelint.drive.contrary import contrary
 from drivelint.drive.jumps import MOVING_MPS, UNPARTED, VELOCITY, Parted, Refused, forget, report
-from drivelint.drive.order import listed, wrapped
+from drivelint.drive.order import wrapped
 from drivelint.drive.trace import MOTOR_VEHICLES, Finding
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import isnan
 from typing import TYPE_CHECKING, Final
 
-from drivelint.drive.order import listed
 from drivelint.drive.trace import MOTOR_VEHICLES, SIZES, Finding
 from drivelint.errors import TraceError
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -13,11 +13,12 @@ from drivelint.drive import checks, contradiction, ego, jumps
 from drivelint.drive.align import aligned
 from drivelint.drive.headlights import with_lamps
 from drivelint.drive.motion import complete_motion
-from drivelint.drive.order import in_order, listed, steps, without_duplicates, wrapped
+from drivelint.drive.order import in_order, steps, without_duplicates, wrapped
 from drivelint.drive.removed import without_removed
 from drivelint.drive.restart import without_restarts
 from drivelint.drive.trace import BRAKE_LIGHTS, EPOCH_NS, INDICATORS, NUMBERS, SIZES, Finding, Trace
 from drivelint.errors import TraceError
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

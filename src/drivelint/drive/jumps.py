@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from drivelint.drive.off_track import off_track
-from drivelint.drive.order import listed
 from drivelint.drive.trace import Finding
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from collections.abc import Collection

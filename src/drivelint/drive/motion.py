@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import Steps, listed
 from drivelint.drive.trace import Finding
 from drivelint.drive.velocity import KNOWN_MPS, MOVED_M, derived
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from drivelint.drive.order import Steps
     from drivelint.drive.trace import States
 
 WRONG_MPS = 1.0

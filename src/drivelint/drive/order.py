@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drivelint.drive.trace import NUMBERS, Finding, States
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -17,14 +18,6 @@ if TYPE_CHECKING:
 MAX_GAP_PERIODS = 2.5
 """Samples further apart than this many periods are not continuous (DESIGN.md, Verdicts)."""
 UNKNOWN = np.int8(-1)
-LISTED = 5
-"""How many ids a message names before it says how many more there are."""
-
-
-def listed(ids: list[str]) -> str:
-    """Return ids as readable text, the first few by name."""
-    more = len(ids) - LISTED
-    return ", ".join(ids[:LISTED]) + (f" and {more} more" if more > 0 else "")
 
 
 def in_order(states: States) -> States:

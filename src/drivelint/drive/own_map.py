@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from drivelint.drive.order import listed
 from drivelint.drive.trace import OWN_MAP_UNUSABLE, Finding
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

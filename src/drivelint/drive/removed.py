@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from drivelint.drive.jumps import jumps
-from drivelint.drive.order import listed
 from drivelint.drive.trace import Finding
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from collections.abc import Collection

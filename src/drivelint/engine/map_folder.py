@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import MapError
 from drivelint.formats.map_registry import READERS, read_source, root_element
+from drivelint.phrases import listed
 from drivelint.road import geo
 
 if TYPE_CHECKING:
@@ -83,9 +84,3 @@ def _is_map(file: Path) -> bool:
         return False
     with file.open("rb") as content:
         return (root_element(content.read(_HEAD_BYTES)) or "").lower() in READERS
-
-
-def listed(names: Sequence[str], most: int = 5) -> str:
-    """Return the names in one phrase, the last of many only counted."""
-    rest = f" and {len(names) - most} more" if len(names) > most else ""
-    return ", ".join(names[:most]) + rest

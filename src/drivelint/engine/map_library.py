@@ -13,9 +13,10 @@ import numpy as np
 import pyarrow.compute as pc
 
 from drivelint.engine.map_fit import DOUBT_SAMPLES, SAMPLES, ground, headings, on_map, reversed_road, vote, ways
-from drivelint.engine.map_folder import MANIFEST, MapFolder, listed
+from drivelint.engine.map_folder import MANIFEST, MapFolder
 from drivelint.errors import MapError, UsageError
 from drivelint.formats.map_registry import load_map, read_source
+from drivelint.phrases import listed
 from drivelint.road import geo
 from drivelint.road.contract import MapSource
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 import tomllib
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 import msgspec
 import pyarrow as pa
 
 from drivelint.errors import RuleError, UsageError
+from drivelint.phrases import hint
 from drivelint.resources import folder
 
 if TYPE_CHECKING:
@@ -57,9 +57,7 @@ def profile_table(profiles: dict[str, Profile], selected: Sequence[str]) -> pa.T
     """
     chosen = set(selected or DEFAULT)
     for name in sorted(chosen - profiles.keys()):
-        near = get_close_matches(name, profiles, n=1)
-        hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(profiles)}"
-        raise UsageError(f"no profile {name!r}; {hint}")
+        raise UsageError(f"no profile {name!r}; {hint(name, profiles)}")
     rows = [
         {
             "profile": name,

@@ -21,7 +21,6 @@ import tomllib
 from collections import Counter
 from dataclasses import replace
 from datetime import date, datetime
-from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from itertools import pairwise
 from math import isfinite
@@ -29,6 +28,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.errors import UsageError
 from drivelint.gate.match import seconds
+from drivelint.phrases import hint
 from drivelint.result.gate import Waiver
 
 if TYPE_CHECKING:
@@ -116,9 +116,7 @@ def _waiver(table: Row, file: Path, place: tuple[int, Mapping[str, int]]) -> Wai
     known = (*_MUST, *_PATTERNS, *_TIMES)
     for key in table:
         if key not in known:
-            near = get_close_matches(key, known, n=1)
-            hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(known)}"
-            raise refuse(key, f"unknown key {key!r}; {hint}")
+            raise refuse(key, f"unknown key {key!r}; {hint(key, known)}")
     if missing := [key for key in _MUST if key not in table]:
         raise refuse("", f"{' and '.join(missing)} missing: somebody must answer for it, say why, and until when")
     for key in ("rule", "reason", "owner", *_PATTERNS):

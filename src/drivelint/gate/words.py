@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
+from drivelint.phrases import plural
 from drivelint.result import counts
 from drivelint.result.text import number
 
@@ -76,7 +77,7 @@ def verdict(failing: Sequence[Entry], fail_on: str) -> str:
         return "exit 0: new findings do not gate (--fail-on never)"
     what = f"at or above severity {fail_on}"
     if failing:
-        return f"exit 1: {many(len(failing), 'new finding')} {what}"
+        return f"exit 1: {plural(len(failing), 'new finding')} {what}"
     return f"exit 0: no new finding {what}"
 
 
@@ -126,7 +127,7 @@ def waivers(gate: Gate) -> Iterator[str]:
 
 
 def _would(waiver: Waiver) -> str:
-    return f"; {many(waiver.findings, 'finding')} like that" if waiver.findings else "; no finding is like that"
+    return f"; {plural(waiver.findings, 'finding')} like that" if waiver.findings else "; no finding is like that"
 
 
 def about(waiver: Waiver) -> str:
@@ -152,11 +153,6 @@ def summary(gate: Gate) -> dict[str, Any]:
         "waivers": {state: states[state] for state in ("active", "expired", "unmatched")},
         "notes": list(waivers(gate)),
     }
-
-
-def many(n: int, noun: str) -> str:
-    """Return a number with its noun."""
-    return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
 
 
 def grouped(opened: Iterable[Opened]) -> list[tuple[str, list[str], int]]:
@@ -192,7 +188,7 @@ def _drives(difference: Difference) -> Iterator[str]:
     for title, names in (("Only in the newer result", difference.new_only), ("Only in the base", difference.base_only)):
         if names:
             few = ", ".join(names[:MAX_LINES])
-            yield f"{title} ({many(len(names), 'drive')}): {few}{' ...' if len(names) > MAX_LINES else ''}"
+            yield f"{title} ({plural(len(names), 'drive')}): {few}{' ...' if len(names) > MAX_LINES else ''}"
 
 
 def _worse(entry: Entry) -> bool:

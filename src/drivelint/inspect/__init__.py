@@ -9,7 +9,6 @@ import msgspec
 
 from drivelint import catalogue
 from drivelint.drive import conditions
-from drivelint.drive.order import listed
 from drivelint.drive.trace import FORMATS, OWN_MAP_UNUSABLE, DriveInput
 from drivelint.engine.batch import Drive as Judgeable
 from drivelint.engine.batch import on_its_map
@@ -20,6 +19,7 @@ from drivelint.errors import ExitCode, MapError, TraceError, UsageError
 from drivelint.formats import expand, read_trace
 from drivelint.inspect import advice, model, tracks
 from drivelint.inspect.content import content, size
+from drivelint.phrases import listed
 from drivelint.sql import store
 
 if TYPE_CHECKING:

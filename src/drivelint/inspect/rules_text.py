@@ -8,7 +8,7 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
-from drivelint.inspect.words import many, plural
+from drivelint.phrases import listed, plural
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -32,12 +32,12 @@ def rules(drive: Drive, log: str) -> Group:
 
 def _about(drive: Drive, egos: list[Ego], log: str) -> list[RenderableType]:
     ego, n = egos[0], len(drive.rules)
-    selection = many(drive.selection, _NAMED)
+    selection = listed(drive.selection, _NAMED)
     who = ""
     if not drive.egos:
         who = f" with --ego {ego.actor.actor_id}"
     elif len(drive.egos) > 1:
-        who = f" for {'ego' if len(egos) == 1 else 'egos'} {many([e.actor.actor_id for e in egos], _NAMED)}"
+        who = f" for {'ego' if len(egos) == 1 else 'egos'} {listed([e.actor.actor_id for e in egos], _NAMED)}"
     style = "bold green" if len(ego.can) == n else "bold yellow" if ego.can else "bold red"
     parts: list[RenderableType] = [
         Text(f"{log} can decide {len(ego.can)} of {n} rules ({selection}){who}.", style=style)

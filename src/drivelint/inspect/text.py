@@ -13,7 +13,8 @@ from rich.text import Text
 from drivelint.drive.trace import FORMATS
 from drivelint.formats.tables.mapping import GROUP
 from drivelint.inspect.rules_text import rules
-from drivelint.inspect.words import amount, holes, many, metres, plural, side, size
+from drivelint.inspect.words import amount, holes, metres, side, size
+from drivelint.phrases import listed, plural
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -117,13 +118,13 @@ def _sheet(sheet: Sheet) -> Text:
     read = [c for c in sheet.columns if c.read_as]
     if not read:
         names = [c.name for c in sheet.columns]
-        return Text(f"{sheet.name}: {rows}{plural(len(names), 'column')}: {many(names, MAX_ROWS)}")
+        return Text(f"{sheet.name}: {rows}{plural(len(names), 'column')}: {listed(names, MAX_ROWS)}")
     grouped = any(GROUP in c.name for c in sheet.columns)
     whole = f"{rows}{len(read)} of {plural(len(sheet.columns), 'column')}{' per actor' if grouped else ''}"
     text = Text(f"{whole} read: {', '.join(_cell(column, grouped=grouped) for column in read)}")
     if others := [c.name for c in sheet.columns if not c.read_as]:
         names = [name.replace(GROUP, "").lstrip("# ") for name in others]
-        text.append(f"; not read: {many(names, MAX_ROWS)}", style="dim")
+        text.append(f"; not read: {listed(names, MAX_ROWS)}", style="dim")
     return text
 
 

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+from drivelint.phrases import plural
 
+if TYPE_CHECKING:
     from drivelint.inspect.model import Clock
 
-_PLURAL: Final = {
-    "bus": "buses",
-    "actor of unknown class": "actors of unknown class",
-}
 _SOURCES: Final = {
     "option": "as --handedness says",
     "attribute": "as the map says",
@@ -23,20 +19,9 @@ _SOURCES: Final = {
 }
 
 
-def plural(n: int, what: str) -> str:
-    """Return a count and its noun."""
-    return f"{n} {what if n == 1 else _PLURAL.get(what, f'{what}s')}"
-
-
 def amount(n: int, of: int) -> str:
     """Return how many of a number, in a word where that is plain."""
     return "none" if n == 0 else ("all" if n == of else f"{n} of {of}") if of > 1 else "it is"
-
-
-def many(names: Sequence[str], most: int) -> str:
-    """Return the first names and how many more there are."""
-    more = len(names) - most
-    return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
 
 
 def size(n: int) -> str:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import Final
 
 from drivelint.drive.conditions import SAYS, WORDS
 from drivelint.drive.declared import MODES
 from drivelint.drive.trace import FORMATS
+from drivelint.phrases import hint
 
 ADVICE: Final = {
     "map": "the road as OpenDRIVE: --map FILE",
@@ -86,10 +86,7 @@ def problem(signal: str) -> str | None:
     """Return what is wrong with the name of a signal; None: it is one."""
     if signal in SIGNALS:
         return None
-    near = get_close_matches(signal, sorted(SIGNALS), n=1)
-    return f"{signal!r} is no signal; " + (
-        f"did you mean {near[0]!r}?" if near else f"known are {', '.join(sorted(SIGNALS))}"
-    )
+    return f"{signal!r} is no signal; {hint(signal, sorted(SIGNALS))}"
 
 
 def provide(signal: str, log_format: str) -> str:

@@ -10,6 +10,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.gate import words
+from drivelint.phrases import plural
 from drivelint.report.html.anchors import finding_anchor
 from drivelint.result import counts
 from drivelint.result.model import outcome
@@ -50,7 +51,7 @@ def render(result: Result, link: str = "report.html") -> bytes:
     blocks += _open(result)
     kept = _within(blocks)
     if len(kept) < len(blocks):
-        kept.append(f"{words.many(len(blocks) - len(kept), 'part')} left out here for length, not for weight.")
+        kept.append(f"{plural(len(blocks) - len(kept), 'part')} left out here for length, not for weight.")
     return ("\n\n".join([*kept, f"[The whole report]({_target(link)})"]) + "\n").encode("utf-8", "replace")
 
 
@@ -76,7 +77,7 @@ def difference(diff: Difference, failing: Sequence[Entry], fail_on: str, gate: G
     for title, names in (("Only in the newer result", diff.new_only), ("Only in the base", diff.base_only)):
         if names:
             few = ", ".join(code(name) for name in names[:MAX_ROWS]) + (", ..." if len(names) > MAX_ROWS else "")
-            blocks.append(f"{title}: {words.many(len(names), 'drive')}: {few}")
+            blocks.append(f"{title}: {plural(len(names), 'drive')}: {few}")
     return "\n\n".join(blocks)
 
 
@@ -222,8 +223,8 @@ def _open(result: Result) -> Iterator[str]:
     lines = [_row("verdict", "rules", "why"), _row("---", "---", "---")]
     lines += [_row(at[0], _few(sorted(why[at])), text(times(_short(at[1]), told[at]))) for at in ordered[:MAX_ROWS]]
     more = f" (the first {MAX_ROWS} of {len(ordered)} reasons)" if len(ordered) > MAX_ROWS else ""
-    n = words.many(rows.num_rows, "verdict")
-    yield _folded(f"Could not be judged: {n}, for {words.many(len(ordered), 'reason')}{more}", "\n".join(lines))
+    n = plural(rows.num_rows, "verdict")
+    yield _folded(f"Could not be judged: {n}, for {plural(len(ordered), 'reason')}{more}", "\n".join(lines))
 
 
 def _few(rules: Sequence[str]) -> str:

@@ -9,6 +9,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.errors import ExitCode
+from drivelint.phrases import plural
 from drivelint.result.contract import FILES, conform, empty
 from drivelint.result.counts import SEVERITIES
 
@@ -76,19 +77,19 @@ def _outcomes(result: Result) -> Iterator[Outcome]:
     """Yield what the run comes to, weightiest first."""
     gating = _rows_of(result.verdicts, result.rules.filter(pc.equal(result.rules["status"], "stable")))
     if errors := _count(result.verdicts, "error"):
-        yield Outcome(ExitCode.USAGE, f"{_many(errors, 'verdict')} in error: a rule could not be run")
+        yield Outcome(ExitCode.USAGE, f"{plural(errors, 'verdict')} in error: a rule could not be run")
     let_through = ""
     if result.gate is None:
         if failed := _severe(gating, "fail", result.fail_on):
-            yield Outcome(ExitCode.FAILED, f"{_many(failed, 'verdict')} failed at or above severity {result.fail_on}")
+            yield Outcome(ExitCode.FAILED, f"{plural(failed, 'verdict')} failed at or above severity {result.fail_on}")
     else:
         stopped, let_through = _gate(result, gating)
         if stopped:
             yield Outcome(ExitCode.FAILED, f"{stopped} at or above severity {result.fail_on}{let_through}")
     if lost := int(pc.sum(pc.equal(result.drives["status"], "not_judged")).as_py() or 0):
-        yield Outcome(ExitCode.NOT_JUDGED, f"{lost} of {_many(result.drives.num_rows, 'drive')} could not be judged")
+        yield Outcome(ExitCode.NOT_JUDGED, f"{lost} of {plural(result.drives.num_rows, 'drive')} could not be judged")
     if result.strict and (unknown := _count(gating, "unknown")):
-        yield Outcome(ExitCode.NOT_JUDGED, f"{_many(unknown, 'verdict')} unknown, and --strict is set")
+        yield Outcome(ExitCode.NOT_JUDGED, f"{plural(unknown, 'verdict')} unknown, and --strict is set")
     if result.lossy:
         yield Outcome(ExitCode.LOSSY, "judged on lossy input: parts of a log were lost")
     if result.fail_on == "never":
@@ -104,10 +105,6 @@ def _outcomes(result: Result) -> Iterator[Outcome]:
 def exit_code(result: Result) -> ExitCode:
     """Return the exit code of DESIGN.md for a finished run."""
     return outcome(result).code
-
-
-def _many(n: int, noun: str) -> str:
-    return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
 
 
 def _count(verdicts: pa.Table, verdict: str) -> int:
@@ -147,8 +144,8 @@ def _gate(result: Result, gating: pa.Table) -> tuple[str, str]:
     failed = failed.filter(pc.equal(failed["verdict"], "fail")).select(keys)
     bare = sum(tuple(row.values()) not in told for row in failed.to_pylist())
     new = "new finding" if gate.baseline is not None else "finding"
-    parts = [_many(stopped, new)] if stopped else []
-    parts += [f"{_many(bare, 'failed verdict')} without a finding"] if bare else []
+    parts = [plural(stopped, new)] if stopped else []
+    parts += [f"{plural(bare, 'failed verdict')} without a finding"] if bare else []
     through = [f"{known} known"] if gate.baseline is not None else []
     through += [f"{waived} waived"] if gate.waivers else []
     return " and ".join(parts), f" ({', '.join(through)})" if through else ""

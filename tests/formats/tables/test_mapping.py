@@ -32,7 +32,7 @@ def test_the_registration_of_the_case_study_lives_in_its_mapping() -> None:
     [
         (LONG.replace("yaw =", "yav ="), r"unknown key 'columns\.yav': did you mean 'yaw'\?"),
         (LONG.replace("[ego]", "[ega]"), r"unknown key 'ega': did you mean 'ego'\?"),
-        (LONG + "[frame]\nzzz = 1\n", r"unknown key 'frame\.zzz': known: flip_y"),
+        (LONG + "[frame]\nzzz = 1\n", r"unknown key 'frame\.zzz': known are flip_y"),
         (LONG.replace('"vx"', '{ colum = "vx" }'), r"unknown key 'columns\.vx\.colum': did you mean 'column'\?"),
         (LONG + '[class]\ncolumn = "x"\npatterns = [{ math = "a", is = "car" }]\n', r"did you mean 'match'\?"),
         (LONG.replace('x = "x"\n', ""), r"missing required field `x`"),
@@ -47,7 +47,7 @@ def test_the_registration_of_the_case_study_lives_in_its_mapping() -> None:
         (LONG.replace("length = 4.5\n", "") + '[reference]\npoint = "front_bumper"\n', r"needs columns\.length"),
         (LONG + "[reference]\nforward = 1.0\n", r"need reference\.point = 'rear_axle'"),
         (LONG + '[reference]\npoint = "axle"\n', r"Invalid enum value 'axle'"),
-        (LONG + '[class]\ncolumn = "x"\ndefault = "lorry"\n', r"class: 'lorry' is not one of car"),
+        (LONG + '[class]\ncolumn = "x"\ndefault = "lorry"\n', r"class: 'lorry' is not one of its words: known are car"),
         (LONG + '[indicator]\ncolumn = "x"\nvalues = { l = "lefft" }\n', r"indicator: 'lefft' .*did you mean 'left'\?"),
         (LONG + '[class]\ncolumn = "x"\npatterns = [{ match = "(", is = "car" }]\n', r"not a regular expression"),
         (LONG.replace('ids = ["a"]', 'ids = ["a"]\notherwise = "first"'), r"needs column groups"),
@@ -70,7 +70,7 @@ def test_names_that_are_no_mapping(tmp_path: Path) -> None:
         UsageError, match=r"'carla-testbensh': neither a file nor a shipped mapping: did you mean 'carla-testbench'"
     ):
         load("carla-testbensh")
-    with pytest.raises(UsageError, match=r"shipped: carla-testbench, esmini"):
+    with pytest.raises(UsageError, match=r"shipped mapping: known are carla-testbench, esmini"):
         load("qqqq")
     with pytest.raises(UsageError, match="neither a file"):
         load(str(tmp_path))

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from drivelint.drive.order import listed
 from drivelint.drive.trace import CLASSES, Finding, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats import markup
 from drivelint.formats.commonroad.lights import signal_states
 from drivelint.formats.commonroad.text import cut
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

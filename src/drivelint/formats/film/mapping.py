@@ -7,7 +7,6 @@ assumed speed, and whoever is detected is placed at his measured distance ahead,
 from __future__ import annotations
 
 import tomllib
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
@@ -15,6 +14,7 @@ import msgspec
 
 from drivelint.errors import UsageError
 from drivelint.formats.tables.mapping import UNITS
+from drivelint.phrases import hint
 
 SHIPPED: Final = Path(__file__).parent / "mappings"
 Metres = Annotated[float, msgspec.Meta(gt=0.0, lt=1000.0)]
@@ -130,8 +130,7 @@ def load(name: str) -> tuple[str, Film]:
     if "extends" in raw:
         base = raw.pop("extends")
         if base not in shipped():
-            near = get_close_matches(str(base), shipped(), 1)
-            raise UsageError(f"mapping {path}: extends {base!r}: known are {', '.join(near or shipped())}")
+            raise UsageError(f"mapping {path}: extends {base!r}: {hint(str(base), shipped())}")
         raw = _merged(_raw(SHIPPED / f"{base}.toml"), raw)
     try:
         film = msgspec.convert(raw, Film)

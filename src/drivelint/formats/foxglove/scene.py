@@ -9,7 +9,6 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.drive.order import listed
 from drivelint.drive.trace import Finding, Recording
 from drivelint.errors import TraceError
 from drivelint.formats.foxglove.decode import SCENE, TRANSFORM, TREES, Decoder, items, numbers, times, vectors, words
@@ -20,6 +19,7 @@ from drivelint.formats.mcap.reader import Container
 from drivelint.formats.osi.words import child
 from drivelint.formats.ros2.objects import class_of
 from drivelint.formats.ros2.rows import Rows, blank, clocks, common_clock, distinct, joined, placed
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -10,7 +10,6 @@ import numpy as np
 import ptars
 
 from drivelint.drive import own_map
-from drivelint.drive.order import listed
 from drivelint.drive.trace import EPOCH_NS, Finding, FrameTimes, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import Container
@@ -18,6 +17,7 @@ from drivelint.formats.osi import extras as carried
 from drivelint.formats.osi.decode import GROUND_TRUTH, SENSOR_VIEW, TREES, Decoder, Head, head_of
 from drivelint.formats.osi.words import Bulbs, signal_states
 from drivelint.formats.protobuf import descriptors
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from pathlib import Path

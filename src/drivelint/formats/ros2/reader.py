@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drivelint.drive import own_map
-from drivelint.drive.order import listed
 from drivelint.drive.trace import Finding, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats.frames import Frames, clean, fixed_frame
@@ -21,6 +20,7 @@ from drivelint.formats.ros2.ego import EGO_INFO, ENGAGE, HAZARD, MODE, ODOMETRY,
 from drivelint.formats.ros2.merge import Sources, merged
 from drivelint.formats.ros2.objects import KINDS, stamps
 from drivelint.formats.ros2.rows import Rows, clocks, common_clock, distinct, joined, placed
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

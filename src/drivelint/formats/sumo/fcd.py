@@ -16,12 +16,12 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv as pa_csv
 
-from drivelint.drive.order import listed
 from drivelint.drive.trace import BRAKE_LIGHTS, CLASSES, INDICATORS, Finding, Recording, States
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import markup
 from drivelint.formats.sumo import lights as sumo_lights
 from drivelint.formats.tables import parquet
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 import pyarrow as pa
 
-from drivelint.drive.order import listed
 from drivelint.drive.trace import SIGNAL_STATES, Finding
 from drivelint.formats import markup
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 import tomllib
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
@@ -17,6 +16,7 @@ import msgspec
 
 from drivelint.drive.trace import BRAKE_LIGHTS, CLASSES, INDICATORS
 from drivelint.errors import UsageError
+from drivelint.phrases import hint
 
 if TYPE_CHECKING:
     from collections.abc import Set as AbstractSet
@@ -174,10 +174,8 @@ def load(name: str) -> tuple[str, Mapping]:
     path = Path(name)
     if not path.is_file():
         if name not in shipped():
-            known = sorted([*shipped(), *(file.stem for file in (SHIPPED / "video").glob("*.toml"))])
-            near = get_close_matches(name, known, 1)
-            hint = f"did you mean {near[0]!r}?" if near else f"shipped: {', '.join(known)}"
-            raise UsageError(f"mapping {name!r}: neither a file nor a shipped mapping: {hint}")
+            known = sorted(file.stem for file in SHIPPED.parents[1].glob("*/mappings/*.toml"))  # those of films too
+            raise UsageError(f"mapping {name!r}: neither a file nor a shipped mapping: {hint(name, known)}")
         path = SHIPPED / f"{name}.toml"
     try:
         raw = tomllib.loads(path.read_text(encoding="utf-8"))
@@ -234,9 +232,7 @@ def _refuse_unknown(path: Path, raw: Any, kind: Any, where: str) -> None:
     known = {info.encode_name: info for info in msgspec.structs.fields(struct)}
     for key, value in raw.items():
         if key not in known:
-            near = get_close_matches(key, known, 1, 0.5)
-            hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(known)}"
-            raise UsageError(f"mapping {path}: unknown key {where + key!r}: {hint}")
+            raise UsageError(f"mapping {path}: unknown key {where + key!r}: {hint(key, known, cutoff=0.5)}")
         _refuse_unknown(path, value, known[key].type, f"{where}{key}.")
 
 
@@ -315,11 +311,7 @@ def _validate_words(path: Path, name: str, spec: Words, allowed: tuple[str, ...]
         *([spec.default] if spec.default is not None else []),
     ):
         if word not in allowed:
-            near = get_close_matches(word, allowed, 1)
-            raise UsageError(
-                f"mapping {path}: {name}: {word!r} is not one of {', '.join(allowed)}"
-                + (f": did you mean {near[0]!r}?" if near else "")
-            )
+            raise UsageError(f"mapping {path}: {name}: {word!r} is not one of its words: {hint(word, allowed)}")
     for pattern in spec.patterns:
         try:
             re.compile(pattern.match)

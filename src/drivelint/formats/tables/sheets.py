@@ -10,7 +10,6 @@ import polars as pl
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.drive.order import LISTED
 from drivelint.errors import TraceError
 from drivelint.formats.tables import parquet
 from drivelint.formats.tables.mapping import TIME_UNITS
@@ -25,6 +24,8 @@ if TYPE_CHECKING:
 
 MAX_NS = 2.0**63
 TEXT_BLOCK = 1 << 20
+_SHOWN = 5
+"""How many places a message names."""
 
 
 class Sheet(Protocol):
@@ -170,7 +171,7 @@ class CsvSheet:
 
     def where(self, rows: NDArray[np.intp]) -> str:
         """Return the line numbers of the first of these rows."""
-        return places("line", [self._line(int(row)) for row in rows[:LISTED]], len(rows))
+        return places("line", [self._line(int(row)) for row in rows[:_SHOWN]], len(rows))
 
     def _line(self, row: int) -> int:
         line = row + self._layout.skip_rows + 2
@@ -239,13 +240,13 @@ class ParquetSheet:
 
     def where(self, rows: NDArray[np.intp]) -> str:
         """Return the numbers of the first of these rows."""
-        return places("row", [int(row) + 1 for row in rows[:LISTED]], len(rows))
+        return places("row", [int(row) + 1 for row in rows[:_SHOWN]], len(rows))
 
 
 def places(what: str, first: list[int], n: int) -> str:
     """Return the first of `n` places as text: `line 7`, `lines 7, 9`, `lines 1, 2, 3, 4, 5 and 12 more`."""
-    more = n - len(first[:LISTED])
-    return f"{what}{'s' * (n > 1)} {', '.join(map(str, first[:LISTED]))}" + (f" and {more} more" if more else "")
+    more = n - len(first[:_SHOWN])
+    return f"{what}{'s' * (n > 1)} {', '.join(map(str, first[:_SHOWN]))}" + (f" and {more} more" if more else "")
 
 
 def _trimmed(column: pa.Array | pa.ChunkedArray, nothing: list[str]) -> pl.Series:

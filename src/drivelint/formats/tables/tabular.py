@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -17,6 +16,7 @@ from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables.geometry import to_map_frame
 from drivelint.formats.tables.mapping import GROUP, QUANTITY, UNITS
 from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, places
+from drivelint.phrases import hint
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -109,13 +109,10 @@ def _groups(path: Path, name: str, mapping: Mapping, sheet: Sheet) -> list[str]:
     for column in (column.replace(GROUP, k) for column in columns for k in groups):
         count = sheet.names.count(column)
         if count != 1:
-            near = get_close_matches(column, sheet.names, 1)
-            seen = ", ".join(sheet.names[:8]) + (" ..." if len(sheet.names) > 8 else "")
-            hint = f"did you mean {near[0]!r}?" if near else f"it has {seen}"
             what = (
                 f"the column {column!r} is there {count} times"
                 if count
-                else f"no column {column!r}, which mapping {name!r} needs: {hint}"
+                else f"no column {column!r}, which mapping {name!r} needs: {hint(column, sheet.names)}"
             )
             raise TraceError(f"{path}: {what}")
     return groups

@@ -1,0 +1,32 @@
+"""Phrases that many messages have: the nearest known word, a list of names, a count and its noun."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+_PLURAL: Final = {"bus": "buses", "actor of unknown class": "actors of unknown class"}
+
+
+def hint(word: str, known: Iterable[str], *, cutoff: float = 0.6, sign: str = "") -> str:
+    """Return "did you mean 'x'?" for the known word that is nearest, whatever its case, else "known are ..."; `sign` stands before the word."""
+    words = {each.casefold(): each for each in known}
+    near = get_close_matches(word.casefold(), words, n=1, cutoff=cutoff)
+    if not near:
+        return f"known are {', '.join(words.values())}"
+    meant = words[near[0]]
+    return f"did you mean {sign}{meant}?" if sign else f"did you mean {meant!r}?"
+
+
+def listed(names: Sequence[str], most: int = 5) -> str:
+    """Return the first names and how many more there are."""
+    more = len(names) - most
+    return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
+
+
+def plural(n: int, noun: str) -> str:
+    """Return a count and its noun."""
+    return f"{n} {noun if n == 1 else _PLURAL.get(noun, f'{noun}s')}"
