@@ -12,7 +12,10 @@ _PLURAL: Final = {"bus": "buses", "actor of unknown class": "actors of unknown c
 
 
 def hint(word: str, known: Iterable[str], *, cutoff: float = 0.6, sign: str = "") -> str:
-    """Return "did you mean 'x'?" for the known word that is nearest, whatever its case, else "known are ..."; `sign` stands before the word."""
+    """Return "did you mean 'x'?" for the nearest known word, whatever its case, else "known are ...".
+
+    `sign` stands before the word, in place of quotes.
+    """
     words = {each.casefold(): each for each in known}
     near = get_close_matches(word.casefold(), words, n=1, cutoff=cutoff)
     if not near:
