@@ -24,12 +24,12 @@ from drivelint.sql import store
 from drivelint.sql.derivations import derivations
 from tests import blinding, scenes
 from tests.clean.judging import told
+from tests.derive.bridge_scenes import bridge, lifted
+from tests.derive.exit_scenes import exit_road, leaver
+from tests.derive.jointed_road import jointed
 from tests.derive.marked import shouldered
-from tests.derive.test_exits import exit_road, leaver
-from tests.derive.test_lane_beside import jointed
-from tests.derive.test_levels import bridge, lifted
-from tests.derive.test_overtake import scene
-from tests.derive.test_trailer import drawn
+from tests.derive.overtake_scene import scene
+from tests.derive.trailer_scene import drawn
 from tests.scenes import LANE, Actor, derived, drive, judged, moving, road, saying, standing, swing, tee, times
 from tests.shared_data import ROOT
 

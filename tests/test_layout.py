@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from collections import Counter
 from graphlib import TopologicalSorter
 from pathlib import Path
@@ -28,3 +29,14 @@ def test_no_file_over_400_lines(file: Path) -> None:
 def test_no_folder_of_more_than_twenty_files() -> None:
     n = Counter(file.parent for file in FILES if file.name != "__init__.py")
     assert {str(folder.relative_to(SOURCE)): files for folder, files in n.items() if files > 20} == {}
+
+
+def test_no_test_file_imports_another() -> None:
+    """What several tests use stands in a file that is no test."""
+    tests = SOURCE.parents[1] / "tests"
+    for file in sorted(tests.rglob("*.py")):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("tests"):
+                named = [*(node.module or "").split("."), *(alias.name for alias in node.names)]
+                modules = [name for name in named if name.startswith("test_") and any(tests.rglob(f"{name}.py"))]
+                assert not modules, f"{file.relative_to(tests)}:{node.lineno} imports {modules}"

@@ -27,9 +27,9 @@ from drivelint.formats import load_map
 from drivelint.road.contract import MapSource
 from tests.clean.chapters import CHAPTERS
 from tests.clean.judging import named
+from tests.clean.planted import PLANTED
 from tests.clean.roads import open_road
 from tests.clean.story import Story
-from tests.clean.test_planted import PLANTED
 from tests.mirror import mirrored_map
 from tests.scenes import Row, judged
 

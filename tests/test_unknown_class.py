@@ -9,9 +9,9 @@ import pyarrow as pa
 import pytest
 
 from tests import blinding
+from tests.clean.blinded import on_the_road
 from tests.clean.judging import PACKS, stable, told
-from tests.clean.test_blinded import on_the_road
-from tests.clean.test_planted import PLANTED
+from tests.clean.planted import PLANTED
 from tests.scenes import judged
 
 if TYPE_CHECKING:

@@ -9,39 +9,14 @@ import pytest
 from drivelint.casefile import mutation, run_cases
 from drivelint.casefile.mutants import mutants
 from drivelint.catalogue import Rule
-from tests.evaluate.packs import AFTER, HOLDS, INVARIANT, MEASURED, write
+from tests.casefile.speed_rule import CASES, SPEED, measured, with_cases
+from tests.evaluate.packs import AFTER, HOLDS, INVARIANT, write
 
-LIMIT = '[params.limit]\ndefault = 13\nunit = "m/s"\nwhy = "a test"'
-SPEED = "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, $limit AS required FROM ego_state"
-CASES = """
-- name: clean
-  given: {ego_state: {t_s: 0..1 by 0.1, speed_mps: 14}}
-  expect: pass
-- name: boundary
-  given: {ego_state: {t_s: 0..1 by 0.1, speed_mps: 13}}
-  expect: [{verdict: fail, margin: 0}]
-- name: violation
-  given: {ego_state: {t_s: 0..1 by 0.1, speed_mps: 12}}
-  expect: fail
-- name: unknown
-  given: {ego_state: {t_s: 0..1 by 0.1}}
-  expect: unknown
-"""
 LOOSE = CASES.replace("13", "10").replace("12", "9").replace(", margin: 0", "")
 
 
 def faults(rule: Rule) -> list[str]:
     return [mutant.fault for mutant in mutants(rule)]
-
-
-def with_cases(rule: Rule, cases: str) -> Rule:
-    rule.path.with_suffix(".cases.yml").write_text(cases, encoding="utf-8")
-    return rule
-
-
-def measured(folder: Path, sql: str = SPEED, header: dict[str, str] | None = None, tables: str = LIMIT) -> Rule:
-    fields = INVARIANT | MEASURED | {"reads": '["ego_state"]'} | (header or {})
-    return write(folder, fields, {"condition": sql}, tables=tables)
 
 
 def test_sense_edge_and_threshold(tmp_path: Path) -> None:

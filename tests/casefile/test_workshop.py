@@ -9,7 +9,7 @@ import pytest
 from drivelint.casefile import commands as workshop
 from drivelint.catalogue import Rule, read_rule
 from drivelint.errors import ExitCode, RuleError, UsageError
-from tests.casefile.test_mutants import CASES, SPEED, measured, with_cases
+from tests.casefile.speed_rule import CASES, SPEED, measured, with_cases
 from tests.evaluate.packs import INVARIANT, MEASURED, text
 
 KINDS = ("invariant", "execution", "precondition", "postcondition")

@@ -5,15 +5,14 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-import pyarrow.compute as pc
 import pytest
 
 from drivelint.engine.batch import Drive
 from tests import blinding
 from tests.blinding import EVER
+from tests.clean.blinded import AFTER_S, BEFORE_S, STORIES, found, on_the_road
 from tests.clean.judging import stable
-from tests.clean.story import GARAGE_Y
-from tests.clean.test_planted import PLANTED, Planted, judged
+from tests.clean.planted import Planted
 from tests.scenes import judged as judged_by
 
 if TYPE_CHECKING:
@@ -22,9 +21,6 @@ if TYPE_CHECKING:
     from tests.blinding import Span
     from tests.scenes import Row
 
-BEFORE_S, AFTER_S = 25.0, 17.0  # so much of each drive is looked at, before and after what was planted
-LONG = ("ukhc.r239.parked-with-traffic", "ukhc.r248.parked-at-night")  # broken by standing for long
-STORIES = [p for p in PLANTED if not p.scene and p.rule not in LONG]
 SIZE, SPEED = ("length_m", "width_m"), ("vx_mps", "vy_mps")
 MAPS: dict[str, dict[str, Any]] = {
     "markings": {"lane_boundary": blinding.unsaid("marking")},
@@ -49,22 +45,6 @@ EVIDENCE = {
         "ukhc.h3.no-cut-across",
     ): "on the road for 0.4 s before it jumps: it is at the other place for all the rest",
 }
-
-
-def on_the_road(drive: Drive) -> Drive:
-    """Return the drive without those who wait elsewhere for their chapter: far away they have a place, here they are to have none."""
-    there = blinding.changed(
-        drive, "actor_state", lambda states: states.filter(pc.greater(states["y_m"], GARAGE_Y / 2))
-    )
-    left = pc.unique(there.trace.tables["actor_state"]["actor_id"])
-    return blinding.changed(there, "actor", lambda actors: actors.filter(pc.is_in(actors["actor_id"], left)))
-
-
-def found(planted: Planted) -> tuple[Row, Span]:
-    """Return the (first) row that breaks the rule, and from when to when."""
-    row = next(r for r in judged(planted.pack)[planted.rule] if r["rule_id"] == planted.rule and r["verdict"] == "fail")
-    times = [row[t] / 1e9 for t in ("t_start_ns", "t_end_ns", "t_ref_ns") if row[t] is not None]
-    return row, (min(times), max(times))
 
 
 def blinded(drive: Drive, row: Row, span: Span) -> Iterator[tuple[str, Drive]]:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests import blinding, cropping
-from tests.clean.test_blinded import AFTER_S, BEFORE_S, STORIES, found, on_the_road
+from tests.clean.blinded import AFTER_S, BEFORE_S, STORIES, found, on_the_road
 from tests.scenes import judged
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from drivelint.engine.batch import Drive
     from tests.blinding import Span
-    from tests.clean.test_planted import Planted
+    from tests.clean.planted import Planted
 
 PACKS = ("ukhc", "stvo", "alks-r157")  # what the others ask of needs no map but the lanes that the ego is on
 CROPS = (

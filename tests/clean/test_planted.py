@@ -2,24 +2,11 @@
 
 from __future__ import annotations
 
-import tomllib
-from functools import cache, partial
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-import msgspec
 import pytest
 
 from drivelint import catalogue
-from drivelint.demo import memory
-from drivelint.demo.scenes import library
-from tests.clean.judging import EVERYWHERE, PACKS, broken, named, stable, told, verdicts
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from drivelint.engine.batch import Drive
-    from tests.scenes import Row
+from tests.clean.judging import EVERYWHERE, PACKS, broken, stable
+from tests.clean.planted import PLANTED, Planted, judged
 
 # stable rules that no planted violation breaks, and why
 NOT_PLANTED = {
@@ -29,59 +16,6 @@ NOT_PLANTED = {
     "alks-r157.cut-in": "a collision after a cut-in that left time enough: the rule's own cases",
     "criticality.mttc": "it differs from ttc only while the ego speeds up towards somebody: the rule's own cases",
 }
-
-
-class Planted(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One entry of planted.toml."""
-
-    rule: str
-    chapter: str = ""
-    change: dict[str, Any] = {}
-    scene: str = ""
-    unchanged: str = ""
-    nation: str = "gb"
-    implied: dict[str, str] = {}
-
-    @property
-    def pack(self) -> str:
-        """Return the pack of the rule."""
-        return self.rule.partition(".")[0]
-
-    @property
-    def clean(self) -> str:
-        """Return the name of the drive without the violation."""
-        return self.unchanged or f"{self.nation} {self.chapter}"
-
-    def drives(self) -> dict[str, Callable[[], Drive]]:
-        """Return the drive with the violation, named like the rule, and the one without."""
-        if self.scene:
-            return {
-                self.rule: partial(_demo, self.scene, self.rule),
-                self.clean: partial(_demo, self.unchanged, self.clean),
-            }
-        return {
-            self.rule: partial(told, self.rule, self.nation, [self.chapter], self.change),
-            self.clean: partial(told, self.clean, self.nation, [self.chapter]),
-        }
-
-
-def _demo(scene: str, name: str) -> Drive:
-    return named(memory.drive(next(s for s in library() if s.name == scene)), name)
-
-
-PLANTED = msgspec.convert(
-    tomllib.loads((Path(__file__).parent / "planted.toml").read_text(encoding="utf-8"))["planted"], list[Planted]
-)
-
-
-@cache
-def judged(pack: str) -> dict[str, list[Row]]:
-    """Return the verdicts of a pack on its planted drives (by rule), and on the same ones without (by their names)."""
-    drives: dict[str, Callable[[], Drive]] = {}
-    for planted in PLANTED:
-        if planted.pack == pack:
-            drives |= planted.drives()
-    return verdicts([make() for make in drives.values()], [pack])
 
 
 @pytest.mark.parametrize("planted", PLANTED, ids=lambda p: p.rule)

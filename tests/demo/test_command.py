@@ -16,7 +16,7 @@ from drivelint.demo.overtakes import LOGGED_MPS, distance_ahead_m, safe_distance
 from drivelint.demo.road import MPH
 from drivelint.engine.profiles import load_profiles
 from drivelint.errors import UsageError
-from tests.demo.test_fixtures import TABLE_1
+from tests.demo.table_1 import TABLE_1
 
 PROGRAM = [sys.executable, "-m", "drivelint"]
 

@@ -13,6 +13,7 @@ from mcap.reader import make_reader
 from drivelint.demo.motion import separation
 from drivelint.demo.overtakes import overtakes
 from drivelint.demo.scenes import library
+from tests.demo.table_1 import TABLE_1
 from tests.shared_data import ROOT
 
 FOLDER = ROOT / "fixtures" / "scenes"
@@ -20,12 +21,6 @@ MAKE = runpy.run_path(str(FOLDER / "make.py"))
 AGAIN = "run python fixtures/scenes/make.py and read what changed"
 ZSTD = (1, 5, 7)  # the compressor of the committed logs: another one may pack the same messages into other bytes
 MAX_BYTES = 1_500_000
-
-TABLE_1 = {
-    "safe": {"relaxed": "fail", "nominal": "pass", "aggressive": "pass"},
-    "near-miss": {"relaxed": "fail", "nominal": "fail", "aggressive": "pass"},
-    "collision": {"relaxed": "fail", "nominal": "fail", "aggressive": "fail"},
-}
 
 
 def messages(content: bytes) -> list[tuple[Any, ...]]:

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.derive.test_junction_conflict import NORTH, across, east, line, mirrored, same
+from tests.derive.meetings import NORTH, across, east, line, mirrored, same
 from tests.scenes import Actor, Road, derived, drive, moving, rows, standing, times
 
 Row = dict[str, object]

@@ -11,6 +11,7 @@ import pytest
 
 from tests.derive.junction_scenes import cross, crosswalk
 from tests.derive.marked import marked
+from tests.derive.trailer_scene import drawn
 from tests.scenes import Actor, Road, derived, drive, judged, moving, road, rows, saying, standing, times
 
 if TYPE_CHECKING:
@@ -22,22 +23,6 @@ if TYPE_CHECKING:
 HANDS = pytest.mark.parametrize("hand", ["lht", "rht"])
 CRASH = "ukhc.no-collision"
 BEND = ((150.0, 0.0), (60.0, 1 / 40), (300.0, 0.0))
-
-
-def drawn(actor_id: str, tractor: Actor, hitch_m: float = 0.5, length: float = 6.0, **more: Any) -> Actor:
-    """Return a trailer: its middle rolls after an eye `hitch_m` behind the tractor's rear and as far before its own front."""
-    reach = (tractor.length or 0.0) / 2 + hitch_m
-    hx, hy = tractor.x - reach * np.cos(tractor.yaw), tractor.y - reach * np.sin(tractor.yaw)
-    bar = length / 2 + hitch_m
-    yaw = tractor.yaw.copy()
-    for i in range(1, len(yaw)):
-        step = np.array([hx[i] - hx[i - 1], hy[i] - hy[i - 1]])
-        yaw[i] = yaw[i - 1] + math.asin(
-            np.clip((step[1] * np.cos(yaw[i - 1]) - step[0] * np.sin(yaw[i - 1])) / bar, -1, 1)
-        )
-    x, y = hx - bar * np.cos(yaw), hy - bar * np.sin(yaw)
-    t = tractor.t_s
-    return Actor(actor_id, t, x, y, yaw, np.gradient(x, t), np.gradient(y, t), length, 2.2, **more)
 
 
 def parts(scene: Drive) -> dict[str, str]:

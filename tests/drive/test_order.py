@@ -14,7 +14,7 @@ from mcap.writer import Writer
 from drivelint.drive.trace import IngestOptions
 from drivelint.formats import read_trace
 from drivelint.formats.osi.schema import GROUND_TRUTH, descriptor_set
-from tests.formats.sumo.test_fcd import ROWS, TYPES, csv, xml
+from tests.formats.sumo.fcd_text import ROWS, TYPES, csv, xml
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:

@@ -4,31 +4,19 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pyarrow as pa
 import pytest
 
 from drivelint.engine.map_folder import MapFolder
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import MapError, UsageError
-from tests.formats.commonroad.test_lanelets import lanelet, scenario
+from tests.engine.few_states import states
+from tests.formats.commonroad.scenario_text import lanelet, scenario
 
 
 def put(folder: Path, name: str, x: float = 0.0) -> None:
     path = folder / name
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(scenario(lanelet(1, 0.0, x=x), benchmark="DEU_T-1"))
-
-
-def states(x: float) -> pa.Table:
-    return pa.table(
-        {
-            "x_m": [x + i for i in range(20)],
-            "y_m": [0.0] * 20,
-            "yaw_rad": [0.0] * 20,
-            "vx_mps": [10.0] * 20,
-            "vy_mps": [0.0] * 20,
-        }
-    )
 
 
 def found(folder: Path, log: str = "logs/drive.mcap", x: float = 5.0, embedded: bytes | None = None) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from drivelint import cli
-from tests.explain.test_explain import check
+from tests.explain.checked import check
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -7,48 +7,19 @@ import re
 import shutil
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 from rich.console import Console
 
-from drivelint import run
 from drivelint.errors import UsageError
 from drivelint.explain import Errors, ExplainRequest, Explanation, Wanted, explain
 from drivelint.explain.target import _meant
 from drivelint.explain.text import render, to_json
-from drivelint.report.outputs import write
-from drivelint.report.progress import Silent
+from tests.explain.checked import OVERTAKE, RULES, check
 from tests.shared_data import ROOT
 
-if TYPE_CHECKING:
-    from drivelint.result.model import Result
-
-OVERTAKE = ROOT / "fixtures" / "overtake"
-RULES = (
-    "ukhc.r162.safe-distance-ahead",
-    "ukhc.contact-signature",
-    "ukhc.r126.ds-av-out-of-ov",
-    "ukhc.no-collision",
-    "ukhc.r112.horn",
-)
 NONE = Errors(samples=0)
-
-
-def check(out: Path, **over: Any) -> Result:
-    settings: dict[str, Any] = {
-        "traces": tuple(str(OVERTAKE / f"{name}.csv") for name in ("safe", "near_miss", "collision")),
-        "map": OVERTAKE / "road.xodr",
-        "mapping": str(OVERTAKE / "mapping.toml"),
-        "rules": RULES,
-        "profiles": ("relaxed", "nominal"),
-        "params": ("ukhc.contact-signature.within_m=0.4",),
-        "out": out,
-        "annotate": False,
-    }
-    result = run.check(run.Settings(**{**settings, **over}), Silent())
-    write(result, out)
-    return result
 
 
 @pytest.fixture(scope="module")

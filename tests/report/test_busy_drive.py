@@ -12,7 +12,7 @@ from drivelint.report.progress import Silent
 from drivelint.result.model import Result
 from drivelint.run import Settings, check
 from tests.report.browser import CHROMIUM, Page
-from tests.report.test_html import page
+from tests.report.pages import page
 from tests.shared_data import shared
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")

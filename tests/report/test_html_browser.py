@@ -12,15 +12,15 @@ import pytest
 
 from drivelint.result.model import Result
 from tests.report.browser import CHROMIUM, Page
-from tests.report.test_html import nasty, page
-from tests.result import test_evidence
+from tests.report.pages import nasty, page
+from tests.result import fixture_result
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 
 
 @pytest.fixture(scope="module")
 def overtakes(tmp_path_factory: pytest.TempPathFactory) -> Result:
-    return test_evidence.run(tmp_path_factory.mktemp("overtakes"))
+    return fixture_result.run(tmp_path_factory.mktemp("overtakes"))
 
 
 @pytest.fixture(scope="module")

@@ -16,9 +16,9 @@ from drivelint.report.outputs import write
 from drivelint.result.load import load
 from drivelint.result.model import Result
 from tests.report.browser import CHROMIUM, Page
+from tests.report.pages import NASTY, Parsed, page
 from tests.report.synthetic import finding, result, verdict
-from tests.report.test_html import NASTY, Parsed, page
-from tests.result import test_evidence
+from tests.result import fixture_result
 
 TODAY = date(2026, 11, 20)
 WAIVERS = (
@@ -31,7 +31,7 @@ WAIVERS = (
 @pytest.fixture(scope="module")
 def gated(tmp_path_factory: pytest.TempPathFactory) -> Result:
     """Return the three overtakes, held against an earlier result without the collision, and waivers."""
-    now = test_evidence.run(tmp_path_factory.mktemp("overtakes"))
+    now = fixture_result.run(tmp_path_factory.mktemp("overtakes"))
     parts = {
         name: (table := getattr(now, name)).filter(pc.invert(pc.starts_with(table["drive_id"], "collision")))
         for name in ("verdicts", "findings", "drives")

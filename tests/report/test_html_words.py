@@ -12,15 +12,15 @@ import pytest
 
 from drivelint.report.html.notes import notes
 from drivelint.result.model import Result
+from tests.report.pages import Parsed, page
 from tests.report.synthetic import drive, finding, result, verdict
-from tests.report.test_html import Parsed, page
-from tests.result import test_evidence
+from tests.result import fixture_result
 from tests.shared_data import shared
 
 
 @pytest.fixture(scope="module")
 def overtakes(tmp_path_factory: pytest.TempPathFactory) -> Result:
-    return test_evidence.run(tmp_path_factory.mktemp("overtakes"))
+    return fixture_result.run(tmp_path_factory.mktemp("overtakes"))
 
 
 @pytest.fixture(scope="module")

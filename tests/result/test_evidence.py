@@ -20,22 +20,7 @@ from drivelint.result.contract import FILES
 from drivelint.result.evidence import surroundings
 from drivelint.result.model import Result
 from drivelint.run import Settings, check
-
-FIXTURE = Path(__file__).resolve().parents[2] / "fixtures" / "overtake"
-NAMES = ("safe", "near_miss", "collision")
-
-
-def run(out: Path | None) -> Result:
-    return check(
-        Settings(
-            tuple(str(FIXTURE / f"{name}.csv") for name in NAMES),
-            map=FIXTURE / "road.xodr",
-            mapping=str(FIXTURE / "mapping.toml"),
-            profiles=("relaxed", "nominal", "aggressive"),
-            out=out,
-        ),
-        Silent(),
-    )
+from tests.result.fixture_result import FIXTURE, NAMES, run
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from drivelint.engine.map_library import MapLibrary
 from drivelint.formats import read_trace
 from drivelint.road import geo
 from drivelint.road.contract import MapSource
-from tests.engine.test_map_folder import states
+from tests.engine.few_states import states
 from tests.formats.opendrive.xodr import xodr
 from tests.formats.osi import osi_log
 

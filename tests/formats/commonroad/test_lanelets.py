@@ -9,21 +9,8 @@ import pytest
 from drivelint.errors import MapError
 from drivelint.formats import load_map, read_source
 from drivelint.road.contract import Environment, MapSource
+from tests.formats.commonroad.scenario_text import bound, lanelet, scenario
 from tests.shared_data import shared
-
-
-def bound(tag: str, points: list[tuple[float, float]], marking: str = "") -> str:
-    inner = "".join(f"<point><x>{x}</x><y>{y}</y></point>" for x, y in points)
-    return f"<{tag}>{inner}{f'<lineMarking>{marking}</lineMarking>' if marking else ''}</{tag}>"
-
-
-def lanelet(name: int, y: float, more: str = "", *, x: float = 0.0, left: str = "dashed", right: str = "solid") -> str:
-    a, b = [(x, y + 1.75), (x + 50, y + 1.75)], [(x, y - 1.75), (x + 50, y - 1.75)]
-    return f'<lanelet id="{name}">{bound("leftBound", a, left)}{bound("rightBound", b, right)}{more}</lanelet>'
-
-
-def scenario(*parts: str, benchmark: str = "ZAM_Test-1") -> str:
-    return f'<commonRoad commonRoadVersion="2020a" benchmarkID="{benchmark}" timeStepSize="0.1">{"".join(parts)}</commonRoad>'
 
 
 def load(text: str, **options: object) -> Environment:

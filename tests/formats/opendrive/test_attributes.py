@@ -7,9 +7,8 @@ from typing import Any
 import pytest
 
 from drivelint.road.signcodes import kind_of
+from tests.formats.opendrive.signal_text import WIDTH, signal
 from tests.formats.opendrive.xodr import LINE, checks, lane, lanelets, load, road, rows, section
-
-WIDTH = '<width sOffset="0" a="3.5"/>'
 
 
 def limits(environment: Any, name: str) -> list[tuple[float, float, float | None, str]]:
@@ -86,12 +85,6 @@ def test_drivable_is_decided_by_type() -> None:
     lanes = section(0, *(lane(-n, kind=kind) for n, kind in enumerate(kinds, 1)))
     found = {row["lane_type"]: row["drivable"] for row in lanelets(load(road(lanes=lanes))).values()}
     assert found == dict.fromkeys(kinds[:3], True) | dict.fromkeys(kinds[3:], False)
-
-
-def signal(s: float, orientation: str = "+", inside: str = "", **attributes: str) -> str:
-    said = {"id": "7", "t": "-5", "type": "206", "country": "DE", "dynamic": "no", **attributes}
-    text = " ".join(f'{k}="{v}"' for k, v in said.items())
-    return f'<signal s="{s}" orientation="{orientation}" {text}>{inside}</signal>'
 
 
 def signals(environment: Any) -> list[tuple[str, float]]:

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from tests.formats.opendrive.test_attributes import WIDTH, signal
+from tests.formats.opendrive.signal_text import WIDTH, signal
 from tests.formats.opendrive.xodr import LINE, lane, load, road, rows, section
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from drivelint.formats import load_map
 from drivelint.road.contract import MapSource
-from tests.formats.osi.test_map_lanes import Trace
+from tests.formats.osi.map_trace import Trace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

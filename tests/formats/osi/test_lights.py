@@ -9,7 +9,7 @@ import pytest
 from drivelint.engine.batch import Drive
 from tests.formats.logs import read
 from tests.formats.osi import osi_log
-from tests.formats.osi.test_reader import bulb, write
+from tests.formats.osi.bulbs import bulb, write
 from tests.scenes import derived, judged, rows
 from tests.shared_data import shared
 

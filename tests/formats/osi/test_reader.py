@@ -12,6 +12,7 @@ from mcap.writer import CompressionType
 from drivelint.errors import TraceError
 from tests.formats.logs import actors, at, log, quality, read, states
 from tests.formats.osi import osi_log
+from tests.formats.osi.bulbs import bulb, write
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -19,10 +20,6 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Trace
 
 EPOCH = 1_700_000_000_000_000_000
-
-
-def write(path: Path, frames: list[Any], **options: Any) -> Path:
-    return osi_log.write(path / "drive.mcap", osi_log.truths(frames), **options)
 
 
 def test_ground_truth(tmp_path: Path) -> None:
@@ -308,16 +305,6 @@ def test_headings_in_degrees_are_refused(tmp_path: Path) -> None:
             base.velocity.x, base.velocity.y, base.orientation.yaw = 50.0, 86.6, 60.0
     with pytest.raises(TraceError, match=r"heading is off the direction of motion .*: record or convert it again"):
         read(write(tmp_path, frames))
-
-
-def bulb(truth: Any, number: int, color: int, mode: int, signal: str | None = None) -> None:
-    light = truth.traffic_light.add()
-    light.id.value = number
-    light.classification.color, light.classification.mode = color, mode
-    if signal is not None:
-        source = light.source_reference.add()
-        source.type = "net.asam.opendrive"
-        source.identifier.append(signal)
 
 
 def test_traffic_lights(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ import pytest
 from drivelint.errors import TraceError
 from tests.formats.logs import actors, at, quality, states
 from tests.formats.ros2 import ros_log as ros
-from tests.formats.ros2.test_reader import T0, TURN, N, along, ego, seen, ticks
+from tests.formats.ros2.ros_drive import T0, TURN, N, along, ego, seen, ticks
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -15,7 +15,7 @@ from drivelint.formats import expand
 from drivelint.inspect.content import content, size
 from tests.formats.logs import at, log, quality, read, states
 from tests.formats.ros2 import ros_log as ros
-from tests.formats.ros2.test_reader import T0, TURN, N, along, ego, others, seen, ticks
+from tests.formats.ros2.ros_drive import T0, TURN, N, along, ego, others, seen, ticks
 
 if TYPE_CHECKING:
     from pathlib import Path

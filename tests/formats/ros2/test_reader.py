@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 import typer
@@ -14,47 +14,10 @@ from drivelint.drive.trace import EgoSize
 from drivelint.errors import TraceError, UsageError
 from tests.formats.logs import actors, at, log, quality, read, states
 from tests.formats.ros2 import ros_log as ros
+from tests.formats.ros2.ros_drive import T0, TURN, N, along, ego, others, seen, ticks
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-    from drivelint.drive.trace import Trace
-
-T0 = 100.0
-N = 40
-TURN = math.pi / 3
-"""The heading of those that do not drive east, so that the frames of a velocity differ."""
-
-
-def seen(path: Path, messages: list[ros.Message], **options: Any) -> Trace:
-    return read(ros.write(path / "log.mcap", messages), **options)
-
-
-def ticks(n: int = N, dt: float = 0.05) -> list[float]:
-    return [T0 + i * dt for i in range(n)]
-
-
-def along(t_s: float, speed: float = 10.0, yaw: float = TURN) -> tuple[float, float]:
-    """Return where somebody is who drives with that heading from the origin."""
-    way = speed * (t_s - T0)
-    return way * math.cos(yaw), way * math.sin(yaw)
-
-
-def others(**other: Any) -> list[ros.Message]:
-    """Return a car that comes towards the ego, and a pedestrian."""
-    return [
-        ros.things(
-            t_s,
-            ros.thing(9, 100.0 - along(t_s)[0], 100.0 - along(t_s)[1], TURN - math.pi, 10.0),
-            ros.thing(12, 5.0, 5.0, classification=4, shape={"type": 3, "dimensions": [1.8, 0.3]}),
-            **other,
-        )
-        for t_s in ticks()
-    ]
-
-
-def ego(dt: float = 0.05, n: int = N, **other: Any) -> list[ros.Message]:
-    return [ros.odometry(t_s, *along(t_s), TURN, 10.0, **other) for t_s in ticks(n, dt)]
 
 
 def info(number: int, role: str = "hero") -> ros.Message:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.formats.logs import put, quality, read
-from tests.formats.sumo.test_fcd import TYPES, xml
+from tests.formats.sumo.fcd_text import TYPES, xml
 
 if TYPE_CHECKING:
     from pathlib import Path
