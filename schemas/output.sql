@@ -33,6 +33,7 @@ CREATE TABLE rule (
     rule_id VARCHAR NOT NULL,         -- pack and file name of the rule
     rule_version VARCHAR NOT NULL,    -- hash of the rule's file
     pack VARCHAR NOT NULL,            -- ukhc, rss, comfort, ...
+    pack_title VARCHAR NOT NULL,      -- what the pack is about; empty: it does not say
     title VARCHAR NOT NULL,           -- what it asks for, in a few words
     clause VARCHAR NOT NULL,          -- the clause it comes from
     hypothesis VARCHAR NOT NULL,      -- the same as a question
@@ -47,6 +48,7 @@ CREATE TABLE rule (
     unit VARCHAR,                     -- of observed, required and margin
     observes VARCHAR,                 -- what observed is, as a noun phrase; NULL: nothing is measured, or the title says it
     near_margin DOUBLE,               -- a pass with less is a near miss; NULL: none
+    tags VARCHAR[] NOT NULL,          -- what reports know it by: contact, danger_space
     requires VARCHAR[] NOT NULL,      -- signals without which it is unknown
     profiles VARCHAR[] NOT NULL,      -- profiles it was judged against; empty: it has none
     params STRUCT("name" VARCHAR, "value" VARCHAR, unit VARCHAR, overridden BOOLEAN)[] NOT NULL -- parameters as used, their values as text

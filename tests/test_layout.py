@@ -10,6 +10,8 @@ from pathlib import Path
 import grimp
 import pytest
 
+from drivelint.resources import folder
+
 SOURCE = Path(__file__).resolve().parents[1] / "src" / "drivelint"
 FILES = sorted(SOURCE.rglob("*.py"))
 
@@ -40,3 +42,16 @@ def test_no_test_file_imports_another() -> None:
                 named = [*(node.module or "").split("."), *(alias.name for alias in node.names)]
                 modules = [name for name in named if name.startswith("test_") and any(tests.rglob(f"{name}.py"))]
                 assert not modules, f"{file.relative_to(tests)}:{node.lineno} imports {modules}"
+
+
+def test_no_report_knows_a_rule_by_its_id() -> None:
+    """What a report must know of a rule is a tag in the rule's header."""
+    ids = {f"{file.parent.name}.{file.stem}" for file in (folder("queries") / "assertions").glob("*/*.sql")}
+    for place in ("report", "annotate", "result", "gate", "engine", "evaluate"):
+        for file in sorted((SOURCE / place).rglob("*.py")):
+            constants = [
+                node.value
+                for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+                if isinstance(node, ast.Constant)
+            ]
+            assert not ids & {value for value in constants if isinstance(value, str)}, file.name

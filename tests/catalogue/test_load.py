@@ -242,3 +242,18 @@ def test_the_published_schema_of_the_header_is_current() -> None:
     written = json.loads((folder("schemas") / "assertion-header.schema.json").read_text(encoding="utf-8"))
     assert written == json.loads(json.dumps(json_schema()))
     assert written["$defs"]["Header"]["additionalProperties"] is False
+
+
+def test_a_pack_says_what_it_is_about(tmp_path: Path) -> None:
+    assert all(rule.pack_title for rule in load().values())
+    pack = tmp_path / "mine"
+    pack.mkdir()
+    file = pack / "speed.sql"
+    file.write_text(text(HEADER | GOOD, {"condition": SPEED}), encoding="utf-8")
+    assert read_rule(file).pack_title == ""
+    other = tmp_path / "broken"
+    other.mkdir()
+    (other / "pack.toml").write_text("titel = 'x'\n", encoding="utf-8")
+    (other / "speed.sql").write_text(file.read_text(encoding="utf-8"), encoding="utf-8")
+    with pytest.raises(RuleError, match=r"pack\.toml: .*`titel`.*: write title = "):
+        read_rule(other / "speed.sql")

@@ -11,6 +11,7 @@
 -- observes = "reach into the oncoming vehicle's danger space"
 -- near_margin = 1.0
 -- merge_gap_s = 1.0
+-- tags = ["danger_space"]
 -- reads = ["overtake_step"]
 -- requires = ["map", "registration", "handedness", "ego_size"]
 

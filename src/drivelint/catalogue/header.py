@@ -87,6 +87,8 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     """The same for an anchor without a time."""
     exempt_after_s: Seconds = 0.0
     merge_gap_s: Seconds = 1.0
+    tags: tuple[str, ...] = ()
+    """What reports know a rule by: `contact`, its findings are contacts; `danger_space`, its pictures show danger spaces."""
     law: tuple[str, ...] = ()
     """The nations whose law the rule is: it is not applicable where the nation is known to be another; empty: no nation's own."""
     applies: Conditions = Conditions()

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import re
+from functools import cache
 from pathlib import Path  # noqa: TC003 - msgspec looks the field types up when it needs them
 from typing import TYPE_CHECKING
+
+import msgspec
 
 from drivelint.catalogue.check import GIVEN, Query, inspect
 from drivelint.catalogue.header import Header, line_of, parse_header
@@ -36,11 +39,16 @@ _CONDITION = (
 )
 
 
+class _Pack(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    title: str
+
+
 class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """One rule: its header, its SQL, and what can be told about it without running it."""
 
     id: str
     pack: str
+    pack_title: str
     path: Path
     version: str
     sections: dict[str, str]
@@ -121,11 +129,24 @@ def read_rule(file: Path) -> Rule:
         **fields,
         id=id_of(file),
         pack=pack,
+        pack_title=_title(file.resolve().parent),
         path=file,
         version=hashlib.sha256(content).hexdigest()[:16],
         sections={name: section.sql.rstrip().rstrip(";") for name, section in sections.items()},
         columns={name: query.columns for name, query in queries.items() if query.columns is not None},
     )
+
+
+@cache
+def _title(folder_: Path) -> str:
+    """Return what a pack is about, as its `pack.toml` says; '' where it has none. Errors: `RuleError`."""
+    file = folder_ / "pack.toml"
+    if not file.is_file():
+        return ""
+    try:
+        return msgspec.toml.decode(file.read_bytes(), type=_Pack).title
+    except (msgspec.MsgspecError, UnicodeDecodeError) as error:
+        raise RuleError(f'{file}: {error}: write title = "...", what the pack is about') from error
 
 
 def _event_table(table: str, sections: dict[str, Section], file: Path, line: int) -> dict[str, Section]:

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 _OURS: Final = " is required: "
 """What every sentence holds that the evaluation made of numbers; others are the rule's own."""
 _SENSE: Final = {">": "more than", ">=": "at least", "<": "less than", "<=": "at most"}
-_SPACES: Final = ("ukhc.r126.ds-",)
-"""Rules about danger spaces: their plan views show them."""
+_SPACES: Final = "danger_space"
+"""Tag of the rules whose plan views show danger spaces."""
 KEY_MOMENTS: Final = 6
 """Moments of a drive that the printed report shows with their plan views."""
 
@@ -188,7 +188,13 @@ def moments(
 
 
 def pictures(
-    rows: Iterable[Row], scenes: Mapping[Key, Row], spaces: Mapping[Key, list[Row]], road: Road, most: int
+    rows: Iterable[Row],
+    scenes: Mapping[Key, Row],
+    spaces: Mapping[Key, list[Row]],
+    road: Road,
+    *,
+    rules: Mapping[str, Row],
+    most: int,
 ) -> dict[Key, Plan]:
     """Return the plan views of the moments of `rows`, of the first `most` in their order."""
     told: dict[Key, list[Row]] = {}
@@ -197,7 +203,7 @@ def pictures(
     drawn: dict[Key, Plan] = {}
     for at, found in [(at, found) for at, found in told.items() if at in scenes][:most]:
         concerned = {row["object_id"] for row in found if row["object_id"] is not None}
-        about = any(row["rule_id"].startswith(_SPACES) for row in found)
+        about = any(_SPACES in rules[row["rule_id"]]["tags"] for row in found)
         drawn[at] = plan(scenes[at], road, concerned, spaces.get(at, []) if about else [])
     return drawn
 

@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 MOST: Final = 60
 """Overtakes in the page: those with the least to spare against any profile first."""
 ASSERTIONS: Final = (
-    ("Vehicle being passed outside the ego's danger space", "ukhc.r126.ds-vbp-out-of-av"),
-    ("Oncoming vehicle outside the ego's danger space", "ukhc.r126.ds-ov-out-of-av"),
-    ("Ego outside the oncoming vehicle's danger space", "ukhc.r126.ds-av-out-of-ov"),
-    ("The two danger spaces apart", "ukhc.r126.ds-disjoint"),
+    "Vehicle being passed outside the ego's danger space",
+    "Oncoming vehicle outside the ego's danger space",
+    "Ego outside the oncoming vehicle's danger space",
+    "The two danger spaces apart",
 )
-"""The runtime assertions in the order of `overtake_record.stretches`: what must hold, and the rule that says so."""
+"""The runtime assertions in the order of `overtake_record.stretches`: what must hold."""
 _STAGES: Final = ("pulling_out", "passing", "cutting_in")
 _SAID: Final = {"fail": "not kept", "pass": "kept", "unknown": "unknown", "not_applicable": "nobody was coming"}
 _STATUS: Final = {"truncated": "still out at the end of the recording", "lane_change": "stayed in the other lane"}
@@ -223,7 +223,7 @@ def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: A
     for (said, start, last), end in zip(runs, ends, strict=True):
         a, b = clock.at(start), min(max(clock.at(max(last, end)), clock.at(start) + _THIN), 100.0)
         bands.append((said, _pc(min(a, 100.0 - _THIN)), _pc(b - min(a, 100.0 - _THIN)), _SAID[said]))
-    return StageRow(ASSERTIONS[n][0], cells, bands)
+    return StageRow(ASSERTIONS[n], cells, bands)
 
 
 def _depth(metres: float | None) -> str:

@@ -19,19 +19,8 @@ if TYPE_CHECKING:
 
     Row = Mapping[str, Any]
 
-PACKS: Final = {
-    "ukhc": "UK Highway Code",
-    "stvo": "German road traffic regulations",
-    "rss": "Responsibility-Sensitive Safety",
-    "criticality": "criticality metrics",
-    "comfort": "comfort",
-    "performance": "performance",
-    "declared": "declared intentions",
-    "alks-r157": "UN Regulation 157 (lane keeping)",
-}
-"""What the packs that come with drivelint are about."""
-_CONTACT: Final = pa.array(["ukhc.no-collision", "ukhc.contact-signature"])
-"""Rules whose findings are contacts: of the boxes, or told by the speeds."""
+_CONTACT: Final = "contact"
+"""Tag of the rules whose findings are contacts: of the boxes, or told by the speeds."""
 _NAMED: Final = 4
 _OPEN: Final = pa.array(["unknown", "error"])
 _STORY_DRIVES: Final = 6
@@ -92,7 +81,8 @@ def contacts(result: Result, lines: Sequence[tuple[Row, Measured]]) -> Contacts 
         row["drive_id"]: row["t_start_ns"] for row in result.drives.select(["drive_id", "t_start_ns"]).to_pylist()
     }
     hrefs = {row["finding_id"]: line.href for row, line in lines if line.kind == "fail"}
-    rows = result.findings.filter(pc.is_in(result.findings["rule_id"], value_set=_CONTACT))
+    tagged = [row["rule_id"] for row in result.rules.select(["rule_id", "tags"]).to_pylist() if _CONTACT in row["tags"]]
+    rows = result.findings.filter(pc.is_in(result.findings["rule_id"], value_set=pa.array(tagged, pa.string())))
     rows = rows.sort_by([("drive_id", "ascending"), ("t_worst_ns", "ascending")])
     met: dict[tuple[str, frozenset[str | None]], list[Row]] = {}
     for row in rows.to_pylist():
@@ -153,10 +143,11 @@ def packs(result: Result) -> list[dict[str, Any]]:
     """Return how many verdicts of each kind every pack has, and of how many rules."""
     told = counts.packs(result.rules, counts.by(result.verdicts, "rule_id"))
     rules = counts.rows_by(result.rules, "pack")
+    titles = {row["pack"]: row["pack_title"] for row in result.rules.select(["pack", "pack_title"]).to_pylist()}
     return [
         {
             "pack": pack,
-            "about": PACKS.get(pack, ""),
+            "about": titles[pack],
             "n_rules": rules[pack],
             "verdicts": verdicts,
             "shares": shares(verdicts),

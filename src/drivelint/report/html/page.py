@@ -72,7 +72,7 @@ def content(result: Result) -> dict[str, Any]:
     for row in result.spaces.to_pylist():
         spaces.setdefault(_at(row), []).append(row)
     road = Road(result.lanes)
-    drawn = pictures([row for row, _ in lines + close], scenes, spaces, road, MAX_PICTURES)
+    drawn = pictures([row for row, _ in lines + close], scenes, spaces, road, rules=rules, most=MAX_PICTURES)
     listed = _by_drive(lines + close)
     told = counts.by(result.verdicts, "drive_id")
     shown = _with_section(drives, listed, told)
@@ -300,7 +300,7 @@ def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any
     groups: dict[str, dict[str, Any]] = {}
     for rule_id, rule in told.items():
         group = groups.setdefault(
-            rule["pack"], {"pack": rule["pack"], "about": front.PACKS.get(rule["pack"], ""), "rules": [], "folds": {}}
+            rule["pack"], {"pack": rule["pack"], "about": rule["pack_title"], "rules": [], "folds": {}}
         )
         if (reason := why.get(rule_id)) is None:
             group["rules"].append(rule)
