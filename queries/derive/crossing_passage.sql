@@ -1,17 +1,16 @@
--- The ego's passages over pedestrian crossings: when each began and ended, and who was on the ego's half of the crossing or stood at its
--- end.
+-- The ego's passages over pedestrian crossings: when each began and ended, and who was on the ego's half of it or stood at its end.
 WITH crossing_step AS (
     SELECT
-        *, running AND front_m >= 0 AND ((rear_m < 0 AND NOT joined) OR front_before_m < 0) AS is_forwards,
+        *, running AND front_m >= 0 AND ((rear_m < 0 AND NOT joined) OR front_before_m < 0) AS enters_forwards,
         -- The ego reverses onto the crossing over its far edge.
-        coalesce(running AND joined AND rear_m < 0 AND rear_before_m >= 0 AND front_m >= 0 AND front_before_m >= 0, false) AS is_backwards
+        coalesce(running AND joined AND rear_m < 0 AND rear_before_m >= 0 AND front_m >= 0 AND front_before_m >= 0, false) AS enters_backwards
     FROM near_mark
     WHERE kind = 'crossing'
 ),
 passage_step AS (
     SELECT
-        *, is_forwards OR is_backwards AS begins,
-        count(*) FILTER (is_forwards OR is_backwards) OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS n
+        *, enters_forwards OR enters_backwards AS begins,
+        count(*) FILTER (enters_forwards OR enters_backwards) OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS n
     FROM crossing_step
 ),
 -- An ego whose position jitters at the edge enters the crossing only once, see stop_line_crossing.
@@ -21,24 +20,24 @@ stretch_before AS (
     GROUP BY drive_id, ego_id, chain_id, mark_id, s_start_m, n
 ),
 entry AS (
-    SELECT o.drive_id, o.ego_id, o.chain_id, o.mark_id, o.s_start_m, o.t_ns, o.seg, o.is_backwards,
-        CASE WHEN o.joined AND (o.is_backwards OR o.front_before_m < 0) THEN o.t_ns END AS t_in_ns
+    SELECT o.drive_id, o.ego_id, o.chain_id, o.mark_id, o.s_start_m, o.t_ns, o.seg, o.enters_backwards,
+        CASE WHEN o.joined AND (o.enters_backwards OR o.front_before_m < 0) THEN o.t_ns END AS t_in_ns
     FROM passage_step o
     LEFT JOIN stretch_before b USING (drive_id, ego_id, chain_id, mark_id, s_start_m, n)
-    WHERE o.begins AND (o.n = 1 OR CASE WHEN o.is_backwards THEN b.was_past ELSE b.was_before END OR NOT o.joined)
+    WHERE o.begins AND (o.n = 1 OR CASE WHEN o.enters_backwards THEN b.was_past ELSE b.was_before END OR NOT o.joined)
 ),
 bounded_entry AS (
     SELECT *, lead(t_ns, 1, 9223372036854775807) OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m ORDER BY t_ns) AS t_next_ns FROM entry
 ),
 passage AS (
     SELECT
-        b.drive_id, b.ego_id, b.chain_id, b.mark_id, b.s_start_m, b.t_ns, b.t_in_ns, b.is_backwards,
-        min(n.t_ns) FILTER ((n.rear_m >= 0 OR (b.is_backwards AND n.front_m < 0)) AND n.seg = b.seg) AS t_out_ns,
-        max(n.t_ns) FILTER (n.rear_m < 0 AND NOT (b.is_backwards AND n.front_m < 0) AND n.seg = b.seg) AS t_last_ns
+        b.drive_id, b.ego_id, b.chain_id, b.mark_id, b.s_start_m, b.t_ns, b.t_in_ns, b.enters_backwards,
+        min(n.t_ns) FILTER ((n.rear_m >= 0 OR (b.enters_backwards AND n.front_m < 0)) AND n.seg = b.seg) AS t_out_ns,
+        max(n.t_ns) FILTER (n.rear_m < 0 AND NOT (b.enters_backwards AND n.front_m < 0) AND n.seg = b.seg) AS t_last_ns
     FROM bounded_entry b
     JOIN passage_step n ON n.drive_id = b.drive_id AND n.ego_id = b.ego_id AND n.chain_id = b.chain_id AND n.mark_id = b.mark_id AND n.s_start_m = b.s_start_m
         AND n.t_ns >= b.t_ns AND n.t_ns < b.t_next_ns
-    GROUP BY b.drive_id, b.ego_id, b.chain_id, b.mark_id, b.s_start_m, b.t_ns, b.t_in_ns, b.is_backwards
+    GROUP BY b.drive_id, b.ego_id, b.chain_id, b.mark_id, b.s_start_m, b.t_ns, b.t_in_ns, b.enters_backwards
 ),
 crossing_kind AS (SELECT environment_id, crossing_id, min(kind) AS kind FROM crossing GROUP BY environment_id, crossing_id),
 visit AS (
@@ -185,8 +184,7 @@ broken_track AS (
     ) AS w(t_at_ns, apart_ns, walk_ns)
     JOIN state_dynamics s ON s.drive_id = v.drive_id AND s.actor_id = d.actor_id AND s.t_ns = w.t_at_ns
     WHERE w.walk_ns >= 0 AND w.apart_ns <= conflict_ns() AND w.t_at_ns > c.t_start_ns + c.max_gap_ns AND w.t_at_ns < c.t_end_ns - c.max_gap_ns
-        -- A track that begins or ends while the ego passes counts if that is near; before or after, if a person can walk that far in the
-        -- time.
+        -- The end of a track counts if it is near while the ego passes. Before or after, it counts if a person can walk that far in time.
         AND sqrt((s.x_m - v.x_m) ** 2 + (s.y_m - v.y_m) ** 2)
             < CASE WHEN w.apart_ns = 0 THEN meeting_near_m() ELSE greatest(5.0, 3.0 * w.walk_ns / 1e9) END
 ),
@@ -216,7 +214,7 @@ stop_before AS (
     JOIN passage_step n ON n.drive_id = v.drive_id AND n.ego_id = v.ego_id AND n.chain_id = v.chain_id AND n.mark_id = v.mark_id AND n.s_start_m = v.s_start_m
         AND n.t_ns < v.t_in_ns AND n.t_ns >= v.t_in_ns - 10_000_000_000
     JOIN ego_state e ON e.drive_id = n.drive_id AND e.ego_id = n.ego_id AND e.t_ns = n.t_ns
-    WHERE n.front_m < 0 AND NOT v.is_backwards
+    WHERE n.front_m < 0 AND NOT v.enters_backwards
     GROUP BY v.drive_id, v.ego_id, v.mark_id, v.t_ns, v.t_in_ns, v.max_gap_ns
 ),
 light_state AS (

@@ -61,9 +61,7 @@ SELECT
         WHEN h.road_type IN ('motorway', 'rural') THEN 'open'
     END) AS area,
     g.nation, g.weather, g.light,
-    -- A van may be a car-derived van or a goods vehicle, and a lorry may be of any weight. A vehicle that draws a trailer is no longer of
-    -- its
--- own class.
+    -- A van may be a car-derived van or a goods vehicle, a lorry may be of any weight. A trailer changes the class of its tractor.
     coalesce(g.vehicle_class, CASE
         WHEN t.ego_id IS NULL THEN CASE WHEN a.actor_class IN ('car', 'bus', 'motorcycle') THEN a.actor_class END
         WHEN a.actor_class = 'car' THEN 'car_towing'

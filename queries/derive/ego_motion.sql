@@ -1,7 +1,6 @@
 -- The ego's own motion, filtered before it is differentiated. The acceleration is the least-squares slope of v_long_mps over the samples
 -- within 0.25 s on either side (2.2 periods if that is more, so always two samples). The jerk is the same slope of the acceleration, and
--- the yaw rate that of the heading. At 20 Hz this is a mean over half a second: a spike of one sample appears at a third of its height and
--- is not hidden.
+-- the yaw rate that of the heading. At 20 Hz this is a mean over half a second: a spike of one sample appears at a third of its height.
 --
 -- A value is NULL if the velocity itself comes from a filter (quality velocity_filtered), if a sample in the window is not known, or if the
 -- samples do not reach 0.7 of the half window to both sides (at the log's ends, at a hole). It is also NULL in logs with less than 5
@@ -10,8 +9,7 @@
 -- A mean over half a second flattens a peak. The *_peak columns say by how much at most the true peak may be higher, where the value stands
 -- out over both of the values half a window away (see peak_rise).
 --
--- The sums are of whole numbers (v in nm/s, yaw in nrad, time in ns) and therefore exact: the same in every order and beside any other
--- drive.
+-- The sums are of whole numbers (v in nm/s, yaw in nrad, time in ns) and therefore exact: the same in any order and beside any other drive.
 WITH sample AS (
     SELECT
         st.drive_id, st.ego_id, st.seg, st.t_ns,

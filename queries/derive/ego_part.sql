@@ -2,7 +2,7 @@
 WITH track AS (
     SELECT drive_id, actor_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns FROM state_dynamics GROUP BY drive_id, actor_id
 ),
--- One track ends when the other begins ...
+-- One track ends when the other begins.
 handover AS (
     SELECT c.drive_id, c.ego_id, o.actor_id AS object_id, 'successor' AS part, c.ego_id AS early_id, c.t_end_ns AS t_ends_ns, o.actor_id AS late_id, o.t_first_ns AS t_begins_ns
     FROM clock c
@@ -14,7 +14,7 @@ handover AS (
     JOIN track o ON o.drive_id = c.drive_id AND o.actor_id <> c.ego_id
     WHERE abs(o.t_last_ns - c.t_start_ns) <= c.max_gap_ns AND o.t_first_ns < c.t_start_ns AND o.t_last_ns < c.t_end_ns
 ),
--- ... and where the other begins.
+-- One track ends where the other begins: there is no room for two vehicles.
 renamed_ego AS (
     SELECT h.drive_id, h.ego_id, h.object_id, h.part
     FROM handover h
@@ -25,7 +25,7 @@ renamed_ego AS (
         AND abs(wrap_rad(b.yaw_rad - a.yaw_rad)) <= same_heading_rad() AND same_size(a.length_m, b.length_m) AND same_size(a.width_m, b.width_m)
         AND may_be_vehicle(a.actor_class) AND may_be_vehicle(b.actor_class)
 ),
--- Actors close behind the ego at the first moment at which both are there. They are few; only of these the whole track is examined.
+-- Actors close behind the ego at the first moment at which both are there. They are few, and only their whole tracks are examined.
 actor_behind AS (
     SELECT w.drive_id, w.ego_id, w.object_id, w.is_called_trailer
     FROM (
@@ -55,7 +55,7 @@ joint_sample AS (
     WHERE o.x_m + o.y_m + o.yaw_rad + o.length_m + o.width_m + e.x_m + e.y_m + e.yaw_rad + e.length_m + e.width_m IS NOT NULL
     WINDOW w AS (PARTITION BY b.drive_id, b.ego_id, b.object_id ORDER BY o.t_ns)
 ),
--- The hitch is the point about which the trailer turns, hitch_m behind the ego's rear. It is negative for a fifth wheel, before the rear.
+-- The hitch is the point about which the trailer turns, hitch_m behind the ego's rear (negative for a fifth wheel, which lies before it).
 hitched_trailer AS (
     SELECT drive_id, ego_id, object_id
     FROM (
