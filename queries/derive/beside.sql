@@ -1,8 +1,8 @@
--- Whose box overlaps the ego's along the corridor, how far apart across it. Speeds across come from the velocity where a sample of the
--- step's time is there, else from speed and heading.
+-- Objects whose box overlaps the ego's along the corridor, and the gap to them across it. The speed of an object across the corridor comes
+-- from its velocity where it has a sample at the time of the step, else from its speed and heading.
 WITH RECURSIVE
--- past each other between two steps: beside each other in none
-jumped AS (
+-- The object and the ego pass each other between this step and the next: they are beside each other at neither of the two.
+pass_between_steps AS (
     SELECT n.* REPLACE ((n.gap_m + m.gap_m) / 2 AS gap_m, (n.gap_m + m.gap_m) / 2 AS clearance_m)
     FROM neighbour n
     JOIN clock c USING (drive_id, ego_id)
@@ -10,21 +10,21 @@ jumped AS (
     WHERE greatest(n.gap_ahead_m, n.gap_behind_m) > 0 AND greatest(n.gap_ahead_m, n.gap_behind_m) < (coalesce(n.ego_speed_mps, fast_mps()) + coalesce(n.speed_mps, fast_mps())) * c.max_gap_ns / 1e9
         AND (n.gap_ahead_m > 0 AND m.gap_behind_m > 0 OR n.gap_behind_m > 0 AND m.gap_ahead_m > 0)
 ),
-placed AS (
+beside_object AS (
     SELECT n.*, e.d_m AS ego_d_m, e.s_m AS ego_s_m, e.yaw_rad - e.heading_diff_rad AS way_rad
-    FROM (FROM neighbour WHERE gap_ahead_m <= 0 AND gap_behind_m <= 0 UNION ALL FROM jumped) n
+    FROM (FROM neighbour WHERE gap_ahead_m <= 0 AND gap_behind_m <= 0 UNION ALL FROM pass_between_steps) n
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
 ),
-moving AS (
+beside_motion AS (
     SELECT
         n.*, coalesce(s.vy_mps * cos(n.way_rad) - s.vx_mps * sin(n.way_rad), n.speed_mps * sin(n.heading_diff_rad)) AS drift_mps
-    FROM placed n
+    FROM beside_object n
     LEFT JOIN state_dynamics s ON s.drive_id = n.drive_id AND s.actor_id = n.object_id AND s.t_ns = n.t_ns
 ),
--- the lane beside the running one on the object's side
-lane AS (
+-- The drivable lane beside the running lane, on the side of the object.
+adjacent_lane AS (
     SELECT n.drive_id, n.ego_id, n.t_ns, n.object_id, max(b.width_m) AS width_m
-    FROM placed n
+    FROM beside_object n
     JOIN data_log g ON g.drive_id = n.drive_id
     JOIN chain c ON c.drive_id = n.drive_id AND c.ego_id = n.ego_id AND c.chain_id = n.chain_id
         AND c.s_start_m <= n.ego_s_m AND n.ego_s_m <= c.s_start_m + c.length_m
@@ -33,7 +33,7 @@ lane AS (
     WHERE b.drivable
     GROUP BY ALL
 ),
--- a cycle lane belongs to the carriageway, a cycle track behind a verge or kerb does not
+-- A cycle lane belongs to the carriageway. A cycle track behind a verge or a kerb does not.
 cycle_lane AS (
     SELECT n.environment_id, n.lanelet_id, coalesce(min(b.marking), 'unsaid') AS marking
     FROM lanelet n
@@ -44,20 +44,20 @@ cycle_lane AS (
     GROUP BY n.environment_id, n.lanelet_id
     HAVING coalesce(bool_and(b.marking NOT IN ('curb', 'grass')), true)
 ),
-on_cycle_lane AS (
+object_on_cycle_lane AS (
     SELECT n.drive_id, n.ego_id, n.t_ns, n.object_id, min(y.marking) AS marking
-    FROM placed n
+    FROM beside_object n
     JOIN data_log g ON g.drive_id = n.drive_id
     JOIN lane_occupancy o ON o.drive_id = n.drive_id AND o.actor_id = n.object_id AND o.t_ns = n.t_ns
     JOIN cycle_lane y ON y.environment_id = g.environment_id AND y.lanelet_id = o.lanelet_id
     GROUP BY ALL
 ),
--- what lies beside a drivable lane without a kerb or verge between: people ride there, too. A border may be a kerb, and nobody drives over
--- restricted ground: whether what lies behind them belongs to the road is not known
+-- The lanelets beside a drivable lane with no kerb or verge between: people ride there, too. A border may be a kerb, and nobody drives over
+-- restricted ground: for the lanelets behind these two it is not known whether they belong to the road.
 strip AS (
-    SELECT environment_id, lanelet_id, lane_type, true AS sure FROM lanelet WHERE drivable
+    SELECT environment_id, lanelet_id, lane_type, true AS is_certain FROM lanelet WHERE drivable
     UNION
-    SELECT n.environment_id, n.lanelet_id, n.lane_type, r.sure AND r.lane_type NOT IN ('border', 'restricted')
+    SELECT n.environment_id, n.lanelet_id, n.lane_type, r.is_certain AND r.lane_type NOT IN ('border', 'restricted')
     FROM strip r
     JOIN lanelet n ON n.environment_id = r.environment_id AND (n.left_id = r.lanelet_id OR n.right_id = r.lanelet_id) AND NOT n.drivable
         AND n.lane_type IN ('shoulder', 'stop', 'border', 'parking', 'restricted', 'biking')
@@ -65,19 +65,20 @@ strip AS (
         AND b.side = CASE WHEN n.left_id = r.lanelet_id THEN 'left' ELSE 'right' END
 ),
 on_strip AS (
-    SELECT n.drive_id, n.ego_id, n.t_ns, n.object_id, bool_or(y.sure) AS sure
-    FROM placed n
+    SELECT n.drive_id, n.ego_id, n.t_ns, n.object_id, bool_or(y.is_certain) AS is_certain
+    FROM beside_object n
     JOIN data_log g ON g.drive_id = n.drive_id
     JOIN lane_occupancy o ON o.drive_id = n.drive_id AND o.actor_id = n.object_id AND o.t_ns = n.t_ns AND NOT o.drivable
     JOIN strip y ON y.environment_id = g.environment_id AND y.lanelet_id = o.lanelet_id
     GROUP BY ALL
 ),
-on_lane AS (
+object_on_lane AS (
     SELECT DISTINCT n.drive_id, n.ego_id, n.t_ns, n.object_id
-    FROM placed n
+    FROM beside_object n
     JOIN lane_occupancy o ON o.drive_id = n.drive_id AND o.actor_id = n.object_id AND o.t_ns = n.t_ns
     WHERE o.drivable
 ),
+-- Actors that may be beside the ego and have no place there.
 doubt AS (
     SELECT drive_id, ego_id, t_ns, object_id, actor_class FROM hidden WHERE least_m < may_be_beside_m()
     UNION
@@ -85,23 +86,23 @@ doubt AS (
     FROM pair p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     WHERE NOT p.clearance_is_bound AND (e.front_s_m IS NULL OR p.front_s_m IS NULL)
-        -- beyond the strip's edge, or where the ego itself has no corridor
+        -- The object is beyond the edge of the corridor's strip, or the ego itself has no corridor.
         AND p.clearance_m < may_be_beside_m() AND (e.front_s_m IS NULL OR p.clearance_m < may_be_beside_m() / 2)
 )
 SELECT
     m.drive_id, m.ego_id, m.t_ns, m.object_id, m.actor_class, m.side, m.gap_m, m.clearance_m,
-    -- two that each swerve as hard as one does in a bend, and back before the next step
+    -- Both swerve towards each other as hard as in a bend, and back before the next step.
     CASE WHEN k.period_ns > 110_000_000 THEN 2 * bend_mps2() * (k.period_ns / 1e9) ** 2 / 8 ELSE 0.0 END AS blur_m, m.ahead_m, m.ego_speed_mps, m.speed_mps,
     CASE WHEN m.d_m > m.ego_d_m THEN m.ego_left_mps ELSE -m.ego_left_mps END AS ego_lat_mps,
     CASE WHEN m.d_m > m.ego_d_m THEN -m.drift_mps ELSE m.drift_mps END AS lat_mps,
     abs(m.heading_diff_rad) < pi() / 4 AS along, y.marking AS cycle_lane,
     o.object_id IS NOT NULL OR y.object_id IS NOT NULL OR abs(m.d_m) - m.lat_half_m < m.half_width_m + coalesce(l.width_m, 0.0) AS on_carriageway,
-    CASE WHEN z.object_id IS NULL THEN false WHEN z.sure THEN true END AS on_strip
-FROM moving m
+    CASE WHEN z.object_id IS NULL THEN false WHEN z.is_certain THEN true END AS on_strip
+FROM beside_motion m
 JOIN clock k USING (drive_id, ego_id)
-LEFT JOIN lane l USING (drive_id, ego_id, t_ns, object_id)
-LEFT JOIN on_lane o USING (drive_id, ego_id, t_ns, object_id)
-LEFT JOIN on_cycle_lane y USING (drive_id, ego_id, t_ns, object_id)
+LEFT JOIN adjacent_lane l USING (drive_id, ego_id, t_ns, object_id)
+LEFT JOIN object_on_lane o USING (drive_id, ego_id, t_ns, object_id)
+LEFT JOIN object_on_cycle_lane y USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN on_strip z USING (drive_id, ego_id, t_ns, object_id)
 UNION ALL BY NAME
 SELECT drive_id, ego_id, t_ns, object_id, actor_class FROM doubt

@@ -1,38 +1,41 @@
--- Where the ego and another may have touched between two steps: their boxes moved along the cubic through the places and velocities at
--- both. Only pairs whose boxes are near enough at one of the two for what they move from step to step are looked at.
-WITH timed AS (
+-- Intervals between two steps in which the ego and an object may have touched. Each box moves along the cubic through its places and
+-- velocities at the two steps. Only pairs are examined whose boxes are near enough, at one of the two steps, for the way that they move
+-- from step to step.
+WITH ego_step AS (
     SELECT s.drive_id, s.ego_id, s.t_ns, lead(s.t_ns) OVER w AS t_next_ns, lag(s.t_ns) OVER w AS t_before_ns, c.max_gap_ns
     FROM step s
     JOIN clock c USING (drive_id, ego_id)
     WINDOW w AS (PARTITION BY s.drive_id, s.ego_id ORDER BY s.t_ns)
 ),
--- the only look at a large table: one of the two clearances is at most half of what they move in that time, and as much as they may swerve
-near AS (
+-- The only full scan of the large table pair. Two boxes can touch between two steps only if one of the two clearances is at most half of
+-- the distance that they move in that time, plus the distance that they may swerve.
+near_pair AS (
     SELECT p.drive_id, p.ego_id, p.object_id, t.t_before_ns, t.t_ns, t.t_next_ns, t.max_gap_ns
     FROM (
         SELECT p.* FROM pair p JOIN clock c USING (drive_id, ego_id)
         WHERE p.clearance_m <= c.max_gap_ns / 1e9 * (fast_mps() + coalesce(p.speed_mps, fast_mps())) / 2 + swerve_mps2() * (c.max_gap_ns / 1e9) ** 2
     ) p
-    JOIN timed t USING (drive_id, ego_id, t_ns)
+    JOIN ego_step t USING (drive_id, ego_id, t_ns)
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     CROSS JOIN LATERAL (SELECT greatest(coalesce(t.t_next_ns - t.t_ns, 0), coalesce(t.t_ns - t.t_before_ns, 0)) / 1e9 AS dt_s) d
     WHERE p.clearance_m <= dt_s * (coalesce(e.speed_mps, fast_mps()) + coalesce(p.speed_mps, fast_mps())) / 2 + swerve_mps2() * dt_s ** 2
 ),
-span AS (
-    SELECT drive_id, ego_id, object_id, t_ns, t_next_ns FROM near WHERE t_next_ns - t_ns <= max_gap_ns
+step_interval AS (
+    SELECT drive_id, ego_id, object_id, t_ns, t_next_ns FROM near_pair WHERE t_next_ns - t_ns <= max_gap_ns
     UNION
-    SELECT drive_id, ego_id, object_id, t_before_ns, t_ns FROM near WHERE t_ns - t_before_ns <= max_gap_ns
+    SELECT drive_id, ego_id, object_id, t_before_ns, t_ns FROM near_pair WHERE t_ns - t_before_ns <= max_gap_ns
 ),
--- both of them at both steps: v the velocity, gone the way between, off how far that is from what the velocity makes of it
-ended AS (
+-- Both actors at both steps. (x, y) is the place of the object seen from the ego at the first step; ego_way and object_way are their ways
+-- to the second step (see between_way).
+interval_motion AS (
     SELECT
-        n.drive_id, n.ego_id, n.object_id, n.t_ns, n.t_next_ns, (n.t_next_ns - n.t_ns) / 1e9 AS dt_s, least(a.clearance_m, b.clearance_m) AS end_m,
-        e.length_m / 2 AS hla, e.width_m / 2 AS hwa, a.length_m / 2 AS hlb, a.width_m / 2 AS hwb,
-        e.yaw_rad AS ego_yaw, box_turn_rad(f.yaw_rad - e.yaw_rad) AS ego_turn, a.yaw_rad AS yaw, box_turn_rad(b.yaw_rad - a.yaw_rad) AS turn,
+        n.drive_id, n.ego_id, n.object_id, n.t_ns, n.t_next_ns, (n.t_next_ns - n.t_ns) / 1e9 AS dt_s, least(a.clearance_m, b.clearance_m) AS end_clearance_m,
+        e.length_m / 2 AS ego_half_length_m, e.width_m / 2 AS ego_half_width_m, a.length_m / 2 AS object_half_length_m, a.width_m / 2 AS object_half_width_m,
+        e.yaw_rad AS ego_yaw_rad, box_turn_rad(f.yaw_rad - e.yaw_rad) AS ego_turn_rad, a.yaw_rad AS object_yaw_rad, box_turn_rad(b.yaw_rad - a.yaw_rad) AS object_turn_rad,
         a.x_m - e.x_m AS x, a.y_m - e.y_m AS y,
-        between_way(e.x_m, e.y_m, f.x_m, f.y_m, e0.vx_mps, e0.vy_mps, e1.vx_mps, e1.vy_mps, dt_s) AS own,
-        between_way(a.x_m, a.y_m, b.x_m, b.y_m, o0.vx_mps, o0.vy_mps, o1.vx_mps, o1.vy_mps, dt_s) AS its
-    FROM span n
+        between_way(e.x_m, e.y_m, f.x_m, f.y_m, e0.vx_mps, e0.vy_mps, e1.vx_mps, e1.vy_mps, dt_s) AS ego_way,
+        between_way(a.x_m, a.y_m, b.x_m, b.y_m, o0.vx_mps, o0.vy_mps, o1.vx_mps, o1.vy_mps, dt_s) AS object_way
+    FROM step_interval n
     JOIN pair a ON a.drive_id = n.drive_id AND a.ego_id = n.ego_id AND a.object_id = n.object_id AND a.t_ns = n.t_ns
     JOIN pair b ON b.drive_id = n.drive_id AND b.ego_id = n.ego_id AND b.object_id = n.object_id AND b.t_ns = n.t_next_ns
     JOIN ego_state e ON e.drive_id = n.drive_id AND e.ego_id = n.ego_id AND e.t_ns = n.t_ns
@@ -43,46 +46,46 @@ ended AS (
     LEFT JOIN state_dynamics o1 ON o1.drive_id = n.drive_id AND o1.actor_id = n.object_id AND o1.t_ns = n.t_next_ns
     WHERE a.clearance_m > 0 AND b.clearance_m > 0
 ),
-moved AS MATERIALIZED (
+relative_motion AS MATERIALIZED (
     SELECT *,
-        its.x - own.x AS gx, its.y - own.y AS gy, its.px - own.px AS px, its.py - own.py AS py, its.qx - own.qx AS qx, its.qy - own.qy AS qy,
-        -- nobody leaves the way by more than its length
-        least(between_blur_m(own, dt_s), own.long_m) + least(between_blur_m(its, dt_s), its.long_m)
-            -- a turn is not even either
-            + 0.1 * (abs(ego_turn) * hla + abs(turn) * hlb) AS blur_m
-    FROM ended
-    WHERE ego_turn IS NOT NULL AND turn IS NOT NULL AND x IS NOT NULL
+        object_way.x - ego_way.x AS change_x_m, object_way.y - ego_way.y AS change_y_m, object_way.px - ego_way.px AS px, object_way.py - ego_way.py AS py, object_way.qx - ego_way.qx AS qx, object_way.qy - ego_way.qy AS qy,
+        -- A box is off its way by no more than the length of that way.
+        least(between_blur_m(ego_way, dt_s), ego_way.long_m) + least(between_blur_m(object_way, dt_s), object_way.long_m)
+            -- A box does not turn evenly either.
+            + 0.1 * (abs(ego_turn_rad) * ego_half_length_m + abs(object_turn_rad) * object_half_length_m) AS blur_m
+    FROM interval_motion
+    WHERE ego_turn_rad IS NOT NULL AND object_turn_rad IS NOT NULL AND x IS NOT NULL
 ),
--- half a metre at a time, then a twentieth of that around the least
-coarse AS (
+-- First a coarse search, in n parts of at most half a metre, then a fine one in twentieths of a part around the least clearance.
+coarse_position AS (
     SELECT m.*, n, unnest(range(n + 1)) / n AS u
-    FROM (SELECT *, ceil((sqrt(gx ** 2 + gy ** 2) + sqrt(px ** 2 + py ** 2) + sqrt(qx ** 2 + qy ** 2) + abs(ego_turn) * hla + abs(turn) * hlb) / 0.5)::BIGINT + 1 AS n FROM moved) m
-    WHERE end_m - 0.25 * n <= blur_m
+    FROM (SELECT *, ceil((sqrt(change_x_m ** 2 + change_y_m ** 2) + sqrt(px ** 2 + py ** 2) + sqrt(qx ** 2 + qy ** 2) + abs(ego_turn_rad) * ego_half_length_m + abs(object_turn_rad) * object_half_length_m) / 0.5)::BIGINT + 1 AS n FROM relative_motion) m
+    WHERE end_clearance_m - 0.25 * n <= blur_m
 ),
--- columns, and not one expression: a macro writes its arguments out wherever it uses them
-coarse_boxes AS (
-    SELECT *, ex * cos(ea) + ey * sin(ea) AS dx, ey * cos(ea) - ex * sin(ea) AS dy, cos(oa - ea) AS c, sin(oa - ea) AS s
-    FROM (SELECT *, between_offset(u, x, gx, px, qx) AS ex, between_offset(u, y, gy, py, qy) AS ey, ego_yaw + ego_turn * u AS ea, yaw + turn * u AS oa FROM coarse)
+-- The arguments of box_clearance are columns, because a macro repeats the expression of an argument wherever it uses it.
+coarse_box_pair AS (
+    SELECT *, offset_x_m * cos(ego_angle_rad) + offset_y_m * sin(ego_angle_rad) AS dx, offset_y_m * cos(ego_angle_rad) - offset_x_m * sin(ego_angle_rad) AS dy, cos(object_angle_rad - ego_angle_rad) AS c, sin(object_angle_rad - ego_angle_rad) AS s
+    FROM (SELECT *, between_offset(u, x, change_x_m, px, qx) AS offset_x_m, between_offset(u, y, change_y_m, py, qy) AS offset_y_m, ego_yaw_rad + ego_turn_rad * u AS ego_angle_rad, object_yaw_rad + object_turn_rad * u AS object_angle_rad FROM coarse_position)
 ),
-least_coarse AS (
-    SELECT drive_id, ego_id, object_id, t_ns, min({'m': box_clearance(dx, dy, c, s, hla, hwa, hlb, hwb), 'u': u, 'n': n}) AS low
-    FROM coarse_boxes
+coarse_minimum AS (
+    SELECT drive_id, ego_id, object_id, t_ns, min({'m': box_clearance(dx, dy, c, s, ego_half_length_m, ego_half_width_m, object_half_length_m, object_half_width_m), 'u': u, 'n': n}) AS minimum
+    FROM coarse_box_pair
     GROUP BY drive_id, ego_id, object_id, t_ns
 ),
-fine AS (
-    SELECT m.*, low.u + unnest(range(-20, 21)) / (20.0::DOUBLE * low.n) AS u
-    FROM moved m
-    JOIN least_coarse l USING (drive_id, ego_id, object_id, t_ns)
-    WHERE low.m <= blur_m + 0.25
+fine_position AS (
+    SELECT m.*, minimum.u + unnest(range(-20, 21)) / (20.0::DOUBLE * minimum.n) AS u
+    FROM relative_motion m
+    JOIN coarse_minimum l USING (drive_id, ego_id, object_id, t_ns)
+    WHERE minimum.m <= blur_m + 0.25
 ),
-fine_boxes AS (
-    SELECT *, ex * cos(ea) + ey * sin(ea) AS dx, ey * cos(ea) - ex * sin(ea) AS dy, cos(oa - ea) AS c, sin(oa - ea) AS s
-    FROM (SELECT *, between_offset(u, x, gx, px, qx) AS ex, between_offset(u, y, gy, py, qy) AS ey, ego_yaw + ego_turn * u AS ea, yaw + turn * u AS oa FROM fine WHERE u BETWEEN 0 AND 1)
+fine_box_pair AS (
+    SELECT *, offset_x_m * cos(ego_angle_rad) + offset_y_m * sin(ego_angle_rad) AS dx, offset_y_m * cos(ego_angle_rad) - offset_x_m * sin(ego_angle_rad) AS dy, cos(object_angle_rad - ego_angle_rad) AS c, sin(object_angle_rad - ego_angle_rad) AS s
+    FROM (SELECT *, between_offset(u, x, change_x_m, px, qx) AS offset_x_m, between_offset(u, y, change_y_m, py, qy) AS offset_y_m, ego_yaw_rad + ego_turn_rad * u AS ego_angle_rad, object_yaw_rad + object_turn_rad * u AS object_angle_rad FROM fine_position WHERE u BETWEEN 0 AND 1)
 ),
-swept AS (
-    SELECT drive_id, ego_id, object_id, t_ns, t_next_ns, end_m, blur_m, min(box_clearance(dx, dy, c, s, hla, hwa, hlb, hwb)) AS least_m
-    FROM fine_boxes
-    GROUP BY drive_id, ego_id, object_id, t_ns, t_next_ns, end_m, blur_m
+least_clearance AS (
+    SELECT drive_id, ego_id, object_id, t_ns, t_next_ns, end_clearance_m, blur_m, min(box_clearance(dx, dy, c, s, ego_half_length_m, ego_half_width_m, object_half_length_m, object_half_width_m)) AS least_m
+    FROM fine_box_pair
+    GROUP BY drive_id, ego_id, object_id, t_ns, t_next_ns, end_clearance_m, blur_m
 )
--- nearer between the two than at either: who only follows does not come nearer
-SELECT drive_id, ego_id, t_ns, t_next_ns, object_id, least_m, blur_m FROM swept WHERE least_m <= blur_m AND least_m < end_m - 0.05
+-- The boxes come nearer between the two steps than at either of them. A vehicle that only follows does not come nearer.
+SELECT drive_id, ego_id, t_ns, t_next_ns, object_id, least_m, blur_m FROM least_clearance WHERE least_m <= blur_m AND least_m < end_clearance_m - 0.05

@@ -1,35 +1,37 @@
--- The running lane as a chain of lanelets: as driven, and beyond that straight on. Steps in a lane driven the other way (an overtake)
--- or off the lanes do not break it; a change to another lane of the same direction begins a new chain.
-WITH RECURSIVE on_lane AS (
+-- The running lane as a chain of lanelets: those that the ego drove, and beyond them those straight on. Steps in a lane driven the other
+-- way (an overtake) or off the lanes do not interrupt the chain. A change to another lane of the same direction begins a new chain.
+WITH RECURSIVE lane_step AS (
     SELECT
         drive_id, ego_id, t_ns, lanelet_id,
-        -- a lanelet that continues into itself is a ring: starting it again is another visit
-        lanelet_id IS DISTINCT FROM lag(lanelet_id) OVER w OR s_m < lag(s_m) OVER w - n.length_m / 2 AS new_visit
+        -- A lanelet that continues into itself is a ring: each new round on it is a new visit.
+        lanelet_id IS DISTINCT FROM lag(lanelet_id) OVER w OR s_m < lag(s_m) OVER w - n.length_m / 2 AS begins_visit
     FROM ego_lane e
     JOIN data_log l USING (drive_id)
     JOIN lanelet n USING (environment_id, lanelet_id)
     WHERE e.with_direction
     WINDOW w AS (PARTITION BY drive_id, ego_id ORDER BY t_ns)
 ),
+-- The ego's visits to lanelets, numbered v = 0.. in time order.
 visit AS (
     SELECT drive_id, ego_id, v, any_value(lanelet_id) AS lanelet_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns
     FROM (
-        SELECT *, (sum(new_visit::INTEGER) OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns ROWS UNBOUNDED PRECEDING) - 1)::INTEGER AS v
-        FROM on_lane
+        SELECT *, (sum(begins_visit::INTEGER) OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns ROWS UNBOUNDED PRECEDING) - 1)::INTEGER AS v
+        FROM lane_step
     )
     GROUP BY ALL
 ),
-visited AS (SELECT DISTINCT v.drive_id, v.ego_id, l.environment_id, v.lanelet_id FROM visit v JOIN data_log l USING (drive_id)),
--- where the ego went on is known: a link between two lanelets that it drove comes before straight on
-linked AS (
-    SELECT a.drive_id, a.ego_id, a.lanelet_id, {'beside': false, 'turn': abs(l.turn_rad), 'id': l.to_id} AS next
-    FROM visited a
+visited_lanelet AS (SELECT DISTINCT v.drive_id, v.ego_id, l.environment_id, v.lanelet_id FROM visit v JOIN data_log l USING (drive_id)),
+-- Where the ego went on is known: a link between two lanelets that it drove has priority over the link straight on.
+driven_link AS (
+    SELECT a.drive_id, a.ego_id, a.lanelet_id, {'beside': false, 'abs_turn_rad': abs(l.turn_rad), 'id': l.to_id} AS next
+    FROM visited_lanelet a
     JOIN lane_link l ON l.environment_id = a.environment_id AND l.from_id = a.lanelet_id
-    JOIN visited b ON b.drive_id = a.drive_id AND b.ego_id = a.ego_id AND b.lanelet_id = l.to_id
+    JOIN visited_lanelet b ON b.drive_id = a.drive_id AND b.ego_id = a.ego_id AND b.lanelet_id = l.to_id
 ),
--- and so is the way through a junction that it drove beside its own lane there, as one does that cuts the corner
-cut AS (
-    SELECT a.drive_id, a.ego_id, a.lanelet_id, {'beside': true, 'turn': abs(l.turn_rad), 'id': l.to_id} AS next
+-- A link into a junction is known, too, if the ego drove through the junction beside the connecting lanelet, as a driver does that cuts the
+-- corner.
+corner_cut AS (
+    SELECT a.drive_id, a.ego_id, a.lanelet_id, {'beside': true, 'abs_turn_rad': abs(l.turn_rad), 'id': l.to_id} AS next
     FROM visit a
     JOIN visit b ON b.drive_id = a.drive_id AND b.ego_id = a.ego_id AND b.v = a.v + 1
     JOIN data_log g ON g.drive_id = a.drive_id
@@ -42,8 +44,8 @@ cut AS (
         WHERE n.junction_id IS NOT NULL
     ) e ON e.drive_id = a.drive_id AND e.ego_id = a.ego_id AND e.junction_id = j.junction_id AND e.t_ns > a.t_last_ns AND e.t_ns < b.t_first_ns
 ),
-went AS (
-    SELECT drive_id, ego_id, lanelet_id, min(next).id AS next_id FROM (FROM linked UNION ALL FROM cut) GROUP BY drive_id, ego_id, lanelet_id
+driven_next AS (
+    SELECT drive_id, ego_id, lanelet_id, min(next).id AS next_id FROM (FROM driven_link UNION ALL FROM corner_cut) GROUP BY drive_id, ego_id, lanelet_id
 ),
 ahead AS (
     SELECT v.drive_id, v.ego_id, v.v, 0 AS hop, l.environment_id, v.lanelet_id, 0.0::DOUBLE AS beyond_m
@@ -51,26 +53,26 @@ ahead AS (
     UNION ALL
     SELECT a.drive_id, a.ego_id, a.v, a.hop + 1, a.environment_id, n.lanelet_id, a.beyond_m + n.length_m
     FROM ahead a
-    LEFT JOIN went w ON w.drive_id = a.drive_id AND w.ego_id = a.ego_id AND w.lanelet_id = a.lanelet_id
+    LEFT JOIN driven_next w ON w.drive_id = a.drive_id AND w.ego_id = a.ego_id AND w.lanelet_id = a.lanelet_id
     JOIN lane_next s ON s.environment_id = a.environment_id AND s.lanelet_id = a.lanelet_id
     JOIN lanelet n ON n.environment_id = a.environment_id AND n.lanelet_id = coalesce(w.next_id, s.ahead_id)
     WHERE a.beyond_m < corridor_ahead_m() AND a.hop < 500
 ),
--- the visit after this one, if it lies on the way ahead, continues the chain at that hop
-continued AS (
+-- If the next visit lies on the way ahead of this one, it continues the chain at that hop.
+continuation AS (
     SELECT v.drive_id, v.ego_id, v.v, min(a.hop) AS hop
     FROM visit v
     LEFT JOIN visit w ON w.drive_id = v.drive_id AND w.ego_id = v.ego_id AND w.v = v.v + 1
     LEFT JOIN ahead a ON a.drive_id = v.drive_id AND a.ego_id = v.ego_id AND a.v = v.v AND a.lanelet_id = w.lanelet_id AND a.hop > 0
     GROUP BY ALL
 ),
-grouped AS (
+chain_visit AS (
     SELECT
         drive_id, ego_id, v, hop,
         (count(*) FILTER (hop IS NULL) OVER (PARTITION BY drive_id, ego_id ORDER BY v ROWS UNBOUNDED PRECEDING) - (hop IS NULL)::BIGINT)::INTEGER AS chain_id
-    FROM continued
+    FROM continuation
 ),
-first_visit AS (SELECT drive_id, ego_id, chain_id, min(v) AS v FROM grouped GROUP BY ALL),
+first_visit AS (SELECT drive_id, ego_id, chain_id, min(v) AS v FROM chain_visit GROUP BY ALL),
 behind AS (
     SELECT f.drive_id, f.ego_id, f.chain_id, 0 AS hop, l.environment_id, v.lanelet_id, 0.0::DOUBLE AS before_m
     FROM first_visit f JOIN visit v USING (drive_id, ego_id, v) JOIN data_log l USING (drive_id)
@@ -85,11 +87,11 @@ link AS (
     SELECT drive_id, ego_id, chain_id, -1 AS v, -hop AS hop, environment_id, lanelet_id FROM behind WHERE hop > 0
     UNION ALL
     SELECT g.drive_id, g.ego_id, g.chain_id, g.v, a.hop, a.environment_id, a.lanelet_id
-    FROM grouped g
+    FROM chain_visit g
     JOIN ahead a USING (drive_id, ego_id, v)
     WHERE g.hop IS NULL OR a.hop < g.hop
 ),
-ordered AS (
+chain_link AS (
     SELECT
         k.drive_id, k.ego_id, k.chain_id, k.lanelet_id, n.length_m, k.v, k.hop,
         (row_number() OVER along - 1)::INTEGER AS seq,
@@ -100,5 +102,5 @@ ordered AS (
 SELECT
     o.drive_id, o.ego_id, o.chain_id, o.seq, o.lanelet_id, o.length_m, v.t_first_ns, v.t_last_ns,
     of_pm(o.end_pm - whole_pm(o.length_m) - coalesce(max(CASE WHEN o.v < 0 THEN o.end_pm END) OVER (PARTITION BY o.drive_id, o.ego_id, o.chain_id), 0)) AS s_start_m
-FROM ordered o
+FROM chain_link o
 LEFT JOIN visit v ON v.drive_id = o.drive_id AND v.ego_id = o.ego_id AND v.v = o.v AND o.hop = 0

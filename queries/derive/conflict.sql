@@ -1,96 +1,102 @@
--- Encounters of two on common ground: when each came and left, and how much time was between them. None of that depends on which is the ego.
+-- Encounters of two actors on common ground: when each of them entered and left it, and the time between the two. None of that depends on
+-- which of them is the ego.
 WITH
-scale AS (SELECT drive_id, max(period_ns) AS period_ns, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id),
--- Encounters. Stretches of the moments of the actor with the lesser id, and in each those of the other's, without a pause ...
-turned AS MATERIALIZED (
+drive_period AS (SELECT drive_id, max(period_ns) AS period_ns, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id),
+-- The moments of the actor with the lesser id (u) are divided into stretches without a pause, and within each stretch the moments of the
+-- other actor (v) as well.
+ordered_moment AS MATERIALIZED (
     SELECT
         drive_id, ego_id, object_id, actor_id, ego_id < object_id AS ego_is_u, CASE WHEN ego_is_u THEN t_ego_ns ELSE t_object_ns END AS u_ns, CASE WHEN ego_is_u THEN t_object_ns ELSE t_ego_ns END AS v_ns
     FROM common_ground
 ),
-stretch AS MATERIALIZED (
-    SELECT p.*, sum((u_ns - before_ns > g.max_gap_ns)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY u_ns) AS nu
+u_moment AS MATERIALIZED (
+    SELECT p.*, sum((u_ns - before_ns > g.max_gap_ns)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY u_ns) AS u_stretch
     FROM (
         SELECT *, lag(u_ns, 1, u_ns) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY u_ns) AS before_ns
-        FROM (SELECT DISTINCT drive_id, ego_id, object_id, u_ns FROM turned)
+        FROM (SELECT DISTINCT drive_id, ego_id, object_id, u_ns FROM ordered_moment)
     ) p
-    JOIN scale g USING (drive_id)
+    JOIN drive_period g USING (drive_id)
 ),
-parted AS MATERIALIZED (
-    SELECT *, sum((v_ns - before_ns > max_gap_ns)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id, nu ORDER BY v_ns) AS nv
+v_moment AS MATERIALIZED (
+    SELECT *, sum((v_ns - before_ns > max_gap_ns)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id, u_stretch ORDER BY v_ns) AS v_stretch
     FROM (
-        SELECT p.*, g.max_gap_ns, lag(v_ns, 1, v_ns) OVER (PARTITION BY drive_id, ego_id, object_id, nu ORDER BY v_ns) AS before_ns
+        SELECT p.*, g.max_gap_ns, lag(v_ns, 1, v_ns) OVER (PARTITION BY drive_id, ego_id, object_id, u_stretch ORDER BY v_ns) AS before_ns
         FROM (
-            SELECT t.drive_id, t.ego_id, t.object_id, t.actor_id, t.ego_is_u, s.nu, t.v_ns, min(t.u_ns) AS u_first_ns, max(t.u_ns) AS u_last_ns
-            FROM turned t JOIN stretch s USING (drive_id, ego_id, object_id, u_ns)
+            SELECT t.drive_id, t.ego_id, t.object_id, t.actor_id, t.ego_is_u, s.u_stretch, t.v_ns, min(t.u_ns) AS u_first_ns, max(t.u_ns) AS u_last_ns
+            FROM ordered_moment t JOIN u_moment s USING (drive_id, ego_id, object_id, u_ns)
             GROUP BY ALL
         ) p
-        JOIN scale g USING (drive_id)
+        JOIN drive_period g USING (drive_id)
     )
 ),
-piece AS MATERIALIZED (
+stretch_pair AS MATERIALIZED (
     SELECT
-        drive_id, ego_id, object_id, nu, nv, any_value(max_gap_ns) AS max_gap_ns, min(u_first_ns) AS u_first_ns, max(u_last_ns) AS u_last_ns,
+        drive_id, ego_id, object_id, u_stretch, v_stretch, any_value(max_gap_ns) AS max_gap_ns, min(u_first_ns) AS u_first_ns, max(u_last_ns) AS u_last_ns,
         min(v_ns) AS v_first_ns, max(v_ns) AS v_last_ns
-    FROM parted
-    GROUP BY drive_id, ego_id, object_id, nu, nv
+    FROM v_moment
+    GROUP BY drive_id, ego_id, object_id, u_stretch, v_stretch
 ),
--- ... and with them what follows soon after where one of the two has not left meanwhile: an angle that comes and goes at its edge, a step aside
-numbered AS MATERIALIZED (
-    SELECT drive_id, ego_id, object_id, nu, nv, sum((NOT joined)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY nu, nv) AS n
+-- A pair of stretches and the one before it (b) are the same encounter if one of the actors has not left in between and the other is back
+-- soon: at the edge the angle may come and go, and an actor may step aside. n is the number of the encounter.
+encounter_part AS MATERIALIZED (
+    SELECT drive_id, ego_id, object_id, u_stretch, v_stretch, sum((NOT is_joined)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY u_stretch, v_stretch) AS n
     FROM (
         SELECT
             *, greatest(u_first_ns - b.u_last_ns, b.u_first_ns - u_last_ns) AS u_gap_ns, greatest(v_first_ns - b.v_last_ns, b.v_first_ns - v_last_ns) AS v_gap_ns,
-            coalesce(least(u_gap_ns, v_gap_ns) <= max_gap_ns AND greatest(u_gap_ns, v_gap_ns) <= conflict_apart_ns(), true) AS joined
+            coalesce(least(u_gap_ns, v_gap_ns) <= max_gap_ns AND greatest(u_gap_ns, v_gap_ns) <= conflict_apart_ns(), true) AS is_joined
         FROM (
             SELECT
                 *, lag({'u_first_ns': u_first_ns, 'u_last_ns': u_last_ns, 'v_first_ns': v_first_ns, 'v_last_ns': v_last_ns})
-                    OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY nu, nv) AS b
-            FROM piece
+                    OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY u_stretch, v_stretch) AS b
+            FROM stretch_pair
         )
     )
 ),
--- first and last moment of each of the ego's boxes on the common ground, and of the other on theirs
-on_it AS MATERIALIZED (
+-- The first and last moment of each of the ego's boxes on the common ground, and those of the object on the ground that it shares with
+-- this box.
+box_time AS MATERIALIZED (
     SELECT
-        drive_id, ego_id, object_id, n, actor_id, CASE WHEN ego_is_u THEN min(u_first_ns) ELSE min(v_ns) END AS t1_first_ns, CASE WHEN ego_is_u THEN max(u_last_ns) ELSE max(v_ns) END AS t1_last_ns,
-        CASE WHEN ego_is_u THEN min(v_ns) ELSE min(u_first_ns) END AS t2_first_ns, CASE WHEN ego_is_u THEN max(v_ns) ELSE max(u_last_ns) END AS t2_last_ns
-    FROM parted JOIN numbered USING (drive_id, ego_id, object_id, nu, nv)
+        drive_id, ego_id, object_id, n, actor_id, CASE WHEN ego_is_u THEN min(u_first_ns) ELSE min(v_ns) END AS ego_first_ns, CASE WHEN ego_is_u THEN max(u_last_ns) ELSE max(v_ns) END AS ego_last_ns,
+        CASE WHEN ego_is_u THEN min(v_ns) ELSE min(u_first_ns) END AS object_first_ns, CASE WHEN ego_is_u THEN max(v_ns) ELSE max(u_last_ns) END AS object_last_ns
+    FROM v_moment JOIN encounter_part USING (drive_id, ego_id, object_id, u_stretch, v_stretch)
     GROUP BY drive_id, ego_id, object_id, n, actor_id, ego_is_u
 ),
-both_on_it AS MATERIALIZED (
+encounter_time AS MATERIALIZED (
     SELECT
-        drive_id, ego_id, object_id, n, min(t1_first_ns) AS t1_first_ns, max(t1_last_ns) AS t1_last_ns, min(t2_first_ns) AS t2_first_ns, max(t2_last_ns) AS t2_last_ns
-    FROM on_it
+        drive_id, ego_id, object_id, n, min(ego_first_ns) AS ego_first_ns, max(ego_last_ns) AS ego_last_ns, min(object_first_ns) AS object_first_ns, max(object_last_ns) AS object_last_ns
+    FROM box_time
     GROUP BY drive_id, ego_id, object_id, n
 ),
--- whose entry (sense 1) or exit (-1), and on whose ground of when that is
-edge AS MATERIALIZED (
+-- The entry (sense 1) or exit (sense -1) of a box, the actor on_id whose ground it enters or leaves, and when that actor is there. i is the
+-- box on the ground; t_off_ns is the moment next to it at which it is off the ground.
+ground_edge AS MATERIALIZED (
     SELECT
-        p.drive_id, p.ego_id, p.object_id, p.n, p.ego, p.on_id, p.t_from_ns - g.period_ns AS t_from_ns, p.t_to_ns + g.period_ns AS t_to_ns, p.sense, i,
+        p.drive_id, p.ego_id, p.object_id, p.n, p.is_ego, p.on_id, p.t_from_ns - g.period_ns AS t_from_ns, p.t_to_ns + g.period_ns AS t_to_ns, p.sense, i,
         CASE WHEN p.sense = 1 THEN i.t_before_ns ELSE i.t_after_ns END AS t_off_ns
     FROM (
         SELECT
-            o.drive_id, o.ego_id, o.object_id, o.n, true AS ego, o.actor_id, o.object_id AS on_id, w.t2_first_ns AS t_from_ns, w.t2_last_ns AS t_to_ns,
-            unnest([1, -1]) AS sense, unnest([o.t1_first_ns, o.t1_last_ns]) AS t_ns
-        FROM on_it o JOIN both_on_it w USING (drive_id, ego_id, object_id, n)
+            o.drive_id, o.ego_id, o.object_id, o.n, true AS is_ego, o.actor_id, o.object_id AS on_id, w.object_first_ns AS t_from_ns, w.object_last_ns AS t_to_ns,
+            unnest([1, -1]) AS sense, unnest([o.ego_first_ns, o.ego_last_ns]) AS t_ns
+        FROM box_time o JOIN encounter_time w USING (drive_id, ego_id, object_id, n)
         UNION ALL
         SELECT
-            o.drive_id, o.ego_id, o.object_id, o.n, false, o.object_id, o.actor_id, o.t1_first_ns, o.t1_last_ns,
-            unnest([1, -1]), unnest([w.t2_first_ns, w.t2_last_ns])
-        FROM on_it o JOIN both_on_it w USING (drive_id, ego_id, object_id, n)
+            o.drive_id, o.ego_id, o.object_id, o.n, false, o.object_id, o.actor_id, o.ego_first_ns, o.ego_last_ns,
+            unnest([1, -1]), unnest([w.object_first_ns, w.object_last_ns])
+        FROM box_time o JOIN encounter_time w USING (drive_id, ego_id, object_id, n)
     ) p
-    JOIN scale g USING (drive_id)
+    JOIN drive_period g USING (drive_id)
     JOIN swept_box i ON i.drive_id = p.drive_id AND i.actor_id = p.actor_id AND i.t_ns = p.t_ns
 ),
 edge_box AS MATERIALIZED (
     SELECT e.*, f
-    FROM edge e
+    FROM ground_edge e
     LEFT JOIN swept_box f ON f.drive_id = e.drive_id AND f.actor_id = e.i.actor_id AND f.t_ns = e.t_off_ns
 ),
--- at which share of its way from the moment off that ground to the one on it it first touched it; its way against the other's where that comes nearest
-touched AS MATERIALIZED (
+-- share: the part of the way, from the moment off the ground to the moment on it, after which the box first touches a box of the other.
+-- angle_rad: the other's way against its own where the two come nearest.
+first_contact AS MATERIALIZED (
     SELECT
-        e.drive_id, e.ego_id, e.object_id, e.n, e.ego, i.actor_id AS actor_id, e.sense, i.t_sample_ns AS t_sample_ns, i.t_ns AS t_on_ns, e.t_off_ns,
+        e.drive_id, e.ego_id, e.object_id, e.n, e.is_ego, i.actor_id AS actor_id, e.sense, i.t_sample_ns AS t_sample_ns, i.t_ns AS t_on_ns, e.t_off_ns,
         min(first_touch(
             boxes_sides(b.x_m - f.x_m, b.y_m - f.y_m, f.cos_yaw, f.sin_yaw, b.cos_yaw, b.sin_yaw, f.half_length_m, f.half_width_m, b.half_length_m, b.half_width_m),
             boxes_sides(b.x_m - i.x_m, b.y_m - i.y_m, i.cos_yaw, i.sin_yaw, b.cos_yaw, b.sin_yaw, i.half_length_m, i.half_width_m, b.half_length_m, b.half_width_m)
@@ -101,48 +107,49 @@ touched AS MATERIALIZED (
         ).angle_rad AS angle_rad
     FROM edge_box e
     JOIN swept_box b ON b.drive_id = e.drive_id AND b.actor_id = e.on_id AND b.t_ns >= e.t_from_ns AND b.t_ns <= e.t_to_ns
-    GROUP BY e.drive_id, e.ego_id, e.object_id, e.n, e.ego, i.actor_id, e.sense, i.t_sample_ns, i.t_ns, e.t_off_ns
+    GROUP BY e.drive_id, e.ego_id, e.object_id, e.n, e.is_ego, i.actor_id, e.sense, i.t_sample_ns, i.t_ns, e.t_off_ns
 ),
--- Where it is an angle that ends the common ground, that is at the moment off it. An edge without a moment off the ground was not seen.
-timed AS MATERIALIZED (
+-- If only the angle ends the common ground, share is NULL and the edge is the moment off the ground. An edge without a moment off the
+-- ground was not seen.
+edge_time AS MATERIALIZED (
     SELECT
-        drive_id, ego_id, object_id, n, ego, sense, min(sense * t_sample_ns) AS k_ns,
+        drive_id, ego_id, object_id, n, is_ego, sense, min(sense * t_sample_ns) AS signed_sample_ns,
         min({
-            'ns': sense * (t_on_ns - coalesce(round((1 - coalesce(share, 0)) * (t_on_ns - t_off_ns)), 0)::BIGINT), 'known': t_off_ns IS NOT NULL,
-            'off_rad': -abs(angle_rad), 'angle_rad': CASE WHEN ego THEN angle_rad ELSE -angle_rad END
-        }) AS edge
-    FROM touched
-    GROUP BY drive_id, ego_id, object_id, n, ego, sense
+            'ns': sense * (t_on_ns - coalesce(round((1 - coalesce(share, 0)) * (t_on_ns - t_off_ns)), 0)::BIGINT), 'is_known': t_off_ns IS NOT NULL,
+            'off_rad': -abs(angle_rad), 'angle_rad': CASE WHEN is_ego THEN angle_rad ELSE -angle_rad END
+        }) AS ground_edge
+    FROM first_contact
+    GROUP BY drive_id, ego_id, object_id, n, is_ego, sense
 ),
 encounter AS MATERIALIZED (
     SELECT
-        drive_id, ego_id, object_id, n, min(k_ns) FILTER (ego AND sense = 1) AS t_ego_in_ns, min(-k_ns) FILTER (ego AND sense = -1) AS t_ego_out_ns,
-        min(k_ns) FILTER (NOT ego AND sense = 1) AS t_object_in_ns, min(-k_ns) FILTER (NOT ego AND sense = -1) AS t_object_out_ns,
-        max({'ns': edge.ns, 'unknown': NOT edge.known, 'off_rad': -edge.off_rad, 'angle_rad': edge.angle_rad}) FILTER (sense = 1) AS late_in,
-        min({'ns': -edge.ns, 'known': edge.known}) FILTER (sense = -1) AS early_out
-    FROM timed
+        drive_id, ego_id, object_id, n, min(signed_sample_ns) FILTER (is_ego AND sense = 1) AS t_ego_in_ns, min(-signed_sample_ns) FILTER (is_ego AND sense = -1) AS t_ego_out_ns,
+        min(signed_sample_ns) FILTER (NOT is_ego AND sense = 1) AS t_object_in_ns, min(-signed_sample_ns) FILTER (NOT is_ego AND sense = -1) AS t_object_out_ns,
+        max({'ns': ground_edge.ns, 'is_unknown': NOT ground_edge.is_known, 'off_rad': -ground_edge.off_rad, 'angle_rad': ground_edge.angle_rad}) FILTER (sense = 1) AS later_entry,
+        min({'ns': -ground_edge.ns, 'is_known': ground_edge.is_known}) FILTER (sense = -1) AS earlier_exit
+    FROM edge_time
     GROUP BY drive_id, ego_id, object_id, n
 ),
--- what stands there all the while is in the way, not on its way
-moving AS MATERIALIZED (
+-- An actor that stands as long as it is on the ground is an obstacle, not a partner in a conflict.
+moving_encounter AS MATERIALIZED (
     SELECT
-        e.*, (late_in.ns - early_out.ns) / 1e9 AS pet_s, late_in.unknown OR NOT early_out.known AS pet_at_most, late_in.angle_rad AS angle_rad
+        e.*, (later_entry.ns - earlier_exit.ns) / 1e9 AS pet_s, later_entry.is_unknown OR NOT earlier_exit.is_known AS pet_at_most, later_entry.angle_rad AS angle_rad
     FROM encounter e
     SEMI JOIN state_dynamics s ON s.drive_id = e.drive_id AND s.actor_id = e.object_id
         AND s.t_ns >= e.t_object_in_ns AND s.t_ns <= e.t_object_out_ns AND coalesce(s.speed_mps > standing_mps(), true)
     SEMI JOIN state_dynamics o ON o.drive_id = e.drive_id AND o.actor_id = e.ego_id
         AND o.t_ns >= e.t_ego_in_ns AND o.t_ns <= e.t_ego_out_ns AND coalesce(o.speed_mps > standing_mps(), true)
-    -- over or under the ego's road, nobody meets it; who may be there is in pair without a place
+    -- An actor over or under the ego's road does not meet the ego. An actor that may be there has no place in pair.
     ANTI JOIN (FROM pair WHERE off_level) p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.object_id = e.object_id
         AND p.t_ns >= e.t_object_in_ns AND p.t_ns <= e.t_object_out_ns
 ),
--- the mean over the half second before each sample, where that is seen
-slowing AS (
+-- The mean deceleration over the half second before each sample, where all of that was seen.
+object_braking AS (
     SELECT
         drive_id, ego_id, object_id, n, max(decel_mps2) AS decel_mps2,
-        -- every stretch of it was seen
+        -- The whole period was seen.
         bool_and(coalesce(gap_ns <= max_gap_ns, true)) AND min(t_ns) - (t_ego_in_ns - 4_000_000_000) <= period_ns
-            AND max(t_ns) = t_object_in_ns AND bool_and(speed_mps IS NOT NULL) AS whole
+            AND max(t_ns) = t_object_in_ns AND bool_and(speed_mps IS NOT NULL) AS is_whole
     FROM (
         SELECT
             m.drive_id, m.ego_id, m.object_id, m.n, m.t_ego_in_ns, m.t_object_in_ns, s.t_ns, s.speed_mps, c.max_gap_ns, c.period_ns,
@@ -150,7 +157,7 @@ slowing AS (
             CASE WHEN s.t_ns - first_value(s.t_ns) OVER half >= 500_000_000 - c.period_ns // 2 THEN
                 (first_value(s.speed_mps) OVER half - s.speed_mps) / ((s.t_ns - first_value(s.t_ns) OVER half) / 1e9)
             END AS decel_mps2
-        FROM moving m
+        FROM moving_encounter m
         JOIN clock c USING (drive_id, ego_id)
         JOIN state_dynamics s ON s.drive_id = m.drive_id AND s.actor_id = m.object_id
             AND s.t_ns >= m.t_ego_in_ns - 4_000_000_000 AND s.t_ns <= m.t_object_in_ns
@@ -163,25 +170,25 @@ slowing AS (
     )
     GROUP BY drive_id, ego_id, object_id, n, t_ego_in_ns, t_object_in_ns, period_ns
 ),
--- the ego enters the area with its front: what that is on counts
-entered AS (
+-- The lanelets under the ego's box when it enters the area, which it does with its front.
+entry_lanelet AS (
     SELECT m.drive_id, m.ego_id, m.t_ego_in_ns, g.environment_id, c.lanelet_id, e.front_s_m - c.s_start_m AS front_m, e.rear_s_m - c.s_start_m AS rear_m, c.length_m
-    FROM (SELECT DISTINCT drive_id, ego_id, t_ego_in_ns FROM moving) m
+    FROM (SELECT DISTINCT drive_id, ego_id, t_ego_in_ns FROM moving_encounter) m
     JOIN ego_state e ON e.drive_id = m.drive_id AND e.ego_id = m.ego_id AND e.t_ns = m.t_ego_in_ns
     JOIN data_log g ON g.drive_id = m.drive_id
     JOIN chain c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.chain_id = e.chain_id
         AND c.s_start_m <= e.front_s_m AND c.s_start_m + c.length_m >= e.rear_s_m
 ),
-junction_there AS (
+entry_junction AS (
     SELECT i.drive_id, i.ego_id, i.t_ego_in_ns, max({'s_m': -i.front_m, 'id': n.junction_id}).id AS junction_id
-    FROM entered i
+    FROM entry_lanelet i
     JOIN lanelet n USING (environment_id, lanelet_id)
     WHERE i.front_m >= 0 AND i.front_m < i.length_m AND n.junction_id IS NOT NULL
     GROUP BY ALL
 ),
-crossing_there AS (
+entry_crossing AS (
     SELECT i.drive_id, i.ego_id, i.t_ego_in_ns, max({'s_m': x.s_start_m - i.front_m, 'id': x.crossing_id}).id AS crossing_id
-    FROM entered i
+    FROM entry_lanelet i
     JOIN crossing x USING (environment_id, lanelet_id)
     WHERE i.front_m >= x.s_start_m AND i.rear_m <= x.s_end_m
     GROUP BY ALL
@@ -193,11 +200,11 @@ SELECT
     m.pet_s, m.pet_at_most,
     m.t_ego_in_ns <= m.t_object_in_ns AS ego_first, m.angle_rad,
     a.speed_mps AS ego_speed_mps, o.speed_mps,
-    CASE WHEN d.whole THEN d.decel_mps2 END AS decel_mps2,
+    CASE WHEN d.is_whole THEN d.decel_mps2 END AS decel_mps2,
     j.junction_id, x.crossing_id
-FROM moving m
+FROM moving_encounter m
 JOIN state_dynamics a ON a.drive_id = m.drive_id AND a.actor_id = m.ego_id AND a.t_ns = m.t_ego_in_ns
 JOIN state_dynamics o ON o.drive_id = m.drive_id AND o.actor_id = m.object_id AND o.t_ns = m.t_object_in_ns
-LEFT JOIN slowing d ON d.drive_id = m.drive_id AND d.ego_id = m.ego_id AND d.object_id = m.object_id AND d.n = m.n
-LEFT JOIN junction_there j ON j.drive_id = m.drive_id AND j.ego_id = m.ego_id AND j.t_ego_in_ns = m.t_ego_in_ns
-LEFT JOIN crossing_there x ON x.drive_id = m.drive_id AND x.ego_id = m.ego_id AND x.t_ego_in_ns = m.t_ego_in_ns
+LEFT JOIN object_braking d ON d.drive_id = m.drive_id AND d.ego_id = m.ego_id AND d.object_id = m.object_id AND d.n = m.n
+LEFT JOIN entry_junction j ON j.drive_id = m.drive_id AND j.ego_id = m.ego_id AND j.t_ego_in_ns = m.t_ego_in_ns
+LEFT JOIN entry_crossing x ON x.drive_id = m.drive_id AND x.ego_id = m.ego_id AND x.t_ego_in_ns = m.t_ego_in_ns

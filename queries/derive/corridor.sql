@@ -1,5 +1,5 @@
--- The running chain with the lane beside it on the overtaking side.
-WITH over AS (
+-- The running chain with the lane beside it on the overtaking side. Through a junction that is the lane before or after it.
+WITH overtaking_lane AS (
     SELECT e.environment_id, o.lanelet_id, o.against, of_pm(sum(whole_pm(o.s_end_m - o.s_start_m))) AS along_m, max(o.gap_m + o.width_m) AS width_m
     FROM environment e
     JOIN lane_beside o ON o.environment_id = e.environment_id AND o.drivable AND o.side = overtaking_side(e.handedness)
@@ -8,16 +8,16 @@ WITH over AS (
 beside AS (
     SELECT
         c.drive_id, c.ego_id, c.chain_id, c.seq, c.lanelet_id, c.s_start_m, c.length_m, n.junction_id,
-        -- by the default alone the side is a guess, and what needs it must not count on it
+        -- A side that comes only from the default is a guess, and nothing may rely on it.
         CASE WHEN e.handedness_source <> 'default' THEN CASE e.handedness WHEN 'lht' THEN -1 ELSE 1 END END AS side,
         CASE WHEN o.width_m IS NOT NULL THEN {'width_m': o.width_m, 'against': o.against} END AS lane
     FROM chain c
     JOIN data_log l USING (drive_id)
     JOIN environment e USING (environment_id)
     JOIN lanelet n ON n.environment_id = e.environment_id AND n.lanelet_id = c.lanelet_id
-    LEFT JOIN over o ON o.environment_id = e.environment_id AND o.lanelet_id = c.lanelet_id AND o.along_m > n.length_m / 2
+    LEFT JOIN overtaking_lane o ON o.environment_id = e.environment_id AND o.lanelet_id = c.lanelet_id AND o.along_m > n.length_m / 2
 ),
-carried AS (
+corridor_lanelet AS (
     SELECT
         *,
         last_value(lane IGNORE NULLS) OVER (PARTITION BY drive_id, ego_id, chain_id ORDER BY seq ROWS UNBOUNDED PRECEDING) AS lane_before,
@@ -28,4 +28,4 @@ SELECT
     drive_id, ego_id, chain_id, seq, lanelet_id, s_start_m, length_m, side,
     CASE WHEN junction_id IS NULL THEN lane.width_m ELSE coalesce(lane, lane_before, lane_after).width_m END AS over_width_m,
     CASE WHEN junction_id IS NULL THEN lane.against ELSE coalesce(lane, lane_before, lane_after).against END AS over_against
-FROM carried
+FROM corridor_lanelet

@@ -1,12 +1,12 @@
--- Actors that may be on foot on a pedestrian crossing, half by half: stretches of samples without a hole. What stands on it in the whole log and is
--- said to be a thing may be somebody who waits.
+-- Actors on a pedestrian crossing that may be on foot, for each half of it: stretches of samples without a hole. An actor of class object,
+-- which stands on the crossing in the whole log, may be a person who waits.
 WITH walker AS (
     SELECT a.drive_id, a.actor_id, c.max_gap_ns
     FROM road_user a
     JOIN (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id) c USING (drive_id)
     WHERE may_walk(a.actor_class) OR a.actor_class = 'object'
 ),
-on_it AS (
+crossing_sample AS (
     SELECT DISTINCT o.drive_id, x.crossing_id, o.actor_id AS object_id, n.along_road, o.t_ns, w.max_gap_ns
     FROM lane_occupancy o
     JOIN walker w USING (drive_id, actor_id)
@@ -18,6 +18,6 @@ on_it AS (
 SELECT drive_id, crossing_id, object_id, along_road, min(t_ns) AS t_from_ns, max(t_ns) AS t_to_ns
 FROM (
     SELECT *, sum((t_ns - before_ns > max_gap_ns)::INTEGER) OVER (PARTITION BY drive_id, crossing_id, object_id, along_road ORDER BY t_ns) AS n
-    FROM (SELECT *, lag(t_ns, 1, t_ns) OVER (PARTITION BY drive_id, crossing_id, object_id, along_road ORDER BY t_ns) AS before_ns FROM on_it)
+    FROM (SELECT *, lag(t_ns, 1, t_ns) OVER (PARTITION BY drive_id, crossing_id, object_id, along_road ORDER BY t_ns) AS before_ns FROM crossing_sample)
 )
 GROUP BY drive_id, crossing_id, object_id, along_road, n

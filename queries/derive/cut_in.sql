@@ -1,20 +1,21 @@
--- Another vehicle comes from beside into the running lane ahead of the ego: from less than 0.05 m inside it to more than 0.3 m, along the
--- lane (within 45 degrees), at most 150 m ahead. What the ego does by changing lanes itself is none. Where it was lost to sight in
--- between, t is the first step at which it is seen there. One that overtakes the ego and reaches over the line already as it gets ahead cuts in
--- where it becomes the nearest one ahead. Where it cannot be told for a second who is ahead, somebody may have come in.
+-- A vehicle cuts in if it comes from beside into the running lane ahead of the ego: from at most 0.05 m inside the lane to more than 0.3 m,
+-- along the lane (within 45 degrees), at most 150 m ahead. A vehicle that gets into the lane because the ego changes lanes does not cut in.
+-- If the vehicle is not seen in between, t_ns is the first step at which it is seen in the lane. A vehicle that overtakes the ego, and is
+-- over the line already when it gets ahead, cuts in at the step at which it becomes the nearest vehicle ahead. If it cannot be told for a
+-- second which vehicle is ahead, some vehicle may have cut in.
 WITH ahead AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, st.k, st.seg, p.object_id, e.chain_id, p.rear_s_m - e.front_s_m AS gap_m, e.speed_mps AS ego_speed_mps,
-        p.speed_mps, p.d_m, abs(p.d_m) < p.half_width_m AS centre_in, p.half_width_m + p.lat_half_m - abs(p.d_m) AS inside_m,
-        abs(p.heading_diff_rad) < pi() / 4 AS along
+        p.speed_mps, p.d_m, abs(p.d_m) < p.half_width_m AS is_centre_in, p.half_width_m + p.lat_half_m - abs(p.d_m) AS inside_m,
+        abs(p.heading_diff_rad) < pi() / 4 AS is_along
     FROM pair p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     JOIN step st USING (drive_id, ego_id, t_ns)
     WHERE is_vehicle(p.actor_class) AND p.front_s_m > e.front_s_m AND p.rear_s_m - e.front_s_m <= 150
         AND abs(p.heading_diff_rad) < pi() / 2 AND abs(p.d_m) < 10
 ),
--- who is in the lane all the time, or never, does not cut in
-moving AS (
+-- A vehicle that is in the lane all the time, or never, does not cut in.
+candidate_sample AS (
     SELECT a.*
     FROM ahead a
     SEMI JOIN (
@@ -24,40 +25,41 @@ moving AS (
         HAVING min(inside_m) <= over_boundary_m() AND max(inside_m) > cut_in_m()
     ) m ON m.drive_id = a.drive_id AND m.ego_id = a.ego_id AND m.object_id = a.object_id AND m.chain_id = a.chain_id
 ),
--- where lanes merge, or a lane begins, the running lane's middle jumps, and nobody has moved
-steady AS (
-    SELECT *, sum(coalesce(leaps, false)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id, chain_id ORDER BY k ROWS UNBOUNDED PRECEDING) AS run
+-- Where lanes merge, or a lane begins, the centre line of the running lane jumps and no vehicle has moved: a new run begins.
+run_sample AS (
+    SELECT *, sum(coalesce(has_jumped, false)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id, chain_id ORDER BY k ROWS UNBOUNDED PRECEDING) AS run
     FROM (
-        SELECT *, abs(d_m - lag(d_m) OVER w) > 0.3 + 5 * (t_ns - lag(t_ns) OVER w) / 1e9 AS leaps
-        FROM moving
+        SELECT *, abs(d_m - lag(d_m) OVER w) > 0.3 + 5 * (t_ns - lag(t_ns) OVER w) / 1e9 AS has_jumped
+        FROM candidate_sample
         WINDOW w AS (PARTITION BY drive_id, ego_id, object_id, chain_id ORDER BY k)
     )
 ),
-ordered AS (
+-- last_clear: the last sample before at which the vehicle was clearly in the lane or clearly out of it.
+ordered_sample AS (
     SELECT
         *,
         last_value(
             CASE WHEN inside_m > cut_in_m() OR inside_m <= over_boundary_m() THEN {'is_in': inside_m > cut_in_m(), 't_ns': t_ns, 'd_m': d_m} END
             IGNORE NULLS
         )
-            OVER (w ROWS BETWEEN UNBOUNDED PRECEDING AND 1 PRECEDING) AS was,
+            OVER (w ROWS BETWEEN UNBOUNDED PRECEDING AND 1 PRECEDING) AS last_clear,
         lag(k) OVER w = k - 1 AND lag(seg) OVER w = seg AS joined
-    FROM steady
+    FROM run_sample
     WINDOW w AS (PARTITION BY drive_id, ego_id, object_id, chain_id, run ORDER BY k)
 ),
-cut AS (
+cut_in_sample AS (
     SELECT
         *,
-        coalesce(inside_m > cut_in_m() AND NOT was.is_in AND along AND t_ns - was.t_ns <= 5_000_000_000, false) AS begins,
-        sum(((inside_m > cut_in_m() AND NOT was.is_in) OR inside_m <= over_boundary_m())::INTEGER)
+        coalesce(inside_m > cut_in_m() AND NOT last_clear.is_in AND is_along AND t_ns - last_clear.t_ns <= 5_000_000_000, false) AS begins,
+        sum(((inside_m > cut_in_m() AND NOT last_clear.is_in) OR inside_m <= over_boundary_m())::INTEGER)
             OVER (PARTITION BY drive_id, ego_id, object_id, chain_id, run ORDER BY k ROWS UNBOUNDED PRECEDING) AS n
-    FROM ordered
+    FROM ordered_sample
 ),
-placed AS (
-    SELECT drive_id, ego_id, object_id, chain_id, run, n, min(t_ns) AS t_ns FROM cut WHERE centre_in GROUP BY ALL
+in_place_step AS (
+    SELECT drive_id, ego_id, object_id, chain_id, run, n, min(t_ns) AS t_ns FROM cut_in_sample WHERE is_centre_in GROUP BY ALL
 ),
--- so far the lane ahead is free of anybody who is not seen, or may be no vehicle
-free AS (
+-- The distance up to which no actor that is not seen, or that may be no vehicle, can be in the lane ahead.
+free_lane AS (
     SELECT drive_id, ego_id, t_ns, min(m) AS m
     FROM (
         SELECT drive_id, ego_id, t_ns, lane_m AS m FROM hidden WHERE vehicle AND ahead IS DISTINCT FROM false
@@ -66,7 +68,8 @@ free AS (
     )
     GROUP BY ALL
 ),
-blind AS (
+-- Stretches of a second or longer in which it cannot be told which vehicle is ahead.
+blind_stretch AS (
     SELECT
         drive_id, ego_id, min(t_ns) AS t_ns, max(t_ns) AS t_to_ns,
         CASE WHEN count(free_m) = count(*) AND count(speed_mps) = count(*) THEN min(free_m) END AS free_m, max(speed_mps) AS ego_speed_mps
@@ -76,56 +79,56 @@ blind AS (
             st.k - row_number() OVER (PARTITION BY st.drive_id, st.ego_id, st.seg ORDER BY st.k) AS run
         FROM step st
         JOIN ego_state e USING (drive_id, ego_id, t_ns)
-        LEFT JOIN free f USING (drive_id, ego_id, t_ns)
+        LEFT JOIN free_lane f USING (drive_id, ego_id, t_ns)
         ANTI JOIN lead l ON l.drive_id = st.drive_id AND l.ego_id = st.ego_id AND l.t_ns = st.t_ns
     )
     GROUP BY drive_id, ego_id, seg, run
     HAVING max(t_ns) - min(t_ns) >= 1_000_000_000 AND coalesce(CASE WHEN count(free_m) = count(*) THEN min(free_m) END < 150, true)
 ),
-named AS (
+seen_cut_in AS (
     SELECT
-        c.drive_id, c.ego_id, c.object_id, c.t_ns, coalesce(c.joined, false) AS begin_seen, CASE WHEN c.was.d_m > 0 THEN 'left' ELSE 'right' END AS side,
+        c.drive_id, c.ego_id, c.object_id, c.t_ns, coalesce(c.joined, false) AS begin_seen, CASE WHEN c.last_clear.d_m > 0 THEN 'left' ELSE 'right' END AS side,
         c.gap_m, c.ego_speed_mps, c.speed_mps, p.t_ns AS in_place_ns
-    FROM cut c
-    LEFT JOIN placed p USING (drive_id, ego_id, object_id, chain_id, run, n)
+    FROM cut_in_sample c
+    LEFT JOIN in_place_step p USING (drive_id, ego_id, object_id, chain_id, run, n)
     WHERE c.begins
 ),
--- over the line from the moment at which its front got ahead; the ego in one lane all that time
-squeezed AS (
+-- The vehicle is over the line from the moment at which its front gets ahead, and the ego stays in one lane all that time.
+overtaker_cut_in AS (
     SELECT DISTINCT l.drive_id, l.ego_id, l.object_id, l.t_ns, a.chain_id
     FROM passing p
     JOIN (
         SELECT drive_id, ego_id, object_id, t_ns FROM lead WHERE joined AND t_ns = t_since_ns
     ) l ON l.drive_id = p.drive_id AND l.ego_id = p.ego_id AND l.object_id = p.object_id AND l.t_ns >= p.t_ns
-    JOIN ahead a ON a.drive_id = l.drive_id AND a.ego_id = l.ego_id AND a.object_id = l.object_id AND a.t_ns = l.t_ns AND a.along
+    JOIN ahead a ON a.drive_id = l.drive_id AND a.ego_id = l.ego_id AND a.object_id = l.object_id AND a.t_ns = l.t_ns AND a.is_along
     ANTI JOIN ahead b ON b.drive_id = l.drive_id AND b.ego_id = l.ego_id AND b.object_id = l.object_id AND b.t_ns >= p.t_ns AND b.t_ns <= l.t_ns
         AND (b.inside_m <= over_boundary_m() OR b.chain_id <> a.chain_id)
-    ANTI JOIN named n ON n.drive_id = l.drive_id AND n.ego_id = l.ego_id AND n.object_id = l.object_id AND n.t_ns >= p.t_from_ns AND n.t_ns <= l.t_ns
+    ANTI JOIN seen_cut_in n ON n.drive_id = l.drive_id AND n.ego_id = l.ego_id AND n.object_id = l.object_id AND n.t_ns >= p.t_from_ns AND n.t_ns <= l.t_ns
     WHERE NOT p.ego_passes
     QUALIFY l.t_ns = min(l.t_ns) OVER (PARTITION BY p.drive_id, p.ego_id, p.occurrence)
 ),
-found AS (
-    SELECT * FROM named
+any_cut_in AS (
+    SELECT * FROM seen_cut_in
     UNION ALL BY NAME
     SELECT
         q.drive_id, q.ego_id, q.object_id, q.t_ns, true AS begin_seen, CASE WHEN a.d_m > e.d_m THEN 'left' ELSE 'right' END AS side,
         a.gap_m, a.ego_speed_mps, a.speed_mps, i.t_ns AS in_place_ns
-    FROM squeezed q
+    FROM overtaker_cut_in q
     JOIN ahead a USING (drive_id, ego_id, object_id, t_ns)
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     LEFT JOIN (
         SELECT q.drive_id, q.ego_id, q.object_id, q.t_ns AS t_join_ns, min(c.t_ns) AS t_ns
-        FROM squeezed q
+        FROM overtaker_cut_in q
         JOIN ahead c USING (drive_id, ego_id, object_id, chain_id)
-        WHERE c.t_ns >= q.t_ns AND c.centre_in
+        WHERE c.t_ns >= q.t_ns AND c.is_centre_in
         GROUP BY ALL
     ) i ON i.drive_id = q.drive_id AND i.ego_id = q.ego_id AND i.object_id = q.object_id AND i.t_join_ns = q.t_ns
     UNION ALL BY NAME
     SELECT b.drive_id, b.ego_id, b.t_ns, false AS begin_seen, b.ego_speed_mps, b.free_m
-    FROM blind b
+    FROM blind_stretch b
     JOIN clock c USING (drive_id, ego_id)
-    -- who is there when it can be told again has come in
-    ANTI JOIN named n ON n.drive_id = b.drive_id AND n.ego_id = b.ego_id AND n.t_ns >= b.t_ns AND n.t_ns <= b.t_to_ns + c.max_gap_ns
+    -- A cut-in that is seen in this stretch, or right after it, replaces it.
+    ANTI JOIN seen_cut_in n ON n.drive_id = b.drive_id AND n.ego_id = b.ego_id AND n.t_ns >= b.t_ns AND n.t_ns <= b.t_to_ns + c.max_gap_ns
 )
 SELECT *, (row_number() OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns, object_id) - 1)::INTEGER AS occurrence
-FROM found
+FROM any_cut_in

@@ -1,3 +1,4 @@
+-- The sampling period of every ego of the drives, and its first and last sample.
 SELECT
     drive_id, actor_id AS ego_id, period_ns,
     ceil(period_ns * max_gap_periods())::BIGINT AS max_gap_ns,
@@ -5,7 +6,7 @@ SELECT
 FROM (
     SELECT
         s.drive_id, s.actor_id,
-        -- one sample has no period: a tenth of a second, the field's usual step
+        -- A single sample has no period: 0.1 s is assumed, the usual step in this field.
         coalesce(quantile_disc(s.dt_ns, 0.5), 100_000_000)::BIGINT AS period_ns,
         min(s.t_ns) AS t_start_ns, max(s.t_ns) AS t_end_ns
     FROM (

@@ -1,27 +1,27 @@
--- The ego's box in its running chains: centre and corners each placed on its own segment, so that a bend does not tilt the box.
--- Where a chain meets itself, the station that goes on from the last one counts.
-WITH ego AS (
-    SELECT st.drive_id, st.ego_id, st.t_ns, s.x_m, s.y_m, s.yaw_rad, s.length_m / 2 AS hl, s.width_m / 2 AS hw, st.travel_m
+-- The ego's box in its running chains. The centre and each corner are placed on segments of their own, so that a bend does not tilt the
+-- box. Where a chain meets itself, the station that continues the last one counts.
+WITH ego_box AS (
+    SELECT st.drive_id, st.ego_id, st.t_ns, s.x_m, s.y_m, s.yaw_rad, s.length_m / 2 AS half_box_length_m, s.width_m / 2 AS half_box_width_m, st.travel_m
     FROM step st
     JOIN state_dynamics s ON s.drive_id = st.drive_id AND s.actor_id = st.ego_id AND s.t_ns = st.t_ns
     WHERE s.x_m IS NOT NULL AND s.y_m IS NOT NULL
 ),
-point AS (
-    SELECT drive_id, ego_id, t_ns, 0 AS p, x_m, y_m FROM ego
+box_point AS (
+    SELECT drive_id, ego_id, t_ns, 0 AS p, x_m, y_m FROM ego_box
     UNION ALL
     SELECT
         drive_id, ego_id, t_ns, c.p,
-        x_m + c.l * hl * cos(yaw_rad) - c.w * hw * sin(yaw_rad),
-        y_m + c.l * hl * sin(yaw_rad) + c.w * hw * cos(yaw_rad)
-    FROM ego CROSS JOIN (VALUES (1, 1, 1), (2, 1, -1), (3, -1, 1), (4, -1, -1)) AS c(p, l, w)
-    WHERE yaw_rad IS NOT NULL AND hl IS NOT NULL AND hw IS NOT NULL
+        x_m + c.l * half_box_length_m * cos(yaw_rad) - c.w * half_box_width_m * sin(yaw_rad),
+        y_m + c.l * half_box_length_m * sin(yaw_rad) + c.w * half_box_width_m * cos(yaw_rad)
+    FROM ego_box CROSS JOIN (VALUES (1, 1, 1), (2, 1, -1), (3, -1, 1), (4, -1, -1)) AS c(p, l, w)
+    WHERE yaw_rad IS NOT NULL AND half_box_length_m IS NOT NULL AND half_box_width_m IS NOT NULL
 ),
-candidate AS (
+point_candidate AS (
     SELECT
         a.drive_id, a.ego_id, a.t_ns, a.p, a.x_m, a.y_m, c.* EXCLUDE (drive_id, ego_id, cell),
         along0(a.x_m, a.y_m, c.x0_m, c.y0_m, c.tx0, c.ty0) AS a0,
         along1(a.x_m, a.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) AS a1
-    FROM point a
+    FROM box_point a
     JOIN corridor_cell c ON c.drive_id = a.drive_id AND c.ego_id = a.ego_id AND c.cell = corridor_cell_of(a.x_m, a.y_m)
 ),
 beside AS (
@@ -30,57 +30,57 @@ beside AS (
         atan2(ty0 + u * (ty1 - ty0), tx0 + u * (tx1 - tx0)) AS heading_rad
     FROM (
         SELECT *, a0 / (a0 + a1) AS u, offset_left(x_m, y_m, a0 / (a0 + a1), x0_m, y0_m, tx0, ty0, x1_m, y1_m, tx1, ty1) AS d_m
-        FROM candidate
+        FROM point_candidate
         WHERE a0 >= -slack0_m AND a1 > -slack1_m AND a0 + a1 > 0
     )
     WHERE abs(d_m) <= strip_m()
 ),
-placed AS (
+point_place AS (
     SELECT b.* EXCLUDE (lanelet_id, lane_s_m), c.chain_id, c.s_start_m + b.lane_s_m AS s_m, c.over_width_m, c.over_against, c.side
     FROM beside b JOIN corridor c USING (drive_id, ego_id, lanelet_id)
 ),
--- stations that are certain: the lanelet that the ego is on, as it lies in the chain
-fix AS (
-    SELECT e.drive_id, e.ego_id, c.chain_id, e.t_ns, c.s_start_m + e.s_m - s.travel_m AS drift_m
+-- The certain stations of the ego: the lanelet that it is on is part of the chain.
+certain_station AS (
+    SELECT e.drive_id, e.ego_id, c.chain_id, e.t_ns, c.s_start_m + e.s_m - s.travel_m AS station_minus_travel_m
     FROM ego_lane e
     JOIN chain c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.lanelet_id = e.lanelet_id
     JOIN step s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.t_ns = e.t_ns
     WHERE e.with_direction AND e.t_ns BETWEEN c.t_first_ns AND c.t_last_ns
 ),
-centre AS (
-    SELECT p.*, g.travel_m, f.drift_m
-    FROM placed p
-    JOIN ego g USING (drive_id, ego_id, t_ns)
-    ASOF LEFT JOIN fix f ON f.drive_id = p.drive_id AND f.ego_id = p.ego_id AND f.chain_id = p.chain_id AND f.t_ns <= p.t_ns
+centre_candidate AS (
+    SELECT p.*, g.travel_m, f.station_minus_travel_m
+    FROM point_place p
+    JOIN ego_box g USING (drive_id, ego_id, t_ns)
+    ASOF LEFT JOIN certain_station f ON f.drive_id = p.drive_id AND f.ego_id = p.ego_id AND f.chain_id = p.chain_id AND f.t_ns <= p.t_ns
     WHERE p.p = 0
 ),
-best AS (
+best_centre AS (
     SELECT
         drive_id, ego_id, chain_id, t_ns,
         min({
-            'off': CASE WHEN drift_m IS NULL THEN abs(d_m) ELSE abs(s_m - travel_m - drift_m) END,
+            'off_m': CASE WHEN station_minus_travel_m IS NULL THEN abs(d_m) ELSE abs(s_m - travel_m - station_minus_travel_m) END,
             's_m': s_m, 'd_m': d_m, 'half_width_m': half_width_m, 'heading_rad': heading_rad,
             'over_width_m': over_width_m, 'over_against': over_against, 'side': side
         }) AS b
-    FROM centre
+    FROM centre_candidate
     GROUP BY ALL
 ),
-corner AS (
+best_corner AS (
     SELECT
         b.drive_id, b.ego_id, b.chain_id, b.t_ns, p.p,
-        min({'off': abs(p.s_m - b.b.s_m), 's_m': p.s_m, 'd_m': p.d_m, 'half_width_m': p.half_width_m}) AS c
-    FROM best b
-    JOIN placed p ON p.drive_id = b.drive_id AND p.ego_id = b.ego_id AND p.chain_id = b.chain_id AND p.t_ns = b.t_ns AND p.p > 0
+        min({'off_m': abs(p.s_m - b.b.s_m), 's_m': p.s_m, 'd_m': p.d_m, 'half_width_m': p.half_width_m}) AS c
+    FROM best_centre b
+    JOIN point_place p ON p.drive_id = b.drive_id AND p.ego_id = b.ego_id AND p.chain_id = b.chain_id AND p.t_ns = b.t_ns AND p.p > 0
     WHERE abs(p.s_m - b.b.s_m) < 30
     GROUP BY ALL
 ),
-extent AS (
+box_extent AS (
     SELECT
         drive_id, ego_id, chain_id, t_ns,
         max(c.d_m - c.half_width_m) AS left_out_m, min(c.d_m - c.half_width_m) AS left_in_m,
         max(-c.d_m - c.half_width_m) AS right_out_m, min(-c.d_m - c.half_width_m) AS right_in_m,
         max(c.s_m) AS front_s_m, min(c.s_m) AS rear_s_m, (max(c.d_m) - min(c.d_m)) / 2 AS lat_half_m
-    FROM corner
+    FROM best_corner
     GROUP BY ALL
     HAVING count(*) = 4
 )
@@ -89,6 +89,6 @@ SELECT
     e.left_out_m, e.left_in_m, e.right_out_m, e.right_in_m, e.front_s_m, e.rear_s_m, e.lat_half_m,
     b.b.half_width_m AS half_width_m, b.b.over_width_m AS over_width_m, b.b.over_against AS over_against, b.b.side AS side,
     wrap_rad(g.yaw_rad - b.b.heading_rad) AS heading_diff_rad
-FROM best b
-JOIN ego g USING (drive_id, ego_id, t_ns)
-LEFT JOIN extent e USING (drive_id, ego_id, chain_id, t_ns)
+FROM best_centre b
+JOIN ego_box g USING (drive_id, ego_id, t_ns)
+LEFT JOIN box_extent e USING (drive_id, ego_id, chain_id, t_ns)

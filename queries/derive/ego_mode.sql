@@ -1,6 +1,6 @@
--- The modes of the automated driver that the log declares, at every step of the ego: each holds from its declaration to the next.
--- A mode is an event that the ego declares on or off at least once; any other value of it, and two at once, are not known.
-WITH said AS (
+-- The modes of the automated driver that the log declares, at every step of the ego. A declaration holds until the next one. A mode is an
+-- event that the ego declares on or off at least once. With any other value, or with two different values at once, the mode is not known.
+WITH declaration AS (
     SELECT
         drive_id, actor_id AS ego_id, event AS mode, t_ns,
         CASE WHEN bool_and(word IN ('on', 'true')) THEN true WHEN bool_and(word IN ('off', 'false')) THEN false END AS is_on
@@ -8,8 +8,8 @@ WITH said AS (
     GROUP BY ALL
 ),
 mode AS (
-    SELECT drive_id, ego_id, mode FROM said GROUP BY ALL HAVING count(is_on) > 0
+    SELECT drive_id, ego_id, mode FROM declaration GROUP BY ALL HAVING count(is_on) > 0
 )
 SELECT s.drive_id, s.ego_id, s.t_ns, s.mode, d.is_on
 FROM (SELECT st.drive_id, st.ego_id, st.t_ns, m.mode FROM step st JOIN mode m ON m.drive_id = st.drive_id AND m.ego_id = st.ego_id) s
-ASOF LEFT JOIN said d ON d.drive_id = s.drive_id AND d.ego_id = s.ego_id AND d.mode = s.mode AND d.t_ns <= s.t_ns
+ASOF LEFT JOIN declaration d ON d.drive_id = s.drive_id AND d.ego_id = s.ego_id AND d.mode = s.mode AND d.t_ns <= s.t_ns

@@ -1,9 +1,9 @@
--- One station along the road for all the lanes that the ego changes between: where it crosses from one into the next, the two chains meet. A
--- chain that it got into without crossing a line begins another road.
-WITH begun AS (
+-- One station along the road for all lanes between which the ego changes: where it crosses from one lane into the next, the two chains have
+-- the same station. A chain that the ego entered without crossing a line begins a new road.
+WITH chain_start AS (
     SELECT drive_id, ego_id, chain_id, min(t_ns) AS t_ns FROM ego_state WHERE chain_id IS NOT NULL GROUP BY ALL
 ),
-crossed AS (
+chain_change AS (
     SELECT l.drive_id, l.ego_id, l.to_chain_id AS chain_id, whole_pm(a.s_m) - whole_pm(b.s_m) AS shift_pm
     FROM lane_crossing l
     JOIN ego_corridor a ON a.drive_id = l.drive_id AND a.ego_id = l.ego_id AND a.chain_id = l.from_chain_id AND a.t_ns = l.t_ns
@@ -11,6 +11,6 @@ crossed AS (
 )
 SELECT
     drive_id, ego_id, chain_id, sum((c.shift_pm IS NULL)::INTEGER) OVER w AS road, of_pm(sum(coalesce(c.shift_pm, 0)) OVER w) AS offset_m
-FROM begun b
-LEFT JOIN crossed c USING (drive_id, ego_id, chain_id)
+FROM chain_start b
+LEFT JOIN chain_change c USING (drive_id, ego_id, chain_id)
 WINDOW w AS (PARTITION BY drive_id, ego_id ORDER BY b.t_ns ROWS UNBOUNDED PRECEDING)

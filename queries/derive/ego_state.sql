@@ -1,8 +1,8 @@
--- Every step of the ego with all that is known of it. Its running chain is that of the last lanelet it drove with the traffic, so
--- an overtake in the lane beside is seen from the lane that was left; before the first one, it is the first one's.
+-- Every step of the ego with all that is known of it. Its running chain is the one of the last lanelet that it drove with the traffic, so
+-- that an overtake in the lane beside is seen from the lane that the ego left. Before the first such lanelet it is the ego's first chain.
 WITH
--- the trailer's rear is the combination's: so far behind the ego's middle, unknown while the trailer is not seen
-drawn AS (
+-- The rear of the trailer is the rear of the combination. reach_m is its distance from the ego's centre; NULL: the trailer is not placed.
+trailer_reach AS (
     SELECT p.drive_id, p.ego_id, e.t_ns, max(sqrt((s.x_m - e.x_m) ** 2 + (s.y_m - e.y_m) ** 2) + s.length_m / 2) AS reach_m
     FROM ego_part p
     JOIN state_dynamics e ON e.drive_id = p.drive_id AND e.actor_id = p.ego_id
@@ -10,7 +10,7 @@ drawn AS (
     WHERE p.part = 'trailer'
     GROUP BY ALL
 ),
-running AS (
+running_chain AS (
     SELECT st.drive_id, st.ego_id, st.t_ns, st.travel_m, coalesce(c.chain_id, f.chain_id) AS chain_id
     FROM step st
     ASOF LEFT JOIN (SELECT * FROM chain WHERE t_first_ns IS NOT NULL) c
@@ -18,14 +18,14 @@ running AS (
     LEFT JOIN (SELECT drive_id, ego_id, min(chain_id) AS chain_id FROM chain GROUP BY ALL) f
         ON f.drive_id = st.drive_id AND f.ego_id = st.ego_id
 ),
-limited AS (
+step_limit AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, min(v.limit_mps) AS limit_mps,
         coalesce(arg_min(v.source, {'m': v.limit_mps, 'by': v.source}) FILTER (v.limit_mps IS NOT NULL), CASE WHEN bool_or(v.source = 'unread') THEN 'unread' ELSE 'none' END) AS limit_source
     FROM ego_lane e
     JOIN data_log l USING (drive_id)
     JOIN lanelet n ON n.environment_id = l.environment_id AND n.lanelet_id = e.lanelet_id
     JOIN speed_limit v ON v.environment_id = l.environment_id AND v.lanelet_id = e.lanelet_id
-    -- a lanelet holds points a hair beyond its ends; where two limits meet, the lower one counts
+    -- A lanelet contains points slightly beyond its ends. Where two limits meet, the lower one counts.
     WHERE greatest(0.0, least(e.s_m, n.length_m)) BETWEEN v.s_start_m AND v.s_end_m
     GROUP BY ALL
 )
@@ -37,15 +37,15 @@ SELECT
     CASE WHEN n.lanelet_id IS NOT NULL THEN n.junction_id IS NOT NULL END AS in_junction,
     n.road_type, v.limit_mps, v.limit_source,
     r.chain_id, c.s_m, c.d_m,
-    -- driven against the corridor, its tail is its furthest station
+    -- If the ego heads against the corridor, the rear of its trailer has the furthest station.
     CASE WHEN t.t_ns IS NULL OR abs(c.heading_diff_rad) <= pi() / 2 THEN c.front_s_m ELSE c.s_m + t.reach_m END AS front_s_m,
     CASE WHEN t.t_ns IS NULL OR abs(c.heading_diff_rad) > pi() / 2 THEN c.rear_s_m ELSE c.s_m - t.reach_m END AS rear_s_m,
     c.lat_half_m, c.heading_diff_rad
-FROM running r
+FROM running_chain r
 JOIN data_log l USING (drive_id)
 JOIN state_dynamics s ON s.drive_id = r.drive_id AND s.actor_id = r.ego_id AND s.t_ns = r.t_ns
-LEFT JOIN drawn t ON t.drive_id = r.drive_id AND t.ego_id = r.ego_id AND t.t_ns = r.t_ns
+LEFT JOIN trailer_reach t ON t.drive_id = r.drive_id AND t.ego_id = r.ego_id AND t.t_ns = r.t_ns
 LEFT JOIN ego_lane e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id AND e.t_ns = r.t_ns
 LEFT JOIN lanelet n ON n.environment_id = l.environment_id AND n.lanelet_id = e.lanelet_id
-LEFT JOIN limited v ON v.drive_id = r.drive_id AND v.ego_id = r.ego_id AND v.t_ns = r.t_ns
+LEFT JOIN step_limit v ON v.drive_id = r.drive_id AND v.ego_id = r.ego_id AND v.t_ns = r.t_ns
 LEFT JOIN ego_corridor c ON c.drive_id = r.drive_id AND c.ego_id = r.ego_id AND c.chain_id = r.chain_id AND c.t_ns = r.t_ns

@@ -1,5 +1,5 @@
--- Every stretch in which a corner of the ego is over a boundary of its running lane, on either side. Entering a junction's lanelets is
--- none: the chain leads through them.
+-- Stretches in which a corner of the ego is over a boundary of its running lane, on either side. An ego that enters the lanelets of a
+-- junction crosses no boundary: the chain leads through them.
 WITH side AS (
     SELECT
         c.drive_id, c.ego_id, c.chain_id, st.k, st.seg, st.t_ns, st.dt_ns, c.d_m, c.half_width_m, c.over_width_m, c.over_against, v.side,
@@ -15,79 +15,79 @@ WITH side AS (
 sample AS (
     SELECT
         *,
-        out_m > over_boundary_m() AS over,
-        lag({'k': k, 'seg': seg, 't_ns': t_ns, 'over': out_m > over_boundary_m(), 'lateral_m': lateral_m}) OVER w AS before,
+        out_m > over_boundary_m() AS is_over,
+        lag({'k': k, 'seg': seg, 't_ns': t_ns, 'is_over': out_m > over_boundary_m(), 'lateral_m': lateral_m}) OVER w AS before,
         lead({'k': k, 'seg': seg, 't_ns': t_ns}) OVER w AS after
     FROM side
     WINDOW w AS (PARTITION BY drive_id, ego_id, chain_id, side ORDER BY k)
 ),
-stretch AS (
+over_sample AS (
     SELECT
         *,
-        coalesce(before.k = k - 1 AND before.seg = seg, false) AS joined,
-        coalesce(before.over AND before.seg = seg AND (before.k = k - 1 OR t_ns - before.t_ns <= no_return_ns()), false) AS goes_on,
+        coalesce(before.k = k - 1 AND before.seg = seg, false) AS has_step_before,
+        coalesce(before.is_over AND before.seg = seg AND (before.k = k - 1 OR t_ns - before.t_ns <= no_return_ns()), false) AS continues_stretch,
         CASE WHEN before.k = k - 1 AND before.seg = seg THEN (lateral_m - before.lateral_m) / (dt_ns / 1e9) END AS lateral_mps
     FROM sample
-    WHERE over
+    WHERE is_over
 ),
-numbered AS (
+stretch_sample AS (
     SELECT
         *,
-        sum((NOT goes_on)::INTEGER)
-            OVER (PARTITION BY drive_id, ego_id, chain_id, side ORDER BY k ROWS UNBOUNDED PRECEDING) AS n
-    FROM stretch
+        sum((NOT continues_stretch)::INTEGER)
+            OVER (PARTITION BY drive_id, ego_id, chain_id, side ORDER BY k ROWS UNBOUNDED PRECEDING) AS stretch_no
+    FROM over_sample
 ),
-whole AS (
+whole_stretch AS (
     SELECT
-        drive_id, ego_id, chain_id, side, n,
+        drive_id, ego_id, chain_id, side, stretch_no,
         min(t_ns) AS t0_ns, max(t_ns) AS t_end_ns, min(CASE WHEN in_m >= 0 THEN t_ns END) AS t_over_ns,
         max({'k': k, 'after_ns': CASE WHEN after.k = k + 1 AND after.seg = seg THEN after.t_ns END}) FILTER (in_m >= 0) AS last_over,
         max(out_m) AS max_out_m, bool_or(lateral_m > half_width_m) AS centre_over,
-        min({'k': k, 'joined': joined, 'overtaking': overtaking, 'half_width_m': half_width_m, 'over_width_m': over_width_m, 'over_against': over_against}) AS first,
+        min({'k': k, 'has_step_before': has_step_before, 'overtaking': overtaking, 'half_width_m': half_width_m, 'over_width_m': over_width_m, 'over_against': over_against}) AS first,
         max({'k': k, 'seg': seg, 'after': after}) AS last
-    FROM numbered
+    FROM stretch_sample
     GROUP BY ALL
 ),
--- settled: the first step within 0.1 m of the furthest; a narrow vehicle is passed astride the line, never wholly over it
-settled AS (
-    SELECT s.drive_id, s.ego_id, s.chain_id, s.side, s.n, min(s.t_ns) AS t_set_ns
-    FROM whole w
-    JOIN numbered s USING (drive_id, ego_id, chain_id, side, n)
+-- The first step within 0.1 m of the furthest position. An ego that passes a narrow vehicle stays astride the line, never wholly over it.
+furthest_step AS (
+    SELECT s.drive_id, s.ego_id, s.chain_id, s.side, s.stretch_no, min(s.t_ns) AS t_furthest_ns
+    FROM whole_stretch w
+    JOIN stretch_sample s USING (drive_id, ego_id, chain_id, side, stretch_no)
     WHERE s.out_m >= w.max_out_m - 0.1
     GROUP BY ALL
 ),
--- an ego that looks past the vehicle ahead stays at the line, its centre in the lane, and pulls out later
-peek AS (
-    SELECT w.drive_id, w.ego_id, w.chain_id, w.side, w.n, max(s.t_ns) AS t_pull_ns
-    FROM whole w
-    JOIN settled e USING (drive_id, ego_id, chain_id, side, n)
+-- The end of a look past the vehicle ahead: the ego stays at the line with its centre in the lane, and pulls out later.
+peek_end AS (
+    SELECT w.drive_id, w.ego_id, w.chain_id, w.side, w.stretch_no, max(s.t_ns) AS t_pull_ns
+    FROM whole_stretch w
+    JOIN furthest_step e USING (drive_id, ego_id, chain_id, side, stretch_no)
     JOIN (
         SELECT *, first_value({'t_ns': t_ns, 'out_m': out_m}) OVER (
-            PARTITION BY drive_id, ego_id, chain_id, side, n ORDER BY t_ns RANGE BETWEEN 1_000_000_000 PRECEDING AND CURRENT ROW
+            PARTITION BY drive_id, ego_id, chain_id, side, stretch_no ORDER BY t_ns RANGE BETWEEN 1_000_000_000 PRECEDING AND CURRENT ROW
         ) AS earlier
-        FROM numbered
-    ) s USING (drive_id, ego_id, chain_id, side, n)
-    WHERE s.t_ns < coalesce(w.t_over_ns, e.t_set_ns) AND s.lateral_m <= s.half_width_m AND s.t_ns - s.earlier.t_ns >= 900_000_000 AND s.out_m - s.earlier.out_m < 0.1
+        FROM stretch_sample
+    ) s USING (drive_id, ego_id, chain_id, side, stretch_no)
+    WHERE s.t_ns < coalesce(w.t_over_ns, e.t_furthest_ns) AND s.lateral_m <= s.half_width_m AND s.t_ns - s.earlier.t_ns >= 900_000_000 AND s.out_m - s.earlier.out_m < 0.1
     GROUP BY ALL
 ),
--- turning back: the last step over the line whose lateral speed was not yet towards home
-turn AS (
-    SELECT w.drive_id, w.ego_id, w.chain_id, w.side, w.n, max(s.t_ns) AS t_turn_ns
-    FROM whole w
-    JOIN settled e USING (drive_id, ego_id, chain_id, side, n)
-    JOIN numbered s USING (drive_id, ego_id, chain_id, side, n)
-    WHERE s.t_ns >= coalesce(w.t_over_ns, e.t_set_ns) AND s.lateral_mps > -0.1
+-- The turn back: the last step over the line at which the lateral speed was not yet towards the running lane.
+turn_back AS (
+    SELECT w.drive_id, w.ego_id, w.chain_id, w.side, w.stretch_no, max(s.t_ns) AS t_turn_ns
+    FROM whole_stretch w
+    JOIN furthest_step e USING (drive_id, ego_id, chain_id, side, stretch_no)
+    JOIN stretch_sample s USING (drive_id, ego_id, chain_id, side, stretch_no)
+    WHERE s.t_ns >= coalesce(w.t_over_ns, e.t_furthest_ns) AND s.lateral_mps > -0.1
     GROUP BY ALL
 )
 SELECT
-    w.drive_id, w.ego_id, w.chain_id, w.side, w.first.overtaking AS overtaking, w.t0_ns, coalesce(p.t_pull_ns, w.t0_ns) AS t_pull_ns, w.first.joined AS begin_seen, w.t_end_ns,
+    w.drive_id, w.ego_id, w.chain_id, w.side, w.first.overtaking AS overtaking, w.t0_ns, coalesce(p.t_pull_ns, w.t0_ns) AS t_pull_ns, w.first.has_step_before AS begin_seen, w.t_end_ns,
     CASE WHEN w.last.after.k = w.last.k + 1 AND w.last.after.seg = w.last.seg THEN w.last.after.t_ns END AS t_back_ns,
-    w.t_over_ns, coalesce(w.t_over_ns, e.t_set_ns) AS t_out_ns,
+    w.t_over_ns, coalesce(w.t_over_ns, e.t_furthest_ns) AS t_out_ns,
     CASE WHEN w.last.after.k = w.last.k + 1 AND w.last.after.seg = w.last.seg THEN t.t_turn_ns END AS t_turn_ns,
     w.last_over.after_ns AS t_return_ns, w.max_out_m, w.centre_over, 2 * w.first.half_width_m AS lane_width_m,
     CASE WHEN w.first.overtaking THEN w.first.over_width_m END AS over_width_m,
     CASE WHEN w.first.overtaking THEN w.first.over_against END AS over_against
-FROM whole w
-JOIN settled e USING (drive_id, ego_id, chain_id, side, n)
-LEFT JOIN peek p USING (drive_id, ego_id, chain_id, side, n)
-LEFT JOIN turn t USING (drive_id, ego_id, chain_id, side, n)
+FROM whole_stretch w
+JOIN furthest_step e USING (drive_id, ego_id, chain_id, side, stretch_no)
+LEFT JOIN peek_end p USING (drive_id, ego_id, chain_id, side, stretch_no)
+LEFT JOIN turn_back t USING (drive_id, ego_id, chain_id, side, stretch_no)

@@ -1,10 +1,10 @@
--- Lanes that leave the main carriageway: said so by their type, or beside a through lane until both go on, gently, on different roads.
--- (At an ordinary junction one of the two turns; an exit bends by less than 45 degrees and the through lane by less than 20.)
--- Of the two roads the one with fewer lanes is the exit; with as many, the one on the side that is driven on.
+-- Lanes that leave the main carriageway: by their type, or because they run beside a through lane until both go on, with gentle bends, on
+-- different roads. (At an ordinary junction one of the two turns. An exit bends by less than 45 degrees, the through lane by less than 20.)
+-- Of the two roads, the one with fewer lanes is the exit. If they have equally many, it is the one on the side that is driven on.
 WITH RECURSIVE carriageway AS (
     SELECT environment_id, road_id, section, along_road, count(*) AS n FROM lanelet WHERE drivable GROUP BY ALL
 ),
-pair_ AS (
+lane_pair AS (
     SELECT n.environment_id, n.lanelet_id AS exit_id, m.lanelet_id AS through_id, v.side
     FROM lanelet n
     CROSS JOIN (VALUES ('left'), ('right')) AS v(side)
@@ -13,13 +13,14 @@ pair_ AS (
         AND NOT CASE v.side WHEN 'right' THEN n.left_against ELSE n.right_against END
     WHERE n.drivable AND n.junction_id IS NULL
 ),
--- both lanes followed straight on, through the junction if there is one, until they are beside each other again or on their own roads
+-- Both lanes are followed straight on, through the junction if there is one, until they are beside each other again or on roads of their
+-- own. e is the lanelet reached from the exit lane, m the one reached from the through lane.
 walk AS (
-    SELECT environment_id, exit_id, through_id, side, exit_id AS e, through_id AS m, 0 AS hop, 0.0::DOUBLE AS turn_e, 0.0::DOUBLE AS turn_m FROM pair_
+    SELECT environment_id, exit_id, through_id, side, exit_id AS e, through_id AS m, 0 AS hop, 0.0::DOUBLE AS exit_turn_rad, 0.0::DOUBLE AS through_turn_rad FROM lane_pair
     UNION ALL
     SELECT
         w.environment_id, w.exit_id, w.through_id, w.side, ne.ahead_id, nm.ahead_id, w.hop + 1,
-        w.turn_e + abs(le.turn_rad), w.turn_m + abs(lm.turn_rad)
+        w.exit_turn_rad + abs(le.turn_rad), w.through_turn_rad + abs(lm.turn_rad)
     FROM walk w
     JOIN lane_next ne ON ne.environment_id = w.environment_id AND ne.lanelet_id = w.e AND ne.ahead_id IS NOT NULL
     JOIN lane_next nm ON nm.environment_id = w.environment_id AND nm.lanelet_id = w.m AND nm.ahead_id IS NOT NULL
@@ -28,7 +29,7 @@ walk AS (
     JOIN lanelet ae ON ae.environment_id = w.environment_id AND ae.lanelet_id = w.e
     WHERE w.hop = 0 OR (ae.junction_id IS NOT NULL AND w.hop < 3)
 ),
-apart AS (
+exit_pair AS (
     SELECT DISTINCT w.environment_id, w.exit_id, w.through_id, w.side
     FROM walk w
     JOIN lanelet e ON e.environment_id = w.environment_id AND e.lanelet_id = w.e
@@ -37,12 +38,12 @@ apart AS (
     JOIN carriageway cm ON cm.environment_id = m.environment_id AND cm.road_id = m.road_id AND cm.section = m.section AND cm.along_road = m.along_road
     JOIN environment v ON v.environment_id = w.environment_id
     WHERE w.hop > 0 AND e.junction_id IS NULL AND m.junction_id IS NULL AND e.road_id <> m.road_id
-        AND w.turn_e < pi() / 4 AND w.turn_m < pi() / 9
+        AND w.exit_turn_rad < pi() / 4 AND w.through_turn_rad < pi() / 9
         AND (ce.n < cm.n OR (ce.n = cm.n AND w.side = CASE v.handedness WHEN 'lht' THEN 'left' ELSE 'right' END))
 ),
--- the whole lane before the fork is the exit lane, as long as the through lane is beside it and it was not a through lane itself
+-- The whole lane before the fork is the exit lane, as far back as the through lane is beside it on the same road.
 upstream AS (
-    SELECT environment_id, exit_id, through_id, side, 0 AS hop FROM apart
+    SELECT environment_id, exit_id, through_id, side, 0 AS hop FROM exit_pair
     UNION ALL
     SELECT u.environment_id, b.lanelet_id, t.lanelet_id, u.side, u.hop + 1
     FROM upstream u

@@ -1,5 +1,5 @@
--- Exits that the ego comes by, whether it takes them or not.
-WITH near AS (
+-- Exits that the ego reaches, whether it takes them or not.
+WITH exit_step AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, x.side, a.lanelet_id = x.lanelet_id AS on_exit, x.lanelet_id, st.k, st.seg
     FROM ego_state e
     JOIN step st USING (drive_id, ego_id, t_ns)
@@ -13,20 +13,20 @@ WITH near AS (
     JOIN data_log g ON g.drive_id = e.drive_id
     JOIN exit_lane x ON x.environment_id = g.environment_id AND x.from_id = e.lanelet_id
 ),
--- a hole ends it: where the choice was made in it is not known
--- consecutive steps beside or on exit lanelets of one side are one exit: lanelets follow each other, the exit stays the same
-numbered AS (
-    SELECT *, k - dense_rank() OVER (PARTITION BY drive_id, ego_id, seg, side ORDER BY k) AS run FROM near
+-- Consecutive steps beside or on exit lanelets of one side are a run: the lanelets follow each other, and the exit stays the same. A hole
+-- ends the run: a choice that the ego makes in the hole is not known.
+run_step AS (
+    SELECT *, k - dense_rank() OVER (PARTITION BY drive_id, ego_id, seg, side ORDER BY k) AS run FROM exit_step
 ),
-whole AS (
+exit_run AS (
     SELECT
         drive_id, ego_id, seg, side, run, min(t_ns) AS t_near_ns, max(k) AS k_last,
         max({'k': k, 'on_exit': on_exit, 'id': lanelet_id}) AS last
-    FROM numbered
+    FROM run_step
     GROUP BY ALL
 )
 SELECT
     w.drive_id, w.ego_id, (row_number() OVER (PARTITION BY w.drive_id, w.ego_id ORDER BY w.t_near_ns, w.side) - 1)::INTEGER AS occurrence,
     w.last.id AS lanelet_id, w.side, w.t_near_ns, st.t_ns AS t_gore_ns, CASE WHEN st.t_ns IS NOT NULL THEN w.last.on_exit END AS taken
-FROM whole w
+FROM exit_run w
 LEFT JOIN step st ON st.drive_id = w.drive_id AND st.ego_id = w.ego_id AND st.k = w.k_last + 1 AND st.seg = w.seg

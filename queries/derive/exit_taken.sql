@@ -1,4 +1,4 @@
--- The ego crosses into an exit lane; and where the last exit sign before that stood.
+-- Steps at which the ego crosses into an exit lane, and the last exit sign before that.
 WITH crossing AS (
     SELECT
         x.drive_id, x.ego_id, x.chain_id, x.t0_ns, x.side, g.environment_id, e.front_s_m,
@@ -11,25 +11,25 @@ WITH crossing AS (
     WHERE x.centre_over AND x.begin_seen
     GROUP BY ALL
 ),
-taken AS (
+exit_entry AS (
     SELECT c.*, CASE c.side WHEN 1 THEN 'left' ELSE 'right' END AS side_name
     FROM crossing c
     JOIN exit_lane l ON l.environment_id = c.environment_id AND l.lanelet_id = c.to_id
     JOIN ego_state e ON e.drive_id = c.drive_id AND e.ego_id = c.ego_id AND e.t_ns = c.t0_ns
-    -- along the exit lane itself is no crossing into it
+    -- An ego that is already on an exit lane does not cross into one.
     ANTI JOIN exit_lane f ON f.environment_id = c.environment_id AND f.lanelet_id = e.lanelet_id
 ),
-sign AS (
+last_sign AS (
     SELECT t.drive_id, t.ego_id, t.t0_ns, max({'s_m': c.s_start_m + s.lane_s_m, 'id': s.signal_id, 'chain_id': c.chain_id}) AS last
-    FROM taken t
+    FROM exit_entry t
     JOIN chain c ON c.drive_id = t.drive_id AND c.ego_id = t.ego_id AND c.chain_id = t.chain_id
     JOIN traffic_signal s ON s.environment_id = t.environment_id AND s.lanelet_id = c.lanelet_id AND s.kind = 'exit'
     WHERE c.s_start_m + s.lane_s_m <= t.front_s_m
     GROUP BY ALL
 ),
-reached AS (
+sign_passage AS (
     SELECT s.drive_id, s.ego_id, s.t0_ns, s.last.id AS sign_id, min(e.t_ns) AS t_sign_ns, min(c.t_start_ns) AS t_log_ns
-    FROM sign s
+    FROM last_sign s
     JOIN clock c USING (drive_id, ego_id)
     JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.chain_id = s.last.chain_id AND e.front_s_m >= s.last.s_m
     GROUP BY ALL
@@ -38,5 +38,5 @@ SELECT
     t.drive_id, t.ego_id, (row_number() OVER (PARTITION BY t.drive_id, t.ego_id ORDER BY t.t0_ns) - 1)::INTEGER AS occurrence,
     t.t0_ns AS t_ns, t.side_name AS side, t.to_id AS lanelet_id,
     CASE WHEN r.t_sign_ns > r.t_log_ns THEN r.t_sign_ns END AS t_sign_ns, r.sign_id
-FROM taken t
-LEFT JOIN reached r USING (drive_id, ego_id, t0_ns)
+FROM exit_entry t
+LEFT JOIN sign_passage r USING (drive_id, ego_id, t0_ns)

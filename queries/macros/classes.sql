@@ -1,22 +1,25 @@
--- What an actor may be. A class that is not known (NULL) may be any, and `vehicle` any vehicle: both make a comparison unknown, not false.
+-- The classes that an actor may have. A class that is not known (NULL) may be any class, and `vehicle` may be any kind of vehicle: a
+-- comparison with either is unknown, not false.
 
--- A box longer than this is no bicycle, and nobody on foot nor an animal if it is longer than that.
+-- A box longer than longest_bicycle_m is no bicycle. A box longer than longest_alive_m is neither a pedestrian nor an animal.
 CREATE OR REPLACE MACRO longest_bicycle_m() AS 2.5;
 CREATE OR REPLACE MACRO longest_alive_m() AS 3.0;
--- What keeps within this in the whole log stands: positions of things that stand jitter.
+-- An actor whose positions stay within this distance in the whole log stands: the positions of standing things jitter.
 CREATE OR REPLACE MACRO stays_m() AS 1.0;
 
--- Could be driven: everything that is not known to be on foot, an animal or a thing.
+-- Whether an actor may be a vehicle: true unless it is known to be a pedestrian, an animal or an object.
 CREATE OR REPLACE MACRO may_be_vehicle(actor_class) AS coalesce(actor_class NOT IN ('pedestrian', 'animal', 'object'), true);
--- Whether it is driven; unknown for one whose class is not known.
+-- Whether an actor is a vehicle; unknown if its class is not known.
 CREATE OR REPLACE MACRO is_vehicle(actor_class) AS actor_class NOT IN ('pedestrian', 'animal', 'object');
--- Whether an actor is of this class; unknown for one whose class is not known, and for a vehicle of unsaid kind where the class is a kind of vehicle.
+-- Whether an actor is of the class `word`; unknown if its class is not known, or if it is a vehicle of unknown kind and `word` is a kind of
+-- vehicle.
 CREATE OR REPLACE MACRO is_class(actor_class, word) AS CASE
     WHEN actor_class = 'vehicle' THEN CASE WHEN word IN ('pedestrian', 'animal', 'object') THEN false END ELSE actor_class = word END;
--- Whether it is a bicycle; by its length where its class does not say.
+-- Whether an actor is a bicycle. Its length decides if its class does not.
 CREATE OR REPLACE MACRO is_bicycle(actor_class, length_m) AS
     coalesce(is_class(actor_class, 'bicycle'), CASE WHEN length_m > longest_bicycle_m() THEN false END);
--- Could be on foot.
+-- Whether an actor may be on foot.
 CREATE OR REPLACE MACRO may_walk(actor_class) AS coalesce(is_class(actor_class, 'pedestrian'), true);
--- Could be driven, or is a thing that stands in the ego's way: their middles are d apart across the road, their half widths are half_m together.
+-- Whether an actor may be a vehicle, or is an object that stands in the ego's way. d_m is the distance between the two centres across the
+-- road, half_m the sum of the two half widths.
 CREATE OR REPLACE MACRO may_be_ahead(actor_class, d_m, half_m) AS may_be_vehicle(actor_class) OR actor_class = 'object' AND abs(d_m) < half_m;

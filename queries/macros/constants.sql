@@ -1,45 +1,47 @@
--- Numbers of the library, named once.
+-- The constants of the library, each named once.
 
--- A corner this far over a boundary has left the lane (paper's registration noise is below it).
+-- A corner that is over a boundary by more than this has left the lane (the paper's registration noise is smaller).
 CREATE OR REPLACE MACRO over_boundary_m() AS 0.05;
--- Half width of the strip in which the corridor gives positions, and how far it reaches ahead of and behind the ego's way.
+-- Half width of the strip in which the corridor gives positions, and how far the strip reaches ahead of and behind the ego's way.
 CREATE OR REPLACE MACRO strip_m() AS 15.0;
 CREATE OR REPLACE MACRO corridor_ahead_m() AS 1000.0;
 CREATE OR REPLACE MACRO corridor_behind_m() AS 200.0;
--- Boxes nearer than this get their exact clearance; beyond it a lower bound decides every rule that asks for one.
+-- The clearance of boxes nearer than this is exact. For boxes farther apart a lower bound is enough for every rule that needs a clearance.
 CREATE OR REPLACE MACRO exact_clearance_m() AS 30.0;
--- An object whose track ends this close to the ego did not just drive away.
+-- An object whose track ends this close to the ego has not simply driven away.
 CREATE OR REPLACE MACRO lost_near_m() AS 50.0;
--- A recorder whose range nobody says sees this far.
+-- The range of a recorder; this default holds if nobody gives it.
 CREATE OR REPLACE MACRO sight_m(sensor_range_m) AS coalesce(sensor_range_m, lost_near_m());
--- Slower than this is standing: positions of parked vehicles jitter.
+-- An actor that is no faster than this stands: the positions of parked vehicles jitter.
 CREATE OR REPLACE MACRO standing_mps() AS 0.5;
--- What a velocity that ingest derives by a filter may be off by (ingest/velocity.py).
+-- The largest error of a velocity that ingest derives with a filter (drive/velocity.py).
 CREATE OR REPLACE MACRO filtered_error_mps() AS 0.25;
--- Positions that spread by no more than this are those of something that stays where it is.
+-- An actor whose positions spread by no more than this stays where it is.
 CREATE OR REPLACE MACRO moved_m() AS 1.0;
--- From so far away of the end of the map, who is beyond it is nothing to reckon with yet: two vehicles at 60 mph that brake for each other
--- need some 150 m to stop, and 350 m by the most careful of the models.
+-- If the end of the map is farther away than this, vehicles beyond it need not be considered yet: two vehicles at 60 mph that brake for
+-- each other need some 150 m to stop, and 350 m by the most cautious of the models.
 CREATE OR REPLACE MACRO beyond_map_m() AS 400.0;
--- Samples closer than this many periods are continuous.
+-- Samples that are at most this many periods apart are continuous.
 CREATE OR REPLACE MACRO max_gap_periods() AS 2.5;
--- How near to the ego a vehicle that leaves or enters the log matters: as far as the faster of the two goes in 10 s. No rule looks further
--- ahead or behind for a vehicle that goes the same way (RSS asks for 4 s, stopping in the wet for 7 s at 70 mph). Unknown speeds: 70 mph.
+-- A vehicle that leaves or enters the log matters if it is nearer to the ego than this: the distance that the faster of the two drives in
+-- 10 s. No rule looks farther ahead or behind for a vehicle that goes the same way (RSS needs 4 s, stopping in the wet 7 s at 70 mph). An
+-- unknown speed counts as 70 mph.
 CREATE OR REPLACE MACRO reach_m(v_object_mps, v_ego_mps) AS
     greatest(lost_near_m(), 10 * greatest(coalesce(v_object_mps, 31.3), coalesce(v_ego_mps, 31.3)));
--- Nobody ahead: nobody as near as the ego goes in 10 s, at 50 km/h and more, and 50 m. An unseen vehicle beyond that breaks no rule.
+-- No vehicle is ahead if none is nearer than this: 50 m and the distance that the ego drives in 10 s, at 50 km/h or more. An unseen vehicle
+-- farther away breaks no rule.
 CREATE OR REPLACE MACRO lead_reach_m(v_ego_mps) AS lost_near_m() + 10 * greatest(coalesce(v_ego_mps, 31.3), 14.0);
--- How long a vehicle that left or has not yet entered the log may be on the road ahead all the same: twice the time to meet it at both
--- speeds, between `least_s` and 60 s.
+-- How long a vehicle that left the log, or has not yet entered it, may still be on the road ahead: twice the time until the two meet at
+-- their speeds, between `least_s` and 60 s.
 CREATE OR REPLACE MACRO unseen_ns(distance_m, v_object_mps, v_ego_mps, least_s) AS
     (1e9 * least(60.0, greatest(least_s, 2 * coalesce(distance_m / nullif(v_object_mps + v_ego_mps, 0), 30.0))))::BIGINT;
--- Nobody who is not seen comes faster than this: 70 mph.
+-- A vehicle that is not seen comes no faster than this: 70 mph.
 CREATE OR REPLACE MACRO fastest_mps() AS 31.3;
--- Why there is no limit to judge by.
+-- The reason why there is no speed limit to judge by.
 CREATE OR REPLACE MACRO limit_doubt(limit_source, lanelet_id) AS CASE limit_source
     WHEN 'unread' THEN 'the map gives a limit for lanelet ' || lanelet_id || ' that cannot be read: give one with limits in a known unit'
     WHEN 'none' THEN 'the map says that lanelet ' || lanelet_id || ' has no limit of its own: give one that says which limit holds'
     ELSE 'the map gives no limit for lanelet ' || lanelet_id || ': give one with speed limits'
 END;
--- Two directions further apart than this, with nothing between them in the map, may have a central reservation between them.
+-- If the two directions of a road are farther apart than this, and the map has nothing between them, there may be a central reservation.
 CREATE OR REPLACE MACRO reservation_m() AS 1.0;

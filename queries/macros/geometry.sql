@@ -3,9 +3,9 @@
 -- Angle wrapped to [-pi, pi).
 CREATE OR REPLACE MACRO wrap_rad(a) AS a - 2 * pi() * floor((a + pi()) / (2 * pi()));
 
--- Direction in which an actor travels: of its motion where it moves, else of its heading. A vehicle goes where it is turned or straight
--- back (`backs`: its velocity leads backwards, and did so at the sample before and does at the one after: a blow lasts one sample); an actor
--- that is or may be on foot goes anywhere. Below this speed a motion is noise.
+-- Direction in which an actor travels: that of its motion if it moves, else that of its heading. A vehicle travels where it heads or
+-- straight back (`backs`: its velocity points backwards at this sample, at the one before and at the one after; an impact lasts only one
+-- sample). An actor that is or may be on foot travels in any direction. Below moves_mps a motion is noise.
 CREATE OR REPLACE MACRO moves_mps() AS 1.5;
 CREATE OR REPLACE MACRO travel_rad(actor_class, speed_mps, vx_mps, vy_mps, yaw_rad, backs) AS
     CASE
@@ -13,20 +13,20 @@ CREATE OR REPLACE MACRO travel_rad(actor_class, speed_mps, vx_mps, vy_mps, yaw_r
         WHEN speed_mps > moves_mps() AND backs THEN wrap_rad(yaw_rad + pi())
         ELSE yaw_rad
     END;
--- The heading of a box, turned round if it travels backwards: a box is the same from both ends.
+-- The heading of a box, turned by 180 degrees if it travels backwards: a box is the same from both ends.
 CREATE OR REPLACE MACRO turned_to(yaw_rad, travel_rad) AS CASE WHEN cos(travel_rad - yaw_rad) < 0 THEN wrap_rad(yaw_rad + pi()) ELSE yaw_rad END;
 
--- By how much a box turns, in [-pi/2, pi/2): one that is turned round lies as it lay.
+-- The angle by which a box turns, in [-pi/2, pi/2): a box that is turned by 180 degrees covers the same ground.
 CREATE OR REPLACE MACRO box_turn_rad(a) AS a - pi() * floor((a + pi() / 2) / pi());
 
--- Keys of the 2 m grid that finds lanes and of the 4 m grid that finds corridors.
--- The factor keeps cells of one map apart: no map is 4,000 km high.
+-- Keys of the 2 m grid that finds lanes and of the 4 m grid that finds corridors. The factor makes the keys of the cells of one map
+-- different: no map is 4,000 km high.
 CREATE OR REPLACE MACRO cell_key(ix, iy) AS ix::BIGINT * 1000003 + iy::BIGINT;
 CREATE OR REPLACE MACRO lane_cell_of(x, y) AS cell_key(floor(x / 2), floor(y / 2));
 CREATE OR REPLACE MACRO corridor_cell_of(x, y) AS cell_key(floor(x / 4), floor(y / 4));
 
--- A segment of a centre line with unit tangents t0, t1 at its ends claims the points between the normals at its ends:
--- a0 >= 0 behind the first, a1 > 0 before the second. Consecutive segments share a tangent, so they tile the strip.
+-- A segment of a centre line with unit tangents t0, t1 at its ends contains the points between the normals at its ends: a0 >= 0 beyond the
+-- first normal, a1 > 0 before the second one. Consecutive segments share a tangent, so that they tile the strip.
 CREATE OR REPLACE MACRO along0(x, y, x0, y0, tx0, ty0) AS (x - x0) * tx0 + (y - y0) * ty0;
 CREATE OR REPLACE MACRO along1(x, y, x1, y1, tx1, ty1) AS (x1 - x) * tx1 + (y1 - y) * ty1;
 
@@ -38,8 +38,8 @@ CREATE OR REPLACE MACRO offset_left(x, y, u, x0, y0, tx0, ty0, x1, y1, tx1, ty1)
 CREATE OR REPLACE MACRO outside2(px, py, hl, hw) AS
     greatest(abs(px) - hl, 0.0) ** 2 + greatest(abs(py) - hw, 0.0) ** 2;
 
--- Least squared distance from the four corners of box b to box a. (dx, dy): centre of b in the frame of a; (c, s): cosine and
--- sine of b's heading in that frame.
+-- Least squared distance from the four corners of box b to box a. (dx, dy): centre of b in the frame of a; (c, s): cosine and sine of b's
+-- heading in that frame.
 CREATE OR REPLACE MACRO corners_outside2(dx, dy, c, s, hla, hwa, hlb, hwb) AS
     least(
         outside2(dx + c * hlb - s * hwb, dy + s * hlb + c * hwb, hla, hwa),
@@ -57,11 +57,11 @@ CREATE OR REPLACE MACRO box_separation(dx, dy, c, s, hla, hwa, hlb, hwb) AS
         abs(dy * c - dx * s) - hwb - hla * abs(s) - hwa * abs(c)
     );
 
--- How deep two boxes are inside each other, negative: apart; NULL as soon as one argument is (greatest() alone would leave it out).
+-- Depth of the overlap of two boxes; negative: they are apart. NULL if an argument is NULL (greatest() alone would ignore it).
 CREATE OR REPLACE MACRO box_depth(dx, dy, c, s, hla, hwa, hlb, hwb) AS
     CASE WHEN dx + dy + c + s + hla + hwa + hlb + hwb IS NOT NULL THEN -box_separation(dx, dy, c, s, hla, hwa, hlb, hwb) END;
 
--- The same for each of the eight sides of the four axes, as a list: the boxes touch where none of it is positive.
+-- The separation for each of the eight sides of the four axes, as a list: the boxes touch if none of them is positive.
 CREATE OR REPLACE MACRO box_sides(dx, dy, c, s, hla, hwa, hlb, hwb) AS
     [
         dx - hla - hlb * abs(c) - hwb * abs(s), -dx - hla - hlb * abs(c) - hwb * abs(s),
@@ -70,16 +70,17 @@ CREATE OR REPLACE MACRO box_sides(dx, dy, c, s, hla, hwa, hlb, hwb) AS
         dy * c - dx * s - hwb - hla * abs(s) - hwa * abs(c), dx * s - dy * c - hwb - hla * abs(s) - hwa * abs(c)
     ];
 
--- At which share of its way from one moment to another a box that goes straight on first touches another box; NULL: nowhere on it. `a` and `b`
--- are the sides (box_sides) at the two moments. Each changes in proportion: the boxes touch from the last side that lets go to the first that parts them.
+-- The share of the way from one moment to another after which a box that moves straight on first touches another box; NULL: it touches it
+-- nowhere on that way. `a` and `b` are the sides (box_sides) at the two moments; each side changes linearly. The boxes touch from the
+-- moment at which the last side stops being positive (lets_go) until the first one becomes positive (parts).
 CREATE OR REPLACE MACRO lets_go(a, b) AS
     list_max(list_transform(list_zip(a, b), lambda g: CASE WHEN g[1] <= 0 THEN 0.0 WHEN g[2] > 0 THEN 2.0 ELSE g[1] / (g[1] - g[2]) END));
 CREATE OR REPLACE MACRO parts(a, b) AS
     list_min(list_transform(list_zip(a, b), lambda g: CASE WHEN g[2] <= 0 THEN 1.0 WHEN g[1] > 0 THEN -1.0 ELSE g[1] / (g[1] - g[2]) END));
 CREATE OR REPLACE MACRO first_touch(a, b) AS CASE WHEN lets_go(a, b) <= parts(a, b) THEN lets_go(a, b) END;
 
--- Exact distance between two boxes; overlapping: minus the depth. Arguments as above; every one must be known.
--- Of two convex boxes apart, the nearest pair has a corner of one of them.
+-- Exact distance between two boxes; if they overlap, minus the depth. Arguments as above; every one must be known. If two convex boxes are
+-- apart, at least one of their two nearest points is a corner.
 CREATE OR REPLACE MACRO box_clearance(dx, dy, c, s, hla, hwa, hlb, hwb) AS
     CASE
         WHEN box_separation(dx, dy, c, s, hla, hwa, hlb, hwb) <= 0 THEN box_separation(dx, dy, c, s, hla, hwa, hlb, hwb)
@@ -89,32 +90,33 @@ CREATE OR REPLACE MACRO box_clearance(dx, dy, c, s, hla, hwa, hlb, hwb) AS
         ))
     END;
 
--- Depth of an overlap from its three one-sided depths; unknown as soon as one is (least() alone would leave it out).
+-- Depth of an overlap from its three one-sided depths; NULL if one of them is (least() alone would ignore it).
 CREATE OR REPLACE MACRO inside3(a, b, c) AS CASE WHEN a IS NOT NULL AND b IS NOT NULL AND c IS NOT NULL THEN least(a, b, c) END;
 
--- An overlap along one axis as the overlap of two boxes whose other axis is not known: only if it is none.
+-- The depth of the overlap of two boxes of which only one axis is known: NULL unless they are apart on this axis.
 CREATE OR REPLACE MACRO short_of(along_m) AS CASE WHEN along_m < 0 THEN along_m END;
 
--- Lengths as whole picometres, and back: their running sums are the same to the last bit in every order and beside any other drive.
--- (A sum of doubles over a window is not: how it is split depends on what else is in the table.)
+-- Lengths in whole picometres, and back. Their running sums are the same to the last bit in every order and beside any other drive. (A sum
+-- of doubles over a window is not: how it is split depends on what else is in the table.)
 CREATE OR REPLACE MACRO whole_pm(x_m) AS round(1e12 * x_m)::HUGEINT;
 CREATE OR REPLACE MACRO of_pm(x_pm) AS x_pm / 1e12;
 
--- What happens between two samples. Nobody brakes or swerves harder than this: that is what tyres give.
+-- The motion between two samples. No actor brakes or swerves harder than this, which is what tyres can give.
 CREATE OR REPLACE MACRO swerve_mps2() AS 8.0;
--- A speed that is not known may be this.
+-- A speed that is not known may be this high.
 CREATE OR REPLACE MACRO fast_mps() AS 40.0;
--- The least and the most that a vehicle with the speed v drives in the t seconds after, or before: it brakes, or speeds up, by 10 m/s2 at the
--- most, neither turns round nor backs, and goes no faster than 40 m/s unless it did already.
+-- The least and the greatest distance that a vehicle with the speed v drives in the t seconds after, or before. It brakes or speeds up by
+-- at most 10 m/s2, neither turns round nor reverses, and drives no faster than 40 m/s unless it does already.
 CREATE OR REPLACE MACRO drives_least_m(v_mps, t_s) AS CASE WHEN 10.0 * t_s < v_mps THEN v_mps * t_s - 5.0 * t_s * t_s ELSE v_mps * v_mps / 20.0 END;
 CREATE OR REPLACE MACRO drives_most_m(v_mps, t_s) AS least(v_mps * t_s + 5.0 * t_s * t_s, greatest(v_mps, fast_mps()) * t_s);
--- So far around the ego all must be in plain view for nobody to drive past it unseen in two lanes on either side: somebody is so near for longer
--- than a tracker needs, and than a step takes, at the greatest speed at which the two can pass each other on the same way.
+-- If everything within this distance around the ego is in plain view, no vehicle can drive past it unseen in two lanes on either side. At
+-- the greatest speed at which the two can pass each other on the same way, the vehicle is so near for longer than a tracker needs and than
+-- a step takes.
 CREATE OR REPLACE MACRO watched_m(v_mps, step_s) AS
     sqrt(7.0 ** 2 + (greatest(v_mps, fast_mps() - v_mps) * (tracker_begins_ns() / 1e9 + step_s) / 2) ** 2);
 
--- The way of one box from one sample to the next, as a cubic: (x, y) the way, p and q how far it is off the chord by the velocities at its
--- ends. Velocities that no tyres make of that way are left out (then told is false).
+-- The way of a box from one sample to the next, as a cubic. (x, y) is the way; p and q are its distances from the chord by the velocities
+-- at the first and the second end. Velocities that tyres cannot produce on that way are left out (then `told` is false).
 CREATE OR REPLACE MACRO between_way(x0, y0, x1, y1, vx0, vy0, vx1, vy1, dt_s) AS
     CASE
         WHEN coalesce(greatest((vx0 * dt_s - x1 + x0) ** 2 + (vy0 * dt_s - y1 + y0) ** 2, (vx1 * dt_s - x1 + x0) ** 2 + (vy1 * dt_s - y1 + y0) ** 2)
@@ -128,7 +130,9 @@ CREATE OR REPLACE MACRO between_way(x0, y0, x1, y1, vx0, vy0, vx1, vy1, dt_s) AS
             'long_m': sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2)
         }
     END;
--- How far it may be off that: the most that f'' <= a allows between f and its cubic (Peano kernel: a dt^2 / 16), or its chord (a dt^2 / 8).
+-- How far the box may be off that way: the most that f'' <= a allows between f and its cubic (Peano kernel: a dt^2 / 16), or its chord (a
+-- dt^2 / 8).
 CREATE OR REPLACE MACRO between_blur_m(way, dt_s) AS swerve_mps2() * dt_s ** 2 / CASE WHEN way.told THEN 16 ELSE 8 END;
--- Where the other is after the fraction u of that time, seen from the ego, on one axis: a at its start, g the change of that, p and q as above.
+-- Where the object is after the fraction u of that time, seen from the ego, on one axis. a: its place at the start, g: the change of that
+-- place, p and q as above.
 CREATE OR REPLACE MACRO between_offset(u, a, g, p, q) AS a + g * u + p * u * (1 - u) ** 2 - q * u ** 2 * (1 - u);

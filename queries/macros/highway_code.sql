@@ -6,11 +6,11 @@ CREATE OR REPLACE MACRO mph(v_mps) AS v_mps / 0.44704;
 CREATE OR REPLACE MACRO thinking_distance_m(v_mps) AS 0.300 * mph(v_mps);
 CREATE OR REPLACE MACRO stopping_distance_m(v_mps) AS 0.300 * mph(v_mps) + 0.058 - 0.011 * mph(v_mps) + 0.015 * mph(v_mps) ** 2;
 
--- Length of a danger space: the stopping distance; none for a vehicle that stands (the fit's constant would leave 6 cm).
+-- Length of a danger space: the stopping distance, and 0 for a vehicle that stands (the constant of the fit would leave 6 cm).
 CREATE OR REPLACE MACRO danger_space_m(v_mps) AS CASE WHEN v_mps < 0.05 THEN 0.0 ELSE stopping_distance_m(v_mps) END;
 
--- Safe distance ahead (the paper's Appendix A). w: lane width; beta, theta: pull-out and cut-in angle; headroom, clearance: gaps to the
--- VBP when pulling out and cutting in start; undefined (NULL) where the ego is not faster than the VBP.
+-- Safe distance ahead (the paper's Appendix A). w: lane width; beta, theta: pull-out and cut-in angle; headroom, clearance: gaps to the VBP
+-- when pulling out and cutting in start. Undefined (NULL) if the ego is not faster than the VBP.
 CREATE OR REPLACE MACRO pull_out_time_s(w, beta, v_av) AS w / (v_av * sin(beta));
 CREATE OR REPLACE MACRO passing_time_s(w, beta, headroom, clearance, l_av, l_vbp, v_av, v_vbp) AS
     CASE WHEN v_av > v_vbp THEN
@@ -28,26 +28,28 @@ CREATE OR REPLACE MACRO safe_distance_ahead_m(w, beta, theta, headroom, clearanc
 CREATE OR REPLACE MACRO overtake_zone(spare_m, spare_s) AS
     CASE WHEN spare_m <= 0 THEN 'A' WHEN spare_s < 0.5 THEN 'B' WHEN spare_s <= 2.5 THEN 'C' WHEN spare_s > 2.5 THEN 'D' END;
 
--- Whether an actor may be passed over a line that must not be crossed (UKHC R129): what stands, and cyclists and horses at 10 mph or less.
+-- Whether an actor may be passed over a line that must not be crossed (UKHC R129): vehicles that stand, and cyclists and horses at 10 mph
+-- or less.
 CREATE OR REPLACE MACRO passed_over_any_line(actor_class, length_m, speed_mps) AS
     is_vehicle(actor_class) AND speed_mps <= standing_mps()
     OR (is_bicycle(actor_class, length_m) OR is_class(actor_class, 'animal')) AND speed_mps <= 4.4704;
 
--- Room to leave beside them: a door's width, 1.5 m for a cyclist and 2 m for a horse (UKHC R163).
+-- Room to leave beside them: the width of a door, 1.5 m for a cyclist and 2 m for a horse (UKHC R163).
 CREATE OR REPLACE MACRO passing_room_m(actor_class) AS CASE actor_class WHEN 'animal' THEN 2.0 WHEN 'bicycle' THEN 1.5 ELSE 1.0 END;
 
--- How many times the stopping distance and the two seconds grow with the weather: twice in the wet (Rule 227), up to ten times on ice
--- (Rule 230). Weather that is not known counts as dry: who is too close then is too close in any weather.
+-- Factor by which the stopping distance and the two seconds grow with the weather: 2 in the wet (Rule 227), up to 10 on ice (Rule 230).
+-- Weather that is not known counts as dry: a vehicle that is too close in the dry is too close in any weather.
 CREATE OR REPLACE MACRO stopping_factor(weather) AS CASE weather WHEN 'wet' THEN 2.0::DOUBLE WHEN 'ice' THEN 10.0::DOUBLE ELSE 1.0::DOUBLE END;
 
--- Somebody whose class is not known matters to who is ahead if the ego gets there so soon: the two seconds grow to 20 on ice.
+-- An actor of unknown class may be the vehicle ahead. That matters within this distance, 20 s at the ego's speed: the two seconds grow to
+-- 20 on ice.
 CREATE OR REPLACE MACRO unsure_reach_m(v_mps) AS greatest(lost_near_m(), 20.0 * coalesce(v_mps, 70.0));
 
--- The side on which one overtakes, where traffic keeps to the other.
+-- The side on which to overtake: the opposite of the side to which traffic keeps.
 CREATE OR REPLACE MACRO overtaking_side(handedness) AS CASE handedness WHEN 'lht' THEN 'right' WHEN 'rht' THEN 'left' END;
 
--- Speed limits of Rule 124 for a class of vehicle outside built-up areas, in mph. road: single, dual or motorway. 70 mph on
--- motorways is for buses of up to 12 m.
+-- Speed limits of Rule 124 for a class of vehicle outside built-up areas, in mph. road: single, dual or motorway. The 70 mph for buses on
+-- motorways hold for a length of up to 12 m.
 CREATE OR REPLACE MACRO class_limit_mph(vehicle_class, length_m, nation, road) AS
     CASE
         WHEN vehicle_class IN ('car', 'motorcycle') THEN CASE road WHEN 'single' THEN 60 ELSE 70 END
@@ -56,9 +58,9 @@ CREATE OR REPLACE MACRO class_limit_mph(vehicle_class, length_m, nation, road) A
         ELSE CASE road WHEN 'single' THEN 50 ELSE 60 END
     END;
 
--- The highest and the lowest limit of Rule 124, in m/s, that can hold where some of this is not known. signed:
--- the map gives a limit, which then counts instead of the built-up one (20 mph in Wales, else 30; a map of a town that gives none may be of
--- anywhere, so somebody must have said that it is in Britain).
+-- The highest and the lowest limit of Rule 124, in m/s, that can hold if some of the arguments are not known. signed: the map gives a
+-- limit, which then replaces the one for built-up areas (20 mph in Wales, else 30). A town map without limits may be of any country: the
+-- nation must be given before the built-up limit counts as the highest.
 CREATE OR REPLACE MACRO most_limit_mps(vehicle_class, length_m, nation, road_type, carriageway, area, signed) AS
     0.44704 * CASE
         WHEN NOT signed AND area = 'built_up' AND nation IS NOT NULL THEN CASE nation WHEN 'gb-wls' THEN 20 ELSE 30 END
