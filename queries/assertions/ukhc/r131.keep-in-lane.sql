@@ -50,13 +50,13 @@ judged_step AS (
     WHERE is_excused IS DISTINCT FROM true
         AND coalesce(marking IN ('broken', 'broken_broken', 'broken_solid', 'solid_broken', 'botts_dots') OR marking IN ('solid', 'solid_solid') AND beyond IS NOT DISTINCT FROM 'same', true)
 )
-SELECT e.drive_id, e.ego_id, e.t_ns, coalesce(a.required, $astride_s) AS required, coalesce(NOT a.astride_begin_seen, false) AS at_least,
-    CASE WHEN e.front_s_m IS NULL THEN NULL WHEN a.t_ns IS NULL THEN 0.0::DOUBLE ELSE a.observed END AS observed,
+SELECT e.drive_id, e.ego_id, e.t_ns, coalesce(j.required, $astride_s) AS required, coalesce(NOT j.astride_begin_seen, false) AS at_least,
+    CASE WHEN e.front_s_m IS NULL THEN NULL WHEN j.t_ns IS NULL THEN 0.0::DOUBLE ELSE j.observed END AS observed,
     CASE
         WHEN e.front_s_m IS NULL THEN ego_lacks(e.x_m, e.yaw_rad, e.lanelet_id, e.front_s_m)
-        WHEN a.t_ns IS NOT NULL AND NOT a.astride_begin_seen AND a.observed <= a.required THEN 'the ego is astride the line when the log begins, or enters the map: record it from before that'
-        WHEN a.t_ns IS NOT NULL AND a.changes IS NULL THEN 'the log ends before it shows whether this is a lane change: record the ego for longer'
-        WHEN a.observed IS NULL AND a.least_s <= a.required THEN 'the ego may be going round somebody whose place is not known: record everybody nearby without a break'
+        WHEN j.t_ns IS NOT NULL AND NOT j.astride_begin_seen AND j.observed <= j.required THEN 'the ego is astride the line when the log begins, or enters the map: record it from before that'
+        WHEN j.t_ns IS NOT NULL AND j.changes IS NULL THEN 'the log ends before it shows whether this is a lane change: record the ego for longer'
+        WHEN j.observed IS NULL AND j.least_s <= j.required THEN 'the ego may be going round somebody whose place is not known: record everybody nearby without a break'
     END AS reason
 FROM ego_state e
-LEFT JOIN judged_step a USING (drive_id, ego_id, t_ns)
+LEFT JOIN judged_step j USING (drive_id, ego_id, t_ns)

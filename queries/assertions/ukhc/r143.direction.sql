@@ -153,7 +153,7 @@ junction_heading AS (
 SELECT e.drive_id, e.ego_id, e.t_ns,
     -- During a short excursion the ego may pass something that the log does not show: then it is not known whether the rule applies.
     (c.t_ns IS NULL OR CASE WHEN p.is_excused OR c.closed_lane THEN false WHEN p.t_ns IS NOT NULL AND p.is_excused IS NULL OR x.t_ns IS NOT NULL AND NOT e.in_junction THEN NULL ELSE NOT c.closed_lane END)
-        AND (e.x_m IS NULL OR e.lanelet_id IS NOT NULL OR a.t_ns IS NOT NULL AND w.road_type = 'motorway') AND (NOT e.in_junction OR a.t_ns IS NOT NULL OR coalesce(r.is_against, false))
+        AND (e.x_m IS NULL OR e.lanelet_id IS NOT NULL OR a.t_ns IS NOT NULL AND w.road_type = 'motorway') AND (NOT e.in_junction OR a.t_ns IS NOT NULL OR coalesce(j.is_against, false))
         AND CASE WHEN abs(m.v_long_mps) > $manoeuvring_mps OR w.road_type = 'motorway' OR d.is_against AND d.least_m > $manoeuvring_m THEN true
             -- If the ego drives in the direction of its lane, the kind of road does not matter.
             WHEN abs(m.v_long_mps) <= $manoeuvring_mps AND (w.road_type IS NOT NULL OR e.with_direction AND m.v_long_mps >= -$reverse_mps) AND NOT coalesce(d.is_against AND d.most_m > $manoeuvring_m, false) THEN false END AS applies,
@@ -167,7 +167,7 @@ LEFT JOIN ego_condition w USING (drive_id, ego_id, t_ns)
 LEFT JOIN ego_aside a USING (drive_id, ego_id, t_ns)
 LEFT JOIN passing_step p USING (drive_id, ego_id, t_ns)
 LEFT JOIN short_excursion_step x USING (drive_id, ego_id, t_ns)
-LEFT JOIN junction_heading r USING (drive_id, ego_id, t_ns)
+LEFT JOIN junction_heading j USING (drive_id, ego_id, t_ns)
 LEFT JOIN closed_lane c USING (drive_id, ego_id, t_ns)
 LEFT JOIN wrong_way_distance d USING (drive_id, ego_id, t_ns)
 

@@ -36,18 +36,18 @@ numbered_step AS (
     SELECT *, count(*) FILTER (NOT is_on_footway) OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS stretch_no FROM footway_step
 ),
 footway_stretch AS (
-    SELECT o.drive_id, o.ego_id, o.stretch_no, bool_and(o.is_slow) AND count(b.stretch_no) > 0 AS may_be_access
-    FROM numbered_step o
+    SELECT n.drive_id, n.ego_id, n.stretch_no, bool_and(n.is_slow) AND count(b.stretch_no) > 0 AS may_be_access
+    FROM numbered_step n
     LEFT JOIN (
         SELECT drive_id, ego_id, stretch_no FROM numbered_step WHERE is_beyond_map
         UNION ALL
         SELECT drive_id, ego_id, stretch_no - 1 FROM numbered_step WHERE is_beyond_map
-    ) b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.stretch_no = o.stretch_no
-    WHERE o.is_on_footway
-    GROUP BY o.drive_id, o.ego_id, o.stretch_no
+    ) b ON b.drive_id = n.drive_id AND b.ego_id = n.ego_id AND b.stretch_no = n.stretch_no
+    WHERE n.is_on_footway
+    GROUP BY n.drive_id, n.ego_id, n.stretch_no
 )
-SELECT o.drive_id, o.ego_id, o.t_ns, o.depth_m AS observed, CASE WHEN NOT coalesce(s.may_be_access, false) THEN $tolerance_m END AS required,
-    CASE WHEN o.depth_m IS NULL THEN 'part of the ego is on nothing that the map knows'
+SELECT n.drive_id, n.ego_id, n.t_ns, n.depth_m AS observed, CASE WHEN NOT coalesce(s.may_be_access, false) THEN $tolerance_m END AS required,
+    CASE WHEN n.depth_m IS NULL THEN 'part of the ego is on nothing that the map knows'
         WHEN s.may_be_access THEN 'slowly over the footway, from or to ground that the map does not know: it may be property' END AS reason
-FROM numbered_step o
-LEFT JOIN footway_stretch s ON s.drive_id = o.drive_id AND s.ego_id = o.ego_id AND s.stretch_no = CASE WHEN o.is_on_footway THEN o.stretch_no END
+FROM numbered_step n
+LEFT JOIN footway_stretch s ON s.drive_id = n.drive_id AND s.ego_id = n.ego_id AND s.stretch_no = CASE WHEN n.is_on_footway THEN n.stretch_no END

@@ -99,14 +99,14 @@ unplaced_vehicle AS (
 )
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps <= standing_mps() AS applies,
     CASE
-        WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false) OR f.is_violation OR z.is_violation THEN false
-        WHEN f.ref_id IS NOT NULL AND f.is_violation IS NULL OR z.ref_id IS NOT NULL THEN NULL
+        WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false) OR f.is_violation OR m.is_violation THEN false
+        WHEN f.ref_id IS NOT NULL AND f.is_violation IS NULL OR m.ref_id IS NOT NULL THEN NULL
         WHEN o.begin_seen AND o.n_unplaced = 0 AND v.ref_id IS NULL AND count(c.object_id) = count(c.decel_mps2) AND k.t_end_ns >= o.t3_ns + ($pet_s * 1e9)::BIGINT THEN true
     END AS holds,
     CASE
         WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false)
             THEN format('an oncoming vehicle came {:.1f} s after the ego, or braked by {:.1f} m/s2', min(c.pet_s), coalesce(max(c.decel_mps2), 0))
-        WHEN z.ref_id IS NOT NULL AND f.is_violation IS DISTINCT FROM true THEN format('{} came by with {:.2f} m between', z.least.object_id, z.least.room_m)
+        WHEN m.ref_id IS NOT NULL AND f.is_violation IS DISTINCT FROM true THEN format('{} came by with {:.2f} m between', m.least.object_id, m.least.room_m)
         WHEN f.words IS NOT NULL THEN f.words
         WHEN o.t3_ns IS NULL THEN 'the log does not show the ego back in its lane: record it until it is'
         WHEN v.ref_id IS NOT NULL THEN format('object {}: record it without a break', v.words)
@@ -117,8 +117,8 @@ FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 JOIN clock k USING (drive_id, ego_id)
 LEFT JOIN braking_result f USING (ref_id)
-LEFT JOIN close_meeting z USING (ref_id)
+LEFT JOIN close_meeting m USING (ref_id)
 LEFT JOIN unplaced_vehicle v USING (ref_id)
 LEFT JOIN (FROM conflict WHERE ego_first AND abs(angle_rad) >= $oncoming_rad) c
     ON c.drive_id = r.drive_id AND c.ego_id = r.ego_id AND c.t_ego_in_ns >= r.t_ns AND c.t_ego_in_ns <= r.t_end_ns
-GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.unplaced_reason, o.t3_ns, k.t_end_ns, f.ref_id, f.is_violation, f.words, z.ref_id, z.is_violation, z.least, v.ref_id, v.words
+GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.unplaced_reason, o.t3_ns, k.t_end_ns, f.ref_id, f.is_violation, f.words, m.ref_id, m.is_violation, m.least, v.ref_id, v.words

@@ -78,8 +78,8 @@ speed_gain AS (
     SELECT drive_id, ego_id, object_id, t_ns, ego_speed_mps - min(ego_speed_mps) OVER (PARTITION BY drive_id, ego_id, object_id, stretch_no ORDER BY t_ns) AS gained_mps
     FROM overtaking_step
 )
-SELECT o.drive_id, o.ego_id, o.t_ns, o.object_id, a.accel_mps2 <= $accel_mps2 AND o.ego_lat_mps <= $drift_mps AND coalesce(g.gained_mps <= $gained_mps, true) AS holds,
-    format('accelerates by {:.2f} m/s2, drifts towards it at {:.2f} m/s', a.accel_mps2, o.ego_lat_mps) || CASE WHEN g.gained_mps > $gained_mps THEN format(', is {:.1f} m/s faster than before', g.gained_mps) ELSE '' END AS reason
+SELECT o.drive_id, o.ego_id, o.t_ns, o.object_id, m.accel_mps2 <= $accel_mps2 AND o.ego_lat_mps <= $drift_mps AND coalesce(g.gained_mps <= $gained_mps, true) AS holds,
+    format('accelerates by {:.2f} m/s2, drifts towards it at {:.2f} m/s', m.accel_mps2, o.ego_lat_mps) || CASE WHEN g.gained_mps > $gained_mps THEN format(', is {:.1f} m/s faster than before', g.gained_mps) ELSE '' END AS reason
 FROM near_object o
-LEFT JOIN ego_motion a USING (drive_id, ego_id, t_ns)
+LEFT JOIN ego_motion m USING (drive_id, ego_id, t_ns)
 LEFT JOIN speed_gain g USING (drive_id, ego_id, t_ns, object_id)

@@ -51,9 +51,9 @@ taken_near_side AS (
         AND b.side = CASE ego.side WHEN 1 THEN 'right' ELSE 'left' END
 )
 SELECT ego.drive_id, ego.ego_id, ego.t_ns, ego.ref_id, $near_m AS required,
-    CASE WHEN ego.room_m <= $near_m OR a.ref_id IS NULL THEN ego.room_m END AS observed,
+    CASE WHEN ego.room_m <= $near_m OR n.ref_id IS NULL THEN ego.room_m END AS observed,
     CASE WHEN ego.across IS NOT NULL THEN true END AS applies,
     CASE WHEN ego.across IS NULL THEN 'which way the ego turned across the road is not known: record it until it has left the junction, and give the side that is driven on with --handedness'
-        WHEN ego.room_m > $near_m AND a.ref_id IS NOT NULL THEN 'the near side is, or may be, somebody else''s, or has another lane of the ego''s direction, which keeps the ego from it: no recording decides that' END AS reason
+        WHEN ego.room_m > $near_m AND n.ref_id IS NOT NULL THEN 'the near side is, or may be, somebody else''s, or has another lane of the ego''s direction, which keeps the ego from it: no recording decides that' END AS reason
 FROM placed_ego ego
-LEFT JOIN taken_near_side a USING (ref_id)
+LEFT JOIN taken_near_side n USING (ref_id)

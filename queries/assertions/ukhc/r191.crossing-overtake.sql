@@ -50,13 +50,13 @@ pass_before_crossing AS (
     JOIN passed_object p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_first_ns <= r.t_out_ns AND p.travel_m >= st.travel_m - $zigzag_m
 )
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.kind <> 'other' AS applies,
-    CASE WHEN bool_or(c.is_seen AND c.counts) THEN false WHEN st.travel_m >= $zigzag_m AND count(c.object_id) FILTER (c.counts IS DISTINCT FROM false) = 0 THEN true END AS holds,
+    CASE WHEN bool_or(b.is_seen AND b.counts) THEN false WHEN st.travel_m >= $zigzag_m AND count(b.object_id) FILTER (b.counts IS DISTINCT FROM false) = 0 THEN true END AS holds,
     CASE WHEN r.kind IS NULL THEN format('the map does not say whether crossing {} is a zebra, has lights, or neither: give one that does', r.crossing_id)
-        WHEN bool_or(c.is_seen AND c.counts) THEN 'passed ' || string_agg(DISTINCT c.object_id, ', ' ORDER BY c.object_id) FILTER (c.is_seen AND c.counts) || ' before crossing ' || r.crossing_id
-        WHEN bool_or(c.is_seen AND c.counts IS NULL) THEN format('whether {} stood before crossing {} to give way is not known', min(c.object_id) FILTER (c.is_seen AND c.counts IS NULL), r.crossing_id)
-        WHEN count(c.object_id) FILTER (c.counts IS DISTINCT FROM false) > 0 THEN format('actor {} may have been passed before crossing {}', min(c.object_id) FILTER (c.counts IS DISTINCT FROM false), r.crossing_id)
+        WHEN bool_or(b.is_seen AND b.counts) THEN 'passed ' || string_agg(DISTINCT b.object_id, ', ' ORDER BY b.object_id) FILTER (b.is_seen AND b.counts) || ' before crossing ' || r.crossing_id
+        WHEN bool_or(b.is_seen AND b.counts IS NULL) THEN format('whether {} stood before crossing {} to give way is not known', min(b.object_id) FILTER (b.is_seen AND b.counts IS NULL), r.crossing_id)
+        WHEN count(b.object_id) FILTER (b.counts IS DISTINCT FROM false) > 0 THEN format('actor {} may have been passed before crossing {}', min(b.object_id) FILTER (b.counts IS DISTINCT FROM false), r.crossing_id)
         WHEN st.travel_m < $zigzag_m THEN format('the log does not show the {:g} m before the crossing: begin recording before them', $zigzag_m) END AS reason
 FROM reference r
 JOIN step st USING (drive_id, ego_id, t_ns)
-LEFT JOIN pass_before_crossing c USING (ref_id)
+LEFT JOIN pass_before_crossing b USING (ref_id)
 GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.kind, r.crossing_id, st.travel_m
