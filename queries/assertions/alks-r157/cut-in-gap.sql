@@ -1,6 +1,6 @@
 -- title = "Distance restored after a cut-in"
 -- clause = "UN R157 5.2.3.3: where a vehicle that cuts in leaves less than the distance of the table, restore it at the next opportunity"
--- hypothesis = "After a vehicle cut in, was the following distance there again in time, or that vehicle gone?"
+-- hypothesis = "After a vehicle cut in, was the following distance restored in time, or had that vehicle gone?"
 -- kind = "postcondition"
 -- subtype = "temporal"
 -- window_s = "window_s"
@@ -35,15 +35,15 @@ SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id, e.speed_mps <= $v_ma
     CASE
         WHEN r.object_id IS NULL THEN NULL
         WHEN s.t_ns = r.t_ns THEN r.gap_m
-        -- once the two have met there is no distance to restore, and nobody who has gone
+        -- After the two boxes have touched, there is no distance to restore, and the vehicle has not gone.
         WHEN bool_or(coalesce(p.clearance_m <= 0, false)) OVER (PARTITION BY s.ref_id ORDER BY s.t_ns) THEN NULL
         WHEN l.t_ns IS NULL THEN NULL
         WHEN l.object_id = s.object_id THEN l.gap_m
         WHEN v.object_id IS NOT NULL THEN v.gap_m
-        -- it hesitates at the line: some of it is in the lane still, and nobody nearer
+        -- The vehicle hesitates at the line: a part of it is still in the lane, and no other vehicle is nearer.
         WHEN in_lane(p.d_m, p.lat_half_m, p.half_width_m) AND p.front_s_m > e.front_s_m AND (l.object_id IS NULL OR p.rear_s_m - e.front_s_m < l.gap_m)
             THEN p.rear_s_m - e.front_s_m
-        -- later somebody else ahead, or nobody: it has gone again
+        -- Another vehicle is ahead, or none: the vehicle that cut in has gone again.
         ELSE 'inf'::DOUBLE
     END AS observed
 FROM reference_step s

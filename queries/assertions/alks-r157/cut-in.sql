@@ -1,6 +1,6 @@
--- title = "No collision with one that cuts in"
+-- title = "No collision with a vehicle that cuts in"
 -- clause = "UN R157 5.2.5.2: avoid a collision with a slower vehicle that cuts in, if it was seen to move over for 0.72 s and leaves more than the time to collision given by the formula"
--- hypothesis = "After a vehicle cut in with enough time left, did the ego not touch it?"
+-- hypothesis = "After a vehicle cut in with enough time left, did the ego avoid touching it?"
 -- kind = "postcondition"
 -- subtype = "temporal"
 -- window_s = "window_s"
@@ -59,24 +59,24 @@ FROM (
     LEFT JOIN pair p ON p.drive_id = c.drive_id AND p.ego_id = c.ego_id AND p.t_ns = c.in_place_ns AND p.object_id = c.object_id
     WHERE c.in_place_ns - c.t_ns > $pause_s * 1e9
 )
--- only where the time to collision leaves the system a chance; speeds that are not known may be such
+-- Only cut-ins whose time to collision leaves the system a chance. If a speed is not known, the cut-in may be one of these.
 WHERE coalesce(gap_m > (ego_speed_mps - speed_mps) * ((ego_speed_mps - speed_mps) / (2 * $brake_mps2) + $delay_s), true)
 
 -- @condition
--- a vehicle leaves the system no chance if it came no nearer to the line, over the three seconds that end visible_s before the cut-in
-WITH before AS (
-    SELECT r.ref_id, max({'t_ns': p.t_ns, 'off_m': abs(p.d_m)}).off_m < max(abs(p.d_m)) - $moved_m AS moved
+-- A vehicle leaves the system no chance if it came no nearer to the line during the three seconds that end visible_s before the cut-in.
+WITH approach AS (
+    SELECT r.ref_id, max({'t_ns': p.t_ns, 'off_m': abs(p.d_m)}).off_m < max(abs(p.d_m)) - $moved_m AS has_approached
     FROM reference r
     JOIN pair p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.object_id = r.object_id
         AND p.t_ns <= r.t_ns - ($visible_s * 1e9)::BIGINT AND p.t_ns >= r.t_ns - ($visible_s * 1e9)::BIGINT - 3_000_000_000
     WHERE p.d_m IS NOT NULL
     GROUP BY r.ref_id
 )
-SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id, 0 AS required, p.clearance_is_bound AS at_least, r.again OR coalesce(b.moved, true) AS applies,
-    -- one that has gone for good, in sight and far away, is no longer touched
+SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id, 0 AS required, p.clearance_is_bound AS at_least, r.again OR coalesce(a.has_approached, true) AS applies,
+    -- A vehicle whose track ended in sight and far away can no longer be touched.
     CASE WHEN s.object_id IS NULL THEN NULL WHEN p.object_id IS NOT NULL THEN p.clearance_m WHEN l.object_id IS NULL THEN 'inf'::DOUBLE END AS observed
 FROM reference_step s
 JOIN reference r USING (ref_id)
-LEFT JOIN before b USING (ref_id)
+LEFT JOIN approach a USING (ref_id)
 LEFT JOIN pair p ON p.drive_id = s.drive_id AND p.ego_id = s.ego_id AND p.t_ns = s.t_ns AND p.object_id = s.object_id
 LEFT JOIN lost_object l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.object_id = s.object_id AND s.t_ns >= l.t_from_ns AND s.t_ns <= l.t_to_ns

@@ -1,4 +1,4 @@
--- title = "Hard braking is an emergency manoeuvre"
+-- title = "Hard braking declared as an emergency manoeuvre"
 -- clause = "UN R157 5.3.1.1: a system that asks for more than 5 m/s2 of braking carries out an emergency manoeuvre, which is to be recorded"
 -- hypothesis = "While the ego braked harder than 5 m/s2, did it declare an emergency manoeuvre?"
 -- kind = "invariant"
@@ -28,8 +28,8 @@
 -- why = "our default: so near to the ends of the log the filter's windows are not whole"
 
 -- @condition
-SELECT m.drive_id, m.ego_id, m.t_ns, f.is_on AS holds, judged_inside(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AND m.accel_mps2 < -$emergency_mps2 AS applies,
-    CASE WHEN f.mode IS NULL THEN 'the log never declares emergency_manoeuvre' END AS reason
+SELECT m.drive_id, m.ego_id, m.t_ns, emergency.is_on AS holds, judged_inside(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AND m.accel_mps2 < -$emergency_mps2 AS applies,
+    CASE WHEN emergency.mode IS NULL THEN 'the log never declares emergency_manoeuvre' END AS reason
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
-LEFT JOIN (SELECT * FROM ego_mode WHERE mode = 'emergency_manoeuvre') f ON f.drive_id = m.drive_id AND f.ego_id = m.ego_id AND f.t_ns = m.t_ns
+LEFT JOIN (SELECT * FROM ego_mode WHERE mode = 'emergency_manoeuvre') emergency ON emergency.drive_id = m.drive_id AND emergency.ego_id = m.ego_id AND emergency.t_ns = m.t_ns

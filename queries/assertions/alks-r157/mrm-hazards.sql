@@ -17,6 +17,6 @@
 -- why = "our default: a lamp and its message take that long"
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, m.indicator = 'hazard' AS holds, f.is_on AS applies
-FROM ego_state m
-LEFT JOIN (SELECT * FROM ego_mode WHERE mode = 'minimal_risk_manoeuvre') f USING (drive_id, ego_id, t_ns)
+SELECT drive_id, ego_id, t_ns, e.indicator = 'hazard' AS holds, mrm.is_on AS applies
+FROM ego_state e
+LEFT JOIN (SELECT * FROM ego_mode WHERE mode = 'minimal_risk_manoeuvre') mrm USING (drive_id, ego_id, t_ns)

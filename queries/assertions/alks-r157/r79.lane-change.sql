@@ -1,4 +1,4 @@
--- title = "Three to five seconds of signal"
+-- title = "Indicator on for 3 to 5 s before a lane change"
 -- clause = "UN R79 5.6.4.6.4: an automatic lane change begins 3 to 5 s after its indicator came on (later supplements: 7 s where the driver confirms it)"
 -- hypothesis = "When the ego began to cross into the next lane, had its indicator on that side been on for 3 to 5 s?"
 -- kind = "execution"
@@ -28,7 +28,7 @@ FROM lane_change
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id,
-    -- on since before the log: long enough perhaps, and perhaps too long
+    -- If the indicator is on when the log begins, it may have been on for long enough, or for too long.
     CASE WHEN r.begin_seen AND e.indicator IS NOT NULL AND NOT coalesce(i.at_log_start AND r.t_ns - i.t_on_ns <= $most_s * 1e9, false)
         THEN coalesce(r.t_ns - i.t_on_ns >= $least_s * 1e9 AND r.t_ns - i.t_on_ns <= $most_s * 1e9, false) END AS holds
 FROM reference r

@@ -36,13 +36,13 @@
 -- why = "our default: so near to the ends of the log the filter's window is not whole"
 
 -- @condition
--- filtered before it is differentiated, see ego_motion; reversing, it speeds up where the speed along its heading falls
-SELECT m.drive_id, m.ego_id, m.t_ns, decided_at_most(w.accel_mps2, m.accel_peak_mps2, w.most_mps2) AS observed, w.most_mps2 AS required,
+-- The speed is filtered before it is differentiated, see ego_motion. A reversing ego accelerates when the speed along its heading falls.
+SELECT m.drive_id, m.ego_id, m.t_ns, decided_at_most(bound.accel_mps2, m.accel_peak_mps2, bound.limit_mps2) AS observed, bound.limit_mps2 AS required,
     judged_inside(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
-    CASE WHEN w.accel_mps2 <= w.most_mps2 AND w.accel_mps2 + m.accel_peak_mps2 > w.most_mps2 THEN 'the filter that takes the noise out may have flattened a peak over the limit: no recording decides that' END AS reason
+    CASE WHEN bound.accel_mps2 <= bound.limit_mps2 AND bound.accel_mps2 + m.accel_peak_mps2 > bound.limit_mps2 THEN 'the filter that takes the noise out may have flattened a peak over the limit: no recording decides that' END AS reason
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
 CROSS JOIN LATERAL (
     SELECT CASE WHEN m.v_long_mps < -standing_mps() THEN -m.accel_mps2 ELSE m.accel_mps2 END AS accel_mps2,
-        iso15622_limit(abs(m.v_long_mps), $slow_mps2, $fast_mps2) + $tolerance_mps2 AS most_mps2
-) w
+        iso15622_limit(abs(m.v_long_mps), $slow_mps2, $fast_mps2) + $tolerance_mps2 AS limit_mps2
+) bound

@@ -31,7 +31,8 @@
 -- why = "our default: so near to the ends of the log the second and the filter's window are not whole"
 
 -- @condition
--- filtered before it is differentiated, see ego_motion; who stops speeding up does not brake: only what was gained below zero is deceleration
+-- The speed is filtered before it is differentiated, see ego_motion. An ego that only ends its acceleration does not brake: the growth of
+-- the deceleration counts only up to the present deceleration.
 SELECT m.drive_id, m.ego_id, m.t_ns, CASE WHEN m.accel_mps2 IS NOT NULL AND m.jerk_1s_mps3 IS NOT NULL
         THEN least(-m.jerk_1s_mps3, greatest(-m.accel_mps2, 0.0)) END AS observed,
     iso15622_limit(m.v_long_mps, $slow_mps3, $fast_mps3) AS required,

@@ -43,17 +43,17 @@
 -- why = "our default: so near to the ends of the log the filter's windows are not whole"
 
 -- @condition
--- filtered before it is differentiated, see ego_motion
-SELECT m.drive_id, m.ego_id, m.t_ns, w.share AS observed, 1.0::DOUBLE AS required,
-    judged_inside(coalesce(w.share, m.accel_mps2 + m.lat_accel_mps2 + m.jerk_mps3), m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
-    CASE WHEN g.most <= 1 AND g.perhaps > 1 THEN 'the filter that takes the noise out may have flattened a peak over the bound: no recording decides that' END AS reason
+-- The motion is filtered before it is differentiated, see ego_motion.
+SELECT m.drive_id, m.ego_id, m.t_ns, decided.share AS observed, 1.0::DOUBLE AS required,
+    judged_inside(coalesce(decided.share, m.accel_mps2 + m.lat_accel_mps2 + m.jerk_mps3), m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
+    CASE WHEN bound.largest_share <= 1 AND bound.possible_share > 1 THEN 'the filter that takes the noise out may have flattened a peak over the bound: no recording decides that' END AS reason
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
--- nuPlan's own jerk is that of a wider filter: what ours flattens of it is no matter
--- greatest() leaves a NULL out: what is known can show that it was too much, but not that it was all right
+-- nuPlan computes the jerk with a wider filter than ours, so a peak of the jerk that our filter flattens does not count.
+-- greatest() ignores NULL: the known values can show that a bound was exceeded, but not that all bounds were kept.
 CROSS JOIN LATERAL (
-    SELECT greatest(m.accel_mps2 / $accel_mps2, -m.accel_mps2 / $brake_mps2, abs(m.lat_accel_mps2) / $lat_mps2, abs(m.jerk_mps3) / $jerk_mps3) AS most,
+    SELECT greatest(m.accel_mps2 / $accel_mps2, -m.accel_mps2 / $brake_mps2, abs(m.lat_accel_mps2) / $lat_mps2, abs(m.jerk_mps3) / $jerk_mps3) AS largest_share,
         greatest((abs(m.accel_mps2) + m.accel_peak_mps2) / CASE WHEN m.accel_mps2 > 0 THEN $accel_mps2 ELSE $brake_mps2 END,
-            (abs(m.lat_accel_mps2) + m.lat_peak_mps2) / $lat_mps2, abs(m.jerk_mps3) / $jerk_mps3) AS perhaps
-) g
-CROSS JOIN LATERAL (SELECT CASE WHEN g.most > 1 OR m.accel_mps2 + m.lat_accel_mps2 + m.jerk_mps3 IS NOT NULL AND g.perhaps <= 1 THEN g.most END AS share) w
+            (abs(m.lat_accel_mps2) + m.lat_peak_mps2) / $lat_mps2, abs(m.jerk_mps3) / $jerk_mps3) AS possible_share
+) bound
+CROSS JOIN LATERAL (SELECT CASE WHEN bound.largest_share > 1 OR m.accel_mps2 + m.lat_accel_mps2 + m.jerk_mps3 IS NOT NULL AND bound.possible_share <= 1 THEN bound.largest_share END AS share) decided

@@ -1,6 +1,6 @@
--- title = "Post-encroachment time"
+-- title = "Sufficient post-encroachment time (PET)"
 -- clause = "Allen, Shin, Cooper 1978: the time between one road user leaving the ground of a conflict and the other coming onto it"
--- hypothesis = "Where the ways of the ego and of another crossed at 45 degrees or more, was there at least 1.5 s between the two?"
+-- hypothesis = "Where the ways of the ego and of another road user crossed at 45 degrees or more, was there at least 1.5 s between the two?"
 -- kind = "execution"
 -- derivation = "model"
 -- severity = "minor"
@@ -27,7 +27,8 @@
 -- @reference
 SELECT drive_id, ego_id, t_ego_in_ns AS t_ns, object_id, occurrence, NULL AS code FROM conflict
 UNION ALL
--- an actor may have crossed the ego's way unseen if its track ends close by, if it has no place for a while, or if it moves and lacks heading or size
+-- An actor may have crossed the ego's way unseen if its track ends close by, if it has no place for a while, or if it moves and has no
+-- heading or size.
 SELECT drive_id, ego_id, t_from_ns, object_id, NULL, code FROM lost_object WHERE code = 'lost_near_ego'
 UNION ALL
 SELECT drive_id, ego_id, min(t_ns), object_id, NULL, NULL
@@ -40,7 +41,7 @@ SELECT drive_id, ego_id, min(t_ns), NULL, NULL, NULL FROM ego_state WHERE x_m IS
 -- @condition
 SELECT
     r.drive_id, r.ego_id, r.t_ns, r.ref_id, $least_s AS required, r.code AS reason_code, r.occurrence IS NULL OR abs(c.angle_rad) >= $crossing_rad AS applies,
-    -- a time of which only the most is known shows too little, never enough
+    -- An upper bound of the time can show that there was too little time, but not that there was enough.
     CASE WHEN c.pet_s < $least_s OR NOT c.pet_at_most THEN c.pet_s END AS observed,
     CASE WHEN c.pet_s >= $least_s AND c.pet_at_most THEN
         format('Not decided: at most {:.1f} s were between the two, but one of them was not seen all the time.', c.pet_s) END AS reason

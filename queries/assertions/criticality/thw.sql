@@ -1,4 +1,4 @@
--- title = "Time headway"
+-- title = "Sufficient time headway (THW)"
 -- clause = "Germany, BKatV no. 12.5 (distances): the time until the ego is where the vehicle ahead is now"
 -- hypothesis = "At every step behind a vehicle in its lane, did the ego follow at no less than 0.9 s?"
 -- kind = "invariant"
@@ -36,20 +36,21 @@
 -- why = "our default: so much faster than when the other came in the ego closes in by its own doing; a held speed trembles by less"
 
 -- @applies
--- a step without a row in `vehicle_ahead` is one at which nobody knows who leads; a speed held at the limit trembles in its last digits
--- one that stands is not followed where the ego steers round it, and one that goes across the lane is not followed at all
-SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
-    CASE WHEN l.object_id IS NOT NULL THEN behind(l.gap_m, e.d_m, e.lat_half_m, p.d_m, p.lat_half_m) AND NOT comes(l.speed_mps, l.oncoming) AND round(l.ego_speed_mps, 2) >= $slowest_mps
-        AND (l.speed_mps > standing_mps() OR p.speed_mps <= standing_mps()
-            AND on_course(l.gap_m, ttc_s(l.gap_m, l.ego_speed_mps), e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, 0.0))
-        AND NOT coalesce(s.t_ns - c.t_ns < $settle_s * 1e9 AND l.ego_speed_mps <= c.ego_speed_mps + $faster_mps, false)
-    -- one that is not seen is further away than the way that is free
-    WHEN l.known OR thw_s(l.free_m, l.ego_speed_mps) >= $least_s THEN true END AS applies
+-- At a step without a row in `vehicle_ahead` it is not known which vehicle is ahead. The ego's speed is rounded because a speed that is
+-- held at slowest_mps varies in its last digits. The ego does not follow a standing vehicle that it steers round, nor a vehicle that moves
+-- across the lane.
+SELECT s.drive_id, s.ego_id, s.t_ns, v.object_id,
+    CASE WHEN v.object_id IS NOT NULL THEN behind(v.gap_m, e.d_m, e.lat_half_m, p.d_m, p.lat_half_m) AND NOT comes(v.speed_mps, v.oncoming) AND round(v.ego_speed_mps, 2) >= $slowest_mps
+        AND (v.speed_mps > standing_mps() OR p.speed_mps <= standing_mps()
+            AND on_course(v.gap_m, ttc_s(v.gap_m, v.ego_speed_mps), e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, 0.0))
+        AND NOT coalesce(s.t_ns - c.t_ns < $settle_s * 1e9 AND v.ego_speed_mps <= c.ego_speed_mps + $faster_mps, false)
+    -- A vehicle that is not seen is at least free_m away.
+    WHEN v.known OR thw_s(v.free_m, v.ego_speed_mps) >= $least_s THEN true END AS applies
 FROM step s
-LEFT JOIN vehicle_ahead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
-LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.t_ns = l.t_ns AND p.object_id = l.object_id
+LEFT JOIN vehicle_ahead v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns
+LEFT JOIN pair p ON p.drive_id = v.drive_id AND p.ego_id = v.ego_id AND p.t_ns = v.t_ns AND p.object_id = v.object_id
 LEFT JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
-ASOF LEFT JOIN cut_in c ON c.drive_id = l.drive_id AND c.ego_id = l.ego_id AND c.object_id = l.object_id AND c.t_ns <= s.t_ns
+ASOF LEFT JOIN cut_in c ON c.drive_id = v.drive_id AND c.ego_id = v.ego_id AND c.object_id = v.object_id AND c.t_ns <= s.t_ns
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, object_id, $least_s AS required,

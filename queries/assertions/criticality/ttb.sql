@@ -1,4 +1,4 @@
--- title = "Time to brake"
+-- title = "Sufficient time to brake (TTB)"
 -- clause = "Hillenbrand, Spieker, Kroschel 2006: the time left until only full braking avoids the collision"
 -- hypothesis = "At every step behind a vehicle in its lane, could the ego have waited another second before braking fully?"
 -- kind = "invariant"
@@ -27,23 +27,23 @@
 -- source = "ad-rss-lib, parameter discussion"
 
 -- @applies
--- a step without a row in `vehicle_ahead` is one at which nobody knows who leads
-SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
-    CASE WHEN l.object_id IS NOT NULL THEN on_course(
-        l.gap_m, ttc_s(l.gap_m, l.ego_speed_mps - along_mps(l.speed_mps, l.oncoming)),
+-- At a step without a row in `vehicle_ahead` it is not known which vehicle is ahead.
+SELECT s.drive_id, s.ego_id, s.t_ns, v.object_id,
+    CASE WHEN v.object_id IS NOT NULL THEN on_course(
+        v.gap_m, ttc_s(v.gap_m, v.ego_speed_mps - along_mps(v.speed_mps, v.oncoming)),
         e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, p.speed_mps * sin(p.heading_diff_rad)
-    ) AND may_touch(l.passes_by, l.grazes) AND either_moves(l.ego_speed_mps, l.speed_mps) AND NOT comes(l.speed_mps, l.oncoming)
-    -- one that is not seen is further away than the way that is free
-    WHEN l.known OR ttb_s(l.free_m, l.ego_speed_mps, $brake_mps2) >= $least_s THEN true END AS applies,
-    CASE WHEN l.grazes THEN graze_words(l.object_id) END AS reason
+    ) AND may_touch(v.passes_by, v.grazes) AND either_moves(v.ego_speed_mps, v.speed_mps) AND NOT comes(v.speed_mps, v.oncoming)
+    -- A vehicle that is not seen is at least free_m away.
+    WHEN v.known OR ttb_s(v.free_m, v.ego_speed_mps, $brake_mps2) >= $least_s THEN true END AS applies,
+    CASE WHEN v.grazes THEN graze_words(v.object_id) END AS reason
 FROM step s
-LEFT JOIN vehicle_ahead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
-LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.t_ns = l.t_ns AND p.object_id = l.object_id
+LEFT JOIN vehicle_ahead v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns
+LEFT JOIN pair p ON p.drive_id = v.drive_id AND p.ego_id = v.ego_id AND p.t_ns = v.t_ns AND p.object_id = v.object_id
 LEFT JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
 
 -- @condition
--- where a speed is not known exactly, neither is what hangs on it
+-- The value is known only if the error of the speeds does not change on which side of the limit it is.
 SELECT drive_id, ego_id, t_ns, object_id, $least_s AS required,
-    CASE WHEN object_id IS NULL THEN 'inf'::DOUBLE ELSE sure(or_never(ttb_s(gap_m, k.closing_mps, $brake_mps2), $least_s), ttb_s(gap_m, k.closing_mps + error_mps, $brake_mps2), ttb_s(gap_m, k.closing_mps - error_mps, $brake_mps2), $least_s) END AS observed
+    CASE WHEN object_id IS NULL THEN 'inf'::DOUBLE ELSE sure(or_never(ttb_s(gap_m, motion.closing_mps, $brake_mps2), $least_s), ttb_s(gap_m, motion.closing_mps + error_mps, $brake_mps2), ttb_s(gap_m, motion.closing_mps - error_mps, $brake_mps2), $least_s) END AS observed
 FROM vehicle_ahead
-CROSS JOIN LATERAL (SELECT ego_speed_mps - along_mps(speed_mps, oncoming) AS closing_mps) k
+CROSS JOIN LATERAL (SELECT ego_speed_mps - along_mps(speed_mps, oncoming) AS closing_mps) motion

@@ -1,6 +1,6 @@
--- title = "Not faster than chosen"
+-- title = "Not faster than the chosen speed"
 -- clause = "UKHC R125, R146, R152: the limit is no target; choose a speed that suits the conditions"
--- hypothesis = "At every step, was the ego no faster than the speed that it had declared to have chosen?"
+-- hypothesis = "At every step, was the ego no faster than the speed that it had declared as its choice?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "minor"
@@ -27,7 +27,7 @@
 SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps AS observed, max(d.speed_mps) + $tolerance_mps AS required
 FROM ego_state e
 LEFT JOIN (
-    -- a choice holds until the next one, and a while longer if that is lower
+    -- A choice holds until the next one, and for a while longer if the next one is lower.
     SELECT drive_id, actor_id, t_ns, TRY_CAST(split_part(value, ';', 1) AS DOUBLE) AS speed_mps,
         lead(t_ns) OVER (PARTITION BY drive_id, actor_id ORDER BY t_ns, value) + ($settle_s * 1e9)::BIGINT AS t_end_ns
     FROM declared_event

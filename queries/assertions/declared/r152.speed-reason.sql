@@ -1,4 +1,4 @@
--- title = "A reason for the speed"
+-- title = "A reason for every chosen speed"
 -- clause = "UKHC R125, R152: suit the speed to the road, the weather, and who may be there"
 -- hypothesis = "Did every declared choice of speed name its reason?"
 -- kind = "execution"

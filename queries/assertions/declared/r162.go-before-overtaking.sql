@@ -1,6 +1,6 @@
--- title = "A decision before overtaking"
+-- title = "Decision to go before overtaking"
 -- clause = "UKHC R162, R267: overtake only when you have made sure that it is safe"
--- hypothesis = "When the ego left its lane to overtake, was its last declared decision to go?"
+-- hypothesis = "When the ego left its lane to overtake, was its last declared decision a decision to go?"
 -- kind = "execution"
 -- derivation = "direct"
 -- severity = "major"
@@ -22,7 +22,7 @@ FROM overtake
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, CASE
     WHEN NOT r.begin_seen THEN NULL
-    -- both at once is no go
+    -- Both decisions at one time count as a decision not to go.
     WHEN count(*) FILTER (d.t_ns <= r.t_ns AND d.t_ns >= r.t_ns - $window_s * 1e9) > 0
         THEN (max({'t': d.t_ns, 'no': d.event = 'overtake_no_go'}) FILTER (d.t_ns <= r.t_ns AND d.t_ns >= r.t_ns - $window_s * 1e9)).no = false
     WHEN r.t_ns - $window_s * 1e9 >= c.t_start_ns AND count(d.t_ns) > 0 THEN false END AS holds

@@ -1,4 +1,4 @@
--- title = "Mirrors, then blind spot, then out"
+-- title = "Mirror check, then blind spot check, before pulling out"
 -- clause = "UKHC R163, R133: before pulling out use the mirrors, then check the blind spot on that side"
 -- hypothesis = "Before the ego left its lane, did it declare a mirror check and then a blind spot check?"
 -- kind = "execution"
@@ -23,7 +23,7 @@ WHERE NOT back
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, CASE
     WHEN NOT r.begin_seen THEN NULL
-    -- some mirror check before some blind spot check: the first of the one before the last of the other
+    -- A mirror check must come before a blind spot check: the first mirror check is compared with the last blind spot check.
     WHEN min(d.t_ns) FILTER (d.event = 'mirror_check' AND d.t_ns >= r.t_ns - $window_s * 1e9 AND coalesce(d.value, r.side) = r.side)
         <= max(d.t_ns) FILTER (d.event = 'blind_spot_check' AND d.t_ns <= r.t_ns AND coalesce(d.value, r.side) = r.side) THEN true
     WHEN r.t_ns - $window_s * 1e9 >= c.t_start_ns AND bool_or(d.event = 'mirror_check') AND bool_or(d.event = 'blind_spot_check') THEN false

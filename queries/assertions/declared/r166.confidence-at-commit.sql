@@ -1,4 +1,4 @@
--- title = "In doubt, no overtaking"
+-- title = "No overtaking in doubt"
 -- clause = "UKHC R166: do not overtake if you are in doubt"
 -- hypothesis = "When the ego left its lane to overtake, was its declared confidence high enough?"
 -- kind = "execution"
@@ -29,7 +29,7 @@ FROM overtake
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $least AS required,
-    -- the last one counts, of two at once the lower; one that is no number leaves it open
+    -- The last confidence counts; of two at one time, the lower one. If its value is not a number, the confidence is not known.
     CASE WHEN r.begin_seen THEN -(max({'t': d.t_ns, 'open': TRY_CAST(d.value AS DOUBLE) IS NULL, 'less': -TRY_CAST(d.value AS DOUBLE)})).less END AS observed
 FROM reference r
 LEFT JOIN declared_event d ON d.drive_id = r.drive_id AND d.actor_id = r.ego_id AND d.event = 'confidence'

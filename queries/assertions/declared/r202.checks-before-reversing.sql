@@ -1,4 +1,4 @@
--- title = "A look round before reversing"
+-- title = "Mirror and blind spot checks before reversing"
 -- clause = "UKHC R202: before and while reversing look carefully, into the mirrors and the blind spots"
 -- hypothesis = "Before the ego began to reverse, did it declare a mirror check and a blind spot check?"
 -- kind = "execution"
@@ -28,10 +28,10 @@ FROM (
     FROM ego_motion m
     JOIN step s USING (drive_id, ego_id, t_ns)
 )
--- a log or a stretch that begins in reverse does not show when that began
+-- If the log, or its part after a hole, begins in reverse, the time at which the reversing began is not known.
 WHERE reverses AND before IS DISTINCT FROM false
 UNION ALL
--- nor where its speed or heading is not known
+-- Nor is that time known if the ego's speed or heading is not known.
 SELECT drive_id, ego_id, min(t_ns), NULL FROM ego_motion WHERE v_long_mps IS NULL GROUP BY drive_id, ego_id
 
 -- @condition

@@ -1,6 +1,6 @@
--- title = "Hazards are expected"
+-- title = "Road users declared as hazards before they are passed"
 -- clause = "UKHC R146, R154, R205: anticipate what people on foot, cyclists and animals close by may do"
--- hypothesis = "When the ego came to pass somebody close by, had it declared that one as a hazard?"
+-- hypothesis = "When the ego came to pass a pedestrian, cyclist or animal close by, had it declared that object as a hazard?"
 -- kind = "execution"
 -- derivation = "direct"
 -- severity = "minor"

@@ -1,6 +1,6 @@
--- title = "Takes its opportunities to overtake"
+-- title = "Opportunities to overtake taken"
 -- clause = "The paper, performance zones (zone D: overcautious if not taken): use the room to overtake that there is"
--- hypothesis = "Held up behind a slower vehicle, did the ego pass up no overtake that would have left more than 2.5 s to spare?"
+-- hypothesis = "While held up behind a slower vehicle, did the ego use every chance to overtake that would have left more than 2.5 s to spare?"
 -- kind = "execution"
 -- derivation = "model"
 -- severity = "minor"
@@ -24,12 +24,12 @@
 -- why = "our default: who is held up for less has hardly had the time to see it"
 
 -- @reference
--- a draft: whether lines, signs and junctions allowed it is not in `opportunity`
+-- This rule is a draft: `opportunity` does not say whether lines, signs and junctions allowed the overtake.
 SELECT DISTINCT drive_id, ego_id, t_start_ns AS t_ns, object_id, occurrence FROM opportunity
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, p.profile, CASE WHEN o.taken THEN 0.0::DOUBLE ELSE o.spare_s END AS observed, $spare_s AS required,
-    -- the ego's own overtake is none of the profiles that an opportunity is asked for with
+    -- Opportunities are derived for every profile but `observed`, which is the ego's own overtake.
     p.profile <> 'observed' AND (o.taken OR o.t_end_ns - o.t_start_ns >= $notice_s * 1_000_000_000) AS applies
 FROM reference r
 CROSS JOIN (FROM profile WHERE selected) p

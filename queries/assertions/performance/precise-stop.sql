@@ -1,6 +1,6 @@
--- title = "Stops at the line"
+-- title = "Stop close before the line"
 -- clause = "The paper, performance (precise stopping): who stops for a line stops at it, not over it and not far before it"
--- hypothesis = "Having stopped for a stop line, did the ego stand with its front within half a metre before it?"
+-- hypothesis = "When the ego stopped for a stop line, did it stand with its front at most half a metre before the line?"
 -- kind = "execution"
 -- derivation = "direct"
 -- severity = "minor"
@@ -24,13 +24,14 @@
 
 -- @reference
 SELECT drive_id, ego_id, t_start_ns AS t_ns, occurrence FROM standstill
--- where it stands without a place there may be a line
+-- Where the place of the ego is not known, there may be a stop line.
 WHERE stop_line_id IS NOT NULL OR junction_m IS NULL
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, abs(s.stop_line_m - $within_m / 2) AS observed, $within_m / 2 AS required,
     format('The front stood {:.2f} m {} the line, at most {:.2f} m before it is asked for.', abs(s.stop_line_m), CASE WHEN s.stop_line_m < 0 THEN 'beyond' ELSE 'before' END, $within_m) AS reason,
-    -- not where it was seen standing from the beginning, stood behind somebody at the line, or had a green light
+    -- The rule does not apply if the ego stood from the beginning of the log, stood behind another vehicle at the line, or had a green
+    -- light.
     s.begin_seen AND s.stop_line_m <= $for_it_m AND s.state IS DISTINCT FROM 'green'
         AND CASE WHEN s.ahead_id IS NOT NULL THEN s.ahead_gap_m >= s.stop_line_m WHEN s.ahead_known THEN true END AS applies
 FROM reference r

@@ -1,4 +1,4 @@
--- title = "RSS: safe distance beside"
+-- title = "RSS: safe distance to the vehicle beside"
 -- clause = "RSS definition 6 (Shalev-Shwartz et al. 2017; IEEE 2846): beside another vehicle keep room for both to stop drifting towards each other"
 -- hypothesis = "At every step beside another vehicle, was the gap to it at least the safe lateral distance of RSS?"
 -- kind = "invariant"
@@ -44,17 +44,17 @@
 -- source = "ad-rss-lib, parameter discussion (fluctuation margin)"
 
 -- @applies
--- A draft: RSS takes a lateral speed without its fluctuations (definition 5, over the time in which a vehicle leaves its line by mu), and
--- `beside` has the momentary one, across the ego's corridor: recorded headings (NGSIM) jitter by half a metre per second, and who comes
--- down a slip road at an angle has a speed across, though his lane turns.
--- Beside each other the distance along is unsafe; before and after that it may be safe, and is not judged here. A standing ego does not
--- drift, nor does a parked car.
+-- This rule is a draft. RSS takes the lateral speed without its fluctuations (definition 5, over the time in which a vehicle leaves its
+-- line by mu), but `beside` has the momentary lateral speed, across the ego's corridor. Recorded headings (NGSIM) make it jitter by half a
+-- metre per second, and a vehicle that comes down a slip road at an angle has a speed across the corridor, although its lane turns.
+-- While two vehicles are beside each other, the distance along the road is unsafe. Before and after that it may be safe, and is not judged
+-- here. A standing ego does not drift, nor does a parked car.
 SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN ego_speed_mps <= standing_mps() THEN false ELSE on_carriageway END AS applies
 FROM beside
 WHERE may_be_vehicle(actor_class)
 
 -- @condition
--- box to box: askew, they are further from each other than their extents across the road
+-- The gap is measured from box to box. If the boxes are at an angle, it is larger than the gap between their extents across the road.
 SELECT drive_id, ego_id, t_ns, object_id, clearance_m AS observed,
     rss_across_m(ego_lat_mps, $rho_s, lat_mps, speed_mps, $rho_other_s, $lat_accel_mps2, $lat_brake_mps2, $mu_m) AS required
 FROM beside

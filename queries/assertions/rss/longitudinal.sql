@@ -1,4 +1,4 @@
--- title = "RSS: safe distance behind"
+-- title = "RSS: safe distance to the vehicle ahead"
 -- clause = "RSS definition 1 (Shalev-Shwartz et al. 2017; IEEE 2846): keep the distance at which you can stop if the vehicle ahead brakes as hard as it can"
 -- hypothesis = "At every step, was the gap to the vehicle ahead at least the safe longitudinal distance of RSS?"
 -- kind = "invariant"
@@ -64,14 +64,15 @@
 -- # Draft: the model calls an ordinary gap of two seconds dangerous, and a calm approach, and a gap that somebody else took.
 
 -- @applies
--- RSS calls a situation dangerous where the distances along and across are both unsafe: who is passed inside the lane may be safe across. A
--- standing ego does already what RSS asks of it. A step without a row in `vehicle_ahead` is one at which nobody knows who leads.
-SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
-    CASE WHEN l.object_id IS NOT NULL THEN follows(l.in_lane, l.gap_m, l.speed_mps, l.oncoming) AND l.ego_speed_mps > standing_mps()
-        AND l.across_m < rss_across_m(l.ego_across_mps, $rho_s, l.across_mps, l.speed_mps, $rho_other_s, $lat_accel_mps2, $lat_brake_mps2, $mu_m)
-        WHEN l.known THEN false END AS applies
+-- RSS calls a situation dangerous if the distances along and across are both unsafe: a vehicle that the ego passes inside the lane may be
+-- at a safe distance across. A standing ego already does what RSS asks of it. At a step without a row in `vehicle_ahead` it is not known
+-- which vehicle is ahead.
+SELECT s.drive_id, s.ego_id, s.t_ns, v.object_id,
+    CASE WHEN v.object_id IS NOT NULL THEN follows(v.in_lane, v.gap_m, v.speed_mps, v.oncoming) AND v.ego_speed_mps > standing_mps()
+        AND v.across_m < rss_across_m(v.ego_across_mps, $rho_s, v.across_mps, v.speed_mps, $rho_other_s, $lat_accel_mps2, $lat_brake_mps2, $mu_m)
+        WHEN v.known THEN false END AS applies
 FROM step s
-LEFT JOIN vehicle_ahead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+LEFT JOIN vehicle_ahead v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, object_id, gap_m AS observed,

@@ -1,4 +1,4 @@
--- title = "RSS: safe distance to one that comes towards the ego"
+-- title = "RSS: safe distance to an oncoming vehicle"
 -- clause = "RSS definition 2 (Shalev-Shwartz et al. 2017): two vehicles that come towards each other in one lane keep room for both to stop"
 -- hypothesis = "At every step with the ego in the opposing lane, or an oncoming vehicle in the ego's, could both have stopped in time?"
 -- kind = "invariant"
@@ -62,9 +62,9 @@
 -- source = "ad-rss-lib, parameter discussion (fluctuation margin)"
 
 -- @applies
--- The distance across is unsafe in the opposing lane, and in the ego's own where the two boxes are too near to each other across it. The
--- ego is in the opposing lane during a manoeuvre over its boundary, not when it touches the line. Without an oncoming vehicle, or once it is
--- alongside, there is nothing to judge, if everybody is placed.
+-- The distance across is unsafe in the opposing lane, and in the ego's own lane if the two boxes are too near to each other across it. The
+-- ego is in the opposing lane during a manoeuvre over its boundary, not when it only touches the line. Nothing is judged once the oncoming
+-- vehicle is alongside, nor without an oncoming vehicle if every vehicle is placed.
 SELECT s.drive_id, s.ego_id, s.t_ns, o.object_id, CASE WHEN o.object_id IS NOT NULL THEN o.da_m >= 0 WHEN o.n_unplaced = 0 THEN false END AS applies
 FROM lane_departure d
 JOIN excursion x ON x.drive_id = d.drive_id AND x.ego_id = d.ego_id AND x.t0_ns = d.t_ns
@@ -72,23 +72,23 @@ JOIN step s ON s.drive_id = d.drive_id AND s.ego_id = d.ego_id AND s.t_ns >= x.t
 LEFT JOIN oncoming o ON o.drive_id = s.drive_id AND o.ego_id = s.ego_id AND o.t_ns = s.t_ns
 WHERE NOT d.back AND x.overtaking IS DISTINCT FROM false AND x.over_against IS DISTINCT FROM false
 UNION ALL
-SELECT s.drive_id, s.ego_id, s.t_ns, l.object_id,
-    CASE WHEN l.object_id IS NOT NULL THEN meets(l.in_lane, l.gap_m, l.speed_mps, l.oncoming)
-        AND l.across_m < rss_across_m(l.ego_across_mps, $rho_s, l.across_mps, l.speed_mps, $rho_other_s, $lat_accel_mps2, $lat_brake_mps2, $mu_m)
-        WHEN l.known THEN false END
+SELECT s.drive_id, s.ego_id, s.t_ns, v.object_id,
+    CASE WHEN v.object_id IS NOT NULL THEN meets(v.in_lane, v.gap_m, v.speed_mps, v.oncoming)
+        AND v.across_m < rss_across_m(v.ego_across_mps, $rho_s, v.across_mps, v.speed_mps, $rho_other_s, $lat_accel_mps2, $lat_brake_mps2, $mu_m)
+        WHEN v.known THEN false END
 FROM step s
-LEFT JOIN vehicle_ahead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+LEFT JOIN vehicle_ahead v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns
 
 -- @condition
-WITH wrong AS (FROM vehicle_ahead WHERE object_id IS NOT NULL AND meets(in_lane, gap_m, speed_mps, oncoming) IS DISTINCT FROM false)
+WITH oncoming_ahead AS (FROM vehicle_ahead WHERE object_id IS NOT NULL AND meets(in_lane, gap_m, speed_mps, oncoming) IS DISTINCT FROM false)
 SELECT drive_id, ego_id, t_ns, object_id, gap_m AS observed,
     rss_way_m(ego_speed_mps, $rho_s, $accel_mps2, $brake_correct_mps2) + rss_way_m(speed_mps, $rho_other_s, $accel_mps2, $brake_min_mps2) AS required
-FROM wrong
+FROM oncoming_ahead
 UNION ALL
 SELECT o.drive_id, o.ego_id, o.t_ns, o.object_id,
-    -- one that cannot be placed could only be nearer
-    CASE WHEN o.n_unplaced = 0 OR o.da_m < needs.m THEN o.da_m END, needs.m
+    -- A vehicle without a place could only be nearer: then only a distance that is too small is certain.
+    CASE WHEN o.n_unplaced = 0 OR o.da_m < required_gap.distance_m THEN o.da_m END, required_gap.distance_m
 FROM oncoming o
-ANTI JOIN wrong w ON w.drive_id = o.drive_id AND w.ego_id = o.ego_id AND w.t_ns = o.t_ns AND w.object_id = o.object_id
+ANTI JOIN oncoming_ahead a ON a.drive_id = o.drive_id AND a.ego_id = o.ego_id AND a.t_ns = o.t_ns AND a.object_id = o.object_id
 JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns = o.t_ns
-CROSS JOIN LATERAL (SELECT rss_way_m(e.speed_mps, $rho_s, $accel_mps2, $brake_min_mps2) + rss_way_m(o.speed_mps, $rho_other_s, $accel_mps2, $brake_correct_mps2) AS m) needs
+CROSS JOIN LATERAL (SELECT rss_way_m(e.speed_mps, $rho_s, $accel_mps2, $brake_min_mps2) + rss_way_m(o.speed_mps, $rho_other_s, $accel_mps2, $brake_correct_mps2) AS distance_m) required_gap

@@ -72,34 +72,34 @@
 -- # Draft: it asks for braking wherever rss.longitudinal finds a gap too small, which ordinary driving does not do.
 
 -- @reference
-WITH judged AS (
-    SELECT s.drive_id, s.ego_id, s.t_ns, s.k, s.seg, l.object_id,
-        CASE WHEN l.object_id IS NOT NULL THEN follows(l.in_lane, l.gap_m, l.speed_mps, l.oncoming) AND l.ego_speed_mps > standing_mps()
-            AND l.gap_m < rss_longitudinal_m(l.ego_speed_mps, ahead_mps(l.speed_mps, l.oncoming), $rho_s, $accel_mps2, $brake_min_mps2, $brake_max_mps2)
-            AND l.across_m < rss_across_m(l.ego_across_mps, $rho_s, l.across_mps, l.speed_mps, $rho_other_s, $lat_accel_mps2, $lat_brake_mps2, $mu_m)
-        WHEN l.known THEN false END AS unsafe
+WITH ahead_step AS (
+    SELECT s.drive_id, s.ego_id, s.t_ns, s.k, s.seg, v.object_id,
+        CASE WHEN v.object_id IS NOT NULL THEN follows(v.in_lane, v.gap_m, v.speed_mps, v.oncoming) AND v.ego_speed_mps > standing_mps()
+            AND v.gap_m < rss_longitudinal_m(v.ego_speed_mps, ahead_mps(v.speed_mps, v.oncoming), $rho_s, $accel_mps2, $brake_min_mps2, $brake_max_mps2)
+            AND v.across_m < rss_across_m(v.ego_across_mps, $rho_s, v.across_mps, v.speed_mps, $rho_other_s, $lat_accel_mps2, $lat_brake_mps2, $mu_m)
+        WHEN v.known THEN false END AS is_unsafe
     FROM step s
-    LEFT JOIN vehicle_ahead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
+    LEFT JOIN vehicle_ahead v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns
 )
 SELECT drive_id, ego_id, min(t_ns) AS t_ns, object_id, max(t_ns) AS t_last_ns
-FROM (SELECT *, k - row_number() OVER (PARTITION BY drive_id, ego_id, object_id, seg ORDER BY k) AS run FROM judged WHERE unsafe)
+FROM (SELECT *, k - row_number() OVER (PARTITION BY drive_id, ego_id, object_id, seg ORDER BY k) AS run FROM ahead_step WHERE is_unsafe)
 GROUP BY drive_id, ego_id, object_id, seg, run
 UNION ALL
--- where it cannot be told who leads, or how near, nobody knows when it became unsafe
-SELECT drive_id, ego_id, NULL, NULL, NULL FROM judged WHERE unsafe IS NULL GROUP BY drive_id, ego_id
+-- If it is not known which vehicle is ahead, or how near it is, the time at which the gap became unsafe is not known.
+SELECT drive_id, ego_id, NULL, NULL, NULL FROM ahead_step WHERE is_unsafe IS NULL GROUP BY drive_id, ego_id
 
 -- @condition
--- An acceleration is a mean over the filter's window: only where that lies wholly within the time in which to brake it tells whether the
--- ego did. In a danger that is over sooner the mean may be too small of a braking that was hard enough.
+-- An acceleration is a mean over the filter's window. It shows whether the ego braked only if the window lies wholly within the time in
+-- which the ego must brake. If the danger ends sooner, the mean may be too small although the ego braked hard enough.
 SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, $brake_min_mps2 AS required,
-    CASE WHEN w.whole OR -m.accel_mps2 >= $brake_min_mps2 THEN -m.accel_mps2 END AS observed,
-    s.t_ns >= w.t_from_ns AND s.t_ns <= w.t_to_ns AS applies
+    CASE WHEN braking_span.holds_window OR -m.accel_mps2 >= $brake_min_mps2 THEN -m.accel_mps2 END AS observed,
+    s.t_ns >= braking_span.t_from_ns AND s.t_ns <= braking_span.t_to_ns AS applies
 FROM reference_step s
 JOIN reference r USING (ref_id)
 JOIN clock c ON c.drive_id = s.drive_id AND c.ego_id = s.ego_id
-CROSS JOIN LATERAL (SELECT r.t_ns + ($rho_s * 1e9)::BIGINT AS t_due_ns, coalesce(filter_half_ns(c.period_ns), 0) AS half_ns) d
+CROSS JOIN LATERAL (SELECT r.t_ns + ($rho_s * 1e9)::BIGINT AS t_due_ns, coalesce(filter_half_ns(c.period_ns), 0) AS half_ns) due
 CROSS JOIN LATERAL (
-    SELECT l.whole, d.t_due_ns + CASE WHEN l.whole THEN d.half_ns ELSE 0 END AS t_from_ns, r.t_last_ns - CASE WHEN l.whole THEN d.half_ns ELSE 0 END AS t_to_ns
-    FROM (SELECT r.t_last_ns - d.t_due_ns >= 2 * d.half_ns + c.period_ns AS whole) l
-) w
+    SELECT fit.holds_window, due.t_due_ns + CASE WHEN fit.holds_window THEN due.half_ns ELSE 0 END AS t_from_ns, r.t_last_ns - CASE WHEN fit.holds_window THEN due.half_ns ELSE 0 END AS t_to_ns
+    FROM (SELECT r.t_last_ns - due.t_due_ns >= 2 * due.half_ns + c.period_ns AS holds_window) fit
+) braking_span
 LEFT JOIN ego_motion m ON m.drive_id = s.drive_id AND m.ego_id = s.ego_id AND m.t_ns = s.t_ns

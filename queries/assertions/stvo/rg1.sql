@@ -1,6 +1,6 @@
--- title = "Safe distance"
+-- title = "Safe distance to the vehicle ahead"
 -- clause = "StVO 4(1) (R_G1 of Maierhofer et al. 2020): keep so far behind the vehicle ahead that you can stop even if it brakes suddenly"
--- hypothesis = "At every step behind a vehicle, could the ego have stopped behind it if that had braked as hard as it can?"
+-- hypothesis = "At every step behind a vehicle, could the ego have stopped behind it if that vehicle had braked as hard as it can?"
 -- kind = "invariant"
 -- derivation = "model"
 -- severity = "critical"
@@ -44,7 +44,7 @@
 -- @condition
 SELECT drive_id, ego_id, t_ns, gap_m AS observed,
     stvo_safe_gap_m(ego_speed_mps, speed_mps, $reaction_s, $brake_mps2, $brake_lead_mps2) AS required,
-    -- one that is not seen is further away than the way that is free
+    -- A vehicle that is not seen is at least free_m away. The rule does not apply if that is enough even behind a standing vehicle.
     CASE WHEN follows IS NULL AND free_m >= stvo_safe_gap_m(ego_speed_mps, 0.0, $reaction_s, $brake_mps2, $brake_lead_mps2) THEN false
         ELSE follows AND coalesce(t_ns - let_in_ns >= $cut_in_s * 1e9, true) END AS applies
 FROM following

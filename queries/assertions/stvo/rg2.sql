@@ -53,23 +53,24 @@
 
 -- @condition
 SELECT m.drive_id, m.ego_id, m.t_ns, m.accel_mps2 AS observed, -$abrupt_mps2 AS required,
-    -- braking for a vehicle that is too near, or was until a moment ago, or that brakes itself, has its reason, and so has braking for whoever else is in the way (a
-    -- person, an animal, a thing); no row of lead: there may be one. Why hazard lights were on, or an emergency declared, is for a person to say
+    -- Braking has a reason if the vehicle ahead is too near, was too near a moment ago, or brakes itself, and also if anybody else is in
+    -- the way (a person, an animal, a thing). At a step without a row in `lead`, there may be such a vehicle. Why hazard lights were on, or
+    -- an emergency was declared, a person must judge.
     judged_inside(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AND NOT (m.accel_mps2 < -$abrupt_mps2 AND (
         CASE WHEN l.t_ns IS NOT NULL THEN l.object_id IS NOT NULL AND (
-            l.near OR m.accel_mps2 - l.hardest_mps2 >= -$abrupt_mps2 OR CASE WHEN l.known THEN false END) END
+            l.is_too_near OR m.accel_mps2 - l.hardest_mps2 >= -$abrupt_mps2 OR CASE WHEN l.known THEN false END) END
         OR asks_to_brake(w.need_mps2, w.known, $abrupt_mps2)
-        OR CASE WHEN coalesce(e.indicator = 'hazard', false) OR d.t_ns IS NOT NULL THEN NULL ELSE false END)) AS applies
+        OR CASE WHEN coalesce(e.indicator = 'hazard', false) OR emergency.t_ns IS NOT NULL THEN NULL ELSE false END)) AS applies
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
 LEFT JOIN (
-    SELECT *, bool_or(gap_m < stvo_safe_gap_m(ego_speed_mps, speed_mps, $reaction_s, $brake_mps2, $brake_lead_mps2)) OVER lately AS near,
-        min(accel_mps2) OVER lately AS hardest_mps2, bool_and(accel_mps2 + gap_m + speed_mps + ego_speed_mps IS NOT NULL) OVER lately AS known
+    SELECT *, bool_or(gap_m < stvo_safe_gap_m(ego_speed_mps, speed_mps, $reaction_s, $brake_mps2, $brake_lead_mps2)) OVER recent AS is_too_near,
+        min(accel_mps2) OVER recent AS hardest_mps2, bool_and(accel_mps2 + gap_m + speed_mps + ego_speed_mps IS NOT NULL) OVER recent AS known
     FROM lead
-    WINDOW lately AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns RANGE BETWEEN ($lately_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW)
+    WINDOW recent AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns RANGE BETWEEN ($lately_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW)
 ) l ON l.drive_id = m.drive_id AND l.ego_id = m.ego_id AND l.t_ns = m.t_ns
 LEFT JOIN in_way w ON w.drive_id = m.drive_id AND w.ego_id = m.ego_id AND w.t_ns = m.t_ns
 LEFT JOIN ego_state e ON e.drive_id = m.drive_id AND e.ego_id = m.ego_id AND e.t_ns = m.t_ns
 LEFT JOIN (
     SELECT DISTINCT drive_id, ego_id, t_ns FROM ego_mode WHERE mode IN ('minimal_risk_manoeuvre', 'emergency_manoeuvre') AND is_on
-) d ON d.drive_id = m.drive_id AND d.ego_id = m.ego_id AND d.t_ns = m.t_ns
+) emergency ON emergency.drive_id = m.drive_id AND emergency.ego_id = m.ego_id AND emergency.t_ns = m.t_ns

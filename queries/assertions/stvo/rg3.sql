@@ -51,10 +51,11 @@
 -- source = "StVO 18(5) no. 3"
 
 -- @condition
--- A sign counts instead of what holds for every car; the limits of heavier vehicles outside built-up areas hold under it too. Between what
--- the kind of vehicle, road and area at least allow and at most allow, nothing is known; nor is anything kept where the map may lack a sign.
+-- A sign replaces the limit that holds for every car. The limits of heavier vehicles outside built-up areas hold under a sign, too. If the
+-- kind of vehicle, road or area is not known, a speed between the lowest and the highest limit that may hold is not judged. Where the map
+-- may lack a sign, no speed is known to be allowed.
 SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed,
-    CASE WHEN e.speed_mps > k.most_mps + $tolerance_mps THEN k.most_mps WHEN e.speed_mps <= k.least_mps + $tolerance_mps THEN k.least_mps END + $tolerance_mps AS required,
+    CASE WHEN e.speed_mps > bounds.most_mps + $tolerance_mps THEN bounds.most_mps WHEN e.speed_mps <= bounds.least_mps + $tolerance_mps THEN bounds.least_mps END + $tolerance_mps AS required,
     CASE WHEN required IS NOT NULL THEN NULL WHEN c.limit_mps IS NULL THEN coalesce(limit_doubt(e.limit_source, e.lanelet_id), 'the ego is on no lane, for which there is no limit') WHEN c.vehicle_class IS NULL THEN 'which class of vehicle the ego is is not known: give --env vehicle_class=...'
         ELSE 'the limit depends on the class of vehicle and the kind of road, not all of which is known: give them, such as --env vehicle_class=car and --env road_type=rural' END AS reason
 FROM ego_state e
@@ -72,8 +73,8 @@ CROSS JOIN LATERAL (
             WHEN p.place = 'motorway' THEN CASE WHEN c.vehicle_class = 'goods_over_7t5' THEN $heavy_mps WHEN c.vehicle_class IN ('bus', 'car_towing') THEN $coach_mps END
             WHEN p.place = 'open' THEN CASE WHEN c.vehicle_class = 'goods_over_7t5' THEN $heaviest_mps WHEN c.vehicle_class IN ('bus', 'car_towing') THEN $heavy_mps END
         END AS class_most_mps
-) l
+) limits
 CROSS JOIN LATERAL (
-    -- least() leaves out the one that is not there, as it should here
-    SELECT least(l.road_mps, l.class_most_mps) AS most_mps, CASE WHEN c.limit_mps IS NOT NULL THEN least(c.limit_mps, l.class_least_mps) END AS least_mps
-) k
+    -- least() ignores NULL, as is right here.
+    SELECT least(limits.road_mps, limits.class_most_mps) AS most_mps, CASE WHEN c.limit_mps IS NOT NULL THEN least(c.limit_mps, limits.class_least_mps) END AS least_mps
+) bounds

@@ -47,23 +47,24 @@
 -- source = "StVO 18(5) no. 1"
 
 -- @condition
--- the kind of vehicle may allow less than the road: between what is asked of the slowest and the fastest that it may be, nothing is known
+-- The kind of vehicle may allow less than the road. If it is not known, a speed between the values that are required of the slowest and of
+-- the fastest kind is not judged.
 SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed,
     CASE WHEN e.speed_mps > c.most_mps THEN c.most_mps WHEN e.speed_mps <= c.least_mps THEN c.least_mps END AS required,
     CASE WHEN required IS NULL AND c.least_mps IS NOT NULL THEN 'how fast its kind of vehicle may be is not known' END AS reason,
-    -- a vehicle ahead that is as slow itself is the reason, if it is near for an ego that goes as fast as it may; no row of lead: there may be one
-    -- somebody on foot, an animal or a thing in the way is one too, and so is a slow vehicle in the lane beside (StVO 7(2a))
-    -- nor does one hinder by choice that speeds up from standing, or declares a minimal risk manoeuvre
-    CASE WHEN e.stood AND e.speed_mps > standing_mps() OR r.is_on OR b.t_ns IS NOT NULL OR NOT may_be_vehicle(w.actor_class) THEN false
+    -- A slow vehicle ahead is a reason, if it is near for an ego that drives as fast as it may. At a step without a row in `lead`, there
+    -- may be such a vehicle. A person, an animal or a thing in the way is a reason, too, and so is a slow vehicle in the lane beside (StVO
+    -- 7(2a)). An ego that speeds up from a standstill, or declares a minimal risk manoeuvre, does not hinder by choice.
+    CASE WHEN e.has_stood AND e.speed_mps > standing_mps() OR r.is_on OR b.t_ns IS NOT NULL OR NOT may_be_vehicle(w.actor_class) THEN false
         WHEN l.t_ns IS NOT NULL THEN l.object_id IS NULL OR l.speed_mps > c.most_mps OR l.gap_m > lead_reach_m(c.most_mps + $slower_mps) WHEN e.speed_mps > c.most_mps THEN true END AS applies
 FROM (
     SELECT *, bool_or(speed_mps <= standing_mps()) OVER (
         PARTITION BY drive_id, ego_id ORDER BY t_ns RANGE BETWEEN ($start_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW
-    ) AS stood
+    ) AS has_stood
     FROM ego_state
 ) e
 JOIN (
-    -- least() leaves NULL out: without a limit nothing is asked
+    -- least() ignores NULL, hence the CASE: without a limit nothing is required.
     SELECT *, CASE WHEN limit_mps IS NOT NULL THEN least(limit_mps, $desired_mps) END - $slower_mps AS road_mps, $heavy_mps - $slower_mps AS heavy_mps,
         CASE WHEN vehicle_class IN ('car', 'motorcycle') THEN road_mps WHEN road_mps IS NOT NULL THEN least(road_mps, heavy_mps) END AS least_mps,
         CASE WHEN vehicle_class = 'goods_over_7t5' THEN least_mps ELSE road_mps END AS most_mps

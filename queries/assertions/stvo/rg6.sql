@@ -1,6 +1,6 @@
--- title = "Changing lane without endangering"
+-- title = "Safe distance to the vehicle behind when changing lane"
 -- clause = "StVO 7(5), 5(4) (R_G6 of Maierhofer et al. 2020): change lane only if nobody behind is put in danger"
--- hypothesis = "When the ego began to change lane, had the vehicle behind in the new lane its safe distance to the ego?"
+-- hypothesis = "When the ego began to change lane, was the vehicle behind in the new lane at its safe distance from the ego?"
 -- kind = "execution"
 -- derivation = "model"
 -- severity = "critical"
@@ -37,13 +37,13 @@
 
 -- @reference
 SELECT drive_id, ego_id, t_start_ns AS t_ns, follower_id AS object_id, follower_gap_m, follower_speed_mps, ego_speed_mps, begin_seen, known,
-    -- as far as anybody who is not seen must be
+    -- A vehicle that is not seen is at least as far away as any vehicle behind must be.
     known OR unseen_m >= stvo_safe_gap_m(fast_mps(), ego_speed_mps, $reaction_s, $brake_mps2, $brake_lead_mps2) AS clear
 FROM lane_change
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, object_id, safe_m AS required,
-    -- somebody who could not be placed may be nearer: then only a violation is certain
+    -- A vehicle that could not be placed may be nearer: then only a violation is certain.
     CASE WHEN begin_seen AND (clear OR follower_gap_m < safe_m) THEN follower_gap_m END AS observed,
     CASE WHEN object_id IS NOT NULL THEN true WHEN clear THEN false END AS applies
 FROM (SELECT *, stvo_safe_gap_m(follower_speed_mps, ego_speed_mps, $reaction_s, $brake_mps2, $brake_lead_mps2) AS safe_m FROM reference)

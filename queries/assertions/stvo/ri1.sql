@@ -1,6 +1,6 @@
 -- title = "Not stopping on a motorway"
 -- clause = "StVO 18(8) (R_I1 of Maierhofer et al. 2020): stopping on motorways is forbidden; standing in a queue, for somebody in the way or with a breakdown (15) is not stopping"
--- hypothesis = "When the ego came to stand on a motorway, was there a slow or standing vehicle close ahead, or somebody in the way?"
+-- hypothesis = "When the ego came to a standstill on a motorway, was there a slow or standing vehicle close ahead, or somebody in the way?"
 -- kind = "execution"
 -- derivation = "direct"
 -- severity = "major"
@@ -35,8 +35,9 @@ SELECT drive_id, ego_id, t_start_ns AS t_ns, ahead_id AS object_id, ahead_gap_m,
 FROM standstill
 
 -- @condition
--- to stop is to halt of one's own will: who stands for somebody in the way does not, nor does one that broke down, which its hazard lights say
-WITH broken_down AS (
+-- To stop means to halt by choice. An ego that stands for somebody in its way does not stop in this sense, nor does an ego that broke down.
+-- Hazard lights say that it may have broken down.
+WITH possible_breakdown AS (
     SELECT r.ref_id
     FROM reference r
     JOIN ego_state e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id AND e.t_ns <= least(r.t_end_ns, r.t_ns + ($lights_s * 1e9)::BIGINT)
@@ -53,4 +54,4 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.object_id,
     CASE WHEN b.ref_id IS NOT NULL THEN 'it had its hazard lights on, or declared a manoeuvre of emergency: whether it broke down is for a person to say' END AS reason
 FROM reference r
 LEFT JOIN in_way w ON w.drive_id = r.drive_id AND w.ego_id = r.ego_id AND w.t_ns = r.t_ns
-LEFT JOIN broken_down b ON b.ref_id = r.ref_id
+LEFT JOIN possible_breakdown b ON b.ref_id = r.ref_id

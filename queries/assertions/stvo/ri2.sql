@@ -1,6 +1,6 @@
 -- title = "Passing on the inner side only"
 -- clause = "StVO 5(1), 7(2), 7(2a), 7a (R_I2 of Maierhofer et al. 2020): overtake on the left; on the right only past a queue, little faster than it, or on the way in"
--- hypothesis = "When the ego got ahead of a vehicle in a lane to its left (right where the left is driven on), was that a slow queue passed with little more speed?"
+-- hypothesis = "When the ego got ahead of a vehicle in a lane to its left (right in left-hand traffic), was that a slow queue, passed with little more speed?"
 -- kind = "execution"
 -- derivation = "direct"
 -- severity = "major"
@@ -45,11 +45,12 @@ JOIN data_log g ON g.drive_id = p.drive_id
 JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
 LEFT JOIN ego_corridor c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.chain_id = e.chain_id AND c.t_ns = e.t_ns
 LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = e.lanelet_id
--- an actor without a place may have been passed, and its side is not known; a thing is no traffic and may be passed on either side
+-- An actor without a place may have been passed, and its side is not known. A thing is not traffic and may be passed on either side.
 WHERE may_be_vehicle(p.actor_class) AND coalesce(p.ego_passes AND NOT p.same_lane AND c.side = CASE p.side WHEN 'left' THEN 1 WHEN 'right' THEN -1 END, true)
 
 -- @condition
--- on the way in one may be faster than the through lanes; on the way out too, beside a broad line, which the map may not have
+-- On an entry the ego may be faster than the through lanes. On an exit it may be faster, too, if a broad line lies between, which the map
+-- may not show.
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.object_id, coalesce(r.lane_type NOT IN ('entry', 'onRamp', 'connectingRamp'), true) AS applies,
     CASE WHEN r.side IS NOT NULL THEN r.speed_mps <= $queue_mps AND r.ego_speed_mps - r.speed_mps <= $faster_mps
         AND CASE WHEN q.n >= $queue_n THEN true WHEN q.n_unknown = 0 THEN false END
@@ -57,15 +58,15 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.object_id, coalesce(r.lane_type
     CASE WHEN r.lane_type IN ('exit', 'offRamp') THEN 'the ego was on lane type ' || r.lane_type || ': whether a broad line parted it from the through lanes is not known' END AS reason
 FROM reference r
 JOIN (
-    SELECT b.ref_id, count(*) FILTER (l.slow_there) AS n,
-        -- an actor off the lanes has no place along them: it is in no queue
-        count(*) FILTER (may_be_vehicle(o.actor_class) AND (o.x_m IS NULL OR o.speed_mps IS NULL OR o.s_m IS NOT NULL AND l.slow_there IS NULL)) AS n_unknown
+    SELECT b.ref_id, count(*) FILTER (other.is_in_queue) AS n,
+        -- An actor off the lanes has no station along them: it is in no queue.
+        count(*) FILTER (may_be_vehicle(o.actor_class) AND (o.x_m IS NULL OR o.speed_mps IS NULL OR o.s_m IS NOT NULL AND other.is_in_queue IS NULL)) AS n_unknown
     FROM reference b
     JOIN pair o USING (drive_id, ego_id, t_ns)
     LEFT JOIN pair v ON v.drive_id = b.drive_id AND v.ego_id = b.ego_id AND v.t_ns = b.t_ns AND v.object_id = b.object_id
     CROSS JOIN LATERAL (
         SELECT is_vehicle(o.actor_class) AND o.d_m * b.side > o.half_width_m AND o.speed_mps <= $queue_mps AND abs(o.heading_diff_rad) < pi() / 2
-            AND abs(o.s_m - v.s_m) <= $queue_m AS slow_there
-    ) l
+            AND abs(o.s_m - v.s_m) <= $queue_m AS is_in_queue
+    ) other
     GROUP BY b.ref_id
 ) q USING (ref_id)

@@ -1,6 +1,6 @@
 -- title = "No turning round and no reversing"
 -- clause = "StVO 18(7) (R_I3 of Maierhofer et al. 2020): on motorways turning round and reversing are forbidden"
--- hypothesis = "At every step, did the ego head and move as its lane is driven?"
+-- hypothesis = "At every step, did the ego head and move in the direction of its lane?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "critical"

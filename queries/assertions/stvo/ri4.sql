@@ -1,4 +1,4 @@
--- title = "Emergency corridor"
+-- title = "Emergency corridor kept open"
 -- clause = "StVO 11(2) (R_I4 of Maierhofer et al. 2020): in slow traffic on two or more lanes leave a way free between the leftmost lane and the others"
 -- hypothesis = "At every step in slow traffic, did the ego keep to the outer border of its lane?"
 -- kind = "invariant"
@@ -30,7 +30,8 @@
 
 -- @condition
 SELECT e.drive_id, e.ego_id, e.t_ns, $border_m AS required,
-    -- leftmost lane: its left border, every other lane: its right border (mirrored where the left is driven on is not foreseen)
+    -- The outer border is the left one in the leftmost lane, and the right one in every other lane. Left-hand traffic, where this is
+    -- mirrored, is not supported.
     o.half_width_m - e.lat_half_m - CASE WHEN n.left_id IS NULL OR n.left_against THEN o.d_m ELSE -o.d_m END AS observed,
     e.speed_mps <= $slow_mps AND l.speed_mps <= $slow_mps AND l.object_id IS NOT NULL
         AND CASE WHEN n.lanelet_id IS NOT NULL THEN n.left_id IS NOT NULL AND NOT n.left_against OR n.right_id IS NOT NULL AND NOT n.right_against END AS applies

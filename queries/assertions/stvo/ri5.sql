@@ -1,6 +1,6 @@
--- title = "Room for those who enter"
+-- title = "Room for vehicles that enter from the slip road"
 -- clause = "StVO 1(2), 18(3) (R_I5 of Maierhofer et al. 2020): do not change to the lane that others are about to enter from the slip road"
--- hypothesis = "When the ego changed to the right, was nobody close by on the slip road?"
+-- hypothesis = "When the ego changed lane to the right, was nobody close by on the slip road?"
 -- kind = "execution"
 -- derivation = "direct"
 -- severity = "major"

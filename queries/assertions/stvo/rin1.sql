@@ -1,6 +1,6 @@
 -- title = "A complete halt at the stop sign"
 -- clause = "StVO 41(1), Anlage 2 no. 3, sign 206 (R_IN1 of Maierhofer et al. 2022): at a stop sign halt at the line; the law names no time"
--- hypothesis = "Before the ego crossed a stop line with a stop sign, did it stand close before it, so long that it could be seen?"
+-- hypothesis = "Before the ego crossed a stop line with a stop sign, did it stand close before the line, long enough to be seen?"
 -- kind = "execution"
 -- derivation = "model"
 -- severity = "minor"
@@ -25,7 +25,7 @@ WHERE coalesce(control, 'stop') = 'stop'
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, $stand_s AS required,
-    -- where the approach was not seen, it may have stood longer
+    -- If the approach was not seen, the ego may have stood longer.
     CASE WHEN control IS NOT NULL AND (begin_seen OR stood_s >= $stand_s) THEN stood_s END AS observed,
     CASE WHEN control IS NULL THEN 'the map does not say what governs this line' END AS reason
 FROM reference

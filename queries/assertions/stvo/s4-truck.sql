@@ -1,4 +1,4 @@
--- title = "Fifty metres behind"
+-- title = "Fifty metres behind the vehicle ahead"
 -- clause = "StVO 4(3): lorries over 3.5 t and buses keep at least 50 m behind the vehicle ahead on motorways when faster than 50 km/h"
 -- hypothesis = "At every step faster than 50 km/h, did the lorry or bus keep 50 m behind the vehicle ahead?"
 -- kind = "invariant"
@@ -37,7 +37,7 @@
 -- source = "case law: not only quite briefly; as R_G1 of Maierhofer et al. 2020"
 
 -- @condition
--- a goods vehicle of up to 7.5 t may be a van of up to 3.5 t, of which nothing is asked
+-- A goods vehicle of up to 7.5 t may be a van of up to 3.5 t, for which the rule requires nothing.
 SELECT drive_id, ego_id, t_ns, f.gap_m AS observed, CASE WHEN c.vehicle_class <> 'goods_7t5' OR f.gap_m >= $gap_m THEN $gap_m END AS required,
     CASE WHEN c.vehicle_class = 'goods_7t5' AND f.gap_m < $gap_m THEN format('{:.1f} m behind: whether it weighs more than 3.5 t is not known', f.gap_m) END AS reason,
     follows AND ego_speed_mps > $from_mps AND coalesce(t_ns - let_in_ns >= $cut_in_s * 1e9, true) AS applies

@@ -1,6 +1,6 @@
 -- title = "Space for cyclists and people on foot"
 -- clause = "StVO 5(4): overtake people on foot, on bicycles and on small electric vehicles with at least 1.5 m in built-up areas and 2 m elsewhere"
--- hypothesis = "At every step beside a cyclist or somebody walking on the road, going the same way but slower, did the ego keep the distance?"
+-- hypothesis = "At every step beside a slower cyclist or pedestrian on the road who goes the same way, did the ego keep the distance?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "critical"
@@ -37,20 +37,20 @@
 -- why = "our default: so near before a junction, or in it, a vehicle waits there: who rides past it on the right need not be given the distance either (StVO 5(4) sentence 4)"
 
 -- @applies
--- a cyclist on a cycle lane behind a solid line is beside the carriageway: whether passing it is overtaking is disputed
+-- A cyclist on a cycle lane behind a solid line is beside the carriageway: whether passing that cyclist is overtaking is disputed.
 SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id,
-    (is_bicycle(b.actor_class, a.length_m) OR is_class(b.actor_class, 'pedestrian')) AND b.along AND b.on_carriageway AND CASE WHEN coalesce(b.cycle_lane, 'broken') = 'broken' THEN true END AND b.ego_speed_mps > b.speed_mps AND CASE WHEN w.object_id IS NULL THEN true WHEN w.waited THEN false END AS applies
+    (is_bicycle(b.actor_class, a.length_m) OR is_class(b.actor_class, 'pedestrian')) AND b.along AND b.on_carriageway AND CASE WHEN coalesce(b.cycle_lane, 'broken') = 'broken' THEN true END AND b.ego_speed_mps > b.speed_mps AND CASE WHEN w.object_id IS NULL THEN true WHEN w.has_waited THEN false END AS applies
 FROM beside b
 LEFT JOIN road_user a ON a.drive_id = b.drive_id AND a.actor_id = b.object_id
 LEFT JOIN (
     SELECT s.drive_id, s.ego_id, o.object_id, s.t_start_ns, s.t_end_ns,
-        bool_or(o.speed_mps <= standing_mps()) OR s.junction_id IS NOT NULL OR s.junction_m <= $junction_m AS waited
+        bool_or(o.speed_mps <= standing_mps()) OR s.junction_id IS NOT NULL OR s.junction_m <= $junction_m AS has_waited
     FROM standstill s
     JOIN beside o ON o.drive_id = s.drive_id AND o.ego_id = s.ego_id AND o.t_ns >= s.t_start_ns AND o.t_ns <= s.t_end_ns
     GROUP BY s.drive_id, s.ego_id, o.object_id, s.t_start_ns, s.t_end_ns, s.junction_id, s.junction_m
 ) w ON w.drive_id = b.drive_id AND w.ego_id = b.ego_id AND w.object_id = b.object_id
     AND b.t_ns >= w.t_start_ns AND b.t_ns <= w.t_end_ns + ($waited_s * 1e9)::BIGINT
-    AND w.waited IS DISTINCT FROM false
+    AND w.has_waited IS DISTINCT FROM false
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, object_id, CASE c.area WHEN 'built_up' THEN $built_up_m WHEN 'open' THEN $open_m END AS required,

@@ -1,6 +1,6 @@
--- title = "No jolt such as only an impact gives"
+-- title = "No impact-like deceleration"
 -- clause = "UKHC R144: do not drive dangerously or without care for others; a contact that the boxes miss shows in the speeds"
--- hypothesis = "While another actor was within reach, did ego and actor lose or gain speed no faster than tyres can?"
+-- hypothesis = "While another actor was within reach, did the ego and that actor lose or gain speed no faster than tyres can?"
 -- kind = "invariant"
 -- derivation = "model"
 -- severity = "critical"
@@ -39,16 +39,16 @@ SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN clearance_m IS NOT NULL THEN
 FROM pair
 WHERE clearance_m IS NULL OR clearance_m <= $within_m
 UNION ALL
--- whose track ends close by may have touched unseen: one step for each, not judged
+-- An actor whose track ends close by may have touched the ego unseen: one step for each, which is not judged.
 SELECT l.drive_id, l.ego_id, s.t_ns, l.object_id, NULL, format('the track of object {} ends close to the ego: record it for as long as the ego', l.object_id)
 FROM lost_object l
 ASOF JOIN step s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id AND l.t_from_ns <= s.t_ns
 WHERE l.code = 'lost_near_ego'
 UNION ALL
--- so may whoever came near between two steps
+-- An actor that came near between two steps may have touched the ego, too.
 SELECT drive_id, ego_id, t_next_ns, object_id, NULL, format('object {} came close between two samples', object_id) FROM between_steps
 UNION ALL
--- so may whoever is close by when a hole of the log ends
+-- An actor that is close by when a hole of the log ends may have touched the ego during the hole.
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, NULL, format('object {} is close by where a hole of the log ends', p.object_id)
 FROM step s
 JOIN clock c USING (drive_id, ego_id)
@@ -56,17 +56,18 @@ JOIN pair p USING (drive_id, ego_id, t_ns)
 WHERE s.dt_ns > c.max_gap_ns AND p.clearance_m < lost_near_m()
 
 -- @condition
--- greatest() leaves a NULL out: one side alone can show a contact, but not that there was none; nor can a step in which a jolt may hide
+-- greatest() ignores NULL: the acceleration of one of the two can show a contact, but not that there was none. Nor can a step show that
+-- there was none if it is so long that it may hide a jolt.
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, $tyre_mps2 AS required,
-    CASE WHEN jolt_mps2 >= $tyre_mps2 OR p.accel_mps2 + e.accel_mps2 IS NOT NULL AND NOT coalesce(hides, false) THEN jolt_mps2 END AS observed,
+    CASE WHEN jolt_mps2 >= $tyre_mps2 OR p.accel_mps2 + e.accel_mps2 IS NOT NULL AND NOT coalesce(may_hide_jolt, false) THEN jolt_mps2 END AS observed,
     CASE WHEN other_mps2 >= $tyre_mps2 AND e.fastest_3s_mps < standing_mps() THEN 'the ego stood still: it was struck, if anything'
         WHEN (jolt_mps2 >= $tyre_mps2) IS DISTINCT FROM true AND (e.accel_mps2 IS NULL AND e.speed_mps IS NOT NULL OR p.accel_mps2 IS NULL AND p.speed_mps IS NOT NULL)
             THEN format('how hard {} braked is not known here: that takes a sample just before: begin recording earlier', CASE WHEN e.accel_mps2 IS NULL THEN 'the ego' ELSE 'object ' || p.object_id END)
-        WHEN hides AND jolt_mps2 < $tyre_mps2 THEN format('a step of {:.2f} s is too long to tell a jolt from braking', st.dt_ns / 1e9) END AS reason
+        WHEN may_hide_jolt AND jolt_mps2 < $tyre_mps2 THEN format('a step of {:.2f} s is too long to tell a jolt from braking', st.dt_ns / 1e9) END AS reason
 FROM pair p
 JOIN ego_state e USING (drive_id, ego_id, t_ns)
 JOIN step st USING (drive_id, ego_id, t_ns)
--- an impact from behind, or against a pedestrian, adds speed
-CROSS JOIN LATERAL (SELECT greatest(-p.accel_mps2, CASE WHEN NOT may_walk(p.actor_class) OR p.speed_mps > $walk_mps THEN p.accel_mps2 END) AS other_mps2) o
-CROSS JOIN LATERAL (SELECT greatest(other_mps2, abs(e.accel_mps2)) AS jolt_mps2) l
-CROSS JOIN LATERAL (SELECT st.dt_ns > $jolt_s * 1.5e9 AND jolt_mps2 * st.dt_ns / 1e9 >= $tyre_mps2 * $jolt_s AS hides) h
+-- An impact from behind, or with a pedestrian, adds speed to the object.
+CROSS JOIN LATERAL (SELECT greatest(-p.accel_mps2, CASE WHEN NOT may_walk(p.actor_class) OR p.speed_mps > $walk_mps THEN p.accel_mps2 END) AS other_mps2) object_motion
+CROSS JOIN LATERAL (SELECT greatest(other_mps2, abs(e.accel_mps2)) AS jolt_mps2) jolt
+CROSS JOIN LATERAL (SELECT st.dt_ns > $jolt_s * 1.5e9 AND jolt_mps2 * st.dt_ns / 1e9 >= $tyre_mps2 * $jolt_s AS may_hide_jolt) step_length

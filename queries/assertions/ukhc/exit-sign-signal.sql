@@ -1,6 +1,6 @@
 -- title = "Signal on at the last exit sign"
 -- clause = "UKHC R103 and R273: signal in good time before leaving by an exit (the paper's physical precondition)"
--- hypothesis = "Was the indicator to the exit's side on when the ego passed the last exit sign before it left?"
+-- hypothesis = "When the ego passed the last exit sign before it left, was the indicator to the exit's side on?"
 -- kind = "precondition"
 -- subtype = "physical"
 -- derivation = "direct"

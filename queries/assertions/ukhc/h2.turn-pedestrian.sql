@@ -1,6 +1,6 @@
--- title = "Give way to people crossing the road turned into or out of"
+-- title = "Give way to pedestrians when turning"
 -- clause = "UKHC H2 and R170: at a junction give way to people on foot who cross the road that you turn into or out of"
--- hypothesis = "When the ego turned into a road, or out of one, before somebody on foot, was there time for both?"
+-- hypothesis = "When the ego turned into a road, or out of one, before a pedestrian, was there time for both?"
 -- kind = "execution"
 -- derivation = "direct"
 -- severity = "critical"
@@ -26,7 +26,7 @@
 
 -- @reference
 SELECT p.drive_id, p.ego_id, p.t_in_ns AS t_ns, p.occurrence, p.turn, at_fork(p.turn, p.turn_rad, p.straightest_rad) AS fork, c.object_id,
-    -- whether a walker stopped for the ego, or there was no further way, nobody can tell
+    -- Whether a pedestrian stopped for the ego, or because the way ended, is never known: hence the other cause on_foot.
     made_to_brake(c.braked_mps2, c.braked_pet_s, 'on_foot', $decel_mps2, $pet_s) AS forced,
     CASE WHEN forced IS NULL THEN braked_words(c.braked_id, c.braked_pet_s, c.braked_mps2, c.braked_cause) ELSE coalesce(c.reason, unsure_words(c.object_id)) END AS reason,
     pet_forced(pet_known(c.pet_s, c.reason, $pet_s, is_class(c.actor_class, 'pedestrian')), forced, c.braked_pet_s, $pet_s) AS pet_s

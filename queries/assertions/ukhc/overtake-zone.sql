@@ -1,6 +1,6 @@
--- title = "Overtakes with time to spare"
+-- title = "Overtake with time to spare"
 -- clause = "UKHC R162 (the paper's performance zones): overtake only with enough road, and use the road that there is"
--- hypothesis = "As this overtake was driven, would the spare distance ahead have lasted for half a second and more?"
+-- hypothesis = "In the overtake as it was driven, would the spare distance ahead have lasted for at least half a second?"
 -- kind = "execution"
 -- derivation = "model"
 -- severity = "minor"
@@ -25,7 +25,7 @@ WHERE opposing IS DISTINCT FROM false
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $margin_s AS required, bool_or(s.at_least) AS at_least,
-    -- an overtake that was not completed has no angles of its own: it fails if no profile at all would have been in time
+    -- An overtake that was not completed has no angles of its own: it fails if no profile would have left enough time.
     coalesce(
         any_value(s.spare_s) FILTER (s.profile = 'observed' AND s.zone IS NOT NULL),
         CASE WHEN bool_and(coalesce(s.zone IN ('A', 'B'), false)) FILTER (s.profile <> 'observed') THEN max(s.spare_s) END

@@ -30,10 +30,10 @@ WHERE NOT at_log_start
 
 -- @condition
 SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id,
-    d.t_ns IS NOT NULL OR wrap_rad(e.yaw_rad - o.yaw_rad) * CASE r.side WHEN 'left' THEN 1 ELSE -1 END >= $turned_rad AS holds
+    d.t_ns IS NOT NULL OR wrap_rad(e.yaw_rad - e0.yaw_rad) * CASE r.side WHEN 'left' THEN 1 ELSE -1 END >= $turned_rad AS holds
 FROM reference_step s
 JOIN reference r USING (ref_id)
-JOIN ego_state o ON o.drive_id = r.drive_id AND o.ego_id = r.ego_id AND o.t_ns = r.t_ns
+JOIN ego_state e0 ON e0.drive_id = r.drive_id AND e0.ego_id = r.ego_id AND e0.t_ns = r.t_ns
 JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
 LEFT JOIN (SELECT DISTINCT drive_id, ego_id, t_ns, side FROM lane_departure) d
     ON d.drive_id = e.drive_id AND d.ego_id = e.ego_id AND d.t_ns = e.t_ns AND d.side = r.side

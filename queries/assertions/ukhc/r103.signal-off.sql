@@ -1,4 +1,4 @@
--- title = "The signal goes off after the manoeuvre"
+-- title = "Signal off after the manoeuvre"
 -- clause = "UKHC R103: cancel your signals after use; a signal left on misleads"
 -- hypothesis = "After the last lane change or turn that it was on for, did the indicator go off in time?"
 -- kind = "postcondition"
@@ -26,7 +26,7 @@ WITH manoeuvre AS (
     UNION ALL
     SELECT drive_id, ego_id, turn, t_in_ns, t_out_ns FROM junction_passage
 )
--- the end of the last one is not known where one's is not
+-- If the end of one manoeuvre is not known, the end of the last one is not known.
 SELECT i.drive_id, i.ego_id, i.side, i.occurrence, CASE WHEN count(*) = count(m.t_done_ns) THEN max(m.t_done_ns) END AS t_ns
 FROM indicator_on i
 JOIN manoeuvre m ON m.drive_id = i.drive_id AND m.ego_id = i.ego_id AND m.side = i.side AND m.t_start_ns >= i.t_on_ns AND m.t_start_ns <= i.t_off_ns

@@ -22,7 +22,7 @@ WHERE mode = 'horn'
 QUALIFY is_on AND lag(is_on) OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns) IS DISTINCT FROM true
 
 -- @condition
--- the hours of the night, 23:30 to 7:00, are local time, which logs do not have
+-- The ban on the horn from 23:30 to 7:00 is not judged: these hours are local time, which logs do not have.
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id,
     CASE WHEN e.speed_mps > standing_mps() THEN true WHEN e.speed_mps IS NOT NULL AND n.t_ns IS NULL THEN false END AS holds,
     CASE WHEN n.t_ns IS NOT NULL THEN 'somebody near was moving: whether it was a danger is for a person to say' END AS reason

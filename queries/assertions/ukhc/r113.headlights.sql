@@ -1,6 +1,6 @@
 -- title = "Headlights at night"
 -- clause = "UKHC R113: you must use headlights at night, except on a road with lit street lighting, which is generally one of 30 mph"
--- hypothesis = "At every step at night at which the ego moved, were its headlights on, or might the street be lit?"
+-- hypothesis = "At every step at night at which the ego moved, were its headlights on, or may the street have been lit?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "major"
@@ -20,7 +20,8 @@
 -- source = "UKHC R113"
 
 -- @condition
--- whether lamps are lit is in no table: there, and where the limit is not known, driving without is not proved wrong (r115.dipped-headlights)
+-- No table says whether street lamps are lit. Where they may be, or where the limit is not known, driving without headlights is not certain
+-- to break the rule (see r115.dipped-headlights).
 SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps > standing_mps() AS applies,
     CASE WHEN m.is_on THEN true WHEN NOT m.is_on AND (coalesce(c.road_type, '') = 'motorway' OR c.limit_mps > $lit_mps) THEN false END AS holds,
     CASE WHEN m.is_on IS NULL THEN 'the log has not yet said whether the headlights are on'

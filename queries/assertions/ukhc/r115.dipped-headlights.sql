@@ -1,6 +1,6 @@
 -- title = "Headlights at night on lit streets too"
 -- clause = "UKHC R115: at night in built-up areas, where street lighting may excuse from headlights, you should use dipped ones"
--- hypothesis = "At every step at night at which the ego moved where lamps may excuse from headlights, were its headlights on?"
+-- hypothesis = "At every step at night at which the ego moved on a street that may be lit, were its headlights on?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "minor"

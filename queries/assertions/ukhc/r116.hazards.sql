@@ -24,7 +24,7 @@
 
 -- @condition
 SELECT e.drive_id, e.ego_id, e.t_ns,
-    -- on a road where they may warn, whether there was something to warn of is for a person to say
+    -- On a road where hazard lights may warn others, a person must judge whether there was a hazard.
     CASE WHEN e.indicator <> 'hazard' OR e.speed_mps <= $rolling_mps THEN true
         WHEN e.indicator = 'hazard' AND e.speed_mps > $rolling_mps AND NOT coalesce(c.road_type = 'motorway', false)
             AND (c.carriageway <> 'dual' OR c.limit_mps < $unrestricted_mps) THEN false END AS holds,

@@ -21,11 +21,11 @@
 -- why = "our default: 1 mph, below which recorded speed and speedometer differ; the limits are the map's and those of R124's table"
 
 -- @condition
--- where class, nation or kind of road are not known, the limit lies between two: a speed between them is neither kept nor broken
-WITH limits AS (
+-- If the class, nation or kind of road is not known, the limit lies between two values: a speed between them is neither a pass nor a fail.
+WITH limit_range AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps, e.lanelet_id, e.limit_mps, e.limit_source,
         least(e.limit_mps, most_limit_mps(c.vehicle_class, e.length_m, c.nation, c.road_type, c.carriageway, c.area, e.limit_mps IS NOT NULL)) + $tolerance_mps AS most_mps,
-        -- a sign that the map does not have may say anything: without its limit nothing is kept
+        -- A sign that the map does not have may set any limit: without a limit in the map, no speed is a pass.
         CASE WHEN e.limit_mps IS NOT NULL
             THEN least(e.limit_mps, least_limit_mps(c.vehicle_class, e.length_m, c.nation, c.road_type, c.carriageway, c.area, true)) + $tolerance_mps END AS least_mps
     FROM ego_state e
@@ -36,4 +36,4 @@ SELECT drive_id, ego_id, t_ns, speed_mps AS observed,
     CASE WHEN (speed_mps > least_mps) IS DISTINCT FROM false AND (speed_mps > most_mps) IS DISTINCT FROM true THEN
         CASE WHEN speed_mps IS NULL THEN 'the ego''s speed is not known, or contradicts its positions: record it, or correct it' WHEN lanelet_id IS NULL THEN 'the ego is on no lane' WHEN limit_mps IS NULL THEN limit_doubt(limit_source, lanelet_id)
             ELSE 'the limit depends on the class of the vehicle and the kind of road, not all of which is known' END END AS reason
-FROM limits
+FROM limit_range

@@ -17,13 +17,13 @@
 
 -- @applies
 SELECT drive_id, ego_id, t_ns, ov_id AS object_id, stage AS episode,
-    -- what may be an overtake breaks nothing
+    -- A manoeuvre that only may be an overtake can keep the rule, but not break it.
     CASE WHEN ov_id IS NOT NULL THEN CASE WHEN sure OR ds_overlap_m < 0 THEN true END WHEN ov_known THEN false END AS applies,
     CASE WHEN ov_id IS NULL THEN ov_reason ELSE overtake_doubt(vbp_id) END AS reason
 FROM overtake_step
 
 -- @condition
 SELECT DISTINCT drive_id, ego_id, t_ns, ov_id AS object_id, 0.0 AS required,
-    -- a nearer vehicle that cannot be placed could only make it worse
+    -- A nearer vehicle without a place could only make the value worse: then only a violation is certain.
     CASE WHEN ov_known OR ds_overlap_m >= 0 THEN ds_overlap_m END AS observed
 FROM overtake_step

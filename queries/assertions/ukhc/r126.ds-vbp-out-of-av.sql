@@ -16,7 +16,7 @@
 -- requires = ["map", "registration", "handedness", "ego_size"]
 
 -- @applies
--- what may be an overtake breaks nothing
+-- A manoeuvre that only may be an overtake can keep the rule, but not break it.
 SELECT drive_id, ego_id, t_ns, vbp_id AS object_id, stage AS episode, CASE WHEN sure OR vbp_in_ds_av_m < 0 THEN true END AS applies,
     overtake_doubt(vbp_id) AS reason
 FROM overtake_step

@@ -20,7 +20,7 @@
 -- why = "our default: time to make the gap anew after one of the two changed into the lane, as for the two seconds"
 
 -- @applies
--- one that is not seen is further away than the way that is free
+-- A vehicle that is not seen is at least free_m away: if that is enough, the rule does not apply.
 SELECT drive_id, ego_id, t_ns, object_id,
     CASE WHEN follows IS NULL AND free_m >= thinking_distance_m(ego_speed_mps) THEN false ELSE follows AND (joined_ns IS NULL OR t_ns - joined_ns >= ($settle_s * 1e9)::BIGINT) END AS applies
 FROM following

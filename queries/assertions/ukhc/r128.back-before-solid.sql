@@ -15,33 +15,33 @@
 -- @reference
 SELECT o.drive_id, o.ego_id, o.t0_ns AS t_ns, max(o.vbp_id) AS object_id, bool_or(o.sure) AS sure, o.begin_seen, o.t3_ns, o.t_end_ns, o.opposing, CASE o.side WHEN 1 THEN 'left' ELSE 'right' END AS side
 FROM overtake o
-LEFT JOIN line_step f ON f.drive_id = o.drive_id AND f.ego_id = o.ego_id AND f.t_ns = o.t0_ns AND f.side = CASE o.side WHEN 1 THEN 'left' ELSE 'right' END
--- a line that was solid from the start is the business of r129.no-cross-solid, unless the start was not seen
-WHERE o.opposing IS DISTINCT FROM false AND (f.forbidden IS DISTINCT FROM true OR NOT o.begin_seen)
+LEFT JOIN line_step l ON l.drive_id = o.drive_id AND l.ego_id = o.ego_id AND l.t_ns = o.t0_ns AND l.side = CASE o.side WHEN 1 THEN 'left' ELSE 'right' END
+-- A line that is solid at t0 is judged by r129.no-cross-solid, unless the beginning of the overtake was not seen.
+WHERE o.opposing IS DISTINCT FROM false AND (l.forbidden IS DISTINCT FROM true OR NOT o.begin_seen)
 GROUP BY o.drive_id, o.ego_id, o.t0_ns, o.begin_seen, o.t3_ns, o.t_end_ns, o.opposing, o.side
 
 -- @anchor
--- where the line became solid under it, or where it was back
+-- The anchor is the step at which the line becomes solid under the ego, else the step at which the ego is back.
 SELECT r.ref_id, coalesce(min(l.t_ns) FILTER (l.forbidden AND l.passing_id IS NULL AND l.passing_known), r.t3_ns) AS t_ns
 FROM reference r
 LEFT JOIN line_step l ON l.drive_id = r.drive_id AND l.ego_id = r.ego_id AND l.side = r.side AND l.t_ns >= r.t_ns AND l.t_ns <= r.t_end_ns
 GROUP BY r.ref_id, r.t3_ns
 
 -- @condition
-WITH over AS (
-    SELECT drive_id, ego_id, t_ns, side, forbidden AND CASE WHEN passing_id IS NOT NULL THEN false WHEN passing_known THEN true END AS solid FROM line_step
+WITH step_over_line AS (
+    SELECT drive_id, ego_id, t_ns, side, forbidden AND CASE WHEN passing_id IS NOT NULL THEN false WHEN passing_known THEN true END AS is_solid FROM line_step
 )
-SELECT r.drive_id, r.ego_id, coalesce(min(l.t_ns) FILTER (l.solid), r.t3_ns) AS t_ns, r.ref_id,
+SELECT r.drive_id, r.ego_id, coalesce(min(l.t_ns) FILTER (l.is_solid), r.t3_ns) AS t_ns, r.ref_id,
     CASE
-        -- without a lane beside it, the line may be the edge of the road
+        -- If the map has no lane beyond the line, the line may be the edge of the road.
         WHEN r.opposing IS NULL THEN NULL
-        -- one that was solid when it is first seen may have been so as the ego crossed it, if it did
-        WHEN bool_or(l.solid) THEN CASE WHEN r.sure AND (r.begin_seen OR min(l.t_ns) FILTER (NOT l.solid) < min(l.t_ns) FILTER (l.solid)) THEN false END
-        WHEN count(l.t_ns) > 0 AND count(l.t_ns) = count(l.solid) THEN true
+        -- A line that is solid when it is first seen may already have been solid when the ego crossed it, if the ego crossed it at all.
+        WHEN bool_or(l.is_solid) THEN CASE WHEN r.sure AND (r.begin_seen OR min(l.t_ns) FILTER (NOT l.is_solid) < min(l.t_ns) FILTER (l.is_solid)) THEN false END
+        WHEN count(l.t_ns) > 0 AND count(l.t_ns) = count(l.is_solid) THEN true
     END AS holds,
     CASE WHEN r.opposing IS NULL THEN 'the map has no lane beyond the line, which may be the edge of the road: give a map with the lanes of both directions'
-        WHEN bool_or(l.solid) AND NOT r.sure THEN 'the line was solid, but whether the ego overtook is not sure: record all vehicles from before the ego leaves its lane until it is back in it'
-        WHEN bool_or(l.solid) AND NOT r.begin_seen THEN 'the log does not show the ego cross the line, which was solid when it is first seen' END AS reason
+        WHEN bool_or(l.is_solid) AND NOT r.sure THEN 'the line was solid, but whether the ego overtook is not sure: record all vehicles from before the ego leaves its lane until it is back in it'
+        WHEN bool_or(l.is_solid) AND NOT r.begin_seen THEN 'the log does not show the ego cross the line, which was solid when it is first seen' END AS reason
 FROM reference r
-LEFT JOIN over l ON l.drive_id = r.drive_id AND l.ego_id = r.ego_id AND l.side = r.side AND l.t_ns >= r.t_ns AND l.t_ns <= r.t_end_ns
+LEFT JOIN step_over_line l ON l.drive_id = r.drive_id AND l.ego_id = r.ego_id AND l.side = r.side AND l.t_ns >= r.t_ns AND l.t_ns <= r.t_end_ns
 GROUP BY r.drive_id, r.ego_id, r.ref_id, r.sure, r.begin_seen, r.t3_ns, r.opposing

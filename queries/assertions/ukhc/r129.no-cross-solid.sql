@@ -12,21 +12,21 @@
 -- requires = ["map", "registration", "handedness", "markings", "ego_size"]
 
 -- @condition
--- edges and the lines between lanes of one direction are the business of other rules
-WITH over AS (
+-- Edge lines, and the lines between lanes of one direction, are judged by other rules.
+WITH step_over_line AS (
     SELECT l.drive_id, l.ego_id, l.t_ns, l.out_m, l.marking, l.middle,
-        l.middle AND l.forbidden AND NOT l.access AND CASE WHEN l.passing_id IS NOT NULL THEN false WHEN l.passing_known THEN true END AS crosses
+        l.middle AND l.forbidden AND NOT l.access AND CASE WHEN l.passing_id IS NOT NULL THEN false WHEN l.passing_known THEN true END AS crosses_solid_line
     FROM line_step l
     JOIN data_log g USING (drive_id)
     JOIN environment m USING (environment_id)
     WHERE l.side = overtaking_side(m.handedness)
 )
 SELECT e.drive_id, e.ego_id, e.t_ns,
-    CASE WHEN e.front_s_m IS NULL THEN NULL WHEN l.t_ns IS NULL THEN true ELSE NOT l.crosses END AS holds,
+    CASE WHEN e.front_s_m IS NULL THEN NULL WHEN l.t_ns IS NULL THEN true ELSE NOT l.crosses_solid_line END AS holds,
     CASE
         WHEN e.front_s_m IS NULL THEN ego_lacks(e.x_m, e.yaw_rad, e.lanelet_id, e.front_s_m)
-        WHEN l.crosses THEN format('{:.2f} m over a line marked {}', l.out_m, l.marking)
-        WHEN l.t_ns IS NOT NULL AND l.crosses IS NULL AND l.middle IS NULL THEN 'whether the line is the middle of the road is not known, for the map has nothing beyond it, or what may be a central reservation: give a map with the lanes of both directions'
+        WHEN l.crosses_solid_line THEN format('{:.2f} m over a line marked {}', l.out_m, l.marking)
+        WHEN l.t_ns IS NOT NULL AND l.crosses_solid_line IS NULL AND l.middle IS NULL THEN 'whether the line is the middle of the road is not known, for the map has nothing beyond it, or what may be a central reservation: give a map with the lanes of both directions'
     END AS reason
 FROM ego_state e
-LEFT JOIN over l USING (drive_id, ego_id, t_ns)
+LEFT JOIN step_over_line l USING (drive_id, ego_id, t_ns)

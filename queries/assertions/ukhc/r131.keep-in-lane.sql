@@ -24,19 +24,20 @@
 -- why = "UN R79 5.6.4.6.5 gives a lane change by the system 5 s, that of a bus or lorry 10 s; here a driver has 10 s whatever it drives"
 
 -- @condition
-WITH astride AS (
-    SELECT drive_id, ego_id, l.t_ns, l.marking, l.beyond, l.astride_begin_seen, l.changes, l.overtaking OR l.passing_id IS NOT NULL AS excused,
-        CASE WHEN l.t_ns = l.t_astride_ns OR excused OR e.speed_mps <= standing_mps() THEN 0 ELSE s.dt_ns END AS counted_ns,
-        sum(counted_ns) OVER w / 1e9 AS most_s, coalesce(sum(counted_ns) FILTER (l.passing_known AND excused IS NOT NULL) OVER w, 0) / 1e9 AS least_s
-    -- over both lines at once: a lane that is too narrow for it
+WITH astride_step AS (
+    SELECT drive_id, ego_id, l.t_ns, l.marking, l.beyond, l.astride_begin_seen, l.changes, l.overtaking OR l.passing_id IS NOT NULL AS is_excused,
+        CASE WHEN l.t_ns = l.t_astride_ns OR is_excused OR e.speed_mps <= standing_mps() THEN 0 ELSE s.dt_ns END AS counted_ns,
+        sum(counted_ns) OVER astride_stretch / 1e9 AS most_s, coalesce(sum(counted_ns) FILTER (l.passing_known AND is_excused IS NOT NULL) OVER astride_stretch, 0) / 1e9 AS least_s
+    -- A step over both lines of the lane is left out: the lane is too narrow for the ego.
     FROM (FROM line_step QUALIFY count(*) OVER (PARTITION BY drive_id, ego_id, t_ns) = 1) l
     JOIN step s USING (drive_id, ego_id, t_ns)
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     WHERE l.t_astride_ns IS NOT NULL
-    WINDOW w AS (PARTITION BY drive_id, ego_id, l.t_astride_ns ORDER BY l.t_ns ROWS UNBOUNDED PRECEDING)
+    WINDOW astride_stretch AS (PARTITION BY drive_id, ego_id, l.t_astride_ns ORDER BY l.t_ns ROWS UNBOUNDED PRECEDING)
 ),
--- between the time that it was surely not going round somebody and all of the time
-judged AS (
+-- The time that counts lies between least_s, in which the ego was certainly not going round somebody, and most_s, which includes the time
+-- in which it may have been.
+judged_step AS (
     SELECT *, CASE WHEN NOT changes THEN $astride_s ELSE $change_s END AS required,
         CASE
             WHEN most_s <= $astride_s THEN most_s
@@ -44,18 +45,18 @@ judged AS (
             WHEN most_s <= required THEN most_s
             WHEN least_s > required THEN least_s
         END AS observed
-    FROM astride
-    -- a solid line divides lanes too where both go the same way; else it is the edge, or the middle of the road
-    WHERE excused IS DISTINCT FROM true
+    FROM astride_step
+    -- A solid line divides lanes, too, if both lanes have the same direction. Otherwise it is the edge or the middle of the road.
+    WHERE is_excused IS DISTINCT FROM true
         AND coalesce(marking IN ('broken', 'broken_broken', 'broken_solid', 'solid_broken', 'botts_dots') OR marking IN ('solid', 'solid_solid') AND beyond IS NOT DISTINCT FROM 'same', true)
 )
-SELECT e.drive_id, e.ego_id, e.t_ns, coalesce(a.required, $astride_s) AS required, coalesce(NOT a.astride_begin_seen, false) AS at_least,
-    CASE WHEN e.front_s_m IS NULL THEN NULL WHEN a.t_ns IS NULL THEN 0.0::DOUBLE ELSE a.observed END AS observed,
+SELECT e.drive_id, e.ego_id, e.t_ns, coalesce(j.required, $astride_s) AS required, coalesce(NOT j.astride_begin_seen, false) AS at_least,
+    CASE WHEN e.front_s_m IS NULL THEN NULL WHEN j.t_ns IS NULL THEN 0.0::DOUBLE ELSE j.observed END AS observed,
     CASE
         WHEN e.front_s_m IS NULL THEN ego_lacks(e.x_m, e.yaw_rad, e.lanelet_id, e.front_s_m)
-        WHEN a.t_ns IS NOT NULL AND NOT a.astride_begin_seen AND a.observed <= a.required THEN 'the ego is astride the line when the log begins, or enters the map: record it from before that'
-        WHEN a.t_ns IS NOT NULL AND a.changes IS NULL THEN 'the log ends before it shows whether this is a lane change: record the ego for longer'
-        WHEN a.observed IS NULL AND a.least_s <= a.required THEN 'the ego may be going round somebody whose place is not known: record everybody nearby without a break'
+        WHEN j.t_ns IS NOT NULL AND NOT j.astride_begin_seen AND j.observed <= j.required THEN 'the ego is astride the line when the log begins, or enters the map: record it from before that'
+        WHEN j.t_ns IS NOT NULL AND j.changes IS NULL THEN 'the log ends before it shows whether this is a lane change: record the ego for longer'
+        WHEN j.observed IS NULL AND j.least_s <= j.required THEN 'the ego may be going round somebody whose place is not known: record everybody nearby without a break'
     END AS reason
 FROM ego_state e
-LEFT JOIN judged a USING (drive_id, ego_id, t_ns)
+LEFT JOIN judged_step j USING (drive_id, ego_id, t_ns)

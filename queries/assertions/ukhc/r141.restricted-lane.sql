@@ -19,9 +19,9 @@
 -- # Draft: hours, and how many sit in the vehicle, are in no table; what can be proved is that the ego was never there.
 
 -- @condition
-WITH lane AS (
+WITH occupied_lane AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, min(o.lanelet_id) AS lanelet_id,
-        bool_and(n.lane_type IN ('bus', 'taxi', 'HOV', 'biking')) AS kept, bool_and(n.lane_type = 'bus') AS bus, bool_or(n.lane_type = 'HOV') AS shared
+        bool_and(n.lane_type IN ('bus', 'taxi', 'HOV', 'biking')) AS is_restricted, bool_and(n.lane_type = 'bus') AS is_bus_lane, bool_or(n.lane_type = 'HOV') AS is_hov_lane
     FROM ego_state e
     JOIN lane_occupancy o ON o.drive_id = e.drive_id AND o.actor_id = e.ego_id AND o.t_ns = e.t_ns
     JOIN data_log g ON g.drive_id = e.drive_id
@@ -31,10 +31,10 @@ WITH lane AS (
 SELECT e.drive_id, e.ego_id, e.t_ns,
     CASE
         WHEN e.x_m IS NULL THEN NULL
-        WHEN NOT coalesce(l.kept, false) OR l.bus AND c.vehicle_class = 'bus' THEN true
-        WHEN $always_in_force AND NOT l.shared AND c.vehicle_class <> 'motorcycle' THEN false
+        WHEN NOT coalesce(l.is_restricted, false) OR l.is_bus_lane AND c.vehicle_class = 'bus' THEN true
+        WHEN $always_in_force AND NOT l.is_hov_lane AND c.vehicle_class <> 'motorcycle' THEN false
     END AS holds,
-    CASE WHEN l.kept THEN 'on lane ' || l.lanelet_id || ', which is kept for others in its hours' END AS reason
+    CASE WHEN l.is_restricted THEN 'on lane ' || l.lanelet_id || ', which is kept for others in its hours' END AS reason
 FROM ego_state e
-LEFT JOIN lane l USING (drive_id, ego_id, t_ns)
+LEFT JOIN occupied_lane l USING (drive_id, ego_id, t_ns)
 LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)

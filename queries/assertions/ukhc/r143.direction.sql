@@ -1,6 +1,6 @@
 -- title = "With the direction of the lane"
 -- clause = "UKHC R143, R160 and R263: you must travel in the direction of a one-way road; on a motorway you must not reverse or drive against the traffic; on other roads you should keep to your side"
--- hypothesis = "At every step outside an overtake, and where nothing that stands, nor anybody on foot, closes its lane, did the ego drive forwards and with the direction of its lane?"
+-- hypothesis = "At every step outside an overtake, and with its lane not closed by a standing object or a pedestrian, did the ego drive forwards in the direction of its lane?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "critical"
@@ -57,32 +57,32 @@
 -- why = "our default: within 30 degrees of straight against a lane of a junction; a turn that is cut is not"
 
 -- @applies
--- not off every lane, as in a car park
-WITH ego AS (
+-- The rule does not apply where the ego is off every lane, as in a car park.
+WITH ego_step AS (
     SELECT drive_id, ego_id, t_ns, front_s_m, rear_s_m, width_m, speed_mps, with_direction, $closed_m + $closed_s * speed_mps AS reach_m FROM ego_state
 ),
--- an overtake excuses the ego beside the overtaken vehicle, on its way up to it, and until it is left behind. A vehicle that it does not gain
--- on is not being overtaken: it excuses the ego no longer than an overtake takes. Of one without a place this is unknown, unless it is known to
--- be left behind.
-passing_by AS (
-    SELECT drive_id, ego_id, t_ns, CASE WHEN bool_or(excused) THEN true WHEN count(excused) = count(*) THEN false END AS excused
+-- An overtake excuses the ego while it is beside the overtaken vehicle, on its way up to it, and until that vehicle is left behind. A
+-- vehicle on which the ego does not gain is not being overtaken: it excuses the ego for no longer than an overtake takes. If the vehicle
+-- has no place, it is not known whether it excuses the ego, unless the vehicle is known to be left behind.
+passing_step AS (
+    SELECT drive_id, ego_id, t_ns, CASE WHEN bool_or(is_excused) THEN true WHEN count(is_excused) = count(*) THEN false END AS is_excused
     FROM (
         SELECT
             o.drive_id, o.ego_id, o.t_ns,
             CASE
-                -- one parked at the edge, with room to pass it within the lane, is none
+                -- A vehicle parked at the edge, with room to pass it within the lane, is not overtaken.
                 WHEN p.speed_mps <= standing_mps() AND is_vehicle(p.actor_class) AND p.half_width_m + abs(p.d_m) - p.lat_half_m >= e.width_m + passing_room_m(p.actor_class) THEN false
                 ELSE coalesce(
                     p.front_s_m >= e.rear_s_m - e.reach_m AND (
                         p.rear_s_m <= e.front_s_m AND p.front_s_m >= e.rear_s_m
-                        OR o.early AND p.rear_s_m - e.front_s_m <= e.reach_m
+                        OR o.is_early AND p.rear_s_m - e.front_s_m <= e.reach_m
                         OR e.speed_mps - p.speed_mps > standing_mps() AND 1e9 * (p.rear_s_m - e.front_s_m) <= longest_overtake_ns() * (e.speed_mps - p.speed_mps)
                     ),
                     CASE WHEN NOT h.ahead AND h.least_m > e.reach_m THEN false END
                 )
-            END AS excused
-        FROM (SELECT *, t_ns - min(t_ns) OVER (PARTITION BY drive_id, ego_id, occurrence) <= longest_overtake_ns() AS early FROM overtake_step) o
-        JOIN ego e USING (drive_id, ego_id, t_ns)
+            END AS is_excused
+        FROM (SELECT *, t_ns - min(t_ns) OVER (PARTITION BY drive_id, ego_id, occurrence) <= longest_overtake_ns() AS is_early FROM overtake_step) o
+        JOIN ego_step e USING (drive_id, ego_id, t_ns)
         LEFT JOIN pair p ON p.drive_id = o.drive_id AND p.ego_id = o.ego_id AND p.t_ns = o.t_ns AND p.object_id = o.vbp_id
         LEFT JOIN hidden h ON h.drive_id = o.drive_id AND h.ego_id = o.ego_id AND h.t_ns = o.t_ns AND h.object_id = o.vbp_id
         UNION ALL
@@ -90,85 +90,86 @@ passing_by AS (
     )
     GROUP BY ALL
 ),
-out_for_a_while AS (
+short_excursion_step AS (
     SELECT DISTINCT s.drive_id, s.ego_id, s.t_ns
     FROM excursion x
     JOIN step s ON s.drive_id = x.drive_id AND s.ego_id = x.ego_id AND s.t_ns >= x.t0_ns AND s.t_ns <= x.t_end_ns
         AND s.t_ns < x.t0_ns + ($passing_s * 1e9)::BIGINT
 ),
-wrong AS (
-    SELECT * FROM ego WHERE NOT with_direction
+wrong_way_step AS (
+    SELECT * FROM ego_step WHERE NOT with_direction
 ),
--- what stands in the ego's lane, such as a row of cones, closes it, and so does somebody who walks along in it; a vehicle parked at its edge
--- does not where there is room to pass it within the lane
-closed AS (
+-- A standing object in the ego's lane, such as a row of cones, closes the lane, and so does a person who walks in it. A vehicle parked at
+-- the edge of the lane does not close it if there is room to pass within the lane.
+closed_lane AS (
     SELECT w.drive_id, w.ego_id, w.t_ns,
-        CASE WHEN bool_or(c.closes) THEN true WHEN count(h.object_id) = 0 AND count(p.object_id) = count(c.closes) THEN false END AS closed
-    FROM wrong w
+        CASE WHEN bool_or(c.closes_lane) THEN true WHEN count(h.object_id) = 0 AND count(p.object_id) = count(c.closes_lane) THEN false END AS closed_lane
+    FROM wrong_way_step w
     LEFT JOIN pair p ON p.drive_id = w.drive_id AND p.ego_id = w.ego_id AND p.t_ns = w.t_ns
         AND in_lane(p.d_m, coalesce(p.lat_half_m, 0.0), p.half_width_m) AND p.s_m >= w.rear_s_m - w.reach_m AND p.s_m <= w.front_s_m + w.reach_m
     LEFT JOIN hidden h ON h.drive_id = w.drive_id AND h.ego_id = w.ego_id AND h.t_ns = w.t_ns AND h.least_m < w.reach_m
     CROSS JOIN LATERAL (
         SELECT p.speed_mps <= standing_mps() AND (NOT is_vehicle(p.actor_class)
                 OR p.half_width_m + abs(p.d_m) - coalesce(p.lat_half_m, 0.0) < w.width_m + passing_room_m(p.actor_class) OR CASE WHEN p.lat_half_m IS NOT NULL THEN false END)
-            OR is_class(p.actor_class, 'pedestrian') AND p.speed_mps <= $manoeuvring_mps AS closes
+            OR is_class(p.actor_class, 'pedestrian') AND p.speed_mps <= $manoeuvring_mps AS closes_lane
     ) c
     GROUP BY ALL
 ),
--- how far it goes the wrong way within that time: for sure, and at most, where nobody knows whether something excused it
-wrong_way AS (
+-- The distance that the ego goes the wrong way within manoeuvring_s before and after the step. least_m is certain; most_m includes the
+-- steps at which it is not known whether something excuses the ego.
+wrong_way_distance AS (
     SELECT
-        e.drive_id, e.ego_id, e.t_ns, w.against,
-        sum(w.way_m) FILTER (w.against AND (p.t_ns IS NULL OR NOT p.excused) AND (c.t_ns IS NULL OR NOT c.closed)) OVER about AS least_m,
-        sum(w.way_m) FILTER (w.against AND NOT coalesce(p.excused OR c.closed, false)) OVER about AS most_m
+        e.drive_id, e.ego_id, e.t_ns, w.is_against,
+        sum(w.way_m) FILTER (w.is_against AND (p.t_ns IS NULL OR NOT p.is_excused) AND (c.t_ns IS NULL OR NOT c.closed_lane)) OVER manoeuvring_time AS least_m,
+        sum(w.way_m) FILTER (w.is_against AND NOT coalesce(p.is_excused OR c.closed_lane, false)) OVER manoeuvring_time AS most_m
     FROM ego_state e
     JOIN step st USING (drive_id, ego_id, t_ns)
     JOIN data_log g USING (drive_id)
     LEFT JOIN ego_motion m USING (drive_id, ego_id, t_ns)
     LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = e.lanelet_id
-    LEFT JOIN passing_by p USING (drive_id, ego_id, t_ns)
-    LEFT JOIN closed c USING (drive_id, ego_id, t_ns)
+    LEFT JOIN passing_step p USING (drive_id, ego_id, t_ns)
+    LEFT JOIN closed_lane c USING (drive_id, ego_id, t_ns)
     CROSS JOIN LATERAL (
         SELECT
             abs(m.v_long_mps) * st.dt_ns / 1e9 AS way_m,
-            coalesce(NOT e.in_junction AND NOT n.bidirectional AND CASE WHEN e.with_direction THEN m.v_long_mps < -$reverse_mps ELSE m.v_long_mps > $reverse_mps END, false) AS against
+            coalesce(NOT e.in_junction AND NOT n.bidirectional AND CASE WHEN e.with_direction THEN m.v_long_mps < -$reverse_mps ELSE m.v_long_mps > $reverse_mps END, false) AS is_against
     ) w
-    WINDOW about AS (
+    WINDOW manoeuvring_time AS (
         PARTITION BY e.drive_id, e.ego_id ORDER BY e.t_ns
         RANGE BETWEEN ($manoeuvring_s * 1e9)::BIGINT PRECEDING AND ($manoeuvring_s * 1e9)::BIGINT FOLLOWING
     )
 ),
--- against every lane of a junction, and for how long it has been so
-round AS (
-    SELECT drive_id, ego_id, t_ns, t_ns - max(t_ns) FILTER (NOT against) OVER w >= ($junction_s * 1e9)::BIGINT AS against
+-- Whether the ego has been against every lane of the junction for at least junction_s.
+junction_heading AS (
+    SELECT drive_id, ego_id, t_ns, t_ns - max(t_ns) FILTER (NOT is_against) OVER so_far >= ($junction_s * 1e9)::BIGINT AS is_against
     FROM (
-        SELECT e.drive_id, e.ego_id, e.t_ns, coalesce(bool_and(abs(o.heading_diff_rad) > $against_rad), false) AS against
+        SELECT e.drive_id, e.ego_id, e.t_ns, coalesce(bool_and(abs(o.heading_diff_rad) > $against_rad), false) AS is_against
         FROM ego_state e
         LEFT JOIN lane_occupancy o ON e.in_junction AND o.drive_id = e.drive_id AND o.actor_id = e.ego_id AND o.t_ns = e.t_ns AND o.drivable
         GROUP BY ALL
     )
-    WINDOW w AS (PARTITION BY drive_id, ego_id ORDER BY t_ns)
+    WINDOW so_far AS (PARTITION BY drive_id, ego_id ORDER BY t_ns)
 )
 SELECT e.drive_id, e.ego_id, e.t_ns,
-    -- out for a while past what the log does not show: whether there was anything is not known
-    (c.t_ns IS NULL OR CASE WHEN p.excused OR c.closed THEN false WHEN p.t_ns IS NOT NULL AND p.excused IS NULL OR x.t_ns IS NOT NULL AND NOT e.in_junction THEN NULL ELSE NOT c.closed END)
-        AND (e.x_m IS NULL OR e.lanelet_id IS NOT NULL OR a.t_ns IS NOT NULL AND w.road_type = 'motorway') AND (NOT e.in_junction OR a.t_ns IS NOT NULL OR coalesce(r.against, false))
-        AND CASE WHEN abs(m.v_long_mps) > $manoeuvring_mps OR w.road_type = 'motorway' OR d.against AND d.least_m > $manoeuvring_m THEN true
-            -- with its lane, what kind of road it is does not matter
-            WHEN abs(m.v_long_mps) <= $manoeuvring_mps AND (w.road_type IS NOT NULL OR e.with_direction AND m.v_long_mps >= -$reverse_mps) AND NOT coalesce(d.against AND d.most_m > $manoeuvring_m, false) THEN false END AS applies,
-    CASE WHEN c.t_ns IS NULL OR p.excused OR c.closed THEN NULL
-        WHEN p.t_ns IS NOT NULL AND p.excused IS NULL THEN 'whether it is on its way past another vehicle is not known: record that from before to after'
+    -- During a short excursion the ego may pass something that the log does not show: then it is not known whether the rule applies.
+    (c.t_ns IS NULL OR CASE WHEN p.is_excused OR c.closed_lane THEN false WHEN p.t_ns IS NOT NULL AND p.is_excused IS NULL OR x.t_ns IS NOT NULL AND NOT e.in_junction THEN NULL ELSE NOT c.closed_lane END)
+        AND (e.x_m IS NULL OR e.lanelet_id IS NOT NULL OR a.t_ns IS NOT NULL AND w.road_type = 'motorway') AND (NOT e.in_junction OR a.t_ns IS NOT NULL OR coalesce(j.is_against, false))
+        AND CASE WHEN abs(m.v_long_mps) > $manoeuvring_mps OR w.road_type = 'motorway' OR d.is_against AND d.least_m > $manoeuvring_m THEN true
+            -- If the ego drives in the direction of its lane, the kind of road does not matter.
+            WHEN abs(m.v_long_mps) <= $manoeuvring_mps AND (w.road_type IS NOT NULL OR e.with_direction AND m.v_long_mps >= -$reverse_mps) AND NOT coalesce(d.is_against AND d.most_m > $manoeuvring_m, false) THEN false END AS applies,
+    CASE WHEN c.t_ns IS NULL OR p.is_excused OR c.closed_lane THEN NULL
+        WHEN p.t_ns IS NOT NULL AND p.is_excused IS NULL THEN 'whether it is on its way past another vehicle is not known: record that from before to after'
         WHEN x.t_ns IS NOT NULL THEN format('in the opposing lane for less than {:g} s, it may pass something that the log does not show: record what stands in the lane, such as road works', $passing_s)
-        WHEN c.closed IS NULL THEN 'whether something closes its lane is not known: record what stands or walks there' END AS reason
+        WHEN c.closed_lane IS NULL THEN 'whether something closes its lane is not known: record what stands or walks there' END AS reason
 FROM ego_state e
 LEFT JOIN ego_motion m USING (drive_id, ego_id, t_ns)
 LEFT JOIN ego_condition w USING (drive_id, ego_id, t_ns)
 LEFT JOIN ego_aside a USING (drive_id, ego_id, t_ns)
-LEFT JOIN passing_by p USING (drive_id, ego_id, t_ns)
-LEFT JOIN out_for_a_while x USING (drive_id, ego_id, t_ns)
-LEFT JOIN round r USING (drive_id, ego_id, t_ns)
-LEFT JOIN closed c USING (drive_id, ego_id, t_ns)
-LEFT JOIN wrong_way d USING (drive_id, ego_id, t_ns)
+LEFT JOIN passing_step p USING (drive_id, ego_id, t_ns)
+LEFT JOIN short_excursion_step x USING (drive_id, ego_id, t_ns)
+LEFT JOIN junction_heading j USING (drive_id, ego_id, t_ns)
+LEFT JOIN closed_lane c USING (drive_id, ego_id, t_ns)
+LEFT JOIN wrong_way_distance d USING (drive_id, ego_id, t_ns)
 
 -- @condition
 SELECT e.drive_id, e.ego_id, e.t_ns, (n.bidirectional OR coalesce(e.with_direction, a.with_direction)) AND m.v_long_mps >= -$reverse_mps AS holds,

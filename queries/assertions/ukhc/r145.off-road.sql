@@ -24,30 +24,30 @@
 -- why = "our default: at 10 mph and less a vehicle crosses the footway to reach property; faster it has left the road"
 
 -- @condition
--- property is beyond what the map knows: whoever comes from there, or goes there, slowly, may cross the footway
-WITH own AS (
-    SELECT f.drive_id, f.ego_id, f.t_ns, f.depth_m, coalesce(f.depth_m > $tolerance_m, false) AS on_it,
-        f.depth_m IS NULL AND e.x_m IS NOT NULL AS beyond, coalesce(e.speed_mps <= $access_mps, true) AS slow
+-- Property is ground that the map does not have. An ego that slowly comes from there, or goes there, may cross the footway.
+WITH footway_step AS (
+    SELECT f.drive_id, f.ego_id, f.t_ns, f.depth_m, coalesce(f.depth_m > $tolerance_m, false) AS is_on_footway,
+        f.depth_m IS NULL AND e.x_m IS NOT NULL AS is_beyond_map, coalesce(e.speed_mps <= $access_mps, true) AS is_slow
     FROM ego_footway f
     LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
 ),
--- a stretch on the footway has the number of the step before it
-numbered AS (
-    SELECT *, count(*) FILTER (NOT on_it) OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS n FROM own
+-- The steps of a stretch on the footway have the number of the last step before the stretch. The first step after it has the next number.
+numbered_step AS (
+    SELECT *, count(*) FILTER (NOT is_on_footway) OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS stretch_no FROM footway_step
 ),
-stretch AS (
-    SELECT o.drive_id, o.ego_id, o.n, bool_and(o.slow) AND count(b.n) > 0 AS access
-    FROM numbered o
+footway_stretch AS (
+    SELECT n.drive_id, n.ego_id, n.stretch_no, bool_and(n.is_slow) AND count(b.stretch_no) > 0 AS may_be_access
+    FROM numbered_step n
     LEFT JOIN (
-        SELECT drive_id, ego_id, n FROM numbered WHERE beyond
+        SELECT drive_id, ego_id, stretch_no FROM numbered_step WHERE is_beyond_map
         UNION ALL
-        SELECT drive_id, ego_id, n - 1 FROM numbered WHERE beyond
-    ) b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.n = o.n
-    WHERE o.on_it
-    GROUP BY o.drive_id, o.ego_id, o.n
+        SELECT drive_id, ego_id, stretch_no - 1 FROM numbered_step WHERE is_beyond_map
+    ) b ON b.drive_id = n.drive_id AND b.ego_id = n.ego_id AND b.stretch_no = n.stretch_no
+    WHERE n.is_on_footway
+    GROUP BY n.drive_id, n.ego_id, n.stretch_no
 )
-SELECT o.drive_id, o.ego_id, o.t_ns, o.depth_m AS observed, CASE WHEN NOT coalesce(s.access, false) THEN $tolerance_m END AS required,
-    CASE WHEN o.depth_m IS NULL THEN 'part of the ego is on nothing that the map knows'
-        WHEN s.access THEN 'slowly over the footway, from or to ground that the map does not know: it may be property' END AS reason
-FROM numbered o
-LEFT JOIN stretch s ON s.drive_id = o.drive_id AND s.ego_id = o.ego_id AND s.n = CASE WHEN o.on_it THEN o.n END
+SELECT n.drive_id, n.ego_id, n.t_ns, n.depth_m AS observed, CASE WHEN NOT coalesce(s.may_be_access, false) THEN $tolerance_m END AS required,
+    CASE WHEN n.depth_m IS NULL THEN 'part of the ego is on nothing that the map knows'
+        WHEN s.may_be_access THEN 'slowly over the footway, from or to ground that the map does not know: it may be property' END AS reason
+FROM numbered_step n
+LEFT JOIN footway_stretch s ON s.drive_id = n.drive_id AND s.ego_id = n.ego_id AND s.stretch_no = CASE WHEN n.is_on_footway THEN n.stretch_no END

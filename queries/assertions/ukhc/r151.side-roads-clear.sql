@@ -1,6 +1,6 @@
 -- title = "Keep side roads clear in a queue"
 -- clause = "UKHC R151: in slow-moving traffic allow access into and from side roads"
--- hypothesis = "Did the ego get through a junction without lights without standing in it behind somebody?"
+-- hypothesis = "At a junction without traffic lights, did the ego get through without standing in it behind another vehicle?"
 -- kind = "postcondition"
 -- subtype = "physical"
 -- derivation = "direct"
@@ -48,8 +48,9 @@ JOIN standstill s ON s.drive_id = r.drive_id AND s.ego_id = r.ego_id AND s.junct
     AND s.t_start_ns >= r.t_ns AND s.t_start_ns <= coalesce(r.t_out_ns, s.t_start_ns)
 
 -- @condition
-SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
-    -- who turns across may wait for the oncoming traffic, or behind one who does, or for a full exit: which of these is not known
+SELECT rs.drive_id, rs.ego_id, rs.t_ns, rs.ref_id,
+    -- An ego that turns across may wait for the oncoming traffic, behind a vehicle that waits for it, or for a full exit: which of these is
+    -- not known.
     s.t_start_ns IS NULL OR coalesce(s.junction_inside_m < $inside_m, false)
         OR NOT exit_full(
             s.blocking_id, s.blocking_gap_m, s.blocking_speed_mps, s.blocking_known, s.junction_clear_m, CASE WHEN r.across THEN 0 ELSE s.t_end_ns - s.t_start_ns END,
@@ -57,6 +58,6 @@ SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
         ) OR CASE WHEN NOT r.across THEN false END AS holds,
     CASE WHEN s.t_start_ns IS NOT NULL THEN 'the ego stood in the junction' || coalesce(' behind ' || s.blocking_id, '')
         || CASE WHEN r.across THEN '; turning across, it may have waited for the oncoming traffic' ELSE '' END END AS reason
-FROM reference_step g
+FROM reference_step rs
 JOIN reference r USING (ref_id)
-LEFT JOIN standstill s ON s.drive_id = g.drive_id AND s.ego_id = g.ego_id AND s.t_start_ns = g.t_ns AND s.junction_id = r.junction_id
+LEFT JOIN standstill s ON s.drive_id = rs.drive_id AND s.ego_id = rs.ego_id AND s.t_start_ns = rs.t_ns AND s.junction_id = r.junction_id

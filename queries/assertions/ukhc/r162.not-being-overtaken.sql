@@ -22,14 +22,14 @@
 SELECT o.drive_id, o.ego_id, o.t0_ns AS t_ns, p.rear_id AS object_id, o.occurrence
 FROM overtake o
 LEFT JOIN overtake_place p USING (drive_id, ego_id, occurrence)
--- two vehicles passed in one go are pulled out for once
+-- If two vehicles are passed in one go, the ego pulls out only once.
 QUALIFY o.occurrence = min(o.occurrence) OVER (PARTITION BY o.drive_id, o.ego_id, o.t0_ns)
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $ttc_s AS required,
-    -- somebody else who was not placed could only make it worse, unless he is too far away to be there in time
+    -- Another vehicle that was not placed could only make the time shorter, unless it is too far away to arrive in time.
     CASE WHEN o.begin_seen AND (p.rear_known OR p.rear_ttc_s < $ttc_s OR p.rear_unseen_m > 0 AND p.rear_unseen_m >= $ttc_s * greatest(0.0, fast_mps() - o.v_av_mps))
-        -- over the line ahead of nobody who was seen it may have overtaken nobody: a corner that trembles, a lane change
+        -- If no vehicle was placed ahead and none was passed, this may be no overtake: a lane change, or a noisy position of a corner.
         AND (o.vbp_placed OR o.passed OR p.rear_ttc_s >= $ttc_s) THEN or_never(p.rear_ttc_s, $ttc_s) END AS observed,
     CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began: record the ego from before it'
         WHEN NOT o.vbp_placed AND NOT o.passed THEN 'whom the ego was to overtake, if anybody, is not known: record all vehicles ahead of it, with their classes' END AS reason

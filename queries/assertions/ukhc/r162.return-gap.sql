@@ -1,4 +1,4 @@
--- title = "A gap to return to"
+-- title = "Room to return ahead of the vehicle being passed"
 -- clause = "UKHC R162 and R163: overtake only if there is a suitable gap in front of the vehicle that you mean to overtake"
 -- hypothesis = "When the ego pulled out, was there room for it ahead of the vehicle being passed, with thinking distance before and behind?"
 -- kind = "execution"
@@ -17,11 +17,11 @@
 SELECT drive_id, ego_id, t0_ns AS t_ns, vbp_id AS object_id, occurrence
 FROM overtake
 WHERE opposing IS DISTINCT FROM false
--- of two passed in one go, the ego returns ahead of the last
+-- If two vehicles are passed in one go, the ego returns ahead of the last one.
 QUALIFY occurrence = max(occurrence) OVER (PARTITION BY drive_id, ego_id, t0_ns)
 
 -- @condition
--- without a vehicle there, the space reaches at least as far as the corridor and the sensors
+-- Without a vehicle ahead of the vehicle being passed, the gap reaches at least as far as the corridor and the sensors.
 WITH ahead AS (
     SELECT r.ref_id, v.front_s_m, min(a.rear_s_m) - v.front_s_m AS gap_m, min(a.rear_s_m) FILTER (is_vehicle(a.actor_class)) - v.front_s_m AS vehicle_gap_m
     FROM reference r
@@ -33,32 +33,32 @@ WITH ahead AS (
     ) a ON a.drive_id = r.drive_id AND a.ego_id = r.ego_id AND a.t_ns = r.t_ns AND a.s_m > v.s_m
     GROUP BY r.ref_id, v.front_s_m
 ),
--- somebody who has no place may be in it, unless he is behind or further ahead
-doubt AS (
+-- A vehicle without a place may be in the gap, unless it is behind the ego or further ahead.
+possible_vehicle AS (
     SELECT r.ref_id, min({'lane_m': d.lane_m, 'object_id': d.object_id, 'reason': coalesce(u.reason, 'has no place')}) AS o
     FROM reference r
     JOIN hidden d ON d.drive_id = r.drive_id AND d.ego_id = r.ego_id AND d.t_ns = r.t_ns AND d.vehicle AND d.ahead IS DISTINCT FROM false
     LEFT JOIN unplaced u ON u.drive_id = d.drive_id AND u.ego_id = d.ego_id AND u.t_ns = d.t_ns AND u.object_id = d.object_id
     GROUP BY r.ref_id
 )
-SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, needs.m AS required,
-    coalesce(h.gap_m IS NULL OR free.unseen_m < h.gap_m, false) AND NOT coalesce(h.vehicle_gap_m < needs.m, false) AS at_least,
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, required_gap.size_m AS required,
+    coalesce(h.gap_m IS NULL OR free_gap.unseen_m < h.gap_m, false) AND NOT coalesce(h.vehicle_gap_m < required_gap.size_m, false) AS at_least,
     CASE
         WHEN NOT o.begin_seen THEN NULL
-        -- somebody nearer whose class is not known may be no vehicle
-        WHEN h.vehicle_gap_m < needs.m THEN h.vehicle_gap_m
-        -- least() leaves out nobody, as it should here
-        WHEN h.gap_m IS NULL THEN CASE WHEN free.seen_m IS NOT NULL THEN greatest(0.0, least(free.seen_m, free.unseen_m)) END
-        WHEN h.gap_m >= needs.m THEN greatest(0.0, least(h.gap_m, free.unseen_m))
+        -- Only a known vehicle makes the gap too small: an object nearer than that, of a class that is not known, may be no vehicle.
+        WHEN h.vehicle_gap_m < required_gap.size_m THEN h.vehicle_gap_m
+        -- least() ignores NULL (no vehicle without a place), as is right here.
+        WHEN h.gap_m IS NULL THEN CASE WHEN free_gap.seen_m IS NOT NULL THEN greatest(0.0, least(free_gap.seen_m, free_gap.unseen_m)) END
+        WHEN h.gap_m >= required_gap.size_m THEN greatest(0.0, least(h.gap_m, free_gap.unseen_m))
     END AS observed,
-    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began: record the ego from before it' WHEN h.vehicle_gap_m < needs.m THEN NULL
-        WHEN free.unseen_m < needs.m THEN format('actor {}, who may be there, {}: record it without a break', d.o.object_id, d.o.reason)
-        WHEN h.gap_m < needs.m THEN 'the class of somebody there is not known: record it' END AS reason
+    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began: record the ego from before it' WHEN h.vehicle_gap_m < required_gap.size_m THEN NULL
+        WHEN free_gap.unseen_m < required_gap.size_m THEN format('actor {}, who may be there, {}: record it without a break', d.o.object_id, d.o.reason)
+        WHEN h.gap_m < required_gap.size_m THEN 'the class of somebody there is not known: record it' END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
-CROSS JOIN LATERAL (SELECT o.l_av_m + thinking_distance_m(o.v_vbp_mps) + thinking_distance_m(o.v_av_mps) AS m) needs
+CROSS JOIN LATERAL (SELECT o.l_av_m + thinking_distance_m(o.v_vbp_mps) + thinking_distance_m(o.v_av_mps) AS size_m) required_gap
 LEFT JOIN ahead h USING (ref_id)
-LEFT JOIN doubt d USING (ref_id)
+LEFT JOIN possible_vehicle d USING (ref_id)
 LEFT JOIN ego_state e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id AND e.t_ns = r.t_ns
 LEFT JOIN oncoming n ON n.drive_id = r.drive_id AND n.ego_id = r.ego_id AND n.t_ns = r.t_ns
-CROSS JOIN LATERAL (SELECT n.free_m - (h.front_s_m - e.front_s_m) AS seen_m, d.o.lane_m - (h.front_s_m - e.front_s_m) AS unseen_m) free
+CROSS JOIN LATERAL (SELECT n.free_m - (h.front_s_m - e.front_s_m) AS seen_m, d.o.lane_m - (h.front_s_m - e.front_s_m) AS unseen_m) free_gap

@@ -1,6 +1,6 @@
--- title = "Enough road ahead before overtaking"
+-- title = "Safe distance ahead before overtaking"
 -- clause = "UKHC R162: before overtaking, make sure that the road is sufficiently clear ahead"
--- hypothesis = "Was the distance to the oncoming vehicle, when the ego first left its lane, more than the whole manoeuvre needs?"
+-- hypothesis = "When the ego first left its lane, was the distance to the oncoming vehicle more than the whole manoeuvre needs?"
 -- kind = "execution"
 -- derivation = "model"
 -- severity = "critical"

@@ -1,6 +1,6 @@
 -- title = "Not cutting in after overtaking"
 -- clause = "UKHC R163: move back when you can, but do not cut in"
--- hypothesis = "When the ego was wholly back in its lane, did it leave the vehicle it passed that vehicle's thinking distance?"
+-- hypothesis = "When the ego was wholly back in its lane, was its gap to the vehicle that it passed at least that vehicle's thinking distance?"
 -- kind = "execution"
 -- derivation = "model"
 -- severity = "major"
@@ -17,7 +17,7 @@
 -- @reference
 SELECT drive_id, ego_id, t3_ns AS t_ns, vbp_id AS object_id, occurrence
 FROM overtake
--- where the log breaks off after the passing, the way back has an unknown time
+-- If the log ends after the ego has passed the vehicle, the time of the return is not known.
 WHERE passed AND (t3_ns IS NOT NULL OR status = 'truncated')
 
 -- @condition

@@ -33,7 +33,7 @@
 -- source = "UKHC R163"
 
 -- @applies
--- a cyclist that overtakes the ego, or comes towards it, is not passed; a bicycle that stands beside the lanes may be a parked one
+-- A cyclist who overtakes the ego, or comes towards it, is not passed. A bicycle that stands beside the lanes may be a parked one.
 SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id,
     is_bicycle(b.actor_class, a.length_m) AND b.along AND b.ego_speed_mps > b.speed_mps AND (b.on_carriageway OR CASE
         WHEN b.on_strip AND b.speed_mps > standing_mps() THEN true

@@ -24,7 +24,7 @@
 SELECT drive_id, ego_id, coalesce(t3_ns, t0_ns) AS t_ns, vbp_id AS object_id, occurrence
 FROM overtake
 WHERE passed AND opposing IS DISTINCT FROM false
--- two in one go: as long as the last takes, with the length of both
+-- If two vehicles are passed in one go, the time lasts until the ego is back ahead of the last one, and span_m covers both.
 QUALIFY occurrence = max(occurrence) OVER (PARTITION BY drive_id, ego_id, t0_ns)
 
 -- @condition

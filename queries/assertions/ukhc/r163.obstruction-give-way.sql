@@ -39,53 +39,54 @@
 SELECT drive_id, ego_id, t0_ns AS t_ns, t_end_ns, vbp_id AS object_id, occurrence
 FROM overtake
 WHERE opposing IS DISTINCT FROM false
--- a row of parked vehicles is one obstruction, whoever moves and is overtaken in the same go
+-- A row of parked vehicles is one obstruction, even if a moving vehicle is overtaken in the same go.
 QUALIFY row_number() OVER (
     PARTITION BY drive_id, ego_id, t0_ns ORDER BY coalesce(v_vbp_mps > standing_mps(), false), v_vbp_mps IS NULL, occurrence
 ) = 1
 
 -- @condition
--- kept is only what was seen to its end: nobody unplaced, back in its lane, and the time after that too
-WITH braked AS (
+-- The rule is known to be kept only if the manoeuvre was seen to its end: every vehicle placed, the ego back in its lane, and the log goes
+-- on for pet_s after that.
+WITH oncoming_braking AS (
     SELECT
         r.ref_id,
         CASE
             WHEN made_to_brake(f.decel_mps2, f.pet_s, f.other_cause, $decel_mps2, $pet_s) THEN true
-            -- however gently it came to a stand; a bus may stand at its stop
+            -- A vehicle that came to a stand counts, however gently it braked. A bus may stand at its stop.
             WHEN f.waited IS DISTINCT FROM false AND f.pet_s < $pet_s AND is_vehicle(f.actor_class) IS DISTINCT FROM false
                 THEN CASE WHEN f.waited AND f.other_cause IS NULL AND f.actor_class <> 'bus' THEN true END
             ELSE made_to_brake(f.decel_mps2, f.pet_s, f.other_cause, $decel_mps2, $pet_s)
-        END AS made,
+        END AS is_violation,
         braked_words(f.object_id, f.pet_s, f.decel_mps2, f.other_cause) || CASE WHEN f.waited THEN ', and it stood until then' ELSE '' END AS words
     FROM reference r
     JOIN forced_braking f ON f.drive_id = r.drive_id AND f.ego_id = r.ego_id AND abs(f.angle_rad) >= $oncoming_rad
         AND f.t_ego_in_ns >= r.t_ns AND f.t_ego_in_ns <= r.t_end_ns
 ),
--- one who had to brake is enough
-forced AS (
-    SELECT ref_id, CASE WHEN bool_or(made) THEN true WHEN count(made) = count(*) THEN false END AS made,
-        coalesce(min(words) FILTER (made), min(words) FILTER (made IS NULL)) AS words
-    FROM braked
+-- One vehicle that had to brake is enough.
+braking_result AS (
+    SELECT ref_id, CASE WHEN bool_or(is_violation) THEN true WHEN count(is_violation) = count(*) THEN false END AS is_violation,
+        coalesce(min(words) FILTER (is_violation), min(words) FILTER (is_violation IS NULL)) AS words
+    FROM oncoming_braking
     GROUP BY ref_id
 ),
--- one who came by with hardly any room; not if it reached over the line itself
-squeezed AS (
-    SELECT ref_id, CASE WHEN bool_or(close) THEN true END AS made, min({'room_m': clearance_m, 'object_id': object_id}) AS least
+-- Oncoming vehicles that came by with hardly any room. A vehicle that reached over the line itself leaves the result open.
+close_meeting AS (
+    SELECT ref_id, CASE WHEN bool_or(is_too_close) THEN true END AS is_violation, min({'room_m': clearance_m, 'object_id': object_id}) AS least
     FROM (
         SELECT
             r.ref_id, p.object_id, p.clearance_m,
             p.speed_mps > standing_mps() AND e.speed_mps + p.speed_mps > $closing_mps AND is_vehicle(p.actor_class)
-                AND CASE WHEN NOT in_lane(p.d_m, p.lat_half_m, p.half_width_m) THEN true END AS close
+                AND CASE WHEN NOT in_lane(p.d_m, p.lat_half_m, p.half_width_m) THEN true END AS is_too_close
         FROM reference r
         JOIN pair p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_ns >= r.t_ns AND p.t_ns <= r.t_end_ns
         JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
         WHERE p.clearance_m < $close_m AND abs(p.heading_diff_rad) >= $oncoming_rad
     )
-    WHERE close IS DISTINCT FROM false
+    WHERE is_too_close IS DISTINCT FROM false
     GROUP BY ref_id
 ),
--- one without a place, that does not just stand, may have come as near as that until those two seconds are over
-lost AS (
+-- A vehicle without a place that may be moving may have come within pet_s of the ego, until pet_s after the end of the overtake.
+unplaced_vehicle AS (
     SELECT r.ref_id, min(u.object_id || ' ' || u.reason) AS words
     FROM reference r
     JOIN unplaced u ON u.drive_id = r.drive_id AND u.ego_id = r.ego_id AND u.t_ns >= r.t_ns AND u.t_ns <= r.t_end_ns + ($pet_s * 1e9)::BIGINT
@@ -98,26 +99,26 @@ lost AS (
 )
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps <= standing_mps() AS applies,
     CASE
-        WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false) OR f.made OR z.made THEN false
-        WHEN f.ref_id IS NOT NULL AND f.made IS NULL OR z.ref_id IS NOT NULL THEN NULL
-        WHEN o.begin_seen AND o.n_unplaced = 0 AND l.ref_id IS NULL AND count(c.object_id) = count(c.decel_mps2) AND k.t_end_ns >= o.t3_ns + ($pet_s * 1e9)::BIGINT THEN true
+        WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false) OR f.is_violation OR m.is_violation THEN false
+        WHEN f.ref_id IS NOT NULL AND f.is_violation IS NULL OR m.ref_id IS NOT NULL THEN NULL
+        WHEN o.begin_seen AND o.n_unplaced = 0 AND v.ref_id IS NULL AND count(c.object_id) = count(c.decel_mps2) AND k.t_end_ns >= o.t3_ns + ($pet_s * 1e9)::BIGINT THEN true
     END AS holds,
     CASE
         WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false)
             THEN format('an oncoming vehicle came {:.1f} s after the ego, or braked by {:.1f} m/s2', min(c.pet_s), coalesce(max(c.decel_mps2), 0))
-        WHEN z.ref_id IS NOT NULL AND f.made IS DISTINCT FROM true THEN format('{} came by with {:.2f} m between', z.least.object_id, z.least.room_m)
+        WHEN m.ref_id IS NOT NULL AND f.is_violation IS DISTINCT FROM true THEN format('{} came by with {:.2f} m between', m.least.object_id, m.least.room_m)
         WHEN f.words IS NOT NULL THEN f.words
         WHEN o.t3_ns IS NULL THEN 'the log does not show the ego back in its lane: record it until it is'
-        WHEN l.ref_id IS NOT NULL THEN format('object {}: record it without a break', l.words)
+        WHEN v.ref_id IS NOT NULL THEN format('object {}: record it without a break', v.words)
         WHEN NOT o.begin_seen THEN 'the log does not show where the ego pulled out: record it from before that'
         WHEN o.n_unplaced > 0 THEN o.unplaced_reason || ': record it without a break'
         WHEN k.t_end_ns < o.t3_ns + ($pet_s * 1e9)::BIGINT THEN format('the log ends within {:g} s after the ego was back in its lane: record it for longer', $pet_s) END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 JOIN clock k USING (drive_id, ego_id)
-LEFT JOIN forced f USING (ref_id)
-LEFT JOIN squeezed z USING (ref_id)
-LEFT JOIN lost l USING (ref_id)
+LEFT JOIN braking_result f USING (ref_id)
+LEFT JOIN close_meeting m USING (ref_id)
+LEFT JOIN unplaced_vehicle v USING (ref_id)
 LEFT JOIN (FROM conflict WHERE ego_first AND abs(angle_rad) >= $oncoming_rad) c
     ON c.drive_id = r.drive_id AND c.ego_id = r.ego_id AND c.t_ego_in_ns >= r.t_ns AND c.t_ego_in_ns <= r.t_end_ns
-GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.unplaced_reason, o.t3_ns, k.t_end_ns, f.ref_id, f.made, f.words, z.ref_id, z.made, z.least, l.ref_id, l.words
+GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.unplaced_reason, o.t3_ns, k.t_end_ns, f.ref_id, f.is_violation, f.words, m.ref_id, m.is_violation, m.least, v.ref_id, v.words

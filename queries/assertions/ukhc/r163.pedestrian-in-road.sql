@@ -31,7 +31,7 @@
 -- # Draft: what a low speed is, and whether there was no pavement, is a judgement; somebody who waits to cross is taken for one who walks along.
 
 -- @applies
--- who crosses and stops in the ego's way, or is struck there, was crossing still
+-- A pedestrian who crosses and stops in the ego's way, or is struck there, is still crossing.
 SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id,
     is_class(b.actor_class, 'pedestrian') AND b.on_carriageway AND b.ego_speed_mps > standing_mps() AND abs(b.lat_mps) <= $across_mps AND c.object_id IS NULL AS applies
 FROM beside b

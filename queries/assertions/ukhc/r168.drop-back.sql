@@ -1,6 +1,6 @@
 -- title = "Dropping back from a vehicle that moved in ahead"
 -- clause = "UKHC R168: drop back to keep a two-second gap if someone overtakes and pulls into the gap in front of you"
--- hypothesis = "After another vehicle moved in ahead, was the two-second gap there again in time?"
+-- hypothesis = "After another vehicle moved in ahead, was the two-second gap restored in time?"
 -- kind = "postcondition"
 -- subtype = "temporal"
 -- window_s = "restore_s"
@@ -30,16 +30,17 @@
 -- why = "our default: who is between the two for less than this may only be passing through"
 
 -- @reference
--- not seen, but further away than the gap to keep: nothing to restore
+-- A vehicle that may have moved in unseen, but further away than the gap to keep, leaves nothing to restore.
 SELECT drive_id, ego_id, t_ns, object_id, coalesce(in_place_ns, t_ns) AS in_place_ns, occurrence
 FROM cut_in
 LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)
 WHERE coalesce(free_m < $time_gap_s * stopping_factor(c.weather) * ego_speed_mps, true)
 
 -- @condition
--- gone again, or behind another that moved in too: nothing is left to restore. Who is ahead again later was only hidden by one between
-WITH told AS (
-    SELECT s.*, r.in_place_ns, r.object_id AS cutter_id, l.t_ns IS NOT NULL AS known, l.object_id AS ahead_id, l.gap_m, l.ego_speed_mps,
+-- If the vehicle has gone again, or is behind another one that moved in, too, there is nothing left to restore. A vehicle that is ahead
+-- again later was only hidden by another one.
+WITH lead_step AS (
+    SELECT s.*, r.in_place_ns, r.object_id AS cutter_id, l.t_ns IS NOT NULL AS lead_is_known, l.object_id AS ahead_id, l.gap_m, l.ego_speed_mps,
         max(s.t_ns) FILTER (l.object_id = r.object_id) OVER (PARTITION BY s.ref_id) AS t_last_ns,
         max(s.t_ns) FILTER (l.t_ns IS NULL OR l.object_id = r.object_id) OVER (PARTITION BY s.ref_id ORDER BY s.t_ns) AS t_not_gone_ns
     FROM reference_step s
@@ -47,14 +48,14 @@ WITH told AS (
     LEFT JOIN lead l ON l.drive_id = s.drive_id AND l.ego_id = s.ego_id AND l.t_ns = s.t_ns
 )
 SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id,
-    CASE WHEN s.cutter_id IS NULL OR NOT s.known THEN NULL
-        -- once the two have met there is no gap to restore, and nobody who has gone
+    CASE WHEN s.cutter_id IS NULL OR NOT s.lead_is_known THEN NULL
+        -- After the two boxes have touched, there is no gap to restore, and the vehicle has not gone.
         WHEN bool_or(coalesce(p.clearance_m <= 0, false)) OVER (PARTITION BY s.ref_id ORDER BY s.t_ns) THEN NULL
         WHEN s.ahead_id = s.cutter_id THEN s.gap_m >= $time_gap_s * stopping_factor(c.weather) * s.ego_speed_mps
         WHEN s.t_ns < s.t_last_ns OR s.t_ns <= s.in_place_ns THEN false
         WHEN s.t_ns - greatest(s.in_place_ns, s.t_not_gone_ns) >= $gone_s * 1e9 THEN true END AS holds,
     CASE WHEN bool_or(coalesce(p.clearance_m <= 0, false)) OVER (PARTITION BY s.ref_id ORDER BY s.t_ns)
         THEN format('the boxes of the ego and {} overlap, or did before, which leaves no gap to restore: correct them, or see ukhc.no-collision', s.cutter_id) END AS reason
-FROM told s
+FROM lead_step s
 LEFT JOIN ego_condition c ON c.drive_id = s.drive_id AND c.ego_id = s.ego_id AND c.t_ns = s.t_ns
 LEFT JOIN pair p ON p.drive_id = s.drive_id AND p.ego_id = s.ego_id AND p.t_ns = s.t_ns AND p.object_id = s.cutter_id

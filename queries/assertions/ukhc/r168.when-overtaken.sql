@@ -1,6 +1,6 @@
 -- title = "Steady while being overtaken"
 -- clause = "UKHC R168: if a driver is trying to overtake you, keep a steady course and speed, and slow down if need be to let them pass"
--- hypothesis = "At every step at which a vehicle overtook it in the opposing lane, or came up there to do so, did the ego neither accelerate, at once or little by little, nor drift towards it?"
+-- hypothesis = "At every step at which a vehicle overtook it in the opposing lane, or came up to do so, did the ego neither accelerate, not even little by little, nor drift towards it?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "minor"
@@ -37,48 +37,49 @@
 -- why = "our default, that of r162.not-being-overtaken: who is out in the opposing lane and there so soon is overtaking the ego"
 
 -- @applies
--- where the lane beside is driven the other way, whoever is beside the ego there and drives its way is overtaking it, and so is whoever comes
--- up there
-WITH near AS (
+-- If the lane beside is driven the other way, a vehicle that is beside the ego there and drives the ego's way is overtaking it, and so is a
+-- vehicle that comes up there.
+WITH near_object AS (
     SELECT drive_id, ego_id, t_ns, object_id, actor_class, side, along, ego_speed_mps, speed_mps FROM beside
     UNION ALL
     SELECT drive_id, ego_id, t_ns, object_id, actor_class, side, abs(heading_diff_rad) < pi() / 4 AS along, ego_speed_mps, speed_mps
     FROM neighbour
     WHERE gap_behind_m > 0 AND gap_behind_m <= $coming_s * (speed_mps - ego_speed_mps) AND abs(d_m) > half_width_m AND gap_m > 0
 )
-SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id,
-    b.along AND b.side = overtaking_side(m.handedness) AND coalesce(c.over_against, false) AND b.speed_mps > standing_mps()
-        AND is_vehicle(b.actor_class) AND b.ego_speed_mps > $queue_mps AS applies
-FROM near b
+SELECT o.drive_id, o.ego_id, o.t_ns, o.object_id,
+    o.along AND o.side = overtaking_side(m.handedness) AND coalesce(c.over_against, false) AND o.speed_mps > standing_mps()
+        AND is_vehicle(o.actor_class) AND o.ego_speed_mps > $queue_mps AS applies
+FROM near_object o
 JOIN data_log g USING (drive_id)
 JOIN environment m USING (environment_id)
 LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
-LEFT JOIN ego_corridor c ON c.drive_id = b.drive_id AND c.ego_id = b.ego_id AND c.t_ns = b.t_ns AND c.chain_id = e.chain_id
+LEFT JOIN ego_corridor c ON c.drive_id = o.drive_id AND c.ego_id = o.ego_id AND c.t_ns = o.t_ns AND c.chain_id = e.chain_id
 
 -- @condition
-WITH near AS (
-    SELECT drive_id, ego_id, t_ns, object_id, along, ego_speed_mps, speed_mps, ego_lat_mps, true AS out FROM beside
+WITH near_object AS (
+    SELECT drive_id, ego_id, t_ns, object_id, along, ego_speed_mps, speed_mps, ego_lat_mps, true AS is_out FROM beside
     UNION ALL
     SELECT drive_id, ego_id, t_ns, object_id, abs(heading_diff_rad) < pi() / 4, ego_speed_mps, speed_mps, CASE side WHEN 'left' THEN ego_left_mps ELSE -ego_left_mps END,
         gap_behind_m <= $coming_s * (speed_mps - ego_speed_mps) AND abs(d_m) > half_width_m AND gap_m > 0
     FROM neighbour
     WHERE gap_behind_m > 0
 ),
--- the steps at which it overtakes or comes up to do so, without a pause; who just follows does not
-overtakes AS (
-    SELECT *, sum((t_ns - last_ns > 2_000_000_000)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns) AS n
+-- The steps at which an object overtakes, or comes up to do so, numbered by stretches without a pause. An object that only follows does not
+-- overtake.
+overtaking_step AS (
+    SELECT *, sum((t_ns - t_before_ns > 2_000_000_000)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns) AS stretch_no
     FROM (
-        SELECT *, lag(t_ns, 1, t_ns) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns) AS last_ns
-        FROM near
-        WHERE out AND along AND speed_mps > standing_mps() AND ego_speed_mps > $queue_mps
+        SELECT *, lag(t_ns, 1, t_ns) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns) AS t_before_ns
+        FROM near_object
+        WHERE is_out AND along AND speed_mps > standing_mps() AND ego_speed_mps > $queue_mps
     )
 ),
-gained AS (
-    SELECT drive_id, ego_id, object_id, t_ns, ego_speed_mps - min(ego_speed_mps) OVER (PARTITION BY drive_id, ego_id, object_id, n ORDER BY t_ns) AS gained_mps
-    FROM overtakes
+speed_gain AS (
+    SELECT drive_id, ego_id, object_id, t_ns, ego_speed_mps - min(ego_speed_mps) OVER (PARTITION BY drive_id, ego_id, object_id, stretch_no ORDER BY t_ns) AS gained_mps
+    FROM overtaking_step
 )
-SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id, a.accel_mps2 <= $accel_mps2 AND b.ego_lat_mps <= $drift_mps AND coalesce(g.gained_mps <= $gained_mps, true) AS holds,
-    format('accelerates by {:.2f} m/s2, drifts towards it at {:.2f} m/s', a.accel_mps2, b.ego_lat_mps) || CASE WHEN g.gained_mps > $gained_mps THEN format(', is {:.1f} m/s faster than before', g.gained_mps) ELSE '' END AS reason
-FROM near b
-LEFT JOIN ego_motion a USING (drive_id, ego_id, t_ns)
-LEFT JOIN gained g USING (drive_id, ego_id, t_ns, object_id)
+SELECT o.drive_id, o.ego_id, o.t_ns, o.object_id, m.accel_mps2 <= $accel_mps2 AND o.ego_lat_mps <= $drift_mps AND coalesce(g.gained_mps <= $gained_mps, true) AS holds,
+    format('accelerates by {:.2f} m/s2, drifts towards it at {:.2f} m/s', m.accel_mps2, o.ego_lat_mps) || CASE WHEN g.gained_mps > $gained_mps THEN format(', is {:.1f} m/s faster than before', g.gained_mps) ELSE '' END AS reason
+FROM near_object o
+LEFT JOIN ego_motion m USING (drive_id, ego_id, t_ns)
+LEFT JOIN speed_gain g USING (drive_id, ego_id, t_ns, object_id)

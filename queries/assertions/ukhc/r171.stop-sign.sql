@@ -25,7 +25,7 @@
 -- why = "our default: a stop line crossed longer than this before or after is not the one at this junction"
 
 -- @reference
--- a way in that is, or may be, governed by a stop sign and has no line in the map cannot be judged
+-- A way into a junction that is, or may be, governed by a stop sign, and has no stop line in the map, cannot be judged.
 SELECT drive_id, ego_id, t_ns, stop_line_id, control, begin_seen, slowest_mps
 FROM stop_line_crossing
 WHERE control = 'stop'

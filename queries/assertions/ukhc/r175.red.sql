@@ -18,8 +18,8 @@ JOIN step s ON s.drive_id = c.drive_id AND s.ego_id = c.ego_id AND s.t_ns = c.t_
 WHERE c.control = 'traffic_light'
 
 -- @condition
--- the line is crossed between two steps: if the light changed between them as well, both states must agree. No light goes off after red: it failed,
--- or its record did
+-- The ego crosses the line between two steps: if the light changed between them, too, both states must agree. No light goes off after red:
+-- either the light failed or its record did.
 SELECT drive_id, ego_id, t_ns, ref_id,
     CASE WHEN begin_seen AND NOT coalesce(state = 'off' AND forbids(state_before), false) AND (NOT coalesce(changed, false) OR forbids(state_before) = forbids(state)) THEN NOT forbids(state) END AS holds,
     CASE WHEN NOT begin_seen THEN 'the log does not show when the ego crossed the stop line'

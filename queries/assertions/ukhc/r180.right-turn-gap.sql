@@ -1,6 +1,6 @@
--- title = "Turn across a safe gap"
+-- title = "Safe gap when turning across the oncoming traffic"
 -- clause = "UKHC R180: before turning right wait for a safe gap between you and any oncoming vehicle"
--- hypothesis = "When the ego turned across the oncoming traffic before somebody, did it leave enough time, also at the speed before the other braked?"
+-- hypothesis = "When the ego turned across the oncoming traffic before somebody, did it leave enough time, also at the speed that the other had before it braked?"
 -- kind = "execution"
 -- derivation = "model"
 -- severity = "critical"

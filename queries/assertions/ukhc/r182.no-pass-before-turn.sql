@@ -25,13 +25,13 @@ FROM junction_passage
 WHERE across IS DISTINCT FROM true AND (turn IS DISTINCT FROM 'straight' OR at_fork(turn, turn_rad, straightest_rad))
 
 -- @condition
-SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
+SELECT rs.drive_id, rs.ego_id, rs.t_ns, rs.ref_id,
     CASE WHEN r.across IS NULL OR (p.t_ns IS NULL AND b.t_ns IS NOT NULL) THEN NULL WHEN p.t_ns IS NOT NULL THEN CASE WHEN NOT r.fork THEN false END ELSE true END AS holds,
     CASE WHEN r.across IS NULL THEN 'which way the ego turned across the road is not known: record it until it has left the junction, and give the side that is driven on with --handedness'
         WHEN p.t_ns IS NOT NULL AND r.fork THEN fork_words()
         WHEN p.t_ns IS NOT NULL THEN 'the ego got ahead of ' || p.object_id
         WHEN b.t_ns IS NOT NULL THEN 'somebody who may be beside the ego cannot be placed' END AS reason
-FROM reference_step g
+FROM reference_step rs
 JOIN reference r USING (ref_id)
 LEFT JOIN (
     SELECT drive_id, ego_id, t_ns, side, min(object_id) AS object_id
@@ -39,6 +39,6 @@ LEFT JOIN (
     WHERE ego_passes AND coalesce(speed_mps > standing_mps(), true)
     GROUP BY drive_id, ego_id, t_ns, side
 ) p
-    ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns = g.t_ns AND p.side = r.side
+    ON p.drive_id = rs.drive_id AND p.ego_id = rs.ego_id AND p.t_ns = rs.t_ns AND p.side = r.side
 LEFT JOIN (SELECT DISTINCT drive_id, ego_id, t_ns FROM beside WHERE gap_m IS NULL AND coalesce(actor_class, '') <> 'pedestrian') b
-    ON b.drive_id = g.drive_id AND b.ego_id = g.ego_id AND b.t_ns = g.t_ns
+    ON b.drive_id = rs.drive_id AND b.ego_id = rs.ego_id AND b.t_ns = rs.t_ns

@@ -1,4 +1,4 @@
--- title = "Keep in when turning to the near side"
+-- title = "Close to the edge when turning to the near side"
 -- clause = "UKHC R183: when turning left keep as close to the left as is safe and practicable"
 -- hypothesis = "When the ego had turned to the near side, was there little room between it and the near edge of the lane that it entered?"
 -- kind = "execution"
@@ -29,30 +29,31 @@ FROM junction_passage
 WHERE across IS DISTINCT FROM true AND turn IS DISTINCT FROM 'straight'
 
 -- @condition
-WITH placed AS (
-    SELECT r.ref_id, r.across, e.*, k.half_width_m, k.side, CASE k.side WHEN 1 THEN -k.right_out_m WHEN -1 THEN -k.left_out_m END AS room_m
+WITH placed_ego AS (
+    SELECT r.ref_id, r.across, e.*, c.half_width_m, c.side, CASE c.side WHEN 1 THEN -c.right_out_m WHEN -1 THEN -c.left_out_m END AS room_m
     FROM reference r
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
-    JOIN ego_corridor k USING (drive_id, ego_id, chain_id, t_ns)
+    JOIN ego_corridor c USING (drive_id, ego_id, chain_id, t_ns)
 ),
--- actors that stand or ride there, or may, and a lane of the ego's direction that others turn into
-aside AS (
-    SELECT DISTINCT w.ref_id
-    FROM placed w
+-- The near side is taken if an actor stands or rides there, or may do so, or if it has another lane of the ego's direction, into which
+-- others turn.
+taken_near_side AS (
+    SELECT DISTINCT ego.ref_id
+    FROM placed_ego ego
     JOIN pair p USING (drive_id, ego_id, t_ns)
-    WHERE p.x_m IS NULL OR p.front_s_m IS NOT NULL AND -w.side * (p.d_m - w.d_m) > 0 AND abs(p.d_m) - p.lat_half_m < p.half_width_m + 0.5
-        AND p.front_s_m >= w.rear_s_m AND p.rear_s_m <= w.front_s_m + $passing_m
+    WHERE p.x_m IS NULL OR p.front_s_m IS NOT NULL AND -ego.side * (p.d_m - ego.d_m) > 0 AND abs(p.d_m) - p.lat_half_m < p.half_width_m + 0.5
+        AND p.front_s_m >= ego.rear_s_m AND p.rear_s_m <= ego.front_s_m + $passing_m
     UNION
-    SELECT w.ref_id
-    FROM placed w
+    SELECT ego.ref_id
+    FROM placed_ego ego
     JOIN data_log g USING (drive_id)
-    JOIN lane_beside b ON b.environment_id = g.environment_id AND b.lanelet_id = w.lanelet_id AND b.drivable AND NOT b.against
-        AND b.side = CASE w.side WHEN 1 THEN 'right' ELSE 'left' END
+    JOIN lane_beside b ON b.environment_id = g.environment_id AND b.lanelet_id = ego.lanelet_id AND b.drivable AND NOT b.against
+        AND b.side = CASE ego.side WHEN 1 THEN 'right' ELSE 'left' END
 )
-SELECT w.drive_id, w.ego_id, w.t_ns, w.ref_id, $near_m AS required,
-    CASE WHEN w.room_m <= $near_m OR a.ref_id IS NULL THEN w.room_m END AS observed,
-    CASE WHEN w.across IS NOT NULL THEN true END AS applies,
-    CASE WHEN w.across IS NULL THEN 'which way the ego turned across the road is not known: record it until it has left the junction, and give the side that is driven on with --handedness'
-        WHEN w.room_m > $near_m AND a.ref_id IS NOT NULL THEN 'the near side is, or may be, somebody else''s, or has another lane of the ego''s direction, which keeps the ego from it: no recording decides that' END AS reason
-FROM placed w
-LEFT JOIN aside a USING (ref_id)
+SELECT ego.drive_id, ego.ego_id, ego.t_ns, ego.ref_id, $near_m AS required,
+    CASE WHEN ego.room_m <= $near_m OR n.ref_id IS NULL THEN ego.room_m END AS observed,
+    CASE WHEN ego.across IS NOT NULL THEN true END AS applies,
+    CASE WHEN ego.across IS NULL THEN 'which way the ego turned across the road is not known: record it until it has left the junction, and give the side that is driven on with --handedness'
+        WHEN ego.room_m > $near_m AND n.ref_id IS NOT NULL THEN 'the near side is, or may be, somebody else''s, or has another lane of the ego''s direction, which keeps the ego from it: no recording decides that' END AS reason
+FROM placed_ego ego
+LEFT JOIN taken_near_side n USING (ref_id)

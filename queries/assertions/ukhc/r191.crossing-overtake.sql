@@ -1,6 +1,6 @@
 -- title = "No passing in the zig-zags before a crossing"
 -- clause = "UKHC R191 and R165: you must not overtake the moving motor vehicle nearest the crossing, or the one that has stopped there to give way to people on foot, in the area marked by zig-zag lines; a parked one may be passed"
--- hypothesis = "When the ego went over a pedestrian crossing, had it got past no moving vehicle, and none that had stopped to give way, between the zig-zags' beginning and the crossing?"
+-- hypothesis = "When the ego went over a pedestrian crossing, had it passed no moving vehicle, and none that had stopped to give way, from the beginning of the zig-zags to the crossing?"
 -- kind = "execution"
 -- derivation = "direct"
 -- severity = "critical"
@@ -17,46 +17,46 @@
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, coalesce(t_out_ns, t_in_ns) AS t_out_ns, crossing_id, kind, occurrence,
-    -- somebody for whom a vehicle may have stopped; NULL: not known
+    -- Whether there is somebody for whom a vehicle may have stopped; NULL: not known.
     on_id IS NOT NULL OR coming_id IS NOT NULL OR waiting_id IS NOT NULL OR CASE WHEN known AND coming_known THEN false END AS for_whom
 FROM crossing_passage
 
 -- @condition
--- a crossing that is neither a zebra nor signalled has no zig-zags; whom the ego got past before the log began is not known
-WITH passed AS (
+-- A crossing that is neither a zebra nor signalled has no zig-zags. Whom the ego passed before the log began is not known.
+WITH passed_object AS (
     SELECT
         p.drive_id, p.ego_id, p.object_id, p.t_ns, coalesce(p.t_unseen_ns, p.t_ns) AS t_first_ns, s.travel_m,
-        p.ego_passes AND p.t_unseen_ns IS NULL AND coalesce(is_vehicle(p.actor_class) AND NOT is_bicycle(p.actor_class, a.length_m), false) AS seen,
-        p.speed_mps <= standing_mps() AS stood, m.moved, o.t_ns IS NOT NULL AS on_road
+        p.ego_passes AND p.t_unseen_ns IS NULL AND coalesce(is_vehicle(p.actor_class) AND NOT is_bicycle(p.actor_class, a.length_m), false) AS is_seen,
+        p.speed_mps <= standing_mps() AS is_standing, m.has_moved, o.t_ns IS NOT NULL AS is_on_road
     FROM passing p
     JOIN step s USING (drive_id, ego_id, t_ns)
     LEFT JOIN road_user a ON a.drive_id = p.drive_id AND a.actor_id = p.object_id
-    -- what stands where it stood from its first sample to its last has parked, or waits all that time
+    -- A vehicle that stands in one place from its first sample to its last is parked, or waits all that time.
     LEFT JOIN (
-        SELECT drive_id, actor_id, max(x_m) - min(x_m) > moved_m() OR max(y_m) - min(y_m) > moved_m() AS moved FROM state_dynamics GROUP BY ALL
+        SELECT drive_id, actor_id, max(x_m) - min(x_m) > moved_m() OR max(y_m) - min(y_m) > moved_m() AS has_moved FROM state_dynamics GROUP BY ALL
     ) m ON m.drive_id = p.drive_id AND m.actor_id = p.object_id
     LEFT JOIN (SELECT DISTINCT drive_id, actor_id, t_ns FROM lane_occupancy WHERE drivable) o
         ON o.drive_id = p.drive_id AND o.actor_id = p.object_id AND o.t_ns = p.t_ns
     WHERE p.ego_passes IS DISTINCT FROM false AND may_be_vehicle(p.actor_class) AND is_bicycle(p.actor_class, a.length_m) IS DISTINCT FROM true
 ),
-counted AS (
+pass_before_crossing AS (
     SELECT
-        r.ref_id, p.object_id, p.seen,
-        CASE WHEN NOT p.stood THEN true WHEN p.stood AND NOT p.on_road THEN false
-            WHEN p.stood AND r.for_whom THEN CASE WHEN p.moved THEN true END
-            WHEN p.stood AND NOT r.for_whom THEN CASE WHEN NOT p.moved THEN false END END AS counts
+        r.ref_id, p.object_id, p.is_seen,
+        CASE WHEN NOT p.is_standing THEN true WHEN p.is_standing AND NOT p.is_on_road THEN false
+            WHEN p.is_standing AND r.for_whom THEN CASE WHEN p.has_moved THEN true END
+            WHEN p.is_standing AND NOT r.for_whom THEN CASE WHEN NOT p.has_moved THEN false END END AS counts
     FROM reference r
-    JOIN step i USING (drive_id, ego_id, t_ns)
-    JOIN passed p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_first_ns <= r.t_out_ns AND p.travel_m >= i.travel_m - $zigzag_m
+    JOIN step st USING (drive_id, ego_id, t_ns)
+    JOIN passed_object p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_first_ns <= r.t_out_ns AND p.travel_m >= st.travel_m - $zigzag_m
 )
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.kind <> 'other' AS applies,
-    CASE WHEN bool_or(c.seen AND c.counts) THEN false WHEN i.travel_m >= $zigzag_m AND count(c.object_id) FILTER (c.counts IS DISTINCT FROM false) = 0 THEN true END AS holds,
+    CASE WHEN bool_or(b.is_seen AND b.counts) THEN false WHEN st.travel_m >= $zigzag_m AND count(b.object_id) FILTER (b.counts IS DISTINCT FROM false) = 0 THEN true END AS holds,
     CASE WHEN r.kind IS NULL THEN format('the map does not say whether crossing {} is a zebra, has lights, or neither: give one that does', r.crossing_id)
-        WHEN bool_or(c.seen AND c.counts) THEN 'passed ' || string_agg(DISTINCT c.object_id, ', ' ORDER BY c.object_id) FILTER (c.seen AND c.counts) || ' before crossing ' || r.crossing_id
-        WHEN bool_or(c.seen AND c.counts IS NULL) THEN format('whether {} stood before crossing {} to give way is not known', min(c.object_id) FILTER (c.seen AND c.counts IS NULL), r.crossing_id)
-        WHEN count(c.object_id) FILTER (c.counts IS DISTINCT FROM false) > 0 THEN format('actor {} may have been passed before crossing {}', min(c.object_id) FILTER (c.counts IS DISTINCT FROM false), r.crossing_id)
-        WHEN i.travel_m < $zigzag_m THEN format('the log does not show the {:g} m before the crossing: begin recording before them', $zigzag_m) END AS reason
+        WHEN bool_or(b.is_seen AND b.counts) THEN 'passed ' || string_agg(DISTINCT b.object_id, ', ' ORDER BY b.object_id) FILTER (b.is_seen AND b.counts) || ' before crossing ' || r.crossing_id
+        WHEN bool_or(b.is_seen AND b.counts IS NULL) THEN format('whether {} stood before crossing {} to give way is not known', min(b.object_id) FILTER (b.is_seen AND b.counts IS NULL), r.crossing_id)
+        WHEN count(b.object_id) FILTER (b.counts IS DISTINCT FROM false) > 0 THEN format('actor {} may have been passed before crossing {}', min(b.object_id) FILTER (b.counts IS DISTINCT FROM false), r.crossing_id)
+        WHEN st.travel_m < $zigzag_m THEN format('the log does not show the {:g} m before the crossing: begin recording before them', $zigzag_m) END AS reason
 FROM reference r
-JOIN step i USING (drive_id, ego_id, t_ns)
-LEFT JOIN counted c USING (ref_id)
-GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.kind, r.crossing_id, i.travel_m
+JOIN step st USING (drive_id, ego_id, t_ns)
+LEFT JOIN pass_before_crossing b USING (ref_id)
+GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.kind, r.crossing_id, st.travel_m

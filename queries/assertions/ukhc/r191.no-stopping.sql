@@ -17,8 +17,8 @@
 -- why = "our default: shorter is a pause, such as for somebody on foot"
 
 -- @reference
--- an ego that reverses onto the crossing and stands there has no passage: its stand is the reference
-WITH on_its_way AS (
+-- An ego that reverses onto the crossing and stands there has no passage: its standstill is the reference point.
+WITH standstill_in_passage AS (
     SELECT s.drive_id, s.ego_id, s.t_start_ns
     FROM standstill s
     JOIN crossing_passage p USING (drive_id, ego_id, crossing_id)
@@ -28,7 +28,7 @@ SELECT drive_id, ego_id, t_ns, (row_number() OVER (PARTITION BY drive_id, ego_id
 FROM (
     SELECT drive_id, ego_id, t_in_ns AS t_ns, crossing_id, t_out_ns FROM crossing_passage
     UNION ALL
-    SELECT drive_id, ego_id, t_start_ns, crossing_id, t_end_ns FROM standstill ANTI JOIN on_its_way USING (drive_id, ego_id, t_start_ns) WHERE crossing_id IS NOT NULL
+    SELECT drive_id, ego_id, t_start_ns, crossing_id, t_end_ns FROM standstill ANTI JOIN standstill_in_passage USING (drive_id, ego_id, t_start_ns) WHERE crossing_id IS NOT NULL
 )
 
 -- @anchor
@@ -41,12 +41,12 @@ JOIN standstill s ON s.drive_id = r.drive_id AND s.ego_id = r.ego_id AND s.cross
     AND s.t_start_ns >= r.t_ns AND s.t_start_ns <= coalesce(r.t_out_ns, s.t_start_ns)
 
 -- @condition
-SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
+SELECT rs.drive_id, rs.ego_id, rs.t_ns, rs.ref_id,
     CASE WHEN s.t_start_ns IS NULL THEN true
         WHEN s.idle_ns > $stop_s * 1e9 THEN false
         WHEN s.idle_at_most_ns > $stop_s * 1e9 THEN NULL
         WHEN s.end_seen THEN true END AS holds,
     format('the ego stood on the crossing for {:.1f} s, of which {:.1f} s with nobody in its way', (s.t_end_ns - s.t_start_ns) / 1e9, s.idle_ns / 1e9) AS reason
-FROM reference_step g
+FROM reference_step rs
 JOIN reference r USING (ref_id)
-LEFT JOIN standstill s ON s.drive_id = g.drive_id AND s.ego_id = g.ego_id AND s.t_start_ns = g.t_ns AND s.crossing_id = r.crossing_id
+LEFT JOIN standstill s ON s.drive_id = rs.drive_id AND s.ego_id = rs.ego_id AND s.t_start_ns = rs.t_ns AND s.crossing_id = r.crossing_id

@@ -40,9 +40,9 @@ JOIN standstill s ON s.drive_id = r.drive_id AND s.ego_id = r.ego_id AND s.cross
     AND s.t_start_ns >= r.t_ns AND s.t_start_ns <= coalesce(r.t_out_ns, s.t_start_ns)
 
 -- @condition
-SELECT g.drive_id, g.ego_id, g.t_ns, g.ref_id,
+SELECT rs.drive_id, rs.ego_id, rs.t_ns, rs.ref_id,
     s.t_start_ns IS NULL OR NOT exit_full(s.blocking_id, s.blocking_gap_m, s.blocking_speed_mps, s.blocking_known, s.crossing_clear_m, s.t_end_ns - s.t_start_ns, $near_m, $slow_mps, $long_s) AS holds,
     CASE WHEN s.t_start_ns IS NOT NULL THEN 'the ego stood on the crossing' || coalesce(' behind ' || s.blocking_id, '') END AS reason
-FROM reference_step g
+FROM reference_step rs
 JOIN reference r USING (ref_id)
-LEFT JOIN standstill s ON s.drive_id = g.drive_id AND s.ego_id = g.ego_id AND s.t_start_ns = g.t_ns AND s.crossing_id = r.crossing_id
+LEFT JOIN standstill s ON s.drive_id = rs.drive_id AND s.ego_id = rs.ego_id AND s.t_start_ns = rs.t_ns AND s.crossing_id = r.crossing_id

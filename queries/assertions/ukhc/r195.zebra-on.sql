@@ -16,10 +16,10 @@ FROM crossing_passage
 WHERE coalesce(kind, 'zebra') = 'zebra'
 
 -- @condition
--- who steps on it while the ego is on it already has not been refused
+-- A person who steps onto the crossing when the ego is already on it has not been refused.
 SELECT drive_id, ego_id, t_ns, ref_id,
     CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns THEN CASE WHEN kind = 'zebra' THEN false END
-        -- islands are not in map tables
+        -- The map tables have no islands: if somebody comes from the other half, it is not known whether the ego had to give way.
         WHEN known AND coming_known AND coming_id IS NULL THEN true END AS holds,
     CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns
         THEN object_id || ' was on it' || CASE WHEN kind IS NULL THEN '; the map does not say what kind of crossing it is' ELSE '' END

@@ -1,6 +1,6 @@
 -- title = "Stop at a signalled crossing"
 -- clause = "UKHC R196 and R197: at a signalled crossing you must stop on red, and give way to people on it while amber flashes, to those from beyond an island too"
--- hypothesis = "When the ego went onto the crossing, did the light allow it, and was nobody on its half, or about to come onto it, while amber flashed or, with the line behind it, on red?"
+-- hypothesis = "When the ego went onto the crossing, did the light allow it, and, while amber flashed or on red after the stop line, was nobody on its half or about to come onto it?"
 -- kind = "execution"
 -- derivation = "direct"
 -- severity = "critical"
@@ -16,7 +16,7 @@
 -- why = "our default: a stop line crossed longer ago is not the one before this crossing"
 
 -- @reference
--- where the crossing has a stop line, it is there that the light had to be kept; what it shows since says whether to give way
+-- If the crossing has a stop line, the ego must obey the light at that line. The later state of the light says whether it must give way.
 SELECT c.drive_id, c.ego_id, c.t_in_ns AS t_ns, c.occurrence, c.on_id AS object_id, c.t_on_ns, c.known, c.coming_id, c.coming_known, c.state,
     count(l.t_ns) > 0 AS has_line, max({'t': l.t_ns, 'state': l.state}).state AS line_state
 FROM crossing_passage c
@@ -26,7 +26,8 @@ WHERE coalesce(c.kind, 'signalled') = 'signalled'
 GROUP BY c.drive_id, c.ego_id, c.t_in_ns, c.occurrence, c.on_id, c.t_on_ns, c.known, c.coming_id, c.coming_known, c.state
 
 -- @condition
--- a light that is off allows nothing and forbids nothing: with somebody there a person has to say; on green and amber it is another rule's question
+-- A light that is off allows nothing and forbids nothing: if somebody is there, a person must judge. On green and amber, another rule
+-- applies to the people on the crossing.
 SELECT drive_id, ego_id, t_ns, ref_id,
     NOT forbids(CASE WHEN has_line THEN line_state ELSE state END)
         AND (coalesce(state IN ('green', 'amber'), false)

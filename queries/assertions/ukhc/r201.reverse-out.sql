@@ -1,7 +1,7 @@
 -- # Draft: which road is the lesser one is told by its stop or give-way sign alone; driveways are not in map tables.
 -- title = "Do not reverse out of a side road"
 -- clause = "UKHC R201: do not reverse from a side road into a main road"
--- hypothesis = "When the ego reversed into a junction, did it not come from a road with a stop or give-way sign there?"
+-- hypothesis = "When the ego reversed into a junction, did it come from a road without a stop or give-way sign there?"
 -- kind = "execution"
 -- derivation = "direct"
 -- severity = "major"
@@ -17,11 +17,11 @@
 -- why = "our default: slower than this is standing: recorded speeds of standing vehicles tremble"
 
 -- @reference
-SELECT e.drive_id, e.ego_id, e.t_ns, lag(e.lanelet_id) OVER w AS from_lanelet_id
+SELECT e.drive_id, e.ego_id, e.t_ns, lag(e.lanelet_id) OVER step_order AS from_lanelet_id
 FROM ego_state e
 JOIN ego_motion m USING (drive_id, ego_id, t_ns)
-WINDOW w AS (PARTITION BY e.drive_id, e.ego_id ORDER BY e.t_ns)
-QUALIFY m.v_long_mps < -$back_mps AND e.in_junction AND NOT lag(e.in_junction) OVER w
+WINDOW step_order AS (PARTITION BY e.drive_id, e.ego_id ORDER BY e.t_ns)
+QUALIFY m.v_long_mps < -$back_mps AND e.in_junction AND NOT lag(e.in_junction) OVER step_order
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, NOT coalesce(bool_or(t.kind IN ('stop', 'give_way')), false) AS holds

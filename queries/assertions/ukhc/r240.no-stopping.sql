@@ -34,26 +34,26 @@
 -- why = "10 km/h: a vehicle as slow as this is in congestion (as R_I1 of Maierhofer et al. 2020)"
 
 -- @condition
--- clearways and zig-zags are not in map tables; crossings have r191.no-stopping
-WITH stood AS (
-    SELECT e.drive_id, e.ego_id, e.t_ns, s.t_start_ns, s.begin_seen, e.speed_mps, r.is_so IS NULL AS doubt,
-        max(CASE WHEN e.indicator = 'hazard' OR x.t_ns IS NOT NULL THEN e.t_ns END) OVER w IS NOT NULL AS emergency,
-        max(CASE WHEN r.is_so THEN e.t_ns END) OVER w AS t_queue_ns, max(CASE WHEN r.is_so IS NULL THEN e.t_ns END) OVER w AS t_doubt_ns
+-- Clearways and zig-zags are not in the map tables. Crossings are judged by r191.no-stopping.
+WITH standstill_step AS (
+    SELECT e.drive_id, e.ego_id, e.t_ns, s.t_start_ns, s.begin_seen, e.speed_mps, queue.stands_for_somebody IS NULL AS is_in_doubt,
+        max(CASE WHEN e.indicator = 'hazard' OR m.t_ns IS NOT NULL THEN e.t_ns END) OVER standstill_so_far IS NOT NULL AS may_be_emergency,
+        max(CASE WHEN queue.stands_for_somebody THEN e.t_ns END) OVER standstill_so_far AS t_queue_ns, max(CASE WHEN queue.stands_for_somebody IS NULL THEN e.t_ns END) OVER standstill_so_far AS t_doubt_ns
     FROM ego_state e
-    LEFT JOIN in_way l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.t_ns = e.t_ns
-    CROSS JOIN LATERAL (SELECT stands_for(l.object_id, l.actor_class, l.gap_m, l.along_mps, l.known, $near_m, $hazard_m, $queue_mps) AS is_so) r
+    LEFT JOIN in_way w ON w.drive_id = e.drive_id AND w.ego_id = e.ego_id AND w.t_ns = e.t_ns
+    CROSS JOIN LATERAL (SELECT stands_for(w.object_id, w.actor_class, w.gap_m, w.along_mps, w.known, $near_m, $hazard_m, $queue_mps) AS stands_for_somebody) queue
     LEFT JOIN standstill s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.t_start_ns <= e.t_ns AND s.t_end_ns >= e.t_ns
-    LEFT JOIN (SELECT DISTINCT drive_id, ego_id, t_ns FROM ego_mode WHERE mode IN ('minimal_risk_manoeuvre', 'emergency_manoeuvre') AND is_on) x
-        ON x.drive_id = e.drive_id AND x.ego_id = e.ego_id AND x.t_ns = e.t_ns
-    WINDOW w AS (PARTITION BY e.drive_id, e.ego_id, s.t_start_ns ORDER BY e.t_ns)
+    LEFT JOIN (SELECT DISTINCT drive_id, ego_id, t_ns FROM ego_mode WHERE mode IN ('minimal_risk_manoeuvre', 'emergency_manoeuvre') AND is_on) m
+        ON m.drive_id = e.drive_id AND m.ego_id = e.ego_id AND m.t_ns = e.t_ns
+    WINDOW standstill_so_far AS (PARTITION BY e.drive_id, e.ego_id, s.t_start_ns ORDER BY e.t_ns)
 )
 SELECT drive_id, ego_id, t_ns,
     CASE WHEN t_start_ns IS NULL THEN CASE WHEN speed_mps IS NOT NULL THEN true END
-        -- it may go on a while after those ahead did
+        -- The ego may go on a while after the vehicles ahead of it.
         WHEN t_ns - t_queue_ns <= ($stop_s * 1e9)::BIGINT OR begin_seen AND t_ns - t_start_ns <= ($stop_s * 1e9)::BIGINT THEN true
-        WHEN t_ns - t_start_ns > ($stop_s * 1e9)::BIGINT AND (t_doubt_ns IS NULL OR t_ns - t_doubt_ns > ($stop_s * 1e9)::BIGINT) THEN CASE WHEN NOT emergency THEN false END END AS holds,
-    CASE WHEN t_start_ns IS NOT NULL AND emergency THEN 'it stands with its hazard lights on, or at the end of a manoeuvre that it declared: whether it was an emergency is for a person to say'
-        WHEN t_start_ns IS NOT NULL AND doubt THEN 'the ego stands, and not everybody who may be in its way can be placed'
+        WHEN t_ns - t_start_ns > ($stop_s * 1e9)::BIGINT AND (t_doubt_ns IS NULL OR t_ns - t_doubt_ns > ($stop_s * 1e9)::BIGINT) THEN CASE WHEN NOT may_be_emergency THEN false END END AS holds,
+    CASE WHEN t_start_ns IS NOT NULL AND may_be_emergency THEN 'it stands with its hazard lights on, or at the end of a manoeuvre that it declared: whether it was an emergency is for a person to say'
+        WHEN t_start_ns IS NOT NULL AND is_in_doubt THEN 'the ego stands, and not everybody who may be in its way can be placed'
         WHEN NOT begin_seen AND t_ns - t_start_ns <= ($stop_s * 1e9)::BIGINT THEN 'the log does not show since when the ego has stood'
         WHEN t_start_ns IS NOT NULL THEN format('the ego has stood for {:.1f} s', (t_ns - t_start_ns) / 1e9) END AS reason
-FROM stood
+FROM standstill_step

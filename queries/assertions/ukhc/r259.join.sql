@@ -33,7 +33,7 @@ FROM lane_change
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, c.merge AS applies,
     CASE
         WHEN c.follower_id IS NULL THEN CASE WHEN c.known AND c.begin_seen THEN true END
-        -- a nearer one that was not placed could only make it worse
+        -- A nearer vehicle that was not placed could only make the gap smaller.
         ELSE c.follower_gap_m >= $pet_s * c.follower_speed_mps AND c.follower_decel_mps2 <= $decel_mps2 AND CASE WHEN c.known AND c.begin_seen THEN true END
     END AS holds,
     format('gap behind {:.1f} m at {:.1f} m/s, which then braked by {:.1f} m/s2', c.follower_gap_m, c.follower_speed_mps, c.follower_decel_mps2) AS reason

@@ -42,8 +42,8 @@ JOIN environment m USING (environment_id)
 WHERE coalesce(p.ego_passes AND NOT p.same_lane AND p.side <> overtaking_side(m.handedness), true)
 
 -- @condition
--- back, or in a lane without another of the same direction on that side, or somebody is there, or may be
-WITH occupied AS (
+-- The rule is kept if the ego moves back, if there is no lane of the same direction on that side, or if somebody is there or may be there.
+WITH occupied_side AS (
     SELECT DISTINCT e.drive_id, e.ego_id, e.t_ns, CASE WHEN p.d_m > e.d_m THEN 'left' ELSE 'right' END AS side
     FROM ego_state e
     JOIN pair p USING (drive_id, ego_id, t_ns)
@@ -55,7 +55,7 @@ SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id,
 FROM reference_step s
 JOIN reference r USING (ref_id)
 JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
-LEFT JOIN occupied o ON o.drive_id = s.drive_id AND o.ego_id = s.ego_id AND o.t_ns = s.t_ns AND o.side = r.side
+LEFT JOIN occupied_side o ON o.drive_id = s.drive_id AND o.ego_id = s.ego_id AND o.t_ns = s.t_ns AND o.side = r.side
 LEFT JOIN lane_change c ON c.drive_id = s.drive_id AND c.ego_id = s.ego_id AND c.side = r.side AND c.t_start_ns = s.t_ns
 LEFT JOIN lanelet n ON n.environment_id = r.environment_id AND n.lanelet_id = e.lanelet_id
 LEFT JOIN lanelet b ON b.environment_id = r.environment_id AND b.lanelet_id = CASE r.side WHEN 'left' THEN n.left_id ELSE n.right_id END

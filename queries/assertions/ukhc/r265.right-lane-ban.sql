@@ -1,6 +1,6 @@
 -- title = "Large and towing vehicles out of the right-hand lane"
 -- clause = "UKHC R265: vehicles that tow, goods vehicles over 7.5 t, limited lighter ones and limited buses must not use the right-hand lane of a motorway of three or more lanes"
--- hypothesis = "At every step where three or more lanes are open in its direction, was such a vehicle off the one furthest from the edge?"
+-- hypothesis = "At every step with three or more lanes open in its direction, was such a vehicle outside the lane furthest from the edge?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "major"
@@ -22,11 +22,11 @@
 -- why = "our default: a lane that is as long up to the end of the map is no lane for joining, which are shorter"
 
 -- @condition
--- lighter goods vehicles are banned if they have a speed limiter, which no log says; a lane that leads no further beside one that does is for
--- joining, and where none leads on the map ends
-WITH open AS (
+-- Lighter goods vehicles are banned if they have a speed limiter, which no log says. A lane that ends beside a lane that goes on is for
+-- joining. Where no lane goes on, the map ends.
+WITH open_lane_count AS (
     SELECT environment_id, road_id, section, along_road,
-        -- two that lead into the same lane are one
+        -- Two lanes that lead into the same lane count as one.
         count(DISTINCT ahead_id) + count(*) FILTER (ahead_id IS NULL AND map_ends AND length_m >= $through_m) AS n_least,
         count(DISTINCT ahead_id) + count(*) FILTER (ahead_id IS NULL AND map_ends) AS n_most
     FROM lanelet
@@ -35,7 +35,7 @@ WITH open AS (
     GROUP BY ALL
 )
 SELECT e.drive_id, e.ego_id, e.t_ns,
-    -- off the lanes it is not in that one
+    -- An ego that is off the lanes is not in that lane.
     CASE
         WHEN e.lanelet_id IS NULL THEN CASE WHEN e.x_m IS NOT NULL THEN false END
         WHEN o.n_least >= 3 THEN true
@@ -51,4 +51,4 @@ JOIN environment m USING (environment_id)
 LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)
 LEFT JOIN lanelet n ON n.environment_id = m.environment_id AND n.lanelet_id = e.lanelet_id
 LEFT JOIN lanelet b ON b.environment_id = m.environment_id AND b.lanelet_id = CASE m.handedness WHEN 'lht' THEN n.right_id ELSE n.left_id END
-LEFT JOIN open o ON o.environment_id = m.environment_id AND o.road_id = n.road_id AND o.section = n.section AND o.along_road = n.along_road
+LEFT JOIN open_lane_count o ON o.environment_id = m.environment_id AND o.road_id = n.road_id AND o.section = n.section AND o.along_road = n.along_road

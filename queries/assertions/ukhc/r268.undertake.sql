@@ -25,7 +25,7 @@
 SELECT drive_id, ego_id, t_ns, object_id, occurrence FROM passing WHERE coalesce(ego_passes AND NOT same_lane, true)
 
 -- @condition
--- whoever leaves by an exit lane may pass those who stay
+-- An ego that leaves by an exit lane may pass the vehicles that stay.
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, p.side <> overtaking_side(m.handedness) AS holds,
     NOT (p.ego_speed_mps < $congestion_mps AND p.speed_mps < $congestion_mps) AND n.lane_type NOT IN ('exit', 'offRamp') AS applies,
     CASE WHEN p.ego_passes IS NULL THEN 'the other cannot be placed, and may have been passed' ELSE format('ego at {:.1f} m/s, the other {:.1f} m/s on its {}', p.ego_speed_mps, p.speed_mps, p.side) END AS reason

@@ -27,58 +27,58 @@
 -- why = "our default: time to build up speed on it after a breakdown, which R276 asks for"
 
 -- @condition
--- an emergency: a mode that says so, or hazard lights on one that stops
-WITH lane AS (
-    SELECT e.drive_id, e.ego_id, e.t_ns, bool_and(n.lane_type IN ('shoulder', 'stop')) AS shoulder, min(n.road_type) AS road_type
+-- An emergency is a declared mode, or hazard lights on an ego that stops.
+WITH occupied_lane AS (
+    SELECT e.drive_id, e.ego_id, e.t_ns, bool_and(n.lane_type IN ('shoulder', 'stop')) AS is_shoulder, min(n.road_type) AS road_type
     FROM ego_state e
     JOIN lane_occupancy o ON o.drive_id = e.drive_id AND o.actor_id = e.ego_id AND o.t_ns = e.t_ns
     JOIN data_log g ON g.drive_id = e.drive_id
     JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = o.lanelet_id
     GROUP BY ALL
 ),
-emergency AS (
-    SELECT drive_id, ego_id, t_ns, bool_or(declared) AS declared
+emergency_step AS (
+    SELECT drive_id, ego_id, t_ns, bool_or(is_declared) AS is_declared
     FROM (
-        SELECT drive_id, ego_id, t_ns, true AS declared FROM ego_mode WHERE mode IN ('minimal_risk_manoeuvre', 'emergency_manoeuvre') AND is_on
+        SELECT drive_id, ego_id, t_ns, true AS is_declared FROM ego_mode WHERE mode IN ('minimal_risk_manoeuvre', 'emergency_manoeuvre') AND is_on
         UNION ALL
         SELECT drive_id, ego_id, t_ns, false FROM ego_state WHERE indicator = 'hazard'
     )
     GROUP BY ALL
 ),
-stay AS (
+ego_step AS (
     SELECT
-        e.drive_id, e.ego_id, e.t_ns, e.speed_mps, l.shoulder, x.t_ns IS NOT NULL AS warns, coalesce(x.declared, false) AS declared, x.t_ns IS NOT NULL AND e.speed_mps <= standing_mps() AS stands,
+        e.drive_id, e.ego_id, e.t_ns, e.speed_mps, l.is_shoulder, x.t_ns IS NOT NULL AS warns, coalesce(x.is_declared, false) AS is_declared, x.t_ns IS NOT NULL AND e.speed_mps <= standing_mps() AS stands,
         max(e.t_ns) OVER (PARTITION BY e.drive_id, e.ego_id) AS t_end_ns,
-        row_number() OVER (PARTITION BY e.drive_id, e.ego_id ORDER BY e.t_ns) - row_number() OVER (PARTITION BY e.drive_id, e.ego_id, l.shoulder ORDER BY e.t_ns) AS n
+        row_number() OVER (PARTITION BY e.drive_id, e.ego_id ORDER BY e.t_ns) - row_number() OVER (PARTITION BY e.drive_id, e.ego_id, l.is_shoulder ORDER BY e.t_ns) AS n
     FROM ego_state e
-    LEFT JOIN lane l USING (drive_id, ego_id, t_ns)
-    LEFT JOIN emergency x USING (drive_id, ego_id, t_ns)
+    LEFT JOIN occupied_lane l USING (drive_id, ego_id, t_ns)
+    LEFT JOIN emergency_step x USING (drive_id, ego_id, t_ns)
 ),
--- one that gets there, or stops there, and warns soon, and one that builds up speed after it stood there
-excused AS (
+-- The ego is excused if it comes onto the shoulder, or stops there, and warns soon, and if it builds up speed after it stood there.
+excuse AS (
     SELECT
         drive_id, ego_id, t_ns,
         CASE
-            WHEN bool_or(declared) OVER soon THEN true
-            WHEN bool_or(stands) OVER (w RANGE BETWEEN CURRENT ROW AND (($warns_s + coalesce(speed_mps, 0.0) / $stops_mps2) * 1e9)::BIGINT FOLLOWING) THEN true
-            WHEN bool_or(stands) OVER (w RANGE BETWEEN ($rejoins_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW) THEN true
+            WHEN bool_or(is_declared) OVER soon THEN true
+            WHEN bool_or(stands) OVER (stretch RANGE BETWEEN CURRENT ROW AND (($warns_s + coalesce(speed_mps, 0.0) / $stops_mps2) * 1e9)::BIGINT FOLLOWING) THEN true
+            WHEN bool_or(stands) OVER (stretch RANGE BETWEEN ($rejoins_s * 1e9)::BIGINT PRECEDING AND CURRENT ROW) THEN true
             WHEN bool_or(warns) OVER soon THEN NULL
-            WHEN last_value(t_ns) OVER (w ROWS BETWEEN CURRENT ROW AND UNBOUNDED FOLLOWING) < t_end_ns OR t_ns + ($warns_s * 1e9)::BIGINT <= t_end_ns THEN false
-        END AS excused
-    FROM stay
-    WHERE shoulder
-    WINDOW w AS (PARTITION BY drive_id, ego_id, n ORDER BY t_ns),
+            WHEN last_value(t_ns) OVER (stretch ROWS BETWEEN CURRENT ROW AND UNBOUNDED FOLLOWING) < t_end_ns OR t_ns + ($warns_s * 1e9)::BIGINT <= t_end_ns THEN false
+        END AS excuse
+    FROM ego_step
+    WHERE is_shoulder
+    WINDOW stretch AS (PARTITION BY drive_id, ego_id, n ORDER BY t_ns),
         soon AS (PARTITION BY drive_id, ego_id, n ORDER BY t_ns RANGE BETWEEN CURRENT ROW AND ($warns_s * 1e9)::BIGINT FOLLOWING)
 )
--- off all that the map knows, there may be a shoulder; what kind of road it is matters only on one
-SELECT e.drive_id, e.ego_id, e.t_ns, NOT l.shoulder AS holds,
-    CASE WHEN m.declared OR x.excused OR m.t_ns IS NOT NULL AND l.shoulder IS DISTINCT FROM true THEN false
-        WHEN NOT l.shoulder OR e.x_m IS NOT NULL AND l.shoulder IS NULL THEN coalesce(c.road_type, l.road_type, '') = 'motorway'
-        ELSE coalesce(c.road_type, l.road_type) = 'motorway' AND NOT x.excused END AS applies,
-    CASE WHEN l.shoulder AND x.excused IS NULL THEN CASE WHEN m.t_ns IS NOT NULL THEN 'it drove along the hard shoulder with its hazard lights on: whether that was an emergency is for a person to say'
+-- Where the map has no lane under the ego, there may be a shoulder. The kind of road matters only on a shoulder.
+SELECT e.drive_id, e.ego_id, e.t_ns, NOT l.is_shoulder AS holds,
+    CASE WHEN m.is_declared OR x.excuse OR m.t_ns IS NOT NULL AND l.is_shoulder IS DISTINCT FROM true THEN false
+        WHEN NOT l.is_shoulder OR e.x_m IS NOT NULL AND l.is_shoulder IS NULL THEN coalesce(c.road_type, l.road_type, '') = 'motorway'
+        ELSE coalesce(c.road_type, l.road_type) = 'motorway' AND NOT x.excuse END AS applies,
+    CASE WHEN l.is_shoulder AND x.excuse IS NULL THEN CASE WHEN m.t_ns IS NOT NULL THEN 'it drove along the hard shoulder with its hazard lights on: whether that was an emergency is for a person to say'
         ELSE 'the log does not show whether it stops with its hazard lights on' END END AS reason
 FROM ego_state e
-LEFT JOIN lane l USING (drive_id, ego_id, t_ns)
-LEFT JOIN emergency m USING (drive_id, ego_id, t_ns)
-LEFT JOIN excused x USING (drive_id, ego_id, t_ns)
+LEFT JOIN occupied_lane l USING (drive_id, ego_id, t_ns)
+LEFT JOIN emergency_step m USING (drive_id, ego_id, t_ns)
+LEFT JOIN excuse x USING (drive_id, ego_id, t_ns)
 LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)

@@ -1,6 +1,6 @@
--- title = "Having signalled to leave, leaves"
+-- title = "Exit taken after signalling to leave"
 -- clause = "UKHC R103: do not mislead others by your signals (the paper's physical postcondition)"
--- hypothesis = "When the ego signalled to the exit's side beside it, was it in the exit lane where the exit parts from the road?"
+-- hypothesis = "When the ego signalled towards an exit beside it, was it in the exit lane where the exit parts from the road?"
 -- kind = "postcondition"
 -- subtype = "physical"
 -- derivation = "direct"
