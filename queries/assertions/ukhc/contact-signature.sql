@@ -1,4 +1,4 @@
--- title = "No impact-like deceleration"
+-- title = "No impact-like change of speed"
 -- clause = "UKHC R144: do not drive dangerously or without care for others; a contact that the boxes miss shows in the speeds"
 -- hypothesis = "While another actor was within reach, did the ego and that actor lose or gain speed no faster than tyres can?"
 -- kind = "invariant"
