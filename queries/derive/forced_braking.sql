@@ -248,7 +248,7 @@ signal_ahead AS (
                 AND f.t_from_ns <= l.t_from_ns AND coalesce(f.t_to_ns > l.t_to_ns, true)
         )
 ),
--- The ego stands when the braking begins: the object lets the ego go first.
+-- The ego stands, and is not yet on the common ground, when the braking begins: the object lets the ego go first.
 standing_ego AS (
     SELECT l.drive_id, l.ego_id, l.object_id, l.t_from_ns
     FROM braking_for_ego l
