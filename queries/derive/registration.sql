@@ -2,7 +2,7 @@
 -- (or on a shoulder, where some drives are for most of the time) in at least 80 % of the steps. It drives with the traffic in at least 60 %
 -- of the moving steps; steps of an overtake in the opposing lane are left out, because a short drive may be little else. Its median
 -- distance from the centre line is at most 1.2 m (half a lane: with a map shifted by one lane, 100 % of the steps are still on a lane); the
--- median is taken beside such an overtake where that is enough.
+-- median is taken outside such an overtake where that is enough.
 -- The map also fits if three of four other vehicles drive with their lanes, and the ego was against its own lane for longer than an
 -- overtake takes: then the ego is on the wrong side.
 -- The map also fits if the ego keeps to the middle of a lane before and after it is elsewhere, on a road that runs as the other one does:
@@ -28,7 +28,7 @@ step_count AS (
         count(*) FILTER (e.lanelet_id IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_moving,
         count(*) FILTER (e.with_direction AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_with_direction,
         sum(st.dt_ns) FILTER (NOT e.with_direction AND s.speed_mps > 1 AND x.t_ns IS NULL) AS against_ns,
-        -- A short log may be half an overtake. The steps beside the overtake decide, if they are 5 s and a third of the log.
+        -- A short log may be half an overtake. The steps outside the overtake decide, if they are 5 s and a third of the log.
         CASE WHEN coalesce(sum(st.dt_ns) FILTER (e.off_m IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL), 0) >= 5_000_000_000
             AND 3 * count(e.off_m) FILTER (s.speed_mps > 1 AND x.t_ns IS NULL) >= count(s.x_m)
             THEN quantile_disc(e.off_m, 0.5) FILTER (s.speed_mps > 1 AND x.t_ns IS NULL) ELSE quantile_disc(e.off_m, 0.5) END AS lateral_median_m
@@ -109,8 +109,8 @@ lane_keeping AS (
 lane_keeping_span AS (
     SELECT drive_id, ego_id, min(t_to_ns) AS t_before_ns, max(t_from_ns) AS t_after_ns, list_distinct(flatten(list(direction_nos))) AS direction_nos FROM lane_keeping GROUP BY ALL
 ),
--- A map that is shifted along a road still fits on that road. Only if the ego kept to two roads that cross, its place is known in both
--- directions. Otherwise the road on which the ego is elsewhere must run as those that it kept to.
+-- A map that is shifted along a road still fits on that road. Its place is known in both directions only if the ego kept to two roads that
+-- cross. Otherwise the road on which the ego is elsewhere must run as those that it kept to.
 fitting_ego AS (
     SELECT l.drive_id, l.ego_id
     FROM ego_step l

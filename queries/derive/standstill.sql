@@ -1,4 +1,4 @@
--- Periods in which the ego stands. If the log has no speed, the way from step to step stands in for it: an unknown speed must not hide a
+-- Periods in which the ego stands. If the log has no speed, the distance from step to step replaces it: an unknown speed must not hide a
 -- standstill.
 WITH step_speed AS (
     SELECT

@@ -13,14 +13,14 @@ way_back AS (
     FROM numbered_step
     GROUP BY drive_id, ego_id, chain_id, mark_id, s_start_m, n
 ),
-first_crossing_step AS (
+crossing_step AS (
     SELECT o.drive_id, o.ego_id, o.chain_id, o.mark_id, o.s_start_m, o.t_ns, o.k, o.joined, o.front_before_m
     FROM numbered_step o
     LEFT JOIN way_back b USING (drive_id, ego_id, chain_id, mark_id, s_start_m, n)
     WHERE o.is_crossing AND (o.n = 1 OR b.has_been_back)
 ),
 crossing_interval AS (
-    SELECT *, lag(t_ns, 1, -1) OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m ORDER BY t_ns) AS t_before_ns FROM first_crossing_step
+    SELECT *, lag(t_ns, 1, -1) OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m ORDER BY t_ns) AS t_before_ns FROM crossing_step
 ),
 -- ---- the approach to the line
 approach_step AS (
@@ -61,7 +61,7 @@ light_state AS (
     SELECT
         c.drive_id, c.ego_id, c.chain_id, c.mark_id, c.s_start_m, c.t_ns, p.state, p.state_before, CASE WHEN p.begin_seen THEN p.t_from_ns END AS t_state_ns,
         CASE WHEN p.state = 'amber' AND p.begin_seen THEN p.t_from_ns WHEN p.state = 'red' AND p.state_before = 'amber' THEN p.t_before_ns END AS t_amber_ns
-    FROM first_crossing_step c
+    FROM crossing_step c
     JOIN mark_phase p USING (drive_id, ego_id, chain_id, mark_id, s_start_m)
     WHERE p.kind = 'stop_line' AND p.t_from_ns <= c.t_ns AND c.t_ns < coalesce(p.t_to_ns, c.t_ns + 1)
 ),
@@ -84,7 +84,7 @@ SELECT
     CASE WHEN NOT s.unknown_3m OR s.slowest.speed_mps <= stood_mps() THEN s.slowest.speed_mps END AS slowest_mps,
     CASE WHEN NOT s.unknown_3m OR s.slowest.speed_mps <= stood_mps() THEN -s.slowest.front_m END AS slowest_front_m,
     CASE WHEN d.stood_s IS NOT NULL AND NOT s.unknown_1m THEN d.stood_s WHEN NOT s.unknown_1m THEN 0.0 WHEN s.t_ns IS NULL THEN 0.0 END AS stood_s
-FROM first_crossing_step c
+FROM crossing_step c
 JOIN way_mark m ON m.drive_id = c.drive_id AND m.ego_id = c.ego_id AND m.chain_id = c.chain_id AND m.mark_id = c.mark_id
     AND m.s_start_m = c.s_start_m AND m.kind = 'stop_line'
 JOIN ego_state e ON e.drive_id = c.drive_id AND e.ego_id = c.ego_id AND e.t_ns = c.t_ns

@@ -11,7 +11,7 @@ lane_summary AS (
             min({'gap_m': p.gap_m, 'id': p.object_id}) FILTER (is_vehicle(p.actor_class) AND p.oncoming AND p.speed_mps <= standing_mps() IS DISTINCT FROM true).id
         ] AS ids,
         min(p.gap_m) FILTER (is_vehicle(p.actor_class)) AS gap_m, max(p.speed_mps) FILTER (is_vehicle(p.actor_class) AND p.oncoming) AS coming_mps,
-        coalesce(bool_or(p.oncoming IS DISTINCT FROM false) FILTER (is_vehicle(p.actor_class)), false) AS has_coming, min(p.gap_m) FILTER (is_vehicle(p.actor_class) AND p.across_m < 0) AS way_gap_m,
+        coalesce(bool_or(p.oncoming IS DISTINCT FROM false) FILTER (is_vehicle(p.actor_class)), false) AS has_oncoming, min(p.gap_m) FILTER (is_vehicle(p.actor_class) AND p.across_m < 0) AS way_gap_m,
         min(p.gap_m) FILTER (is_vehicle(p.actor_class) IS NULL AND p.outside) AS outside_m,
         min(p.gap_m) FILTER (is_vehicle(p.actor_class) IS DISTINCT FROM true AND p.gap_m < unsure_reach_m(e.speed_mps)) AS unclassified_m
     FROM lane_ahead p
@@ -77,7 +77,7 @@ vehicle_or_doubt AS (
     SELECT
         e.drive_id, e.ego_id, e.t_ns, NULL::VARCHAR AS object_id, true AS nearest, false AS known, e.speed_mps AS ego_speed_mps, 0.0 AS error_mps,
         least(d.least_m, d.late_m, c.unclassified_m, c.gap_m) AS free_m,
-        e.speed_mps + CASE WHEN d.along AND c.unclassified_m IS NULL AND NOT coalesce(c.has_coming, false) THEN 0.0 ELSE greatest(fastest_mps(), c.coming_mps) END AS free_mps
+        e.speed_mps + CASE WHEN d.along AND c.unclassified_m IS NULL AND NOT coalesce(c.has_oncoming, false) THEN 0.0 ELSE greatest(fastest_mps(), c.coming_mps) END AS free_mps
     FROM ego_state e
     ANTI JOIN lead l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.t_ns = e.t_ns
     LEFT JOIN lane_summary c USING (drive_id, ego_id, t_ns)

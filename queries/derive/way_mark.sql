@@ -86,7 +86,7 @@ signal AS (
     FROM signal_with_turns h
     LEFT JOIN (SELECT DISTINCT drive_id, signal_id FROM signal_state) r ON r.drive_id = h.drive_id AND r.signal_id = h.signal_id
 ),
--- ---- lines and crossings: one that lies over the seam of two lanelets counts once
+-- ---- lines and crossings: one that lies where two lanelets join counts once
 line_part AS (
     SELECT l.drive_id, l.ego_id, l.chain_id, s.stop_line_id AS mark_id, l.lanelet_id, l.seq, l.s_start_m + s.lane_s_m AS s_start_m, l.s_start_m + s.lane_s_m AS s_end_m
     FROM chain_lanelet l JOIN stop_line s USING (environment_id, lanelet_id)
