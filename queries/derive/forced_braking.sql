@@ -6,7 +6,8 @@ WITH
 hard_braking AS MATERIALIZED (
     SELECT drive_id, ego_id, object_id, t_ns FROM pair WHERE accel_mps2 < -least_force_mps2() AND distance_m < forced_near_m()
 ),
--- The object stands head on while the ego is out in the object's lane. It may have waited for the ego, however gently it braked before.
+-- The object stands, head on to the ego, while the ego is out in the object's lane. It may have waited for the ego, however gently it
+-- braked before.
 head_on_stop AS MATERIALIZED (
     SELECT p.drive_id, p.ego_id, p.object_id, x.t0_ns, min(p.t_ns) AS t_ns
     FROM excursion x
@@ -223,7 +224,7 @@ other_obstacle AS (
 ),
 -- A bend that is too tight for the speed of the object.
 tight_bend AS (SELECT DISTINCT drive_id, object_id, t_from_ns FROM course WHERE way_m <= reach_m AND speed_mps ** 2 * curvature > bend_mps2()),
--- A stop sign, a give-way sign, or a traffic light that is not known to be green all the time of the braking.
+-- A stop sign, a give-way sign, or a traffic light that is not known to be green during the whole braking.
 braking_lane AS (
     SELECT b.drive_id, b.object_id, b.t_from_ns, b.t_to_ns, b.reach_m, g.environment_id, n.lanelet_id, -o.s_m AS lane_start_m, n.length_m
     FROM braking b

@@ -1,7 +1,8 @@
--- Every actor that is there, or may be there, and has no place in the corridor, with the least distance that it can have. From its last and
--- its next sighting it comes no nearer than 60 m/s and its tyres allow. An actor that drives along the road, the ego's way or against it,
--- neither turns round nor reverses. If the log is taken to record every actor in plain view (data_log.in_sight), an actor that is not
--- recorded for a while is not in plain view. An actor off the lanes has a place as long as the corridor reaches beyond it.
+-- Every actor that is there, or may be there, and has no place in the corridor, with the least distance that it can have. After its last
+-- and before its next sighting it comes nearer at 60 m/s at most, and only as its tyres allow. An actor that drives along the road, the
+-- ego's way or against it, neither turns round nor reverses. If the log is taken to record every actor in plain view (data_log.in_sight),
+-- an actor that is not recorded for a while is not in plain view. An actor off the lanes has a place as long as the corridor reaches beyond
+-- it.
 WITH pair_without_position AS (
     SELECT drive_id, ego_id, t_ns, object_id, actor_class, off_level FROM pair WHERE x_m IS NULL OR y_m IS NULL
 ),

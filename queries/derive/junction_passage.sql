@@ -106,7 +106,7 @@ branch AS (
     GROUP BY environment_id, junction_id
 ),
 map_with_signals AS (SELECT DISTINCT environment_id FROM traffic_signal WHERE kind IN ('traffic_light', 'stop', 'give_way')),
--- Passages before which the map begins so near to the junction that a signal may stand where the map has no road.
+-- Passages with a map that begins so near before the junction that a signal may stand further back, off the map.
 cropped_approach AS (
     SELECT w.drive_id, w.ego_id, w.t_first_ns
     FROM passage_chain w

@@ -1,4 +1,5 @@
--- The lanelet straight ahead and the one straight behind: the link with the least change of heading; of equal ones the least id.
+-- The lanelet straight ahead and the one straight behind: the link with the least change of heading. The least id decides between equal
+-- ones.
 WITH link AS (
     SELECT l.environment_id, l.from_id, l.to_id, abs(l.turn_rad) AS turn_abs_rad
     FROM lane_link l

@@ -28,7 +28,7 @@ SELECT
     w.front_s_m - m.s_start_m AS front_m, w.rear_s_m - m.s_end_m AS rear_m,
     w.previous.front_s_m - m.s_start_m AS front_before_m, w.previous.rear_s_m - m.s_end_m AS rear_before_m,
     coalesce(w.previous.k = w.k - 1 AND w.previous.seg = w.seg, false) AS joined,
-    -- An ego beside the lane by more than the width of a lane (4 m) is on another way.
+    -- An ego that is further beside the lane than the width of a lane (4 m) is on another way.
     e.chain_id IS NOT DISTINCT FROM w.chain_id AND w.beside_m < 4 AS running
 FROM bumper_step w
 JOIN way_mark m ON m.drive_id = w.drive_id AND m.ego_id = w.ego_id AND m.chain_id = w.chain_id

@@ -11,7 +11,7 @@ WITH overtaking_excursion AS (
     -- outside.
     WHERE x.overtaking AND e.chain_id = x.chain_id
 ),
--- The places of the ego and of all objects during an excursion: all that is needed of a large table. From here on it is read by key.
+-- The places of the ego and of all objects during an excursion: all that is needed of the large table pair. From here on it is read by key.
 pair_in_excursion AS MATERIALIZED (
     SELECT g.chain_id, g.t0_ns, e.front_s_m AS ego_front_m, e.rear_s_m AS ego_rear_m, p.*
     FROM overtaking_excursion g

@@ -1,5 +1,5 @@
 -- How far the ego sees at the steps at which an object is missing: all around as far as the nearest box, and along its own lane as far as
--- nobody is in it. Where that lane is not straight, it also sees only as far as no box hides the lane.
+-- nobody is in it. Where that lane is not straight, it sees no further than to the first place that a box hides.
 WITH missing_step AS (
     SELECT DISTINCT drive_id, ego_id, t_ns
     FROM (
