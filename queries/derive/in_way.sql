@@ -1,16 +1,16 @@
--- The actor nearest in the ego's way, per ego step: a person, an animal, a thing or a vehicle, for each is a reason to brake or to stop.
--- The way is the running lane and the strip that the ego's box takes, with half a metre to both sides. An actor that comes across is in
--- the way if its velocity, not its heading, brings it into the strip within some seconds, now and in the moments before: one velocity is no
--- proof, for recorded ones tremble, but it may be.
+-- The nearest actor in the ego's way at each step. It may be a person, an animal, a thing or a vehicle: each is a reason to brake or to
+-- stop. The way is the running lane and the strip that the ego's box takes, with half a metre on both sides. An actor that comes across is
+-- in the way if its velocity (not its heading) brings it into the strip within some seconds, now and in the moments before. A single
+-- velocity is no proof, because recorded velocities tremble: the actor may be in the way.
 WITH ahead AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class,
-        greatest(0.0, coalesce(p.rear_s_m, p.s_m) - e.front_s_m) AS gap_m, e.speed_mps AS ego_mps,
+        greatest(0.0, coalesce(p.rear_s_m, p.s_m) - e.front_s_m) AS gap_m, e.speed_mps AS ego_speed_mps,
         abs(p.d_m - e.d_m) - coalesce(p.lat_half_m, 0.0) - e.lat_half_m AS across_m,
-        -- one without a size has at least its middle, and may be as large as any
-        CASE WHEN p.lat_half_m IS NULL THEN two_half_boxes_m() / 2 ELSE 0.0 END AS unsure_m,
+        -- An object of unknown size takes at least its centre, and may be as large as any box.
+        CASE WHEN p.lat_half_m IS NULL THEN two_half_boxes_m() / 2 ELSE 0.0 END AS unknown_half_m,
         in_lane(p.d_m, coalesce(p.lat_half_m, 0.0), p.half_width_m) AS in_lane,
-        -- a standing actor needs no heading
+        -- A standing actor needs no heading.
         coalesce(s.vx_mps * cos(p.yaw_rad - p.heading_diff_rad) + s.vy_mps * sin(p.yaw_rad - p.heading_diff_rad), CASE WHEN p.speed_mps <= standing_mps() THEN 0.0 END) AS along_mps,
         sign(p.d_m - e.d_m) * (
             e.speed_mps * sin(e.heading_diff_rad) - (s.vy_mps * cos(p.yaw_rad - p.heading_diff_rad) - s.vx_mps * sin(p.yaw_rad - p.heading_diff_rad))
@@ -20,27 +20,27 @@ WITH ahead AS (
     LEFT JOIN state_dynamics s ON s.drive_id = p.drive_id AND s.actor_id = p.object_id AND s.t_ns = p.t_ns
     WHERE p.s_m > e.s_m AND p.s_m - e.s_m < way_reach_m()
 ),
-told AS (
+object_status AS (
     SELECT
         *,
-        across_m < way_beside_m() OR in_lane OR across_m <= enters_s() * least(towards_mps, least_mps) AND before_mps IS NOT NULL AS in_way,
-        -- somebody on foot beside the way may step into it; so may one whose class or velocity is not known
-        across_m < way_beside_m() + unsure_m OR across_m <= enters_s() * towards_mps OR across_m < may_step_m() AND (actor_class IS NULL OR NOT may_be_vehicle(actor_class) OR towards_mps IS NULL) AS may_be,
-        need_mps2(gap_m, ego_mps, along_mps) AS need_mps2
+        across_m < way_beside_m() OR in_lane OR across_m <= enters_s() * least(towards_mps, least_towards_mps) AND towards_before_mps IS NOT NULL AS in_way,
+        -- Somebody on foot beside the way may step into it. So may an actor of unknown class or velocity.
+        across_m < way_beside_m() + unknown_half_m OR across_m <= enters_s() * towards_mps OR across_m < may_step_m() AND (actor_class IS NULL OR NOT may_be_vehicle(actor_class) OR towards_mps IS NULL) AS may_be_in_way,
+        need_mps2(gap_m, ego_speed_mps, along_mps) AS need_mps2
     FROM (
-        SELECT *, least(min(towards_mps) OVER (w RANGE BETWEEN comes_ns() PRECEDING AND CURRENT ROW), before_mps) AS least_mps
-        FROM (SELECT *, lag(towards_mps) OVER w AS before_mps FROM ahead WINDOW w AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns))
+        SELECT *, least(min(towards_mps) OVER (w RANGE BETWEEN comes_ns() PRECEDING AND CURRENT ROW), towards_before_mps) AS least_towards_mps
+        FROM (SELECT *, lag(towards_mps) OVER w AS towards_before_mps FROM ahead WINDOW w AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns))
         WINDOW w AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns)
     )
 ),
-met AS (
+nearest_object AS (
     SELECT
         drive_id, ego_id, t_ns,
-        min({'gap_m': gap_m, 'object_id': object_id, 'actor_class': actor_class, 'along_mps': along_mps}) FILTER (in_way) AS near,
+        min({'gap_m': gap_m, 'object_id': object_id, 'actor_class': actor_class, 'along_mps': along_mps}) FILTER (in_way) AS nearest,
         max(need_mps2) FILTER (in_way) AS need_mps2,
-        bool_or(along_mps IS NULL OR in_way IS DISTINCT FROM true) AS doubt
-    FROM told
-    WHERE in_way OR may_be
+        bool_or(along_mps IS NULL OR in_way IS DISTINCT FROM true) AS is_doubtful
+    FROM object_status
+    WHERE in_way OR may_be_in_way
     GROUP BY ALL
 ),
 unseen AS (
@@ -50,18 +50,18 @@ unseen AS (
     WHERE h.ahead IS DISTINCT FROM false AND p.d_m IS NULL
     GROUP BY ALL
 ),
-step_by_step AS (
+way_step AS (
     SELECT
-        e.drive_id, e.ego_id, e.t_ns, m.near, coalesce(m.need_mps2, 0.0) AS need_mps2,
-        e.front_s_m IS NOT NULL AND e.speed_mps IS NOT NULL AND NOT coalesce(m.doubt, false)
+        e.drive_id, e.ego_id, e.t_ns, m.nearest, coalesce(m.need_mps2, 0.0) AS need_mps2,
+        e.front_s_m IS NOT NULL AND e.speed_mps IS NOT NULL AND NOT coalesce(m.is_doubtful, false)
             AND coalesce(u.least_m > way_look_m(e.speed_mps), true) AS known
     FROM ego_state e
-    LEFT JOIN met m USING (drive_id, ego_id, t_ns)
+    LEFT JOIN nearest_object m USING (drive_id, ego_id, t_ns)
     LEFT JOIN unseen u USING (drive_id, ego_id, t_ns)
 )
 SELECT
-    drive_id, ego_id, t_ns, near.object_id AS object_id, near.actor_class AS actor_class, near.gap_m AS gap_m, near.along_mps AS along_mps,
-    max(need_mps2) OVER lately AS need_mps2, bool_and(known) OVER lately AS known
-FROM step_by_step
--- a driver releases the brake some time after the way is clear
-WINDOW lately AS (PARTITION BY drive_id, ego_id ORDER BY t_ns RANGE BETWEEN let_go_ns() PRECEDING AND CURRENT ROW)
+    drive_id, ego_id, t_ns, nearest.object_id AS object_id, nearest.actor_class AS actor_class, nearest.gap_m AS gap_m, nearest.along_mps AS along_mps,
+    max(need_mps2) OVER recent AS need_mps2, bool_and(known) OVER recent AS known
+FROM way_step
+-- A driver releases the brake only some time after the way is clear.
+WINDOW recent AS (PARTITION BY drive_id, ego_id ORDER BY t_ns RANGE BETWEEN let_go_ns() PRECEDING AND CURRENT ROW)

@@ -1,74 +1,75 @@
--- The ego's ways through junctions: stretches of steps on connecting lanelets, with the stations of its bumpers on its chain.
-WITH placed AS (
+-- The ego's passages through junctions: stretches of steps on connecting lanelets, with the stations of the ego's bumpers on its chain.
+WITH lane_step AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, st.seg, g.environment_id, e.lanelet_id, n.junction_id
     FROM ego_lane e
     JOIN step st USING (drive_id, ego_id, t_ns)
     JOIN data_log g USING (drive_id)
     JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = e.lanelet_id
 ),
-inside AS (
+passage AS (
     SELECT
-        drive_id, ego_id, environment_id, seg, junction_id, run, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns,
+        drive_id, ego_id, environment_id, seg, junction_id, run_no, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns,
         min({'t_ns': t_ns, 'id': lanelet_id}).id AS via_id
     FROM (
         SELECT
             *,
             sum((junction_id IS DISTINCT FROM junction_before OR seg IS DISTINCT FROM seg_before)::INTEGER)
-                OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS run
+                OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS run_no
         FROM (
             SELECT *, lag(junction_id) OVER w AS junction_before, lag(seg) OVER w AS seg_before
-            FROM placed
+            FROM lane_step
             WINDOW w AS (PARTITION BY drive_id, ego_id ORDER BY t_ns)
         )
     )
     WHERE junction_id IS NOT NULL
-    GROUP BY drive_id, ego_id, environment_id, seg, junction_id, run
+    GROUP BY drive_id, ego_id, environment_id, seg, junction_id, run_no
 ),
--- a lanelet of the ego's way that it drove beside, at the corner of a junction, it passed between those before and after
-on_chain AS (
+-- Where the ego cut the corner of a junction, it drove beside a lanelet of its chain: it passed that lanelet between those before and after
+-- it.
+chain_lanelet AS (
     SELECT
         drive_id, ego_id, chain_id, seq, coalesce(t_first_ns, lag(t_last_ns IGNORE NULLS) OVER w) AS t_first_ns, coalesce(t_last_ns, lead(t_first_ns IGNORE NULLS) OVER w) AS t_last_ns
     FROM chain
     WINDOW w AS (PARTITION BY drive_id, ego_id, chain_id ORDER BY seq)
 ),
--- the junction on the chains by which the ego drove it: one may end in it and the next begin
-driven AS (
+-- The junction on the chains on which the ego drove through it: one chain may end in the junction and the next one begin there.
+passage_chain AS (
     SELECT
         i.drive_id, i.ego_id, i.t_first_ns,
-        min({'t_ns': c.t_first_ns, 'chain_id': m.chain_id, 's_m': m.s_start_m, 'seq': m.seq_first, 'control': m.control}) AS entry,
-        max({'t_ns': c.t_first_ns, 'chain_id': m.chain_id, 's_m': m.s_start_m, 'seq': m.seq_last}) AS leave
-    FROM inside i
-    JOIN on_chain c ON c.drive_id = i.drive_id AND c.ego_id = i.ego_id AND c.t_first_ns <= i.t_last_ns AND c.t_last_ns >= i.t_first_ns
+        min({'t_ns': c.t_first_ns, 'chain_id': m.chain_id, 's_m': m.s_start_m, 'seq': m.seq_first, 'control': m.control}) AS entry_mark,
+        max({'t_ns': c.t_first_ns, 'chain_id': m.chain_id, 's_m': m.s_start_m, 'seq': m.seq_last}) AS exit_mark
+    FROM passage i
+    JOIN chain_lanelet c ON c.drive_id = i.drive_id AND c.ego_id = i.ego_id AND c.t_first_ns <= i.t_last_ns AND c.t_last_ns >= i.t_first_ns
     JOIN way_mark m ON m.drive_id = c.drive_id AND m.ego_id = c.ego_id AND m.chain_id = c.chain_id AND m.kind = 'junction'
         AND m.mark_id = i.junction_id AND c.seq >= m.seq_first AND c.seq <= m.seq_last
     GROUP BY i.drive_id, i.ego_id, i.t_first_ns
 ),
-entered AS (
+entry_time AS (
     SELECT i.drive_id, i.ego_id, i.t_first_ns, max(n.t_ns) AS t_in_ns
-    FROM inside i
-    JOIN driven w USING (drive_id, ego_id, t_first_ns)
-    JOIN near_mark n ON n.drive_id = i.drive_id AND n.ego_id = i.ego_id AND n.chain_id = w.entry.chain_id AND n.kind = 'junction'
-        AND n.mark_id = i.junction_id AND n.s_start_m = w.entry.s_m AND n.seg = i.seg AND n.t_ns <= i.t_first_ns
+    FROM passage i
+    JOIN passage_chain w USING (drive_id, ego_id, t_first_ns)
+    JOIN near_mark n ON n.drive_id = i.drive_id AND n.ego_id = i.ego_id AND n.chain_id = w.entry_mark.chain_id AND n.kind = 'junction'
+        AND n.mark_id = i.junction_id AND n.s_start_m = w.entry_mark.s_m AND n.seg = i.seg AND n.t_ns <= i.t_first_ns
     WHERE n.front_m >= 0 AND n.front_before_m < 0 AND n.joined
     GROUP BY i.drive_id, i.ego_id, i.t_first_ns
 ),
-left_behind AS (
+exit_time AS (
     SELECT i.drive_id, i.ego_id, i.t_first_ns, min(n.t_ns) AS t_out_ns
-    FROM inside i
-    JOIN driven w USING (drive_id, ego_id, t_first_ns)
-    JOIN near_mark n ON n.drive_id = i.drive_id AND n.ego_id = i.ego_id AND n.chain_id = w.leave.chain_id AND n.kind = 'junction'
-        AND n.mark_id = i.junction_id AND n.s_start_m = w.leave.s_m AND n.seg = i.seg AND n.t_ns >= i.t_last_ns
+    FROM passage i
+    JOIN passage_chain w USING (drive_id, ego_id, t_first_ns)
+    JOIN near_mark n ON n.drive_id = i.drive_id AND n.ego_id = i.ego_id AND n.chain_id = w.exit_mark.chain_id AND n.kind = 'junction'
+        AND n.mark_id = i.junction_id AND n.s_start_m = w.exit_mark.s_m AND n.seg = i.seg AND n.t_ns >= i.t_last_ns
     WHERE n.rear_m >= 0 AND n.rear_before_m < 0 AND n.joined
     GROUP BY i.drive_id, i.ego_id, i.t_first_ns
 ),
--- headings of the way in and the way out
-edge AS (
+-- Headings at the start and at the end of a lanelet, for the way in and the way out.
+lanelet_heading AS (
     SELECT environment_id, lanelet_id, min({'k': k, 'a': atan2(ty, tx)}).a AS first_rad, max({'k': k, 'a': atan2(ty, tx)}).a AS last_rad
     FROM lane_point
     GROUP BY environment_id, lanelet_id
 ),
--- of all ways out of the road that the ego came by, the one that turns least: a connecting road is one road from end to end
-straightest AS (
+-- The way out that turns least, of all ways out for the road that the ego came by. A connecting road is one road from end to end.
+straightest_exit AS (
     SELECT environment_id, junction_id, road_id, along_road, min({'off_rad': abs(turn_rad), 'turn_rad': turn_rad}).turn_rad AS turn_rad
     FROM (
         SELECT j.environment_id, j.junction_id, f.road_id, f.along_road, wrap_rad(eo.first_rad - ef.last_rad) AS turn_rad
@@ -78,18 +79,18 @@ straightest AS (
         JOIN lanelet k ON k.environment_id = j.environment_id AND k.junction_id = j.junction_id AND k.road_id = j.road_id AND k.along_road = j.along_road
         JOIN lane_link l ON l.environment_id = j.environment_id AND l.from_id = k.lanelet_id
         JOIN lanelet o ON o.environment_id = j.environment_id AND o.lanelet_id = l.to_id
-        JOIN edge ef ON ef.environment_id = j.environment_id AND ef.lanelet_id = f.lanelet_id
-        JOIN edge eo ON eo.environment_id = j.environment_id AND eo.lanelet_id = o.lanelet_id
+        JOIN lanelet_heading ef ON ef.environment_id = j.environment_id AND ef.lanelet_id = f.lanelet_id
+        JOIN lanelet_heading eo ON eo.environment_id = j.environment_id AND eo.lanelet_id = o.lanelet_id
         WHERE j.junction_id IS NOT NULL AND j.drivable AND k.drivable AND f.drivable AND o.drivable
             AND f.junction_id IS DISTINCT FROM j.junction_id AND o.junction_id IS DISTINCT FROM j.junction_id
     )
     GROUP BY environment_id, junction_id, road_id, along_road
 ),
--- both ends of a road may lead to the same junction
+-- Both ends of a road may lead to the same junction: they are two branches.
 branch AS (
-    SELECT environment_id, junction_id, count(DISTINCT {'road': coalesce(h.of_road_id, r.road_id), 'by_its_end': r.by_its_end <> coalesce(h.turned, false)}) AS n
+    SELECT environment_id, junction_id, count(DISTINCT {'road': coalesce(h.of_road_id, r.road_id), 'by_road_end': r.by_road_end <> coalesce(h.turned, false)}) AS n
     FROM (
-        SELECT j.environment_id, j.junction_id, o.road_id, o.along_road = -1 AS by_its_end
+        SELECT j.environment_id, j.junction_id, o.road_id, o.along_road = -1 AS by_road_end
         FROM lanelet j
         JOIN lane_link l ON l.environment_id = j.environment_id AND l.from_id = j.lanelet_id
         JOIN lanelet o ON o.environment_id = j.environment_id AND o.lanelet_id = l.to_id
@@ -104,37 +105,38 @@ branch AS (
     LEFT JOIN road_half h USING (environment_id, road_id)
     GROUP BY environment_id, junction_id
 ),
-signed AS (SELECT DISTINCT environment_id FROM traffic_signal WHERE kind IN ('traffic_light', 'stop', 'give_way')),
--- the map begins so near to the junction that a signal may stand before that
-cropped AS (
+map_with_signals AS (SELECT DISTINCT environment_id FROM traffic_signal WHERE kind IN ('traffic_light', 'stop', 'give_way')),
+-- Passages with a map that begins so near before the junction that a signal may stand further back, off the map.
+cropped_approach AS (
     SELECT w.drive_id, w.ego_id, w.t_first_ns
-    FROM driven w
+    FROM passage_chain w
     JOIN data_log g USING (drive_id)
-    JOIN chain c ON c.drive_id = w.drive_id AND c.ego_id = w.ego_id AND c.chain_id = w.entry.chain_id AND c.seq <= w.entry.seq
+    JOIN chain c ON c.drive_id = w.drive_id AND c.ego_id = w.ego_id AND c.chain_id = w.entry_mark.chain_id AND c.seq <= w.entry_mark.seq
     JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = c.lanelet_id
     JOIN lane_next l ON l.environment_id = g.environment_id AND l.lanelet_id = c.lanelet_id
-    GROUP BY w.drive_id, w.ego_id, w.t_first_ns, w.entry
-    HAVING min({'seq': c.seq, 'begins': l.map_begins}).begins AND w.entry.s_m - min(c.s_start_m) < governed_m()
-        AND NOT bool_or(n.junction_id IS NOT NULL AND c.seq < w.entry.seq)
+    GROUP BY w.drive_id, w.ego_id, w.t_first_ns, w.entry_mark
+    HAVING min({'seq': c.seq, 'begins': l.map_begins}).begins AND w.entry_mark.s_m - min(c.s_start_m) < governed_m()
+        AND NOT bool_or(n.junction_id IS NOT NULL AND c.seq < w.entry_mark.seq)
 ),
-whole AS (
+passage_detail AS (
     SELECT
         i.*, e.t_in_ns, o.t_out_ns, b.lanelet_id AS from_id, a.lanelet_id AS to_id,
-        CASE WHEN v.handedness_source <> 'default' THEN v.handedness END AS hand,
-        -- with its centre on the lane after it, where it goes is seen, though the log may end before its rear is past
+        CASE WHEN v.handedness_source <> 'default' THEN v.handedness END AS known_handedness,
+        -- Once the ego's centre is on the lane after the junction, its turn is seen, even if the log ends before its rear is past the
+        -- junction.
         CASE WHEN e.t_in_ns IS NOT NULL AND (o.t_out_ns IS NOT NULL OR a.t_first_ns > i.t_last_ns) THEN wrap_rad(ea.first_rad - eb.last_rad) END AS turn_rad,
-        CASE WHEN g.environment_id IS NOT NULL AND w.entry IS NOT NULL THEN coalesce(w.entry.control, CASE WHEN x.t_first_ns IS NULL THEN 'none' END) END AS control
-    FROM inside i
+        CASE WHEN g.environment_id IS NOT NULL AND w.entry_mark IS NOT NULL THEN coalesce(w.entry_mark.control, CASE WHEN x.t_first_ns IS NULL THEN 'none' END) END AS control
+    FROM passage i
     JOIN environment v USING (environment_id)
-    LEFT JOIN driven w USING (drive_id, ego_id, t_first_ns)
-    LEFT JOIN entered e USING (drive_id, ego_id, t_first_ns)
-    LEFT JOIN left_behind o USING (drive_id, ego_id, t_first_ns)
-    LEFT JOIN chain b ON b.drive_id = i.drive_id AND b.ego_id = i.ego_id AND b.chain_id = w.entry.chain_id AND b.seq = w.entry.seq - 1
-    LEFT JOIN chain a ON a.drive_id = i.drive_id AND a.ego_id = i.ego_id AND a.chain_id = w.leave.chain_id AND a.seq = w.leave.seq + 1
-    LEFT JOIN edge eb ON eb.environment_id = i.environment_id AND eb.lanelet_id = b.lanelet_id
-    LEFT JOIN edge ea ON ea.environment_id = i.environment_id AND ea.lanelet_id = a.lanelet_id
-    LEFT JOIN signed g ON g.environment_id = i.environment_id
-    LEFT JOIN cropped x ON x.drive_id = i.drive_id AND x.ego_id = i.ego_id AND x.t_first_ns = i.t_first_ns
+    LEFT JOIN passage_chain w USING (drive_id, ego_id, t_first_ns)
+    LEFT JOIN entry_time e USING (drive_id, ego_id, t_first_ns)
+    LEFT JOIN exit_time o USING (drive_id, ego_id, t_first_ns)
+    LEFT JOIN chain b ON b.drive_id = i.drive_id AND b.ego_id = i.ego_id AND b.chain_id = w.entry_mark.chain_id AND b.seq = w.entry_mark.seq - 1
+    LEFT JOIN chain a ON a.drive_id = i.drive_id AND a.ego_id = i.ego_id AND a.chain_id = w.exit_mark.chain_id AND a.seq = w.exit_mark.seq + 1
+    LEFT JOIN lanelet_heading eb ON eb.environment_id = i.environment_id AND eb.lanelet_id = b.lanelet_id
+    LEFT JOIN lanelet_heading ea ON ea.environment_id = i.environment_id AND ea.lanelet_id = a.lanelet_id
+    LEFT JOIN map_with_signals g ON g.environment_id = i.environment_id
+    LEFT JOIN cropped_approach x ON x.drive_id = i.drive_id AND x.ego_id = i.ego_id AND x.t_first_ns = i.t_first_ns
 ),
 turned AS (
     SELECT
@@ -143,15 +145,15 @@ turned AS (
             WHEN abs(turn_rad) <= radians(30) THEN 'straight' WHEN abs(turn_rad) > radians(150) THEN 'u_turn'
             WHEN turn_rad > 0 THEN 'left' WHEN turn_rad < 0 THEN 'right'
         END AS turn
-    FROM whole
+    FROM passage_detail
 )
 SELECT
     t.drive_id, t.ego_id, (row_number() OVER (PARTITION BY t.drive_id, t.ego_id ORDER BY t.t_first_ns) - 1)::INTEGER AS occurrence,
     t.junction_id, t.t_in_ns, t.t_out_ns, t.t_first_ns, t.t_last_ns, t.from_id AS from_lanelet_id, t.via_id AS via_lanelet_id, t.to_id AS to_lanelet_id,
     t.turn, t.turn_rad, s.turn_rad AS straightest_rad,
-    CASE WHEN t.hand IS NOT NULL THEN t.turn = 'u_turn' OR t.turn = CASE t.hand WHEN 'lht' THEN 'right' ELSE 'left' END END AS across,
+    CASE WHEN t.known_handedness IS NOT NULL THEN t.turn = 'u_turn' OR t.turn = CASE t.known_handedness WHEN 'lht' THEN 'right' ELSE 'left' END END AS across,
     coalesce(n.n, 0)::INTEGER AS branches, t.control, t.control IN ('stop', 'give_way') AS minor
 FROM turned t
 LEFT JOIN branch n USING (environment_id, junction_id)
 LEFT JOIN lanelet f ON f.environment_id = t.environment_id AND f.lanelet_id = t.from_id
-LEFT JOIN straightest s ON s.environment_id = f.environment_id AND s.junction_id = t.junction_id AND s.road_id = f.road_id AND s.along_road = f.along_road
+LEFT JOIN straightest_exit s ON s.environment_id = f.environment_id AND s.junction_id = t.junction_id AND s.road_id = f.road_id AND s.along_road = f.along_road

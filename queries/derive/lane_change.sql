@@ -1,48 +1,49 @@
--- Changes to a lane beside it that is driven the same way: from the first corner over the line until wholly in the new lane, and who was
--- there when it began. Begun and not seen to cross: only where half a metre is over the line when the log or a hole ends it.
-WITH chain_begin AS (
+-- Changes of the ego to a lane beside it that is driven the same way, from the first corner over the line until the ego is wholly in the
+-- new lane, with the vehicles that are in the new lane at the start. A change that is not seen to cross the line counts only if half a
+-- metre of the ego is over the line when the log or a hole ends the change.
+WITH chain_span AS (
     SELECT drive_id, ego_id, chain_id, min(t_ns) AS t_ns, max({'t_ns': t_ns, 'id': lanelet_id}).id AS last_id
     FROM ego_state
     WHERE with_direction
     GROUP BY ALL
 ),
-crossed AS (
+crossing_step AS (
     SELECT
         l.*, lead(l.t_ns) OVER (PARTITION BY l.drive_id, l.ego_id ORDER BY l.t_ns) AS t_next_ns, b.t_ns AS t_chain_ns, b.last_id
     FROM lane_crossing l
-    JOIN chain_begin b ON b.drive_id = l.drive_id AND b.ego_id = l.ego_id AND b.chain_id = l.from_chain_id
+    JOIN chain_span b ON b.drive_id = l.drive_id AND b.ego_id = l.ego_id AND b.chain_id = l.from_chain_id
 ),
-begun AS (
+change_begin AS (
     SELECT c.drive_id, c.ego_id, c.t_ns, min({'t0_ns': x.t0_ns, 'seen': x.begin_seen}) AS x
-    FROM crossed c
+    FROM crossing_step c
     JOIN excursion x ON x.drive_id = c.drive_id AND x.ego_id = c.ego_id AND x.chain_id = c.from_chain_id AND x.side = c.side
         AND x.t0_ns <= c.t_ns AND x.t_end_ns >= c.t_before_ns
     GROUP BY ALL
 ),
--- seen from the new lane the ego is over its near boundary until it is wholly in
-done AS (
+-- Measured from the new lane, the ego is over the near boundary of that lane until it is wholly inside.
+change_end AS (
     SELECT c.drive_id, c.ego_id, c.t_ns, count(*) AS n, min(x.t_back_ns) AS t_back_ns
-    FROM crossed c
+    FROM crossing_step c
     JOIN excursion x ON x.drive_id = c.drive_id AND x.ego_id = c.ego_id AND x.chain_id = c.to_chain_id AND x.side = -c.side
         AND x.t0_ns <= c.t_ns AND x.t_end_ns >= c.t_ns
     GROUP BY ALL
 ),
-whole AS (
+whole_course AS (
     SELECT
         c.drive_id, c.ego_id, c.from_chain_id, c.to_chain_id, c.side,
-        -- out of a lane that it was never wholly in, the change begins with the one before it
+        -- If the ego was never wholly in the lane that it leaves, the change begins at the crossing into that lane.
         greatest(coalesce(b.x.t0_ns, c.t_ns), c.t_chain_ns) AS t_start_ns,
         coalesce(b.x.seen AND b.x.t0_ns >= c.t_chain_ns, false) AS begin_seen,
         CASE WHEN c.seen THEN c.t_ns END AS t_cross_ns,
         CASE WHEN coalesce(d.n, 0) = 0 THEN CASE WHEN y.front_s_m IS NOT NULL THEN c.t_ns END WHEN d.t_back_ns < coalesce(c.t_next_ns, d.t_back_ns + 1) THEN d.t_back_ns END AS t_done_ns,
         c.last_id, c.to_lanelet_id, a.s_m AS from_s_m, y.s_m AS to_s_m
-    FROM crossed c
-    LEFT JOIN begun b USING (drive_id, ego_id, t_ns)
-    LEFT JOIN done d USING (drive_id, ego_id, t_ns)
+    FROM crossing_step c
+    LEFT JOIN change_begin b USING (drive_id, ego_id, t_ns)
+    LEFT JOIN change_end d USING (drive_id, ego_id, t_ns)
     JOIN ego_corridor a ON a.drive_id = c.drive_id AND a.ego_id = c.ego_id AND a.chain_id = c.from_chain_id AND a.t_ns = c.t_ns
     JOIN ego_corridor y ON y.drive_id = c.drive_id AND y.ego_id = c.ego_id AND y.chain_id = c.to_chain_id AND y.t_ns = c.t_ns
 ),
-cut_off AS (
+unfinished_change AS (
     SELECT
         x.drive_id, x.ego_id, x.chain_id AS from_chain_id, NULL::INTEGER AS to_chain_id, x.side, x.t0_ns AS t_start_ns, x.begin_seen,
         NULL::BIGINT AS t_cross_ns, NULL::BIGINT AS t_done_ns, e.lanelet_id AS last_id, NULL::VARCHAR AS to_lanelet_id,
@@ -53,7 +54,7 @@ cut_off AS (
     JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = e.lanelet_id
     JOIN lanelet b ON b.environment_id = g.environment_id AND b.drivable
         AND b.lanelet_id = CASE x.side WHEN 1 THEN n.left_id ELSE n.right_id END
-    ANTI JOIN begun s ON s.drive_id = x.drive_id AND s.ego_id = x.ego_id AND s.x.t0_ns = x.t0_ns
+    ANTI JOIN change_begin s ON s.drive_id = x.drive_id AND s.ego_id = x.ego_id AND s.x.t0_ns = x.t0_ns
     WHERE x.t_back_ns IS NULL AND x.max_out_m >= 0.5 AND NOT CASE x.side WHEN 1 THEN n.left_against ELSE n.right_against END
 ),
 change AS MATERIALIZED (
@@ -61,80 +62,80 @@ change AS MATERIALIZED (
         w.*, (row_number() OVER (PARTITION BY w.drive_id, w.ego_id ORDER BY w.t_start_ns, w.side) - 1)::INTEGER AS occurrence,
         g.environment_id, coalesce(CASE WHEN e.chain_id = w.from_chain_id THEN e.lanelet_id END, w.last_id) AS from_lanelet_id,
         e.speed_mps AS ego_speed_mps, e.s_m, e.front_s_m, e.rear_s_m, st.seg,
-        -- the new lane, across the corridor of that step: beside the lane that is left, or already the running one
-        coalesce(e.chain_id = w.to_chain_id, false) AS inside
-    FROM (SELECT * FROM whole UNION ALL BY NAME SELECT * FROM cut_off) w
+        -- Whether the new lane is already the running lane of that step. Otherwise it is beside the lane that is left.
+        coalesce(e.chain_id = w.to_chain_id, false) AS is_in_new_lane
+    FROM (SELECT * FROM whole_course UNION ALL BY NAME SELECT * FROM unfinished_change) w
     JOIN data_log g ON g.drive_id = w.drive_id
     JOIN ego_state e ON e.drive_id = w.drive_id AND e.ego_id = w.ego_id AND e.t_ns = w.t_start_ns
     JOIN step st ON st.drive_id = w.drive_id AND st.ego_id = w.ego_id AND st.t_ns = w.t_start_ns
 ),
-width AS (
+new_lane_width AS (
     SELECT c.drive_id, c.ego_id, c.occurrence, b.width_m
     FROM change c
     JOIN lanelet n ON n.environment_id = c.environment_id AND n.lanelet_id = c.from_lanelet_id
     JOIN lanelet b ON b.environment_id = c.environment_id
         AND b.lanelet_id = coalesce(c.to_lanelet_id, CASE c.side WHEN 1 THEN n.left_id ELSE n.right_id END)
 ),
-there AS MATERIALIZED (
+object_in_new_lane AS MATERIALIZED (
     SELECT
         c.drive_id, c.ego_id, c.occurrence, p.object_id, p.speed_mps, p.s_m > c.s_m AS ahead,
         p.rear_s_m - c.front_s_m AS ahead_gap_m, c.rear_s_m - p.front_s_m AS behind_gap_m, p.heading_diff_rad,
         is_vehicle(p.actor_class) IS NOT DISTINCT FROM true AS vehicle
     FROM change c
-    JOIN width w USING (drive_id, ego_id, occurrence)
+    JOIN new_lane_width w USING (drive_id, ego_id, occurrence)
     JOIN pair p ON p.drive_id = c.drive_id AND p.ego_id = c.ego_id AND p.t_ns = c.t_start_ns
     WHERE (may_be_vehicle(p.actor_class) OR p.actor_class = 'object' AND p.s_m > c.s_m)
         AND CASE
-            WHEN c.inside THEN in_lane(p.d_m, p.lat_half_m, p.half_width_m)
+            WHEN c.is_in_new_lane THEN in_lane(p.d_m, p.lat_half_m, p.half_width_m)
             ELSE in_lane(c.side * p.d_m - p.half_width_m - w.width_m / 2, p.lat_half_m, w.width_m / 2)
         END
 ),
 leader AS (
-    SELECT drive_id, ego_id, occurrence, min({'gap_m': ahead_gap_m, 'object_id': object_id, 'speed_mps': speed_mps}) AS o
-    FROM there
+    SELECT drive_id, ego_id, occurrence, min({'gap_m': ahead_gap_m, 'object_id': object_id, 'speed_mps': speed_mps}) AS nearest
+    FROM object_in_new_lane
     WHERE vehicle AND ahead AND (abs(heading_diff_rad) < 2 * pi() / 3 OR speed_mps <= standing_mps())
     GROUP BY ALL
 ),
 follower AS (
-    SELECT drive_id, ego_id, occurrence, min({'gap_m': behind_gap_m, 'object_id': object_id, 'speed_mps': speed_mps}) AS o
-    FROM there
+    SELECT drive_id, ego_id, occurrence, min({'gap_m': behind_gap_m, 'object_id': object_id, 'speed_mps': speed_mps}) AS nearest
+    FROM object_in_new_lane
     WHERE vehicle AND NOT ahead AND abs(heading_diff_rad) < pi() / 2
     GROUP BY ALL
 ),
--- what the follower does in the 4 s from there
-watched AS (
+-- The follower's speed in the 4 s after the start of the change.
+follower_step AS (
     SELECT
-        c.drive_id, c.ego_id, c.occurrence, st.t_ns, st.seg = c.seg AS same_seg, p.speed_mps,
+        c.drive_id, c.ego_id, c.occurrence, st.t_ns, st.seg = c.seg AS is_same_seg, p.speed_mps,
         first_value({'t_ns': st.t_ns, 'speed_mps': p.speed_mps}) OVER (
             PARTITION BY c.drive_id, c.ego_id, c.occurrence ORDER BY st.t_ns RANGE BETWEEN 500_000_000 PRECEDING AND CURRENT ROW
-        ) AS before
+        ) AS earlier
     FROM change c
     JOIN follower f USING (drive_id, ego_id, occurrence)
     JOIN step st ON st.drive_id = c.drive_id AND st.ego_id = c.ego_id AND st.t_ns >= c.t_start_ns AND st.t_ns <= c.t_start_ns + 4_000_000_000
     LEFT JOIN (
         SELECT q.drive_id, q.ego_id, q.t_ns, q.object_id, q.speed_mps
-        FROM pair q SEMI JOIN follower f ON f.drive_id = q.drive_id AND f.ego_id = q.ego_id AND f.o.object_id = q.object_id
+        FROM pair q SEMI JOIN follower f ON f.drive_id = q.drive_id AND f.ego_id = q.ego_id AND f.nearest.object_id = q.object_id
         WHERE q.x_m IS NOT NULL
-    ) p ON p.drive_id = c.drive_id AND p.ego_id = c.ego_id AND p.t_ns = st.t_ns AND p.object_id = f.o.object_id
+    ) p ON p.drive_id = c.drive_id AND p.ego_id = c.ego_id AND p.t_ns = st.t_ns AND p.object_id = f.nearest.object_id
 ),
-slowed AS (
+follower_braking AS (
     SELECT
         w.drive_id, w.ego_id, w.occurrence,
-        max(1e9 * (w.before.speed_mps - w.speed_mps) / (w.t_ns - w.before.t_ns)) FILTER (w.t_ns - w.before.t_ns >= 400_000_000) AS decel_mps2,
-        bool_and(w.same_seg AND w.speed_mps IS NOT NULL) AND max(w.t_ns) > min(w.t_ns) + 4_000_000_000 - max(k.max_gap_ns) AS whole
-    FROM watched w
+        max(1e9 * (w.earlier.speed_mps - w.speed_mps) / (w.t_ns - w.earlier.t_ns)) FILTER (w.t_ns - w.earlier.t_ns >= 400_000_000) AS decel_mps2,
+        bool_and(w.is_same_seg AND w.speed_mps IS NOT NULL) AND max(w.t_ns) > min(w.t_ns) + 4_000_000_000 - max(k.max_gap_ns) AS whole_course
+    FROM follower_step w
     JOIN clock k USING (drive_id, ego_id)
     GROUP BY ALL
 ),
--- a lane that only leads onto this one: by its type, or because it ends and the other one goes on
-ending AS (
+-- A merge leaves a lane that only leads onto the new one: by its type, or because it ends and the other one goes on.
+chain_end AS (
     SELECT c.drive_id, c.ego_id, c.chain_id, max(c.s_start_m + c.length_m) AS end_m, max({'seq': c.seq, 'id': c.lanelet_id}).id AS last_id
     FROM chain c
     GROUP BY ALL
 ),
--- or because both go on as one lane, and it narrows to nothing on the way there
-joining AS (
-    SELECT c.drive_id, c.ego_id, c.occurrence, min({'s_m': a.s_start_m, 'from_seq': a.seq, 'to_seq': b.seq}) AS one
+-- A merge also leaves a lane that goes on as one lane with the new one, and narrows to nothing on the way there.
+lane_merge AS (
+    SELECT c.drive_id, c.ego_id, c.occurrence, min({'s_m': a.s_start_m, 'from_seq': a.seq, 'to_seq': b.seq}) AS merge_place
     FROM change c
     JOIN chain a ON a.drive_id = c.drive_id AND a.ego_id = c.ego_id AND a.chain_id = c.from_chain_id
     JOIN chain b ON b.drive_id = c.drive_id AND b.ego_id = c.ego_id AND b.chain_id = c.to_chain_id AND b.lanelet_id = a.lanelet_id
@@ -144,21 +145,21 @@ joining AS (
 last_point AS (
     SELECT environment_id, lanelet_id, max({'k': k, 'half_width_m': half_width_m}).half_width_m AS half_width_m FROM lane_point GROUP BY ALL
 ),
-narrowing AS (
-    SELECT j.drive_id, j.ego_id, j.occurrence, p.half_width_m / nullif(q.half_width_m, 0) AS share
-    FROM joining j
+width_ratio AS (
+    SELECT j.drive_id, j.ego_id, j.occurrence, p.half_width_m / nullif(q.half_width_m, 0) AS ratio
+    FROM lane_merge j
     JOIN change c USING (drive_id, ego_id, occurrence)
-    JOIN chain a ON a.drive_id = c.drive_id AND a.ego_id = c.ego_id AND a.chain_id = c.from_chain_id AND a.seq = j.one.from_seq - 1
-    JOIN chain b ON b.drive_id = c.drive_id AND b.ego_id = c.ego_id AND b.chain_id = c.to_chain_id AND b.seq = j.one.to_seq - 1
+    JOIN chain a ON a.drive_id = c.drive_id AND a.ego_id = c.ego_id AND a.chain_id = c.from_chain_id AND a.seq = j.merge_place.from_seq - 1
+    JOIN chain b ON b.drive_id = c.drive_id AND b.ego_id = c.ego_id AND b.chain_id = c.to_chain_id AND b.seq = j.merge_place.to_seq - 1
     JOIN last_point p ON p.environment_id = c.environment_id AND p.lanelet_id = a.lanelet_id
     JOIN last_point q ON q.environment_id = c.environment_id AND q.lanelet_id = b.lanelet_id
 ),
-doubt AS (
+uncertain_object AS (
     SELECT drive_id, ego_id, t_ns, min(least_m) AS near_m, min(least_m) FILTER (ahead IS DISTINCT FROM true) AS behind_m
     FROM (
         SELECT drive_id, ego_id, t_ns, least_m, ahead FROM hidden WHERE vehicle
         UNION ALL
-        SELECT drive_id, ego_id, t_start_ns, greatest(ahead_gap_m, behind_gap_m), ahead FROM there JOIN change USING (drive_id, ego_id, occurrence)
+        SELECT drive_id, ego_id, t_start_ns, greatest(ahead_gap_m, behind_gap_m), ahead FROM object_in_new_lane JOIN change USING (drive_id, ego_id, occurrence)
         WHERE NOT vehicle
     )
     GROUP BY ALL
@@ -168,22 +169,22 @@ SELECT
     CASE c.side WHEN 1 THEN 'left' ELSE 'right' END AS side, c.from_lanelet_id, c.to_lanelet_id,
     CASE
         WHEN n.lane_type IN ('entry', 'onRamp', 'connectingRamp') THEN true
-        WHEN j.one IS NOT NULL THEN CASE WHEN r.share < 0.5 THEN true WHEN r.share > 2 OR r.share IS NULL THEN false END
+        WHEN j.merge_place IS NOT NULL THEN CASE WHEN r.ratio < 0.5 THEN true WHEN r.ratio > 2 OR r.ratio IS NULL THEN false END
         WHEN c.to_chain_id IS NOT NULL THEN a.ahead_id IS NULL AND f.end_m - c.from_s_m < 500 AND t.end_m - c.to_s_m > f.end_m - c.from_s_m + 20
     END AS merge,
-    c.ego_speed_mps, l.o.object_id AS leader_id, l.o.gap_m AS leader_gap_m, l.o.speed_mps AS leader_speed_mps,
-    b.o.object_id AS follower_id, b.o.gap_m AS follower_gap_m, b.o.speed_mps AS follower_speed_mps,
-    CASE WHEN s.whole THEN s.decel_mps2 END AS follower_decel_mps2,
+    c.ego_speed_mps, l.nearest.object_id AS leader_id, l.nearest.gap_m AS leader_gap_m, l.nearest.speed_mps AS leader_speed_mps,
+    b.nearest.object_id AS follower_id, b.nearest.gap_m AS follower_gap_m, b.nearest.speed_mps AS follower_speed_mps,
+    CASE WHEN s.whole_course THEN s.decel_mps2 END AS follower_decel_mps2,
     c.front_s_m IS NOT NULL AND coalesce(d.near_m >= lane_change_near_m(), true) AS known,
     CASE WHEN c.front_s_m IS NOT NULL THEN coalesce(d.behind_m, 'inf'::DOUBLE) END AS unseen_m
 FROM change c
 LEFT JOIN leader l USING (drive_id, ego_id, occurrence)
 LEFT JOIN follower b USING (drive_id, ego_id, occurrence)
-LEFT JOIN slowed s USING (drive_id, ego_id, occurrence)
-LEFT JOIN joining j USING (drive_id, ego_id, occurrence)
-LEFT JOIN narrowing r USING (drive_id, ego_id, occurrence)
+LEFT JOIN follower_braking s USING (drive_id, ego_id, occurrence)
+LEFT JOIN lane_merge j USING (drive_id, ego_id, occurrence)
+LEFT JOIN width_ratio r USING (drive_id, ego_id, occurrence)
 LEFT JOIN lanelet n ON n.environment_id = c.environment_id AND n.lanelet_id = c.from_lanelet_id
-LEFT JOIN ending f ON f.drive_id = c.drive_id AND f.ego_id = c.ego_id AND f.chain_id = c.from_chain_id
-LEFT JOIN ending t ON t.drive_id = c.drive_id AND t.ego_id = c.ego_id AND t.chain_id = c.to_chain_id
+LEFT JOIN chain_end f ON f.drive_id = c.drive_id AND f.ego_id = c.ego_id AND f.chain_id = c.from_chain_id
+LEFT JOIN chain_end t ON t.drive_id = c.drive_id AND t.ego_id = c.ego_id AND t.chain_id = c.to_chain_id
 LEFT JOIN lane_next a ON a.environment_id = c.environment_id AND a.lanelet_id = f.last_id
-LEFT JOIN doubt d ON d.drive_id = c.drive_id AND d.ego_id = c.ego_id AND d.t_ns = c.t_start_ns
+LEFT JOIN uncertain_object d ON d.drive_id = c.drive_id AND d.ego_id = c.ego_id AND d.t_ns = c.t_start_ns

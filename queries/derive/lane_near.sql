@@ -1,4 +1,4 @@
--- Which drivable lanelets follow which within three links: whether two fixes can belong to one way.
+-- The drivable lanelets that follow a drivable lanelet within three links. They tell whether two positions can belong to one path.
 WITH link AS (
     SELECT l.environment_id, l.from_id, l.to_id
     FROM lane_link l

@@ -1,8 +1,8 @@
--- Where two ways may meet at an angle, by grid alone: a visit is a stretch of one actor in one cell, ten seconds and 5 degrees of heading,
--- with the box around all that it covers.
+-- Pairs of visits at which two paths may meet at an angle, found by grid alone. A visit is a stretch of one actor in one cell, ten seconds
+-- and 5 degrees of heading, with the box around everything that the actor covers.
 WITH
--- what never moves is on nobody's way: contact with it is another rule's
-mover AS (
+-- An actor that never moves is on nobody's path. Contact with it is the matter of another rule.
+moving_actor AS (
     SELECT drive_id, actor_id, max(length_m) AS length_m, max(width_m) AS width_m, max(speed_mps) AS speed_mps
     FROM state_dynamics
     GROUP BY drive_id, actor_id
@@ -10,7 +10,7 @@ mover AS (
 ),
 grid AS (
     SELECT drive_id, max(max_gap_s) AS max_gap_s, 2 * max(sqrt(driven_half_m(length_m, speed_mps, max_gap_s) ** 2 + (width_m / 2) ** 2)) + 0.1 AS cell_m
-    FROM mover JOIN (SELECT drive_id, max(max_gap_ns) / 1e9 AS max_gap_s FROM ego_clock GROUP BY drive_id) USING (drive_id)
+    FROM moving_actor JOIN (SELECT drive_id, max(max_gap_ns) / 1e9 AS max_gap_s FROM ego_clock GROUP BY drive_id) USING (drive_id)
     GROUP BY drive_id
     HAVING cell_m IS NOT NULL
 ),
@@ -18,22 +18,22 @@ box AS (
     SELECT
         s.drive_id, s.actor_id, s.x_m, s.y_m, g.cell_m, meeting_cell(s.x_m, s.y_m, g.cell_m) AS cell, meeting_slot(s.t_ns) AS slot,
         heading_step(s.travel_rad) AS heading,
-        driven_half_m(s.length_m, s.speed_mps, g.max_gap_s) AS hl, s.width_m / 2 AS hw, abs(cos(s.yaw_rad)) AS c, abs(sin(s.yaw_rad)) AS s
+        driven_half_m(s.length_m, s.speed_mps, g.max_gap_s) AS half_length_m, s.width_m / 2 AS half_width_m, abs(cos(s.yaw_rad)) AS c, abs(sin(s.yaw_rad)) AS s
     FROM state_dynamics s
     JOIN grid g USING (drive_id)
-    SEMI JOIN mover m USING (drive_id, actor_id)
+    SEMI JOIN moving_actor m USING (drive_id, actor_id)
     WHERE s.x_m IS NOT NULL AND s.y_m IS NOT NULL AND s.yaw_rad IS NOT NULL AND s.length_m IS NOT NULL AND s.width_m IS NOT NULL
 ),
 visit AS MATERIALIZED (
     SELECT
         drive_id, actor_id, cell, slot, heading, max(cell_m) AS cell_m,
-        min(x_m - hl * c - hw * s) AS x0, max(x_m + hl * c + hw * s) AS x1, min(y_m - hl * s - hw * c) AS y0, max(y_m + hl * s + hw * c) AS y1
+        min(x_m - half_length_m * c - half_width_m * s) AS x_min_m, max(x_m + half_length_m * c + half_width_m * s) AS x_max_m, min(y_m - half_length_m * s - half_width_m * c) AS y_min_m, max(y_m + half_length_m * s + half_width_m * c) AS y_max_m
     FROM box
     GROUP BY drive_id, actor_id, cell, slot, heading
 ),
--- the trailer that it draws is the ego
+-- A trailer that the ego tows is part of the ego.
 ego_visit AS (SELECT o.ego_id, v.* FROM visit v JOIN ego_actor o USING (drive_id, actor_id)),
-around AS (
+nearby_cell AS (
     SELECT v.*, v.cell + cell_key(x.i, y.i) AS near_cell, v.slot + t.i AS near_slot
     FROM ego_visit v
     CROSS JOIN (VALUES (-1), (0), (1)) AS x(i) CROSS JOIN (VALUES (-1), (0), (1)) AS y(i) CROSS JOIN (VALUES (-1), (0), (1)) AS t(i)
@@ -41,7 +41,7 @@ around AS (
 SELECT
     e.drive_id, e.ego_id, e.actor_id, e.cell_m, e.cell, e.slot, e.heading,
     o.actor_id AS object_id, o.cell AS object_cell, o.slot AS object_slot, o.heading AS object_heading
-FROM around e
+FROM nearby_cell e
 JOIN visit o ON o.drive_id = e.drive_id AND o.cell = e.near_cell AND o.slot = e.near_slot AND o.actor_id <> e.ego_id
 ANTI JOIN ego_part p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.object_id = o.actor_id
-WHERE steps_apart(o.heading, e.heading) > 3 AND o.x0 <= e.x1 AND o.x1 >= e.x0 AND o.y0 <= e.y1 AND o.y1 >= e.y0
+WHERE steps_apart(o.heading, e.heading) > 3 AND o.x_min_m <= e.x_max_m AND o.x_max_m >= e.x_min_m AND o.y_min_m <= e.y_max_m AND o.y_max_m >= e.y_min_m

@@ -1,36 +1,36 @@
--- The ego's steps around the marks of its chains, with its bumpers before the step and at it, the rear one at the end of its trailer. A step
--- after a hole counts for all that lies in between.
+-- The steps of the ego around the marks of its chains, with its bumpers at the step and at the step before. The rear bumper is that of its
+-- trailer, if it tows one. A step after a hole stands for everything that lies in the hole.
 WITH
--- how far a trailer reaches behind the ego's middle, see ego_state; while it is not seen, as far as it ever does
-drawn AS (
+-- How far a trailer reaches behind the ego's middle, see ego_state. While the trailer is not seen, its furthest reach counts.
+trailer_reach AS (
     SELECT drive_id, ego_id, t_ns, coalesce(reach_m, max(reach_m) OVER (PARTITION BY drive_id, ego_id)) AS reach_m
     FROM (SELECT *, CASE WHEN combination_m <> length_m THEN combination_m - length_m / 2 END AS reach_m FROM ego_state)
 ),
-placed AS (
+bumper_place AS (
     SELECT
         c.drive_id, c.ego_id, c.chain_id, c.t_ns, s.k, s.seg, abs(c.d_m) - c.lat_half_m - c.half_width_m AS beside_m,
-        -- driven against the corridor, its tail is its furthest station
+        -- If the ego drives against the corridor, the end of the trailer has the largest station.
         CASE WHEN t.reach_m IS NULL OR abs(c.heading_diff_rad) <= pi() / 2 THEN c.front_s_m ELSE c.s_m + t.reach_m END AS front_s_m,
         CASE WHEN t.reach_m IS NULL OR abs(c.heading_diff_rad) > pi() / 2 THEN c.rear_s_m ELSE c.s_m - t.reach_m END AS rear_s_m
     FROM ego_corridor c
     JOIN step s USING (drive_id, ego_id, t_ns)
-    JOIN drawn t USING (drive_id, ego_id, t_ns)
+    JOIN trailer_reach t USING (drive_id, ego_id, t_ns)
     SEMI JOIN way_mark m ON m.drive_id = c.drive_id AND m.ego_id = c.ego_id AND m.chain_id = c.chain_id
     WHERE c.front_s_m IS NOT NULL
 ),
-moved AS (
+bumper_step AS (
     SELECT
-        *, lag({'k': k, 'seg': seg, 'front_s_m': front_s_m, 'rear_s_m': rear_s_m}) OVER (PARTITION BY drive_id, ego_id, chain_id ORDER BY t_ns) AS before
-    FROM placed
+        *, lag({'k': k, 'seg': seg, 'front_s_m': front_s_m, 'rear_s_m': rear_s_m}) OVER (PARTITION BY drive_id, ego_id, chain_id ORDER BY t_ns) AS previous
+    FROM bumper_place
 )
 SELECT
     w.drive_id, w.ego_id, w.chain_id, m.kind, m.mark_id, m.s_start_m, w.t_ns, w.k, w.seg,
     w.front_s_m - m.s_start_m AS front_m, w.rear_s_m - m.s_end_m AS rear_m,
-    w.before.front_s_m - m.s_start_m AS front_before_m, w.before.rear_s_m - m.s_end_m AS rear_before_m,
-    coalesce(w.before.k = w.k - 1 AND w.before.seg = w.seg, false) AS joined,
-    -- beside it by more than a lane it is on another way
+    w.previous.front_s_m - m.s_start_m AS front_before_m, w.previous.rear_s_m - m.s_end_m AS rear_before_m,
+    coalesce(w.previous.k = w.k - 1 AND w.previous.seg = w.seg, false) AS joined,
+    -- An ego that is further beside the lane than the width of a lane (4 m) is on another way.
     e.chain_id IS NOT DISTINCT FROM w.chain_id AND w.beside_m < 4 AS running
-FROM moved w
+FROM bumper_step w
 JOIN way_mark m ON m.drive_id = w.drive_id AND m.ego_id = w.ego_id AND m.chain_id = w.chain_id
-    AND w.front_s_m >= m.s_start_m - near_mark_m() AND coalesce(least(w.before.rear_s_m, w.rear_s_m), w.rear_s_m) <= m.s_end_m + near_mark_m()
+    AND w.front_s_m >= m.s_start_m - near_mark_m() AND coalesce(least(w.previous.rear_s_m, w.rear_s_m), w.rear_s_m) <= m.s_end_m + near_mark_m()
 JOIN ego_state e ON e.drive_id = w.drive_id AND e.ego_id = w.ego_id AND e.t_ns = w.t_ns

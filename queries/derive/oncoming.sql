@@ -1,52 +1,54 @@
--- Who comes towards the ego first on the lane that it would overtake in (paper: OV and DA), and how far that can be told.
-WITH reach AS (
+-- The nearest vehicle that comes towards the ego on the lane in which it would overtake (paper: OV and DA), and how far ahead this is
+-- known.
+WITH corridor_end AS (
     SELECT c.drive_id, c.ego_id, c.chain_id, max(c.s_start_m + c.length_m) AS end_m, max({'seq': c.seq, 'id': c.lanelet_id}).id AS last_id
     FROM corridor c
     GROUP BY ALL
 ),
-ego AS (
+ego_step AS (
     SELECT
         e.drive_id, e.ego_id, e.t_ns,
-        -- everybody is placed on the corridor at least so far ahead, however far the ego's own way leads on
+        -- All vehicles are placed on the corridor at least so far ahead, even if the ego's own path leads further.
         least(r.end_m - e.front_s_m, corridor_ahead_m()) AS corridor_m,
         n.ahead_id IS NULL AND r.end_m - e.front_s_m <= corridor_ahead_m() AS map_ends, g.sensor_range_m - e.length_m / 2 AS range_m
     FROM ego_state e
     JOIN ego_corridor x ON x.drive_id = e.drive_id AND x.ego_id = e.ego_id AND x.chain_id = e.chain_id AND x.t_ns = e.t_ns
-    JOIN reach r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
+    JOIN corridor_end r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
     JOIN data_log g ON g.drive_id = e.drive_id
     LEFT JOIN lane_next n ON n.environment_id = g.environment_id AND n.lanelet_id = r.last_id
     WHERE e.front_s_m IS NOT NULL AND x.side IS NOT NULL
 ),
-nearest AS (
-    SELECT drive_id, ego_id, t_ns, min({'da_m': da_m, 'object_id': object_id, 'speed_mps': speed_mps, 'way': on_its_way}) AS o
+nearest_vehicle AS (
+    SELECT drive_id, ego_id, t_ns, min({'da_m': da_m, 'object_id': object_id, 'speed_mps': speed_mps, 'is_coming': on_its_way}) AS ov
     FROM oncoming_vehicle
     WHERE vehicle
     GROUP BY ALL
 ),
--- who is behind, or goes the ego's way, whenever it is seen, does not come
-no_oncoming AS (
+-- An object that is behind, or that goes the ego's way whenever it is seen, is not oncoming.
+object_not_oncoming AS (
     SELECT drive_id, ego_id, t_ns, object_id FROM hidden WHERE NOT ahead OR along
 ),
-doubt AS (
+doubtful_object AS (
     SELECT u.drive_id, u.ego_id, u.t_ns, count(*) AS n, min({'id': u.object_id, 'reason': u.reason}) AS u
     FROM (
         SELECT drive_id, ego_id, t_ns, object_id, code, reason FROM unplaced
         UNION ALL
         SELECT drive_id, ego_id, t_ns, object_id, 'no_class', 'comes, and its class is not known' FROM oncoming_vehicle WHERE vehicle IS NULL
     ) u
-    ANTI JOIN no_oncoming b ON b.drive_id = u.drive_id AND b.ego_id = u.ego_id AND b.t_ns = u.t_ns AND b.object_id = u.object_id
-    LEFT JOIN nearest n ON n.drive_id = u.drive_id AND n.ego_id = u.ego_id AND n.t_ns = u.t_ns
-    -- free_m ends where the map does, and who was met is behind; of one that came from off the lanes nobody knows which way it was to make
-    WHERE u.code NOT IN ('beyond_map', 'lost_behind') AND (n.o.object_id IS NULL OR n.o.object_id <> u.object_id OR n.o.way)
+    ANTI JOIN object_not_oncoming b ON b.drive_id = u.drive_id AND b.ego_id = u.ego_id AND b.t_ns = u.t_ns AND b.object_id = u.object_id
+    LEFT JOIN nearest_vehicle n ON n.drive_id = u.drive_id AND n.ego_id = u.ego_id AND n.t_ns = u.t_ns
+    -- A vehicle beyond the end of the map is no doubt, because free_m ends there. A vehicle that the ego has met is behind. The nearest OV
+    -- itself is a doubt only if it came from off the lanes, because the way that it still had to make is then not known.
+    WHERE u.code NOT IN ('beyond_map', 'lost_behind') AND (n.ov.object_id IS NULL OR n.ov.object_id <> u.object_id OR n.ov.is_coming)
     GROUP BY ALL
 )
 SELECT
-    e.drive_id, e.ego_id, e.t_ns, n.o.object_id AS object_id, n.o.da_m AS da_m, n.o.speed_mps AS speed_mps, n.o.way AS on_its_way,
-    -- ground truth has no range: least() leaves its NULL out, as it should here
+    e.drive_id, e.ego_id, e.t_ns, n.ov.object_id AS object_id, n.ov.da_m AS da_m, n.ov.speed_mps AS speed_mps, n.ov.is_coming AS on_its_way,
+    -- Ground truth has no range: least() ignores its NULL, which is right here.
     greatest(0.0, least(e.corridor_m, e.range_m)) AS free_m,
     CASE WHEN e.range_m < e.corridor_m THEN 'sensor_range' WHEN e.map_ends THEN 'map_end' ELSE 'corridor_end' END AS free_reason,
     coalesce(h.n, 0) AS n_unplaced,
     CASE WHEN h.n > 0 THEN 'actor ' || h.u.id || ' ' || h.u.reason END AS unplaced_reason
-FROM ego e
-LEFT JOIN nearest n USING (drive_id, ego_id, t_ns)
-LEFT JOIN doubt h USING (drive_id, ego_id, t_ns)
+FROM ego_step e
+LEFT JOIN nearest_vehicle n USING (drive_id, ego_id, t_ns)
+LEFT JOIN doubtful_object h USING (drive_id, ego_id, t_ns)

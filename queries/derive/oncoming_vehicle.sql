@@ -1,43 +1,43 @@
--- Everybody who comes towards the ego on the lane that it would overtake in, per ego step (paper: OV and DA). The nearest of them need not be
--- the one that matters most: one that is parked, or slow, is reached without haste. A horse on the road comes like a vehicle.
--- A vehicle that comes from another lane counts from 15 s before it gets there, at the distance that it then really made.
-WITH ego AS (
+-- All vehicles that come towards the ego on the lane in which it would overtake, at each step (paper: OV and DA). The nearest of them need
+-- not be the one that matters most: one that is parked or slow leaves more time. A horse on the road counts as a vehicle. A vehicle that
+-- comes from another lane counts from 15 s before it gets to that lane, at the distance that it really drives until then.
+WITH ego_step AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, e.s_m, e.front_s_m, x.side, x.over_width_m
     FROM ego_state e
     JOIN ego_corridor x ON x.drive_id = e.drive_id AND x.ego_id = e.ego_id AND x.chain_id = e.chain_id AND x.t_ns = e.t_ns
     WHERE e.front_s_m IS NOT NULL AND x.side IS NOT NULL
 ),
-against AS (
+oncoming_object AS (
     SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.rear_s_m, p.speed_mps, p.rear_s_m - e.front_s_m AS da_m, is_vehicle(p.actor_class) OR p.actor_class = 'animal' AS vehicle
     FROM pair p
-    JOIN ego e USING (drive_id, ego_id, t_ns)
+    JOIN ego_step e USING (drive_id, ego_id, t_ns)
     WHERE (may_be_vehicle(p.actor_class) OR p.actor_class = 'animal') AND p.s_m > e.s_m AND abs(p.heading_diff_rad) > 2 * pi() / 3
         AND e.side * p.d_m - p.lat_half_m < p.half_width_m + coalesce(p.over_width_m, e.over_width_m, 2 * p.half_width_m)
-        -- standing the wrong way round in the running lane it is parked there; moving it is oncoming
+        -- A vehicle that stands the wrong way round in the running lane is parked there. One that moves is oncoming.
         AND e.side * p.d_m + p.lat_half_m > CASE WHEN p.speed_mps <= standing_mps() THEN p.half_width_m + over_boundary_m() ELSE -p.half_width_m END
 ),
-entry AS (
-    SELECT drive_id, ego_id, object_id, min({'t_ns': t_ns, 's_m': rear_s_m}) AS e FROM against WHERE vehicle GROUP BY ALL
+lane_entry AS (
+    SELECT drive_id, ego_id, object_id, min({'t_ns': t_ns, 's_m': rear_s_m}) AS e FROM oncoming_object WHERE vehicle GROUP BY ALL
 ),
--- the way that it still had to make, from each of the steps before it got there
-approach AS (
+-- The distance that the vehicle has yet to drive, at each step before it gets to the lane.
+approach_step AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, p.object_id, p.speed_mps, p.x_m, y.e.s_m AS entry_s_m,
-        sqrt((p.x_m - lead(p.x_m) OVER w) ** 2 + (p.y_m - lead(p.y_m) OVER w) ** 2) AS step_m, p.t_ns = y.e.t_ns AS there
-    FROM entry y
+        sqrt((p.x_m - lead(p.x_m) OVER w) ** 2 + (p.y_m - lead(p.y_m) OVER w) ** 2) AS step_m, p.t_ns = y.e.t_ns AS has_arrived
+    FROM lane_entry y
     JOIN pair p ON p.drive_id = y.drive_id AND p.ego_id = y.ego_id AND p.object_id = y.object_id
         AND p.t_ns <= y.e.t_ns AND p.t_ns >= y.e.t_ns - 15_000_000_000
     WINDOW w AS (PARTITION BY p.drive_id, p.ego_id, p.object_id ORDER BY p.t_ns)
 ),
-coming AS (
+vehicle_on_its_way AS (
     SELECT a.drive_id, a.ego_id, a.t_ns, a.object_id, a.speed_mps, a.entry_s_m - e.front_s_m + a.way_m AS da_m
     FROM (
         SELECT *, of_pm(sum(whole_pm(coalesce(step_m, 0.0))) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns DESC ROWS UNBOUNDED PRECEDING)) AS way_m
-        FROM approach
+        FROM approach_step
     ) a
-    JOIN ego e USING (drive_id, ego_id, t_ns)
-    WHERE NOT a.there AND a.x_m IS NOT NULL AND a.entry_s_m > e.front_s_m
+    JOIN ego_step e USING (drive_id, ego_id, t_ns)
+    WHERE NOT a.has_arrived AND a.x_m IS NOT NULL AND a.entry_s_m > e.front_s_m
 )
-SELECT drive_id, ego_id, t_ns, object_id, vehicle, da_m, speed_mps, false AS on_its_way FROM against
+SELECT drive_id, ego_id, t_ns, object_id, vehicle, da_m, speed_mps, false AS on_its_way FROM oncoming_object
 UNION ALL
-SELECT drive_id, ego_id, t_ns, object_id, true, da_m, speed_mps, true FROM coming
+SELECT drive_id, ego_id, t_ns, object_id, true, da_m, speed_mps, true FROM vehicle_on_its_way

@@ -1,10 +1,10 @@
--- Times in which the ego is held up behind a slower vehicle with an opposing lane to overtake in, and the best moment in them for each
--- profile. Held up: within 5 s of a lead that does less than 80 % of the limit. The ego would pass at its own speed, or 10 mph faster
--- than the lead up to the limit.
-WITH held AS (
+-- Periods in which the ego is held up behind a slower vehicle with an opposing lane to overtake in, and the best moment in them for each
+-- profile. Held up: within 5 s of a lead that drives at less than 80 % of the limit. The ego would pass at its own speed or, if that is
+-- faster, at 10 mph more than the lead, up to the limit.
+WITH held_up_step AS (
     SELECT
-        l.drive_id, l.ego_id, l.t_ns, st.k, st.seg, l.object_id, l.speed_mps AS v_vbp, e.combination_m AS l_av, x.half_width_m * 2 AS w,
-        greatest(e.speed_mps, least(e.limit_mps, l.speed_mps + 4.4704)) AS v_av, e.limit_mps
+        l.drive_id, l.ego_id, l.t_ns, st.k, st.seg, l.object_id, l.speed_mps AS v_vbp_mps, e.combination_m AS l_av_m, x.half_width_m * 2 AS lane_width_m,
+        greatest(e.speed_mps, least(e.limit_mps, l.speed_mps + 4.4704)) AS v_av_mps, e.limit_mps
     FROM lead l
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     JOIN step st USING (drive_id, ego_id, t_ns)
@@ -13,45 +13,45 @@ WITH held AS (
         AND l.gap_m < 5 * greatest(e.speed_mps, 2.0)
         AND CASE x.side WHEN 1 THEN x.left_out_m ELSE x.right_out_m END <= over_boundary_m()
 ),
-numbered AS (
-    SELECT *, k - row_number() OVER (PARTITION BY drive_id, ego_id, object_id, seg ORDER BY k) AS run FROM held
+numbered_step AS (
+    SELECT *, k - row_number() OVER (PARTITION BY drive_id, ego_id, object_id, seg ORDER BY k) AS run_no FROM held_up_step
 ),
-judged AS (
+judged_step AS (
     SELECT
-        h.*, p.profile, coalesce(v.da_m, o.free_m) AS da_m, o.n_unplaced, o.object_id IS NULL AS free, v.object_id AS ov_id,
-        CASE WHEN h.v_av > h.v_vbp THEN safe_distance_ahead_m(
-            h.w, p.pull_out_angle_rad, p.cut_in_angle_rad, p.pull_out_headroom_m, p.cut_in_clearance_m, h.l_av, a.length_m, h.v_av, h.v_vbp,
+        h.*, p.profile, coalesce(v.da_m, o.free_m) AS da_m, o.n_unplaced, o.object_id IS NULL AS is_free, v.object_id AS ov_id,
+        CASE WHEN h.v_av_mps > h.v_vbp_mps THEN safe_distance_ahead_m(
+            h.lane_width_m, p.pull_out_angle_rad, p.cut_in_angle_rad, p.pull_out_headroom_m, p.cut_in_clearance_m, h.l_av_m, a.length_m, h.v_av_mps, h.v_vbp_mps,
             CASE WHEN o.object_id IS NULL THEN h.limit_mps ELSE v.speed_mps END
         ) END AS sda_m,
-        h.v_av + CASE WHEN o.object_id IS NULL THEN h.limit_mps ELSE v.speed_mps END AS closing_mps
-    FROM numbered h
+        h.v_av_mps + CASE WHEN o.object_id IS NULL THEN h.limit_mps ELSE v.speed_mps END AS closing_mps
+    FROM numbered_step h
     JOIN actor a ON a.drive_id = h.drive_id AND a.actor_id = h.object_id
     CROSS JOIN (SELECT * FROM profile WHERE profile <> 'observed') p
     LEFT JOIN oncoming o ON o.drive_id = h.drive_id AND o.ego_id = h.ego_id AND o.t_ns = h.t_ns
     LEFT JOIN oncoming_vehicle v ON v.drive_id = h.drive_id AND v.ego_id = h.ego_id AND v.t_ns = h.t_ns AND v.vehicle
 ),
--- of several oncoming vehicles the one that leaves the least, see overtake_sda
-worst AS (
+-- Of several oncoming vehicles, the one that leaves the least counts, see overtake_sda.
+worst_ov AS (
     SELECT *
-    FROM judged
+    FROM judged_step
     QUALIFY row_number() OVER (PARTITION BY drive_id, ego_id, t_ns, profile ORDER BY da_m - sda_m NULLS FIRST, ov_id) = 1
 ),
-spared AS (
-    SELECT *, CASE WHEN n_unplaced = 0 AND NOT (free AND da_m <= sda_m) THEN da_m - sda_m END AS spare_m FROM worst
+spare_distance AS (
+    SELECT *, CASE WHEN n_unplaced = 0 AND NOT (is_free AND da_m <= sda_m) THEN da_m - sda_m END AS spare_m FROM worst_ov
 ),
 episode AS (
     SELECT
-        drive_id, ego_id, object_id, profile, seg, run, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns,
-        min({'less': -spare_m, 't_ns': t_ns, 'da_m': da_m, 'sda_m': sda_m, 'closing_mps': closing_mps}) FILTER (spare_m IS NOT NULL) AS best
-    FROM spared
+        drive_id, ego_id, object_id, profile, seg, run_no, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns,
+        min({'negative_spare_m': -spare_m, 't_ns': t_ns, 'da_m': da_m, 'sda_m': sda_m, 'closing_mps': closing_mps}) FILTER (spare_m IS NOT NULL) AS best
+    FROM spare_distance
     GROUP BY ALL
 )
 SELECT
     e.drive_id, e.ego_id,
     (dense_rank() OVER (PARTITION BY e.drive_id, e.ego_id ORDER BY e.t_start_ns, e.object_id) - 1)::INTEGER AS occurrence,
     e.object_id, e.profile, e.t_start_ns, e.t_end_ns, e.best.t_ns AS t_best_ns, e.best.da_m AS da_m, e.best.sda_m AS sda_m,
-    -e.best.less / nullif(e.best.closing_mps, 0) AS spare_s,
-    overtake_zone(-e.best.less, -e.best.less / nullif(e.best.closing_mps, 0)) AS zone,
+    -e.best.negative_spare_m / nullif(e.best.closing_mps, 0) AS spare_s,
+    overtake_zone(-e.best.negative_spare_m, -e.best.negative_spare_m / nullif(e.best.closing_mps, 0)) AS zone,
     EXISTS (
         FROM overtake o JOIN clock c USING (drive_id, ego_id)
         WHERE o.drive_id = e.drive_id AND o.ego_id = e.ego_id AND o.vbp_id = e.object_id

@@ -1,19 +1,20 @@
--- Overtakes (paper, Appendix A): the ego leaves its lane towards the overtaking lane with a vehicle ahead of it. The nearest one counts
--- if it is passed, or is within 100 m and the ego's centre was over the line: less is a wobble, if all of it was seen. Every further
--- vehicle passed in the same go counts too.
-WITH gone AS (
+-- Overtakes (paper, Appendix A): the ego leaves its lane towards the overtaking lane with a vehicle ahead of it. The nearest vehicle counts
+-- if the ego passes it, or if it is within 100 m and the ego's centre was over the line. Less than that is a wobble, if all of it was seen.
+-- Every further vehicle that is passed in the same excursion counts, too.
+WITH overtaking_excursion AS (
     SELECT x.* REPLACE (x.t_pull_ns AS t0_ns), b.k - st.k + 1 AS n_steps, e.front_s_m, e.rear_s_m, e.s_m, e.d_m, e.lat_half_m, e.speed_mps, e.combination_m AS length_m, e.limit_mps
     FROM excursion x
     JOIN ego_state e ON e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns = x.t_pull_ns
     JOIN step st ON st.drive_id = x.drive_id AND st.ego_id = x.ego_id AND st.t_ns = x.t_pull_ns
     LEFT JOIN step b ON b.drive_id = x.drive_id AND b.ego_id = x.ego_id AND b.t_ns = x.t_back_ns
-    -- at t0 the running chain is still the one that is left; seen from a lane not yet driven, the ego is always outside
+    -- At t0 the running chain is still the one that the ego leaves. Measured from a lane that it does not drive yet, the ego is always
+    -- outside.
     WHERE x.overtaking AND e.chain_id = x.chain_id
 ),
--- everybody's states, and the ego's, while an excursion lasts: all that is needed of a large table, by key from here on
-seen AS MATERIALIZED (
+-- The places of the ego and of all objects during an excursion: all that is needed of the large table pair. From here on it is read by key.
+pair_in_excursion AS MATERIALIZED (
     SELECT g.chain_id, g.t0_ns, e.front_s_m AS ego_front_m, e.rear_s_m AS ego_rear_m, p.*
-    FROM gone g
+    FROM overtaking_excursion g
     JOIN ego_state e ON e.drive_id = g.drive_id AND e.ego_id = g.ego_id AND e.t_ns >= g.t0_ns AND e.t_ns <= coalesce(g.t_back_ns, g.t_end_ns)
     JOIN (
         SELECT drive_id, ego_id, t_ns, object_id, actor_class, x_m, y_m, s_m, d_m, front_s_m, rear_s_m, lat_half_m, half_width_m,
@@ -23,21 +24,21 @@ seen AS MATERIALIZED (
 ),
 ahead AS (
     SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, p.object_id, CASE WHEN is_vehicle(p.actor_class) THEN p.rear_s_m - g.front_s_m END AS gap_m, p.speed_mps,
-        p.length_m, is_vehicle(p.actor_class) IS NOT DISTINCT FROM true AS placed, p.rear_s_m - g.front_s_m AS near_m
-    FROM gone g
-    JOIN seen p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.chain_id = g.chain_id AND p.t0_ns = g.t0_ns AND p.t_ns = g.t0_ns
+        p.length_m, is_vehicle(p.actor_class) IS NOT DISTINCT FROM true AS is_placed, p.rear_s_m - g.front_s_m AS near_m
+    FROM overtaking_excursion g
+    JOIN pair_in_excursion p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.chain_id = g.chain_id AND p.t0_ns = g.t0_ns AND p.t_ns = g.t0_ns
     WHERE may_be_ahead(p.actor_class, p.d_m - g.d_m, p.lat_half_m + g.lat_half_m) AND p.s_m > g.s_m
         AND abs(p.d_m) - p.lat_half_m < p.half_width_m - over_boundary_m()
         AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps())
 ),
--- vehicles first seen after t0 that come towards the ego are not the overtaken vehicle
-met AS (
+-- Vehicles first seen after t0 that come towards the ego are not the overtaken vehicle.
+oncoming_object AS (
     SELECT drive_id, ego_id, t0_ns, object_id
     FROM (
         SELECT u.*, p.t_ns, coalesce(abs(p.heading_diff_rad) >= 2 * pi() / 3 AND p.speed_mps > standing_mps(), false) AS towards
         FROM (
             SELECT DISTINCT g.drive_id, g.ego_id, g.t0_ns, u.object_id
-            FROM gone g
+            FROM overtaking_excursion g
             JOIN unplaced u ON u.drive_id = g.drive_id AND u.ego_id = g.ego_id AND u.t_ns = g.t0_ns
         ) u
         JOIN pair p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.object_id = u.object_id
@@ -46,16 +47,16 @@ met AS (
     GROUP BY ALL
     HAVING min(t_ns) > t0_ns AND min({'t_ns': t_ns, 'towards': towards}).towards
 ),
--- somebody without a position, heading or size, or whose track ended or begins nearby, may be the one that is overtaken, unless it was
--- further away or behind (table `hidden`)
-placeless AS (
-    SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, u.object_id, NULL::DOUBLE AS gap_m, p.speed_mps, a.length_m, false AS placed,
+-- An object without a position, heading or size, or with a track that ended or begins nearby, may be the overtaken vehicle, unless it was
+-- further away or behind (table `hidden`).
+candidate_without_place AS (
+    SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, u.object_id, NULL::DOUBLE AS gap_m, p.speed_mps, a.length_m, false AS is_placed,
         p.s_m - g.front_s_m AS near_m
-    FROM gone g
+    FROM overtaking_excursion g
     JOIN unplaced u ON u.drive_id = g.drive_id AND u.ego_id = g.ego_id AND u.t_ns = g.t0_ns
     JOIN actor a ON a.drive_id = u.drive_id AND a.actor_id = u.object_id
-    ANTI JOIN met m ON m.drive_id = u.drive_id AND m.ego_id = u.ego_id AND m.t0_ns = u.t_ns AND m.object_id = u.object_id
-    LEFT JOIN seen p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.chain_id = g.chain_id AND p.t0_ns = g.t0_ns
+    ANTI JOIN oncoming_object m ON m.drive_id = u.drive_id AND m.ego_id = u.ego_id AND m.t0_ns = u.t_ns AND m.object_id = u.object_id
+    LEFT JOIN pair_in_excursion p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.chain_id = g.chain_id AND p.t0_ns = g.t0_ns
         AND p.t_ns = g.t0_ns AND p.object_id = u.object_id
     WHERE p.front_s_m IS NULL AND p.s_m > g.s_m AND abs(p.d_m) < 2 * p.half_width_m
         OR (p.x_m IS NULL OR p.y_m IS NULL)
@@ -63,56 +64,56 @@ placeless AS (
                 AND h.least_m <= 100 AND h.ahead IS DISTINCT FROM false)
             AND NOT EXISTS (FROM ahead a WHERE a.drive_id = g.drive_id AND a.ego_id = g.ego_id AND a.chain_id = g.chain_id AND a.t0_ns = g.t0_ns AND a.near_m <= 100)
 ),
--- and so was who has a place only later, ahead in the lane, and is passed
-late AS (
-    SELECT drive_id, ego_id, chain_id, t0_ns, object_id, NULL::DOUBLE AS gap_m, NULL::DOUBLE AS speed_mps, max(length_m) AS length_m, false AS placed, NULL::DOUBLE AS near_m
-    FROM seen
+-- An object that has a place only later, ahead in the lane, and is passed, is an overtaken vehicle, too.
+late_candidate AS (
+    SELECT drive_id, ego_id, chain_id, t0_ns, object_id, NULL::DOUBLE AS gap_m, NULL::DOUBLE AS speed_mps, max(length_m) AS length_m, false AS is_placed, NULL::DOUBLE AS near_m
+    FROM pair_in_excursion
     WHERE may_be_vehicle(actor_class) AND abs(d_m) - lat_half_m < half_width_m - over_boundary_m() AND abs(heading_diff_rad) < 2 * pi() / 3
     GROUP BY drive_id, ego_id, chain_id, t0_ns, object_id
     HAVING min(t_ns) > t0_ns AND min(ego_front_m - front_s_m) < 0 AND max(ego_front_m - front_s_m) > 0
 ),
-candidate AS (
+vbp_candidate AS (
     SELECT *, row_number() OVER (PARTITION BY drive_id, ego_id, chain_id, t0_ns ORDER BY coalesce(near_m, 0.0), object_id) AS rank
     FROM (
         SELECT * FROM ahead
         UNION ALL
-        SELECT * FROM placeless
+        SELECT * FROM candidate_without_place
         UNION ALL
-        SELECT l.* FROM late l
-        ANTI JOIN seen p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.chain_id = l.chain_id AND p.t0_ns = l.t0_ns AND p.t_ns = l.t0_ns AND p.object_id = l.object_id AND p.front_s_m IS NOT NULL
-        ANTI JOIN placeless h ON h.drive_id = l.drive_id AND h.ego_id = l.ego_id AND h.chain_id = l.chain_id AND h.t0_ns = l.t0_ns AND h.object_id = l.object_id
+        SELECT l.* FROM late_candidate l
+        ANTI JOIN pair_in_excursion p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.chain_id = l.chain_id AND p.t0_ns = l.t0_ns AND p.t_ns = l.t0_ns AND p.object_id = l.object_id AND p.front_s_m IS NOT NULL
+        ANTI JOIN candidate_without_place h ON h.drive_id = l.drive_id AND h.ego_id = l.ego_id AND h.chain_id = l.chain_id AND h.t0_ns = l.t0_ns AND h.object_id = l.object_id
     )
 ),
 passing AS (
     SELECT c.drive_id, c.ego_id, c.chain_id, c.t0_ns, c.object_id, bool_or(p.ego_front_m > coalesce(p.front_s_m, p.s_m)) AS passed,
         count(p.front_s_m) AS n_seen
-    FROM candidate c
-    JOIN seen p USING (drive_id, ego_id, chain_id, t0_ns, object_id)
+    FROM vbp_candidate c
+    JOIN pair_in_excursion p USING (drive_id, ego_id, chain_id, t0_ns, object_id)
     GROUP BY ALL
 ),
-kept AS (
+overtaken_vehicle AS (
     SELECT
-        g.* EXCLUDE (overtaking), c.object_id, c.gap_m, c.speed_mps AS v_vbp_mps, c.length_m AS l_vbp_m, c.placed, coalesce(a.passed, false) AS passed
-    FROM candidate c
-    JOIN gone g USING (drive_id, ego_id, chain_id, t0_ns)
+        g.* EXCLUDE (overtaking), c.object_id, c.gap_m, c.speed_mps AS v_vbp_mps, c.length_m AS l_vbp_m, c.is_placed, coalesce(a.passed, false) AS passed
+    FROM vbp_candidate c
+    JOIN overtaking_excursion g USING (drive_id, ego_id, chain_id, t0_ns)
     LEFT JOIN passing a USING (drive_id, ego_id, chain_id, t0_ns, object_id)
     WHERE coalesce(a.passed, false)
         OR (c.rank = 1 AND coalesce(c.near_m, 0.0) <= 100
             AND (g.centre_over OR NOT g.begin_seen OR g.t_back_ns IS NULL OR coalesce(a.n_seen, 0) < g.n_steps))
 ),
-later AS (
+later_gap AS (
     SELECT k.drive_id, k.ego_id, k.chain_id, k.t0_ns, k.object_id, w.moment, p.ego_rear_m - p.front_s_m AS gap_m, p.speed_mps
-    FROM kept k
+    FROM overtaken_vehicle k
     CROSS JOIN (VALUES ('t2'), ('t3')) AS w(moment)
-    JOIN seen p ON p.drive_id = k.drive_id AND p.ego_id = k.ego_id AND p.chain_id = k.chain_id AND p.t0_ns = k.t0_ns AND p.object_id = k.object_id
+    JOIN pair_in_excursion p ON p.drive_id = k.drive_id AND p.ego_id = k.ego_id AND p.chain_id = k.chain_id AND p.t0_ns = k.t0_ns AND p.object_id = k.object_id
         AND p.t_ns = CASE w.moment WHEN 't2' THEN k.t_turn_ns ELSE k.t_back_ns END
 ),
-angle AS (
+path_angle AS (
     SELECT
         k.drive_id, k.ego_id, k.chain_id, k.t0_ns, k.object_id,
         atan2(k.side * (b.d_m - a.d_m), b.s_m - a.s_m) AS pull_out_angle_rad,
         atan2(k.side * (c.d_m - d.d_m), d.s_m - c.s_m) AS cut_in_angle_rad
-    FROM kept k
+    FROM overtaken_vehicle k
     JOIN ego_corridor a ON a.drive_id = k.drive_id AND a.ego_id = k.ego_id AND a.chain_id = k.chain_id AND a.t_ns = k.t0_ns
     LEFT JOIN ego_corridor b ON b.drive_id = k.drive_id AND b.ego_id = k.ego_id AND b.chain_id = k.chain_id AND b.t_ns = k.t_out_ns
     LEFT JOIN ego_corridor c ON c.drive_id = k.drive_id AND c.ego_id = k.ego_id AND c.chain_id = k.chain_id AND c.t_ns = k.t_turn_ns
@@ -121,7 +122,7 @@ angle AS (
 SELECT
     k.drive_id, k.ego_id,
     (row_number() OVER (PARTITION BY k.drive_id, k.ego_id ORDER BY k.t0_ns, k.chain_id, k.gap_m, k.object_id) - 1)::INTEGER AS occurrence,
-    k.chain_id, k.over_against AS opposing, k.side, k.object_id AS vbp_id, k.placed AS vbp_placed, k.placed::INTEGER + k.passed::INTEGER + (k.centre_over OR coalesce(k.t_turn_ns, k.t_end_ns) - k.t_out_ns >= stays_out_ns())::INTEGER >= 2 AS sure, k.begin_seen,
+    k.chain_id, k.over_against AS opposing, k.side, k.object_id AS vbp_id, k.is_placed AS vbp_placed, k.is_placed::INTEGER + k.passed::INTEGER + (k.centre_over OR coalesce(k.t_turn_ns, k.t_end_ns) - k.t_out_ns >= stays_out_ns())::INTEGER >= 2 AS sure, k.begin_seen,
     k.t0_ns, k.t_over_ns AS t1_ns, k.t_out_ns, k.t_turn_ns AS t2_ns, k.t_back_ns AS t3_ns, coalesce(k.t_back_ns, k.t_end_ns) AS t_end_ns, k.passed,
     CASE
         WHEN k.t_back_ns IS NOT NULL AND k.passed THEN 'completed'
@@ -135,8 +136,8 @@ SELECT
     o.object_id AS ov_id, coalesce(o.da_m, o.free_m) AS da_m, CASE WHEN o.object_id IS NULL THEN k.limit_mps ELSE o.speed_mps END AS v_ov_mps,
     o.n_unplaced, o.unplaced_reason, o.free_reason,
     a.pull_out_angle_rad, a.cut_in_angle_rad
-FROM kept k
+FROM overtaken_vehicle k
 LEFT JOIN oncoming o ON o.drive_id = k.drive_id AND o.ego_id = k.ego_id AND o.t_ns = k.t0_ns
-LEFT JOIN angle a ON a.drive_id = k.drive_id AND a.ego_id = k.ego_id AND a.chain_id = k.chain_id AND a.t0_ns = k.t0_ns AND a.object_id = k.object_id
-LEFT JOIN later t2 ON t2.moment = 't2' AND t2.drive_id = k.drive_id AND t2.ego_id = k.ego_id AND t2.chain_id = k.chain_id AND t2.t0_ns = k.t0_ns AND t2.object_id = k.object_id
-LEFT JOIN later t3 ON t3.moment = 't3' AND t3.drive_id = k.drive_id AND t3.ego_id = k.ego_id AND t3.chain_id = k.chain_id AND t3.t0_ns = k.t0_ns AND t3.object_id = k.object_id
+LEFT JOIN path_angle a ON a.drive_id = k.drive_id AND a.ego_id = k.ego_id AND a.chain_id = k.chain_id AND a.t0_ns = k.t0_ns AND a.object_id = k.object_id
+LEFT JOIN later_gap t2 ON t2.moment = 't2' AND t2.drive_id = k.drive_id AND t2.ego_id = k.ego_id AND t2.chain_id = k.chain_id AND t2.t0_ns = k.t0_ns AND t2.object_id = k.object_id
+LEFT JOIN later_gap t3 ON t3.moment = 't3' AND t3.drive_id = k.drive_id AND t3.ego_id = k.ego_id AND t3.chain_id = k.chain_id AND t3.t0_ns = k.t0_ns AND t3.object_id = k.object_id

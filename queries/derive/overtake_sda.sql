@@ -1,46 +1,46 @@
--- Distance ahead against safe distance ahead for every profile, observed among them: the angles and gaps that this overtake had, and what
--- was driven of it. Of several vehicles passed in one go, each is as long to pass as the row of them up to its front.
--- The formula takes one speed for the whole manoeuvre: that at t0, of an overtake that was completed the mean one for the profile observed. An
--- ego that sped up to overtake would have needed less than its speed at t0 says, and which of the two it planned with is not known; where the
--- log ends before it is back, the speed that it had reached by then stands for the mean one.
-WITH other AS (
+-- Distance ahead and safe distance ahead for every profile. The profile observed takes the angles and gaps that this overtake had, and the
+-- distance that was driven. If several vehicles are passed in one go, each counts with the length of the whole row up to its front. The
+-- formula takes one speed for the whole manoeuvre: the speed at t0 or, for the profile observed of a completed overtake, the mean speed. An
+-- ego that sped up to overtake would have needed less than its speed at t0 says. With which of the two speeds it planned is not known. If
+-- the log ends before the ego is back, the speed that it had reached by then stands for the mean speed.
+WITH ov_candidate AS (
     SELECT o.drive_id, o.ego_id, o.occurrence, v.object_id AS ov_id, v.da_m, v.speed_mps AS v_ov_mps
     FROM overtake o
     JOIN oncoming_vehicle v ON v.drive_id = o.drive_id AND v.ego_id = o.ego_id AND v.t_ns = o.t0_ns AND v.vehicle
     UNION ALL
     SELECT drive_id, ego_id, occurrence, NULL, da_m, v_ov_mps FROM overtake WHERE ov_id IS NULL
 ),
-closed AS (
+ov_closing AS (
     SELECT v.drive_id, v.ego_id, v.occurrence, v.ov_id, v.da_m - min(n.da_m) AS closed_m
     FROM overtake o
-    JOIN other v USING (drive_id, ego_id, occurrence)
+    JOIN ov_candidate v USING (drive_id, ego_id, occurrence)
     JOIN oncoming_vehicle n ON n.drive_id = o.drive_id AND n.ego_id = o.ego_id AND n.object_id = v.ov_id AND n.t_ns >= o.t0_ns AND n.t_ns <= o.t_end_ns
     GROUP BY v.drive_id, v.ego_id, v.occurrence, v.ov_id, v.da_m
 ),
-top AS (
+top_speed AS (
     SELECT o.drive_id, o.ego_id, o.occurrence, max(e.speed_mps) AS v_top_mps
     FROM overtake o
     JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns >= o.t0_ns AND e.t_ns <= o.t_end_ns
     WHERE o.status = 'truncated'
     GROUP BY ALL
 ),
--- what the ego and the OV covered while the ego was out (the OV at its speed at t0, or faster where it was), and the OV's stopping
--- distance: where the overtake was broken off, by the ego, the log or a collision, the whole of it would have needed more
-driven AS (
+-- The distance that the ego and the OV covered while the ego was out (the OV at its speed at t0, or faster if it was), plus the OV's
+-- stopping distance. If the ego, the log or a collision broke off the overtake, the whole overtake would have needed more.
+driven_distance AS (
     SELECT
         o.drive_id, o.ego_id, o.occurrence, v.ov_id, v.da_m, v.v_ov_mps, m.v_top_mps, (o.t_end_ns - o.t0_ns) / 1e9 AS out_s,
         CASE WHEN o.status = 'completed' THEN (f.travel_m - e.travel_m) / nullif((o.t_end_ns - o.t0_ns) / 1e9, 0) END AS v_mean_mps,
         greatest(b.front_s_m - a.front_s_m + v.v_ov_mps * (o.t_end_ns - o.t0_ns) / 1e9, c.closed_m) + stopping_distance_m(v.v_ov_mps) AS driven_m
     FROM overtake o
-    JOIN other v USING (drive_id, ego_id, occurrence)
+    JOIN ov_candidate v USING (drive_id, ego_id, occurrence)
     LEFT JOIN ego_corridor a ON a.drive_id = o.drive_id AND a.ego_id = o.ego_id AND a.chain_id = o.chain_id AND a.t_ns = o.t0_ns
     LEFT JOIN ego_corridor b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.chain_id = o.chain_id AND b.t_ns = o.t_end_ns
     LEFT JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns = o.t0_ns
     LEFT JOIN ego_state f ON f.drive_id = o.drive_id AND f.ego_id = o.ego_id AND f.t_ns = o.t_end_ns
-    LEFT JOIN closed c ON c.drive_id = o.drive_id AND c.ego_id = o.ego_id AND c.occurrence = o.occurrence AND c.ov_id = v.ov_id
-    LEFT JOIN top m ON m.drive_id = o.drive_id AND m.ego_id = o.ego_id AND m.occurrence = o.occurrence
+    LEFT JOIN ov_closing c ON c.drive_id = o.drive_id AND c.ego_id = o.ego_id AND c.occurrence = o.occurrence AND c.ov_id = v.ov_id
+    LEFT JOIN top_speed m ON m.drive_id = o.drive_id AND m.ego_id = o.ego_id AND m.occurrence = o.occurrence
 ),
-input AS (
+formula_input AS (
     SELECT
         o.* REPLACE (
             CASE WHEN p.profile = 'observed' THEN coalesce(d.v_mean_mps, o.v_av_mps) ELSE o.v_av_mps END AS v_av_mps,
@@ -48,48 +48,49 @@ input AS (
         ),
         o.ov_id AS nearest_id, d.out_s, p.profile, coalesce(d.v_mean_mps, d.v_top_mps) AS v_later_mps,
         CASE WHEN p.profile = 'observed' THEN d.driven_m END AS driven_m,
-        CASE WHEN p.profile <> 'observed' THEN p.pull_out_angle_rad WHEN o.status = 'completed' THEN o.pull_out_angle_rad END AS beta,
-        CASE p.profile WHEN 'observed' THEN o.cut_in_angle_rad ELSE p.cut_in_angle_rad END AS theta,
-        CASE p.profile WHEN 'observed' THEN o.vbp_gap_m - o.span_m + o.l_vbp_m ELSE p.pull_out_headroom_m END AS headroom,
-        CASE p.profile WHEN 'observed' THEN o.t2_gap_m ELSE p.cut_in_clearance_m END AS clearance
+        CASE WHEN p.profile <> 'observed' THEN p.pull_out_angle_rad WHEN o.status = 'completed' THEN o.pull_out_angle_rad END AS beta_rad,
+        CASE p.profile WHEN 'observed' THEN o.cut_in_angle_rad ELSE p.cut_in_angle_rad END AS theta_rad,
+        CASE p.profile WHEN 'observed' THEN o.vbp_gap_m - o.span_m + o.l_vbp_m ELSE p.pull_out_headroom_m END AS headroom_m,
+        CASE p.profile WHEN 'observed' THEN o.t2_gap_m ELSE p.cut_in_clearance_m END AS clearance_m
     FROM overtake o
-    JOIN driven d USING (drive_id, ego_id, occurrence)
+    JOIN driven_distance d USING (drive_id, ego_id, occurrence)
     CROSS JOIN profile p
 ),
-planned AS (
+planned_distance AS (
     SELECT
-        *, begin_seen AND vbp_placed AND opposing IS NOT NULL AS told,
-        CASE WHEN beta > 0 AND theta > 0 AND v_av_mps > v_vbp_mps THEN
-            safe_distance_ahead_m(lane_width_m, beta, theta, headroom, clearance, l_av_m, span_m, v_av_mps, v_vbp_mps, v_ov_mps)
+        *, begin_seen AND vbp_placed AND opposing IS NOT NULL AS is_known,
+        CASE WHEN beta_rad > 0 AND theta_rad > 0 AND v_av_mps > v_vbp_mps THEN
+            safe_distance_ahead_m(lane_width_m, beta_rad, theta_rad, headroom_m, clearance_m, l_av_m, span_m, v_av_mps, v_vbp_mps, v_ov_mps)
         END AS planned_m,
-        CASE WHEN beta > 0 AND theta > 0 AND v_later_mps > v_av_mps AND v_later_mps > v_vbp_mps THEN
-            safe_distance_ahead_m(lane_width_m, beta, theta, headroom, clearance, l_av_m, span_m, v_later_mps, v_vbp_mps, v_ov_mps)
+        CASE WHEN beta_rad > 0 AND theta_rad > 0 AND v_later_mps > v_av_mps AND v_later_mps > v_vbp_mps THEN
+            safe_distance_ahead_m(lane_width_m, beta_rad, theta_rad, headroom_m, clearance_m, l_av_m, span_m, v_later_mps, v_vbp_mps, v_ov_mps)
         END AS sped_up_m
-    FROM input
+    FROM formula_input
 ),
-required AS (
-    -- where DA is not even more than that, it counts; of an overtake that was not completed nobody knows what else would have been enough
+required_distance AS (
+    -- The driven distance counts if DA is not even more than that. For an overtake that was not completed, it is not known which other
+    -- distance would have been enough.
     SELECT
-        *, CASE WHEN da_m <= driven_m THEN greatest(planned_m, driven_m) ELSE planned_m END AS sda_m, coalesce(da_m <= sda_m AND da_m > sped_up_m, false) AS sped_up
-    FROM planned
+        *, CASE WHEN da_m <= driven_m THEN greatest(planned_m, driven_m) ELSE planned_m END AS sda_m, coalesce(da_m <= sda_m AND da_m > sped_up_m, false) AS has_sped_up
+    FROM planned_distance
 ),
--- of several oncoming vehicles: one that leaves too little before one of which that is not known, and the one that leaves the least
-worst AS (
+-- Of several oncoming vehicles, one that leaves too little comes before one of which this is not known; then the one that leaves the least.
+worst_ov AS (
     SELECT *
-    FROM required
+    FROM required_distance
     QUALIFY row_number() OVER (
         PARTITION BY drive_id, ego_id, occurrence, profile
-        ORDER BY CASE WHEN da_m <= sda_m AND NOT sped_up THEN 0 WHEN da_m > sda_m THEN 2 ELSE 1 END, da_m - sda_m, ov_id
+        ORDER BY CASE WHEN da_m <= sda_m AND NOT has_sped_up THEN 0 WHEN da_m > sda_m THEN 2 ELSE 1 END, da_m - sda_m, ov_id
     ) = 1
 )
 SELECT
     drive_id, ego_id, occurrence, profile, t0_ns, ov_id,
-    CASE WHEN told AND NOT sped_up AND (n_unplaced = 0 OR da_m <= sda_m) THEN da_m END AS da_m,
+    CASE WHEN is_known AND NOT has_sped_up AND (n_unplaced = 0 OR da_m <= sda_m) THEN da_m END AS da_m,
     ov_id IS NULL AS at_least,
     ov_id IS NULL AND n_unplaced = 0 AS nobody,
     sda_m, da_m - sda_m AS spare_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0) AS spare_s,
-    -- a sight line too short, or somebody who cannot be placed, leaves open how much worse it was: only A can be told then
-    CASE WHEN told AND NOT sped_up AND CASE WHEN ov_id IS NULL THEN n_unplaced = 0 AND da_m > sda_m ELSE n_unplaced = 0 OR da_m <= sda_m END THEN overtake_zone(da_m - sda_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0)) END AS zone,
+    -- If the sight line is too short, or somebody cannot be placed, it is open how much worse it was. Then only zone A can be told.
+    CASE WHEN is_known AND NOT has_sped_up AND CASE WHEN ov_id IS NULL THEN n_unplaced = 0 AND da_m > sda_m ELSE n_unplaced = 0 OR da_m <= sda_m END THEN overtake_zone(da_m - sda_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0)) END AS zone,
     CASE
         WHEN NOT begin_seen THEN 'the log does not show where the overtake began: record the ego from before it'
         WHEN NOT vbp_placed THEN 'actor ' || vbp_id || ', who may be the vehicle passed, has no position where the overtake began: record it'
@@ -99,11 +100,11 @@ SELECT
         WHEN sda_m IS NULL AND profile = 'observed' AND status <> 'completed' THEN 'the overtake was ' || CASE status WHEN 'truncated' THEN 'not completed in the log, so its own angles are not known: record it for longer' ELSE 'not completed, and has no angles of its own: the other profiles tell more' END
         WHEN sda_m IS NULL AND ov_id IS NULL AND v_ov_mps IS NULL THEN 'no oncoming vehicle is seen and the map has no speed limit to assume for one'
         WHEN sda_m IS NULL THEN 'a speed, size or angle of the two is not known: record speeds and sizes'
-        WHEN sped_up THEN format('it sped up: at {:.1f} m/s, its speed at t0, it would have needed {:.0f} m, at {:.1f} m/s, {} {:.0f} m, and {:.0f} m were there', v_av_mps, sda_m, v_later_mps, CASE status WHEN 'truncated' THEN 'which it had reached when the log ended,' ELSE 'its mean one,' END, sped_up_m, da_m)
+        WHEN has_sped_up THEN format('it sped up: at {:.1f} m/s, its speed at t0, it would have needed {:.0f} m, at {:.1f} m/s, {} {:.0f} m, and {:.0f} m were there', v_av_mps, sda_m, v_later_mps, CASE status WHEN 'truncated' THEN 'which it had reached when the log ended,' ELSE 'its mean one,' END, sped_up_m, da_m)
         WHEN n_unplaced > 0 AND da_m > sda_m THEN unplaced_reason || ': record it without a break'
         WHEN ov_id IS NULL AND da_m <= sda_m THEN 'no oncoming vehicle as far as can be told, but that is only ' || round(da_m, 1)::VARCHAR || ' m: ' || CASE free_reason WHEN 'sensor_range' THEN 'the sensors reach no further' ELSE 'give a map that goes on' END
         WHEN ov_id IS NULL THEN 'no oncoming vehicle within ' || round(da_m, 1)::VARCHAR || ' m'
         WHEN da_m <= sda_m AND sda_m = driven_m THEN 'the ego was out of its lane for ' || round(out_s, 1)::VARCHAR || ' s'
         WHEN ov_id <> nearest_id THEN format('{} comes behind {}, and leaves the least: {:.1f} m, where more than {:.1f} m is required', ov_id, nearest_id, da_m, sda_m)
     END AS reason
-FROM worst
+FROM worst_ov

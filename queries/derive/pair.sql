@@ -1,211 +1,212 @@
--- The ego and every other actor, one row per ego step from the actor's first sample to its last. A sample of another time than the
--- step's is moved on by its own velocity while it is fresh; beyond that the actor is there but not placed. So is who is over or under the
--- ego's road, or may be: as far as the ground plan shows it is on the road, and it is not known to be met there.
-WITH same_time AS (
+-- The ego and every other actor, one row per ego step from the actor's first sample to its last. An actor whose sample has another time
+-- than the step is moved on by its own velocity while the sample is fresh. After that the actor is present but not placed. An actor that is
+-- over or under the ego's road, or may be, is not placed either: in plan it is on the road, but it is not known whether the ego meets it
+-- there.
+WITH sample_at_step AS (
     SELECT
-        e.drive_id, e.ego_id, e.t_ns, e.k, s.actor_id AS object_id, s.actor_class, s.t_ns AS t_at_ns, s.x_m, s.y_m, s.z_m,
+        e.drive_id, e.ego_id, e.t_ns, e.k, s.actor_id AS object_id, s.actor_class, s.t_ns AS t_sample_ns, s.x_m, s.y_m, s.z_m,
         turned_to(s.yaw_rad, s.travel_rad) AS yaw_rad, s.speed_mps, s.accel_mps2, s.length_m, s.width_m
     FROM step e
     JOIN state_dynamics s ON s.drive_id = e.drive_id AND s.t_ns = e.t_ns AND s.actor_id <> e.ego_id
     ANTI JOIN ego_part g ON g.drive_id = e.drive_id AND g.ego_id = e.ego_id AND g.object_id = s.actor_id
 ),
 track AS (
-    SELECT c.drive_id, c.ego_id, s.object_id, s.t_first_ns, s.t_last_ns, s.n
+    SELECT c.drive_id, c.ego_id, s.object_id, s.t_first_ns, s.t_last_ns, s.n_samples
     FROM clock c
     JOIN (
-        SELECT drive_id, actor_id AS object_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns, count(*) AS n FROM state_dynamics GROUP BY ALL
+        SELECT drive_id, actor_id AS object_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns, count(*) AS n_samples FROM state_dynamics GROUP BY ALL
     ) s ON s.drive_id = c.drive_id AND s.object_id <> c.ego_id
     ANTI JOIN ego_part g ON g.drive_id = c.drive_id AND g.ego_id = c.ego_id AND g.object_id = s.object_id
 ),
-met AS (
-    SELECT drive_id, ego_id, object_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns, max(k) - min(k) + 1 AS span, count(*) AS n
-    FROM same_time
+track_at_steps AS (
+    SELECT drive_id, ego_id, object_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns, max(k) - min(k) + 1 AS n_steps, count(*) AS n_samples
+    FROM sample_at_step
     GROUP BY ALL
 ),
--- only actors that miss a step, or have samples between the steps, need a closer look
-ragged AS (
+-- Only actors that miss a step, or have samples between the steps, need a closer look.
+irregular_track AS (
     SELECT t.drive_id, t.ego_id, t.object_id, t.t_first_ns, t.t_last_ns
     FROM track t
-    LEFT JOIN met m USING (drive_id, ego_id, object_id)
-    WHERE m.n IS NULL OR m.n <> t.n OR m.span <> m.n
+    LEFT JOIN track_at_steps m USING (drive_id, ego_id, object_id)
+    WHERE m.n_samples IS NULL OR m.n_samples <> t.n_samples OR m.n_steps <> m.n_samples
 ),
-missed AS (
+missed_step AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, r.object_id
-    FROM ragged r
+    FROM irregular_track r
     JOIN step e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id AND e.t_ns >= r.t_first_ns AND e.t_ns <= r.t_last_ns
-    ANTI JOIN same_time s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.t_ns = e.t_ns AND s.object_id = r.object_id
+    ANTI JOIN sample_at_step s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.t_ns = e.t_ns AND s.object_id = r.object_id
 ),
-held AS (
-    SELECT m.drive_id, m.ego_id, m.t_ns, m.object_id, (m.t_ns - s.t_ns) / 1e9 AS age_s, m.t_ns - s.t_ns <= c.max_gap_ns AS fresh, s.t_ns AS t_at_ns, s.* EXCLUDE (drive_id, actor_id, t_ns)
-    FROM missed m
+last_sample AS (
+    SELECT m.drive_id, m.ego_id, m.t_ns, m.object_id, (m.t_ns - s.t_ns) / 1e9 AS age_s, m.t_ns - s.t_ns <= c.max_gap_ns AS is_fresh, s.t_ns AS t_sample_ns, s.* EXCLUDE (drive_id, actor_id, t_ns)
+    FROM missed_step m
     JOIN clock c USING (drive_id, ego_id)
-    -- sorting every track for the sake of none would cost more than all the rest
+    -- Only the tracks that need it are sorted: to sort every track would cost more than all the rest.
     ASOF JOIN (
         SELECT s.* FROM state_dynamics s
-        SEMI JOIN ragged r ON r.drive_id = s.drive_id AND r.object_id = s.actor_id
+        SEMI JOIN irregular_track r ON r.drive_id = s.drive_id AND r.object_id = s.actor_id
     ) s ON s.drive_id = m.drive_id AND s.actor_id = m.object_id AND s.t_ns <= m.t_ns
 ),
-sampled AS (
-    SELECT * EXCLUDE (k) FROM same_time
+object_at_step AS (
+    SELECT * EXCLUDE (k) FROM sample_at_step
     UNION ALL BY NAME
     SELECT
-        drive_id, ego_id, t_ns, object_id, actor_class, length_m, width_m, t_at_ns, z_m,
-        CASE WHEN fresh THEN x_m + vx_mps * age_s END AS x_m, CASE WHEN fresh THEN y_m + vy_mps * age_s END AS y_m,
-        CASE WHEN fresh THEN turned_to(yaw_rad, travel_rad) END AS yaw_rad, CASE WHEN fresh THEN speed_mps END AS speed_mps, CASE WHEN fresh THEN accel_mps2 END AS accel_mps2
-    FROM held
+        drive_id, ego_id, t_ns, object_id, actor_class, length_m, width_m, t_sample_ns, z_m,
+        CASE WHEN is_fresh THEN x_m + vx_mps * age_s END AS x_m, CASE WHEN is_fresh THEN y_m + vy_mps * age_s END AS y_m,
+        CASE WHEN is_fresh THEN turned_to(yaw_rad, travel_rad) END AS yaw_rad, CASE WHEN is_fresh THEN speed_mps END AS speed_mps, CASE WHEN is_fresh THEN accel_mps2 END AS accel_mps2
+    FROM last_sample
 ),
-apart AS MATERIALIZED (
+pair_offset AS MATERIALIZED (
     SELECT
-        o.*, e.chain_id, e.s_m AS ego_s_m, e.z_m AS ego_z_m, e.yaw_rad AS ego_yaw_rad, e.length_m / 2 AS hla, e.width_m / 2 AS hwa,
-        o.length_m / 2 AS hlb, o.width_m / 2 AS hwb, o.x_m - e.x_m AS ex, o.y_m - e.y_m AS ey,
+        o.*, e.chain_id, e.s_m AS ego_s_m, e.z_m AS ego_z_m, e.yaw_rad AS ego_yaw_rad, e.length_m / 2 AS ego_half_length_m, e.width_m / 2 AS ego_half_width_m,
+        o.length_m / 2 AS object_half_length_m, o.width_m / 2 AS object_half_width_m, o.x_m - e.x_m AS east_m, o.y_m - e.y_m AS north_m,
         sqrt((o.x_m - e.x_m) ** 2 + (o.y_m - e.y_m) ** 2) AS distance_m,
         row_number() OVER () AS pair_no
-    FROM sampled o
+    FROM object_at_step o
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
 ),
-cleared AS (
+pair_clearance AS (
     SELECT
         *,
         CASE
             WHEN least_m > exact_clearance_m() THEN least_m
-            WHEN least_m + dx + c IS NOT NULL THEN box_clearance(dx, dy, c, s, hla, hwa, hlb, hwb)
+            WHEN least_m + dx + c IS NOT NULL THEN box_clearance(dx, dy, c, s, ego_half_length_m, ego_half_width_m, object_half_length_m, object_half_width_m)
         END AS clearance_m,
         CASE WHEN least_m IS NOT NULL THEN least_m > exact_clearance_m() END AS clearance_is_bound
     FROM (
-        -- the other's box in the frame of the ego's: columns, for a macro writes its arguments out wherever it uses them
+        -- The object's box in the frame of the ego's box. These are columns, because a macro repeats its arguments wherever it uses them.
         SELECT
-            *, CASE WHEN near THEN ex * cos(ego_yaw_rad) + ey * sin(ego_yaw_rad) END AS dx, CASE WHEN near THEN ey * cos(ego_yaw_rad) - ex * sin(ego_yaw_rad) END AS dy,
-            CASE WHEN near THEN cos(yaw_rad - ego_yaw_rad) END AS c, CASE WHEN near THEN sin(yaw_rad - ego_yaw_rad) END AS s
+            *, CASE WHEN is_near THEN east_m * cos(ego_yaw_rad) + north_m * sin(ego_yaw_rad) END AS dx, CASE WHEN is_near THEN north_m * cos(ego_yaw_rad) - east_m * sin(ego_yaw_rad) END AS dy,
+            CASE WHEN is_near THEN cos(yaw_rad - ego_yaw_rad) END AS c, CASE WHEN is_near THEN sin(yaw_rad - ego_yaw_rad) END AS s
         FROM (
-            SELECT *, least_m <= exact_clearance_m() AS near
-            FROM (SELECT *, distance_m - sqrt(hla * hla + hwa * hwa) - sqrt(hlb * hlb + hwb * hwb) AS least_m FROM apart)
+            SELECT *, least_m <= exact_clearance_m() AS is_near
+            FROM (SELECT *, distance_m - sqrt(ego_half_length_m * ego_half_length_m + ego_half_width_m * ego_half_width_m) - sqrt(object_half_length_m * object_half_length_m + object_half_width_m * object_half_width_m) AS least_m FROM pair_offset)
         )
     )
 ),
-candidate AS (
+segment_candidate AS (
     SELECT
         a.pair_no, a.drive_id, a.ego_id, a.chain_id, a.x_m, a.y_m, a.yaw_rad, a.ego_s_m, c.* EXCLUDE (drive_id, ego_id, cell),
         along0(a.x_m, a.y_m, c.x0_m, c.y0_m, c.tx0, c.ty0) AS a0,
         along1(a.x_m, a.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) AS a1
-    FROM apart a
+    FROM pair_offset a
     JOIN corridor_cell c ON c.drive_id = a.drive_id AND c.ego_id = a.ego_id AND c.cell = corridor_cell_of(a.x_m, a.y_m)
     WHERE a.ego_s_m IS NOT NULL
 ),
 beside AS (
     SELECT
         pair_no, drive_id, ego_id, chain_id, ego_s_m, lanelet_id, s0_m + u * len_m AS lane_s_m, d_m, hw0_m + u * (hw1_m - hw0_m) AS half_width_m,
-        wrap_rad(yaw_rad - atan2(ty0 + u * (ty1 - ty0), tx0 + u * (tx1 - tx0))) AS psi
+        wrap_rad(yaw_rad - atan2(ty0 + u * (ty1 - ty0), tx0 + u * (tx1 - tx0))) AS lane_heading_diff_rad
     FROM (
         SELECT *, a0 / (a0 + a1) AS u, offset_left(x_m, y_m, a0 / (a0 + a1), x0_m, y0_m, tx0, ty0, x1_m, y1_m, tx1, ty1) AS d_m
-        FROM candidate
+        FROM segment_candidate
         WHERE a0 >= -slack0_m AND a1 > -slack1_m AND a0 + a1 > 0
     )
     WHERE abs(d_m) <= strip_m()
 ),
--- the corridor by kilometre of the ego's station: what lies within 1.2 km of it, so that a ring's other laps are not looked at
-lap AS (
+-- The corridor by kilometre of the ego's station: only what lies within 1.2 km of it, so that the other laps of a ring are not searched.
+corridor_bucket AS (
     SELECT *, unnest(range(floor((s_start_m - 1200) / 1000)::BIGINT, floor((s_start_m + length_m + 1200) / 1000)::BIGINT + 1)) AS bucket
     FROM corridor
 ),
-on_chain AS MATERIALIZED (
+chain_place AS MATERIALIZED (
     SELECT
-        b.pair_no, c.s_start_m + b.lane_s_m AS s_m, b.d_m, b.half_width_m, b.psi, c.over_width_m, c.over_against, b.lanelet_id,
+        b.pair_no, c.s_start_m + b.lane_s_m AS s_m, b.d_m, b.half_width_m, b.lane_heading_diff_rad, c.over_width_m, c.over_against, b.lanelet_id,
         abs(c.s_start_m + b.lane_s_m - b.ego_s_m)
-        -- beside the road only if it is nowhere on it: the legs of a hairpin lie in each other's strip
+        -- An object is beside the road only if it is nowhere on it: the legs of a hairpin lie in each other's strip.
         + CASE WHEN abs(b.d_m) > b.half_width_m + coalesce(c.over_width_m, 2 * b.half_width_m) THEN 1e8 ELSE 0.0 END
-        -- and what comes the other way is still to be met, even if the shorter way round a ring is back
-        + CASE WHEN abs(b.psi) > pi() / 2 AND c.s_start_m + b.lane_s_m < b.ego_s_m - exact_clearance_m() THEN 1e6 ELSE 0.0 END AS off
+        -- An object that comes the other way is still ahead, even if the shorter way round a ring leads back.
+        + CASE WHEN abs(b.lane_heading_diff_rad) > pi() / 2 AND c.s_start_m + b.lane_s_m < b.ego_s_m - exact_clearance_m() THEN 1e6 ELSE 0.0 END AS off
     FROM beside b
-    JOIN lap c ON c.drive_id = b.drive_id AND c.ego_id = b.ego_id AND c.lanelet_id = b.lanelet_id AND c.chain_id = b.chain_id
+    JOIN corridor_bucket c ON c.drive_id = b.drive_id AND c.ego_id = b.ego_id AND c.lanelet_id = b.lanelet_id AND c.chain_id = b.chain_id
         AND c.bucket = floor(b.ego_s_m / 1000)::BIGINT
 ),
--- of several places on a corridor that meets itself, the one nearest to the ego along it (see above); a tie is settled by the station
-least AS MATERIALIZED (SELECT pair_no, min(off) AS off FROM on_chain GROUP BY pair_no),
-nearest AS MATERIALIZED (SELECT o.* FROM on_chain o JOIN least USING (pair_no, off)),
--- ties are rare: only where there are more rows than pairs it is worth looking for them
-twice AS (
-    SELECT pair_no FROM nearest WHERE (SELECT count(*) FROM nearest) > (SELECT count(*) FROM least) GROUP BY pair_no HAVING count(*) > 1
+-- Of several places on a corridor that meets itself, the one nearest to the ego along it counts (see above). The station decides a tie.
+least_off AS MATERIALIZED (SELECT pair_no, min(off) AS off FROM chain_place GROUP BY pair_no),
+nearest_place AS MATERIALIZED (SELECT o.* FROM chain_place o JOIN least_off USING (pair_no, off)),
+-- Ties are rare. They are looked for only if there are more rows than pairs.
+tied_pair AS (
+    SELECT pair_no FROM nearest_place WHERE (SELECT count(*) FROM nearest_place) > (SELECT count(*) FROM least_off) GROUP BY pair_no HAVING count(*) > 1
 ),
-settled AS (
+tie_winner AS (
     SELECT
         pair_no,
         min({
-            's_m': s_m, 'd_m': d_m, 'half_width_m': half_width_m, 'psi': psi, 'over_width_m': over_width_m, 'over_against': over_against,
+            's_m': s_m, 'd_m': d_m, 'half_width_m': half_width_m, 'lane_heading_diff_rad': lane_heading_diff_rad, 'over_width_m': over_width_m, 'over_against': over_against,
             'lanelet_id': lanelet_id
         }) AS p
-    FROM nearest SEMI JOIN twice USING (pair_no)
+    FROM nearest_place SEMI JOIN tied_pair USING (pair_no)
     GROUP BY pair_no
 ),
-placed AS (
-    SELECT * EXCLUDE (off) FROM nearest ANTI JOIN twice USING (pair_no)
+object_place AS (
+    SELECT * EXCLUDE (off) FROM nearest_place ANTI JOIN tied_pair USING (pair_no)
     UNION ALL
-    SELECT pair_no, unnest(p) FROM settled
+    SELECT pair_no, unnest(p) FROM tie_winner
 ),
--- ---- levels: whose box is in plan over the running lane or one lane's width beside it, where there is something to tell
-crossed AS (SELECT DISTINCT g.drive_id FROM data_log g SEMI JOIN lane_apart l ON l.environment_id = g.environment_id),
-over AS MATERIALIZED (
-    SELECT a.pair_no, a.drive_id, a.ego_id, a.chain_id, a.object_id, a.t_at_ns, a.z_m, p.s_m, p.psi, p.lanelet_id
-    FROM apart a
-    JOIN placed p USING (pair_no)
-    LEFT JOIN crossed r USING (drive_id)
+-- ---- levels: objects whose box lies in plan over the running lane or one lane's width beside it, if heights or the map can tell the level
+drive_with_overpass AS (SELECT DISTINCT g.drive_id FROM data_log g SEMI JOIN lane_apart l ON l.environment_id = g.environment_id),
+pair_over_road AS MATERIALIZED (
+    SELECT a.pair_no, a.drive_id, a.ego_id, a.chain_id, a.object_id, a.t_sample_ns, a.z_m, p.s_m, p.lane_heading_diff_rad, p.lanelet_id
+    FROM pair_offset a
+    JOIN object_place p USING (pair_no)
+    LEFT JOIN drive_with_overpass r USING (drive_id)
     WHERE (a.z_m IS NOT NULL OR r.drive_id IS NOT NULL)
-        AND abs(p.d_m) - coalesce(a.hlb * abs(sin(p.psi)) + a.hwb * abs(cos(p.psi)), 0.0) < p.half_width_m + greatest(coalesce(p.over_width_m, 0.0), 2 * p.half_width_m)
+        AND abs(p.d_m) - coalesce(a.object_half_length_m * abs(sin(p.lane_heading_diff_rad)) + a.object_half_width_m * abs(cos(p.lane_heading_diff_rad)), 0.0) < p.half_width_m + greatest(coalesce(p.over_width_m, 0.0), 2 * p.half_width_m)
 ),
--- one height for each place, or while the ego stands it would be any
-way AS (SELECT drive_id, ego_id, chain_id, s_m, min(z_m) AS z_m FROM ego_state WHERE s_m IS NOT NULL AND z_m IS NOT NULL GROUP BY ALL),
--- its height against the ego's where the ego comes nearest to that place, be it before or after
-height AS (
+-- One height for each place: while the ego stands, it could be any of several.
+ego_height AS (SELECT drive_id, ego_id, chain_id, s_m, min(z_m) AS z_m FROM ego_state WHERE s_m IS NOT NULL AND z_m IS NOT NULL GROUP BY ALL),
+-- The object's height against the ego's, where the ego comes nearest to that place, before or after.
+height_difference AS (
     SELECT
         pair_no, abs(dz_m) > level_m() + steepest() * along_m AS is_apart, abs(dz_m) <= level_m() AND steepest() * along_m <= level_m() AS is_same
     FROM (
         SELECT
             o.pair_no, o.z_m - CASE WHEN b.s_m IS NULL OR a.s_m - o.s_m < o.s_m - b.s_m THEN a.z_m ELSE b.z_m END AS dz_m,
-            -- least() leaves out the one that is not there, as it should here
+            -- least() ignores NULL, which is right here.
             least(a.s_m - o.s_m, o.s_m - b.s_m) AS along_m
-        FROM over o
-        ASOF LEFT JOIN way b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.chain_id = o.chain_id AND b.s_m <= o.s_m
-        ASOF LEFT JOIN way a ON a.drive_id = o.drive_id AND a.ego_id = o.ego_id AND a.chain_id = o.chain_id AND a.s_m >= o.s_m
+        FROM pair_over_road o
+        ASOF LEFT JOIN ego_height b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.chain_id = o.chain_id AND b.s_m <= o.s_m
+        ASOF LEFT JOIN ego_height a ON a.drive_id = o.drive_id AND a.ego_id = o.ego_id AND a.chain_id = o.chain_id AND a.s_m >= o.s_m
         WHERE o.z_m IS NOT NULL
     )
 ),
 off AS (
-    SELECT pair_no FROM height WHERE is_apart
+    SELECT pair_no FROM height_difference WHERE is_apart
     UNION
-    -- in a lane over or under the ego's, as far as the map tells, and not along the ego's alone
+    -- The object is in a lane over or under the ego's, as far as the map tells, and does not head along the ego's lane alone.
     SELECT v.pair_no
-    FROM over v
+    FROM pair_over_road v
     JOIN data_log g USING (drive_id)
-    JOIN lane_occupancy o ON o.drive_id = v.drive_id AND o.actor_id = v.object_id AND o.t_ns = v.t_at_ns
+    JOIN lane_occupancy o ON o.drive_id = v.drive_id AND o.actor_id = v.object_id AND o.t_ns = v.t_sample_ns
     JOIN lane_apart l ON l.environment_id = g.environment_id AND l.lanelet_id = v.lanelet_id AND l.other_id = o.lanelet_id
-    ANTI JOIN (FROM height WHERE is_same) h ON h.pair_no = v.pair_no
-    WHERE coalesce(NOT along_lane(v.psi) OR along_lane(o.heading_diff_rad), true)
+    ANTI JOIN (FROM height_difference WHERE is_same) h ON h.pair_no = v.pair_no
+    WHERE coalesce(NOT along_lane(v.lane_heading_diff_rad) OR along_lane(o.heading_diff_rad), true)
 ),
--- ---- the trailer's box is the ego's too: the nearer of the two counts
-drawn AS (
+-- ---- the trailer's box belongs to the ego, too: the nearer of the two boxes counts
+trailer_clearance AS (
     SELECT
         a.pair_no,
         min(CASE
             WHEN l.least_m > exact_clearance_m() THEN l.least_m
             WHEN l.least_m + a.yaw_rad + s.yaw_rad IS NOT NULL THEN box_clearance(
                 (a.x_m - s.x_m) * cos(s.yaw_rad) + (a.y_m - s.y_m) * sin(s.yaw_rad), (a.y_m - s.y_m) * cos(s.yaw_rad) - (a.x_m - s.x_m) * sin(s.yaw_rad),
-                cos(a.yaw_rad - s.yaw_rad), sin(a.yaw_rad - s.yaw_rad), s.length_m / 2, s.width_m / 2, a.hlb, a.hwb
+                cos(a.yaw_rad - s.yaw_rad), sin(a.yaw_rad - s.yaw_rad), s.length_m / 2, s.width_m / 2, a.object_half_length_m, a.object_half_width_m
             )
         END) AS clearance_m
-    FROM apart a
+    FROM pair_offset a
     JOIN (FROM ego_part WHERE part = 'trailer') g ON g.drive_id = a.drive_id AND g.ego_id = a.ego_id
     LEFT JOIN state_dynamics s ON s.drive_id = g.drive_id AND s.actor_id = g.object_id AND s.t_ns = a.t_ns
     CROSS JOIN LATERAL (
-        SELECT sqrt((a.x_m - s.x_m) ** 2 + (a.y_m - s.y_m) ** 2) - sqrt((s.length_m / 2) ** 2 + (s.width_m / 2) ** 2) - sqrt(a.hlb ** 2 + a.hwb ** 2) AS least_m
+        SELECT sqrt((a.x_m - s.x_m) ** 2 + (a.y_m - s.y_m) ** 2) - sqrt((s.length_m / 2) ** 2 + (s.width_m / 2) ** 2) - sqrt(a.object_half_length_m ** 2 + a.object_half_width_m ** 2) AS least_m
     ) l
     GROUP BY a.pair_no
 ),
-combined AS (
+combined_clearance AS (
     SELECT
         c.* EXCLUDE (clearance_m, clearance_is_bound),
         CASE WHEN d.pair_no IS NULL THEN c.clearance_is_bound ELSE r.m > exact_clearance_m() END AS clearance_is_bound, r.m AS clearance_m
-    FROM cleared c
-    LEFT JOIN drawn d USING (pair_no)
-    -- a contact of one of the two is one; that there is none takes both
+    FROM pair_clearance c
+    LEFT JOIN trailer_clearance d USING (pair_no)
+    -- A contact of one of the two boxes is a contact. To rule out a contact, both clearances must be known.
     CROSS JOIN LATERAL (
         SELECT CASE
             WHEN d.pair_no IS NULL OR c.clearance_m <= 0 THEN c.clearance_m
@@ -217,19 +218,19 @@ SELECT
     c.drive_id, c.ego_id, c.t_ns, c.object_id, c.actor_class, l.off_level,
     CASE WHEN NOT l.off_level THEN c.x_m END AS x_m, CASE WHEN NOT l.off_level THEN c.y_m END AS y_m, c.yaw_rad, c.speed_mps, c.accel_mps2,
     c.length_m, c.width_m, c.distance_m,
-    -- on another level it is at least as far away as in plan
+    -- On another level, the object is at least as far away as in plan.
     CASE WHEN NOT l.off_level OR c.clearance_m > 0 THEN c.clearance_m END AS clearance_m,
     CASE WHEN NOT l.off_level THEN c.clearance_is_bound WHEN c.clearance_m > 0 THEN true END AS clearance_is_bound,
     p.s_m AS s_m, p.d_m AS d_m,
-    p.s_m + c.hlb * abs(cos(p.psi)) + c.hwb * abs(sin(p.psi)) AS front_s_m,
-    p.s_m - c.hlb * abs(cos(p.psi)) - c.hwb * abs(sin(p.psi)) AS rear_s_m,
-    c.hlb * abs(sin(p.psi)) + c.hwb * abs(cos(p.psi)) AS lat_half_m,
-    p.psi AS heading_diff_rad,
+    p.s_m + c.object_half_length_m * abs(cos(p.lane_heading_diff_rad)) + c.object_half_width_m * abs(sin(p.lane_heading_diff_rad)) AS front_s_m,
+    p.s_m - c.object_half_length_m * abs(cos(p.lane_heading_diff_rad)) - c.object_half_width_m * abs(sin(p.lane_heading_diff_rad)) AS rear_s_m,
+    c.object_half_length_m * abs(sin(p.lane_heading_diff_rad)) + c.object_half_width_m * abs(cos(p.lane_heading_diff_rad)) AS lat_half_m,
+    p.lane_heading_diff_rad AS heading_diff_rad,
     p.half_width_m AS half_width_m, p.over_width_m AS over_width_m, p.over_against AS over_against
-FROM combined c
+FROM combined_clearance c
 LEFT JOIN off o USING (pair_no)
-LEFT JOIN (FROM placed ANTI JOIN off USING (pair_no)) p USING (pair_no)
--- where it has no place on the ego's road, its level matters only in a contact
+LEFT JOIN (FROM object_place ANTI JOIN off USING (pair_no)) p USING (pair_no)
+-- If the object has no place on the ego's road, its level matters only in a contact.
 CROSS JOIN LATERAL (
     SELECT o.pair_no IS NOT NULL OR coalesce(p.pair_no IS NULL AND c.clearance_m <= 0 AND NOT same_level(c.z_m, c.ego_z_m), false) AS off_level
 ) l

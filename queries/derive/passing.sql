@@ -1,73 +1,73 @@
--- Where the ego and another road user that heads the same way change their order, fronts against fronts. Steps at which the other has no
--- place, and holes, are bridged: the order has changed all the same, but the stretch was not seen whole. Where the order before or after is
--- not known either, and the two may have been beside each other, it may have changed.
+-- Passings: the ego and another road user that heads the same way change their order, front against front. Steps at which the other has no
+-- place, and holes, are bridged: the order has changed all the same, but the stretch was not seen whole. If the order before or after is
+-- not known either, and the two may have been beside each other, the order may have changed.
 WITH
--- steps without a place of the ego's own are bridged too
-own AS (
-    SELECT drive_id, ego_id, t_ns, row_number() OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns) AS n_own FROM ego_state WHERE front_s_m IS NOT NULL
+-- Steps at which the ego itself has no place are bridged, too.
+ego_place_step AS (
+    SELECT drive_id, ego_id, t_ns, row_number() OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns) AS ego_step_no FROM ego_state WHERE front_s_m IS NOT NULL
 ),
-met AS (
-    SELECT drive_id, ego_id, object_id, actor_class, t_ns, k, seg, n_own, true AS placed, ahead_m, gap_ahead_m <= 0 AND gap_behind_m <= 0 AS over,
+neighbour_step AS (
+    SELECT drive_id, ego_id, object_id, actor_class, t_ns, k, seg, ego_step_no, true AS is_placed, ahead_m, gap_ahead_m <= 0 AND gap_behind_m <= 0 AS is_beside,
         gap_m, side, abs(d_m) < half_width_m AS same_lane, abs(heading_diff_rad) < pi() / 2 AS along, ego_speed_mps, speed_mps
     FROM neighbour
-    JOIN own USING (drive_id, ego_id, t_ns)
+    JOIN ego_place_step USING (drive_id, ego_id, t_ns)
     UNION ALL BY NAME
-    SELECT h.drive_id, h.ego_id, h.object_id, h.t_ns, st.k, st.seg, o.n_own, false AS placed, false AS over
+    SELECT h.drive_id, h.ego_id, h.object_id, h.t_ns, st.k, st.seg, o.ego_step_no, false AS is_placed, false AS is_beside
     FROM hidden h
     SEMI JOIN neighbour n ON n.drive_id = h.drive_id AND n.ego_id = h.ego_id AND n.object_id = h.object_id
     JOIN step st ON st.drive_id = h.drive_id AND st.ego_id = h.ego_id AND st.t_ns = h.t_ns
-    JOIN own o ON o.drive_id = h.drive_id AND o.ego_id = h.ego_id AND o.t_ns = h.t_ns
+    JOIN ego_place_step o ON o.drive_id = h.drive_id AND o.ego_id = h.ego_id AND o.t_ns = h.t_ns
 ),
-ordered AS (
+order_step AS (
     SELECT
         *,
-        CASE WHEN ahead_m > order_m() THEN 1 WHEN ahead_m < -order_m() THEN -1 END AS rank,
-        n_own - row_number() OVER w AS run, lag(k) OVER w = k - 1 AND lag(seg) OVER w = seg AND lag(placed) OVER w AND placed AS joined,
-        lag(over) OVER w AS over_before,
-        lead(k) OVER w = k + 1 AND lead(seg) OVER w = seg AND lead(placed) OVER w AS goes_on
-    FROM met
+        CASE WHEN ahead_m > order_m() THEN 1 WHEN ahead_m < -order_m() THEN -1 END AS front_order,
+        ego_step_no - row_number() OVER w AS run_no, lag(k) OVER w = k - 1 AND lag(seg) OVER w = seg AND lag(is_placed) OVER w AND is_placed AS is_joined,
+        lag(is_beside) OVER w AS was_beside,
+        lead(k) OVER w = k + 1 AND lead(seg) OVER w = seg AND lead(is_placed) OVER w AS is_continued
+    FROM neighbour_step
     WINDOW w AS (PARTITION BY drive_id, ego_id, object_id ORDER BY k)
 ),
-numbered AS (
+numbered_step AS (
     SELECT
         *,
-        -- a stretch beside each other begins with every step that does not go on from one
-        sum((NOT coalesce(over AND over_before AND joined, false))::INTEGER)
+        -- A new stretch beside each other begins with every step that does not continue one.
+        sum((NOT coalesce(is_beside AND was_beside AND is_joined, false))::INTEGER)
             OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY k ROWS UNBOUNDED PRECEDING) AS n,
-        last_value(CASE WHEN rank IS NOT NULL THEN {'rank': rank, 't_ns': t_ns, 'parts': parts} END IGNORE NULLS)
-            OVER (PARTITION BY drive_id, ego_id, object_id, run ORDER BY k ROWS BETWEEN UNBOUNDED PRECEDING AND 1 PRECEDING) AS was
+        last_value(CASE WHEN front_order IS NOT NULL THEN {'front_order': front_order, 't_ns': t_ns, 'part_no': part_no} END IGNORE NULLS)
+            OVER (PARTITION BY drive_id, ego_id, object_id, run_no ORDER BY k ROWS BETWEEN UNBOUNDED PRECEDING AND 1 PRECEDING) AS earlier_order
     FROM (
-        SELECT *, sum((NOT coalesce(joined, false))::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY k ROWS UNBOUNDED PRECEDING) AS parts
-        FROM ordered
+        SELECT *, sum((NOT coalesce(is_joined, false))::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY k ROWS UNBOUNDED PRECEDING) AS part_no
+        FROM order_step
     )
 ),
-stretch AS (
+beside_stretch AS (
     SELECT
         drive_id, ego_id, object_id, n, min(t_ns) AS t_from_ns, max(t_ns) AS t_to_ns, min(gap_m) AS gap_m,
-        min({'k': k, 'seen': coalesce(joined, false)}).seen AND max({'k': k, 'seen': coalesce(goes_on, false)}).seen AS whole
-    FROM numbered
-    WHERE over
+        min({'k': k, 'seen': coalesce(is_joined, false)}).seen AND max({'k': k, 'seen': coalesce(is_continued, false)}).seen AS whole
+    FROM numbered_step
+    WHERE is_beside
     GROUP BY ALL
 ),
-changed AS (
+order_change AS (
     SELECT
-        c.drive_id, c.ego_id, c.object_id, c.actor_class, c.rank < 0 AS ego_passes, c.t_ns, CASE WHEN c.parts > c.was.parts THEN c.was.t_ns END AS t_unseen_ns,
+        c.drive_id, c.ego_id, c.object_id, c.actor_class, c.front_order < 0 AS ego_passes, c.t_ns, CASE WHEN c.part_no > c.earlier_order.part_no THEN c.earlier_order.t_ns END AS t_unseen_ns,
         coalesce(s.t_from_ns, c.t_ns) AS t_from_ns, coalesce(s.t_to_ns, c.t_ns) AS t_to_ns,
         c.side, s.gap_m, coalesce(s.whole, false) AS whole, c.same_lane, c.ego_speed_mps, c.speed_mps
-    FROM numbered c
-    LEFT JOIN (SELECT *, true AS over FROM stretch) s USING (drive_id, ego_id, object_id, n, over)
-    WHERE c.rank <> c.was.rank AND c.along
+    FROM numbered_step c
+    LEFT JOIN (SELECT *, true AS is_beside FROM beside_stretch) s USING (drive_id, ego_id, object_id, n, is_beside)
+    WHERE c.front_order <> c.earlier_order.front_order AND c.along
 ),
--- who may be beside the ego in steps on end
+-- Vehicles that may be beside the ego in consecutive steps.
 unseen AS (
     SELECT drive_id, ego_id, object_id, actor_class, min(t_ns) AS t_from_ns, max(t_ns) AS t_to_ns
     FROM (
-        SELECT b.*, st.k - row_number() OVER (PARTITION BY b.drive_id, b.ego_id, b.object_id ORDER BY st.k) AS run
+        SELECT b.*, st.k - row_number() OVER (PARTITION BY b.drive_id, b.ego_id, b.object_id ORDER BY st.k) AS run_no
         FROM beside b
         JOIN step st USING (drive_id, ego_id, t_ns)
         WHERE b.gap_m IS NULL AND may_be_vehicle(b.actor_class)
     )
-    GROUP BY drive_id, ego_id, object_id, actor_class, run
+    GROUP BY drive_id, ego_id, object_id, actor_class, run_no
 ),
 seen AS (
     SELECT p.drive_id, p.ego_id, p.object_id, p.t_ns, p.front_s_m > e.front_s_m AS ahead, abs(p.heading_diff_rad) < pi() / 2 AS along
@@ -76,15 +76,15 @@ seen AS (
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     WHERE p.front_s_m IS NOT NULL AND e.front_s_m IS NOT NULL
 ),
-doubt AS (
+possible_change AS (
     SELECT u.drive_id, u.ego_id, u.object_id, u.actor_class, u.t_to_ns AS t_ns, u.t_from_ns AS t_unseen_ns, u.t_from_ns, u.t_to_ns, false AS whole
     FROM unseen u
     ASOF LEFT JOIN seen b ON b.drive_id = u.drive_id AND b.ego_id = u.ego_id AND b.object_id = u.object_id AND b.t_ns <= u.t_from_ns
     ASOF LEFT JOIN seen a ON a.drive_id = u.drive_id AND a.ego_id = u.ego_id AND a.object_id = u.object_id AND a.t_ns >= u.t_to_ns
-    ANTI JOIN changed c ON c.drive_id = u.drive_id AND c.ego_id = u.ego_id AND c.object_id = u.object_id AND c.t_ns > b.t_ns AND c.t_ns <= a.t_ns
+    ANTI JOIN order_change c ON c.drive_id = u.drive_id AND c.ego_id = u.ego_id AND c.object_id = u.object_id AND c.t_ns > b.t_ns AND c.t_ns <= a.t_ns
     WHERE b.ahead = a.ahead IS DISTINCT FROM true AND coalesce(b.along, a.along, true)
 )
 SELECT
     *,
     (row_number() OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns, object_id, ego_passes) - 1)::INTEGER AS occurrence
-FROM (SELECT * FROM changed UNION ALL BY NAME SELECT * FROM doubt)
+FROM (SELECT * FROM order_change UNION ALL BY NAME SELECT * FROM possible_change)

@@ -1,6 +1,6 @@
--- Roads of one direction alone that are halves of one road: the other direction is a road of its own beside it, along most of a lane. The
--- first of the two by its id stands for both.
-WITH way AS (
+-- Roads of one direction that are halves of one road: the other direction is a road of its own beside it, along most of a lane. The first
+-- of the two by its id stands for both.
+WITH one_way_road AS (
     SELECT environment_id, road_id, min(along_road) AS along_road
     FROM lanelet
     WHERE drivable AND junction_id IS NULL
@@ -19,6 +19,6 @@ beside AS (
 SELECT b.environment_id, b.road_id, min({'road': b.of_road_id, 'turned': a.along_road = o.along_road}).road AS of_road_id,
     min({'road': b.of_road_id, 'turned': a.along_road = o.along_road}).turned AS turned
 FROM beside b
-JOIN way a ON a.environment_id = b.environment_id AND a.road_id = b.road_id
-JOIN way o ON o.environment_id = b.environment_id AND o.road_id = b.of_road_id
+JOIN one_way_road a ON a.environment_id = b.environment_id AND a.road_id = b.road_id
+JOIN one_way_road o ON o.environment_id = b.environment_id AND o.road_id = b.of_road_id
 GROUP BY b.environment_id, b.road_id

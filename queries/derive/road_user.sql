@@ -1,22 +1,22 @@
--- What every actor is, as far as its class, its box and its way tell. A thing that moves by itself may be anybody: only what stands in the
--- whole log is known to be none.
-WITH unsaid AS (FROM actor WHERE actor_class IS NULL OR actor_class = 'object'),
-way AS (
+-- The class of every actor, as far as its recorded class, its box and its motion tell. A thing that moves by itself may be any road user.
+-- Only a thing that stands in the whole log is known to be none.
+WITH unclassified_actor AS (FROM actor WHERE actor_class IS NULL OR actor_class = 'object'),
+actor_motion AS (
     SELECT
         s.drive_id, s.actor_id,
-        greatest(max(s.x_m) - min(s.x_m), max(s.y_m) - min(s.y_m)) > least(stays_m(), standing_mps() * (max(s.t_ns) - min(s.t_ns)) / 1e9) AS moves
+        greatest(max(s.x_m) - min(s.x_m), max(s.y_m) - min(s.y_m)) > least(stays_m(), standing_mps() * (max(s.t_ns) - min(s.t_ns)) / 1e9) AS has_moved
     FROM actor_state s
-    SEMI JOIN unsaid u ON u.drive_id = s.drive_id AND u.actor_id = s.actor_id
+    SEMI JOIN unclassified_actor u ON u.drive_id = s.drive_id AND u.actor_id = s.actor_id
     GROUP BY s.drive_id, s.actor_id
 )
 SELECT
     a.drive_id, a.actor_id,
     CASE
         WHEN u.actor_id IS NULL THEN a.actor_class
-        WHEN a.actor_class = 'object' AND NOT w.moves THEN 'object'
+        WHEN a.actor_class = 'object' AND NOT w.has_moved THEN 'object'
         WHEN a.length_m > longest_alive_m() THEN 'vehicle'
     END AS actor_class,
     a.length_m, a.width_m
 FROM actor a
-LEFT JOIN unsaid u USING (drive_id, actor_id)
-LEFT JOIN way w USING (drive_id, actor_id)
+LEFT JOIN unclassified_actor u USING (drive_id, actor_id)
+LEFT JOIN actor_motion w USING (drive_id, actor_id)

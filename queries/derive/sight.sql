@@ -1,6 +1,6 @@
--- How far the ego sees where somebody is missing: all around as far as the nearest box, and along its own lane, where that is straight, as far
--- as nobody is in it.
-WITH asked AS (
+-- How far the ego sees at the steps at which an object is missing: all around as far as the nearest box, and along its own lane as far as
+-- nobody is in it. Where that lane is not straight, it sees no further than to the first place that a box hides.
+WITH missing_step AS (
     SELECT DISTINCT drive_id, ego_id, t_ns
     FROM (
         SELECT drive_id, ego_id, t_ns FROM unseen
@@ -8,59 +8,60 @@ WITH asked AS (
         SELECT drive_id, ego_id, t_ns FROM pair WHERE x_m IS NULL OR y_m IS NULL
     )
 ),
-eye AS (
+viewpoint AS (
     SELECT e.*, sight_m(g.sensor_range_m) AS range_m
-    FROM asked
-    JOIN data_log g ON g.drive_id = asked.drive_id AND g.in_sight
-    JOIN ego_state e ON e.drive_id = asked.drive_id AND e.ego_id = asked.ego_id AND e.t_ns = asked.t_ns
+    FROM missing_step
+    JOIN data_log g ON g.drive_id = missing_step.drive_id AND g.in_sight
+    JOIN ego_state e ON e.drive_id = missing_step.drive_id AND e.ego_id = missing_step.ego_id AND e.t_ns = missing_step.t_ns
 ),
-near AS (
+nearest_box AS (
     SELECT
         e.drive_id, e.ego_id, e.t_ns, min(p.distance_m - half_box_m(p.length_m, p.width_m)) AS around_m,
         min(p.rear_s_m - e.front_s_m) FILTER (p.s_m > e.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m) AS lane_m,
-        min(p.rear_s_m - e.front_s_m) FILTER (p.s_m > e.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m - hides_vehicle_m()) AS vehicle_m
-    FROM eye e
+        min(p.rear_s_m - e.front_s_m) FILTER (p.s_m > e.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m - hides_vehicle_m()) AS vehicle_distance_m
+    FROM viewpoint e
     JOIN pair p USING (drive_id, ego_id, t_ns)
     WHERE p.distance_m < e.range_m
     GROUP BY ALL
 ),
-piece AS (
+corridor_segment AS (
     SELECT c.drive_id, c.ego_id, c.chain_id, c.s_start_m + g.s0_m AS s_m, g.x0_m, g.y0_m, g.tx0, g.ty0
     FROM corridor c
     JOIN data_log l USING (drive_id)
     JOIN lane_segment g ON g.environment_id = l.environment_id AND g.lanelet_id = c.lanelet_id
     WHERE l.in_sight
 ),
-own AS (
+ego_segment AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, e.chain_id, e.s_m, e.range_m, p.x0_m, p.y0_m, p.tx0, p.ty0
-    FROM eye e
-    ASOF JOIN piece p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.chain_id = e.chain_id AND p.s_m <= e.s_m
+    FROM viewpoint e
+    ASOF JOIN corridor_segment p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.chain_id = e.chain_id AND p.s_m <= e.s_m
 ),
--- half way and at the end of the range: its middle on the line on which the lane goes on from the ego
-straight AS (
+-- A lane is straight if its middle, at four distances up to the end of the range, stays near the line on which the lane goes on from the
+-- ego.
+straight_lane AS (
     SELECT o.drive_id, o.ego_id, o.t_ns
     FROM (
-        SELECT *, s_m + v.share * range_m AS s_there_m FROM own CROSS JOIN (VALUES (0.25), (0.5), (0.75), (1.0)) AS v(share)
+        SELECT *, s_m + v.share * range_m AS place_s_m FROM ego_segment CROSS JOIN (VALUES (0.25), (0.5), (0.75), (1.0)) AS v(share)
     ) o
-    ASOF JOIN piece p ON p.drive_id = o.drive_id AND p.ego_id = o.ego_id AND p.chain_id = o.chain_id AND p.s_m <= o.s_there_m
+    ASOF JOIN corridor_segment p ON p.drive_id = o.drive_id AND p.ego_id = o.ego_id AND p.chain_id = o.chain_id AND p.s_m <= o.place_s_m
     GROUP BY ALL
     HAVING max(abs((p.y0_m - o.y0_m) * o.tx0 - (p.x0_m - o.x0_m) * o.ty0)) < straight_m()
 ),
--- in a bend, places on its middle, and the nearest one that is behind a box
-place AS (
+-- In a bend: places along the middle of the lane, and the nearest one that is behind a box.
+lane_place AS (
     SELECT o.drive_id, o.ego_id, o.t_ns, e.x_m, e.y_m, o.along_m, p.x0_m + (o.s_m + o.along_m - p.s_m) * p.tx0 - e.x_m AS dx_m, p.y0_m + (o.s_m + o.along_m - p.s_m) * p.ty0 - e.y_m AS dy_m
     FROM (
-        SELECT o.*, s_m + v.k * sight_step_m() AS s_there_m, v.k * sight_step_m() AS along_m
-        FROM own o
-        ANTI JOIN straight USING (drive_id, ego_id, t_ns)
+        SELECT o.*, s_m + v.k * sight_step_m() AS place_s_m, v.k * sight_step_m() AS along_m
+        FROM ego_segment o
+        ANTI JOIN straight_lane USING (drive_id, ego_id, t_ns)
         CROSS JOIN LATERAL (SELECT unnest(range(1, (range_m / sight_step_m())::BIGINT)) AS k) v
     ) o
-    JOIN eye e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns = o.t_ns
-    ASOF JOIN piece p ON p.drive_id = o.drive_id AND p.ego_id = o.ego_id AND p.chain_id = o.chain_id AND p.s_m <= o.s_there_m
+    JOIN viewpoint e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns = o.t_ns
+    ASOF JOIN corridor_segment p ON p.drive_id = o.drive_id AND p.ego_id = o.ego_id AND p.chain_id = o.chain_id AND p.s_m <= o.place_s_m
 ),
-bent AS (
+hidden_place AS (
     SELECT a.drive_id, a.ego_id, a.t_ns, min(a.along_m) FILTER (p.t_ns IS NOT NULL) - sight_step_m() AS along_m
-    FROM place a
+    FROM lane_place a
     CROSS JOIN LATERAL (SELECT sqrt(a.dx_m ** 2 + a.dy_m ** 2) AS distance_m) x
     LEFT JOIN pair p ON p.drive_id = a.drive_id AND p.ego_id = a.ego_id AND p.t_ns = a.t_ns AND p.distance_m < x.distance_m + two_half_boxes_m() / 2
         AND in_line(p.x_m - a.x_m, p.y_m - a.y_m, a.dx_m, a.dy_m, p.yaw_rad, p.length_m, p.width_m)
@@ -73,10 +74,10 @@ SELECT
         ELSE least(n.around_m, e.range_m) - e.length_m / 2
     END) AS lane_m,
     greatest(0.0, CASE
-        WHEN r.t_ns IS NOT NULL OR b.t_ns IS NOT NULL THEN least(n.vehicle_m, least(b.along_m, e.range_m - two_half_boxes_m() / 2) - e.length_m / 2)
+        WHEN r.t_ns IS NOT NULL OR b.t_ns IS NOT NULL THEN least(n.vehicle_distance_m, least(b.along_m, e.range_m - two_half_boxes_m() / 2) - e.length_m / 2)
         ELSE least(n.around_m, e.range_m) - e.length_m / 2
     END) AS vehicle_lane_m
-FROM eye e
-LEFT JOIN near n USING (drive_id, ego_id, t_ns)
-LEFT JOIN straight r USING (drive_id, ego_id, t_ns)
-LEFT JOIN bent b USING (drive_id, ego_id, t_ns)
+FROM viewpoint e
+LEFT JOIN nearest_box n USING (drive_id, ego_id, t_ns)
+LEFT JOIN straight_lane r USING (drive_id, ego_id, t_ns)
+LEFT JOIN hidden_place b USING (drive_id, ego_id, t_ns)

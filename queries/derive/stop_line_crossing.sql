@@ -1,75 +1,75 @@
--- The ego's front goes over a stop line of its running lane; what it did before that, and what the light showed.
-WITH line AS (SELECT * FROM near_mark WHERE kind = 'stop_line'),
-over_it AS (
+-- The crossings of a stop line of the running lane by the ego's front, with what the ego did before and what the light showed.
+WITH stop_line_step AS (SELECT * FROM near_mark WHERE kind = 'stop_line'),
+numbered_step AS (
     SELECT
-        *, front_m >= 0 AND front_before_m < 0 AND running AS crosses,
+        *, front_m >= 0 AND front_before_m < 0 AND running AS is_crossing,
         count(*) FILTER (front_m >= 0 AND front_before_m < 0 AND running)
             OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS n
-    FROM line
+    FROM stop_line_step
 ),
--- what trembles on the line has crossed it once: it must have been half a metre back in between
-back AS (
-    SELECT drive_id, ego_id, chain_id, mark_id, s_start_m, n + 1 AS n, min(front_m) < -0.5 AS was_back
-    FROM over_it
+-- A front that trembles on the line crosses it once: for another crossing it must have been half a metre back in between.
+way_back AS (
+    SELECT drive_id, ego_id, chain_id, mark_id, s_start_m, n + 1 AS n, min(front_m) < -0.5 AS has_been_back
+    FROM numbered_step
     GROUP BY drive_id, ego_id, chain_id, mark_id, s_start_m, n
 ),
-crossed AS (
+crossing_step AS (
     SELECT o.drive_id, o.ego_id, o.chain_id, o.mark_id, o.s_start_m, o.t_ns, o.k, o.joined, o.front_before_m
-    FROM over_it o
-    LEFT JOIN back b USING (drive_id, ego_id, chain_id, mark_id, s_start_m, n)
-    WHERE o.crosses AND (o.n = 1 OR b.was_back)
+    FROM numbered_step o
+    LEFT JOIN way_back b USING (drive_id, ego_id, chain_id, mark_id, s_start_m, n)
+    WHERE o.is_crossing AND (o.n = 1 OR b.has_been_back)
 ),
-earlier AS (
-    SELECT *, lag(t_ns, 1, -1) OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m ORDER BY t_ns) AS t_before_ns FROM crossed
+crossing_interval AS (
+    SELECT *, lag(t_ns, 1, -1) OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m ORDER BY t_ns) AS t_before_ns FROM crossing_step
 ),
--- ---- the way up to it
-approach AS (
-    SELECT c.drive_id, c.ego_id, c.chain_id, c.mark_id, c.s_start_m, c.t_ns, n.t_ns AS t_at_ns, n.k, n.seg, n.front_m, e.speed_mps, c.joined AND n.k = c.k - 1 AS last_one
-    FROM earlier c
-    JOIN line n ON n.drive_id = c.drive_id AND n.ego_id = c.ego_id AND n.chain_id = c.chain_id AND n.mark_id = c.mark_id AND n.s_start_m = c.s_start_m
+-- ---- the approach to the line
+approach_step AS (
+    SELECT c.drive_id, c.ego_id, c.chain_id, c.mark_id, c.s_start_m, c.t_ns, n.t_ns AS t_step_ns, n.k, n.seg, n.front_m, e.speed_mps, c.joined AND n.k = c.k - 1 AS is_last
+    FROM crossing_interval c
+    JOIN stop_line_step n ON n.drive_id = c.drive_id AND n.ego_id = c.ego_id AND n.chain_id = c.chain_id AND n.mark_id = c.mark_id AND n.s_start_m = c.s_start_m
         AND n.t_ns < c.t_ns AND n.t_ns > c.t_before_ns
     JOIN ego_state e ON e.drive_id = n.drive_id AND e.ego_id = n.ego_id AND e.t_ns = n.t_ns
     WHERE n.front_m <= 0
 ),
-slow AS (
+slowest_step AS (
     SELECT
         drive_id, ego_id, chain_id, mark_id, s_start_m, t_ns,
-        -- at speed no step may fall into the last three metres: then it is the last one before the line
+        -- At high speed no step may fall into the last three metres. Then the last step before the line counts.
         coalesce(
-            min({'speed_mps': speed_mps, 't_ns': t_at_ns, 'front_m': front_m}) FILTER (front_m >= -3 AND speed_mps IS NOT NULL),
-            min({'speed_mps': speed_mps, 't_ns': t_at_ns, 'front_m': front_m}) FILTER (last_one AND speed_mps IS NOT NULL)
-        ) AS least,
+            min({'speed_mps': speed_mps, 't_ns': t_step_ns, 'front_m': front_m}) FILTER (front_m >= -3 AND speed_mps IS NOT NULL),
+            min({'speed_mps': speed_mps, 't_ns': t_step_ns, 'front_m': front_m}) FILTER (is_last AND speed_mps IS NOT NULL)
+        ) AS slowest,
         coalesce(bool_or(speed_mps IS NULL) FILTER (front_m >= -3), false) AS unknown_3m, coalesce(bool_or(speed_mps IS NULL) FILTER (front_m >= -1), false) AS unknown_1m
-    FROM approach
+    FROM approach_step
     GROUP BY drive_id, ego_id, chain_id, mark_id, s_start_m, t_ns
 ),
-stood AS (
-    SELECT drive_id, ego_id, chain_id, mark_id, s_start_m, t_ns, max(ns) / 1e9 AS stood_s
+stop_time AS (
+    SELECT drive_id, ego_id, chain_id, mark_id, s_start_m, t_ns, max(stood_ns) / 1e9 AS stood_s
     FROM (
-        SELECT drive_id, ego_id, chain_id, mark_id, s_start_m, t_ns, max(t_at_ns) - min(t_at_ns) AS ns
+        SELECT drive_id, ego_id, chain_id, mark_id, s_start_m, t_ns, max(t_step_ns) - min(t_step_ns) AS stood_ns
         FROM (
-            SELECT *, k - row_number() OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m, t_ns, seg ORDER BY k) AS run
-            FROM approach
+            SELECT *, k - row_number() OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m, t_ns, seg ORDER BY k) AS run_no
+            FROM approach_step
             WHERE front_m >= -1 AND speed_mps <= stood_mps()
         )
-        GROUP BY drive_id, ego_id, chain_id, mark_id, s_start_m, t_ns, seg, run
+        GROUP BY drive_id, ego_id, chain_id, mark_id, s_start_m, t_ns, seg, run_no
     )
     GROUP BY drive_id, ego_id, chain_id, mark_id, s_start_m, t_ns
 ),
 -- ---- the light
-lit AS (
+light_state AS (
     SELECT
         c.drive_id, c.ego_id, c.chain_id, c.mark_id, c.s_start_m, c.t_ns, p.state, p.state_before, CASE WHEN p.begin_seen THEN p.t_from_ns END AS t_state_ns,
         CASE WHEN p.state = 'amber' AND p.begin_seen THEN p.t_from_ns WHEN p.state = 'red' AND p.state_before = 'amber' THEN p.t_before_ns END AS t_amber_ns
-    FROM crossed c
+    FROM crossing_step c
     JOIN mark_phase p USING (drive_id, ego_id, chain_id, mark_id, s_start_m)
     WHERE p.kind = 'stop_line' AND p.t_from_ns <= c.t_ns AND c.t_ns < coalesce(p.t_to_ns, c.t_ns + 1)
 ),
-at_amber AS (
+amber_onset AS (
     SELECT
         l.drive_id, l.ego_id, l.chain_id, l.mark_id, l.s_start_m, l.t_ns,
         min({'t_ns': x.t_ns, 'front_m': l.s_start_m - x.front_s_m, 'speed_mps': e.speed_mps}) AS a
-    FROM lit l
+    FROM light_state l
     JOIN clock k USING (drive_id, ego_id)
     JOIN ego_corridor x ON x.drive_id = l.drive_id AND x.ego_id = l.ego_id AND x.chain_id = l.chain_id
         AND x.t_ns >= l.t_amber_ns AND x.t_ns <= l.t_amber_ns + k.max_gap_ns
@@ -81,18 +81,18 @@ SELECT
     c.drive_id, c.ego_id, (row_number() OVER (PARTITION BY c.drive_id, c.ego_id ORDER BY c.t_ns, c.mark_id) - 1)::INTEGER AS occurrence,
     c.mark_id AS stop_line_id, m.lanelet_id, m.control, m.signal_id, c.t_ns, c.joined AS begin_seen, e.speed_mps,
     l.state, l.state_before, l.t_state_ns, a.a.front_m AS amber_front_m, a.a.speed_mps AS amber_speed_mps,
-    CASE WHEN NOT s.unknown_3m OR s.least.speed_mps <= stood_mps() THEN s.least.speed_mps END AS slowest_mps,
-    CASE WHEN NOT s.unknown_3m OR s.least.speed_mps <= stood_mps() THEN -s.least.front_m END AS slowest_front_m,
+    CASE WHEN NOT s.unknown_3m OR s.slowest.speed_mps <= stood_mps() THEN s.slowest.speed_mps END AS slowest_mps,
+    CASE WHEN NOT s.unknown_3m OR s.slowest.speed_mps <= stood_mps() THEN -s.slowest.front_m END AS slowest_front_m,
     CASE WHEN d.stood_s IS NOT NULL AND NOT s.unknown_1m THEN d.stood_s WHEN NOT s.unknown_1m THEN 0.0 WHEN s.t_ns IS NULL THEN 0.0 END AS stood_s
-FROM crossed c
+FROM crossing_step c
 JOIN way_mark m ON m.drive_id = c.drive_id AND m.ego_id = c.ego_id AND m.chain_id = c.chain_id AND m.mark_id = c.mark_id
     AND m.s_start_m = c.s_start_m AND m.kind = 'stop_line'
 JOIN ego_state e ON e.drive_id = c.drive_id AND e.ego_id = c.ego_id AND e.t_ns = c.t_ns
-LEFT JOIN slow s ON s.drive_id = c.drive_id AND s.ego_id = c.ego_id AND s.chain_id = c.chain_id AND s.mark_id = c.mark_id
+LEFT JOIN slowest_step s ON s.drive_id = c.drive_id AND s.ego_id = c.ego_id AND s.chain_id = c.chain_id AND s.mark_id = c.mark_id
     AND s.s_start_m = c.s_start_m AND s.t_ns = c.t_ns
-LEFT JOIN stood d ON d.drive_id = c.drive_id AND d.ego_id = c.ego_id AND d.chain_id = c.chain_id AND d.mark_id = c.mark_id
+LEFT JOIN stop_time d ON d.drive_id = c.drive_id AND d.ego_id = c.ego_id AND d.chain_id = c.chain_id AND d.mark_id = c.mark_id
     AND d.s_start_m = c.s_start_m AND d.t_ns = c.t_ns
-LEFT JOIN lit l ON l.drive_id = c.drive_id AND l.ego_id = c.ego_id AND l.chain_id = c.chain_id AND l.mark_id = c.mark_id
+LEFT JOIN light_state l ON l.drive_id = c.drive_id AND l.ego_id = c.ego_id AND l.chain_id = c.chain_id AND l.mark_id = c.mark_id
     AND l.s_start_m = c.s_start_m AND l.t_ns = c.t_ns
-LEFT JOIN at_amber a ON a.drive_id = c.drive_id AND a.ego_id = c.ego_id AND a.chain_id = c.chain_id AND a.mark_id = c.mark_id
+LEFT JOIN amber_onset a ON a.drive_id = c.drive_id AND a.ego_id = c.ego_id AND a.chain_id = c.chain_id AND a.mark_id = c.mark_id
     AND a.s_start_m = c.s_start_m AND a.t_ns = c.t_ns

@@ -1,13 +1,13 @@
--- The boxes of those whose ways may meet, where that may be. Between two samples a box goes straight on; there are so many moments that it never
--- moves by more than half its length.
+-- The boxes of actors whose paths may meet, where they may meet. Between two samples a box goes straight on. There are so many moments in
+-- between that it never moves by more than half its length.
 WITH
-scale AS (
+grid_scale AS (
     SELECT drive_id, max(max_gap_ns) AS max_gap_ns, any_value(cell_m) AS cell_m
     FROM (SELECT drive_id, any_value(cell_m) AS cell_m FROM meeting GROUP BY drive_id) JOIN ego_clock USING (drive_id)
     GROUP BY drive_id
 ),
--- where either of the two may be near the other
-part AS (
+-- The cells in which either of the two may be near the other.
+meeting_place AS (
     SELECT DISTINCT m.drive_id, m.actor_id, m.cell + cell_key(x.i, y.i) AS cell
     FROM (
         SELECT drive_id, unnest([actor_id, object_id]) AS actor_id, cell FROM meeting
@@ -16,36 +16,36 @@ part AS (
     ) m
     CROSS JOIN (VALUES (-1), (0), (1)) AS x(i) CROSS JOIN (VALUES (-1), (0), (1)) AS y(i)
 ),
-sample AS MATERIALIZED (
+placed_sample AS MATERIALIZED (
     SELECT
         s.drive_id, s.actor_id, s.t_ns, s.x_m, s.y_m, s.z_m, s.yaw_rad, s.travel_rad, s.length_m, s.width_m, g.cell_m, g.max_gap_ns,
-        {'t_ns': s.t_ns, 'cell': meeting_cell(s.x_m, s.y_m, g.cell_m), 'slot': meeting_slot(s.t_ns), 'heading': heading_step(s.travel_rad)} AS key,
-        lead({'t_ns': s.t_ns, 'x_m': s.x_m, 'y_m': s.y_m, 'yaw_rad': s.yaw_rad, 'travel_rad': s.travel_rad, 'key': key}) OVER w AS after
+        {'t_ns': s.t_ns, 'cell': meeting_cell(s.x_m, s.y_m, g.cell_m), 'slot': meeting_slot(s.t_ns), 'heading': heading_step(s.travel_rad)} AS visit_key,
+        lead({'t_ns': s.t_ns, 'x_m': s.x_m, 'y_m': s.y_m, 'yaw_rad': s.yaw_rad, 'travel_rad': s.travel_rad, 'visit_key': visit_key}) OVER w AS next_sample
     FROM state_dynamics s
-    JOIN scale g USING (drive_id)
-    SEMI JOIN part p ON p.drive_id = s.drive_id AND p.actor_id = s.actor_id AND p.cell = meeting_cell(s.x_m, s.y_m, g.cell_m)
+    JOIN grid_scale g USING (drive_id)
+    SEMI JOIN meeting_place p ON p.drive_id = s.drive_id AND p.actor_id = s.actor_id AND p.cell = meeting_cell(s.x_m, s.y_m, g.cell_m)
     WHERE s.x_m IS NOT NULL AND s.y_m IS NOT NULL AND s.yaw_rad IS NOT NULL AND s.length_m IS NOT NULL AND s.width_m IS NOT NULL
     WINDOW w AS (PARTITION BY s.drive_id, s.actor_id ORDER BY s.t_ns)
 ),
 moment AS (
-    SELECT drive_id, actor_id, length_m, width_m, cell_m, max_gap_ns, x_m, y_m, z_m, yaw_rad, travel_rad, t_ns, key FROM sample
+    SELECT drive_id, actor_id, length_m, width_m, cell_m, max_gap_ns, x_m, y_m, z_m, yaw_rad, travel_rad, t_ns, visit_key FROM placed_sample
     UNION ALL
     SELECT
-        drive_id, actor_id, length_m, width_m, cell_m, max_gap_ns, x_m + u * (after.x_m - x_m), y_m + u * (after.y_m - y_m), z_m,
-        yaw_rad + u * wrap_rad(after.yaw_rad - yaw_rad), travel_rad + u * wrap_rad(after.travel_rad - travel_rad),
-        t_ns + round(u * (after.t_ns - t_ns))::BIGINT, CASE WHEN u < 0.5 THEN key ELSE after.key END
+        drive_id, actor_id, length_m, width_m, cell_m, max_gap_ns, x_m + u * (next_sample.x_m - x_m), y_m + u * (next_sample.y_m - y_m), z_m,
+        yaw_rad + u * wrap_rad(next_sample.yaw_rad - yaw_rad), travel_rad + u * wrap_rad(next_sample.travel_rad - travel_rad),
+        t_ns + round(u * (next_sample.t_ns - t_ns))::BIGINT, CASE WHEN u < 0.5 THEN visit_key ELSE next_sample.visit_key END
     FROM (
-        SELECT *, unnest(range(1, n)) / n AS u
+        SELECT *, unnest(range(1, n_parts)) / n_parts AS u
         FROM (
-            SELECT *, sqrt((after.x_m - x_m) ** 2 + (after.y_m - y_m) ** 2) AS way_m, ceil(2 * way_m / length_m)::BIGINT AS n
-            FROM sample
-            WHERE after.t_ns - t_ns <= max_gap_ns
+            SELECT *, sqrt((next_sample.x_m - x_m) ** 2 + (next_sample.y_m - y_m) ** 2) AS way_m, ceil(2 * way_m / length_m)::BIGINT AS n_parts
+            FROM placed_sample
+            WHERE next_sample.t_ns - t_ns <= max_gap_ns
         )
-        WHERE n > 1 AND way_m <= jump_mps() * (after.t_ns - t_ns) / 1e9
+        WHERE n_parts > 1 AND way_m <= jump_mps() * (next_sample.t_ns - t_ns) / 1e9
     )
 )
 SELECT
-    drive_id, actor_id, t_ns, key.t_ns AS t_sample_ns, key.cell AS cell, key.slot AS slot, key.heading AS heading,
+    drive_id, actor_id, t_ns, visit_key.t_ns AS t_sample_ns, visit_key.cell AS cell, visit_key.slot AS slot, visit_key.heading AS heading,
     floor(x_m / cell_m)::INTEGER AS ix, floor(y_m / cell_m)::INTEGER AS iy, cell_m, x_m, y_m, z_m, travel_rad,
     length_m / 2 AS half_length_m, width_m / 2 AS half_width_m, cos(yaw_rad) AS cos_yaw, sin(yaw_rad) AS sin_yaw,
     CASE WHEN t_ns - lag(t_ns) OVER w <= max_gap_ns THEN lag(t_ns) OVER w END AS t_before_ns,

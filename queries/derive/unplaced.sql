@@ -1,12 +1,13 @@
--- Steps at which "nobody is coming" cannot be claimed: a vehicle is present without a position, moves off every lane nearer than the
--- corridor reaches, or its track begins or ends where it must have been on the road. Of one that comes in over the far end of the map
--- it is known that it was beyond it until then; while the ego was far from there, that has a reason of its own, as has one that was met already.
-WITH blind AS (
+-- Steps at which "nobody is coming" cannot be claimed: a vehicle is present without a position, heading or size, moves beside every lane
+-- nearer than the corridor reaches, or its track begins or ends where it must have been on the road. A vehicle that comes in over the far
+-- end of the map was beyond that end until then. While the ego is far from there, this has a code of its own (beyond_map), as has a vehicle
+-- that the ego has met already (lost_behind).
+WITH pair_without_position AS (
     SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN off_level THEN 'off_level' ELSE 'no_position' END AS code
     FROM pair
     WHERE may_be_vehicle(actor_class) AND (x_m IS NULL OR y_m IS NULL)
 ),
-off_lane AS (
+pair_off_lanes AS (
     SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, 'off_lanes' AS code
     FROM (
         SELECT * FROM pair
@@ -15,18 +16,18 @@ off_lane AS (
     ANTI JOIN (SELECT drive_id, actor_id, t_ns FROM lane_occupancy WHERE drivable) o
         ON o.drive_id = p.drive_id AND o.actor_id = p.object_id AND o.t_ns = p.t_ns
 ),
-incomplete AS (
+incomplete_pair AS (
     SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN yaw_rad IS NULL THEN 'no_heading' ELSE 'no_size' END AS code
     FROM pair
     WHERE may_be_vehicle(actor_class) AND x_m IS NOT NULL AND (yaw_rad IS NULL OR length_m IS NULL OR width_m IS NULL)
 )
 SELECT drive_id, ego_id, t_ns, object_id, min(code) AS code, unplaced_words(min(code)) AS reason
 FROM (
-    SELECT * FROM blind
+    SELECT * FROM pair_without_position
     UNION ALL
-    SELECT * FROM off_lane
+    SELECT * FROM pair_off_lanes
     UNION ALL
-    SELECT * FROM incomplete
+    SELECT * FROM incomplete_pair
     UNION ALL
     SELECT u.drive_id, u.ego_id, u.t_ns, u.object_id, u.code
     FROM unseen u

@@ -1,27 +1,29 @@
--- Actors whose track ends or begins while the log goes on, near enough to matter: when they may be on the road all the same.
--- `near`: close by, within the sensor's range, or on the way towards the ego when it was seen: it may be anywhere in between.
-WITH edge AS (
+-- Actors whose track ends or begins while the log goes on, near enough to matter, and the steps at which they may be on the road all the
+-- same. `near`: when the actor was seen, it was close by, within the sensor's range, or coming towards the ego. It may be anywhere in
+-- between.
+WITH track AS (
     SELECT drive_id, ego_id, object_id, actor_class, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns FROM pair GROUP BY ALL
 ),
--- as far as the ego's corridor reaches, and where the map ends ahead of it and behind it
+-- The ends of the ego's corridor, and where the map ends ahead of the ego and behind it.
 map_end AS (
     SELECT
-        r.drive_id, r.ego_id, r.chain_id, CASE WHEN n.ahead_id IS NULL THEN r.last.end_m END AS end_m, CASE WHEN f.behind_id IS NULL THEN r.first.begin_m END AS begin_m,
-        r.last.end_m AS last_m, r.first.begin_m AS first_m
+        r.drive_id, r.ego_id, r.chain_id, CASE WHEN n.ahead_id IS NULL THEN r.last_lanelet.end_m END AS end_m, CASE WHEN f.behind_id IS NULL THEN r.first_lanelet.begin_m END AS begin_m,
+        r.last_lanelet.end_m AS corridor_end_m, r.first_lanelet.begin_m AS corridor_begin_m
     FROM (
         SELECT
-            drive_id, ego_id, chain_id, max({'end_m': s_start_m + length_m, 'id': lanelet_id}) AS last, min({'begin_m': s_start_m, 'id': lanelet_id}) AS first
+            drive_id, ego_id, chain_id, max({'end_m': s_start_m + length_m, 'id': lanelet_id}) AS last_lanelet, min({'begin_m': s_start_m, 'id': lanelet_id}) AS first_lanelet
         FROM corridor
         GROUP BY ALL
     ) r
     JOIN data_log g USING (drive_id)
-    JOIN lane_next n ON n.environment_id = g.environment_id AND n.lanelet_id = r.last.id
-    JOIN lane_next f ON f.environment_id = g.environment_id AND f.lanelet_id = r.first.id
+    JOIN lane_next n ON n.environment_id = g.environment_id AND n.lanelet_id = r.last_lanelet.id
+    JOIN lane_next f ON f.environment_id = g.environment_id AND f.lanelet_id = r.first_lanelet.id
 ),
--- at an end of the map: the next sample along its own lane, or the one before, is beyond it, and beside that lane none goes on
-at_end AS (
+-- Tracks that end or begin at an end of the map: along its own lane the next sample, or the one before, lies beyond the map, and no lane
+-- beside that one goes on.
+track_at_map_end AS (
     SELECT e.drive_id, e.ego_id, e.object_id, v.lost
-    FROM edge e
+    FROM track e
     JOIN clock c USING (drive_id, ego_id)
     JOIN data_log g USING (drive_id)
     CROSS JOIN LATERAL (VALUES (true, e.t_last_ns), (false, e.t_first_ns)) AS v(lost, t_ns)
@@ -29,20 +31,20 @@ at_end AS (
     JOIN lane_occupancy o ON o.drive_id = e.drive_id AND o.actor_id = e.object_id AND o.t_ns = v.t_ns AND o.drivable
     JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = o.lanelet_id
     JOIN lane_next w ON w.environment_id = n.environment_id AND w.lanelet_id = n.lanelet_id
-    CROSS JOIN LATERAL (SELECT (abs(o.heading_diff_rad) < pi() / 2) = v.lost AS onwards) x
+    CROSS JOIN LATERAL (SELECT (abs(o.heading_diff_rad) < pi() / 2) = v.lost AS is_onwards) x
     CROSS JOIN LATERAL (SELECT s.length_m / 2 + s.speed_mps * c.max_gap_ns / 1e9 AS m) r
     GROUP BY ALL
     HAVING bool_and(coalesce(
-        CASE WHEN x.onwards THEN w.map_ends AND n.length_m - o.s_m <= r.m ELSE w.map_begins AND o.s_m <= r.m END, false
+        CASE WHEN x.is_onwards THEN w.map_ends AND n.length_m - o.s_m <= r.m ELSE w.map_begins AND o.s_m <= r.m END, false
     ))
 ),
-seen AS (
+sighting AS (
     SELECT
-        e.drive_id, e.ego_id, e.object_id, v.lost, p.t_ns, s.chain_id, p.distance_m, p.speed_mps, s.speed_mps AS ego_mps, g.sensor_range_m,
-        p.front_s_m, p.rear_s_m, s.rear_s_m AS ego_rear_m, p.s_m > s.s_m AS ahead, abs(p.heading_diff_rad) > pi() / 2 AS towards,
-        abs(p.heading_diff_rad) > 2 * pi() / 3 AND p.speed_mps > standing_mps() AS oncoming, p.speed_mps * c.max_gap_ns / 1e9 AS step_m, m.end_m, m.begin_m,
-        r.road, r.offset_m, d.object_id IS NOT NULL AS off_map
-    FROM edge e
+        e.drive_id, e.ego_id, e.object_id, v.lost, p.t_ns, s.chain_id, p.distance_m, p.speed_mps, s.speed_mps AS ego_speed_mps, g.sensor_range_m,
+        p.front_s_m, p.rear_s_m, s.rear_s_m AS ego_rear_m, p.s_m > s.s_m AS is_ahead, abs(p.heading_diff_rad) > pi() / 2 AS is_towards,
+        abs(p.heading_diff_rad) > 2 * pi() / 3 AND p.speed_mps > standing_mps() AS oncoming, p.speed_mps * c.max_gap_ns / 1e9 AS sample_way_m, m.end_m, m.begin_m,
+        r.road, r.offset_m, d.object_id IS NOT NULL AS is_off_map
+    FROM track e
     JOIN clock c USING (drive_id, ego_id)
     JOIN data_log g USING (drive_id)
     CROSS JOIN LATERAL (VALUES (true, e.t_last_ns), (false, e.t_first_ns)) AS v(lost, t_ns)
@@ -50,45 +52,45 @@ seen AS (
     JOIN ego_state s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.t_ns = v.t_ns
     LEFT JOIN map_end m ON m.drive_id = s.drive_id AND m.ego_id = s.ego_id AND m.chain_id = s.chain_id
     LEFT JOIN ego_road r ON r.drive_id = s.drive_id AND r.ego_id = s.ego_id AND r.chain_id = s.chain_id
-    LEFT JOIN at_end d ON d.drive_id = e.drive_id AND d.ego_id = e.ego_id AND d.object_id = e.object_id AND d.lost = v.lost
+    LEFT JOIN track_at_map_end d ON d.drive_id = e.drive_id AND d.ego_id = e.ego_id AND d.object_id = e.object_id AND d.lost = v.lost
     WHERE CASE WHEN v.lost THEN v.t_ns + c.max_gap_ns < c.t_end_ns ELSE v.t_ns > c.t_start_ns + c.max_gap_ns END
 ),
-told AS (
+judged_sighting AS (
     SELECT
         *,
         CASE
             WHEN lost AND front_s_m < ego_rear_m AND oncoming THEN 'lost_behind' WHEN lost THEN 'lost' ELSE 'appeared'
         END AS code,
-        -- what comes into a finite sensor's range at its edge was outside it before
+        -- An object that enters a finite sensor range at its edge was outside the range before.
         coalesce(
             distance_m IS NULL OR distance_m < lost_near_m() OR distance_m < CASE WHEN lost THEN 1.0 ELSE 0.8 END * sensor_range_m
-            OR ((lost OR sensor_range_m IS NULL) AND ahead AND towards),
+            OR ((lost OR sensor_range_m IS NULL) AND is_ahead AND is_towards),
             false
         ) AS near,
-        -- a sample earlier, or later, it was not on the map
-        CASE WHEN towards <> lost AND front_s_m + step_m >= end_m THEN end_m END AS beyond_end_m,
-        CASE WHEN towards = lost AND rear_s_m - step_m <= begin_m THEN begin_m END AS beyond_begin_m
-    FROM seen
+        -- One sample earlier, or later, the object was not on the map.
+        CASE WHEN is_towards <> lost AND front_s_m + sample_way_m >= end_m THEN end_m END AS beyond_end_m,
+        CASE WHEN is_towards = lost AND rear_s_m - sample_way_m <= begin_m THEN begin_m END AS beyond_begin_m
+    FROM sighting
 )
 SELECT
-    t.drive_id, t.ego_id, st.t_ns, t.object_id, t.near AND abs(st.t_ns - t.t_ns) <= reach.soon_ns AS near,
+    t.drive_id, t.ego_id, st.t_ns, t.object_id, t.near AND abs(st.t_ns - t.t_ns) <= horizon.near_horizon_ns AS near,
     CASE WHEN x.ahead_m >= beyond_map_m() OR least(x.off_ahead_m, x.off_behind_m) >= beyond_map_m() THEN 'beyond_map' ELSE t.code END AS code,
     x.ahead_m, x.behind_m, x.off_ahead_m, x.off_behind_m
-FROM told t
+FROM judged_sighting t
 CROSS JOIN LATERAL (
-    SELECT unseen_ns(t.distance_m, t.speed_mps, t.ego_mps, 20.0) AS ns, unseen_ns(t.distance_m, t.speed_mps, t.ego_mps, 10.0) AS soon_ns
-) reach
+    SELECT unseen_ns(t.distance_m, t.speed_mps, t.ego_speed_mps, 20.0) AS horizon_ns, unseen_ns(t.distance_m, t.speed_mps, t.ego_speed_mps, 10.0) AS near_horizon_ns
+) horizon
 JOIN step st ON st.drive_id = t.drive_id AND st.ego_id = t.ego_id
-    AND CASE WHEN t.lost THEN st.t_ns > t.t_ns AND st.t_ns <= t.t_ns + reach.ns ELSE st.t_ns < t.t_ns AND st.t_ns >= t.t_ns - reach.ns END
+    AND CASE WHEN t.lost THEN st.t_ns > t.t_ns AND st.t_ns <= t.t_ns + horizon.horizon_ns ELSE st.t_ns < t.t_ns AND st.t_ns >= t.t_ns - horizon.horizon_ns END
 LEFT JOIN ego_state e ON e.drive_id = st.drive_id AND e.ego_id = st.ego_id AND e.t_ns = st.t_ns
 LEFT JOIN ego_road r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
 LEFT JOIN map_end m ON m.drive_id = e.drive_id AND m.ego_id = e.ego_id AND m.chain_id = e.chain_id
-CROSS JOIN LATERAL (SELECT CASE WHEN r.road = t.road THEN t.offset_m - r.offset_m END AS shift_m, CASE WHEN r.chain_id = t.chain_id THEN 0.0 ELSE lanes_apart_m() END AS apart_m) y
+CROSS JOIN LATERAL (SELECT CASE WHEN r.road = t.road THEN t.offset_m - r.offset_m END AS shift_m, CASE WHEN r.chain_id = t.chain_id THEN 0.0 ELSE lanes_apart_m() END AS station_error_m) y
 CROSS JOIN LATERAL (
     SELECT
-        t.beyond_end_m + y.shift_m - y.apart_m - e.front_s_m AS ahead_m, e.rear_s_m - t.beyond_begin_m - y.shift_m - y.apart_m AS behind_m,
-        -- whoever is not on the map is on no lane of the corridor
-        CASE WHEN t.off_map AND e.rear_s_m > m.first_m AND e.front_s_m < m.last_m THEN m.last_m - e.front_s_m END AS off_ahead_m,
-        CASE WHEN t.off_map AND e.rear_s_m > m.first_m AND e.front_s_m < m.last_m THEN e.rear_s_m - m.first_m END AS off_behind_m
+        t.beyond_end_m + y.shift_m - y.station_error_m - e.front_s_m AS ahead_m, e.rear_s_m - t.beyond_begin_m - y.shift_m - y.station_error_m AS behind_m,
+        -- An object that is not on the map is on no lane of the corridor.
+        CASE WHEN t.is_off_map AND e.rear_s_m > m.corridor_begin_m AND e.front_s_m < m.corridor_end_m THEN m.corridor_end_m - e.front_s_m END AS off_ahead_m,
+        CASE WHEN t.is_off_map AND e.rear_s_m > m.corridor_begin_m AND e.front_s_m < m.corridor_end_m THEN e.rear_s_m - m.corridor_begin_m END AS off_behind_m
 ) x
-WHERE t.near OR t.distance_m < reach_m(t.speed_mps, t.ego_mps)
+WHERE t.near OR t.distance_m < reach_m(t.speed_mps, t.ego_speed_mps)

@@ -1,8 +1,8 @@
--- Every vehicle ahead in the running lane that the ego may hit or follow: the nearest one (lead), and where that is beside the ego's way, or
--- goes the ego's way, those whom it hides: the nearest one in the ego's way, one nearer that is heading into it, and the nearest that comes,
--- in the lane or in the ego's way beside it.
+-- Every vehicle ahead in the running lane that the ego may hit or follow. This is the nearest one (lead) and, if that one is beside the
+-- ego's way or goes the ego's way, the vehicles that it hides: the nearest one in the ego's way, one nearer that is heading into it, and
+-- the nearest one that comes towards the ego, in the lane or in the ego's way beside it.
 WITH
-chosen AS (
+lane_summary AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns,
         [
@@ -11,118 +11,119 @@ chosen AS (
             min({'gap_m': p.gap_m, 'id': p.object_id}) FILTER (is_vehicle(p.actor_class) AND p.oncoming AND p.speed_mps <= standing_mps() IS DISTINCT FROM true).id
         ] AS ids,
         min(p.gap_m) FILTER (is_vehicle(p.actor_class)) AS gap_m, max(p.speed_mps) FILTER (is_vehicle(p.actor_class) AND p.oncoming) AS coming_mps,
-        coalesce(bool_or(p.oncoming IS DISTINCT FROM false) FILTER (is_vehicle(p.actor_class)), false) AS coming, min(p.gap_m) FILTER (is_vehicle(p.actor_class) AND p.across_m < 0) AS way_gap_m,
+        coalesce(bool_or(p.oncoming IS DISTINCT FROM false) FILTER (is_vehicle(p.actor_class)), false) AS has_oncoming, min(p.gap_m) FILTER (is_vehicle(p.actor_class) AND p.across_m < 0) AS way_gap_m,
         min(p.gap_m) FILTER (is_vehicle(p.actor_class) IS NULL AND p.outside) AS outside_m,
-        min(p.gap_m) FILTER (is_vehicle(p.actor_class) IS DISTINCT FROM true AND p.gap_m < unsure_reach_m(e.speed_mps)) AS unsure_m
+        min(p.gap_m) FILTER (is_vehicle(p.actor_class) IS DISTINCT FROM true AND p.gap_m < unsure_reach_m(e.speed_mps)) AS unclassified_m
     FROM lane_ahead p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     GROUP BY ALL
 ),
-doubt AS (
+hidden_vehicle AS (
     SELECT drive_id, ego_id, t_ns, min(lane_m) FILTER (NOT late) AS least_m, min(lane_m) FILTER (late) AS late_m, bool_and(along) AS along
     FROM hidden
     WHERE vehicle AND ahead IS DISTINCT FROM false
     GROUP BY ALL
 ),
-more AS (
+further_vehicle AS (
     SELECT l.drive_id, l.ego_id, l.t_ns, l.ego_speed_mps, l.in_lane, unnest(list_distinct(c.ids)) AS object_id
     FROM lead l
-    JOIN chosen c USING (drive_id, ego_id, t_ns)
+    JOIN lane_summary c USING (drive_id, ego_id, t_ns)
 ),
-filtered AS (SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'velocity_filtered'),
-half AS (
+filtered_actor AS (SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'velocity_filtered'),
+half_second AS (
     SELECT
         drive_id, ego_id, t_ns,
-        first_value(t_ns) OVER (PARTITION BY drive_id, ego_id, seg ORDER BY t_ns RANGE BETWEEN 500_000_000 PRECEDING AND CURRENT ROW) AS t_half_ns
+        first_value(t_ns) OVER (PARTITION BY drive_id, ego_id, seg ORDER BY t_ns RANGE BETWEEN 500_000_000 PRECEDING AND CURRENT ROW) AS t_half_second_ns
     FROM step
 ),
-told AS (
+vehicle_or_doubt AS (
     SELECT
         l.drive_id, l.ego_id, l.t_ns, l.object_id, true AS nearest, true AS known, l.gap_m, l.speed_mps, l.accel_mps2, l.ego_speed_mps, l.in_lane, l.oncoming, l.across_m,
         l.ego_across_mps, l.across_mps, l.error_mps, CASE WHEN l.joined THEN l.t_since_ns END AS joined_ns,
-        -- into its lane the ego has changed by itself
+        -- If the ego changed into the lane itself, the lead was not let in.
         CASE WHEN x.t_ns IS NULL THEN joined_ns END AS let_in_ns
     FROM lead l
     LEFT JOIN lane_crossing x ON x.drive_id = l.drive_id AND x.ego_id = l.ego_id AND x.t_ns = l.t_since_ns
     UNION ALL BY NAME
     SELECT
         m.drive_id, m.ego_id, m.t_ns, m.object_id, false AS nearest, true AS known, p.gap_m, p.speed_mps,
-        CASE WHEN f.actor_id IS NULL AND b.heading_diff_rad IS NOT NULL AND m.t_ns - h.t_half_ns >= 400_000_000 THEN 1e9 * (p.speed_mps - along_lane_mps(b.speed_mps, b.heading_diff_rad)) / (m.t_ns - h.t_half_ns) END AS accel_mps2,
+        CASE WHEN f.actor_id IS NULL AND b.heading_diff_rad IS NOT NULL AND m.t_ns - h.t_half_second_ns >= 400_000_000 THEN 1e9 * (p.speed_mps - along_lane_mps(b.speed_mps, b.heading_diff_rad)) / (m.t_ns - h.t_half_second_ns) END AS accel_mps2,
         m.ego_speed_mps, m.in_lane, p.oncoming, p.across_m, p.ego_across_mps, p.across_mps,
         filtered_error_mps() * ((f.actor_id IS NOT NULL)::INTEGER + (g.actor_id IS NOT NULL)::INTEGER) AS error_mps,
-        -- greatest() leaves out what is not there, as it should here
+        -- greatest() ignores NULL, which is right here.
         greatest(i.t_ns, x.t_ns) AS joined_ns, i.t_ns AS let_in_ns
-    FROM more m
+    FROM further_vehicle m
     JOIN lead l ON l.drive_id = m.drive_id AND l.ego_id = m.ego_id AND l.t_ns = m.t_ns AND l.object_id IS DISTINCT FROM m.object_id
     JOIN lane_ahead p ON p.drive_id = m.drive_id AND p.ego_id = m.ego_id AND p.t_ns = m.t_ns AND p.object_id = m.object_id
-    JOIN half h ON h.drive_id = m.drive_id AND h.ego_id = m.ego_id AND h.t_ns = m.t_ns
-    LEFT JOIN pair b ON b.drive_id = m.drive_id AND b.ego_id = m.ego_id AND b.t_ns = h.t_half_ns AND b.object_id = m.object_id
-    LEFT JOIN filtered f ON f.drive_id = m.drive_id AND f.actor_id = m.object_id
-    LEFT JOIN filtered g ON g.drive_id = m.drive_id AND g.actor_id = m.ego_id
+    JOIN half_second h ON h.drive_id = m.drive_id AND h.ego_id = m.ego_id AND h.t_ns = m.t_ns
+    LEFT JOIN pair b ON b.drive_id = m.drive_id AND b.ego_id = m.ego_id AND b.t_ns = h.t_half_second_ns AND b.object_id = m.object_id
+    LEFT JOIN filtered_actor f ON f.drive_id = m.drive_id AND f.actor_id = m.object_id
+    LEFT JOIN filtered_actor g ON g.drive_id = m.drive_id AND g.actor_id = m.ego_id
     ASOF LEFT JOIN cut_in i ON i.drive_id = m.drive_id AND i.ego_id = m.ego_id AND i.object_id = m.object_id AND i.t_ns <= m.t_ns
     ASOF LEFT JOIN lane_crossing x ON x.drive_id = m.drive_id AND x.ego_id = m.ego_id AND x.t_ns <= m.t_ns
     UNION ALL BY NAME
-    -- somebody without a place, or of no known class, may be in the way behind one that is beside it
+    -- Somebody without a place, or of unknown class, may be in the ego's way behind a lead that is beside it.
     SELECT l.drive_id, l.ego_id, l.t_ns, NULL::VARCHAR AS object_id, false AS nearest, false AS known, l.ego_speed_mps, l.in_lane, 0.0 AS error_mps,
-        least(d.least_m, d.late_m, c.unsure_m, c.outside_m) AS free_m, l.ego_speed_mps + CASE WHEN d.along AND c.unsure_m IS NULL AND c.outside_m IS NULL THEN 0.0 ELSE fastest_mps() END AS free_mps
+        least(d.least_m, d.late_m, c.unclassified_m, c.outside_m) AS free_m, l.ego_speed_mps + CASE WHEN d.along AND c.unclassified_m IS NULL AND c.outside_m IS NULL THEN 0.0 ELSE fastest_mps() END AS free_mps
     FROM lead l
-    LEFT JOIN chosen c USING (drive_id, ego_id, t_ns)
-    LEFT JOIN doubt d USING (drive_id, ego_id, t_ns)
+    LEFT JOIN lane_summary c USING (drive_id, ego_id, t_ns)
+    LEFT JOIN hidden_vehicle d USING (drive_id, ego_id, t_ns)
     WHERE l.object_id IS NOT NULL AND l.in_lane IS DISTINCT FROM false
-        AND (least(d.least_m, c.unsure_m) < coalesce(c.way_gap_m, lead_reach_m(l.ego_speed_mps)) OR c.way_gap_m IS NULL AND d.late_m < lead_reach_m(l.ego_speed_mps))
-        -- out of its lane the ego may meet it, whoever is in the lane
+        AND (least(d.least_m, c.unclassified_m) < coalesce(c.way_gap_m, lead_reach_m(l.ego_speed_mps)) OR c.way_gap_m IS NULL AND d.late_m < lead_reach_m(l.ego_speed_mps))
+        -- Out of its lane, the ego may meet such an object, whoever is in the lane.
         OR c.outside_m < coalesce(c.way_gap_m, lead_reach_m(l.ego_speed_mps))
     UNION ALL BY NAME
-    -- somebody may be there, nearer than whoever is seen
+    -- Somebody may be there, nearer than every vehicle that is seen.
     SELECT
         e.drive_id, e.ego_id, e.t_ns, NULL::VARCHAR AS object_id, true AS nearest, false AS known, e.speed_mps AS ego_speed_mps, 0.0 AS error_mps,
-        least(d.least_m, d.late_m, c.unsure_m, c.gap_m) AS free_m,
-        e.speed_mps + CASE WHEN d.along AND c.unsure_m IS NULL AND NOT coalesce(c.coming, false) THEN 0.0 ELSE greatest(fastest_mps(), c.coming_mps) END AS free_mps
+        least(d.least_m, d.late_m, c.unclassified_m, c.gap_m) AS free_m,
+        e.speed_mps + CASE WHEN d.along AND c.unclassified_m IS NULL AND NOT coalesce(c.has_oncoming, false) THEN 0.0 ELSE greatest(fastest_mps(), c.coming_mps) END AS free_mps
     FROM ego_state e
     ANTI JOIN lead l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.t_ns = e.t_ns
-    LEFT JOIN chosen c USING (drive_id, ego_id, t_ns)
-    LEFT JOIN doubt d USING (drive_id, ego_id, t_ns)
-    WHERE e.front_s_m IS NOT NULL AND c.outside_m IS NULL AND least(d.least_m, d.late_m, c.unsure_m) IS NOT NULL
+    LEFT JOIN lane_summary c USING (drive_id, ego_id, t_ns)
+    LEFT JOIN hidden_vehicle d USING (drive_id, ego_id, t_ns)
+    WHERE e.front_s_m IS NOT NULL AND c.outside_m IS NULL AND least(d.least_m, d.late_m, c.unclassified_m) IS NOT NULL
 ),
--- the two boxes in the frame of the ego's, and how one moves against the other, at the present velocities
-framed AS (
+-- The two boxes in the frame of the ego's box, and the motion of one against the other at the present velocities.
+relative_motion AS (
     SELECT
         t.drive_id, t.ego_id, t.t_ns, t.object_id, ttc_s(t.gap_m, t.ego_speed_mps - along_mps(t.speed_mps, t.oncoming)) AS ttc_s,
-        ex * cos(e.yaw_rad) + ey * sin(e.yaw_rad) AS dx, ey * cos(e.yaw_rad) - ex * sin(e.yaw_rad) AS dy, cos(turn_rad) AS c, sin(turn_rad) AS s,
-        (o.vx_mps - v.vx_mps) * cos(e.yaw_rad) + (o.vy_mps - v.vy_mps) * sin(e.yaw_rad) AS ux,
-        (o.vy_mps - v.vy_mps) * cos(e.yaw_rad) - (o.vx_mps - v.vx_mps) * sin(e.yaw_rad) AS uy,
-        -- as far as the lane bends up to there, the ego need not go straight on: by so much they may come nearer
+        east_m * cos(e.yaw_rad) + north_m * sin(e.yaw_rad) AS dx, north_m * cos(e.yaw_rad) - east_m * sin(e.yaw_rad) AS dy, cos(turn_rad) AS c, sin(turn_rad) AS s,
+        (o.vx_mps - v.vx_mps) * cos(e.yaw_rad) + (o.vy_mps - v.vy_mps) * sin(e.yaw_rad) AS motion_x_mps,
+        (o.vy_mps - v.vy_mps) * cos(e.yaw_rad) - (o.vx_mps - v.vx_mps) * sin(e.yaw_rad) AS motion_y_mps,
+        -- Where the lane bends on the way there, the ego need not go straight on. By so much the two may come nearer.
         least_apart_m() + abs(t.gap_m * wrap_rad(turn_rad + e.heading_diff_rad - p.heading_diff_rad)) AS room_m,
-        e.length_m / 2 AS hla, e.width_m / 2 AS hwa, p.length_m / 2 AS hlb, p.width_m / 2 AS hwb
-    FROM told t
+        e.length_m / 2 AS ego_half_length_m, e.width_m / 2 AS ego_half_width_m, p.length_m / 2 AS object_half_length_m, p.width_m / 2 AS object_half_width_m
+    FROM vehicle_or_doubt t
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     JOIN pair p ON p.drive_id = t.drive_id AND p.ego_id = t.ego_id AND p.t_ns = t.t_ns AND p.object_id = t.object_id
     JOIN state_dynamics v ON v.drive_id = t.drive_id AND v.actor_id = t.ego_id AND v.t_ns = t.t_ns
     ASOF JOIN state_dynamics o ON o.drive_id = t.drive_id AND o.actor_id = t.object_id AND o.t_ns <= t.t_ns
-    CROSS JOIN LATERAL (SELECT p.x_m - e.x_m AS ex, p.y_m - e.y_m AS ey, p.yaw_rad - e.yaw_rad AS turn_rad) f
+    CROSS JOIN LATERAL (SELECT p.x_m - e.x_m AS east_m, p.y_m - e.y_m AS north_m, p.yaw_rad - e.yaw_rad AS turn_rad) f
     WHERE t.gap_m >= 0 AND p.speed_mps IS NOT NULL
 ),
--- while the boxes overlap along each of the four directions of their sides, they touch: as they are, and with that room around them
-touching AS (
-    SELECT drive_id, ego_id, t_ns, object_id, with_room, greatest(0.0, w[1].from_s, w[2].from_s, w[3].from_s, w[4].from_s) > least(w[1].to_s, w[2].to_s, w[3].to_s, w[4].to_s) AS miss
+-- The boxes touch while they overlap along each of the four directions of their sides. This is checked for the boxes as they are, and with
+-- that room around them.
+box_contact AS (
+    SELECT drive_id, ego_id, t_ns, object_id, with_room, greatest(0.0, w[1].from_s, w[2].from_s, w[3].from_s, w[4].from_s) > least(w[1].to_s, w[2].to_s, w[3].to_s, w[4].to_s) AS is_miss
     FROM (
         SELECT
             drive_id, ego_id, t_ns, object_id, with_room,
             [
-                within_s(dx, ux, m + hla + hlb * abs(c) + hwb * abs(s)), within_s(dy, uy, m + hwa + hlb * abs(s) + hwb * abs(c)),
-                within_s(dx * c + dy * s, ux * c + uy * s, m + hlb + hla * abs(c) + hwa * abs(s)),
-                within_s(dy * c - dx * s, uy * c - ux * s, m + hwb + hla * abs(s) + hwa * abs(c))
+                within_s(dx, motion_x_mps, m + ego_half_length_m + object_half_length_m * abs(c) + object_half_width_m * abs(s)), within_s(dy, motion_y_mps, m + ego_half_width_m + object_half_length_m * abs(s) + object_half_width_m * abs(c)),
+                within_s(dx * c + dy * s, motion_x_mps * c + motion_y_mps * s, m + object_half_length_m + ego_half_length_m * abs(c) + ego_half_width_m * abs(s)),
+                within_s(dy * c - dx * s, motion_y_mps * c - motion_x_mps * s, m + object_half_width_m + ego_half_length_m * abs(s) + ego_half_width_m * abs(c))
             ] AS w
-        FROM framed CROSS JOIN LATERAL (VALUES (false, 0.0), (true, room_m)) AS v(with_room, m)
+        FROM relative_motion CROSS JOIN LATERAL (VALUES (false, 0.0), (true, room_m)) AS v(with_room, m)
         WHERE ttc_s < drift_s()
     )
     WHERE w[1] IS NOT NULL AND w[2] IS NOT NULL AND w[3] IS NOT NULL AND w[4] IS NOT NULL
 ),
-missed AS (
-    SELECT drive_id, ego_id, t_ns, object_id, bool_and(miss) AS passes_by, bool_or(miss) AND NOT bool_and(miss) AS grazes
-    FROM touching
+miss_check AS (
+    SELECT drive_id, ego_id, t_ns, object_id, bool_and(is_miss) AS passes_by, bool_or(is_miss) AND NOT bool_and(is_miss) AS grazes
+    FROM box_contact
     GROUP BY drive_id, ego_id, t_ns, object_id
 )
 SELECT t.*, c.passes_by, c.grazes
-FROM told t
-LEFT JOIN missed c ON c.drive_id = t.drive_id AND c.ego_id = t.ego_id AND c.t_ns = t.t_ns AND c.object_id = t.object_id
+FROM vehicle_or_doubt t
+LEFT JOIN miss_check c ON c.drive_id = t.drive_id AND c.ego_id = t.ego_id AND c.t_ns = t.t_ns AND c.object_id = t.object_id

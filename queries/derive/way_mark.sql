@@ -1,104 +1,104 @@
--- Junctions, stop lines and crossings along the ego's chains, and what governs each.
-WITH lane AS (
+-- Junctions, stop lines and crossings along the ego's chains, and the signals that govern each.
+WITH chain_lanelet AS (
     SELECT c.drive_id, c.ego_id, c.chain_id, c.seq, c.lanelet_id, c.s_start_m, c.length_m, c.t_first_ns, g.environment_id, n.junction_id
     FROM chain c
     JOIN data_log g USING (drive_id)
     JOIN lanelet n USING (environment_id, lanelet_id)
 ),
 -- ---- junctions: connecting lanelets one after the other
-numbered AS (
+numbered_lanelet AS (
     SELECT
         *,
-        sum((junction_id IS DISTINCT FROM before_id)::INTEGER) OVER (PARTITION BY drive_id, ego_id, chain_id ORDER BY seq) AS run
-    FROM (SELECT *, lag(junction_id) OVER (PARTITION BY drive_id, ego_id, chain_id ORDER BY seq) AS before_id FROM lane)
+        sum((junction_id IS DISTINCT FROM previous_junction_id)::INTEGER) OVER (PARTITION BY drive_id, ego_id, chain_id ORDER BY seq) AS run_no
+    FROM (SELECT *, lag(junction_id) OVER (PARTITION BY drive_id, ego_id, chain_id ORDER BY seq) AS previous_junction_id FROM chain_lanelet)
 ),
 junction AS (
     SELECT
         drive_id, ego_id, chain_id, junction_id AS mark_id, min({'seq': seq, 'id': lanelet_id}).id AS lanelet_id, min(seq) AS seq_first, max(seq) AS seq_last,
         min(s_start_m) AS s_start_m, max(s_start_m + length_m) AS s_end_m
-    FROM numbered
+    FROM numbered_lanelet
     WHERE junction_id IS NOT NULL
-    GROUP BY drive_id, ego_id, chain_id, run, junction_id
+    GROUP BY drive_id, ego_id, chain_id, run_no, junction_id
 ),
--- ---- the ego's turn in each: known where it drove all of it, or there was no choice
-choice AS (
+-- ---- the ego's turn in each junction: known if the ego drove all of it, or if there was no choice
+way_out AS (
     SELECT l.environment_id, l.from_id, count(*) AS n
     FROM lane_link l
     JOIN lanelet n ON n.environment_id = l.environment_id AND n.lanelet_id = l.to_id AND n.drivable
     GROUP BY l.environment_id, l.from_id
 ),
-edge AS (
+lanelet_heading AS (
     SELECT environment_id, lanelet_id, min({'k': k, 'a': atan2(ty, tx)}).a AS first_rad, max({'k': k, 'a': atan2(ty, tx)}).a AS last_rad
     FROM lane_point
     GROUP BY environment_id, lanelet_id
 ),
-turning AS (
+junction_turn AS (
     SELECT
-        n.drive_id, n.ego_id, n.chain_id, n.run, n.environment_id, n.junction_id, min(n.s_start_m) AS s_start_m, max(n.s_start_m + n.length_m) AS s_end_m,
-        min({'seq': n.seq, 'id': b.lanelet_id}).id AS from_id, bool_and(n.t_first_ns IS NOT NULL OR c.n = 1) AS known,
+        n.drive_id, n.ego_id, n.chain_id, n.run_no, n.environment_id, n.junction_id, min(n.s_start_m) AS s_start_m, max(n.s_start_m + n.length_m) AS s_end_m,
+        min({'seq': n.seq, 'id': b.lanelet_id}).id AS from_id, bool_and(n.t_first_ns IS NOT NULL OR c.n = 1) AS is_known,
         wrap_rad(max({'seq': n.seq, 'a': coalesce(ea.first_rad, e.last_rad)}).a - min({'seq': n.seq, 'a': coalesce(eb.last_rad, e.first_rad)}).a) AS turn_rad
-    FROM numbered n
-    JOIN edge e USING (environment_id, lanelet_id)
-    LEFT JOIN lane b ON b.drive_id = n.drive_id AND b.ego_id = n.ego_id AND b.chain_id = n.chain_id AND b.seq = n.seq - 1
-    LEFT JOIN lane a ON a.drive_id = n.drive_id AND a.ego_id = n.ego_id AND a.chain_id = n.chain_id AND a.seq = n.seq + 1
-    LEFT JOIN choice c ON c.environment_id = n.environment_id AND c.from_id = b.lanelet_id
-    LEFT JOIN edge eb ON eb.environment_id = n.environment_id AND eb.lanelet_id = b.lanelet_id
-    LEFT JOIN edge ea ON ea.environment_id = n.environment_id AND ea.lanelet_id = a.lanelet_id
+    FROM numbered_lanelet n
+    JOIN lanelet_heading e USING (environment_id, lanelet_id)
+    LEFT JOIN chain_lanelet b ON b.drive_id = n.drive_id AND b.ego_id = n.ego_id AND b.chain_id = n.chain_id AND b.seq = n.seq - 1
+    LEFT JOIN chain_lanelet a ON a.drive_id = n.drive_id AND a.ego_id = n.ego_id AND a.chain_id = n.chain_id AND a.seq = n.seq + 1
+    LEFT JOIN way_out c ON c.environment_id = n.environment_id AND c.from_id = b.lanelet_id
+    LEFT JOIN lanelet_heading eb ON eb.environment_id = n.environment_id AND eb.lanelet_id = b.lanelet_id
+    LEFT JOIN lanelet_heading ea ON ea.environment_id = n.environment_id AND ea.lanelet_id = a.lanelet_id
     WHERE n.junction_id IS NOT NULL
-    GROUP BY n.drive_id, n.ego_id, n.chain_id, n.run, n.environment_id, n.junction_id
+    GROUP BY n.drive_id, n.ego_id, n.chain_id, n.run_no, n.environment_id, n.junction_id
 ),
--- ---- signals: one inside a junction holds for the way into it
-listed AS (
+-- ---- signals: a signal inside a junction holds for the way into it
+listed_signal AS (
     SELECT
-        l.drive_id, l.ego_id, l.chain_id, l.environment_id, l.seq, l.lanelet_id, t.signal_id, t.kind, t.turns, j.s_start_m IS NOT NULL AS inside,
-        j.known AS turn_known, coalesce(j.s_start_m, l.s_start_m + t.lane_s_m) AS s_m
-    FROM numbered l
+        l.drive_id, l.ego_id, l.chain_id, l.environment_id, l.seq, l.lanelet_id, t.signal_id, t.kind, t.turns, j.s_start_m IS NOT NULL AS is_inside,
+        j.is_known AS is_turn_known, coalesce(j.s_start_m, l.s_start_m + t.lane_s_m) AS s_m
+    FROM numbered_lanelet l
     JOIN traffic_signal t ON t.environment_id = l.environment_id AND t.lanelet_id = l.lanelet_id AND t.kind IN ('traffic_light', 'stop', 'give_way')
-    LEFT JOIN turning j ON j.drive_id = l.drive_id AND j.ego_id = l.ego_id AND j.chain_id = l.chain_id AND j.run = l.run
+    LEFT JOIN junction_turn j ON j.drive_id = l.drive_id AND j.ego_id = l.ego_id AND j.chain_id = l.chain_id AND j.run_no = l.run_no
     UNION ALL
-    -- the ego may have turned off by another connecting lanelet, with lights of its own
+    -- The ego may have turned off by another connecting lanelet, with lights of its own.
     SELECT b.drive_id, b.ego_id, b.chain_id, b.environment_id, b.seq, b.lanelet_id, t.signal_id, t.kind, t.turns, true, false, j.s_start_m
-    FROM turning j
-    JOIN lane b ON b.drive_id = j.drive_id AND b.ego_id = j.ego_id AND b.chain_id = j.chain_id AND b.lanelet_id = j.from_id AND b.s_start_m < j.s_start_m
+    FROM junction_turn j
+    JOIN chain_lanelet b ON b.drive_id = j.drive_id AND b.ego_id = j.ego_id AND b.chain_id = j.chain_id AND b.lanelet_id = j.from_id AND b.s_start_m < j.s_start_m
     JOIN lane_link k ON k.environment_id = j.environment_id AND k.from_id = j.from_id
     JOIN lanelet n ON n.environment_id = k.environment_id AND n.lanelet_id = k.to_id AND n.junction_id = j.junction_id
     JOIN traffic_signal t ON t.environment_id = n.environment_id AND t.lanelet_id = n.lanelet_id AND t.kind = 'traffic_light'
-    WHERE NOT j.known
+    WHERE NOT j.is_known
 ),
--- the junction that the ego comes to next says which of the arrows it needs
-heading_for AS (
-    SELECT h.*, CASE WHEN j.known AND j.s_start_m - h.s_m <= turn_reach_m() THEN possible_turns(j.turn_rad) END AS ego_turns
-    FROM listed h
-    ASOF LEFT JOIN turning j ON j.drive_id = h.drive_id AND j.ego_id = h.ego_id AND j.chain_id = h.chain_id AND j.s_start_m >= h.s_m
+-- The junction that the ego comes to next decides which of the arrows it needs.
+signal_with_turns AS (
+    SELECT h.*, CASE WHEN j.is_known AND j.s_start_m - h.s_m <= turn_reach_m() THEN possible_turns(j.turn_rad) END AS ego_turns
+    FROM listed_signal h
+    ASOF LEFT JOIN junction_turn j ON j.drive_id = h.drive_id AND j.ego_id = h.ego_id AND j.chain_id = h.chain_id AND j.s_start_m >= h.s_m
 ),
 signal AS (
     SELECT
         h.drive_id, h.ego_id, h.chain_id, h.signal_id, h.kind, h.lanelet_id, h.seq, h.s_m, CASE h.kind WHEN 'traffic_light' THEN 0 WHEN 'stop' THEN 1 ELSE 2 END AS rank,
         CASE
-            WHEN h.inside THEN CASE WHEN h.turn_known THEN 1 ELSE 2 END
+            WHEN h.is_inside THEN CASE WHEN h.is_turn_known THEN 1 ELSE 2 END
             WHEN h.turns IS NULL THEN 4
             WHEN len(h.turns) = 4 THEN 3
             WHEN list_has_all(h.turns, h.ego_turns) THEN 1
             WHEN NOT list_has_any(h.turns, h.ego_turns) THEN 5
             ELSE 2
         END AS fit,
-        CASE WHEN r.signal_id IS NULL THEN 1 ELSE 0 END AS silent
-    FROM heading_for h
+        CASE WHEN r.signal_id IS NULL THEN 1 ELSE 0 END AS is_unrecorded
+    FROM signal_with_turns h
     LEFT JOIN (SELECT DISTINCT drive_id, signal_id FROM signal_state) r ON r.drive_id = h.drive_id AND r.signal_id = h.signal_id
 ),
--- ---- lines and crossings: one that lies over the seam of two lanelets is one
+-- ---- lines and crossings: one that lies where two lanelets join counts once
 line_part AS (
     SELECT l.drive_id, l.ego_id, l.chain_id, s.stop_line_id AS mark_id, l.lanelet_id, l.seq, l.s_start_m + s.lane_s_m AS s_start_m, l.s_start_m + s.lane_s_m AS s_end_m
-    FROM lane l JOIN stop_line s USING (environment_id, lanelet_id)
+    FROM chain_lanelet l JOIN stop_line s USING (environment_id, lanelet_id)
 ),
--- a light without a line is one to stop at itself
-unlined AS (
+-- A light without a stop line is itself the place to stop at.
+light_without_line AS (
     SELECT
-        drive_id, ego_id, chain_id, unnest(min({'silent': silent, 's_start_m': s_m, 'mark_id': signal_id, 'lanelet_id': lanelet_id, 'seq': seq, 's_end_m': s_m}))
+        drive_id, ego_id, chain_id, unnest(min({'is_unrecorded': is_unrecorded, 's_start_m': s_m, 'mark_id': signal_id, 'lanelet_id': lanelet_id, 'seq': seq, 's_end_m': s_m}))
     FROM (
-        SELECT *, sum((s_m - before_m > line_reach_m())::INTEGER) OVER (PARTITION BY drive_id, ego_id, chain_id ORDER BY s_m) AS n
+        SELECT *, sum((s_m - previous_s_m > line_reach_m())::INTEGER) OVER (PARTITION BY drive_id, ego_id, chain_id ORDER BY s_m) AS n
         FROM (
-            SELECT t.*, lag(t.s_m, 1, t.s_m) OVER (PARTITION BY t.drive_id, t.ego_id, t.chain_id ORDER BY t.s_m) AS before_m
+            SELECT t.*, lag(t.s_m, 1, t.s_m) OVER (PARTITION BY t.drive_id, t.ego_id, t.chain_id ORDER BY t.s_m) AS previous_s_m
             FROM signal t
             ANTI JOIN line_part p ON p.drive_id = t.drive_id AND p.ego_id = t.ego_id AND p.chain_id = t.chain_id
                 AND p.s_start_m > t.s_m - line_reach_m() AND p.s_start_m < t.s_m + line_reach_m()
@@ -107,15 +107,15 @@ unlined AS (
     )
     GROUP BY drive_id, ego_id, chain_id, n
 ),
-part AS (
+mark_part AS (
     SELECT 'stop_line' AS kind, * FROM line_part
     UNION ALL
-    SELECT 'stop_line' AS kind, drive_id, ego_id, chain_id, mark_id, lanelet_id, seq, s_start_m, s_end_m FROM unlined
+    SELECT 'stop_line' AS kind, drive_id, ego_id, chain_id, mark_id, lanelet_id, seq, s_start_m, s_end_m FROM light_without_line
     UNION ALL
     SELECT 'crossing' AS kind, l.drive_id, l.ego_id, l.chain_id, x.crossing_id, l.lanelet_id, l.seq, l.s_start_m + x.s_start_m, l.s_start_m + x.s_end_m
-    FROM lane l JOIN crossing x USING (environment_id, lanelet_id)
+    FROM chain_lanelet l JOIN crossing x USING (environment_id, lanelet_id)
 ),
-joined AS (
+numbered_part AS (
     SELECT
         *,
         sum((s_start_m - end_before_m > 2)::INTEGER) OVER (PARTITION BY drive_id, ego_id, chain_id, kind, mark_id ORDER BY s_start_m, s_end_m, lanelet_id) AS n
@@ -125,21 +125,21 @@ joined AS (
             coalesce(max(s_end_m) OVER (
                 PARTITION BY drive_id, ego_id, chain_id, kind, mark_id ORDER BY s_start_m, s_end_m, lanelet_id ROWS BETWEEN UNBOUNDED PRECEDING AND 1 PRECEDING
             ), s_start_m) AS end_before_m
-        FROM part
+        FROM mark_part
     )
 ),
 mark AS (
     SELECT
         kind, drive_id, ego_id, chain_id, mark_id, min({'s_m': s_start_m, 'id': lanelet_id}).id AS lanelet_id, min(seq) AS seq_first, max(seq) AS seq_last,
         min(s_start_m) AS s_start_m, max(s_end_m) AS s_end_m
-    FROM joined
+    FROM numbered_part
     GROUP BY kind, drive_id, ego_id, chain_id, mark_id, n
     UNION ALL
     SELECT 'junction', drive_id, ego_id, chain_id, mark_id, lanelet_id, seq_first, seq_last, s_start_m, s_end_m FROM junction
 ),
--- ---- which signals govern it
-reached AS (
-    SELECT m.kind, m.drive_id, m.ego_id, m.chain_id, m.mark_id, m.s_start_m, m.s_end_m, t.signal_id, t.kind AS control, t.s_m, t.rank, t.fit, t.silent
+-- ---- the signals that govern each mark
+signal_in_reach AS (
+    SELECT m.kind, m.drive_id, m.ego_id, m.chain_id, m.mark_id, m.s_start_m, m.s_end_m, t.signal_id, t.kind AS control, t.s_m, t.rank, t.fit, t.is_unrecorded
     FROM mark m
     JOIN signal t ON t.drive_id = m.drive_id AND t.ego_id = m.ego_id AND t.chain_id = m.chain_id
     WHERE CASE m.kind
@@ -148,48 +148,48 @@ reached AS (
             ELSE t.kind = 'traffic_light' AND t.s_m >= m.s_start_m - 15 AND t.s_m <= m.s_end_m + line_reach_m()
         END
 ),
--- what stands before the way into another junction, or past the way out of this one, is another's
-own AS (
+-- A signal that stands before the way into another junction, or past the way out of this one, belongs to another mark.
+own_signal AS (
     SELECT r.*
-    FROM reached r
+    FROM signal_in_reach r
     ANTI JOIN junction j
         ON j.drive_id = r.drive_id AND j.ego_id = r.ego_id AND j.chain_id = r.chain_id
         AND j.s_start_m >= least(r.s_m, r.s_start_m) AND j.s_start_m < greatest(r.s_m, r.s_start_m) - 5
     ANTI JOIN junction o
         ON o.drive_id = r.drive_id AND o.ego_id = r.ego_id AND o.chain_id = r.chain_id AND o.s_end_m > r.s_start_m + 1 AND o.s_end_m <= r.s_m
 ),
--- of two lines within reach, or a crossing and the line beyond it, a light is that of the line it is nearest to
-nearest AS (
+-- Of two lines within reach, or of a crossing and the line beyond it, a light belongs to the line to which it is nearest.
+nearest_line AS (
     SELECT s.drive_id, s.ego_id, s.chain_id, s.signal_id, s.s_m, min({'off_m': abs(m.s_start_m - s.s_m), 's_m': m.s_start_m}).s_m AS line_s_m
     FROM signal s
     JOIN mark m ON m.drive_id = s.drive_id AND m.ego_id = s.ego_id AND m.chain_id = s.chain_id AND m.kind = 'stop_line'
     GROUP BY s.drive_id, s.ego_id, s.chain_id, s.signal_id, s.s_m
 ),
-claimed AS (
-    SELECT o.*, CASE o.kind WHEN 'stop_line' THEN n.line_s_m <> o.s_start_m WHEN 'crossing' THEN coalesce(n.line_s_m > o.s_end_m, false) ELSE false END AS elsewhere
-    FROM own o
-    LEFT JOIN nearest n USING (drive_id, ego_id, chain_id, signal_id, s_m)
+claimed_signal AS (
+    SELECT o.*, CASE o.kind WHEN 'stop_line' THEN n.line_s_m <> o.s_start_m WHEN 'crossing' THEN coalesce(n.line_s_m > o.s_end_m, false) ELSE false END AS is_elsewhere
+    FROM own_signal o
+    LEFT JOIN nearest_line n USING (drive_id, ego_id, chain_id, signal_id, s_m)
 ),
-head AS (
+signal_head AS (
     SELECT
-        kind, drive_id, ego_id, chain_id, mark_id, s_start_m, control, rank, signal_id, min(fit) AS fit, any_value(silent) AS silent, min(abs(s_m - s_start_m)) AS off_m
+        kind, drive_id, ego_id, chain_id, mark_id, s_start_m, control, rank, signal_id, min(fit) AS fit, any_value(is_unrecorded) AS is_unrecorded, min(abs(s_m - s_start_m)) AS off_m
     FROM (
-        FROM claimed
-        QUALIFY {'rank': rank, 'elsewhere': elsewhere} = min({'rank': rank, 'elsewhere': elsewhere})
+        FROM claimed_signal
+        QUALIFY {'rank': rank, 'is_elsewhere': is_elsewhere} = min({'rank': rank, 'is_elsewhere': is_elsewhere})
             OVER (PARTITION BY kind, drive_id, ego_id, chain_id, mark_id, s_start_m)
     )
     GROUP BY kind, drive_id, ego_id, chain_id, mark_id, s_start_m, control, rank, signal_id
 ),
-governed AS (
+mark_control AS (
     SELECT
         kind, drive_id, ego_id, chain_id, mark_id, s_start_m, any_value(control) AS control,
-        min({'other': fit = 5, 'silent': silent, 'fit': CASE silent WHEN 0 THEN fit END, 'off_m': off_m, 'id': signal_id}).id AS signal_id,
+        min({'is_for_other_turn': fit = 5, 'is_unrecorded': is_unrecorded, 'fit': CASE is_unrecorded WHEN 0 THEN fit END, 'off_m': off_m, 'id': signal_id}).id AS signal_id,
         list({'signal_id': signal_id, 'fit': ['own', 'maybe', 'full', 'unsaid', 'other'][fit]} ORDER BY signal_id) FILTER (control = 'traffic_light') AS lights
-    FROM head
+    FROM signal_head
     GROUP BY kind, drive_id, ego_id, chain_id, mark_id, s_start_m
 )
 SELECT
     m.drive_id, m.ego_id, m.chain_id, m.kind, m.mark_id, m.lanelet_id, m.seq_first, m.seq_last, m.s_start_m, m.s_end_m, g.control, g.signal_id, g.lights
 FROM mark m
-LEFT JOIN governed g ON g.kind = m.kind AND g.drive_id = m.drive_id AND g.ego_id = m.ego_id AND g.chain_id = m.chain_id
+LEFT JOIN mark_control g ON g.kind = m.kind AND g.drive_id = m.drive_id AND g.ego_id = m.ego_id AND g.chain_id = m.chain_id
     AND g.mark_id = m.mark_id AND g.s_start_m = m.s_start_m
