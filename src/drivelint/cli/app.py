@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 
 from drivelint import __version__
+from drivelint.cli import docs as docs_
 from drivelint.cli import explain as explain_
 from drivelint.cli import inputs, options, results, rules, values
 from drivelint.cli.shell import interruptible, say
@@ -244,6 +245,7 @@ def convert(
 app.command()(results.report)
 app.command()(explain_.explain)
 app.command("diff")(results.diff)
+app.command("docs")(docs_.docs)
 
 
 def main() -> NoReturn:
