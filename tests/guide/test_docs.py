@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 import sys
+import tomllib
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -15,10 +17,11 @@ from tests.guide.blocks import PAGES
 from tests.shared_data import ROOT
 
 GUIDES = PAGES[1:]
+Docs = Callable[..., tuple[int, str, str]]
 
 
 @pytest.fixture
-def docs(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> object:
+def docs(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Docs:
     def run(*args: str) -> tuple[int, str, str]:
         monkeypatch.setattr(sys, "argv", ["drivelint", "docs", *args])
         with pytest.raises(SystemExit) as left:
@@ -42,21 +45,21 @@ def test_a_guide_begins_with_its_title_and_one_sentence(page: Path) -> None:
     assert len(page.read_text(encoding="utf-8").splitlines()) < 250
 
 
-def test_docs_lists_the_topics_with_their_sentence(docs) -> None:  # type: ignore[no-untyped-def]
+def test_docs_lists_the_topics_with_their_sentence(docs: Docs) -> None:
     code, out, err = docs()
     assert code == 0
     assert [line.split()[0] for line in out.splitlines()] == list(guide.TOPICS)
     assert "drivelint docs TOPIC" in err
 
 
-def test_docs_prints_a_guide(docs) -> None:  # type: ignore[no-untyped-def]
+def test_docs_prints_a_guide(docs: Docs) -> None:
     code, out, err = docs("maps")
     assert (code, err) == (0, "")
     assert out.startswith("# Maps\n")
     assert "<!--" not in out
 
 
-def test_an_unknown_topic_is_told_with_the_nearest(docs) -> None:  # type: ignore[no-untyped-def]
+def test_an_unknown_topic_is_told_with_the_nearest(docs: Docs) -> None:
     code, out, err = docs("mappings")
     assert (code, out) == (2, "")
     assert "did you mean 'mapping'?" in err
@@ -82,8 +85,6 @@ def test_links_and_paths_lead_to_something(page: Path) -> None:
 
 
 def test_the_architecture_names_the_layers_of_the_linter() -> None:
-    import tomllib
-
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     contract = project["tool"]["importlinter"]["contracts"][0]
     layers = [{name.strip().removeprefix("drivelint.") for name in line.split("|")} for line in contract["layers"]]

@@ -62,6 +62,9 @@ def _commands(command: Any, name: str) -> Iterator[Command]:
     said: dict[str, list[tuple[str, str]]] = {"argument": [], "option": []}
     for param in command.get_params(about):
         if (record := param.get_help_record(about)) is not None:
-            said[param.param_type_name].append(record)
+            words, meaning = record
+            said[param.param_type_name].append(
+                (words.partition(" <")[0], meaning)
+            )  # without the type in Python's words
     usage = " ".join([name, *command.collect_usage_pieces(about)])
     yield Command(usage, command.help or "", tuple(said["argument"]), tuple(said["option"]))

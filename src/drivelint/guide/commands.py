@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from drivelint.guide.markdown import escaped, table
@@ -11,7 +12,7 @@ if TYPE_CHECKING:
 
 INTRODUCTION: Final = """# The command line
 
-Every command of drivelint with its arguments and options, as `--help` prints them.
+Every command of drivelint with its arguments and options, as in `--help`.
 
 Data goes to stdout; progress, notes and errors go to stderr.
 """
@@ -37,8 +38,13 @@ def page(commands: Iterable[Command]) -> str:
 
 
 def _section(command: Command) -> str:
-    parts = [f"## {command.name}\n", f"```text\n{command.usage}\n```\n", f"{escaped(command.about)}\n"]
+    parts = [f"## {command.name}\n", f"```text\n{command.usage}\n```\n", f"{_shown(command.about)}\n"]
     for heading, rows in (("argument", command.arguments), ("option", command.options)):
         if rows:
-            parts.append(table((heading, "meaning"), [(f"`{name}`", escaped(meaning)) for name, meaning in rows]))
+            parts.append(table((heading, "meaning"), [(f"`{name}`", _shown(meaning)) for name, meaning in rows]))
     return "\n".join(parts)
+
+
+def _shown(text: str) -> str:
+    """Return help text as Markdown, the options in it as code."""
+    return re.sub(r"(?<![\w-])(--[a-z][\w-]*)", r"`\1`", escaped(text))

@@ -35,6 +35,8 @@ _PAGE: Final = """<!DOCTYPE html>
 </body>
 </html>
 """
+_LONG: Final = 60
+"""Characters beyond which a cell should not be narrow."""
 _ELSEWHERE: Final = (("../../../queries/README.md", "catalogue.html"), ("../../../schemas/", "dictionary.html"))
 """What a guide links to in the repository, and the page of the site that has it."""
 
@@ -45,6 +47,7 @@ def page(markdown: str, *, name: str, pages: Iterable[tuple[str, Sequence[tuple[
     tokens = md.parse(markdown)
     _name_headings(tokens)
     _lead_to_pages(tokens)
+    _label_cells(tokens)
     body = str(md.renderer.render(tokens, md.options, {}))
     body = body.replace("&lt;br&gt;", "<br>")  # the only HTML that the catalogue's cells have
     body = body.replace("<table>", '<div class="wide"><table>').replace("</table>", "</table></div>")
@@ -83,6 +86,25 @@ def _lead_to_pages(tokens: Sequence[Token]) -> None:
         for child in token.children or ():
             if child.type == "link_open":
                 child.attrSet("href", _href(str(child.attrGet("href"))))
+
+
+def _label_cells(tokens: Sequence[Token]) -> None:
+    """Note at each cell what the stylesheet needs: its column's heading, for narrow screens, and whether its text is long."""
+    head: list[str] = []
+    column = 0
+    for opening, inline in pairwise(tokens):
+        if opening.type == "table_open":
+            head = []
+        elif opening.type == "tr_open":
+            column = 0
+        elif opening.type == "th_open":
+            head.append(inline.content)
+        elif opening.type == "td_open":
+            if column and len(head) > 2 and inline.content:
+                opening.attrSet("data-column", head[column])
+            if len(inline.content) > _LONG:
+                opening.attrSet("class", "long")
+            column += 1
 
 
 def _href(target: str) -> str:
