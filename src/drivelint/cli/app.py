@@ -29,7 +29,7 @@ app = typer.Typer(
     name="drivelint",
     help="Checks recorded drives against the rules of the road.",
     epilog="To begin: `drivelint demo` writes drives to try it on and prints the command that checks them; "
-    "`drivelint inspect TRACE` shows what a log of yours can decide.",
+    "`drivelint inspect TRACE` shows what a log of yours can decide; `drivelint docs` lists the guides.",
     add_completion=False,
     rich_markup_mode=None,  # two columns of text: frames and types leave a help of 80 columns no room for words
     pretty_exceptions_enable=False,
