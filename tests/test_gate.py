@@ -1,4 +1,4 @@
-"""The gate as CI uses it: README's workflow, run; `check --baseline`, `--waivers`, `diff` and `report --to`."""
+"""The gate as CI uses it: the workflow of the CI guide, run; `check --baseline`, `--waivers`, `diff` and `report --to`."""
 
 from __future__ import annotations
 
@@ -18,10 +18,11 @@ import yaml
 
 from drivelint import cli
 from drivelint.demo import files
+from drivelint.guide import FOLDER
 from drivelint.report import targets
 from tests.shared_data import ROOT
 
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+GUIDE = (FOLDER / "ci.md").read_text(encoding="utf-8")
 OVERTAKE = ROOT / "fixtures" / "overtake"
 ON_ROAD = ["--map", str(OVERTAKE / "road.xodr"), "--mapping", str(OVERTAKE / "mapping.toml"), "--quiet"]
 SDA = ["--rules", "ukhc.r162.safe-distance-ahead", "--profile", "nominal"]  # one finding for each drive that fails
@@ -67,14 +68,14 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 
 
 def block(mark: str) -> str:
-    """Return README's code block behind a mark."""
-    found = re.search(rf"<!-- {re.escape(mark)} -->\n```\w+\n(.*?)```", README, re.DOTALL)
+    """Return the code block of the CI guide behind a mark."""
+    found = re.search(rf"<!-- {re.escape(mark)} -->\n```\w+\n(.*?)```", GUIDE, re.DOTALL)
     assert found, mark
     return found.group(1)
 
 
 class Workflow:
-    """README's workflow in a folder of its own, with a `gh` that only notes what it was asked to do."""
+    """The workflow of the CI guide in a folder of its own, with a `gh` that only notes what it was asked to do."""
 
     def __init__(self, folder: Path) -> None:
         self.steps: list[dict[str, Any]] = yaml.safe_load(block("workflow: gate"))["jobs"]["check"]["steps"]
@@ -131,7 +132,7 @@ class Workflow:
         return done.returncode
 
 
-def test_readmes_workflow_stops_what_is_new_and_nothing_else(tmp_path: Path) -> None:
+def test_the_guides_workflow_stops_what_is_new_and_nothing_else(tmp_path: Path) -> None:
     demo = tmp_path / "demo"
     files.write(demo)
     (tmp_path / "work").mkdir()

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 
 from drivelint import __version__
+from drivelint.cli import docs as docs_
 from drivelint.cli import explain as explain_
 from drivelint.cli import inputs, options, results, rules, values
 from drivelint.cli.shell import interruptible, say
@@ -28,7 +29,7 @@ app = typer.Typer(
     name="drivelint",
     help="Checks recorded drives against the rules of the road.",
     epilog="To begin: `drivelint demo` writes drives to try it on and prints the command that checks them; "
-    "`drivelint inspect TRACE` shows what a log of yours can decide.",
+    "`drivelint inspect TRACE` shows what a log of yours can decide; `drivelint docs` lists the guides.",
     add_completion=False,
     rich_markup_mode=None,  # two columns of text: frames and types leave a help of 80 columns no room for words
     pretty_exceptions_enable=False,
@@ -244,6 +245,7 @@ def convert(
 app.command()(results.report)
 app.command()(explain_.explain)
 app.command("diff")(results.diff)
+app.command("docs")(docs_.docs)
 
 
 def main() -> NoReturn:

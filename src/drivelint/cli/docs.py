@@ -1,0 +1,70 @@
+"""`drivelint docs`: the guides, printed or as a site."""
+
+from __future__ import annotations
+
+from pathlib import Path  # noqa: TC003 - Typer looks the annotations up
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from drivelint.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from drivelint.guide.commands import Command
+
+
+def docs(
+    ctx: typer.Context,
+    topic: Annotated[
+        str | None, typer.Argument(metavar="[TOPIC]", help="The guide to print; default: list them.")
+    ] = None,
+    *,
+    html: Annotated[
+        Path | None,
+        typer.Option(
+            "--html", metavar="DIR", help="Write all guides, the rules, the tables and the commands as a site."
+        ),
+    ] = None,
+) -> None:
+    """Print a guide, or write all of them as a site.
+
+    Without TOPIC: lists the guides. With TOPIC: prints that guide as Markdown.
+
+    With --html: writes one offline site with the guides, the rule catalogue, the data dictionary and the command line, and
+    prints the name of its first page.
+    """
+    from drivelint import guide
+
+    if html is not None:
+        if topic is not None:
+            raise UsageError(f"docs {topic} --html: the site has every guide: leave out {topic}, or --html")
+        from drivelint.guide import site
+
+        typer.echo(str(site.write(html, _commands(ctx.find_root().command, "drivelint"))))
+    elif topic is None:
+        typer.echo(guide.listing())
+        typer.echo("drivelint docs TOPIC prints one; drivelint docs --html DIR writes all as a site", err=True)
+    else:
+        typer.echo(guide.text(topic), nl=False)
+
+
+def _commands(command: Any, name: str) -> Iterator[Command]:
+    """Yield the commands under a group, depth first, with what their help says."""
+    from drivelint.guide.commands import Command
+
+    if hasattr(command, "commands"):
+        for word, each in command.commands.items():
+            yield from _commands(each, f"{name} {word}")
+        return
+    about = typer.Context(command, info_name=name)
+    said: dict[str, list[tuple[str, str]]] = {"argument": [], "option": []}
+    for param in command.get_params(about):
+        if (record := param.get_help_record(about)) is not None:
+            words, meaning = record
+            said[param.param_type_name].append(
+                (words.partition(" <")[0], meaning)
+            )  # without the type in Python's words
+    usage = " ".join([name, *command.collect_usage_pieces(about)])
+    yield Command(usage, command.help or "", tuple(said["argument"]), tuple(said["option"]))

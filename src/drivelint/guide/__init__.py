@@ -1,0 +1,73 @@
+"""The guides that `drivelint docs` prints and `drivelint docs --html` writes as a site: one Markdown file per topic, beside this one."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+from typing import Final, NamedTuple
+
+from drivelint.errors import UsageError
+from drivelint.phrases import hint
+
+TOPICS: Final = (
+    "traces",
+    "mapping",
+    "maps",
+    "convert",
+    "reading-an-unknown",
+    "explain",
+    "viewer",
+    "columns",
+    "ci",
+    "fleets",
+    "writing-a-rule",
+    "adding-a-format",
+    "architecture",
+)
+"""The topics in reading order; each is the stem of a file."""
+FOLDER: Final = Path(__file__).parent
+OUTPUT_TABLES: Final = "<!-- tables: output -->"
+"""The line of a guide that stands for the columns of every output file."""
+_MARK = re.compile(r"^<!-- .* -->\n", re.MULTILINE)
+
+
+class Topic(NamedTuple):
+    """A guide: its name, its title and the sentence that says what it is for."""
+
+    name: str
+    title: str
+    sentence: str
+
+
+@cache
+def topics() -> tuple[Topic, ...]:
+    """Return every guide, in reading order."""
+    return tuple(_topic(name) for name in TOPICS)
+
+
+def text(name: str) -> str:
+    """Return a guide as Markdown, the columns of the output files filled in. Errors: `UsageError` with the nearest topic."""
+    if name not in TOPICS:
+        raise UsageError(f"no guide {name!r}: {hint(name, TOPICS)}")
+    source = _source(name)
+    if OUTPUT_TABLES in source:
+        from drivelint.guide.dictionary import output_tables
+
+        source = source.replace(OUTPUT_TABLES, output_tables())
+    return _MARK.sub("", source)
+
+
+def listing() -> str:
+    """Return a line per topic: its name and its sentence."""
+    width = max(map(len, TOPICS))
+    return "\n".join(f"{topic.name:<{width}}  {topic.sentence}" for topic in topics())
+
+
+def _source(name: str) -> str:
+    return (FOLDER / f"{name}.md").read_text(encoding="utf-8")
+
+
+def _topic(name: str) -> Topic:
+    title, _, sentence, *_ = _source(name).splitlines()
+    return Topic(name, title.removeprefix("# "), sentence)

@@ -1,0 +1,132 @@
+"""The data dictionary: every table of `schemas/*.sql` with its columns, and from which tables the derived ones are derived."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import TYPE_CHECKING, Final
+
+from drivelint.guide.markdown import escaped, table
+from drivelint.result.contract import FILES
+from drivelint.sql import store, syntax
+from drivelint.sql.derivations import derivations
+from drivelint.sql.store import lifetimes, schema
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+INTRODUCTION: Final = """# The data dictionary
+
+Every table that drivelint fills, with the meaning of each column; rules read these tables.
+
+Distances are metres, speeds metres per second, angles radians, and times integer nanoseconds of the log's own clock. NULL
+means that the value is not known, unless the column says otherwise. `drivelint check --keep-db` keeps these tables in
+`drivelint.duckdb`.
+"""
+DERIVATIONS: Final = """## How the tables are derived
+
+Each derived table is filled by one SELECT, `queries/derive/<table>.sql`. A table of a level reads recorded tables and tables
+of lower levels. The tables that it reads stand behind it.
+"""
+_GROUPS: Final = {
+    "model": "The recorded drive",
+    "map": "The map",
+    "derived": "Derived: positions, lanes, overtakes",
+    "conduct": "Derived: conditions and conduct",
+    "junctions": "Derived: junctions",
+    "verdict": "Verdicts",
+    "output": "Drives and rules",
+    "evidence": "Evidence for the report",
+}
+"""File of `schemas/` -> its heading."""
+_LIVES: Final = {
+    "map": "as long as batches use the map",
+    "drive": "while its batch of drives is judged",
+    "part": "while a part of the egos of a drive is judged",
+    "run": "to the end of the run",
+}
+
+
+def page() -> str:
+    """Return the data dictionary as Markdown. Errors: `DriveLintError` for a file of `schemas/` without a heading here."""
+    read = reads()
+    parts = [INTRODUCTION, DERIVATIONS, _levels(read)]
+    for file, heading in _GROUPS.items():
+        parts.append(f"## {heading}\n\nTables: {_links(schema(file))}.\n")
+        parts += [_section(name, read) for name in schema(file)]
+    return "\n".join(parts)
+
+
+def output_tables() -> str:
+    """Return a section per result file with the columns of its table."""
+    files = {**FILES, "margins": "margin"}
+    return "\n".join(f"### {stem}.parquet\n\n{_columns(name)}" for stem, name in files.items())
+
+
+@cache
+def reads() -> Mapping[str, tuple[str, ...]]:
+    """Return derived table -> every table that its SELECT reads, in the order in which they can be filled."""
+    return {
+        name: tuple(sorted(syntax.reads(syntax.parsed(each.sql, name)) & schema().keys() - {name}))
+        for name, each in derivations().items()
+    }
+
+
+def levels(read: Mapping[str, Iterable[str]]) -> list[list[str]]:
+    """Return the derived tables by level: one that reads only recorded tables first, then those that read only such, and so on."""
+    level: dict[str, int] = {}
+    for name, tables in read.items():
+        level[name] = 1 + max((level.get(each, 0) for each in tables), default=0)
+    return [[name for name in sorted(level) if level[name] == n] for n in range(1, max(level.values()) + 1)]
+
+
+def _levels(read: Mapping[str, tuple[str, ...]]) -> str:
+    lines = []
+    for n, tables in enumerate(levels(read), 1):
+        lines.append(f"* Level {n}")
+        lines += [f"    * {_link(name)}" + (f": {_links(read[name])}" if read[name] else "") for name in tables]
+    return "\n".join(lines) + "\n"
+
+
+def _section(name: str, read: Mapping[str, tuple[str, ...]]) -> str:
+    said = [f"Kept {_LIVES[lifetimes()[name]]}."]
+    if files := [stem for stem, of in FILES.items() if of == name]:
+        said.append(f"Written to `{files[0]}.parquet`.")
+    if name in read:
+        said.append(f"Reads {_links(read[name])}." if read[name] else "Reads no table.")
+    if readers := [each for each, tables in read.items() if name in tables]:
+        said.append(f"Read by {_links(sorted(readers))}.")
+    about = f"{_about(name)}\n\n" if _about(name) else ""
+    return f"### {name}\n\n{about}{' '.join(said)}\n\n{_columns(name)}"
+
+
+def _about(name: str) -> str:
+    """Return the comment at the head of the SELECT that fills a table; '' for none."""
+    if name not in derivations():
+        return ""
+    head = re.match(r"(?:--.*\n)*", derivations()[name].sql)
+    lines = head[0].splitlines() if head else []
+    return escaped(" ".join(line.removeprefix("--").strip() for line in lines))
+
+
+def _columns(name: str) -> str:
+    rows = [
+        (f"`{column}`", escaped(_types()[name, column]), escaped(comment)) for column, comment in schema()[name].items()
+    ]
+    return table(("column", "type", "meaning"), rows)
+
+
+@cache
+def _types() -> dict[tuple[str, str], str]:
+    """Return (table, column) -> its type, with NOT NULL where the column has it."""
+    with store.connect() as con:
+        rows = con.execute("SELECT table_name, column_name, data_type, is_nullable FROM duckdb_columns()").fetchall()
+    return {(name, column): kind if nullable else f"{kind} NOT NULL" for name, column, kind, nullable in rows}
+
+
+def _link(name: str) -> str:
+    return f"[{name}](#{name})"
+
+
+def _links(names: Iterable[str]) -> str:
+    return ", ".join(map(_link, names))

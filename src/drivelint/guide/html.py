@@ -1,0 +1,115 @@
+"""Markdown to an HTML page that opens offline: no script, one stylesheet beside it."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from html import escape
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
+
+from markdown_it import MarkdownIt
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from markdown_it.token import Token
+
+STYLESHEET: Final = "style.css"
+_PAGE: Final = """<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{title}: drivelint</title>
+<link rel="stylesheet" href="{stylesheet}">
+</head>
+<body>
+<header><a href="index.html">drivelint</a> <a class="jump" href="#pages">all pages</a></header>
+<main>
+{body}</main>
+<nav id="pages" aria-label="pages">
+{pages}
+</nav>
+<footer>{footer}</footer>
+</body>
+</html>
+"""
+_LONG: Final = 60
+"""Characters beyond which a cell should not be narrow."""
+_ELSEWHERE: Final = (("../../../queries/README.md", "catalogue.html"), ("../../../schemas/", "dictionary.html"))
+"""What a guide links to in the repository, and the page of the site that has it."""
+
+
+def page(markdown: str, *, name: str, pages: Iterable[tuple[str, Sequence[tuple[str, str]]]], footer: str) -> str:
+    """Return the page `name` of a site. `pages`: heading -> (name, title) of each page under it, for the navigation."""
+    md = MarkdownIt("commonmark", {"html": False}).enable("table")
+    tokens = md.parse(markdown)
+    _name_headings(tokens)
+    _lead_to_pages(tokens)
+    _label_cells(tokens)
+    body = str(md.renderer.render(tokens, md.options, {}))
+    body = body.replace("&lt;br&gt;", "<br>")  # the only HTML that the catalogue's cells have
+    body = body.replace("<table>", '<div class="wide"><table>').replace("</table>", "</table></div>")
+    title = re.search(r"^# (.+)$", markdown, re.MULTILINE)
+    return _PAGE.format(
+        title=escape(title[1] if title else name),
+        stylesheet=STYLESHEET,
+        body=body,
+        pages="\n".join(_navigation(heading, listed, name) for heading, listed in pages),
+        footer=escape(footer),
+    )
+
+
+def _navigation(heading: str, pages: Sequence[tuple[str, str]], current: str) -> str:
+    items = "".join(
+        f'<li><a href="{name}.html"{" aria-current=page" if name == current else ""}>{escape(title)}</a></li>'
+        for name, title in pages
+    )
+    return f"<p>{escape(heading)}</p>\n<ul>{items}</ul>"
+
+
+def _name_headings(tokens: Sequence[Token]) -> None:
+    """Give every heading the id by which GitHub links to it."""
+    seen: Counter[str] = Counter()
+    for opening, inline in pairwise(tokens):
+        if opening.type == "heading_open":
+            words = "".join(child.content for child in inline.children or ())
+            slug = re.sub(r"[^\w\- ]", "", words.lower()).replace(" ", "-")
+            opening.attrSet("id", f"{slug}-{seen[slug]}" if seen[slug] else slug)
+            seen[slug] += 1
+
+
+def _lead_to_pages(tokens: Sequence[Token]) -> None:
+    """Turn links to files of the repository into links to pages of the site."""
+    for token in tokens:
+        for child in token.children or ():
+            if child.type == "link_open":
+                child.attrSet("href", _href(str(child.attrGet("href"))))
+
+
+def _label_cells(tokens: Sequence[Token]) -> None:
+    """Note at each cell what the stylesheet needs: its column's heading, for narrow screens, and whether its text is long."""
+    head: list[str] = []
+    column = 0
+    for opening, inline in pairwise(tokens):
+        if opening.type == "table_open":
+            head = []
+        elif opening.type == "tr_open":
+            column = 0
+        elif opening.type == "th_open":
+            head.append(inline.content)
+        elif opening.type == "td_open":
+            if column and len(head) > 2 and inline.content:
+                opening.attrSet("data-column", head[column])
+            if len(inline.content) > _LONG:
+                opening.attrSet("class", "long")
+            column += 1
+
+
+def _href(target: str) -> str:
+    for prefix, name in _ELSEWHERE:
+        if target.startswith(prefix):
+            _, mark, anchor = target.partition("#")
+            return f"{name}{mark}{anchor}"
+    return re.sub(r"^([\w-]+)\.md(?=$|#)", r"\1.html", target)

@@ -1,0 +1,197 @@
+"""The code blocks of README and of the guides do what the pages say.
+
+`<!-- run: 0 1 -->` above a block: its lines are run, in a folder with the files of `PREPARED`, and exit so. `with FILE as NAME`
+behind it: the reference file is there under that name. `<!-- prints -->`: the lines are in what the block before
+printed, in this order; `...` stands for any lines between. `<!-- file: NAME -->`: the block is that file.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from drivelint.demo import files
+from drivelint.drive.trace import IngestOptions
+from drivelint.formats import registry
+from drivelint.formats.registry import Probe, Reader
+from drivelint.guide import FOLDER
+from tests.guide.blocks import PAGES, Block, blocks
+from tests.shared_data import ROOT, shared
+
+OVERTAKE = ROOT / "fixtures" / "overtake"
+NAMES = [page.name for page in PAGES]
+MARKS = {"", "run", "prints", "file", "command", "workflow"}
+
+
+@pytest.fixture(scope="module")
+def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("demo")
+    files.write(folder)
+    return folder
+
+
+@pytest.fixture
+def folder(demo: Path, tmp_path: Path) -> Path:
+    """Return a folder with what a reader of the guides has: a log of each kind, a map, the demo; and `drivelint` to run."""
+    shutil.copytree(demo, tmp_path / "demo")
+    for source, name in (
+        (demo / "near-miss.mcap", "drive.mcap"),
+        (demo / "near-miss.mcap", "drives/near-miss.mcap"),
+        (demo / "collision.mcap", "more/days/collision.mcap"),
+        (demo / "road.xodr", "road.xodr"),
+        (demo / "road.xodr", "maps/near-miss.xodr"),
+        (OVERTAKE / "near_miss.csv", "log.csv"),
+        (OVERTAKE / "mapping.toml", "my.toml"),
+    ):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(source, tmp_path / name)
+    tools = tmp_path / "tools"
+    tools.mkdir()
+    for name, words in (("drivelint", "-m drivelint"), ("python", "")):
+        (tools / name).write_text(f'#!/bin/sh\nexec "{sys.executable}" {words} "$@"\n', encoding="utf-8")
+        (tools / name).chmod(0o755)
+    return tmp_path
+
+
+def run(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    env = {key: value for key, value in os.environ.items() if key != "COLUMNS"}
+    env |= {"PATH": f"{folder / 'tools'}{os.pathsep}{env['PATH']}", "PYTHONPATH": str(ROOT / "src")}
+    return subprocess.run(
+        ["bash", "-c", line], cwd=folder, env=env, check=False, capture_output=True, text=True, timeout=300
+    )
+
+
+def run_block(block: Block, folder: Path) -> str:
+    """Run the lines of a block; return what they printed."""
+    codes, _, needs = block.argument.partition(" with ")
+    if needs:
+        source, _, name = needs.partition(" as ")
+        shutil.copy(shared(source), folder / name)
+    printed = ""
+    lines = block.body.splitlines()
+    assert len(lines) == len(codes.split()), "an exit code for each line"
+    for line, code in zip(lines, codes.split(), strict=True):
+        done = run(line, folder)
+        assert done.returncode == int(code), f"{line}\n{done.stdout[-1500:]}\n{done.stderr[-1500:]}"
+        assert "Traceback" not in done.stderr
+        printed += done.stdout
+    return printed
+
+
+def missing(shown: str, printed: str) -> list[str]:
+    """Return the lines that were not printed, or not in this order."""
+    rest = iter(line.rstrip() for line in printed.splitlines())
+    return [line for line in shown.splitlines() if line != "..." and line.rstrip() not in rest]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_marked_blocks_run(name: str, folder: Path) -> None:
+    (page,) = (page for page in PAGES if page.name == name)
+    printed = ""
+    skipped: list[str] = []
+    for block in blocks(page):
+        if block.word == "run":
+            try:
+                printed = run_block(block, folder)
+            except pytest.skip.Exception as reason:
+                skipped.append(str(reason))
+        elif block.word == "prints" and name != "README.md":
+            assert missing(block.body, printed) == []
+        elif block.word == "file" and not (ROOT / block.argument).exists() and block.argument != "drivelint.toml":
+            (folder / block.argument).parent.mkdir(parents=True, exist_ok=True)
+            (folder / block.argument).write_text(block.body, encoding="utf-8")
+    if skipped:
+        pytest.skip("; ".join(skipped))
+
+
+def test_every_mark_is_known() -> None:
+    for page in PAGES:
+        assert {block.word for block in blocks(page)} <= MARKS, page.name
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_block_without_a_mark_is_no_code(name: str) -> None:
+    """What could be run is run; the rest is text."""
+    (page,) = (page for page in PAGES if page.name == name)
+    assert [block.body for block in blocks(page) if not block.mark and block.language != "text"] == []
+
+
+def test_files_of_the_repository_are_shown_as_they_are() -> None:
+    shown = {block.argument: block.body for page in PAGES for block in blocks(page) if block.word == "file"}
+    there = [name for name in shown if (ROOT / name).exists()]
+    assert there == ["fixtures/overtake/mapping.toml"]
+    for name in there:
+        assert shown[name] == (ROOT / name).read_text(encoding="utf-8")
+
+
+def test_readmes_command_prints_what_readme_shows(folder: Path) -> None:
+    readme = blocks(ROOT / "README.md")
+    (command,) = (block.body.strip() for block in readme if block.mark == "command: run")
+    shutil.rmtree(folder / "demo")
+    *_, demo, check = command.split(" && ")
+    assert run(demo.removeprefix(".venv/bin/"), folder).returncode == 0
+    done = run(check.removeprefix(".venv/bin/"), folder)
+    (shown,) = (block.body for block in readme if block.word == "prints")
+    assert done.returncode == 1, done.stderr
+    assert missing(shown, done.stdout) == []
+    assert (folder / "demo" / "results" / "report.html").is_file()
+
+
+@pytest.mark.parametrize(("drive", "code"), [("safe", 0), ("near-miss", 1)])
+def test_readmes_first_workflow_passes_the_safe_drive(drive: str, code: int, folder: Path) -> None:
+    (workflow,) = (block.body for block in blocks(ROOT / "README.md") if block.mark == "workflow: first")
+    assert len(workflow.splitlines()) <= 14
+    (line,) = (s["run"] for s in yaml.safe_load(workflow)["jobs"]["check"]["steps"] if "check" in s.get("run", ""))
+    shutil.rmtree(folder / "drives")
+    (folder / "drives").mkdir()
+    shutil.copy(folder / "demo" / f"{drive}.mcap", folder / "drives")
+    assert run(line, folder).returncode == code
+    assert (folder / "results" / "report.html").is_file()
+
+
+def test_the_settings_of_the_ci_guide_are_taken(folder: Path) -> None:
+    (settings,) = (block.body for block in blocks(FOLDER / "ci.md") if block.mark == "file: drivelint.toml")
+    (folder / "drivelint.toml").write_text(settings, encoding="utf-8")
+    done = run("drivelint check drives --no-annotate", folder)
+    assert done.returncode == 1, done.stderr
+    assert "[nominal]" in done.stdout
+    assert "[aggressive]" not in done.stdout, "nothing fails with it"
+    assert "at or above severity major" in done.stdout
+
+
+def test_the_reader_of_the_format_guide_reads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (code,) = (block.body for block in blocks(FOLDER / "adding-a-format.md") if block.mark == "file: jsonlines.py")
+    (tmp_path / "jsonlines.py").write_text(code, encoding="utf-8")
+    spec = importlib.util.spec_from_file_location("jsonlines", tmp_path / "jsonlines.py")
+    assert spec
+    assert spec.loader
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+
+    class JsonLinesReader:
+        def accepts(self, probe: Probe) -> bool:
+            return bool(module.looks_like(probe.head))
+
+        read = staticmethod(lambda probe: module.read(probe.path))
+
+    readers: tuple[Reader, ...] = (*registry.READERS, JsonLinesReader())
+    monkeypatch.setattr(registry, "READERS", readers)
+    states = [
+        {"t_s": k / 10, "id": actor, "x": k + 10.0 * actor, "y": 0.0, "heading": 0.0, "kind": "car"}
+        for k in range(20)
+        for actor in (1, 2)
+    ]
+    log = tmp_path / "log.jsonl"
+    log.write_text("\n".join(map(json.dumps, states)), encoding="utf-8")
+    trace = registry.read_trace(log, IngestOptions(ego="1"))
+    assert trace.tables["actor"].to_pydict()["actor_class"] == ["car", "car"]
+    assert trace.tables["actor_state"].num_rows == 40
+    assert trace.tables["actor_state"].to_pydict()["vx_mps"][0] == pytest.approx(10.0), "derived"
