@@ -19,6 +19,7 @@ CREATE TABLE verdict (
     verdict VARCHAR NOT NULL,         -- pass, fail, unknown, not_applicable, error
     reason_code VARCHAR NOT NULL,     -- machine-readable reason
     reason VARCHAR NOT NULL,          -- the same for a person
+    reason_measures BOOLEAN NOT NULL, -- the reason tells observed and required
     observed DOUBLE,                  -- value at the worst step
     required DOUBLE,                  -- what it was held against
     margin DOUBLE,                    -- signed distance to the threshold, positive = kept; NULL for sense = holds
@@ -49,6 +50,7 @@ CREATE TABLE finding (
     t_end_ns BIGINT NOT NULL,         -- last failing step
     t_worst_ns BIGINT NOT NULL,       -- earliest step with the least margin
     reason VARCHAR NOT NULL,          -- for a person
+    reason_measures BOOLEAN NOT NULL, -- the reason tells observed and required
     observed DOUBLE,                  -- value at the worst step
     required DOUBLE,                  -- what it was held against
     margin DOUBLE,                    -- negative; NULL for sense = holds

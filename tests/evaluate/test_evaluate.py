@@ -61,7 +61,7 @@ def rules(tmp_path: Path) -> list[Rule]:
     broken = SPEED.replace("speed_mps", "lanelet_id::DOUBLE")
     return [
         write(tmp_path, header, {"condition": SPEED}, name="speed", tables=PARAM),
-        write(tmp_path, header | {"requires": '["map", "moon"]'}, {"condition": SPEED}, name="moon", tables=PARAM),
+        write(tmp_path, header | {"requires": '["map", "mode_horn"]'}, {"condition": SPEED}, name="moon", tables=PARAM),
         write(tmp_path, header | {"requires": '["map"]'}, {"condition": SPEED}, name="map", tables=PARAM),
         write(tmp_path, header, {"condition": broken}, name="broken", tables=PARAM),
         write(tmp_path, events, {"reference": reference, "condition": SPEED}, name="never", tables=PARAM),
@@ -75,7 +75,7 @@ def test_every_subject_has_a_verdict_of_every_rule(con: duckdb.DuckDBPyConnectio
     expected = {
         "broken": dict.fromkeys(subjects, ("error", "rule_error")),
         "map": {s: ("pass", "kept") if s[0] == "a" else ("unknown", "missing_map") for s in subjects},
-        "moon": {s: ("unknown", "missing_moon") if s[0] == "a" else ("unknown", "missing_map") for s in subjects},
+        "moon": {s: ("unknown", "missing_mode_horn") if s[0] == "a" else ("unknown", "missing_map") for s in subjects},
         "never": dict.fromkeys(subjects, ("not_applicable", "not_triggered")),
         "speed": {s: ("pass", "kept") if s[0] == "a" else ("fail", "violated") for s in subjects},
     }

@@ -20,9 +20,10 @@ import yaml
 
 from drivelint.demo import files
 from drivelint.drive.trace import IngestOptions
+from drivelint.errors import TraceError
 from drivelint.formats import registry
-from drivelint.formats.registry import Probe, Reader
 from drivelint.guide import FOLDER
+from drivelint.inspect import InspectRequest, inspect
 from tests.guide.blocks import PAGES, Block, blocks
 from tests.shared_data import ROOT, shared
 
@@ -176,14 +177,8 @@ def test_the_reader_of_the_format_guide_reads(tmp_path: Path, monkeypatch: pytes
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
 
-    class JsonLinesReader:
-        def accepts(self, probe: Probe) -> bool:
-            return bool(module.looks_like(probe.head))
-
-        read = staticmethod(lambda probe: module.read(probe.path))
-
-    readers: tuple[Reader, ...] = (*registry.READERS, JsonLinesReader())
-    monkeypatch.setattr(registry, "READERS", readers)
+    monkeypatch.setattr(registry, "READERS", (*registry.READERS[:-1], module, registry.READERS[-1]))
+    monkeypatch.setitem(registry.FORMATS, "json-lines", module.formats["json-lines"])
     states = [
         {"t_s": k / 10, "id": actor, "x": k + 10.0 * actor, "y": 0.0, "heading": 0.0, "kind": "car"}
         for k in range(20)
@@ -195,3 +190,11 @@ def test_the_reader_of_the_format_guide_reads(tmp_path: Path, monkeypatch: pytes
     assert trace.tables["actor"].to_pydict()["actor_class"] == ["car", "car"]
     assert trace.tables["actor_state"].num_rows == 40
     assert trace.tables["actor_state"].to_pydict()["vx_mps"][0] == pytest.approx(10.0), "derived"
+    found = inspect(InspectRequest(str(log)))
+    assert (found.problem, found.content.sheets) == (None, [])
+    for damage in ('{"t_s": 0.1, "id": 1, "x": "far"}', '{"t_s": Infinity}', "{", "\udcff"):
+        log.write_text(
+            '{"t_s": 0.0, "id": 1, "x": 0, "y": 0, "heading": 0, "kind": "car"}\n' + damage, "utf-8", "surrogateescape"
+        )
+        with pytest.raises(TraceError, match=r"log\.jsonl:2: not a state"):
+            registry.read_trace(log, IngestOptions(ego="1"))

@@ -27,7 +27,8 @@ def verdict(said: str, **over: Any) -> dict[str, Any]:
         "drive_id": "d1", "ego_id": "1", "rule_id": SDA, "rule_version": "v", "kind": "execution", "profile": "nominal",
         "severity": "critical", "object_id": "3", "occurrence": 0, "ref_id": 0, "t_ref_ns": 108 * SECOND,
         "t_start_ns": 108 * SECOND, "t_end_ns": 108 * SECOND, "t_worst_ns": 108 * SECOND, "verdict": said,
-        "reason_code": said, "reason": f"because {said}", "observed": 58.0, "required": 64.0, "margin": -6.0,
+        "reason_code": said, "reason": f"because {said}", "reason_measures": False,
+        "observed": 58.0, "required": 64.0, "margin": -6.0,
         "unit": "m", "near_miss": False, "assumes": None, "n_expected": 1, "n_judged": 1,
     } | over  # fmt: skip
 

@@ -38,16 +38,6 @@ MOTOR_VEHICLES = ("car", "van", "truck", "bus", "motorcycle", "vehicle")
 """What `--ego all` takes as an ego: driven by an engine and by somebody of its own."""
 EPOCH_NS = 946_684_800_000_000_000
 """2000-01-01 UTC: a clock beyond it counts from 1970 in UTC, a smaller one from the start of the recording."""
-FORMATS: dict[str, tuple[str, str]] = {
-    "osi-mcap": ("ASAM OSI in MCAP", "the log's host vehicle"),
-    "osi-file": ("ASAM OSI trace file", "the log's host vehicle"),
-    "commonroad": ("CommonRoad scenario", "said with --ego"),
-    "sumo-fcd": ("SUMO floating car data", "said with --ego"),
-    "ros2-mcap": ("ROS 2 in MCAP", "the odometry's vehicle"),
-    "foxglove-mcap": ("Foxglove scene in MCAP", "said with --ego"),
-    "canonical-parquet": ("drivelint's own Parquet tables", "marked is_ego in the log"),
-}
-"""What `data_log.format` may say beside a mapping's name -> its title, and how its ego is known."""
 SIGNAL_STATES = ("red", "red_amber", "amber", "green", "flashing", "off")
 
 

@@ -87,6 +87,12 @@ SENTENCE = f"""CASE
             WHEN margin = 0 THEN 'exactly at the limit, which does not do'
             ELSE 'missed by ' || {_MARGIN} END || '.' END"""
 
+_MEASURES = """coalesce(reason IS NULL AND CASE verdict
+        WHEN 'unknown' THEN code = 'only_a_bound' AND bound IS NOT NULL AND asked IS NOT NULL
+        WHEN 'not_applicable' THEN false
+        ELSE code <> 'nobody_there' AND sense <> 'holds' AND observed IS NOT NULL AND required IS NOT NULL END, false)"""
+"""Whether the sentence tells what was observed and what is required."""
+
 # clean groups of the first pass are outcomes too; a subject for which a rule erred has no other row of that rule
 _ALL = f"""
 CREATE OR REPLACE TEMP TABLE _closed AS
@@ -230,12 +236,12 @@ _numbered AS (
             ref_id NULLS LAST, code) - 1 AS occurrence,
         coalesce(replace(label, '_', ' ') || ': ', '') || {SENTENCE} AS told,
         CASE WHEN because IS NOT NULL AND verdict = 'unknown' AND reason IS NULL AND code IN {_NO_CAUSE}
-            THEN format('{{}}; {{}}.', rtrim(told, '.'), because) ELSE told END AS sentence
+            THEN format('{{}}; {{}}.', rtrim(told, '.'), because) ELSE told END AS sentence, {_MEASURES} AS reason_measures
     FROM _named n LEFT JOIN _cause c ON c.key.drive_id = n.drive_id AND c.key.ego_id = n.ego_id AND c.key.t_ns = n.t_decides_ns
         AND c.key.object_id = coalesce(n.object_id, '') AND c.key.of_hidden = n.of_hidden AND c.key.of_lanes = n.of_lanes)
 SELECT v.drive_id, v.ego_id, rule_id, rule_version, kind, profile, severity, object_id,
     occurrence::INTEGER AS occurrence, ref_id, t_ref_ns, t_start_ns, t_end_ns,
-    t_worst_ns, verdict, code AS reason_code, sentence AS reason, observed, required, margin, unit,
+    t_worst_ns, verdict, code AS reason_code, sentence AS reason, reason_measures, observed, required, margin, unit,
     coalesce(verdict = 'pass' AND {findings.NEAR}, false) AS near_miss,
     coalesce(n_expected, 0) AS n_expected, coalesce(n_judged, 0) AS n_judged, p.x_m, p.y_m, p.lanelet_id,
     CASE WHEN of_others AND verdict IN ('pass', 'fail', 'not_applicable') AND code <> 'other_nation'
@@ -255,12 +261,13 @@ WITH _named AS (
     ANTI JOIN _error e ON e.rule_no = f.rule_no AND e.drive_id = f.drive_id AND e.ego_id = f.ego_id
 ), _numbered AS (
     SELECT *, (row_number() OVER (PARTITION BY drive_id, ego_id, rule_id, profile, object_id
-        ORDER BY t_start_ns, t_end_ns, ref_id NULLS LAST) - 1)::INTEGER AS occurrence, {SENTENCE} AS sentence
+        ORDER BY t_start_ns, t_end_ns, ref_id NULLS LAST) - 1)::INTEGER AS occurrence,
+        {SENTENCE} AS sentence, {_MEASURES} AS reason_measures
     FROM _named)
 SELECT sha256(to_json([v.sha256, v.ego_id, rule_id, profile, object_id,
     v.occurrence::VARCHAR])::VARCHAR)[:16] AS finding_id,
     v.drive_id, v.ego_id, rule_id, rule_version, kind, profile, severity, object_id, v.occurrence, ref_id,
-    v.t_start_ns, v.t_end_ns, t_worst_ns, sentence AS reason, observed, required, margin, unit, p.x_m, p.y_m,
+    v.t_start_ns, v.t_end_ns, t_worst_ns, sentence AS reason, reason_measures, observed, required, margin, unit, p.x_m, p.y_m,
         p.lanelet_id
 FROM _numbered v {_PLACE}
 """

@@ -9,7 +9,7 @@ import msgspec
 
 from drivelint import catalogue
 from drivelint.drive import conditions
-from drivelint.drive.trace import FORMATS, OWN_MAP_UNUSABLE, DriveInput
+from drivelint.drive.trace import OWN_MAP_UNUSABLE, DriveInput
 from drivelint.engine.batch import Drive as Judgeable
 from drivelint.engine.batch import on_its_map
 from drivelint.engine.map_library import MapLibrary
@@ -17,6 +17,7 @@ from drivelint.engine.memory import DEFAULT, Memory
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import ExitCode, MapError, TraceError, UsageError
 from drivelint.formats import expand, read_trace
+from drivelint.formats.registry import FORMATS
 from drivelint.inspect import advice, model, tracks
 from drivelint.inspect.content import content, size
 from drivelint.phrases import listed

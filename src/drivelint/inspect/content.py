@@ -74,8 +74,8 @@ def _of_table(path: Path, head: bytes, mapping: str | None, notes: list[str], *,
         sheet = _plain(path)
         guess = None if read else draft([column.name for column in sheet.columns])
         return Content(sheets=[sheet], notes=notes, draft_mapping=guess)
-    if b"\0" in head or not head.strip() or head.lstrip()[:1] in {b"<", b"{"}:
-        return Content(notes=notes)
+    if read or b"\0" in head or not head.strip() or head.lstrip()[:1] in {b"<", b"{"}:
+        return Content(notes=notes)  # no table, or a text that another reader has read
     names = CsvSheet(path, Table()).names
     columns = [Column(name=name, read_as=[]) for name in names]
     return Content(sheets=[Sheet(name=path.name, rows=None, columns=columns)], notes=notes, draft_mapping=draft(names))

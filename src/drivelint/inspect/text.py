@@ -10,7 +10,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from drivelint.drive.trace import FORMATS
+from drivelint.formats.registry import FORMATS
 from drivelint.formats.tables.mapping import GROUP
 from drivelint.inspect.rules_text import rules
 from drivelint.inspect.words import amount, holes, metres, side, size

@@ -6,7 +6,7 @@ from typing import Final
 
 from drivelint.drive.conditions import SAYS, WORDS
 from drivelint.drive.declared import MODES
-from drivelint.drive.trace import FORMATS
+from drivelint.formats.registry import FORMATS
 from drivelint.phrases import hint
 
 ADVICE: Final = {

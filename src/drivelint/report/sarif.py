@@ -91,7 +91,7 @@ class _Run:
         drive, rule_index = self._drives[row["drive_id"]], self._rule_index[row["rule_id"]]
         rule, gate = self._rules[rule_index], self._result.gate
         start_ns = drive["t_start_ns"]
-        measured = "" if "required" in row["reason"] else comparison(row)
+        measured = "" if row["reason_measures"] else comparison(row)
         profile = "" if row["profile"] is None else f", profile {row['profile']}"
         said = [
             f"{rule['title']}: {row['reason']}",

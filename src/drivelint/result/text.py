@@ -46,7 +46,7 @@ def comparison(row: Row) -> str:
 
 def line(row: Row, start_ns: int | None) -> str:
     """Return a verdict or finding in one line: when, who, what was measured (once, if the reason tells it too), why."""
-    measured = "" if "required" in row["reason"] else comparison(row)
+    measured = "" if row["reason_measures"] else comparison(row)
     parts = [f"{seconds(row['t_worst_ns'], start_ns)}: {subject(row)}", measured, row["reason"]]
     return "; ".join(part for part in parts if part)
 

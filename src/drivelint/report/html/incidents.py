@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     Row = Mapping[str, Any]
     Key = tuple[str, str, int]
 
-_OURS: Final = " is required: "
-"""What every sentence holds that the evaluation made of numbers; others are the rule's own."""
 _SENSE: Final = {">": "more than", ">=": "at least", "<": "less than", "<=": "at most"}
 _SPACES: Final = "danger_space"
 """Tag of the rules whose plan views show danger spaces."""
@@ -147,7 +145,7 @@ def _told(row: Row, rule: Row, required: str) -> str:
     """Return in a sentence what was measured, what had to be, and what the rule itself says of it."""
     what = f"{rule['observes']} " if rule["observes"] else ""
     said = f"{what}{tied(number(row['observed'], row['unit']))}, must be {required}"
-    return said if _OURS in row["reason"] else f"{said} ({row['reason']})"
+    return said if row["reason_measures"] else f"{said} ({row['reason']})"
 
 
 def key(row: Row) -> Key:

@@ -1,0 +1,43 @@
+"""MCAP, a file or a folder of rosbag2: ASAM OSI ground truth, ROS 2 messages or Foxglove scenes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from drivelint.errors import TraceError
+from drivelint.formats.files import is_canonical_folder
+
+if TYPE_CHECKING:
+    from drivelint.drive.trace import Recording
+    from drivelint.formats.probe import Probe
+
+formats: Final[dict[str, tuple[str, str]]] = {
+    "osi-mcap": ("ASAM OSI in MCAP", "the log's host vehicle"),
+    "ros2-mcap": ("ROS 2 in MCAP", "the odometry's vehicle"),
+    "foxglove-mcap": ("Foxglove scene in MCAP", "said with --ego"),
+}
+takes_mapping: Final = False
+
+
+def accepts(probe: Probe) -> bool:
+    """Accept by the container's magic bytes, or the folder's description."""
+    return probe.head.startswith(b"\x89MCAP") or (probe.path.is_dir() and not is_canonical_folder(probe.path))
+
+
+def read(probe: Probe) -> Recording:
+    """Read what the log holds, OSI before the others."""
+    from drivelint.formats.mcap import bag
+    from drivelint.formats.osi import reader as osi
+
+    family = bag.family(probe.path)
+    if family == "ros2":
+        from drivelint.formats.ros2 import reader as ros
+
+        return ros.read(probe.path, probe.options)
+    if family == "foxglove":
+        from drivelint.formats.foxglove import scene as foxglove_scene
+
+        return foxglove_scene.read(probe.path, probe.options.topic)
+    if probe.path.is_dir():
+        raise TraceError(f"{probe.path}: a bag without ROS 2 or Foxglove messages that are read: give one of its files")
+    return osi.read(probe.path, probe.options.topic)
