@@ -67,6 +67,42 @@ def test_an_unknown_topic_is_told_with_the_nearest(docs: Docs) -> None:
     assert docs("maps", "--html", "x")[0] == 2
 
 
+def test_docs_prints_the_dictionary(docs: Docs) -> None:
+    code, out, err = docs("dictionary")
+    assert (code, err) == (0, "")
+    blocks = {block.partition("\n")[0]: block for block in out.split("\n\n")}
+    for table, columns in schema().items():
+        rows = [line.split(maxsplit=1) for line in blocks[table].splitlines() if line.startswith("  ")]
+        assert [name for name, _ in rows] == list(columns), table
+        assert all(said.endswith(columns[name]) for name, said in rows), table
+    assert not re.search(r"\\[_*`]|\]\(#", out), "plain text"
+
+
+def test_docs_prints_one_table(docs: Docs) -> None:
+    code, out, err = docs("dictionary", "lead")
+    assert (code, err) == (0, "")
+    assert out.startswith("lead\nThe nearest vehicle ahead of the ego in the running lane.")
+    assert "to know that nobody is within N m, use vehicle_ahead.free_m" in out
+    assert "\n\n" not in out.strip()
+
+
+def test_an_unknown_table_is_told_with_the_nearest(docs: Docs) -> None:
+    for words, said in (
+        (("dictionary", "vehicle_ahed"), "did you mean 'vehicle_ahead'?"),
+        (("dictionary", "xyz"), "drivelint docs dictionary prints all"),
+        (("maps", "lead"), "drivelint docs dictionary lead"),
+        (("dictionry",), "did you mean 'dictionary'?"),
+    ):
+        code, out, err = docs(*words)
+        assert (code, out) == (2, "")
+        assert said in err
+        assert len(err.splitlines()) == 1
+
+
+def test_docs_prints_the_catalogue(docs: Docs) -> None:
+    assert docs("catalogue") == (0, (ROOT / "queries" / "README.md").read_text(encoding="utf-8"), "")
+
+
 def test_the_guide_of_columns_has_every_column_of_every_file() -> None:
     text = guide.text("columns")
     for stem, table in {**FILES, "margins": "margin"}.items():
