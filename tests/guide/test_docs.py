@@ -11,6 +11,9 @@ from pathlib import Path
 import pytest
 
 from drivelint import cli, guide
+from drivelint.catalogue.header import Conditions, Header
+from drivelint.drive.conditions import WORDS
+from drivelint.reasons.signals import SIGNALS
 from drivelint.result.contract import FILES
 from drivelint.sql.store import schema
 from tests.guide.blocks import PAGES
@@ -127,3 +130,35 @@ def test_the_architecture_names_the_layers_of_the_linter() -> None:
     table = (guide.FOLDER / "architecture.md").read_text(encoding="utf-8").partition("<!-- layers -->")[2]
     rows = re.findall(r"^\| ((?:`\w+`(?:, )?)+) \|", table.partition("\n## ")[0], re.MULTILINE)
     assert [set(re.findall(r"\w+", row)) for row in rows] == layers
+
+
+def test_the_reference_of_rules_has_every_key_condition_and_signal() -> None:
+    text = (guide.FOLDER / "rule-reference.md").read_text(encoding="utf-8")
+    sections = {part.partition("\n")[0]: part for part in text.split("\n## ")[1:]}
+
+    def first_cells(heading: str) -> list[str]:
+        rows = re.findall(r"^\| (`.*?) \|", sections[heading], re.MULTILINE)
+        return [name for cell in rows for name in re.findall(r"`\[?(\w+)[^`]*`", cell)]
+
+    assert first_cells("All keys of the header") == list(Header.__struct_fields__)
+    assert first_cells("The conditions under which it holds") == list(Conditions.__struct_fields__)
+    assert sorted(first_cells("The signals of requires")) == sorted(SIGNALS)
+    for name, words in WORDS.items():
+        row = re.search(rf"^\| `{name}` \| (.*) \|$", sections["The conditions under which it holds"], re.MULTILINE)
+        assert row
+        named = set(re.findall(r"`([\w-]+)`", row[1]))
+        assert named <= set(words), name
+        assert named >= {word for word in words if not word.startswith("town") or word == "town"}, name
+
+
+def test_the_reference_of_rules_names_tables_that_are_there() -> None:
+    text = (guide.FOLDER / "rule-reference.md").read_text(encoding="utf-8")
+    section = text.partition("\n## Which table is for what\n")[2].partition("\n## ")[0]
+    named = {
+        name
+        for row in re.findall(r"^\| [^|]+ \| (.*) \|$", section, re.MULTILINE)
+        for name in re.findall(r"`(\w+)`", row)
+    }
+    assert named <= schema().keys()
+    assert {"ego_state", "ego_condition", "lead", "vehicle_ahead", "following", "in_way", "pair"} <= named
+    assert "free_m" in schema()["vehicle_ahead"]

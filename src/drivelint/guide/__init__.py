@@ -22,6 +22,8 @@ TOPICS: Final = (
     "ci",
     "fleets",
     "writing-a-rule",
+    "rule-durations",
+    "rule-reference",
     "adding-a-format",
     "architecture",
 )
