@@ -476,7 +476,7 @@ CREATE TABLE lead (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
-    object_id VARCHAR,                -- nearest vehicle ahead in the running lane, not one that moves across it by its own way through a junction, nor one of the next lane that reaches over the line beside the ego's way and does not come nearer to it, nor one beside the ego's box; NULL: nobody there; no row: cannot be told
+    object_id VARCHAR,                -- nearest vehicle ahead in the running lane, not one that moves across it by its own way through a junction, nor one of the next lane that reaches over the line beside the ego's way and does not come nearer to it, nor one beside the ego's box; NULL: nobody there; no row: cannot be told; to know that nobody is within N m, use vehicle_ahead.free_m
     actor_class VARCHAR,              -- see road_user
     gap_m DOUBLE,                     -- bumper to bumper along the corridor; negative: the two boxes overlap
     speed_mps DOUBLE,                 -- its speed along the lane, whichever way

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -80,6 +81,13 @@ def refused(ran: Ran) -> Refused:
 def checked(tmp_path_factory: pytest.TempPathFactory) -> tuple[subprocess.CompletedProcess[str], Path]:
     out = tmp_path_factory.mktemp("overtakes")
     return drivelint("check", *TRACES, *ON_ROAD, *SDA, *PROFILES, "--out", str(out)), out
+
+
+def test_the_last_command_of_the_help_stands_apart_from_what_to_begin_with() -> None:
+    lines = drivelint("--help").stdout.splitlines()
+    begin = next(n for n, line in enumerate(lines) if line.strip().startswith("To begin:"))
+    assert lines[begin - 1] == ""
+    assert lines[begin - 2].split()[0] == "rules"
 
 
 def test_help_loads_nothing_heavy() -> None:
@@ -322,6 +330,9 @@ def test_rules_show_tells_where_a_rule_is_from(ran: Ran) -> None:
     _, text, _ = ran("rules", "show", "ukhc.r162.safe-distance-ahead")
     for part in ("R162", "@reference", "@condition", "critical"):
         assert part in text
+    _, text, _ = ran("rules", "show", "stvo.rg4")
+    for part in (r"applies +road_type motorway", r"exempt after +10 s \(settle_s\)", r"merge gap +5 s", r"law +de"):
+        assert re.search(rf"^{part}$", text, re.MULTILINE), part
 
 
 CASES = """

@@ -121,6 +121,9 @@ def test_a_threshold_that_no_case_is_close_to_is_a_survivor(tmp_path: Path) -> N
     assert "no case notices: params.limit * 0.9" in mutation.said(proof)
     assert mutation.summary([proof]) == "1 stable rules: 2 of 4 mutants noticed (50.0%)"
     assert mutation.rate([proof]) < mutation.LEAST
+    assert mutation.summary([proof._replace(stable=False)]) == (
+        "no stable rule here: only the mutants of stable rules must be noticed"
+    )
 
 
 def test_a_listed_survivor_may_live_and_no_other(tmp_path: Path) -> None:

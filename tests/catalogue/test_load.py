@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from drivelint.catalogue import json_schema, load, read_rule
+from drivelint.catalogue.header import line_of
 from drivelint.drive import conditions
 from drivelint.errors import RuleError
 from drivelint.resources import folder
@@ -165,6 +166,40 @@ def test_what_is_refused(
         read_rule(file)
     assert str(caught.value).startswith(str(file))
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("tables", "line"),
+    [
+        ("[applies]\nroad_type = ['foo']", 2),
+        ("[applies]\nroad_type = [\n    'foo',\n]", 2),
+        ("[applies]\nroad_type = [3]", 2),
+        ("[applies]\n'road_type' = ['foo']", 2),
+        ("[applies]\nlimit_min_mps = -1", 2),
+        ("[applies]\nroad_typ = ['town']", 2),
+        ("applies.road_type = ['foo']", 1),
+        ("applies = {road_type = ['foo']}", 1),
+        ("applies = {road_typ = ['foo']}", 1),
+        (PARAM.replace("limit", "road_type") + "\n[applies]\nroad_type = ['foo']", 6),
+        (PARAM + "\nunits = 'm'", 5),
+    ],
+)
+def test_an_error_in_a_table_of_the_header_names_the_line_of_the_key(tmp_path: Path, tables: str, line: int) -> None:
+    with pytest.raises(RuleError, match=rf"rule\.sql:{len(HEADER | GOOD) + line}: "):
+        write(tmp_path, GOOD, {"condition": SPEED}, tables=tables)
+
+
+def test_the_line_of_a_key() -> None:
+    header = "title = 'reads = 1'\nreads = [\n    'pair',\n]\n[params.reads]  # a number\ndefault = 1\n[applies]\n"
+    keys = {
+        "reads": 2,
+        "params.reads": 5,
+        "params.reads.default": 6,
+        "params.*.default": 6,
+        "applies.light": 7,
+        "law": 1,
+    }
+    assert {key: line_of(header, key) for key in keys} == keys
 
 
 @pytest.mark.parametrize(

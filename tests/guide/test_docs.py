@@ -11,6 +11,9 @@ from pathlib import Path
 import pytest
 
 from drivelint import cli, guide
+from drivelint.catalogue.header import Conditions, Header
+from drivelint.drive.conditions import WORDS
+from drivelint.reasons.signals import SIGNALS
 from drivelint.result.contract import FILES
 from drivelint.sql.store import schema
 from tests.guide.blocks import PAGES
@@ -67,6 +70,42 @@ def test_an_unknown_topic_is_told_with_the_nearest(docs: Docs) -> None:
     assert docs("maps", "--html", "x")[0] == 2
 
 
+def test_docs_prints_the_dictionary(docs: Docs) -> None:
+    code, out, err = docs("dictionary")
+    assert (code, err) == (0, "")
+    blocks = {block.partition("\n")[0]: block for block in out.split("\n\n")}
+    for table, columns in schema().items():
+        rows = [line.split(maxsplit=1) for line in blocks[table].splitlines() if line.startswith("  ")]
+        assert [name for name, _ in rows] == list(columns), table
+        assert all(said.endswith(columns[name]) for name, said in rows), table
+    assert not re.search(r"\\[_*`]|\]\(#", out), "plain text"
+
+
+def test_docs_prints_one_table(docs: Docs) -> None:
+    code, out, err = docs("dictionary", "lead")
+    assert (code, err) == (0, "")
+    assert out.startswith("lead\nThe nearest vehicle ahead of the ego in the running lane.")
+    assert "to know that nobody is within N m, use vehicle_ahead.free_m" in out
+    assert "\n\n" not in out.strip()
+
+
+def test_an_unknown_table_is_told_with_the_nearest(docs: Docs) -> None:
+    for words, said in (
+        (("dictionary", "vehicle_ahed"), "did you mean 'vehicle_ahead'?"),
+        (("dictionary", "xyz"), "drivelint docs dictionary prints all"),
+        (("maps", "lead"), "drivelint docs dictionary lead"),
+        (("dictionry",), "did you mean 'dictionary'?"),
+    ):
+        code, out, err = docs(*words)
+        assert (code, out) == (2, "")
+        assert said in err
+        assert len(err.splitlines()) == 1
+
+
+def test_docs_prints_the_catalogue(docs: Docs) -> None:
+    assert docs("catalogue") == (0, (ROOT / "queries" / "README.md").read_text(encoding="utf-8"), "")
+
+
 def test_the_guide_of_columns_has_every_column_of_every_file() -> None:
     text = guide.text("columns")
     for stem, table in {**FILES, "margins": "margin"}.items():
@@ -91,3 +130,35 @@ def test_the_architecture_names_the_layers_of_the_linter() -> None:
     table = (guide.FOLDER / "architecture.md").read_text(encoding="utf-8").partition("<!-- layers -->")[2]
     rows = re.findall(r"^\| ((?:`\w+`(?:, )?)+) \|", table.partition("\n## ")[0], re.MULTILINE)
     assert [set(re.findall(r"\w+", row)) for row in rows] == layers
+
+
+def test_the_reference_of_rules_has_every_key_condition_and_signal() -> None:
+    text = (guide.FOLDER / "rule-reference.md").read_text(encoding="utf-8")
+    sections = {part.partition("\n")[0]: part for part in text.split("\n## ")[1:]}
+
+    def first_cells(heading: str) -> list[str]:
+        rows = re.findall(r"^\| (`.*?) \|", sections[heading], re.MULTILINE)
+        return [name for cell in rows for name in re.findall(r"`\[?(\w+)[^`]*`", cell)]
+
+    assert first_cells("All keys of the header") == list(Header.__struct_fields__)
+    assert first_cells("The conditions under which it holds") == list(Conditions.__struct_fields__)
+    assert sorted(first_cells("The signals of requires")) == sorted(SIGNALS)
+    for name, words in WORDS.items():
+        row = re.search(rf"^\| `{name}` \| (.*) \|$", sections["The conditions under which it holds"], re.MULTILINE)
+        assert row
+        named = set(re.findall(r"`([\w-]+)`", row[1]))
+        assert named <= set(words), name
+        assert named >= {word for word in words if not word.startswith("town") or word == "town"}, name
+
+
+def test_the_reference_of_rules_names_tables_that_are_there() -> None:
+    text = (guide.FOLDER / "rule-reference.md").read_text(encoding="utf-8")
+    section = text.partition("\n## Which table is for what\n")[2].partition("\n## ")[0]
+    named = {
+        name
+        for row in re.findall(r"^\| [^|]+ \| (.*) \|$", section, re.MULTILINE)
+        for name in re.findall(r"`(\w+)`", row)
+    }
+    assert named <= schema().keys()
+    assert {"ego_state", "ego_condition", "lead", "vehicle_ahead", "following", "in_way", "pair"} <= named
+    assert "free_m" in schema()["vehicle_ahead"]

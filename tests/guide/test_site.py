@@ -149,7 +149,9 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:
 @pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 @pytest.mark.parametrize("width", [390, 1280])
 def test_pages_fit_the_screen(pages: Path, tmp_path: Path, width: int) -> None:
-    for n, name in enumerate(("index", "ci", "writing-a-rule", "dictionary", "catalogue", "commands", "viewer")):
+    for n, name in enumerate(
+        ("index", "ci", "writing-a-rule", "rule-reference", "dictionary", "catalogue", "commands", "viewer")
+    ):
         with Page(tmp_path / str(n), (pages / f"{name}.html").as_uri(), width) as page:
             page.call("Emulation.setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=1, mobile=True)
             assert page.value("document.documentElement.scrollWidth") <= width, name

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import io
+import re
 
+import msgspec
 import pytest
-from rich.console import Console
+from rich.console import Console, RenderableType
 
 from drivelint.catalogue import load
+from drivelint.catalogue.header import Conditions
 from drivelint.report import rules_text, terminal
 from drivelint.result.model import Result
 from tests.report.synthetic import drive, finding, result, rule, verdict
@@ -112,3 +115,41 @@ def test_eighty_columns_tear_no_id_and_no_number_apart() -> None:
     listed = console.file.getvalue()  # type: ignore[attr-defined]
     assert all(rule.id in listed for rule in rules)
     assert all(word in listed.split() for rule in rules for word in rule.title.split())
+
+
+def test_the_page_of_a_rule_has_every_key_that_its_header_sets() -> None:
+    """The keys that most rules do not set stand there only where they are set."""
+    rules = load()
+    shown = {
+        rule.id: {row.split("  ")[0] for row in printed(rules_text.page(rule)).splitlines()} for rule in rules.values()
+    }
+    for words, is_set in (
+        ("law", lambda rule: rule.law),
+        ("window", lambda rule: rule.window_s is not None),
+        ("quantifier", lambda rule: rule.subtype),
+        ("combine", lambda rule: rule.combine != "each"),
+        ("applies", lambda rule: rule.applies.words or rule.applies.limited),
+        ("exempt after", lambda rule: rule.exempt_after_s),
+        ("merge gap", lambda rule: rule.merge_gap_s != 1),
+        ("observes", lambda rule: rule.observes),
+        ("near margin", lambda rule: rule.near_margin is not None),
+        ("tags", lambda rule: rule.tags),
+        ("pass requires", lambda rule: rule.pass_requires),
+        ("without time", lambda rule: rule.without_time),
+        ("without anchor", lambda rule: rule.without_anchor),
+    ):
+        there = {rule.id for rule in rules.values() if is_set(rule)}
+        assert {rule_id for rule_id, keys in shown.items() if words in keys} == there, words
+
+
+def test_the_page_of_a_rule_names_the_parameter_that_holds_a_time() -> None:
+    rule = load()["ukhc.r103.signal-off"]
+    assert re.search(r"^window +5 s \(off_s\) *$", printed(rules_text.page(rule)), re.MULTILINE)
+    limited = msgspec.structs.replace(rule, applies=Conditions(road_type=("rural", "town"), limit_max_mps=13.4))
+    assert "road_type rural or town, limit_max_mps 13.4" in printed(rules_text.page(limited))
+
+
+def printed(part: RenderableType) -> str:
+    console = Console(file=io.StringIO(), width=200)
+    console.print(part)
+    return console.file.getvalue()  # type: ignore[attr-defined, no-any-return]

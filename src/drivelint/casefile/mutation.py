@@ -107,6 +107,8 @@ def said(proof: Proof) -> str:
 def summary(proofs: Sequence[Proof]) -> str:
     """Return the figures of all proofs in one line."""
     stable = [proof for proof in proofs if proof.stable]
+    if not stable:
+        return "no stable rule here: only the mutants of stable rules must be noticed"
     n, noticed = sum(proof.n for proof in stable), sum(proof.noticed for proof in stable)
     return f"{len(stable)} stable rules: {noticed} of {n} mutants noticed ({rate(proofs):.1%})"
 

@@ -19,6 +19,8 @@ Seconds = float | str
 """Seconds, or the name of the rule's parameter that holds them."""
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
+_TABLE = re.compile(r"\s*\[([^\[\]=,]+)\]\s*(?:#.*)?$")
+_KEY = re.compile(r"\s*([\w.\"' \t-]+?)\s*=")
 
 
 class Param(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -129,20 +131,37 @@ def _explained(error: msgspec.ValidationError, text: str, where: str) -> RuleErr
     place = re.search(r"at `\$\.?([^`]*)`", message)
     path = place[1] if place else ""
     unknown = re.search(r"unknown field `([^`]+)`", message)
-    key = unknown[1] if unknown else path.replace("[...]", "").split(".")[-1]
+    keys = re.sub(r"\[[^\]]*\]", ".*", path)
     if not unknown:
-        missing = "missing required field" in message
-        line = 1 if missing and not path else line_of(text, key)
-        return RuleError(f"{where}:{line}: header: {message}")
+        return RuleError(f"{where}:{line_of(text, keys)}: header: {message}")
+    key = unknown[1]
     known = Param if path.startswith("params") else Conditions if path.startswith("applies") else Header
     nearest = hint(key, known.__struct_fields__)
-    return RuleError(f"{where}:{line_of(text, key)}: unknown key {key!r} in the header; {nearest}")
+    line = line_of(text, f"{keys}.{key}" if keys else key)
+    return RuleError(f"{where}:{line}: unknown key {key!r} in the header; {nearest}")
 
 
 def line_of(text: str, key: str) -> int:
-    """Return the line of the header on which a key, or the table of a parameter, stands; 1 where it does not."""
-    pattern = re.compile(rf"^\s*\[?(?:[\w.]+\.)?{re.escape(key)}\b\s*[=\].]")
-    return next((n for n, line in enumerate(text.splitlines(), 1) if pattern.match(line)), 1)
+    """Return the line of the header that sets a key, such as `reads` or `params.near_m.unit`; `*` in it is any name.
+
+    Where no line sets it: that of the table or key that it would be in, else 1.
+    """
+    wanted = key.split(".")
+    table: list[str] = []
+    best, depth = 1, 0
+    for n, line in enumerate(text.splitlines(), 1):
+        head, said = _TABLE.match(line), _KEY.match(line)
+        if head:
+            table = _parts(head[1])
+        path = table if head else [*table, *_parts(said[1])] if said else []
+        fits = len(path) <= len(wanted) and all(want in {"*", part} for want, part in zip(wanted, path, strict=False))
+        if fits and len(path) > depth:
+            best, depth = n, len(path)
+    return best
+
+
+def _parts(name: str) -> list[str]:
+    return [part.strip(" \t'\"") for part in name.split(".")]
 
 
 def _contradiction(h: Header) -> tuple[str, str] | None:
@@ -192,23 +211,31 @@ def _contradiction(h: Header) -> tuple[str, str] | None:
         (not h.reads, "reads", "reads must name the tables that the rule reads"),
     ]
     checks += [
-        (not _NAME.fullmatch(name), name, f"parameter {name!r}: use lower-case letters, digits and _, a letter first")
+        (
+            not _NAME.fullmatch(name),
+            f"params.{name}",
+            f"parameter {name!r}: use lower-case letters, digits and _, a letter first",
+        )
         for name in h.params
     ]
     for key in ("requires", "pass_requires"):
         checks += [(True, key, f"{key}: {wrong}") for word in getattr(h, key) if (wrong := signals.problem(word))]
     checks += [(True, "law", f"law: {wrong}") for word in h.law if (wrong := conditions.problem("nation", word))]
     for name, words in h.applies.words.items():
-        checks += [(True, name, f"[applies] {wrong}") for word in words if (wrong := conditions.problem(name, word))]
+        checks += [
+            (True, f"applies.{name}", f"[applies] {wrong}")
+            for word in words
+            if (wrong := conditions.problem(name, word))
+        ]
     least, most = h.applies.limit_min_mps, h.applies.limit_max_mps
     checks += [
-        (value is not None and not 0 <= value < inf, key, f"{key} must be a speed in m/s, not {value}")
+        (value is not None and not 0 <= value < inf, f"applies.{key}", f"{key} must be a speed in m/s, not {value}")
         for key, value in (("limit_min_mps", least), ("limit_max_mps", most))
     ]
     checks.append(
         (
             least is not None and most is not None and least > most,
-            "limit_min_mps",
+            "applies.limit_min_mps",
             "limit_min_mps is above limit_max_mps: the rule would apply nowhere",
         )
     )

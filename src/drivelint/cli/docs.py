@@ -1,4 +1,4 @@
-"""`drivelint docs`: the guides, printed or as a site."""
+"""`drivelint docs`: the guides and the reference, printed or as a site."""
 
 from __future__ import annotations
 
@@ -18,7 +18,13 @@ if TYPE_CHECKING:
 def docs(
     ctx: typer.Context,
     topic: Annotated[
-        str | None, typer.Argument(metavar="[TOPIC]", help="The guide to print; default: list them.")
+        str | None,
+        typer.Argument(
+            metavar="[TOPIC]", help="The guide to print, dictionary or catalogue; default: list the guides."
+        ),
+    ] = None,
+    table: Annotated[
+        str | None, typer.Argument(metavar="[TABLE]", help="With dictionary: the table to print; default: all.")
     ] = None,
     *,
     html: Annotated[
@@ -31,6 +37,9 @@ def docs(
     """Print a guide, or write all of them as a site.
 
     Without TOPIC: lists the guides. With TOPIC: prints that guide as Markdown.
+
+    docs dictionary [TABLE] prints the tables that rules read, with the meaning of each column. docs catalogue prints the
+    shipped rules as Markdown.
 
     With --html: writes one offline site with the guides, the rule catalogue, the data dictionary and the command line, and
     prints the name of its first page.
@@ -45,9 +54,13 @@ def docs(
         typer.echo(str(site.write(html, _commands(ctx.find_root().command, "drivelint"))))
     elif topic is None:
         typer.echo(guide.listing())
-        typer.echo("drivelint docs TOPIC prints one; drivelint docs --html DIR writes all as a site", err=True)
+        typer.echo(
+            "drivelint docs TOPIC prints one; drivelint docs dictionary [TABLE] the tables; drivelint docs catalogue the rules; "
+            "drivelint docs --html DIR writes all as a site",
+            err=True,
+        )
     else:
-        typer.echo(guide.text(topic), nl=False)
+        typer.echo(guide.text(topic, table), nl=False)
 
 
 def _commands(command: Any, name: str) -> Iterator[Command]:

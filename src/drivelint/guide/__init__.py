@@ -22,11 +22,15 @@ TOPICS: Final = (
     "ci",
     "fleets",
     "writing-a-rule",
+    "rule-durations",
+    "rule-reference",
     "adding-a-format",
     "architecture",
 )
 """The topics in reading order; each is the stem of a file."""
 FOLDER: Final = Path(__file__).parent
+REFERENCE: Final = ("dictionary", "catalogue")
+"""What `drivelint docs` prints beside the guides: the tables and the rules."""
 OUTPUT_TABLES: Final = "<!-- tables: output -->"
 """The line of a guide that stands for the columns of every output file."""
 _MARK = re.compile(r"^<!-- .* -->\n", re.MULTILINE)
@@ -46,10 +50,19 @@ def topics() -> tuple[Topic, ...]:
     return tuple(_topic(name) for name in TOPICS)
 
 
-def text(name: str) -> str:
-    """Return a guide as Markdown, the columns of the output files filled in. Errors: `UsageError` with the nearest topic."""
-    if name not in TOPICS:
-        raise UsageError(f"no guide {name!r}: {hint(name, TOPICS)}")
+def text(name: str, table: str | None = None) -> str:
+    """Return a guide as Markdown, the columns of the output files filled in; or the reference: `table` is of the dictionary.
+
+    Errors: `UsageError` with the nearest topic or table.
+    """
+    if name not in TOPICS + REFERENCE:
+        raise UsageError(f"no guide {name!r}: {hint(name, TOPICS + REFERENCE)}")
+    if table is not None and name != "dictionary":
+        raise UsageError(f"docs {name} {table}: only the dictionary has tables: drivelint docs dictionary {table}")
+    if name in REFERENCE:
+        from drivelint.guide import reference
+
+        return reference.tables(table) if name == "dictionary" else reference.rules()
     source = _source(name)
     if OUTPUT_TABLES in source:
         from drivelint.guide.dictionary import output_tables

@@ -13,16 +13,15 @@ from drivelint.sql.derivations import derivations
 from drivelint.sql.store import lifetimes, schema
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
-INTRODUCTION: Final = """# The data dictionary
-
-Every table that drivelint fills, with the meaning of each column; rules read these tables.
+_SAYS: Final = """Every table that drivelint fills, with the meaning of each column; rules read these tables.
 
 Distances are metres, speeds metres per second, angles radians, and times integer nanoseconds of the log's own clock. NULL
 means that the value is not known, unless the column says otherwise. `drivelint check --keep-db` keeps these tables in
 `drivelint.duckdb`.
 """
+INTRODUCTION: Final = f"# The data dictionary\n\n{_SAYS}"
 DERIVATIONS: Final = """## How the tables are derived
 
 Each derived table is filled by one SELECT, `queries/derive/<table>.sql`. A table of a level reads recorded tables and tables
@@ -57,6 +56,23 @@ def page() -> str:
     return "\n".join(parts)
 
 
+def text() -> str:
+    """Return the data dictionary as plain text: a block per table, a line per column."""
+    groups = (
+        f"{heading.upper()}\n\n" + "\n".join(map(section_text, schema(file))) for file, heading in _GROUPS.items()
+    )
+    return "\n".join([_SAYS, *groups])
+
+
+def section_text(name: str) -> str:
+    """Return one table as plain text: its name, what is said of it, and a line per column with its type and meaning."""
+    columns = [(column, _types()[name, column], comment) for column, comment in schema()[name].items()]
+    wide, wider = (max(len(row[i]) for row in columns) for i in (0, 1))
+    said = [line for line in (_about(name), " ".join(_facts(name, reads(), ", ".join))) if line]
+    rows = [f"  {column:<{wide}}  {kind:<{wider}}  {comment}" for column, kind, comment in columns]
+    return "\n".join([name, *said, *rows]) + "\n"
+
+
 def output_tables() -> str:
     """Return a section per result file with the columns of its table."""
     files = {**FILES, "margins": "margin"}
@@ -89,15 +105,22 @@ def _levels(read: Mapping[str, tuple[str, ...]]) -> str:
 
 
 def _section(name: str, read: Mapping[str, tuple[str, ...]]) -> str:
+    about = f"{escaped(_about(name))}\n\n" if _about(name) else ""
+    return f"### {name}\n\n{about}{' '.join(_facts(name, read, _links, '`'))}\n\n{_columns(name)}"
+
+
+def _facts(
+    name: str, read: Mapping[str, tuple[str, ...]], listed: Callable[[Iterable[str]], str], quote: str = ""
+) -> list[str]:
+    """Return the sentences about a table: how long it is kept, its file, what it reads and what reads it."""
     said = [f"Kept {_LIVES[lifetimes()[name]]}."]
     if files := [stem for stem, of in FILES.items() if of == name]:
-        said.append(f"Written to `{files[0]}.parquet`.")
+        said.append(f"Written to {quote}{files[0]}.parquet{quote}.")
     if name in read:
-        said.append(f"Reads {_links(read[name])}." if read[name] else "Reads no table.")
+        said.append(f"Reads {listed(read[name])}." if read[name] else "Reads no table.")
     if readers := [each for each, tables in read.items() if name in tables]:
-        said.append(f"Read by {_links(sorted(readers))}.")
-    about = f"{_about(name)}\n\n" if _about(name) else ""
-    return f"### {name}\n\n{about}{' '.join(said)}\n\n{_columns(name)}"
+        said.append(f"Read by {listed(sorted(readers))}.")
+    return said
 
 
 def _about(name: str) -> str:
@@ -106,7 +129,7 @@ def _about(name: str) -> str:
         return ""
     head = re.match(r"(?:--.*\n)*", derivations()[name].sql)
     lines = head[0].splitlines() if head else []
-    return escaped(" ".join(line.removeprefix("--").strip() for line in lines))
+    return " ".join(line.removeprefix("--").strip() for line in lines)
 
 
 def _columns(name: str) -> str:

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from drivelint import __version__, catalogue, guide
+from drivelint import __version__, guide
 from drivelint.errors import UsageError
 from drivelint.guide import commands as command_page
-from drivelint.guide import dictionary, html
+from drivelint.guide import dictionary, html, reference
 from drivelint.guide.markdown import table
-from drivelint.report import catalogue_page
-from drivelint.resources import folder as shipped
 from drivelint.result.files import publish
 
 if TYPE_CHECKING:
@@ -43,8 +41,7 @@ def write(folder: Path, commands: Iterable[Command]) -> Path:
 def contents(commands: Iterable[Command]) -> dict[str, bytes]:
     """Return every file of the site, name -> bytes: the same for the same version."""
     pages = {topic.name: guide.text(topic.name) for topic in guide.topics()}
-    packs = shipped("queries") / "assertions"
-    pages["catalogue"] = catalogue_page.page(catalogue.load(()).values(), packs)
+    pages["catalogue"] = reference.rules()
     pages["dictionary"] = dictionary.page()
     pages["commands"] = command_page.page(commands)
     pages["index"] = _index()
@@ -63,10 +60,10 @@ def contents(commands: Iterable[Command]) -> dict[str, bytes]:
 
 def _index() -> str:
     guides = [(f"[{topic.title}]({topic.name}.md)", topic.sentence) for topic in guide.topics()]
-    reference = [(f"[{title}]({name}.md)", has) for name, (title, has) in REFERENCE.items()]
+    others = [(f"[{title}]({name}.md)", has) for name, (title, has) in REFERENCE.items()]
     return (
         "# drivelint\n\ndrivelint checks recorded drives against the rules of the road. Give it a log and a map; it says *pass*, *fail* or "
         "*unknown* for every rule, with the evidence.\n\n"
         f"## Guides\n\n{table(('guide', 'what it is for'), guides)}\n"
-        f"## Reference\n\n{table(('page', 'what it has'), reference)}"
+        f"## Reference\n\n{table(('page', 'what it has'), others)}"
     )

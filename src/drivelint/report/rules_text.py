@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from rich import box
 from rich.console import Group
@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from drivelint.catalogue import Rule
+    from drivelint.catalogue.header import Conditions
+
+_MERGE_GAP_S: Final = 1.0
+"""What the header has where it does not say it."""
 
 
 def listing_json(rules: Iterable[Rule]) -> str:
@@ -52,7 +56,7 @@ def listing(rules: Iterable[Rule], width: int = 120) -> Table:
 
 
 def page(rule: Rule) -> Group:
-    """Return everything about one rule: what it asks, where that is from, its parameters."""
+    """Return everything about one rule: what it asks, where that is from, what its header sets, its parameters."""
     facts = Table(box=None, show_header=False, pad_edge=False)
     facts.add_column(style="bold", no_wrap=True)
     facts.add_column(overflow="fold")
@@ -60,12 +64,24 @@ def page(rule: Rule) -> Group:
     sense = "must hold" if rule.sense == "holds" else f"observed {rule.sense} required, in {rule.unit}"
     for name, value in (
         ("clause", f"{rule.clause} ({rule.legal}, {rule.derivation})"),
+        ("law", ", ".join(rule.law)),
         ("question", rule.hypothesis),
         ("kind", f"{rule.kind}, {rule.subtype}" if rule.subtype else rule.kind),
-        ("window", "" if rule.window_s is None else f"{rule.window_s} s"),
+        ("window", "" if rule.window_s is None else _seconds(rule, "window_s")),
+        ("quantifier", rule.quantifier if rule.subtype else ""),
+        ("combine", "" if rule.combine == "each" else f"{rule.combine}: one verdict for all objects"),
+        ("applies", _restrictions(rule.applies)),
+        ("exempt after", _seconds(rule, "exempt_after_s") if rule.exempt_after_s else ""),
+        ("merge gap", "" if rule.merge_gap_s == _MERGE_GAP_S else _seconds(rule, "merge_gap_s")),
+        ("observes", rule.observes or ""),
         ("sense", sense),
+        ("near margin", "" if rule.near_margin is None else f"{rule.near_margin:g} {rule.unit}"),
         ("severity", f"{rule.severity}, {rule.status}"),
+        ("tags", ", ".join(rule.tags)),
         ("requires", requires),
+        ("pass requires", ", ".join(rule.pass_requires)),
+        ("without time", rule.without_time or ""),
+        ("without anchor", rule.without_anchor or ""),
         ("reads", ", ".join(rule.reads)),
         ("version", rule.version),
     ):
@@ -80,6 +96,19 @@ def page(rule: Rule) -> Group:
 def source(rule: Rule) -> Text:
     """Return the rule's file and its SQL, to be printed as it stands: both are there to be copied."""
     return Text("\n".join([str(rule.path), *(f"\n-- @{name}\n{sql}" for name, sql in rule.sections.items())]))
+
+
+def _restrictions(conditions: Conditions) -> str:
+    """Return the conditions under which a rule holds, such as `road_type rural or town, limit_min_mps 13.4`; '' for none."""
+    said = [f"{name} {' or '.join(words)}" for name, words in conditions.words.items()]
+    limits = {"limit_min_mps": conditions.limit_min_mps, "limit_max_mps": conditions.limit_max_mps}
+    return ", ".join([*said, *(f"{name} {value:g}" for name, value in limits.items() if value is not None)])
+
+
+def _seconds(rule: Rule, key: str) -> str:
+    """Return a duration of the header, with the parameter that holds it if one does."""
+    value = getattr(rule, key)
+    return f"{rule.params[value].default:g} s ({value})" if isinstance(value, str) else f"{value:g} s"
 
 
 def _params(rule: Rule) -> Table:
