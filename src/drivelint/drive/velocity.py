@@ -138,7 +138,7 @@ def noise(values: Floats, runs: Runs, actor: NDArray[np.int32]) -> Floats:
     with np.errstate(invalid="ignore", divide="ignore"):
         share = (t[inner] - t[inner - 1]) / (t[inner + 1] - t[inner - 1])
         beside = values[inner] - values[inner - 1] - share * (values[inner + 1] - values[inner - 1])
-    twice = np.abs(np.diff(beside))
+        twice = np.abs(np.diff(beside))  # of two tracks where these meet: not finite, and not used
     whole = (runs.first[inner[:-1] - 1] == runs.first[inner[1:] + 1]) & np.isfinite(twice)
     rows, who = twice[whole], actor[inner[:-1]][whole]
     edges = np.searchsorted(who, np.arange(n_actors + 1))
