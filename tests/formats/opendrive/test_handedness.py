@@ -39,7 +39,7 @@ def test_the_option_comes_first() -> None:
             'rule="RHT"',
             {"handedness": "lht", "sensed": "rht"},
             (
-                "--handedness says lht, the rule attribute of 1 roads says rht, the traces fit rht: lht is taken. "
+                "--handedness says lht, the rule attribute of 1 road says rht, the traces fit rht: lht is taken. "
                 "If that is wrong, every direction is wrong: leave the option out, or give rht."
             ),
         ),
@@ -47,7 +47,7 @@ def test_the_option_comes_first() -> None:
             'rule="RHT"',
             {"handedness": "rht", "sensed": "lht"},
             (
-                "--handedness says rht, the rule attribute of 1 roads says rht, the traces fit lht: rht is taken. "
+                "--handedness says rht, the rule attribute of 1 road says rht, the traces fit lht: rht is taken. "
                 "If that is wrong, every direction is wrong: give --handedness lht."
             ),
         ),
@@ -55,7 +55,7 @@ def test_the_option_comes_first() -> None:
             'rule="RHT"',
             {"sensed": "lht"},
             (
-                "the rule attribute of 1 roads says rht, the traces fit lht: rht is taken. "
+                "the rule attribute of 1 road says rht, the traces fit lht: rht is taken. "
                 "If that is wrong, every direction is wrong: give --handedness lht."
             ),
         ),

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from drivelint.formats.opendrive.network import DRIVABLE
+from drivelint.phrases import plural
 from drivelint.road.handedness import correction, other
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ class Witnesses:
         option = None if request.handedness == "auto" else request.handedness
         found = [
             ("option", option, "--handedness says", False),
-            ("attribute", _winner(roads), f"the rule attribute of {roads.total()} roads says", False),
+            ("attribute", _winner(roads), f"the rule attribute of {plural(roads.total(), 'road')} says", False),
             ("junctions", _winner(junctions), f"{junctions.total()} lane links of junctions fit", True),
             ("attribute", _winner(travel), f"the travel direction of {travel.total()} lanes (userData) fits", True),
             ("traces", request.sensed, "the traces fit", True),
