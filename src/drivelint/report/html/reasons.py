@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from drivelint.phrases import plural
 from drivelint.report.html.anchors import rule_anchor
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ _ASIDE: Final = (
     (re.compile(rf"\b{_NUMBER}\b"), "some"),
 )
 _LEAD: Final = re.compile(r"^(?:Not judged|Not decided|Not applicable): ")
+_STOP: Final = re.compile(r"(?<!\.)\.$")
 _LABEL: Final = re.compile(rf"^[a-z ]+: (?={_LEAD.pattern[1:]})")
 
 
@@ -41,7 +43,7 @@ class Reason(NamedTuple):
 @lru_cache(4096)
 def kind(reason: str) -> str:
     """Return what reasons that differ in times, numbers and ids only have in common. It is no sentence: nobody reads it."""
-    text = _LEAD.sub("", _LABEL.sub("", reason))
+    text = _STOP.sub("", _LEAD.sub("", _LABEL.sub("", reason)))
     for pattern, instead in _ASIDE:
         text = pattern.sub(instead, text)
     return text
@@ -52,14 +54,15 @@ def in_words(given: Iterable[str]) -> str:
 
     The shortest is the first, and of these the first by letter: the order of the rows does not matter.
     """
-    first, *others = sorted(set(given), key=lambda reason: (len(reason), reason))
-    sentence = _LEAD.sub("", first)
-    shown = sentence[:1].upper() + sentence[1:]
+    sentences = {
+        _STOP.sub("", reason): reason for reason in sorted(given)
+    }  # one of a sentence with and without its full stop
+    first, *others = sorted(sentences, key=lambda reason: (len(reason), reason))
     alike = sum(kind(reason) == kind(first) for reason in others)
     more = [f"{alike} more like it"] if alike else []
-    more += [f"{len(others) - alike} other reasons"] if len(others) > alike + 1 else []
-    more += ["1 other reason"] if len(others) == alike + 1 else []
-    return f"{shown} (and {' and '.join(more)})" if more else shown
+    more += [plural(len(others) - alike, "other reason")] if len(others) > alike else []
+    shown = _LEAD.sub("", f"{first} (and {' and '.join(more)})" if more else sentences[first])
+    return shown[:1].upper() + shown[1:]
 
 
 def can_be_provided(code: str) -> bool:
