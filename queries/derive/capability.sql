@@ -78,7 +78,7 @@ ego_signal AS (
     ] || [
         {'signal': 'mode_' || mode, 'is_of_map': false, 'available': coalesce(list_contains(d.modes, mode), false) OR mode = 'engaged' AND s.is_engaged_given,
             'reason_available': CASE WHEN mode = 'engaged' AND s.is_engaged_given THEN 'whether the automated driver drives is given' ELSE 'the log says when ' || mode || ' is on' END,
-            'reason_missing': 'the log does not tell about ' || replace(mode, '_', ' ') || ': record the event ' || mode || ', on and off' || CASE WHEN mode = 'engaged' THEN ', or give --env engaged=yes or no' ELSE '' END}
+            'reason_missing': 'the log does not tell about ' || replace(mode, '_', ' ') || ': record ' || CASE WHEN mode = 'headlights' THEN 'either their signal or ' ELSE '' END || 'the event ' || mode || ', on and off' || CASE WHEN mode = 'engaged' THEN ', or give --env engaged=yes or no' ELSE '' END}
         FOR mode IN ['engaged', 'emergency_manoeuvre', 'minimal_risk_manoeuvre', 'lane_change_procedure', 'headlights', 'horn']
     ], recursive := true)
     FROM ego_log s
