@@ -272,7 +272,7 @@ def test_an_osi_file_has_no_place_for_declared_events() -> None:
     for log_format, how in (("osi-file", table), ("osi-mcap", "a channel of JSON messages")):
         told = provide("mode_headlights", log_format)
         assert "either the signal vehicle_classification.light_state.head_light" in told
-        assert "or the declared event headlights" in told
+        assert "or, with the values on and off, the declared event headlights" in told
         assert how in told
 
 
