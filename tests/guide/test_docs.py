@@ -91,7 +91,7 @@ def test_reading_an_unknown_has_every_reason_code() -> None:
 def test_the_guide_of_traces_has_the_keys_of_a_declared_event() -> None:
     section = guide.text("traces").partition("## What the ego declares\n")[2]
     assert tuple(re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE)) == Event.__struct_fields__
-    (message,) = re.findall(r"```json\n(.*?)```", section, re.DOTALL)
+    (message,) = re.findall(r"```text\n(.*?)```", section, re.DOTALL)
     assert msgspec.json.decode(message, type=Event).event == "horn"
 
 
