@@ -46,7 +46,7 @@ ego_signal AS (
         {'signal': 'registration', 'is_of_map': false, 'available': r.ok, 'reason_available': r.reason, 'reason_missing': CASE WHEN s.environment_id IS NULL THEN s.no_map_reason ELSE coalesce(r.reason, 'the ego has no position') END},
         {'signal': 'handedness', 'is_of_map': true, 'available': m.handedness_source <> 'default',
             'reason_available': 'side of the road (' || m.handedness || ') by ' || m.handedness_source,
-            'reason_missing': 'side of the road (' || m.handedness || ') by ' || m.handedness_source || ': give it with --handedness'},
+            'reason_missing': 'which side is driven on is not known (' || m.handedness || ' is only the default): give it with --handedness'},
         {'signal': 'lane_types', 'is_of_map': true, 'available': m.has_lane_types, 'reason_available': 'the map has ways beside the carriageway', 'reason_missing': 'the map has no footway, kerb, border or shoulder'},
         {'signal': 'markings', 'is_of_map': true, 'available': m.has_markings, 'reason_available': 'the map has road markings', 'reason_missing': 'the map has no road markings'},
         {'signal': 'speed_limits', 'is_of_map': true, 'available': m.has_speed_limits, 'reason_available': 'the map has speed limits', 'reason_missing': CASE WHEN m.has_unread_limits THEN 'the map''s speed limits cannot be read' ELSE 'the map has no speed limits' END},
@@ -78,7 +78,7 @@ ego_signal AS (
     ] || [
         {'signal': 'mode_' || mode, 'is_of_map': false, 'available': coalesce(list_contains(d.modes, mode), false) OR mode = 'engaged' AND s.is_engaged_given,
             'reason_available': CASE WHEN mode = 'engaged' AND s.is_engaged_given THEN 'whether the automated driver drives is given' ELSE 'the log says when ' || mode || ' is on' END,
-            'reason_missing': 'the log does not tell about ' || replace(mode, '_', ' ') || ': record the event ' || mode || ', on and off' || CASE WHEN mode = 'engaged' THEN ', or give --env engaged=yes or no' ELSE '' END}
+            'reason_missing': 'the log does not tell about ' || replace(mode, '_', ' ') || ': record ' || CASE WHEN mode = 'headlights' THEN 'either their signal or ' ELSE '' END || 'the event ' || mode || ', on and off' || CASE WHEN mode = 'engaged' THEN ', or give --env engaged=yes or no' ELSE '' END}
         FOR mode IN ['engaged', 'emergency_manoeuvre', 'minimal_risk_manoeuvre', 'lane_change_procedure', 'headlights', 'horn']
     ], recursive := true)
     FROM ego_log s

@@ -155,6 +155,29 @@ def test_an_unknown_verdict_for_want_of_a_signal(folder: Path) -> None:
     assert table.rows[0]["reason"] in text
     assert "What would decide it" in said(found)
     assert "When horn is on, as declared events horn with the values on and off" in text
+    assert (
+        "How it was judged The rule was not run: the log or the map lacks a signal that it requires. What it was"
+        in text
+    )
+    assert "SELECT" not in text
+
+
+def test_an_unknown_condition_is_shown_with_the_place_of_the_ego(tmp_path: Path) -> None:
+    rule = tmp_path / "packs" / "mine" / "wet.sql"
+    rule.parent.mkdir(parents=True)
+    text = (ROOT / "queries/assertions/ukhc/no-collision.sql").read_text(encoding="utf-8")
+    head, requires, rest = text.partition("-- requires")
+    line, _, body = rest.partition("\n")
+    rule.write_text(f'{head}{requires}{line}\n--\n-- [applies]\n-- weather = ["wet"]\n{body}', encoding="utf-8")
+    check(tmp_path / "out", rules=("mine.wet",), rules_dirs=(tmp_path / "packs",), params=())
+    found = of(tmp_path / "out", "mine.wet@safe")
+    assert found.verdict["reason_code"] == "weather_unknown"
+    condition, state = found.rows[:2]
+    assert (condition.table, state.table) == ("ego_condition", "ego_state")
+    assert (len(condition.rows), condition.rows[0]["weather"], len(state.rows)) == (1, None, 1)
+    shown = said(found)
+    assert re.search(r"ego_condition:(?:\n   .*)*\n +weather +NULL", shown)
+    assert re.search(rf"ego_state:(?:\n   .*)*\n +lanelet_id +{re.escape(state.rows[0]['lanelet_id'])}", shown)
 
 
 def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
@@ -178,7 +201,9 @@ def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
     assert pair.rows[0]["clearance_m"] is None
     text = said(found)
     assert re.search(r"clearance_m\s+NULL", text)
-    assert "What is asked for above; that is for the first of" in flat(text)
+    assert "Object oncoming has no position (or no fresh one): record it; that is for the first of 6 steps" in flat(
+        text
+    )
     assert "?" in text[text.index("Margin over time") :]
 
 

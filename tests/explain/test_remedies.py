@@ -14,17 +14,51 @@ from drivelint.reasons.remedies import REMEDIES, remedy
         ("lost_near_ego", "record object o for as long as the ego"),
         ("missing_map", "the road as OpenDRIVE: --map FILE"),
         ("missing_indicator", "the ego's indicators: a column of off, left, right and hazard"),
-        ("missing_step", "what is asked for above"),
-        ("only_a_bound", "what is asked for above; where nothing is, a map that goes on"),
+        ("missing_step", "what is NULL, or has no row, in the rows"),
+        ("only_a_bound", "a map that goes on"),
         ("limit_unknown", "a map with speed limits"),
         ("road_type_unknown", "a map with road types"),
         ("engaged_unknown", "whether the automated driver drives: --env engaged=yes or no"),
         ("light_unknown", "whether it is dark: --env light=day"),
-        ("a_code_of_a_rule_of_somebody_else", "what is asked for above"),
+        ("a_code_of_a_rule_of_somebody_else", "what is NULL, or has no row, in the rows"),
     ],
 )
 def test_by_code(code: str, told: str) -> None:
     assert remedy(code, "o", "carla-testbench").startswith(told)
+
+
+@pytest.mark.parametrize(
+    ("code", "reason", "told"),
+    [
+        (
+            "anchor_unknown",
+            "Not judged: the log does not show it back: record it until it is.",
+            "the log does not show it back: record it until it is",
+        ),
+        (
+            "null_value",
+            "Not judged: a value that it needs is not known at 8.900 s; the track of object 3 ends at 7.900 s: record it for longer.",
+            "the track of object 3 ends at 7.900 s: record it for longer",
+        ),
+        (
+            "only_a_bound",
+            "zones: nominal A; observed unknown: the overtake was not completed in the log: record it for longer",
+            "observed unknown: the overtake was not completed in the log: record it for longer",
+        ),
+        (
+            "only_a_bound",
+            "Not decided: only a bound is known at 3.000 s.",
+            "a map that goes on, or a longer --sensor-range of check",
+        ),
+        (
+            "null_value",
+            "Not judged: a value that it needs is not known at 8.900 s.",
+            "what is NULL, or has no row, in the rows that it was judged on",
+        ),
+    ],
+)
+def test_the_advice_of_the_reason_is_repeated(code: str, reason: str, told: str) -> None:
+    assert remedy(code, None, "osi-mcap", reason).startswith(told)
 
 
 def test_the_words_of_the_format() -> None:

@@ -8,11 +8,15 @@ import tomllib
 from collections.abc import Callable
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from drivelint import cli, guide
 from drivelint.catalogue.header import Conditions, Header
-from drivelint.drive.conditions import WORDS
+from drivelint.drive.conditions import GIVEN, WORDS
+from drivelint.drive.declared import MODES
+from drivelint.formats.osi.extras import Event
+from drivelint.reasons.remedies import REMEDIES
 from drivelint.reasons.signals import SIGNALS
 from drivelint.result.contract import FILES
 from drivelint.sql.store import schema
@@ -112,6 +116,20 @@ def test_the_guide_of_columns_has_every_column_of_every_file() -> None:
         section = text.partition(f"### {stem}.parquet\n")[2].partition("\n### ")[0]
         assert re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE) == list(schema()[table]), stem
         assert f"`{stem}.parquet`" in text.partition("## The columns")[0]
+
+
+def test_reading_an_unknown_has_every_reason_code() -> None:
+    text = guide.text("reading-an-unknown")
+    codes = set(re.findall(r"`(\w+)`", "".join(re.findall(r"^\| (`[^|]+)\|", text, re.MULTILINE))))
+    required = {f"missing_{signal}" for signal in SIGNALS if signal.removeprefix("mode_") not in MODES}
+    assert codes >= REMEDIES.keys() | required | {f"{name}_unknown" for name in (*GIVEN, "limit")}
+
+
+def test_the_guide_of_traces_has_the_keys_of_a_declared_event() -> None:
+    section = guide.text("traces").partition("## What the ego declares\n")[2]
+    assert tuple(re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE)) == Event.__struct_fields__
+    (message,) = re.findall(r"```text\n(.*?)```", section, re.DOTALL)
+    assert msgspec.json.decode(message, type=Event).event == "horn"
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

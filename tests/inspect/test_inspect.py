@@ -259,8 +259,21 @@ def test_every_signal_that_the_library_tells_has_advice() -> None:
     assert "registration" in signals
     assert signals | WORDS.keys() == set(ADVICE)
     for signal in signals:
-        for log_format in ("osi-mcap", "canonical-parquet", "esmini"):
+        for log_format in ("osi-mcap", "osi-file", "canonical-parquet", "esmini"):
             assert "{" not in provide(signal, log_format)
+
+
+def test_an_osi_file_has_no_place_for_declared_events() -> None:
+    table = "drivelint convert --to parquet, and in its tables declared_event.parquet (columns drive_id, actor_id, t_ns, event, value)"
+    assert provide("declared_events", "osi-file").endswith(f": a .osi file has no place for them: {table}")
+    assert provide("declared_events", "osi-mcap").endswith(
+        "drivelint.DeclaredEvent (keys t_ns, actor_id, event, value)"
+    )
+    for log_format, how in (("osi-file", table), ("osi-mcap", "a channel of JSON messages")):
+        told = provide("mode_headlights", log_format)
+        assert "either the signal vehicle_classification.light_state.head_light" in told
+        assert "or, with the values on and off, the declared event headlights" in told
+        assert how in told
 
 
 def test_the_json_is_as_its_schema_says(study: Inspection) -> None:

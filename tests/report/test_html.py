@@ -15,6 +15,7 @@ import pyarrow as pa
 import pytest
 
 from drivelint.errors import UsageError
+from drivelint.report.html.reasons import in_words
 from drivelint.report.outputs import write
 from drivelint.result.contract import FILES
 from drivelint.result.load import load
@@ -257,7 +258,36 @@ def test_reasons_are_grouped_by_what_is_to_be_provided() -> None:
     provide, silent = re.findall(r"<caption>(?:What to provide|What the recordings).*?</table>", shown, re.DOTALL)
     assert "The log has no indicators of the ego signals 1 1" in plain(provide)
     assert plain(silent).count("Whether it applies is not known") == 1
-    assert "Whether it applies is not known. room to overtake 5 1" in plain(silent)
+    assert "Whether it applies is not known at 0.600 s (and 4 more like it) room to overtake 5 1" in plain(silent)
+
+
+@pytest.mark.parametrize(
+    ("given", "shown"),
+    [
+        (["Not judged: the ego has no size."] * 2, "The ego has no size."),
+        (["the ego has no size", "the ego has no size."], "The ego has no size."),
+        (["give --env light=..."], "Give --env light=..."),
+        (
+            ["Not judged: the rule looks at 2.000 s to 3.000 s, and the log has the ego from 0.000 s to 2.500 s only."],
+            "The rule looks at 2.000 s to 3.000 s, and the log has the ego from 0.000 s to 2.500 s only.",
+        ),
+        (
+            ["the map gives no limit for lanelet 7: give one", "the map gives no limit for lanelet 12: give one"],
+            "The map gives no limit for lanelet 7: give one (and 1 more like it)",
+        ),
+        (["Lost.", "It began late.", "It ended soon."], "Lost (and 2 other reasons)"),
+        (
+            ["No row at 1 s.", "No row at 12 s.", "No row at 13 s.", "Something else."],
+            "No row at 1 s (and 2 more like it and 1 other reason)",
+        ),
+        (
+            ["to the left: Not judged: it is not known.", "to the left: Not judged: it is not known."],
+            "To the left: Not judged: it is not known.",
+        ),
+    ],
+)
+def test_a_shown_reason_is_one_that_was_given(given: list[str], shown: str) -> None:
+    assert in_words(given) == in_words(reversed(given)) == shown
 
 
 def test_rules_that_were_not_judged_are_folded_by_reason() -> None:

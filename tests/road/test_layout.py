@@ -13,7 +13,7 @@ from drivelint.errors import MapError
 from drivelint.road.boundary_lanes import BoundedLane, build, side_driven_on
 from drivelint.road.contract import MapSource
 from drivelint.road.quality import Quality
-from tests.formats.opendrive.xodr import checks, geometry, lane, lanelets, load, road, section, xodr
+from tests.formats.opendrive.xodr import checks, geometry, lane, lanelets, load, road, rows, section, xodr
 
 HANDS = pytest.mark.parametrize("hand", ["lht", "rht"])
 LANE = 3.5
@@ -92,6 +92,17 @@ def test_on_a_road_of_one_direction_the_lanes_do_not_tell_the_side() -> None:
         assert "handedness_default" in checks(seen)
         given = load(one(), handedness="lht", sensed=sensed)
         assert (given.handedness, given.handedness_source, along(given)) == ("lht", "option", {way})
+        doubts = [row["message"] for row in rows(given, "map_quality") if row["check_id"] == "handedness_disagrees"]
+        assert doubts == (
+            []
+            if sensed == "lht"
+            else [
+                (
+                    "--handedness says lht, the traces fit rht: lht is taken. If that is wrong, the side for overtaking is wrong: "
+                    "leave the option out, or give rht."
+                )
+            ]
+        )
         ids = {load(one(), sensed=s).environment_id for s in (sensed, "rht", None)}
         assert len(ids) == (1 if sensed == "rht" else 2)
     # without traces as the standard has it

@@ -19,6 +19,7 @@ from drivelint.formats.map_registry import load_map, read_source
 from drivelint.phrases import listed
 from drivelint.road import geo
 from drivelint.road.contract import MapSource
+from drivelint.road.handedness import correction, other
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -150,13 +151,16 @@ class MapLibrary:
             raise MapError(
                 f"map {environment.environment_id}: the traffic of {log.name} runs against its lanes, on road {road} both ways: the "
                 f"side of the road ({environment.handedness} by {environment.handedness_source}) or the lanes' direction is wrong; "
-                "give --handedness, or another map"
+                f"{correction(environment.handedness, environment.handedness_source)}, or give another map"
             )
-        if vote(environment.handedness, seen) in {None, environment.handedness}:
+        side, source = environment.handedness, environment.handedness_source
+        if vote(side, seen) in {None, side}:
             return None
+        said = "--handedness says" if source == "option" else f"the map says (by {source})"
         return (
-            f"of {len(seen.agree)} headings looked at, {int((~seen.agree).sum())} are against the direction of their lane, though "
-            f"the side of the road is {environment.handedness} by {environment.handedness_source}: if that is wrong, give --handedness"
+            f"{said} {side}, the traces fit {other(side)}: of {len(seen.agree)} headings looked at, {int((~seen.agree).sum())} are "
+            f"against the direction of their lane. {side} is taken. If that is wrong, every direction is wrong: "
+            f"{correction(side, source)}."
         )
 
     def _sensed(self, environment: Environment, states: pa.Table) -> str | None:

@@ -21,6 +21,7 @@ from drivelint.explain.outcome import first_unknown
 from drivelint.explain.sensitivity import Errors, copies, counted
 from drivelint.explain.source import open_drive
 from drivelint.explain.target import Wanted, find
+from drivelint.reasons.remedies import condition_of
 from drivelint.result import request as asking
 from drivelint.result.load import load
 
@@ -74,7 +75,8 @@ def explain(request: ExplainRequest) -> Explanation:
         series = evidence.series(case.rule, target, judged)
         decides = _decides(target, series, now)
         gate = row["reason_code"].removeprefix("missing_") if case.gated else None
-        rows = evidence.rows(case.rule, target, sandbox, decides, gate)
+        condition = condition_of(row["reason_code"]) if row["verdict"] == "unknown" and not target.finding else None
+        rows = evidence.rows(case.rule, target, sandbox, decides, gate=gate, condition=condition)
         found: list[Change] = []
         sensitivity = None
         if not case.gated:

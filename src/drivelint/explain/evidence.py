@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 MAX_ROWS: Final = 6
 """Rows shown of one table."""
+CONDITION_ROWS: Final = ("ego_condition", "ego_state")
+"""Tables that show why a condition is not known."""
 AROUND_NS: Final = 30_000_000_000
 """How much of a longer episode is shown on each side of what is explained."""
 _NAMED = re.compile(r"\$(\w+)")
@@ -62,16 +64,19 @@ def series(rule: Rule, target: Target, judged: Judged) -> list[Step]:
     ]
 
 
-def rows(rule: Rule, target: Target, sandbox: Sandbox, t_ns: int | None, gate: str | None) -> list[Rows]:
+def rows(
+    rule: Rule, target: Target, sandbox: Sandbox, t_ns: int | None, *, gate: str | None, condition: str | None
+) -> list[Rows]:
     """Return what each table that the rule reads holds at one time (None: in the whole drive) for ego and object.
 
-    `gate`: the signal for want of which the rule was not run; then only what is known about that.
+    `gate`: the signal for want of which the rule was not run; then only what is known about that. `condition`: the one that is not
+    known; then also where the ego is and what holds there.
     """
     if gate is not None:
         sql = "SELECT signal, available, reason FROM capability WHERE ego_id = ? AND signal = ?"
         return [Rows("capability", sandbox.rows(sql, [target.row["ego_id"], gate]), 0)]
     found = []
-    for table in rule.reads:
+    for table in dict.fromkeys((*(CONDITION_ROWS if condition else ()), *rule.reads)):
         columns = list(store.schema().get(table, {}))
         if "drive_id" in columns or table == "profile":
             found.append(_of_table(target, sandbox, table, columns, t_ns))

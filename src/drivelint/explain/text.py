@@ -16,7 +16,7 @@ from drivelint.drive.declared import EVENTS
 from drivelint.explain.case import is_gated
 from drivelint.explain.plot import plot
 from drivelint.explain.sensitivity import VERDICTS
-from drivelint.reasons.remedies import remedy
+from drivelint.reasons.remedies import condition_of, remedy
 from drivelint.result.text import seconds
 from drivelint.sql import store
 
@@ -136,7 +136,7 @@ def _decides(found: Explanation) -> list[str]:
     row = found.verdict
     if row["verdict"] != "unknown":
         return []
-    told = remedy(row["reason_code"], row["object_id"], found.drive["format"])
+    told = remedy(row["reason_code"], row["object_id"], found.drive["format"], row["reason"])
     unknown = [step.t_ns for step in found.series if step.holds is None]
     if len(unknown) > 1 and not is_gated(row["verdict"], row["reason_code"]):
         start, end = (seconds(t, found.drive["t_start_ns"]) for t in (unknown[0], unknown[-1]))
@@ -166,6 +166,8 @@ def _asks(found: Explanation) -> list[str]:
 
 
 def _sql(found: Explanation) -> list[str]:
+    if is_gated(found.verdict["verdict"], found.verdict["reason_code"]):
+        return ["The rule was not run: the log or the map lacks a signal that it requires."]
     lines = []
     for name, sql in found.sql.items():
         lines += [f"|-- @{name}", *(f"|{line}" for line in sql.splitlines())]
@@ -176,22 +178,26 @@ def _sql(found: Explanation) -> list[str]:
 def _rows(found: Explanation) -> list[str]:
     text = "\n".join(found.sql.values())
     at = "" if found.decides_ns is None else f", at {seconds(found.decides_ns, found.drive['t_start_ns'])}"
+    condition = None if "finding_id" in found.verdict else condition_of(found.verdict["reason_code"])
+    asked = {"ego_condition": condition, "ego_state": "lanelet_id"} if condition else {}
     lines = [f"From {found.source}{at}:"]
     for table in found.rows:
-        lines += _table(table, text, found.drive["t_start_ns"] or 0)
+        lines += _table(table, text, found.drive["t_start_ns"] or 0, asked.get(table.table))
     return lines if found.rows else []
 
 
-def _table(table: Rows, sql: str, start_ns: int) -> list[str]:
-    """Return the columns that the rule names, each with what it means."""
+def _table(table: Rows, sql: str, start_ns: int, asked: str | None) -> list[str]:
+    """Return the columns that the rule names, and the one that is asked for, each with what it means."""
     if not table.rows:
         return [f"{table.table}: no row: there is nothing of that kind here."]
     comments = store.schema().get(table.table, {})
     lines = []
     for row in table.rows:
-        named = [column for column in row if table.table == "capability" or re.search(rf"\b{column}\b", sql)] or list(
-            row
-        )
+        named = [
+            column
+            for column in row
+            if column == asked or table.table == "capability" or re.search(rf"\b{column}\b", sql)
+        ] or list(row)
         lines.append(f"{table.table}:")
         wide = max(len(column) for column in named)
         for column in named:

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from drivelint.drive.conditions import GIVEN
 from drivelint.reasons.signals import SIGNAL_OF, provide
 
-_NAMED = "what is asked for above"
+_NAMED = "{advice}"
+_SHOWN = "what is NULL, or has no row, in the rows that it was judged on"
+_A_MAP_THAT_GOES_ON = "a map that goes on, or a longer --sensor-range of check"
+_LEAD = re.compile(r"^(?:[a-z ]+: )?(?:Not judged|Not decided): ")
+_ADVISES = re.compile(r"(?::|, and|, or) (?:record|give|correct) ")
 _AGAIN = "; run drivelint check with it: what else the rule needs is not looked at before"
 REMEDIES: Final = {
     "lost_near_ego": "record {object} for as long as the ego, or until it is out of the ego's reach",
@@ -17,7 +22,7 @@ REMEDIES: Final = {
     "log_hole": "a log without that hole",
     "reference_time_unknown": _NAMED,
     "anchor_unknown": _NAMED,
-    "only_a_bound": "what is asked for above; where nothing is, a map that goes on, or a longer --sensor-range of check",
+    "only_a_bound": _NAMED,
     "beyond_sensor_range": "sensors that reach further (check --sensor-range, if they do)",
     "ego_not_placed": "the ego's position and heading at every step",
     "indicator_unknown": "the ego's indicators at every step",
@@ -25,14 +30,31 @@ REMEDIES: Final = {
     "null_value": _NAMED,
     "applies_unknown": _NAMED,
 }
-"""Reason code -> what to do."""
+"""Reason code -> what to do; `{advice}`: what the reason itself asks for."""
 
 
-def remedy(code: str, object_id: str | None, log_format: str) -> str:
-    """Return what would decide an unknown verdict with this reason code, for a log of this format."""
+def remedy(code: str, object_id: str | None, log_format: str, reason: str = "") -> str:
+    """Return what would decide an unknown verdict with this code and reason, for a log of this format."""
     if code.startswith("missing_") and code not in REMEDIES:
         return provide(code.removeprefix("missing_"), log_format) + _AGAIN
     condition = code.removesuffix("_unknown")
     if condition in GIVEN or condition == "limit":
         return provide({**SIGNAL_OF, "engaged": "mode_engaged"}.get(condition, condition), log_format) + _AGAIN
-    return REMEDIES.get(code, _NAMED).format(object="the object" if object_id is None else f"object {object_id}")
+    return REMEDIES.get(code, _NAMED).format(
+        object="the object" if object_id is None else f"object {object_id}",
+        advice=_advice(reason) or (_A_MAP_THAT_GOES_ON if code == "only_a_bound" else _SHOWN),
+    )
+
+
+def _advice(reason: str) -> str | None:
+    """Return the last part of a reason, if it asks for something; with its subject, which the words "it" in it mean."""
+    last = _LEAD.sub("", reason).removesuffix(".").rpartition("; ")[2]
+    return last if _ADVISES.search(last) else None
+
+
+def condition_of(code: str) -> str | None:
+    """Return the column of `ego_condition` that a reason code says is not known; None: it is about none."""
+    condition = code.removesuffix("_unknown")
+    if condition == code:
+        return None
+    return condition if condition in GIVEN else "limit_mps" if condition == "limit" else None

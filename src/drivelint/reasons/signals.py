@@ -52,6 +52,7 @@ SIGNALS: Final = ADVICE.keys() - WORDS.keys()
 SIGNAL_OF: Final = {"road_type": "road_types", "limit": "speed_limits"}
 """Conditions that the map gives under another name."""
 _DECLARED = "declared_event.parquet (columns drive_id, actor_id, t_ns, event, value)"
+_CONVERTED = "drivelint convert --to parquet, and in its tables "
 _TABLES: Final = {
     "indicator": "the column indicator of actor_state.parquet (off, left, right or hazard)",
     "brake_light": "the column brake_light of actor_state.parquet (off, on or strong)",
@@ -61,16 +62,22 @@ _TABLES: Final = {
     "declared_events": _DECLARED,
     "headlights": f"events headlights in {_DECLARED}, with the values on and off",
 }
+_OSI: Final = {
+    "indicator": "vehicle_classification.light_state.indicator_state of the host vehicle (not UNKNOWN)",
+    "brake_light": "vehicle_classification.light_state.brake_light_state of the host vehicle (not UNKNOWN)",
+    "ego_size": "base.dimension of the host vehicle",
+    "actor_classes": "type and vehicle_classification.type of the moving objects",
+    "signals": "traffic_light of the ground truth, with ids as the map has them",
+}
+_CHANNEL: Final = "a channel of JSON messages drivelint.DeclaredEvent (keys t_ns, actor_id, event, value)"
+_NO_CHANNEL: Final = f"a .osi file has no place for them: {_CONVERTED}{_DECLARED}"
+_LAMP: Final = (
+    "either the signal vehicle_classification.light_state.head_light of the host vehicle (not UNKNOWN), "
+    "or, with the values on and off, the declared event headlights: {}"
+)
 _WHERE: Final = {
-    "osi-mcap": {
-        "indicator": "vehicle_classification.light_state.indicator_state of the host vehicle (not UNKNOWN)",
-        "brake_light": "vehicle_classification.light_state.brake_light_state of the host vehicle (not UNKNOWN)",
-        "ego_size": "base.dimension of the host vehicle",
-        "actor_classes": "type and vehicle_classification.type of the moving objects",
-        "signals": "traffic_light of the ground truth, with ids as the map has them",
-        "declared_events": "a channel of JSON messages drivelint.DeclaredEvent",
-        "headlights": "vehicle_classification.light_state.head_light of the host vehicle (not UNKNOWN)",
-    },
+    "osi-mcap": {**_OSI, "declared_events": _CHANNEL, "headlights": _LAMP.format(_CHANNEL)},
+    "osi-file": {**_OSI, "declared_events": _NO_CHANNEL, "headlights": _LAMP.format(_NO_CHANNEL)},
     "canonical-parquet": _TABLES,
     "mapped": {
         "indicator": "a column of off, left, right and hazard, named under [indicator] in the mapping (check --mapping FILE)",
@@ -79,7 +86,6 @@ _WHERE: Final = {
         "actor_classes": "a column of the log, named under [class] in the mapping (check --mapping FILE)",
     },
 }
-_CONVERTED = "drivelint convert --to parquet, and in its tables "
 
 
 def problem(signal: str) -> str | None:
@@ -97,6 +103,6 @@ def provide(signal: str, log_format: str) -> str:
 
 
 def _where(log_format: str) -> dict[str, str]:
-    name = "osi-mcap" if log_format == "osi-file" else log_format if log_format in FORMATS else "mapped"
+    name = log_format if log_format in FORMATS else "mapped"
     # what a format has no place for goes into its tables
     return {key: _CONVERTED + where for key, where in _TABLES.items()} | _WHERE.get(name, {})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.formats.opendrive.xodr import checks, lane, lanelets, load, road, section
+from tests.formats.opendrive.xodr import checks, lane, lanelets, load, road, rows, section
 
 WIDTH = '<width sOffset="0" a="3.5"/>'
 
@@ -30,6 +30,42 @@ def test_the_option_comes_first() -> None:
     assert (environment.handedness, environment.handedness_source) == ("lht", "option")
     assert "handedness_disagrees" in checks(environment)
     assert lanelets(environment)["1.0.1"]["along_road"] == 1
+
+
+@pytest.mark.parametrize(
+    ("attributes", "options", "told"),
+    [
+        (
+            'rule="RHT"',
+            {"handedness": "lht", "sensed": "rht"},
+            (
+                "--handedness says lht, the rule attribute of 1 road says rht, the traces fit rht: lht is taken. "
+                "If that is wrong, every direction is wrong: leave the option out, or give rht."
+            ),
+        ),
+        (
+            'rule="RHT"',
+            {"handedness": "rht", "sensed": "lht"},
+            (
+                "--handedness says rht, the rule attribute of 1 road says rht, the traces fit lht: rht is taken. "
+                "If that is wrong, every direction is wrong: give --handedness lht."
+            ),
+        ),
+        (
+            'rule="RHT"',
+            {"sensed": "lht"},
+            (
+                "the rule attribute of 1 road says rht, the traces fit lht: rht is taken. "
+                "If that is wrong, every direction is wrong: give --handedness lht."
+            ),
+        ),
+    ],
+)
+def test_a_doubt_says_what_would_have_the_other_side(attributes: str, options: dict[str, str], told: str) -> None:
+    environment = load(road(attributes=attributes), **options)
+    assert [
+        row["message"] for row in rows(environment, "map_quality") if row["check_id"] == "handedness_disagrees"
+    ] == [told]
 
 
 def test_then_the_attribute() -> None:

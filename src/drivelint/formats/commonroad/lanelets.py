@@ -13,6 +13,7 @@ from drivelint.formats import markup
 from drivelint.formats.commonroad.signs import Signs, points, read_signs, refs, signal_rows, stop_line_rows
 from drivelint.road.boundary_lanes import BoundedLane, build, crossings, side_driven_on, tables
 from drivelint.road.contract import Environment, MapSource, Request, environment_id
+from drivelint.road.handedness import correction
 from drivelint.road.quality import Quality
 from drivelint.road.tables import from_rows
 
@@ -176,9 +177,9 @@ def _handedness(
     ]
     if len({side for _, side in said}) > 1:
         opinions = ", ".join(f"{how}: {side}" for how, side in said)
-        quality.add(
-            "handedness_disagrees", "warning", None, f"{opinions}; the first is taken: give --handedness if it is wrong"
-        )
+        source, side = said[0]
+        message = f"{opinions}; the first is taken: if it is wrong, {correction(side, source)}"
+        quality.add("handedness_disagrees", "warning", None, message)
     if not said:
         message = "nothing in the map says which side is driven on: right-hand traffic is a guess; give --handedness"
         quality.add("handedness_default", "warning", None, message)

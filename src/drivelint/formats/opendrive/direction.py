@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from drivelint.formats.opendrive.network import DRIVABLE
+from drivelint.phrases import plural
+from drivelint.road.handedness import correction, other
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -44,7 +46,10 @@ class Direction:
 
 
 class Witness(NamedTuple):
-    """What something says: of the side that is driven on, or of the lanes' direction (the side by whose rule they run)."""
+    """What something says: of the side that is driven on, or of the lanes' direction (the side by whose rule they run).
+
+    `text`: subject and verb of a sentence that ends with the side.
+    """
 
     source: str
     side: str
@@ -67,11 +72,11 @@ class Witnesses:
         junctions, travel = _junction_votes(net), _travel_votes(net)
         option = None if request.handedness == "auto" else request.handedness
         found = [
-            ("option", option, "the option --handedness", False),
-            ("attribute", _winner(roads), f"the rule attribute of {roads.total()} roads", False),
-            ("junctions", _winner(junctions), f"{junctions.total()} lane links of junctions", True),
-            ("attribute", _winner(travel), f"the travel direction of {travel.total()} lanes (userData)", True),
-            ("traces", request.sensed, "the headings of the traces", True),
+            ("option", option, "--handedness says", False),
+            ("attribute", _winner(roads), f"the rule attribute of {plural(roads.total(), 'road')} says", False),
+            ("junctions", _winner(junctions), f"{junctions.total()} lane links of junctions fit", True),
+            ("attribute", _winner(travel), f"the travel direction of {travel.total()} lanes (userData) fits", True),
+            ("traces", request.sensed, "the traces fit", True),
         ]
         said = tuple(Witness(source, side, text, of) for source, side, text, of in found if side is not None)
         return cls(said, roads, _winner(travel))
@@ -110,16 +115,15 @@ class Witnesses:
         if layout == "lht" and (rule := next((w for w in said if w.source == "attribute" and not w.of_lanes), None)):
             said.remove(rule)  # by it, the lanes run so that the other side is driven on
             message = (
-                f"{rule.text} says {rule.side}, but by its rule the lanes run so that the oncoming ones lie on the other side: it is "
+                f"{rule.text} {rule.side}, but by its rule the lanes run so that the oncoming ones lie on the other side: it is "
                 "not counted; give --handedness if the side is wrong"
             )
             quality.add("handedness_disagrees", "warning", None, message)
-        said = [w._replace(side=w.side if layout == "rht" or not w.of_lanes else _other(w.side)) for w in said]
-        _disagreements(said, quality)
+        said = [w._replace(side=w.side if layout == "rht" or not w.of_lanes else other(w.side)) for w in said]
+        _disagreements(said, quality, "every direction")
         return self._direction(layout, said[0] if said else None)
 
     def _without_opposing(self, quality: Quality) -> Direction:
-        _disagreements(self.said, quality)
         side = next((w for w in self.said if not w.of_lanes), None)
         option = next((w for w in self.said if w.source == "option"), None)
         rule = next((w for w in self.said if w.source == "attribute" and not w.of_lanes), None)
@@ -127,6 +131,10 @@ class Witnesses:
         ways = [w for w in (rule,) if w and (option is None or option.side == w.side)]
         ways += [w for w in self.said if w.of_lanes]
         way = ways[0] if ways else side
+        if side is None:  # then no option says anything of the lanes' direction
+            _disagreements(self.said, quality, "every direction", "give a map whose roads have the rule attribute")
+        else:
+            _disagreements(self.said, quality, "the side for overtaking" if way and way.of_lanes else "every direction")
         forward = way is None or way.side == "rht"
         return Direction(
             side.side if side else "rht",
@@ -142,19 +150,15 @@ class Witnesses:
         return Direction(side, source, forward, source, self.travel == ("rht" if forward else "lht"))
 
 
-def _other(side: str) -> str:
-    return "lht" if side == "rht" else "rht"
-
-
-def _disagreements(said: Sequence[Witness], quality: Quality) -> None:
+def _disagreements(said: Sequence[Witness], quality: Quality, wrong: str, advice: str | None = None) -> None:
+    """Report witnesses that disagree. `wrong`: what is wrong if the first one is; `advice`: what to do then, if no side helps."""
     if len({w.side for w in said}) > 1:
-        opinions = "; ".join(f"{w.text}: {w.side}" for w in said)
-        quality.add(
-            "handedness_disagrees",
-            "warning",
-            None,
-            f"{opinions}. {said[0].side} is taken: if that is wrong, every direction is; give --handedness",
-        )
+        first, second = said[:2]
+        # what says the same as the option is taken once the option is left out
+        found = advice or correction(first.side, first.source if second.side != first.side else "")
+        opinions = ", ".join(f"{w.text} {w.side}" for w in said)
+        message = f"{opinions}: {first.side} is taken. If that is wrong, {wrong} is wrong: {found}."
+        quality.add("handedness_disagrees", "warning", None, message)
 
 
 def _winner(votes: Counter[str]) -> str | None:

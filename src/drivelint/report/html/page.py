@@ -18,7 +18,7 @@ from drivelint.report.html.notes import notes
 from drivelint.report.html.opportunities import opportunities
 from drivelint.report.html.overtakes import views
 from drivelint.report.html.plan import shapes
-from drivelint.report.html.reasons import can_be_provided, plain, reasons
+from drivelint.report.html.reasons import can_be_provided, in_words, kind, reasons
 from drivelint.report.html.replay import replays
 from drivelint.report.html.road import Road
 from drivelint.report.html.timeline import Clock, nothing, shared, timelines
@@ -305,12 +305,14 @@ def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any
         if (reason := why.get(rule_id)) is None:
             group["rules"].append(rule)
         else:
-            group["folds"].setdefault(reason, []).append(rule)
+            group["folds"].setdefault((reason[0], kind(reason[1])), []).append((reason[1], rule))
     order = ("not_applicable", "unknown")
     for group in groups.values():
-        group["folds"] = sorted(
-            group["folds"].items(), key=lambda item: (order.index(item[0][0]), -len(item[1]), item[0][1])
-        )
+        folds = sorted(group["folds"].items(), key=lambda item: (order.index(item[0][0]), -len(item[1]), item[0][1]))
+        group["folds"] = [
+            ((verdict, in_words(given for given, _ in folded)), [rule for _, rule in folded])
+            for (verdict, _), folded in folds
+        ]
     return list(groups.values())
 
 
@@ -328,5 +330,5 @@ def _first_reason(verdicts: pa.Table) -> dict[str, tuple[str, str]]:
         )
         if not idle:
             judged.add(row["rule_id"])
-        found.setdefault(row["rule_id"], (row["verdict"], plain(row["reason"])))
+        found.setdefault(row["rule_id"], (row["verdict"], row["reason"]))
     return {rule_id: reason for rule_id, reason in found.items() if rule_id not in judged}

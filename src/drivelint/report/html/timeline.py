@@ -9,7 +9,7 @@ import hashlib
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.report.html.anchors import finding_anchor, rule_anchor
-from drivelint.report.html.reasons import can_be_provided, named, plain
+from drivelint.report.html.reasons import can_be_provided, in_words, kind, named
 from drivelint.result.counts import SEVERITIES
 from drivelint.result.text import number, seconds
 
@@ -61,8 +61,19 @@ class Folded(NamedTuple):
     """Rules of which there is nothing to draw, for one reason: not applicable, or unknown because something is missing."""
 
     verdict: str
-    why: str
-    rules: list[tuple[str, str]]
+    kind: str
+    reasons: dict[tuple[str, str], set[str]]
+    """The title of a rule and the link to it -> why, as it is given."""
+
+    @property
+    def rules(self) -> list[tuple[str, str]]:
+        """The rules, in the order of their ids."""
+        return sorted(self.reasons, key=lambda rule: rule[1])
+
+    @property
+    def why(self) -> str:
+        """The reason, in words."""
+        return in_words(set[str]().union(*self.reasons.values()))
 
 
 class Timeline(NamedTuple):
@@ -129,12 +140,13 @@ def _timeline(
     clock: Clock,
 ) -> Timeline:
     rows: list[Lane] = []
-    folded: dict[tuple[str, str], set[str]] = {}
+    folded: dict[tuple[str, str], dict[str, set[str]]] = {}
     for key, told in groups.items():
         rule_id, profile = key
         worst = min((row["verdict"] for row in told), key=_ORDER.index)
         if worst == "not_applicable" or all(_is_missing(row) for row in told):
-            folded.setdefault((worst, plain(told[0]["reason"])), set()).add(rule_id)
+            reason = told[0]["reason"]
+            folded.setdefault((worst, kind(reason)), {}).setdefault(rule_id, set()).add(reason)
             continue
         marks = [_finding(row, anchors, clock) for row in found.get(key, [])]
         near = [_near(row, clock) for row in told if row["near_miss"]]
@@ -152,7 +164,7 @@ def _timeline(
         f"{clock.step_s() / clock.duration_s:.5f}",
         clock.ticks(),
         rows,
-        [Folded(verdict, why, named(ids, titles)) for (verdict, why), ids in order],
+        [Folded(*key, dict(zip(named(why, titles), (why[i] for i in sorted(why)), strict=True))) for key, why in order],
         {verdict: sum(lane.verdict == verdict for lane in rows) for verdict in _ORDER},
     )
 
@@ -164,20 +176,26 @@ def nothing(ego_id: str) -> Timeline:
 
 def shared(drawn: Sequence[Timeline]) -> tuple[list[Folded], list[Timeline]]:
     """Return what is folded alike for every ego, once, and the timelines with what is folded for some only."""
-    common = {(f.verdict, f.why): set(f.rules) for f in drawn[0].folded} if drawn else {}
+    common = {(f.verdict, f.kind): f.reasons for f in drawn[0].folded} if drawn else {}
     for t in drawn[1:]:
-        mine = {(f.verdict, f.why): set(f.rules) for f in t.folded}
-        common = {key: rules & mine.get(key, set()) for key, rules in common.items()}
-    common = {key: rules for key, rules in common.items() if rules}
+        mine = {(f.verdict, f.kind): f.reasons for f in t.folded}
+        common = {key: _both(why, mine.get(key, {})) for key, why in common.items()}
+    common = {key: why for key, why in common.items() if why}
 
     def rest(t: Timeline) -> list[Folded]:
-        left = [f._replace(rules=[r for r in f.rules if r not in common.get((f.verdict, f.why), ())]) for f in t.folded]
-        return [f for f in left if f.rules]
+        left = [
+            f._replace(reasons={rule: why for rule, why in f.reasons.items() if rule not in common.get(f[:2], {})})
+            for f in t.folded
+        ]
+        return [f for f in left if f.reasons]
 
-    return (
-        [Folded(verdict, why, sorted(rules, key=lambda r: r[1])) for (verdict, why), rules in common.items()],
-        [t._replace(folded=rest(t)) for t in drawn],
-    )
+    return [Folded(*key, why) for key, why in common.items()], [t._replace(folded=rest(t)) for t in drawn]
+
+
+def _both(
+    one: Mapping[tuple[str, str], set[str]], other: Mapping[tuple[str, str], set[str]]
+) -> dict[tuple[str, str], set[str]]:
+    return {rule: why | other[rule] for rule, why in one.items() if rule in other}
 
 
 def _is_missing(row: Row) -> bool:
@@ -194,19 +212,16 @@ def _bands(told: Sequence[Row], clock: Clock) -> list[Band]:
     """Return the judged stretches by verdict; stretches of one verdict that touch are one (many objects, one rule)."""
     bands = []
     for verdict in _LAYERS:
-        spans: list[list[float]] = []
+        spans: list[tuple[float, float, set[str]]] = []
         rows = [row for row in told if row["verdict"] == verdict]
-        for start, end in sorted(_span(row, clock) for row in rows):
+        for (start, end), reason in sorted((_span(row, clock), row["reason"]) for row in rows):
             if spans and start <= spans[-1][1]:
-                spans[-1][1] = max(spans[-1][1], end)
+                spans[-1] = (spans[-1][0], max(spans[-1][1], end), spans[-1][2] | {reason})
             else:
-                spans.append([start, end])
-        why = (
-            ""
-            if verdict in {"pass", "fail"}
-            else f": {'; '.join(dict.fromkeys(plain(row['reason']) for row in rows))[:120]}"
-        )
-        bands += [Band(verdict, _pc(a), _pc(b - a) if b - a > _THIN else "", f"{verdict}{why}") for a, b in spans]
+                spans.append((start, end, {reason}))
+        for start, end, reasons in spans:
+            why = "" if verdict in {"pass", "fail"} else f": {in_words(reasons)}"
+            bands.append(Band(verdict, _pc(start), _pc(end - start) if end - start > _THIN else "", f"{verdict}{why}"))
     return bands
 
 
