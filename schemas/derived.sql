@@ -157,7 +157,7 @@ CREATE TABLE step (
 CREATE TABLE capability (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    signal VARCHAR NOT NULL,          -- what a rule may require: map, registration, handedness, lane_types, markings, speed_limits, indicator, brake_light, dimensions, objects, exit_signs, ...
+    signal VARCHAR NOT NULL,          -- what a rule may require: map, registration, handedness, lane_types, markings, speed_limits, indicator, brake_light, ego_size, actor_classes, exit_signs, ...
     available BOOLEAN NOT NULL,       -- the log and map give it
     reason VARCHAR NOT NULL           -- what is missing, or where it is from
 );

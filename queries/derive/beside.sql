@@ -78,7 +78,7 @@ object_on_lane AS (
     JOIN lane_occupancy o ON o.drive_id = n.drive_id AND o.actor_id = n.object_id AND o.t_ns = n.t_ns
     WHERE o.drivable
 ),
--- Actors that may be beside the ego and have no place there.
+-- Actors that may be beside the ego, but whose position on the corridor is not known.
 doubt AS (
     SELECT drive_id, ego_id, t_ns, object_id, actor_class FROM hidden WHERE least_m < may_be_beside_m()
     UNION
@@ -86,12 +86,12 @@ doubt AS (
     FROM pair p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     WHERE NOT p.clearance_is_bound AND (e.front_s_m IS NULL OR p.front_s_m IS NULL)
-        -- The object is beyond the edge of the corridor's strip, or the ego itself has no corridor.
+        -- The object is more than 15 m from the running lane's centre line (strip_m), or the ego itself has no position on a corridor.
         AND p.clearance_m < may_be_beside_m() AND (e.front_s_m IS NULL OR p.clearance_m < may_be_beside_m() / 2)
 )
 SELECT
     m.drive_id, m.ego_id, m.t_ns, m.object_id, m.actor_class, m.side, m.gap_m, m.clearance_m,
-    -- Both swerve towards each other as hard as in a bend, and back before the next step.
+    -- blur_m: how much nearer the two may come between two steps, if both swerve towards each other at bend_mps2 and back.
     CASE WHEN k.period_ns > 110_000_000 THEN 2 * bend_mps2() * (k.period_ns / 1e9) ** 2 / 8 ELSE 0.0 END AS blur_m, m.ahead_m, m.ego_speed_mps, m.speed_mps,
     CASE WHEN m.d_m > m.ego_d_m THEN m.ego_left_mps ELSE -m.ego_left_mps END AS ego_lat_mps,
     CASE WHEN m.d_m > m.ego_d_m THEN -m.drift_mps ELSE m.drift_mps END AS lat_mps,

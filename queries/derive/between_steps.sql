@@ -1,6 +1,6 @@
 -- Intervals between two steps in which the ego and an object may have touched. Each box moves along the cubic through its places and
--- velocities at the two steps. Only pairs are examined whose boxes are near enough, at one of the two steps, for the way that they move
--- from step to step.
+-- velocities at the two steps. Only pairs are examined that are so near at one of the two steps that they could touch on the way to the
+-- other.
 WITH ego_step AS (
     SELECT s.drive_id, s.ego_id, s.t_ns, lead(s.t_ns) OVER w AS t_next_ns, lag(s.t_ns) OVER w AS t_before_ns, c.max_gap_ns
     FROM step s
@@ -49,7 +49,7 @@ interval_motion AS (
 relative_motion AS MATERIALIZED (
     SELECT *,
         object_way.x - ego_way.x AS change_x_m, object_way.y - ego_way.y AS change_y_m, object_way.px - ego_way.px AS px, object_way.py - ego_way.py AS py, object_way.qx - ego_way.qx AS qx, object_way.qy - ego_way.qy AS qy,
-        -- A box is off its way by no more than the length of that way.
+        -- A box that hardly moves cannot swerve far: its deviation is at most the length of its way.
         least(between_blur_m(ego_way, dt_s), ego_way.long_m) + least(between_blur_m(object_way, dt_s), object_way.long_m)
             -- A box does not turn evenly either.
             + 0.1 * (abs(ego_turn_rad) * ego_half_length_m + abs(object_turn_rad) * object_half_length_m) AS blur_m

@@ -1,5 +1,5 @@
--- The signals that each log and its map give. A rule is unknown, without being run, if a signal that it requires has no row here with
--- available = true.
+-- The inputs ("signals") that rules may require: whether each log and its map give them. A rule is not run, and its verdict is unknown, if
+-- it requires an input that has no row here with available = true.
 WITH ego_log AS (
     SELECT
         c.drive_id, c.ego_id, g.environment_id,
@@ -40,7 +40,7 @@ map_content AS (
     FROM environment e
 ),
 -- Per signal: whether the map must give it, whether it is available, and the reason to state if it is available and if it is missing.
-ego_signal AS (
+ego_input AS (
     SELECT s.drive_id, s.ego_id, s.environment_id, s.no_map_reason, unnest([
         {'signal': 'map', 'is_of_map': true, 'available': m.environment_id IS NOT NULL, 'reason_available': 'map ' || m.environment_id, 'reason_missing': NULL},
         {'signal': 'registration', 'is_of_map': false, 'available': r.ok, 'reason_available': r.reason, 'reason_missing': CASE WHEN s.environment_id IS NULL THEN s.no_map_reason ELSE coalesce(r.reason, 'the ego has no position') END},
@@ -89,4 +89,4 @@ ego_signal AS (
 SELECT
     drive_id, ego_id, signal, coalesce(available, false) AS available,
     CASE WHEN available THEN reason_available WHEN is_of_map AND environment_id IS NULL THEN no_map_reason ELSE coalesce(reason_missing, no_map_reason) END AS reason
-FROM ego_signal
+FROM ego_input

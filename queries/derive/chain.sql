@@ -83,6 +83,7 @@ behind AS (
     JOIN lanelet n ON n.environment_id = b.environment_id AND n.lanelet_id = s.behind_id
     WHERE b.before_m < corridor_behind_m() AND b.hop < 200
 ),
+-- The lanelets of each chain in order: those behind the first visit, then those of each visit and ahead of it.
 link AS (
     SELECT drive_id, ego_id, chain_id, -1 AS v, -hop AS hop, environment_id, lanelet_id FROM behind WHERE hop > 0
     UNION ALL

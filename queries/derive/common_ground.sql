@@ -1,8 +1,9 @@
 -- Moments at which two boxes cover the same ground, at an angle and at most 10 s apart. The ground that two actors share does not depend on
 -- which of them is the ego.
 WITH
--- Two visits. The first is that of the actor with the lesser id, so that a pair that two egos share is examined only once.
-candidate AS (
+-- Pairs of visits. A visit is an actor in one cell, within 10 s and 5 degrees of heading: see meeting. The first visit is that of the actor
+-- with the lesser id, so that a pair that two egos share is examined only once.
+visit_pair AS (
     SELECT drive_id, actor_id AS a_id, cell AS a_cell, slot AS a_slot, heading AS a_heading, object_id AS b_id, object_cell AS b_cell, object_slot AS b_slot, object_heading AS b_heading
     FROM meeting
     WHERE actor_id < object_id
@@ -11,22 +12,22 @@ candidate AS (
     FROM meeting
     WHERE actor_id > object_id
 ),
--- One join at a time: the planner cannot know how few the candidates are and would compare all actors with each other.
-candidate_box AS MATERIALIZED (
+-- One join at a time: the planner cannot know how few the pairs of visits are, and would compare all actors with each other.
+visit_pair_box AS MATERIALIZED (
     SELECT m.a_id, m.a_cell, m.a_slot, m.a_heading, b.*
-    FROM candidate m
+    FROM visit_pair m
     JOIN swept_box b ON b.drive_id = m.drive_id AND b.actor_id = m.b_id AND b.cell = m.b_cell AND b.slot = m.b_slot AND b.heading = m.b_heading
 ),
 angled_pair AS MATERIALIZED (
     SELECT b.drive_id, b.a_id, b.actor_id AS b_id, a.t_ns AS a_t_ns, b.t_ns AS b_t_ns, a.t_sample_ns AS a_sample_ns, b.t_sample_ns AS b_sample_ns, (b.x_m - a.x_m) ** 2 + (b.y_m - a.y_m) ** 2 AS squared_distance_m2
-    FROM candidate_box b
+    FROM visit_pair_box b
     JOIN swept_box a ON a.drive_id = b.drive_id AND a.actor_id = b.a_id AND a.cell = b.a_cell AND a.slot = b.a_slot AND a.heading = b.a_heading
     WHERE abs(a.t_ns - b.t_ns) <= conflict_ns() AND abs(wrap_rad(b.travel_rad - a.travel_rad)) > conflict_angle_rad() AND same_level(b.z_m, a.z_m)
         AND boxes_meet(b.x_m - a.x_m, b.y_m - a.y_m, a.cos_yaw, a.sin_yaw, b.cos_yaw, b.sin_yaw, a.half_length_m, a.half_width_m, b.half_length_m, b.half_width_m)
 ),
 -- In a tight bend even a follower's box lies at an angle to the leader's box of another moment. What counts is the angle to the other's way
--- where that comes nearest. An actor moves along the other's way if, nearer than every box at an angle, a box of the other has its
--- direction.
+-- where that comes nearest. An actor moves along the other's way if some box of the other that has the actor's direction is nearer than all
+-- its boxes at an angle.
 angled_moment AS MATERIALIZED (
     SELECT t.other_id, t.squared_distance_m2, b.*
     FROM (

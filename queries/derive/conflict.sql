@@ -1,10 +1,10 @@
 -- Encounters of two actors on common ground: when each of them entered and left it, and the time between the two. None of that depends on
 -- which of them is the ego.
 WITH
-drive_period AS (SELECT drive_id, max(period_ns) AS period_ns, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id),
+drive_clock AS (SELECT drive_id, max(period_ns) AS period_ns, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id),
 -- The moments of the actor with the lesser id (u) are divided into stretches without a pause, and within each stretch the moments of the
 -- other actor (v) as well.
-ordered_moment AS MATERIALIZED (
+uv_moment AS MATERIALIZED (
     SELECT
         drive_id, ego_id, object_id, actor_id, ego_id < object_id AS ego_is_u, CASE WHEN ego_is_u THEN t_ego_ns ELSE t_object_ns END AS u_ns, CASE WHEN ego_is_u THEN t_object_ns ELSE t_ego_ns END AS v_ns
     FROM common_ground
@@ -13,9 +13,9 @@ u_moment AS MATERIALIZED (
     SELECT p.*, sum((u_ns - before_ns > g.max_gap_ns)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY u_ns) AS u_stretch
     FROM (
         SELECT *, lag(u_ns, 1, u_ns) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY u_ns) AS before_ns
-        FROM (SELECT DISTINCT drive_id, ego_id, object_id, u_ns FROM ordered_moment)
+        FROM (SELECT DISTINCT drive_id, ego_id, object_id, u_ns FROM uv_moment)
     ) p
-    JOIN drive_period g USING (drive_id)
+    JOIN drive_clock g USING (drive_id)
 ),
 v_moment AS MATERIALIZED (
     SELECT *, sum((v_ns - before_ns > max_gap_ns)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id, u_stretch ORDER BY v_ns) AS v_stretch
@@ -23,10 +23,10 @@ v_moment AS MATERIALIZED (
         SELECT p.*, g.max_gap_ns, lag(v_ns, 1, v_ns) OVER (PARTITION BY drive_id, ego_id, object_id, u_stretch ORDER BY v_ns) AS before_ns
         FROM (
             SELECT t.drive_id, t.ego_id, t.object_id, t.actor_id, t.ego_is_u, s.u_stretch, t.v_ns, min(t.u_ns) AS u_first_ns, max(t.u_ns) AS u_last_ns
-            FROM ordered_moment t JOIN u_moment s USING (drive_id, ego_id, object_id, u_ns)
+            FROM uv_moment t JOIN u_moment s USING (drive_id, ego_id, object_id, u_ns)
             GROUP BY ALL
         ) p
-        JOIN drive_period g USING (drive_id)
+        JOIN drive_clock g USING (drive_id)
     )
 ),
 stretch_pair AS MATERIALIZED (
@@ -37,7 +37,8 @@ stretch_pair AS MATERIALIZED (
     GROUP BY drive_id, ego_id, object_id, u_stretch, v_stretch
 ),
 -- A pair of stretches and the one before it (b) are the same encounter if one of the actors has not left in between and the other is back
--- soon: at the edge the angle may come and go, and an actor may step aside. n is the number of the encounter.
+-- soon: at the edge of the shared ground, the angle between the two may fall below 20 degrees and rise again, and an actor may step aside.
+-- n is the number of the encounter.
 encounter_part AS MATERIALIZED (
     SELECT drive_id, ego_id, object_id, u_stretch, v_stretch, sum((NOT is_joined)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY u_stretch, v_stretch) AS n
     FROM (
@@ -84,7 +85,7 @@ ground_edge AS MATERIALIZED (
             unnest([1, -1]), unnest([w.object_first_ns, w.object_last_ns])
         FROM box_time o JOIN encounter_time w USING (drive_id, ego_id, object_id, n)
     ) p
-    JOIN drive_period g USING (drive_id)
+    JOIN drive_clock g USING (drive_id)
     JOIN swept_box i ON i.drive_id = p.drive_id AND i.actor_id = p.actor_id AND i.t_ns = p.t_ns
 ),
 edge_box AS MATERIALIZED (
@@ -93,7 +94,7 @@ edge_box AS MATERIALIZED (
     LEFT JOIN swept_box f ON f.drive_id = e.drive_id AND f.actor_id = e.i.actor_id AND f.t_ns = e.t_off_ns
 ),
 -- share: the part of the way, from the moment off the ground to the moment on it, after which the box first touches a box of the other.
--- angle_rad: the other's way against its own where the two come nearest.
+-- angle_rad: the other's direction of travel minus its own, where the two come nearest.
 first_contact AS MATERIALIZED (
     SELECT
         e.drive_id, e.ego_id, e.object_id, e.n, e.is_ego, i.actor_id AS actor_id, e.sense, i.t_sample_ns AS t_sample_ns, i.t_ns AS t_on_ns, e.t_off_ns,
@@ -109,8 +110,8 @@ first_contact AS MATERIALIZED (
     JOIN swept_box b ON b.drive_id = e.drive_id AND b.actor_id = e.on_id AND b.t_ns >= e.t_from_ns AND b.t_ns <= e.t_to_ns
     GROUP BY e.drive_id, e.ego_id, e.object_id, e.n, e.is_ego, i.actor_id, e.sense, i.t_sample_ns, i.t_ns, e.t_off_ns
 ),
--- If only the angle ends the common ground, share is NULL and the edge is the moment off the ground. An edge without a moment off the
--- ground was not seen.
+-- If the common ground ends because the angle becomes too small, not because the boxes part, share is NULL and the edge is the moment off
+-- the ground. An edge without a moment off the ground was not seen.
 edge_time AS MATERIALIZED (
     SELECT
         drive_id, ego_id, object_id, n, is_ego, sense, min(sense * t_sample_ns) AS signed_sample_ns,
@@ -139,7 +140,8 @@ moving_encounter AS MATERIALIZED (
         AND s.t_ns >= e.t_object_in_ns AND s.t_ns <= e.t_object_out_ns AND coalesce(s.speed_mps > standing_mps(), true)
     SEMI JOIN state_dynamics o ON o.drive_id = e.drive_id AND o.actor_id = e.ego_id
         AND o.t_ns >= e.t_ego_in_ns AND o.t_ns <= e.t_ego_out_ns AND coalesce(o.speed_mps > standing_mps(), true)
-    -- An actor over or under the ego's road does not meet the ego. An actor that may be there has no place in pair.
+    -- An actor over or under the ego's road does not meet the ego. off_level also holds where that is only possible: pair then gives the
+    -- actor no position.
     ANTI JOIN (FROM pair WHERE off_level) p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.object_id = e.object_id
         AND p.t_ns >= e.t_object_in_ns AND p.t_ns <= e.t_object_out_ns
 ),

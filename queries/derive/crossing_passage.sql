@@ -40,7 +40,7 @@ passage AS (
     GROUP BY b.drive_id, b.ego_id, b.chain_id, b.mark_id, b.s_start_m, b.t_ns, b.t_in_ns, b.enters_backwards
 ),
 crossing_kind AS (SELECT environment_id, crossing_id, min(kind) AS kind FROM crossing GROUP BY environment_id, crossing_id),
-visit AS (
+passage_context AS (
     SELECT
         p.*, g.environment_id, g.sensor_range_m, n.along_road, m.lanelet_id, m.s_end_m, m.control, m.signal_id, c.max_gap_ns, c.t_start_ns, c.t_end_ns,
         p.t_in_ns - 2_000_000_000 AS t_watch_from_ns, coalesce(p.t_out_ns, p.t_last_ns, p.t_ns) AS t_watch_to_ns, e.x_m, e.y_m
@@ -59,25 +59,25 @@ other_half AS (
         v.drive_id, v.ego_id, v.mark_id, v.t_ns, -v.along_road AS along_road,
         bool_or(v.side * x.d_m - x.half_width_m > o.gap_m) AS is_driven,
         bool_or(coalesce(CASE v.side WHEN 1 THEN x.left_out_m ELSE x.right_out_m END > o.gap_m + over_boundary_m(), true)) AS is_reached
-    FROM (FROM visit CROSS JOIN (VALUES (1), (-1)) AS b(side)) v
+    FROM (FROM passage_context CROSS JOIN (VALUES (1), (-1)) AS b(side)) v
     JOIN (
         SELECT environment_id, lanelet_id, side, min(gap_m) AS gap_m FROM lane_beside WHERE against GROUP BY ALL
     ) o ON o.environment_id = v.environment_id AND o.lanelet_id = v.lanelet_id AND o.side = CASE v.side WHEN 1 THEN 'left' ELSE 'right' END
     JOIN ego_corridor x ON x.drive_id = v.drive_id AND x.ego_id = v.ego_id AND x.chain_id = v.chain_id
         AND x.t_ns >= coalesce(v.t_in_ns, v.t_ns) AND x.t_ns <= v.t_watch_to_ns
-    -- Once its centre is past the crossing, the ego may move over.
+    -- What the ego does after its centre is past the crossing does not count as driving on the other half.
     WHERE x.s_m <= v.s_end_m OR x.t_ns = v.t_in_ns
     GROUP BY ALL
 ),
 driven_half AS (
-    SELECT drive_id, ego_id, mark_id, t_ns, along_road FROM visit
+    SELECT drive_id, ego_id, mark_id, t_ns, along_road FROM passage_context
     UNION SELECT drive_id, ego_id, mark_id, t_ns, along_road FROM other_half WHERE is_driven
 ),
-visit_occupancy AS (
+passage_occupancy AS (
     SELECT
         v.drive_id, v.ego_id, v.mark_id, v.t_ns,
         min({'t_ns': o.t_from_ns, 'id': o.object_id}) FILTER (a.actor_class = 'pedestrian') AS first_occupant, bool_or(a.actor_class IS DISTINCT FROM 'pedestrian') AS has_unclassed
-    FROM visit v
+    FROM passage_context v
     JOIN driven_half h USING (drive_id, ego_id, mark_id, t_ns)
     JOIN crossing_occupancy o ON o.drive_id = v.drive_id AND o.crossing_id = v.mark_id AND o.along_road = h.along_road AND o.object_id <> v.ego_id
         AND o.t_from_ns <= v.t_watch_to_ns AND o.t_to_ns >= coalesce(v.t_in_ns, v.t_ns)
@@ -91,7 +91,7 @@ other_half_occupant AS (
         v.drive_id, v.ego_id, v.mark_id, v.t_ns, o.object_id, a.actor_class, o.t_to_ns, v.t_end_ns - v.max_gap_ns AS t_seen_until_ns,
         min(q.t_from_ns) FILTER (q.t_from_ns > v.t_in_ns) AS t_next_ns, coalesce(bool_or(q.t_from_ns <= v.t_in_ns), false) AS came_from_ego_half,
         coalesce(x.is_reached, false) AS is_reached
-    FROM visit v
+    FROM passage_context v
     LEFT JOIN other_half x ON x.drive_id = v.drive_id AND x.ego_id = v.ego_id AND x.mark_id = v.mark_id AND x.t_ns = v.t_ns
     JOIN crossing_occupancy o ON o.drive_id = v.drive_id AND o.crossing_id = v.mark_id AND o.along_road = -v.along_road AND o.object_id <> v.ego_id
         AND o.t_from_ns <= v.t_in_ns AND o.t_to_ns >= v.t_in_ns
@@ -126,7 +126,7 @@ crossing_end AS (
 person_sample AS (
     SELECT v.drive_id, v.ego_id, v.mark_id, v.t_ns, v.t_in_ns, v.max_gap_ns, s.actor_id, s.actor_class, s.t_ns AS t_at_ns, s.speed_mps <= standing_mps() AS stands,
         min(end_distance_m(s.x_m, s.y_m, k.x0, k.y0, k.tx, k.ty, k.s_start_m - k.s_m, k.s_end_m - k.s_m)) AS off_m
-    FROM visit v
+    FROM passage_context v
     JOIN state_dynamics s ON s.drive_id = v.drive_id AND s.actor_id <> v.ego_id AND s.t_ns >= v.t_watch_from_ns AND s.t_ns <= v.t_in_ns
     JOIN crossing_end k ON k.environment_id = v.environment_id AND k.crossing_id = v.mark_id AND k.along_road = v.along_road
     -- A person on the crossing does not wait any more.
@@ -149,7 +149,7 @@ waiting_person AS (
 unplaced_person AS (
     SELECT v.drive_id, v.ego_id, v.mark_id, v.t_ns, o.object_id, v.x_m, v.y_m, v.t_watch_from_ns, v.t_watch_to_ns,
         CASE WHEN o.actor_class IS NULL THEN 30.0 ELSE 3.0 END * count(*) * any_value(c.period_ns) / 1e9 AS reach_m
-    FROM visit v
+    FROM passage_context v
     JOIN clock c USING (drive_id, ego_id)
     JOIN (FROM pair WHERE (x_m IS NULL OR y_m IS NULL) AND may_walk(actor_class)) o
         ON o.drive_id = v.drive_id AND o.ego_id = v.ego_id AND o.t_ns >= v.t_watch_from_ns AND o.t_ns <= v.t_watch_to_ns
@@ -167,7 +167,8 @@ near_unplaced_person AS (
     ) k USING (drive_id, ego_id, mark_id, t_ns, object_id)
     WHERE k.least_m IS NULL OR k.least_m < meeting_near_m() + b.reach_m
 ),
--- The first and last placed sample of each track. A jump ends a track as well.
+-- The first and last sample with a position of each track. A track that goes on elsewhere after a jump of the position was given another id
+-- when the log was read (drivelint/drive/jumps.py): it ends here at the jump.
 track_range AS (
     SELECT s.drive_id, s.actor_id, min(s.t_ns) AS t_first_ns, max(s.t_ns) AS t_last_ns
     FROM state_dynamics s
@@ -176,7 +177,7 @@ track_range AS (
 ),
 broken_track AS (
     SELECT v.drive_id, v.ego_id, v.mark_id, v.t_ns
-    FROM visit v
+    FROM passage_context v
     JOIN clock c USING (drive_id, ego_id)
     JOIN track_range d ON d.drive_id = v.drive_id AND d.actor_id <> v.ego_id
     CROSS JOIN LATERAL (
@@ -188,18 +189,18 @@ broken_track AS (
         AND sqrt((s.x_m - v.x_m) ** 2 + (s.y_m - v.y_m) ** 2)
             < CASE WHEN w.apart_ns = 0 THEN meeting_near_m() ELSE greatest(5.0, 3.0 * w.walk_ns / 1e9) END
 ),
-visit_with_hole AS (
+passage_with_hole AS (
     SELECT v.drive_id, v.ego_id, v.mark_id, v.t_ns
-    FROM visit v JOIN step st ON st.drive_id = v.drive_id AND st.ego_id = v.ego_id AND st.t_ns >= v.t_watch_from_ns AND st.t_ns <= v.t_watch_to_ns
+    FROM passage_context v JOIN step st ON st.drive_id = v.drive_id AND st.ego_id = v.ego_id AND st.t_ns >= v.t_watch_from_ns AND st.t_ns <= v.t_watch_to_ns
     GROUP BY v.drive_id, v.ego_id, v.mark_id, v.t_ns
     HAVING min(st.seg) < max(st.seg)
 ),
-unknown_visit AS (
+unknown_passage AS (
     SELECT drive_id, ego_id, mark_id, t_ns FROM near_unplaced_person
     UNION SELECT drive_id, ego_id, mark_id, t_ns FROM broken_track
-    UNION SELECT drive_id, ego_id, mark_id, t_ns FROM visit_with_hole
-    UNION SELECT drive_id, ego_id, mark_id, t_ns FROM visit_occupancy WHERE has_unclassed
-    UNION SELECT drive_id, ego_id, mark_id, t_ns FROM visit WHERE t_in_ns IS NULL OR t_out_ns IS NULL OR t_start_ns > t_watch_from_ns OR sensor_range_m < 20
+    UNION SELECT drive_id, ego_id, mark_id, t_ns FROM passage_with_hole
+    UNION SELECT drive_id, ego_id, mark_id, t_ns FROM passage_occupancy WHERE has_unclassed
+    UNION SELECT drive_id, ego_id, mark_id, t_ns FROM passage_context WHERE t_in_ns IS NULL OR t_out_ns IS NULL OR t_start_ns > t_watch_from_ns OR sensor_range_m < 20
 ),
 -- ---- whether the ego stood before the crossing
 stop_before AS (
@@ -210,7 +211,7 @@ stop_before AS (
             WHEN bool_or(e.speed_mps IS NULL AND n.front_m >= -5) THEN NULL
             WHEN bool_or(n.front_m < -5) OR min(n.t_ns) <= v.t_in_ns - 10_000_000_000 + v.max_gap_ns THEN false
         END AS stood_before
-    FROM visit v
+    FROM passage_context v
     JOIN passage_step n ON n.drive_id = v.drive_id AND n.ego_id = v.ego_id AND n.chain_id = v.chain_id AND n.mark_id = v.mark_id AND n.s_start_m = v.s_start_m
         AND n.t_ns < v.t_in_ns AND n.t_ns >= v.t_in_ns - 10_000_000_000
     JOIN ego_state e ON e.drive_id = n.drive_id AND e.ego_id = n.ego_id AND e.t_ns = n.t_ns
@@ -219,7 +220,7 @@ stop_before AS (
 ),
 light_state AS (
     SELECT v.drive_id, v.ego_id, v.mark_id, v.t_ns, f.state
-    FROM visit v
+    FROM passage_context v
     JOIN mark_phase f USING (drive_id, ego_id, chain_id, mark_id, s_start_m)
     WHERE f.kind = 'crossing' AND f.t_from_ns <= v.t_in_ns AND v.t_in_ns < coalesce(f.t_to_ns, v.t_in_ns + 1)
 )
@@ -229,11 +230,11 @@ SELECT
     v.t_in_ns, CASE WHEN v.t_last_ns IS NOT NULL OR v.t_in_ns IS NOT NULL THEN v.t_out_ns END AS t_out_ns,
     o.first_occupant.id AS on_id, o.first_occupant.t_ns AS t_on_ns, f.coming_id, coalesce(f.known, true) AS coming_known, w.waiting_id, coalesce(w.known, true) AS waiting_known, u.t_ns IS NULL AS known,
     v.signal_id, l.state, h.stood_before
-FROM visit v
+FROM passage_context v
 LEFT JOIN crossing_kind s ON s.environment_id = v.environment_id AND s.crossing_id = v.mark_id
-LEFT JOIN visit_occupancy o USING (drive_id, ego_id, mark_id, t_ns)
+LEFT JOIN passage_occupancy o USING (drive_id, ego_id, mark_id, t_ns)
 LEFT JOIN waiting_person w USING (drive_id, ego_id, mark_id, t_ns)
 LEFT JOIN coming_occupant f USING (drive_id, ego_id, mark_id, t_ns)
-LEFT JOIN unknown_visit u USING (drive_id, ego_id, mark_id, t_ns)
+LEFT JOIN unknown_passage u USING (drive_id, ego_id, mark_id, t_ns)
 LEFT JOIN stop_before h USING (drive_id, ego_id, mark_id, t_ns)
 LEFT JOIN light_state l USING (drive_id, ego_id, mark_id, t_ns)

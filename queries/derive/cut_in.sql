@@ -35,7 +35,7 @@ run_sample AS (
     )
 ),
 -- last_clear: the last sample before at which the vehicle was clearly in the lane or clearly out of it.
-ordered_sample AS (
+sample_with_last_clear AS (
     SELECT
         *,
         last_value(
@@ -53,12 +53,12 @@ cut_in_sample AS (
         coalesce(inside_m > cut_in_m() AND NOT last_clear.is_in AND is_along AND t_ns - last_clear.t_ns <= 5_000_000_000, false) AS begins,
         sum(((inside_m > cut_in_m() AND NOT last_clear.is_in) OR inside_m <= over_boundary_m())::INTEGER)
             OVER (PARTITION BY drive_id, ego_id, object_id, chain_id, run ORDER BY k ROWS UNBOUNDED PRECEDING) AS n
-    FROM ordered_sample
+    FROM sample_with_last_clear
 ),
 in_place_step AS (
     SELECT drive_id, ego_id, object_id, chain_id, run, n, min(t_ns) AS t_ns FROM cut_in_sample WHERE is_centre_in GROUP BY ALL
 ),
--- The distance up to which no actor that is not seen, or that may be no vehicle, can be in the lane ahead.
+-- How far ahead (m) the lane is free of vehicles that may be there unseen, and of seen actors that may not be vehicles.
 free_lane AS (
     SELECT drive_id, ego_id, t_ns, min(m) AS m
     FROM (

@@ -9,7 +9,8 @@
 -- A mean over half a second flattens a peak. The *_peak columns say by how much at most the true peak may be higher, where the value stands
 -- out over both of the values half a window away (see peak_rise).
 --
--- The sums are of whole numbers (v in nm/s, yaw in nrad, time in ns) and therefore exact: the same in any order and beside any other drive.
+-- The sums are of whole numbers (v in nm/s, yaw in nrad, time in ns) and therefore exact: the same in any order, whatever other drives are
+-- in the table.
 WITH sample AS (
     SELECT
         st.drive_id, st.ego_id, st.seg, st.t_ns,

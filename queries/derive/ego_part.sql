@@ -25,7 +25,7 @@ renamed_ego AS (
         AND abs(wrap_rad(b.yaw_rad - a.yaw_rad)) <= same_heading_rad() AND same_size(a.length_m, b.length_m) AND same_size(a.width_m, b.width_m)
         AND may_be_vehicle(a.actor_class) AND may_be_vehicle(b.actor_class)
 ),
--- Actors close behind the ego at the first moment at which both are there. They are few, and only their whole tracks are examined.
+-- Actors close behind the ego at the first moment at which both are there. Only for these few is the whole track examined.
 actor_behind AS (
     SELECT w.drive_id, w.ego_id, w.object_id, w.is_called_trailer
     FROM (
@@ -40,7 +40,7 @@ actor_behind AS (
     WHERE (o.x_m - e.x_m) ** 2 + (o.y_m - e.y_m) ** 2 <= ((e.length_m + o.length_m) / 2 + drawbar_m()) ** 2
         AND (o.x_m - e.x_m) * cos(e.yaw_rad) + (o.y_m - e.y_m) * sin(e.yaw_rad) < 0
 ),
-joint_sample AS (
+shared_sample AS (
     SELECT
         b.*, o.t_ns, e.length_m / 2 AS ego_half_length_m, sqrt((e.x_m - lag(e.x_m) OVER w) ** 2 + (e.y_m - lag(e.y_m) OVER w) ** 2) AS moved_m,
         e.x_m - o.x_m AS dx, e.y_m - o.y_m AS dy, e.yaw_rad AS ego_yaw_rad, o.yaw_rad,
@@ -60,7 +60,7 @@ hitched_trailer AS (
     SELECT drive_id, ego_id, object_id
     FROM (
         SELECT t.*, h.rearward_m AS hitch_m, dx - (ego_half_length_m + h.rearward_m) * cos(ego_yaw_rad) AS hitch_x_m, dy - (ego_half_length_m + h.rearward_m) * sin(ego_yaw_rad) AS hitch_y_m
-        FROM joint_sample t CROSS JOIN (SELECT unnest(range(-10, 7)) / 4 AS rearward_m) h
+        FROM shared_sample t CROSS JOIN (SELECT unnest(range(-10, 7)) / 4 AS rearward_m) h
     )
     GROUP BY drive_id, ego_id, object_id, is_called_trailer, hitch_m
     HAVING max(sqrt(hitch_x_m ** 2 + hitch_y_m ** 2)) - min(sqrt(hitch_x_m ** 2 + hitch_y_m ** 2)) <= hitch_m()

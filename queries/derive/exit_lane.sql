@@ -1,6 +1,7 @@
 -- Lanes that leave the main carriageway: by their type, or because they run beside a through lane until both go on, with gentle bends, on
--- different roads. (At an ordinary junction one of the two turns. An exit bends by less than 45 degrees, the through lane by less than 20.)
--- Of the two roads, the one with fewer lanes is the exit. If they have equally many, it is the one on the side that is driven on.
+-- different roads. (At an ordinary junction one of the two lanes bends off sharply. An exit bends by less than 45 degrees, the through lane
+-- by less than 20.) Of the two roads, the one with fewer lanes is the exit. If they have equally many, it is the one on the side that is
+-- driven on.
 WITH RECURSIVE carriageway AS (
     SELECT environment_id, road_id, section, along_road, count(*) AS n FROM lanelet WHERE drivable GROUP BY ALL
 ),

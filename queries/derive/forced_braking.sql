@@ -16,7 +16,7 @@ head_on_stop AS MATERIALIZED (
         AND abs(p.heading_diff_rad) >= head_on_rad() AND p.speed_mps <= standing_mps() AND p.distance_m < forced_near_m()
     GROUP BY ALL
 ),
-search_second AS (
+second_to_search AS (
     SELECT drive_id, object_id AS actor_id, t_ns // 1_000_000_000 + d.i AS second FROM hard_braking CROSS JOIN (VALUES (-1), (0), (1)) AS d(i)
     UNION
     SELECT drive_id, object_id, t_ns // 1_000_000_000 - d.i FROM head_on_stop CROSS JOIN range(2 * conflict_ns() // 1_000_000_000) AS d(i)
@@ -30,7 +30,7 @@ slowing_sample AS MATERIALIZED (
             CASE WHEN s.t_ns > first_value(s.t_ns) OVER half_second THEN first_value({'t_ns': s.t_ns, 'speed_mps': s.speed_mps}) OVER half_second
                 ELSE lag({'t_ns': s.t_ns, 'speed_mps': s.speed_mps}) OVER w END AS earlier
         FROM state_dynamics s
-        SEMI JOIN search_second n ON n.drive_id = s.drive_id AND n.actor_id = s.actor_id AND n.second = s.t_ns // 1_000_000_000
+        SEMI JOIN second_to_search n ON n.drive_id = s.drive_id AND n.actor_id = s.actor_id AND n.second = s.t_ns // 1_000_000_000
         WINDOW
             w AS (PARTITION BY s.drive_id, s.actor_id ORDER BY s.t_ns),
             half_second AS (PARTITION BY s.drive_id, s.actor_id ORDER BY s.t_ns RANGE BETWEEN 500_000_000 PRECEDING AND CURRENT ROW)
@@ -224,7 +224,7 @@ other_obstacle AS (
 ),
 -- A bend that is too tight for the speed of the object.
 tight_bend AS (SELECT DISTINCT drive_id, object_id, t_from_ns FROM course WHERE way_m <= reach_m AND speed_mps ** 2 * curvature > bend_mps2()),
--- A stop sign, a give-way sign, or a traffic light that is not known to be green during the whole braking.
+-- The lane of the object when it begins to brake.
 braking_lane AS (
     SELECT b.drive_id, b.object_id, b.t_from_ns, b.t_to_ns, b.reach_m, g.environment_id, n.lanelet_id, -o.s_m AS lane_start_m, n.length_m
     FROM braking b
@@ -238,6 +238,7 @@ next_lane AS (
     JOIN lane_link k ON k.environment_id = l.environment_id AND k.from_id = l.lanelet_id
     JOIN lanelet n ON n.environment_id = l.environment_id AND n.lanelet_id = k.to_id
 ),
+-- A stop sign, a give-way sign, or a traffic light that is not known to be green during the whole braking.
 signal_ahead AS (
     SELECT DISTINCT l.drive_id, l.object_id, l.t_from_ns
     FROM (FROM braking_lane UNION ALL FROM next_lane) l

@@ -1,8 +1,8 @@
--- Every actor that is there, or may be there, and has no place in the corridor, with the least distance that it can have. After its last
--- and before its next sighting it comes nearer at 60 m/s at most, and only as its tyres allow. An actor that drives along the road, the
--- ego's way or against it, neither turns round nor reverses. If the log is taken to record every actor in plain view (data_log.in_sight),
--- an actor that is not recorded for a while is not in plain view. An actor off the lanes has a place as long as the corridor reaches beyond
--- it.
+-- Every actor that is present, or may be, and has no position on the corridor, with the least distance that it can have. After its last and
+-- before its next sighting it comes nearer at 60 m/s at most, and only as its tyres allow. An actor that drives along the road, the ego's
+-- way or against it, neither turns round nor reverses. If the log is taken to record every actor in plain view (data_log.in_sight), an
+-- actor that is not recorded for a while is not in plain view. An actor beside all lanes is not listed if the corridor reaches further than
+-- the actor is away and has no hole there: the actor is certainly off the road.
 WITH pair_without_position AS (
     SELECT drive_id, ego_id, t_ns, object_id, actor_class, off_level FROM pair WHERE x_m IS NULL OR y_m IS NULL
 ),
@@ -108,7 +108,7 @@ unwatched_count AS (
         sum((NOT is_in_view)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id, road, t_after_ns ORDER BY t_ns DESC ROWS UNBOUNDED PRECEDING) AS n_unwatched_until
     FROM view_step
 ),
-object_order AS (
+object_ahead_or_behind AS (
     SELECT
         * REPLACE (coalesce(ahead, CASE WHEN is_on_road AND earlier_order.n = n_unwatched_since THEN earlier_order.ahead END, CASE WHEN is_on_road AND later_order.n = n_unwatched_until THEN later_order.ahead END) AS ahead)
     FROM (
@@ -175,7 +175,7 @@ SELECT
     drive_id, ego_id, t_ns, object_id, actor_class, may_be_vehicle(actor_class) AS vehicle,
     greatest(0.0::DOUBLE, coalesce(distance_m, 0.0) - half_sizes_m, along_m, CASE WHEN late THEN coalesce(around_m, 0.0) - half_sizes_m END) AS least_m, ahead, along, late,
     greatest(least_m, off_ahead_m, CASE WHEN late THEN lane_in_view_m END) AS lane_m
-FROM object_order
+FROM object_ahead_or_behind
 UNION ALL
 SELECT
     h.drive_id, h.ego_id, h.t_ns, h.object_id, h.actor_class, may_be_vehicle(h.actor_class),

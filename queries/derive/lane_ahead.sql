@@ -1,5 +1,6 @@
--- Vehicles and things ahead of the ego in its running lane, or in its way there. The table lead has the nearest vehicle of them. For an ego
--- that is out of its lane, an object that is turned towards it and is in its way beside the lane is ahead, too (`outside`).
+-- Vehicles and objects ahead of the ego in its running lane: with their centre in the lane, or partly in the lane and in the ego's way. The
+-- table lead has the nearest vehicle of them. For an ego that is out of its lane, an object that is turned towards it and is in its way
+-- beside the lane is ahead, too (`outside`).
 WITH
 -- A vehicle that follows a junction lane of its own across the ego's path crosses that path and is not ahead: see conflict.
 crossing AS (
@@ -15,7 +16,7 @@ object_ahead AS (
         abs(p.heading_diff_rad) > pi() / 2 AS oncoming, abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m AS across_m,
         sign(p.d_m - e.d_m) * e.speed_mps * sin(e.heading_diff_rad) AS ego_across_mps, sign(e.d_m - p.d_m) * p.speed_mps * sin(p.heading_diff_rad) AS across_mps,
         abs(p.d_m) <= p.half_width_m AS is_centre_in_lane, NOT in_lane(p.d_m, p.lat_half_m, p.half_width_m) AS outside,
-        -- In the ego's way now, or soon at the present speeds across the lane. For an object that comes towards the ego only now counts.
+        -- In the ego's way now, or soon at the present speeds across the lane. For an oncoming object only its present place counts.
         abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m
         < CASE WHEN abs(p.heading_diff_rad) < 2 * pi() / 3 THEN
             drift_s() * greatest(0.0, sign(p.d_m - e.d_m) * (e.speed_mps * sin(e.heading_diff_rad) - p.speed_mps * sin(p.heading_diff_rad)))

@@ -72,7 +72,7 @@ unjoined_overlap AS MATERIALIZED (
         SELECT x.environment_id, x.road_id, y.road_id AS other_road_id FROM at_junction x JOIN at_junction y USING (environment_id, junction_id)
     ) USING (environment_id, road_id, other_road_id)
 ),
--- A crossing that is no junction in the map is one all the same if short lanes lead from one road to the other. A ramp is longer.
+-- Two roads that cross without a junction in the map meet all the same if short lanes lead from one road to the other. A ramp is longer.
 reached AS (
     SELECT environment_id, a AS start, b, 0.0::DOUBLE AS between_m, 1 AS hop
     FROM next_to

@@ -1,7 +1,7 @@
 -- The lanelet beyond each boundary of a drivable lanelet. If the map names no neighbour, it is the lane that is driven beside the boundary,
--- in pieces of at most 10 m. Maps with one road per direction, and maps that cut or number the two directions apart, name no neighbour.
--- Junctions are left out, because lanes of all directions overlap there. A narrow strip that the map draws as a lane between the two
--- directions is skipped, as the space between two painted lines is.
+-- in pieces of at most 10 m. Maps with one road per direction name no neighbour, nor do maps that divide the two directions into different
+-- sections, or number their lanes separately. Junctions are left out, because lanes of all directions overlap there. A narrow strip that
+-- the map draws as a lane between the two directions is skipped, as the space between two painted lines is.
 WITH RECURSIVE side AS (
     SELECT n.environment_id, n.lanelet_id, n.length_m, v.side, CASE v.side WHEN 1 THEN n.left_id ELSE n.right_id END AS beside_id,
         CASE v.side WHEN 1 THEN n.left_against ELSE n.right_against END AS against
@@ -9,6 +9,7 @@ WITH RECURSIVE side AS (
     CROSS JOIN (VALUES (1), (-1)) AS v(side)
     WHERE n.drivable
 ),
+-- The lanelets beyond each boundary, looked up through narrow strips: beside_id is what lies beyond the strips so far, gap_m their width.
 through AS (
     SELECT environment_id, lanelet_id, side, lanelet_id AS from_id, beside_id, against, 0.0::DOUBLE AS gap_m, NULL::VARCHAR AS strip FROM side WHERE beside_id IS NOT NULL
     UNION ALL
@@ -45,12 +46,12 @@ boundary_piece AS (
     JOIN lanelet j ON j.environment_id = s.environment_id AND j.lanelet_id = s.lanelet_id AND j.junction_id IS NULL
     ANTI JOIN named b ON b.environment_id = s.environment_id AND b.lanelet_id = s.lanelet_id AND b.side = s.side
 ),
--- Points beyond the boundary. Their distance from each other is less than the width of any lane.
 piece_middle AS (
     SELECT environment_id, lanelet_id, side, s0_m + i * len_m / n AS s_start_m, s0_m + (i + 1) * len_m / n AS s_end_m,
         (i + 0.5) / n AS u, z_m, hw0_m, hw1_m, x0_m, y0_m, tx0, ty0, x1_m, y1_m, tx1, ty1
     FROM boundary_piece
 ),
+-- Points beyond the boundary. Their distance from each other is less than the width of any lane.
 probe_point AS (
     SELECT
         environment_id, lanelet_id, side, s_start_m, s_end_m, o.out_m, tx, ty, z_m,

@@ -127,13 +127,14 @@ follower_braking AS (
     JOIN clock k USING (drive_id, ego_id)
     GROUP BY ALL
 ),
--- A merge leaves a lane that only leads onto the new one: by its type, or because it ends and the other one goes on.
+-- A change is a merge if the lane that the ego leaves only leads onto the new one: by its type, or because it ends and the new one goes on.
 chain_end AS (
     SELECT c.drive_id, c.ego_id, c.chain_id, max(c.s_start_m + c.length_m) AS end_m, max({'seq': c.seq, 'id': c.lanelet_id}).id AS last_id
     FROM chain c
     GROUP BY ALL
 ),
--- A merge also leaves a lane that goes on as one lane with the new one, and narrows to nothing on the way there.
+-- It is also a merge if the two lanes become one, and the one that the ego leaves narrows to nothing on the way there: just before, it is
+-- less than half as wide as the new one.
 lane_merge AS (
     SELECT c.drive_id, c.ego_id, c.occurrence, min({'s_m': a.s_start_m, 'from_seq': a.seq, 'to_seq': b.seq}) AS merge_place
     FROM change c

@@ -13,5 +13,5 @@ SELECT
     c.previous.seg = c.seg AS seen, CASE WHEN x.d_m > 0 THEN 1 ELSE -1 END AS side
 FROM chain_step c
 JOIN ego_corridor x ON x.drive_id = c.drive_id AND x.ego_id = c.ego_id AND x.chain_id = c.previous.chain_id AND x.t_ns = c.t_ns
--- Within 2 cm of the line, the centre is on both lanes.
+-- Within 5 cm of the line, the centre is on both lanes.
 WHERE c.previous.chain_id <> c.to_chain_id AND abs(x.d_m) > x.half_width_m - 0.05 AND abs(x.heading_diff_rad) < pi() / 2

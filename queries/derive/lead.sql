@@ -1,5 +1,5 @@
--- The nearest vehicle ahead of the ego in the running lane. A row without an object says that nobody is there. A step has no row if
--- somebody without a place or of unknown class may be nearer, or if the ego itself has no place.
+-- The nearest vehicle ahead of the ego in the running lane. A row without an object says that no vehicle is there. A step has no row if an
+-- actor of unknown class, or one without a position on the corridor, may be nearer, or if the ego itself has no position on it.
 WITH
 ahead AS (
     SELECT
@@ -14,7 +14,7 @@ ahead AS (
     WHERE p.outside IS DISTINCT FROM true
     GROUP BY ALL
 ),
-filtered_actor AS (SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'velocity_filtered'),
+actor_with_filtered_velocity AS (SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'velocity_filtered'),
 hidden_vehicle AS (
     SELECT drive_id, ego_id, t_ns, min(lane_m) FILTER (NOT late) AS least_m, min(lane_m) FILTER (late) AS late_m
     FROM hidden
@@ -53,7 +53,7 @@ lead_run AS (
 run_begin AS (
     SELECT drive_id, ego_id, run_no, min(t_ns) AS t_since_ns, min(k) AS k FROM lead_run WHERE nearest.object_id IS NOT NULL GROUP BY ALL
 ),
--- The place of the nearest vehicle one step before it became the nearest, and its speed half a second earlier.
+-- The place and the speed of the nearest vehicle one step earlier and half a second earlier.
 earlier_place AS (
     SELECT r.drive_id, r.ego_id, r.t_ns, p.t_ns AS t_earlier_ns, CASE WHEN p.heading_diff_rad IS NOT NULL THEN along_lane_mps(p.speed_mps, p.heading_diff_rad) END AS speed_mps, p.rear_s_m, p.d_m, p.lat_half_m, p.half_width_m
     FROM (
@@ -85,6 +85,6 @@ FROM lead_run r
 LEFT JOIN ego_corridor x ON x.drive_id = r.drive_id AND x.ego_id = r.ego_id AND x.chain_id = r.chain_id AND x.t_ns = r.t_ns
 LEFT JOIN earlier_place h ON h.drive_id = r.drive_id AND h.ego_id = r.ego_id AND h.t_ns = r.t_ns AND h.t_earlier_ns = r.t_half_second_ns
 LEFT JOIN run_begin b ON b.drive_id = r.drive_id AND b.ego_id = r.ego_id AND b.run_no = r.run_no
-LEFT JOIN filtered_actor f ON f.drive_id = r.drive_id AND f.actor_id = r.nearest.object_id
-LEFT JOIN filtered_actor g ON g.drive_id = r.drive_id AND g.actor_id = r.ego_id
+LEFT JOIN actor_with_filtered_velocity f ON f.drive_id = r.drive_id AND f.actor_id = r.nearest.object_id
+LEFT JOIN actor_with_filtered_velocity g ON g.drive_id = r.drive_id AND g.actor_id = r.ego_id
 LEFT JOIN run_origin o ON o.drive_id = r.drive_id AND o.ego_id = r.ego_id AND o.run_no = r.run_no

@@ -106,8 +106,9 @@ standing_phase AS (
     SEMI JOIN hidden h ON h.drive_id = p.drive_id AND h.ego_id = p.ego_id AND h.object_id = p.object_id AND h.late
     WHERE abs(p.d_m) - p.lat_half_m < p.half_width_m + 0.5 AND passed_over_any_line(p.actor_class, p.length_m, p.speed_mps) IS DISTINCT FROM false
 ),
--- Steps at which an object without a place may be the one that is passed. A vehicle that is not in plain view is not in the part of the
--- lane ahead that is in plain view. If it is behind, it was not passed.
+-- Steps at which an object without a position on the corridor may be the one that is passed. A vehicle that is not in plain view is not in
+-- the part of the lane ahead that is in plain view. A vehicle that is certainly behind the ego is not the one that the ego goes round: that
+-- one is ahead of the ego or beside it.
 possible_pass AS (
     SELECT DISTINCT n.drive_id, n.ego_id, n.t_ns
     FROM hidden h
@@ -144,8 +145,8 @@ beside AS (
         AND d.is_near IS DISTINCT FROM false AND (NOT r.is_on_foot OR coalesce(in_lane(p.d_m, p.lat_half_m, p.half_width_m), false))
     GROUP BY ALL
 ),
--- Actors that the ego may pass over any line, and that leave too little room to be passed on this side of the line. In a stretch in which
--- the ego also overtakes a moving vehicle, it needs the line for that vehicle, so they do not count.
+-- Actors that the ego may cross even a solid line to pass, and that leave too little room to be passed on this side of it. In a stretch in
+-- which the ego also overtakes a moving vehicle, it needs the line for that vehicle, so they do not count.
 passable_object AS (
     SELECT
         n.drive_id, n.ego_id, n.t_ns, n.side, min({'gap_m': p.rear_s_m - e.front_s_m, 'object_id': p.object_id}) FILTER (x.is_allowed).object_id AS passing_id,
@@ -163,9 +164,9 @@ passable_object AS (
         AND x.is_allowed IS DISTINCT FROM false AND NOT coalesce(o.is_moving, false)
     GROUP BY ALL
 ),
--- Stretches off the lanes. The ego gets to a way of another kind there if it turns off, stands, or goes further than 10 m from the lane. A
--- shoulder, bay or cycle lane is part of the road itself: an ego that stands along it, or comes back from it to lanes that run as those
--- before, was not elsewhere. An ego that turns beside the lanes and comes back to such lanes may only have turned round.
+-- Stretches off the lanes. The ego gets to premises or a side road there if it turns off, stands, or goes further than 10 m from the lane.
+-- A shoulder, bay or cycle lane is part of the road itself: an ego that stands along it, or comes back from it to lanes of the same
+-- direction as before, has not left the road. An ego that turns beside the lanes and comes back to such lanes may only have turned round.
 off_lane_stretch AS (
     SELECT
         drive_id, ego_id, seg, run_no, min(travel_m) AS from_m, max(travel_m) AS to_m,
@@ -180,7 +181,7 @@ off_lane_stretch AS (
     )
     GROUP BY ALL
 ),
--- Whether the ego gets to such a way within 30 m, or comes back from one within 30 m.
+-- Whether the ego gets to premises or a side road within 30 m, or comes back from there within 30 m.
 way_reached AS (
     SELECT
         n.drive_id, n.ego_id, n.t_ns, n.side, v.is_way_back,

@@ -37,8 +37,8 @@ doubtful_object AS (
     ) u
     ANTI JOIN object_not_oncoming b ON b.drive_id = u.drive_id AND b.ego_id = u.ego_id AND b.t_ns = u.t_ns AND b.object_id = u.object_id
     LEFT JOIN nearest_vehicle n ON n.drive_id = u.drive_id AND n.ego_id = u.ego_id AND n.t_ns = u.t_ns
-    -- A vehicle beyond the end of the map is no doubt, because free_m ends there. A vehicle that the ego has met is behind. The nearest OV
-    -- itself is a doubt only if it came from off the lanes, because the way that it still had to make is then not known.
+    -- A vehicle beyond the end of the map raises no doubt, because free_m ends there. A vehicle that the ego has met is behind. The nearest
+    -- OV itself raises a doubt only if it came from off the lanes, because the way that it still had to make is then not known.
     WHERE u.code NOT IN ('beyond_map', 'lost_behind') AND (n.ov.object_id IS NULL OR n.ov.object_id <> u.object_id OR n.ov.is_coming)
     GROUP BY ALL
 )

@@ -64,7 +64,7 @@ candidate_without_place AS (
                 AND h.least_m <= 100 AND h.ahead IS DISTINCT FROM false)
             AND NOT EXISTS (FROM ahead a WHERE a.drive_id = g.drive_id AND a.ego_id = g.ego_id AND a.chain_id = g.chain_id AND a.t0_ns = g.t0_ns AND a.near_m <= 100)
 ),
--- An object that has a place only later, ahead in the lane, and is passed, is an overtaken vehicle, too.
+-- An object that has a position on the corridor only later, ahead in the lane, and is passed, is an overtaken vehicle, too.
 late_candidate AS (
     SELECT drive_id, ego_id, chain_id, t0_ns, object_id, NULL::DOUBLE AS gap_m, NULL::DOUBLE AS speed_mps, max(length_m) AS length_m, false AS is_placed, NULL::DOUBLE AS near_m
     FROM pair_in_excursion

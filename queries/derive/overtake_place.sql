@@ -60,9 +60,9 @@ front_place AS (
     ) l
     JOIN ego_corridor x ON x.drive_id = l.drive_id AND x.ego_id = l.ego_id AND x.chain_id = l.chain_id AND x.t_ns = l.t_ns
 ),
--- The last sign or junction before the ego: a sign holds until its end is signed, or until the next junction. If there is neither, a sign
--- may stand further back than the corridor reaches, or where the map begins.
-sign_before AS (
+-- The last sign or junction that the ego has passed: a sign holds until its end is signed, or until the next junction. If there is neither,
+-- a sign may stand further back than the corridor reaches, or where the map begins.
+last_sign_passed AS (
     SELECT w.drive_id, w.ego_id, w.occurrence, f.is_level, max({'s_m': w.s_m, 'holds': w.holds}).holds AS holds
     FROM (
         SELECT w.drive_id, w.ego_id, w.occurrence, w.s_start_m + t.lane_s_m AS s_m, t.kind = 'no_overtaking' AS holds
@@ -103,7 +103,8 @@ earlier_speed AS (
     GROUP BY ALL
 ),
 -- Vehicles in the overtaking lane, or in the running lane and moving over at more than 0.3 m/s. While part of a vehicle is beside the ego,
--- it is not yet past. But a vehicle whose middle is ahead is one that the ego passes, or drives beside, unless it is faster.
+-- it is not yet past. A vehicle whose middle is ahead of the ego's is left out, unless it is or may be faster: the ego passes it, or drives
+-- beside it.
 rear_vehicle AS (
     SELECT
         g.drive_id, g.ego_id, g.occurrence,
@@ -143,8 +144,8 @@ LEFT JOIN next_crossing x USING (drive_id, ego_id, occurrence)
 LEFT JOIN (FROM crossed_line WHERE NOT is_way_back) o USING (drive_id, ego_id, occurrence)
 LEFT JOIN (FROM crossed_line WHERE is_way_back) b USING (drive_id, ego_id, occurrence)
 LEFT JOIN map_with_signs d ON d.environment_id = g.environment_id
-LEFT JOIN (FROM sign_before WHERE NOT is_level) s USING (drive_id, ego_id, occurrence)
-LEFT JOIN (FROM sign_before WHERE is_level) v USING (drive_id, ego_id, occurrence)
+LEFT JOIN (FROM last_sign_passed WHERE NOT is_level) s USING (drive_id, ego_id, occurrence)
+LEFT JOIN (FROM last_sign_passed WHERE is_level) v USING (drive_id, ego_id, occurrence)
 LEFT JOIN (FROM front_place WHERE is_level) u USING (drive_id, ego_id, occurrence)
 LEFT JOIN rear_vehicle r USING (drive_id, ego_id, occurrence)
 LEFT JOIN hidden_vehicle h ON h.drive_id = g.drive_id AND h.ego_id = g.ego_id AND h.t_ns = g.t0_ns

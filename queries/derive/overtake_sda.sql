@@ -68,8 +68,8 @@ planned_distance AS (
     FROM formula_input
 ),
 required_distance AS (
-    -- The driven distance counts if DA is not even more than that. For an overtake that was not completed, it is not known which other
-    -- distance would have been enough.
+    -- The driven distance counts only if DA is at most that. For an overtake that was not completed, the distance that would have been
+    -- enough is not known.
     SELECT
         *, CASE WHEN da_m <= driven_m THEN greatest(planned_m, driven_m) ELSE planned_m END AS sda_m, coalesce(da_m <= sda_m AND da_m > sped_up_m, false) AS has_sped_up
     FROM planned_distance
@@ -89,7 +89,8 @@ SELECT
     ov_id IS NULL AS at_least,
     ov_id IS NULL AND n_unplaced = 0 AS nobody,
     sda_m, da_m - sda_m AS spare_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0) AS spare_s,
-    -- If the sight line is too short, or somebody cannot be placed, it is open how much worse it was. Then only zone A can be told.
+    -- Without an OV, a zone is given only if every vehicle is placed and the sight line is longer than SDA. With an OV and a vehicle that
+    -- is not placed, only zone A can be told: that vehicle may leave even less.
     CASE WHEN is_known AND NOT has_sped_up AND CASE WHEN ov_id IS NULL THEN n_unplaced = 0 AND da_m > sda_m ELSE n_unplaced = 0 OR da_m <= sda_m END THEN overtake_zone(da_m - sda_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0)) END AS zone,
     CASE
         WHEN NOT begin_seen THEN 'the log does not show where the overtake began: record the ego from before it'

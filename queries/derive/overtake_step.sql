@@ -1,6 +1,6 @@
 -- The danger spaces at every step of an overtake, swept along the corridor: as wide as the vehicle, at its place across the lane, and as
 -- long as its stopping distance. How far a vehicle is inside a danger space is the least overlap over the axes of both boxes, in corridor
--- coordinates: a vehicle that stands across the lane reaches no further than its corners.
+-- coordinates: a turned vehicle counts with its real outline, not with the box around it.
 WITH stage AS (
     SELECT
         o.drive_id, o.ego_id, o.occurrence, o.vbp_id, o.sure, e.t_ns,
@@ -27,9 +27,9 @@ pair_in_overtake AS (
         s_m + length_m / 2 * cos(heading_diff_rad) AS bumper_s_m, d_m + length_m / 2 * sin(heading_diff_rad) AS bumper_d_m
     FROM pair SEMI JOIN stage USING (t_ns)
 ),
--- All oncoming vehicles except the VBP, which may stand the wrong way round. For each distance the worst of them counts. If the place of a
--- vehicle across the corridor is not known, because it is still on its way there or has no size, it may be the worst one, unless the danger
--- spaces do not even reach so far.
+-- All oncoming vehicles except the VBP, which may stand the wrong way round. For each of the three overlaps (ov_in_m, av_in_m, overlap_m)
+-- the worst of them counts. If the place of a vehicle across the corridor is not known, because it is still on its way there or has no
+-- size, it may be the worst one, unless the danger spaces do not even reach so far.
 ov_overlap AS (
     SELECT
         s.drive_id, s.ego_id, s.occurrence, s.t_ns, v.object_id, v.da_m, o.sd_m, o.bumper_s_m, o.bumper_d_m, o.box_half_width_m,

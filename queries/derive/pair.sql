@@ -120,12 +120,13 @@ chain_place AS MATERIALIZED (
     JOIN corridor_bucket c ON c.drive_id = b.drive_id AND c.ego_id = b.ego_id AND c.lanelet_id = b.lanelet_id AND c.chain_id = b.chain_id
         AND c.bucket = floor(b.ego_s_m / 1000)::BIGINT
 ),
--- Of several places on a corridor that meets itself, the one nearest to the ego along it counts (see above). The station decides a tie.
-least_off AS MATERIALIZED (SELECT pair_no, min(off) AS off FROM chain_place GROUP BY pair_no),
-nearest_place AS MATERIALIZED (SELECT o.* FROM chain_place o JOIN least_off USING (pair_no, off)),
+-- Of several places on a corridor that meets itself, the one nearest to the ego along it counts: the one with the least `off`, the distance
+-- with the penalties above. The station decides a tie.
+least_penalty AS MATERIALIZED (SELECT pair_no, min(off) AS off FROM chain_place GROUP BY pair_no),
+nearest_place AS MATERIALIZED (SELECT o.* FROM chain_place o JOIN least_penalty USING (pair_no, off)),
 -- Ties are rare. They are looked for only if there are more rows than pairs.
 tied_pair AS (
-    SELECT pair_no FROM nearest_place WHERE (SELECT count(*) FROM nearest_place) > (SELECT count(*) FROM least_off) GROUP BY pair_no HAVING count(*) > 1
+    SELECT pair_no FROM nearest_place WHERE (SELECT count(*) FROM nearest_place) > (SELECT count(*) FROM least_penalty) GROUP BY pair_no HAVING count(*) > 1
 ),
 tie_winner AS (
     SELECT
@@ -152,7 +153,7 @@ pair_over_road AS MATERIALIZED (
     WHERE (a.z_m IS NOT NULL OR r.drive_id IS NOT NULL)
         AND abs(p.d_m) - coalesce(a.object_half_length_m * abs(sin(p.lane_heading_diff_rad)) + a.object_half_width_m * abs(cos(p.lane_heading_diff_rad)), 0.0) < p.half_width_m + greatest(coalesce(p.over_width_m, 0.0), 2 * p.half_width_m)
 ),
--- One height for each place: while the ego stands, it could be any of several.
+-- An ego that stands has several samples at one station: the lowest height is taken.
 ego_height AS (SELECT drive_id, ego_id, chain_id, s_m, min(z_m) AS z_m FROM ego_state WHERE s_m IS NOT NULL AND z_m IS NOT NULL GROUP BY ALL),
 -- The object's height against the ego's, where the ego comes nearest to that place, before or after.
 height_difference AS (
@@ -169,10 +170,12 @@ height_difference AS (
         WHERE o.z_m IS NOT NULL
     )
 ),
+-- Pairs on different levels, or possibly so.
 off AS (
     SELECT pair_no FROM height_difference WHERE is_apart
     UNION
-    -- The object is in a lane over or under the ego's, as far as the map tells, and does not head along the ego's lane alone.
+    -- The object is in a lane over or under the ego's, as far as the map tells, unless it heads along the ego's lane and not along that
+    -- other one.
     SELECT v.pair_no
     FROM pair_over_road v
     JOIN data_log g USING (drive_id)
@@ -230,7 +233,7 @@ SELECT
 FROM combined_clearance c
 LEFT JOIN off o USING (pair_no)
 LEFT JOIN (FROM object_place ANTI JOIN off USING (pair_no)) p USING (pair_no)
--- If the object has no place on the ego's road, its level matters only in a contact.
+-- If the object has no position on the corridor, its level matters only in a contact.
 CROSS JOIN LATERAL (
     SELECT o.pair_no IS NOT NULL OR coalesce(p.pair_no IS NULL AND c.clearance_m <= 0 AND NOT same_level(c.z_m, c.ego_z_m), false) AS off_level
 ) l

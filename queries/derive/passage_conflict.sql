@@ -1,4 +1,5 @@
--- The actors before which the ego went through a junction, by the direction from which they came, and whether nobody else can have come.
+-- The actors that the ego went ahead of in a junction (it took the common ground first, or while they were still on it), by the direction
+-- from which they came, and whether no other actor can have come.
 WITH passage AS (
     SELECT
         p.drive_id, p.ego_id, p.occurrence, p.t_in_ns, p.t_out_ns, coalesce(p.t_in_ns, p.t_first_ns) AS t_enter_ns, coalesce(p.t_out_ns, p.t_last_ns) AS t_leave_ns,
@@ -78,7 +79,7 @@ hardest_braking AS (
     )
     GROUP BY drive_id, ego_id, occurrence, relation
 ),
--- ---- reasons against "nobody else": actors that are present and cannot be compared
+-- ---- reasons against "no other actor": actors that are present, but without a position, heading or size
 incomplete_pair AS (
     SELECT
         drive_id, ego_id, t_ns, object_id, actor_class, x_m, y_m, x_m IS NULL OR y_m IS NULL AS has_no_position,
@@ -109,13 +110,14 @@ unclear_object_near AS (
     ) k USING (drive_id, ego_id, occurrence, object_id)
     WHERE k.least_m IS NULL OR k.least_m < meeting_near_m() + 30 * u.without_position_s
 ),
--- Actors whose track begins or ends there while the ego passes, or so soon before that they may have come.
 track AS (
     SELECT s.drive_id, s.actor_id, s.actor_class, min(s.t_ns) AS t_first_ns, max(s.t_ns) AS t_last_ns
     FROM state_dynamics s
     WHERE s.actor_class IS DISTINCT FROM 'object' AND s.x_m IS NOT NULL AND s.y_m IS NOT NULL
     GROUP BY s.drive_id, s.actor_id, s.actor_class
 ),
+-- Actors whose track begins or ends while the ego passes the junction, or so soon before or after that they may have come.
+-- broken_track_near keeps those near the junction.
 broken_track AS (
     SELECT p.drive_id, p.ego_id, p.occurrence, d.actor_id AS object_id, d.actor_class, v.doubt_words, v.t_ns, p.x_m, p.y_m,
         -- Towards the junction (1) or away from it (-1), and how long that may have taken.

@@ -1,8 +1,8 @@
--- Passings: the ego and another road user that heads the same way change their order, front against front. Steps at which the other has no
--- place, and holes, are bridged: the order has changed all the same, but the stretch was not seen whole. If the order before or after is
--- not known either, and the two may have been beside each other, the order may have changed.
+-- Passings: the ego and another road user that heads the same way change their order, measured from front bumper to front bumper. Steps at
+-- which the other has no position on the corridor, and holes, are bridged: the order has changed all the same, but the stretch was not seen
+-- whole. If the order before or after is not known either, and the two may have been beside each other, the order may have changed.
 WITH
--- Steps at which the ego itself has no place are bridged, too.
+-- Steps at which the ego itself has no position on the corridor are bridged, too.
 ego_place_step AS (
     SELECT drive_id, ego_id, t_ns, row_number() OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns) AS ego_step_no FROM ego_state WHERE front_s_m IS NOT NULL
 ),

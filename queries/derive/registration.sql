@@ -2,11 +2,11 @@
 -- (or on a shoulder, where some drives are for most of the time) in at least 80 % of the steps. It drives with the traffic in at least 60 %
 -- of the moving steps; steps of an overtake in the opposing lane are left out, because a short drive may be little else. Its median
 -- distance from the centre line is at most 1.2 m (half a lane: with a map shifted by one lane, 100 % of the steps are still on a lane); the
--- median is taken outside such an overtake where that is enough.
+-- median is taken outside such an overtake if enough steps lie outside one.
 -- The map also fits if three of four other vehicles drive with their lanes, and the ego was against its own lane for longer than an
 -- overtake takes: then the ego is on the wrong side.
--- The map also fits if the ego keeps to the middle of a lane before and after it is elsewhere, on a road that runs as the other one does:
--- the map fits there, and a log does not slip away from its map and back.
+-- The map also fits if the ego keeps to the middle of a lane before and after it is elsewhere, on a road with the same direction (or on two
+-- roads that cross): the map fits there, and a log does not slip away from its map and back.
 WITH opposing_step AS (
     SELECT DISTINCT x.drive_id, x.ego_id, st.t_ns
     FROM excursion x
@@ -95,7 +95,7 @@ ego_step AS (
     LEFT JOIN ego_place e ON e.drive_id = st.drive_id AND e.ego_id = st.ego_id AND e.t_ns = st.t_ns
     LEFT JOIN opposing_step x ON x.drive_id = st.drive_id AND x.ego_id = st.ego_id AND x.t_ns = st.t_ns
 ),
--- Stretches in which the ego keeps to the middle of its lane for long, or closely for some time. Neither is a lane change.
+-- Stretches in which the ego keeps to the middle of its lane for long, or closely for some time. Neither can happen in a lane change.
 lane_keeping AS (
     SELECT drive_id, ego_id, min(t_ns) AS t_from_ns, max(t_ns) AS t_to_ns, list_distinct(list(direction_no)) AS direction_nos
     FROM (
@@ -110,7 +110,7 @@ lane_keeping_span AS (
     SELECT drive_id, ego_id, min(t_to_ns) AS t_before_ns, max(t_from_ns) AS t_after_ns, list_distinct(flatten(list(direction_nos))) AS direction_nos FROM lane_keeping GROUP BY ALL
 ),
 -- A map that is shifted along a road still fits on that road. Its place is known in both directions only if the ego kept to two roads that
--- cross. Otherwise the road on which the ego is elsewhere must run as those that it kept to.
+-- cross. Otherwise the road where the ego does not fit must have the direction of a road where it did.
 fitting_ego AS (
     SELECT l.drive_id, l.ego_id
     FROM ego_step l

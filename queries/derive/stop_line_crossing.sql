@@ -34,7 +34,7 @@ approach_step AS (
 slowest_step AS (
     SELECT
         drive_id, ego_id, chain_id, mark_id, s_start_m, t_ns,
-        -- At high speed no step may fall into the last three metres. Then the last step before the line counts.
+        -- At high speed there may be no step within the last three metres. Then the last step before the line counts.
         coalesce(
             min({'speed_mps': speed_mps, 't_ns': t_step_ns, 'front_m': front_m}) FILTER (front_m >= -3 AND speed_mps IS NOT NULL),
             min({'speed_mps': speed_mps, 't_ns': t_step_ns, 'front_m': front_m}) FILTER (is_last AND speed_mps IS NOT NULL)

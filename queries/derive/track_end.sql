@@ -1,6 +1,7 @@
--- The ends and the beginnings of tracks, and of their parts between two holes, while the log goes on. plain_ns is the time from which on
--- (or until which) an object that is not recorded is not in plain view. A recorder may lose an actor in plain view, but not for long. An
--- actor that leaves the recorder's range, or goes behind another box, is out of sight at once.
+-- The ends and the beginnings of tracks, and of their parts between two holes, while the log goes on. A recorder may lose an actor in plain
+-- view, but not for long. At the end of a track, plain_ns is the time until which the recorder may merely have lost the object; after it,
+-- an object that is not recorded is out of sight. At the beginning of a track, the object was out of sight before plain_ns. An actor that
+-- leaves the recorder's range, or goes behind another box, is out of sight at once.
 WITH incomplete_track AS (
     SELECT e.drive_id, e.ego_id, e.object_id, c.t_start_ns + c.max_gap_ns AS t_begin_limit_ns, c.t_end_ns - c.max_gap_ns AS t_end_limit_ns
     FROM (

@@ -1,4 +1,4 @@
--- Steps at which "nobody is coming" cannot be claimed: a vehicle is present without a position, heading or size, moves beside every lane
+-- Steps at which "nobody is coming" cannot be claimed: a vehicle is present without a position, heading or size, moves off all lanes and is
 -- nearer than the corridor reaches, or its track begins or ends where it must have been on the road. A vehicle that comes in over the far
 -- end of the map was beyond that end until then. While the ego is far from there, this has a code of its own (beyond_map), as has a vehicle
 -- that the ego has met already (lost_behind).

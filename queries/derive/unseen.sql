@@ -1,6 +1,6 @@
 -- Actors whose track ends or begins while the log goes on, near enough to matter, and the steps at which they may be on the road all the
--- same. `near`: when the actor was seen, it was close by, within the sensor's range, or coming towards the ego. It may be anywhere in
--- between.
+-- same. `near`: when the actor was seen, it was close by, within the sensor's range, or coming towards the ego. While it is not seen, it
+-- may be anywhere on the road.
 WITH track AS (
     SELECT drive_id, ego_id, object_id, actor_class, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns FROM pair GROUP BY ALL
 ),

@@ -1,6 +1,6 @@
--- Every vehicle ahead in the running lane that the ego may hit or follow. This is the nearest one (lead) and, if that one is beside the
--- ego's way or goes the ego's way, the vehicles that it hides: the nearest one in the ego's way, one nearer that is heading into it, and
--- the nearest one that comes towards the ego, in the lane or in the ego's way beside it.
+-- Every vehicle ahead in the running lane that the ego may hit or follow. This is first the nearest one (lead). It is not the only one if
+-- it is beside the ego's way or drives in the ego's direction. Then these count as well: the nearest one in the ego's way, a nearer one
+-- that is heading into it, and the nearest one that comes towards the ego, in the lane or in the ego's way beside it.
 WITH
 lane_summary AS (
     SELECT
@@ -29,7 +29,7 @@ further_vehicle AS (
     FROM lead l
     JOIN lane_summary c USING (drive_id, ego_id, t_ns)
 ),
-filtered_actor AS (SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'velocity_filtered'),
+actor_with_filtered_velocity AS (SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'velocity_filtered'),
 half_second AS (
     SELECT
         drive_id, ego_id, t_ns,
@@ -57,12 +57,12 @@ vehicle_or_doubt AS (
     JOIN lane_ahead p ON p.drive_id = m.drive_id AND p.ego_id = m.ego_id AND p.t_ns = m.t_ns AND p.object_id = m.object_id
     JOIN half_second h ON h.drive_id = m.drive_id AND h.ego_id = m.ego_id AND h.t_ns = m.t_ns
     LEFT JOIN pair b ON b.drive_id = m.drive_id AND b.ego_id = m.ego_id AND b.t_ns = h.t_half_second_ns AND b.object_id = m.object_id
-    LEFT JOIN filtered_actor f ON f.drive_id = m.drive_id AND f.actor_id = m.object_id
-    LEFT JOIN filtered_actor g ON g.drive_id = m.drive_id AND g.actor_id = m.ego_id
+    LEFT JOIN actor_with_filtered_velocity f ON f.drive_id = m.drive_id AND f.actor_id = m.object_id
+    LEFT JOIN actor_with_filtered_velocity g ON g.drive_id = m.drive_id AND g.actor_id = m.ego_id
     ASOF LEFT JOIN cut_in i ON i.drive_id = m.drive_id AND i.ego_id = m.ego_id AND i.object_id = m.object_id AND i.t_ns <= m.t_ns
     ASOF LEFT JOIN lane_crossing x ON x.drive_id = m.drive_id AND x.ego_id = m.ego_id AND x.t_ns <= m.t_ns
     UNION ALL BY NAME
-    -- Somebody without a place, or of unknown class, may be in the ego's way behind a lead that is beside it.
+    -- An actor without a position on the corridor, or of unknown class, may be in the ego's way behind a lead that is beside that way.
     SELECT l.drive_id, l.ego_id, l.t_ns, NULL::VARCHAR AS object_id, false AS nearest, false AS known, l.ego_speed_mps, l.in_lane, 0.0 AS error_mps,
         least(d.least_m, d.late_m, c.unclassified_m, c.outside_m) AS free_m, l.ego_speed_mps + CASE WHEN d.along AND c.unclassified_m IS NULL AND c.outside_m IS NULL THEN 0.0 ELSE fastest_mps() END AS free_mps
     FROM lead l
@@ -70,10 +70,10 @@ vehicle_or_doubt AS (
     LEFT JOIN hidden_vehicle d USING (drive_id, ego_id, t_ns)
     WHERE l.object_id IS NOT NULL AND l.in_lane IS DISTINCT FROM false
         AND (least(d.least_m, c.unclassified_m) < coalesce(c.way_gap_m, lead_reach_m(l.ego_speed_mps)) OR c.way_gap_m IS NULL AND d.late_m < lead_reach_m(l.ego_speed_mps))
-        -- Out of its lane, the ego may meet such an object, whoever is in the lane.
+        -- An ego out of its lane may meet an object that is beside the lane (outside), whatever vehicle is in the lane.
         OR c.outside_m < coalesce(c.way_gap_m, lead_reach_m(l.ego_speed_mps))
     UNION ALL BY NAME
-    -- Somebody may be there, nearer than every vehicle that is seen.
+    -- No lead is known: an actor without a position on the corridor, or of unknown class, may be nearer than every vehicle that is seen.
     SELECT
         e.drive_id, e.ego_id, e.t_ns, NULL::VARCHAR AS object_id, true AS nearest, false AS known, e.speed_mps AS ego_speed_mps, 0.0 AS error_mps,
         least(d.least_m, d.late_m, c.unclassified_m, c.gap_m) AS free_m,

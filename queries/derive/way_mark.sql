@@ -158,7 +158,7 @@ own_signal AS (
     ANTI JOIN junction o
         ON o.drive_id = r.drive_id AND o.ego_id = r.ego_id AND o.chain_id = r.chain_id AND o.s_end_m > r.s_start_m + 1 AND o.s_end_m <= r.s_m
 ),
--- Of two lines within reach, or of a crossing and the line beyond it, a light belongs to the line to which it is nearest.
+-- A light belongs to the nearest stop line, and not to a crossing if that line lies beyond the crossing.
 nearest_line AS (
     SELECT s.drive_id, s.ego_id, s.chain_id, s.signal_id, s.s_m, min({'off_m': abs(m.s_start_m - s.s_m), 's_m': m.s_start_m}).s_m AS line_s_m
     FROM signal s

@@ -10,8 +10,8 @@ CREATE OR REPLACE MACRO filter_half_ns(period_ns) AS
     CASE WHEN period_ns <= 210_000_000 THEN greatest(250_000_000, (2.2 * period_ns)::BIGINT) END;
 
 -- By how much a value stands out, away from zero, over the values half a window before and after it; 0 if it does not, or if one of them is
--- not known. A mean over a window (the weights of a slope fall off as a parabola) lowers a pointed peak by at most 0.7 of this (at 20
--- samples a second or more), a round peak by 0.2.
+-- not known. A mean over a window (a slope is a mean of the derivative with parabolic weights) lowers a pointed peak by at most 0.7 of this
+-- (at 20 samples a second or more), a round peak by 0.2.
 CREATE OR REPLACE MACRO peak_rise(value, past, next) AS
     CASE WHEN value + past + next IS NOT NULL THEN greatest(0.0, abs(value) - greatest(sign(value) * past, sign(value) * next)) ELSE 0.0 END;
 
@@ -24,8 +24,8 @@ CREATE OR REPLACE MACRO whole_window(t_ns, first_ns, last_ns, half_ns) AS
 CREATE OR REPLACE MACRO unseen_closing_mps() AS 60.0;
 CREATE OR REPLACE MACRO two_half_boxes_m() AS 12.0;
 
--- A recorder that loses an actor in plain view has it again within tracker_loses_ns. It has a new actor tracker_begins_ns after that came
--- into view.
+-- A recorder that loses an actor in plain view has it again within tracker_loses_ns. A new actor is recorded tracker_begins_ns after it
+-- came into view.
 CREATE OR REPLACE MACRO tracker_loses_ns() AS 2_500_000_000;
 CREATE OR REPLACE MACRO tracker_begins_ns() AS 500_000_000;
 -- A recorded position may be off by this.
@@ -120,15 +120,15 @@ CREATE OR REPLACE MACRO need_mps2(gap_m, v_mps, along_mps) AS
     CASE WHEN v_mps > along_mps THEN (v_mps - along_mps) ** 2 / (2 * greatest(gap_m - (v_mps - along_mps) - 5.0, 0.1)) WHEN v_mps IS NOT NULL THEN 0.0::DOUBLE END;
 -- A driver who has braked for an actor lets the brake go within this time after the actor has gone.
 CREATE OR REPLACE MACRO let_go_ns() AS 2_000_000_000;
--- An actor must have been coming across for this long, and at the sample before.
+-- An actor must have been coming across at every sample during this time, and at least at two samples.
 CREATE OR REPLACE MACRO comes_ns() AS 300_000_000;
 
 -- Whether an actor in the way, which asks for a deceleration of `need_mps2`, is a reason to brake harder than `abrupt_mps2`. `known`: no
--- other actor may be in the way; NULL: not known.
+-- other actor may be in the way. Result NULL: cannot be told.
 CREATE OR REPLACE MACRO asks_to_brake(need_mps2, known, abrupt_mps2) AS need_mps2 >= abrupt_mps2 OR CASE WHEN known THEN false END;
 
 -- Whether the ego stands because of an actor in its way: a vehicle within `queue_m` that is no faster than `slow_mps`, or a pedestrian, an
--- animal or an object within `hazard_m`. `known`: no other actor may be in the way; NULL: not known.
+-- animal or an object within `hazard_m`. `known`: no other actor may be in the way. Result NULL: cannot be told.
 CREATE OR REPLACE MACRO stands_for(object_id, actor_class, gap_m, along_mps, known, queue_m, hazard_m, slow_mps) AS
     CASE WHEN object_id IS NOT NULL AND NOT may_be_vehicle(actor_class) AND gap_m <= hazard_m THEN true
         WHEN object_id IS NOT NULL AND gap_m <= queue_m AND along_mps <= slow_mps THEN true
@@ -143,7 +143,8 @@ CREATE OR REPLACE MACRO kept_between(seen_m, blur_m, required_m) AS CASE WHEN se
 -- turning by at least turned_off_rad.
 CREATE OR REPLACE MACRO access_mps() AS 8.94;
 CREATE OR REPLACE MACRO turned_off_rad() AS pi() / 6;
--- Our default: an ego that is back by this much (noise is 0.05 m) does not go on over a line, nor does it come from beyond it.
+-- Our default: an ego whose overhang over the line is smaller by this before, or after, comes from its lane, or has come back to it: it did
+-- not leave the road there. (Noise is 0.05 m.)
 CREATE OR REPLACE MACRO back_m() AS 0.25;
 -- An ego that is without a place for no longer than this has not been back in its lane and out of it again.
 CREATE OR REPLACE MACRO no_return_ns() AS 500_000_000;

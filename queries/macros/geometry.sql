@@ -71,8 +71,8 @@ CREATE OR REPLACE MACRO box_sides(dx, dy, c, s, hla, hwa, hlb, hwb) AS
     ];
 
 -- The share of the way from one moment to another after which a box that moves straight on first touches another box; NULL: it touches it
--- nowhere on that way. `a` and `b` are the sides (box_sides) at the two moments; each side changes linearly. The boxes touch from the
--- moment at which the last side stops being positive (lets_go) until the first one becomes positive (parts).
+-- nowhere on that way. `a` and `b` are the sides (box_sides) at the two moments; each side changes linearly. The contact begins when the
+-- last side stops being positive (lets_go) and ends when the first one becomes positive (parts).
 CREATE OR REPLACE MACRO lets_go(a, b) AS
     list_max(list_transform(list_zip(a, b), lambda g: CASE WHEN g[1] <= 0 THEN 0.0 WHEN g[2] > 0 THEN 2.0 ELSE g[1] / (g[1] - g[2]) END));
 CREATE OR REPLACE MACRO parts(a, b) AS
@@ -109,14 +109,15 @@ CREATE OR REPLACE MACRO fast_mps() AS 40.0;
 -- at most 10 m/s2, neither turns round nor reverses, and drives no faster than 40 m/s unless it does already.
 CREATE OR REPLACE MACRO drives_least_m(v_mps, t_s) AS CASE WHEN 10.0 * t_s < v_mps THEN v_mps * t_s - 5.0 * t_s * t_s ELSE v_mps * v_mps / 20.0 END;
 CREATE OR REPLACE MACRO drives_most_m(v_mps, t_s) AS least(v_mps * t_s + 5.0 * t_s * t_s, greatest(v_mps, fast_mps()) * t_s);
--- If everything within this distance around the ego is in plain view, no vehicle can drive past it unseen in two lanes on either side. At
--- the greatest speed at which the two can pass each other on the same way, the vehicle is so near for longer than a tracker needs and than
--- a step takes.
+-- If everything within this distance around the ego is in plain view, no vehicle can drive past it unseen in two lanes on either side. Even
+-- at the greatest difference of their speeds in the same direction, a passing vehicle stays within this distance for longer than a tracker
+-- needs plus one step.
 CREATE OR REPLACE MACRO watched_m(v_mps, step_s) AS
     sqrt(7.0 ** 2 + (greatest(v_mps, fast_mps() - v_mps) * (tracker_begins_ns() / 1e9 + step_s) / 2) ** 2);
 
--- The way of a box from one sample to the next, as a cubic. (x, y) is the way; p and q are its distances from the chord by the velocities
--- at the first and the second end. Velocities that tyres cannot produce on that way are left out (then `told` is false).
+-- The way of a box from one sample to the next, as a cubic. (x, y) is the chord, from the first position to the second. p and q: where the
+-- velocity at the start (p) or at the end (q) would lead, minus where the chord leads. Velocities that tyres cannot produce on that way are
+-- left out (then `told` is false).
 CREATE OR REPLACE MACRO between_way(x0, y0, x1, y1, vx0, vy0, vx1, vy1, dt_s) AS
     CASE
         WHEN coalesce(greatest((vx0 * dt_s - x1 + x0) ** 2 + (vy0 * dt_s - y1 + y0) ** 2, (vx1 * dt_s - x1 + x0) ** 2 + (vy1 * dt_s - y1 + y0) ** 2)

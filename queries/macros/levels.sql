@@ -1,7 +1,8 @@
 -- Actors over or under the ego's road, and actors that belong to the ego itself.
 
 -- The heights of two actors on the same ground differ by at most this: a log may give the box centre of one and the ground of the other
--- (2.2 m for a bus of 4.4 m), and settling adds some decimetres. A footbridge, the lowest bridge of all, is 3 m above what it crosses.
+-- (2.2 m for a bus of 4.4 m), and a vehicle that settles on its suspension adds some decimetres. A footbridge, the lowest bridge of all, is
+-- 3 m above what it crosses.
 CREATE OR REPLACE MACRO level_m() AS 2.5;
 -- Two boxes that meet in plan do meet, unless their heights say otherwise.
 CREATE OR REPLACE MACRO same_level(a_m, b_m) AS coalesce(abs(a_m - b_m) <= level_m(), true);

@@ -8,14 +8,15 @@ CREATE OR REPLACE MACRO forbids(light) AS light IN ('red', 'red_amber');
 CREATE OR REPLACE MACRO stands_near_m() AS 10.0;
 CREATE OR REPLACE MACRO moves_up_mps() AS 1.0;
 
--- Whether the ego stands in a queue: a slow vehicle is close ahead in its lane. `known`: no other vehicle can be nearer; NULL: not known.
+-- Whether the ego stands in a queue: a slow vehicle is close ahead in its lane. `known`: no other vehicle can be nearer. Result NULL:
+-- cannot be told.
 CREATE OR REPLACE MACRO queued(ahead_id, ahead_gap_m, ahead_speed_mps, known, near_m, slow_mps) AS
     ((ahead_id IS NOT NULL AND ahead_gap_m <= near_m AND ahead_speed_mps <= slow_mps) OR CASE WHEN known THEN false END);
 
 -- Whether the way out was full for the ego, which stands where it must keep clear and whose rear has yet to go `clear_m` to get out. It was
--- full if a slow vehicle is near, or leaves the ego no room to get out. If the ego stands for `long_s` or longer, it was full if a slow
--- vehicle would be near after the ego had just got out. Else it is not known what holds up the ego for so long behind a vehicle that is
--- farther away or quicker: NULL.
+-- full if a slow vehicle is near, or leaves the ego no room to get out. If the ego stands for `long_s` or longer, it was full if, with the
+-- ego just out, a slow vehicle would be within `near_m` ahead. Else it is not known what holds up the ego for so long behind a vehicle that
+-- is farther away or quicker: NULL.
 CREATE OR REPLACE MACRO exit_full(ahead_id, ahead_gap_m, ahead_speed_mps, known, clear_m, stood_ns, near_m, slow_mps, long_s) AS
     CASE
         WHEN ahead_id IS NULL THEN CASE WHEN known THEN false END

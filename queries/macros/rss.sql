@@ -1,6 +1,6 @@
 -- Responsibility-Sensitive Safety (Shalev-Shwartz, Shammah, Shashua 2017, arXiv:1708.06374): least safe distances. Speeds in m/s.
 
--- Way of a vehicle that speeds up with a during the response time rho and then brakes with b to a stand. If v is negative, it moves away.
+-- Way of a vehicle that accelerates at `a` during the response time rho and then brakes at `b` to a stand. If v is negative, it moves away.
 CREATE OR REPLACE MACRO rss_way_m(v, rho, a, b) AS v * rho + a * rho ** 2 / 2 + CASE WHEN v + a * rho > 0 THEN (v + a * rho) ** 2 / (2 * b) ELSE 0 END;
 
 -- Definition 1: the front vehicle brakes with b_max, and the rear vehicle responds after the time rho.
