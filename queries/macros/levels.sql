@@ -1,7 +1,7 @@
 -- Actors over or under the ego's road, and actors that belong to the ego itself.
 
 -- The heights of two actors on the same ground differ by at most this: a log may give the box centre of one and the ground of the other
--- (2.2 m for a bus of 4.4 m), and a vehicle that settles on its suspension adds some decimetres. A footbridge, the lowest bridge of all, is
+-- (2.2 m for a bus of 4.4 m), and while a vehicle settles its height may change by some decimetres. A footbridge, the lowest bridge of all, is
 -- 3 m above what it crosses.
 CREATE OR REPLACE MACRO level_m() AS 2.5;
 -- Two boxes that meet in plan do meet, unless their heights say otherwise.

@@ -37,7 +37,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 import yaml
 
-from drivelint.casefile import merged_cases as crowd
+from drivelint.casefile import merged_cases
 from drivelint.casefile.scene import Row, column_of, scene
 from drivelint.errors import RuleError
 
@@ -179,7 +179,7 @@ def coverage(cases: Sequence[Case]) -> str:
 def run_case(rule: Rule, case: Case) -> CaseResult:
     """Fill a scene, judge it by this rule alone, compare. Errors: `RuleError` with file, line and case."""
     with _placed(rule, case):
-        message = difference(case, crowd.Outcome(*judge(rule, case)))
+        message = difference(case, merged_cases.Outcome(*judge(rule, case)))
     return CaseResult(case.name, not message, message and f"{place(rule, case)}: {message}")
 
 
@@ -197,7 +197,7 @@ def _placed(rule: Rule, case: Case) -> Iterator[None]:
         raise RuleError(f"{place(rule, case)}: {error}") from error
 
 
-def difference(case: Case, outcome: crowd.Outcome) -> str:
+def difference(case: Case, outcome: merged_cases.Outcome) -> str:
     """Return '' where the rows are as the case expects, else one line that says how they differ."""
     message = _difference(case.expect, outcome.verdicts)
     if not message and case.findings not in {None, len(outcome.findings)}:
@@ -210,31 +210,31 @@ def judge(rule: Rule, case: Case) -> tuple[list[Row], list[Row]]:
 
     Errors: `RuleError` for tables, columns or values that cannot be understood.
     """
-    outcome = crowd.judge([rule], scene(rule, case.given, case.missing, "given"), case.params)[rule.id]
+    outcome = merged_cases.judge([rule], scene(rule, case.given, case.missing, "given"), case.params)[rule.id]
     return outcome.verdicts, outcome.findings
 
 
-def members(rule: Rule, cases: Sequence[Case]) -> list[crowd.Member]:
+def members(rule: Rule, cases: Sequence[Case]) -> list[merged_cases.Member]:
     """Return the scenes of all cases, to be judged together. Errors: `RuleError` with file, line and case."""
     found = []
     for no, case in enumerate(cases):
         with _placed(rule, case):
-            found.append(crowd.Member(no, scene(rule, case.given, case.missing, "given"), case.params))
+            found.append(merged_cases.Member(no, scene(rule, case.given, case.missing, "given"), case.params))
     return found
 
 
-def together(rule: Rule, cases: Sequence[Case], keys: Mapping[str, str] = crowd.KEYS) -> str:
+def together(rule: Rule, cases: Sequence[Case], keys: Mapping[str, str] = merged_cases.KEYS) -> str:
     """Judge all cases in one database, and return '' where each comes out as it expects. Errors: `RuleError`.
 
     `keys`: by what they are told apart there, in turn.
     """
     everybody = members(rule, cases)
     for key, where in keys.items():
-        for group in crowd.crowds(everybody, key):
-            outcome = crowd.judge([rule], crowd.merge(group, key), group[0].params)[rule.id]
+        for group in merged_cases.crowds(everybody, key):
+            outcome = merged_cases.judge([rule], merged_cases.merge(group, key), group[0].params)[rule.id]
             for member in group:
                 case = cases[member.no]
-                if message := difference(case, crowd.share(outcome, member.no)):
+                if message := difference(case, merged_cases.share(outcome, member.no)):
                     return f"{place(rule, case)}: as one of {where}: {message}; does each join have {key}?"
     return ""
 

@@ -64,9 +64,9 @@ def new(
 
     DIR/PACK/NAME.sql and NAME.cases.yml: a small rule with its cases, which runs as it is. Nothing is overwritten.
     """
-    from drivelint.casefile import commands as workshop
+    from drivelint.casefile import commands
 
-    for file in workshop.new(rule_id, folder, kind.value):
+    for file in commands.new(rule_id, folder, kind.value):
         typer.echo(file)
     typer.echo(f"Edit both, then: drivelint rules test {folder} --rules {rule_id}", err=True)
 
@@ -118,7 +118,7 @@ def run_tests(
     Exit codes: 0 all is well; 1 some verdict is another, or a mutant of a stable rule is noticed by no case; 2 a rule
     or its cases cannot be used.
     """
-    from drivelint.casefile import commands as workshop
+    from drivelint.casefile import commands
 
-    test = workshop.mutation_test if mutate else workshop.case_test
+    test = commands.mutation_test if mutate else commands.case_test
     raise typer.Exit(int(interruptible(lambda: test(folder, tuple(only or ()), typer.echo))))

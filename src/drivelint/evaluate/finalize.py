@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from drivelint.evaluate import coverage_gaps as blind
-from drivelint.evaluate import findings
+from drivelint.evaluate import coverage_gaps, findings
 
 # a person counts from the drive's first time stamp, as every other output does: the log's clock may be that of 1970
 _AT = "format('{:.3f} s', (t_decides_ns - start_ns) / 1e9)"
@@ -114,7 +113,7 @@ WITH _rows AS (
     SELECT rule_no, drive_id, ego_id, 'not_applicable' AS verdict, 'other_nation' AS code FROM _foreign
 ), _seen AS (
     SELECT * FROM _kept UNION ALL BY NAME
-    ({blind.OUTCOMES})
+    ({coverage_gaps.OUTCOMES})
 )
 SELECT * FROM _seen UNION ALL BY NAME
 SELECT r.rule_no, s.drive_id, s.ego_id, 'not_applicable' AS verdict,
@@ -298,5 +297,5 @@ GROUP BY f.finding_id, f.drive_id, f.ego_id, f.rule_id, f.profile, f.object_id, 
 """
 """Run after these, if the courses of findings and near misses are asked for."""
 
-STATEMENTS = (blind.BLIND, _ALL, _VERDICTS, _FINDINGS, _MARGINS)
+STATEMENTS = (coverage_gaps.BLIND, _ALL, _VERDICTS, _FINDINGS, _MARGINS)
 """Run in this order once every rule has left its outcomes."""

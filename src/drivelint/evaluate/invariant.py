@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from drivelint.evaluate import applicability as restricted
-from drivelint.evaluate import terms
+from drivelint.evaluate import applicability, terms
 
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
@@ -39,7 +38,7 @@ def grid_of(rule: Rule) -> str | None:
     if (
         rule.kind != "invariant"
         or "applies" in rule.sections
-        or restricted.restricts(rule)
+        or applicability.restricts(rule)
         or rule.profiled
         or rule.exempt_after_s != 0
     ):
@@ -136,14 +135,14 @@ def _grid(rule: Rule, partial: bool, unsettled: bool, watching: bool) -> str:
         keep = " SEMI JOIN (SELECT * FROM _group WHERE rule_no = $_no AND NOT clean) _u"
         keep += " ON a.drive_id = _u.drive_id AND a.ego_id = _u.ego_id"
         keep += " AND a.object_id = _u.object_id" if rule.per_object else ""
-    joins = restricted.joins(rule, "a", "a.t_ns", watching=watching)
+    joins = applicability.joins(rule, "a", "a.t_ns", watching=watching)
     if not joins:
         return f"""{first}, _grid AS (SELECT a.*, CASE WHEN a.applies IS NULL THEN 'applies_unknown' END AS doubt
             FROM _base a
     {terms.todo(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
     return f"""{first}, _restricted AS (
-    SELECT a.* EXCLUDE (applies), a.applies AND {restricted.holds(rule, watching=watching)} AS applies,
-        CASE WHEN a.applies IS NULL THEN 'applies_unknown' ELSE {restricted.doubt(rule, watching=watching)} END AS doubt
+    SELECT a.* EXCLUDE (applies), a.applies AND {applicability.holds(rule, watching=watching)} AS applies,
+        CASE WHEN a.applies IS NULL THEN 'applies_unknown' ELSE {applicability.doubt(rule, watching=watching)} END AS doubt
     FROM _base a
     {joins}
 ), _grid AS (SELECT a.* FROM _restricted a{terms.todo(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
@@ -284,7 +283,7 @@ SELECT $_no AS rule_no, l.drive_id, l.ego_id, l.object_id, {"p.profile" if rule.
 FROM lost_object l JOIN _subject s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id {profiles}
 CROSS JOIN LATERAL (SELECT l.t_from_ns - 1 AS t_ns) t
 LEFT JOIN pair q ON q.drive_id = l.drive_id AND q.ego_id = l.ego_id AND q.object_id = l.object_id AND q.t_ns = t.t_ns
-{restricted.joins(rule, "l", "l.t_from_ns", watching=watching)}
+{applicability.joins(rule, "l", "l.t_from_ns", watching=watching)}
 {terms.todo(partial, "l")}
-WHERE ({restricted.holds(rule, watching=watching)}) IS DISTINCT FROM false
+WHERE ({applicability.holds(rule, watching=watching)}) IS DISTINCT FROM false
 """

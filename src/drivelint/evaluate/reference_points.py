@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from drivelint.evaluate import applicability as restricted
-from drivelint.evaluate import terms
+from drivelint.evaluate import applicability, terms
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -57,10 +56,10 @@ SELECT r.ref_id, r.ref_id - min(r.ref_id) OVER (PARTITION BY r.drive_id, r.ego_i
     r.drive_id::VARCHAR AS drive_id,
     r.ego_id::VARCHAR AS ego_id, {"r.object_id" if own_object else "NULL"}::VARCHAR AS object_id,
         r.t_ns::BIGINT AS t_ref_ns,
-    ({start})::BIGINT AS a_ns, ({end})::BIGINT AS b_ns, {restricted.holds(rule, watching=watching)} AS applies,
-    {restricted.doubt(rule, watching=watching)} AS doubt
+    ({start})::BIGINT AS a_ns, ({end})::BIGINT AS b_ns, {applicability.holds(rule, watching=watching)} AS applies,
+    {applicability.doubt(rule, watching=watching)} AS doubt
 FROM reference r
-{restricted.joins(rule, "r", "r.t_ns", watching=watching)}
+{applicability.joins(rule, "r", "r.t_ns", watching=watching)}
 """
 
 
@@ -110,7 +109,7 @@ def judged(rule: Rule, own_object: bool, watching: bool) -> str:
     edge = "'inf'::DOUBLE" if rule.combine == "all" else "'-inf'::DOUBLE"
     human, why = "false", ""
     if watching:
-        human = f"({restricted.ENGAGED}) IS DISTINCT FROM true"
+        human = f"({applicability.ENGAGED}) IS DISTINCT FROM true"
         why = f"WHEN {human} THEN CASE WHEN NOT e.engaged THEN 'not_engaged' ELSE 'engaged_unknown' END"
     empty = f"CASE WHEN g.sensor_range_m IS NULL THEN {'true' if rule.combine == 'all' else 'false'} END"
     return f"""
@@ -128,7 +127,7 @@ WITH {terms.state(rule)}, _grid AS ({source}
         CASE WHEN NOT ({human}) THEN v.reason END AS reason
     FROM _grid g {"JOIN _profile_set p ON g.drive_id = p.drive_id AND g.ego_id = p.ego_id" if rule.profiled else ""}
     LEFT JOIN _state v ON {on}
-    {restricted.engagement("g") if watching else ""}
+    {applicability.engagement("g") if watching else ""}
 ), _expected AS (SELECT * FROM _joined WHERE applies IS DISTINCT FROM false
 ){_combination(rule) if combined else ", _series AS (SELECT *, object_id AS who, 1 AS n_same FROM _expected)"}
 SELECT * REPLACE (coalesce(object_id, '') AS object_id, coalesce(who, '') AS who), row_number()

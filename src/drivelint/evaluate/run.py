@@ -8,10 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import duckdb
 
-from drivelint.evaluate import applicability as restricted
-from drivelint.evaluate import finalize as closing
-from drivelint.evaluate import findings, invariant, stage
-from drivelint.evaluate import reference_points as occasion
+from drivelint.evaluate import applicability, finalize, findings, invariant, reference_points, stage
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -55,10 +52,10 @@ class Run:
             self._share(todo)
         else:
             self._work(todo)
-        for statement in closing.STATEMENTS:
+        for statement in finalize.STATEMENTS:
             self._con.execute(statement)
         if self._courses:
-            self._con.execute(closing.COURSES)
+            self._con.execute(finalize.COURSES)
 
     def _share(self, todo: deque[Binding]) -> None:
         """Judge on a second connection too: on so few rows a statement is planned and run on one core."""
@@ -96,7 +93,7 @@ class Run:
         self._n_todo = stage.prepare(self._con, self._bindings)
         self._n_subjects = self._count("SELECT count(*) FROM _subject")
         self._has_holes = self._count("SELECT count(*) FROM _segment WHERE seg > 0") > 0
-        self._con.execute(restricted.WATCHED)
+        self._con.execute(applicability.WATCHED)
         self._watching = self._count("SELECT count(*) FROM _watched") > 0
         quick = [b for b in self._bindings if self._is_quick(b)]
         if quick:
@@ -146,19 +143,19 @@ class Run:
 
     def _occasion(self, binding: Binding) -> None:
         rule = binding.rule
-        if self._may_stop(self._execute(occasion.raw_references(rule, self._is_partial(binding)), binding)):
+        if self._may_stop(self._execute(reference_points.raw_references(rule, self._is_partial(binding)), binding)):
             return
         described = self._con.execute("SELECT * FROM _raw_reference LIMIT 0").description or []
         columns = [str(column[0]) for column in described]
         own_object = "object_id" in columns
-        self._execute(occasion.references(columns), binding)
-        self._execute(occasion.occasions(rule, own_object, self._watching), binding)
-        self._execute(occasion.points(rule), binding)
+        self._execute(reference_points.references(columns), binding)
+        self._execute(reference_points.occasions(rule, own_object, self._watching), binding)
+        self._execute(reference_points.points(rule), binding)
         if rule.profiled:
             self._execute(invariant.profile_set(rule), binding)
-        self._execute(occasion.judged(rule, own_object, self._watching), binding)
-        self._execute(occasion.FAULTS, binding)
-        self._execute(occasion.outcomes(rule, own_object), binding)
+        self._execute(reference_points.judged(rule, own_object, self._watching), binding)
+        self._execute(reference_points.FAULTS, binding)
+        self._execute(reference_points.outcomes(rule, own_object), binding)
         self._leave(binding)
 
     def _leave(self, binding: Binding) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from drivelint.errors import UsageError
-from drivelint.evaluate import applicability as restricted
+from drivelint.evaluate import applicability
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -38,7 +38,7 @@ class Binding:
         self._values: dict[str, object] = {
             **params,
             "_no": no,
-            **restricted.bound(rule),
+            **applicability.bound(rule),
         }
         for field, name in _ENGINE.items():
             given = getattr(rule, field)

@@ -22,7 +22,7 @@ from drivelint.explain.sensitivity import Errors, copies, counted
 from drivelint.explain.source import open_drive
 from drivelint.explain.target import Wanted, find
 from drivelint.reasons.remedies import condition_of
-from drivelint.result import request as asking
+from drivelint.result import request as run_request
 from drivelint.result.load import load
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def explain(request: ExplainRequest) -> Explanation:
     Errors: `UsageError` for a finding, rule, folder or log that is not there.
     """
     result = load(request.folder)
-    asked = asking.load(request.folder)
+    asked = run_request.load(request.folder)
     target = find(result, request.name, request.wanted)
     case = _case(asked, target, request.memory)
     row = target.row

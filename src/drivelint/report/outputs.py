@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 from drivelint.report import html, junit, summary
 from drivelint.report.targets import TARGETS
-from drivelint.result import gate_file as store
-from drivelint.result import request as asked
+from drivelint.result import gate_file, request
 from drivelint.result.contract import FILES
 from drivelint.result.files import parquet_bytes, publish
 
@@ -28,12 +27,12 @@ def write(result: Result, out: Path) -> None:
     moved: dict[str, Path | None] = {"margins.parquet": result.margins_file}
     moved |= {name: None for name, _ in TARGETS.values() if name not in contents}  # of an earlier result
     if result.gate is None:
-        moved[store.FILE] = None
+        moved[gate_file.FILE] = None
     else:
-        contents[store.FILE] = store.render(result.gate)
+        contents[gate_file.FILE] = gate_file.render(result.gate)
     if result.asked is None:
-        moved[asked.FILE] = None
+        moved[request.FILE] = None
     else:
-        contents[asked.FILE] = asked.render(result.asked, out)
+        contents[request.FILE] = request.render(result.asked, out)
     contents["summary.json"] = summary.render(result)
     publish(out, contents, moved)

@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from drivelint.errors import DriveLintError, UsageError
-from drivelint.result import gate_file as store
+from drivelint.result import gate_file
 from drivelint.result.contract import FILES, OUTPUT_SCHEMA
 from drivelint.result.model import Result
 
@@ -29,7 +29,7 @@ def load(folder: Path) -> Result:
             "check the drives again"
         )
     tables = {name: _table(folder / f"{name}.parquet") for name in FILES}
-    gate = store.load(folder)
+    gate = gate_file.load(folder)
     try:
         return Result(**tables, fail_on=summary["fail_on"], strict=summary["strict"], gate=gate)
     except DriveLintError as error:

@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 from mcap.writer import CompressionType, Writer
 
 from drivelint.drive.trace import BRAKE_LIGHTS, CLASSES, INDICATORS, NUMBERS, SIZES
-from drivelint.formats.osi import extras as carried
+from drivelint.formats.osi import extras
 from drivelint.formats.osi.frames import Objects, head, moving_objects, nested, traffic_light
 from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, VERSION, descriptor_set
 
@@ -44,7 +44,7 @@ def write(sink: BinaryIO, trace: Trace, road: MapSource | None) -> int:
     version = ".".join(map(str, VERSION))
     bounds = dict.fromkeys(("version", "min_osi_version", "max_osi_version"), version)
     writer.add_metadata("net.asam.osi.trace", {**bounds, "description": trace.path.name})
-    for name, content in carried.records(trace, numbers).items():
+    for name, content in extras.records(trace, numbers).items():
         writer.add_metadata(name, content)
     described = {"net.asam.osi.trace.channel.osi_version": version}
     truth = writer.register_channel(
@@ -156,7 +156,7 @@ def _events(writer: Writer, trace: Trace, shift: int) -> None:
     rows = trace.tables["declared_event"].drop_columns("drive_id").to_pylist()
     if not rows:
         return
-    schema = writer.register_schema(carried.EVENT, "jsonschema", carried.EVENT_SCHEMA)
+    schema = writer.register_schema(extras.EVENT, "jsonschema", extras.EVENT_SCHEMA)
     channel = writer.register_channel(EVENT_TOPIC, "json", schema)
     for row in rows:
         writer.add_message(channel, row["t_ns"] - shift, msgspec.json.encode(row), row["t_ns"] - shift)

@@ -13,7 +13,7 @@ from drivelint.drive import own_map
 from drivelint.drive.trace import EPOCH_NS, Finding, FrameTimes, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import Container
-from drivelint.formats.osi import extras as carried
+from drivelint.formats.osi import extras
 from drivelint.formats.osi.decode import GROUND_TRUTH, SENSOR_VIEW, TREES, Decoder, Head, head_of
 from drivelint.formats.osi.words import Bulbs, signal_states
 from drivelint.formats.protobuf import descriptors
@@ -63,8 +63,8 @@ def read(path: Path, topic: str | None) -> Recording:
     recording.findings += [*lost[:1], *several]
     recording.geo_reference = source.head.reference
     recording.findings += () if maps else source.head.findings
-    recording.events = carried.events(path, events)
-    carried.apply(path, container.metadata, recording)
+    recording.events = extras.events(path, events)
+    extras.apply(path, container.metadata, recording)
     return recording
 
 
@@ -79,7 +79,7 @@ def _kind(container: Container, channel: Channel) -> str | None:
 def _is_event(container: Container, channel: Channel) -> bool:
     """Say whether a channel is that of the declared events of a converted log."""
     schema = container.schemas.get(channel.schema_id)
-    return schema is not None and schema.name == carried.EVENT and channel.message_encoding == "json"
+    return schema is not None and schema.name == extras.EVENT and channel.message_encoding == "json"
 
 
 def _map_text(container: Container, packet: Packet) -> tuple[bytes | None, tuple[Finding, ...]]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.report.html import overview as front
+from drivelint.report.html import overview
 from drivelint.report.html.anchors import drive_anchor, rule_anchor
 from drivelint.report.html.baseline_status import standing, view
 from drivelint.report.html.glossary import words
@@ -92,13 +92,13 @@ def content(result: Result) -> dict[str, Any]:
         if row["drive_id"] in shown
     ]
     totals = counts.total(result.verdicts)
-    broken, told_of = front.broken(result, rules, lines), front.stories(sections, len(drives))
+    broken, told_of = overview.broken(result, rules, lines), overview.stories(sections, len(drives))
     return {
         "outcome": outcome(result),
-        "headline": front.headline(result),
-        "contacts": front.contacts(result, lines),
-        "not_decided": front.not_decided(result),
-        "counts": front.shares(totals),
+        "headline": overview.headline(result),
+        "contacts": overview.contacts(result, lines),
+        "not_decided": overview.not_decided(result),
+        "counts": overview.shares(totals),
         "names": _NAMES,
         "passes": totals["pass"],
         "n_findings": result.findings.num_rows,
@@ -107,10 +107,10 @@ def content(result: Result) -> dict[str, Any]:
         "n_near": int(pc.sum(result.verdicts["near_miss"]).as_py() or 0),
         "n_assumed": counts.assuming(result.verdicts, "line_of_sight"),
         "broken": broken,
-        "words": words(front.texts(broken, told_of, [line for _, line in lines])),
+        "words": words(overview.texts(broken, told_of, [line for _, line in lines])),
         "several_egos": len({(row["drive_id"], row["ego_id"]) for row, _ in lines + close}) > len(listed),
         "notes": notes(drives),
-        "packs": front.packs(result),
+        "packs": overview.packs(result),
         "stories": told_of,
         "findings": [line for _, line in lines],
         "near": [line for _, line in close],
