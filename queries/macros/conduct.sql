@@ -63,7 +63,7 @@ CREATE OR REPLACE MACRO unplaced_words(code) AS CASE code
     WHEN 'lost_behind' THEN 'drove away behind and is no longer recorded' WHEN 'appeared' THEN 'is not yet recorded'
     WHEN 'beyond_map' THEN 'came in over the end of the map' END;
 
--- What is missing to place the ego, and what to provide; NULL: nothing is missing.
+-- The ego has no place without these values. The text names the missing one and what to provide; NULL: nothing is missing.
 CREATE OR REPLACE MACRO ego_lacks(x_m, yaw_rad, lanelet_id, front_s_m) AS CASE
     WHEN x_m IS NULL THEN 'the ego ' || unplaced_words('no_position') || ': record it'
     WHEN yaw_rad IS NULL THEN 'the ego ' || unplaced_words('no_heading') || ': record it'

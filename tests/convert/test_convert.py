@@ -200,6 +200,15 @@ def test_a_converted_log_assumes_nothing_of_who_is_not_recorded(tmp_path: Path) 
         assert again(convert(given).path).tables["data_log"]["in_sight"].to_pylist() == [False]
 
 
+def test_what_a_check_states_does_not_go_along(tmp_path: Path) -> None:
+    for to, out in targets(tmp_path):
+        given = ConvertRequest(str(FIXTURE / "safe.csv"), to, out, env=("weather=wet",), handedness="lht", **SAFE)
+        written = convert(given)
+        assert again(written.path).tables["drive_condition"].num_rows == 0, to
+        said = [note for note in written.notes if "not part of the converted log" in note]
+        assert [note.split()[0] for note in said] == ["--handedness", "--env"], to
+
+
 @pytest.mark.parametrize("to", ["mcap", "parquet"])
 def test_same_bytes_every_time(tmp_path: Path, to: Any) -> None:
     digests = []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Final, Literal
 
 import pyarrow as pa
@@ -69,15 +69,15 @@ def convert(request: ConvertRequest) -> Written:
     stem = path.resolve().name if path.is_dir() else path.stem
     target = request.out / f"{stem}.mcap" if request.to == "mcap" else request.out
     refuse_to_overwrite(path, request.out, target)
-    # what whoever is not recorded may do is the judge's assumption, and no part of the log
-    options = replace(request.options(need_ego=False), in_sight=False)
+    # conditions that the user states and assumptions about unrecorded actors belong to a check, not to the log
+    options = replace(request.options(need_ego=False), in_sight=False, conditions=())
     trace = read_trace(path, options)
     if request.map_offset is not None:
         trace = _moved(trace, request.map_offset)
     road, told = _road(request, trace)
     prepare(request.out)
     files = _mcap(target, trace, road) if request.to == "mcap" else _parquet(target, trace, road)
-    notes = [*trace.notes, *told]
+    notes = [*trace.notes, *told, *_of_a_check(request)]
     has_ego = any(trace.tables["actor"]["is_ego"].to_pylist())
     if not has_ego:
         notes = [
@@ -93,6 +93,14 @@ def convert(request: ConvertRequest) -> Written:
         has_ego=has_ego,
         notes=tuple(notes),
     )
+
+
+def _of_a_check(request: ConvertRequest) -> list[str]:
+    """Return a note for each given option that a converted log cannot hold."""
+    given = {name: getattr(request, name) for name in ("map_origin", "handedness", "visibility", "env")}
+    unset = {field.name: field.default for field in fields(DriveInput)}
+    names = ["--" + name.replace("_", "-") for name, value in given.items() if value != unset[name]]
+    return [f"{name} is not part of the converted log: give it in every check" for name in names]
 
 
 def _moved(trace: Trace, offset: tuple[float, float]) -> Trace:
@@ -112,12 +120,7 @@ def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, list
     if request.to == "mcap" and (why := _unfit_for_mcap(road)):
         raise UsageError(why)
     library.find(*where)  # a wrong map is refused now, not by whoever checks the converted log
-    notes = (
-        []
-        if request.map_origin is None
-        else ["the map's origin is not part of the log: give --map-origin in every check"]
-    )
-    return road, notes
+    return road, []
 
 
 def _own_road(request: ConvertRequest, trace: Trace, content: bytes) -> tuple[MapSource | None, list[str]]:

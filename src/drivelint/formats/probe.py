@@ -16,7 +16,7 @@ HEAD_BYTES = 4096
 
 @dataclass(frozen=True)
 class Probe:
-    """What is known of a trace before it is read: its path and its first bytes (at most 4096; none for a folder)."""
+    """A trace that is not read yet: its path and its first bytes (at most 4096; none for a folder)."""
 
     path: Path
     head: bytes
