@@ -43,5 +43,7 @@ CREATE OR REPLACE MACRO limit_doubt(limit_source, lanelet_id) AS CASE limit_sour
     WHEN 'none' THEN 'the map says that lanelet ' || lanelet_id || ' has no limit of its own: give one that says which limit holds'
     ELSE 'the map gives no limit for lanelet ' || lanelet_id || ': give one with speed limits'
 END;
+-- The reason why a speed just within the limit is not a pass.
+CREATE OR REPLACE MACRO unseen_peak_doubt() AS 'the ego may have been faster than allowed between two samples: record its speed more often';
 -- If the two directions of a road are farther apart than this, and the map has nothing between them, there may be a central reservation.
 CREATE OR REPLACE MACRO reservation_m() AS 1.0;

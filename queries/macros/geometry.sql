@@ -103,6 +103,10 @@ CREATE OR REPLACE MACRO of_pm(x_pm) AS x_pm / 1e12;
 
 -- The motion between two samples. No actor brakes or swerves harder than this, which is what tyres can give.
 CREATE OR REPLACE MACRO swerve_mps2() AS 8.0;
+-- The greatest speed that a vehicle can have had between two samples with the speeds v and v_next: it speeds up by at most 3.5 m/s2 (a brisk
+-- start), then brakes as hard as tyres can. After the last sample of a stretch (v_next is NULL) it is v.
+CREATE OR REPLACE MACRO peak_between_mps(v_mps, v_next_mps, dt_s) AS
+    greatest(v_mps, (swerve_mps2() * v_mps + 3.5 * v_next_mps + dt_s * 3.5 * swerve_mps2()) / (3.5 + swerve_mps2()));
 -- A speed that is not known may be this high.
 CREATE OR REPLACE MACRO fast_mps() AS 40.0;
 -- The least and the greatest distance that a vehicle with the speed v drives in the t seconds after, or before. It brakes or speeds up by

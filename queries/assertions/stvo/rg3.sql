@@ -11,7 +11,7 @@
 -- unit = "m/s"
 -- observes = "speed"
 -- merge_gap_s = 5.0
--- reads = ["ego_condition", "ego_state"]
+-- reads = ["ego_condition", "ego_state", "step"]
 -- requires = ["map", "registration", "speeds"]
 -- pass_requires = ["speed_limits"]
 --
@@ -53,12 +53,20 @@
 -- @condition
 -- A sign replaces the limit that holds for every car. The limits of heavier vehicles outside built-up areas hold under a sign, too. If the
 -- kind of vehicle, road or area is not known, a speed between the lowest and the highest limit that may hold is not judged. Where the map
--- may lack a sign, no speed is known to be allowed.
+-- may lack a sign, no speed is known to be allowed. A speed within the limit is a pass only if the ego cannot have been over the limit
+-- before the next step.
 SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed,
-    CASE WHEN e.speed_mps > bounds.most_mps + $tolerance_mps THEN bounds.most_mps WHEN e.speed_mps <= bounds.least_mps + $tolerance_mps THEN bounds.least_mps END + $tolerance_mps AS required,
-    CASE WHEN required IS NOT NULL THEN NULL WHEN c.limit_mps IS NULL THEN coalesce(limit_doubt(e.limit_source, e.lanelet_id), 'the ego is on no lane, for which there is no limit') WHEN c.vehicle_class IS NULL THEN 'which class of vehicle the ego is is not known: give --env vehicle_class=...'
+    CASE WHEN e.speed_mps > bounds.most_mps + $tolerance_mps THEN bounds.most_mps WHEN e.peak_mps <= bounds.least_mps + $tolerance_mps THEN bounds.least_mps END + $tolerance_mps AS required,
+    CASE WHEN required IS NOT NULL THEN NULL WHEN c.limit_mps IS NULL THEN coalesce(limit_doubt(e.limit_source, e.lanelet_id), 'the ego is on no lane, for which there is no limit')
+        WHEN e.speed_mps <= bounds.least_mps + $tolerance_mps THEN unseen_peak_doubt()
+        WHEN c.vehicle_class IS NULL THEN 'which class of vehicle the ego is is not known: give --env vehicle_class=...'
         ELSE 'the limit depends on the class of vehicle and the kind of road, not all of which is known: give them, such as --env vehicle_class=car and --env road_type=rural' END AS reason
-FROM ego_state e
+FROM (
+    SELECT e.*, peak_between_mps(e.speed_mps, lead(e.speed_mps) OVER stretch, (lead(e.t_ns) OVER stretch - e.t_ns) / 1e9) AS peak_mps
+    FROM ego_state e
+    JOIN step s USING (drive_id, ego_id, t_ns)
+    WINDOW stretch AS (PARTITION BY e.drive_id, e.ego_id, s.seg ORDER BY e.t_ns)
+) e
 JOIN ego_condition c USING (drive_id, ego_id, t_ns)
 CROSS JOIN LATERAL (
     SELECT CASE WHEN c.road_type = 'motorway' THEN 'motorway' WHEN c.area = 'built_up' THEN 'town' WHEN c.road_type IS NOT NULL AND c.area = 'open' THEN 'open' END AS place

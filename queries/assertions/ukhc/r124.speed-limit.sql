@@ -11,7 +11,7 @@
 -- unit = "m/s"
 -- observes = "speed"
 -- merge_gap_s = 5.0
--- reads = ["ego_condition", "ego_state"]
+-- reads = ["ego_condition", "ego_state", "step"]
 -- requires = ["map", "registration", "speeds"]
 -- pass_requires = ["speed_limits"]
 --
@@ -22,18 +22,25 @@
 
 -- @condition
 -- If the class, nation or kind of road is not known, the limit lies between two values: a speed between them is neither a pass nor a fail.
+-- A speed within the limit is a pass only if the ego cannot have been over the limit before the next step.
 WITH limit_range AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps, e.lanelet_id, e.limit_mps, e.limit_source,
+        peak_between_mps(e.speed_mps, lead(e.speed_mps) OVER stretch, (lead(e.t_ns) OVER stretch - e.t_ns) / 1e9) AS peak_mps,
         least(e.limit_mps, most_limit_mps(c.vehicle_class, e.length_m, c.nation, c.road_type, c.carriageway, c.area, e.limit_mps IS NOT NULL)) + $tolerance_mps AS most_mps,
         -- A sign that the map does not have may set any limit: without a limit in the map, no speed is a pass.
         CASE WHEN e.limit_mps IS NOT NULL
             THEN least(e.limit_mps, least_limit_mps(c.vehicle_class, e.length_m, c.nation, c.road_type, c.carriageway, c.area, true)) + $tolerance_mps END AS least_mps
     FROM ego_state e
+    JOIN step s USING (drive_id, ego_id, t_ns)
     LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)
+    WINDOW stretch AS (PARTITION BY e.drive_id, e.ego_id, s.seg ORDER BY e.t_ns)
 )
 SELECT drive_id, ego_id, t_ns, speed_mps AS observed,
-    CASE WHEN speed_mps > most_mps THEN most_mps WHEN speed_mps <= least_mps THEN least_mps END AS required,
-    CASE WHEN (speed_mps > least_mps) IS DISTINCT FROM false AND (speed_mps > most_mps) IS DISTINCT FROM true THEN
-        CASE WHEN speed_mps IS NULL THEN 'the ego''s speed is not known, or contradicts its positions: record it, or correct it' WHEN lanelet_id IS NULL THEN 'the ego is on no lane' WHEN limit_mps IS NULL THEN limit_doubt(limit_source, lanelet_id)
-            ELSE 'the limit depends on the class of the vehicle and the kind of road, not all of which is known' END END AS reason
+    CASE WHEN speed_mps > most_mps THEN most_mps WHEN peak_mps <= least_mps THEN least_mps END AS required,
+    CASE WHEN required IS NOT NULL THEN NULL
+        WHEN speed_mps IS NULL THEN 'the ego''s speed is not known, or contradicts its positions: record it, or correct it'
+        WHEN lanelet_id IS NULL THEN 'the ego is on no lane'
+        WHEN limit_mps IS NULL THEN limit_doubt(limit_source, lanelet_id)
+        WHEN speed_mps <= least_mps THEN unseen_peak_doubt()
+        ELSE 'the limit depends on the class of the vehicle and the kind of road, not all of which is known' END AS reason
 FROM limit_range
