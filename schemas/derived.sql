@@ -159,7 +159,7 @@ CREATE TABLE capability (
     ego_id VARCHAR NOT NULL,          -- the ego
     signal VARCHAR NOT NULL,          -- what a rule may require: map, registration, handedness, lane_types, markings, speed_limits, indicator, brake_light, ego_size, actor_classes, exit_signs, ...
     available BOOLEAN NOT NULL,       -- the log and map give it
-    reason VARCHAR NOT NULL           -- what is missing, or where it is from
+    reason VARCHAR NOT NULL           -- what is missing, or where it is from: a reason (macro why)
 );
 
 -- lifetime: run
@@ -172,7 +172,7 @@ CREATE TABLE registration (
     n_with_direction BIGINT NOT NULL, -- of the moving ones, heading within 90 degrees of the lane's direction
     lateral_median_m DOUBLE,          -- median distance from the centre line of the lane, beside an overtake in the opposing lane where that is enough; NULL: never on a lane
     ok BOOLEAN NOT NULL,              -- good enough for rules that need the map: the ego fits; or it is against its lane and three of four other vehicles are with theirs; or it keeps to the middle of a lane (within 0.6 m for 5 s and 50 m, or within 0.3 m for 2 s and 20 m) before and after it is anywhere else, on a road that runs as that one does or on two that cross
-    reason VARCHAR NOT NULL           -- why, or why not
+    reason VARCHAR NOT NULL           -- why, or why not: a reason (macro why)
 );
 
 -- ---- where everybody is
@@ -426,8 +426,7 @@ CREATE TABLE unplaced (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
     object_id VARCHAR NOT NULL,       -- a vehicle that may be on the road ahead and cannot be placed on it
-    code VARCHAR NOT NULL,            -- no_position, off_level (may be over or under the road), no_heading, no_size, off_lanes (moves beside every lane), or see unseen
-    reason VARCHAR NOT NULL           -- the code in words
+    code VARCHAR NOT NULL             -- no_position, off_level (may be over or under the road), no_heading, no_size, off_lanes (moves beside every lane), or see unseen
 );
 
 -- lifetime: part
@@ -468,7 +467,7 @@ CREATE TABLE oncoming (
     free_m DOUBLE NOT NULL,           -- how far ahead of the ego's front the corridor and the sensor reach
     free_reason VARCHAR NOT NULL,     -- what ends it: map_end, corridor_end, sensor_range
     n_unplaced BIGINT NOT NULL,       -- other vehicles that cannot be placed: a nearer OV is not ruled out
-    unplaced_reason VARCHAR           -- one of them and why
+    unplaced_reason VARCHAR           -- one of them and why: a reason (macro why)
 );
 
 -- lifetime: part
@@ -628,7 +627,7 @@ CREATE TABLE overtake_sda (
     spare_m DOUBLE,                   -- da_m - sda_m
     spare_s DOUBLE,                   -- the time in which it closes, at v_AV + v_OV
     zone VARCHAR,                     -- A unsafe, B under 0.5 s, C 0.5 to 2.5 s, D over 2.5 s; NULL: unknown
-    reason VARCHAR                    -- why sda_m or da_m is NULL
+    reason VARCHAR                    -- why sda_m or da_m is NULL, or what they are: a reason (macro why)
 );
 
 -- lifetime: part
@@ -644,7 +643,7 @@ CREATE TABLE overtake_step (
     free_reason VARCHAR,              -- what ends it: map_end, corridor_end, sensor_range
     ov_id VARCHAR,                    -- of the oncoming vehicles at this step the one whose danger space reaches furthest into the ego's, see oncoming_vehicle; NULL: none
     ov_known BOOLEAN NOT NULL,        -- no other vehicle may come: every one is placed
-    ov_reason VARCHAR,                -- why that is not known, and what to provide; said where it is known, too
+    ov_reason VARCHAR,                -- why that is not known, and what to provide: a reason (macro why); there where it is known, too
     sd_av_m DOUBLE,                   -- stopping distance of the ego: length of its danger space
     ds_av_s_m DOUBLE,                 -- where that danger space begins along the corridor: the middle of the front bumper
     ds_av_d_m DOUBLE,                 -- middle of that danger space across the corridor: where the front bumper's middle is, left positive

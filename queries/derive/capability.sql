@@ -5,7 +5,7 @@ WITH ego_log AS (
         c.drive_id, c.ego_id, g.environment_id,
         coalesce((
             SELECT min(q.message) FROM quality q WHERE q.drive_id = c.drive_id AND q.check_id IN ('own_map_unusable', 'lanes_without_width')
-        ), 'no map: give one with --map') AS no_map_reason, g.has_indicator, g.has_brake_light,
+        ), why('no_map')) AS no_map_reason, g.has_indicator, g.has_brake_light,
         a.length_m IS NOT NULL AND a.width_m IS NOT NULL AS has_ego_size,
         NOT EXISTS (FROM quality q WHERE q.drive_id = c.drive_id AND q.check_id = 'assumed_motion') AS has_speeds,
         -- Headlights are recorded lamps: a log may have them although the ego does not declare what it looks at or means to do.
@@ -42,43 +42,43 @@ map_content AS (
 -- Per signal: whether the map must give it, whether it is available, and the reason to state if it is available and if it is missing.
 ego_input AS (
     SELECT s.drive_id, s.ego_id, s.environment_id, s.no_map_reason, unnest([
-        {'signal': 'map', 'is_of_map': true, 'available': m.environment_id IS NOT NULL, 'reason_available': 'map ' || m.environment_id, 'reason_missing': NULL},
-        {'signal': 'registration', 'is_of_map': false, 'available': r.ok, 'reason_available': r.reason, 'reason_missing': CASE WHEN s.environment_id IS NULL THEN s.no_map_reason ELSE coalesce(r.reason, 'the ego has no position') END},
+        {'signal': 'map', 'is_of_map': true, 'available': m.environment_id IS NOT NULL, 'reason_available': why('has_map', {'environment_id': m.environment_id}), 'reason_missing': NULL},
+        {'signal': 'registration', 'is_of_map': false, 'available': r.ok, 'reason_available': r.reason, 'reason_missing': CASE WHEN s.environment_id IS NULL THEN s.no_map_reason ELSE coalesce(r.reason, why('ego_never_placed')) END},
         {'signal': 'handedness', 'is_of_map': true, 'available': m.handedness_source <> 'default',
-            'reason_available': 'side of the road (' || m.handedness || ') by ' || m.handedness_source,
-            'reason_missing': 'which side is driven on is not known (' || m.handedness || ' is only the default): give it with --handedness'},
-        {'signal': 'lane_types', 'is_of_map': true, 'available': m.has_lane_types, 'reason_available': 'the map has ways beside the carriageway', 'reason_missing': 'the map has no footway, kerb, border or shoulder'},
-        {'signal': 'markings', 'is_of_map': true, 'available': m.has_markings, 'reason_available': 'the map has road markings', 'reason_missing': 'the map has no road markings'},
-        {'signal': 'speed_limits', 'is_of_map': true, 'available': m.has_speed_limits, 'reason_available': 'the map has speed limits', 'reason_missing': CASE WHEN m.has_unread_limits THEN 'the map''s speed limits cannot be read' ELSE 'the map has no speed limits' END},
+            'reason_available': why('has_handedness', {'handedness': m.handedness, 'source': m.handedness_source}),
+            'reason_missing': why('default_handedness', {'handedness': m.handedness})},
+        {'signal': 'lane_types', 'is_of_map': true, 'available': m.has_lane_types, 'reason_available': why('has_lane_types'), 'reason_missing': why('no_lane_types')},
+        {'signal': 'markings', 'is_of_map': true, 'available': m.has_markings, 'reason_available': why('has_markings'), 'reason_missing': why('no_markings')},
+        {'signal': 'speed_limits', 'is_of_map': true, 'available': m.has_speed_limits, 'reason_available': why('has_speed_limits'), 'reason_missing': CASE WHEN m.has_unread_limits THEN why('unread_speed_limits') ELSE why('no_speed_limits') END},
         {'signal': 'road_types', 'is_of_map': NOT s.is_road_type_given, 'available': s.is_road_type_given OR m.has_road_types,
-            'reason_available': CASE WHEN s.is_road_type_given THEN 'the road type is given' ELSE 'the map has road types' END,
-            'reason_missing': 'the map has no road types: give one that has, or --env road_type=...'},
-        {'signal': 'junctions', 'is_of_map': true, 'available': m.has_junctions, 'reason_available': 'the map has junctions', 'reason_missing': 'the map has no junctions: give one that has'},
+            'reason_available': CASE WHEN s.is_road_type_given THEN why('given_road_type') ELSE why('has_road_types') END,
+            'reason_missing': why('no_road_types')},
+        {'signal': 'junctions', 'is_of_map': true, 'available': m.has_junctions, 'reason_available': why('has_junctions'), 'reason_missing': why('no_junctions')},
         -- A map without junctions and crossings needs no traffic lights, and without these three a log has no states of lights to record.
         {'signal': 'traffic_lights', 'is_of_map': true, 'available': m.has_traffic_lights OR NOT (m.has_junctions OR m.has_crossings),
-            'reason_available': CASE WHEN m.has_traffic_lights THEN 'the map has traffic lights' ELSE 'the map has neither junctions nor crossings' END,
-            'reason_missing': 'the map has junctions or crossings and no traffic lights: give one that has'},
-        {'signal': 'stop_lines', 'is_of_map': true, 'available': m.has_stop_lines, 'reason_available': 'the map has stop lines', 'reason_missing': 'the map has no stop lines: give one that has'},
-        {'signal': 'crossings', 'is_of_map': true, 'available': m.has_crossings, 'reason_available': 'the map has pedestrian crossings', 'reason_missing': CASE WHEN m.has_crossing_signs THEN 'the map signs pedestrian crossings and does not draw them: give one that does' ELSE 'the map has no pedestrian crossings: give one that has' END},
+            'reason_available': CASE WHEN m.has_traffic_lights THEN why('has_traffic_lights') ELSE why('needs_no_lights') END,
+            'reason_missing': why('no_traffic_lights')},
+        {'signal': 'stop_lines', 'is_of_map': true, 'available': m.has_stop_lines, 'reason_available': why('has_stop_lines'), 'reason_missing': why('no_stop_lines')},
+        {'signal': 'crossings', 'is_of_map': true, 'available': m.has_crossings, 'reason_available': why('has_crossings'), 'reason_missing': CASE WHEN m.has_crossing_signs THEN why('undrawn_crossings') ELSE why('no_crossings') END},
         -- Without exits the map needs no exit signs: the signal is available then.
         {'signal': 'exit_signs', 'is_of_map': true, 'available': m.has_exit_signs OR NOT m.has_exits,
-            'reason_available': CASE WHEN m.has_exit_signs THEN 'the map has exit signs' ELSE 'the map has no exits' END, 'reason_missing': 'the map has exits, but no exit signs'},
-        {'signal': 'indicator', 'is_of_map': false, 'available': s.has_indicator, 'reason_available': 'the log has the ego''s indicators', 'reason_missing': 'the log has no indicators of the ego'},
-        {'signal': 'brake_light', 'is_of_map': false, 'available': s.has_brake_light, 'reason_available': 'the log has the ego''s brake lights', 'reason_missing': 'the log has no brake lights of the ego'},
-        {'signal': 'ego_size', 'is_of_map': false, 'available': s.has_ego_size, 'reason_available': 'the ego''s box is known', 'reason_missing': 'the ego''s length or width is not known'},
-        {'signal': 'speeds', 'is_of_map': false, 'available': s.has_speeds, 'reason_available': 'speeds are recorded, or follow from the positions', 'reason_missing': 'the mapping assumes the speeds: give a log that has them'},
+            'reason_available': CASE WHEN m.has_exit_signs THEN why('has_exit_signs') ELSE why('no_exits') END, 'reason_missing': why('no_exit_signs')},
+        {'signal': 'indicator', 'is_of_map': false, 'available': s.has_indicator, 'reason_available': why('has_indicator'), 'reason_missing': why('no_indicator')},
+        {'signal': 'brake_light', 'is_of_map': false, 'available': s.has_brake_light, 'reason_available': why('has_brake_light'), 'reason_missing': why('no_brake_light')},
+        {'signal': 'ego_size', 'is_of_map': false, 'available': s.has_ego_size, 'reason_available': why('has_ego_size'), 'reason_missing': why('no_ego_size')},
+        {'signal': 'speeds', 'is_of_map': false, 'available': s.has_speeds, 'reason_available': why('has_speeds'), 'reason_missing': why('assumed_speeds')},
         -- A vehicle of unknown kind may be a bicycle. A log without other actors needs no classes.
         {'signal': 'actor_classes', 'is_of_map': false, 'available': s.has_classes OR NOT s.has_others,
-            'reason_available': CASE WHEN s.has_others THEN 'the log says what the others are' ELSE 'nobody else is in the log' END, 'reason_missing': 'the log does not say what the others are: give their classes'},
+            'reason_available': CASE WHEN s.has_others THEN why('has_actor_classes') ELSE why('nobody_else') END, 'reason_missing': why('no_actor_classes')},
         {'signal': 'signals', 'is_of_map': false, 'available': s.has_signals OR NOT (m.has_traffic_lights OR m.has_junctions OR m.has_crossings),
-            'reason_available': CASE WHEN s.has_signals THEN 'the log has the states of traffic lights' ELSE 'the map has neither junctions nor crossings' END, 'reason_missing': 'the log has no states of traffic lights: record them'},
-        {'signal': 'declared_events', 'is_of_map': false, 'available': s.has_events, 'reason_available': 'the log has events that the ego declares', 'reason_missing': 'the ego declares no events in the log: record them'},
-        {'signal': 'modes', 'is_of_map': false, 'available': d.modes IS NOT NULL, 'reason_available': 'the log says when the ego''s modes are on: ' || array_to_string(list_sort(d.modes), ', '),
-            'reason_missing': 'the log declares no modes of the ego: record them as events that are on and off'}
+            'reason_available': CASE WHEN s.has_signals THEN why('has_light_states') ELSE why('needs_no_lights') END, 'reason_missing': why('no_light_states')},
+        {'signal': 'declared_events', 'is_of_map': false, 'available': s.has_events, 'reason_available': why('has_declared_events'), 'reason_missing': why('no_declared_events')},
+        {'signal': 'modes', 'is_of_map': false, 'available': d.modes IS NOT NULL, 'reason_available': why('has_modes', {'modes': array_to_string(list_sort(d.modes), ', ')}),
+            'reason_missing': why('no_modes')}
     ] || [
         {'signal': 'mode_' || mode, 'is_of_map': false, 'available': coalesce(list_contains(d.modes, mode), false) OR mode = 'engaged' AND s.is_engaged_given,
-            'reason_available': CASE WHEN mode = 'engaged' AND s.is_engaged_given THEN 'whether the automated driver drives is given' ELSE 'the log says when ' || mode || ' is on' END,
-            'reason_missing': 'the log does not tell about ' || replace(mode, '_', ' ') || ': record ' || CASE WHEN mode = 'headlights' THEN 'either their signal or ' ELSE '' END || 'the event ' || mode || ', on and off' || CASE WHEN mode = 'engaged' THEN ', or give --env engaged=yes or no' ELSE '' END}
+            'reason_available': CASE WHEN mode = 'engaged' AND s.is_engaged_given THEN why('given_engaged') ELSE why('has_mode', {'mode': mode}) END,
+            'reason_missing': why(CASE mode WHEN 'headlights' THEN 'no_headlights' WHEN 'engaged' THEN 'no_engaged_mode' ELSE 'no_mode' END, {'mode': mode, 'name': replace(mode, '_', ' ')})}
         FOR mode IN ['engaged', 'emergency_manoeuvre', 'minimal_risk_manoeuvre', 'lane_change_procedure', 'headlights', 'horn']
     ], recursive := true)
     FROM ego_log s

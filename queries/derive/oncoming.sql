@@ -29,11 +29,11 @@ object_not_oncoming AS (
     SELECT drive_id, ego_id, t_ns, object_id FROM hidden WHERE NOT ahead OR along
 ),
 doubtful_object AS (
-    SELECT u.drive_id, u.ego_id, u.t_ns, count(*) AS n, min({'id': u.object_id, 'reason': u.reason}) AS u
+    SELECT u.drive_id, u.ego_id, u.t_ns, count(*) AS n, min({'object_id': u.object_id, 'lack': u.code}) AS u
     FROM (
-        SELECT drive_id, ego_id, t_ns, object_id, code, reason FROM unplaced
+        SELECT drive_id, ego_id, t_ns, object_id, code FROM unplaced
         UNION ALL
-        SELECT drive_id, ego_id, t_ns, object_id, 'no_class', 'comes, and its class is not known' FROM oncoming_vehicle WHERE vehicle IS NULL
+        SELECT drive_id, ego_id, t_ns, object_id, 'no_class' FROM oncoming_vehicle WHERE vehicle IS NULL
     ) u
     ANTI JOIN object_not_oncoming b ON b.drive_id = u.drive_id AND b.ego_id = u.ego_id AND b.t_ns = u.t_ns AND b.object_id = u.object_id
     LEFT JOIN nearest_vehicle n ON n.drive_id = u.drive_id AND n.ego_id = u.ego_id AND n.t_ns = u.t_ns
@@ -48,7 +48,7 @@ SELECT
     greatest(0.0, least(e.corridor_m, e.range_m)) AS free_m,
     CASE WHEN e.range_m < e.corridor_m THEN 'sensor_range' WHEN e.map_ends THEN 'map_end' ELSE 'corridor_end' END AS free_reason,
     coalesce(h.n, 0) AS n_unplaced,
-    CASE WHEN h.n > 0 THEN 'actor ' || h.u.id || ' ' || h.u.reason END AS unplaced_reason
+    CASE WHEN h.n > 0 THEN why('actor_unplaced', h.u) END AS unplaced_reason
 FROM ego_step e
 LEFT JOIN nearest_vehicle n USING (drive_id, ego_id, t_ns)
 LEFT JOIN doubtful_object h USING (drive_id, ego_id, t_ns)

@@ -93,19 +93,19 @@ SELECT
     -- is not placed, only zone A can be told: that vehicle may leave even less.
     CASE WHEN is_known AND NOT has_sped_up AND CASE WHEN ov_id IS NULL THEN n_unplaced = 0 AND da_m > sda_m ELSE n_unplaced = 0 OR da_m <= sda_m END THEN overtake_zone(da_m - sda_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0)) END AS zone,
     CASE
-        WHEN NOT begin_seen THEN 'the log does not show where the overtake began: record the ego from before it'
-        WHEN NOT vbp_placed THEN 'actor ' || vbp_id || ', who may be the vehicle passed, has no position where the overtake began: record it'
-        WHEN opposing IS NULL THEN 'the map has no lane beside the running lane on the overtaking side: give a map with the lanes of both directions'
-        WHEN da_m IS NULL THEN 'the ego is not placed on its lane where the overtake began: record its position, on a map that has its lane'
-        WHEN sda_m IS NULL AND v_av_mps <= v_vbp_mps THEN 'undefined: the ego was not faster than the vehicle it passed'
-        WHEN sda_m IS NULL AND profile = 'observed' AND status <> 'completed' THEN 'the overtake was ' || CASE status WHEN 'truncated' THEN 'not completed in the log, so its own angles are not known: record it for longer' ELSE 'not completed, and has no angles of its own: the other profiles tell more' END
-        WHEN sda_m IS NULL AND ov_id IS NULL AND v_ov_mps IS NULL THEN 'no oncoming vehicle is seen and the map has no speed limit to assume for one'
-        WHEN sda_m IS NULL THEN 'a speed, size or angle of the two is not known: record speeds and sizes'
-        WHEN has_sped_up THEN format('it sped up: at {:.1f} m/s, its speed at t0, it would have needed {:.0f} m, at {:.1f} m/s, {} {:.0f} m, and {:.0f} m were there', v_av_mps, sda_m, v_later_mps, CASE status WHEN 'truncated' THEN 'which it had reached when the log ended,' ELSE 'its mean one,' END, sped_up_m, da_m)
-        WHEN n_unplaced > 0 AND da_m > sda_m THEN unplaced_reason || ': record it without a break'
-        WHEN ov_id IS NULL AND da_m <= sda_m THEN 'no oncoming vehicle as far as can be told, but that is only ' || round(da_m, 1)::VARCHAR || ' m: ' || CASE free_reason WHEN 'sensor_range' THEN 'the sensors reach no further' ELSE 'give a map that goes on' END
-        WHEN ov_id IS NULL THEN 'no oncoming vehicle within ' || round(da_m, 1)::VARCHAR || ' m'
-        WHEN da_m <= sda_m AND sda_m = driven_m THEN 'the ego was out of its lane for ' || round(out_s, 1)::VARCHAR || ' s'
-        WHEN ov_id <> nearest_id THEN format('{} comes behind {}, and leaves the least: {:.1f} m, where more than {:.1f} m is required', ov_id, nearest_id, da_m, sda_m)
+        WHEN NOT begin_seen THEN why('overtake_begin_unseen')
+        WHEN NOT vbp_placed THEN why('passed_unplaced', {'object_id': vbp_id})
+        WHEN opposing IS NULL THEN why('no_overtaking_lane')
+        WHEN da_m IS NULL THEN why('ego_unplaced_at_overtake')
+        WHEN sda_m IS NULL AND v_av_mps <= v_vbp_mps THEN why('not_faster_than_passed')
+        WHEN sda_m IS NULL AND profile = 'observed' AND status <> 'completed' THEN CASE status WHEN 'truncated' THEN why('overtake_truncated') ELSE why('overtake_aborted') END
+        WHEN sda_m IS NULL AND ov_id IS NULL AND v_ov_mps IS NULL THEN why('no_oncoming_no_limit')
+        WHEN sda_m IS NULL THEN why('speed_or_size_unknown')
+        WHEN has_sped_up THEN why(CASE status WHEN 'truncated' THEN 'sped_up_truncated' ELSE 'sped_up' END, {'v_mps': v_av_mps, 'sda_m': sda_m, 'v_later_mps': v_later_mps, 'later_sda_m': sped_up_m, 'da_m': da_m})
+        WHEN n_unplaced > 0 AND da_m > sda_m THEN why('record_actor_unbroken', {'lack': unplaced_reason})
+        WHEN ov_id IS NULL AND da_m <= sda_m THEN why(CASE free_reason WHEN 'sensor_range' THEN 'short_sight_sensors' ELSE 'short_sight_map' END, {'free_m': da_m})
+        WHEN ov_id IS NULL THEN why('no_oncoming', {'free_m': da_m})
+        WHEN da_m <= sda_m AND sda_m = driven_m THEN why('out_of_lane', {'out_s': out_s})
+        WHEN ov_id <> nearest_id THEN why('later_oncoming_worse', {'object_id': ov_id, 'nearest_id': nearest_id, 'da_m': da_m, 'sda_m': sda_m})
     END AS reason
 FROM worst_ov

@@ -63,12 +63,9 @@ SELECT
     s.drive_id, s.ego_id, s.occurrence, s.t_ns, s.stage, s.vbp_id, s.sure, w.o.id AS ov_id,
     -- That nobody comes is known only as far as is seen: an unseen vehicle at the limit (70 mph if the map has none) must be out of reach.
     coalesce(n.n_unplaced = 0 AND (n.object_id IS NOT NULL OR n.free_m > s.sd_av_m + danger_space_m(coalesce(s.limit_mps, 31.3))), false) AS ov_known,
-    CASE WHEN n.t_ns IS NULL THEN 'whether somebody comes is not known: ' || coalesce(s.ego_lack, 'the side that is driven on is not, give it with --handedness')
-        WHEN n.n_unplaced > 0 THEN n.unplaced_reason || ': record it'
-        ELSE format(
-            'nobody is seen to come, but only {:.0f} m are seen: {}', n.free_m,
-            CASE n.free_reason WHEN 'sensor_range' THEN 'the sensors reach no further (--sensor-range, if they do)' ELSE 'give a map that goes on' END
-        ) END AS ov_reason,
+    CASE WHEN n.t_ns IS NULL THEN CASE WHEN s.ego_lack IS NULL THEN why('oncoming_side_unknown') ELSE why('oncoming_unknown', {'lack': s.ego_lack}) END
+        WHEN n.n_unplaced > 0 THEN why('record_actor', {'lack': n.unplaced_reason})
+        ELSE why(CASE n.free_reason WHEN 'sensor_range' THEN 'free_to_sensor_range' ELSE 'free_to_map_end' END, {'free_m': n.free_m}) END AS ov_reason,
     s.sd_av_m, s.bumper_s_m AS ds_av_s_m, s.bumper_d_m AS ds_av_d_m, s.box_half_width_m AS ds_av_half_m,
     w.o.sd_m AS sd_ov_m, w.o.bumper_s_m AS ds_ov_s_m, w.o.bumper_d_m AS ds_ov_d_m, w.o.box_half_width_m AS ds_ov_half_m,
     box_depth(b.s_m - s.bumper_s_m - s.sd_av_m / 2, b.d_m - s.bumper_d_m, b.c, b.s, s.sd_av_m / 2, s.box_half_width_m, b.box_half_length_m, b.box_half_width_m) AS vbp_in_ds_av_m,

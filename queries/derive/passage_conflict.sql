@@ -83,12 +83,12 @@ hardest_braking AS (
 incomplete_pair AS (
     SELECT
         drive_id, ego_id, t_ns, object_id, actor_class, x_m, y_m, x_m IS NULL OR y_m IS NULL AS has_no_position,
-        CASE WHEN off_level THEN 'may be over or under the road' WHEN x_m IS NULL OR y_m IS NULL THEN 'has no position' WHEN yaw_rad IS NULL THEN 'has no heading' ELSE 'has no size' END AS doubt_words
+        CASE WHEN off_level THEN 'off_level' WHEN x_m IS NULL OR y_m IS NULL THEN 'no_position' WHEN yaw_rad IS NULL THEN 'no_heading' ELSE 'no_size' END AS lack
     FROM pair
     WHERE (x_m IS NULL OR y_m IS NULL OR yaw_rad IS NULL OR length_m IS NULL OR width_m IS NULL) AND actor_class IS DISTINCT FROM 'object'
 ),
 unclear_object AS (
-    SELECT p.drive_id, p.ego_id, p.occurrence, b.object_id, b.actor_class, min(b.doubt_words) AS doubt_words, p.x_m, p.y_m, p.t_enter_ns, p.t_leave_ns,
+    SELECT p.drive_id, p.ego_id, p.occurrence, b.object_id, b.actor_class, min(b.lack) AS lack, p.x_m, p.y_m, p.t_enter_ns, p.t_leave_ns,
         count(*) FILTER (b.has_no_position) * any_value(c.period_ns) / 1e9 AS without_position_s
     FROM passage p
     JOIN clock c USING (drive_id, ego_id)
@@ -99,7 +99,7 @@ unclear_object AS (
 ),
 -- An actor that is seen before or after at a place from which it cannot have come (at 30 m/s) does not matter.
 unclear_object_near AS (
-    SELECT u.drive_id, u.ego_id, u.occurrence, u.object_id, u.actor_class, u.doubt_words
+    SELECT u.drive_id, u.ego_id, u.occurrence, u.object_id, u.actor_class, u.lack
     FROM unclear_object u
     LEFT JOIN (
         SELECT u.drive_id, u.ego_id, u.occurrence, u.object_id, min(sqrt((o.x_m - u.x_m) ** 2 + (o.y_m - u.y_m) ** 2)) AS least_m
@@ -119,17 +119,17 @@ track AS (
 -- Actors whose track begins or ends while the ego passes the junction, or so soon before or after that they may have come.
 -- broken_track_near keeps those near the junction.
 broken_track AS (
-    SELECT p.drive_id, p.ego_id, p.occurrence, d.actor_id AS object_id, d.actor_class, v.doubt_words, v.t_ns, p.x_m, p.y_m,
+    SELECT p.drive_id, p.ego_id, p.occurrence, d.actor_id AS object_id, d.actor_class, v.lack, v.t_ns, p.x_m, p.y_m,
         -- Towards the junction (1) or away from it (-1), and how long that may have taken.
         2 * v.lost - 1 AS direction, (CASE v.lost WHEN 1 THEN p.t_leave_ns + watched_ns() - v.t_ns ELSE v.t_ns - p.t_enter_ns END) / 1e9 AS reach_s
     FROM passage p
     JOIN clock c USING (drive_id, ego_id)
     JOIN track d ON d.drive_id = p.drive_id AND d.actor_id <> p.ego_id
-    CROSS JOIN LATERAL (VALUES (unplaced_words('appeared'), d.t_first_ns, 0), (unplaced_words('lost'), d.t_last_ns, 1)) AS v(doubt_words, t_ns, lost)
+    CROSS JOIN LATERAL (VALUES ('appeared', d.t_first_ns, 0), ('lost', d.t_last_ns, 1)) AS v(lack, t_ns, lost)
     WHERE v.t_ns >= p.t_enter_ns - v.lost * conflict_ns() AND v.t_ns <= p.t_leave_ns + conflict_ns() AND v.t_ns > c.t_start_ns + c.max_gap_ns AND v.t_ns < c.t_end_ns - c.max_gap_ns
 ),
 broken_track_near AS (
-    SELECT b.drive_id, b.ego_id, b.occurrence, b.object_id, b.actor_class, b.doubt_words
+    SELECT b.drive_id, b.ego_id, b.occurrence, b.object_id, b.actor_class, b.lack
     FROM broken_track b
     JOIN state_dynamics s ON s.drive_id = b.drive_id AND s.actor_id = b.object_id AND s.t_ns = b.t_ns
     CROSS JOIN LATERAL (SELECT b.x_m - s.x_m AS dx, b.y_m - s.y_m AS dy) d
@@ -140,12 +140,12 @@ broken_track_near AS (
 own_doubt AS (
     SELECT p.drive_id, p.ego_id, p.occurrence,
         CASE
-            WHEN p.t_in_ns IS NULL THEN 'the log, or a hole in it, begins in the junction'
-            WHEN p.t_out_ns IS NULL THEN 'the log, or a hole in it, ends in the junction'
-            WHEN c.t_end_ns < p.t_leave_ns + watched_ns() THEN 'the log ends too soon after the junction'
-            WHEN min(st.seg) < max(st.seg) THEN 'there is a hole in the log soon after the junction'
-            WHEN count(*) FILTER (s.t_ns <= p.t_leave_ns AND (s.x_m IS NULL OR s.y_m IS NULL OR s.yaw_rad IS NULL)) > 0 THEN 'the ego has no position in the junction'
-            WHEN max(sqrt((s.x_m - p.x_m) ** 2 + (s.y_m - p.y_m) ** 2)) + 10 > g.sensor_range_m THEN 'the sensor''s range ends too near to the junction'
+            WHEN p.t_in_ns IS NULL THEN why('begins_in_junction')
+            WHEN p.t_out_ns IS NULL THEN why('ends_in_junction')
+            WHEN c.t_end_ns < p.t_leave_ns + watched_ns() THEN why('ends_after_junction')
+            WHEN min(st.seg) < max(st.seg) THEN why('hole_after_junction')
+            WHEN count(*) FILTER (s.t_ns <= p.t_leave_ns AND (s.x_m IS NULL OR s.y_m IS NULL OR s.yaw_rad IS NULL)) > 0 THEN why('ego_unplaced_in_junction')
+            WHEN max(sqrt((s.x_m - p.x_m) ** 2 + (s.y_m - p.y_m) ** 2)) + 10 > g.sensor_range_m THEN why('sensors_short_of_junction')
         END AS reason
     FROM passage p
     JOIN clock c USING (drive_id, ego_id)
@@ -155,7 +155,7 @@ own_doubt AS (
     GROUP BY p.drive_id, p.ego_id, p.occurrence, p.t_in_ns, p.t_out_ns, p.t_leave_ns, c.t_end_ns, g.sensor_range_m
 ),
 doubtful_object AS (
-    SELECT drive_id, ego_id, occurrence, is_on_foot, min({'id': object_id, 'doubt_words': doubt_words}) AS other
+    SELECT drive_id, ego_id, occurrence, is_on_foot, min({'object_id': object_id, 'lack': lack}) AS other
     FROM (
         SELECT *, true AS is_on_foot FROM (FROM unclear_object_near UNION ALL FROM broken_track_near) WHERE may_walk(actor_class)
         UNION ALL
@@ -170,7 +170,7 @@ passage_relation AS (
 relation_result AS (
     SELECT
         a.drive_id, a.ego_id, a.occurrence, a.relation, n.other, h.braking,
-        coalesce(o.reason, 'actor ' || d.other.id || ' ' || d.other.doubt_words) AS reason
+        coalesce(o.reason, CASE WHEN d.other IS NOT NULL THEN why('actor_unplaced', d.other) END) AS reason
     FROM passage_relation a
     JOIN own_doubt o USING (drive_id, ego_id, occurrence)
     LEFT JOIN nearest_encounter n USING (drive_id, ego_id, occurrence, relation)

@@ -42,11 +42,11 @@ map_check AS (
     SELECT
         c.*, g.environment_id IS NULL AS has_no_map,
         CASE
-            WHEN g.environment_id IS NULL THEN 'no map'
-            WHEN n_steps = 0 THEN 'the ego has no position'
-            WHEN n_on_lane < 0.8 * n_steps THEN 'the ego is on a lane of the map in only ' || n_on_lane || ' of ' || n_steps || ' steps: wrong map, offset or frame?'
-            WHEN n_with_direction < 0.6 * n_moving THEN 'the ego drives against its lane''s direction in ' || (n_moving - n_with_direction) || ' of ' || n_moving || ' moving steps: wrong handedness or frame?'
-            WHEN lateral_median_m > 1.2 THEN 'half of the time the ego is more than ' || round(lateral_median_m, 2)::VARCHAR || ' m from its lane''s centre line: map offset?'
+            WHEN g.environment_id IS NULL THEN why('without_map')
+            WHEN n_steps = 0 THEN why('ego_never_placed')
+            WHEN n_on_lane < 0.8 * n_steps THEN why('seldom_on_lane', {'n_on_lane': n_on_lane, 'n_steps': n_steps})
+            WHEN n_with_direction < 0.6 * n_moving THEN why('often_against_lane', {'n_against': n_moving - n_with_direction, 'n_moving': n_moving})
+            WHEN lateral_median_m > 1.2 THEN why('far_from_centre_line', {'lateral_m': lateral_median_m})
         END AS trouble,
         -- If the ego is against its lane, the other vehicles can tell, unless the log began in the middle of an overtake. If it is off the
         -- lanes, the map may lack just its lane.
@@ -124,9 +124,9 @@ fitting_ego AS (
 )
 SELECT
     j.drive_id, j.ego_id, n_steps, n_on_lane, n_moving, n_with_direction, lateral_median_m, trouble IS NULL OR v.n_fit IS NOT NULL OR w.ego_id IS NOT NULL AS ok,
-    CASE WHEN v.n_fit IS NOT NULL THEN trouble || ' No: ' || v.n_fit || ' of ' || v.n_witnesses || ' other vehicles drive in its lanes and with them'
-        WHEN trouble IS NOT NULL AND w.ego_id IS NOT NULL THEN trouble || ' No: before and after that it keeps to the middle of its lane'
-        ELSE coalesce(trouble, 'on a lane in ' || n_on_lane || ' of ' || n_steps || ' steps, with the traffic in ' || n_with_direction || ' of ' || n_moving || ' moving ones')
+    CASE WHEN v.n_fit IS NOT NULL THEN why('others_fit', {'trouble': trouble, 'n_fit': v.n_fit, 'n_witnesses': v.n_witnesses})
+        WHEN trouble IS NOT NULL AND w.ego_id IS NOT NULL THEN why('fits_before_and_after', {'trouble': trouble})
+        ELSE coalesce(trouble, why('on_lane', {'n_on_lane': n_on_lane, 'n_steps': n_steps, 'n_with_direction': n_with_direction, 'n_moving': n_moving}))
     END AS reason
 FROM map_check j
 LEFT JOIN witness_count v USING (drive_id, ego_id)

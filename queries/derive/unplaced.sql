@@ -21,7 +21,7 @@ incomplete_pair AS (
     FROM pair
     WHERE may_be_vehicle(actor_class) AND x_m IS NOT NULL AND (yaw_rad IS NULL OR length_m IS NULL OR width_m IS NULL)
 )
-SELECT drive_id, ego_id, t_ns, object_id, min(code) AS code, unplaced_words(min(code)) AS reason
+SELECT drive_id, ego_id, t_ns, object_id, min(code) AS code
 FROM (
     SELECT * FROM pair_without_position
     UNION ALL

@@ -56,27 +56,18 @@ CREATE OR REPLACE MACRO strays_m(actor_class, t_s) AS
 -- The stations of one place along a road, measured in two of its lanes, differ by no more than this: the width of a lane in a quarter turn.
 CREATE OR REPLACE MACRO lanes_apart_m() AS 6.0;
 
--- Why an actor cannot be placed, in words.
-CREATE OR REPLACE MACRO unplaced_words(code) AS CASE code
-    WHEN 'no_position' THEN 'has no position (or no fresh one)' WHEN 'off_level' THEN 'may be over or under the road' WHEN 'off_lanes' THEN 'moves off the lanes'
-    WHEN 'no_heading' THEN 'has no heading' WHEN 'no_size' THEN 'has no size' WHEN 'lost' THEN 'is no longer recorded'
-    WHEN 'lost_behind' THEN 'drove away behind and is no longer recorded' WHEN 'appeared' THEN 'is not yet recorded'
-    WHEN 'beyond_map' THEN 'came in over the end of the map' END;
-
--- The ego has no place without these values. The text names the missing one and what to provide; NULL: nothing is missing.
+-- The ego has no place without these values: which one is missing, as a reason; NULL: none is.
 CREATE OR REPLACE MACRO ego_lacks(x_m, yaw_rad, lanelet_id, front_s_m) AS CASE
-    WHEN x_m IS NULL THEN 'the ego ' || unplaced_words('no_position') || ': record it'
-    WHEN yaw_rad IS NULL THEN 'the ego ' || unplaced_words('no_heading') || ': record it'
-    WHEN lanelet_id IS NULL THEN 'the ego is not on a lane of the map: give a map that has its lane'
-    WHEN front_s_m IS NULL THEN 'the ego''s box reaches beyond the lanes of the map: give a map whose lanes go on' END;
+    WHEN x_m IS NULL THEN why('ego_without_position')
+    WHEN yaw_rad IS NULL THEN why('ego_without_heading')
+    WHEN lanelet_id IS NULL THEN why('ego_off_lanes')
+    WHEN front_s_m IS NULL THEN why('ego_beyond_lanes') END;
 
 -- The reason if it cannot be told whether two boxes touch.
-CREATE OR REPLACE MACRO graze_words(object_id) AS
-    format('whether the ego passes {} by, or touches it, is a matter of centimetres: record positions, headings and sizes more exactly', object_id);
+CREATE OR REPLACE MACRO graze_doubt(object_id) AS why('grazes', {'object_id': object_id});
 
 -- The reason if it cannot be told whether the ego overtook this vehicle.
-CREATE OR REPLACE MACRO overtake_doubt(vbp_id) AS
-    format('whether the ego overtook {} is not sure: record both from before the ego leaves its lane until it is back in it', vbp_id);
+CREATE OR REPLACE MACRO overtake_doubt(vbp_id) AS CASE WHEN vbp_id IS NOT NULL THEN why('overtake_unsure', {'object_id': vbp_id}) END;
 
 -- An actor that cannot be placed may be beside the ego if it may be nearer than this.
 CREATE OR REPLACE MACRO may_be_beside_m() AS 10.0;

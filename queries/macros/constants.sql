@@ -39,11 +39,9 @@ CREATE OR REPLACE MACRO unseen_ns(distance_m, v_object_mps, v_ego_mps, least_s) 
 CREATE OR REPLACE MACRO fastest_mps() AS 31.3;
 -- The reason why there is no speed limit to judge by.
 CREATE OR REPLACE MACRO limit_doubt(limit_source, lanelet_id) AS CASE limit_source
-    WHEN 'unread' THEN 'the map gives a limit for lanelet ' || lanelet_id || ' that cannot be read: give one with limits in a known unit'
-    WHEN 'none' THEN 'the map says that lanelet ' || lanelet_id || ' has no limit of its own: give one that says which limit holds'
-    ELSE 'the map gives no limit for lanelet ' || lanelet_id || ': give one with speed limits'
+    WHEN 'unread' THEN why('limit_unread', {'lanelet_id': lanelet_id})
+    WHEN 'none' THEN why('no_own_limit', {'lanelet_id': lanelet_id})
+    ELSE CASE WHEN lanelet_id IS NOT NULL THEN why('no_limit', {'lanelet_id': lanelet_id}) END
 END;
--- The reason why a speed just within the limit is not a pass.
-CREATE OR REPLACE MACRO unseen_peak_doubt() AS 'the ego may have been faster than allowed between two samples: record its speed more often';
 -- If the two directions of a road are farther apart than this, and the map has nothing between them, there may be a central reservation.
 CREATE OR REPLACE MACRO reservation_m() AS 1.0;

@@ -97,4 +97,4 @@ CREATE OR REPLACE MACRO relations_of(from_rad, straightest_rad) AS
 -- Whether the ego went nearly straight on while another way out is straighter. Maps do not say whether the ego turned off there or its road
 -- bends.
 CREATE OR REPLACE MACRO at_fork(turn, turn_rad, straightest_rad) AS coalesce(turn = 'straight' AND abs(turn_rad) > abs(straightest_rad) + fork_rad(), false);
-CREATE OR REPLACE MACRO fork_words() AS 'whether the ego turned off at the fork, or its road bends there, is not known';
+CREATE OR REPLACE MACRO fork_doubt() AS why('fork');

@@ -30,10 +30,9 @@ CREATE OR REPLACE MACRO exit_full(ahead_id, ahead_gap_m, ahead_speed_mps, known,
 CREATE OR REPLACE MACRO pet_known(pet_s, reason, enough_s, concerns) AS
     CASE WHEN pet_s < enough_s THEN CASE WHEN concerns THEN pet_s END WHEN reason IS NULL THEN pet_s END;
 
--- How an actor met the ego, in words.
-CREATE OR REPLACE MACRO met_words(object_id, pet_s, decel_mps2) AS
-    object_id || CASE WHEN pet_s < 0 THEN ' was there at the same time' ELSE format(' came {:.1f} s after the ego', pet_s) END
-    || coalesce(format(' and braked with {:.1f} m/s2', decel_mps2), '');
+-- How an actor met the ego, as a reason. NULL: no actor did.
+CREATE OR REPLACE MACRO met_reason(object_id, pet_s, decel_mps2) AS CASE WHEN object_id IS NOT NULL AND pet_s IS NOT NULL THEN
+    why(CASE WHEN pet_s < 0 THEN 'met_at_same_time' ELSE 'met_later' END, {'object_id': object_id, 'pet_s': pet_s, 'decel_mps2': decel_mps2}) END;
 
 -- Whether the ego made an actor brake: the actor braked harder than `hard_mps2`, and at its speed it would have come within `enough_s` of
 -- the ego. NULL: it may have braked for something else.
@@ -45,12 +44,9 @@ CREATE OR REPLACE MACRO made_to_brake(decel_mps2, pet_s, other_cause, hard_mps2,
 CREATE OR REPLACE MACRO pet_forced(pet_s, forced, forced_pet_s, enough_s) AS
     CASE WHEN forced THEN least(pet_s, forced_pet_s) WHEN NOT forced OR pet_s < enough_s THEN pet_s END;
 
--- How an actor braked before the ego, in words.
-CREATE OR REPLACE MACRO braked_words(object_id, pet_s, decel_mps2, other_cause) AS
-    format('{} braked with {:.1f} m/s2; at its speed it would have ', object_id, decel_mps2)
-    || CASE WHEN pet_s < 0 THEN 'been there at the same time' ELSE format('come within {:.1f} s of the ego', pet_s) END
-    || CASE other_cause WHEN 'incomplete' THEN ', but its heading or size is not known' WHEN 'let_go' THEN ', but the ego stood as it began' WHEN 'somebody_else' THEN ', but somebody else was in its way'
-        WHEN 'signal' THEN ', but there was a line or a light for it' WHEN 'bend' THEN ', but there was a bend before it' ELSE '' END;
+-- How an actor braked before the ego, as a reason. NULL: no actor did.
+CREATE OR REPLACE MACRO braked_reason(object_id, pet_s, decel_mps2, other_cause) AS CASE WHEN object_id IS NOT NULL AND decel_mps2 IS NOT NULL AND pet_s IS NOT NULL THEN
+    why(CASE WHEN pet_s < 0 THEN 'braked_before_meeting' ELSE 'braked_before_ego' END, {'object_id': object_id, 'decel_mps2': decel_mps2, 'pet_s': pet_s, 'other_cause': other_cause}) END;
 
 -- The reason if it is not known whether the rule is about an actor.
-CREATE OR REPLACE MACRO unsure_words(object_id) AS 'the class of ' || object_id || ' is not known: record it';
+CREATE OR REPLACE MACRO class_doubt(object_id) AS CASE WHEN object_id IS NOT NULL THEN why('class_unknown', {'object_id': object_id}) END;

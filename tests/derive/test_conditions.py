@@ -12,6 +12,7 @@ import pytest
 from drivelint import catalogue
 from drivelint.formats import load_map
 from drivelint.inspect.advice import OF_THE_MAP
+from drivelint.reasons.words import sentence
 from drivelint.road.contract import MapSource
 from tests.derive.marked import shouldered
 from tests.formats.opendrive import xodr
@@ -223,7 +224,7 @@ def test_every_signal_says_why_it_is_there_or_what_to_provide() -> None:
     for scene in (drive([ride()], None), drive([ride(way)], way.environment)):
         for row in capabilities(scene):
             assert row["reason"], row
-    nothing = {row["signal"]: row["reason"] for row in capabilities(drive([ride()], None))}
+    nothing = {row["signal"]: sentence(row["reason"]) for row in capabilities(drive([ride()], None))}
     assert {nothing[signal] for signal in {"map", *OF_THE_MAP} - {"registration"}} == {"no map: give one with --map"}
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from drivelint.formats import load_map
+from drivelint.reasons.words import sentence
 from drivelint.road.contract import MapSource
 from tests import scenes
 from tests.derive.exit_scenes import MAIN, exit_road, leaver
@@ -75,7 +76,7 @@ def test_a_road_without_signs() -> None:
     (found,) = rows(con, "FROM exit_taken")
     assert (found["sign_id"], found["t_sign_ns"]) == (None, None)
     (signs,) = rows(con, "FROM capability WHERE signal = 'exit_signs'")
-    assert (signs["available"], signs["reason"]) == (False, "the map has exits, but no exit signs")
+    assert (signs["available"], sentence(signs["reason"])) == (False, "the map has exits, but no exit signs")
 
 
 def test_who_is_in_the_exit_lane_already_crosses_nothing() -> None:

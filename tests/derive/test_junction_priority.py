@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from drivelint.reasons.words import sentence
 from tests.derive.junction_scenes import ARM, R, cross, star
 from tests.scenes import Actor, Road, derived, drive, moving, rows, standing, times
 
@@ -29,7 +30,7 @@ def answers(*actors: Actor, way: Road, **options: object) -> dict[str, Row]:
     con = derived(drive(actors, way.environment, **options), tables=["passage_conflict"])  # type: ignore[arg-type]
     found = rows(con, "FROM passage_conflict WHERE ego_id = 'ego' AND occurrence = 0 ORDER BY relation")
     assert tuple(row["relation"] for row in found) == RELATIONS
-    return {row["relation"]: row for row in found}
+    return {row["relation"]: row | {"reason": row["reason"] and sentence(row["reason"])} for row in found}
 
 
 def seen(found: dict[str, Row]) -> dict[str, str]:
@@ -240,7 +241,7 @@ def test_somebody_without_a_position_may_be_the_one() -> None:
             assert (row["pet_s"], row["reason"]) == (math.inf, None)
         else:
             assert (row["pet_s"], row["decel_mps2"]) == (None, None)
-            assert row["reason"] == "actor o has no position"
+            assert row["reason"] == "actor o has no position (or no fresh one)"
     t = times(24)
     on_foot = walker(R + 3.0, -5 + 1.4 * (t - 9), t)
     found = answers(going(ways["wn"]), on_foot.lost(t > 8), way=ways["we"])
@@ -255,7 +256,7 @@ def test_a_lower_pet_that_was_seen_is_given_with_the_doubt() -> None:
     row = answers(going(ways["wn"]), other, ghost.lost(ghost.t_s > 6), way=ways["we"])["oncoming"]
     assert row["object_id"] == "o"
     assert row["pet_s"] > 0
-    assert row["reason"] == "actor ghost has no position"
+    assert row["reason"] == "actor ghost is no longer recorded"
 
 
 @pytest.mark.parametrize("missing", ["length", "yaw"])

@@ -276,7 +276,7 @@ def test_an_ego_that_keeps_to_its_lane_before_and_after_vouches_for_the_map(
     )
     assert found["lateral_median_m"] > 1.2
     assert found["ok"] is ok
-    assert ("before and after" in found["reason"]) is ok
+    assert ("fits_before_and_after" in found["reason"]) is ok
 
 
 @pytest.mark.parametrize(

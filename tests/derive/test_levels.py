@@ -85,7 +85,7 @@ def test_who_stands_on_the_bridge_is_not_nobody(hand: str) -> None:
         con = derived(known, tables=["lead", "oncoming", "unplaced"])
         assert not rows(con, "FROM lead")
         assert {row["n_unplaced"] for row in rows(con, "FROM oncoming")} == {1}
-        assert {row["reason"] for row in rows(con, "FROM unplaced")} == {"may be over or under the road"}
+        assert {row["code"] for row in rows(con, "FROM unplaced")} == {"off_level"}
     # a lead that is nearer is nearer
     near = moving("near", low, t, 230 + 10 * t, low.own)
     found = rows(derived(drive([ego, over, near], low.environment), tables=["lead"]), "FROM lead")

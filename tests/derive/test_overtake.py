@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from shapely import affinity
 from shapely.geometry import box
 
+from drivelint.reasons.words import sentence
 from tests import scenes
 from tests.derive.overtake_scene import scene
 from tests.scenes import LANE, Actor, Road, derived, drive, moving, road, rows, standing, swing, times
@@ -103,7 +104,7 @@ def test_an_aborted_overtake() -> None:
     assert abs(found["t2_ns"] - furthest) <= 300_000_000
     (observed,) = [row for row in one(actors, way, "overtake_sda") if row["profile"] == "observed"]
     assert observed["sda_m"] is None
-    assert "not completed" in observed["reason"]
+    assert "not completed" in sentence(observed["reason"])
 
 
 @pytest.mark.parametrize("end", [9.0, 10.0, 12.0, 19.5])
@@ -152,7 +153,7 @@ def test_a_hole_before_t0_hides_where_it_began() -> None:
     (found,) = one(holed, way, "overtake")
     assert found["begin_seen"] is False
     assert found["t0_ns"] > whole["t0_ns"]
-    reasons = {row["reason"] for row in one(holed, way, "overtake_sda")}
+    reasons = {sentence(row["reason"]) for row in one(holed, way, "overtake_sda")}
     assert reasons == {"the log does not show where the overtake began: record the ego from before it"}
 
 
@@ -374,7 +375,7 @@ def test_safe_distance_ahead_is_the_papers_formula(
         if row["profile"] == "observed" or o["v_av_mps"] <= o["v_vbp_mps"]:
             assert row["sda_m"] is None
             assert row["zone"] is None
-            assert row["reason"].startswith("the overtake was not" if v_av > v_vbp else "undefined")
+            assert sentence(row["reason"]).startswith("the overtake was not" if v_av > v_vbp else "undefined")
             continue
         k = row["pull_out_headroom_m"] + l_vbp + row["cut_in_clearance_m"] + l_av
         expected = safe_distance(
@@ -479,7 +480,7 @@ def test_an_unlimited_road_gives_no_speed_to_assume() -> None:
     _, (ego, vbp, _) = scene()
     found = one([ego, vbp], way, "overtake_sda")
     assert {row["sda_m"] for row in found} == {None}
-    assert "no speed limit" in " ".join(row["reason"] for row in found)
+    assert "no speed limit" in " ".join(sentence(row["reason"]) for row in found)
 
 
 def spaces(a: Actor, k: int, reach: float, forward: int) -> tuple[Any, Any]:
@@ -641,7 +642,7 @@ def test_what_was_driven_of_a_broken_off_overtake_is_the_least_that_it_needed(ha
     assert o["status"] == "truncated"
     assert row["sda_m"] == pytest.approx(way_m + 25 * seconds + stopping(25.0), abs=1e-6)
     assert row["zone"] == "A"
-    assert "out of its lane" in row["reason"]
+    assert "out of its lane" in sentence(row["reason"])
 
 
 @pytest.mark.parametrize("end", [13.0, 15.0, 16.5])

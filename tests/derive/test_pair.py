@@ -79,11 +79,11 @@ def test_a_box_that_is_not_known_has_no_clearance() -> None:
         ("no-place", None, True),
         ("no-size", None, False),
     ]
-    doubts = rows(con, "SELECT DISTINCT object_id, reason FROM unplaced ORDER BY ALL")
+    doubts = rows(con, "SELECT DISTINCT object_id, code FROM unplaced ORDER BY ALL")
     assert [tuple(row.values()) for row in doubts] == [
-        ("no-heading", "has no heading"),
-        ("no-place", "has no position (or no fresh one)"),
-        ("no-size", "has no size"),
+        ("no-heading", "no_heading"),
+        ("no-place", "no_position"),
+        ("no-size", "no_size"),
     ]
     assert not rows(con, "FROM lead")
 
@@ -124,7 +124,7 @@ def test_a_sample_of_another_time_is_moved_on_while_it_is_fresh() -> None:
         else:
             assert row["x_m"] is None
             assert row["clearance_m"] is None
-    doubts = {round(row["t_ns"] / 1e8) for row in rows(con, "FROM unplaced") if "no position" in row["reason"]}
+    doubts = {round(row["t_ns"] / 1e8) for row in rows(con, "FROM unplaced") if row["code"] == "no_position"}
     assert doubts == {k for k, row in found.items() if row["x_m"] is None}
 
 

@@ -149,8 +149,8 @@ def test_each_drive_has_its_own_nation(tmp_path: Path) -> None:
 
 def test_what_is_not_known_is_named_and_how_to_give_it(tmp_path: Path) -> None:
     said = {
-        "weather_unknown": "the weather is not known at 0.000 s: give --env weather=dry",
-        "engaged_unknown": "whether the automated driver drives is not known at 0.000 s: give the log's mode flag engaged",
+        "weather_unknown": "The weather is not known at 0.000 s: give --env weather=dry",
+        "engaged_unknown": "Whether the automated driver drives is not known at 0.000 s: give the log's mode flag engaged",
     }
     rule = invariant(tmp_path, 'weather = ["wet"]')
     for given in ({}, {"weather": "wet", "engaged": None}):

@@ -128,7 +128,7 @@ def test_the_bound_that_is_told_is_that_of_the_undecided_step(tmp_path: Path) ->
     rule = write(tmp_path, INVARIANT | {"sense": '">"', "unit": '"m/s"'} | SPEED, {"condition": sql})
     (row,) = verdicts(rule, speeds([10.5, 8.0], with_direction=[False, True]))
     assert (row["reason_code"], row["observed"]) == ("only_a_bound", 10.5)
-    assert row["reason"].startswith("Not decided: only a bound is known at 0.100 s (8 m/s, required more than 10 m/s)")
+    assert row["reason"].startswith("Only a bound is known at 0.100 s (8 m/s, required more than 10 m/s)")
 
 
 def test_a_row_that_an_inner_join_lost_is_unknown(tmp_path: Path) -> None:
@@ -269,10 +269,7 @@ def test_lost_objects_are_unknown_from_there_on(tmp_path: Path) -> None:
         0,
     )
     assert rows[2]["t_worst_ns"] == 199_999_999  # the last step at which it is there, in a real log
-    assert (
-        rows[2]["reason"]
-        == "Not judged: object 2 is recorded until 0.200 s only, the ego until 0.500 s: record it for as long."
-    )
+    assert rows[2]["reason"] == "Object 2 is recorded until 0.200 s only, the ego until 0.500 s: record it for as long."
 
 
 def test_own_grid_labels_episodes(tmp_path: Path) -> None:

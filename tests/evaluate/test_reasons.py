@@ -24,7 +24,7 @@ def test_the_authors_reason_of_an_unknown_applicability(tmp_path: Path) -> None:
     rule = write(tmp_path, INVARIANT | MEASURED | {"reads": '["ego_state"]'}, {"applies": applies, "condition": SPEED})
     given = {"ego_state": {**STATE, "fastest_3s_mps": 12, "in_junction": [True, None, True]}}
     (row,) = verdicts(rule, given)
-    assert row["reason"] == "Not judged: whether the rule applies is not known at 0.100 s: the map has no junctions."
+    assert row["reason"] == "Whether the rule applies is not known at 0.100 s: the map has no junctions."
     given["ego_state"]["in_junction"] = [True, True, False]
     assert [r["verdict"] for r in verdicts(rule, given)] == ["pass"]
 
@@ -54,7 +54,7 @@ def test_an_ego_without_a_place(tmp_path: Path, state: dict[str, Any], because: 
     header = INVARIANT | MEASURED | {"reads": '["ego_state"]', "requires": '["map", "registration"]'}
     rule = write(tmp_path, header, {"condition": SPEED})
     (row,) = verdicts(rule, {"ego_state": STATE | state})
-    reason = "Not judged: a value that it needs is not known at 0.100 s"
+    reason = "A value that the rule needs is not known at 0.100 s"
     assert row["reason"] == (f"{reason}; {because}." if because else f"{reason}.")
 
 
@@ -78,7 +78,7 @@ def test_an_object_of_which_something_is_not_known(tmp_path: Path, lacks: dict[s
     pair = there | {"t_s": [0.0, 0.1], "object_id": "o", "clearance_m": [3, None]} | lacks
     ego = {"t_s": [0.0, 0.1], "x_m": 0.0, "y_m": 0.0, "yaw_rad": 0.0, "speed_mps": 3.0}
     (row,) = verdicts(rule, {"ego_state": ego, "pair": pair})
-    assert row["reason"] == f"Not judged: a value that it needs is not known at 0.100 s; {because}."
+    assert row["reason"] == f"A value that the rule needs is not known at 0.100 s; {because}."
 
 
 def test_what_the_log_lacks_where_a_reference_point_has_no_time(tmp_path: Path) -> None:
@@ -92,7 +92,7 @@ def test_what_the_log_lacks_where_a_reference_point_has_no_time(tmp_path: Path) 
     (row,) = verdicts(rule, {"ego_state": STATE, "exit_taken": {"t_s": 0.1, "t_sign_s": None}})
     assert (row["reason_code"], row["reason"]) == (
         "reference_time_unknown",
-        "Not judged: the log does not show the exit.",
+        "The log does not show the exit.",
     )
 
 
@@ -109,4 +109,4 @@ def test_what_the_log_lacks_where_an_anchor_has_no_time(tmp_path: Path) -> None:
     }
     rule = write(tmp_path, header, sections)
     (row,) = verdicts(rule, {"ego_state": STATE, "exit_taken": {"t_s": 0.1}})
-    assert (row["reason_code"], row["reason"]) == ("anchor_unknown", "Not judged: the log does not show the sign.")
+    assert (row["reason_code"], row["reason"]) == ("anchor_unknown", "The log does not show the sign.")

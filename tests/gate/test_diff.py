@@ -169,7 +169,7 @@ OPEN = said("unknown", 5, 12, reason="the limit is not known")
     ("new", "standing", "there", "why"),
     [
         (run([], said("pass")), "fixed", "pass", "because pass"),
-        (run([], said("pass", 0, 4)), "fixed", "not_applicable", "Not applicable: the rule does not apply there."),
+        (run([], said("pass", 0, 4)), "fixed", "not_applicable", "The rule does not apply there."),
         (run([], verdict("not_applicable", rule_id=SPEED, profile=None, t_start_ns=None, t_end_ns=None, t_worst_ns=None,
                          t_ref_ns=None, object_id=None, reason="never")), "fixed", "not_applicable", "never"),
         (run([], said("pass", 0, 4), OPEN), "unknown", "unknown", "the limit is not known"),

@@ -15,7 +15,7 @@ import pyarrow as pa
 import pytest
 
 from drivelint.errors import UsageError
-from drivelint.report.html.reasons import in_words
+from drivelint.report.html.reasons import Given, given, in_words
 from drivelint.report.outputs import write
 from drivelint.result.contract import FILES
 from drivelint.result.load import load
@@ -247,7 +247,7 @@ def test_reasons_are_grouped_by_what_is_to_be_provided() -> None:
             "unknown",
             occurrence=k,
             reason_code="applies_unknown",
-            reason=f"Not judged: whether it applies is not known at {k}.600 s.",
+            reason=f"Whether it applies is not known at {k}.600 s.",
         )
         for k in range(5)
     ]
@@ -262,32 +262,39 @@ def test_reasons_are_grouped_by_what_is_to_be_provided() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "shown"),
+    ("reasons", "shown"),
     [
-        (["Not judged: the ego has no size."] * 2, "The ego has no size."),
-        (["the ego has no size", "the ego has no size."], "The ego has no size."),
-        (["give --env light=..."], "Give --env light=..."),
+        ([("no_size", "the ego has no size")] * 2, "The ego has no size"),
         (
-            ["Not judged: the rule looks at 2.000 s to 3.000 s, and the log has the ego from 0.000 s to 2.500 s only."],
-            "The rule looks at 2.000 s to 3.000 s, and the log has the ego from 0.000 s to 2.500 s only.",
-        ),
-        (
-            ["the map gives no limit for lanelet 7: give one", "the map gives no limit for lanelet 12: give one"],
+            [
+                ("no_limit", "the map gives no limit for lanelet 7: give one"),
+                ("no_limit", "the map gives no limit for lanelet 12: give one"),
+            ],
             "The map gives no limit for lanelet 7: give one (and 1 more like it)",
         ),
-        (["Lost.", "It began late.", "It ended soon."], "Lost (and 2 other reasons)"),
+        ([("lost", "Lost."), ("late", "It began late."), ("short", "It ended soon.")], "Lost (and 2 other reasons)"),
         (
-            ["No row at 1 s.", "No row at 12 s.", "No row at 13 s.", "Something else."],
+            [
+                ("row", "No row at 1 s."),
+                ("row", "No row at 12 s."),
+                ("row", "No row at 13 s."),
+                ("else", "Something else."),
+            ],
             "No row at 1 s (and 2 more like it and 1 other reason)",
-        ),
-        (
-            ["to the left: Not judged: it is not known.", "to the left: Not judged: it is not known."],
-            "To the left: Not judged: it is not known.",
         ),
     ],
 )
-def test_a_shown_reason_is_one_that_was_given(given: list[str], shown: str) -> None:
-    assert in_words(given) == in_words(reversed(given)) == shown
+def test_a_shown_reason_is_one_that_was_given(reasons: list[tuple[str, str]], shown: str) -> None:
+    told = [Given(("null_value", code, ""), text) for code, text in reasons]
+    assert in_words(told) == in_words(reversed(told)) == shown
+
+
+def test_reasons_are_alike_by_their_codes() -> None:
+    row = {"reason_code": "null_value", "cause_code": "no_limit", "reason": "lanelet 7"}
+    assert given(row).kind == given(row | {"reason": "lanelet 12"}).kind
+    assert given(row).kind != given(row | {"cause_code": "ego_off_lanes"}).kind
+    own = row | {"cause_code": "text"}
+    assert given(own).kind != given(own | {"reason": "lanelet 12"}).kind
 
 
 def test_rules_that_were_not_judged_are_folded_by_reason() -> None:
@@ -300,7 +307,7 @@ def test_rules_that_were_not_judged_are_folded_by_reason() -> None:
             t_end_ns=None,
             t_worst_ns=None,
             t_ref_ns=None,
-            reason="Not applicable: never came",
+            reason="It never came.",
         )
         for i in ids
     ]

@@ -26,10 +26,13 @@
 -- default = 1.0
 -- unit = "s"
 -- why = "our default: so near to the ends of the log the filter's windows are not whole"
+--
+-- [reasons.emergency_undeclared]
+-- says = "the log never declares emergency_manoeuvre"
 
 -- @condition
 SELECT m.drive_id, m.ego_id, m.t_ns, emergency.is_on AS holds, judged_inside(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AND m.accel_mps2 < -$emergency_mps2 AS applies,
-    CASE WHEN emergency.mode IS NULL THEN 'the log never declares emergency_manoeuvre' END AS reason
+    CASE WHEN emergency.mode IS NULL THEN why('emergency_undeclared') END AS reason
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
 LEFT JOIN (SELECT * FROM ego_mode WHERE mode = 'emergency_manoeuvre') emergency ON emergency.drive_id = m.drive_id AND emergency.ego_id = m.ego_id AND emergency.t_ns = m.t_ns

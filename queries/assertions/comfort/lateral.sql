@@ -29,14 +29,18 @@
 -- default = 0.5
 -- unit = "s"
 -- why = "our default: so near to the ends of the log the filter's window is not whole"
+--
+-- [reasons.heavy_vehicle_unknown]
+-- says = "whether the ego is a bus or lorry is not known"
+-- advice = "give --env vehicle_class=..."
 
 -- @condition
 -- The heading is filtered before it is differentiated, see ego_motion. If the kind of the ego is not known, a value within both limits is a
 -- pass, and a value above both limits is a fail.
 SELECT m.drive_id, m.ego_id, m.t_ns, decided_at_most(magnitude.lat_mps2, m.lat_peak_mps2, bound.limit_mps2) AS observed, bound.limit_mps2 AS required,
     judged_inside(m.lat_accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
-    CASE WHEN kind.is_heavy IS NULL AND bound.limit_mps2 IS NULL THEN 'whether the ego is a bus or lorry is not known: give --env vehicle_class=...'
-        WHEN magnitude.lat_mps2 <= bound.limit_mps2 AND magnitude.lat_mps2 + m.lat_peak_mps2 > bound.limit_mps2 THEN 'the filter that takes the noise out may have flattened a peak over the limit: no recording decides that' END AS reason
+    CASE WHEN kind.is_heavy IS NULL AND bound.limit_mps2 IS NULL THEN why('heavy_vehicle_unknown')
+        WHEN magnitude.lat_mps2 <= bound.limit_mps2 AND magnitude.lat_mps2 + m.lat_peak_mps2 > bound.limit_mps2 THEN why('peak_flattened') END AS reason
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
 LEFT JOIN ego_condition ec ON ec.drive_id = m.drive_id AND ec.ego_id = m.ego_id AND ec.t_ns = m.t_ns

@@ -23,6 +23,14 @@
 -- default = 0.5
 -- unit = "s"
 -- why = "our default: so near to the ends of the log the windows of the accelerations are not whole"
+--
+-- [reasons.points_into_way]
+-- says = "{object_id} is beside the ego's way and does not close in, but its heading at this step points into the way"
+-- advice = "record headings more exactly"
+--
+-- [reasons.mean_accelerations]
+-- says = "the accelerations are means over half a second, which leave open on which side of the limit it is"
+-- advice = "no recording decides that"
 
 -- @applies
 -- A vehicle beside the ego's way that does not close in yet would get into the way only by its heading at this step, and one heading is no
@@ -35,8 +43,8 @@ SELECT s.drive_id, s.ego_id, s.t_ns, v.object_id,
     ) AND may_touch(v.passes_by, v.grazes) AND CASE WHEN v.across_m < 0 OR motion.ttc_s < 'inf' THEN true END AND either_moves(v.ego_speed_mps, v.speed_mps)
     -- A vehicle that is not seen is at least free_m away, and the two close in with no more acceleration than tyres allow.
     WHEN v.known OR gone_s(v.free_m, v.free_mps, 10.0) >= $least_s THEN true END AS applies,
-    CASE WHEN v.grazes THEN graze_words(v.object_id)
-        WHEN v.across_m >= 0 AND motion.ttc_s = 'inf' THEN format('{} is beside the ego''s way and does not close in, but its heading at this step points into the way: record headings more exactly', v.object_id) END AS reason
+    CASE WHEN v.grazes THEN graze_doubt(v.object_id)
+        WHEN v.across_m >= 0 AND motion.ttc_s = 'inf' THEN why('points_into_way', {'object_id': v.object_id}) END AS reason
 FROM step s
 LEFT JOIN vehicle_ahead v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns
 LEFT JOIN pair p ON p.drive_id = v.drive_id AND p.ego_id = v.ego_id AND p.t_ns = v.t_ns AND p.object_id = v.object_id
@@ -51,7 +59,7 @@ CROSS JOIN LATERAL (SELECT along_mps(v.speed_mps, v.oncoming) AS away_mps, along
 SELECT v.drive_id, v.ego_id, v.t_ns, v.object_id, $least_s AS required, v.object_id IS NULL OR judged_inside(m.accel_mps2 + v.other_mps2, v.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
     bounded.observed,
     CASE WHEN bounded.observed IS NULL AND v.gap_m + m.accel_mps2 + v.other_mps2 IS NOT NULL
-        THEN 'the accelerations are means over half a second, which leave open on which side of the limit it is: no recording decides that' END AS reason
+        THEN why('mean_accelerations') END AS reason
 FROM (
     SELECT *, along_mps(speed_mps, oncoming) AS away_mps, along_mps(accel_mps2, oncoming) AS other_mps2,
         min(along_mps(accel_mps2, oncoming)) OVER following_steps AS least_mps2, max(along_mps(accel_mps2, oncoming)) OVER following_steps AS most_mps2

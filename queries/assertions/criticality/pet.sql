@@ -23,6 +23,9 @@
 -- default = 0.7854
 -- unit = "rad"
 -- why = "our default: 45 degrees; ways that meet at less merge or part, as in a lane change, where the follower's headway and time to collision say how close it was"
+--
+-- [reasons.pet_at_most]
+-- says = "Not decided: at most {pet_s:.1f} s were between the two, but one of them was not seen all the time."
 
 -- @reference
 SELECT drive_id, ego_id, t_ego_in_ns AS t_ns, object_id, occurrence, NULL AS code FROM conflict
@@ -43,7 +46,6 @@ SELECT
     r.drive_id, r.ego_id, r.t_ns, r.ref_id, $least_s AS required, r.code AS reason_code, r.occurrence IS NULL OR abs(c.angle_rad) >= $crossing_rad AS applies,
     -- An upper bound of the time can show that there was too little time, but not that there was enough.
     CASE WHEN c.pet_s < $least_s OR NOT c.pet_at_most THEN c.pet_s END AS observed,
-    CASE WHEN c.pet_s >= $least_s AND c.pet_at_most THEN
-        format('Not decided: at most {:.1f} s were between the two, but one of them was not seen all the time.', c.pet_s) END AS reason
+    CASE WHEN c.pet_s >= $least_s AND c.pet_at_most THEN why('pet_at_most', {'pet_s': c.pet_s}) END AS reason
 FROM reference r
 LEFT JOIN conflict c USING (drive_id, ego_id, occurrence)

@@ -35,7 +35,7 @@ SELECT s.drive_id, s.ego_id, s.t_ns, v.object_id,
     ) AND may_touch(v.passes_by, v.grazes) AND either_moves(v.ego_speed_mps, v.speed_mps) AND NOT comes(v.speed_mps, v.oncoming)
     -- A vehicle that is not seen is at least free_m away.
     WHEN v.known OR ttb_s(v.free_m, v.ego_speed_mps, $brake_mps2) >= $least_s THEN true END AS applies,
-    CASE WHEN v.grazes THEN graze_words(v.object_id) END AS reason
+    CASE WHEN v.grazes THEN graze_doubt(v.object_id) END AS reason
 FROM step s
 LEFT JOIN vehicle_ahead v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns
 LEFT JOIN pair p ON p.drive_id = v.drive_id AND p.ego_id = v.ego_id AND p.t_ns = v.t_ns AND p.object_id = v.object_id

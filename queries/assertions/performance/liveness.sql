@@ -31,6 +31,9 @@
 -- default = 15.0
 -- unit = "m"
 -- why = "our default: somebody on foot or on the move so near may be waited for"
+--
+-- [reasons.ends_standing]
+-- says = "the log ends before the ego goes on: it may have arrived"
 
 -- @reference
 -- This rule is a draft: no log says what a stop is for (passengers, a delivery, a gesture). Only standing is judged, not slow driving.
@@ -44,7 +47,7 @@ WITH standstill_near_actor AS (
     WHERE coalesce(p.clearance_m <= $near_m, true) AND (NOT may_be_vehicle(p.actor_class) OR coalesce(p.speed_mps > standing_mps(), true))
 )
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $most_s AS required, CASE WHEN s.end_seen THEN duration.s END AS observed,
-    CASE WHEN NOT s.end_seen THEN 'the log ends before the ego goes on: it may have arrived' END AS reason,
+    CASE WHEN NOT s.end_seen THEN why('ends_standing') END AS reason,
     -- A standstill at the beginning of the log is not judged, because the drive begins when the ego is first seen to move. A short
     -- standstill at the end of the log is not judged either.
     s.begin_seen AND (s.end_seen OR duration.s > $most_s) AND n.occurrence IS NULL AND s.stop_line_id IS NULL AND s.crossing_id IS NULL AND s.junction_id IS NULL

@@ -21,6 +21,12 @@
 -- default = 5.0
 -- unit = "m"
 -- why = "our default: who stands further off, a car's length or more, stands for something else and drives up to the line later"
+--
+-- [reasons.stood_beyond_line]
+-- says = "The front stood {front_m:.2f} m beyond the line, at most {within_m:.2f} m before it is asked for."
+--
+-- [reasons.stood_before_line]
+-- says = "The front stood {front_m:.2f} m before the line, at most {within_m:.2f} m before it is asked for."
 
 -- @reference
 SELECT drive_id, ego_id, t_start_ns AS t_ns, occurrence FROM standstill
@@ -29,7 +35,8 @@ WHERE stop_line_id IS NOT NULL OR junction_m IS NULL
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, abs(s.stop_line_m - $within_m / 2) AS observed, $within_m / 2 AS required,
-    format('The front stood {:.2f} m {} the line, at most {:.2f} m before it is asked for.', abs(s.stop_line_m), CASE WHEN s.stop_line_m < 0 THEN 'beyond' ELSE 'before' END, $within_m) AS reason,
+    CASE WHEN s.stop_line_m IS NOT NULL
+        THEN why(CASE WHEN s.stop_line_m < 0 THEN 'stood_beyond_line' ELSE 'stood_before_line' END, {'front_m': abs(s.stop_line_m), 'within_m': $within_m}) END AS reason,
     -- The rule does not apply if the ego stood from the beginning of the log, stood behind another vehicle at the line, or had a green
     -- light.
     s.begin_seen AND s.stop_line_m <= $for_it_m AND s.state IS DISTINCT FROM 'green'

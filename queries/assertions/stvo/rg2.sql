@@ -50,6 +50,10 @@
 -- default = 1.0
 -- unit = "s"
 -- why = "our default: so near to the ends of the log the filter's windows are not whole"
+--
+-- [reasons.peak_beyond_limit_flattened]
+-- says = "the filter that takes the noise out may have flattened a peak beyond the limit"
+-- advice = "no recording decides that"
 
 -- @condition
 -- The filter of the acceleration flattens peaks: the true deceleration may be harder than the filtered one by accel_peak_mps2.
@@ -62,7 +66,7 @@ SELECT m.drive_id, m.ego_id, m.t_ns, -decided_at_most(-m.accel_mps2, m.accel_pea
             l.is_too_near OR m.accel_mps2 - l.hardest_mps2 >= -$abrupt_mps2 OR CASE WHEN l.known THEN false END) END
         OR asks_to_brake(w.need_mps2, w.known, $abrupt_mps2)
         OR CASE WHEN coalesce(e.indicator = 'hazard', false) OR emergency.t_ns IS NOT NULL THEN NULL ELSE false END)) AS applies,
-    CASE WHEN m.accel_mps2 >= -$abrupt_mps2 AND m.accel_mps2 - m.accel_peak_mps2 < -$abrupt_mps2 THEN 'the filter that takes the noise out may have flattened a peak beyond the limit: no recording decides that' END AS reason
+    CASE WHEN m.accel_mps2 >= -$abrupt_mps2 AND m.accel_mps2 - m.accel_peak_mps2 < -$abrupt_mps2 THEN why('peak_beyond_limit_flattened') END AS reason
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
 LEFT JOIN (

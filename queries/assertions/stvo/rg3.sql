@@ -49,6 +49,17 @@
 -- unit = "m/s"
 -- why = "100 km/h on motorways for coaches approved for it, and by exemption for cars with trailers: neither is in a trace"
 -- source = "StVO 18(5) no. 3"
+--
+-- [reasons.no_lane_no_limit]
+-- says = "the ego is on no lane, for which there is no limit"
+--
+-- [reasons.ego_class_unknown]
+-- says = "which class of vehicle the ego is is not known"
+-- advice = "give --env vehicle_class=..."
+--
+-- [reasons.limit_by_class_and_road]
+-- says = "the limit depends on the class of vehicle and the kind of road, not all of which is known"
+-- advice = "give them, such as --env vehicle_class=car and --env road_type=rural"
 
 -- @condition
 -- A sign replaces the limit that holds for every car. The limits of heavier vehicles outside built-up areas hold under a sign, too. If the
@@ -57,10 +68,10 @@
 -- before the next step.
 SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed,
     CASE WHEN e.speed_mps > bounds.most_mps + $tolerance_mps THEN bounds.most_mps WHEN e.peak_mps <= bounds.least_mps + $tolerance_mps THEN bounds.least_mps END + $tolerance_mps AS required,
-    CASE WHEN required IS NOT NULL THEN NULL WHEN c.limit_mps IS NULL THEN coalesce(limit_doubt(e.limit_source, e.lanelet_id), 'the ego is on no lane, for which there is no limit')
-        WHEN e.speed_mps <= bounds.least_mps + $tolerance_mps THEN unseen_peak_doubt()
-        WHEN c.vehicle_class IS NULL THEN 'which class of vehicle the ego is is not known: give --env vehicle_class=...'
-        ELSE 'the limit depends on the class of vehicle and the kind of road, not all of which is known: give them, such as --env vehicle_class=car and --env road_type=rural' END AS reason
+    CASE WHEN required IS NOT NULL THEN NULL WHEN c.limit_mps IS NULL THEN coalesce(limit_doubt(e.limit_source, e.lanelet_id), why('no_lane_no_limit'))
+        WHEN e.speed_mps <= bounds.least_mps + $tolerance_mps THEN why('peak_between_samples')
+        WHEN c.vehicle_class IS NULL THEN why('ego_class_unknown')
+        ELSE why('limit_by_class_and_road') END AS reason
 FROM (
     SELECT e.*, peak_between_mps(e.speed_mps, lead(e.speed_mps) OVER stretch, (lead(e.t_ns) OVER stretch - e.t_ns) / 1e9) AS peak_mps
     FROM ego_state e

@@ -45,13 +45,16 @@
 -- unit = "m/s"
 -- why = "80 km/h: no more is allowed to vehicles over 3.5 t, buses and cars with trailers, nor asked of them"
 -- source = "StVO 18(5) no. 1"
+--
+-- [reasons.class_speed_unknown]
+-- says = "how fast its kind of vehicle may be is not known"
 
 -- @condition
 -- The kind of vehicle may allow less than the road. If it is not known, a speed between the values that are required of the slowest and of
 -- the fastest kind is not judged.
 SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed,
     CASE WHEN e.speed_mps > c.most_mps THEN c.most_mps WHEN e.speed_mps <= c.least_mps THEN c.least_mps END AS required,
-    CASE WHEN required IS NULL AND c.least_mps IS NOT NULL THEN 'how fast its kind of vehicle may be is not known' END AS reason,
+    CASE WHEN required IS NULL AND c.least_mps IS NOT NULL THEN why('class_speed_unknown') END AS reason,
     -- A slow vehicle ahead is a reason, if it is near for an ego that drives as fast as it may. At a step without a row in `lead`, there
     -- may be such a vehicle. A person, an animal or a thing in the way is a reason, too, and so is a slow vehicle in the lane beside (StVO
     -- 7(2a)). An ego that speeds up from a standstill, or declares a minimal risk manoeuvre, does not hinder by choice.

@@ -29,6 +29,9 @@
 -- default = 10.0
 -- unit = "s"
 -- why = "our default: time in which the hazard lights of one that breaks down are on, which StVO 15 asks for at once"
+--
+-- [reasons.may_have_broken_down]
+-- says = "it had its hazard lights on, or declared a manoeuvre of emergency: whether it broke down is for a person to say"
 
 -- @reference
 SELECT drive_id, ego_id, t_start_ns AS t_ns, ahead_id AS object_id, ahead_gap_m, ahead_speed_mps, ahead_known, t_end_ns
@@ -51,7 +54,7 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.object_id,
     queued(r.object_id, r.ahead_gap_m, r.ahead_speed_mps, r.ahead_known, $queue_m, $queue_mps)
         OR stands_for(w.object_id, w.actor_class, w.gap_m, w.along_mps, w.known, $queue_m, $queue_m, $queue_mps)
         OR CASE WHEN b.ref_id IS NULL THEN false END AS holds,
-    CASE WHEN b.ref_id IS NOT NULL THEN 'it had its hazard lights on, or declared a manoeuvre of emergency: whether it broke down is for a person to say' END AS reason
+    CASE WHEN b.ref_id IS NOT NULL THEN why('may_have_broken_down') END AS reason
 FROM reference r
 LEFT JOIN in_way w ON w.drive_id = r.drive_id AND w.ego_id = r.ego_id AND w.t_ns = r.t_ns
 LEFT JOIN possible_breakdown b ON b.ref_id = r.ref_id

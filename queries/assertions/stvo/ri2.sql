@@ -37,6 +37,9 @@
 -- unit = "m"
 -- why = "our default: no further from the one that is passed; three lorries of 18.75 m with the 50 m between them that they keep"
 -- source = "StVO 4(3), StVZO 32(4)"
+--
+-- [reasons.broad_line_unknown]
+-- says = "the ego was on lane type {lane_type}: whether a broad line parted it from the through lanes is not known"
 
 -- @reference
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.occurrence, p.speed_mps, p.ego_speed_mps, CASE WHEN p.ego_passes THEN c.side END AS side, n.lane_type
@@ -55,7 +58,7 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.object_id, coalesce(r.lane_type
     CASE WHEN r.side IS NOT NULL THEN r.speed_mps <= $queue_mps AND r.ego_speed_mps - r.speed_mps <= $faster_mps
         AND CASE WHEN q.n >= $queue_n THEN true WHEN q.n_unknown = 0 THEN false END
         OR CASE WHEN coalesce(r.lane_type NOT IN ('exit', 'offRamp'), true) THEN false END END AS holds,
-    CASE WHEN r.lane_type IN ('exit', 'offRamp') THEN 'the ego was on lane type ' || r.lane_type || ': whether a broad line parted it from the through lanes is not known' END AS reason
+    CASE WHEN r.lane_type IN ('exit', 'offRamp') THEN why('broad_line_unknown', {'lane_type': r.lane_type}) END AS reason
 FROM reference r
 JOIN (
     SELECT b.ref_id, count(*) FILTER (other.is_in_queue) AS n,

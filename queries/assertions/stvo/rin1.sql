@@ -17,6 +17,9 @@
 -- default = 1.0
 -- unit = "s"
 -- why = "our default: a complete halt that can be seen; the law asks for a halt of any length, the model for 3 s (t_slw)"
+--
+-- [reasons.line_control_unknown]
+-- says = "the map does not say what governs this line"
 
 -- @reference
 SELECT drive_id, ego_id, t_ns, control, begin_seen, stood_s
@@ -27,5 +30,5 @@ WHERE coalesce(control, 'stop') = 'stop'
 SELECT drive_id, ego_id, t_ns, ref_id, $stand_s AS required,
     -- If the approach was not seen, the ego may have stood longer.
     CASE WHEN control IS NOT NULL AND (begin_seen OR stood_s >= $stand_s) THEN stood_s END AS observed,
-    CASE WHEN control IS NULL THEN 'the map does not say what governs this line' END AS reason
+    CASE WHEN control IS NULL THEN why('line_control_unknown') END AS reason
 FROM reference

@@ -35,11 +35,14 @@
 -- unit = "s"
 -- why = "time to restore the distance after somebody changed lane in front; an ego that changes lanes itself keeps it at once"
 -- source = "case law: not only quite briefly; as R_G1 of Maierhofer et al. 2020"
+--
+-- [reasons.weight_unknown]
+-- says = "{gap_m:.1f} m behind: whether it weighs more than 3.5 t is not known"
 
 -- @condition
 -- A goods vehicle of up to 7.5 t may be a van of up to 3.5 t, for which the rule requires nothing.
 SELECT drive_id, ego_id, t_ns, f.gap_m AS observed, CASE WHEN c.vehicle_class <> 'goods_7t5' OR f.gap_m >= $gap_m THEN $gap_m END AS required,
-    CASE WHEN c.vehicle_class = 'goods_7t5' AND f.gap_m < $gap_m THEN format('{:.1f} m behind: whether it weighs more than 3.5 t is not known', f.gap_m) END AS reason,
+    CASE WHEN c.vehicle_class = 'goods_7t5' AND f.gap_m < $gap_m THEN why('weight_unknown', {'gap_m': f.gap_m}) END AS reason,
     follows AND ego_speed_mps > $from_mps AND coalesce(t_ns - let_in_ns >= $cut_in_s * 1e9, true) AS applies
 FROM following f
 JOIN ego_condition c USING (drive_id, ego_id, t_ns)

@@ -35,6 +35,9 @@
 -- default = 60.0
 -- unit = "m"
 -- why = "our default: so near before a junction, or in it, a vehicle waits there: who rides past it on the right need not be given the distance either (StVO 5(4) sentence 4)"
+--
+-- [reasons.built_up_unknown]
+-- says = "whether the area is built up is not known"
 
 -- @applies
 -- A cyclist on a cycle lane behind a solid line is beside the carriageway: whether passing that cyclist is overtaking is disputed.
@@ -55,7 +58,7 @@ LEFT JOIN (
 -- @condition
 SELECT drive_id, ego_id, t_ns, object_id, CASE c.area WHEN 'built_up' THEN $built_up_m WHEN 'open' THEN $open_m END AS required,
     kept_between(b.gap_m, b.blur_m, required) AS observed,
-    CASE WHEN c.area IS NULL THEN 'whether the area is built up is not known'
-        WHEN observed IS NULL AND b.gap_m IS NOT NULL THEN 'the steps are too far apart to tell how near it came between them' END AS reason
+    CASE WHEN c.area IS NULL THEN why('built_up_unknown')
+        WHEN observed IS NULL AND b.gap_m IS NOT NULL THEN why('steps_too_far_apart') END AS reason
 FROM beside b
 JOIN ego_condition c USING (drive_id, ego_id, t_ns)

@@ -33,6 +33,30 @@
 -- default = 3.0
 -- unit = "m/s"
 -- why = "our default: people walk at 2 m/s at most, recorded ones from one step to the next; a gain counts of one who is faster than even a hurried one"
+--
+-- [reasons.track_ends_near]
+-- says = "the track of object {object_id} ends close to the ego"
+-- advice = "record it for as long as the ego"
+--
+-- [reasons.close_between_samples]
+-- says = "object {object_id} came close between two samples"
+--
+-- [reasons.close_after_hole]
+-- says = "object {object_id} is close by where a hole of the log ends"
+--
+-- [reasons.stood_still]
+-- says = "the ego stood still: it was struck, if anything"
+--
+-- [reasons.ego_braking_unknown]
+-- says = "how hard the ego braked is not known here: that takes a sample just before"
+-- advice = "begin recording earlier"
+--
+-- [reasons.object_braking_unknown]
+-- says = "how hard object {object_id} braked is not known here: that takes a sample just before"
+-- advice = "begin recording earlier"
+--
+-- [reasons.step_too_long]
+-- says = "a step of {step_s:.2f} s is too long to tell a jolt from braking"
 
 -- @applies
 SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN clearance_m IS NOT NULL THEN true END AS applies, NULL AS reason
@@ -40,16 +64,16 @@ FROM pair
 WHERE clearance_m IS NULL OR clearance_m <= $within_m
 UNION ALL
 -- An actor whose track ends close by may have touched the ego unseen: one step for each, which is not judged.
-SELECT l.drive_id, l.ego_id, s.t_ns, l.object_id, NULL, format('the track of object {} ends close to the ego: record it for as long as the ego', l.object_id)
+SELECT l.drive_id, l.ego_id, s.t_ns, l.object_id, NULL, why('track_ends_near', {'object_id': l.object_id})
 FROM lost_object l
 ASOF JOIN step s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id AND l.t_from_ns <= s.t_ns
 WHERE l.code = 'lost_near_ego'
 UNION ALL
 -- An actor that came near between two steps may have touched the ego, too.
-SELECT drive_id, ego_id, t_next_ns, object_id, NULL, format('object {} came close between two samples', object_id) FROM between_steps
+SELECT drive_id, ego_id, t_next_ns, object_id, NULL, why('close_between_samples', {'object_id': object_id}) FROM between_steps
 UNION ALL
 -- An actor that is close by when a hole of the log ends may have touched the ego during the hole.
-SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, NULL, format('object {} is close by where a hole of the log ends', p.object_id)
+SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, NULL, why('close_after_hole', {'object_id': p.object_id})
 FROM step s
 JOIN clock c USING (drive_id, ego_id)
 JOIN pair p USING (drive_id, ego_id, t_ns)
@@ -60,10 +84,10 @@ WHERE s.dt_ns > c.max_gap_ns AND p.clearance_m < lost_near_m()
 -- there was none if it is so long that it may hide a jolt.
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, $tyre_mps2 AS required,
     CASE WHEN jolt_mps2 >= $tyre_mps2 OR p.accel_mps2 + e.accel_mps2 IS NOT NULL AND NOT coalesce(may_hide_jolt, false) THEN jolt_mps2 END AS observed,
-    CASE WHEN other_mps2 >= $tyre_mps2 AND e.fastest_3s_mps < standing_mps() THEN 'the ego stood still: it was struck, if anything'
+    CASE WHEN other_mps2 >= $tyre_mps2 AND e.fastest_3s_mps < standing_mps() THEN why('stood_still')
         WHEN (jolt_mps2 >= $tyre_mps2) IS DISTINCT FROM true AND (e.accel_mps2 IS NULL AND e.speed_mps IS NOT NULL OR p.accel_mps2 IS NULL AND p.speed_mps IS NOT NULL)
-            THEN format('how hard {} braked is not known here: that takes a sample just before: begin recording earlier', CASE WHEN e.accel_mps2 IS NULL THEN 'the ego' ELSE 'object ' || p.object_id END)
-        WHEN may_hide_jolt AND jolt_mps2 < $tyre_mps2 THEN format('a step of {:.2f} s is too long to tell a jolt from braking', st.dt_ns / 1e9) END AS reason
+            THEN CASE WHEN e.accel_mps2 IS NULL THEN why('ego_braking_unknown') ELSE why('object_braking_unknown', {'object_id': p.object_id}) END
+        WHEN may_hide_jolt AND jolt_mps2 < $tyre_mps2 THEN why('step_too_long', {'step_s': st.dt_ns / 1e9}) END AS reason
 FROM pair p
 JOIN ego_state e USING (drive_id, ego_id, t_ns)
 JOIN step st USING (drive_id, ego_id, t_ns)

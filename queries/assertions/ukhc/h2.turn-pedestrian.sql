@@ -28,7 +28,7 @@
 SELECT p.drive_id, p.ego_id, p.t_in_ns AS t_ns, p.occurrence, p.turn, at_fork(p.turn, p.turn_rad, p.straightest_rad) AS fork, c.object_id,
     -- Whether a pedestrian stopped for the ego, or because the way ended, is never known: hence the other cause on_foot.
     made_to_brake(c.braked_mps2, c.braked_pet_s, 'on_foot', $decel_mps2, $pet_s) AS forced,
-    CASE WHEN forced IS NULL THEN braked_words(c.braked_id, c.braked_pet_s, c.braked_mps2, c.braked_cause) ELSE coalesce(c.reason, unsure_words(c.object_id)) END AS reason,
+    CASE WHEN forced IS NULL THEN braked_reason(c.braked_id, c.braked_pet_s, c.braked_mps2, c.braked_cause) ELSE coalesce(c.reason, class_doubt(c.object_id)) END AS reason,
     pet_forced(pet_known(c.pet_s, c.reason, $pet_s, is_class(c.actor_class, 'pedestrian')), forced, c.braked_pet_s, $pet_s) AS pet_s
 FROM junction_passage p
 LEFT JOIN passage_conflict c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id AND c.occurrence = p.occurrence AND c.relation = 'pedestrian'
@@ -36,7 +36,7 @@ WHERE p.turn IS DISTINCT FROM 'straight' OR at_fork(p.turn, p.turn_rad, p.straig
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, CASE WHEN turn IS NOT NULL AND NOT (fork AND pet_s < $pet_s) THEN pet_s END AS observed, $pet_s AS required,
-    CASE WHEN turn IS NULL THEN 'the log does not show which way the ego turned: record it until it has left the junction'
-        WHEN fork AND pet_s < $pet_s THEN fork_words()
+    CASE WHEN turn IS NULL THEN why('turn_unseen')
+        WHEN fork AND pet_s < $pet_s THEN fork_doubt()
         WHEN pet_s IS NULL THEN reason END AS reason
 FROM reference

@@ -25,7 +25,7 @@
 WITH encounter AS (
     SELECT p.drive_id, p.ego_id, p.t_in_ns, p.occurrence, p.turn, at_fork(p.turn, p.turn_rad, p.straightest_rad) AS is_at_fork, r.relation, c.object_id, c.actor_class, c.decel_mps2, c.reason, b.actor_class AS braked_class,
         made_to_brake(c.braked_mps2, c.braked_pet_s, c.braked_cause, $decel_mps2, $pet_s) AS is_forced,
-        braked_words(c.braked_id, c.braked_pet_s, c.braked_mps2, c.braked_cause) AS braked_reason,
+        braked_reason(c.braked_id, c.braked_pet_s, c.braked_mps2, c.braked_cause) AS braked_reason,
         pet_known(c.pet_s, c.reason, $pet_s, true) AS pet_s
     FROM junction_passage p
     CROSS JOIN (VALUES ('ahead_going'), ('oncoming')) AS r(relation)
@@ -42,10 +42,10 @@ judged_encounter AS (
             WHEN is_forced AND braked_class IN ('bicycle', 'animal') THEN CASE WHEN NOT is_at_fork THEN false END
             WHEN actor_class IN ('bicycle', 'animal') OR (pet_s >= $pet_s AND decel_mps2 <= $decel_mps2)
             THEN pet_s >= $pet_s AND decel_mps2 <= $decel_mps2 AND CASE WHEN NOT is_forced THEN true END OR CASE WHEN NOT is_at_fork THEN false END END AS kept,
-        CASE WHEN turn IS NULL THEN 'the log does not show which way the ego turned: record it until it has left the junction'
-            WHEN is_at_fork AND object_id IS NOT NULL AND kept IS NULL THEN fork_words()
+        CASE WHEN turn IS NULL THEN why('turn_unseen')
+            WHEN is_at_fork AND object_id IS NOT NULL AND kept IS NULL THEN fork_doubt()
             WHEN is_forced IS DISTINCT FROM false THEN braked_reason
-            ELSE coalesce(met_words(object_id, pet_s, decel_mps2), reason) END AS reason_given
+            ELSE coalesce(met_reason(object_id, pet_s, decel_mps2), reason) END AS reason_given
     FROM encounter
 )
 -- Of the two relations, along the ego's way and towards it, the worse one counts.

@@ -14,14 +14,29 @@
 -- tags = ["contact"]
 -- reads = ["between_steps", "clearance_least", "ego_state", "pair"]
 -- requires = ["ego_size"]
+--
+-- [reasons.contact_between_steps]
+-- says = "contact between this step and the next, {depth_m:.2f} m deep"
+--
+-- [reasons.contact_not_ruled_out]
+-- says = "contact between this step and the next, {step_s:.2f} s later, cannot be ruled out"
+--
+-- [reasons.contact_standing]
+-- says = "contact, {depth_m:.2f} m deep, while the ego stood still: it was struck"
+--
+-- [reasons.contact_moving]
+-- says = "contact, {depth_m:.2f} m deep, the ego having moved at {fastest_3s_mps:.1f} m/s in the 3 s before"
+--
+-- [reasons.contact_speed_unknown]
+-- says = "contact, {depth_m:.2f} m deep, the ego's speed is not known"
 
 -- @condition
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id,
     -- An overlap between two steps is a contact only if it is deeper than the uncertainty of the ways between them (blur_m).
     CASE WHEN b.least_m < -b.blur_m THEN b.least_m WHEN b.least_m IS NULL THEN coalesce(p.clearance_m, l.least_m) END AS observed, 0.0 AS required,
     (p.clearance_is_bound OR p.clearance_m IS NULL) AND b.least_m IS NULL AS at_least,
-    CASE WHEN b.least_m < -b.blur_m THEN format('contact between this step and the next, {:.2f} m deep', -b.least_m)
-        WHEN b.least_m IS NOT NULL THEN format('contact between this step and the next, {:.2f} s later, cannot be ruled out', (b.t_next_ns - b.t_ns) / 1e9) END AS reason
+    CASE WHEN b.least_m < -b.blur_m THEN why('contact_between_steps', {'depth_m': -b.least_m})
+        WHEN b.least_m IS NOT NULL THEN why('contact_not_ruled_out', {'step_s': (b.t_next_ns - b.t_ns) / 1e9}) END AS reason
 FROM pair p
 LEFT JOIN between_steps b USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN clearance_least l USING (drive_id, ego_id, t_ns, object_id)
@@ -29,8 +44,8 @@ WHERE coalesce(p.clearance_m > 0 OR p.clearance_is_bound, true)
 UNION ALL
 -- A contact at a step: the reason says whether the ego moved.
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.clearance_m, 0.0, false,
-    format('contact, {:.2f} m deep, ', -p.clearance_m) || CASE WHEN e.fastest_3s_mps < standing_mps() THEN 'while the ego stood still: it was struck'
-        WHEN e.fastest_3s_mps IS NOT NULL THEN format('the ego having moved at {:.1f} m/s in the 3 s before', e.fastest_3s_mps) ELSE 'the ego''s speed is not known' END
+    why(CASE WHEN e.fastest_3s_mps < standing_mps() THEN 'contact_standing' WHEN e.fastest_3s_mps IS NOT NULL THEN 'contact_moving' ELSE 'contact_speed_unknown' END,
+        {'depth_m': abs(p.clearance_m), 'fastest_3s_mps': e.fastest_3s_mps})
 FROM pair p
 LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
 WHERE p.clearance_m <= 0 AND NOT p.clearance_is_bound

@@ -17,6 +17,12 @@
 -- unit = "s"
 -- why = "zone A (unsafe) and B (less than this to spare) fail, C and D are kept"
 -- source = "paper, performance zones"
+--
+-- [reasons.zones]
+-- says = "zones: {zones}; best choice: none in zone C[; observed unknown: {observed_doubt}]"
+--
+-- [reasons.zones_and_best]
+-- says = "zones: {zones}; best choice: {best_profile}[; observed unknown: {observed_doubt}]"
 
 -- @reference
 SELECT drive_id, ego_id, t0_ns AS t_ns, ov_id AS object_id, occurrence
@@ -30,9 +36,11 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $margin_s AS required, bool_or(s.
         any_value(s.spare_s) FILTER (s.profile = 'observed' AND s.zone IS NOT NULL),
         CASE WHEN bool_and(coalesce(s.zone IN ('A', 'B'), false)) FILTER (s.profile <> 'observed') THEN max(s.spare_s) END
     ) AS observed,
-    'zones: ' || string_agg(s.profile || ' ' || coalesce(s.zone, 'unknown'), ', ' ORDER BY p.style, s.profile) || '; best choice: '
-        || coalesce(min({'style': p.style, 'profile': s.profile}) FILTER (s.zone = 'C' AND s.profile <> 'observed').profile, 'none in zone C')
-        || coalesce('; observed unknown: ' || min(s.reason) FILTER (s.profile = 'observed' AND s.zone IS NULL), '') AS reason
+    why(CASE WHEN bool_or(s.zone = 'C' AND s.profile <> 'observed') THEN 'zones_and_best' ELSE 'zones' END, {
+        'zones': string_agg(s.profile || ' ' || coalesce(s.zone, 'unknown'), ', ' ORDER BY p.style, s.profile),
+        'best_profile': min({'style': p.style, 'profile': s.profile}) FILTER (s.zone = 'C' AND s.profile <> 'observed').profile,
+        'observed_doubt': min(s.reason) FILTER (s.profile = 'observed' AND s.zone IS NULL)
+    }) AS reason
 FROM reference r
 JOIN overtake_sda s USING (drive_id, ego_id, occurrence)
 JOIN profile p USING (profile)

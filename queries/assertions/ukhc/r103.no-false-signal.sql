@@ -20,7 +20,7 @@ WHERE coalesce(turn, 'left') IN ('left', 'right')
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id,
     CASE r.turn WHEN 'left' THEN e.indicator <> 'right' WHEN 'right' THEN e.indicator <> 'left' END AS holds,
-    CASE WHEN r.turn IS NULL THEN 'the log does not show which way the ego turned: record it until it has left the junction'
-        WHEN e.indicator IS NOT NULL THEN 'turned ' || r.turn || ' with the indicator at ' || e.indicator END AS reason
+    CASE WHEN r.turn IS NULL THEN why('turn_unseen')
+        WHEN e.indicator IS NOT NULL THEN why('turned_with_indicator', {'turn': r.turn, 'indicator': e.indicator}) END AS reason
 FROM reference r
 JOIN ego_state e USING (drive_id, ego_id, t_ns)

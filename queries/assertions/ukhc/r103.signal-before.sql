@@ -17,6 +17,9 @@
 -- unit = "s"
 -- why = "five seconds as in the paper's example; three is the least that an automatic lane change needs"
 -- source = "paper, temporal precondition; UN R79"
+--
+-- [reasons.crossing_unseen]
+-- says = "the log does not show where the ego crossed the boundary"
 
 -- @reference
 SELECT drive_id, ego_id, t_ns, side, begin_seen
@@ -26,7 +29,7 @@ WHERE NOT back
 -- @condition
 SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id,
     CASE WHEN r.begin_seen THEN e.indicator = r.side END AS holds,
-    CASE WHEN NOT r.begin_seen THEN 'the log does not show where the ego crossed the boundary' END AS reason
+    CASE WHEN NOT r.begin_seen THEN why('crossing_unseen') END AS reason
 FROM reference_step s
 JOIN reference r USING (ref_id)
 JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns

@@ -14,6 +14,9 @@
 -- default = 50.0
 -- unit = "m"
 -- why = "our default: whoever moves within this distance may have been a danger, which is for a person to say"
+--
+-- [reasons.somebody_moving]
+-- says = "somebody near was moving: whether it was a danger is for a person to say"
 
 -- @reference
 SELECT drive_id, ego_id, t_ns
@@ -25,7 +28,7 @@ QUALIFY is_on AND lag(is_on) OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns) 
 -- The ban on the horn from 23:30 to 7:00 is not judged: these hours are local time, which logs do not have.
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id,
     CASE WHEN e.speed_mps > standing_mps() THEN true WHEN e.speed_mps IS NOT NULL AND n.t_ns IS NULL THEN false END AS holds,
-    CASE WHEN n.t_ns IS NOT NULL THEN 'somebody near was moving: whether it was a danger is for a person to say' END AS reason
+    CASE WHEN n.t_ns IS NOT NULL THEN why('somebody_moving') END AS reason
 FROM reference r
 JOIN ego_state e USING (drive_id, ego_id, t_ns)
 LEFT JOIN (SELECT DISTINCT drive_id, ego_id, t_ns FROM pair WHERE coalesce(speed_mps > standing_mps() AND distance_m <= $near_m, true)) n USING (drive_id, ego_id, t_ns)

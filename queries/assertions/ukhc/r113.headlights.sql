@@ -18,16 +18,22 @@
 -- unit = "m/s"
 -- why = "30 mph: lamps excuse from headlights only on roads with no higher limit"
 -- source = "UKHC R113"
+--
+-- [reasons.street_lamps_unknown]
+-- says = "the headlights were off, and whether the street was lit is not known"
+--
+-- [reasons.lamps_need_limit]
+-- says = "the headlights were off, and whether lamps may have excused it is not known without the limit"
 
 -- @condition
 -- No table says whether street lamps are lit. Where they may be, or where the limit is not known, driving without headlights is not certain
 -- to break the rule (see r115.dipped-headlights).
 SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps > standing_mps() AS applies,
     CASE WHEN m.is_on THEN true WHEN NOT m.is_on AND (coalesce(c.road_type, '') = 'motorway' OR c.limit_mps > $lit_mps) THEN false END AS holds,
-    CASE WHEN m.is_on IS NULL THEN 'the log has not yet said whether the headlights are on'
+    CASE WHEN m.is_on IS NULL THEN why('headlights_undeclared')
         WHEN m.is_on OR c.road_type = 'motorway' THEN NULL
-        WHEN NOT m.is_on AND c.limit_mps <= $lit_mps THEN 'the headlights were off, and whether the street was lit is not known'
-        WHEN NOT m.is_on AND c.limit_mps IS NULL THEN 'the headlights were off, and whether lamps may have excused it is not known without the limit' END AS reason
+        WHEN NOT m.is_on AND c.limit_mps <= $lit_mps THEN why('street_lamps_unknown')
+        WHEN NOT m.is_on AND c.limit_mps IS NULL THEN why('lamps_need_limit') END AS reason
 FROM ego_state e
 LEFT JOIN ego_mode m ON m.drive_id = e.drive_id AND m.ego_id = e.ego_id AND m.t_ns = e.t_ns AND m.mode = 'headlights'
 LEFT JOIN ego_condition c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.t_ns = e.t_ns

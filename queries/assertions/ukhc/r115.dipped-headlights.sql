@@ -21,7 +21,7 @@
 
 -- @condition
 SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps > standing_mps() AND NOT coalesce(c.road_type = 'motorway' OR c.limit_mps > $lit_mps, false) AS applies, m.is_on AS holds,
-    CASE WHEN m.is_on IS NULL THEN 'the log has not yet said whether the headlights are on' END AS reason
+    CASE WHEN m.is_on IS NULL THEN why('headlights_undeclared') END AS reason
 FROM ego_state e
 LEFT JOIN ego_mode m ON m.drive_id = e.drive_id AND m.ego_id = e.ego_id AND m.t_ns = e.t_ns AND m.mode = 'headlights'
 LEFT JOIN ego_condition c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.t_ns = e.t_ns

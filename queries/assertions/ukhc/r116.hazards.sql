@@ -21,6 +21,15 @@
 -- unit = "m/s"
 -- why = "the limit of a dual carriageway without a lower one is 70 mph, 31.3 m/s"
 -- source = "UKHC R124"
+--
+-- [reasons.may_warn_here]
+-- says = "hazard lights may warn on this road: whether there was a hazard ahead is for a person to say"
+--
+-- [reasons.dual_carriageway_unknown]
+-- says = "whether this road is a dual carriageway is not known"
+--
+-- [reasons.carriageway_limit_unknown]
+-- says = "the limit of this dual carriageway is not known"
 
 -- @condition
 SELECT e.drive_id, e.ego_id, e.t_ns,
@@ -29,8 +38,8 @@ SELECT e.drive_id, e.ego_id, e.t_ns,
         WHEN e.indicator = 'hazard' AND e.speed_mps > $rolling_mps AND NOT coalesce(c.road_type = 'motorway', false)
             AND (c.carriageway <> 'dual' OR c.limit_mps < $unrestricted_mps) THEN false END AS holds,
     CASE WHEN e.indicator = 'hazard' AND (c.road_type = 'motorway' OR c.carriageway = 'dual' AND c.limit_mps >= $unrestricted_mps)
-            THEN 'hazard lights may warn on this road: whether there was a hazard ahead is for a person to say'
-        WHEN e.indicator = 'hazard' AND c.carriageway IS NULL THEN 'whether this road is a dual carriageway is not known'
-        WHEN e.indicator = 'hazard' AND c.carriageway = 'dual' AND c.limit_mps IS NULL THEN 'the limit of this dual carriageway is not known' END AS reason
+            THEN why('may_warn_here')
+        WHEN e.indicator = 'hazard' AND c.carriageway IS NULL THEN why('dual_carriageway_unknown')
+        WHEN e.indicator = 'hazard' AND c.carriageway = 'dual' AND c.limit_mps IS NULL THEN why('carriageway_limit_unknown') END AS reason
 FROM ego_state e
 LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)

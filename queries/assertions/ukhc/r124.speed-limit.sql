@@ -19,6 +19,16 @@
 -- default = 0.45
 -- unit = "m/s"
 -- why = "our default: 1 mph, below which recorded speed and speedometer differ; the limits are the map's and those of R124's table"
+--
+-- [reasons.speed_unknown_or_contradicted]
+-- says = "the ego's speed is not known, or contradicts its positions"
+-- advice = "record it, or correct it"
+--
+-- [reasons.ego_on_no_lane]
+-- says = "the ego is on no lane"
+--
+-- [reasons.limit_by_vehicle_and_road]
+-- says = "the limit depends on the class of the vehicle and the kind of road, not all of which is known"
 
 -- @condition
 -- If the class, nation or kind of road is not known, the limit lies between two values: a speed between them is neither a pass nor a fail.
@@ -38,9 +48,9 @@ WITH limit_range AS (
 SELECT drive_id, ego_id, t_ns, speed_mps AS observed,
     CASE WHEN speed_mps > most_mps THEN most_mps WHEN peak_mps <= least_mps THEN least_mps END AS required,
     CASE WHEN required IS NOT NULL THEN NULL
-        WHEN speed_mps IS NULL THEN 'the ego''s speed is not known, or contradicts its positions: record it, or correct it'
-        WHEN lanelet_id IS NULL THEN 'the ego is on no lane'
+        WHEN speed_mps IS NULL THEN why('speed_unknown_or_contradicted')
+        WHEN lanelet_id IS NULL THEN why('ego_on_no_lane')
         WHEN limit_mps IS NULL THEN limit_doubt(limit_source, lanelet_id)
-        WHEN speed_mps <= least_mps THEN unseen_peak_doubt()
-        ELSE 'the limit depends on the class of the vehicle and the kind of road, not all of which is known' END AS reason
+        WHEN speed_mps <= least_mps THEN why('peak_between_samples')
+        ELSE why('limit_by_vehicle_and_road') END AS reason
 FROM limit_range

@@ -15,13 +15,21 @@
 --
 -- # Draft: bends, crests and buildings that hide the road are not in the tables; what is known is how far the corridor and the sensors reach. The
 -- # end of the map or of the corridor is no end of sight, so it is a lower bound; vehicles on the road are the business of r126.stopping-gap.
+--
+-- [reasons.driving_side_unknown]
+-- says = "how far the road leads on is not known, for the side that is driven on is not"
+-- advice = "give it with --handedness"
+--
+-- [reasons.map_too_short]
+-- says = "the map shows the road for {free_m:.0f} m only"
+-- advice = "give one that goes on"
 
 -- @condition
 SELECT e.drive_id, e.ego_id, e.t_ns, o.free_m AS observed, stopping_factor(c.weather) * stopping_distance_m(e.speed_mps) AS required,
     o.free_reason <> 'sensor_range' AS at_least,
-    CASE WHEN e.front_s_m IS NOT NULL AND o.t_ns IS NULL THEN 'how far the road leads on is not known, for the side that is driven on is not: give it with --handedness'
+    CASE WHEN e.front_s_m IS NOT NULL AND o.t_ns IS NULL THEN why('driving_side_unknown')
         WHEN o.free_m < stopping_factor(c.weather) * stopping_distance_m(e.speed_mps) AND o.free_reason <> 'sensor_range'
-            THEN format('the map shows the road for {:.0f} m only: give one that goes on', o.free_m) END AS reason
+            THEN why('map_too_short', {'free_m': o.free_m}) END AS reason
 FROM ego_state e
 LEFT JOIN oncoming o USING (drive_id, ego_id, t_ns)
 LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)

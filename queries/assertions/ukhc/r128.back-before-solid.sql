@@ -11,6 +11,17 @@
 -- reads = ["line_step", "overtake"]
 -- requires = ["map", "registration", "handedness", "markings", "ego_size"]
 -- without_anchor = "the log does not show the ego back in its lane: record it until it is"
+--
+-- [reasons.no_lane_beyond_line]
+-- says = "the map has no lane beyond the line, which may be the edge of the road"
+-- advice = "give a map with the lanes of both directions"
+--
+-- [reasons.solid_overtake_unsure]
+-- says = "the line was solid, but whether the ego overtook is not sure"
+-- advice = "record all vehicles from before the ego leaves its lane until it is back in it"
+--
+-- [reasons.solid_crossing_unseen]
+-- says = "the log does not show the ego cross the line, which was solid when it is first seen"
 
 -- @reference
 SELECT o.drive_id, o.ego_id, o.t0_ns AS t_ns, max(o.vbp_id) AS object_id, bool_or(o.sure) AS sure, o.begin_seen, o.t3_ns, o.t_end_ns, o.opposing, CASE o.side WHEN 1 THEN 'left' ELSE 'right' END AS side
@@ -39,9 +50,9 @@ SELECT r.drive_id, r.ego_id, coalesce(min(l.t_ns) FILTER (l.is_solid), r.t3_ns) 
         WHEN bool_or(l.is_solid) THEN CASE WHEN r.sure AND (r.begin_seen OR min(l.t_ns) FILTER (NOT l.is_solid) < min(l.t_ns) FILTER (l.is_solid)) THEN false END
         WHEN count(l.t_ns) > 0 AND count(l.t_ns) = count(l.is_solid) THEN true
     END AS holds,
-    CASE WHEN r.opposing IS NULL THEN 'the map has no lane beyond the line, which may be the edge of the road: give a map with the lanes of both directions'
-        WHEN bool_or(l.is_solid) AND NOT r.sure THEN 'the line was solid, but whether the ego overtook is not sure: record all vehicles from before the ego leaves its lane until it is back in it'
-        WHEN bool_or(l.is_solid) AND NOT r.begin_seen THEN 'the log does not show the ego cross the line, which was solid when it is first seen' END AS reason
+    CASE WHEN r.opposing IS NULL THEN why('no_lane_beyond_line')
+        WHEN bool_or(l.is_solid) AND NOT r.sure THEN why('solid_overtake_unsure')
+        WHEN bool_or(l.is_solid) AND NOT r.begin_seen THEN why('solid_crossing_unseen') END AS reason
 FROM reference r
 LEFT JOIN step_over_line l ON l.drive_id = r.drive_id AND l.ego_id = r.ego_id AND l.side = r.side AND l.t_ns >= r.t_ns AND l.t_ns <= r.t_end_ns
 GROUP BY r.drive_id, r.ego_id, r.ref_id, r.sure, r.begin_seen, r.t3_ns, r.opposing

@@ -10,6 +10,13 @@
 -- merge_gap_s = 2.0
 -- reads = ["data_log", "ego_state", "environment", "line_step"]
 -- requires = ["map", "registration", "handedness", "markings", "ego_size"]
+--
+-- [reasons.over_line]
+-- says = "{out_m:.2f} m over a line marked {marking}"
+--
+-- [reasons.middle_unknown]
+-- says = "whether the line is the middle of the road is not known, for the map has nothing beyond it, or what may be a central reservation"
+-- advice = "give a map with the lanes of both directions"
 
 -- @condition
 -- Edge lines, and the lines between lanes of one direction, are judged by other rules.
@@ -25,8 +32,8 @@ SELECT e.drive_id, e.ego_id, e.t_ns,
     CASE WHEN e.front_s_m IS NULL THEN NULL WHEN l.t_ns IS NULL THEN true ELSE NOT l.crosses_solid_line END AS holds,
     CASE
         WHEN e.front_s_m IS NULL THEN ego_lacks(e.x_m, e.yaw_rad, e.lanelet_id, e.front_s_m)
-        WHEN l.crosses_solid_line THEN format('{:.2f} m over a line marked {}', l.out_m, l.marking)
-        WHEN l.t_ns IS NOT NULL AND l.crosses_solid_line IS NULL AND l.middle IS NULL THEN 'whether the line is the middle of the road is not known, for the map has nothing beyond it, or what may be a central reservation: give a map with the lanes of both directions'
+        WHEN l.crosses_solid_line THEN why('over_line', {'out_m': l.out_m, 'marking': l.marking})
+        WHEN l.t_ns IS NOT NULL AND l.crosses_solid_line IS NULL AND l.middle IS NULL THEN why('middle_unknown')
     END AS reason
 FROM ego_state e
 LEFT JOIN step_over_line l USING (drive_id, ego_id, t_ns)

@@ -22,6 +22,18 @@
 -- default = 10.0
 -- unit = "s"
 -- why = "UN R79 5.6.4.6.5 gives a lane change by the system 5 s, that of a bus or lorry 10 s; here a driver has 10 s whatever it drives"
+--
+-- [reasons.astride_begin_unseen]
+-- says = "the ego is astride the line when the log begins, or enters the map"
+-- advice = "record it from before that"
+--
+-- [reasons.change_end_unseen]
+-- says = "the log ends before it shows whether this is a lane change"
+-- advice = "record the ego for longer"
+--
+-- [reasons.may_go_round_unplaced]
+-- says = "the ego may be going round somebody whose place is not known"
+-- advice = "record everybody nearby without a break"
 
 -- @condition
 WITH astride_step AS (
@@ -54,9 +66,9 @@ SELECT e.drive_id, e.ego_id, e.t_ns, coalesce(j.required, $astride_s) AS require
     CASE WHEN e.front_s_m IS NULL THEN NULL WHEN j.t_ns IS NULL THEN 0.0::DOUBLE ELSE j.observed END AS observed,
     CASE
         WHEN e.front_s_m IS NULL THEN ego_lacks(e.x_m, e.yaw_rad, e.lanelet_id, e.front_s_m)
-        WHEN j.t_ns IS NOT NULL AND NOT j.astride_begin_seen AND j.observed <= j.required THEN 'the ego is astride the line when the log begins, or enters the map: record it from before that'
-        WHEN j.t_ns IS NOT NULL AND j.changes IS NULL THEN 'the log ends before it shows whether this is a lane change: record the ego for longer'
-        WHEN j.observed IS NULL AND j.least_s <= j.required THEN 'the ego may be going round somebody whose place is not known: record everybody nearby without a break'
+        WHEN j.t_ns IS NOT NULL AND NOT j.astride_begin_seen AND j.observed <= j.required THEN why('astride_begin_unseen')
+        WHEN j.t_ns IS NOT NULL AND j.changes IS NULL THEN why('change_end_unseen')
+        WHEN j.observed IS NULL AND j.least_s <= j.required THEN why('may_go_round_unplaced')
     END AS reason
 FROM ego_state e
 LEFT JOIN judged_step j USING (drive_id, ego_id, t_ns)

@@ -26,6 +26,14 @@
 -- why = "our default: more than letting off the accelerator or braking in comfort"
 --
 -- # Draft: why the follower braked is a judgement; it is asked only where the follower could not have stopped behind the place of the ego.
+--
+-- [reasons.lane_change_begin_unseen]
+-- says = "the log does not show where the lane change began"
+-- advice = "record the ego from before it"
+--
+-- [reasons.follower_unknown]
+-- says = "who followed in the new lane is not known, for somebody nearby has no place"
+-- advice = "record everybody there from before the lane change"
 
 -- @reference
 SELECT drive_id, ego_id, t_start_ns AS t_ns, follower_id AS object_id, occurrence
@@ -35,8 +43,8 @@ WHERE follower_id IS NOT NULL OR NOT known OR NOT begin_seen
 -- @condition
 SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id, $decel_mps2 AS required,
     CASE WHEN c.begin_seen AND (c.known OR c.follower_decel_mps2 > $decel_mps2) THEN c.follower_decel_mps2 END AS observed,
-    CASE WHEN NOT c.begin_seen THEN 'the log does not show where the lane change began: record the ego from before it'
-        WHEN c.follower_id IS NULL THEN 'who followed in the new lane is not known, for somebody nearby has no place: record everybody there from before the lane change' END AS reason,
+    CASE WHEN NOT c.begin_seen THEN why('lane_change_begin_unseen')
+        WHEN c.follower_id IS NULL THEN why('follower_unknown') END AS reason,
     c.follower_gap_m <= stopping_distance_m(c.follower_speed_mps) OR NOT c.known AND NULL AS applies
 FROM reference_step s
 JOIN reference r USING (ref_id)

@@ -17,6 +17,9 @@
 -- why = "our default: maps do not say in which hours such a lane is kept for others, so being there is unknown, not wrong; true for maps whose lanes always are"
 --
 -- # Draft: hours, and how many sit in the vehicle, are in no table; what can be proved is that the ego was never there.
+--
+-- [reasons.on_restricted_lane]
+-- says = "on lane {lanelet_id}, which is kept for others in its hours"
 
 -- @condition
 WITH occupied_lane AS (
@@ -34,7 +37,7 @@ SELECT e.drive_id, e.ego_id, e.t_ns,
         WHEN NOT coalesce(l.is_restricted, false) OR l.is_bus_lane AND c.vehicle_class = 'bus' THEN true
         WHEN $always_in_force AND NOT l.is_hov_lane AND c.vehicle_class <> 'motorcycle' THEN false
     END AS holds,
-    CASE WHEN l.is_restricted THEN 'on lane ' || l.lanelet_id || ', which is kept for others in its hours' END AS reason
+    CASE WHEN l.is_restricted THEN why('on_restricted_lane', {'lanelet_id': l.lanelet_id}) END AS reason
 FROM ego_state e
 LEFT JOIN occupied_lane l USING (drive_id, ego_id, t_ns)
 LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)

@@ -55,6 +55,24 @@
 -- default = 2.618
 -- unit = "rad"
 -- why = "our default: within 30 degrees of straight against a lane of a junction; a turn that is cut is not"
+--
+-- [reasons.passing_unknown]
+-- says = "whether it is on its way past another vehicle is not known"
+-- advice = "record that from before to after"
+--
+-- [reasons.may_pass_unseen]
+-- says = "in the opposing lane for less than {within_s:g} s, it may pass something that the log does not show"
+-- advice = "record what stands in the lane, such as road works"
+--
+-- [reasons.lane_closed_unknown]
+-- says = "whether something closes its lane is not known"
+-- advice = "record what stands or walks there"
+--
+-- [reasons.with_lane]
+-- says = "{along_mps:.1f} m/s along its own heading, with lane {lanelet_id}"
+--
+-- [reasons.against_lane]
+-- says = "{along_mps:.1f} m/s along its own heading, against lane {lanelet_id}"
 
 -- @applies
 -- The rule does not apply where the ego is off every lane, as in a car park.
@@ -158,9 +176,9 @@ SELECT e.drive_id, e.ego_id, e.t_ns,
             -- If the ego drives in the direction of its lane, the kind of road does not matter.
             WHEN abs(m.v_long_mps) <= $manoeuvring_mps AND (w.road_type IS NOT NULL OR e.with_direction AND m.v_long_mps >= -$reverse_mps) AND NOT coalesce(d.is_against AND d.most_m > $manoeuvring_m, false) THEN false END AS applies,
     CASE WHEN c.t_ns IS NULL OR p.is_excused OR c.closed_lane THEN NULL
-        WHEN p.t_ns IS NOT NULL AND p.is_excused IS NULL THEN 'whether it is on its way past another vehicle is not known: record that from before to after'
-        WHEN x.t_ns IS NOT NULL THEN format('in the opposing lane for less than {:g} s, it may pass something that the log does not show: record what stands in the lane, such as road works', $passing_s)
-        WHEN c.closed_lane IS NULL THEN 'whether something closes its lane is not known: record what stands or walks there' END AS reason
+        WHEN p.t_ns IS NOT NULL AND p.is_excused IS NULL THEN why('passing_unknown')
+        WHEN x.t_ns IS NOT NULL THEN why('may_pass_unseen', {'within_s': $passing_s})
+        WHEN c.closed_lane IS NULL THEN why('lane_closed_unknown') END AS reason
 FROM ego_state e
 LEFT JOIN ego_motion m USING (drive_id, ego_id, t_ns)
 LEFT JOIN ego_condition w USING (drive_id, ego_id, t_ns)
@@ -173,7 +191,10 @@ LEFT JOIN wrong_way_distance d USING (drive_id, ego_id, t_ns)
 
 -- @condition
 SELECT e.drive_id, e.ego_id, e.t_ns, (n.bidirectional OR coalesce(e.with_direction, a.with_direction)) AND m.v_long_mps >= -$reverse_mps AS holds,
-    format('{:.1f} m/s along its own heading, {} lane {}', m.v_long_mps, CASE WHEN n.bidirectional OR coalesce(e.with_direction, a.with_direction) THEN 'with' ELSE 'against' END, coalesce(e.lanelet_id, a.lanelet_id)) AS reason
+    CASE WHEN m.v_long_mps IS NOT NULL AND coalesce(e.lanelet_id, a.lanelet_id) IS NOT NULL THEN why(
+        CASE WHEN n.bidirectional OR coalesce(e.with_direction, a.with_direction) THEN 'with_lane' ELSE 'against_lane' END,
+        {'along_mps': m.v_long_mps, 'lanelet_id': coalesce(e.lanelet_id, a.lanelet_id)}
+    ) END AS reason
 FROM ego_state e
 JOIN data_log g USING (drive_id)
 LEFT JOIN ego_motion m USING (drive_id, ego_id, t_ns)

@@ -22,6 +22,12 @@
 -- default = 4.47
 -- unit = "m/s"
 -- why = "our default: at 10 mph and less a vehicle crosses the footway to reach property; faster it has left the road"
+--
+-- [reasons.partly_off_map]
+-- says = "part of the ego is on nothing that the map knows"
+--
+-- [reasons.may_be_access]
+-- says = "slowly over the footway, from or to ground that the map does not know: it may be property"
 
 -- @condition
 -- Property is ground that the map does not have. An ego that slowly comes from there, or goes there, may cross the footway.
@@ -47,7 +53,7 @@ footway_stretch AS (
     GROUP BY n.drive_id, n.ego_id, n.stretch_no
 )
 SELECT n.drive_id, n.ego_id, n.t_ns, n.depth_m AS observed, CASE WHEN NOT coalesce(s.may_be_access, false) THEN $tolerance_m END AS required,
-    CASE WHEN n.depth_m IS NULL THEN 'part of the ego is on nothing that the map knows'
-        WHEN s.may_be_access THEN 'slowly over the footway, from or to ground that the map does not know: it may be property' END AS reason
+    CASE WHEN n.depth_m IS NULL THEN why('partly_off_map')
+        WHEN s.may_be_access THEN why('may_be_access') END AS reason
 FROM numbered_step n
 LEFT JOIN footway_stretch s ON s.drive_id = n.drive_id AND s.ego_id = n.ego_id AND s.stretch_no = CASE WHEN n.is_on_footway THEN n.stretch_no END

@@ -56,8 +56,8 @@ SELECT rs.drive_id, rs.ego_id, rs.t_ns, rs.ref_id,
             s.blocking_id, s.blocking_gap_m, s.blocking_speed_mps, s.blocking_known, s.junction_clear_m, CASE WHEN r.across THEN 0 ELSE s.t_end_ns - s.t_start_ns END,
             $near_m, $slow_mps, $long_s
         ) OR CASE WHEN NOT r.across THEN false END AS holds,
-    CASE WHEN s.t_start_ns IS NOT NULL THEN 'the ego stood in the junction' || coalesce(' behind ' || s.blocking_id, '')
-        || CASE WHEN r.across THEN '; turning across, it may have waited for the oncoming traffic' ELSE '' END END AS reason
+    CASE WHEN s.t_start_ns IS NOT NULL
+        THEN why(CASE WHEN r.across THEN 'stood_in_junction_turning' ELSE 'stood_in_junction' END, {'object_id': s.blocking_id}) END AS reason
 FROM reference_step rs
 JOIN reference r USING (ref_id)
 LEFT JOIN standstill s ON s.drive_id = rs.drive_id AND s.ego_id = rs.ego_id AND s.t_start_ns = rs.t_ns AND s.junction_id = r.junction_id

@@ -17,6 +17,10 @@
 -- default = 4.0
 -- unit = "s"
 -- why = "our default: time to see the ego pull out and to slow down in comfort"
+--
+-- [reasons.overtaken_unknown]
+-- says = "whom the ego was to overtake, if anybody, is not known"
+-- advice = "record all vehicles ahead of it, with their classes"
 
 -- @reference
 SELECT o.drive_id, o.ego_id, o.t0_ns AS t_ns, p.rear_id AS object_id, o.occurrence
@@ -31,8 +35,8 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $ttc_s AS required,
     CASE WHEN o.begin_seen AND (p.rear_known OR p.rear_ttc_s < $ttc_s OR p.rear_unseen_m > 0 AND p.rear_unseen_m >= $ttc_s * greatest(0.0, fast_mps() - o.v_av_mps))
         -- If no vehicle was placed ahead and none was passed, this may be no overtake: a lane change, or a noisy position of a corner.
         AND (o.vbp_placed OR o.passed OR p.rear_ttc_s >= $ttc_s) THEN or_never(p.rear_ttc_s, $ttc_s) END AS observed,
-    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began: record the ego from before it'
-        WHEN NOT o.vbp_placed AND NOT o.passed THEN 'whom the ego was to overtake, if anybody, is not known: record all vehicles ahead of it, with their classes' END AS reason
+    CASE WHEN NOT o.begin_seen THEN why('overtake_begin_unseen')
+        WHEN NOT o.vbp_placed AND NOT o.passed THEN why('overtaken_unknown') END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 LEFT JOIN overtake_place p USING (drive_id, ego_id, occurrence)

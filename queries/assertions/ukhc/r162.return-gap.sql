@@ -12,6 +12,14 @@
 -- near_margin = 2.0
 -- reads = ["ego_state", "hidden", "oncoming", "overtake", "pair", "unplaced"]
 -- requires = ["map", "registration", "handedness", "ego_size"]
+--
+-- [reasons.actor_may_be_there]
+-- says = "actor {object_id}, who may be there, {lack}"
+-- advice = "record it without a break"
+--
+-- [reasons.class_there_unknown]
+-- says = "the class of somebody there is not known"
+-- advice = "record it"
 
 -- @reference
 SELECT drive_id, ego_id, t0_ns AS t_ns, vbp_id AS object_id, occurrence
@@ -35,7 +43,7 @@ WITH ahead AS (
 ),
 -- A vehicle without a place may be in the gap, unless it is behind the ego or further ahead.
 possible_vehicle AS (
-    SELECT r.ref_id, min({'lane_m': d.lane_m, 'object_id': d.object_id, 'reason': coalesce(u.reason, 'has no place')}) AS o
+    SELECT r.ref_id, min({'lane_m': d.lane_m, 'object_id': d.object_id, 'lack': coalesce(u.code, 'no_place')}) AS o
     FROM reference r
     JOIN hidden d ON d.drive_id = r.drive_id AND d.ego_id = r.ego_id AND d.t_ns = r.t_ns AND d.vehicle AND d.ahead IS DISTINCT FROM false
     LEFT JOIN unplaced u ON u.drive_id = d.drive_id AND u.ego_id = d.ego_id AND u.t_ns = d.t_ns AND u.object_id = d.object_id
@@ -51,9 +59,9 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, required_gap.size_m AS required,
         WHEN h.gap_m IS NULL THEN CASE WHEN free_gap.seen_m IS NOT NULL THEN greatest(0.0, least(free_gap.seen_m, free_gap.unseen_m)) END
         WHEN h.gap_m >= required_gap.size_m THEN greatest(0.0, least(h.gap_m, free_gap.unseen_m))
     END AS observed,
-    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began: record the ego from before it' WHEN h.vehicle_gap_m < required_gap.size_m THEN NULL
-        WHEN free_gap.unseen_m < required_gap.size_m THEN format('actor {}, who may be there, {}: record it without a break', d.o.object_id, d.o.reason)
-        WHEN h.gap_m < required_gap.size_m THEN 'the class of somebody there is not known: record it' END AS reason
+    CASE WHEN NOT o.begin_seen THEN why('overtake_begin_unseen') WHEN h.vehicle_gap_m < required_gap.size_m THEN NULL
+        WHEN free_gap.unseen_m < required_gap.size_m THEN why('actor_may_be_there', {'object_id': d.o.object_id, 'lack': d.o.lack})
+        WHEN h.gap_m < required_gap.size_m THEN why('class_there_unknown') END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 CROSS JOIN LATERAL (SELECT o.l_av_m + thinking_distance_m(o.v_vbp_mps) + thinking_distance_m(o.v_av_mps) AS size_m) required_gap

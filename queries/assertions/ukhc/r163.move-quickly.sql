@@ -19,6 +19,13 @@
 -- why = "our default: half as long again as the model"
 --
 -- # Draft: what is quick is a judgement, and the profiles are those of the paper's slow overtakes.
+--
+-- [reasons.overtaken_speed_unknown]
+-- says = "the speed of {object_id} where the ego pulled out is not known"
+-- advice = "record it from before that"
+--
+-- [reasons.pulled_out_no_faster]
+-- says = "the ego pulled out no faster than {object_id}, for which the model has no time"
 
 -- @reference
 SELECT drive_id, ego_id, coalesce(t3_ns, t0_ns) AS t_ns, vbp_id AS object_id, occurrence
@@ -29,10 +36,10 @@ QUALIFY occurrence = max(occurrence) OVER (PARTITION BY drive_id, ego_id, t0_ns)
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, CASE WHEN o.begin_seen THEN (o.t3_ns - o.t0_ns) / 1e9 END AS observed,
-    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began: record the ego from before it'
-        WHEN o.t3_ns IS NULL THEN 'the log does not show the ego back in its lane: record it until it is'
-        WHEN o.v_vbp_mps IS NULL THEN format('the speed of {} where the ego pulled out is not known: record it from before that', o.vbp_id)
-        WHEN o.v_av_mps <= o.v_vbp_mps THEN format('the ego pulled out no faster than {}, for which the model has no time', o.vbp_id) END AS reason,
+    CASE WHEN NOT o.begin_seen THEN why('overtake_begin_unseen')
+        WHEN o.t3_ns IS NULL THEN why('return_unseen')
+        WHEN o.v_vbp_mps IS NULL THEN why('overtaken_speed_unknown', {'object_id': o.vbp_id})
+        WHEN o.v_av_mps <= o.v_vbp_mps THEN why('pulled_out_no_faster', {'object_id': o.vbp_id}) END AS reason,
     $slack * (
         pull_out_time_s(o.lane_width_m, p.pull_out_angle_rad, o.v_av_mps) + pull_out_time_s(o.lane_width_m, p.cut_in_angle_rad, o.v_av_mps)
         + passing_time_s(o.lane_width_m, p.pull_out_angle_rad, p.pull_out_headroom_m, p.cut_in_clearance_m, o.l_av_m, o.span_m, o.v_av_mps, o.v_vbp_mps)

@@ -34,6 +34,27 @@
 -- default = 8.94
 -- unit = "m/s"
 -- why = "our default: slower, at 10 mph each, two drivers can squeeze past each other with care"
+--
+-- [reasons.oncoming_hindered]
+-- says = "an oncoming vehicle came {pet_s:.1f} s after the ego, or braked by {decel_mps2:.1f} m/s2"
+--
+-- [reasons.came_by]
+-- says = "{object_id} came by with {room_m:.2f} m between"
+--
+-- [reasons.braked_and_stood]
+-- says = "{braked}, and it stood until then"
+--
+-- [reasons.object_lacks_unbroken]
+-- says = "object {object_id} {lack}"
+-- advice = "record it without a break"
+--
+-- [reasons.pull_out_unseen]
+-- says = "the log does not show where the ego pulled out"
+-- advice = "record it from before that"
+--
+-- [reasons.ends_after_return]
+-- says = "the log ends within {within_s:g} s after the ego was back in its lane"
+-- advice = "record it for longer"
 
 -- @reference
 SELECT drive_id, ego_id, t0_ns AS t_ns, t_end_ns, vbp_id AS object_id, occurrence
@@ -57,10 +78,11 @@ WITH oncoming_braking AS (
                 THEN CASE WHEN f.waited AND f.other_cause IS NULL AND f.actor_class <> 'bus' THEN true END
             ELSE made_to_brake(f.decel_mps2, f.pet_s, f.other_cause, $decel_mps2, $pet_s)
         END AS is_violation,
-        braked_words(f.object_id, f.pet_s, f.decel_mps2, f.other_cause) || CASE WHEN f.waited THEN ', and it stood until then' ELSE '' END AS words
+        CASE WHEN f.waited THEN why('braked_and_stood', {'braked': braking}) ELSE braking END AS words
     FROM reference r
     JOIN forced_braking f ON f.drive_id = r.drive_id AND f.ego_id = r.ego_id AND abs(f.angle_rad) >= $oncoming_rad
         AND f.t_ego_in_ns >= r.t_ns AND f.t_ego_in_ns <= r.t_end_ns
+    CROSS JOIN LATERAL (SELECT braked_reason(f.object_id, f.pet_s, f.decel_mps2, f.other_cause) AS braking) b
 ),
 -- One vehicle that had to brake is enough.
 braking_result AS (
@@ -87,7 +109,7 @@ close_meeting AS (
 ),
 -- A vehicle without a place that may be moving may have come within pet_s of the ego, until pet_s after the end of the overtake.
 unplaced_vehicle AS (
-    SELECT r.ref_id, min(u.object_id || ' ' || u.reason) AS words
+    SELECT r.ref_id, min({'object_id': u.object_id, 'lack': u.code}) AS unplaced
     FROM reference r
     JOIN unplaced u ON u.drive_id = r.drive_id AND u.ego_id = r.ego_id AND u.t_ns >= r.t_ns AND u.t_ns <= r.t_end_ns + ($pet_s * 1e9)::BIGINT
         AND u.code NOT IN ('beyond_map', 'lost_behind')
@@ -105,14 +127,14 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps <= standing_mps() AS 
     END AS holds,
     CASE
         WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false)
-            THEN format('an oncoming vehicle came {:.1f} s after the ego, or braked by {:.1f} m/s2', min(c.pet_s), coalesce(max(c.decel_mps2), 0))
-        WHEN m.ref_id IS NOT NULL AND f.is_violation IS DISTINCT FROM true THEN format('{} came by with {:.2f} m between', m.least.object_id, m.least.room_m)
+            THEN why('oncoming_hindered', {'pet_s': min(c.pet_s), 'decel_mps2': coalesce(max(c.decel_mps2), 0)})
+        WHEN m.ref_id IS NOT NULL AND f.is_violation IS DISTINCT FROM true THEN why('came_by', m.least)
         WHEN f.words IS NOT NULL THEN f.words
-        WHEN o.t3_ns IS NULL THEN 'the log does not show the ego back in its lane: record it until it is'
-        WHEN v.ref_id IS NOT NULL THEN format('object {}: record it without a break', v.words)
-        WHEN NOT o.begin_seen THEN 'the log does not show where the ego pulled out: record it from before that'
-        WHEN o.n_unplaced > 0 THEN o.unplaced_reason || ': record it without a break'
-        WHEN k.t_end_ns < o.t3_ns + ($pet_s * 1e9)::BIGINT THEN format('the log ends within {:g} s after the ego was back in its lane: record it for longer', $pet_s) END AS reason
+        WHEN o.t3_ns IS NULL THEN why('return_unseen')
+        WHEN v.ref_id IS NOT NULL THEN why('object_lacks_unbroken', v.unplaced)
+        WHEN NOT o.begin_seen THEN why('pull_out_unseen')
+        WHEN o.n_unplaced > 0 AND o.unplaced_reason IS NOT NULL THEN why('record_actor_unbroken', {'lack': o.unplaced_reason})
+        WHEN k.t_end_ns < o.t3_ns + ($pet_s * 1e9)::BIGINT THEN why('ends_after_return', {'within_s': $pet_s}) END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 JOIN clock k USING (drive_id, ego_id)
@@ -121,4 +143,4 @@ LEFT JOIN close_meeting m USING (ref_id)
 LEFT JOIN unplaced_vehicle v USING (ref_id)
 LEFT JOIN (FROM conflict WHERE ego_first AND abs(angle_rad) >= $oncoming_rad) c
     ON c.drive_id = r.drive_id AND c.ego_id = r.ego_id AND c.t_ego_in_ns >= r.t_ns AND c.t_ego_in_ns <= r.t_end_ns
-GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.unplaced_reason, o.t3_ns, k.t_end_ns, f.ref_id, f.is_violation, f.words, m.ref_id, m.is_violation, m.least, v.ref_id, v.words
+GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.unplaced_reason, o.t3_ns, k.t_end_ns, f.ref_id, f.is_violation, f.words, m.ref_id, m.is_violation, m.least, v.ref_id, v.unplaced

@@ -20,6 +20,6 @@ FROM overtake
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, stopping_distance_m(o.v_av_mps) AS required,
     CASE WHEN o.begin_seen THEN o.vbp_gap_m END AS observed,
-    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began: record the ego from before it' END AS reason
+    CASE WHEN NOT o.begin_seen THEN why('overtake_begin_unseen') END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)

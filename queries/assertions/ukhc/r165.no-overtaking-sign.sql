@@ -9,6 +9,10 @@
 -- sense = "holds"
 -- reads = ["overtake", "overtake_place"]
 -- requires = ["map", "registration", "handedness", "ego_size"]
+--
+-- [reasons.sign_unknown]
+-- says = "whether such a sign holds here is not known, for on the way behind the map shows none, nor the end of one, nor a junction"
+-- advice = "give a map that goes back to the last junction"
 
 -- @reference
 SELECT o.drive_id, o.ego_id, o.t0_ns AS t_ns, o.vbp_id AS object_id, o.occurrence
@@ -17,7 +21,7 @@ FROM overtake o
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps > standing_mps() AS applies,
     CASE WHEN o.begin_seen THEN NOT p.no_overtaking END AS holds,
-    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began: record the ego from before it' WHEN p.no_overtaking IS NULL THEN 'whether such a sign holds here is not known, for on the way behind the map shows none, nor the end of one, nor a junction: give a map that goes back to the last junction' END AS reason
+    CASE WHEN NOT o.begin_seen THEN why('overtake_begin_unseen') WHEN p.no_overtaking IS NULL THEN why('sign_unknown') END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 LEFT JOIN overtake_place p USING (drive_id, ego_id, occurrence)

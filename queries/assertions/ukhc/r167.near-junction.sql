@@ -28,7 +28,7 @@ WHERE opposing IS DISTINCT FROM false
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps > standing_mps() AS applies, $junction_m AS required,
     CASE WHEN o.begin_seen THEN p.junction_m END AS observed,
-    CASE WHEN NOT o.begin_seen THEN 'the log does not show where the overtake began: record the ego from before it' END AS reason
+    CASE WHEN NOT o.begin_seen THEN why('overtake_begin_unseen') END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 LEFT JOIN overtake_place p USING (drive_id, ego_id, occurrence)

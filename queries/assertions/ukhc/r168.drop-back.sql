@@ -28,6 +28,10 @@
 -- default = 2.0
 -- unit = "s"
 -- why = "our default: who is between the two for less than this may only be passing through"
+--
+-- [reasons.boxes_overlap]
+-- says = "the boxes of the ego and {object_id} overlap, or did before, which leaves no gap to restore"
+-- advice = "correct them, or see ukhc.no-collision"
 
 -- @reference
 -- A vehicle that may have moved in unseen, but further away than the gap to keep, leaves nothing to restore.
@@ -55,7 +59,7 @@ SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id,
         WHEN s.t_ns < s.t_last_ns OR s.t_ns <= s.in_place_ns THEN false
         WHEN s.t_ns - greatest(s.in_place_ns, s.t_not_gone_ns) >= $gone_s * 1e9 THEN true END AS holds,
     CASE WHEN bool_or(coalesce(p.clearance_m <= 0, false)) OVER (PARTITION BY s.ref_id ORDER BY s.t_ns)
-        THEN format('the boxes of the ego and {} overlap, or did before, which leaves no gap to restore: correct them, or see ukhc.no-collision', s.cutter_id) END AS reason
+        THEN why('boxes_overlap', {'object_id': s.cutter_id}) END AS reason
 FROM lead_step s
 LEFT JOIN ego_condition c ON c.drive_id = s.drive_id AND c.ego_id = s.ego_id AND c.t_ns = s.t_ns
 LEFT JOIN pair p ON p.drive_id = s.drive_id AND p.ego_id = s.ego_id AND p.t_ns = s.t_ns AND p.object_id = s.cutter_id

@@ -35,6 +35,9 @@
 -- default = 4.0
 -- unit = "s"
 -- why = "our default, that of r162.not-being-overtaken: who is out in the opposing lane and there so soon is overtaking the ego"
+--
+-- [reasons.accelerates_and_drifts]
+-- says = "accelerates by {accel_mps2:.2f} m/s2, drifts towards it at {drift_mps:.2f} m/s[, is {gained_mps:.1f} m/s faster than before]"
 
 -- @applies
 -- If the lane beside is driven the other way, a vehicle that is beside the ego there and drives the ego's way is overtaking it, and so is a
@@ -79,7 +82,9 @@ speed_gain AS (
     FROM overtaking_step
 )
 SELECT o.drive_id, o.ego_id, o.t_ns, o.object_id, m.accel_mps2 <= $accel_mps2 AND o.ego_lat_mps <= $drift_mps AND coalesce(g.gained_mps <= $gained_mps, true) AS holds,
-    format('accelerates by {:.2f} m/s2, drifts towards it at {:.2f} m/s', m.accel_mps2, o.ego_lat_mps) || CASE WHEN g.gained_mps > $gained_mps THEN format(', is {:.1f} m/s faster than before', g.gained_mps) ELSE '' END AS reason
+    CASE WHEN m.accel_mps2 IS NOT NULL AND o.ego_lat_mps IS NOT NULL THEN why('accelerates_and_drifts', {
+        'accel_mps2': m.accel_mps2, 'drift_mps': o.ego_lat_mps, 'gained_mps': CASE WHEN g.gained_mps > $gained_mps THEN g.gained_mps END
+    }) END AS reason
 FROM near_object o
 LEFT JOIN ego_motion m USING (drive_id, ego_id, t_ns)
 LEFT JOIN speed_gain g USING (drive_id, ego_id, t_ns, object_id)

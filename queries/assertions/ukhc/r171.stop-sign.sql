@@ -23,6 +23,12 @@
 -- default = 10.0
 -- unit = "s"
 -- why = "our default: a stop line crossed longer than this before or after is not the one at this junction"
+--
+-- [reasons.no_stop_line]
+-- says = "the map has a stop sign here and no stop line"
+--
+-- [reasons.approach_unseen]
+-- says = "the log does not show how the ego came to the stop line"
 
 -- @reference
 -- A way into a junction that is, or may be, governed by a stop sign, and has no stop line in the map, cannot be judged.
@@ -43,7 +49,7 @@ FROM reference
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, $standing_mps AS required,
     CASE WHEN begin_seen OR slowest_mps <= $standing_mps THEN slowest_mps END AS observed,
-    CASE WHEN control IS NULL THEN 'the map does not say what governs the way in: give one with its signs, lights and priorities'
-        WHEN stop_line_id IS NULL THEN 'the map has a stop sign here and no stop line'
-        WHEN NOT begin_seen THEN 'the log does not show how the ego came to the stop line' END AS reason
+    CASE WHEN control IS NULL THEN why('way_in_control_unknown')
+        WHEN stop_line_id IS NULL THEN why('no_stop_line')
+        WHEN NOT begin_seen THEN why('approach_unseen') END AS reason
 FROM reference

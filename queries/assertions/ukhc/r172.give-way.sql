@@ -35,7 +35,7 @@ WHERE coalesce(p.control, 'give_way') = 'give_way'
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, CASE WHEN control IS NOT NULL THEN pet_s >= $pet_s AND decel_mps2 <= $decel_mps2 AND NOT forced END AS holds,
-    CASE WHEN control IS NULL THEN 'the map does not say what governs the way in: give one with its signs, lights and priorities'
-        WHEN forced IS DISTINCT FROM false THEN braked_words(braked_id, braked_pet_s, braked_mps2, braked_cause)
-        ELSE coalesce(met_words(object_id, pet_s, decel_mps2), reason) END AS reason
+    CASE WHEN control IS NULL THEN why('way_in_control_unknown')
+        WHEN forced IS DISTINCT FROM false THEN braked_reason(braked_id, braked_pet_s, braked_mps2, braked_cause)
+        ELSE coalesce(met_reason(object_id, pet_s, decel_mps2), reason) END AS reason
 FROM reference

@@ -17,6 +17,10 @@
 -- default = 3.5
 -- unit = "m/s2"
 -- why = "our default: firm braking that a driver behind can follow"
+--
+-- [reasons.amber_begin_unseen]
+-- says = "the log does not show when the light turned amber"
+-- advice = "record its state from before that"
 
 -- @reference
 SELECT drive_id, ego_id, t_ns, occurrence, state, signal_id, amber_speed_mps AS v, amber_front_m - thinking_distance_m(amber_speed_mps) AS room_m
@@ -26,5 +30,5 @@ WHERE control = 'traffic_light' AND coalesce(state, 'amber') = 'amber'
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, $decel_mps2 AS required,
     CASE WHEN state IS NULL THEN NULL WHEN room_m <= 0 THEN 'inf'::DOUBLE ELSE v ** 2 / (2 * room_m) END AS observed,
-    CASE WHEN state IS NULL THEN 'the light''s state is not known: record it at every step' WHEN room_m IS NULL THEN 'the log does not show when the light turned amber: record its state from before that' END AS reason
+    CASE WHEN state IS NULL THEN why('light_state_unknown') WHEN room_m IS NULL THEN why('amber_begin_unseen') END AS reason
 FROM reference

@@ -9,6 +9,15 @@
 -- sense = "holds"
 -- reads = ["step", "stop_line_crossing"]
 -- requires = ["map", "registration", "ego_size", "traffic_lights", "signals"]
+--
+-- [reasons.line_crossing_unseen]
+-- says = "the log does not show when the ego crossed the stop line"
+--
+-- [reasons.red_then_off]
+-- says = "the light was red and then off: whether it failed or its record did is not known"
+--
+-- [reasons.light_turned]
+-- says = "the light turned {state} while the ego was crossing the stop line"
 
 -- @reference
 SELECT c.drive_id, c.ego_id, c.t_ns, c.occurrence, c.signal_id, c.begin_seen, c.state, c.state_before,
@@ -22,9 +31,9 @@ WHERE c.control = 'traffic_light'
 -- either the light failed or its record did.
 SELECT drive_id, ego_id, t_ns, ref_id,
     CASE WHEN begin_seen AND NOT coalesce(state = 'off' AND forbids(state_before), false) AND (NOT coalesce(changed, false) OR forbids(state_before) = forbids(state)) THEN NOT forbids(state) END AS holds,
-    CASE WHEN NOT begin_seen THEN 'the log does not show when the ego crossed the stop line'
-        WHEN state IS NULL THEN 'the light''s state is not known: record it at every step'
-        WHEN state = 'off' AND forbids(state_before) THEN 'the light was red and then off: whether it failed or its record did is not known'
-        WHEN changed THEN 'the light turned ' || replace(state, '_', ' and ') || ' while the ego was crossing the stop line'
-        ELSE 'the light was ' || replace(state, '_', ' and ') END AS reason
+    CASE WHEN NOT begin_seen THEN why('line_crossing_unseen')
+        WHEN state IS NULL THEN why('light_state_unknown')
+        WHEN state = 'off' AND forbids(state_before) THEN why('red_then_off')
+        WHEN changed THEN why('light_turned', {'state': state})
+        ELSE why('light_was', {'state': state}) END AS reason
 FROM reference

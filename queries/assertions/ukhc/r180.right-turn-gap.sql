@@ -28,7 +28,7 @@
 SELECT p.drive_id, p.ego_id, p.t_in_ns AS t_ns, p.occurrence, p.across,
     made_to_brake(c.braked_mps2, c.braked_pet_s, c.braked_cause, $decel_mps2, $pet_s) AS forced,
     CASE WHEN forced THEN c.braked_id ELSE c.object_id END AS object_id,
-    CASE WHEN forced IS DISTINCT FROM false THEN braked_words(c.braked_id, c.braked_pet_s, c.braked_mps2, c.braked_cause) ELSE coalesce(c.reason, unsure_words(c.object_id)) END AS reason,
+    CASE WHEN forced IS DISTINCT FROM false THEN braked_reason(c.braked_id, c.braked_pet_s, c.braked_mps2, c.braked_cause) ELSE coalesce(c.reason, class_doubt(c.object_id)) END AS reason,
     pet_forced(pet_known(c.pet_s, c.reason, $pet_s, is_vehicle(c.actor_class)), forced, c.braked_pet_s, $pet_s) AS pet_s
 FROM junction_passage p
 LEFT JOIN passage_conflict c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id AND c.occurrence = p.occurrence AND c.relation = 'oncoming'
@@ -36,6 +36,6 @@ WHERE p.across IS DISTINCT FROM false
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, CASE WHEN across THEN pet_s END AS observed, $pet_s AS required,
-    CASE WHEN across IS NULL THEN 'which way the ego turned across the road is not known: record it until it has left the junction, and give the side that is driven on with --handedness'
+    CASE WHEN across IS NULL THEN why('turn_across_unknown')
         WHEN pet_s IS NULL OR forced THEN reason END AS reason
 FROM reference

@@ -17,6 +17,12 @@
 -- default = 5.0
 -- unit = "s"
 -- why = "our default: whom the ego got ahead of longer ago has seen it signal and slow down"
+--
+-- [reasons.got_ahead_of]
+-- says = "the ego got ahead of {object_id}"
+--
+-- [reasons.unplaced_beside]
+-- says = "somebody who may be beside the ego cannot be placed"
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, across, at_fork(turn, turn_rad, straightest_rad) AS fork,
@@ -27,10 +33,10 @@ WHERE across IS DISTINCT FROM true AND (turn IS DISTINCT FROM 'straight' OR at_f
 -- @condition
 SELECT rs.drive_id, rs.ego_id, rs.t_ns, rs.ref_id,
     CASE WHEN r.across IS NULL OR (p.t_ns IS NULL AND b.t_ns IS NOT NULL) THEN NULL WHEN p.t_ns IS NOT NULL THEN CASE WHEN NOT r.fork THEN false END ELSE true END AS holds,
-    CASE WHEN r.across IS NULL THEN 'which way the ego turned across the road is not known: record it until it has left the junction, and give the side that is driven on with --handedness'
-        WHEN p.t_ns IS NOT NULL AND r.fork THEN fork_words()
-        WHEN p.t_ns IS NOT NULL THEN 'the ego got ahead of ' || p.object_id
-        WHEN b.t_ns IS NOT NULL THEN 'somebody who may be beside the ego cannot be placed' END AS reason
+    CASE WHEN r.across IS NULL THEN why('turn_across_unknown')
+        WHEN p.t_ns IS NOT NULL AND r.fork THEN fork_doubt()
+        WHEN p.t_ns IS NOT NULL THEN why('got_ahead_of', {'object_id': p.object_id})
+        WHEN b.t_ns IS NOT NULL THEN why('unplaced_beside') END AS reason
 FROM reference_step rs
 JOIN reference r USING (ref_id)
 LEFT JOIN (

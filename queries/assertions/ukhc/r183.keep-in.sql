@@ -22,6 +22,10 @@
 -- default = 30.0
 -- unit = "m"
 -- why = "our default: who is at the near edge up to so far ahead, or beside the ego, may have to be passed with room"
+--
+-- [reasons.near_side_taken]
+-- says = "the near side is, or may be, somebody else's, or has another lane of the ego's direction, which keeps the ego from it"
+-- advice = "no recording decides that"
 
 -- @reference
 SELECT drive_id, ego_id, t_out_ns AS t_ns, occurrence, turn, across
@@ -53,7 +57,7 @@ taken_near_side AS (
 SELECT ego.drive_id, ego.ego_id, ego.t_ns, ego.ref_id, $near_m AS required,
     CASE WHEN ego.room_m <= $near_m OR n.ref_id IS NULL THEN ego.room_m END AS observed,
     CASE WHEN ego.across IS NOT NULL THEN true END AS applies,
-    CASE WHEN ego.across IS NULL THEN 'which way the ego turned across the road is not known: record it until it has left the junction, and give the side that is driven on with --handedness'
-        WHEN ego.room_m > $near_m AND n.ref_id IS NOT NULL THEN 'the near side is, or may be, somebody else''s, or has another lane of the ego''s direction, which keeps the ego from it: no recording decides that' END AS reason
+    CASE WHEN ego.across IS NULL THEN why('turn_across_unknown')
+        WHEN ego.room_m > $near_m AND n.ref_id IS NOT NULL THEN why('near_side_taken') END AS reason
 FROM placed_ego ego
 LEFT JOIN taken_near_side n USING (ref_id)

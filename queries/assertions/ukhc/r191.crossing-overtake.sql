@@ -14,6 +14,23 @@
 -- default = 18.0
 -- unit = "m"
 -- why = "our default, since maps do not show them: eight marks of two metres and the space between"
+--
+-- [reasons.crossing_kind_unknown]
+-- says = "the map does not say whether crossing {crossing_id} is a zebra, has lights, or neither"
+-- advice = "give one that does"
+--
+-- [reasons.passed_before_crossing]
+-- says = "passed {object_ids} before crossing {crossing_id}"
+--
+-- [reasons.may_have_given_way]
+-- says = "whether {object_id} stood before crossing {crossing_id} to give way is not known"
+--
+-- [reasons.may_have_been_passed]
+-- says = "actor {object_id} may have been passed before crossing {crossing_id}"
+--
+-- [reasons.zigzags_unseen]
+-- says = "the log does not show the {zigzag_m:g} m before the crossing"
+-- advice = "begin recording before them"
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, coalesce(t_out_ns, t_in_ns) AS t_out_ns, crossing_id, kind, occurrence,
@@ -51,11 +68,15 @@ pass_before_crossing AS (
 )
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.kind <> 'other' AS applies,
     CASE WHEN bool_or(b.is_seen AND b.counts) THEN false WHEN st.travel_m >= $zigzag_m AND count(b.object_id) FILTER (b.counts IS DISTINCT FROM false) = 0 THEN true END AS holds,
-    CASE WHEN r.kind IS NULL THEN format('the map does not say whether crossing {} is a zebra, has lights, or neither: give one that does', r.crossing_id)
-        WHEN bool_or(b.is_seen AND b.counts) THEN 'passed ' || string_agg(DISTINCT b.object_id, ', ' ORDER BY b.object_id) FILTER (b.is_seen AND b.counts) || ' before crossing ' || r.crossing_id
-        WHEN bool_or(b.is_seen AND b.counts IS NULL) THEN format('whether {} stood before crossing {} to give way is not known', min(b.object_id) FILTER (b.is_seen AND b.counts IS NULL), r.crossing_id)
-        WHEN count(b.object_id) FILTER (b.counts IS DISTINCT FROM false) > 0 THEN format('actor {} may have been passed before crossing {}', min(b.object_id) FILTER (b.counts IS DISTINCT FROM false), r.crossing_id)
-        WHEN st.travel_m < $zigzag_m THEN format('the log does not show the {:g} m before the crossing: begin recording before them', $zigzag_m) END AS reason
+    CASE WHEN r.kind IS NULL THEN why('crossing_kind_unknown', {'crossing_id': r.crossing_id})
+        WHEN bool_or(b.is_seen AND b.counts) THEN why('passed_before_crossing', {
+            'object_ids': string_agg(DISTINCT b.object_id, ', ' ORDER BY b.object_id) FILTER (b.is_seen AND b.counts), 'crossing_id': r.crossing_id
+        })
+        WHEN bool_or(b.is_seen AND b.counts IS NULL)
+            THEN why('may_have_given_way', {'object_id': min(b.object_id) FILTER (b.is_seen AND b.counts IS NULL), 'crossing_id': r.crossing_id})
+        WHEN count(b.object_id) FILTER (b.counts IS DISTINCT FROM false) > 0
+            THEN why('may_have_been_passed', {'object_id': min(b.object_id) FILTER (b.counts IS DISTINCT FROM false), 'crossing_id': r.crossing_id})
+        WHEN st.travel_m < $zigzag_m THEN why('zigzags_unseen', {'zigzag_m': $zigzag_m}) END AS reason
 FROM reference r
 JOIN step st USING (drive_id, ego_id, t_ns)
 LEFT JOIN pass_before_crossing b USING (ref_id)

@@ -15,6 +15,9 @@
 -- default = 5.0
 -- unit = "s"
 -- why = "our default: shorter is a pause, such as for somebody on foot"
+--
+-- [reasons.stood_idle_on_crossing]
+-- says = "the ego stood on the crossing for {stood_s:.1f} s, of which {idle_s:.1f} s with nobody in its way"
 
 -- @reference
 -- An ego that reverses onto the crossing and stands there has no passage: its standstill is the reference point.
@@ -46,7 +49,8 @@ SELECT rs.drive_id, rs.ego_id, rs.t_ns, rs.ref_id,
         WHEN s.idle_ns > $stop_s * 1e9 THEN false
         WHEN s.idle_at_most_ns > $stop_s * 1e9 THEN NULL
         WHEN s.end_seen THEN true END AS holds,
-    format('the ego stood on the crossing for {:.1f} s, of which {:.1f} s with nobody in its way', (s.t_end_ns - s.t_start_ns) / 1e9, s.idle_ns / 1e9) AS reason
+    CASE WHEN s.t_start_ns IS NOT NULL
+        THEN why('stood_idle_on_crossing', {'stood_s': (s.t_end_ns - s.t_start_ns) / 1e9, 'idle_s': s.idle_ns / 1e9}) END AS reason
 FROM reference_step rs
 JOIN reference r USING (ref_id)
 LEFT JOIN standstill s ON s.drive_id = rs.drive_id AND s.ego_id = rs.ego_id AND s.t_start_ns = rs.t_ns AND s.crossing_id = r.crossing_id

@@ -25,6 +25,9 @@
 -- default = 5.0
 -- unit = "s"
 -- why = "our default: shorter is a pause in traffic"
+--
+-- [reasons.stood_on_crossing]
+-- says = "the ego stood on the crossing[ behind {object_id}]"
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, crossing_id, t_out_ns
@@ -42,7 +45,7 @@ JOIN standstill s ON s.drive_id = r.drive_id AND s.ego_id = r.ego_id AND s.cross
 -- @condition
 SELECT rs.drive_id, rs.ego_id, rs.t_ns, rs.ref_id,
     s.t_start_ns IS NULL OR NOT exit_full(s.blocking_id, s.blocking_gap_m, s.blocking_speed_mps, s.blocking_known, s.crossing_clear_m, s.t_end_ns - s.t_start_ns, $near_m, $slow_mps, $long_s) AS holds,
-    CASE WHEN s.t_start_ns IS NOT NULL THEN 'the ego stood on the crossing' || coalesce(' behind ' || s.blocking_id, '') END AS reason
+    CASE WHEN s.t_start_ns IS NOT NULL THEN why('stood_on_crossing', {'object_id': s.blocking_id}) END AS reason
 FROM reference_step rs
 JOIN reference r USING (ref_id)
 LEFT JOIN standstill s ON s.drive_id = rs.drive_id AND s.ego_id = rs.ego_id AND s.t_start_ns = rs.t_ns AND s.crossing_id = r.crossing_id

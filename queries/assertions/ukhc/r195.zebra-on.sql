@@ -9,6 +9,12 @@
 -- sense = "holds"
 -- reads = ["crossing_passage"]
 -- requires = ["map", "registration", "ego_size"]
+--
+-- [reasons.was_on_crossing_of_unknown_kind]
+-- says = "{object_id} was on it; the map does not say what kind of crossing it is"
+--
+-- [reasons.came_over_maybe_island]
+-- says = "{object_id} came over from the other half: whether an island parts the crossing is not known"
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, crossing_id, kind, on_id AS object_id, t_on_ns, known, coming_id, coming_known
@@ -22,8 +28,8 @@ SELECT drive_id, ego_id, t_ns, ref_id,
         -- The map tables have no islands: if somebody comes from the other half, it is not known whether the ego had to give way.
         WHEN known AND coming_known AND coming_id IS NULL THEN true END AS holds,
     CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns
-        THEN object_id || ' was on it' || CASE WHEN kind IS NULL THEN '; the map does not say what kind of crossing it is' ELSE '' END
-        WHEN NOT known THEN 'somebody nearby who may be on foot cannot be placed, or its class is not known'
-        WHEN coming_id IS NOT NULL THEN coming_id || ' came over from the other half: whether an island parts the crossing is not known'
-        WHEN NOT coming_known THEN 'whether somebody on the other half came over, or was in the way of the ego''s side, is not known' END AS reason
+        THEN why(CASE WHEN kind IS NULL THEN 'was_on_crossing_of_unknown_kind' ELSE 'was_on_crossing' END, {'object_id': object_id})
+        WHEN NOT known THEN why('person_unplaced')
+        WHEN coming_id IS NOT NULL THEN why('came_over_maybe_island', {'object_id': coming_id})
+        WHEN NOT coming_known THEN why('other_half_unknown') END AS reason
 FROM reference

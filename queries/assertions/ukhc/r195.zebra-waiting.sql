@@ -10,6 +10,12 @@
 -- sense = "holds"
 -- reads = ["crossing_passage"]
 -- requires = ["map", "registration", "ego_size"]
+--
+-- [reasons.stood_at_end]
+-- says = "{object_id} stood at its end"
+--
+-- [reasons.stood_at_end_of_unknown_kind]
+-- says = "{object_id} stood at its end; the map does not say what kind of crossing it is"
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, crossing_id, kind, waiting_id AS object_id, known AND waiting_known AS known
@@ -20,6 +26,6 @@ WHERE coalesce(kind, 'zebra') = 'zebra'
 SELECT drive_id, ego_id, t_ns, ref_id,
     CASE WHEN object_id IS NOT NULL THEN CASE WHEN kind = 'zebra' THEN false END WHEN known THEN true END AS holds,
     CASE WHEN object_id IS NOT NULL
-        THEN object_id || ' stood at its end' || CASE WHEN kind IS NULL THEN '; the map does not say what kind of crossing it is' ELSE '' END
-        WHEN NOT known THEN 'somebody nearby who may be on foot cannot be placed, or its class is not known' END AS reason
+        THEN why(CASE WHEN kind IS NULL THEN 'stood_at_end_of_unknown_kind' ELSE 'stood_at_end' END, {'object_id': object_id})
+        WHEN NOT known THEN why('person_unplaced') END AS reason
 FROM reference

@@ -14,6 +14,21 @@
 -- default = 10.0
 -- unit = "s"
 -- why = "our default: a stop line crossed longer ago is not the one before this crossing"
+--
+-- [reasons.light_changed]
+-- says = "the light was {line_state} at the line and {state} at the crossing[, and {object_id} on the crossing]"
+--
+-- [reasons.light_unknown]
+-- says = "the light was not known[, and {object_id} on the crossing]"
+-- advice = "record the light's state at every step"
+--
+-- [reasons.light_unknown_at_line]
+-- says = "the light was not known at the line and {state} at the crossing[, and {object_id} on the crossing]"
+-- advice = "record the light's state at every step"
+--
+-- [reasons.light_unknown_at_crossing]
+-- says = "the light was {line_state} at the line and not known at the crossing[, and {object_id} on the crossing]"
+-- advice = "record the light's state at every step"
 
 -- @reference
 -- If the crossing has a stop line, the ego must obey the light at that line. The later state of the light says whether it must give way.
@@ -33,8 +48,8 @@ SELECT drive_id, ego_id, t_ns, ref_id,
         AND (coalesce(state IN ('green', 'amber'), false)
             OR CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns OR coming_id IS NOT NULL THEN CASE WHEN state = 'flashing' OR forbids(state) THEN false END
                 WHEN known AND coming_known THEN true END) AS holds,
-    'the light was ' || coalesce(replace(CASE WHEN has_line THEN line_state ELSE state END, '_', ' and '), 'not known')
-        || CASE WHEN has_line AND line_state IS DISTINCT FROM state THEN ' at the line and ' || coalesce(replace(state, '_', ' and '), 'not known') || ' at the crossing' ELSE '' END
-        || coalesce(', and ' || coalesce(object_id, coming_id) || ' on the crossing', '')
-        || CASE WHEN state IS NULL OR has_line AND line_state IS NULL THEN ': record the light''s state at every step' ELSE '' END AS reason
+    why(CASE WHEN has_line AND line_state IS DISTINCT FROM state
+            THEN CASE WHEN line_state IS NULL THEN 'light_unknown_at_line' WHEN state IS NULL THEN 'light_unknown_at_crossing' ELSE 'light_changed' END
+        WHEN state IS NULL THEN 'light_unknown' ELSE 'light_was' END,
+        {'line_state': line_state, 'state': state, 'object_id': coalesce(object_id, coming_id)}) AS reason
 FROM reference

@@ -32,6 +32,19 @@
 -- default = 2.78
 -- unit = "m/s"
 -- why = "10 km/h: a vehicle as slow as this is in congestion (as R_I1 of Maierhofer et al. 2020)"
+--
+-- [reasons.may_be_emergency]
+-- says = "it stands with its hazard lights on, or at the end of a manoeuvre that it declared"
+-- advice = "whether it was an emergency is for a person to say"
+--
+-- [reasons.stands_and_unplaced]
+-- says = "the ego stands, and not everybody who may be in its way can be placed"
+--
+-- [reasons.standstill_begin_unseen]
+-- says = "the log does not show since when the ego has stood"
+--
+-- [reasons.has_stood]
+-- says = "the ego has stood for {stood_s:.1f} s"
 
 -- @condition
 -- Clearways and zig-zags are not in the map tables. Crossings are judged by r191.no-stopping.
@@ -52,8 +65,8 @@ SELECT drive_id, ego_id, t_ns,
         -- The ego may go on a while after the vehicles ahead of it.
         WHEN t_ns - t_queue_ns <= ($stop_s * 1e9)::BIGINT OR begin_seen AND t_ns - t_start_ns <= ($stop_s * 1e9)::BIGINT THEN true
         WHEN t_ns - t_start_ns > ($stop_s * 1e9)::BIGINT AND (t_doubt_ns IS NULL OR t_ns - t_doubt_ns > ($stop_s * 1e9)::BIGINT) THEN CASE WHEN NOT may_be_emergency THEN false END END AS holds,
-    CASE WHEN t_start_ns IS NOT NULL AND may_be_emergency THEN 'it stands with its hazard lights on, or at the end of a manoeuvre that it declared: whether it was an emergency is for a person to say'
-        WHEN t_start_ns IS NOT NULL AND is_in_doubt THEN 'the ego stands, and not everybody who may be in its way can be placed'
-        WHEN NOT begin_seen AND t_ns - t_start_ns <= ($stop_s * 1e9)::BIGINT THEN 'the log does not show since when the ego has stood'
-        WHEN t_start_ns IS NOT NULL THEN format('the ego has stood for {:.1f} s', (t_ns - t_start_ns) / 1e9) END AS reason
+    CASE WHEN t_start_ns IS NOT NULL AND may_be_emergency THEN why('may_be_emergency')
+        WHEN t_start_ns IS NOT NULL AND is_in_doubt THEN why('stands_and_unplaced')
+        WHEN NOT begin_seen AND t_ns - t_start_ns <= ($stop_s * 1e9)::BIGINT THEN why('standstill_begin_unseen')
+        WHEN t_start_ns IS NOT NULL THEN why('has_stood', {'stood_s': (t_ns - t_start_ns) / 1e9}) END AS reason
 FROM standstill_step

@@ -34,6 +34,9 @@
 -- default = 1.0
 -- unit = "m/s"
 -- why = "our default: slower than this moves up in a queue"
+--
+-- [reasons.may_have_queued]
+-- says = "not everybody ahead can be placed: it may have been a queue"
 
 -- @reference
 SELECT drive_id, ego_id, t_start_ns AS t_ns, occurrence, junction_id, junction_m,
@@ -44,5 +47,5 @@ WHERE t_end_ns - t_start_ns >= $parked_s * 1e9 AND stop_line_id IS NULL
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, $clear_m AS required, NOT queues AS applies,
     CASE WHEN junction_id IS NOT NULL THEN 0.0::DOUBLE ELSE junction_m END AS observed,
-    CASE WHEN queues IS NULL THEN 'not everybody ahead can be placed: it may have been a queue' END AS reason
+    CASE WHEN queues IS NULL THEN why('may_have_queued') END AS reason
 FROM reference

@@ -24,6 +24,9 @@
 -- why = "our default: more than letting off the accelerator or braking in comfort"
 --
 -- # Draft: in dense traffic merging into less than two seconds is common, and whether it was forced is a judgement.
+--
+-- [reasons.gap_behind]
+-- says = "gap behind {gap_m:.1f} m at {speed_mps:.1f} m/s, which then braked by {decel_mps2:.1f} m/s2"
 
 -- @reference
 SELECT drive_id, ego_id, t_start_ns AS t_ns, follower_id AS object_id, occurrence
@@ -36,6 +39,7 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, c.merge AS applies,
         -- A nearer vehicle that was not placed could only make the gap smaller.
         ELSE c.follower_gap_m >= $pet_s * c.follower_speed_mps AND c.follower_decel_mps2 <= $decel_mps2 AND CASE WHEN c.known AND c.begin_seen THEN true END
     END AS holds,
-    format('gap behind {:.1f} m at {:.1f} m/s, which then braked by {:.1f} m/s2', c.follower_gap_m, c.follower_speed_mps, c.follower_decel_mps2) AS reason
+    CASE WHEN c.follower_gap_m IS NOT NULL AND c.follower_speed_mps IS NOT NULL AND c.follower_decel_mps2 IS NOT NULL
+        THEN why('gap_behind', {'gap_m': c.follower_gap_m, 'speed_mps': c.follower_speed_mps, 'decel_mps2': c.follower_decel_mps2}) END AS reason
 FROM reference r
 JOIN lane_change c USING (drive_id, ego_id, occurrence)

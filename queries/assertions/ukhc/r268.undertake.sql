@@ -20,6 +20,12 @@
 -- why = "our default: 60 km/h; where both are slower, lanes move at their own speeds"
 --
 -- # Draft: whether it was done to overtake, or the other merely slowed down in its lane to leave, is a judgement.
+--
+-- [reasons.other_unplaced]
+-- says = "the other cannot be placed, and may have been passed"
+--
+-- [reasons.passed_on_side]
+-- says = "ego at {ego_speed_mps:.1f} m/s, the other {speed_mps:.1f} m/s on its {side}"
 
 -- @reference
 SELECT drive_id, ego_id, t_ns, object_id, occurrence FROM passing WHERE coalesce(ego_passes AND NOT same_lane, true)
@@ -28,7 +34,9 @@ SELECT drive_id, ego_id, t_ns, object_id, occurrence FROM passing WHERE coalesce
 -- An ego that leaves by an exit lane may pass the vehicles that stay.
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, p.side <> overtaking_side(m.handedness) AS holds,
     NOT (p.ego_speed_mps < $congestion_mps AND p.speed_mps < $congestion_mps) AND n.lane_type NOT IN ('exit', 'offRamp') AS applies,
-    CASE WHEN p.ego_passes IS NULL THEN 'the other cannot be placed, and may have been passed' ELSE format('ego at {:.1f} m/s, the other {:.1f} m/s on its {}', p.ego_speed_mps, p.speed_mps, p.side) END AS reason
+    CASE WHEN p.ego_passes IS NULL THEN why('other_unplaced')
+        WHEN p.ego_speed_mps IS NOT NULL AND p.speed_mps IS NOT NULL AND p.side IS NOT NULL
+            THEN why('passed_on_side', {'ego_speed_mps': p.ego_speed_mps, 'speed_mps': p.speed_mps, 'side': p.side}) END AS reason
 FROM reference r
 JOIN passing p USING (drive_id, ego_id, occurrence)
 JOIN data_log g USING (drive_id)

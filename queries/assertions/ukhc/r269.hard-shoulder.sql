@@ -25,6 +25,13 @@
 -- default = 20.0
 -- unit = "s"
 -- why = "our default: time to build up speed on it after a breakdown, which R276 asks for"
+--
+-- [reasons.drove_with_hazard_lights]
+-- says = "it drove along the hard shoulder with its hazard lights on"
+-- advice = "whether that was an emergency is for a person to say"
+--
+-- [reasons.stop_unseen]
+-- says = "the log does not show whether it stops with its hazard lights on"
 
 -- @condition
 -- An emergency is a declared mode, or hazard lights on an ego that stops.
@@ -75,8 +82,7 @@ SELECT e.drive_id, e.ego_id, e.t_ns, NOT l.is_shoulder AS holds,
     CASE WHEN m.is_declared OR x.excuse OR m.t_ns IS NOT NULL AND l.is_shoulder IS DISTINCT FROM true THEN false
         WHEN NOT l.is_shoulder OR e.x_m IS NOT NULL AND l.is_shoulder IS NULL THEN coalesce(c.road_type, l.road_type, '') = 'motorway'
         ELSE coalesce(c.road_type, l.road_type) = 'motorway' AND NOT x.excuse END AS applies,
-    CASE WHEN l.is_shoulder AND x.excuse IS NULL THEN CASE WHEN m.t_ns IS NOT NULL THEN 'it drove along the hard shoulder with its hazard lights on: whether that was an emergency is for a person to say'
-        ELSE 'the log does not show whether it stops with its hazard lights on' END END AS reason
+    CASE WHEN l.is_shoulder AND x.excuse IS NULL THEN CASE WHEN m.t_ns IS NOT NULL THEN why('drove_with_hazard_lights') ELSE why('stop_unseen') END END AS reason
 FROM ego_state e
 LEFT JOIN occupied_lane l USING (drive_id, ego_id, t_ns)
 LEFT JOIN emergency_step m USING (drive_id, ego_id, t_ns)

@@ -40,6 +40,7 @@ import yaml
 from drivelint.casefile import merged_cases
 from drivelint.casefile.scene import Row, column_of, scene
 from drivelint.errors import RuleError
+from drivelint.reasons.words import codes_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -146,17 +147,29 @@ def _parsed(file: Path, text: str) -> list[Case]:
 
 def run_cases(rule: Rule) -> list[CaseResult]:
     """Run every case beside the rule, in order; then all of them together, as drives of one database and as egos of one
-    drive: each must come out as it does alone. One more result says whether all kinds of case are there.
+    drive: each must come out as it does alone. Two more results say whether all kinds of case are there, and whether each reason that
+    the rule gives is given in some case.
 
     Errors: `RuleError` for a cases file that cannot be read.
     """
     cases = read_cases(rule)
-    results = [run_case(rule, case) for case in cases]
+    results, codes = [], set[str]()
+    for case in cases:
+        result, given = _run(rule, case)
+        results.append(result)
+        codes |= given
     if all(result.ok for result in results):  # else the crowd only says it again
         mixed = together(rule, cases)
         results.append(CaseResult("all cases together", not mixed, mixed))
     problem = coverage(cases)
-    return [*results, CaseResult("kinds of case", not problem, problem and f"{cases_of(rule)}:{problem}")]
+    never = sorted(rule.reason_codes - codes)
+    return [
+        *results,
+        CaseResult("kinds of case", not problem, problem and f"{cases_of(rule)}:{problem}"),
+        CaseResult(
+            "reasons", not never, f"{cases_of(rule)}:1: no case has the reason {', '.join(never)}" if never else ""
+        ),
+    ]
 
 
 def coverage(cases: Sequence[Case]) -> str:
@@ -178,9 +191,17 @@ def coverage(cases: Sequence[Case]) -> str:
 
 def run_case(rule: Rule, case: Case) -> CaseResult:
     """Fill a scene, judge it by this rule alone, compare. Errors: `RuleError` with file, line and case."""
+    return _run(rule, case)[0]
+
+
+def _run(rule: Rule, case: Case) -> tuple[CaseResult, set[str]]:
+    """Run one case; return its result and the codes of the reasons that it gave."""
     with _placed(rule, case):
-        message = difference(case, merged_cases.Outcome(*judge(rule, case)))
-    return CaseResult(case.name, not message, message and f"{place(rule, case)}: {message}")
+        outcome = merged_cases.Outcome(*judge(rule, case))
+        message = difference(case, outcome)
+    rows = [*outcome.verdicts, *outcome.findings]
+    codes = {code for row in rows for code in codes_in(row["cause_code"], row["cause_args"])}
+    return CaseResult(case.name, not message, message and f"{place(rule, case)}: {message}"), codes
 
 
 def place(rule: Rule, case: Case) -> str:

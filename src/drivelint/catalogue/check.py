@@ -34,6 +34,15 @@ class Query(NamedTuple):
     parameters: frozenset[str]
     columns: tuple[str, ...] | None
     places: dict[str, str]
+    reasons: tuple[GivenReason, ...] = ()
+
+
+class GivenReason(NamedTuple):
+    """A code that the SQL gives as a reason by `why(code, {...})`, the names of its arguments (None: not written out) and `file:line`."""
+
+    code: str
+    arguments: frozenset[str] | None
+    place: str
 
 
 class _Text(NamedTuple):
@@ -72,7 +81,7 @@ def inspect(sql: str, file: str, line: int = 1) -> Query:
     found.walk(node)
     parameters = frozenset(statement.named_parameters)
     places = found.tables | {f"${name}": text.at(_parameter(sql, name)) for name in parameters}
-    return Query(frozenset(found.tables), parameters, _columns(node), places)
+    return Query(frozenset(found.tables), parameters, _columns(node), places, tuple(found.reasons))
 
 
 def _parsed(text: _Text) -> tuple[duckdb.Statement, Node]:
@@ -101,11 +110,12 @@ def _parameter(sql: str, name: str) -> int | None:
 
 
 class _Found:
-    """Walks a syntax tree, refuses what is not allowed, and keeps the tables read (name -> file:line)."""
+    """Walks a syntax tree, refuses what is not allowed, and keeps the tables read (name -> file:line) and the reasons given."""
 
     def __init__(self, text: _Text) -> None:
         self._text = text
         self.tables: dict[str, str] = {}
+        self.reasons: list[GivenReason] = []
 
     def walk(self, root: Node) -> None:
         """Look at every node, without recursion: a deep expression must not exhaust the stack."""
@@ -152,6 +162,12 @@ class _Found:
                 f"function {name}() is not allowed in a rule: only those that give the same answer every time and touch "
                 "nothing but the tables, and the library's macros",
             )
+        if name == "why":
+            place = self._text.at(_offset(part))
+            code, *rest = part["children"]
+            self.reasons += [
+                GivenReason(each, _fields(rest[0]) if rest else frozenset(), place) for each in _results(code)
+            ]
         if kind == "COLUMN_REF" and len(part["column_names"]) == 1:
             word = part["column_names"][0].lower()
             if word in allowed.CLOCKS:
@@ -177,6 +193,23 @@ class _Found:
 
     def _refuse(self, part: Node, message: str) -> None:
         raise RuleError(f"{self._text.at(_offset(part))}: {message}")
+
+
+def _results(part: Node) -> list[str]:
+    """Return the texts that an expression may give: itself, or those of the branches of a CASE."""
+    if part["class"] == "CONSTANT":
+        return [str(part["value"]["value"])]
+    if part["class"] != "CASE":
+        return []
+    branches = [*(check["then_expr"] for check in part["case_checks"]), part["else_expr"]]
+    return [text for branch in branches for text in _results(branch)]
+
+
+def _fields(part: Node) -> frozenset[str] | None:
+    """Return the names in a literal of a STRUCT; None: it is none."""
+    if str(part.get("function_name", "")).lower() != "struct_pack":
+        return None
+    return frozenset(str(child["alias"]) for child in part["children"])
 
 
 def _offset(part: Any) -> int | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from math import inf
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 import msgspec
 
@@ -13,6 +13,7 @@ from drivelint.drive import conditions
 from drivelint.errors import RuleError
 from drivelint.phrases import hint
 from drivelint.reasons import signals
+from drivelint.reasons.words import Words
 
 Kind = Literal["invariant", "execution", "precondition", "postcondition"]
 Seconds = float | str
@@ -95,6 +96,11 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     """The nations whose law the rule is: it is not applicable where the nation is known to be another; empty: no nation's own."""
     applies: Conditions = Conditions()
     params: dict[str, Param] = {}
+    reasons: dict[str, Words] = {}
+    """The codes that only this rule gives as reasons (the macro `why`), with their words."""
+
+
+_OF: Final = {"params": Param, "applies": Conditions, "reasons": Words}
 
 
 def json_schema() -> dict[str, Any]:
@@ -135,7 +141,7 @@ def _explained(error: msgspec.ValidationError, text: str, where: str) -> RuleErr
     if not unknown:
         return RuleError(f"{where}:{line_of(text, keys)}: header: {message}")
     key = unknown[1]
-    known = Param if path.startswith("params") else Conditions if path.startswith("applies") else Header
+    known = _OF.get(path.partition(".")[0], Header)
     nearest = hint(key, known.__struct_fields__)
     line = line_of(text, f"{keys}.{key}" if keys else key)
     return RuleError(f"{where}:{line}: unknown key {key!r} in the header; {nearest}")

@@ -15,6 +15,7 @@ from drivelint.catalogue.header import Header, line_of, parse_header
 from drivelint.catalogue.sections import Section, split
 from drivelint.errors import RuleError
 from drivelint.phrases import hint
+from drivelint.reasons.words import shared
 from drivelint.resources import folder
 from drivelint.sql import store
 
@@ -54,6 +55,8 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
     sections: dict[str, str]
     columns: dict[str, tuple[str, ...]]
     """Section -> its columns; @reference is missing here when it selects a star."""
+    reason_codes: frozenset[str]
+    """The codes that its SQL names as reasons."""
 
     @property
     def profiled(self) -> bool:
@@ -124,6 +127,7 @@ def read_rule(file: Path) -> Rule:
     _check_sections(header, sections, queries, file)
     _check_reads(header, queries, f"{file}:{line_of(toml, 'reads')}")
     _check_params(header, queries, file, toml)
+    _check_reasons(header, queries, file, toml)
     fields = {name: getattr(header, name) for name in header.__struct_fields__}
     return Rule(
         **fields,
@@ -134,6 +138,7 @@ def read_rule(file: Path) -> Rule:
         version=hashlib.sha256(content).hexdigest()[:16],
         sections={name: section.sql.rstrip().rstrip(";") for name, section in sections.items()},
         columns={name: query.columns for name, query in queries.items() if query.columns is not None},
+        reason_codes=frozenset(reason.code for query in queries.values() for reason in query.reasons),
     )
 
 
@@ -253,4 +258,24 @@ def _check_params(header: Header, queries: dict[str, Query], file: Path, toml: s
     if unused := sorted(header.params.keys() - used):
         raise RuleError(
             f"{file}:{line_of(toml, f'params.{unused[0]}')}: parameter {unused[0]!r} is never used: bind it as ${unused[0]}"
+        )
+
+
+def _check_reasons(header: Header, queries: dict[str, Query], file: Path, toml: str) -> None:
+    """Check that every code that the SQL gives has words, and that these have their arguments."""
+    known = {**shared(), **header.reasons}
+    given = [reason for query in queries.values() for reason in query.reasons]
+    for code, arguments, place in given:
+        if code not in known:
+            raise RuleError(
+                f"{place}: why({code!r}) has no words: add [reasons.{code}] to the header; {hint(code, known)}"
+            )
+        if arguments is not None and (absent := sorted(known[code].needs - arguments)):
+            raise RuleError(
+                f"{place}: the words of {code!r} need the argument {absent[0]!r}: add it to why({code!r}, {{...}})"
+            )
+    if unused := sorted(header.reasons.keys() - {reason.code for reason in given}):
+        line = line_of(toml, f"reasons.{unused[0]}")
+        raise RuleError(
+            f"{file}:{line}: the reason {unused[0]!r} is never given: give it by why({unused[0]!r}), or remove it"
         )

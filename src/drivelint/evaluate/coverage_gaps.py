@@ -37,10 +37,9 @@ OUTCOMES = """
 SELECT b.rule_no, b.drive_id, b.ego_id, min(b.a_ns) AS t_start_ns, min({'a': b.a_ns, 'b': b.b_ns}).b AS t_end_ns, 'unknown' AS verdict,
     min({'a': b.a_ns, 'code': CASE signal WHEN 'indicator' THEN 'indicator_unknown' WHEN 'registration' THEN 'ego_not_placed'
         ELSE 'log_hole' END}).code AS code,
-    min({'a': b.a_ns, 'what': format('Not judged: {} between {:.3f} s and {:.3f} s', CASE signal
-        WHEN 'indicator' THEN 'the ego''s indicator is not known' WHEN 'registration' THEN 'the ego has no position or heading'
-        ELSE 'the log has a hole' END, (b.a_ns - b.start_ns) / 1e9, (b.b_ns - b.start_ns) / 1e9)}).what
-        || CASE WHEN count(*) > 1 THEN format(', and in {} more such stretches', count(*) - 1) ELSE '' END || '.' AS reason
+    why(min({'a': b.a_ns, 'code': CASE signal WHEN 'indicator' THEN 'indicator_gap' WHEN 'registration' THEN 'ego_place_gap'
+            ELSE 'log_gap' END}).code,
+        {'from_ns': min(b.a_ns), 'to_ns': min({'a': b.a_ns, 'b': b.b_ns}).b, 'n_more': nullif(count(*) - 1, 0)}) AS reason
 FROM (
     SELECT r.rule_no, b.*, s.max_gap_ns, s.start_ns
     FROM _blind b

@@ -274,11 +274,9 @@ def lost_objects(rule: Rule, partial: bool, watching: bool) -> str:
 INSERT INTO _outcome BY NAME
 SELECT $_no AS rule_no, l.drive_id, l.ego_id, l.object_id, {"p.profile" if rule.profiled else "''"} AS profile,
     l.t_from_ns AS t_start_ns, l.t_to_ns AS t_end_ns, t.t_ns AS t_worst_ns, t.t_ns AS t_decides_ns, 'unknown' AS verdict, l.code,
-    format('Not judged: object {{}} is recorded until {{:.3f}} s only, {{}}the ego until {{:.3f}} s: record it for as long.',
-        l.object_id, (t.t_ns - s.start_ns) / 1e9,
-        coalesce(format('{{:.0f}} m away from the ego then, ',
-            CASE WHEN q.clearance_is_bound THEN q.distance_m ELSE coalesce(q.clearance_m, q.distance_m) END), ''),
-        (s.t_end_ns - s.start_ns) / 1e9) AS reason,
+    why('recorded_too_short', {{'object_id': l.object_id, 'to_ns': t.t_ns,
+        'far_m': CASE WHEN q.clearance_is_bound THEN q.distance_m ELSE coalesce(q.clearance_m, q.distance_m) END,
+        'ego_to_ns': s.t_end_ns}}) AS reason,
     greatest(1, (l.t_to_ns - t.t_ns) // greatest(s.period_ns, 1)) AS n_expected, 0 AS n_judged
 FROM lost_object l JOIN _subject s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id {profiles}
 CROSS JOIN LATERAL (SELECT l.t_from_ns - 1 AS t_ns) t

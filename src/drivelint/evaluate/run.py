@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import duckdb
 
 from drivelint.evaluate import applicability, finalize, findings, invariant, reference_points, stage
+from drivelint.reasons.worded import word
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -52,6 +53,9 @@ class Run:
             self._share(todo)
         else:
             self._work(todo)
+        for statement in finalize.BEFORE_WORDS:
+            self._con.execute(statement)
+        word(self._con, finalize.CAUSES, {binding.no: binding.rule.reasons for binding in self._bindings})
         for statement in finalize.STATEMENTS:
             self._con.execute(statement)
         if self._courses:

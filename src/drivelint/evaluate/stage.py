@@ -65,7 +65,7 @@ CREATE OR REPLACE TEMP TABLE _gated AS
 SELECT rule_no, drive_id, ego_id, first.signal AS signal, first.reason AS reason FROM (
     SELECT n.rule_no, s.drive_id, s.ego_id,
         min({'pos': n.pos, 'signal': n.signal,
-            'reason': coalesce(c.reason, 'nothing is known about the signal ' || n.signal)}) AS first
+            'reason': coalesce(c.reason, why('nothing_known', {'signal': n.signal}))}) AS first
     FROM _needs n CROSS JOIN _subject s
     LEFT JOIN capability c ON c.drive_id = s.drive_id AND c.ego_id = s.ego_id AND c.signal = n.signal
     WHERE c.available IS DISTINCT FROM true
@@ -83,7 +83,8 @@ OUTCOMES = ("_error", "_group", "_outcome", "_stretch", "_course", "_margin")
 _NAMES = (
     "_subject", "_watched", "_segment", "_rule", "_needs", "_law", "_error", "_group", "_outcome", "_stretch", "_margin", "_course",
     "_foreign", "_gated",
-    "_todo", "_grid_group", "_asked", "_blind", "_closed", "_judged", "_profile_set", "_raw_reference", "reference", "_occasion",
+    "_todo", "_grid_group", "_asked", "_blind", "_closed", "_named", "_failed", "_worded", "_judged",
+    "_profile_set", "_raw_reference", "reference", "_occasion",
     "reference_step",
 )  # fmt: skip
 

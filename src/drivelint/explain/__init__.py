@@ -5,9 +5,10 @@ The drive is judged anew by that rule alone, from the kept database or from its 
 
 from __future__ import annotations
 
+import json
 from contextlib import ExitStack
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from drivelint import catalogue
 from drivelint.engine.memory import DEFAULT
@@ -21,13 +22,16 @@ from drivelint.explain.outcome import first_unknown
 from drivelint.explain.sensitivity import Errors, copies, counted
 from drivelint.explain.source import open_drive
 from drivelint.explain.target import Wanted, find
+from drivelint.reasons import words
 from drivelint.reasons.remedies import condition_of
 from drivelint.result import request as run_request
 from drivelint.result.load import load
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
+    from drivelint.catalogue import Rule
     from drivelint.engine.batch import Drive
     from drivelint.explain.model import Change, Row, Step
     from drivelint.explain.target import Target
@@ -97,6 +101,7 @@ def explain(request: ExplainRequest) -> Explanation:
         drive=_drive(result, row["drive_id"]),
         verdict={**row, "judged_anew": now},
         others=target.others,
+        asks=_asks(rule, row, _drive(result, row["drive_id"])["t_start_ns"] or 0),
         decides_ns=decides,
         sql=evidence.bound(rule, case.params),
         params=[
@@ -123,6 +128,15 @@ def _case(asked: RunRequest, target: Target, memory: int | None) -> Case:
     set_ = catalogue.parse_params([rule], mine).get(rule_id, {})
     params = {name: set_.get(name, param.default) for name, param in rule.params.items()}
     return Case(rule, target, params, profile_table(load_profiles(asked.rules_dirs), asked.profiles), memory)
+
+
+def _asks(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
+    """Return what the reason of a verdict asks to record or to provide, with its subject; None: nothing."""
+    if row["cause_code"] is not None:
+        return words.asks(row["cause_code"], json.loads(row["cause_args"] or "{}"), start_ns, rule.reasons)
+    return {"reference_time_unknown": rule.without_time, "anchor_unknown": rule.without_anchor}.get(
+        row.get("reason_code", "")
+    )
 
 
 def _decides(target: Target, series: list[Step], now: str) -> int | None:

@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.explain.model import Rows, Step
+from drivelint.reasons import words
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -74,7 +75,8 @@ def rows(
     """
     if gate is not None:
         sql = "SELECT signal, available, reason FROM capability WHERE ego_id = ? AND signal = ?"
-        return [Rows("capability", sandbox.rows(sql, [target.row["ego_id"], gate]), 0)]
+        told = sandbox.rows(sql, [target.row["ego_id"], gate])
+        return [Rows("capability", [{**row, "reason": words.sentence(row["reason"])} for row in told], 0)]
     found = []
     for table in dict.fromkeys((*(CONDITION_ROWS if condition else ()), *rule.reads)):
         columns = list(store.schema().get(table, {}))

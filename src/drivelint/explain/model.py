@@ -68,6 +68,8 @@ class Explanation:
     """The row of `verdict`, and `finding_id` with the numbers of the finding where one is explained."""
     others: list[Row]
     """Further verdict rows of this rule in this drive: profile, object_id, t_start_ns, verdict."""
+    asks: str | None
+    """What the reason asks to record or to provide."""
     decides_ns: int | None
     sql: dict[str, str]
     params: list[Row]

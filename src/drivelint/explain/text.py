@@ -136,7 +136,7 @@ def _decides(found: Explanation) -> list[str]:
     row = found.verdict
     if row["verdict"] != "unknown":
         return []
-    told = remedy(row["reason_code"], row["object_id"], found.drive["format"], row["reason"])
+    told = remedy(row["reason_code"], row["object_id"], found.drive["format"], found.asks)
     unknown = [step.t_ns for step in found.series if step.holds is None]
     if len(unknown) > 1 and not is_gated(row["verdict"], row["reason_code"]):
         start, end = (seconds(t, found.drive["t_start_ns"]) for t in (unknown[0], unknown[-1]))

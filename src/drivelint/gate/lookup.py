@@ -70,9 +70,7 @@ class ResultLookup:
                     return each
         if not same_log and row["object_id"] not in self._objects[drive_id]:
             return LookupResult("none", f"object {row['object_id']} is not in this log, or has another id")
-        return LookupResult(
-            "not_applicable", there[0]["reason"] if there else "Not applicable: the rule does not apply there."
-        )
+        return LookupResult("not_applicable", there[0]["reason"] if there else "The rule does not apply there.")
 
     def _judged(self, each: Row, at: Stretch) -> LookupResult:
         """Return what a verdict means for the moment: one that fails does so in its failing stretches only."""

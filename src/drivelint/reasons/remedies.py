@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import Final
 
 from drivelint.drive.conditions import GIVEN
@@ -11,8 +10,6 @@ from drivelint.reasons.signals import SIGNAL_OF, provide
 _NAMED = "{advice}"
 _SHOWN = "what is NULL, or has no row, in the rows that it was judged on"
 _A_MAP_THAT_GOES_ON = "a map that goes on, or a longer --sensor-range of check"
-_LEAD = re.compile(r"^(?:[a-z ]+: )?(?:Not judged|Not decided): ")
-_ADVISES = re.compile(r"(?::|, and|, or) (?:record|give|correct) ")
 _AGAIN = "; run drivelint check with it: what else the rule needs is not looked at before"
 REMEDIES: Final = {
     "lost_near_ego": "record {object} for as long as the ego, or until it is out of the ego's reach",
@@ -30,11 +27,11 @@ REMEDIES: Final = {
     "null_value": _NAMED,
     "applies_unknown": _NAMED,
 }
-"""Reason code -> what to do; `{advice}`: what the reason itself asks for."""
+"""Reason code -> what to do; `{advice}`: what its cause asks for."""
 
 
-def remedy(code: str, object_id: str | None, log_format: str, reason: str = "") -> str:
-    """Return what would decide an unknown verdict with this code and reason, for a log of this format."""
+def remedy(code: str, object_id: str | None, log_format: str, asked: str | None = None) -> str:
+    """Return what would decide an unknown verdict with this reason code, for a log of this format. `asked`: what its cause asks for."""
     if code.startswith("missing_") and code not in REMEDIES:
         return provide(code.removeprefix("missing_"), log_format) + _AGAIN
     condition = code.removesuffix("_unknown")
@@ -42,14 +39,8 @@ def remedy(code: str, object_id: str | None, log_format: str, reason: str = "") 
         return provide({**SIGNAL_OF, "engaged": "mode_engaged"}.get(condition, condition), log_format) + _AGAIN
     return REMEDIES.get(code, _NAMED).format(
         object="the object" if object_id is None else f"object {object_id}",
-        advice=_advice(reason) or (_A_MAP_THAT_GOES_ON if code == "only_a_bound" else _SHOWN),
+        advice=asked or (_A_MAP_THAT_GOES_ON if code == "only_a_bound" else _SHOWN),
     )
-
-
-def _advice(reason: str) -> str | None:
-    """Return the last part of a reason, if it asks for something; with its subject, which the words "it" in it mean."""
-    last = _LEAD.sub("", reason).removesuffix(".").rpartition("; ")[2]
-    return last if _ADVISES.search(last) else None
 
 
 def condition_of(code: str) -> str | None:

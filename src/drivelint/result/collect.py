@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 import pyarrow as pa
 
 from drivelint.drive.trace import LOSSES
+from drivelint.reasons.worded import word
 from drivelint.result.contract import arrow_schema, conform
 
 if TYPE_CHECKING:
@@ -53,8 +54,9 @@ WITH
         FROM drive_condition WHERE coalesce(list_contains($only::VARCHAR[], drive_id), true) GROUP BY drive_id),
     gaps AS (
         SELECT drive_id,
-            list({'ego_id': ego_id, 'signal': signal, 'reason': reason} ORDER BY ego_id, signal) AS not_judged
-        FROM capability WHERE NOT available AND coalesce(list_contains($only::VARCHAR[], drive_id), true) GROUP BY drive_id)
+            list({'ego_id': ego_id, 'signal': signal, 'reason': words} ORDER BY ego_id, signal) AS not_judged
+        FROM capability JOIN _worded ON cause = reason
+        WHERE NOT available AND coalesce(list_contains($only::VARCHAR[], drive_id), true) GROUP BY drive_id)
 SELECT l.drive_id, l.file_name, l.sha256, l.format, l.environment_id, e.name AS map_name, e.sha256 AS map_sha256,
     e.handedness, e.handedness_source, l.utc_start_ns, l.t_start_ns, (l.t_end_ns - l.t_start_ns) / 1e9 AS duration_s,
     coalesce(list_sum([x.km FOR x IN w.exposure]), 0.0::DOUBLE) AS km, l.n_states,
@@ -90,6 +92,7 @@ def findings(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> p
 
 def drives(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.Table:
     """Return one row of the table `drive` per log in the database, or per named one: judged, and on what; ordered."""
+    word(con, "SELECT NULL AS rule_no, reason AS cause, 0 AS start_ns FROM capability WHERE NOT available")
     return conform(con.execute(_DRIVES, {"only": only, "losses": LOSSES}).to_arrow_table(), "drive")
 
 

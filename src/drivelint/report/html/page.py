@@ -18,7 +18,7 @@ from drivelint.report.html.notes import notes
 from drivelint.report.html.opportunities import opportunities
 from drivelint.report.html.overtakes import views
 from drivelint.report.html.plan import shapes
-from drivelint.report.html.reasons import can_be_provided, in_words, kind, reasons
+from drivelint.report.html.reasons import Given, can_be_provided, given, in_words, reasons
 from drivelint.report.html.replay import replays
 from drivelint.report.html.road import Road
 from drivelint.report.html.timeline import Clock, nothing, shared, timelines
@@ -305,22 +305,22 @@ def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any
         if (reason := why.get(rule_id)) is None:
             group["rules"].append(rule)
         else:
-            group["folds"].setdefault((reason[0], kind(reason[1])), []).append((reason[1], rule))
+            group["folds"].setdefault((reason[0], reason[1].kind), []).append((reason[1], rule))
     order = ("not_applicable", "unknown")
     for group in groups.values():
         folds = sorted(group["folds"].items(), key=lambda item: (order.index(item[0][0]), -len(item[1]), item[0][1]))
         group["folds"] = [
-            ((verdict, in_words(given for given, _ in folded)), [rule for _, rule in folded])
+            ((verdict, in_words(reason for reason, _ in folded)), [rule for _, rule in folded])
             for (verdict, _), folded in folds
         ]
     return list(groups.values())
 
 
-def _first_reason(verdicts: pa.Table) -> dict[str, tuple[str, str]]:
+def _first_reason(verdicts: pa.Table) -> dict[str, tuple[str, Given]]:
     """Return verdict and reason of the rules that were judged nowhere, for want of an occasion or of something to be provided."""
-    keys = ["rule_id", "verdict", "reason_code", "reason"]
+    keys = ["rule_id", "verdict", "reason_code", "cause_code", "reason"]
     rows = verdicts.group_by(keys, use_threads=False).aggregate([([], "count_all")]).to_pylist()
-    found: dict[str, tuple[str, str]] = {}
+    found: dict[str, tuple[str, Given]] = {}
     judged = set()
     for row in sorted(
         rows, key=lambda r: (r["rule_id"], r["verdict"] == "not_applicable", -r["count_all"], r["reason"])
@@ -330,5 +330,5 @@ def _first_reason(verdicts: pa.Table) -> dict[str, tuple[str, str]]:
         )
         if not idle:
             judged.add(row["rule_id"])
-        found.setdefault(row["rule_id"], (row["verdict"], row["reason"]))
+        found.setdefault(row["rule_id"], (row["verdict"], given(row)))
     return {rule_id: reason for rule_id, reason in found.items() if rule_id not in judged}

@@ -9,7 +9,7 @@ import hashlib
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.report.html.anchors import finding_anchor, rule_anchor
-from drivelint.report.html.reasons import can_be_provided, in_words, kind, named
+from drivelint.report.html.reasons import Given, can_be_provided, given, in_words, named
 from drivelint.result.counts import SEVERITIES
 from drivelint.result.text import number, seconds
 
@@ -61,8 +61,8 @@ class Folded(NamedTuple):
     """Rules of which there is nothing to draw, for one reason: not applicable, or unknown because something is missing."""
 
     verdict: str
-    kind: str
-    reasons: dict[tuple[str, str], set[str]]
+    kind: tuple[str, ...]
+    reasons: dict[tuple[str, str], set[Given]]
     """The title of a rule and the link to it -> why, as it is given."""
 
     @property
@@ -73,7 +73,7 @@ class Folded(NamedTuple):
     @property
     def why(self) -> str:
         """The reason, in words."""
-        return in_words(set[str]().union(*self.reasons.values()))
+        return in_words(set[Given]().union(*self.reasons.values()))
 
 
 class Timeline(NamedTuple):
@@ -140,13 +140,13 @@ def _timeline(
     clock: Clock,
 ) -> Timeline:
     rows: list[Lane] = []
-    folded: dict[tuple[str, str], dict[str, set[str]]] = {}
+    folded: dict[tuple[str, tuple[str, ...]], dict[str, set[Given]]] = {}
     for key, told in groups.items():
         rule_id, profile = key
         worst = min((row["verdict"] for row in told), key=_ORDER.index)
         if worst == "not_applicable" or all(_is_missing(row) for row in told):
-            reason = told[0]["reason"]
-            folded.setdefault((worst, kind(reason)), {}).setdefault(rule_id, set()).add(reason)
+            reason = given(told[0])
+            folded.setdefault((worst, reason.kind), {}).setdefault(rule_id, set()).add(reason)
             continue
         marks = [_finding(row, anchors, clock) for row in found.get(key, [])]
         near = [_near(row, clock) for row in told if row["near_miss"]]
@@ -193,8 +193,8 @@ def shared(drawn: Sequence[Timeline]) -> tuple[list[Folded], list[Timeline]]:
 
 
 def _both(
-    one: Mapping[tuple[str, str], set[str]], other: Mapping[tuple[str, str], set[str]]
-) -> dict[tuple[str, str], set[str]]:
+    one: Mapping[tuple[str, str], set[Given]], other: Mapping[tuple[str, str], set[Given]]
+) -> dict[tuple[str, str], set[Given]]:
     return {rule: why | other[rule] for rule, why in one.items() if rule in other}
 
 
@@ -212,9 +212,9 @@ def _bands(told: Sequence[Row], clock: Clock) -> list[Band]:
     """Return the judged stretches by verdict; stretches of one verdict that touch are one (many objects, one rule)."""
     bands = []
     for verdict in _LAYERS:
-        spans: list[tuple[float, float, set[str]]] = []
+        spans: list[tuple[float, float, set[Given]]] = []
         rows = [row for row in told if row["verdict"] == verdict]
-        for (start, end), reason in sorted((_span(row, clock), row["reason"]) for row in rows):
+        for (start, end), reason in sorted((_span(row, clock), given(row)) for row in rows):
             if spans and start <= spans[-1][1]:
                 spans[-1] = (spans[-1][0], max(spans[-1][1], end), spans[-1][2] | {reason})
             else:

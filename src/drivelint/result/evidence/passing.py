@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from drivelint.reasons.worded import word
+
 if TYPE_CHECKING:
     import duckdb
 
@@ -39,9 +41,9 @@ stretches AS (
 ),
 profiles AS (
     SELECT s.drive_id, s.ego_id, s.occurrence, list({{'profile': s.profile, 'style': p.style, 'da_m': s.da_m, 'at_least': s.at_least,
-        'nobody': s.nobody, 'sda_m': s.sda_m, 'spare_m': s.spare_m, 'spare_s': s.spare_s, 'zone': s.zone, 'reason': s.reason
+        'nobody': s.nobody, 'sda_m': s.sda_m, 'spare_m': s.spare_m, 'spare_s': s.spare_s, 'zone': s.zone, 'reason': w.words
         }} ORDER BY p.style, s.profile) AS profiles
-    FROM overtake_sda s JOIN profile p USING (profile) GROUP BY ALL
+    FROM overtake_sda s JOIN profile p USING (profile) LEFT JOIN _worded w ON w.cause = s.reason GROUP BY ALL
 )
 SELECT o.drive_id, o.ego_id, o.occurrence, o.status, o.opposing, o.vbp_id, o.ov_id, o.begin_seen, o.t0_ns, o.t1_ns, o.t2_ns, o.t3_ns,
     o.t_end_ns, o.v_av_mps, o.v_vbp_mps, o.v_ov_mps, o.l_av_m, o.l_vbp_m, o.lane_width_m, o.da_m, coalesce(p.profiles, []) AS profiles,
@@ -59,5 +61,6 @@ SELECT o.*, p.style FROM opportunity o JOIN profile p USING (profile)
 
 def gather(con: duckdb.DuckDBPyConnection) -> None:
     """Add the overtakes and opportunities of the batch, as far as its rules needed them."""
+    word(con, "SELECT NULL AS rule_no, reason AS cause, 0 AS start_ns FROM overtake_sda")
     con.execute(_OVERTAKES)
     con.execute(_OPPORTUNITIES)

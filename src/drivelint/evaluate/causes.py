@@ -1,0 +1,85 @@
+"""Why a value that a rule needed is not known, where the rule itself gives no reason."""
+
+from __future__ import annotations
+
+_LACKS = """CASE WHEN p.off_level THEN 'off_level' WHEN p.x_m IS NULL OR p.y_m IS NULL THEN 'no_position'
+        WHEN p.yaw_rad IS NULL THEN 'no_heading' WHEN p.length_m IS NULL OR p.width_m IS NULL THEN 'no_size' END"""
+"""Why an object has no place, as a code."""
+
+NO_CAUSE = "('missing_step', 'null_value', 'applies_unknown')"
+"""Codes that say at what time something is not known, and not why."""
+
+_HIDDEN = """why(CASE nearest.code WHEN 'lost' THEN 'object_lost' WHEN 'lost_behind' THEN 'object_lost_behind' WHEN 'appeared'
+        THEN 'object_appeared' ELSE 'object_hidden' END, {'object_id': nearest.id, 'lack': nearest.code,
+        't_ns': CASE WHEN nearest.code IN ('lost', 'lost_behind') THEN nearest.to_ns
+            WHEN nearest.code = 'appeared' THEN nearest.from_ns END,
+        'near_m': CASE WHEN nearest.m >= 1 THEN floor(nearest.m) END})"""
+_SPEED = "why(CASE WHEN c.drive_id IS NOT NULL THEN '{0}_contradicted{1}' ELSE '{0}_unknown{1}' END{2})"
+_OBJECT = "{'object_id': p.object_id}"
+
+# why: the ego lacks something, or the object of the verdict, or somebody near has no place; else an ego that is off the lanes
+CAUSE = f"""
+WITH _doubted AS (
+    SELECT DISTINCT drive_id, ego_id, start_ns, t_decides_ns AS t_ns, object_id, of_hidden, of_lanes
+    FROM _closed_rule
+    WHERE verdict = 'unknown' AND reason IS NULL AND code IN {NO_CAUSE}
+), _tracked AS (
+    SELECT drive_id, ego_id, object_id, min(t_ns) AS from_ns, max(t_ns) AS to_ns
+    FROM pair SEMI JOIN _doubted d USING (drive_id, ego_id)
+    GROUP BY ALL
+), _near AS (
+    SELECT drive_id, ego_id, t_ns, min({{
+        'm': h.lane_m, 'id': h.object_id, 'code': coalesce(u.code, {_LACKS}, 'off_lanes'), 'from_ns': k.from_ns, 'to_ns': k.to_ns
+    }}) AS nearest
+    FROM (SELECT DISTINCT drive_id, ego_id, t_ns FROM _doubted WHERE of_hidden)
+    JOIN hidden h USING (drive_id, ego_id, t_ns)
+    LEFT JOIN unseen u USING (drive_id, ego_id, t_ns, object_id)
+    LEFT JOIN _tracked k USING (drive_id, ego_id, object_id)
+    LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
+    GROUP BY drive_id, ego_id, t_ns
+), _speedless AS (
+    -- a measure over some time needs every speed in that time
+    SELECT DISTINCT d.drive_id, d.ego_id, d.t_ns
+    FROM _doubted d
+    JOIN ego_state e ON e.drive_id = d.drive_id AND e.ego_id = d.ego_id AND e.speed_mps IS NULL
+        AND e.t_ns >= d.t_ns - 1_000_000_000 AND e.t_ns <= d.t_ns + 1_000_000_000
+), _ahead AS (
+    -- the nearest actor in the lane ahead that is not known to be a vehicle
+    SELECT drive_id, ego_id, t_ns, n.id AS object_id, n.actor_class AS actor_class
+    FROM (
+        SELECT drive_id, ego_id, t_ns, min({{'s_m': p.rear_s_m, 'id': p.object_id, 'actor_class': p.actor_class}}) AS n
+        FROM (SELECT DISTINCT drive_id, ego_id, t_ns FROM _doubted WHERE of_hidden AND of_lanes AND object_id IS NULL)
+        JOIN ego_state e USING (drive_id, ego_id, t_ns)
+        JOIN pair p USING (drive_id, ego_id, t_ns)
+        WHERE is_vehicle(p.actor_class) IS DISTINCT FROM true AND in_lane(p.d_m, p.lat_half_m, p.half_width_m) AND p.front_s_m > e.rear_s_m
+        GROUP BY drive_id, ego_id, t_ns
+    )
+)
+SELECT {{'drive_id': d.drive_id, 'ego_id': d.ego_id, 't_ns': d.t_ns, 'object_id': coalesce(d.object_id, ''), 'of_hidden': d.of_hidden,
+    'of_lanes': d.of_lanes}} AS key, CASE
+    WHEN e.x_m + e.y_m + e.yaw_rad IS NULL THEN ego_lacks(e.x_m + e.y_m, e.yaw_rad, e.lanelet_id, e.front_s_m)
+    WHEN p.object_id IS NOT NULL AND {_LACKS} IS NOT NULL THEN why('object_lacks', {{'object_id': p.object_id, 'lack': {_LACKS}}})
+    WHEN p.object_id IS NULL AND o.to_ns < d.t_ns THEN why('track_ends', {{'object_id': d.object_id, 't_ns': o.to_ns}})
+    WHEN p.object_id IS NULL AND o.from_ns > d.t_ns THEN why('track_begins', {{'object_id': d.object_id, 't_ns': o.from_ns}})
+    -- a rule that finds its object itself does not know whom
+    WHEN n.nearest IS NOT NULL AND d.of_hidden AND d.object_id IS NULL THEN {_HIDDEN}
+    WHEN e.speed_mps IS NULL THEN {_SPEED.format("ego_speed", "", "")}
+    WHEN p.object_id IS NOT NULL AND p.speed_mps IS NULL
+        THEN {_SPEED.format("object_speed", "", ", " + _OBJECT)}
+    WHEN p.object_id IS NOT NULL AND p.actor_class IS NULL THEN why('object_class_unknown', {_OBJECT})
+    WHEN n.nearest IS NOT NULL AND d.of_hidden THEN {_HIDDEN}
+    WHEN d.of_lanes AND (e.lanelet_id IS NULL OR e.front_s_m IS NULL) THEN ego_lacks(e.x_m, e.yaw_rad, e.lanelet_id, e.front_s_m)
+    WHEN d.of_lanes AND p.object_id IS NOT NULL AND p.s_m IS NULL
+        THEN why('object_off_lanes', {_OBJECT})
+    WHEN d.of_hidden AND d.of_lanes AND d.object_id IS NULL AND f.object_id IS NOT NULL
+        THEN why(CASE WHEN f.actor_class IS NULL THEN 'may_be_vehicle_ahead' ELSE 'no_vehicle_ahead' END, {{'object_id': f.object_id}})
+    WHEN b.drive_id IS NOT NULL THEN {_SPEED.format("ego_speed", "_near", "")} END AS because
+FROM _doubted d
+LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
+LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
+LEFT JOIN _near n USING (drive_id, ego_id, t_ns)
+LEFT JOIN _speedless b USING (drive_id, ego_id, t_ns)
+LEFT JOIN _ahead f USING (drive_id, ego_id, t_ns)
+LEFT JOIN _tracked o USING (drive_id, ego_id, object_id)
+LEFT JOIN (SELECT DISTINCT drive_id FROM quality WHERE check_id = 'velocity_unknown') c USING (drive_id)
+"""

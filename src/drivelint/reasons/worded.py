@@ -1,0 +1,52 @@
+"""The words of the reasons in a database: reasons are put into words once, where rows leave it."""
+
+from __future__ import annotations
+
+import json
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+import pyarrow as pa
+
+from drivelint.reasons import words
+from drivelint.sql import store
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import duckdb
+
+    from drivelint.reasons.words import Words
+
+_TABLE = """
+CREATE OR REPLACE TEMP TABLE _worded
+    (rule_no INTEGER, cause VARCHAR, start_ns BIGINT, words VARCHAR, cause_code VARCHAR, cause_args VARCHAR)
+"""
+
+
+def _json(arguments: Mapping[str, Any]) -> str:
+    """Return arguments as JSON, which has no infinite numbers."""
+    told = {name: None if isinstance(value, float) and not isfinite(value) else value for name, value in arguments.items()}
+    return json.dumps(told)
+
+
+def word(con: duckdb.DuckDBPyConnection, select: str, own: Mapping[int, Mapping[str, Words]] | None = None) -> None:
+    """Make the temporary table `_worded` of the distinct rows of `select`: rule_no, cause, start_ns (not NULL, the log's start).
+
+    It has the same columns, the words of the cause, its code and its arguments as JSON. `own`: rule_no -> the codes of that rule.
+    """
+    con.execute(_TABLE)
+    causes = con.execute(
+        f"SELECT DISTINCT rule_no, cause, start_ns FROM ({select}) WHERE cause IS NOT NULL ORDER BY ALL"
+    ).fetchall()
+    found = [words.parse(cause) for _, cause, _ in causes]
+    told = [words.sentence(cause, start_ns, (own or {}).get(no)) for no, cause, start_ns in causes]
+    rows = {
+        "rule_no": pa.array([no for no, _, _ in causes], pa.int32()),
+        "cause": pa.array([cause for _, cause, _ in causes], pa.string()),
+        "start_ns": pa.array([start_ns for _, _, start_ns in causes], pa.int64()),
+        "words": pa.array(told, pa.string()),
+        "cause_code": pa.array([each.code for each in found], pa.string()),
+        "cause_args": pa.array([_json(each.arguments) if each.arguments else None for each in found], pa.string()),
+    }
+    store.insert(con, "_worded", pa.table(rows))

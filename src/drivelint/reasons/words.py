@@ -1,0 +1,132 @@
+"""The words of reasons: a reason is a code with arguments, and only this module makes a sentence of it.
+
+SQL gives a reason by the macro `why(code, arguments)`, as JSON text. The words of a code stand in `words.toml`, those of a code that
+only one rule gives in the header of the rule. A rule of a user may give plain text instead: it is its own words.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from functools import cache
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import msgspec
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+_OPTIONAL = re.compile(r"\[([^\[\]]*)\]")
+_ARGUMENT = re.compile(r"\{(\w+)(?::(\.?\d?[fg]))?\}")
+_BEGINS = '{"code":'
+TEXT: Final = "text"
+"""The code of a reason that a rule gives as plain text; the text is its argument."""
+
+
+class Words(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What a code says, and what to do about it; `{name}` is an argument, `[...]` is left out where one in it is NULL."""
+
+    says: str
+    advice: str = ""
+
+    def __post_init__(self) -> None:
+        """Refuse what is no argument: not every text in braces is harmless to fill in."""
+        for text in (self.says, self.advice):
+            if rest := re.search(r"[{}].*", _ARGUMENT.sub("", text)):
+                raise ValueError(f"{rest[0]!r}: write an argument as {{name}} or {{name:.1f}}")
+
+    @property
+    def needs(self) -> frozenset[str]:
+        """The arguments without which the words have a gap."""
+        return frozenset(name for name, _ in _ARGUMENT.findall(_OPTIONAL.sub("", self.says + self.advice)))
+
+
+class Reason(NamedTuple):
+    """A reason as SQL gives it."""
+
+    code: str
+    arguments: dict[str, Any]
+
+
+def shared() -> dict[str, Words]:
+    """Return the codes that several rules, derivations or the engine give, with their words."""
+    return _read()[0]
+
+
+@cache
+def _read() -> tuple[dict[str, Words], dict[str, dict[str, str]]]:
+    raw = tomllib.loads((files(__package__) / "words.toml").read_text(encoding="utf-8"))
+    values = raw.pop("values")
+    return msgspec.convert(raw, dict[str, Words]), values
+
+
+def parse(reason: str) -> Reason:
+    """Return code and arguments of what `why` gave, or of plain text."""
+    try:
+        raw = json.loads(reason) if reason.startswith(_BEGINS) else {}
+        return Reason(str(raw["code"]), dict(raw.get("args") or {}))
+    except (ValueError, TypeError, KeyError):
+        return Reason(TEXT, {TEXT: reason})
+
+
+def sentence(reason: str, start_ns: int = 0, own: Mapping[str, Words] | None = None) -> str:
+    """Return a reason in words, its advice last. `start_ns`: when the log starts, since times are told from it; `own`: the rule's words."""
+    code, arguments = parse(reason)
+    if code == TEXT:
+        return reason
+    words = words_of(code, own)
+    told = _filled(words.says, arguments, start_ns, own)
+    return f"{told}: {_filled(words.advice, arguments, start_ns, own)}" if words.advice else told
+
+
+def asks(
+    code: str, arguments: Mapping[str, Any], start_ns: int = 0, own: Mapping[str, Words] | None = None
+) -> str | None:
+    """Return a reason in words if it, or a reason among its arguments, says what to record or to provide."""
+    nested = (asks(*each, start_ns, own) for each in _nested(arguments))
+    if not words_of(code, own).advice and not any(nested):
+        return None
+    return sentence(json.dumps({"code": code, "args": dict(arguments)}, separators=(",", ":")), start_ns, own)
+
+
+def codes_in(code: str | None, arguments: str | None) -> set[str]:
+    """Return a code and those of the reasons among its arguments (JSON text); none for None."""
+    if code is None:
+        return set()
+    return {code}.union(*(codes_in(inner, json.dumps(args)) for inner, args in _nested(json.loads(arguments or "{}"))))
+
+
+def _nested(arguments: Mapping[str, Any]) -> list[Reason]:
+    """Return the reasons among the arguments of a reason."""
+    found = [parse(value) for value in arguments.values() if isinstance(value, str)]
+    return [reason for reason in found if reason.code != TEXT]
+
+
+def words_of(code: str, own: Mapping[str, Words] | None = None) -> Words:
+    """Return the words of a code. A rule of a user may make up a code as it runs: it is its own words."""
+    return (own or {}).get(code) or shared().get(code) or Words(code.replace("_", " "))
+
+
+def _filled(template: str, arguments: Mapping[str, Any], start_ns: int, own: Mapping[str, Words] | None) -> str:
+    told = {name: _told(name, value, start_ns, own) for name, value in arguments.items()}
+    for part in _OPTIONAL.findall(template):
+        absent = any(told.get(name) is None for name, _ in _ARGUMENT.findall(part))
+        template = template.replace(f"[{part}]", "" if absent else part, 1)
+    return _ARGUMENT.sub(lambda found: _formatted(told.get(found[1]), found[2] or ""), template)
+
+
+def _formatted(value: Any, spec: str) -> str:
+    if value is None:
+        return "?"  # NULL where the words need it
+    return format(value, spec) if isinstance(value, int | float) else str(value)
+
+
+def _told(name: str, value: Any, start_ns: int, own: Mapping[str, Words] | None) -> Any:
+    """Return an argument as it is put into words: a time from the start, a reason in its words, a value in those of its name."""
+    if name.endswith("_ns") and isinstance(value, int):
+        return f"{(value - start_ns) / 1e9:.3f} s"
+    if isinstance(value, str):
+        return _read()[1].get(name, {}).get(value) or sentence(value, start_ns, own)
+    return value

@@ -1,0 +1,94 @@
+"""Reasons are codes with arguments; their words are made in one place."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import duckdb
+import msgspec
+import pytest
+
+from drivelint import catalogue
+from drivelint.reasons import words
+from drivelint.reasons.words import Words
+from drivelint.resources import folder
+
+OWN = {
+    "came_by": Words("{object_id} came by with {room_m:.2f} m between[, behind {behind_id}]", "record it until {t_ns}"),
+    "stood": Words("{braked}, and it stood until then"),
+}
+
+
+def why(con: duckdb.DuckDBPyConnection, arguments: str) -> str:
+    (found,) = con.execute(f"SELECT why({arguments})").fetchone() or ()
+    return str(found)
+
+
+@pytest.fixture(scope="module")
+def con() -> duckdb.DuckDBPyConnection:
+    con = duckdb.connect()
+    con.execute((folder("queries") / "macros" / "causes.sql").read_text(encoding="utf-8"))
+    return con
+
+
+def test_arguments_are_filled_in_and_times_are_told_from_the_start(con: duckdb.DuckDBPyConnection) -> None:
+    reason = why(con, "'came_by', {'object_id': 'o{1}', 'room_m': 1.256, 'behind_id': NULL, 't_ns': 7_500_000_000}")
+    assert words.sentence(reason, 2_000_000_000, OWN) == "o{1} came by with 1.26 m between: record it until 5.500 s"
+    reason = why(con, "'came_by', {'object_id': 'o', 'room_m': 1, 'behind_id': 'p', 't_ns': 0}")
+    assert words.sentence(reason, 0, OWN) == "o came by with 1.00 m between, behind p: record it until 0.000 s"
+
+
+def test_what_is_null_is_a_question_mark(con: duckdb.DuckDBPyConnection) -> None:
+    reason = why(con, "'came_by', {'object_id': NULL, 'room_m': NULL::DOUBLE}")
+    assert words.sentence(reason, 0, OWN) == "? came by with ? m between: record it until ?"
+
+
+def test_a_reason_may_be_an_argument(con: duckdb.DuckDBPyConnection) -> None:
+    reason = why(con, "'stood', {'braked': why('came_by', {'object_id': 'o', 'room_m': 1, 't_ns': 0})}")
+    assert (
+        words.sentence(reason, 0, OWN)
+        == "o came by with 1.00 m between: record it until 0.000 s, and it stood until then"
+    )
+    code, arguments = words.parse(reason)
+    assert words.asks(code, arguments, 0, OWN) == words.sentence(reason, 0, OWN)
+    assert words.asks("stood", {"braked": "it"}, 0, OWN) is None
+    assert words.codes_in(code, json.dumps(arguments)) == {"stood", "came_by"}
+
+
+@pytest.mark.parametrize("text", ["plain words", '{"code":', '{"code":1, "args": 2}', "{}", ""])
+def test_plain_text_is_its_own_words(text: str) -> None:
+    assert words.parse(text).code == words.TEXT
+    assert words.sentence(text) == text
+
+
+def test_a_code_without_words_is_told_as_it_is() -> None:
+    assert words.sentence('{"code":"too_late"}') == "too late"
+
+
+@pytest.mark.parametrize("says", ["{x.__class__}", "{x!r}", "{x:>99999999}", "{", "}", "{x[0]}", "{x:d}"])
+def test_only_arguments_stand_in_braces(says: str) -> None:
+    with pytest.raises(msgspec.ValidationError, match="write an argument as"):
+        msgspec.convert({"says": says}, Words)
+
+
+def test_every_shared_code_is_given_somewhere() -> None:
+    given = {code for rule in catalogue.load().values() for code in rule.reason_codes}
+    texts = [
+        file.read_text(encoding="utf-8")
+        for part in ("macros", "derive")
+        for file in (folder("queries") / part).glob("*.sql")
+    ]
+    engine = folder("queries").parent / "src" / "drivelint" / "evaluate"
+    texts += [file.read_text(encoding="utf-8") for file in engine.glob("*.py")]
+    named = set(re.findall(r"'(\w+)'", "\n".join(texts))) | {
+        f"ego_speed_{w}" for w in ("unknown", "contradicted", "unknown_near", "contradicted_near")
+    }
+    named |= {"object_speed_unknown", "object_speed_contradicted", words.TEXT}
+    assert sorted(words.shared().keys() - given - named) == []
+
+
+def test_no_code_of_a_rule_hides_a_shared_one() -> None:
+    assert [
+        f"{rule.id}: {code}" for rule in catalogue.load().values() for code in rule.reasons if code in words.shared()
+    ] == []
