@@ -30,7 +30,7 @@ def test_a_hole_of_a_second_may_have_hidden_one(tmp_path: Path) -> None:
     (row,) = said(tmp_path, before, {"t_s": "5..9 by 0.1"})
     assert (row["verdict"], row["reason_code"]) == ("unknown", "log_hole")
     assert (row["t_start_ns"], row["t_end_ns"]) == (4 * 10**9, 5 * 10**9)
-    assert row["reason"] == "The log has a hole between 4.000 s and 5.000 s."
+    assert row["reason"] == "the log has a hole between 4.000 s and 5.000 s"
     assert brief(said(tmp_path, before, {"t_s": "4.9..9 by 0.1"})) == [("not_applicable", "not_triggered")]
 
 
@@ -38,7 +38,7 @@ def test_one_row_for_all_of_them_beside_what_was_judged(tmp_path: Path) -> None:
     parts = [{"t_s": f"{a}..{a + 2} by 0.1"} for a in (0, 4, 8)]
     rows = said(tmp_path, *parts, taken=[1.0, 5.0])
     assert brief(rows) == [("pass", "kept"), ("unknown", "log_hole"), ("pass", "kept")]
-    assert rows[1]["reason"] == "The log has a hole between 2.000 s and 4.000 s, and in 1 more such stretches."
+    assert rows[1]["reason"] == "the log has a hole between 2.000 s and 4.000 s, and in 1 more such stretches"
 
 
 def test_a_stretch_without_place_or_heading_or_indicator(tmp_path: Path) -> None:

@@ -34,10 +34,6 @@
 -- unit = "m/s"
 -- why = "our default: people walk at 2 m/s at most, recorded ones from one step to the next; a gain counts of one who is faster than even a hurried one"
 --
--- [reasons.track_ends_near]
--- says = "the track of object {object_id} ends close to the ego"
--- advice = "record it for as long as the ego"
---
 -- [reasons.close_between_samples]
 -- says = "object {object_id} came close between two samples"
 --
@@ -64,9 +60,13 @@ FROM pair
 WHERE clearance_m IS NULL OR clearance_m <= $within_m
 UNION ALL
 -- An actor whose track ends close by may have touched the ego unseen: one step for each, which is not judged.
-SELECT l.drive_id, l.ego_id, s.t_ns, l.object_id, NULL, why('track_ends_near', {'object_id': l.object_id})
+SELECT l.drive_id, l.ego_id, s.t_ns, l.object_id, NULL,
+    why('recorded_too_short', {'object_id': l.object_id, 'to_ns': last.t_ns, 'far_m': coalesce(p.clearance_m, p.distance_m), 'ego_to_ns': c.t_end_ns})
 FROM lost_object l
+JOIN clock c USING (drive_id, ego_id)
 ASOF JOIN step s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id AND l.t_from_ns <= s.t_ns
+CROSS JOIN LATERAL (SELECT l.t_from_ns - 1 AS t_ns) last
+LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.object_id = l.object_id AND p.t_ns = last.t_ns
 WHERE l.code = 'lost_near_ego'
 UNION ALL
 -- An actor that came near between two steps may have touched the ego, too.

@@ -78,7 +78,7 @@ WITH oncoming_braking AS (
                 THEN CASE WHEN f.waited AND f.other_cause IS NULL AND f.actor_class <> 'bus' THEN true END
             ELSE made_to_brake(f.decel_mps2, f.pet_s, f.other_cause, $decel_mps2, $pet_s)
         END AS is_violation,
-        CASE WHEN f.waited THEN why('braked_and_stood', {'braked': braking}) ELSE braking END AS words
+        {'ease_mps2': -f.decel_mps2, 'words': CASE WHEN f.waited THEN why('braked_and_stood', {'braked': braking}) ELSE braking END} AS told
     FROM reference r
     JOIN forced_braking f ON f.drive_id = r.drive_id AND f.ego_id = r.ego_id AND abs(f.angle_rad) >= $oncoming_rad
         AND f.t_ego_in_ns >= r.t_ns AND f.t_ego_in_ns <= r.t_end_ns
@@ -87,7 +87,7 @@ WITH oncoming_braking AS (
 -- One vehicle that had to brake is enough.
 braking_result AS (
     SELECT ref_id, CASE WHEN bool_or(is_violation) THEN true WHEN count(is_violation) = count(*) THEN false END AS is_violation,
-        coalesce(min(words) FILTER (is_violation), min(words) FILTER (is_violation IS NULL)) AS words
+        coalesce(min(told) FILTER (is_violation), min(told) FILTER (is_violation IS NULL)).words AS words
     FROM oncoming_braking
     GROUP BY ref_id
 ),

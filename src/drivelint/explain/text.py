@@ -142,6 +142,8 @@ def _decides(found: Explanation) -> list[str]:
         start, end = (seconds(t, found.drive["t_start_ns"]) for t in (unknown[0], unknown[-1]))
         told += f"; that is for the first of {len(unknown)} steps that are not known, from {start} to {end}: "
         told += "later ones may lack something else"
+    if found.asks and row["reason_code"] in {"null_value", "applies_unknown", "missing_step"}:
+        told += "; that is the first thing that was found missing: more may be missing there"
     text = "\n".join(found.sql.values())
     asked = row["reason_code"].startswith(("missing_declared", "missing_mode"))
     events = [event for event in EVENTS if asked and f"'{event}'" in text]
