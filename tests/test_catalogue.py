@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from drivelint.casefile import coverage, read_cases, run_cases, together
+from drivelint.casefile import coverage, read_cases, run_cases, together, unused_reasons
 from drivelint.casefile.merged_cases import KEYS
 from drivelint.casefile.mutation import prove, strangers
 from drivelint.catalogue import load
@@ -53,7 +53,9 @@ def test_header(rule_id: str) -> None:
 def test_cases(rule_id: str) -> None:
     rule = RULES[rule_id]
     cases = read_cases(rule)
-    assert together(rule, cases, AS_DRIVES) == ""
+    problem, codes = together(rule, cases, AS_DRIVES)
+    assert problem == ""
+    assert unused_reasons(rule, codes) == ""
     assert coverage(cases) == ""
 
 

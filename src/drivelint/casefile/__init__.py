@@ -44,6 +44,7 @@ from drivelint.reasons.words import codes_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Set as AbstractSet
     from pathlib import Path
 
     from drivelint.catalogue import Rule
@@ -153,23 +154,19 @@ def run_cases(rule: Rule) -> list[CaseResult]:
     Errors: `RuleError` for a cases file that cannot be read.
     """
     cases = read_cases(rule)
-    results, codes = [], set[str]()
-    for case in cases:
-        result, given = _run(rule, case)
-        results.append(result)
-        codes |= given
+    results = [run_case(rule, case) for case in cases]
     if all(result.ok for result in results):  # else the crowd only says it again
-        mixed = together(rule, cases)
-        results.append(CaseResult("all cases together", not mixed, mixed))
+        mixed, codes = together(rule, cases)
+        never = unused_reasons(rule, codes)
+        results += [CaseResult("all cases together", not mixed, mixed), CaseResult("reasons", not never, never)]
     problem = coverage(cases)
+    return [*results, CaseResult("kinds of case", not problem, problem and f"{cases_of(rule)}:{problem}")]
+
+
+def unused_reasons(rule: Rule, codes: AbstractSet[str]) -> str:
+    """Return '' where each reason that the SQL names is among `codes`, which its cases gave; else which is not."""
     never = sorted(rule.reason_codes - codes)
-    return [
-        *results,
-        CaseResult("kinds of case", not problem, problem and f"{cases_of(rule)}:{problem}"),
-        CaseResult(
-            "reasons", not never, f"{cases_of(rule)}:1: no case has the reason {', '.join(never)}" if never else ""
-        ),
-    ]
+    return f"{cases_of(rule)}:1: no case has the reason {', '.join(never)}" if never else ""
 
 
 def coverage(cases: Sequence[Case]) -> str:
@@ -191,17 +188,9 @@ def coverage(cases: Sequence[Case]) -> str:
 
 def run_case(rule: Rule, case: Case) -> CaseResult:
     """Fill a scene, judge it by this rule alone, compare. Errors: `RuleError` with file, line and case."""
-    return _run(rule, case)[0]
-
-
-def _run(rule: Rule, case: Case) -> tuple[CaseResult, set[str]]:
-    """Run one case; return its result and the codes of the reasons that it gave."""
     with _placed(rule, case):
-        outcome = merged_cases.Outcome(*judge(rule, case))
-        message = difference(case, outcome)
-    rows = [*outcome.verdicts, *outcome.findings]
-    codes = {code for row in rows for code in codes_in(row["cause_code"], row["cause_args"])}
-    return CaseResult(case.name, not message, message and f"{place(rule, case)}: {message}"), codes
+        message = difference(case, merged_cases.Outcome(*judge(rule, case)))
+    return CaseResult(case.name, not message, message and f"{place(rule, case)}: {message}")
 
 
 def place(rule: Rule, case: Case) -> str:
@@ -244,20 +233,28 @@ def members(rule: Rule, cases: Sequence[Case]) -> list[merged_cases.Member]:
     return found
 
 
-def together(rule: Rule, cases: Sequence[Case], keys: Mapping[str, str] = merged_cases.KEYS) -> str:
-    """Judge all cases in one database, and return '' where each comes out as it expects. Errors: `RuleError`.
+class Together(NamedTuple):
+    """What cases judged together gave: '' where each comes out as it expects, and the codes of all reasons."""
 
-    `keys`: by what they are told apart there, in turn.
-    """
+    problem: str
+    codes: frozenset[str]
+
+
+def together(rule: Rule, cases: Sequence[Case], keys: Mapping[str, str] = merged_cases.KEYS) -> Together:
+    """Judge all cases in one database. Errors: `RuleError`. `keys`: by what they are told apart there, in turn."""
     everybody = members(rule, cases)
+    codes: set[str] = set()
     for key, where in keys.items():
         for group in merged_cases.crowds(everybody, key):
             outcome = merged_cases.judge([rule], merged_cases.merge(group, key), group[0].params)[rule.id]
+            rows = [*outcome.verdicts, *outcome.findings]
+            codes |= {code for row in rows for code in codes_in(row["cause_code"], row["cause_args"])}
             for member in group:
                 case = cases[member.no]
                 if message := difference(case, merged_cases.share(outcome, member.no)):
-                    return f"{place(rule, case)}: as one of {where}: {message}; does each join have {key}?"
-    return ""
+                    problem = f"{place(rule, case)}: as one of {where}: {message}; does each join have {key}?"
+                    return Together(problem, frozenset(codes))
+    return Together("", frozenset(codes))
 
 
 def _difference(expect: str | Sequence[Mapping[str, Any]], rows: Sequence[Row]) -> str:

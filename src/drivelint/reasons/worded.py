@@ -26,7 +26,9 @@ CREATE OR REPLACE TEMP TABLE _worded
 
 def _json(arguments: Mapping[str, Any]) -> str:
     """Return arguments as JSON, which has no infinite numbers."""
-    told = {name: None if isinstance(value, float) and not isfinite(value) else value for name, value in arguments.items()}
+    told = {
+        name: None if isinstance(value, float) and not isfinite(value) else value for name, value in arguments.items()
+    }
     return json.dumps(told)
 
 
