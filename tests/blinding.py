@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from drivelint.road.contract import Environment
+    from drivelint.road.contract import MapTables
 
 Span = tuple[float, float]
 EVER: Span = (-1.0, 1e6)
@@ -145,12 +145,12 @@ def ranged(drive: Drive, range_m: float) -> Drive:
     return changed(changed(drive, "actor_state", change), "data_log", say)
 
 
-def on(drive: Drive, environment: Environment | None) -> Drive:
+def on(drive: Drive, environment: MapTables | None) -> Drive:
     """Return the drive on another map."""
     return Drive(drive.trace, environment)
 
 
-def remade(environment: Environment, name: str, /, **changes: Callable[[pa.Table], pa.Table]) -> Environment:
+def remade(environment: MapTables, name: str, /, **changes: Callable[[pa.Table], pa.Table]) -> MapTables:
     """Return the map under another id with some tables changed."""
     tables = {}
     for table, rows in environment.tables.items():
@@ -160,7 +160,7 @@ def remade(environment: Environment, name: str, /, **changes: Callable[[pa.Table
     return replace(environment, environment_id=name, tables=tables)
 
 
-def without_lanelet(environment: Environment, lanelet: str, name: str) -> Environment:
+def without_lanelet(environment: MapTables, lanelet: str, name: str) -> MapTables:
     """Return the map without this lanelet, as if it had failed to build; its neighbours still name it."""
 
     def drop(column: str) -> Callable[[pa.Table], pa.Table]:
@@ -177,7 +177,7 @@ def without_lanelet(environment: Environment, lanelet: str, name: str) -> Enviro
     )
 
 
-def without_links(environment: Environment, name: str, *ends: str) -> Environment:
+def without_links(environment: MapTables, name: str, *ends: str) -> MapTables:
     """Return the map without the links from or to these lanelets; none named: without any."""
 
     def drop(links: pa.Table) -> pa.Table:

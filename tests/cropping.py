@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from drivelint.road.contract import Environment
+    from drivelint.road.contract import MapTables
 
     Floats = NDArray[np.float64]
 
@@ -43,7 +43,7 @@ def beyond(x: float, y: float, heading: float, by: float) -> Inside:
     return inside
 
 
-def cropped(environment: Environment, name: str, inside: Inside) -> Environment:
+def cropped(environment: MapTables, name: str, inside: Inside) -> MapTables:
     """Return the map as if somebody had cut it out of a larger one: lanelets end at its edge, and nothing says that they went on."""
     points, spans = _points(environment.tables["lane_point"], inside)
 

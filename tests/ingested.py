@@ -9,8 +9,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.drive.finish import finish
-from drivelint.drive.trace import BRAKE_LIGHTS, INDICATORS, NUMBERS, Identity, IngestOptions, Recording, States
+from drivelint.drive.finish import finish_trace
+from drivelint.drive.trace import BRAKE_LIGHTS, INDICATORS, STATE_COLUMNS, Identity, IngestOptions, Recording, States
 from drivelint.engine.batch import Drive
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def ingested(drive: Drive) -> Drive:
             encoded.dictionary.to_pylist(),
             encoded.indices.to_numpy().astype(np.int32),
             states["t_ns"].to_numpy(),
-            {name: states[name].to_numpy().astype(np.float64) for name in NUMBERS},
+            {name: states[name].to_numpy().astype(np.float64) for name in STATE_COLUMNS},
             {"indicator": codes("indicator", INDICATORS), "brake_light": codes("brake_light", BRAKE_LIGHTS)},
             np.zeros(len(states), np.bool_),
         ),
@@ -43,5 +43,7 @@ def ingested(drive: Drive) -> Drive:
         ego_ids=tables["actor"].filter(tables["actor"]["is_ego"])["actor_id"].to_pylist(),
         sensor_range_m=log["sensor_range_m"],
     )
-    trace = finish(drive.trace.path, Identity(drive_id, log["file_name"], log["sha256"]), recording, IngestOptions())
+    trace = finish_trace(
+        drive.trace.path, Identity(drive_id, log["file_name"], log["sha256"]), recording, IngestOptions()
+    )
     return replace(drive, trace=replace(trace, tables={**trace.tables, "drive_condition": tables["drive_condition"]}))

@@ -18,14 +18,14 @@ import numpy as np
 import pyarrow as pa
 
 from drivelint import catalogue
-from drivelint.drive.finish import SCHEMAS
+from drivelint.drive.finish import TRACE_SCHEMAS
 from drivelint.drive.trace import Trace
 from drivelint.engine.batch import Drive
 from drivelint.engine.derive import derive
 from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.engine.session import JudgingSession
 from drivelint.formats import load_map
-from drivelint.road.contract import Environment, MapSource
+from drivelint.road.contract import MapSource, MapTables
 from drivelint.sql import store
 from drivelint.sql.derivations import derivations, needed
 from tests.formats.opendrive import xodr
@@ -49,7 +49,7 @@ Pose = tuple[float, float, float]
 class Road:
     """A map, and a line on it along which actors move: pieces (length, curvature) from a pose (x, y, heading)."""
 
-    environment: Environment
+    environment: MapTables
     pieces: tuple[tuple[float, float], ...]
     start: Pose = (0.0, 0.0, 0.0)
 
@@ -219,7 +219,7 @@ def swing(way: Road, s: Floats, out: float, back: float | None, change: float = 
 
 def drive(
     actors: Iterable[Actor],
-    environment: Environment | None,
+    environment: MapTables | None,
     *,
     drive_id: str = "d",
     egos: Sequence[str] = ("ego",),
@@ -258,7 +258,7 @@ def drive(
     ]  # fmt: skip
     tables = {
         name: pa.table({c: [] for c in columns}, schema=pa.schema(list(columns.items())))
-        for name, columns in SCHEMAS.items()
+        for name, columns in TRACE_SCHEMAS.items()
     }
     tables["data_log"] = pa.Table.from_pylist([log], schema=tables["data_log"].schema)
     tables["actor"] = pa.Table.from_pylist(who, schema=tables["actor"].schema)
@@ -294,7 +294,7 @@ class _Place(NamedTuple):
 
     con: duckdb.DuckDBPyConnection
     bench: JudgingSession
-    maps: list[Environment]
+    maps: list[MapTables]
 
 
 _PLACES: Final[list[_Place]] = []
@@ -322,7 +322,9 @@ def _place(drives: Iterable[Drive]) -> _Place:
 @cache
 def _of_the_map() -> list[str]:
     return [
-        table for table, columns in store.schema().items() if "environment_id" in columns and "drive_id" not in columns
+        table
+        for table, columns in store.column_comments().items()
+        if "environment_id" in columns and "drive_id" not in columns
     ]
 
 
@@ -354,7 +356,7 @@ def derived(
 
 @cache
 def _rules() -> dict[str, catalogue.Rule]:
-    return catalogue.load()
+    return catalogue.load_rules()
 
 
 def judged(
@@ -373,7 +375,7 @@ def judged(
     else:
         clear(con)
     store.insert(con, "profile", profile_table(load_profiles(), profiles))
-    bench = JudgingSession(con, catalogue.select(_rules(), tuple(rules), ()), {}, None)
+    bench = JudgingSession(con, catalogue.select_rules(_rules(), tuple(rules), ()), {}, None)
     if place:
         of_the_map = {d.table for d in needed(bench._tables) if d.of_the_map}
         if of_the_map <= place.bench._tables:  # they stand there already

@@ -12,22 +12,22 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from drivelint.casefile import coverage, read_cases, run_cases, together, unused_reasons
-from drivelint.casefile.merged_cases import KEYS
-from drivelint.casefile.mutation import prove, strangers
-from drivelint.catalogue import load
-from drivelint.evaluate import explain
+from drivelint.casefile import coverage_problem, read_cases, run_cases, run_merged_cases, unused_reasons
+from drivelint.casefile.merged_cases import MERGE_KEYS
+from drivelint.casefile.mutation import entries_without_rule, judge_mutants
+from drivelint.catalogue import load_rules
+from drivelint.evaluate import query_plans
 from drivelint.sql import store
 
 if TYPE_CHECKING:
     import duckdb
 
-RULES = load()
+RULES = load_rules()
 IDS = list(RULES)
 SAMPLE = sorted(
     (rule.id for rule in RULES.values() if rule.status == "stable"), key=lambda i: sha256(i.encode()).digest()
 )[:3]
-AS_DRIVES = {"drive_id": KEYS["drive_id"]}
+AS_DRIVES = {"drive_id": MERGE_KEYS["drive_id"]}
 
 
 @pytest.fixture(scope="module")
@@ -53,10 +53,10 @@ def test_header(rule_id: str) -> None:
 def test_cases(rule_id: str) -> None:
     rule = RULES[rule_id]
     cases = read_cases(rule)
-    problem, codes = together(rule, cases, AS_DRIVES)
+    problem, codes = run_merged_cases(rule, cases, AS_DRIVES)
     assert problem == ""
     assert unused_reasons(rule, codes) == ""
-    assert coverage(cases) == ""
+    assert coverage_problem(cases) == ""
 
 
 @pytest.mark.parametrize("rule_id", SAMPLE)
@@ -66,7 +66,7 @@ def test_each_case_alone_and_as_egos(rule_id: str) -> None:
 
 @pytest.mark.parametrize("rule_id", IDS)
 def test_the_plans_join_on_keys(con: duckdb.DuckDBPyConnection, rule_id: str) -> None:
-    plans = explain(con, RULES[rule_id])
+    plans = query_plans(con, RULES[rule_id])
     assert plans
     for plan in plans:
         assert "BLOCKWISE_NL" not in plan, plan
@@ -74,10 +74,10 @@ def test_the_plans_join_on_keys(con: duckdb.DuckDBPyConnection, rule_id: str) ->
 
 @pytest.mark.parametrize("rule_id", SAMPLE)
 def test_the_cases_would_notice_a_wrong_rule(rule_id: str) -> None:
-    proof = prove(RULES[rule_id])
+    proof = judge_mutants(RULES[rule_id])
     assert proof.n > 0
     assert (proof.problem, proof.unlisted, proof.stale) == ("", (), ())
 
 
 def test_a_survivor_is_listed_of_rules_that_there_are() -> None:
-    assert strangers(list(RULES.values())) == []
+    assert entries_without_rule(list(RULES.values())) == []

@@ -10,7 +10,7 @@ import pytest
 from drivelint.drive import conditions
 from drivelint.errors import UsageError
 from drivelint.report.progress import Silent
-from drivelint.run import Settings, check
+from drivelint.run import CheckOptions, check
 from tests.evaluate.packs import INVARIANT, MEASURED, write
 from tests.shared_data import ROOT
 
@@ -63,7 +63,7 @@ def checked(tmp_path: Path, *env: str) -> Result:
     tables = '[applies]\nweather = ["wet"]\nnation = ["gb"]'
     if not (tmp_path / "pack").exists():
         write(tmp_path, INVARIANT | MEASURED | {"reads": '["ego_state"]'}, {"condition": sql}, tables=tables)
-    settings = Settings(
+    settings = CheckOptions(
         (str(OVERTAKE / "safe.csv"),), map=OVERTAKE / "road.xodr", mapping=str(OVERTAKE / "mapping.toml"),
         rules=("pack",), rules_dirs=(tmp_path,), env=env,
     )  # fmt: skip

@@ -63,7 +63,7 @@ def judged(trace_file: Path, map_file: Path, ego: str) -> dict[tuple[str, int], 
     """Return (ego, time in ns) -> measure -> object, whether it applies, and the rule's observed value."""
     trace = read_trace(trace_file, IngestOptions(ego=ego))
     environment = load_map(MapSource(map_file.name, map_file.read_bytes()))
-    rules = {name: catalogue.load()[f"criticality.{name}"] for name in MEASURES}
+    rules = {name: catalogue.load_rules()[f"criticality.{name}"] for name in MEASURES}
     tables = {table for rule in rules.values() for table in rule.reads}
     found: dict[tuple[str, int], Judged] = {}
     with store.connect(threads=1) as con:

@@ -23,7 +23,7 @@ from tests.shared_data import shared
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from drivelint.road.contract import Environment
+    from drivelint.road.contract import MapTables
 
 RUNS = ("safe", "near_miss", "collision")
 EGO, VBP, OV = "1", "2", "3"
@@ -80,7 +80,7 @@ CUTS: dict[str, Span] = {"at t0": (8.3, 1e3), "from t0 on": (8.3, 1e3), "before 
 ENDS: dict[str, Span] = {"to t0": (0.0, 8.3), "to 9 s": (0.0, 9.0), "to 13 s": (0.0, 13.0)}
 
 
-def maps(road: Environment) -> dict[str, Environment | None]:
+def maps(road: MapTables) -> dict[str, MapTables | None]:
     """Return versions of the map with something lost; the ego runs in 3.0.1 and overtakes in 3.0.-1; 43.0.1 is straight on."""
 
     def guessed(table: pa.Table) -> pa.Table:
@@ -120,7 +120,7 @@ class Judged:
 @pytest.fixture(scope="module")
 def judged() -> Judged:
     """Judge every case in one batch: a crowd costs little more than one, and harms nobody (test_laws)."""
-    road: Environment | None = None
+    road: MapTables | None = None
     drives: list[Drive] = []
 
     def add(drive: Drive, case: Case) -> None:

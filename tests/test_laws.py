@@ -170,14 +170,14 @@ def test_order_of_drives_and_of_their_rows() -> None:
 def test_size_of_batches(monkeypatch: pytest.MonkeyPatch) -> None:
     """As many as fit in 10,000 states: two to seven drives. One alone has its own test."""
     monkeypatch.setattr(batch, "STATES", 10_000)
-    batches = [[one for one in part if isinstance(one, batch.Drive)] for part in batch.cut(crowd())]
+    batches = [[one for one in part if isinstance(one, batch.Drive)] for part in batch.cut_batches(crowd())]
     assert len(crowd()) > len(batches) > 3
     assert judged(*batches, rules=RULES, profiles=PROFILES) == list(expected())
 
 
 def prints(con: duckdb.DuckDBPyConnection) -> dict[str, tuple[Any, ...]]:
     """Return for every table how many rows it has and the sum of their hashes, whatever their order."""
-    tables = [table for table in store.schema() if table != "drive"]
+    tables = [table for table in store.column_comments() if table != "drive"]
     return {t: con.execute(f"SELECT count(*), sum(hash(t)::HUGEINT) FROM {t} t").fetchall()[0] for t in tables}
 
 

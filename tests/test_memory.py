@@ -15,14 +15,14 @@ import pytest
 from drivelint.cli import values
 from drivelint.engine import batch, margins
 from drivelint.engine.derive import derive as derived
-from drivelint.engine.memory import DEFAULT, LEAST, Memory
+from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY, Memory
 from drivelint.errors import UsageError
 from drivelint.evaluate import evaluate as evaluated
-from drivelint.evaluate.run import Run
+from drivelint.evaluate.run import Evaluation
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
 from drivelint.result.evidence import gather as gathered
-from drivelint.run import Settings, check
+from drivelint.run import CheckOptions, check
 from drivelint.sql import store
 from tests.bench import traffic
 from tests.shared_data import shared
@@ -56,16 +56,16 @@ def halved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     return found
 
 
-def overtakes(*names: str, **options: Any) -> Settings:
+def overtakes(*names: str, **options: Any) -> CheckOptions:
     """Return settings for logs of the fixture, each of three vehicles."""
     given: dict[str, Any] = {"rules": FEW, **options}
     mapping = str(FIXTURE / "mapping.toml")
-    return Settings(
+    return CheckOptions(
         tuple(str(FIXTURE / f"{n}.csv") for n in names), map=FIXTURE / "road.xodr", mapping=mapping, **given
     )
 
 
-def files(asked: Settings, notes: Silent | None = None) -> dict[str, bytes]:
+def files(asked: CheckOptions, notes: Silent | None = None) -> dict[str, bytes]:
     """Check, write the results, and return every file of them."""
     assert asked.out is not None
     write(check(asked, notes or Silent()), asked.out)
@@ -85,8 +85,8 @@ def crowd(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     return traffic.write_folder(folder / "crowd", traffic.Shape(20.0, 10, 30)), folder / "ring.xodr"
 
 
-def crowded(crowd: tuple[Path, Path], **options: Any) -> Settings:
-    return Settings((str(crowd[0]),), map=crowd[1], ego="all", **options)
+def crowded(crowd: tuple[Path, Path], **options: Any) -> CheckOptions:
+    return CheckOptions((str(crowd[0]),), map=crowd[1], ego="all", **options)
 
 
 @pytest.mark.slow
@@ -94,13 +94,13 @@ def test_any_limit_gives_the_same_files(crowd: tuple[Path, Path], tmp_path: Path
     asked: dict[str, Any] = {"rules": ("ukhc",), "margins": True}
     usual = files(crowded(crowd, out=tmp_path / "a", memory=None, **asked))
     assert not halved
-    for no, limit in enumerate((LEAST, 150_000_000, LEAST, DEFAULT, LEAST)):
+    for no, limit in enumerate((LEAST_MEMORY, 150_000_000, LEAST_MEMORY, DEFAULT_MEMORY, LEAST_MEMORY)):
         same(files(crowded(crowd, out=tmp_path / f"b{no}", memory=limit, **asked)), usual)
     assert halved, "the least memory does not do for as many at once as are tried first"
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("limit", [512_000_000, DEFAULT])
+@pytest.mark.parametrize("limit", [512_000_000, DEFAULT_MEMORY])
 def test_a_real_log_of_many_egos_gives_the_same_files(limit: int, tmp_path: Path) -> None:
     """The log whose checks ended at random (exit code 1, or 4 and out of memory)."""
     asked: dict[str, Any] = {
@@ -111,8 +111,8 @@ def test_a_real_log_of_many_egos_gives_the_same_files(limit: int, tmp_path: Path
         "rules": ("all",),
         "ego": "all",
     }
-    wanted = files(Settings(**asked, out=tmp_path / "a", memory=None))
-    same(files(Settings(**asked, out=tmp_path / "b", memory=limit)), wanted)
+    wanted = files(CheckOptions(**asked, out=tmp_path / "a", memory=None))
+    same(files(CheckOptions(**asked, out=tmp_path / "b", memory=limit)), wanted)
 
 
 def test_what_does_not_fit_is_judged_with_fewer_egos_at_once(tmp_path: Path, halved: list[int]) -> None:
@@ -120,9 +120,9 @@ def test_what_does_not_fit_is_judged_with_fewer_egos_at_once(tmp_path: Path, hal
     (tmp_path / "ring.xodr").write_text(traffic.ring(), encoding="utf-8")
     log = traffic.write_folder(tmp_path / "crowd", traffic.Shape(10.0, 10, 20))
     asked: dict[str, Any] = {"map": tmp_path / "ring.xodr", "ego": "all", "rules": ("ukhc.no-collision",)}
-    short = check(Settings((str(log),), memory=60_000_000, **asked), Silent())
+    short = check(CheckOptions((str(log),), memory=60_000_000, **asked), Silent())
     assert halved
-    usual = check(Settings((str(log),), memory=None, **asked), Silent())
+    usual = check(CheckOptions((str(log),), memory=None, **asked), Silent())
     assert short.verdicts.equals(usual.verdicts)
     assert short.findings.equals(usual.findings)
     assert short.drives.equals(usual.drives)
@@ -195,30 +195,30 @@ def test_a_batch_that_does_not_fit_is_halved(monkeypatch: pytest.MonkeyPatch, tm
 
 def test_a_rule_that_runs_out_of_memory_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
     usual = check(overtakes("safe"), Silent())
-    rule = Run.rule
+    rule = Evaluation.rule
 
-    def short(self: Run, binding: Any) -> None:
+    def short(self: Evaluation, binding: Any) -> None:
         ((limit,),) = self._con.execute("SELECT current_setting('memory_limit')").fetchall()
         if binding.rule.id == FEW[0] and limit == "1.1 GiB":
             raise SHORT
         rule(self, binding)
 
-    monkeypatch.setattr(Run, "rule", short)
+    monkeypatch.setattr(Evaluation, "rule", short)
     assert check(overtakes("safe"), Silent()).verdicts.equals(usual.verdicts)
 
 
-@pytest.mark.parametrize("memory", [DEFAULT, None])
+@pytest.mark.parametrize("memory", [DEFAULT_MEMORY, None])
 def test_a_rule_for_which_no_memory_does_is_an_error_in_the_same_words(
     memory: int | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    rule = Run.rule
+    rule = Evaluation.rule
 
-    def short(self: Run, binding: Any) -> None:
+    def short(self: Evaluation, binding: Any) -> None:
         if binding.rule.id == FEW[0]:
             raise SHORT
         rule(self, binding)
 
-    monkeypatch.setattr(Run, "rule", short)
+    monkeypatch.setattr(Evaluation, "rule", short)
     rows = check(overtakes("safe", memory=memory), Silent()).verdicts.to_pylist()
     mine = [row for row in rows if row["rule_id"] == FEW[0]]
     assert {row["ego_id"] for row in mine} == {row["ego_id"] for row in rows}
@@ -262,7 +262,7 @@ def test_the_memory_limit_is_really_lifted() -> None:
 def test_the_database_spills_into_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """DuckDB's own choice is a folder where the user is."""
     monkeypatch.chdir(tmp_path)
-    with store.workspace(LEAST) as con:
+    with store.workspace(LEAST_MEMORY) as con:
         store.lock(con)
         ((spill,),) = con.execute("SELECT current_setting('temp_directory')").fetchall()
         con.execute("CREATE TABLE large AS SELECT i, hash(i) AS h FROM range(10_000_000) r(i)")
@@ -274,7 +274,7 @@ def test_the_database_spills_into_a_folder_of_its_own(tmp_path: Path, monkeypatc
 def test_margins_have_the_same_bytes_however_batches_are_cut(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(margins, "BLOCK", 100)
     found = []
-    for states in (batch.STATES, 1):
+    for states in (batch.BATCH_STATES, 1):
         monkeypatch.setattr(batch, "STATES", states)
         result = check(
             overtakes("safe", "near_miss", out=tmp_path / str(states), margins=True, annotate=False), Silent()
@@ -316,7 +316,7 @@ def test_margins_go_on_where_memory_ran_out() -> None:
 @pytest.mark.parametrize(
     ("text", "n_bytes"),
     [
-        (None, DEFAULT),
+        (None, DEFAULT_MEMORY),
         ("none", None),
         ("512MB", 512_000_000),
         ("1.5 gb", 1_500_000_000),
@@ -324,10 +324,10 @@ def test_margins_go_on_where_memory_ran_out() -> None:
     ],
 )
 def test_sizes(text: str | None, n_bytes: int | None) -> None:
-    assert values.memory(text) == n_bytes
+    assert values.parse_memory(text) == n_bytes
 
 
 @pytest.mark.parametrize("text", ["", "512", "-1GB", "much", "99MB", "0GB", "1 GB 2"])
 def test_what_is_no_size_is_refused(text: str) -> None:
     with pytest.raises(UsageError, match="--memory"):
-        values.memory(text)
+        values.parse_memory(text)

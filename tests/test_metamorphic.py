@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 
 from drivelint.demo import memory
 from drivelint.demo import scene as sampling
-from drivelint.demo.scenes import library
+from drivelint.demo.scenes import all_scenes
 from drivelint.engine.batch import Drive
 from drivelint.formats import load_map
 from drivelint.road.contract import MapSource
@@ -77,7 +77,7 @@ FAR = Move(1.234, -3210.5, 987.25, 1_234_567, 3)
 @cache
 def cases() -> dict[str, Case]:
     """Return the scenes of the library, and the drives with a planted violation by the rule that they break."""
-    found = {scene.name: Case(memory.drive(scene).trace, scene.map_text) for scene in library()}
+    found = {scene.name: Case(memory.drive_of_scene(scene).trace, scene.map_text) for scene in all_scenes()}
     for each in PLANTED:
         if each.chapter:
             story = Story(each.nation)
@@ -92,7 +92,7 @@ def sampled(rate_hz: int) -> dict[str, Case]:
     """Return the scenes of the library with so many samples a second."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sampling, "RATE_HZ", rate_hz)
-        return {scene.name: Case(memory.drive(replace(scene)).trace, scene.map_text) for scene in library()}
+        return {scene.name: Case(memory.drive_of_scene(replace(scene)).trace, scene.map_text) for scene in all_scenes()}
 
 
 def moved(case: Case, move: Move) -> Case:

@@ -21,25 +21,25 @@ from drivelint.formats import read_trace
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
 from drivelint.result.evidence import surroundings
-from drivelint.run import Settings, check
+from drivelint.run import CheckOptions, check
 from drivelint.sql import store
 
 OMEGA = {"x": "x_m", "y": "y_m", "yaw": "yaw_rad", "vel_x": "vx_mps", "vel_y": "vy_mps"}
 EGOS = ("ego", "once", "oncoming", "parked")
 # where anybody judged at the same time ever was, the corridor is looked at: more cells of it are kept, nobody else is in them
-TABLES = [table for table in store.schema() if table not in ("drive", "rule", "visited_cell", "corridor_cell")]
+TABLES = [table for table in store.column_comments() if table not in ("drive", "rule", "visited_cell", "corridor_cell")]
 FEW = ("ukhc.no-collision", "ukhc.r162.safe-distance-ahead")  # where it is not the rules that matter
 FIXTURE = Path(__file__).resolve().parents[1] / "fixtures" / "overtake"
 
 
-def settings(*traces: Path, **options: Any) -> Settings:
+def settings(*traces: Path, **options: Any) -> CheckOptions:
     given: dict[str, Any] = {
         "map": FIXTURE / "road.xodr",
         "mapping": str(FIXTURE / "mapping.toml"),
         "rules": ("ukhc",),
         **options,
     }
-    return Settings(traces=tuple(str(t) for t in traces), **given)
+    return CheckOptions(traces=tuple(str(t) for t in traces), **given)
 
 
 def logs() -> list[Path]:
@@ -82,7 +82,7 @@ def ragged(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_where_the_egos_are_cut_does_not_show(ragged: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every file of the results has the same bytes, and every table of the kept database the same rows."""
     found = []
-    for room in (batch.MEETINGS, 1, 1100):
+    for room in (batch.PART_PAIRS, 1, 1100):
         monkeypatch.setattr(batch, "MEETINGS", room)
         monkeypatch.setattr(surroundings, "AT_ONCE", room)
         out = tmp_path / str(room)
@@ -112,10 +112,10 @@ def test_parts_of_a_drive_hold_its_egos_once(ragged: Path, monkeypatch: pytest.M
     assert drive.size == sum(drive.meetings.values())
     for room in (1, 1100, 10**9):
         monkeypatch.setattr(batch, "MEETINGS", room)
-        judged = [sorted(set(EGOS) - set(resting)) for resting in batch.parts([drive])]
+        judged = [sorted(set(EGOS) - set(resting)) for resting in batch.egos_left_out([drive])]
         assert [ego for part in judged for ego in part] == sorted(EGOS)
         assert all(len(part) == 1 or sum(drive.meetings[e] for e in part) <= room for part in judged)
-    assert batch.parts([drive, drive]) == [[]]
+    assert batch.egos_left_out([drive, drive]) == [[]]
 
 
 def test_a_drive_of_which_a_part_fails_leaves_nothing(
@@ -321,7 +321,7 @@ def test_kept_database_has_every_stage(tmp_path: Path, monkeypatch: pytest.Monke
     with duckdb.connect(str(tmp_path / "drivelint.duckdb"), read_only=True) as con:
         count = {
             t: con.execute(f"SELECT count(*) FROM {t}").fetchall()[0][0]
-            for t in store.schema()
+            for t in store.column_comments()
             if t not in ("drive", "rule")
         }
         assert con.execute("SELECT count(DISTINCT drive_id) FROM actor_state").fetchall() == [(3,)]

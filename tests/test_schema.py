@@ -36,12 +36,12 @@ def test_what_is_parsed_from_the_files_is_what_the_database_has(database: duckdb
     found: dict[str, list[str]] = {}
     for table, column in rows.fetchall():
         found.setdefault(table, []).append(column)
-    assert {table: list(columns) for table, columns in store.schema().items()} == found
+    assert {table: list(columns) for table, columns in store.column_comments().items()} == found
 
 
 def test_every_table_of_the_library_is_filled_by_a_query_of_its_name() -> None:
     """A table that nothing fills is empty, and empty would read as: it never happened."""
-    tables = {table for file in ("derived", "conduct", "junctions") for table in store.schema(file)}
+    tables = {table for file in ("derived", "conduct", "junctions") for table in store.column_comments(file)}
     filled = {file.stem for file in (folder("queries") / "derive").glob("*.sql")}
     assert tables - filled == {"profile"}  # filled from queries/profiles.toml
     assert filled - tables == set()
@@ -65,13 +65,13 @@ def test_only_the_wheels_extension_may_be_unsigned() -> None:
 
 def test_every_table_says_how_long_its_rows_stay() -> None:
     """A table of a map has no drive; what is derived for egos goes with its part of the drive, unless it is a result."""
-    assert set(store.lifetimes()) == set(store.schema())
+    assert set(store.lifetimes()) == set(store.column_comments())
     for table, lifetime in store.lifetimes().items():
-        columns = store.schema()[table]
+        columns = store.column_comments()[table]
         assert (lifetime == "map") <= ("environment_id" in columns and "drive_id" not in columns), table
         assert (lifetime in {"drive", "part"}) <= ("drive_id" in columns), table
     assert {store.lifetimes()[table] for table in derivations()} == {"map", "part", "run"}
-    assert store.living("drive") == ["actor", "actor_state", "signal_state", "declared_event", "margin"]
+    assert store.tables_of_lifetime("drive") == ["actor", "actor_state", "signal_state", "declared_event", "margin"]
 
 
 def test_samples_are_continuous_for_python_and_for_sql_alike() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from drivelint import cli
 from drivelint.errors import UsageError
-from drivelint.settings import defaults
+from drivelint.settings import read_settings
 from tests.shared_data import ROOT
 
 OPTIONS = {
@@ -29,12 +29,12 @@ def written(tmp_path: Path, text: str) -> Path:
 
 
 def test_no_file_says_nothing(tmp_path: Path) -> None:
-    assert defaults(OPTIONS, tmp_path / "drivelint.toml") == {}
+    assert read_settings(OPTIONS, tmp_path / "drivelint.toml") == {}
 
 
 def test_values_are_those_of_the_options(tmp_path: Path) -> None:
     file = written(tmp_path, 'map = "road.xodr"\nstrict = true\nsensor-range = 80\nrules = ["ukhc", "rss"]\n')
-    assert defaults(OPTIONS, file) == {
+    assert read_settings(OPTIONS, file) == {
         "map_": "road.xodr",
         "strict": True,
         "sensor_range": "80",
@@ -44,7 +44,7 @@ def test_values_are_those_of_the_options(tmp_path: Path) -> None:
 
 def test_conditions_are_a_table_of_their_own(tmp_path: Path) -> None:
     file = written(tmp_path, '[env]\nnation = "gb"\nengaged = true\n')
-    assert defaults(OPTIONS, file) == {"env": ["nation=gb", "engaged=yes"]}
+    assert read_settings(OPTIONS, file) == {"env": ["nation=gb", "engaged=yes"]}
 
 
 @pytest.mark.parametrize(
@@ -62,7 +62,7 @@ def test_conditions_are_a_table_of_their_own(tmp_path: Path) -> None:
 )
 def test_what_is_not_understood_is_refused(tmp_path: Path, text: str, says: str) -> None:
     with pytest.raises(UsageError, match=rf"drivelint\.toml: .*{says}"):
-        defaults(OPTIONS, written(tmp_path, text))
+        read_settings(OPTIONS, written(tmp_path, text))
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *args: str) -> object:

@@ -1,4 +1,4 @@
-"""Errors a user can act on: what, where (file, topic, offset, rule), what to do next."""
+"""Defines the errors that a user can act on, and the exit codes."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class MapError(DriveLintError):
 
 
 class MemoryShortError(DriveLintError):
-    """The machine has less memory than one vehicle of a drive needs, alone: a larger one, or fewer rules."""
+    """The machine has too little memory to judge even one ego of a drive."""
 
     exit_code = ExitCode.NOT_JUDGED
 

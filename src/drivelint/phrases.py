@@ -1,4 +1,4 @@
-"""Phrases that many messages have: the nearest known word, a list of names, a count and its noun."""
+"""Builds phrases that many messages share: the nearest known word, a list of names, a count with its noun."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the SQL lives: beside the repository's src/, or inside the installed wheel."""
+"""Finds the folders `schemas` and `queries`, in the repository or in the installed wheel."""
 
 from __future__ import annotations
 

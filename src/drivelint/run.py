@@ -1,4 +1,4 @@
-"""The whole pipeline: traces and a map in, verdicts out. Stages meet only in tables."""
+"""Runs a check: reads traces and a map, judges by the rules, returns a result. Stages meet only in tables."""
 
 from __future__ import annotations
 
@@ -11,14 +11,13 @@ import pyarrow as pa
 from drivelint import catalogue
 from drivelint.annotate import Annotator
 from drivelint.drive.trace import DriveInput
-from drivelint.engine.batch import Drive, Refused, cut, in_order, read
+from drivelint.engine.batch import Drive, RefusedLog, cut_batches, read_drives, sorted_logs
 from drivelint.engine.map_library import MapLibrary
-from drivelint.engine.memory import DEFAULT as DEFAULT_MEMORY
-from drivelint.engine.memory import Memory
-from drivelint.engine.profiles import DEFAULT, load_profiles, profile_table
+from drivelint.engine.memory import DEFAULT_MEMORY, Memory
+from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import DriveLintError, MemoryShortError, TraceError, UsageError
-from drivelint.formats import expand
+from drivelint.formats import expand_traces
 from drivelint.result import collect, evidence
 from drivelint.result.files import OutputError
 from drivelint.result.model import Result
@@ -35,8 +34,8 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Settings(DriveInput):
-    """What `check` is asked to do; the names are those of its options."""
+class CheckOptions(DriveInput):
+    """The options of `check`, under the names that they have there."""
 
     traces: tuple[str, ...]
     out: Path | None = None
@@ -54,24 +53,24 @@ class Settings(DriveInput):
     """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
 
 
-def check(settings: Settings, progress: Progress) -> Result:
+def check(settings: CheckOptions, progress: Progress) -> Result:
     """Judge every drive by every selected rule.
 
     Errors: `UsageError`, `RuleError` for what was asked; `MapError`, `TraceError` if no drive at all could be judged. A drive that
     cannot be judged beside others that can is a row of the table `drive`.
     """
-    rules = catalogue.select(catalogue.load(settings.rules_dirs), settings.rules, settings.ignore)
+    rules = catalogue.select_rules(catalogue.load_rules(settings.rules_dirs), settings.rules, settings.ignore)
     params = catalogue.parse_params(rules, settings.params)
     profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles)
     if (settings.margins or settings.keep_db) and settings.out is None:
         raise UsageError("--margins and --keep-db write files: say where with --out DIR")
-    paths = in_order(expand(settings.traces))
+    paths = sorted_logs(expand_traces(settings.traces))
     options, library = settings.options(), MapLibrary.of(settings)
 
     with store.workspace(settings.memory) as con:
         memory = Memory(con, settings.memory, progress.note)
         store.insert(con, "profile", profiles)
-        table = rule_table(rules, params, settings.profiles or DEFAULT)
+        table = rule_table(rules, params, settings.profiles or DEFAULT_PROFILES)
         session = JudgingSession(
             con,
             rules,
@@ -83,11 +82,11 @@ def check(settings: Settings, progress: Progress) -> Result:
             memory=memory,
         )
         progress.stage("checking", len(paths))
-        refused: list[Refused] = []
+        refused: list[RefusedLog] = []
         said: set[str] = set()
         places: dict[str, str] = {}
         try:
-            for batch in cut(_noting(read(paths, options, library), places)):
+            for batch in cut_batches(_noting(read_drives(paths, options, library), places)):
                 failed = _judge(session, batch, progress, said)
                 refused += failed
                 if len(paths) > 1:  # a single one is the error of the whole run
@@ -97,7 +96,7 @@ def check(settings: Settings, progress: Progress) -> Result:
             session.close()
         if len(refused) == len(paths):
             raise _none_judged(refused)
-        unjudged = [collect.unjudged(r.path.stem, r.path.name, str(r.error)) for r in refused]
+        unjudged = [collect.unjudged_drive(r.path.stem, r.path.name, str(r.error)) for r in refused]
         drives = pa.concat_tables([memory.enough(collect.drives, con), *unjudged]).sort_by(
             [("drive_id", "ascending"), ("file_name", "ascending")]
         )
@@ -108,7 +107,7 @@ def check(settings: Settings, progress: Progress) -> Result:
             rules=table,
             scenes=memory.enough(evidence.scenes, con),
             lanes=memory.enough(evidence.lanes, con),
-            spaces=memory.enough(evidence.spaces, con),
+            spaces=memory.enough(evidence.danger_spaces, con),
             courses=memory.enough(evidence.courses, con),
             overtakes=memory.enough(evidence.overtakes, con),
             opportunities=memory.enough(evidence.opportunities, con),
@@ -119,7 +118,7 @@ def check(settings: Settings, progress: Progress) -> Result:
         )
 
 
-def _noting(drives: Iterable[Drive | Refused], places: dict[str, str]) -> Iterator[Drive | Refused]:
+def _noting(drives: Iterable[Drive | RefusedLog], places: dict[str, str]) -> Iterator[Drive | RefusedLog]:
     """Yield them, and note where the log of each lies."""
     for drive in drives:
         if isinstance(drive, Drive):
@@ -127,13 +126,13 @@ def _noting(drives: Iterable[Drive | Refused], places: dict[str, str]) -> Iterat
         yield drive
 
 
-def _asked(settings: Settings, places: dict[str, str]) -> RunRequest:
+def _asked(settings: CheckOptions, places: dict[str, str]) -> RunRequest:
     return RunRequest.of(
         settings, traces=places, profiles=settings.profiles, params=settings.params, rules_dirs=settings.rules_dirs
     )
 
 
-def _observers(settings: Settings, rules: pa.Table) -> list[BatchObserver]:
+def _observers(settings: CheckOptions, rules: pa.Table) -> list[BatchObserver]:
     """Return who looks at each batch before its tables are cleared: the report, the annotated logs."""
     if settings.out is None:
         return []
@@ -148,16 +147,16 @@ def _gather(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], **_part: b
 
 
 def _judge(
-    session: JudgingSession, batch: Iterable[Drive | Refused], progress: Progress, said: set[str]
-) -> list[Refused]:
+    session: JudgingSession, batch: Iterable[Drive | RefusedLog], progress: Progress, said: set[str]
+) -> list[RefusedLog]:
     """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other. Return what could not be judged.
 
     `said`: notes of earlier logs, not to be repeated for each of a thousand.
     """
-    refused: list[Refused] = []
+    refused: list[RefusedLog] = []
     drives: list[Drive] = []
     for item in batch:
-        if isinstance(item, Refused):
+        if isinstance(item, RefusedLog):
             refused.append(item)
         elif session.knows(item) or any(item.trace.drive_id == d.trace.drive_id for d in drives):
             progress.note(f"{item.trace.path}: the same log as one before ({item.trace.drive_id}), judged once")
@@ -172,7 +171,7 @@ def _judge(
     return refused
 
 
-def _judged(session: JudgingSession, drives: Sequence[Drive]) -> list[Refused]:
+def _judged(session: JudgingSession, drives: Sequence[Drive]) -> list[RefusedLog]:
     try:
         session.judge(drives)
     except OutputError:
@@ -188,15 +187,15 @@ def _judged(session: JudgingSession, drives: Sequence[Drive]) -> list[Refused]:
     return []
 
 
-def _failed(drive: Drive, error: Exception) -> Refused:
+def _failed(drive: Drive, error: Exception) -> RefusedLog:
     if isinstance(error, DriveLintError):
-        return Refused(drive.trace.path, error)
+        return RefusedLog(drive.trace.path, error)
     if isinstance(error, duckdb.OutOfMemoryException):
-        return Refused(drive.trace.path, MemoryShortError(str(drive.trace.path)))
-    return Refused(drive.trace.path, TraceError(f"{drive.trace.path}: {str(error).splitlines()[0]}"))
+        return RefusedLog(drive.trace.path, MemoryShortError(str(drive.trace.path)))
+    return RefusedLog(drive.trace.path, TraceError(f"{drive.trace.path}: {str(error).splitlines()[0]}"))
 
 
-def _none_judged(refused: list[Refused]) -> DriveLintError:
+def _none_judged(refused: list[RefusedLog]) -> DriveLintError:
     first = refused[0].error
     if len(refused) == 1:
         return first

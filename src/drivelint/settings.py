@@ -1,4 +1,4 @@
-"""`drivelint.toml`: the options of `check`, written down once, so that everybody in a folder runs the same check.
+"""Reads `drivelint.toml`, which holds options of `check`.
 
     map = "road.xodr"
     profile = ["nominal", "aggressive"]
@@ -25,10 +25,10 @@ from drivelint.phrases import hint
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-FILE: Final = "drivelint.toml"
+SETTINGS_FILE: Final = "drivelint.toml"
 
 
-def defaults(options: Mapping[str, tuple[str, bool]], file: Path = Path(FILE)) -> dict[str, Any]:
+def read_settings(options: Mapping[str, tuple[str, bool]], file: Path = Path(SETTINGS_FILE)) -> dict[str, Any]:
     """Return parameter name -> value from the settings file; nothing if there is none.
 
     `options`: option name without dashes -> (parameter name, whether it may be given more than once).

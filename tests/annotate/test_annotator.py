@@ -19,16 +19,16 @@ from shapely.ops import unary_union
 
 from drivelint import __version__
 from drivelint.annotate import actors, events
-from drivelint.annotate.annotator import LAYOUT
+from drivelint.annotate.annotator import LAYOUT_FILE
 from drivelint.drive.trace import IngestOptions
 from drivelint.engine import batch
 from drivelint.errors import TraceError
 from drivelint.evaluate import evaluate
 from drivelint.formats import read_trace
 from drivelint.report.progress import Silent
-from drivelint.result.contract import FILES
+from drivelint.result.contract import TABLE_OF_FILE
 from drivelint.result.files import OutputError, parquet_bytes
-from drivelint.run import Settings, check
+from drivelint.run import CheckOptions, check
 from tests.annotate.files import seeking, streaming, verify
 from tests.annotate.viewer import SCENES, messages, played, points, shown, yaw
 
@@ -52,8 +52,8 @@ def run(out: Path, *traces: Path, **options: Any) -> Path:
         "profiles": ("relaxed", "nominal", "aggressive"),
         **options,
     }
-    result = check(Settings(tuple(map(str, traces)), out=out, **given), Silent())
-    for name, table in FILES.items():
+    result = check(CheckOptions(tuple(map(str, traces)), out=out, **given), Silent())
+    for name, table in TABLE_OF_FILE.items():
         (out / f"{name}.parquet").write_bytes(parquet_bytes(getattr(result, name), table))
     return out / "annotated"
 
@@ -337,7 +337,7 @@ def test_without_a_map_there_are_boxes_and_verdicts(tmp_path: Path) -> None:
 
 
 def test_the_layout_shows_every_topic_that_is_there(out: Path) -> None:
-    layout = json.loads((out / "annotated" / LAYOUT).read_bytes())
+    layout = json.loads((out / "annotated" / LAYOUT_FILE).read_bytes())
     panels = layout["configById"]
     assert set(panels["3D!drivelint"]["topics"]) == {f"/drivelint/{topic}" for topic in SCENES}
     assert all(topic["visible"] for topic in panels["3D!drivelint"]["topics"].values())

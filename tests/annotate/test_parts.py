@@ -17,7 +17,7 @@ from drivelint.annotate.tracks import tracks
 from drivelint.formats.foxglove import messages as foxglove
 from drivelint.formats.protobuf import wire
 from drivelint.resources import folder
-from drivelint.sql.store import schema
+from drivelint.sql.store import column_comments
 
 VIEWER_TYPES = {"string", "number", "integer", "boolean"}
 """What Foxglove's and Lichtblick's readers of JSON Schema take for a plain field; a list of types or null ends the channel."""
@@ -69,7 +69,7 @@ def test_fields_are_read_back(xyz: list[tuple[float, float, float]], whole: int,
     )
     assert [(p.x, p.y, p.z) for p in line.points] == xyz
     assert list(line.indices) == [whole]
-    log = made("Log").FromString(wire.text(3, text) + wire.whole(2, whole))
+    log = made("Log").FromString(wire.text(3, text) + wire.integer(2, whole))
     assert log.message == text.encode("utf-8", "replace").decode()
     assert log.level == whole
 
@@ -77,7 +77,9 @@ def test_fields_are_read_back(xyz: list[tuple[float, float, float]], whole: int,
 @pytest.mark.parametrize("name", ["verdict", "finding"])
 def test_our_messages_have_the_columns_of_the_table(name: str) -> None:
     content = json.loads((folder("schemas") / f"{name}-message.schema.json").read_bytes())
-    assert {key: field["description"] for key, field in content["properties"].items()} == schema("verdict")[name]
+    assert {key: field["description"] for key, field in content["properties"].items()} == column_comments("verdict")[
+        name
+    ]
     assert {field["type"] for field in content["properties"].values()} <= VIEWER_TYPES
     sql = (folder("schemas") / "verdict.sql").read_text(encoding="utf-8").partition(f"CREATE TABLE {name} (")[2]
     needed = [

@@ -28,7 +28,7 @@ OPERATORS = 4
 def profile(place: Place) -> list[Row]:
     """Return the dearest derived tables of the reference drive, the costliest operators in the note."""
     spent: dict[str, tuple[float, str]] = {}
-    rules = catalogue.select(catalogue.load(()), ("ukhc",), ())
+    rules = catalogue.select_rules(catalogue.load_rules(()), ("ukhc",), ())
     tables = {table for rule in rules for table in rule.reads}
     trace = read_trace(place.reference, IngestOptions())
     road = MapLibrary(place.road, None, "auto").find(Path(), None, None, trace.tables["actor_state"])

@@ -45,7 +45,7 @@ EXTRA = ("report", "annotate")
 
 def check(traces: list[str], road: Path, out: Path, *, annotate: bool = True) -> dict[str, Span]:
     """Check drives, write everything, and return the time of each stage and of the whole."""
-    settings = run.Settings(
+    settings = run.CheckOptions(
         traces=tuple(traces), map=road, out=out, rules=("ukhc",), fail_on="never", annotate=annotate
     )
     stages = Stages()

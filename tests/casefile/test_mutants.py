@@ -108,19 +108,19 @@ def test_a_fault_that_stands_twice_has_two_names(tmp_path: Path) -> None:
 
 
 def test_good_cases_notice_every_mutant(tmp_path: Path) -> None:
-    proof = mutation.prove(with_cases(measured(tmp_path), CASES))
-    assert proof == mutation.Proof("pack.rule", True, 4, (), ())
+    proof = mutation.judge_mutants(with_cases(measured(tmp_path), CASES))
+    assert proof == mutation.MutationResult("pack.rule", True, 4, (), ())
     assert (proof.ok, proof.noticed) == (True, 4)
 
 
 def test_a_threshold_that_no_case_is_close_to_is_a_survivor(tmp_path: Path) -> None:
     rule = with_cases(measured(tmp_path), LOOSE)
-    proof = mutation.prove(rule)
+    proof = mutation.judge_mutants(rule)
     assert proof.survivors == ("sense > -> >=", "params.limit * 0.9")
     assert not proof.ok
-    assert "no case notices: params.limit * 0.9" in mutation.said(proof)
+    assert "no case notices: params.limit * 0.9" in mutation.result_text(proof)
     assert mutation.summary([proof]) == "1 stable rules: 2 of 4 mutants noticed (50.0%)"
-    assert mutation.rate([proof]) < mutation.LEAST
+    assert mutation.noticed_share([proof]) < mutation.LEAST_NOTICED_SHARE
     assert mutation.summary([proof._replace(stable=False)]) == (
         "no stable rule here: only the mutants of stable rules must be noticed"
     )
@@ -130,21 +130,23 @@ def test_a_listed_survivor_may_live_and_no_other(tmp_path: Path) -> None:
     rule = with_cases(measured(tmp_path), LOOSE)
     entry = '[[survivor]]\nrule = "pack.rule"\nmutant = "{}"\nreason = "a test"\n'
     listed = [entry.format("sense > -> >="), entry.format("params.limit * 0.9")]
-    file = rule.path.parent / mutation.FILE
+    file = rule.path.parent / mutation.SURVIVORS_FILE
     file.write_text(listed[0], encoding="utf-8")
-    assert mutation.prove(rule).unlisted == ("params.limit * 0.9",)
+    assert mutation.judge_mutants(rule).unlisted == ("params.limit * 0.9",)
     file.write_text("".join(listed), encoding="utf-8")
-    assert mutation.prove(rule).ok
-    assert mutation.rate([mutation.prove(rule)]) == 0.5, "what is listed counts as not noticed all the same"
+    assert mutation.judge_mutants(rule).ok
+    assert mutation.noticed_share([mutation.judge_mutants(rule)]) == 0.5, (
+        "what is listed counts as not noticed all the same"
+    )
     file.write_text("".join([*listed, entry.format("sense > -> <=")]), encoding="utf-8")
-    proof = mutation.prove(rule)
+    proof = mutation.judge_mutants(rule)
     assert (proof.ok, proof.stale) == (False, ("sense > -> <=",))
     file.write_text(entry.format("x").replace("pack.rule", "pack.gone"), encoding="utf-8")
-    assert mutation.strangers([rule]) == [f"{file}: there is no rule 'pack.gone' here"]
+    assert mutation.entries_without_rule([rule]) == [f"{file}: there is no rule 'pack.gone' here"]
 
 
 def test_a_rule_that_breaks_its_own_cases_proves_nothing(tmp_path: Path) -> None:
-    proof = mutation.prove(with_cases(measured(tmp_path), CASES.replace("expect: unknown", "expect: pass")))
+    proof = mutation.judge_mutants(with_cases(measured(tmp_path), CASES.replace("expect: unknown", "expect: pass")))
     assert (proof.ok, proof.noticed, proof.n) == (False, 0, 4)
     assert "case 'unknown': expected pass, got unknown" in proof.problem
 
@@ -168,7 +170,7 @@ LEFT JOIN lost_object l ON l.{other} = e.{other}"""
   expect: unknown
 """,
     )
-    alone, beside = {r.name: r for r in run_cases(rule) if r.name != "kinds of case"}, mutation.prove(rule)
+    alone, beside = {r.name: r for r in run_cases(rule) if r.name != "kinds of case"}, mutation.judge_mutants(rule)
     assert [name for name, result in alone.items() if not result.ok] == ["all cases together"]
     assert f"does each join have {key}?" in alone["all cases together"].message
     assert "case 'clean': expected pass, got unknown" in beside.problem

@@ -30,7 +30,7 @@ def said_of(folder: Path, *only: str) -> tuple[ExitCode, str]:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_new_rule_runs_as_it_is_and_its_cases_notice_every_mutant(tmp_path: Path, kind: str) -> None:
-    sql, cases = workshop.new(f"mine.r1.{kind}", tmp_path, kind)
+    sql, cases = workshop.new_rule(f"mine.r1.{kind}", tmp_path, kind)
     assert (sql.name, cases.name) == (f"r1.{kind}.sql", f"r1.{kind}.cases.yml")
     rule = read_rule(sql)
     assert (rule.id, rule.kind, rule.status) == (f"mine.r1.{kind}", kind, "draft")
@@ -41,14 +41,14 @@ def test_a_new_rule_runs_as_it_is_and_its_cases_notice_every_mutant(tmp_path: Pa
 
 
 def test_nothing_is_overwritten(tmp_path: Path) -> None:
-    sql, cases = workshop.new("mine.one", tmp_path, "invariant")
+    sql, cases = workshop.new_rule("mine.one", tmp_path, "invariant")
     sql.write_text("mine", encoding="utf-8")
     with pytest.raises(UsageError, match=r"one\.sql is there already: nothing was written"):
-        workshop.new("mine.one", tmp_path, "invariant")
+        workshop.new_rule("mine.one", tmp_path, "invariant")
     sql.unlink()
     cases.write_text("mine", encoding="utf-8")
     with pytest.raises(UsageError, match=r"one\.cases\.yml is there already: nothing was written"):
-        workshop.new("mine.one", tmp_path, "invariant")
+        workshop.new_rule("mine.one", tmp_path, "invariant")
     assert not sql.exists()
     assert cases.read_text(encoding="utf-8") == "mine"
 
@@ -58,19 +58,19 @@ def test_nothing_is_overwritten(tmp_path: Path) -> None:
 )
 def test_what_is_no_rule_id(tmp_path: Path, rule_id: str) -> None:
     with pytest.raises(UsageError, match="is no rule id: write PACK"):
-        workshop.new(rule_id, tmp_path, "invariant")
+        workshop.new_rule(rule_id, tmp_path, "invariant")
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_new_rule_does_not_take_the_name_of_a_shipped_one(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="is shipped already"):
-        workshop.new("ukhc.r124.speed-limit", tmp_path, "invariant")
+        workshop.new_rule("ukhc.r124.speed-limit", tmp_path, "invariant")
 
 
 def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
     (tmp_path / "mine").write_text("a file", encoding="utf-8")
     with pytest.raises(UsageError, match="cannot write there"):
-        workshop.new("mine.one", tmp_path, "invariant")
+        workshop.new_rule("mine.one", tmp_path, "invariant")
 
 
 def test_a_copy_of_the_shipped_rules_can_be_worked_on(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from drivelint.catalogue import json_schema, load, read_rule
+from drivelint.catalogue import json_schema, load_rules, read_rule
 from drivelint.catalogue.header import line_of
 from drivelint.drive import conditions
 from drivelint.errors import RuleError
@@ -247,12 +247,12 @@ def test_sql_before_the_first_section_and_a_missing_condition(tmp_path: Path) ->
 
 def test_packs_of_users_stand_beside_the_shipped_ones(tmp_path: Path) -> None:
     write(tmp_path, GOOD, {"condition": SPEED}, name="one")
-    assert "pack.one" in load([tmp_path])
-    assert "pack.one" in load([tmp_path / "pack"])
+    assert "pack.one" in load_rules([tmp_path])
+    assert "pack.one" in load_rules([tmp_path / "pack"])
     with pytest.raises(RuleError, match="exists already in"):
-        load([tmp_path, tmp_path / "pack"])
+        load_rules([tmp_path, tmp_path / "pack"])
     with pytest.raises(RuleError, match="no rules here"):
-        load([tmp_path / "nothing"])
+        load_rules([tmp_path / "nothing"])
 
 
 def test_a_rule_may_use_ctes_unions_macros_of_ours_and_unnest(tmp_path: Path) -> None:
@@ -267,10 +267,10 @@ def test_conditions_are_read_and_what_they_include_is_known(tmp_path: Path) -> N
     rule = write(tmp_path, GOOD | {"observes": '"speed"'}, {"condition": SPEED}, tables=tables)
     assert rule.applies.words == {"road_type": ("town", "rural"), "nation": ("gb",)}
     assert (rule.applies.limit_min_mps, rule.applies.limited, rule.observes) == (13.0, True, "speed")
-    assert conditions.covered(("gb",)) == ["gb", "gb-eng", "gb-sct", "gb-wls"]
-    assert {"town", "townLocal", "rural"} < set(conditions.covered(("rural", "town")))
-    assert (conditions.undecided(("gb-sct", "de")), conditions.undecided(("gb",))) == (["gb"], [])
-    assert conditions.problem("nation", "fr") is None
+    assert conditions.with_narrower_values(("gb",)) == ["gb", "gb-eng", "gb-sct", "gb-wls"]
+    assert {"town", "townLocal", "rural"} < set(conditions.with_narrower_values(("rural", "town")))
+    assert (conditions.broader_values(("gb-sct", "de")), conditions.broader_values(("gb",))) == (["gb"], [])
+    assert conditions.value_problem("nation", "fr") is None
 
 
 def test_the_published_schema_of_the_header_is_current() -> None:
@@ -280,7 +280,7 @@ def test_the_published_schema_of_the_header_is_current() -> None:
 
 
 def test_a_pack_says_what_it_is_about(tmp_path: Path) -> None:
-    assert all(rule.pack_title for rule in load().values())
+    assert all(rule.pack_title for rule in load_rules().values())
     pack = tmp_path / "mine"
     pack.mkdir()
     file = pack / "speed.sql"

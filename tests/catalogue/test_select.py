@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from drivelint.catalogue import Rule, parse_params, select
+from drivelint.catalogue import Rule, parse_params, select_rules
 from drivelint.errors import UsageError
 from tests.evaluate.packs import INVARIANT, MEASURED, write
 
@@ -63,9 +63,9 @@ def rules(tmp_path: Path) -> dict[str, Rule]:
 def test_select(rules: dict[str, Rule], include: list[str], ignore: list[str], expected: list[str] | None) -> None:
     if expected is None:
         with pytest.raises(UsageError, match="no rule is left"):
-            select(rules, include, ignore, default_pack="pack")
+            select_rules(rules, include, ignore, default_pack="pack")
     else:
-        assert [rule.id for rule in select(rules, include, ignore, default_pack="pack")] == expected
+        assert [rule.id for rule in select_rules(rules, include, ignore, default_pack="pack")] == expected
 
 
 @pytest.mark.parametrize(
@@ -77,7 +77,7 @@ def test_a_selector_that_matches_nothing_is_refused_with_the_nearest(
 ) -> None:
     for include, ignore in (([selector], []), ([], [selector])):
         with pytest.raises(UsageError, match=f"did you mean '{nearest}'"):
-            select(rules, include, ignore, default_pack="pack")
+            select_rules(rules, include, ignore, default_pack="pack")
 
 
 @pytest.mark.parametrize(
@@ -94,7 +94,7 @@ def test_a_selector_that_matches_nothing_is_refused_with_the_nearest(
 )
 def test_what_a_selector_asks_for_must_exist(rules: dict[str, Rule], selector: str, says: str) -> None:
     with pytest.raises(UsageError, match=says.replace("(", r"\(")):
-        select(rules, [selector], [], default_pack="pack")
+        select_rules(rules, [selector], [], default_pack="pack")
 
 
 def test_parameters_are_typed_like_their_default(rules: dict[str, Rule]) -> None:

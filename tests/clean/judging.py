@@ -25,7 +25,7 @@ PACKS = {"gb": ("ukhc", *EVERYWHERE), "de": ("stvo", "alks-r157", *EVERYWHERE)}
 
 def stable(packs: Iterable[str]) -> tuple[str, ...]:
     """Return the ids of the stable rules of packs."""
-    return tuple(r.id for r in catalogue.load().values() if r.status == "stable" and r.pack in packs)
+    return tuple(r.id for r in catalogue.load_rules().values() if r.status == "stable" and r.pack in packs)
 
 
 def told(name: str, nation: str, chapters: Iterable[str], change: Mapping[str, Any] | None = None) -> Drive:

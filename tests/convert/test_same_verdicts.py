@@ -11,9 +11,9 @@ import pytest
 from drivelint.convert import ConvertRequest, convert
 from drivelint.drive.trace import IngestOptions
 from drivelint.formats import read_trace
-from drivelint.formats.osi.extras import findings
+from drivelint.formats.osi.extras import ego_independent_quality
 from drivelint.report.progress import Silent
-from drivelint.run import Settings, check
+from drivelint.run import CheckOptions, check
 from tests.shared_data import shared
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ SINGLE = [
 def verdicts(*paths: Path, **options: Any) -> dict[str, pa.Table]:
     """Return the rows of every rule and profile by the log's stem, without the drive's id."""
     profiles = ("relaxed", "nominal", "aggressive", "observed")
-    rows = check(Settings(tuple(map(str, paths)), rules=("ukhc",), profiles=profiles, **options), Silent()).verdicts
+    rows = check(CheckOptions(tuple(map(str, paths)), rules=("ukhc",), profiles=profiles, **options), Silent()).verdicts
     return {
         drive.rpartition("-")[0]: rows.filter(pc.equal(rows["drive_id"], drive)).drop_columns("drive_id")
         for drive in rows["drive_id"].unique().to_pylist()
@@ -92,7 +92,9 @@ def test_rows_stay(tmp_path: Path, to: Target, log: Log) -> None:
     again = read_trace(log.convert(to, tmp_path / "out"), IngestOptions())
     for name in TABLES:
         assert again.tables[name].drop_columns("drive_id") == original.tables[name].drop_columns("drive_id"), name
-    assert findings(again).drop_columns("drive_id") == findings(original).drop_columns("drive_id")
+    assert ego_independent_quality(again).drop_columns("drive_id") == ego_independent_quality(original).drop_columns(
+        "drive_id"
+    )
     assert again.map_offset == original.map_offset
 
 

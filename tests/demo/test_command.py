@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from drivelint.demo import files
-from drivelint.demo.overtakes import LOGGED_MPS, distance_ahead_m, safe_distance_ahead_m
+from drivelint.demo.overtakes import PAPER_SPEED_MPS, distance_ahead_m, safe_distance_ahead_m
 from drivelint.demo.road import MPH
 from drivelint.engine.profiles import load_profiles
 from drivelint.errors import UsageError
@@ -40,7 +40,7 @@ def test_the_printed_command_gives_the_nine_verdicts_at_both_speeds(tmp_path: Pa
         if row["rule_id"] == "ukhc.r162.safe-distance-ahead":
             name = row["drive_id"].rpartition("-")[0]
             found.setdefault(name, {})[row["profile"]] = row["verdict"]
-            v = 25 * MPH if name.endswith("-25mph") else LOGGED_MPS
+            v = 25 * MPH if name.endswith("-25mph") else PAPER_SPEED_MPS
             assert row["observed"] == pytest.approx(distance_ahead_m(name.removesuffix("-25mph"), v), abs=0.01)
             assert row["required"] == pytest.approx(safe_distance_ahead_m(profiles[row["profile"]], v), abs=0.01)
     assert found == TABLE_1 | {f"{name}-25mph": verdicts for name, verdicts in TABLE_1.items()}
@@ -76,6 +76,6 @@ def test_the_next_command_names_the_program_as_it_was_called_where_it_is_on_no_p
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setenv("PATH", "")
-    assert files.next_command(Path("demo"), ".venv/bin/drivelint").startswith(".venv/bin/drivelint check demo/*.mcap ")
-    assert files.next_command(Path("demo"), "/x/pytest").startswith("drivelint check ")
-    assert files.next_command(Path("my demo")).endswith("--out 'my demo'/results")
+    assert files.check_command(Path("demo"), ".venv/bin/drivelint").startswith(".venv/bin/drivelint check demo/*.mcap ")
+    assert files.check_command(Path("demo"), "/x/pytest").startswith("drivelint check ")
+    assert files.check_command(Path("my demo")).endswith("--out 'my demo'/results")

@@ -12,7 +12,7 @@ from mcap.reader import make_reader
 
 from drivelint.demo.motion import separation
 from drivelint.demo.overtakes import overtakes
-from drivelint.demo.scenes import library
+from drivelint.demo.scenes import all_scenes
 from tests.demo.table_1 import TABLE_1
 from tests.shared_data import ROOT
 
@@ -57,7 +57,7 @@ def sections(text: str) -> dict[str, list[str]]:
 def test_the_verdicts_are_those_that_were_reviewed(said: str) -> None:
     committed = sections((FOLDER / MAKE["VERDICTS"]).read_text(encoding="utf-8"))
     now = sections(said)
-    assert now.keys() == committed.keys() == {scene.name for scene in library()}
+    assert now.keys() == committed.keys() == {scene.name for scene in all_scenes()}
     for name, lines in committed.items():
         assert now[name] == lines, f"{name}: {AGAIN}"
 

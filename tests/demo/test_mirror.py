@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from drivelint.demo.memory import drive
-from drivelint.demo.scenes import library
+from drivelint.demo.memory import drive_of_scene
+from drivelint.demo.scenes import all_scenes
 from tests.scenes import Row, judged
 
 MIRRORED = ("near-miss", "collision-25mph", "signal-late", "overtake-two-in-one-go", "cyclist-at-1.0m")
@@ -13,9 +13,9 @@ SAME = ("rule_id", "profile", "object_id", "occurrence", "verdict", "reason_code
 
 
 def test_mirrored_scenes_have_the_same_verdicts() -> None:
-    scenes = [scene for scene in library() if scene.name in MIRRORED]
+    scenes = [scene for scene in all_scenes() if scene.name in MIRRORED]
     assert len(scenes) == len(MIRRORED)
-    pairs = [[drive(scene.on_the(hand)) for hand in ("left", "right")] for scene in scenes]
+    pairs = [[drive_of_scene(scene.on_the(hand)) for hand in ("left", "right")] for scene in scenes]
     rows: dict[str, list[Row]] = {}
     for hand in (0, 1):  # the maps of a batch are those of its drives
         for row in judged([pair[hand] for pair in pairs], rules=["ukhc"], profiles=["relaxed", "nominal"]):

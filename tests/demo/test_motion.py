@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from drivelint.demo.actors import Actor, car, cyclist
 from drivelint.demo.line import Line, left, right, straight
-from drivelint.demo.motion import TICKS, Track, collide, move, separation
-from drivelint.demo.road import LANE_M, Hand, Road
-from drivelint.demo.scene import coming, departure
+from drivelint.demo.motion import TICKS_PER_S, Track, actor_track, separation, stop_on_contact
+from drivelint.demo.road import LANE_WIDTH_M, Handedness, Road
+from drivelint.demo.scene import lane_departure, place_oncoming
 
-HANDS: tuple[Hand, ...] = ("left", "right")
+HANDS: tuple[Handedness, ...] = ("left", "right")
 S_BEND = Road((straight(60.0), left(80.0, radius=100.0), right(80.0, radius=60.0), straight(300.0)))
 
 
@@ -27,12 +27,12 @@ S_BEND = Road((straight(60.0), left(80.0, radius=100.0), right(80.0, radius=60.0
     hand=st.sampled_from(HANDS),
 )
 def test_the_speed_said_is_the_speed_along_the_path(
-    speed: float, shift: tuple[float, float, float], lane: int, hand: Hand
+    speed: float, shift: tuple[float, float, float], lane: int, hand: Handedness
 ) -> None:
     by, at, within = shift
     who = car().starts(10.0 if lane > 0 else 300.0, lane=lane).drives(speed).moves_out(by, at=at, within=within)
-    track = move(who, S_BEND.driven_on_the(hand), 8.0)
-    found = np.hypot(np.diff(track.x), np.diff(track.y)) * TICKS / speed
+    track = actor_track(who, S_BEND.driven_on_the(hand), 8.0)
+    found = np.hypot(np.diff(track.x), np.diff(track.y)) * TICKS_PER_S / speed
     assert 0.93 < found.min() <= found.max() < 1.07  # within two centimetres of where a bend begins
     assert np.quantile(np.abs(found - 1.0), 0.95) < 1e-3
     heading = np.arctan2(np.diff(track.y), np.diff(track.x))
@@ -40,20 +40,20 @@ def test_the_speed_said_is_the_speed_along_the_path(
 
 
 @pytest.mark.parametrize("hand", HANDS)
-def test_the_nearside_is_the_side_that_is_driven_on(hand: Hand) -> None:
+def test_the_nearside_is_the_side_that_is_driven_on(hand: Handedness) -> None:
     road, side = S_BEND.driven_on_the(hand), 1 if hand == "left" else -1
-    ego = move(car().starts(10.0).drives(10.0).signals("offside", 1.0, 2.0), road, 3.0)
-    assert ego.y[0] * side == pytest.approx(LANE_M / 2)
+    ego = actor_track(car().starts(10.0).drives(10.0).signals("offside", 1.0, 2.0), road, 3.0)
+    assert ego.y[0] * side == pytest.approx(LANE_WIDTH_M / 2)
     assert set(ego.light) == {"off", "right" if hand == "left" else "left"}
     assert ego.light[999] == ego.light[2000] == "off"
     assert ego.light[1000] == ego.light[1999] != "off"
-    oncoming = move(car().starts(10.0, lane=-1, nearer=0.5).drives(10.0), road, 1.0)
-    assert oncoming.y[0] * side == pytest.approx(-LANE_M / 2 - 0.5)  # its own nearside
+    oncoming = actor_track(car().starts(10.0, lane=-1, nearer=0.5).drives(10.0), road, 1.0)
+    assert oncoming.y[0] * side == pytest.approx(-LANE_WIDTH_M / 2 - 0.5)  # its own nearside
     assert abs(oncoming.yaw[0]) == pytest.approx(math.pi)
 
 
 def test_lane_changes_are_smooth_steps_of_the_length_said() -> None:
-    ego = move(
+    ego = actor_track(
         car().starts(0.0).drives(10.0).moves_out(3.5, at=20.0, within=30.0).moves_in(3.5, at=80.0, within=10.0),
         Road((straight(200.0),)),
         12.0,
@@ -64,10 +64,10 @@ def test_lane_changes_are_smooth_steps_of_the_length_said() -> None:
 
 def test_speeds_change_at_the_rate_said_and_brake_lights_tell() -> None:
     who = car().drives(10.0).then_drives(4.0, at_s=1.0, rate=3.0).then_drives(12.0, at_s=4.0, rate=2.0)
-    track = move(who, S_BEND, 10.0)
-    at = {t: float(track.speed[t * TICKS]) for t in range(11)}
+    track = actor_track(who, S_BEND, 10.0)
+    at = {t: float(track.speed[t * TICKS_PER_S]) for t in range(11)}
     assert at == pytest.approx({0: 10, 1: 10, 2: 7, 3: 4, 4: 4, 5: 6, 6: 8, 7: 10, 8: 12, 9: 12, 10: 12})
-    lit = np.flatnonzero(track.brakes) / TICKS
+    lit = np.flatnonzero(track.brakes) / TICKS_PER_S
     assert (lit.min(), lit.max()) == pytest.approx((1.0, 3.0), abs=0.01)
 
 
@@ -75,7 +75,7 @@ def test_what_touches_stands_still_where_it_touched() -> None:
     road = Road((straight(200.0),))
     ego, free = car().starts(20.0).drives(10.0), cyclist().starts(150.0, lane=-1).drives(4.0)
     wall = car().starts(60.0)
-    tracks = collide(*_moved(road, ego, wall, free))
+    tracks = stop_on_contact(*_moved(road, ego, wall, free))
     gap = separation(tracks[0], tracks[1])
     assert -0.04 < gap.min() <= -0.02
     assert (tracks[0].speed[0], tracks[0].speed[-1]) == (10.0, 0.0)
@@ -84,7 +84,7 @@ def test_what_touches_stands_still_where_it_touched() -> None:
 
 
 def _moved(road: Road, ego: Actor, *others: Actor) -> tuple[Track, list[Track]]:
-    return move(ego, road, 8.0), [move(other, road, 8.0) for other in others]
+    return actor_track(ego, road, 8.0), [actor_track(other, road, 8.0) for other in others]
 
 
 def test_boxes_apart_are_as_far_apart_as_shapely_says() -> None:
@@ -92,7 +92,7 @@ def test_boxes_apart_are_as_far_apart_as_shapely_says() -> None:
     road = Road((straight(60.0), left(200.0, radius=40.0)))
     ego = car().starts(0.0).drives(12.0).moves_out(3.0, at=10.0, within=15.0)
     other = cyclist().starts(30.0, nearer=0.5).drives(3.0)
-    a, b = move(ego, road, 6.0), move(other, road, 6.0)
+    a, b = actor_track(ego, road, 6.0), actor_track(other, road, 6.0)
     sat = separation(a, b)
     for k in range(0, 6001, 50):
         boxes = []
@@ -108,16 +108,16 @@ def test_boxes_apart_are_as_far_apart_as_shapely_says() -> None:
 def test_an_oncoming_car_is_as_far_ahead_as_asked_when_the_ego_departs(ahead: float) -> None:
     road = Road((straight(500.0),))
     ego = car().starts(10.0).drives(9.0).moves_out(3.5, at=60.0, within=20.0)
-    left_at = departure(ego, road, 10.0)
-    other = coming(car().drives(7.0), left_at, ahead_m=ahead)
-    track = move(other, road, 10.0)
-    front = track.station[round(left_at.t_s * TICKS)] - 2.4
+    left_at = lane_departure(ego, road, 10.0)
+    other = place_oncoming(car().drives(7.0), left_at, ahead_m=ahead)
+    track = actor_track(other, road, 10.0)
+    front = track.station[round(left_at.t_s * TICKS_PER_S)] - 2.4
     assert front - left_at.front == pytest.approx(ahead, abs=1e-6)
 
 
 def test_an_ego_that_stays_never_departs() -> None:
     with pytest.raises(ValueError, match="never leaves"):
-        departure(car().drives(9.0), Road((straight(500.0),)), 5.0)
+        lane_departure(car().drives(9.0), Road((straight(500.0),)), 5.0)
 
 
 def test_a_line_is_cut_and_continued_where_it_was() -> None:

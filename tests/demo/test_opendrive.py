@@ -11,30 +11,30 @@ import pytest
 from drivelint.demo import scenes
 from drivelint.demo.line import straight
 from drivelint.demo.opendrive import opendrive
-from drivelint.demo.road import LANE_M, MPH, Hand, Road, Sign
+from drivelint.demo.road import LANE_WIDTH_M, MPH, Handedness, Road, Sign
 from drivelint.formats import load_map
 from drivelint.road.contract import MapSource
 
 if TYPE_CHECKING:
-    from drivelint.road.contract import Environment
+    from drivelint.road.contract import MapTables
 
-ROADS = {"plain": Road((straight(400.0),)), "two lanes": scenes.TWO_LANES, "bend": scenes.BEND, "side road": scenes.SIDE_ROAD,
-         "exit": scenes.EXIT, "country": scenes.COUNTRY}  # fmt: skip
-HANDS: tuple[Hand, ...] = ("left", "right")
+ROADS = {"plain": Road((straight(400.0),)), "two lanes": scenes.TWO_LANE_ROAD, "bend": scenes.BEND_ROAD, "side road": scenes.SIDE_ROAD,
+         "exit": scenes.EXIT_ROAD, "country": scenes.COUNTRY_ROAD}  # fmt: skip
+HANDS: tuple[Handedness, ...] = ("left", "right")
 
 
-def read(road: Road) -> Environment:
+def read(road: Road) -> MapTables:
     return load_map(MapSource("road.xodr", opendrive(road, "road").encode()))
 
 
-def table(environment: Environment, name: str) -> list[dict[str, Any]]:
+def table(environment: MapTables, name: str) -> list[dict[str, Any]]:
     rows: list[dict[str, Any]] = environment.tables[name].to_pylist()
     return rows
 
 
 @pytest.mark.parametrize("hand", HANDS)
 @pytest.mark.parametrize("name", ROADS)
-def test_a_road_is_read_without_complaint(name: str, hand: Hand) -> None:
+def test_a_road_is_read_without_complaint(name: str, hand: Handedness) -> None:
     environment = read(ROADS[name].driven_on_the(hand))
     assert table(environment, "map_quality") == []
     (row,) = table(environment, "environment")
@@ -44,7 +44,7 @@ def test_a_road_is_read_without_complaint(name: str, hand: Hand) -> None:
 
 @pytest.mark.parametrize("hand", HANDS)
 @pytest.mark.parametrize("name", ["plain", "two lanes", "bend", "country"])
-def test_lanes_lie_where_actors_drive(name: str, hand: Hand) -> None:
+def test_lanes_lie_where_actors_drive(name: str, hand: Handedness) -> None:
     road = ROADS[name].driven_on_the(hand)
     points: dict[str, list[dict[str, Any]]] = {}
     environment = read(road)
@@ -58,12 +58,12 @@ def test_lanes_lie_where_actors_drive(name: str, hand: Hand) -> None:
         mine = points[lanelet["lanelet_id"]]
         x, y, _ = road.line.at([p["road_s_m"] for p in mine], road.lane(number) * road.nearside)
         assert np.hypot(x - [p["x_m"] for p in mine], y - [p["y_m"] for p in mine]).max() < 0.02
-        assert {round(2 * p["half_width_m"], 2) for p in mine} == {LANE_M}
+        assert {round(2 * p["half_width_m"], 2) for p in mine} == {LANE_WIDTH_M}
 
 
 @pytest.mark.parametrize("hand", HANDS)
-def test_every_lane_of_a_junction_leads_somewhere(hand: Hand) -> None:
-    for road in (scenes.SIDE_ROAD, scenes.EXIT):
+def test_every_lane_of_a_junction_leads_somewhere(hand: Handedness) -> None:
+    for road in (scenes.SIDE_ROAD, scenes.EXIT_ROAD):
         environment = read(road.driven_on_the(hand))
         links = [(row["from_id"], row["to_id"]) for row in table(environment, "lane_link")]
         inside = [r["lanelet_id"] for r in table(environment, "lanelet") if r["junction_id"] and r["drivable"]]

@@ -11,11 +11,11 @@ from mcap.reader import make_reader
 
 from drivelint.demo.actors import car, pedestrian
 from drivelint.demo.line import straight
-from drivelint.demo.memory import drive
-from drivelint.demo.osi_log import mcap
+from drivelint.demo.memory import drive_of_scene
+from drivelint.demo.osi_log import osi_mcap
 from drivelint.demo.road import Road
 from drivelint.demo.scene import Scene
-from drivelint.demo.scenes import library
+from drivelint.demo.scenes import all_scenes
 from drivelint.drive.trace import IngestOptions
 from drivelint.formats import read_trace
 
@@ -33,7 +33,7 @@ SCENE = Scene(
 
 
 def test_a_stock_reader_finds_every_message_with_checksums_on() -> None:
-    reader = make_reader(io.BytesIO(mcap(SCENE)), validate_crcs=True)
+    reader = make_reader(io.BytesIO(osi_mcap(SCENE)), validate_crcs=True)
     messages = list(reader.iter_messages(topics=["ground_truth"]))
     assert [m.log_time for _, _, m in messages] == [k * 100_000_000 for k in range(31)]
     schema, channel, last = messages[-1]
@@ -56,7 +56,7 @@ def test_a_stock_reader_finds_every_message_with_checksums_on() -> None:
 
 def test_lights_are_told_as_they_are(tmp_path: Path) -> None:
     path = tmp_path / "walk.mcap"
-    path.write_bytes(mcap(SCENE))
+    path.write_bytes(osi_mcap(SCENE))
     rows = read_trace(path, IngestOptions()).tables["actor_state"].to_pylist()
     ego = {row["t_ns"] // 10**8: (row["indicator"], row["brake_light"]) for row in rows if row["actor_id"] == "1"}
     assert ego[4] == ("off", "off")
@@ -66,12 +66,12 @@ def test_lights_are_told_as_they_are(tmp_path: Path) -> None:
     assert {(row["indicator"], row["brake_light"]) for row in rows if row["actor_id"] == "2"} == {(None, None)}
 
 
-@pytest.mark.parametrize("scene", library(), ids=lambda scene: scene.name)
+@pytest.mark.parametrize("scene", all_scenes(), ids=lambda scene: scene.name)
 def test_a_scene_in_memory_is_what_ingest_reads(scene: Scene, tmp_path: Path) -> None:
     path = tmp_path / f"{scene.name}.mcap"
-    path.write_bytes(mcap(scene))
+    path.write_bytes(osi_mcap(scene))
     read = read_trace(path, IngestOptions())
-    made = drive(scene).trace
+    made = drive_of_scene(scene).trace
     assert made.drive_id == read.drive_id
     assert {name: table.to_pylist() for name, table in made.tables.items()} == {
         name: table.to_pylist() for name, table in read.tables.items()

@@ -11,7 +11,7 @@ import pytest
 
 from drivelint import catalogue
 from drivelint.formats import load_map
-from drivelint.inspect.advice import OF_THE_MAP
+from drivelint.inspect.advice import MAP_SIGNALS
 from drivelint.reasons.words import sentence
 from drivelint.road.contract import MapSource
 from tests.derive.marked import shouldered
@@ -215,7 +215,7 @@ def capabilities(scene: Drive) -> list[dict[str, Any]]:
 
 
 def test_every_signal_that_a_rule_requires_is_answered_for_whatever_the_log() -> None:
-    required = {signal for rule in catalogue.load().values() for signal in rule.requires}
+    required = {signal for rule in catalogue.load_rules().values() for signal in rule.requires}
     assert required <= signals(drive([ride()], None)).keys()
 
 
@@ -225,7 +225,7 @@ def test_every_signal_says_why_it_is_there_or_what_to_provide() -> None:
         for row in capabilities(scene):
             assert row["reason"], row
     nothing = {row["signal"]: sentence(row["reason"]) for row in capabilities(drive([ride()], None))}
-    assert {nothing[signal] for signal in {"map", *OF_THE_MAP} - {"registration"}} == {"no map: give one with --map"}
+    assert {nothing[signal] for signal in {"map", *MAP_SIGNALS} - {"registration"}} == {"no map: give one with --map"}
 
 
 def test_what_the_log_declares_can_be_required() -> None:

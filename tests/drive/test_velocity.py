@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 
 from drivelint.drive.order import Steps
-from drivelint.drive.velocity import KNOWN_MPS, Derived, derived
+from drivelint.drive.velocity import KNOWN_ERROR_MPS, DerivedVelocity, derive_velocities
 
 
-def of(t: np.ndarray, x: np.ndarray, y: np.ndarray | None = None) -> Derived:
+def of(t: np.ndarray, x: np.ndarray, y: np.ndarray | None = None) -> DerivedVelocity:
     t_ns = np.round(t * 1e9).astype(np.int64)
     dt = np.diff(t_ns)
     period = int(np.median(dt))
     same = np.ones(len(dt), np.bool_)
     step = Steps(same, dt * 1e-9, same & (dt <= 2.5 * period), period)
-    return derived(t_ns, np.zeros(len(t), np.int32), x, np.zeros_like(x) if y is None else y, step)
+    return derive_velocities(t_ns, np.zeros(len(t), np.int32), x, np.zeros_like(x) if y is None else y, step)
 
 
 def noisy(values: np.ndarray, sigma: float, seed: int = 1) -> np.ndarray:
@@ -56,8 +56,8 @@ def test_the_error_of_a_moving_one_is_as_said_or_it_is_unknown(hertz: int, sigma
     found = of(t, noisy(12 * t, sigma), noisy(np.zeros_like(t), sigma, 2))
     known = np.isfinite(found.vx)
     off = np.abs(found.vx[known] - 12.0)
-    assert np.sqrt((off**2).mean()) < KNOWN_MPS / 2
-    assert off.max() < 2 * KNOWN_MPS
+    assert np.sqrt((off**2).mean()) < KNOWN_ERROR_MPS / 2
+    assert off.max() < 2 * KNOWN_ERROR_MPS
     assert known[2 * hertz : -2 * hertz].mean() > (0.9 if sigma <= 0.05 or hertz >= 10 else 0.0)
 
 

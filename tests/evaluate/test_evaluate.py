@@ -10,7 +10,7 @@ import pytest
 from drivelint.casefile.scene import fill
 from drivelint.catalogue import Rule
 from drivelint.errors import UsageError
-from drivelint.evaluate import evaluate, explain
+from drivelint.evaluate import evaluate, query_plans
 from drivelint.sql import store
 from tests.evaluate.packs import EXECUTION, INVARIANT, MEASURED, write
 
@@ -139,7 +139,7 @@ def test_explain_shows_a_plan_that_joins_by_nested_loops(con: duckdb.DuckDBPyCon
     )
     header = INVARIANT | MEASURED | {"reads": '["ego_state", "pair"]'}
     plans = {
-        name: "".join(explain(con, write(tmp_path, header, {"condition": text}, name=name, tables=PARAM)))
+        name: "".join(query_plans(con, write(tmp_path, header, {"condition": text}, name=name, tables=PARAM)))
         for name, text in (("good", sql), ("bad", bad))
     }
     assert "BLOCKWISE_NL" not in plans["good"]

@@ -10,18 +10,18 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from drivelint.casefile.merged_cases import Member, judge, merge, share
-from drivelint.casefile.scene import scene
-from drivelint.catalogue import load
+from drivelint.casefile.merged_cases import NumberedCase, judge, merge, outcome_of_case
+from drivelint.casefile.scene import complete_scene
+from drivelint.catalogue import load_rules
 from tests.evaluate.stl import FAR, PERIOD_S, SPECS, STEPS, Spec, Trace
 
 if TYPE_CHECKING:
-    from drivelint.casefile.merged_cases import Outcome
+    from drivelint.casefile.merged_cases import CaseOutcome
 
 rtamt: Any = pytest.importorskip("rtamt", reason="rtamt is not installed (pip install rtamt)")
 
 PHASES = (Phase.explicit, Phase.generate)  # a seed does not shrink
-RULES = load()
+RULES = load_rules()
 EXACT = 1e-9
 
 
@@ -43,15 +43,17 @@ def robustness(spec: Spec, trace: Trace, formula: str | None = None) -> float:
     return float(rows[trace.at if spec.window_s else 0][1])
 
 
-def ours(spec: Spec, traces: list[Trace]) -> list[Outcome]:
+def ours(spec: Spec, traces: list[Trace]) -> list[CaseOutcome]:
     """Judge all traces at once, as drives of one database."""
     rule = RULES[spec.rule]
-    members = [Member(no, scene(rule, trace.given, (), spec.rule), {}) for no, trace in enumerate(traces)]
+    members = [
+        NumberedCase(no, complete_scene(rule, trace.given, (), spec.rule), {}) for no, trace in enumerate(traces)
+    ]
     outcome = judge([rule], merge(members, "drive_id"), {})[rule.id]
-    return [share(outcome, member.no) for member in members]
+    return [outcome_of_case(outcome, member.no) for member in members]
 
 
-def check(spec: Spec, trace: Trace, outcome: Outcome) -> str:
+def check(spec: Spec, trace: Trace, outcome: CaseOutcome) -> str:
     """Hold one trace's verdict against rtamt's robustness; return the verdict."""
     value = robustness(spec, trace)
     rows = outcome.verdicts

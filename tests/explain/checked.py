@@ -35,6 +35,6 @@ def check(out: Path, **over: Any) -> Result:
         "out": out,
         "annotate": False,
     }
-    result = run.check(run.Settings(**{**settings, **over}), Silent())
+    result = run.check(run.CheckOptions(**{**settings, **over}), Silent())
     write(result, out)
     return result

@@ -13,13 +13,13 @@ import pytest
 from rich.console import Console
 
 from drivelint.errors import UsageError
-from drivelint.explain import Errors, ExplainRequest, Explanation, Wanted, explain
+from drivelint.explain import ExplainRequest, Explanation, MeasurementErrors, VerdictFilter, explain
 from drivelint.explain.target import _meant
 from drivelint.explain.text import render, to_json
 from tests.explain.checked import OVERTAKE, RULES, check
 from tests.shared_data import ROOT
 
-NONE = Errors(samples=0)
+NONE = MeasurementErrors(samples=0)
 
 
 @pytest.fixture(scope="module")
@@ -30,8 +30,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @cache  # several tests look at one explanation; no result is written anew into its folder
-def of(folder: Path, name: str, *, errors: Errors = NONE, **wanted: Any) -> Explanation:
-    return explain(ExplainRequest(name, folder, Wanted(**wanted), errors=errors))
+def of(folder: Path, name: str, *, errors: MeasurementErrors = NONE, **wanted: Any) -> Explanation:
+    return explain(ExplainRequest(name, folder, VerdictFilter(**wanted), errors=errors))
 
 
 def said(found: Explanation, width: int = 100) -> str:
@@ -144,7 +144,7 @@ def test_a_passing_verdict(folder: Path) -> None:
 
 
 def test_an_unknown_verdict_for_want_of_a_signal(folder: Path) -> None:
-    found = of(folder, "r112.horn@safe", errors=Errors(samples=5))
+    found = of(folder, "r112.horn@safe", errors=MeasurementErrors(samples=5))
     text = flat(said(found))
     assert "UNKNOWN: it cannot be told whether the rule was kept: that is no pass" in text
     assert "no number changes that" in text
@@ -208,21 +208,21 @@ def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
 
 
 def test_small_errors_are_counted_and_the_same_seed_draws_the_same(folder: Path) -> None:
-    errors = Errors(position_m=0.6, time_s=0.2, map_m=0.1, samples=20, seed=3)
-    order = ExplainRequest("r126.ds-av-out-of-ov@near_miss", folder, Wanted(), errors=errors)
+    errors = MeasurementErrors(position_m=0.6, time_s=0.2, map_m=0.1, samples=20, seed=3)
+    order = ExplainRequest("r126.ds-av-out-of-ov@near_miss", folder, VerdictFilter(), errors=errors)
     first, again = (explain(order).sensitivity for _ in range(2))
     assert first is not None
     assert first == again
     assert sum(first.counts.values()) == 20
     assert len(first.counts) > 1  # 0.98 m inside with errors of 0.6 m in both positions: not always
-    other = of(folder, "r126.ds-av-out-of-ov@near_miss", errors=Errors(0.6, 0.2, 0.1, 20, 4)).sensitivity
+    other = of(folder, "r126.ds-av-out-of-ov@near_miss", errors=MeasurementErrors(0.6, 0.2, 0.1, 20, 4)).sensitivity
     assert other is not None
     assert other.counts != first.counts
 
 
 def test_without_errors_every_copy_is_the_drive(folder: Path) -> None:
     for name in ("no-collision@safe", "r126.ds-av-out-of-ov@near_miss"):
-        found = of(folder, name, errors=Errors(0.0, 0.0, 0.0, 3))
+        found = of(folder, name, errors=MeasurementErrors(0.0, 0.0, 0.0, 3))
         assert found.sensitivity is not None
         assert found.sensitivity.counts == {found.verdict["verdict"]: 3}
         assert re.search(r"(Fails|Passes) in 3 of 3", said(found))
@@ -231,7 +231,7 @@ def test_without_errors_every_copy_is_the_drive(folder: Path) -> None:
 @pytest.mark.slow
 def test_the_kept_database_says_the_same_as_the_log(folder: Path, tmp_path: Path) -> None:
     check(tmp_path, keep_db=True)
-    errors = Errors(1.0, 0.1, 0.1, 5)
+    errors = MeasurementErrors(1.0, 0.1, 0.1, 5)
     for name in ("contact-signature@collision", "r126.ds-av-out-of-ov@near_miss"):
         read, kept = (of(where, name, errors=errors) for where in (folder, tmp_path))
         assert "read again" in read.source
@@ -282,7 +282,7 @@ def test_a_rule_that_was_changed_is_said(tmp_path: Path) -> None:
 
 
 def test_json_has_it_all(folder: Path) -> None:
-    plain = json.loads(to_json(of(folder, "r126.ds-av-out-of-ov@near_miss", errors=Errors(samples=2))))
+    plain = json.loads(to_json(of(folder, "r126.ds-av-out-of-ov@near_miss", errors=MeasurementErrors(samples=2))))
     assert plain["explain_schema"] == 1
     assert plain.keys() >= {
         "rule",
@@ -356,7 +356,7 @@ def test_a_long_drive_is_judged_in_part_where_the_verdict_is_the_same(
     from drivelint.explain import case
 
     monkeypatch.setattr(case, "AROUND_NS", (1_000_000, 3_000_000_000))
-    errors = Errors(0.0, 0.0, 0.0, 2)
+    errors = MeasurementErrors(0.0, 0.0, 0.0, 2)
     found = of(folder, "contact-signature@collision", errors=errors)
     told = found.sensitivity
     assert told is not None

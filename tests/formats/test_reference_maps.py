@@ -18,7 +18,7 @@ from tests.formats.opendrive.xodr import checks, lanelets, points, rows
 from tests.shared_data import shared
 
 if TYPE_CHECKING:
-    from drivelint.road.contract import Environment
+    from drivelint.road.contract import MapTables
 
 # file, handedness and where it is from, roads, lanelets, links
 MAPS = {
@@ -50,7 +50,7 @@ every_map = pytest.mark.parametrize("file", MAPS)
 
 
 @cache
-def read(file: str) -> Environment:
+def read(file: str) -> MapTables:
     return load_map(read_source(shared(file)))
 
 

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drivelint.gate import compared, diff, words
+from drivelint.gate import compare_results, diff, words
 from drivelint.result import gate_file as store
-from drivelint.result.gate import STANDINGS, Entry, Gate, Waiver
+from drivelint.result.gate import STANDINGS, ComparedFinding, Gate, Waiver
 from drivelint.result.model import Result
 from tests.report.synthetic import SECOND, drive, finding, result, rule, verdict
 
@@ -45,7 +45,7 @@ def standings(base: Result, new: Result) -> list[tuple[str, float, str]]:
     return [(e.standing, e.t_s, e.there) for e in diff.compare(base, new).entries]
 
 
-def only(base: Result, new: Result) -> Entry:
+def only(base: Result, new: Result) -> ComparedFinding:
     (entry,) = diff.compare(base, new).entries
     return entry
 
@@ -235,12 +235,12 @@ def test_unknowns_that_appeared_are_counted_with_their_reason() -> None:
     (opened,) = diff.compare(base, new).opened
     assert (opened.rule_id, opened.n, opened.base_n, opened.reason, opened.stable) == (SPEED, 3, 1, "fog", True)
     assert diff.compare(new, base).opened == ()
-    said_ = words.text(diff.compare(base, new), [], "critical")
+    said_ = words.difference_text(diff.compare(base, new), [], "critical")
     assert "More is unknown than was (2 verdicts): unknown is not pass\n  2: ukhc.r124.speed-limit: fog" in said_
 
 
 def gating(base: Result, new: Result, fail_on: str) -> list[str]:
-    return [entry.finding_id for entry in compared(base, new, ("a", "b"), fail_on)[1]]
+    return [entry.finding_id for entry in compare_results(base, new, ("a", "b"), fail_on)[1]]
 
 
 def test_only_new_findings_of_stable_rules_at_or_above_the_severity_gate() -> None:
@@ -267,7 +267,7 @@ def test_json_holds_every_entry_and_the_counts() -> None:
 
 
 def test_text_says_what_is_not_fixed() -> None:
-    told = words.text(diff.compare(run([at(8)]), run([], OPEN)), [], "critical")
+    told = words.difference_text(diff.compare(run([at(8)]), run([], OPEN)), [], "critical")
     assert "0 fixed (0 now pass, 0 now not applicable); gone but not fixed: 1 unknown now, 0 not looked at" in told
     assert "Not fixed: it cannot be told any more (1)" in told
     assert "(now unknown: the limit is not known)" in told
@@ -303,4 +303,4 @@ def test_a_gate_survives_its_file() -> None:
     assert gate.known(f"d1-{SPEED}-None-0")  # fills what is remembered, which must not reach the file
     content = store.render(gate)
     assert b"_standing" not in content
-    assert json.loads(content)["gate_schema"] == store.GATE_SCHEMA
+    assert json.loads(content)["gate_schema"] == store.GATE_VERSION

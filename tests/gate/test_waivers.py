@@ -14,7 +14,7 @@ from drivelint.errors import ExitCode, UsageError
 from drivelint.gate import Gate, GateInputs, Waiver, waivers, words
 from drivelint.report import junit, terminal
 from drivelint.result import gate_file as store
-from drivelint.result.model import Result, outcome
+from drivelint.result.model import Result, exit_status
 from tests.report.synthetic import SECOND, drive, finding, result, rule, verdict
 
 TODAY = date(2026, 11, 20)
@@ -146,17 +146,17 @@ def gated(*given: Waiver, rows: list[dict[str, Any]], **more: Any) -> Result:
 
 def test_a_waived_finding_is_shown_and_does_not_gate() -> None:
     run = gated(waiver(), rows=[ROW])
-    assert outcome(run) == (ExitCode.OK, "nothing failed at or above severity critical (1 waived)")
+    assert exit_status(run) == (ExitCode.OK, "nothing failed at or above severity critical (1 waived)")
     assert run.findings.num_rows == 1
     one_more = gated(waiver(object="3"), rows=[ROW, finding(object_id="4", finding_id="x")])
-    assert outcome(one_more) == (ExitCode.FAILED, "1 finding at or above severity critical (1 waived)")
+    assert exit_status(one_more) == (ExitCode.FAILED, "1 finding at or above severity critical (1 waived)")
 
 
 def test_an_expired_waiver_waives_nothing_and_is_told() -> None:
     run = gated(waiver(expires="2026-11-19"), waiver(rule="none.*"), rows=[ROW])
-    assert outcome(run).code is ExitCode.FAILED
+    assert exit_status(run).code is ExitCode.FAILED
     assert run.gate is not None
-    assert list(words.waivers(run.gate)) == [
+    assert list(words.waiver_warnings(run.gate)) == [
         "w:1: expired 2026-11-19 (jo): it waives nothing; 1 finding like that",
         "w:1: no finding is like that: none.* (jo); correct or drop it",
     ]
@@ -165,8 +165,8 @@ def test_an_expired_waiver_waives_nothing_and_is_told() -> None:
 def test_a_failed_verdict_without_a_finding_is_never_let_through() -> None:
     rows = [verdict("fail"), verdict("fail", profile="relaxed")]
     run = GateInputs(TODAY, waivers=(waiver(),)).gate(result(rows, [ROW]))
-    assert outcome(run).code is ExitCode.FAILED
-    assert "1 failed verdict without a finding" in outcome(run).why
+    assert exit_status(run).code is ExitCode.FAILED
+    assert "1 failed verdict without a finding" in exit_status(run).why
 
 
 def test_drafts_and_lesser_findings_do_not_gate_with_a_gate_either() -> None:
@@ -174,12 +174,12 @@ def test_drafts_and_lesser_findings_do_not_gate_with_a_gate_either() -> None:
     told = [verdict("fail", rule_id="ukhc.draft"), verdict("fail", severity="minor")]
     run = result(told, rows, rules=[rule(), rule("ukhc.draft", status="draft")])
     run = GateInputs(TODAY, waivers=(waiver(),)).gate(run)
-    assert outcome(run) == (ExitCode.OK, "nothing failed at or above severity critical (0 waived)")
+    assert exit_status(run) == (ExitCode.OK, "nothing failed at or above severity critical (0 waived)")
 
 
 def test_a_run_that_is_not_judged_is_not_saved_by_a_waiver() -> None:
     lost = [drive(), drive("d2", status="not_judged", status_reason="no ego")]
-    assert outcome(gated(waiver(), rows=[ROW], drives=lost)).code is ExitCode.NOT_JUDGED
+    assert exit_status(gated(waiver(), rows=[ROW], drives=lost)).code is ExitCode.NOT_JUDGED
 
 
 def test_junit_skips_what_is_waived_and_says_why() -> None:

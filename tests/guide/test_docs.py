@@ -13,13 +13,13 @@ import pytest
 
 from drivelint import cli, guide
 from drivelint.catalogue.header import Conditions, Header
-from drivelint.drive.conditions import GIVEN, WORDS
+from drivelint.drive.conditions import CONDITION_VALUES, ENV_VALUES
 from drivelint.drive.declared import MODES
 from drivelint.formats.osi.extras import Event
 from drivelint.reasons.remedies import REMEDIES
 from drivelint.reasons.signals import SIGNALS
-from drivelint.result.contract import FILES
-from drivelint.sql.store import schema
+from drivelint.result.contract import TABLE_OF_FILE
+from drivelint.sql.store import column_comments
 from tests.guide.blocks import PAGES
 from tests.shared_data import ROOT
 
@@ -78,7 +78,7 @@ def test_docs_prints_the_dictionary(docs: Docs) -> None:
     code, out, err = docs("dictionary")
     assert (code, err) == (0, "")
     blocks = {block.partition("\n")[0]: block for block in out.split("\n\n")}
-    for table, columns in schema().items():
+    for table, columns in column_comments().items():
         rows = [line.split(maxsplit=1) for line in blocks[table].splitlines() if line.startswith("  ")]
         assert [name for name, _ in rows] == list(columns), table
         assert all(said.endswith(columns[name]) for name, said in rows), table
@@ -112,9 +112,9 @@ def test_docs_prints_the_catalogue(docs: Docs) -> None:
 
 def test_the_guide_of_columns_has_every_column_of_every_file() -> None:
     text = guide.text("columns")
-    for stem, table in {**FILES, "margins": "margin"}.items():
+    for stem, table in {**TABLE_OF_FILE, "margins": "margin"}.items():
         section = text.partition(f"### {stem}.parquet\n")[2].partition("\n### ")[0]
-        assert re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE) == list(schema()[table]), stem
+        assert re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE) == list(column_comments()[table]), stem
         assert f"`{stem}.parquet`" in text.partition("## The columns")[0]
 
 
@@ -122,7 +122,7 @@ def test_reading_an_unknown_has_every_reason_code() -> None:
     text = guide.text("reading-an-unknown")
     codes = set(re.findall(r"`(\w+)`", "".join(re.findall(r"^\| (`[^|]+)\|", text, re.MULTILINE))))
     required = {f"missing_{signal}" for signal in SIGNALS if signal.removeprefix("mode_") not in MODES}
-    assert codes >= REMEDIES.keys() | required | {f"{name}_unknown" for name in (*GIVEN, "limit")}
+    assert codes >= REMEDIES.keys() | required | {f"{name}_unknown" for name in (*ENV_VALUES, "limit")}
 
 
 def test_the_guide_of_traces_has_the_keys_of_a_declared_event() -> None:
@@ -161,7 +161,7 @@ def test_the_reference_of_rules_has_every_key_condition_and_signal() -> None:
     assert first_cells("All keys of the header") == list(Header.__struct_fields__)
     assert first_cells("The conditions under which it holds") == list(Conditions.__struct_fields__)
     assert sorted(first_cells("The signals of requires")) == sorted(SIGNALS)
-    for name, words in WORDS.items():
+    for name, words in CONDITION_VALUES.items():
         row = re.search(rf"^\| `{name}` \| (.*) \|$", sections["The conditions under which it holds"], re.MULTILINE)
         assert row
         named = set(re.findall(r"`([\w-]+)`", row[1]))
@@ -177,6 +177,6 @@ def test_the_reference_of_rules_names_tables_that_are_there() -> None:
         for row in re.findall(r"^\| [^|]+ \| (.*) \|$", section, re.MULTILINE)
         for name in re.findall(r"`(\w+)`", row)
     }
-    assert named <= schema().keys()
+    assert named <= column_comments().keys()
     assert {"ego_state", "ego_condition", "lead", "vehicle_ahead", "following", "in_way", "pair"} <= named
-    assert "free_m" in schema()["vehicle_ahead"]
+    assert "free_m" in column_comments()["vehicle_ahead"]

@@ -17,7 +17,7 @@ from drivelint import cli, guide
 from drivelint.errors import UsageError
 from drivelint.guide import dictionary, html, site
 from drivelint.sql.derivations import derivations
-from drivelint.sql.store import schema
+from drivelint.sql.store import column_comments
 from tests.report.browser import CHROMIUM, Page
 from tests.shared_data import ROOT
 
@@ -37,7 +37,7 @@ def tree(file: Path) -> lxml.html.HtmlElement:
 
 
 def test_a_page_per_topic_and_the_reference(pages: Path) -> None:
-    names = {*guide.TOPICS, *site.REFERENCE, "index"}
+    names = {*guide.TOPICS, *site.REFERENCE_PAGES, "index"}
     assert {file.name for file in pages.iterdir()} == {f"{n}.html" for n in names} | {html.STYLESHEET, *site.PICTURES}
     for topic in guide.topics():
         assert tree(pages / f"{topic.name}.html").findtext(".//h1") == topic.title
@@ -80,8 +80,8 @@ def test_the_same_bytes_twice(pages: Path, tmp_path: Path, monkeypatch: pytest.M
 def test_the_dictionary_names_every_table_and_column(pages: Path) -> None:
     page = tree(pages / "dictionary.html")
     headings = {h.get("id"): h for h in page.xpath("//h3")}
-    assert set(headings) == set(schema())
-    for name, columns in schema().items():
+    assert set(headings) == set(column_comments())
+    for name, columns in column_comments().items():
         (rows,) = headings[name].xpath("following::table[1]")
         cells = [[cell.text_content() for cell in row.xpath("td")] for row in rows.xpath(".//tr[td]")]
         assert {column: meaning for column, _, meaning in cells} == columns, name
@@ -102,8 +102,10 @@ def test_the_graph_names_every_derived_table_and_all_that_it_reads(pages: Path) 
 
 
 def test_a_table_reads_only_lower_levels() -> None:
-    level = {name: n for n, names in enumerate(dictionary.levels(dictionary.reads()), 1) for name in names}
-    for name, tables in dictionary.reads().items():
+    level = {
+        name: n for n, names in enumerate(dictionary.derivation_levels(dictionary.tables_read()), 1) for name in names
+    }
+    for name, tables in dictionary.tables_read().items():
         assert all(level.get(table, 0) < level[name] for table in tables), name
 
 

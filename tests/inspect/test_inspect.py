@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import pytest
 
-from drivelint.drive.conditions import WORDS
+from drivelint.drive.conditions import CONDITION_VALUES
 from drivelint.errors import ExitCode, UsageError
 from drivelint.inspect import InspectRequest, exit_code, inspect, to_json
 from drivelint.inspect.model import Inspection, json_schema
-from drivelint.reasons.signals import ADVICE, provide
+from drivelint.reasons.signals import ADVICE, how_to_provide
 from drivelint.report.progress import Silent
 from drivelint.resources import folder
-from drivelint.run import Settings, check
+from drivelint.run import CheckOptions, check
 from tests.formats.osi import osi_log
 from tests.scenes import derived, road, rows, standing, times
 from tests.scenes import drive as scene
@@ -91,7 +91,9 @@ def test_what_cannot_be_decided_is_what_check_calls_missing(road: Path | None) -
     where it was said that it can be.
     """
     (ego,) = looked(FIXTURE / "safe.csv", map=road, mapping=MAPPING).egos
-    rows = check(Settings((str(FIXTURE / "safe.csv"),), map=road, mapping=MAPPING, rules=("ukhc",)), Silent()).verdicts
+    rows = check(
+        CheckOptions((str(FIXTURE / "safe.csv"),), map=road, mapping=MAPPING, rules=("ukhc",)), Silent()
+    ).verdicts
     lacking = {row["rule_id"] for row in rows.to_pylist() if row["reason_code"].startswith("missing_")}
     named = {rule.rule_id: rule for rule in ego.cannot}
     assert lacking or road
@@ -123,7 +125,7 @@ def test_without_a_map_it_is_the_map_that_is_missing() -> None:
     drive = looked(FIXTURE / "safe.csv", mapping=MAPPING)
     (ego,) = drive.egos
     assert (drive.road, ego.registration) == (None, None)
-    assert {signal for rule in ego.cannot for signal in rule.missing} <= {"map", *SAID_BY_THE_LOG, *WORDS}
+    assert {signal for rule in ego.cannot for signal in rule.missing} <= {"map", *SAID_BY_THE_LOG, *CONDITION_VALUES}
     assert next(item for item in ego.missing if item.signal == "map").provide.endswith("--map FILE")
 
 
@@ -204,7 +206,9 @@ def test_a_table_that_no_mapping_fits_gets_one_to_start_from(tmp_path: Path) -> 
     assert mine.egos[0].actor.way_m == good.egos[0].actor.way_m
     assert not [q for q in mine.quality if q.severity == "error"]
     lacking = {item.signal for item in mine.egos[0].missing}
-    assert {"map", "ego_size"} <= lacking <= {"map", *SAID_BY_THE_LOG, *WORDS}  # which the table does not have
+    assert (
+        {"map", "ego_size"} <= lacking <= {"map", *SAID_BY_THE_LOG, *CONDITION_VALUES}
+    )  # which the table does not have
 
 
 @pytest.mark.parametrize(
@@ -257,20 +261,20 @@ def test_every_signal_that_the_library_tells_has_advice() -> None:
     )
     signals = {row["signal"] for row in told}
     assert "registration" in signals
-    assert signals | WORDS.keys() == set(ADVICE)
+    assert signals | CONDITION_VALUES.keys() == set(ADVICE)
     for signal in signals:
         for log_format in ("osi-mcap", "osi-file", "canonical-parquet", "esmini"):
-            assert "{" not in provide(signal, log_format)
+            assert "{" not in how_to_provide(signal, log_format)
 
 
 def test_an_osi_file_has_no_place_for_declared_events() -> None:
     table = "drivelint convert --to parquet, and in its tables declared_event.parquet (columns drive_id, actor_id, t_ns, event, value)"
-    assert provide("declared_events", "osi-file").endswith(f": a .osi file has no place for them: {table}")
-    assert provide("declared_events", "osi-mcap").endswith(
+    assert how_to_provide("declared_events", "osi-file").endswith(f": a .osi file has no place for them: {table}")
+    assert how_to_provide("declared_events", "osi-mcap").endswith(
         "drivelint.DeclaredEvent (keys t_ns, actor_id, event, value)"
     )
     for log_format, how in (("osi-file", table), ("osi-mcap", "a channel of JSON messages")):
-        told = provide("mode_headlights", log_format)
+        told = how_to_provide("mode_headlights", log_format)
         assert "either the signal vehicle_classification.light_state.head_light" in told
         assert "or, with the values on and off, the declared event headlights" in told
         assert how in told

@@ -9,7 +9,7 @@ import numpy as np
 
 from drivelint import catalogue
 from drivelint.drive.trace import IngestOptions
-from drivelint.engine.batch import Drive, cut
+from drivelint.engine.batch import Drive, cut_batches
 from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.engine.session import JudgingSession
 from drivelint.formats import load_map, read_trace
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from drivelint.road.contract import Environment
+    from drivelint.road.contract import MapTables
     from tests.perception.traffic import Track
     from tests.sumo.world import Files
 
@@ -102,9 +102,7 @@ def compared(
     return {key: Pair(whole.get(key, NOTHING), less.get(key, NOTHING)) for key in sorted(whole.keys() | less.keys())}
 
 
-def _drives(
-    egos: Sequence[Track], others: Sequence[Track], folder: Path, road: Path, on: Environment
-) -> Iterator[Drive]:
+def _drives(egos: Sequence[Track], others: Sequence[Track], folder: Path, road: Path, on: MapTables) -> Iterator[Drive]:
     """Yield one drive per ego, with what the others do meanwhile; its id is the ego's."""
     for ego in egos:
         now = [t.take((t.t_ns >= ego.t_ns[0]) & (t.t_ns <= ego.t_ns[-1])) for t in others if t.actor_id != ego.actor_id]
@@ -116,7 +114,7 @@ def judged(drives: Iterator[Drive], rules: Sequence[str]) -> dict[Key, Verdict]:
     """Return the verdicts of these drives, by ego."""
     with store.connect() as con:
         store.insert(con, "profile", profile_table(load_profiles(), ()))
-        session = JudgingSession(con, catalogue.select(catalogue.load(), tuple(rules), ()), {}, None)
+        session = JudgingSession(con, catalogue.select_rules(catalogue.load_rules(), tuple(rules), ()), {}, None)
         names: dict[str, str] = {}
 
         def noted() -> Iterator[Drive]:
@@ -125,7 +123,7 @@ def judged(drives: Iterator[Drive], rules: Sequence[str]) -> dict[Key, Verdict]:
                 names[drive.trace.drive_id] = actor.filter(actor["is_ego"])["actor_id"][0].as_py()
                 yield drive
 
-        for batch in cut(noted()):
+        for batch in cut_batches(noted()):
             session.judge([one for one in batch if isinstance(one, Drive)])
         rows = con.execute(_WORST).fetchall()
     return {(names[drive], *key): Verdict(worst["verdict"], worst["reason"]) for drive, *key, worst in rows}

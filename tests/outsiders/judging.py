@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple, Protocol
 
 from drivelint import catalogue
 from drivelint.report.progress import Silent
-from drivelint.run import Settings, check
+from drivelint.run import CheckOptions, check
 from tests.outsiders import (
     eighteenth,
     eighth,
@@ -110,7 +110,7 @@ class Judged(NamedTuple):
 
     def fails(self) -> list[str]:
         """Return the fails of stable rules that are critical or major, one line each: the scene and the rule."""
-        stable = {rule.id for rule in catalogue.load().values() if rule.status == "stable"}
+        stable = {rule.id for rule in catalogue.load_rules().values() if rule.status == "stable"}
         grave = {
             key
             for key, rows in self.rows.items()
@@ -130,7 +130,7 @@ def judge(person: ModuleType, folder: Path) -> Judged:
         drive.write(folder)
     scenes = [drive.scene for drive in drawn]
     named = {rule for scene in scenes for rule in scene.expect}
-    settings = Settings((str(folder),), rules=("status:stable", *sorted(named)), profiles=("nominal", "observed"))
+    settings = CheckOptions((str(folder),), rules=("status:stable", *sorted(named)), profiles=("nominal", "observed"))
     return Judged(scenes, _by_scene(check(settings, Silent()).verdicts.to_pylist()))
 
 

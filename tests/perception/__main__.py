@@ -53,7 +53,7 @@ def main() -> int:
 
 def _printed(level: str, hours: float, sums: dict[str, Counter[tuple[str, str]]]) -> int:
     """Print a level's table; return how many breaches of critical and major rules became a pass, or were not seen."""
-    rules = {rule.id: rule for rule in catalogue.load().values() if rule.status == "stable"}
+    rules = {rule.id: rule for rule in catalogue.load_rules().values() if rule.status == "stable"}
     print(f"{level}: {hours:.2f} h of egos\n")
     heads = ("truth", "fails", "decided", "share", "false pass", "false n/a", "false fail")
     print(f"{'rule':34}{'severity':>9}" + "".join(f"{head:>11}" for head in heads))

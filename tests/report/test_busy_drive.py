@@ -10,7 +10,7 @@ import pytest
 
 from drivelint.report.progress import Silent
 from drivelint.result.model import Result
-from drivelint.run import Settings, check
+from drivelint.run import CheckOptions, check
 from tests.report.browser import CHROMIUM, Page
 from tests.report.pages import page
 from tests.shared_data import shared
@@ -26,7 +26,7 @@ PAGES = range(5, 31)
 def busy(tmp_path_factory: pytest.TempPathFactory) -> Result:
     log = shared("commonroad/USA_US101-5_1_T-1.xml")
     out = tmp_path_factory.mktemp("busy")
-    return check(Settings((str(log),), rules=("all",), ego="all", annotate=False, out=out), Silent())
+    return check(CheckOptions((str(log),), rules=("all",), ego="all", annotate=False, out=out), Silent())
 
 
 @pytest.fixture(scope="module")

@@ -6,12 +6,12 @@ import re
 
 import pytest
 
-from drivelint.catalogue import load
-from drivelint.drive.conditions import GIVEN, SAYS
+from drivelint.catalogue import load_rules
+from drivelint.drive.conditions import CONDITION_TEXTS, ENV_VALUES
 from drivelint.drive.declared import EVENTS, MODES
 from drivelint.errors import RuleError
 from drivelint.report import vocabulary
-from drivelint.report.catalogue_page import Clause, by_clause, cited, clauses, page
+from drivelint.report.catalogue_page import Clause, cited_clauses, clause_coverage, page, read_clauses
 from drivelint.resources import folder
 from drivelint.road.signcodes import kind_of
 
@@ -20,11 +20,11 @@ PACKS = folder("queries") / "assertions"
 
 def test_the_page_in_the_repository_is_the_one_that_the_rules_make() -> None:
     written = (folder("queries") / "README.md").read_text(encoding="utf-8")
-    assert written == page(load().values(), PACKS), "write it anew: drivelint rules page --out queries/README.md"
+    assert written == page(load_rules().values(), PACKS), "write it anew: drivelint rules page --out queries/README.md"
 
 
 def test_every_rule_stands_on_the_page_and_every_number_with_it() -> None:
-    rules = load().values()
+    rules = load_rules().values()
     text = page(rules, PACKS)
     for rule in rules:
         assert f"| `{rule.id.removeprefix(rule.pack + '.')}` | {rule.hypothesis} |" in text
@@ -32,31 +32,33 @@ def test_every_rule_stands_on_the_page_and_every_number_with_it() -> None:
 
 
 def test_the_nation_of_a_law_stands_beside_the_conditions() -> None:
-    rows = {line.split("`")[1]: line for line in page(load().values(), PACKS).splitlines() if line.startswith("| `")}
+    rows = {
+        line.split("`")[1]: line for line in page(load_rules().values(), PACKS).splitlines() if line.startswith("| `")
+    }
     assert "[law de, road_type motorway]" in rows["rg1"]
     assert "[law gb]" in rows["r124.speed-limit"]
     assert "law" not in rows["no-collision"].split("|")[3]
 
 
 def test_every_clause_from_89_to_307_has_one_entry() -> None:
-    names = [name for clause in clauses(PACKS / "ukhc") for name in sorted(clause.names)]
+    names = [name for clause in read_clauses(PACKS / "ukhc") for name in sorted(clause.names)]
     assert sorted(names) == sorted([*(f"R{n}" for n in range(89, 308)), "H1", "H2", "H3"])
 
 
 def test_a_rule_of_the_highway_code_cites_a_clause() -> None:
-    assert [rule.id for rule in load().values() if rule.pack == "ukhc" and not cited(rule)] == []
+    assert [rule.id for rule in load_rules().values() if rule.pack == "ukhc" and not cited_clauses(rule)] == []
 
 
 def test_a_clause_that_nobody_covers_says_why() -> None:
     with pytest.raises(RuleError, match="307: no rule covers it"):
-        by_clause([], [Clause("307", "trams")])
-    rows = by_clause([], [Clause("307", "trams", "no trams in maps")])
+        clause_coverage([], [Clause("307", "trams")])
+    rows = clause_coverage([], [Clause("307", "trams", "no trams in maps")])
     assert [(row.covered, row.drafted) for row in rows] == [((), ())]
 
 
 def test_a_rule_that_cites_a_clause_without_entry_is_refused() -> None:
     with pytest.raises(RuleError, match="has no entry"):
-        by_clause(load().values(), [Clause("H1", "greatest harm", "a principle")])
+        clause_coverage(load_rules().values(), [Clause("H1", "greatest harm", "a principle")])
 
 
 def test_what_is_no_clause_is_refused() -> None:
@@ -82,25 +84,27 @@ def test_every_event_that_a_rule_or_a_derivation_asks_for_is_on_the_page() -> No
 def test_the_modes_that_the_log_is_looked_through_for_are_those_of_the_vocabulary() -> None:
     sql = (folder("queries") / "derive" / "capability.sql").read_text(encoding="utf-8")
     assert compared(sql, "mode") == MODES.keys()
-    required = {signal for rule in load().values() for signal in rule.requires if signal.startswith("mode_")}
+    required = {signal for rule in load_rules().values() for signal in rule.requires if signal.startswith("mode_")}
     assert required <= {f"mode_{mode}" for mode in MODES}
 
 
 def test_every_condition_is_explained() -> None:
-    assert SAYS.keys() == GIVEN.keys()
+    assert CONDITION_TEXTS.keys() == ENV_VALUES.keys()
 
 
 def test_a_signal_is_recognised_by_the_name_that_the_page_gives() -> None:
-    assert {kind: kind_of("", "", name) for kind, name in vocabulary.NAMES.items()} == {k: k for k in vocabulary.NAMES}
+    assert {kind: kind_of("", "", name) for kind, name in vocabulary.SIGNAL_NAME_PARTS.items()} == {
+        k: k for k in vocabulary.SIGNAL_NAME_PARTS
+    }
 
 
 def test_what_a_map_must_have_is_asked_for_by_some_rule() -> None:
-    _, rows = vocabulary.map_needed(list(load().values()))
+    _, rows = vocabulary.map_feature_table(list(load_rules().values()))
     assert [name for name, _, asking in rows if asking == "no rule yet"] == []
 
 
 def test_a_zebra_is_one_by_name() -> None:
-    _, rows = vocabulary.map_needed(list(load().values()))
+    _, rows = vocabulary.map_feature_table(list(load_rules().values()))
     (zebra,) = (row for row in rows if row[0] == "zebra")
     assert "zebra in its `name` or `subtype`" in zebra[1]
     assert "`ukhc.r195.zebra-on`" in zebra[2]

@@ -15,10 +15,10 @@ import pyarrow as pa
 import pytest
 
 from drivelint.errors import UsageError
-from drivelint.report.html.reasons import Given, given, in_words
+from drivelint.report.html.reasons import VerdictReason, summarise_reasons, verdict_reason
 from drivelint.report.outputs import write
-from drivelint.result.contract import FILES
-from drivelint.result.load import load
+from drivelint.result.contract import TABLE_OF_FILE
+from drivelint.result.load import load_result
 from drivelint.result.model import Result
 from tests.report.pages import NASTY, Parsed, nasty, page
 from tests.report.synthetic import SECOND, drive, finding, result, rule, verdict
@@ -75,7 +75,7 @@ def test_the_same_result_gives_the_same_bytes(overtakes: Result, text: str) -> N
         pieces(overtakes.findings),
         pieces(overtakes.drives),
         pieces(overtakes.rules),
-        *(pieces(getattr(overtakes, name)) for name in list(FILES)[4:]),
+        *(pieces(getattr(overtakes, name)) for name in list(TABLE_OF_FILE)[4:]),
     )
     assert page(again) == text
 
@@ -285,16 +285,16 @@ def test_reasons_are_grouped_by_what_is_to_be_provided() -> None:
     ],
 )
 def test_a_shown_reason_is_one_that_was_given(reasons: list[tuple[str, str]], shown: str) -> None:
-    told = [Given(("null_value", code, ""), text) for code, text in reasons]
-    assert in_words(told) == in_words(reversed(told)) == shown
+    told = [VerdictReason(("null_value", code, ""), text) for code, text in reasons]
+    assert summarise_reasons(told) == summarise_reasons(reversed(told)) == shown
 
 
 def test_reasons_are_alike_by_their_codes() -> None:
     row = {"reason_code": "null_value", "cause_code": "no_limit", "reason": "lanelet 7"}
-    assert given(row).kind == given(row | {"reason": "lanelet 12"}).kind
-    assert given(row).kind != given(row | {"cause_code": "ego_off_lanes"}).kind
+    assert verdict_reason(row).kind == verdict_reason(row | {"reason": "lanelet 12"}).kind
+    assert verdict_reason(row).kind != verdict_reason(row | {"cause_code": "ego_off_lanes"}).kind
     own = row | {"cause_code": "text"}
-    assert given(own).kind != given(own | {"reason": "lanelet 12"}).kind
+    assert verdict_reason(own).kind != verdict_reason(own | {"reason": "lanelet 12"}).kind
 
 
 def test_rules_that_were_not_judged_are_folded_by_reason() -> None:
@@ -330,7 +330,7 @@ def test_a_crowd_stays_small() -> None:
 
 def test_a_result_read_back_gives_the_same_page(overtakes: Result, text: str, tmp_path: Path) -> None:
     write(overtakes, tmp_path)
-    assert page(load(tmp_path)) == text
+    assert page(load_result(tmp_path)) == text
 
 
 def test_the_command_writes_the_page_into_the_folder(overtakes: Result, text: str, tmp_path: Path) -> None:
@@ -347,11 +347,11 @@ def test_the_command_writes_the_page_into_the_folder(overtakes: Result, text: st
 
 def test_a_folder_without_a_result_is_one_clear_error(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="no result of drivelint check"):
-        load(tmp_path)
+        load_result(tmp_path)
     write(result([verdict("pass")]), tmp_path)
     (tmp_path / "findings.parquet").write_bytes(b"cut")
     with pytest.raises(UsageError, match=r"findings\.parquet: cannot be read"):
-        load(tmp_path)
+        load_result(tmp_path)
     (tmp_path / "summary.json").write_text('{"output_schema": 99, "fail_on": "never", "strict": false}')
     with pytest.raises(UsageError, match="output schema 99"):
-        load(tmp_path)
+        load_result(tmp_path)

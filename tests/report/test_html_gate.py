@@ -13,7 +13,7 @@ import pytest
 
 from drivelint.gate import GateInputs, Waiver
 from drivelint.report.outputs import write
-from drivelint.result.load import load
+from drivelint.result.load import load_result
 from drivelint.result.model import Result
 from tests.report.browser import CHROMIUM, Page
 from tests.report.pages import NASTY, Parsed, page
@@ -110,7 +110,7 @@ def test_markup_in_waivers_stays_text() -> None:
 
 def test_a_page_made_later_from_the_folder_is_the_same(gated: Result, tmp_path: Path) -> None:
     write(gated, tmp_path)
-    assert page(load(tmp_path)) == (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert page(load_result(tmp_path)) == (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from markdown_it import MarkdownIt
 
-from drivelint.gate import GateInputs, Waiver, compared
+from drivelint.gate import GateInputs, Waiver, compare_results
 from drivelint.report import markdown
 from drivelint.result.model import Result
 from tests.report.synthetic import SDA, SECOND, drive, finding, result, rule, verdict
@@ -128,9 +128,9 @@ def test_words_of_a_log_are_shown_as_they_are(where: str) -> None:
 
 @pytest.mark.parametrize("words", ["- x", "+ x", "# x", "> x", "1 * 2", "x\n\ny", "-1.50 s"])
 def test_words_begin_no_list_and_no_heading(words: str) -> None:
-    (token,) = [t for t in PARSER.parse(markdown.text(words)) if t.type == "inline"]
+    (token,) = [t for t in PARSER.parse(markdown.escaped(words)) if t.type == "inline"]
     assert "".join(c.content for c in token.children or []) == " ".join(words.split())
-    assert [t.type for t in PARSER.parse(markdown.text(words))] == ["paragraph_open", "inline", "paragraph_close"]
+    assert [t.type for t in PARSER.parse(markdown.escaped(words))] == ["paragraph_open", "inline", "paragraph_close"]
 
 
 def gated(base: list[dict[str, Any]], new: list[dict[str, Any]]) -> Result:
@@ -176,7 +176,7 @@ def test_a_difference_as_markdown() -> None:
     late = finding(finding_id="late", t_start_ns=115 * SECOND, t_end_ns=115 * SECOND, t_worst_ns=115 * SECOND)
     base = result([verdict("fail")], [finding(object_id="6")])
     new = result([verdict("fail"), verdict("unknown", object_id="6")], [late])
-    found, failing = compared(base, new, ("main", "pull|request"), "critical")
+    found, failing = compare_results(base, new, ("main", "pull|request"), "critical")
     text = markdown.difference(found, failing, "critical", None)
     assert text.startswith("## drivelint diff: 1 new, 0 changed")
     assert "exit 1: 1 new finding at or above severity critical." in text

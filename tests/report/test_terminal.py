@@ -9,7 +9,7 @@ import msgspec
 import pytest
 from rich.console import Console, RenderableType
 
-from drivelint.catalogue import load
+from drivelint.catalogue import load_rules
 from drivelint.catalogue.header import Conditions
 from drivelint.report import rules_text, terminal
 from drivelint.result.model import Result
@@ -109,7 +109,7 @@ def test_eighty_columns_tear_no_id_and_no_number_apart() -> None:
     narrow = shown(result([verdict("fail")], [finding(rule_id="ukhc.r162.safe-distance-ahead")]), 80)
     assert "ukhc.r162.safe-distance-ahead [nominal]" in narrow
     assert "observed 58.00 m, required 64.00 m, margin -6.00 m" in narrow
-    rules = list(load().values())
+    rules = list(load_rules().values())
     console = Console(file=io.StringIO(), width=80)
     console.print(rules_text.listing(rules, 80))
     listed = console.file.getvalue()  # type: ignore[attr-defined]
@@ -119,9 +119,10 @@ def test_eighty_columns_tear_no_id_and_no_number_apart() -> None:
 
 def test_the_page_of_a_rule_has_every_key_that_its_header_sets() -> None:
     """The keys that most rules do not set stand there only where they are set."""
-    rules = load()
+    rules = load_rules()
     shown = {
-        rule.id: {row.split("  ")[0] for row in printed(rules_text.page(rule)).splitlines()} for rule in rules.values()
+        rule.id: {row.split("  ")[0] for row in printed(rules_text.rule_details(rule)).splitlines()}
+        for rule in rules.values()
     }
     for words, is_set in (
         ("law", lambda rule: rule.law),
@@ -143,10 +144,10 @@ def test_the_page_of_a_rule_has_every_key_that_its_header_sets() -> None:
 
 
 def test_the_page_of_a_rule_names_the_parameter_that_holds_a_time() -> None:
-    rule = load()["ukhc.r103.signal-off"]
-    assert re.search(r"^window +5 s \(off_s\) *$", printed(rules_text.page(rule)), re.MULTILINE)
+    rule = load_rules()["ukhc.r103.signal-off"]
+    assert re.search(r"^window +5 s \(off_s\) *$", printed(rules_text.rule_details(rule)), re.MULTILINE)
     limited = msgspec.structs.replace(rule, applies=Conditions(road_type=("rural", "town"), limit_max_mps=13.4))
-    assert "road_type rural or town, limit_max_mps 13.4" in printed(rules_text.page(limited))
+    assert "road_type rural or town, limit_max_mps 13.4" in printed(rules_text.rule_details(limited))
 
 
 def printed(part: RenderableType) -> str:

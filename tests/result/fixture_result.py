@@ -6,7 +6,7 @@ from pathlib import Path
 
 from drivelint.report.progress import Silent
 from drivelint.result.model import Result
-from drivelint.run import Settings, check
+from drivelint.run import CheckOptions, check
 
 FIXTURE = Path(__file__).resolve().parents[2] / "fixtures" / "overtake"
 
@@ -15,7 +15,7 @@ NAMES = ("safe", "near_miss", "collision")
 
 def run(out: Path | None) -> Result:
     return check(
-        Settings(
+        CheckOptions(
             tuple(str(FIXTURE / f"{name}.csv") for name in NAMES),
             map=FIXTURE / "road.xodr",
             mapping=str(FIXTURE / "mapping.toml"),

@@ -121,6 +121,6 @@ def test_verdicts_come_in_total_order(con: duckdb.DuckDBPyConnection) -> None:
 
 
 def test_a_log_that_could_not_be_judged_fits_beside_those_that_could(con: duckdb.DuckDBPyConnection) -> None:
-    both = pa.concat_tables([collect.drives(con), collect.unjudged("bad", "bad.mcap", "cut short")])
+    both = pa.concat_tables([collect.drives(con), collect.unjudged_drive("bad", "bad.mcap", "cut short")])
     row = both.to_pylist()[-1]
     assert (row["status"], row["status_reason"], row["sha256"]) == ("not_judged", "cut short", None)

@@ -16,10 +16,10 @@ import shapely
 
 from drivelint.engine import batch
 from drivelint.report.progress import Silent
-from drivelint.result.contract import FILES
+from drivelint.result.contract import TABLE_OF_FILE
 from drivelint.result.evidence import surroundings
 from drivelint.result.model import Result
-from drivelint.run import Settings, check
+from drivelint.run import CheckOptions, check
 from tests.result.fixture_result import FIXTURE, NAMES, run
 
 
@@ -134,7 +134,7 @@ def test_lanes_near_a_scene_are_kept_once_and_true_to_a_decimetre(
 def test_batches_do_not_change_the_evidence(result: Result, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(batch, "STATES", 1)
     single = run(tmp_path)
-    for name in list(FILES)[4:]:
+    for name in list(TABLE_OF_FILE)[4:]:
         assert getattr(single, name).equals(getattr(result, name)), name
 
 
@@ -152,7 +152,7 @@ def test_danger_spaces_are_kept_along_the_ways(result: Result) -> None:
 
 
 def test_every_finding_has_its_course_and_the_steps_are_the_margins(tmp_path: Path) -> None:
-    settings = Settings(
+    settings = CheckOptions(
         (str(FIXTURE / "collision.csv"),),
         map=FIXTURE / "road.xodr",
         mapping=str(FIXTURE / "mapping.toml"),
@@ -189,7 +189,7 @@ def _named(row: dict[str, Any]) -> tuple[Any, ...]:
 
 @pytest.mark.parametrize("margins", [False, True], ids=["settled in the first pass", "every step"])
 def test_every_near_miss_has_its_course_and_its_worst_step_is_in_it(margins: bool, tmp_path: Path) -> None:
-    settings = Settings(
+    settings = CheckOptions(
         tuple(str(FIXTURE / f"{name}.csv") for name in NAMES),
         map=FIXTURE / "road.xodr",
         mapping=str(FIXTURE / "mapping.toml"),

@@ -11,12 +11,12 @@ import pytest
 from drivelint.errors import ExitCode, UsageError
 from drivelint.report.outputs import write
 from drivelint.result import files
-from drivelint.result.contract import FILES, OUTPUT_SCHEMA
+from drivelint.result.contract import OUTPUT_VERSION, TABLE_OF_FILE
 from drivelint.result.files import OutputError, parquet_bytes, publish
-from drivelint.result.load import load
+from drivelint.result.load import load_result
 from tests.report.synthetic import finding, result, table, verdict
 
-NAMES = {f"{name}.parquet" for name in FILES} | {"report.html", "summary.json", "junit.xml"}
+NAMES = {f"{name}.parquet" for name in TABLE_OF_FILE} | {"report.html", "summary.json", "junit.xml"}
 
 
 def rows(n: int) -> pa.Table:
@@ -38,11 +38,11 @@ def test_what_is_written_is_what_is_read() -> None:
     assert read.to_pylist() == rows(5).to_pylist()
 
 
-@pytest.mark.parametrize("name", sorted(FILES.values()))
+@pytest.mark.parametrize("name", sorted(TABLE_OF_FILE.values()))
 def test_every_column_carries_its_description(name: str) -> None:
     schema = pq.read_schema(pa.BufferReader(parquet_bytes(table(name, []), name)))
     assert all(field.metadata[b"comment"] for field in schema)
-    assert schema.metadata[b"drivelint.output_schema"] == str(OUTPUT_SCHEMA).encode()
+    assert schema.metadata[b"drivelint.output_schema"] == str(OUTPUT_VERSION).encode()
 
 
 def test_a_result_writes_every_file_and_nothing_else(tmp_path: Path) -> None:
@@ -91,4 +91,4 @@ def test_a_folder_of_other_columns_says_what_to_do(tmp_path: Path) -> None:
     file = tmp_path / "courses.parquet"
     pq.write_table(pq.read_table(file).drop_columns(["occurrence"]), file)
     with pytest.raises(UsageError, match=r"occurrence.*check the drives again"):
-        load(tmp_path)
+        load_result(tmp_path)

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from drivelint.errors import DriveLintError, ExitCode
-from drivelint.result.contract import empty
-from drivelint.result.model import Result, exit_code, outcome
+from drivelint.result.contract import empty_table
+from drivelint.result.model import Result, exit_code, exit_status
 from tests.report.synthetic import drive, result, rule, verdict
 
 LOST = drive("d2", status="not_judged", status_reason="d2.csv: no ego")
@@ -38,13 +38,13 @@ def test_exit_code(
 ) -> None:
     run = result([verdict(said, occurrence=n) for n, said in enumerate(verdicts)], drives=drives, **settings)
     assert exit_code(run) is code
-    assert outcome(run).why
+    assert exit_status(run).why
 
 
 def test_it_is_said_that_nothing_could_be_decided() -> None:
-    assert "nothing could be decided" in outcome(result([verdict("unknown")])).why
+    assert "nothing could be decided" in exit_status(result([verdict("unknown")])).why
     for said in ("pass", "not_applicable"):
-        assert "decided" not in outcome(result([verdict("unknown"), verdict(said, occurrence=1)])).why
+        assert "decided" not in exit_status(result([verdict("unknown"), verdict(said, occurrence=1)])).why
 
 
 @pytest.mark.parametrize("severity", ["critical", "major", "minor"])
@@ -71,13 +71,13 @@ def test_a_lossy_drive_that_was_not_judged_is_no_lossy_verdict() -> None:
 
 
 def test_a_table_without_its_columns_is_refused() -> None:
-    short = empty("verdict").drop_columns(["margin"])
+    short = empty_table("verdict").drop_columns(["margin"])
     with pytest.raises(DriveLintError, match=r"verdict.*missing.*margin"):
-        Result(short, empty("finding"), empty("drive"), empty("rule"))
+        Result(short, empty_table("finding"), empty_table("drive"), empty_table("rule"))
 
 
 def test_a_table_with_a_stray_column_is_refused() -> None:
-    rows = empty("finding")
+    rows = empty_table("finding")
     stray = rows.append_column("mood", rows["rule_id"])
     with pytest.raises(DriveLintError, match=r"finding.*excess.*mood"):
-        Result(empty("verdict"), stray, empty("drive"), empty("rule"))
+        Result(empty_table("verdict"), stray, empty_table("drive"), empty_table("rule"))

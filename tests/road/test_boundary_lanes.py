@@ -8,8 +8,8 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drivelint.road.boundary_lanes import BoundedLane, build, side_driven_on, tables
-from drivelint.road.quality import Quality
+from drivelint.road.boundary_lanes import BoundedLane, build_lanes, side_driven_on, tables
+from drivelint.road.quality import MapQuality
 
 
 def straight(
@@ -26,7 +26,7 @@ def straight(
 
 
 def test_a_straight_lane() -> None:
-    (lane,) = build([straight("1", 0.0)], (100.0, 50.0), Quality())
+    (lane,) = build_lanes([straight("1", 0.0)], (100.0, 50.0), MapQuality())
     assert np.allclose(lane.line.centre, np.array([(100, 50), (100 + 10 / 3, 50), (100 + 20 / 3, 50), (110, 50)]))
     assert np.allclose(lane.line.half_width, 1.75)
     assert np.allclose(lane.line.tangent, [1, 0])
@@ -47,8 +47,8 @@ def test_an_arc_with_differently_many_points(radius: float, angle: float, left: 
 
     inner, outer = (radius - 1.75, radius + 1.75) if turn > 0 else (radius + 1.75, radius - 1.75)
     lane = BoundedLane("1", bound(inner, left), bound(outer, right))
-    quality = Quality()
-    (built,) = build([lane], (0.0, 0.0), quality)
+    quality = MapQuality()
+    (built,) = build_lanes([lane], (0.0, 0.0), quality)
     area = shapely.Polygon(np.vstack([lane.right, lane.left[::-1]])).area
     sagitta = (radius + 1.75) * (1 - np.cos(angle / (min(left, right) - 1) / 2))
     assert built.line.area == pytest.approx(area, rel=0.02)
@@ -59,7 +59,7 @@ def test_an_arc_with_differently_many_points(radius: float, angle: float, left: 
 
 
 def test_what_lies_side_by_side_is_one_road() -> None:
-    lanes = build(
+    lanes = build_lanes(
         [
             straight("10", -5.25, left_id="11", left_against=False),
             straight("11", -1.75, left_id="12", left_against=True, right_id="10", right_against=False),
@@ -68,7 +68,7 @@ def test_what_lies_side_by_side_is_one_road() -> None:
             straight("20", 50.0),
         ],
         (0.0, 0.0),
-        Quality(),
+        MapQuality(),
     )
     assert {lane.lanelet_id: (lane.road_id, lane.lane_no, lane.along) for lane in lanes} == {
         "10": ("r10", -2, 1),
@@ -87,8 +87,8 @@ def test_the_left_is_driven_on_where_the_oncoming_lane_is_on_the_right() -> None
         straight("1", 0.0, right_id="2", right_against=True),
         straight("2", -3.5, right_id="1", right_against=True),
     )
-    assert side_driven_on(build([one, other], (0.0, 0.0), Quality())) == "lht"
-    assert side_driven_on(build([straight("1", 0.0)], (0.0, 0.0), Quality())) is None
+    assert side_driven_on(build_lanes([one, other], (0.0, 0.0), MapQuality())) == "lht"
+    assert side_driven_on(build_lanes([straight("1", 0.0)], (0.0, 0.0), MapQuality())) is None
     other.bidirectional = True  # beside a lane that is driven both ways nothing is said
     assert side_driven_on([one, other]) is None
 
@@ -105,9 +105,11 @@ def test_the_left_is_driven_on_where_the_oncoming_lane_is_on_the_right() -> None
     ],
 )
 def test_a_lane_that_cannot_be_built_is_named_and_nobody_leads_to_it(left: list, right: list, why: str) -> None:  # type: ignore[type-arg]
-    quality = Quality()
+    quality = MapQuality()
     bad = BoundedLane("7", np.array(left, float), np.array(right, float))
-    (good,) = build([straight("1", 0.0, successors=("7",), left_id="7", left_against=False), bad], (0.0, 0.0), quality)
+    (good,) = build_lanes(
+        [straight("1", 0.0, successors=("7",), left_id="7", left_against=False), bad], (0.0, 0.0), quality
+    )
     assert (good.successors, good.left_id, good.left_against) == ((), None, None)
     assert [(row["check_id"], row["lanelet_id"]) for row in quality.rows] == [
         ("invalid_lane", "7"),

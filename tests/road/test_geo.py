@@ -32,8 +32,8 @@ KARLSRUHE = "+proj=tmerc +lat_0=49 +lon_0=8.4 +k=1 +x_0=0 +y_0=0 +datum=WGS84"
     ],
 )
 def test_references(one: str, other: str, same: bool, comparable: bool) -> None:
-    assert (geo.same(one, other), geo.comparable(one, other)) == (same, comparable)
-    assert geo.same(other, one) == same
+    assert (geo.same_reference(one, other), geo.different_places(one, other)) == (same, comparable)
+    assert geo.same_reference(other, one) == same
 
 
 def with_reference(text: str | None) -> str:

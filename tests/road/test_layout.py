@@ -10,9 +10,9 @@ import pytest
 
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import MapError
-from drivelint.road.boundary_lanes import BoundedLane, build, side_driven_on
+from drivelint.road.boundary_lanes import BoundedLane, build_lanes, side_driven_on
 from drivelint.road.contract import MapSource
-from drivelint.road.quality import Quality
+from drivelint.road.quality import MapQuality
 from tests.formats.opendrive.xodr import checks, geometry, lane, lanelets, load, road, rows, section, xodr
 
 HANDS = pytest.mark.parametrize("hand", ["lht", "rht"])
@@ -136,7 +136,7 @@ def test_lanes_given_by_their_bounds(hand: str) -> None:
         return BoundedLane(name, left=np.column_stack([x, [y + half] * 2]), right=np.column_stack([x, [y - half] * 2]))
 
     y = LANE / 2 * (1 if hand == "lht" else -1)
-    lanes = build([straight("1", y), straight("2", -y, back=True)], (0.0, 0.0), Quality())
+    lanes = build_lanes([straight("1", y), straight("2", -y, back=True)], (0.0, 0.0), MapQuality())
     assert side_driven_on(lanes) == hand
 
 

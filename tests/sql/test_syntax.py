@@ -73,7 +73,7 @@ def con() -> duckdb.DuckDBPyConnection:
 
 @pytest.mark.parametrize("sql", NEEDS)
 def test_a_select_has_no_rows_without_those_of_what_it_needs(con: duckdb.DuckDBPyConnection, sql: str) -> None:
-    needs = syntax.needs(syntax.parsed(sql, "here"))
+    needs = syntax.tables_required(syntax.parse_select(sql, "here"))
     assert needs == set(NEEDS[sql].split())
     assert con.execute(sql).fetchall()
     for table in needs:
@@ -83,17 +83,19 @@ def test_a_select_has_no_rows_without_those_of_what_it_needs(con: duckdb.DuckDBP
 
 
 def test_what_is_read() -> None:
-    tree = syntax.parsed("WITH a AS (FROM b) SELECT (SELECT max(x) FROM c) FROM a WHERE x IN (FROM d)", "here")
-    assert syntax.reads(tree) == {"b", "c", "d"}
-    tree = syntax.parsed("WITH a AS (FROM A WHERE x > 0) SELECT * FROM a, (WITH b AS (FROM a) FROM B), main.a", "here")
-    assert syntax.reads(tree) == {"a"}
-    tree = syntax.parsed("WITH b AS (FROM a) SELECT * FROM (WITH a AS (FROM c) FROM a JOIN b USING (x))", "here")
-    assert syntax.reads(tree) == {"a", "c"}
+    tree = syntax.parse_select("WITH a AS (FROM b) SELECT (SELECT max(x) FROM c) FROM a WHERE x IN (FROM d)", "here")
+    assert syntax.tables_read(tree) == {"b", "c", "d"}
+    tree = syntax.parse_select(
+        "WITH a AS (FROM A WHERE x > 0) SELECT * FROM a, (WITH b AS (FROM a) FROM B), main.a", "here"
+    )
+    assert syntax.tables_read(tree) == {"a"}
+    tree = syntax.parse_select("WITH b AS (FROM a) SELECT * FROM (WITH a AS (FROM c) FROM a JOIN b USING (x))", "here")
+    assert syntax.tables_read(tree) == {"a", "c"}
 
 
 @pytest.mark.parametrize("name", ["st_extent_agg", "ST_Union_Agg"])
 def test_the_aggregates_of_spatial_are_known(name: str) -> None:
-    assert not syntax.needs(syntax.parsed(f"SELECT {name}(x) FROM a", "here"))
+    assert not syntax.tables_required(syntax.parse_select(f"SELECT {name}(x) FROM a", "here"))
 
 
 @pytest.mark.parametrize("step", derivations().values(), ids=lambda step: step.table)
@@ -103,4 +105,4 @@ def test_what_a_derivation_needs_it_reads(step: Derivation) -> None:
 
 def test_what_is_no_select_is_refused() -> None:
     with pytest.raises(DriveLintError, match=r"^here\.sql: "):
-        syntax.parsed("SELEC 1", "here.sql")
+        syntax.parse_select("SELEC 1", "here.sql")

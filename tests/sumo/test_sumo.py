@@ -13,7 +13,7 @@ from tests.sumo.both import both
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from drivelint.demo.road import Hand
+    from drivelint.demo.road import Handedness
 
 needs_sumo = pytest.mark.skipif(
     world.tool("sumo") is None or world.tool("netconvert") is None,
@@ -34,7 +34,7 @@ def test_overtakes_and_contacts_are_those_of_an_independent_reading(tmp_path: Pa
 
 @needs_sumo
 @pytest.mark.parametrize("hand", ["left", "right"])
-def test_overtakes_on_the_map_that_sumo_writes(tmp_path: Path, hand: Hand) -> None:
+def test_overtakes_on_the_map_that_sumo_writes(tmp_path: Path, hand: Handedness) -> None:
     """It has a road for each direction and no word on the side that is driven on: the traffic tells."""
     files = world.simulate(tmp_path, seconds=80, seed=6, hand=hand)
     net = reading.read_net(files.net)

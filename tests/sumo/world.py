@@ -20,7 +20,7 @@ import numpy as np
 
 from drivelint.demo.line import left, right, straight
 from drivelint.demo.opendrive import opendrive
-from drivelint.demo.road import LANE_M, MPH, Hand, Road
+from drivelint.demo.road import LANE_WIDTH_M, MPH, Handedness, Road
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -85,7 +85,7 @@ def simulate(
     seconds: int,
     seed: int = 1,
     kinds: Mapping[str, tuple[str, float]] = MappingProxyType(_KINDS),
-    hand: Hand = "left",
+    hand: Handedness = "left",
 ) -> Files:
     """Drive so many seconds of traffic, 10 Hz, into `folder`. The same seed gives the same log."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -126,7 +126,7 @@ def _edges() -> str:
     points = [f"{px:.4f},{py:.4f}" for px, py in zip(x, y, strict=True)]
 
     def edge(start: str, end: str, shape: list[str]) -> str:
-        lanes = f'numLanes="1" width="{LANE_M}" speed="{LIMIT_MPH * MPH:.4f}"'
+        lanes = f'numLanes="1" width="{LANE_WIDTH_M}" speed="{LIMIT_MPH * MPH:.4f}"'
         return f'<edge id="{start}{end}" from="{start}" to="{end}" {lanes} shape="{" ".join(shape)}"/>'
 
     return f"<edges>{edge('a', 'b', points)}{edge('b', 'a', points[::-1])}</edges>\n"

@@ -1,4 +1,4 @@
-"""Every actor's box at every step, encoded in columns: half a million boxes are a matter of a second, not of a minute."""
+"""The boxes of all actors at every step, encoded column by column for speed."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
     from drivelint.annotate.clock import LogClock
     from drivelint.annotate.tracks import Tracks
 
-BOXES: Final = 1_000_000
+MAX_BOXES: Final = 1_000_000
 """A drive with more states shows only every second, third ... step: about 30 MB of boxes are enough for any viewer."""
 CHUNK_BYTES: Final = 2 << 20
 EGO_FRAME: Final = "base_link"
 """The name that viewers follow without being asked."""
-EGO = Colour(0.13, 0.45, 0.95)
-VEHICLE = Colour(0.62, 0.66, 0.72)
-ON_FOOT = Colour(0.95, 0.78, 0.25)
+EGO_COLOUR = Colour(0.13, 0.45, 0.95)
+VEHICLE_COLOUR = Colour(0.62, 0.66, 0.72)
+ON_FOOT_COLOUR = Colour(0.95, 0.78, 0.25)
 _WALKERS: Final = frozenset({"pedestrian", "bicycle", "animal"})
 _UNKNOWN_SIZE: Final = 1.0
 _HEIGHT: Final = 1.5
-Records = tuple[bytes, "NDArray[np.uint64]"]
+RecordChunk = tuple[bytes, "NDArray[np.uint64]"]
 
 
 @dataclass(frozen=True)
@@ -48,10 +48,10 @@ class Boxes:
         return self.tracks.t_ns[self.rows]
 
 
-def select(tracks: Tracks) -> Boxes:
+def select_boxes(tracks: Tracks) -> Boxes:
     """Choose the boxes to show: all that have a place and a heading, at every n-th step if they are too many."""
     placed = np.flatnonzero(np.isfinite(tracks.x) & np.isfinite(tracks.y) & np.isfinite(tracks.yaw))
-    every = max(1, -(-len(placed) // BOXES))
+    every = max(1, -(-len(placed) // MAX_BOXES))
     if every > 1:
         steps, step = np.unique(tracks.t_ns[placed], return_inverse=True)
         placed = placed[step % every == 0] if len(steps) > every else placed
@@ -59,7 +59,7 @@ def select(tracks: Tracks) -> Boxes:
     return Boxes(tracks, placed[order], every)
 
 
-def messages(boxes: Boxes, clock: LogClock, channel: int) -> Iterator[Records]:
+def messages(boxes: Boxes, clock: LogClock, channel: int) -> Iterator[RecordChunk]:
     """Yield chunks of `foxglove.SceneUpdate` message records, one per step, each with its index (log time, offset)."""
     tracks, rows = boxes.tracks, boxes.rows
     if not len(rows):
@@ -77,13 +77,13 @@ def messages(boxes: Boxes, clock: LogClock, channel: int) -> Iterator[Records]:
             continue
         rows_of = rows[first[begin] : first[end - 1] + count[end - 1]]
         times, counts = log_time[begin:end], count[begin:end]
-        starts = message_heads(channel, times, size[begin:end], int(begin))
+        starts = message_headers(channel, times, size[begin:end], int(begin))
         pieces = _Pieces(heads, tracks.actor[rows_of], _tails(tracks, rows_of, np.repeat(times, counts)))
         records, place = pieces.behind(starts, counts)
         yield records, np.stack([times, place.astype(np.uint64)], axis=1)
 
 
-def transforms(boxes: Boxes, clock: LogClock, channel: int) -> Iterator[Records]:
+def ego_transforms(boxes: Boxes, clock: LogClock, channel: int) -> Iterator[RecordChunk]:
     """Yield chunks of `foxglove.FrameTransform` records: where the first ego is, so that a viewer can follow it."""
     tracks = boxes.tracks
     egos = [name for name, is_ego in zip(tracks.names, tracks.is_ego, strict=True) if is_ego]
@@ -92,27 +92,27 @@ def transforms(boxes: Boxes, clock: LogClock, channel: int) -> Iterator[Records]
     rows = boxes.rows[tracks.actor[boxes.rows] == tracks.names.index(min(egos))]
     log_time = clock.log_time(tracks.t_ns[rows])
     z = np.nan_to_num(tracks.z[rows])
-    moved = [part for values in (tracks.x[rows], tracks.y[rows], z) for part in (wire.column(values),)]
+    moved = [part for values in (tracks.x[rows], tracks.y[rows], z) for part in (wire.double_column(values),)]
     half = tracks.yaw[rows] / 2
-    body = wire.rows(
+    body = wire.join_columns(
         len(rows),
-        wire.text(2, draw.FRAME) + wire.text(3, EGO_FRAME),
+        wire.text(2, draw.MAP_FRAME) + wire.text(3, EGO_FRAME),
         b"\x22\x1b\x09", moved[0], b"\x11", moved[1], b"\x19", moved[2],
-        b"\x2a\x12\x19", wire.column(np.sin(half)), b"\x21", wire.column(np.cos(half)),
+        b"\x2a\x12\x19", wire.double_column(np.sin(half)), b"\x21", wire.double_column(np.cos(half)),
         wire.timestamps(1, log_time),
     )  # fmt: skip
-    size = body.shape[1] + message_heads(channel, log_time[:0], log_time[:0].astype(np.int64), 0).shape[1]
+    size = body.shape[1] + message_headers(channel, log_time[:0], log_time[:0].astype(np.int64), 0).shape[1]
     for first in range(0, len(rows), CHUNK_BYTES // size):
         part = slice(first, first + CHUNK_BYTES // size)
         times = log_time[part]
         sizes = np.full(len(times), body.shape[1])
-        records = np.concatenate([message_heads(channel, times, sizes, first), body[part]], axis=1)
+        records = np.concatenate([message_headers(channel, times, sizes, first), body[part]], axis=1)
         place = np.arange(len(times), dtype=np.uint64) * np.uint64(size)
         yield records.tobytes(), np.stack([times, place], axis=1)
 
 
-def message_heads(channel: int, log_time: NDArray[np.uint64], size: NDArray[np.int64], first: int) -> wire.Bytes:
-    """Return the beginnings of MCAP message records: `size` is that of each message alone, `first` the first's number."""
+def message_headers(channel: int, log_time: NDArray[np.uint64], size: NDArray[np.int64], first: int) -> wire.Bytes:
+    """Return the headers of MCAP message records for messages of these sizes, numbered from `first`."""
     n = len(log_time)
     head = np.zeros(n, np.dtype("u1, <u8, <u2, <u4, <u8, <u8"))
     for field, values in zip(
@@ -162,8 +162,8 @@ def _heads(tracks: Tracks, lifetime_ns: int) -> list[bytes]:
             float(v) if np.isfinite(v) else d
             for v, d in zip(size, (_UNKNOWN_SIZE, _UNKNOWN_SIZE, _HEIGHT), strict=True)
         )
-        shade = EGO if is_ego else ON_FOOT if kind in _WALKERS else VEHICLE
-        cube = draw.cube_head(length, width, height, shade.faint(0.9))
+        shade = EGO_COLOUR if is_ego else ON_FOOT_COLOUR if kind in _WALKERS else VEHICLE_COLOUR
+        cube = draw.cube_without_pose(length, width, height, shade.faint(0.9))
         facts = {
             "class": ("ego, " if is_ego else "") + (kind or "unknown"),
             "length": f"{size[0]:.2f} m",
@@ -171,8 +171,8 @@ def _heads(tracks: Tracks, lifetime_ns: int) -> list[bytes]:
         }
         pairs = b"".join(wire.nested(6, wire.text(1, k) + wire.text(2, v)) for k, v in facts.items())
         lifetime = wire.time(4, lifetime_ns) if lifetime_ns else b""
-        body = wire.text(2, draw.FRAME) + wire.text(3, name) + lifetime + pairs
-        body += draw.cube_field(len(cube) + _POSE_WIDTH) + cube
+        body = wire.text(2, draw.MAP_FRAME) + wire.text(3, name) + lifetime + pairs
+        body += draw.cube_header(len(cube) + _POSE_WIDTH) + cube
         heads.append(wire.varint(2 << 3 | 2) + wire.varint(len(body) + _tail_width()) + body)
     return heads
 
@@ -183,37 +183,39 @@ def _tails(tracks: Tracks, rows: NDArray[np.intp], log_time: NDArray[np.uint64])
     z = tracks.z[rows]
     height = np.nan_to_num(tracks.sizes[tracks.actor[rows], 2], nan=_HEIGHT)
     z = np.where(np.isfinite(z), z, height / 2)
-    return np.concatenate([poses(1, tracks.x[rows], tracks.y[rows], z, half), wire.timestamps(1, log_time)], axis=1)
+    return np.concatenate(
+        [pose_fields(1, tracks.x[rows], tracks.y[rows], z, half), wire.timestamps(1, log_time)], axis=1
+    )
 
 
-def poses(
+def pose_fields(
     number: int, x: NDArray[np.float64], y: NDArray[np.float64], z: NDArray[np.float64], half_yaw: NDArray[np.float64]
 ) -> wire.Bytes:
-    """Return a field of a pose, a row each."""
-    where = wire.rows(
+    """Return one encoded pose field per row."""
+    where = wire.join_columns(
         len(x),
         wire.varint(1 << 3 | 2) + b"\x1b",
         b"\x09",
-        wire.column(x),
+        wire.double_column(x),
         b"\x11",
-        wire.column(y),
+        wire.double_column(y),
         b"\x19",
-        wire.column(z),
+        wire.double_column(z),
     )
-    turned = wire.rows(
+    turned = wire.join_columns(
         len(x),
         wire.varint(2 << 3 | 2) + b"\x12",
         b"\x19",
-        wire.column(np.sin(half_yaw)),
+        wire.double_column(np.sin(half_yaw)),
         b"\x21",
-        wire.column(np.cos(half_yaw)),
+        wire.double_column(np.cos(half_yaw)),
     )
-    return wire.rows(
+    return wire.join_columns(
         len(x), wire.varint(number << 3 | 2) + wire.varint(where.shape[1] + turned.shape[1]), where, turned
     )
 
 
-_POSE_WIDTH: Final = int(poses(1, *(np.zeros(1),) * 4).shape[1])
+_POSE_WIDTH: Final = int(pose_fields(1, *(np.zeros(1),) * 4).shape[1])
 
 
 def _tail_width() -> int:

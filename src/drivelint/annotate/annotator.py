@@ -7,7 +7,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
-from drivelint.annotate.evidence import gather, room
+from drivelint.annotate.evidence import danger_spaces, gather_evidence
 from drivelint.annotate.road import Road
 from drivelint.annotate.write import Annotation, write
 from drivelint.report import summary
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     import duckdb
     import pyarrow as pa
 
-    from drivelint.annotate.evidence import Evidence, Room
+    from drivelint.annotate.evidence import DangerSpaces, Evidence
     from drivelint.engine.batch import Drive
-    from drivelint.road.contract import Environment
+    from drivelint.road.contract import MapTables
 
-LAYOUT = "viewer-layout.json"
+LAYOUT_FILE = "viewer-layout.json"
 """Panels and topics as Foxglove and Lichtblick import them: there, topics are hidden until somebody asks for them."""
 _BUFFER = 1 << 20
 
@@ -44,7 +44,7 @@ class Annotator:
         self._fail_on = fail_on
         self._strict = strict
         self._roads: dict[str, Road] = {}
-        self._rooms: list[Room] = []
+        self._rooms: list[DangerSpaces] = []
 
     def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], *, first: bool, last: bool) -> None:
         """Annotate a batch that was just judged in `con`, once the last of its parts was.
@@ -54,10 +54,10 @@ class Annotator:
         ids = [drive.trace.drive_id for drive in drives]
         if first:
             self._rooms.clear()
-        self._rooms.append(room(con, ids))
+        self._rooms.append(danger_spaces(con, ids))
         if not last:
             return
-        found = gather(con, ids, self._rooms)
+        found = gather_evidence(con, ids, self._rooms)
         self._rooms.clear()
         for drive in drives:
             name = drive.trace.drive_id
@@ -71,10 +71,10 @@ class Annotator:
             )
             with _whole(self._folder / f"{name}.mcap") as file:
                 write(file, said)
-        with _whole(self._folder / LAYOUT) as file:
+        with _whole(self._folder / LAYOUT_FILE) as file:
             file.write((Path(__file__).parent / "layout.json").read_bytes())
 
-    def _road(self, environment: Environment | None) -> Road | None:
+    def _road(self, environment: MapTables | None) -> Road | None:
         """Return the road of a map; of several, only the last is kept."""
         if environment is None:
             return None

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class LogClock:
-    """Maps the trace's time to log time: that of the frame at or before it, where the container has a clock of its own.
+    """Converts times of the trace to log times: those of the frame at or before, if the container has its own clock.
 
     `t_ns` and `log_ns` are the frames' times in both clocks, `t_ns` strictly rising; both empty: the clocks are one, moved by
     `shift_ns` where the trace's begins before 0, which log times cannot.
@@ -36,11 +36,11 @@ class LogClock:
 
 
 def of_frames(t_ns: NDArray[np.int64], log_ns: NDArray[np.uint64]) -> LogClock:
-    """Return the clock of a log whose frames say both times; of several frames at one time the first counts."""
+    """Return the clock of a log whose frames have both times; the first of several frames at one time counts."""
     times, first = np.unique(t_ns, return_index=True)
     return LogClock(times, log_ns[first])
 
 
 def of_trace(t_start_ns: int) -> LogClock:
-    """Return the clock of a trace without a container's."""
+    """Return the clock of a trace whose container has no clock of its own."""
     return LogClock(np.zeros(0, np.int64), np.zeros(0, np.uint64), max(0, -t_start_ns))

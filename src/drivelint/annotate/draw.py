@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from drivelint.formats.foxglove import messages as foxglove
 from drivelint.formats.protobuf import wire
 
-FRAME: Final = "map"
+MAP_FRAME: Final = "map"
 _CUBES, _LINES, _TRIANGLES, _TEXTS, _ARROWS = 8, 11, 12, 13, 7
 _LABEL_PX: Final = 14.0
 Points = NDArray[np.float64]
@@ -37,17 +37,17 @@ def entity(
     """Return a scene entity as a field of a SceneUpdate; `facts` are shown when it is clicked on."""
     pairs = (wire.nested(6, wire.text(1, key) + wire.text(2, value)) for key, value in (facts or {}).items())
     lifetime = wire.time(4, lifetime_ns) if lifetime_ns else b""
-    head = wire.time(1, log_time) + wire.text(2, FRAME) + wire.text(3, name) + lifetime
+    head = wire.time(1, log_time) + wire.text(2, MAP_FRAME) + wire.text(3, name) + lifetime
     return wire.nested(2, head + b"".join(pairs) + primitives)
 
 
-def clear(log_time: int) -> bytes:
+def deletion(log_time: int) -> bytes:
     """Return the deletion of everything shown before, as a field of a SceneUpdate."""
-    return wire.nested(1, wire.time(1, log_time) + wire.whole(2, foxglove.DELETE_ALL))
+    return wire.nested(1, wire.time(1, log_time) + wire.integer(2, foxglove.DELETE_ALL))
 
 
 @cache
-def colour(number: int, value: Colour) -> bytes:
+def colour_field(number: int, value: Colour) -> bytes:
     """Return a field that holds a colour."""
     return wire.nested(number, wire.doubles(*value))
 
@@ -61,8 +61,8 @@ def pose(x: float, y: float, z: float, yaw: float = 0.0, *, number: int = 1) -> 
 def line(xyz: Points, value: Colour, *, thickness: float, kind: int, pixels: bool = True) -> bytes:
     """Return a line; `thickness` is in pixels, or metres. Its points are relative to the first, which keeps them exact."""
     origin = pose(*map(float, xyz[0]), number=2)
-    head = wire.whole(1, kind) + origin + wire.doubles(thickness, first=3) + wire.whole(4, int(pixels))
-    return wire.nested(_LINES, head + wire.points(5, xyz - xyz[0]) + colour(6, value))
+    head = wire.integer(1, kind) + origin + wire.doubles(thickness, first=3) + wire.integer(4, int(pixels))
+    return wire.nested(_LINES, head + wire.points(5, xyz - xyz[0]) + colour_field(6, value))
 
 
 def ribbon(left: Points, right: Points, value: Colour) -> bytes:
@@ -71,26 +71,26 @@ def ribbon(left: Points, right: Points, value: Colour) -> bytes:
     k = np.arange(n - 1, dtype=np.uint32)
     corners = np.stack([k, k + n, k + 1, k + 1, k + n, k + n + 1], axis=1)
     content = pose(*map(float, origin)) + wire.points(2, np.concatenate([left, right]) - origin)
-    return wire.nested(_TRIANGLES, content + colour(3, value) + wire.indices(5, corners.ravel()))
+    return wire.nested(_TRIANGLES, content + colour_field(3, value) + wire.indices(5, corners.ravel()))
 
 
 def label(x: float, y: float, z: float, content: str, value: Colour) -> bytes:
     """Return text that faces the viewer and stays as large at any distance."""
-    look = wire.whole(2, 1) + wire.doubles(_LABEL_PX, first=3) + wire.whole(4, 1)
-    return wire.nested(_TEXTS, pose(x, y, z) + look + colour(5, value) + wire.text(6, content))
+    look = wire.integer(2, 1) + wire.doubles(_LABEL_PX, first=3) + wire.integer(4, 1)
+    return wire.nested(_TEXTS, pose(x, y, z) + look + colour_field(5, value) + wire.text(6, content))
 
 
 def arrow(foot: tuple[float, float, float], yaw: float, length: float, value: Colour) -> bytes:
     """Return a flat-lying arrow from a point in direction `yaw`."""
     shape = wire.doubles(0.6 * length, 0.15, 0.4 * length, 0.5, first=2)
-    return wire.nested(_ARROWS, pose(*foot, yaw) + shape + colour(6, value))
+    return wire.nested(_ARROWS, pose(*foot, yaw) + shape + colour_field(6, value))
 
 
-def cube_head(length: float, width: float, height: float, value: Colour) -> bytes:
+def cube_without_pose(length: float, width: float, height: float, value: Colour) -> bytes:
     """Return size and colour of a cube, to which its pose is still to be added."""
-    return wire.nested(2, wire.doubles(length, width, height)) + colour(3, value)
+    return wire.nested(2, wire.doubles(length, width, height)) + colour_field(3, value)
 
 
-def cube_field(size: int) -> bytes:
+def cube_header(size: int) -> bytes:
     """Return the beginning of a cube that is `size` bytes long."""
     return wire.varint(_CUBES << 3 | 2) + wire.varint(size)

@@ -38,31 +38,31 @@ def schema(name: str) -> Schema:
     return Schema(id=0, name=f"drivelint.{name.title()}", encoding="jsonschema", data=content)
 
 
-def verdicts(rows: pa.Table, clock: LogClock, t_start_ns: int) -> list[Message]:
+def verdict_messages(rows: pa.Table, clock: LogClock, t_start_ns: int) -> list[Message]:
     """Return every verdict at its reference point, else at its worst step, else where its interval begins."""
-    return _in_order([_json(row, clock.at(moment(row, t_start_ns))) for row in rows.to_pylist()])
+    return _in_order([_json(row, clock.at(display_time(row, t_start_ns))) for row in rows.to_pylist()])
 
 
-def findings(rows: pa.Table, clock: LogClock) -> list[Message]:
+def finding_messages(rows: pa.Table, clock: LogClock) -> list[Message]:
     """Return every finding where its failing stretch begins."""
     return _in_order([_json(row, clock.at(row["t_start_ns"])) for row in rows.to_pylist()])
 
 
-def log_lines(rows: pa.Table, clock: LogClock, t_start_ns: int, senses: Mapping[str, str]) -> list[Message]:
+def log_messages(rows: pa.Table, clock: LogClock, t_start_ns: int, senses: Mapping[str, str]) -> list[Message]:
     """Return a `foxglove.Log` line for every verdict that a person should look at: fails, near misses, unknowns, errors."""
     lines = []
     for row in rows.to_pylist():
         if row["verdict"] in {"fail", "error", "unknown"} or row["near_miss"]:
-            time = clock.at(moment(row, t_start_ns))
+            time = clock.at(display_time(row, t_start_ns))
             level = (
                 foxglove.ERROR if (row["verdict"], row["severity"]) == ("fail", "critical") else _LEVELS[row["verdict"]]
             )
             said = wire.text(3, f"{headline(row, senses)}. {row['reason']}") + wire.text(4, row["rule_id"])
-            lines.append(Message(time, wire.time(1, time) + wire.whole(2, level) + said))
+            lines.append(Message(time, wire.time(1, time) + wire.integer(2, level) + said))
     return _in_order(lines)
 
 
-def moment(row: dict[str, Any], t_start_ns: int) -> int:
+def display_time(row: dict[str, Any], t_start_ns: int) -> int:
     """Return the one time (ns, the trace's clock) at which a verdict is shown; the drive's start if it has none."""
     times = (row["t_ref_ns"], row["t_worst_ns"], row["t_start_ns"], t_start_ns)
     return int(next(t for t in times if t is not None))

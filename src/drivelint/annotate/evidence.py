@@ -1,4 +1,4 @@
-"""What the annotation of a batch of drives needs from the database, taken while the batch is in it: one query each."""
+"""Reads what annotated logs need from the database while a batch of drives is in it."""
 
 from __future__ import annotations
 
@@ -55,21 +55,23 @@ class Evidence:
     chains: pa.Table
 
 
-class Room(NamedTuple):
+class DangerSpaces(NamedTuple):
     """Danger spaces and the chains they lie on, of a part of a drive or of a batch."""
 
     spaces: pa.Table
     chains: pa.Table
 
 
-def room(con: duckdb.DuckDBPyConnection, drive_ids: Sequence[str]) -> Room:
-    """Return what of the evidence is in the database only while the part is."""
+def danger_spaces(con: duckdb.DuckDBPyConnection, drive_ids: Sequence[str]) -> DangerSpaces:
+    """Return the danger spaces and chains of these drives, while the database still has them."""
     ids = list(drive_ids)
-    return Room(con.execute(_SPACES, [ids]).to_arrow_table(), con.execute(_CHAINS, [ids]).to_arrow_table())
+    return DangerSpaces(con.execute(_SPACES, [ids]).to_arrow_table(), con.execute(_CHAINS, [ids]).to_arrow_table())
 
 
-def gather(con: duckdb.DuckDBPyConnection, drive_ids: Sequence[str], rooms: Sequence[Room]) -> dict[str, Evidence]:
-    """Return the evidence of every drive of a batch of which the last part was just judged; `rooms`: of all its parts."""
+def gather_evidence(
+    con: duckdb.DuckDBPyConnection, drive_ids: Sequence[str], rooms: Sequence[DangerSpaces]
+) -> dict[str, Evidence]:
+    """Return the evidence of every drive of a batch whose last part was just judged."""
     ids = list(drive_ids)
     spaces, chains = (pa.concat_tables(tables) for tables in zip(*rooms, strict=True))
     verdicts, findings, rows = collect.verdicts(con, ids), collect.findings(con, ids), collect.drives(con, ids)

@@ -1,4 +1,4 @@
-"""What a finding, a near miss or an overtake stands on, drawn at every step at which it is of interest.
+"""Markers of findings and near misses: the boxes of ego and object and a label, at every step of interest.
 
 Each message is complete: it takes away what was drawn before, so that a viewer that jumps to a time shows what holds there.
 """
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
     from drivelint.annotate.evidence import Evidence
     from drivelint.annotate.tracks import Tracks
 
-FAIL = Colour(0.90, 0.16, 0.16)
-NEAR_MISS = Colour(1.00, 0.62, 0.05)
-STEPS: Final = 5_000
+FAIL_COLOUR = Colour(0.90, 0.16, 0.16)
+NEAR_MISS_COLOUR = Colour(1.00, 0.62, 0.05)
+MAX_STEPS: Final = 5_000
 """So many steps of findings are drawn per drive; of longer ones every second, third ... step."""
-BEFORE_NS: Final = 1_000_000_000  # what lasts a moment is drawn a little longer: a person must see it
-AFTER_NS: Final = 2_000_000_000
-ASIDE_M: Final = 9.0  # beside the ego: its role stands on it, and a viewer that follows it has this in sight
-LINES: Final = 5
+DRAW_BEFORE_NS: Final = 1_000_000_000  # what lasts a moment is drawn a little longer: a person must see it
+DRAW_AFTER_NS: Final = 2_000_000_000
+LABEL_OFFSET_M: Final = 9.0  # beside the ego: its role stands on it, and a viewer that follows it has this in sight
+MAX_LABEL_LINES: Final = 5
 _UNKNOWN_SIZE: Final = 1.0
 
 
@@ -46,7 +46,7 @@ class Box(NamedTuple):
     width: float
 
 
-class Window(NamedTuple):
+class Marker(NamedTuple):
     """One finding or near miss, and when it is drawn (ns, the trace's clock)."""
 
     ego_id: str
@@ -57,22 +57,22 @@ class Window(NamedTuple):
     text: str
 
 
-class Shown(NamedTuple):
+class MarkerFrame(NamedTuple):
     """A window at one step: the boxes of ego and object, None where they are not known or there is no object."""
 
-    window: Window
+    window: Marker
     ego: Box | None
     object: Box | None
 
 
-def windows(evidence: Evidence, senses: Mapping[str, str]) -> list[Window]:
+def markers(evidence: Evidence, senses: Mapping[str, str]) -> list[Marker]:
     """Return findings over their failing stretch, near misses around their worst step; fails first, by severity."""
     fails = [
-        _window(row, senses, FAIL, row["t_start_ns"], max(row["t_end_ns"], row["t_start_ns"] + AFTER_NS))
+        _window(row, senses, FAIL_COLOUR, row["t_start_ns"], max(row["t_end_ns"], row["t_start_ns"] + DRAW_AFTER_NS))
         for row in sorted(evidence.findings.to_pylist(), key=lambda row: SEVERITIES.index(row["severity"]))
     ]
     near = [
-        _window(row, senses, NEAR_MISS, t - BEFORE_NS, t + AFTER_NS)
+        _window(row, senses, NEAR_MISS_COLOUR, t - DRAW_BEFORE_NS, t + DRAW_AFTER_NS)
         for row in evidence.verdicts.filter(evidence.verdicts["near_miss"]).to_pylist()
         if (t := row["t_ref_ns"] if row["t_worst_ns"] is None else row["t_worst_ns"]) is not None
     ]
@@ -81,31 +81,31 @@ def windows(evidence: Evidence, senses: Mapping[str, str]) -> list[Window]:
 
 def messages(evidence: Evidence, tracks: Tracks, clock: LogClock, senses: Mapping[str, str]) -> list[Message]:
     """Return the SceneUpdates of all windows: one for every step in any of them, and an empty one behind each."""
-    found = windows(evidence, senses)
+    found = markers(evidence, senses)
     steps = [_steps(tracks, window) for window in found]
-    every = max(1, -(-sum(len(times) for times, _ in steps) // STEPS))
-    drawn: dict[int, list[Shown]] = {}
+    every = max(1, -(-sum(len(times) for times, _ in steps) // MAX_STEPS))
+    drawn: dict[int, list[MarkerFrame]] = {}
     for window, (times, behind) in zip(found, steps, strict=True):
         thinned = times[::every]
         ego = _boxes(tracks, window.ego_id, thinned)
         other = _boxes(tracks, window.object_id, thinned)
         for k, t in enumerate(thinned.tolist()):
-            drawn.setdefault(t, []).append(Shown(window, ego[k], other[k]))
+            drawn.setdefault(t, []).append(MarkerFrame(window, ego[k], other[k]))
         if behind is not None:
             drawn.setdefault(behind, [])
     out = []
     for t, shown in sorted(drawn.items()):
         time = clock.at(t)
-        out.append(Message(time, draw.clear(time) + b"".join(_entities(shown, time))))
+        out.append(Message(time, draw.deletion(time) + b"".join(_entities(shown, time))))
     return out
 
 
-def _window(row: dict[str, Any], senses: Mapping[str, str], colour: Colour, start_ns: int, end_ns: int) -> Window:
+def _window(row: dict[str, Any], senses: Mapping[str, str], colour: Colour, start_ns: int, end_ns: int) -> Marker:
     text = headline(row, senses)
-    return Window(row["ego_id"], row["object_id"], start_ns, end_ns, colour, text)
+    return Marker(row["ego_id"], row["object_id"], start_ns, end_ns, colour, text)
 
 
-def _steps(tracks: Tracks, window: Window) -> tuple[NDArray[np.int64], int | None]:
+def _steps(tracks: Tracks, window: Marker) -> tuple[NDArray[np.int64], int | None]:
     """Return the ego's steps in a window, and the one behind it."""
     times = tracks.times(window.ego_id)
     first, end = (int(i) for i in np.searchsorted(times, [window.start_ns, window.end_ns + 1]))
@@ -123,10 +123,10 @@ def _boxes(tracks: Tracks, name: str | None, times: NDArray[np.int64]) -> list[B
     return [Box(*row[:4], p.length, p.width) if row[4] else None for row in zip(*columns, strict=True)]
 
 
-def _entities(shown: list[Shown], time: int) -> Iterator[bytes]:
+def _entities(shown: list[MarkerFrame], time: int) -> Iterator[bytes]:
     """Yield what is drawn at one step: each pair once, in the colour of its worst window, and one label per ego."""
-    pairs: dict[tuple[str, str | None], Shown] = {}
-    egos: dict[str, list[Shown]] = {}
+    pairs: dict[tuple[str, str | None], MarkerFrame] = {}
+    egos: dict[str, list[MarkerFrame]] = {}
     for one in shown:
         pairs.setdefault((one.window.ego_id, one.window.object_id), one)
         egos.setdefault(one.window.ego_id, []).append(one)
@@ -134,23 +134,23 @@ def _entities(shown: list[Shown], time: int) -> Iterator[bytes]:
         yield draw.entity(ego if other is None else f"{ego} and {other}", time, _pair(one))
     for ego, said in sorted(egos.items()):
         if (box := said[0].ego) is not None:
-            more = [f"and {len(said) - LINES} more"] if len(said) > LINES else []
-            text = "\n".join([*(one.window.text for one in said[:LINES]), *more])
-            label = draw.label(box.x, box.y + ASIDE_M, box.z + 2.0, text, said[0].window.colour)
+            more = [f"and {len(said) - MAX_LABEL_LINES} more"] if len(said) > MAX_LABEL_LINES else []
+            text = "\n".join([*(one.window.text for one in said[:MAX_LABEL_LINES]), *more])
+            label = draw.label(box.x, box.y + LABEL_OFFSET_M, box.z + 2.0, text, said[0].window.colour)
             yield draw.entity(f"what is said of {ego}", time, label)
 
 
-def _pair(one: Shown) -> bytes:
+def _pair(one: MarkerFrame) -> bytes:
     """Draw the outlines of both boxes and the line between them."""
     boxes = [box for box in (one.ego, one.object) if box is not None]
-    parts = [draw.line(outline(box), one.window.colour, thickness=3.0, kind=foxglove.LINE_LOOP) for box in boxes]
+    parts = [draw.line(box_corners(box), one.window.colour, thickness=3.0, kind=foxglove.LINE_LOOP) for box in boxes]
     if len(boxes) == 2:
         ends = np.array([box[:3] for box in boxes])
         parts.append(draw.line(ends, one.window.colour, thickness=2.0, kind=foxglove.LINE_STRIP))
     return b"".join(parts)
 
 
-def outline(box: Box) -> NDArray[np.float64]:
+def box_corners(box: Box) -> NDArray[np.float64]:
     """Return the four corners of a box at its middle height."""
     length, width = (v if np.isfinite(v) else _UNKNOWN_SIZE for v in (box.length, box.width))
     along, across = np.array([1, 1, -1, -1]) * length / 2, np.array([1, -1, -1, 1]) * width / 2

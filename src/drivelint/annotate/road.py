@@ -1,4 +1,4 @@
-"""The lanes near the way, drawn once: surfaces, bounds, and which way each is driven."""
+"""The lanes near the actors, drawn once: surfaces, bounds and driving directions."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from drivelint.formats.foxglove import messages as foxglove
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from drivelint.road.contract import Environment
+    from drivelint.road.contract import MapTables
 
 NEAR_M: Final = 40.0
 """Lanes within this distance of anybody's way are drawn (the way is kept on a grid of the same size)."""
@@ -24,8 +24,8 @@ _ROWS: Final = 1 << 31  # more than any map has in one column of the grid
 ASPHALT = Colour(0.27, 0.28, 0.30)
 PAVEMENT = Colour(0.42, 0.40, 0.37)
 VERGE = Colour(0.33, 0.36, 0.32)
-BOUND = Colour(0.80, 0.80, 0.78)
-ARROW = Colour(0.55, 0.57, 0.60)
+BOUND_COLOUR = Colour(0.80, 0.80, 0.78)
+ARROW_COLOUR = Colour(0.55, 0.57, 0.60)
 _FOOT: Final = frozenset({"sidewalk", "walking"})
 _UNDRAWN: Final = frozenset({"none"})
 _SURFACE_DOWN_M: Final = 0.05  # below the bounds, so that neither flickers through the other
@@ -34,7 +34,7 @@ _SURFACE_DOWN_M: Final = 0.05  # below the bounds, so that neither flickers thro
 class Road:
     """The lanelets of one map; each is encoded once, whichever drives are near it."""
 
-    def __init__(self, environment: Environment) -> None:
+    def __init__(self, environment: MapTables) -> None:
         points, lanelets = environment.tables["lane_point"], environment.tables["lanelet"]
         order = points.sort_by([("lanelet_id", "ascending"), ("k", "ascending")])
         self._points = {name: _floats(order, name) for name in _COLUMNS}
@@ -83,12 +83,13 @@ class Road:
         ground = ASPHALT if about["drivable"] else PAVEMENT if about["lane_type"] in _FOOT else VERGE
         parts = [draw.ribbon(left - down, right - down, ground)]
         parts += [
-            draw.line(side, BOUND, thickness=0.12, kind=foxglove.LINE_STRIP, pixels=False) for side in (left, right)
+            draw.line(side, BOUND_COLOUR, thickness=0.12, kind=foxglove.LINE_STRIP, pixels=False)
+            for side in (left, right)
         ]
         if about["drivable"] and about["length_m"] > 10.0:
             k = len(z) // 2
             yaw = math.atan2(p["ty"][k], p["tx"][k])
-            parts.append(draw.arrow((float(p["x_m"][k]), float(p["y_m"][k]), float(z[k])), yaw, 3.0, ARROW))
+            parts.append(draw.arrow((float(p["x_m"][k]), float(p["y_m"][k]), float(z[k])), yaw, 3.0, ARROW_COLOUR))
         return b"".join(parts)
 
 

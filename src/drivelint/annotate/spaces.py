@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from drivelint.annotate.evidence import Evidence
     from drivelint.annotate.tracks import Tracks
 
-FREE = Colour(0.20, 0.70, 0.35)
-MET = Colour(0.90, 0.16, 0.16)
-OVERLAP = Colour(1.00, 0.62, 0.05)
-ROLE = Colour(0.95, 0.95, 0.95)
-STEPS: Final = 5_000
+FREE_COLOUR = Colour(0.20, 0.70, 0.35)
+ENTERED_COLOUR = Colour(0.90, 0.16, 0.16)
+OVERLAP_COLOUR = Colour(1.00, 0.62, 0.05)
+ROLE_COLOUR = Colour(0.95, 0.95, 0.95)
+MAX_STEPS: Final = 5_000
 Strip = tuple["NDArray[np.float64]", "NDArray[np.float64]"]
 _SAMPLES: Final = 24
 _UP_M: Final = 0.1  # above the lanes
@@ -35,7 +35,7 @@ _LEAST_M: Final = 0.1
 def messages(evidence: Evidence, tracks: Tracks, clock: LogClock) -> list[Message]:
     """Return a SceneUpdate for every step of an overtake, and an empty one behind each."""
     rows = evidence.spaces
-    every = max(1, -(-len(rows) // STEPS))
+    every = max(1, -(-len(rows) // MAX_STEPS))
     by_time: dict[int, list[dict[str, Any]]] = {}
     for row in rows[::every]:
         by_time.setdefault(row["t_ns"], []).append(row)
@@ -49,7 +49,7 @@ def messages(evidence: Evidence, tracks: Tracks, clock: LogClock) -> list[Messag
         entities = [
             draw.entity(f"overtake of {row['ego_id']}", time, _spaces(row, lines) + roles.labels(row)) for row in shown
         ]
-        out.append(Message(time, draw.clear(time) + b"".join(entities)))
+        out.append(Message(time, draw.deletion(time) + b"".join(entities)))
     return out
 
 
@@ -110,7 +110,7 @@ class _Roles:
             p = self._places[name]
             x, y, z = float(p.x[k]), float(p.y[k]), float(p.z[k])
             if math.isfinite(x) and math.isfinite(y):
-                parts.append(draw.label(x, y, (z if math.isfinite(z) else 0.0) + _ABOVE_M, role, ROLE))
+                parts.append(draw.label(x, y, (z if math.isfinite(z) else 0.0) + _ABOVE_M, role, ROLE_COLOUR))
         return b"".join(parts)
 
 
@@ -123,7 +123,7 @@ def _spaces(row: dict[str, Any], lines: _Lines) -> bytes:
         if None not in (s, d, half, sd):
             start, end = sorted((s, s + direction * sd))
             if strip := lines.strip(row, start, end, d, half):
-                parts += _space(strip, MET if met else OVERLAP if row["overlap"] else FREE)
+                parts += _space(strip, ENTERED_COLOUR if met else OVERLAP_COLOUR if row["overlap"] else FREE_COLOUR)
     return b"".join(parts)
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-class Places(NamedTuple):
+class ActorPoses(NamedTuple):
     """One actor's box at several times, NaN where it is not known: centre, heading; its length, width and height."""
 
     x: NDArray[np.float64]
@@ -55,19 +55,19 @@ class Tracks:
         """Return the times of an actor's samples; none if it is not there."""
         return self.t_ns[self.spans.get(name, slice(0, 0))]
 
-    def places(self, name: str, t_ns: NDArray[np.int64]) -> Places:
+    def places(self, name: str, t_ns: NDArray[np.int64]) -> ActorPoses:
         """Return where an actor is at some times, by its last sample not too long before each."""
         span, times = self.spans.get(name, slice(0, 0)), self.times(name)
         if not len(times):
             nowhere = np.full(len(t_ns), np.nan)
-            return Places(nowhere, nowhere, nowhere, nowhere, np.nan, np.nan, np.nan)
+            return ActorPoses(nowhere, nowhere, nowhere, nowhere, np.nan, np.nan, np.nan)
         k = np.searchsorted(times, t_ns, side="right") - 1
         row = span.start + np.clip(k, 0, None)
         gap = MAX_GAP_PERIODS * float(np.median(np.diff(times))) if len(times) > 1 else 0.0
         known = (k >= 0) & (t_ns - self.t_ns[row] <= gap)
         x, y, z, yaw = (np.where(known, column[row], np.nan) for column in (self.x, self.y, self.z, self.yaw))
         length, width, height = map(float, self.sizes[self.actor[span.start]])
-        return Places(x, y, z, yaw, length, width, height)
+        return ActorPoses(x, y, z, yaw, length, width, height)
 
 
 def tracks(tables: Mapping[str, pa.Table]) -> Tracks:

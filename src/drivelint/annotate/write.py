@@ -15,14 +15,14 @@ from drivelint.annotate.tracks import tracks
 from drivelint.formats.foxglove import messages as foxglove
 from drivelint.formats.mcap.copy import Original, is_mcap
 from drivelint.formats.mcap.writer import Sink
-from drivelint.result.contract import OUTPUT_SCHEMA
+from drivelint.result.contract import OUTPUT_VERSION
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from mcap.records import Schema
 
-    from drivelint.annotate.actors import Records
+    from drivelint.annotate.actors import RecordChunk
     from drivelint.annotate.events import Message
     from drivelint.annotate.evidence import Evidence
     from drivelint.annotate.road import Road
@@ -76,7 +76,7 @@ class _Writer:
     def run(self) -> None:
         """Write every channel, then metadata and attachment."""
         evidence, times, start = self._said.evidence, self._clock, self._start_ns
-        boxes = actors.select(self._tracks)
+        boxes = actors.select_boxes(self._tracks)
         senses = self._said.senses
         scene = foxglove.schema("SceneUpdate")
         if self._said.road is not None and len(boxes.rows):
@@ -86,17 +86,21 @@ class _Writer:
         self._many("scene", scene, lambda channel: actors.messages(boxes, times, channel))
         if not self._moves:  # the log's own frames are not ours to speak of
             self._many(
-                "tf", foxglove.schema("FrameTransform"), lambda channel: actors.transforms(boxes, times, channel)
+                "tf", foxglove.schema("FrameTransform"), lambda channel: actors.ego_transforms(boxes, times, channel)
             )
         self._few("danger_spaces", "protobuf", scene, spaces.messages(evidence, self._tracks, times))
         self._few("markers", "protobuf", scene, marks.messages(evidence, self._tracks, times, senses))
-        self._few("verdicts", "json", events.schema("verdict"), events.verdicts(evidence.verdicts, times, start))
-        self._few("findings", "json", events.schema("finding"), events.findings(evidence.findings, times))
-        self._few("log", "protobuf", foxglove.schema("Log"), events.log_lines(evidence.verdicts, times, start, senses))
+        self._few(
+            "verdicts", "json", events.schema("verdict"), events.verdict_messages(evidence.verdicts, times, start)
+        )
+        self._few("findings", "json", events.schema("finding"), events.finding_messages(evidence.findings, times))
+        self._few(
+            "log", "protobuf", foxglove.schema("Log"), events.log_messages(evidence.verdicts, times, start, senses)
+        )
         self._sink.add_metadata("drivelint", self._facts(boxes.every))
         self._sink.add_attachment("summary.json", "application/json", self._said.summary, times.at(start))
 
-    def _many(self, topic: str, schema: Schema, chunks: Callable[[int], Iterable[Records]]) -> None:
+    def _many(self, topic: str, schema: Schema, chunks: Callable[[int], Iterable[RecordChunk]]) -> None:
         channel = self._sink.add_channel(f"{self._prefix}/{topic}", "protobuf", schema)
         for records, index in chunks(channel):
             self._sink.add_chunk(records, {channel: index})
@@ -106,7 +110,7 @@ class _Writer:
         for first, group in _cut(messages):
             size = np.array([len(m.data) for m in group])
             log_time = np.array([m.log_time for m in group], np.uint64)
-            heads = actors.message_heads(channel, log_time, size, first)
+            heads = actors.message_headers(channel, log_time, size, first)
             records = b"".join(part for head, m in zip(heads, group, strict=True) for part in (head.tobytes(), m.data))
             place = np.cumsum(size + heads.shape[1]) - size - heads.shape[1]
             self._sink.add_chunk(records, {channel: np.stack([log_time, place.astype(np.uint64)], axis=1)})
@@ -130,7 +134,7 @@ class _Writer:
             "tool": "drivelint",
             "version": __version__,
             "duckdb": duckdb.__version__,
-            "output_schema": str(OUTPUT_SCHEMA),
+            "output_schema": str(OUTPUT_VERSION),
             **{key: str(row[key]) for key in known if row[key] is not None},
             **{f"rule {rule}": version for rule, version in self._said.versions.items()},
             **({"boxes": f"every {every}th step"} if every > 1 else {}),

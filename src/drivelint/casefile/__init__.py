@@ -38,7 +38,7 @@ import msgspec
 import yaml
 
 from drivelint.casefile import merged_cases
-from drivelint.casefile.scene import Row, column_of, scene
+from drivelint.casefile.scene import Row, column_of, complete_scene
 from drivelint.errors import RuleError
 from drivelint.reasons.words import codes_in
 
@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
 
-SHOWS = ("clean", "violation", "boundary", "not_applicable", "unknown")
+CATEGORIES = ("clean", "violation", "boundary", "not_applicable", "unknown")
 
 
 class CaseResult(NamedTuple):
@@ -77,7 +77,7 @@ class Case(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
         """Return which of SHOWS this case shows, by its own word or by its name."""
         said = {self.shows} if isinstance(self.shows, str) else set(self.shows)
         words = re.sub(r"[\s_-]+", "_", self.name.lower())
-        return said or {name for name in SHOWS if re.search(rf"(^|_){name}(_|$)", re.sub(r"[^a-z_]", "", words))}
+        return said or {name for name in CATEGORIES if re.search(rf"(^|_){name}(_|$)", re.sub(r"[^a-z_]", "", words))}
 
 
 class _Loader(yaml.SafeLoader):
@@ -96,7 +96,7 @@ def read_cases(rule: Rule) -> list[Case]:
 
     Errors: `RuleError` where the file is missing, is not YAML, or says what is not understood.
     """
-    file = cases_of(rule)
+    file = cases_path(rule)
     try:
         cases = _parsed(file, file.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
@@ -117,13 +117,15 @@ def read_cases(rule: Rule) -> list[Case]:
         seen[case.name] = case
         if strange := sorted(case.params.keys() - rule.params.keys()):
             known = ", ".join(rule.params) or "none"
-            raise RuleError(f"{place(rule, case)}: params: {rule.id} has no parameter {strange[0]!r}; it has: {known}")
+            raise RuleError(
+                f"{case_location(rule, case)}: params: {rule.id} has no parameter {strange[0]!r}; it has: {known}"
+            )
         if "capability" not in rule.reads and (idle := sorted(set(case.missing) - set(rule.requires))):
-            raise RuleError(f"{place(rule, case)}: missing: {rule.id} does not require {idle[0]!r}")
+            raise RuleError(f"{case_location(rule, case)}: missing: {rule.id} does not require {idle[0]!r}")
     return cases
 
 
-def cases_of(rule: Rule) -> Path:
+def cases_path(rule: Rule) -> Path:
     """Return the file of a rule's cases."""
     return rule.path.with_suffix(".cases.yml")
 
@@ -156,26 +158,26 @@ def run_cases(rule: Rule) -> list[CaseResult]:
     cases = read_cases(rule)
     results = [run_case(rule, case) for case in cases]
     if all(result.ok for result in results):  # else the crowd only says it again
-        mixed, codes = together(rule, cases)
+        mixed, codes = run_merged_cases(rule, cases)
         never = unused_reasons(rule, codes)
         results += [CaseResult("all cases together", not mixed, mixed), CaseResult("reasons", not never, never)]
-    problem = coverage(cases)
-    return [*results, CaseResult("kinds of case", not problem, problem and f"{cases_of(rule)}:{problem}")]
+    problem = coverage_problem(cases)
+    return [*results, CaseResult("kinds of case", not problem, problem and f"{cases_path(rule)}:{problem}")]
 
 
 def unused_reasons(rule: Rule, codes: AbstractSet[str]) -> str:
     """Return '' where each reason that the SQL names is among `codes`, which its cases gave; else which is not."""
     never = sorted(rule.reason_codes - codes)
-    return f"{cases_of(rule)}:1: no case has the reason {', '.join(never)}" if never else ""
+    return f"{cases_path(rule)}:1: no case has the reason {', '.join(never)}" if never else ""
 
 
-def coverage(cases: Sequence[Case]) -> str:
-    """Return '' where the cases show what cases must show, else `line: what` is amiss."""
+def coverage_problem(cases: Sequence[Case]) -> str:
+    """Return '' if the cases show every category, else `line: what` is missing."""
     for case in cases:
-        if unknown := sorted(case.categories() - set(SHOWS)):
-            return f"{case.line}: shows: {unknown[0]!r} is not one of {', '.join(SHOWS)}"
+        if unknown := sorted(case.categories() - set(CATEGORIES)):
+            return f"{case.line}: shows: {unknown[0]!r} is not one of {', '.join(CATEGORIES)}"
     shown = {name for case in cases for name in case.categories()}
-    if lacking := [name for name in SHOWS if name not in shown]:
+    if lacking := [name for name in CATEGORIES if name not in shown]:
         return f"1: no case shows: {', '.join(lacking)}"
     honest = {"clean": "pass", "violation": "fail", "not_applicable": "not_applicable", "unknown": "unknown"}
     for case in cases:
@@ -189,13 +191,13 @@ def coverage(cases: Sequence[Case]) -> str:
 def run_case(rule: Rule, case: Case) -> CaseResult:
     """Fill a scene, judge it by this rule alone, compare. Errors: `RuleError` with file, line and case."""
     with _placed(rule, case):
-        message = difference(case, merged_cases.Outcome(*judge(rule, case)))
-    return CaseResult(case.name, not message, message and f"{place(rule, case)}: {message}")
+        message = difference(case, merged_cases.CaseOutcome(*judge(rule, case)))
+    return CaseResult(case.name, not message, message and f"{case_location(rule, case)}: {message}")
 
 
-def place(rule: Rule, case: Case) -> str:
-    """Return where a case stands: file, line and its name."""
-    return f"{cases_of(rule)}:{case.line}: case {case.name!r}"
+def case_location(rule: Rule, case: Case) -> str:
+    """Return the location of a case: file, line and name."""
+    return f"{cases_path(rule)}:{case.line}: case {case.name!r}"
 
 
 @contextmanager
@@ -204,10 +206,10 @@ def _placed(rule: Rule, case: Case) -> Iterator[None]:
     try:
         yield
     except RuleError as error:
-        raise RuleError(f"{place(rule, case)}: {error}") from error
+        raise RuleError(f"{case_location(rule, case)}: {error}") from error
 
 
-def difference(case: Case, outcome: merged_cases.Outcome) -> str:
+def difference(case: Case, outcome: merged_cases.CaseOutcome) -> str:
     """Return '' where the rows are as the case expects, else one line that says how they differ."""
     message = _difference(case.expect, outcome.verdicts)
     if not message and case.findings not in {None, len(outcome.findings)}:
@@ -220,41 +222,45 @@ def judge(rule: Rule, case: Case) -> tuple[list[Row], list[Row]]:
 
     Errors: `RuleError` for tables, columns or values that cannot be understood.
     """
-    outcome = merged_cases.judge([rule], scene(rule, case.given, case.missing, "given"), case.params)[rule.id]
+    outcome = merged_cases.judge([rule], complete_scene(rule, case.given, case.missing, "given"), case.params)[rule.id]
     return outcome.verdicts, outcome.findings
 
 
-def members(rule: Rule, cases: Sequence[Case]) -> list[merged_cases.Member]:
+def numbered_cases(rule: Rule, cases: Sequence[Case]) -> list[merged_cases.NumberedCase]:
     """Return the scenes of all cases, to be judged together. Errors: `RuleError` with file, line and case."""
     found = []
     for no, case in enumerate(cases):
         with _placed(rule, case):
-            found.append(merged_cases.Member(no, scene(rule, case.given, case.missing, "given"), case.params))
+            found.append(
+                merged_cases.NumberedCase(no, complete_scene(rule, case.given, case.missing, "given"), case.params)
+            )
     return found
 
 
-class Together(NamedTuple):
-    """What cases judged together gave: '' where each comes out as it expects, and the codes of all reasons."""
+class MergedResult(NamedTuple):
+    """The result of cases judged together: '' or the first problem, and all reason codes."""
 
     problem: str
     codes: frozenset[str]
 
 
-def together(rule: Rule, cases: Sequence[Case], keys: Mapping[str, str] = merged_cases.KEYS) -> Together:
+def run_merged_cases(
+    rule: Rule, cases: Sequence[Case], keys: Mapping[str, str] = merged_cases.MERGE_KEYS
+) -> MergedResult:
     """Judge all cases in one database. Errors: `RuleError`. `keys`: by what they are told apart there, in turn."""
-    everybody = members(rule, cases)
+    everybody = numbered_cases(rule, cases)
     codes: set[str] = set()
     for key, where in keys.items():
-        for group in merged_cases.crowds(everybody, key):
+        for group in merged_cases.mergeable_groups(everybody, key):
             outcome = merged_cases.judge([rule], merged_cases.merge(group, key), group[0].params)[rule.id]
             rows = [*outcome.verdicts, *outcome.findings]
             codes |= {code for row in rows for code in codes_in(row["cause_code"], row["cause_args"])}
             for member in group:
                 case = cases[member.no]
-                if message := difference(case, merged_cases.share(outcome, member.no)):
-                    problem = f"{place(rule, case)}: as one of {where}: {message}; does each join have {key}?"
-                    return Together(problem, frozenset(codes))
-    return Together("", frozenset(codes))
+                if message := difference(case, merged_cases.outcome_of_case(outcome, member.no)):
+                    problem = f"{case_location(rule, case)}: as one of {where}: {message}; does each join have {key}?"
+                    return MergedResult(problem, frozenset(codes))
+    return MergedResult("", frozenset(codes))
 
 
 def _difference(expect: str | Sequence[Mapping[str, Any]], rows: Sequence[Row]) -> str:

@@ -1,4 +1,4 @@
-"""What an author of rules runs: every rule of a folder read, planned and judged by its cases, or its mutants by them.
+"""Runs the commands for authors of rules: create a rule, test rules by their cases, test cases by mutants.
 
 A rule that is wrong is refused with `file:line: what`, and the others go on. Here, unlike in `check`, the shipped rules
 are not loaded beside a folder of yours: copies of them can be worked on.
@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 import duckdb
 
 from drivelint.casefile import mutation, run_cases
-from drivelint.casefile.scene import database
+from drivelint.casefile.scene import case_database
 from drivelint.catalogue import read_rule
-from drivelint.catalogue.load import PACK, STEM, files, id_of
+from drivelint.catalogue.load import PACK_NAME, RULE_NAME, rule_files, rule_id_of
 from drivelint.errors import ExitCode, RuleError, UsageError
-from drivelint.evaluate import explain
+from drivelint.evaluate import query_plans
 from drivelint.resources import folder
 
 if TYPE_CHECKING:
@@ -29,13 +29,13 @@ if TYPE_CHECKING:
     Say = Callable[[str], None]
 
 
-def new(rule_id: str, root: Path, kind: str) -> tuple[Path, Path]:
-    """Write `<root>/<pack>/<rule>.sql` and its cases: a small rule of that kind that runs, to be edited.
+def new_rule(rule_id: str, root: Path, kind: str) -> tuple[Path, Path]:
+    """Write a small runnable rule of this kind and its cases into `<root>/<pack>/`, for an author to edit.
 
     Returns both files. Errors: `UsageError` for an id that is none or is taken, and where one of the files is there.
     """
     pack, dot, name = rule_id.partition(".")
-    if not (dot and PACK.fullmatch(pack) and STEM.fullmatch(name)):
+    if not (dot and PACK_NAME.fullmatch(pack) and RULE_NAME.fullmatch(name)):
         raise UsageError(
             f"{rule_id!r} is no rule id: write PACK.NAME in lower-case letters, digits, '-' and '_' (and '.' in the name), "
             "such as mine.r124.speed"
@@ -84,7 +84,7 @@ def case_test(root: Path | None, only: Sequence[str], say: Say) -> ExitCode:
 
 
 def mutation_test(root: Path | None, only: Sequence[str], say: Say) -> ExitCode:
-    """Judge each rule's mutants by its cases and `say` which nobody noticed, and the figures.
+    """Judge each rule's mutants by its cases and `say` which mutants no case noticed, and the counts.
 
     Returns FAILED where a mutant of a stable rule lives that is not listed, and USAGE where a rule was refused.
     """
@@ -94,14 +94,18 @@ def mutation_test(root: Path | None, only: Sequence[str], say: Say) -> ExitCode:
     for error in refused:
         say(f"REFUSED {error}")
     proofs = []
-    for proof in mutation.prove_all(rules, os.cpu_count() or 1):
-        say(mutation.said(proof))
+    for proof in mutation.judge_all_mutants(rules, os.cpu_count() or 1):
+        say(mutation.result_text(proof))
         proofs.append(proof)
-    strange = [] if only or refused else mutation.strangers(rules)
+    strange = [] if only or refused else mutation.entries_without_rule(rules)
     for line in strange:
         say(f"FAIL {line}")
     say(mutation.summary(proofs))
-    good = all(proof.ok for proof in proofs) and not strange and (only or mutation.rate(proofs) >= mutation.LEAST)
+    good = (
+        all(proof.ok for proof in proofs)
+        and not strange
+        and (only or mutation.noticed_share(proofs) >= mutation.LEAST_NOTICED_SHARE)
+    )
     return ExitCode.USAGE if refused else ExitCode.OK if good else ExitCode.FAILED
 
 
@@ -110,8 +114,8 @@ def _rules(root: Path | None, only: Sequence[str]) -> Iterator[Rule | RuleError]
 
     Errors: `UsageError` where nothing is selected.
     """
-    found = files(root or folder("queries") / "assertions")
-    chosen = [file for file in found if not only or any(fnmatchcase(id_of(file), name) for name in only)]
+    found = rule_files(root or folder("queries") / "assertions")
+    chosen = [file for file in found if not only or any(fnmatchcase(rule_id_of(file), name) for name in only)]
     if not chosen:
         raise UsageError(f"--rules {', '.join(only)}: none of the {len(found)} rules here has such an id")
     for file in chosen:
@@ -127,7 +131,7 @@ def _rules(root: Path | None, only: Sequence[str]) -> Iterator[Rule | RuleError]
 def _check_plans(rule: Rule) -> None:
     """Refuse a rule whose SQL does not fit the tables, or that compares every row with every other."""
     try:
-        plans = explain(database(), rule)
+        plans = query_plans(case_database(), rule)
     except duckdb.Error as error:
         raise RuleError(f"{rule.path}:1: {str(error).splitlines()[0]}") from error
     if any("BLOCKWISE_NL_JOIN" in plan for plan in plans):

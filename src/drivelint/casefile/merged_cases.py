@@ -9,9 +9,9 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from drivelint.casefile.scene import Row, database, fill
+from drivelint.casefile.scene import Row, case_database, fill
 from drivelint.evaluate import evaluate
-from drivelint.sql.store import schema
+from drivelint.sql.store import column_comments
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
 
-KEYS = {"drive_id": "drives of one database", "ego_id": "egos of one drive"}
+MERGE_KEYS = {"drive_id": "drives of one database", "ego_id": "egos of one drive"}
 """What tells the cases of a crowd apart, and what they are then."""
 
 _MARKED = ("drive_id", "ego_id", "environment_id")
@@ -32,33 +32,33 @@ _ORDER = (
 Scene = dict[str, list[Row]]
 
 
-class Outcome(NamedTuple):
+class CaseOutcome(NamedTuple):
     """What one rule said about one case: its verdict rows, in the order that `expect` uses, and its finding rows."""
 
     verdicts: list[Row]
     findings: list[Row]
 
 
-class Member(NamedTuple):
-    """One case of a crowd: its number there, its tables and the parameters it sets."""
+class NumberedCase(NamedTuple):
+    """One case with its number among the cases judged together, its tables and its parameters."""
 
     no: int
     scene: Scene
     params: Mapping[str, Any]
 
 
-def judge(rules: Sequence[Rule], scene: Scene, params: Mapping[str, Any]) -> dict[str, Outcome]:
+def judge(rules: Sequence[Rule], scene: Scene, params: Mapping[str, Any]) -> dict[str, CaseOutcome]:
     """Fill a scene, judge it by all the rules and return rule id -> outcome.
 
     Errors: `RuleError` for a value that does not fit its column.
     """
-    con = database()
+    con = case_database()
     tables = [*scene, "verdict", "finding", "margin"]
     try:
         for table, rows in scene.items():
             fill(con, table, rows)
         evaluate(con, rules, {rule.id: params for rule in rules})
-        outcomes = {rule.id: Outcome([], []) for rule in rules}
+        outcomes = {rule.id: CaseOutcome([], []) for rule in rules}
         for row in _fetch(con, f"SELECT * FROM verdict ORDER BY {_ORDER}"):
             outcomes[row["rule_id"]].verdicts.append(row)
         for row in _fetch(con, f"SELECT * FROM finding ORDER BY {_FOUND}"):
@@ -68,12 +68,12 @@ def judge(rules: Sequence[Rule], scene: Scene, params: Mapping[str, Any]) -> dic
         con.execute(";".join(f"DELETE FROM {table}" for table in tables))
 
 
-def crowds(members: Sequence[Member], key: str) -> list[list[Member]]:
+def mergeable_groups(members: Sequence[NumberedCase], key: str) -> list[list[NumberedCase]]:
     """Group the cases that can share one database as different drives (or egos: `key` = ego_id).
 
     They must agree on parameters and on the tables that the key does not tell apart.
     """
-    groups: dict[str, list[Member]] = {}
+    groups: dict[str, list[NumberedCase]] = {}
     for member in members:
         shared = {t: rows for t, rows in member.scene.items() if not _is_apart(t, member.scene, key)}
         groups.setdefault(repr((sorted(member.params.items()), sorted(shared.items()))), []).append(member)
@@ -95,11 +95,11 @@ def _egos(scene: Scene) -> set[str]:
 
 @cache
 def _of_the_map(table: str) -> bool:
-    return "environment_id" in schema()[table] and "drive_id" not in schema()[table]
+    return "environment_id" in column_comments()[table] and "drive_id" not in column_comments()[table]
 
 
-def merge(crowd: Sequence[Member], key: str) -> Scene:
-    """Return the tables of all cases in one, each case's key beginning with its number."""
+def merge(crowd: Sequence[NumberedCase], key: str) -> Scene:
+    """Return the tables of all cases as one scene; each case's number is put before its keys."""
     merged: Scene = {}
     for member in crowd:
         for table, rows in member.scene.items():
@@ -121,9 +121,9 @@ def _marked(row: Row, table: str, key: str, no: int) -> Row:
     return marked
 
 
-def share(outcome: Outcome, no: int) -> Outcome:
-    """Return what an outcome says about case `no`, its keys as in that case."""
-    return Outcome(*([_unmarked(row, no) for row in rows if _is_of(row, no)] for rows in outcome))
+def outcome_of_case(outcome: CaseOutcome, no: int) -> CaseOutcome:
+    """Return the rows of case `no` from an outcome, with the keys of that case."""
+    return CaseOutcome(*([_unmarked(row, no) for row in rows if _is_of(row, no)] for rows in outcome))
 
 
 def _is_of(row: Row, no: int) -> bool:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 Node = dict[str, Any]
 
 OPPOSITE = {">": "<=", ">=": "<", "<": ">=", "<=": ">"}
-EDGE = {">": ">=", ">=": ">", "<": "<=", "<=": "<"}
+BOUNDARY_SWAP = {">": ">=", ">=": ">", "<": "<=", "<=": "<"}
 _TURNED = {
     "COMPARE_LESSTHAN": "COMPARE_GREATERTHANOREQUALTO",
     "COMPARE_LESSTHANOREQUALTO": "COMPARE_GREATERTHAN",
@@ -46,7 +46,7 @@ _WINDOW = (0.5, 2.0)
 
 
 class Mutant(NamedTuple):
-    """A wrong rule and what is wrong with it, in words that stay the same as long as that place of the rule does."""
+    """A rule with one deliberate fault, and a stable text that names the fault."""
 
     fault: str
     rule: Rule
@@ -68,7 +68,7 @@ def _of_the_sense(rule: Rule) -> Iterator[Mutant]:
         sql = f"SELECT * REPLACE (NOT holds AS holds) FROM (\n{rule.sections['condition']}\n)"
         yield Mutant("NOT holds", _with_section(rule, "condition", sql))
         return
-    for sense in (OPPOSITE[rule.sense], EDGE[rule.sense]):
+    for sense in (OPPOSITE[rule.sense], BOUNDARY_SWAP[rule.sense]):
         yield Mutant(f"sense {rule.sense} -> {sense}", msgspec.structs.replace(rule, sense=sense))
 
 

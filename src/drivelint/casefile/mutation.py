@@ -1,4 +1,4 @@
-"""Proof that the cases beside a rule would notice a wrong rule: each of its mutants is judged by all its cases.
+"""Judges each mutant of a rule by the rule's cases, and counts the mutants that some case notices.
 
 A mutant that no case notices asks for a case. Where none can be written (it is the same rule in other words), the
 pack's `survivors.toml` says so: `[[survivor]]` with `rule` (its id), `mutant` (the fault as printed) and `reason`.
@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import msgspec
 
-from drivelint.casefile import difference, members, place, read_cases
-from drivelint.casefile.merged_cases import KEYS, crowds, judge, merge, share
+from drivelint.casefile import case_location, difference, numbered_cases, read_cases
+from drivelint.casefile.merged_cases import MERGE_KEYS, judge, merge, mergeable_groups, outcome_of_case
 from drivelint.casefile.mutants import mutants
 from drivelint.errors import RuleError
 
@@ -22,17 +22,17 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.casefile import Case
-    from drivelint.casefile.merged_cases import Member, Outcome
+    from drivelint.casefile.merged_cases import CaseOutcome, NumberedCase
     from drivelint.casefile.mutants import Mutant
     from drivelint.catalogue import Rule
 
-FILE: Final = "survivors.toml"
-LEAST: Final = 0.95
+SURVIVORS_FILE: Final = "survivors.toml"
+LEAST_NOTICED_SHARE: Final = 0.95
 """The share of the mutants of stable rules that must be noticed, whatever is listed."""
 
 
-class Proof(NamedTuple):
-    """What became of a rule's mutants.
+class MutationResult(NamedTuple):
+    """The result of judging a rule's mutants.
 
     `survivors`: the faults that no case noticed; `listed`: those that the pack lets live; `problem`: why there is no
     proof at all (the rule does not keep its own cases), or ''.
@@ -62,7 +62,7 @@ class Proof(NamedTuple):
 
     @property
     def ok(self) -> bool:
-        """Whether nothing is left to do; a rule that is not stable yet may have survivors."""
+        """Whether nothing is left to do; the mutants of a rule that is not stable may survive."""
         return not (self.problem or self.stale or (self.stable and self.unlisted))
 
 
@@ -76,44 +76,44 @@ class _Survivors(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     survivor: list[_Survivor] = []
 
 
-def prove_all(rules: Sequence[Rule], jobs: int) -> Iterator[Proof]:
+def judge_all_mutants(rules: Sequence[Rule], jobs: int) -> Iterator[MutationResult]:
     """Yield the proof of every rule, in order, worked out by `jobs` processes."""
     if jobs <= 1 or len(rules) < 4:
-        yield from map(prove, rules)
+        yield from map(judge_mutants, rules)
         return
     with get_context("spawn").Pool(min(jobs, len(rules))) as pool:  # the database does not survive a fork
-        yield from pool.imap(prove, rules)
+        yield from pool.imap(judge_mutants, rules)
 
 
-def rate(proofs: Sequence[Proof]) -> float:
+def noticed_share(proofs: Sequence[MutationResult]) -> float:
     """Return the share of the mutants of stable rules that some case noticed."""
     n = sum(proof.n for proof in proofs if proof.stable)
     return sum(proof.noticed for proof in proofs if proof.stable) / n if n else 1.0
 
 
-def said(proof: Proof) -> str:
-    """Return a proof in words: one line, and one more for each mutant to look at."""
+def result_text(proof: MutationResult) -> str:
+    """Return the result as text: one line, and one more for each mutant to look at."""
     draft = "" if proof.stable else " (not stable yet: it may have survivors)"
     noticed = f"{proof.noticed} of {proof.n} mutants noticed{draft}"
     return "\n".join(
         [
             f"{'ok  ' if proof.ok else 'FAIL'} {proof.rule_id}: {proof.problem or noticed}",
             *(f"     no case notices: {fault}" for fault in proof.unlisted),
-            *(f"     listed in {FILE}, but noticed or gone: {fault}" for fault in proof.stale),
+            *(f"     listed in {SURVIVORS_FILE}, but noticed or gone: {fault}" for fault in proof.stale),
         ]
     )
 
 
-def summary(proofs: Sequence[Proof]) -> str:
+def summary(proofs: Sequence[MutationResult]) -> str:
     """Return the figures of all proofs in one line."""
     stable = [proof for proof in proofs if proof.stable]
     if not stable:
         return "no stable rule here: only the mutants of stable rules must be noticed"
     n, noticed = sum(proof.n for proof in stable), sum(proof.noticed for proof in stable)
-    return f"{len(stable)} stable rules: {noticed} of {n} mutants noticed ({rate(proofs):.1%})"
+    return f"{len(stable)} stable rules: {noticed} of {n} mutants noticed ({noticed_share(proofs):.1%})"
 
 
-def prove(rule: Rule) -> Proof:
+def judge_mutants(rule: Rule) -> MutationResult:
     """Judge every mutant of a rule by the rule's cases; it is noticed where one case comes out otherwise than it expects.
 
     The cases are judged together, first as drives of one database, then (what is left) as egos of one drive.
@@ -124,15 +124,15 @@ def prove(rule: Rule) -> Proof:
         listed = _listed(rule)
         survivors = tuple(mutant.fault for mutant in _survivors(rule, wrong))
     except RuleError as error:
-        return Proof(rule.id, rule.status == "stable", len(wrong), (), listed, str(error))
-    return Proof(rule.id, rule.status == "stable", len(wrong), survivors, listed)
+        return MutationResult(rule.id, rule.status == "stable", len(wrong), (), listed, str(error))
+    return MutationResult(rule.id, rule.status == "stable", len(wrong), survivors, listed)
 
 
 def _survivors(rule: Rule, alive: list[Mutant]) -> list[Mutant]:
     cases = read_cases(rule)
-    everybody = members(rule, cases)
-    for key, where in KEYS.items():
-        for crowd in crowds(everybody, key):
+    everybody = numbered_cases(rule, cases)
+    for key, where in MERGE_KEYS.items():
+        for crowd in mergeable_groups(everybody, key):
             outcomes = judge([rule, *(mutant.rule for mutant in alive)], merge(crowd, key), crowd[0].params)
             if message := _wrong(rule, cases, crowd, outcomes[rule.id]):
                 raise RuleError(f"{message} (the rule itself, its cases judged as {where}: see rules test)")
@@ -140,26 +140,26 @@ def _survivors(rule: Rule, alive: list[Mutant]) -> list[Mutant]:
     return alive
 
 
-def _wrong(rule: Rule, cases: Sequence[Case], crowd: Sequence[Member], outcome: Outcome) -> str:
+def _wrong(rule: Rule, cases: Sequence[Case], crowd: Sequence[NumberedCase], outcome: CaseOutcome) -> str:
     """Return '' where every case of a crowd comes out as it expects, else how one does not."""
     for member in crowd:
-        if message := difference(cases[member.no], share(outcome, member.no)):
-            return f"{place(rule, cases[member.no])}: {message}"
+        if message := difference(cases[member.no], outcome_of_case(outcome, member.no)):
+            return f"{case_location(rule, cases[member.no])}: {message}"
     return ""
 
 
 def _listed(rule: Rule) -> tuple[str, ...]:
     """Return the mutants of a rule that its pack lets live. Errors: `RuleError` naming the file."""
-    return tuple(entry.mutant for entry in _read(rule.path.parent / FILE) if entry.rule == rule.id)
+    return tuple(entry.mutant for entry in _read(rule.path.parent / SURVIVORS_FILE) if entry.rule == rule.id)
 
 
-def strangers(rules: Sequence[Rule]) -> list[str]:
+def entries_without_rule(rules: Sequence[Rule]) -> list[str]:
     """Return a line per entry of the packs' `survivors.toml` that names no rule. Errors: `RuleError` naming the file."""
     known = {rule.id for rule in rules}
     return [
-        f"{pack / FILE}: there is no rule {name!r} here"
+        f"{pack / SURVIVORS_FILE}: there is no rule {name!r} here"
         for pack in dict.fromkeys(rule.path.parent for rule in rules)
-        for name in sorted({entry.rule for entry in _read(pack / FILE)} - known)
+        for name in sorted({entry.rule for entry in _read(pack / SURVIVORS_FILE)} - known)
     ]
 
 

@@ -1,4 +1,4 @@
-"""The scene of a case: tables spelled out from a few columns, ranges and times, with what follows from them."""
+"""Completes the tables of a case from the few columns, ranges and times that it gives."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Row = dict[str, Any]
 
 
 @cache
-def database() -> duckdb.DuckDBPyConnection:
+def case_database() -> duckdb.DuckDBPyConnection:
     """One database for all cases of the process, locked: every case leaves it empty."""
     con = store.connect(threads=1)
     store.lock(con)
@@ -43,7 +43,7 @@ class _Column(NamedTuple):
 @cache
 def _tables() -> dict[str, dict[str, _Column]]:
     tables: dict[str, dict[str, _Column]] = {}
-    found = database().execute(
+    found = case_database().execute(
         "SELECT table_name, column_name, data_type, is_nullable FROM duckdb_columns() WHERE NOT internal"
     )
     for table, column, kind, nullable in found.fetchall():
@@ -51,7 +51,7 @@ def _tables() -> dict[str, dict[str, _Column]]:
     return tables
 
 
-def scene(rule: Rule, given: Mapping[str, Any], missing: Sequence[str], where: str) -> dict[str, list[Row]]:
+def complete_scene(rule: Rule, given: Mapping[str, Any], missing: Sequence[str], where: str) -> dict[str, list[Row]]:
     """Return table -> rows: what a case gives, and what follows from it. Errors: `RuleError` starting with `where`."""
     scene = {table: _rows(table, blocks, where) for table, blocks in given.items()}
     clock = scene.pop("clock", [{}])
@@ -114,7 +114,7 @@ def _block(table: str, block: Mapping[str, Any], where: str) -> list[Row]:
 
 
 def column_of(table: str, name: str, where: str) -> tuple[str, int]:
-    """Return the column meant and what its values are multiplied by: `t_s` means `t_ns`."""
+    """Return the column that a case's name means, and the factor of its values: `t_s` means `t_ns`, factor 1e9."""
     columns = _tables()[table]
     if name in columns:
         return name, 1

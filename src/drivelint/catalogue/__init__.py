@@ -3,7 +3,17 @@
 from __future__ import annotations
 
 from drivelint.catalogue.header import Conditions, Header, Param, json_schema
-from drivelint.catalogue.load import Rule, load, read_rule
-from drivelint.catalogue.select import parse_params, select
+from drivelint.catalogue.load import Rule, load_rules, read_rule
+from drivelint.catalogue.select import parse_params, select_rules
 
-__all__ = ["Conditions", "Header", "Param", "Rule", "json_schema", "load", "parse_params", "read_rule", "select"]
+__all__ = [
+    "Conditions",
+    "Header",
+    "Param",
+    "Rule",
+    "json_schema",
+    "load_rules",
+    "parse_params",
+    "read_rule",
+    "select_rules",
+]

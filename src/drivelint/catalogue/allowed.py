@@ -1,4 +1,4 @@
-"""What a rule's SQL may be made of. A rule is untrusted code: whatever is not named here is refused, not the other way round.
+"""Lists what a rule's SQL may contain; everything else is refused, because a rule is untrusted code.
 
 Everything here gives the same answer every time (no clock, no chance, no estimate that depends on threads) and touches
 nothing outside the tables: no file, no network, no setting, no other statement.
@@ -13,7 +13,7 @@ from typing import Final
 from drivelint.resources import folder
 from drivelint.sql import store
 
-GIVEN: Final = frozenset({"reference", "reference_step"})
+ENGINE_TABLES: Final = frozenset({"reference", "reference_step"})
 """Tables that the engine makes for a rule: its reference points, and the steps at which each is judged."""
 
 NODES: Final = frozenset({"SELECT_NODE", "SET_OPERATION_NODE"})
@@ -25,7 +25,7 @@ EXPRESSIONS: Final = frozenset(
     }
 )
 TABLE_FUNCTIONS: Final = frozenset({"range", "generate_series", "unnest"})
-CLOCKS: Final = frozenset(
+REFUSED_NAMES: Final = frozenset(
     {
         *("current_catalog", "current_date", "current_role", "current_schema", "current_time", "current_timestamp"),
         *("current_user", "localtime", "localtimestamp", "session_user", "user"),
@@ -74,5 +74,5 @@ def functions() -> frozenset[str]:
 @cache
 def tables() -> frozenset[str]:
     """Return the tables that a rule may read: those of schemas/ but the outputs, and the engine's own two."""
-    outputs = {table for file in _OUTPUTS for table in store.schema(file)}
-    return frozenset(store.schema().keys() - outputs) | GIVEN
+    outputs = {table for file in _OUTPUTS for table in store.column_comments(file)}
+    return frozenset(store.column_comments().keys() - outputs) | ENGINE_TABLES

@@ -14,10 +14,10 @@ from typing import Any, NamedTuple
 import duckdb
 
 from drivelint.catalogue import allowed
-from drivelint.catalogue.allowed import GIVEN
+from drivelint.catalogue.allowed import ENGINE_TABLES
 from drivelint.errors import RuleError
 
-__all__ = ["GIVEN", "Query", "inspect"]
+__all__ = ["ENGINE_TABLES", "Query", "check_query"]
 
 Node = dict[str, Any]
 
@@ -69,8 +69,8 @@ def _parser() -> duckdb.DuckDBPyConnection:
 
 
 @lru_cache(maxsize=2048)  # whoever judges twice in a process reads the same rules again
-def inspect(sql: str, file: str, line: int = 1) -> Query:
-    """Take one section's SQL apart, which stands from `line` on in `file`.
+def check_query(sql: str, file: str, line: int = 1) -> Query:
+    """Check the SQL of one section, which begins at `line` of `file`, and return what it is made of.
 
     Errors: `RuleError` with file and line when it is not exactly one SELECT, or reads, calls or is built of anything that
     `allowed` does not name, or has a CTE named like a table of ours or like the engine's own (`_...`).
@@ -170,7 +170,7 @@ class _Found:
             ]
         if kind == "COLUMN_REF" and len(part["column_names"]) == 1:
             word = part["column_names"][0].lower()
-            if word in allowed.CLOCKS:
+            if word in allowed.REFUSED_NAMES:
                 self._refuse(part, f"{word} does not give the same answer every time: a rule may not use it")
 
     def _table(self, part: Node, ctes: frozenset[str]) -> None:

@@ -1,4 +1,4 @@
-"""The header of a rule file: TOML in its leading comment lines, refused where it is not understood."""
+"""Parses the header of a rule file: TOML in its leading comment lines; unknown keys are refused."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from drivelint.drive import conditions
 from drivelint.errors import RuleError
 from drivelint.phrases import hint
 from drivelint.reasons import signals
-from drivelint.reasons.words import Words
+from drivelint.reasons.words import ReasonText
 
 Kind = Literal["invariant", "execution", "precondition", "postcondition"]
 Seconds = float | str
@@ -34,7 +34,7 @@ class Param(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The conditions in which a rule applies, all of them together, see `ego_condition`; an empty one: in all of them."""
+    """The conditions in which a rule applies, see `ego_condition`; all must hold; none given: it always applies."""
 
     road_type: tuple[str, ...] = ()
     carriageway: tuple[str, ...] = ()
@@ -50,8 +50,8 @@ class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def words(self) -> dict[str, tuple[str, ...]]:
-        """Condition -> the words that it may have, for those that restrict the rule."""
-        return {name: getattr(self, name) for name in conditions.WORDS if getattr(self, name)}
+        """Return condition -> allowed values, for the conditions that restrict the rule."""
+        return {name: getattr(self, name) for name in conditions.CONDITION_VALUES if getattr(self, name)}
 
     @property
     def limited(self) -> bool:
@@ -96,11 +96,11 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     """The nations whose law the rule is: it is not applicable where the nation is known to be another; empty: no nation's own."""
     applies: Conditions = Conditions()
     params: dict[str, Param] = {}
-    reasons: dict[str, Words] = {}
+    reasons: dict[str, ReasonText] = {}
     """The codes that only this rule gives as reasons (the macro `why`), with their words."""
 
 
-_OF: Final = {"params": Param, "applies": Conditions, "reasons": Words}
+_OF: Final = {"params": Param, "applies": Conditions, "reasons": ReasonText}
 
 
 def json_schema() -> dict[str, Any]:
@@ -226,12 +226,12 @@ def _contradiction(h: Header) -> tuple[str, str] | None:
     ]
     for key in ("requires", "pass_requires"):
         checks += [(True, key, f"{key}: {wrong}") for word in getattr(h, key) if (wrong := signals.problem(word))]
-    checks += [(True, "law", f"law: {wrong}") for word in h.law if (wrong := conditions.problem("nation", word))]
+    checks += [(True, "law", f"law: {wrong}") for word in h.law if (wrong := conditions.value_problem("nation", word))]
     for name, words in h.applies.words.items():
         checks += [
             (True, f"applies.{name}", f"[applies] {wrong}")
             for word in words
-            if (wrong := conditions.problem(name, word))
+            if (wrong := conditions.value_problem(name, word))
         ]
     least, most = h.applies.limit_min_mps, h.applies.limit_max_mps
     checks += [

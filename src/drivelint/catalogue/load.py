@@ -10,20 +10,20 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from drivelint.catalogue.check import GIVEN, Query, inspect
+from drivelint.catalogue.check import ENGINE_TABLES, Query, check_query
 from drivelint.catalogue.header import Header, line_of, parse_header
 from drivelint.catalogue.sections import Section, split
 from drivelint.errors import RuleError
 from drivelint.phrases import hint
-from drivelint.reasons.words import shared
+from drivelint.reasons.words import shared_texts
 from drivelint.resources import folder
 from drivelint.sql import store
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-PACK = re.compile(r"[a-z0-9][a-z0-9_-]*")
-STEM = re.compile(r"[a-z0-9][a-z0-9._-]*")
+PACK_NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
+RULE_NAME = re.compile(r"[a-z0-9][a-z0-9._-]*")
 _KEYS = ("drive_id", "ego_id", "t_ns")
 _CONDITION = (
     *_KEYS,
@@ -45,7 +45,7 @@ class _Pack(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """One rule: its header, its SQL, and what can be told about it without running it."""
+    """One rule: its header, its SQL, and what is known about it without running it."""
 
     id: str
     pack: str
@@ -73,13 +73,13 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
         return column in self.columns["condition"]
 
 
-def load(dirs: Sequence[Path] = ()) -> dict[str, Rule]:
+def load_rules(dirs: Sequence[Path] = ()) -> dict[str, Rule]:
     """Return every rule by id, sorted: the shipped packs and those of the folders in `dirs`.
 
     Errors: `RuleError` with file and line, for two rules with one id, and for a folder without rules.
     """
     rules: dict[str, Rule] = {}
-    for file in (file for root in (folder("queries") / "assertions", *dirs) for file in files(root)):
+    for file in (file for root in (folder("queries") / "assertions", *dirs) for file in rule_files(root)):
         rule = read_rule(file)
         if rule.id in rules:
             raise RuleError(
@@ -89,7 +89,7 @@ def load(dirs: Sequence[Path] = ()) -> dict[str, Rule]:
     return dict(sorted(rules.items()))
 
 
-def files(root: Path) -> list[Path]:
+def rule_files(root: Path) -> list[Path]:
     """Return the rule files of a folder, which holds packs (`<pack>/<rule>.sql`) or is one (`<rule>.sql`).
 
     Errors: `RuleError` where there is none.
@@ -100,7 +100,7 @@ def files(root: Path) -> list[Path]:
     return found
 
 
-def id_of(file: Path) -> str:
+def rule_id_of(file: Path) -> str:
     """Return the id of the rule in a file: `<pack>.<rule>`."""
     return f"{file.resolve().parent.name}.{file.stem}"
 
@@ -108,7 +108,7 @@ def id_of(file: Path) -> str:
 def read_rule(file: Path) -> Rule:
     """Read and check one rule file. Errors: `RuleError` with file and line."""
     pack = file.resolve().parent.name
-    for part, what, pattern in ((pack, "folder", PACK), (file.stem, "file", STEM)):
+    for part, what, pattern in ((pack, "folder", PACK_NAME), (file.stem, "file", RULE_NAME)):
         if not pattern.fullmatch(part):
             raise RuleError(
                 f"{file}: the {what} name {part!r} makes no rule id: "
@@ -123,7 +123,7 @@ def read_rule(file: Path) -> Rule:
     header = parse_header(toml, str(file))
     if header.reference is not None:
         sections = _event_table(header.reference, sections, file, line_of(toml, "reference"))
-    queries = {name: inspect(section.sql, str(file), section.sql_line) for name, section in sections.items()}
+    queries = {name: check_query(section.sql, str(file), section.sql_line) for name, section in sections.items()}
     _check_sections(header, sections, queries, file)
     _check_reads(header, queries, f"{file}:{line_of(toml, 'reads')}")
     _check_params(header, queries, file, toml)
@@ -131,7 +131,7 @@ def read_rule(file: Path) -> Rule:
     fields = {name: getattr(header, name) for name in header.__struct_fields__}
     return Rule(
         **fields,
-        id=id_of(file),
+        id=rule_id_of(file),
         pack=pack,
         pack_title=_title(file.resolve().parent),
         path=file,
@@ -160,7 +160,7 @@ def _event_table(table: str, sections: dict[str, Section], file: Path, line: int
         raise RuleError(
             f"{file}:{sections['reference'].line}: the header names an event table already: drop it or @reference"
         )
-    columns = store.schema().get(table, {})
+    columns = store.column_comments().get(table, {})
     if not set(_KEYS) <= columns.keys():
         raise RuleError(
             f"{file}:{line}: reference = {table!r} is no event table: it needs the columns drive_id, ego_id, t_ns"
@@ -219,7 +219,7 @@ def _check_condition(header: Header, query: Query, where: str) -> None:
     wrong = {"observed", "required", "at_least"} if header.sense == "holds" else {"holds"}
     if found := sorted(wrong & set(columns)):
         raise RuleError(f"{where}: column {found[0]!r} does not go with sense = {header.sense!r}")
-    if ("ref_id" in columns) != bool(GIVEN & query.tables):
+    if ("ref_id" in columns) != bool(ENGINE_TABLES & query.tables):
         raise RuleError(
             f"{where}: a condition that reads reference or reference_step returns ref_id, and no other does"
         )
@@ -229,15 +229,15 @@ def _check_condition(header: Header, query: Query, where: str) -> None:
 
 def _check_reads(header: Header, queries: dict[str, Query], reads: str) -> None:
     """Check that the header's `reads`, which stands at file:line `reads`, is what the SQL reads."""
-    given = {"condition": GIVEN, "anchor": frozenset({"reference"})} if header.kind != "invariant" else {}
+    given = {"condition": ENGINE_TABLES, "anchor": frozenset({"reference"})} if header.kind != "invariant" else {}
     for name, query in queries.items():
-        if early := sorted(query.tables & GIVEN - given.get(name, frozenset())):
+        if early := sorted(query.tables & ENGINE_TABLES - given.get(name, frozenset())):
             raise RuleError(
                 f"{query.places[early[0]]}: @{name} has no table {early[0]!r} in a rule of kind {header.kind}"
             )
     said = frozenset(header.reads)
     for query in queries.values():
-        if undeclared := sorted(query.tables - GIVEN - said):
+        if undeclared := sorted(query.tables - ENGINE_TABLES - said):
             raise RuleError(
                 f"{query.places[undeclared[0]]}: reads does not match the SQL: add {', '.join(undeclared)} to reads"
             )
@@ -263,7 +263,7 @@ def _check_params(header: Header, queries: dict[str, Query], file: Path, toml: s
 
 def _check_reasons(header: Header, queries: dict[str, Query], file: Path, toml: str) -> None:
     """Check that every code that the SQL gives has words, and that these have their arguments."""
-    known = {**shared(), **header.reasons}
+    known = {**shared_texts(), **header.reasons}
     given = [reason for query in queries.values() for reason in query.reasons]
     for code, arguments, place in given:
         if code not in known:

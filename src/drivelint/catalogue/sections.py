@@ -13,7 +13,7 @@ _MARK = re.compile(r"^--\s*@(\S+)\s*$")
 
 
 class Section(NamedTuple):
-    """One SELECT of a rule: its text, the line of the file on which its mark stands, and that on which the text begins."""
+    """One section of a rule: its SELECT, the line of its `@` mark, and the line on which the SELECT begins."""
 
     sql: str
     line: int

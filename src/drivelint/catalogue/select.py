@@ -1,4 +1,4 @@
-"""Choosing rules and setting their parameters, as the command line names them.
+"""Selects rules and sets their parameters from options of the command line.
 
 A selector is what a rule must be, or several of that joined by commas, all of which it must be:
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from drivelint.catalogue.load import Rule
 
 
-def select(
+def select_rules(
     rules: Mapping[str, Rule], include: Sequence[str], ignore: Sequence[str], *, default_pack: str = "ukhc"
 ) -> list[Rule]:
     """Return the selected rules, sorted by id.
@@ -85,8 +85,8 @@ def _by_method(rules: Mapping[str, Rule], method: str, word: str) -> list[Rule]:
     return found
 
 
-def clauses(rule: Rule) -> set[str]:
-    """Return what a rule may be called after, in lower case: clauses named before the colon of `clause`, and in its id."""
+def clause_names(rule: Rule) -> set[str]:
+    """Return the lower-case clause names by which a rule can be selected, from its `clause` and its id."""
     named = re.findall(r"[A-Za-z]*\d[\w.()]*", rule.clause.split(":", 1)[0])
     inside = rule.id.split(".")[1:2] if rule.id.count(".") > 1 else []
     return {name.rstrip(".").casefold() for name in [*named, *inside]}
@@ -99,7 +99,7 @@ _METHODS: Final[dict[str, Callable[[Rule], set[str]]]] = {
     "status": lambda rule: {rule.status},
     "legal": lambda rule: {rule.legal},
     "derivation": lambda rule: {rule.derivation},
-    "clause": clauses,
+    "clause": clause_names,
     "requires": lambda rule: set(rule.requires),
 }
 _FEW: Final = 12

@@ -18,7 +18,7 @@ from drivelint import __version__
 from drivelint.cli import docs as docs_
 from drivelint.cli import explain as explain_
 from drivelint.cli import inputs, options, results, rules, values
-from drivelint.cli.shell import interruptible, say
+from drivelint.cli.shell import print_rich, run_interruptible
 from drivelint.cli.shell import progress as bar
 from drivelint.errors import DriveLintError, ExitCode
 
@@ -64,7 +64,7 @@ def _root(
 def check(
     *,
     traces: Annotated[list[str], typer.Argument(metavar="TRACE", help="Recorded drives: files, globs or folders.")],
-    drive: inputs.Given,
+    drive: inputs.DriveInputValues,
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for the result files.")] = None,
     rules: Annotated[
         list[str] | None,
@@ -91,7 +91,7 @@ def check(
         options.FailOn, typer.Option("--fail-on", help="Least severity that makes exit code 1.")
     ] = options.FailOn.critical,
     strict: Annotated[bool, typer.Option("--strict", help="Unknown is not good enough: exit code 4.")] = False,
-    format_: options.Printed = options.Format.text,
+    format_: options.FormatOption = options.Format.text,
     margins: Annotated[bool, typer.Option("--margins", help="Also write margins.parquet: every judged step.")] = False,
     keep_db: Annotated[
         bool, typer.Option("--keep-db", help="Also keep the database with every stage's tables.")
@@ -120,15 +120,15 @@ def check(
     rule unknown); 75 the machine failed, try again; 130 interrupted.
     """
     from drivelint import run
-    from drivelint.engine.memory import peak, worded
+    from drivelint.engine.memory import format_bytes, peak_bytes
     from drivelint.gate import GateInputs
     from drivelint.report.outputs import write
-    from drivelint.result.files import prepare
+    from drivelint.result.files import prepare_folder
     from drivelint.result.model import exit_code
-    from drivelint.settings import FILE
+    from drivelint.settings import SETTINGS_FILE
 
-    gate_inputs = GateInputs.of(baseline, waivers, Path(FILE), values.today(today), out)
-    settings = run.Settings(
+    gate_inputs = GateInputs.of(baseline, waivers, Path(SETTINGS_FILE), values.parse_today(today), out)
+    settings = run.CheckOptions(
         traces=tuple(traces),
         **drive,
         out=out,
@@ -142,18 +142,20 @@ def check(
         margins=margins,
         keep_db=keep_db,
         annotate=annotate,
-        memory=values.memory(memory),
+        memory=values.parse_memory(memory),
     )
     if out is not None:
-        prepare(out)
+        prepare_folder(out)
     with bar(quiet) as progress:
-        result = interruptible(lambda: run.check(settings, progress))
+        result = run_interruptible(lambda: run.check(settings, progress))
         if gate_inputs is not None:
             result = gate_inputs.gate(result)
         if out is not None:
             write(result, out)
-        if memory is not None and (most := peak()) is not None:
-            progress.note(f"{worded(most)} of memory were taken at most, with everything that is not the database's")
+        if memory is not None and (most := peak_bytes()) is not None:
+            progress.note(
+                f"{format_bytes(most)} of memory were taken at most, with everything that is not the database's"
+            )
     _print(result, format_, out)
     raise typer.Exit(int(exit_code(result)))
 
@@ -172,7 +174,7 @@ def demo(
 
     written = files.write(out)
     typer.echo(f"{out}: {len(written) - 1} drives and their road are there. Check them with:", err=True)
-    typer.echo(files.next_command(out, sys.argv[0]))
+    typer.echo(files.check_command(out, sys.argv[0]))
 
 
 @app.command()
@@ -180,14 +182,14 @@ def demo(
 def inspect(
     *,
     trace: Annotated[str, typer.Argument(metavar="TRACE", help="One recorded drive.")],
-    drive: inputs.Given,
+    drive: inputs.DriveInputValues,
     rules: Annotated[
         list[str] | None,
         typer.Option("--rules", metavar="SEL", help="Rules to ask about, as in check. Repeatable. Default: ukhc."),
     ] = None,
     rules_dir: options.RulesDirs = None,
     memory: options.MemorySize = None,
-    format_: options.Printed = options.Format.text,
+    format_: options.FormatOption = options.Format.text,
 ) -> None:
     """Show what is in a log and what it can decide.
 
@@ -200,15 +202,15 @@ def inspect(
         **drive,
         rules=tuple(rules or ()),
         rules_dirs=tuple(rules_dir or ()),
-        memory=values.memory(memory),
+        memory=values.parse_memory(memory),
     )
-    found = interruptible(lambda: inspection.inspect(request))
+    found = run_interruptible(lambda: inspection.inspect(request))
     if format_ is options.Format.json:
         typer.echo(inspection.to_json(found))
     else:
         from drivelint.inspect.text import render
 
-        say(render(found, trace))
+        print_rich(render(found, trace))
     raise typer.Exit(int(inspection.exit_code(found)))
 
 
@@ -218,17 +220,17 @@ def convert(
     *,
     trace: Annotated[str, typer.Argument(metavar="TRACE", help="One recorded drive.")],
     to: Annotated[
-        options.Target, typer.Option("--to", help="mcap: one file of ASAM OSI; parquet: a folder of tables.")
+        options.ConvertTarget, typer.Option("--to", help="mcap: one file of ASAM OSI; parquet: a folder of tables.")
     ],
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the converted log.")],
-    drive: inputs.Given,
+    drive: inputs.DriveInputValues,
 ) -> None:
     """Write a log anew, as OSI in MCAP or as Parquet.
 
     In metres, seconds and box centres, with its map, so that it needs no mapping any more and gives the same verdicts.
     """
     from drivelint import convert as converter
-    from drivelint.convert.text import said
+    from drivelint.convert.text import summary_text
 
     request = converter.ConvertRequest(
         trace=trace,
@@ -236,10 +238,10 @@ def convert(
         out=out,
         **drive,
     )
-    written = interruptible(lambda: converter.convert(request))
+    written = run_interruptible(lambda: converter.convert(request))
     for note in written.notes:
         typer.echo(f"drivelint: {note}", err=True)
-    typer.echo(said(written))
+    typer.echo(summary_text(written))
 
 
 app.command()(results.report)
@@ -284,10 +286,10 @@ def _settings() -> dict[str, Any]:
 
     Those take what is about the log and its map, not where `check` writes to and how it prints.
     """
-    from drivelint.settings import FILE, defaults
+    from drivelint.settings import SETTINGS_FILE, read_settings
 
     name = "".join(sys.argv[1:2])
-    if name not in {"check", "inspect", "convert"} or not Path(FILE).is_file():
+    if name not in {"check", "inspect", "convert"} or not Path(SETTINGS_FILE).is_file():
         return {}
     commands = typer.main.get_command(app).commands  # type: ignore[attr-defined]
     params = commands["check"].params
@@ -297,7 +299,7 @@ def _settings() -> dict[str, Any]:
     taken = {p.name for p in commands[name].params}
     if name != "check":
         taken -= {"out", "format_"}
-    return {name: {param: value for param, value in defaults(known).items() if param in taken}}
+    return {name: {param: value for param, value in read_settings(known).items() if param in taken}}
 
 
 def _fail(message: str, code: ExitCode) -> NoReturn:
@@ -312,4 +314,4 @@ def _print(result: Result, format_: options.Format, out: Path | None) -> None:
     if format_ is options.Format.json:
         typer.echo(summary.render(result), nl=False)
     else:
-        say(lambda width: terminal.render(result, None if out is None else str(out), width))
+        print_rich(lambda width: terminal.render(result, None if out is None else str(out), width))

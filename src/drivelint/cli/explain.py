@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from drivelint.cli import options, values
-from drivelint.cli.shell import interruptible, say
+from drivelint.cli.shell import print_rich, run_interruptible
 
 
 def explain(
@@ -54,7 +54,7 @@ def explain(
     ] = 100,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Another one draws other errors.")] = 0,
     memory: options.MemorySize = None,
-    format_: options.Printed = options.Format.text,
+    format_: options.FormatOption = options.Format.text,
 ) -> None:
     """Show why one verdict is what it is.
 
@@ -64,21 +64,21 @@ def explain(
 
     The drive is judged anew by that rule, from the database that check --keep-db kept, else from its log.
     """
-    from drivelint.explain import Errors, ExplainRequest, Wanted
+    from drivelint.explain import ExplainRequest, MeasurementErrors, VerdictFilter
     from drivelint.explain import explain as explained
     from drivelint.explain.text import render, to_json
 
     request = ExplainRequest(
         name,
         folder,
-        Wanted(profile, object_, at, ego, verdict),
+        VerdictFilter(profile, object_, at, ego, verdict),
         trace,
         map_,
-        Errors(position, time, of_map, samples, seed),
-        values.memory(memory),
+        MeasurementErrors(position, time, of_map, samples, seed),
+        values.parse_memory(memory),
     )
-    found = interruptible(lambda: explained(request))
+    found = run_interruptible(lambda: explained(request))
     if format_ is options.Format.json:
         typer.echo(to_json(found))
     else:
-        say(lambda width: render(found, width))
+        print_rich(lambda width: render(found, width))

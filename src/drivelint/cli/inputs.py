@@ -11,7 +11,7 @@ from drivelint.cli import options, values
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-Given = dict[str, Any]
+DriveInputValues = dict[str, Any]
 """Fields of `DriveInput` -> their values."""
 
 
@@ -27,20 +27,20 @@ _OPTIONS: Mapping[str, _Option] = {
     "map": _Option(options.MapFile),
     "ego": _Option(options.EgoId),
     "mapping": _Option(options.MappingName),
-    "map_offset": _Option(options.MapOffset, None, values.offset),
+    "map_offset": _Option(options.MapOffset, None, values.parse_offset),
     "map_dir": _Option(options.MapDir),
-    "map_origin": _Option(options.MapOrigin, None, values.origin),
-    "handedness": _Option(options.DrivenSide, options.Handedness.auto, str),
+    "map_origin": _Option(options.MapOrigin, None, values.parse_origin),
+    "handedness": _Option(options.HandednessOption, options.Handedness.auto, str),
     "sensor_range_m": _Option(options.SensorRange),
-    "visibility": _Option(options.InSight, options.Visibility.line_of_sight, str),
-    "ego_size": _Option(options.EgoBox, None, values.ego_size),
+    "visibility": _Option(options.VisibilityOption, options.Visibility.line_of_sight, str),
+    "ego_size": _Option(options.EgoSize, None, values.parse_ego_size),
     "env": _Option(options.Conditions, None, lambda words: tuple(words or ())),
     "topic": _Option(options.Topic),
 }
 
 
 def takes_drive_input(command: Callable[..., None]) -> Callable[..., None]:
-    """Replace the parameter `drive` of a command by the options of `DriveInput`; the command gets what they say as `Given`."""
+    """Replace the parameter `drive` of a command by the command line options of `DriveInput`."""
     signature = inspect.signature(command, eval_str=True)
 
     @wraps(command)

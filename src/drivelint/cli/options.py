@@ -16,14 +16,14 @@ class Format(StrEnum):
     json = "json"
 
 
-class Target(StrEnum):
+class ConvertTarget(StrEnum):
     """What a drive is converted to."""
 
     mcap = "mcap"
     parquet = "parquet"
 
 
-class Report(StrEnum):
+class ReportFormat(StrEnum):
     """What a result can be written as."""
 
     html = "html"
@@ -33,7 +33,7 @@ class Report(StrEnum):
     markdown = "markdown"
 
 
-class Compared(StrEnum):
+class DiffFormat(StrEnum):
     """How a difference is printed on stdout."""
 
     text = "text"
@@ -42,7 +42,7 @@ class Compared(StrEnum):
 
 
 class RuleKind(StrEnum):
-    """What a rule is judged at."""
+    """The kind of a rule: what it is judged at."""
 
     invariant = "invariant"
     execution = "execution"
@@ -60,7 +60,7 @@ class FailOn(StrEnum):
 
 
 class Visibility(StrEnum):
-    """What the log is taken to say of whoever it does not have."""
+    """What a log that does not record an actor says about it."""
 
     line_of_sight = "line-of-sight"
     none = "none"
@@ -100,7 +100,7 @@ MapOrigin = Annotated[
     str | None,
     typer.Option("--map-origin", metavar="LAT,LON", help="Where the log's 0,0 is, for a map in degrees (Lanelet2)."),
 ]
-DrivenSide = Annotated[Handedness, typer.Option("--handedness", help="Side of the road that is driven on.")]
+HandednessOption = Annotated[Handedness, typer.Option("--handedness", help="Side of the road that is driven on.")]
 SensorRange = Annotated[
     float | None,
     typer.Option(
@@ -110,14 +110,14 @@ SensorRange = Annotated[
         help="Range in which the recorder sees everybody. Default: what the log says, else 50 m.",
     ),
 ]
-InSight = Annotated[
+VisibilityOption = Annotated[
     Visibility,
     typer.Option(
         "--visibility",
         help="Whoever is not recorded: line-of-sight, not in plain view of the recorder (2.5 s after it was lost); none, anywhere.",
     ),
 ]
-EgoBox = Annotated[
+EgoSize = Annotated[
     str | None,
     typer.Option(
         "--ego-size",
@@ -158,7 +158,7 @@ MemorySize = Annotated[
         "on it; what cannot go to disk takes more, which is said. The program itself takes some 300 MB more. Default: 1200MB.",
     ),
 ]
-Printed = Annotated[Format, typer.Option("--format", help="What is printed on stdout.")]
+FormatOption = Annotated[Format, typer.Option("--format", help="What is printed on stdout.")]
 RulesDirs = Annotated[
     list[Path] | None,
     typer.Option("--rules-dir", metavar="DIR", help="Folder with rule packs of your own. Repeatable."),

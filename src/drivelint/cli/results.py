@@ -14,24 +14,24 @@ from drivelint.errors import ExitCode
 def report(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="What check --out wrote.")],
     to: Annotated[
-        options.Report,
+        options.ReportFormat,
         typer.Option(
             "--to",
             help="html: one page that opens offline; junit, sarif (2.1.0), xqar (ASAM): for servers and viewers; "
             "markdown: for a comment on a pull request.",
         ),
-    ] = options.Report.html,
+    ] = options.ReportFormat.html,
 ) -> None:
     """Write a report from a result folder, into it.
 
     Files: report.html, junit.xml, report.sarif, report.xqar, report.md. Prints the name of the one that was written.
     """
-    from drivelint.report.targets import TARGETS
+    from drivelint.report.targets import REPORT_FORMATS
     from drivelint.result.files import publish
-    from drivelint.result.load import load
+    from drivelint.result.load import load_result
 
-    name, render = TARGETS[to.value]
-    publish(folder, {name: render(load(folder))}, {})
+    name, render = REPORT_FORMATS[to.value]
+    publish(folder, {name: render(load_result(folder))}, {})
     typer.echo(str(folder / name))
 
 
@@ -39,8 +39,8 @@ def diff(
     base: Annotated[Path, typer.Argument(metavar="BASE", help="What check --out wrote, earlier.")],
     new: Annotated[Path, typer.Argument(metavar="NEW", help="What check --out wrote, later.")],
     format_: Annotated[
-        options.Compared, typer.Option("--format", help="What is printed on stdout.")
-    ] = options.Compared.text,
+        options.DiffFormat, typer.Option("--format", help="What is printed on stdout.")
+    ] = options.DiffFormat.text,
     fail_on: Annotated[
         options.FailOn | None,
         typer.Option("--fail-on", help="Least severity of a new finding that makes exit code 1. Default: NEW's."),
@@ -52,18 +52,18 @@ def diff(
 
     Exit codes: 0 no new finding of a stable rule at or above --fail-on; 1 there is one; 2 usage error.
     """
-    from drivelint.gate import compared, words
-    from drivelint.result.load import load
+    from drivelint.gate import compare_results, words
+    from drivelint.result.load import load_result
 
-    earlier, later = load(base), load(new)
+    earlier, later = load_result(base), load_result(new)
     least = later.fail_on if fail_on is None else fail_on.value
-    found, failing = compared(earlier, later, (base.resolve().name, new.resolve().name), least)
-    if format_ is options.Compared.json:
+    found, failing = compare_results(earlier, later, (base.resolve().name, new.resolve().name), least)
+    if format_ is options.DiffFormat.json:
         typer.echo(words.to_json(found, failing, least))
-    elif format_ is options.Compared.markdown:
+    elif format_ is options.DiffFormat.markdown:
         from drivelint.report import markdown
 
         typer.echo(markdown.difference(found, failing, least, later.gate))
     else:
-        typer.echo(words.text(found, failing, least, later.gate))
+        typer.echo(words.difference_text(found, failing, least, later.gate))
     raise typer.Exit(int(ExitCode.FAILED if failing else ExitCode.OK))

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from drivelint.cli import options
-from drivelint.cli.shell import interruptible, say
+from drivelint.cli.shell import print_rich, run_interruptible
 
 app = typer.Typer(help="List, show, write and test the rules.", rich_markup_mode=None)
 
@@ -18,7 +18,7 @@ def list_(
     selectors: Annotated[
         list[str] | None, typer.Argument(metavar="[SEL]...", help="Which ones, as --rules of check. Default: all.")
     ] = None,
-    format_: options.Printed = options.Format.text,
+    format_: options.FormatOption = options.Format.text,
     rules_dir: options.RulesDirs = None,
 ) -> None:
     """List the rules.
@@ -27,15 +27,15 @@ def list_(
 
     With --format json also the clause that each is from and what it requires of a log.
     """
-    from drivelint.catalogue import load, select
+    from drivelint.catalogue import load_rules, select_rules
     from drivelint.report import rules_text
 
-    known = load(tuple(rules_dir or ()))
-    rules = select(known, selectors, ()) if selectors else list(known.values())
+    known = load_rules(tuple(rules_dir or ()))
+    rules = select_rules(known, selectors, ()) if selectors else list(known.values())
     if format_ is options.Format.json:
         typer.echo(rules_text.listing_json(rules))
     else:
-        say(lambda width: rules_text.listing(rules, width))
+        print_rich(lambda width: rules_text.listing(rules, width))
 
 
 @app.command("show")
@@ -43,13 +43,13 @@ def show(
     rule_id: Annotated[str, typer.Argument(metavar="ID", help="The rule's id.")], rules_dir: options.RulesDirs = None
 ) -> None:
     """Show one rule: question, clause, parameters, SQL."""
-    from drivelint.catalogue import load, select
+    from drivelint.catalogue import load_rules, select_rules
     from drivelint.report import rules_text
 
-    rules = load(tuple(rules_dir or ()))
-    for rule in [rules[rule_id]] if rule_id in rules else select(rules, [rule_id], []):
-        say(rules_text.page(rule))
-        say(rules_text.source(rule), soft_wrap=True)
+    rules = load_rules(tuple(rules_dir or ()))
+    for rule in [rules[rule_id]] if rule_id in rules else select_rules(rules, [rule_id], []):
+        print_rich(rules_text.rule_details(rule))
+        print_rich(rules_text.source(rule), soft_wrap=True)
 
 
 @app.command("new")
@@ -66,7 +66,7 @@ def new(
     """
     from drivelint.casefile import commands
 
-    for file in commands.new(rule_id, folder, kind.value):
+    for file in commands.new_rule(rule_id, folder, kind.value):
         typer.echo(file)
     typer.echo(f"Edit both, then: drivelint rules test {folder} --rules {rule_id}", err=True)
 
@@ -85,11 +85,11 @@ def page_(
     A table per pack: what each rule asserts and needs, its numbers and where they are from; by clause what is covered; and the
     words that logs and maps have for what rules ask.
     """
-    from drivelint.catalogue import load
+    from drivelint.catalogue import load_rules
     from drivelint.report.catalogue_page import page
     from drivelint.resources import folder as shipped
 
-    rules = load((folder,) if folder else ()).values()
+    rules = load_rules((folder,) if folder else ()).values()
     packs = folder or shipped("queries") / "assertions"
     text = page([rule for rule in rules if rule.path.is_relative_to(packs)], packs)
     if out is None:
@@ -121,4 +121,4 @@ def run_tests(
     from drivelint.casefile import commands
 
     test = commands.mutation_test if mutate else commands.case_test
-    raise typer.Exit(int(interruptible(lambda: test(folder, tuple(only or ()), typer.echo))))
+    raise typer.Exit(int(run_interruptible(lambda: test(folder, tuple(only or ()), typer.echo))))

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
-def interruptible(job: Callable[[], T]) -> T:
-    """Run `job` beside the main thread: the database does not look at Ctrl-C while it computes, this thread does.
+def run_interruptible(job: Callable[[], T]) -> T:
+    """Run `job` in a second thread, so that Ctrl-C interrupts it while the database computes.
 
     It looks several times a second, because some libraries make the system restart a wait that a signal interrupted.
     """
@@ -34,18 +34,18 @@ def interruptible(job: Callable[[], T]) -> T:
 
 def progress(quiet: bool) -> AbstractContextManager[Progress]:
     """Return a bar on a terminal's stderr; elsewhere only the pipeline's notes, as lines."""
-    from drivelint.report.progress import Notes, Silent
+    from drivelint.report.progress import NotePrinter, Silent
 
     if quiet:
         return nullcontext(Silent())
     if not sys.stderr.isatty():
-        return nullcontext(Notes())
+        return nullcontext(NotePrinter())
     from drivelint.report.console import Bar
 
     return Bar()
 
 
-def say(what: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> None:
+def print_rich(what: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> None:
     """Print for a person on stdout: plain and wide where that is no terminal. `what` may depend on the width."""
     from rich.console import Console
 

@@ -1,4 +1,4 @@
-"""Values of options that are more than a word or a number: read, or refused in one line."""
+"""Parses option values that are more than a word or a number."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import EgoSize
 
 
-def today(text: str | None) -> date:
+def parse_today(text: str | None) -> date:
     """Read the day that waivers are held against; the system's if none is given. Errors: `UsageError`."""
     if text is None:
         return datetime.now().astimezone().date()
@@ -22,12 +22,12 @@ def today(text: str | None) -> date:
         raise UsageError(f"--today {text!r}: write a day such as 2027-03-31") from error
 
 
-def memory(text: str | None) -> int | None:
+def parse_memory(text: str | None) -> int | None:
     """Read how many bytes the database keeps to, None for `none`; the default if nothing is given. Errors: `UsageError`."""
-    from drivelint.engine.memory import DEFAULT, LEAST
+    from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY
 
     if text is None:
-        return DEFAULT
+        return DEFAULT_MEMORY
     if text.strip().lower() == "none":
         return None
     said = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*([KMGT])(i?)B\s*", text, re.IGNORECASE)
@@ -35,12 +35,12 @@ def memory(text: str | None) -> int | None:
         raise UsageError(f"--memory {text!r}: write a size such as 512MB or 1.5GB, or none")
     number, prefix, binary = said.groups()
     size = int(float(number) * (1024 if binary else 1000) ** ("KMGT".index(prefix.upper()) + 1))
-    if size < LEAST:
-        raise UsageError(f"--memory {text}: the least is {LEAST // 10**6}MB")
+    if size < LEAST_MEMORY:
+        raise UsageError(f"--memory {text}: the least is {LEAST_MEMORY // 10**6}MB")
     return size
 
 
-def offset(text: str | None) -> tuple[float, float] | None:
+def parse_offset(text: str | None) -> tuple[float, float] | None:
     """Read DX,DY. Errors: `UsageError`."""
     if text is None:
         return None
@@ -51,7 +51,7 @@ def offset(text: str | None) -> tuple[float, float] | None:
     return dx, dy
 
 
-def ego_size(text: str | None) -> EgoSize | None:
+def parse_ego_size(text: str | None) -> EgoSize | None:
     """Read L,W[,AHEAD]. Errors: `UsageError`."""
     if text is None:
         return None
@@ -67,7 +67,7 @@ def ego_size(text: str | None) -> EgoSize | None:
     return EgoSize(length, width, ahead)
 
 
-def origin(text: str | None) -> tuple[float, float] | None:
+def parse_origin(text: str | None) -> tuple[float, float] | None:
     """Read LAT,LON. Errors: `UsageError`."""
     if text is None:
         return None

@@ -1,4 +1,4 @@
-"""A trace of any format as canonical Parquet or as OSI in MCAP, with everything its mapping said: it is read without one."""
+"""Converts a trace of any format to Parquet or to OSI in MCAP, which are read without a mapping."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from drivelint.convert.tables import MAP_FILE, parquet_bytes
 from drivelint.drive.trace import DriveInput
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import MapError, UsageError
-from drivelint.formats import expand, read_trace
-from drivelint.formats.files import CANONICAL
-from drivelint.formats.map_registry import root_element
+from drivelint.formats import expand_traces, read_trace
+from drivelint.formats.files import CANONICAL_FILES
+from drivelint.formats.map_registry import root_element_name
 from drivelint.formats.osi import log as osi_log
-from drivelint.formats.osi.extras import findings
+from drivelint.formats.osi.extras import ego_independent_quality
 from drivelint.phrases import listed
-from drivelint.result.files import OutputError, prepare, publish
+from drivelint.result.files import OutputError, prepare_folder, publish
 from drivelint.road.contract import MapSource
 
 if TYPE_CHECKING:
@@ -40,8 +40,8 @@ class ConvertRequest(DriveInput):
 
 
 @dataclass(frozen=True)
-class Written:
-    """What was written: `path` is the trace to give to `check`, `files` holds each file's size in bytes."""
+class ConvertedTrace:
+    """The converted trace: its path, its files with their sizes, and counts."""
 
     path: Path
     files: dict[str, int]
@@ -52,14 +52,14 @@ class Written:
     notes: tuple[str, ...]
 
 
-def convert(request: ConvertRequest) -> Written:
+def convert(request: ConvertRequest) -> ConvertedTrace:
     """Read a trace and write it anew: the folder `out` itself holds the tables, or `<stem>.mcap`.
 
     The log's own map goes along as it is; where it cannot, or cannot be used, a note says so.
     Errors: `TraceError` where the trace cannot be read, `UsageError` where something else would be overwritten or the given
     map cannot go along, `MapError` for a given map that cannot be read, `OutputError` where the folder cannot be written.
     """
-    paths = expand([request.trace])
+    paths = expand_traces([request.trace])
     if len(paths) != 1:
         names = listed([each.name for each in paths])
         raise UsageError(
@@ -75,7 +75,7 @@ def convert(request: ConvertRequest) -> Written:
     if request.map_offset is not None:
         trace = _moved(trace, request.map_offset)
     road, told = _road(request, trace)
-    prepare(request.out)
+    prepare_folder(request.out)
     files = _mcap(target, trace, road) if request.to == "mcap" else _parquet(target, trace, road)
     notes = [*trace.notes, *told, *_of_a_check(request)]
     has_ego = any(trace.tables["actor"]["is_ego"].to_pylist())
@@ -84,7 +84,7 @@ def convert(request: ConvertRequest) -> Written:
             *notes,
             "the log names no ego: choose one with --ego ID, here or in every check (drivelint inspect lists them)",
         ]
-    return Written(
+    return ConvertedTrace(
         path=target,
         files=files,
         n_states=trace.tables["actor_state"].num_rows,
@@ -141,7 +141,7 @@ def _own_road(request: ConvertRequest, trace: Trace, content: bytes) -> tuple[Ma
 
 def _unfit_for_mcap(road: MapSource) -> str | None:
     """Return why a map cannot go along in MCAP; None: it can."""
-    if (root_element(road.content) or "").lower() != "opendrive":
+    if (root_element_name(road.content) or "").lower() != "opendrive":
         return "only an OpenDRIVE map can go along in MCAP (OSI has no message for another): use --to parquet"
     try:
         road.content.decode("utf-8")
@@ -170,10 +170,10 @@ def _mcap(target: Path, trace: Trace, road: MapSource | None) -> dict[str, int]:
 
 
 def _parquet(target: Path, trace: Trace, road: MapSource | None) -> dict[str, int]:
-    tables = {**trace.tables, "quality": findings(trace)}
+    tables = {**trace.tables, "quality": ego_independent_quality(trace)}
     names = [*TABLES, *(["drive_condition"] if tables["drive_condition"].num_rows else [])]
     contents = {f"{name}.parquet": parquet_bytes(tables[name], name) for name in names}
     if road is not None:
         contents[MAP_FILE] = road.content
-    publish(target, contents, {name: None for name in CANONICAL if name not in contents})
+    publish(target, contents, {name: None for name in CANONICAL_FILES if name not in contents})
     return {name: len(content) for name, content in contents.items()}

@@ -1,4 +1,4 @@
-"""What must not be overwritten: the log that is converted, and whatever an earlier `convert` did not write."""
+"""Refuses to overwrite the log itself and files that `convert` did not write."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.convert.tables import is_converted
 from drivelint.errors import UsageError
-from drivelint.formats.files import CANONICAL, is_canonical_folder
+from drivelint.formats.files import CANONICAL_FILES, is_canonical_folder
 from drivelint.formats.osi.log import LIBRARY
 
 if TYPE_CHECKING:
@@ -17,12 +17,12 @@ _HEAD_BYTES: Final = 64
 
 
 def refuse_to_overwrite(source: Path, out: Path, target: Path) -> None:
-    """Look before anything is read. Errors: `UsageError` saying what is in the way."""
+    """Check that nothing foreign would be overwritten. Errors: `UsageError` that names the file in the way."""
     if not out.exists():
         return
     if not out.is_dir():
         raise UsageError(f"--out {out} is a file: name a folder")
-    ours = [out / name for name in CANONICAL] if target == out else [target]
+    ours = [out / name for name in CANONICAL_FILES] if target == out else [target]
     if out.samefile(source) or any(file.exists() and file.samefile(source) for file in ours):
         raise UsageError(f"--out {out}: that would overwrite the log itself: choose another folder")
     if target != out:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import pyarrow.parquet as pq
 
 from drivelint.formats.tables import parquet
-from drivelint.sql.store import schema
+from drivelint.sql.store import column_comments
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 MAP_FILE: Final = "map.xodr"
-ROW_GROUP: Final = 1 << 17
+ROW_GROUP_SIZE: Final = 1 << 17
 _MARK: Final = b"drivelint.converted"
 
 
 def parquet_bytes(rows: pa.Table, table: str) -> bytes:
     """Return a table of `schemas/model.sql` as Parquet; the field metadata `comment` says what each column is."""
-    comments = schema()[table]
+    comments = column_comments()[table]
     described = rows.schema.with_metadata({_MARK: table})
     for i, field in enumerate(rows.schema):
         described = described.set(i, field.with_metadata({"comment": comments[field.name]}))
@@ -33,7 +33,7 @@ def parquet_bytes(rows: pa.Table, table: str) -> bytes:
         version="2.6",
         compression="zstd",
         compression_level=3,
-        row_group_size=ROW_GROUP,
+        row_group_size=ROW_GROUP_SIZE,
     )
     return sink.getvalue()
 

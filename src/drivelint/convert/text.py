@@ -6,10 +6,10 @@ import shlex
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from drivelint.convert import Written
+    from drivelint.convert import ConvertedTrace
 
 
-def said(written: Written) -> str:
+def summary_text(written: ConvertedTrace) -> str:
     """Return what was written, and the command that checks it."""
     size = sum(written.files.values())
     amount = f"{size / 1e6:.1f} MB" if size >= 1e6 else f"{max(size / 1e3, 0.1):.1f} kB"

@@ -1,4 +1,4 @@
-"""Who is in a scene: a body, where it starts, how fast it goes, when it changes its place in the road, what it signals.
+"""The actors of a scene: size, start, speed changes, lateral shifts and indicators.
 
 An actor is said in a chain of small sentences, each of which returns a new actor:
 
@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Literal, NamedTuple
 
-Side = Literal["offside", "nearside", "hazard"]
+IndicatorSide = Literal["offside", "nearside", "hazard"]
 
 
 class Body(NamedTuple):
@@ -22,7 +22,7 @@ class Body(NamedTuple):
     height_m: float
 
 
-class Speed(NamedTuple):
+class SpeedChange(NamedTuple):
     """From a time on the speed goes to `to_mps` at this rate (m/s2)."""
 
     at_s: float
@@ -30,18 +30,18 @@ class Speed(NamedTuple):
     rate_mps2: float
 
 
-class Shift(NamedTuple):
-    """From a station on, the actor moves sideways within a distance, nearside positive (a smooth step)."""
+class LateralShift(NamedTuple):
+    """A smooth lateral shift `by` metres (nearside positive) from station `at`, over the distance `within`."""
 
     at: float
     within: float
     by: float
 
 
-class Signal(NamedTuple):
+class Indicator(NamedTuple):
     """An indicator that is on from a time until before another."""
 
-    side: Side
+    side: IndicatorSide
     from_s: float
     until_s: float
 
@@ -55,9 +55,9 @@ class Actor:
     lane: int = 1
     beside_m: float = 0.0
     speed_mps: float = 0.0
-    speeds: tuple[Speed, ...] = ()
-    shifts: tuple[Shift, ...] = ()
-    lights: tuple[Signal, ...] = ()
+    speeds: tuple[SpeedChange, ...] = ()
+    shifts: tuple[LateralShift, ...] = ()
+    lights: tuple[Indicator, ...] = ()
     leaves: bool = False
 
     def starts(self, at: float, *, lane: int = 1, nearer: float = 0.0) -> Actor:
@@ -70,19 +70,19 @@ class Actor:
 
     def then_drives(self, mps: float, *, at_s: float, rate: float) -> Actor:
         """Accelerate or brake to another speed from a time on."""
-        return replace(self, speeds=(*self.speeds, Speed(at_s, mps, rate)))
+        return replace(self, speeds=(*self.speeds, SpeedChange(at_s, mps, rate)))
 
     def moves_out(self, by: float, *, at: float, within: float) -> Actor:
         """Move sideways to the offside, beginning at a station, within a distance along the road."""
-        return replace(self, shifts=(*self.shifts, Shift(at, within, -by)))
+        return replace(self, shifts=(*self.shifts, LateralShift(at, within, -by)))
 
     def moves_in(self, by: float, *, at: float, within: float) -> Actor:
         """Move sideways to the nearside."""
-        return replace(self, shifts=(*self.shifts, Shift(at, within, by)))
+        return replace(self, shifts=(*self.shifts, LateralShift(at, within, by)))
 
-    def signals(self, side: Side, from_s: float, until_s: float) -> Actor:
+    def signals(self, side: IndicatorSide, from_s: float, until_s: float) -> Actor:
         """Have an indicator on."""
-        return replace(self, lights=(*self.lights, Signal(side, from_s, until_s)))
+        return replace(self, lights=(*self.lights, Indicator(side, from_s, until_s)))
 
     def leaves_by_the_fork(self) -> Actor:
         """Follow the branch instead of the road."""

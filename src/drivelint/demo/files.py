@@ -8,7 +8,7 @@ from shutil import which
 from typing import TYPE_CHECKING, Final
 
 from drivelint.demo.opendrive import MAKER
-from drivelint.demo.osi_log import mcap
+from drivelint.demo.osi_log import osi_mcap
 from drivelint.demo.overtakes import PROFILES, overtakes
 from drivelint.errors import UsageError
 from drivelint.result.files import publish
@@ -23,7 +23,7 @@ _HEAD_BYTES = 1024  # the maker's name stands in the header of either format
 def contents() -> dict[str, bytes]:
     """Return every file, name -> bytes: the same bytes every time."""
     scenes = overtakes()
-    return {ROAD_FILE: scenes[0].map_text.encode()} | {f"{scene.name}.mcap": mcap(scene) for scene in scenes}
+    return {ROAD_FILE: scenes[0].map_text.encode()} | {f"{scene.name}.mcap": osi_mcap(scene) for scene in scenes}
 
 
 def write(out: Path) -> list[Path]:
@@ -51,7 +51,7 @@ def _is_ours(path: Path) -> None:
         raise UsageError(f"{path} was not written by this demo, so it stays as it is: choose another folder with --out")
 
 
-def next_command(out: Path, called: str = "drivelint") -> str:
+def check_command(out: Path, called: str = "drivelint") -> str:
     """Return the command that checks what was written, to be copied into a shell; `called` is how drivelint was started."""
     folder = shlex.quote(str(out))
     profiles = " ".join(f"--profile {name}" for name in PROFILES)

@@ -1,4 +1,4 @@
-"""Lines made of straights and bends: where a station on one lies, and what bends there."""
+"""Lines of straights and bends: pose and curvature at a station."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A scene as what ingest makes of its log and its map, without files: for tests and for whoever wants tables at once."""
+"""Makes the tables of a scene in memory, as reading its log and map would."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from drivelint.demo.osi_log import mcap
+from drivelint.demo.osi_log import osi_mcap
 from drivelint.demo.states import HOST_ID, states
-from drivelint.drive.finish import finish
+from drivelint.drive.finish import finish_trace
 from drivelint.drive.trace import Identity, IngestOptions, Recording
 from drivelint.engine.batch import Drive
 from drivelint.formats import load_map
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from drivelint.demo.scene import Scene
 
 
-def drive(scene: Scene) -> Drive:
+def drive_of_scene(scene: Scene) -> Drive:
     """Return the scene as a drive: its tables with the names and ids that its MCAP would give, and its map."""
-    content = sha256(mcap(scene)).hexdigest()
+    content = sha256(osi_mcap(scene)).hexdigest()
     path = Path(f"{scene.name}.mcap")
     identity = Identity(f"{scene.name}-{content[:8]}", path.name, content)
-    trace = finish(path, identity, Recording("osi-mcap", states(scene), ego_ids=[str(HOST_ID)]), IngestOptions())
+    trace = finish_trace(path, identity, Recording("osi-mcap", states(scene), ego_ids=[str(HOST_ID)]), IngestOptions())
     return Drive(trace, load_map(MapSource(f"{scene.map_name}.xodr", scene.map_text.encode())))

@@ -1,4 +1,4 @@
-"""How the actors of a scene move: path speed as said, along the line, with smooth steps sideways; and what touches, stops.
+"""Computes the motion of a scene's actors along the road; actors that touch the ego stop with it.
 
 Motion is solved on a grid of milliseconds, so that samples, lane departures and contacts need no formula of their own.
 """
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-TICKS = 1000  # per second
+TICKS_PER_S = 1000  # per second
 _GRID_M = 0.02
 _BRAKES_MPS2 = 0.5  # slower than this without the brake
 _TOUCH_M = 0.02  # bodies give way by this much before both stand
@@ -51,13 +51,13 @@ class Track:
         return replace(frozen, t_s=self.t_s, speed=np.where(np.arange(n) >= tick, 0.0, self.speed))
 
 
-def move(actor: Actor, road: Road, duration_s: float) -> Track:
+def actor_track(actor: Actor, road: Road, duration_s: float) -> Track:
     """Return an actor's motion on a road."""
-    t = np.arange(round(duration_s * TICKS) + 1) / TICKS
+    t = np.arange(round(duration_s * TICKS_PER_S) + 1) / TICKS_PER_S
     along = 1 if actor.lane > 0 else -1
     line = road.way(branch=actor.leaves)
     speed = _speeds(actor, t)
-    way = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2 / TICKS)])
+    way = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2 / TICKS_PER_S)])
     # the length of the path over a fine grid of stations gives the station after any way
     reach = np.arange(0.0, float(way[-1]) * 1.2 + 1.0, _GRID_M)
     grid = actor.station + along * reach
@@ -70,14 +70,14 @@ def move(actor: Actor, road: Road, duration_s: float) -> Track:
     drift = np.arctan2(slope * road.nearside, 1.0 - line.curvature(station) * d * road.nearside)
     yaw = heading + drift + (0.0 if along > 0 else np.pi)
     yaw = np.arctan2(np.sin(yaw), np.cos(yaw))
-    brakes = np.diff(speed, prepend=speed[0]) * TICKS < -_BRAKES_MPS2
+    brakes = np.diff(speed, prepend=speed[0]) * TICKS_PER_S < -_BRAKES_MPS2
     return Track(actor, t, station, d, x, y, yaw, speed, _lights(actor, road, t), brakes)
 
 
 def _speeds(actor: Actor, t: Floats) -> Floats:
     speed, now = np.full(t.shape, actor.speed_mps), actor.speed_mps
     for change in sorted(actor.speeds):
-        now = float(speed[min(round(change.at_s * TICKS), len(t) - 1)])
+        now = float(speed[min(round(change.at_s * TICKS_PER_S), len(t) - 1)])
         passed = np.clip(t - change.at_s, 0.0, None) * change.rate_mps2
         over = change.to_mps - now
         speed = np.where(t >= change.at_s, now + np.sign(over) * np.minimum(passed, abs(over)), speed)
@@ -104,7 +104,7 @@ def _lights(actor: Actor, road: Road, t: Floats) -> NDArray[np.str_]:
     return light
 
 
-def reach(body: Body, drift: Floats) -> tuple[Floats, Floats]:
+def half_extents(body: Body, drift: Floats) -> tuple[Floats, Floats]:
     """Return half the extent of a box along and across the line, turned by `drift` (rad) against it."""
     c, s = np.abs(np.cos(drift)), np.abs(np.sin(drift))
     return c * body.length_m / 2 + s * body.width_m / 2, s * body.length_m / 2 + c * body.width_m / 2
@@ -115,13 +115,13 @@ def separation(a: Track, b: Track) -> Floats:
     gaps = []
     for yaw in (a.yaw, a.yaw + np.pi / 2, b.yaw, b.yaw + np.pi / 2):
         apart = np.abs((b.x - a.x) * np.cos(yaw) + (b.y - a.y) * np.sin(yaw))
-        gaps.append(apart - reach(a.actor.body, a.yaw - yaw)[0] - reach(b.actor.body, b.yaw - yaw)[0])
+        gaps.append(apart - half_extents(a.actor.body, a.yaw - yaw)[0] - half_extents(b.actor.body, b.yaw - yaw)[0])
     found: Floats = np.max(gaps, axis=0)
     return found
 
 
-def collide(ego: Track, others: list[Track]) -> list[Track]:
-    """Return all tracks, the ego's first: whom the ego touches stands still with it from then on."""
+def stop_on_contact(ego: Track, others: list[Track]) -> list[Track]:
+    """Return all tracks, the ego's first; the ego and the first actor that it touches stop at the contact."""
     deep = [np.flatnonzero(separation(ego, other) <= -_TOUCH_M) for other in others]
     ticks = [int(found[0]) if len(found) else len(ego.t_s) for found in deep]
     first = min(ticks, default=len(ego.t_s))

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from drivelint.demo.line import Line, Pose
-from drivelint.demo.road import BESIDE_M, LANE_M
+from drivelint.demo.road import LANE_WIDTH_M, SIDE_LANE_WIDTH_M
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -34,7 +34,7 @@ class _Lane(NamedTuple):
 
     number: int
     kind: str = "driving"
-    width: str = f'<width sOffset="0" a="{LANE_M}" b="0" c="0" d="0"/>'
+    width: str = f'<width sOffset="0" a="{LANE_WIDTH_M}" b="0" c="0" d="0"/>'
     mark: str = "solid"
     before: int | None = None
     after: int | None = None
@@ -110,7 +110,7 @@ def _lanes(road: Road, *, exit_lane: bool = False, ahead: bool = False, linked: 
         lanes.append(_Lane(k, mark=mark, before=k if linked else None, after=k if linked or ahead else None))
     if exit_lane and road.fork:
         lanes.append(_Lane(n + 1, "exit", _opening(road.fork), edge))
-    width = f'<width sOffset="0" a="{BESIDE_M}" b="0" c="0" d="0"/>'
+    width = f'<width sOffset="0" a="{SIDE_LANE_WIDTH_M}" b="0" c="0" d="0"/>'
     near = n + 2 if exit_lane else n + 1
     lanes.append(_Lane(near, road.beside, width, "none", after=n + 2 if ahead else None))
     lanes.append(_Lane(-m - 1, road.beside, width, "none", after=-m - 1 if ahead else None))
@@ -120,8 +120,8 @@ def _lanes(road: Road, *, exit_lane: bool = False, ahead: bool = False, linked: 
 def _opening(fork: Fork) -> str:
     """Return the width of an exit lane: smoothly from nothing to a lane's."""
     taper = fork.taper_m
-    cubic = f'<width sOffset="0" a="0" b="0" c="{3 * LANE_M / taper**2!r}" d="{-2 * LANE_M / taper**3!r}"/>'
-    return f'{cubic}<width sOffset="{_n(taper)}" a="{LANE_M}" b="0" c="0" d="0"/>'
+    cubic = f'<width sOffset="0" a="0" b="0" c="{3 * LANE_WIDTH_M / taper**2!r}" d="{-2 * LANE_WIDTH_M / taper**3!r}"/>'
+    return f'{cubic}<width sOffset="{_n(taper)}" a="{LANE_WIDTH_M}" b="0" c="0" d="0"/>'
 
 
 def _section(road: Road, s: float, lanes: Sequence[_Lane], start: float = 0.0, end: float = 1e9) -> str:
@@ -159,8 +159,8 @@ def _mark(kind: str, offset: float) -> str:
 def _signal(road: Road, number: int, sign: Sign, s: float) -> str:
     country, code, name = _SIGNS[sign.kind]
     painted = sign.kind == "stop_line"
-    t = (0.5 if painted else 1.0) * LANE_M * road.lanes + (0.0 if painted else 3.0)
-    width = f' width="{_n(LANE_M * road.lanes)}"' if painted else ' width="0.6"'
+    t = (0.5 if painted else 1.0) * LANE_WIDTH_M * road.lanes + (0.0 if painted else 3.0)
+    width = f' width="{_n(LANE_WIDTH_M * road.lanes)}"' if painted else ' width="0.6"'
     return (
         f'      <signal id="{number}" name="{name}" s="{_n(s)}" t="{_n(t * road.nearside)}" zOffset="{0.0 if painted else 2.0}"'
         f' dynamic="no" orientation="+" country="{country}" type="{code}" subtype="-1" height="0.6"{width}/>'
@@ -207,7 +207,7 @@ def _ends(before: str, at_before: str, after: str, at_after: str) -> str:
 
 def _exit(road: Road, off: Line, branch: Line) -> list[str]:
     """Return the ramp of an exit lane, one way, and the junction: its lane lies beside the through lanes' line."""
-    shift = f'<laneOffset s="0" a="{_n(LANE_M * road.lanes * road.nearside)}" b="0" c="0" d="0"/>'
+    shift = f'<laneOffset s="0" a="{_n(LANE_WIDTH_M * road.lanes * road.nearside)}" b="0" c="0" d="0"/>'
     number = road.lanes + 1
     link = f'<predecessor elementType="junction" elementId="{_JUNCTION}"/>'
     bare = _bare(road)

@@ -10,8 +10,8 @@ from mcap.writer import CompressionType, Writer
 
 from drivelint.demo.opendrive import MAKER
 from drivelint.demo.states import HOST_ID, states
-from drivelint.drive.trace import NUMBERS, SIZES
-from drivelint.formats.osi.frames import Objects, head, moving_objects
+from drivelint.drive.trace import SIZE_COLUMNS, STATE_COLUMNS
+from drivelint.formats.osi.frames import Objects, ground_truth_head, moving_objects
 from drivelint.formats.osi.schema import GROUND_TRUTH, VERSION, descriptor_set
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 TOPIC: Final = "ground_truth"
 
 
-def mcap(scene: Scene) -> bytes:
+def osi_mcap(scene: Scene) -> bytes:
     """Return the scene's log: one `osi3.GroundTruth` per sample, log time = sample time, the same bytes every time."""
     sink = io.BytesIO()
     writer = Writer(sink, compression=CompressionType.ZSTD, enable_crcs=True, enable_data_crcs=True)
@@ -46,7 +46,7 @@ def _frames(scene: Scene) -> Iterator[tuple[int, bytes]]:
     unknown = np.full(len(said), np.nan)
     objects = Objects(
         said.actor[by_frame].astype(np.uint64) + np.uint64(HOST_ID),
-        {name: said.numbers.get(name, unknown)[by_frame] for name in (*NUMBERS, *SIZES)},
+        {name: said.numbers.get(name, unknown)[by_frame] for name in (*STATE_COLUMNS, *SIZE_COLUMNS)},
         {name: codes[by_frame] for name, codes in said.codes.items()},
         heights=True,
     )
@@ -54,4 +54,4 @@ def _frames(scene: Scene) -> Iterator[tuple[int, bytes]]:
     content = data.tobytes()
     for k in range(n):
         t_ns = int(said.t_ns[k])
-        yield t_ns, head(t_ns, HOST_ID) + content[starts[k * actors] : starts[(k + 1) * actors]]
+        yield t_ns, ground_truth_head(t_ns, HOST_ID) + content[starts[k * actors] : starts[(k + 1) * actors]]

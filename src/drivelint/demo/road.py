@@ -1,4 +1,4 @@
-"""The roads of the scenes, said in a few words: pieces, lanes, the hand of traffic, markings, limits, signs, one fork.
+"""Roads of the scenes: pieces, lanes, handedness, markings, limits, signs and at most one fork.
 
 A road's line is its centre line. Actors and signs are placed by the station `s` along it and the offset `d` from it,
 **positive towards the nearside** (the side of the road that is driven on), so that a scene reads the same for left-hand
@@ -12,11 +12,11 @@ from typing import Literal, NamedTuple
 
 from drivelint.demo.line import Line, Piece
 
-LANE_M = 3.5
-BESIDE_M = 2.0  # a footway's or a shoulder's width
+LANE_WIDTH_M = 3.5
+SIDE_LANE_WIDTH_M = 2.0  # a footway's or a shoulder's width
 MPH = 0.44704  # m/s
 
-Hand = Literal["left", "right"]
+Handedness = Literal["left", "right"]
 SignKind = Literal["exit", "give_way", "no_overtaking", "stop", "stop_line"]
 
 
@@ -54,7 +54,7 @@ class Road:
     """
 
     pieces: tuple[Piece, ...]
-    hand: Hand = "left"
+    hand: Handedness = "left"
     lanes: int = 1
     oncoming: int = 1
     kind: str = "town"
@@ -76,7 +76,7 @@ class Road:
 
     def lane(self, number: int) -> float:
         """Return the offset of a lane's middle: 1, 2, ... from the centre line to the nearside; -1, -2, ... oncoming."""
-        return (abs(number) - 0.5) * (LANE_M if number > 0 else -LANE_M)
+        return (abs(number) - 0.5) * (LANE_WIDTH_M if number > 0 else -LANE_WIDTH_M)
 
     def way(self, *, branch: bool) -> Line:
         """Return the line that traffic along the road follows: on, or into the branch."""
@@ -86,6 +86,6 @@ class Road:
             raise ValueError("this road has no fork to leave by")
         return self.line.cut(0.0, self.fork.at).then(self.fork.turn, *self.fork.branch)
 
-    def driven_on_the(self, hand: Hand) -> Road:
+    def driven_on_the(self, hand: Handedness) -> Road:
         """Return the same road driven on the other side."""
         return replace(self, hand=hand)

@@ -1,4 +1,4 @@
-"""A scene: a road and who is on it, for a while. Everything else, logs and tables, is made from its samples."""
+"""A scene: a road and its actors for some seconds; logs and tables are made from its samples."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.demo.motion import TICKS, Track, collide, move, reach
+from drivelint.demo.motion import TICKS_PER_S, Track, actor_track, half_extents, stop_on_contact
 from drivelint.demo.opendrive import opendrive
 
 if TYPE_CHECKING:
     from drivelint.demo.actors import Actor
-    from drivelint.demo.road import Hand, Road
+    from drivelint.demo.road import Handedness, Road
 
-OVER_M = 0.05  # a corner this far over the centre line has left the lane
-RATE_HZ = 10
+DEPARTURE_M = 0.05  # a corner this far over the centre line has left the lane
+SAMPLE_RATE_HZ = 10
 
 
 @dataclass(frozen=True)
@@ -44,37 +44,37 @@ class Scene:
     @cached_property
     def tracks(self) -> tuple[Track, ...]:
         """Return everybody's samples, the ego's first, all at the same times."""
-        ego = move(self.ego, self.road, self.duration_s)
-        others = [move(other, self.road, self.duration_s) for other in self.others]
-        rows = np.arange(0, len(ego.t_s), TICKS // RATE_HZ)
-        return tuple(track.at(rows) for track in collide(ego, others))
+        ego = actor_track(self.ego, self.road, self.duration_s)
+        others = [actor_track(other, self.road, self.duration_s) for other in self.others]
+        rows = np.arange(0, len(ego.t_s), TICKS_PER_S // SAMPLE_RATE_HZ)
+        return tuple(track.at(rows) for track in stop_on_contact(ego, others))
 
-    def on_the(self, hand: Hand) -> Scene:
+    def on_the(self, hand: Handedness) -> Scene:
         """Return the same scene where the other side of the road is driven on."""
         return replace(self, road=self.road.driven_on_the(hand))
 
 
 @dataclass(frozen=True)
-class Departure:
+class LaneDeparture:
     """The first sample with the ego's box over the centre line: when, and the station of its front."""
 
     t_s: float
     front: float
 
 
-def departure(ego: Actor, road: Road, duration_s: float) -> Departure:
+def lane_departure(ego: Actor, road: Road, duration_s: float) -> LaneDeparture:
     """Return where the ego leaves its lane for the oncoming one. Errors: `ValueError` where it never does."""
-    track = move(ego, road, duration_s)
-    track = track.at(np.arange(0, len(track.t_s), TICKS // RATE_HZ))
-    along, across = reach(ego.body, track.yaw - road.line.at(track.station)[2])
-    over = np.flatnonzero(track.offset - across < -OVER_M)
+    track = actor_track(ego, road, duration_s)
+    track = track.at(np.arange(0, len(track.t_s), TICKS_PER_S // SAMPLE_RATE_HZ))
+    along, across = half_extents(ego.body, track.yaw - road.line.at(track.station)[2])
+    over = np.flatnonzero(track.offset - across < -DEPARTURE_M)
     if not len(over):
         raise ValueError("the ego never leaves its lane")
     k = int(over[0])
-    return Departure(float(track.t_s[k]), float(track.station[k] + along[k]))
+    return LaneDeparture(float(track.t_s[k]), float(track.station[k] + along[k]))
 
 
-def coming(other: Actor, to: Departure, *, ahead_m: float) -> Actor:
+def place_oncoming(other: Actor, to: LaneDeparture, *, ahead_m: float) -> Actor:
     """Return an oncoming actor placed so that it is `ahead_m` ahead of the ego, front to front, when the ego departs."""
     front = to.front + ahead_m
     return other.starts(front + other.body.length_m / 2 + other.speed_mps * to.t_s, lane=-1)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.trace import BRAKE_LIGHTS, CLASSES, INDICATORS, States
+from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, States
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -39,7 +39,7 @@ def states(scene: Scene) -> States:
     tracks = scene.tracks
     n = len(tracks[0].t_s)
     codes = {
-        "actor_class": [np.full(n, CLASSES.index(track.actor.body.kind), np.int8) for track in tracks],
+        "actor_class": [np.full(n, ACTOR_CLASSES.index(track.actor.body.kind), np.int8) for track in tracks],
         "indicator": [_lights(track, track.light, INDICATORS) for track in tracks],
         "brake_light": [_lights(track, np.where(track.brakes, "on", "off"), BRAKE_LIGHTS) for track in tracks],
     }

@@ -1,1 +1,1 @@
-"""The model of a drive: what a trace reader returns, and how it becomes the tables of `schemas/model.sql`."""
+"""Defines what a trace reader returns, and makes the tables of `schemas/model.sql` of it."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.trace import CLASSES, SIZES, Finding
+from drivelint.drive.trace import ACTOR_CLASSES, SIZE_COLUMNS, QualityFinding
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import States
 
-VARIES_M = 0.05
+ESTIMATED_SPREAD_M = 0.05
 """Sizes that spread by more than this over a track were estimated, not known."""
 
 
@@ -31,7 +31,7 @@ class Actors:
     sizes: dict[str, NDArray[np.float64]]
 
 
-def from_states(states: States) -> tuple[Actors, list[Finding]]:
+def from_states(states: States) -> tuple[Actors, list[QualityFinding]]:
     """Collect each actor's class (the first known) and sizes (the median of those known). `states` in order."""
     starts = np.flatnonzero(np.r_[True, states.actor[1:] != states.actor[:-1]]) if len(states) else np.zeros(0, np.intp)
     classes: list[str | None] = [None] * len(states.ids)
@@ -40,9 +40,9 @@ def from_states(states: States) -> tuple[Actors, list[Finding]]:
         known = np.flatnonzero(codes >= 0)
         actors, first = np.unique(states.actor[known], return_index=True)
         for actor, row in zip(actors, known[first], strict=True):
-            classes[actor] = CLASSES[codes[row]]
+            classes[actor] = ACTOR_CLASSES[codes[row]]
     sizes, varying = {}, set()
-    for name in SIZES:
+    for name in SIZE_COLUMNS:
         values = states.numbers.get(name)
         if values is None or not len(states):
             sizes[name] = np.full(len(states.ids), np.nan)
@@ -53,7 +53,7 @@ def from_states(states: States) -> tuple[Actors, list[Finding]]:
         for i in np.flatnonzero(high - low > 0.0):
             track = np.sort(positive[starts[i] : ends[i]])
             track = track[~np.isnan(track)]
-            if high[i] - low[i] > VARIES_M:
+            if high[i] - low[i] > ESTIMATED_SPREAD_M:
                 varying.add(states.ids[i])
             low[i] = track[(len(track) - 1) // 2]
         sizes[name] = low
@@ -62,7 +62,7 @@ def from_states(states: States) -> tuple[Actors, list[Finding]]:
         ids = sorted(varying)
         message = f"box size changes over the log ({listed(ids)}): the median is used throughout"
         findings.append(
-            Finding("size_varies", "warning", message, len(ids), actor_id=ids[0] if len(ids) == 1 else None)
+            QualityFinding("size_varies", "warning", message, len(ids), actor_id=ids[0] if len(ids) == 1 else None)
         )
     return Actors(states.ids, classes, sizes), findings
 
@@ -78,7 +78,7 @@ def from_table(table: pa.Table, states: States, alias: Mapping[str, str]) -> Act
     nothing: dict[str, object] = {}
     classes = [str(value) if (value := rows.get(i, nothing).get("actor_class")) else None for i in ids]
     sizes = {}
-    for name in SIZES:
+    for name in SIZE_COLUMNS:
         raw = np.array(
             [np.nan if (value := rows.get(i, nothing).get(name)) is None else value for i in ids], np.float64
         )

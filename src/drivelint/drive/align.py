@@ -1,4 +1,4 @@
-"""Objects that are sampled at other times than the ego, such as tracks beside odometry: their states at the ego's steps.
+"""Interpolates objects that are sampled at other times than the ego to the ego's steps.
 
 Every rule asks who is where at a step of the ego. Between two samples an object is where the straight line puts it (at 10 Hz and
 5 m/s2 that is 6 mm off). Before its first sample and after its last it has no state, and none in a hole of its track. Only where
@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.order import MAX_GAP_PERIODS, in_order, wrapped
-from drivelint.drive.trace import NUMBERS, Finding, States
+from drivelint.drive.order import MAX_GAP_PERIODS, sorted_states, wrapped
+from drivelint.drive.trace import STATE_COLUMNS, QualityFinding, States
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
     Times = NDArray[np.int64]
     Rows = NDArray[np.intp]
 
-SLOWEST_NS: Final = 250_000_000
+LONGEST_PERIOD_NS: Final = 250_000_000
 """An object that is sampled more rarely is not aligned: half of that time on, a car that brakes is 8 cm beside the line."""
-RARER: Final = 1.5
+OTHER_RATE_FACTOR: Final = 1.5
 """So many times the ego's period is another rate, less is a sample that is missing now and then."""
-COVERED: Final = 0.75
+COVERED_SHARE: Final = 0.75
 """A track that has a sample at so many of the ego's steps needs no others."""
 _MOVED: Final = (("x_m", "vx_mps"), ("y_m", "vy_mps"))
 
 
-def aligned(states: States, egos: list[str]) -> tuple[States, list[Finding]]:
-    """Return the states (in order, velocities complete) with those of other rates at the only ego's steps, and what was done."""
+def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityFinding]]:
+    """Interpolate tracks with another sampling rate to the steps of the only ego; return the states and findings about it."""
     if len(egos) != 1 or egos[0] not in states.ids:
         return states, []
     starts = np.searchsorted(states.actor, np.arange(len(states.ids) + 1))
@@ -59,8 +59,8 @@ def aligned(states: States, egos: list[str]) -> tuple[States, list[Finding]]:
         f"actors sampled at other times than the ego ({listed(names)}): their states are interpolated at its steps, "
         f"between samples no more than {MAX_GAP_PERIODS * longest / 1e9:g} s apart"
     )
-    finding = Finding("aligned", "info", message, len(names), actor_id=names[0] if len(names) == 1 else None)
-    return in_order(_joined([states.take(kept), *added])), [finding]
+    finding = QualityFinding("aligned", "info", message, len(names), actor_id=names[0] if len(names) == 1 else None)
+    return sorted_states(_joined([states.take(kept), *added])), [finding]
 
 
 def _own_period(t_ns: Times, grid: Times, period_ns: float) -> int | None:
@@ -72,13 +72,13 @@ def _own_period(t_ns: Times, grid: Times, period_ns: float) -> int | None:
     if first + n <= len(grid) and np.array_equal(t_ns, grid[first : first + n]):
         return None
     own = int(np.median(np.diff(t_ns)))
-    if own > SLOWEST_NS:
+    if own > LONGEST_PERIOD_NS:
         return None
     steps = grid[first : np.searchsorted(grid, t_ns[-1], side="right")]
     shared = len(np.intersect1d(steps, t_ns, assume_unique=True))
-    if shared >= COVERED * len(steps):  # as where there is no step of the ego's at all
+    if shared >= COVERED_SHARE * len(steps):  # as where there is no step of the ego's at all
         return None
-    return own if own > RARER * period_ns or shared < 0.5 * n else None
+    return own if own > OTHER_RATE_FACTOR * period_ns or shared < 0.5 * n else None
 
 
 def _at_steps(states: States, span: slice, grid: Times, own_ns: int, log_ns: tuple[int, int]) -> States:
@@ -97,7 +97,7 @@ def _at_steps(states: States, span: slice, grid: Times, own_ns: int, log_ns: tup
     apart = np.maximum(t_ns[after] - t_ns[before], 1)
     share = np.where(inside, (steps - t_ns[before]) / apart, 0.0)
     numbers = {name: values[rows] for name, values in states.numbers.items()}
-    for name in NUMBERS:
+    for name in STATE_COLUMNS:
         values = states.numbers[name]
         rise = wrapped(values[later] - values[rows]) if name == "yaw_rad" else values[later] - values[rows]
         numbers[name] = np.where(share > 0.0, values[rows] + share * rise, values[rows])

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drivelint.drive.order import MAX_GAP_PERIODS, wrapped
-from drivelint.drive.trace import MOTOR_VEHICLES, Finding
+from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ VELOCITY_MISMATCH_SHARE = 0.15
 """Velocity may differ from the step in position by 1 m/s + 15 %: millimetre rounding at 20 Hz gives 0.03 m/s, hard
 braking within a step (10 m/s2, 0.1 s) 0.5 m/s, while km/h read as m/s or a flipped axis differ by half or more."""
 YAW_MISMATCH_RAD = np.deg2rad(30.0)
-YAW_SPEED_MPS = 3.0
+YAW_CHECK_LEAST_MPS = 3.0
 """Slip angles of a car stay below about 10 degrees; below 3 m/s reversing and rounding blur the direction of motion."""
 REVERSING_MPS = 8.0
 REVERSING_RAD = np.deg2rad(150.0)
@@ -33,15 +33,15 @@ REVERSING_RAD = np.deg2rad(150.0)
 TELEPORT_M = 3.0
 TELEPORT_FACTOR = 2.0
 """A step is a jump if longer than 3 m + twice what the higher of both speeds covers: no acceleration explains that."""
-FLAWED_SHARE = 0.5
+WRONG_UNITS_SHARE = 0.5
 """Where more than half of the moving samples disagree, the units or the frame are wrong, not the sensor."""
-MOVING_SAMPLES = 20
+LEAST_MOVING_SAMPLES = 20
 """Fewer moving samples than this are too few to blame units or frame."""
-LONG_KINDS = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle"))
+LONG_CLASSES = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle"))
 """Actors whose box is longer than wide."""
 
 
-def run(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[Finding]:
+def run(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[QualityFinding]:
     """Run every check on states in order. `derived`: velocities come from the positions, comparing says nothing."""
     findings = [*_not_finite(states), *_not_placed(states), *_sizes(actors), *_gaps(states, step)]
     if len(states) > 1:
@@ -59,16 +59,18 @@ def run(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[F
     return findings
 
 
-def _report(states: States, rows: NDArray[np.bool_], check: str, severity: Severity, text: str) -> list[Finding]:
+def _report(states: States, rows: NDArray[np.bool_], check: str, severity: Severity, text: str) -> list[QualityFinding]:
     n = int(rows.sum())
     if n == 0:
         return []
     ids = [states.ids[i] for i in np.unique(states.actor[rows])]
     message = text.format(n=n, ids=listed(ids), of=len(states))
-    return [Finding(check, severity, message, n, int(states.t_ns[rows].min()), ids[0] if len(ids) == 1 else None)]
+    return [
+        QualityFinding(check, severity, message, n, int(states.t_ns[rows].min()), ids[0] if len(ids) == 1 else None)
+    ]
 
 
-def _not_finite(states: States) -> list[Finding]:
+def _not_finite(states: States) -> list[QualityFinding]:
     return _report(
         states,
         states.not_finite,
@@ -78,7 +80,7 @@ def _not_finite(states: States) -> list[Finding]:
     )
 
 
-def _not_placed(states: States) -> list[Finding]:
+def _not_placed(states: States) -> list[QualityFinding]:
     lost = np.isnan(states.numbers["x_m"]) | np.isnan(states.numbers["y_m"])
     turned = ~lost & np.isnan(states.numbers["yaw_rad"])
     return [
@@ -99,21 +101,23 @@ def _not_placed(states: States) -> list[Finding]:
     ]
 
 
-def _sizes(actors: Actors) -> list[Finding]:
+def _sizes(actors: Actors) -> list[QualityFinding]:
     length, width = actors.sizes["length_m"], actors.sizes["width_m"]
     findings = []
     missing = [actors.ids[i] for i in np.flatnonzero(np.isnan(length) | np.isnan(width))]
     if missing:
         message = f"no length or width is known of {listed(missing)}: distances to their boxes are unknown"
         findings.append(
-            Finding("no_size", "warning", message, len(missing), actor_id=missing[0] if len(missing) == 1 else None)
+            QualityFinding(
+                "no_size", "warning", message, len(missing), actor_id=missing[0] if len(missing) == 1 else None
+            )
         )
-    long_kind = np.array([kind in LONG_KINDS for kind in actors.classes], np.bool_)
+    long_kind = np.array([kind in LONG_CLASSES for kind in actors.classes], np.bool_)
     swapped = [actors.ids[i] for i in np.flatnonzero(long_kind & (length < width))]
     if swapped:
         message = f"shorter than wide: {listed(swapped)}: length and width may be swapped"
         findings.append(
-            Finding(
+            QualityFinding(
                 "length_below_width",
                 "warning",
                 message,
@@ -124,7 +128,7 @@ def _sizes(actors: Actors) -> list[Finding]:
     return findings
 
 
-def _gaps(states: States, step: Steps) -> list[Finding]:
+def _gaps(states: States, step: Steps) -> list[QualityFinding]:
     """Report holes of the whole log, and holes of single tracks that the log goes on recording through."""
     import pyarrow as pa
     import pyarrow.compute as pc
@@ -141,7 +145,7 @@ def _gaps(states: States, step: Steps) -> list[Finding]:
             f"gaps in the log of more than {MAX_GAP_PERIODS} periods ({step.period_ns / 1e9:g} s each): {n}, "
             f"the longest {dt.max() / 1e9:g} s, the first from {first / 1e9:g} s: nothing is judged across them"
         )
-        findings.append(Finding("gap", "warning", message, n, first))
+        findings.append(QualityFinding("gap", "warning", message, n, first))
     hole = np.zeros(len(states), np.bool_)
     hole[:-1] = step.same & ~step.continuous
     if findings:  # a hole that is a gap of the whole log is reported once
@@ -171,7 +175,7 @@ def _jumps(states: States, step: Steps) -> NDArray[np.bool_]:
     return jump
 
 
-def _velocity(states: States, step: Steps, jump: NDArray[np.bool_]) -> list[Finding]:
+def _velocity(states: States, step: Steps, jump: NDArray[np.bool_]) -> list[QualityFinding]:
     """Compare each step in position with the mean of the velocities at its ends.
 
     Whether units or frame are wrong is asked over a second, where noise in the positions is small against the way.
@@ -184,12 +188,12 @@ def _velocity(states: States, step: Steps, jump: NDArray[np.bool_]) -> list[Find
     for n_steps in {second: None, 1: None}:
         error, told, moved, usable = _against_positions(states, step, jump, n_steps)
         with np.errstate(invalid="ignore"):
-            moving = usable & (np.maximum(moved, told) > YAW_SPEED_MPS)
+            moving = usable & (np.maximum(moved, told) > YAW_CHECK_LEAST_MPS)
             off = moving & (error > VELOCITY_MISMATCH_MPS + VELOCITY_MISMATCH_SHARE * np.maximum(moved, told))
         n, n_moving = int(off.sum()), int(moving.sum())
-        if n_moving < MOVING_SAMPLES:
+        if n_moving < LEAST_MOVING_SAMPLES:
             continue  # tracks shorter than a second
-        if n > FLAWED_SHARE * n_moving:
+        if n > WRONG_UNITS_SHARE * n_moving:
             with np.errstate(invalid="ignore", divide="ignore"):
                 ratio = float(np.nanmedian((told / moved)[moving]))
             text = (
@@ -254,14 +258,14 @@ def _cause(ratio: float) -> str:
     )
 
 
-def _yaw(states: States, actors: Actors) -> list[Finding]:
+def _yaw(states: States, actors: Actors) -> list[QualityFinding]:
     """Compare the heading of vehicles with their direction of motion."""
     numbers = states.numbers
     place = {name: i for i, name in enumerate(actors.ids)}
-    long_kind = np.array([actors.classes[place[name]] in {*LONG_KINDS, None} for name in states.ids], np.bool_)
+    long_kind = np.array([actors.classes[place[name]] in {*LONG_CLASSES, None} for name in states.ids], np.bool_)
     speed = np.hypot(numbers["vx_mps"], numbers["vy_mps"])
     with np.errstate(invalid="ignore"):
-        moving = (speed > YAW_SPEED_MPS) & long_kind[states.actor] & ~np.isnan(numbers["yaw_rad"])
+        moving = (speed > YAW_CHECK_LEAST_MPS) & long_kind[states.actor] & ~np.isnan(numbers["yaw_rad"])
         off = np.abs(wrapped(numbers["yaw_rad"] - np.arctan2(numbers["vy_mps"], numbers["vx_mps"])))
         wrong = moving & (off > YAW_MISMATCH_RAD)
         backwards = wrong & (off > REVERSING_RAD) & (speed < REVERSING_MPS)
@@ -272,7 +276,7 @@ def _yaw(states: States, actors: Actors) -> list[Finding]:
     reverses = forwards | only if forwards.any() or only.sum() == 1 else forwards
     wrong &= ~(backwards & reverses[states.actor])
     n, n_moving = int(wrong.sum()), int(moving.sum())
-    if n_moving >= MOVING_SAMPLES and n > FLAWED_SHARE * n_moving:
+    if n_moving >= LEAST_MOVING_SAMPLES and n > WRONG_UNITS_SHARE * n_moving:
         degrees = float(np.rad2deg(np.median(off[wrong])))
         text = (
             f"heading is off the direction of motion in {100.0 * n / n_moving:.0f} % of the moving samples "

@@ -1,4 +1,4 @@
-"""The conditions of a drive that rules may be restricted to: their names, the words of each, and which words include which.
+"""Names the conditions that may restrict a rule, the values of each, and which values include which.
 
 One vocabulary for the rules' `[applies]`, for `--env` and for what a log may say of itself; the columns are those of
 `ego_condition`.
@@ -15,26 +15,34 @@ from drivelint.phrases import hint
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-TOWN = ("town", "townExpressway", "townCollector", "townArterial", "townPrivate", "townLocal", "townPlayStreet")
-ROAD_TYPES = ("motorway", "rural", *TOWN, "lowSpeed", "pedestrian", "bicycle")
+TOWN_ROAD_TYPES = (
+    "town",
+    "townExpressway",
+    "townCollector",
+    "townArterial",
+    "townPrivate",
+    "townLocal",
+    "townPlayStreet",
+)
+ROAD_TYPES = ("motorway", "rural", *TOWN_ROAD_TYPES, "lowSpeed", "pedestrian", "bicycle")
 """OpenDRIVE's road types (ASAM OpenDRIVE 1.8, e_roadType), without `unknown`, which is NULL."""
-BRITAIN = ("gb", "gb-eng", "gb-wls", "gb-sct")
+BRITISH_NATIONS = ("gb", "gb-eng", "gb-wls", "gb-sct")
 
-WORDS: dict[str, tuple[str, ...]] = {
+CONDITION_VALUES: dict[str, tuple[str, ...]] = {
     "road_type": ROAD_TYPES,
     "carriageway": ("single", "dual"),
     "area": ("built_up", "open"),
-    "nation": (*BRITAIN, "de"),
+    "nation": (*BRITISH_NATIONS, "de"),
     "weather": ("dry", "wet", "ice"),
     "light": ("day", "night"),
     "vehicle_class": ("car", "car_towing", "bus", "goods_7t5", "goods_over_7t5", "motorcycle"),
 }
 """Condition -> its words; `nation` also takes any other country's two letters (ISO 3166-1), see `problem`."""
 
-GIVEN: dict[str, tuple[str, ...]] = {**WORDS, "engaged": ("yes", "no")}
+ENV_VALUES: dict[str, tuple[str, ...]] = {**CONDITION_VALUES, "engaged": ("yes", "no")}
 """What may be given for a drive: those, and whether the automated driver drives."""
 
-SAYS: dict[str, str] = {
+CONDITION_TEXTS: dict[str, str] = {
     "road_type": "the road is of this type; not given: as the map says",
     "carriageway": "something lies between the two directions (dual) or not; not given: as the map's lanes show",
     "area": "the road lies in a town or village (built_up) or not; not given: by the road type",
@@ -49,14 +57,14 @@ SAYS: dict[str, str] = {
 }
 """Condition -> what its words say."""
 
-_WIDER = {"gb": BRITAIN, "town": TOWN}
+_WIDER = {"gb": BRITISH_NATIONS, "town": TOWN_ROAD_TYPES}
 _COUNTRY = re.compile(r"[a-z]{2}")
-_SPELLED = {name.casefold(): name for name in GIVEN}
+_SPELLED = {name.casefold(): name for name in ENV_VALUES}
 
 
-def problem(condition: str, word: str) -> str | None:
+def value_problem(condition: str, word: str) -> str | None:
     """Return what is wrong with this word for this condition, with the nearest good one; None: nothing."""
-    words = GIVEN[condition]
+    words = ENV_VALUES[condition]
     if word in words or (condition == "nation" and word != "uk" and _COUNTRY.fullmatch(word)):
         return None
     if condition == "nation" and word.lower() == "uk":
@@ -64,22 +72,22 @@ def problem(condition: str, word: str) -> str | None:
     return f"{word!r} is no {condition.replace('_', ' ')}; {hint(word, words)}"
 
 
-def spelled(condition: str, word: str) -> tuple[str, str]:
+def canonical_spelling(condition: str, word: str) -> tuple[str, str]:
     """Return a condition and its word as they are spelled here, whatever their case; what is not known stays as it is."""
     condition = _SPELLED.get(condition.casefold(), condition)
-    words = {known.casefold(): known for known in GIVEN.get(condition, ())}
+    words = {known.casefold(): known for known in ENV_VALUES.get(condition, ())}
     country = condition == "nation" and _COUNTRY.fullmatch(word.casefold())
     return condition, words.get(word.casefold(), word.casefold() if country else word)
 
 
-def covered(words: tuple[str, ...]) -> list[str]:
+def with_narrower_values(words: tuple[str, ...]) -> list[str]:
     """Return these words and those that they include: gb holds in gb-sct, town in townLocal."""
     return sorted({part for word in words for part in (word, *_WIDER.get(word, ()))})
 
 
-def undecided(words: tuple[str, ...]) -> list[str]:
+def broader_values(words: tuple[str, ...]) -> list[str]:
     """Return the words that leave open whether one of these is meant: gb, where the rule is for gb-sct."""
-    inside = covered(words)
+    inside = with_narrower_values(words)
     return sorted(wide for wide, parts in _WIDER.items() if wide not in inside and set(parts) & set(inside))
 
 
@@ -93,16 +101,16 @@ def parse(settings: Iterable[str]) -> tuple[tuple[str, str], ...]:
         key, equals, word = (part.strip() for part in setting.partition("="))
         if not equals:
             raise UsageError(f"--env {setting!r}: write KEY=VALUE, such as weather=wet")
-        key, word = spelled(key, word)
-        if wrong := unknown(key) or problem(key, word):
+        key, word = canonical_spelling(key, word)
+        if wrong := condition_problem(key) or value_problem(key, word):
             raise UsageError(f"--env {setting!r}: {wrong}")
         if found.setdefault(key, word) != word:
             raise UsageError(f"--env {setting!r}: {key} is {found[key]!r} already: a drive has one {key}")
     return tuple(sorted(found.items()))
 
 
-def unknown(condition: str) -> str | None:
+def condition_problem(condition: str) -> str | None:
     """Return what is wrong with this name of a condition, with the nearest good one; None: nothing."""
-    if condition in GIVEN:
+    if condition in ENV_VALUES:
         return None
-    return f"{condition!r} is no condition of a drive; {hint(condition, GIVEN)}"
+    return f"{condition!r} is no condition of a drive; {hint(condition, ENV_VALUES)}"

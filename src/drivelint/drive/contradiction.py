@@ -1,4 +1,4 @@
-"""What a log says about an actor that cannot all be true becomes unknown, so that no verdict is built on it.
+"""Makes unknown what a log says about an actor that cannot all be true.
 
 Positions decide over velocities and headings as long as they are a track. Where a position jumps, or stands while the velocity
 moves on, the state is unknown (no position, heading or velocity). A track that goes on elsewhere after a jump is another actor's.
@@ -12,10 +12,18 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.contrary import contrary
-from drivelint.drive.jumps import MOVING_MPS, UNPARTED, VELOCITY, Parted, Refused, forget, report
+from drivelint.drive.contrary import mismatched_samples
+from drivelint.drive.jumps import (
+    MOTION_COLUMNS,
+    MOVING_MPS,
+    NO_SPLIT,
+    RejectedPositions,
+    SplitTracks,
+    quality_findings,
+    set_unknown,
+)
 from drivelint.drive.order import wrapped
-from drivelint.drive.trace import MOTOR_VEHICLES, Finding
+from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -30,77 +38,81 @@ if TYPE_CHECKING:
     Mask = NDArray[np.bool_]
     Numbers = NDArray[np.float64]
 
-FROZEN_M: Final = 1.0
-FROZEN_SHARE: Final = 0.15
+MISMATCH_M: Final = 1.0
+MISMATCH_SHARE: Final = 0.15
 """Positions contradict velocities if over a second they lead elsewhere by more than 1 m + 15 % of the way: noise of 0.3 m and
 velocities of 10 % error do not."""
-SHIFT_M: Final = 2.0
+STEP_MISMATCH_M: Final = 2.0
 """A single step contradicts the velocities, whatever the next one does, from this on: six times the noise above."""
 WINDOW_S: Final = 0.5
-LED_M: Final = 0.4
-LED_SHARE: Final = 0.5
+DIRECTION_LEAST_M: Final = 0.4
+DIRECTION_LEAST_SHARE: Final = 0.5
 """A motion has a direction if within a second around it leads 0.4 m on, and half as far as its speed says."""
 REVERSING_MPS: Final = 8.0
 """Nobody reverses faster than this (29 km/h),"""
 FAST_REVERSING_MPS: Final = 20.0
-STARTING_MPS: Final = 3.0
+REVERSE_START_MPS: Final = 3.0
 """unless it is seen to stop and to set off backwards: at its first moving sample it is no faster than 3 m/s, and never than 72 km/h."""
 BACKWARDS_RAD: Final = np.deg2rad(150.0)
 SIDEWAYS_RAD: Final = np.deg2rad(30.0)
 SIDEWAYS_MPS: Final = 3.0
 """A heading this far off the motion is that of a slide, or wrong; slip angles of a car stay below 10 degrees."""
-TURN_RAD: Final = np.deg2rad(90.0)
+HEADING_FLIP_RAD: Final = np.deg2rad(90.0)
 SPIN_RAD: Final = np.deg2rad(45.0)
 """No heading turns round between two samples; and no vehicle spins further than this, which is 450 degrees/s at 10 Hz."""
-LONG_KINDS: Final = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle", None))
+DIRECTED_CLASSES: Final = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle", None))
 """Actors whose heading is that of their motion; people and animals face where they like, things have no front."""
-HALF_BOX_M: Final = 6.0
+LARGEST_HALF_BOX_M: Final = 6.0
 """No box reaches further than this from its middle, where its size is not known."""
 
 
-def resolve(states: States, step: Steps, actors: Actors, *, derived: bool, parted: Parted = UNPARTED) -> list[Finding]:
+def resolve(
+    states: States, step: Steps, actors: Actors, *, derived: bool, parted: SplitTracks = NO_SPLIT
+) -> list[QualityFinding]:
     """Make what contradicts the motion unknown, in place (states in order, velocities complete).
 
     `derived`: velocities come from the positions, and contradict nobody. `parted`: what was not believed before.
     """
     if len(states) < 3:
         return []
-    findings: list[Finding] = []
+    findings: list[QualityFinding] = []
     places = [parted.refused] if parted.refused else []
     if not derived:
         frozen = _frozen(states, step)
         if frozen.any():
-            places.append(Refused.of(states, frozen))
-        findings += report(
+            places.append(RejectedPositions.of(states, frozen))
+        findings += quality_findings(
             states, frozen, "motion_unknown", "position and velocity contradict each other: they are unknown"
         )
-        forget(states, frozen)
-        astray = contrary(states, step)
+        set_unknown(states, frozen)
+        astray = mismatched_samples(states, step)
         text = "for half a second and longer the velocity leads elsewhere than the positions: it is unknown"
-        findings += report(states, astray, "velocity_unknown", text)
-        forget(states, astray, VELOCITY)
+        findings += quality_findings(states, astray, "velocity_unknown", text)
+        set_unknown(states, astray, MOTION_COLUMNS)
     for each in places:
         findings += _upon_others(states, step, actors, each, parted.alias)
     turned, sideways = _headings(states, step, actors)
     yaw = states.numbers["yaw_rad"]
     if turned.any():
         text = "the heading is turned round, the motion is not: the motion counts"
-        findings += report(states, turned, "heading_turned", text)
+        findings += quality_findings(states, turned, "heading_turned", text)
         yaw = np.where(turned, wrapped(yaw + np.pi), yaw)
     if sideways.any():
-        findings += report(states, sideways, "heading_unknown", "the heading is across the motion: it is unknown")
+        findings += quality_findings(
+            states, sideways, "heading_unknown", "the heading is across the motion: it is unknown"
+        )
         yaw = np.where(sideways, np.nan, yaw)
     states.numbers["yaw_rad"] = yaw
     return findings
 
 
 def _upon_others(
-    states: States, step: Steps, actors: Actors, refused: Refused, alias: Mapping[str, str]
-) -> list[Finding]:
+    states: States, step: Steps, actors: Actors, refused: RejectedPositions, alias: Mapping[str, str]
+) -> list[QualityFinding]:
     """Report the actors of whose refused places one is so near to another actor's place that their boxes may overlap."""
     index = {name: i for i, name in enumerate(actors.ids)}
     half = np.hypot(actors.sizes["length_m"], actors.sizes["width_m"]) / 2
-    half = np.where(np.isfinite(half), half, HALF_BOX_M)
+    half = np.where(np.isfinite(half), half, LARGEST_HALF_BOX_M)
     half_of = half[[index[name] for name in states.ids]][states.actor]
     placed = np.flatnonzero(np.isfinite(states.numbers["x_m"]) & np.isfinite(states.numbers["y_m"]))
     placed = placed[np.argsort(states.t_ns[placed], kind="stable")]
@@ -126,7 +138,7 @@ def _upon_others(
         message = (
             f"a place of {name} that is not believed lies upon {listed(others)}: whether they met there is unknown"
         )
-        findings.append(Finding("jumps_onto", "warning", message, len(times), int(times[0]), name))
+        findings.append(QualityFinding("jumps_onto", "warning", message, len(times), int(times[0]), name))
     return findings
 
 
@@ -150,7 +162,7 @@ def _frozen(states: States, step: Steps) -> Mask:
 
     def contradict(way: Numbers, told: Numbers, either: Numbers) -> Mask:
         fastest = np.maximum(np.hypot(*way), np.hypot(*told))
-        wrong: Mask = np.hypot(*(way - told)) > FROZEN_M + FROZEN_SHARE * fastest + either
+        wrong: Mask = np.hypot(*(way - told)) > MISMATCH_M + MISMATCH_SHARE * fastest + either
         return wrong
 
     alone = contradict(went, led, slack)
@@ -159,7 +171,7 @@ def _frozen(states: States, step: Steps) -> Mask:
     ends = np.ones(n + 1, np.bool_)  # beyond a track's end nothing vouches for its last sample
     ends[1:-1] = alone | ~usable
     both = ends[:-1] & ends[1:] & (np.r_[alone, False] | np.r_[False, alone])
-    moved = contradict(went, led, slack + SHIFT_M - FROZEN_M)
+    moved = contradict(went, led, slack + STEP_MISMATCH_M - MISMATCH_M)
     beside = both | np.r_[moved, False] | np.r_[False, moved]
     went, led, slack = (np.where(alone, 0.0, values) for values in (went, led, slack))
     first, last = _around(states, np.cumsum(np.r_[False, ~usable]), np.arange(n))
@@ -182,7 +194,7 @@ def _drifts(rest: Numbers, step: Steps) -> bool:
     stride = max(1, round(WINDOW_S * 1e9 / step.period_ns)) if step.period_ns else 1
     way = np.cumsum(rest, axis=1)[:, ::stride]
     # a window of a second lies in three strides at the most: one of them has a third of what it has
-    return bool((np.hypot(*np.diff(way, axis=1)) > FROZEN_M / 3).any())
+    return bool((np.hypot(*np.diff(way, axis=1)) > MISMATCH_M / 3).any())
 
 
 def _around(
@@ -203,7 +215,7 @@ def _leads(states: States, rows: Mask) -> Mask:
     way = np.hypot(numbers["x_m"][last] - numbers["x_m"][first], numbers["y_m"][last] - numbers["y_m"][first])
     span = (states.t_ns[last] - states.t_ns[first]) * 1e-9
     kept = rows.copy()
-    kept[found] = way > np.maximum(LED_M, LED_SHARE * speed * span)
+    kept[found] = way > np.maximum(DIRECTION_LEAST_M, DIRECTION_LEAST_SHARE * speed * span)
     return kept
 
 
@@ -217,7 +229,7 @@ def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
     """
     n, numbers = len(states), states.numbers
     kinds = dict(zip(actors.ids, actors.classes, strict=True))
-    long_kind = np.array([kinds.get(name) in LONG_KINDS for name in states.ids], np.bool_)[states.actor]
+    long_kind = np.array([kinds.get(name) in DIRECTED_CLASSES for name in states.ids], np.bool_)[states.actor]
     yaw, speed = numbers["yaw_rad"], np.hypot(numbers["vx_mps"], numbers["vy_mps"])
     with np.errstate(invalid="ignore"):
         off = np.abs(wrapped(yaw - np.arctan2(numbers["vy_mps"], numbers["vx_mps"])))
@@ -235,17 +247,17 @@ def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
     # the last row before, and the first one after, at which its vehicle goes forwards; and how often headings have turned until a row
     went = np.maximum.accumulate(np.where(forwards, row, -1))
     goes = np.minimum.accumulate(np.where(forwards, row, n)[::-1])[::-1]
-    turns_until = np.r_[0, np.cumsum(turn > TURN_RAD)]
+    turns_until = np.r_[0, np.cumsum(turn > HEADING_FLIP_RAD)]
 
     def shown(end: int, forth: int) -> bool:
         return bool(
             0 <= forth < n
             and states.actor[forth] == states.actor[end]
             and turns_until[forth] == turns_until[end]
-            and speed[end] < STARTING_MPS
+            and speed[end] < REVERSE_START_MPS
         )
 
-    for rows, out, most in ((backwards, turned, TURN_RAD), (across, sideways, SPIN_RAD)):
+    for rows, out, most in ((backwards, turned, HEADING_FLIP_RAD), (across, sideways, SPIN_RAD)):
         turns = turn > most
         for first, last in _runs(states, rows):
             seam = (first > 0 and step.same[first - 1]), (last < n - 1 and step.same[last])

@@ -1,4 +1,4 @@
-"""Stretches of a track in which the recorded velocity leads elsewhere than the positions, too little or too briefly to doubt both.
+"""Finds short stretches of a track in which the recorded velocity contradicts the positions.
 
 `contradiction` refuses places and velocities that contradict each other by far, `motion` replaces the velocities of a whole track.
 Here both are a track, and which of them is right is not known: the place is believed as it is, the velocity is unknown.
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.velocity import FEWEST, Runs, noise
+from drivelint.drive.velocity import LEAST_NOISE_SAMPLES, Tracklets, position_noise
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,19 +22,19 @@ if TYPE_CHECKING:
 
 STRETCH_S: Final = 0.5
 """Over so long a time the mean velocity is compared with the way, over two steps at least."""
-WRONG_MPS: Final = 0.8
-WRONG_SHARE: Final = 0.05
+MISMATCH_MPS: Final = 0.8
+MISMATCH_SHARE: Final = 0.05
 """A turning vehicle's rear axle is 0.7 m/s off its middle (1.4 m, 0.5 rad/s), a speedometer 5 %, a filter that is late 0.8 m/s."""
 SIGMAS: Final = 4.0
 """And so many standard deviations of the positions' noise."""
-ALONE_SHARE: Final = 0.75
+SINGLE_STEP_SHARE: Final = 0.75
 """A single step that makes up more of the difference is a step of the positions, of which the velocity knows nothing."""
-MOST_SHARE: Final = 0.5
+WHOLE_TRACK_SHARE: Final = 0.5
 """Of a track that contradicts its velocities for longer than this not a stretch is wrong, but what is recorded (see `checks`)."""
 
 
-def contrary(states: States, step: Steps) -> Mask:
-    """Return the samples (n, in order, velocities complete) of stretches whose velocities lead elsewhere than their positions."""
+def mismatched_samples(states: States, step: Steps) -> Mask:
+    """Return the samples (n, in order, velocities complete) of stretches whose velocities contradict their positions."""
     n, numbers = len(states), states.numbers
     found = np.zeros(n, np.bool_)
     k = max(2, round(STRETCH_S * 1e9 / step.period_ns)) if step.period_ns else n
@@ -57,14 +57,14 @@ def contrary(states: States, step: Steps) -> Mask:
         alone = np.hypot(alone, np.where(usable, np.diff(numbers[place]) - told, 0.0))
         # what the velocity did between two samples is not known
         slack = np.hypot(slack, np.where(usable, 0.5 * np.abs(np.diff(v)) * step.dt_s, 0.0))
-    allowed = WRONG_MPS + WRONG_SHARE * fastest + _most(slack, k) / span
+    allowed = MISMATCH_MPS + MISMATCH_SHARE * fastest + _most(slack, k) / span
     with np.errstate(invalid="ignore"):
-        wrong = whole & (off > allowed) & (_most(alone, k) < ALONE_SHARE * off * span)
+        wrong = whole & (off > allowed) & (_most(alone, k) < SINGLE_STEP_SHARE * off * span)
     if not wrong.any():
         return found
-    runs = Runs.of(states.t_ns, numbers["x_m"], numbers["y_m"], step)
-    sigma = np.maximum(*(noise(numbers[name], runs, states.actor) for name in ("x_m", "y_m")))
-    sigma[np.bincount(states.actor, minlength=len(sigma)) < FEWEST] = np.inf
+    runs = Tracklets.of(states.t_ns, numbers["x_m"], numbers["y_m"], step)
+    sigma = np.maximum(*(position_noise(numbers[name], runs, states.actor) for name in ("x_m", "y_m")))
+    sigma[np.bincount(states.actor, minlength=len(sigma)) < LEAST_NOISE_SAMPLES] = np.inf
     with np.errstate(invalid="ignore"):
         wrong &= off > allowed + SIGMAS * np.sqrt(2.0) * sigma[states.actor[:-k]] / span
     rows = np.flatnonzero(wrong)
@@ -72,7 +72,7 @@ def contrary(states: States, step: Steps) -> Mask:
     np.add.at(edges, rows, 1)
     np.add.at(edges, rows + k + 1, -1)
     found = np.cumsum(edges[:-1]) > 0
-    many = np.bincount(states.actor[found], minlength=len(states.ids)) > MOST_SHARE * np.bincount(
+    many = np.bincount(states.actor[found], minlength=len(states.ids)) > WHOLE_TRACK_SHARE * np.bincount(
         states.actor, minlength=len(states.ids)
     )
     return found & ~many[states.actor]

@@ -1,11 +1,11 @@
-"""The events that an ego may declare and that rules ask for: their names, what their values are, and what each says."""
+"""Lists the events that an ego may declare, with their values and meanings."""
 
 from __future__ import annotations
 
 from typing import Final, NamedTuple
 
 
-class Event(NamedTuple):
+class DeclaredEvent(NamedTuple):
     """What the value of an event is, and what the event says."""
 
     value: str
@@ -22,15 +22,15 @@ MODES: Final = {
 }
 """Events that are on until they are declared off."""
 EVENTS: Final = {
-    **{mode: Event("on, off", says) for mode, says in MODES.items()},
-    "mirror_check": Event("left, right; none: both sides", "a look into the mirrors"),
-    "blind_spot_check": Event("left, right; none: both sides", "a look over the shoulder"),
-    "overtake_go": Event("none", "the decision to overtake"),
-    "overtake_no_go": Event("none", "the decision not to overtake"),
-    "confidence": Event("a number, 0 to 1", "how sure it is that the overtake is safe"),
-    "chosen_speed": Event(
+    **{mode: DeclaredEvent("on, off", says) for mode, says in MODES.items()},
+    "mirror_check": DeclaredEvent("left, right; none: both sides", "a look into the mirrors"),
+    "blind_spot_check": DeclaredEvent("left, right; none: both sides", "a look over the shoulder"),
+    "overtake_go": DeclaredEvent("none", "the decision to overtake"),
+    "overtake_no_go": DeclaredEvent("none", "the decision not to overtake"),
+    "confidence": DeclaredEvent("a number, 0 to 1", "how sure it is that the overtake is safe"),
+    "chosen_speed": DeclaredEvent(
         "m/s; reason, such as `12.5; wet road`", "the speed that it means not to exceed, from now on"
     ),
-    "hazard": Event("an actor_id", "somebody who may become a danger"),
+    "hazard": DeclaredEvent("an actor_id", "somebody who may become a danger"),
 }
 """Event -> what it says. Other events are kept and read by no rule."""

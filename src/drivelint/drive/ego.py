@@ -1,11 +1,11 @@
-"""Who is judged: the actor the user names, else the one the log or the mapping names."""
+"""Chooses the ego: the actor that the user names, else the one that the log or the mapping names."""
 
 from __future__ import annotations
 
 from math import isnan
 from typing import TYPE_CHECKING, Final
 
-from drivelint.drive.trace import MOTOR_VEHICLES, SIZES, Finding
+from drivelint.drive.trace import MOTOR_VEHICLES, SIZE_COLUMNS, QualityFinding
 from drivelint.errors import TraceError
 from drivelint.phrases import listed
 
@@ -15,22 +15,22 @@ if TYPE_CHECKING:
     from drivelint.drive.actors import Actors
     from drivelint.drive.trace import EgoSize
 
-EVERY = "all"
-DIFFERS_M: Final = 0.05
+ALL_EGOS = "all"
+SIZE_DIFFERENCE_M: Final = 0.05
 """Sizes that differ by more are two sizes."""
 
 
 def choose(
     path: Path, actors: Actors, asked: str | None, named: list[str], *, needed: bool = True
-) -> tuple[list[str], list[Finding]]:
-    """Return the ids of the egos and what is to be said about the choice.
+) -> tuple[list[str], list[QualityFinding]]:
+    """Return the ids of the egos and the findings about the choice.
 
     `asked` is the user's id or `all` (every motor vehicle, except in a log whose actor is itself called `all`);
     `named` are the log's or mapping's. Where nobody names one and none is `needed`, there is none and a finding says so.
     Errors: `TraceError` when there is no ego though needed, or no such actor.
     """
     ids = set(actors.ids)
-    if asked == EVERY and EVERY not in ids:
+    if asked == ALL_EGOS and ALL_EGOS not in ids:
         return _every(path, actors)
     if asked is not None:
         if asked not in ids:
@@ -42,31 +42,31 @@ def choose(
             f"the log's ego {listed(named)} has no states" if named else "the log does not say which actor is the ego"
         )
         if not needed:
-            return [], [Finding("no_ego", "warning", f"no ego: {absent}: nothing is judged without --ego ID")]
+            return [], [QualityFinding("no_ego", "warning", f"no ego: {absent}: nothing is judged without --ego ID")]
         raise TraceError(f"{path}: no ego: {absent}: use --ego ID (ids: {listed(actors.ids)})")
     if len(egos) > 1:
         message = f"the log names {len(egos)} egos ({listed(egos)}): each is judged; choose one with --ego ID"
-        return egos, [Finding("ego_count", "warning", message, len(egos))]
+        return egos, [QualityFinding("ego_count", "warning", message, len(egos))]
     return egos, []
 
 
-def sized(actors: Actors, egos: list[str], size: EgoSize | None) -> list[Finding]:
-    """Give egos without a size the one that the user says, in place. What the log itself says counts more, and is told."""
+def fill_sizes(actors: Actors, egos: list[str], size: EgoSize | None) -> list[QualityFinding]:
+    """Give egos without a size the user's size, in place; where the log has another size, keep it and return a finding."""
     if size is None:
         return []
     findings = []
     for i in (actors.ids.index(name) for name in egos):
         known = actors.sizes["length_m"][i], actors.sizes["width_m"][i]
-        for name, has, given in zip(SIZES, known, size[:2], strict=False):
+        for name, has, given in zip(SIZE_COLUMNS, known, size[:2], strict=False):
             if isnan(has):
                 actors.sizes[name][i] = given
-            elif abs(has - given) > DIFFERS_M:
+            elif abs(has - given) > SIZE_DIFFERENCE_M:
                 message = f"--ego-size gives {actors.ids[i]} a {name.removesuffix('_m')} of {given:g} m, the log {has:g} m, which counts"
-                findings.append(Finding("ego_size", "warning", message, actor_id=actors.ids[i]))
+                findings.append(QualityFinding("ego_size", "warning", message, actor_id=actors.ids[i]))
     return findings
 
 
-def _every(path: Path, actors: Actors) -> tuple[list[str], list[Finding]]:
+def _every(path: Path, actors: Actors) -> tuple[list[str], list[QualityFinding]]:
     egos = [i for i, kind in zip(actors.ids, actors.classes, strict=True) if kind in MOTOR_VEHICLES]
     unknown = [i for i, kind in zip(actors.ids, actors.classes, strict=True) if kind is None]
     if not egos:
@@ -75,4 +75,4 @@ def _every(path: Path, actors: Actors) -> tuple[list[str], list[Finding]]:
     if not unknown:
         return egos, []
     message = f"actors of unknown class are not taken as egos ({listed(unknown)})"
-    return egos, [Finding("ego_count", "warning", message, len(unknown))]
+    return egos, [QualityFinding("ego_count", "warning", message, len(unknown))]

@@ -1,4 +1,4 @@
-"""From a reader's recording to the tables of the contract: ordered, completed, checked, egos chosen."""
+"""Turns a reader's recording into the tables of `schemas/model.sql`: sorted, completed, checked, with egos."""
 
 from __future__ import annotations
 
@@ -10,13 +10,21 @@ import pyarrow as pa
 
 from drivelint.drive import actors as actor_rows
 from drivelint.drive import checks, contradiction, ego, jumps
-from drivelint.drive.align import aligned
-from drivelint.drive.headlights import with_lamps
-from drivelint.drive.motion import complete_motion
-from drivelint.drive.order import in_order, steps, without_duplicates, wrapped
-from drivelint.drive.removed import without_removed
-from drivelint.drive.restart import without_restarts
-from drivelint.drive.trace import BRAKE_LIGHTS, EPOCH_NS, INDICATORS, NUMBERS, SIZES, Finding, Trace
+from drivelint.drive.align import align_to_ego
+from drivelint.drive.headlights import with_headlight_events
+from drivelint.drive.motion import complete_velocities
+from drivelint.drive.order import sorted_states, steps, without_duplicates, wrapped
+from drivelint.drive.removed import without_removed_actors
+from drivelint.drive.restart import unknown_at_restarts
+from drivelint.drive.trace import (
+    BRAKE_LIGHTS,
+    INDICATORS,
+    LEAST_UTC_NS,
+    SIZE_COLUMNS,
+    STATE_COLUMNS,
+    QualityFinding,
+    Trace,
+)
 from drivelint.errors import TraceError
 from drivelint.phrases import listed
 
@@ -30,16 +38,16 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Identity, IngestOptions, Recording, States
 
 _S, _F, _I, _B = pa.string(), pa.float64(), pa.int64(), pa.bool_()
-SCHEMAS: dict[str, dict[str, pa.DataType]] = {
+TRACE_SCHEMAS: dict[str, dict[str, pa.DataType]] = {
     "data_log": {
         "drive_id": _S, "file_name": _S, "sha256": _S, "format": _S, "environment_id": _S,
         "t_start_ns": _I, "t_end_ns": _I, "utc_start_ns": _I, "n_states": _I, "sensor_range_m": _F,
         "map_offset_x_m": _F, "map_offset_y_m": _F,
         "has_indicator": _B, "has_brake_light": _B, "has_acceleration": _B, "in_sight": _B,
     },
-    "actor": {"drive_id": _S, "actor_id": _S, "actor_class": _S, **dict.fromkeys(SIZES, _F), "is_ego": _B},
+    "actor": {"drive_id": _S, "actor_id": _S, "actor_class": _S, **dict.fromkeys(SIZE_COLUMNS, _F), "is_ego": _B},
     "actor_state": {
-        "drive_id": _S, "actor_id": _S, "t_ns": _I, **dict.fromkeys(NUMBERS, _F), "indicator": _S, "brake_light": _S,
+        "drive_id": _S, "actor_id": _S, "t_ns": _I, **dict.fromkeys(STATE_COLUMNS, _F), "indicator": _S, "brake_light": _S,
     },
     "signal_state": {"drive_id": _S, "signal_id": _S, "t_ns": _I, "state": _S},
     "declared_event": {"drive_id": _S, "actor_id": _S, "t_ns": _I, "event": _S, "value": _S},
@@ -52,33 +60,33 @@ SCHEMAS: dict[str, dict[str, pa.DataType]] = {
 _KEYS = {"signal_state": ("signal_id", "t_ns", "state"), "declared_event": ("t_ns", "actor_id", "event", "value")}
 
 
-def finish(path: Path, identity: Identity, recording: Recording, options: IngestOptions) -> Trace:
+def finish_trace(path: Path, identity: Identity, recording: Recording, options: IngestOptions) -> Trace:
     """Order, complete and check what a reader found. Errors: `TraceError` when nothing can be judged."""
     if not len(recording.states):
         raise TraceError(f"{path}: no actor states in this log: nothing can be judged")
-    states, restarts = without_restarts(recording.states)
-    states, findings = without_duplicates(in_order(states))
+    states, restarts = unknown_at_restarts(recording.states)
+    states, findings = without_duplicates(sorted_states(states))
     assumed = any(f.check_id == "assumed_motion" for f in recording.findings)
     named = recording.ego_ids if options.ego is None else [options.ego]
     step = steps(states)
-    gone: list[Finding] = []
+    gone: list[QualityFinding] = []
     if not assumed:
-        states, gone = without_removed(states, step, whole=named)
+        states, gone = without_removed_actors(states, step, whole=named)
         step = steps(states) if gone else step
-    parted = jumps.part(states, step, whole=named) if not assumed else jumps.UNPARTED
+    parted = jumps.split_tracks(states, step, whole=named) if not assumed else jumps.NO_SPLIT
     if parted.alias:
-        states = in_order(states)
+        states = sorted_states(states)
         step = steps(states)
     _wrap_heading(states)
-    motion = complete_motion(states, step, most=_replaceable(recording))
+    motion = complete_velocities(states, step, most=_replaceable(recording))
     actors, varying = _actors(recording, states, parted.alias)
     egos, chosen = ego.choose(path, actors, options.ego, recording.ego_ids, needed=options.need_ego)
-    chosen += ego.sized(actors, egos, options.ego_size)
+    chosen += ego.fill_sizes(actors, egos, options.ego_size)
     derived = any(f.check_id == "velocity_derived" and f.n == len(states) for f in [*recording.findings, *motion])
     checked = checks.run(states, step, actors, derived=derived)
     _refuse_wrong_units(path, recording, checked)
     unclear = contradiction.resolve(states, step, actors, derived=derived, parted=parted) if not assumed else []
-    states, moved = aligned(states, egos)
+    states, moved = align_to_ego(states, egos)
     is_ego = np.isin(np.arange(len(states.ids)), [i for i, name in enumerate(states.ids) if name in egos])[states.actor]
     findings = [
         *recording.findings,
@@ -100,7 +108,7 @@ def finish(path: Path, identity: Identity, recording: Recording, options: Ingest
         "actor": _actor_table(drive, actors, egos),
         "actor_state": _state_table(drive, states),
         "signal_state": _extra(drive, "signal_state", recording.signals),
-        "declared_event": _extra(drive, "declared_event", with_lamps(recording.events, states)),
+        "declared_event": _extra(drive, "declared_event", with_headlight_events(recording.events, states)),
         "drive_condition": _conditions(drive, recording.conditions, dict(options.conditions)),
         "quality": _quality(drive, findings),
     }
@@ -116,13 +124,13 @@ def finish(path: Path, identity: Identity, recording: Recording, options: Ingest
     )
 
 
-def _actors(recording: Recording, states: States, alias: Mapping[str, str]) -> tuple[Actors, list[Finding]]:
+def _actors(recording: Recording, states: States, alias: Mapping[str, str]) -> tuple[Actors, list[QualityFinding]]:
     if recording.actors is None:
         return actor_rows.from_states(states)
     return actor_rows.from_table(recording.actors, states, alias), []
 
 
-def with_finding(trace: Trace, finding: Finding) -> Trace:
+def with_quality_finding(trace: Trace, finding: QualityFinding) -> Trace:
     """Return the trace with one more row in `quality`."""
     rows = pa.concat_tables([trace.tables["quality"], _quality(trace.drive_id, [finding])])
     ordered = rows.sort_by([(name, "ascending") for name in ("check_id", "actor_id", "t_first_ns", "message")])
@@ -144,7 +152,7 @@ def _wrap_heading(states: States) -> None:
         states.numbers["yaw_rad"] = wrapped(states.numbers["yaw_rad"])
 
 
-def _refuse_wrong_units(path: Path, recording: Recording, findings: list[Finding]) -> None:
+def _refuse_wrong_units(path: Path, recording: Recording, findings: list[QualityFinding]) -> None:
     """Refuse a log whose motion and headings or velocities are of two units or frames: any verdict on it would be chance."""
     remedy = (
         "correct the mapping's units or frame"
@@ -156,7 +164,7 @@ def _refuse_wrong_units(path: Path, recording: Recording, findings: list[Finding
             raise TraceError(f"{path}: {finding.message}: {remedy}")
 
 
-def _lights(states: States, egos: list[str], is_ego: NDArray[np.bool_]) -> list[Finding]:
+def _lights(states: States, egos: list[str], is_ego: NDArray[np.bool_]) -> list[QualityFinding]:
     findings = []
     for column, what in (("indicator", "indicator"), ("brake_light", "brake light")):
         codes = states.codes.get(column)
@@ -168,7 +176,7 @@ def _lights(states: States, egos: list[str], is_ego: NDArray[np.bool_]) -> list[
             f"the {what} of the ego ({listed(egos)}) is unknown in {n} of {of} states: rules that need it are unknown"
         )
         only = egos[0] if len(egos) == 1 else None
-        findings.append(Finding(f"no_{column}", "info", message, n, int(states.t_ns[unknown].min()), only))
+        findings.append(QualityFinding(f"no_{column}", "info", message, n, int(states.t_ns[unknown].min()), only))
     return findings
 
 
@@ -186,7 +194,7 @@ def _data_log(
         "environment_id": None,
         "t_start_ns": start,
         "t_end_ns": int(states.t_ns.max()),
-        "utc_start_ns": start if start >= EPOCH_NS else recording.utc_start_ns,
+        "utc_start_ns": start if start >= LEAST_UTC_NS else recording.utc_start_ns,
         "n_states": len(states),
         "sensor_range_m": recording.sensor_range_m if options.sensor_range_m is None else options.sensor_range_m,
         "map_offset_x_m": offset[0],
@@ -204,7 +212,7 @@ def _actor_table(drive: str, actors: Actors, egos: list[str]) -> pa.Table:
         "drive_id": [drive] * len(actors.ids),
         "actor_id": actors.ids,
         "actor_class": actors.classes,
-        **{name: _nullable(actors.sizes[name]) for name in SIZES},
+        **{name: _nullable(actors.sizes[name]) for name in SIZE_COLUMNS},
         "is_ego": [name in egos for name in actors.ids],
     }
     return _table("actor", columns)
@@ -216,7 +224,7 @@ def _state_table(drive: str, states: States) -> pa.Table:
         "drive_id": pa.repeat(pa.scalar(drive, _S), n),
         "actor_id": _words(states.actor, tuple(states.ids)),
         "t_ns": states.t_ns,
-        **{name: _nullable(states.numbers[name]) for name in NUMBERS},
+        **{name: _nullable(states.numbers[name]) for name in STATE_COLUMNS},
         "indicator": _words(states.codes.get("indicator", np.full(n, -1, np.int8)), INDICATORS),
         "brake_light": _words(states.codes.get("brake_light", np.full(n, -1, np.int8)), BRAKE_LIGHTS),
     }
@@ -226,7 +234,7 @@ def _state_table(drive: str, states: States) -> pa.Table:
 def _extra(drive: str, name: str, table: pa.Table | None) -> pa.Table:
     """Bring a reader's signal states or events into the contract's columns and order, equal rows once."""
     if table is None:
-        return _table(name, {column: [] for column in SCHEMAS[name]})
+        return _table(name, {column: [] for column in TRACE_SCHEMAS[name]})
     keys = _KEYS[name]
     rows = (
         table.select(keys)
@@ -251,7 +259,7 @@ def _conditions(drive: str, trace: Mapping[str, str], env: Mapping[str, str]) ->
     return _table("drive_condition", columns)
 
 
-def _quality(drive: str, findings: list[Finding]) -> pa.Table:
+def _quality(drive: str, findings: list[QualityFinding]) -> pa.Table:
     # a converted log brings findings that may be found again
     rows = sorted(dict.fromkeys(findings), key=lambda f: (f.check_id, f.actor_id or "", f.t_first_ns or 0, f.message))
     columns: dict[str, list[object]] = {"drive_id": [drive] * len(rows)}
@@ -261,8 +269,8 @@ def _quality(drive: str, findings: list[Finding]) -> pa.Table:
 
 
 def _table(name: str, columns: Mapping[str, object]) -> pa.Table:
-    schema = pa.schema([pa.field(column, kind) for column, kind in SCHEMAS[name].items()])
-    return pa.table({column: columns[column] for column in SCHEMAS[name]}, schema=schema)
+    schema = pa.schema([pa.field(column, kind) for column, kind in TRACE_SCHEMAS[name].items()])
+    return pa.table({column: columns[column] for column in TRACE_SCHEMAS[name]}, schema=schema)
 
 
 def _nullable(values: NDArray[np.float64]) -> pa.Array:

@@ -1,4 +1,4 @@
-"""A recorded state of the headlights as declared events: the one way in which rules hear of a mode of the vehicle."""
+"""Turns the recorded state of the headlights into declared events, which rules can read."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
 HEADLIGHTS: Final = "headlights"
 """Name of the code in `States.codes`, which indexes `OFF_ON`, and of the event."""
-OFF_ON: Final = ("off", "on")
+HEADLIGHT_STATES: Final = ("off", "on")
 
 
-def with_lamps(events: pa.Table | None, states: States) -> pa.Table | None:
-    """Return the log's events with a row for each change of an actor's headlights; a value of NULL: not known from then on.
+def with_headlight_events(events: pa.Table | None, states: States) -> pa.Table | None:
+    """Return the log's events with one row for each change of an actor's headlights; NULL means unknown from then on.
 
     `states` in order of actor and time. An actor that declares its headlights itself is left as it is.
     """
@@ -41,7 +41,7 @@ def with_lamps(events: pa.Table | None, states: States) -> pa.Table | None:
             "t_ns": pa.array(states.t_ns[rows], pa.int64()),
             "actor_id": pa.array([states.ids[i] for i in states.actor[rows]], pa.string()),
             "event": pa.array([HEADLIGHTS] * len(rows), pa.string()),
-            "value": pa.array([None if code < 0 else OFF_ON[code] for code in codes[rows]], pa.string()),
+            "value": pa.array([None if code < 0 else HEADLIGHT_STATES[code] for code in codes[rows]], pa.string()),
         }
     )
     return lamps if events is None else pa.concat_tables([events.select(lamps.column_names), lamps])

@@ -1,4 +1,4 @@
-"""Jumps of a position: the states around one are unknown, and a track that goes on elsewhere after one is another actor's."""
+"""Makes states around a position jump unknown; a track that continues elsewhere becomes another actor."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.off_track import off_track
-from drivelint.drive.trace import Finding
+from drivelint.drive.off_track import outlier_samples
+from drivelint.drive.trace import QualityFinding
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -27,21 +27,21 @@ JUMP_M: Final = 3.0
 JUMP_MPS2: Final = 10.0
 """A step is a jump if it is longer than both its neighbours foretell by 3 m + 10 m/s2 dt2: no tyre does that, and a full stop
 within one sample of 0.1 s, as simulators have it, only from more than 30 m/s."""
-SHORT_S: Final = 2.0
+OUTLIER_S: Final = 2.0
 """A piece of a track between two jumps that is shorter than this is an outlier; a longer one is somebody's track."""
-CORRECTED_M: Final = 10.0
-CORRECTED_LEFT_M: Final = 1.5
-CORRECTED_MPS: Final = 3.0
+LARGEST_CORRECTION_M: Final = 10.0
+LARGEST_SIDE_CORRECTION_M: Final = 1.5
+CORRECTION_SPEED_CHANGE_MPS: Final = 3.0
 """A place is put right by no more than this along the lane, and to its side, where no other lane is; the velocity goes on."""
 MOVING_MPS: Final = 1.0
 """Below this the direction of motion is noise, and the heading is what there is."""
-VELOCITY: Final = ("vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
-STATE: Final = ("x_m", "y_m", "z_m", "yaw_rad", *VELOCITY)
+MOTION_COLUMNS: Final = ("vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
+STATE_COLUMNS: Final = ("x_m", "y_m", "z_m", "yaw_rad", *MOTION_COLUMNS)
 
 
 @dataclass(frozen=True)
-class Refused:
-    """Places that the log gives and that are not believed: parallel arrays, `actor_ids` those of the finished drive."""
+class RejectedPositions:
+    """Positions from the log that are rejected, as parallel arrays; `actor_ids` are those of the finished drive."""
 
     actor_ids: NDArray[np.str_]
     t_ns: NDArray[np.int64]
@@ -49,62 +49,62 @@ class Refused:
     y_m: Numbers
 
     @classmethod
-    def of(cls, states: States, rows: Mask) -> Refused:
+    def of(cls, states: States, rows: Mask) -> RejectedPositions:
         """Take the places of these rows."""
         names = np.array(states.ids, dtype=np.str_)[states.actor[rows]]
         return cls(names, states.t_ns[rows], states.numbers["x_m"][rows], states.numbers["y_m"][rows])
 
-    def with_more(self, more: Refused) -> Refused:
+    def with_more(self, more: RejectedPositions) -> RejectedPositions:
         """Return these places and those."""
         pairs = ((getattr(self, name), getattr(more, name)) for name in ("actor_ids", "t_ns", "x_m", "y_m"))
-        return Refused(*map(np.concatenate, pairs))
+        return RejectedPositions(*map(np.concatenate, pairs))
 
 
 @dataclass(frozen=True)
-class Parted:
+class SplitTracks:
     """`alias`: new actor id -> the id in the log, where a track goes on elsewhere after a jump."""
 
-    findings: list[Finding]
+    findings: list[QualityFinding]
     alias: dict[str, str]
-    refused: Refused | None = None
+    refused: RejectedPositions | None = None
 
 
-UNPARTED: Final = Parted([], {})
+NO_SPLIT: Final = SplitTracks([], {})
 
 
-def part(states: States, step: Steps, *, whole: Collection[str]) -> Parted:
-    """Make what lies at jumps unknown and give what goes on elsewhere an id of its own, in place (states in order).
+def split_tracks(states: States, step: Steps, *, whole: Collection[str]) -> SplitTracks:
+    """Make states at jumps unknown, and give a track that continues elsewhere a new id, in place (states in order).
 
     `whole`: actors that keep their id (the egos that are named).
     """
     if len(states) < 3 or not {"x_m", "y_m"} <= states.numbers.keys():
-        return UNPARTED
+        return NO_SPLIT
     jump = jumps(states, step)
-    findings: list[Finding] = []
+    findings: list[QualityFinding] = []
     alias: dict[str, str] = {}
     unknown, pieces = _around_jumps(states, jump)
     if jump.any():
-        findings = report(states, unknown, "teleport", "the position jumps: they are unknown around it")
+        findings = quality_findings(states, unknown, "teleport", "the position jumps: they are unknown around it")
         alias = _renamed(states, pieces, whole, findings)
-    refused = Refused.of(states, unknown)
-    forget(states, unknown)
-    beside = off_track(states, step)
+    refused = RejectedPositions.of(states, unknown)
+    set_unknown(states, unknown)
+    beside = outlier_samples(states, step)
     if beside.any():
         text = "the position is beside its track, for a sample or by a step that nobody drives: they are unknown there"
-        findings += report(states, beside, "teleport", text)
-        refused = refused.with_more(Refused.of(states, beside))
-        forget(states, beside)
-    return Parted(findings, alias, refused) if findings else UNPARTED
+        findings += quality_findings(states, beside, "teleport", text)
+        refused = refused.with_more(RejectedPositions.of(states, beside))
+        set_unknown(states, beside)
+    return SplitTracks(findings, alias, refused) if findings else NO_SPLIT
 
 
-def forget(states: States, rows: Mask, what: tuple[str, ...] = STATE) -> None:
+def set_unknown(states: States, rows: Mask, what: tuple[str, ...] = STATE_COLUMNS) -> None:
     """Make these numbers of these rows unknown, in place."""
     if rows.any():
         for name in set(what) & states.numbers.keys():
             states.numbers[name] = np.where(rows, np.nan, states.numbers[name])
 
 
-def report(states: States, rows: Mask, check: str, text: str) -> list[Finding]:
+def quality_findings(states: States, rows: Mask, check: str, text: str) -> list[QualityFinding]:
     """Return a finding on these rows; none, where there are none."""
     n = int(rows.sum())
     if not n:
@@ -112,11 +112,11 @@ def report(states: States, rows: Mask, check: str, text: str) -> list[Finding]:
     ids = [states.ids[i] for i in np.unique(states.actor[rows])]
     message = f"{n} of {len(states)} states ({listed(ids)}): {text}"
     only = ids[0] if len(ids) == 1 else None
-    return [Finding(check, "warning", message, n, int(states.t_ns[rows].min()), only)]
+    return [QualityFinding(check, "warning", message, n, int(states.t_ns[rows].min()), only)]
 
 
 def jumps(states: States, step: Steps) -> Mask:
-    """Return per step (n - 1) whether it is a jump: longer than the step before it and the one after it foretell.
+    """Return for each step (n - 1) whether it is a jump: longer than the steps before and after it predict.
 
     At a track's ends, and beside a hole, the only neighbour decides.
     """
@@ -155,7 +155,7 @@ def _around_jumps(states: States, jump: Mask) -> tuple[Mask, NDArray[np.int32]]:
         bounds = [span.start, *cuts.tolist(), span.stop]
         number, last = 0, None
         for first, end in pairwise(bounds):
-            if (states.t_ns[end - 1] - states.t_ns[first]) * 1e-9 < SHORT_S and len(bounds) > 2:
+            if (states.t_ns[end - 1] - states.t_ns[first]) * 1e-9 < OUTLIER_S and len(bounds) > 2:
                 unknown[first:end] = True
                 pieces[first:end] = number
                 continue
@@ -173,7 +173,7 @@ def _goes_on(states: States, last: int, first: int) -> bool:
     """
     x, y, t_s = states.numbers["x_m"], states.numbers["y_m"], states.t_ns * 1e-9
     gap = t_s[first] - t_s[last]
-    if gap > 2 * SHORT_S:
+    if gap > 2 * OUTLIER_S:
         return False
     before, after = (np.array([x[i] - x[i - 1], y[i] - y[i - 1]]) / (t_s[i] - t_s[i - 1]) for i in (last, first + 1))
     way = np.array([x[first] - x[last], y[first] - y[last]])
@@ -181,14 +181,14 @@ def _goes_on(states: States, last: int, first: int) -> bool:
     if np.hypot(*way) <= JUMP_M + fastest * gap + JUMP_MPS2 * gap**2 / 2:
         return True
     speed = float(np.hypot(*before))
-    if not speed > MOVING_MPS or not np.hypot(*(after - before)) <= JUMP_MPS2 * gap + CORRECTED_MPS:
+    if not speed > MOVING_MPS or not np.hypot(*(after - before)) <= JUMP_MPS2 * gap + CORRECTION_SPEED_CHANGE_MPS:
         return False
     ahead, left = before / speed @ way - speed * gap, (before[0] * way[1] - before[1] * way[0]) / speed
-    return bool(abs(ahead) <= CORRECTED_M and abs(left) <= CORRECTED_LEFT_M)
+    return bool(abs(ahead) <= LARGEST_CORRECTION_M and abs(left) <= LARGEST_SIDE_CORRECTION_M)
 
 
 def _renamed(
-    states: States, pieces: NDArray[np.int32], whole: Collection[str], findings: list[Finding]
+    states: States, pieces: NDArray[np.int32], whole: Collection[str], findings: list[QualityFinding]
 ) -> dict[str, str]:
     """Give each later piece of a track that jumped an id of its own, in place; return new id -> old id."""
     alias: dict[str, str] = {}
@@ -209,6 +209,6 @@ def _renamed(
         message = (
             f"the track goes on elsewhere after a jump: from there on it is another actor's ({listed(sorted(alias))})"
         )
-        findings.append(Finding("track_parted", "warning", message, len(alias), actor_id=None))
+        findings.append(QualityFinding("track_parted", "warning", message, len(alias), actor_id=None))
     states.ids, states.actor = ids, actor
     return alias

@@ -1,4 +1,4 @@
-"""Velocities that the log does not have, or that are not what its positions do: derived from these, never without saying so."""
+"""Derives velocities from positions where the log has none or wrong ones, and reports it."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.trace import Finding
-from drivelint.drive.velocity import KNOWN_MPS, MOVED_M, derived
+from drivelint.drive.trace import QualityFinding
+from drivelint.drive.velocity import KNOWN_ERROR_MPS, MOVED_M, derive_velocities
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -16,24 +16,24 @@ if TYPE_CHECKING:
     from drivelint.drive.order import Steps
     from drivelint.drive.trace import States
 
-WRONG_MPS = 1.0
-WRONG_SHARE = 0.15
+MISMATCH_MPS = 1.0
+MISMATCH_SHARE = 0.15
 """A velocity is not the motion if over a second it leads more than this elsewhere (see `checks.VELOCITY_MISMATCH_MPS`)."""
-WRONG_SECOND_NS = 1_000_000_000
-WRONG_WINDOWS = 20
+MISMATCH_WINDOW_NS = 1_000_000_000
+LEAST_MISMATCHES = 20
 """Over a second the trembling of positions averages out, which step by step is worse than any velocity: so many must be wrong."""
 
 
-def complete_motion(states: States, step: Steps, *, most: float = 1.0) -> list[Finding]:
+def complete_velocities(states: States, step: Steps, *, most: float = 1.0) -> list[QualityFinding]:
     """Fill velocities that are absent, zero although the actor moves, or of another motion than its positions'.
 
     `most`: the share of the motion up to which it may be of another; beyond that all velocities stay. Accelerations that were
     never measured are dropped. `states` in order, changed in place: every column of `NUMBERS` exists afterwards.
     """
-    from drivelint.drive.trace import NUMBERS
+    from drivelint.drive.trace import STATE_COLUMNS
 
     n = len(states)
-    for name in NUMBERS:
+    for name in STATE_COLUMNS:
         states.numbers.setdefault(name, np.full(n, np.nan))
     if n == 0:
         return []
@@ -43,7 +43,7 @@ def complete_motion(states: States, step: Steps, *, most: float = 1.0) -> list[F
     return findings
 
 
-def _velocity(states: States, step: Steps, starts: NDArray[np.intp], most: float) -> list[Finding]:
+def _velocity(states: States, step: Steps, starts: NDArray[np.intp], most: float) -> list[QualityFinding]:
     numbers = states.numbers
     vx, vy = numbers["vx_mps"], numbers["vy_mps"]
     absent = np.logical_and.reduceat(np.isnan(vx) & np.isnan(vy), starts)
@@ -67,13 +67,13 @@ def _velocity(states: States, step: Steps, starts: NDArray[np.intp], most: float
             continue
         ids = [states.ids[i] for i in states.actor[starts[which]]]
         rows = _rows_of(which, starts, len(states))
-        motion = derived(states.t_ns, states.actor, numbers["x_m"], numbers["y_m"], step)
+        motion = derive_velocities(states.t_ns, states.actor, numbers["x_m"], numbers["y_m"], step)
         numbers["vx_mps"] = np.where(rows, motion.vx, numbers["vx_mps"])
         numbers["vy_mps"] = np.where(rows, motion.vy, numbers["vy_mps"])
         message = f"{why} ({listed(ids)}): velocity is derived from positions"
         findings += _filtered(states, rows & motion.filtered)
         findings.append(
-            Finding(
+            QualityFinding(
                 check,
                 "warning",
                 message,
@@ -85,17 +85,17 @@ def _velocity(states: States, step: Steps, starts: NDArray[np.intp], most: float
     return findings
 
 
-def _filtered(states: States, rows: NDArray[np.bool_]) -> list[Finding]:
+def _filtered(states: States, rows: NDArray[np.bool_]) -> list[QualityFinding]:
     """Name each actor whose positions tremble: what a filter hides, and what its error leaves open, is unknown of it."""
     found = []
     for number in np.unique(states.actor[rows]):
         of = rows & (states.actor == number)
         message = (
-            f"the positions of {states.ids[number]} tremble: its velocity is a mean over up to two seconds, known to {KNOWN_MPS:g} m/s, "
-            "its acceleration is not known"
+            f"the positions of {states.ids[number]} tremble: its velocity is a mean over up to two seconds, "
+            f"known to {KNOWN_ERROR_MPS:g} m/s, its acceleration is not known"
         )
         found.append(
-            Finding(
+            QualityFinding(
                 "velocity_filtered", "warning", message, int(of.sum()), int(states.t_ns[of].min()), states.ids[number]
             )
         )
@@ -105,7 +105,7 @@ def _filtered(states: States, rows: NDArray[np.bool_]) -> list[Finding]:
 def _astray(states: States, step: Steps, most: float) -> NDArray[np.bool_]:
     """Say of each actor whether its velocities lead elsewhere than its positions in most of the seconds in which it moves."""
     wrong, n = np.zeros(len(states.ids), np.bool_), len(states)
-    k = max(1, round(WRONG_SECOND_NS / step.period_ns)) if step.period_ns else n
+    k = max(1, round(MISMATCH_WINDOW_NS / step.period_ns)) if step.period_ns else n
     if n <= k or most == 0.0 or not _suspicious(states, k):
         return wrong
     t_ns, numbers = states.t_ns, states.numbers
@@ -122,11 +122,11 @@ def _astray(states: States, step: Steps, most: float) -> NDArray[np.bool_]:
     span = (t_ns[k:] - t_ns[:-k]) * 1e-9
     with np.errstate(invalid="ignore"):
         fastest = np.maximum(moved, told)
-        moving = (unusable[k:] == unusable[:-k]) & (fastest > WRONG_MPS * span)
+        moving = (unusable[k:] == unusable[:-k]) & (fastest > MISMATCH_MPS * span)
         # positions that stand still do not tell how somebody moves: see `contradiction`
-        bad = moving & (moved > WRONG_MPS * span) & (off > WRONG_MPS * span + WRONG_SHARE * fastest)
+        bad = moving & (moved > MISMATCH_MPS * span) & (off > MISMATCH_MPS * span + MISMATCH_SHARE * fastest)
     seconds, astray = (np.bincount(states.actor[:-k][rows], minlength=len(states.ids)) for rows in (moving, bad))
-    wrong = (astray >= WRONG_WINDOWS) & (2 * astray > seconds)
+    wrong = (astray >= LEAST_MISMATCHES) & (2 * astray > seconds)
     return wrong & bool(seconds[wrong].sum() <= most * seconds.sum())
 
 
@@ -144,12 +144,13 @@ def _suspicious(states: States, k: int) -> bool:
         led = (v[first] + 4.0 * v[middle] + v[last]) / 6.0
         off = np.hypot(off, went - led)
     bad, n = (
-        np.bincount(states.actor[first][rows], minlength=len(states.ids)) for rows in (off > WRONG_MPS / 2, off >= 0.0)
+        np.bincount(states.actor[first][rows], minlength=len(states.ids))
+        for rows in (off > MISMATCH_MPS / 2, off >= 0.0)
     )
     return bool((3 * bad > n).any())
 
 
-def _acceleration(states: States, starts: NDArray[np.intp]) -> list[Finding]:
+def _acceleration(states: States, starts: NDArray[np.intp]) -> list[QualityFinding]:
     """Take accelerations that are zero for every actor, although velocities change, for what they are: not recorded."""
     ax, ay = states.numbers["ax_mps2"], states.numbers["ay_mps2"]
     known = ~(np.isnan(ax) & np.isnan(ay))
@@ -165,7 +166,7 @@ def _acceleration(states: States, starts: NDArray[np.intp]) -> list[Finding]:
     states.numbers["ay_mps2"] = np.full(len(states), np.nan)
     n = int(known.sum())
     return [
-        Finding(
+        QualityFinding(
             "acceleration_not_recorded",
             "info",
             f"acceleration is 0 in all {n} states although speeds change: it counts as not recorded",

@@ -1,4 +1,4 @@
-"""Single samples beside their own track, and small steps of a track sideways or along it, that no motion explains.
+"""Finds single samples beside their track, and small steps of a track, that no motion explains.
 
 `contradiction` knows jumps of metres by their length. A back-step of half a metre in one sample is as wrong: from it a velocity of its own
 would be derived. It is told by what the samples around it do without it, and by the noise of the track's positions.
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from drivelint.drive.velocity import FEWEST, MOVED_M, Runs, noise
+from drivelint.drive.velocity import LEAST_NOISE_SAMPLES, MOVED_M, Tracklets, position_noise
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,25 +23,25 @@ if TYPE_CHECKING:
 
 TYRE_MPS2: Final = 12.0
 """Nobody changes speed and back again by more (see `ukhc.contact-signature`); an impact changes it for good."""
-SAME_SHARE: Final = 0.25
+SAME_SPEED_SHARE: Final = 0.25
 """After a step the speed is the one before, but for this share of what the step makes of it."""
 SIGMAS: Final = 6.0
 """So many standard deviations of its positions' noise a sample is off before it counts."""
-LEAST_M: Final = (0.05, 0.25)
+LEAST_STEP_DERIVED_M: Final = (0.05, 0.25)
 """Where velocities are derived, a step counts from 24 m/s2 dt2 on, within these bounds: of less no jolt of 12 m/s2 is made."""
-LEAST_TOLD_M: Final = 0.4
+LEAST_STEP_RECORDED_M: Final = 0.4
 """Where velocities are recorded nothing hangs on the step but the place: less is within what boxes are known to."""
 
 
-def off_track(states: States, step: Steps) -> Mask:
-    """Return the samples (n, in order) whose place is beside their track, or at a step of it.
+def outlier_samples(states: States, step: Steps) -> Mask:
+    """Return the samples (n, in order) that lie beside their track or at a step of it.
 
     A sample is beside it if the two before and the two after it go on without it as somebody can drive, and it is further off their
     way. Where no velocity is recorded, a step that both of its neighbours contradict alike makes its two ends such samples.
     """
     n = len(states)
     nothing = np.zeros(n, np.bool_)
-    if n < FEWEST or not {"x_m", "y_m"} <= states.numbers.keys():
+    if n < LEAST_NOISE_SAMPLES or not {"x_m", "y_m"} <= states.numbers.keys():
         return nothing
     place = np.stack([states.numbers["x_m"], states.numbers["y_m"]])
     told = _told(states, place)
@@ -52,9 +52,11 @@ def off_track(states: States, step: Steps) -> Mask:
         _beside(place, moves, told, exact, any_error).any() or _stepped(moves, told, exact, any_error, nothing).any()
     ):
         return nothing
-    runs = Runs.of(states.t_ns, place[0], place[1], step)
-    sigma = np.maximum(noise(place[0], runs, states.actor), noise(place[1], runs, states.actor))[states.actor]
-    few = np.bincount(states.actor, minlength=len(states.ids))[states.actor] < FEWEST
+    runs = Tracklets.of(states.t_ns, place[0], place[1], step)
+    sigma = np.maximum(position_noise(place[0], runs, states.actor), position_noise(place[1], runs, states.actor))[
+        states.actor
+    ]
+    few = np.bincount(states.actor, minlength=len(states.ids))[states.actor] < LEAST_NOISE_SAMPLES
     sigma = np.where(few, np.inf, sigma)
     beside = _beside(place, moves, told, sigma, sigma)
     return beside | _stepped(moves, told, sigma, sigma, beside)
@@ -98,7 +100,7 @@ def _beside(place: Numbers, moves: _Motion, told: Mask, sigma: Numbers, error: N
         off = (to - without) * dt_to
         size = np.hypot(*off)
         s, e = sigma[2:-2], error[2:-2]
-        least = np.where(told[2:-2], LEAST_TOLD_M, _least_m(dt_to))
+        least = np.where(told[2:-2], LEAST_STEP_RECORDED_M, _least_m(dt_to))
         limit = np.maximum(least, np.maximum(TYRE_MPS2 * dt_to * dt_away / 2, SIGMAS * 1.22 * s))
         # there and back: both neighbours bend the other way
         there = np.sum((to - before) * off, axis=0) * dt_to > size**2 / 2
@@ -129,7 +131,9 @@ def _stepped(moves: _Motion, told: Mask, sigma: Numbers, error: Numbers, beside:
         error_mps = 2.0 * e / np.minimum(dt_before, dt_after)
         goes_on = _can(before, after, (dt_before + dt_after) / 2 + dt_here, error_mps)
         # who is struck has another speed afterwards
-        goes_on &= np.hypot(*(after - before)) <= SAME_SHARE * np.minimum(near, far) / dt_here + SIGMAS * error_mps
+        goes_on &= (
+            np.hypot(*(after - before)) <= SAME_SPEED_SHARE * np.minimum(near, far) / dt_here + SIGMAS * error_mps
+        )
         rows = np.flatnonzero((np.minimum(near, far) > limit) & same & goes_on & whole) + 1
     found[rows] = found[rows + 1] = True
     return found
@@ -142,5 +146,5 @@ def _can(one: Numbers, other: Numbers, time_s: Numbers, error_mps: Numbers) -> M
 
 
 def _least_m(dt_s: Numbers) -> Numbers:
-    least: Numbers = np.clip(2.0 * TYRE_MPS2 * dt_s**2, *LEAST_M)
+    least: Numbers = np.clip(2.0 * TYRE_MPS2 * dt_s**2, *LEAST_STEP_DERIVED_M)
     return least

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drivelint.drive.trace import NUMBERS, Finding, States
+from drivelint.drive.trace import STATE_COLUMNS, QualityFinding, States
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 MAX_GAP_PERIODS = 2.5
 """Samples further apart than this many periods are not continuous (DESIGN.md, Verdicts)."""
-UNKNOWN = np.int8(-1)
+UNKNOWN_CODE = np.int8(-1)
 
 
-def in_order(states: States) -> States:
+def sorted_states(states: States) -> States:
     """Return the states by actor id (as text), then time, equal ones in the log's order; unused ids dropped."""
     used = np.flatnonzero(np.bincount(states.actor, minlength=len(states.ids)))
     ids = sorted(states.ids[i] for i in used)
@@ -42,7 +42,7 @@ def _rising(t_ns: NDArray[np.int64]) -> bool:
     return bool(np.all(t_ns[1:] >= t_ns[:-1]))
 
 
-def without_duplicates(states: States) -> tuple[States, list[Finding]]:
+def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
     """Keep one of several states of an actor at one time (states in order): what they do not agree on is unknown.
 
     An actor that is in two places, or has two headings or velocities, is present and has none.
@@ -53,12 +53,15 @@ def without_duplicates(states: States) -> tuple[States, list[Finding]]:
         return states, []
     of = np.cumsum(~repeated) - 1
     kept = states.take(~repeated)
-    differ = {name: np.bincount(of[repeated & rows], minlength=len(kept)) > 0 for name, rows in changes(states).items()}
-    moved = _any([differ[name] for name in NUMBERS if name in differ])
+    differ = {
+        name: np.bincount(of[repeated & rows], minlength=len(kept)) > 0
+        for name, rows in changed_columns(states).items()
+    }
+    moved = _any([differ[name] for name in STATE_COLUMNS if name in differ])
     for name, values in kept.numbers.items():
-        values[differ[name] | moved if name in NUMBERS else differ[name]] = np.nan
+        values[differ[name] | moved if name in STATE_COLUMNS else differ[name]] = np.nan
     for name, codes in kept.codes.items():
-        codes[differ[name]] = UNKNOWN
+        codes[differ[name]] = UNKNOWN_CODE
     differing = repeated & _any(list(differ.values()))[of]
     return kept, [
         *_repeated(states, differing, "error", "differ: what they do not agree on is unknown there"),
@@ -71,8 +74,8 @@ def _any(rows: list[NDArray[np.bool_]]) -> NDArray[np.bool_]:
     return found
 
 
-def changes(states: States) -> dict[str, NDArray[np.bool_]]:
-    """Say of each column where its value is another than in the row before; unknown is a value here."""
+def changed_columns(states: States) -> dict[str, NDArray[np.bool_]]:
+    """Return for each column the rows whose value differs from the row before; unknown counts as a value."""
     found = {}
     columns: dict[str, NDArray[Any]] = {**states.numbers, **states.codes}
     for name, values in columns.items():
@@ -82,14 +85,14 @@ def changes(states: States) -> dict[str, NDArray[np.bool_]]:
     return found
 
 
-def _repeated(states: States, rows: NDArray[np.bool_], severity: Severity, what: str) -> list[Finding]:
+def _repeated(states: States, rows: NDArray[np.bool_], severity: Severity, what: str) -> list[QualityFinding]:
     n = int(rows.sum())
     if n == 0:
         return []
     ids = [states.ids[i] for i in np.unique(states.actor[rows])]
     message = f"an actor appears again at the same time in {n} states ({listed(ids)}), which {what}"
     only = ids[0] if len(ids) == 1 else None
-    return [Finding("duplicate_state", severity, message, n, int(states.t_ns[rows].min()), only)]
+    return [QualityFinding("duplicate_state", severity, message, n, int(states.t_ns[rows].min()), only)]
 
 
 @dataclass(frozen=True)
@@ -120,7 +123,7 @@ def steps_between(t_ns: NDArray[np.int64], actor: NDArray[np.int32], period_ns: 
     return Steps(same, dt * 1e-9, same & (dt <= MAX_GAP_PERIODS * period_ns), period_ns)
 
 
-def rate(values: NDArray[np.float64], step: Steps) -> NDArray[np.float64]:
+def time_derivative(values: NDArray[np.float64], step: Steps) -> NDArray[np.float64]:
     """Return the time derivative: central where both neighbours are continuous, else one-sided, else NaN."""
     n = len(values)
     rise, span = np.zeros(n), np.zeros(n)

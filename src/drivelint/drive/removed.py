@@ -1,4 +1,4 @@
-"""Actors that a simulator has taken out of the scene and goes on writing, all in one place.
+"""Leaves out actors that a simulator removed from the scene but still writes, all in one place.
 
 CARLA's destroyed actors lie at the origin until the log ends. Two bodies are never in one place, so their tracks end where they jump there.
 """
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from drivelint.drive.jumps import jumps
-from drivelint.drive.trace import Finding
+from drivelint.drive.trace import QualityFinding
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -21,11 +21,13 @@ if TYPE_CHECKING:
     from drivelint.drive.order import Steps
     from drivelint.drive.trace import States
 
-SAME_M: Final = 0.01
+SAME_PLACE_M: Final = 0.01
 """Centres nearer than this are in one place."""
 
 
-def without_removed(states: States, step: Steps, *, whole: Collection[str]) -> tuple[States, list[Finding]]:
+def without_removed_actors(
+    states: States, step: Steps, *, whole: Collection[str]
+) -> tuple[States, list[QualityFinding]]:
     """Leave out the states of actors that jump to one place and stand there until their tracks end (states in order).
 
     One that is alone there stays. `whole`: actors that are kept (the egos that are named).
@@ -40,7 +42,7 @@ def without_removed(states: States, step: Steps, *, whole: Collection[str]) -> t
     for actor, first in last.items():
         end = int(np.searchsorted(states.actor, actor, side="right"))
         spread = np.ptp(place[:, first:end], axis=1).max()
-        if spread <= SAME_M and end - first > 1:
+        if spread <= SAME_PLACE_M and end - first > 1:
             parked.append((first, end))
     gone = [a for a in parked if any(b != a and _together(states, place, a, b) for b in parked)]
     if not gone:
@@ -51,7 +53,7 @@ def without_removed(states: States, step: Steps, *, whole: Collection[str]) -> t
     ids = [states.ids[states.actor[first]] for first, _ in gone]
     text = "after a jump they stand in one place: they were taken out of the scene, and their tracks end there"
     message = f"{int(out.sum())} of {len(states)} states ({listed(ids)}): {text}"
-    finding = Finding("removed", "warning", message, int(out.sum()), int(states.t_ns[out].min()), actor_id=None)
+    finding = QualityFinding("removed", "warning", message, int(out.sum()), int(states.t_ns[out].min()), actor_id=None)
     return states.take(~out), [finding]
 
 
@@ -60,5 +62,5 @@ def _together(states: States, place: NDArray[np.float64], one: tuple[int, int], 
     (a, a_end), (b, b_end) = one, other
     apart = np.hypot(*(place[:, a] - place[:, b]))
     return bool(
-        apart <= SAME_M and states.t_ns[a] <= states.t_ns[b_end - 1] and states.t_ns[b] <= states.t_ns[a_end - 1]
+        apart <= SAME_PLACE_M and states.t_ns[a] <= states.t_ns[b_end - 1] and states.t_ns[b] <= states.t_ns[a_end - 1]
     )

@@ -1,4 +1,4 @@
-"""A clock that goes back and runs on: the log tells two stories of the same time."""
+"""Makes states unknown where the log's clock goes back and covers the same time twice."""
 
 from __future__ import annotations
 
@@ -8,24 +8,24 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.order import UNKNOWN, changes
-from drivelint.drive.trace import Finding, States
+from drivelint.drive.order import UNKNOWN_CODE, changed_columns
+from drivelint.drive.trace import QualityFinding, States
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Times = NDArray[np.int64]
 
-LASTING: Final = 10
+LEAST_RUN_STATES: Final = 10
 """So many states of an actor in a row are a run of the clock; less is a message that came late."""
-AMONG: Final = 5
+LEAST_INTERLEAVED_STATES: Final = 5
 """So many states of one run between those of another are no late messages."""
-STEP: Final = 1.5
+HOLE_FACTOR: Final = 1.5
 """A step of more than so many usual ones is a hole, which late messages may fill."""
 
 
-def without_restarts(states: States) -> tuple[States, list[Finding]]:
-    """Make everybody unknown where the clock runs twice over the same time (states in the log's own order).
+def unknown_at_restarts(states: States) -> tuple[States, list[QualityFinding]]:
+    """Make the states of all actors unknown where the clock covers the same time twice (states in the log's own order).
 
     Messages that come late are no restart: sorted by their times, they are one story. Of two stories nobody knows who of the one
     met whom of the other. Rows that say the same in both are no contradiction, and stay.
@@ -43,13 +43,13 @@ def without_restarts(states: States) -> tuple[States, list[Finding]]:
     if not twice.any():
         return states, []
     numbers = {name: np.where(twice, np.nan, values) for name, values in states.numbers.items()}
-    codes = {name: np.where(twice, UNKNOWN, codes) for name, codes in states.codes.items()}
+    codes = {name: np.where(twice, UNKNOWN_CODE, codes) for name, codes in states.codes.items()}
     n, first = int(twice.sum()), int(states.t_ns[twice].min())
     message = (
         f"the clock goes back and runs again over the same time, from {first / 1e9:g} s on: what {n} of {len(states)} states "
         "of that time say is unknown"
     )
-    return replace(states, numbers=numbers, codes=codes), [Finding("clock_restart", "error", message, n, first)]
+    return replace(states, numbers=numbers, codes=codes), [QualityFinding("clock_restart", "error", message, n, first)]
 
 
 def _spans(states: States, run: Times) -> dict[tuple[int, int], tuple[int, int]]:
@@ -58,13 +58,13 @@ def _spans(states: States, run: Times) -> dict[tuple[int, int], tuple[int, int]]
     begin = np.flatnonzero(np.r_[True, (np.diff(states.actor[by]) != 0) | (np.diff(run[by]) != 0)])
     end = np.r_[begin[1:], len(by)]
     tracks: dict[int, list[NDArray[np.intp]]] = {}
-    for i in np.flatnonzero(end - begin >= LASTING):
+    for i in np.flatnonzero(end - begin >= LEAST_RUN_STATES):
         tracks.setdefault(int(states.actor[by[begin[i]]]), []).append(by[begin[i] : end[i]])
     spans: dict[tuple[int, int], tuple[int, int]] = {}
     for own in tracks.values():
         for one, other in combinations(own, 2):
             times, others = states.t_ns[one], states.t_ns[other]
-            if _among(times, others) >= AMONG:
+            if _among(times, others) >= LEAST_INTERLEAVED_STATES:
                 pair = int(run[one[0]]), int(run[other[0]])
                 since, until = max(int(times[0]), int(others[0])), min(int(times[-1]), int(others[-1]))
                 known = spans.get(pair, (since, until))
@@ -76,7 +76,7 @@ def _among(one: Times, other: Times) -> int:
     """Count the times of a run that lie between those of another, and not in its holes (both rise)."""
     steps = np.diff(one)
     before = np.clip(np.searchsorted(one, other), 1, len(one) - 1) - 1
-    inside = (other >= one[0]) & (other <= one[-1]) & (steps[before] <= STEP * np.median(steps))
+    inside = (other >= one[0]) & (other <= one[-1]) & (steps[before] <= HOLE_FACTOR * np.median(steps))
     return int(inside.sum())
 
 
@@ -92,7 +92,7 @@ def _agreed(states: States, rows: NDArray[np.bool_]) -> NDArray[np.bool_]:
     again[1:] = (ordered.actor[1:] == ordered.actor[:-1]) & (ordered.t_ns[1:] == ordered.t_ns[:-1])
     of = np.cumsum(~again) - 1
     several = np.bincount(of) > 1
-    other = again & np.any(list(changes(ordered).values()), axis=0)
+    other = again & np.any(list(changed_columns(ordered).values()), axis=0)
     contradicted = np.bincount(of[other], minlength=len(several)) > 0
     agreed[chosen] = (several & ~contradicted)[of]
     return agreed

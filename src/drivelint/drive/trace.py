@@ -1,4 +1,4 @@
-"""What goes into ingest (options), between its stages (states, a recording) and out of it (a trace of Arrow tables)."""
+"""Defines the types of ingest: options, states, recordings, findings and traces."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 Severity = Literal["info", "warning", "error"]
 
-NUMBERS = ("x_m", "y_m", "z_m", "yaw_rad", "vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
+STATE_COLUMNS = ("x_m", "y_m", "z_m", "yaw_rad", "vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
 """The double columns of `actor_state`, in its order."""
-SIZES = ("length_m", "width_m", "height_m")
+SIZE_COLUMNS = ("length_m", "width_m", "height_m")
 """The double columns of `actor`, in its order."""
 INDICATORS = ("off", "left", "right", "hazard")
 BRAKE_LIGHTS = ("off", "on", "strong")
-CLASSES = (
+ACTOR_CLASSES = (
     "car",
     "van",
     "truck",
@@ -36,7 +36,7 @@ CLASSES = (
 )
 MOTOR_VEHICLES = ("car", "van", "truck", "bus", "motorcycle", "vehicle")
 """What `--ego all` takes as an ego: driven by an engine and by somebody of its own."""
-EPOCH_NS = 946_684_800_000_000_000
+LEAST_UTC_NS = 946_684_800_000_000_000
 """2000-01-01 UTC: a clock beyond it counts from 1970 in UTC, a smaller one from the start of the recording."""
 SIGNAL_STATES = ("red", "red_amber", "amber", "green", "flashing", "off")
 
@@ -60,7 +60,7 @@ class EgoSize(NamedTuple):
 
 OWN_MAP_UNUSABLE = "own_map_unusable"
 """The check that found that the log's own map cannot be used: rules that need a map are unknown for its reason."""
-LOSSES = ("dropped_row", "malformed_row")
+LOSS_CHECKS = ("dropped_row", "malformed_row")
 """Checks that found parts of the log that could not be read, whatever their severity: what is judged is what was left.
 
 An error of any other check is a loss too."""
@@ -68,7 +68,7 @@ An error of any other check is a loss too."""
 
 @dataclass(frozen=True)
 class IngestOptions:
-    """What the command line says about reading: each None means what the log or the mapping says.
+    """Options of the command line about reading; None: the log or the mapping decides.
 
     `need_ego`: a log without an ego is an error; else it is read with none, for whoever only looks at it or converts it.
     """
@@ -87,7 +87,7 @@ class IngestOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class DriveInput:
-    """How a log is read and on which map it is judged: what every command takes, by the names of its options."""
+    """Options, shared by all commands, on how a log is read and on which map it is judged."""
 
     map: Path | None = None
     map_dir: Path | None = None
@@ -103,7 +103,7 @@ class DriveInput:
     env: tuple[str, ...] = ()
 
     def options(self, *, need_ego: bool = True) -> IngestOptions:
-        """Return what it says about reading. Errors: `UsageError` for a condition that does not exist."""
+        """Return the options for reading. Errors: `UsageError` for a condition that does not exist."""
         return IngestOptions(
             self.mapping,
             self.ego,
@@ -117,7 +117,7 @@ class DriveInput:
 
 
 class FrameTimes(NamedTuple):
-    """A log's frames in the order of the file: the time they speak of, and the container's time under which they lie."""
+    """The times of a log's frames in the order of the file: the time in the message and the time in the container."""
 
     t_ns: NDArray[np.int64]
     log_ns: NDArray[np.uint64]
@@ -144,7 +144,7 @@ class Trace:
 
 
 @dataclass(frozen=True)
-class Finding:
+class QualityFinding:
     """One row of `quality`, still without its drive."""
 
     check_id: str
@@ -202,7 +202,7 @@ class Recording:
     events: pa.Table | None = None
     conditions: dict[str, str] = field(default_factory=dict)
     ego_ids: list[str] = field(default_factory=list)
-    findings: list[Finding] = field(default_factory=list)
+    findings: list[QualityFinding] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     embedded_map: bytes | None = None
     map_offset: tuple[float, float] | None = None

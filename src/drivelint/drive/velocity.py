@@ -1,4 +1,4 @@
-"""Velocities from positions, by a filter that is as wide as the positions' noise asks for and whose error is known.
+"""Derives velocities from positions by a filter whose width follows the position noise and whose error is known.
 
 The velocity at a state is the least-squares slope over the positions within some time to both sides: the narrowest of `WIDTHS_S`
 over which three standard errors are at most `KNOWN_MPS`. Exact positions (a simulator's) get central differences; five centimetres
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from drivelint.drive.order import rate, steps_between
+from drivelint.drive.order import steps_between, time_derivative
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,66 +21,68 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-KNOWN_MPS: Final = 0.25
+KNOWN_ERROR_MPS: Final = 0.25
 """Three standard errors of a velocity component that counts as known: half of what standing is (`standing_mps`)."""
-WIDTHS_S: Final = (0.25, 0.5, 1.0)
+HALF_WIDTHS_S: Final = (0.25, 0.5, 1.0)
 """Half widths of the filter, after central differences; a braking of 10 m/s3 of jerk is 0.06, 0.25 and 1 m/s off in its middle."""
-SLOWEST_NS: Final = 210_000_000
+LONGEST_PERIOD_NS: Final = 210_000_000
 """Positions that come more rarely change by the motion as much as by noise: central differences, as exact ones."""
 MOVED_M: Final = 1.0
 """An actor whose positions spread by more moves; below it a parked car's position noise would become a speed."""
-FEWEST: Final = 8
+LEAST_NOISE_SAMPLES: Final = 8
 """Of fewer samples no noise is estimated."""
 
 
-class Derived(NamedTuple):
-    """Velocity components (n) in m/s, NaN where not known; `filtered` (n): a mean over more than the neighbours, or not known for noise."""
+class DerivedVelocity(NamedTuple):
+    """Velocity components (n) in m/s, NaN where not known; `filtered` (n): the filter was used, or noise left the velocity unknown."""
 
     vx: Floats
     vy: Floats
     filtered: NDArray[np.bool_]
 
 
-def derived(t_ns: NDArray[np.int64], actor: NDArray[np.int32], x: Floats, y: Floats, step: Steps) -> Derived:
+def derive_velocities(
+    t_ns: NDArray[np.int64], actor: NDArray[np.int32], x: Floats, y: Floats, step: Steps
+) -> DerivedVelocity:
     """Derive velocities from positions (n, in order, metres; `actor`: which one, 0..)."""
-    vx, vy = rate(x, step), rate(y, step)
+    vx, vy = time_derivative(x, step), time_derivative(y, step)
     filtered = np.zeros(len(x), np.bool_)
     placed = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
-    if not 0 < step.period_ns <= SLOWEST_NS or not len(placed):
-        return Derived(vx, vy, filtered)
+    if not 0 < step.period_ns <= LONGEST_PERIOD_NS or not len(placed):
+        return DerivedVelocity(vx, vy, filtered)
     # a filter needs no sample at every step: over a hole of one it goes on
     of = steps_between(t_ns[placed], actor[placed], step.period_ns)
     found = _filtered(t_ns[placed], actor[placed], x[placed], y[placed], of, (vx[placed], vy[placed]))
     vx[placed], vy[placed], filtered[placed] = found
-    return Derived(vx, vy, filtered)
+    return DerivedVelocity(vx, vy, filtered)
 
 
 def _filtered(  # noqa: PLR0917
     t_ns: NDArray[np.int64], actor: NDArray[np.int32], x: Floats, y: Floats, step: Steps, central: tuple[Floats, Floats]
-) -> Derived:
+) -> DerivedVelocity:
     """Return the velocities (n) of samples that all have a place; `central`: those by central differences."""
     vx, vy = central
     filtered = np.zeros(len(x), np.bool_)
-    runs = Runs.of(t_ns, x, y, step)
-    sigma = np.maximum(noise(x, runs, actor), noise(y, runs, actor))[actor]
+    runs = Tracklets.of(t_ns, x, y, step)
+    sigma = np.maximum(position_noise(x, runs, actor), position_noise(y, runs, actor))[actor]
     with np.errstate(invalid="ignore", divide="ignore"):
-        known = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.period_ns * 1e-9) <= KNOWN_MPS
+        known = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.period_ns * 1e-9) <= KNOWN_ERROR_MPS
         vx, vy = np.where(known, vx, np.nan), np.where(known, vy, np.nan)
-        for width in WIDTHS_S:
+        for width in HALF_WIDTHS_S:
             if known.all():
                 break
             wx, wy, error = runs.slopes(x, y, width, sigma)
-            now = ~known & (error <= KNOWN_MPS)
+            now = ~known & (error <= KNOWN_ERROR_MPS)
             vx, vy, known, filtered = np.where(now, wx, vx), np.where(now, wy, vy), known | now, filtered | now
         # the widest tells who stands, at the ends of a track by one side alone
-        wx, wy, error = runs.slopes(x, y, WIDTHS_S[-1], sigma, both_sides=False)
-        stands = (sigma > 0.0) & (error <= KNOWN_MPS) & (np.abs(wx) <= error) & (np.abs(wy) <= error)
+        wx, wy, error = runs.slopes(x, y, HALF_WIDTHS_S[-1], sigma, both_sides=False)
+        stands = (sigma > 0.0) & (error <= KNOWN_ERROR_MPS) & (np.abs(wx) <= error) & (np.abs(wy) <= error)
     filtered |= ~known & ~stands
-    return Derived(np.where(stands, 0.0, vx), np.where(stands, 0.0, vy), filtered)
+    return DerivedVelocity(np.where(stands, 0.0, vx), np.where(stands, 0.0, vy), filtered)
 
 
-class Runs(NamedTuple):
-    """Stretches of states of one actor without a hole: of each row its first and last row, and the time since its run's first."""
+class Tracklets(NamedTuple):
+    """For each state the first and last row of its gapless stretch of one actor, and the time since that first row."""
 
     first: NDArray[np.intp]
     last: NDArray[np.intp]
@@ -88,7 +90,7 @@ class Runs(NamedTuple):
     t_s: Floats
 
     @classmethod
-    def of(cls, t_ns: NDArray[np.int64], x: Floats, y: Floats, step: Steps) -> Runs:
+    def of(cls, t_ns: NDArray[np.int64], x: Floats, y: Floats, step: Steps) -> Tracklets:
         """Part the states (n, in order) where there is a hole, or no place."""
         usable = np.isfinite(x) & np.isfinite(y)
         starts = np.flatnonzero(np.r_[True, ~(step.continuous & usable[1:] & usable[:-1])])
@@ -123,7 +125,7 @@ class Runs(NamedTuple):
         return wx, wy, np.where(np.isfinite(spread), 3.0 * sigma / np.sqrt(spread), np.inf)
 
 
-def noise(values: Floats, runs: Runs, actor: NDArray[np.int32]) -> Floats:
+def position_noise(values: Floats, runs: Tracklets, actor: NDArray[np.int32]) -> Floats:
     """Return the standard deviation of each actor's position noise (m), by the median; 0 where there are too few samples.
 
     A sample beside the line between its neighbours is off by noise or by acceleration; the difference of two such on end is free of
@@ -131,7 +133,7 @@ def noise(values: Floats, runs: Runs, actor: NDArray[np.int32]) -> Floats:
     """
     n_actors = int(actor.max(initial=-1)) + 1
     found = np.zeros(n_actors)
-    if len(values) < FEWEST:
+    if len(values) < LEAST_NOISE_SAMPLES:
         return found
     t = runs.t_s
     inner = np.arange(1, len(values) - 1)
@@ -142,6 +144,6 @@ def noise(values: Floats, runs: Runs, actor: NDArray[np.int32]) -> Floats:
     whole = (runs.first[inner[:-1] - 1] == runs.first[inner[1:] + 1]) & np.isfinite(twice)
     rows, who = twice[whole], actor[inner[:-1]][whole]
     edges = np.searchsorted(who, np.arange(n_actors + 1))
-    for number in np.flatnonzero(np.diff(edges) >= FEWEST):
+    for number in np.flatnonzero(np.diff(edges) >= LEAST_NOISE_SAMPLES):
         found[number] = 1.4826 * np.median(rows[edges[number] : edges[number + 1]]) / np.sqrt(5.0)
     return found

@@ -1,4 +1,4 @@
-"""Drives in batches: read ahead, with the map each is judged on, cut by their size; and the parts of one that has many egos."""
+"""Reads drives ahead with their maps, cuts them into batches, and cuts a drive of many egos into parts."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ import numpy as np
 import pyarrow.compute as pc
 
 from drivelint.drive import own_map
-from drivelint.drive.finish import with_finding
-from drivelint.drive.trace import Finding, IngestOptions, Trace
+from drivelint.drive.finish import with_quality_finding
+from drivelint.drive.trace import IngestOptions, QualityFinding, Trace
 from drivelint.errors import DriveLintError, MapError
 from drivelint.formats import read_trace
 
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.engine.map_library import MapLibrary
-    from drivelint.road.contract import Environment
+    from drivelint.road.contract import MapTables
 
-STATES: Final = 400_000  # a batch costs little more than its longest drive, and its tables still fit in a GiB
-MEETINGS: Final = 1_500_000
+BATCH_STATES: Final = 400_000  # a batch costs little more than its longest drive, and its tables still fit in a GiB
+PART_PAIRS: Final = 1_500_000
 """A part of a drive of many egos has no more ego steps times the actors that are there then: the largest tables have so many rows."""
-AHEAD: Final = 4
+READ_AHEAD: Final = 4
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Drive:
     """One log that was read, and its map (None: none was given)."""
 
     trace: Trace
-    environment: Environment | None
+    environment: MapTables | None
 
     @property
     def n_states(self) -> int:
@@ -53,19 +53,19 @@ class Drive:
 
     @property
     def size(self) -> int:
-        """How much room the drive takes: its states, or the meetings of its egos."""
+        """The drive's size for batching: its states, or its pairs of ego steps and actors."""
         return max(self.n_states, sum(self.meetings.values()))
 
 
 @dataclass(frozen=True)
-class Refused:
+class RefusedLog:
     """One log that cannot be judged, and why."""
 
     path: Path
     error: DriveLintError
 
 
-def in_order(paths: Sequence[Path]) -> list[Path]:
+def sorted_logs(paths: Sequence[Path]) -> list[Path]:
     """Return the logs in an order that does not depend on how they were named or where they lie: by stem, then by content."""
     stems: dict[str, int] = {}
     for path in paths:
@@ -73,14 +73,14 @@ def in_order(paths: Sequence[Path]) -> list[Path]:
     return sorted(paths, key=lambda p: (p.stem, _digest(p) if stems[p.stem] > 1 else "", str(p)))
 
 
-def read(paths: Sequence[Path], options: IngestOptions, library: MapLibrary) -> Iterator[Drive | Refused]:
+def read_drives(paths: Sequence[Path], options: IngestOptions, library: MapLibrary) -> Iterator[Drive | RefusedLog]:
     """Yield every log in the order of `paths`; a few are read ahead while others are judged."""
     with ThreadPoolExecutor(max_workers=2) as pool:
         waiting: deque[tuple[Path, Future[Trace]]] = deque()
         todo = iter(paths)
         try:
             while True:
-                while len(waiting) < AHEAD and (path := next(todo, None)) is not None:
+                while len(waiting) < READ_AHEAD and (path := next(todo, None)) is not None:
                     waiting.append((path, pool.submit(read_trace, path, options)))
                 if not waiting:
                     return
@@ -91,13 +91,13 @@ def read(paths: Sequence[Path], options: IngestOptions, library: MapLibrary) -> 
                 future.cancel()
 
 
-def cut(drives: Iterable[Drive | Refused]) -> Iterator[list[Drive | Refused]]:
+def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | RefusedLog]]:
     """Cut into batches of at most `STATES` states or meetings, a longer drive being a batch of its own."""
-    batch: list[Drive | Refused] = []
+    batch: list[Drive | RefusedLog] = []
     states = 0
     for drive in drives:
         n = drive.size if isinstance(drive, Drive) else 0
-        if batch and states + n > STATES:
+        if batch and states + n > BATCH_STATES:
             yield batch
             batch, states = [], 0
         batch.append(drive)
@@ -106,7 +106,7 @@ def cut(drives: Iterable[Drive | Refused]) -> Iterator[list[Drive | Refused]]:
         yield batch
 
 
-def parts(drives: Sequence[Drive], room: int | None = None) -> list[list[str]]:
+def egos_left_out(drives: Sequence[Drive], room: int | None = None) -> list[list[str]]:
     """Return, for each part in which a batch is judged, the egos that are not judged in it; a part has at least one ego.
 
     Only a drive alone is cut, with its egos in the order of their ids, into parts of at most `room` meetings (default: `MEETINGS`);
@@ -118,7 +118,7 @@ def parts(drives: Sequence[Drive], room: int | None = None) -> list[list[str]]:
     for ego, n in meetings.items():
         if not found or n > left:
             found.append([])
-            left = MEETINGS if room is None else room
+            left = PART_PAIRS if room is None else room
         found[-1].append(ego)
         left -= n
     return [[ego for ego in meetings if ego not in part] for part in map(set, found)] or [[]]
@@ -142,8 +142,8 @@ def _meetings(trace: Trace, egos: set[str]) -> dict[str, int]:
     return dict(sorted(found.items()))
 
 
-def on_its_map(trace: Trace, library: MapLibrary) -> Drive:
-    """Find the map of a drive. A map of its own that cannot be used is a finding, and the drive is judged without.
+def drive_with_map(trace: Trace, library: MapLibrary) -> Drive:
+    """Return the drive with its map; an embedded map that cannot be used is a finding, and the drive has no map.
 
     Errors: `MapError` if a map that was given cannot be read, or shows another place or side of the road.
     """
@@ -154,18 +154,20 @@ def on_its_map(trace: Trace, library: MapLibrary) -> Drive:
     except MapError as error:
         if not library.takes_own(trace.path, trace.embedded_map):
             raise
-        return Drive(with_finding(trace, own_map.unusable(f"the log's own map is not used: {error}")), None)
+        return Drive(
+            with_quality_finding(trace, own_map.unusable_finding(f"the log's own map is not used: {error}")), None
+        )
     for check, doubt in doubts.items():
-        trace = with_finding(trace, Finding(check, "warning", doubt))
+        trace = with_quality_finding(trace, QualityFinding(check, "warning", doubt))
     return Drive(trace, environment)
 
 
-def _drive(path: Path, future: Future[Trace], library: MapLibrary) -> Drive | Refused:
+def _drive(path: Path, future: Future[Trace], library: MapLibrary) -> Drive | RefusedLog:
     try:
         trace = future.result()
-        return on_its_map(trace, library)
+        return drive_with_map(trace, library)
     except DriveLintError as error:
-        return Refused(path, error)
+        return RefusedLog(path, error)
 
 
 def _digest(path: Path) -> str:

@@ -1,4 +1,4 @@
-"""Fill the library tables that are asked for, and those that they read. A table without rows leaves empty those that need it."""
+"""Fills the library tables that rules need, and those that these read. A table without rows leaves empty those that need it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from drivelint.sql.derivations import Derivation
 
 WORKERS: Final = 2
-LARGE: Final = 1_000_000
+ONE_WORKER_STATES: Final = 1_000_000
 """States from which on there is one: a statement then uses all cores, and two would need twice the memory."""
 # a table whose rows were deleted may be missing here, which only costs time
 _EMPTY = "SELECT table_name FROM duckdb_tables() WHERE database_name = current_database() AND estimated_size = 0"
@@ -43,7 +43,7 @@ def derive(
     graph.prepare()
     (n_states,) = con.execute("SELECT count(*) FROM actor_state").fetchall()[0]
     empty = {table for (table,) in con.execute(_EMPTY).fetchall()} - todo.keys()
-    workers = WORKERS if n_states < LARGE else 1
+    workers = WORKERS if n_states < ONE_WORKER_STATES else 1
     with ThreadPoolExecutor(workers) as pool, ExitStack() as stack:
         free = [stack.enter_context(con.cursor()) for _ in range(workers)]
         busy: dict[Future[int], tuple[str, duckdb.DuckDBPyConnection]] = {}

@@ -1,4 +1,4 @@
-"""Which side of the road the traces drive on: the last witness, where neither the user nor the map says, and a doubt where they do."""
+"""Compares traces with the map: which side of the road they drive on, and whether they lie on the map."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ if TYPE_CHECKING:
     import pyarrow as pa
     from numpy.typing import NDArray
 
-    from drivelint.road.contract import Environment
+    from drivelint.road.contract import MapTables
 
 DOUBT_SAMPLES: Final = 80  # where the side is known, every drive is looked at: it must cost next to nothing
-SAMPLES: Final = 400  # moving states looked at, evenly spread: enough to vote, cheap for a long log
+VOTE_SAMPLES: Final = 400  # moving states looked at, evenly spread: enough to vote, cheap for a long log
 LEAST_VOTES: Final = 20
 FEW, MANY = 20, 2000  # positions looked at to see whether a drive is on its map
-EACH_WAY: Final = 5  # so many of them against their lane in both directions of a road: nobody overtakes both ways
+LEAST_EACH_WAY: Final = 5  # so many of them against their lane in both directions of a road: nobody overtakes both ways
 BESIDE_M: Final = 8.0  # so near lie the middles of two lanes of one road, with what may be between them
-FACING: Final = 0.9
-AGREEMENT: Final = 0.8  # an overtake drives against its lane for a while, a drive does not
+FACING_COSINE: Final = 0.9
+AGREEMENT_SHARE: Final = 0.8  # an overtake drives against its lane for a while, a drive does not
 
 
-class Ways(NamedTuple):
-    """The one-way drivable lanelets of a map: their areas, looked up by place, centre lines, roads and direction along these."""
+class OneWayLanes(NamedTuple):
+    """The one-way drivable lanelets of a map: areas (searchable by position), centre lines, roads, directions."""
 
     areas: shapely.STRtree
     lines: NDArray[np.object_]
@@ -33,21 +33,21 @@ class Ways(NamedTuple):
     along: NDArray[np.int64]
 
 
-class Headings(NamedTuple):
-    """Moving states that exactly one of `Ways` holds: whether each is headed along its lane, and which lane that is."""
+class LaneHeadings(NamedTuple):
+    """For moving states on exactly one one-way lane: whether each heads along the lane, and the lane."""
 
     agree: NDArray[np.bool_]
     lane: NDArray[np.intp]
 
 
-def ways(environment: Environment) -> Ways:
+def one_way_lanes(environment: MapTables) -> OneWayLanes:
     """Return the lanes whose direction is compared with the traces'."""
     lanelets = environment.tables["lanelet"]
     one_way = lanelets.filter(pc.and_(lanelets["drivable"], pc.invert(lanelets["bidirectional"])))
     one_way = one_way.sort_by("lanelet_id")
     areas, lines = _shapes(environment, one_way["lanelet_id"])
     shapely.prepare(areas)
-    return Ways(
+    return OneWayLanes(
         shapely.STRtree(areas),
         lines,
         one_way["road_id"].to_numpy(zero_copy_only=False),
@@ -55,16 +55,16 @@ def ways(environment: Environment) -> Ways:
     )
 
 
-def headings(
-    lanes: Ways, x_m: NDArray[np.float64], y_m: NDArray[np.float64], yaw_rad: NDArray[np.float64], most: int
-) -> Headings:
+def compare_headings(
+    lanes: OneWayLanes, x_m: NDArray[np.float64], y_m: NDArray[np.float64], yaw_rad: NDArray[np.float64], most: int
+) -> LaneHeadings:
     """Compare headings with lanes. `x_m, y_m, yaw_rad`: moving states of any vehicles, shape (n,), in map coordinates.
 
     Of them `most` are looked at, evenly spread.
     """
     known = np.flatnonzero(np.isfinite(x_m) & np.isfinite(y_m) & np.isfinite(yaw_rad))
     if len(known) < LEAST_VOTES or not len(lanes.lines):
-        return Headings(np.zeros(0, np.bool_), np.zeros(0, np.intp))
+        return LaneHeadings(np.zeros(0, np.bool_), np.zeros(0, np.intp))
     chosen = known[np.unique(np.linspace(0, len(known) - 1, min(most, len(known))).astype(np.int64))]
     points = np.asarray(shapely.points(x_m[chosen], y_m[chosen]))
     state, lane = lanes.areas.query(points, predicate="intersects")
@@ -72,38 +72,38 @@ def headings(
     state, lane = state[single], lane[single]
     line = lanes.lines[lane]
     direction = _direction(line, shapely.line_locate_point(line, points[state]))
-    return Headings(np.cos(yaw_rad[chosen][state] - direction) > 0, lane)
+    return LaneHeadings(np.cos(yaw_rad[chosen][state] - direction) > 0, lane)
 
 
-def vote(handedness: str, seen: Headings) -> str | None:
-    """Return lht or rht as the headings of moving vehicles say, or None if they are too few or disagree."""
+def vote_handedness(handedness: str, seen: LaneHeadings) -> str | None:
+    """Return lht or rht by the headings of moving vehicles; None: too few, or they disagree."""
     if len(seen.agree) < LEAST_VOTES:
         return None
     agree = float(np.mean(seen.agree))
-    if agree >= AGREEMENT:
+    if agree >= AGREEMENT_SHARE:
         return handedness
-    if agree <= 1 - AGREEMENT:
+    if agree <= 1 - AGREEMENT_SHARE:
         return "lht" if handedness == "rht" else "rht"
     return None
 
 
-def reversed_road(lanes: Ways, seen: Headings) -> str | None:
+def reversed_road(lanes: OneWayLanes, seen: LaneHeadings) -> str | None:
     """Return a road on which there is traffic both ways and nearly all of it, as on the whole map, runs against its lane.
 
     Two roads of one direction each, one beside the other, count as one.
     """
-    if len(seen.agree) < LEAST_VOTES or float(np.mean(seen.agree)) > 1 - AGREEMENT:
+    if len(seen.agree) < LEAST_VOTES or float(np.mean(seen.agree)) > 1 - AGREEMENT_SHARE:
         return None
     against = seen.lane[~seen.agree]
     for road in sorted({str(name) for name in lanes.road[against]}):
         here = against[lanes.road[against] == road]
-        if min(int((lanes.along[here] == way).sum()) for way in (1, -1)) >= EACH_WAY:
+        if min(int((lanes.along[here] == way).sum()) for way in (1, -1)) >= LEAST_EACH_WAY:
             return road
     lane, counts = np.unique(against, return_counts=True)
-    often = lane[counts >= EACH_WAY]
+    often = lane[counts >= LEAST_EACH_WAY]
     one, other = (often[k] for k in np.triu_indices(len(often), 1))
     near = shapely.shortest_line(lanes.lines[one], lanes.lines[other])
-    facing = np.cos(_heading(lanes.lines[one], near, 0) - _heading(lanes.lines[other], near, -1)) < -FACING
+    facing = np.cos(_heading(lanes.lines[one], near, 0) - _heading(lanes.lines[other], near, -1)) < -FACING_COSINE
     found = facing & (shapely.length(near) < BESIDE_M)
     return min((str(lanes.road[k]) for k in one[found]), default=None)
 
@@ -121,14 +121,14 @@ def _direction(line: NDArray[np.object_], at: NDArray[np.float64]) -> NDArray[np
     return found
 
 
-def ground(environment: Environment) -> shapely.STRtree:
+def lane_areas(environment: MapTables) -> shapely.STRtree:
     """Return the areas of every lanelet of any type, to look positions up in."""
     areas = _shapes(environment, environment.tables["lanelet"]["lanelet_id"])[0]
     shapely.prepare(areas)
     return shapely.STRtree(areas)
 
 
-def on_map(lanes: shapely.STRtree, x_m: NDArray[np.float64], y_m: NDArray[np.float64]) -> tuple[int, int]:
+def count_on_map(lanes: shapely.STRtree, x_m: NDArray[np.float64], y_m: NDArray[np.float64]) -> tuple[int, int]:
     """Return how many known positions, evenly spread, are looked at, and how many of them lie on some lanelet.
 
     A few do where one is found; before it is said that there is none, `MANY` are looked at.
@@ -144,7 +144,7 @@ def on_map(lanes: shapely.STRtree, x_m: NDArray[np.float64], y_m: NDArray[np.flo
     return looked, found
 
 
-def _shapes(environment: Environment, wanted: pa.ChunkedArray) -> tuple[NDArray[np.object_], NDArray[np.object_]]:
+def _shapes(environment: MapTables, wanted: pa.ChunkedArray) -> tuple[NDArray[np.object_], NDArray[np.object_]]:
     """Return areas and centre lines of these lanelets."""
     points = environment.tables["lane_point"]
     points = points.filter(pc.is_in(points["lanelet_id"], value_set=wanted.combine_chunks())).sort_by(

@@ -7,7 +7,7 @@ from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import MapError
-from drivelint.formats.map_registry import READERS, read_source, root_element
+from drivelint.formats.map_registry import READERS, read_source, root_element_name
 from drivelint.phrases import listed
 from drivelint.road import geo
 
@@ -50,7 +50,7 @@ class MapFolder:
 
     def referenced(self, reference: str) -> MapSource | None:
         """Return the map with this geo reference, if it is the only one that has it."""
-        found = [source for source in self.sources() if geo.same(geo.reference_of(source) or "", reference)]
+        found = [source for source in self.sources() if geo.same_reference(geo.reference_of(source) or "", reference)]
         return found[0] if len(found) == 1 else None
 
     def sources(self) -> Sequence[MapSource]:
@@ -83,4 +83,4 @@ def _is_map(file: Path) -> bool:
     if not file.is_file() or file.suffix.lower() not in {".xodr", ".xml", ".osm"}:
         return False
     with file.open("rb") as content:
-        return (root_element(content.read(_HEAD_BYTES)) or "").lower() in READERS
+        return (root_element_name(content.read(_HEAD_BYTES)) or "").lower() in READERS

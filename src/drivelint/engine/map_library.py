@@ -1,4 +1,4 @@
-"""The maps of a run: each read once, whichever drives are judged on it.
+"""Finds the map of each drive; each map is read once.
 
 Of a folder of maps each drive gets its own: the one that `maps.csv` (columns log, map) names, else the one of the log's
 name or of its folder's, else the log's own, else the only one of the log's geo reference, else the only one on whose lanes the
@@ -12,14 +12,23 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow.compute as pc
 
-from drivelint.engine.map_fit import DOUBT_SAMPLES, SAMPLES, ground, headings, on_map, reversed_road, vote, ways
+from drivelint.engine.map_fit import (
+    DOUBT_SAMPLES,
+    VOTE_SAMPLES,
+    compare_headings,
+    count_on_map,
+    lane_areas,
+    one_way_lanes,
+    reversed_road,
+    vote_handedness,
+)
 from drivelint.engine.map_folder import MANIFEST, MapFolder
 from drivelint.errors import MapError, UsageError
 from drivelint.formats.map_registry import load_map, read_source
 from drivelint.phrases import listed
 from drivelint.road import geo
 from drivelint.road.contract import MapSource
-from drivelint.road.handedness import correction, other
+from drivelint.road.handedness import correction_hint, opposite_side
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -28,11 +37,11 @@ if TYPE_CHECKING:
     import shapely
 
     from drivelint.drive.trace import DriveInput
-    from drivelint.engine.map_fit import Headings, Ways
-    from drivelint.road.contract import Environment
+    from drivelint.engine.map_fit import LaneHeadings, OneWayLanes
+    from drivelint.road.contract import MapTables
 
 MOVING_MPS = 1.0
-FAR_M = 50.0  # beyond the map's own lanes by this much, a drive is somewhere else
+OFF_MAP_M = 50.0  # beyond the map's own lanes by this much, a drive is somewhere else
 
 
 class MapLibrary:
@@ -58,13 +67,13 @@ class MapLibrary:
         self._handedness = handedness
         self._origin = origin
         self._grounds: dict[str, shapely.STRtree] = {}
-        self._ways: dict[str, Ways] = {}
-        self._loaded: dict[tuple[str, tuple[float, float], str | None], Environment] = {}
+        self._ways: dict[str, OneWayLanes] = {}
+        self._loaded: dict[tuple[str, tuple[float, float], str | None], MapTables] = {}
         self._unread: dict[Path, str] = {}
 
     @classmethod
     def of(cls, given: DriveInput) -> MapLibrary:
-        """Return the library that these options ask for. Errors: `MapError` for a map that cannot be read, `UsageError`."""
+        """Return the library for these options. Errors: `MapError` for a map that cannot be read, `UsageError`."""
         return cls(given.map, given.map_offset, given.handedness, origin=given.map_origin, folder=given.map_dir)
 
     def find(
@@ -74,7 +83,7 @@ class MapLibrary:
         offset: tuple[float, float] | None,
         states: pa.Table,
         reference: str | None = None,
-    ) -> Environment | None:
+    ) -> MapTables | None:
         """Return the environment for one drive.
 
         `log` is the drive's file, `offset` is the mapping's (the user's `--map-offset` goes before it), `states` the drive's
@@ -123,9 +132,9 @@ class MapLibrary:
         )
 
     def doubts(
-        self, log: Path, environment: Environment | None, states: pa.Table, reference: str | None = None
+        self, log: Path, environment: MapTables | None, states: pa.Table, reference: str | None = None
     ) -> dict[str, str]:
-        """Return what speaks against a map: its geo reference, the side of the road by its or the user's word, others not looked at.
+        """Return check id -> why the map may be wrong for this drive: geo reference, driving side, maps not looked at.
 
         Keys name the check. Errors: `MapError` where the traffic shows that the lanes run the other way.
         """
@@ -136,14 +145,19 @@ class MapLibrary:
             "map_unread": self._unread.get(log),
         }
         theirs = environment.tables["environment"]["geo_reference"][0].as_py()
-        if reference and theirs and not geo.same(reference, theirs) and geo.comparable(reference, theirs):
+        if (
+            reference
+            and theirs
+            and not geo.same_reference(reference, theirs)
+            and geo.different_places(reference, theirs)
+        ):
             found["geo_reference_differs"] = (
                 f"the log's coordinates are {reference!r}, the map's {theirs!r}: if they are not of one place and frame, give the "
                 "right --map or --map-offset"
             )
         return {check: text for check, text in found.items() if text}
 
-    def _side_doubt(self, log: Path, environment: Environment, states: pa.Table) -> str | None:
+    def _side_doubt(self, log: Path, environment: MapTables, states: pa.Table) -> str | None:
         if (environment.lanes_source or environment.handedness_source) in {"default", "traces"}:
             return None
         seen = self._headings(environment, states, DOUBT_SAMPLES)
@@ -151,31 +165,31 @@ class MapLibrary:
             raise MapError(
                 f"map {environment.environment_id}: the traffic of {log.name} runs against its lanes, on road {road} both ways: the "
                 f"side of the road ({environment.handedness} by {environment.handedness_source}) or the lanes' direction is wrong; "
-                f"{correction(environment.handedness, environment.handedness_source)}, or give another map"
+                f"{correction_hint(environment.handedness, environment.handedness_source)}, or give another map"
             )
         side, source = environment.handedness, environment.handedness_source
-        if vote(side, seen) in {None, side}:
+        if vote_handedness(side, seen) in {None, side}:
             return None
         said = "--handedness says" if source == "option" else f"the map says (by {source})"
         return (
-            f"{said} {side}, the traces fit {other(side)}: of {len(seen.agree)} headings looked at, {int((~seen.agree).sum())} are "
+            f"{said} {side}, the traces fit {opposite_side(side)}: of {len(seen.agree)} headings looked at, {int((~seen.agree).sum())} are "
             f"against the direction of their lane. {side} is taken. If that is wrong, every direction is wrong: "
-            f"{correction(side, source)}."
+            f"{correction_hint(side, source)}."
         )
 
-    def _sensed(self, environment: Environment, states: pa.Table) -> str | None:
+    def _sensed(self, environment: MapTables, states: pa.Table) -> str | None:
         assert environment.lanes is not None  # noqa: S101 - a reader that guesses says what
-        return vote(environment.lanes, self._headings(environment, states, SAMPLES))
+        return vote_handedness(environment.lanes, self._headings(environment, states, VOTE_SAMPLES))
 
-    def _headings(self, environment: Environment, states: pa.Table, most: int) -> Headings:
+    def _headings(self, environment: MapTables, states: pa.Table, most: int) -> LaneHeadings:
         speed = np.hypot(_floats(states, "vx_mps"), _floats(states, "vy_mps"))
         moving = states.select(["x_m", "y_m", "yaw_rad"]).filter(np.nan_to_num(speed) > MOVING_MPS)
         x_m, y_m, yaw_rad = (_floats(moving, name) for name in ("x_m", "y_m", "yaw_rad"))
-        return headings(self._lanes(environment), x_m, y_m, yaw_rad, most)
+        return compare_headings(self._lanes(environment), x_m, y_m, yaw_rad, most)
 
-    def _lanes(self, environment: Environment) -> Ways:
+    def _lanes(self, environment: MapTables) -> OneWayLanes:
         if environment.environment_id not in self._ways:
-            self._ways[environment.environment_id] = ways(environment)
+            self._ways[environment.environment_id] = one_way_lanes(environment)
         return self._ways[environment.environment_id]
 
     def _only_fitting(self, maps: MapFolder, log: Path, shift: tuple[float, float], states: pa.Table) -> MapSource:
@@ -203,12 +217,12 @@ class MapLibrary:
             f"{maps.folder}: {what} the place of {log.name}{besides}: name its map in {maps.folder / MANIFEST}"
         )
 
-    def _ground(self, environment: Environment) -> shapely.STRtree:
+    def _ground(self, environment: MapTables) -> shapely.STRtree:
         if environment.environment_id not in self._grounds:
-            self._grounds[environment.environment_id] = ground(environment)
+            self._grounds[environment.environment_id] = lane_areas(environment)
         return self._grounds[environment.environment_id]
 
-    def _load(self, source: MapSource, offset: tuple[float, float], sensed: str | None) -> Environment:
+    def _load(self, source: MapSource, offset: tuple[float, float], sensed: str | None) -> MapTables:
         key = (source.sha256, offset, sensed)
         if key not in self._loaded:
             self._loaded[key] = load_map(
@@ -217,18 +231,18 @@ class MapLibrary:
         return self._loaded[key]
 
 
-def _elsewhere(environment: Environment, lanes: shapely.STRtree, states: pa.Table) -> str | None:
+def _elsewhere(environment: MapTables, lanes: shapely.STRtree, states: pa.Table) -> str | None:
     """Return what shows that the map is of another place than the drive, or None."""
     drive, roads = _extent(states), _extent(environment.tables["lane_point"])
     if drive is None or roads is None:
         return None
     apart = max(drive[0] - roads[1], roads[0] - drive[1], drive[2] - roads[3], roads[2] - drive[3])
-    if apart > FAR_M:
+    if apart > OFF_MAP_M:
         return (
             f"its lanes lie in x {roads[0]:.0f}..{roads[1]:.0f}, y {roads[2]:.0f}..{roads[3]:.0f} m, "
             f"the drive in x {drive[0]:.0f}..{drive[1]:.0f}, y {drive[2]:.0f}..{drive[3]:.0f} m"
         )
-    looked, found = on_map(lanes, _floats(states, "x_m"), _floats(states, "y_m"))
+    looked, found = count_on_map(lanes, _floats(states, "x_m"), _floats(states, "y_m"))
     if looked and not found:
         return f"of {looked} positions looked at, none is on anything that it knows"
     return None

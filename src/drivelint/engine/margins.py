@@ -1,4 +1,4 @@
-"""The file of margins, which grows with the batches: in blocks of the same size, wherever batches and drives are cut."""
+"""Writes the margins of all batches to one Parquet file, in row groups of fixed size."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from drivelint.engine.memory import Memory
 
-BLOCK: Final = 1 << 20
+ROW_GROUP_ROWS: Final = 1 << 20
 """Rows of a row group: those of a drive of many egos are too many to hold at once."""
 _ORDER: Final = "drive_id, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, ref_id NULLS FIRST, t_ns"
 _COLUMNS: Final = (
@@ -38,7 +38,7 @@ class MarginFile:
             self._file = pq.ParquetWriter(self.path, schema, compression="zstd")
         for block in _blocks(con, memory):
             self._waiting.append(block)
-            while sum(rows.num_rows for rows in self._waiting) >= BLOCK:
+            while sum(rows.num_rows for rows in self._waiting) >= ROW_GROUP_ROWS:
                 self._write()
 
     def close(self) -> None:
@@ -52,8 +52,8 @@ class MarginFile:
         if self._file and self._waiting:
             rows = pa.Table.from_batches(self._waiting)
             # as one piece: where it was cut would show in the pages
-            self._file.write_table(rows.slice(0, BLOCK).combine_chunks(), row_group_size=BLOCK)
-            self._waiting = rows.slice(BLOCK).to_batches()
+            self._file.write_table(rows.slice(0, ROW_GROUP_ROWS).combine_chunks(), row_group_size=ROW_GROUP_ROWS)
+            self._waiting = rows.slice(ROW_GROUP_ROWS).to_batches()
 
 
 def _blocks(con: duckdb.DuckDBPyConnection, memory: Memory) -> Iterator[pa.RecordBatch]:
@@ -61,7 +61,7 @@ def _blocks(con: duckdb.DuckDBPyConnection, memory: Memory) -> Iterator[pa.Recor
     while True:
         try:
             rows = con.execute(f"SELECT {_COLUMNS} FROM margin ORDER BY {_ORDER} OFFSET ?", [sent])
-            for block in rows.to_arrow_reader(BLOCK):
+            for block in rows.to_arrow_reader(ROW_GROUP_ROWS):
                 yield block
                 sent += block.num_rows
         except (duckdb.OutOfMemoryException, OSError):  # Arrow's reader has one class for whatever the database says

@@ -1,4 +1,4 @@
-"""The memory of a run: what the database may take, and what gives way where that does not do. It never decides a verdict.
+"""Limits the memory of a run: raises the database's limit or judges less at once. It never changes a verdict.
 
 A drive that runs out of memory is judged again with fewer egos at once, until each is judged alone; only then the limit is lifted.
 """
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-DEFAULT: Final = 1_200_000_000
+DEFAULT_MEMORY: Final = 1_200_000_000
 """Bytes: measured to cost nothing on a drive of 600,000 states, and to hold one of 4.8 million in 2.3 GB instead of 13.7."""
-LEAST: Final = 100_000_000
+LEAST_MEMORY: Final = 100_000_000
 """Bytes with which a database can be opened and a small drive be judged."""
 
 
@@ -38,21 +38,21 @@ class Memory:
         self._limit = limit
         self._note = note
         self.limited = limit is not None
-        share = 1.0 if limit is None else min(1.0, limit / DEFAULT)
-        self.room = max(1, int(batch.MEETINGS * share))
+        share = 1.0 if limit is None else min(1.0, limit / DEFAULT_MEMORY)
+        self.room = max(1, int(batch.PART_PAIRS * share))
         """Meetings of one part of a drive: see `batch.parts`."""
 
     def halve(self, meetings: int) -> None:
-        """Let the next try have parts of at most half of the meetings of the one that did not fit."""
+        """Judge parts of at most half as many pairs as the part that did not fit."""
         self.room = max(1, meetings // 2)
 
     def lift(self) -> bool:
-        """Let the database take what the machine has. Return whether that is more than before."""
+        """Lift the database's memory limit to the machine's; return whether it was lower before."""
         if not self.limited or self._limit is None:
             return False
         self.limited = False
         given = store.lift_memory_limit(self._con)
-        self._note(f"{worded(self._limit)} of memory do not do (--memory): the database may take up to {given}")
+        self._note(f"{format_bytes(self._limit)} of memory do not do (--memory): the database may take up to {given}")
         return True
 
     def execute(self, sql: str) -> None:
@@ -60,7 +60,7 @@ class Memory:
         self.enough(lambda con: con.execute(sql), self._con)
 
     def enough(self, job: Callable[[duckdb.DuckDBPyConnection], T], con: duckdb.DuckDBPyConnection) -> T:
-        """Return what a job on a connection to the database does, which leaves nothing if it fails: with more memory if that is short."""
+        """Run a job on a connection and return its result; repeat it with more memory if that is short."""
         try:
             return job(con)
         except duckdb.OutOfMemoryException:
@@ -69,7 +69,7 @@ class Memory:
             return job(con)
 
 
-def peak() -> int | None:
+def peak_bytes() -> int | None:
     """Return the most bytes of memory that this process has had; None where the system does not tell."""
     try:
         import resource
@@ -79,6 +79,6 @@ def peak() -> int | None:
     return most if sys.platform == "darwin" else most * 1024
 
 
-def worded(n_bytes: int) -> str:
-    """Return a number of bytes as a person says it."""
+def format_bytes(n_bytes: int) -> str:
+    """Return a number of bytes as text in MB or GB."""
     return f"{n_bytes / 1e9:.1f} GB" if n_bytes >= 1e9 else f"{n_bytes / 1e6:.0f} MB"

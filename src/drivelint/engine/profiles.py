@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-DEFAULT = ("nominal", "observed")
+DEFAULT_PROFILES = ("nominal", "observed")
 """What an overtake is judged by if nobody says else: how it is planned, and how it was driven."""
 
 
@@ -55,7 +55,7 @@ def profile_table(profiles: dict[str, Profile], selected: Sequence[str]) -> pa.T
 
     Errors: `UsageError` for a name that no profile has, with the nearest one.
     """
-    chosen = set(selected or DEFAULT)
+    chosen = set(selected or DEFAULT_PROFILES)
     for name in sorted(chosen - profiles.keys()):
         raise UsageError(f"no profile {name!r}; {hint(name, profiles)}")
     rows = [

@@ -1,4 +1,4 @@
-"""The session on which drives are judged, batch by batch: fill the tables, derive, evaluate, clear."""
+"""Judges drives batch by batch: fills the tables, derives, evaluates, clears."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import duckdb
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.engine.batch import parts
+from drivelint.engine.batch import egos_left_out
 from drivelint.engine.derive import derive
 from drivelint.engine.margins import MarginFile
 from drivelint.engine.memory import Memory
@@ -36,7 +36,7 @@ class _PartTooLargeError(Exception):
 
 
 class BatchObserver(Protocol):
-    """Who looks at what was judged while the tables are there."""
+    """Called after each batch while its tables are still filled."""
 
     def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], /, *, first: bool, last: bool) -> None:
         """Look at a batch, or at the egos of a part of one drive: `first` and `last` of its parts or not."""
@@ -80,7 +80,7 @@ class JudgingSession:
 
     @property
     def margins_file(self) -> Path | None:
-        """Where the margins are; None: nobody asked for them."""
+        """The path of the margins file; None: none was asked for."""
         return None if self._margins is None else self._margins.path
 
     def knows(self, drive: Drive) -> bool:
@@ -121,10 +121,10 @@ class JudgingSession:
         with ExitStack() as undo:
             undo.callback(self._forget, ids)
             self._load(drives)
-            todo = parts(drives, self._memory.room)
+            todo = egos_left_out(drives, self._memory.room)
             for no, deferred in enumerate(todo):
                 if no:
-                    store.renew(self._con, store.living("part"))
+                    store.recreate_empty(self._con, store.tables_of_lifetime("part"))
                 if deferred:
                     store.insert(self._con, "deferred_ego", _egos(drives[0], deferred))
                 judged = {ego: n for ego, n in drives[0].meetings.items() if ego not in set(deferred)}
@@ -138,8 +138,8 @@ class JudgingSession:
                         raise _PartTooLargeError(sum(judged.values())) from error
                     raise
                 # a kept database has every ego
-                self._keep((t for t in store.living("part") if t != "deferred_ego"), again=no > 0)
-            self._keep(store.living("drive"))
+                self._keep((t for t in store.tables_of_lifetime("part") if t != "deferred_ego"), again=no > 0)
+            self._keep(store.tables_of_lifetime("drive"))
             undo.pop_all()
 
     def _judge_part(self, ids: Sequence[str], *, may_retry: bool) -> None:
@@ -160,7 +160,7 @@ class JudgingSession:
         if self._margins:
             self._margins.close()
         if self._kept:
-            self._keep(store.living("run"))
+            self._keep(store.tables_of_lifetime("run"))
             self._con.execute("DETACH kept")
             self._kept = None
 
@@ -168,7 +168,7 @@ class JudgingSession:
         environments = {d.environment.environment_id: d.environment for d in drives if d.environment}
         if not environments.keys() <= self._maps:
             self._maps = frozenset()  # until the new ones are whole: a failure here must not leave half a map behind
-            for table in store.living("map"):
+            for table in store.tables_of_lifetime("map"):
                 self._con.execute(f"DELETE FROM {table}")
             for _, environment in sorted(environments.items()):
                 known = self._con.execute(
@@ -180,7 +180,9 @@ class JudgingSession:
             derive(self._con, self._tables, of_the_map=True)
             self._maps = frozenset(environments)
             self._keep_maps(environments.keys() - self._kept_maps)
-        store.code_ids(self._con, store.living("drive", "part"), (d.trace.drive_id for d in drives), _actors(drives))
+        store.recreate_with_enums(
+            self._con, store.tables_of_lifetime("drive", "part"), (d.trace.drive_id for d in drives), _actors(drives)
+        )
         for table in drives[0].trace.tables:
             rows = pa.concat_tables([_on_map(d) if table == "data_log" else d.trace.tables[table] for d in drives])
             store.insert(self._con, table, rows)
@@ -198,14 +200,14 @@ class JudgingSession:
         if not self._kept:
             return
         for table in tables:
-            whole = again and ("ego_id" not in store.schema()[table] or table == "ego_clock")
+            whole = again and ("ego_id" not in store.column_comments()[table] or table == "ego_clock")
             known = f" EXCEPT FROM kept.{table}" if whole else ""
             self._memory.execute(f"INSERT INTO kept.{table} SELECT * FROM {table}{known}")
 
     def _keep_maps(self, ids: Iterable[str]) -> None:
         new = sorted(ids)
         if self._kept and new:
-            for table in store.living("map"):
+            for table in store.tables_of_lifetime("map"):
                 self._con.execute(
                     f"INSERT INTO kept.{table} SELECT * FROM {table} WHERE list_contains(?, environment_id)", [new]
                 )
@@ -218,14 +220,14 @@ class JudgingSession:
             raise RuleError(f"{row[0]} erred on a batch of {len(ids)} drives")
 
     def _clear(self) -> None:
-        store.renew(self._con, store.living("drive", "part"))
+        store.recreate_empty(self._con, store.tables_of_lifetime("drive", "part"))
 
     def _forget(self, ids: Sequence[str]) -> None:
         self._clear()
-        for table in store.living("run"):
-            if "drive_id" in store.schema()[table]:
+        for table in store.tables_of_lifetime("run"):
+            if "drive_id" in store.column_comments()[table]:
                 self._con.execute(f"DELETE FROM {table} WHERE list_contains(?, drive_id)", [list(ids)])
-        for table in store.living("drive", "part") if self._kept else ():  # parts of it may be there
+        for table in store.tables_of_lifetime("drive", "part") if self._kept else ():  # parts of it may be there
             self._con.execute(f"DELETE FROM kept.{table} WHERE list_contains(?, drive_id)", [list(ids)])
 
 
@@ -236,9 +238,9 @@ def _on_map(drive: Drive) -> pa.Table:
 
 
 def _actors(drives: Iterable[Drive]) -> set[str]:
-    held = set(store.living("drive", "part"))
+    held = set(store.tables_of_lifetime("drive", "part"))
     tables = [d.trace.tables[name] for d in drives for name in d.trace.tables if name in held]
-    columns = [table.column(c) for table in tables for c in table.column_names if c in store.ACTOR_IDS]
+    columns = [table.column(c) for table in tables for c in table.column_names if c in store.ACTOR_ID_COLUMNS]
     return {each for column in columns for each in pc.unique(column).to_pylist() if each is not None}
 
 

@@ -1,4 +1,4 @@
-"""Evaluation: the rules over the tables of a database, any number of drives and egos at once.
+"""Evaluates rules over the tables of a database, for all drives and egos at once.
 
 Every (subject, rule) gets at least one verdict row, by construction: what was decided before running, what the rule's
 statements left, or not applicable. Where a rule's SQL fails, that rule is `error` for the subjects that it was to
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from drivelint.errors import UsageError
 from drivelint.evaluate import stage
-from drivelint.evaluate.run import Explanation, Run
+from drivelint.evaluate.run import Evaluation, PlanRecorder
 from drivelint.evaluate.terms import Binding
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
 
-__all__ = ["evaluate", "explain"]
+__all__ = ["evaluate", "query_plans"]
 
 
 def evaluate(
@@ -48,26 +48,26 @@ def evaluate(
     if not rules:
         return
     bindings = [Binding(rule, no, params.get(rule.id, {})) for no, rule in enumerate(rules)]
-    run = Run(con, bindings, margins=margins, courses=courses, may_retry=may_retry)
+    run = Evaluation(con, bindings, margins=margins, courses=courses, may_retry=may_retry)
     try:
         run.judge()
     finally:
-        stage.clean_up(con)
+        stage.drop_tables(con)
 
 
-def explain(con: duckdb.DuckDBPyConnection, rule: Rule) -> list[str]:
-    """Return the physical plan of every statement that a rule can need, whatever the database holds.
+def query_plans(con: duckdb.DuckDBPyConnection, rule: Rule) -> list[str]:
+    """Return the physical plans of all statements that a rule may run.
 
     Errors: `duckdb.Error` where the rule's SQL does not fit the tables.
     """
     plans: list[str] = []
     for margins in (False, True):
         binding = Binding(rule, 0, {})
-        run = Explanation(con, [binding], margins=margins)
+        run = PlanRecorder(con, [binding], margins=margins)
         try:
             run.prepare()
             run.rule(binding)
         finally:
-            stage.clean_up(con)
+            stage.drop_tables(con)
         plans += run.plans
     return plans

@@ -1,4 +1,4 @@
-"""Where a rule holds: the conditions of its header and the automated driver's engagement, three-valued, as SQL over `ego_condition e`.
+"""Builds the SQL that decides whether a rule is in force: its header's conditions and the automated driver's engagement.
 
 Engagement costs nothing where it says nothing: `_watched` names the subjects with a step at which the automated driver
 does not drive, or may not; for all others every step is engaged.
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
 
-WATCHED = """
+CREATE_WATCHED = """
 CREATE OR REPLACE TEMP TABLE _watched AS
 SELECT s.drive_id, s.ego_id, bool_and(coalesce(NOT e.engaged, false)) AS never
 FROM step s
@@ -29,36 +29,36 @@ ROUNDING_MPS = 0.01
 ENGAGED = "(w.ego_id IS NULL OR e.engaged)"
 
 
-def restricts(rule: Rule) -> bool:
+def has_conditions(rule: Rule) -> bool:
     """Whether the rule's header names any condition."""
     return bool(rule.applies.words) or rule.applies.limited
 
 
-def engagement(alias: str) -> str:
+def engagement_joins(alias: str) -> str:
     """Return the joins that `ENGAGED` needs for rows with these keys and `t_ns`."""
     return _joins(alias, f"{alias}.t_ns", watching=True)
 
 
-def joins(rule: Rule, alias: str, time: str, *, watching: bool) -> str:
+def condition_joins(rule: Rule, alias: str, time: str, *, watching: bool) -> str:
     """Return the joins that `holds` and `doubt` need for rows with these keys and this time; '' for none."""
-    if not (restricts(rule) or watching):
+    if not (has_conditions(rule) or watching):
         return ""
     return _joins(alias, time, watching=watching)
 
 
-def holds(rule: Rule, *, watching: bool) -> str:
+def in_force_sql(rule: Rule, *, watching: bool) -> str:
     """Return whether the rule is in force: true, false or NULL. One condition that is false settles it."""
     return " AND ".join(_terms(rule, watching=watching).values()) or "true"
 
 
-def doubt(rule: Rule, *, watching: bool) -> str:
+def unknown_reason_sql(rule: Rule, *, watching: bool) -> str:
     """Return the reason code of the first condition that is not known, or NULL."""
     terms = _terms(rule, watching=watching)
     whens = " ".join(f"WHEN ({term}) IS NULL THEN '{name}_unknown'" for name, term in terms.items())
     return f"CASE {whens} END" if terms else "NULL::VARCHAR"
 
 
-def bound(rule: Rule) -> dict[str, object]:
+def bound_values(rule: Rule) -> dict[str, object]:
     """Return the values that the conditions bind."""
     least, most = rule.applies.limit_min_mps, rule.applies.limit_max_mps
     values: dict[str, object] = {
@@ -66,8 +66,8 @@ def bound(rule: Rule) -> dict[str, object]:
         "_limit_max": None if most is None else most + ROUNDING_MPS,
     }
     for name, words in rule.applies.words.items():
-        values[f"_is_{name}"] = conditions.covered(words)
-        values[f"_may_{name}"] = conditions.undecided(words)
+        values[f"_is_{name}"] = conditions.with_narrower_values(words)
+        values[f"_may_{name}"] = conditions.broader_values(words)
     return values
 
 

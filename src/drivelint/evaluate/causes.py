@@ -1,4 +1,4 @@
-"""Why a value that a rule needed is not known, where the rule itself gives no reason."""
+"""Finds why a value is unknown where the rule itself gives no reason."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ _LACKS = """CASE WHEN p.off_level THEN 'off_level' WHEN p.x_m IS NULL OR p.y_m I
         WHEN p.yaw_rad IS NULL THEN 'no_heading' WHEN p.length_m IS NULL OR p.width_m IS NULL THEN 'no_size' END"""
 """Why an object has no place, as a code."""
 
-NO_CAUSE = "('missing_step', 'null_value', 'applies_unknown')"
+CODES_WITHOUT_CAUSE = "('missing_step', 'null_value', 'applies_unknown')"
 """Codes that say at what time something is not known, and not why."""
 
 _HIDDEN = """why(CASE nearest.code WHEN 'lost' THEN 'object_lost' WHEN 'lost_behind' THEN 'object_lost_behind' WHEN 'appeared'
@@ -18,11 +18,11 @@ _SPEED = "why(CASE WHEN c.drive_id IS NOT NULL THEN '{0}_contradicted{1}' ELSE '
 _OBJECT = "{'object_id': p.object_id}"
 
 # why: the ego lacks something, or the object of the verdict, or somebody near has no place; else an ego that is off the lanes
-CAUSE = f"""
+SELECT_CAUSES = f"""
 WITH _doubted AS (
     SELECT DISTINCT drive_id, ego_id, start_ns, t_decides_ns AS t_ns, object_id, of_hidden, of_lanes
     FROM _closed_rule
-    WHERE verdict = 'unknown' AND reason IS NULL AND code IN {NO_CAUSE}
+    WHERE verdict = 'unknown' AND reason IS NULL AND code IN {CODES_WITHOUT_CAUSE}
 ), _tracked AS (
     SELECT drive_id, ego_id, object_id, min(t_ns) AS from_ns, max(t_ns) AS to_ns
     FROM pair SEMI JOIN _doubted d USING (drive_id, ego_id)

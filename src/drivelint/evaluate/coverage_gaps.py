@@ -1,13 +1,13 @@
-"""What the log does not show of the ego: a rule whose occasions it would hide says so, or "never happened" would be a guess."""
+"""Makes a rule unknown where a gap in the ego's data may hide an occasion of the rule."""
 
 from __future__ import annotations
 
 from typing import Final
 
-LEAST_S: Final = 1.0
+LEAST_GAP_S: Final = 1.0
 """Our default: shorter than this hides no occasion whole; what is cut by it is unknown in the rule's own tables."""
 
-BLIND = f"""
+CREATE_GAPS = f"""
 CREATE OR REPLACE TEMP TABLE _blind AS
 WITH _state AS (
     SELECT s.drive_id, s.ego_id, s.t_ns, s.k, n.signal,
@@ -26,14 +26,14 @@ WITH _state AS (
     UNION ALL
     SELECT drive_id, ego_id, NULL, lag(t_last_ns) OVER (PARTITION BY drive_id, ego_id ORDER BY seg), t_first_ns FROM _segment
 )
-SELECT * FROM _stretches WHERE b_ns - a_ns >= {round(LEAST_S * 1e9)}
+SELECT * FROM _stretches WHERE b_ns - a_ns >= {round(LEAST_GAP_S * 1e9)}
 """
 """Stretches of the ego's time without a position or heading (for rules that require a registration), without a known
 indicator (for rules that require that), or without any step: a hole in the log (`signal` NULL, for rules with reference
 points; an invariant has its own row for a hole that it reaches). Where nothing of the kind is ever known the signal is
 missing altogether, and the rule is not run."""
 
-OUTCOMES = """
+GAP_OUTCOMES = """
 SELECT b.rule_no, b.drive_id, b.ego_id, min(b.a_ns) AS t_start_ns, min({'a': b.a_ns, 'b': b.b_ns}).b AS t_end_ns, 'unknown' AS verdict,
     min({'a': b.a_ns, 'code': CASE signal WHEN 'indicator' THEN 'indicator_unknown' WHEN 'registration' THEN 'ego_not_placed'
         ELSE 'log_hole' END}).code AS code,

@@ -1,9 +1,9 @@
-"""One closing step for all rules: nobody is left without a verdict; every row gets number, place, sentence and id."""
+"""Writes the results of all rules: a verdict for every ego, each row with number, position, sentence and id."""
 
 from __future__ import annotations
 
 from drivelint.evaluate import causes, coverage_gaps, findings
-from drivelint.reasons.sentences import MEASURES, SENTENCE
+from drivelint.reasons.sentences import HAS_MEASURE_SQL, SENTENCE_SQL
 
 # clean groups of the first pass are outcomes too; a subject for which a rule erred has no other row of that rule
 _ALL = f"""
@@ -26,7 +26,7 @@ WITH _rows AS (
     SELECT rule_no, drive_id, ego_id, 'not_applicable' AS verdict, 'other_nation' AS code FROM _foreign
 ), _seen AS (
     SELECT * FROM _kept UNION ALL BY NAME
-    ({coverage_gaps.OUTCOMES})
+    ({coverage_gaps.GAP_OUTCOMES})
 )
 SELECT * FROM _seen UNION ALL BY NAME
 SELECT r.rule_no, s.drive_id, s.ego_id, 'not_applicable' AS verdict,
@@ -50,11 +50,11 @@ WITH _closed_rule AS (
         nullif(v.label, '') AS label), r.* EXCLUDE (rule_no), coalesce(s.start_ns, 0) AS start_ns,
         s.t_start_ns AS ego_from_ns, s.t_end_ns AS ego_to_ns
     FROM _closed v JOIN _rule r USING (rule_no) LEFT JOIN _subject s ON s.drive_id = v.drive_id AND s.ego_id = v.ego_id),
-_cause AS ({causes.CAUSE})
+_cause AS ({causes.SELECT_CAUSES})
 SELECT n.*, coalesce(n.reason, c.because) AS cause
 FROM _closed_rule n LEFT JOIN _cause c ON c.key.drive_id = n.drive_id AND c.key.ego_id = n.ego_id AND c.key.t_ns = n.t_decides_ns
     AND c.key.object_id = coalesce(n.object_id, '') AND c.key.of_hidden = n.of_hidden AND c.key.of_lanes = n.of_lanes
-    AND n.verdict = 'unknown' AND n.reason IS NULL AND n.code IN {causes.NO_CAUSE}
+    AND n.verdict = 'unknown' AND n.reason IS NULL AND n.code IN {causes.CODES_WITHOUT_CAUSE}
 """
 
 _FAILED = """
@@ -73,12 +73,12 @@ _numbered AS (
     SELECT n.*, w.cause_code, w.cause_args, row_number() OVER (PARTITION BY drive_id, ego_id, rule_id, profile, object_id
         ORDER BY coalesce(t_ref_ns, t_start_ns) NULLS LAST, t_start_ns NULLS LAST, t_end_ns NULLS LAST,
             ref_id NULLS LAST, code) - 1 AS occurrence,
-        {SENTENCE}, {MEASURES} AS reason_measures
+        {SENTENCE_SQL}, {HAS_MEASURE_SQL} AS reason_measures
     FROM _named n LEFT JOIN _worded w USING (rule_no, cause, start_ns))
 SELECT v.drive_id, v.ego_id, rule_id, rule_version, kind, profile, severity, object_id,
     occurrence::INTEGER AS occurrence, ref_id, t_ref_ns, t_start_ns, t_end_ns,
     t_worst_ns, verdict, code AS reason_code, sentence AS reason, cause_code, cause_args, reason_measures, observed, required, margin, unit,
-    coalesce(verdict = 'pass' AND {findings.NEAR}, false) AS near_miss,
+    coalesce(verdict = 'pass' AND {findings.IS_NEAR_MISS}, false) AS near_miss,
     coalesce(n_expected, 0) AS n_expected, coalesce(n_judged, 0) AS n_judged, p.x_m, p.y_m, p.lanelet_id,
     CASE WHEN of_others AND verdict IN ('pass', 'fail', 'not_applicable') AND code <> 'other_nation'
         AND (coalesce(g.gone_ns <= t_end_ns, g.gone_ns IS NOT NULL) OR coalesce(g.to_come_ns >= t_start_ns, g.to_come_ns IS NOT NULL))
@@ -92,7 +92,7 @@ INSERT INTO finding BY NAME
 WITH _numbered AS (
     SELECT n.*, w.cause_code, w.cause_args, (row_number() OVER (PARTITION BY drive_id, ego_id, rule_id, profile, object_id
         ORDER BY t_start_ns, t_end_ns, ref_id NULLS LAST) - 1)::INTEGER AS occurrence,
-        {SENTENCE}, {MEASURES} AS reason_measures
+        {SENTENCE_SQL}, {HAS_MEASURE_SQL} AS reason_measures
     FROM (SELECT *, NULL::VARCHAR AS label FROM _failed) n
     LEFT JOIN _worded w USING (rule_no, cause, start_ns))
 SELECT sha256(to_json([v.sha256, v.ego_id, rule_id, profile, object_id,
@@ -110,7 +110,7 @@ SELECT m.* EXCLUDE (rule_no) REPLACE (nullif(m.profile, '') AS profile, nullif(m
 ANTI JOIN _error e ON e.rule_no = m.rule_no AND e.drive_id = m.drive_id AND e.ego_id = m.ego_id
 """
 
-COURSES = """
+INSERT_COURSES = """
 INSERT INTO course BY NAME
 WITH _named AS (SELECT c.* REPLACE (nullif(c.profile, '') AS profile, nullif(c.object_id, '') AS object_id), r.rule_id
     FROM _course c JOIN _rule r USING (rule_no)), _whose AS (
@@ -129,9 +129,9 @@ GROUP BY f.finding_id, f.drive_id, f.ego_id, f.rule_id, f.profile, f.object_id, 
 """
 """Run after these, if the courses of findings and near misses are asked for."""
 
-BEFORE_WORDS = (coverage_gaps.BLIND, _ALL, _NAMED, _FAILED)
+COLLECT_STATEMENTS = (coverage_gaps.CREATE_GAPS, _ALL, _NAMED, _FAILED)
 """Run in this order once every rule has left its outcomes."""
-CAUSES = "SELECT rule_no, cause, start_ns FROM _named UNION ALL SELECT rule_no, cause, start_ns FROM _failed"
+REASONS_TO_WORD = "SELECT rule_no, cause, start_ns FROM _named UNION ALL SELECT rule_no, cause, start_ns FROM _failed"
 """What is put into words then."""
-STATEMENTS = (_VERDICTS, _FINDINGS, _MARGINS)
+INSERT_STATEMENTS = (_VERDICTS, _FINDINGS, _MARGINS)
 """Run in this order after that."""

@@ -1,4 +1,4 @@
-"""What every kind of rule leaves beside its verdicts: failing stretches, and (asked for) the steps around them, or all."""
+"""Builds the SQL that keeps failing stretches, courses around them and around near misses, and margins."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from drivelint.evaluate import terms
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
-NEAR = "round(margin, 6) < near_margin"
+IS_NEAR_MISS = "round(margin, 6) < near_margin"
 """What makes a kept row a near miss; of a row of outcomes joined to `_rule`."""
-MOST = 20
+MOST_NEAR_COURSES = 20
 """Near misses of an ego, rule and profile whose course is kept."""
 _SERIES = "drive_id, ego_id, object_id, profile, ref_id"
 
 
-def stretches(rule: Rule) -> str:
+def stretches_sql(rule: Rule) -> str:
     """SQL that appends to `_stretch` the failing runs of `_judged`: close ones as one, but never across a hole."""
     combined = rule.combine != "each"
     follows, order = (
@@ -38,17 +38,17 @@ WITH _fails AS (
 ), _runs AS (
     SELECT *, sum(fresh) OVER (PARTITION BY {_SERIES}, seg ORDER BY {order} ROWS UNBOUNDED PRECEDING) AS run FROM _fails
 ), _worst AS (
-    SELECT {_SERIES}, seg, run, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.worst(rule)} AS worst
+    SELECT {_SERIES}, seg, run, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.deciding_step(rule)} AS worst
         FROM _runs GROUP BY ALL)
 SELECT $_no AS rule_no, drive_id, ego_id, {"worst.who" if combined else "object_id"} AS object_id, profile, ref_id,
     t_start_ns, t_end_ns, worst.t AS t_worst_ns, coalesce(worst.code, 'violated') AS code, worst.reason AS reason,
-    {terms.numbers(rule, "worst.")}
+    {terms.measure_columns(rule, "worst.")}
 FROM _worst
 """
 
 
-def courses(rule: Rule) -> str:
-    """SQL that appends to `_course` how the measure went around the failing stretches of a rule.
+def courses_sql(rule: Rule) -> str:
+    """Return the SQL that appends to `_course` the measure's values around the failing stretches of a rule.
 
     From 2 s before to 2 s after a stretch and 5 s around its worst step, but at most 30 s from that; thinned to some 150
     steps, of which each is the worst of its share.
@@ -62,7 +62,7 @@ WITH _seen AS (
         least(t_worst_ns + 30_000_000_000, greatest(t_worst_ns + 5_000_000_000, t_end_ns + 2_000_000_000)) AS t_to_ns
     FROM _stretch s WHERE rule_no = $_no
 )
-SELECT s.rule_no, s.drive_id, s.ego_id, {series}, false AS near, j.t_ns, {terms.numbers(rule, "j.")}, j.holds
+SELECT s.rule_no, s.drive_id, s.ego_id, {series}, false AS near, j.t_ns, {terms.measure_columns(rule, "j.")}, j.holds
 FROM _seen s
 JOIN _judged j ON j.drive_id = s.drive_id AND j.ego_id = s.ego_id AND j.profile IS NOT DISTINCT FROM s.profile
     AND j.ref_id IS NOT DISTINCT FROM s.ref_id{whose} AND j.t_ns BETWEEN s.t_from_ns AND s.t_to_ns
@@ -74,27 +74,27 @@ QUALIFY row_number() OVER (
 """
 
 
-def n_near(rule_no: int, table: str, kept: str) -> str:
+def near_miss_count_sql(rule_no: int, table: str, kept: str) -> str:
     """SQL that counts the near misses of a rule among the kept rows of a table of outcomes."""
-    return f"SELECT count(*) FROM {table} JOIN _rule USING (rule_no) WHERE rule_no = {rule_no} AND {kept} AND {NEAR}"
+    return f"SELECT count(*) FROM {table} JOIN _rule USING (rule_no) WHERE rule_no = {rule_no} AND {kept} AND {IS_NEAR_MISS}"
 
 
-def settled_courses(rule: Rule) -> str:
-    """SQL like `near_courses` for groups that the first pass settled: their condition rows are just the steps judged."""
+def settled_courses_sql(rule: Rule) -> str:
+    """Return the SQL of near-miss courses for groups that the first pass settled."""
     near = f"""SELECT g.drive_id, g.ego_id, coalesce(g.object_id, '') AS object_id, '' AS profile, NULL::INTEGER AS ref_id, '' AS label,
         g.t_start_ns, g.t_end_ns, g.t_worst_ns, g.margin
-    FROM _group g JOIN _rule r USING (rule_no) WHERE rule_no = $_no AND g.clean AND {NEAR}"""
+    FROM _group g JOIN _rule r USING (rule_no) WHERE rule_no = $_no AND g.clean AND {IS_NEAR_MISS}"""
     who = "coalesce(object_id, '')" if rule.per_object else "''"
     steps = f"""SELECT drive_id, ego_id, {who} AS object_id, '' AS profile, NULL::INTEGER AS ref_id, '' AS label, t_ns,
         observed, required, holds, gain FROM _state"""
-    return _near(rule, near, f"{terms.state(rule)}, _steps AS ({steps})", "_steps")
+    return _near(rule, near, f"{terms.condition_ctes(rule)}, _steps AS ({steps})", "_steps")
 
 
-def near_courses(rule: Rule) -> str:
+def near_miss_courses_sql(rule: Rule) -> str:
     """SQL that appends to `_course` how the measure went around near misses of `_outcome`, the closest per ego and profile."""
     near = f"""SELECT o.drive_id, o.ego_id, coalesce(o.object_id, '') AS object_id, coalesce(o.profile, '') AS profile, o.ref_id,
         coalesce(o.label, '') AS label, o.t_start_ns, o.t_end_ns, o.t_worst_ns, o.margin
-    FROM _outcome o JOIN _rule r USING (rule_no) WHERE rule_no = $_no AND o.verdict = 'pass' AND {NEAR}"""
+    FROM _outcome o JOIN _rule r USING (rule_no) WHERE rule_no = $_no AND o.verdict = 'pass' AND {IS_NEAR_MISS}"""
     return _near(rule, near, "", "_judged")
 
 
@@ -107,9 +107,9 @@ def _near(rule: Rule, near: str, before: str, steps: str) -> str:
     return f"""
 INSERT INTO _course BY NAME
 WITH {before + ", " if before else ""}_near AS ({near}
-    QUALIFY row_number() OVER (PARTITION BY drive_id, ego_id, profile ORDER BY margin, t_worst_ns, object_id, ref_id) <= {MOST}
+    QUALIFY row_number() OVER (PARTITION BY drive_id, ego_id, profile ORDER BY margin, t_worst_ns, object_id, ref_id) <= {MOST_NEAR_COURSES}
 )
-SELECT $_no AS rule_no, s.drive_id, s.ego_id, {series}, true AS near, j.t_ns, {terms.numbers(rule, "j.")}, j.holds
+SELECT $_no AS rule_no, s.drive_id, s.ego_id, {series}, true AS near, j.t_ns, {terms.measure_columns(rule, "j.")}, j.holds
 FROM _near s
 JOIN {steps} j ON j.drive_id = s.drive_id AND j.ego_id = s.ego_id AND j.profile = s.profile
     AND j.ref_id IS NOT DISTINCT FROM s.ref_id{whose}{episode}
@@ -121,12 +121,12 @@ QUALIFY row_number() OVER (
 """
 
 
-def margins(rule: Rule) -> str:
+def margins_sql(rule: Rule) -> str:
     """SQL that appends every expected step of `_judged` to `_margin`."""
     who = "who" if rule.combine != "each" else "object_id"
     return f"""
 INSERT INTO _margin BY NAME
 SELECT $_no AS rule_no, drive_id, ego_id, profile, {who} AS object_id, ref_id, t_ns,
-    {terms.numbers(rule)}, holds
+    {terms.measure_columns(rule)}, holds
 FROM _judged WHERE t_ns IS NOT NULL AND {"applies IS DISTINCT FROM false" if rule.kind == "invariant" else "true"}
 """

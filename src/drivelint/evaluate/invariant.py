@@ -38,7 +38,7 @@ def grid_of(rule: Rule) -> str | None:
     if (
         rule.kind != "invariant"
         or "applies" in rule.sections
-        or applicability.restricts(rule)
+        or applicability.has_conditions(rule)
         or rule.profiled
         or rule.exempt_after_s != 0
     ):
@@ -53,7 +53,7 @@ def _default_grid(per_object: bool) -> str:
     return f"SELECT a.drive_id, a.ego_id, a.t_ns, a.object_id, b.k, b.seg FROM pair a JOIN step b ON {_SAME}"
 
 
-GRID_GROUPS = f"""
+CREATE_GRID_GROUPS = f"""
 CREATE OR REPLACE TEMP TABLE _grid_group AS
 WITH _seen AS (
     SELECT grid, {_GROUP}, count(*) AS n, sum(hash(t_ns)::HUGEINT) AS signature,
@@ -68,37 +68,37 @@ FROM _seen g LEFT JOIN _watched w ON w.drive_id = g.drive_id AND w.ego_id = g.eg
 without a gap: the automated driver is engaged at every step."""
 
 
-def first_pass(rule: Rule, partial: bool) -> str:
-    """SQL that appends to `_group`: a group whose condition rows are just its grid, applicable and kept, is clean.
+def first_pass_sql(rule: Rule, partial: bool) -> str:
+    """Return the SQL that appends to `_group` the groups that pass on all their steps without a gap.
 
     Just its grid: the same number of rows and the same sum of the time stamps' 64-bit hashes, which a lost or a doubled
     row cannot keep. Groups that are whole and nowhere applicable are left out; all others wait for the second pass.
     """
-    numbers = terms.numbers(rule, "s.worst.")
+    numbers = terms.measure_columns(rule, "s.worst.")
     who = " AND g.object_id = s.object_id" if rule.per_object else ""
     return f"""
 INSERT INTO _group BY NAME
-WITH {terms.state(rule)}, _seen AS (
+WITH {terms.condition_ctes(rule)}, _seen AS (
     SELECT {_GROUP}, count(*) AS n, sum(hash(t_ns)::HUGEINT) AS signature, count(*) FILTER (applies
         AND holds) AS n_kept,
         count(*) FILTER (NOT applies) AS n_out, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns,
-            {terms.worst(rule)} AS worst
+            {terms.deciding_step(rule)} AS worst
     FROM _state GROUP BY ALL)
 SELECT $_no AS rule_no, g.drive_id, g.ego_id, g.object_id, coalesce(g.whole AND s.n_kept = s.n, false) AS clean,
     s.t_start_ns, s.t_end_ns, g.n, s.worst.t AS t_worst_ns, {numbers}, coalesce(s.worst.code, 'kept') AS code,
         s.worst.reason AS reason
 FROM _grid_group g
 LEFT JOIN _seen s ON g.drive_id = s.drive_id AND g.ego_id = s.ego_id{who} AND g.n = s.n AND g.signature = s.signature
-{terms.todo(partial, "g")}
+{terms.todo_join(partial, "g")}
 WHERE g.grid = '{OBJECT_GRID if rule.per_object else STEP_GRID}' AND s.n_out IS DISTINCT FROM g.n
 """
 
 
-def profile_set(rule: Rule) -> str:
+def profile_set_sql(rule: Rule) -> str:
     """SQL for `_profile_set`: per subject the profiles asked for and those that the condition returns, or ''."""
     return f"""
 CREATE OR REPLACE TEMP TABLE _profile_set AS
-WITH {terms.state(rule)}, _known AS (
+WITH {terms.condition_ctes(rule)}, _known AS (
     SELECT s.drive_id, s.ego_id, p.profile FROM _subject s CROSS JOIN (SELECT profile FROM profile WHERE selected) p
     UNION SELECT drive_id, ego_id, profile FROM _state WHERE profile IS NOT NULL)
 SELECT * FROM _known UNION ALL
@@ -135,25 +135,25 @@ def _grid(rule: Rule, partial: bool, unsettled: bool, watching: bool) -> str:
         keep = " SEMI JOIN (SELECT * FROM _group WHERE rule_no = $_no AND NOT clean) _u"
         keep += " ON a.drive_id = _u.drive_id AND a.ego_id = _u.ego_id"
         keep += " AND a.object_id = _u.object_id" if rule.per_object else ""
-    joins = applicability.joins(rule, "a", "a.t_ns", watching=watching)
+    joins = applicability.condition_joins(rule, "a", "a.t_ns", watching=watching)
     if not joins:
         return f"""{first}, _grid AS (SELECT a.*, CASE WHEN a.applies IS NULL THEN 'applies_unknown' END AS doubt
             FROM _base a
-    {terms.todo(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
+    {terms.todo_join(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
     return f"""{first}, _restricted AS (
-    SELECT a.* EXCLUDE (applies), a.applies AND {applicability.holds(rule, watching=watching)} AS applies,
-        CASE WHEN a.applies IS NULL THEN 'applies_unknown' ELSE {applicability.doubt(rule, watching=watching)} END AS doubt
+    SELECT a.* EXCLUDE (applies), a.applies AND {applicability.in_force_sql(rule, watching=watching)} AS applies,
+        CASE WHEN a.applies IS NULL THEN 'applies_unknown' ELSE {applicability.unknown_reason_sql(rule, watching=watching)} END AS doubt
     FROM _base a
     {joins}
-), _grid AS (SELECT a.* FROM _restricted a{terms.todo(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
+), _grid AS (SELECT a.* FROM _restricted a{terms.todo_join(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
 
 
-def asked(rule: Rule, partial: bool, watching: bool) -> str:
-    """SQL for `_asked`: the grid of a rule that has no first pass. Empty: nothing to judge, its condition is not looked at."""
+def grid_sql(rule: Rule, partial: bool, watching: bool) -> str:
+    """Return the SQL for `_asked`: the grid of a rule without a first pass; empty where nothing is to be judged."""
     return f"CREATE OR REPLACE TEMP TABLE _asked AS WITH {_grid(rule, partial, False, watching)} SELECT * FROM _grid"
 
 
-def second_pass(rule: Rule, partial: bool, unsettled: bool, watching: bool) -> str:
+def second_pass_sql(rule: Rule, partial: bool, unsettled: bool, watching: bool) -> str:
     """SQL for `_judged`: every step of the grid, judged or not; '' stands for no object, profile or label.
 
     The grid is what a first pass left unsettled, or `_asked`.
@@ -183,7 +183,7 @@ WHERE s.seg IS NULL OR k_begin = s.k_first OR t_ns - t_begin_ns >= $_exempt_ns""
     grid = _grid(rule, partial, True, watching) if unsettled else "_grid AS (SELECT * FROM _asked)"
     return f"""
 CREATE OR REPLACE TEMP TABLE _judged AS
-WITH {terms.state(rule)}, {grid}, _joined AS (
+WITH {terms.condition_ctes(rule)}, {grid}, _joined AS (
     SELECT g.drive_id, g.ego_id, coalesce(g.object_id, '') AS object_id,
         {"p.profile" if rule.profiled else "''"} AS profile,
         coalesce(g.label, '') AS label, NULL::INTEGER AS ref_id, g.t_ns, g.k, g.seg,
@@ -198,7 +198,7 @@ WITH {terms.state(rule)}, {grid}, _joined AS (
 """
 
 
-FAULTS = """
+INSERT_ERRORS = """
 INSERT INTO _error
 SELECT $_no, drive_id, ego_id, 'rule_error', CASE WHEN max(n_rows) > 1
     THEN format('the condition returned {} rows for one step (first at {:.3f} s): it must return one', max(n_rows),
@@ -212,8 +212,8 @@ GROUP BY drive_id, ego_id
 """Appends to `_error` the subjects for which the rule's rows are not one per step of the ego."""
 
 
-def episodes(rule: Rule) -> str:
-    """SQL that appends to `_outcome` one row per episode of `_judged`; only series with a gap are walked by step."""
+def episodes_sql(rule: Rule) -> str:
+    """Return the SQL that appends to `_outcome` one row per episode of `_judged`."""
     return f"""
 INSERT INTO _outcome BY NAME
 WITH _live AS (SELECT * FROM _judged WHERE applies IS DISTINCT FROM false
@@ -225,7 +225,7 @@ WITH _live AS (SELECT * FROM _judged WHERE applies IS DISTINCT FROM false
     SELECT l.*, 0 AS episode FROM _live l SEMI JOIN (SELECT * FROM _flagged WHERE NOT broken) f USING ({_SERIES})
 ), _all AS (
     SELECT {_SERIES}, episode, count(*) AS n_expected, count(holds) AS n_judged, count(*) FILTER (NOT holds) AS n_fail,
-        min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.worst(rule)} AS worst, {terms.first_unknown(rule)} AS unknown
+        min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.deciding_step(rule)} AS worst, {terms.first_unknown_step(rule)} AS unknown
     FROM _rows GROUP BY ALL
 ), _decided AS (SELECT *, CASE WHEN n_fail > 0 THEN 'fail' WHEN n_judged < n_expected THEN 'unknown'
     ELSE 'pass' END AS verdict FROM _all)
@@ -234,12 +234,13 @@ SELECT $_no AS rule_no, {_SERIES}, t_start_ns, t_end_ns, worst.t AS t_worst_ns, 
     CASE verdict WHEN 'unknown' THEN unknown.code WHEN 'fail' THEN coalesce(worst.code, 'violated')
         ELSE coalesce(worst.code, 'kept') END AS code,
     CASE verdict WHEN 'unknown' THEN unknown.reason ELSE worst.reason END AS reason,
-    {terms.numbers(rule, "worst.")}, {terms.finite("unknown.observed")} AS bound, unknown.required AS asked, n_expected, n_judged
+    {terms.measure_columns(rule, "worst.")},
+    {terms.finite_or_null("unknown.observed")} AS bound, unknown.required AS asked, n_expected, n_judged
 FROM _decided
 """
 
 
-HOLES = f"""
+INSERT_HOLES = f"""
 INSERT INTO _outcome BY NAME
 WITH _across AS (
     SELECT {_OBJECT}, t_ns, seg, lag(t_ns) OVER w AS t_prev_ns, lag(seg) OVER w AS seg_prev
@@ -267,7 +268,7 @@ FROM _holes
 """Appends a row of its own for each hole between two applicable steps that the rule reaches from either side."""
 
 
-def lost_objects(rule: Rule, partial: bool, watching: bool) -> str:
+def lost_objects_sql(rule: Rule, partial: bool, watching: bool) -> str:
     """SQL that appends one unknown row per object whose track ends while it could still have been there."""
     profiles = "JOIN _profile_set p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id" if rule.profiled else ""
     return f"""
@@ -281,7 +282,7 @@ SELECT $_no AS rule_no, l.drive_id, l.ego_id, l.object_id, {"p.profile" if rule.
 FROM lost_object l JOIN _subject s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id {profiles}
 CROSS JOIN LATERAL (SELECT l.t_from_ns - 1 AS t_ns) t
 LEFT JOIN pair q ON q.drive_id = l.drive_id AND q.ego_id = l.ego_id AND q.object_id = l.object_id AND q.t_ns = t.t_ns
-{applicability.joins(rule, "l", "l.t_from_ns", watching=watching)}
-{terms.todo(partial, "l")}
-WHERE ({applicability.holds(rule, watching=watching)}) IS DISTINCT FROM false
+{applicability.condition_joins(rule, "l", "l.t_from_ns", watching=watching)}
+{terms.todo_join(partial, "l")}
+WHERE ({applicability.in_force_sql(rule, watching=watching)}) IS DISTINCT FROM false
 """

@@ -1,4 +1,4 @@
-"""Rules with an assertion reference point: executions, and pre- and postconditions, temporal and physical.
+"""Builds the SQL of rules with reference points: executions, preconditions and postconditions.
 
 References come first; where there is none the rule stops. Then the points that must be judged (`reference_step`), the
 conditions left-joined to them on keys alone (`_judged`), and one outcome per reference, profile and object (unless combined).
@@ -18,18 +18,18 @@ if TYPE_CHECKING:
 _SERIES = "ref_id, drive_id, ego_id, object_id, profile"
 
 
-def raw_references(rule: Rule, partial: bool) -> str:
+def raw_references_sql(rule: Rule, partial: bool) -> str:
     """SQL for `_raw_reference`: the author's reference points of the subjects that are to be judged."""
     return f"""
 CREATE OR REPLACE TEMP TABLE _raw_reference AS
 WITH _author AS (
 {rule.sections["reference"]}
 ) SELECT r.* FROM _author r SEMI JOIN _subject s ON r.drive_id = s.drive_id
-    AND r.ego_id = s.ego_id{terms.todo(partial, "r")}
+    AND r.ego_id = s.ego_id{terms.todo_join(partial, "r")}
 """
 
 
-def references(columns: Sequence[str]) -> str:
+def references_sql(columns: Sequence[str]) -> str:
     """SQL for `reference`, the table that conditions and anchors see: `ref_id` is 0.. over all subjects."""
     others = [c.replace('"', '""') for c in columns if c not in {"drive_id", "ego_id", "t_ns", "object_id"}]
     rest = [f'"{c}" NULLS LAST' for c in others]
@@ -41,8 +41,8 @@ SELECT (row_number() OVER (ORDER BY {order}) - 1)::INTEGER AS ref_id, * FROM _ra
 """
 
 
-def occasions(rule: Rule, own_object: bool, watching: bool) -> str:
-    """SQL for `_occasion`: one row per reference, with its window, whether the rule applies there, else why it may not."""
+def windows_sql(rule: Rule, own_object: bool, watching: bool) -> str:
+    """Return the SQL for `_occasion`: each reference point with its window, and whether the rule applies there."""
     start, end = {
         "precondition": ("r.t_ns - $_window_ns", "r.t_ns"),
         "postcondition": ("r.t_ns", "r.t_ns + $_window_ns"),
@@ -56,14 +56,14 @@ SELECT r.ref_id, r.ref_id - min(r.ref_id) OVER (PARTITION BY r.drive_id, r.ego_i
     r.drive_id::VARCHAR AS drive_id,
     r.ego_id::VARCHAR AS ego_id, {"r.object_id" if own_object else "NULL"}::VARCHAR AS object_id,
         r.t_ns::BIGINT AS t_ref_ns,
-    ({start})::BIGINT AS a_ns, ({end})::BIGINT AS b_ns, {applicability.holds(rule, watching=watching)} AS applies,
-    {applicability.doubt(rule, watching=watching)} AS doubt
+    ({start})::BIGINT AS a_ns, ({end})::BIGINT AS b_ns, {applicability.in_force_sql(rule, watching=watching)} AS applies,
+    {applicability.unknown_reason_sql(rule, watching=watching)} AS doubt
 FROM reference r
-{applicability.joins(rule, "r", "r.t_ns", watching=watching)}
+{applicability.condition_joins(rule, "r", "r.t_ns", watching=watching)}
 """
 
 
-def points(rule: Rule) -> str:
+def reference_steps_sql(rule: Rule) -> str:
     """SQL for `reference_step`: where each reference is judged; t_ns is NULL for an anchor that is not known."""
     keys = "o.ref_id, o.ref_no, o.drive_id, o.ego_id, o.object_id"
     asked = "o.applies AND o.t_ref_ns IS NOT NULL"
@@ -91,7 +91,7 @@ LEFT JOIN step s ON s.drive_id = p.drive_id AND s.ego_id = p.ego_id AND s.t_ns =
 """
 
 
-def judged(rule: Rule, own_object: bool, watching: bool) -> str:
+def judged_steps_sql(rule: Rule, own_object: bool, watching: bool) -> str:
     """SQL for `_judged`: every expected point, judged or not; combined over objects where the rule says so.
 
     A point of a window at which the automated driver does not drive is not judged: what happens there is not its doing.
@@ -114,7 +114,7 @@ def judged(rule: Rule, own_object: bool, watching: bool) -> str:
     empty = f"CASE WHEN g.sensor_range_m IS NULL THEN {'true' if rule.combine == 'all' else 'false'} END"
     return f"""
 CREATE OR REPLACE TEMP TABLE _judged AS
-WITH {terms.state(rule)}, _grid AS ({source}
+WITH {terms.condition_ctes(rule)}, _grid AS ({source}
 ), _joined AS (
     SELECT g.ref_no AS ref_id, g.drive_id, g.ego_id, g.object_id, {"p.profile" if rule.profiled else "''"} AS profile,
         g.t_ns, g.seg, v.t_ns IS NULL OR v.applies AS applies, v.observed, v.required,
@@ -127,7 +127,7 @@ WITH {terms.state(rule)}, _grid AS ({source}
         CASE WHEN NOT ({human}) THEN v.reason END AS reason
     FROM _grid g {"JOIN _profile_set p ON g.drive_id = p.drive_id AND g.ego_id = p.ego_id" if rule.profiled else ""}
     LEFT JOIN _state v ON {on}
-    {applicability.engagement("g") if watching else ""}
+    {applicability.engagement_joins("g") if watching else ""}
 ), _expected AS (SELECT * FROM _joined WHERE applies IS DISTINCT FROM false
 ){_combination(rule) if combined else ", _series AS (SELECT *, object_id AS who, 1 AS n_same FROM _expected)"}
 SELECT * REPLACE (coalesce(object_id, '') AS object_id, coalesce(who, '') AS who), row_number()
@@ -153,7 +153,7 @@ def _crowd(combined: bool) -> str:
 
 def _combination(rule: Rule) -> str:
     """CTE `_series`: the objects of one point as one step, by three-valued all or any; `who` decided it."""
-    decides = terms.pick(2, 0, 1) if rule.combine == "all" else terms.pick(0, 2, 1, "-")
+    decides = terms.step_by_rank(2, 0, 1) if rule.combine == "all" else terms.step_by_rank(0, 2, 1, "-")
     decides = decides.replace("'observed': observed", "'who': object_id, 'gain': gain, 'observed': observed")
     return f""", _same AS (
     SELECT ref_id, drive_id, ego_id, profile, t_ns, seg, count(*) - count(DISTINCT coalesce(object_id,
@@ -166,7 +166,7 @@ def _combination(rule: Rule) -> str:
     FROM _same)"""
 
 
-FAULTS = f"""
+INSERT_ERRORS = f"""
 INSERT INTO _error
 SELECT $_no, drive_id, ego_id, 'rule_error',
     format('the condition returned {{}} rows for one step (first at {{:.3f}} s): it must return one', max(n_rows),
@@ -202,7 +202,7 @@ def _coverage(rule: Rule) -> str:
     FROM _seen)"""
 
 
-def outcomes(rule: Rule, own_object: bool) -> str:
+def outcomes_sql(rule: Rule, own_object: bool) -> str:
     """SQL that appends to `_outcome` one row per reference, profile and (combine = each) object present."""
     crowd = rule.per_object and not own_object
     decided = "coalesce(n_hold, 0) > 0" if rule.quantifier == "eventually" else "coalesce(n_fail, 0) > 0"
@@ -223,7 +223,7 @@ INSERT INTO _outcome BY NAME
 WITH {_coverage(rule)}, _steps AS (
     SELECT {_SERIES}, count(*) AS n_expected, count(holds) AS n_judged, count(*) FILTER (NOT holds) AS n_fail,
         count(*) FILTER (holds) AS n_hold,
-        {terms.worst(rule)} AS worst, {terms.first_unknown(rule)} AS unknown
+        {terms.deciding_step(rule)} AS worst, {terms.first_unknown_step(rule)} AS unknown
     FROM _judged GROUP BY ALL
 ), _all AS (
     SELECT o.*, {"p.profile" if rule.profiled else "''"} AS profile, coalesce(c.n_points, 0) AS n_points, c.problem,
@@ -252,12 +252,13 @@ WITH {_coverage(rule)}, _steps AS (
 )
 SELECT $_no AS rule_no, drive_id, ego_id, profile, {who} AS object_id, ref_no AS ref_id, t_ref_ns,
     coalesce(t_min, a_ns) AS t_start_ns, coalesce(t_max, b_ns) AS t_end_ns, nullif(worst.t,
-        {terms.NEVER}) AS t_worst_ns,
+        {terms.UNKNOWN_TIME_NS}) AS t_worst_ns,
     nullif(CASE WHEN {unseen} THEN unknown.t
-        ELSE worst.t END, {terms.NEVER}) AS t_decides_ns,
+        ELSE worst.t END, {terms.UNKNOWN_TIME_NS}) AS t_decides_ns,
     coded[1] AS verdict, coalesce(coded[2], CASE coded[1] WHEN 'pass' THEN 'kept' ELSE 'violated' END) AS code,
     CASE WHEN coded[1] IN ('pass', 'fail') THEN worst.reason WHEN coded[1] = 'unknown' AND coded[2] IS NOT DISTINCT
         FROM unknown.code THEN unknown.reason END AS reason,
-    {terms.numbers(rule, "worst.")}, {terms.finite("unknown.observed")} AS bound, unknown.required AS asked, n_expected, n_judged
+    {terms.measure_columns(rule, "worst.")},
+    {terms.finite_or_null("unknown.observed")} AS bound, unknown.required AS asked, n_expected, n_judged
 FROM _coded
 """

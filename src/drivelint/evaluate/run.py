@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import duckdb
 
 from drivelint.evaluate import applicability, finalize, findings, invariant, reference_points, stage
-from drivelint.reasons.worded import word
+from drivelint.reasons.worded import make_reason_table
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
     from drivelint.evaluate.terms import Binding
 
-SHARED: Final = 16
+LEAST_SHARED_RULES: Final = 16
 """From so many rules on they are judged on two connections."""
-LARGE: Final = 200_000
+MOST_SHARED_STEPS: Final = 200_000
 """Steps from which on they are not: one statement then uses all cores, and two would need twice the memory."""
 
 
-class Run:
+class Evaluation:
     """A connection, the rules to judge on it, and what they share."""
 
     def __init__(
@@ -49,34 +49,38 @@ class Run:
         """Judge by every rule, then write the verdicts, findings and margins of all of them at once."""
         self.prepare()
         todo = deque(binding for binding in self._bindings if self._n_todo.get(binding.no))
-        if len(todo) >= SHARED and self._count("SELECT count(*) FROM step") < LARGE:
+        if len(todo) >= LEAST_SHARED_RULES and self._count("SELECT count(*) FROM step") < MOST_SHARED_STEPS:
             self._share(todo)
         else:
             self._work(todo)
-        for statement in finalize.BEFORE_WORDS:
+        for statement in finalize.COLLECT_STATEMENTS:
             self._con.execute(statement)
-        word(self._con, finalize.CAUSES, {binding.no: binding.rule.reasons for binding in self._bindings})
-        for statement in finalize.STATEMENTS:
+        make_reason_table(
+            self._con, finalize.REASONS_TO_WORD, {binding.no: binding.rule.reasons for binding in self._bindings}
+        )
+        for statement in finalize.INSERT_STATEMENTS:
             self._con.execute(statement)
         if self._courses:
-            self._con.execute(finalize.COURSES)
+            self._con.execute(finalize.INSERT_COURSES)
 
     def _share(self, todo: deque[Binding]) -> None:
         """Judge on a second connection too: on so few rows a statement is planned and run on one core."""
         with ThreadPoolExecutor(1) as pool, self._con.cursor() as other:
-            helper = Run(other, self._bindings, margins=self._margins, courses=self._courses, may_retry=self._may_retry)
+            helper = Evaluation(
+                other, self._bindings, margins=self._margins, courses=self._courses, may_retry=self._may_retry
+            )
             helped = pool.submit(helper.assist, todo)
             try:
                 self._work(todo)
                 helped.result()
-                for table in stage.OUTCOMES:
+                for table in stage.OUTCOME_TABLES:
                     store.insert(self._con, table, other.execute(f"FROM temp.{table}").to_arrow_table())
             finally:
                 todo.clear()  # whatever came between, the helper stops after its present rule
                 wait([helped])
 
     def assist(self, todo: deque[Binding]) -> None:
-        """Judge by some of the rules, for another run to take over."""
+        """Judge rules from a shared queue; another run collects the outcomes."""
         self.prepare()
         self._work(todo)
 
@@ -93,15 +97,15 @@ class Run:
                 self._blame(binding, error)
 
     def prepare(self) -> None:
-        """Make the run's tables, decide what needs no running, and look at the default grids once for all rules."""
-        self._n_todo = stage.prepare(self._con, self._bindings)
+        """Make the run's tables, decide which rules need not run, and group the default grids once for all rules."""
+        self._n_todo = stage.create_tables(self._con, self._bindings)
         self._n_subjects = self._count("SELECT count(*) FROM _subject")
         self._has_holes = self._count("SELECT count(*) FROM _segment WHERE seg > 0") > 0
-        self._con.execute(applicability.WATCHED)
+        self._con.execute(applicability.CREATE_WATCHED)
         self._watching = self._count("SELECT count(*) FROM _watched") > 0
         quick = [b for b in self._bindings if self._is_quick(b)]
         if quick:
-            self._con.execute(invariant.GRID_GROUPS, {"_objects": any(b.rule.per_object for b in quick)})
+            self._con.execute(invariant.CREATE_GRID_GROUPS, {"_objects": any(b.rule.per_object for b in quick)})
 
     def rule(self, binding: Binding) -> None:
         """Run the statements of one rule."""
@@ -120,59 +124,61 @@ class Run:
     def _invariant(self, binding: Binding) -> None:
         rule, partial, quick = binding.rule, self._is_partial(binding), self._is_quick(binding)
         if rule.profiled:
-            self._execute(invariant.profile_set(rule), binding)
+            self._execute(invariant.profile_set_sql(rule), binding)
         if rule.per_object and "applies" not in rule.sections:
-            self._execute(invariant.lost_objects(rule, partial, self._watching), binding)
+            self._execute(invariant.lost_objects_sql(rule, partial, self._watching), binding)
         n_steps = -1
         if quick:
-            self._execute(invariant.first_pass(rule, partial), binding)
+            self._execute(invariant.first_pass_sql(rule, partial), binding)
             n_steps = self._count(
                 f"SELECT coalesce(sum(n), 0)::BIGINT FROM _group WHERE rule_no = {binding.no} AND NOT clean"
             )
-            if self._courses and not self._may_stop(self._count(findings.n_near(binding.no, "_group", "clean"))):
-                self._execute(findings.settled_courses(binding.rule), binding)
+            if self._courses and not self._may_stop(
+                self._count(findings.near_miss_count_sql(binding.no, "_group", "clean"))
+            ):
+                self._execute(findings.settled_courses_sql(binding.rule), binding)
             if self._may_stop(n_steps):
                 return
-        elif self._may_stop(self._execute(invariant.asked(rule, partial, self._watching), binding)):
+        elif self._may_stop(self._execute(invariant.grid_sql(rule, partial, self._watching), binding)):
             return
-        n_judged = self._execute(invariant.second_pass(rule, partial, quick, self._watching), binding)
+        n_judged = self._execute(invariant.second_pass_sql(rule, partial, quick, self._watching), binding)
         if self._may_stop(n_judged):
             return
         if self._watching or n_judged != n_steps:  # as many rows as the grid has steps: none can be double
-            self._execute(invariant.FAULTS, binding)
-        self._execute(invariant.episodes(rule), binding)
+            self._execute(invariant.INSERT_ERRORS, binding)
+        self._execute(invariant.episodes_sql(rule), binding)
         if self._has_holes:
-            self._execute(invariant.HOLES, binding)
+            self._execute(invariant.INSERT_HOLES, binding)
         self._leave(binding)
 
     def _occasion(self, binding: Binding) -> None:
         rule = binding.rule
-        if self._may_stop(self._execute(reference_points.raw_references(rule, self._is_partial(binding)), binding)):
+        if self._may_stop(self._execute(reference_points.raw_references_sql(rule, self._is_partial(binding)), binding)):
             return
         described = self._con.execute("SELECT * FROM _raw_reference LIMIT 0").description or []
         columns = [str(column[0]) for column in described]
         own_object = "object_id" in columns
-        self._execute(reference_points.references(columns), binding)
-        self._execute(reference_points.occasions(rule, own_object, self._watching), binding)
-        self._execute(reference_points.points(rule), binding)
+        self._execute(reference_points.references_sql(columns), binding)
+        self._execute(reference_points.windows_sql(rule, own_object, self._watching), binding)
+        self._execute(reference_points.reference_steps_sql(rule), binding)
         if rule.profiled:
-            self._execute(invariant.profile_set(rule), binding)
-        self._execute(reference_points.judged(rule, own_object, self._watching), binding)
-        self._execute(reference_points.FAULTS, binding)
-        self._execute(reference_points.outcomes(rule, own_object), binding)
+            self._execute(invariant.profile_set_sql(rule), binding)
+        self._execute(reference_points.judged_steps_sql(rule, own_object, self._watching), binding)
+        self._execute(reference_points.INSERT_ERRORS, binding)
+        self._execute(reference_points.outcomes_sql(rule, own_object), binding)
         self._leave(binding)
 
     def _leave(self, binding: Binding) -> None:
         if self._courses and not self._may_stop(
-            self._count(findings.n_near(binding.no, "_outcome", "verdict = 'pass'"))
+            self._count(findings.near_miss_count_sql(binding.no, "_outcome", "verdict = 'pass'"))
         ):
-            self._execute(findings.near_courses(binding.rule), binding)
+            self._execute(findings.near_miss_courses_sql(binding.rule), binding)
         if not self._may_stop(self._count("SELECT count(*) FROM (FROM _judged WHERE NOT holds LIMIT 1)")):
-            self._execute(findings.stretches(binding.rule), binding)
+            self._execute(findings.stretches_sql(binding.rule), binding)
             if self._courses:
-                self._execute(findings.courses(binding.rule), binding)
+                self._execute(findings.courses_sql(binding.rule), binding)
         if self._margins:
-            self._execute(findings.margins(binding.rule), binding)
+            self._execute(findings.margins_sql(binding.rule), binding)
 
     def _may_stop(self, n_rows: int) -> bool:
         return n_rows == 0
@@ -203,8 +209,8 @@ class Run:
         )
 
 
-class Explanation(Run):
-    """A run that keeps the plan of every statement, stops nowhere, and takes every way round: holes, drivers of both kinds."""
+class PlanRecorder(Evaluation):
+    """An evaluation that records the plan of every statement and runs all alternatives."""
 
     def __init__(self, con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding], *, margins: bool) -> None:
         super().__init__(con, bindings, margins=margins, courses=True)

@@ -1,4 +1,4 @@
-"""The run's own tables: which rules, which subjects, what is decided before running, and where outcomes gather."""
+"""Creates and drops the temporary tables of an evaluation."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pyarrow as pa
 
 from drivelint.drive import conditions
 from drivelint.sql import store
-from drivelint.sql.derivations import behind
+from drivelint.sql.derivations import with_sources
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -78,7 +78,7 @@ SELECT r.rule_no, s.drive_id, s.ego_id FROM _rule r CROSS JOIN _subject s
 ANTI JOIN _gated g ON g.rule_no = r.rule_no AND g.drive_id = s.drive_id AND g.ego_id = s.ego_id
 ANTI JOIN _foreign f ON f.rule_no = r.rule_no AND f.drive_id = s.drive_id AND f.ego_id = s.ego_id
 """
-OUTCOMES = ("_error", "_group", "_outcome", "_stretch", "_course", "_margin")
+OUTCOME_TABLES = ("_error", "_group", "_outcome", "_stretch", "_course", "_margin")
 """What rules leave behind: what another connection judged is brought together with."""
 _NAMES = (
     "_subject", "_watched", "_segment", "_rule", "_needs", "_law", "_error", "_group", "_outcome", "_stretch", "_margin", "_course",
@@ -89,7 +89,7 @@ _NAMES = (
 )  # fmt: skip
 
 
-def prepare(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> dict[int, int]:
+def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> dict[int, int]:
     """Create the run's temporary tables and return rule number -> subjects for which it is to be run."""
     con.execute(_TABLES)
     # as Arrow tables: lists bound as parameters took a tenth of a second each
@@ -105,7 +105,7 @@ def prepare(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> dict
 
 def _rules(bindings: Sequence[Binding]) -> pa.Table:
     rules = [b.rule for b in bindings]
-    derived = [behind(r.reads) for r in rules]
+    derived = [with_sources(r.reads) for r in rules]
     columns = {
         "rule_id": [r.id for r in rules], "rule_version": [r.version for r in rules], "kind": [r.kind for r in rules],
         "severity": [r.severity for r in rules], "sense": [r.sense for r in rules], "unit": [r.unit for r in rules],
@@ -137,7 +137,9 @@ def _needs(bindings: Sequence[Binding]) -> pa.Table:
 
 def _laws(bindings: Sequence[Binding]) -> pa.Table:
     laws = [
-        (b.no, word) for b in bindings for word in (*conditions.covered(b.rule.law), *conditions.undecided(b.rule.law))
+        (b.no, word)
+        for b in bindings
+        for word in (*conditions.with_narrower_values(b.rule.law), *conditions.broader_values(b.rule.law))
     ]
     return pa.table(
         {
@@ -147,6 +149,6 @@ def _laws(bindings: Sequence[Binding]) -> pa.Table:
     )
 
 
-def clean_up(con: duckdb.DuckDBPyConnection) -> None:
+def drop_tables(con: duckdb.DuckDBPyConnection) -> None:
     """Drop the run's temporary tables."""
     con.execute(";".join(f"DROP TABLE IF EXISTS temp.{name}" for name in _NAMES))

@@ -1,4 +1,4 @@
-"""SQL text that every kind of rule shares: a condition's rows brought into one three-valued form, and their worst step.
+"""SQL fragments that all kinds of rules share.
 
 Rule text is our own checked file; it stands in the statement as a CTE. Values are always bound.
 """
@@ -19,7 +19,7 @@ _NS = 1_000_000_000
 _ENGINE = {"window_s": "_window_ns", "exempt_after_s": "_exempt_ns", "merge_gap_s": "_merge_ns"}
 
 
-NEVER = 2**63 - 1
+UNKNOWN_TIME_NS = 2**63 - 1
 """Stands for a time that is not known where a struct needs one to be ordered by."""
 
 
@@ -38,7 +38,7 @@ class Binding:
         self._values: dict[str, object] = {
             **params,
             "_no": no,
-            **applicability.bound(rule),
+            **applicability.bound_values(rule),
         }
         for field, name in _ENGINE.items():
             given = getattr(rule, field)
@@ -46,7 +46,7 @@ class Binding:
             self._values[name] = None if seconds is None else _nanoseconds(seconds, rule.id, field)
 
     def values(self, names: Iterable[str]) -> dict[str, object]:
-        """Return the values of exactly these parameters: the engine refuses spare ones."""
+        """Return the values of these parameters only; DuckDB refuses others."""
         return {name: self._values[name] for name in names}
 
 
@@ -56,7 +56,7 @@ def _nanoseconds(seconds: object, rule_id: str, field: str) -> int:
     return round(seconds * _NS)
 
 
-def state(rule: Rule) -> str:
+def condition_ctes(rule: Rule) -> str:
     """Return the CTEs `_condition` and `_state` of a rule.
 
     `_state`: drive_id, ego_id, t_ns, object_id, ref_id, profile ('' for none), applies, observed, required, holds
@@ -99,15 +99,15 @@ def state(rule: Rule) -> str:
     {holds} AS holds, {gain} AS gain, {code} AS code, reason FROM _value)"""
 
 
-def todo(binding_partial: bool, alias: str) -> str:
-    """Return the semi-join that leaves out subjects for which the rule is not to be run; '' when there are none."""
+def todo_join(binding_partial: bool, alias: str) -> str:
+    """Return the semi-join that keeps the subjects for which the rule is to be run; '' if it is run for all."""
     if not binding_partial:
         return ""
     subjects = "(SELECT drive_id, ego_id FROM _todo WHERE rule_no = $_no) _t"
     return f" SEMI JOIN {subjects} ON {alias}.drive_id = _t.drive_id AND {alias}.ego_id = _t.ego_id"
 
 
-def worst(rule: Rule) -> str:
+def deciding_step(rule: Rule) -> str:
     """Return the aggregate that picks the deciding step: (b, g, t, [who,] observed, required, holds, code, reason).
 
     always: least margin, or the earliest failing, else unknown, else first step (sense = holds); eventually: the
@@ -122,30 +122,30 @@ def worst(rule: Rule) -> str:
     if rule.sense == "holds":
         good, unknown, bad = (0, 1, 2) if eventually else (2, 1, 0)
     sign = "-" if eventually else ""
-    return pick(good, bad, unknown, sign, combined=rule.combine != "each")
+    return step_by_rank(good, bad, unknown, sign, combined=rule.combine != "each")
 
 
-def pick(good: int, bad: int, unknown: int, sign: str = "", *, combined: bool = False) -> str:
-    """Return the aggregate over a group of steps that orders by these ranks, by margin, time and (combined) object."""
+def step_by_rank(good: int, bad: int, unknown: int, sign: str = "", *, combined: bool = False) -> str:
+    """Return the aggregate that picks a step by these ranks, then by margin, time and (combined) object."""
     who = "'who': coalesce(who, ''), " if combined else ""
     return (
         f"min({{'b': CASE WHEN holds THEN {good} WHEN NOT holds THEN {bad} ELSE {unknown} END, "
-        f"'g': CASE WHEN holds IS NULL THEN 0.0::DOUBLE ELSE {sign}gain END, 't': coalesce(t_ns, {NEVER}), "
+        f"'g': CASE WHEN holds IS NULL THEN 0.0::DOUBLE ELSE {sign}gain END, 't': coalesce(t_ns, {UNKNOWN_TIME_NS}), "
         f"{who}'observed': observed, 'required': required, 'holds': holds, 'code': code, 'reason': reason}})"
     )
 
 
-def first_unknown(rule: Rule) -> str:
+def first_unknown_step(rule: Rule) -> str:
     """Return the aggregate that picks the earliest step that could not be judged: (t, code, [who,] reason, observed, required)."""
     who = "'who': coalesce(who, ''), " if rule.combine != "each" else ""
     return (
-        f"min({{'t': coalesce(t_ns, {NEVER}), 'code': coalesce(code, 'null_value'), {who}'reason': reason, "
+        f"min({{'t': coalesce(t_ns, {UNKNOWN_TIME_NS}), 'code': coalesce(code, 'null_value'), {who}'reason': reason, "
         "'observed': observed, 'required': required}) "
         "FILTER (holds IS NULL)"
     )
 
 
-def numbers(rule: Rule, step: str = "") -> str:
+def measure_columns(rule: Rule, step: str = "") -> str:
     """Return the columns observed, required, margin of an outcome; `step` is '' or its worst step with a dot.
 
     Infinity is stored as NULL, and there is no margin to it.
@@ -154,10 +154,10 @@ def numbers(rule: Rule, step: str = "") -> str:
     margin = "NULL::DOUBLE"
     if rule.sense != "holds":
         gain = f"{observed} - {required}" if rule.sense[0] == ">" else f"{required} - {observed}"
-        margin = f"CASE WHEN {step}holds IS NOT NULL THEN {finite(f'({gain})')} END"
-    return f"{finite(observed)} AS observed, {finite(required)} AS required, {margin} AS margin"
+        margin = f"CASE WHEN {step}holds IS NOT NULL THEN {finite_or_null(f'({gain})')} END"
+    return f"{finite_or_null(observed)} AS observed, {finite_or_null(required)} AS required, {margin} AS margin"
 
 
-def finite(value: str) -> str:
+def finite_or_null(value: str) -> str:
     """Return the SQL for a number, NULL where it is infinite; never a negative zero."""
     return f"CASE WHEN isfinite({value}) THEN {value} + 0.0::DOUBLE END"

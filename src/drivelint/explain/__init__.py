@@ -11,21 +11,21 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint import catalogue
-from drivelint.engine.memory import DEFAULT
+from drivelint.engine.memory import DEFAULT_MEMORY
 from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.errors import UsageError
 from drivelint.explain import evidence
-from drivelint.explain.case import Case, around
-from drivelint.explain.change import changes
+from drivelint.explain.case import VerdictContext, sufficient_part
+from drivelint.explain.change import verdict_changes
 from drivelint.explain.model import Explanation, Sensitivity
 from drivelint.explain.outcome import first_unknown
-from drivelint.explain.sensitivity import Errors, copies, counted
+from drivelint.explain.sensitivity import MeasurementErrors, perturbed_copies, verdict_counts
 from drivelint.explain.source import open_drive
-from drivelint.explain.target import Wanted, find
+from drivelint.explain.target import VerdictFilter, find_verdict
 from drivelint.reasons import words
 from drivelint.reasons.remedies import condition_of
 from drivelint.result import request as run_request
-from drivelint.result.load import load
+from drivelint.result.load import load_result
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.request import RunRequest
 
-__all__ = ["Errors", "ExplainRequest", "Explanation", "Wanted", "explain"]
+__all__ = ["ExplainRequest", "Explanation", "MeasurementErrors", "VerdictFilter", "explain"]
 
 _RULE: Final = (
     "title", "clause", "hypothesis", "kind", "severity", "legal", "status", "sense", "unit", "observes", "near_margin",
@@ -51,11 +51,11 @@ class ExplainRequest:
 
     name: str
     folder: Path
-    wanted: Wanted = field(default_factory=Wanted)
+    wanted: VerdictFilter = field(default_factory=VerdictFilter)
     trace: Path | None = None
     map: Path | None = None
-    errors: Errors = field(default_factory=Errors)
-    memory: int | None = DEFAULT
+    errors: MeasurementErrors = field(default_factory=MeasurementErrors)
+    memory: int | None = DEFAULT_MEMORY
     """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
 
 
@@ -64,9 +64,9 @@ def explain(request: ExplainRequest) -> Explanation:
 
     Errors: `UsageError` for a finding, rule, folder or log that is not there.
     """
-    result = load(request.folder)
+    result = load_result(request.folder)
     asked = run_request.load(request.folder)
-    target = find(result, request.name, request.wanted)
+    target = find_verdict(result, request.name, request.wanted)
     case = _case(asked, target, request.memory)
     row = target.row
     drive, source = open_drive(
@@ -76,18 +76,18 @@ def explain(request: ExplainRequest) -> Explanation:
         sandbox = opened.enter_context(case.sandbox([drive]))
         judged = sandbox.judge(case.params)
         now = case.told(judged, [sandbox.drive_id])[0]
-        series = evidence.series(case.rule, target, judged)
+        series = evidence.judged_steps(case.rule, target, judged)
         decides = _decides(target, series, now)
         gate = row["reason_code"].removeprefix("missing_") if case.gated else None
         condition = condition_of(row["reason_code"]) if row["verdict"] == "unknown" and not target.finding else None
-        rows = evidence.rows(case.rule, target, sandbox, decides, gate=gate, condition=condition)
+        rows = evidence.rows_read(case.rule, target, sandbox, decides, gate=gate, condition=condition)
         found: list[Change] = []
         sensitivity = None
         if not case.gated:
-            part, span = around(case, drive, now)
+            part, span = sufficient_part(case, drive, now)
             if part is not drive:
                 sandbox = opened.enter_context(case.sandbox([part]))
-            found = changes(case, sandbox, now)
+            found = verdict_changes(case, sandbox, now)
             if request.errors.samples:
                 sensitivity = _sensitivity(case, part, request.errors, span)
     rule = case.rule
@@ -103,7 +103,7 @@ def explain(request: ExplainRequest) -> Explanation:
         others=target.others,
         asks=_asks(rule, row, _drive(result, row["drive_id"])["t_start_ns"] or 0),
         decides_ns=decides,
-        sql=evidence.bound(rule, case.params),
+        sql=evidence.sql_with_values(rule, case.params),
         params=[
             {"name": name, "value": case.params[name], "unit": p.unit, "why": p.why, "source": p.source}
             for name, p in rule.params.items()
@@ -117,9 +117,9 @@ def explain(request: ExplainRequest) -> Explanation:
     )
 
 
-def _case(asked: RunRequest, target: Target, memory: int | None) -> Case:
+def _case(asked: RunRequest, target: Target, memory: int | None) -> VerdictContext:
     """Return the rule of a verdict, as it was set in that run."""
-    known = catalogue.load(asked.rules_dirs)
+    known = catalogue.load_rules(asked.rules_dirs)
     rule_id = target.row["rule_id"]
     if rule_id not in known:
         raise UsageError(f"rule {rule_id} is not in the catalogue any more: check the drives again")
@@ -127,13 +127,13 @@ def _case(asked: RunRequest, target: Target, memory: int | None) -> Case:
     mine = [setting for setting in asked.params if setting.partition("=")[0].strip().rpartition(".")[0] == rule_id]
     set_ = catalogue.parse_params([rule], mine).get(rule_id, {})
     params = {name: set_.get(name, param.default) for name, param in rule.params.items()}
-    return Case(rule, target, params, profile_table(load_profiles(asked.rules_dirs), asked.profiles), memory)
+    return VerdictContext(rule, target, params, profile_table(load_profiles(asked.rules_dirs), asked.profiles), memory)
 
 
 def _asks(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
     """Return what the reason of a verdict asks to record or to provide, with its subject; None: nothing."""
     if row["cause_code"] is not None:
-        return words.asks(row["cause_code"], json.loads(row["cause_args"] or "{}"), start_ns, rule.reasons)
+        return words.advice_sentence(row["cause_code"], json.loads(row["cause_args"] or "{}"), start_ns, rule.reasons)
     return {"reference_time_unknown": rule.without_time, "anchor_unknown": rule.without_anchor}.get(
         row.get("reason_code", "")
     )
@@ -148,7 +148,7 @@ def _decides(target: Target, series: list[Step], now: str) -> int | None:
     return next((t_ns for t_ns in times if t_ns is not None), None)
 
 
-def _notes(case: Case, now: str) -> list[str]:
+def _notes(case: VerdictContext, now: str) -> list[str]:
     notes = []
     version, before = case.target.row["rule_version"], case.target.verdict["verdict"]
     if case.rule.version != version:
@@ -161,14 +161,16 @@ def _notes(case: Case, now: str) -> list[str]:
     return notes
 
 
-def _sensitivity(case: Case, drive: Drive, errors: Errors, span: tuple[int, int] | None) -> Sensitivity:
+def _sensitivity(
+    case: VerdictContext, drive: Drive, errors: MeasurementErrors, span: tuple[int, int] | None
+) -> Sensitivity:
     found: list[str] = []
-    for batch in copies(drive, errors):
+    for batch in perturbed_copies(drive, errors):
         with case.sandbox(batch) as sandbox:
             found += case.told(sandbox.judge(case.params), [copy.trace.drive_id for copy in batch])
     start, end = span or (None, None)
     return Sensitivity(
-        errors.samples, errors.seed, errors.position_m, errors.time_s, errors.map_m, counted(found), start, end
+        errors.samples, errors.seed, errors.position_m, errors.time_s, errors.map_m, verdict_counts(found), start, end
     )
 
 

@@ -1,4 +1,4 @@
-"""One verdict with all that is needed to judge it again: the rule, its parameters in that run, and the profiles."""
+"""A verdict with everything needed to judge it again: rule, parameters and profiles."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from drivelint.explain import evidence
-from drivelint.explain.outcome import outcomes
-from drivelint.explain.sandbox import Sandbox, cropped
+from drivelint.explain.outcome import verdicts_by_drive
+from drivelint.explain.sandbox import Sandbox, crop
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
     from drivelint.engine.batch import Drive
     from drivelint.explain.model import Step
-    from drivelint.explain.sandbox import Judged
+    from drivelint.explain.sandbox import Judgement
     from drivelint.explain.target import Target
 
 
 @dataclass(frozen=True)
-class Case:
+class VerdictContext:
     """A verdict to explain."""
 
     rule: Rule
@@ -39,48 +39,48 @@ class Case:
         """Return the verdict on the one drive in a sandbox, with other parameters if they are given."""
         return self.told(sandbox.judge(self.params if params is None else params), [sandbox.drive_id])[0]
 
-    def told(self, judged: Judged, drives: Sequence[str]) -> list[str]:
+    def told(self, judged: Judgement, drives: Sequence[str]) -> list[str]:
         """Return the verdict on each of these drives, in their order."""
-        found = outcomes(self.rule, self.target, judged, drives)
+        found = verdicts_by_drive(self.rule, self.target, judged, drives)
         return [found[drive] for drive in drives]
 
     @property
     def gated(self) -> bool:
         """Whether the rule was not run because the log or map lacks something: no number alters that."""
         code = "" if self.target.finding else self.target.verdict["reason_code"]
-        return is_gated(self.target.verdict["verdict"], code)
+        return lacks_signal(self.target.verdict["verdict"], code)
 
 
-AROUND_NS = (20_000_000_000, 60_000_000_000)
+CROP_MARGINS_NS = (20_000_000_000, 60_000_000_000)
 """How much of a drive around what is explained is enough, if the verdict is the same there; tried in this order."""
 
 
-def is_gated(verdict: str, reason_code: str) -> bool:
+def lacks_signal(verdict: str, reason_code: str) -> bool:
     """Whether a verdict is unknown for want of a signal that the rule requires."""
     return verdict == "unknown" and reason_code.startswith("missing_") and reason_code != "missing_step"
 
 
-def around(case: Case, drive: Drive, now: str) -> tuple[Drive, tuple[int, int] | None]:
-    """Return the part of a drive that is enough for the same verdict, and from when to when it is; None: all of it."""
+def sufficient_part(case: VerdictContext, drive: Drive, now: str) -> tuple[Drive, tuple[int, int] | None]:
+    """Return the shortest tried part of a drive with the same verdict, and its interval; None for the whole drive."""
     span = case.target.span
     if span is None or now == "not_applicable":
         return drive, None
     log = drive.trace.tables["data_log"].to_pylist()[0]
-    for margin in AROUND_NS:
+    for margin in CROP_MARGINS_NS:
         part = (max(log["t_start_ns"], span[0] - margin), min(log["t_end_ns"], span[1] + margin))
         if part == (log["t_start_ns"], log["t_end_ns"]):
             break
-        small = cropped(drive, *part)
+        small = crop(drive, *part)
         with case.sandbox([small]) as sandbox:
             judged = sandbox.judge(case.params)
             if case.told(judged, [sandbox.drive_id]) == [now] and _same_numbers(
-                case, evidence.series(case.rule, case.target, judged)
+                case, evidence.judged_steps(case.rule, case.target, judged)
             ):
                 return small, part
     return drive, None
 
 
-def _same_numbers(case: Case, series: list[Step]) -> bool:
+def _same_numbers(case: VerdictContext, series: list[Step]) -> bool:
     """Tell whether the deciding step has the same numbers in a part of the drive as in all of it."""
     row = case.target.row
     if case.rule.sense == "holds" or row["margin"] is None:

@@ -1,4 +1,4 @@
-"""What would have to be otherwise: for each number of a rule or its profile, the nearest value with another verdict."""
+"""The nearest value of each parameter and profile number that would change the verdict."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from drivelint.explain.model import Change
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from drivelint.explain.case import Case
+    from drivelint.explain.case import VerdictContext
     from drivelint.explain.sandbox import Sandbox
 
-FACTORS: Final = (0.02, 0.1, 0.25, 0.5, 1.0, 3.0, 10.0)
+SEARCH_FACTORS: Final = (0.02, 0.1, 0.25, 0.5, 1.0, 3.0, 10.0)
 """How far to look in each direction, in parts of the value as it is (of 1 where it is 0)."""
 _HALVINGS: Final = 8
 _PROFILE: Final = {
@@ -42,13 +42,13 @@ class _Edge(NamedTuple):
     beyond: bool
 
 
-def changes(case: Case, sandbox: Sandbox, verdict: str) -> list[Change]:
+def verdict_changes(case: VerdictContext, sandbox: Sandbox, verdict: str) -> list[Change]:
     """Return the nearest change of each number that changes `verdict` on the drive in `sandbox`, the least relative one first."""
     found = [_nearest(number, verdict) for number in _numbers(case, sandbox)]
     return sorted(found, key=lambda c: (c.found is None, abs((c.found or 0.0) - c.now) / (abs(c.now) or 1.0), c.name))
 
 
-def _numbers(case: Case, sandbox: Sandbox) -> Iterator[_Number]:
+def _numbers(case: VerdictContext, sandbox: Sandbox) -> Iterator[_Number]:
     for name, param in case.rule.params.items():
         now = case.params[name]
         if isinstance(now, bool) or not isinstance(now, int | float):
@@ -89,7 +89,7 @@ def _nearest(number: _Number, verdict: str) -> Change:
     low, high = min(number.now, *sides[1]), max(number.now, *sides[0])
     none = Change(number.name, number.what, number.unit, number.now, None, None, False, low, high)
     shut: set[int] = set()
-    for n in range(len(FACTORS)):
+    for n in range(len(SEARCH_FACTORS)):
         edges = []
         for side, values in enumerate(sides):
             if n >= len(values) or side in shut:
@@ -107,7 +107,7 @@ def _nearest(number: _Number, verdict: str) -> Change:
 
 def _values(number: _Number, scale: float, least: float) -> list[float]:
     """Return the values to look at on one side, nearest first."""
-    reached = dict.fromkeys(min(number.most, max(least, number.now + scale * factor)) for factor in FACTORS)
+    reached = dict.fromkeys(min(number.most, max(least, number.now + scale * factor)) for factor in SEARCH_FACTORS)
     return [value for value in reached if value != number.now]
 
 

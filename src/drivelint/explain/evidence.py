@@ -1,11 +1,11 @@
-"""What a verdict was judged by and on: the rule's SQL with its values written in, and the rows it read where it was decided."""
+"""The evidence of a verdict: the rule's SQL with its values, and the rows it read at the deciding step."""
 
 from __future__ import annotations
 
 import re
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.explain.model import Rows, Step
+from drivelint.explain.model import Step, TableRows
 from drivelint.reasons import words
 from drivelint.sql import store
 
@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from drivelint.catalogue import Rule
-    from drivelint.explain.sandbox import Judged, Sandbox
+    from drivelint.explain.sandbox import Judgement, Sandbox
     from drivelint.explain.target import Target
 
 MAX_ROWS: Final = 6
 """Rows shown of one table."""
-CONDITION_ROWS: Final = ("ego_condition", "ego_state")
+CONDITION_TABLES: Final = ("ego_condition", "ego_state")
 """Tables that show why a condition is not known."""
-AROUND_NS: Final = 30_000_000_000
+SERIES_MARGIN_NS: Final = 30_000_000_000
 """How much of a longer episode is shown on each side of what is explained."""
 _NAMED = re.compile(r"\$(\w+)")
 _SPANS: Final = (
@@ -32,8 +32,8 @@ _SPANS: Final = (
 _OBJECTS: Final = ("object_id", "vbp_id", "ov_id", "lead_id")
 
 
-def bound(rule: Rule, params: Mapping[str, object]) -> dict[str, str]:
-    """Return the rule's sections with the parameters' values in the place of their names, for reading only."""
+def sql_with_values(rule: Rule, params: Mapping[str, object]) -> dict[str, str]:
+    """Return the rule's SQL sections with parameter values written in, for reading only."""
     return {
         section: _NAMED.sub(lambda m: _literal(params[m[1]]) if m[1] in params else m[0], sql)
         for section, sql in rule.sections.items()
@@ -46,13 +46,13 @@ def _literal(value: object) -> str:
     return f"'{value.replace(chr(39), chr(39) * 2)}'" if isinstance(value, str) else repr(value)
 
 
-def series(rule: Rule, target: Target, judged: Judged) -> list[Step]:
-    """Return the judged steps of the episode or window that is explained, at most half a minute around it."""
+def judged_steps(rule: Rule, target: Target, judged: Judgement) -> list[Step]:
+    """Return the judged steps of the explained episode or window, at most half a minute around the verdict."""
     row, span = target.row, target.span
     if span is None:
         return []
     start, end = target.verdict["t_start_ns"], target.verdict["t_end_ns"]
-    start, end = max(start, span[0] - AROUND_NS), min(end, span[1] + AROUND_NS)
+    start, end = max(start, span[0] - SERIES_MARGIN_NS), min(end, span[1] + SERIES_MARGIN_NS)
     same = {"ego_id": row["ego_id"], "profile": row["profile"]}
     if rule.kind != "invariant":
         same["ref_id"] = row["ref_id"]
@@ -65,10 +65,10 @@ def series(rule: Rule, target: Target, judged: Judged) -> list[Step]:
     ]
 
 
-def rows(
+def rows_read(
     rule: Rule, target: Target, sandbox: Sandbox, t_ns: int | None, *, gate: str | None, condition: str | None
-) -> list[Rows]:
-    """Return what each table that the rule reads holds at one time (None: in the whole drive) for ego and object.
+) -> list[TableRows]:
+    """Return the rows of each table that the rule reads, for ego and object, at one time or in the whole drive.
 
     `gate`: the signal for want of which the rule was not run; then only what is known about that. `condition`: the one that is not
     known; then also where the ego is and what holds there.
@@ -76,16 +76,16 @@ def rows(
     if gate is not None:
         sql = "SELECT signal, available, reason FROM capability WHERE ego_id = ? AND signal = ?"
         told = sandbox.rows(sql, [target.row["ego_id"], gate])
-        return [Rows("capability", [{**row, "reason": words.sentence(row["reason"])} for row in told], 0)]
+        return [TableRows("capability", [{**row, "reason": words.sentence(row["reason"])} for row in told], 0)]
     found = []
-    for table in dict.fromkeys((*(CONDITION_ROWS if condition else ()), *rule.reads)):
-        columns = list(store.schema().get(table, {}))
+    for table in dict.fromkeys((*(CONDITION_TABLES if condition else ()), *rule.reads)):
+        columns = list(store.column_comments().get(table, {}))
         if "drive_id" in columns or table == "profile":
             found.append(_of_table(target, sandbox, table, columns, t_ns))
     return found
 
 
-def _of_table(target: Target, sandbox: Sandbox, table: str, columns: list[str], t_ns: int | None) -> Rows:
+def _of_table(target: Target, sandbox: Sandbox, table: str, columns: list[str], t_ns: int | None) -> TableRows:
     row = target.row
     terms: list[str] = []
     values: list[Any] = []
@@ -106,7 +106,7 @@ def _of_table(target: Target, sandbox: Sandbox, table: str, columns: list[str], 
     # a table of the catalogue's own list, never a word of a user
     everything = sandbox.rows(f"SELECT * FROM {table}{where} ORDER BY ALL LIMIT {MAX_ROWS}", values)
     n = sandbox.rows(f"SELECT count(*) AS n FROM {table}{where}", values)[0]["n"]
-    return Rows(table, [_plain(each) for each in everything], max(0, n - len(everything)))
+    return TableRows(table, [_plain(each) for each in everything], max(0, n - len(everything)))
 
 
 def _at_time(columns: list[str], t_ns: int, terms: list[str], values: list[Any]) -> None:

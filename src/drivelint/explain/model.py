@@ -1,4 +1,4 @@
-"""What an explanation holds: plain data, for a person and for a program."""
+"""The content of an explanation as plain data."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Step(NamedTuple):
     holds: bool | None
 
 
-class Rows(NamedTuple):
+class TableRows(NamedTuple):
     """Rows of one library table that the rule read at the deciding step; `more` were left out."""
 
     table: str
@@ -43,7 +43,7 @@ class Change(NamedTuple):
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """How often each verdict came out, of so many copies of the drive, each with errors of these sizes (standard deviations)."""
+    """How often each verdict came out over copies of the drive with random errors."""
 
     samples: int
     seed: int
@@ -73,7 +73,7 @@ class Explanation:
     decides_ns: int | None
     sql: dict[str, str]
     params: list[Row]
-    rows: list[Rows]
+    rows: list[TableRows]
     series: list[Step]
     changes: list[Change]
     sensitivity: Sensitivity | None

@@ -1,4 +1,4 @@
-"""What a judgement says of the one verdict that is explained: fail, unknown, pass or not_applicable."""
+"""Finds the verdict that a repeated judgement gives for the explained verdict."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
     from drivelint.explain.model import Row, Step
-    from drivelint.explain.sandbox import Judged
+    from drivelint.explain.sandbox import Judgement
     from drivelint.explain.target import Target
 
-NEAR_NS: Final = 2_000_000_000
+SAME_REFERENCE_NS: Final = 2_000_000_000
 """A reference point that moved by no more is the same one."""
 _WORST: Final = ("error", "fail", "unknown", "pass", "not_applicable")
 
 
-def outcomes(rule: Rule, target: Target, judged: Judged, drives: Iterable[str]) -> dict[str, str]:
-    """Return drive -> the verdict there on what the target is about: the same interval, profile and object."""
+def verdicts_by_drive(rule: Rule, target: Target, judged: Judgement, drives: Iterable[str]) -> dict[str, str]:
+    """Return, for each drive, the verdict on the target's interval, profile and object."""
     verdicts: dict[str, list[Row]] = {drive: [] for drive in drives}
     steps: dict[str, list[Row]] = {drive: [] for drive in verdicts}
     for row in judged.verdicts:
@@ -60,8 +60,8 @@ def _at_reference(target: Target, verdicts: list[Row]) -> list[Row]:
     if t_ref is None:
         return verdicts
     apart = {id(row): abs(row["t_ref_ns"] - t_ref) for row in verdicts if row["t_ref_ns"] is not None}
-    least = min(apart.values(), default=NEAR_NS + 1)
-    return [row for row in verdicts if apart.get(id(row)) == least] if least <= NEAR_NS else []
+    least = min(apart.values(), default=SAME_REFERENCE_NS + 1)
+    return [row for row in verdicts if apart.get(id(row)) == least] if least <= SAME_REFERENCE_NS else []
 
 
 def _overlaps(row: Row, span: tuple[int, int]) -> bool:

@@ -29,8 +29,8 @@ _JUDGED: Final = ("verdict", "finding", "margin")
 _READS_PROFILE: Final = re.compile(r"\b(?:FROM|JOIN)\s+profile\b", re.IGNORECASE)
 
 
-class Judged(NamedTuple):
-    """What one judgement left: rows of `verdict`, and every step that was looked at."""
+class Judgement(NamedTuple):
+    """The verdicts and judged steps of one judgement."""
 
     verdicts: list[Row]
     steps: list[Row]
@@ -78,7 +78,7 @@ class Sandbox:
         except duckdb.OutOfMemoryException:
             if not self._memory.lift():
                 raise
-            store.renew(self.con, derivations())
+            store.recreate_empty(self.con, derivations())
             self._derive()
 
     def __enter__(self) -> Self:
@@ -89,16 +89,16 @@ class Sandbox:
     ) -> None:
         self._opened.close()
 
-    def judge(self, params: Mapping[str, object]) -> Judged:
+    def judge(self, params: Mapping[str, object]) -> Judgement:
         """Judge every copy by the rule with these parameters."""
         return self._memory.enough(lambda _con: self._judged(params), self.con)
 
-    def _judged(self, params: Mapping[str, object]) -> Judged:
+    def _judged(self, params: Mapping[str, object]) -> Judgement:
         for table in _JUDGED:
             self.con.execute(f"DELETE FROM {table}")
         given = {self._rule.id: params}
         evaluate(self.con, [self._rule], given, margins=True, may_retry=self._memory.limited)
-        return Judged(
+        return Judgement(
             self.rows("SELECT * FROM verdict ORDER BY drive_id, t_start_ns, occurrence, profile, object_id"),
             self.rows("SELECT * FROM margin ORDER BY drive_id, t_ns, profile, object_id, ref_id"),
         )
@@ -119,7 +119,7 @@ class Sandbox:
         return [dict(row) for row in self.con.execute(sql, list(values)).to_arrow_table().to_pylist()]
 
 
-def cropped(drive: Drive, from_ns: int, to_ns: int) -> Drive:
+def crop(drive: Drive, from_ns: int, to_ns: int) -> Drive:
     """Return the part of a drive between two times."""
     tables = dict(drive.trace.tables)
     for name in ("actor_state", "signal_state", "declared_event"):

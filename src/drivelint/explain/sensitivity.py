@@ -1,4 +1,4 @@
-"""How sure a verdict is: the drive again and again with errors as positions, clocks and maps have them, each judged anew.
+"""Judges copies of a drive with random errors of position, clock and map, to show how sure a verdict is.
 
 Every copy has, drawn once for the whole drive (such errors drift slowly, they do not jump from step to step):
 for each actor an offset of its position (x and y alike) and one of its clock, which moves it along its velocity;
@@ -14,7 +14,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.engine.batch import STATES, Drive
+from drivelint.engine.batch import BATCH_STATES, Drive
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -25,8 +25,8 @@ VERDICTS: Final = ("fail", "unknown", "pass", "not_applicable", "error")
 
 
 @dataclass(frozen=True)
-class Errors:
-    """Standard deviations of the errors, and how many copies are judged with them."""
+class MeasurementErrors:
+    """Standard deviations of the errors, the number of copies and the seed."""
 
     position_m: float = 0.1
     time_s: float = 0.05
@@ -35,7 +35,7 @@ class Errors:
     seed: int = 0
 
 
-def copies(drive: Drive, errors: Errors) -> Iterator[list[Drive]]:
+def perturbed_copies(drive: Drive, errors: MeasurementErrors) -> Iterator[list[Drive]]:
     """Yield the copies of a drive, as many at once as a batch may have states; the same ones for the same seed."""
     states = drive.trace.tables["actor_state"]
     ids = sorted(pc.unique(states["actor_id"]).to_pylist())
@@ -44,7 +44,7 @@ def copies(drive: Drive, errors: Errors) -> Iterator[list[Drive]]:
     drawn = rng.standard_normal((errors.samples, len(ids), 3))
     of_map = rng.standard_normal((errors.samples, 2))
     numbers = {name: _floats(states, name) for name in ("x_m", "y_m", "vx_mps", "vy_mps")}
-    at_once = max(1, STATES // max(1, states.num_rows))
+    at_once = max(1, BATCH_STATES // max(1, states.num_rows))
     for start in range(0, errors.samples, at_once):
         yield [
             _copy(drive, sample, _moved(states, numbers, drawn[sample][actor], of_map[sample], errors))
@@ -57,7 +57,7 @@ def _moved(
     numbers: dict[str, NDArray[np.float64]],
     drawn: NDArray[np.float64],
     of_map: NDArray[np.float64],
-    errors: Errors,
+    errors: MeasurementErrors,
 ) -> pa.Table:
     """Return the states with their errors: `drawn` has x, y and clock for each state, `of_map` x and y for all."""
     clock = drawn[:, 2] * errors.time_s
@@ -77,8 +77,8 @@ def _copy(drive: Drive, sample: int, states: pa.Table) -> Drive:
     return Drive(replace(drive.trace, drive_id=name, tables=tables), drive.environment)
 
 
-def counted(found: Sequence[str]) -> dict[str, int]:
-    """Return how often each verdict came out, those that never did left out."""
+def verdict_counts(found: Sequence[str]) -> dict[str, int]:
+    """Return how often each verdict occurs, without those that never do."""
     return {verdict: found.count(verdict) for verdict in VERDICTS if verdict in found}
 
 

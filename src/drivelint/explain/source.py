@@ -10,25 +10,25 @@ import duckdb
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.drive.finish import SCHEMAS
+from drivelint.drive.finish import TRACE_SCHEMAS
 from drivelint.drive.trace import Trace
-from drivelint.engine.batch import Drive, on_its_map
+from drivelint.engine.batch import Drive, drive_with_map
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.formats import read_trace
-from drivelint.road.contract import Environment
+from drivelint.road.contract import MapTables
 from drivelint.road.tables import schemas
 from drivelint.sql import store
 
 if TYPE_CHECKING:
     from drivelint.result.request import RunRequest
 
-DATABASE = "drivelint.duckdb"
+DATABASE_FILE = "drivelint.duckdb"
 _OTHER = {"map_quality"}
 """Tables of the map that nothing is derived from."""
 
 
-class Source(NamedTuple):
+class SourceDrive(NamedTuple):
     """A drive with one ego, and where it is from."""
 
     drive: Drive
@@ -37,15 +37,15 @@ class Source(NamedTuple):
 
 def open_drive(
     folder: Path, asked: RunRequest, drive_id: str, ego_id: str, *, trace: Path | None, map_: Path | None
-) -> Source:
+) -> SourceDrive:
     """Return the drive that was judged. `trace`, `map_`: where log and map are now, if not where they were.
 
     Errors: `UsageError` where neither the database was kept nor the log is where it was, or where the log is another one.
     """
-    kept = folder / DATABASE
+    kept = folder / DATABASE_FILE
     if trace is None and kept.is_file():
         try:
-            return Source(_kept(kept, drive_id, ego_id), f"the kept database {kept.name}")
+            return SourceDrive(_kept(kept, drive_id, ego_id), f"the kept database {kept.name}")
         except duckdb.Error as error:
             raise UsageError(f"{kept}: {str(error).splitlines()[0]}: check the drives again with --keep-db") from error
     path = trace or Path(asked.traces.get(drive_id, ""))
@@ -54,7 +54,7 @@ def open_drive(
             f"the log of {drive_id} is not at {path} any more and the result has no database (check --keep-db): "
             "say where it is with --trace FILE"
         )
-    return Source(_read(asked, path, map_, drive_id, ego_id), f"the log {path.name}, read again")
+    return SourceDrive(_read(asked, path, map_, drive_id, ego_id), f"the log {path.name}, read again")
 
 
 def _read(asked: RunRequest, path: Path, map_: Path | None, drive_id: str, ego_id: str) -> Drive:
@@ -69,7 +69,7 @@ def _read(asked: RunRequest, path: Path, map_: Path | None, drive_id: str, ego_i
         )
     if read.drive_id != drive_id:  # the same bytes under another name
         read = _renamed(read, drive_id)
-    return on_its_map(read, MapLibrary.of(asked))
+    return drive_with_map(read, MapLibrary.of(asked))
 
 
 def _renamed(trace: Trace, drive_id: str) -> Trace:
@@ -83,8 +83,8 @@ def _renamed(trace: Trace, drive_id: str) -> Trace:
 
 
 def _kept(file: Path, drive_id: str, ego_id: str) -> Drive:
-    with store.opened(file, read_only=True) as con:
-        tables = {name: _rows(con, name, "drive_id", drive_id) for name in SCHEMAS}
+    with store.open_as_is(file, read_only=True) as con:
+        tables = {name: _rows(con, name, "drive_id", drive_id) for name in TRACE_SCHEMAS}
         if not tables["data_log"].num_rows:
             raise DriveLintError(f"{file}: the drive {drive_id} is not in it: check the drives again")
         actors = tables["actor"]
@@ -95,10 +95,10 @@ def _kept(file: Path, drive_id: str, ego_id: str) -> Drive:
         if place is not None:
             road = {name: _rows(con, name, "environment_id", place) for name in schemas() if name not in _OTHER}
             hand = road["environment"].to_pylist()[0]
-            environment = Environment(place, hand["handedness"], hand["handedness_source"], road)
+            environment = MapTables(place, hand["handedness"], hand["handedness_source"], road)
     return Drive(Trace(drive_id, file, tables, None, None, []), environment)
 
 
 def _rows(con: duckdb.DuckDBPyConnection, table: str, key: str, value: str) -> pa.Table:
-    order: Any = ", ".join(str(n) for n in range(1, len(store.schema()[table]) + 1))
+    order: Any = ", ".join(str(n) for n in range(1, len(store.column_comments()[table]) + 1))
     return con.execute(f"SELECT * FROM {table} WHERE {key} = ? ORDER BY {order}", [value]).to_arrow_table()

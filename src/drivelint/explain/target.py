@@ -1,4 +1,4 @@
-"""Which verdict is meant: a finding by its id or the beginning of it, or a rule, in a drive if there are several."""
+"""Finds the verdict that a user names: by a finding's id, a rule, or a rule in a drive."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from drivelint.explain.model import Row
     from drivelint.result.model import Result
 
-OTHERS = 6
+MAX_OTHERS = 6
 _WEIGHT = {"error": 0, "fail": 1, "unknown": 2, "pass": 3, "not_applicable": 4}
 
 
 @dataclass(frozen=True)
 class Target:
-    """A row of `verdict`, the finding on it that is meant (or None), and the other rows of its rule in its drive."""
+    """The verdict to explain, the finding of it that was named, and the other verdicts of its rule in the drive."""
 
     verdict: Row
     finding: Row | None
@@ -40,8 +40,8 @@ class Target:
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """What of several verdicts of one rule is wanted; None: whichever is worst."""
+class VerdictFilter:
+    """Conditions that choose among several verdicts of one rule; None: the worst."""
 
     profile: str | None = None
     object_id: str | None = None
@@ -50,7 +50,7 @@ class Wanted:
     verdict: str | None = None
 
 
-def find(result: Result, name: str, wanted: Wanted) -> Target:
+def find_verdict(result: Result, name: str, wanted: VerdictFilter) -> Target:
     """Return the verdict that `name` means: FINDING_ID or its beginning, or RULE or RULE@DRIVE, each of them or its beginning.
 
     Errors: `UsageError` for what is not there (with the nearest that is), or for what several begin with.
@@ -90,7 +90,7 @@ def _under(finding: Row, verdicts: Iterable[Row]) -> list[Row]:
     return exact or rows
 
 
-def _asked(rows: list[Row], wanted: Wanted, starts: dict[str, int | None]) -> list[Row]:
+def _asked(rows: list[Row], wanted: VerdictFilter, starts: dict[str, int | None]) -> list[Row]:
     for key in ("ego_id", "profile", "object_id", "verdict"):
         value = getattr(wanted, key)
         if value is not None:
@@ -105,7 +105,7 @@ def _asked(rows: list[Row], wanted: Wanted, starts: dict[str, int | None]) -> li
     around = [row for row in rows if _covers(row, wanted.at_s, starts)]
     if not around:
         told = sorted({_span(row, starts) for row in rows if row["t_start_ns"] is not None})
-        there = ", ".join(told[:OTHERS]) or "none with a time"
+        there = ", ".join(told[:MAX_OTHERS]) or "none with a time"
         raise UsageError(
             f"no such verdict of {rows[0]['rule_id']} is about {wanted.at_s:g} s of the drive; there are {there}"
         )

@@ -13,7 +13,7 @@ from rich.console import Group
 from rich.text import Text
 
 from drivelint.drive.declared import EVENTS
-from drivelint.explain.case import is_gated
+from drivelint.explain.case import lacks_signal
 from drivelint.explain.plot import plot
 from drivelint.explain.sensitivity import VERDICTS
 from drivelint.reasons.remedies import condition_of, remedy
@@ -23,12 +23,12 @@ from drivelint.sql import store
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from drivelint.explain.model import Change, Explanation, Row, Rows, Sensitivity
+    from drivelint.explain.model import Change, Explanation, Row, Sensitivity, TableRows
 
 EXPLAIN_SCHEMA: Final = 1
 """Version of the JSON: raised when a key changes its meaning or goes."""
-HEIGHT: Final = 8
-OTHERS: Final = 6
+PLOT_HEIGHT: Final = 8
+MAX_OTHERS: Final = 6
 _STYLE: Final = {"pass": "bold green", "fail": "bold red", "unknown": "bold yellow", "error": "bold magenta"}
 _MEANS: Final = {
     "fail": "the rule was broken",
@@ -125,9 +125,9 @@ def _happened(found: Explanation) -> list[str]:
                 if other["t_start_ns"] is not None
                 else ""
             )
-            for other in found.others[:OTHERS]
+            for other in found.others[:MAX_OTHERS]
         ]
-        more = f"; {len(found.others) - OTHERS} more" if len(found.others) > OTHERS else ""
+        more = f"; {len(found.others) - MAX_OTHERS} more" if len(found.others) > MAX_OTHERS else ""
         lines.append(f"The same rule elsewhere in this drive: {'; '.join(told)}{more}.")
     return lines
 
@@ -138,7 +138,7 @@ def _decides(found: Explanation) -> list[str]:
         return []
     told = remedy(row["reason_code"], row["object_id"], found.drive["format"], found.asks)
     unknown = [step.t_ns for step in found.series if step.holds is None]
-    if len(unknown) > 1 and not is_gated(row["verdict"], row["reason_code"]):
+    if len(unknown) > 1 and not lacks_signal(row["verdict"], row["reason_code"]):
         start, end = (seconds(t, found.drive["t_start_ns"]) for t in (unknown[0], unknown[-1]))
         told += f"; that is for the first of {len(unknown)} steps that are not known, from {start} to {end}: "
         told += "later ones may lack something else"
@@ -168,7 +168,7 @@ def _asks(found: Explanation) -> list[str]:
 
 
 def _sql(found: Explanation) -> list[str]:
-    if is_gated(found.verdict["verdict"], found.verdict["reason_code"]):
+    if lacks_signal(found.verdict["verdict"], found.verdict["reason_code"]):
         return ["The rule was not run: the log or the map lacks a signal that it requires."]
     lines = []
     for name, sql in found.sql.items():
@@ -188,11 +188,11 @@ def _rows(found: Explanation) -> list[str]:
     return lines if found.rows else []
 
 
-def _table(table: Rows, sql: str, start_ns: int, asked: str | None) -> list[str]:
+def _table(table: TableRows, sql: str, start_ns: int, asked: str | None) -> list[str]:
     """Return the columns that the rule names, and the one that is asked for, each with what it means."""
     if not table.rows:
         return [f"{table.table}: no row: there is nothing of that kind here."]
-    comments = store.schema().get(table.table, {})
+    comments = store.column_comments().get(table.table, {})
     lines = []
     for row in table.rows:
         named = [
@@ -222,7 +222,7 @@ def _comment(text: str) -> str:
 
 def _series(found: Explanation, width: int) -> list[str]:
     unit = found.rule["unit"] or ""
-    lines = [f"|{line}" for line in plot(found.series, width - 16, HEIGHT, found.drive["t_start_ns"] or 0, unit)]
+    lines = [f"|{line}" for line in plot(found.series, width - 16, PLOT_HEIGHT, found.drive["t_start_ns"] or 0, unit)]
     if not lines and len(found.series) == 1:
         return ["It was judged at one moment only."]
     if not lines:
@@ -234,7 +234,7 @@ def _series(found: Explanation, width: int) -> list[str]:
 
 def _changes(found: Explanation) -> list[str]:
     row = found.verdict
-    if is_gated(row["verdict"], row["reason_code"]):
+    if lacks_signal(row["verdict"], row["reason_code"]):
         return ["The rule was not run, since the log or the map lacks something: no number changes that."]
     lines = [_change(change) for change in found.changes]
     if row["margin"] is not None and row["verdict"] in {"pass", "fail"}:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from drivelint.formats.files import expand
+from drivelint.formats.files import expand_traces
 from drivelint.formats.map_registry import load_map, read_source
 from drivelint.formats.registry import read_trace
 
-__all__ = ["expand", "load_map", "read_source", "read_trace"]
+__all__ = ["expand_traces", "load_map", "read_source", "read_trace"]

@@ -1,4 +1,4 @@
-"""Which files a command line means, and what a drive is called: by its content, not by where it lies."""
+"""This module finds the traces that a command line names, and identifies each by the hash of its content."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 
 from drivelint.drive.trace import Identity
 from drivelint.errors import TraceError, UsageError
-from drivelint.formats.mcap.bag import METADATA, is_bag
-from drivelint.formats.mcap.bag import files as files_of_bag
+from drivelint.formats.mcap.bag import METADATA_FILE, is_bag
+from drivelint.formats.mcap.bag import mcap_files as files_of_bag
 from drivelint.formats.sumo import fcd as sumo
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-CANONICAL = (
+CANONICAL_FILES = (
     "actor.parquet",
     "actor_state.parquet",
     "data_log.parquet",
@@ -32,7 +32,7 @@ CANONICAL = (
 TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi"})
 """What a folder of traces is searched for, besides XML that is SUMO's: maps and routes lie there as XML too."""
 _HEAD_BYTES = 4096
-RESULTS = frozenset(
+RESULT_FILES = frozenset(
     f"{name}.parquet"
     for name in (
         "courses",
@@ -49,7 +49,7 @@ RESULTS = frozenset(
     )
 )
 """What `check --out` writes and a folder of traces is not searched for, where it lies with its `summary.json`."""
-ANNOTATED = "annotated"
+ANNOTATED_FOLDER = "annotated"
 """The folder beside them: logs that were judged already."""
 
 
@@ -63,7 +63,7 @@ def is_drive_folder(path: Path) -> bool:
     return is_canonical_folder(path) or is_bag(path)
 
 
-def expand(traces: Sequence[str]) -> list[Path]:
+def expand_traces(traces: Sequence[str]) -> list[Path]:
     """Return the traces that files, globs and folders name, sorted, each file once.
 
     A path that exists is always taken literally, `[`, `*` and `?` in its name included. A folder with
@@ -105,7 +105,9 @@ def _inside(path: Path) -> list[Path]:
         return [path]
     try:
         drives = [folder.parent for folder in path.rglob("actor_state.parquet")]
-        drives += [file.parent for file in path.rglob(METADATA) if is_bag(file.parent) and file.parent not in drives]
+        drives += [
+            file.parent for file in path.rglob(METADATA_FILE) if is_bag(file.parent) and file.parent not in drives
+        ]
         inside = frozenset(drives)
         files = [
             file
@@ -127,7 +129,7 @@ def _inside(path: Path) -> list[Path]:
 
 def _is_fcd(file: Path) -> bool:
     with file.open("rb") as opened:
-        return sumo.looks_like(file, opened.read(_HEAD_BYTES))
+        return sumo.is_fcd(file, opened.read(_HEAD_BYTES))
 
 
 def _is_result(file: Path, searched: Path) -> bool:
@@ -135,10 +137,10 @@ def _is_result(file: Path, searched: Path) -> bool:
 
     Who names the folder of annotated logs itself, means them.
     """
-    if file.name in RESULTS:
+    if file.name in RESULT_FILES:
         return _checked(file.parent)
     folder = file.parent.parent
-    return file.parent.name == ANNOTATED and folder.is_relative_to(searched) and _checked(folder)
+    return file.parent.name == ANNOTATED_FOLDER and folder.is_relative_to(searched) and _checked(folder)
 
 
 def _checked(folder: Path) -> bool:
@@ -153,7 +155,11 @@ def identify(path: Path) -> Identity:
     try:
         if path.is_dir():
             folder = hashlib.sha256()
-            names = CANONICAL if is_canonical_folder(path) else [METADATA, *(file.name for file in files_of_bag(path))]
+            names = (
+                CANONICAL_FILES
+                if is_canonical_folder(path)
+                else [METADATA_FILE, *(file.name for file in files_of_bag(path))]
+            )
             for name in names:
                 if (path / name).is_file():
                     folder.update(f"{name}\0{_sha256(path / name)}\n".encode())

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     Vectors = NDArray[np.float64]
 
-FIXED: Final = ("map", "world", "odom")
+FIXED_FRAMES: Final = ("map", "world", "odom")
 """What the frame that everything is brought into may be called, best first (REP 105: of these only `map` and the earth's
 do not drift)."""
 MAX_HOLE_NS: Final = 500_000_000
@@ -40,7 +40,7 @@ class Poses:
         return yaw
 
     def of(self, inner: Poses) -> Poses:
-        """Return poses given in these frames in the frames around them."""
+        """Return poses that are given relative to these ones in the frame of these ones."""
         return Poses(self.place + rotated(self.turn, inner.place), _product(self.turn, inner.turn))
 
 
@@ -55,7 +55,7 @@ class _Edge:
 
 
 @dataclass
-class Frames:
+class TransformTree:
     """The transforms of a log. `ambiguous`: frames that are said to have several parents."""
 
     edges: dict[str, _Edge] = field(default_factory=dict)
@@ -97,7 +97,7 @@ class Frames:
         return frame
 
     def into(self, fixed: str, frame: str, t_ns: NDArray[np.int64]) -> Poses:
-        """Return how `frame` lies in the fixed one at given times; NaN where that is not known."""
+        """Return the poses of `frame` in the fixed frame at given times, NaN where they are not known."""
         n = len(t_ns)
         chain = self.chain(frame, fixed)
         if chain is None:
@@ -108,24 +108,24 @@ class Frames:
         return found
 
 
-def fixed_frame(frames: Frames, used: Iterable[str]) -> str:
-    """Return the frame that poses given in the frames `used` are brought into, most important first.
+def fixed_frame(frames: TransformTree, used: Iterable[str]) -> str:
+    """Return the fixed frame for poses that are given in the frames `used`, the most important first.
 
     The best of `FIXED` that any of them leads to, else the one above the first of them.
     """
     names = list(used)
-    for candidate in FIXED:
+    for candidate in FIXED_FRAMES:
         if any(frames.chain(name, candidate) is not None for name in names):
             return candidate
-    return frames.root(names[0]) if names else FIXED[0]
+    return frames.root(names[0]) if names else FIXED_FRAMES[0]
 
 
-def clean(name: str) -> str:
+def clean_frame_name(name: str) -> str:
     """Return a frame's name without the slash that old recordings have before it."""
     return name.removeprefix("/")
 
 
-def unit(turn: Vectors) -> Vectors:
+def unit_quaternions(turn: Vectors) -> Vectors:
     """Return quaternions of length one; NaN for those that say nothing (all zero)."""
     length = np.sqrt(np.einsum("ij,ij->i", turn, turn))
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -168,5 +168,5 @@ def _at(edge: _Edge, t_ns: NDArray[np.int64]) -> Poses:
     first, second = edge.poses.turn[before], edge.poses.turn[after]
     near = np.where((first * second).sum(axis=1, keepdims=True) < 0.0, -second, second)
     place = edge.poses.place[before] * (1.0 - share) + edge.poses.place[after] * share
-    turn = unit(first * (1.0 - share) + near * share)
+    turn = unit_quaternions(first * (1.0 - share) + near * share)
     return Poses(np.where(inside[:, None], place, np.nan), np.where(inside[:, None], turn, np.nan))

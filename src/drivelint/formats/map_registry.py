@@ -7,7 +7,7 @@ import re
 from typing import TYPE_CHECKING
 
 from drivelint.errors import MapError, UsageError
-from drivelint.road.contract import Environment, MapReader, MapSource, Request
+from drivelint.road.contract import MapOptions, MapReader, MapSource, MapTables
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -87,7 +87,7 @@ def load_map(
     handedness: str = "auto",
     sensed: str | None = None,
     origin: tuple[float, float] | None = None,
-) -> Environment:
+) -> MapTables:
     """Return the map as the tables of `schemas/map.sql`.
 
     `offset` (metres) is added to all coordinates; `handedness` is the user's option, `sensed` what the traces voted
@@ -103,7 +103,7 @@ def load_map(
         raise UsageError(f"map offset {offset} is not two finite numbers of metres")
     if len(source.content) > MAX_BYTES:
         raise _too_large(source.name, len(source.content))
-    request = Request((float(offset[0]), float(offset[1])), handedness, sensed, origin)
+    request = MapOptions((float(offset[0]), float(offset[1])), handedness, sensed, origin)
     return _reader(source).read(source, request)
 
 
@@ -112,7 +112,7 @@ def _reader(source: MapSource) -> MapReader:
         from drivelint.formats.osi.map_lanes import OsiLanesReader
 
         return OsiLanesReader()
-    root = root_element(source.content)
+    root = root_element_name(source.content)
     if root is None:
         shown = source.content[:24]
         raise MapError(f"map {source.name} is not XML (it begins with {shown!r}): give an OpenDRIVE file (.xodr)")
@@ -125,7 +125,7 @@ def _reader(source: MapSource) -> MapReader:
     return READERS[root.lower()]()
 
 
-def root_element(content: bytes) -> str | None:
+def root_element_name(content: bytes) -> str | None:
     """Return the local name of the first element, or None if this is not XML."""
     head = content[:65536]
     encoding = "utf-16" if head[:2] in {b"\xff\xfe", b"\xfe\xff"} else "utf-8"

@@ -1,4 +1,4 @@
-"""What a trace reader is shown, and what it must have."""
+"""This module defines what a trace reader provides, and the probe by which it recognises a trace."""
 
 from __future__ import annotations
 

@@ -48,9 +48,9 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
             recording = reader.read(probe)
             if options.mapping is not None and not reader.takes_mapping:
                 recording.notes.append(f"mapping {options.mapping!r} is not needed: the log is {recording.format}")
-            from drivelint.drive.finish import finish
+            from drivelint.drive.finish import finish_trace
 
-            return finish(path, identity, recording, options)
+            return finish_trace(path, identity, recording, options)
     if b"<OpenDRIVE" in probe.head:
         raise TraceError(f"{path}: this is a map, not a log: give it with --map, beside a log")
     raise TraceError(
@@ -75,10 +75,10 @@ def _probe(path: Path, options: IngestOptions) -> Probe:
         raise TraceError(f"{path}: cannot be read: {error.strerror or error}") from error
     if not head:
         raise TraceError(f"{path}: the file is empty (0 bytes): record or copy it again")
-    from drivelint.formats.osi.file import looks_like
+    from drivelint.formats.osi.file import is_osi_trace
 
     suffix = path.suffix.lower()
-    if suffix == ".osi" and not looks_like(head, path.stat().st_size):
+    if suffix == ".osi" and not is_osi_trace(head, path.stat().st_size):
         raise TraceError(
             f"{path}: not an OSI trace: it should begin with a message's length and the message, and begins {head[:32]!r} at "
             "byte 0: copy it again"

@@ -1,4 +1,4 @@
-"""The gate: which findings of a result may fail a run. A baseline's are known, waived ones somebody answers for.
+"""The gate decides which findings fail a run: those that neither the baseline has nor a waiver covers.
 
 Both only change what a finding leads to: verdicts and findings stay as they are, and no clock is in them.
 """
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from drivelint.errors import UsageError
 from drivelint.gate import diff, waivers, words
-from drivelint.result.gate import Difference, Entry, Gate, Waiver
+from drivelint.result.gate import ComparedFinding, Difference, Gate, Waiver
 
 if TYPE_CHECKING:
     from datetime import date
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
     from drivelint.result.model import Result
 
-__all__ = ["Difference", "Entry", "Gate", "GateInputs", "Waiver", "compared"]
+__all__ = ["ComparedFinding", "Difference", "Gate", "GateInputs", "Waiver", "compare_results"]
 
 
 @dataclass(frozen=True)
 class GateInputs:
-    """What a run is held against: an earlier result, waivers, the day that counts."""
+    """The baseline, the waivers and the day that a run is compared with."""
 
     today: date
     baseline: Result | None = None
@@ -34,12 +34,12 @@ class GateInputs:
     def of(
         cls, baseline: Path | None, waiver_file: Path | None, settings_file: Path | None, today: date, out: Path | None
     ) -> GateInputs | None:
-        """Return what these files say, before any drive is judged; None: nothing was given.
+        """Return the gate inputs that these files hold; None if no file gives any.
 
         `settings_file` may hold waivers beside other settings; None: there is none. Errors: `UsageError` for a file or folder
         that cannot be used, or a baseline that this run would overwrite.
         """
-        from drivelint.result.load import load
+        from drivelint.result.load import load_result
 
         said = [*(waivers.read(waiver_file) if waiver_file else ()), *(_beside(settings_file) if settings_file else ())]
         if baseline is None and not said:
@@ -48,12 +48,12 @@ class GateInputs:
             raise UsageError(
                 f"--baseline {baseline}: is also --out: what is new today would be known tomorrow; write the results elsewhere"
             )
-        earlier = None if baseline is None else load(baseline)
+        earlier = None if baseline is None else load_result(baseline)
         name = "baseline" if baseline is None else baseline.resolve().name
         return cls(today, earlier, name, tuple(said))
 
     def gate(self, result: Result) -> Result:
-        """Return the result with what its gate knows."""
+        """Return the result with its gate: difference to the baseline and applied waivers."""
         stated, waived = waivers.apply(self.waivers, result, self.today)
         difference = None
         if self.baseline is not None:
@@ -62,10 +62,12 @@ class GateInputs:
         return replace(result, gate=Gate(today, difference, stated, waived))
 
 
-def compared(base: Result, new: Result, names: tuple[str, str], fail_on: str) -> tuple[Difference, list[Entry]]:
-    """Return what differs between two results, and the new findings that gate; `names` are for the reader."""
+def compare_results(
+    base: Result, new: Result, names: tuple[str, str], fail_on: str
+) -> tuple[Difference, list[ComparedFinding]]:
+    """Return the difference of two results and its new findings that fail the run."""
     found = diff.compare(base, new, *names)
-    return found, words.gating(found, fail_on, new.gate)
+    return found, words.gating_findings(found, fail_on, new.gate)
 
 
 def _beside(settings_file: Path) -> list[Waiver]:

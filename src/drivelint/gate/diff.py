@@ -1,4 +1,4 @@
-"""Two results side by side: what is new, fixed, changed, and what cannot be told any more."""
+"""Compares two results: which findings are new, fixed, changed, unchanged, unknown now or lost."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ import pyarrow.compute as pc
 from drivelint.gate import match
 from drivelint.gate.lookup import LookupResult, ResultLookup
 from drivelint.result import counts
-from drivelint.result.gate import Difference, Entry, Opened
+from drivelint.result.gate import ComparedFinding, Difference, NewUnknowns
 from drivelint.result.text import number
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from drivelint.gate.match import Stretch
+    from drivelint.gate.match import TimedFinding
     from drivelint.result.model import Result
 
     Row = Mapping[str, Any]
 
-MARGIN: Final = 0.01
+MARGIN_TOLERANCE: Final = 0.01
 """A margin has changed by more than this, in its unit, and by more than this part of what is required."""
-INTERVAL_S: Final = 0.1
+INTERVAL_TOLERANCE_S: Final = 0.1
 """A failing stretch has changed if one of its ends moved by more."""
 
 _OPEN: Final = pa.array(["unknown", "error"])
@@ -36,10 +36,10 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
     Drives are the same by `drive_id`, else by their file's stem. NEW's findings come in their order, then what BASE had.
     """
     had, has = ResultLookup(base), ResultLookup(new)
-    same = match.drives(list(had.drives.values()), list(has.drives.values()))
+    same = match.match_drives(list(had.drives.values()), list(has.drives.values()))
     before, after = had.findings, has.findings
-    entries: list[Entry] = []
-    gone: list[Entry] = []
+    entries: list[ComparedFinding] = []
+    gone: list[ComparedFinding] = []
     for drive_id in [*after, *(drive for drive in same if drive not in after)]:
         found, left = _drive(had, has, same.get(drive_id), drive_id)
         entries += found
@@ -60,27 +60,29 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
     )
 
 
-def _drive(had: ResultLookup, has: ResultLookup, base_id: str | None, drive_id: str) -> tuple[list[Entry], list[Entry]]:
+def _drive(
+    had: ResultLookup, has: ResultLookup, base_id: str | None, drive_id: str
+) -> tuple[list[ComparedFinding], list[ComparedFinding]]:
     """Return the entries of one drive: of NEW's findings, and of those that BASE had and NEW has not."""
     theirs = [] if base_id is None else had.findings.get(base_id, [])
     ours = has.findings.get(drive_id, [])
     same_log = base_id is not None and had.drives[base_id]["sha256"] == has.drives[drive_id]["sha256"]
-    pairs = match.findings(theirs, ours, same_log=same_log)
+    pairs = match.match_findings(theirs, ours, same_log=same_log)
     told = set(pairs.values())
-    entries: list[Entry] = []
+    entries: list[ComparedFinding] = []
     for i, now in enumerate(ours):
         if i in pairs:
             entries.append(_kept(now, theirs[pairs[i]], has))
-        elif wholes := [j for j, each in enumerate(theirs) if match.within(now, each, same_log=same_log)]:
+        elif wholes := [j for j, each in enumerate(theirs) if match.is_part_of(now, each, same_log=same_log)]:
             told.add(wholes[0])
             was = theirs[wholes[0]]
             entries.append(_entry("changed", now, was, has, LookupResult("fail", f"a part of {was.id}, which was one")))
         else:
             said = had.said(base_id, now, same_log=same_log)
             entries.append(_entry("new", now, None, has, _noting_rule(said, now, had, has)))
-    gone: list[Entry] = []
+    gone: list[ComparedFinding] = []
     for was in (each for j, each in enumerate(theirs) if j not in told):
-        wholes = [i for i in sorted(pairs) if match.within(was, ours[i], same_log=same_log)]
+        wholes = [i for i in sorted(pairs) if match.is_part_of(was, ours[i], same_log=same_log)]
         if wholes:
             gone.append(
                 _entry("changed", ours[wholes[0]], was, has, LookupResult("fail", f"{was.id} is a part of it now"))
@@ -91,7 +93,7 @@ def _drive(had: ResultLookup, has: ResultLookup, base_id: str | None, drive_id: 
     return entries, gone
 
 
-def _noting_rule(said: LookupResult, at: Stretch, had: ResultLookup, has: ResultLookup) -> LookupResult:
+def _noting_rule(said: LookupResult, at: TimedFinding, had: ResultLookup, has: ResultLookup) -> LookupResult:
     """Add what may be the cause: that the two results had not the same rule."""
     a, b = (lookup.rules.get(at.row["rule_id"]) for lookup in (had, has))
     if a is None or b is None or (a["rule_version"], a["params"]) == (b["rule_version"], b["params"]):
@@ -99,7 +101,7 @@ def _noting_rule(said: LookupResult, at: Stretch, had: ResultLookup, has: Result
     return said._replace(why=f"{said.why} The rule or its parameters changed.")
 
 
-def _kept(now: Stretch, was: Stretch, has: ResultLookup) -> Entry:
+def _kept(now: TimedFinding, was: TimedFinding, has: ResultLookup) -> ComparedFinding:
     """Return a finding that both results have, and how it changed."""
     notes = []
     if now.row["severity"] != was.row["severity"]:
@@ -107,7 +109,7 @@ def _kept(now: Stretch, was: Stretch, has: ResultLookup) -> Entry:
     if _differs(now.row, was.row):
         unit = now.row["unit"]
         notes.append(f"margin {number(now.row['margin'], unit)}, was {number(was.row['margin'], unit)}")
-    if max(abs(now.start - was.start), abs(now.end - was.end)) > INTERVAL_S:
+    if max(abs(now.start - was.start), abs(now.end - was.end)) > INTERVAL_TOLERANCE_S:
         notes.append(f"{now.start:.2f} s to {now.end:.2f} s, was {was.start:.2f} s to {was.end:.2f} s")
     return _entry("changed" if notes else "unchanged", now, was, has, LookupResult("fail", "; ".join(notes)))
 
@@ -117,25 +119,27 @@ def _differs(now: Row, was: Row) -> bool:
     a, b = now["margin"], was["margin"]
     if a is None or b is None or a == b:
         return bool(a != b)
-    allowed = max(MARGIN, MARGIN * max(abs(row["required"] or 0.0) for row in (now, was)))
+    allowed = max(MARGIN_TOLERANCE, MARGIN_TOLERANCE * max(abs(row["required"] or 0.0) for row in (now, was)))
     return not abs(a - b) <= allowed
 
 
-def _gone(was: Stretch, drive_id: str, said: LookupResult, had: ResultLookup) -> Entry:
+def _gone(was: TimedFinding, drive_id: str, said: LookupResult, had: ResultLookup) -> ComparedFinding:
     """Return a finding that only BASE has: fixed only if NEW looked there and found the rule kept, or not applicable."""
     standing = {"pass": "fixed", "not_applicable": "fixed", "none": "lost"}.get(said.verdict, "unknown")
     entry = _entry(standing, was, was, had, said)
     return entry if drive_id == entry.drive_id else _renamed(entry, drive_id)
 
 
-def _renamed(entry: Entry, drive_id: str) -> Entry:
-    return Entry(**{**entry.__dict__, "drive_id": drive_id})
+def _renamed(entry: ComparedFinding, drive_id: str) -> ComparedFinding:
+    return ComparedFinding(**{**entry.__dict__, "drive_id": drive_id})
 
 
-def _entry(standing: str, at: Stretch, was: Stretch | None, lookup: ResultLookup, said: LookupResult) -> Entry:
+def _entry(
+    standing: str, at: TimedFinding, was: TimedFinding | None, lookup: ResultLookup, said: LookupResult
+) -> ComparedFinding:
     row = at.row
     rule = lookup.rules.get(row["rule_id"])
-    return Entry(
+    return ComparedFinding(
         standing=standing,
         finding_id=at.id,
         base_id=None if was is None else was.id,
@@ -155,7 +159,7 @@ def _entry(standing: str, at: Stretch, was: Stretch | None, lookup: ResultLookup
     )
 
 
-def _opened(base: Result, new: Result, same: Mapping[str, str], has: ResultLookup) -> list[Opened]:
+def _opened(base: Result, new: Result, same: Mapping[str, str], has: ResultLookup) -> list[NewUnknowns]:
     """Return where more verdicts are unknown or in error than were."""
     was, _ = _unknown(base)
     now, reasons = _unknown(new)
@@ -165,7 +169,7 @@ def _opened(base: Result, new: Result, same: Mapping[str, str], has: ResultLooku
         before = was[same.get(drive_id, ""), ego_id, rule_id, profile]
         if n > before:
             stable = rule_id in has.rules and has.rules[rule_id]["status"] == "stable"
-            found.append(Opened(drive_id, ego_id, rule_id, profile, stable, n, before, reasons[at]))
+            found.append(NewUnknowns(drive_id, ego_id, rule_id, profile, stable, n, before, reasons[at]))
     return sorted(found, key=lambda each: (each.drive_id, each.ego_id, each.rule_id, each.profile or ""))
 
 

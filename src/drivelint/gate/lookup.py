@@ -1,4 +1,4 @@
-"""What a result says of a moment at which another result has a finding: nothing is fixed that was not looked at."""
+"""Looks up the verdict of one result at the time of another result's finding."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from drivelint.gate import match
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from drivelint.gate.match import Stretch
+    from drivelint.gate.match import TimedFinding
     from drivelint.result.model import Result
 
     Row = Mapping[str, Any]
@@ -20,14 +20,14 @@ _WEIGHT = ("error", "fail", "unknown", "pass")
 
 
 class LookupResult(NamedTuple):
-    """What a result says of a moment: a verdict, or `none` where it did not look, and why."""
+    """The verdict of a result at a time, or `none` if the rule was not judged there, and the reason."""
 
     verdict: str
     why: str
 
 
 class ResultLookup:
-    """One result, asked about moments of its drives."""
+    """Verdicts and findings of one result, indexed by drive, ego and rule."""
 
     def __init__(self, result: Result) -> None:
         self.drives: dict[str, Row] = {}
@@ -45,12 +45,12 @@ class ResultLookup:
             self._rows[row["drive_id"], row["ego_id"], row["rule_id"]].append(row)
             self._egos[row["drive_id"]].add(row["ego_id"])
             self._objects[row["drive_id"]].add(row["object_id"])
-        self.findings: dict[str, list[Stretch]] = defaultdict(list)
+        self.findings: dict[str, list[TimedFinding]] = defaultdict(list)
         for row in result.findings.to_pylist():
-            self.findings[row["drive_id"]].append(match.stretch(row, self.drives[row["drive_id"]]))
+            self.findings[row["drive_id"]].append(match.timed_finding(row, self.drives[row["drive_id"]]))
 
-    def said(self, drive_id: str | None, at: Stretch, *, same_log: bool) -> LookupResult:
-        """Return what the result says where another one has the finding `at`; `drive_id` is this one's name of the drive."""
+    def said(self, drive_id: str | None, at: TimedFinding, *, same_log: bool) -> LookupResult:
+        """Return the verdict of this result where another result has the finding `at`; `drive_id` is the drive's id in this result."""
         row = at.row
         if gap := self._not_looked(drive_id, row):
             return gap
@@ -72,12 +72,15 @@ class ResultLookup:
             return LookupResult("none", f"object {row['object_id']} is not in this log, or has another id")
         return LookupResult("not_applicable", there[0]["reason"] if there else "The rule does not apply there.")
 
-    def _judged(self, each: Row, at: Stretch) -> LookupResult:
+    def _judged(self, each: Row, at: TimedFinding) -> LookupResult:
         """Return what a verdict means for the moment: one that fails does so in its failing stretches only."""
         if each["verdict"] != "fail":
             return LookupResult(each["verdict"], each["reason"])
         mine = self.findings.get(each["drive_id"], ())
-        if any(match.key(other.row) == match.key(at.row) and match.gap(other, at) <= match.NEAR_S for other in mine):
+        if any(
+            match.finding_key(other.row) == match.finding_key(at.row) and match.gap_s(other, at) <= match.NEAR_S
+            for other in mine
+        ):
             return LookupResult("fail", "the rule fails there still, at another step or place")
         if each["n_judged"] == each["n_expected"]:
             return LookupResult("pass", "kept there, though not at another time of the same stretch of driving")
@@ -110,12 +113,12 @@ class ResultLookup:
         return each["verdict"] in {"unknown", "error"} and row["object_id"] not in self._objects[drive_id]
 
 
-def _overlaps(each: Row, at: Stretch, drive: Row) -> bool:
+def _overlaps(each: Row, at: TimedFinding, drive: Row) -> bool:
     """Return whether a verdict covers a finding's time; one without times covers the drive."""
     times = _times(each[name] for name in ("t_ref_ns", "t_start_ns", "t_end_ns", "t_worst_ns"))
     if not times:
         return True
-    start, end = match.seconds(min(times), drive), match.seconds(max(times), drive)
+    start, end = match.seconds_since_start(min(times), drive), match.seconds_since_start(max(times), drive)
     return start - match.NEAR_S <= at.end and at.start <= end + match.NEAR_S
 
 

@@ -16,11 +16,11 @@ NEAR_S: Final = 1.0
 NEAR_M: Final = 5.0
 """So far may the ego have been elsewhere at the worst step, if the log is another."""
 
-Key = tuple[str, str, str | None, str | None]
+FindingKey = tuple[str, str, str | None, str | None]
 """ego_id, rule_id, profile, object_id: what must agree."""
 
 
-class Stretch(NamedTuple):
+class TimedFinding(NamedTuple):
     """A finding with its times in seconds since the drive's first time stamp."""
 
     row: Row
@@ -34,22 +34,24 @@ class Stretch(NamedTuple):
         return str(self.row["finding_id"])
 
 
-def seconds(t_ns: int, drive: Row) -> float:
+def seconds_since_start(t_ns: int, drive: Row) -> float:
     """Return a time of a drive as seconds since its first time stamp."""
     return (t_ns - (drive["t_start_ns"] or 0)) / 1e9
 
 
-def stretch(row: Row, drive: Row) -> Stretch:
+def timed_finding(row: Row, drive: Row) -> TimedFinding:
     """Return a finding of a drive with its times."""
-    return Stretch(row, *(seconds(row[name], drive) for name in ("t_start_ns", "t_end_ns", "t_worst_ns")))
+    return TimedFinding(
+        row, *(seconds_since_start(row[name], drive) for name in ("t_start_ns", "t_end_ns", "t_worst_ns"))
+    )
 
 
-def key(row: Row) -> Key:
-    """Return what a finding is about."""
+def finding_key(row: Row) -> FindingKey:
+    """Return what identifies a finding within a drive: ego, rule, profile and object."""
     return row["ego_id"], row["rule_id"], row["profile"], row["object_id"]
 
 
-def drives(base: Sequence[Row], new: Sequence[Row]) -> dict[str, str]:
+def match_drives(base: Sequence[Row], new: Sequence[Row]) -> dict[str, str]:
     """Return drive_id in NEW -> drive_id in BASE: the same id, else the only one on both sides with that file stem."""
     ids = {row["drive_id"] for row in base}
     same = {row["drive_id"]: row["drive_id"] for row in new if row["drive_id"] in ids}
@@ -69,21 +71,21 @@ def _stems(rows: Iterable[Row]) -> dict[str, list[str]]:
     return found
 
 
-def findings(base: Sequence[Stretch], new: Sequence[Stretch], *, same_log: bool) -> dict[int, int]:
+def match_findings(base: Sequence[TimedFinding], new: Sequence[TimedFinding], *, same_log: bool) -> dict[int, int]:
     """Return index in `new` -> index in `base` of findings of one drive that are the same; each is taken once.
 
     The same: ego, rule, profile and object agree, and `near`. Equal ids go first, then the closest in time. An id alone
     does not do: ids number the findings of a drive, so an earlier one moves all that follow.
     """
-    groups: dict[Key, list[int]] = defaultdict(list)
+    groups: dict[FindingKey, list[int]] = defaultdict(list)
     for j, had in enumerate(base):
-        groups[key(had.row)].append(j)
+        groups[finding_key(had.row)].append(j)
     pairs = [
-        (had.id != now.id, abs(had.worst - now.worst), gap(had, now), i, j)
+        (had.id != now.id, abs(had.worst - now.worst), gap_s(had, now), i, j)
         for i, now in enumerate(new)
-        for j in groups.get(key(now.row), ())
+        for j in groups.get(finding_key(now.row), ())
         for had in (base[j],)
-        if near(had, now, same_log=same_log)
+        if may_match(had, now, same_log=same_log)
     ]
     taken: dict[int, int] = {}
     left = set(range(len(base)))
@@ -94,14 +96,14 @@ def findings(base: Sequence[Stretch], new: Sequence[Stretch], *, same_log: bool)
     return taken
 
 
-def near(had: Stretch, now: Stretch, *, same_log: bool) -> bool:
-    """Return whether two stretches can be one.
+def may_match(had: TimedFinding, now: TimedFinding, *, same_log: bool) -> bool:
+    """Return whether two findings are close enough in time and place to be the same.
 
     In the same log: less than `NEAR_S` apart. In another one, a repetition: so close at their worst and less than `NEAR_M`
     apart in place; or, since the worst step of a long stretch may be anywhere in it, for at least half of the time the same.
     """
     if same_log:
-        return gap(had, now) <= NEAR_S
+        return gap_s(had, now) <= NEAR_S
     if abs(had.worst - now.worst) <= NEAR_S and _distance(had.row, now.row) <= NEAR_M:
         return True
     common = min(had.end, now.end) - max(had.start, now.start)
@@ -109,14 +111,14 @@ def near(had: Stretch, now: Stretch, *, same_log: bool) -> bool:
     return 0 < whole <= 2 * common
 
 
-def within(part: Stretch, whole: Stretch, *, same_log: bool) -> bool:
-    """Return whether a stretch is a part of a longer one of the same: what was one is now several, or several are one."""
+def is_part_of(part: TimedFinding, whole: TimedFinding, *, same_log: bool) -> bool:
+    """Return whether a finding is a part of a longer one of the other result."""
     slack = NEAR_S if same_log else 0.0
-    longer = key(part.row) == key(whole.row) and part.end - part.start < whole.end - whole.start
+    longer = finding_key(part.row) == finding_key(whole.row) and part.end - part.start < whole.end - whole.start
     return longer and part.start >= whole.start - slack and part.end <= whole.end + slack
 
 
-def gap(a: Stretch, b: Stretch) -> float:
+def gap_s(a: TimedFinding, b: TimedFinding) -> float:
     """Return the seconds between two stretches; 0 where they overlap."""
     return max(0.0, max(a.start, b.start) - min(a.end, b.end))
 

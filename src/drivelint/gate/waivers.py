@@ -1,4 +1,4 @@
-"""Waivers: findings that somebody answers for, until a day.
+"""Waivers: findings that a named owner accepts until a day.
 
     [[waiver]]
     rule = "ukhc.r162.*"           # a rule's id, or a glob over ids
@@ -27,7 +27,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.errors import UsageError
-from drivelint.gate.match import seconds
+from drivelint.gate.match import seconds_since_start
 from drivelint.phrases import hint
 from drivelint.result.gate import Waiver
 
@@ -103,8 +103,8 @@ def _matches(waiver: Waiver, row: Row, drive: Row) -> bool:
     names = (row["drive_id"], drive["file_name"])
     if waiver.drive is not None and not any(fnmatchcase(name, waiver.drive) for name in names):
         return False
-    after = waiver.from_s is None or waiver.from_s <= seconds(row["t_start_ns"], drive)
-    return after and (waiver.to_s is None or seconds(row["t_end_ns"], drive) <= waiver.to_s)
+    after = waiver.from_s is None or waiver.from_s <= seconds_since_start(row["t_start_ns"], drive)
+    return after and (waiver.to_s is None or seconds_since_start(row["t_end_ns"], drive) <= waiver.to_s)
 
 
 def _waiver(table: Row, file: Path, place: tuple[int, Mapping[str, int]]) -> Waiver:
@@ -130,14 +130,14 @@ def _waiver(table: Row, file: Path, place: tuple[int, Mapping[str, int]]) -> Wai
     if table.get("from_s", 0) > table.get("to_s", float("inf")):
         raise refuse("to_s", "to_s is before from_s")
     try:
-        expires = day(table["expires"])
+        expires = parse_date(table["expires"])
     except ValueError as error:
         raise refuse("expires", f"expires = {table['expires']!r}: must be a day such as 2027-03-31") from error
     words = {key: table[key] for key in ("rule", "reason", "owner", *_PATTERNS, *_TIMES) if key in table}
     return Waiver(where=f"{file}:{head}", expires=expires.isoformat(), **words)
 
 
-def day(value: object) -> date:
+def parse_date(value: object) -> date:
     """Return a day that is written as a TOML date or as text. Errors: `ValueError`."""
     if isinstance(value, date) and not isinstance(value, datetime):
         return value

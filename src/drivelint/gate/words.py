@@ -1,4 +1,5 @@
-"""A difference and waivers in words: for a terminal, for programs. Unknown and not applicable always stand beside the rest."""
+"""Differences, waivers and the gate as text for a terminal and as JSON for programs. Unknown and not applicable always stand beside the
+rest."""
 
 from __future__ import annotations
 
@@ -14,7 +15,7 @@ from drivelint.result.text import number
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from drivelint.result.gate import Difference, Entry, Gate, Opened, Waiver
+    from drivelint.result.gate import ComparedFinding, Difference, Gate, NewUnknowns, Waiver
 
 MAX_LINES: Final = 50
 """Findings or reasons that a terminal shows of each kind; JSON has them all."""
@@ -22,7 +23,7 @@ MAX_LINES: Final = 50
 DIFF_SCHEMA: Final = 1
 """Version of the JSON: raised when a key changes its meaning or goes."""
 
-TITLES: Final = {
+STANDING_TITLES: Final = {
     "new": "New",
     "changed": "Changed: known, but not as it was",
     "unknown": "Not fixed: it cannot be told any more",
@@ -32,7 +33,7 @@ TITLES: Final = {
 """Standing -> heading, in the order shown; unchanged findings are counted only."""
 
 
-def gating(difference: Difference, fail_on: str, gate: Gate | None = None) -> list[Entry]:
+def gating_findings(difference: Difference, fail_on: str, gate: Gate | None = None) -> list[ComparedFinding]:
     """Return the new findings of stable rules at or above a severity, without those that the newer result waives."""
     if fail_on == "never":
         return []
@@ -53,26 +54,30 @@ def headline(difference: Difference) -> str:
     return text
 
 
-def text(difference: Difference, failing: Sequence[Entry], fail_on: str, gate: Gate | None = None) -> str:
-    """Return a difference for a person."""
+def difference_text(
+    difference: Difference, failing: Sequence[ComparedFinding], fail_on: str, gate: Gate | None = None
+) -> str:
+    """Return a difference as text for a person."""
     waived = gate.waived if gate else {}
     blocks = [list(_table(difference)), [headline(difference)]]
-    for standing, title in TITLES.items():
+    for standing, title in STANDING_TITLES.items():
         entries = difference.of(standing)
         if entries:
             lines = [f"{title} ({len(entries)})"]
-            lines += [f"  {line(e)}{' (waived)' if e.finding_id in waived else ''}" for e in entries[:MAX_LINES]]
+            lines += [
+                f"  {finding_line(e)}{' (waived)' if e.finding_id in waived else ''}" for e in entries[:MAX_LINES]
+            ]
             blocks.append([*lines, *_more(len(entries))])
     if difference.opened:
         blocks.append(list(_opened(difference.opened)))
     if difference.new_only or difference.base_only:
         blocks.append(list(_drives(difference)))
-    blocks.append([verdict(failing, fail_on)])
+    blocks.append([exit_summary(failing, fail_on)])
     return "\n\n".join("\n".join(block) for block in blocks)
 
 
-def verdict(failing: Sequence[Entry], fail_on: str) -> str:
-    """Return what a difference comes to, in one line."""
+def exit_summary(failing: Sequence[ComparedFinding], fail_on: str) -> str:
+    """Return the exit code of a difference and its reason, in one line."""
     if fail_on == "never":
         return "exit 0: new findings do not gate (--fail-on never)"
     what = f"at or above severity {fail_on}"
@@ -81,11 +86,11 @@ def verdict(failing: Sequence[Entry], fail_on: str) -> str:
     return f"exit 0: no new finding {what}"
 
 
-def to_json(difference: Difference, failing: Sequence[Entry], fail_on: str) -> str:
+def to_json(difference: Difference, failing: Sequence[ComparedFinding], fail_on: str) -> str:
     """Return a difference as JSON: all entries, and what it comes to."""
     content = {
         "diff_schema": DIFF_SCHEMA,
-        "exit": {"code": 1 if failing else 0, "why": verdict(failing, fail_on).partition(": ")[2]},
+        "exit": {"code": 1 if failing else 0, "why": exit_summary(failing, fail_on).partition(": ")[2]},
         "fail_on": fail_on,
         "counts": difference.counts(),
         "gating": [entry.finding_id for entry in failing],
@@ -94,7 +99,7 @@ def to_json(difference: Difference, failing: Sequence[Entry], fail_on: str) -> s
     return msgspec.json.format(msgspec.json.encode(content), indent=2).decode()
 
 
-def line(entry: Entry) -> str:
+def finding_line(entry: ComparedFinding) -> str:
     """Return a finding in one line: how bad, where, what, and what the other result says there."""
     profile = "" if entry.profile is None else f" [{entry.profile}]"
     who = f"ego {entry.ego_id}" + ("" if entry.object_id is None else f", object {entry.object_id}")
@@ -104,7 +109,7 @@ def line(entry: Entry) -> str:
     return f"{head}{_there(entry)}"
 
 
-def _there(entry: Entry) -> str:
+def _there(entry: ComparedFinding) -> str:
     if entry.standing == "changed":
         return f": {entry.why}"
     if entry.standing == "new":
@@ -117,33 +122,33 @@ _SAID: Final = {"not_applicable": "not applicable", "none": "nothing"} | {
 }
 
 
-def waivers(gate: Gate) -> Iterator[str]:
-    """Yield what must be said of each waiver that does not do what it is for, and what the others let through."""
+def waiver_warnings(gate: Gate) -> Iterator[str]:
+    """Yield a warning for each waiver that has expired or matches no finding."""
     for waiver in gate.waivers:
         if waiver.state == "expired":
             yield f"{waiver.where}: expired {waiver.expires} ({waiver.owner}): it waives nothing{_would(waiver)}"
         elif waiver.state == "unmatched":
-            yield f"{waiver.where}: no finding is like that: {about(waiver)} ({waiver.owner}); correct or drop it"
+            yield f"{waiver.where}: no finding is like that: {waiver_scope(waiver)} ({waiver.owner}); correct or drop it"
 
 
 def _would(waiver: Waiver) -> str:
     return f"; {plural(waiver.findings, 'finding')} like that" if waiver.findings else "; no finding is like that"
 
 
-def about(waiver: Waiver) -> str:
-    """Return what a waiver is about."""
+def waiver_scope(waiver: Waiver) -> str:
+    """Return the rule, drive, ego, object, profile and times that a waiver covers."""
     parts = [("drive", waiver.drive), ("ego", waiver.ego), ("object", waiver.object), ("profile", waiver.profile)]
     said = "".join(f", {name} {value}" for name, value in parts if value is not None)
     since = "" if waiver.from_s is None else f", from {waiver.from_s:g} s"
     return f"{waiver.rule}{said}{since}" + ("" if waiver.to_s is None else f", to {waiver.to_s:g} s")
 
 
-def excuse(waiver: Waiver) -> str:
+def waiver_reason(waiver: Waiver) -> str:
     """Return why a finding does not gate."""
     return f"waived until {waiver.expires} by {waiver.owner}: {waiver.reason}"
 
 
-def summary(gate: Gate) -> dict[str, Any]:
+def gate_counts(gate: Gate) -> dict[str, Any]:
     """Return a gate's counts as plain data."""
     states = Counter(waiver.state for waiver in gate.waivers)
     return {
@@ -151,12 +156,12 @@ def summary(gate: Gate) -> dict[str, Any]:
         "baseline": None if gate.baseline is None else {"name": gate.baseline.base_name} | gate.baseline.counts(),
         "waived_findings": len(gate.waived),
         "waivers": {state: states[state] for state in ("active", "expired", "unmatched")},
-        "notes": list(waivers(gate)),
+        "notes": list(waiver_warnings(gate)),
     }
 
 
-def grouped(opened: Iterable[Opened]) -> list[tuple[str, list[str], int]]:
-    """Return reasons with the rules that gave them and the verdicts that more are unknown, most first."""
+def group_by_reason(opened: Iterable[NewUnknowns]) -> list[tuple[str, list[str], int]]:
+    """Return each reason with its rules and the number of additional unknown verdicts, most first."""
     found: dict[str, tuple[set[str], int]] = {}
     for each in opened:
         rules, n = found.get(each.reason, (set(), 0))
@@ -175,8 +180,8 @@ def _table(difference: Difference) -> Iterator[str]:
 _HEAD: Final = {"not_applicable": "n/a"} | {name: name for name in ("pass", "fail", "unknown", "error")}
 
 
-def _opened(opened: Sequence[Opened]) -> Iterator[str]:
-    groups = grouped(opened)
+def _opened(opened: Sequence[NewUnknowns]) -> Iterator[str]:
+    groups = group_by_reason(opened)
     yield f"More is unknown than was ({sum(n for _, _, n in groups)} verdicts): unknown is not pass"
     for reason, rules, n in groups[:MAX_LINES]:
         few = ", ".join(rules[:3]) + (f" and {len(rules) - 3} more rules" if len(rules) > 3 else "")
@@ -191,7 +196,7 @@ def _drives(difference: Difference) -> Iterator[str]:
             yield f"{title} ({plural(len(names), 'drive')}): {few}{' ...' if len(names) > MAX_LINES else ''}"
 
 
-def _worse(entry: Entry) -> bool:
+def _worse(entry: ComparedFinding) -> bool:
     return entry.margin is not None and entry.base_margin is not None and entry.margin < entry.base_margin
 
 

@@ -29,9 +29,9 @@ TOPICS: Final = (
 )
 """The topics in reading order; each is the stem of a file."""
 FOLDER: Final = Path(__file__).parent
-REFERENCE: Final = ("dictionary", "catalogue")
+REFERENCE_TOPICS: Final = ("dictionary", "catalogue")
 """What `drivelint docs` prints beside the guides: the tables and the rules."""
-OUTPUT_TABLES: Final = "<!-- tables: output -->"
+OUTPUT_TABLES_MARK: Final = "<!-- tables: output -->"
 """The line of a guide that stands for the columns of every output file."""
 _MARK = re.compile(r"^<!-- .* -->\n", re.MULTILINE)
 
@@ -55,19 +55,19 @@ def text(name: str, table: str | None = None) -> str:
 
     Errors: `UsageError` with the nearest topic or table.
     """
-    if name not in TOPICS + REFERENCE:
-        raise UsageError(f"no guide {name!r}: {hint(name, TOPICS + REFERENCE)}")
+    if name not in TOPICS + REFERENCE_TOPICS:
+        raise UsageError(f"no guide {name!r}: {hint(name, TOPICS + REFERENCE_TOPICS)}")
     if table is not None and name != "dictionary":
         raise UsageError(f"docs {name} {table}: only the dictionary has tables: drivelint docs dictionary {table}")
-    if name in REFERENCE:
+    if name in REFERENCE_TOPICS:
         from drivelint.guide import reference
 
-        return reference.tables(table) if name == "dictionary" else reference.rules()
+        return reference.dictionary_text(table) if name == "dictionary" else reference.catalogue_markdown()
     source = _source(name)
-    if OUTPUT_TABLES in source:
+    if OUTPUT_TABLES_MARK in source:
         from drivelint.guide.dictionary import output_tables
 
-        source = source.replace(OUTPUT_TABLES, output_tables())
+        source = source.replace(OUTPUT_TABLES_MARK, output_tables())
     return _MARK.sub("", source)
 
 

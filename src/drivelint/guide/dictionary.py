@@ -7,10 +7,10 @@ from functools import cache
 from typing import TYPE_CHECKING, Final
 
 from drivelint.guide.markdown import escaped, table
-from drivelint.result.contract import FILES
+from drivelint.result.contract import TABLE_OF_FILE
 from drivelint.sql import store, syntax
 from drivelint.sql.derivations import derivations
-from drivelint.sql.store import lifetimes, schema
+from drivelint.sql.store import column_comments, lifetimes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -22,7 +22,7 @@ means that the value is not known, unless the column says otherwise. `drivelint 
 `drivelint.duckdb`.
 """
 INTRODUCTION: Final = f"# The data dictionary\n\n{_SAYS}"
-DERIVATIONS: Final = """## How the tables are derived
+DERIVATIONS_INTRODUCTION: Final = """## How the tables are derived
 
 Each derived table is filled by one SELECT, `queries/derive/<table>.sql`. A table of a level reads recorded tables and tables
 of lower levels. The tables that it reads stand behind it.
@@ -48,48 +48,49 @@ _LIVES: Final = {
 
 def page() -> str:
     """Return the data dictionary as Markdown. Errors: `DriveLintError` for a file of `schemas/` without a heading here."""
-    read = reads()
-    parts = [INTRODUCTION, DERIVATIONS, _levels(read)]
+    read = tables_read()
+    parts = [INTRODUCTION, DERIVATIONS_INTRODUCTION, _levels(read)]
     for file, heading in _GROUPS.items():
-        parts.append(f"## {heading}\n\nTables: {_links(schema(file))}.\n")
-        parts += [_section(name, read) for name in schema(file)]
+        parts.append(f"## {heading}\n\nTables: {_links(column_comments(file))}.\n")
+        parts += [_section(name, read) for name in column_comments(file)]
     return "\n".join(parts)
 
 
 def text() -> str:
     """Return the data dictionary as plain text: a block per table, a line per column."""
     groups = (
-        f"{heading.upper()}\n\n" + "\n".join(map(section_text, schema(file))) for file, heading in _GROUPS.items()
+        f"{heading.upper()}\n\n" + "\n".join(map(table_text, column_comments(file)))
+        for file, heading in _GROUPS.items()
     )
     return "\n".join([_SAYS, *groups])
 
 
-def section_text(name: str) -> str:
+def table_text(name: str) -> str:
     """Return one table as plain text: its name, what is said of it, and a line per column with its type and meaning."""
-    columns = [(column, _types()[name, column], comment) for column, comment in schema()[name].items()]
+    columns = [(column, _types()[name, column], comment) for column, comment in column_comments()[name].items()]
     wide, wider = (max(len(row[i]) for row in columns) for i in (0, 1))
-    said = [line for line in (_about(name), " ".join(_facts(name, reads(), ", ".join))) if line]
+    said = [line for line in (_about(name), " ".join(_facts(name, tables_read(), ", ".join))) if line]
     rows = [f"  {column:<{wide}}  {kind:<{wider}}  {comment}" for column, kind, comment in columns]
     return "\n".join([name, *said, *rows]) + "\n"
 
 
 def output_tables() -> str:
     """Return a section per result file with the columns of its table."""
-    files = {**FILES, "margins": "margin"}
+    files = {**TABLE_OF_FILE, "margins": "margin"}
     return "\n".join(f"### {stem}.parquet\n\n{_columns(name)}" for stem, name in files.items())
 
 
 @cache
-def reads() -> Mapping[str, tuple[str, ...]]:
-    """Return derived table -> every table that its SELECT reads, in the order in which they can be filled."""
+def tables_read() -> Mapping[str, tuple[str, ...]]:
+    """Return, for each derived table, the tables that its SELECT reads, in the order of derivation."""
     return {
-        name: tuple(sorted(syntax.reads(syntax.parsed(each.sql, name)) & schema().keys() - {name}))
+        name: tuple(sorted(syntax.tables_read(syntax.parse_select(each.sql, name)) & column_comments().keys() - {name}))
         for name, each in derivations().items()
     }
 
 
-def levels(read: Mapping[str, Iterable[str]]) -> list[list[str]]:
-    """Return the derived tables by level: one that reads only recorded tables first, then those that read only such, and so on."""
+def derivation_levels(read: Mapping[str, Iterable[str]]) -> list[list[str]]:
+    """Return the derived tables by level; a table reads only recorded tables and tables of lower levels."""
     level: dict[str, int] = {}
     for name, tables in read.items():
         level[name] = 1 + max((level.get(each, 0) for each in tables), default=0)
@@ -98,7 +99,7 @@ def levels(read: Mapping[str, Iterable[str]]) -> list[list[str]]:
 
 def _levels(read: Mapping[str, tuple[str, ...]]) -> str:
     lines = []
-    for n, tables in enumerate(levels(read), 1):
+    for n, tables in enumerate(derivation_levels(read), 1):
         lines.append(f"* Level {n}")
         lines += [f"    * {_link(name)}" + (f": {_links(read[name])}" if read[name] else "") for name in tables]
     return "\n".join(lines) + "\n"
@@ -114,7 +115,7 @@ def _facts(
 ) -> list[str]:
     """Return the sentences about a table: how long it is kept, its file, what it reads and what reads it."""
     said = [f"Kept {_LIVES[lifetimes()[name]]}."]
-    if files := [stem for stem, of in FILES.items() if of == name]:
+    if files := [stem for stem, of in TABLE_OF_FILE.items() if of == name]:
         said.append(f"Written to {quote}{files[0]}.parquet{quote}.")
     if name in read:
         said.append(f"Reads {listed(read[name])}." if read[name] else "Reads no table.")
@@ -134,7 +135,8 @@ def _about(name: str) -> str:
 
 def _columns(name: str) -> str:
     rows = [
-        (f"`{column}`", escaped(_types()[name, column]), escaped(comment)) for column, comment in schema()[name].items()
+        (f"`{column}`", escaped(_types()[name, column]), escaped(comment))
+        for column, comment in column_comments()[name].items()
     ]
     return table(("column", "type", "meaning"), rows)
 

@@ -8,20 +8,20 @@ from drivelint.guide import dictionary
 from drivelint.phrases import hint
 from drivelint.report import catalogue_page
 from drivelint.resources import folder
-from drivelint.sql.store import schema
+from drivelint.sql.store import column_comments
 
 
-def rules() -> str:
+def catalogue_markdown() -> str:
     """Return the catalogue of the shipped rules as Markdown."""
-    return catalogue_page.page(catalogue.load(()).values(), folder("queries") / "assertions")
+    return catalogue_page.page(catalogue.load_rules(()).values(), folder("queries") / "assertions")
 
 
-def tables(name: str | None) -> str:
+def dictionary_text(name: str | None) -> str:
     """Return the data dictionary as text, or one table of it. Errors: `UsageError` with the nearest table."""
     if name is None:
         return dictionary.text()
-    if name not in schema():
-        near = hint(name, schema())
+    if name not in column_comments():
+        near = hint(name, column_comments())
         said = "drivelint docs dictionary prints all" if near.startswith("known") else near
         raise UsageError(f"docs dictionary {name}: no table {name!r}: {said}")
-    return dictionary.section_text(name)
+    return dictionary.table_text(name)

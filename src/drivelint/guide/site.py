@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 PICTURES: Final = ("log.svg",)
 """The pictures of the guides."""
-REFERENCE: Final = {
+REFERENCE_PAGES: Final = {
     "catalogue": (
         "The rule catalogue",
         "Every rule with its numbers and sources, and every clause with what covers it.",
@@ -41,13 +41,13 @@ def write(folder: Path, commands: Iterable[Command]) -> Path:
 def contents(commands: Iterable[Command]) -> dict[str, bytes]:
     """Return every file of the site, name -> bytes: the same for the same version."""
     pages = {topic.name: guide.text(topic.name) for topic in guide.topics()}
-    pages["catalogue"] = reference.rules()
+    pages["catalogue"] = reference.catalogue_markdown()
     pages["dictionary"] = dictionary.page()
     pages["commands"] = command_page.page(commands)
     pages["index"] = _index()
     navigation = [
         ("Guides", [(topic.name, topic.title) for topic in guide.topics()]),
-        ("Reference", [(name, title) for name, (title, _) in REFERENCE.items()]),
+        ("Reference", [(name, title) for name, (title, _) in REFERENCE_PAGES.items()]),
     ]
     footer = f"drivelint {__version__}"
     files = {
@@ -60,7 +60,7 @@ def contents(commands: Iterable[Command]) -> dict[str, bytes]:
 
 def _index() -> str:
     guides = [(f"[{topic.title}]({topic.name}.md)", topic.sentence) for topic in guide.topics()]
-    others = [(f"[{title}]({name}.md)", has) for name, (title, has) in REFERENCE.items()]
+    others = [(f"[{title}]({name}.md)", has) for name, (title, has) in REFERENCE_PAGES.items()]
     return (
         "# drivelint\n\ndrivelint checks recorded drives against the rules of the road. Give it a log and a map; it says *pass*, *fail* or "
         "*unknown* for every rule, with the evidence.\n\n"

@@ -1,4 +1,4 @@
-"""What a log is, what is wrong with it and what can be decided of it: read, derived and asked, but not judged."""
+"""Inspects a log: its content, its problems and the rules that it can decide, without judging."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from drivelint import catalogue
 from drivelint.drive import conditions
 from drivelint.drive.trace import OWN_MAP_UNUSABLE, DriveInput
 from drivelint.engine.batch import Drive as Judgeable
-from drivelint.engine.batch import on_its_map
+from drivelint.engine.batch import drive_with_map
 from drivelint.engine.map_library import MapLibrary
-from drivelint.engine.memory import DEFAULT, Memory
+from drivelint.engine.memory import DEFAULT_MEMORY, Memory
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import ExitCode, MapError, TraceError, UsageError
-from drivelint.formats import expand, read_trace
+from drivelint.formats import expand_traces, read_trace
 from drivelint.formats.registry import FORMATS
 from drivelint.inspect import advice, model, tracks
-from drivelint.inspect.content import content, size
+from drivelint.inspect.content import content, size_bytes
 from drivelint.phrases import listed
 from drivelint.reasons import words
 from drivelint.sql import store
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
     from drivelint.drive.trace import Trace
-    from drivelint.road.contract import Environment
+    from drivelint.road.contract import MapTables
 
 DEFAULT_RULES: Final = ("ukhc",)
 _SEVERITIES: Final = ("error", "warning", "info")
@@ -45,19 +45,19 @@ class InspectRequest(DriveInput):
     trace: str
     rules: tuple[str, ...] = ()
     rules_dirs: tuple[Path, ...] = ()
-    memory: int | None = DEFAULT
+    memory: int | None = DEFAULT_MEMORY
     """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
 
 
 def inspect(request: InspectRequest) -> model.Inspection:
-    """Find out what there is to know. A file that cannot be read as a drive is no error: `problem` says why.
+    """Return an inspection of a log; if it cannot be read as a drive, `problem` says why.
 
     Errors: `TraceError` for a file that is not there, `UsageError`, `RuleError`, and `MapError` for a map that cannot be
     read; one of another place is told in the result.
     """
     selection = request.rules or DEFAULT_RULES
-    rules = catalogue.select(catalogue.load(request.rules_dirs), selection, ())
-    paths = expand([request.trace])
+    rules = catalogue.select_rules(catalogue.load_rules(request.rules_dirs), selection, ())
+    paths = expand_traces([request.trace])
     if len(paths) != 1:
         raise UsageError(
             f"{request.trace}: {len(paths)} logs ({listed([path.name for path in paths])}): inspect looks at one at a time"
@@ -65,7 +65,7 @@ def inspect(request: InspectRequest) -> model.Inspection:
     (path,) = paths
     library = MapLibrary.of(request)
     options = request.options(need_ego=False)
-    file = model.File(name=path.resolve().name, bytes=size(path))
+    file = model.File(name=path.resolve().name, bytes=size_bytes(path))
     try:
         trace = read_trace(path, options)
     except TraceError as error:
@@ -87,7 +87,7 @@ def to_json(found: model.Inspection) -> str:
 
 
 def exit_code(found: model.Inspection) -> ExitCode:
-    """Return 0 where the log is a drive and the map its, else 4."""
+    """Return 0 if the log can be read as a drive and its map fits, else 4."""
     unfit = found.problem is not None or (found.drive is not None and found.drive.road_problem is not None)
     return ExitCode.NOT_JUDGED if unfit else ExitCode.OK
 
@@ -107,7 +107,7 @@ def _drive(
     egos, quality = _judgeable(trace, environment, everybody, rules, road_problem, memory=request.memory)
     supposed, candidates = None, []
     if not egos:
-        candidates = tracks.candidates(everybody)
+        candidates = tracks.ego_candidates(everybody)
         supposing = replace(request, ego=candidates[0].actor_id).options(need_ego=False)
         ((supposed,), _) = _judgeable(
             read_trace(trace.path, supposing), environment, everybody, rules, road_problem, memory=request.memory
@@ -115,7 +115,7 @@ def _drive(
     return model.Drive(
         clock=tracks.clock(trace),
         states=trace.tables["actor_state"].num_rows,
-        classes=tracks.classes(everybody),
+        classes=tracks.count_classes(everybody),
         egos=egos,
         ego_source=_ego_source(trace, request.ego),
         candidates=candidates,
@@ -128,9 +128,9 @@ def _drive(
     )
 
 
-def _on_its_map(trace: Trace, library: MapLibrary) -> tuple[Trace, Environment | None, str | None]:
+def _on_its_map(trace: Trace, library: MapLibrary) -> tuple[Trace, MapTables | None, str | None]:
     try:
-        found = on_its_map(trace, library)
+        found = drive_with_map(trace, library)
     except MapError as error:
         return trace, None, str(error)
     rows = found.trace.tables["quality"].to_pylist()
@@ -140,7 +140,7 @@ def _on_its_map(trace: Trace, library: MapLibrary) -> tuple[Trace, Environment |
 
 def _judgeable(
     trace: Trace,
-    environment: Environment | None,
+    environment: MapTables | None,
     everybody: Sequence[model.Actor],
     rules: Sequence[Rule],
     road_problem: str | None,
@@ -166,7 +166,7 @@ def _judgeable(
         if road_problem is not None:
             lacking["map"] = "the map is not used (see above)"
         never = advice.never_known(known.of[ego_id], lacking)
-        cannot = advice.undecided(rules, lacking, never)
+        cannot = advice.undecided_rules(rules, lacking, never)
         undecided = {rule.rule_id for rule in cannot}
         egos.append(
             model.Ego(
@@ -176,7 +176,7 @@ def _judgeable(
                 registration=None if environment is None else _registration(registrations.get(ego_id)),
                 can=[rule.id for rule in rules if rule.id not in undecided],
                 cannot=cannot,
-                missing=advice.missing(cannot, {**never, **lacking}, log_format),
+                missing=advice.missing_signals(cannot, {**never, **lacking}, log_format),
             )
         )
     return egos, quality
@@ -189,7 +189,7 @@ class _Knowledge:
         self.of: dict[str, dict[str, bool]] = {}
 
     def __call__(self, con: duckdb.DuckDBPyConnection, _drives: Sequence[Judgeable], **_part: bool) -> None:
-        columns = {**dict.fromkeys(conditions.WORDS), "limit": None}
+        columns = {**dict.fromkeys(conditions.CONDITION_VALUES), "limit": None}
         known = ", ".join(f'count({"limit_mps" if c == "limit" else c}) > 0 AS "{c}"' for c in columns)
         for row in _rows(con, f"SELECT ego_id::VARCHAR AS ego_id, {known} FROM ego_condition GROUP BY ego_id"):
             ego = row.pop("ego_id")
@@ -248,7 +248,7 @@ def _ego_source(trace: Trace, asked: str | None) -> str:
     return FORMATS[log_format][1] if log_format in FORMATS else f"named by the mapping {log_format}"
 
 
-def _road(environment: Environment, *, given: bool) -> model.Road:
+def _road(environment: MapTables, *, given: bool) -> model.Road:
     row = environment.tables["environment"].to_pylist()[0]
     lanelets = environment.tables["lanelet"]
     drivable = lanelets.filter(lanelets["drivable"])

@@ -5,55 +5,55 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from drivelint.inspect.model import Missing, Undecided
-from drivelint.reasons.signals import SIGNAL_OF, provide
+from drivelint.reasons.signals import SIGNAL_OF_CONDITION, how_to_provide
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from drivelint.catalogue import Rule
 
-OF_THE_MAP: Final = frozenset(
+MAP_SIGNALS: Final = frozenset(
     {
         "registration", "handedness", "lane_types", "markings", "speed_limits", "exit_signs", "road_types", "junctions",
         "traffic_lights", "stop_lines", "crossings",
     }
 )  # fmt: skip
 """Signals that nobody can have without a map: where there is none, it is what is missing."""
-WHERE_IT_IS: Final = {
+MISSING_ON_ROUTE: Final = {
     "road_types": "the map does not say of what kind the roads are that the ego drives on",
     "speed_limits": "the map gives no limit that can be read for the lanes that the ego drives on",
 }
 
 
 def never_known(knowledge: Mapping[str, bool], lacking: Mapping[str, str]) -> dict[str, str]:
-    """Return what is known of the ego at no step, signal or condition -> why; `knowledge`: condition, or limit, -> known at some step.
+    """Return, per signal or condition that is unknown at every step of the ego, the reason.
 
     What the log or the map lacks as a whole, `lacking` says already.
     """
     found = {}
     for name in (name for name, known in knowledge.items() if not known):
-        signal = SIGNAL_OF.get(name, name)
-        found[signal] = lacking.get(signal, WHERE_IT_IS.get(signal, f"nothing says the {name.replace('_', ' ')}"))
+        signal = SIGNAL_OF_CONDITION.get(name, name)
+        found[signal] = lacking.get(signal, MISSING_ON_ROUTE.get(signal, f"nothing says the {name.replace('_', ' ')}"))
     return found
 
 
-def undecided(rules: Sequence[Rule], lacking: Mapping[str, str], never: Mapping[str, str]) -> list[Undecided]:
-    """Return the rules for which something is lacking (signal -> why), or never known of the ego."""
+def undecided_rules(rules: Sequence[Rule], lacking: Mapping[str, str], never: Mapping[str, str]) -> list[Undecided]:
+    """Return the rules that cannot be decided because a signal is lacking or a condition is never known."""
     found = []
     for rule in rules:
-        conditions = {SIGNAL_OF.get(name, name) for name in rule.applies.words}
+        conditions = {SIGNAL_OF_CONDITION.get(name, name) for name in rule.applies.words}
         conditions |= {"speed_limits"} if rule.applies.limited else set()
         needed = set(rule.requires) & lacking.keys() | conditions & never.keys()
         missing = needed | set(rule.pass_requires) & never.keys()
         if "map" in missing:
-            missing -= OF_THE_MAP
+            missing -= MAP_SIGNALS
         if missing:
             found.append(Undecided(rule_id=rule.id, title=rule.title, missing=sorted(missing), breach_only=not needed))
     return found
 
 
-def missing(cannot: Sequence[Undecided], lacking: Mapping[str, str], log_format: str) -> list[Missing]:
-    """Return the same by signal, that which most rules wait for first."""
+def missing_signals(cannot: Sequence[Undecided], lacking: Mapping[str, str], log_format: str) -> list[Missing]:
+    """Return the missing signals with the rules that need them, the most needed first."""
     by_signal: dict[str, list[Undecided]] = {}
     for rule in cannot:
         for signal in rule.missing:
@@ -62,7 +62,7 @@ def missing(cannot: Sequence[Undecided], lacking: Mapping[str, str], log_format:
         Missing(
             signal=signal,
             reason=lacking[signal],
-            provide=provide(signal, log_format),
+            provide=how_to_provide(signal, log_format),
             rules=[rule.rule_id for rule in waiting],
             alone=[rule.rule_id for rule in waiting if rule.missing == [signal]],
         )

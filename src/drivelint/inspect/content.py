@@ -7,18 +7,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import TraceError
-from drivelint.formats.files import CANONICAL
+from drivelint.formats.files import CANONICAL_FILES
 from drivelint.formats.film import mapping as video_mapping
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import MAGIC, Container
-from drivelint.formats.osi.decode import TREES
-from drivelint.formats.osi.extras import EVENT
+from drivelint.formats.osi.decode import FIELD_TREES
+from drivelint.formats.osi.extras import EVENT_MESSAGE
 from drivelint.formats.osi.reader import OPEN_DRIVE
 from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables import parquet
-from drivelint.formats.tables.mapping import GROUP, Mapping, Table
+from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER, Mapping, TextLayout
 from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet
-from drivelint.inspect.draft import draft
+from drivelint.inspect.draft import draft_mapping
 from drivelint.inspect.model import Channel, Column, Content, Sheet
 
 if TYPE_CHECKING:
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 
     from mcap import records
 
-    from drivelint.formats.film.mapping import Film
+    from drivelint.formats.film.mapping import VideoMapping
 
 _HEAD_BYTES: Final = 4096
-_OSI: Final = {(name, "protobuf"): "ground truth" for name in TREES} | {
+_OSI: Final = {(name, "protobuf"): "ground truth" for name in FIELD_TREES} | {
     (OPEN_DRIVE, "protobuf"): "map",
-    (EVENT, "json"): "declared events",
+    (EVENT_MESSAGE, "json"): "declared events",
 }
 _ROLES: Final[dict[str, dict[tuple[str, str], str]]] = {
     "osi": _OSI,
@@ -42,20 +42,20 @@ _ROLES: Final[dict[str, dict[tuple[str, str], str]]] = {
 """What is read of a log of each family: (schema, encoding) -> what as."""
 
 
-def size(path: Path) -> int:
-    """Return the bytes of a file, or of the tables of a canonical folder or the files of a bag."""
-    files = [path / name for name in CANONICAL] if path.is_dir() else [path]
+def size_bytes(path: Path) -> int:
+    """Return the bytes of a file, of the tables of a Parquet folder, or of the files of a bag."""
+    files = [path / name for name in CANONICAL_FILES] if path.is_dir() else [path]
     if bag.is_bag(path):
         files = [file for file in path.iterdir() if file.suffix.lower() == ".mcap"]
     return sum(file.stat().st_size for file in files if file.is_file())
 
 
 def content(path: Path, mapping: str | None, notes: list[str], *, read: bool) -> Content:
-    """Look into the file. `mapping`: what it was read through; `read`: whether it was read at all."""
+    """Return the channels, tables and columns of a file, and what is read from them."""
     if path.is_dir():
         if bag.is_bag(path):
             return Content(channels=_channels(path), notes=notes)
-        return Content(sheets=[_plain(path / name) for name in CANONICAL if _is_table(path / name)], notes=notes)
+        return Content(sheets=[_plain(path / name) for name in CANONICAL_FILES if _is_table(path / name)], notes=notes)
     with path.open("rb") as file:
         head = file.read(_HEAD_BYTES)
     if head.startswith(MAGIC[:5]):
@@ -64,7 +64,7 @@ def content(path: Path, mapping: str | None, notes: list[str], *, read: bool) ->
 
 
 def _of_table(path: Path, head: bytes, mapping: str | None, notes: list[str], *, read: bool) -> Content:
-    if mapping is not None and video_mapping.is_film(mapping):
+    if mapping is not None and video_mapping.is_video_mapping(mapping):
         name, film = video_mapping.load(mapping)
         return Content(sheets=[_filmed(path, film)], mapping=name, notes=notes)
     if mapping is not None:
@@ -72,13 +72,15 @@ def _of_table(path: Path, head: bytes, mapping: str | None, notes: list[str], *,
         return Content(sheets=[_mapped(path, loaded)], mapping=name, notes=notes)
     if head.startswith(b"PAR1"):
         sheet = _plain(path)
-        guess = None if read else draft([column.name for column in sheet.columns])
+        guess = None if read else draft_mapping([column.name for column in sheet.columns])
         return Content(sheets=[sheet], notes=notes, draft_mapping=guess)
     if read or b"\0" in head or not head.strip() or head.lstrip()[:1] in {b"<", b"{"}:
         return Content(notes=notes)  # no table, or a text that another reader has read
-    names = CsvSheet(path, Table()).names
+    names = CsvSheet(path, TextLayout()).names
     columns = [Column(name=name, read_as=[]) for name in names]
-    return Content(sheets=[Sheet(name=path.name, rows=None, columns=columns)], notes=notes, draft_mapping=draft(names))
+    return Content(
+        sheets=[Sheet(name=path.name, rows=None, columns=columns)], notes=notes, draft_mapping=draft_mapping(names)
+    )
 
 
 def _is_table(path: Path) -> bool:
@@ -96,17 +98,17 @@ def _mapped(path: Path, mapping: Mapping) -> Sheet:
         is_parquet = file.read(4) == b"PAR1"
     names = ParquetSheet(path).names if is_parquet else CsvSheet(path, mapping.table).names
     columns = _read(mapping)
-    shapes = [re.compile(re.escape(c.name).replace(re.escape(GROUP), r"\d+")) for c in columns]
-    grouped = any(GROUP in c.name for c in columns)
+    shapes = [re.compile(re.escape(c.name).replace(re.escape(GROUP_PLACEHOLDER), r"\d+")) for c in columns]
+    grouped = any(GROUP_PLACEHOLDER in c.name for c in columns)
     unread = [name for name in names if name and not any(shape.fullmatch(name) for shape in shapes)]
-    others = dict.fromkeys(re.sub(r"(?<=#)\d+", GROUP, name) if grouped else name for name in unread)
+    others = dict.fromkeys(re.sub(r"(?<=#)\d+", GROUP_PLACEHOLDER, name) if grouped else name for name in unread)
     columns += [Column(name=name, read_as=[]) for name in others]
     return Sheet(name=path.name, rows=parquet.n_rows(path) if is_parquet else None, columns=columns)
 
 
-def _filmed(path: Path, film: Film) -> Sheet:
+def _filmed(path: Path, film: VideoMapping) -> Sheet:
     """Return the columns of a table of detections, those that its mapping reads first."""
-    names = CsvSheet(path, Table()).names
+    names = CsvSheet(path, TextLayout()).names
     read = {film.frames.column: ["time"]} | {
         str(actor.ahead): [f"distance ahead of {actor.id}"] for actor in film.actor
     }
@@ -122,7 +124,7 @@ def _read(mapping: Mapping) -> list[Column]:
         if spec.column is not None:
             found.setdefault(spec.column, []).append(name)
             units[spec.column] = units.get(spec.column) or spec.unit
-    for name, (words, _) in mappings.words(mapping).items():
+    for name, (words, _) in mappings.word_mappings(mapping).items():
         for column in words.columns:
             found.setdefault(column, []).append(name.removeprefix("actor_"))
     return [Column(name=name, read_as=read_as, unit=units.get(name)) for name, read_as in found.items()]
@@ -140,7 +142,7 @@ def _channels(path: Path) -> list[Channel]:
     """Count the messages of every channel, of a bag over all its parts; of a damaged file those before the damage."""
     counts: dict[tuple[str, str, str, str], _Count] = {}
     try:
-        for file in bag.files(path):
+        for file in bag.mcap_files(path):
             container = Container(file)
             try:
                 for packet in container.packets():
@@ -182,6 +184,6 @@ def _channel(key: tuple[str, str, str, str], count: _Count, roles: dict[tuple[st
 def _roles(path: Path) -> dict[tuple[str, str], str]:
     """Return what is read of a log, by schema and encoding: of one that holds several kinds, only the best is."""
     try:
-        return _ROLES[bag.family(path)]
+        return _ROLES[bag.message_family(path)]
     except TraceError:
         return _ROLES["osi"]

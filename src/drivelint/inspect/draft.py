@@ -1,11 +1,11 @@
-"""A mapping to start from, guessed from the names of a table's columns: shown for correction, never used unseen."""
+"""Guesses a mapping from the column names of a table; the user must correct it before use."""
 
 from __future__ import annotations
 
 import re
 from typing import TYPE_CHECKING, Final
 
-from drivelint.formats.tables.mapping import QUANTITY, TIME_UNITS, UNITS
+from drivelint.formats.tables.mapping import FIELD_QUANTITIES, TIME_UNITS, UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -32,13 +32,13 @@ _NAMES: Final = {
 }
 _OTHERS: Final = {"rate", "lane", "relative", "rel", "wheel", "distance", "center", "reference"}
 """Words of quantities that look like ours and are not."""
-NEEDED: Final = ("time", "actor_id", "x", "y")
+REQUIRED_FIELDS: Final = ("time", "actor_id", "x", "y")
 _ORDER: Final = (
     "actor_id", "x", "y", "z", "yaw", "vx", "vy", "speed", "ax", "ay", "length", "width", "height",
 )  # fmt: skip
 
 
-def draft(columns: Sequence[str]) -> str | None:
+def draft_mapping(columns: Sequence[str]) -> str | None:
     """Return a mapping as TOML, a comment where something has to be filled in; None where hardly anything is recognised."""
     found: dict[str, str] = {}
     for column in columns:
@@ -51,7 +51,7 @@ def draft(columns: Sequence[str]) -> str | None:
         found.pop("ax", None), found.pop("ay", None)
     if "vx" in found or "yaw" not in found:
         found.pop("speed", None)
-    if sum(name in found for name in NEEDED) < 3:
+    if sum(name in found for name in REQUIRED_FIELDS) < 3:
         return None
     return "\n".join([*_head(found), *_columns(found), *_words(found)])
 
@@ -102,7 +102,7 @@ def _columns(found: Mapping[str, str]) -> list[str]:
     lines = ["", "[columns]"]
     for name in _ORDER:
         if name in found:
-            units = UNITS.get(QUANTITY.get(name, ""), {})
+            units = UNITS.get(FIELD_QUANTITIES.get(name, ""), {})
             unit = _unit(found[name], units)
             column = _text(found[name])
             if name == "yaw" and unit is None:
@@ -113,7 +113,7 @@ def _columns(found: Mapping[str, str]) -> list[str]:
                 if unit and unit != next(iter(units))
                 else f"{name} = {column}"
             )
-        elif name in NEEDED:
+        elif name in REQUIRED_FIELDS:
             lines.append(f'# {name} = ""  # which column?')
         elif name in {"length", "width"}:
             lines.append(f"# {name} = {4.8 if name == 'length' else 1.8}  # metres, if all vehicles are alike")

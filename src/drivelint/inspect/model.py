@@ -10,7 +10,7 @@ from typing import Annotated, Final, Literal
 import msgspec
 from msgspec import Meta
 
-VERSION: Final = 1
+INSPECT_SCHEMA: Final = 1
 """Raised when a key changes its meaning or goes; new keys do not raise it."""
 
 
@@ -205,7 +205,7 @@ class Drive(msgspec.Struct, frozen=True, kw_only=True):
 class Inspection(msgspec.Struct, frozen=True, kw_only=True):
     """Everything that `drivelint inspect --format json` prints."""
 
-    inspect_schema: Annotated[int, Meta(description="version of this structure")] = VERSION
+    inspect_schema: Annotated[int, Meta(description="version of this structure")] = INSPECT_SCHEMA
     file: File
     content: Content
     problem: Annotated[str | None, Meta(description="why the file cannot be read as a drive; null: it can")] = None

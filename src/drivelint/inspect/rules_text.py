@@ -19,8 +19,8 @@ _NAMED: Final = 6
 """Egos that a line names before it says how many more there are."""
 
 
-def rules(drive: Drive, log: str) -> Group:
-    """Return the answer for each ego, those that lack the same told together."""
+def decidable_rules(drive: Drive, log: str) -> Group:
+    """Return the rules that each ego can and cannot decide; egos that lack the same signals share a paragraph."""
     alike: dict[tuple[str, ...], list[Ego]] = {}
     for ego in drive.egos or ([drive.supposed] if drive.supposed else []):
         alike.setdefault(tuple(item.signal for item in ego.missing), []).append(ego)

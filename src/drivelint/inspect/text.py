@@ -1,4 +1,4 @@
-"""An inspection as a person reads it: a label and what there is to say, folding well where the terminal is narrow."""
+"""Prints an inspection for a person, one label and text per line."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from rich.table import Table
 from rich.text import Text
 
 from drivelint.formats.registry import FORMATS
-from drivelint.formats.tables.mapping import GROUP
-from drivelint.inspect.rules_text import rules
-from drivelint.inspect.words import amount, holes, metres, side, size
+from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER
+from drivelint.inspect.rules_text import decidable_rules
+from drivelint.inspect.words import distance_text, handedness_text, holes_text, part_text, size_text
 from drivelint.phrases import listed, plural
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def render(found: Inspection, trace: str) -> Group:
         lines += _drive(found.drive)
     parts.append(_labelled(lines))
     if found.drive is not None:
-        parts.append(rules(found.drive, found.file.name))
+        parts.append(decidable_rules(found.drive, found.file.name))
     if found.content.draft_mapping is not None:
         parts.append(
             Text(
@@ -74,7 +74,7 @@ def _title(found: Inspection) -> Text:
     kind = ""
     if file.format is not None:
         kind = FORMATS[file.format][0] if file.format in FORMATS else f"a table, read through the mapping {file.format}"
-    text.append(f"  {', '.join(part for part in (kind, size(file.bytes)) if part)}", style="default")
+    text.append(f"  {', '.join(part for part in (kind, size_text(file.bytes)) if part)}", style="default")
     return text
 
 
@@ -106,7 +106,7 @@ def _channel(channel: Channel) -> Text:
     text = Text(channel.topic)
     rate = "" if channel.rate_hz is None else f", {channel.rate_hz:.3g} Hz"
     kind = f"{channel.schema or 'no schema'} in {channel.encoding or 'no encoding'}"
-    text.append(f": {plural(channel.messages, 'message')} of {kind}{rate}, {size(channel.bytes)}")
+    text.append(f": {plural(channel.messages, 'message')} of {kind}{rate}, {size_text(channel.bytes)}")
     text.append(
         f", read as {channel.read_as}" if channel.read_as else ", not read", "green" if channel.read_as else "dim"
     )
@@ -119,11 +119,11 @@ def _sheet(sheet: Sheet) -> Text:
     if not read:
         names = [c.name for c in sheet.columns]
         return Text(f"{sheet.name}: {rows}{plural(len(names), 'column')}: {listed(names, MAX_ROWS)}")
-    grouped = any(GROUP in c.name for c in sheet.columns)
+    grouped = any(GROUP_PLACEHOLDER in c.name for c in sheet.columns)
     whole = f"{rows}{len(read)} of {plural(len(sheet.columns), 'column')}{' per actor' if grouped else ''}"
     text = Text(f"{whole} read: {', '.join(_cell(column, grouped=grouped) for column in read)}")
     if others := [c.name for c in sheet.columns if not c.read_as]:
-        names = [name.replace(GROUP, "").lstrip("# ") for name in others]
+        names = [name.replace(GROUP_PLACEHOLDER, "").lstrip("# ") for name in others]
         text.append(f"; not read: {listed(names, MAX_ROWS)}", style="dim")
     return text
 
@@ -139,7 +139,7 @@ def _drive(drive: Drive) -> Iterator[Line]:
     clock = drive.clock
     period = "" if clock.period_s is None else f", one every {clock.period_s:.4g} s ({1 / clock.period_s:.3g} Hz)"
     time = Text(f"{clock.duration_s:.2f} s, {plural(clock.steps, 'step')}{period}, ")
-    time.append(holes(clock), style="yellow" if clock.holes else "green")
+    time.append(holes_text(clock), style="yellow" if clock.holes else "green")
     yield "time", time.append("" if clock.utc_start is None else f", from {clock.utc_start}")
     total = sum(c.n for c in drive.classes)
     yield "actors", Text(f"{plural(total, 'actor')}, {plural(drive.states, 'state')}")
@@ -177,7 +177,7 @@ def _actor(actor: Actor) -> str:
         box = f"{actor.length_m:.2f} x {actor.width_m:.2f} m"
     speed = "" if actor.top_speed_mps is None else f", up to {actor.top_speed_mps:.1f} m/s"
     seen = f"from {actor.first_at_s:.1f} to {actor.last_at_s:.1f} s"
-    return f"{actor.actor_class or 'class unknown'}, {box}, {metres(actor.way_m)}{speed}, {seen}"
+    return f"{actor.actor_class or 'class unknown'}, {box}, {distance_text(actor.way_m)}{speed}, {seen}"
 
 
 def _road(drive: Drive) -> Iterator[Line]:
@@ -194,7 +194,10 @@ def _road(drive: Drive) -> Iterator[Line]:
         return
     bad = [(ego, fit) for ego, fit in fits if not fit.ok]
     good = len(fits) - len(bad)
-    yield "fit", Text(f"{amount(good, len(fits))} of the egos lie well on the map", style="yellow" if bad else "green")
+    yield (
+        "fit",
+        Text(f"{part_text(good, len(fits))} of the egos lie well on the map", style="yellow" if bad else "green"),
+    )
     for ego, fit in bad[:MAX_ROWS]:
         yield "fit", Text(f"{_named(ego)}: {fit.reason}", style="yellow")
     if len(bad) > MAX_ROWS:
@@ -211,7 +214,7 @@ def _map(road: Road) -> Text:
     if any(road.offset_m):
         text.append(f", moved by ({road.offset_m[0]:+g}, {road.offset_m[1]:+g}) m")
     guess = road.handedness_source == "default"
-    return text.append(f"; {side(road.handedness, road.handedness_source)}", style="yellow" if guess else "")
+    return text.append(f"; {handedness_text(road.handedness, road.handedness_source)}", style="yellow" if guess else "")
 
 
 def _fit(fit: Registration) -> Text:

@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import Trace
 
-MOVED_M = 1.0
+MIN_MOVED_M = 1.0
 """Who moved by less stood: positions of parked cars are noisy."""
 
 
 def clock(trace: Trace) -> Clock:
-    """Return the log's time stamps in a few numbers."""
+    """Return start, duration, period and gaps of the log's time stamps."""
     log = trace.tables["data_log"].to_pylist()[0]
     t_ns = np.unique(trace.tables["actor_state"]["t_ns"].to_numpy())
     gaps = np.diff(t_ns)
@@ -87,7 +87,7 @@ def _floats(states: object, name: str) -> NDArray[np.float64]:
     return np.asarray(pc.fill_null(states[name], float("nan")).to_numpy(), np.float64)  # type: ignore[index]
 
 
-def classes(found: Sequence[Actor]) -> list[ClassCount]:
+def count_classes(found: Sequence[Actor]) -> list[ClassCount]:
     """Count actors by class, the most numerous first."""
     by_class: dict[str | None, list[Actor]] = {}
     for actor in found:
@@ -97,14 +97,14 @@ def classes(found: Sequence[Actor]) -> list[ClassCount]:
             actor_class=name,
             n=len(some),
             sized=sum(a.length_m is not None and a.width_m is not None for a in some),
-            moving=sum(a.way_m > MOVED_M for a in some),
+            moving=sum(a.way_m > MIN_MOVED_M for a in some),
         )
         for name, some in by_class.items()
     ]
     return sorted(counts, key=lambda c: (-c.n, c.actor_class or "~"))
 
 
-def candidates(found: Sequence[Actor]) -> list[Actor]:
-    """Return who might be the ego: motor vehicles, or whose class is not known; those first that made the longest way."""
+def ego_candidates(found: Sequence[Actor]) -> list[Actor]:
+    """Return the possible egos: motor vehicles and actors of unknown class, the longest track first."""
     likely = [a for a in found if a.actor_class in MOTOR_VEHICLES] or [a for a in found if a.actor_class is None]
     return sorted(likely or found, key=lambda a: (-round(a.way_m, 3), a.actor_id))

@@ -1,4 +1,4 @@
-"""How amounts and lists read."""
+"""Formats amounts, sizes, distances, handedness and gaps as text."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _SOURCES: Final = {
 }
 
 
-def amount(n: int, of: int) -> str:
-    """Return how many of a number, in a word where that is plain."""
+def part_text(n: int, of: int) -> str:
+    """Return `n` of a total as text: none, all, or `n of total`."""
     return "none" if n == 0 else ("all" if n == of else f"{n} of {of}") if of > 1 else "it is"
 
 
-def size(n: int) -> str:
+def size_text(n: int) -> str:
     """Return bytes in kB, MB or GB."""
     for unit, factor in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
         if n >= factor:
@@ -32,18 +32,18 @@ def size(n: int) -> str:
     return plural(n, "byte")
 
 
-def metres(n: float) -> str:
+def distance_text(n: float) -> str:
     """Return a way driven."""
     return f"{n / 1000:.2f} km" if n >= 1000 else f"{n:.0f} m"
 
 
-def side(handedness: str, source: str) -> str:
+def handedness_text(handedness: str, source: str) -> str:
     """Return the side that is driven on, and who says so."""
     return f"{'left' if handedness == 'lht' else 'right'}-hand traffic, {_SOURCES.get(source, source)}"
 
 
-def holes(clock: Clock) -> str:
-    """Return what is missing between the time stamps."""
+def holes_text(clock: Clock) -> str:
+    """Return the number and length of the gaps between time stamps, as text."""
     if not clock.holes:
         return "no holes"
     return (

@@ -1,1 +1,1 @@
-"""What a verdict lacks, by code, and what to record or to provide."""
+"""Says for each reason code what a verdict lacks, and what to record or to provide."""

@@ -1,11 +1,11 @@
-"""What would decide an unknown verdict, by its reason code: what to record, or to provide."""
+"""Says by reason code what to record or to provide so that an unknown verdict is decided."""
 
 from __future__ import annotations
 
 from typing import Final
 
-from drivelint.drive.conditions import GIVEN
-from drivelint.reasons.signals import SIGNAL_OF, provide
+from drivelint.drive.conditions import ENV_VALUES
+from drivelint.reasons.signals import SIGNAL_OF_CONDITION, how_to_provide
 
 _NAMED = "{advice}"
 _SHOWN = "what is NULL, or has no row, in the rows that it was judged on"
@@ -33,10 +33,13 @@ REMEDIES: Final = {
 def remedy(code: str, object_id: str | None, log_format: str, asked: str | None = None) -> str:
     """Return what would decide an unknown verdict with this reason code, for a log of this format. `asked`: what its cause asks for."""
     if code.startswith("missing_") and code not in REMEDIES:
-        return provide(code.removeprefix("missing_"), log_format) + _AGAIN
+        return how_to_provide(code.removeprefix("missing_"), log_format) + _AGAIN
     condition = code.removesuffix("_unknown")
-    if condition in GIVEN or condition == "limit":
-        return provide({**SIGNAL_OF, "engaged": "mode_engaged"}.get(condition, condition), log_format) + _AGAIN
+    if condition in ENV_VALUES or condition == "limit":
+        return (
+            how_to_provide({**SIGNAL_OF_CONDITION, "engaged": "mode_engaged"}.get(condition, condition), log_format)
+            + _AGAIN
+        )
     return REMEDIES.get(code, _NAMED).format(
         object="the object" if object_id is None else f"object {object_id}",
         advice=asked or (_A_MAP_THAT_GOES_ON if code == "only_a_bound" else _SHOWN),
@@ -48,4 +51,4 @@ def condition_of(code: str) -> str | None:
     condition = code.removesuffix("_unknown")
     if condition == code:
         return None
-    return condition if condition in GIVEN else "limit_mps" if condition == "limit" else None
+    return condition if condition in ENV_VALUES else "limit_mps" if condition == "limit" else None

@@ -1,4 +1,4 @@
-"""The sentences of the engine's own reason codes, as SQL over the rows of one run: what was observed and required, or what was missing."""
+"""SQL that makes the sentence of each verdict: what was observed and required, or what was missing."""
 
 from __future__ import annotations
 
@@ -85,14 +85,14 @@ _TOLD = f"""CASE
             WHEN margin = 0 THEN 'exactly at the limit, which does not do'
             ELSE 'missed by ' || {_MARGIN} END || '.' END"""
 
-SENTENCE: Final = f"""{_TOLD} AS told,
+SENTENCE_SQL: Final = f"""{_TOLD} AS told,
         coalesce(replace(label, '_', ' ') || ': ', '')
             || CASE WHEN reason IS NULL AND cause IS NOT NULL
                 THEN format('{{}}; {{}}.', rtrim(told, '.'), words) ELSE told END AS sentence"""
 """What a verdict or finding says, as the column `sentence`. Columns that it reads: verdict, code, reason (the author's, or NULL), cause
 (that, or what the engine found out), its words, and the times, numbers and names that the codes of the engine tell."""
 
-MEASURES: Final = """coalesce(reason IS NULL AND CASE verdict
+HAS_MEASURE_SQL: Final = """coalesce(reason IS NULL AND CASE verdict
         WHEN 'unknown' THEN code = 'only_a_bound' AND bound IS NOT NULL AND asked IS NOT NULL
         WHEN 'not_applicable' THEN false
         ELSE code <> 'nobody_there' AND sense <> 'holds' AND observed IS NOT NULL AND required IS NOT NULL END, false)"""

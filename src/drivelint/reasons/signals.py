@@ -1,10 +1,10 @@
-"""What to provide so that a signal that rules require is there."""
+"""Says how to provide a signal that rules require."""
 
 from __future__ import annotations
 
 from typing import Final
 
-from drivelint.drive.conditions import SAYS, WORDS
+from drivelint.drive.conditions import CONDITION_TEXTS, CONDITION_VALUES
 from drivelint.drive.declared import MODES
 from drivelint.formats.registry import FORMATS
 from drivelint.phrases import hint
@@ -34,8 +34,8 @@ ADVICE: Final = {
     "declared_events": "the events that the ego declares: {declared_events}",
     "modes": "the ego's modes, as declared events with the values on and off: {declared_events}",
     **{
-        name: f"{SAYS[name].partition(';')[0]}: --env {name}={words[0]} ({', '.join(words[1:])})"
-        for name, words in WORDS.items()
+        name: f"{CONDITION_TEXTS[name].partition(';')[0]}: --env {name}={words[0]} ({', '.join(words[1:])})"
+        for name, words in CONDITION_VALUES.items()
     },
     **{
         f"mode_{mode}": f"when {mode} is on, as declared events {mode} with the values on and off: {{declared_events}}"
@@ -47,9 +47,9 @@ ADVICE: Final = {
     ),
     "mode_headlights": "when the headlights are on: {headlights}",
 }
-SIGNALS: Final = ADVICE.keys() - WORDS.keys()
+SIGNALS: Final = ADVICE.keys() - CONDITION_VALUES.keys()
 """What a rule may require: the signals of the table `capability`. The others are conditions of a drive."""
-SIGNAL_OF: Final = {"road_type": "road_types", "limit": "speed_limits"}
+SIGNAL_OF_CONDITION: Final = {"road_type": "road_types", "limit": "speed_limits"}
 """Conditions that the map gives under another name."""
 _DECLARED = "declared_event.parquet (columns drive_id, actor_id, t_ns, event, value)"
 _CONVERTED = "drivelint convert --to parquet, and in its tables "
@@ -95,8 +95,8 @@ def problem(signal: str) -> str | None:
     return f"{signal!r} is no signal; {hint(signal, sorted(SIGNALS))}"
 
 
-def provide(signal: str, log_format: str) -> str:
-    """Say what to give so that the signal is there, in the words of the log's format: a reader's name, or a mapping's."""
+def how_to_provide(signal: str, log_format: str) -> str:
+    """Return how to provide a signal in a log of this format."""
     return ADVICE.get(signal, "see what the rules that need it say: drivelint rules show ID").format_map(
         _where(log_format)
     )

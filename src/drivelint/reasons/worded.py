@@ -1,4 +1,4 @@
-"""The words of the reasons in a database: reasons are put into words once, where rows leave it."""
+"""Makes a temporary table with the text of each distinct reason."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     import duckdb
 
-    from drivelint.reasons.words import Words
+    from drivelint.reasons.words import ReasonText
 
 _TABLE = """
 CREATE OR REPLACE TEMP TABLE _worded
@@ -32,7 +32,9 @@ def _json(arguments: Mapping[str, Any]) -> str:
     return json.dumps(told)
 
 
-def word(con: duckdb.DuckDBPyConnection, select: str, own: Mapping[int, Mapping[str, Words]] | None = None) -> None:
+def make_reason_table(
+    con: duckdb.DuckDBPyConnection, select: str, own: Mapping[int, Mapping[str, ReasonText]] | None = None
+) -> None:
     """Make the temporary table `_worded` of the distinct rows of `select`: rule_no, cause, start_ns (not NULL, the log's start).
 
     It has the same columns, the words of the cause, its code and its arguments as JSON. `own`: rule_no -> the codes of that rule.
@@ -41,7 +43,7 @@ def word(con: duckdb.DuckDBPyConnection, select: str, own: Mapping[int, Mapping[
     causes = con.execute(
         f"SELECT DISTINCT rule_no, cause, start_ns FROM ({select}) WHERE cause IS NOT NULL ORDER BY ALL"
     ).fetchall()
-    found = [words.parse(cause) for _, cause, _ in causes]
+    found = [words.parse_reason(cause) for _, cause, _ in causes]
     told = [words.sentence(cause, start_ns, (own or {}).get(no)) for no, cause, start_ns in causes]
     rows = {
         "rule_no": pa.array([no for no, _, _ in causes], pa.int32()),

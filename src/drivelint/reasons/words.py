@@ -1,4 +1,4 @@
-"""The words of reasons: a reason is a code with arguments, and only this module makes a sentence of it.
+"""Turns reasons, which are codes with arguments, into sentences.
 
 SQL gives a reason by the macro `why(code, arguments)`, as JSON text. The words of a code stand in `words.toml`, those of a code that
 only one rule gives in the header of the rule. A rule of a user may give plain text instead: it is its own words.
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 _OPTIONAL = re.compile(r"\[([^\[\]]*)\]")
 _ARGUMENT = re.compile(r"\{(\w+)(?::(\.?\d?[fg]))?\}")
 _BEGINS = '{"code":'
-TEXT: Final = "text"
+PLAIN_TEXT: Final = "text"
 """The code of a reason that a rule gives as plain text; the text is its argument."""
 
 
-class Words(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What a code says, and what to do about it; `{name}` is an argument, `[...]` is left out where one in it is NULL."""
+class ReasonText(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The text and the advice of a reason code; `{name}` is an argument, `[...]` is left out if an argument in it is NULL."""
 
     says: str
     advice: str = ""
@@ -39,7 +39,7 @@ class Words(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def needs(self) -> frozenset[str]:
-        """The arguments without which the words have a gap."""
+        """The names of the arguments that must not be NULL."""
         return frozenset(name for name, _ in _ARGUMENT.findall(_OPTIONAL.sub("", self.says + self.advice)))
 
 
@@ -50,43 +50,43 @@ class Reason(NamedTuple):
     arguments: dict[str, Any]
 
 
-def shared() -> dict[str, Words]:
-    """Return the codes that several rules, derivations or the engine give, with their words."""
+def shared_texts() -> dict[str, ReasonText]:
+    """Return reason code -> text, for the codes that no single rule owns."""
     return _read()[0]
 
 
 @cache
-def _read() -> tuple[dict[str, Words], dict[str, dict[str, str]]]:
+def _read() -> tuple[dict[str, ReasonText], dict[str, dict[str, str]]]:
     raw = tomllib.loads((files(__package__) / "words.toml").read_text(encoding="utf-8"))
     values = raw.pop("values")
-    return msgspec.convert(raw, dict[str, Words]), values
+    return msgspec.convert(raw, dict[str, ReasonText]), values
 
 
-def parse(reason: str) -> Reason:
-    """Return code and arguments of what `why` gave, or of plain text."""
+def parse_reason(reason: str) -> Reason:
+    """Return the code and arguments of a reason, which is JSON from the SQL macro `why` or plain text."""
     try:
         raw = json.loads(reason) if reason.startswith(_BEGINS) else {}
         return Reason(str(raw["code"]), dict(raw.get("args") or {}))
     except (ValueError, TypeError, KeyError):
-        return Reason(TEXT, {TEXT: reason})
+        return Reason(PLAIN_TEXT, {PLAIN_TEXT: reason})
 
 
-def sentence(reason: str, start_ns: int = 0, own: Mapping[str, Words] | None = None) -> str:
+def sentence(reason: str, start_ns: int = 0, own: Mapping[str, ReasonText] | None = None) -> str:
     """Return a reason in words, its advice last. `start_ns`: when the log starts, since times are told from it; `own`: the rule's words."""
-    code, arguments = parse(reason)
-    if code == TEXT:
+    code, arguments = parse_reason(reason)
+    if code == PLAIN_TEXT:
         return reason
-    words = words_of(code, own)
+    words = text_of(code, own)
     told = _filled(words.says, arguments, start_ns, own)
     return f"{told}: {_filled(words.advice, arguments, start_ns, own)}" if words.advice else told
 
 
-def asks(
-    code: str, arguments: Mapping[str, Any], start_ns: int = 0, own: Mapping[str, Words] | None = None
+def advice_sentence(
+    code: str, arguments: Mapping[str, Any], start_ns: int = 0, own: Mapping[str, ReasonText] | None = None
 ) -> str | None:
-    """Return a reason in words if it, or a reason among its arguments, says what to record or to provide."""
-    nested = (asks(*each, start_ns, own) for each in _nested(arguments))
-    if not words_of(code, own).advice and not any(nested):
+    """Return a reason as a sentence if it, or a reason in its arguments, has advice; else None."""
+    nested = (advice_sentence(*each, start_ns, own) for each in _nested(arguments))
+    if not text_of(code, own).advice and not any(nested):
         return None
     return sentence(json.dumps({"code": code, "args": dict(arguments)}, separators=(",", ":")), start_ns, own)
 
@@ -100,16 +100,16 @@ def codes_in(code: str | None, arguments: str | None) -> set[str]:
 
 def _nested(arguments: Mapping[str, Any]) -> list[Reason]:
     """Return the reasons among the arguments of a reason."""
-    found = [parse(value) for value in arguments.values() if isinstance(value, str)]
-    return [reason for reason in found if reason.code != TEXT]
+    found = [parse_reason(value) for value in arguments.values() if isinstance(value, str)]
+    return [reason for reason in found if reason.code != PLAIN_TEXT]
 
 
-def words_of(code: str, own: Mapping[str, Words] | None = None) -> Words:
-    """Return the words of a code. A rule of a user may make up a code as it runs: it is its own words."""
-    return (own or {}).get(code) or shared().get(code) or Words(code.replace("_", " "))
+def text_of(code: str, own: Mapping[str, ReasonText] | None = None) -> ReasonText:
+    """Return the text of a code; a code without a text is its own text."""
+    return (own or {}).get(code) or shared_texts().get(code) or ReasonText(code.replace("_", " "))
 
 
-def _filled(template: str, arguments: Mapping[str, Any], start_ns: int, own: Mapping[str, Words] | None) -> str:
+def _filled(template: str, arguments: Mapping[str, Any], start_ns: int, own: Mapping[str, ReasonText] | None) -> str:
     told = {name: _told(name, value, start_ns, own) for name, value in arguments.items()}
     for part in _OPTIONAL.findall(template):
         absent = any(told.get(name) is None for name, _ in _ARGUMENT.findall(part))
@@ -123,7 +123,7 @@ def _formatted(value: Any, spec: str) -> str:
     return format(value, spec) if isinstance(value, int | float) else str(value)
 
 
-def _told(name: str, value: Any, start_ns: int, own: Mapping[str, Words] | None) -> Any:
+def _told(name: str, value: Any, start_ns: int, own: Mapping[str, ReasonText] | None) -> Any:
     """Return an argument as it is put into words: a time from the start, a reason in its words, a value in those of its name."""
     if name.endswith("_ns") and isinstance(value, int):
         return f"{(value - start_ns) / 1e9:.3f} s"

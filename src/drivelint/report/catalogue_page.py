@@ -32,17 +32,17 @@ is asked for. *law* names the nation whose law a rule is: in a drive of another 
 merged into one verdict: they ask different things of the same gap. At the end: [what a log can say](#what-a-log-can-say) and
 [what a map must have](#what-a-map-must-have).
 """
-LOG = """## What a log can say
+LOG_INTRODUCTION = """## What a log can say
 
 The words of its tables and of `--env CONDITION=VALUE`, in capital or small letters. What is not said is not known.
 """
-CONDITIONS = """What holds in the whole drive: `drive_condition.parquet` (`condition`, `value`), or `--env`, which counts more.
+CONDITIONS_INTRODUCTION = """What holds in the whole drive: `drive_condition.parquet` (`condition`, `value`), or `--env`, which counts more.
 """
-EVENTS = """What the ego declares: `declared_event.parquet` (`actor_id`, `t_ns`, `event`, `value`). An event that is on or
+EVENTS_INTRODUCTION = """What the ego declares: `declared_event.parquet` (`actor_id`, `t_ns`, `event`, `value`). An event that is on or
 off holds until it is declared again, and is not known before the first time. Where a log never declares a look or a decision,
 rules that ask for one are unknown.
 """
-MAP = """## What a map must have
+MAP_INTRODUCTION = """## What a map must have
 
 In OpenDRIVE's terms. A `signal` is recognised by its `country` and `type` (no country: OpenDRIVE's and the German numbers), else by its
 name, in capital or small letters. What a map does not say is not known.
@@ -50,7 +50,7 @@ name, in capital or small letters. What a map does not say is not known.
 
 
 class Clause(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A clause, or a range of them: `of` (H1, 103, 89-94), what it is about, and why (some of) it is not decided."""
+    """An entry of `clauses.toml`: a clause or range of clauses, its subject, and why rules do not decide all of it."""
 
     of: str
     about: str
@@ -66,21 +66,21 @@ class Clause(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return {f"{match[1] or 'R'}{n}" for n in range(first, last + 1)}
 
 
-class Row(NamedTuple):
-    """A clause with the rules that cover it and those that are drafts."""
+class ClauseCoverage(NamedTuple):
+    """A clause, the stable rules that cover it and the draft rules that cite it."""
 
     clause: Clause
     covered: tuple[str, ...]
     drafted: tuple[str, ...]
 
 
-def cited(rule: Rule) -> set[str]:
+def cited_clauses(rule: Rule) -> set[str]:
     """Return the Highway Code's clauses that a rule names at the head of its `clause` (up to the colon): R126, H2."""
     head = rule.clause.split(":", 1)[0]
     return set(_CITED.findall(head)) if head.startswith("UKHC") else set()
 
 
-def clauses(folder: Path) -> list[Clause]:
+def read_clauses(folder: Path) -> list[Clause]:
     """Read `clauses.toml` of a pack's folder; none: []. Errors: `RuleError` where it is not understood."""
     file = folder / "clauses.toml"
     if not file.is_file():
@@ -91,15 +91,15 @@ def clauses(folder: Path) -> list[Clause]:
         raise RuleError(f"{file}: {error}") from error
 
 
-def by_clause(rules: Iterable[Rule], table: Sequence[Clause]) -> list[Row]:
-    """Return each clause with what covers it.
+def clause_coverage(rules: Iterable[Rule], table: Sequence[Clause]) -> list[ClauseCoverage]:
+    """Return each clause with the rules that cover it.
 
     Errors: `RuleError` for a rule that cites a clause of which the table knows nothing, and for a clause without rules
     that does not say why.
     """
     citing: dict[str, list[Rule]] = {}
     for rule in rules:
-        for name in cited(rule):
+        for name in cited_clauses(rule):
             citing.setdefault(name, []).append(rule)
     known = {name for clause in table for name in clause.names}
     strange = sorted(citing.keys() - known)
@@ -112,7 +112,7 @@ def by_clause(rules: Iterable[Rule], table: Sequence[Clause]) -> list[Row]:
         drafted = tuple(sorted(i for i, rule in mine.items() if rule.status == "draft"))
         if not mine and not clause.why:
             raise RuleError(f"clauses.toml: {clause.of}: no rule covers it, and it does not say why")
-        rows.append(Row(clause, covered, drafted))
+        rows.append(ClauseCoverage(clause, covered, drafted))
     return rows
 
 
@@ -125,12 +125,12 @@ def page(rules: Iterable[Rule], folder: Path) -> str:
     parts = [INTRODUCTION, _overview(packs)]
     for pack, mine in packs.items():
         parts.append(_pack(pack, mine))
-        if table := clauses(folder / pack):
-            parts.append(_clauses(by_clause(rules, table)))
-    parts += [LOG, "\n".join(vocabulary.words()) + "\n"]
-    parts += [CONDITIONS, _table(*vocabulary.conditions_said(rules))]
-    parts += [EVENTS, _table(*vocabulary.events_said(rules))]
-    parts += [MAP, _table(*vocabulary.map_needed(rules))]
+        if table := read_clauses(folder / pack):
+            parts.append(_clauses(clause_coverage(rules, table)))
+    parts += [LOG_INTRODUCTION, "\n".join(vocabulary.column_value_lines()) + "\n"]
+    parts += [CONDITIONS_INTRODUCTION, _table(*vocabulary.condition_table(rules))]
+    parts += [EVENTS_INTRODUCTION, _table(*vocabulary.event_table(rules))]
+    parts += [MAP_INTRODUCTION, _table(*vocabulary.map_feature_table(rules))]
     return "\n".join(parts)
 
 
@@ -188,7 +188,7 @@ def _numbers(rule: Rule) -> str:
     return "<br>".join(said) or "none of its own"
 
 
-def _clauses(rows: Sequence[Row]) -> str:
+def _clauses(rows: Sequence[ClauseCoverage]) -> str:
     def ids(names: Sequence[str]) -> str:
         return "<br>".join(f"`{name}`" for name in names)
 

@@ -9,8 +9,8 @@ import pyarrow.compute as pc
 from lxml import etree
 
 from drivelint.gate import words
-from drivelint.report.xml import xml
-from drivelint.result.text import line, times
+from drivelint.report.xml import replace_non_xml
+from drivelint.result.text import line, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 MAX_LINES: Final = 50
 """Findings or reasons listed per test case; the tables hold them all."""
 
-Key = tuple[str, str, str | None]
+CaseKey = tuple[str, str, str | None]
 """drive_id, rule_id, profile."""
 
 
@@ -63,17 +63,17 @@ def _cases(result: Result) -> dict[str, list[Case]]:
     """Return drive_id -> its test cases, in the order of the verdict table."""
     starts = dict(zip(result.drives["drive_id"].to_pylist(), result.drives["t_start_ns"].to_pylist(), strict=True))
     drafts = set(result.rules.filter(pc.not_equal(result.rules["status"], "stable"))["rule_id"].to_pylist())
-    found: dict[Key, list[str]] = defaultdict(list)
-    passed: dict[Key, list[str]] = defaultdict(list)
+    found: dict[CaseKey, list[str]] = defaultdict(list)
+    passed: dict[CaseKey, list[str]] = defaultdict(list)
     for row in result.findings.to_pylist():
         text, excuse = line(row, starts.get(row["drive_id"])), _excuse(row["finding_id"], result.gate)
         if excuse:
             passed[_key(row)].append(f"{excuse}: {text}")
         else:
             found[_key(row)].append(text)
-    reasons: dict[Key, dict[str, list[str]]] = defaultdict(dict)
+    reasons: dict[CaseKey, dict[str, list[str]]] = defaultdict(dict)
     for row in _reasons(result.verdicts):
-        reasons[_key(row)].setdefault(row["verdict"], []).append(times(row["reason"], row["count_all"]))
+        reasons[_key(row)].setdefault(row["verdict"], []).append(with_count(row["reason"], row["count_all"]))
     cases: dict[str, list[Case]] = defaultdict(list)
     for key, verdicts in reasons.items():
         if "fail" in verdicts and key in found:
@@ -94,7 +94,7 @@ def _reasons(verdicts: pa.Table) -> Iterator[Row]:
     yield from grouped.to_pylist()
 
 
-def _case(key: Key, verdicts: dict[str, list[str]], *, draft: bool, strict: bool) -> Case:
+def _case(key: CaseKey, verdicts: dict[str, list[str]], *, draft: bool, strict: bool) -> Case:
     _, rule_id, profile = key
     name = f"{rule_id} [{profile}]" if profile is not None else rule_id
     if "error" in verdicts:
@@ -126,7 +126,7 @@ def _excuse(finding_id: str, gate: Gate | None) -> str:
     if gate is None or gate.gates(finding_id):
         return ""
     waiver = gate.waiver(finding_id)
-    return "known: the baseline has it" if waiver is None else words.excuse(waiver)
+    return "known: the baseline has it" if waiver is None else words.waiver_reason(waiver)
 
 
 def _suite(root: etree._Element, drive_id: str, cases: list[Case]) -> dict[str, int]:
@@ -137,21 +137,23 @@ def _suite(root: etree._Element, drive_id: str, cases: list[Case]) -> dict[str, 
         "errors": sum(case.outcome == "error" for case in cases),
         "skipped": sum(case.outcome == "skipped" for case in cases),
     }
-    suite = etree.SubElement(root, "testsuite", name=xml(drive_id))
+    suite = etree.SubElement(root, "testsuite", name=replace_non_xml(drive_id))
     for name, n in counted.items():
         suite.set(name, str(n))
     for case in cases:
-        element = etree.SubElement(suite, "testcase", name=xml(case.name), classname=xml(drive_id))
+        element = etree.SubElement(
+            suite, "testcase", name=replace_non_xml(case.name), classname=replace_non_xml(drive_id)
+        )
         if case.outcome:
             lines = case.lines[:MAX_LINES]
             if more := len(case.lines) - len(lines):
                 lines.append(f"... and {more} more: see findings.parquet and verdicts.parquet")
             detail = etree.SubElement(
-                element, case.outcome, type=case.kind, message=xml(lines[0] if lines else case.kind)
+                element, case.outcome, type=case.kind, message=replace_non_xml(lines[0] if lines else case.kind)
             )
-            detail.text = xml("\n".join(lines))
+            detail.text = replace_non_xml("\n".join(lines))
     return counted
 
 
-def _key(row: Row) -> Key:
+def _key(row: Row) -> CaseKey:
     return row["drive_id"], row["rule_id"], row["profile"]

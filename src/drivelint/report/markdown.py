@@ -13,13 +13,13 @@ from drivelint.gate import words
 from drivelint.phrases import plural
 from drivelint.report.html.anchors import finding_anchor
 from drivelint.result import counts
-from drivelint.result.model import outcome
-from drivelint.result.text import number, seconds, subject, times
+from drivelint.result.model import exit_status
+from drivelint.result.text import number, seconds, subject, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from drivelint.result.gate import Difference, Entry, Gate
+    from drivelint.result.gate import ComparedFinding, Difference, Gate
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
@@ -27,7 +27,7 @@ MAX_ROWS: Final = 40
 """Rows per table."""
 MAX_CHARS: Final = 60_000
 """A comment on GitHub has at most 65,536 characters."""
-MAX_TEXT: Final = 160
+MAX_REASON_CHARS: Final = 160
 """Characters of one reason."""
 
 _OPEN: Final = pa.array(["unknown", "error"])
@@ -39,12 +39,12 @@ def render(result: Result, link: str = "report.html") -> bytes:
 
     What gates comes first, then what a baseline or a waiver lets through, then what could not be judged.
     """
-    end = outcome(result)
-    blocks = [f"## drivelint: {_mark(int(end.code))}, exit {int(end.code)}", f"{text(end.why)}."]
+    end = exit_status(result)
+    blocks = [f"## drivelint: {_mark(int(end.code))}, exit {int(end.code)}", f"{escaped(end.why)}."]
     blocks.append("\n".join(_packs(result)))
     gate = result.gate
     if gate is not None and gate.baseline is not None:
-        blocks.append(f"Against the baseline: {text(words.headline(gate.baseline))}.")
+        blocks.append(f"Against the baseline: {escaped(words.headline(gate.baseline))}.")
     blocks += _findings(result, link)
     if gate is not None:
         blocks += _changes(gate, link)
@@ -66,13 +66,16 @@ def _within(blocks: Sequence[str]) -> list[str]:
     return kept
 
 
-def difference(diff: Difference, failing: Sequence[Entry], fail_on: str, gate: Gate | None = None) -> str:
+def difference(diff: Difference, failing: Sequence[ComparedFinding], fail_on: str, gate: Gate | None = None) -> str:
     """Return two results' difference as Markdown."""
-    blocks = [f"## drivelint diff: {text(words.headline(diff))}", f"{text(words.verdict(failing, fail_on))}."]
+    blocks = [
+        f"## drivelint diff: {escaped(words.headline(diff))}",
+        f"{escaped(words.exit_summary(failing, fail_on))}.",
+    ]
     rows = [(diff.base_name, diff.base_verdicts), (diff.name, diff.verdicts)]
     lines = [_row("result", *_HEAD), _row("---", *["---:"] * len(_HEAD))]
     blocks.append("\n".join([*lines, *(_row(code(name), *map(str, told.values())) for name, told in rows)]))
-    blocks += _entries(diff, words.TITLES, gate, None)
+    blocks += _entries(diff, words.STANDING_TITLES, gate, None)
     blocks += _opened(diff)
     for title, names in (("Only in the newer result", diff.new_only), ("Only in the base", diff.base_only)):
         if names:
@@ -81,7 +84,7 @@ def difference(diff: Difference, failing: Sequence[Entry], fail_on: str, gate: G
     return "\n\n".join(blocks)
 
 
-def text(words_: str) -> str:
+def escaped(words_: str) -> str:
     """Return words so that Markdown shows them as they are: no markup, no HTML, no link, nobody mentioned.
 
     A word joiner, which no reader sees, keeps GitHub from seeing addresses, mentions and numbers of issues.
@@ -105,7 +108,7 @@ def _mark(exit_code: int) -> str:
 def _packs(result: Result) -> Iterator[str]:
     yield _row("pack", *_HEAD)
     yield _row("---", *["---:"] * len(_HEAD))
-    told = counts.packs(result.rules, counts.by(result.verdicts, "rule_id"))
+    told = counts.verdicts_by_pack(result.rules, counts.verdicts_by(result.verdicts, "rule_id"))
     for pack, sums in told.items():
         yield _row(code(pack), *(str(sums[verdict]) for verdict in counts.VERDICTS))
 
@@ -132,7 +135,7 @@ def _findings(result: Result, link: str) -> Iterator[str]:
             for row, excuse in rows[:MAX_ROWS]:
                 start_ns = drives[row["drive_id"]]["t_start_ns"]
                 sense = rules[row["rule_id"]]["sense"] if row["rule_id"] in rules else ""
-                lines.append(_finding(row, sense, start_ns, link, [text(_short(excuse))] if why else []))
+                lines.append(_finding(row, sense, start_ns, link, [escaped(_short(excuse))] if why else []))
             more = len(rows) - MAX_ROWS
             shown = f" (the first {MAX_ROWS} of {len(rows)})" if more > 0 else f" ({len(rows)})"
             table = "\n".join(lines)
@@ -142,10 +145,10 @@ def _findings(result: Result, link: str) -> Iterator[str]:
 def _finding(row: Row, sense: str, start_ns: int | None, link: str, more: list[str]) -> str:
     profile = "" if row["profile"] is None else f" [{row['profile']}]"
     rule = f"[{code(row['rule_id'] + profile)}]({_target(link)}#{finding_anchor(row)})"
-    measured = [text(number(row["observed"], row["unit"])), text(number(row["required"], row["unit"]))]
+    measured = [escaped(number(row["observed"], row["unit"])), escaped(number(row["required"], row["unit"]))]
     if sense in {">", ">=", "<", "<="} and row["required"] is not None:
-        measured[1] = f"{text(sense)} {measured[1]}"
-    when, who = text(seconds(row["t_worst_ns"], start_ns)), text(subject(row))
+        measured[1] = f"{escaped(sense)} {measured[1]}"
+    when, who = escaped(seconds(row["t_worst_ns"], start_ns)), escaped(subject(row))
     return _row(row["severity"], code(row["drive_id"]), when, rule, who, *measured, *more)
 
 
@@ -154,7 +157,7 @@ def _excuse(row: Row, rule: Row | None, result: Result) -> str:
     gate = result.gate
     waiver = gate.waiver(row["finding_id"]) if gate else None
     if waiver is not None:
-        return words.excuse(waiver)
+        return words.waiver_reason(waiver)
     if gate is not None and gate.known(row["finding_id"]):
         return "known: the baseline has it"
     if rule is None or rule["status"] != "stable":
@@ -166,10 +169,10 @@ def _excuse(row: Row, rule: Row | None, result: Result) -> str:
 def _changes(gate: Gate, link: str) -> Iterator[str]:
     """Yield what a baseline and the waivers tell beyond the findings: new ones stand above."""
     if gate.baseline is not None:
-        titles = {standing: title for standing, title in words.TITLES.items() if standing != "new"}
+        titles = {standing: title for standing, title in words.STANDING_TITLES.items() if standing != "new"}
         yield from _entries(gate.baseline, titles, gate, link)
         yield from _opened(gate.baseline)
-    if said := [f"* {text(line)}" for line in words.waivers(gate)]:
+    if said := [f"* {escaped(line)}" for line in words.waiver_warnings(gate)]:
         yield "### Waivers to look at\n\n" + "\n".join(said)
 
 
@@ -183,7 +186,7 @@ def _entries(diff: Difference, titles: dict[str, str], gate: Gate | None, link: 
             waived = " (waived)" if gate is not None and entry.finding_id in gate.waived else ""
             here = link is not None and standing == "changed"
             there = f" [see]({_target(link or '')}#{finding_anchor({'finding_id': entry.finding_id})})" if here else ""
-            lines.append(f"* {text(_short(words.line(entry)))}{waived}{there}")
+            lines.append(f"* {escaped(_short(words.finding_line(entry)))}{waived}{there}")
         shown = f" (the first {MAX_ROWS} of {len(entries)})" if len(entries) > MAX_ROWS else f" ({len(entries)})"
         body = "\n".join(lines)
         yield (
@@ -192,11 +195,11 @@ def _entries(diff: Difference, titles: dict[str, str], gate: Gate | None, link: 
 
 
 def _opened(diff: Difference) -> Iterator[str]:
-    groups = words.grouped(diff.opened)
+    groups = words.group_by_reason(diff.opened)
     if groups:
         total = sum(n for _, _, n in groups)
         lines = [_row("verdicts", "rules", "why"), _row("---:", "---", "---")]
-        lines += [_row(str(n), _few(rules), text(_short(reason))) for reason, rules, n in groups[:MAX_ROWS]]
+        lines += [_row(str(n), _few(rules), escaped(_short(reason))) for reason, rules, n in groups[:MAX_ROWS]]
         yield f"### More is unknown than was ({total})\n\n" + "\n".join(lines)
 
 
@@ -205,7 +208,7 @@ def _open(result: Result) -> Iterator[str]:
     lost = result.drives.filter(pc.equal(result.drives["status"], "not_judged")).to_pylist()
     if lost:
         lines = [
-            f"* {code(row['drive_id'])}: {text(_short(row['status_reason'] or 'no reason given'))}" for row in lost
+            f"* {code(row['drive_id'])}: {escaped(_short(row['status_reason'] or 'no reason given'))}" for row in lost
         ]
         rest = [f"* ... and {len(lost) - MAX_ROWS} more"] if len(lost) > MAX_ROWS else []
         yield f"### Drives that could not be judged ({len(lost)})\n\n" + "\n".join([*lines[:MAX_ROWS], *rest])
@@ -221,7 +224,9 @@ def _open(result: Result) -> Iterator[str]:
         told[at] = told.get(at, 0) + row["count_all"]
     ordered = sorted(told, key=lambda at: (at[0], -told[at], at[1]))
     lines = [_row("verdict", "rules", "why"), _row("---", "---", "---")]
-    lines += [_row(at[0], _few(sorted(why[at])), text(times(_short(at[1]), told[at]))) for at in ordered[:MAX_ROWS]]
+    lines += [
+        _row(at[0], _few(sorted(why[at])), escaped(with_count(_short(at[1]), told[at]))) for at in ordered[:MAX_ROWS]
+    ]
     more = f" (the first {MAX_ROWS} of {len(ordered)} reasons)" if len(ordered) > MAX_ROWS else ""
     n = plural(rows.num_rows, "verdict")
     yield _folded(f"Could not be judged: {n}, for {plural(len(ordered), 'reason')}{more}", "\n".join(lines))
@@ -242,7 +247,7 @@ def _row(*cells: str) -> str:
 
 
 def _short(words_: str) -> str:
-    return words_ if len(words_) <= MAX_TEXT else words_[: MAX_TEXT - 3] + "..."
+    return words_ if len(words_) <= MAX_REASON_CHARS else words_[: MAX_REASON_CHARS - 3] + "..."
 
 
 def _target(link: str) -> str:

@@ -1,4 +1,4 @@
-"""How the pipeline tells a person where it is, without knowing who listens."""
+"""The interface through which the pipeline reports progress and notes to a person."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Progress(Protocol):
         """Report `n` more units of the current stage done."""
 
     def note(self, text: str) -> None:
-        """Say one line that a person should read while waiting."""
+        """Print a line for a person who waits."""
 
 
 class Silent:
@@ -32,7 +32,7 @@ class Silent:
         """Ignore the note."""
 
 
-class Notes(Silent):
+class NotePrinter(Silent):
     """A `Progress` for a stderr that is no terminal: only what a person should read, one line each."""
 
     def note(self, text: str) -> None:

@@ -10,7 +10,7 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
-from drivelint.report.terminal import NARROW
+from drivelint.report.terminal import NARROW_WIDTH
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -45,7 +45,7 @@ def listing_json(rules: Iterable[Rule]) -> str:
 def listing(rules: Iterable[Rule], width: int = 120) -> Table:
     """Return the same as a table for a terminal of `width` columns, with the rules' titles; narrow: without their kinds."""
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
-    wide = width >= NARROW
+    wide = width >= NARROW_WIDTH
     for name in ("rule", *(("kind",) if wide else ()), "severity", "status"):
         table.add_column(name, no_wrap=True)
     table.add_column("what it asks", ratio=1)
@@ -55,7 +55,7 @@ def listing(rules: Iterable[Rule], width: int = 120) -> Table:
     return table
 
 
-def page(rule: Rule) -> Group:
+def rule_details(rule: Rule) -> Group:
     """Return everything about one rule: what it asks, where that is from, what its header sets, its parameters."""
     facts = Table(box=None, show_header=False, pad_edge=False)
     facts.add_column(style="bold", no_wrap=True)

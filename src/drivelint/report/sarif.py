@@ -18,8 +18,8 @@ import pyarrow.compute as pc
 from drivelint import __version__
 from drivelint.gate import words
 from drivelint.result import counts
-from drivelint.result.model import outcome
-from drivelint.result.text import comparison, number, seconds, subject, times
+from drivelint.result.model import exit_status
+from drivelint.result.text import comparison, number, seconds, subject, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -61,12 +61,12 @@ class _Run:
 
     def content(self) -> dict[str, Any]:
         """Return the SARIF run as plain data."""
-        result, end = self._result, outcome(self._result)
-        told, none = counts.by(result.verdicts, "rule_id"), dict.fromkeys(counts.VERDICTS, 0)
+        result, end = self._result, exit_status(self._result)
+        told, none = counts.verdicts_by(result.verdicts, "rule_id"), dict.fromkeys(counts.VERDICTS, 0)
         total = counts.total(result.verdicts)
         properties = {"verdicts": total, "failOn": result.fail_on, "strict": result.strict}
         if result.gate is not None:
-            properties["gate"] = words.summary(result.gate)
+            properties["gate"] = words.gate_counts(result.gate)
         driver = {
             "name": "drivelint",
             "semanticVersion": __version__,
@@ -166,7 +166,7 @@ class _Run:
         columns = ["drive_id", "rule_id", "profile", "verdict", "reason"]
         for row in rows.group_by(columns, use_threads=False).aggregate([([], "count_all")]).to_pylist():
             profile = "" if row["profile"] is None else f" [{row['profile']}]"
-            text = f"{row['rule_id']}{profile}: {row['verdict']}: {times(row['reason'], row['count_all'])}"
+            text = f"{row['rule_id']}{profile}: {row['verdict']}: {with_count(row['reason'], row['count_all'])}"
             level = "error" if row["verdict"] == "error" else "warning"
             notice = _notice(row["verdict"], level, text, self._location(self._drives[row["drive_id"]]))
             yield notice | {"associatedRule": {"id": row["rule_id"], "index": self._rule_index[row["rule_id"]]}}
@@ -175,7 +175,7 @@ class _Run:
                 level = "note" if check["severity"] == "info" else check["severity"]
                 text = f"{check['check_id']}: {check['message']}"
                 yield _notice("data-quality", level, text, self._location(drive))
-        for text in words.waivers(result.gate) if result.gate else ():
+        for text in words.waiver_warnings(result.gate) if result.gate else ():
             yield _notice("waiver", "warning", text)
 
 

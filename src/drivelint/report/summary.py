@@ -11,8 +11,8 @@ import duckdb
 from drivelint import __version__
 from drivelint.gate import words
 from drivelint.result import counts
-from drivelint.result.contract import OUTPUT_SCHEMA
-from drivelint.result.model import outcome
+from drivelint.result.contract import OUTPUT_VERSION
+from drivelint.result.model import exit_status
 
 if TYPE_CHECKING:
     from drivelint.result.model import Result
@@ -25,21 +25,23 @@ def render(result: Result) -> bytes:
 
 def content(result: Result) -> dict[str, Any]:
     """Return the summary as plain data; verdict counts hold every verdict, zeros included."""
-    end = outcome(result)
+    end = exit_status(result)
     near = result.verdicts.filter(result.verdicts["near_miss"])
     return {
-        "output_schema": OUTPUT_SCHEMA,
+        "output_schema": OUTPUT_VERSION,
         "tool": {"name": "drivelint", "version": __version__, "duckdb": duckdb.__version__},
         "exit": {"code": int(end.code), "name": end.code.name.lower(), "why": end.why},
         "fail_on": result.fail_on,
         "strict": result.strict,
-        "gate": None if result.gate is None else words.summary(result.gate),
+        "gate": None if result.gate is None else words.gate_counts(result.gate),
         "verdicts": counts.total(result.verdicts),
         "near_misses": near.num_rows,
         "findings": counts.tally(result.findings, counts.SEVERITIES, "severity"),
         "packs": [
             {"pack": pack, "verdicts": told}
-            for pack, told in counts.packs(result.rules, counts.by(result.verdicts, "rule_id")).items()
+            for pack, told in counts.verdicts_by_pack(
+                result.rules, counts.verdicts_by(result.verdicts, "rule_id")
+            ).items()
         ],
         "rules": _rules(result, counts.rows_by(near, "rule_id")),
         "drives": _drives(result, counts.rows_by(near, "drive_id")),
@@ -47,7 +49,7 @@ def content(result: Result) -> dict[str, Any]:
 
 
 def _rules(result: Result, near: dict[str, int]) -> list[dict[str, Any]]:
-    verdicts, findings = counts.by(result.verdicts, "rule_id"), counts.rows_by(result.findings, "rule_id")
+    verdicts, findings = counts.verdicts_by(result.verdicts, "rule_id"), counts.rows_by(result.findings, "rule_id")
     columns = ["rule_id", "rule_version", "title", "severity", "status", "profiles", "params"]
     return [
         {
@@ -61,7 +63,7 @@ def _rules(result: Result, near: dict[str, int]) -> list[dict[str, Any]]:
 
 
 def _drives(result: Result, near: dict[str, int]) -> list[dict[str, Any]]:
-    verdicts, findings = counts.by(result.verdicts, "drive_id"), counts.rows_by(result.findings, "drive_id")
+    verdicts, findings = counts.verdicts_by(result.verdicts, "drive_id"), counts.rows_by(result.findings, "drive_id")
     columns = [
         "drive_id", "file_name", "sha256", "format", "map_name", "map_sha256", "handedness", "handedness_source",
         "status", "status_reason", "lossy", "duration_s", "km", "n_states", "n_steps", "n_egos",

@@ -1,4 +1,4 @@
-"""What a result can be written as, later, from its folder alone."""
+"""The formats in which `drivelint report` writes a result."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from drivelint.result.model import Result
 
-TARGETS: Final[Mapping[str, tuple[str, Callable[[Result], bytes]]]] = {
+REPORT_FORMATS: Final[Mapping[str, tuple[str, Callable[[Result], bytes]]]] = {
     "html": ("report.html", html.render),
     "junit": ("junit.xml", junit.render),
     "sarif": ("report.sarif", sarif.render),

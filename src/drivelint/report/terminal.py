@@ -15,8 +15,8 @@ from rich.text import Text
 from drivelint.errors import ExitCode
 from drivelint.gate import words
 from drivelint.result import counts
-from drivelint.result.model import outcome
-from drivelint.result.text import NONE, comparison, number, seconds, times
+from drivelint.result.model import exit_status
+from drivelint.result.text import NONE, comparison, number, seconds, with_count
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 MAX_ROWS: Final = 20
 """Rows shown per section; the files hold them all."""
-NARROW: Final = 96
+NARROW_WIDTH: Final = 96
 """Below this width findings take two lines each, and columns that only repeat are left out."""
 
 _OPEN: Final = pa.array(["unknown", "error"])
@@ -45,7 +45,7 @@ def render(result: Result, out: str | None = None, width: int = 120) -> Group:
 
     Sections: drives, rules, findings, near misses, what could not be judged, data quality, exit.
     """
-    wide = width >= NARROW
+    wide = width >= NARROW_WIDTH
     starts = dict(zip(result.drives["drive_id"].to_pylist(), result.drives["t_start_ns"].to_pylist(), strict=True))
     near = result.verdicts.filter(result.verdicts["near_miss"])
     sections: list[RenderableType | None] = [
@@ -62,11 +62,11 @@ def render(result: Result, out: str | None = None, width: int = 120) -> Group:
 
 
 def _drives(result: Result, width: int) -> Table:
-    told = counts.by(result.verdicts, "drive_id")
+    told = counts.verdicts_by(result.verdicts, "drive_id")
     rows = result.drives.to_pylist()
     table = _table("Drives" if len(rows) <= MAX_ROWS else f"Drives (first {MAX_ROWS} of {len(rows)})")
     table.add_column("drive", overflow="fold", ratio=1)
-    wide = width >= NARROW
+    wide = width >= NARROW_WIDTH
     for column in ("km", "time") if wide else ():
         table.add_column(column, justify="right", no_wrap=True)
     _count_columns(table)
@@ -81,10 +81,10 @@ def _drives(result: Result, width: int) -> Table:
 
 
 def _rules(result: Result, width: int) -> Table:
-    told = counts.by(result.verdicts, "rule_id")
+    told = counts.verdicts_by(result.verdicts, "rule_id")
     table = _table("Rules")
     table.add_column("rule", overflow="fold", ratio=1)
-    wide = width >= NARROW
+    wide = width >= NARROW_WIDTH
     if wide:
         table.add_column("severity")
     _count_columns(table)
@@ -95,7 +95,7 @@ def _rules(result: Result, width: int) -> Table:
         severity = [Text(row["severity"], style=_SEVERITY[row["severity"]])] if wide else []
         table.add_row(name, *severity, *_count_cells(told.get(row["rule_id"], {})))
     table.add_section()
-    packs = counts.packs(result.rules, told)
+    packs = counts.verdicts_by_pack(result.rules, told)
     for pack, sums in packs.items():  # packs are never one verdict
         what = "all" if len(packs) == 1 else f"all of {pack}"
         table.add_row(Text(what, style="bold"), *([""] if wide else []), *_count_cells(sums))
@@ -122,7 +122,7 @@ def _gate(result: Result) -> Table | None:
     if result.gate is None:
         return None
     lines = [] if result.gate.baseline is None else [("baseline", words.headline(result.gate.baseline))]
-    lines += [("waiver", line) for line in words.waivers(result.gate)]
+    lines += [("waiver", line) for line in words.waiver_warnings(result.gate)]
     if not lines:
         return None
     table = _table("Gate", "bold")
@@ -177,7 +177,7 @@ def _open(result: Result) -> Table | None:
     grouped = verdicts.group_by(["verdict", "reason", "rule_id"], use_threads=False).aggregate([([], "count_all")])
     why: dict[tuple[str, str], list[str]] = {}
     for row in grouped.to_pylist():
-        why.setdefault((row["verdict"], row["reason"]), []).append(times(row["rule_id"], row["count_all"]))
+        why.setdefault((row["verdict"], row["reason"]), []).append(with_count(row["rule_id"], row["count_all"]))
     if not lost and not why:
         return None
     table = _table(_title("Could not be judged", len(lost) + len(why)), "yellow")
@@ -211,7 +211,7 @@ def _quality(result: Result) -> Table | None:
 
 
 def _end(result: Result, out: str | None) -> Text:
-    end = outcome(result)
+    end = exit_status(result)
     style = (
         "bold green"
         if end.code is ExitCode.OK
@@ -224,7 +224,7 @@ def _end(result: Result, out: str | None) -> Text:
     given = {f"{c['condition']}={c['value']}" for cs in result.drives["conditions"].to_pylist() for c in cs or ()}
     if given:
         text.append(f"\njudged in: {', '.join(sorted(given))}")
-    assumed = counts.assuming(result.verdicts, "line_of_sight")
+    assumed = counts.count_assuming(result.verdicts, "line_of_sight")
     if assumed:
         verb = "verdict assumes" if assumed == 1 else "verdicts assume"
         text.append(f"\n{assumed} {verb} that whoever a log does not have is not in plain view (--visibility)", "dim")

@@ -9,9 +9,9 @@ import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from drivelint.drive.conditions import GIVEN, SAYS
+from drivelint.drive.conditions import CONDITION_TEXTS, ENV_VALUES
 from drivelint.drive.declared import EVENTS, MODES
-from drivelint.drive.trace import BRAKE_LIGHTS, CLASSES, INDICATORS, SIGNAL_STATES
+from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIGNAL_STATES
 from drivelint.road.signcodes import codes_of
 
 if TYPE_CHECKING:
@@ -26,8 +26,8 @@ _GIVEN = ("ego_condition", "drive_condition")
 _COMMENT = re.compile(r"--.*")
 
 
-class Feature(NamedTuple):
-    """Something that a map may have: how OpenDRIVE says it, and what of a rule shows that it asks for it.
+class MapFeature(NamedTuple):
+    """A feature that a map may have: how OpenDRIVE expresses it, and which signals or words of SQL show that a rule needs it.
 
     `asked`: signals that a rule requires, or words of its SQL; `reads`: tables of which it must read one, if any are named.
     """
@@ -38,7 +38,7 @@ class Feature(NamedTuple):
     reads: tuple[str, ...] = ()
 
 
-NAMES = {
+SIGNAL_NAME_PARTS = {
     "traffic_light": "traffic_light",
     "stop_line": "stop_line",
     "stop": "stop",
@@ -53,56 +53,56 @@ NAMES = {
 def _sign(kind: str) -> str:
     """Return how a signal of this kind is recognised."""
     codes = "; ".join(f"{country} {', '.join(numbers)}" for country, numbers in codes_of(kind).items())
-    return f"`signal` {codes}; or {NAMES[kind]} in its name"
+    return f"`signal` {codes}; or {SIGNAL_NAME_PARTS[kind]} in its name"
 
 
 _WAYS_IN = ("stop_line_crossing", "junction_passage", "traffic_signal")
-FEATURES = (
-    Feature("side driven on", '`rule="LHT"` or `"RHT"` of each `road`', ("handedness",)),
-    Feature("speed limit", "`speed` of a road's `type`, or of a lane", ("speed_limits", "limit_mps")),
-    Feature("kind of road", "`type` of a `road`: motorway, rural, town, ...", ("road_types", "road_type")),
-    Feature(
+MAP_FEATURES = (
+    MapFeature("side driven on", '`rule="LHT"` or `"RHT"` of each `road`', ("handedness",)),
+    MapFeature("speed limit", "`speed` of a road's `type`, or of a lane", ("speed_limits", "limit_mps")),
+    MapFeature("kind of road", "`type` of a `road`: motorway, rural, town, ...", ("road_types", "road_type")),
+    MapFeature(
         "lines", "`roadMark` of lane 0 and of the lanes: broken, solid, `solid solid`, `broken solid`", ("markings",)
     ),
-    Feature(
+    MapFeature(
         "footway, shoulder", "lanes of the type sidewalk, walking, curb, border, shoulder", ("lane_types", "'shoulder'")
     ),
-    Feature(
+    MapFeature(
         "junction", "`junction`, with a `connection` and its `laneLink` for every way through", ("junction_passage",)
     ),
-    Feature(
+    MapFeature(
         "traffic light",
         f"{_sign('traffic_light')}. It holds for the lanes of its `validity` and `orientation`, and governs a stop line within 30 m; "
         "its `id` is the log's `signal_id`",
         ("traffic_lights",),
     ),
-    Feature(
+    MapFeature(
         "stop line",
         f"{_sign('stop_line')}; or `object` of the type stopLine, or stopline in its name; across half of the lane or more",
         ("stop_lines", "stop_line_crossing"),
     ),
-    Feature("stop sign", f"{_sign('stop')}; within 30 m of its stop line", ("'stop'",), _WAYS_IN),
-    Feature("give-way sign", f"{_sign('give_way')}; at most 50 m before the junction", ("'give_way'",), _WAYS_IN),
-    Feature(
+    MapFeature("stop sign", f"{_sign('stop')}; within 30 m of its stop line", ("'stop'",), _WAYS_IN),
+    MapFeature("give-way sign", f"{_sign('give_way')}; at most 50 m before the junction", ("'give_way'",), _WAYS_IN),
+    MapFeature(
         "no-overtaking sign", f"{_sign('no_overtaking')}. Its end: {_sign('no_overtaking_end')}", ("no_overtaking",)
     ),
-    Feature("exit", f"lane of the type exit or offRamp; {_sign('exit')}; on the lane beside it", ("exit_signs",)),
-    Feature(
+    MapFeature("exit", f"lane of the type exit or offRamp; {_sign('exit')}; on the lane beside it", ("exit_signs",)),
+    MapFeature(
         "pedestrian crossing",
         "`object` of the type crosswalk, or crosswalk or zebra in its name; with an outline, or `length` and `width`, across the lanes",
         ("crossing_passage", "crossing_id"),
     ),
-    Feature(
+    MapFeature(
         "zebra",
         "a crossing with **zebra in its `name` or `subtype`**; any other may be one, and whether way was due is then not known",
         ("'zebra'",),
     ),
-    Feature(
+    MapFeature(
         "signalled crossing",
         "a crossing with signal in its `name` or `subtype`, or with a traffic light from 15 m before to 30 m behind it",
         ("'signalled'",),
     ),
-    Feature(
+    MapFeature(
         "island on a crossing",
         "not read: a wait of over 3 s between the two halves counts as one; whether one parts them is else not known",
         ("coming_id",),
@@ -110,10 +110,10 @@ FEATURES = (
 )
 
 
-def words() -> list[str]:
-    """Return the words of the columns that have some, a line each."""
+def column_value_lines() -> list[str]:
+    """Return one line per column that lists its allowed values."""
     known = (
-        ("actor_class", CLASSES),
+        ("actor_class", ACTOR_CLASSES),
         ("indicator", INDICATORS),
         ("brake_light", BRAKE_LIGHTS),
         ("state of a signal", SIGNAL_STATES),
@@ -121,21 +121,21 @@ def words() -> list[str]:
     return [f"* `{name}`: {', '.join(said)}" for name, said in known]
 
 
-def conditions_said(rules: Sequence[Rule]) -> Table:
+def condition_table(rules: Sequence[Rule]) -> Table:
     """Return a row per condition: its words, what they say, which rules ask for it."""
     rows = [
         (
             f"`{name}`",
             ", ".join(f"`{word}`" for word in known),
-            SAYS[name],
+            CONDITION_TEXTS[name],
             "all" if name == "engaged" else _ids(_asking(rules, (name,), _GIVEN)),
         )
-        for name, known in GIVEN.items()
+        for name, known in ENV_VALUES.items()
     ]
     return ("condition", "values", "says", "asked for by"), rows
 
 
-def events_said(rules: Sequence[Rule]) -> Table:
+def event_table(rules: Sequence[Rule]) -> Table:
     """Return a row per declared event: its value, what it says, which rules ask for it."""
     rows = []
     for name, event in EVENTS.items():
@@ -144,9 +144,9 @@ def events_said(rules: Sequence[Rule]) -> Table:
     return ("event", "value", "says", "asked for by"), rows
 
 
-def map_needed(rules: Sequence[Rule]) -> Table:
+def map_feature_table(rules: Sequence[Rule]) -> Table:
     """Return a row per feature of a map: how OpenDRIVE says it, which rules ask for it."""
-    rows = [(f.name, f.drawn, _ids(_asking(rules, f.asked, f.reads))) for f in FEATURES]
+    rows = [(f.name, f.drawn, _ids(_asking(rules, f.asked, f.reads))) for f in MAP_FEATURES]
     return ("what", "in OpenDRIVE", "asked for by"), rows
 
 

@@ -14,9 +14,9 @@ from lxml import etree
 
 from drivelint import __version__
 from drivelint.gate import words
-from drivelint.report.xml import xml
+from drivelint.report.xml import replace_non_xml
 from drivelint.result import counts
-from drivelint.result.text import line, seconds, subject, times
+from drivelint.result.text import line, seconds, subject, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -42,7 +42,7 @@ def render(result: Result) -> bytes:
     for drive in result.drives.to_pylist():
         judged = drive["status"] == "judged"
         bundle = etree.SubElement(root, "CheckerBundle", build_date="", name="drivelint", version=__version__)
-        bundle.set("description", xml(f"Rules of the road, held against the drive {drive['drive_id']}"))
+        bundle.set("description", replace_non_xml(f"Rules of the road, held against the drive {drive['drive_id']}"))
         _param(bundle, "InputFile", drive["file_name"])
         _param(bundle, "Sha256", drive["sha256"] or "unknown")
         _param(bundle, "MapFile", drive["map_name"] or "none")
@@ -54,7 +54,7 @@ def render(result: Result) -> bytes:
             number = checker.number
             total.update(checker.told)
         summary = _counted(total) if judged else f"not judged: {drive['status_reason'] or 'no reason given'}"
-        bundle.set("summary", xml(summary))
+        bundle.set("summary", replace_non_xml(summary))
     return bytes(etree.tostring(root, xml_declaration=True, encoding="UTF-8", pretty_print=True))
 
 
@@ -81,8 +81,8 @@ class _Checker:
     """One rule in one drive; issues are numbered through the whole file, as ASAM's reader wants it."""
 
     def __init__(self, bundle: etree._Element, rule: Row, drive: Row, number: int) -> None:
-        self._element = etree.SubElement(bundle, "Checker", checkerId=xml(rule["rule_id"]))
-        self._element.set("description", xml(f"{rule['title']}: {rule['clause']}"))
+        self._element = etree.SubElement(bundle, "Checker", checkerId=replace_non_xml(rule["rule_id"]))
+        self._element.set("description", replace_non_xml(f"{rule['title']}: {rule['clause']}"))
         self._uid = rule_uid(rule["rule_id"], rule["pack"])
         self._rule = rule
         self._drive = drive
@@ -96,17 +96,17 @@ class _Checker:
         open_ = {at: n for at, n in said.items() if at[0] in {"unknown", "error"}}
         judged = self.told["pass"] or self.told["fail"] or findings
         status = "error" if self.told["error"] else "completed" if judged else "skipped"
-        why = "" if status == "completed" else "; ".join(times(reason, n) for (_, reason), n in said.items())
+        why = "" if status == "completed" else "; ".join(with_count(reason, n) for (_, reason), n in said.items())
         none = "the drive was not judged" if self._drive["status"] != "judged" else "no verdict"
         summary = _counted(self.told) if said else none
-        self._element.set("summary", xml(f"{summary}; {why}" if why else summary))
+        self._element.set("summary", replace_non_xml(f"{summary}; {why}" if why else summary))
         self._element.set("status", status)
         for param in self._rule["params"]:
             _param(self._element, param["name"], f"{param['value']} {param['unit'] or ''}".rstrip())
         for row in findings:
             self._finding(row, result)
         for (verdict, reason), n in open_.items() if status != "skipped" else ():
-            self._issue(INFORMATION, f"{verdict}, neither kept nor violated: {times(reason, n)}")
+            self._issue(INFORMATION, f"{verdict}, neither kept nor violated: {with_count(reason, n)}")
         etree.SubElement(self._element, "AddressedRule", ruleUID=self._uid)
         for verdict in counts.VERDICTS:
             data = etree.SubElement(self._element, "Metadata", key=verdict, value=str(self.told[verdict]))
@@ -120,13 +120,14 @@ class _Checker:
         profile = "" if row["profile"] is None else f"profile {row['profile']}: "
         text = profile + line(row, start_ns)
         notes = [] if stable else [f"{self._rule['status']}, does not gate"]
-        notes += [words.excuse(waiver)] if waiver else []
+        notes += [words.waiver_reason(waiver)] if waiver else []
         notes += ["known: the baseline has it"] if gate and gate.known(row["finding_id"]) else []
         level = LEVELS[row["severity"]] if stable and waiver is None else INFORMATION
         issue = self._issue(level, f"{text} ({'; '.join(notes)})" if notes else text)
         place = etree.SubElement(issue, "Locations")
         place.set(
-            "description", xml(f"{subject(row)}, {seconds(row['t_worst_ns'], start_ns)} into the drive; map metres")
+            "description",
+            replace_non_xml(f"{subject(row)}, {seconds(row['t_worst_ns'], start_ns)} into the drive; map metres"),
         )
         if row["x_m"] is not None and row["y_m"] is not None:
             etree.SubElement(place, "InertialLocation", x=repr(row["x_m"]), y=repr(row["y_m"]), z="0.0")
@@ -136,17 +137,19 @@ class _Checker:
         values: dict[str, Any] = {name: row[name] for name in names}
         for name, value in values.items():
             if value is not None:
-                info.set(name, xml(str(value)))
+                info.set(name, replace_non_xml(str(value)))
 
     def _issue(self, level: str, text: str) -> etree._Element:
-        issue = etree.SubElement(self._element, "Issue", issueId=str(self.number), description=xml(text), level=level)
+        issue = etree.SubElement(
+            self._element, "Issue", issueId=str(self.number), description=replace_non_xml(text), level=level
+        )
         issue.set("ruleUID", self._uid)
         self.number += 1
         return issue
 
 
 def _param(parent: etree._Element, name: str, value: str) -> None:
-    etree.SubElement(parent, "Param", name=xml(name), value=xml(value))
+    etree.SubElement(parent, "Param", name=replace_non_xml(name), value=replace_non_xml(value))
 
 
 def _counted(told: Mapping[str, int]) -> str:

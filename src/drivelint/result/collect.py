@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Final
 
 import pyarrow as pa
 
-from drivelint.drive.trace import LOSSES
-from drivelint.reasons.worded import word
+from drivelint.drive.trace import LOSS_CHECKS
+from drivelint.reasons.worded import make_reason_table
 from drivelint.result.contract import arrow_schema, conform
 
 if TYPE_CHECKING:
@@ -92,11 +92,11 @@ def findings(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> p
 
 def drives(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.Table:
     """Return one row of the table `drive` per log in the database, or per named one: judged, and on what; ordered."""
-    word(con, "SELECT NULL AS rule_no, reason AS cause, 0 AS start_ns FROM capability WHERE NOT available")
-    return conform(con.execute(_DRIVES, {"only": only, "losses": LOSSES}).to_arrow_table(), "drive")
+    make_reason_table(con, "SELECT NULL AS rule_no, reason AS cause, 0 AS start_ns FROM capability WHERE NOT available")
+    return conform(con.execute(_DRIVES, {"only": only, "losses": LOSS_CHECKS}).to_arrow_table(), "drive")
 
 
-def unjudged(drive_id: str, file_name: str, reason: str, sha256: str | None = None) -> pa.Table:
+def unjudged_drive(drive_id: str, file_name: str, reason: str, sha256: str | None = None) -> pa.Table:
     """Return the row of the table `drive` for a log that could not be judged at all, and why."""
     schema = arrow_schema("drive")
     row = dict.fromkeys(schema.names)

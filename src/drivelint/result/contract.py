@@ -1,4 +1,4 @@
-"""The output tables' columns: one truth, `schemas/verdict.sql`, `output.sql` and `evidence.sql`, as Arrow schemas."""
+"""Gives the output tables' columns as Arrow schemas, read from `verdict.sql`, `output.sql` and `evidence.sql`."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from drivelint.resources import folder
 if TYPE_CHECKING:
     import pyarrow as pa
 
-OUTPUT_SCHEMA: Final = 1
+OUTPUT_VERSION: Final = 1
 """Version of the output files: raised when a column or a key changes its meaning or goes."""
 
-FILES: Final = {
+TABLE_OF_FILE: Final = {
     "verdicts": "verdict",
     "findings": "finding",
     "drives": "drive",
@@ -55,6 +55,6 @@ def conform(rows: pa.Table, table: str) -> pa.Table:
     return rows.select(schema.names).cast(schema).combine_chunks()
 
 
-def empty(table: str) -> pa.Table:
+def empty_table(table: str) -> pa.Table:
     """Return a schema table without rows."""
     return arrow_schema(table).empty_table()

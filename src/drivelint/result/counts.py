@@ -1,4 +1,4 @@
-"""Verdict counts by any column, every verdict always among them."""
+"""Counts verdicts by any column; each count has all verdicts."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ def tally(rows: pa.Table, values: tuple[str, ...], column: str) -> dict[str, int
     return {value: found.get(value, 0) for value in values}
 
 
-def assuming(verdicts: pa.Table, what: str) -> int:
-    """Return how many verdicts rest on that assumption: see the column `assumes`."""
+def count_assuming(verdicts: pa.Table, what: str) -> int:
+    """Return the number of verdicts with this assumption in the column `assumes`."""
     return tally(verdicts, (what,), "assumes")[what]
 
 
-def by(verdicts: pa.Table, key: str) -> dict[str, dict[str, int]]:
+def verdicts_by(verdicts: pa.Table, key: str) -> dict[str, dict[str, int]]:
     """Return key's value -> verdict -> number of rows; keys without rows are absent."""
     counted: dict[str, dict[str, int]] = {}
     for row in verdicts.group_by([key, "verdict"]).aggregate([([], "count_all")]).to_pylist():
@@ -37,8 +37,8 @@ def by(verdicts: pa.Table, key: str) -> dict[str, dict[str, int]]:
     return counted
 
 
-def packs(rules: pa.Table, told: dict[str, dict[str, int]]) -> dict[str, dict[str, int]]:
-    """Return pack -> verdict -> number of rows, from what was told of each rule; packs in the order of `rules`."""
+def verdicts_by_pack(rules: pa.Table, told: dict[str, dict[str, int]]) -> dict[str, dict[str, int]]:
+    """Return pack -> verdict -> number of rows, from rule -> verdict -> number of rows; packs in the order of `rules`."""
     found: dict[str, dict[str, int]] = {}
     for rule_id, pack in zip(rules["rule_id"].to_pylist(), rules["pack"].to_pylist(), strict=True):
         sums = found.setdefault(pack, dict.fromkeys(VERDICTS, 0))

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Final
 import pyarrow.parquet as pq
 
 from drivelint.errors import DriveLintError, ExitCode, UsageError
-from drivelint.result.contract import OUTPUT_SCHEMA, conform
-from drivelint.sql.store import schema
+from drivelint.result.contract import OUTPUT_VERSION, conform
+from drivelint.sql.store import column_comments
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -32,9 +32,9 @@ def parquet_bytes(rows: pa.Table, table: str) -> bytes:
 
     Every column carries its comment from `schemas/` as Arrow field metadata (`comment`).
     """
-    comments = schema()[table]
+    comments = column_comments()[table]
     rows = conform(rows, table)
-    described = rows.schema.with_metadata({"drivelint.table": table, "drivelint.output_schema": str(OUTPUT_SCHEMA)})
+    described = rows.schema.with_metadata({"drivelint.table": table, "drivelint.output_schema": str(OUTPUT_VERSION)})
     for i, field in enumerate(rows.schema):
         described = described.set(i, field.with_metadata({"comment": comments[field.name]}))
     sink = io.BytesIO()
@@ -53,7 +53,7 @@ def parquet_bytes(rows: pa.Table, table: str) -> bytes:
     return sink.getvalue()
 
 
-def prepare(out: Path) -> None:
+def prepare_folder(out: Path) -> None:
     """Make the folder for results and make sure that files can be written there, before hours of work are done for it.
 
     Errors: `UsageError` where it is a file, `OutputError`.

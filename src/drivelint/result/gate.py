@@ -1,4 +1,4 @@
-"""What a gate knows of a result beyond its tables: what an earlier result had, and what somebody answers for."""
+"""Defines the gate's data: the comparison with a baseline, and the waivers."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ STANDINGS: Final = ("new", "changed", "unchanged", "fixed", "unknown", "lost")
 
 
 @dataclass(frozen=True)
-class Entry:
-    """One finding in the light of two results.
+class ComparedFinding:
+    """One finding as compared between two results.
 
     `finding_id`, place in time and margin are those of NEW, where it has the finding, else those of BASE; `base_id` is
     None for a new one. `there`: what the other result says there (verdict, or none). `stable`: its rule gates.
@@ -39,8 +39,8 @@ class Entry:
 
 
 @dataclass(frozen=True)
-class Opened:
-    """Verdicts of one drive, ego, rule and profile that became unknown or erred: more than BASE had."""
+class NewUnknowns:
+    """Verdicts of one drive, ego, rule and profile that are unknown or errors now and were not in the baseline."""
 
     drive_id: str
     ego_id: str
@@ -59,8 +59,8 @@ class Difference:
     `base_verdicts`, `verdicts`: verdict -> rows, zeros included. `base_only`, `new_only`: drives that the other has not.
     """
 
-    entries: tuple[Entry, ...]
-    opened: tuple[Opened, ...]
+    entries: tuple[ComparedFinding, ...]
+    opened: tuple[NewUnknowns, ...]
     base_verdicts: dict[str, int]
     verdicts: dict[str, int]
     base_only: tuple[str, ...]
@@ -73,14 +73,14 @@ class Difference:
         found = Counter(entry.standing for entry in self.entries)
         return {standing: found[standing] for standing in STANDINGS}
 
-    def of(self, standing: str) -> list[Entry]:
+    def of(self, standing: str) -> list[ComparedFinding]:
         """Return the findings of one standing."""
         return [entry for entry in self.entries if entry.standing == standing]
 
 
 @dataclass(frozen=True)
 class Waiver:
-    """Findings that somebody answers for until a day: they are shown, and do not gate.
+    """Findings that an owner accepts until a date: they are shown, and do not fail a run.
 
     `where`: file and line. `from_s`, `to_s`: seconds since the drive's first time stamp. `expires`: last day, ISO.
     `state`: active, expired (it waives nothing), unmatched (no finding is like that). `findings`: how many are.
@@ -103,7 +103,7 @@ class Waiver:
 
 @dataclass(frozen=True)
 class Gate:
-    """What lets a finding through: an earlier result that had it, a waiver.
+    """The baseline and the waivers that keep a finding from failing a run.
 
     `today`: the date that waivers were held against, None without waivers. `waived`: finding_id -> index of its waiver.
     """
@@ -114,16 +114,16 @@ class Gate:
     waived: dict[str, int] = field(default_factory=dict)
 
     @cached_property
-    def _standing(self) -> dict[str, Entry]:
+    def _standing(self) -> dict[str, ComparedFinding]:
         entries = self.baseline.entries if self.baseline else ()
-        found: dict[str, Entry] = {}
+        found: dict[str, ComparedFinding] = {}
         for entry in entries:
             if entry.standing in {"new", "changed", "unchanged"}:
                 found.setdefault(entry.finding_id, entry)
         return found
 
-    def entry(self, finding_id: str) -> Entry | None:
-        """Return how a finding stands to the baseline; None without one."""
+    def entry(self, finding_id: str) -> ComparedFinding | None:
+        """Return the finding as compared with the baseline; None without one."""
         return self._standing.get(finding_id)
 
     def waiver(self, finding_id: str) -> Waiver | None:
@@ -137,5 +137,5 @@ class Gate:
         return entry is not None and entry.standing != "new"
 
     def gates(self, finding_id: str) -> bool:
-        """Return whether a finding may fail a run: nobody waived it, and the baseline had it not."""
+        """Return whether a finding may fail a run: it is neither waived nor in the baseline."""
         return finding_id not in self.waived and not self.known(finding_id)

@@ -1,4 +1,4 @@
-"""`gate.json`: what a gate knew of a result, beside its tables; there only where a baseline or waivers were given."""
+"""Reads and writes `gate.json`, which is there only if a baseline or waivers were given."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 FILE: Final = "gate.json"
-GATE_SCHEMA: Final = 1
+GATE_VERSION: Final = 1
 """Version of the file: raised when a key changes its meaning or goes."""
 
 
@@ -26,7 +26,7 @@ class _File:
 
 def render(gate: Gate) -> bytes:
     """Return a gate as UTF-8 JSON with a final newline; numbers that are not finite are null."""
-    return msgspec.json.format(msgspec.json.encode(_File(GATE_SCHEMA, gate)), indent=2) + b"\n"
+    return msgspec.json.format(msgspec.json.encode(_File(GATE_VERSION, gate)), indent=2) + b"\n"
 
 
 def load(folder: Path) -> Gate | None:
@@ -38,8 +38,8 @@ def load(folder: Path) -> Gate | None:
         return None
     except (OSError, msgspec.MsgspecError, UnicodeDecodeError) as error:
         raise UsageError(f"{path}: cannot be read as the gate of a result ({error}): check the drives again") from error
-    if found.gate_schema != GATE_SCHEMA:
+    if found.gate_schema != GATE_VERSION:
         raise UsageError(
-            f"{path}: written with gate schema {found.gate_schema}, this drivelint reads {GATE_SCHEMA}: check the drives again"
+            f"{path}: written with gate schema {found.gate_schema}, this drivelint reads {GATE_VERSION}: check the drives again"
         )
     return found.gate

@@ -1,4 +1,4 @@
-"""A result read back from its folder, so that reports can be made later, elsewhere."""
+"""Reads a result back from its folder."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ import pyarrow.parquet as pq
 
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.result import gate_file
-from drivelint.result.contract import FILES, OUTPUT_SCHEMA
+from drivelint.result.contract import OUTPUT_VERSION, TABLE_OF_FILE
 from drivelint.result.model import Result
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 
-def load(folder: Path) -> Result:
+def load_result(folder: Path) -> Result:
     """Return the result that `check --out` wrote into a folder.
 
     Errors: `UsageError` for a folder without a whole result, or one of another version.
     """
     summary = _summary(folder)
-    if summary.get("output_schema") != OUTPUT_SCHEMA:
+    if summary.get("output_schema") != OUTPUT_VERSION:
         raise UsageError(
-            f"{folder}: written with output schema {summary.get('output_schema')}, this drivelint reads {OUTPUT_SCHEMA}: "
+            f"{folder}: written with output schema {summary.get('output_schema')}, this drivelint reads {OUTPUT_VERSION}: "
             "check the drives again"
         )
-    tables = {name: _table(folder / f"{name}.parquet") for name in FILES}
+    tables = {name: _table(folder / f"{name}.parquet") for name in TABLE_OF_FILE}
     gate = gate_file.load(folder)
     try:
         return Result(**tables, fail_on=summary["fail_on"], strict=summary["strict"], gate=gate)

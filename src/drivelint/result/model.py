@@ -1,4 +1,4 @@
-"""What a run comes to: its tables, its exit code with the reason, its files."""
+"""Defines the result of a run: its tables, its exit code and the reason for that."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pyarrow.compute as pc
 
 from drivelint.errors import ExitCode
 from drivelint.phrases import plural
-from drivelint.result.contract import FILES, conform, empty
+from drivelint.result.contract import TABLE_OF_FILE, conform, empty_table
 from drivelint.result.counts import SEVERITIES
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from drivelint.result.request import RunRequest
 
 
-class Outcome(NamedTuple):
+class ExitStatus(NamedTuple):
     """The exit code and, in one sentence, why."""
 
     code: ExitCode
@@ -43,12 +43,12 @@ class Result:
     findings: pa.Table
     drives: pa.Table
     rules: pa.Table
-    scenes: pa.Table = field(default_factory=lambda: empty("scene"))
-    lanes: pa.Table = field(default_factory=lambda: empty("lane_shape"))
-    spaces: pa.Table = field(default_factory=lambda: empty("danger_space"))
-    courses: pa.Table = field(default_factory=lambda: empty("course"))
-    overtakes: pa.Table = field(default_factory=lambda: empty("overtake_record"))
-    opportunities: pa.Table = field(default_factory=lambda: empty("opportunity_record"))
+    scenes: pa.Table = field(default_factory=lambda: empty_table("scene"))
+    lanes: pa.Table = field(default_factory=lambda: empty_table("lane_shape"))
+    spaces: pa.Table = field(default_factory=lambda: empty_table("danger_space"))
+    courses: pa.Table = field(default_factory=lambda: empty_table("course"))
+    overtakes: pa.Table = field(default_factory=lambda: empty_table("overtake_record"))
+    opportunities: pa.Table = field(default_factory=lambda: empty_table("opportunity_record"))
     margins_file: Path | None = None
     fail_on: str = "critical"
     strict: bool = False
@@ -56,16 +56,16 @@ class Result:
     asked: RunRequest | None = None
 
     def __post_init__(self) -> None:
-        for name, table in FILES.items():
+        for name, table in TABLE_OF_FILE.items():
             object.__setattr__(self, name, conform(getattr(self, name), table))
 
     @property
     def lossy(self) -> bool:
-        """Some judged drive had lost parts of its log."""
+        """Whether parts of a judged log could not be read."""
         return bool(pc.any(pc.and_(self.drives["lossy"], pc.equal(self.drives["status"], "judged"))).as_py())
 
 
-def outcome(result: Result) -> Outcome:
+def exit_status(result: Result) -> ExitStatus:
     """Return the exit code of DESIGN.md, by its precedence 2 > 1 > 4 > 3 > 0, and why.
 
     Only stable rules gate: a draft's failure or unknown is shown, never an exit code. A rule that erred is always 2.
@@ -73,38 +73,42 @@ def outcome(result: Result) -> Outcome:
     return next(_outcomes(result))
 
 
-def _outcomes(result: Result) -> Iterator[Outcome]:
+def _outcomes(result: Result) -> Iterator[ExitStatus]:
     """Yield what the run comes to, weightiest first."""
     gating = _rows_of(result.verdicts, result.rules.filter(pc.equal(result.rules["status"], "stable")))
     if errors := _count(result.verdicts, "error"):
-        yield Outcome(ExitCode.USAGE, f"{plural(errors, 'verdict')} in error: a rule could not be run")
+        yield ExitStatus(ExitCode.USAGE, f"{plural(errors, 'verdict')} in error: a rule could not be run")
     let_through = ""
     if result.gate is None:
         if failed := _severe(gating, "fail", result.fail_on):
-            yield Outcome(ExitCode.FAILED, f"{plural(failed, 'verdict')} failed at or above severity {result.fail_on}")
+            yield ExitStatus(
+                ExitCode.FAILED, f"{plural(failed, 'verdict')} failed at or above severity {result.fail_on}"
+            )
     else:
         stopped, let_through = _gate(result, gating)
         if stopped:
-            yield Outcome(ExitCode.FAILED, f"{stopped} at or above severity {result.fail_on}{let_through}")
+            yield ExitStatus(ExitCode.FAILED, f"{stopped} at or above severity {result.fail_on}{let_through}")
     if lost := int(pc.sum(pc.equal(result.drives["status"], "not_judged")).as_py() or 0):
-        yield Outcome(ExitCode.NOT_JUDGED, f"{lost} of {plural(result.drives.num_rows, 'drive')} could not be judged")
+        yield ExitStatus(
+            ExitCode.NOT_JUDGED, f"{lost} of {plural(result.drives.num_rows, 'drive')} could not be judged"
+        )
     if result.strict and (unknown := _count(gating, "unknown")):
-        yield Outcome(ExitCode.NOT_JUDGED, f"{plural(unknown, 'verdict')} unknown, and --strict is set")
+        yield ExitStatus(ExitCode.NOT_JUDGED, f"{plural(unknown, 'verdict')} unknown, and --strict is set")
     if result.lossy:
-        yield Outcome(ExitCode.LOSSY, "judged on lossy input: parts of a log were lost")
+        yield ExitStatus(ExitCode.LOSSY, "judged on lossy input: parts of a log were lost")
     if result.fail_on == "never":
-        yield Outcome(ExitCode.OK, "failures do not gate (--fail-on never)")
+        yield ExitStatus(ExitCode.OK, "failures do not gate (--fail-on never)")
     if _count(result.verdicts, "unknown") == result.verdicts.num_rows > 0:
-        yield Outcome(
+        yield ExitStatus(
             ExitCode.OK, "nothing failed, as nothing could be decided: every verdict is unknown (--strict makes it 4)"
         )
     new = "new " if result.gate is not None and result.gate.baseline is not None else ""
-    yield Outcome(ExitCode.OK, f"nothing {new}failed at or above severity {result.fail_on}{let_through}")
+    yield ExitStatus(ExitCode.OK, f"nothing {new}failed at or above severity {result.fail_on}{let_through}")
 
 
 def exit_code(result: Result) -> ExitCode:
     """Return the exit code of DESIGN.md for a finished run."""
-    return outcome(result).code
+    return exit_status(result).code
 
 
 def _count(verdicts: pa.Table, verdict: str) -> int:

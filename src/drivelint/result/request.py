@@ -1,4 +1,4 @@
-"""`run.json`: what a check was asked to do, and where its logs and map lay, so that one verdict can be judged anew later.
+"""Reads and writes `run.json`: the options of a check and the paths of its logs and map.
 
 Paths are relative to the result folder: a folder that is moved together with its logs still finds them.
 """
@@ -16,13 +16,13 @@ import msgspec
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import UsageError
 
-FILE: Final = "run.json"
+RUN_FILE: Final = "run.json"
 _PATHS: Final = ("map", "map_dir")
 
 
 @dataclass(frozen=True)
 class RunRequest(DriveInput):
-    """The options of a check that bear on its verdicts, by their names there; `traces`: drive_id -> where its log lay.
+    """The options of a check that affect its verdicts, named as in `check`; `traces`: drive_id -> path of its log.
 
     Its egos are those of the verdicts: `ego` is not kept.
     """
@@ -39,7 +39,7 @@ class RunRequest(DriveInput):
 
 
 def render(asked: RunRequest, out: Path) -> bytes:
-    """Return it as UTF-8 JSON with a final newline, every path relative to the result folder `out`."""
+    """Return the request as UTF-8 JSON with a final newline, every path relative to the result folder `out`."""
     told: dict[str, Any] = msgspec.to_builtins(asked, enc_hook=str)
     del told["ego"]
     plain = {"traces": {drive: _relative(path, out) for drive, path in sorted(told.pop("traces").items())}, **told}
@@ -51,11 +51,11 @@ def render(asked: RunRequest, out: Path) -> bytes:
 
 
 def load(folder: Path) -> RunRequest:
-    """Return what the check asked that wrote the result folder, its paths as they are found from here.
+    """Return the request in a result folder, its paths joined to that folder.
 
     Errors: `UsageError` where the folder does not say it.
     """
-    file = folder / FILE
+    file = folder / RUN_FILE
     try:
         plain = {"visibility": "none"} | json.loads(file.read_text(encoding="utf-8"))  # older results do not say it
         if isinstance(plain["mapping"], dict):

@@ -1,4 +1,4 @@
-"""The selected rules as rows of `rules.parquet`: what was asked, with the numbers that were used."""
+"""Makes the rows of `rules.parquet`: the selected rules with the parameters that were used."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How numbers, times and findings read, the same in every report."""
+"""Formats numbers, times and findings in the same way for every report."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ def number(value: float | None, unit: str | None = None) -> str:
     return f"{text} {unit}" if unit else text
 
 
-def tied(text: str) -> str:
-    """Return a number that no line break parts from its unit."""
+def non_breaking(text: str) -> str:
+    """Return a number and its unit with a no-break space between them."""
     return text.replace(" ", "\u00a0", 1)
 
 
@@ -30,7 +30,7 @@ def seconds(t_ns: int | None, start_ns: int | None) -> str:
 
 
 def subject(row: Row) -> str:
-    """Return whom a verdict or finding is about: the ego and, if any, the object."""
+    """Return the ego and, if any, the object of a verdict or finding."""
     who = f"ego {row['ego_id']}" if row["ego_id"] else "no ego"
     return f"{who}, object {row['object_id']}" if row["object_id"] is not None else who
 
@@ -51,6 +51,6 @@ def line(row: Row, start_ns: int | None) -> str:
     return "; ".join(part for part in parts if part)
 
 
-def times(reason: str, n: int) -> str:
+def with_count(reason: str, n: int) -> str:
     """Return a reason with how often it was given, if more than once."""
     return reason if n == 1 else f"{reason} ({n} times)"

@@ -1,4 +1,4 @@
-"""Lanes given by their two bounds (Lanelet2, CommonRoad, OSI): each already runs in the direction of travel.
+"""Builds lanes from their two bounds (Lanelet2, CommonRoad, OSI), which run in the direction of travel.
 
 Such maps have no roads: the lanes that lie side by side are taken as one, numbered from the middle outwards.
 """
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from drivelint.road.quality import Quality
+    from drivelint.road.quality import MapQuality
 
     Floats = NDArray[np.float64]
 
@@ -30,7 +30,7 @@ _LONGEST_M = 100_000.0  # so is longer
 
 
 class Mark(NamedTuple):
-    """The marking of one side from one share of the lane's length (0 to 1) to another. None: not known."""
+    """The marking of one side of a lane between two shares (0 to 1) of the lane's length. None: not known."""
 
     side: str
     begin: float
@@ -78,12 +78,12 @@ class BoundedLane:
     road_id: str = ""
     lane_no: int = 0
     along: int = 1
-    line: Line = field(init=False)
+    line: LaneGeometry = field(init=False)
     z_m: Floats | None = field(init=False, default=None)
 
 
 @dataclass(frozen=True)
-class Line:
+class LaneGeometry:
     """A lane's points: stations s (n,), centre, left and right (n, 2), unit tangents (n, 2), half widths (n,)."""
 
     s: Floats
@@ -112,8 +112,8 @@ class Line:
         return float(((self.half_width[:-1] + self.half_width[1:]) * np.diff(self.s)).sum() / self.s[-1])
 
 
-def build(lanes: Iterable[BoundedLane], offset: tuple[float, float], quality: Quality) -> list[BoundedLane]:
-    """Evaluate the lanes, sorted by id; one that cannot be built is named in `quality` and left out of all that refer to it."""
+def build_lanes(lanes: Iterable[BoundedLane], offset: tuple[float, float], quality: MapQuality) -> list[BoundedLane]:
+    """Build the lanes, sorted by id; report in `quality` a lane that cannot be built, and leave it out."""
     built: dict[str, BoundedLane] = {}
     for lane in sorted(lanes, key=lambda lane: _by_number(lane.lanelet_id)):
         try:
@@ -136,7 +136,7 @@ def build(lanes: Iterable[BoundedLane], offset: tuple[float, float], quality: Qu
     return list(built.values())
 
 
-def _line(left: Floats, right: Floats) -> Line:
+def _line(left: Floats, right: Floats) -> LaneGeometry:
     """Return the points of a lane. Errors: `_UnbuildableError` saying what is wrong with it."""
     if len(left) < 2 or len(right) < 2:
         raise _UnbuildableError("a bound has fewer than two points")
@@ -168,7 +168,7 @@ def _line(left: Floats, right: Floats) -> Line:
     half = np.maximum(half, 0.0)
     if 2 * half.max() > _WIDEST_M:
         raise _UnbuildableError(f"it is {2 * half.max():.0f} m wide")
-    return Line(np.r_[0.0, np.cumsum(length)], centre, left, right, tangent, half)
+    return LaneGeometry(np.r_[0.0, np.cumsum(length)], centre, left, right, tangent, half)
 
 
 def _paired(left: Floats, right: Floats) -> tuple[Floats, Floats]:
@@ -319,9 +319,9 @@ def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
     return layout.side_driven_on([_course(lane.line) for lane in one_way.values() if lane.junction_id is None])
 
 
-def _course(line: Line) -> layout.Course:
+def _course(line: LaneGeometry) -> layout.OneWayLane:
     (x, y), (tx, ty) = line.centre.T, line.tangent.T
-    return layout.Course(x, y, np.full(len(line.s), np.nan), tx, ty, line.half_width)
+    return layout.OneWayLane(x, y, np.full(len(line.s), np.nan), tx, ty, line.half_width)
 
 
 def crossings(

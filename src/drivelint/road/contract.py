@@ -1,4 +1,4 @@
-"""What a map reader takes and gives: one format for all maps."""
+"""Defines what a map reader takes and returns, for all map formats."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class MapSource:
 
 
 @dataclass(frozen=True)
-class Request:
-    """What the caller knows beside the map.
+class MapOptions:
+    """What is known about a map beside its content: offset, driving side, origin.
 
     `offset` in metres is added to all coordinates; `handedness` is the user's option (auto, lht, rht); `sensed` is the side by whose
     rule the lanes run as the traces drive (lht, rht; see `Environment.lanes`), used only where neither option nor map decides.
@@ -40,7 +40,7 @@ class Request:
 
 
 @dataclass(frozen=True)
-class Environment:
+class MapTables:
     """A map as rows: every table of `schemas/map.sql`, its columns and types exactly, rows totally ordered.
 
     `lanes`: the side (lht, rht) by whose rule the lanes' directions were read, which on roads of one direction alone need not be
@@ -61,7 +61,7 @@ class MapReader(Protocol):
 
     format: str
 
-    def read(self, source: MapSource, request: Request) -> Environment:
+    def read(self, source: MapSource, request: MapOptions) -> MapTables:
         """Return the map's tables; `MapError` where nothing can be read."""
         ...
 

@@ -1,4 +1,4 @@
-"""The geo reference of a map, and whether it is that of a log: what a PROJ string says, however it is written."""
+"""Reads the geo reference of a map and compares it with that of a log."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ def reference_of(source: MapSource) -> str | None:
     return (inner[1] if inner else text).strip() or None
 
 
-def same(one: str, other: str) -> bool:
+def same_reference(one: str, other: str) -> bool:
     """Say whether two references mean the same: PROJ strings parameter by parameter, other texts word by word."""
     return _parsed(one) == _parsed(other)
 
 
-def comparable(one: str, other: str) -> bool:
-    """Say whether two references that are not the same are of different places: both are PROJ strings with a projection."""
+def different_places(one: str, other: str) -> bool:
+    """Return whether two unequal references mean different places: both must be PROJ strings with a projection."""
     return all("proj" in dict(_parsed(text)) for text in (one, other))
 
 

@@ -1,4 +1,4 @@
-"""On which side of a lane its oncoming traffic runs: the layout of the roads, which the direction of the lanes makes left or right.
+"""Finds the side driven on from lanes that run beside each other in opposite directions.
 
 In right-hand traffic whoever comes towards a driver passes on the left, on a road with both directions as on two roads of one direction
 each. On a road of one direction alone nothing lies on either side, and its lanes' direction does not tell which side is driven on.
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-TOUCHING_M: Final = 2.0  # so far apart two directions of one carriageway may be painted, as in lane_beside.sql
-RESERVATION_M: Final = 15.0  # and the two carriageways of a road
-LEAST_M: Final = 20.0  # less of it is a corner or a mistake in the map
-DECISIVE: Final = 2 / 3
+SAME_CARRIAGEWAY_M: Final = 2.0  # so far apart two directions of one carriageway may be painted, as in lane_beside.sql
+CENTRAL_RESERVATION_M: Final = 15.0  # and the two carriageways of a road
+LEAST_LENGTH_M: Final = 20.0  # less of it is a corner or a mistake in the map
+DECISIVE_SHARE: Final = 2 / 3
 _OVERLAP_M: Final = 0.5  # more of it is the same ground twice, as where lanes fork
 _LEVEL_M: Final = 3.0  # as far apart in height, lanes are not beside each other
 _ALONG: Final = float(np.cos(np.radians(30)))
@@ -29,7 +29,7 @@ _WIDEST_HALF_M: Final = 4.0
 _PROBES: Final = 20_000  # stations looked at, evenly spread
 
 
-class Course(NamedTuple):
+class OneWayLane(NamedTuple):
     """The middle of a lane that is driven one way, outside junctions, as arrays (n,) in metres.
 
     `tx`, `ty`: the unit tangent; `z` NaN: not known.
@@ -46,7 +46,7 @@ class Course(NamedTuple):
 class _Pieces(NamedTuple):
     """The straight pieces of all courses, (m,): of which lane, from which point of `course` to the next, how long, and their direction."""
 
-    course: Course  # all of them, one after the other
+    course: OneWayLane  # all of them, one after the other
     lane: NDArray[np.intp]
     k: NDArray[np.intp]
     length: Floats
@@ -54,7 +54,7 @@ class _Pieces(NamedTuple):
     uy: Floats
 
 
-def side_driven_on(courses: Sequence[Course]) -> str | None:
+def side_driven_on(courses: Sequence[OneWayLane]) -> str | None:
     """Return lht or rht by the lanes that run beside each other in opposite directions; None: there are none, or they disagree.
 
     Those that touch count before those across a central reservation.
@@ -64,16 +64,22 @@ def side_driven_on(courses: Sequence[Course]) -> str | None:
     pieces = _pieces(courses)
     if not len(pieces.k):
         return None
-    for reach_m in (TOUCHING_M, RESERVATION_M):
+    for reach_m in (SAME_CARRIAGEWAY_M, CENTRAL_RESERVATION_M):
         left, right = _opposing(pieces, reach_m)
-        if left + right >= LEAST_M:
-            return "rht" if left >= DECISIVE * (left + right) else "lht" if right >= DECISIVE * (left + right) else None
+        if left + right >= LEAST_LENGTH_M:
+            return (
+                "rht"
+                if left >= DECISIVE_SHARE * (left + right)
+                else "lht"
+                if right >= DECISIVE_SHARE * (left + right)
+                else None
+            )
     return None
 
 
-def _pieces(courses: Sequence[Course]) -> _Pieces:
+def _pieces(courses: Sequence[OneWayLane]) -> _Pieces:
     lane = np.repeat(np.arange(len(courses)), [len(c.x) for c in courses])
-    c = Course(*(np.concatenate(columns) for columns in zip(*courses, strict=True)))
+    c = OneWayLane(*(np.concatenate(columns) for columns in zip(*courses, strict=True)))
     k = np.flatnonzero(lane[:-1] == lane[1:])
     dx, dy = c.x[k + 1] - c.x[k], c.y[k + 1] - c.y[k]
     length = np.hypot(dx, dy)

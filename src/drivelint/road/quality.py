@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 _ORDER = {"error": 0, "warning": 1, "info": 2}
 
 
-class Quality:
+class MapQuality:
     """Collects the rows of `map_quality`."""
 
     def __init__(self) -> None:

@@ -1,4 +1,4 @@
-"""What a signal's code means, in the words of the `traffic_signal` table.
+"""Translates a signal's code into the values of the `traffic_signal` table.
 
 OpenDRIVE's own list (numbers from 1000001), the German catalogue (StVO sign numbers, which RoadRunner and CARLA also
 use under the country OpenDRIVE), the British one (TSRGD diagram numbers), the American one (MUTCD) and the Spanish one
@@ -187,7 +187,7 @@ def turns_of(code: str, subtype: str) -> list[str] | None:
     return list(found) if found else None
 
 
-def turns_in_direction(word: str) -> list[str] | None:
+def turns_of_direction(word: str) -> list[str] | None:
     """Return the turns that a CommonRoad traffic light holds for by its `direction`; None: it does not say."""
     found = _DIRECTIONS.get(word)
     return list(found) if found else None

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING
 from drivelint.errors import DriveLintError
 from drivelint.resources import folder
 from drivelint.sql import syntax
-from drivelint.sql.store import lifetimes, schema
+from drivelint.sql.store import column_comments, lifetimes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 _GIVEN = {"profile"}  # filled from queries/profiles.toml
 # What the engine and the drive table read themselves, whatever the rules are.
-ALWAYS = (
+ALWAYS_NEEDED = (
     "clock",
     "step",
     "ego_state",
@@ -35,7 +35,7 @@ ALWAYS = (
 
 @dataclass(frozen=True)
 class Derivation:
-    """One library table, the SELECT that fills it, the other library tables that it reads, and those without whose rows it has none."""
+    """One library table: the SELECT that fills it, the library tables it reads, and the tables without which it is empty."""
 
     table: str
     sql: str
@@ -44,7 +44,7 @@ class Derivation:
 
     @property
     def of_the_map(self) -> bool:
-        """Whether the table is a property of the map alone, filled once per environment and not once per batch."""
+        """Whether the table depends on the map only, and is filled once per map."""
         return lifetimes()[self.table] == "map"
 
 
@@ -55,12 +55,14 @@ def derivations() -> Mapping[str, Derivation]:
     files = sorted((folder("queries") / "derive").glob("*.sql"))
     names = {file.stem for file in files}
     for file in files:
-        if file.stem not in schema():
+        if file.stem not in column_comments():
             raise DriveLintError(f"{file}: no table {file.stem!r} in schemas/")
         sql = file.read_text(encoding="utf-8")
-        tree = syntax.parsed(sql, str(file))
-        found[file.stem] = Derivation(file.stem, sql, syntax.reads(tree) & names - {file.stem}, syntax.needs(tree))
-    if missing := sorted(schema("derived").keys() - names - _GIVEN):
+        tree = syntax.parse_select(sql, str(file))
+        found[file.stem] = Derivation(
+            file.stem, sql, syntax.tables_read(tree) & names - {file.stem}, syntax.tables_required(tree)
+        )
+    if missing := sorted(column_comments("derived").keys() - names - _GIVEN):
         raise DriveLintError(
             f"queries/derive: no query for the library table {missing[0]!r} of schemas/derived.sql: reinstall drivelint"
         )
@@ -68,7 +70,7 @@ def derivations() -> Mapping[str, Derivation]:
     return {name: found[name] for name in order}
 
 
-def behind(tables: Iterable[str]) -> set[str]:
+def with_sources(tables: Iterable[str]) -> set[str]:
     """Return these tables and the library tables from which they are derived."""
     found: set[str] = set()
     todo = [*tables]
@@ -82,5 +84,5 @@ def behind(tables: Iterable[str]) -> set[str]:
 
 def needed(tables: Iterable[str]) -> list[Derivation]:
     """Return the derivations behind these tables, in order."""
-    wanted = behind([*tables, *ALWAYS])
+    wanted = with_sources([*tables, *ALWAYS_NEEDED])
     return [d for name, d in derivations().items() if name in wanted]

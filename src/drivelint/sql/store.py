@@ -24,7 +24,7 @@ _LIFETIME = re.compile(r"^-- lifetime: (\w+)\nCREATE TABLE (\w+) \(", re.MULTILI
 LIFETIMES: Final = ("map", "drive", "part", "run")
 """How long the rows of a table stay: `map`, until a batch needs other maps; `drive`, while their batch is judged; `part`, while the
 egos of their part of a drive are judged; `run`, to the end."""
-ACTOR_IDS = frozenset({"ego_id", "object_id", "actor_id"})
+ACTOR_ID_COLUMNS = frozenset({"ego_id", "object_id", "actor_id"})
 """Columns that hold the id of an actor."""
 _AS_TOLD = frozenset({"margin"})
 """Tables whose ids a rule gave: it may speak of an actor that no log has."""
@@ -45,7 +45,7 @@ def connect(
     them where the user happens to be. Only a database that is kept in a file has the columns' comments: they take longer
     than the tables, and in memory nobody reads them. Errors: `DriveLintError` when the pinned extension cannot be loaded.
     """
-    con = opened(path)
+    con = open_as_is(path)
     con.execute("SET allow_community_extensions=false")
     con.execute("SET GLOBAL python_enable_replacements=false")  # for its cursors too
     con.execute("SET enable_progress_bar=false")
@@ -66,7 +66,7 @@ def connect(
 
 @contextmanager
 def workspace(memory: int | None) -> Iterator[duckdb.DuckDBPyConnection]:
-    """Open a database in memory that goes to a temporary folder, removed afterwards, beyond `memory` bytes.
+    """Open a database in memory that spills to a temporary folder beyond `memory` bytes; the folder is removed afterwards.
 
     None: beyond 80 % of the machine's. Errors: as those of `connect`; `MemoryShortError` for what does not even fit so.
     """
@@ -79,7 +79,7 @@ def workspace(memory: int | None) -> Iterator[duckdb.DuckDBPyConnection]:
 
 
 def lock(con: duckdb.DuckDBPyConnection) -> None:
-    """Shut a database off from files and network, and its settings from change, before rules run in it.
+    """Forbid a database to open files, use the network or change settings, before rules run in it.
 
     What is attached stays so, Arrow tables can still be registered and spilling goes on. `memory_limit` alone can be set:
     a batch that is out of memory is tried again with more. One that is locked already stays as it is.
@@ -106,8 +106,8 @@ def lift_memory_limit(con: duckdb.DuckDBPyConnection) -> str:
     return str(most)
 
 
-def opened(path: Path | None = None, *, read_only: bool = False) -> duckdb.DuckDBPyConnection:
-    """Open a database as it is (None: an empty one in memory), with spatial loaded from its wheel.
+def open_as_is(path: Path | None = None, *, read_only: bool = False) -> duckdb.DuckDBPyConnection:
+    """Open a database without creating tables (None: an empty one in memory), with spatial loaded from its wheel.
 
     Whether the extension is signed is not asked: that is a hash over its 80 MB each time, and the file was installed by
     whoever installed duckdb itself, which nobody asks either. Any other must be signed from then on.
@@ -138,7 +138,7 @@ def _load_spatial(con: duckdb.DuckDBPyConnection) -> None:
 
 
 @cache
-def schema(file: str = "*") -> dict[str, dict[str, str]]:
+def column_comments(file: str = "*") -> dict[str, dict[str, str]]:
     """Return table -> column -> comment for every table of `schemas/<file>.sql` (`*`: of all of them), in file order."""
     tables: dict[str, dict[str, str]] = {}
     for path in sorted(folder("schemas").glob(f"{file}.sql")):
@@ -152,7 +152,7 @@ def lifetimes() -> dict[str, str]:
     """Return table -> its lifetime, as the line above it in `schemas/` says. Errors: `DriveLintError` for a table without one."""
     text = "\n".join(file.read_text(encoding="utf-8") for file in sorted(folder("schemas").glob("*.sql")))
     found = {table: lifetime for lifetime, table in _LIFETIME.findall(text)}
-    for table in schema():
+    for table in column_comments():
         if found.get(table) not in LIFETIMES:
             raise DriveLintError(
                 f"schemas: table {table!r} has no lifetime: write -- lifetime: {' | '.join(LIFETIMES)} above it"
@@ -160,15 +160,15 @@ def lifetimes() -> dict[str, str]:
     return found
 
 
-def living(*kinds: str) -> list[str]:
+def tables_of_lifetime(*kinds: str) -> list[str]:
     """Return the tables of these lifetimes, in the order of the files."""
-    return [table for table in schema() if lifetimes()[table] in kinds]
+    return [table for table in column_comments() if lifetimes()[table] in kinds]
 
 
-def code_ids(
+def recreate_with_enums(
     con: duckdb.DuckDBPyConnection, tables: Iterable[str], drives: Iterable[str], actors: Iterable[str]
 ) -> None:
-    """Make tables anew, empty, that hold ids of drives and actors as numbers which read as the text (ENUM).
+    """Recreate tables empty, with the ids of drives and actors as ENUM columns.
 
     Nearly every join is on them, and numbers are a fifth cheaper to derive with. They are numbered in the order of the text: both
     sort alike. `drives`, `actors`: every id that will come up.
@@ -178,22 +178,22 @@ def code_ids(
         listed = ", ".join("'" + each.replace("'", "''") + "'" for each in sorted(set(ids)))
         made = f"ENUM ({listed})" if listed else "VARCHAR"
         con.execute(f"CREATE TYPE {kind}_ids_{max(old, default=0) + 1} AS {made}")
-    renew(con, tables)
+    recreate_empty(con, tables)
     for no in old:
         con.execute(f"DROP TYPE drive_ids_{no}; DROP TYPE actor_ids_{no}")
 
 
-def renew(con: duckdb.DuckDBPyConnection, tables: Iterable[str]) -> None:
-    """Make tables anew, empty, their ids of the types that `code_ids` made last, if it did; column comments are lost.
+def recreate_empty(con: duckdb.DuckDBPyConnection, tables: Iterable[str]) -> None:
+    """Recreate tables empty, with the id types that `code_ids` set last; column comments are lost.
 
     What is only deleted takes its room until a database is written down, which one in memory never is.
     """
     types = {}
     if codes := _codes(con):
-        types = {"drive_id": f"drive_ids_{max(codes)}", **dict.fromkeys(ACTOR_IDS, f"actor_ids_{max(codes)}")}
+        types = {"drive_id": f"drive_ids_{max(codes)}", **dict.fromkeys(ACTOR_ID_COLUMNS, f"actor_ids_{max(codes)}")}
     for table in tables:
         body = _bodies()[table]
-        for column in types.keys() & schema()[table].keys() if table not in _AS_TOLD else ():
+        for column in types.keys() & column_comments()[table].keys() if table not in _AS_TOLD else ():
             body = re.sub(rf"^    {column} VARCHAR", f"    {column} {types[column]}", body, flags=re.MULTILINE)
         con.execute(f"CREATE OR REPLACE TABLE {table} (\n{body})")
 
@@ -218,7 +218,7 @@ def create_tables(con: duckdb.DuckDBPyConnection, *, comments: bool = False) -> 
     """Create every table of `schemas/*.sql`, its columns' comments kept in the database if asked."""
     for file in sorted(folder("schemas").glob("*.sql")):
         con.execute(file.read_text(encoding="utf-8"))
-    for table, columns in schema().items() if comments else ():
+    for table, columns in column_comments().items() if comments else ():
         con.execute(
             ";".join(
                 f"COMMENT ON COLUMN {table}.{c} IS '{text.replace(chr(39), chr(39) * 2)}'"
@@ -229,7 +229,7 @@ def create_tables(con: duckdb.DuckDBPyConnection, *, comments: bool = False) -> 
 
 def insert(con: duckdb.DuckDBPyConnection, table: str, rows: pa.Table) -> None:
     """Append an Arrow table by column name; a column that the table does not have is refused."""
-    if not rows.num_rows and set(rows.column_names) <= schema().get(table, {}).keys():
+    if not rows.num_rows and set(rows.column_names) <= column_comments().get(table, {}).keys():
         return  # most of a trace's and a map's tables are empty: two milliseconds each
     con.register("_incoming", rows)
     try:

@@ -1,4 +1,4 @@
-"""What the syntax tree of a SELECT tells: the tables that it reads, and those without whose rows it has none itself."""
+"""Reads from a SELECT's syntax tree which tables it reads, and which must have rows for it to have any."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _NONE: Final[frozenset[str]] = frozenset()
 _CALLED: Final = re.compile(r"(\w+)\"?\(")
 
 
-def parsed(sql: str, where: str) -> Node:
+def parse_select(sql: str, where: str) -> Node:
     """Return the syntax tree of one SELECT. Errors: `DriveLintError` that begins with `where`."""
     tree = json.loads(_parser().execute("SELECT json_serialize_sql(?)", [sql]).fetchall()[0][0])
     if tree["error"]:
@@ -31,15 +31,15 @@ def parsed(sql: str, where: str) -> Node:
     return node
 
 
-def reads(tree: Node) -> Names:
-    """Return the tables that are read. A CTE may have the name of a table: where it is in sight, it is the CTE that is read."""
+def tables_read(tree: Node) -> Names:
+    """Return the tables that a SELECT reads; the name of a CTE in scope is not a table."""
     found: set[str] = set()
     _read(tree, _NONE, found)
     return frozenset(found)
 
 
-def needs(tree: Node) -> Names:
-    """Return tables of which each must have rows, or the SELECT has none. One that is left out only costs time."""
+def tables_required(tree: Node) -> Names:
+    """Return tables that must have rows for the SELECT to have any; a table left out only costs time."""
     return _query(tree, {}, beside=False)
 
 

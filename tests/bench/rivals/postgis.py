@@ -148,7 +148,7 @@ def _ours(place: Place) -> Answer:
     def witness(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], **_part: bool) -> None:
         found.extend(con.execute(_ANSWER).fetchall())
 
-    rules = catalogue.select(catalogue.load(()), ("ukhc",), ())
+    rules = catalogue.select_rules(catalogue.load_rules(()), ("ukhc",), ())
     with store.connect() as con:
         store.insert(con, "profile", profile_table(load_profiles(()), ()))
         bench = JudgingSession(con, rules, catalogue.parse_params(rules, ()), None, observers=[witness])

@@ -8,12 +8,12 @@ import pytest
 
 from drivelint.errors import MapError
 from drivelint.formats import load_map, read_source
-from drivelint.road.contract import Environment, MapSource
+from drivelint.road.contract import MapSource, MapTables
 from tests.formats.commonroad.scenario_text import bound, lanelet, scenario
 from tests.shared_data import shared
 
 
-def load(text: str, **options: object) -> Environment:
+def load(text: str, **options: object) -> MapTables:
     return load_map(MapSource("a.xml", text.encode()), **options)  # type: ignore[arg-type]
 
 
@@ -154,12 +154,12 @@ def sign(name: int, *elements: tuple[str, str], more: str = "") -> str:
     return f'<trafficSign id="{name}">{inner}{more}</trafficSign>'
 
 
-def limits(environment: Environment) -> dict[str, tuple[float | None, str]]:
+def limits(environment: MapTables) -> dict[str, tuple[float | None, str]]:
     rows = environment.tables["speed_limit"].to_pylist()
     return {row["lanelet_id"]: (row["limit_mps"], row["source"]) for row in rows}
 
 
-def said(environment: Environment) -> list[tuple[str, str]]:
+def said(environment: MapTables) -> list[tuple[str, str]]:
     rows = environment.tables["map_quality"].to_pylist()
     return [(row["check_id"], row["message"]) for row in rows if row["check_id"] != "handedness_default"]
 

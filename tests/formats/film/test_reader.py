@@ -231,7 +231,7 @@ RULES = {1: "ds-vbp-out-of-av", 2: "ds-ov-out-of-av", 3: "ds-av-out-of-ov", 4: "
 
 def judged(tmp_path: Path, mapping: str) -> dict[int, dict[int, bool | None]]:
     """Return assertion -> frame -> whether it was kept, None where that is unknown."""
-    settings = run.Settings(
+    settings = run.CheckOptions(
         traces=(str(shared(CLIP)),),
         mapping=mapping,
         rules=("ukhc.r126.ds-*",),
@@ -283,7 +283,7 @@ def test_every_frame_with_the_vehicle_in_it_is_judged_by_its_distance(tmp_path: 
 
 
 def test_stages_begin_at_their_frames(tmp_path: Path) -> None:
-    settings = run.Settings(
+    settings = run.CheckOptions(
         traces=(str(shared(CLIP)),), mapping="video-detections", rules=("ukhc.r126.ds-vbp*",), out=tmp_path, keep_db=True,
         annotate=False,
     )  # fmt: skip

@@ -10,7 +10,7 @@ import pytest
 
 from drivelint.errors import MapError
 from drivelint.formats import load_map, read_source
-from drivelint.road.contract import Environment, MapSource
+from drivelint.road.contract import MapSource, MapTables
 from tests.shared_data import shared
 
 pytest.importorskip("lanelet2", reason="the package lanelet2 is not installed (extra 'lanelet2')")
@@ -64,7 +64,7 @@ class Drawing:
         self.parts.append(f'<relation id="{self.count}">{inside}{said}</relation>')
         return f'<member type="relation" ref="{self.count}" role="regulatory_element"/>'
 
-    def load(self, **options: object) -> Environment:
+    def load(self, **options: object) -> MapTables:
         order = sorted(self.parts, key=lambda part: ["<n", "<w", "<r"].index(part[:2]))
         text = f"<?xml version='1.0'?><osm version='0.6'>{''.join(order)}</osm>"
         return load_map(MapSource("a.osm", text.encode()), **({"origin": ORIGIN} | options))  # type: ignore[arg-type]

@@ -16,14 +16,14 @@ from tests.formats.opendrive.xodr import checks, lanelets, points
 from tests.shared_data import shared
 
 if TYPE_CHECKING:
-    from drivelint.road.contract import Environment
+    from drivelint.road.contract import MapTables
 
 REGISTRATION = (2.618, 3.113)
 Bounds = dict[str, np.ndarray]
 
 
 @cache
-def road(offset: tuple[float, float] = (0.0, 0.0)) -> Environment:
+def road(offset: tuple[float, float] = (0.0, 0.0)) -> MapTables:
     return load_map(read_source(shared("overtake_case_study/t_junction.xodr")), offset=offset)
 
 

@@ -8,7 +8,7 @@ from drivelint.formats import load_map
 from drivelint.road.contract import MapSource
 
 if TYPE_CHECKING:
-    from drivelint.road.contract import Environment
+    from drivelint.road.contract import MapTables
 
 LINE = '<geometry s="0" x="0" y="0" hdg="0" length="100"><line/></geometry>'
 
@@ -53,27 +53,27 @@ def xodr(*parts: str) -> str:
     return f'<OpenDRIVE><header revMajor="1" revMinor="6"/>{"".join(parts) or road()}</OpenDRIVE>'
 
 
-def load(*parts: str, **options: Any) -> Environment:
+def load(*parts: str, **options: Any) -> MapTables:
     return load_map(MapSource("small.xodr", xodr(*parts).encode()), **options)
 
 
-def rows(environment: Environment, table: str) -> list[dict[str, Any]]:
+def rows(environment: MapTables, table: str) -> list[dict[str, Any]]:
     found: list[dict[str, Any]] = environment.tables[table].to_pylist()
     return found
 
 
-def lanelets(environment: Environment) -> dict[str, dict[str, Any]]:
+def lanelets(environment: MapTables) -> dict[str, dict[str, Any]]:
     return {row["lanelet_id"]: row for row in rows(environment, "lanelet")}
 
 
-def points(environment: Environment) -> dict[str, list[dict[str, Any]]]:
+def points(environment: MapTables) -> dict[str, list[dict[str, Any]]]:
     found: dict[str, list[dict[str, Any]]] = {}
     for row in rows(environment, "lane_point"):
         found.setdefault(row["lanelet_id"], []).append(row)
     return found
 
 
-def checks(environment: Environment) -> dict[str, list[str | None]]:
+def checks(environment: MapTables) -> dict[str, list[str | None]]:
     found: dict[str, list[str | None]] = {}
     for row in rows(environment, "map_quality"):
         found.setdefault(row["check_id"], []).append(row["lanelet_id"])

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from drivelint.formats import load_map
-from drivelint.formats.osi.schema import message
-from drivelint.road.contract import Environment, MapSource
+from drivelint.formats.osi.schema import message_class
+from drivelint.road.contract import MapSource, MapTables
 
 
 def points(field: Any, line: list[tuple[float, float]]) -> None:
@@ -20,7 +20,7 @@ class Trace:
     """Collects lanes of one ground truth."""
 
     def __init__(self) -> None:
-        self.truth = message("GroundTruth")()
+        self.truth = message_class("GroundTruth")()
 
     def bound(self, name: int, line: list[tuple[float, float]], kind: int = 3) -> None:
         bound = self.truth.lane_boundary.add()
@@ -53,8 +53,8 @@ class Trace:
             if after is not None:
                 pair.successor_lane_id.value = after
 
-    def load(self, **options: Any) -> Environment:
-        kept = message("GroundTruth")()
+    def load(self, **options: Any) -> MapTables:
+        kept = message_class("GroundTruth")()
         kept.lane.extend(self.truth.lane)
         kept.lane_boundary.extend(self.truth.lane_boundary)
         return load_map(MapSource("embedded", kept.SerializeToString(deterministic=True)), **options)

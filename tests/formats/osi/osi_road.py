@@ -14,7 +14,7 @@ from tests.formats.osi.map_trace import Trace
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from drivelint.road.contract import Environment
+    from drivelint.road.contract import MapTables
 
 AHEAD, BACK, BOTH = 2, 3, 4
 
@@ -121,7 +121,7 @@ class Road(Trace):
             source.identifier.append(reference[1])
         return light
 
-    def load(self, **options: Any) -> Environment:
+    def load(self, **options: Any) -> MapTables:
         """Return the map of it, as the reader of the trace hands it over."""
         beside = type(self.truth).FromString(self.truth.SerializeToString())
         lanes = type(self.truth)()
@@ -154,6 +154,6 @@ def two_way(**options: Any) -> Road:
     return road
 
 
-def table(environment: Environment, name: str) -> list[dict[str, Any]]:
+def table(environment: MapTables, name: str) -> list[dict[str, Any]]:
     rows: list[dict[str, Any]] = environment.tables[name].drop_columns("environment_id").to_pylist()
     return rows

@@ -9,9 +9,9 @@ from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drivelint.drive.trace import BRAKE_LIGHTS, CLASSES, INDICATORS
+from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
 from drivelint.formats.osi import frames
-from drivelint.formats.osi.frames import Objects, head, moving_objects, traffic_light
+from drivelint.formats.osi.frames import Objects, ground_truth_head, moving_objects, traffic_light
 from drivelint.formats.osi.schema import GROUND_TRUTH, descriptor_set
 
 VECTORS = {
@@ -27,7 +27,7 @@ value = st.one_of(st.just(float("nan")), st.floats(allow_nan=False, allow_infini
 actor = st.fixed_dictionaries(
     {
         "number": st.integers(0, (1 << 64) - 1),
-        "actor_class": st.integers(-1, len(CLASSES) - 1),
+        "actor_class": st.integers(-1, len(ACTOR_CLASSES) - 1),
         "indicator": st.integers(-1, len(INDICATORS) - 1),
         "brake_light": st.integers(-1, len(BRAKE_LIGHTS) - 1),
         **dict.fromkeys(COLUMNS, value),
@@ -79,7 +79,7 @@ def test_objects(rows: list[dict[str, Any]], heights: bool) -> None:
 
 @given(st.integers(-(1 << 62), 1 << 62), st.one_of(st.none(), st.integers(0, (1 << 64) - 1)))
 def test_heads(t_ns: int, host: int | None) -> None:
-    truth = parsed(head(t_ns, host))
+    truth = parsed(ground_truth_head(t_ns, host))
     assert truth.timestamp.seconds * 1_000_000_000 + truth.timestamp.nanos == t_ns
     assert 0 <= truth.timestamp.nanos < 1_000_000_000
     assert truth.HasField("host_vehicle_id") == (host is not None)

@@ -10,14 +10,14 @@ import pytest
 from tests.formats.osi.osi_road import Road, table, two_way
 
 if TYPE_CHECKING:
-    from drivelint.road.contract import Environment
+    from drivelint.road.contract import MapTables
 
 
-def stops(environment: Environment) -> list[tuple[str, str, float]]:
+def stops(environment: MapTables) -> list[tuple[str, str, float]]:
     return [(r["stop_line_id"], r["lanelet_id"], round(r["lane_s_m"], 2)) for r in table(environment, "stop_line")]
 
 
-def warned(environment: Environment) -> list[str]:
+def warned(environment: MapTables) -> list[str]:
     return [r["check_id"] for r in table(environment, "map_quality")]
 
 

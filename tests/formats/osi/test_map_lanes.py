@@ -13,7 +13,7 @@ import shapely
 from drivelint.drive.trace import IngestOptions
 from drivelint.errors import MapError
 from drivelint.formats import load_map, read_source, read_trace
-from drivelint.formats.osi.schema import message
+from drivelint.formats.osi.schema import message_class
 from drivelint.road.contract import MapSource
 from tests.formats.osi.map_trace import Trace
 from tests.shared_data import shared
@@ -220,7 +220,7 @@ def test_a_lane_whose_bounds_make_no_shape_is_left_out_and_named(spoil: Any, wha
 def test_the_lanes_of_a_real_log_have_boundaries_and_no_direction() -> None:
     trace = read_trace(shared("osi/sensorDataDetectedLaneBoundaries.mcap"), IngestOptions())
     assert trace.embedded_map is not None
-    truth = message("GroundTruth").FromString(trace.embedded_map)
+    truth = message_class("GroundTruth").FromString(trace.embedded_map)
     assert (len(truth.lane), len(truth.lane_boundary)) == (4, 7)
     with pytest.raises(
         MapError, match=r"own 4 lanes .* 3 of them because nothing says in which direction it is driven"

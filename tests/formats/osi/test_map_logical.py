@@ -12,24 +12,24 @@ import shapely
 from drivelint.drive.trace import IngestOptions
 from drivelint.errors import MapError
 from drivelint.formats import load_map, read_trace
-from drivelint.road.contract import Environment, MapSource
+from drivelint.road.contract import MapSource, MapTables
 from tests.formats.osi.osi_road import AHEAD, BACK, BOTH, Road, table, two_way
 from tests.shared_data import shared
 
 
-def lanes(environment: Environment) -> dict[str, dict[str, Any]]:
+def lanes(environment: MapTables) -> dict[str, dict[str, Any]]:
     return {row["lanelet_id"]: row for row in table(environment, "lanelet")}
 
 
-def links(environment: Environment) -> set[tuple[str, str]]:
+def links(environment: MapTables) -> set[tuple[str, str]]:
     return {(row["from_id"], row["to_id"]) for row in table(environment, "lane_link")}
 
 
-def problems(environment: Environment) -> dict[str | None, str]:
+def problems(environment: MapTables) -> dict[str | None, str]:
     return {r["lanelet_id"]: r["message"] for r in table(environment, "map_quality") if r["severity"] == "error"}
 
 
-def points(environment: Environment, lane: str) -> list[dict[str, Any]]:
+def points(environment: MapTables, lane: str) -> list[dict[str, Any]]:
     return [row for row in table(environment, "lane_point") if row["lanelet_id"] == lane]
 
 

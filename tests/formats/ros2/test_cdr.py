@@ -100,9 +100,9 @@ def expect(table: cdr.Table, name: str, values: list[dict[str, Any]], types: dic
         elif kind == "string" and array is None:
             assert [text.decode() for text in table.columns[member].tolist()] == [value[member] for value in values]
         elif kind != "string" and array == "":
-            padded = [[*value[member], np.nan, np.nan, np.nan][: cdr.FIRST] for value in values]
+            padded = [[*value[member], np.nan, np.nan, np.nan][: cdr.MAX_KEPT_NUMBERS] for value in values]
             assert np.array_equal(
-                table.columns[member], np.array(padded, np.float64).reshape(-1, cdr.FIRST), equal_nan=True
+                table.columns[member], np.array(padded, np.float64).reshape(-1, cdr.MAX_KEPT_NUMBERS), equal_nan=True
             )
         elif kind != "string":
             assert table.columns[member].tolist() == [value[member] for value in values]

@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from drivelint.errors import TraceError
-from drivelint.formats import expand
-from drivelint.inspect.content import content, size
+from drivelint.formats import expand_traces
+from drivelint.inspect.content import content, size_bytes
 from tests.formats.logs import at, log, quality, read, states
 from tests.formats.ros2 import ros_log as ros
 from tests.formats.ros2.ros_drive import T0, TURN, N, along, ego, others, seen, ticks
@@ -181,7 +181,7 @@ def rows(trace: Trace) -> list[dict[str, object]]:
 
 def test_bag_in_parts(tmp_path: Path) -> None:
     folder, messages = parts(tmp_path)
-    assert expand([str(folder)]) == expand([str(tmp_path)]) == [folder]
+    assert expand_traces([str(folder)]) == expand_traces([str(tmp_path)]) == [folder]
     trace = read(folder)
     assert trace.drive_id.startswith("drive-")
     assert rows(trace) == rows(seen(tmp_path, messages))
@@ -192,7 +192,7 @@ def test_bag_in_parts(tmp_path: Path) -> None:
 
 def test_what_a_bag_holds(tmp_path: Path) -> None:
     folder, messages = parts(tmp_path)
-    assert size(folder) == sum(file.stat().st_size for file in folder.glob("*.mcap"))
+    assert size_bytes(folder) == sum(file.stat().st_size for file in folder.glob("*.mcap"))
     found = {channel.topic: channel for channel in content(folder, None, [], read=True).channels}
     assert {topic: channel.read_as for topic, channel in found.items()} == {
         "/carla/hero/odometry": "odometry", "/carla/objects": "road users", "/tf": "frames", "/tf_static": "frames",

@@ -6,7 +6,7 @@ import pytest
 
 from drivelint.errors import MapError
 from drivelint.formats import load_map
-from drivelint.road.contract import Environment, MapSource
+from drivelint.road.contract import MapSource, MapTables
 from tests.formats.opendrive.xodr import checks, lanelets, points, rows
 
 WIDTH = 3.2
@@ -28,12 +28,12 @@ def link(start: str, end: str, state: str, way: str = "s", more: str = "") -> st
     return f'<connection from="{start}" to="{end}" dir="{way}" state="{state}" {more}/>'
 
 
-def net(*parts: str, more: str = "", **options: object) -> Environment:
+def net(*parts: str, more: str = "", **options: object) -> MapTables:
     text = f'<?xml version="1.0"?>\n<!-- made by hand -->\n<net version="1.20" {more}>{"".join(parts)}</net>'
     return load_map(MapSource("small.net.xml", text.encode()), **options)  # type: ignore[arg-type]
 
 
-def tee(kind: str, stem: tuple[str, str], light: str = "", major: str = "M") -> Environment:
+def tee(kind: str, stem: tuple[str, str], light: str = "", major: str = "M") -> MapTables:
     """Return a main road along x, its eastbound direction of two lanes, on which a side road from the south ends."""
     tl = f'tl="{light}" linkIndex="%d"' if light else "%s"
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from drivelint.errors import UsageError
-from drivelint.formats.tables.mapping import load, needed, shipped
+from drivelint.formats.tables.mapping import load, needed_columns, shipped_mappings
 from tests.formats.logs import LONG, mapping
 
 if TYPE_CHECKING:
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 def test_every_shipped_mapping_loads() -> None:
-    assert {"carla-testbench", "esmini", "omega-prime"} <= set(shipped())
-    for name in shipped():
+    assert {"carla-testbench", "esmini", "omega-prime"} <= set(shipped_mappings())
+    for name in shipped_mappings():
         loaded, spec = load(name)
         assert loaded == name
         assert spec.description
-        assert needed(spec)
+        assert needed_columns(spec)
 
 
 def test_the_registration_of_the_case_study_lives_in_its_mapping() -> None:

@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from drivelint.errors import TraceError
-from drivelint.sql.store import schema
+from drivelint.sql.store import column_comments
 from tests.formats.logs import LONG, actors, at, cars, log, mapping, put, quality, read, states, table
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def test_long_table(tmp_path: Path) -> None:
 def test_tables_are_those_of_the_schema(tmp_path: Path) -> None:
     trace = read(table(tmp_path / "drive.csv", cars()), mapping=mapping(tmp_path))
     for name, rows in trace.tables.items():
-        assert rows.schema.names == list(schema()[name]), name
+        assert rows.schema.names == list(column_comments()[name]), name
     assert trace.tables["actor_state"].schema.field("actor_id").type == pa.string()
     assert trace.tables["actor_state"].schema.field("t_ns").type == pa.int64()
 

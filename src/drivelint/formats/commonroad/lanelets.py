@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 from drivelint.errors import MapError
 from drivelint.formats import markup
-from drivelint.formats.commonroad.signs import Signs, points, read_signs, refs, signal_rows, stop_line_rows
-from drivelint.road.boundary_lanes import BoundedLane, build, crossings, side_driven_on, tables
-from drivelint.road.contract import Environment, MapSource, Request, environment_id
-from drivelint.road.handedness import correction
-from drivelint.road.quality import Quality
+from drivelint.formats.commonroad.signs import Signs, points, read_signs, referenced_ids, signal_rows, stop_line_rows
+from drivelint.road.boundary_lanes import BoundedLane, build_lanes, crossings, side_driven_on, tables
+from drivelint.road.contract import MapOptions, MapSource, MapTables, environment_id
+from drivelint.road.handedness import correction_hint
+from drivelint.road.quality import MapQuality
 from drivelint.road.tables import from_rows
 
 if TYPE_CHECKING:
@@ -45,13 +45,13 @@ class CommonRoadReader:
 
     format = "commonroad"
 
-    def read(self, source: MapSource, request: Request) -> Environment:
+    def read(self, source: MapSource, request: MapOptions) -> MapTables:
         """Return the map's tables; `MapError` where the file is not XML or has no lanelet that can be built."""
         try:
             root = markup.parse(source.content)
         except markup.RefusedError as error:
             raise MapError(f"map {source.name} {error}") from None
-        quality = Quality()
+        quality = MapQuality()
         signs = read_signs(root, _country(root), quality)
         read: list[BoundedLane] = []
         walks: list[BoundedLane] = []
@@ -66,7 +66,7 @@ class CommonRoadReader:
         _report_words(root, quality)
         _without_towns(root, read, quality)
         _junctions(root, read)
-        lanes = build(read, request.offset, quality)
+        lanes = build_lanes(read, request.offset, quality)
         if not lanes:
             first = next((row["message"] for row in quality.rows), "it has no <lanelet>")
             raise MapError(f"map {source.name} has no lane that can be built: {first}")
@@ -82,10 +82,10 @@ class CommonRoadReader:
         }
         result |= {table: from_rows(table, name, content) for table, content in rows.items()}
         result["map_quality"] = quality.table(name)
-        return Environment(name, handedness, how, result)
+        return MapTables(name, handedness, how, result)
 
 
-def _environment(source: MapSource, request: Request, handedness: str, how: str) -> dict[str, object]:
+def _environment(source: MapSource, request: MapOptions, handedness: str, how: str) -> dict[str, object]:
     return {
         "name": source.name, "sha256": source.sha256, "format": CommonRoadReader.format,
         "offset_x_m": request.offset[0], "offset_y_m": request.offset[1],
@@ -101,7 +101,7 @@ def _lane(element: etree._Element, kinds: Sequence[str], signs: Signs) -> Bounde
         str(element.attrib["id"]), points(left), points(right), kind, kind not in _NOT_DRIVEN,
         bidirectional=len(element.findall("userOneWay")) == 0 and len(element.findall("userBidirectional")) > 0,
         road_type=next((_ROADS[k] for k in kinds if k in _ROADS), None),
-        successors=tuple(refs(element, "successor")),
+        successors=tuple(referenced_ids(element, "successor")),
         left_marking=_marking(left), right_marking=_marking(right),
         limit_mps=limit.limit_mps, limit_known=limit.limit_mps is not None, limit_source=limit.source,
     )  # fmt: skip
@@ -121,7 +121,7 @@ def _marking(bound: etree._Element | None) -> str | None:
     return _MARKINGS.get(said or "")
 
 
-def _without_towns(root: etree._Element, lanes: Sequence[BoundedLane], quality: Quality) -> None:
+def _without_towns(root: etree._Element, lanes: Sequence[BoundedLane], quality: MapQuality) -> None:
     """Take away the type `urban` of a scenario that is tagged as one of a highway: converters write it of every lanelet."""
     tags = {tag.tag for parent in root.findall("scenarioTags") for tag in parent}
     towns = [lane for lane in lanes if lane.road_type == "town"]
@@ -132,7 +132,7 @@ def _without_towns(root: etree._Element, lanes: Sequence[BoundedLane], quality: 
         quality.add("road_type_contradicted", "warning", None, message, len(towns))
 
 
-def _report_words(root: etree._Element, quality: Quality) -> None:
+def _report_words(root: etree._Element, quality: MapQuality) -> None:
     """Name the markings and types of lanelets that are not read."""
     for tag, known, what in (("lineMarking", _MARKINGS, "markings"), ("laneletType", _TYPES, "types of lanelets")):
         said = Counter((e.text or "").strip() for e in root.iterfind(f"lanelet//{tag}"))
@@ -153,7 +153,7 @@ def _junctions(root: etree._Element, lanes: Sequence[BoundedLane]) -> None:
     for crossing in root.findall("intersection"):
         for way in crossing.findall("incoming"):
             for name in ("successorsLeft", "successorsStraight", "successorsRight"):
-                inside.update(dict.fromkeys(refs(way, name), crossing.get("id", "")))
+                inside.update(dict.fromkeys(referenced_ids(way, name), crossing.get("id", "")))
     ends = {to for lane in lanes for to in lane.successors}
     for lane in lanes:
         if lane.lanelet_id in inside and lane.lanelet_id in ends:
@@ -161,7 +161,7 @@ def _junctions(root: etree._Element, lanes: Sequence[BoundedLane]) -> None:
 
 
 def _handedness(
-    root: etree._Element, lanes: Sequence[BoundedLane], request: Request, quality: Quality
+    root: etree._Element, lanes: Sequence[BoundedLane], request: MapOptions, quality: MapQuality
 ) -> tuple[str, str]:
     """Return the side driven on and how it was found: option, lanes beside each other, country, default."""
     country = _country(root)
@@ -178,7 +178,7 @@ def _handedness(
     if len({side for _, side in said}) > 1:
         opinions = ", ".join(f"{how}: {side}" for how, side in said)
         source, side = said[0]
-        message = f"{opinions}; the first is taken: if it is wrong, {correction(side, source)}"
+        message = f"{opinions}; the first is taken: if it is wrong, {correction_hint(side, source)}"
         quality.add("handedness_disagrees", "warning", None, message)
     if not said:
         message = "nothing in the map says which side is driven on: right-hand traffic is a guess; give --handedness"

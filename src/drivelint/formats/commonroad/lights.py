@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow as pa
 
-from drivelint.drive.trace import Finding
+from drivelint.drive.trace import QualityFinding
 
 if TYPE_CHECKING:
     from lxml import etree
@@ -24,7 +24,7 @@ class _UnreadError(ValueError):
 
 def signal_states(
     root: etree._Element, step_s: float, first: float, last: float
-) -> tuple[pa.Table | None, list[Finding]]:
+) -> tuple[pa.Table | None, list[QualityFinding]]:
     """Return `signal_id`, `t_ns`, `state` of every light, and what could not be read; None: there are no lights.
 
     `first` and `last` are the log's time steps, of `step_s` seconds each. A row stands at the log's first step and at every change.
@@ -39,13 +39,13 @@ def signal_states(
             steps, shown = _unrolled(light, first, last)
         except _UnreadError as error:
             findings.append(
-                Finding("signal_cycle", "warning", f"the states of traffic light {name} are not known: {error}")
+                QualityFinding("signal_cycle", "warning", f"the states of traffic light {name} are not known: {error}")
             )
             continue
         if None in shown:
             words = sorted({w for w in _colours(light) if w not in _STATES})
             message = f"traffic light {name} has colours that are not known: {', '.join(words)}"
-            findings.append(Finding("signal_cycle", "warning", message, len(words)))
+            findings.append(QualityFinding("signal_cycle", "warning", message, len(words)))
         ids += [name] * len(steps)
         times.append(np.round(steps * step_s * 1e9).astype(np.int64))
         states += shown

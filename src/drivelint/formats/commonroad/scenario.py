@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from drivelint.drive.trace import CLASSES, Finding, Recording, States
+from drivelint.drive.trace import ACTOR_CLASSES, QualityFinding, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats import markup
 from drivelint.formats.commonroad.lights import signal_states
-from drivelint.formats.commonroad.text import cut
+from drivelint.formats.commonroad.text import extract_trajectories
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ _STATES = "(initialState|trajectory/state)"
 _TEXTS = {place: etree.XPath(f"{_STATES}/{place}/text()", smart_strings=False) for place in (*_FIELDS.values(), _TIME)}
 
 
-def looks_like(head: bytes) -> bool:
+def is_scenario(head: bytes) -> bool:
     """Say whether a file begins as a CommonRoad scenario."""
     return b"<commonRoad" in head
 
@@ -51,7 +51,7 @@ def looks_like(head: bytes) -> bool:
 def read(path: Path) -> Recording:
     """Read a scenario. Errors: `TraceError` for malformed XML, no obstacles, or times that cannot be understood."""
     content = path.read_bytes()
-    fast = cut(content)
+    fast = extract_trajectories(content)
     try:
         root = markup.parse(content if fast is None else fast.rest)
     except markup.RefusedError as error:
@@ -96,7 +96,7 @@ def read(path: Path) -> Recording:
     uncertain = int(float(str(root.xpath("count(.//state//intervalStart)"))))
     if uncertain:
         message = f"values of obstacles given as intervals: {uncertain}: they are not known"
-        recording.findings.append(Finding("uncertain_value", "warning", message, uncertain))
+        recording.findings.append(QualityFinding("uncertain_value", "warning", message, uncertain))
     return recording
 
 
@@ -179,6 +179,6 @@ def _codes(obstacles: list[etree._Element], counts: list[int]) -> dict[str, NDAr
     classes = []
     for obstacle in obstacles:
         word = _CLASSES.get((obstacle.findtext("type") or "").strip())
-        classes.append(CLASSES.index(word) if word else -1)
+        classes.append(ACTOR_CLASSES.index(word) if word else -1)
     unknown = np.full(sum(counts), -1, np.int8)
     return {"actor_class": np.repeat(np.array(classes, np.int8), counts), "indicator": unknown, "brake_light": unknown}

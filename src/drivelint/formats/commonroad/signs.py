@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import shapely
 
-from drivelint.road.signcodes import kind_of, turns_in_direction
+from drivelint.road.signcodes import kind_of, turns_of_direction
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.road.boundary_lanes import BoundedLane
-    from drivelint.road.quality import Quality
+    from drivelint.road.quality import MapQuality
 
     Floats = NDArray[np.float64]
 
@@ -41,8 +41,8 @@ _PLATES = frozenset(
 )  # give a direction or a reason; others of 1xxx restrict a sign
 
 
-class Element(NamedTuple):
-    """One sign of those on a post. `value` is the first number on it, in the map's unit; None: none."""
+class SignElement(NamedTuple):
+    """One of the signs on a post, with the first number on it."""
 
     code: str
     kind: str | None
@@ -50,7 +50,7 @@ class Element(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Limit:
+class SpeedLimit:
     """The limit of a lanelet in m/s, None where the map gives none that is sure; `source`: sign, or lane for its own element."""
 
     limit_mps: float | None
@@ -62,10 +62,10 @@ class Signs:
     """The signs of a map by their id; what cannot be read of them is a row of `quality`."""
 
     country: str
-    quality: Quality
-    elements: dict[str, list[Element]] = field(default_factory=dict)
+    quality: MapQuality
+    elements: dict[str, list[SignElement]] = field(default_factory=dict)
 
-    def limit(self, lanelet: etree._Element) -> Limit:
+    def limit(self, lanelet: etree._Element) -> SpeedLimit:
         """Return the limit of a lanelet: the least of those on its signs and of its own (2018b).
 
         One that holds only under a condition, by a plate, may be lower: then the limit is not known.
@@ -77,7 +77,7 @@ class Signs:
             own = None
         sure = [own] if own is not None else []
         perhaps: list[float] = []
-        for ref in refs(lanelet, "trafficSignRef"):
+        for ref in referenced_ids(lanelet, "trafficSignRef"):
             on_post = self.elements.get(ref, [])
             found = [
                 e.value for e in on_post if e.kind in _LIMITS and e.value is not None and not _implausible(e.value)
@@ -86,10 +86,10 @@ class Signs:
         least = min(sure, default=None)
         if perhaps and (least is None or min(perhaps) < least):
             least = None
-        return Limit(least, "lane" if least is not None and least == own else "sign")
+        return SpeedLimit(least, "lane" if least is not None and least == own else "sign")
 
     def report(self, lanelets: Sequence[etree._Element], lights: Iterable[str]) -> None:
-        """Name signs that are not read, and references to nothing."""
+        """Report signs that are not read, and references to signs or lights that the map does not have."""
         self._report_codes()
         self._report_values()
         known = {*self.elements, *lights}
@@ -130,7 +130,7 @@ class Signs:
                     )
 
 
-def read_signs(root: etree._Element, country: str, quality: Quality) -> Signs:
+def read_signs(root: etree._Element, country: str, quality: MapQuality) -> Signs:
     """Read the signs of a map; `country` is that of its name, by ISO 3166 (three letters)."""
     signs = Signs(country or "no country", quality)
     codes = _LISTS.get(country, "de")
@@ -140,7 +140,7 @@ def read_signs(root: etree._Element, country: str, quality: Quality) -> Signs:
             code = (part.findtext("trafficSignID") or "").strip()
             values = [_number(v.text) for v in part.findall("additionalValue")]
             kind = kind_of(codes, code, "") or kind_of("de", code, "")
-            on_post.append(Element(code, kind, next((v for v in values if v is not None), None)))
+            on_post.append(SignElement(code, kind, next((v for v in values if v is not None), None)))
         signs.elements[sign.get("id", "")] = on_post
     return signs
 
@@ -150,14 +150,16 @@ def code_list(country: str) -> str:
     return _LISTS.get(country, "de")
 
 
-def refs(element: etree._Element, name: str) -> list[str]:
+def referenced_ids(element: etree._Element, name: str) -> list[str]:
     """Return what an element's children of this name refer to, in their order."""
     return [ref for child in element.findall(name) if (ref := child.get("ref")) is not None]
 
 
 def signal_refs(lanelet: etree._Element) -> list[str]:
     """Return the signs and lights that hold for a lanelet: its own, and those of its stop line."""
-    found = [refs(each, name) for each in _and_line(lanelet) for name in ("trafficSignRef", "trafficLightRef")]
+    found = [
+        referenced_ids(each, name) for each in _and_line(lanelet) for name in ("trafficSignRef", "trafficLightRef")
+    ]
     return list(dict.fromkeys(ref for some in found for ref in some))
 
 
@@ -183,19 +185,19 @@ def signal_rows(
         at_line = {
             ref
             for line in lanelet.findall("stopLine")
-            for ref in (*refs(line, "trafficSignRef"), *refs(line, "trafficLightRef"))
+            for ref in (*referenced_ids(line, "trafficSignRef"), *referenced_ids(line, "trafficLightRef"))
         }
-        lights = set(refs(lanelet, "trafficLightRef"))
+        lights = set(referenced_ids(lanelet, "trafficLightRef"))
         for ref in signal_refs(lanelet):
             holds.setdefault(ref, []).append((lane, lines.get(lane.lanelet_id) if ref in at_line | lights else None))
     rows = []
     for element in [*root.findall("trafficSign"), *root.findall("trafficLight")]:
         light = element.tag == "trafficLight"
         name = element.get("id", "")
-        elements = [Element(_LIGHT, "traffic_light", None)] if light else signs.elements[name]
+        elements = [SignElement(_LIGHT, "traffic_light", None)] if light else signs.elements[name]
         place = points(element.find("position"))
         stands = place[0] + offset if len(place) else None
-        turns = turns_in_direction((element.findtext("direction") or "").strip()) if light else None
+        turns = turns_of_direction((element.findtext("direction") or "").strip()) if light else None
         for lane, line_s_m in holds.get(name, ()):
             for part in elements:
                 s = _station(lane, part.kind, stands, line_s_m)
@@ -276,7 +278,7 @@ def _implausible(limit_mps: float) -> str | None:
     return None
 
 
-def _restricts(element: Element) -> bool:
+def _restricts(element: SignElement) -> bool:
     """Tell whether an additional plate (StVO, 1000 to 1099) says when, where or for whom the sign above it holds."""
     number = element.code.partition("-")[0]
     return (

@@ -1,4 +1,4 @@
-"""The trajectories of a CommonRoad file whose states all look alike, read from its text: five times as fast as element by element."""
+"""This module reads the trajectories of a CommonRoad file with regular expressions, five times as fast as element by element."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ _TRAJECTORY: Final = re.compile(rb"<trajectory>(.*?)</trajectory>", re.DOTALL)
 
 
 class Trajectories(NamedTuple):
-    """A file without the content of its trajectories, and in its place, for each: place in a state -> its numbers, (n,)."""
+    """A file without its trajectories, and the numbers of each trajectory by element path."""
 
     rest: bytes
     columns: list[dict[str, NDArray[np.float64]]]
 
 
-def cut(content: bytes) -> Trajectories | None:
-    """Take the trajectories out of a file, None where one of its states looks otherwise than the first, or is no plain text."""
+def extract_trajectories(content: bytes) -> Trajectories | None:
+    """Take the trajectories out of a file; return None where its states differ in form."""
     first = _STATE.search(content)
     shape = None if first is None else _shape(first[0])
     if shape is None:

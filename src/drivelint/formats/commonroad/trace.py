@@ -16,7 +16,7 @@ def accepts(probe: Probe) -> bool:
     """Accept by its root element."""
     from drivelint.formats.commonroad import scenario as commonroad
 
-    return commonroad.looks_like(probe.head)
+    return commonroad.is_scenario(probe.head)
 
 
 def read(probe: Probe) -> Recording:

@@ -1,4 +1,4 @@
-"""Two-dimensional boxes in a film (`vision_msgs/Detection2DArray`, CDR in MCAP) to distances ahead, by the paper's geometry.
+"""This module converts two-dimensional boxes (`vision_msgs/Detection2DArray`) into distances ahead.
 
 A box of w pixels of somebody W metres wide is s = c W / w metres ahead, c being the camera's focal constant in pixels.
 """
@@ -22,18 +22,18 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from drivelint.formats.film.mapping import Film
+    from drivelint.formats.film.mapping import VideoMapping
     from drivelint.formats.mcap.reader import Packet
-    from drivelint.formats.protobuf.descriptors import Tree
+    from drivelint.formats.protobuf.descriptors import FieldTree
 
 MESSAGE: Final = "vision_msgs/Detection2DArray"
-_TREE: Final[Tree] = {
+_TREE: Final[FieldTree] = {
     "header": HEADER,
     "detections": {"bbox": {"size_x": None, "size_y": None}, "id": None, "tracking_id": None},
 }
 
 
-def read(path: Path, film: Film) -> Sightings:
+def read(path: Path, film: VideoMapping) -> Sightings:
     """Return the distances ahead in every frame. Errors: `TraceError` without such messages, `UsageError` for the mapping."""
     if film.camera is None:
         raise UsageError(
@@ -43,7 +43,7 @@ def read(path: Path, film: Film) -> Sightings:
         raise UsageError(f"mapping: actor {unsaid[0]} has no 'box', the id of his detections")
     times: list[NDArray[np.int64]] = []
     boxes: list[tuple[NDArray[np.int64], list[str], NDArray[np.float64]]] = []
-    for file in bag.files(path):
+    for file in bag.mcap_files(path):
         container = Container(file)
         for number, packets in _packets(container).items():
             schema = container.schemas[number]
@@ -65,14 +65,18 @@ def _packets(container: Container) -> dict[int, list[Packet]]:
     found: dict[int, list[Packet]] = {}
     for packet in container.packets():
         schema = container.schemas.get(packet.channel.schema_id)
-        if schema is not None and packet.channel.message_encoding == "cdr" and ros_types.short(schema.name) == MESSAGE:
+        if (
+            schema is not None
+            and packet.channel.message_encoding == "cdr"
+            and ros_types.short_type_name(schema.name) == MESSAGE
+        ):
             found.setdefault(packet.channel.schema_id, []).append(packet)
     return found
 
 
 def _sightings(
     path: Path,
-    film: Film,
+    film: VideoMapping,
     focal_px: float,
     t_ns: NDArray[np.int64],
     boxes: list[tuple[NDArray[np.int64], list[str], NDArray[np.float64]]],
@@ -94,5 +98,5 @@ def _sightings(
     return Sightings(whole, ahead)
 
 
-def _frames(t_ns: NDArray[np.int64], start: int, film: Film) -> NDArray[np.int64]:
+def _frames(t_ns: NDArray[np.int64], start: int, film: VideoMapping) -> NDArray[np.int64]:
     return np.rint((t_ns - start) / 1e9 * film.frames.rate_hz).astype(np.int64)

@@ -16,7 +16,7 @@ from drivelint.errors import UsageError
 from drivelint.formats.tables.mapping import UNITS
 from drivelint.phrases import hint
 
-SHIPPED: Final = Path(__file__).parent / "mappings"
+MAPPINGS_FOLDER: Final = Path(__file__).parent / "mappings"
 Metres = Annotated[float, msgspec.Meta(gt=0.0, lt=1000.0)]
 
 
@@ -32,7 +32,7 @@ class Speed(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
         return self.value * UNITS["speed"][self.unit]
 
 
-class FrameColumn(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+class FrameTiming(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """How frames are counted: the column with their number (of a table), their rate, and when frame 0 is.
 
     `every` n: only frames 0, n, 2n, ... are judged. `not_detected` are words for nothing seen.
@@ -61,7 +61,7 @@ class EgoCar(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     width: Metres = 1.8
 
 
-class Stages(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+class OvertakeStages(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """First frames of the stages of an overtake that breaks off, and how far over the centre line it gets (its middle, metres)."""
 
     pulling_out: int
@@ -71,7 +71,7 @@ class Stages(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     offset: float = 0.0
 
 
-class Seen(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+class DetectedActor(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """Somebody who is detected: the column with his distance ahead (of a table), or the id and width of his box (of an MCAP)."""
 
     id: str
@@ -85,55 +85,55 @@ class Seen(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class Camera(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """The paper's monocular geometry: distance ahead = focal_px * real width / width in the picture (both in pixels)."""
+    """A monocular camera: distance ahead = focal_px * real width / width in the picture (pixels)."""
 
     focal_px: Annotated[float, msgspec.Meta(gt=0.0)]
 
 
-class Film(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """A whole mapping of this kind. Without `stages` the ego stays in the middle of its lane."""
+class VideoMapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """A mapping of a filmed drive; without `stages` the ego stays in the middle of its lane."""
 
     description: str
-    frames: FrameColumn
+    frames: FrameTiming
     road: RoadShape
     ego: EgoCar
-    actor: list[Seen]
-    stages: Stages | None = None
+    actor: list[DetectedActor]
+    stages: OvertakeStages | None = None
     camera: Camera | None = None
     sensor_range_m: Metres | None = None
 
 
 # planned at import: logs are read in several threads, see drivelint.formats.tables.mapping
-PLANNED = msgspec.json.Decoder(Film)
+DECODER = msgspec.json.Decoder(VideoMapping)
 
 
-def shipped() -> list[str]:
-    """Return the names of those that come with drivelint."""
-    return sorted(file.stem for file in SHIPPED.glob("*.toml"))
+def shipped_mappings() -> list[str]:
+    """Return the names of the video mappings that come with drivelint."""
+    return sorted(file.stem for file in MAPPINGS_FOLDER.glob("*.toml"))
 
 
-def is_film(name: str) -> bool:
-    """Tell whether a mapping, a file or a shipped one's name, is of this kind: it has a table [frames], or extends one that has."""
-    if name in shipped():
+def is_video_mapping(name: str) -> bool:
+    """Say whether a mapping, given as a file or as a shipped name, is for filmed drives."""
+    if name in shipped_mappings():
         return True
     try:
         raw = tomllib.loads(Path(name).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return False  # whoever reads it as another mapping says what is wrong with it
-    return "frames" in raw or raw.get("extends") in shipped()
+    return "frames" in raw or raw.get("extends") in shipped_mappings()
 
 
-def load(name: str) -> tuple[str, Film]:
+def load(name: str) -> tuple[str, VideoMapping]:
     """Return a mapping and its name. Errors: `UsageError` naming file and key."""
-    path = Path(name) if Path(name).is_file() else SHIPPED / f"{name}.toml"
+    path = Path(name) if Path(name).is_file() else MAPPINGS_FOLDER / f"{name}.toml"
     raw = _raw(path)
     if "extends" in raw:
         base = raw.pop("extends")
-        if base not in shipped():
-            raise UsageError(f"mapping {path}: extends {base!r}: {hint(str(base), shipped())}")
-        raw = _merged(_raw(SHIPPED / f"{base}.toml"), raw)
+        if base not in shipped_mappings():
+            raise UsageError(f"mapping {path}: extends {base!r}: {hint(str(base), shipped_mappings())}")
+        raw = _merged(_raw(MAPPINGS_FOLDER / f"{base}.toml"), raw)
     try:
-        film = msgspec.convert(raw, Film)
+        film = msgspec.convert(raw, VideoMapping)
     except msgspec.ValidationError as error:
         raise UsageError(f"mapping {path}: {error}") from error
     _validate(path, film)
@@ -158,7 +158,7 @@ def _merged(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
     return {**base, **both}
 
 
-def _validate(path: Path, film: Film) -> None:
+def _validate(path: Path, film: VideoMapping) -> None:
     for speed in (film.ego.speed, *(actor.speed for actor in film.actor)):
         if speed.unit not in UNITS["speed"]:
             raise UsageError(f"mapping {path}: unknown unit {speed.unit!r}: use {', '.join(UNITS['speed'])}")

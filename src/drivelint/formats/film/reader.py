@@ -10,36 +10,36 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.trace import CLASSES, Finding, Recording, States
+from drivelint.drive.trace import ACTOR_CLASSES, QualityFinding, Recording, States
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.film import boxes
 from drivelint.formats.film import mapping as video_mapping
 from drivelint.formats.film.sightings import Sightings
-from drivelint.formats.tables.mapping import Table
-from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, places
+from drivelint.formats.tables.mapping import TextLayout
+from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, describe_places
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
 
-    from drivelint.formats.film.mapping import EgoCar, Film, Seen, Stages
+    from drivelint.formats.film.mapping import DetectedActor, EgoCar, OvertakeStages, VideoMapping
 
-TOUCHES_M: Final = 0.06
+PULL_OUT_OVERLAP_M: Final = 0.06
 """How far a corner is over the centre line in the first frame of pulling out: just more than counts as over it (0.05 m)."""
-SHORT_M: Final = 0.11
+PASSING_SHORTFALL_M: Final = 0.11
 """How much the last frame of pulling out is short of passing: just more than counts as settled (0.1 m)."""
-BEYOND_M: Final = 400.0
+ROAD_EXTENSION_M: Final = 400.0
 """How much longer the road is than the ego's way, at both ends."""
 
 
-def fits(path: Path) -> str | None:
-    """Return the shipped mapping of a film whose columns a table has, that every frame is judged by; None: it is no such table."""
+def matching_mapping(path: Path) -> str | None:
+    """Return the shipped mapping that judges every frame and whose columns the table has; None where there is none."""
     try:
-        names = CsvSheet(path, Table()).names
+        names = CsvSheet(path, TextLayout()).names
     except TraceError:
         return None
-    for name in video_mapping.shipped():
+    for name in video_mapping.shipped_mappings():
         _, film = video_mapping.load(name)
         if film.frames.every == 1 and set(_columns(film)) <= set(names):
             return name
@@ -51,16 +51,18 @@ def read(path: Path, name: str) -> Recording:
     stem, film = video_mapping.load(name)
     with path.open("rb") as file:
         head = file.read(5)
-    findings: list[Finding] = []
+    findings: list[QualityFinding] = []
     if head.startswith(b"\x89MCAP"):
         seen = boxes.read(path, film)
     else:
         seen = _table(path, stem, film, findings, is_parquet=head.startswith(b"PAR1"))
-    return recorded(path, stem, film, seen, findings)
+    return make_recording(path, stem, film, seen, findings)
 
 
-def recorded(path: Path, name: str, film: Film, seen: Sightings, findings: list[Finding]) -> Recording:
-    """Lay what was seen on the road. Errors: `TraceError` where no frame is left."""
+def make_recording(
+    path: Path, name: str, film: VideoMapping, seen: Sightings, findings: list[QualityFinding]
+) -> Recording:
+    """Return the recording of the detections, placed on the assumed road. Errors: `TraceError` where no frame is left."""
     judged = seen.frames % film.frames.every == 0
     frames = seen.frames[judged]
     if not len(frames):
@@ -70,7 +72,7 @@ def recorded(path: Path, name: str, film: Film, seen: Sightings, findings: list[
     assumed = "speeds, lanes and the ego's way across them"
     message = f"mapping {name!r} assumes {assumed}; only distances ahead are measured: rules about anything else judge what is assumed"
     recording = Recording(
-        name, states, ego_ids=[film.ego.id], findings=[*findings, Finding("assumed_motion", "warning", message)]
+        name, states, ego_ids=[film.ego.id], findings=[*findings, QualityFinding("assumed_motion", "warning", message)]
     )
     recording.embedded_map = _road(film, egos_x)
     recording.sensor_range_m = film.sensor_range_m
@@ -78,12 +80,12 @@ def recorded(path: Path, name: str, film: Film, seen: Sightings, findings: list[
     return recording
 
 
-def _columns(film: Film) -> list[str]:
+def _columns(film: VideoMapping) -> list[str]:
     return [film.frames.column, *(actor.ahead for actor in film.actor if actor.ahead is not None)]
 
 
-def _table(path: Path, name: str, film: Film, findings: list[Finding], *, is_parquet: bool) -> Sightings:
-    sheet = ParquetSheet(path) if is_parquet else CsvSheet(path, Table(null_values=film.frames.not_detected))
+def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFinding], *, is_parquet: bool) -> Sightings:
+    sheet = ParquetSheet(path) if is_parquet else CsvSheet(path, TextLayout(null_values=film.frames.not_detected))
     columns = _columns(film)
     if missing := [column for column in columns if column not in sheet.names]:
         raise TraceError(
@@ -110,24 +112,24 @@ def _table(path: Path, name: str, film: Film, findings: list[Finding], *, is_par
     lost = sheet.bad_lines
     if lost or bad.any():
         n = len(lost) + int(bad.sum())
-        where = places("line", lost, len(lost)) if lost else sheet.where(np.flatnonzero(bad))
+        where = describe_places("line", lost, len(lost)) if lost else sheet.where(np.flatnonzero(bad))
         message = (
             f"{path.name}, {where}: not the {len(sheet.names)} cells of the header: nobody has a place in these frames"
         )
-        findings.append(Finding("malformed_row", "warning", message, n))
+        findings.append(QualityFinding("malformed_row", "warning", message, n))
     return Sightings(whole, ahead)
 
 
 def _report(
-    path: Path, sheet: CsvSheet | ParquetSheet, rows: NDArray[np.bool_], why: str, findings: list[Finding]
+    path: Path, sheet: CsvSheet | ParquetSheet, rows: NDArray[np.bool_], why: str, findings: list[QualityFinding]
 ) -> None:
     if rows.any():
         message = f"{path.name}, {sheet.where(np.flatnonzero(rows))}: {why}"
-        findings.append(Finding("malformed_cell", "warning", message, int(rows.sum())))
+        findings.append(QualityFinding("malformed_cell", "warning", message, int(rows.sum())))
 
 
 def _states(
-    film: Film, frames: NDArray[np.int64], t_ns: NDArray[np.int64], ahead: list[NDArray[np.float64]]
+    film: VideoMapping, frames: NDArray[np.int64], t_ns: NDArray[np.int64], ahead: list[NDArray[np.float64]]
 ) -> tuple[States, tuple[float, float]]:
     """Return everybody's states, and where the ego's way begins and ends along the road (x)."""
     own = 1.0 if film.road.driven_on == "left" else -1.0  # its lane is to the left of the centre line, or to the right
@@ -147,7 +149,7 @@ def _states(
         x = (front + distance + actor.length / 2)[there]
         y = np.where(np.isfinite(x), middle if along else -middle, np.nan)
         parts.append((number, x, y, 0.0 if along else np.pi, actor.speed.mps * (1 if along else -1), t_ns[there]))
-    everybody: list[EgoCar | Seen] = [film.ego, *film.actor]
+    everybody: list[EgoCar | DetectedActor] = [film.ego, *film.actor]
     kinds = ["car", *(actor.kind for actor in film.actor)]
     who = np.concatenate([np.full(len(x), number, np.int32) for number, x, *_ in parts])
     placed = np.isfinite(np.concatenate([x for _, x, *_ in parts]))
@@ -166,7 +168,7 @@ def _states(
         "length_m": np.array([each.length for each in everybody])[who],
         "width_m": np.array([each.width for each in everybody])[who],
     }
-    codes = {"actor_class": np.array([CLASSES.index(kind) for kind in kinds], np.int8)[who]}
+    codes = {"actor_class": np.array([ACTOR_CLASSES.index(kind) for kind in kinds], np.int8)[who]}
     states = States(
         [each.id for each in everybody],
         who,
@@ -178,21 +180,24 @@ def _states(
     return states, (float(ego_x[0]), float(ego_x[-1]))
 
 
-def _across(film: Film, stages: Stages, frames: NDArray[np.int64]) -> NDArray[np.float64]:
+def _across(film: VideoMapping, stages: OvertakeStages, frames: NDArray[np.int64]) -> NDArray[np.float64]:
     """Return how far beyond the centre line the ego's middle is in each frame: such that the stages begin where they are said to.
 
     Straight from touching the line to just short of passing, level, and from the first frame of the abort back to the
     middle of its lane.
     """
     home = -film.road.lane_width / 2
-    touching = TOUCHES_M - film.ego.width / 2
+    touching = PULL_OUT_OVERLAP_M - film.ego.width / 2
     pulling = frames[(frames >= stages.pulling_out) & (frames < stages.passing)]
     leaving = frames[frames >= stages.abort]
     points: list[tuple[float, float]] = []
     if len(pulling):
         if pulling[0] > frames[0]:
-            points.append((float(pulling[0] - 1), min(home, touching - 2 * TOUCHES_M)))
-        points += [(float(pulling[0]), touching), (float(pulling[-1]), max(touching, stages.offset - SHORT_M))]
+            points.append((float(pulling[0] - 1), min(home, touching - 2 * PULL_OUT_OVERLAP_M)))
+        points += [
+            (float(pulling[0]), touching),
+            (float(pulling[-1]), max(touching, stages.offset - PASSING_SHORTFALL_M)),
+        ]
     points.append((float(stages.passing), stages.offset))
     if len(leaving):
         points += [(float(leaving[0]), stages.offset), (float(max(stages.back, leaving[0] + 1)), home)]
@@ -201,9 +206,9 @@ def _across(film: Film, stages: Stages, frames: NDArray[np.int64]) -> NDArray[np
     return np.asarray(np.interp(frames.astype(np.float64), at, values), np.float64)
 
 
-def _road(film: Film, ego_x: tuple[float, float]) -> bytes:
+def _road(film: VideoMapping, ego_x: tuple[float, float]) -> bytes:
     """Return the assumed road as OpenDRIVE: straight, one lane each way, the ego's along it."""
-    start, length = ego_x[0] - BEYOND_M, ego_x[1] - ego_x[0] + 2 * BEYOND_M
+    start, length = ego_x[0] - ROAD_EXTENSION_M, ego_x[1] - ego_x[0] + 2 * ROAD_EXTENSION_M
     lane = (
         '<lane id="{}" type="driving" level="false"><link/><width sOffset="0" a="{}" b="0" c="0" d="0"/>'
         '<roadMark sOffset="0" type="solid" weight="standard" color="white" width="0.12" laneChange="none"/></lane>'

@@ -20,12 +20,14 @@ def accepts(probe: Probe) -> bool:
     if probe.path.is_dir():
         return False
     if probe.options.mapping is not None:
-        return video_mapping.is_film(probe.options.mapping)
-    return probe.head[:16].lstrip(b"\xef\xbb\xbf").startswith(b"frame") and video.fits(probe.path) is not None
+        return video_mapping.is_video_mapping(probe.options.mapping)
+    return (
+        probe.head[:16].lstrip(b"\xef\xbb\xbf").startswith(b"frame") and video.matching_mapping(probe.path) is not None
+    )
 
 
 def read(probe: Probe) -> Recording:
     """Read the detections."""
     from drivelint.formats.film import reader as video
 
-    return video.read(probe.path, probe.options.mapping or video.fits(probe.path) or "")
+    return video.read(probe.path, probe.options.mapping or video.matching_mapping(probe.path) or "")

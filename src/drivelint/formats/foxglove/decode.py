@@ -14,8 +14,8 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from pyarrow import json
 
-from drivelint.formats.osi.decode import malformed
-from drivelint.formats.osi.words import child
+from drivelint.formats.osi.decode import decode_error
+from drivelint.formats.osi.words import struct_field
 from drivelint.formats.protobuf import descriptors
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from drivelint.formats.frames import Vectors
     from drivelint.formats.mcap.reader import Packet
-    from drivelint.formats.protobuf.descriptors import Tree
+    from drivelint.formats.protobuf.descriptors import FieldTree
 
 SCENE: Final = "foxglove.SceneUpdate"
 TRANSFORM: Final = "foxglove.FrameTransform"
@@ -36,7 +36,7 @@ _TURN: Final = {**_XYZ, "w": None}
 _ONE: Final = {
     "timestamp": _TIME, "parent_frame_id": None, "child_frame_id": None, "translation": _XYZ, "rotation": _TURN,
 }  # fmt: skip
-TREES: Final[dict[str, Tree]] = {
+FIELD_TREES: Final[dict[str, FieldTree]] = {
     SCENE: {
         "deletions": {"timestamp": _TIME, "type": None, "id": None},
         "entities": {
@@ -67,10 +67,10 @@ class Decoder:
         self._path, self._name = path, name
         self._json: Any = None
         if encoding == "json":
-            self._json = pa.schema(_json_type(TREES[name]))
+            self._json = pa.schema(_json_type(FIELD_TREES[name]))
         else:
             types = descriptors.parse(path, name, schema)
-            descriptor = descriptors.pruned(path, types, name, TREES[name])
+            descriptor = descriptors.pruned(path, types, name, FIELD_TREES[name])
             self._handler = ptars.HandlerPool([descriptor.file]).get_for_message(descriptor)
 
     def rows(self, packets: list[Packet]) -> pa.StructArray:
@@ -82,7 +82,7 @@ class Decoder:
                 try:
                     self._rows([packet])
                 except ValueError as error:
-                    raise malformed(self._path, packet, ValueError(str(error).splitlines()[0])) from error
+                    raise decode_error(self._path, packet, ValueError(str(error).splitlines()[0])) from error
             raise
 
     def _rows(self, packets: list[Packet]) -> pa.StructArray:
@@ -100,7 +100,7 @@ class Decoder:
         return pa.StructArray.from_arrays(columns, fields=list(self._json))
 
 
-def _json_type(tree: Tree) -> list[pa.Field]:
+def _json_type(tree: FieldTree) -> list[pa.Field]:
     fields = []
     for name, subtree in tree.items():
         if subtree is not None:
@@ -114,9 +114,9 @@ def _json_type(tree: Tree) -> list[pa.Field]:
     return fields
 
 
-def items(rows: pa.Array, name: str) -> tuple[pa.Array, NDArray[np.intp]]:
+def list_items(rows: pa.Array, name: str) -> tuple[pa.Array, NDArray[np.intp]]:
     """Return the items of all lists called `name`, and the row that each is in."""
-    lists = child(rows, name)
+    lists = struct_field(rows, name)
     if pa.types.is_null(lists.type):
         return pa.nulls(0), np.zeros(0, np.intp)
     counts = pc.fill_null(pc.list_value_length(lists), 0).to_numpy(zero_copy_only=False)
@@ -142,21 +142,21 @@ def _first(parent: pa.Array, names: tuple[str, ...]) -> NDArray[np.float64]:
 
 def numbers(parent: pa.Array, name: str) -> NDArray[np.float64]:
     """Return a member as doubles, NaN where it is not there."""
-    values: NDArray[np.float64] = child(parent, name).cast(pa.float64()).to_numpy(zero_copy_only=False)
+    values: NDArray[np.float64] = struct_field(parent, name).cast(pa.float64()).to_numpy(zero_copy_only=False)
     return values
 
 
 def vectors(parent: pa.Array, name: str, axes: str = "xyz") -> Vectors:
     """Return a vector's coordinates as columns: 0 where a vector that is there leaves one out, NaN where there is none."""
-    inner = child(parent, name)
+    inner = struct_field(parent, name)
     there = inner.is_valid().to_numpy(zero_copy_only=False)
     columns = [np.nan_to_num(numbers(inner, axis), nan=0.0, posinf=np.inf, neginf=-np.inf) for axis in axes]
     return np.where(there[:, None], np.stack(columns, axis=1), np.nan)
 
 
-def words(parent: pa.Array, name: str) -> tuple[list[str], NDArray[np.int32]]:
+def distinct_texts(parent: pa.Array, name: str) -> tuple[list[str], NDArray[np.int32]]:
     """Return the distinct texts of a member ('' where it is not there) and each row's index into them."""
-    column = child(parent, name)
+    column = struct_field(parent, name)
     if pa.types.is_null(column.type):
         return [""], np.zeros(len(column), np.int32)
     coded = pc.fill_null(column.cast(pa.string()), "").dictionary_encode()

@@ -1,4 +1,5 @@
-"""Foxglove scenes in MCAP: an entity's first cube is a road user's box. No velocities, no ego: both are said elsewhere."""
+"""This module reads Foxglove scenes in MCAP; the first cube of an entity is the road user's box. No velocities, no ego: both are said
+elsewhere."""
 
 from __future__ import annotations
 
@@ -9,16 +10,34 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.drive.trace import Finding, Recording
+from drivelint.drive.trace import QualityFinding, Recording
 from drivelint.errors import TraceError
-from drivelint.formats.foxglove.decode import SCENE, TRANSFORM, TREES, Decoder, items, numbers, times, vectors, words
-from drivelint.formats.foxglove.scene_life import Deletions, Entities, held
-from drivelint.formats.frames import Frames, Poses, clean, fixed_frame, unit
+from drivelint.formats.foxglove.decode import (
+    FIELD_TREES,
+    SCENE,
+    TRANSFORM,
+    Decoder,
+    distinct_texts,
+    list_items,
+    numbers,
+    times,
+    vectors,
+)
+from drivelint.formats.foxglove.scene_life import Deletions, EntityUpdates, persisted_states
+from drivelint.formats.frames import Poses, TransformTree, clean_frame_name, fixed_frame, unit_quaternions
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container
-from drivelint.formats.osi.words import child
-from drivelint.formats.ros2.objects import class_of
-from drivelint.formats.ros2.rows import Rows, blank, clocks, common_clock, distinct, joined, placed
+from drivelint.formats.osi.words import struct_field
+from drivelint.formats.ros2.objects import class_code
+from drivelint.formats.ros2.rows import (
+    RecordedPoses,
+    choose_clock,
+    distinct,
+    join_batches,
+    message_times,
+    states_in_fixed_frame,
+    unknown_vectors,
+)
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -32,16 +51,16 @@ if TYPE_CHECKING:
     from drivelint.formats.mcap.reader import Packet
 
 BATCH_BYTES = 32 * 1024 * 1024
-KINDS: Final = ("class", "type", "classification", "category", "label", "object_class", "object_type")
+KIND_KEYS: Final = ("class", "type", "classification", "category", "label", "object_class", "object_type")
 """Keys of the metadata that say what an entity is, where the value is a word that is known."""
-ALL: Final = 1
+DELETE_ALL: Final = 1
 
 
 @dataclass
 class _Scene:
     """What was read of one topic: rows, and beside each the entity's lifetime and whether it goes with its frame."""
 
-    rows: list[Rows] = field(default_factory=list)
+    rows: list[RecordedPoses] = field(default_factory=list)
     lifetime: list[NDArray[np.int64]] = field(default_factory=list)
     locked: list[NDArray[np.bool_]] = field(default_factory=list)
     deletions: list[tuple[NDArray[np.int64], NDArray[np.bool_], NDArray[np.int64], list[str], NDArray[np.bool_]]] = (
@@ -55,8 +74,8 @@ def read(path: Path, topic: str | None) -> Recording:
     """Read the scene of one topic. Errors: `TraceError` for damage, no scene, several topics, or nothing that can be placed."""
     scenes: dict[str, _Scene] = {}
     transforms: list[tuple[pa.Array, NDArray[np.int64]]] = []
-    findings: list[Finding] = []
-    for file in bag.files(path):
+    findings: list[QualityFinding] = []
+    for file in bag.mcap_files(path):
         container = Container(file)
         for channel, name, packets in _batches(container):
             decoder = _decoder(container, channel, name)
@@ -67,7 +86,7 @@ def read(path: Path, topic: str | None) -> Recording:
             elif name == TRANSFORM:
                 transforms.append((decoded, log_ns))
             else:
-                inner, parent = items(decoded, "transforms")
+                inner, parent = list_items(decoded, "transforms")
                 transforms.append((inner, log_ns[parent]))
         findings += container.findings
     name = _chosen(path, scenes, topic)
@@ -76,7 +95,7 @@ def read(path: Path, topic: str | None) -> Recording:
 
 def _kind(container: Container, channel: Channel) -> str | None:
     schema = container.schemas.get(channel.schema_id)
-    if schema is None or channel.message_encoding not in {"protobuf", "json"} or schema.name not in TREES:
+    if schema is None or channel.message_encoding not in {"protobuf", "json"} or schema.name not in FIELD_TREES:
         return None
     return schema.name
 
@@ -122,8 +141,8 @@ def _chosen(path: Path, scenes: dict[str, _Scene], topic: str | None) -> str:
 
 def _take(scene: _Scene, decoded: pa.StructArray, log_ns: NDArray[np.int64]) -> None:
     """Read a batch of scene updates."""
-    entities, message = items(decoded, "entities")
-    lists = child(entities, "cubes")
+    entities, message = list_items(decoded, "entities")
+    lists = struct_field(entities, "cubes")
     none = pa.types.is_null(lists.type)
     count = np.zeros(len(entities), np.int64) if none else pc.fill_null(pc.list_value_length(lists), 0).to_numpy()
     boxed = count > 0
@@ -133,11 +152,11 @@ def _take(scene: _Scene, decoded: pa.StructArray, log_ns: NDArray[np.int64]) -> 
     entities = entities.filter(pa.array(boxed))
     message = message[boxed]
     n = len(entities)
-    stamp, stamped = times(child(entities, "timestamp"))
-    names, which = words(entities, "id")
-    frames, frame = words(entities, "frame_id")
-    pose = child(cubes, "pose")
-    rows = Rows(
+    stamp, stamped = times(struct_field(entities, "timestamp"))
+    names, which = distinct_texts(entities, "id")
+    frames, frame = distinct_texts(entities, "frame_id")
+    pose = struct_field(cubes, "pose")
+    rows = RecordedPoses(
         stamp_ns=stamp,
         stamped=stamped,
         log_ns=log_ns[message],
@@ -149,66 +168,70 @@ def _take(scene: _Scene, decoded: pa.StructArray, log_ns: NDArray[np.int64]) -> 
         classes=_classes(entities),
         along=np.zeros(n, np.bool_),
         faces=np.ones(n, np.bool_),
-        velocity=blank(n),
-        acceleration=blank(n),
+        velocity=unknown_vectors(n),
+        acceleration=unknown_vectors(n),
         t_ns=stamp,
     )
     scene.rows.append(rows)
-    scene.lifetime.append(times(child(entities, "lifetime"))[0])
+    scene.lifetime.append(times(struct_field(entities, "lifetime"))[0])
     scene.locked.append(
-        pc.fill_null(child(entities, "frame_locked").cast(pa.bool_()), False).to_numpy(zero_copy_only=False)
+        pc.fill_null(struct_field(entities, "frame_locked").cast(pa.bool_()), False).to_numpy(zero_copy_only=False)
     )
     scene.messages.append(log_ns)
-    gone, message = items(decoded, "deletions")
+    gone, message = list_items(decoded, "deletions")
     if len(gone):
-        t_ns, timed = times(child(gone, "timestamp"))
-        names, which = words(gone, "id")
-        every = np.nan_to_num(numbers(gone, "type")) == ALL
+        t_ns, timed = times(struct_field(gone, "timestamp"))
+        names, which = distinct_texts(gone, "id")
+        every = np.nan_to_num(numbers(gone, "type")) == DELETE_ALL
         scene.deletions.append((t_ns, timed & (t_ns != 0), log_ns[message], [names[i] for i in which], every))
 
 
 def _classes(entities: pa.Array) -> NDArray[np.int8]:
     """Return what the metadata say an entity is, by the first key that says it in a word that is known."""
     codes = np.full(len(entities), -1, np.int8)
-    pairs, parent = items(entities, "metadata")
+    pairs, parent = list_items(entities, "metadata")
     if not len(pairs):
         return codes
-    keys, key = words(pairs, "key")
-    telling = np.array([name.lower() in KINDS for name in keys], np.bool_)[key]
-    values, value = words(pairs, "value")
-    known = np.array([class_of(text) for text in values], np.int8)[value]
+    keys, key = distinct_texts(pairs, "key")
+    telling = np.array([name.lower() in KIND_KEYS for name in keys], np.bool_)[key]
+    values, value = distinct_texts(pairs, "value")
+    known = np.array([class_code(text) for text in values], np.int8)[value]
     rows = np.flatnonzero(telling & (known >= 0))[::-1]
     codes[parent[rows]] = known[rows]
     return codes
 
 
 def _recording(
-    path: Path, topic: str, scene: _Scene, transforms: list[tuple[pa.Array, NDArray[np.int64]]], findings: list[Finding]
+    path: Path,
+    topic: str,
+    scene: _Scene,
+    transforms: list[tuple[pa.Array, NDArray[np.int64]]],
+    findings: list[QualityFinding],
 ) -> Recording:
-    rows = joined(scene.rows)
+    rows = join_batches(scene.rows)
     lifetime, locked = np.concatenate(scene.lifetime), np.concatenate(scene.locked)
     named = rows.ids != b""
     if not named.all():
         n = int((~named).sum())
         findings.append(
-            Finding("dropped_row", "error", f"{topic}: entities without an id: {n}: they are not judged", n)
+            QualityFinding("dropped_row", "error", f"{topic}: entities without an id: {n}: they are not judged", n)
         )
         rows, lifetime, locked = rows.take(named), lifetime[named], locked[named]
     if not len(rows):
         raise TraceError(f"{path}: no entity on {topic!r} has a cube and an id: nothing can be judged")
     if scene.without_box:
         message = f"{topic}: entities without a cube: {scene.without_box}: they are taken for no road users"
-        findings.append(Finding("no_box", "info", message, scene.without_box))
-    own_times = common_clock({topic: rows}, findings)
+        findings.append(QualityFinding("no_box", "info", message, scene.without_box))
+    own_times = choose_clock({topic: rows}, findings)
     frames = _frames(transforms, own_times=own_times)
     rows = _alive(rows, (lifetime, locked), _deletions(scene, rows, own_times=own_times), findings, topic)
-    used = [clean(name) for name in sorted(distinct(rows.frames)[0])]
+    used = [clean_frame_name(name) for name in sorted(distinct(rows.frames)[0])]
     fixed = fixed_frame(frames, used)
-    states, found = placed(rows, frames, fixed, topic)
+    states, found = states_in_fixed_frame(rows, frames, fixed, topic)
     findings += found
     if not np.isfinite(states.numbers["x_m"]).any():
         raise TraceError(f"{path}: nothing can be placed: {found[-1].message if found else 'no positions'}")
-    frame_times, utc_start_ns = clocks([rows])
+    frame_times, utc_start_ns = message_times([rows])
     return Recording(
         "foxglove-mcap",
         states,
@@ -220,7 +243,7 @@ def _recording(
 
 
 def _deletions(
-    scene: _Scene, rows: Rows, *, own_times: bool
+    scene: _Scene, rows: RecordedPoses, *, own_times: bool
 ) -> list[tuple[NDArray[np.int64], list[str], NDArray[np.bool_]]]:
     """Return (time, id, whether all are meant). One without a time has that of its message, in the entities' clock."""
     order = np.argsort(rows.log_ns, kind="stable")
@@ -234,12 +257,12 @@ def _deletions(
 
 
 def _alive(
-    rows: Rows,
+    rows: RecordedPoses,
     manner: tuple[NDArray[np.int64], NDArray[np.bool_]],
     gone: list[tuple[NDArray[np.int64], list[str], NDArray[np.bool_]]],
-    findings: list[Finding],
+    findings: list[QualityFinding],
     topic: str,
-) -> Rows:
+) -> RecordedPoses:
     """Add the states of entities that are there without an update: where they were if they stood still, else not placed.
 
     `manner`: each row's lifetime, and whether it goes with its frame.
@@ -255,14 +278,14 @@ def _alive(
     deletions = Deletions(
         np.array(whom, np.int32), np.concatenate([t_ns for t_ns, _, _ in gone]) if gone else np.zeros(0, np.int64)
     )
-    entities = Entities(
+    entities = EntityUpdates(
         actor,
         rows.t_ns,
         lifetime,
         np.concatenate([rows.place, rows.turn, rows.size], axis=1),
     )
     new = np.r_[True, rows.t_ns[1:] != rows.t_ns[:-1]]  # what is all but sorted and single is sorted faster
-    more = held(entities, deletions, np.unique(np.concatenate([rows.t_ns[new], deletions.t_ns])))
+    more = persisted_states(entities, deletions, np.unique(np.concatenate([rows.t_ns[new], deletions.t_ns])))
     if not len(more.row):
         return rows
     extra = rows.take(more.row)
@@ -278,23 +301,28 @@ def _alive(
         if still.any():
             names = sorted({unique[i] for i in np.unique(entities.actor[more.row[still]])})
             message = f"{topic}: {int(still.sum())} states of entities that are not updated nor gone ({listed(names)}): they {what}"
-            findings.append(Finding(check, severity, message, int(still.sum()), int(more.t_ns[still].min())))
-    return joined([rows, extra])
+            findings.append(QualityFinding(check, severity, message, int(still.sum()), int(more.t_ns[still].min())))
+    return join_batches([rows, extra])
 
 
-def _frames(transforms: list[tuple[pa.Array, NDArray[np.int64]]], *, own_times: bool) -> Frames:
+def _frames(transforms: list[tuple[pa.Array, NDArray[np.int64]]], *, own_times: bool) -> TransformTree:
     """Collect transforms. One that is always the same holds always: a scene says it once, when it begins."""
     found: dict[tuple[str, str], list[tuple[NDArray[np.int64], Any, Any]]] = {}
     for rows, log_ns in transforms:
-        t_ns = times(child(rows, "timestamp"))[0] if own_times else log_ns
+        t_ns = times(struct_field(rows, "timestamp"))[0] if own_times else log_ns
         place, turn = vectors(rows, "translation"), vectors(rows, "rotation", "xyzw")
-        (parents, parent), (children, inner) = words(rows, "parent_frame_id"), words(rows, "child_frame_id")
+        (parents, parent), (children, inner) = (
+            distinct_texts(rows, "parent_frame_id"),
+            distinct_texts(rows, "child_frame_id"),
+        )
         for i, j in sorted(set(zip(inner.tolist(), parent.tolist(), strict=True))):
             here = (inner == i) & (parent == j)
-            found.setdefault((clean(children[i]), clean(parents[j])), []).append((t_ns[here], place[here], turn[here]))
-    frames = Frames()
+            found.setdefault((clean_frame_name(children[i]), clean_frame_name(parents[j])), []).append(
+                (t_ns[here], place[here], turn[here])
+            )
+    frames = TransformTree()
     for (name, parent_name), parts in found.items():
         t_ns, place, turn = (np.concatenate([part[k] for part in parts]) for k in range(3))
         same = bool((place == place[0]).all() and (turn == turn[0]).all())
-        frames.add(name, parent_name, t_ns, Poses(place, unit(turn)), static=same)
+        frames.add(name, parent_name, t_ns, Poses(place, unit_quaternions(turn)), static=same)
     return frames

@@ -18,15 +18,15 @@ if TYPE_CHECKING:
 
     from drivelint.formats.frames import Vectors
 
-MAX_HELD: Final = 20_000_000
+MAX_PERSISTED: Final = 20_000_000
 """More states than this are not made up: nobody records so many road users that stand still."""
-FRESH_NS: Final = 500_000_000
+STALE_NS: Final = 500_000_000
 """An entity that moves and is not updated for so long is not placed: until then its last state speaks for it."""
 _NEVER: Final = np.iinfo(np.int64).max
 
 
 @dataclass(frozen=True)
-class Entities:
+class EntityUpdates:
     """n updates: actor index, time, lifetime (0: for ever), box (place, turn and size as columns)."""
 
     actor: NDArray[np.int32]
@@ -44,7 +44,7 @@ class Deletions:
 
 
 @dataclass(frozen=True)
-class Held:
+class PersistedStates:
     """States between updates: which update each goes back to, its time, and whether the entity stood still."""
 
     row: NDArray[np.intp]
@@ -52,8 +52,8 @@ class Held:
     still: NDArray[np.bool_]
 
 
-def held(entities: Entities, deletions: Deletions, grid_ns: NDArray[np.int64]) -> Held:
-    """Return the states at the messages' times (`grid_ns`, rising, distinct) of entities that those do not update."""
+def persisted_states(entities: EntityUpdates, deletions: Deletions, grid_ns: NDArray[np.int64]) -> PersistedStates:
+    """Return the states of entities at the messages that do not update them."""
     n = len(entities.t_ns)
     order = np.lexsort((np.arange(n), entities.t_ns, entities.actor))
     actor, t_ns, box = entities.actor[order], entities.t_ns[order], entities.box[order]
@@ -68,15 +68,15 @@ def held(entities: Entities, deletions: Deletions, grid_ns: NDArray[np.int64]) -
     stays, alone = np.zeros(min(n, 1), np.bool_), np.ones(min(n, 1), np.bool_)
     still = np.asarray(np.where(replaced, np.r_[same & alike, stays], np.r_[alone, alike | ~same]), np.bool_)
     wanted = still | ~replaced
-    first = np.searchsorted(grid_ns, t_ns + np.where(still, 0, FRESH_NS), side="right")
+    first = np.searchsorted(grid_ns, t_ns + np.where(still, 0, STALE_NS), side="right")
     last = np.searchsorted(grid_ns, np.minimum(follows, gone), side="left")
     count = np.where(wanted, np.maximum(last - first, 0), 0)
     total = int(count.sum())
-    if total > MAX_HELD:
+    if total > MAX_PERSISTED:
         raise TraceError(f"entities that are never deleted would have {total} states: record them with a lifetime")
     row = np.repeat(np.arange(n), count)
     step = np.arange(total) - np.repeat(np.cumsum(count) - count, count)
-    return Held(order[row], grid_ns[first[row] + step], still[row])
+    return PersistedStates(order[row], grid_ns[first[row] + step], still[row])
 
 
 def _alike(box: Vectors) -> NDArray[np.bool_]:

@@ -16,15 +16,15 @@ from drivelint.formats import markup
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from drivelint.road.contract import MapSource, Request
-    from drivelint.road.quality import Quality
+    from drivelint.road.contract import MapOptions, MapSource
+    from drivelint.road.quality import MapQuality
 
     Floats = NDArray[np.float64]
 
 _EARTH_M = 6_378_137.0
 
 
-def load(source: MapSource, request: Request, quality: Quality) -> tuple[Any, bool]:
+def load(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[Any, bool]:
     """Return the library's map, read robustly, and whether its coordinates are local: what it complains of is in `quality`.
 
     Errors: `MapError` where the library is not installed, the file is none of Lanelet2's, or nothing says where the
@@ -64,7 +64,7 @@ def load(source: MapSource, request: Request, quality: Quality) -> tuple[Any, bo
     return layers, local
 
 
-def _place_locally(root: etree._Element, quality: Quality) -> None:
+def _place_locally(root: etree._Element, quality: MapQuality) -> None:
     """Give every node a latitude and longitude that say where its local coordinates are.
 
     In maps of Autoware these are empty or of another frame, and the library tells by them which bound of a lane is the

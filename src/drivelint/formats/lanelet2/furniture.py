@@ -18,17 +18,17 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from drivelint.road.quality import Quality
+    from drivelint.road.quality import MapQuality
 
     Floats = NDArray[np.float64]
     Rows = list[dict[str, Any]]
 
-NEAR_M = 1.0  # a stop line that misses the end of a lane by less is drawn between two lanes
+STOP_LINE_GAP_M = 1.0  # a stop line that misses the end of a lane by less is drawn between two lanes
 _SIGN = re.compile(r"([a-z]{2})(\d.*)")  # a code of a national catalogue, as in de274-60
 
 
 def furniture(
-    layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: Quality
+    layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality
 ) -> dict[str, Rows]:
     """Return rows of `traffic_signal`, `stop_line`, `road_object` and `crossing`."""
     return {
@@ -97,7 +97,7 @@ def _parameter(element: Any, role: str) -> Any:
     return element.parameters[role] if role in element.parameters else ()  # noqa: SIM401 - the library's maps have no get
 
 
-def _crossed(lane: BoundedLane, line: Floats, near_m: float = NEAR_M) -> float | None:
+def _crossed(lane: BoundedLane, line: Floats, near_m: float = STOP_LINE_GAP_M) -> float | None:
     """Return the station (m) at which a line (n, 2) lies across a lane; None: it does not.
 
     Where it misses the centre line's end by less than `near_m`, it lies across the end.
@@ -114,7 +114,7 @@ def _crossed(lane: BoundedLane, line: Floats, near_m: float = NEAR_M) -> float |
     return s if s in {0.0, centre.length} else None
 
 
-def _stop_lines(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: Quality) -> Rows:
+def _stop_lines(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality) -> Rows:
     """Return a row for each drivable lane for which a stop line holds.
 
     Those whose regulatory elements refer to it, if it lies across any of them, else all whose centre line it crosses;
@@ -128,7 +128,9 @@ def _stop_lines(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, 
         points = xy(line) + offset
         if attribute(line, "type") != "stop_line" or len(line) < 2 or not np.isfinite(points).all():
             continue
-        near = [driven[i] for i in sorted(int(i) for i in tree.query(shapely.LineString(points).buffer(NEAR_M)))]
+        near = [
+            driven[i] for i in sorted(int(i) for i in tree.query(shapely.LineString(points).buffer(STOP_LINE_GAP_M)))
+        ]
         own = [
             (lane, s)
             for lane in near
@@ -157,7 +159,7 @@ def _referring(layers: Any) -> dict[int, set[str]]:
     return found
 
 
-def _crossings(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: Quality) -> Rows:
+def _crossings(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality) -> Rows:
     walks = _walks(layers)
     rows = crossings(walks, lanes, offset)
     for lost in sorted({walk.lanelet_id for walk in walks} - {row["crossing_id"] for row in rows}):

@@ -12,10 +12,10 @@ import shapely
 from drivelint.errors import MapError
 from drivelint.formats.lanelet2.file import attribute, load, xy
 from drivelint.formats.lanelet2.furniture import furniture
-from drivelint.road.boundary_lanes import BoundedLane, build, side_driven_on, tables
-from drivelint.road.contract import Environment, MapSource, Request, environment_id
-from drivelint.road.handedness import correction
-from drivelint.road.quality import Quality
+from drivelint.road.boundary_lanes import BoundedLane, build_lanes, side_driven_on, tables
+from drivelint.road.contract import MapOptions, MapSource, MapTables, environment_id
+from drivelint.road.handedness import correction_hint
+from drivelint.road.quality import MapQuality
 from drivelint.road.tables import from_rows
 
 if TYPE_CHECKING:
@@ -41,15 +41,15 @@ class Lanelet2Reader:
 
     format = "lanelet2"
 
-    def read(self, source: MapSource, request: Request) -> Environment:
+    def read(self, source: MapSource, request: MapOptions) -> MapTables:
         """Return the map's tables.
 
         Errors: `MapError` where the library is not installed, the file is none of Lanelet2's, or nothing says where the
         log's frame lies on the globe.
         """
-        quality = Quality()
+        quality = MapQuality()
         layers, local = load(source, request, quality)
-        lanes = build(list(_lanes(layers, quality)), request.offset, quality)
+        lanes = build_lanes(list(_lanes(layers, quality)), request.offset, quality)
         if not lanes:
             raise MapError(f"map {source.name} has no lanelet that can be built: is it a plain OpenStreetMap extract?")
         _junctions(lanes)
@@ -68,10 +68,10 @@ class Lanelet2Reader:
         }  # fmt: skip
         result |= {table: from_rows(table, name, content) for table, content in rows.items()}
         result["map_quality"] = quality.table(name)
-        return Environment(name, handedness, how, result)
+        return MapTables(name, handedness, how, result)
 
 
-def _reference(request: Request, *, local: bool) -> str | None:
+def _reference(request: MapOptions, *, local: bool) -> str | None:
     return None if request.origin is None or local else f"origin {request.origin[0]:g},{request.origin[1]:g}"
 
 
@@ -90,7 +90,7 @@ def _is_lane(element: Any) -> bool:
     return attribute(element, "subtype") in _KINDS
 
 
-def _lanes(layers: Any, quality: Quality) -> Iterable[BoundedLane]:
+def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
     """Yield the lanes. Neighbours share a bound, what follows begins at the points where a lane ends."""
     mine = sorted((x for x in layers.laneletLayer if _is_lane(x)), key=lambda x: x.id)
     starts: dict[tuple[int, int], list[str]] = defaultdict(list)
@@ -197,7 +197,7 @@ def _junctions(lanes: Sequence[BoundedLane]) -> None:
         driven[i].junction_id = f"j{driven[root(i)].lanelet_id}"
 
 
-def _handedness(layers: Any, lanes: Sequence[BoundedLane], request: Request, quality: Quality) -> tuple[str, str]:
+def _handedness(layers: Any, lanes: Sequence[BoundedLane], request: MapOptions, quality: MapQuality) -> tuple[str, str]:
     regions = {attribute(x, "region") for x in layers.laneletLayer} - {""}
     by_region = {"lht" if region[:2].lower() in _LEFT_DRIVEN else "rht" for region in regions}
     said = [
@@ -212,7 +212,7 @@ def _handedness(layers: Any, lanes: Sequence[BoundedLane], request: Request, qua
     if len({side for _, side in said}) > 1:
         opinions = ", ".join(f"{how}: {side}" for how, side in said)
         source, side = said[0]
-        message = f"{opinions}; the first is taken: if it is wrong, {correction(side, source)}"
+        message = f"{opinions}; the first is taken: if it is wrong, {correction_hint(side, source)}"
         quality.add("handedness_disagrees", "warning", None, message)
     if not said:
         message = "nothing in the map says which side is driven on: right-hand traffic is a guess; give --handedness"

@@ -15,9 +15,9 @@ from drivelint.formats.mcap.reader import Container
 if TYPE_CHECKING:
     from pathlib import Path
 
-METADATA = "metadata.yaml"
+METADATA_FILE = "metadata.yaml"
 _ROOT = "rosbag2_bagfile_information"
-OSI: Final = frozenset({"osi3.GroundTruth", "osi3.SensorView"})
+OSI_SCHEMAS: Final = frozenset({"osi3.GroundTruth", "osi3.SensorView"})
 ROAD_USERS: Final = "road users"
 ODOMETRY: Final = "odometry"
 ROS_ROLES: Final = {
@@ -51,13 +51,13 @@ FOXGLOVE_ROLES: Final = {
 def is_bag(path: Path) -> bool:
     """Say whether `path` is a folder that rosbag2 recorded."""
     try:
-        with (path / METADATA).open("rb") as file:
+        with (path / METADATA_FILE).open("rb") as file:
             return _ROOT.encode() in file.read(65536)
     except OSError:
         return False
 
 
-def files(path: Path) -> list[Path]:
+def mcap_files(path: Path) -> list[Path]:
     """Return the MCAP files of a drive in the order of recording.
 
     Errors: `TraceError` for a bag whose description cannot be read, that is no MCAP, or of which files are missing.
@@ -65,14 +65,14 @@ def files(path: Path) -> list[Path]:
     if not path.is_dir():
         return [path]
     try:
-        information = yaml.safe_load((path / METADATA).read_bytes())[_ROOT]
+        information = yaml.safe_load((path / METADATA_FILE).read_bytes())[_ROOT]
         storage, names = information.get("storage_identifier"), information["relative_file_paths"]
     except (OSError, yaml.YAMLError, KeyError, TypeError, AttributeError) as error:
         raise TraceError(
-            f"{path}: its {METADATA} cannot be read ({type(error).__name__}: {error}): reindex the bag"
+            f"{path}: its {METADATA_FILE} cannot be read ({type(error).__name__}: {error}): reindex the bag"
         ) from error
     if not isinstance(names, list) or not names or not all(isinstance(name, str) for name in names):
-        raise TraceError(f"{path}: its {METADATA} lists no files: reindex the bag")
+        raise TraceError(f"{path}: its {METADATA_FILE} lists no files: reindex the bag")
     if storage not in {None, "mcap"}:
         raise TraceError(
             f"{path}: a bag in {storage}: convert it to MCAP (ros2 bag convert, with storage_id: mcap), and give that"
@@ -87,16 +87,16 @@ def files(path: Path) -> list[Path]:
     return found
 
 
-def family(path: Path) -> str:
+def message_family(path: Path) -> str:
     """Return what kind of messages a drive's log holds: `osi`, `ros2`, `foxglove`, or `none` of them.
 
     The index at the end of the file is asked first, the whole file only where that says nothing: each reader then finds
     out for itself whether it was right to ask. A log may hold several: OSI counts first, it is the truth.
     """
-    parts = files(path)
+    parts = mcap_files(path)
     for schemas in (_indexed, _recorded):
         found = {name.replace("/msg/", "/") for file in parts for name in schemas(file)}
-        if found & OSI:
+        if found & OSI_SCHEMAS:
             return "osi"
         for name, roles in (("ros2", ROS_ROLES), ("foxglove", FOXGLOVE_ROLES)):
             if {roles.get(schema) for schema in found} & {ROAD_USERS, ODOMETRY}:

@@ -1,4 +1,4 @@
-"""The log as it was recorded: what is where in its MCAP file, and its bytes copied into an annotated one.
+"""This module copies a recorded MCAP file into an annotated one, and adds the indexes that it lacks.
 
 Chunks are copied as they are. Two things are added where a log lacks them, because readers seek by them: message indexes
 behind a chunk, and a chunk around messages that stand outside of any.
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from drivelint.formats.mcap.writer import Sink
 
-Index = dict[int, "NDArray[np.uint64]"]
+ChunkMessageIndex = dict[int, "NDArray[np.uint64]"]
 
 _HEAD: Final = struct.Struct("<BQ")
 _TIMES: Final = struct.Struct("<QQ")
@@ -51,7 +51,7 @@ _SUMMARY: Final = frozenset(
         Opcode.SUMMARY_OFFSET,
     }
 )
-WRAP_BYTES: Final = 4 << 20
+LOOSE_CHUNK_BYTES: Final = 4 << 20
 """Messages outside of chunks are put into chunks of about this size."""
 _BLOCK: Final = 4 << 20
 _HEAD_BYTES: Final = 1 << 17  # names and times of an attachment or a chunk, without what is in it
@@ -160,14 +160,14 @@ class Original:
             yield opcode, at, view[at + _HEAD.size : at + _HEAD.size + length]
             at += _HEAD.size + length
 
-    def index(self, record: Record) -> Index:
+    def index(self, record: Record) -> ChunkMessageIndex:
         """Unpack a chunk to find where its messages are."""
         entries: dict[int, list[tuple[int, int]]] = {}
         for opcode, at, body in self.unpacked(record):
             if opcode == Opcode.MESSAGE:
                 channel, _, log_time = _MESSAGE.unpack_from(body)
                 entries.setdefault(channel, []).append((log_time, at))
-        return arrays(entries)
+        return index_arrays(entries)
 
     def announced(self, record: Record) -> tuple[int, int]:
         """Return channel and number of entries of a message index record."""
@@ -371,7 +371,7 @@ class _Copy:
 
     def _take_loose(self, record: Record) -> None:
         self._loose.append(record)
-        if record.end - self._loose[0].at >= WRAP_BYTES:
+        if record.end - self._loose[0].at >= LOOSE_CHUNK_BYTES:
             self._end_loose()
 
     def _end_loose(self) -> None:
@@ -387,11 +387,11 @@ class _Copy:
                 entries.setdefault(channel, []).append((log_time, record.at - start))
         if entries:
             self._flush()
-            self._sink.add_chunk(self._original.read(start, end), arrays(entries), compressed=False)
+            self._sink.add_chunk(self._original.read(start, end), index_arrays(entries), compressed=False)
             self._from = end
         self._to = end
 
 
-def arrays(entries: dict[int, list[tuple[int, int]]]) -> Index:
+def index_arrays(entries: dict[int, list[tuple[int, int]]]) -> ChunkMessageIndex:
     """Return message index entries as arrays of log time and offset."""
     return {channel: np.array(pairs, np.uint64).reshape(-1, 2) for channel, pairs in sorted(entries.items())}

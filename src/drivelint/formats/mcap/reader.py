@@ -18,7 +18,7 @@ from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Channel, DataEnd, Footer, Metadata, Schema, Statistics
 
-from drivelint.drive.trace import Finding
+from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class Container:
     channels: dict[int, Channel] = field(default_factory=dict)
     schemas: dict[int, Schema] = field(default_factory=dict)
     metadata: dict[str, dict[str, str]] = field(default_factory=dict)
-    findings: list[Finding] = field(default_factory=list)
+    findings: list[QualityFinding] = field(default_factory=list)
     _messages: int = 0
     _unprotected: int = 0
 
@@ -99,10 +99,10 @@ class Container:
             message = (
                 f"the index counts {statistics.message_count} messages, the file has {self._messages}: all are read"
             )
-            self.findings.append(Finding("index_mismatch", "warning", message))
+            self.findings.append(QualityFinding("index_mismatch", "warning", message))
         if self._unprotected:
             message = f"chunks without a CRC: {self._unprotected}: flipped bits in them cannot be seen"
-            self.findings.append(Finding("unprotected", "info", message, self._unprotected))
+            self.findings.append(QualityFinding("unprotected", "info", message, self._unprotected))
 
     def _record(self, view: memoryview, at: int, end: int) -> tuple[int, int, int]:
         """Return opcode, start and end of the record at `at`, which must lie wholly before `end`."""
@@ -220,7 +220,7 @@ class Container:
         begin = footer.summary_start or at
         if footer.summary_crc and zlib.crc32(view[min(begin, at) : end - 4]) != footer.summary_crc:
             message = f"the index has a wrong CRC (footer at byte {at}): it is not used, the data are complete"
-            self.findings.append(Finding("index_damaged", "warning", message))
+            self.findings.append(QualityFinding("index_damaged", "warning", message))
 
     def _check_end(self, view: memoryview, end: int) -> None:
         tail = view[end:]
@@ -234,7 +234,7 @@ class Container:
                 f"{self.path}: a second MCAP file begins at byte {end + len(MAGIC)}: split the two, give each by itself"
             )
         message = f"{extra} bytes follow the end of the log at byte {end + len(MAGIC)}: they are not part of it"
-        self.findings.append(Finding("trailing_bytes", "warning", message))
+        self.findings.append(QualityFinding("trailing_bytes", "warning", message))
 
 
 def _name(opcode: int) -> str:

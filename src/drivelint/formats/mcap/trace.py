@@ -29,7 +29,7 @@ def read(probe: Probe) -> Recording:
     from drivelint.formats.mcap import bag
     from drivelint.formats.osi import reader as osi
 
-    family = bag.family(probe.path)
+    family = bag.message_family(probe.path)
     if family == "ros2":
         from drivelint.formats.ros2 import reader as ros
 

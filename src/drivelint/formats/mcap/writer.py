@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 MAGIC: Final = b"\x89MCAP0\r\n"
-IDS: Final = 1 << 16  # channel and schema ids are 16 bits wide; schema 0 means none
+ID_LIMIT: Final = 1 << 16  # channel and schema ids are 16 bits wide; schema 0 means none
 _ZSTD_LEVEL: Final = 1
 _BLOCK: Final = 4 << 20
 
@@ -128,7 +128,7 @@ class Sink:
         self.chunks.append(chunk)
 
     def add_attachment(self, name: str, media_type: str, data: bytes, log_time: int) -> None:
-        """Write a file into the file; its time of creation is 0 = not known, so that the same run writes the same bytes."""
+        """Write an attachment; its creation time is 0, so that the same run writes the same bytes."""
         start = self.offset
         self._record(Attachment(create_time=0, log_time=log_time, name=name, media_type=media_type, data=data))
         self.attachments.append(
@@ -199,7 +199,7 @@ class Sink:
 
 
 def chunk_index(chunk: Chunk, start: int, length: int) -> ChunkIndex:
-    """Return the index entry of a chunk record that begins at `start`, its message indexes still to be told."""
+    """Return the index entry of a chunk record that begins at `start`, still without message indexes."""
     return ChunkIndex(
         chunk_length=length,
         chunk_start_offset=start,
@@ -216,9 +216,9 @@ def chunk_index(chunk: Chunk, start: int, length: int) -> ChunkIndex:
 def _free(taken: Mapping[int, object], least: int, what: str) -> int:
     """Return the id after the highest one, or the lowest that nobody has."""
     after = max(taken, default=least - 1) + 1
-    if after < IDS:
+    if after < ID_LIMIT:
         return max(after, least)
-    for number in range(least, IDS):
+    for number in range(least, ID_LIMIT):
         if number not in taken:
             return number
-    raise DriveLintError(f"all {IDS} {what} ids of the log are taken: it cannot be annotated, use --no-annotate")
+    raise DriveLintError(f"all {ID_LIMIT} {what} ids of the log are taken: it cannot be annotated, use --no-annotate")

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from drivelint.formats.opendrive.network import spans
+from drivelint.formats.opendrive.network import record_spans
 
 if TYPE_CHECKING:
     from drivelint.formats.opendrive.lanelet import Lanelet
-    from drivelint.formats.opendrive.network import Mark, Speed
+    from drivelint.formats.opendrive.network import RoadMark, SpeedLimit
 
 
 def road_type(lanelet: Lanelet) -> str | None:
     """Return the road type that holds over most of the lanelet; None: the map does not say."""
     road = lanelet.road
     held: dict[str | None, float] = {}
-    for i, a, b in spans((s for s, _ in road.types), lanelet.strip.start_m, lanelet.strip.end_m):
+    for i, a, b in record_spans((s for s, _ in road.types), lanelet.strip.start_m, lanelet.strip.end_m):
         kind = road.types[i][1] if i >= 0 else None
         held[kind] = held.get(kind, 0.0) + b - a
     best = max(held.items(), key=lambda item: (item[1], item[0] or ""), default=(None, 0.0))[0]
@@ -26,18 +26,18 @@ def speed_rows(lanelet: Lanelet) -> list[dict[str, Any]]:
     """Return rows of `speed_limit`: the lane's own records, else the road type's; none where neither says."""
     rows: list[dict[str, Any]] = []
     start, end = lanelet.strip.start_m, lanelet.strip.end_m
-    for i, a, b in spans((s.start_m for s in lanelet.lane.speeds), start, end):
+    for i, a, b in record_spans((s.start_m for s in lanelet.lane.speeds), start, end):
         if i >= 0 and lanelet.lane.speeds[i].known:
             rows += _speed_row(lanelet, [(0, a, b)], lanelet.lane.speeds[i], "lane")
             continue
-        for j, c, d in spans((s.start_m for s in lanelet.road.speeds), a, b):
+        for j, c, d in record_spans((s.start_m for s in lanelet.road.speeds), a, b):
             if j >= 0 and lanelet.road.speeds[j].known:
                 rows += _speed_row(lanelet, [(0, c, d)], lanelet.road.speeds[j], "road_type")
     return sorted(rows, key=lambda row: float(row["s_start_m"]))
 
 
 def _speed_row(
-    lanelet: Lanelet, span: list[tuple[int, float, float]], speed: Speed, source: str
+    lanelet: Lanelet, span: list[tuple[int, float, float]], speed: SpeedLimit, source: str
 ) -> list[dict[str, Any]]:
     limit, said = speed.limit_mps, source if speed.readable else "unread"
     return [
@@ -66,9 +66,9 @@ def boundary_rows(lanelet: Lanelet) -> list[dict[str, Any]]:
 _SWAPPED = {"solid_broken": "broken_solid", "broken_solid": "solid_broken"}
 
 
-def _mark_rows(lanelet: Lanelet, side: str, marks: tuple[Mark, ...], *, swap: bool) -> list[dict[str, Any]]:
+def _mark_rows(lanelet: Lanelet, side: str, marks: tuple[RoadMark, ...], *, swap: bool) -> list[dict[str, Any]]:
     rows = []
-    for i, a, b in lanelet.ranges(spans((m.start_m for m in marks), lanelet.strip.start_m, lanelet.strip.end_m)):
+    for i, a, b in lanelet.ranges(record_spans((m.start_m for m in marks), lanelet.strip.start_m, lanelet.strip.end_m)):
         mark = marks[i] if i >= 0 else None
         marking = mark.marking if mark else None
         rows.append({

@@ -12,9 +12,9 @@ from drivelint.formats.opendrive.xml import MalformedError
 if TYPE_CHECKING:
     from drivelint.formats.opendrive.cubic import Floats
     from drivelint.formats.opendrive.network import Lane, Road, Strip
-    from drivelint.formats.opendrive.planview import Line
+    from drivelint.formats.opendrive.planview import ReferenceLine
 
-CHORD_M = 0.01  # furthest that a bound may be from the chord between two of its points
+CHORD_TOLERANCE_M = 0.01  # furthest that a bound may be from the chord between two of its points
 SPACING_M = 5.0  # furthest that two points may be apart
 JUMP_M = 0.01  # a larger step in an edge is kept as a step
 MAX_POINTS = 100_000  # per strip: 100 km in steps of a metre
@@ -27,7 +27,7 @@ _INSIDE_M = 1e-6  # how far inside its section a record must begin to hold there
 class Edges:
     """Lane edges at stations: rows are the lanes' outer edges and lane 0's line, by lane number descending."""
 
-    line: Line  # the reference line, (n,)
+    line: ReferenceLine  # the reference line, (n,)
     t: Floats  # (m, n) offset from it, left positive
     dt: Floats  # (m, n) its slope
     x: Floats  # (m, n)
@@ -101,7 +101,7 @@ class Evaluator:
         return inner[step > JUMP_M], step[step > JUMP_M]
 
 
-def stations(evaluator: Evaluator, breaks: Floats) -> Floats:
+def sample_stations(evaluator: Evaluator, breaks: Floats) -> Floats:
     """Return stations, breaks included, at most SPACING_M apart and with chords within CHORD_M of every edge."""
     s = _divide(breaks, np.ceil(np.diff(breaks) / SPACING_M - 1e-9))
     for _ in range(10):
@@ -133,7 +133,7 @@ def _deviation(evaluator: Evaluator, s: Floats) -> Floats:
         px, py = x[:, i::4] - ax, y[:, i::4] - ay
         along = np.clip((px * dx + py * dy) / square, 0.0, 1.0)
         off = np.maximum(off, np.hypot(px - along * dx, py - along * dy).max(axis=0))
-    by_chord = np.where(off > CHORD_M, np.ceil(np.sqrt(off / CHORD_M)), 1.0)
+    by_chord = np.where(off > CHORD_TOLERANCE_M, np.ceil(np.sqrt(off / CHORD_TOLERANCE_M)), 1.0)
     by_length = np.ceil(np.sqrt(square.max(axis=0)) / SPACING_M - 1e-3)
     # a step that chords cannot follow would be cut for ever
     return np.where(np.diff(s) > 2 * _SNAP_M, np.clip(np.maximum(by_chord, by_length), 1.0, 16.0), 1.0)

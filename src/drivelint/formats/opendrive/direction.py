@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from drivelint.formats.opendrive.network import DRIVABLE
 from drivelint.phrases import plural
-from drivelint.road.handedness import correction, other
+from drivelint.road.handedness import correction_hint, opposite_side
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from drivelint.formats.opendrive.network import Lane, Network
-    from drivelint.road.contract import Request
-    from drivelint.road.quality import Quality
+    from drivelint.road.contract import MapOptions
+    from drivelint.road.quality import MapQuality
 
 _DECISIVE = 2 / 3  # some maps list both ends of every connecting lane: half the votes each way say nothing
 
@@ -45,8 +45,8 @@ class Direction:
         return (-along if lane.direction == "reversed" else along), False
 
 
-class Witness(NamedTuple):
-    """What something says: of the side that is driven on, or of the lanes' direction (the side by whose rule they run).
+class SideStatement(NamedTuple):
+    """What one source states about the side that is driven on, or about the lanes' direction.
 
     `text`: subject and verb of a sentence that ends with the side.
     """
@@ -58,16 +58,16 @@ class Witness(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Witnesses:
-    """All that say something, the first the most trusted."""
+class SideStatements:
+    """All statements about the side that is driven on, the most trusted first."""
 
-    said: tuple[Witness, ...]
+    said: tuple[SideStatement, ...]
     rules: Counter[str]
     travel: str | None
 
     @classmethod
-    def of(cls, net: Network, request: Request) -> Witnesses:
-        """Ask the option, the roads' rule attribute, the junctions, the lanes' travel direction (RoadRunner's userData), the traces."""
+    def of(cls, net: Network, request: MapOptions) -> SideStatements:
+        """Collect the statements of the option, the roads' rules, the junctions, the lanes' travel directions and the traces."""
         roads = Counter(road.rule for road in net.roads.values() if road.rule)
         junctions, travel = _junction_votes(net), _travel_votes(net)
         option = None if request.handedness == "auto" else request.handedness
@@ -78,15 +78,15 @@ class Witnesses:
             ("attribute", _winner(travel), f"the travel direction of {travel.total()} lanes (userData) fits", True),
             ("traces", request.sensed, "the traces fit", True),
         ]
-        said = tuple(Witness(source, side, text, of) for source, side, text, of in found if side is not None)
+        said = tuple(SideStatement(source, side, text, of) for source, side, text, of in found if side is not None)
         return cls(said, roads, _winner(travel))
 
     def first(self) -> Direction:
-        """Return what holds for roads with both directions: there the side that is driven on and the lanes' direction are one thing."""
+        """Return the direction on two-way roads, where the side that is driven on fixes the lanes' direction."""
         return self._direction("rht", self.said[0] if self.said else None)
 
-    def settle(self, layout: str | None, quality: Quality) -> Direction:
-        """Return what holds, and report what disagrees.
+    def settle(self, layout: str | None, quality: MapQuality) -> Direction:
+        """Return the direction by the most trusted statement, and report the statements that disagree.
 
         `layout`: the side that is driven on by the lanes beside each other, if the lanes with negative numbers run along the reference
         line. lht: each direction is a road of its own, and they lie the other way round than on one road, as SUMO writes its left-hand
@@ -110,7 +110,7 @@ class Witnesses:
             quality.add("handedness_default", "warning", None, message)
         return found
 
-    def _with_layout(self, layout: str, quality: Quality) -> Direction:
+    def _with_layout(self, layout: str, quality: MapQuality) -> Direction:
         said = list(self.said)
         if layout == "lht" and (rule := next((w for w in said if w.source == "attribute" and not w.of_lanes), None)):
             said.remove(rule)  # by it, the lanes run so that the other side is driven on
@@ -119,11 +119,11 @@ class Witnesses:
                 "not counted; give --handedness if the side is wrong"
             )
             quality.add("handedness_disagrees", "warning", None, message)
-        said = [w._replace(side=w.side if layout == "rht" or not w.of_lanes else other(w.side)) for w in said]
+        said = [w._replace(side=w.side if layout == "rht" or not w.of_lanes else opposite_side(w.side)) for w in said]
         _disagreements(said, quality, "every direction")
         return self._direction(layout, said[0] if said else None)
 
-    def _without_opposing(self, quality: Quality) -> Direction:
+    def _without_opposing(self, quality: MapQuality) -> Direction:
         side = next((w for w in self.said if not w.of_lanes), None)
         option = next((w for w in self.said if w.source == "option"), None)
         rule = next((w for w in self.said if w.source == "attribute" and not w.of_lanes), None)
@@ -144,18 +144,18 @@ class Witnesses:
             self.travel == ("rht" if forward else "lht"),
         )
 
-    def _direction(self, layout: str, said: Witness | None) -> Direction:
+    def _direction(self, layout: str, said: SideStatement | None) -> Direction:
         side, source = (said.side, said.source) if said else (layout, "default")
         forward = side == layout
         return Direction(side, source, forward, source, self.travel == ("rht" if forward else "lht"))
 
 
-def _disagreements(said: Sequence[Witness], quality: Quality, wrong: str, advice: str | None = None) -> None:
+def _disagreements(said: Sequence[SideStatement], quality: MapQuality, wrong: str, advice: str | None = None) -> None:
     """Report witnesses that disagree. `wrong`: what is wrong if the first one is; `advice`: what to do then, if no side helps."""
     if len({w.side for w in said}) > 1:
         first, second = said[:2]
         # what says the same as the option is taken once the option is left out
-        found = advice or correction(first.side, first.source if second.side != first.side else "")
+        found = advice or correction_hint(first.side, first.source if second.side != first.side else "")
         opinions = ", ".join(f"{w.text} {w.side}" for w in said)
         message = f"{opinions}: {first.side} is taken. If that is wrong, {wrong} is wrong: {found}."
         quality.add("handedness_disagrees", "warning", None, message)
@@ -191,7 +191,7 @@ def _travel_votes(net: Network) -> Counter[str]:
     )
 
 
-def report_exceptions(net: Network, direction: Direction, quality: Quality) -> None:
+def report_exceptions(net: Network, direction: Direction, quality: MapQuality) -> None:
     """Name the lanes whose own direction is not that of their side."""
     plain = replace(direction, travel=False)
     for road in net.roads.values():

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
-from drivelint.formats.opendrive.objects import Placed, placed_objects
+from drivelint.formats.opendrive.objects import PlacedObject, placed_objects
 from drivelint.formats.opendrive.signals import signal_rows
 
 if TYPE_CHECKING:
     from drivelint.formats.opendrive.cubic import Floats
     from drivelint.formats.opendrive.lanelet import Lanelet
     from drivelint.formats.opendrive.network import Network
-    from drivelint.road.quality import Quality
+    from drivelint.road.quality import MapQuality
 
 MIN_SHARE = 0.5  # a stop line that covers less of a lane's width is another lane's
 MIN_ANGLE_RAD = 0.87  # 50 degrees: a line more along the lane than this is not one to stop at
@@ -22,7 +22,7 @@ MIN_AREA_M2 = 0.5  # a crossing that only touches a lane does not lie across it
 Rows = list[dict[str, Any]]
 
 
-def furniture(net: Network, lanes: list[Lanelet], offset: tuple[float, float], quality: Quality) -> dict[str, Rows]:
+def furniture(net: Network, lanes: list[Lanelet], offset: tuple[float, float], quality: MapQuality) -> dict[str, Rows]:
     """Return rows of `traffic_signal`, `stop_line`, `road_object` and `crossing`."""
     signals, painted = signal_rows(net, lanes, offset, quality)
     objects = placed_objects(net, offset, quality)
@@ -35,7 +35,7 @@ def furniture(net: Network, lanes: list[Lanelet], offset: tuple[float, float], q
     }
 
 
-def _laid_over(objects: list[Placed], lanes: list[Lanelet], quality: Quality) -> tuple[Rows, Rows]:
+def _laid_over(objects: list[PlacedObject], lanes: list[Lanelet], quality: MapQuality) -> tuple[Rows, Rows]:
     """Return the stop lines and crossings among the objects, one row per drivable lanelet that they lie across."""
     flat = [p for p in objects if p.kind in {"stop_line", "crossing"} and p.outline is not None and len(p.outline) > 1]
     if not flat:
@@ -68,7 +68,7 @@ def _area(lane: Lanelet) -> shapely.Geometry:
     return polygon if polygon.is_valid else polygon.buffer(0.0)
 
 
-def _shape(placed: Placed) -> shapely.Geometry:
+def _shape(placed: PlacedObject) -> shapely.Geometry:
     """Return the object's area; a line that was drawn without a width stays a line."""
     assert placed.outline is not None  # noqa: S101 - the caller's filter
     corners = placed.outline
@@ -94,7 +94,7 @@ def _stations(lane: Lanelet, points: Floats) -> tuple[Floats, Floats, float]:
     return s, d, 2.0 * half
 
 
-def _stop_line(placed: Placed, lane: Lanelet, common: shapely.Geometry) -> Rows:
+def _stop_line(placed: PlacedObject, lane: Lanelet, common: shapely.Geometry) -> Rows:
     assert placed.outline is not None  # noqa: S101 - the caller's filter
     s, d, width = _stations(lane, shapely.get_coordinates(common))
     axis = np.linalg.svd(placed.outline - placed.outline.mean(axis=0))[2][0]
@@ -112,7 +112,7 @@ def _stop_line(placed: Placed, lane: Lanelet, common: shapely.Geometry) -> Rows:
     return [row]
 
 
-def _crossing(placed: Placed, lane: Lanelet, common: shapely.Geometry) -> Rows:
+def _crossing(placed: PlacedObject, lane: Lanelet, common: shapely.Geometry) -> Rows:
     if float(shapely.area(common)) < MIN_AREA_M2:
         return []
     s, _, _ = _stations(lane, shapely.get_coordinates(common))

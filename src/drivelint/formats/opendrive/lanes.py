@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.formats.opendrive.crosssection import Edges, Evaluator, stations
+from drivelint.formats.opendrive.crosssection import Edges, Evaluator, sample_stations
 from drivelint.formats.opendrive.lanelet import LaneKey, Lanelet, lanelet_id
 from drivelint.formats.opendrive.network import DRIVABLE
 from drivelint.formats.opendrive.xml import MalformedError
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
     from drivelint.formats.opendrive.cubic import Floats
     from drivelint.formats.opendrive.direction import Direction
     from drivelint.formats.opendrive.network import Lane, Network, Road, Strip
-    from drivelint.road.quality import Quality
+    from drivelint.road.quality import MapQuality
 
 NARROW_M = 0.05  # a lane that is nowhere wider is a line, not a lane
 SHORT_M = 1e-3  # a shorter section is a rounding error: links go through it
 
 
 @dataclass(eq=False)
-class Lanes:
-    """What was built, and what was not and why."""
+class BuiltLanes:
+    """The lanelets that were built, and the lanes that were left out, by cause."""
 
     built: dict[LaneKey, Lanelet] = field(default_factory=dict)
     short: set[LaneKey] = field(default_factory=set)  # links pass through these
@@ -35,9 +35,9 @@ class Lanes:
     failed: set[LaneKey] = field(default_factory=set)
 
 
-def build(net: Network, direction: Direction, offset: tuple[float, float], quality: Quality) -> Lanes:
+def build(net: Network, direction: Direction, offset: tuple[float, float], quality: MapQuality) -> BuiltLanes:
     """Build every lane of the network; whatever is left out is a row of `quality`."""
-    lanes = Lanes()
+    lanes = BuiltLanes()
     for road in net.roads.values():
         _check_plan(road, quality)
         for strip in road.strips:
@@ -46,7 +46,7 @@ def build(net: Network, direction: Direction, offset: tuple[float, float], quali
     return lanes
 
 
-def _check_plan(road: Road, quality: Quality) -> None:
+def _check_plan(road: Road, quality: MapQuality) -> None:
     gap, kink = road.plan.joints()
     name = f"the geometries of road {road.road_id}"
     if (gap > 0.05).any():
@@ -70,8 +70,8 @@ class _StripBuilder:
     strip: Strip
     direction: Direction
     offset: tuple[float, float]
-    lanes: Lanes
-    quality: Quality
+    lanes: BuiltLanes
+    quality: MapQuality
 
     def build(self) -> None:
         strip, road = self.strip, self.road
@@ -89,7 +89,7 @@ class _StripBuilder:
             evaluator = Evaluator(road, strip)
             breaks = evaluator.breaks()
             at, step = evaluator.steps(breaks)
-            s = stations(evaluator, np.sort(np.concatenate([breaks, at - SHORT_M])))
+            s = sample_stations(evaluator, np.sort(np.concatenate([breaks, at - SHORT_M])))
             edges = evaluator.edges(s)
         except MalformedError as error:
             self._fail({lane.number: str(error) for lane in strip.lanes if self._key(lane) not in self.lanes.failed})
@@ -213,7 +213,7 @@ def _adjoin(a: Lanelet, b: Lanelet) -> None:
         b.right = a
 
 
-def _join_sides(road: Road, lanes: Lanes) -> None:
+def _join_sides(road: Road, lanes: BuiltLanes) -> None:
     """Adjoin the innermost lanes of strips that hold one side only to the lane across that they lie longest beside."""
     built = [
         lane

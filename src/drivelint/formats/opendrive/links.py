@@ -18,13 +18,13 @@ from drivelint.formats.opendrive.network import END, START
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from drivelint.formats.opendrive.lanes import Lanes
+    from drivelint.formats.opendrive.lanes import BuiltLanes
     from drivelint.formats.opendrive.network import Connection, Network, Road, Strip
-    from drivelint.road.quality import Quality
+    from drivelint.road.quality import MapQuality
 
 GAP_M = 0.5  # linked ends further apart than this are reported
 TOUCH_M = 0.1  # a lane that begins this close to another's end, in the same direction, should be linked to it
-TOUCH_COS = 0.98
+TOUCH_HEADING_COS = 0.98
 LaneEnd = tuple[LaneKey, str]
 _OTHER = {START: END, END: START}
 
@@ -37,7 +37,7 @@ class Link:
     target: Lanelet
 
 
-def links(net: Network, lanes: Lanes, quality: Quality) -> list[Link]:
+def links(net: Network, lanes: BuiltLanes, quality: MapQuality) -> list[Link]:
     """Return the links, each once, ordered by ids; links to nowhere and over gaps are rows of `quality`."""
     declared = {
         (road.road_id, strip.section, lane.number)
@@ -63,7 +63,7 @@ def links(net: Network, lanes: Lanes, quality: Quality) -> list[Link]:
     return result
 
 
-def _declared_contacts(net: Network, quality: Quality) -> Iterator[tuple[LaneEnd, LaneEnd]]:
+def _declared_contacts(net: Network, quality: MapQuality) -> Iterator[tuple[LaneEnd, LaneEnd]]:
     for road in net.roads.values():
         for side in (1, -1):
             strips = road.strips_of(side)
@@ -80,7 +80,7 @@ def _declared_contacts(net: Network, quality: Quality) -> Iterator[tuple[LaneEnd
 
 
 def _contacts_at(
-    net: Network, road: Road, at: LaneEnd, targets: tuple[int, ...], beside: Strip | None, *, quality: Quality
+    net: Network, road: Road, at: LaneEnd, targets: tuple[int, ...], beside: Strip | None, *, quality: MapQuality
 ) -> Iterator[tuple[LaneEnd, LaneEnd]]:
     """Yield what a lane's end touches: in the next section of its road, or in the next road."""
     key, end = at
@@ -121,7 +121,7 @@ def _lane_at(road: Road, contact: str, lane_no: int) -> LaneKey:
     return (road.road_id, strips[0 if contact == START else -1].section, lane_no)
 
 
-def _junction_contacts(net: Network, connection: Connection, quality: Quality) -> Iterator[tuple[LaneEnd, LaneEnd]]:
+def _junction_contacts(net: Network, connection: Connection, quality: MapQuality) -> Iterator[tuple[LaneEnd, LaneEnd]]:
     incoming, connecting = net.roads.get(connection.incoming), net.roads.get(connection.connecting)
     if incoming is None or connecting is None:
         gone = connection.incoming if incoming is None else connection.connecting
@@ -168,7 +168,7 @@ def _through_short(touching: set[tuple[LaneEnd, LaneEnd]], short: set[LaneKey]) 
     return result
 
 
-def _directed(a: LaneEnd, b: LaneEnd, lanes: Lanes, quality: Quality) -> Link | None:
+def _directed(a: LaneEnd, b: LaneEnd, lanes: BuiltLanes, quality: MapQuality) -> Link | None:
     """Return the link in the direction of travel; None where a lane was left out or the directions clash (reported)."""
     first, second = lanes.built.get(a[0]), lanes.built.get(b[0])
     if first is None or second is None:
@@ -193,7 +193,7 @@ def _exit(lane: Lanelet) -> str:
     return END if lane.along > 0 else START
 
 
-def _missing(lanes: Lanes, end: LaneEnd, what: str, quality: Quality) -> None:
+def _missing(lanes: BuiltLanes, end: LaneEnd, what: str, quality: MapQuality) -> None:
     lane = lanes.built.get(end[0])
     if end[0] in lanes.narrow:
         return
@@ -202,7 +202,7 @@ def _missing(lanes: Lanes, end: LaneEnd, what: str, quality: Quality) -> None:
     quality.add("missing_link", severity, name, f"lane {name} is linked at its {end[1]} to {what}")
 
 
-def _check_gap(link: Link, quality: Quality) -> None:
+def _check_gap(link: Link, quality: MapQuality) -> None:
     a, b = link.source, link.target
     gap = float(np.hypot(a.x[-1] - b.x[0], a.y[-1] - b.y[0]))
     if gap > GAP_M:
@@ -210,7 +210,7 @@ def _check_gap(link: Link, quality: Quality) -> None:
         quality.add("link_gap", "warning" if a.drivable else "info", a.lanelet_id, message)
 
 
-def _check_unlinked(lanes: list[Lanelet], found: dict[tuple[str, str], Link], quality: Quality) -> None:
+def _check_unlinked(lanes: list[Lanelet], found: dict[tuple[str, str], Link], quality: MapQuality) -> None:
     """Report drivable lanes that plainly go on in another one without a link: chains would end there."""
     lanes = [lane for lane in lanes if lane.drivable]
     if not lanes:
@@ -219,7 +219,7 @@ def _check_unlinked(lanes: list[Lanelet], found: dict[tuple[str, str], Link], qu
     touching = shapely.STRtree(shapely.points(starts)).query(shapely.points(ends), "dwithin", TOUCH_M)
     for i, j in sorted(touching.T.tolist()):
         a, b = lanes[i], lanes[j]
-        same = float(a.tx[-1] * b.tx[0] + a.ty[-1] * b.ty[0]) > TOUCH_COS
+        same = float(a.tx[-1] * b.tx[0] + a.ty[-1] * b.ty[0]) > TOUCH_HEADING_COS
         if same and (a.lanelet_id, b.lanelet_id) not in found:
             message = f"lane {b.lanelet_id} begins where lane {a.lanelet_id} ends, but the map does not link them"
             quality.add("unlinked_end", "error", a.lanelet_id, message)

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 from drivelint.formats.opendrive.cubic import Cubics, cubics
 from drivelint.formats.opendrive.planview import PlanView, planview
-from drivelint.formats.opendrive.xml import MalformedError, integer, number, text
+from drivelint.formats.opendrive.xml import MalformedError, integer, number, required_attribute
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from lxml import etree
 
-    from drivelint.road.quality import Quality
+    from drivelint.road.quality import MapQuality
 
 MAX_ROAD_M = 1e6  # a longer road is a unit mistake, and would be millions of points
 START, END = "start", "end"
@@ -29,7 +29,7 @@ DRIVABLE = frozenset({
 
 
 @dataclass(frozen=True)
-class Mark:
+class RoadMark:
     """A road mark from `start_m` (road station) to the next one's."""
 
     start_m: float
@@ -39,7 +39,7 @@ class Mark:
 
 
 @dataclass(frozen=True)
-class Speed:
+class SpeedLimit:
     """A limit from `start_m` (road station) to the next one's; `limit_mps` None: no limit.
 
     `known` False: not said; `readable` False: said, but not in a way that can be read.
@@ -61,8 +61,8 @@ class Lane:
     successors: tuple[int, ...] = ()
     widths: Cubics | None = None
     borders: Cubics | None = None
-    marks: tuple[Mark, ...] = ()
-    speeds: tuple[Speed, ...] = ()
+    marks: tuple[RoadMark, ...] = ()
+    speeds: tuple[SpeedLimit, ...] = ()
     travel: str | None = None  # RoadRunner's userData: forward, backward, undirected
     direction: str | None = None  # OpenDRIVE 1.8: standard, reversed, both
     invalid: str | None = None
@@ -76,11 +76,11 @@ class Strip:
     start_m: float
     end_m: float
     lanes: tuple[Lane, ...]  # ascending by number, lane 0 left out
-    centre_marks: tuple[Mark, ...]
+    centre_marks: tuple[RoadMark, ...]
 
 
 @dataclass(frozen=True)
-class Contact:
+class RoadLink:
     """What a road joins at one of its ends."""
 
     is_junction: bool
@@ -97,9 +97,9 @@ class Road:
     said_length_m: float
     junction_id: str | None
     rule: str | None  # lht, rht
-    joins: dict[str, Contact]  # by own end
+    joins: dict[str, RoadLink]  # by own end
     types: tuple[tuple[float, str], ...]  # (from station, type)
-    speeds: tuple[Speed, ...]
+    speeds: tuple[SpeedLimit, ...]
     plan: PlanView
     elevation: Cubics
     offset: Cubics
@@ -124,14 +124,14 @@ class Connection:
 
 @dataclass(frozen=True, eq=False)
 class Network:
-    """The whole file."""
+    """The road network of a file."""
 
     roads: dict[str, Road]
     connections: tuple[Connection, ...]
     geo_reference: str | None
 
 
-def network(root: etree._Element, quality: Quality) -> Network:
+def network(root: etree._Element, quality: MapQuality) -> Network:
     """Read the file; a road that cannot be understood is named in `quality` and left out, never silently."""
     roads: dict[str, Road] = {}
     for element in root.findall("road"):
@@ -149,7 +149,7 @@ def network(root: etree._Element, quality: Quality) -> Network:
     return Network(roads, tuple(_connections(root, quality)), reference.strip() or None if reference else None)
 
 
-def _road(element: etree._Element, others: dict[str, Road], quality: Quality) -> Road:
+def _road(element: etree._Element, others: dict[str, Road], quality: MapQuality) -> Road:
     if element.get("id") in others:
         raise MalformedError("another road has the same id")
     length = number(element, "length")
@@ -162,7 +162,7 @@ def _road(element: etree._Element, others: dict[str, Road], quality: Quality) ->
         ((number(t, "s", 0.0), t.get("type", "unknown")) for t in element.findall("type")), key=lambda t: t[0]
     )
     return Road(
-        road_id=text(element, "id"),
+        road_id=required_attribute(element, "id"),
         length_m=min(length, plan.end),
         said_length_m=length,
         junction_id=None if junction in {"-1", ""} else junction,
@@ -178,21 +178,21 @@ def _road(element: etree._Element, others: dict[str, Road], quality: Quality) ->
     )
 
 
-def _joins(element: etree._Element) -> dict[str, Contact]:
+def _joins(element: etree._Element) -> dict[str, RoadLink]:
     joins = {}
     for end, name in ((START, "predecessor"), (END, "successor")):
         link = element.find(f"link/{name}")
         if link is not None and link.get("elementId") is not None:
             contact = link.get("contactPoint")
-            joins[end] = Contact(
+            joins[end] = RoadLink(
                 link.get("elementType") == "junction",
-                text(link, "elementId"),
+                required_attribute(link, "elementId"),
                 contact if contact in {START, END} else None,
             )
     return joins
 
 
-def _strips(element: etree._Element, length: float, quality: Quality) -> tuple[Strip, ...]:
+def _strips(element: etree._Element, length: float, quality: MapQuality) -> tuple[Strip, ...]:
     sections = sorted(enumerate(element.findall("lanes/laneSection")), key=lambda item: number(item[1], "s"))
     if not sections:
         raise MalformedError("it has no <laneSection>")
@@ -222,7 +222,7 @@ def _section_ends(sections: list[etree._Element], side: str, length: float) -> d
     return dict(zip(mine, ends, strict=True))
 
 
-def _lane(element: etree._Element, section_start: float, quality: Quality) -> Lane:
+def _lane(element: etree._Element, section_start: float, quality: MapQuality) -> Lane:
     lane_no = integer(element, "id")
     try:
         return _valid_lane(element, lane_no, section_start, quality)
@@ -230,7 +230,7 @@ def _lane(element: etree._Element, section_start: float, quality: Quality) -> La
         return Lane(lane_no, element.get("type", "none"), invalid=str(error))
 
 
-def _valid_lane(element: etree._Element, lane_no: int, section_start: float, quality: Quality) -> Lane:
+def _valid_lane(element: etree._Element, lane_no: int, section_start: float, quality: MapQuality) -> Lane:
     parent = element.getparent()
     side = "" if parent is None else str(parent.tag)
     if (side == "left") != (lane_no > 0) or lane_no == 0:
@@ -253,9 +253,9 @@ def _valid_lane(element: etree._Element, lane_no: int, section_start: float, qua
     )
 
 
-def _marks(lane: etree._Element, section_start: float) -> list[Mark]:
+def _marks(lane: etree._Element, section_start: float) -> list[RoadMark]:
     marks = [
-        Mark(
+        RoadMark(
             section_start + number(mark, "sOffset", 0.0),
             "_".join(mark.get("type", "none").split()),
             mark.get("color"),
@@ -270,8 +270,8 @@ _UNITS = {"m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
 
 
 def _speeds(
-    elements: Iterable[etree._Element], station: str, origin: float, quality: Quality, child: str | None = None
-) -> tuple[Speed, ...]:
+    elements: Iterable[etree._Element], station: str, origin: float, quality: MapQuality, child: str | None = None
+) -> tuple[SpeedLimit, ...]:
     """Read limits; with `child` the station stands on an element around them, whose lack of a limit is a record too."""
     speeds = []
     for element in elements:
@@ -279,12 +279,12 @@ def _speeds(
         speed = element.find(child) if child else element
         word = "undefined" if speed is None else speed.get("max", "undefined").strip().lower()
         if speed is None or word == "undefined":
-            speeds.append(Speed(start, None, known=False))
+            speeds.append(SpeedLimit(start, None, known=False))
         elif word in {"no limit", "nolimit", "unlimited"}:
-            speeds.append(Speed(start, None, known=True))
+            speeds.append(SpeedLimit(start, None, known=True))
         else:
             limit = _limit(speed)
-            speeds.append(Speed(start, limit, known=True, readable=limit is not None))
+            speeds.append(SpeedLimit(start, limit, known=True, readable=limit is not None))
             if limit is None:
                 said = f"{word[:20]} {speed.get('unit', 'm/s')[:20]}"
                 quality.add(
@@ -304,7 +304,7 @@ def _limit(speed: etree._Element) -> float | None:
     return limit if limit > 0.0 else None
 
 
-def _connections(root: etree._Element, quality: Quality) -> Iterable[Connection]:
+def _connections(root: etree._Element, quality: MapQuality) -> Iterable[Connection]:
     for junction in root.findall("junction"):
         name = junction.get("id", f"in line {junction.sourceline}")
         if junction.get("type") == "virtual":
@@ -320,19 +320,19 @@ def _connections(root: etree._Element, quality: Quality) -> Iterable[Connection]
 
 
 def _connection(junction_id: str, element: etree._Element) -> Connection:
-    contact = text(element, "contactPoint")
+    contact = required_attribute(element, "contactPoint")
     if contact not in {START, END}:
         raise MalformedError(f"<connection> in line {element.sourceline}: contactPoint={contact!r}")
     return Connection(
         junction_id=junction_id,
-        incoming=text(element, "incomingRoad"),
-        connecting=element.get("connectingRoad") or text(element, "linkedRoad"),
+        incoming=required_attribute(element, "incomingRoad"),
+        connecting=element.get("connectingRoad") or required_attribute(element, "linkedRoad"),
         contact=contact,
         lanes=tuple((integer(link, "from"), integer(link, "to")) for link in element.findall("laneLink")),
     )
 
 
-def spans(starts: Iterable[float], start: float, end: float) -> list[tuple[int, float, float]]:
+def record_spans(starts: Iterable[float], start: float, end: float) -> list[tuple[int, float, float]]:
     """Return (record index, from, to) of the records that hold between two stations; index -1: before the first."""
     edges = [float("-inf"), *starts, float("inf")]
     cut = [(i - 1, max(a, start), min(b, end)) for i, (a, b) in enumerate(pairwise(edges))]

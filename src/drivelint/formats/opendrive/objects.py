@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drivelint.formats.opendrive.placement import place
-from drivelint.formats.opendrive.xml import MalformedError, number, text
+from drivelint.formats.opendrive.xml import MalformedError, number, required_attribute
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from drivelint.formats.opendrive.cubic import Floats
     from drivelint.formats.opendrive.network import Network, Road
-    from drivelint.road.quality import Quality
+    from drivelint.road.quality import MapQuality
 
 MAX_REPEATS = 10_000  # of one object
 _BAND_STEP_M = 5.0
@@ -40,7 +40,7 @@ _BY_NAME = (
 
 
 @dataclass(frozen=True, eq=False)
-class Placed:
+class PlacedObject:
     """One object in the map; the outline is (n, 2) map metres, None for a point."""
 
     object_id: str
@@ -78,9 +78,9 @@ def counter_clockwise(outline: Floats) -> Floats:
     return outline if area >= -1e-6 else outline[::-1]  # a line has no sense of turning, but rounding has
 
 
-def placed_objects(net: Network, offset: tuple[float, float], quality: Quality) -> list[Placed]:
+def placed_objects(net: Network, offset: tuple[float, float], quality: MapQuality) -> list[PlacedObject]:
     """Return every object, repetitions one by one; one that cannot be placed is a row of `quality`."""
-    placed: list[Placed] = []
+    placed: list[PlacedObject] = []
     for road in net.roads.values():
         for element in road.element.iterfind("objects/object"):
             try:
@@ -100,7 +100,7 @@ def kind_of_object(element: etree._Element) -> str:
     return kind
 
 
-def _placed(road: Road, element: etree._Element, offset: tuple[float, float]) -> Iterator[Placed]:
+def _placed(road: Road, element: etree._Element, offset: tuple[float, float]) -> Iterator[PlacedObject]:
     repeats = element.findall("repeat")
     if not repeats:
         s, t = np.array([number(element, "s")]), np.array([number(element, "t", 0.0)])
@@ -123,7 +123,7 @@ def _placed(road: Road, element: etree._Element, offset: tuple[float, float]) ->
 
 def _instances(
     road: Road, element: etree._Element, s: Floats, t: Floats, offset: tuple[float, float], *, numbered: bool
-) -> Iterator[Placed]:
+) -> Iterator[PlacedObject]:
     x, y, heading = place(road, s, t, offset)
     local = _local_outline(element)
     on_road = _road_outline(element)
@@ -137,19 +137,19 @@ def _instances(
         elif local is not None:
             cos, sin = np.cos(turned[i]), np.sin(turned[i])
             outline = np.array([x[i], y[i]]) + local @ np.array([[cos, sin], [-sin, cos]])
-        name = text(element, "id") + (f"/{i}" if numbered else "")
+        name = required_attribute(element, "id") + (f"/{i}" if numbered else "")
         yield _make(road, element, name, (float(s[i]), float(x[i]), float(y[i])), outline)
 
 
 def _make(
     road: Road, element: etree._Element, name: str, at: tuple[float, float, float], outline: Floats | None
-) -> Placed:
-    return Placed(
+) -> PlacedObject:
+    return PlacedObject(
         name, kind_of_object(element), element.get("name") or None, element.get("subtype") or None, road, *at, outline
     )
 
 
-def _band(road: Road, element: etree._Element, repeat: etree._Element, offset: tuple[float, float]) -> Placed:
+def _band(road: Road, element: etree._Element, repeat: etree._Element, offset: tuple[float, float]) -> PlacedObject:
     """Return an object that runs along the road without gaps."""
     start, length = number(repeat, "s", number(element, "s")), number(repeat, "length", 0.0)
     if not 0.0 < length <= 1e5:
@@ -164,7 +164,7 @@ def _band(road: Road, element: etree._Element, repeat: etree._Element, offset: t
     right, left = (np.column_stack(place(road, s, t + side, offset)[:2]) for side in (-half, half))
     x, y, _ = place(road, s[:1], t[:1], offset)
     outline = np.concatenate([right, left[::-1]])
-    return _make(road, element, text(element, "id"), (float(s[0]), float(x[0]), float(y[0])), outline)
+    return _make(road, element, required_attribute(element, "id"), (float(s[0]), float(x[0]), float(y[0])), outline)
 
 
 def _corners(element: etree._Element, tag: str, axes: tuple[str, str]) -> Floats | None:

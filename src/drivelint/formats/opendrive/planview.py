@@ -25,7 +25,7 @@ _MAX_TURN_RAD = 200.0  # a loop ramp turns 5 rad; more than 30 turns in one geom
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class ReferenceLine:
     """The reference line at some stations: position, unit tangent, curvature, and metres of curve per metre of s."""
 
     x: Floats
@@ -52,7 +52,7 @@ class Clothoid:
     rate: float  # 1/m^2
 
     def evaluate(self, ds: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
-        """See Shape."""
+        """Return u, v, cos and sin of the heading, curvature and speed at distances `ds`, as `Shape.evaluate` does."""
         heading = (self.start + 0.5 * self.rate * ds) * ds
         u, v = self._constant(ds) if self.rate == 0.0 else self._integral(ds)
         return u, v, np.cos(heading), np.sin(heading), self.start + self.rate * ds, np.ones_like(ds)
@@ -88,7 +88,7 @@ class Polynomial:
     stretch: float = 1.0  # metres of curve per metre of s, where the table is used
 
     def evaluate(self, ds: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
-        """See Shape."""
+        """Return u, v, cos and sin of the heading, curvature and speed at distances `ds`, as `Shape.evaluate` does."""
         p = ds if self.table is None else self._parameter(ds * self.stretch)
         (u, du, ddu), (v, dv, ddv) = _powers(self.u, p), _powers(self.v, p)
         norm = np.hypot(du, dv)
@@ -123,7 +123,7 @@ def _arc(u: Floats, v: Floats, p0: Floats, p1: Floats) -> Floats:
     return half * (_rate(u, v, nodes) @ _WEIGHTS)
 
 
-def by_arc_length(u: Floats, v: Floats, p_max: float, length: float | None = None) -> Polynomial:
+def arc_length_polynomial(u: Floats, v: Floats, p_max: float, length: float | None = None) -> Polynomial:
     """Return the curve by arc length; with `length`, p_max is reached there even if the curve is not as long."""
     p_at = np.linspace(0.0, p_max, 257)
     along = np.concatenate([[0.0], np.cumsum(_arc(u, v, p_at[:-1], p_at[1:]))])
@@ -148,7 +148,7 @@ class PlanView:
         """Station at which the last geometry ends."""
         return float(self.s[-1] + self.length[-1])
 
-    def evaluate(self, s: Floats, at: Floats) -> Line:
+    def evaluate(self, s: Floats, at: Floats) -> ReferenceLine:
         """Return the line at stations `s` (n,), ascending, taking the geometries that hold at stations `at` (n,)."""
         k = np.clip(np.searchsorted(self.s, at, side="right") - 1, 0, len(self.s) - 1)
         ds = s - self.s[k]
@@ -161,7 +161,7 @@ class PlanView:
         beyond = ds - inside  # a hole in the stations is bridged straight on; its far end is reported as a gap
         u, v, curvature = u + beyond * cos, v + beyond * sin, np.where(np.abs(beyond) > 1e-3, 0.0, curvature)
         c, n = np.cos(self.heading)[k], np.sin(self.heading)[k]
-        return Line(
+        return ReferenceLine(
             self.x[k] + c * u - n * v, self.y[k] + n * u + c * v, c * cos - n * sin, n * cos + c * sin, curvature, speed
         )
 
@@ -198,12 +198,12 @@ def _shape(geometry: etree._Element) -> Shape:
             return _clothoid(length, number(kind, "curvStart"), number(kind, "curvEnd"))
         case "poly3":
             u, v = np.array([0.0, 1.0, 0.0, 0.0]), np.array([number(kind, c) for c in "abcd"])
-            return by_arc_length(u, v, length)
+            return arc_length_polynomial(u, v, length)
         case "paramPoly3":
             u, v = (np.array([number(kind, c + axis) for c in "abcd"]) for axis in "UV")
             if kind.get("pRange") == "arcLength":
                 return Polynomial(u, v, None)
-            return by_arc_length(u, v, 1.0, length)
+            return arc_length_polynomial(u, v, 1.0, length)
         case other:
             raise MalformedError(f"<geometry> in line {geometry.sourceline} is of an unknown kind: {other}")
 

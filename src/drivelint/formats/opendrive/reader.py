@@ -1,4 +1,4 @@
-"""OpenDRIVE to the tables of schemas/map.sql: the whole way on one screen."""
+"""This module reads an OpenDRIVE file into the tables of schemas/map.sql."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ import pyarrow as pa
 from drivelint.errors import MapError
 from drivelint.formats.opendrive import xml
 from drivelint.formats.opendrive.attributes import boundary_rows, road_type, speed_rows
-from drivelint.formats.opendrive.direction import Witnesses, report_exceptions
+from drivelint.formats.opendrive.direction import SideStatements, report_exceptions
 from drivelint.formats.opendrive.furniture import furniture
 from drivelint.formats.opendrive.lanes import build
 from drivelint.formats.opendrive.links import Link, links
 from drivelint.formats.opendrive.network import network
 from drivelint.formats.opendrive.signlimits import sign_limits
-from drivelint.road.contract import Environment, MapSource, Request, environment_id
-from drivelint.road.layout import Course, side_driven_on
-from drivelint.road.quality import Quality
+from drivelint.road.contract import MapOptions, MapSource, MapTables, environment_id
+from drivelint.road.layout import OneWayLane, side_driven_on
+from drivelint.road.quality import MapQuality
 from drivelint.road.tables import from_columns, from_rows, repeated
 
 if TYPE_CHECKING:
     from drivelint.formats.opendrive.direction import Direction
     from drivelint.formats.opendrive.lanelet import Lanelet
-    from drivelint.formats.opendrive.lanes import Lanes
+    from drivelint.formats.opendrive.lanes import BuiltLanes
     from drivelint.formats.opendrive.network import Network
 
 
@@ -33,9 +33,9 @@ class OpenDriveReader:
 
     format = "opendrive"
 
-    def read(self, source: MapSource, request: Request) -> Environment:
+    def read(self, source: MapSource, request: MapOptions) -> MapTables:
         """Return the map's tables; `MapError` where the file is not XML or nothing in it can be built."""
-        quality = Quality()
+        quality = MapQuality()
         net = network(xml.parse(source), quality)
         direction, lanes = _built(net, request, quality)
         if not lanes.built:
@@ -62,20 +62,20 @@ class OpenDriveReader:
         tables = {table: from_rows(table, name, content) for table, content in rows.items()}
         tables["lane_point"] = _points(name, built)
         tables["map_quality"] = quality.table(name)
-        return Environment(
+        return MapTables(
             name, direction.handedness, direction.source, tables,
             lanes="rht" if direction.forward else "lht", lanes_source=direction.forward_source,
         )  # fmt: skip
 
 
-def _built(net: Network, request: Request, quality: Quality) -> tuple[Direction, Lanes]:
+def _built(net: Network, request: MapOptions, quality: MapQuality) -> tuple[Direction, BuiltLanes]:
     """Build the lanes as they run: as on roads with both directions, and once more if their layout shows that this is not one."""
-    witnesses = Witnesses.of(net, request)
+    witnesses = SideStatements.of(net, request)
     first, noted = witnesses.first(), len(quality.rows)
     lanes = build(net, first, request.offset, quality)
     side = side_driven_on(
         [
-            Course(lane.x, lane.y, lane.z, lane.tx, lane.ty, lane.half_width)
+            OneWayLane(lane.x, lane.y, lane.z, lane.tx, lane.ty, lane.half_width)
             for lane in sorted(lanes.built.values(), key=lambda lane: lane.key)
             if lane.drivable and not lane.bidirectional and lane.road.junction_id is None
         ]
@@ -94,7 +94,7 @@ def _built(net: Network, request: Request, quality: Quality) -> tuple[Direction,
 
 
 def _environment_row(
-    source: MapSource, request: Request, direction: Direction, geo_reference: str | None
+    source: MapSource, request: MapOptions, direction: Direction, geo_reference: str | None
 ) -> dict[str, object]:
     return {
         "name": source.name,

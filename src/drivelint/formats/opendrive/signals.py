@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from drivelint.formats.opendrive.lanelet import Lanelet
     from drivelint.formats.opendrive.network import Network, Road
-    from drivelint.road.quality import Quality
+    from drivelint.road.quality import MapQuality
 
 MIN_LINE_M = 1.0  # a stop line said to be narrower than this does not say how far it goes across
 MIN_OWN_SHARE = 0.25  # of a stop line's width, on lanes of its orientation: less is on the others' lanes
@@ -21,7 +21,9 @@ OFF_ROAD_M = 1.0  # a signal further beyond its road's end than this is a mistak
 Rows = list[dict[str, Any]]
 
 
-def signal_rows(net: Network, lanes: list[Lanelet], offset: tuple[float, float], quality: Quality) -> tuple[Rows, Rows]:
+def signal_rows(
+    net: Network, lanes: list[Lanelet], offset: tuple[float, float], quality: MapQuality
+) -> tuple[Rows, Rows]:
     """Return rows of `traffic_signal`, and those of `stop_line` that signals paint on the road (StVO 294)."""
     reader = _Reader(net, offset, quality)
     for lane in lanes:
@@ -45,7 +47,7 @@ def _unique(rows: Rows, key: tuple[str, ...]) -> Rows:
 class _Reader:
     """Collects signals; what cannot be placed is a row of `quality`."""
 
-    def __init__(self, net: Network, offset: tuple[float, float], quality: Quality) -> None:
+    def __init__(self, net: Network, offset: tuple[float, float], quality: MapQuality) -> None:
         self.offset, self.quality = offset, quality
         self.lanes: dict[str, list[Lanelet]] = {}  # drivable ones by road
         self.defined = {

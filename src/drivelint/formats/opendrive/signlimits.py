@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from drivelint.formats.opendrive.links import Link
 
 Rows = list[dict[str, Any]]
-BEGINS = frozenset({"speed_limit", "speed_zone"})
-ENDS = BEGINS | {
+LIMIT_BEGINS = frozenset({"speed_limit", "speed_zone"})
+LIMIT_ENDS = LIMIT_BEGINS | {
     "speed_limit_end", "speed_zone_end", "restrictions_end", "town_entrance", "town_exit", "motorway", "motorway_end",
     "expressway", "expressway_end",
 }  # fmt: skip
@@ -40,9 +40,9 @@ def sign_limits(lanes: Sequence[Lanelet], joined: Sequence[Link], signals: Rows,
         after.setdefault(link.source.lanelet_id, []).append(link.target.lanelet_id)
     posts: dict[str, list[float]] = {}
     for row in signals:
-        if row["kind"] in ENDS:
+        if row["kind"] in LIMIT_ENDS:
             posts.setdefault(row["lanelet_id"], []).append(row["lane_s_m"])
-    todo = [_Stretch(row["lanelet_id"], row["lane_s_m"], _limit(row)) for row in signals if row["kind"] in BEGINS]
+    todo = [_Stretch(row["lanelet_id"], row["lane_s_m"], _limit(row)) for row in signals if row["kind"] in LIMIT_BEGINS]
     rows: Rows = []
     seen: set[_Stretch] = set()
     while todo:

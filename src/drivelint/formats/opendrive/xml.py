@@ -26,7 +26,7 @@ def parse(source: MapSource) -> etree._Element:
         raise MapError(f"map {source.name} {error}") from None
 
 
-LIMIT = 1e9  # no length, coordinate or coefficient of a road is larger; beyond it arithmetic loses the millimetres
+MAX_NUMBER = 1e9  # no length, coordinate or coefficient of a road is larger; beyond it arithmetic loses the millimetres
 
 
 def number(element: etree._Element, name: str, default: float | None = None) -> float:
@@ -42,7 +42,7 @@ def number(element: etree._Element, name: str, default: float | None = None) -> 
         value = math.nan
     if not math.isfinite(value):
         raise MalformedError(f"{_where(element, name)} is not a finite number")
-    if abs(value) > LIMIT:
+    if abs(value) > MAX_NUMBER:
         raise MalformedError(f"{_where(element, name)} is larger than anything on a road")
     return value
 
@@ -55,7 +55,7 @@ def integer(element: etree._Element, name: str) -> int:
     return int(value)
 
 
-def text(element: etree._Element, name: str) -> str:
+def required_attribute(element: etree._Element, name: str) -> str:
     """Return an attribute that has to be there."""
     value = element.get(name)
     if value is None:

@@ -12,11 +12,11 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from google.protobuf.message import DecodeError
 
-from drivelint.drive.trace import Finding
+from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats.osi import heads as osi_heads
 from drivelint.formats.osi import schema as osi_schema
-from drivelint.formats.osi.words import Bulbs, bulbs_of, child, state_codes, words_of
+from drivelint.formats.osi.words import Bulbs, build_enum_codes, bulbs_of, state_codes, struct_field
 from drivelint.formats.protobuf import descriptors
 
 if TYPE_CHECKING:
@@ -26,16 +26,16 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.formats.mcap.reader import Packet
-    from drivelint.formats.protobuf.descriptors import Tree
+    from drivelint.formats.protobuf.descriptors import FieldTree
 
 GROUND_TRUTH = "osi3.GroundTruth"
 SENSOR_VIEW = "osi3.SensorView"
 
-_XY: Tree = {"x": None, "y": None}
-_ID: Tree = {"value": None}
-_TIMESTAMP: Tree = {"seconds": None, "nanos": None}
-_LAMPS: Tree = {"indicator_state": None, "brake_light_state": None, "head_light": None, "high_beam": None}
-_TRUTH: Tree = {
+_XY: FieldTree = {"x": None, "y": None}
+_ID: FieldTree = {"value": None}
+_TIMESTAMP: FieldTree = {"seconds": None, "nanos": None}
+_LAMPS: FieldTree = {"indicator_state": None, "brake_light_state": None, "head_light": None, "high_beam": None}
+_TRUTH: FieldTree = {
     "timestamp": _TIMESTAMP,
     "host_vehicle_id": _ID,
     "moving_object": {
@@ -56,7 +56,7 @@ _TRUTH: Tree = {
         "source_reference": {"type": None, "identifier": None},
     },
 }
-TREES: dict[str, Tree] = {
+FIELD_TREES: dict[str, FieldTree] = {
     GROUND_TRUTH: _TRUTH,
     SENSOR_VIEW: {"timestamp": _TIMESTAMP, "host_vehicle_id": _ID, "global_ground_truth": _TRUTH},
 }
@@ -74,7 +74,7 @@ _NEVER_ZERO = frozenset({"position", "dimension"})
 
 
 @dataclass(frozen=True)
-class Frames:
+class FrameBatch:
     """A decoded batch. Per frame: the message's time and whether it says one, the host's id (None: not said).
 
     Per object: its frame, id (`known`: it has one), columns of `NUMBERS` and `SIZES` (NaN: unknown), codes. `left_out`: the
@@ -104,7 +104,7 @@ class Decoder:
         self._path, self._name, self.schema_id = path, name, schema_id
         self.lights: Mapping[str, str] = {}  # of the head: which bulbs are one light
         types = descriptors.parse(path, name, descriptor_set)
-        descriptor = descriptors.pruned(path, types, name, TREES[name])
+        descriptor = descriptors.pruned(path, types, name, FIELD_TREES[name])
         self._handler = ptars.HandlerPool([descriptor.file]).get_for_message(descriptor)
         truth = _inner(self._handler.schema(), "global_ground_truth") if name == SENSOR_VIEW else self._handler.schema()
         base = _inner(_inner(truth, "moving_object"), "base")
@@ -112,26 +112,26 @@ class Decoder:
             raise TraceError(
                 f"{path}: the schema {name} in the log has no moving_object with id and base.position: not OSI 3"
             )
-        self._words = words_of(types, GROUND_TRUTH)
+        self._words = build_enum_codes(types, GROUND_TRUTH)
 
-    def frames(self, packets: list[Packet]) -> Frames:
+    def frames(self, packets: list[Packet]) -> FrameBatch:
         """Decode a batch. Errors: `TraceError` naming topic and byte of the first message that cannot be decoded."""
         message = self._decode(packets)
-        truth = child(message, "global_ground_truth") if self._name == SENSOR_VIEW else message
+        truth = struct_field(message, "global_ground_truth") if self._name == SENSOR_VIEW else message
         t_ns, timed = _times(truth)
         hosts = _hosts(truth)
         if self._name == SENSOR_VIEW:
             outer_t, outer_timed = _times(message)
             t_ns, timed = np.where(timed, t_ns, outer_t), timed | outer_timed
             hosts = [inner if inner is not None else outer for inner, outer in zip(hosts, _hosts(message), strict=True)]
-        lists = child(truth, "moving_object")
+        lists = struct_field(truth, "moving_object")
         objects = lists.flatten()
         counts = pc.fill_null(pc.list_value_length(lists), 0).to_numpy(zero_copy_only=False)
-        base = child(objects, "base")
+        base = struct_field(objects, "base")
         numbers, left_out, not_finite = {}, {}, np.zeros(len(objects), np.bool_)
         says_zero = False
         for vector, columns in VECTORS.items():
-            values = child(base, vector)
+            values = struct_field(base, vector)
             present = values.is_valid().to_numpy(zero_copy_only=False)
             for column, coordinate in columns.items():
                 numbers[column], said = _coordinate(values, coordinate)
@@ -142,9 +142,9 @@ class Decoder:
                 empty = np.logical_and.reduce([left_out[column] for column in columns])
                 left_out |= {column: left_out[column] & ~empty for column in columns}
         left_out = {column: rows for column, rows in left_out.items() if rows.any()}
-        ids = child(objects, "id")
+        ids = struct_field(objects, "id")
         frame = np.repeat(np.arange(len(packets)), counts)
-        number = pc.fill_null(child(ids, "value").cast(pa.uint64()), 0).to_numpy(zero_copy_only=False)
+        number = pc.fill_null(struct_field(ids, "value").cast(pa.uint64()), 0).to_numpy(zero_copy_only=False)
         codes = state_codes(self._words, objects)
         if ids.null_count:
             known = ids.is_valid().to_numpy(zero_copy_only=False)
@@ -152,8 +152,8 @@ class Decoder:
             numbers = {name: column[known] for name, column in numbers.items()}
             left_out = {name: rows[known] for name, rows in left_out.items()}
             codes = {name: column[known] for name, column in codes.items()}
-        bulbs = bulbs_of(self._words, child(truth, "traffic_light"), self.lights)
-        return Frames(
+        bulbs = bulbs_of(self._words, struct_field(truth, "traffic_light"), self.lights)
+        return FrameBatch(
             t_ns, timed, hosts, frame, number, ids.null_count, numbers, codes, not_finite, left_out, says_zero, bulbs
         )
 
@@ -171,10 +171,10 @@ class Decoder:
             try:
                 self._handler.list_to_record_batch([packet.data])
             except ValueError as error:
-                raise malformed(self._path, packet, error) from error
+                raise decode_error(self._path, packet, error) from error
 
 
-class Head(NamedTuple):
+class FirstMessage(NamedTuple):
     """What the first message alone says: lanes as a message of their own, the geo reference, lanes that have no width.
 
     `lights`: see `osi_heads.heads`.
@@ -182,42 +182,44 @@ class Head(NamedTuple):
 
     lanes: bytes | None = None
     reference: str | None = None
-    findings: tuple[Finding, ...] = ()
+    findings: tuple[QualityFinding, ...] = ()
     lights: Mapping[str, str] = MappingProxyType({})
 
 
-def head_of(data: bytes, name: str) -> Head:
+def read_first_message(data: bytes, name: str) -> FirstMessage:
     """Return lanes and geo reference (a PROJ string) of a ground truth, or of the one in a sensor view.
 
     The lanes go with their boundaries, signs, lights and road markings. Lanes without boundaries have no width, and nothing can be
     placed on them: they are told, and make no map.
     """
     try:
-        outer = osi_schema.message(name.removeprefix("osi3.")).FromString(data)
+        outer = osi_schema.message_class(name.removeprefix("osi3.")).FromString(data)
     except DecodeError:
-        return Head()  # whether the message is damaged, who reads its objects says
+        return FirstMessage()  # whether the message is damaged, who reads its objects says
     truth = outer.global_ground_truth if name == SENSOR_VIEW else outer
     reference = str(truth.proj_string) or None
-    lights = osi_heads.heads(truth.traffic_light)
+    lights = osi_heads.light_by_bulb(truth.traffic_light)
     if not (truth.lane_boundary or truth.logical_lane_boundary):
         n = len(truth.lane) + len(truth.logical_lane)
         message = f"lanes in the log: {n}, all of them centre lines without boundaries: without a width they make no map: give --map"
-        return Head(None, reference, (Finding("lanes_without_width", "info", message, n),) if n else (), lights)
+        return FirstMessage(
+            None, reference, (QualityFinding("lanes_without_width", "info", message, n),) if n else (), lights
+        )
     if not (truth.lane or truth.logical_lane):
-        return Head(None, reference, lights=lights)
-    lanes, beside = osi_schema.message("GroundTruth")(), osi_schema.message("GroundTruth")()
+        return FirstMessage(None, reference, lights=lights)
+    lanes, beside = osi_schema.message_class("GroundTruth")(), osi_schema.message_class("GroundTruth")()
     for each in _LANES:
         getattr(lanes, each).extend(getattr(truth, each))
     beside.traffic_sign.extend(truth.traffic_sign)
-    beside.traffic_light.extend(osi_heads.named(bulb, lights) for bulb in truth.traffic_light)
+    beside.traffic_light.extend(osi_heads.bulb_for_map(bulb, lights) for bulb in truth.traffic_light)
     beside.road_marking.extend(truth.road_marking)
     # a map is known by the tag that it begins with, so that lanes stand before what stands beside them
     content = b"".join(part.SerializeToString(deterministic=True) for part in (lanes, beside))
-    return Head(content, reference, lights=lights)
+    return FirstMessage(content, reference, lights=lights)
 
 
-def malformed(path: Path, packet: Packet, error: ValueError) -> TraceError:
-    """Say which message cannot be decoded."""
+def decode_error(path: Path, packet: Packet, error: ValueError) -> TraceError:
+    """Return the error for a message that cannot be decoded."""
     where = f"topic {packet.channel.topic!r}, log time {packet.log_time_ns} ns, record at byte {packet.offset}"
     return TraceError(f"{path}: {where}: {error}: record or copy the log again")
 
@@ -233,22 +235,22 @@ def _inner(fields: pa.Schema | pa.DataType | None, name: str) -> pa.DataType | N
 
 def _coordinate(vector: pa.Array, name: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Return a coordinate, NaN where it is not said or not finite, and where it is said."""
-    values = child(vector, name).cast(pa.float64())
+    values = struct_field(vector, name).cast(pa.float64())
     said = values.is_valid().to_numpy(zero_copy_only=False)
     numbers = pc.fill_null(values, float("nan")).to_numpy(zero_copy_only=False)
     return np.where(np.isfinite(numbers), numbers, np.nan), said
 
 
 def _times(message: pa.Array) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-    stamp = child(message, "timestamp")
+    stamp = struct_field(message, "timestamp")
     seconds, nanos = (
-        pc.fill_null(child(stamp, name).cast(pa.int64()), 0).to_numpy(zero_copy_only=False)
+        pc.fill_null(struct_field(stamp, name).cast(pa.int64()), 0).to_numpy(zero_copy_only=False)
         for name in ("seconds", "nanos")
     )
     return seconds * 1_000_000_000 + nanos, stamp.is_valid().to_numpy(zero_copy_only=False)
 
 
 def _hosts(message: pa.Array) -> list[int | None]:
-    host = child(message, "host_vehicle_id")
-    value = pc.fill_null(child(host, "value").cast(pa.uint64()), 0)
+    host = struct_field(message, "host_vehicle_id")
+    value = pc.fill_null(struct_field(host, "value").cast(pa.uint64()), 0)
     return list(pc.if_else(host.is_valid(), value, pa.scalar(None, pa.uint64())).to_pylist())

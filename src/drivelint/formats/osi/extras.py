@@ -16,7 +16,7 @@ import numpy as np
 import pyarrow as pa
 
 from drivelint.drive import conditions
-from drivelint.drive.trace import CLASSES, SIZES, Finding
+from drivelint.drive.trace import ACTOR_CLASSES, SIZE_COLUMNS, QualityFinding
 from drivelint.errors import TraceError
 
 if TYPE_CHECKING:
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import Recording, Trace
 
-TRACE: Final = "drivelint.trace"
-ACTORS: Final = "drivelint.actors"
-EVENT: Final = "drivelint.DeclaredEvent"
-OF_THE_EGO: Final = frozenset({"no_ego", "ego_count", "no_indicator", "no_brake_light"})
+TRACE_RECORD: Final = "drivelint.trace"
+ACTORS_RECORD: Final = "drivelint.actors"
+EVENT_MESSAGE: Final = "drivelint.DeclaredEvent"
+EGO_CHECK_IDS: Final = frozenset({"no_ego", "ego_count", "no_indicator", "no_brake_light"})
 """Findings about whoever was the ego: found anew for whoever is, and so not carried."""
-OPTIONAL: Final = ("z_m",)
+OPTIONAL_COORDINATES: Final = ("z_m",)
 """Coordinates that OSI has no way to leave out of a vector; named in the record where no state has them."""
 
 
@@ -51,7 +51,7 @@ class _Said(msgspec.Struct, frozen=True, kw_only=True):
     utc_start_ns: int | None = None
     unknown: tuple[str, ...] = ()
     conditions: dict[str, str] = {}
-    quality: tuple[Finding, ...] = ()
+    quality: tuple[QualityFinding, ...] = ()
 
 
 class Event(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):
@@ -64,11 +64,11 @@ class Event(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tru
 
 
 # planned here, under the import's lock: see ingest.mapping
-PLANNED: Final = tuple(msgspec.json.Decoder(kind) for kind in (_Actor, _Said, Event))
+DECODERS: Final = tuple(msgspec.json.Decoder(kind) for kind in (_Actor, _Said, Event))
 EVENT_SCHEMA: Final = msgspec.json.encode(msgspec.json.schema(Event), order="sorted")
 
 
-def records(trace: Trace, numbers: Mapping[str, int]) -> dict[str, dict[str, str]]:
+def metadata_records(trace: Trace, numbers: Mapping[str, int]) -> dict[str, dict[str, str]]:
     """Return the metadata records of a trace; `numbers`: actor id -> OSI id."""
     log = trace.tables["data_log"].to_pylist()[0]
     states = trace.tables["actor_state"]
@@ -76,8 +76,8 @@ def records(trace: Trace, numbers: Mapping[str, int]) -> dict[str, dict[str, str
         "source": log["file_name"],
         "source_sha256": log["sha256"],
         "source_format": log["format"],
-        "quality": findings(trace).drop_columns("drive_id").to_pylist(),
-        "unknown": [name for name in OPTIONAL if states[name].null_count == states.num_rows],
+        "quality": ego_independent_quality(trace).drop_columns("drive_id").to_pylist(),
+        "unknown": [name for name in OPTIONAL_COORDINATES if states[name].null_count == states.num_rows],
     }
     holds = {r["condition"]: r["value"] for r in trace.tables["drive_condition"].to_pylist() if r["source"] == "trace"}
     if holds:
@@ -89,29 +89,30 @@ def records(trace: Trace, numbers: Mapping[str, int]) -> dict[str, dict[str, str
             said[name] = log[name]
     actors = trace.tables["actor"].drop_columns("drive_id").to_pylist()
     return {
-        TRACE: {name: msgspec.json.encode(value).decode() for name, value in said.items()},
-        ACTORS: {str(numbers[row["actor_id"]]): msgspec.json.encode(row).decode() for row in actors},
+        TRACE_RECORD: {name: msgspec.json.encode(value).decode() for name, value in said.items()},
+        ACTORS_RECORD: {str(numbers[row["actor_id"]]): msgspec.json.encode(row).decode() for row in actors},
     }
 
 
-def findings(trace: Trace) -> pa.Table:
+def ego_independent_quality(trace: Trace) -> pa.Table:
     """Return the rows of `quality` that a converted log carries: those that do not depend on who is the ego."""
     rows = trace.tables["quality"]
-    return rows.filter(pa.array([check not in OF_THE_EGO for check in rows["check_id"].to_pylist()], pa.bool_()))
+    return rows.filter(pa.array([check not in EGO_CHECK_IDS for check in rows["check_id"].to_pylist()], pa.bool_()))
 
 
-def apply(path: Path, metadata: Mapping[str, Mapping[str, str]], recording: Recording) -> None:
-    """Give a recording of OSI messages what its metadata records add. Errors: `TraceError` where they do not fit it."""
-    if TRACE in metadata:
-        _apply_trace(path, _read(path, TRACE, metadata[TRACE], _Said), recording)
-    if ACTORS in metadata:
+def apply_metadata(path: Path, metadata: Mapping[str, Mapping[str, str]], recording: Recording) -> None:
+    """Add what the metadata records say to a recording of OSI messages. Errors: `TraceError` where they do not fit it."""
+    if TRACE_RECORD in metadata:
+        _apply_trace(path, _read(path, TRACE_RECORD, metadata[TRACE_RECORD], _Said), recording)
+    if ACTORS_RECORD in metadata:
         rows = {
-            number: _read(path, f"{ACTORS}, actor {number}", text, _Actor) for number, text in metadata[ACTORS].items()
+            number: _read(path, f"{ACTORS_RECORD}, actor {number}", text, _Actor)
+            for number, text in metadata[ACTORS_RECORD].items()
         }
         _apply_actors(path, rows, recording)
 
 
-def events(path: Path, messages: Sequence[bytes]) -> pa.Table | None:
+def read_declared_events(path: Path, messages: Sequence[bytes]) -> pa.Table | None:
     """Return declared events as rows; None for no message. Errors: `TraceError` for one that cannot be read."""
     if not messages:
         return None
@@ -130,8 +131,8 @@ def events(path: Path, messages: Sequence[bytes]) -> pa.Table | None:
     )
 
 
-def conditions_of(path: Path, rows: Iterable[tuple[str | None, str | None]]) -> dict[str, str]:
-    """Return what a log says of its drive in any case, condition -> word.
+def parse_conditions(path: Path, rows: Iterable[tuple[str | None, str | None]]) -> dict[str, str]:
+    """Return the drive's conditions that a log gives, by name, in drivelint's spelling.
 
     Errors: `TraceError` for what is not understood.
     """
@@ -139,8 +140,8 @@ def conditions_of(path: Path, rows: Iterable[tuple[str | None, str | None]]) -> 
     for given in rows:
         if given[0] is None or given[1] is None:
             raise TraceError(f"{path}: a condition of the drive without a name or a value: give both")
-        name, word = conditions.spelled(given[0], given[1])
-        if wrong := conditions.unknown(name) or conditions.problem(name, word):
+        name, word = conditions.canonical_spelling(given[0], given[1])
+        if wrong := conditions.condition_problem(name) or conditions.value_problem(name, word):
             raise TraceError(f"{path}: condition of the drive: {wrong}")
         if found.setdefault(name, word) != word:
             raise TraceError(f"{path}: the drive's {name} is both {found[name]!r} and {word!r}: give one")
@@ -148,7 +149,7 @@ def conditions_of(path: Path, rows: Iterable[tuple[str | None, str | None]]) -> 
 
 
 def _apply_trace(path: Path, said: _Said, recording: Recording) -> None:
-    recording.conditions = conditions_of(path, said.conditions.items())
+    recording.conditions = parse_conditions(path, said.conditions.items())
     if said.map_offset_m is not None:
         dx, dy = recording.map_offset = said.map_offset_m
         recording.notes.append(f"the log moves the map by ({dx:+g}, {dy:+g}) m")
@@ -156,7 +157,7 @@ def _apply_trace(path: Path, said: _Said, recording: Recording) -> None:
         recording.sensor_range_m = said.sensor_range_m
     if said.utc_start_ns is not None:
         recording.utc_start_ns = said.utc_start_ns
-    for name in set(said.unknown) & set(OPTIONAL):
+    for name in set(said.unknown) & set(OPTIONAL_COORDINATES):
         recording.states.numbers[name] = np.full(len(recording.states), np.nan)
     recording.findings += said.quality
 
@@ -164,13 +165,17 @@ def _apply_trace(path: Path, said: _Said, recording: Recording) -> None:
 def _apply_actors(path: Path, rows: Mapping[str, _Actor], recording: Recording) -> None:
     names = [rows[number].actor_id if number in rows else number for number in recording.states.ids]
     if len(set(names)) < len(names) or len({row.actor_id for row in rows.values()}) < len(rows):
-        raise TraceError(f"{path}: the metadata record {ACTORS} gives two actors one name: convert the log again")
+        raise TraceError(
+            f"{path}: the metadata record {ACTORS_RECORD} gives two actors one name: convert the log again"
+        )
     for row in rows.values():
-        if row.actor_class is not None and row.actor_class not in CLASSES:
-            raise TraceError(f"{path}: the metadata record {ACTORS} has the class {row.actor_class!r}: not one of ours")
+        if row.actor_class is not None and row.actor_class not in ACTOR_CLASSES:
+            raise TraceError(
+                f"{path}: the metadata record {ACTORS_RECORD} has the class {row.actor_class!r}: not one of ours"
+            )
     recording.states.ids = names
     known = sorted(rows.values(), key=lambda row: row.actor_id)
-    columns = ("actor_id", "actor_class", *SIZES, "is_ego")
+    columns = ("actor_id", "actor_class", *SIZE_COLUMNS, "is_ego")
     recording.actors = pa.table({name: [getattr(row, name) for row in known] for name in columns})
     recording.ego_ids = [row.actor_id for row in known if row.is_ego]
 

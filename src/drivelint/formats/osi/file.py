@@ -8,26 +8,26 @@ from typing import TYPE_CHECKING
 import numpy as np
 from mcap.records import Channel
 
-from drivelint.drive.trace import Finding
+from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import Packet
-from drivelint.formats.osi.decode import GROUND_TRUTH, SENSOR_VIEW, Decoder, Head, head_of
-from drivelint.formats.osi.reader import BATCH_BYTES, joined
-from drivelint.formats.osi.schema import reading_set
+from drivelint.formats.osi.decode import GROUND_TRUTH, SENSOR_VIEW, Decoder, FirstMessage, read_first_message
+from drivelint.formats.osi.reader import BATCH_BYTES, join_batches
+from drivelint.formats.osi.schema import reader_descriptor_set
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
     from drivelint.drive.trace import Recording
-    from drivelint.formats.osi.decode import Frames
+    from drivelint.formats.osi.decode import FrameBatch
 
 _LENGTH = 4
 _FIRST_TAGS = frozenset({0x0A, 0x12, 0x1A})
 """What an OSI message begins with: its version, time stamp or an id (fields 1 to 3, length-delimited)."""
 
 
-def looks_like(head: bytes, size: int) -> bool:
+def is_osi_trace(head: bytes, size: int) -> bool:
     """Say whether a file of `size` bytes that begins with `head` can be an OSI trace: a length that fits, then a message."""
     length = int.from_bytes(head[:_LENGTH], "little")
     return 2 <= length <= size - _LENGTH and len(head) > _LENGTH and head[_LENGTH] in _FIRST_TAGS
@@ -40,27 +40,27 @@ def read(path: Path) -> Recording:
     that is neither kind, or messages without time stamps.
     """
     channel = Channel(id=1, topic=path.name, message_encoding="protobuf", schema_id=1, metadata={})
-    batches: list[Frames] = []
+    batches: list[FrameBatch] = []
     decoder: Decoder | None = None
-    head = Head()
+    head = FirstMessage()
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         for packets in _batches(path, channel, content):
             if decoder is None:
                 decoder, name = _decoder(path, packets)
-                head = head_of(packets[0].data, name)
+                head = read_first_message(packets[0].data, name)
                 decoder.lights = head.lights
             batches.append(decoder.frames(packets))
     n = sum(len(batch.t_ns) for batch in batches)
     untimed = n - sum(int(batch.timed.sum()) for batch in batches)
     if untimed:
         raise TraceError(f"{path}: {untimed} of {n} messages have no time stamp, and the file has none of its own")
-    recording = joined(batches, np.zeros(n, np.uint64))
+    recording = join_batches(batches, np.zeros(n, np.uint64))
     recording.format = "osi-file"
     recording.frame_times = None
     recording.embedded_map, recording.geo_reference = head.lanes, head.reference
     recording.findings += head.findings
     recording.findings.append(
-        Finding("unprotected", "info", "the file has no checksums: damage inside a message may go unseen")
+        QualityFinding("unprotected", "info", "the file has no checksums: damage inside a message may go unseen")
     )
     return recording
 
@@ -90,7 +90,7 @@ def _batches(path: Path, channel: Channel, content: mmap.mmap) -> Iterator[list[
 def _decoder(path: Path, packets: list[Packet]) -> tuple[Decoder, str]:
     """Return the decoder of the kind of message in which objects with positions are found, and its name."""
     for name in (GROUND_TRUTH, SENSOR_VIEW):
-        decoder = Decoder(path, 1, name, reading_set())
+        decoder = Decoder(path, 1, name, reader_descriptor_set())
         try:
             frames = decoder.frames(packets)
         except TraceError:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.trace import BRAKE_LIGHTS, CLASSES, INDICATORS
+from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
 from drivelint.formats.osi.schema import ENUMS, OPEN_DRIVE_REFERENCE, VERSION
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-ROWS: Final = 1 << 14
+BLOCK_ROWS: Final = 1 << 14
 """Objects laid out at a time: enough to be quick, few enough to need only some tens of MB."""
 _VARINT, _FIXED64, _BYTES = 0, 1, 2
 _VECTORS: Final[dict[str, tuple[int, tuple[tuple[int, str], ...]]]] = {
@@ -101,7 +101,7 @@ class Slot:
     size: int
 
 
-Part = bytes | Slot
+LayoutPart = bytes | Slot
 
 
 def varint(value: int) -> bytes:
@@ -122,23 +122,23 @@ def nested(number: int, content: bytes) -> bytes:
     return _tag(number, _BYTES) + varint(len(content)) + content
 
 
-def whole(number: int, value: int) -> bytes:
+def integer(number: int, value: int) -> bytes:
     """Return a field that holds a non-negative integer or an enumeration."""
     return _tag(number, _VARINT) + varint(value)
 
 
-def _nested(number: int, parts: Sequence[Part]) -> list[Part]:
+def _nested(number: int, parts: Sequence[LayoutPart]) -> list[LayoutPart]:
     size = sum(len(part) if isinstance(part, bytes) else part.size for part in parts)
     return [_tag(number, _BYTES) + varint(size), *parts]
 
 
-def head(t_ns: int, host: int | None) -> bytes:
+def ground_truth_head(t_ns: int, host: int | None) -> bytes:
     """Return the beginning of a ground truth: version, time stamp and, where there is one, the host vehicle's id."""
-    version = b"".join(whole(number, value) for number, value in enumerate(VERSION, 1))
+    version = b"".join(integer(number, value) for number, value in enumerate(VERSION, 1))
     seconds, nanos = divmod(t_ns, 1_000_000_000)
     # a negative int64 is written as its two's complement
-    stamp = whole(1, seconds % (1 << 64)) + whole(2, nanos)
-    return nested(1, version) + nested(2, stamp) + (b"" if host is None else nested(3, whole(1, host)))
+    stamp = integer(1, seconds % (1 << 64)) + integer(2, nanos)
+    return nested(1, version) + nested(2, stamp) + (b"" if host is None else nested(3, integer(1, host)))
 
 
 def traffic_light(signal_id: str, state: str | None, numbers: Sequence[int]) -> bytes:
@@ -148,8 +148,8 @@ def traffic_light(signal_id: str, state: str | None, numbers: Sequence[int]) -> 
     """
     reference = nested(5, nested(2, OPEN_DRIVE_REFERENCE.encode()) + nested(3, signal_id.encode()))
     bulbs = (
-        nested(1, whole(1, number))
-        + nested(3, whole(1, _COLOR[f"COLOR_{color}"]) + whole(3, _MODE[f"MODE_{mode}"]))
+        nested(1, integer(1, number))
+        + nested(3, integer(1, _COLOR[f"COLOR_{color}"]) + integer(3, _MODE[f"MODE_{mode}"]))
         + reference
         for number, (color, mode) in zip(numbers, _BULBS[state], strict=False)
     )
@@ -165,8 +165,8 @@ def moving_objects(objects: Objects) -> tuple[NDArray[np.uint8], NDArray[np.int6
     data = np.empty(int(starts[-1]), np.uint8)
     for k, layout in enumerate(layouts):
         rows = np.flatnonzero(shape == k)
-        for first in range(0, len(rows), ROWS):
-            some = rows[first : first + ROWS]
+        for first in range(0, len(rows), BLOCK_ROWS):
+            some = rows[first : first + BLOCK_ROWS]
             data[starts[some][:, None] + np.arange(sizes[k])] = _filled(layout, objects, some)
     return data, starts
 
@@ -180,15 +180,15 @@ def _shape(objects: Objects) -> NDArray[np.int64]:
         key |= (known | (column == "z_m" and objects.heights)).astype(np.int64) << i
     for i, code in enumerate(("indicator", "brake_light"), 4 + len(_ALL)):
         key |= (objects.codes[code] >= 0).astype(np.int64) << i
-    vehicle = np.array([*(word in _VEHICLE for word in CLASSES), False])[objects.codes["actor_class"]]
+    vehicle = np.array([*(word in _VEHICLE for word in ACTOR_CLASSES), False])[objects.codes["actor_class"]]
     return key | vehicle.astype(np.int64) << (6 + len(_ALL))
 
 
-def _layout(key: int) -> list[Part]:
+def _layout(key: int) -> list[LayoutPart]:
     """Return the parts of an object of one shape, from the tag of the field that holds it on."""
     known = {column for i, column in enumerate(_ALL, 4) if key >> i & 1}
-    parts: list[Part] = _nested(1, [_tag(1, _VARINT), Slot("number", key & 15)])
-    base: list[Part] = []
+    parts: list[LayoutPart] = _nested(1, [_tag(1, _VARINT), Slot("number", key & 15)])
+    base: list[LayoutPart] = []
     for number, coordinates in _VECTORS.values():
         must = {column for _, column in coordinates} - _OPTIONAL
         written = [(n, column) for n, column in coordinates if column in known]
@@ -199,20 +199,20 @@ def _layout(key: int) -> list[Part]:
     parts += [_tag(3, _VARINT), Slot("type", 1)]
     if not (lit := key >> (4 + len(_ALL))):
         return _nested(5, parts)
-    classification: list[Part] = [_tag(1, _VARINT), Slot("vehicle", 1)]
+    classification: list[LayoutPart] = [_tag(1, _VARINT), Slot("vehicle", 1)]
     if lit & 3:
-        lights: list[Part] = [_tag(1, _VARINT), Slot("indicator", 1)] if lit & 1 else []
+        lights: list[LayoutPart] = [_tag(1, _VARINT), Slot("indicator", 1)] if lit & 1 else []
         lights += [_tag(7, _VARINT), Slot("brake_light", 1)] if lit & 2 else []
         classification += _nested(2, lights)
     parts += _nested(6, classification)
     return _nested(5, parts)
 
 
-def _size(part: Part) -> int:
+def _size(part: LayoutPart) -> int:
     return len(part) if isinstance(part, bytes) else part.size
 
 
-def _filled(layout: Sequence[Part], objects: Objects, rows: NDArray[np.intp]) -> NDArray[np.uint8]:
+def _filled(layout: Sequence[LayoutPart], objects: Objects, rows: NDArray[np.intp]) -> NDArray[np.uint8]:
     """Return the bytes of objects of one shape, a row each."""
     template = b"".join(part if isinstance(part, bytes) else bytes(part.size) for part in layout)
     table = np.tile(np.frombuffer(template, np.uint8), (len(rows), 1))
@@ -232,8 +232,8 @@ def _numbers(slot: Slot, objects: Objects, rows: NDArray[np.intp]) -> NDArray[np
     if slot.name in objects.values:
         return np.ascontiguousarray(objects.values[slot.name][rows], "<f8").view(np.uint8).reshape(-1, 8)
     words, known, code = {
-        "type": (CLASSES, _TYPE, "actor_class"),
-        "vehicle": (CLASSES, _VEHICLE, "actor_class"),
+        "type": (ACTOR_CLASSES, _TYPE, "actor_class"),
+        "vehicle": (ACTOR_CLASSES, _VEHICLE, "actor_class"),
         "indicator": (INDICATORS, _INDICATOR, "indicator"),
         "brake_light": (BRAKE_LIGHTS, _BRAKE, "brake_light"),
     }[slot.name]

@@ -1,4 +1,4 @@
-"""Traffic lights of OSI, which are single bulbs, as the lights that drivers see.
+"""This module groups OSI's bulbs into the traffic lights that drivers see.
 
 A bulb that refers to an OpenDRIVE signal belongs to that one. Of others, those that hold for the same lanes, show the same icon,
 face the same way and hang beside each other are one light.
@@ -18,8 +18,8 @@ _BESIDE_M: Final = 0.6  # from the middle of a bulb to that of the next one
 _TURNED_RAD: Final = 0.2
 
 
-def heads(bulbs: Iterable[Any]) -> dict[str, str]:
-    """Return the id of each bulb that belongs to a light of several -> that light's id, the smallest of its bulbs' ids."""
+def light_by_bulb(bulbs: Iterable[Any]) -> dict[str, str]:
+    """Group the bulbs into traffic lights, and return each grouped bulb's id with its light's id."""
     rows: dict[Any, list[Any]] = {}
     for bulb in bulbs:
         said = bulb.classification
@@ -44,8 +44,8 @@ def heads(bulbs: Iterable[Any]) -> dict[str, str]:
     return found
 
 
-def named(bulb: Any, names: Mapping[str, str]) -> Any:
-    """Return a bulb for a map: with its light's id, if it belongs to one of `names`, and without what it shows just now."""
+def bulb_for_map(bulb: Any, names: Mapping[str, str]) -> Any:
+    """Return a copy of a bulb for a map, with its light's id and without its state."""
     kept = type(bulb).FromString(bulb.SerializeToString())
     for field in ("color", "mode"):
         kept.classification.ClearField(field)

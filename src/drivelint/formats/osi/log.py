@@ -1,4 +1,4 @@
-"""A trace as an MCAP log of ASAM OSI ground truth: any OSI tool reads the messages, drivelint also what they cannot say."""
+"""This module writes a trace as an MCAP log of ASAM OSI ground truth, with drivelint's own records beside it."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from mcap.writer import CompressionType, Writer
 
-from drivelint.drive.trace import BRAKE_LIGHTS, CLASSES, INDICATORS, NUMBERS, SIZES
+from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIZE_COLUMNS, STATE_COLUMNS
 from drivelint.formats.osi import extras
-from drivelint.formats.osi.frames import Objects, head, moving_objects, nested, traffic_light
+from drivelint.formats.osi.frames import Objects, ground_truth_head, moving_objects, nested, traffic_light
 from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, VERSION, descriptor_set
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from drivelint.road.contract import MapSource
 
 LIBRARY: Final = "drivelint convert"
-TOPIC: Final = "ground_truth"
+GROUND_TRUTH_TOPIC: Final = "ground_truth"
 MAP_TOPIC: Final = "ground_truth_map"
 EVENT_TOPIC: Final = "declared_event"
 BATCH_STATES: Final = 200_000
@@ -44,11 +44,11 @@ def write(sink: BinaryIO, trace: Trace, road: MapSource | None) -> int:
     version = ".".join(map(str, VERSION))
     bounds = dict.fromkeys(("version", "min_osi_version", "max_osi_version"), version)
     writer.add_metadata("net.asam.osi.trace", {**bounds, "description": trace.path.name})
-    for name, content in extras.records(trace, numbers).items():
+    for name, content in extras.metadata_records(trace, numbers).items():
         writer.add_metadata(name, content)
     described = {"net.asam.osi.trace.channel.osi_version": version}
     truth = writer.register_channel(
-        TOPIC, "protobuf", writer.register_schema(GROUND_TRUTH, "protobuf", descriptor_set()), described
+        GROUND_TRUTH_TOPIC, "protobuf", writer.register_schema(GROUND_TRUTH, "protobuf", descriptor_set()), described
     )
     earliest = _earliest(trace)
     if road is not None:
@@ -109,7 +109,7 @@ def _frames(trace: Trace, numbers: dict[str, int]) -> Iterator[tuple[int, bytes]
         for k in range(begin, end):
             a, b = starts[first[k] - first[begin]], starts[last[k] - first[begin]]
             t = int(times[k])
-            yield t, b"".join((head(t, host), content[a:b], *lights.get(t, ())))
+            yield t, b"".join((ground_truth_head(t, host), content[a:b], *lights.get(t, ())))
         begin = end
 
 
@@ -120,10 +120,10 @@ def _columns(
     states, actors = trace.tables["actor_state"], trace.tables["actor"]
     row = pc.index_in(states["actor_id"], value_set=actors["actor_id"].combine_chunks()).to_numpy()
     ids = np.array([numbers[name] for name in actors["actor_id"].to_pylist()], np.uint64)
-    columns = {name: _floats(states[name]) for name in NUMBERS}
-    columns |= {name: _floats(actors[name])[row] for name in SIZES}
+    columns = {name: _floats(states[name]) for name in STATE_COLUMNS}
+    columns |= {name: _floats(actors[name])[row] for name in SIZE_COLUMNS}
     codes = {
-        "actor_class": _codes(actors["actor_class"], CLASSES)[row],
+        "actor_class": _codes(actors["actor_class"], ACTOR_CLASSES)[row],
         "indicator": _codes(states["indicator"], INDICATORS),
         "brake_light": _codes(states["brake_light"], BRAKE_LIGHTS),
     }
@@ -156,7 +156,7 @@ def _events(writer: Writer, trace: Trace, shift: int) -> None:
     rows = trace.tables["declared_event"].drop_columns("drive_id").to_pylist()
     if not rows:
         return
-    schema = writer.register_schema(extras.EVENT, "jsonschema", extras.EVENT_SCHEMA)
+    schema = writer.register_schema(extras.EVENT_MESSAGE, "jsonschema", extras.EVENT_SCHEMA)
     channel = writer.register_channel(EVENT_TOPIC, "json", schema)
     for row in rows:
         writer.add_message(channel, row["t_ns"] - shift, msgspec.json.encode(row), row["t_ns"] - shift)

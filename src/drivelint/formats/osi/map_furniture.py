@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.road.boundary_lanes import BoundedLane
-    from drivelint.road.quality import Quality
+    from drivelint.road.quality import MapQuality
 
     Floats = NDArray[np.float64]
     Row = dict[str, Any]
@@ -32,7 +32,7 @@ def read(
     lanes: Sequence[BoundedLane],
     covers: Mapping[int, Sequence[int]],
     offset: tuple[float, float],
-    quality: Quality,
+    quality: MapQuality,
 ) -> dict[str, list[Row]]:
     """Return the rows of traffic_signal, stop_line and crossing. `covers`: physical lane -> logical lanes in its place."""
     road = _Road(lanes, covers, np.array(offset))
@@ -47,9 +47,9 @@ def read(
         if not np.isfinite(_outline(mark, road)).all():
             message = f"road marking {mark.id.value} is left out: the log does not say where it lies"
             quality.add("road_marking_without_place", "warning", None, message)
-        elif said.type == kinds.SYMBOL and said.traffic_main_sign_type == kinds.ZEBRA:
+        elif said.type == kinds.SYMBOL_MARKING and said.traffic_main_sign_type == kinds.ZEBRA:
             crossings += _zebra(mark, road)
-        elif (said.type == kinds.SYMBOL and said.traffic_main_sign_type == kinds.STOP_SIGN) or _code(
+        elif (said.type == kinds.SYMBOL_MARKING and said.traffic_main_sign_type == kinds.STOP_SIGN) or _code(
             said
         ) == "stop_line":
             stops += _stop_line(mark, road, quality)
@@ -137,7 +137,7 @@ def _code(said: Any) -> str | None:
     return kind_of(said.country, said.code, "") if said.country and said.code else None
 
 
-def _sign(sign: Any, road: _Road, quality: Quality) -> Iterable[Row]:
+def _sign(sign: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
     said, base = sign.main_sign.classification, sign.main_sign.base
     if said.is_out_of_service:
         return []
@@ -146,11 +146,11 @@ def _sign(sign: Any, road: _Road, quality: Quality) -> Iterable[Row]:
         message = f"traffic sign {sign.id.value} is assigned to no lane of the map: nobody knows for whom it holds"
         quality.add("signal_without_lane", "warning", None, message)
     row = {
-        "signal_id": str(sign.id.value), "kind": kinds.SIGNS.get(said.type) or _code(said),
+        "signal_id": str(sign.id.value), "kind": kinds.SIGN_KINDS.get(said.type) or _code(said),
         "country": said.country.lower() or None if said.code else "osi", "type": said.code or str(said.type),
         "subtype": said.sub_code or None, "value": said.value.value if said.value.value > 0 else None,
         "unit": kinds.UNITS.get(said.value.value_unit) if said.value.value > 0 else None,
-        "dynamic": said.variability in kinds.CHANGING, "turns": None,
+        "dynamic": said.variability in kinds.VARIABLE_SIGN, "turns": None,
     }  # fmt: skip
     return [_placed(row, lane, road.place(base)) for lane in lanes]
 
@@ -166,16 +166,16 @@ def _heads(bulbs: Iterable[Any]) -> dict[str, list[Any]]:
     return heads
 
 
-def _light(name: str, bulbs: Sequence[Any], road: _Road, quality: Quality) -> Iterable[Row]:
+def _light(name: str, bulbs: Sequence[Any], road: _Road, quality: MapQuality) -> Iterable[Row]:
     lanes = _once([lane for bulb in bulbs for lane in road.assigned(bulb.classification, bulb.base)])
     if not lanes:
         message = f"traffic light {name} is assigned to no lane of the map: nobody knows for whom it holds"
         quality.add("signal_without_lane", "warning", None, message)
     icons = {int(bulb.classification.icon) for bulb in bulbs}
-    arrows = icons - {kinds.FULL}
+    arrows = icons - {kinds.FULL_LIGHT_ICON}
     turns = {turn for icon in arrows or icons for turn in kinds.TURNS.get(icon, ())}
     row = {
-        "signal_id": name, "kind": next((kinds.LIGHTS[icon] for icon in sorted(icons) if icon in kinds.LIGHTS), None),
+        "signal_id": name, "kind": next((kinds.LIGHT_KINDS[icon] for icon in sorted(icons) if icon in kinds.LIGHT_KINDS), None),
         "country": "osi", "type": None, "subtype": None, "value": None, "unit": None, "dynamic": True,
         "turns": sorted(turns) if turns and icons <= kinds.TURNS.keys() else None,
     }  # fmt: skip
@@ -222,7 +222,7 @@ def _over(mark: Any, area: Any, road: _Road) -> list[tuple[BoundedLane, float]]:
     return found
 
 
-def _stop_line(mark: Any, road: _Road, quality: Quality) -> Iterable[Row]:
+def _stop_line(mark: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
     """Return a row for each lane that a stop line lies across: on half of the lane's width, or with half of its own."""
     corners = _outline(mark, road)
     middle = corners.mean(axis=0)

@@ -17,9 +17,9 @@ from drivelint.formats.osi import map_furniture as osi_furniture
 from drivelint.formats.osi import map_logical as osi_logical
 from drivelint.formats.osi import map_physical as osi_physical
 from drivelint.formats.osi import schema as osi_schema
-from drivelint.road.boundary_lanes import build, side_driven_on, tables
-from drivelint.road.contract import Environment, MapSource, Request, environment_id
-from drivelint.road.quality import Quality
+from drivelint.road.boundary_lanes import build_lanes, side_driven_on, tables
+from drivelint.road.contract import MapOptions, MapSource, MapTables, environment_id
+from drivelint.road.quality import MapQuality
 from drivelint.road.tables import from_rows
 
 if TYPE_CHECKING:
@@ -41,10 +41,10 @@ class OsiLanesReader:
 
     format = "osi"
 
-    def read(self, source: MapSource, request: Request) -> Environment:
+    def read(self, source: MapSource, request: MapOptions) -> MapTables:
         """Return the map's tables; `MapError` saying why where no lane for driving can be built."""
-        quality = Quality()
-        truth = osi_schema.message("GroundTruth").FromString(source.content)
+        quality = MapQuality()
+        truth = osi_schema.message_class("GroundTruth").FromString(source.content)
         logical = osi_logical.read(truth, quality)
         physical = osi_physical.read(truth, quality)
         covers = _covers(logical, physical)
@@ -53,15 +53,15 @@ class OsiLanesReader:
             message = f"lane {i} is left out: a logical lane of another place has the same id"
             quality.add("invalid_lane", "error", str(i), message)
             del alone[i]
-        ways = osi_physical.ways(truth, alone)
+        ways = osi_physical.intersection_lanes(truth, alone)
         read = [*osi_logical.lanelets(logical, truth), *osi_physical.lanelets(alone, truth, ways)]
-        lanes = build(read, request.offset, quality)
+        lanes = build_lanes(read, request.offset, quality)
         if not any(lane.drivable for lane in lanes):
             raise MapError(f"map {source.name}: {_why_none(truth, quality)}")
         heights = {str(i): lane.centre for i, lane in alone.items()} | {
             str(i): lane.centre for i, lane in logical.items()
         }
-        heights |= {way.lanelet_id: osi_physical.way_heights(way.lanelet_id, alone) for way in ways}
+        heights |= {way.lanelet_id: osi_physical.intersection_lane_heights(way.lanelet_id, alone) for way in ways}
         for lane in lanes:
             lane.z_m = _height(heights[lane.lanelet_id], lane.line.centre - request.offset)
         handedness, how = _handedness(lanes, request, quality)
@@ -79,7 +79,7 @@ class OsiLanesReader:
         }  # fmt: skip
         result = tables(name, lanes) | {table: from_rows(table, name, content) for table, content in rows.items()}
         result["map_quality"] = quality.table(name)
-        return Environment(name, handedness, how, result)
+        return MapTables(name, handedness, how, result)
 
 
 def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalLane]) -> dict[int, list[int]]:
@@ -124,7 +124,7 @@ def _height(line: Floats, points: Floats) -> Floats:
     return np.asarray(np.interp(at, s, line[:, 2]), np.float64)
 
 
-def _why_none(truth: Any, quality: Quality) -> str:
+def _why_none(truth: Any, quality: MapQuality) -> str:
     """Say why no lane for driving could be built: the most frequent reason."""
     n = len(truth.logical_lane) + len(truth.lane)
     reasons = Counter(
@@ -136,7 +136,7 @@ def _why_none(truth: Any, quality: Quality) -> str:
     return f"none of the log's own {n} lanes is one for driving that can be built, {most} of them because {reason}: give --map"
 
 
-def _handedness(lanes: list[BoundedLane], request: Request, quality: Quality) -> tuple[str, str]:
+def _handedness(lanes: list[BoundedLane], request: MapOptions, quality: MapQuality) -> tuple[str, str]:
     """Return the side driven on and how it was found: option, lanes beside each other, default."""
     sides = side_driven_on(lanes)
     if request.handedness != "auto":

@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from drivelint.road.quality import Quality
+    from drivelint.road.quality import MapQuality
 
     Floats = NDArray[np.float64]
 
 _SHORT_M = 0.5  # a boundary that ends further than this before its lane does not reach its end
-NEAR_M = 5.0  # a lane that begins further away from where another ends does not follow it
+MAX_LINK_GAP_M = 5.0  # a lane that begins further away from where another ends does not follow it
 
 
 class UnbuildableError(ValueError):
@@ -62,7 +62,7 @@ class LogicalLane:
         return at if self.along > 0 else 1.0 - at
 
 
-def read(truth: Any, quality: Quality) -> dict[int, LogicalLane]:
+def read(truth: Any, quality: MapQuality) -> dict[int, LogicalLane]:
     """Return the logical lanes that have a shape and a direction, by id; what is wrong with the others goes to `quality`."""
     bounds = {bound.id.value: bound for bound in truth.logical_lane_boundary}
     found: dict[int, LogicalLane] = {}
@@ -85,11 +85,11 @@ def lanelets(lanes: Mapping[int, LogicalLane], truth: Any) -> Iterator[BoundedLa
     told = any(bound.physical_boundary_id for bound in bounds.values())
     linked = _linked(lanes)
     for name, lane in lanes.items():
-        kind = kinds.LANES.get(lane.message.type, "none")
+        kind = kinds.LANE_KINDS.get(lane.message.type, "none")
         beside = [_neighbour(lane, side, lanes) for side in _sides(lane, "adjacent_lane")]
         yield BoundedLane(
-            str(name), lane.left[:, :2], lane.right[:, :2], kind, kind in kinds.DRIVEN,
-            bidirectional=kind in kinds.DRIVEN and lane.message.move_direction == kinds.BOTH,
+            str(name), lane.left[:, :2], lane.right[:, :2], kind, kind in kinds.DRIVABLE,
+            bidirectional=kind in kinds.DRIVABLE and lane.message.move_direction == kinds.BOTH,
             junction_id=next((f"j{i}" for i in lane.physical if i in areas), None),
             successors=tuple(str(b) for a, b in linked if a == name),
             left_id=beside[0][0], left_against=beside[0][1], right_id=beside[1][0], right_against=beside[1][1],
@@ -99,7 +99,7 @@ def lanelets(lanes: Mapping[int, LogicalLane], truth: Any) -> Iterator[BoundedLa
 
 def _lane(message: Any, bounds: Mapping[int, Any]) -> LogicalLane:
     """Return a lane in the direction of travel. Errors: `UnbuildableError` saying what it lacks."""
-    driven = kinds.LANES.get(message.type) in kinds.DRIVEN
+    driven = kinds.LANE_KINDS.get(message.type) in kinds.DRIVABLE
     way = message.move_direction
     if driven and way not in {kinds.INCREASING, kinds.DECREASING, kinds.BOTH}:
         raise UnbuildableError("its move_direction does not say in which direction it is driven")
@@ -176,7 +176,7 @@ def _follows(lane: LogicalLane, other: LogicalLane) -> bool:
     """Say whether a lane ends where another begins and not, as two that run towards each other, where it ends."""
     end = lane.centre[-1, :2]
     to_begin, to_end = (float(np.linalg.norm(end - other.centre[k, :2])) for k in (0, -1))
-    return to_begin < NEAR_M and to_begin <= to_end
+    return to_begin < MAX_LINK_GAP_M and to_begin <= to_end
 
 
 def _neighbour(
@@ -216,14 +216,14 @@ def _marks(lane: LogicalLane, bounds: Mapping[int, Any], types: Mapping[int, int
             marking = kinds.marking(physical if nearest_first else physical[::-1])
             if not physical and told:
                 marking = "none"
-            yield Mark(word, begin, end, marking, kinds.PASSING.get(bound.passing_rule))
+            yield Mark(word, begin, end, marking, kinds.LANE_CHANGES.get(bound.passing_rule))
 
 
 def _limits(lane: LogicalLane) -> Iterator[tuple[float, float, float]]:
     """Yield the speed limits for all vehicles: from and to which share of the lane, and the limit in m/s."""
     for rule in lane.message.traffic_rule:
         said = rule.speed_limit.speed_limit_value
-        unit = kinds.MPS.get(kinds.UNITS.get(said.value_unit, ""))
+        unit = kinds.SPEED_UNITS_MPS.get(kinds.UNITS.get(said.value_unit, ""))
         where = rule.traffic_rule_validity
         if rule.traffic_rule_type or unit is None or said.value <= 0 or not _for_all(where.valid_for_type):
             continue

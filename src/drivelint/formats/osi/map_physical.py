@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 
 from drivelint.formats.osi import map_kinds as kinds
-from drivelint.formats.osi.map_logical import NEAR_M, UnbuildableError
+from drivelint.formats.osi.map_logical import MAX_LINK_GAP_M, UnbuildableError
 from drivelint.road.boundary_lanes import BoundedLane
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from drivelint.road.quality import Quality
+    from drivelint.road.quality import MapQuality
 
     Floats = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ class PhysicalLane:
     turned: bool
 
 
-def read(truth: Any, quality: Quality) -> dict[int, PhysicalLane]:
+def read(truth: Any, quality: MapQuality) -> dict[int, PhysicalLane]:
     """Return the lanes that have a shape and a direction, by id; what is wrong with the others goes to `quality`.
 
     Areas of intersections are not among them.
@@ -209,14 +209,14 @@ def _nearest(points: Floats, to: Floats) -> Floats:
 
 def _kind(said: Any) -> tuple[str, bool]:
     if said.type in {_DRIVING, kinds.INTERSECTION}:
-        kind = kinds.LANES.get(said.subtype, "driving")
-        return (kind if kind in kinds.DRIVEN else "driving"), True
-    kind = kinds.LANES.get(said.subtype, "none")
+        kind = kinds.LANE_KINDS.get(said.subtype, "driving")
+        return (kind if kind in kinds.DRIVABLE else "driving"), True
+    kind = kinds.LANE_KINDS.get(said.subtype, "none")
     return kind if said.type == _NONDRIVING and kind != "driving" else "none", False
 
 
 def lanelets(plain: Mapping[int, PhysicalLane], truth: Any, ways: Sequence[BoundedLane]) -> Iterable[BoundedLane]:
-    """Yield the lanes, then the ways; where a lane ends at an intersection, the ways drawn from it follow."""
+    """Yield the lanes, then the lanes drawn through intersections; each lane links to those that continue it."""
     bounds = {b.id.value: b for b in truth.lane_boundary}
     linked = _linked(plain)
     for i, lane in plain.items():
@@ -273,11 +273,11 @@ def _marking(ids: Iterable[Any], bounds: Mapping[int, Any]) -> str | None:
 
 
 def _follows(lane: PhysicalLane, other: PhysicalLane) -> bool:
-    return bool(np.linalg.norm((lane.centre[-1] - other.centre[0])[:2]) < NEAR_M)
+    return bool(np.linalg.norm((lane.centre[-1] - other.centre[0])[:2]) < MAX_LINK_GAP_M)
 
 
-def ways(truth: Any, plain: Mapping[int, PhysicalLane]) -> list[BoundedLane]:
-    """Return a lane for each pair that an intersection's area joins."""
+def intersection_lanes(truth: Any, plain: Mapping[int, PhysicalLane]) -> list[BoundedLane]:
+    """Return a lane through the intersection for each pair of lanes that it joins."""
     found = []
     for area in truth.lane:
         if area.classification.type != kinds.INTERSECTION or area.id.value in plain:
@@ -291,7 +291,7 @@ def ways(truth: Any, plain: Mapping[int, PhysicalLane]) -> list[BoundedLane]:
     return found
 
 
-def way_heights(name: str, plain: Mapping[int, PhysicalLane]) -> Floats:
+def intersection_lane_heights(name: str, plain: Mapping[int, PhysicalLane]) -> Floats:
     """Return two points (2, 3) between which a way through an intersection rises or falls; `name`: its id in the map."""
     _, into, out = name.split(".")
     return np.vstack([plain[int(into)].centre[-1], plain[int(out)].centre[0]])

@@ -10,11 +10,18 @@ import numpy as np
 import ptars
 
 from drivelint.drive import own_map
-from drivelint.drive.trace import EPOCH_NS, Finding, FrameTimes, Recording, States
+from drivelint.drive.trace import LEAST_UTC_NS, FrameTimes, QualityFinding, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import Container
 from drivelint.formats.osi import extras
-from drivelint.formats.osi.decode import GROUND_TRUTH, SENSOR_VIEW, TREES, Decoder, Head, head_of
+from drivelint.formats.osi.decode import (
+    FIELD_TREES,
+    GROUND_TRUTH,
+    SENSOR_VIEW,
+    Decoder,
+    FirstMessage,
+    read_first_message,
+)
 from drivelint.formats.osi.words import Bulbs, signal_states
 from drivelint.formats.protobuf import descriptors
 from drivelint.phrases import listed
@@ -27,7 +34,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.formats.mcap.reader import Packet
-    from drivelint.formats.osi.decode import Frames
+    from drivelint.formats.osi.decode import FrameBatch
 
 OPEN_DRIVE = "osi3.MapAsamOpenDrive"
 BATCH_BYTES = 32 * 1024 * 1024
@@ -44,10 +51,10 @@ def read(path: Path, topic: str | None) -> Recording:
     source = _Source(container, topic)
     maps: dict[bytes, str] = {}
     events: list[bytes] = []
-    lost: list[Finding] = []
+    lost: list[QualityFinding] = []
     for packet in container.packets():
         kind = _kind(container, packet.channel)
-        if kind in TREES:
+        if kind in FIELD_TREES:
             source.take(packet, kind)
         elif kind == OPEN_DRIVE:
             text, trouble = _map_text(container, packet)
@@ -58,13 +65,13 @@ def read(path: Path, topic: str | None) -> Recording:
             events.append(packet.data)
     recording = source.recording()
     recording.findings += container.findings
-    own, several = own_map.only(maps)
+    own, several = own_map.single_map(maps)
     recording.embedded_map = own if maps else source.head.lanes
     recording.findings += [*lost[:1], *several]
     recording.geo_reference = source.head.reference
     recording.findings += () if maps else source.head.findings
-    recording.events = extras.events(path, events)
-    extras.apply(path, container.metadata, recording)
+    recording.events = extras.read_declared_events(path, events)
+    extras.apply_metadata(path, container.metadata, recording)
     return recording
 
 
@@ -79,10 +86,10 @@ def _kind(container: Container, channel: Channel) -> str | None:
 def _is_event(container: Container, channel: Channel) -> bool:
     """Say whether a channel is that of the declared events of a converted log."""
     schema = container.schemas.get(channel.schema_id)
-    return schema is not None and schema.name == extras.EVENT and channel.message_encoding == "json"
+    return schema is not None and schema.name == extras.EVENT_MESSAGE and channel.message_encoding == "json"
 
 
-def _map_text(container: Container, packet: Packet) -> tuple[bytes | None, tuple[Finding, ...]]:
+def _map_text(container: Container, packet: Packet) -> tuple[bytes | None, tuple[QualityFinding, ...]]:
     """Return the OpenDRIVE of a message, and why there is none."""
     types = descriptors.parse(container.path, OPEN_DRIVE, container.schemas[packet.channel.schema_id].data)
     descriptor = descriptors.pruned(container.path, types, OPEN_DRIVE, {"open_drive_xml_content": None})
@@ -96,7 +103,7 @@ def _map_text(container: Container, packet: Packet) -> tuple[bytes | None, tuple
         message = (
             f"the log's own map is not used: the one on topic {packet.channel.topic!r}, byte {packet.offset}, {why}"
         )
-        return None, (own_map.unusable(message),)
+        return None, (own_map.unusable_finding(message),)
     return text if isinstance(text, bytes) else str(text).encode(), ()
 
 
@@ -110,9 +117,9 @@ class _Source:
     waiting: list[Packet] = field(default_factory=list)
     size: int = 0
     log_ns: list[int] = field(default_factory=list)
-    batches: list[Frames] = field(default_factory=list)
+    batches: list[FrameBatch] = field(default_factory=list)
     decoder: Decoder | None = None
-    head: Head = field(default_factory=Head)
+    head: FirstMessage = field(default_factory=FirstMessage)
 
     def take(self, packet: Packet, kind: str) -> None:
         """Keep a message of the topic, decoding when enough have come together."""
@@ -124,7 +131,7 @@ class _Source:
             self._decode()
         self.waiting.append(packet)
         if not self.log_ns:  # lanes stand in the first message, if anywhere
-            self.head = head_of(packet.data, kind)
+            self.head = read_first_message(packet.data, kind)
         self.log_ns.append(packet.log_time_ns)
         self.size += len(packet.data)
         if self.size >= BATCH_BYTES:
@@ -152,7 +159,7 @@ class _Source:
         if self.topic is None and len(self.kinds) > 1:
             raise TraceError(f"{path}: ground truth on {len(self.kinds)} topics ({topics}): choose one with --topic")
         self._decode()
-        return joined(self.batches, np.array(self.log_ns, np.uint64))
+        return join_batches(self.batches, np.array(self.log_ns, np.uint64))
 
 
 def _nothing(container: Container) -> str:
@@ -165,9 +172,9 @@ def _nothing(container: Container) -> str:
     return f"it has {listed(sorted(kinds)) if kinds else 'no channel'}; {needed}"
 
 
-def joined(batches: list[Frames], log_ns: NDArray[np.uint64]) -> Recording:
+def join_batches(batches: list[FrameBatch], log_ns: NDArray[np.uint64]) -> Recording:
     """Join batches into one recording in the order of the file."""
-    findings: list[Finding] = []
+    findings: list[QualityFinding] = []
     t_ns = _clock(batches, log_ns.astype(np.int64), findings)
     offsets = np.cumsum([0, *(len(batch.t_ns) for batch in batches)])
     frame = np.concatenate([batch.frame + offset for batch, offset in zip(batches, offsets, strict=False)])
@@ -184,19 +191,19 @@ def joined(batches: list[Frames], log_ns: NDArray[np.uint64]) -> Recording:
     nameless = sum(batch.nameless for batch in batches)
     if nameless:
         message = f"moving objects without an id: {nameless}: they are not judged"
-        findings.append(Finding("dropped_row", "error", message, nameless))
+        findings.append(QualityFinding("dropped_row", "error", message, nameless))
     return Recording(
         "osi-mcap",
         states,
         signals=_signals(batches, offsets, t_ns),
         ego_ids=_host([host for batch in batches for host in batch.hosts], t_ns, findings),
         findings=findings,
-        utc_start_ns=int(log_ns.min()) if log_ns.min() >= EPOCH_NS else None,
+        utc_start_ns=int(log_ns.min()) if log_ns.min() >= LEAST_UTC_NS else None,
         frame_times=FrameTimes(t_ns, log_ns),
     )
 
 
-def _zeros(batches: list[Frames]) -> list[dict[str, NDArray[np.float64]]]:
+def _zeros(batches: list[FrameBatch]) -> list[dict[str, NDArray[np.float64]]]:
     """Return the numbers of each batch, with 0 for coordinates that the log leaves out if it never writes a zero.
 
     Some writers leave zeros out, as proto3 does. One that writes zeros means by a coordinate without a value that it is not known.
@@ -212,7 +219,7 @@ def _zeros(batches: list[Frames]) -> list[dict[str, NDArray[np.float64]]]:
     ]
 
 
-def _clock(batches: list[Frames], log_ns: NDArray[np.int64], findings: list[Finding]) -> NDArray[np.int64]:
+def _clock(batches: list[FrameBatch], log_ns: NDArray[np.int64], findings: list[QualityFinding]) -> NDArray[np.int64]:
     """Return each frame's time: the messages' own where they all have one that runs, else the log's."""
     stamps = np.concatenate([batch.t_ns for batch in batches])
     timed = np.concatenate([batch.timed for batch in batches])
@@ -220,17 +227,17 @@ def _clock(batches: list[Frames], log_ns: NDArray[np.int64], findings: list[Find
         stamps = log_ns
         message = "the messages' own time stamps are missing or stand still: the log times of the container are used"
         findings.append(
-            Finding("log_time_used", "warning", message, int((~timed).sum()) or len(stamps), int(stamps.min()))
+            QualityFinding("log_time_used", "warning", message, int((~timed).sum()) or len(stamps), int(stamps.min()))
         )
     back = np.diff(stamps) < 0
     if back.any():
         n, first = int(back.sum()), int(stamps[1:][back][0])
         message = f"backward steps of the clock: {n}, the first to {first / 1e9:g} s: states are sorted by their times"
-        findings.append(Finding("clock_jump", "warning", message, n, first))
+        findings.append(QualityFinding("clock_jump", "warning", message, n, first))
     return stamps
 
 
-def _host(hosts: list[int | None], t_ns: NDArray[np.int64], findings: list[Finding]) -> list[str]:
+def _host(hosts: list[int | None], t_ns: NDArray[np.int64], findings: list[QualityFinding]) -> list[str]:
     """Return the host vehicle's id, that of most frames if it changes; of several that are as often said, the first."""
     said = Counter(host for host in hosts if host is not None)
     if not said:
@@ -245,11 +252,11 @@ def _host(hosts: list[int | None], t_ns: NDArray[np.int64], findings: list[Findi
         names = listed(sorted(map(str, said)))
         message = f"the log names {len(said)} host vehicles ({names}): {ego} is the ego, which {n} of {frames} frames do not name"
         since = min(at for host, at in first.items() if host != ego)
-        findings.append(Finding("ego_count", "warning", message, n, since, str(ego)))
+        findings.append(QualityFinding("ego_count", "warning", message, n, since, str(ego)))
     return [str(ego)]
 
 
-def _signals(batches: list[Frames], offsets: NDArray[np.int64], t_ns: NDArray[np.int64]) -> pa.Table | None:
+def _signals(batches: list[FrameBatch], offsets: NDArray[np.int64], t_ns: NDArray[np.int64]) -> pa.Table | None:
     bulbs = Bulbs(
         np.concatenate([batch.bulbs.frame + offset for batch, offset in zip(batches, offsets, strict=False)]),
         [name for batch in batches for name in batch.bulbs.signal_id],

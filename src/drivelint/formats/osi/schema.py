@@ -330,7 +330,7 @@ def descriptor_set() -> bytes:
 
 
 @cache
-def reading_set() -> bytes:
+def reader_descriptor_set() -> bytes:
     """Return the serialised `FileDescriptorSet` by which messages are read that come without one."""
     return _serialised(_file(_READ_MESSAGES, _READ_ENUMS))
 
@@ -342,7 +342,7 @@ def _pool() -> descriptor_pool.DescriptorPool:
     return pool
 
 
-def message(name: str) -> Any:
+def message_class(name: str) -> Any:
     """Return the class of a message that is read, such as GroundTruth: for one message; thousands are decoded by columns."""
     return message_factory.GetMessageClass(_pool().FindMessageTypeByName(f"{PACKAGE}.{name}"))
 

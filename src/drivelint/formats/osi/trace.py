@@ -16,7 +16,7 @@ def accepts(probe: Probe) -> bool:
     """Accept by the first length and the message behind it."""
     from drivelint.formats.osi import file as osi_file
 
-    return not probe.path.is_dir() and osi_file.looks_like(probe.head, probe.path.stat().st_size)
+    return not probe.path.is_dir() and osi_file.is_osi_trace(probe.head, probe.path.stat().st_size)
 
 
 def read(probe: Probe) -> Recording:

@@ -1,4 +1,5 @@
-"""OSI's enumerations in our words. Numbers come from the log's own schema, so only the names are fixed here."""
+"""This module translates OSI's enumerations into drivelint's codes. Numbers come from the log's own schema, so only the names are fixed
+here."""
 
 from __future__ import annotations
 
@@ -10,7 +11,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.drive.headlights import HEADLIGHTS
-from drivelint.drive.trace import BRAKE_LIGHTS, CLASSES, INDICATORS
+from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
 from drivelint.formats.osi.schema import OPEN_DRIVE_REFERENCE
 from drivelint.formats.protobuf.descriptors import enum_names
 
@@ -52,7 +53,7 @@ _LIT = {0: "off", RED: "red", RED | AMBER: "red_amber", AMBER: "amber", GREEN: "
 
 
 @dataclass(frozen=True)
-class Words:
+class EnumCodes:
     """Lookup tables number -> code for one schema; numbers beyond a table are unknown."""
 
     kind: NDArray[np.int8]
@@ -64,13 +65,13 @@ class Words:
     mode: dict[str, int]
 
 
-def words_of(types: Types, truth: str) -> Words:
+def build_enum_codes(types: Types, truth: str) -> EnumCodes:
     """Build the tables from the enumerations of the ground-truth message `truth`."""
     moving = ("moving_object",)
     lights = (*moving, "vehicle_classification", "light_state")
-    classes = {word: i for i, word in enumerate(CLASSES)}
+    classes = {word: i for i, word in enumerate(ACTOR_CLASSES)}
     modes = enum_names(types, truth, "traffic_light", "classification", "mode")
-    return Words(
+    return EnumCodes(
         _table(enum_names(types, truth, *moving, "type"), {name: classes[word] for name, word in _KINDS.items()}),
         _table(
             enum_names(types, truth, *moving, "vehicle_classification", "type"),
@@ -104,26 +105,26 @@ def _look(table: NDArray[np.int8], numbers: pa.Array) -> NDArray[np.int8]:
     return np.asarray(table[np.where((index < 0) | (index >= len(table)), len(table) - 1, index)], np.int8)
 
 
-def child(parent: pa.Array, name: str) -> pa.Array:
+def struct_field(parent: pa.Array, name: str) -> pa.Array:
     """Return a field of a struct array, null where the parent is; all null where the schema has no such field."""
     if pa.types.is_struct(parent.type) and parent.type.get_field_index(name) >= 0:
         return pc.struct_field(parent, [parent.type.get_field_index(name)])
     return pa.nulls(len(parent))
 
 
-def state_codes(words: Words, objects: pa.Array) -> dict[str, NDArray[np.int8]]:
+def state_codes(words: EnumCodes, objects: pa.Array) -> dict[str, NDArray[np.int8]]:
     """Return class, indicator, brake light and headlights of moving objects as codes. A vehicle of unsaid kind is a `vehicle`."""
-    vehicle = child(objects, "vehicle_classification")
-    lights = child(vehicle, "light_state")
-    kind = _look(words.kind, child(objects, "type"))
-    finer = _look(words.vehicle, child(vehicle, "type"))
-    is_vehicle = kind == CLASSES.index("vehicle")
+    vehicle = struct_field(objects, "vehicle_classification")
+    lights = struct_field(vehicle, "light_state")
+    kind = _look(words.kind, struct_field(objects, "type"))
+    finer = _look(words.vehicle, struct_field(vehicle, "type"))
+    is_vehicle = kind == ACTOR_CLASSES.index("vehicle")
     return {
         "actor_class": np.where(is_vehicle & (finer >= 0), finer, kind),
-        "indicator": _look(words.indicator, child(lights, "indicator_state")),
-        "brake_light": _look(words.brake_light, child(lights, "brake_light_state")),
+        "indicator": _look(words.indicator, struct_field(lights, "indicator_state")),
+        "brake_light": _look(words.brake_light, struct_field(lights, "brake_light_state")),
         HEADLIGHTS: _headlights(
-            _look(words.lamp, child(lights, "head_light")), _look(words.lamp, child(lights, "high_beam"))
+            _look(words.lamp, struct_field(lights, "head_light")), _look(words.lamp, struct_field(lights, "high_beam"))
         ),
     }
 
@@ -146,7 +147,7 @@ class Bulbs:
     bits: NDArray[np.int8]
 
 
-def bulbs_of(words: Words, lights: pa.Array, joined: Mapping[str, str]) -> Bulbs:
+def bulbs_of(words: EnumCodes, lights: pa.Array, joined: Mapping[str, str]) -> Bulbs:
     """Read the bulbs of `traffic_light` lists: each belongs to the OpenDRIVE signal it refers to, else to the light that `joined` names.
 
     Of others each is its own.
@@ -155,9 +156,9 @@ def bulbs_of(words: Words, lights: pa.Array, joined: Mapping[str, str]) -> Bulbs
         return Bulbs(np.zeros(0, np.intp), [], np.zeros(0, np.int8))
     bulbs = lights.flatten()
     counts = pc.fill_null(pc.list_value_length(lights), 0).to_numpy(zero_copy_only=False)
-    seen = child(bulbs, "classification")
-    mode = pc.fill_null(child(seen, "mode").cast(pa.int32()), -1).to_numpy(zero_copy_only=False)
-    color = _look(words.color, child(seen, "color"))
+    seen = struct_field(bulbs, "classification")
+    mode = pc.fill_null(struct_field(seen, "mode").cast(pa.int32()), -1).to_numpy(zero_copy_only=False)
+    color = _look(words.color, struct_field(seen, "color"))
     lit = np.isin(mode, [words.mode.get(name, -2) for name in ("MODE_CONSTANT", "MODE_COUNTING")])
     bits = np.full(len(bulbs), UNKNOWN, np.int8)
     bits[mode == words.mode.get("MODE_OFF", -2)] = 0
@@ -167,8 +168,8 @@ def bulbs_of(words: Words, lights: pa.Array, joined: Mapping[str, str]) -> Bulbs
 
 
 def _signal_ids(bulbs: pa.Array, joined: Mapping[str, str]) -> list[str]:
-    own = pc.fill_null(child(child(bulbs, "id"), "value").cast(pa.uint64()), 0).to_pylist()
-    references = child(bulbs, "source_reference").to_pylist()
+    own = pc.fill_null(struct_field(struct_field(bulbs, "id"), "value").cast(pa.uint64()), 0).to_pylist()
+    references = struct_field(bulbs, "source_reference").to_pylist()
     ids = []
     for number, sources in zip(own, references, strict=True):  # bulbs are few; actor states never come this way
         names = [

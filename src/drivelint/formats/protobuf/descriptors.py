@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from google.protobuf.descriptor import Descriptor
 
-Tree = dict[str, Any]
+FieldTree = dict[str, Any]
 """Field name -> subtree of a message field, or None for a value."""
 
 _FIELD = descriptor_pb2.FieldDescriptorProto
@@ -61,7 +61,7 @@ def parse(path: Path, name: str, descriptor_set: bytes) -> Types:
     return types
 
 
-def pruned(path: Path, types: Types, name: str, tree: Tree) -> Descriptor:
+def pruned(path: Path, types: Types, name: str, tree: FieldTree) -> Descriptor:
     """Return message `name` with only those fields of `tree` that it has: same numbers and types, enums as int32.
 
     Errors: `TraceError` when the log's description contradicts itself.
@@ -78,7 +78,7 @@ def pruned(path: Path, types: Types, name: str, tree: Tree) -> Descriptor:
     return pool.FindMessageTypeByName(f"{PACKAGE}.Root")
 
 
-def _add(file: descriptor_pb2.FileDescriptorProto, types: Types, source: str, tree: Tree, name: str) -> None:
+def _add(file: descriptor_pb2.FileDescriptorProto, types: Types, source: str, tree: FieldTree, name: str) -> None:
     message = file.message_type.add(name=name)
     known = {item.name: item for item in types.messages[source].field}
     for field_name, subtree in tree.items():

@@ -1,4 +1,4 @@
-"""Protobuf's wire format, written field by field for the few and column by column for the many."""
+"""This module encodes protobuf fields, one at a time or as whole columns."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def text(number: int, content: str) -> bytes:
     return nested(number, content.encode("utf-8", "replace"))
 
 
-def whole(number: int, value: int) -> bytes:
+def integer(number: int, value: int) -> bytes:
     """Return a field that holds a non-negative integer, an enumeration or a truth value."""
     return _key(number, _VARINT) + varint(value)
 
@@ -50,14 +50,14 @@ def doubles(*values: float, first: int = 1) -> bytes:
 
 def time(number: int, t_ns: int) -> bytes:
     """Return a field that holds a Timestamp or a Duration."""
-    return nested(number, whole(1, t_ns // _NS) + whole(2, t_ns % _NS))
+    return nested(number, integer(1, t_ns // _NS) + integer(2, t_ns % _NS))
 
 
 def points(number: int, xyz: NDArray[np.float64]) -> bytes:
     """Return a repeated field of points: `xyz` has a row of three doubles each."""
     head = _key(number, _BYTES) + varint(27)
-    parts = [part for axis in range(3) for part in (_key(axis + 1, _FIXED64), column(xyz[:, axis]))]
-    return rows(len(xyz), head, *parts).tobytes()
+    parts = [part for axis in range(3) for part in (_key(axis + 1, _FIXED64), double_column(xyz[:, axis]))]
+    return join_columns(len(xyz), head, *parts).tobytes()
 
 
 def indices(number: int, values: NDArray[np.uint32]) -> bytes:
@@ -65,27 +65,27 @@ def indices(number: int, values: NDArray[np.uint32]) -> bytes:
     return nested(number, np.ascontiguousarray(values, "<u4").tobytes())
 
 
-def column(values: NDArray[np.float64]) -> Bytes:
+def double_column(values: NDArray[np.float64]) -> Bytes:
     """Return the bytes of doubles, a row of eight each."""
     return np.ascontiguousarray(values, "<f8").view(np.uint8).reshape(len(values), 8)
 
 
 def timestamps(number: int, t_ns: NDArray[np.uint64]) -> Bytes:
     """Return a field that holds a Timestamp, a row each, all of one width: unused high groups are written as zeros."""
-    parts = [whole_column(1, t_ns // _NS), whole_column(2, t_ns % _NS)]
-    return rows(len(t_ns), _key(number, _BYTES) + varint(2 * (_PADDED + 1)), *parts)
+    parts = [integer_column(1, t_ns // _NS), integer_column(2, t_ns % _NS)]
+    return join_columns(len(t_ns), _key(number, _BYTES) + varint(2 * (_PADDED + 1)), *parts)
 
 
-def whole_column(number: int, values: NDArray[np.uint64]) -> Bytes:
+def integer_column(number: int, values: NDArray[np.uint64]) -> Bytes:
     """Return a field that holds an integer below 2^35, a row each, all of one width."""
     shifts = np.arange(_PADDED, dtype=np.uint64) * np.uint64(7)
     groups = ((values[:, None] >> shifts) & np.uint64(0x7F)).astype(np.uint8)
     groups[:, :-1] |= 0x80
-    return rows(len(values), _key(number, _VARINT), groups)
+    return join_columns(len(values), _key(number, _VARINT), groups)
 
 
-def rows(n: int, *parts: bytes | Bytes) -> Bytes:
-    """Return `n` rows of bytes: of each part its row, or the same bytes in every one."""
+def join_columns(n: int, *parts: bytes | Bytes) -> Bytes:
+    """Join the parts row by row; plain bytes are repeated in every row."""
     widths = [len(part) if isinstance(part, bytes) else part.shape[1] for part in parts]
     out = np.empty((n, sum(widths)), np.uint8)
     at = 0

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from drivelint.errors import TraceError
-from drivelint.formats.ros2.types import CODES, SEQUENCE, TEXTS
+from drivelint.formats.ros2.types import NUMPY_CODES, SEQUENCE, TEXT_TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.formats.mcap.reader import Packet
-    from drivelint.formats.protobuf.descriptors import Tree
+    from drivelint.formats.protobuf.descriptors import FieldTree
     from drivelint.formats.ros2.types import Types
 
-HEADER = 4
-ORDERS: Final = {0: ">", 1: "<"}
+HEADER_BYTES = 4
+BYTE_ORDERS: Final = {0: ">", 1: "<"}
 """Second byte of the header -> byte order; others are encodings that ROS 2 recorders do not write."""
-FIRST = 3
+MAX_KEPT_NUMBERS = 3
 """How many numbers of a sequence are kept: a box has three dimensions."""
 _MAX_ALIGN = 8
 
@@ -87,13 +87,13 @@ class _Compiler:
     def __init__(self, types: Types) -> None:
         self._types = types
 
-    def program(self, kind: str, tree: Tree | None) -> list[Any]:
+    def program(self, kind: str, tree: FieldTree | None) -> list[Any]:
         self._steps: list[Any] = []
         self._modulus, self._rest = 1, 0
         self._members(kind, tree, "")
         return self._steps
 
-    def _members(self, kind: str, tree: Tree | None, prefix: str) -> None:
+    def _members(self, kind: str, tree: FieldTree | None, prefix: str) -> None:
         members = self._types[kind]
         if not members:  # an empty message is sent as one byte
             self._primitive("u1", None, None)
@@ -103,11 +103,11 @@ class _Compiler:
             path = f"{prefix}{member.name}"
             if member.count == SEQUENCE:
                 self._sequence(member.kind, path, subtree, wanted=wanted)
-            elif member.kind in CODES:
-                self._primitive(CODES[member.kind], path if wanted else None, member.count)
+            elif member.kind in NUMPY_CODES:
+                self._primitive(NUMPY_CODES[member.kind], path if wanted else None, member.count)
             else:
                 for _ in range(1 if member.count is None else member.count):
-                    if member.kind in TEXTS:
+                    if member.kind in TEXT_TYPES:
                         self._then(_Text(path if wanted and member.count is None else None))
                     else:
                         self._members(member.kind, subtree if member.count is None else None, f"{path}.")
@@ -127,22 +127,24 @@ class _Compiler:
         block.size += length
         self._rest = (self._rest + length) % self._modulus
 
-    def _sequence(self, kind: str, path: str, subtree: Tree | None, *, wanted: bool) -> None:
+    def _sequence(self, kind: str, path: str, subtree: FieldTree | None, *, wanted: bool) -> None:
         keep = path if wanted else None
-        if kind in CODES:
-            self._then(_Numbers(CODES[kind], int(CODES[kind][1]), 1, keep))
+        if kind in NUMPY_CODES:
+            self._then(_Numbers(NUMPY_CODES[kind], int(NUMPY_CODES[kind][1]), 1, keep))
             return
         if not wanted and (uniform := self._uniform(kind)) is not None:
             self._then(_Numbers(*uniform, None))
             return
-        if kind in TEXTS:
+        if kind in TEXT_TYPES:
             self._then(_Items(None, [_Text(None)]))
         else:
             self._then(_Items(keep, _Compiler(self._types).program(kind, subtree)))
 
     def _uniform(self, kind: str) -> tuple[str, int, int] | None:
         """Return code, size and number of the primitives of a type that has nothing but primitives of one size."""
-        if kind in TEXTS or not all(isinstance(s, _Align | _Block) for s in _Compiler(self._types).program(kind, None)):
+        if kind in TEXT_TYPES or not all(
+            isinstance(s, _Align | _Block) for s in _Compiler(self._types).program(kind, None)
+        ):
             return None
         sizes = self._sizes(kind)
         return (f"u{sizes[0]}", sizes[0], len(sizes)) if sizes and len(set(sizes)) == 1 else None
@@ -150,7 +152,7 @@ class _Compiler:
     def _sizes(self, kind: str) -> list[int]:
         found: list[int] = []
         for member in self._types[kind]:
-            inner = [int(CODES[member.kind][1])] if member.kind in CODES else self._sizes(member.kind)
+            inner = [int(NUMPY_CODES[member.kind][1])] if member.kind in NUMPY_CODES else self._sizes(member.kind)
             found += inner * (1 if member.count is None else member.count)
         return found
 
@@ -163,7 +165,7 @@ class _Compiler:
 class Decoder:
     """Decodes messages of one type."""
 
-    def __init__(self, path: Path, name: str, types: Types, kind: str, tree: Tree) -> None:
+    def __init__(self, path: Path, name: str, types: Types, kind: str, tree: FieldTree) -> None:
         """Compile the definition; of `tree` is kept what the definition has."""
         self._path, self._name = path, name
         self._program = _Compiler(types).program(kind, tree)
@@ -178,26 +180,28 @@ class _Batch:
 
     def __init__(self, path: Path, name: str, packets: Sequence[Packet]) -> None:
         self._path, self._name, self._packets = path, name, packets
-        sizes = np.array([len(packet.data) - HEADER for packet in packets], np.int64)
+        sizes = np.array([len(packet.data) - HEADER_BYTES for packet in packets], np.int64)
         if len(sizes) and sizes.min() < 0:
             raise self._misfit(int(np.argmin(sizes)), "is shorter than its header")
         orders = {packet.data[:2] for packet in packets}
-        if len(orders) > 1 or any(head[0] != 0 or head[1] not in ORDERS for head in orders):
-            odd = next(i for i, p in enumerate(packets) if p.data[:2] != packets[0].data[:2] or p.data[1] not in ORDERS)
+        if len(orders) > 1 or any(head[0] != 0 or head[1] not in BYTE_ORDERS for head in orders):
+            odd = next(
+                i for i, p in enumerate(packets) if p.data[:2] != packets[0].data[:2] or p.data[1] not in BYTE_ORDERS
+            )
             raise self._misfit(
                 odd, f"is encoded otherwise than plain CDR like the others (header {packets[odd].data[:4].hex()})"
             )
-        self._order = ORDERS[packets[0].data[1]] if packets else "<"
+        self._order = BYTE_ORDERS[packets[0].data[1]] if packets else "<"
         padded = -(-sizes // _MAX_ALIGN) * _MAX_ALIGN
         self._start = np.concatenate([[0], np.cumsum(padded)])[:-1]
         self._end = self._start + sizes
         buffer = np.zeros(int(padded.sum()) + _MAX_ALIGN, np.uint8)
         joined = b"".join(
-            packet.data[HEADER:] + b"\0" * int(pad) for packet, pad in zip(packets, padded - sizes, strict=True)
+            packet.data[HEADER_BYTES:] + b"\0" * int(pad) for packet, pad in zip(packets, padded - sizes, strict=True)
         )
         buffer[: len(joined)] = np.frombuffer(joined, np.uint8)
         self._bytes = buffer
-        self._views = {code: buffer.view(f"{self._order}{code}") for code in set(CODES.values())}
+        self._views = {code: buffer.view(f"{self._order}{code}") for code in set(NUMPY_CODES.values())}
 
     def table(self, program: list[Any]) -> Table:
         messages = np.arange(len(self._packets))
@@ -242,8 +246,8 @@ class _Batch:
         size = length * step.size * step.per_item
         self._check(cursor + size, end, message)
         if step.keep is not None:
-            first = np.full((len(cursor), FIRST), np.nan)
-            for k in range(FIRST):
+            first = np.full((len(cursor), MAX_KEPT_NUMBERS), np.nan)
+            for k in range(MAX_KEPT_NUMBERS):
                 has = np.flatnonzero(length > k)
                 first[has, k] = self._taken(step.code, cursor[has] + k * step.size, None)
             table.columns[step.keep] = first
@@ -301,7 +305,7 @@ class _Batch:
 def _joined(parts: list[Table], program: list[Any]) -> Table:
     """Put the first, second, ... items of all sequences into the order of their sequences."""
     if not parts:
-        return empty(program)
+        return empty_table(program)
     parent = np.concatenate([part.parent for part in parts])
     order = np.argsort(parent, kind="stable")
     place = np.empty_like(order)
@@ -330,8 +334,8 @@ def _stacked(parts: list[Table], offsets: NDArray[np.int64], place: NDArray[np.i
     )
 
 
-def empty(program: list[Any]) -> Table:
-    """Return the table of no item."""
+def empty_table(program: list[Any]) -> Table:
+    """Return an empty table with the columns of a program."""
     table = Table(0)
     for step in program:
         if isinstance(step, _Block):
@@ -340,7 +344,7 @@ def empty(program: list[Any]) -> Table:
         elif isinstance(step, _Text) and step.keep is not None:
             table.columns[step.keep] = np.zeros(0, "S1")
         elif isinstance(step, _Numbers) and step.keep is not None:
-            table.columns[step.keep] = np.zeros((0, FIRST))
+            table.columns[step.keep] = np.zeros((0, MAX_KEPT_NUMBERS))
         elif isinstance(step, _Items) and step.keep is not None:
-            table.children[step.keep] = empty(step.program)
+            table.children[step.keep] = empty_table(step.program)
     return table

@@ -7,26 +7,26 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import pyarrow as pa
 
-from drivelint.drive.trace import CLASSES, INDICATORS
-from drivelint.formats.frames import Frames, Poses, clean, unit
+from drivelint.drive.trace import ACTOR_CLASSES, INDICATORS
+from drivelint.formats.frames import Poses, TransformTree, clean_frame_name, unit_quaternions
 from drivelint.formats.ros2.objects import HEADER, POSE, STAMP, XYZ, stamps, vectors
-from drivelint.formats.ros2.rows import Rows, blank
+from drivelint.formats.ros2.rows import RecordedPoses, unknown_vectors
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from drivelint.formats.protobuf.descriptors import Tree
+    from drivelint.formats.protobuf.descriptors import FieldTree
     from drivelint.formats.ros2.cdr import Table
 
 ODOMETRY: Final = "nav_msgs/Odometry"
 TRANSFORMS: Final = "tf2_msgs/TFMessage"
 EGO_INFO: Final = "carla_msgs/CarlaEgoVehicleInfo"
 WORLD_INFO: Final = "carla_msgs/CarlaWorldInfo"
-TURN: Final = "autoware_vehicle_msgs/TurnIndicatorsReport"
-HAZARD: Final = "autoware_vehicle_msgs/HazardLightsReport"
-MODE: Final = "autoware_vehicle_msgs/ControlModeReport"
+TURN_INDICATORS: Final = "autoware_vehicle_msgs/TurnIndicatorsReport"
+HAZARD_LIGHTS: Final = "autoware_vehicle_msgs/HazardLightsReport"
+CONTROL_MODE: Final = "autoware_vehicle_msgs/ControlModeReport"
 ENGAGE: Final = "autoware_vehicle_msgs/Engage"
-TREES: Final[dict[str, Tree]] = {
+FIELD_TREES: Final[dict[str, FieldTree]] = {
     ODOMETRY: {
         "header": HEADER,
         "child_frame_id": None,
@@ -42,9 +42,9 @@ TREES: Final[dict[str, Tree]] = {
     },
     EGO_INFO: {"id": None, "rolename": None},
     WORLD_INFO: {"map_name": None, "opendrive": None},
-    TURN: {"stamp": STAMP, "report": None},
-    HAZARD: {"stamp": STAMP, "report": None},
-    MODE: {"stamp": STAMP, "mode": None},
+    TURN_INDICATORS: {"stamp": STAMP, "report": None},
+    HAZARD_LIGHTS: {"stamp": STAMP, "report": None},
+    CONTROL_MODE: {"stamp": STAMP, "mode": None},
     ENGAGE: {"stamp": STAMP, "engage": None},
 }
 STALE_NS: Final = 1_000_000_000
@@ -55,7 +55,7 @@ _OFF, _HAZARD = INDICATORS.index("off"), INDICATORS.index("hazard")
 _INDICATOR: Final = {1: _OFF, 2: INDICATORS.index("left"), 3: INDICATORS.index("right")}
 
 
-def odometry(table: Table, log_ns: NDArray[np.int64], forward_m: float) -> Rows:
+def odometry(table: Table, log_ns: NDArray[np.int64], forward_m: float) -> RecordedPoses:
     """Return the poses of an odometry as rows of one actor without a name; `forward_m`: its box centre lies so far ahead.
 
     Twist is in the child frame, as the message says; in the header's where that is what the child frame is called.
@@ -64,7 +64,7 @@ def odometry(table: Table, log_ns: NDArray[np.int64], forward_m: float) -> Rows:
     n = table.n
     frames = table.columns["header.frame_id"]
     child = table.columns["child_frame_id"]
-    turn = unit(vectors(table, "pose.pose.orientation", "xyzw"))
+    turn = unit_quaternions(vectors(table, "pose.pose.orientation", "xyzw"))
     velocity = vectors(table, "twist.twist.linear")
     yaw_rate = vectors(table, "twist.twist.angular")[:, 2]
     along = (child != b"") & (child != frames)
@@ -77,7 +77,7 @@ def odometry(table: Table, log_ns: NDArray[np.int64], forward_m: float) -> Rows:
         yaw = inside.yaw
         velocity[:, 0] += np.where(along, 0.0, -np.sin(yaw) * sideways)
         velocity[:, 1] += np.where(along, sideways, np.cos(yaw) * sideways)
-    return Rows(
+    return RecordedPoses(
         stamp_ns=stamp,
         stamped=stamped,
         log_ns=log_ns,
@@ -85,32 +85,34 @@ def odometry(table: Table, log_ns: NDArray[np.int64], forward_m: float) -> Rows:
         frames=frames,
         place=place,
         turn=turn,
-        size=blank(n),
-        classes=np.full(n, CLASSES.index("vehicle"), np.int8),
+        size=unknown_vectors(n),
+        classes=np.full(n, ACTOR_CLASSES.index("vehicle"), np.int8),
         along=along,
         faces=np.ones(n, np.bool_),
         velocity=velocity,
-        acceleration=blank(n),
+        acceleration=unknown_vectors(n),
         t_ns=stamp,
     )
 
 
-def add_transforms(frames: Frames, table: Table, log_ns: NDArray[np.int64], *, static: bool, own_times: bool) -> None:
+def add_transforms(
+    frames: TransformTree, table: Table, log_ns: NDArray[np.int64], *, static: bool, own_times: bool
+) -> None:
     """Add the transforms of TFMessages, in the order of the log."""
     items = table.children["transforms"]
     if not items.n:
         return
     t_ns = stamps(items, "header.stamp")[0] if own_times else log_ns[items.parent]
     places = vectors(items, "transform.translation")
-    turns = unit(vectors(items, "transform.rotation", "xyzw"))
+    turns = unit_quaternions(vectors(items, "transform.rotation", "xyzw"))
     pairs = np.stack([items.columns["child_frame_id"].astype("S255"), items.columns["header.frame_id"].astype("S255")])
     unique, which = np.unique(pairs, axis=1, return_inverse=True)
     which = which.reshape(-1)
     for i, (child, parent) in enumerate(unique.T.tolist()):
         here = which == i
         frames.add(
-            clean(child.decode("utf-8", "replace")),
-            clean(parent.decode("utf-8", "replace")),
+            clean_frame_name(child.decode("utf-8", "replace")),
+            clean_frame_name(parent.decode("utf-8", "replace")),
             t_ns[here],
             Poses(places[here], turns[here]),
             static=static,
@@ -122,11 +124,11 @@ def indicators(t_ns: NDArray[np.int64], reports: dict[str, tuple[NDArray[np.int6
 
     Hazard lights count before a side; a hazard report alone does not tell that no side is on.
     """
-    side, hazard = (_last(t_ns, reports.get(name)) for name in (TURN, HAZARD))
+    side, hazard = (_last(t_ns, reports.get(name)) for name in (TURN_INDICATORS, HAZARD_LIGHTS))
     result = np.full(len(t_ns), -1, np.int8)
     for number, code in _INDICATOR.items():
         result[side == number] = code
-    if HAZARD in reports:  # a vehicle that reports hazard lights may have them on while no report is there
+    if HAZARD_LIGHTS in reports:  # a vehicle that reports hazard lights may have them on while no report is there
         result[hazard < 0] = -1
     result[hazard == _HAZARD_ON] = _HAZARD
     return result
@@ -147,8 +149,8 @@ def engagement(reports: dict[str, tuple[NDArray[np.int64], NDArray[Any]]], ego: 
 
     What the vehicle reports counts before what it was told to do. Only full automation is engaged.
     """
-    if MODE in reports:
-        t_ns, on = reports[MODE][0], reports[MODE][1] == _AUTONOMOUS
+    if CONTROL_MODE in reports:
+        t_ns, on = reports[CONTROL_MODE][0], reports[CONTROL_MODE][1] == _AUTONOMOUS
     elif ENGAGE in reports:
         t_ns, on = reports[ENGAGE][0], reports[ENGAGE][1] != 0
     else:

@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.trace import CLASSES, SIZES, Finding, Recording, States
-from drivelint.formats.ros2.rows import same_actor
+from drivelint.drive.trace import ACTOR_CLASSES, SIZE_COLUMNS, QualityFinding, Recording, States
+from drivelint.formats.ros2.rows import ids_at_ego
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 FORMAT = "ros2-mcap"
-EGO = "ego"
+DEFAULT_EGO_ID = "ego"
 """What the odometry's vehicle is called where nobody gives it an id."""
 
 
 @dataclass
 class Sources:
-    """States by where they are from, each with its topic. `carla`: the CARLA bridge recorded them.
+    """The states of the objects and of the odometry, each with its topic.
 
     `infos`: topic of the CARLA bridge's ego info -> the id of the ego; `forward_m` as in `EgoSize`.
     """
@@ -30,32 +30,32 @@ class Sources:
     carla: bool
     infos: Mapping[str, str]
     forward_m: float
-    findings: list[Finding] = field(default_factory=list)
+    findings: list[QualityFinding] = field(default_factory=list)
 
 
-def merged(sources: Sources) -> Recording:
-    """Bring objects and ego together, the ego once where both have it, and say what its place stands for."""
+def merge_ego(sources: Sources) -> Recording:
+    """Merge the objects and the odometry into one recording with one track of the ego."""
     names = _said_egos(sources)
     if sources.carla and sources.objects is not None:
         _carla_origins(*sources.objects, sources.findings)
     if sources.objects is None:
         assert sources.odometry is not None  # noqa: S101 (the reader refuses a log with neither)
         states = sources.odometry[1]
-        states.ids = names[:1] or [EGO]
+        states.ids = names[:1] or [DEFAULT_EGO_ID]
         _say_odometry(sources, states)
         return Recording(FORMAT, states, ego_ids=list(states.ids), findings=sources.findings)
     if sources.odometry is None:
         return Recording(FORMAT, sources.objects[1], ego_ids=names, findings=sources.findings)
     (topic, others), (_, ego) = sources.objects, sources.odometry
-    found = [name for name in names if name in others.ids] or same_actor(ego, others)
-    ego.ids = found[:1] or [_free(names[0] if names else EGO, others.ids)]
+    found = [name for name in names if name in others.ids] or ids_at_ego(ego, others)
+    ego.ids = found[:1] or [_free(names[0] if names else DEFAULT_EGO_ID, others.ids)]
     _say_odometry(sources, ego)
     if not found:
-        return Recording(FORMAT, stacked(ego, others), ego_ids=list(ego.ids), findings=sources.findings)
+        return Recording(FORMAT, concatenate_states(ego, others), ego_ids=list(ego.ids), findings=sources.findings)
     return _once(ego, others, topic, sources.findings)
 
 
-def _once(ego: States, others: States, topic: str, findings: list[Finding]) -> Recording:
+def _once(ego: States, others: States, topic: str, findings: list[QualityFinding]) -> Recording:
     """Keep of the ego's two tracks the one with more states, in the log's own order, and the size that is known."""
     (name,) = ego.ids
     twin = others.actor == others.ids.index(name)
@@ -63,10 +63,10 @@ def _once(ego: States, others: States, topic: str, findings: list[Finding]) -> R
     both = f"the ego is {name!r} on {topic} too"
     if n >= len(ego):
         findings.append(
-            Finding("ego_twice", "info", f"{both}: its {n} states there count, not the odometry's", len(ego))
+            QualityFinding("ego_twice", "info", f"{both}: its {n} states there count, not the odometry's", len(ego))
         )
         return Recording(FORMAT, others, ego_ids=[name], findings=findings)
-    for size in SIZES:
+    for size in SIZE_COLUMNS:
         known = np.sort(others.numbers[size][twin])
         known = known[known > 0.0]
         ego.numbers[size][:] = known[(len(known) - 1) // 2] if len(known) else np.nan
@@ -74,12 +74,14 @@ def _once(ego: States, others: States, topic: str, findings: list[Finding]) -> R
     if (kinds >= 0).any():
         ego.codes["actor_class"][:] = kinds[kinds >= 0][0]
     findings.append(
-        Finding("ego_twice", "info", f"{both}: its size there counts, its {len(ego)} states are the odometry's", n)
+        QualityFinding(
+            "ego_twice", "info", f"{both}: its size there counts, its {len(ego)} states are the odometry's", n
+        )
     )
-    return Recording(FORMAT, stacked(ego, others.take(~twin)), ego_ids=[name], findings=findings)
+    return Recording(FORMAT, concatenate_states(ego, others.take(~twin)), ego_ids=[name], findings=findings)
 
 
-def stacked(first: States, second: States) -> States:
+def concatenate_states(first: States, second: States) -> States:
     """Return the rows of two sets of states; an actor of both is one actor."""
     place = {name: i for i, name in enumerate(first.ids)}
     for name in second.ids:
@@ -110,16 +112,16 @@ def _said_egos(sources: Sources) -> list[str]:
     return sorted(set(found.values()))
 
 
-def _carla_origins(topic: str, states: States, findings: list[Finding]) -> None:
+def _carla_origins(topic: str, states: States, findings: list[QualityFinding]) -> None:
     """Say what CARLA's origins mean, and lift those of vehicles from the ground to the middle of the box."""
-    walks = states.codes["actor_class"] == CLASSES.index("pedestrian")
+    walks = states.codes["actor_class"] == ACTOR_CLASSES.index("pedestrian")
     lift = np.where(walks, 0.0, np.nan_to_num(0.5 * states.numbers["height_m"]))
     states.numbers["z_m"] = states.numbers["z_m"] + lift
     message = (
         f"{topic}: places are the origins of CARLA's actors, taken as the centres of their boxes: by the model of the vehicle "
         "these lie up to a few decimetres ahead or behind; vehicles are lifted by half their height"
     )
-    findings.append(Finding("reference_point", "info", message, len(states), int(states.t_ns.min())))
+    findings.append(QualityFinding("reference_point", "info", message, len(states), int(states.t_ns.min())))
 
 
 def _say_odometry(sources: Sources, ego: States) -> None:
@@ -130,4 +132,4 @@ def _say_odometry(sources: Sources, ego: States) -> None:
         "that frame is at the rear axle, say how far ahead of it the centre is: --ego-size LENGTH,WIDTH,AHEAD"
     )
     findings = sources.findings
-    findings.append(Finding("reference_point", "warning", message, len(ego), int(ego.t_ns.min()), ego.ids[0]))
+    findings.append(QualityFinding("reference_point", "warning", message, len(ego), int(ego.t_ns.min()), ego.ids[0]))

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from drivelint.drive.trace import CLASSES
-from drivelint.formats.ros2.rows import Rows, blank, distinct
+from drivelint.drive.trace import ACTOR_CLASSES
+from drivelint.formats.ros2.rows import RecordedPoses, distinct, unknown_vectors
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,28 +20,28 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.formats.frames import Vectors
-    from drivelint.formats.protobuf.descriptors import Tree
+    from drivelint.formats.protobuf.descriptors import FieldTree
     from drivelint.formats.ros2.cdr import Table
 
-STAMP: Final[Tree] = {"sec": None, "nanosec": None, "nsec": None}
-HEADER: Final[Tree] = {"stamp": STAMP, "frame_id": None}
-XYZ: Final[Tree] = {"x": None, "y": None, "z": None}
-POSE: Final[Tree] = {"position": XYZ, "orientation": {**XYZ, "w": None}}
-_HYPOTHESIS: Final[Tree] = {"class_id": None, "score": None}
+STAMP: Final[FieldTree] = {"sec": None, "nanosec": None, "nsec": None}
+HEADER: Final[FieldTree] = {"stamp": STAMP, "frame_id": None}
+XYZ: Final[FieldTree] = {"x": None, "y": None, "z": None}
+POSE: Final[FieldTree] = {"position": XYZ, "orientation": {**XYZ, "w": None}}
+_HYPOTHESIS: Final[FieldTree] = {"class_id": None, "score": None}
 _BOX, _SPHERE, _CYLINDER = 1, 2, 3
 _NO_ORIENTATION, _EITHER_WAY = 0, 1
 _UNKNOWN = -1
 
 
-def codes(*words: str | None) -> NDArray[np.int8]:
+def class_codes(*words: str | None) -> NDArray[np.int8]:
     """Return our class codes of a numbered list of words."""
-    return np.array([_UNKNOWN if word is None else CLASSES.index(word) for word in words], np.int8)
+    return np.array([_UNKNOWN if word is None else ACTOR_CLASSES.index(word) for word in words], np.int8)
 
 
-_DERIVED = codes(
+_DERIVED = class_codes(
     None, None, None, None, "pedestrian", "bicycle", "car", "truck", "motorcycle", "vehicle", "object", "object"
 )
-_AUTOWARE = codes(
+_AUTOWARE = class_codes(
     None,
     "car",
     "truck",
@@ -56,15 +56,15 @@ _AUTOWARE = codes(
     "object",
 )
 _WORDS: Final = {
-    **{word: word for word in CLASSES},
+    **{word: word for word in ACTOR_CLASSES},
     "person": "pedestrian", "bike": "bicycle", "cyclist": "bicycle", "motorbike": "motorcycle", "lorry": "truck",
 }  # fmt: skip
 
 
-def class_of(word: str) -> int:
+def class_code(word: str) -> int:
     """Return our class code of a word such as `Car`, `vehicle.car` or `PERSON`; -1 for one that is not known."""
     known = _WORDS.get(word.strip().lower().replace("/", ".").rsplit(".", 1)[-1])
-    return _UNKNOWN if known is None else CLASSES.index(known)
+    return _UNKNOWN if known is None else ACTOR_CLASSES.index(known)
 
 
 def stamps(table: Table, path: str) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
@@ -90,18 +90,18 @@ def vectors(table: Table, path: str, axes: str = "xyz") -> Vectors:
 
 
 @dataclass(frozen=True)
-class Kind:
-    """How one message type is read: what of it, the path of its list, and (messages, their items) -> rows, in that order.
+class ObjectMessage:
+    """How one message type is read: its fields, the path of its list, and the function that makes rows of it.
 
     `Rows.log_ns` is each row's message: whoever has the container's times puts them there.
     """
 
-    tree: Tree
+    tree: FieldTree
     items: str
-    rows: Callable[[Table, Table], Rows]
+    rows: Callable[[Table, Table], RecordedPoses]
 
 
-def _rows(top: Table, items: Table, ids: NDArray[Any], frame: str | None, pose: str) -> Rows:
+def _rows(top: Table, items: Table, ids: NDArray[Any], frame: str | None, pose: str) -> RecordedPoses:
     """Fill in what all kinds have alike: times and frames of the message, unless an item says its own frame, and poses."""
     stamp, stamped = stamps(top, "header.stamp")
     frames = top.columns.get("header.frame_id", np.zeros(top.n, "S1"))[items.parent]
@@ -109,7 +109,7 @@ def _rows(top: Table, items: Table, ids: NDArray[Any], frame: str | None, pose: 
     if own is not None:
         frames = np.where(own == b"", frames, own)
     n = items.n
-    return Rows(
+    return RecordedPoses(
         stamp_ns=stamp[items.parent],
         stamped=stamped[items.parent],
         log_ns=items.parent.astype(np.int64),
@@ -117,17 +117,17 @@ def _rows(top: Table, items: Table, ids: NDArray[Any], frame: str | None, pose: 
         frames=frames,
         place=vectors(items, f"{pose}.position"),
         turn=vectors(items, f"{pose}.orientation", "xyzw"),
-        size=blank(n),
+        size=unknown_vectors(n),
         classes=np.full(n, _UNKNOWN, np.int8),
         along=np.zeros(n, np.bool_),
         faces=np.ones(n, np.bool_),
-        velocity=blank(n),
-        acceleration=blank(n),
+        velocity=unknown_vectors(n),
+        acceleration=unknown_vectors(n),
         t_ns=stamp[items.parent],
     )
 
 
-def _derived(top: Table, items: Table) -> Rows:
+def _derived(top: Table, items: Table) -> RecordedPoses:
     rows = _rows(top, items, items.columns["id"], "header.frame_id", "pose")
     rows.velocity, rows.acceleration = vectors(items, "twist.linear"), vectors(items, "accel.linear")
     form, numbers = items.columns["shape.type"], items.columns["shape.dimensions"]
@@ -139,7 +139,7 @@ def _derived(top: Table, items: Table) -> Rows:
     return rows
 
 
-def _autoware(top: Table, items: Table) -> Rows:
+def _autoware(top: Table, items: Table) -> RecordedPoses:
     ids = np.ascontiguousarray(items.columns["object_id.uuid"]).view("V16").reshape(-1)
     pose, twist, accel = (f"kinematics.{name}_with_covariance" for name in ("pose", "twist", "acceleration"))
     rows = _rows(top, items, ids, None, f"{pose}.pose")
@@ -154,7 +154,7 @@ def _autoware(top: Table, items: Table) -> Rows:
     return rows
 
 
-def _detections(top: Table, items: Table) -> Rows:
+def _detections(top: Table, items: Table) -> RecordedPoses:
     name = next((c for c in ("id", "tracking_id") if c in items.columns), None)
     ids = items.columns[name] if name is not None else np.zeros(items.n, "S1")
     rows = _rows(top, items, ids, "header.frame_id", "bbox.center")
@@ -165,7 +165,7 @@ def _detections(top: Table, items: Table) -> Rows:
     if key is not None and score is not None and results.columns[key].dtype.kind == "S":
         word = _likeliest(items, "results", key, score, b"")
         words, which = distinct(word)
-        rows.classes = np.array([class_of(each) for each in words], np.int8)[which]
+        rows.classes = np.array([class_code(each) for each in words], np.int8)[which]
     return rows
 
 
@@ -186,7 +186,7 @@ def _looked_up(known: NDArray[np.int8], numbers: NDArray[Any]) -> NDArray[np.int
     return result
 
 
-_TRACKED: Final = Kind(
+_TRACKED: Final = ObjectMessage(
     {
         "header": HEADER,
         "objects": {
@@ -204,8 +204,8 @@ _TRACKED: Final = Kind(
     "objects",
     _autoware,
 )
-KINDS: Final[dict[str, Kind]] = {
-    "derived_object_msgs/ObjectArray": Kind(
+OBJECT_MESSAGES: Final[dict[str, ObjectMessage]] = {
+    "derived_object_msgs/ObjectArray": ObjectMessage(
         {
             "header": HEADER,
             "objects": {
@@ -222,7 +222,7 @@ KINDS: Final[dict[str, Kind]] = {
         _derived,
     ),
     "autoware_perception_msgs/TrackedObjects": _TRACKED,
-    "vision_msgs/Detection3DArray": Kind(
+    "vision_msgs/Detection3DArray": ObjectMessage(
         {
             "header": HEADER,
             "detections": {

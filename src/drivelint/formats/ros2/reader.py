@@ -8,18 +8,35 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drivelint.drive import own_map
-from drivelint.drive.trace import Finding, Recording, States
+from drivelint.drive.trace import QualityFinding, Recording, States
 from drivelint.errors import TraceError
-from drivelint.formats.frames import Frames, clean, fixed_frame
+from drivelint.formats.frames import TransformTree, clean_frame_name, fixed_frame
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container
 from drivelint.formats.ros2 import cdr
 from drivelint.formats.ros2 import ego as ros_ego
 from drivelint.formats.ros2 import types as ros_types
-from drivelint.formats.ros2.ego import EGO_INFO, ENGAGE, HAZARD, MODE, ODOMETRY, TRANSFORMS, TREES, TURN, WORLD_INFO
-from drivelint.formats.ros2.merge import Sources, merged
-from drivelint.formats.ros2.objects import KINDS, stamps
-from drivelint.formats.ros2.rows import Rows, clocks, common_clock, distinct, joined, placed
+from drivelint.formats.ros2.ego import (
+    CONTROL_MODE,
+    EGO_INFO,
+    ENGAGE,
+    FIELD_TREES,
+    HAZARD_LIGHTS,
+    ODOMETRY,
+    TRANSFORMS,
+    TURN_INDICATORS,
+    WORLD_INFO,
+)
+from drivelint.formats.ros2.merge import Sources, merge_ego
+from drivelint.formats.ros2.objects import OBJECT_MESSAGES, stamps
+from drivelint.formats.ros2.rows import (
+    RecordedPoses,
+    choose_clock,
+    distinct,
+    join_batches,
+    message_times,
+    states_in_fixed_frame,
+)
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -34,9 +51,9 @@ if TYPE_CHECKING:
     from drivelint.formats.ros2.cdr import Decoder, Table
 
 BATCH_BYTES = 32 * 1024 * 1024
-STATIC = "tf_static"
+STATIC_TOPIC_SUFFIX = "tf_static"
 """What the topic of transforms that always hold ends with: nothing in the messages says it."""
-_REPORTS = {TURN: "report", HAZARD: "report", MODE: "mode", ENGAGE: "engage"}
+_REPORTS = {TURN_INDICATORS: "report", HAZARD_LIGHTS: "report", CONTROL_MODE: "mode", ENGAGE: "engage"}
 _OLD = {
     "autoware_auto_perception_msgs": "autoware_perception_msgs",
     "autoware_auto_vehicle_msgs": "autoware_vehicle_msgs",
@@ -45,20 +62,20 @@ _OLD = {
 _CARLA = "carla_msgs/"
 
 
-def kind_of(container: Container, channel: Channel) -> str | None:
+def message_type(container: Container, channel: Channel) -> str | None:
     """Return the type of ROS messages that are read on a channel; None for any other."""
     schema = container.schemas.get(channel.schema_id)
     if schema is None or channel.message_encoding != "cdr":
         return None
-    name = ros_types.short(schema.name)
+    name = ros_types.short_type_name(schema.name)
     package, _, rest = name.partition("/")
     name = f"{_OLD.get(package, package)}/{rest}"
-    return name if name in KINDS or name in TREES else None
+    return name if name in OBJECT_MESSAGES or name in FIELD_TREES else None
 
 
 @dataclass
-class Channelful:
-    """The messages of one topic: what was decoded of them, and what waits for it."""
+class TopicMessages:
+    """The messages of one topic, decoded and still to be decoded."""
 
     kind: str
     topic: str
@@ -69,14 +86,14 @@ class Channelful:
     decoder: Decoder | None = None
 
     def take(self, packet: Packet) -> None:
-        """Keep a message, decoding when enough have come together."""
+        """Add a message, and decode the waiting ones when they fill a batch."""
         self.waiting.append(packet)
         self.size += len(packet.data)
         if self.size >= BATCH_BYTES:
             self.flush()
 
     def flush(self) -> None:
-        """Decode what waits."""
+        """Decode the messages that are still to be decoded."""
         if self.waiting and self.decoder is not None:
             log_ns = np.array([packet.log_time_ns for packet in self.waiting], np.int64)
             self.parts.append(self.read(self.decoder.table(self.waiting), log_ns))
@@ -88,8 +105,8 @@ class _Log:
 
     def __init__(self, path: Path, forward_m: float) -> None:
         self.path = path
-        self.topics: dict[str, dict[str, Channelful]] = {}
-        self.findings: list[Finding] = []
+        self.topics: dict[str, dict[str, TopicMessages]] = {}
+        self.findings: list[QualityFinding] = []
         self.carla = False
         self._forward_m = forward_m
 
@@ -98,7 +115,7 @@ class _Log:
             container = Container(file)
             decoders: dict[int, Decoder] = {}
             for packet in container.packets():
-                kind = kind_of(container, packet.channel)
+                kind = message_type(container, packet.channel)
                 if kind is None:
                     continue
                 number = packet.channel.schema_id
@@ -114,23 +131,23 @@ class _Log:
             self.carla |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())
             self.findings += container.findings
 
-    def _all(self) -> list[Channelful]:
+    def _all(self) -> list[TopicMessages]:
         return [source for topics in self.topics.values() for source in topics.values()]
 
-    def _source(self, kind: str, topic: str) -> Channelful:
+    def _source(self, kind: str, topic: str) -> TopicMessages:
         topics = self.topics.setdefault(kind, {})
         if topic not in topics:
-            topics[topic] = Channelful(kind, topic, self._reader(kind))
+            topics[topic] = TopicMessages(kind, topic, self._reader(kind))
         return topics[topic]
 
     def _reader(self, kind: str) -> Callable[[Table, NDArray[np.int64]], Any]:
-        if kind in KINDS:
+        if kind in OBJECT_MESSAGES:
             return lambda table, log_ns: _objects(kind, table, log_ns)
         if kind == ODOMETRY:
             return lambda table, log_ns: ros_ego.odometry(table, log_ns, self._forward_m)
         return lambda table, log_ns: (table, log_ns)
 
-    def one(self, kinds: Iterable[str], what: str, asked: list[str]) -> Channelful | None:
+    def one(self, kinds: Iterable[str], what: str, asked: list[str]) -> TopicMessages | None:
         """Return the one topic with messages of some kinds. Errors: `TraceError` where there are several, none asked for."""
         found = {t: source for kind in kinds for t, source in self.topics.get(kind, {}).items() if source.parts}
         chosen = [topic for topic in asked if topic in found] or sorted(found)
@@ -141,9 +158,9 @@ class _Log:
         return found[chosen[0]] if chosen else None
 
 
-def _objects(kind: str, table: Table, log_ns: NDArray[np.int64]) -> Rows:
-    items = table.children[KINDS[kind].items]
-    rows = KINDS[kind].rows(table, items)
+def _objects(kind: str, table: Table, log_ns: NDArray[np.int64]) -> RecordedPoses:
+    items = table.children[OBJECT_MESSAGES[kind].items]
+    rows = OBJECT_MESSAGES[kind].rows(table, items)
     rows.log_ns = log_ns[items.parent]
     return rows
 
@@ -155,9 +172,9 @@ def _decoder(path: Path, container: Container, number: int, kind: str) -> Decode
             f"{path}: {schema.name} is described by {schema.encoding or 'nothing'}: only ros2msg is read: record or convert it "
             "with message definitions"
         )
-    name = ros_types.short(schema.name)
+    name = ros_types.short_type_name(schema.name)
     types = ros_types.parse(path, schema.name, schema.data)
-    tree = KINDS[kind].tree if kind in KINDS else TREES[kind]
+    tree = OBJECT_MESSAGES[kind].tree if kind in OBJECT_MESSAGES else FIELD_TREES[kind]
     return cdr.Decoder(path, schema.name, types, name, tree)
 
 
@@ -165,7 +182,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     """Read a file or a bag. Errors: `TraceError` for damage, for nothing that can be judged, for topics to choose from."""
     forward_m = 0.0 if options.ego_size is None else options.ego_size.forward_m
     log = _Log(path, forward_m)
-    log.read(bag.files(path))
+    log.read(bag.mcap_files(path))
     asked = [] if options.topic is None else [part.strip() for part in options.topic.split(",")]
     known = {topic for topics in log.topics.values() for topic in topics}
     for topic in asked:
@@ -173,13 +190,15 @@ def read(path: Path, options: IngestOptions) -> Recording:
             raise TraceError(
                 f"{path}: nothing that is read is on topic {topic!r}: there is {listed(sorted(known)) or 'nothing'}"
             )
-    objects = log.one(KINDS, "road users", asked)
+    objects = log.one(OBJECT_MESSAGES, "road users", asked)
     odometry = log.one([ODOMETRY], "odometry", asked)
-    parts = {source.topic: joined(source.parts) for source in (objects, odometry) if source is not None}
+    parts = {source.topic: join_batches(source.parts) for source in (objects, odometry) if source is not None}
     if not sum(map(len, parts.values())):
-        raise TraceError(f"{path}: no road users and no odometry in this ROS log: {', '.join(sorted(KINDS))} are read")
+        raise TraceError(
+            f"{path}: no road users and no odometry in this ROS log: {', '.join(sorted(OBJECT_MESSAGES))} are read"
+        )
     findings = log.findings
-    own_times = common_clock(parts, findings)
+    own_times = choose_clock(parts, findings)
     frames = _frames(log, own_times=own_times)
     _drop_nameless(parts, objects, findings)
     used = [name for source in (odometry, objects) if source for name in _frame_names(parts[source.topic])]
@@ -187,11 +206,11 @@ def read(path: Path, options: IngestOptions) -> Recording:
     states: dict[str, States] = {}
     for source in (objects, odometry):
         if source is not None:
-            states[source.topic], found = placed(parts[source.topic], frames, fixed, source.topic)
+            states[source.topic], found = states_in_fixed_frame(parts[source.topic], frames, fixed, source.topic)
             findings += found
     if not any(np.isfinite(part.numbers["x_m"]).any() for part in states.values()):
         raise TraceError(f"{path}: nothing can be placed: {findings[-1].message if findings else 'no positions'}")
-    recording = merged(
+    recording = merge_ego(
         Sources(
             None if objects is None or not len(states[objects.topic]) else (objects.topic, states[objects.topic]),
             None if odometry is None or not len(states[odometry.topic]) else (odometry.topic, states[odometry.topic]),
@@ -204,31 +223,35 @@ def read(path: Path, options: IngestOptions) -> Recording:
     reports = _reports(log, asked, own_times=own_times)
     for ego in recording.ego_ids[:1]:
         mine = recording.states.actor == recording.states.ids.index(ego) if ego in recording.states.ids else None
-        if mine is not None and (TURN in reports or HAZARD in reports):
+        if mine is not None and (TURN_INDICATORS in reports or HAZARD_LIGHTS in reports):
             codes = np.full(len(recording.states), -1, np.int8)
             codes[mine] = ros_ego.indicators(recording.states.t_ns[mine], reports)
             recording.states.codes["indicator"] = codes
         recording.events = ros_ego.engagement(reports, ego)
-    recording.embedded_map, trouble = own_map.only(_maps(log))
+    recording.embedded_map, trouble = own_map.single_map(_maps(log))
     recording.findings += trouble
-    recording.frame_times, recording.utc_start_ns = clocks(list(parts.values()))
+    recording.frame_times, recording.utc_start_ns = message_times(list(parts.values()))
     recording.notes.append(f"positions are in the frame {fixed!r}")
     return recording
 
 
-def _frame_names(rows: Rows) -> list[str]:
-    return [clean(name) for name in sorted(distinct(rows.frames)[0])]
+def _frame_names(rows: RecordedPoses) -> list[str]:
+    return [clean_frame_name(name) for name in sorted(distinct(rows.frames)[0])]
 
 
-def _frames(log: _Log, *, own_times: bool) -> Frames:
-    frames = Frames()
+def _frames(log: _Log, *, own_times: bool) -> TransformTree:
+    frames = TransformTree()
     for topic, source in sorted(log.topics.get(TRANSFORMS, {}).items()):
         for table, log_ns in source.parts:
-            ros_ego.add_transforms(frames, table, log_ns, static=topic.endswith(STATIC), own_times=own_times)
+            ros_ego.add_transforms(
+                frames, table, log_ns, static=topic.endswith(STATIC_TOPIC_SUFFIX), own_times=own_times
+            )
     return frames
 
 
-def _drop_nameless(parts: dict[str, Rows], objects: Channelful | None, findings: list[Finding]) -> None:
+def _drop_nameless(
+    parts: dict[str, RecordedPoses], objects: TopicMessages | None, findings: list[QualityFinding]
+) -> None:
     if objects is None:
         return
     rows = parts[objects.topic]
@@ -239,7 +262,7 @@ def _drop_nameless(parts: dict[str, Rows], objects: Channelful | None, findings:
     if n:
         parts[objects.topic] = rows.take(~nameless)
         message = f"{objects.topic}: objects without an id: {n}: they are not judged"
-        findings.append(Finding("dropped_row", "error", message, n, int(rows.t_ns[nameless].min())))
+        findings.append(QualityFinding("dropped_row", "error", message, n, int(rows.t_ns[nameless].min())))
 
 
 def _reports(log: _Log, asked: list[str], *, own_times: bool) -> dict[str, tuple[NDArray[np.int64], NDArray[Any]]]:

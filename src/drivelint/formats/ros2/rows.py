@@ -1,4 +1,4 @@
-"""Poses as recorded, each in a frame and at a time of its own, and their way into the states of the fixed frame."""
+"""This module transforms recorded poses, each with its own frame and time, into the fixed frame."""
 
 from __future__ import annotations
 
@@ -8,30 +8,30 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 
-from drivelint.drive.order import rate, steps
-from drivelint.drive.trace import EPOCH_NS, NUMBERS, SIZES, Finding, FrameTimes, States
-from drivelint.formats.frames import Poses, clean, rotated, unit
+from drivelint.drive.order import steps, time_derivative
+from drivelint.drive.trace import LEAST_UTC_NS, SIZE_COLUMNS, STATE_COLUMNS, FrameTimes, QualityFinding, States
+from drivelint.formats.frames import Poses, clean_frame_name, rotated, unit_quaternions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
-    from drivelint.formats.frames import Frames, Vectors
+    from drivelint.formats.frames import TransformTree, Vectors
 
 MOVING_MPS = 2.0
 """Below this speed the two ways to read a velocity differ by no more than positions tremble."""
-CLEARLY = 3.0
+FIT_RATIO = 3.0
 """A velocity is read in the other frame where that fits the positions this many times better, and well."""
-FITS_MPS = 0.5
-ASKED = 8
+MAX_FIT_ERROR_MPS = 0.5
+SAMPLED_ACTORS = 8
 """Of so many actors, those that move most."""
-ENOUGH = 20
+MIN_SAMPLES = 20
 """So many moving samples tell in which frame velocities are."""
 
 
 @dataclass
-class Rows:
+class RecordedPoses:
     """n poses in the order of the log. Vectors have three columns; NaN: unknown.
 
     `stamp_ns` is the messages' own time (`stamped`: they have one), `log_ns` the container's. `ids` and `frames` are bytes.
@@ -59,27 +59,27 @@ class Rows:
     def __len__(self) -> int:
         return len(self.stamp_ns)
 
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Rows:
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> RecordedPoses:
         """Return the chosen rows."""
-        return Rows(**_columns(lambda name: None if (v := getattr(self, name)) is None else v[rows]))
+        return RecordedPoses(**_columns(lambda name: None if (v := getattr(self, name)) is None else v[rows]))
 
 
-def joined(parts: Sequence[Rows]) -> Rows:
+def join_batches(parts: Sequence[RecordedPoses]) -> RecordedPoses:
     """Return the rows of several batches."""
-    lists = {item.name: [getattr(part, item.name) for part in parts] for item in fields(Rows)}
-    return Rows(**_columns(lambda name: None if lists[name][0] is None else np.concatenate(lists[name])))
+    lists = {item.name: [getattr(part, item.name) for part in parts] for item in fields(RecordedPoses)}
+    return RecordedPoses(**_columns(lambda name: None if lists[name][0] is None else np.concatenate(lists[name])))
 
 
 def _columns(of: Callable[[str], Any]) -> dict[str, Any]:
-    return {item.name: of(item.name) for item in fields(Rows)}
+    return {item.name: of(item.name) for item in fields(RecordedPoses)}
 
 
-def blank(n: int) -> Vectors:
+def unknown_vectors(n: int) -> Vectors:
     """Return vectors of which nothing is known."""
     return np.full((n, 3), np.nan)
 
 
-def named(rows: Rows) -> tuple[list[str], NDArray[np.int32]]:
+def distinct_ids(rows: RecordedPoses) -> tuple[list[str], NDArray[np.int32]]:
     """Return the distinct ids as text, and each row's index into them."""
     return distinct(rows.ids)
 
@@ -107,21 +107,23 @@ def distinct(values: NDArray[Any]) -> tuple[list[str], NDArray[np.int32]]:
     return [str(word) for word in words], coded.indices.to_numpy(zero_copy_only=False)
 
 
-def placed(rows: Rows, frames: Frames, fixed: str, what: str) -> tuple[States, list[Finding]]:
+def states_in_fixed_frame(
+    rows: RecordedPoses, frames: TransformTree, fixed: str, what: str
+) -> tuple[States, list[QualityFinding]]:
     """Bring poses into the fixed frame. Those whose frame cannot be followed at their time stay in without a place.
 
     `what` they are is said in the findings.
     """
-    ids, actor = named(rows)
-    place, turn = rows.place.copy(), unit(rows.turn)
+    ids, actor = distinct_ids(rows)
+    place, turn = rows.place.copy(), unit_quaternions(rows.turn)
     along = rows.along[:, None]
     outward = rotated(turn, rows.velocity)
     velocity, swapped = np.where(along, outward, rows.velocity), np.where(along, rows.velocity, outward)
     acceleration = np.where(along, rotated(turn, rows.acceleration), rows.acceleration)
-    findings: list[Finding] = []
+    findings: list[QualityFinding] = []
     names, which = distinct(rows.frames)
     at_ns = rows.t_ns if rows.at_ns is None else rows.at_ns
-    for i, frame in enumerate(map(clean, names)):
+    for i, frame in enumerate(map(clean_frame_name, names)):
         if frame == fixed:
             continue
         here = np.flatnonzero(which == i)
@@ -138,11 +140,11 @@ def placed(rows: Rows, frames: Frames, fixed: str, what: str) -> tuple[States, l
         actor,
         rows.t_ns,
         {
-            **dict(zip(NUMBERS[:3], place.T.copy(), strict=True)),
+            **dict(zip(STATE_COLUMNS[:3], place.T.copy(), strict=True)),
             "yaw_rad": np.where(rows.faces, Poses(place, turn).yaw, np.nan),
             "vx_mps": velocity[:, 0].copy(), "vy_mps": velocity[:, 1].copy(),
             "ax_mps2": acceleration[:, 0].copy(), "ay_mps2": acceleration[:, 1].copy(),
-            **{name: rows.size[:, k].astype(np.float64) for k, name in enumerate(SIZES)},
+            **{name: rows.size[:, k].astype(np.float64) for k, name in enumerate(SIZE_COLUMNS)},
         },
         {"actor_class": rows.classes},
         _odd(rows.place) | _odd(rows.velocity),
@@ -158,7 +160,7 @@ def _odd(vectors: Vectors) -> NDArray[np.bool_]:
     return odd
 
 
-def _lost(what: str, frame: str, fixed: str, frames: Frames, t_ns: NDArray[np.int64]) -> Finding:
+def _lost(what: str, frame: str, fixed: str, frames: TransformTree, t_ns: NDArray[np.int64]) -> QualityFinding:
     if frame in frames.ambiguous:
         why = f"several frames say that they hold {frame!r}"
     elif frames.chain(frame, fixed) is None:
@@ -167,30 +169,30 @@ def _lost(what: str, frame: str, fixed: str, frames: Frames, t_ns: NDArray[np.in
         why = f"the transform from {frame!r} to {fixed!r} is not recorded at their time"
     first = int(t_ns.min())
     message = f"{what}: {len(t_ns)} poses from {first / 1e9:g} s on cannot be placed, since {why}: they are present but not placed"
-    return Finding("frame_unresolved", "error", message, len(t_ns), first)
+    return QualityFinding("frame_unresolved", "error", message, len(t_ns), first)
 
 
-def _other_frame(states: States, swapped: Vectors, along: NDArray[np.bool_], what: str) -> list[Finding]:
+def _other_frame(states: States, swapped: Vectors, along: NDArray[np.bool_], what: str) -> list[QualityFinding]:
     """Read velocities in the other frame where they then are what the positions do, and are not as they should be given."""
     vx, vy = states.numbers["vx_mps"], states.numbers["vy_mps"]
     fast = np.bincount(states.actor[np.hypot(swapped[:, 0], swapped[:, 1]) > MOVING_MPS], minlength=len(states.ids))
     chosen = np.zeros(len(states.ids), np.bool_)
-    chosen[np.argsort(-fast, kind="stable")[:ASKED]] = True
+    chosen[np.argsort(-fast, kind="stable")[:SAMPLED_ACTORS]] = True
     some = np.flatnonzero(chosen[states.actor])
     order = some[np.lexsort((states.t_ns[some], states.actor[some]))]
     track = states.take(order)
-    if len(track) < ENOUGH:
+    if len(track) < MIN_SAMPLES:
         return []
     step = steps(track)
-    dx, dy = rate(track.numbers["x_m"], step), rate(track.numbers["y_m"], step)
+    dx, dy = time_derivative(track.numbers["x_m"], step), time_derivative(track.numbers["y_m"], step)
     moving = np.hypot(dx, dy) > MOVING_MPS
     wrong = np.hypot(track.numbers["vx_mps"] - dx, track.numbers["vy_mps"] - dy)[moving]
     other = np.hypot(swapped[order, 0] - dx, swapped[order, 1] - dy)[moving]
     known = np.isfinite(wrong) & np.isfinite(other)
-    if int(known.sum()) < ENOUGH:
+    if int(known.sum()) < MIN_SAMPLES:
         return []
     off, fit = float(np.median(wrong[known])), float(np.median(other[known]))
-    if fit > FITS_MPS or off < max(CLEARLY * fit, FITS_MPS):
+    if fit > MAX_FIT_ERROR_MPS or off < max(FIT_RATIO * fit, MAX_FIT_ERROR_MPS):
         return []
     states.numbers["vx_mps"] = np.where(np.isfinite(swapped[:, 0]), swapped[:, 0], vx)
     states.numbers["vy_mps"] = np.where(np.isfinite(swapped[:, 1]), swapped[:, 1], vy)
@@ -200,10 +202,10 @@ def _other_frame(states: States, swapped: Vectors, along: NDArray[np.bool_], wha
         f"{what}: velocities should be given {given} and then miss the positions' changes by {off:.2f} m/s (median); "
         f"they are {is_} ({fit:.2f} m/s), and are read so"
     )
-    return [Finding("twist_frame", "warning", message, len(states), int(states.t_ns.min()))]
+    return [QualityFinding("twist_frame", "warning", message, len(states), int(states.t_ns.min()))]
 
 
-def common_clock(parts: dict[str, Rows], findings: list[Finding]) -> bool:
+def choose_clock(parts: dict[str, RecordedPoses], findings: list[QualityFinding]) -> bool:
     """Say whether the messages' own times can be used: all have one, it runs, and all count from the same moment.
 
     Else the times of the container count, for all of them, and a finding says why. Fills `t_ns` of the rows.
@@ -214,7 +216,7 @@ def common_clock(parts: dict[str, Rows], findings: list[Finding]) -> bool:
         if not len(rows):
             continue
         # 0 is a time where a simulation's clock starts, and none where the others count from 1970
-        missing = ~rows.stamped | ((rows.stamp_ns == 0) & (rows.stamp_ns.max() >= EPOCH_NS))
+        missing = ~rows.stamped | ((rows.stamp_ns == 0) & (rows.stamp_ns.max() >= LEAST_UTC_NS))
         if missing.any():
             why = f"{what}: {int(missing.sum())} of {len(rows)} poses are without a time stamp"
         elif len(rows) > 1 and rows.stamp_ns.min() == rows.stamp_ns.max() and rows.log_ns.min() < rows.log_ns.max():
@@ -231,21 +233,21 @@ def common_clock(parts: dict[str, Rows], findings: list[Finding]) -> bool:
         n = sum(len(rows) for rows in parts.values())
         first = min((int(rows.t_ns.min()) for rows in parts.values() if len(rows)), default=0)
         message = f"{why}: the log times of the container are used for all messages"
-        findings.append(Finding("log_time_used", "warning", message, n, first))
+        findings.append(QualityFinding("log_time_used", "warning", message, n, first))
     return why is None
 
 
-def clocks(parts: Sequence[Rows]) -> tuple[FrameTimes, int | None]:
-    """Return each message once, in the order of the file, and when the log begins in UTC where its clock tells."""
+def message_times(parts: Sequence[RecordedPoses]) -> tuple[FrameTimes, int | None]:
+    """Return the times of each message in the order of the file, and the start of the log in UTC if it is known."""
     t_ns, log_ns = np.concatenate([part.t_ns for part in parts]), np.concatenate([part.log_ns for part in parts])
     new = np.r_[True, (t_ns[1:] != t_ns[:-1]) | (log_ns[1:] != log_ns[:-1])]
     pairs = np.unique(np.stack([log_ns[new], t_ns[new]]), axis=1)
     first = int(pairs[0, 0])
-    return FrameTimes(pairs[1], pairs[0].astype(np.uint64)), first if first >= EPOCH_NS else None
+    return FrameTimes(pairs[1], pairs[0].astype(np.uint64)), first if first >= LEAST_UTC_NS else None
 
 
-def same_actor(ego: States, others: States) -> list[str]:
-    """Return the ids of actors that are where the ego is, always: the ego among the objects."""
+def ids_at_ego(ego: States, others: States) -> list[str]:
+    """Return the ids of the objects whose positions are almost always the ego's."""
     times, first = np.unique(ego.t_ns, return_index=True)
     if len(times) < 2 or not len(others):
         return []

@@ -14,12 +14,12 @@ from drivelint.errors import TraceError
 if TYPE_CHECKING:
     from pathlib import Path
 
-CODES: Final = {
+NUMPY_CODES: Final = {
     "bool": "u1", "byte": "u1", "char": "u1", "uint8": "u1", "int8": "i1", "uint16": "u2", "int16": "i2", "uint32": "u4",
     "int32": "i4", "uint64": "u8", "int64": "i8", "float32": "f4", "float64": "f8",
 }  # fmt: skip
 """Primitive type -> numpy code without byte order. The number in it is the size, and in CDR the alignment."""
-TEXTS: Final = ("string", "wstring")
+TEXT_TYPES: Final = ("string", "wstring")
 SEQUENCE: Final = -1
 _STAMPS: Final = ("time", "duration", "builtin_interfaces/Time", "builtin_interfaces/Duration")
 """Times that a definition may use without describing them."""
@@ -42,7 +42,7 @@ Types = dict[str, list[Field]]
 """Full name (`package/Name`) -> its members in order."""
 
 
-def short(name: str) -> str:
+def short_type_name(name: str) -> str:
     """Return `package/Name` of a schema that may be called `package/msg/Name`."""
     return name.replace("/msg/", "/")
 
@@ -56,12 +56,12 @@ def parse(path: Path, name: str, text: bytes) -> Types:
         raise TraceError(
             f"{path}: the definition of {name} in the log is not text ({error}): record it again"
         ) from error
-    sections = [(short(name), first)]
+    sections = [(short_type_name(name), first)]
     for section in others:
         title, _, body = section.lstrip().partition("\n")
         if not title.startswith("MSG:"):
             raise _not_understood(path, name, title)
-        sections.append((short(title.removeprefix("MSG:").strip()), body))
+        sections.append((short_type_name(title.removeprefix("MSG:").strip()), body))
     defined = {title for title, _ in sections}
     for title, body in sections:
         types[title] = [_resolved(field, title, defined, path, name) for field in _fields(path, name, body)]
@@ -91,9 +91,9 @@ def _fields(path: Path, name: str, body: str) -> list[Field]:
 def _resolved(field: Field, container: str, defined: set[str], path: Path, name: str) -> Field:
     """Give a member's type its full name: another package's, the same package's, or a primitive."""
     kind = field.kind
-    if kind in CODES or kind in TEXTS:
+    if kind in NUMPY_CODES or kind in TEXT_TYPES:
         return field
-    full = short(kind)
+    full = short_type_name(kind)
     if full == "Header":
         full = "std_msgs/Header"
     if "/" not in full and full not in _STAMPS:
@@ -117,7 +117,7 @@ def _refuse_loops(path: Path, name: str, types: Types) -> None:
             visit(field.kind, (*inside, kind))
         done.add(kind)
 
-    visit(short(name), ())
+    visit(short_type_name(name), ())
 
 
 def _not_understood(path: Path, name: str, line: str) -> TraceError:

@@ -16,7 +16,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv as pa_csv
 
-from drivelint.drive.trace import BRAKE_LIGHTS, CLASSES, INDICATORS, Finding, Recording, States
+from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, QualityFinding, Recording, States
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import markup
 from drivelint.formats.sumo import lights as sumo_lights
@@ -59,7 +59,7 @@ class VehicleType:
     width_m: float
 
 
-def looks_like(path: Path, head: bytes) -> bool:
+def is_fcd(path: Path, head: bytes) -> bool:
     """Say whether a file is FCD: an <fcd-export> element, or a table with its columns."""
     if head.startswith(b"PAR1"):
         return set(_COLUMNS) <= set(parquet.schema(path).names)
@@ -89,19 +89,19 @@ def read(path: Path, types_file: str | None) -> Recording:
         raise TraceError(f"{path}: no vehicle in this log")
     types, notes = _types(path, types_file)
     recording = _recording(table, types)
-    lights = sumo_lights.beside(path, _is_log)
+    lights = sumo_lights.read_light_states(path, _is_log)
     recording.signals = lights.signals
     recording.notes += [*notes, *lights.notes]
     recording.findings += lights.findings
     if dropped:
         message = f"rows without an id: {dropped}: they are not judged"
-        recording.findings.append(Finding("dropped_row", "error", message, dropped))
+        recording.findings.append(QualityFinding("dropped_row", "error", message, dropped))
     return recording
 
 
 def _is_log(file: Path) -> bool:
     with file.open("rb") as opened:
-        return looks_like(file, opened.read(HEAD_BYTES))
+        return is_fcd(file, opened.read(HEAD_BYTES))
 
 
 def _rows(path: Path) -> pa.Table:
@@ -134,7 +134,7 @@ def _recording(table: pa.Table, types: dict[str, VehicleType]) -> Recording:
         "vx_mps": speed * cos, "vy_mps": speed * sin, "ax_mps2": accel * cos, "ay_mps2": accel * sin,
         "length_m": length, "width_m": width,
     }  # fmt: skip
-    classes = [-1 if t.actor_class is None else CLASSES.index(t.actor_class) for t in said]
+    classes = [-1 if t.actor_class is None else ACTOR_CLASSES.index(t.actor_class) for t in said]
     signals = _floats(table, "signals")
     states = States(
         [str(i) for i in ids.dictionary.to_pylist()],
@@ -151,7 +151,7 @@ def _recording(table: pa.Table, types: dict[str, VehicleType]) -> Recording:
             f"no size is known of the vehicle types {listed([n or 'without a name' for n in unknown])}: give the route file "
             "with their vType elements with --mapping; until then their positions are those of the front bumper"
         )
-        recording.findings.append(Finding("bumper_position", "warning", message, int(np.isnan(length).sum())))
+        recording.findings.append(QualityFinding("bumper_position", "warning", message, int(np.isnan(length).sum())))
     return recording
 
 

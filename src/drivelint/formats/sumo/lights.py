@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 import pyarrow as pa
 
-from drivelint.drive.trace import SIGNAL_STATES, Finding
+from drivelint.drive.trace import SIGNAL_STATES, QualityFinding
 from drivelint.formats import markup
 from drivelint.phrases import listed
 
@@ -30,15 +30,15 @@ _LETTERS: Final = {
 """s, green for those who turn right after a stop, is none of our words: not known."""
 
 
-class Lights(NamedTuple):
-    """Rows of signal_id, t_ns and state, None where there are none; what is to be said of them."""
+class LightStates(NamedTuple):
+    """The states of traffic lights, and the notes and findings about them."""
 
     signals: pa.Table | None
     notes: list[str]
-    findings: list[Finding]
+    findings: list[QualityFinding]
 
 
-def beside(log: Path, is_log: Callable[[Path], bool]) -> Lights:
+def read_light_states(log: Path, is_log: Callable[[Path], bool]) -> LightStates:
     """Read the states that belong to a log.
 
     They are in a file named as the log is up to the first dot, or in the only one in a folder with this log alone; `is_log` says
@@ -54,11 +54,11 @@ def beside(log: Path, is_log: Callable[[Path], bool]) -> Lights:
         named = files
     if len(named) != 1:
         if not files:
-            return Lights(None, [], [])
+            return LightStates(None, [], [])
         what = "which of them is its own is not known" if named else "none is named as it is"
         names = listed([file.name for file in named or files])
         note = f"{log.name}: light states in {names} are not read: {what}: call it {_first_part(log)}.tls.xml"
-        return Lights(None, [note], [])
+        return LightStates(None, [note], [])
     return _read(named[0])
 
 
@@ -71,19 +71,21 @@ def _has_states(file: Path) -> bool:
         return b"<tlsStates" in opened.read(_HEAD_BYTES)
 
 
-def _read(file: Path) -> Lights:
+def _read(file: Path) -> LightStates:
     try:
         root = markup.parse(file.read_bytes())
     except markup.RefusedError as error:
-        return Lights(
-            None, [], [Finding("lights_unread", "warning", f"light states of {file.name} are not read: it {error}", 1)]
+        return LightStates(
+            None,
+            [],
+            [QualityFinding("lights_unread", "warning", f"light states of {file.name} are not read: it {error}", 1)],
         )
     table, dropped = _rows(root.iter("tlsState"))
     findings = []
     if dropped:
         message = f"light states of {file.name} without a time, light or state: {dropped}: they are left out"
-        findings.append(Finding("malformed_row", "warning", message, dropped))
-    return Lights(table, [f"the states of traffic lights are those of {file.name} beside it"], findings)
+        findings.append(QualityFinding("malformed_row", "warning", message, dropped))
+    return LightStates(table, [f"the states of traffic lights are those of {file.name} beside it"], findings)
 
 
 def _rows(states: Iterable[etree._Element]) -> tuple[pa.Table | None, int]:

@@ -17,9 +17,9 @@ import numpy as np
 from drivelint.errors import MapError
 from drivelint.formats import markup
 from drivelint.formats.sumo.rights import Rows, control_rows
-from drivelint.road.boundary_lanes import BoundedLane, build, crossings, tables
-from drivelint.road.contract import Environment, MapSource, Request, environment_id
-from drivelint.road.quality import Quality
+from drivelint.road.boundary_lanes import BoundedLane, build_lanes, crossings, tables
+from drivelint.road.contract import MapOptions, MapSource, MapTables, environment_id
+from drivelint.road.quality import MapQuality
 from drivelint.road.tables import from_rows
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-WIDTH_M: Final = 3.2  # SUMO's, where a lane says none
+DEFAULT_LANE_WIDTH_M: Final = 3.2  # SUMO's, where a lane says none
 _LONGEST_MITRE: Final = 3.0
 _BEGUN_M: Final = 0.5
 _LEAST_COS: Final = 0.85
@@ -72,17 +72,17 @@ class SumoNetReader:
 
     format = "sumo"
 
-    def read(self, source: MapSource, request: Request) -> Environment:
+    def read(self, source: MapSource, request: MapOptions) -> MapTables:
         """Return the map's tables; `MapError` where the file is not XML or nothing in it can be built."""
         try:
             root = markup.parse(source.content)
         except markup.RefusedError as error:
             raise MapError(f"map {source.name} {error}") from None
-        quality = Quality()
+        quality = MapQuality()
         left = root.get("lefthand") in {"true", "1"}
         net = _read(root, left=left, quality=quality)
         _connect(root, net)
-        lanes = build(net.lanes.values(), request.offset, quality)
+        lanes = build_lanes(net.lanes.values(), request.offset, quality)
         if not lanes:
             first = next((row["message"] for row in quality.rows), "it has no <lane>")
             raise MapError(f"map {source.name} has no lane that can be built: {first}")
@@ -99,10 +99,10 @@ class SumoNetReader:
         result = tables(name, lanes)
         result |= {table: from_rows(table, name, content) for table, content in rows.items()}
         result["map_quality"] = quality.table(name)
-        return Environment(name, handedness, how, result)
+        return MapTables(name, handedness, how, result)
 
 
-def _environment(source: MapSource, request: Request, handedness: str, how: str) -> dict[str, Any]:
+def _environment(source: MapSource, request: MapOptions, handedness: str, how: str) -> dict[str, Any]:
     return {
         "name": source.name, "sha256": source.sha256, "format": SumoNetReader.format,
         "offset_x_m": request.offset[0], "offset_y_m": request.offset[1],
@@ -110,7 +110,7 @@ def _environment(source: MapSource, request: Request, handedness: str, how: str)
     }  # fmt: skip
 
 
-def _handedness(request: Request, said: str, quality: Quality) -> tuple[str, str]:
+def _handedness(request: MapOptions, said: str, quality: MapQuality) -> tuple[str, str]:
     """Return the side that is driven on: a net says so where it is the left, and nothing where it is the right."""
     if request.handedness == "auto":
         return said, "attribute"
@@ -120,7 +120,7 @@ def _handedness(request: Request, said: str, quality: Quality) -> tuple[str, str
     return request.handedness, "option"
 
 
-def _read(root: etree._Element, *, left: bool, quality: Quality) -> _Net:
+def _read(root: etree._Element, *, left: bool, quality: MapQuality) -> _Net:
     net = _Net()
     for edge in root.iterfind("edge"):
         name, function = edge.get("id", ""), edge.get("function", "normal")
@@ -162,7 +162,7 @@ def _adjoin(lane: BoundedLane, beside: str, *, inward: bool, left: bool, against
 def _lane(edge: etree._Element, element: etree._Element) -> BoundedLane:
     """Return a lane. Errors: `KeyError`, `ValueError` where it cannot be understood."""
     middle = _points(str(element.attrib["shape"]))
-    half = float(element.get("width") or WIDTH_M) / 2
+    half = float(element.get("width") or DEFAULT_LANE_WIDTH_M) / 2
     kind = _kind(element.get("allow"), element.get("disallow"))
     inside = edge.get("function") == "internal"
     limit = float(element.attrib["speed"])

@@ -16,7 +16,7 @@ def accepts(probe: Probe) -> bool:
     """Accept by its element or its columns."""
     from drivelint.formats.sumo import fcd as sumo
 
-    return not probe.path.is_dir() and sumo.looks_like(probe.path, probe.head)
+    return not probe.path.is_dir() and sumo.is_fcd(probe.path, probe.head)
 
 
 def read(probe: Probe) -> Recording:

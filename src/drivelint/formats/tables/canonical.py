@@ -10,18 +10,18 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.drive.trace import (
+    ACTOR_CLASSES,
     BRAKE_LIGHTS,
-    CLASSES,
     INDICATORS,
-    NUMBERS,
     SIGNAL_STATES,
-    SIZES,
-    Finding,
+    SIZE_COLUMNS,
+    STATE_COLUMNS,
+    QualityFinding,
     Recording,
     States,
 )
 from drivelint.errors import TraceError
-from drivelint.formats.osi.extras import conditions_of
+from drivelint.formats.osi.extras import parse_conditions
 from drivelint.formats.tables import parquet
 
 if TYPE_CHECKING:
@@ -29,16 +29,16 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-REQUIRED = ("t_ns", "actor_id", "x_m", "y_m", "yaw_rad")
+REQUIRED_COLUMNS = ("t_ns", "actor_id", "x_m", "y_m", "yaw_rad")
 """What makes a Parquet table canonical; every other column may be missing and is then unknown."""
-_OF_A_STATE = {"indicator": INDICATORS, "brake_light": BRAKE_LIGHTS, "actor_class": CLASSES}
+_OF_A_STATE = {"indicator": INDICATORS, "brake_light": BRAKE_LIGHTS, "actor_class": ACTOR_CLASSES}
 _WORDS = {**_OF_A_STATE, "state": SIGNAL_STATES}
 """Column -> its words; a log may write them in any case."""
 
 
 def has_columns(path: Path) -> bool:
     """Say whether a Parquet file has the columns of `actor_state`. Errors: `TraceError` where it is damaged."""
-    return set(REQUIRED) <= set(parquet.schema(path).names)
+    return set(REQUIRED_COLUMNS) <= set(parquet.schema(path).names)
 
 
 def read(path: Path) -> Recording:
@@ -89,7 +89,7 @@ def _offset(path: Path, offset: tuple[object, object]) -> tuple[float, float]:
     raise TraceError(f"{path / 'data_log.parquet'}: map_offset_x_m and map_offset_y_m are {offset}: give two numbers")
 
 
-def _quality(path: Path) -> list[Finding]:
+def _quality(path: Path) -> list[QualityFinding]:
     """Read what was found when the log was converted: what was mended then cannot be seen any more."""
     if not path.is_file():
         return []
@@ -97,7 +97,7 @@ def _quality(path: Path) -> list[Finding]:
     _need(path, rows, ("check_id", "severity", "message"))
     try:
         return [
-            msgspec.convert({name: value for name, value in row.items() if name != "drive_id"}, Finding)
+            msgspec.convert({name: value for name, value in row.items() if name != "drive_id"}, QualityFinding)
             for row in rows.to_pylist()
         ]
     except msgspec.ValidationError as error:
@@ -123,9 +123,9 @@ def _need(path: Path, table: pa.Table, names: tuple[str, ...]) -> None:
         raise TraceError(f"{path}: holds {len(drives)} drives: write one folder or file per drive")
 
 
-def _states(path: Path) -> tuple[States, list[str], list[Finding]]:
+def _states(path: Path) -> tuple[States, list[str], list[QualityFinding]]:
     table = parquet.table(path)
-    _need(path, table, REQUIRED)
+    _need(path, table, REQUIRED_COLUMNS)
     ids = _column(path, table, "actor_id", pa.string())
     times = _column(path, table, "t_ns", pa.int64())
     lost = pc.or_(pc.or_(pc.is_null(ids), pc.equal(pc.fill_null(ids, ""), "")), pc.is_null(times)).to_numpy(
@@ -133,7 +133,7 @@ def _states(path: Path) -> tuple[States, list[str], list[Finding]]:
     )
     n = len(ids)
     numbers, not_finite = {}, np.zeros(n, np.bool_)
-    for name in (*NUMBERS, *SIZES):
+    for name in (*STATE_COLUMNS, *SIZE_COLUMNS):
         if name in table.schema.names:
             column = _column(path, table, name, pa.float64())
             values = pc.fill_null(column, float("nan")).to_numpy(zero_copy_only=False)
@@ -156,7 +156,7 @@ def _states(path: Path) -> tuple[States, list[str], list[Finding]]:
     if not lost.any():
         return states, egos, []
     message = f"{path.name}: rows without actor or time: {int(lost.sum())}: they are not judged"
-    return states.take(~lost), egos, [Finding("dropped_row", "error", message, int(lost.sum()))]
+    return states.take(~lost), egos, [QualityFinding("dropped_row", "error", message, int(lost.sum()))]
 
 
 def _codes(path: Path, column: pa.Array, name: str) -> NDArray[np.int8]:
@@ -180,7 +180,7 @@ def _actors(path: Path) -> pa.Table:
     table = parquet.table(path)
     _need(path, table, ("actor_id",))
     columns = {"actor_id": _column(path, table, "actor_id", pa.string())}
-    for name in SIZES:
+    for name in SIZE_COLUMNS:
         if name in table.schema.names:
             columns[name] = _column(path, table, name, pa.float64())
     if "actor_class" in table.schema.names:
@@ -214,4 +214,4 @@ def _conditions(path: Path) -> dict[str, str]:
     table = parquet.table(path)
     _need(path, table, ("condition", "value"))
     names, words = (_column(path, table, name, pa.string()).to_pylist() for name in ("condition", "value"))
-    return conditions_of(path, zip(names, words, strict=True))
+    return parse_conditions(path, zip(names, words, strict=True))

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import rate, steps, wrapped
-from drivelint.drive.trace import NUMBERS, SIZES, States
+from drivelint.drive.order import steps, time_derivative, wrapped
+from drivelint.drive.trace import SIZE_COLUMNS, STATE_COLUMNS, States
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,7 +46,9 @@ def to_map_frame(states: States, mapping: Mapping) -> None:
                 log[east], log[north] = _turned(log[east], log[north], log["yaw"])
     if mapping.reference.point != "centre":
         _to_centre(states, mapping)
-    states.numbers = {ours: log.get(theirs, nothing) for theirs, ours in _SOURCE.items() if ours in {*NUMBERS, *SIZES}}
+    states.numbers = {
+        ours: log.get(theirs, nothing) for theirs, ours in _SOURCE.items() if ours in {*STATE_COLUMNS, *SIZE_COLUMNS}
+    }
 
 
 def _turned(
@@ -83,5 +85,5 @@ def _yaw_rate(states: States) -> NDArray[np.float64]:
     # a new track or an unknown heading starts afresh: its sum of turns must not carry over
     unwrapped = yaw + np.r_[0.0, np.cumsum(np.where(step.same & np.isfinite(turns), turns, 0.0))]
     result = np.empty(len(states))
-    result[order] = rate(unwrapped, step)
+    result[order] = time_derivative(unwrapped, step)
     return result

@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import msgspec
 
-from drivelint.drive.trace import BRAKE_LIGHTS, CLASSES, INDICATORS
+from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
 
 if TYPE_CHECKING:
     from collections.abc import Set as AbstractSet
 
-SHIPPED = Path(__file__).parent / "mappings"
+MAPPINGS_FOLDER = Path(__file__).parent / "mappings"
 
 UNITS: dict[str, dict[str, float]] = {
     "length": {"m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "ft": 0.3048},
@@ -33,7 +33,7 @@ UNITS: dict[str, dict[str, float]] = {
 """Quantity -> unit -> factor to SI; the first unit of each is SI and the default."""
 TIME_UNITS = {"s": 1_000_000_000, "ms": 1_000_000, "us": 1_000, "ns": 1, "min": 60_000_000_000}
 """Unit of time -> nanoseconds."""
-GROUP = "{k}"
+GROUP_PLACEHOLDER = "{k}"
 
 
 class Field(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
@@ -47,7 +47,7 @@ class Field(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 FieldSpec = str | float | Field
 
 
-class Table(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+class TextLayout(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """How the text is laid out: cell separator, lines before the header, words that mean no value."""
 
     separator: str = ","
@@ -55,7 +55,7 @@ class Table(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     null_values: list[str] = []
 
 
-class Time(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+class TimeColumn(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """The time column and its unit."""
 
     column: str
@@ -77,8 +77,8 @@ class Frame(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     map_offset_m: tuple[float, float] | None = None
 
 
-class Reference(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """What the position is of, and where the box centre lies from there: forward, left and up of the vehicle."""
+class PositionReference(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """The point of the vehicle that a position refers to, and the offset from it to the box centre."""
 
     point: Literal["centre", "rear_axle", "front_bumper"] = "centre"
     forward: FieldSpec | None = None
@@ -112,8 +112,8 @@ class Pattern(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     word: str = msgspec.field(name="is")
 
 
-class Words(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """Text to one of our words: exact `values` first, then `patterns` in order, then `default`; else unknown.
+class WordMapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+    """How the text of a column becomes one of drivelint's words: `values` first, then `patterns`, then `default`.
 
     Several columns are joined by `/` before they are looked up.
     """
@@ -129,7 +129,7 @@ class Words(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
         return [self.column] if isinstance(self.column, str) else self.column
 
 
-class Ego(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+class EgoChoice(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """Ids of the ego, the first present counts; `otherwise = "first"` takes the first column group with a vehicle."""
 
     ids: list[str] = []
@@ -139,21 +139,21 @@ class Ego(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 class Mapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """A whole mapping file."""
 
-    time: Time
+    time: TimeColumn
     columns: Columns
     description: str = ""
-    table: Table = Table()
+    table: TextLayout = TextLayout()
     frame: Frame = Frame()
-    reference: Reference = Reference()
-    actor_class: Words | None = msgspec.field(default=None, name="class")
-    indicator: Words | None = None
-    brake_light: Words | None = None
-    ego: Ego = Ego()
+    reference: PositionReference = PositionReference()
+    actor_class: WordMapping | None = msgspec.field(default=None, name="class")
+    indicator: WordMapping | None = None
+    brake_light: WordMapping | None = None
+    ego: EgoChoice = EgoChoice()
 
 
 # logs are read in several threads, and msgspec plans a type at its first use without a lock: two threads at once crash
-PLANNED = msgspec.json.Decoder(Mapping)
-QUANTITY = {
+DECODER = msgspec.json.Decoder(Mapping)
+FIELD_QUANTITIES = {
     "x": "length", "y": "length", "z": "length", "yaw": "angle", "vx": "speed", "vy": "speed", "speed": "speed",
     "ax": "acceleration", "ay": "acceleration", "yaw_rate": "rate",
     "length": "length", "width": "length", "height": "length", "forward": "length", "left": "length", "up": "length",
@@ -161,9 +161,9 @@ QUANTITY = {
 """Field -> quantity, which decides its units."""
 
 
-def shipped() -> list[str]:
+def shipped_mappings() -> list[str]:
     """Return the names of the mappings that come with drivelint."""
-    return sorted(file.stem for file in SHIPPED.glob("*.toml"))
+    return sorted(file.stem for file in MAPPINGS_FOLDER.glob("*.toml"))
 
 
 def load(name: str) -> tuple[str, Mapping]:
@@ -173,10 +173,12 @@ def load(name: str) -> tuple[str, Mapping]:
     """
     path = Path(name)
     if not path.is_file():
-        if name not in shipped():
-            known = sorted(file.stem for file in SHIPPED.parents[1].glob("*/mappings/*.toml"))  # those of films too
+        if name not in shipped_mappings():
+            known = sorted(
+                file.stem for file in MAPPINGS_FOLDER.parents[1].glob("*/mappings/*.toml")
+            )  # those of films too
             raise UsageError(f"mapping {name!r}: neither a file nor a shipped mapping: {hint(name, known)}")
-        path = SHIPPED / f"{name}.toml"
+        path = MAPPINGS_FOLDER / f"{name}.toml"
     try:
         raw = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
@@ -192,8 +194,8 @@ def load(name: str) -> tuple[str, Mapping]:
     return path.stem, mapping
 
 
-def field_of(spec: FieldSpec) -> Field:
-    """Bring the three ways to write a field into one."""
+def as_field(spec: FieldSpec) -> Field:
+    """Convert a column name, a number or a Field into a Field."""
     if isinstance(spec, Field):
         return spec
     return Field(column=spec) if isinstance(spec, str) else Field(value=spec)
@@ -202,23 +204,23 @@ def field_of(spec: FieldSpec) -> Field:
 def fields(mapping: Mapping) -> dict[str, Field]:
     """Return every field that the mapping sets, the offsets of the reference point among them."""
     specs = {**msgspec.structs.asdict(mapping.columns), **msgspec.structs.asdict(mapping.reference)}
-    return {name: field_of(spec) for name, spec in specs.items() if spec is not None and name != "point"}
+    return {name: as_field(spec) for name, spec in specs.items() if spec is not None and name != "point"}
 
 
-def words(mapping: Mapping) -> dict[str, tuple[Words, tuple[str, ...]]]:
-    """Return the column of our tables -> how it is spelled in the log, and which words we allow."""
+def word_mappings(mapping: Mapping) -> dict[str, tuple[WordMapping, tuple[str, ...]]]:
+    """Return, for each column of words, how the mapping reads it and which words are allowed."""
     found = {
-        "actor_class": (mapping.actor_class, CLASSES),
+        "actor_class": (mapping.actor_class, ACTOR_CLASSES),
         "indicator": (mapping.indicator, INDICATORS),
         "brake_light": (mapping.brake_light, BRAKE_LIGHTS),
     }
     return {name: (spec, allowed) for name, (spec, allowed) in found.items() if spec is not None}
 
 
-def needed(mapping: Mapping) -> list[str]:
+def needed_columns(mapping: Mapping) -> list[str]:
     """Return every column name the mapping reads, `{k}` left in, in the order of the file."""
     names = [mapping.time.column, *(f.column for f in fields(mapping).values() if f.column is not None)]
-    names += [name for spec, _ in words(mapping).values() for name in spec.columns]
+    names += [name for spec, _ in word_mappings(mapping).values() for name in spec.columns]
     return list(dict.fromkeys(names))
 
 
@@ -259,17 +261,17 @@ def _validate(path: Path, mapping: Mapping) -> None:
     for is_wrong, what in _contradictions(mapping, fields(mapping).keys()):
         if is_wrong:
             raise UsageError(f"mapping {path}: {what}")
-    for name, (choice, allowed) in words(mapping).items():
+    for name, (choice, allowed) in word_mappings(mapping).items():
         _validate_words(path, name, choice, allowed)
 
 
 def _validate_field(path: Path, name: str, spec: Field) -> None:
-    units = UNITS.get(QUANTITY.get(name, ""), {})
+    units = UNITS.get(FIELD_QUANTITIES.get(name, ""), {})
     if (spec.column is None) == (spec.value is None):
         raise UsageError(f"mapping {path}: {name}: give either a column or a value")
     if spec.unit is not None and spec.unit not in units:
         raise UsageError(f"mapping {path}: {name}: unknown unit {spec.unit!r}: use {', '.join(units) or 'none'}")
-    if name in QUANTITY and isinstance(spec.value, str):
+    if name in FIELD_QUANTITIES and isinstance(spec.value, str):
         raise UsageError(f"mapping {path}: {name}: the value {spec.value!r} is not a number")
 
 
@@ -277,7 +279,7 @@ def _contradictions(mapping: Mapping, given: AbstractSet[str]) -> list[tuple[boo
     """List what cannot go together, each with whether it is so here."""
     point = mapping.reference.point
     heading = "speed" in given or mapping.frame.velocity == "vehicle" or point != "centre"
-    grouped = any(GROUP in name for name in needed(mapping))
+    grouped = any(GROUP_PLACEHOLDER in name for name in needed_columns(mapping))
     return [
         (
             ("vx" in given) != ("vy" in given) or ("ax" in given) != ("ay" in given),
@@ -304,7 +306,7 @@ def _contradictions(mapping: Mapping, given: AbstractSet[str]) -> list[tuple[boo
     ]
 
 
-def _validate_words(path: Path, name: str, spec: Words, allowed: tuple[str, ...]) -> None:
+def _validate_words(path: Path, name: str, spec: WordMapping, allowed: tuple[str, ...]) -> None:
     for word in (
         *spec.values.values(),
         *(p.word for p in spec.patterns),

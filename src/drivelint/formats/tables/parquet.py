@@ -1,4 +1,4 @@
-"""Parquet opened by its handle, so that no part of a path (`x=9`, `d[1]`) is taken for data."""
+"""This module reads Parquet files through an open handle, so that no part of a path is taken for partition data."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A table on disk, one column at a time: CSV (checked line by line) and Parquet behind one face."""
+"""This module reads CSV and Parquet tables column by column through one interface."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from drivelint.formats.tables.mapping import Table
+    from drivelint.formats.tables.mapping import TextLayout
 
 MAX_NS = 2.0**63
 TEXT_BLOCK = 1 << 20
@@ -29,7 +29,7 @@ _SHOWN = 5
 
 
 class Sheet(Protocol):
-    """Columns by name. An empty cell gives NaN or null; `bad` marks cells that are not what was asked for."""
+    """A table on disk whose columns are read by name; an empty cell gives NaN or null."""
 
     names: list[str]
     """Column names, without padding."""
@@ -65,7 +65,7 @@ class Sheet(Protocol):
 class CsvSheet:
     """A CSV file of UTF-8 text. Every cell is read as text first: nothing is guessed, nothing dropped unseen."""
 
-    def __init__(self, path: Path, layout: Table) -> None:
+    def __init__(self, path: Path, layout: TextLayout) -> None:
         """Read the header. Errors: `TraceError` where there is none."""
         self._path, self._layout = path, layout
         self.bad_lines: list[int] = []
@@ -171,7 +171,7 @@ class CsvSheet:
 
     def where(self, rows: NDArray[np.intp]) -> str:
         """Return the line numbers of the first of these rows."""
-        return places("line", [self._line(int(row)) for row in rows[:_SHOWN]], len(rows))
+        return describe_places("line", [self._line(int(row)) for row in rows[:_SHOWN]], len(rows))
 
     def _line(self, row: int) -> int:
         line = row + self._layout.skip_rows + 2
@@ -240,10 +240,10 @@ class ParquetSheet:
 
     def where(self, rows: NDArray[np.intp]) -> str:
         """Return the numbers of the first of these rows."""
-        return places("row", [int(row) + 1 for row in rows[:_SHOWN]], len(rows))
+        return describe_places("row", [int(row) + 1 for row in rows[:_SHOWN]], len(rows))
 
 
-def places(what: str, first: list[int], n: int) -> str:
+def describe_places(what: str, first: list[int], n: int) -> str:
     """Return the first of `n` places as text: `line 7`, `lines 7, 9`, `lines 1, 2, 3, 4, 5 and 12 more`."""
     more = n - len(first[:_SHOWN])
     return f"{what}{'s' * (n > 1)} {', '.join(map(str, first[:_SHOWN]))}" + (f" and {more} more" if more else "")

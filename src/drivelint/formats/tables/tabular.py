@@ -10,12 +10,12 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.drive.trace import CLASSES, LOSSES, MOTOR_VEHICLES, Finding, Recording, States
+from drivelint.drive.trace import ACTOR_CLASSES, LOSS_CHECKS, MOTOR_VEHICLES, QualityFinding, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables.geometry import to_map_frame
-from drivelint.formats.tables.mapping import GROUP, QUANTITY, UNITS
-from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, places
+from drivelint.formats.tables.mapping import FIELD_QUANTITIES, GROUP_PLACEHOLDER, UNITS
+from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, describe_places
 from drivelint.phrases import hint
 
 if TYPE_CHECKING:
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from drivelint.formats.tables.mapping import Field, Mapping, Words
+    from drivelint.formats.tables.mapping import Field, Mapping, WordMapping
     from drivelint.formats.tables.sheets import Sheet
 
-MOST_RAD: Final = 4 * np.pi
+MAX_HEADING_RAD: Final = 4 * np.pi
 """A heading that is never wrapped goes beyond one turn, on a roundabout or a ramp of a car park."""
 
 
@@ -59,10 +59,10 @@ def _refuse_misread(path: Path, name: str, recording: Recording) -> None:
 
     Errors: `TraceError`.
     """
-    lost = sum(finding.n for finding in recording.findings if finding.check_id in LOSSES)
+    lost = sum(finding.n for finding in recording.findings if finding.check_id in LOSS_CHECKS)
     kept = len(recording.states)
     if lost > kept > 0:
-        why = next(finding.message for finding in recording.findings if finding.check_id in LOSSES)
+        why = next(finding.message for finding in recording.findings if finding.check_id in LOSS_CHECKS)
         raise TraceError(
             f"{path}: mapping {name!r} cannot read {lost} of {lost + kept} rows ({why}): give the right one with --mapping"
         )
@@ -76,7 +76,7 @@ def _open(path: Path, mapping: Mapping) -> Sheet:
 
 def _fitting(path: Path) -> tuple[str, Mapping, Sheet]:
     fits = []
-    for name in mappings.shipped():
+    for name in mappings.shipped_mappings():
         _, mapping = mappings.load(name)
         try:
             sheet = _open(path, mapping)
@@ -86,7 +86,7 @@ def _fitting(path: Path) -> tuple[str, Mapping, Sheet]:
         fits.append((name, mapping, sheet))
     if len(fits) == 1:
         return fits[0]
-    names = ", ".join(name for name, _, _ in fits) if fits else ", ".join(mappings.shipped())
+    names = ", ".join(name for name, _, _ in fits) if fits else ", ".join(mappings.shipped_mappings())
     what = (
         f"several mappings fit ({names})"
         if fits
@@ -100,13 +100,13 @@ def _groups(path: Path, name: str, mapping: Mapping, sheet: Sheet) -> list[str]:
 
     Errors: `TraceError` naming the column that is missing or there twice.
     """
-    columns = mappings.needed(mapping)
-    templates = [column for column in columns if GROUP in column]
+    columns = mappings.needed_columns(mapping)
+    templates = [column for column in columns if GROUP_PLACEHOLDER in column]
     groups = [""]
     if templates:
-        shape = re.compile(re.escape(templates[0]).replace(re.escape(GROUP), r"(\d+)"))
+        shape = re.compile(re.escape(templates[0]).replace(re.escape(GROUP_PLACEHOLDER), r"(\d+)"))
         groups = sorted({match[1] for column in sheet.names if (match := shape.fullmatch(column))}, key=int) or ["1"]
-    for column in (column.replace(GROUP, k) for column in columns for k in groups):
+    for column in (column.replace(GROUP_PLACEHOLDER, k) for column in columns for k in groups):
         count = sheet.names.count(column)
         if count != 1:
             what = (
@@ -126,11 +126,13 @@ class _Body:
     mapping: Mapping
     sheet: Sheet
     groups: list[str]
-    findings: list[Finding] = field(default_factory=list)
+    findings: list[QualityFinding] = field(default_factory=list)
 
     def read(self) -> Recording:
-        columns = mappings.needed(self.mapping)
-        n = self.sheet.load(dict.fromkeys(column.replace(GROUP, k) for k in self.groups for column in columns))
+        columns = mappings.needed_columns(self.mapping)
+        n = self.sheet.load(
+            dict.fromkeys(column.replace(GROUP_PLACEHOLDER, k) for k in self.groups for column in columns)
+        )
         t_ns, bad_time = self.sheet.time(self.mapping.time.column, self.mapping.time.unit)
         blank = self._blank(columns, n)
         self._report_rows(bad_time & ~blank, "the time is missing or not a number", "dropped_row")
@@ -159,12 +161,13 @@ class _Body:
     def _rows(self, k: str, n: int, t_ns: NDArray[np.int64], keep: NDArray[np.bool_]) -> States:
         numbers, not_finite = {}, np.zeros(n, np.bool_)
         for name, spec in mappings.fields(self.mapping).items():
-            if name in QUANTITY:
+            if name in FIELD_QUANTITIES:
                 values, odd = self._values(name, spec, k, n, keep)
                 not_finite |= odd
                 numbers[name] = values[keep]
         codes = {
-            name: self._codes(spec, allowed, k)[keep] for name, (spec, allowed) in mappings.words(self.mapping).items()
+            name: self._codes(spec, allowed, k)[keep]
+            for name, (spec, allowed) in mappings.word_mappings(self.mapping).items()
         }
         return States([], np.zeros(0, np.int32), t_ns[keep], numbers, codes, not_finite[keep])
 
@@ -172,33 +175,33 @@ class _Body:
         self, name: str, spec: Field, k: str, n: int, keep: NDArray[np.bool_]
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         """Return SI values, unknown as NaN, and where the log itself says NaN or infinity (an empty cell does not)."""
-        units = UNITS[QUANTITY[name]]
+        units = UNITS[FIELD_QUANTITIES[name]]
         factor = units[spec.unit] if spec.unit is not None else 1.0
         if spec.column is None:
             return np.full(n, float(spec.value or 0.0) * factor), np.zeros(n, np.bool_)
-        column = spec.column.replace(GROUP, k)
+        column = spec.column.replace(GROUP_PLACEHOLDER, k)
         values, bad = self.sheet.number(column)
         self._report_rows(bad & keep, f"column {column!r} is not a number", "malformed_cell")
         odd = ~np.isfinite(values)
         if odd.any():
             values = np.where(odd, np.nan, values)
             odd &= self.sheet.filled(column) & ~bad
-        if QUANTITY[name] == "angle" and factor == 1.0:
+        if FIELD_QUANTITIES[name] == "angle" and factor == 1.0:
             self._refuse_degrees(column, values)
         return (values * factor if factor != 1.0 else values), odd
 
     def _refuse_degrees(self, column: str, values: NDArray[np.float64]) -> None:
         """Refuse a heading beyond two turns: nobody writes that in radians. Errors: `TraceError`."""
         largest = float(np.nanmax(np.abs(values), initial=0.0))
-        if largest > MOST_RAD:
+        if largest > MAX_HEADING_RAD:
             raise TraceError(
                 f"{self.path}: column {column!r} goes up to {largest:g}, which is no angle in radians: "
                 'give a mapping with --mapping in which its unit is "deg"; drivelint inspect drafts one'
             )
 
-    def _codes(self, spec: Words, allowed: tuple[str, ...], k: str) -> NDArray[np.int8]:
+    def _codes(self, spec: WordMapping, allowed: tuple[str, ...], k: str) -> NDArray[np.int8]:
         """Translate texts to indices into `allowed`: each distinct text once."""
-        texts = [self.sheet.text(column.replace(GROUP, k)) for column in spec.columns]
+        texts = [self.sheet.text(column.replace(GROUP_PLACEHOLDER, k)) for column in spec.columns]
         if len(texts) > 1:
             texts = [pc.binary_join_element_wise(*texts, "/", null_handling="emit_null")]
         encoded = pc.dictionary_encode(texts[0])
@@ -207,11 +210,11 @@ class _Body:
         return np.asarray(table[pc.fill_null(encoded.indices, len(words)).to_numpy(zero_copy_only=False)], np.int8)
 
     def _ids(self, k: str, n: int) -> pa.Array:
-        spec = mappings.field_of(self.mapping.columns.actor_id)
+        spec = mappings.as_field(self.mapping.columns.actor_id)
         if spec.column is None:
             value = spec.value if isinstance(spec.value, str) else f"{spec.value:g}"
-            return pa.repeat(pa.scalar(value.replace(GROUP, k), pa.string()), n)
-        return self.sheet.text(spec.column.replace(GROUP, k))
+            return pa.repeat(pa.scalar(value.replace(GROUP_PLACEHOLDER, k), pa.string()), n)
+        return self.sheet.text(spec.column.replace(GROUP_PLACEHOLDER, k))
 
     def _egos(self, states: States) -> list[str]:
         for name in self.mapping.ego.ids:
@@ -223,7 +226,7 @@ class _Body:
             return [host]
         if self.mapping.ego.otherwise is None or not len(states):
             return list(self.mapping.ego.ids)
-        motor = np.array([kind in MOTOR_VEHICLES for kind in CLASSES] + [False], np.bool_)
+        motor = np.array([kind in MOTOR_VEHICLES for kind in ACTOR_CLASSES] + [False], np.bool_)
         codes = states.codes.get("actor_class")
         rows = np.flatnonzero(motor[codes]) if codes is not None else np.arange(len(states))
         if not len(rows):
@@ -231,7 +234,7 @@ class _Body:
         first = states.ids[states.actor[rows[0]]]
         names = " or ".join(self.mapping.ego.ids)
         message = f"no actor is called {names}: the first vehicle of the file, {first}, is taken as the ego"
-        self.findings.append(Finding("ego_assumed", "info", message, actor_id=first))
+        self.findings.append(QualityFinding("ego_assumed", "info", message, actor_id=first))
         return [first]
 
     def _blank(self, columns: list[str], n: int) -> NDArray[np.bool_]:
@@ -239,7 +242,7 @@ class _Body:
         blank = np.ones(n, np.bool_)
         for column in columns:
             for k in self.groups:
-                blank &= ~self.sheet.filled(column.replace(GROUP, k))
+                blank &= ~self.sheet.filled(column.replace(GROUP_PLACEHOLDER, k))
         return blank
 
     def _report_rows(self, rows: NDArray[np.bool_], why: str, check: str) -> None:
@@ -247,19 +250,21 @@ class _Body:
         if n:
             follows = "not judged" if check == "dropped_row" else "those values are unknown"
             message = f"{self.path.name}, {self.sheet.where(np.flatnonzero(rows))}: {why}: {follows}"
-            self.findings.append(Finding(check, "warning" if check == "malformed_cell" else "error", message, n))
+            self.findings.append(QualityFinding(check, "warning" if check == "malformed_cell" else "error", message, n))
 
     def _report_lines(self, n: int) -> None:
         lines = self.sheet.bad_lines
         if not lines:
             return
-        what = f"{places('line', lines, len(lines))}: not the {len(self.sheet.names)} cells of the header"
+        what = f"{describe_places('line', lines, len(lines))}: not the {len(self.sheet.names)} cells of the header"
         if n == 0:
             raise TraceError(f"{self.path}: {what}: no row is left; check the mapping's separator and skip_rows")
-        self.findings.append(Finding("malformed_row", "error", f"{self.path.name}, {what}: not judged", len(lines)))
+        self.findings.append(
+            QualityFinding("malformed_row", "error", f"{self.path.name}, {what}: not judged", len(lines))
+        )
 
 
-def _word(text: str, spec: Words) -> str | None:
+def _word(text: str, spec: WordMapping) -> str | None:
     if text in spec.values:
         return spec.values[text]
     return next((pattern.word for pattern in spec.patterns if re.search(pattern.match, text)), spec.default)

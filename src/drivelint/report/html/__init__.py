@@ -19,7 +19,7 @@ from markupsafe import Markup
 
 from drivelint import __version__
 from drivelint.report.html import page
-from drivelint.result.contract import OUTPUT_SCHEMA
+from drivelint.result.contract import OUTPUT_VERSION
 from drivelint.result.text import number
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def _environment() -> Environment:
         number=number,
         version=__version__,
         duckdb_version=duckdb.__version__,
-        output_schema=OUTPUT_SCHEMA,
+        output_schema=OUTPUT_VERSION,
     )
     return environment
 

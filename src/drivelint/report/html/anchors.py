@@ -1,4 +1,5 @@
-"""Names of places in the page. Ids of drives and rules come from file names: anything may be in them."""
+"""Anchors of findings, drives, rules, incidents and overtakes in the HTML report. Ids of drives and rules come from file names:
+anything may be in them."""
 
 from __future__ import annotations
 
@@ -27,7 +28,7 @@ def rule_anchor(rule_id: str) -> str:
     return f"rule-{_safe(rule_id)}"
 
 
-def moment_anchor(drive_id: str, ego_id: str, t_ns: int) -> str:
+def incident_anchor(drive_id: str, ego_id: str, t_ns: int) -> str:
     """Return the anchor of a moment of an ego."""
     return f"moment-{hashlib.sha256(repr((drive_id, ego_id, t_ns)).encode()).hexdigest()[:12]}"
 

@@ -1,4 +1,4 @@
-"""How findings stand to an earlier result and to waivers: new, known, waived; and what waivers and the earlier result tell besides."""
+"""The status of each finding against the baseline and the waivers, and a summary of the gate."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from drivelint.gate import words
 if TYPE_CHECKING:
     from drivelint.result.gate import Gate, Waiver
 
-MOST: Final = 40
+MAX_LISTED: Final = 40
 """Findings of the earlier result that are listed of each kind."""
 _GONE: Final = ("changed", "unknown", "lost", "fixed")
 _STATES: Final = {"expired": "expired", "unmatched": "no such finding", "active": "in force"}
@@ -18,7 +18,7 @@ _LABELS: Final = {"new": "new", "known": "known", "waived": "waived", "open": "n
 
 
 class BaselineStatus(NamedTuple):
-    """How a finding stands: new, known, waived (or, where there is no earlier result, open), and what there is to say of it."""
+    """The status of a finding (new, known, waived; open without a baseline) and the reason for it."""
 
     kind: str
     label: str
@@ -26,12 +26,12 @@ class BaselineStatus(NamedTuple):
 
     @property
     def key(self) -> str:
-        """What it is found by; no pack is called so."""
+        """The key by which the page filters findings; no pack has this name."""
         return f"gate-{self.kind}"
 
 
-class Held(NamedTuple):
-    """A waiver in words; `n`: findings like that."""
+class WaiverSummary(NamedTuple):
+    """A waiver as the page shows it; `n` counts the findings that match it."""
 
     state: str
     label: str
@@ -43,32 +43,32 @@ class Held(NamedTuple):
     n: int
 
 
-class Gone(NamedTuple):
-    """Findings of one kind that the earlier result has: how many, and the first of them in words."""
+class BaselineFindings(NamedTuple):
+    """The findings of the baseline with one standing: their number and the first of them as text."""
 
     title: str
     n: int
     lines: list[str]
 
 
-class View(NamedTuple):
+class GateSummary(NamedTuple):
     """What the page says of a gate. `counts`: kind, label and number of findings; `since`: the earlier result's name."""
 
     since: str
     counts: list[tuple[str, str, int]]
-    waivers: list[Held]
+    waivers: list[WaiverSummary]
     today: str
-    gone: list[Gone]
+    gone: list[BaselineFindings]
     more_unknown: int
 
 
-def standing(gate: Gate | None, finding_id: str) -> BaselineStatus | None:
-    """Return how a finding stands; None: it was held against nothing. A waiver says more than that it is known."""
+def finding_status(gate: Gate | None, finding_id: str) -> BaselineStatus | None:
+    """Return the status of a finding against the gate; None without a gate. A waiver takes precedence over the baseline."""
     if gate is None:
         return None
     waiver = gate.waiver(finding_id)
     if waiver is not None:
-        return _as("waived", f"{words.excuse(waiver)} ({waiver.where})")
+        return _as("waived", f"{words.waiver_reason(waiver)} ({waiver.where})")
     if gate.baseline is None:
         return _as("open", "")
     entry = gate.entry(finding_id)
@@ -78,21 +78,23 @@ def standing(gate: Gate | None, finding_id: str) -> BaselineStatus | None:
     return _as("known", entry.why if entry and changed else "")
 
 
-def view(gate: Gate | None, finding_ids: list[str]) -> View | None:
-    """Return what the page says of a gate; None: there was none."""
+def gate_summary(gate: Gate | None, finding_ids: list[str]) -> GateSummary | None:
+    """Return the summary of the gate for the page; None without a gate."""
     if gate is None:
         return None
-    kinds = [stands.kind for name in finding_ids if (stands := standing(gate, name)) is not None]
+    kinds = [stands.kind for name in finding_ids if (stands := finding_status(gate, name)) is not None]
     shown = ("new", "known", "waived") if gate.baseline is not None else ("open", "waived")
     order = list(_STATES)
     before = gate.baseline
-    return View(
+    return GateSummary(
         since=before.base_name if before else "",
         counts=[(kind, _LABELS[kind], kinds.count(kind)) for kind in shown if kind != "waived" or gate.waivers],
         waivers=sorted((_held(waiver) for waiver in gate.waivers), key=lambda held: order.index(held.state)),
         today=gate.today or "",
         gone=[
-            Gone(words.TITLES[kind], len(entries), [words.line(entry) for entry in entries[:MOST]])
+            BaselineFindings(
+                words.STANDING_TITLES[kind], len(entries), [words.finding_line(entry) for entry in entries[:MAX_LISTED]]
+            )
             for kind in _GONE
             if before and (entries := before.of(kind))
         ],
@@ -104,11 +106,11 @@ def _as(kind: str, why: str) -> BaselineStatus:
     return BaselineStatus(kind, _LABELS[kind], why)
 
 
-def _held(waiver: Waiver) -> Held:
-    return Held(
+def _held(waiver: Waiver) -> WaiverSummary:
+    return WaiverSummary(
         waiver.state,
         _STATES[waiver.state],
-        words.about(waiver),
+        words.waiver_scope(waiver),
         waiver.reason,
         waiver.owner,
         waiver.expires,

@@ -1,4 +1,4 @@
-"""Words of the first page that a reader who is no engineer may not know, in plain English; only those that stand there."""
+"""Plain-English explanations of the technical words that occur on the first page."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 
-class Word(NamedTuple):
+class GlossaryEntry(NamedTuple):
     """A word and what it means."""
 
     word: str
@@ -47,7 +47,7 @@ _WORDS: Final = (
 """What is looked for (in lower case), how it is written, what it means; in the order shown."""
 
 
-def words(texts: Iterable[str]) -> list[Word]:
-    """Return the words that occur in any of the texts."""
+def glossary_entries(texts: Iterable[str]) -> list[GlossaryEntry]:
+    """Return the glossary entries whose words occur in any of the texts."""
     said = " ".join(texts).lower()
-    return [Word(word, means) for sign, word, means in _WORDS if sign in said]
+    return [GlossaryEntry(word, means) for sign, word, means in _WORDS if sign in said]

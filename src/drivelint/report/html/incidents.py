@@ -1,15 +1,15 @@
-"""Moments: what failed or nearly failed at one time in one drive, with its plan view and, per rule, what was measured."""
+"""Incidents: what failed or nearly failed at one time of one ego, with its plan view and the measured values."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from drivelint.report.html.anchors import drive_anchor, finding_anchor, moment_anchor, rule_anchor
-from drivelint.report.html.plan import Plan, plan
-from drivelint.report.html.replay import ticks
+from drivelint.report.html.anchors import drive_anchor, finding_anchor, incident_anchor, rule_anchor
+from drivelint.report.html.plan import PlanView, plan_view
+from drivelint.report.html.replay import centiseconds
 from drivelint.report.html.svg import num
 from drivelint.result.counts import SEVERITIES
-from drivelint.result.text import NONE, number, seconds, tied
+from drivelint.result.text import NONE, non_breaking, number, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _SENSE: Final = {">": "more than", ">=": "at least", "<": "less than", "<=": "at most"}
 _SPACES: Final = "danger_space"
 """Tag of the rules whose plan views show danger spaces."""
-KEY_MOMENTS: Final = 6
+MAX_KEY_INCIDENTS: Final = 6
 """Moments of a drive that the printed report shows with their plan views."""
 
 
@@ -37,8 +37,8 @@ class Gauge(NamedTuple):
     required: str
 
 
-class Measured(NamedTuple):
-    """One finding or near miss, as a row of the table and as a line of its moment; `keys`: what it is found by."""
+class FindingLine(NamedTuple):
+    """One finding or near miss as the page shows it, in the table and in its incident."""
 
     anchor: str
     href: str
@@ -67,17 +67,17 @@ class Measured(NamedTuple):
     standing: BaselineStatus | None
 
 
-class Card(NamedTuple):
-    """What one rule says at a moment."""
+class RuleCard(NamedTuple):
+    """The findings and near misses of one rule in an incident."""
 
     rule: Row
     rule_href: str
     severity: str
-    lines: list[Measured]
+    lines: list[FindingLine]
 
 
 class Incident(NamedTuple):
-    """One time of one ego: a plan view (None: there is none, and why) and what the rules say there.
+    """The findings and near misses of one ego at one time, with their plan view or the reason why there is none.
 
     `t`: hundredths of a second since the drive's start; `leading`: it is among those that tell what happened.
     """
@@ -92,12 +92,12 @@ class Incident(NamedTuple):
     kind: str
     severity: str
     titles: list[str]
-    plan: Plan | None
+    plan: PlanView | None
     no_plan: str
-    cards: list[Card]
+    cards: list[RuleCard]
 
 
-def measured(
+def finding_line(
     row: Row,
     kind: str,
     rule: Row,
@@ -105,16 +105,16 @@ def measured(
     *,
     course: MarginSeries | None = None,
     standing: BaselineStatus | None = None,
-) -> Measured:
-    """Return a finding (`fail`) or a near miss (`near`) in words; `standing`: how the finding stands to an earlier result."""
+) -> FindingLine:
+    """Return a finding (`fail`) or near miss (`near`) as the page shows it."""
     unit, long = row["unit"], row["t_end_ns"] is not None and row["t_end_ns"] != row["t_start_ns"]
     sense = _SENSE.get(rule["sense"])
     required = number(row["required"], unit)
     if sense is not None:
-        required = "none" if row["required"] == 0 and rule["sense"][0] == "<" else f"{sense} {tied(required)}"
-    return Measured(
+        required = "none" if row["required"] == 0 and rule["sense"][0] == "<" else f"{sense} {non_breaking(required)}"
+    return FindingLine(
         anchor=finding_anchor(row) if kind == "fail" else "",
-        href="#" + (finding_anchor(row) if kind == "fail" else moment_anchor(*key(row))),
+        href="#" + (finding_anchor(row) if kind == "fail" else incident_anchor(*incident_key(row))),
         kind=kind,
         severity=row["severity"],
         keys=" ".join((kind, row["severity"], rule["pack"], *([standing.key] if standing else []))),
@@ -126,12 +126,12 @@ def measured(
         drive_href="#" + drive_anchor(row["drive_id"]),
         ego_id=row["ego_id"],
         object_id=NONE if row["object_id"] is None else row["object_id"],
-        time=tied(seconds(row["t_worst_ns"], start_ns)),
+        time=non_breaking(seconds(row["t_worst_ns"], start_ns)),
         stretch=f"{seconds(row['t_start_ns'], start_ns)} to {seconds(row['t_end_ns'], start_ns)}" if long else "",
-        observed=tied(number(row["observed"], unit)),
+        observed=non_breaking(number(row["observed"], unit)),
         required=required,
-        margin=tied(number(row["margin"], unit)),
-        missed=NONE if row["margin"] is None else tied(number(abs(row["margin"]), unit)),
+        margin=non_breaking(number(row["margin"], unit)),
+        missed=NONE if row["margin"] is None else non_breaking(number(abs(row["margin"]), unit)),
         sense=sense or "",
         gauge=_gauge(row["observed"], row["required"]),
         reason=row["reason"],
@@ -144,48 +144,48 @@ def measured(
 def _told(row: Row, rule: Row, required: str) -> str:
     """Return in a sentence what was measured, what had to be, and what the rule itself says of it."""
     what = f"{rule['observes']} " if rule["observes"] else ""
-    said = f"{what}{tied(number(row['observed'], row['unit']))}, must be {required}"
+    said = f"{what}{non_breaking(number(row['observed'], row['unit']))}, must be {required}"
     return said if row["reason_measures"] else f"{said} ({row['reason']})"
 
 
-def key(row: Row) -> Key:
-    """Return the moment that a finding or near miss belongs to."""
+def incident_key(row: Row) -> Key:
+    """Return the key (drive, ego, time) of the incident that a finding or near miss belongs to."""
     return row["drive_id"], row["ego_id"], row["t_worst_ns"]
 
 
-def leading(rows: Iterable[tuple[Row, Measured]]) -> set[Key]:
-    """Return the moments of one drive that tell what happened: of each rule its worst, the gravest rules first."""
+def key_incidents(rows: Iterable[tuple[Row, FindingLine]]) -> set[Key]:
+    """Return the incidents of one drive that its summary shows: the worst of each rule, the most severe rules first."""
     first: dict[str, tuple[int, float, Key]] = {}
     for row, line in rows:
         if line.kind == "fail":
             ratio = 0.0 if not row["required"] or row["margin"] is None else row["margin"] / abs(row["required"])
-            worst = (SEVERITIES.index(row["severity"]), ratio, key(row))
+            worst = (SEVERITIES.index(row["severity"]), ratio, incident_key(row))
             first[row["rule_id"]] = min(first.get(row["rule_id"], worst), worst)
     told: dict[Key, None] = {}
     for _, _, at in sorted(first.values()):
-        if len(told) < KEY_MOMENTS:
+        if len(told) < MAX_KEY_INCIDENTS:
             told[at] = None
     return set(told)
 
 
-def moments(
-    rows: Sequence[tuple[Row, Measured]],
+def incidents(
+    rows: Sequence[tuple[Row, FindingLine]],
     rules: Mapping[str, Row],
-    pictures: Mapping[Key, Plan],
+    pictures: Mapping[Key, PlanView],
     start_ns: int,
     told: Collection[Key],
 ) -> list[Incident]:
     """Return the moments of one drive, in time order, from its findings and near misses; `told`: those that lead."""
-    groups: dict[Key, list[tuple[Row, Measured]]] = {}
+    groups: dict[Key, list[tuple[Row, FindingLine]]] = {}
     for row, line in rows:
-        groups.setdefault(key(row), []).append((row, line))
+        groups.setdefault(incident_key(row), []).append((row, line))
     return [
-        _moment(at, found, rules, pictures.get(at), ticks(at[2], start_ns), leads=at in told)
+        _moment(at, found, rules, pictures.get(at), centiseconds(at[2], start_ns), leads=at in told)
         for at, found in sorted(groups.items(), key=lambda item: (item[0][2], item[0][1]))
     ]
 
 
-def pictures(
+def plan_views(
     rows: Iterable[Row],
     scenes: Mapping[Key, Row],
     spaces: Mapping[Key, list[Row]],
@@ -193,35 +193,35 @@ def pictures(
     *,
     rules: Mapping[str, Row],
     most: int,
-) -> dict[Key, Plan]:
-    """Return the plan views of the moments of `rows`, of the first `most` in their order."""
+) -> dict[Key, PlanView]:
+    """Return the plan views of the first `most` incidents of `rows`."""
     told: dict[Key, list[Row]] = {}
     for row in rows:
-        told.setdefault(key(row), []).append(row)
-    drawn: dict[Key, Plan] = {}
+        told.setdefault(incident_key(row), []).append(row)
+    drawn: dict[Key, PlanView] = {}
     for at, found in [(at, found) for at, found in told.items() if at in scenes][:most]:
         concerned = {row["object_id"] for row in found if row["object_id"] is not None}
         about = any(_SPACES in rules[row["rule_id"]]["tags"] for row in found)
-        drawn[at] = plan(scenes[at], road, concerned, spaces.get(at, []) if about else [])
+        drawn[at] = plan_view(scenes[at], road, concerned, spaces.get(at, []) if about else [])
     return drawn
 
 
 def _moment(
     at: Key,
-    found: Sequence[tuple[Row, Measured]],
+    found: Sequence[tuple[Row, FindingLine]],
     rules: Mapping[str, Row],
-    picture: Plan | None,
+    picture: PlanView | None,
     t: int,
     *,
     leads: bool,
 ) -> Incident:
-    cards: dict[str, list[Measured]] = {}
+    cards: dict[str, list[FindingLine]] = {}
     for row, line in found:
         cards.setdefault(row["rule_id"], []).append(line)
     failed = [line for _, line in found if line.kind == "fail"]
     keys = {name for _, line in found for name in line.keys.split()}
     return Incident(
-        anchor=moment_anchor(*at),
+        anchor=incident_anchor(*at),
         time=found[0][1].time,
         t=t,
         keys=" ".join(sorted(keys)),
@@ -234,17 +234,17 @@ def _moment(
         plan=picture,
         no_plan="" if picture else "No picture: the ego's position is not known here, or too many findings are worse.",
         cards=[
-            Card(rules[rule_id], "#" + rule_anchor(rule_id), lines[0].severity, lines)
+            RuleCard(rules[rule_id], "#" + rule_anchor(rule_id), lines[0].severity, lines)
             for rule_id, lines in sorted(cards.items(), key=_weight)
         ],
     )
 
 
-def _grave(line: Measured) -> int:
+def _grave(line: FindingLine) -> int:
     return SEVERITIES.index(line.severity)
 
 
-def _weight(item: tuple[str, Sequence[Measured]]) -> tuple[bool, int, str]:
+def _weight(item: tuple[str, Sequence[FindingLine]]) -> tuple[bool, int, str]:
     rule_id, lines = item
     return lines[0].kind != "fail", SEVERITIES.index(lines[0].severity), rule_id
 

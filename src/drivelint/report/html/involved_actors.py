@@ -26,7 +26,7 @@ class InvolvedActor(NamedTuple):
     n: int
 
 
-def parties(drive_id: str, rows: Sequence[tuple[Row, Any]], scenes: Mapping[Key, Row]) -> list[InvolvedActor]:
+def involved_actors(drive_id: str, rows: Sequence[tuple[Row, Any]], scenes: Mapping[Key, Row]) -> list[InvolvedActor]:
     """Return the egos and objects of one drive's findings and near misses, from their scenes; egos first."""
     findings: dict[tuple[bool, str], int] = {}
     seen: dict[str, list[Row]] = {}

@@ -1,4 +1,4 @@
-"""How the measure of a rule went around a finding: a chart of observed and required over time, and the rows behind it."""
+"""The margin of a rule over time around a finding: a chart of observed and required values, and the steps."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from drivelint.report.html.scale import Axis, around
+from drivelint.report.html.scale import Axis, axis_around
 from drivelint.report.html.svg import num
 from drivelint.result.text import NONE, number
 
@@ -66,8 +66,8 @@ class MarginSeries(NamedTuple):
     n_steps: int
 
 
-def course(row: Row, worst_ns: int, unit: str | None, start_ns: int) -> MarginSeries:
-    """Return the course of a finding from its row of the table `course`."""
+def margin_series(row: Row, worst_ns: int, unit: str | None, start_ns: int) -> MarginSeries:
+    """Return the margin series of a finding from its row of the table `course`."""
     t: list[int] = row["t_ns"]
     worst = min(range(len(t)), key=lambda i: abs(t[i] - worst_ns))
     first = max(0, min(worst - _ROWS // 2, len(t) - _ROWS))
@@ -86,7 +86,7 @@ def _chart(row: Row, worst: int, unit: str | None, start_ns: int) -> Chart:
     t = [(t_ns - start_ns) / 1e9 for t_ns in row["t_ns"]]
     x = Axis(t[0], t[-1], _LEFT, _RIGHT)
     values = [v for name in ("observed", "required") for v in row[name] if v is not None]
-    y = around(values, _BOTTOM, _TOP) if values else None
+    y = axis_around(values, _BOTTOM, _TOP) if values else None
     seen = [row["observed"][worst]] if row["observed"][worst] is not None else []
     return Chart(
         observed=_line(t, row["observed"], x, y),

@@ -1,4 +1,4 @@
-"""What is known of published logs: where a report says something else about one than its authors do.
+"""Notes on published logs for which this report differs from what their authors say.
 
 Each file of `known_logs/` is about some logs, which it knows by the sha256 of their bytes: what it says is true of no other log.
 """
@@ -16,26 +16,26 @@ if TYPE_CHECKING:
     Row = Mapping[str, Any]
 
 
-class Note(NamedTuple):
-    """What a note is about; per row what it is, what the authors have, what this report has, and why."""
+class LogNote(NamedTuple):
+    """A note on a published log: its title and, per row, the subject, the authors' value, the value here and the reason."""
 
     title: str
     rows: list[tuple[str, str, str, str]]
 
 
 @cache
-def _known() -> dict[str, Note]:
-    known: dict[str, Note] = {}
+def _known() -> dict[str, LogNote]:
+    known: dict[str, LogNote] = {}
     for file in sorted((Path(__file__).parent / "known_logs").glob("*.toml")):
         said = tomllib.loads(file.read_text(encoding="utf-8"))
-        note = Note(said["title"], [(row["what"], row["theirs"], row["ours"], row["why"]) for row in said["row"]])
+        note = LogNote(said["title"], [(row["what"], row["theirs"], row["ours"], row["why"]) for row in said["row"]])
         known |= dict.fromkeys(said["logs"], note)
     return known
 
 
-def notes(drives: Sequence[Row]) -> list[Note]:
+def notes_on_logs(drives: Sequence[Row]) -> list[LogNote]:
     """Return the notes on the published logs that are among the drives."""
-    found: list[Note] = []
+    found: list[LogNote] = []
     for row in drives:
         note = _known().get(row["sha256"])
         if note is not None and note not in found:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from drivelint.report.html.scale import Axis, nice
+from drivelint.report.html.scale import Axis, round_step
 from drivelint.report.html.svg import num
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def _row(profile: str, records: Sequence[Row]) -> tuple[str, list[tuple[int, int
 
 def _bars(known: Sequence[Row]) -> tuple[list[Bar], list[tuple[str, str]], list[tuple[str, str]]]:
     far = max(row["da_m"] for row in known)
-    width = nice(max(far, 10.0) / _BINS)
+    width = round_step(max(far, 10.0) / _BINS)
     n = int(far // width) + 1
     counts = [[0, 0] for _ in range(n)]
     for row in known:

@@ -1,4 +1,4 @@
-"""The paper's views of overtakes: the table of safe distances ahead, the stages with their four danger-space assertions, the zones."""
+"""The report's section on overtakes: safe distances ahead, danger-space assertions per stage, and zones."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from drivelint.report.html.anchors import drive_anchor, overtake_anchor
 from drivelint.report.html.scale import Axis
 from drivelint.report.html.svg import num
-from drivelint.result.text import number, seconds, tied
+from drivelint.result.text import non_breaking, number, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     Row = Mapping[str, Any]
 
-MOST: Final = 60
+MAX_OVERTAKES: Final = 60
 """Overtakes in the page: those with the least to spare against any profile first."""
-ASSERTIONS: Final = (
+ASSERTION_TITLES: Final = (
     "Vehicle being passed outside the ego's danger space",
     "Oncoming vehicle outside the ego's danger space",
     "Ego outside the oncoming vehicle's danger space",
@@ -36,7 +36,7 @@ _PLOT_W, _PLOT_H = 560, 400
 _LABELS: Final = 10
 
 
-class Cell(NamedTuple):
+class ProfileCell(NamedTuple):
     """What one profile says of an overtake."""
 
     verdict: str
@@ -75,14 +75,14 @@ class Overtake(NamedTuple):
     da: str
     speeds: str
     inputs: str
-    cells: list[Cell]
+    cells: list[ProfileCell]
     stages: list[str]
     rows: list[StageRow]
     times: list[tuple[str, str]]
     bounds: list[tuple[str, str, str]]
 
 
-class Dot(NamedTuple):
+class ZoneDot(NamedTuple):
     """One overtake against one profile."""
 
     x: str
@@ -92,13 +92,13 @@ class Dot(NamedTuple):
     title: str
 
 
-class Zones(NamedTuple):
+class ZonePlot(NamedTuple):
     """The zone plot: areas of the zones, axes, a dot per overtake and profile, names, and the speed that the areas are drawn for."""
 
     areas: list[tuple[str, str, tuple[str, str] | None]]
     x_ticks: list[tuple[str, str]]
     y_ticks: list[tuple[str, str]]
-    dots: list[Dot]
+    dots: list[ZoneDot]
     names: list[tuple[str, str, str]]
     shapes: list[tuple[str, str]]
     speed: str
@@ -106,25 +106,25 @@ class Zones(NamedTuple):
     missing: int
 
 
-class Views(NamedTuple):
-    """Everything about overtakes."""
+class OvertakeViews(NamedTuple):
+    """The table of overtakes and the zone plot, as the page shows them."""
 
     profiles: list[str]
     overtakes: list[Overtake]
     n: int
-    zones: Zones | None
+    zones: ZonePlot | None
 
 
-def views(records: Sequence[Row], starts: Mapping[str, int], shown: set[str]) -> Views | None:
+def overtake_views(records: Sequence[Row], starts: Mapping[str, int], shown: set[str]) -> OvertakeViews | None:
     """Return the views of the rows of `overtake_record` (None: there are none); `shown`: drives that have a section."""
     records = [row for row in records if row["profiles"] or row["stretches"]]
     if not records:
         return None
     told = {(p["style"], p["profile"]) for row in records for p in row["profiles"]}
     profiles = [profile for _, profile in sorted(told)]
-    picked = sorted(records, key=_least_spare)[:MOST]
+    picked = sorted(records, key=_least_spare)[:MAX_OVERTAKES]
     listed = sorted(picked, key=lambda r: (r["drive_id"], r["ego_id"], r["occurrence"]))
-    return Views(
+    return OvertakeViews(
         profiles,
         [_overtake(row, profiles, starts.get(row["drive_id"]) or 0, row["drive_id"] in shown) for row in listed],
         len(records),
@@ -161,9 +161,9 @@ def _overtake(row: Row, profiles: Sequence[str], start_ns: int, shown: bool) -> 
             for who, v in (("ego", row["v_av_mps"]), ("passed", row["v_vbp_mps"]), ("oncoming", row["v_ov_mps"]))
         ),
         inputs=", ".join(f"{what} {value:.2f} {unit}" for what, value, unit in given if value is not None),
-        cells=[cells.get(profile, Cell("unknown", "-", "-", "", "not computed")) for profile in profiles],
+        cells=[cells.get(profile, ProfileCell("unknown", "-", "-", "", "not computed")) for profile in profiles],
         stages=[stage.replace("_", " ") for stage in stages],
-        rows=[_assertion(n, row["stretches"], stages, clock) for n in range(len(ASSERTIONS))] if stages else [],
+        rows=[_assertion(n, row["stretches"], stages, clock) for n in range(len(ASSERTION_TITLES))] if stages else [],
         times=_marks([(clock.at(t), f"{name} {(t - start_ns) / 1e9:.1f}") for name, t in _times(row)]),
         bounds=_bounds(row["stretches"], clock),
     )
@@ -180,12 +180,12 @@ def _marks(times: Sequence[tuple[float, str]]) -> list[tuple[str, str]]:
     return [(_pc(at), label) for at, label in kept]
 
 
-def _cell(p: Row) -> Cell:
+def _cell(p: Row) -> ProfileCell:
     verdict = "unknown" if p["zone"] is None else "fail" if p["zone"] == "A" else "pass"
     spare = "-"
     if p["spare_m"] is not None:
-        spare = f"{'short by' if p['spare_m'] <= 0 else 'spare'} {tied(number(abs(p['spare_m']), 'm'))}"
-    return Cell(verdict, tied(number(p["sda_m"], "m")), spare, p["zone"] or "", p["reason"] or "")
+        spare = f"{'short by' if p['spare_m'] <= 0 else 'spare'} {non_breaking(number(abs(p['spare_m']), 'm'))}"
+    return ProfileCell(verdict, non_breaking(number(p["sda_m"], "m")), spare, p["zone"] or "", p["reason"] or "")
 
 
 def _times(row: Row) -> list[tuple[str, int]]:
@@ -223,16 +223,20 @@ def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: A
     for (said, start, last), end in zip(runs, ends, strict=True):
         a, b = clock.at(start), min(max(clock.at(max(last, end)), clock.at(start) + _THIN), 100.0)
         bands.append((said, _pc(min(a, 100.0 - _THIN)), _pc(b - min(a, 100.0 - _THIN)), _SAID[said]))
-    return StageRow(ASSERTIONS[n], cells, bands)
+    return StageRow(ASSERTION_TITLES[n], cells, bands)
 
 
 def _depth(metres: float | None) -> str:
     if metres is None:
         return ""
-    return f"inside by {tied(number(metres, 'm'))}" if metres >= 0 else f"clear by {tied(number(-metres, 'm'))}"
+    return (
+        f"inside by {non_breaking(number(metres, 'm'))}"
+        if metres >= 0
+        else f"clear by {non_breaking(number(-metres, 'm'))}"
+    )
 
 
-def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str, int]) -> Zones | None:
+def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str, int]) -> ZonePlot | None:
     known = [(row, p) for row in records for p in row["profiles"] if p["da_m"] is not None and p["sda_m"] is not None]
     missing = sum(len(row["profiles"]) for row in records) - len(known)
     if not known:
@@ -243,12 +247,12 @@ def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str,
     v = statistics.median(closing) if closing else 0.0
     shapes = {profile: _SHAPES[min(n, len(_SHAPES) - 1)] for n, profile in enumerate(profiles)}
     rows = {id(row): row for row, _ in known}.values()
-    return Zones(
+    return ZonePlot(
         areas=_areas(x, y, far, v),
         x_ticks=x.ticks(7),
         y_ticks=y.ticks(7),
         dots=[
-            Dot(
+            ZoneDot(
                 num(x.at(p["sda_m"])),
                 num(y.at(p["da_m"])),
                 shapes[p["profile"]],

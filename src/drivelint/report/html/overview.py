@@ -1,4 +1,4 @@
-"""The first page: what came out in one sentence, what was not kept, how the packs fared; for readers who know no rule by its id."""
+"""The first page: the outcome in one sentence, the broken rules, and the verdicts by pack."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import pyarrow.compute as pc
 
 from drivelint.report.html.anchors import rule_anchor
 from drivelint.result import counts
-from drivelint.result.text import number, seconds, tied
+from drivelint.result.text import non_breaking, number, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from drivelint.report.html.incidents import Incident, Measured
+    from drivelint.report.html.incidents import FindingLine, Incident
     from drivelint.result.model import Result
 
     Row = Mapping[str, Any]
@@ -27,17 +27,17 @@ _STORY_DRIVES: Final = 6
 _STORY_PARTIES: Final = 6
 
 
-class Broken(NamedTuple):
+class BrokenRule(NamedTuple):
     """A rule that was not kept: how often, and the worst of it (None: not among the findings of the page)."""
 
     rule: Row
     href: str
     n: int
     n_drives: int
-    worst: Measured | None
+    worst: FindingLine | None
 
 
-class Story(NamedTuple):
+class DriveSummary(NamedTuple):
     """What happened in one drive, in time order; `who`: the vehicles and people that the findings are about."""
 
     drive_id: str
@@ -49,7 +49,7 @@ class Story(NamedTuple):
 
 
 def headline(result: Result) -> tuple[str, str]:
-    """Return the sign and the sentence that stand on top."""
+    """Return the outcome (fail, unknown or pass) and the sentence at the top of the page."""
     told, n = counts.total(result.verdicts), result.findings.num_rows
     judged = int(pc.sum(pc.equal(result.drives["status"], "judged")).as_py() or 0)
     open_ = told["unknown"] + told["error"]
@@ -75,8 +75,8 @@ class Contacts(NamedTuple):
     n_more: int
 
 
-def contacts(result: Result, lines: Sequence[tuple[Row, Measured]]) -> Contacts | None:
-    """Return who touched whom and when, by all findings; None: none is about a contact. `lines`: those of the page, to link to."""
+def contacts(result: Result, lines: Sequence[tuple[Row, FindingLine]]) -> Contacts | None:
+    """Return who touched whom and when, from all findings; None if no finding is a contact."""
     starts = {
         row["drive_id"]: row["t_start_ns"] for row in result.drives.select(["drive_id", "t_start_ns"]).to_pylist()
     }
@@ -93,14 +93,14 @@ def contacts(result: Result, lines: Sequence[tuple[Row, Measured]]) -> Contacts 
         who = f"ego {first['ego_id']}" + ("" if first["object_id"] is None else f" and object {first['object_id']}")
         # a centimetre may be the recorder's error
         depths = [-row["observed"] for row in found if row["unit"] == "m" and row["observed"] is not None]
-        deep = f", {tied(number(max(depths), 'm'))} deep" if depths else ""
+        deep = f", {non_breaking(number(max(depths), 'm'))} deep" if depths else ""
         where = f", {first['drive_id']}" if len(starts) > 1 else ""
-        said = f"{who} at {tied(seconds(first['t_worst_ns'], starts[first['drive_id']]))}{deep}{where}"
+        said = f"{who} at {non_breaking(seconds(first['t_worst_ns'], starts[first['drive_id']]))}{deep}{where}"
         named.append((said, hrefs.get(first["finding_id"], "")))
     return Contacts(named[:_NAMED], len(named) - len(named[:_NAMED])) if named else None
 
 
-def not_decided(result: Result) -> int:
+def undecided_rule_count(result: Result) -> int:
     """Return how many rules are unknown, or could not be run, somewhere."""
     rows = result.verdicts.filter(pc.is_in(result.verdicts["verdict"], value_set=_OPEN))
     return len(pc.unique(rows["rule_id"]))
@@ -116,18 +116,20 @@ def _of_these(result: Result) -> str:
     return f", {left or 'none'} of them {'new' if gate.baseline is not None else 'not waived'}"
 
 
-def broken(result: Result, rules: Mapping[str, Row], lines: Sequence[tuple[Row, Measured]]) -> list[Broken]:
+def broken_rules(
+    result: Result, rules: Mapping[str, Row], lines: Sequence[tuple[Row, FindingLine]]
+) -> list[BrokenRule]:
     """Return the rules with findings, the gravest and most frequent first."""
     drives: dict[str, set[str]] = {}
     for row in result.findings.select(["rule_id", "drive_id"]).to_pylist():
         drives.setdefault(row["rule_id"], set()).add(row["drive_id"])
-    worst: dict[str, tuple[float, int, Measured]] = {}
+    worst: dict[str, tuple[float, int, FindingLine]] = {}
     for n, (row, line) in enumerate(lines):
         margin = float("-inf") if row["margin"] is None else row["margin"]
         here = (margin, n, line)
         worst[row["rule_id"]] = min(worst.get(row["rule_id"], here), here, key=lambda w: w[:2])
     found = [
-        Broken(
+        BrokenRule(
             rules[rule_id],
             "#" + rule_anchor(rule_id),
             n,
@@ -139,9 +141,9 @@ def broken(result: Result, rules: Mapping[str, Row], lines: Sequence[tuple[Row, 
     return sorted(found, key=lambda b: (counts.SEVERITIES.index(b.rule["severity"]), -b.n, b.rule["rule_id"]))
 
 
-def packs(result: Result) -> list[dict[str, Any]]:
+def verdicts_by_pack(result: Result) -> list[dict[str, Any]]:
     """Return how many verdicts of each kind every pack has, and of how many rules."""
-    told = counts.packs(result.rules, counts.by(result.verdicts, "rule_id"))
+    told = counts.verdicts_by_pack(result.rules, counts.verdicts_by(result.verdicts, "rule_id"))
     rules = counts.rows_by(result.rules, "pack")
     titles = {row["pack"]: row["pack_title"] for row in result.rules.select(["pack", "pack_title"]).to_pylist()}
     return [
@@ -150,14 +152,14 @@ def packs(result: Result) -> list[dict[str, Any]]:
             "about": titles[pack],
             "n_rules": rules[pack],
             "verdicts": verdicts,
-            "shares": shares(verdicts),
+            "shares": verdict_shares(verdicts),
         }
         for pack, verdicts in told.items()
     ]
 
 
-def shares(told: Mapping[str, int]) -> list[dict[str, Any]]:
-    """Return the verdicts with their number and their stretch of a bar, in percent."""
+def verdict_shares(told: Mapping[str, int]) -> list[dict[str, Any]]:
+    """Return each verdict with its number and its place and width in a bar, in percent."""
     total, at, found = sum(told.values()), 0.0, []
     for verdict in ("fail", "error", "unknown", "pass", "not_applicable"):
         width = 100 * told[verdict] / total if total else 0.0
@@ -166,17 +168,17 @@ def shares(told: Mapping[str, int]) -> list[dict[str, Any]]:
     return found
 
 
-def stories(sections: Sequence[Mapping[str, Any]], n_drives: int) -> list[Story]:
-    """Return what happened in each drive, if they are few enough to be told on the first page."""
+def drive_summaries(sections: Sequence[Mapping[str, Any]], n_drives: int) -> list[DriveSummary]:
+    """Return a summary of each drive; none if there are too many drives for the first page."""
     if n_drives > _STORY_DRIVES:
         return []
     told = [_story(s) for s in sections]
     return [story for story in told if story.moments]
 
 
-def _story(section: Mapping[str, Any]) -> Story:
+def _story(section: Mapping[str, Any]) -> DriveSummary:
     who = [f"{party.name} ({party.what})" for party in section["parties"] if party.n]
-    return Story(
+    return DriveSummary(
         section["drive_id"],
         "#" + section["anchor"],
         section["file_name"],
@@ -186,7 +188,9 @@ def _story(section: Mapping[str, Any]) -> Story:
     )
 
 
-def texts(rules: Sequence[Broken], told: Sequence[Story], lines: Sequence[Measured]) -> list[str]:
+def first_page_texts(
+    rules: Sequence[BrokenRule], told: Sequence[DriveSummary], lines: Sequence[FindingLine]
+) -> list[str]:
     """Return what the first page says of rules and findings, to be searched for words that need to be explained."""
     worst = [line for b in rules if (line := b.worst) is not None]
     leading = [line for story in told for moment in story.moments for card in moment.cards for line in card.lines]

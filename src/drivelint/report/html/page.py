@@ -9,27 +9,33 @@ import pyarrow.compute as pc
 
 from drivelint.report.html import overview
 from drivelint.report.html.anchors import drive_anchor, rule_anchor
-from drivelint.report.html.baseline_status import standing, view
-from drivelint.report.html.glossary import words
-from drivelint.report.html.incidents import leading, measured, moments, pictures
-from drivelint.report.html.involved_actors import parties
-from drivelint.report.html.margin_series import course
-from drivelint.report.html.notes import notes
+from drivelint.report.html.baseline_status import finding_status, gate_summary
+from drivelint.report.html.glossary import glossary_entries
+from drivelint.report.html.incidents import finding_line, incidents, key_incidents, plan_views
+from drivelint.report.html.involved_actors import involved_actors
+from drivelint.report.html.margin_series import margin_series
+from drivelint.report.html.notes import notes_on_logs
 from drivelint.report.html.opportunities import opportunities
-from drivelint.report.html.overtakes import views
-from drivelint.report.html.plan import shapes
-from drivelint.report.html.reasons import Given, can_be_provided, given, in_words, reasons
+from drivelint.report.html.overtakes import overtake_views
+from drivelint.report.html.plan import actor_shapes
+from drivelint.report.html.reasons import (
+    VerdictReason,
+    can_be_provided,
+    reason_groups,
+    summarise_reasons,
+    verdict_reason,
+)
 from drivelint.report.html.replay import replays
 from drivelint.report.html.road import Road
-from drivelint.report.html.timeline import Clock, nothing, shared, timelines
+from drivelint.report.html.timeline import TimeAxis, empty_timeline, separate_shared_rules, timelines
 from drivelint.result import counts
-from drivelint.result.model import outcome
+from drivelint.result.model import exit_status
 from drivelint.result.text import number
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from drivelint.report.html.incidents import Incident, Key, Measured
+    from drivelint.report.html.incidents import FindingLine, Incident, Key
     from drivelint.report.html.involved_actors import InvolvedActor
     from drivelint.report.html.margin_series import MarginSeries
     from drivelint.report.html.timeline import Timeline
@@ -39,17 +45,17 @@ if TYPE_CHECKING:
 
 MAX_FINDINGS: Final = 1000
 """Findings in the page: the worst; the Parquet files hold them all."""
-MAX_NEAR: Final = 300
+MAX_NEAR_MISSES: Final = 300
 """Near misses in the page."""
 MAX_PICTURES: Final = 250
 MAX_CHARTS: Final = 250
 """Findings and near misses with their measure over time and the steps behind it, the worst first."""
 MAX_DRIVES: Final = 100
 """Drives with a section of their own: first those with findings, then those with near misses or something unknown."""
-OPEN_DRIVES: Final = 3
+MAX_UNFOLDED_DRIVES: Final = 3
 """Up to so many drives are shown unfolded."""
 
-BRIEF_DRIVES: Final = 20
+MAX_DETAILED_DRIVES: Final = 20
 """With more drives, rules that were kept throughout are named, not drawn."""
 
 _NAMES: Final = {
@@ -72,9 +78,9 @@ def content(result: Result) -> dict[str, Any]:
     for row in result.spaces.to_pylist():
         spaces.setdefault(_at(row), []).append(row)
     road = Road(result.lanes)
-    drawn = pictures([row for row, _ in lines + close], scenes, spaces, road, rules=rules, most=MAX_PICTURES)
+    drawn = plan_views([row for row, _ in lines + close], scenes, spaces, road, rules=rules, most=MAX_PICTURES)
     listed = _by_drive(lines + close)
-    told = counts.by(result.verdicts, "drive_id")
+    told = counts.verdicts_by(result.verdicts, "drive_id")
     shown = _with_section(drives, listed, told)
     lines, close = _linked(lines, shown), _linked(close, shown)
     listed = _by_drive(lines + close)
@@ -84,53 +90,55 @@ def content(result: Result) -> dict[str, Any]:
         _section(
             row,
             timelines(verdicts.get(row["drive_id"], []), found.get(row["drive_id"], []), rules, anchors, _clock(row)),
-            moments(mine := listed.get(row["drive_id"], []), rules, drawn, starts[row["drive_id"]], leading(mine)),
-            parties(row["drive_id"], mine, scenes),
-            unfolded=len(drives) <= OPEN_DRIVES,
+            incidents(
+                mine := listed.get(row["drive_id"], []), rules, drawn, starts[row["drive_id"]], key_incidents(mine)
+            ),
+            involved_actors(row["drive_id"], mine, scenes),
+            unfolded=len(drives) <= MAX_UNFOLDED_DRIVES,
         )
         for row in drives
         if row["drive_id"] in shown
     ]
     totals = counts.total(result.verdicts)
-    broken, told_of = overview.broken(result, rules, lines), overview.stories(sections, len(drives))
+    broken, told_of = overview.broken_rules(result, rules, lines), overview.drive_summaries(sections, len(drives))
     return {
-        "outcome": outcome(result),
+        "outcome": exit_status(result),
         "headline": overview.headline(result),
         "contacts": overview.contacts(result, lines),
-        "not_decided": overview.not_decided(result),
-        "counts": overview.shares(totals),
+        "not_decided": overview.undecided_rule_count(result),
+        "counts": overview.verdict_shares(totals),
         "names": _NAMES,
         "passes": totals["pass"],
         "n_findings": result.findings.num_rows,
         "n_overtakes": result.overtakes.num_rows,
-        "gate": view(result.gate, result.findings["finding_id"].to_pylist()),
+        "gate": gate_summary(result.gate, result.findings["finding_id"].to_pylist()),
         "n_near": int(pc.sum(result.verdicts["near_miss"]).as_py() or 0),
-        "n_assumed": counts.assuming(result.verdicts, "line_of_sight"),
+        "n_assumed": counts.count_assuming(result.verdicts, "line_of_sight"),
         "broken": broken,
-        "words": words(overview.texts(broken, told_of, [line for _, line in lines])),
+        "words": glossary_entries(overview.first_page_texts(broken, told_of, [line for _, line in lines])),
         "several_egos": len({(row["drive_id"], row["ego_id"]) for row, _ in lines + close}) > len(listed),
-        "notes": notes(drives),
-        "packs": overview.packs(result),
+        "notes": notes_on_logs(drives),
+        "packs": overview.verdicts_by_pack(result),
         "stories": told_of,
         "findings": [line for _, line in lines],
         "near": [line for _, line in close],
         "filters": _filters([line for _, line in lines + close], rules),
         "not_judged": [row for row in drives if row["status"] == "not_judged"],
-        "open": reasons(result.verdicts, {rule_id: rule["title"] for rule_id, rule in rules.items()}),
+        "open": reason_groups(result.verdicts, {rule_id: rule["title"] for rule_id, rule in rules.items()}),
         "km": sum(row["km"] for row in drives),
         "n_egos": sum(row["n_egos"] for row in drives),
         "duration_s": sum(row["duration_s"] or 0.0 for row in drives),
         "drives": [_drive_row(row, told, listed, row["drive_id"] in shown) for row in drives],
         "sections": sections,
         "n_charts": MAX_CHARTS,
-        "brief": len(drives) > BRIEF_DRIVES,
+        "brief": len(drives) > MAX_DETAILED_DRIVES,
         "tiles": road.tiles() if drawn else [],
-        "shapes": shapes(scenes[at] for at in drawn),
+        "shapes": actor_shapes(scenes[at] for at in drawn),
         "replays_of": {
             drive_anchor(drive_id): text
             for drive_id, text in replays([scenes[at] for at in drawn], spaces, starts, road).items()
         },
-        "overtakes": views(result.overtakes.to_pylist(), starts, shown),
+        "overtakes": overtake_views(result.overtakes.to_pylist(), starts, shown),
         "opportunities": opportunities(result.opportunities.to_pylist()),
         "rules": _rules(result, rules),
         "rule_groups": _rule_groups(result, rules),
@@ -145,21 +153,21 @@ def _at(row: Row) -> Key:
 
 def _lines(
     result: Result, rules: Mapping[str, Row], starts: Mapping[str, int]
-) -> tuple[list[tuple[Row, Measured]], list[tuple[Row, Measured]]]:
+) -> tuple[list[tuple[Row, FindingLine]], list[tuple[Row, FindingLine]]]:
     """Return the findings and the near misses that the page shows, the worst first, each with its words."""
     courses = {_whose(row): row for row in result.courses.to_pylist()}
-    failed: list[tuple[Row, Measured]] = []
+    failed: list[tuple[Row, FindingLine]] = []
     for row in _worst_first(result.findings, MAX_FINDINGS):
         start = starts.get(row["drive_id"], 0)
         way = _course(courses, row, start) if len(failed) < MAX_CHARTS else None
-        stands = standing(result.gate, row["finding_id"])
-        failed.append((row, measured(row, "fail", rules[row["rule_id"]], start, course=way, standing=stands)))
+        stands = finding_status(result.gate, row["finding_id"])
+        failed.append((row, finding_line(row, "fail", rules[row["rule_id"]], start, course=way, standing=stands)))
     near = pc.and_(result.verdicts["near_miss"], pc.is_valid(result.verdicts["t_worst_ns"]))
-    close: list[tuple[Row, Measured]] = []
-    for row in _worst_first(result.verdicts.filter(near), MAX_NEAR):
+    close: list[tuple[Row, FindingLine]] = []
+    for row in _worst_first(result.verdicts.filter(near), MAX_NEAR_MISSES):
         start = starts.get(row["drive_id"], 0)
         way = _course(courses, row, start) if len(failed) + len(close) < MAX_CHARTS else None
-        close.append((row, measured(row, "near", rules[row["rule_id"]], start, course=way)))
+        close.append((row, finding_line(row, "near", rules[row["rule_id"]], start, course=way)))
     return failed, close
 
 
@@ -171,7 +179,7 @@ def _whose(row: Row) -> tuple[Any, ...]:
 
 def _course(courses: Mapping[tuple[Any, ...], Row], row: Row, start_ns: int) -> MarginSeries | None:
     seen = courses.get(_whose(row))
-    return None if seen is None else course(seen, row["t_worst_ns"], row["unit"], start_ns)
+    return None if seen is None else margin_series(seen, row["t_worst_ns"], row["unit"], start_ns)
 
 
 def _worst_first(rows: pa.Table, most: int) -> list[dict[str, Any]]:
@@ -185,8 +193,8 @@ def _worst_first(rows: pa.Table, most: int) -> list[dict[str, Any]]:
     return worst
 
 
-def _by_drive(rows: Sequence[tuple[Row, Measured]]) -> dict[str, list[tuple[Row, Measured]]]:
-    grouped: dict[str, list[tuple[Row, Measured]]] = {}
+def _by_drive(rows: Sequence[tuple[Row, FindingLine]]) -> dict[str, list[tuple[Row, FindingLine]]]:
+    grouped: dict[str, list[tuple[Row, FindingLine]]] = {}
     for row, line in rows:
         grouped.setdefault(row["drive_id"], []).append((row, line))
     return grouped
@@ -206,7 +214,7 @@ def _with_section(drives: Sequence[Row], listed: Mapping[str, Any], told: Mappin
     return {row["drive_id"] for row in sorted(judged, key=weight)[:MAX_DRIVES]}
 
 
-def _linked(rows: Sequence[tuple[Row, Measured]], shown: set[str]) -> list[tuple[Row, Measured]]:
+def _linked(rows: Sequence[tuple[Row, FindingLine]], shown: set[str]) -> list[tuple[Row, FindingLine]]:
     """Return the rows, without links into drives that have no section."""
     return [
         (row, line if line.drive_id in shown else line._replace(anchor="", href="", drive_href=""))
@@ -221,7 +229,7 @@ def _rows_by_drive(rows: pa.Table, drives: set[str]) -> dict[str, list[dict[str,
     return grouped
 
 
-def _filters(lines: Sequence[Measured], rules: Mapping[str, Row]) -> dict[str, list[tuple[str, str]]]:
+def _filters(lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str, list[tuple[str, str]]]:
     """Return what can be chosen in the filters: value and label."""
     severities = {rule["severity"] for rule in rules.values()}
     drives = sorted({line.drive_id for line in lines})
@@ -234,8 +242,8 @@ def _filters(lines: Sequence[Measured], rules: Mapping[str, Row]) -> dict[str, l
     }
 
 
-def _clock(row: Row) -> Clock:
-    return Clock(row["t_start_ns"] or 0, max(row["duration_s"] or 0.0, 1e-3))
+def _clock(row: Row) -> TimeAxis:
+    return TimeAxis(row["t_start_ns"] or 0, max(row["duration_s"] or 0.0, 1e-3))
 
 
 def _drive_row(
@@ -257,9 +265,9 @@ def _section(
 ) -> dict[str, Any]:
     """Return a drive with its egos: the timeline, the moments and the parties of each."""
     weight = {"error": 0, "warning": 1, "info": 2}
-    folded, tracks = shared(tracks)
+    folded, tracks = separate_shared_rules(tracks)
     without = sorted({m.ego_id for m in seen} - {t.ego_id for t in tracks})
-    tracks = [*tracks, *(nothing(ego_id) for ego_id in without)]
+    tracks = [*tracks, *(empty_timeline(ego_id) for ego_id in without)]
     egos = [{"timeline": t, "moments": [m for m in seen if m.ego_id == t.ego_id]} for t in tracks]
     missing: dict[str, list[str]] = {}
     for gap in row["not_judged"]:
@@ -279,7 +287,7 @@ def _section(
 
 def _rules(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any]]:
     """Return the rules with their counts and the worst margin of any verdict."""
-    told = counts.by(result.verdicts, "rule_id")
+    told = counts.verdicts_by(result.verdicts, "rule_id")
     worst = result.verdicts.group_by(["rule_id"], use_threads=False).aggregate([("margin", "min")]).to_pylist()
     margins = {row["rule_id"]: row["margin_min"] for row in worst}
     return [
@@ -310,17 +318,17 @@ def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any
     for group in groups.values():
         folds = sorted(group["folds"].items(), key=lambda item: (order.index(item[0][0]), -len(item[1]), item[0][1]))
         group["folds"] = [
-            ((verdict, in_words(reason for reason, _ in folded)), [rule for _, rule in folded])
+            ((verdict, summarise_reasons(reason for reason, _ in folded)), [rule for _, rule in folded])
             for (verdict, _), folded in folds
         ]
     return list(groups.values())
 
 
-def _first_reason(verdicts: pa.Table) -> dict[str, tuple[str, Given]]:
+def _first_reason(verdicts: pa.Table) -> dict[str, tuple[str, VerdictReason]]:
     """Return verdict and reason of the rules that were judged nowhere, for want of an occasion or of something to be provided."""
     keys = ["rule_id", "verdict", "reason_code", "cause_code", "reason"]
     rows = verdicts.group_by(keys, use_threads=False).aggregate([([], "count_all")]).to_pylist()
-    found: dict[str, tuple[str, Given]] = {}
+    found: dict[str, tuple[str, VerdictReason]] = {}
     judged = set()
     for row in sorted(
         rows, key=lambda r: (r["rule_id"], r["verdict"] == "not_applicable", -r["count_all"], r["reason"])
@@ -330,5 +338,5 @@ def _first_reason(verdicts: pa.Table) -> dict[str, tuple[str, Given]]:
         )
         if not idle:
             judged.add(row["rule_id"])
-        found.setdefault(row["rule_id"], (row["verdict"], given(row)))
+        found.setdefault(row["rule_id"], (row["verdict"], verdict_reason(row)))
     return {rule_id: reason for rule_id, reason in found.items() if rule_id not in judged}

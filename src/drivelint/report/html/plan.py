@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 import shapely
 
-from drivelint.report.html.road import UNITS
-from drivelint.report.html.svg import closed, num, polyline
+from drivelint.report.html.road import UNITS_PER_M
+from drivelint.report.html.svg import num, polygon, polyline
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -31,7 +31,7 @@ _BESIDE: Final = 0.5  # who is up to half a view away may come into it when the 
 _TOUCH_M: Final = 0.005  # boxes nearer than this are not apart
 
 
-class Text(NamedTuple):
+class Label(NamedTuple):
     """A label at a point; `actor`: whose name it is."""
 
     x: str
@@ -41,7 +41,7 @@ class Text(NamedTuple):
     actor: str = ""
 
 
-class Shape(NamedTuple):
+class ActorShape(NamedTuple):
     """A box of one size and the chevron on it, in its own frame; drawn once in the page."""
 
     name: str
@@ -49,7 +49,7 @@ class Shape(NamedTuple):
     front: str
 
 
-class Body(NamedTuple):
+class DrawnActor(NamedTuple):
     """An actor: its shape and where it is; its way before and after the moment, and where it was at full seconds from it."""
 
     kind: str
@@ -71,16 +71,16 @@ class Line(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Plan:
-    """Everything that the template draws, in drawing order, and the same in words."""
+class PlanView:
+    """The plan view of an incident as the template draws it, in drawing order, with a description in words."""
 
     height: str
     matrix: str
     tiles: list[str]
     spaces: list[tuple[str, str]]
-    bodies: list[Body]
+    bodies: list[DrawnActor]
     gaps: list[Line]
-    texts: list[Text]
+    texts: list[Label]
     scale_px: str
     scale_m: int
     words: str
@@ -107,7 +107,7 @@ class _View:
 
     def matrix(self, lanes: Lanes) -> str:
         """Return the transformation of drawn units of the map."""
-        k = self.scale / UNITS
+        k = self.scale / UNITS_PER_M
         e, f = self(np.array([lanes.origin]))[0]
         turn = f"{k * self.cos:.5f},{k * self.sin:.5f},{k * self.sin:.5f},{-k * self.cos:.5f}"
         return f"matrix({turn},{num(e)},{num(f)})"
@@ -121,7 +121,9 @@ class _View:
         return bool(-beside < x < WIDTH + beside and -beside < y < self.height + beside)
 
 
-def plan(scene: Mapping[str, Any], road: Road, concerned: Collection[str], spaces: Sequence[Mapping[str, Any]]) -> Plan:
+def plan_view(
+    scene: Mapping[str, Any], road: Road, concerned: Collection[str], spaces: Sequence[Mapping[str, Any]]
+) -> PlanView:
     """Return the plan view of a row of the table `scene`.
 
     `concerned`: the objects that the findings are about; `spaces`: rows of `danger_space` at the moment, to be shown.
@@ -138,11 +140,11 @@ def plan(scene: Mapping[str, Any], road: Road, concerned: Collection[str], space
     texts, gaps, told = _distances(ego, met, view)
     texts += [_label(a, ego, met, view) for a in actors if view.holds(a)]
     length_px, length_m = _bar(view.scale)
-    return Plan(
+    return PlanView(
         height=num(view.height),
         matrix=view.matrix(lanes),
         tiles=lanes.tiles_of(scene["lanelets"]),
-        spaces=[(_kind(who, ego, concerned), closed(np.rint(lanes.drawn(ring)))) for who, ring in rings],
+        spaces=[(_kind(who, ego, concerned), polygon(np.rint(lanes.drawn(ring)))) for who, ring in rings],
         bodies=[
             _body(a, _kind(a["actor_id"], ego, concerned), lanes, scene["t_ns"])
             for a in sorted((*others, ego), key=_area, reverse=True)  # whoever is under a larger one is still seen
@@ -197,19 +199,19 @@ def _kind(actor_id: str, ego: Mapping[str, Any], concerned: Collection[str]) -> 
     return "ego" if actor_id == ego["actor_id"] else "met" if actor_id in concerned else "other"
 
 
-def shapes(scenes: Iterable[Mapping[str, Any]]) -> list[Shape]:
+def actor_shapes(scenes: Iterable[Mapping[str, Any]]) -> list[ActorShape]:
     """Return the shapes of all actors of these scenes, each once."""
     actors = {_shape_name(actor): actor for scene in scenes for actor in scene["actors"]}
     return [_shape(name, actor) for name, actor in sorted(actors.items())]
 
 
-def _shape(name: str, actor: Mapping[str, Any]) -> Shape:
+def _shape(name: str, actor: Mapping[str, Any]) -> ActorShape:
     """Return the shape of an actor; without a heading it has no front."""
     length, width = _size(actor)
     turned = actor["yaw_rad"] is not None and actor["length_m"] is not None
-    hl, hw = UNITS * length / 2, UNITS * width / 2
+    hl, hw = UNITS_PER_M * length / 2, UNITS_PER_M * width / 2
     front = polyline(np.array([(0.5 * hl, 0.8 * hw), (0.82 * hl, 0.0), (0.5 * hl, -0.8 * hw)])) if turned else ""
-    return Shape(name, closed(UNITS * _outline(actor)), front)
+    return ActorShape(name, polygon(UNITS_PER_M * _outline(actor)), front)
 
 
 def _shape_name(actor: Mapping[str, Any]) -> str:
@@ -218,17 +220,17 @@ def _shape_name(actor: Mapping[str, Any]) -> str:
     return f"b{length * 100:.0f}x{width * 100:.0f}{'' if turned else 'n'}"
 
 
-def _body(actor: Mapping[str, Any], kind: str, lanes: Lanes, t_ns: int) -> Body:
+def _body(actor: Mapping[str, Any], kind: str, lanes: Lanes, t_ns: int) -> DrawnActor:
     before, after, seconds = _way(actor["path"] or [], lanes, t_ns) if kind != "other" else ("", "", "")
-    x, y = ((actor[axis] - zero) * UNITS for axis, zero in zip(("x_m", "y_m"), lanes.origin, strict=True))
+    x, y = ((actor[axis] - zero) * UNITS_PER_M for axis, zero in zip(("x_m", "y_m"), lanes.origin, strict=True))
     place = f"translate({num(x)},{num(y)})rotate({math.degrees(actor['yaw_rad'] or 0.0):.1f})"
-    return Body(kind, actor["actor_id"], _shape_name(actor), place, before, after, seconds)
+    return DrawnActor(kind, actor["actor_id"], _shape_name(actor), place, before, after, seconds)
 
 
 def _way(way: Sequence[Mapping[str, Any]], lanes: Lanes, t_ns: int) -> tuple[str, str, str]:
     """Return the paths before and after a moment and of the points at full seconds from it; nothing for who stands."""
     xy = lanes.drawn(np.array([(p["x_m"], p["y_m"]) for p in way])) if way else np.empty((0, 2))
-    if not len(xy) or np.ptp(xy, axis=0).sum() < UNITS:
+    if not len(xy) or np.ptp(xy, axis=0).sum() < UNITS_PER_M:
         return "", "", ""
     t = np.array([p["t_ns"] for p in way])
     xy = np.rint(xy)
@@ -242,7 +244,7 @@ def _way(way: Sequence[Mapping[str, Any]], lanes: Lanes, t_ns: int) -> tuple[str
 
 def _distances(
     ego: Mapping[str, Any], met: Sequence[Mapping[str, Any]], view: _View
-) -> tuple[list[Text], list[Line], list[str]]:
+) -> tuple[list[Label], list[Line], list[str]]:
     """Return labels, lines and words of the least distances from the ego's box to those concerned."""
     texts, lines, told = [], [], []
     for actor in met:
@@ -259,17 +261,17 @@ def _distances(
         text = f"{far:.1f} m" if far >= 10 else f"{far:.2f} m"
         if np.hypot(*(q - p)) > 60:
             lines.append(Line(num(p[0]), num(p[1]), num(q[0]), num(q[1])))
-            texts.append(Text(num(middle[0]), num(middle[1] - 6), text, "gap"))
+            texts.append(Label(num(middle[0]), num(middle[1] - 6), text, "gap"))
         else:  # too short for a label on it: lead it out to the free side
             top = float(min(view(a)[:, 1].min(), view(b)[:, 1].min()))
             y = top - 26 if top > 44 else float(max(view(a)[:, 1].max(), view(b)[:, 1].max())) + 34
             lines.append(Line(num(p[0]), num(p[1]), num(q[0]), num(q[1])))
             lines.append(Line(num(middle[0]), num(middle[1]), num(middle[0]), num(y + (4 if y < middle[1] else -12))))
-            texts.append(Text(num(middle[0]), num(y), text, "gap"))
+            texts.append(Label(num(middle[0]), num(y), text, "gap"))
     return texts, lines, told
 
 
-def _label(actor: Mapping[str, Any], ego: Mapping[str, Any], met: Sequence[Mapping[str, Any]], view: _View) -> Text:
+def _label(actor: Mapping[str, Any], ego: Mapping[str, Any], met: Sequence[Mapping[str, Any]], view: _View) -> Label:
     """Return an actor's name, on the side of its box that faces away from whom it met."""
     box = view(_corners(actor))
     middle = box.mean(axis=0)
@@ -281,7 +283,7 @@ def _label(actor: Mapping[str, Any], ego: Mapping[str, Any], met: Sequence[Mappi
         (f"ego {actor['actor_id']}", "ego") if actor is ego else (actor["actor_id"], "met" if actor in met else "other")
     )
     x = min(max(float(middle[0]), 22.0), WIDTH - 22.0)
-    return Text(num(x), num(min(max(float(y), 12.0), view.height - 4.0)), name, kind, actor["actor_id"])
+    return Label(num(x), num(min(max(float(y), 12.0), view.height - 4.0)), name, kind, actor["actor_id"])
 
 
 def _bar(scale: float) -> tuple[float, int]:

@@ -13,18 +13,18 @@ from drivelint.report.html.anchors import rule_anchor
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-MOST: Final = 60
+MAX_REASONS: Final = 60
 
 
-class Given(NamedTuple):
-    """A reason as a verdict gives it. Reasons of one kind have the same codes, and differ in times, numbers and ids."""
+class VerdictReason(NamedTuple):
+    """The reason of one verdict; reasons of one kind have the same codes and differ in times, numbers and ids."""
 
     kind: tuple[str, ...]
     text: str
 
 
-class Reason(NamedTuple):
-    """A reason and how many are like it, whether something can be provided, the rules (title and link) and how often."""
+class ReasonGroup(NamedTuple):
+    """Alike reasons as one row: the reason in words, its rules with links, and the numbers of verdicts and drives."""
 
     verdict: str
     why: str
@@ -34,14 +34,14 @@ class Reason(NamedTuple):
     n_drives: int
 
 
-def given(row: Mapping[str, Any]) -> Given:
-    """Return the reason of a verdict; a text of a rule's own is a kind of its own."""
+def verdict_reason(row: Mapping[str, Any]) -> VerdictReason:
+    """Return the reason of a verdict; a text that a rule writes itself is a kind of its own."""
     text = row["reason"] if row["cause_code"] == "text" else ""
-    return Given((row["reason_code"], row["cause_code"] or "", text), row["reason"])
+    return VerdictReason((row["reason_code"], row["cause_code"] or "", text), row["reason"])
 
 
-def in_words(reasons_given: Iterable[Given]) -> str:
-    """Return the first of these reasons as it is given, and how many more there are. What stands before it says the verdict.
+def summarise_reasons(reasons_given: Iterable[VerdictReason]) -> str:
+    """Return the shortest of the reasons as text, with the number of the others. What stands before it says the verdict.
 
     The shortest is the first, and of these the first by letter: the order of the rows does not matter.
     """
@@ -63,28 +63,28 @@ def can_be_provided(code: str) -> bool:
 _OF_THE_MOMENT: Final = {"applies_unknown", "anchor_unknown", "reference_time_unknown"}
 
 
-def reasons(verdicts: pa.Table, titles: Mapping[str, str]) -> list[Reason]:
+def reason_groups(verdicts: pa.Table, titles: Mapping[str, str]) -> list[ReasonGroup]:
     """Return why verdicts are unknown or errors; what can be provided first, then the most frequent."""
     rows = verdicts.filter(pc.is_in(verdicts["verdict"], value_set=pa.array(["unknown", "error"])))
     keys = ["verdict", "reason_code", "cause_code", "reason", "rule_id", "drive_id"]
     counted = rows.group_by(keys, use_threads=False).aggregate([([], "count_all")]).to_pylist()
     grouped: dict[tuple[str, tuple[str, ...]], list[dict[str, Any]]] = {}
     for row in counted:
-        grouped.setdefault((row["verdict"], given(row).kind), []).append(row)
+        grouped.setdefault((row["verdict"], verdict_reason(row).kind), []).append(row)
     found = [
-        Reason(
+        ReasonGroup(
             verdict,
-            in_words(given(row) for row in told),
+            summarise_reasons(verdict_reason(row) for row in told),
             can_be_provided(told[0]["reason_code"]),
-            named({row["rule_id"] for row in told}, titles),
+            rule_links({row["rule_id"] for row in told}, titles),
             sum(row["count_all"] for row in told),
             len({row["drive_id"] for row in told}),
         )
         for (verdict, _), told in grouped.items()
     ]
-    return sorted(found, key=lambda r: (r.verdict, not r.provide, -r.n, r.why))[:MOST]
+    return sorted(found, key=lambda r: (r.verdict, not r.provide, -r.n, r.why))[:MAX_REASONS]
 
 
-def named(rules: Iterable[str], titles: Mapping[str, str]) -> list[tuple[str, str]]:
+def rule_links(rules: Iterable[str], titles: Mapping[str, str]) -> list[tuple[str, str]]:
     """Return titles of rules with links to them."""
     return [(titles.get(rule, rule), "#" + rule_anchor(rule)) for rule in sorted(rules)]

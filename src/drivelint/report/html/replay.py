@@ -1,4 +1,4 @@
-"""What the script of the page needs to move a scene: where everybody was, once per drive, as small whole numbers."""
+"""The positions of actors over time as compact JSON, from which the page's script animates plan views."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from markupsafe import Markup
 
-from drivelint.report.html.svg import closed
+from drivelint.report.html.svg import polygon
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     Row = Mapping[str, Any]
     Key = tuple[str, str, int]
 
-MOST_POINTS: Final = 60_000
+MAX_POINTS: Final = 60_000
 """Places of actors in the page; drives beyond that are shown without replay."""
 _TICK_NS: Final = 10_000_000
 _CM: Final = 100
 
 
-def ticks(t_ns: int, start_ns: int) -> int:
+def centiseconds(t_ns: int, start_ns: int) -> int:
     """Return a time as hundredths of a second since the drive's start, as the script counts."""
     return round((t_ns - start_ns) / _TICK_NS)
 
@@ -32,7 +32,7 @@ def ticks(t_ns: int, start_ns: int) -> int:
 def replays(
     scenes: Iterable[Row], spaces: Mapping[Key, Sequence[Row]], starts: Mapping[str, int], road: Road
 ) -> dict[str, Markup]:
-    """Return drive -> JSON for the script, of the drives of these scenes, until the page has enough.
+    """Return the replay of each drive as JSON for the page's script, up to `MAX_POINTS` points in all.
 
     `a`: actor -> times, x, y (cm from the map's origin), heading (centirad), each as its first value and what is added;
     `s`: ego -> time -> actor -> path of its danger space in the map's drawn units.
@@ -47,7 +47,7 @@ def replays(
         lanes = road.on(rows[0]["environment_id"])
         tracks = _tracks(rows)
         n += sum(len(track) for track in tracks.values())
-        if n > MOST_POINTS:
+        if n > MAX_POINTS:
             break
         actors = {
             actor: _columns(sorted(track.items()), start, lanes.origin) for actor, track in sorted(tracks.items())
@@ -55,8 +55,8 @@ def replays(
         rings: dict[str, dict[int, dict[str, str]]] = {}
         for (drive, ego, t_ns), around in spaces.items():
             if drive == drive_id:
-                rings.setdefault(ego, {})[ticks(t_ns, start)] = {
-                    ring["actor_id"]: closed(np.rint(lanes.drawn(np.column_stack([ring["x_m"], ring["y_m"]]))))
+                rings.setdefault(ego, {})[centiseconds(t_ns, start)] = {
+                    ring["actor_id"]: polygon(np.rint(lanes.drawn(np.column_stack([ring["x_m"], ring["y_m"]]))))
                     for ring in around
                 }
         told[drive_id] = _json({"a": actors, "s": rings})
@@ -79,7 +79,7 @@ def _columns(
     if not track:
         return [[], [], [], []]
     x, y, yaw = np.array([place for _, place in track]).T
-    t = np.array([ticks(t_ns, start) for t_ns, _ in track])
+    t = np.array([centiseconds(t_ns, start) for t_ns, _ in track])
     columns = (t, (x - origin[0]) * _CM, (y - origin[1]) * _CM, np.unwrap(yaw) * 100)
     return [np.diff(np.rint(c).astype(np.int64), prepend=0).tolist() for c in columns]
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
-from drivelint.report.html.svg import closed, polyline
+from drivelint.report.html.svg import polygon, polyline
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     Points = NDArray[np.float64]
     """Shape (n, 2)."""
 
-UNITS: Final = 10.0
+UNITS_PER_M: Final = 10.0
 """Drawn units per metre."""
 _ARROW_EVERY_M: Final = 25.0
 _ON_ROAD_M: Final = 6.0  # a bound nearer than this belongs to the road that the ego is on
@@ -30,7 +30,7 @@ _TILE_M: Final = 200.0  # lanes that begin in one square are drawn together
 
 
 class Tile(NamedTuple):
-    """Lanes that begin in one square of the map, as the data of paths: areas first, then what is painted on them."""
+    """The drawn lanes of one square of the map as SVG path data."""
 
     name: str
     road: str
@@ -56,7 +56,7 @@ class Road:
         return self._maps.get(environment_id, self._none) if environment_id is not None else self._none
 
     def tiles(self) -> list[Tile]:
-        """Return what is to be drawn once in the page."""
+        """Return the tiles of all maps, each of which the page draws once."""
         return [tile for lanes in self._maps.values() for tile in lanes.tiles()]
 
 
@@ -74,14 +74,14 @@ class Lanes:
 
     def drawn(self, xy: Points) -> Points:
         """Return drawn units of map points in metres."""
-        return (xy - self.origin) * UNITS
+        return (xy - self.origin) * UNITS_PER_M
 
     def tiles_of(self, lanelets: Sequence[str]) -> list[str]:
         """Return the names of the tiles that these lanelets are drawn on."""
         return sorted({self._tile[lanelet] for lanelet in lanelets if lanelet in self._tile})
 
     def direction(self, x_m: float, y_m: float, yaw_rad: float) -> float:
-        """Return the heading of the road at a place, the way round that is nearer to `yaw_rad`; that itself off the road."""
+        """Return the road's heading at a point, in the sense nearer to `yaw_rad`; off the road, `yaw_rad` itself."""
         near = (np.minimum(self._a, self._b) < (x_m + _ON_ROAD_M, y_m + _ON_ROAD_M)).all(axis=1) & (
             np.maximum(self._a, self._b) > (x_m - _ON_ROAD_M, y_m - _ON_ROAD_M)
         ).all(axis=1)
@@ -116,7 +116,7 @@ class Lanes:
     def _areas(self, lanes: Sequence[Mapping[str, Any]], *, drivable: bool) -> str:
         rings = [np.concatenate([lane["left"], lane["right"][::-1]]) for lane in lanes if lane["drivable"] is drivable]
         # all the same way round: where lanes overlap they fill, and do not cut each other out
-        return "".join(closed(np.rint(self.drawn(ring if _area(ring) > 0 else ring[::-1]))) for ring in rings)
+        return "".join(polygon(np.rint(self.drawn(ring if _area(ring) > 0 else ring[::-1]))) for ring in rings)
 
     def _markings(self) -> list[tuple[str, str, str]]:
         """Return each bound once: tile, solid, broken or edge (a kerb or a bound that the map does not describe), path."""

@@ -27,13 +27,13 @@ class Axis(NamedTuple):
 
     def ticks(self, most: int) -> list[tuple[str, str]]:
         """Return places and labels of at most about `most` round values."""
-        step = nice((self.high - self.low) / most) if self.high > self.low else 1.0
+        step = round_step((self.high - self.low) / most) if self.high > self.low else 1.0
         first, last = math.ceil(self.low / step - 1e-9), math.floor(self.high / step + 1e-9)
         digits = max(0, -math.floor(math.log10(step) + 1e-9))
         return [(num(self.at(k * step)), f"{k * step:.{digits}f}") for k in range(first, last + 1)]
 
 
-def around(values: Iterable[float], start: float, end: float, room: float = 0.06) -> Axis:
+def axis_around(values: Iterable[float], start: float, end: float, room: float = 0.06) -> Axis:
     """Return the axis that shows these values with some room on both sides."""
     found = list(values)
     low, high = min(found), max(found)
@@ -41,7 +41,7 @@ def around(values: Iterable[float], start: float, end: float, room: float = 0.06
     return Axis(low - pad, high + pad, start, end)
 
 
-def nice(value: float) -> float:
+def round_step(value: float) -> float:
     """Return the least 1, 2 or 5 times a power of ten that is not less."""
     power = 10.0 ** math.floor(math.log10(value)) if value > 0 else 1.0
     return next(k * power for k in (1, 2, 5, 10) if k * power >= value * (1 - 1e-9))

@@ -22,6 +22,6 @@ def polyline(points: NDArray[np.float64]) -> str:
     return "M" + " ".join([f"{num(x)},{num(y)}" for x, y in points.tolist()])
 
 
-def closed(points: NDArray[np.float64]) -> str:
+def polygon(points: NDArray[np.float64]) -> str:
     """Return the path data of a closed ring through points of shape (n, 2)."""
     return polyline(points) + "Z"

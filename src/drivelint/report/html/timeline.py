@@ -9,7 +9,7 @@ import hashlib
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.report.html.anchors import finding_anchor, rule_anchor
-from drivelint.report.html.reasons import Given, can_be_provided, given, in_words, named
+from drivelint.report.html.reasons import VerdictReason, can_be_provided, rule_links, summarise_reasons, verdict_reason
 from drivelint.result.counts import SEVERITIES
 from drivelint.result.text import number, seconds
 
@@ -44,8 +44,8 @@ class Mark(NamedTuple):
     title: str
 
 
-class Lane(NamedTuple):
-    """One row: a rule and profile, its worst verdict and what is drawn; `keys`: what it is found by."""
+class TimelineRow(NamedTuple):
+    """One row of a timeline: a rule and profile, its worst verdict, and what is drawn."""
 
     rule_id: str
     href: str
@@ -57,12 +57,12 @@ class Lane(NamedTuple):
     marks: list[Mark]
 
 
-class Folded(NamedTuple):
-    """Rules of which there is nothing to draw, for one reason: not applicable, or unknown because something is missing."""
+class FoldedRules(NamedTuple):
+    """Rules without anything to draw that share one reason: not applicable, or something is missing."""
 
     verdict: str
     kind: tuple[str, ...]
-    reasons: dict[tuple[str, str], set[Given]]
+    reasons: dict[tuple[str, str], set[VerdictReason]]
     """The title of a rule and the link to it -> why, as it is given."""
 
     @property
@@ -73,7 +73,7 @@ class Folded(NamedTuple):
     @property
     def why(self) -> str:
         """The reason, in words."""
-        return in_words(set[Given]().union(*self.reasons.values()))
+        return summarise_reasons(set[VerdictReason]().union(*self.reasons.values()))
 
 
 class Timeline(NamedTuple):
@@ -83,13 +83,13 @@ class Timeline(NamedTuple):
     grid: str
     step: str
     ticks: list[tuple[str, str]]
-    rows: list[Lane]
-    folded: list[Folded]
+    rows: list[TimelineRow]
+    folded: list[FoldedRules]
     n: dict[str, int]
 
 
-class Clock(NamedTuple):
-    """The log's clock as percentages of the drive."""
+class TimeAxis(NamedTuple):
+    """The time axis of a drive, in percent of its duration."""
 
     start_ns: int
     duration_s: float
@@ -109,7 +109,11 @@ class Clock(NamedTuple):
 
 
 def timelines(
-    verdicts: Iterable[Row], findings: Sequence[Row], rules: Mapping[str, Row], anchors: Mapping[str, str], clock: Clock
+    verdicts: Iterable[Row],
+    findings: Sequence[Row],
+    rules: Mapping[str, Row],
+    anchors: Mapping[str, str],
+    clock: TimeAxis,
 ) -> list[Timeline]:
     """Return a timeline for every ego of one drive, in the order of the verdicts.
 
@@ -137,15 +141,15 @@ def _timeline(
     *,
     rules: Mapping[str, Row],
     anchors: Mapping[str, str],
-    clock: Clock,
+    clock: TimeAxis,
 ) -> Timeline:
-    rows: list[Lane] = []
-    folded: dict[tuple[str, tuple[str, ...]], dict[str, set[Given]]] = {}
+    rows: list[TimelineRow] = []
+    folded: dict[tuple[str, tuple[str, ...]], dict[str, set[VerdictReason]]] = {}
     for key, told in groups.items():
         rule_id, profile = key
         worst = min((row["verdict"] for row in told), key=_ORDER.index)
         if worst == "not_applicable" or all(_is_missing(row) for row in told):
-            reason = given(told[0])
+            reason = verdict_reason(told[0])
             folded.setdefault((worst, reason.kind), {}).setdefault(rule_id, set()).add(reason)
             continue
         marks = [_finding(row, anchors, clock) for row in found.get(key, [])]
@@ -154,7 +158,7 @@ def _timeline(
         stands = sorted({anchors.get(finding_anchor(row), "") for row in found.get(key, [])})
         keys = " ".join((worst, "near" if near else "", rule["severity"], rule["pack"], *stands))
         href = f"#{rule_anchor(rule_id)}"
-        rows.append(Lane(rule_id, href, rule["title"], profile, worst, keys, _bands(told, clock), marks + near))
+        rows.append(TimelineRow(rule_id, href, rule["title"], profile, worst, keys, _bands(told, clock), marks + near))
     rows.sort(key=lambda lane: (_ORDER.index(lane.verdict), SEVERITIES.index(rules[lane.rule_id]["severity"])))
     titles = {rule_id: rule["title"] for rule_id, rule in rules.items()}
     order = sorted(folded.items(), key=lambda item: (_ORDER.index(item[0][0]), -len(item[1]), item[0][1]))
@@ -164,37 +168,40 @@ def _timeline(
         f"{clock.step_s() / clock.duration_s:.5f}",
         clock.ticks(),
         rows,
-        [Folded(*key, dict(zip(named(why, titles), (why[i] for i in sorted(why)), strict=True))) for key, why in order],
+        [
+            FoldedRules(*key, dict(zip(rule_links(why, titles), (why[i] for i in sorted(why)), strict=True)))
+            for key, why in order
+        ],
         {verdict: sum(lane.verdict == verdict for lane in rows) for verdict in _ORDER},
     )
 
 
-def nothing(ego_id: str) -> Timeline:
+def empty_timeline(ego_id: str) -> Timeline:
     """Return the timeline of an ego without verdicts."""
     return Timeline(ego_id, "", "0", [], [], [], dict.fromkeys(_ORDER, 0))
 
 
-def shared(drawn: Sequence[Timeline]) -> tuple[list[Folded], list[Timeline]]:
-    """Return what is folded alike for every ego, once, and the timelines with what is folded for some only."""
+def separate_shared_rules(drawn: Sequence[Timeline]) -> tuple[list[FoldedRules], list[Timeline]]:
+    """Return the folded rules that all egos share, and the timelines without them."""
     common = {(f.verdict, f.kind): f.reasons for f in drawn[0].folded} if drawn else {}
     for t in drawn[1:]:
         mine = {(f.verdict, f.kind): f.reasons for f in t.folded}
         common = {key: _both(why, mine.get(key, {})) for key, why in common.items()}
     common = {key: why for key, why in common.items() if why}
 
-    def rest(t: Timeline) -> list[Folded]:
+    def rest(t: Timeline) -> list[FoldedRules]:
         left = [
             f._replace(reasons={rule: why for rule, why in f.reasons.items() if rule not in common.get(f[:2], {})})
             for f in t.folded
         ]
         return [f for f in left if f.reasons]
 
-    return [Folded(*key, why) for key, why in common.items()], [t._replace(folded=rest(t)) for t in drawn]
+    return [FoldedRules(*key, why) for key, why in common.items()], [t._replace(folded=rest(t)) for t in drawn]
 
 
 def _both(
-    one: Mapping[tuple[str, str], set[Given]], other: Mapping[tuple[str, str], set[Given]]
-) -> dict[tuple[str, str], set[Given]]:
+    one: Mapping[tuple[str, str], set[VerdictReason]], other: Mapping[tuple[str, str], set[VerdictReason]]
+) -> dict[tuple[str, str], set[VerdictReason]]:
     return {rule: why | other[rule] for rule, why in one.items() if rule in other}
 
 
@@ -208,31 +215,31 @@ def _grid(drive_id: str, ego_id: str) -> str:
     return f"grid-{hashlib.sha256(repr((drive_id, ego_id)).encode('utf-8', 'surrogatepass')).hexdigest()[:12]}"
 
 
-def _bands(told: Sequence[Row], clock: Clock) -> list[Band]:
+def _bands(told: Sequence[Row], clock: TimeAxis) -> list[Band]:
     """Return the judged stretches by verdict; stretches of one verdict that touch are one (many objects, one rule)."""
     bands = []
     for verdict in _LAYERS:
-        spans: list[tuple[float, float, set[Given]]] = []
+        spans: list[tuple[float, float, set[VerdictReason]]] = []
         rows = [row for row in told if row["verdict"] == verdict]
-        for (start, end), reason in sorted((_span(row, clock), given(row)) for row in rows):
+        for (start, end), reason in sorted((_span(row, clock), verdict_reason(row)) for row in rows):
             if spans and start <= spans[-1][1]:
                 spans[-1] = (spans[-1][0], max(spans[-1][1], end), spans[-1][2] | {reason})
             else:
                 spans.append((start, end, {reason}))
         for start, end, reasons in spans:
-            why = "" if verdict in {"pass", "fail"} else f": {in_words(reasons)}"
+            why = "" if verdict in {"pass", "fail"} else f": {summarise_reasons(reasons)}"
             bands.append(Band(verdict, _pc(start), _pc(end - start) if end - start > _THIN else "", f"{verdict}{why}"))
     return bands
 
 
-def _span(row: Row, clock: Clock) -> tuple[float, float]:
+def _span(row: Row, clock: TimeAxis) -> tuple[float, float]:
     """Return the judged stretch; where the verdict names none, it is about the whole drive."""
     if row["t_start_ns"] is None:
         return (0.0, 100.0) if row["t_ref_ns"] is None else (clock.at(row["t_ref_ns"]),) * 2
     return clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])
 
 
-def _finding(row: Row, anchors: Collection[str], clock: Clock) -> Mark:
+def _finding(row: Row, anchors: Collection[str], clock: TimeAxis) -> Mark:
     anchor = finding_anchor(row)
     start, end = clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])
     return Mark(
@@ -244,11 +251,11 @@ def _finding(row: Row, anchors: Collection[str], clock: Clock) -> Mark:
     )
 
 
-def _near(row: Row, clock: Clock) -> Mark:
+def _near(row: Row, clock: TimeAxis) -> Mark:
     return Mark("near", _pc(clock.at(row["t_worst_ns"])), "", "", f"near miss, {_title(row, clock)}")
 
 
-def _title(row: Row, clock: Clock) -> str:
+def _title(row: Row, clock: TimeAxis) -> str:
     margin = "" if row["margin"] is None else f", margin {number(row['margin'], row['unit'])}"
     return f"{seconds(row['t_worst_ns'], clock.start_ns)}{margin}"
 

@@ -35,7 +35,7 @@ def lanes(con: duckdb.DuckDBPyConnection) -> pa.Table:
     return _ordered(con, "lane_shape", "environment_id, lanelet_id")
 
 
-def spaces(con: duckdb.DuckDBPyConnection) -> pa.Table:
+def danger_spaces(con: duckdb.DuckDBPyConnection) -> pa.Table:
     """Return the table `danger_space`, totally ordered."""
     return _ordered(con, "danger_space", "drive_id, ego_id, t_ns, actor_id <> ego_id, actor_id")
 

@@ -1,10 +1,10 @@
-"""What the paper's views need of every overtake and every opportunity of a batch: `overtake_record`, `opportunity_record`."""
+"""Gathers one record for each overtake and each overtaking opportunity of a batch."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from drivelint.reasons.worded import word
+from drivelint.reasons.worded import make_reason_table
 
 if TYPE_CHECKING:
     import duckdb
@@ -61,6 +61,6 @@ SELECT o.*, p.style FROM opportunity o JOIN profile p USING (profile)
 
 def gather(con: duckdb.DuckDBPyConnection) -> None:
     """Add the overtakes and opportunities of the batch, as far as its rules needed them."""
-    word(con, "SELECT NULL AS rule_no, reason AS cause, 0 AS start_ns FROM overtake_sda")
+    make_reason_table(con, "SELECT NULL AS rule_no, reason AS cause, 0 AS start_ns FROM overtake_sda")
     con.execute(_OVERTAKES)
     con.execute(_OPPORTUNITIES)

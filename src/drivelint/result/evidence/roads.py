@@ -1,4 +1,4 @@
-"""The lanes near scenes, from the map's tables into `lane_shape`: each once, simplified."""
+"""Gathers the simplified shapes of lanes near scenes into `lane_shape`, each lane once."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import duckdb
     from numpy.typing import NDArray
 
-TRUE_TO_M: Final = 0.1
+SIMPLIFY_TOLERANCE_M: Final = 0.1
 
 # lanelets near a scene whose shape is not yet kept
 _NEW: Final = """
@@ -63,7 +63,7 @@ def _simplified(points: dict[str, NDArray[np.float64]], side: str, n: int) -> tu
     """Return the x and y of `n` bounds as lists in centimetres, with only the points that keep them true."""
     xy = np.column_stack([points[f"{side}_x_m"], points[f"{side}_y_m"]])
     lines = shapely.linestrings(xy, indices=points["lane"].astype(np.intp))
-    kept, index = shapely.get_coordinates(shapely.simplify(lines, TRUE_TO_M), return_index=True)
+    kept, index = shapely.get_coordinates(shapely.simplify(lines, SIMPLIFY_TOLERANCE_M), return_index=True)
     offsets = pa.array(np.searchsorted(index, np.arange(n + 1)), pa.int32())
     x, y = np.round(kept, 2).T
     return pa.ListArray.from_arrays(offsets, pa.array(x)), pa.ListArray.from_arrays(offsets, pa.array(y))

@@ -1,4 +1,4 @@
-"""Who was where around the worst step of every finding and near miss: tables `scene` and `danger_space`."""
+"""Gathers the actors around the worst step of every finding and near miss: `scene` and `danger_space`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import pyarrow as pa
 import shapely
 
-from drivelint.result.evidence.roads import TRUE_TO_M
+from drivelint.result.evidence.roads import SIMPLIFY_TOLERANCE_M
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -23,9 +23,9 @@ PATH_STEP_NS: Final = 200_000_000
 """A way has at most one point in so long."""
 REACH_M: Final = (60.0, 300.0)
 """Least and largest reach of a scene around the ego."""
-AT_ONCE: Final = 400
+SCENES_AT_ONCE: Final = 400
 """Moments whose scenes are made at once: their ways are lists, which the database holds in memory."""
-PER_RULE: Final = 20
+SCENES_PER_RULE: Final = 20
 """Scenes per ego, rule and profile: those with the worst margins."""
 
 _MOMENTS: Final = """
@@ -172,7 +172,7 @@ ORDER BY ring, s_m
 def gather(con: duckdb.DuckDBPyConnection) -> None:
     """Add the scenes of the batch that was just judged, and the danger spaces in them."""
     least, most = REACH_M
-    con.execute(_MOMENTS, {"per_rule": PER_RULE, "least_m": least, "most_m": most})
+    con.execute(_MOMENTS, {"per_rule": SCENES_PER_RULE, "least_m": least, "most_m": most})
     counts = con.execute("SELECT ego_no, count(*) FROM _every_moment GROUP BY ego_no ORDER BY ego_no").fetchall()
     for first, end in _some(counts):
         con.execute(_SOME, [first, end])
@@ -187,7 +187,7 @@ def _some(counts: Sequence[tuple[int, int]]) -> Iterator[tuple[int, int]]:
     """Cut egos, given with their numbers of moments, into runs [first, end) of at most `AT_ONCE` moments or one ego."""
     first, n = 1, 0
     for ego, moments in counts:
-        if n and n + moments > AT_ONCE:
+        if n and n + moments > SCENES_AT_ONCE:
             yield first, ego
             first, n = ego, 0
         n += moments
@@ -201,7 +201,7 @@ def _rings(edges: pa.Table) -> pa.Table:
     sides: list[NDArray[np.object_]] = []
     for side in ("l", "r"):
         points = np.column_stack([edges[f"{side}x_m"], edges[f"{side}y_m"]])
-        lines = np.asarray(shapely.simplify(shapely.linestrings(points, indices=ring), TRUE_TO_M))
+        lines = np.asarray(shapely.simplify(shapely.linestrings(points, indices=ring), SIMPLIFY_TOLERANCE_M))
         sides.append(lines if side == "l" else np.asarray(shapely.reverse(lines)))
     points, index = shapely.get_coordinates(np.column_stack(sides).ravel(), return_index=True)
     x, y = np.round(points, 2).T
