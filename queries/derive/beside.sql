@@ -7,7 +7,7 @@ pass_between_steps AS (
     FROM neighbour n
     JOIN clock c USING (drive_id, ego_id)
     JOIN neighbour m ON m.drive_id = n.drive_id AND m.ego_id = n.ego_id AND m.object_id = n.object_id AND m.k = n.k + 1 AND m.seg = n.seg AND m.chain_id = n.chain_id
-    WHERE greatest(n.gap_ahead_m, n.gap_behind_m) > 0 AND greatest(n.gap_ahead_m, n.gap_behind_m) < (coalesce(n.ego_speed_mps, fast_mps()) + coalesce(n.speed_mps, fast_mps())) * c.max_gap_ns / 1e9
+    WHERE greatest(n.gap_ahead_m, n.gap_behind_m) > 0 AND greatest(n.gap_ahead_m, n.gap_behind_m) < (coalesce(n.ego_speed_mps, unknown_speed_mps()) + coalesce(n.speed_mps, unknown_speed_mps())) * c.max_gap_ns / 1e9
         AND (n.gap_ahead_m > 0 AND m.gap_behind_m > 0 OR n.gap_behind_m > 0 AND m.gap_ahead_m > 0)
 ),
 beside_object AS (
@@ -52,13 +52,14 @@ object_on_cycle_lane AS (
     JOIN cycle_lane y ON y.environment_id = g.environment_id AND y.lanelet_id = o.lanelet_id
     GROUP BY ALL
 ),
--- The lanelets beside a drivable lane with no kerb or verge between: people ride there, too. A border may be a kerb, and nobody drives over
--- restricted ground: for the lanelets behind these two it is not known whether they belong to the road.
-strip AS (
+-- The drivable lanelets, and the lanelets beside them with no kerb or verge between: people ride there, too. A border may be a kerb, and
+-- nobody drives over restricted ground. Whether a lanelet beyond a border or beyond restricted ground belongs to the road is not known
+-- (is_certain is false).
+rideable_lanelet AS (
     SELECT environment_id, lanelet_id, lane_type, true AS is_certain FROM lanelet WHERE drivable
     UNION
     SELECT n.environment_id, n.lanelet_id, n.lane_type, r.is_certain AND r.lane_type NOT IN ('border', 'restricted')
-    FROM strip r
+    FROM rideable_lanelet r
     JOIN lanelet n ON n.environment_id = r.environment_id AND (n.left_id = r.lanelet_id OR n.right_id = r.lanelet_id) AND NOT n.drivable
         AND n.lane_type IN ('shoulder', 'stop', 'border', 'parking', 'restricted', 'biking')
     ANTI JOIN lane_boundary b ON b.environment_id = n.environment_id AND b.lanelet_id = n.lanelet_id AND b.marking IN ('curb', 'grass')
@@ -69,7 +70,7 @@ on_strip AS (
     FROM beside_object n
     JOIN data_log g ON g.drive_id = n.drive_id
     JOIN lane_occupancy o ON o.drive_id = n.drive_id AND o.actor_id = n.object_id AND o.t_ns = n.t_ns AND NOT o.drivable
-    JOIN strip y ON y.environment_id = g.environment_id AND y.lanelet_id = o.lanelet_id
+    JOIN rideable_lanelet y ON y.environment_id = g.environment_id AND y.lanelet_id = o.lanelet_id
     GROUP BY ALL
 ),
 object_on_lane AS (
@@ -79,7 +80,7 @@ object_on_lane AS (
     WHERE o.drivable
 ),
 -- Actors that may be beside the ego, but whose position on the corridor is not known.
-doubt AS (
+possibly_beside AS (
     SELECT drive_id, ego_id, t_ns, object_id, actor_class FROM hidden WHERE least_m < may_be_beside_m()
     UNION
     SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class
@@ -105,4 +106,4 @@ LEFT JOIN object_on_lane o USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN object_on_cycle_lane y USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN on_strip z USING (drive_id, ego_id, t_ns, object_id)
 UNION ALL BY NAME
-SELECT drive_id, ego_id, t_ns, object_id, actor_class FROM doubt
+SELECT drive_id, ego_id, t_ns, object_id, actor_class FROM possibly_beside

@@ -13,12 +13,12 @@ near_pair AS (
     SELECT p.drive_id, p.ego_id, p.object_id, t.t_before_ns, t.t_ns, t.t_next_ns, t.max_gap_ns
     FROM (
         SELECT p.* FROM pair p JOIN clock c USING (drive_id, ego_id)
-        WHERE p.clearance_m <= c.max_gap_ns / 1e9 * (fast_mps() + coalesce(p.speed_mps, fast_mps())) / 2 + swerve_mps2() * (c.max_gap_ns / 1e9) ** 2
+        WHERE p.clearance_m <= c.max_gap_ns / 1e9 * (unknown_speed_mps() + coalesce(p.speed_mps, unknown_speed_mps())) / 2 + swerve_mps2() * (c.max_gap_ns / 1e9) ** 2
     ) p
     JOIN ego_step t USING (drive_id, ego_id, t_ns)
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     CROSS JOIN LATERAL (SELECT greatest(coalesce(t.t_next_ns - t.t_ns, 0), coalesce(t.t_ns - t.t_before_ns, 0)) / 1e9 AS dt_s) d
-    WHERE p.clearance_m <= dt_s * (coalesce(e.speed_mps, fast_mps()) + coalesce(p.speed_mps, fast_mps())) / 2 + swerve_mps2() * dt_s ** 2
+    WHERE p.clearance_m <= dt_s * (coalesce(e.speed_mps, unknown_speed_mps()) + coalesce(p.speed_mps, unknown_speed_mps())) / 2 + swerve_mps2() * dt_s ** 2
 ),
 step_interval AS (
     SELECT drive_id, ego_id, object_id, t_ns, t_next_ns FROM near_pair WHERE t_next_ns - t_ns <= max_gap_ns

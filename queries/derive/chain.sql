@@ -28,7 +28,7 @@ driven_link AS (
     JOIN lane_link l ON l.environment_id = a.environment_id AND l.from_id = a.lanelet_id
     JOIN visited_lanelet b ON b.drive_id = a.drive_id AND b.ego_id = a.ego_id AND b.lanelet_id = l.to_id
 ),
--- A link into a junction is known, too, if the ego drove through the junction beside the connecting lanelet, as a driver does that cuts the
+-- A link into a junction is known, too, if the ego drove through the junction beside the connecting lanelet, as a driver does who cuts the
 -- corner.
 corner_cut AS (
     SELECT a.drive_id, a.ego_id, a.lanelet_id, {'beside': true, 'abs_turn_rad': abs(l.turn_rad), 'id': l.to_id} AS next
@@ -47,12 +47,12 @@ corner_cut AS (
 driven_next AS (
     SELECT drive_id, ego_id, lanelet_id, min(next).id AS next_id FROM (FROM driven_link UNION ALL FROM corner_cut) GROUP BY drive_id, ego_id, lanelet_id
 ),
-ahead AS (
+lanelet_ahead AS (
     SELECT v.drive_id, v.ego_id, v.v, 0 AS hop, l.environment_id, v.lanelet_id, 0.0::DOUBLE AS beyond_m
     FROM visit v JOIN data_log l USING (drive_id)
     UNION ALL
     SELECT a.drive_id, a.ego_id, a.v, a.hop + 1, a.environment_id, n.lanelet_id, a.beyond_m + n.length_m
-    FROM ahead a
+    FROM lanelet_ahead a
     LEFT JOIN driven_next w ON w.drive_id = a.drive_id AND w.ego_id = a.ego_id AND w.lanelet_id = a.lanelet_id
     JOIN lane_next s ON s.environment_id = a.environment_id AND s.lanelet_id = a.lanelet_id
     JOIN lanelet n ON n.environment_id = a.environment_id AND n.lanelet_id = coalesce(w.next_id, s.ahead_id)
@@ -63,7 +63,7 @@ continuation AS (
     SELECT v.drive_id, v.ego_id, v.v, min(a.hop) AS hop
     FROM visit v
     LEFT JOIN visit w ON w.drive_id = v.drive_id AND w.ego_id = v.ego_id AND w.v = v.v + 1
-    LEFT JOIN ahead a ON a.drive_id = v.drive_id AND a.ego_id = v.ego_id AND a.v = v.v AND a.lanelet_id = w.lanelet_id AND a.hop > 0
+    LEFT JOIN lanelet_ahead a ON a.drive_id = v.drive_id AND a.ego_id = v.ego_id AND a.v = v.v AND a.lanelet_id = w.lanelet_id AND a.hop > 0
     GROUP BY ALL
 ),
 chain_visit AS (
@@ -73,23 +73,23 @@ chain_visit AS (
     FROM continuation
 ),
 first_visit AS (SELECT drive_id, ego_id, chain_id, min(v) AS v FROM chain_visit GROUP BY ALL),
-behind AS (
+lanelet_behind AS (
     SELECT f.drive_id, f.ego_id, f.chain_id, 0 AS hop, l.environment_id, v.lanelet_id, 0.0::DOUBLE AS before_m
     FROM first_visit f JOIN visit v USING (drive_id, ego_id, v) JOIN data_log l USING (drive_id)
     UNION ALL
     SELECT b.drive_id, b.ego_id, b.chain_id, b.hop + 1, b.environment_id, n.lanelet_id, b.before_m + n.length_m
-    FROM behind b
+    FROM lanelet_behind b
     JOIN lane_next s ON s.environment_id = b.environment_id AND s.lanelet_id = b.lanelet_id
     JOIN lanelet n ON n.environment_id = b.environment_id AND n.lanelet_id = s.behind_id
     WHERE b.before_m < corridor_behind_m() AND b.hop < 200
 ),
 -- The lanelets of each chain in order: those behind the first visit, then those of each visit and ahead of it.
 link AS (
-    SELECT drive_id, ego_id, chain_id, -1 AS v, -hop AS hop, environment_id, lanelet_id FROM behind WHERE hop > 0
+    SELECT drive_id, ego_id, chain_id, -1 AS v, -hop AS hop, environment_id, lanelet_id FROM lanelet_behind WHERE hop > 0
     UNION ALL
     SELECT g.drive_id, g.ego_id, g.chain_id, g.v, a.hop, a.environment_id, a.lanelet_id
     FROM chain_visit g
-    JOIN ahead a USING (drive_id, ego_id, v)
+    JOIN lanelet_ahead a USING (drive_id, ego_id, v)
     WHERE g.hop IS NULL OR a.hop < g.hop
 ),
 chain_link AS (

@@ -1,8 +1,8 @@
 -- Moments at which two boxes cover the same ground, at an angle and at most 10 s apart. The ground that two actors share does not depend on
 -- which of them is the ego.
 WITH
--- Pairs of visits. A visit is an actor in one cell, within 10 s and 5 degrees of heading: see meeting. The first visit is that of the actor
--- with the lesser id, so that a pair that two egos share is examined only once.
+-- Pairs of visits. A visit groups the samples of one actor that lie in one grid cell, one 10 s slot and one 5-degree heading step (see
+-- meeting). The first visit is that of the actor with the lesser id, so that a pair that two egos share is examined only once.
 visit_pair AS (
     SELECT drive_id, actor_id AS a_id, cell AS a_cell, slot AS a_slot, heading AS a_heading, object_id AS b_id, object_cell AS b_cell, object_slot AS b_slot, object_heading AS b_heading
     FROM meeting
@@ -26,8 +26,8 @@ angled_pair AS MATERIALIZED (
         AND boxes_meet(b.x_m - a.x_m, b.y_m - a.y_m, a.cos_yaw, a.sin_yaw, b.cos_yaw, b.sin_yaw, a.half_length_m, a.half_width_m, b.half_length_m, b.half_width_m)
 ),
 -- In a tight bend even a follower's box lies at an angle to the leader's box of another moment. What counts is the angle to the other's way
--- where that comes nearest. An actor moves along the other's way if some box of the other that has the actor's direction is nearer than all
--- its boxes at an angle.
+-- at the point of that way that is nearest to the actor. An actor moves along the other's way if some box of the other that has the actor's
+-- direction is nearer than all its boxes at an angle.
 angled_moment AS MATERIALIZED (
     SELECT t.other_id, t.squared_distance_m2, b.*
     FROM (
@@ -60,7 +60,7 @@ crossing_pair AS MATERIALIZED (
     LEFT JOIN along_moment y ON y.drive_id = a.drive_id AND y.own_id = a.b_id AND y.other_id = a.a_id AND y.t_ns = a.b_t_ns
     WHERE x.own_id IS NULL OR y.own_id IS NULL
 ),
--- The same from the view of each ego. A trailer that the ego draws counts as the ego.
+-- The same from the view of each ego. A trailer that the ego tows counts as the ego.
 ego_meeting AS MATERIALIZED (SELECT DISTINCT drive_id, ego_id, actor_id, object_id FROM meeting)
 SELECT p.drive_id, p.ego_id, p.actor_id, p.object_id, p.t_ego_ns, p.t_object_ns
 FROM (

@@ -2,8 +2,8 @@
 -- which of them is the ego.
 WITH
 drive_clock AS (SELECT drive_id, max(period_ns) AS period_ns, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id),
--- The moments of the actor with the lesser id (u) are divided into stretches without a pause, and within each stretch the moments of the
--- other actor (v) as well.
+-- u is the actor with the lesser id, v is the other one. The moments of u are divided into stretches without a pause; within each stretch
+-- of u, the moments of v are divided in the same way.
 uv_moment AS MATERIALIZED (
     SELECT
         drive_id, ego_id, object_id, actor_id, ego_id < object_id AS ego_is_u, CASE WHEN ego_is_u THEN t_ego_ns ELSE t_object_ns END AS u_ns, CASE WHEN ego_is_u THEN t_object_ns ELSE t_ego_ns END AS v_ns

@@ -5,7 +5,7 @@ WITH overtaking_lane AS (
     JOIN lane_beside o ON o.environment_id = e.environment_id AND o.drivable AND o.side = overtaking_side(e.handedness)
     GROUP BY ALL
 ),
-beside AS (
+lanelet_with_overtaking_lane AS (
     SELECT
         c.drive_id, c.ego_id, c.chain_id, c.seq, c.lanelet_id, c.s_start_m, c.length_m, n.junction_id,
         -- A side that comes only from the default is a guess, and nothing may rely on it.
@@ -22,7 +22,7 @@ corridor_lanelet AS (
         *,
         last_value(lane IGNORE NULLS) OVER (PARTITION BY drive_id, ego_id, chain_id ORDER BY seq ROWS UNBOUNDED PRECEDING) AS lane_before,
         first_value(lane IGNORE NULLS) OVER (PARTITION BY drive_id, ego_id, chain_id ORDER BY seq ROWS BETWEEN CURRENT ROW AND UNBOUNDED FOLLOWING) AS lane_after
-    FROM beside
+    FROM lanelet_with_overtaking_lane
 )
 SELECT
     drive_id, ego_id, chain_id, seq, lanelet_id, s_start_m, length_m, side,

@@ -1,5 +1,5 @@
--- Actors on a pedestrian crossing that may be on foot, for each half of it: stretches of samples without a hole. An actor of class object,
--- which stands on the crossing in the whole log, may be a person who waits.
+-- Actors that may be on foot, on each half of a pedestrian crossing: one row per stretch of samples without a hole. An actor of class
+-- object, which stands on the crossing in the whole log, may be a person who waits.
 WITH walker AS (
     SELECT a.drive_id, a.actor_id, c.max_gap_ns
     FROM road_user a

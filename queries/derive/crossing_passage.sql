@@ -103,7 +103,7 @@ coming_occupant AS (
     SELECT drive_id, ego_id, mark_id, t_ns, min(object_id) FILTER (comes AND actor_class = 'pedestrian') AS coming_id,
         bool_and(comes IS NOT NULL AND NOT (comes AND actor_class IS DISTINCT FROM 'pedestrian')) AS known
     FROM (
-        SELECT *, CASE WHEN t_next_ns - t_to_ns <= straight_on_ns() THEN true WHEN is_reached THEN NULL WHEN came_from_ego_half OR t_to_ns < t_seen_until_ns THEN false END AS comes FROM other_half_occupant
+        SELECT *, CASE WHEN t_next_ns - t_to_ns <= half_to_half_ns() THEN true WHEN is_reached THEN NULL WHEN came_from_ego_half OR t_to_ns < t_seen_until_ns THEN false END AS comes FROM other_half_occupant
     )
     GROUP BY drive_id, ego_id, mark_id, t_ns
 ),
@@ -125,7 +125,7 @@ crossing_end AS (
 ),
 person_sample AS (
     SELECT v.drive_id, v.ego_id, v.mark_id, v.t_ns, v.t_in_ns, v.max_gap_ns, s.actor_id, s.actor_class, s.t_ns AS t_at_ns, s.speed_mps <= standing_mps() AS stands,
-        min(end_distance_m(s.x_m, s.y_m, k.x0, k.y0, k.tx, k.ty, k.s_start_m - k.s_m, k.s_end_m - k.s_m)) AS off_m
+        min(piece_distance_m(s.x_m, s.y_m, k.x0, k.y0, k.tx, k.ty, k.s_start_m - k.s_m, k.s_end_m - k.s_m)) AS off_m
     FROM passage_context v
     JOIN state_dynamics s ON s.drive_id = v.drive_id AND s.actor_id <> v.ego_id AND s.t_ns >= v.t_watch_from_ns AND s.t_ns <= v.t_in_ns
     JOIN crossing_end k ON k.environment_id = v.environment_id AND k.crossing_id = v.mark_id AND k.along_road = v.along_road
@@ -155,7 +155,7 @@ unplaced_person AS (
         ON o.drive_id = v.drive_id AND o.ego_id = v.ego_id AND o.t_ns >= v.t_watch_from_ns AND o.t_ns <= v.t_watch_to_ns
     GROUP BY v.drive_id, v.ego_id, v.mark_id, v.t_ns, o.object_id, o.actor_class, v.x_m, v.y_m, v.t_watch_from_ns, v.t_watch_to_ns
 ),
-near_unplaced_person AS (
+passage_near_unplaced_person AS (
     SELECT b.drive_id, b.ego_id, b.mark_id, b.t_ns
     FROM unplaced_person b
     LEFT JOIN (
@@ -175,7 +175,7 @@ track_range AS (
     WHERE may_walk(s.actor_class) AND s.x_m IS NOT NULL AND s.y_m IS NOT NULL
     GROUP BY s.drive_id, s.actor_id
 ),
-broken_track AS (
+passage_near_broken_track AS (
     SELECT v.drive_id, v.ego_id, v.mark_id, v.t_ns
     FROM passage_context v
     JOIN clock c USING (drive_id, ego_id)
@@ -196,8 +196,8 @@ passage_with_hole AS (
     HAVING min(st.seg) < max(st.seg)
 ),
 unknown_passage AS (
-    SELECT drive_id, ego_id, mark_id, t_ns FROM near_unplaced_person
-    UNION SELECT drive_id, ego_id, mark_id, t_ns FROM broken_track
+    SELECT drive_id, ego_id, mark_id, t_ns FROM passage_near_unplaced_person
+    UNION SELECT drive_id, ego_id, mark_id, t_ns FROM passage_near_broken_track
     UNION SELECT drive_id, ego_id, mark_id, t_ns FROM passage_with_hole
     UNION SELECT drive_id, ego_id, mark_id, t_ns FROM passage_occupancy WHERE has_unclassed
     UNION SELECT drive_id, ego_id, mark_id, t_ns FROM passage_context WHERE t_in_ns IS NULL OR t_out_ns IS NULL OR t_start_ns > t_watch_from_ns OR sensor_range_m < 20

@@ -55,10 +55,10 @@ cut_in_sample AS (
             OVER (PARTITION BY drive_id, ego_id, object_id, chain_id, run ORDER BY k ROWS UNBOUNDED PRECEDING) AS n
     FROM sample_with_last_clear
 ),
-in_place_step AS (
+centre_in_lane_step AS (
     SELECT drive_id, ego_id, object_id, chain_id, run, n, min(t_ns) AS t_ns FROM cut_in_sample WHERE is_centre_in GROUP BY ALL
 ),
--- How far ahead (m) the lane is free of vehicles that may be there unseen, and of seen actors that may not be vehicles.
+-- The least distance ahead (m) along the lane of an unseen vehicle that may be there, or of a seen actor that may not be a vehicle.
 free_lane AS (
     SELECT drive_id, ego_id, t_ns, min(m) AS m
     FROM (
@@ -90,7 +90,7 @@ seen_cut_in AS (
         c.drive_id, c.ego_id, c.object_id, c.t_ns, coalesce(c.joined, false) AS begin_seen, CASE WHEN c.last_clear.d_m > 0 THEN 'left' ELSE 'right' END AS side,
         c.gap_m, c.ego_speed_mps, c.speed_mps, p.t_ns AS in_place_ns
     FROM cut_in_sample c
-    LEFT JOIN in_place_step p USING (drive_id, ego_id, object_id, chain_id, run, n)
+    LEFT JOIN centre_in_lane_step p USING (drive_id, ego_id, object_id, chain_id, run, n)
     WHERE c.begins
 ),
 -- The vehicle is over the line from the moment at which its front gets ahead, and the ego stays in one lane all that time.

@@ -24,7 +24,7 @@ point_candidate AS (
     FROM box_point a
     JOIN corridor_cell c ON c.drive_id = a.drive_id AND c.ego_id = a.ego_id AND c.cell = corridor_cell_of(a.x_m, a.y_m)
 ),
-beside AS (
+point_on_strip AS (
     SELECT
         drive_id, ego_id, t_ns, p, lanelet_id, s0_m + u * len_m AS lane_s_m, d_m, hw0_m + u * (hw1_m - hw0_m) AS half_width_m,
         atan2(ty0 + u * (ty1 - ty0), tx0 + u * (tx1 - tx0)) AS heading_rad
@@ -37,7 +37,7 @@ beside AS (
 ),
 point_place AS (
     SELECT b.* EXCLUDE (lanelet_id, lane_s_m), c.chain_id, c.s_start_m + b.lane_s_m AS s_m, c.over_width_m, c.over_against, c.side
-    FROM beside b JOIN corridor c USING (drive_id, ego_id, lanelet_id)
+    FROM point_on_strip b JOIN corridor c USING (drive_id, ego_id, lanelet_id)
 ),
 -- The certain stations of the ego: the lanelet that it is on is part of the chain.
 certain_station AS (

@@ -1,5 +1,5 @@
--- How far the outline of the ego (corners and middles of the sides), or of a trailer that it draws, is inside footways. A point that is
--- also on a drivable lanelet is on the carriageway: in junctions the footways of connecting roads lie across other roads.
+-- How far the outline of the ego (corners and middles of the sides), or of a trailer that it tows, is inside footways. A point that is also
+-- on a drivable lanelet is on the carriageway: in junctions the footways of connecting roads lie across other roads.
 WITH ego_box AS (
     SELECT st.drive_id, st.ego_id, st.t_ns, o.actor_id, s.x_m, s.y_m, s.yaw_rad, s.length_m / 2 AS half_box_length_m, s.width_m / 2 AS half_box_width_m, g.environment_id
     FROM step st

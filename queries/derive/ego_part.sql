@@ -1,4 +1,4 @@
--- Actors that are the ego itself: the trailer that it draws, and another id under which the log has the ego before or after its own id.
+-- Actors that are the ego itself: the trailer that it tows, and another id under which the log has the ego before or after its own id.
 WITH track AS (
     SELECT drive_id, actor_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns FROM state_dynamics GROUP BY drive_id, actor_id
 ),

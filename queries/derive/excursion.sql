@@ -1,6 +1,6 @@
 -- Stretches in which a corner of the ego is over a boundary of its running lane, on either side. An ego that enters the lanelets of a
 -- junction crosses no boundary: the chain leads through them.
-WITH side AS (
+WITH side_sample AS (
     SELECT
         c.drive_id, c.ego_id, c.chain_id, st.k, st.seg, st.t_ns, st.dt_ns, c.d_m, c.half_width_m, c.over_width_m, c.over_against, v.side,
         c.side = v.side AS overtaking,
@@ -18,7 +18,7 @@ sample AS (
         out_m > over_boundary_m() AS is_over,
         lag({'k': k, 'seg': seg, 't_ns': t_ns, 'is_over': out_m > over_boundary_m(), 'lateral_m': lateral_m}) OVER w AS before,
         lead({'k': k, 'seg': seg, 't_ns': t_ns}) OVER w AS after
-    FROM side
+    FROM side_sample
     WINDOW w AS (PARTITION BY drive_id, ego_id, chain_id, side ORDER BY k)
 ),
 over_sample AS (

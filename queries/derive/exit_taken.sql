@@ -1,5 +1,5 @@
 -- Steps at which the ego crosses into an exit lane, and the last exit sign before that.
-WITH crossing AS (
+WITH boundary_crossing AS (
     SELECT
         x.drive_id, x.ego_id, x.chain_id, x.t0_ns, x.side, g.environment_id, e.front_s_m,
         min({'t_ns': a.t_ns, 'lanelet_id': a.lanelet_id}).lanelet_id AS to_id
@@ -13,7 +13,7 @@ WITH crossing AS (
 ),
 exit_entry AS (
     SELECT c.*, CASE c.side WHEN 1 THEN 'left' ELSE 'right' END AS side_name
-    FROM crossing c
+    FROM boundary_crossing c
     JOIN exit_lane l ON l.environment_id = c.environment_id AND l.lanelet_id = c.to_id
     JOIN ego_state e ON e.drive_id = c.drive_id AND e.ego_id = c.ego_id AND e.t_ns = c.t0_ns
     -- An ego that is already on an exit lane does not cross into one.

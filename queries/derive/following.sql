@@ -37,7 +37,7 @@ SELECT drive_id, ego_id, t_ns, object_id, gap_m, ego_speed_mps, speed_mps, joine
 FROM (
     SELECT *, row_number() OVER (
         PARTITION BY drive_id, ego_id, t_ns
-        -- No vehicle is nearer than the lead. Another vehicle counts as followed only if for no vehicle it is unknown whether the ego
+        -- No vehicle is nearer than the lead. Another vehicle counts as followed only if, for every vehicle, it is known whether the ego
         -- follows it.
         ORDER BY CASE WHEN follows AND nearest THEN 0 WHEN follows IS NULL THEN 1 WHEN follows THEN 2 ELSE 3 END, nearest DESC, gap_m, object_id
     ) AS rank_no

@@ -4,7 +4,7 @@
 WITH
 -- First search in a large table: one hard deceleration between two samples is enough to look closer.
 hard_braking AS MATERIALIZED (
-    SELECT drive_id, ego_id, object_id, t_ns FROM pair WHERE accel_mps2 < -least_force_mps2() AND distance_m < forced_near_m()
+    SELECT drive_id, ego_id, object_id, t_ns FROM pair WHERE accel_mps2 < -least_braking_mps2() AND distance_m < forced_near_m()
 ),
 -- The object stands, head on to the ego, while the ego is out in the object's lane. It may have waited for the ego, however gently it
 -- braked before.
@@ -40,7 +40,7 @@ slowing_sample AS MATERIALIZED (
         AND (earlier.speed_mps - speed_mps) / ((t_ns - earlier.t_ns) / 1e9) > gentle_mps2()
 ),
 braking_sample AS (
-    SELECT e.*, false AS is_gentle FROM slowing_sample e WHERE e.decel_mps2 > least_force_mps2()
+    SELECT e.*, false AS is_gentle FROM slowing_sample e WHERE e.decel_mps2 > least_braking_mps2()
     UNION ALL
     SELECT e.*, true
     FROM slowing_sample e
@@ -51,7 +51,7 @@ braking_stretch AS (
         drive_id, object_id, is_gentle, min(earlier).t_ns AS t_from_ns, min(earlier).speed_mps AS speed_mps, max(t_ns) AS t_to_ns,
         -- With this deceleration the object would have stopped within this distance. It did not brake for anything far beyond it.
         min(earlier).speed_mps ** 2 * (max(t_ns) - min(earlier).t_ns) / 1e9 / (2 * (min(earlier).speed_mps - max({'t_ns': t_ns, 'speed_mps': speed_mps}).speed_mps))
-            + forced_beyond_m() AS reach_m
+            + stopping_before_m() AS reach_m
     FROM (
         SELECT *, sum((t_ns - previous_ns > 1_000_000_000)::INTEGER) OVER (PARTITION BY drive_id, object_id, is_gentle ORDER BY t_ns) AS n
         FROM (SELECT *, lag(t_ns, 1, t_ns) OVER (PARTITION BY drive_id, object_id, is_gentle ORDER BY t_ns) AS previous_ns FROM braking_sample)
@@ -205,7 +205,7 @@ braking_for_ego AS MATERIALIZED (
 restart AS (
     SELECT l.drive_id, l.ego_id, l.object_id, l.t_from_ns, min(s.t_ns) FILTER (s.speed_mps > moves_mps()) AS t_restart_ns, max(s.t_ns) AS t_last_seen_ns
     FROM braking_for_ego l
-    JOIN state_dynamics s ON s.drive_id = l.drive_id AND s.actor_id = l.object_id AND s.t_ns >= l.t_stop_ns AND s.t_ns <= l.t_ego_out_ns + goes_on_ns()
+    JOIN state_dynamics s ON s.drive_id = l.drive_id AND s.actor_id = l.object_id AND s.t_ns >= l.t_stop_ns AND s.t_ns <= l.t_ego_out_ns + drives_on_ns()
     WHERE l.t_stop_ns <= l.t_ego_out_ns AND s.speed_mps IS NOT NULL
     GROUP BY ALL
 ),
@@ -284,7 +284,7 @@ SELECT
     CASE
         WHEN n.t_from_ns IS NULL THEN false
         WHEN n.t_restart_ns >= l.t_ego_out_ns - waits_ns() THEN true
-        WHEN n.t_restart_ns IS NULL AND n.t_last_seen_ns >= l.t_ego_out_ns + goes_on_ns() - c.max_gap_ns THEN false
+        WHEN n.t_restart_ns IS NULL AND n.t_last_seen_ns >= l.t_ego_out_ns + drives_on_ns() - c.max_gap_ns THEN false
     END AS waited
 FROM braking_for_ego l
 JOIN clock c USING (drive_id, ego_id)

@@ -1,8 +1,8 @@
 -- Every actor that is present, or may be, and has no position on the corridor, with the least distance that it can have. After its last and
 -- before its next sighting it comes nearer at 60 m/s at most, and only as its tyres allow. An actor that drives along the road, the ego's
 -- way or against it, neither turns round nor reverses. If the log is taken to record every actor in plain view (data_log.in_sight), an
--- actor that is not recorded for a while is not in plain view. An actor beside all lanes is not listed if the corridor reaches further than
--- the actor is away and has no hole there: the actor is certainly off the road.
+-- actor that is not recorded for a while is not in plain view. An actor off all lanes is not listed if the corridor is longer than the
+-- actor's distance, ahead and behind, and has no hole there: the actor is certainly off the road.
 WITH pair_without_position AS (
     SELECT drive_id, ego_id, t_ns, object_id, actor_class, off_level FROM pair WHERE x_m IS NULL OR y_m IS NULL
 ),
@@ -53,8 +53,8 @@ step_with_sightings AS (
             AND (b.t_ns IS NULL OR m.t_ns > tb.plain_ns) AND (a.t_ns IS NULL OR m.t_ns < ta.plain_ns), false
         ) AS late,
         CASE WHEN b.along.road = r.road THEN b.along END AS last_place, CASE WHEN a.along.road = r.road THEN a.along END AS next_place,
-        CASE WHEN b.along.chain_id = r.chain_id THEN 0.0 ELSE lanes_apart_m() END AS last_error_m,
-        CASE WHEN a.along.chain_id = r.chain_id THEN 0.0 ELSE lanes_apart_m() END AS next_error_m,
+        CASE WHEN b.along.chain_id = r.chain_id THEN 0.0 ELSE lane_station_error_m() END AS last_error_m,
+        CASE WHEN a.along.chain_id = r.chain_id THEN 0.0 ELSE lane_station_error_m() END AS next_error_m,
         b.distance_m - unseen_closing_mps() * (m.t_ns - b.t_ns) / 1e9 AS least_since_m, a.distance_m - unseen_closing_mps() * (a.t_ns - m.t_ns) / 1e9 AS least_until_m,
         (m.t_ns - b.t_ns) / 1e9 AS since_s, (a.t_ns - m.t_ns) / 1e9 AS until_s,
         b.x_m + b.vx_mps * since_s - e.x_m AS last_x_m, b.y_m + b.vy_mps * since_s - e.y_m AS last_y_m, a.x_m - a.vx_mps * until_s - e.x_m AS next_x_m, a.y_m - a.vy_mps * until_s - e.y_m AS next_y_m
@@ -92,8 +92,8 @@ distance_bound AS (
         coalesce(CASE WHEN t_before_ns IS NOT NULL THEN last_place.direction = 1 ELSE true END AND CASE WHEN t_after_ns IS NOT NULL THEN next_place.direction = 1 ELSE true END AND coalesce(t_before_ns, t_after_ns) IS NOT NULL, false) AS along
     FROM station_range
 ),
--- While everything around the ego is in plain view, nobody drives past the ego unseen. An object that was ahead or behind before stays so
--- all that time, and an object that will be ahead or behind is so already.
+-- While everything around the ego is in plain view, nobody drives past the ego unseen. An object that is ahead (or behind) at the beginning
+-- of such a time stays so until its end, and an object that is ahead (or behind) at its end was so from its beginning.
 view_step AS (
     SELECT
         b.*, g.around_m, g.lane_m AS lane_in_view_m,

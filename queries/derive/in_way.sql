@@ -1,7 +1,7 @@
 -- The nearest actor in the ego's way at each step. It may be a person, an animal, a thing or a vehicle: each is a reason to brake or to
 -- stop. The way is the running lane and the strip that the ego's box takes, with half a metre on both sides. An actor that comes across is
 -- in the way if its velocity (not its heading) brings it into the strip within some seconds, now and in the moments before. A single
--- velocity is no proof, because recorded velocities tremble: the actor may be in the way.
+-- velocity is no proof, because recorded velocities jitter: the actor may be in the way.
 WITH ahead AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class,
@@ -20,7 +20,7 @@ WITH ahead AS (
     LEFT JOIN state_dynamics s ON s.drive_id = p.drive_id AND s.actor_id = p.object_id AND s.t_ns = p.t_ns
     WHERE p.s_m > e.s_m AND p.s_m - e.s_m < way_reach_m()
 ),
-object_status AS (
+in_way_check AS (
     SELECT
         *,
         across_m < way_beside_m() OR in_lane OR across_m <= enters_s() * least(towards_mps, least_towards_mps) AND towards_before_mps IS NOT NULL AS in_way,
@@ -28,7 +28,7 @@ object_status AS (
         across_m < way_beside_m() + unknown_half_m OR across_m <= enters_s() * towards_mps OR across_m < may_step_m() AND (actor_class IS NULL OR NOT may_be_vehicle(actor_class) OR towards_mps IS NULL) AS may_be_in_way,
         need_mps2(gap_m, ego_speed_mps, along_mps) AS need_mps2
     FROM (
-        SELECT *, least(min(towards_mps) OVER (w RANGE BETWEEN comes_ns() PRECEDING AND CURRENT ROW), towards_before_mps) AS least_towards_mps
+        SELECT *, least(min(towards_mps) OVER (w RANGE BETWEEN coming_for_ns() PRECEDING AND CURRENT ROW), towards_before_mps) AS least_towards_mps
         FROM (SELECT *, lag(towards_mps) OVER w AS towards_before_mps FROM ahead WINDOW w AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns))
         WINDOW w AS (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns)
     )
@@ -39,11 +39,11 @@ nearest_object AS (
         min({'gap_m': gap_m, 'object_id': object_id, 'actor_class': actor_class, 'along_mps': along_mps}) FILTER (in_way) AS nearest,
         max(need_mps2) FILTER (in_way) AS need_mps2,
         bool_or(along_mps IS NULL OR in_way IS DISTINCT FROM true) AS is_doubtful
-    FROM object_status
+    FROM in_way_check
     WHERE in_way OR may_be_in_way
     GROUP BY ALL
 ),
-unseen AS (
+nearest_hidden AS (
     SELECT h.drive_id, h.ego_id, h.t_ns, min(h.lane_m) AS least_m
     FROM hidden h
     LEFT JOIN pair p ON p.drive_id = h.drive_id AND p.ego_id = h.ego_id AND p.t_ns = h.t_ns AND p.object_id = h.object_id
@@ -57,7 +57,7 @@ way_step AS (
             AND coalesce(u.least_m > way_look_m(e.speed_mps), true) AS known
     FROM ego_state e
     LEFT JOIN nearest_object m USING (drive_id, ego_id, t_ns)
-    LEFT JOIN unseen u USING (drive_id, ego_id, t_ns)
+    LEFT JOIN nearest_hidden u USING (drive_id, ego_id, t_ns)
 )
 SELECT
     drive_id, ego_id, t_ns, nearest.object_id AS object_id, nearest.actor_class AS actor_class, nearest.gap_m AS gap_m, nearest.along_mps AS along_mps,

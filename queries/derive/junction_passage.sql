@@ -88,7 +88,7 @@ straightest_exit AS (
     GROUP BY environment_id, junction_id, road_id, along_road
 ),
 -- Both ends of a road may lead to the same junction: they are two branches.
-branch AS (
+branch_count AS (
     SELECT environment_id, junction_id, count(DISTINCT {'road': coalesce(h.of_road_id, r.road_id), 'by_road_end': r.by_road_end <> coalesce(h.turned, false)}) AS n
     FROM (
         SELECT j.environment_id, j.junction_id, o.road_id, o.along_road = -1 AS by_road_end
@@ -107,7 +107,7 @@ branch AS (
     GROUP BY environment_id, junction_id
 ),
 map_with_signals AS (SELECT DISTINCT environment_id FROM traffic_signal WHERE kind IN ('traffic_light', 'stop', 'give_way')),
--- Passages with a map that begins so near before the junction that a signal may stand further back, off the map.
+-- Passages where the map begins so shortly before the junction that a signal may stand outside the map.
 cropped_approach AS (
     SELECT w.drive_id, w.ego_id, w.t_first_ns
     FROM passage_chain w
@@ -139,7 +139,7 @@ passage_detail AS (
     LEFT JOIN map_with_signals g ON g.environment_id = i.environment_id
     LEFT JOIN cropped_approach x ON x.drive_id = i.drive_id AND x.ego_id = i.ego_id AND x.t_first_ns = i.t_first_ns
 ),
-turned AS (
+passage_with_turn AS (
     SELECT
         *,
         CASE
@@ -154,7 +154,7 @@ SELECT
     t.turn, t.turn_rad, s.turn_rad AS straightest_rad,
     CASE WHEN t.known_handedness IS NOT NULL THEN t.turn = 'u_turn' OR t.turn = CASE t.known_handedness WHEN 'lht' THEN 'right' ELSE 'left' END END AS across,
     coalesce(n.n, 0)::INTEGER AS branches, t.control, t.control IN ('stop', 'give_way') AS minor
-FROM turned t
-LEFT JOIN branch n USING (environment_id, junction_id)
+FROM passage_with_turn t
+LEFT JOIN branch_count n USING (environment_id, junction_id)
 LEFT JOIN lanelet f ON f.environment_id = t.environment_id AND f.lanelet_id = t.from_id
 LEFT JOIN straightest_exit s ON s.environment_id = f.environment_id AND s.junction_id = t.junction_id AND s.road_id = f.road_id AND s.along_road = f.along_road

@@ -1,14 +1,15 @@
 -- Vehicles and objects ahead of the ego in its running lane: with their centre in the lane, or partly in the lane and in the ego's way. The
--- table lead has the nearest vehicle of them. For an ego that is out of its lane, an object that is turned towards it and is in its way
--- beside the lane is ahead, too (`outside`).
+-- table lead has the nearest vehicle of them. For an ego that is out of its lane, an object beside the lane that faces the ego and is in
+-- its way is ahead, too (`outside`).
 WITH
--- A vehicle that follows a junction lane of its own across the ego's path crosses that path and is not ahead: see conflict.
-crossing AS (
+-- Actors that follow a lane of a junction. If such an actor comes across the ego's path, it crosses that path and is not ahead: see
+-- conflict.
+actor_on_junction_lane AS (
     SELECT DISTINCT o.drive_id, o.actor_id AS object_id, o.t_ns
     FROM lane_occupancy o
     JOIN data_log g USING (drive_id)
     JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = o.lanelet_id
-    WHERE n.drivable AND n.junction_id IS NOT NULL AND abs(o.heading_diff_rad) < own_way_rad()
+    WHERE n.drivable AND n.junction_id IS NOT NULL AND abs(o.heading_diff_rad) < along_lane_rad()
 ),
 object_ahead AS (
     SELECT
@@ -23,8 +24,8 @@ object_ahead AS (
         ELSE 0.0 END AS soon
     FROM pair p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
-    LEFT JOIN crossing c ON c.drive_id = p.drive_id AND c.object_id = p.object_id AND c.t_ns = p.t_ns
-    WHERE may_be_ahead(p.actor_class, p.d_m - e.d_m, p.lat_half_m + e.lat_half_m) AND p.s_m > e.s_m
+    LEFT JOIN actor_on_junction_lane c ON c.drive_id = p.drive_id AND c.object_id = p.object_id AND c.t_ns = p.t_ns
+    WHERE may_be_vehicle_or_obstacle(p.actor_class, p.d_m - e.d_m, p.lat_half_m + e.lat_half_m) AND p.s_m > e.s_m
         AND (
             in_lane(p.d_m, p.lat_half_m, p.half_width_m)
             OR abs(p.heading_diff_rad) > 2 * pi() / 3 AND abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m

@@ -1,7 +1,7 @@
--- The lanelet beyond each boundary of a drivable lanelet. If the map names no neighbour, it is the lane that is driven beside the boundary,
--- in pieces of at most 10 m. Maps with one road per direction name no neighbour, nor do maps that divide the two directions into different
--- sections, or number their lanes separately. Junctions are left out, because lanes of all directions overlap there. A narrow strip that
--- the map draws as a lane between the two directions is skipped, as the space between two painted lines is.
+-- The lanelet beyond each boundary of a drivable lanelet. If the map names no neighbour, the neighbour is the drivable lane that runs along
+-- the boundary, found for each piece of at most 10 m. Maps with one road per direction name no neighbour, nor do maps that divide the two
+-- directions into different sections, or number their lanes separately. Junctions are left out, because lanes of all directions overlap
+-- there. A narrow strip that the map draws as a lane between the two directions is skipped, as the space between two painted lines is.
 WITH RECURSIVE side AS (
     SELECT n.environment_id, n.lanelet_id, n.length_m, v.side, CASE v.side WHEN 1 THEN n.left_id ELSE n.right_id END AS beside_id,
         CASE v.side WHEN 1 THEN n.left_against ELSE n.right_against END AS against
@@ -10,24 +10,24 @@ WITH RECURSIVE side AS (
     WHERE n.drivable
 ),
 -- The lanelets beyond each boundary, looked up through narrow strips: beside_id is what lies beyond the strips so far, gap_m their width.
-through AS (
+lanelet_beyond AS (
     SELECT environment_id, lanelet_id, side, lanelet_id AS from_id, beside_id, against, 0.0::DOUBLE AS gap_m, NULL::VARCHAR AS strip FROM side WHERE beside_id IS NOT NULL
     UNION ALL
     SELECT
         t.environment_id, t.lanelet_id, t.side, t.beside_id, CASE WHEN b.left_id = t.from_id THEN b.right_id ELSE b.left_id END,
         t.against <> CASE WHEN b.left_id = t.from_id THEN b.right_against ELSE b.left_against END, t.gap_m + b.width_m,
         CASE WHEN t.strip = 'median' OR b.lane_type = 'none' THEN coalesce(t.strip, b.lane_type) ELSE b.lane_type END
-    FROM through t
+    FROM lanelet_beyond t
     JOIN lanelet b ON b.environment_id = t.environment_id AND b.lanelet_id = t.beside_id AND NOT b.drivable
         AND b.lane_type IN ('median', 'border', 'restricted', 'none') AND t.gap_m + b.width_m <= CASE b.lane_type WHEN 'median' THEN reservation_m() ELSE 2.0 END
 ),
 opposing_lane AS (
     SELECT t.environment_id, t.lanelet_id, t.side, t.beside_id, t.gap_m, t.strip, b.lane_type, b.width_m
-    FROM through t
+    FROM lanelet_beyond t
     JOIN lanelet b ON b.environment_id = t.environment_id AND b.lanelet_id = t.beside_id AND b.drivable
     WHERE t.against AND t.strip <> 'none'
 ),
-named AS (
+named_neighbour AS (
     SELECT s.environment_id, s.lanelet_id, s.side, 0.0::DOUBLE AS s_start_m, s.length_m AS s_end_m, s.beside_id, s.against, 0.0::DOUBLE AS gap_m, NULL::VARCHAR AS strip, b.drivable, b.lane_type, b.width_m
     FROM side s
     -- A lane of type none is no lane, but a strip that some maps draw between the directions.
@@ -44,7 +44,7 @@ boundary_piece AS (
     JOIN side s USING (environment_id, lanelet_id)
     JOIN lane_point z USING (environment_id, lanelet_id, k)
     JOIN lanelet j ON j.environment_id = s.environment_id AND j.lanelet_id = s.lanelet_id AND j.junction_id IS NULL
-    ANTI JOIN named b ON b.environment_id = s.environment_id AND b.lanelet_id = s.lanelet_id AND b.side = s.side
+    ANTI JOIN named_neighbour b ON b.environment_id = s.environment_id AND b.lanelet_id = s.lanelet_id AND b.side = s.side
 ),
 piece_middle AS (
     SELECT environment_id, lanelet_id, side, s0_m + i * len_m / n AS s_start_m, s0_m + (i + 1) * len_m / n AS s_end_m,
@@ -97,7 +97,7 @@ nearest_lane AS (
     GROUP BY ALL
 )
 SELECT environment_id, lanelet_id, CASE side WHEN 1 THEN 'left' ELSE 'right' END AS side, s_start_m, s_end_m, beside_id, against, gap_m, strip, drivable, lane_type, width_m
-FROM named
+FROM named_neighbour
 UNION ALL
 SELECT
     k.environment_id, k.lanelet_id, CASE k.side WHEN 1 THEN 'left' ELSE 'right' END, k.s_start_m, k.s_end_m, k.b.id, k.b.against, greatest(k.b.gap_m, 0.0), NULL, n.drivable, n.lane_type, k.b.width_m

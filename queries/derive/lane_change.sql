@@ -28,7 +28,7 @@ change_end AS (
         AND x.t0_ns <= c.t_ns AND x.t_end_ns >= c.t_ns
     GROUP BY ALL
 ),
-whole_course AS (
+crossed_change AS (
     SELECT
         c.drive_id, c.ego_id, c.from_chain_id, c.to_chain_id, c.side,
         -- If the ego was never wholly in the lane that it leaves, the change begins at the crossing into that lane.
@@ -64,7 +64,7 @@ change AS MATERIALIZED (
         e.speed_mps AS ego_speed_mps, e.s_m, e.front_s_m, e.rear_s_m, st.seg,
         -- Whether the new lane is already the running lane of that step. Otherwise it is beside the lane that is left.
         coalesce(e.chain_id = w.to_chain_id, false) AS is_in_new_lane
-    FROM (SELECT * FROM whole_course UNION ALL BY NAME SELECT * FROM unfinished_change) w
+    FROM (SELECT * FROM crossed_change UNION ALL BY NAME SELECT * FROM unfinished_change) w
     JOIN data_log g ON g.drive_id = w.drive_id
     JOIN ego_state e ON e.drive_id = w.drive_id AND e.ego_id = w.ego_id AND e.t_ns = w.t_start_ns
     JOIN step st ON st.drive_id = w.drive_id AND st.ego_id = w.ego_id AND st.t_ns = w.t_start_ns

@@ -6,7 +6,7 @@ WITH manoeuvre_excursion AS (
     JOIN ego_state e ON e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns = x.t0_ns AND e.chain_id = x.chain_id
     WHERE x.centre_over OR EXISTS (FROM overtake o WHERE o.drive_id = x.drive_id AND o.ego_id = x.ego_id AND o.t0_ns = x.t_pull_ns AND o.passed)
 ),
-crossing AS (
+boundary_crossing AS (
     SELECT drive_id, ego_id, t0_ns AS t_ns, begin_seen, side, false AS back FROM manoeuvre_excursion
     UNION ALL
     SELECT drive_id, ego_id, coalesce(t_return_ns, t_back_ns), true, -side, true FROM manoeuvre_excursion WHERE coalesce(t_return_ns, t_back_ns) IS NOT NULL
@@ -14,4 +14,4 @@ crossing AS (
 SELECT
     drive_id, ego_id, (row_number() OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns, side, back) - 1)::INTEGER AS occurrence,
     t_ns, begin_seen, CASE side WHEN 1 THEN 'left' ELSE 'right' END AS side, back
-FROM crossing
+FROM boundary_crossing

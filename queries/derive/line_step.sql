@@ -99,8 +99,9 @@ hidden_step AS (
     JOIN numbered_step n USING (drive_id, ego_id, t_ns)
     WHERE h.least_m < passing_before_m(n.speed_mps) AND (h.vehicle OR is_class(h.actor_class, 'animal'))
 ),
--- Objects that are lost for a while, and that stand in the ego's lane, or may stand there, where they are seen.
-standing_phase AS (
+-- Objects that are not recorded for a while and that, at some step at which they are recorded, are in the ego's lane and may be passed over
+-- a solid line.
+lost_passable_object AS (
     SELECT DISTINCT p.drive_id, p.ego_id, p.object_id
     FROM pair p
     SEMI JOIN hidden h ON h.drive_id = p.drive_id AND h.ego_id = p.ego_id AND h.object_id = p.object_id AND h.late
@@ -114,7 +115,7 @@ possible_pass AS (
     FROM hidden h
     JOIN numbered_step n USING (drive_id, ego_id, t_ns)
     LEFT JOIN sight v USING (drive_id, ego_id, t_ns)
-    LEFT JOIN standing_phase s ON s.drive_id = h.drive_id AND s.ego_id = h.ego_id AND s.object_id = h.object_id
+    LEFT JOIN lost_passable_object s ON s.drive_id = h.drive_id AND s.ego_id = h.ego_id AND s.object_id = h.object_id
     WHERE h.least_m < passing_before_m(n.speed_mps) AND (h.vehicle OR is_class(h.actor_class, 'animal'))
         AND NOT (
             h.late AND is_vehicle(h.actor_class) AND NOT is_bicycle(h.actor_class, NULL) AND s.object_id IS NULL
@@ -123,7 +124,7 @@ possible_pass AS (
 ),
 -- Steps near the vehicle that the ego overtakes, or may overtake, or near somebody on foot in its lane. If that vehicle is lost meanwhile,
 -- it is not known whether it was passed.
-beside AS (
+step_near_passed AS (
     SELECT n.drive_id, n.ego_id, n.t_ns, bool_or(CASE WHEN r.passed AND d.is_near THEN true END) AS overtaking
     FROM numbered_step n
     JOIN (
@@ -221,15 +222,15 @@ SELECT
     CASE
         WHEN r.way_reached THEN true
         WHEN r.may_be_reached THEN NULL
-        -- An ego that goes on to a way beyond the line does not come back over the line, and one that comes from there was not on this side
-        -- before.
-        WHEN (n.seen_behind_m >= 30 OR r.behind OR lo.least_before_m <= n.out_m - back_m()) AND (n.seen_ahead_m >= 30 OR r.ahead OR lo.least_after_m <= n.out_m - back_m()) THEN false
+        -- An ego that soon leaves the lanes (r.ahead) does not come back over the line before that, and an ego that just came from off the
+        -- lanes (r.behind) was not on this side before: a short view is enough in these cases.
+        WHEN (n.seen_behind_m >= 30 OR r.behind OR lo.least_before_m <= n.out_m - back_in_lane_m()) AND (n.seen_ahead_m >= 30 OR r.ahead OR lo.least_after_m <= n.out_m - back_in_lane_m()) THEN false
     END AS access
 FROM numbered_step n
 JOIN line_stretch s USING (drive_id, ego_id, seg, line_no, run_no)
 LEFT JOIN line_contact a USING (drive_id, ego_id, seg, line_no, line_contact, contact_run_no)
 LEFT JOIN overtaking o USING (drive_id, ego_id, seg, line_no, run_no)
-LEFT JOIN beside w ON w.drive_id = n.drive_id AND w.ego_id = n.ego_id AND w.t_ns = n.t_ns
+LEFT JOIN step_near_passed w ON w.drive_id = n.drive_id AND w.ego_id = n.ego_id AND w.t_ns = n.t_ns
 LEFT JOIN lane_boundary b ON b.environment_id = n.environment_id AND b.lanelet_id = n.lanelet_id
     AND b.side = n.side_name AND b.s_start_m <= n.lane_s_m AND n.lane_s_m < b.s_end_m
 LEFT JOIN lane_beside y ON y.environment_id = n.environment_id AND y.lanelet_id = n.lanelet_id

@@ -1,5 +1,5 @@
--- Pairs of visits at which two paths may meet at an angle, found by grid alone. A visit is a stretch of one actor in one cell, ten seconds
--- and 5 degrees of heading, with the box around everything that the actor covers.
+-- Pairs of visits at which two paths may meet at an angle, found by grid alone. A visit groups the samples of one actor that lie in one
+-- grid cell, one 10 s slot and one 5-degree heading step, with the box around everything that the actor covers there.
 WITH
 -- An actor that never moves is on nobody's path. Contact with it is the matter of another rule.
 moving_actor AS (

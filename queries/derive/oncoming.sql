@@ -1,5 +1,5 @@
--- The nearest vehicle that comes towards the ego on the lane in which it would overtake (paper: OV and DA), and how far ahead this is
--- known.
+-- The nearest vehicle that comes towards the ego on the lane in which it would overtake (OV, oncoming vehicle, and DA, distance ahead, of
+-- Harper et al. 2021), and how far ahead this is known.
 WITH corridor_end AS (
     SELECT c.drive_id, c.ego_id, c.chain_id, max(c.s_start_m + c.length_m) AS end_m, max({'seq': c.seq, 'id': c.lanelet_id}).id AS last_id
     FROM corridor c
@@ -38,7 +38,7 @@ doubtful_object AS (
     ANTI JOIN object_not_oncoming b ON b.drive_id = u.drive_id AND b.ego_id = u.ego_id AND b.t_ns = u.t_ns AND b.object_id = u.object_id
     LEFT JOIN nearest_vehicle n ON n.drive_id = u.drive_id AND n.ego_id = u.ego_id AND n.t_ns = u.t_ns
     -- A vehicle beyond the end of the map raises no doubt, because free_m ends there. A vehicle that the ego has met is behind. The nearest
-    -- OV itself raises a doubt only if it came from off the lanes, because the way that it still had to make is then not known.
+    -- OV itself raises a doubt only if it came from off the lanes, because the distance that it still had to drive is then not known.
     WHERE u.code NOT IN ('beyond_map', 'lost_behind') AND (n.ov.object_id IS NULL OR n.ov.object_id <> u.object_id OR n.ov.is_coming)
     GROUP BY ALL
 )

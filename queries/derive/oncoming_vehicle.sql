@@ -1,6 +1,7 @@
--- All vehicles that come towards the ego on the lane in which it would overtake, at each step (paper: OV and DA). The nearest of them need
--- not be the one that matters most: one that is parked or slow leaves more time. A horse on the road counts as a vehicle. A vehicle that
--- comes from another lane counts from 15 s before it gets to that lane, at the distance that it really drives until then.
+-- All vehicles that come towards the ego on the lane in which it would overtake, at each step (OV, oncoming vehicle, and DA, distance
+-- ahead, of Harper et al. 2021). The nearest of them need not be the one that matters most: one that is parked or slow leaves more time. A
+-- horse on the road counts as a vehicle. A vehicle that comes from another lane counts from 15 s before it gets to that lane, at the
+-- distance that it really drives until then.
 WITH ego_step AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, e.s_m, e.front_s_m, x.side, x.over_width_m
     FROM ego_state e

@@ -1,6 +1,6 @@
--- Overtakes (paper, Appendix A): the ego leaves its lane towards the overtaking lane with a vehicle ahead of it. The nearest vehicle counts
--- if the ego passes it, or if it is within 100 m and the ego's centre was over the line. Less than that is a wobble, if all of it was seen.
--- Every further vehicle that is passed in the same excursion counts, too.
+-- Overtakes (Harper et al. 2021, Appendix A): the ego leaves its lane towards the overtaking lane with a vehicle ahead of it. The nearest
+-- vehicle counts if the ego passes it, or if it is within 100 m and the ego's centre was over the line. Less than that is a wobble, if all
+-- of it was seen. Every further vehicle that is passed in the same excursion counts, too.
 WITH overtaking_excursion AS (
     SELECT x.* REPLACE (x.t_pull_ns AS t0_ns), b.k - st.k + 1 AS n_steps, e.front_s_m, e.rear_s_m, e.s_m, e.d_m, e.lat_half_m, e.speed_mps, e.combination_m AS length_m, e.limit_mps
     FROM excursion x
@@ -27,7 +27,7 @@ ahead AS (
         p.length_m, is_vehicle(p.actor_class) IS NOT DISTINCT FROM true AS is_placed, p.rear_s_m - g.front_s_m AS near_m
     FROM overtaking_excursion g
     JOIN pair_in_excursion p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.chain_id = g.chain_id AND p.t0_ns = g.t0_ns AND p.t_ns = g.t0_ns
-    WHERE may_be_ahead(p.actor_class, p.d_m - g.d_m, p.lat_half_m + g.lat_half_m) AND p.s_m > g.s_m
+    WHERE may_be_vehicle_or_obstacle(p.actor_class, p.d_m - g.d_m, p.lat_half_m + g.lat_half_m) AND p.s_m > g.s_m
         AND abs(p.d_m) - p.lat_half_m < p.half_width_m - over_boundary_m()
         AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps())
 ),

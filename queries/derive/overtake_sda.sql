@@ -1,8 +1,8 @@
--- Distance ahead and safe distance ahead for every profile. The profile observed takes the angles and gaps that this overtake had, and the
--- distance that was driven. If several vehicles are passed in one go, each counts with the length of the whole row up to its front. The
--- formula takes one speed for the whole manoeuvre: the speed at t0 or, for the profile observed of a completed overtake, the mean speed. An
--- ego that sped up to overtake would have needed less than its speed at t0 says. With which of the two speeds it planned is not known. If
--- the log ends before the ego is back, the speed that it had reached by then stands for the mean speed.
+-- Distance ahead and safe distance ahead for every profile. The profile `observed` takes the angles and gaps that this overtake had, and
+-- the distance that was driven. If several vehicles are passed in one go, each counts with the length of the whole row up to its front. The
+-- formula takes one speed for the whole manoeuvre: the speed at t0 or, for the profile `observed` of a completed overtake, the mean speed.
+-- An ego that sped up to overtake would have needed less than its speed at t0 says. With which of the two speeds it planned is not known.
+-- If the log ends before the ego is back, the speed that it had reached by then stands for the mean speed.
 WITH ov_candidate AS (
     SELECT o.drive_id, o.ego_id, o.occurrence, v.object_id AS ov_id, v.da_m, v.speed_mps AS v_ov_mps
     FROM overtake o

@@ -33,17 +33,17 @@ pair_in_overtake AS (
 ov_overlap AS (
     SELECT
         s.drive_id, s.ego_id, s.occurrence, s.t_ns, v.object_id, v.da_m, o.sd_m, o.bumper_s_m, o.bumper_d_m, o.box_half_width_m,
-        coalesce(box_depth(o.s_m - s.bumper_s_m - s.sd_av_m / 2, o.d_m - s.bumper_d_m, o.c, o.s, s.sd_av_m / 2, s.box_half_width_m, o.box_half_length_m, o.box_half_width_m), short_of(s.sd_av_m - v.da_m)) AS ov_in_m,
+        coalesce(box_depth(o.s_m - s.bumper_s_m - s.sd_av_m / 2, o.d_m - s.bumper_d_m, o.c, o.s, s.sd_av_m / 2, s.box_half_width_m, o.box_half_length_m, o.box_half_width_m), depth_if_apart(s.sd_av_m - v.da_m)) AS ov_in_m,
         coalesce(
             CASE
-                WHEN s.has_trailer THEN inside3(s.ego_front_m - o.bumper_s_m + o.sd_m, o.bumper_s_m - s.ego_rear_m, s.ego_lat_half_m + o.box_half_width_m - abs(s.ego_d_m - o.bumper_d_m))
+                WHEN s.has_trailer THEN least_of_three(s.ego_front_m - o.bumper_s_m + o.sd_m, o.bumper_s_m - s.ego_rear_m, s.ego_lat_half_m + o.box_half_width_m - abs(s.ego_d_m - o.bumper_d_m))
                 ELSE box_depth(s.ego_s_m - o.bumper_s_m + o.sd_m / 2, s.ego_d_m - o.bumper_d_m, s.c, s.s, o.sd_m / 2, o.box_half_width_m, s.box_half_length_m, s.box_half_width_m)
             END,
-            short_of(danger_space_m(v.speed_mps) - v.da_m)
+            depth_if_apart(danger_space_m(v.speed_mps) - v.da_m)
         ) AS av_in_m,
         coalesce(
-            inside3(s.bumper_s_m + s.sd_av_m - o.bumper_s_m + o.sd_m, o.bumper_s_m - s.bumper_s_m, s.box_half_width_m + o.box_half_width_m - abs(s.bumper_d_m - o.bumper_d_m)),
-            short_of(s.sd_av_m + danger_space_m(v.speed_mps) - v.da_m)
+            least_of_three(s.bumper_s_m + s.sd_av_m - o.bumper_s_m + o.sd_m, o.bumper_s_m - s.bumper_s_m, s.box_half_width_m + o.box_half_width_m - abs(s.bumper_d_m - o.bumper_d_m)),
+            depth_if_apart(s.sd_av_m + danger_space_m(v.speed_mps) - v.da_m)
         ) AS overlap_m
     FROM stage s
     JOIN oncoming_vehicle v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns AND v.vehicle AND v.object_id <> s.vbp_id

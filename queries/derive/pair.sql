@@ -5,7 +5,7 @@
 WITH sample_at_step AS (
     SELECT
         e.drive_id, e.ego_id, e.t_ns, e.k, s.actor_id AS object_id, s.actor_class, s.t_ns AS t_sample_ns, s.x_m, s.y_m, s.z_m,
-        turned_to(s.yaw_rad, s.travel_rad) AS yaw_rad, s.speed_mps, s.accel_mps2, s.length_m, s.width_m
+        yaw_along_travel_rad(s.yaw_rad, s.travel_rad) AS yaw_rad, s.speed_mps, s.accel_mps2, s.length_m, s.width_m
     FROM step e
     JOIN state_dynamics s ON s.drive_id = e.drive_id AND s.t_ns = e.t_ns AND s.actor_id <> e.ego_id
     ANTI JOIN ego_part g ON g.drive_id = e.drive_id AND g.ego_id = e.ego_id AND g.object_id = s.actor_id
@@ -52,7 +52,7 @@ object_at_step AS (
     SELECT
         drive_id, ego_id, t_ns, object_id, actor_class, length_m, width_m, t_sample_ns, z_m,
         CASE WHEN is_fresh THEN x_m + vx_mps * age_s END AS x_m, CASE WHEN is_fresh THEN y_m + vy_mps * age_s END AS y_m,
-        CASE WHEN is_fresh THEN turned_to(yaw_rad, travel_rad) END AS yaw_rad, CASE WHEN is_fresh THEN speed_mps END AS speed_mps, CASE WHEN is_fresh THEN accel_mps2 END AS accel_mps2
+        CASE WHEN is_fresh THEN yaw_along_travel_rad(yaw_rad, travel_rad) END AS yaw_rad, CASE WHEN is_fresh THEN speed_mps END AS speed_mps, CASE WHEN is_fresh THEN accel_mps2 END AS accel_mps2
     FROM last_sample
 ),
 pair_offset AS MATERIALIZED (
@@ -92,7 +92,7 @@ segment_candidate AS (
     JOIN corridor_cell c ON c.drive_id = a.drive_id AND c.ego_id = a.ego_id AND c.cell = corridor_cell_of(a.x_m, a.y_m)
     WHERE a.ego_s_m IS NOT NULL
 ),
-beside AS (
+object_on_strip AS (
     SELECT
         pair_no, drive_id, ego_id, chain_id, ego_s_m, lanelet_id, s0_m + u * len_m AS lane_s_m, d_m, hw0_m + u * (hw1_m - hw0_m) AS half_width_m,
         wrap_rad(yaw_rad - atan2(ty0 + u * (ty1 - ty0), tx0 + u * (tx1 - tx0))) AS lane_heading_diff_rad
@@ -116,7 +116,7 @@ chain_place AS MATERIALIZED (
         + CASE WHEN abs(b.d_m) > b.half_width_m + coalesce(c.over_width_m, 2 * b.half_width_m) THEN 1e8 ELSE 0.0 END
         -- An object that comes the other way is still ahead, even if the shorter way round a ring leads back.
         + CASE WHEN abs(b.lane_heading_diff_rad) > pi() / 2 AND c.s_start_m + b.lane_s_m < b.ego_s_m - exact_clearance_m() THEN 1e6 ELSE 0.0 END AS off
-    FROM beside b
+    FROM object_on_strip b
     JOIN corridor_bucket c ON c.drive_id = b.drive_id AND c.ego_id = b.ego_id AND c.lanelet_id = b.lanelet_id AND c.chain_id = b.chain_id
         AND c.bucket = floor(b.ego_s_m / 1000)::BIGINT
 ),
@@ -171,7 +171,7 @@ height_difference AS (
     )
 ),
 -- Pairs on different levels, or possibly so.
-off AS (
+pair_off_level AS (
     SELECT pair_no FROM height_difference WHERE is_apart
     UNION
     -- The object is in a lane over or under the ego's, as far as the map tells, unless it heads along the ego's lane and not along that
@@ -231,8 +231,8 @@ SELECT
     p.lane_heading_diff_rad AS heading_diff_rad,
     p.half_width_m AS half_width_m, p.over_width_m AS over_width_m, p.over_against AS over_against
 FROM combined_clearance c
-LEFT JOIN off o USING (pair_no)
-LEFT JOIN (FROM object_place ANTI JOIN off USING (pair_no)) p USING (pair_no)
+LEFT JOIN pair_off_level o USING (pair_no)
+LEFT JOIN (FROM object_place ANTI JOIN pair_off_level USING (pair_no)) p USING (pair_no)
 -- If the object has no position on the corridor, its level matters only in a contact.
 CROSS JOIN LATERAL (
     SELECT o.pair_no IS NOT NULL OR coalesce(p.pair_no IS NULL AND c.clearance_m <= 0 AND NOT same_level(c.z_m, c.ego_z_m), false) AS off_level

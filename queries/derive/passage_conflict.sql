@@ -64,7 +64,7 @@ braked_object AS (
     JOIN ego_state e ON e.drive_id = f.drive_id AND e.ego_id = f.ego_id AND e.t_ns = f.t_ego_in_ns
     JOIN state_dynamics s ON s.drive_id = f.drive_id AND s.actor_id = f.object_id AND s.t_ns = f.t_from_ns
     WHERE (e.t_ns <= p.t_leave_ns OR (f.actor_class IS NOT DISTINCT FROM 'pedestrian' AND e.travel_m <= p.travel_m + mouth_m()))
-        AND f.actor_class IS DISTINCT FROM 'object' AND f.decel_mps2 > least_force_mps2()
+        AND f.actor_class IS DISTINCT FROM 'object' AND f.decel_mps2 > least_braking_mps2()
 ),
 hardest_braking AS (
     SELECT
@@ -136,8 +136,8 @@ broken_track_near AS (
     WHERE coalesce(sqrt(dx ** 2 + dy ** 2) < CASE WHEN b.direction * (dx * s.vx_mps + dy * s.vy_mps) > 0
         THEN greatest(meeting_near_m(), s.speed_mps * b.reach_s) ELSE meeting_near_m() END, true)
 ),
--- The ego's own log, and how far it sees back to the junction.
-own_doubt AS (
+-- Why it is not known whether another actor came, if the reason is the ego's own log or the sensor's range.
+ego_log_reason AS (
     SELECT p.drive_id, p.ego_id, p.occurrence,
         CASE
             WHEN p.t_in_ns IS NULL THEN why('begins_in_junction')
@@ -172,7 +172,7 @@ relation_result AS (
         a.drive_id, a.ego_id, a.occurrence, a.relation, n.other, h.braking,
         coalesce(o.reason, CASE WHEN d.other IS NOT NULL THEN why('actor_unplaced', d.other) END) AS reason
     FROM passage_relation a
-    JOIN own_doubt o USING (drive_id, ego_id, occurrence)
+    JOIN ego_log_reason o USING (drive_id, ego_id, occurrence)
     LEFT JOIN nearest_encounter n USING (drive_id, ego_id, occurrence, relation)
     LEFT JOIN hardest_braking h USING (drive_id, ego_id, occurrence, relation)
     LEFT JOIN doubtful_object d USING (drive_id, ego_id, occurrence, is_on_foot)

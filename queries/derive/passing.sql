@@ -21,7 +21,7 @@ neighbour_step AS (
 order_step AS (
     SELECT
         *,
-        CASE WHEN ahead_m > order_m() THEN 1 WHEN ahead_m < -order_m() THEN -1 END AS front_order,
+        CASE WHEN ahead_m > order_change_m() THEN 1 WHEN ahead_m < -order_change_m() THEN -1 END AS front_order,
         ego_step_no - row_number() OVER w AS run_no, lag(k) OVER w = k - 1 AND lag(seg) OVER w = seg AND lag(is_placed) OVER w AND is_placed AS is_joined,
         lag(is_beside) OVER w AS was_beside,
         lead(k) OVER w = k + 1 AND lead(seg) OVER w = seg AND lead(is_placed) OVER w AS is_continued
@@ -59,7 +59,7 @@ order_change AS (
     WHERE c.front_order <> c.earlier_order.front_order AND c.along
 ),
 -- Vehicles that may be beside the ego in consecutive steps.
-unseen AS (
+possibly_beside_stretch AS (
     SELECT drive_id, ego_id, object_id, actor_class, min(t_ns) AS t_from_ns, max(t_ns) AS t_to_ns
     FROM (
         SELECT b.*, st.k - row_number() OVER (PARTITION BY b.drive_id, b.ego_id, b.object_id ORDER BY st.k) AS run_no
@@ -69,18 +69,18 @@ unseen AS (
     )
     GROUP BY drive_id, ego_id, object_id, actor_class, run_no
 ),
-seen AS (
+placed_step AS (
     SELECT p.drive_id, p.ego_id, p.object_id, p.t_ns, p.front_s_m > e.front_s_m AS ahead, abs(p.heading_diff_rad) < pi() / 2 AS along
-    FROM (SELECT DISTINCT drive_id, ego_id, object_id FROM unseen) u
+    FROM (SELECT DISTINCT drive_id, ego_id, object_id FROM possibly_beside_stretch) u
     JOIN pair p USING (drive_id, ego_id, object_id)
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     WHERE p.front_s_m IS NOT NULL AND e.front_s_m IS NOT NULL
 ),
 possible_change AS (
     SELECT u.drive_id, u.ego_id, u.object_id, u.actor_class, u.t_to_ns AS t_ns, u.t_from_ns AS t_unseen_ns, u.t_from_ns, u.t_to_ns, false AS whole
-    FROM unseen u
-    ASOF LEFT JOIN seen b ON b.drive_id = u.drive_id AND b.ego_id = u.ego_id AND b.object_id = u.object_id AND b.t_ns <= u.t_from_ns
-    ASOF LEFT JOIN seen a ON a.drive_id = u.drive_id AND a.ego_id = u.ego_id AND a.object_id = u.object_id AND a.t_ns >= u.t_to_ns
+    FROM possibly_beside_stretch u
+    ASOF LEFT JOIN placed_step b ON b.drive_id = u.drive_id AND b.ego_id = u.ego_id AND b.object_id = u.object_id AND b.t_ns <= u.t_from_ns
+    ASOF LEFT JOIN placed_step a ON a.drive_id = u.drive_id AND a.ego_id = u.ego_id AND a.object_id = u.object_id AND a.t_ns >= u.t_to_ns
     ANTI JOIN order_change c ON c.drive_id = u.drive_id AND c.ego_id = u.ego_id AND c.object_id = u.object_id AND c.t_ns > b.t_ns AND c.t_ns <= a.t_ns
     WHERE b.ahead = a.ahead IS DISTINCT FROM true AND coalesce(b.along, a.along, true)
 )

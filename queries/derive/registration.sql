@@ -28,7 +28,8 @@ step_count AS (
         count(*) FILTER (e.lanelet_id IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_moving,
         count(*) FILTER (e.with_direction AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_with_direction,
         sum(st.dt_ns) FILTER (NOT e.with_direction AND s.speed_mps > 1 AND x.t_ns IS NULL) AS against_ns,
-        -- A short log may be half an overtake. The steps outside the overtake decide, if they are 5 s and a third of the log.
+        -- A short log may be half an overtake. The steps outside the overtake decide if they last at least 5 s and are at least a third of
+        -- the log.
         CASE WHEN coalesce(sum(st.dt_ns) FILTER (e.off_m IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL), 0) >= 5_000_000_000
             AND 3 * count(e.off_m) FILTER (s.speed_mps > 1 AND x.t_ns IS NULL) >= count(s.x_m)
             THEN quantile_disc(e.off_m, 0.5) FILTER (s.speed_mps > 1 AND x.t_ns IS NULL) ELSE quantile_disc(e.off_m, 0.5) END AS lateral_median_m

@@ -7,7 +7,7 @@ WITH one_way_road AS (
     GROUP BY ALL
     HAVING min(along_road) = max(along_road) AND NOT bool_or(bidirectional)
 ),
-beside AS (
+opposing_road_pair AS (
     SELECT b.environment_id, n.road_id, m.road_id AS of_road_id
     FROM lane_beside b
     JOIN lanelet n ON n.environment_id = b.environment_id AND n.lanelet_id = b.lanelet_id
@@ -18,7 +18,7 @@ beside AS (
 )
 SELECT b.environment_id, b.road_id, min({'road': b.of_road_id, 'turned': a.along_road = o.along_road}).road AS of_road_id,
     min({'road': b.of_road_id, 'turned': a.along_road = o.along_road}).turned AS turned
-FROM beside b
+FROM opposing_road_pair b
 JOIN one_way_road a ON a.environment_id = b.environment_id AND a.road_id = b.road_id
 JOIN one_way_road o ON o.environment_id = b.environment_id AND o.road_id = b.of_road_id
 GROUP BY b.environment_id, b.road_id

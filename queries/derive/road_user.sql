@@ -4,7 +4,7 @@ WITH unclassified_actor AS (FROM actor WHERE actor_class IS NULL OR actor_class 
 actor_motion AS (
     SELECT
         s.drive_id, s.actor_id,
-        greatest(max(s.x_m) - min(s.x_m), max(s.y_m) - min(s.y_m)) > least(stays_m(), standing_mps() * (max(s.t_ns) - min(s.t_ns)) / 1e9) AS has_moved
+        greatest(max(s.x_m) - min(s.x_m), max(s.y_m) - min(s.y_m)) > least(standing_spread_m(), standing_mps() * (max(s.t_ns) - min(s.t_ns)) / 1e9) AS has_moved
     FROM actor_state s
     SEMI JOIN unclassified_actor u ON u.drive_id = s.drive_id AND u.actor_id = s.actor_id
     GROUP BY s.drive_id, s.actor_id
@@ -14,7 +14,7 @@ SELECT
     CASE
         WHEN u.actor_id IS NULL THEN a.actor_class
         WHEN a.actor_class = 'object' AND NOT w.has_moved THEN 'object'
-        WHEN a.length_m > longest_alive_m() THEN 'vehicle'
+        WHEN a.length_m > longest_animal_m() THEN 'vehicle'
     END AS actor_class,
     a.length_m, a.width_m
 FROM actor a

@@ -72,7 +72,7 @@ stop_step AS (
     SELECT
         s.drive_id, s.ego_id, s.t_start_ns, e.t_ns, d.object_id, d.gap_m, d.speed_mps, d.t_ns IS NOT NULL AS known,
         queued(d.object_id, d.gap_m, d.speed_mps, d.t_ns IS NOT NULL, stands_near_m(), moves_up_mps())
-            OR stands_for(w.object_id, w.actor_class, w.gap_m, w.along_mps, w.known, stands_near_m(), stands_near_m(), moves_up_mps()) AS is_held_up
+            OR stands_because_of(w.object_id, w.actor_class, w.gap_m, w.along_mps, w.known, stands_near_m(), stands_near_m(), moves_up_mps()) AS is_held_up
     FROM stop_period s
     JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns >= s.t_start_ns AND e.t_ns <= s.t_end_ns
     LEFT JOIN lead d ON d.drive_id = e.drive_id AND d.ego_id = e.ego_id AND d.t_ns = e.t_ns

@@ -35,7 +35,7 @@ extrapolation AS (
         e.x_m + e.vx_mps * (s.t_ns - e.t_ns) / 1e9 - s.x_m AS dx_m, e.y_m + e.vy_mps * (s.t_ns - e.t_ns) / 1e9 - s.y_m AS dy_m, s.x_m, s.y_m
     FROM track_edge e
     JOIN ego_state s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id
-        AND CASE WHEN e.lost THEN s.t_ns > e.t_ns AND s.t_ns <= e.t_ns + tracker_begins_ns() ELSE s.t_ns < e.t_ns AND s.t_ns >= e.t_ns - tracker_begins_ns() END
+        AND CASE WHEN e.lost THEN s.t_ns > e.t_ns AND s.t_ns <= e.t_ns + track_delay_ns() ELSE s.t_ns < e.t_ns AND s.t_ns >= e.t_ns - track_delay_ns() END
 ),
 occlusion AS (
     SELECT DISTINCT m.drive_id, m.ego_id, m.object_id, m.lost, m.t_ns
@@ -46,8 +46,8 @@ occlusion AS (
 SELECT
     e.drive_id, e.ego_id, e.object_id, e.lost, e.t_ns,
     CASE
-        WHEN e.lost THEN e.t_ns + CASE WHEN x.is_explained THEN 0 ELSE tracker_loses_ns() END
-        ELSE e.t_ns - CASE WHEN x.is_explained THEN tracker_begins_ns() ELSE tracker_loses_ns() END
+        WHEN e.lost THEN e.t_ns + CASE WHEN x.is_explained THEN 0 ELSE longest_track_gap_ns() END
+        ELSE e.t_ns - CASE WHEN x.is_explained THEN track_delay_ns() ELSE longest_track_gap_ns() END
     END AS plain_ns
 FROM track_edge e
 JOIN data_log g USING (drive_id)

@@ -85,7 +85,7 @@ JOIN step st ON st.drive_id = t.drive_id AND st.ego_id = t.ego_id
 LEFT JOIN ego_state e ON e.drive_id = st.drive_id AND e.ego_id = st.ego_id AND e.t_ns = st.t_ns
 LEFT JOIN ego_road r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
 LEFT JOIN map_end m ON m.drive_id = e.drive_id AND m.ego_id = e.ego_id AND m.chain_id = e.chain_id
-CROSS JOIN LATERAL (SELECT CASE WHEN r.road = t.road THEN t.offset_m - r.offset_m END AS shift_m, CASE WHEN r.chain_id = t.chain_id THEN 0.0 ELSE lanes_apart_m() END AS station_error_m) y
+CROSS JOIN LATERAL (SELECT CASE WHEN r.road = t.road THEN t.offset_m - r.offset_m END AS shift_m, CASE WHEN r.chain_id = t.chain_id THEN 0.0 ELSE lane_station_error_m() END AS station_error_m) y
 CROSS JOIN LATERAL (
     SELECT
         t.beyond_end_m + y.shift_m - y.station_error_m - e.front_s_m AS ahead_m, e.rear_s_m - t.beyond_begin_m - y.shift_m - y.station_error_m AS behind_m,

@@ -103,7 +103,7 @@ relative_motion AS (
     WHERE t.gap_m >= 0 AND p.speed_mps IS NOT NULL
 ),
 -- The boxes touch while they overlap along each of the four directions of their sides. This is checked for the boxes as they are, and with
--- that room around them.
+-- room_m around them (see relative_motion).
 box_contact AS (
     SELECT drive_id, ego_id, t_ns, object_id, with_room, greatest(0.0, w[1].from_s, w[2].from_s, w[3].from_s, w[4].from_s) > least(w[1].to_s, w[2].to_s, w[3].to_s, w[4].to_s) AS is_miss
     FROM (

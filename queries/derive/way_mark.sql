@@ -21,7 +21,7 @@ junction AS (
     GROUP BY drive_id, ego_id, chain_id, run_no, junction_id
 ),
 -- ---- the ego's turn in each junction: known if the ego drove all of it, or if there was no choice
-way_out AS (
+way_out_count AS (
     SELECT l.environment_id, l.from_id, count(*) AS n
     FROM lane_link l
     JOIN lanelet n ON n.environment_id = l.environment_id AND n.lanelet_id = l.to_id AND n.drivable
@@ -41,7 +41,7 @@ junction_turn AS (
     JOIN lanelet_heading e USING (environment_id, lanelet_id)
     LEFT JOIN chain_lanelet b ON b.drive_id = n.drive_id AND b.ego_id = n.ego_id AND b.chain_id = n.chain_id AND b.seq = n.seq - 1
     LEFT JOIN chain_lanelet a ON a.drive_id = n.drive_id AND a.ego_id = n.ego_id AND a.chain_id = n.chain_id AND a.seq = n.seq + 1
-    LEFT JOIN way_out c ON c.environment_id = n.environment_id AND c.from_id = b.lanelet_id
+    LEFT JOIN way_out_count c ON c.environment_id = n.environment_id AND c.from_id = b.lanelet_id
     LEFT JOIN lanelet_heading eb ON eb.environment_id = n.environment_id AND eb.lanelet_id = b.lanelet_id
     LEFT JOIN lanelet_heading ea ON ea.environment_id = n.environment_id AND ea.lanelet_id = a.lanelet_id
     WHERE n.junction_id IS NOT NULL

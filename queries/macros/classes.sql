@@ -1,11 +1,9 @@
 -- The classes that an actor may have. A class that is not known (NULL) may be any class, and `vehicle` may be any kind of vehicle: a
 -- comparison with either is unknown, not false.
 
--- A box longer than longest_bicycle_m is no bicycle. A box longer than longest_alive_m is neither a pedestrian nor an animal.
+-- A box longer than longest_bicycle_m is no bicycle. A box longer than longest_animal_m is neither a pedestrian nor an animal.
 CREATE OR REPLACE MACRO longest_bicycle_m() AS 2.5;
-CREATE OR REPLACE MACRO longest_alive_m() AS 3.0;
--- An actor whose positions stay within this distance in the whole log stands: the positions of standing things jitter.
-CREATE OR REPLACE MACRO stays_m() AS 1.0;
+CREATE OR REPLACE MACRO longest_animal_m() AS 3.0;
 
 -- Whether an actor may be a vehicle: true unless it is known to be a pedestrian, an animal or an object.
 CREATE OR REPLACE MACRO may_be_vehicle(actor_class) AS coalesce(actor_class NOT IN ('pedestrian', 'animal', 'object'), true);
@@ -22,4 +20,4 @@ CREATE OR REPLACE MACRO is_bicycle(actor_class, length_m) AS
 CREATE OR REPLACE MACRO may_walk(actor_class) AS coalesce(is_class(actor_class, 'pedestrian'), true);
 -- Whether an actor may be a vehicle, or is an object that stands in the ego's way. d_m is the distance between the two centres across the
 -- road, half_m the sum of the two half widths.
-CREATE OR REPLACE MACRO may_be_ahead(actor_class, d_m, half_m) AS may_be_vehicle(actor_class) OR actor_class = 'object' AND abs(d_m) < half_m;
+CREATE OR REPLACE MACRO may_be_vehicle_or_obstacle(actor_class, d_m, half_m) AS may_be_vehicle(actor_class) OR actor_class = 'object' AND abs(d_m) < half_m;

@@ -19,15 +19,15 @@ CREATE OR REPLACE MACRO peak_rise(value, past, next) AS
 CREATE OR REPLACE MACRO whole_window(t_ns, first_ns, last_ns, half_ns) AS
     t_ns - first_ns >= 0.7 * half_ns AND last_ns - t_ns >= 0.7 * half_ns;
 
--- An actor that is not seen comes nearer to the ego at no more than unseen_closing_mps. Two boxes together reach no farther than
--- two_half_boxes_m from their centres.
+-- An actor that is not seen comes nearer to the ego at no more than unseen_closing_mps. The sum of the half diagonals of two boxes is at
+-- most two_half_boxes_m.
 CREATE OR REPLACE MACRO unseen_closing_mps() AS 60.0;
 CREATE OR REPLACE MACRO two_half_boxes_m() AS 12.0;
 
--- A recorder that loses an actor in plain view has it again within tracker_loses_ns. A new actor is recorded tracker_begins_ns after it
+-- A recorder that loses an actor in plain view has it again within longest_track_gap_ns. A new actor is recorded track_delay_ns after it
 -- came into view.
-CREATE OR REPLACE MACRO tracker_loses_ns() AS 2_500_000_000;
-CREATE OR REPLACE MACRO tracker_begins_ns() AS 500_000_000;
+CREATE OR REPLACE MACRO longest_track_gap_ns() AS 2_500_000_000;
+CREATE OR REPLACE MACRO track_delay_ns() AS 500_000_000;
 -- A recorded position may be off by this.
 CREATE OR REPLACE MACRO sight_error_m() AS 1.0;
 -- A lane whose centre line leaves its tangent by less than this is straight: nothing beside the lane stands between two places on it.
@@ -53,10 +53,11 @@ CREATE OR REPLACE MACRO strays_m(actor_class, t_s) AS
         ELSE 5.0 * t_s * t_s
     END;
 
--- The stations of one place along a road, measured in two of its lanes, differ by no more than this: the width of a lane in a quarter turn.
-CREATE OR REPLACE MACRO lanes_apart_m() AS 6.0;
+-- One place along a road has a different station in each lane. The stations differ by at most this: in a quarter turn, by about the width
+-- of a lane times pi / 2.
+CREATE OR REPLACE MACRO lane_station_error_m() AS 6.0;
 
--- The ego has no place without these values: which one is missing, as a reason; NULL: none is.
+-- The ego cannot be placed without these values: which one is missing, as a reason; NULL: none is.
 CREATE OR REPLACE MACRO ego_lacks(x_m, yaw_rad, lanelet_id, front_s_m) AS CASE
     WHEN x_m IS NULL THEN why('ego_without_position')
     WHEN yaw_rad IS NULL THEN why('ego_without_heading')
@@ -73,14 +74,14 @@ CREATE OR REPLACE MACRO overtake_doubt(vbp_id) AS CASE WHEN vbp_id IS NOT NULL T
 CREATE OR REPLACE MACRO may_be_beside_m() AS 10.0;
 
 -- The order of two fronts has changed when they are this far apart in the new order: the positions of vehicles side by side jitter.
-CREATE OR REPLACE MACRO order_m() AS 0.25;
+CREATE OR REPLACE MACRO order_change_m() AS 0.25;
 
--- Whether some of a box is in the running lane. d_m is the distance of its centre from the lane's centre line, lat_half_m half its extent
+-- Whether part of a box is in the running lane. d_m is the distance of its centre from the lane's centre line, lat_half_m half its extent
 -- across the lane.
 CREATE OR REPLACE MACRO in_lane(d_m, lat_half_m, half_width_m) AS abs(d_m) - lat_half_m < half_width_m - over_boundary_m();
 
 -- An actor whose heading is within this angle of a lane's direction follows the lane.
-CREATE OR REPLACE MACRO own_way_rad() AS pi() / 9;
+CREATE OR REPLACE MACRO along_lane_rad() AS pi() / 9;
 
 -- A vehicle that is farther away than this when a lane change begins is neither its leader nor its follower: 5 s at a speed difference of
 -- 70 km/h.
@@ -111,8 +112,9 @@ CREATE OR REPLACE MACRO need_mps2(gap_m, v_mps, along_mps) AS
     CASE WHEN v_mps > along_mps THEN (v_mps - along_mps) ** 2 / (2 * greatest(gap_m - (v_mps - along_mps) - 5.0, 0.1)) WHEN v_mps IS NOT NULL THEN 0.0::DOUBLE END;
 -- A driver who has braked for an actor lets the brake go within this time after the actor has gone.
 CREATE OR REPLACE MACRO let_go_ns() AS 2_000_000_000;
--- An actor must have been coming across at every sample during this time, and at least at two samples.
-CREATE OR REPLACE MACRO comes_ns() AS 300_000_000;
+-- An actor counts as coming across only if its speed across brings it into the way within enters_s, at every sample during this time and at
+-- two samples at least.
+CREATE OR REPLACE MACRO coming_for_ns() AS 300_000_000;
 
 -- Whether an actor in the way, which asks for a deceleration of `need_mps2`, is a reason to brake harder than `abrupt_mps2`. `known`: no
 -- other actor may be in the way. Result NULL: cannot be told.
@@ -120,23 +122,23 @@ CREATE OR REPLACE MACRO asks_to_brake(need_mps2, known, abrupt_mps2) AS need_mps
 
 -- Whether the ego stands because of an actor in its way: a vehicle within `queue_m` that is no faster than `slow_mps`, or a pedestrian, an
 -- animal or an object within `hazard_m`. `known`: no other actor may be in the way. Result NULL: cannot be told.
-CREATE OR REPLACE MACRO stands_for(object_id, actor_class, gap_m, along_mps, known, queue_m, hazard_m, slow_mps) AS
+CREATE OR REPLACE MACRO stands_because_of(object_id, actor_class, gap_m, along_mps, known, queue_m, hazard_m, slow_mps) AS
     CASE WHEN object_id IS NOT NULL AND NOT may_be_vehicle(actor_class) AND gap_m <= hazard_m THEN true
         WHEN object_id IS NOT NULL AND gap_m <= queue_m AND along_mps <= slow_mps THEN true
         WHEN object_id IS NOT NULL AND actor_class IS NULL AND gap_m <= hazard_m THEN NULL
         WHEN object_id IS NOT NULL AND gap_m <= queue_m AND along_mps IS NULL THEN NULL
         WHEN known THEN false END;
 
--- A distance that was sampled is kept only if the motion between the samples cannot change the verdict.
-CREATE OR REPLACE MACRO kept_between(seen_m, blur_m, required_m) AS CASE WHEN seen_m < required_m OR seen_m - coalesce(blur_m, 0.0) >= required_m THEN seen_m END;
+-- A sampled distance, if the motion between the samples cannot change the verdict; else NULL.
+CREATE OR REPLACE MACRO sure_between_steps(seen_m, blur_m, required_m) AS CASE WHEN seen_m < required_m OR seen_m - coalesce(blur_m, 0.0) >= required_m THEN seen_m END;
 
 -- No vehicle turns into premises or a side road faster than access_mps (20 mph: a bend of 12 m radius then asks for 6.7 m/s2), or without
 -- turning by at least turned_off_rad.
 CREATE OR REPLACE MACRO access_mps() AS 8.94;
 CREATE OR REPLACE MACRO turned_off_rad() AS pi() / 6;
--- Our default: an ego whose overhang over the line is smaller by this before, or after, comes from its lane, or has come back to it: it did
--- not leave the road there. (Noise is 0.05 m.)
-CREATE OR REPLACE MACRO back_m() AS 0.25;
+-- Our default: if the overhang over the line was smaller by this before the step, the ego came from its lane, not from beyond the line. If
+-- it is smaller by this after the step, the ego comes back to its lane and does not leave the road over the line. (Noise is 0.05 m.)
+CREATE OR REPLACE MACRO back_in_lane_m() AS 0.25;
 -- An ego that is without a place for no longer than this has not been back in its lane and out of it again.
 CREATE OR REPLACE MACRO no_return_ns() AS 500_000_000;
 

@@ -1,6 +1,6 @@
 -- The constants of the library, each named once.
 
--- A corner that is over a boundary by more than this has left the lane (the paper's registration noise is smaller).
+-- A corner that is over a boundary by more than this has left the lane (the registration noise of Harper et al. 2021 is smaller).
 CREATE OR REPLACE MACRO over_boundary_m() AS 0.05;
 -- Half width of the strip in which the corridor gives positions, and how far the strip reaches ahead of and behind the ego's way.
 CREATE OR REPLACE MACRO strip_m() AS 15.0;
@@ -16,8 +16,8 @@ CREATE OR REPLACE MACRO sight_m(sensor_range_m) AS coalesce(sensor_range_m, lost
 CREATE OR REPLACE MACRO standing_mps() AS 0.5;
 -- The largest error of a velocity that ingest derives with a filter (drive/velocity.py).
 CREATE OR REPLACE MACRO filtered_error_mps() AS 0.25;
--- An actor whose positions spread by no more than this stays where it is.
-CREATE OR REPLACE MACRO moved_m() AS 1.0;
+-- An actor whose positions spread by no more than this in the whole log stands: the positions of standing things jitter.
+CREATE OR REPLACE MACRO standing_spread_m() AS 1.0;
 -- If the end of the map is farther away than this, vehicles beyond it need not be considered yet: two vehicles at 60 mph that brake for
 -- each other need some 150 m to stop, and 350 m by the most cautious of the models.
 CREATE OR REPLACE MACRO beyond_map_m() AS 400.0;

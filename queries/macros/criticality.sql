@@ -41,7 +41,7 @@ CREATE OR REPLACE MACRO ttb_s(gap_m, closing_mps, brake_mps2) AS
 
 -- Time until a gap is closed, if it closes at dv and this speed grows by da per second: the smallest positive root of gap = dv t + da t^2 /
 -- 2.
-CREATE OR REPLACE MACRO gone_s(gap_m, dv, da) AS
+CREATE OR REPLACE MACRO gap_closed_s(gap_m, dv, da) AS
     CASE
         WHEN dv ** 2 + 2 * da * gap_m >= 0 AND dv + sqrt(greatest(dv ** 2 + 2 * da * gap_m, 0)) > 0
             THEN 2 * gap_m / (dv + sqrt(greatest(dv ** 2 + 2 * da * gap_m, 0)))
@@ -51,9 +51,9 @@ CREATE OR REPLACE MACRO gone_s(gap_m, dv, da) AS
 -- Modified time to collision (Ozbay et al. 2008): at present accelerations. A lead that brakes comes to a stand and does not reverse.
 CREATE OR REPLACE MACRO mttc_s(gap_m, v_mps, a_mps2, v_lead_mps, a_lead_mps2) AS
     CASE
-        WHEN v_lead_mps >= 0 AND a_lead_mps2 < 0 AND gone_s(gap_m, v_mps - v_lead_mps, a_mps2 - a_lead_mps2) > -v_lead_mps / a_lead_mps2
-            THEN gone_s(gap_m - v_lead_mps ** 2 / (2 * a_lead_mps2), v_mps, a_mps2)
-        ELSE gone_s(gap_m, v_mps - v_lead_mps, a_mps2 - a_lead_mps2)
+        WHEN v_lead_mps >= 0 AND a_lead_mps2 < 0 AND gap_closed_s(gap_m, v_mps - v_lead_mps, a_mps2 - a_lead_mps2) > -v_lead_mps / a_lead_mps2
+            THEN gap_closed_s(gap_m - v_lead_mps ** 2 / (2 * a_lead_mps2), v_mps, a_mps2)
+        ELSE gap_closed_s(gap_m, v_mps - v_lead_mps, a_mps2 - a_lead_mps2)
     END;
 
 -- For this long the present speed across the lane predicts where an actor will be.
@@ -61,7 +61,7 @@ CREATE OR REPLACE MACRO drift_s() AS 3.0;
 
 -- Whether the lead is ahead of the ego's own box: the two boxes overlap across the corridor. NULL if one of them is not placed. A lead
 -- alongside the ego is not ahead.
-CREATE OR REPLACE MACRO behind(gap_m, d_m, lat_half_m, lead_d_m, lead_lat_half_m) AS
+CREATE OR REPLACE MACRO lead_is_ahead(gap_m, d_m, lat_half_m, lead_d_m, lead_lat_half_m) AS
     gap_m >= 0 AND abs(d_m - lead_d_m) < lat_half_m + lead_lat_half_m;
 
 -- Whether the lead will still be ahead when the ego gets there, at the present speeds across the lane (positive to the left, by the heading
@@ -86,7 +86,7 @@ CREATE OR REPLACE MACRO either_moves(ego_mps, lead_mps) AS ego_mps > standing_mp
 -- Whether a vehicle ahead comes towards the ego. A vehicle that stands facing the ego does not.
 CREATE OR REPLACE MACRO comes(speed_mps, oncoming) AS oncoming AND speed_mps > standing_mps();
 
--- Whether the ego follows its lead: some of the ego is in the lane, and the lead is neither alongside nor comes towards it. A lead that is
+-- Whether the ego follows its lead: part of the ego is in the lane, and the lead is neither alongside nor comes towards it. A lead that is
 -- parked facing the ego counts: it is in the way all the same.
 CREATE OR REPLACE MACRO follows(in_lane, gap_m, speed_mps, oncoming) AS in_lane AND gap_m >= 0 AND NOT comes(speed_mps, oncoming);
 

@@ -14,7 +14,7 @@ CREATE OR REPLACE MACRO travel_rad(actor_class, speed_mps, vx_mps, vy_mps, yaw_r
         ELSE yaw_rad
     END;
 -- The heading of a box, turned by 180 degrees if it travels backwards: a box is the same from both ends.
-CREATE OR REPLACE MACRO turned_to(yaw_rad, travel_rad) AS CASE WHEN cos(travel_rad - yaw_rad) < 0 THEN wrap_rad(yaw_rad + pi()) ELSE yaw_rad END;
+CREATE OR REPLACE MACRO yaw_along_travel_rad(yaw_rad, travel_rad) AS CASE WHEN cos(travel_rad - yaw_rad) < 0 THEN wrap_rad(yaw_rad + pi()) ELSE yaw_rad END;
 
 -- The angle by which a box turns, in [-pi/2, pi/2): a box that is turned by 180 degrees covers the same ground.
 CREATE OR REPLACE MACRO box_turn_rad(a) AS a - pi() * floor((a + pi() / 2) / pi());
@@ -72,12 +72,12 @@ CREATE OR REPLACE MACRO box_sides(dx, dy, c, s, hla, hwa, hlb, hwb) AS
 
 -- The share of the way from one moment to another after which a box that moves straight on first touches another box; NULL: it touches it
 -- nowhere on that way. `a` and `b` are the sides (box_sides) at the two moments; each side changes linearly. The contact begins when the
--- last side stops being positive (lets_go) and ends when the first one becomes positive (parts).
-CREATE OR REPLACE MACRO lets_go(a, b) AS
+-- last side stops being positive (contact_begins) and ends when the first one becomes positive (contact_ends).
+CREATE OR REPLACE MACRO contact_begins(a, b) AS
     list_max(list_transform(list_zip(a, b), lambda g: CASE WHEN g[1] <= 0 THEN 0.0 WHEN g[2] > 0 THEN 2.0 ELSE g[1] / (g[1] - g[2]) END));
-CREATE OR REPLACE MACRO parts(a, b) AS
+CREATE OR REPLACE MACRO contact_ends(a, b) AS
     list_min(list_transform(list_zip(a, b), lambda g: CASE WHEN g[2] <= 0 THEN 1.0 WHEN g[1] > 0 THEN -1.0 ELSE g[1] / (g[1] - g[2]) END));
-CREATE OR REPLACE MACRO first_touch(a, b) AS CASE WHEN lets_go(a, b) <= parts(a, b) THEN lets_go(a, b) END;
+CREATE OR REPLACE MACRO first_touch(a, b) AS CASE WHEN contact_begins(a, b) <= contact_ends(a, b) THEN contact_begins(a, b) END;
 
 -- Exact distance between two boxes; if they overlap, minus the depth. Arguments as above; every one must be known. If two convex boxes are
 -- apart, at least one of their two nearest points is a corner.
@@ -91,10 +91,10 @@ CREATE OR REPLACE MACRO box_clearance(dx, dy, c, s, hla, hwa, hlb, hwb) AS
     END;
 
 -- Depth of an overlap from its three one-sided depths; NULL if one of them is (least() alone would ignore it).
-CREATE OR REPLACE MACRO inside3(a, b, c) AS CASE WHEN a IS NOT NULL AND b IS NOT NULL AND c IS NOT NULL THEN least(a, b, c) END;
+CREATE OR REPLACE MACRO least_of_three(a, b, c) AS CASE WHEN a IS NOT NULL AND b IS NOT NULL AND c IS NOT NULL THEN least(a, b, c) END;
 
 -- The depth of the overlap of two boxes of which only one axis is known: NULL unless they are apart on this axis.
-CREATE OR REPLACE MACRO short_of(along_m) AS CASE WHEN along_m < 0 THEN along_m END;
+CREATE OR REPLACE MACRO depth_if_apart(along_m) AS CASE WHEN along_m < 0 THEN along_m END;
 
 -- Lengths in whole picometres, and back. Their running sums are the same to the last bit in every order and beside any other drive. (A sum
 -- of doubles over a window is not: how it is split depends on what else is in the table.)
@@ -108,16 +108,16 @@ CREATE OR REPLACE MACRO swerve_mps2() AS 8.0;
 CREATE OR REPLACE MACRO peak_between_mps(v_mps, v_next_mps, dt_s) AS
     greatest(v_mps, (swerve_mps2() * v_mps + 3.5 * v_next_mps + dt_s * 3.5 * swerve_mps2()) / (3.5 + swerve_mps2()));
 -- A speed that is not known may be this high.
-CREATE OR REPLACE MACRO fast_mps() AS 40.0;
+CREATE OR REPLACE MACRO unknown_speed_mps() AS 40.0;
 -- The least and the greatest distance that a vehicle with the speed v drives in the t seconds after, or before. It brakes or speeds up by
 -- at most 10 m/s2, neither turns round nor reverses, and drives no faster than 40 m/s unless it does already.
 CREATE OR REPLACE MACRO drives_least_m(v_mps, t_s) AS CASE WHEN 10.0 * t_s < v_mps THEN v_mps * t_s - 5.0 * t_s * t_s ELSE v_mps * v_mps / 20.0 END;
-CREATE OR REPLACE MACRO drives_most_m(v_mps, t_s) AS least(v_mps * t_s + 5.0 * t_s * t_s, greatest(v_mps, fast_mps()) * t_s);
+CREATE OR REPLACE MACRO drives_most_m(v_mps, t_s) AS least(v_mps * t_s + 5.0 * t_s * t_s, greatest(v_mps, unknown_speed_mps()) * t_s);
 -- If everything within this distance around the ego is in plain view, no vehicle can drive past it unseen in two lanes on either side. Even
 -- at the greatest difference of their speeds in the same direction, a passing vehicle stays within this distance for longer than a tracker
 -- needs plus one step.
 CREATE OR REPLACE MACRO watched_m(v_mps, step_s) AS
-    sqrt(7.0 ** 2 + (greatest(v_mps, fast_mps() - v_mps) * (tracker_begins_ns() / 1e9 + step_s) / 2) ** 2);
+    sqrt(7.0 ** 2 + (greatest(v_mps, unknown_speed_mps() - v_mps) * (track_delay_ns() / 1e9 + step_s) / 2) ** 2);
 
 -- The way of a box from one sample to the next, as a cubic. (x, y) is the chord, from the first position to the second. p and q: where the
 -- velocity at the start (p) or at the end (q) would lead, minus where the chord leads. Velocities that tyres cannot produce on that way are

@@ -2,15 +2,16 @@
 
 CREATE OR REPLACE MACRO mph(v_mps) AS v_mps / 0.44704;
 
--- Thinking and stopping distance of Highway Code Rule 126 as the paper fits it (speed in mph, metres out).
+-- Thinking and stopping distance of Highway Code Rule 126 as Harper et al. 2021 fit it (speed in mph, metres out).
 CREATE OR REPLACE MACRO thinking_distance_m(v_mps) AS 0.300 * mph(v_mps);
 CREATE OR REPLACE MACRO stopping_distance_m(v_mps) AS 0.300 * mph(v_mps) + 0.058 - 0.011 * mph(v_mps) + 0.015 * mph(v_mps) ** 2;
 
 -- Length of a danger space: the stopping distance, and 0 for a vehicle that stands (the constant of the fit would leave 6 cm).
 CREATE OR REPLACE MACRO danger_space_m(v_mps) AS CASE WHEN v_mps < 0.05 THEN 0.0 ELSE stopping_distance_m(v_mps) END;
 
--- Safe distance ahead (the paper's Appendix A). w: lane width; beta, theta: pull-out and cut-in angle; headroom, clearance: gaps to the VBP
--- when pulling out and cutting in start. Undefined (NULL) if the ego is not faster than the VBP.
+-- Safe distance ahead (Appendix A of Harper et al. 2021). w: lane width; beta, theta: pull-out and cut-in angle; headroom, clearance: gaps
+-- to the vehicle being passed (VBP) when pulling out and cutting in start. AV: the ego; OV: the oncoming vehicle. Undefined (NULL) if the
+-- ego is not faster than the VBP.
 CREATE OR REPLACE MACRO pull_out_time_s(w, beta, v_av) AS w / (v_av * sin(beta));
 CREATE OR REPLACE MACRO passing_time_s(w, beta, headroom, clearance, l_av, l_vbp, v_av, v_vbp) AS
     CASE WHEN v_av > v_vbp THEN
@@ -34,7 +35,7 @@ CREATE OR REPLACE MACRO passed_over_any_line(actor_class, length_m, speed_mps) A
     is_vehicle(actor_class) AND speed_mps <= standing_mps()
     OR (is_bicycle(actor_class, length_m) OR is_class(actor_class, 'animal')) AND speed_mps <= 4.4704;
 
--- Room to leave beside them: the width of a door, 1.5 m for a cyclist and 2 m for a horse (UKHC R163).
+-- Room to leave beside a passed actor: the width of a door, 1.5 m for a cyclist and 2 m for a horse (UKHC R163).
 CREATE OR REPLACE MACRO passing_room_m(actor_class) AS CASE actor_class WHEN 'animal' THEN 2.0 WHEN 'bicycle' THEN 1.5 ELSE 1.0 END;
 
 -- Factor by which the stopping distance and the two seconds grow with the weather: 2 in the wet (Rule 227), up to 10 on ice (Rule 230).
@@ -49,7 +50,7 @@ CREATE OR REPLACE MACRO unsure_reach_m(v_mps) AS greatest(lost_near_m(), 20.0 * 
 CREATE OR REPLACE MACRO overtaking_side(handedness) AS CASE handedness WHEN 'lht' THEN 'right' WHEN 'rht' THEN 'left' END;
 
 -- Speed limits of Rule 124 for a class of vehicle outside built-up areas, in mph. road: single, dual or motorway. The 70 mph for buses on
--- motorways hold for a length of up to 12 m.
+-- motorways holds for a length of up to 12 m.
 CREATE OR REPLACE MACRO class_limit_mph(vehicle_class, length_m, nation, road) AS
     CASE
         WHEN vehicle_class IN ('car', 'motorcycle') THEN CASE road WHEN 'single' THEN 60 ELSE 70 END

@@ -12,9 +12,9 @@ CREATE OR REPLACE MACRO steps_apart(a, b) AS abs(((a - b + 36) % 72 + 72) % 72 -
 -- An actor that is slower than this for at least a second stands still (UKHC and ALKS rules ask for a stop, not for slow driving).
 CREATE OR REPLACE MACRO stood_mps() AS 0.1;
 -- The longest time from one half of a pedestrian crossing to the other. A person who takes longer waits on an island between the two.
-CREATE OR REPLACE MACRO straight_on_ns() AS 3_000_000_000;
--- How far two boxes are apart (negative: how deep one is in the other) on that of their four axes on which this is most. (dx, dy) leads
--- from the centre of the first box to that of the second in map axes; (ca, sa) and (cb, sb) are the cosine and sine of their headings.
+CREATE OR REPLACE MACRO half_to_half_ns() AS 3_000_000_000;
+-- The largest separation of two boxes over their four axes (negative: the depth of their overlap). (dx, dy) leads from the centre of the
+-- first box to that of the second in map axes; (ca, sa) and (cb, sb) are the cosine and sine of their headings.
 CREATE OR REPLACE MACRO boxes_apart_m(dx, dy, ca, sa, cb, sb, hla, hwa, hlb, hwb) AS
     box_separation(dx * ca + dy * sa, dy * ca - dx * sa, ca * cb + sa * sb, ca * sb - sa * cb, hla, hwa, hlb, hwb);
 -- The same for each of the eight sides (box_sides).
@@ -54,28 +54,30 @@ CREATE OR REPLACE MACRO watched_ns() AS 4_000_000_000;
 -- An actor that is not seen for a while may have been where ways meet if it was this near to that place, or could have come this near.
 CREATE OR REPLACE MACRO meeting_near_m() AS 30.0;
 -- Distance from a point to the piece from a to b metres along a straight line that begins at (x0, y0) with unit direction (tx, ty).
-CREATE OR REPLACE MACRO end_distance_m(x, y, x0, y0, tx, ty, a, b) AS
+CREATE OR REPLACE MACRO piece_distance_m(x, y, x0, y0, tx, ty, a, b) AS
     sqrt(
         ((x - x0) * tx + (y - y0) * ty - greatest(a, least(b, (x - x0) * tx + (y - y0) * ty))) ** 2 + ((y - y0) * tx - (x - x0) * ty) ** 2
     );
 -- A deceleration that is more than letting off the accelerator: the least that any rule asks about.
-CREATE OR REPLACE MACRO least_force_mps2() AS 1.5;
+CREATE OR REPLACE MACRO least_braking_mps2() AS 1.5;
 -- Our default: a deceleration that is not noise. A driver who sees from far away that they must wait lets the vehicle roll out.
 CREATE OR REPLACE MACRO gentle_mps2() AS 0.3;
--- Our default: a vehicle that waits goes on at most waits_ns before the ego has left, or at most goes_on_ns after that.
+-- Our default: a vehicle that waits for the ego drives on no earlier than waits_ns before the ego has left, and no later than drives_on_ns
+-- after that.
 CREATE OR REPLACE MACRO waits_ns() AS 2_000_000_000;
-CREATE OR REPLACE MACRO goes_on_ns() AS 5_000_000_000;
+CREATE OR REPLACE MACRO drives_on_ns() AS 5_000_000_000;
 -- A vehicle may have braked for the ego if, at the speed that it had, it would have arrived within this time before or after the ego.
 CREATE OR REPLACE MACRO forced_apart_ns() AS 4_000_000_000;
 CREATE OR REPLACE MACRO forced_slot(t_ns) AS t_ns // (2 * forced_apart_ns());
 -- An actor comes head on if its way is within 30 degrees of the ego's way turned round.
 CREATE OR REPLACE MACRO head_on_rad() AS 5 * pi() / 6;
--- Two actors that meet head on have hardly room if their sides are nearer to each other than this: mirrors take 0.2 m of it on each side.
+-- Two actors that meet head on have hardly any room if their sides are nearer to each other than this: mirrors take 0.2 m of it on each
+-- side.
 CREATE OR REPLACE MACRO hardly_room_m() AS 0.5;
 -- Actors farther away than this are not examined for braking that the ego forced.
 CREATE OR REPLACE MACRO forced_near_m() AS 200.0;
 -- Drivers stop within this distance before a light or a queue.
-CREATE OR REPLACE MACRO forced_beyond_m() AS 20.0;
+CREATE OR REPLACE MACRO stopping_before_m() AS 20.0;
 -- A vehicle that would have more lateral acceleration than this in a bend slows down for the bend.
 CREATE OR REPLACE MACRO bend_mps2() AS 3.0;
 -- Where an actor came from at a junction, by its heading against the ego's heading on the way in.

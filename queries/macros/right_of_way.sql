@@ -1,6 +1,6 @@
 -- Macros that the rules on junctions, crossings and stopping share.
 
--- Whether a light forbids to go on (Highway Code Rule 175): red, and red with amber.
+-- Whether a light forbids going on (Highway Code Rule 175): red, and red with amber.
 CREATE OR REPLACE MACRO forbids(light) AS light IN ('red', 'red_amber');
 
 -- A vehicle that stands closer than stands_near_m behind an actor stands because of it. A vehicle slower than moves_up_mps moves up in a
@@ -24,9 +24,9 @@ CREATE OR REPLACE MACRO exit_full(ahead_id, ahead_gap_m, ahead_speed_mps, known,
         WHEN ahead_speed_mps <= slow_mps AND ahead_gap_m <= near_m + coalesce(clear_m, 0) THEN true
     END;
 
--- A PET that was seen while another actor could not be placed (`reason`) is an upper bound: it can show that the PET is too short, but not
--- that it is long enough. `concerns`: the rule is about an actor of this class. If that is not known, a PET that is long enough keeps the
--- rule, and one that is too short does not break it.
+-- A post-encroachment time (PET) that was seen while another actor could not be placed (`reason`) is an upper bound: it can show that the
+-- PET is too short, but not that it is long enough. `concerns`: the rule is about an actor of this class. If that is not known, a PET that
+-- is long enough keeps the rule, and one that is too short does not break it.
 CREATE OR REPLACE MACRO pet_known(pet_s, reason, enough_s, concerns) AS
     CASE WHEN pet_s < enough_s THEN CASE WHEN concerns THEN pet_s END WHEN reason IS NULL THEN pet_s END;
 

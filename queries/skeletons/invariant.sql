@@ -2,10 +2,10 @@
 -- clause = "none yet: name the rule and its paragraph first, then say in your own words what it asks"
 -- hypothesis = "While the ego moved, was it no faster than it should be?"
 -- kind = "invariant"            # judged at every step
--- derivation = "direct"         # or "model", where a model stands between log and question
+-- derivation = "direct"         # or "model", where the rule judges by a model (of braking, for example), not by a recorded value alone
 -- severity = "minor"            # critical | major | minor
 -- legal = "should"              # must | should
--- status = "draft"              # only stable rules make an exit code
+-- status = "draft"              # only stable rules affect the exit code
 -- sense = "<="                  # observed <= required must hold; or "holds", and a column of that name
 -- unit = "m/s"
 -- near_margin = 1.0             # kept by less than this: a near miss

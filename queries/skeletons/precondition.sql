@@ -5,10 +5,10 @@
 -- subtype = "temporal"          # in a window of time; "physical": at places or times that a section @anchor gives
 -- window_s = "window_s"         # a number of seconds, or the parameter that holds it
 -- quantifier = "always"         # or "eventually": once in the window is enough
--- derivation = "direct"         # or "model", where a model stands between log and question
+-- derivation = "direct"         # or "model", where the rule judges by a model (of braking, for example), not by a recorded value alone
 -- severity = "minor"            # critical | major | minor
 -- legal = "should"              # must | should
--- status = "draft"              # only stable rules make an exit code
+-- status = "draft"              # only stable rules affect the exit code
 -- sense = "<="                  # observed <= required must hold; or "holds", and a column of that name
 -- unit = "m/s"
 -- near_margin = 1.0             # kept by less than this: a near miss

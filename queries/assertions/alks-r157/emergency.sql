@@ -31,7 +31,7 @@
 -- says = "the log never declares emergency_manoeuvre"
 
 -- @condition
-SELECT m.drive_id, m.ego_id, m.t_ns, emergency.is_on AS holds, judged_inside(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AND m.accel_mps2 < -$emergency_mps2 AS applies,
+SELECT m.drive_id, m.ego_id, m.t_ns, emergency.is_on AS holds, is_judged(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AND m.accel_mps2 < -$emergency_mps2 AS applies,
     CASE WHEN emergency.mode IS NULL THEN why('emergency_undeclared') END AS reason
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id

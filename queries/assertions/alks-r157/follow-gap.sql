@@ -32,7 +32,7 @@
 -- [params.faster_mps]
 -- default = 0.5
 -- unit = "m/s"
--- why = "our default: so much faster than when the vehicle ahead braked the ego closes in by its own doing; a held speed trembles by less"
+-- why = "our default: so much faster than when the vehicle ahead braked the ego closes in by its own doing; a held speed jitters by less"
 
 -- @condition
 SELECT f.drive_id, f.ego_id, f.t_ns, f.gap_m AS observed, r157_gap_m(f.ego_speed_mps) AS required,

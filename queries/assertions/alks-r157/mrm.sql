@@ -45,6 +45,6 @@ recent_braking AS (
 SELECT b.drive_id, b.ego_id, b.t_ns, -$brake_mps2 AS required,
     CASE WHEN b.accel_mps2 >= -$brake_mps2 THEN b.accel_mps2
         WHEN b.accel_mps2 IS NOT NULL AND (b.mildest_mps2 >= -$brake_mps2 OR b.is_known AND b.t_ns - c.t_start_ns >= ($brief_s * 1e9)::BIGINT) THEN b.mildest_mps2 END AS observed,
-    b.is_on AND judged_inside(b.accel_mps2, b.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies
+    b.is_on AND is_judged(b.accel_mps2, b.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies
 FROM recent_braking b
 JOIN clock c ON c.drive_id = b.drive_id AND c.ego_id = b.ego_id

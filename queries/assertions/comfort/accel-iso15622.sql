@@ -38,7 +38,7 @@
 -- @condition
 -- The speed is filtered before it is differentiated, see ego_motion. A reversing ego accelerates when the speed along its heading falls.
 SELECT m.drive_id, m.ego_id, m.t_ns, decided_at_most(bound.accel_mps2, m.accel_peak_mps2, bound.limit_mps2) AS observed, bound.limit_mps2 AS required,
-    judged_inside(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
+    is_judged(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
     CASE WHEN bound.accel_mps2 <= bound.limit_mps2 AND bound.accel_mps2 + m.accel_peak_mps2 > bound.limit_mps2 THEN why('peak_flattened') END AS reason
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id

@@ -38,6 +38,6 @@
 -- @condition
 -- The speed is filtered before it is differentiated, see ego_motion.
 SELECT m.drive_id, m.ego_id, m.t_ns, -m.accel_2s_mps2 AS observed, iso15622_limit(m.v_long_mps, $slow_mps2, $fast_mps2) + $tolerance_mps2 AS required,
-    judged_inside(m.accel_2s_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies
+    is_judged(m.accel_2s_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id

@@ -44,12 +44,12 @@
 --
 -- [reasons.peak_over_bound_flattened]
 -- says = "the filter that takes the noise out may have flattened a peak over the bound"
--- advice = "no recording decides that"
+-- advice = "no better recording can decide this"
 
 -- @condition
 -- The motion is filtered before it is differentiated, see ego_motion.
 SELECT m.drive_id, m.ego_id, m.t_ns, decided.share AS observed, 1.0::DOUBLE AS required,
-    judged_inside(coalesce(decided.share, m.accel_mps2 + m.lat_accel_mps2 + m.jerk_mps3), m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
+    is_judged(coalesce(decided.share, m.accel_mps2 + m.lat_accel_mps2 + m.jerk_mps3), m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
     CASE WHEN bound.largest_share <= 1 AND bound.possible_share > 1 THEN why('peak_over_bound_flattened') END AS reason
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id

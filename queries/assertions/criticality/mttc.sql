@@ -29,8 +29,8 @@
 -- advice = "record headings more exactly"
 --
 -- [reasons.mean_accelerations]
--- says = "the accelerations are means over half a second, which leave open on which side of the limit it is"
--- advice = "no recording decides that"
+-- says = "the accelerations are means over half a second, so whether the time is above or below the limit is not known"
+-- advice = "no better recording can decide this"
 
 -- @applies
 -- A vehicle beside the ego's way that does not close in yet would get into the way only by its heading at this step, and one heading is no
@@ -42,7 +42,7 @@ SELECT s.drive_id, s.ego_id, s.t_ns, v.object_id,
         e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, p.speed_mps * sin(p.heading_diff_rad)
     ) AND may_touch(v.passes_by, v.grazes) AND CASE WHEN v.across_m < 0 OR motion.ttc_s < 'inf' THEN true END AND either_moves(v.ego_speed_mps, v.speed_mps)
     -- A vehicle that is not seen is at least free_m away, and the two close in with no more acceleration than tyres allow.
-    WHEN v.known OR gone_s(v.free_m, v.free_mps, 10.0) >= $least_s THEN true END AS applies,
+    WHEN v.known OR gap_closed_s(v.free_m, v.free_mps, 10.0) >= $least_s THEN true END AS applies,
     CASE WHEN v.grazes THEN graze_doubt(v.object_id)
         WHEN v.across_m >= 0 AND motion.ttc_s = 'inf' THEN why('points_into_way', {'object_id': v.object_id}) END AS reason
 FROM step s
@@ -56,7 +56,7 @@ CROSS JOIN LATERAL (SELECT along_mps(v.speed_mps, v.oncoming) AS away_mps, along
 -- At the ends of the log the windows of the accelerations are not whole, which says nothing about the drive. The accelerations are
 -- smoothed: the ego's acceleration shows before it begins, the other vehicle's shows after it begins and still shows when it is over. If
 -- this decides on which side of the limit the value is, the value is not known.
-SELECT v.drive_id, v.ego_id, v.t_ns, v.object_id, $least_s AS required, v.object_id IS NULL OR judged_inside(m.accel_mps2 + v.other_mps2, v.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
+SELECT v.drive_id, v.ego_id, v.t_ns, v.object_id, $least_s AS required, v.object_id IS NULL OR is_judged(m.accel_mps2 + v.other_mps2, v.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
     bounded.observed,
     CASE WHEN bounded.observed IS NULL AND v.gap_m + m.accel_mps2 + v.other_mps2 IS NOT NULL
         THEN why('mean_accelerations') END AS reason

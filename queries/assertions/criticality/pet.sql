@@ -30,7 +30,7 @@
 -- @reference
 SELECT drive_id, ego_id, t_ego_in_ns AS t_ns, object_id, occurrence, NULL AS code FROM conflict
 UNION ALL
--- An actor may have crossed the ego's way unseen if its track ends close by, if it has no place for a while, or if it moves and has no
+-- An actor may have crossed the ego's way unseen if its track ends close by, if it is not placed for a while, or if it moves and has no
 -- heading or size.
 SELECT drive_id, ego_id, t_from_ns, object_id, NULL, code FROM lost_object WHERE code = 'lost_near_ego'
 UNION ALL

@@ -33,14 +33,14 @@
 -- [params.faster_mps]
 -- default = 0.5
 -- unit = "m/s"
--- why = "our default: so much faster than when the other came in the ego closes in by its own doing; a held speed trembles by less"
+-- why = "our default: so much faster than when the other came in the ego closes in by its own doing; a held speed jitters by less"
 
 -- @applies
 -- At a step without a row in `vehicle_ahead` it is not known which vehicle is ahead. The ego's speed is rounded because a speed that is
 -- held at slowest_mps varies in its last digits. The ego does not follow a standing vehicle that it steers round, nor a vehicle that moves
 -- across the lane.
 SELECT s.drive_id, s.ego_id, s.t_ns, v.object_id,
-    CASE WHEN v.object_id IS NOT NULL THEN behind(v.gap_m, e.d_m, e.lat_half_m, p.d_m, p.lat_half_m) AND NOT comes(v.speed_mps, v.oncoming) AND round(v.ego_speed_mps, 2) >= $slowest_mps
+    CASE WHEN v.object_id IS NOT NULL THEN lead_is_ahead(v.gap_m, e.d_m, e.lat_half_m, p.d_m, p.lat_half_m) AND NOT comes(v.speed_mps, v.oncoming) AND round(v.ego_speed_mps, 2) >= $slowest_mps
         AND (v.speed_mps > standing_mps() OR p.speed_mps <= standing_mps()
             AND on_course(v.gap_m, ttc_s(v.gap_m, v.ego_speed_mps), e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, 0.0))
         AND NOT coalesce(s.t_ns - c.t_ns < $settle_s * 1e9 AND v.ego_speed_mps <= c.ego_speed_mps + $faster_mps, false)

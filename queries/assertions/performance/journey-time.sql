@@ -1,5 +1,5 @@
 -- title = "Journey not much slower than free flow"
--- clause = "The paper, performance (liveness): gets there in a time that fits the road"
+-- clause = "Harper et al. 2021, performance (liveness): gets there in a time that fits the road"
 -- hypothesis = "Did the drive take at most twice the time that it would have taken at the speed limit?"
 -- kind = "execution"
 -- derivation = "model"

@@ -1,5 +1,5 @@
 -- title = "Opportunities to overtake taken"
--- clause = "The paper, performance zones (zone D: overcautious if not taken): use the room to overtake that there is"
+-- clause = "Harper et al. 2021, performance zones (zone D: overcautious if not taken): use the room to overtake that there is"
 -- hypothesis = "While held up behind a slower vehicle, did the ego use every chance to overtake that would have left more than 2.5 s to spare?"
 -- kind = "execution"
 -- derivation = "model"
@@ -16,7 +16,7 @@
 -- default = 2.5
 -- unit = "s"
 -- why = "beyond it begins zone D"
--- source = "paper, performance zones"
+-- source = "Harper et al. 2021, performance zones"
 --
 -- [params.notice_s]
 -- default = 5.0

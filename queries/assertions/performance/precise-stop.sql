@@ -1,5 +1,5 @@
 -- title = "Stop close before the line"
--- clause = "The paper, performance (precise stopping): who stops for a line stops at it, not over it and not far before it"
+-- clause = "Harper et al. 2021, performance (precise stopping): who stops for a line stops at it, not over it and not far before it"
 -- hypothesis = "When the ego stopped for a stop line, did it stand with its front at most half a metre before the line?"
 -- kind = "execution"
 -- derivation = "direct"
@@ -23,10 +23,10 @@
 -- why = "our default: who stands further off, a car's length or more, stands for something else and drives up to the line later"
 --
 -- [reasons.stood_beyond_line]
--- says = "The front stood {front_m:.2f} m beyond the line, at most {within_m:.2f} m before it is asked for."
+-- says = "the front stood {front_m:.2f} m beyond the line; it should stand before the line, at most {within_m:.2f} m away"
 --
 -- [reasons.stood_before_line]
--- says = "The front stood {front_m:.2f} m before the line, at most {within_m:.2f} m before it is asked for."
+-- says = "the front stood {front_m:.2f} m before the line; it should stand before the line, at most {within_m:.2f} m away"
 
 -- @reference
 SELECT drive_id, ego_id, t_start_ns AS t_ns, occurrence FROM standstill

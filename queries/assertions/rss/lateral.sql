@@ -46,9 +46,9 @@
 -- @applies
 -- This rule is a draft. RSS takes the lateral speed without its fluctuations (definition 5, over the time in which a vehicle leaves its
 -- line by mu), but `beside` has the momentary lateral speed, across the ego's corridor. Recorded headings (NGSIM) make it jitter by half a
--- metre per second, and a vehicle that comes down a slip road at an angle has a speed across the corridor, although its lane turns.
--- While two vehicles are beside each other, the distance along the road is unsafe. Before and after that it may be safe, and is not judged
--- here. A standing ego does not drift, nor does a parked car.
+-- metre per second, and a vehicle that comes down a slip road at an angle has a speed across the corridor, although it only follows the
+-- bend of its own lane. While two vehicles are beside each other, the distance along the road is unsafe. Before and after that it may be
+-- safe, and is not judged here. A standing ego does not drift, nor does a parked car.
 SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN ego_speed_mps <= standing_mps() THEN false ELSE on_carriageway END AS applies
 FROM beside
 WHERE may_be_vehicle(actor_class)

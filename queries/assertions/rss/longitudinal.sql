@@ -61,7 +61,7 @@
 -- why = "vehicles do not hold their line exactly"
 -- source = "ad-rss-lib, parameter discussion (fluctuation margin)"
 --
--- # Draft: the model calls an ordinary gap of two seconds dangerous, and a calm approach, and a gap that somebody else took.
+-- # Draft: the model calls dangerous an ordinary gap of two seconds, a calm approach, and a gap into which another vehicle moved.
 
 -- @applies
 -- RSS calls a situation dangerous if the distances along and across are both unsafe: a vehicle that the ego passes inside the lane may be

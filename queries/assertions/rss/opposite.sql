@@ -86,7 +86,7 @@ SELECT drive_id, ego_id, t_ns, object_id, gap_m AS observed,
 FROM oncoming_ahead
 UNION ALL
 SELECT o.drive_id, o.ego_id, o.t_ns, o.object_id,
-    -- A vehicle without a place could only be nearer: then only a distance that is too small is certain.
+    -- A vehicle that is not placed may be nearer, so a distance is certain only if it is too small already.
     CASE WHEN o.n_unplaced = 0 OR o.da_m < required_gap.distance_m THEN o.da_m END, required_gap.distance_m
 FROM oncoming o
 ANTI JOIN oncoming_ahead a ON a.drive_id = o.drive_id AND a.ego_id = o.ego_id AND a.t_ns = o.t_ns AND a.object_id = o.object_id

@@ -53,7 +53,7 @@
 --
 -- [reasons.peak_beyond_limit_flattened]
 -- says = "the filter that takes the noise out may have flattened a peak beyond the limit"
--- advice = "no recording decides that"
+-- advice = "no better recording can decide this"
 
 -- @condition
 -- The filter of the acceleration flattens peaks: the true deceleration may be harder than the filtered one by accel_peak_mps2.
@@ -61,7 +61,7 @@ SELECT m.drive_id, m.ego_id, m.t_ns, -decided_at_most(-m.accel_mps2, m.accel_pea
     -- Braking has a reason if the vehicle ahead is too near, was too near a moment ago, or brakes itself, and also if anybody else is in
     -- the way (a person, an animal, a thing). At a step without a row in `lead`, there may be such a vehicle. Why hazard lights were on, or
     -- an emergency was declared, a person must judge.
-    judged_inside(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AND NOT (m.accel_mps2 - m.accel_peak_mps2 < -$abrupt_mps2 AND (
+    is_judged(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AND NOT (m.accel_mps2 - m.accel_peak_mps2 < -$abrupt_mps2 AND (
         CASE WHEN l.t_ns IS NOT NULL THEN l.object_id IS NOT NULL AND (
             l.is_too_near OR m.accel_mps2 - l.hardest_mps2 >= -$abrupt_mps2 OR CASE WHEN l.known THEN false END) END
         OR asks_to_brake(w.need_mps2, w.known, $abrupt_mps2)

@@ -51,10 +51,10 @@
 -- source = "StVO 18(5) no. 3"
 --
 -- [reasons.no_lane_no_limit]
--- says = "the ego is on no lane, for which there is no limit"
+-- says = "the ego is on no lane, so no limit is known"
 --
 -- [reasons.ego_class_unknown]
--- says = "which class of vehicle the ego is is not known"
+-- says = "the ego's class of vehicle is not known"
 -- advice = "give --env vehicle_class=..."
 --
 -- [reasons.limit_by_class_and_road]

@@ -47,7 +47,7 @@
 -- source = "StVO 18(5) no. 1"
 --
 -- [reasons.class_speed_unknown]
--- says = "how fast its kind of vehicle may be is not known"
+-- says = "how fast its kind of vehicle may drive is not known"
 
 -- @condition
 -- The kind of vehicle may allow less than the road. If it is not known, a speed between the values that are required of the slowest and of

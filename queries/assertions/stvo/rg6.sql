@@ -37,8 +37,8 @@
 
 -- @reference
 SELECT drive_id, ego_id, t_start_ns AS t_ns, follower_id AS object_id, follower_gap_m, follower_speed_mps, ego_speed_mps, begin_seen, known,
-    -- A vehicle that is not seen is at least as far away as any vehicle behind must be.
-    known OR unseen_m >= stvo_safe_gap_m(fast_mps(), ego_speed_mps, $reaction_s, $brake_mps2, $brake_lead_mps2) AS clear
+    -- clear: every vehicle is placed, or every unseen one is so far away that it keeps its safe distance even at unknown_speed_mps.
+    known OR unseen_m >= stvo_safe_gap_m(unknown_speed_mps(), ego_speed_mps, $reaction_s, $brake_mps2, $brake_lead_mps2) AS clear
 FROM lane_change
 
 -- @condition

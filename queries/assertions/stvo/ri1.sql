@@ -31,7 +31,7 @@
 -- why = "our default: time in which the hazard lights of one that breaks down are on, which StVO 15 asks for at once"
 --
 -- [reasons.may_have_broken_down]
--- says = "it had its hazard lights on, or declared a manoeuvre of emergency: whether it broke down is for a person to say"
+-- says = "it had its hazard lights on, or declared an emergency or minimal risk manoeuvre: whether it broke down is for a person to say"
 
 -- @reference
 SELECT drive_id, ego_id, t_start_ns AS t_ns, ahead_id AS object_id, ahead_gap_m, ahead_speed_mps, ahead_known, t_end_ns
@@ -52,7 +52,7 @@ WITH possible_breakdown AS (
 )
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.object_id,
     queued(r.object_id, r.ahead_gap_m, r.ahead_speed_mps, r.ahead_known, $queue_m, $queue_mps)
-        OR stands_for(w.object_id, w.actor_class, w.gap_m, w.along_mps, w.known, $queue_m, $queue_m, $queue_mps)
+        OR stands_because_of(w.object_id, w.actor_class, w.gap_m, w.along_mps, w.known, $queue_m, $queue_m, $queue_mps)
         OR CASE WHEN b.ref_id IS NULL THEN false END AS holds,
     CASE WHEN b.ref_id IS NOT NULL THEN why('may_have_broken_down') END AS reason
 FROM reference r

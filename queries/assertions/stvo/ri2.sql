@@ -1,4 +1,4 @@
--- title = "Passing on the inner side only"
+-- title = "No passing on the right, except past a slow queue"
 -- clause = "StVO 5(1), 7(2), 7(2a), 7a (R_I2 of Maierhofer et al. 2020): overtake on the left; on the right only past a queue, little faster than it, or on the way in"
 -- hypothesis = "When the ego got ahead of a vehicle in a lane to its left (right in left-hand traffic), was that a slow queue, passed with little more speed?"
 -- kind = "execution"
@@ -39,7 +39,7 @@
 -- source = "StVO 4(3), StVZO 32(4)"
 --
 -- [reasons.broad_line_unknown]
--- says = "the ego was on lane type {lane_type}: whether a broad line parted it from the through lanes is not known"
+-- says = "the ego was on a lane of type {lane_type}: whether a broad line separated it from the through lanes is not known"
 
 -- @reference
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.occurrence, p.speed_mps, p.ego_speed_mps, CASE WHEN p.ego_passes THEN c.side END AS side, n.lane_type

@@ -1,4 +1,4 @@
--- title = "Fifty metres behind the vehicle ahead"
+-- title = "Lorries and buses: fifty metres behind the vehicle ahead"
 -- clause = "StVO 4(3): lorries over 3.5 t and buses keep at least 50 m behind the vehicle ahead on motorways when faster than 50 km/h"
 -- hypothesis = "At every step faster than 50 km/h, did the lorry or bus keep 50 m behind the vehicle ahead?"
 -- kind = "invariant"
@@ -37,7 +37,7 @@
 -- source = "case law: not only quite briefly; as R_G1 of Maierhofer et al. 2020"
 --
 -- [reasons.weight_unknown]
--- says = "{gap_m:.1f} m behind: whether it weighs more than 3.5 t is not known"
+-- says = "the ego was {gap_m:.1f} m behind the vehicle ahead: whether the ego weighs more than 3.5 t is not known"
 
 -- @condition
 -- A goods vehicle of up to 7.5 t may be a van of up to 3.5 t, for which the rule requires nothing.

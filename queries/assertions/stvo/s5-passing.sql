@@ -57,7 +57,7 @@ LEFT JOIN (
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, object_id, CASE c.area WHEN 'built_up' THEN $built_up_m WHEN 'open' THEN $open_m END AS required,
-    kept_between(b.gap_m, b.blur_m, required) AS observed,
+    sure_between_steps(b.gap_m, b.blur_m, required) AS observed,
     CASE WHEN c.area IS NULL THEN why('built_up_unknown')
         WHEN observed IS NULL AND b.gap_m IS NOT NULL THEN why('steps_too_far_apart') END AS reason
 FROM beside b

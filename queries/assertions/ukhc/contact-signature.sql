@@ -41,14 +41,14 @@
 -- says = "object {object_id} is close by where a hole of the log ends"
 --
 -- [reasons.stood_still]
--- says = "the ego stood still: it was struck, if anything"
+-- says = "the ego stood still: if there was a contact, the other actor struck it"
 --
 -- [reasons.ego_braking_unknown]
--- says = "how hard the ego braked is not known here: that takes a sample just before"
+-- says = "how hard the ego braked is not known here: there is no speed just before"
 -- advice = "begin recording earlier"
 --
 -- [reasons.object_braking_unknown]
--- says = "how hard object {object_id} braked is not known here: that takes a sample just before"
+-- says = "how hard object {object_id} braked is not known here: there is no speed just before"
 -- advice = "begin recording earlier"
 --
 -- [reasons.step_too_long]

@@ -36,8 +36,8 @@ WITH encounter AS (
 judged_encounter AS (
     SELECT
         *,
-        -- The conflict with the least PET may be with another vehicle, which may hide a later cyclist: then the rule may be known to be
-        -- kept, but not to be broken.
+        -- The conflict with the least PET may be with another vehicle and hide a later cyclist. Then the rule can be shown to be kept, but
+        -- not to be broken.
         CASE WHEN turn IS NULL THEN NULL
             WHEN is_forced AND braked_class IN ('bicycle', 'animal') THEN CASE WHEN NOT is_at_fork THEN false END
             WHEN actor_class IN ('bicycle', 'animal') OR (pet_s >= $pet_s AND decel_mps2 <= $decel_mps2)

@@ -1,5 +1,5 @@
 -- title = "Overtake with time to spare"
--- clause = "UKHC R162 (the paper's performance zones): overtake only with enough road, and use the road that there is"
+-- clause = "UKHC R162 (performance zones of Harper et al. 2021): overtake only with enough road, and use the road that there is"
 -- hypothesis = "In the overtake as it was driven, would the spare distance ahead have lasted for at least half a second?"
 -- kind = "execution"
 -- derivation = "model"
@@ -16,13 +16,13 @@
 -- default = 0.5
 -- unit = "s"
 -- why = "zone A (unsafe) and B (less than this to spare) fail, C and D are kept"
--- source = "paper, performance zones"
+-- source = "Harper et al. 2021, performance zones"
 --
 -- [reasons.zones]
--- says = "zones: {zones}; best choice: none in zone C[; observed unknown: {observed_doubt}]"
+-- says = "zones: {zones}; no profile other than 'observed' is in zone C, the best one[; the zone of 'observed' is not known: {observed_doubt}]"
 --
 -- [reasons.zones_and_best]
--- says = "zones: {zones}; best choice: {best_profile}[; observed unknown: {observed_doubt}]"
+-- says = "zones: {zones}; best profile: {best_profile}[; the zone of 'observed' is not known: {observed_doubt}]"
 
 -- @reference
 SELECT drive_id, ego_id, t0_ns AS t_ns, ov_id AS object_id, occurrence

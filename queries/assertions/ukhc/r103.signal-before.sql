@@ -15,8 +15,8 @@
 -- [params.window_s]
 -- default = 5.0
 -- unit = "s"
--- why = "five seconds as in the paper's example; three is the least that an automatic lane change needs"
--- source = "paper, temporal precondition; UN R79"
+-- why = "five seconds as in the example of Harper et al. 2021; three is the least that an automatic lane change needs"
+-- source = "Harper et al. 2021, temporal precondition; UN R79"
 --
 -- [reasons.crossing_unseen]
 -- says = "the log does not show where the ego crossed the boundary"

@@ -23,7 +23,7 @@
 -- says = "the headlights were off, and whether the street was lit is not known"
 --
 -- [reasons.lamps_need_limit]
--- says = "the headlights were off, and whether lamps may have excused it is not known without the limit"
+-- says = "the headlights were off: lit street lamps excuse that only under a low speed limit, and the limit is not known"
 
 -- @condition
 -- No table says whether street lamps are lit. Where they may be, or where the limit is not known, driving without headlights is not certain

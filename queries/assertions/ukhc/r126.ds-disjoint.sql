@@ -1,5 +1,5 @@
 -- title = "Danger spaces of ego and oncoming vehicle apart"
--- clause = "UKHC R126 and R162 (runtime assertion of the paper): leave enough space to stop, in an overtake too"
+-- clause = "UKHC R126 and R162 (runtime assertion of Harper et al. 2021): leave enough space to stop, in an overtake too"
 -- hypothesis = "At every step of the overtake, could both the ego and the oncoming vehicle have stopped without meeting?"
 -- kind = "invariant"
 -- derivation = "model"
@@ -17,7 +17,7 @@
 
 -- @applies
 SELECT drive_id, ego_id, t_ns, ov_id AS object_id, stage AS episode,
-    -- A manoeuvre that only may be an overtake can keep the rule, but not break it.
+    -- If it is not sure that the manoeuvre is an overtake, the rule can be kept, but not broken.
     CASE WHEN ov_id IS NOT NULL THEN CASE WHEN sure OR ds_overlap_m < 0 THEN true END WHEN ov_known THEN false END AS applies,
     CASE WHEN ov_id IS NULL THEN ov_reason ELSE overtake_doubt(vbp_id) END AS reason
 FROM overtake_step

@@ -1,5 +1,5 @@
 -- title = "Vehicle being passed outside the ego's danger space"
--- clause = "UKHC R126 and R162 (runtime assertion of the paper): leave enough space to stop, in an overtake too"
+-- clause = "UKHC R126 and R162 (runtime assertion of Harper et al. 2021): leave enough space to stop, in an overtake too"
 -- hypothesis = "At every step of the overtake, was the vehicle being passed outside the space that the ego needs to stop?"
 -- kind = "invariant"
 -- derivation = "model"
@@ -16,7 +16,7 @@
 -- requires = ["map", "registration", "handedness", "ego_size"]
 
 -- @applies
--- A manoeuvre that only may be an overtake can keep the rule, but not break it.
+-- If it is not sure that the manoeuvre is an overtake, the rule can be kept, but not broken.
 SELECT drive_id, ego_id, t_ns, vbp_id AS object_id, stage AS episode, CASE WHEN sure OR vbp_in_ds_av_m < 0 THEN true END AS applies,
     overtake_doubt(vbp_id) AS reason
 FROM overtake_step

@@ -17,7 +17,7 @@
 -- # end of the map or of the corridor is no end of sight, so it is a lower bound; vehicles on the road are the business of r126.stopping-gap.
 --
 -- [reasons.driving_side_unknown]
--- says = "how far the road leads on is not known, for the side that is driven on is not"
+-- says = "how far the road goes on is not known, because the side that is driven on is not known"
 -- advice = "give it with --handedness"
 --
 -- [reasons.map_too_short]

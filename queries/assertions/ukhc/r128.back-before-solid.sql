@@ -21,7 +21,7 @@
 -- advice = "record all vehicles from before the ego leaves its lane until it is back in it"
 --
 -- [reasons.solid_crossing_unseen]
--- says = "the log does not show the ego cross the line, which was solid when it is first seen"
+-- says = "the log does not show the ego crossing the line; the line was solid while the ego was over it"
 
 -- @reference
 SELECT o.drive_id, o.ego_id, o.t0_ns AS t_ns, max(o.vbp_id) AS object_id, bool_or(o.sure) AS sure, o.begin_seen, o.t3_ns, o.t_end_ns, o.opposing, CASE o.side WHEN 1 THEN 'left' ELSE 'right' END AS side

@@ -15,7 +15,7 @@
 -- says = "{out_m:.2f} m over a line marked {marking}"
 --
 -- [reasons.middle_unknown]
--- says = "whether the line is the middle of the road is not known, for the map has nothing beyond it, or what may be a central reservation"
+-- says = "whether the line is the middle of the road is not known, because the map has nothing beyond it, or a gap or strip that may be a central reservation"
 -- advice = "give a map with the lanes of both directions"
 
 -- @condition

@@ -32,7 +32,7 @@
 -- advice = "record the ego from before it"
 --
 -- [reasons.follower_unknown]
--- says = "who followed in the new lane is not known, for somebody nearby has no place"
+-- says = "who followed in the new lane is not known, because somebody nearby cannot be placed"
 -- advice = "record everybody there from before the lane change"
 
 -- @reference

@@ -14,7 +14,7 @@
 -- [params.reverse_mps]
 -- default = 0.5
 -- unit = "m/s"
--- why = "our default, as in r263: slower than this is standing: recorded speeds of standing vehicles tremble"
+-- why = "our default, as in r263: slower than this is standing: recorded speeds of standing vehicles jitter"
 --
 -- [params.manoeuvring_mps]
 -- default = 4.47
@@ -58,7 +58,7 @@
 --
 -- [reasons.passing_unknown]
 -- says = "whether it is on its way past another vehicle is not known"
--- advice = "record that from before to after"
+-- advice = "record that vehicle from before the ego passes it until after"
 --
 -- [reasons.may_pass_unseen]
 -- says = "in the opposing lane for less than {within_s:g} s, it may pass something that the log does not show"
@@ -69,10 +69,10 @@
 -- advice = "record what stands or walks there"
 --
 -- [reasons.with_lane]
--- says = "{along_mps:.1f} m/s along its own heading, with lane {lanelet_id}"
+-- says = "{along_mps:.1f} m/s along its own heading, which is the direction of lane {lanelet_id}"
 --
 -- [reasons.against_lane]
--- says = "{along_mps:.1f} m/s along its own heading, against lane {lanelet_id}"
+-- says = "{along_mps:.1f} m/s along its own heading, which is against the direction of lane {lanelet_id}"
 
 -- @applies
 -- The rule does not apply where the ego is off every lane, as in a car park.
@@ -80,8 +80,8 @@ WITH ego_step AS (
     SELECT drive_id, ego_id, t_ns, front_s_m, rear_s_m, width_m, speed_mps, with_direction, $closed_m + $closed_s * speed_mps AS reach_m FROM ego_state
 ),
 -- An overtake excuses the ego while it is beside the overtaken vehicle, on its way up to it, and until that vehicle is left behind. A
--- vehicle on which the ego does not gain is not being overtaken: it excuses the ego for no longer than an overtake takes. If the vehicle
--- has no place, it is not known whether it excuses the ego, unless the vehicle is known to be left behind.
+-- vehicle on which the ego does not gain is not being overtaken: it excuses the ego for no longer than an overtake takes. If the vehicle is
+-- not placed, it is not known whether it excuses the ego, unless the vehicle is known to be left behind.
 passing_step AS (
     SELECT drive_id, ego_id, t_ns, CASE WHEN bool_or(is_excused) THEN true WHEN count(is_excused) = count(*) THEN false END AS is_excused
     FROM (
@@ -157,8 +157,8 @@ wrong_way_distance AS (
         RANGE BETWEEN ($manoeuvring_s * 1e9)::BIGINT PRECEDING AND ($manoeuvring_s * 1e9)::BIGINT FOLLOWING
     )
 ),
--- Whether the ego has been against every lane of the junction for at least junction_s.
-junction_heading AS (
+-- Whether the ego has been against every lane of the junction for at least junction_s, at each step.
+junction_direction_check AS (
     SELECT drive_id, ego_id, t_ns, t_ns - max(t_ns) FILTER (NOT is_against) OVER so_far >= ($junction_s * 1e9)::BIGINT AS is_against
     FROM (
         SELECT e.drive_id, e.ego_id, e.t_ns, coalesce(bool_and(abs(o.heading_diff_rad) > $against_rad), false) AS is_against
@@ -185,7 +185,7 @@ LEFT JOIN ego_condition w USING (drive_id, ego_id, t_ns)
 LEFT JOIN ego_aside a USING (drive_id, ego_id, t_ns)
 LEFT JOIN passing_step p USING (drive_id, ego_id, t_ns)
 LEFT JOIN short_excursion_step x USING (drive_id, ego_id, t_ns)
-LEFT JOIN junction_heading j USING (drive_id, ego_id, t_ns)
+LEFT JOIN junction_direction_check j USING (drive_id, ego_id, t_ns)
 LEFT JOIN closed_lane c USING (drive_id, ego_id, t_ns)
 LEFT JOIN wrong_way_distance d USING (drive_id, ego_id, t_ns)
 

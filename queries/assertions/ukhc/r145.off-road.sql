@@ -24,10 +24,10 @@
 -- why = "our default: at 10 mph and less a vehicle crosses the footway to reach property; faster it has left the road"
 --
 -- [reasons.partly_off_map]
--- says = "part of the ego is on nothing that the map knows"
+-- says = "part of the ego is on ground that the map does not have"
 --
 -- [reasons.may_be_access]
--- says = "slowly over the footway, from or to ground that the map does not know: it may be property"
+-- says = "slowly over the footway, from or to ground that the map does not have: it may be property"
 
 -- @condition
 -- Property is ground that the map does not have. An ego that slowly comes from there, or goes there, may cross the footway.

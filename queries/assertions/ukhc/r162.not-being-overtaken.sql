@@ -1,4 +1,4 @@
--- title = "Nobody overtaking when pulling out"
+-- title = "Not pulling out while being overtaken"
 -- clause = "UKHC R162: before overtaking make sure that nobody behind is beginning to overtake you"
 -- hypothesis = "When the ego first left its lane to overtake, was the nearest vehicle behind in the passing lane still seconds away?"
 -- kind = "execution"
@@ -19,7 +19,7 @@
 -- why = "our default: time to see the ego pull out and to slow down in comfort"
 --
 -- [reasons.overtaken_unknown]
--- says = "whom the ego was to overtake, if anybody, is not known"
+-- says = "which vehicle the ego meant to overtake, if any, is not known"
 -- advice = "record all vehicles ahead of it, with their classes"
 
 -- @reference
@@ -32,7 +32,7 @@ QUALIFY o.occurrence = min(o.occurrence) OVER (PARTITION BY o.drive_id, o.ego_id
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $ttc_s AS required,
     -- Another vehicle that was not placed could only make the time shorter, unless it is too far away to arrive in time.
-    CASE WHEN o.begin_seen AND (p.rear_known OR p.rear_ttc_s < $ttc_s OR p.rear_unseen_m > 0 AND p.rear_unseen_m >= $ttc_s * greatest(0.0, fast_mps() - o.v_av_mps))
+    CASE WHEN o.begin_seen AND (p.rear_known OR p.rear_ttc_s < $ttc_s OR p.rear_unseen_m > 0 AND p.rear_unseen_m >= $ttc_s * greatest(0.0, unknown_speed_mps() - o.v_av_mps))
         -- If no vehicle was placed ahead and none was passed, this may be no overtake: a lane change, or a noisy position of a corner.
         AND (o.vbp_placed OR o.passed OR p.rear_ttc_s >= $ttc_s) THEN or_never(p.rear_ttc_s, $ttc_s) END AS observed,
     CASE WHEN NOT o.begin_seen THEN why('overtake_begin_unseen')

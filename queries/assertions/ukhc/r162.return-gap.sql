@@ -30,7 +30,7 @@ QUALIFY occurrence = max(occurrence) OVER (PARTITION BY drive_id, ego_id, t0_ns)
 
 -- @condition
 -- Without a vehicle ahead of the vehicle being passed, the gap reaches at least as far as the corridor and the sensors.
-WITH ahead AS (
+WITH gap_ahead_of_passed AS (
     SELECT r.ref_id, v.front_s_m, min(a.rear_s_m) - v.front_s_m AS gap_m, min(a.rear_s_m) FILTER (is_vehicle(a.actor_class)) - v.front_s_m AS vehicle_gap_m
     FROM reference r
     JOIN pair v ON v.drive_id = r.drive_id AND v.ego_id = r.ego_id AND v.t_ns = r.t_ns AND v.object_id = r.object_id
@@ -65,7 +65,7 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, required_gap.size_m AS required,
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 CROSS JOIN LATERAL (SELECT o.l_av_m + thinking_distance_m(o.v_vbp_mps) + thinking_distance_m(o.v_av_mps) AS size_m) required_gap
-LEFT JOIN ahead h USING (ref_id)
+LEFT JOIN gap_ahead_of_passed h USING (ref_id)
 LEFT JOIN possible_vehicle d USING (ref_id)
 LEFT JOIN ego_state e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id AND e.t_ns = r.t_ns
 LEFT JOIN oncoming n ON n.drive_id = r.drive_id AND n.ego_id = r.ego_id AND n.t_ns = r.t_ns

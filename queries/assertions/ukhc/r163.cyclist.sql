@@ -45,6 +45,6 @@ LEFT JOIN road_user a ON a.drive_id = b.drive_id AND a.actor_id = b.object_id
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN ego_speed_mps <= $fast_mps THEN $clearance_m ELSE $fast_clearance_m END AS required,
-    kept_between(clearance_m, blur_m, required) AS observed,
+    sure_between_steps(clearance_m, blur_m, required) AS observed,
     CASE WHEN observed IS NULL AND clearance_m IS NOT NULL THEN why('steps_too_far_apart') END AS reason
 FROM beside

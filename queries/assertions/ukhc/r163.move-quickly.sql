@@ -18,14 +18,14 @@
 -- unit = ""
 -- why = "our default: half as long again as the model"
 --
--- # Draft: what is quick is a judgement, and the profiles are those of the paper's slow overtakes.
+-- # Draft: what is quick is a judgement, and the profiles are those of the slow overtakes of Harper et al. 2021.
 --
 -- [reasons.overtaken_speed_unknown]
 -- says = "the speed of {object_id} where the ego pulled out is not known"
 -- advice = "record it from before that"
 --
 -- [reasons.pulled_out_no_faster]
--- says = "the ego pulled out no faster than {object_id}, for which the model has no time"
+-- says = "the ego pulled out no faster than {object_id}: for that the model gives no time"
 
 -- @reference
 SELECT drive_id, ego_id, coalesce(t3_ns, t0_ns) AS t_ns, vbp_id AS object_id, occurrence

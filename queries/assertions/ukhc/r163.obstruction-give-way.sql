@@ -36,13 +36,13 @@
 -- why = "our default: slower, at 10 mph each, two drivers can squeeze past each other with care"
 --
 -- [reasons.oncoming_hindered]
--- says = "an oncoming vehicle came {pet_s:.1f} s after the ego, or braked by {decel_mps2:.1f} m/s2"
+-- says = "an oncoming vehicle came {pet_s:.1f} s after the ego, or braked with {decel_mps2:.1f} m/s2"
 --
 -- [reasons.came_by]
 -- says = "{object_id} came by with {room_m:.2f} m between"
 --
 -- [reasons.braked_and_stood]
--- says = "{braked}, and it stood until then"
+-- says = "{braked}, and it stood until the ego had left or was about to leave"
 --
 -- [reasons.object_lacks_unbroken]
 -- says = "object {object_id} {lack}"
@@ -116,7 +116,7 @@ unplaced_vehicle AS (
     JOIN hidden h ON h.drive_id = u.drive_id AND h.ego_id = u.ego_id AND h.t_ns = u.t_ns AND h.object_id = u.object_id
     JOIN ego_state e ON e.drive_id = u.drive_id AND e.ego_id = u.ego_id AND e.t_ns = u.t_ns
     LEFT JOIN pair p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.t_ns = u.t_ns AND p.object_id = u.object_id
-    WHERE h.vehicle AND h.ahead IS DISTINCT FROM false AND h.least_m < $pet_s * coalesce(e.speed_mps, fast_mps()) AND coalesce(p.speed_mps > standing_mps(), true)
+    WHERE h.vehicle AND h.ahead IS DISTINCT FROM false AND h.least_m < $pet_s * coalesce(e.speed_mps, unknown_speed_mps()) AND coalesce(p.speed_mps > standing_mps(), true)
     GROUP BY r.ref_id
 )
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps <= standing_mps() AS applies,

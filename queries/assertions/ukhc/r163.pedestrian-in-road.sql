@@ -39,7 +39,7 @@ LEFT JOIN (SELECT DISTINCT drive_id, ego_id, object_id, t_object_in_ns, t_object
     ON c.drive_id = b.drive_id AND c.ego_id = b.ego_id AND c.object_id = b.object_id AND c.t_object_in_ns <= b.t_ns AND b.t_ns <= c.t_object_out_ns
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, object_id, kept_between(clearance_m, blur_m, $clearance_m) >= $clearance_m AND ego_speed_mps <= $speed_mps AS holds,
+SELECT drive_id, ego_id, t_ns, object_id, sure_between_steps(clearance_m, blur_m, $clearance_m) >= $clearance_m AND ego_speed_mps <= $speed_mps AS holds,
     CASE WHEN clearance_m IS NOT NULL AND ego_speed_mps IS NOT NULL
         THEN why('passed_at_speed', {'clearance_m': clearance_m, 'speed_mps': ego_speed_mps}) END AS reason
 FROM beside

@@ -11,7 +11,7 @@
 -- requires = ["map", "registration", "handedness", "ego_size"]
 --
 -- [reasons.sign_unknown]
--- says = "whether such a sign holds here is not known, for on the way behind the map shows none, nor the end of one, nor a junction"
+-- says = "whether a no-overtaking sign holds here is not known, because behind the ego the map shows no such sign, no end of one and no junction"
 -- advice = "give a map that goes back to the last junction"
 
 -- @reference

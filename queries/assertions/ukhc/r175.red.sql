@@ -14,7 +14,7 @@
 -- says = "the log does not show when the ego crossed the stop line"
 --
 -- [reasons.red_then_off]
--- says = "the light was red and then off: whether it failed or its record did is not known"
+-- says = "the light was red and then off: whether the light or its recording failed is not known"
 --
 -- [reasons.light_turned]
 -- says = "the light turned {state} while the ego was crossing the stop line"
@@ -28,7 +28,7 @@ WHERE c.control = 'traffic_light'
 
 -- @condition
 -- The ego crosses the line between two steps: if the light changed between them, too, both states must agree. No light goes off after red:
--- either the light failed or its record did.
+-- either the light or its recording failed.
 SELECT drive_id, ego_id, t_ns, ref_id,
     CASE WHEN begin_seen AND NOT coalesce(state = 'off' AND forbids(state_before), false) AND (NOT coalesce(changed, false) OR forbids(state_before) = forbids(state)) THEN NOT forbids(state) END AS holds,
     CASE WHEN NOT begin_seen THEN why('line_crossing_unseen')

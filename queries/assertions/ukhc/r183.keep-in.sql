@@ -24,8 +24,8 @@
 -- why = "our default: who is at the near edge up to so far ahead, or beside the ego, may have to be passed with room"
 --
 -- [reasons.near_side_taken]
--- says = "the near side is, or may be, somebody else's, or has another lane of the ego's direction, which keeps the ego from it"
--- advice = "no recording decides that"
+-- says = "somebody is, or may be, on the near side, or the near side has another lane of the ego's direction, and either keeps the ego away from the edge"
+-- advice = "no better recording can decide this"
 
 -- @reference
 SELECT drive_id, ego_id, t_out_ns AS t_ns, occurrence, turn, across

@@ -30,7 +30,7 @@
 --
 -- [reasons.zigzags_unseen]
 -- says = "the log does not show the {zigzag_m:g} m before the crossing"
--- advice = "begin recording before them"
+-- advice = "begin recording earlier"
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, coalesce(t_out_ns, t_in_ns) AS t_out_ns, crossing_id, kind, occurrence,
@@ -50,7 +50,7 @@ WITH passed_object AS (
     LEFT JOIN road_user a ON a.drive_id = p.drive_id AND a.actor_id = p.object_id
     -- A vehicle that stands in one place from its first sample to its last is parked, or waits all that time.
     LEFT JOIN (
-        SELECT drive_id, actor_id, max(x_m) - min(x_m) > moved_m() OR max(y_m) - min(y_m) > moved_m() AS has_moved FROM state_dynamics GROUP BY ALL
+        SELECT drive_id, actor_id, max(x_m) - min(x_m) > standing_spread_m() OR max(y_m) - min(y_m) > standing_spread_m() AS has_moved FROM state_dynamics GROUP BY ALL
     ) m ON m.drive_id = p.drive_id AND m.actor_id = p.object_id
     LEFT JOIN (SELECT DISTINCT drive_id, actor_id, t_ns FROM lane_occupancy WHERE drivable) o
         ON o.drive_id = p.drive_id AND o.actor_id = p.object_id AND o.t_ns = p.t_ns

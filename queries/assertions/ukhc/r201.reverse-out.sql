@@ -14,7 +14,7 @@
 -- [params.back_mps]
 -- default = 0.5
 -- unit = "m/s"
--- why = "our default: slower than this is standing: recorded speeds of standing vehicles tremble"
+-- why = "our default: slower than this is standing: recorded speeds of standing vehicles jitter"
 
 -- @reference
 SELECT e.drive_id, e.ego_id, e.t_ns, lag(e.lanelet_id) OVER step_order AS from_lanelet_id

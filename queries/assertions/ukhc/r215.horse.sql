@@ -36,7 +36,7 @@ FROM beside b
 LEFT JOIN actor a ON a.drive_id = b.drive_id AND a.actor_id = b.object_id
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, object_id, kept_between(clearance_m, blur_m, $clearance_m) >= $clearance_m AND ego_speed_mps <= $speed_mps AS holds,
+SELECT drive_id, ego_id, t_ns, object_id, sure_between_steps(clearance_m, blur_m, $clearance_m) >= $clearance_m AND ego_speed_mps <= $speed_mps AS holds,
     CASE WHEN clearance_m IS NOT NULL AND ego_speed_mps IS NOT NULL
         THEN why('passed_at_speed', {'clearance_m': clearance_m, 'speed_mps': ego_speed_mps}) END AS reason
 FROM beside

@@ -49,12 +49,12 @@
 -- @condition
 -- Clearways and zig-zags are not in the map tables. Crossings are judged by r191.no-stopping.
 WITH standstill_step AS (
-    SELECT e.drive_id, e.ego_id, e.t_ns, s.t_start_ns, s.begin_seen, e.speed_mps, queue.stands_for_somebody IS NULL AS is_in_doubt,
+    SELECT e.drive_id, e.ego_id, e.t_ns, s.t_start_ns, s.begin_seen, e.speed_mps, queue.stands_because_of_somebody IS NULL AS is_in_doubt,
         max(CASE WHEN e.indicator = 'hazard' OR m.t_ns IS NOT NULL THEN e.t_ns END) OVER standstill_so_far IS NOT NULL AS may_be_emergency,
-        max(CASE WHEN queue.stands_for_somebody THEN e.t_ns END) OVER standstill_so_far AS t_queue_ns, max(CASE WHEN queue.stands_for_somebody IS NULL THEN e.t_ns END) OVER standstill_so_far AS t_doubt_ns
+        max(CASE WHEN queue.stands_because_of_somebody THEN e.t_ns END) OVER standstill_so_far AS t_queue_ns, max(CASE WHEN queue.stands_because_of_somebody IS NULL THEN e.t_ns END) OVER standstill_so_far AS t_doubt_ns
     FROM ego_state e
     LEFT JOIN in_way w ON w.drive_id = e.drive_id AND w.ego_id = e.ego_id AND w.t_ns = e.t_ns
-    CROSS JOIN LATERAL (SELECT stands_for(w.object_id, w.actor_class, w.gap_m, w.along_mps, w.known, $near_m, $hazard_m, $queue_mps) AS stands_for_somebody) queue
+    CROSS JOIN LATERAL (SELECT stands_because_of(w.object_id, w.actor_class, w.gap_m, w.along_mps, w.known, $near_m, $hazard_m, $queue_mps) AS stands_because_of_somebody) queue
     LEFT JOIN standstill s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.t_start_ns <= e.t_ns AND s.t_end_ns >= e.t_ns
     LEFT JOIN (SELECT DISTINCT drive_id, ego_id, t_ns FROM ego_mode WHERE mode IN ('minimal_risk_manoeuvre', 'emergency_manoeuvre') AND is_on) m
         ON m.drive_id = e.drive_id AND m.ego_id = e.ego_id AND m.t_ns = e.t_ns

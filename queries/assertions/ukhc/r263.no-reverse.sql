@@ -18,7 +18,7 @@
 -- [params.back_mps]
 -- default = 0.5
 -- unit = "m/s"
--- why = "our default: slower than this is standing: recorded speeds of standing vehicles tremble"
+-- why = "our default: slower than this is standing: recorded speeds of standing vehicles jitter"
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, v_long_mps AS observed, -$back_mps AS required
