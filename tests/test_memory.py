@@ -272,10 +272,10 @@ def test_the_database_spills_into_a_folder_of_its_own(tmp_path: Path, monkeypatc
 
 
 def test_margins_have_the_same_bytes_however_batches_are_cut(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(margins, "BLOCK", 100)
+    monkeypatch.setattr(margins, "ROW_GROUP_ROWS", 100)
     found = []
     for states in (batch.BATCH_STATES, 1):
-        monkeypatch.setattr(batch, "STATES", states)
+        monkeypatch.setattr(batch, "BATCH_STATES", states)
         result = check(
             overtakes("safe", "near_miss", out=tmp_path / str(states), margins=True, annotate=False), Silent()
         )

@@ -91,7 +91,7 @@ def cases() -> dict[str, Case]:
 def sampled(rate_hz: int) -> dict[str, Case]:
     """Return the scenes of the library with so many samples a second."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sampling, "RATE_HZ", rate_hz)
+        patch.setattr(sampling, "SAMPLE_RATE_HZ", rate_hz)
         return {scene.name: Case(memory.drive_of_scene(replace(scene)).trace, scene.map_text) for scene in all_scenes()}
 
 

@@ -59,7 +59,7 @@ class Notes(Silent):
 @pytest.mark.slow
 def test_batches_of_one_drive_give_the_same_rows(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = check(settings(*logs()), Silent())
-    monkeypatch.setattr(batch, "STATES", 1)
+    monkeypatch.setattr(batch, "BATCH_STATES", 1)
     single = check(settings(*reversed(logs())), Silent())
     assert whole.verdicts.equals(single.verdicts)
     assert whole.findings.equals(single.findings)
@@ -83,8 +83,8 @@ def test_where_the_egos_are_cut_does_not_show(ragged: Path, tmp_path: Path, monk
     """Every file of the results has the same bytes, and every table of the kept database the same rows."""
     found = []
     for room in (batch.PART_PAIRS, 1, 1100):
-        monkeypatch.setattr(batch, "MEETINGS", room)
-        monkeypatch.setattr(surroundings, "AT_ONCE", room)
+        monkeypatch.setattr(batch, "PART_PAIRS", room)
+        monkeypatch.setattr(surroundings, "SCENES_AT_ONCE", room)
         out = tmp_path / str(room)
         asked = settings(ragged, ego="all", out=out, keep_db=True, margins=True, rules=("all",))
         result = check(asked, Silent())
@@ -111,7 +111,7 @@ def test_parts_of_a_drive_hold_its_egos_once(ragged: Path, monkeypatch: pytest.M
     assert drive.meetings["ego"] == 3 * steps["ego"] + 1
     assert drive.size == sum(drive.meetings.values())
     for room in (1, 1100, 10**9):
-        monkeypatch.setattr(batch, "MEETINGS", room)
+        monkeypatch.setattr(batch, "PART_PAIRS", room)
         judged = [sorted(set(EGOS) - set(resting)) for resting in batch.egos_left_out([drive])]
         assert [ego for part in judged for ego in part] == sorted(EGOS)
         assert all(len(part) == 1 or sum(drive.meetings[e] for e in part) <= room for part in judged)
@@ -121,8 +121,8 @@ def test_parts_of_a_drive_hold_its_egos_once(ragged: Path, monkeypatch: pytest.M
 def test_a_drive_of_which_a_part_fails_leaves_nothing(
     ragged: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(batch, "MEETINGS", 1)
-    monkeypatch.setattr(batch, "STATES", 1)
+    monkeypatch.setattr(batch, "PART_PAIRS", 1)
+    monkeypatch.setattr(batch, "BATCH_STATES", 1)
     calls = []
 
     def third(con: duckdb.DuckDBPyConnection, *args: Any, **options: Any) -> None:
@@ -316,7 +316,7 @@ def test_a_map_beside_the_drive_makes_map_rules_unknown_not_failed() -> None:
 
 
 def test_kept_database_has_every_stage(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(batch, "STATES", 1)  # several batches, and two maps that take turns
+    monkeypatch.setattr(batch, "BATCH_STATES", 1)  # several batches, and two maps that take turns
     result = check(settings(*logs(), out=tmp_path, keep_db=True, margins=True), Silent())
     with duckdb.connect(str(tmp_path / "drivelint.duckdb"), read_only=True) as con:
         count = {

@@ -304,7 +304,7 @@ def test_an_annotated_log_can_be_checked_and_annotated_again(logged: tuple[Path,
 def test_the_same_bytes_alone_or_in_a_crowd_in_any_order(
     out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(batch, "STATES", 1)
+    monkeypatch.setattr(batch, "BATCH_STATES", 1)
     others = run(tmp_path / "a", *(CASE / f"{name}.csv" for name in ("collision", "safe")))
     alone = run(tmp_path / "b", CASE / "near_miss.csv")
     for path in (*others.glob("*"), *alone.glob("*")):
@@ -315,7 +315,7 @@ def test_a_drive_with_too_many_boxes_shows_every_nth_step(
     out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     whole = messages(the(out / "annotated", "safe"), "scene")
-    monkeypatch.setattr(actors, "BOXES", 300)
+    monkeypatch.setattr(actors, "MAX_BOXES", 300)
     path = the(run(tmp_path, CASE / "safe.csv"), "safe")
     fewer = messages(path, "scene")
     assert sum(len(said.content.entities) for said in fewer) <= 300

@@ -30,7 +30,7 @@ def con() -> Iterator[duckdb.DuckDBPyConnection]:
 
 
 def only(monkeypatch: pytest.MonkeyPatch, found: Mapping[str, tuple[str, set[str]]]) -> None:
-    monkeypatch.setattr(derivations, "ALWAYS", ())
+    monkeypatch.setattr(derivations, "ALWAYS_NEEDED", ())
     made = {table: derivations.Derivation(table, sql, frozenset(reads)) for table, (sql, reads) in found.items()}
     monkeypatch.setattr(derivations, "derivations", lambda: made)
 
@@ -48,7 +48,7 @@ def test_each_runs_after_what_it_reads(
         monkeypatch,
         {"step": (STEP, set()), "visited_cell": (CELL, {"step"}), "clock": (CLOCK, {"step", "visited_cell"})},
     )
-    monkeypatch.setattr(derive, "LARGE", large)  # on one connection, or on two
+    monkeypatch.setattr(derive, "ONE_WORKER_STATES", large)  # on one connection, or on two
     told: list[str] = []
     derive.derive(con, ["clock"], of_the_map=False, advance=told.append)
     assert told == ["step", "visited_cell", "clock"]

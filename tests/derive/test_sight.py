@@ -183,7 +183,8 @@ def test_the_reason_is_the_objects_own_track() -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "speed", "asked"), [(None, 0.5, "record its class"), ("object", 0.0, "no better recording can decide this")]
+    ("kind", "speed", "asked"),
+    [(None, 0.5, "record its class"), ("object", 0.0, "no better recording can decide this")],
 )
 def test_what_is_or_may_be_no_vehicle_in_the_lane_ahead(kind: str | None, speed: float, asked: str) -> None:
     t = times(4.0)

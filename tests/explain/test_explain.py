@@ -355,7 +355,7 @@ def test_a_long_drive_is_judged_in_part_where_the_verdict_is_the_same(
 ) -> None:
     from drivelint.explain import case
 
-    monkeypatch.setattr(case, "AROUND_NS", (1_000_000, 3_000_000_000))
+    monkeypatch.setattr(case, "CROP_MARGINS_NS", (1_000_000, 3_000_000_000))
     errors = MeasurementErrors(0.0, 0.0, 0.0, 2)
     found = of(folder, "contact-signature@collision", errors=errors)
     told = found.sensitivity

@@ -11,12 +11,14 @@ import pytest
 
 from drivelint import catalogue
 from drivelint.reasons import words
-from drivelint.reasons.words import Words
+from drivelint.reasons.words import ReasonText
 from drivelint.resources import folder
 
 OWN = {
-    "came_by": Words("{object_id} came by with {room_m:.2f} m between[, behind {behind_id}]", "record it until {t_ns}"),
-    "stood": Words("{braked}, and it stood until then"),
+    "came_by": ReasonText(
+        "{object_id} came by with {room_m:.2f} m between[, behind {behind_id}]", "record it until {t_ns}"
+    ),
+    "stood": ReasonText("{braked}, and it stood until then"),
 }
 
 
@@ -50,15 +52,15 @@ def test_a_reason_may_be_an_argument(con: duckdb.DuckDBPyConnection) -> None:
         words.sentence(reason, 0, OWN)
         == "o came by with 1.00 m between: record it until 0.000 s, and it stood until then"
     )
-    code, arguments = words.parse(reason)
-    assert words.asks(code, arguments, 0, OWN) == words.sentence(reason, 0, OWN)
-    assert words.asks("stood", {"braked": "it"}, 0, OWN) is None
+    code, arguments = words.parse_reason(reason)
+    assert words.advice_sentence(code, arguments, 0, OWN) == words.sentence(reason, 0, OWN)
+    assert words.advice_sentence("stood", {"braked": "it"}, 0, OWN) is None
     assert words.codes_in(code, json.dumps(arguments)) == {"stood", "came_by"}
 
 
 @pytest.mark.parametrize("text", ["plain words", '{"code":', '{"code":1, "args": 2}', "{}", ""])
 def test_plain_text_is_its_own_words(text: str) -> None:
-    assert words.parse(text).code == words.TEXT
+    assert words.parse_reason(text).code == words.PLAIN_TEXT
     assert words.sentence(text) == text
 
 
@@ -69,11 +71,11 @@ def test_a_code_without_words_is_told_as_it_is() -> None:
 @pytest.mark.parametrize("says", ["{x.__class__}", "{x!r}", "{x:>99999999}", "{", "}", "{x[0]}", "{x:d}"])
 def test_only_arguments_stand_in_braces(says: str) -> None:
     with pytest.raises(msgspec.ValidationError, match="write an argument as"):
-        msgspec.convert({"says": says}, Words)
+        msgspec.convert({"says": says}, ReasonText)
 
 
 def test_every_shared_code_is_given_somewhere() -> None:
-    given = {code for rule in catalogue.load().values() for code in rule.reason_codes}
+    given = {code for rule in catalogue.load_rules().values() for code in rule.reason_codes}
     texts = [
         file.read_text(encoding="utf-8")
         for part in ("macros", "derive")
@@ -84,11 +86,14 @@ def test_every_shared_code_is_given_somewhere() -> None:
     named = set(re.findall(r"'(\w+)'", "\n".join(texts))) | {
         f"ego_speed_{w}" for w in ("unknown", "contradicted", "unknown_near", "contradicted_near")
     }
-    named |= {"object_speed_unknown", "object_speed_contradicted", words.TEXT}
-    assert sorted(words.shared().keys() - given - named) == []
+    named |= {"object_speed_unknown", "object_speed_contradicted", words.PLAIN_TEXT}
+    assert sorted(words.shared_texts().keys() - given - named) == []
 
 
 def test_no_code_of_a_rule_hides_a_shared_one() -> None:
     assert [
-        f"{rule.id}: {code}" for rule in catalogue.load().values() for code in rule.reasons if code in words.shared()
+        f"{rule.id}: {code}"
+        for rule in catalogue.load_rules().values()
+        for code in rule.reasons
+        if code in words.shared_texts()
     ] == []

@@ -132,7 +132,7 @@ def test_lanes_near_a_scene_are_kept_once_and_true_to_a_decimetre(
 
 
 def test_batches_do_not_change_the_evidence(result: Result, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(batch, "STATES", 1)
+    monkeypatch.setattr(batch, "BATCH_STATES", 1)
     single = run(tmp_path)
     for name in list(TABLE_OF_FILE)[4:]:
         assert getattr(single, name).equals(getattr(result, name)), name
@@ -241,7 +241,7 @@ def test_the_tables_can_be_read_by_column(result: Result) -> None:
 
 @pytest.mark.parametrize("most", [1, 5, 7, 100])
 def test_moments_are_cut_between_egos(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(surroundings, "AT_ONCE", most)
+    monkeypatch.setattr(surroundings, "SCENES_AT_ONCE", most)
     counts = [(1, 3), (2, 2), (3, 9), (4, 1), (5, 1)]
     runs = list(surroundings._some(counts))
     assert [ego for first, end in runs for ego in range(first, end)] == [1, 2, 3, 4, 5]

@@ -141,7 +141,7 @@ def _explained(error: msgspec.ValidationError, text: str, where: str) -> RuleErr
     if not unknown:
         return RuleError(f"{where}:{line_of(text, keys)}: header: {message}")
     key = unknown[1]
-    known = _OF.get(path.partition(".")[0], Header)
+    known = _OF.get(re.split(r"\W", path)[0], Header)
     nearest = hint(key, known.__struct_fields__)
     line = line_of(text, f"{keys}.{key}" if keys else key)
     return RuleError(f"{where}:{line}: unknown key {key!r} in the header; {nearest}")

@@ -148,7 +148,7 @@ def test_the_text_of_trajectories_is_read_as_their_elements_are(
     path.write_text(change(path.read_text("utf-8")), "utf-8")
     assert (extract_trajectories(path.read_bytes()) is not None) == fast
     first = read(path, ego="1")
-    monkeypatch.setattr(commonroad, "cut", lambda _content: None)
+    monkeypatch.setattr(commonroad, "extract_trajectories", lambda _content: None)
     second = read(path, ego="1")
     assert first.tables == second.tables
     assert len(states(first)) == 20 + 7 + 1
@@ -158,7 +158,7 @@ def test_the_text_of_trajectories_is_read_as_their_elements_are(
 def test_real_trajectories_read_either_way(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     path = shared(f"commonroad/{name}.xml")
     first = read(path, need_ego=False)
-    monkeypatch.setattr(commonroad, "cut", lambda _content: None)
+    monkeypatch.setattr(commonroad, "extract_trajectories", lambda _content: None)
     assert first.tables == read(path, need_ego=False).tables
 
 

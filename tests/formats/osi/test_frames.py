@@ -90,7 +90,7 @@ def test_rows_are_laid_out_in_batches(monkeypatch: Any) -> None:
     row = dict.fromkeys(COLUMNS, 1.0) | {"actor_class": 0, "indicator": 0, "brake_light": -1}
     many = objects([row | {"number": k} for k in range(300)], heights=True)  # ids of one byte and of two
     whole = moving_objects(many)[0].tobytes()
-    monkeypatch.setattr(frames, "ROWS", 7)
+    monkeypatch.setattr(frames, "BLOCK_ROWS", 7)
     assert moving_objects(many)[0].tobytes() == whole
     assert [item.id.value for item in parsed(whole).moving_object] == list(range(300))
 
