@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from drivelint.road.contract import MapTables
+    from drivelint.road.map_reader import MapTables
 
 Span = tuple[float, float]
 EVER: Span = (-1.0, 1e6)

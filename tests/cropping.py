@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from drivelint.road.contract import MapTables
+    from drivelint.road.map_reader import MapTables
 
     Floats = NDArray[np.float64]
 

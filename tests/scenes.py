@@ -25,7 +25,7 @@ from drivelint.engine.derive import derive
 from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.engine.session import JudgingSession
 from drivelint.formats import load_map
-from drivelint.road.contract import MapSource, MapTables
+from drivelint.road.map_reader import MapSource, MapTables
 from drivelint.sql import store
 from drivelint.sql.derivations import derivations, needed
 from tests.formats.opendrive import xodr

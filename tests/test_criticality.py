@@ -12,7 +12,7 @@ from drivelint import catalogue
 from drivelint.drive.trace import IngestOptions
 from drivelint.engine.batch import Drive
 from drivelint.formats import load_map, read_trace
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 from drivelint.sql import store
 from tests import followers, scenes
 from tests.shared_data import shared

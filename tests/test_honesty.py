@@ -15,7 +15,7 @@ from shapely.affinity import rotate, translate
 from drivelint.drive.trace import IngestOptions
 from drivelint.engine.batch import Drive
 from drivelint.formats import load_map, read_trace
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 from tests import blinding, scenes
 from tests.blinding import EVER, Span
 from tests.shared_data import shared
@@ -23,7 +23,7 @@ from tests.shared_data import shared
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from drivelint.road.contract import MapTables
+    from drivelint.road.map_reader import MapTables
 
 RUNS = ("safe", "near_miss", "collision")
 EGO, VBP, OV = "1", "2", "3"

@@ -18,7 +18,7 @@ from drivelint.engine.derive import derive as derived
 from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY, Memory
 from drivelint.errors import UsageError
 from drivelint.evaluate import evaluate as evaluated
-from drivelint.evaluate.run import Evaluation
+from drivelint.evaluate.evaluation import Evaluation
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
 from drivelint.result.evidence import gather as gathered

@@ -19,12 +19,12 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from drivelint.demo import memory
 from drivelint.demo import scene as sampling
+from drivelint.demo import scene_drive
 from drivelint.demo.scenes import all_scenes
 from drivelint.engine.batch import Drive
 from drivelint.formats import load_map
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 from tests.clean.chapters import CHAPTERS
 from tests.clean.judging import named
 from tests.clean.planted import PLANTED
@@ -77,7 +77,7 @@ FAR = Move(1.234, -3210.5, 987.25, 1_234_567, 3)
 @cache
 def cases() -> dict[str, Case]:
     """Return the scenes of the library, and the drives with a planted violation by the rule that they break."""
-    found = {scene.name: Case(memory.drive_of_scene(scene).trace, scene.map_text) for scene in all_scenes()}
+    found = {scene.name: Case(scene_drive.drive_of_scene(scene).trace, scene.map_text) for scene in all_scenes()}
     for each in PLANTED:
         if each.chapter:
             story = Story(each.nation)
@@ -92,7 +92,9 @@ def sampled(rate_hz: int) -> dict[str, Case]:
     """Return the scenes of the library with so many samples a second."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sampling, "SAMPLE_RATE_HZ", rate_hz)
-        return {scene.name: Case(memory.drive_of_scene(replace(scene)).trace, scene.map_text) for scene in all_scenes()}
+        return {
+            scene.name: Case(scene_drive.drive_of_scene(replace(scene)).trace, scene.map_text) for scene in all_scenes()
+        }
 
 
 def moved(case: Case, move: Move) -> Case:

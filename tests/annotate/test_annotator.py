@@ -18,7 +18,7 @@ from shapely.geometry import Point, Polygon
 from shapely.ops import unary_union
 
 from drivelint import __version__
-from drivelint.annotate import actors, events
+from drivelint.annotate import actor_boxes, result_messages
 from drivelint.annotate.annotator import LAYOUT_FILE
 from drivelint.drive.trace import IngestOptions
 from drivelint.engine import batch
@@ -26,8 +26,8 @@ from drivelint.errors import TraceError
 from drivelint.evaluate import evaluate
 from drivelint.formats import read_trace
 from drivelint.report.progress import Silent
-from drivelint.result.contract import TABLE_OF_FILE
 from drivelint.result.files import OutputError, parquet_bytes
+from drivelint.result.schemas import TABLE_OF_FILE
 from drivelint.run import CheckOptions, check
 from tests.annotate.files import seeking, streaming, verify
 from tests.annotate.viewer import SCENES, messages, played, points, shown, yaw
@@ -315,7 +315,7 @@ def test_a_drive_with_too_many_boxes_shows_every_nth_step(
     out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     whole = messages(the(out / "annotated", "safe"), "scene")
-    monkeypatch.setattr(actors, "MAX_BOXES", 300)
+    monkeypatch.setattr(actor_boxes, "MAX_BOXES", 300)
     path = the(run(tmp_path, CASE / "safe.csv"), "safe")
     fewer = messages(path, "scene")
     assert sum(len(said.content.entities) for said in fewer) <= 300
@@ -396,4 +396,4 @@ def test_a_headline_without_numbers_leaves_them_out() -> None:
         "observed": None,
         "required": 1.0,
     }
-    assert events.headline(row, {}) == "UNKNOWN a.b"
+    assert result_messages.headline(row, {}) == "UNKNOWN a.b"

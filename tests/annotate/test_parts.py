@@ -12,7 +12,7 @@ from google.protobuf import descriptor_pb2, descriptor_pool, message_factory, ti
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from drivelint.annotate import clock, events
+from drivelint.annotate import clock, result_messages
 from drivelint.annotate.tracks import tracks
 from drivelint.formats.foxglove import messages as foxglove
 from drivelint.formats.protobuf import wire
@@ -86,7 +86,10 @@ def test_our_messages_have_the_columns_of_the_table(name: str) -> None:
         line.split()[0] for line in sql.partition("\n);")[0].splitlines() if " NOT NULL" in line.partition("--")[0]
     ]
     assert content["required"] == needed
-    assert (events.schema(name).name, events.schema(name).encoding) == (f"drivelint.{name.title()}", "jsonschema")
+    assert (result_messages.schema(name).name, result_messages.schema(name).encoding) == (
+        f"drivelint.{name.title()}",
+        "jsonschema",
+    )
 
 
 def test_frames_give_their_log_times() -> None:

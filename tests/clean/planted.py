@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from drivelint.demo import memory
+from drivelint.demo import scene_drive
 from drivelint.demo.scenes import all_scenes
 from tests.clean.judging import named, told, verdicts
 
@@ -55,7 +55,7 @@ class Planted(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def _demo(scene: str, name: str) -> Drive:
-    return named(memory.drive_of_scene(next(s for s in all_scenes() if s.name == scene)), name)
+    return named(scene_drive.drive_of_scene(next(s for s in all_scenes() if s.name == scene)), name)
 
 
 PLANTED = msgspec.convert(

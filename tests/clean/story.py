@@ -14,7 +14,7 @@ import pyarrow as pa
 
 from drivelint.engine.batch import Drive
 from drivelint.formats import load_map
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 from tests import scenes
 from tests.clean.motion import CAR, HZ, Body, Plan, track
 from tests.clean.route import Route

@@ -18,8 +18,8 @@ from drivelint.convert import ConvertRequest, convert
 from drivelint.drive.trace import IngestOptions
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import read_trace
-from drivelint.formats.osi.frames import varint
-from drivelint.formats.osi.log import osi_ids
+from drivelint.formats.osi.encode import varint
+from drivelint.formats.osi.writer import osi_ids
 from drivelint.result.files import OutputError
 from tests.formats.osi import osi_log
 from tests.shared_data import ROOT
@@ -225,7 +225,7 @@ def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.M
         sink.write(b"half")
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("drivelint.formats.osi.log.write", full)
+    monkeypatch.setattr("drivelint.formats.osi.writer.write", full)
     with pytest.raises(OutputError, match=r"safe\.mcap: cannot be written: No space left") as error:
         convert(ConvertRequest(str(FIXTURE / "safe.csv"), "mcap", tmp_path, **SAFE))
     assert error.value.exit_code == 75

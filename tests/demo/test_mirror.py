@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from drivelint.demo.memory import drive_of_scene
+from drivelint.demo.scene_drive import drive_of_scene
 from drivelint.demo.scenes import all_scenes
 from tests.scenes import Row, judged
 

@@ -13,10 +13,10 @@ from drivelint.demo.line import straight
 from drivelint.demo.opendrive import opendrive
 from drivelint.demo.road import LANE_WIDTH_M, MPH, Handedness, Road, Sign
 from drivelint.formats import load_map
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 
 if TYPE_CHECKING:
-    from drivelint.road.contract import MapTables
+    from drivelint.road.map_reader import MapTables
 
 ROADS = {"plain": Road((straight(400.0),)), "two lanes": scenes.TWO_LANE_ROAD, "bend": scenes.BEND_ROAD, "side road": scenes.SIDE_ROAD,
          "exit": scenes.EXIT_ROAD, "country": scenes.COUNTRY_ROAD}  # fmt: skip

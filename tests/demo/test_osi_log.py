@@ -11,10 +11,10 @@ from mcap.reader import make_reader
 
 from drivelint.demo.actors import car, pedestrian
 from drivelint.demo.line import straight
-from drivelint.demo.memory import drive_of_scene
 from drivelint.demo.osi_log import osi_mcap
 from drivelint.demo.road import Road
 from drivelint.demo.scene import Scene
+from drivelint.demo.scene_drive import drive_of_scene
 from drivelint.demo.scenes import all_scenes
 from drivelint.drive.trace import IngestOptions
 from drivelint.formats import read_trace

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 
 from drivelint.formats import load_map
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 from tests.formats.opendrive import xodr
 from tests.scenes import LANE, Actor, Road, linked, moving, plan, times
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from drivelint.formats import load_map
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 from tests.formats.opendrive import xodr
 from tests.scenes import (
     Road,

@@ -12,8 +12,8 @@ import pytest
 from drivelint import catalogue
 from drivelint.formats import load_map
 from drivelint.inspect.advice import MAP_SIGNALS
-from drivelint.reasons.words import sentence
-from drivelint.road.contract import MapSource
+from drivelint.reasons.reason_text import sentence
+from drivelint.road.map_reader import MapSource
 from tests.derive.marked import shouldered
 from tests.formats.opendrive import xodr
 from tests.scenes import (

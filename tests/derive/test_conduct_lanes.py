@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from drivelint.formats import load_map
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 from tests.derive.marked import ease, marked, offsets, tables, tapering
 from tests.formats.opendrive import xodr
 from tests.scenes import (

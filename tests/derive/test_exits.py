@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from drivelint.formats import load_map
-from drivelint.reasons.words import sentence
-from drivelint.road.contract import MapSource
+from drivelint.reasons.reason_text import sentence
+from drivelint.road.map_reader import MapSource
 from tests import scenes
 from tests.derive.exit_scenes import MAIN, exit_road, leaver
 from tests.scenes import Actor, Road, derived, drive, moving, rows, standing, times

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from drivelint.reasons.words import sentence
+from drivelint.reasons.reason_text import sentence
 from tests.derive.junction_scenes import ARM, R, cross, star
 from tests.scenes import Actor, Road, derived, drive, moving, rows, standing, times
 

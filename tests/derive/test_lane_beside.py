@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from drivelint.formats import load_map
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 from tests.derive.jointed_road import jointed
 from tests.derive.marked import apart, ease, mark, marked, shouldered
 from tests.formats.opendrive import xodr

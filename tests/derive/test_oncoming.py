@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from drivelint.reasons.words import sentence
+from drivelint.reasons.reason_text import sentence
 from tests import blinding
 from tests.scenes import LANE, Road, derived, drive, moving, road, rows, standing, tee, times
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from shapely import affinity
 from shapely.geometry import box
 
-from drivelint.reasons.words import sentence
+from drivelint.reasons.reason_text import sentence
 from tests import scenes
 from tests.derive.overtake_scene import scene
 from tests.scenes import LANE, Actor, Road, derived, drive, moving, road, rows, standing, swing, times

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from drivelint.formats import load_map
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 from tests.derive.junction_scenes import cross, crosswalk
 from tests.derive.marked import marked
 from tests.formats.opendrive import xodr

@@ -8,7 +8,7 @@ import pytest
 
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
-from drivelint.result.contract import TABLE_OF_FILE
+from drivelint.result.schemas import TABLE_OF_FILE
 from tests.formats.logs import cars, mapping, read, table
 
 

@@ -9,7 +9,7 @@ import pytest
 from drivelint.errors import ExitCode, MapError, UsageError
 from drivelint.formats import load_map, read_source
 from drivelint.formats import map_registry as registry
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 from tests.formats.opendrive.xodr import LINE, checks, geometry, lane, lanelets, load, road, rows, section, xodr
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from tests.formats.opendrive.xodr import checks, lanelets, points, rows
 from tests.shared_data import shared
 
 if TYPE_CHECKING:
-    from drivelint.road.contract import MapTables
+    from drivelint.road.map_reader import MapTables
 
 # file, handedness and where it is from, roads, lanelets, links
 MAPS = {

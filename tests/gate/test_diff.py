@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drivelint.gate import compare_results, diff, words
+from drivelint.gate import compare_results, descriptions, diff
 from drivelint.result import gate_file as store
 from drivelint.result.gate import STANDINGS, ComparedFinding, Gate, Waiver
 from drivelint.result.model import Result
@@ -235,7 +235,7 @@ def test_unknowns_that_appeared_are_counted_with_their_reason() -> None:
     (opened,) = diff.compare(base, new).opened
     assert (opened.rule_id, opened.n, opened.base_n, opened.reason, opened.stable) == (SPEED, 3, 1, "fog", True)
     assert diff.compare(new, base).opened == ()
-    said_ = words.difference_text(diff.compare(base, new), [], "critical")
+    said_ = descriptions.difference_text(diff.compare(base, new), [], "critical")
     assert "More is unknown than was (2 verdicts): unknown is not pass\n  2: ukhc.r124.speed-limit: fog" in said_
 
 
@@ -258,7 +258,7 @@ def test_only_new_findings_of_stable_rules_at_or_above_the_severity_gate() -> No
 
 def test_json_holds_every_entry_and_the_counts() -> None:
     found = diff.compare(run([at(8), at(12, finding_id="x")]), run([at(8, margin=-20.0), at(15, finding_id="n")]))
-    told = json.loads(words.to_json(found, found.of("new"), "critical"))
+    told = json.loads(descriptions.to_json(found, found.of("new"), "critical"))
     assert told["counts"] == {"new": 1, "changed": 1, "unchanged": 0, "fixed": 1, "unknown": 0, "lost": 0}
     assert told["gating"] == ["n"]
     assert told["exit"] == {"code": 1, "why": "1 new finding at or above severity critical"}
@@ -267,7 +267,7 @@ def test_json_holds_every_entry_and_the_counts() -> None:
 
 
 def test_text_says_what_is_not_fixed() -> None:
-    told = words.difference_text(diff.compare(run([at(8)]), run([], OPEN)), [], "critical")
+    told = descriptions.difference_text(diff.compare(run([at(8)]), run([], OPEN)), [], "critical")
     assert "0 fixed (0 now pass, 0 now not applicable); gone but not fixed: 1 unknown now, 0 not looked at" in told
     assert "Not fixed: it cannot be told any more (1)" in told
     assert "(now unknown: the limit is not known)" in told

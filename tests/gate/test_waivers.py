@@ -11,7 +11,7 @@ import pytest
 from rich.console import Console
 
 from drivelint.errors import ExitCode, UsageError
-from drivelint.gate import Gate, GateInputs, Waiver, waivers, words
+from drivelint.gate import Gate, GateInputs, Waiver, descriptions, waivers
 from drivelint.report import junit, terminal
 from drivelint.result import gate_file as store
 from drivelint.result.model import Result, exit_status
@@ -156,7 +156,7 @@ def test_an_expired_waiver_waives_nothing_and_is_told() -> None:
     run = gated(waiver(expires="2026-11-19"), waiver(rule="none.*"), rows=[ROW])
     assert exit_status(run).code is ExitCode.FAILED
     assert run.gate is not None
-    assert list(words.waiver_warnings(run.gate)) == [
+    assert list(descriptions.waiver_warnings(run.gate)) == [
         "w:1: expired 2026-11-19 (jo): it waives nothing; 1 finding like that",
         "w:1: no finding is like that: none.* (jo); correct or drop it",
     ]

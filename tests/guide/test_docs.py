@@ -14,11 +14,11 @@ import pytest
 from drivelint import cli, guide
 from drivelint.catalogue.header import Conditions, Header
 from drivelint.drive.conditions import CONDITION_VALUES, ENV_VALUES
-from drivelint.drive.declared import MODES
+from drivelint.drive.declared_events import MODES
 from drivelint.formats.osi.extras import Event
 from drivelint.reasons.remedies import REMEDIES
 from drivelint.reasons.signals import SIGNALS
-from drivelint.result.contract import TABLE_OF_FILE
+from drivelint.result.schemas import TABLE_OF_FILE
 from drivelint.sql.store import column_comments
 from tests.guide.blocks import PAGES
 from tests.shared_data import ROOT

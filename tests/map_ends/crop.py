@@ -13,7 +13,7 @@ from drivelint.engine.batch import Drive, cut_batches
 from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.engine.session import JudgingSession
 from drivelint.formats import load_map, read_trace
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 from drivelint.sql import store
 from tests import cropping
 from tests.perception.compare import LEAST_S, write
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from drivelint.road.contract import MapTables
+    from drivelint.road.map_reader import MapTables
     from tests.perception.traffic import Track
     from tests.sumo.world import Files
 

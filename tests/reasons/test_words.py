@@ -10,8 +10,8 @@ import msgspec
 import pytest
 
 from drivelint import catalogue
-from drivelint.reasons import words
-from drivelint.reasons.words import ReasonText
+from drivelint.reasons import reason_text
+from drivelint.reasons.reason_text import ReasonText
 from drivelint.resources import folder
 
 OWN = {
@@ -36,36 +36,38 @@ def con() -> duckdb.DuckDBPyConnection:
 
 def test_arguments_are_filled_in_and_times_are_told_from_the_start(con: duckdb.DuckDBPyConnection) -> None:
     reason = why(con, "'came_by', {'object_id': 'o{1}', 'room_m': 1.256, 'behind_id': NULL, 't_ns': 7_500_000_000}")
-    assert words.sentence(reason, 2_000_000_000, OWN) == "o{1} came by with 1.26 m between: record it until 5.500 s"
+    assert (
+        reason_text.sentence(reason, 2_000_000_000, OWN) == "o{1} came by with 1.26 m between: record it until 5.500 s"
+    )
     reason = why(con, "'came_by', {'object_id': 'o', 'room_m': 1, 'behind_id': 'p', 't_ns': 0}")
-    assert words.sentence(reason, 0, OWN) == "o came by with 1.00 m between, behind p: record it until 0.000 s"
+    assert reason_text.sentence(reason, 0, OWN) == "o came by with 1.00 m between, behind p: record it until 0.000 s"
 
 
 def test_what_is_null_is_a_question_mark(con: duckdb.DuckDBPyConnection) -> None:
     reason = why(con, "'came_by', {'object_id': NULL, 'room_m': NULL::DOUBLE}")
-    assert words.sentence(reason, 0, OWN) == "? came by with ? m between: record it until ?"
+    assert reason_text.sentence(reason, 0, OWN) == "? came by with ? m between: record it until ?"
 
 
 def test_a_reason_may_be_an_argument(con: duckdb.DuckDBPyConnection) -> None:
     reason = why(con, "'stood', {'braked': why('came_by', {'object_id': 'o', 'room_m': 1, 't_ns': 0})}")
     assert (
-        words.sentence(reason, 0, OWN)
+        reason_text.sentence(reason, 0, OWN)
         == "o came by with 1.00 m between: record it until 0.000 s, and it stood until then"
     )
-    code, arguments = words.parse_reason(reason)
-    assert words.advice_sentence(code, arguments, 0, OWN) == words.sentence(reason, 0, OWN)
-    assert words.advice_sentence("stood", {"braked": "it"}, 0, OWN) is None
-    assert words.codes_in(code, json.dumps(arguments)) == {"stood", "came_by"}
+    code, arguments = reason_text.parse_reason(reason)
+    assert reason_text.advice_sentence(code, arguments, 0, OWN) == reason_text.sentence(reason, 0, OWN)
+    assert reason_text.advice_sentence("stood", {"braked": "it"}, 0, OWN) is None
+    assert reason_text.codes_in(code, json.dumps(arguments)) == {"stood", "came_by"}
 
 
 @pytest.mark.parametrize("text", ["plain words", '{"code":', '{"code":1, "args": 2}', "{}", ""])
 def test_plain_text_is_its_own_words(text: str) -> None:
-    assert words.parse_reason(text).code == words.PLAIN_TEXT
-    assert words.sentence(text) == text
+    assert reason_text.parse_reason(text).code == reason_text.PLAIN_TEXT
+    assert reason_text.sentence(text) == text
 
 
 def test_a_code_without_words_is_told_as_it_is() -> None:
-    assert words.sentence('{"code":"too_late"}') == "too late"
+    assert reason_text.sentence('{"code":"too_late"}') == "too late"
 
 
 @pytest.mark.parametrize("says", ["{x.__class__}", "{x!r}", "{x:>99999999}", "{", "}", "{x[0]}", "{x:d}"])
@@ -86,8 +88,8 @@ def test_every_shared_code_is_given_somewhere() -> None:
     named = set(re.findall(r"'(\w+)'", "\n".join(texts))) | {
         f"ego_speed_{w}" for w in ("unknown", "contradicted", "unknown_near", "contradicted_near")
     }
-    named |= {"object_speed_unknown", "object_speed_contradicted", words.PLAIN_TEXT}
-    assert sorted(words.shared_texts().keys() - given - named) == []
+    named |= {"object_speed_unknown", "object_speed_contradicted", reason_text.PLAIN_TEXT}
+    assert sorted(reason_text.shared_texts().keys() - given - named) == []
 
 
 def test_no_code_of_a_rule_hides_a_shared_one() -> None:
@@ -95,5 +97,5 @@ def test_no_code_of_a_rule_hides_a_shared_one() -> None:
         f"{rule.id}: {code}"
         for rule in catalogue.load_rules().values()
         for code in rule.reasons
-        if code in words.shared_texts()
+        if code in reason_text.shared_texts()
     ] == []

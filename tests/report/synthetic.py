@@ -6,8 +6,8 @@ from typing import Any
 
 import pyarrow as pa
 
-from drivelint.result.contract import arrow_schema
 from drivelint.result.model import Result
+from drivelint.result.schemas import arrow_schema
 
 SECOND = 1_000_000_000
 SDA = "ukhc.r162.safe-distance-ahead"

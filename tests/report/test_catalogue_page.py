@@ -8,7 +8,7 @@ import pytest
 
 from drivelint.catalogue import load_rules
 from drivelint.drive.conditions import CONDITION_TEXTS, ENV_VALUES
-from drivelint.drive.declared import EVENTS, MODES
+from drivelint.drive.declared_events import EVENTS, MODES
 from drivelint.errors import RuleError
 from drivelint.report import vocabulary
 from drivelint.report.catalogue_page import Clause, cited_clauses, clause_coverage, page, read_clauses

@@ -17,9 +17,9 @@ import pytest
 from drivelint.errors import UsageError
 from drivelint.report.html.reasons import VerdictReason, summarise_reasons, verdict_reason
 from drivelint.report.outputs import write
-from drivelint.result.contract import TABLE_OF_FILE
 from drivelint.result.load import load_result
 from drivelint.result.model import Result
+from drivelint.result.schemas import TABLE_OF_FILE
 from tests.report.pages import NASTY, Parsed, nasty, page
 from tests.report.synthetic import SECOND, drive, finding, result, rule, verdict
 from tests.result import fixture_result

@@ -16,9 +16,9 @@ import shapely
 
 from drivelint.engine import batch
 from drivelint.report.progress import Silent
-from drivelint.result.contract import TABLE_OF_FILE
 from drivelint.result.evidence import surroundings
 from drivelint.result.model import Result
+from drivelint.result.schemas import TABLE_OF_FILE
 from drivelint.run import CheckOptions, check
 from tests.result.fixture_result import FIXTURE, NAMES, run
 

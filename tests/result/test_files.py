@@ -11,9 +11,9 @@ import pytest
 from drivelint.errors import ExitCode, UsageError
 from drivelint.report.outputs import write
 from drivelint.result import files
-from drivelint.result.contract import OUTPUT_VERSION, TABLE_OF_FILE
 from drivelint.result.files import OutputError, parquet_bytes, publish
 from drivelint.result.load import load_result
+from drivelint.result.schemas import OUTPUT_VERSION, TABLE_OF_FILE
 from tests.report.synthetic import finding, result, table, verdict
 
 NAMES = {f"{name}.parquet" for name in TABLE_OF_FILE} | {"report.html", "summary.json", "junit.xml"}

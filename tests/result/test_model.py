@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from drivelint.errors import DriveLintError, ExitCode
-from drivelint.result.contract import empty_table
 from drivelint.result.model import Result, exit_code, exit_status
+from drivelint.result.schemas import empty_table
 from tests.report.synthetic import drive, result, rule, verdict
 
 LOST = drive("d2", status="not_judged", status_reason="d2.csv: no ego")

@@ -11,7 +11,7 @@ import pytest
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import MapError
 from drivelint.road.boundary_lanes import BoundedLane, build_lanes, side_driven_on
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 from drivelint.road.quality import MapQuality
 from tests.formats.opendrive.xodr import checks, geometry, lane, lanelets, load, road, rows, section, xodr
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from drivelint.drive.trace import IngestOptions
 from drivelint.engine.batch import Drive
 from drivelint.formats import load_map, read_trace
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 from tests.scenes import judged
 from tests.sumo.world import run
 

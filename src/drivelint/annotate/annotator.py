@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from drivelint.annotate.evidence import DangerSpaces, Evidence
     from drivelint.engine.batch import Drive
-    from drivelint.road.contract import MapTables
+    from drivelint.road.map_reader import MapTables
 
 LAYOUT_FILE = "viewer-layout.json"
 """Panels and topics as Foxglove and Lichtblick import them: there, topics are hidden until somebody asks for them."""

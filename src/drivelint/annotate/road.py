@@ -16,7 +16,7 @@ from drivelint.formats.foxglove import messages as foxglove
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from drivelint.road.contract import MapTables
+    from drivelint.road.map_reader import MapTables
 
 NEAR_M: Final = 40.0
 """Lanes within this distance of anybody's way are drawn (the way is kept on a grid of the same size)."""

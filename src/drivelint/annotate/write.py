@@ -10,21 +10,21 @@ import duckdb
 import numpy as np
 
 from drivelint import __version__
-from drivelint.annotate import actors, clock, events, marks, spaces
+from drivelint.annotate import actor_boxes, clock, danger_spaces, finding_markers, result_messages
 from drivelint.annotate.tracks import tracks
 from drivelint.formats.foxglove import messages as foxglove
 from drivelint.formats.mcap.copy import Original, is_mcap
 from drivelint.formats.mcap.writer import Sink
-from drivelint.result.contract import OUTPUT_VERSION
+from drivelint.result.schemas import OUTPUT_VERSION
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from mcap.records import Schema
 
-    from drivelint.annotate.actors import RecordChunk
-    from drivelint.annotate.events import Message
+    from drivelint.annotate.actor_boxes import RecordChunk
     from drivelint.annotate.evidence import Evidence
+    from drivelint.annotate.result_messages import Message
     from drivelint.annotate.road import Road
     from drivelint.drive.trace import Trace
 
@@ -76,26 +76,39 @@ class _Writer:
     def run(self) -> None:
         """Write every channel, then metadata and attachment."""
         evidence, times, start = self._said.evidence, self._clock, self._start_ns
-        boxes = actors.select_boxes(self._tracks)
+        boxes = actor_boxes.select_boxes(self._tracks)
         senses = self._said.senses
         scene = foxglove.schema("SceneUpdate")
         if self._said.road is not None and len(boxes.rows):
             at = times.at(start)
             lanes = self._said.road.near(self._tracks.x[boxes.rows], self._tracks.y[boxes.rows], at)
-            self._few("map", "protobuf", scene, [events.Message(at, lanes)])
-        self._many("scene", scene, lambda channel: actors.messages(boxes, times, channel))
+            self._few("map", "protobuf", scene, [result_messages.Message(at, lanes)])
+        self._many("scene", scene, lambda channel: actor_boxes.messages(boxes, times, channel))
         if not self._moves:  # the log's own frames are not ours to speak of
             self._many(
-                "tf", foxglove.schema("FrameTransform"), lambda channel: actors.ego_transforms(boxes, times, channel)
+                "tf",
+                foxglove.schema("FrameTransform"),
+                lambda channel: actor_boxes.ego_transforms(boxes, times, channel),
             )
-        self._few("danger_spaces", "protobuf", scene, spaces.messages(evidence, self._tracks, times))
-        self._few("markers", "protobuf", scene, marks.messages(evidence, self._tracks, times, senses))
+        self._few("danger_spaces", "protobuf", scene, danger_spaces.messages(evidence, self._tracks, times))
+        self._few("markers", "protobuf", scene, finding_markers.messages(evidence, self._tracks, times, senses))
         self._few(
-            "verdicts", "json", events.schema("verdict"), events.verdict_messages(evidence.verdicts, times, start)
+            "verdicts",
+            "json",
+            result_messages.schema("verdict"),
+            result_messages.verdict_messages(evidence.verdicts, times, start),
         )
-        self._few("findings", "json", events.schema("finding"), events.finding_messages(evidence.findings, times))
         self._few(
-            "log", "protobuf", foxglove.schema("Log"), events.log_messages(evidence.verdicts, times, start, senses)
+            "findings",
+            "json",
+            result_messages.schema("finding"),
+            result_messages.finding_messages(evidence.findings, times),
+        )
+        self._few(
+            "log",
+            "protobuf",
+            foxglove.schema("Log"),
+            result_messages.log_messages(evidence.verdicts, times, start, senses),
         )
         self._sink.add_metadata("drivelint", self._facts(boxes.every))
         self._sink.add_attachment("summary.json", "application/json", self._said.summary, times.at(start))
@@ -110,7 +123,7 @@ class _Writer:
         for first, group in _cut(messages):
             size = np.array([len(m.data) for m in group])
             log_time = np.array([m.log_time for m in group], np.uint64)
-            heads = actors.message_headers(channel, log_time, size, first)
+            heads = actor_boxes.message_headers(channel, log_time, size, first)
             records = b"".join(part for head, m in zip(heads, group, strict=True) for part in (head.tobytes(), m.data))
             place = np.cumsum(size + heads.shape[1]) - size - heads.shape[1]
             self._sink.add_chunk(records, {channel: np.stack([log_time, place.astype(np.uint64)], axis=1)})

@@ -40,7 +40,7 @@ import yaml
 from drivelint.casefile import merged_cases
 from drivelint.casefile.scene import Row, column_of, complete_scene
 from drivelint.errors import RuleError
-from drivelint.reasons.words import codes_in
+from drivelint.reasons.reason_text import codes_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

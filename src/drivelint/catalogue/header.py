@@ -13,7 +13,7 @@ from drivelint.drive import conditions
 from drivelint.errors import RuleError
 from drivelint.phrases import hint
 from drivelint.reasons import signals
-from drivelint.reasons.words import ReasonText
+from drivelint.reasons.reason_text import ReasonText
 
 Kind = Literal["invariant", "execution", "precondition", "postcondition"]
 Seconds = float | str

@@ -15,7 +15,7 @@ from drivelint.catalogue.header import Header, line_of, parse_header
 from drivelint.catalogue.sections import Section, split
 from drivelint.errors import RuleError
 from drivelint.phrases import hint
-from drivelint.reasons.words import shared_texts
+from drivelint.reasons.reason_text import shared_texts
 from drivelint.resources import folder
 from drivelint.sql import store
 

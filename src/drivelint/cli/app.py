@@ -18,8 +18,8 @@ from drivelint import __version__
 from drivelint.cli import docs as docs_
 from drivelint.cli import explain as explain_
 from drivelint.cli import inputs, options, results, rules, values
-from drivelint.cli.shell import print_rich, run_interruptible
-from drivelint.cli.shell import progress as bar
+from drivelint.cli.console import print_rich, run_interruptible
+from drivelint.cli.console import progress as bar
 from drivelint.errors import DriveLintError, ExitCode
 
 if TYPE_CHECKING:

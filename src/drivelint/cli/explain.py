@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from drivelint.cli import options, values
-from drivelint.cli.shell import print_rich, run_interruptible
+from drivelint.cli.console import print_rich, run_interruptible
 
 
 def explain(

@@ -26,7 +26,7 @@ def report(
 
     Files: report.html, junit.xml, report.sarif, report.xqar, report.md. Prints the name of the one that was written.
     """
-    from drivelint.report.targets import REPORT_FORMATS
+    from drivelint.report.report_formats import REPORT_FORMATS
     from drivelint.result.files import publish
     from drivelint.result.load import load_result
 
@@ -52,18 +52,18 @@ def diff(
 
     Exit codes: 0 no new finding of a stable rule at or above --fail-on; 1 there is one; 2 usage error.
     """
-    from drivelint.gate import compare_results, words
+    from drivelint.gate import compare_results, descriptions
     from drivelint.result.load import load_result
 
     earlier, later = load_result(base), load_result(new)
     least = later.fail_on if fail_on is None else fail_on.value
     found, failing = compare_results(earlier, later, (base.resolve().name, new.resolve().name), least)
     if format_ is options.DiffFormat.json:
-        typer.echo(words.to_json(found, failing, least))
+        typer.echo(descriptions.to_json(found, failing, least))
     elif format_ is options.DiffFormat.markdown:
         from drivelint.report import markdown
 
         typer.echo(markdown.difference(found, failing, least, later.gate))
     else:
-        typer.echo(words.difference_text(found, failing, least, later.gate))
+        typer.echo(descriptions.difference_text(found, failing, least, later.gate))
     raise typer.Exit(int(ExitCode.FAILED if failing else ExitCode.OK))

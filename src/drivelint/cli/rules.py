@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from drivelint.cli import options
-from drivelint.cli.shell import print_rich, run_interruptible
+from drivelint.cli.console import print_rich, run_interruptible
 
 app = typer.Typer(help="List, show, write and test the rules.", rich_markup_mode=None)
 

@@ -16,11 +16,11 @@ from drivelint.errors import MapError, UsageError
 from drivelint.formats import expand_traces, read_trace
 from drivelint.formats.files import CANONICAL_FILES
 from drivelint.formats.map_registry import root_element_name
-from drivelint.formats.osi import log as osi_log
+from drivelint.formats.osi import writer as osi_log
 from drivelint.formats.osi.extras import ego_independent_quality
 from drivelint.phrases import listed
 from drivelint.result.files import OutputError, prepare_folder, publish
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 
 if TYPE_CHECKING:
     from pathlib import Path

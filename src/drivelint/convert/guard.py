@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 from drivelint.convert.tables import is_converted
 from drivelint.errors import UsageError
 from drivelint.formats.files import CANONICAL_FILES, is_canonical_folder
-from drivelint.formats.osi.log import LIBRARY
+from drivelint.formats.osi.writer import LIBRARY
 
 if TYPE_CHECKING:
     from pathlib import Path

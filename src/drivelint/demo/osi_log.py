@@ -11,7 +11,7 @@ from mcap.writer import CompressionType, Writer
 from drivelint.demo.opendrive import MAKER
 from drivelint.demo.states import HOST_ID, states
 from drivelint.drive.trace import SIZE_COLUMNS, STATE_COLUMNS
-from drivelint.formats.osi.frames import Objects, ground_truth_head, moving_objects
+from drivelint.formats.osi.encode import Objects, ground_truth_head, moving_objects
 from drivelint.formats.osi.schema import GROUND_TRUTH, VERSION, descriptor_set
 
 if TYPE_CHECKING:

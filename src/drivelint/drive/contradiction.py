@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.contrary import mismatched_samples
 from drivelint.drive.jumps import (
     MOTION_COLUMNS,
     MOVING_MPS,
@@ -24,6 +23,7 @@ from drivelint.drive.jumps import (
 )
 from drivelint.drive.order import wrapped
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
+from drivelint.drive.velocity_mismatch import mismatched_samples
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:

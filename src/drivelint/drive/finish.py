@@ -11,11 +11,11 @@ import pyarrow as pa
 from drivelint.drive import actors as actor_rows
 from drivelint.drive import checks, contradiction, ego, jumps
 from drivelint.drive.align import align_to_ego
+from drivelint.drive.clock_restart import unknown_at_restarts
 from drivelint.drive.headlights import with_headlight_events
 from drivelint.drive.motion import complete_velocities
 from drivelint.drive.order import sorted_states, steps, without_duplicates, wrapped
-from drivelint.drive.removed import without_removed_actors
-from drivelint.drive.restart import unknown_at_restarts
+from drivelint.drive.removed_actors import without_removed_actors
 from drivelint.drive.trace import (
     BRAKE_LIGHTS,
     INDICATORS,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.off_track import outlier_samples
+from drivelint.drive.outliers import outlier_samples
 from drivelint.drive.trace import QualityFinding
 from drivelint.phrases import listed
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pyarrow.compute as pc
 
-from drivelint.drive import own_map
+from drivelint.drive import embedded_map
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.trace import IngestOptions, QualityFinding, Trace
 from drivelint.errors import DriveLintError, MapError
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.engine.map_library import MapLibrary
-    from drivelint.road.contract import MapTables
+    from drivelint.road.map_reader import MapTables
 
 BATCH_STATES: Final = 400_000  # a batch costs little more than its longest drive, and its tables still fit in a GiB
 PART_PAIRS: Final = 1_500_000
@@ -155,7 +155,7 @@ def drive_with_map(trace: Trace, library: MapLibrary) -> Drive:
         if not library.takes_own(trace.path, trace.embedded_map):
             raise
         return Drive(
-            with_quality_finding(trace, own_map.unusable_finding(f"the log's own map is not used: {error}")), None
+            with_quality_finding(trace, embedded_map.unusable_finding(f"the log's own map is not used: {error}")), None
         )
     for check, doubt in doubts.items():
         trace = with_quality_finding(trace, QualityFinding(check, "warning", doubt))

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
     from numpy.typing import NDArray
 
-    from drivelint.road.contract import MapTables
+    from drivelint.road.map_reader import MapTables
 
 DOUBT_SAMPLES: Final = 80  # where the side is known, every drive is looked at: it must cost next to nothing
 VOTE_SAMPLES: Final = 400  # moving states looked at, evenly spread: enough to vote, cheap for a long log

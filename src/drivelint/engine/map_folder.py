@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Final
 from drivelint.errors import MapError
 from drivelint.formats.map_registry import READERS, read_source, root_element_name
 from drivelint.phrases import listed
-from drivelint.road import geo
+from drivelint.road import geo_reference
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from drivelint.road.contract import MapSource
+    from drivelint.road.map_reader import MapSource
 
 MANIFEST: Final = "maps.csv"
 _HEAD_BYTES = 65536
@@ -50,7 +50,11 @@ class MapFolder:
 
     def referenced(self, reference: str) -> MapSource | None:
         """Return the map with this geo reference, if it is the only one that has it."""
-        found = [source for source in self.sources() if geo.same_reference(geo.reference_of(source) or "", reference)]
+        found = [
+            source
+            for source in self.sources()
+            if geo_reference.same_reference(geo_reference.reference_of(source) or "", reference)
+        ]
         return found[0] if len(found) == 1 else None
 
     def sources(self) -> Sequence[MapSource]:

@@ -26,9 +26,9 @@ from drivelint.engine.map_folder import MANIFEST, MapFolder
 from drivelint.errors import MapError, UsageError
 from drivelint.formats.map_registry import load_map, read_source
 from drivelint.phrases import listed
-from drivelint.road import geo
-from drivelint.road.contract import MapSource
+from drivelint.road import geo_reference
 from drivelint.road.handedness import correction_hint, opposite_side
+from drivelint.road.map_reader import MapSource
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import DriveInput
     from drivelint.engine.map_fit import LaneHeadings, OneWayLanes
-    from drivelint.road.contract import MapTables
+    from drivelint.road.map_reader import MapTables
 
 MOVING_MPS = 1.0
 OFF_MAP_M = 50.0  # beyond the map's own lanes by this much, a drive is somewhere else
@@ -148,8 +148,8 @@ class MapLibrary:
         if (
             reference
             and theirs
-            and not geo.same_reference(reference, theirs)
-            and geo.different_places(reference, theirs)
+            and not geo_reference.same_reference(reference, theirs)
+            and geo_reference.different_places(reference, theirs)
         ):
             found["geo_reference_differs"] = (
                 f"the log's coordinates are {reference!r}, the map's {theirs!r}: if they are not of one place and frame, give the "

@@ -10,9 +10,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from drivelint.errors import UsageError
-from drivelint.evaluate import stage
-from drivelint.evaluate.run import Evaluation, PlanRecorder
-from drivelint.evaluate.terms import Binding
+from drivelint.evaluate import temp_tables
+from drivelint.evaluate.evaluation import Evaluation, PlanRecorder
+from drivelint.evaluate.sql_fragments import Binding
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -52,7 +52,7 @@ def evaluate(
     try:
         run.judge()
     finally:
-        stage.drop_tables(con)
+        temp_tables.drop_tables(con)
 
 
 def query_plans(con: duckdb.DuckDBPyConnection, rule: Rule) -> list[str]:
@@ -68,6 +68,6 @@ def query_plans(con: duckdb.DuckDBPyConnection, rule: Rule) -> list[str]:
             run.prepare()
             run.rule(binding)
         finally:
-            stage.drop_tables(con)
+            temp_tables.drop_tables(con)
         plans += run.plans
     return plans

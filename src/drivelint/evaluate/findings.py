@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from drivelint.evaluate import terms
+from drivelint.evaluate import sql_fragments
 
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
@@ -38,11 +38,11 @@ WITH _fails AS (
 ), _runs AS (
     SELECT *, sum(fresh) OVER (PARTITION BY {_SERIES}, seg ORDER BY {order} ROWS UNBOUNDED PRECEDING) AS run FROM _fails
 ), _worst AS (
-    SELECT {_SERIES}, seg, run, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.deciding_step(rule)} AS worst
+    SELECT {_SERIES}, seg, run, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {sql_fragments.deciding_step(rule)} AS worst
         FROM _runs GROUP BY ALL)
 SELECT $_no AS rule_no, drive_id, ego_id, {"worst.who" if combined else "object_id"} AS object_id, profile, ref_id,
     t_start_ns, t_end_ns, worst.t AS t_worst_ns, coalesce(worst.code, 'violated') AS code, worst.reason AS reason,
-    {terms.measure_columns(rule, "worst.")}
+    {sql_fragments.measure_columns(rule, "worst.")}
 FROM _worst
 """
 
@@ -62,7 +62,7 @@ WITH _seen AS (
         least(t_worst_ns + 30_000_000_000, greatest(t_worst_ns + 5_000_000_000, t_end_ns + 2_000_000_000)) AS t_to_ns
     FROM _stretch s WHERE rule_no = $_no
 )
-SELECT s.rule_no, s.drive_id, s.ego_id, {series}, false AS near, j.t_ns, {terms.measure_columns(rule, "j.")}, j.holds
+SELECT s.rule_no, s.drive_id, s.ego_id, {series}, false AS near, j.t_ns, {sql_fragments.measure_columns(rule, "j.")}, j.holds
 FROM _seen s
 JOIN _judged j ON j.drive_id = s.drive_id AND j.ego_id = s.ego_id AND j.profile IS NOT DISTINCT FROM s.profile
     AND j.ref_id IS NOT DISTINCT FROM s.ref_id{whose} AND j.t_ns BETWEEN s.t_from_ns AND s.t_to_ns
@@ -87,7 +87,7 @@ def settled_courses_sql(rule: Rule) -> str:
     who = "coalesce(object_id, '')" if rule.per_object else "''"
     steps = f"""SELECT drive_id, ego_id, {who} AS object_id, '' AS profile, NULL::INTEGER AS ref_id, '' AS label, t_ns,
         observed, required, holds, gain FROM _state"""
-    return _near(rule, near, f"{terms.condition_ctes(rule)}, _steps AS ({steps})", "_steps")
+    return _near(rule, near, f"{sql_fragments.condition_ctes(rule)}, _steps AS ({steps})", "_steps")
 
 
 def near_miss_courses_sql(rule: Rule) -> str:
@@ -109,7 +109,7 @@ INSERT INTO _course BY NAME
 WITH {before + ", " if before else ""}_near AS ({near}
     QUALIFY row_number() OVER (PARTITION BY drive_id, ego_id, profile ORDER BY margin, t_worst_ns, object_id, ref_id) <= {MOST_NEAR_COURSES}
 )
-SELECT $_no AS rule_no, s.drive_id, s.ego_id, {series}, true AS near, j.t_ns, {terms.measure_columns(rule, "j.")}, j.holds
+SELECT $_no AS rule_no, s.drive_id, s.ego_id, {series}, true AS near, j.t_ns, {sql_fragments.measure_columns(rule, "j.")}, j.holds
 FROM _near s
 JOIN {steps} j ON j.drive_id = s.drive_id AND j.ego_id = s.ego_id AND j.profile = s.profile
     AND j.ref_id IS NOT DISTINCT FROM s.ref_id{whose}{episode}
@@ -127,6 +127,6 @@ def margins_sql(rule: Rule) -> str:
     return f"""
 INSERT INTO _margin BY NAME
 SELECT $_no AS rule_no, drive_id, ego_id, profile, {who} AS object_id, ref_id, t_ns,
-    {terms.measure_columns(rule)}, holds
+    {sql_fragments.measure_columns(rule)}, holds
 FROM _judged WHERE t_ns IS NOT NULL AND {"applies IS DISTINCT FROM false" if rule.kind == "invariant" else "true"}
 """

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from drivelint.evaluate import applicability, terms
+from drivelint.evaluate import applicability, sql_fragments
 
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
@@ -74,22 +74,22 @@ def first_pass_sql(rule: Rule, partial: bool) -> str:
     Just its grid: the same number of rows and the same sum of the time stamps' 64-bit hashes, which a lost or a doubled
     row cannot keep. Groups that are whole and nowhere applicable are left out; all others wait for the second pass.
     """
-    numbers = terms.measure_columns(rule, "s.worst.")
+    numbers = sql_fragments.measure_columns(rule, "s.worst.")
     who = " AND g.object_id = s.object_id" if rule.per_object else ""
     return f"""
 INSERT INTO _group BY NAME
-WITH {terms.condition_ctes(rule)}, _seen AS (
+WITH {sql_fragments.condition_ctes(rule)}, _seen AS (
     SELECT {_GROUP}, count(*) AS n, sum(hash(t_ns)::HUGEINT) AS signature, count(*) FILTER (applies
         AND holds) AS n_kept,
         count(*) FILTER (NOT applies) AS n_out, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns,
-            {terms.deciding_step(rule)} AS worst
+            {sql_fragments.deciding_step(rule)} AS worst
     FROM _state GROUP BY ALL)
 SELECT $_no AS rule_no, g.drive_id, g.ego_id, g.object_id, coalesce(g.whole AND s.n_kept = s.n, false) AS clean,
     s.t_start_ns, s.t_end_ns, g.n, s.worst.t AS t_worst_ns, {numbers}, coalesce(s.worst.code, 'kept') AS code,
         s.worst.reason AS reason
 FROM _grid_group g
 LEFT JOIN _seen s ON g.drive_id = s.drive_id AND g.ego_id = s.ego_id{who} AND g.n = s.n AND g.signature = s.signature
-{terms.todo_join(partial, "g")}
+{sql_fragments.todo_join(partial, "g")}
 WHERE g.grid = '{OBJECT_GRID if rule.per_object else STEP_GRID}' AND s.n_out IS DISTINCT FROM g.n
 """
 
@@ -98,7 +98,7 @@ def profile_set_sql(rule: Rule) -> str:
     """SQL for `_profile_set`: per subject the profiles asked for and those that the condition returns, or ''."""
     return f"""
 CREATE OR REPLACE TEMP TABLE _profile_set AS
-WITH {terms.condition_ctes(rule)}, _known AS (
+WITH {sql_fragments.condition_ctes(rule)}, _known AS (
     SELECT s.drive_id, s.ego_id, p.profile FROM _subject s CROSS JOIN (SELECT profile FROM profile WHERE selected) p
     UNION SELECT drive_id, ego_id, profile FROM _state WHERE profile IS NOT NULL)
 SELECT * FROM _known UNION ALL
@@ -139,13 +139,13 @@ def _grid(rule: Rule, partial: bool, unsettled: bool, watching: bool) -> str:
     if not joins:
         return f"""{first}, _grid AS (SELECT a.*, CASE WHEN a.applies IS NULL THEN 'applies_unknown' END AS doubt
             FROM _base a
-    {terms.todo_join(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
+    {sql_fragments.todo_join(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
     return f"""{first}, _restricted AS (
     SELECT a.* EXCLUDE (applies), a.applies AND {applicability.in_force_sql(rule, watching=watching)} AS applies,
         CASE WHEN a.applies IS NULL THEN 'applies_unknown' ELSE {applicability.unknown_reason_sql(rule, watching=watching)} END AS doubt
     FROM _base a
     {joins}
-), _grid AS (SELECT a.* FROM _restricted a{terms.todo_join(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
+), _grid AS (SELECT a.* FROM _restricted a{sql_fragments.todo_join(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
 
 
 def grid_sql(rule: Rule, partial: bool, watching: bool) -> str:
@@ -183,7 +183,7 @@ WHERE s.seg IS NULL OR k_begin = s.k_first OR t_ns - t_begin_ns >= $_exempt_ns""
     grid = _grid(rule, partial, True, watching) if unsettled else "_grid AS (SELECT * FROM _asked)"
     return f"""
 CREATE OR REPLACE TEMP TABLE _judged AS
-WITH {terms.condition_ctes(rule)}, {grid}, _joined AS (
+WITH {sql_fragments.condition_ctes(rule)}, {grid}, _joined AS (
     SELECT g.drive_id, g.ego_id, coalesce(g.object_id, '') AS object_id,
         {"p.profile" if rule.profiled else "''"} AS profile,
         coalesce(g.label, '') AS label, NULL::INTEGER AS ref_id, g.t_ns, g.k, g.seg,
@@ -225,7 +225,8 @@ WITH _live AS (SELECT * FROM _judged WHERE applies IS DISTINCT FROM false
     SELECT l.*, 0 AS episode FROM _live l SEMI JOIN (SELECT * FROM _flagged WHERE NOT broken) f USING ({_SERIES})
 ), _all AS (
     SELECT {_SERIES}, episode, count(*) AS n_expected, count(holds) AS n_judged, count(*) FILTER (NOT holds) AS n_fail,
-        min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {terms.deciding_step(rule)} AS worst, {terms.first_unknown_step(rule)} AS unknown
+        min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, {sql_fragments.deciding_step(rule)} AS worst,
+        {sql_fragments.first_unknown_step(rule)} AS unknown
     FROM _rows GROUP BY ALL
 ), _decided AS (SELECT *, CASE WHEN n_fail > 0 THEN 'fail' WHEN n_judged < n_expected THEN 'unknown'
     ELSE 'pass' END AS verdict FROM _all)
@@ -234,8 +235,8 @@ SELECT $_no AS rule_no, {_SERIES}, t_start_ns, t_end_ns, worst.t AS t_worst_ns, 
     CASE verdict WHEN 'unknown' THEN unknown.code WHEN 'fail' THEN coalesce(worst.code, 'violated')
         ELSE coalesce(worst.code, 'kept') END AS code,
     CASE verdict WHEN 'unknown' THEN unknown.reason ELSE worst.reason END AS reason,
-    {terms.measure_columns(rule, "worst.")},
-    {terms.finite_or_null("unknown.observed")} AS bound, unknown.required AS asked, n_expected, n_judged
+    {sql_fragments.measure_columns(rule, "worst.")},
+    {sql_fragments.finite_or_null("unknown.observed")} AS bound, unknown.required AS asked, n_expected, n_judged
 FROM _decided
 """
 
@@ -283,6 +284,6 @@ FROM lost_object l JOIN _subject s ON s.drive_id = l.drive_id AND s.ego_id = l.e
 CROSS JOIN LATERAL (SELECT l.t_from_ns - 1 AS t_ns) t
 LEFT JOIN pair q ON q.drive_id = l.drive_id AND q.ego_id = l.ego_id AND q.object_id = l.object_id AND q.t_ns = t.t_ns
 {applicability.condition_joins(rule, "l", "l.t_from_ns", watching=watching)}
-{terms.todo_join(partial, "l")}
+{sql_fragments.todo_join(partial, "l")}
 WHERE ({applicability.in_force_sql(rule, watching=watching)}) IS DISTINCT FROM false
 """

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from drivelint.evaluate import applicability, terms
+from drivelint.evaluate import applicability, sql_fragments
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,7 +25,7 @@ CREATE OR REPLACE TEMP TABLE _raw_reference AS
 WITH _author AS (
 {rule.sections["reference"]}
 ) SELECT r.* FROM _author r SEMI JOIN _subject s ON r.drive_id = s.drive_id
-    AND r.ego_id = s.ego_id{terms.todo_join(partial, "r")}
+    AND r.ego_id = s.ego_id{sql_fragments.todo_join(partial, "r")}
 """
 
 
@@ -114,7 +114,7 @@ def judged_steps_sql(rule: Rule, own_object: bool, watching: bool) -> str:
     empty = f"CASE WHEN g.sensor_range_m IS NULL THEN {'true' if rule.combine == 'all' else 'false'} END"
     return f"""
 CREATE OR REPLACE TEMP TABLE _judged AS
-WITH {terms.condition_ctes(rule)}, _grid AS ({source}
+WITH {sql_fragments.condition_ctes(rule)}, _grid AS ({source}
 ), _joined AS (
     SELECT g.ref_no AS ref_id, g.drive_id, g.ego_id, g.object_id, {"p.profile" if rule.profiled else "''"} AS profile,
         g.t_ns, g.seg, v.t_ns IS NULL OR v.applies AS applies, v.observed, v.required,
@@ -153,7 +153,7 @@ def _crowd(combined: bool) -> str:
 
 def _combination(rule: Rule) -> str:
     """CTE `_series`: the objects of one point as one step, by three-valued all or any; `who` decided it."""
-    decides = terms.step_by_rank(2, 0, 1) if rule.combine == "all" else terms.step_by_rank(0, 2, 1, "-")
+    decides = sql_fragments.step_by_rank(2, 0, 1) if rule.combine == "all" else sql_fragments.step_by_rank(0, 2, 1, "-")
     decides = decides.replace("'observed': observed", "'who': object_id, 'gain': gain, 'observed': observed")
     return f""", _same AS (
     SELECT ref_id, drive_id, ego_id, profile, t_ns, seg, count(*) - count(DISTINCT coalesce(object_id,
@@ -223,7 +223,7 @@ INSERT INTO _outcome BY NAME
 WITH {_coverage(rule)}, _steps AS (
     SELECT {_SERIES}, count(*) AS n_expected, count(holds) AS n_judged, count(*) FILTER (NOT holds) AS n_fail,
         count(*) FILTER (holds) AS n_hold,
-        {terms.deciding_step(rule)} AS worst, {terms.first_unknown_step(rule)} AS unknown
+        {sql_fragments.deciding_step(rule)} AS worst, {sql_fragments.first_unknown_step(rule)} AS unknown
     FROM _judged GROUP BY ALL
 ), _all AS (
     SELECT o.*, {"p.profile" if rule.profiled else "''"} AS profile, coalesce(c.n_points, 0) AS n_points, c.problem,
@@ -252,13 +252,13 @@ WITH {_coverage(rule)}, _steps AS (
 )
 SELECT $_no AS rule_no, drive_id, ego_id, profile, {who} AS object_id, ref_no AS ref_id, t_ref_ns,
     coalesce(t_min, a_ns) AS t_start_ns, coalesce(t_max, b_ns) AS t_end_ns, nullif(worst.t,
-        {terms.UNKNOWN_TIME_NS}) AS t_worst_ns,
+        {sql_fragments.UNKNOWN_TIME_NS}) AS t_worst_ns,
     nullif(CASE WHEN {unseen} THEN unknown.t
-        ELSE worst.t END, {terms.UNKNOWN_TIME_NS}) AS t_decides_ns,
+        ELSE worst.t END, {sql_fragments.UNKNOWN_TIME_NS}) AS t_decides_ns,
     coded[1] AS verdict, coalesce(coded[2], CASE coded[1] WHEN 'pass' THEN 'kept' ELSE 'violated' END) AS code,
     CASE WHEN coded[1] IN ('pass', 'fail') THEN worst.reason WHEN coded[1] = 'unknown' AND coded[2] IS NOT DISTINCT
         FROM unknown.code THEN unknown.reason END AS reason,
-    {terms.measure_columns(rule, "worst.")},
-    {terms.finite_or_null("unknown.observed")} AS bound, unknown.required AS asked, n_expected, n_judged
+    {sql_fragments.measure_columns(rule, "worst.")},
+    {sql_fragments.finite_or_null("unknown.observed")} AS bound, unknown.required AS asked, n_expected, n_judged
 FROM _coded
 """

@@ -15,14 +15,14 @@ from drivelint.engine.memory import DEFAULT_MEMORY
 from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.errors import UsageError
 from drivelint.explain import evidence
-from drivelint.explain.case import VerdictContext, sufficient_part
 from drivelint.explain.change import verdict_changes
 from drivelint.explain.model import Explanation, Sensitivity
 from drivelint.explain.outcome import first_unknown
 from drivelint.explain.sensitivity import MeasurementErrors, perturbed_copies, verdict_counts
 from drivelint.explain.source import open_drive
 from drivelint.explain.target import VerdictFilter, find_verdict
-from drivelint.reasons import words
+from drivelint.explain.verdict_context import VerdictContext, sufficient_part
+from drivelint.reasons import reason_text
 from drivelint.reasons.remedies import condition_of
 from drivelint.result import request as run_request
 from drivelint.result.load import load_result
@@ -133,7 +133,9 @@ def _case(asked: RunRequest, target: Target, memory: int | None) -> VerdictConte
 def _asks(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
     """Return what the reason of a verdict asks to record or to provide, with its subject; None: nothing."""
     if row["cause_code"] is not None:
-        return words.advice_sentence(row["cause_code"], json.loads(row["cause_args"] or "{}"), start_ns, rule.reasons)
+        return reason_text.advice_sentence(
+            row["cause_code"], json.loads(row["cause_args"] or "{}"), start_ns, rule.reasons
+        )
     return {"reference_time_unknown": rule.without_time, "anchor_unknown": rule.without_anchor}.get(
         row.get("reason_code", "")
     )

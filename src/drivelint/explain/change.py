@@ -11,8 +11,8 @@ from drivelint.explain.model import Change
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from drivelint.explain.case import VerdictContext
     from drivelint.explain.sandbox import Sandbox
+    from drivelint.explain.verdict_context import VerdictContext
 
 SEARCH_FACTORS: Final = (0.02, 0.1, 0.25, 0.5, 1.0, 3.0, 10.0)
 """How far to look in each direction, in parts of the value as it is (of 1 where it is 0)."""

@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.explain.model import Step, TableRows
-from drivelint.reasons import words
+from drivelint.reasons import reason_text
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def rows_read(
     if gate is not None:
         sql = "SELECT signal, available, reason FROM capability WHERE ego_id = ? AND signal = ?"
         told = sandbox.rows(sql, [target.row["ego_id"], gate])
-        return [TableRows("capability", [{**row, "reason": words.sentence(row["reason"])} for row in told], 0)]
+        return [TableRows("capability", [{**row, "reason": reason_text.sentence(row["reason"])} for row in told], 0)]
     found = []
     for table in dict.fromkeys((*(CONDITION_TABLES if condition else ()), *rule.reads)):
         columns = list(store.column_comments().get(table, {}))

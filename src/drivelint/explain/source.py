@@ -16,7 +16,7 @@ from drivelint.engine.batch import Drive, drive_with_map
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.formats import read_trace
-from drivelint.road.contract import MapTables
+from drivelint.road.map_reader import MapTables
 from drivelint.road.tables import schemas
 from drivelint.sql import store
 

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any, Final
 from rich.console import Group
 from rich.text import Text
 
-from drivelint.drive.declared import EVENTS
-from drivelint.explain.case import lacks_signal
+from drivelint.drive.declared_events import EVENTS
 from drivelint.explain.plot import plot
 from drivelint.explain.sensitivity import VERDICTS
+from drivelint.explain.verdict_context import lacks_signal
 from drivelint.reasons.remedies import condition_of, remedy
 from drivelint.result.text import seconds
 from drivelint.sql import store

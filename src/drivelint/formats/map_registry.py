@@ -7,7 +7,7 @@ import re
 from typing import TYPE_CHECKING
 
 from drivelint.errors import MapError, UsageError
-from drivelint.road.contract import MapOptions, MapReader, MapSource, MapTables
+from drivelint.road.map_reader import MapOptions, MapReader, MapSource, MapTables
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -75,7 +75,7 @@ def _probe(path: Path, options: IngestOptions) -> Probe:
         raise TraceError(f"{path}: cannot be read: {error.strerror or error}") from error
     if not head:
         raise TraceError(f"{path}: the file is empty (0 bytes): record or copy it again")
-    from drivelint.formats.osi.file import is_osi_trace
+    from drivelint.formats.osi.file_reader import is_osi_trace
 
     suffix = path.suffix.lower()
     if suffix == ".osi" and not is_osi_trace(head, path.stat().st_size):

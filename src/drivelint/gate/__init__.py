@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from drivelint.errors import UsageError
-from drivelint.gate import diff, waivers, words
+from drivelint.gate import descriptions, diff, waivers
 from drivelint.result.gate import ComparedFinding, Difference, Gate, Waiver
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def compare_results(
 ) -> tuple[Difference, list[ComparedFinding]]:
     """Return the difference of two results and its new findings that fail the run."""
     found = diff.compare(base, new, *names)
-    return found, words.gating_findings(found, fail_on, new.gate)
+    return found, descriptions.gating_findings(found, fail_on, new.gate)
 
 
 def _beside(settings_file: Path) -> list[Waiver]:

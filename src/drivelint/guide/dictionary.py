@@ -7,7 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Final
 
 from drivelint.guide.markdown import escaped, table
-from drivelint.result.contract import TABLE_OF_FILE
+from drivelint.result.schemas import TABLE_OF_FILE
 from drivelint.sql import store, syntax
 from drivelint.sql.derivations import derivations
 from drivelint.sql.store import column_comments, lifetimes

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint import __version__, guide
 from drivelint.errors import UsageError
-from drivelint.guide import commands as command_page
-from drivelint.guide import dictionary, html, reference
+from drivelint.guide import command_page, dictionary, html, reference
 from drivelint.guide.markdown import table
 from drivelint.result.files import publish
 
@@ -15,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from drivelint.guide.commands import Command
+    from drivelint.guide.command_page import Command
 
 PICTURES: Final = ("log.svg",)
 """The pictures of the guides."""

@@ -21,7 +21,7 @@ from drivelint.formats.registry import FORMATS
 from drivelint.inspect import advice, model, tracks
 from drivelint.inspect.content import content, size_bytes
 from drivelint.phrases import listed
-from drivelint.reasons import words
+from drivelint.reasons import reason_text
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
     from drivelint.drive.trace import Trace
-    from drivelint.road.contract import MapTables
+    from drivelint.road.map_reader import MapTables
 
 DEFAULT_RULES: Final = ("ukhc",)
 _SEVERITIES: Final = ("error", "warning", "info")
@@ -162,7 +162,7 @@ def _judgeable(
     for way in sorted(rows["exposure"], key=lambda row: str(row["ego_id"])):
         ego_id = way["ego_id"]
         mine = {row["signal"]: row for row in rows["capability"] if row["ego_id"] == ego_id}
-        lacking = {signal: words.sentence(row["reason"]) for signal, row in mine.items() if not row["available"]}
+        lacking = {signal: reason_text.sentence(row["reason"]) for signal, row in mine.items() if not row["available"]}
         if road_problem is not None:
             lacking["map"] = "the map is not used (see above)"
         never = advice.never_known(known.of[ego_id], lacking)
@@ -201,7 +201,7 @@ def _registration(row: dict[str, Any] | None) -> model.Registration | None:
         return None
     return model.Registration(
         ok=row["ok"],
-        reason=words.sentence(row["reason"]),
+        reason=reason_text.sentence(row["reason"]),
         steps=row["n_steps"],
         on_lane=row["n_on_lane"],
         moving=row["n_moving"],

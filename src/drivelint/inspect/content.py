@@ -18,7 +18,7 @@ from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables import parquet
 from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER, Mapping, TextLayout
 from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet
-from drivelint.inspect.draft import draft_mapping
+from drivelint.inspect.mapping_draft import draft_mapping
 from drivelint.inspect.model import Channel, Column, Content, Sheet
 
 if TYPE_CHECKING:

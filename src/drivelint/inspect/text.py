@@ -12,8 +12,8 @@ from rich.text import Text
 
 from drivelint.formats.registry import FORMATS
 from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER
+from drivelint.inspect.formatting import distance_text, handedness_text, holes_text, part_text, size_text
 from drivelint.inspect.rules_text import decidable_rules
-from drivelint.inspect.words import distance_text, handedness_text, holes_text, part_text, size_text
 from drivelint.phrases import listed, plural
 
 if TYPE_CHECKING:

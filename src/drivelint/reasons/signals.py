@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from drivelint.drive.conditions import CONDITION_TEXTS, CONDITION_VALUES
-from drivelint.drive.declared import MODES
+from drivelint.drive.declared_events import MODES
 from drivelint.formats.registry import FORMATS
 from drivelint.phrases import hint
 

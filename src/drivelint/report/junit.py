@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import pyarrow.compute as pc
 from lxml import etree
 
-from drivelint.gate import words
+from drivelint.gate import descriptions
 from drivelint.report.xml import replace_non_xml
 from drivelint.result.text import line, with_count
 
@@ -126,7 +126,7 @@ def _excuse(finding_id: str, gate: Gate | None) -> str:
     if gate is None or gate.gates(finding_id):
         return ""
     waiver = gate.waiver(finding_id)
-    return "known: the baseline has it" if waiver is None else words.waiver_reason(waiver)
+    return "known: the baseline has it" if waiver is None else descriptions.waiver_reason(waiver)
 
 
 def _suite(root: etree._Element, drive_id: str, cases: list[Case]) -> dict[str, int]:

@@ -9,7 +9,7 @@ from urllib.parse import quote
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.gate import words
+from drivelint.gate import descriptions
 from drivelint.phrases import plural
 from drivelint.report.html.anchors import finding_anchor
 from drivelint.result import counts
@@ -44,7 +44,7 @@ def render(result: Result, link: str = "report.html") -> bytes:
     blocks.append("\n".join(_packs(result)))
     gate = result.gate
     if gate is not None and gate.baseline is not None:
-        blocks.append(f"Against the baseline: {escaped(words.headline(gate.baseline))}.")
+        blocks.append(f"Against the baseline: {escaped(descriptions.headline(gate.baseline))}.")
     blocks += _findings(result, link)
     if gate is not None:
         blocks += _changes(gate, link)
@@ -69,13 +69,13 @@ def _within(blocks: Sequence[str]) -> list[str]:
 def difference(diff: Difference, failing: Sequence[ComparedFinding], fail_on: str, gate: Gate | None = None) -> str:
     """Return two results' difference as Markdown."""
     blocks = [
-        f"## drivelint diff: {escaped(words.headline(diff))}",
-        f"{escaped(words.exit_summary(failing, fail_on))}.",
+        f"## drivelint diff: {escaped(descriptions.headline(diff))}",
+        f"{escaped(descriptions.exit_summary(failing, fail_on))}.",
     ]
     rows = [(diff.base_name, diff.base_verdicts), (diff.name, diff.verdicts)]
     lines = [_row("result", *_HEAD), _row("---", *["---:"] * len(_HEAD))]
     blocks.append("\n".join([*lines, *(_row(code(name), *map(str, told.values())) for name, told in rows)]))
-    blocks += _entries(diff, words.STANDING_TITLES, gate, None)
+    blocks += _entries(diff, descriptions.STANDING_TITLES, gate, None)
     blocks += _opened(diff)
     for title, names in (("Only in the newer result", diff.new_only), ("Only in the base", diff.base_only)):
         if names:
@@ -157,7 +157,7 @@ def _excuse(row: Row, rule: Row | None, result: Result) -> str:
     gate = result.gate
     waiver = gate.waiver(row["finding_id"]) if gate else None
     if waiver is not None:
-        return words.waiver_reason(waiver)
+        return descriptions.waiver_reason(waiver)
     if gate is not None and gate.known(row["finding_id"]):
         return "known: the baseline has it"
     if rule is None or rule["status"] != "stable":
@@ -169,10 +169,10 @@ def _excuse(row: Row, rule: Row | None, result: Result) -> str:
 def _changes(gate: Gate, link: str) -> Iterator[str]:
     """Yield what a baseline and the waivers tell beyond the findings: new ones stand above."""
     if gate.baseline is not None:
-        titles = {standing: title for standing, title in words.STANDING_TITLES.items() if standing != "new"}
+        titles = {standing: title for standing, title in descriptions.STANDING_TITLES.items() if standing != "new"}
         yield from _entries(gate.baseline, titles, gate, link)
         yield from _opened(gate.baseline)
-    if said := [f"* {escaped(line)}" for line in words.waiver_warnings(gate)]:
+    if said := [f"* {escaped(line)}" for line in descriptions.waiver_warnings(gate)]:
         yield "### Waivers to look at\n\n" + "\n".join(said)
 
 
@@ -186,7 +186,7 @@ def _entries(diff: Difference, titles: dict[str, str], gate: Gate | None, link: 
             waived = " (waived)" if gate is not None and entry.finding_id in gate.waived else ""
             here = link is not None and standing == "changed"
             there = f" [see]({_target(link or '')}#{finding_anchor({'finding_id': entry.finding_id})})" if here else ""
-            lines.append(f"* {escaped(_short(words.finding_line(entry)))}{waived}{there}")
+            lines.append(f"* {escaped(_short(descriptions.finding_line(entry)))}{waived}{there}")
         shown = f" (the first {MAX_ROWS} of {len(entries)})" if len(entries) > MAX_ROWS else f" ({len(entries)})"
         body = "\n".join(lines)
         yield (
@@ -195,7 +195,7 @@ def _entries(diff: Difference, titles: dict[str, str], gate: Gate | None, link: 
 
 
 def _opened(diff: Difference) -> Iterator[str]:
-    groups = words.group_by_reason(diff.opened)
+    groups = descriptions.group_by_reason(diff.opened)
     if groups:
         total = sum(n for _, _, n in groups)
         lines = [_row("verdicts", "rules", "why"), _row("---:", "---", "---")]

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from drivelint.report import html, junit, summary
-from drivelint.report.targets import REPORT_FORMATS
+from drivelint.report.report_formats import REPORT_FORMATS
 from drivelint.result import gate_file, request
-from drivelint.result.contract import TABLE_OF_FILE
 from drivelint.result.files import parquet_bytes, publish
+from drivelint.result.schemas import TABLE_OF_FILE
 
 if TYPE_CHECKING:
     from pathlib import Path

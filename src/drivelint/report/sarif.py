@@ -16,7 +16,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint import __version__
-from drivelint.gate import words
+from drivelint.gate import descriptions
 from drivelint.result import counts
 from drivelint.result.model import exit_status
 from drivelint.result.text import comparison, number, seconds, subject, with_count
@@ -66,7 +66,7 @@ class _Run:
         total = counts.total(result.verdicts)
         properties = {"verdicts": total, "failOn": result.fail_on, "strict": result.strict}
         if result.gate is not None:
-            properties["gate"] = words.gate_counts(result.gate)
+            properties["gate"] = descriptions.gate_counts(result.gate)
         driver = {
             "name": "drivelint",
             "semanticVersion": __version__,
@@ -175,7 +175,7 @@ class _Run:
                 level = "note" if check["severity"] == "info" else check["severity"]
                 text = f"{check['check_id']}: {check['message']}"
                 yield _notice("data-quality", level, text, self._location(drive))
-        for text in words.waiver_warnings(result.gate) if result.gate else ():
+        for text in descriptions.waiver_warnings(result.gate) if result.gate else ():
             yield _notice("waiver", "warning", text)
 
 

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import duckdb
 
 from drivelint import __version__
-from drivelint.gate import words
+from drivelint.gate import descriptions
 from drivelint.result import counts
-from drivelint.result.contract import OUTPUT_VERSION
 from drivelint.result.model import exit_status
+from drivelint.result.schemas import OUTPUT_VERSION
 
 if TYPE_CHECKING:
     from drivelint.result.model import Result
@@ -33,7 +33,7 @@ def content(result: Result) -> dict[str, Any]:
         "exit": {"code": int(end.code), "name": end.code.name.lower(), "why": end.why},
         "fail_on": result.fail_on,
         "strict": result.strict,
-        "gate": None if result.gate is None else words.gate_counts(result.gate),
+        "gate": None if result.gate is None else descriptions.gate_counts(result.gate),
         "verdicts": counts.total(result.verdicts),
         "near_misses": near.num_rows,
         "findings": counts.tally(result.findings, counts.SEVERITIES, "severity"),

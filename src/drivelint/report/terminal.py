@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from drivelint.errors import ExitCode
-from drivelint.gate import words
+from drivelint.gate import descriptions
 from drivelint.result import counts
 from drivelint.result.model import exit_status
 from drivelint.result.text import NONE, comparison, number, seconds, with_count
@@ -121,8 +121,8 @@ def _gate(result: Result) -> Table | None:
     """Return what changed since the baseline, and the waivers that do not do what they are for."""
     if result.gate is None:
         return None
-    lines = [] if result.gate.baseline is None else [("baseline", words.headline(result.gate.baseline))]
-    lines += [("waiver", line) for line in words.waiver_warnings(result.gate)]
+    lines = [] if result.gate.baseline is None else [("baseline", descriptions.headline(result.gate.baseline))]
+    lines += [("waiver", line) for line in descriptions.waiver_warnings(result.gate)]
     if not lines:
         return None
     table = _table("Gate", "bold")

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from drivelint.drive.conditions import CONDITION_TEXTS, ENV_VALUES
-from drivelint.drive.declared import EVENTS, MODES
+from drivelint.drive.declared_events import EVENTS, MODES
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIGNAL_STATES
 from drivelint.road.signcodes import codes_of
 

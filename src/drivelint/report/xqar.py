@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 from lxml import etree
 
 from drivelint import __version__
-from drivelint.gate import words
+from drivelint.gate import descriptions
 from drivelint.report.xml import replace_non_xml
 from drivelint.result import counts
 from drivelint.result.text import line, seconds, subject, with_count
@@ -120,7 +120,7 @@ class _Checker:
         profile = "" if row["profile"] is None else f"profile {row['profile']}: "
         text = profile + line(row, start_ns)
         notes = [] if stable else [f"{self._rule['status']}, does not gate"]
-        notes += [words.waiver_reason(waiver)] if waiver else []
+        notes += [descriptions.waiver_reason(waiver)] if waiver else []
         notes += ["known: the baseline has it"] if gate and gate.known(row["finding_id"]) else []
         level = LEVELS[row["severity"]] if stable and waiver is None else INFORMATION
         issue = self._issue(level, f"{text} ({'; '.join(notes)})" if notes else text)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 import pyarrow as pa
 
 from drivelint.drive.trace import LOSS_CHECKS
-from drivelint.reasons.worded import make_reason_table
-from drivelint.result.contract import arrow_schema, conform
+from drivelint.reasons.reason_table import make_reason_table
+from drivelint.result.schemas import arrow_schema, conform
 
 if TYPE_CHECKING:
     import duckdb

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import pyarrow.parquet as pq
 
 from drivelint.errors import DriveLintError, ExitCode, UsageError
-from drivelint.result.contract import OUTPUT_VERSION, conform
+from drivelint.result.schemas import OUTPUT_VERSION, conform
 from drivelint.sql.store import column_comments
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ import pyarrow.parquet as pq
 
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.result import gate_file
-from drivelint.result.contract import OUTPUT_VERSION, TABLE_OF_FILE
 from drivelint.result.model import Result
+from drivelint.result.schemas import OUTPUT_VERSION, TABLE_OF_FILE
 
 if TYPE_CHECKING:
     from pathlib import Path

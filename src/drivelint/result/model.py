@@ -10,8 +10,8 @@ import pyarrow.compute as pc
 
 from drivelint.errors import ExitCode
 from drivelint.phrases import plural
-from drivelint.result.contract import TABLE_OF_FILE, conform, empty_table
 from drivelint.result.counts import SEVERITIES
+from drivelint.result.schemas import TABLE_OF_FILE, conform, empty_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

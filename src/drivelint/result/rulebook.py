@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from drivelint.result.contract import arrow_schema
+from drivelint.result.schemas import arrow_schema
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

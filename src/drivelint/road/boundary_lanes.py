@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 import shapely
 
-from drivelint.road import layout
+from drivelint.road import driving_side
 from drivelint.road.tables import from_columns, from_rows, repeated
 
 if TYPE_CHECKING:
@@ -316,12 +316,12 @@ def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
     right = sum(lane.right_against is True and lane.right_id in one_way for lane in one_way.values())
     if left != right:
         return "rht" if left > right else "lht"
-    return layout.side_driven_on([_course(lane.line) for lane in one_way.values() if lane.junction_id is None])
+    return driving_side.side_driven_on([_course(lane.line) for lane in one_way.values() if lane.junction_id is None])
 
 
-def _course(line: LaneGeometry) -> layout.OneWayLane:
+def _course(line: LaneGeometry) -> driving_side.OneWayLane:
     (x, y), (tx, ty) = line.centre.T, line.tangent.T
-    return layout.OneWayLane(x, y, np.full(len(line.s), np.nan), tx, ty, line.half_width)
+    return driving_side.OneWayLane(x, y, np.full(len(line.s), np.nan), tx, ty, line.half_width)
 
 
 def crossings(

@@ -8,7 +8,7 @@ import pytest
 
 from drivelint.errors import MapError
 from drivelint.formats import load_map, read_source
-from drivelint.road.contract import MapSource, MapTables
+from drivelint.road.map_reader import MapSource, MapTables
 from tests.formats.commonroad.scenario_text import bound, lanelet, scenario
 from tests.shared_data import shared
 

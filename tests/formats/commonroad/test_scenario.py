@@ -9,7 +9,7 @@ import pytest
 
 from drivelint.errors import TraceError
 from drivelint.formats.commonroad import scenario as commonroad
-from drivelint.formats.commonroad.text import extract_trajectories
+from drivelint.formats.commonroad.trajectories import extract_trajectories
 from tests.formats.logs import actors, at, log, put, quality, read, states
 from tests.shared_data import shared
 

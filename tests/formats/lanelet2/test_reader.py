@@ -10,7 +10,7 @@ import pytest
 
 from drivelint.errors import MapError
 from drivelint.formats import load_map, read_source
-from drivelint.road.contract import MapSource, MapTables
+from drivelint.road.map_reader import MapSource, MapTables
 from tests.shared_data import shared
 
 pytest.importorskip("lanelet2", reason="the package lanelet2 is not installed (extra 'lanelet2')")

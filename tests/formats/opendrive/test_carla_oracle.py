@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from drivelint.formats import load_map
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 from tests.formats.opendrive.xodr import lanelets, points, rows
 from tests.shared_data import shared
 

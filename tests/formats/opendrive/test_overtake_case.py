@@ -16,7 +16,7 @@ from tests.formats.opendrive.xodr import checks, lanelets, points
 from tests.shared_data import shared
 
 if TYPE_CHECKING:
-    from drivelint.road.contract import MapTables
+    from drivelint.road.map_reader import MapTables
 
 REGISTRATION = (2.618, 3.113)
 Bounds = dict[str, np.ndarray]

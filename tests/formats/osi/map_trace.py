@@ -6,7 +6,7 @@ from typing import Any
 
 from drivelint.formats import load_map
 from drivelint.formats.osi.schema import message_class
-from drivelint.road.contract import MapSource, MapTables
+from drivelint.road.map_reader import MapSource, MapTables
 
 
 def points(field: Any, line: list[tuple[float, float]]) -> None:

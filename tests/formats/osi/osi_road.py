@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drivelint.formats import load_map
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 from tests.formats.osi.map_trace import Trace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from drivelint.road.contract import MapTables
+    from drivelint.road.map_reader import MapTables
 
 AHEAD, BACK, BOTH = 2, 3, 4
 

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
-from drivelint.formats.osi import frames
-from drivelint.formats.osi.frames import Objects, ground_truth_head, moving_objects, traffic_light
+from drivelint.formats.osi import encode
+from drivelint.formats.osi.encode import Objects, ground_truth_head, moving_objects, traffic_light
 from drivelint.formats.osi.schema import GROUND_TRUTH, descriptor_set
 
 VECTORS = {
@@ -90,7 +90,7 @@ def test_rows_are_laid_out_in_batches(monkeypatch: Any) -> None:
     row = dict.fromkeys(COLUMNS, 1.0) | {"actor_class": 0, "indicator": 0, "brake_light": -1}
     many = objects([row | {"number": k} for k in range(300)], heights=True)  # ids of one byte and of two
     whole = moving_objects(many)[0].tobytes()
-    monkeypatch.setattr(frames, "BLOCK_ROWS", 7)
+    monkeypatch.setattr(encode, "BLOCK_ROWS", 7)
     assert moving_objects(many)[0].tobytes() == whole
     assert [item.id.value for item in parsed(whole).moving_object] == list(range(300))
 

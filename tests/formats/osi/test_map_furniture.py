@@ -10,7 +10,7 @@ import pytest
 from tests.formats.osi.osi_road import Road, table, two_way
 
 if TYPE_CHECKING:
-    from drivelint.road.contract import MapTables
+    from drivelint.road.map_reader import MapTables
 
 
 def stops(environment: MapTables) -> list[tuple[str, str, float]]:

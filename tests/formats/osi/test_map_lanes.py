@@ -14,7 +14,7 @@ from drivelint.drive.trace import IngestOptions
 from drivelint.errors import MapError
 from drivelint.formats import load_map, read_source, read_trace
 from drivelint.formats.osi.schema import message_class
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 from tests.formats.osi.map_trace import Trace
 from tests.shared_data import shared
 

@@ -12,7 +12,7 @@ import shapely
 from drivelint.drive.trace import IngestOptions
 from drivelint.errors import MapError
 from drivelint.formats import load_map, read_trace
-from drivelint.road.contract import MapSource, MapTables
+from drivelint.road.map_reader import MapSource, MapTables
 from tests.formats.osi.osi_road import AHEAD, BACK, BOTH, Road, table, two_way
 from tests.shared_data import shared
 

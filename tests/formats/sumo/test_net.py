@@ -6,7 +6,7 @@ import pytest
 
 from drivelint.errors import MapError
 from drivelint.formats import load_map
-from drivelint.road.contract import MapSource, MapTables
+from drivelint.road.map_reader import MapSource, MapTables
 from tests.formats.opendrive.xodr import checks, lanelets, points, rows
 
 WIDTH = 3.2

@@ -9,11 +9,11 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 from drivelint.errors import MapError
-from drivelint.formats import markup
+from drivelint.formats import safe_xml
 from drivelint.formats.commonroad.signs import Signs, points, read_signs, referenced_ids, signal_rows, stop_line_rows
 from drivelint.road.boundary_lanes import BoundedLane, build_lanes, crossings, side_driven_on, tables
-from drivelint.road.contract import MapOptions, MapSource, MapTables, environment_id
 from drivelint.road.handedness import correction_hint
+from drivelint.road.map_reader import MapOptions, MapSource, MapTables, environment_id
 from drivelint.road.quality import MapQuality
 from drivelint.road.tables import from_rows
 
@@ -48,8 +48,8 @@ class CommonRoadReader:
     def read(self, source: MapSource, request: MapOptions) -> MapTables:
         """Return the map's tables; `MapError` where the file is not XML or has no lanelet that can be built."""
         try:
-            root = markup.parse(source.content)
-        except markup.RefusedError as error:
+            root = safe_xml.parse(source.content)
+        except safe_xml.RefusedError as error:
             raise MapError(f"map {source.name} {error}") from None
         quality = MapQuality()
         signs = read_signs(root, _country(root), quality)

@@ -14,9 +14,9 @@ from lxml import etree
 
 from drivelint.drive.trace import ACTOR_CLASSES, QualityFinding, Recording, States
 from drivelint.errors import TraceError
-from drivelint.formats import markup
+from drivelint.formats import safe_xml
 from drivelint.formats.commonroad.lights import signal_states
-from drivelint.formats.commonroad.text import extract_trajectories
+from drivelint.formats.commonroad.trajectories import extract_trajectories
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -53,8 +53,8 @@ def read(path: Path) -> Recording:
     content = path.read_bytes()
     fast = extract_trajectories(content)
     try:
-        root = markup.parse(content if fast is None else fast.rest)
-    except markup.RefusedError as error:
+        root = safe_xml.parse(content if fast is None else fast.rest)
+    except safe_xml.RefusedError as error:
         raise TraceError(f"{path} {error}") from None
     step_s = _number(root.get("timeStepSize"))
     if not step_s > 0.0:

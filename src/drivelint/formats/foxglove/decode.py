@@ -15,7 +15,7 @@ import pyarrow.compute as pc
 from pyarrow import json
 
 from drivelint.formats.osi.decode import decode_error
-from drivelint.formats.osi.words import struct_field
+from drivelint.formats.osi.enum_codes import struct_field
 from drivelint.formats.protobuf import descriptors
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from drivelint.formats.frames import Vectors
+    from drivelint.formats.coordinate_frames import Vectors
     from drivelint.formats.mcap.reader import Packet
     from drivelint.formats.protobuf.descriptors import FieldTree
 

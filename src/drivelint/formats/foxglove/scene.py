@@ -12,6 +12,7 @@ import pyarrow.compute as pc
 
 from drivelint.drive.trace import QualityFinding, Recording
 from drivelint.errors import TraceError
+from drivelint.formats.coordinate_frames import Poses, TransformTree, clean_frame_name, fixed_frame, unit_quaternions
 from drivelint.formats.foxglove.decode import (
     FIELD_TREES,
     SCENE,
@@ -23,13 +24,12 @@ from drivelint.formats.foxglove.decode import (
     times,
     vectors,
 )
-from drivelint.formats.foxglove.scene_life import Deletions, EntityUpdates, persisted_states
-from drivelint.formats.frames import Poses, TransformTree, clean_frame_name, fixed_frame, unit_quaternions
+from drivelint.formats.foxglove.entity_lifetime import Deletions, EntityUpdates, persisted_states
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container
-from drivelint.formats.osi.words import struct_field
+from drivelint.formats.osi.enum_codes import struct_field
 from drivelint.formats.ros2.objects import class_code
-from drivelint.formats.ros2.rows import (
+from drivelint.formats.ros2.recorded_poses import (
     RecordedPoses,
     choose_clock,
     distinct,

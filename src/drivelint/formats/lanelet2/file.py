@@ -11,12 +11,12 @@ import numpy as np
 from lxml import etree
 
 from drivelint.errors import MapError
-from drivelint.formats import markup
+from drivelint.formats import safe_xml
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from drivelint.road.contract import MapOptions, MapSource
+    from drivelint.road.map_reader import MapOptions, MapSource
     from drivelint.road.quality import MapQuality
 
     Floats = NDArray[np.float64]
@@ -37,8 +37,8 @@ def load(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[A
             f"map {source.name} is a Lanelet2 map, and the package lanelet2 is not installed: pip install 'drivelint[lanelet2]'"
         ) from error
     try:
-        root = markup.parse(source.content)  # it is not the library that refuses entities
-    except markup.RefusedError as error:
+        root = safe_xml.parse(source.content)  # it is not the library that refuses entities
+    except safe_xml.RefusedError as error:
         raise MapError(f"map {source.name} {error}") from None
     local = root.find("node/tag[@k='local_x']") is not None
     if local:

@@ -13,8 +13,8 @@ from drivelint.errors import MapError
 from drivelint.formats.lanelet2.file import attribute, load, xy
 from drivelint.formats.lanelet2.furniture import furniture
 from drivelint.road.boundary_lanes import BoundedLane, build_lanes, side_driven_on, tables
-from drivelint.road.contract import MapOptions, MapSource, MapTables, environment_id
 from drivelint.road.handedness import correction_hint
+from drivelint.road.map_reader import MapOptions, MapSource, MapTables, environment_id
 from drivelint.road.quality import MapQuality
 from drivelint.road.tables import from_rows
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from drivelint.formats.opendrive.network import Lane, Network
-    from drivelint.road.contract import MapOptions
+    from drivelint.road.map_reader import MapOptions
     from drivelint.road.quality import MapQuality
 
 _DECISIVE = 2 / 3  # some maps list both ends of every connecting lane: half the votes each way say nothing

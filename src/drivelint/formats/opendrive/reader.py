@@ -16,8 +16,8 @@ from drivelint.formats.opendrive.lanes import build
 from drivelint.formats.opendrive.links import Link, links
 from drivelint.formats.opendrive.network import network
 from drivelint.formats.opendrive.signlimits import sign_limits
-from drivelint.road.contract import MapOptions, MapSource, MapTables, environment_id
-from drivelint.road.layout import OneWayLane, side_driven_on
+from drivelint.road.driving_side import OneWayLane, side_driven_on
+from drivelint.road.map_reader import MapOptions, MapSource, MapTables, environment_id
 from drivelint.road.quality import MapQuality
 from drivelint.road.tables import from_columns, from_rows, repeated
 

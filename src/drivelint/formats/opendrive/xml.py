@@ -6,12 +6,12 @@ import math
 from typing import TYPE_CHECKING
 
 from drivelint.errors import MapError
-from drivelint.formats import markup
+from drivelint.formats import safe_xml
 
 if TYPE_CHECKING:
     from lxml import etree
 
-    from drivelint.road.contract import MapSource
+    from drivelint.road.map_reader import MapSource
 
 
 class MalformedError(ValueError):
@@ -21,8 +21,8 @@ class MalformedError(ValueError):
 def parse(source: MapSource) -> etree._Element:
     """Return the root element, tags without namespaces; `MapError` for a DOCTYPE or malformed XML, naming the line."""
     try:
-        return markup.parse(source.content)
-    except markup.RefusedError as error:
+        return safe_xml.parse(source.content)
+    except safe_xml.RefusedError as error:
         raise MapError(f"map {source.name} {error}") from None
 
 

@@ -14,9 +14,9 @@ from google.protobuf.message import DecodeError
 
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
-from drivelint.formats.osi import heads as osi_heads
 from drivelint.formats.osi import schema as osi_schema
-from drivelint.formats.osi.words import Bulbs, build_enum_codes, bulbs_of, state_codes, struct_field
+from drivelint.formats.osi import signal_heads as osi_heads
+from drivelint.formats.osi.enum_codes import Bulbs, build_enum_codes, bulbs_of, state_codes, struct_field
 from drivelint.formats.protobuf import descriptors
 
 if TYPE_CHECKING:

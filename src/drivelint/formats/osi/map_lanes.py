@@ -18,7 +18,7 @@ from drivelint.formats.osi import map_logical as osi_logical
 from drivelint.formats.osi import map_physical as osi_physical
 from drivelint.formats.osi import schema as osi_schema
 from drivelint.road.boundary_lanes import build_lanes, side_driven_on, tables
-from drivelint.road.contract import MapOptions, MapSource, MapTables, environment_id
+from drivelint.road.map_reader import MapOptions, MapSource, MapTables, environment_id
 from drivelint.road.quality import MapQuality
 from drivelint.road.tables import from_rows
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import ptars
 
-from drivelint.drive import own_map
+from drivelint.drive import embedded_map
 from drivelint.drive.trace import LEAST_UTC_NS, FrameTimes, QualityFinding, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import Container
@@ -22,7 +22,7 @@ from drivelint.formats.osi.decode import (
     FirstMessage,
     read_first_message,
 )
-from drivelint.formats.osi.words import Bulbs, signal_states
+from drivelint.formats.osi.enum_codes import Bulbs, signal_states
 from drivelint.formats.protobuf import descriptors
 from drivelint.phrases import listed
 
@@ -65,7 +65,7 @@ def read(path: Path, topic: str | None) -> Recording:
             events.append(packet.data)
     recording = source.recording()
     recording.findings += container.findings
-    own, several = own_map.single_map(maps)
+    own, several = embedded_map.single_map(maps)
     recording.embedded_map = own if maps else source.head.lanes
     recording.findings += [*lost[:1], *several]
     recording.geo_reference = source.head.reference
@@ -103,7 +103,7 @@ def _map_text(container: Container, packet: Packet) -> tuple[bytes | None, tuple
         message = (
             f"the log's own map is not used: the one on topic {packet.channel.topic!r}, byte {packet.offset}, {why}"
         )
-        return None, (own_map.unusable_finding(message),)
+        return None, (embedded_map.unusable_finding(message),)
     return text if isinstance(text, bytes) else str(text).encode(), ()
 
 

@@ -14,13 +14,13 @@ takes_mapping: Final = False
 
 def accepts(probe: Probe) -> bool:
     """Accept by the first length and the message behind it."""
-    from drivelint.formats.osi import file as osi_file
+    from drivelint.formats.osi import file_reader as osi_file
 
     return not probe.path.is_dir() and osi_file.is_osi_trace(probe.head, probe.path.stat().st_size)
 
 
 def read(probe: Probe) -> Recording:
     """Read the messages."""
-    from drivelint.formats.osi import file as osi_file
+    from drivelint.formats.osi import file_reader as osi_file
 
     return osi_file.read(probe.path)

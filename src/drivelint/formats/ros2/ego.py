@@ -8,9 +8,9 @@ import numpy as np
 import pyarrow as pa
 
 from drivelint.drive.trace import ACTOR_CLASSES, INDICATORS
-from drivelint.formats.frames import Poses, TransformTree, clean_frame_name, unit_quaternions
+from drivelint.formats.coordinate_frames import Poses, TransformTree, clean_frame_name, unit_quaternions
 from drivelint.formats.ros2.objects import HEADER, POSE, STAMP, XYZ, stamps, vectors
-from drivelint.formats.ros2.rows import RecordedPoses, unknown_vectors
+from drivelint.formats.ros2.recorded_poses import RecordedPoses, unknown_vectors
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drivelint.drive.trace import ACTOR_CLASSES, SIZE_COLUMNS, QualityFinding, Recording, States
-from drivelint.formats.ros2.rows import ids_at_ego
+from drivelint.formats.ros2.recorded_poses import ids_at_ego
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from drivelint.drive.trace import ACTOR_CLASSES
-from drivelint.formats.ros2.rows import RecordedPoses, distinct, unknown_vectors
+from drivelint.formats.ros2.recorded_poses import RecordedPoses, distinct, unknown_vectors
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from drivelint.formats.frames import Vectors
+    from drivelint.formats.coordinate_frames import Vectors
     from drivelint.formats.protobuf.descriptors import FieldTree
     from drivelint.formats.ros2.cdr import Table
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drivelint.drive import own_map
+from drivelint.drive import embedded_map
 from drivelint.drive.trace import QualityFinding, Recording, States
 from drivelint.errors import TraceError
-from drivelint.formats.frames import TransformTree, clean_frame_name, fixed_frame
+from drivelint.formats.coordinate_frames import TransformTree, clean_frame_name, fixed_frame
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container
 from drivelint.formats.ros2 import cdr
@@ -29,7 +29,7 @@ from drivelint.formats.ros2.ego import (
 )
 from drivelint.formats.ros2.merge import Sources, merge_ego
 from drivelint.formats.ros2.objects import OBJECT_MESSAGES, stamps
-from drivelint.formats.ros2.rows import (
+from drivelint.formats.ros2.recorded_poses import (
     RecordedPoses,
     choose_clock,
     distinct,
@@ -228,7 +228,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
             codes[mine] = ros_ego.indicators(recording.states.t_ns[mine], reports)
             recording.states.codes["indicator"] = codes
         recording.events = ros_ego.engagement(reports, ego)
-    recording.embedded_map, trouble = own_map.single_map(_maps(log))
+    recording.embedded_map, trouble = embedded_map.single_map(_maps(log))
     recording.findings += trouble
     recording.frame_times, recording.utc_start_ns = message_times(list(parts.values()))
     recording.notes.append(f"positions are in the frame {fixed!r}")

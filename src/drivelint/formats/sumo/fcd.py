@@ -18,7 +18,7 @@ import pyarrow.csv as pa_csv
 
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, QualityFinding, Recording, States
 from drivelint.errors import TraceError, UsageError
-from drivelint.formats import markup
+from drivelint.formats import safe_xml
 from drivelint.formats.sumo import lights as sumo_lights
 from drivelint.formats.tables import parquet
 from drivelint.phrases import listed
@@ -198,10 +198,10 @@ def _types(path: Path, types_file: str | None) -> tuple[dict[str, VehicleType], 
 
 def _read_types(file: Path) -> dict[str, VehicleType]:
     try:
-        root = markup.parse(file.read_bytes())
+        root = safe_xml.parse(file.read_bytes())
     except OSError as error:
         raise UsageError(f"--mapping {file}: cannot be read: {error.strerror or error}") from error
-    except markup.RefusedError as error:
+    except safe_xml.RefusedError as error:
         raise UsageError(f"--mapping {file}: {error}") from None
     found = {}
     for element in root.iter("vType"):
@@ -355,8 +355,8 @@ def _table(rows: list[tuple[bytes, ...]], names: list[str]) -> pa.Table:
 
 def _parsed(path: Path, content: bytes) -> pa.Table:
     try:
-        root = markup.parse(content)
-    except markup.RefusedError as error:
+        root = safe_xml.parse(content)
+    except safe_xml.RefusedError as error:
         raise TraceError(f"{path} {error}") from None
     rows: dict[str, list[Any]] = {"timestep_time": [], **{f"vehicle_{name}": [] for name in _FIELDS}}
     for step in root.iter("timestep"):

@@ -13,7 +13,7 @@ import numpy as np
 import pyarrow as pa
 
 from drivelint.drive.trace import SIGNAL_STATES, QualityFinding
-from drivelint.formats import markup
+from drivelint.formats import safe_xml
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -73,8 +73,8 @@ def _has_states(file: Path) -> bool:
 
 def _read(file: Path) -> LightStates:
     try:
-        root = markup.parse(file.read_bytes())
-    except markup.RefusedError as error:
+        root = safe_xml.parse(file.read_bytes())
+    except safe_xml.RefusedError as error:
         return LightStates(
             None,
             [],

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from drivelint.errors import MapError
-from drivelint.formats import markup
-from drivelint.formats.sumo.rights import Rows, control_rows
+from drivelint.formats import safe_xml
+from drivelint.formats.sumo.right_of_way import Rows, control_rows
 from drivelint.road.boundary_lanes import BoundedLane, build_lanes, crossings, tables
-from drivelint.road.contract import MapOptions, MapSource, MapTables, environment_id
+from drivelint.road.map_reader import MapOptions, MapSource, MapTables, environment_id
 from drivelint.road.quality import MapQuality
 from drivelint.road.tables import from_rows
 
@@ -75,8 +75,8 @@ class SumoNetReader:
     def read(self, source: MapSource, request: MapOptions) -> MapTables:
         """Return the map's tables; `MapError` where the file is not XML or nothing in it can be built."""
         try:
-            root = markup.parse(source.content)
-        except markup.RefusedError as error:
+            root = safe_xml.parse(source.content)
+        except safe_xml.RefusedError as error:
             raise MapError(f"map {source.name} {error}") from None
         quality = MapQuality()
         left = root.get("lefthand") in {"true", "1"}

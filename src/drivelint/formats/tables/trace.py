@@ -20,6 +20,6 @@ def accepts(probe: Probe) -> bool:
 
 def read(probe: Probe) -> Recording:
     """Read the table through the mapping named, or the only shipped one that fits."""
-    from drivelint.formats.tables import tabular
+    from drivelint.formats.tables import mapped_table
 
-    return tabular.read(probe.path, probe.options.mapping)
+    return mapped_table.read(probe.path, probe.options.mapping)

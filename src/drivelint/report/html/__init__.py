@@ -19,7 +19,7 @@ from markupsafe import Markup
 
 from drivelint import __version__
 from drivelint.report.html import page
-from drivelint.result.contract import OUTPUT_VERSION
+from drivelint.result.schemas import OUTPUT_VERSION
 from drivelint.result.text import number
 
 if TYPE_CHECKING:

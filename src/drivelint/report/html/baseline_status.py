@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from drivelint.gate import words
+from drivelint.gate import descriptions
 
 if TYPE_CHECKING:
     from drivelint.result.gate import Gate, Waiver
@@ -68,7 +68,7 @@ def finding_status(gate: Gate | None, finding_id: str) -> BaselineStatus | None:
         return None
     waiver = gate.waiver(finding_id)
     if waiver is not None:
-        return _as("waived", f"{words.waiver_reason(waiver)} ({waiver.where})")
+        return _as("waived", f"{descriptions.waiver_reason(waiver)} ({waiver.where})")
     if gate.baseline is None:
         return _as("open", "")
     entry = gate.entry(finding_id)
@@ -93,7 +93,9 @@ def gate_summary(gate: Gate | None, finding_ids: list[str]) -> GateSummary | Non
         today=gate.today or "",
         gone=[
             BaselineFindings(
-                words.STANDING_TITLES[kind], len(entries), [words.finding_line(entry) for entry in entries[:MAX_LISTED]]
+                descriptions.STANDING_TITLES[kind],
+                len(entries),
+                [descriptions.finding_line(entry) for entry in entries[:MAX_LISTED]],
             )
             for kind in _GONE
             if before and (entries := before.of(kind))
@@ -110,7 +112,7 @@ def _held(waiver: Waiver) -> WaiverSummary:
     return WaiverSummary(
         waiver.state,
         _STATES[waiver.state],
-        words.waiver_scope(waiver),
+        descriptions.waiver_scope(waiver),
         waiver.reason,
         waiver.owner,
         waiver.expires,

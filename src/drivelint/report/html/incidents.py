@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.report.html.anchors import drive_anchor, finding_anchor, incident_anchor, rule_anchor
-from drivelint.report.html.plan import PlanView, plan_view
+from drivelint.report.html.plan_view import PlanView, plan_view
 from drivelint.report.html.replay import centiseconds
 from drivelint.report.html.svg import num
 from drivelint.result.counts import SEVERITIES

@@ -6,7 +6,7 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from drivelint.report.html.scale import Axis, axis_around
+from drivelint.report.html.axis import Axis, axis_around
 from drivelint.report.html.svg import num
 from drivelint.result.text import NONE, number
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from drivelint.report.html.scale import Axis, round_step
+from drivelint.report.html.axis import Axis, round_step
 from drivelint.report.html.svg import num
 
 if TYPE_CHECKING:

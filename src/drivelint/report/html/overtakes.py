@@ -6,7 +6,7 @@ import statistics
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.report.html.anchors import drive_anchor, overtake_anchor
-from drivelint.report.html.scale import Axis
+from drivelint.report.html.axis import Axis
 from drivelint.report.html.svg import num
 from drivelint.result.text import non_breaking, number, seconds
 

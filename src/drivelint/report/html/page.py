@@ -13,11 +13,11 @@ from drivelint.report.html.baseline_status import finding_status, gate_summary
 from drivelint.report.html.glossary import glossary_entries
 from drivelint.report.html.incidents import finding_line, incidents, key_incidents, plan_views
 from drivelint.report.html.involved_actors import involved_actors
+from drivelint.report.html.log_notes import notes_on_logs
 from drivelint.report.html.margin_series import margin_series
-from drivelint.report.html.notes import notes_on_logs
 from drivelint.report.html.opportunities import opportunities
 from drivelint.report.html.overtakes import overtake_views
-from drivelint.report.html.plan import actor_shapes
+from drivelint.report.html.plan_view import actor_shapes
 from drivelint.report.html.reasons import (
     VerdictReason,
     can_be_provided,

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from drivelint.result.contract import conform
-from drivelint.result.evidence import passing, roads, surroundings
+from drivelint.result.evidence import lane_shapes, overtaking, surroundings
+from drivelint.result.schemas import conform
 
 if TYPE_CHECKING:
     import duckdb
@@ -21,8 +21,8 @@ def gather(con: duckdb.DuckDBPyConnection) -> None:
     Reads `finding` and `verdict` (of which those of this batch have their states in `ego_state` and `pair`).
     """
     surroundings.gather(con)
-    roads.gather(con)
-    passing.gather(con)
+    lane_shapes.gather(con)
+    overtaking.gather(con)
 
 
 def scenes(con: duckdb.DuckDBPyConnection) -> pa.Table:

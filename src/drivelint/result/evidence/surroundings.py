@@ -8,7 +8,7 @@ import numpy as np
 import pyarrow as pa
 import shapely
 
-from drivelint.result.evidence.roads import SIMPLIFY_TOLERANCE_M
+from drivelint.result.evidence.lane_shapes import SIMPLIFY_TOLERANCE_M
 from drivelint.sql import store
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from drivelint.errors import TraceError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from drivelint.formats.frames import Vectors
+    from drivelint.formats.coordinate_frames import Vectors
 
 MAX_PERSISTED: Final = 20_000_000
 """More states than this are not made up: nobody records so many road users that stand still."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
 
-from drivelint.reasons import words
+from drivelint.reasons import reason_text
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     import duckdb
 
-    from drivelint.reasons.words import ReasonText
+    from drivelint.reasons.reason_text import ReasonText
 
 _TABLE = """
 CREATE OR REPLACE TEMP TABLE _worded
@@ -43,8 +43,8 @@ def make_reason_table(
     causes = con.execute(
         f"SELECT DISTINCT rule_no, cause, start_ns FROM ({select}) WHERE cause IS NOT NULL ORDER BY ALL"
     ).fetchall()
-    found = [words.parse_reason(cause) for _, cause, _ in causes]
-    told = [words.sentence(cause, start_ns, (own or {}).get(no)) for no, cause, start_ns in causes]
+    found = [reason_text.parse_reason(cause) for _, cause, _ in causes]
+    told = [reason_text.sentence(cause, start_ns, (own or {}).get(no)) for no, cause, start_ns in causes]
     rows = {
         "rule_no": pa.array([no for no, _, _ in causes], pa.int32()),
         "cause": pa.array([cause for _, cause, _ in causes], pa.string()),

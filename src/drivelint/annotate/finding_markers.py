@@ -11,7 +11,7 @@ import numpy as np
 
 from drivelint.annotate import draw
 from drivelint.annotate.draw import Colour
-from drivelint.annotate.events import Message, headline
+from drivelint.annotate.result_messages import Message, headline
 from drivelint.formats.foxglove import messages as foxglove
 from drivelint.result.counts import SEVERITIES
 

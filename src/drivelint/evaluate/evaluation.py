@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Final
 
 import duckdb
 
-from drivelint.evaluate import applicability, finalize, findings, invariant, reference_points, stage
-from drivelint.reasons.worded import make_reason_table
+from drivelint.evaluate import applicability, finalize, findings, invariant, reference_points, temp_tables
+from drivelint.reasons.reason_table import make_reason_table
 from drivelint.sql import store
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from drivelint.evaluate.terms import Binding
+    from drivelint.evaluate.sql_fragments import Binding
 
 LEAST_SHARED_RULES: Final = 16
 """From so many rules on they are judged on two connections."""
@@ -73,7 +73,7 @@ class Evaluation:
             try:
                 self._work(todo)
                 helped.result()
-                for table in stage.OUTCOME_TABLES:
+                for table in temp_tables.OUTCOME_TABLES:
                     store.insert(self._con, table, other.execute(f"FROM temp.{table}").to_arrow_table())
             finally:
                 todo.clear()  # whatever came between, the helper stops after its present rule
@@ -98,7 +98,7 @@ class Evaluation:
 
     def prepare(self) -> None:
         """Make the run's tables, decide which rules need not run, and group the default grids once for all rules."""
-        self._n_todo = stage.create_tables(self._con, self._bindings)
+        self._n_todo = temp_tables.create_tables(self._con, self._bindings)
         self._n_subjects = self._count("SELECT count(*) FROM _subject")
         self._has_holes = self._count("SELECT count(*) FROM _segment WHERE seg > 0") > 0
         self._con.execute(applicability.CREATE_WATCHED)

@@ -10,7 +10,7 @@ import pyarrow.compute as pc
 
 from drivelint.annotate import draw
 from drivelint.annotate.draw import Colour
-from drivelint.annotate.events import Message
+from drivelint.annotate.result_messages import Message
 from drivelint.formats.foxglove import messages as foxglove
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from drivelint.reasons.worded import make_reason_table
+from drivelint.reasons.reason_table import make_reason_table
 
 if TYPE_CHECKING:
     import duckdb

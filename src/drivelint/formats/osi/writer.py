@@ -12,7 +12,7 @@ from mcap.writer import CompressionType, Writer
 
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIZE_COLUMNS, STATE_COLUMNS
 from drivelint.formats.osi import extras
-from drivelint.formats.osi.frames import Objects, ground_truth_head, moving_objects, nested, traffic_light
+from drivelint.formats.osi.encode import Objects, ground_truth_head, moving_objects, nested, traffic_light
 from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, VERSION, descriptor_set
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.drive.trace import Trace
-    from drivelint.road.contract import MapSource
+    from drivelint.road.map_reader import MapSource
 
 LIBRARY: Final = "drivelint convert"
 GROUND_TRUTH_TOPIC: Final = "ground_truth"

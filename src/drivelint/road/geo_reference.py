@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from drivelint.road.contract import MapSource
+    from drivelint.road.map_reader import MapSource
 
 _REFERENCE: Final = re.compile(rb"<geoReference[^>]*>(.*?)</geoReference>", re.DOTALL)
 _CDATA: Final = re.compile(r"<!\[CDATA\[(.*?)\]\]>", re.DOTALL)

@@ -12,7 +12,7 @@ from drivelint.drive.finish import finish_trace
 from drivelint.drive.trace import Identity, IngestOptions, Recording
 from drivelint.engine.batch import Drive
 from drivelint.formats import load_map
-from drivelint.road.contract import MapSource
+from drivelint.road.map_reader import MapSource
 
 if TYPE_CHECKING:
     from drivelint.demo.scene import Scene

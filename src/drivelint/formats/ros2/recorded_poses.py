@@ -10,14 +10,14 @@ import pyarrow as pa
 
 from drivelint.drive.order import steps, time_derivative
 from drivelint.drive.trace import LEAST_UTC_NS, SIZE_COLUMNS, STATE_COLUMNS, FrameTimes, QualityFinding, States
-from drivelint.formats.frames import Poses, clean_frame_name, rotated, unit_quaternions
+from drivelint.formats.coordinate_frames import Poses, clean_frame_name, rotated, unit_quaternions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
-    from drivelint.formats.frames import TransformTree, Vectors
+    from drivelint.formats.coordinate_frames import TransformTree, Vectors
 
 MOVING_MPS = 2.0
 """Below this speed the two ways to read a velocity differ by no more than positions tremble."""

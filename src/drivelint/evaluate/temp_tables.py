@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     import duckdb
 
-    from drivelint.evaluate.terms import Binding
+    from drivelint.evaluate.sql_fragments import Binding
 
 _KEYS = "rule_no INTEGER, drive_id VARCHAR, ego_id VARCHAR"
 _TABLES = f"""
