@@ -46,7 +46,7 @@ class Notes(Silent):
 def halved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Return the meetings of the parts that did not fit."""
     found: list[int] = []
-    halve = Memory.halve
+    halve = Memory.halve_parts
 
     def told(self: Memory, meetings: int) -> None:
         found.append(meetings)
@@ -195,7 +195,7 @@ def test_a_batch_that_does_not_fit_is_halved(monkeypatch: pytest.MonkeyPatch, tm
 
 def test_a_rule_that_runs_out_of_memory_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
     usual = check(overtakes("safe"), Silent())
-    rule = Evaluation.rule
+    rule = Evaluation.judge_rule
 
     def short(self: Evaluation, binding: Any) -> None:
         ((limit,),) = self._con.execute("SELECT current_setting('memory_limit')").fetchall()
@@ -211,7 +211,7 @@ def test_a_rule_that_runs_out_of_memory_is_tried_again(monkeypatch: pytest.Monke
 def test_a_rule_for_which_no_memory_does_is_an_error_in_the_same_words(
     memory: int | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    rule = Evaluation.rule
+    rule = Evaluation.judge_rule
 
     def short(self: Evaluation, binding: Any) -> None:
         if binding.rule.id == FEW[0]:

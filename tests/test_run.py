@@ -106,15 +106,15 @@ def test_where_the_egos_are_cut_does_not_show(ragged: Path, tmp_path: Path, monk
 def test_parts_of_a_drive_hold_its_egos_once(ragged: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     drive = batch.Drive(read_trace(ragged, IngestOptions(mapping=str(FIXTURE / "mapping.toml"), ego="all")), None)
     steps = {name: sum(a == name for a in drive.trace.tables["actor_state"]["actor_id"].to_pylist()) for name in EGOS}
-    assert drive.meetings.keys() == set(EGOS)
-    assert drive.meetings["once"] == 4  # its only step, and the four that are there then
-    assert drive.meetings["ego"] == 3 * steps["ego"] + 1
-    assert drive.size == sum(drive.meetings.values())
+    assert drive.pairs_by_ego.keys() == set(EGOS)
+    assert drive.pairs_by_ego["once"] == 4  # its only step, and the four that are there then
+    assert drive.pairs_by_ego["ego"] == 3 * steps["ego"] + 1
+    assert drive.size == sum(drive.pairs_by_ego.values())
     for room in (1, 1100, 10**9):
         monkeypatch.setattr(batch, "PART_PAIRS", room)
         judged = [sorted(set(EGOS) - set(resting)) for resting in batch.egos_left_out([drive])]
         assert [ego for part in judged for ego in part] == sorted(EGOS)
-        assert all(len(part) == 1 or sum(drive.meetings[e] for e in part) <= room for part in judged)
+        assert all(len(part) == 1 or sum(drive.pairs_by_ego[e] for e in part) <= room for part in judged)
     assert batch.egos_left_out([drive, drive]) == [[]]
 
 

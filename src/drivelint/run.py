@@ -65,7 +65,7 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
     if (settings.margins or settings.keep_db) and settings.out is None:
         raise UsageError("--margins and --keep-db write files: say where with --out DIR")
     paths = sorted_logs(expand_traces(settings.traces))
-    options, library = settings.options(), MapLibrary.of(settings)
+    options, library = settings.ingest_options(), MapLibrary.from_options(settings)
 
     with store.workspace(settings.memory) as con:
         memory = Memory(con, settings.memory, progress.note)
@@ -97,20 +97,20 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
         if len(refused) == len(paths):
             raise _none_judged(refused)
         unjudged = [collect.unjudged_drive(r.path.stem, r.path.name, str(r.error)) for r in refused]
-        drives = pa.concat_tables([memory.enough(collect.drives, con), *unjudged]).sort_by(
+        drives = pa.concat_tables([memory.run_job(collect.drives, con), *unjudged]).sort_by(
             [("drive_id", "ascending"), ("file_name", "ascending")]
         )
         return Result(
-            verdicts=memory.enough(collect.verdicts, con),
-            findings=memory.enough(collect.findings, con),
+            verdicts=memory.run_job(collect.verdicts, con),
+            findings=memory.run_job(collect.findings, con),
             drives=drives,
             rules=table,
-            scenes=memory.enough(evidence.scenes, con),
-            lanes=memory.enough(evidence.lanes, con),
-            spaces=memory.enough(evidence.danger_spaces, con),
-            courses=memory.enough(evidence.courses, con),
-            overtakes=memory.enough(evidence.overtakes, con),
-            opportunities=memory.enough(evidence.opportunities, con),
+            scenes=memory.run_job(evidence.scenes, con),
+            lanes=memory.run_job(evidence.lanes, con),
+            spaces=memory.run_job(evidence.danger_spaces, con),
+            courses=memory.run_job(evidence.courses, con),
+            overtakes=memory.run_job(evidence.overtakes, con),
+            opportunities=memory.run_job(evidence.opportunities, con),
             margins_file=session.margins_file,
             fail_on=settings.fail_on,
             strict=settings.strict,
@@ -127,7 +127,7 @@ def _noting(drives: Iterable[Drive | RefusedLog], places: dict[str, str]) -> Ite
 
 
 def _asked(settings: CheckOptions, places: dict[str, str]) -> RunRequest:
-    return RunRequest.of(
+    return RunRequest.from_options(
         settings, traces=places, profiles=settings.profiles, params=settings.params, rules_dirs=settings.rules_dirs
     )
 
@@ -158,7 +158,7 @@ def _judge(
     for item in batch:
         if isinstance(item, RefusedLog):
             refused.append(item)
-        elif session.knows(item) or any(item.trace.drive_id == d.trace.drive_id for d in drives):
+        elif session.has_judged(item) or any(item.trace.drive_id == d.trace.drive_id for d in drives):
             progress.note(f"{item.trace.path}: the same log as one before ({item.trace.drive_id}), judged once")
         else:
             drives.append(item)

@@ -111,7 +111,7 @@ def test_who_is_not_seen_for_long_has_no_place() -> None:
     table = pa.table({**states, "z_m": pa.array([None] * 4, pa.float64()), "yaw_rad": [0.0] * 4})
     actor = {"actor_id": "a", "actor_class": None, "length_m": 4.0, "width_m": None, "height_m": None, "is_ego": True}
     found = tracks({"actor_state": table, "actor": pa.Table.from_pylist([actor])})
-    x = found.places("a", np.array([-1, 0, 150, 250, 600, 950], np.int64)).x
+    x = found.poses_at("a", np.array([-1, 0, 150, 250, 600, 950], np.int64)).x
     assert np.nan_to_num(x, nan=-1).tolist() == [-1, 0, 1, -1, -1, 9]
-    nobody = found.places("b", np.array([0], np.int64))
+    nobody = found.poses_at("b", np.array([0], np.int64))
     assert np.isnan(nobody.x).all()

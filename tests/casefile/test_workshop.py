@@ -91,7 +91,7 @@ def test_one_rule_is_refused_and_the_others_go_on(tmp_path: Path) -> None:
     code, said = said_of(tmp_path)
     assert code is ExitCode.USAGE
     assert f"REFUSED {broken}:4: unknown key 'senze'" in said
-    assert "pack.rule: 5 of 6 checks" in said, "no case is not applicable"
+    assert "pack.rule: 6 of 7 checks" in said, "no case is not applicable"
     assert workshop.mutation_test(tmp_path, (), Said()) is ExitCode.USAGE
     assert said_of(tmp_path, "pack.rule")[0] is ExitCode.FAILED
     with pytest.raises(UsageError, match="none of the 2 rules here"):

@@ -265,8 +265,8 @@ def test_a_rule_may_use_ctes_unions_macros_of_ours_and_unnest(tmp_path: Path) ->
 def test_conditions_are_read_and_what_they_include_is_known(tmp_path: Path) -> None:
     tables = '[applies]\nnation = ["gb"]\nroad_type = ["town", "rural"]\nlimit_min_mps = 13\n'
     rule = write(tmp_path, GOOD | {"observes": '"speed"'}, {"condition": SPEED}, tables=tables)
-    assert rule.applies.words == {"road_type": ("town", "rural"), "nation": ("gb",)}
-    assert (rule.applies.limit_min_mps, rule.applies.limited, rule.observes) == (13.0, True, "speed")
+    assert rule.applies.restricting == {"road_type": ("town", "rural"), "nation": ("gb",)}
+    assert (rule.applies.limit_min_mps, rule.applies.has_limit, rule.observes) == (13.0, True, "speed")
     assert conditions.with_narrower_values(("gb",)) == ["gb", "gb-eng", "gb-sct", "gb-wls"]
     assert {"town", "townLocal", "rural"} < set(conditions.with_narrower_values(("rural", "town")))
     assert (conditions.broader_values(("gb-sct", "de")), conditions.broader_values(("gb",))) == (["gb"], [])

@@ -15,7 +15,7 @@ SAME = ("rule_id", "profile", "object_id", "occurrence", "verdict", "reason_code
 def test_mirrored_scenes_have_the_same_verdicts() -> None:
     scenes = [scene for scene in all_scenes() if scene.name in MIRRORED]
     assert len(scenes) == len(MIRRORED)
-    pairs = [[drive_of_scene(scene.on_the(hand)) for hand in ("left", "right")] for scene in scenes]
+    pairs = [[drive_of_scene(scene.driven_on_the(hand)) for hand in ("left", "right")] for scene in scenes]
     rows: dict[str, list[Row]] = {}
     for hand in (0, 1):  # the maps of a batch are those of its drives
         for row in judged([pair[hand] for pair in pairs], rules=["ukhc"], profiles=["relaxed", "nominal"]):

@@ -258,7 +258,7 @@ def test_only_new_findings_of_stable_rules_at_or_above_the_severity_gate() -> No
 
 def test_json_holds_every_entry_and_the_counts() -> None:
     found = diff.compare(run([at(8), at(12, finding_id="x")]), run([at(8, margin=-20.0), at(15, finding_id="n")]))
-    told = json.loads(descriptions.to_json(found, found.of("new"), "critical"))
+    told = json.loads(descriptions.to_json(found, found.with_standing("new"), "critical"))
     assert told["counts"] == {"new": 1, "changed": 1, "unchanged": 0, "fixed": 1, "unknown": 0, "lost": 0}
     assert told["gating"] == ["n"]
     assert told["exit"] == {"code": 1, "why": "1 new finding at or above severity critical"}
@@ -300,7 +300,7 @@ def test_a_gate_survives_its_file() -> None:
     found = diff.compare(run([at(8)]), run([at(8), at(15, finding_id="n", margin=float("-inf"))]))
     waiver = Waiver("w:1", "*", "because", "jo", "2027-01-01", from_s=1.0)
     gate = Gate("2026-11-20", found, (waiver,), {"n": 0})
-    assert gate.known(f"d1-{SPEED}-None-0")  # fills what is remembered, which must not reach the file
+    assert gate.in_baseline(f"d1-{SPEED}-None-0")  # fills what is remembered, which must not reach the file
     content = store.render(gate)
     assert b"_standing" not in content
     assert json.loads(content)["gate_schema"] == store.GATE_VERSION

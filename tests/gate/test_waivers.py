@@ -141,7 +141,7 @@ def test_of_two_waivers_the_first_that_counts_waives_and_none_is_unmatched() -> 
 
 
 def gated(*given: Waiver, rows: list[dict[str, Any]], **more: Any) -> Result:
-    return GateInputs(TODAY, waivers=given).gate(result([verdict("fail")], rows, **more))
+    return GateInputs(TODAY, waivers=given).apply_to(result([verdict("fail")], rows, **more))
 
 
 def test_a_waived_finding_is_shown_and_does_not_gate() -> None:
@@ -164,7 +164,7 @@ def test_an_expired_waiver_waives_nothing_and_is_told() -> None:
 
 def test_a_failed_verdict_without_a_finding_is_never_let_through() -> None:
     rows = [verdict("fail"), verdict("fail", profile="relaxed")]
-    run = GateInputs(TODAY, waivers=(waiver(),)).gate(result(rows, [ROW]))
+    run = GateInputs(TODAY, waivers=(waiver(),)).apply_to(result(rows, [ROW]))
     assert exit_status(run).code is ExitCode.FAILED
     assert "1 failed verdict without a finding" in exit_status(run).why
 
@@ -173,7 +173,7 @@ def test_drafts_and_lesser_findings_do_not_gate_with_a_gate_either() -> None:
     rows = [finding(rule_id="ukhc.draft", finding_id="d"), finding(severity="minor", finding_id="m")]
     told = [verdict("fail", rule_id="ukhc.draft"), verdict("fail", severity="minor")]
     run = result(told, rows, rules=[rule(), rule("ukhc.draft", status="draft")])
-    run = GateInputs(TODAY, waivers=(waiver(),)).gate(run)
+    run = GateInputs(TODAY, waivers=(waiver(),)).apply_to(run)
     assert exit_status(run) == (ExitCode.OK, "nothing failed at or above severity critical (0 waived)")
 
 
@@ -193,7 +193,9 @@ def test_junit_skips_what_is_waived_and_says_why() -> None:
 
 
 def test_junit_still_shows_the_unknown_beside_what_is_waived() -> None:
-    run = GateInputs(TODAY, waivers=(waiver(),)).gate(result([verdict("fail"), verdict("unknown")], [ROW], strict=True))
+    run = GateInputs(TODAY, waivers=(waiver(),)).apply_to(
+        result([verdict("fail"), verdict("unknown")], [ROW], strict=True)
+    )
     text = junit.render(run).decode()
     assert '<error type="unknown"' in text
     assert "waived until" in text
@@ -224,5 +226,5 @@ def test_a_file_that_is_no_gate_is_refused(tmp_path: Path, content: bytes) -> No
 
 
 def test_nothing_given_is_no_gate(tmp_path: Path) -> None:
-    assert GateInputs.of(None, None, tmp_path / "drivelint.toml", TODAY, None) is None
+    assert GateInputs.from_files(None, None, tmp_path / "drivelint.toml", TODAY, None) is None
     assert Gate().gates("x")

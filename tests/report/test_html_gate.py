@@ -36,7 +36,7 @@ def gated(tmp_path_factory: pytest.TempPathFactory) -> Result:
         name: (table := getattr(now, name)).filter(pc.invert(pc.starts_with(table["drive_id"], "collision")))
         for name in ("verdicts", "findings", "drives")
     }
-    return GateInputs(TODAY, replace(now, **parts), "main", WAIVERS).gate(now)
+    return GateInputs(TODAY, replace(now, **parts), "main", WAIVERS).apply_to(now)
 
 
 @pytest.fixture(scope="module")
@@ -51,7 +51,9 @@ def kinds(run: Result) -> Counter[str]:
     """Return how many findings are new, known and waived, worked out from the gate."""
     assert run.gate is not None
     ids = run.findings["finding_id"].to_pylist()
-    return Counter("waived" if run.gate.waiver(name) else "known" if run.gate.known(name) else "new" for name in ids)
+    return Counter(
+        "waived" if run.gate.waiver(name) else "known" if run.gate.in_baseline(name) else "new" for name in ids
+    )
 
 
 def test_each_finding_says_how_it_stands(gated: Result) -> None:
@@ -78,7 +80,7 @@ def test_waivers_that_waive_nothing_are_shown_first(gated: Result) -> None:
 
 def test_what_is_gone_but_not_fixed_is_told() -> None:
     before = result([verdict("fail")], [finding()])
-    now = GateInputs(TODAY, before, "main").gate(result([verdict("unknown", t_start_ns=None)]))
+    now = GateInputs(TODAY, before, "main").apply_to(result([verdict("unknown", t_start_ns=None)]))
     text = Parsed(page(now)).text
     assert "Not fixed: it cannot be told any more" in text
     assert "1 more verdict is unknown than in main" in text
@@ -92,7 +94,7 @@ def test_without_an_earlier_result_and_waivers_the_page_says_nothing_of_them() -
 
 
 def test_with_waivers_alone_nothing_is_called_new() -> None:
-    run = GateInputs(TODAY, None, "", WAIVERS).gate(result([verdict("fail")], [finding()]))
+    run = GateInputs(TODAY, None, "", WAIVERS).apply_to(result([verdict("fail")], [finding()]))
     parsed = Parsed(page(run))
     assert "1 finding in 1 of 1 drive, 1 of them not waived" in parsed.text
     assert '"stands st-new"' not in page(run)
@@ -102,7 +104,7 @@ def test_with_waivers_alone_nothing_is_called_new() -> None:
 
 def test_markup_in_waivers_stays_text() -> None:
     waiver = Waiver(NASTY, "*", NASTY, NASTY, "2027-01-31")
-    run = GateInputs(TODAY, result([]), NASTY, (waiver,)).gate(result([verdict("fail")], [finding()]))
+    run = GateInputs(TODAY, result([]), NASTY, (waiver,)).apply_to(result([verdict("fail")], [finding()]))
     parsed = Parsed(page(run))
     assert sum(tag == "script" for tag, _ in parsed.tags) == 1
     assert not any(tag == "img" for tag, _ in parsed.tags)

@@ -137,7 +137,7 @@ def gated(base: list[dict[str, Any]], new: list[dict[str, Any]]) -> Result:
     waiver = Waiver("w.toml:1", "*", "ticket 17", "jo", "2027-01-31", object="4")
     expired = Waiver("w.toml:9", "none", "old", "al", "2026-01-31")
     keeper = GateInputs(date(2026, 11, 20), result([verdict("fail")], base), waivers=(waiver, expired))
-    return keeper.gate(result([verdict("fail"), verdict("unknown", object_id="6")], new))
+    return keeper.apply_to(result([verdict("fail"), verdict("unknown", object_id="6")], new))
 
 
 def test_a_baseline_tells_what_is_new_and_what_is_not_fixed() -> None:

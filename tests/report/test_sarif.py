@@ -34,7 +34,7 @@ def gated(*rows: dict[str, Any], base: list[dict[str, Any]] | None = None) -> Re
     expired = Waiver("w:9", "*", "old", "al", "2026-01-31")
     baseline = None if base is None else result([verdict("fail")], base)
     keeper = GateInputs(date(2026, 11, 20), baseline, waivers=(waiver, expired))
-    return keeper.gate(result([verdict("fail")], list(rows)))
+    return keeper.apply_to(result([verdict("fail")], list(rows)))
 
 
 HOSTILE = result(

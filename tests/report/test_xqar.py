@@ -110,14 +110,14 @@ def test_a_drive_that_was_not_judged_completed_nothing() -> None:
 def test_what_does_not_gate_is_information(severity: str, status: str, object_id: str, level: str) -> None:
     run = result([verdict("fail")], [finding(severity=severity, object_id=object_id)], rules=[rule(status=status)])
     waiver = Waiver("w:1", "*", "ticket 17", "jo", "2027-01-31", object="4")
-    (issue,) = checker(GateInputs(date(2026, 11, 20), waivers=(waiver,)).gate(run)).iter("Issue")
+    (issue,) = checker(GateInputs(date(2026, 11, 20), waivers=(waiver,)).apply_to(run)).iter("Issue")
     assert issue.get("level") == level
     assert ("waived until 2027-01-31 by jo: ticket 17" in issue.get("description")) == (object_id == "4")
     assert ("draft, does not gate" in issue.get("description")) == (status == "draft")
 
 
 def test_what_the_baseline_has_is_told() -> None:
-    run = GateInputs(date(2026, 11, 20), result([verdict("fail")], [finding()])).gate(
+    run = GateInputs(date(2026, 11, 20), result([verdict("fail")], [finding()])).apply_to(
         result([verdict("fail")], [finding()])
     )
     (issue,) = checker(run).iter("Issue")

@@ -109,7 +109,7 @@ def simulate(
 def _stations() -> list[float]:
     """Return the stations of the net's vertices: the ends of the pieces, and every few metres of a bend."""
     found = [0.0]
-    for start, _, piece in ROAD.line.laid():
+    for start, _, piece in ROAD.line.placed_pieces():
         parts = int(np.ceil(piece.length_m / CHORD_M)) if piece.curvature else 1
         found += [start + piece.length_m * k / parts for k in range(1, parts + 1)]
     return found

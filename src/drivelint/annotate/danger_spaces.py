@@ -97,7 +97,7 @@ class _Roles:
         times = np.unique(np.array([row["t_ns"] for row in rows], np.int64))
         names = {name for row in rows for name in (row["ego_id"], row["ov_id"], *row["vbp_ids"]) if name is not None}
         self._step = {t: k for k, t in enumerate(times.tolist())}
-        self._places = {name: tracks.places(name, times) for name in sorted(names)}
+        self._places = {name: tracks.poses_at(name, times) for name in sorted(names)}
 
     def labels(self, row: dict[str, Any]) -> bytes:
         """Return the roles of one step as texts above the boxes that are placed."""

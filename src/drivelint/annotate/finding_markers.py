@@ -116,7 +116,7 @@ def _boxes(tracks: Tracks, name: str | None, times: NDArray[np.int64]) -> list[B
     """Return an actor's box at each time; None where its place or heading is not known."""
     if name is None:
         return [None] * len(times)
-    p = tracks.places(name, times)
+    p = tracks.poses_at(name, times)
     z = np.nan_to_num(p.z)
     known = np.isfinite(p.x) & np.isfinite(p.y) & np.isfinite(p.yaw)
     columns = (p.x.tolist(), p.y.tolist(), z.tolist(), p.yaw.tolist(), known.tolist())

@@ -44,7 +44,7 @@ class Road:
         self._about = {row["lanelet_id"]: row for row in lanelets.to_pylist()}
         self._encoded: dict[int, bytes] = {}
 
-    def near(self, x: NDArray[np.float64], y: NDArray[np.float64], log_time: int) -> bytes:
+    def lanes_near(self, x: NDArray[np.float64], y: NDArray[np.float64], log_time: int) -> bytes:
         """Return the SceneUpdate with the lanes near some positions."""
         column, row = (np.floor(values / NEAR_M).astype(np.int64) for values in (x, y))
         _, first = np.unique(column * _ROWS + row, return_index=True)

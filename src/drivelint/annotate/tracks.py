@@ -46,18 +46,18 @@ class Tracks:
     yaw: NDArray[np.float64]
 
     @cached_property
-    def spans(self) -> dict[str, slice]:
+    def rows_by_actor(self) -> dict[str, slice]:
         """The rows of each actor."""
         edges = np.searchsorted(self.actor, np.arange(len(self.names) + 1))
         return {name: slice(int(edges[i]), int(edges[i + 1])) for i, name in enumerate(self.names)}
 
     def times(self, name: str) -> NDArray[np.int64]:
         """Return the times of an actor's samples; none if it is not there."""
-        return self.t_ns[self.spans.get(name, slice(0, 0))]
+        return self.t_ns[self.rows_by_actor.get(name, slice(0, 0))]
 
-    def places(self, name: str, t_ns: NDArray[np.int64]) -> ActorPoses:
+    def poses_at(self, name: str, t_ns: NDArray[np.int64]) -> ActorPoses:
         """Return where an actor is at some times, by its last sample not too long before each."""
-        span, times = self.spans.get(name, slice(0, 0)), self.times(name)
+        span, times = self.rows_by_actor.get(name, slice(0, 0)), self.times(name)
         if not len(times):
             nowhere = np.full(len(t_ns), np.nan)
             return ActorPoses(nowhere, nowhere, nowhere, nowhere, np.nan, np.nan, np.nan)

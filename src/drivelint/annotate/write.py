@@ -81,7 +81,7 @@ class _Writer:
         scene = foxglove.schema("SceneUpdate")
         if self._said.road is not None and len(boxes.rows):
             at = times.at(start)
-            lanes = self._said.road.near(self._tracks.x[boxes.rows], self._tracks.y[boxes.rows], at)
+            lanes = self._said.road.lanes_near(self._tracks.x[boxes.rows], self._tracks.y[boxes.rows], at)
             self._few("map", "protobuf", scene, [result_messages.Message(at, lanes)])
         self._many("scene", scene, lambda channel: actor_boxes.messages(boxes, times, channel))
         if not self._moves:  # the log's own frames are not ours to speak of

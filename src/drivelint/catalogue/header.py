@@ -49,12 +49,12 @@ class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The greatest speed limit in m/s, itself included."""
 
     @property
-    def words(self) -> dict[str, tuple[str, ...]]:
+    def restricting(self) -> dict[str, tuple[str, ...]]:
         """Return condition -> allowed values, for the conditions that restrict the rule."""
         return {name: getattr(self, name) for name in conditions.CONDITION_VALUES if getattr(self, name)}
 
     @property
-    def limited(self) -> bool:
+    def has_limit(self) -> bool:
         """Whether the speed limit restricts the rule."""
         return self.limit_min_mps is not None or self.limit_max_mps is not None
 
@@ -227,7 +227,7 @@ def _contradiction(h: Header) -> tuple[str, str] | None:
     for key in ("requires", "pass_requires"):
         checks += [(True, key, f"{key}: {wrong}") for word in getattr(h, key) if (wrong := signals.problem(word))]
     checks += [(True, "law", f"law: {wrong}") for word in h.law if (wrong := conditions.value_problem("nation", word))]
-    for name, words in h.applies.words.items():
+    for name, words in h.applies.restricting.items():
         checks += [
             (True, f"applies.{name}", f"[applies] {wrong}")
             for word in words

@@ -68,7 +68,7 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
         """Whether its condition is about an object."""
         return "object_id" in self.columns["condition"]
 
-    def has(self, column: str) -> bool:
+    def has_column(self, column: str) -> bool:
         """Whether the condition returns this column."""
         return column in self.columns["condition"]
 
@@ -270,7 +270,7 @@ def _check_reasons(header: Header, queries: dict[str, Query], file: Path, toml: 
             raise RuleError(
                 f"{place}: why({code!r}) has no words: add [reasons.{code}] to the header; {hint(code, known)}"
             )
-        if arguments is not None and (absent := sorted(known[code].needs - arguments)):
+        if arguments is not None and (absent := sorted(known[code].required_arguments - arguments)):
             raise RuleError(
                 f"{place}: the words of {code!r} need the argument {absent[0]!r}: add it to why({code!r}, {{...}})"
             )

@@ -127,7 +127,7 @@ def check(
     from drivelint.result.model import exit_code
     from drivelint.settings import SETTINGS_FILE
 
-    gate_inputs = GateInputs.of(baseline, waivers, Path(SETTINGS_FILE), values.parse_today(today), out)
+    gate_inputs = GateInputs.from_files(baseline, waivers, Path(SETTINGS_FILE), values.parse_today(today), out)
     settings = run.CheckOptions(
         traces=tuple(traces),
         **drive,
@@ -149,7 +149,7 @@ def check(
     with bar(quiet) as progress:
         result = run_interruptible(lambda: run.check(settings, progress))
         if gate_inputs is not None:
-            result = gate_inputs.gate(result)
+            result = gate_inputs.apply_to(result)
         if out is not None:
             write(result, out)
         if memory is not None and (most := peak_bytes()) is not None:

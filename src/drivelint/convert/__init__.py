@@ -70,7 +70,7 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     target = request.out / f"{stem}.mcap" if request.to == "mcap" else request.out
     refuse_to_overwrite(path, request.out, target)
     # conditions that the user states and assumptions about unrecorded actors belong to a check, not to the log
-    options = replace(request.options(need_ego=False), in_sight=False, conditions=())
+    options = replace(request.ingest_options(need_ego=False), in_sight=False, conditions=())
     trace = read_trace(path, options)
     if request.map_offset is not None:
         trace = _moved(trace, request.map_offset)
@@ -113,9 +113,9 @@ def _moved(trace: Trace, offset: tuple[float, float]) -> Trace:
 
 def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, list[str]]:
     """Return the map that goes along, the user's, else the log's own, and what to tell about it. Errors: as `convert`."""
-    library, own = MapLibrary.of(request), trace.embedded_map
+    library, own = MapLibrary.from_options(request), trace.embedded_map
     where = (trace.path, own, trace.map_offset, trace.tables["actor_state"], trace.geo_reference)
-    if library.takes_own(trace.path, own) or (road := library.source(*where)) is None:
+    if library.uses_embedded(trace.path, own) or (road := library.find_source(*where)) is None:
         return (None, []) if own is None else _own_road(request, trace, own)
     if request.to == "mcap" and (why := _unfit_for_mcap(road)):
         raise UsageError(why)

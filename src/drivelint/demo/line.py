@@ -61,7 +61,7 @@ class Line:
         """Return the length of all pieces."""
         return sum(piece.length_m for piece in self.pieces)
 
-    def laid(self) -> Iterable[tuple[float, Pose, Piece]]:
+    def placed_pieces(self) -> Iterable[tuple[float, Pose, Piece]]:
         """Yield each piece with the station and the pose at which it begins."""
         station, pose = 0.0, self.start
         for piece in self.pieces:
@@ -72,7 +72,7 @@ class Line:
         """Return x, y (m) and the line's heading (rad) at stations, moved to the left by `left_m`."""
         s, left_m = np.broadcast_arrays(np.asarray(s, np.float64), np.asarray(left_m, np.float64))
         x, y, heading = np.zeros(s.shape), np.zeros(s.shape), np.zeros(s.shape)
-        for k, (station, pose, piece) in enumerate(self.laid()):
+        for k, (station, pose, piece) in enumerate(self.placed_pieces()):
             here = (s >= station) | (k == 0)
             found = _walk(pose, s - station, piece.curvature)
             x, y, heading = (np.where(here, new, old) for new, old in zip(found, (x, y, heading), strict=True))
@@ -80,7 +80,7 @@ class Line:
 
     def curvature(self, s: ArrayLike) -> Floats:
         """Return the curvature at stations."""
-        starts = np.array([station for station, _, _ in self.laid()])
+        starts = np.array([station for station, _, _ in self.placed_pieces()])
         bends = np.array([piece.curvature for piece in self.pieces])
         found: Floats = bends[np.clip(np.searchsorted(starts, s, side="right") - 1, 0, None)]
         return found
@@ -93,7 +93,7 @@ class Line:
     def cut(self, start: float, end: float) -> Line:
         """Return the part between two stations."""
         parts = []
-        for station, _, piece in self.laid():
+        for station, _, piece in self.placed_pieces():
             length = min(end, station + piece.length_m) - max(start, station)
             if length > 1e-9:
                 parts.append(Piece(length, piece.curvature))

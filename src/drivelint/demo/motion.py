@@ -44,7 +44,7 @@ class Track:
         names = ("t_s", "station", "offset", "x", "y", "yaw", "speed", "light", "brakes")
         return replace(self, **{name: getattr(self, name)[rows] for name in names})
 
-    def stopped(self, tick: int) -> Track:
+    def stopped_at(self, tick: int) -> Track:
         """Return the track of a body that stands still from a tick on."""
         n = len(self.t_s)
         frozen = self.at(np.minimum(np.arange(n), tick))
@@ -55,19 +55,19 @@ def actor_track(actor: Actor, road: Road, duration_s: float) -> Track:
     """Return an actor's motion on a road."""
     t = np.arange(round(duration_s * TICKS_PER_S) + 1) / TICKS_PER_S
     along = 1 if actor.lane > 0 else -1
-    line = road.way(branch=actor.leaves)
+    line = road.path(branch=actor.leaves)
     speed = _speeds(actor, t)
     way = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2 / TICKS_PER_S)])
     # the length of the path over a fine grid of stations gives the station after any way
     reach = np.arange(0.0, float(way[-1]) * 1.2 + 1.0, _GRID_M)
     grid = actor.station + along * reach
     d, slope = _offsets(actor, road, grid)
-    scale = np.hypot(1.0 - line.curvature(grid) * d * road.nearside, slope)
+    scale = np.hypot(1.0 - line.curvature(grid) * d * road.nearside_sign, slope)
     path = np.concatenate([[0.0], np.cumsum((scale[1:] + scale[:-1]) / 2 * _GRID_M)])
     station = actor.station + along * np.interp(way, path, reach)
     d, slope = _offsets(actor, road, station)
-    x, y, heading = line.at(station, d * road.nearside)
-    drift = np.arctan2(slope * road.nearside, 1.0 - line.curvature(station) * d * road.nearside)
+    x, y, heading = line.at(station, d * road.nearside_sign)
+    drift = np.arctan2(slope * road.nearside_sign, 1.0 - line.curvature(station) * d * road.nearside_sign)
     yaw = heading + drift + (0.0 if along > 0 else np.pi)
     yaw = np.arctan2(np.sin(yaw), np.cos(yaw))
     brakes = np.diff(speed, prepend=speed[0]) * TICKS_PER_S < -_BRAKES_MPS2
@@ -87,7 +87,7 @@ def _speeds(actor: Actor, t: Floats) -> Floats:
 def _offsets(actor: Actor, road: Road, station: Floats) -> tuple[Floats, Floats]:
     """Return the offset at stations and its slope along the line."""
     along = 1 if actor.lane > 0 else -1
-    d = np.full(station.shape, road.lane(actor.lane) + actor.beside_m * along)
+    d = np.full(station.shape, road.lane_offset(actor.lane) + actor.beside_m * along)
     slope = np.zeros(station.shape)
     for shift in actor.shifts:
         u = np.clip((station - shift.at) * along / shift.within, 0.0, 1.0)
@@ -128,6 +128,6 @@ def stop_on_contact(ego: Track, others: list[Track]) -> list[Track]:
     if first == len(ego.t_s):
         return [ego, *others]
     return [
-        ego.stopped(first),
-        *(o.stopped(first) if tick == first else o for o, tick in zip(others, ticks, strict=True)),
+        ego.stopped_at(first),
+        *(o.stopped_at(first) if tick == first else o for o, tick in zip(others, ticks, strict=True)),
     ]

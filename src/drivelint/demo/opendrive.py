@@ -77,7 +77,7 @@ def _element(
         f'      <geometry s="{_n(s)}" x="{_n(p.x)}" y="{_n(p.y)}" hdg="{_n(p.heading)}" length="{_n(piece.length_m)}">'
         + (f'<arc curvature="{piece.curvature!r}"/>' if piece.curvature else "<line/>")
         + "</geometry>"
-        for s, p, piece in line.laid()
+        for s, p, piece in line.placed_pieces()
     ]
     limits = [
         f'    <type s="{_n(s)}" type="{road.kind}"><speed max="{mph:g}" unit="mph"/></type>'
@@ -126,7 +126,7 @@ def _opening(fork: Fork) -> str:
 
 def _section(road: Road, s: float, lanes: Sequence[_Lane], start: float = 0.0, end: float = 1e9) -> str:
     """Return a lane section at `s` of its road, which begins at the station `start` of the scene's road."""
-    side = road.nearside
+    side = road.nearside_sign
     ordered = sorted(lanes, key=lambda lane: -lane.number * side)
     centre = "".join(_mark(marking, at) for at, marking in _from(road.centre, start + s, end))
     left = [_lane(lane, side) for lane in ordered if lane.number * side > 0]
@@ -162,7 +162,7 @@ def _signal(road: Road, number: int, sign: Sign, s: float) -> str:
     t = (0.5 if painted else 1.0) * LANE_WIDTH_M * road.lanes + (0.0 if painted else 3.0)
     width = f' width="{_n(LANE_WIDTH_M * road.lanes)}"' if painted else ' width="0.6"'
     return (
-        f'      <signal id="{number}" name="{name}" s="{_n(s)}" t="{_n(t * road.nearside)}" zOffset="{0.0 if painted else 2.0}"'
+        f'      <signal id="{number}" name="{name}" s="{_n(s)}" t="{_n(t * road.nearside_sign)}" zOffset="{0.0 if painted else 2.0}"'
         f' dynamic="no" orientation="+" country="{country}" type="{code}" subtype="-1" height="0.6"{width}/>'
     )
 
@@ -207,7 +207,7 @@ def _ends(before: str, at_before: str, after: str, at_after: str) -> str:
 
 def _exit(road: Road, off: Line, branch: Line) -> list[str]:
     """Return the ramp of an exit lane, one way, and the junction: its lane lies beside the through lanes' line."""
-    shift = f'<laneOffset s="0" a="{_n(LANE_WIDTH_M * road.lanes * road.nearside)}" b="0" c="0" d="0"/>'
+    shift = f'<laneOffset s="0" a="{_n(LANE_WIDTH_M * road.lanes * road.nearside_sign)}" b="0" c="0" d="0"/>'
     number = road.lanes + 1
     link = f'<predecessor elementType="junction" elementId="{_JUNCTION}"/>'
     bare = _bare(road)
@@ -217,7 +217,7 @@ def _exit(road: Road, off: Line, branch: Line) -> list[str]:
             link=_ends(_BEFORE, "end", _BRANCH, "start"), start=1.0, more=shift,
         ),
         _element(bare, _BRANCH, branch, [_section(bare, 0.0, [_Lane(1)])], link=link, start=1.0, more=shift),
-        _junction([*_through(road), (_BEFORE, _OFF, "start", [(number * road.nearside, road.nearside)])]),
+        _junction([*_through(road), (_BEFORE, _OFF, "start", [(number * road.nearside_sign, road.nearside_sign)])]),
     ]  # fmt: skip
 
 
@@ -228,7 +228,7 @@ def _bare(road: Road) -> Road:
 
 def _side_road(road: Road, off: Line, branch: Line, inside: Sequence[_Lane]) -> list[str]:
     """Return the side road, the two ways round its corners, and the junction."""
-    side = road.nearside
+    side = road.nearside_sign
     mouth = branch.start
     on = Line(off.pieces, Pose(mouth.x, mouth.y, mouth.heading + math.pi))
     turned = [_Lane(lane.number, mark="none", before=-lane.number, after=lane.number) for lane in inside]
@@ -253,8 +253,8 @@ _Connection = tuple[str, str, str, list[tuple[int, int]]]
 
 
 def _through(road: Road) -> list[_Connection]:
-    along = [(k * road.nearside, k * road.nearside) for k in range(1, road.lanes + 1)]
-    against = [(-k * road.nearside, -k * road.nearside) for k in range(1, road.oncoming + 1)]
+    along = [(k * road.nearside_sign, k * road.nearside_sign) for k in range(1, road.lanes + 1)]
+    against = [(-k * road.nearside_sign, -k * road.nearside_sign) for k in range(1, road.oncoming + 1)]
     return [(_BEFORE, _THROUGH, "start", along), (_AFTER, _THROUGH, "end", against)]
 
 

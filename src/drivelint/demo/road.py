@@ -70,15 +70,15 @@ class Road:
         return Line(self.pieces)
 
     @property
-    def nearside(self) -> int:
+    def nearside_sign(self) -> int:
         """Return 1 where the nearside is the left, -1 where it is the right."""
         return 1 if self.hand == "left" else -1
 
-    def lane(self, number: int) -> float:
+    def lane_offset(self, number: int) -> float:
         """Return the offset of a lane's middle: 1, 2, ... from the centre line to the nearside; -1, -2, ... oncoming."""
         return (abs(number) - 0.5) * (LANE_WIDTH_M if number > 0 else -LANE_WIDTH_M)
 
-    def way(self, *, branch: bool) -> Line:
+    def path(self, *, branch: bool) -> Line:
         """Return the line that traffic along the road follows: on, or into the branch."""
         if not branch:
             return self.line

@@ -49,7 +49,7 @@ class Scene:
         rows = np.arange(0, len(ego.t_s), TICKS_PER_S // SAMPLE_RATE_HZ)
         return tuple(track.at(rows) for track in stop_on_contact(ego, others))
 
-    def on_the(self, hand: Handedness) -> Scene:
+    def driven_on_the(self, hand: Handedness) -> Scene:
         """Return the same scene where the other side of the road is driven on."""
         return replace(self, road=self.road.driven_on_the(hand))
 

@@ -80,7 +80,7 @@ def resolve(
     if not derived:
         frozen = _frozen(states, step)
         if frozen.any():
-            places.append(RejectedPositions.of(states, frozen))
+            places.append(RejectedPositions.from_rows(states, frozen))
         findings += quality_findings(
             states, frozen, "motion_unknown", "position and velocity contradict each other: they are unknown"
         )

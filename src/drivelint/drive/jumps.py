@@ -49,7 +49,7 @@ class RejectedPositions:
     y_m: Numbers
 
     @classmethod
-    def of(cls, states: States, rows: Mask) -> RejectedPositions:
+    def from_rows(cls, states: States, rows: Mask) -> RejectedPositions:
         """Take the places of these rows."""
         names = np.array(states.ids, dtype=np.str_)[states.actor[rows]]
         return cls(names, states.t_ns[rows], states.numbers["x_m"][rows], states.numbers["y_m"][rows])
@@ -86,13 +86,13 @@ def split_tracks(states: States, step: Steps, *, whole: Collection[str]) -> Spli
     if jump.any():
         findings = quality_findings(states, unknown, "teleport", "the position jumps: they are unknown around it")
         alias = _renamed(states, pieces, whole, findings)
-    refused = RejectedPositions.of(states, unknown)
+    refused = RejectedPositions.from_rows(states, unknown)
     set_unknown(states, unknown)
     beside = outlier_samples(states, step)
     if beside.any():
         text = "the position is beside its track, for a sample or by a step that nobody drives: they are unknown there"
         findings += quality_findings(states, beside, "teleport", text)
-        refused = refused.with_more(RejectedPositions.of(states, beside))
+        refused = refused.with_more(RejectedPositions.from_rows(states, beside))
         set_unknown(states, beside)
     return SplitTracks(findings, alias, refused) if findings else NO_SPLIT
 

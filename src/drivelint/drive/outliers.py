@@ -52,7 +52,7 @@ def outlier_samples(states: States, step: Steps) -> Mask:
         _beside(place, moves, told, exact, any_error).any() or _stepped(moves, told, exact, any_error, nothing).any()
     ):
         return nothing
-    runs = Tracklets.of(states.t_ns, place[0], place[1], step)
+    runs = Tracklets.from_samples(states.t_ns, place[0], place[1], step)
     sigma = np.maximum(position_noise(place[0], runs, states.actor), position_noise(place[1], runs, states.actor))[
         states.actor
     ]

@@ -102,7 +102,7 @@ class DriveInput:
     ego_size: EgoSize | None = None
     env: tuple[str, ...] = ()
 
-    def options(self, *, need_ego: bool = True) -> IngestOptions:
+    def ingest_options(self, *, need_ego: bool = True) -> IngestOptions:
         """Return the options for reading. Errors: `UsageError` for a condition that does not exist."""
         return IngestOptions(
             self.mapping,

@@ -63,7 +63,7 @@ def _filtered(  # noqa: PLR0917
     """Return the velocities (n) of samples that all have a place; `central`: those by central differences."""
     vx, vy = central
     filtered = np.zeros(len(x), np.bool_)
-    runs = Tracklets.of(t_ns, x, y, step)
+    runs = Tracklets.from_samples(t_ns, x, y, step)
     sigma = np.maximum(position_noise(x, runs, actor), position_noise(y, runs, actor))[actor]
     with np.errstate(invalid="ignore", divide="ignore"):
         known = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.period_ns * 1e-9) <= KNOWN_ERROR_MPS
@@ -90,7 +90,7 @@ class Tracklets(NamedTuple):
     t_s: Floats
 
     @classmethod
-    def of(cls, t_ns: NDArray[np.int64], x: Floats, y: Floats, step: Steps) -> Tracklets:
+    def from_samples(cls, t_ns: NDArray[np.int64], x: Floats, y: Floats, step: Steps) -> Tracklets:
         """Part the states (n, in order) where there is a hole, or no place."""
         usable = np.isfinite(x) & np.isfinite(y)
         starts = np.flatnonzero(np.r_[True, ~(step.continuous & usable[1:] & usable[:-1])])

@@ -62,7 +62,7 @@ def mismatched_samples(states: States, step: Steps) -> Mask:
         wrong = whole & (off > allowed) & (_most(alone, k) < SINGLE_STEP_SHARE * off * span)
     if not wrong.any():
         return found
-    runs = Tracklets.of(states.t_ns, numbers["x_m"], numbers["y_m"], step)
+    runs = Tracklets.from_samples(states.t_ns, numbers["x_m"], numbers["y_m"], step)
     sigma = np.maximum(*(position_noise(numbers[name], runs, states.actor) for name in ("x_m", "y_m")))
     sigma[np.bincount(states.actor, minlength=len(sigma)) < LEAST_NOISE_SAMPLES] = np.inf
     with np.errstate(invalid="ignore"):

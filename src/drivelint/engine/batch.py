@@ -45,7 +45,7 @@ class Drive:
         return int(self.trace.tables["actor_state"].num_rows)
 
     @cached_property
-    def meetings(self) -> dict[str, int]:
+    def pairs_by_ego(self) -> dict[str, int]:
         """Each ego -> its steps times the actors that are there then, by id. Empty: there are not several egos."""
         actors = self.trace.tables["actor"]
         egos = set(actors.filter(actors["is_ego"])["actor_id"].to_pylist())
@@ -54,7 +54,7 @@ class Drive:
     @property
     def size(self) -> int:
         """The drive's size for batching: its states, or its pairs of ego steps and actors."""
-        return max(self.n_states, sum(self.meetings.values()))
+        return max(self.n_states, sum(self.pairs_by_ego.values()))
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ def egos_left_out(drives: Sequence[Drive], room: int | None = None) -> list[list
     Only a drive alone is cut, with its egos in the order of their ids, into parts of at most `room` meetings (default: `MEETINGS`);
     what comes out does not depend on where.
     """
-    meetings = drives[0].meetings if len(drives) == 1 else {}
+    meetings = drives[0].pairs_by_ego if len(drives) == 1 else {}
     found: list[list[str]] = []
     left = 0
     for ego, n in meetings.items():
@@ -152,7 +152,7 @@ def drive_with_map(trace: Trace, library: MapLibrary) -> Drive:
         environment = library.find(trace.path, trace.embedded_map, trace.map_offset, states, trace.geo_reference)
         doubts = library.doubts(trace.path, environment, states, trace.geo_reference)
     except MapError as error:
-        if not library.takes_own(trace.path, trace.embedded_map):
+        if not library.uses_embedded(trace.path, trace.embedded_map):
             raise
         return Drive(
             with_quality_finding(trace, embedded_map.unusable_finding(f"the log's own map is not used: {error}")), None

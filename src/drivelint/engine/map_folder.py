@@ -37,7 +37,7 @@ class MapFolder:
         self._manifest = self._read_manifest()
         self._sources: dict[str, MapSource] = {}
 
-    def named(self, log: Path) -> MapSource | None:
+    def for_log(self, log: Path) -> MapSource | None:
         """Return the map that the manifest gives the log, else one of its name or its folder's name; None: neither."""
         for pattern, name in self._manifest:
             if fnmatchcase(log.name, pattern):
@@ -48,7 +48,7 @@ class MapFolder:
                 return self._source(same[0])
         return None
 
-    def referenced(self, reference: str) -> MapSource | None:
+    def with_reference(self, reference: str) -> MapSource | None:
         """Return the map with this geo reference, if it is the only one that has it."""
         found = [
             source

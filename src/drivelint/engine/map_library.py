@@ -72,7 +72,7 @@ class MapLibrary:
         self._unread: dict[Path, str] = {}
 
     @classmethod
-    def of(cls, given: DriveInput) -> MapLibrary:
+    def from_options(cls, given: DriveInput) -> MapLibrary:
         """Return the library for these options. Errors: `MapError` for a map that cannot be read, `UsageError`."""
         return cls(given.map, given.map_offset, given.handedness, origin=given.map_origin, folder=given.map_dir)
 
@@ -91,7 +91,7 @@ class MapLibrary:
         Errors: `MapError` if the map cannot be read, or is of another place.
         """
         shift = self._offset or offset or (0.0, 0.0)
-        source = self.source(log, embedded, offset, states, reference)
+        source = self.find_source(log, embedded, offset, states, reference)
         if source is None:
             return None
         environment = self._load(source, shift, None)
@@ -104,7 +104,7 @@ class MapLibrary:
             return self._load(source, shift, sensed)
         return environment
 
-    def source(
+    def find_source(
         self,
         log: Path,
         embedded: bytes | None,
@@ -117,18 +117,18 @@ class MapLibrary:
         if self._map_folder is None:
             return self._given or own
         return (
-            self._map_folder.named(log)
+            self._map_folder.for_log(log)
             or own
-            or (self._map_folder.referenced(reference) if reference else None)
+            or (self._map_folder.with_reference(reference) if reference else None)
             or self._only_fitting(self._map_folder, log, self._offset or offset or (0.0, 0.0), states)
         )
 
-    def takes_own(self, log: Path, embedded: bytes | None) -> bool:
+    def uses_embedded(self, log: Path, embedded: bytes | None) -> bool:
         """Say whether the map in the log is the one that `find` takes."""
         return (
             embedded is not None
             and self._given is None
-            and (self._map_folder is None or not self._map_folder.named(log))
+            and (self._map_folder is None or not self._map_folder.for_log(log))
         )
 
     def doubts(

@@ -65,7 +65,7 @@ def _blocks(con: duckdb.DuckDBPyConnection, memory: Memory) -> Iterator[pa.Recor
                 yield block
                 sent += block.num_rows
         except (duckdb.OutOfMemoryException, OSError):  # Arrow's reader has one class for whatever the database says
-            if not memory.lift():
+            if not memory.lift_limit():
                 raise
         else:
             return

@@ -42,11 +42,11 @@ class Memory:
         self.room = max(1, int(batch.PART_PAIRS * share))
         """Meetings of one part of a drive: see `batch.parts`."""
 
-    def halve(self, meetings: int) -> None:
+    def halve_parts(self, meetings: int) -> None:
         """Judge parts of at most half as many pairs as the part that did not fit."""
         self.room = max(1, meetings // 2)
 
-    def lift(self) -> bool:
+    def lift_limit(self) -> bool:
         """Lift the database's memory limit to the machine's; return whether it was lower before."""
         if not self.limited or self._limit is None:
             return False
@@ -57,14 +57,14 @@ class Memory:
 
     def execute(self, sql: str) -> None:
         """Run one statement, with more memory if that is short."""
-        self.enough(lambda con: con.execute(sql), self._con)
+        self.run_job(lambda con: con.execute(sql), self._con)
 
-    def enough(self, job: Callable[[duckdb.DuckDBPyConnection], T], con: duckdb.DuckDBPyConnection) -> T:
+    def run_job(self, job: Callable[[duckdb.DuckDBPyConnection], T], con: duckdb.DuckDBPyConnection) -> T:
         """Run a job on a connection and return its result; repeat it with more memory if that is short."""
         try:
             return job(con)
         except duckdb.OutOfMemoryException:
-            if not self.lift():
+            if not self.lift_limit():
                 raise
             return job(con)
 

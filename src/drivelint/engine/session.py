@@ -83,7 +83,7 @@ class JudgingSession:
         """The path of the margins file; None: none was asked for."""
         return None if self._margins is None else self._margins.path
 
-    def knows(self, drive: Drive) -> bool:
+    def has_judged(self, drive: Drive) -> bool:
         """Whether this very log was judged before."""
         return drive.trace.drive_id in self._seen
 
@@ -107,11 +107,11 @@ class JudgingSession:
         try:
             self._judge(drives)
         except _PartTooLargeError as part:
-            self._memory.halve(part.meetings)
+            self._memory.halve_parts(part.meetings)
             return False
         except duckdb.OutOfMemoryException:
             # what one ego needs and cannot be spilled to disk may take what the machine has
-            if len(drives) > 1 or not self._memory.lift():
+            if len(drives) > 1 or not self._memory.lift_limit():
                 raise
             return False
         return True
@@ -127,7 +127,7 @@ class JudgingSession:
                     store.recreate_empty(self._con, store.tables_of_lifetime("part"))
                 if deferred:
                     store.insert(self._con, "deferred_ego", _egos(drives[0], deferred))
-                judged = {ego: n for ego, n in drives[0].meetings.items() if ego not in set(deferred)}
+                judged = {ego: n for ego, n in drives[0].pairs_by_ego.items() if ego not in set(deferred)}
                 cuttable = len(drives) == 1 and len(judged) > 1
                 try:
                     self._judge_part(ids, may_retry=len(drives) > 1 or cuttable or self._memory.limited)

@@ -66,7 +66,7 @@ def query_plans(con: duckdb.DuckDBPyConnection, rule: Rule) -> list[str]:
         run = PlanRecorder(con, [binding], margins=margins)
         try:
             run.prepare()
-            run.rule(binding)
+            run.judge_rule(binding)
         finally:
             temp_tables.drop_tables(con)
         plans += run.plans

@@ -31,7 +31,7 @@ ENGAGED = "(w.ego_id IS NULL OR e.engaged)"
 
 def has_conditions(rule: Rule) -> bool:
     """Whether the rule's header names any condition."""
-    return bool(rule.applies.words) or rule.applies.limited
+    return bool(rule.applies.restricting) or rule.applies.has_limit
 
 
 def engagement_joins(alias: str) -> str:
@@ -65,7 +65,7 @@ def bound_values(rule: Rule) -> dict[str, object]:
         "_limit_min": None if least is None else least - ROUNDING_MPS,
         "_limit_max": None if most is None else most + ROUNDING_MPS,
     }
-    for name, words in rule.applies.words.items():
+    for name, words in rule.applies.restricting.items():
         values[f"_is_{name}"] = conditions.with_narrower_values(words)
         values[f"_may_{name}"] = conditions.broader_values(words)
     return values
@@ -74,12 +74,12 @@ def bound_values(rule: Rule) -> dict[str, object]:
 def _terms(rule: Rule, *, watching: bool) -> dict[str, str]:
     """Return condition -> its three-valued SQL, the driver's engagement first."""
     found = {"engaged": ENGAGED} if watching else {}
-    for name in rule.applies.words:
+    for name in rule.applies.restricting:
         found[name] = (
             f"CASE WHEN list_contains($_is_{name}, e.{name}) THEN true "
             f"WHEN e.{name} IS NOT NULL AND NOT list_contains($_may_{name}, e.{name}) THEN false END"
         )
-    if rule.applies.limited:
+    if rule.applies.has_limit:
         found["limit"] = " AND ".join(_limits(rule))
     return found
 

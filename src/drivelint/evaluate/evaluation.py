@@ -69,7 +69,7 @@ class Evaluation:
             helper = Evaluation(
                 other, self._bindings, margins=self._margins, courses=self._courses, may_retry=self._may_retry
             )
-            helped = pool.submit(helper.assist, todo)
+            helped = pool.submit(helper.judge_shared, todo)
             try:
                 self._work(todo)
                 helped.result()
@@ -79,7 +79,7 @@ class Evaluation:
                 todo.clear()  # whatever came between, the helper stops after its present rule
                 wait([helped])
 
-    def assist(self, todo: deque[Binding]) -> None:
+    def judge_shared(self, todo: deque[Binding]) -> None:
         """Judge rules from a shared queue; another run collects the outcomes."""
         self.prepare()
         self._work(todo)
@@ -92,7 +92,7 @@ class Evaluation:
             except IndexError:
                 return
             try:
-                self.rule(binding)
+                self.judge_rule(binding)
             except duckdb.Error as error:
                 self._blame(binding, error)
 
@@ -107,7 +107,7 @@ class Evaluation:
         if quick:
             self._con.execute(invariant.CREATE_GRID_GROUPS, {"_objects": any(b.rule.per_object for b in quick)})
 
-    def rule(self, binding: Binding) -> None:
+    def judge_rule(self, binding: Binding) -> None:
         """Run the statements of one rule."""
         if binding.rule.kind == "invariant":
             self._invariant(binding)

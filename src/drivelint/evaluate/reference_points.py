@@ -102,7 +102,7 @@ def judged_steps_sql(rule: Rule, own_object: bool, watching: bool) -> str:
     if crowd:
         source = _crowd(combined)
     on = "g.drive_id = v.drive_id AND g.ego_id = v.ego_id AND g.t_ns = v.t_ns"
-    on += " AND g.ref_id = v.ref_id" if rule.has("ref_id") else ""
+    on += " AND g.ref_id = v.ref_id" if rule.has_column("ref_id") else ""
     on += " AND g.object_id IS NOT DISTINCT FROM v.object_id" if rule.per_object else ""
     on += " AND p.profile = v.profile" if rule.profiled else ""
     # where nobody is, "all" is kept and "any" is missed by as much as can be

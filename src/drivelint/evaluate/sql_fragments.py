@@ -64,7 +64,7 @@ def condition_ctes(rule: Rule) -> str:
     gain (the signed margin, infinite where unlimited; 0 for sense = holds), code, reason (the author's, or NULL).
     NaN is NULL. A lower bound proves what it can: a pass for > and >=, a violation for < and <=.
     """
-    has = rule.has
+    has = rule.has_column
     measured = rule.sense != "holds"
     # at least 1.5 m is kept by what geometry computes to be a nanometre less; more than 0 m is kept by whatever is more
     exact = "{0}::DOUBLE" if rule.sense in {">", "<"} else "round({0}::DOUBLE, 9)"

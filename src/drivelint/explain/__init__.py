@@ -68,22 +68,22 @@ def explain(request: ExplainRequest) -> Explanation:
     asked = run_request.load(request.folder)
     target = find_verdict(result, request.name, request.wanted)
     case = _case(asked, target, request.memory)
-    row = target.row
+    row = target.verdict_row
     drive, source = open_drive(
         request.folder, asked, row["drive_id"], row["ego_id"], trace=request.trace, map_=request.map
     )
     with ExitStack() as opened:
         sandbox = opened.enter_context(case.sandbox([drive]))
         judged = sandbox.judge(case.params)
-        now = case.told(judged, [sandbox.drive_id])[0]
+        now = case.verdicts_on(judged, [sandbox.drive_id])[0]
         series = evidence.judged_steps(case.rule, target, judged)
         decides = _decides(target, series, now)
-        gate = row["reason_code"].removeprefix("missing_") if case.gated else None
+        gate = row["reason_code"].removeprefix("missing_") if case.lacks_signal else None
         condition = condition_of(row["reason_code"]) if row["verdict"] == "unknown" and not target.finding else None
         rows = evidence.rows_read(case.rule, target, sandbox, decides, gate=gate, condition=condition)
         found: list[Change] = []
         sensitivity = None
-        if not case.gated:
+        if not case.lacks_signal:
             part, span = sufficient_part(case, drive, now)
             if part is not drive:
                 sandbox = opened.enter_context(case.sandbox([part]))
@@ -96,7 +96,7 @@ def explain(request: ExplainRequest) -> Explanation:
             "rule_id": rule.id,
             "rule_version": rule.version,
             **{key: getattr(rule, key) for key in _RULE},
-            "applies": rule.applies.words,
+            "applies": rule.applies.restricting,
         },
         drive=_drive(result, row["drive_id"]),
         verdict={**row, "judged_anew": now},
@@ -120,7 +120,7 @@ def explain(request: ExplainRequest) -> Explanation:
 def _case(asked: RunRequest, target: Target, memory: int | None) -> VerdictContext:
     """Return the rule of a verdict, as it was set in that run."""
     known = catalogue.load_rules(asked.rules_dirs)
-    rule_id = target.row["rule_id"]
+    rule_id = target.verdict_row["rule_id"]
     if rule_id not in known:
         raise UsageError(f"rule {rule_id} is not in the catalogue any more: check the drives again")
     rule = known[rule_id]
@@ -143,16 +143,16 @@ def _asks(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
 
 def _decides(target: Target, series: list[Step], now: str) -> int | None:
     """Return the step that the verdict hangs on; None: it is about no step."""
-    times: list[int | None] = [target.row["t_worst_ns"], target.row["t_start_ns"]]
+    times: list[int | None] = [target.verdict_row["t_worst_ns"], target.verdict_row["t_start_ns"]]
     if now == "unknown":
         # somebody who is lost has no step after the last one: that is the one to show
-        times = [first_unknown(series), target.row["t_worst_ns"], target.row["t_start_ns"]]
+        times = [first_unknown(series), target.verdict_row["t_worst_ns"], target.verdict_row["t_start_ns"]]
     return next((t_ns for t_ns in times if t_ns is not None), None)
 
 
 def _notes(case: VerdictContext, now: str) -> list[str]:
     notes = []
-    version, before = case.target.row["rule_version"], case.target.verdict["verdict"]
+    version, before = case.target.verdict_row["rule_version"], case.target.verdict["verdict"]
     if case.rule.version != version:
         notes.append(
             f"The rule has changed since (version {version[:8]} then, {case.rule.version[:8]} now): "
@@ -169,7 +169,7 @@ def _sensitivity(
     found: list[str] = []
     for batch in perturbed_copies(drive, errors):
         with case.sandbox(batch) as sandbox:
-            found += case.told(sandbox.judge(case.params), [copy.trace.drive_id for copy in batch])
+            found += case.verdicts_on(sandbox.judge(case.params), [copy.trace.drive_id for copy in batch])
     start, end = span or (None, None)
     return Sensitivity(
         errors.samples, errors.seed, errors.position_m, errors.time_s, errors.map_m, verdict_counts(found), start, end

@@ -56,15 +56,15 @@ def _numbers(case: VerdictContext, sandbox: Sandbox) -> Iterator[_Number]:
 
         def with_param(value: float, name: str = name) -> str:
             try:
-                return case.verdict(sandbox, {**case.params, name: value})
+                return case.judge(sandbox, {**case.params, name: value})
             except DriveLintError:  # no value for this parameter, such as a window of less than nothing
                 return "error"
 
         yield _Number(name, param.why, param.unit, float(now), math.inf, with_param)
-    profile = case.target.row["profile"]
+    profile = case.target.verdict_row["profile"]
     if not case.rule.profiled or profile is None:
         return
-    for row in sandbox.rows("SELECT * FROM profile WHERE profile = ?", [profile]):
+    for row in sandbox.query("SELECT * FROM profile WHERE profile = ?", [profile]):
         for column, (unit, what) in _PROFILE.items():
             now = row[column]
             if now is None:
@@ -72,7 +72,7 @@ def _numbers(case: VerdictContext, sandbox: Sandbox) -> Iterator[_Number]:
 
             def with_profile(value: float, column: str = column) -> str:
                 sandbox.set_profile(profile, column, value)
-                return case.verdict(sandbox)
+                return case.judge(sandbox)
 
             most = math.pi / 2 if unit == "rad" else math.inf
             try:

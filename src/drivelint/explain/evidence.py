@@ -48,7 +48,7 @@ def _literal(value: object) -> str:
 
 def judged_steps(rule: Rule, target: Target, judged: Judgement) -> list[Step]:
     """Return the judged steps of the explained episode or window, at most half a minute around the verdict."""
-    row, span = target.row, target.span
+    row, span = target.verdict_row, target.span
     if span is None:
         return []
     start, end = target.verdict["t_start_ns"], target.verdict["t_end_ns"]
@@ -75,7 +75,7 @@ def rows_read(
     """
     if gate is not None:
         sql = "SELECT signal, available, reason FROM capability WHERE ego_id = ? AND signal = ?"
-        told = sandbox.rows(sql, [target.row["ego_id"], gate])
+        told = sandbox.query(sql, [target.verdict_row["ego_id"], gate])
         return [TableRows("capability", [{**row, "reason": reason_text.sentence(row["reason"])} for row in told], 0)]
     found = []
     for table in dict.fromkeys((*(CONDITION_TABLES if condition else ()), *rule.reads)):
@@ -86,7 +86,7 @@ def rows_read(
 
 
 def _of_table(target: Target, sandbox: Sandbox, table: str, columns: list[str], t_ns: int | None) -> TableRows:
-    row = target.row
+    row = target.verdict_row
     terms: list[str] = []
     values: list[Any] = []
     if "ego_id" in columns:
@@ -104,8 +104,8 @@ def _of_table(target: Target, sandbox: Sandbox, table: str, columns: list[str], 
             values += [row["object_id"]] * len(who)
     where = f" WHERE {' AND '.join(terms)}" if terms else ""
     # a table of the catalogue's own list, never a word of a user
-    everything = sandbox.rows(f"SELECT * FROM {table}{where} ORDER BY ALL LIMIT {MAX_ROWS}", values)
-    n = sandbox.rows(f"SELECT count(*) AS n FROM {table}{where}", values)[0]["n"]
+    everything = sandbox.query(f"SELECT * FROM {table}{where} ORDER BY ALL LIMIT {MAX_ROWS}", values)
+    n = sandbox.query(f"SELECT count(*) AS n FROM {table}{where}", values)[0]["n"]
     return TableRows(table, [_plain(each) for each in everything], max(0, n - len(everything)))
 
 

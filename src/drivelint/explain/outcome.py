@@ -31,10 +31,10 @@ def verdicts_by_drive(rule: Rule, target: Target, judged: Judgement, drives: Ite
 
 
 def _same(rule: Rule, target: Target, row: Row) -> bool:
-    if row["ego_id"] != target.row["ego_id"] or row["profile"] != target.row["profile"]:
+    if row["ego_id"] != target.verdict_row["ego_id"] or row["profile"] != target.verdict_row["profile"]:
         return False
     about_all = target.span is None or rule.combine != "each"  # then the object is only the one that decided
-    return about_all or row["object_id"] == target.row["object_id"]
+    return about_all or row["object_id"] == target.verdict_row["object_id"]
 
 
 def _outcome(rule: Rule, target: Target, verdicts: list[Row], steps: list[Row]) -> str:
@@ -56,7 +56,7 @@ def _outcome(rule: Rule, target: Target, verdicts: list[Row], steps: list[Row]) 
 
 def _at_reference(target: Target, verdicts: list[Row]) -> list[Row]:
     """Return the verdicts at the reference point nearest to the target's."""
-    t_ref = target.row["t_ref_ns"]
+    t_ref = target.verdict_row["t_ref_ns"]
     if t_ref is None:
         return verdicts
     apart = {id(row): abs(row["t_ref_ns"] - t_ref) for row in verdicts if row["t_ref_ns"] is not None}

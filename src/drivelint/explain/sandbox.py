@@ -55,7 +55,7 @@ class Sandbox:
             self._opened = stack.pop_all()
 
     def _insert(self, table: str, rows: pa.Table) -> None:
-        self._memory.enough(lambda con: store.insert(con, table, rows), self.con)
+        self._memory.run_job(lambda con: store.insert(con, table, rows), self.con)
 
     def _fill(self, drives: Sequence[Drive]) -> None:
         environment = drives[0].environment
@@ -76,7 +76,7 @@ class Sandbox:
             for of_the_map in (True, False):
                 derive(self.con, self._rule.reads, of_the_map=of_the_map)
         except duckdb.OutOfMemoryException:
-            if not self._memory.lift():
+            if not self._memory.lift_limit():
                 raise
             store.recreate_empty(self.con, derivations())
             self._derive()
@@ -91,7 +91,7 @@ class Sandbox:
 
     def judge(self, params: Mapping[str, object]) -> Judgement:
         """Judge every copy by the rule with these parameters."""
-        return self._memory.enough(lambda _con: self._judged(params), self.con)
+        return self._memory.run_job(lambda _con: self._judged(params), self.con)
 
     def _judged(self, params: Mapping[str, object]) -> Judgement:
         for table in _JUDGED:
@@ -99,8 +99,8 @@ class Sandbox:
         given = {self._rule.id: params}
         evaluate(self.con, [self._rule], given, margins=True, may_retry=self._memory.limited)
         return Judgement(
-            self.rows("SELECT * FROM verdict ORDER BY drive_id, t_start_ns, occurrence, profile, object_id"),
-            self.rows("SELECT * FROM margin ORDER BY drive_id, t_ns, profile, object_id, ref_id"),
+            self.query("SELECT * FROM verdict ORDER BY drive_id, t_start_ns, occurrence, profile, object_id"),
+            self.query("SELECT * FROM margin ORDER BY drive_id, t_ns, profile, object_id, ref_id"),
         )
 
     def set_profile(self, profile: str, column: str, value: float) -> None:
@@ -114,7 +114,7 @@ class Sandbox:
                 self.con.execute(f"DELETE FROM {derivation.table}")
                 self._memory.execute(f"INSERT INTO {derivation.table} BY NAME {derivation.sql}")
 
-    def rows(self, sql: str, values: Sequence[Any] = ()) -> list[Row]:
+    def query(self, sql: str, values: Sequence[Any] = ()) -> list[Row]:
         """Return the rows of a query as dictionaries."""
         return [dict(row) for row in self.con.execute(sql, list(values)).to_arrow_table().to_pylist()]
 

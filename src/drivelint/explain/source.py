@@ -62,14 +62,14 @@ def _read(asked: RunRequest, path: Path, map_: Path | None, drive_id: str, ego_i
     if given is not None and not given.exists():
         raise UsageError(f"the map {given} is not there any more: say where it is with --map FILE")
     asked = replace(asked, ego=ego_id, map=given, map_dir=None if given is not None else asked.map_dir)
-    read = read_trace(path, asked.options())
+    read = read_trace(path, asked.ingest_options())
     if read.drive_id.rpartition("-")[2] != drive_id.rpartition("-")[2]:
         raise UsageError(
             f"{path} is not the log that was judged ({drive_id}) but {read.drive_id}: give that one with --trace"
         )
     if read.drive_id != drive_id:  # the same bytes under another name
         read = _renamed(read, drive_id)
-    return drive_with_map(read, MapLibrary.of(asked))
+    return drive_with_map(read, MapLibrary.from_options(asked))
 
 
 def _renamed(trace: Trace, drive_id: str) -> Trace:

@@ -28,14 +28,14 @@ class Target:
     others: list[Row]
 
     @property
-    def row(self) -> Row:
+    def verdict_row(self) -> Row:
         """The verdict with the finding's interval, numbers and reason, where one is meant."""
         return self.verdict if self.finding is None else self.verdict | self.finding
 
     @property
     def span(self) -> tuple[int, int] | None:
         """From when to when it was judged; None: it is about the whole drive."""
-        start, end = self.row["t_start_ns"], self.row["t_end_ns"]
+        start, end = self.verdict_row["t_start_ns"], self.verdict_row["t_end_ns"]
         return None if start is None or end is None else (start, end)
 
 

@@ -35,17 +35,17 @@ class VerdictContext:
         """Return a database with these drives, derived for the rule."""
         return Sandbox(self.rule, drives, self.profiles, self.memory)
 
-    def verdict(self, sandbox: Sandbox, params: Mapping[str, object] | None = None) -> str:
+    def judge(self, sandbox: Sandbox, params: Mapping[str, object] | None = None) -> str:
         """Return the verdict on the one drive in a sandbox, with other parameters if they are given."""
-        return self.told(sandbox.judge(self.params if params is None else params), [sandbox.drive_id])[0]
+        return self.verdicts_on(sandbox.judge(self.params if params is None else params), [sandbox.drive_id])[0]
 
-    def told(self, judged: Judgement, drives: Sequence[str]) -> list[str]:
+    def verdicts_on(self, judged: Judgement, drives: Sequence[str]) -> list[str]:
         """Return the verdict on each of these drives, in their order."""
         found = verdicts_by_drive(self.rule, self.target, judged, drives)
         return [found[drive] for drive in drives]
 
     @property
-    def gated(self) -> bool:
+    def lacks_signal(self) -> bool:
         """Whether the rule was not run because the log or map lacks something: no number alters that."""
         code = "" if self.target.finding else self.target.verdict["reason_code"]
         return lacks_signal(self.target.verdict["verdict"], code)
@@ -73,7 +73,7 @@ def sufficient_part(case: VerdictContext, drive: Drive, now: str) -> tuple[Drive
         small = crop(drive, *part)
         with case.sandbox([small]) as sandbox:
             judged = sandbox.judge(case.params)
-            if case.told(judged, [sandbox.drive_id]) == [now] and _same_numbers(
+            if case.verdicts_on(judged, [sandbox.drive_id]) == [now] and _same_numbers(
                 case, evidence.judged_steps(case.rule, case.target, judged)
             ):
                 return small, part
@@ -82,7 +82,7 @@ def sufficient_part(case: VerdictContext, drive: Drive, now: str) -> tuple[Drive
 
 def _same_numbers(case: VerdictContext, series: list[Step]) -> bool:
     """Tell whether the deciding step has the same numbers in a part of the drive as in all of it."""
-    row = case.target.row
+    row = case.target.verdict_row
     if case.rule.sense == "holds" or row["margin"] is None:
         return True
     here = [step.margin for step in series if step.t_ns == row["t_worst_ns"] and step.margin is not None]

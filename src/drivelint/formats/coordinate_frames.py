@@ -39,7 +39,7 @@ class Poses:
         yaw: Vectors = np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
         return yaw
 
-    def of(self, inner: Poses) -> Poses:
+    def compose(self, inner: Poses) -> Poses:
         """Return poses that are given relative to these ones in the frame of these ones."""
         return Poses(self.place + rotated(self.turn, inner.place), _product(self.turn, inner.turn))
 
@@ -96,7 +96,7 @@ class TransformTree:
             frame = self.edges[frame].parent
         return frame
 
-    def into(self, fixed: str, frame: str, t_ns: NDArray[np.int64]) -> Poses:
+    def frame_poses(self, fixed: str, frame: str, t_ns: NDArray[np.int64]) -> Poses:
         """Return the poses of `frame` in the fixed frame at given times, NaN where they are not known."""
         n = len(t_ns)
         chain = self.chain(frame, fixed)
@@ -104,7 +104,7 @@ class TransformTree:
             return Poses(np.full((n, 3), np.nan), np.full((n, 4), np.nan))
         found = Poses(np.zeros((n, 3)), np.tile([0.0, 0.0, 0.0, 1.0], (n, 1)))
         for edge in chain:
-            found = _at(edge, t_ns).of(found)
+            found = _at(edge, t_ns).compose(found)
         return found
 
 

@@ -31,7 +31,7 @@ class GateInputs:
     waivers: tuple[Waiver, ...] = ()
 
     @classmethod
-    def of(
+    def from_files(
         cls, baseline: Path | None, waiver_file: Path | None, settings_file: Path | None, today: date, out: Path | None
     ) -> GateInputs | None:
         """Return the gate inputs that these files hold; None if no file gives any.
@@ -52,7 +52,7 @@ class GateInputs:
         name = "baseline" if baseline is None else baseline.resolve().name
         return cls(today, earlier, name, tuple(said))
 
-    def gate(self, result: Result) -> Result:
+    def apply_to(self, result: Result) -> Result:
         """Return the result with its gate: difference to the baseline and applied waivers."""
         stated, waived = waivers.apply(self.waivers, result, self.today)
         difference = None

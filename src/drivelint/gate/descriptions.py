@@ -39,14 +39,16 @@ def gating_findings(difference: Difference, fail_on: str, gate: Gate | None = No
         return []
     severe = counts.SEVERITIES[: counts.SEVERITIES.index(fail_on) + 1]
     waived = gate.waived if gate else {}
-    return [e for e in difference.of("new") if e.stable and e.severity in severe and e.finding_id not in waived]
+    return [
+        e for e in difference.with_standing("new") if e.stable and e.severity in severe and e.finding_id not in waived
+    ]
 
 
 def headline(difference: Difference) -> str:
     """Return the counts in one sentence: what is new, what is fixed, and what is not fixed but gone."""
     n = difference.counts()
-    kept = Counter(entry.there for entry in difference.of("fixed"))
-    worse = sum(_worse(entry) for entry in difference.of("changed"))
+    kept = Counter(entry.there for entry in difference.with_standing("fixed"))
+    worse = sum(_worse(entry) for entry in difference.with_standing("changed"))
     text = f"{n['new']} new, {n['changed']} changed ({worse} worse), {n['unchanged']} unchanged, "
     text += f"{n['fixed']} fixed ({kept['pass']} now pass, {kept['not_applicable']} now not applicable)"
     if n["unknown"] or n["lost"]:
@@ -61,7 +63,7 @@ def difference_text(
     waived = gate.waived if gate else {}
     blocks = [list(_table(difference)), [headline(difference)]]
     for standing, title in STANDING_TITLES.items():
-        entries = difference.of(standing)
+        entries = difference.with_standing(standing)
         if entries:
             lines = [f"{title} ({len(entries)})"]
             lines += [

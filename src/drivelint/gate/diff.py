@@ -47,7 +47,7 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
     known = set(same.values())
     for drive_id, stretches in before.items():
         if drive_id not in known:
-            gone += [_gone(each, drive_id, has.said(None, each, same_log=False), had) for each in stretches]
+            gone += [_gone(each, drive_id, has.verdict_at(None, each, same_log=False), had) for each in stretches]
     return Difference(
         entries=(*entries, *gone),
         opened=tuple(_opened(base, new, same, has)),
@@ -78,7 +78,7 @@ def _drive(
             was = theirs[wholes[0]]
             entries.append(_entry("changed", now, was, has, LookupResult("fail", f"a part of {was.id}, which was one")))
         else:
-            said = had.said(base_id, now, same_log=same_log)
+            said = had.verdict_at(base_id, now, same_log=same_log)
             entries.append(_entry("new", now, None, has, _noting_rule(said, now, had, has)))
     gone: list[ComparedFinding] = []
     for was in (each for j, each in enumerate(theirs) if j not in told):
@@ -88,7 +88,7 @@ def _drive(
                 _entry("changed", ours[wholes[0]], was, has, LookupResult("fail", f"{was.id} is a part of it now"))
             )
         else:
-            said = _noting_rule(has.said(drive_id, was, same_log=same_log), was, had, has)
+            said = _noting_rule(has.verdict_at(drive_id, was, same_log=same_log), was, had, has)
             gone.append(_gone(was, drive_id, said, had))
     return entries, gone
 

@@ -49,7 +49,7 @@ class ResultLookup:
         for row in result.findings.to_pylist():
             self.findings[row["drive_id"]].append(match.timed_finding(row, self.drives[row["drive_id"]]))
 
-    def said(self, drive_id: str | None, at: TimedFinding, *, same_log: bool) -> LookupResult:
+    def verdict_at(self, drive_id: str | None, at: TimedFinding, *, same_log: bool) -> LookupResult:
         """Return the verdict of this result where another result has the finding `at`; `drive_id` is the drive's id in this result."""
         row = at.row
         if gap := self._not_looked(drive_id, row):

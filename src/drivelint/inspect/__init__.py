@@ -63,8 +63,8 @@ def inspect(request: InspectRequest) -> model.Inspection:
             f"{request.trace}: {len(paths)} logs ({listed([path.name for path in paths])}): inspect looks at one at a time"
         )
     (path,) = paths
-    library = MapLibrary.of(request)
-    options = request.options(need_ego=False)
+    library = MapLibrary.from_options(request)
+    options = request.ingest_options(need_ego=False)
     file = model.File(name=path.resolve().name, bytes=size_bytes(path))
     try:
         trace = read_trace(path, options)
@@ -108,7 +108,7 @@ def _drive(
     supposed, candidates = None, []
     if not egos:
         candidates = tracks.ego_candidates(everybody)
-        supposing = replace(request, ego=candidates[0].actor_id).options(need_ego=False)
+        supposing = replace(request, ego=candidates[0].actor_id).ingest_options(need_ego=False)
         ((supposed,), _) = _judgeable(
             read_trace(trace.path, supposing), environment, everybody, rules, road_problem, memory=request.memory
         )

@@ -41,8 +41,8 @@ def undecided_rules(rules: Sequence[Rule], lacking: Mapping[str, str], never: Ma
     """Return the rules that cannot be decided because a signal is lacking or a condition is never known."""
     found = []
     for rule in rules:
-        conditions = {SIGNAL_OF_CONDITION.get(name, name) for name in rule.applies.words}
-        conditions |= {"speed_limits"} if rule.applies.limited else set()
+        conditions = {SIGNAL_OF_CONDITION.get(name, name) for name in rule.applies.restricting}
+        conditions |= {"speed_limits"} if rule.applies.has_limit else set()
         needed = set(rule.requires) & lacking.keys() | conditions & never.keys()
         missing = needed | set(rule.pass_requires) & never.keys()
         if "map" in missing:

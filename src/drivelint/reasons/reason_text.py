@@ -38,7 +38,7 @@ class ReasonText(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
                 raise ValueError(f"{rest[0]!r}: write an argument as {{name}} or {{name:.1f}}")
 
     @property
-    def needs(self) -> frozenset[str]:
+    def required_arguments(self) -> frozenset[str]:
         """The names of the arguments that must not be NULL."""
         return frozenset(name for name, _ in _ARGUMENT.findall(_OPTIONAL.sub("", self.says + self.advice)))
 

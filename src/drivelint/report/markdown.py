@@ -158,7 +158,7 @@ def _excuse(row: Row, rule: Row | None, result: Result) -> str:
     waiver = gate.waiver(row["finding_id"]) if gate else None
     if waiver is not None:
         return descriptions.waiver_reason(waiver)
-    if gate is not None and gate.known(row["finding_id"]):
+    if gate is not None and gate.in_baseline(row["finding_id"]):
         return "known: the baseline has it"
     if rule is None or rule["status"] != "stable":
         return "draft" if rule is None else rule["status"]
@@ -178,7 +178,7 @@ def _changes(gate: Gate, link: str) -> Iterator[str]:
 
 def _entries(diff: Difference, titles: dict[str, str], gate: Gate | None, link: str | None) -> Iterator[str]:
     for standing, title in titles.items():
-        entries = diff.of(standing)
+        entries = diff.with_standing(standing)
         if not entries:
             continue
         lines = []

@@ -116,7 +116,7 @@ class _Run:
             },
         }
         if gate is not None:
-            entry, waiver = gate.entry(row["finding_id"]), gate.waiver(row["finding_id"])
+            entry, waiver = gate.compared(row["finding_id"]), gate.waiver(row["finding_id"])
             if gate.baseline is not None:
                 found["baselineState"] = _STATES[entry.standing] if entry else "new"
             if waiver is not None:

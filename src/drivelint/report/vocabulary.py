@@ -156,7 +156,7 @@ def _asking(rules: Iterable[Rule], asked: Sequence[str], reads: Sequence[str] = 
     return [
         rule
         for rule in rules
-        if not {*rule.requires, *rule.applies.words}.isdisjoint(asked)
+        if not {*rule.requires, *rule.applies.restricting}.isdisjoint(asked)
         or ((not reads or not {*rule.reads}.isdisjoint(reads)) and named.search(_sql(rule)))
     ]
 

@@ -121,7 +121,7 @@ class _Checker:
         text = profile + line(row, start_ns)
         notes = [] if stable else [f"{self._rule['status']}, does not gate"]
         notes += [descriptions.waiver_reason(waiver)] if waiver else []
-        notes += ["known: the baseline has it"] if gate and gate.known(row["finding_id"]) else []
+        notes += ["known: the baseline has it"] if gate and gate.in_baseline(row["finding_id"]) else []
         level = LEVELS[row["severity"]] if stable and waiver is None else INFORMATION
         issue = self._issue(level, f"{text} ({'; '.join(notes)})" if notes else text)
         place = etree.SubElement(issue, "Locations")

@@ -73,7 +73,7 @@ class Difference:
         found = Counter(entry.standing for entry in self.entries)
         return {standing: found[standing] for standing in STANDINGS}
 
-    def of(self, standing: str) -> list[ComparedFinding]:
+    def with_standing(self, standing: str) -> list[ComparedFinding]:
         """Return the findings of one standing."""
         return [entry for entry in self.entries if entry.standing == standing]
 
@@ -122,7 +122,7 @@ class Gate:
                 found.setdefault(entry.finding_id, entry)
         return found
 
-    def entry(self, finding_id: str) -> ComparedFinding | None:
+    def compared(self, finding_id: str) -> ComparedFinding | None:
         """Return the finding as compared with the baseline; None without one."""
         return self._standing.get(finding_id)
 
@@ -131,11 +131,11 @@ class Gate:
         number = self.waived.get(finding_id)
         return None if number is None else self.waivers[number]
 
-    def known(self, finding_id: str) -> bool:
+    def in_baseline(self, finding_id: str) -> bool:
         """Return whether the baseline had this finding."""
-        entry = self.entry(finding_id)
+        entry = self.compared(finding_id)
         return entry is not None and entry.standing != "new"
 
     def gates(self, finding_id: str) -> bool:
         """Return whether a finding may fail a run: it is neither waived nor in the baseline."""
-        return finding_id not in self.waived and not self.known(finding_id)
+        return finding_id not in self.waived and not self.in_baseline(finding_id)

@@ -33,7 +33,7 @@ class RunRequest(DriveInput):
     rules_dirs: tuple[Path, ...] = ()
 
     @classmethod
-    def of(cls, given: DriveInput, **more: Any) -> RunRequest:
+    def from_options(cls, given: DriveInput, **more: Any) -> RunRequest:
         """Return what was asked with these options."""
         return cls(**{each.name: getattr(given, each.name) for each in fields(DriveInput)}, **more)
 

@@ -95,7 +95,7 @@ def _environment(source: MapSource, request: MapOptions, handedness: str, how: s
 
 def _lane(element: etree._Element, kinds: Sequence[str], signs: Signs) -> BoundedLane:
     kind = next((_KINDS[k] for k in kinds if k in _KINDS), "driving")
-    limit = signs.limit(element)
+    limit = signs.speed_limit(element)
     left, right = element.find("leftBound"), element.find("rightBound")
     lane = BoundedLane(
         str(element.attrib["id"]), points(left), points(right), kind, kind not in _NOT_DRIVEN,

@@ -65,7 +65,7 @@ class Signs:
     quality: MapQuality
     elements: dict[str, list[SignElement]] = field(default_factory=dict)
 
-    def limit(self, lanelet: etree._Element) -> SpeedLimit:
+    def speed_limit(self, lanelet: etree._Element) -> SpeedLimit:
         """Return the limit of a lanelet: the least of those on its signs and of its own (2018b).
 
         One that holds only under a condition, by a plate, may be lower: then the limit is not known.

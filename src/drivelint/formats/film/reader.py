@@ -112,7 +112,7 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
     lost = sheet.bad_lines
     if lost or bad.any():
         n = len(lost) + int(bad.sum())
-        where = describe_places("line", lost, len(lost)) if lost else sheet.where(np.flatnonzero(bad))
+        where = describe_places("line", lost, len(lost)) if lost else sheet.describe_rows(np.flatnonzero(bad))
         message = (
             f"{path.name}, {where}: not the {len(sheet.names)} cells of the header: nobody has a place in these frames"
         )
@@ -124,7 +124,7 @@ def _report(
     path: Path, sheet: CsvSheet | ParquetSheet, rows: NDArray[np.bool_], why: str, findings: list[QualityFinding]
 ) -> None:
     if rows.any():
-        message = f"{path.name}, {sheet.where(np.flatnonzero(rows))}: {why}"
+        message = f"{path.name}, {sheet.describe_rows(np.flatnonzero(rows))}: {why}"
         findings.append(QualityFinding("malformed_cell", "warning", message, int(rows.sum())))
 
 

@@ -123,9 +123,9 @@ class Original:
             if opcode == Opcode.FOOTER:
                 return
             at = record.end
-        raise self.damaged(at)
+        raise self.damage_error(at)
 
-    def damaged(self, at: int) -> TraceError:
+    def damage_error(self, at: int) -> TraceError:
         """Return the error for a record that cannot be read."""
         return TraceError(f"{self.path}: the log changed or is damaged at byte {at}: check it again")
 
@@ -136,45 +136,45 @@ class Original:
         except OSError as error:
             raise _unreadable(self.path, error) from error
         if len(content) != end - start:
-            raise self.damaged(start)
+            raise self.damage_error(start)
         return content
 
-    def stream(self, record: Record) -> ReadDataStream:
+    def body_stream(self, record: Record) -> ReadDataStream:
         """Return the body of a record, to be read field by field."""
         return ReadDataStream(io.BytesIO(self.read(record.body, record.end)))
 
-    def head(self, record: Record) -> ReadDataStream:
+    def head_stream(self, record: Record) -> ReadDataStream:
         """Return the beginning of a record that may be large, for the fields before its data."""
         return ReadDataStream(io.BytesIO(self.read(record.body, min(record.end, record.body + _HEAD_BYTES))))
 
-    def unpacked(self, record: Record) -> Iterator[tuple[int, int, memoryview]]:
+    def chunk_records(self, record: Record) -> Iterator[tuple[int, int, memoryview]]:
         """Yield opcode, offset within the chunk and body of every record of a chunk."""
         try:
-            stream, size = get_chunk_data_stream(Chunk.read(self.stream(record)), validate_crc=True)
+            stream, size = get_chunk_data_stream(Chunk.read(self.body_stream(record)), validate_crc=True)
             view = memoryview(stream.read(size))
         except McapError as error:
-            raise self.damaged(record.at) from error
+            raise self.damage_error(record.at) from error
         at = 0
         while at < len(view):
             opcode, length = _HEAD.unpack_from(view, at)
             yield opcode, at, view[at + _HEAD.size : at + _HEAD.size + length]
             at += _HEAD.size + length
 
-    def index(self, record: Record) -> ChunkMessageIndex:
+    def chunk_message_index(self, record: Record) -> ChunkMessageIndex:
         """Unpack a chunk to find where its messages are."""
         entries: dict[int, list[tuple[int, int]]] = {}
-        for opcode, at, body in self.unpacked(record):
+        for opcode, at, body in self.chunk_records(record):
             if opcode == Opcode.MESSAGE:
                 channel, _, log_time = _MESSAGE.unpack_from(body)
                 entries.setdefault(channel, []).append((log_time, at))
         return index_arrays(entries)
 
-    def announced(self, record: Record) -> tuple[int, int]:
+    def message_index_header(self, record: Record) -> tuple[int, int]:
         """Return channel and number of entries of a message index record."""
         channel, length = _INDEX.unpack_from(self._view, record.body)
         return channel, length // 16
 
-    def message(self, record: Record) -> tuple[int, int]:
+    def message_header(self, record: Record) -> tuple[int, int]:
         """Return channel and log time of a message record."""
         channel, _, log_time = _MESSAGE.unpack_from(self._view, record.body)
         return channel, log_time
@@ -188,19 +188,19 @@ class Original:
         for record in self.records():
             behind_chunk = record.opcode == Opcode.CHUNK or (behind_chunk and record.opcode == Opcode.MESSAGE_INDEX)
             if record.opcode == Opcode.SCHEMA:
-                schema = Schema.read(self.stream(record))
+                schema = Schema.read(self.body_stream(record))
                 found.schemas.setdefault(schema.id, schema)
             elif record.opcode == Opcode.CHANNEL:
-                channel = Channel.read(self.stream(record))
+                channel = Channel.read(self.body_stream(record))
                 found.channels.setdefault(channel.id, channel)
             elif record.opcode == Opcode.STATISTICS:
-                found.statistics = Statistics.read(self.stream(record))
+                found.statistics = Statistics.read(self.body_stream(record))
             elif record.opcode == Opcode.CHUNK:
                 chunks.append(record)
             elif record.opcode == Opcode.MESSAGE:
                 found.loose += 1
             elif record.opcode == Opcode.MESSAGE_INDEX and behind_chunk:
-                channel_id, n = self.announced(record)
+                channel_id, n = self.message_index_header(record)
                 named.add(channel_id)
                 found.in_indexes += n
         found.chunks = len(chunks)
@@ -211,7 +211,7 @@ class Original:
 
     def _look_inside(self, chunks: list[Record], found: Contents) -> None:
         for chunk in chunks:
-            for opcode, _, body in self.unpacked(chunk):
+            for opcode, _, body in self.chunk_records(chunk):
                 if opcode == Opcode.SCHEMA:
                     schema = Schema.read(ReadDataStream(io.BytesIO(body)))
                     found.schemas[schema.id] = schema
@@ -315,11 +315,11 @@ class _Copy:
         elif record.opcode == Opcode.ATTACHMENT:
             self._sink.attachments.append(self._attachment_index(record, start, length))
         elif record.opcode == Opcode.METADATA:
-            name = self._original.stream(record).read_prefixed_string()
+            name = self._original.body_stream(record).read_prefixed_string()
             self._sink.metadata.append(MetadataIndex(offset=start, length=length, name=name))
 
     def _chunk_index(self, record: Record, start: int, length: int) -> ChunkIndex:
-        head = self._original.head(record)
+        head = self._original.head_stream(record)
         begin, end, size, _crc = head.read8(), head.read8(), head.read8(), head.read4()
         return ChunkIndex(
             chunk_length=length,
@@ -334,7 +334,7 @@ class _Copy:
         )
 
     def _attachment_index(self, record: Record, start: int, length: int) -> AttachmentIndex:
-        head = self._original.head(record)
+        head = self._original.head_stream(record)
         log_time, create_time = head.read8(), head.read8()
         name, media_type = head.read_prefixed_string(), head.read_prefixed_string()
         return AttachmentIndex(
@@ -353,7 +353,7 @@ class _Copy:
             self._flush()
             self._from = self._to = record.end
             return
-        channel, n = self._original.announced(record)
+        channel, n = self._original.message_index_header(record)
         self._chunk[1].message_index_offsets[channel] = self._place(record.at)
         self._chunk[1].message_index_length += record.end - record.at
         self._sink.counts[channel] += n
@@ -367,7 +367,7 @@ class _Copy:
             self._sink.chunks.append(index)
             return
         self._flush()
-        self._sink.index_chunk(index, self._original.index(record))
+        self._sink.index_chunk(index, self._original.chunk_message_index(record))
 
     def _take_loose(self, record: Record) -> None:
         self._loose.append(record)
@@ -383,7 +383,7 @@ class _Copy:
         entries: dict[int, list[tuple[int, int]]] = {}
         for record in loose:
             if record.opcode == Opcode.MESSAGE:
-                channel, log_time = self._original.message(record)
+                channel, log_time = self._original.message_header(record)
                 entries.setdefault(channel, []).append((log_time, record.at - start))
         if entries:
             self._flush()

@@ -42,7 +42,7 @@ def _speed_row(
     limit, said = speed.limit_mps, source if speed.readable else "unread"
     return [
         {"lanelet_id": lanelet.lanelet_id, "s_start_m": a, "s_end_m": b, "limit_mps": limit, "source": said}
-        for _, a, b in lanelet.ranges(span)
+        for _, a, b in lanelet.lanelet_spans(span)
     ]
 
 
@@ -68,7 +68,9 @@ _SWAPPED = {"solid_broken": "broken_solid", "broken_solid": "solid_broken"}
 
 def _mark_rows(lanelet: Lanelet, side: str, marks: tuple[RoadMark, ...], *, swap: bool) -> list[dict[str, Any]]:
     rows = []
-    for i, a, b in lanelet.ranges(record_spans((m.start_m for m in marks), lanelet.strip.start_m, lanelet.strip.end_m)):
+    for i, a, b in lanelet.lanelet_spans(
+        record_spans((m.start_m for m in marks), lanelet.strip.start_m, lanelet.strip.end_m)
+    ):
         mark = marks[i] if i >= 0 else None
         marking = mark.marking if mark else None
         rows.append({

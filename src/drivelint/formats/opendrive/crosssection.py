@@ -80,7 +80,7 @@ class Evaluator:
             edges.append((t, dt))
         return edges
 
-    def breaks(self) -> Floats:
+    def break_stations(self) -> Floats:
         """Return the strip's ends and every station between where a geometry, an offset or a width begins."""
         start, end = self.strip.start_m, self.strip.end_m
         profiles = [lane.widths or lane.borders for lane in (*self.left, *self.right)]
@@ -91,7 +91,7 @@ class Evaluator:
         apart = np.diff(stations, prepend=-np.inf) > _SNAP_M
         return np.concatenate([[start], stations[apart], [end]])
 
-    def steps(self, breaks: Floats) -> tuple[Floats, Floats]:
+    def sideways_steps(self, breaks: Floats) -> tuple[Floats, Floats]:
         """Return the inner break points where an edge steps sideways, and by how much (m)."""
         inner = breaks[1:-1]
         if not len(inner):

@@ -34,7 +34,7 @@ class Direction:
     forward_source: str
     travel: bool
 
-    def of(self, lane: Lane) -> tuple[int, bool]:
+    def lane_direction(self, lane: Lane) -> tuple[int, bool]:
         """Return 1 or -1 (along or against the reference line) and whether the lane is driven both ways."""
         keep = 1 if self.forward else -1
         if lane.kind == "bidirectional" or lane.direction == "both":
@@ -66,7 +66,7 @@ class SideStatements:
     travel: str | None
 
     @classmethod
-    def of(cls, net: Network, request: MapOptions) -> SideStatements:
+    def collect(cls, net: Network, request: MapOptions) -> SideStatements:
         """Collect the statements of the option, the roads' rules, the junctions, the lanes' travel directions and the traces."""
         roads = Counter(road.rule for road in net.roads.values() if road.rule)
         junctions, travel = _junction_votes(net), _travel_votes(net)
@@ -81,11 +81,11 @@ class SideStatements:
         said = tuple(SideStatement(source, side, text, of) for source, side, text, of in found if side is not None)
         return cls(said, roads, _winner(travel))
 
-    def first(self) -> Direction:
+    def two_way_direction(self) -> Direction:
         """Return the direction on two-way roads, where the side that is driven on fixes the lanes' direction."""
         return self._direction("rht", self.said[0] if self.said else None)
 
-    def settle(self, layout: str | None, quality: MapQuality) -> Direction:
+    def final_direction(self, layout: str | None, quality: MapQuality) -> Direction:
         """Return the direction by the most trusted statement, and report the statements that disagree.
 
         `layout`: the side that is driven on by the lanes beside each other, if the lanes with negative numbers run along the reference
@@ -197,7 +197,7 @@ def report_exceptions(net: Network, direction: Direction, quality: MapQuality) -
     for road in net.roads.values():
         for strip in road.strips:
             for lane in strip.lanes:
-                if lane.invalid is None and direction.of(lane) != plain.of(lane):
+                if lane.invalid is None and direction.lane_direction(lane) != plain.lane_direction(lane):
                     name = f"{road.road_id}.{strip.section}.{lane.number}"
                     message = f"lane {name} is driven {lane.travel}, as its userData says, against the rule of its side"
                     quality.add("direction_exception", "warning", name, message)

@@ -64,24 +64,24 @@ class Lanelet:
         """Length along the centre line."""
         return float(self.s[-1])
 
-    def at(self, road_s: float) -> float:
+    def station_at(self, road_s: float) -> float:
         """Return the lanelet station (m) of a road station (m), held within the lanelet."""
         step = self.along
         return float(np.interp(road_s, self.road_s[::step], self.s[::step]))
 
     def lateral_range(self, road_s: float) -> tuple[float, float]:
         """Return the road coordinates t between which the lanelet lies at a road station (m)."""
-        s = self.at(road_s)
+        s = self.station_at(road_s)
         t, half = float(np.interp(s, self.s, self.t)), float(np.interp(s, self.s, self.half_width))
         return t - half, t + half
 
-    def ranges(self, spans: Iterable[tuple[int, float, float]]) -> list[tuple[int, float, float]]:
+    def lanelet_spans(self, spans: Iterable[tuple[int, float, float]]) -> list[tuple[int, float, float]]:
         """Return (index, from, to) spans of road stations as spans of the lanelet, in the direction of travel."""
-        found = [(i, self.at(a), self.at(b)) for i, a, b in spans]
+        found = [(i, self.station_at(a), self.station_at(b)) for i, a, b in spans]
         ordered = [(i, min(a, b), max(a, b)) for i, a, b in found if abs(b - a) > 1e-6]
         return sorted(ordered, key=lambda r: r[1])
 
-    def turn(self) -> float:
+    def heading_change(self) -> float:
         """Return the heading change over the lanelet (rad), left positive."""
         cross = self.tx[:-1] * self.ty[1:] - self.ty[:-1] * self.tx[1:]
         dot = self.tx[:-1] * self.tx[1:] + self.ty[:-1] * self.ty[1:]

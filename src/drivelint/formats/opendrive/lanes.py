@@ -87,8 +87,8 @@ class _StripBuilder:
         self._fail(_unbuildable(strip))
         try:
             evaluator = Evaluator(road, strip)
-            breaks = evaluator.breaks()
-            at, step = evaluator.steps(breaks)
+            breaks = evaluator.break_stations()
+            at, step = evaluator.sideways_steps(breaks)
             s = sample_stations(evaluator, np.sort(np.concatenate([breaks, at - SHORT_M])))
             edges = evaluator.edges(s)
         except MalformedError as error:
@@ -129,7 +129,7 @@ class _StripBuilder:
     def _lanelet(self, lane: Lane, edges: Edges, s: Floats, rows: tuple[int, int]) -> Lanelet:
         """Return one lane as arrays; `rows` are those of its left and right edge, seen along the reference line."""
         i, j = rows
-        along, bidirectional = self.direction.of(lane)
+        along, bidirectional = self.direction.lane_direction(lane)
         line, (dx, dy) = edges.line, self.offset
         t, dt = 0.5 * (edges.t[i] + edges.t[j]), 0.5 * (edges.dt[i] + edges.dt[j])
         x, y = line.x - line.sin * t, line.y + line.cos * t

@@ -66,7 +66,7 @@ def links(net: Network, lanes: BuiltLanes, quality: MapQuality) -> list[Link]:
 def _declared_contacts(net: Network, quality: MapQuality) -> Iterator[tuple[LaneEnd, LaneEnd]]:
     for road in net.roads.values():
         for side in (1, -1):
-            strips = road.strips_of(side)
+            strips = road.strips_on_side(side)
             for k, strip in enumerate(strips):
                 for lane in strip.lanes:
                     if lane.number * side > 0 and lane.invalid is None:
@@ -115,7 +115,7 @@ def _contact_back(other: Road, road_id: str) -> str | None:
 
 
 def _lane_at(road: Road, contact: str, lane_no: int) -> LaneKey:
-    strips = road.strips_of(lane_no)
+    strips = road.strips_on_side(lane_no)
     if not strips:
         return (road.road_id, 0, lane_no)
     return (road.road_id, strips[0 if contact == START else -1].section, lane_no)

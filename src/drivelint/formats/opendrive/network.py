@@ -106,7 +106,7 @@ class Road:
     strips: tuple[Strip, ...]
     element: etree._Element = field(repr=False)
 
-    def strips_of(self, lane_no: int) -> list[Strip]:
+    def strips_on_side(self, lane_no: int) -> list[Strip]:
         """Return the strips that hold lanes of that side, in order of station."""
         return [s for s in self.strips if any((lane.number > 0) == (lane_no > 0) for lane in s.lanes)]
 

@@ -70,8 +70,8 @@ class OpenDriveReader:
 
 def _built(net: Network, request: MapOptions, quality: MapQuality) -> tuple[Direction, BuiltLanes]:
     """Build the lanes as they run: as on roads with both directions, and once more if their layout shows that this is not one."""
-    witnesses = SideStatements.of(net, request)
-    first, noted = witnesses.first(), len(quality.rows)
+    witnesses = SideStatements.collect(net, request)
+    first, noted = witnesses.two_way_direction(), len(quality.rows)
     lanes = build(net, first, request.offset, quality)
     side = side_driven_on(
         [
@@ -84,7 +84,7 @@ def _built(net: Network, request: MapOptions, quality: MapQuality) -> tuple[Dire
         side = "lht" if side == "rht" else "rht"
     built = quality.rows[noted:]
     del quality.rows[noted:]
-    direction = witnesses.settle(side, quality)
+    direction = witnesses.final_direction(side, quality)
     if (direction.forward, direction.travel) != (first.forward, first.travel):
         lanes = build(net, direction, request.offset, quality)
     else:
@@ -136,7 +136,11 @@ def _against(lane: Lanelet, beside: Lanelet | None) -> bool | None:
 
 
 def _link_row(link: Link) -> dict[str, object]:
-    return {"from_id": link.source.lanelet_id, "to_id": link.target.lanelet_id, "turn_rad": link.target.turn()}
+    return {
+        "from_id": link.source.lanelet_id,
+        "to_id": link.target.lanelet_id,
+        "turn_rad": link.target.heading_change(),
+    }
 
 
 def _points(name: str, lanes: list[Lanelet]) -> pa.Table:

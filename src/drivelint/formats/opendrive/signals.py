@@ -96,7 +96,7 @@ class _Reader:
                 "road_id": road.road_id,
                 "road_s_m": s,
                 "lanelet_id": lane.lanelet_id,
-                "lane_s_m": lane.at(s),
+                "lane_s_m": lane.station_at(s),
                 "x_m": x,
                 "y_m": y,
             }
@@ -107,7 +107,7 @@ class _Reader:
                 {
                     "stop_line_id": listing.get("id", ""),
                     "lanelet_id": lane.lanelet_id,
-                    "lane_s_m": lane.at(s),
+                    "lane_s_m": lane.station_at(s),
                     "source": "signal",
                 }
                 for lane in self._stopped(listing, signal, s, lanes)

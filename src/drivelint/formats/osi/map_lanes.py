@@ -86,7 +86,7 @@ def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalL
     """Return physical lane -> the logical lanes that say more of the same place: those that name it, or lie over most of it."""
     covers: dict[int, list[int]] = {}
     for name, lane in logical.items():
-        for ref in lane.physical:
+        for ref in lane.physical_lane_ids:
             covers.setdefault(ref, []).append(name)
     names = list(logical)
     areas = [

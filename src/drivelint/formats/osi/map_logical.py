@@ -41,7 +41,7 @@ class LogicalLane:
     along: int
 
     @property
-    def name(self) -> int:
+    def lane_id(self) -> int:
         """Its id in the trace."""
         return int(self.message.id.value)
 
@@ -51,11 +51,11 @@ class LogicalLane:
         return (self.left + self.right) / 2
 
     @property
-    def physical(self) -> list[int]:
+    def physical_lane_ids(self) -> list[int]:
         """Ids of the physical lanes that it lies on."""
         return [ref.physical_lane_id.value for ref in self.message.physical_lane_reference]
 
-    def share(self, s: float) -> float:
+    def lane_fraction(self, s: float) -> float:
         """Return a station on the reference line as a share of the lane's length, in the direction of travel."""
         begin, end = self.span
         at = min(max((s - begin) / (end - begin), 0.0), 1.0)
@@ -90,7 +90,7 @@ def lanelets(lanes: Mapping[int, LogicalLane], truth: Any) -> Iterator[BoundedLa
         yield BoundedLane(
             str(name), lane.left[:, :2], lane.right[:, :2], kind, kind in kinds.DRIVABLE,
             bidirectional=kind in kinds.DRIVABLE and lane.message.move_direction == kinds.BOTH,
-            junction_id=next((f"j{i}" for i in lane.physical if i in areas), None),
+            junction_id=next((f"j{i}" for i in lane.physical_lane_ids if i in areas), None),
             successors=tuple(str(b) for a, b in linked if a == name),
             left_id=beside[0][0], left_against=beside[0][1], right_id=beside[1][0], right_against=beside[1][1],
             marks=tuple(_marks(lane, bounds, types, told=told)), limits=tuple(_limits(lane)), limit_source="lane",
@@ -197,7 +197,7 @@ def _neighbour(
     else:
         ways = [each.centre[-1, :2] - each.centre[0, :2] for each in (lane, other)]
         against = float(np.dot(*ways)) < 0
-    return str(other.name), against or other.message.move_direction == kinds.BOTH
+    return str(other.lane_id), against or other.message.move_direction == kinds.BOTH
 
 
 def _marks(lane: LogicalLane, bounds: Mapping[int, Any], types: Mapping[int, int], *, told: bool) -> Iterator[Mark]:
@@ -207,7 +207,7 @@ def _marks(lane: LogicalLane, bounds: Mapping[int, Any], types: Mapping[int, int
         for i in ids:
             bound = bounds[i.value]
             stations = [p.s_position for p in bound.boundary_line]
-            begin, end = sorted((lane.share(min(stations)), lane.share(max(stations))))
+            begin, end = sorted((lane.lane_fraction(min(stations)), lane.lane_fraction(max(stations))))
             if end <= begin:
                 continue
             physical = [
@@ -227,7 +227,7 @@ def _limits(lane: LogicalLane) -> Iterator[tuple[float, float, float]]:
         where = rule.traffic_rule_validity
         if rule.traffic_rule_type or unit is None or said.value <= 0 or not _for_all(where.valid_for_type):
             continue
-        begin, end = sorted((lane.share(where.start_s), lane.share(where.end_s)))
+        begin, end = sorted((lane.lane_fraction(where.start_s), lane.lane_fraction(where.end_s)))
         if end > begin:
             yield begin, end, said.value * unit
 

@@ -72,7 +72,7 @@ def odometry(table: Table, log_ns: NDArray[np.int64], forward_m: float) -> Recor
     place = inside.place
     if forward_m != 0.0:
         lever = Poses(np.tile([forward_m, 0.0, 0.0], (n, 1)), np.tile([0.0, 0.0, 0.0, 1.0], (n, 1)))
-        place = inside.of(lever).place
+        place = inside.compose(lever).place
         sideways = np.nan_to_num(yaw_rate) * forward_m
         yaw = inside.yaw
         velocity[:, 0] += np.where(along, 0.0, -np.sin(yaw) * sideways)

@@ -85,7 +85,7 @@ class TopicMessages:
     size: int = 0
     decoder: Decoder | None = None
 
-    def take(self, packet: Packet) -> None:
+    def add(self, packet: Packet) -> None:
         """Add a message, and decode the waiting ones when they fill a batch."""
         self.waiting.append(packet)
         self.size += len(packet.data)
@@ -125,7 +125,7 @@ class _Log:
                 if source.decoder is not decoders[number]:
                     source.flush()
                     source.decoder = decoders[number]
-                source.take(packet)
+                source.add(packet)
             for source in self._all():
                 source.flush()
             self.carla |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())

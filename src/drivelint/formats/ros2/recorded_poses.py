@@ -127,8 +127,8 @@ def states_in_fixed_frame(
         if frame == fixed:
             continue
         here = np.flatnonzero(which == i)
-        outer = frames.into(fixed, frame, at_ns[here])
-        inner = outer.of(Poses(place[here], turn[here]))
+        outer = frames.frame_poses(fixed, frame, at_ns[here])
+        inner = outer.compose(Poses(place[here], turn[here]))
         place[here], turn[here] = inner.place, inner.turn
         for vectors in (velocity, acceleration, swapped):
             vectors[here] = rotated(outer.turn, vectors[here])

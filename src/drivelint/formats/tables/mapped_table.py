@@ -249,7 +249,7 @@ class _Body:
         n = int(rows.sum())
         if n:
             follows = "not judged" if check == "dropped_row" else "those values are unknown"
-            message = f"{self.path.name}, {self.sheet.where(np.flatnonzero(rows))}: {why}: {follows}"
+            message = f"{self.path.name}, {self.sheet.describe_rows(np.flatnonzero(rows))}: {why}: {follows}"
             self.findings.append(QualityFinding(check, "warning" if check == "malformed_cell" else "error", message, n))
 
     def _report_lines(self, n: int) -> None:

@@ -57,7 +57,7 @@ class Sheet(Protocol):
         """Return nanoseconds and which cells are empty or not times."""
         ...
 
-    def where(self, rows: NDArray[np.intp]) -> str:
+    def describe_rows(self, rows: NDArray[np.intp]) -> str:
         """Return where the first of these rows stand, for a message."""
         ...
 
@@ -169,7 +169,7 @@ class CsvSheet:
         exact = self._columns[name].cast(pl.Int64, strict=False)  # beyond 2^53 a double is not exact to the nanosecond
         return np.where(exact.is_not_null().to_numpy(), exact.fill_null(0).to_numpy(), t_ns), bad
 
-    def where(self, rows: NDArray[np.intp]) -> str:
+    def describe_rows(self, rows: NDArray[np.intp]) -> str:
         """Return the line numbers of the first of these rows."""
         return describe_places("line", [self._line(int(row)) for row in rows[:_SHOWN]], len(rows))
 
@@ -238,7 +238,7 @@ class ParquetSheet:
         beyond = np.abs(whole) > int(MAX_NS) // factor
         return np.where(beyond, 0, whole) * factor, beyond | column.is_null().to_numpy(zero_copy_only=False)
 
-    def where(self, rows: NDArray[np.intp]) -> str:
+    def describe_rows(self, rows: NDArray[np.intp]) -> str:
         """Return the numbers of the first of these rows."""
         return describe_places("row", [int(row) + 1 for row in rows[:_SHOWN]], len(rows))
 

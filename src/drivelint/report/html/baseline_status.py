@@ -25,7 +25,7 @@ class BaselineStatus(NamedTuple):
     why: str
 
     @property
-    def key(self) -> str:
+    def filter_key(self) -> str:
         """The key by which the page filters findings; no pack has this name."""
         return f"gate-{self.kind}"
 
@@ -71,8 +71,8 @@ def finding_status(gate: Gate | None, finding_id: str) -> BaselineStatus | None:
         return _as("waived", f"{descriptions.waiver_reason(waiver)} ({waiver.where})")
     if gate.baseline is None:
         return _as("open", "")
-    entry = gate.entry(finding_id)
-    if not gate.known(finding_id):
+    entry = gate.compared(finding_id)
+    if not gate.in_baseline(finding_id):
         return _as("new", entry.why if entry else "")
     changed = entry is not None and entry.standing == "changed"
     return _as("known", entry.why if entry and changed else "")
@@ -98,7 +98,7 @@ def gate_summary(gate: Gate | None, finding_ids: list[str]) -> GateSummary | Non
                 [descriptions.finding_line(entry) for entry in entries[:MAX_LISTED]],
             )
             for kind in _GONE
-            if before and (entries := before.of(kind))
+            if before and (entries := before.with_standing(kind))
         ],
         more_unknown=sum(each.n - each.base_n for each in before.opened) if before else 0,
     )

@@ -117,7 +117,7 @@ def finding_line(
         href="#" + (finding_anchor(row) if kind == "fail" else incident_anchor(*incident_key(row))),
         kind=kind,
         severity=row["severity"],
-        keys=" ".join((kind, row["severity"], rule["pack"], *([standing.key] if standing else []))),
+        keys=" ".join((kind, row["severity"], rule["pack"], *([standing.filter_key] if standing else []))),
         status=rule["status"],
         rule_id=row["rule_id"],
         title=rule["title"],

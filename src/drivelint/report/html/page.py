@@ -84,7 +84,7 @@ def content(result: Result) -> dict[str, Any]:
     shown = _with_section(drives, listed, told)
     lines, close = _linked(lines, shown), _linked(close, shown)
     listed = _by_drive(lines + close)
-    anchors = {line.anchor: line.standing.key if line.standing else "" for _, line in lines}
+    anchors = {line.anchor: line.standing.filter_key if line.standing else "" for _, line in lines}
     verdicts, found = _rows_by_drive(result.verdicts, shown), _rows_by_drive(result.findings, shown)
     sections = [
         _section(
@@ -237,7 +237,7 @@ def _filters(lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str
         "verdict": [(v, _NAMES.get(v, "near miss")) for v in ("fail", "near", "unknown", "pass", "error")],
         "severity": [(s, s) for s in counts.SEVERITIES if s in severities],
         "pack": [(p, p) for p in sorted({rule["pack"] for rule in rules.values()})],
-        "standing": sorted({(line.standing.key, line.standing.label) for line in lines if line.standing}),
+        "standing": sorted({(line.standing.filter_key, line.standing.label) for line in lines if line.standing}),
         "drive": [(d, d) for d in drives] if len(drives) > 1 else [],
     }
 

@@ -133,9 +133,9 @@ def plan_view(
     met = [a for a in others if a["actor_id"] in concerned]
     around = [s for s in spaces if s["actor_id"] in {ego["actor_id"], *concerned}]
     rings = [(s["actor_id"], np.column_stack([s["x_m"], s["y_m"]])) for s in around]
-    lanes = road.on(scene["environment_id"])
+    lanes = road.lanes_of(scene["environment_id"])
     shown = [_corners(a) for a in (ego, *met)] + [ring for _, ring in rings]
-    heading = lanes.direction(ego["x_m"], ego["y_m"], ego["yaw_rad"] or 0.0)
+    heading = lanes.road_heading(ego["x_m"], ego["y_m"], ego["yaw_rad"] or 0.0)
     view = _fit(ego, heading, np.concatenate(shown))
     texts, gaps, told = _distances(ego, met, view)
     texts += [_label(a, ego, met, view) for a in actors if view.holds(a)]
@@ -143,8 +143,8 @@ def plan_view(
     return PlanView(
         height=num(view.height),
         matrix=view.matrix(lanes),
-        tiles=lanes.tiles_of(scene["lanelets"]),
-        spaces=[(_kind(who, ego, concerned), polygon(np.rint(lanes.drawn(ring)))) for who, ring in rings],
+        tiles=lanes.tile_names(scene["lanelets"]),
+        spaces=[(_kind(who, ego, concerned), polygon(np.rint(lanes.to_units(ring)))) for who, ring in rings],
         bodies=[
             _body(a, _kind(a["actor_id"], ego, concerned), lanes, scene["t_ns"])
             for a in sorted((*others, ego), key=_area, reverse=True)  # whoever is under a larger one is still seen
@@ -229,7 +229,7 @@ def _body(actor: Mapping[str, Any], kind: str, lanes: Lanes, t_ns: int) -> Drawn
 
 def _way(way: Sequence[Mapping[str, Any]], lanes: Lanes, t_ns: int) -> tuple[str, str, str]:
     """Return the paths before and after a moment and of the points at full seconds from it; nothing for who stands."""
-    xy = lanes.drawn(np.array([(p["x_m"], p["y_m"]) for p in way])) if way else np.empty((0, 2))
+    xy = lanes.to_units(np.array([(p["x_m"], p["y_m"]) for p in way])) if way else np.empty((0, 2))
     if not len(xy) or np.ptp(xy, axis=0).sum() < UNITS_PER_M:
         return "", "", ""
     t = np.array([p["t_ns"] for p in way])

@@ -44,7 +44,7 @@ def replays(
     n = 0
     for drive_id, rows in drives.items():
         start = starts.get(drive_id) or 0
-        lanes = road.on(rows[0]["environment_id"])
+        lanes = road.lanes_of(rows[0]["environment_id"])
         tracks = _tracks(rows)
         n += sum(len(track) for track in tracks.values())
         if n > MAX_POINTS:
@@ -56,7 +56,7 @@ def replays(
         for (drive, ego, t_ns), around in spaces.items():
             if drive == drive_id:
                 rings.setdefault(ego, {})[centiseconds(t_ns, start)] = {
-                    ring["actor_id"]: polygon(np.rint(lanes.drawn(np.column_stack([ring["x_m"], ring["y_m"]]))))
+                    ring["actor_id"]: polygon(np.rint(lanes.to_units(np.column_stack([ring["x_m"], ring["y_m"]]))))
                     for ring in around
                 }
         told[drive_id] = _json({"a": actors, "s": rings})

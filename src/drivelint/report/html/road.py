@@ -51,7 +51,7 @@ class Road:
         self._maps = {name: Lanes(f"m{n}", rows) for n, (name, rows) in enumerate(sorted(maps.items()))}
         self._none = Lanes("m", [])
 
-    def on(self, environment_id: str | None) -> Lanes:
+    def lanes_of(self, environment_id: str | None) -> Lanes:
         """Return the lanes of a map; none without a map."""
         return self._maps.get(environment_id, self._none) if environment_id is not None else self._none
 
@@ -72,15 +72,15 @@ class Lanes:
         none = np.empty((0, 2))
         self._a, self._b = (np.concatenate([e[i] for e in ends]) if ends else none for i in (0, 1))
 
-    def drawn(self, xy: Points) -> Points:
+    def to_units(self, xy: Points) -> Points:
         """Return drawn units of map points in metres."""
         return (xy - self.origin) * UNITS_PER_M
 
-    def tiles_of(self, lanelets: Sequence[str]) -> list[str]:
+    def tile_names(self, lanelets: Sequence[str]) -> list[str]:
         """Return the names of the tiles that these lanelets are drawn on."""
         return sorted({self._tile[lanelet] for lanelet in lanelets if lanelet in self._tile})
 
-    def direction(self, x_m: float, y_m: float, yaw_rad: float) -> float:
+    def road_heading(self, x_m: float, y_m: float, yaw_rad: float) -> float:
         """Return the road's heading at a point, in the sense nearer to `yaw_rad`; off the road, `yaw_rad` itself."""
         near = (np.minimum(self._a, self._b) < (x_m + _ON_ROAD_M, y_m + _ON_ROAD_M)).all(axis=1) & (
             np.maximum(self._a, self._b) > (x_m - _ON_ROAD_M, y_m - _ON_ROAD_M)
@@ -116,7 +116,7 @@ class Lanes:
     def _areas(self, lanes: Sequence[Mapping[str, Any]], *, drivable: bool) -> str:
         rings = [np.concatenate([lane["left"], lane["right"][::-1]]) for lane in lanes if lane["drivable"] is drivable]
         # all the same way round: where lanes overlap they fill, and do not cut each other out
-        return "".join(polygon(np.rint(self.drawn(ring if _area(ring) > 0 else ring[::-1]))) for ring in rings)
+        return "".join(polygon(np.rint(self.to_units(ring if _area(ring) > 0 else ring[::-1]))) for ring in rings)
 
     def _markings(self) -> list[tuple[str, str, str]]:
         """Return each bound once: tile, solid, broken or edge (a kerb or a bound that the map does not describe), path."""
@@ -130,7 +130,7 @@ class Lanes:
                 kind = _marking(lane[f"{side}_marking"], drivable=lane["drivable"])
                 if kind and ends not in seen:
                     seen.add(ends)
-                    marks.append((self._tile[lane["lanelet_id"]], kind, polyline(np.rint(self.drawn(line)))))
+                    marks.append((self._tile[lane["lanelet_id"]], kind, polyline(np.rint(self.to_units(line)))))
         return marks
 
     def _arrows(self, lane: Mapping[str, Any]) -> Iterator[str]:
@@ -142,7 +142,7 @@ class Lanes:
         for k in range(n):
             share = np.array([(k + 0.5) / n, (k + 0.5) / n + 0.5 / left[-1]])
             pair = [_at(lane[side], s, share) for side, s in (("left", left), ("right", right))]
-            at, towards = self.drawn((pair[0] + pair[1]) / 2)
+            at, towards = self.to_units((pair[0] + pair[1]) / 2)
             u = (towards - at) / max(float(np.hypot(*(towards - at))), 1e-9)
             v = np.array([-u[1], u[0]])
             yield polyline(np.rint(np.array([at - 8 * u + 6 * v, at, at - 8 * u - 6 * v])))

@@ -98,13 +98,13 @@ class TimeAxis(NamedTuple):
         """Return where a time lies, 0 to 100."""
         return min(max((t_ns - self.start_ns) / 1e7 / self.duration_s, 0.0), 100.0)
 
-    def step_s(self) -> int:
+    def tick_step_s(self) -> int:
         """Return the time from one tick to the next."""
         return next((s for s in _TICKS if self.duration_s / s <= _MOST_TICKS), _TICKS[-1])
 
     def ticks(self) -> list[tuple[str, str]]:
         """Return positions and labels of the axis."""
-        step = self.step_s()
+        step = self.tick_step_s()
         return [(_pc(100 * t / self.duration_s), str(t)) for t in range(0, int(self.duration_s) + 1, step)]
 
 
@@ -165,7 +165,7 @@ def _timeline(
     return Timeline(
         ego,
         grid,
-        f"{clock.step_s() / clock.duration_s:.5f}",
+        f"{clock.tick_step_s() / clock.duration_s:.5f}",
         clock.ticks(),
         rows,
         [
