@@ -19,7 +19,7 @@ CREATE TABLE verdict (
     verdict VARCHAR NOT NULL,         -- pass, fail, unknown, not_applicable, error
     reason_code VARCHAR NOT NULL,     -- machine-readable reason
     reason VARCHAR NOT NULL,          -- the same for a person
-    cause_code VARCHAR,               -- why it is so, as a code: what the rule says, or what is missing; NULL: reason_code says all, or the rule's own text
+    cause_code VARCHAR,               -- why it is so, as a code: what the rule says, or what is missing; text: in words of the rule's own; NULL: reason_code says all
     cause_args VARCHAR,               -- the arguments of cause_code, as a JSON object named with units: t_ns is a time, object_id an actor
     reason_measures BOOLEAN NOT NULL, -- the reason tells observed and required
     observed DOUBLE,                  -- value at the worst step
@@ -52,7 +52,7 @@ CREATE TABLE finding (
     t_end_ns BIGINT NOT NULL,         -- last failing step
     t_worst_ns BIGINT NOT NULL,       -- earliest step with the least margin
     reason VARCHAR NOT NULL,          -- for a person
-    cause_code VARCHAR,               -- what the rule says of it, as a code; NULL: nothing, or text of its own
+    cause_code VARCHAR,               -- what the rule says of it, as a code; text: in words of its own; NULL: nothing
     cause_args VARCHAR,               -- the arguments of cause_code, as a JSON object
     reason_measures BOOLEAN NOT NULL, -- the reason tells observed and required
     observed DOUBLE,                  -- value at the worst step

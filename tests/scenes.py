@@ -344,7 +344,7 @@ def derived(
     con, bench, _ = place
     wanted = set(tables) or set(derivations())
     # what the engine always needs besides is not asked for here, and would take most of the time
-    with patch("drivelint.sql.derivations.ALWAYS", ()):
+    with patch("drivelint.sql.derivations.ALWAYS_NEEDED", ()):
         of_the_map = {d.table for d in needed(wanted) if d.of_the_map}
         if not of_the_map <= bench._tables:
             bench._tables |= of_the_map
