@@ -52,7 +52,7 @@ def halved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
         found.append(meetings)
         halve(self, meetings)
 
-    monkeypatch.setattr(Memory, "halve", told)
+    monkeypatch.setattr(Memory, "halve_parts", told)
     return found
 
 
@@ -203,7 +203,7 @@ def test_a_rule_that_runs_out_of_memory_is_tried_again(monkeypatch: pytest.Monke
             raise SHORT
         rule(self, binding)
 
-    monkeypatch.setattr(Evaluation, "rule", short)
+    monkeypatch.setattr(Evaluation, "judge_rule", short)
     assert check(overtakes("safe"), Silent()).verdicts.equals(usual.verdicts)
 
 
@@ -218,7 +218,7 @@ def test_a_rule_for_which_no_memory_does_is_an_error_in_the_same_words(
             raise SHORT
         rule(self, binding)
 
-    monkeypatch.setattr(Evaluation, "rule", short)
+    monkeypatch.setattr(Evaluation, "judge_rule", short)
     rows = check(overtakes("safe", memory=memory), Silent()).verdicts.to_pylist()
     mine = [row for row in rows if row["rule_id"] == FEW[0]]
     assert {row["ego_id"] for row in mine} == {row["ego_id"] for row in rows}
