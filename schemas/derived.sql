@@ -159,7 +159,7 @@ CREATE TABLE capability (
     ego_id VARCHAR NOT NULL,          -- the ego
     signal VARCHAR NOT NULL,          -- what a rule may require: map, registration, handedness, lane_types, markings, speed_limits, indicator, brake_light, ego_size, actor_classes, exit_signs, ...
     available BOOLEAN NOT NULL,       -- the log and map give it
-    reason VARCHAR NOT NULL           -- what is missing, or where it is from: a reason (macro why)
+    reason VARCHAR NOT NULL           -- why the signal is available or missing, as JSON from the macro why
 );
 
 -- lifetime: run
@@ -172,7 +172,7 @@ CREATE TABLE registration (
     n_with_direction BIGINT NOT NULL, -- of the moving ones, heading within 90 degrees of the lane's direction
     lateral_median_m DOUBLE,          -- median distance from the centre line of the lane, beside an overtake in the opposing lane where that is enough; NULL: never on a lane
     ok BOOLEAN NOT NULL,              -- good enough for rules that need the map: the ego fits; or it is against its lane and three of four other vehicles are with theirs; or it keeps to the middle of a lane (within 0.6 m for 5 s and 50 m, or within 0.3 m for 2 s and 20 m) before and after it is anywhere else, on a road that runs as that one does or on two that cross
-    reason VARCHAR NOT NULL           -- why, or why not: a reason (macro why)
+    reason VARCHAR NOT NULL           -- why ok is true or false, as JSON from the macro why
 );
 
 -- ---- where everybody is
@@ -467,7 +467,7 @@ CREATE TABLE oncoming (
     free_m DOUBLE NOT NULL,           -- how far ahead of the ego's front the corridor and the sensor reach
     free_reason VARCHAR NOT NULL,     -- what ends it: map_end, corridor_end, sensor_range
     n_unplaced BIGINT NOT NULL,       -- other vehicles that cannot be placed: a nearer OV is not ruled out
-    unplaced_reason VARCHAR           -- one of them and why: a reason (macro why)
+    unplaced_reason VARCHAR           -- why one of them has no place, as JSON from the macro why
 );
 
 -- lifetime: part
@@ -627,7 +627,7 @@ CREATE TABLE overtake_sda (
     spare_m DOUBLE,                   -- da_m - sda_m
     spare_s DOUBLE,                   -- the time in which it closes, at v_AV + v_OV
     zone VARCHAR,                     -- A unsafe, B under 0.5 s, C 0.5 to 2.5 s, D over 2.5 s; NULL: unknown
-    reason VARCHAR                    -- why sda_m or da_m is NULL, or what they are: a reason (macro why)
+    reason VARCHAR                    -- why sda_m or da_m is NULL, or a remark on them, as JSON from the macro why
 );
 
 -- lifetime: part
@@ -643,7 +643,7 @@ CREATE TABLE overtake_step (
     free_reason VARCHAR,              -- what ends it: map_end, corridor_end, sensor_range
     ov_id VARCHAR,                    -- of the oncoming vehicles at this step the one whose danger space reaches furthest into the ego's, see oncoming_vehicle; NULL: none
     ov_known BOOLEAN NOT NULL,        -- no other vehicle may come: every one is placed
-    ov_reason VARCHAR,                -- why that is not known, and what to provide: a reason (macro why); there where it is known, too
+    ov_reason VARCHAR,                -- why ov_known is false, and what to provide, as JSON from the macro why; not NULL where ov_known is true
     sd_av_m DOUBLE,                   -- stopping distance of the ego: length of its danger space
     ds_av_s_m DOUBLE,                 -- where that danger space begins along the corridor: the middle of the front bumper
     ds_av_d_m DOUBLE,                 -- middle of that danger space across the corridor: where the front bumper's middle is, left positive

@@ -29,6 +29,7 @@ A list of cases; each fills tables with a tiny scene, judges the rule, and says 
 
 from __future__ import annotations
 
+import json
 import re
 from contextlib import contextmanager
 from decimal import Decimal
@@ -253,8 +254,10 @@ def run_merged_cases(
     for key, where in keys.items():
         for group in merged_cases.mergeable_groups(everybody, key):
             outcome = merged_cases.judge([rule], merged_cases.merge(group, key), group[0].params)[rule.id]
-            rows = [*outcome.verdicts, *outcome.findings]
-            codes |= {code for row in rows for code in codes_in(row["cause_code"], row["cause_args"])}
+            rows = (row for row in [*outcome.verdicts, *outcome.findings] if row["cause_code"] is not None)
+            codes |= {
+                code for row in rows for code in codes_in(row["cause_code"], json.loads(row["cause_args"] or "{}"))
+            }
             for member in group:
                 case = cases[member.no]
                 if message := difference(case, merged_cases.outcome_of_case(outcome, member.no)):

@@ -37,7 +37,7 @@ CONDITION_VALUES: dict[str, tuple[str, ...]] = {
     "light": ("day", "night"),
     "vehicle_class": ("car", "car_towing", "bus", "goods_7t5", "goods_over_7t5", "motorcycle"),
 }
-"""Condition -> its words; `nation` also takes any other country's two letters (ISO 3166-1), see `problem`."""
+"""Condition -> its words; `nation` also takes any other country's two letters (ISO 3166-1), see `value_problem`."""
 
 ENV_VALUES: dict[str, tuple[str, ...]] = {**CONDITION_VALUES, "engaged": ("yes", "no")}
 """What may be given for a drive: those, and whether the automated driver drives."""

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import States
 
 HEADLIGHTS: Final = "headlights"
-"""Name of the code in `States.codes`, which indexes `OFF_ON`, and of the event."""
+"""Name of the code in `States.codes`, which indexes `HEADLIGHT_STATES`, and of the event."""
 HEADLIGHT_STATES: Final = ("off", "on")
 
 

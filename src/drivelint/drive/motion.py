@@ -28,7 +28,7 @@ def complete_velocities(states: States, step: Steps, *, most: float = 1.0) -> li
     """Fill velocities that are absent, zero although the actor moves, or of another motion than its positions'.
 
     `most`: the share of the motion up to which it may be of another; beyond that all velocities stay. Accelerations that were
-    never measured are dropped. `states` in order, changed in place: every column of `NUMBERS` exists afterwards.
+    never measured are dropped. `states` in order, changed in place: every column of `STATE_COLUMNS` exists afterwards.
     """
     from drivelint.drive.trace import STATE_COLUMNS
 

@@ -159,8 +159,8 @@ class QualityFinding:
 class States:
     """Rows of `actor_state` as parallel arrays, SI units, box centres; NaN and code -1 mean unknown.
 
-    `ids` are distinct actor ids, `actor` holds each row's index into them. `numbers` holds some or all of `NUMBERS` and
-    of `SIZES`. The codes index `INDICATORS`, `BRAKE_LIGHTS` and `CLASSES`. `not_finite` marks rows in which the log had
+    `ids` are distinct actor ids, `actor` holds each row's index into them. `numbers` holds some or all of `STATE_COLUMNS` and
+    of `SIZE_COLUMNS`. The codes index `INDICATORS`, `BRAKE_LIGHTS` and `ACTOR_CLASSES`. `not_finite` marks rows in which the log had
     NaN or infinity.
     """
 

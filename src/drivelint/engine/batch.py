@@ -92,7 +92,7 @@ def read_drives(paths: Sequence[Path], options: IngestOptions, library: MapLibra
 
 
 def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | RefusedLog]]:
-    """Cut into batches of at most `STATES` states or meetings, a longer drive being a batch of its own."""
+    """Cut into batches of at most `BATCH_STATES` states or meetings, a longer drive being a batch of its own."""
     batch: list[Drive | RefusedLog] = []
     states = 0
     for drive in drives:
@@ -109,7 +109,7 @@ def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | R
 def egos_left_out(drives: Sequence[Drive], room: int | None = None) -> list[list[str]]:
     """Return, for each part in which a batch is judged, the egos that are not judged in it; a part has at least one ego.
 
-    Only a drive alone is cut, with its egos in the order of their ids, into parts of at most `room` meetings (default: `MEETINGS`);
+    Only a drive alone is cut, with its egos in the order of their ids, into parts of at most `room` meetings (default: `PART_PAIRS`);
     what comes out does not depend on where.
     """
     meetings = drives[0].pairs_by_ego if len(drives) == 1 else {}

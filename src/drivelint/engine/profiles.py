@@ -51,7 +51,7 @@ def load_profiles(dirs: Sequence[Path] = ()) -> dict[str, Profile]:
 
 
 def profile_table(profiles: dict[str, Profile], selected: Sequence[str]) -> pa.Table:
-    """Return the rows of the library table `profile`; nothing selected means `DEFAULT`.
+    """Return the rows of the library table `profile`; nothing selected means `DEFAULT_PROFILES`.
 
     Errors: `UsageError` for a name that no profile has, with the nearest one.
     """

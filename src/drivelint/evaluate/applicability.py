@@ -40,7 +40,7 @@ def engagement_joins(alias: str) -> str:
 
 
 def condition_joins(rule: Rule, alias: str, time: str, *, watching: bool) -> str:
-    """Return the joins that `holds` and `doubt` need for rows with these keys and this time; '' for none."""
+    """Return the joins that `in_force_sql` and `unknown_reason_sql` need for rows with these keys and this time; '' for none."""
     if not (has_conditions(rule) or watching):
         return ""
     return _joins(alias, time, watching=watching)

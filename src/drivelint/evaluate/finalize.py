@@ -130,8 +130,8 @@ GROUP BY f.finding_id, f.drive_id, f.ego_id, f.rule_id, f.profile, f.object_id, 
 """Run after these, if the courses of findings and near misses are asked for."""
 
 COLLECT_STATEMENTS = (coverage_gaps.CREATE_GAPS, _ALL, _NAMED, _FAILED)
-"""Run in this order once every rule has left its outcomes."""
+"""Run in this order after the last rule."""
 REASONS_TO_WORD = "SELECT rule_no, cause, start_ns FROM _named UNION ALL SELECT rule_no, cause, start_ns FROM _failed"
-"""What is put into words then."""
+"""The causes that `make_reason_table` puts into words between the two lists of statements."""
 INSERT_STATEMENTS = (_VERDICTS, _FINDINGS, _MARGINS)
-"""Run in this order after that."""
+"""Run in this order after `make_reason_table`."""

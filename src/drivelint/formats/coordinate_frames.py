@@ -111,7 +111,7 @@ class TransformTree:
 def fixed_frame(frames: TransformTree, used: Iterable[str]) -> str:
     """Return the fixed frame for poses that are given in the frames `used`, the most important first.
 
-    The best of `FIXED` that any of them leads to, else the one above the first of them.
+    The best of `FIXED_FRAMES` that any of them leads to, else the one above the first of them.
     """
     names = list(used)
     for candidate in FIXED_FRAMES:

@@ -74,7 +74,7 @@ def _stems(rows: Iterable[Row]) -> dict[str, list[str]]:
 def match_findings(base: Sequence[TimedFinding], new: Sequence[TimedFinding], *, same_log: bool) -> dict[int, int]:
     """Return index in `new` -> index in `base` of findings of one drive that are the same; each is taken once.
 
-    The same: ego, rule, profile and object agree, and `near`. Equal ids go first, then the closest in time. An id alone
+    The same: ego, rule, profile and object agree, and `may_match`. Equal ids go first, then the closest in time. An id alone
     does not do: ids number the findings of a drive, so an earlier one moves all that follow.
     """
     groups: dict[FindingKey, list[int]] = defaultdict(list)

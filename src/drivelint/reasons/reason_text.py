@@ -74,8 +74,10 @@ def parse_reason(reason: str) -> Reason:
 def sentence(reason: str, start_ns: int = 0, own: Mapping[str, ReasonText] | None = None) -> str:
     """Return a reason in words, its advice last. `start_ns`: when the log starts, since times are told from it; `own`: the rule's words."""
     code, arguments = parse_reason(reason)
-    if code == PLAIN_TEXT:
-        return reason
+    return reason if code == PLAIN_TEXT else _sentence(code, arguments, start_ns, own)
+
+
+def _sentence(code: str, arguments: Mapping[str, Any], start_ns: int, own: Mapping[str, ReasonText] | None) -> str:
     words = text_of(code, own)
     told = _filled(words.says, arguments, start_ns, own)
     return f"{told}: {_filled(words.advice, arguments, start_ns, own)}" if words.advice else told
@@ -86,16 +88,12 @@ def advice_sentence(
 ) -> str | None:
     """Return a reason as a sentence if it, or a reason in its arguments, has advice; else None."""
     nested = (advice_sentence(*each, start_ns, own) for each in _nested(arguments))
-    if not text_of(code, own).advice and not any(nested):
-        return None
-    return sentence(json.dumps({"code": code, "args": dict(arguments)}, separators=(",", ":")), start_ns, own)
+    return _sentence(code, arguments, start_ns, own) if text_of(code, own).advice or any(nested) else None
 
 
-def codes_in(code: str | None, arguments: str | None) -> set[str]:
-    """Return a code and those of the reasons among its arguments (JSON text); none for None."""
-    if code is None:
-        return set()
-    return {code}.union(*(codes_in(inner, json.dumps(args)) for inner, args in _nested(json.loads(arguments or "{}"))))
+def codes_in(code: str, arguments: Mapping[str, Any]) -> set[str]:
+    """Return a code and the codes of the reasons among its arguments."""
+    return {code}.union(*(codes_in(*each) for each in _nested(arguments)))
 
 
 def _nested(arguments: Mapping[str, Any]) -> list[Reason]:

@@ -230,7 +230,7 @@ def _row(first: BoundedLane, lanes: Mapping[str, BoundedLane]) -> list[tuple[Bou
 
 
 def tables(name: str, lanes: Sequence[BoundedLane]) -> dict[str, pa.Table]:
-    """Return lanelet, lane_point, lane_link, lane_boundary and speed_limit of lanes that `build` gave."""
+    """Return lanelet, lane_point, lane_link, lane_boundary and speed_limit of lanes from `build_lanes`."""
     by_id = {lane.lanelet_id: lane for lane in lanes}
     links = [
         {"from_id": lane.lanelet_id, "to_id": to, "turn_rad": by_id[to].line.turn}

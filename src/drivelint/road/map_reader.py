@@ -26,10 +26,10 @@ class MapSource:
 
 @dataclass(frozen=True)
 class MapOptions:
-    """What is known about a map beside its content: offset, driving side, origin.
+    """The options for reading a map: offset, driving side, origin.
 
     `offset` in metres is added to all coordinates; `handedness` is the user's option (auto, lht, rht); `sensed` is the side by whose
-    rule the lanes run as the traces drive (lht, rht; see `Environment.lanes`), used only where neither option nor map decides.
+    rule the lanes run as the traces drive (lht, rht; see `MapTables.lanes`), used only where neither option nor map decides.
     `origin`: latitude and longitude (degrees) of the point that is 0,0 in the log, for maps that lie on the globe.
     """
 

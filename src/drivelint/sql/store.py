@@ -184,7 +184,7 @@ def recreate_with_enums(
 
 
 def recreate_empty(con: duckdb.DuckDBPyConnection, tables: Iterable[str]) -> None:
-    """Recreate tables empty, with the id types that `code_ids` set last; column comments are lost.
+    """Recreate tables empty, with the id types that `recreate_with_enums` set last; column comments are lost.
 
     What is only deleted takes its room until a database is written down, which one in memory never is.
     """

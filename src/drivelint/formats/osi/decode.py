@@ -77,7 +77,7 @@ _NEVER_ZERO = frozenset({"position", "dimension"})
 class FrameBatch:
     """A decoded batch. Per frame: the message's time and whether it says one, the host's id (None: not said).
 
-    Per object: its frame, id (`known`: it has one), columns of `NUMBERS` and `SIZES` (NaN: unknown), codes. `left_out`: the
+    Per object: its frame, id (`known`: it has one), columns of `STATE_COLUMNS` and `SIZE_COLUMNS` (NaN: unknown), codes. `left_out`: the
     coordinates that a vector does not have and that a writer which leaves zeros out may mean as 0, by column. `says_zero`: some
     coordinate is written as 0, so that this is no such writer.
     """

@@ -67,7 +67,7 @@ class _Text:
 
 @dataclass(frozen=True)
 class _Numbers:
-    """A sequence of primitives of `size` bytes, `per_item` of them to an item; kept are the first `FIRST`, NaN where fewer."""
+    """A sequence of primitives of `size` bytes, `per_item` of them to an item; kept are the first `MAX_KEPT_NUMBERS`, NaN where fewer."""
 
     code: str
     size: int

@@ -93,7 +93,7 @@ def vectors(table: Table, path: str, axes: str = "xyz") -> Vectors:
 class ObjectMessage:
     """How one message type is read: its fields, the path of its list, and the function that makes rows of it.
 
-    `Rows.log_ns` is each row's message: whoever has the container's times puts them there.
+    `RecordedPoses.log_ns` is each row's message: whoever has the container's times puts them there.
     """
 
     tree: FieldTree

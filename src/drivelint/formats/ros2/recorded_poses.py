@@ -36,7 +36,7 @@ class RecordedPoses:
 
     `stamp_ns` is the messages' own time (`stamped`: they have one), `log_ns` the container's. `ids` and `frames` are bytes.
     `along`: velocity and acceleration are given along the actor's own axes, else along those of `frames`. `faces`: the
-    front is known, not only the axis. `classes` index `CLASSES`, -1: unknown. `t_ns` is filled in by `common_clock`.
+    front is known, not only the axis. `classes` index `ACTOR_CLASSES`, -1: unknown. `t_ns` is filled in by `common_clock`.
     `at_ns`: when a frame that moves is looked up, if not at the pose's own time.
     """
 

@@ -21,7 +21,7 @@ _SOURCE = {
 
 
 def to_map_frame(states: States, mapping: Mapping) -> None:
-    """Replace the mapping's quantities (SI, log's frame and reference point) by the columns of `NUMBERS` and `SIZES`.
+    """Replace the mapping's quantities (SI, log's frame and reference point) by the columns of `STATE_COLUMNS` and `SIZE_COLUMNS`.
 
     Order: axes and heading are turned, velocities given along the vehicle brought into the world frame, the reference
     point moved to the box centre. The centre's velocity is that of the reference point plus yaw rate times lever; the

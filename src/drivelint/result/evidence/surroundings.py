@@ -184,7 +184,7 @@ def gather(con: duckdb.DuckDBPyConnection) -> None:
 
 
 def _some(counts: Sequence[tuple[int, int]]) -> Iterator[tuple[int, int]]:
-    """Cut egos, given with their numbers of moments, into runs [first, end) of at most `AT_ONCE` moments or one ego."""
+    """Cut egos, given with their numbers of moments, into runs [first, end) of at most `SCENES_AT_ONCE` moments or one ego."""
     first, n = 1, 0
     for ego, moments in counts:
         if n and n + moments > SCENES_AT_ONCE:
