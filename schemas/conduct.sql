@@ -38,7 +38,7 @@ CREATE TABLE ego_motion (
     jerk_mps3 DOUBLE,                 -- slope of accel_mps2, smoothed the same way
     accel_2s_mps2 DOUBLE,             -- mean acceleration over the 2 s that end at this step
     jerk_1s_mps3 DOUBLE,              -- mean jerk over the 1 s that ends at this step
-    accel_peak_mps2 DOUBLE NOT NULL,  -- the true longitudinal acceleration may be higher by so much, as the filter flattens peaks
+    accel_peak_mps2 DOUBLE NOT NULL,  -- the true longitudinal acceleration may be further from zero by so much (also when braking), as the filter flattens peaks
     lat_peak_mps2 DOUBLE NOT NULL     -- the same of the lateral acceleration
 );
 

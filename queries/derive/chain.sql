@@ -96,12 +96,12 @@ chain_link AS (
     SELECT
         k.drive_id, k.ego_id, k.chain_id, k.lanelet_id, n.length_m, k.v, k.hop,
         (row_number() OVER along - 1)::INTEGER AS seq,
-        sum(whole_pm(n.length_m)) OVER (along ROWS UNBOUNDED PRECEDING) AS end_pm
+        sum(to_picometres(n.length_m)) OVER (along ROWS UNBOUNDED PRECEDING) AS end_pm
     FROM link k JOIN lanelet n USING (environment_id, lanelet_id)
     WINDOW along AS (PARTITION BY k.drive_id, k.ego_id, k.chain_id ORDER BY k.v, k.hop)
 )
 SELECT
     o.drive_id, o.ego_id, o.chain_id, o.seq, o.lanelet_id, o.length_m, v.t_first_ns, v.t_last_ns,
-    of_pm(o.end_pm - whole_pm(o.length_m) - coalesce(max(CASE WHEN o.v < 0 THEN o.end_pm END) OVER (PARTITION BY o.drive_id, o.ego_id, o.chain_id), 0)) AS s_start_m
+    from_picometres(o.end_pm - to_picometres(o.length_m) - coalesce(max(CASE WHEN o.v < 0 THEN o.end_pm END) OVER (PARTITION BY o.drive_id, o.ego_id, o.chain_id), 0)) AS s_start_m
 FROM chain_link o
 LEFT JOIN visit v ON v.drive_id = o.drive_id AND v.ego_id = o.ego_id AND v.v = o.v AND o.hop = 0

@@ -26,8 +26,8 @@ angled_pair AS MATERIALIZED (
         AND boxes_meet(b.x_m - a.x_m, b.y_m - a.y_m, a.cos_yaw, a.sin_yaw, b.cos_yaw, b.sin_yaw, a.half_length_m, a.half_width_m, b.half_length_m, b.half_width_m)
 ),
 -- In a tight bend even a follower's box lies at an angle to the leader's box of another moment. What counts is the angle to the other's way
--- at the point of that way that is nearest to the actor. An actor moves along the other's way if some box of the other that has the actor's
--- direction is nearer than all its boxes at an angle.
+-- at the point of that way that is nearest to the actor. An actor moves along the other's way if the nearest of the other's boxes has the
+-- actor's direction.
 angled_moment AS MATERIALIZED (
     SELECT t.other_id, t.squared_distance_m2, b.*
     FROM (

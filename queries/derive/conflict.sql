@@ -4,26 +4,26 @@ WITH
 drive_clock AS (SELECT drive_id, max(period_ns) AS period_ns, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id),
 -- u is the actor with the lesser id, v is the other one. The moments of u are divided into stretches without a pause; within each stretch
 -- of u, the moments of v are divided in the same way.
-uv_moment AS MATERIALIZED (
+pair_moment AS MATERIALIZED (
     SELECT
         drive_id, ego_id, object_id, actor_id, ego_id < object_id AS ego_is_u, CASE WHEN ego_is_u THEN t_ego_ns ELSE t_object_ns END AS u_ns, CASE WHEN ego_is_u THEN t_object_ns ELSE t_ego_ns END AS v_ns
     FROM common_ground
 ),
-u_moment AS MATERIALIZED (
+lesser_id_moment AS MATERIALIZED (
     SELECT p.*, sum((u_ns - before_ns > g.max_gap_ns)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY u_ns) AS u_stretch
     FROM (
         SELECT *, lag(u_ns, 1, u_ns) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY u_ns) AS before_ns
-        FROM (SELECT DISTINCT drive_id, ego_id, object_id, u_ns FROM uv_moment)
+        FROM (SELECT DISTINCT drive_id, ego_id, object_id, u_ns FROM pair_moment)
     ) p
     JOIN drive_clock g USING (drive_id)
 ),
-v_moment AS MATERIALIZED (
+greater_id_moment AS MATERIALIZED (
     SELECT *, sum((v_ns - before_ns > max_gap_ns)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id, u_stretch ORDER BY v_ns) AS v_stretch
     FROM (
         SELECT p.*, g.max_gap_ns, lag(v_ns, 1, v_ns) OVER (PARTITION BY drive_id, ego_id, object_id, u_stretch ORDER BY v_ns) AS before_ns
         FROM (
             SELECT t.drive_id, t.ego_id, t.object_id, t.actor_id, t.ego_is_u, s.u_stretch, t.v_ns, min(t.u_ns) AS u_first_ns, max(t.u_ns) AS u_last_ns
-            FROM uv_moment t JOIN u_moment s USING (drive_id, ego_id, object_id, u_ns)
+            FROM pair_moment t JOIN lesser_id_moment s USING (drive_id, ego_id, object_id, u_ns)
             GROUP BY ALL
         ) p
         JOIN drive_clock g USING (drive_id)
@@ -33,7 +33,7 @@ stretch_pair AS MATERIALIZED (
     SELECT
         drive_id, ego_id, object_id, u_stretch, v_stretch, any_value(max_gap_ns) AS max_gap_ns, min(u_first_ns) AS u_first_ns, max(u_last_ns) AS u_last_ns,
         min(v_ns) AS v_first_ns, max(v_ns) AS v_last_ns
-    FROM v_moment
+    FROM greater_id_moment
     GROUP BY drive_id, ego_id, object_id, u_stretch, v_stretch
 ),
 -- A pair of stretches and the one before it (b) are the same encounter if one of the actors has not left in between and the other is back
@@ -59,7 +59,7 @@ box_time AS MATERIALIZED (
     SELECT
         drive_id, ego_id, object_id, n, actor_id, CASE WHEN ego_is_u THEN min(u_first_ns) ELSE min(v_ns) END AS ego_first_ns, CASE WHEN ego_is_u THEN max(u_last_ns) ELSE max(v_ns) END AS ego_last_ns,
         CASE WHEN ego_is_u THEN min(v_ns) ELSE min(u_first_ns) END AS object_first_ns, CASE WHEN ego_is_u THEN max(v_ns) ELSE max(u_last_ns) END AS object_last_ns
-    FROM v_moment JOIN encounter_part USING (drive_id, ego_id, object_id, u_stretch, v_stretch)
+    FROM greater_id_moment JOIN encounter_part USING (drive_id, ego_id, object_id, u_stretch, v_stretch)
     GROUP BY drive_id, ego_id, object_id, n, actor_id, ego_is_u
 ),
 encounter_time AS MATERIALIZED (

@@ -1,6 +1,6 @@
 -- The running chain with the lane beside it on the overtaking side. Through a junction that is the lane before or after it.
 WITH overtaking_lane AS (
-    SELECT e.environment_id, o.lanelet_id, o.against, of_pm(sum(whole_pm(o.s_end_m - o.s_start_m))) AS along_m, max(o.gap_m + o.width_m) AS width_m
+    SELECT e.environment_id, o.lanelet_id, o.against, from_picometres(sum(to_picometres(o.s_end_m - o.s_start_m))) AS along_m, max(o.gap_m + o.width_m) AS width_m
     FROM environment e
     JOIN lane_beside o ON o.environment_id = e.environment_id AND o.drivable AND o.side = overtaking_side(e.handedness)
     GROUP BY ALL

@@ -207,7 +207,7 @@ stop_before AS (
     SELECT
         v.drive_id, v.ego_id, v.mark_id, v.t_ns,
         CASE
-            WHEN bool_or(e.speed_mps <= stood_mps() AND n.front_m >= -5) THEN true
+            WHEN bool_or(e.speed_mps <= standstill_mps() AND n.front_m >= -5) THEN true
             WHEN bool_or(e.speed_mps IS NULL AND n.front_m >= -5) THEN NULL
             WHEN bool_or(n.front_m < -5) OR min(n.t_ns) <= v.t_in_ns - 10_000_000_000 + v.max_gap_ns THEN false
         END AS stood_before

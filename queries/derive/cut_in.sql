@@ -35,7 +35,7 @@ run_sample AS (
     )
 ),
 -- last_clear: the last sample before at which the vehicle was clearly in the lane or clearly out of it.
-sample_with_last_clear AS (
+sample_with_last_clear_place AS (
     SELECT
         *,
         last_value(
@@ -53,7 +53,7 @@ cut_in_sample AS (
         coalesce(inside_m > cut_in_m() AND NOT last_clear.is_in AND is_along AND t_ns - last_clear.t_ns <= 5_000_000_000, false) AS begins,
         sum(((inside_m > cut_in_m() AND NOT last_clear.is_in) OR inside_m <= over_boundary_m())::INTEGER)
             OVER (PARTITION BY drive_id, ego_id, object_id, chain_id, run ORDER BY k ROWS UNBOUNDED PRECEDING) AS n
-    FROM sample_with_last_clear
+    FROM sample_with_last_clear_place
 ),
 centre_in_lane_step AS (
     SELECT drive_id, ego_id, object_id, chain_id, run, n, min(t_ns) AS t_ns FROM cut_in_sample WHERE is_centre_in GROUP BY ALL

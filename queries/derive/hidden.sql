@@ -26,7 +26,7 @@ missing_step AS (
 ),
 sighting AS (
     SELECT
-        p.drive_id, p.ego_id, p.object_id, p.t_ns, p.distance_m, p.x_m, p.y_m, half_box_m(p.length_m, p.width_m) AS half_diagonal_m,
+        p.drive_id, p.ego_id, p.object_id, p.t_ns, p.distance_m, p.x_m, p.y_m, box_half_diagonal_m(p.length_m, p.width_m) AS half_diagonal_m,
         CASE WHEN p.actor_class = 'pedestrian' THEN 0.0 ELSE p.speed_mps * cos(p.yaw_rad) END AS vx_mps,
         CASE WHEN p.actor_class = 'pedestrian' THEN 0.0 ELSE p.speed_mps * sin(p.yaw_rad) END AS vy_mps,
         -- Place along the road of an object that heads the ego's way (1) or moves against it (-1).
@@ -47,7 +47,7 @@ sighting AS (
 -- allow.
 step_with_sightings AS (
     SELECT
-        m.*, b.t_ns AS t_before_ns, a.t_ns AS t_after_ns, r.road, e.speed_mps, e.front_s_m + r.offset_m AS front_m, e.rear_s_m + r.offset_m AS rear_m, e.length_m, e.width_m, e.combination_m, coalesce(greatest(b.half_diagonal_m, a.half_diagonal_m), half_box_m(NULL, NULL)) AS half_diagonal_m,
+        m.*, b.t_ns AS t_before_ns, a.t_ns AS t_after_ns, r.road, e.speed_mps, e.front_s_m + r.offset_m AS front_m, e.rear_s_m + r.offset_m AS rear_m, e.length_m, e.width_m, e.combination_m, coalesce(greatest(b.half_diagonal_m, a.half_diagonal_m), box_half_diagonal_m(NULL, NULL)) AS half_diagonal_m,
         coalesce(
             g.in_sight AND m.is_unrecorded AND coalesce(b.t_ns, a.t_ns) IS NOT NULL
             AND (b.t_ns IS NULL OR m.t_ns > tb.plain_ns) AND (a.t_ns IS NULL OR m.t_ns < ta.plain_ns), false
@@ -85,7 +85,7 @@ station_range AS (
 distance_bound AS (
     SELECT
         drive_id, ego_id, t_ns, object_id, actor_class, late, t_before_ns, t_after_ns, road, speed_mps, coalesce(last_place, next_place) IS NOT NULL AS is_on_road,
-        half_diagonal_m + greatest(half_box_m(length_m, width_m), CASE WHEN combination_m = length_m THEN 0.0 ELSE coalesce(combination_m, 2 * two_half_boxes_m()) - length_m / 2 END) AS half_sizes_m,
+        half_diagonal_m + greatest(box_half_diagonal_m(length_m, width_m), CASE WHEN combination_m = length_m THEN 0.0 ELSE coalesce(combination_m, 2 * both_half_diagonals_m()) - length_m / 2 END) AS half_sizes_m,
         greatest(least_since_m, least_until_m, sqrt(last_x_m ** 2 + last_y_m ** 2) - strays_m(actor_class, since_s), sqrt(next_x_m ** 2 + next_y_m ** 2) - strays_m(actor_class, until_s), ahead_m, behind_m, CASE WHEN off_ahead_m IS NOT NULL THEN least(off_ahead_m, off_behind_m) END) AS distance_m,
         greatest(from_m - front_m, rear_m - to_m) AS along_m, off_ahead_m - half_diagonal_m AS off_ahead_m,
         CASE WHEN ahead_m > 0 OR from_m > front_m THEN true WHEN behind_m > 0 OR to_m < rear_m THEN false END AS ahead,
@@ -179,8 +179,8 @@ FROM object_ahead_or_behind
 UNION ALL
 SELECT
     h.drive_id, h.ego_id, h.t_ns, h.object_id, h.actor_class, may_be_vehicle(h.actor_class),
-    greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - two_half_boxes_m()),
-    CASE WHEN h.distance_m > two_half_boxes_m() THEN (h.x_m - e.x_m) * cos(e.yaw_rad) + (h.y_m - e.y_m) * sin(e.yaw_rad) > 0 END,
-    false, false, greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - two_half_boxes_m())
+    greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - both_half_diagonals_m()),
+    CASE WHEN h.distance_m > both_half_diagonals_m() THEN (h.x_m - e.x_m) * cos(e.yaw_rad) + (h.y_m - e.y_m) * sin(e.yaw_rad) > 0 END,
+    false, false, greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - both_half_diagonals_m())
 FROM (SELECT * FROM incomplete_pair UNION ALL SELECT * FROM pair_beyond_corridor UNION SELECT * FROM pair_in_hole) h
 JOIN ego_state e USING (drive_id, ego_id, t_ns)

@@ -8,7 +8,7 @@ WITH ahead AS (
         greatest(0.0, coalesce(p.rear_s_m, p.s_m) - e.front_s_m) AS gap_m, e.speed_mps AS ego_speed_mps,
         abs(p.d_m - e.d_m) - coalesce(p.lat_half_m, 0.0) - e.lat_half_m AS across_m,
         -- An object of unknown size takes at least its centre, and may be as large as any box.
-        CASE WHEN p.lat_half_m IS NULL THEN two_half_boxes_m() / 2 ELSE 0.0 END AS unknown_half_m,
+        CASE WHEN p.lat_half_m IS NULL THEN both_half_diagonals_m() / 2 ELSE 0.0 END AS unknown_half_m,
         in_lane(p.d_m, coalesce(p.lat_half_m, 0.0), p.half_width_m) AS in_lane,
         -- A standing actor needs no heading.
         coalesce(s.vx_mps * cos(p.yaw_rad - p.heading_diff_rad) + s.vy_mps * sin(p.yaw_rad - p.heading_diff_rad), CASE WHEN p.speed_mps <= standing_mps() THEN 0.0 END) AS along_mps,
@@ -54,7 +54,7 @@ way_step AS (
     SELECT
         e.drive_id, e.ego_id, e.t_ns, m.nearest, coalesce(m.need_mps2, 0.0) AS need_mps2,
         e.front_s_m IS NOT NULL AND e.speed_mps IS NOT NULL AND NOT coalesce(m.is_doubtful, false)
-            AND coalesce(u.least_m > way_look_m(e.speed_mps), true) AS known
+            AND coalesce(u.least_m > brakes_for_m(e.speed_mps), true) AS known
     FROM ego_state e
     LEFT JOIN nearest_object m USING (drive_id, ego_id, t_ns)
     LEFT JOIN nearest_hidden u USING (drive_id, ego_id, t_ns)
@@ -64,4 +64,4 @@ SELECT
     max(need_mps2) OVER recent AS need_mps2, bool_and(known) OVER recent AS known
 FROM way_step
 -- A driver releases the brake only some time after the way is clear.
-WINDOW recent AS (PARTITION BY drive_id, ego_id ORDER BY t_ns RANGE BETWEEN let_go_ns() PRECEDING AND CURRENT ROW)
+WINDOW recent AS (PARTITION BY drive_id, ego_id ORDER BY t_ns RANGE BETWEEN brake_release_ns() PRECEDING AND CURRENT ROW)

@@ -68,8 +68,8 @@ lanelet_heading AS (
     FROM lane_point
     GROUP BY environment_id, lanelet_id
 ),
--- The way out that turns least, of all ways out for the road that the ego came by. All lanelets of the same connecting road are searched
--- for its end.
+-- The way out that turns least, of all ways out for the road that the ego came by. A connecting road may consist of several lanelets, one
+-- after the other: each of them is searched for a link out of the junction.
 straightest_exit AS (
     SELECT environment_id, junction_id, road_id, along_road, min({'off_rad': abs(turn_rad), 'turn_rad': turn_rad}).turn_rad AS turn_rad
     FROM (

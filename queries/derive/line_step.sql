@@ -146,7 +146,7 @@ step_near_passed AS (
         AND d.is_near IS DISTINCT FROM false AND (NOT r.is_on_foot OR coalesce(in_lane(p.d_m, p.lat_half_m, p.half_width_m), false))
     GROUP BY ALL
 ),
--- Actors that the ego may cross even a solid line to pass, and that leave too little room to be passed on this side of it. In a stretch in
+-- Actors for whom the ego may cross even a solid line, because they leave too little room to pass them on this side of it. In a stretch in
 -- which the ego also overtakes a moving vehicle, it needs the line for that vehicle, so they do not count.
 passable_object AS (
     SELECT
@@ -183,7 +183,7 @@ off_lane_stretch AS (
     GROUP BY ALL
 ),
 -- Whether the ego gets to premises or a side road within 30 m, or comes back from there within 30 m.
-way_reached AS (
+access_check AS (
     SELECT
         n.drive_id, n.ego_id, n.t_ns, n.side, v.is_way_back,
         CASE
@@ -202,8 +202,8 @@ way_reached AS (
 ),
 access AS (
     SELECT
-        drive_id, ego_id, t_ns, side, coalesce(bool_or(access), false) AS way_reached, bool_or(access IS NULL) AS may_be_reached, bool_or(is_way_back) AS behind, bool_or(NOT is_way_back) AS ahead
-    FROM way_reached
+        drive_id, ego_id, t_ns, side, coalesce(bool_or(access), false) AS has_access, bool_or(access IS NULL) AS may_be_reached, bool_or(is_way_back) AS behind, bool_or(NOT is_way_back) AS ahead
+    FROM access_check
     GROUP BY ALL
 )
 SELECT
@@ -220,7 +220,7 @@ SELECT
     a.t_since_ns AS t_astride_ns, a.begin_seen AS astride_begin_seen, a.changes, CASE WHEN w.t_ns IS NOT NULL THEN w.overtaking WHEN n.is_handedness_known THEN false END AS overtaking,
     m.passing_id, m.passing_id IS NOT NULL OR u.t_ns IS NULL AND NOT coalesce(m.is_unsure, false) AS passing_known,
     CASE
-        WHEN r.way_reached THEN true
+        WHEN r.has_access THEN true
         WHEN r.may_be_reached THEN NULL
         -- An ego that soon leaves the lanes (r.ahead) does not come back over the line before that, and an ego that just came from off the
         -- lanes (r.behind) was not on this side before: a short view is enough in these cases.

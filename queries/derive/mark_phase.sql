@@ -22,7 +22,7 @@ phase_start AS (
     FROM used_head h
     JOIN signal_phase p USING (drive_id, signal_id)
 ),
-tier_state AS (
+state_by_priority AS (
     SELECT
         o.drive_id, o.ego_id, o.chain_id, o.kind, o.mark_id, o.s_start_m, o.t_ns, h.tier,
         CASE WHEN count(p.state) = count(*) AND min(p.state) = max(p.state) THEN min(p.state) END AS state
@@ -39,7 +39,7 @@ shown_state AS (
             WHEN any_value(state) FILTER (tier = 1) = 'off' AND count(*) FILTER (tier = 2) > 0 THEN any_value(state) FILTER (tier = 2)
             ELSE any_value(state) FILTER (tier = 1)
         END AS state
-    FROM tier_state
+    FROM state_by_priority
     GROUP BY drive_id, ego_id, chain_id, kind, mark_id, s_start_m, t_ns
 ),
 state_change AS (

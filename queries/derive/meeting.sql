@@ -44,4 +44,4 @@ SELECT
 FROM nearby_cell e
 JOIN visit o ON o.drive_id = e.drive_id AND o.cell = e.near_cell AND o.slot = e.near_slot AND o.actor_id <> e.ego_id
 ANTI JOIN ego_part p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.object_id = o.actor_id
-WHERE steps_apart(o.heading, e.heading) > 3 AND o.x_min_m <= e.x_max_m AND o.x_max_m >= e.x_min_m AND o.y_min_m <= e.y_max_m AND o.y_max_m >= e.y_min_m
+WHERE heading_steps_apart(o.heading, e.heading) > 3 AND o.x_min_m <= e.x_max_m AND o.x_max_m >= e.x_min_m AND o.y_min_m <= e.y_max_m AND o.y_max_m >= e.y_min_m

@@ -33,7 +33,7 @@ approach_step AS (
 vehicle_on_its_way AS (
     SELECT a.drive_id, a.ego_id, a.t_ns, a.object_id, a.speed_mps, a.entry_s_m - e.front_s_m + a.way_m AS da_m
     FROM (
-        SELECT *, of_pm(sum(whole_pm(coalesce(step_m, 0.0))) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns DESC ROWS UNBOUNDED PRECEDING)) AS way_m
+        SELECT *, from_picometres(sum(to_picometres(coalesce(step_m, 0.0))) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY t_ns DESC ROWS UNBOUNDED PRECEDING)) AS way_m
         FROM approach_step
     ) a
     JOIN ego_step e USING (drive_id, ego_id, t_ns)

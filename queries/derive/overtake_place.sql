@@ -99,7 +99,7 @@ crossed_line AS (
 earlier_speed AS (
     SELECT g.drive_id, g.ego_id, g.occurrence, p.object_id, max(p.speed_mps) AS fastest_mps, count(p.speed_mps) = count(*) AS is_whole
     FROM overtake_begin g
-    JOIN pair p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns >= g.t0_ns - braked_for_ns() AND p.t_ns <= g.t0_ns
+    JOIN pair p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns >= g.t0_ns - braked_before_ns() AND p.t_ns <= g.t0_ns
     GROUP BY ALL
 ),
 -- Vehicles in the overtaking lane, or in the running lane and moving over at more than 0.3 m/s. While part of a vehicle is beside the ego,

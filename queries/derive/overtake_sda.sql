@@ -68,8 +68,8 @@ planned_distance AS (
     FROM formula_input
 ),
 required_distance AS (
-    -- The driven distance counts only if DA is at most that. For an overtake that was not completed, the distance that would have been
-    -- enough is not known.
+    -- The driven distance counts only if it is at least DA: then it shows that DA was too small. If DA is larger, the overtake had enough,
+    -- and only the formula counts. For an overtake that was not completed, the distance that would have been enough is not known.
     SELECT
         *, CASE WHEN da_m <= driven_m THEN greatest(planned_m, driven_m) ELSE planned_m END AS sda_m, coalesce(da_m <= sda_m AND da_m > sped_up_m, false) AS has_sped_up
     FROM planned_distance

@@ -23,6 +23,7 @@ ego_place AS (
 step_count AS (
     SELECT
         st.drive_id, st.ego_id,
+        min(s.actor_class) AS actor_class,
         count(s.x_m) AS n_steps,
         count(e.lanelet_id) AS n_on_lane,
         count(*) FILTER (e.lanelet_id IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_moving,
@@ -45,6 +46,7 @@ map_check AS (
         CASE
             WHEN g.environment_id IS NULL THEN why('without_map')
             WHEN n_steps = 0 THEN why('ego_never_placed')
+            WHEN n_on_lane < 0.8 * n_steps AND NOT may_be_vehicle(actor_class) THEN why('ego_not_a_vehicle', {'actor_class': actor_class, 'n_on_lane': n_on_lane, 'n_steps': n_steps})
             WHEN n_on_lane < 0.8 * n_steps THEN why('seldom_on_lane', {'n_on_lane': n_on_lane, 'n_steps': n_steps})
             WHEN n_with_direction < 0.6 * n_moving THEN why('often_against_lane', {'n_against': n_moving - n_with_direction, 'n_moving': n_moving})
             WHEN lateral_median_m > 1.2 THEN why('far_from_centre_line', {'lateral_m': lateral_median_m})

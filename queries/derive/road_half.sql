@@ -14,7 +14,7 @@ opposing_road_pair AS (
     JOIN lanelet m ON m.environment_id = b.environment_id AND m.lanelet_id = b.beside_id
     WHERE b.against AND b.drivable AND m.road_id < n.road_id
     GROUP BY b.environment_id, n.lanelet_id, n.length_m, n.road_id, m.road_id
-    HAVING sum(whole_pm(b.s_end_m - b.s_start_m)) > whole_pm(n.length_m / 2)
+    HAVING sum(to_picometres(b.s_end_m - b.s_start_m)) > to_picometres(n.length_m / 2)
 )
 SELECT b.environment_id, b.road_id, min({'road': b.of_road_id, 'turned': a.along_road = o.along_road}).road AS of_road_id,
     min({'road': b.of_road_id, 'turned': a.along_road = o.along_road}).turned AS turned

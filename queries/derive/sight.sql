@@ -16,7 +16,7 @@ viewpoint AS (
 ),
 nearest_box AS (
     SELECT
-        e.drive_id, e.ego_id, e.t_ns, min(p.distance_m - half_box_m(p.length_m, p.width_m)) AS around_m,
+        e.drive_id, e.ego_id, e.t_ns, min(p.distance_m - box_half_diagonal_m(p.length_m, p.width_m)) AS around_m,
         min(p.rear_s_m - e.front_s_m) FILTER (p.s_m > e.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m) AS lane_m,
         min(p.rear_s_m - e.front_s_m) FILTER (p.s_m > e.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m - hides_vehicle_m()) AS vehicle_distance_m
     FROM viewpoint e
@@ -63,18 +63,18 @@ hidden_place AS (
     SELECT a.drive_id, a.ego_id, a.t_ns, min(a.along_m) FILTER (p.t_ns IS NOT NULL) - sight_step_m() AS along_m
     FROM lane_place a
     CROSS JOIN LATERAL (SELECT sqrt(a.dx_m ** 2 + a.dy_m ** 2) AS distance_m) x
-    LEFT JOIN pair p ON p.drive_id = a.drive_id AND p.ego_id = a.ego_id AND p.t_ns = a.t_ns AND p.distance_m < x.distance_m + two_half_boxes_m() / 2
-        AND in_line(p.x_m - a.x_m, p.y_m - a.y_m, a.dx_m, a.dy_m, p.yaw_rad, p.length_m, p.width_m)
+    LEFT JOIN pair p ON p.drive_id = a.drive_id AND p.ego_id = a.ego_id AND p.t_ns = a.t_ns AND p.distance_m < x.distance_m + both_half_diagonals_m() / 2
+        AND blocks_sight(p.x_m - a.x_m, p.y_m - a.y_m, a.dx_m, a.dy_m, p.yaw_rad, p.length_m, p.width_m)
     GROUP BY ALL
 )
 SELECT
     e.drive_id, e.ego_id, e.t_ns, greatest(0.0, least(n.around_m, e.range_m)) AS around_m,
     greatest(0.0, CASE
-        WHEN r.t_ns IS NOT NULL OR b.t_ns IS NOT NULL THEN least(n.lane_m, least(b.along_m, e.range_m - two_half_boxes_m() / 2) - e.length_m / 2)
+        WHEN r.t_ns IS NOT NULL OR b.t_ns IS NOT NULL THEN least(n.lane_m, least(b.along_m, e.range_m - both_half_diagonals_m() / 2) - e.length_m / 2)
         ELSE least(n.around_m, e.range_m) - e.length_m / 2
     END) AS lane_m,
     greatest(0.0, CASE
-        WHEN r.t_ns IS NOT NULL OR b.t_ns IS NOT NULL THEN least(n.vehicle_distance_m, least(b.along_m, e.range_m - two_half_boxes_m() / 2) - e.length_m / 2)
+        WHEN r.t_ns IS NOT NULL OR b.t_ns IS NOT NULL THEN least(n.vehicle_distance_m, least(b.along_m, e.range_m - both_half_diagonals_m() / 2) - e.length_m / 2)
         ELSE least(n.around_m, e.range_m) - e.length_m / 2
     END) AS vehicle_lane_m
 FROM viewpoint e

@@ -15,7 +15,7 @@ WITH step_speed AS (
 stop_period AS (
     SELECT drive_id, ego_id, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, min(k) AS k_first, max(k) AS k_last, seg
     FROM (
-        SELECT *, k - row_number() OVER (PARTITION BY drive_id, ego_id, seg ORDER BY k) AS run_no FROM step_speed WHERE v_mps < stood_mps()
+        SELECT *, k - row_number() OVER (PARTITION BY drive_id, ego_id, seg ORDER BY k) AS run_no FROM step_speed WHERE v_mps < standstill_mps()
     )
     GROUP BY drive_id, ego_id, seg, run_no
     HAVING max(t_ns) - min(t_ns) >= 1_000_000_000
@@ -96,7 +96,7 @@ idle_time AS (
 )
 SELECT
     p.drive_id, p.ego_id, (row_number() OVER (PARTITION BY p.drive_id, p.ego_id ORDER BY p.t_start_ns) - 1)::INTEGER AS occurrence,
-    p.t_start_ns, p.t_end_ns, coalesce(b.v_mps >= stood_mps(), false) AS begin_seen, coalesce(a.v_mps >= stood_mps(), false) AS end_seen,
+    p.t_start_ns, p.t_end_ns, coalesce(b.v_mps >= standstill_mps(), false) AS begin_seen, coalesce(a.v_mps >= standstill_mps(), false) AS end_seen,
     p.road_type, p.lanelet_id, p.junction_id, p.junction_clear_m, p.junction_inside_m, u.p.turn AS turn, u.p.across AS across, p.junction_m, p.crossing_id, p.crossing_clear_m,
     p.line_ahead.id AS stop_line_id, p.line_ahead.m AS stop_line_m, p.line_ahead.control AS control, l.state,
     d.object_id AS ahead_id, d.gap_m AS ahead_gap_m, d.speed_mps AS ahead_speed_mps, d.t_ns IS NOT NULL AS ahead_known,

@@ -6,7 +6,7 @@ drive_with_heights AS (
     SELECT drive_id
     FROM (SELECT drive_id, min(z_m) AS low_m, max(z_m) AS high_m FROM actor_state WHERE z_m IS NOT NULL GROUP BY drive_id, actor_id)
     GROUP BY drive_id
-    HAVING max(high_m - low_m) > height_told_m() OR max(high_m) - min(low_m) > level_m()
+    HAVING max(high_m - low_m) > measured_height_change_m() OR max(high_m) - min(low_m) > level_m()
 ),
 actor_sample AS (
     SELECT

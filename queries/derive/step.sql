@@ -3,7 +3,7 @@ SELECT
     (row_number() OVER w - 1)::INTEGER AS k,
     dt_ns,
     (sum(CASE WHEN dt_ns > max_gap_ns THEN 1 ELSE 0 END) OVER (w ROWS UNBOUNDED PRECEDING))::INTEGER AS seg,
-    of_pm(sum(whole_pm(coalesce(sqrt((x_m - x_before_m) ** 2 + (y_m - y_before_m) ** 2), 0.0))) OVER (w ROWS UNBOUNDED PRECEDING)) AS travel_m
+    from_picometres(sum(to_picometres(coalesce(sqrt((x_m - x_before_m) ** 2 + (y_m - y_before_m) ** 2), 0.0))) OVER (w ROWS UNBOUNDED PRECEDING)) AS travel_m
 FROM (
     SELECT
         c.drive_id, c.ego_id, a.t_ns, c.max_gap_ns, a.x_m, a.y_m,

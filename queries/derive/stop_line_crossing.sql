@@ -50,7 +50,7 @@ stop_time AS (
         FROM (
             SELECT *, k - row_number() OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m, t_ns, seg ORDER BY k) AS run_no
             FROM approach_step
-            WHERE front_m >= -1 AND speed_mps <= stood_mps()
+            WHERE front_m >= -1 AND speed_mps <= standstill_mps()
         )
         GROUP BY drive_id, ego_id, chain_id, mark_id, s_start_m, t_ns, seg, run_no
     )
@@ -81,8 +81,8 @@ SELECT
     c.drive_id, c.ego_id, (row_number() OVER (PARTITION BY c.drive_id, c.ego_id ORDER BY c.t_ns, c.mark_id) - 1)::INTEGER AS occurrence,
     c.mark_id AS stop_line_id, m.lanelet_id, m.control, m.signal_id, c.t_ns, c.joined AS begin_seen, e.speed_mps,
     l.state, l.state_before, l.t_state_ns, a.a.front_m AS amber_front_m, a.a.speed_mps AS amber_speed_mps,
-    CASE WHEN NOT s.unknown_3m OR s.slowest.speed_mps <= stood_mps() THEN s.slowest.speed_mps END AS slowest_mps,
-    CASE WHEN NOT s.unknown_3m OR s.slowest.speed_mps <= stood_mps() THEN -s.slowest.front_m END AS slowest_front_m,
+    CASE WHEN NOT s.unknown_3m OR s.slowest.speed_mps <= standstill_mps() THEN s.slowest.speed_mps END AS slowest_mps,
+    CASE WHEN NOT s.unknown_3m OR s.slowest.speed_mps <= standstill_mps() THEN -s.slowest.front_m END AS slowest_front_m,
     CASE WHEN d.stood_s IS NOT NULL AND NOT s.unknown_1m THEN d.stood_s WHEN NOT s.unknown_1m THEN 0.0 WHEN s.t_ns IS NULL THEN 0.0 END AS stood_s
 FROM crossing_step c
 JOIN way_mark m ON m.drive_id = c.drive_id AND m.ego_id = c.ego_id AND m.chain_id = c.chain_id AND m.mark_id = c.mark_id

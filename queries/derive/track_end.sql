@@ -1,7 +1,7 @@
 -- The ends and the beginnings of tracks, and of their parts between two holes, while the log goes on. A recorder may lose an actor in plain
--- view, but not for long. At the end of a track, plain_ns is the time until which the recorder may merely have lost the object; after it,
--- an object that is not recorded is out of sight. At the beginning of a track, the object was out of sight before plain_ns. An actor that
--- leaves the recorder's range, or goes behind another box, is out of sight at once.
+-- view, but not for long. After the end of a track, the recorder may merely have lost the object until plain_ns; from then on the object is
+-- out of sight. Before the beginning of a track, the object is out of sight until plain_ns; from then on the recorder may merely not have
+-- found it yet. An actor that leaves the recorder's range, or goes behind another box, is out of sight at once.
 WITH incomplete_track AS (
     SELECT e.drive_id, e.ego_id, e.object_id, c.t_start_ns + c.max_gap_ns AS t_begin_limit_ns, c.t_end_ns - c.max_gap_ns AS t_end_limit_ns
     FROM (
@@ -41,7 +41,7 @@ occlusion AS (
     SELECT DISTINCT m.drive_id, m.ego_id, m.object_id, m.lost, m.t_ns
     FROM extrapolation m
     JOIN pair o ON o.drive_id = m.drive_id AND o.ego_id = m.ego_id AND o.t_ns = m.t_place_ns AND o.object_id <> m.object_id
-    WHERE in_line(o.x_m - m.x_m, o.y_m - m.y_m, m.dx_m, m.dy_m, o.yaw_rad, o.length_m, o.width_m)
+    WHERE blocks_sight(o.x_m - m.x_m, o.y_m - m.y_m, m.dx_m, m.dy_m, o.yaw_rad, o.length_m, o.width_m)
 )
 SELECT
     e.drive_id, e.ego_id, e.object_id, e.lost, e.t_ns,

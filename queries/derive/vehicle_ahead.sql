@@ -30,7 +30,7 @@ further_vehicle AS (
     JOIN lane_summary c USING (drive_id, ego_id, t_ns)
 ),
 actor_with_filtered_velocity AS (SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'velocity_filtered'),
-half_second AS (
+half_second_begin AS (
     SELECT
         drive_id, ego_id, t_ns,
         first_value(t_ns) OVER (PARTITION BY drive_id, ego_id, seg ORDER BY t_ns RANGE BETWEEN 500_000_000 PRECEDING AND CURRENT ROW) AS t_half_second_ns
@@ -55,7 +55,7 @@ vehicle_or_doubt AS (
     FROM further_vehicle m
     JOIN lead l ON l.drive_id = m.drive_id AND l.ego_id = m.ego_id AND l.t_ns = m.t_ns AND l.object_id IS DISTINCT FROM m.object_id
     JOIN lane_ahead p ON p.drive_id = m.drive_id AND p.ego_id = m.ego_id AND p.t_ns = m.t_ns AND p.object_id = m.object_id
-    JOIN half_second h ON h.drive_id = m.drive_id AND h.ego_id = m.ego_id AND h.t_ns = m.t_ns
+    JOIN half_second_begin h ON h.drive_id = m.drive_id AND h.ego_id = m.ego_id AND h.t_ns = m.t_ns
     LEFT JOIN pair b ON b.drive_id = m.drive_id AND b.ego_id = m.ego_id AND b.t_ns = h.t_half_second_ns AND b.object_id = m.object_id
     LEFT JOIN actor_with_filtered_velocity f ON f.drive_id = m.drive_id AND f.actor_id = m.object_id
     LEFT JOIN actor_with_filtered_velocity g ON g.drive_id = m.drive_id AND g.actor_id = m.ego_id
@@ -110,9 +110,9 @@ box_contact AS (
         SELECT
             drive_id, ego_id, t_ns, object_id, with_room,
             [
-                within_s(dx, motion_x_mps, m + ego_half_length_m + object_half_length_m * abs(c) + object_half_width_m * abs(s)), within_s(dy, motion_y_mps, m + ego_half_width_m + object_half_length_m * abs(s) + object_half_width_m * abs(c)),
-                within_s(dx * c + dy * s, motion_x_mps * c + motion_y_mps * s, m + object_half_length_m + ego_half_length_m * abs(c) + ego_half_width_m * abs(s)),
-                within_s(dy * c - dx * s, motion_y_mps * c - motion_x_mps * s, m + object_half_width_m + ego_half_length_m * abs(s) + ego_half_width_m * abs(c))
+                time_within(dx, motion_x_mps, m + ego_half_length_m + object_half_length_m * abs(c) + object_half_width_m * abs(s)), time_within(dy, motion_y_mps, m + ego_half_width_m + object_half_length_m * abs(s) + object_half_width_m * abs(c)),
+                time_within(dx * c + dy * s, motion_x_mps * c + motion_y_mps * s, m + object_half_length_m + ego_half_length_m * abs(c) + ego_half_width_m * abs(s)),
+                time_within(dy * c - dx * s, motion_y_mps * c - motion_x_mps * s, m + object_half_width_m + ego_half_length_m * abs(s) + ego_half_width_m * abs(c))
             ] AS w
         FROM relative_motion CROSS JOIN LATERAL (VALUES (false, 0.0), (true, room_m)) AS v(with_room, m)
         WHERE ttc_s < drift_s()

@@ -165,7 +165,7 @@ nearest_line AS (
     JOIN mark m ON m.drive_id = s.drive_id AND m.ego_id = s.ego_id AND m.chain_id = s.chain_id AND m.kind = 'stop_line'
     GROUP BY s.drive_id, s.ego_id, s.chain_id, s.signal_id, s.s_m
 ),
-claimed_signal AS (
+signal_with_nearest_line AS (
     SELECT o.*, CASE o.kind WHEN 'stop_line' THEN n.line_s_m <> o.s_start_m WHEN 'crossing' THEN coalesce(n.line_s_m > o.s_end_m, false) ELSE false END AS is_elsewhere
     FROM own_signal o
     LEFT JOIN nearest_line n USING (drive_id, ego_id, chain_id, signal_id, s_m)
@@ -174,7 +174,7 @@ signal_head AS (
     SELECT
         kind, drive_id, ego_id, chain_id, mark_id, s_start_m, control, rank, signal_id, min(fit) AS fit, any_value(is_unrecorded) AS is_unrecorded, min(abs(s_m - s_start_m)) AS off_m
     FROM (
-        FROM claimed_signal
+        FROM signal_with_nearest_line
         QUALIFY {'rank': rank, 'is_elsewhere': is_elsewhere} = min({'rank': rank, 'is_elsewhere': is_elsewhere})
             OVER (PARTITION BY kind, drive_id, ego_id, chain_id, mark_id, s_start_m)
     )

@@ -20,9 +20,9 @@ CREATE OR REPLACE MACRO whole_window(t_ns, first_ns, last_ns, half_ns) AS
     t_ns - first_ns >= 0.7 * half_ns AND last_ns - t_ns >= 0.7 * half_ns;
 
 -- An actor that is not seen comes nearer to the ego at no more than unseen_closing_mps. The sum of the half diagonals of two boxes is at
--- most two_half_boxes_m.
+-- most both_half_diagonals_m.
 CREATE OR REPLACE MACRO unseen_closing_mps() AS 60.0;
-CREATE OR REPLACE MACRO two_half_boxes_m() AS 12.0;
+CREATE OR REPLACE MACRO both_half_diagonals_m() AS 12.0;
 
 -- A recorder that loses an actor in plain view has it again within longest_track_gap_ns. A new actor is recorded track_delay_ns after it
 -- came into view.
@@ -37,12 +37,12 @@ CREATE OR REPLACE MACRO sight_step_m() AS 2.0;
 -- Our default: a box that reaches into a lane by less than this hides no vehicle that stands in the lane.
 CREATE OR REPLACE MACRO hides_vehicle_m() AS 0.5;
 -- Whether a box at (x, y) from the eye stands in the line of sight to the place at (dx, dy) from the eye.
-CREATE OR REPLACE MACRO in_line(x_m, y_m, dx_m, dy_m, yaw_rad, length_m, width_m) AS
+CREATE OR REPLACE MACRO blocks_sight(x_m, y_m, dx_m, dy_m, yaw_rad, length_m, width_m) AS
     x_m * dx_m + y_m * dy_m BETWEEN 0 AND dx_m ** 2 + dy_m ** 2
     AND abs(x_m * dy_m - y_m * dx_m)
         < length_m / 2 * abs(sin(yaw_rad) * dx_m - cos(yaw_rad) * dy_m) + width_m / 2 * abs(cos(yaw_rad) * dx_m + sin(yaw_rad) * dy_m);
 -- Half the diagonal of a box; that of the largest box if its size is not known.
-CREATE OR REPLACE MACRO half_box_m(length_m, width_m) AS coalesce(sqrt(length_m ** 2 + width_m ** 2) / 2, two_half_boxes_m() / 2);
+CREATE OR REPLACE MACRO box_half_diagonal_m(length_m, width_m) AS coalesce(sqrt(length_m ** 2 + width_m ** 2) / 2, both_half_diagonals_m() / 2);
 
 -- How far an actor can be from the place to which its last (or next) velocity leads, t seconds away. Vehicles and animals change their
 -- velocity by at most 10 m/s2, pedestrians move at no more than 10 m/s, and an actor of unknown class may be either.
@@ -102,16 +102,16 @@ CREATE OR REPLACE MACRO seen_from_beyond(marking) AS
 CREATE OR REPLACE MACRO way_beside_m() AS 0.5;
 CREATE OR REPLACE MACRO enters_s() AS 4.0;
 CREATE OR REPLACE MACRO may_step_m() AS 2.0;
--- How far ahead actors are searched for. An ego at up to 44 m/s need not look farther (see way_look_m).
+-- How far ahead actors are searched for. An ego at up to 44 m/s need not look farther (see brakes_for_m).
 CREATE OR REPLACE MACRO way_reach_m() AS 600.0;
 -- The greatest distance at which an actor can be a reason to brake hard at all (2 m/s2), with two seconds to see it and 10 m to spare.
-CREATE OR REPLACE MACRO way_look_m(v_mps) AS 10.0 + 2.0 * v_mps + v_mps ** 2 / 4.0;
+CREATE OR REPLACE MACRO brakes_for_m(v_mps) AS 10.0 + 2.0 * v_mps + v_mps ** 2 / 4.0;
 -- Deceleration that keeps the ego 5 m away from an actor ahead, after one second to see it; 0 if the ego does not come nearer. The speeds
 -- are along the road.
 CREATE OR REPLACE MACRO need_mps2(gap_m, v_mps, along_mps) AS
     CASE WHEN v_mps > along_mps THEN (v_mps - along_mps) ** 2 / (2 * greatest(gap_m - (v_mps - along_mps) - 5.0, 0.1)) WHEN v_mps IS NOT NULL THEN 0.0::DOUBLE END;
 -- A driver who has braked for an actor lets the brake go within this time after the actor has gone.
-CREATE OR REPLACE MACRO let_go_ns() AS 2_000_000_000;
+CREATE OR REPLACE MACRO brake_release_ns() AS 2_000_000_000;
 -- An actor counts as coming across only if its speed across brings it into the way within enters_s, at every sample during this time and at
 -- two samples at least.
 CREATE OR REPLACE MACRO coming_for_ns() AS 300_000_000;
@@ -151,7 +151,7 @@ CREATE OR REPLACE MACRO longest_change_ns() AS 10_000_000_000;
 -- comes back at once.
 CREATE OR REPLACE MACRO stays_out_ns() AS 3_000_000_000;
 -- Our default: at most this long before an overtake the vehicle behind may have begun to brake for it.
-CREATE OR REPLACE MACRO braked_for_ns() AS 2_000_000_000;
+CREATE OR REPLACE MACRO braked_before_ns() AS 2_000_000_000;
 
 -- How far before an actor, and how far past it, a driver who goes round it may be over the line: 10 m and 5 s at the speed at which the ego
 -- comes nearer, and at least 30 m before it, as the ego may wait behind it. If the actor stands or goes at a walking pace, or its speed is

@@ -17,8 +17,8 @@ CREATE OR REPLACE MACRO or_never(time_s, required_s) AS
 
 -- A value, if its worst and its best case (by the errors of its inputs) are on the same side of the required value; else NULL. `sure` is
 -- for a value that must be at least the required one, `sure_most` for a value that must be at most that.
-CREATE OR REPLACE MACRO sure(value, worst, best, required) AS CASE WHEN worst >= required OR best < required THEN value END;
-CREATE OR REPLACE MACRO sure_most(value, worst, best, required) AS CASE WHEN worst <= required OR best > required THEN value END;
+CREATE OR REPLACE MACRO sure_at_least(value, worst, best, required) AS CASE WHEN worst >= required OR best < required THEN value END;
+CREATE OR REPLACE MACRO sure_at_most(value, worst, best, required) AS CASE WHEN worst <= required OR best > required THEN value END;
 
 -- Whether the two may still touch: false if it is known that they pass each other, unknown if they may graze each other.
 CREATE OR REPLACE MACRO may_touch(passes_by, grazes) AS CASE WHEN passes_by THEN false WHEN grazes THEN NULL ELSE true END;
@@ -71,7 +71,7 @@ CREATE OR REPLACE MACRO on_course(gap_m, ttc_s, d_m, lat_half_m, lat_mps, lead_d
         < lat_half_m + lead_lat_half_m;
 
 -- The time in which a point at p, moving at v, is within r of the origin. If it never is, from_s is later than to_s.
-CREATE OR REPLACE MACRO within_s(p, v, r) AS
+CREATE OR REPLACE MACRO time_within(p, v, r) AS
     CASE
         WHEN abs(v) > 1e-6 THEN {'from_s': (-r * sign(v) - p) / v, 'to_s': (r * sign(v) - p) / v}
         WHEN abs(p) <= r THEN {'from_s': '-inf'::DOUBLE, 'to_s': 'inf'::DOUBLE}

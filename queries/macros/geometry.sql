@@ -20,7 +20,7 @@ CREATE OR REPLACE MACRO yaw_along_travel_rad(yaw_rad, travel_rad) AS CASE WHEN c
 CREATE OR REPLACE MACRO box_turn_rad(a) AS a - pi() * floor((a + pi() / 2) / pi());
 
 -- Keys of the 2 m grid that finds lanes and of the 4 m grid that finds corridors. The factor makes the keys of the cells of one map
--- different: no map is 4,000 km high.
+-- different: no map reaches 2,000 km from south to north (4,000 km on the 4 m grid).
 CREATE OR REPLACE MACRO cell_key(ix, iy) AS ix::BIGINT * 1000003 + iy::BIGINT;
 CREATE OR REPLACE MACRO lane_cell_of(x, y) AS cell_key(floor(x / 2), floor(y / 2));
 CREATE OR REPLACE MACRO corridor_cell_of(x, y) AS cell_key(floor(x / 4), floor(y / 4));
@@ -35,17 +35,17 @@ CREATE OR REPLACE MACRO offset_left(x, y, u, x0, y0, tx0, ty0, x1, y1, tx1, ty1)
     (y - y0 - u * (y1 - y0)) * (tx0 + u * (tx1 - tx0)) - (x - x0 - u * (x1 - x0)) * (ty0 + u * (ty1 - ty0));
 
 -- Squared distance from a point, given in a box's own frame, to that box of half lengths hl, hw.
-CREATE OR REPLACE MACRO outside2(px, py, hl, hw) AS
+CREATE OR REPLACE MACRO squared_distance_to_box(px, py, hl, hw) AS
     greatest(abs(px) - hl, 0.0) ** 2 + greatest(abs(py) - hw, 0.0) ** 2;
 
 -- Least squared distance from the four corners of box b to box a. (dx, dy): centre of b in the frame of a; (c, s): cosine and sine of b's
 -- heading in that frame.
-CREATE OR REPLACE MACRO corners_outside2(dx, dy, c, s, hla, hwa, hlb, hwb) AS
+CREATE OR REPLACE MACRO squared_distance_of_corners_to_box(dx, dy, c, s, hla, hwa, hlb, hwb) AS
     least(
-        outside2(dx + c * hlb - s * hwb, dy + s * hlb + c * hwb, hla, hwa),
-        outside2(dx + c * hlb + s * hwb, dy + s * hlb - c * hwb, hla, hwa),
-        outside2(dx - c * hlb - s * hwb, dy - s * hlb + c * hwb, hla, hwa),
-        outside2(dx - c * hlb + s * hwb, dy - s * hlb - c * hwb, hla, hwa)
+        squared_distance_to_box(dx + c * hlb - s * hwb, dy + s * hlb + c * hwb, hla, hwa),
+        squared_distance_to_box(dx + c * hlb + s * hwb, dy + s * hlb - c * hwb, hla, hwa),
+        squared_distance_to_box(dx - c * hlb - s * hwb, dy - s * hlb + c * hwb, hla, hwa),
+        squared_distance_to_box(dx - c * hlb + s * hwb, dy - s * hlb - c * hwb, hla, hwa)
     );
 
 -- Largest separation of two boxes over their four axes; negative: the boxes overlap, by that depth (separating axis theorem).
@@ -85,8 +85,8 @@ CREATE OR REPLACE MACRO box_clearance(dx, dy, c, s, hla, hwa, hlb, hwb) AS
     CASE
         WHEN box_separation(dx, dy, c, s, hla, hwa, hlb, hwb) <= 0 THEN box_separation(dx, dy, c, s, hla, hwa, hlb, hwb)
         ELSE sqrt(least(
-            corners_outside2(dx, dy, c, s, hla, hwa, hlb, hwb),
-            corners_outside2(-(dx * c + dy * s), -(dy * c - dx * s), c, -s, hlb, hwb, hla, hwa)
+            squared_distance_of_corners_to_box(dx, dy, c, s, hla, hwa, hlb, hwb),
+            squared_distance_of_corners_to_box(-(dx * c + dy * s), -(dy * c - dx * s), c, -s, hlb, hwb, hla, hwa)
         ))
     END;
 
@@ -98,8 +98,8 @@ CREATE OR REPLACE MACRO depth_if_apart(along_m) AS CASE WHEN along_m < 0 THEN al
 
 -- Lengths in whole picometres, and back. Their running sums are the same to the last bit in every order and beside any other drive. (A sum
 -- of doubles over a window is not: how it is split depends on what else is in the table.)
-CREATE OR REPLACE MACRO whole_pm(x_m) AS round(1e12 * x_m)::HUGEINT;
-CREATE OR REPLACE MACRO of_pm(x_pm) AS x_pm / 1e12;
+CREATE OR REPLACE MACRO to_picometres(x_m) AS round(1e12 * x_m)::HUGEINT;
+CREATE OR REPLACE MACRO from_picometres(x_pm) AS x_pm / 1e12;
 
 -- The motion between two samples. No actor brakes or swerves harder than this, which is what tyres can give.
 CREATE OR REPLACE MACRO swerve_mps2() AS 8.0;

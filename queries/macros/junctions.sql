@@ -8,9 +8,9 @@ CREATE OR REPLACE MACRO conflict_angle_rad() AS radians(20);
 CREATE OR REPLACE MACRO conflict_apart_ns() AS 2_000_000_000;
 -- Headings in steps of 5 degrees: those at most three steps apart differ by less than 20 degrees.
 CREATE OR REPLACE MACRO heading_step(yaw_rad) AS floor(yaw_rad / radians(5))::INTEGER;
-CREATE OR REPLACE MACRO steps_apart(a, b) AS abs(((a - b + 36) % 72 + 72) % 72 - 36);
+CREATE OR REPLACE MACRO heading_steps_apart(a, b) AS abs(((a - b + 36) % 72 + 72) % 72 - 36);
 -- An actor that is slower than this for at least a second stands still (UKHC and ALKS rules ask for a stop, not for slow driving).
-CREATE OR REPLACE MACRO stood_mps() AS 0.1;
+CREATE OR REPLACE MACRO standstill_mps() AS 0.1;
 -- The longest time from one half of a pedestrian crossing to the other. A person who takes longer waits on an island between the two.
 CREATE OR REPLACE MACRO half_to_half_ns() AS 3_000_000_000;
 -- The largest separation of two boxes over their four axes (negative: the depth of their overlap). (dx, dy) leads from the centre of the

@@ -10,7 +10,7 @@ CREATE OR REPLACE MACRO same_level(a_m, b_m) AS coalesce(abs(a_m - b_m) <= level
 -- anywhere.
 CREATE OR REPLACE MACRO steepest() AS 0.15;
 -- A height that changes by less than this over a whole track is not measured: a flat simulation writes half the height of the box.
-CREATE OR REPLACE MACRO height_told_m() AS 0.05;
+CREATE OR REPLACE MACRO measured_height_change_m() AS 0.05;
 -- Whether a heading is along the lane, in either direction.
 CREATE OR REPLACE MACRO along_lane(heading_diff_rad) AS abs(sin(heading_diff_rad)) < sin(along_lane_rad());
 -- Lanes that turn from one road into the other at a crossing are at most this long. A ramp between two levels is longer.

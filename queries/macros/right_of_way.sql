@@ -13,10 +13,9 @@ CREATE OR REPLACE MACRO moves_up_mps() AS 1.0;
 CREATE OR REPLACE MACRO queued(ahead_id, ahead_gap_m, ahead_speed_mps, known, near_m, slow_mps) AS
     ((ahead_id IS NOT NULL AND ahead_gap_m <= near_m AND ahead_speed_mps <= slow_mps) OR CASE WHEN known THEN false END);
 
--- Whether the way out was full for the ego, which stands where it must keep clear and whose rear has yet to go `clear_m` to get out. It was
--- full if a slow vehicle is near, or leaves the ego no room to get out. If the ego stands for `long_s` or longer, it was full if, with the
--- ego just out, a slow vehicle would be within `near_m` ahead. Else it is not known what holds up the ego for so long behind a vehicle that
--- is farther away or quicker: NULL.
+-- Whether the ego stands because its way out is full. The ego stands where it must keep clear, and its rear has yet to go `clear_m` to get
+-- out. A short stand (less than `long_s`): true if a slow vehicle is within `near_m` or within `clear_m`. A longer stand: true if a slow
+-- vehicle is within `near_m` of where the ego would be just out; else NULL, because what holds up the ego for so long is not known.
 CREATE OR REPLACE MACRO exit_full(ahead_id, ahead_gap_m, ahead_speed_mps, known, clear_m, stood_ns, near_m, slow_mps, long_s) AS
     CASE
         WHEN ahead_id IS NULL THEN CASE WHEN known THEN false END
@@ -39,8 +38,8 @@ CREATE OR REPLACE MACRO met_reason(object_id, pet_s, decel_mps2) AS CASE WHEN ob
 CREATE OR REPLACE MACRO made_to_brake(decel_mps2, pet_s, other_cause, hard_mps2, enough_s) AS
     CASE WHEN coalesce(decel_mps2 > hard_mps2 AND pet_s < enough_s, false) THEN CASE WHEN other_cause IS NULL THEN true END ELSE false END;
 
--- The PET, or that of an actor that the ego made to brake if it is smaller: for such an actor the PET is too short. If it is not known
--- whether the ego made the actor brake, a PET that is long enough is NULL.
+-- The PET that counts: that with the actor that the ego met or, if smaller, that with the actor that it made to brake. If it is not known
+-- whether it made an actor brake, the PET is known only if it is too short.
 CREATE OR REPLACE MACRO pet_forced(pet_s, forced, forced_pet_s, enough_s) AS
     CASE WHEN forced THEN least(pet_s, forced_pet_s) WHEN NOT forced OR pet_s < enough_s THEN pet_s END;
 

@@ -257,6 +257,10 @@ def test_a_drive_on_the_footway_does_not_fit_the_map() -> None:
     ego = moving("ego", way, times(20.0), 50 + 20 * times(20.0), -1.5 * LANE)
     (found,) = rows(derived(drive([ego], way.environment), tables=["registration"]), "FROM registration")
     assert (found["ok"], found["n_on_lane"]) == (False, 0)
+    assert '"seldom_on_lane"' in found["reason"]
+    walker = moving("ego", way, times(20.0), 50 + times(20.0), -1.5 * LANE, kind="pedestrian")
+    (found,) = rows(derived(drive([walker], way.environment), tables=["registration"]), "FROM registration")
+    assert '"ego_not_a_vehicle"' in found["reason"]
 
 
 BAN = "ukhc.r265.right-lane-ban"

@@ -40,7 +40,7 @@ def test_the_authors_reason_of_an_unknown_applicability(tmp_path: Path) -> None:
         ),
         (
             {"x_m": 1.0, "y_m": 0.0, "front_s_m": [5, None, 5]},
-            "the ego's box reaches beyond the lanes of the map: give a map whose lanes go on",
+            "the ego's box reaches beyond the ends of the map's lanes: give a map whose lanes go on there, before it or behind it",
         ),
         ({"x_m": 1.0, "y_m": 0.0, "speed_mps": [12, None, 12]}, "the speed of the ego is not known: record it"),
         (
@@ -64,7 +64,7 @@ def test_an_ego_without_a_place(tmp_path: Path, state: dict[str, Any], because: 
         ({"x_m": [1, None]}, "object o has no position (or no fresh one): record it"),
         ({"yaw_rad": [0, None]}, "object o has no heading: record it"),
         ({"length_m": [4, None]}, "object o has no size: record it"),
-        ({"off_level": [False, True]}, "object o may be over or under the road: record it"),
+        ({"off_level": [False, True]}, "object o may be over or under the road: record the heights of both, or correct them"),
         ({"speed_mps": [4, None]}, "the speed of object o is not known: record it"),
         ({"actor_class": ["car", None]}, "the class of object o is not known: record it"),
     ],

@@ -63,7 +63,8 @@ FROM (
 WHERE coalesce(gap_m > (ego_speed_mps - speed_mps) * ((ego_speed_mps - speed_mps) / (2 * $brake_mps2) + $delay_s), true)
 
 -- @condition
--- A vehicle leaves the system no chance if it came no nearer to the line during the three seconds that end visible_s before the cut-in.
+-- A vehicle that does not come nearer to the line during the three seconds before the last visible_s gives no warning: the system had no
+-- chance, and the rule does not apply.
 WITH approach AS (
     SELECT r.ref_id, max({'t_ns': p.t_ns, 'off_m': abs(p.d_m)}).off_m < max(abs(p.d_m)) - $moved_m AS has_approached
     FROM reference r

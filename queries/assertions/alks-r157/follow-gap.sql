@@ -36,7 +36,7 @@
 
 -- @condition
 SELECT f.drive_id, f.ego_id, f.t_ns, f.gap_m AS observed, r157_gap_m(f.ego_speed_mps) AS required,
-    f.follows AND f.ego_speed_mps > stood_mps() AND f.ego_speed_mps <= $v_max_mps
+    f.follows AND f.ego_speed_mps > standstill_mps() AND f.ego_speed_mps <= $v_max_mps
         -- If the two touch within that time, it is not known whether the ego restored the gap as soon as it could.
         AND CASE WHEN coalesce(f.t_ns - f.joined_ns >= $restore_s * 1e9, true) THEN true
             WHEN c.t_ns - f.joined_ns < $restore_s * 1e9 THEN CASE WHEN f.gap_m >= r157_gap_m(f.ego_speed_mps) THEN true END ELSE false END

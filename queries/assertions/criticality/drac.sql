@@ -38,6 +38,6 @@ LEFT JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t
 -- @condition
 -- The value is known only if the error of the speeds does not change on which side of the limit it is.
 SELECT drive_id, ego_id, t_ns, object_id, $most_mps2 AS required,
-    CASE WHEN object_id IS NULL THEN 0.0::DOUBLE ELSE sure_most(drac_mps2(gap_m, motion.closing_mps), drac_mps2(gap_m, motion.closing_mps + error_mps), drac_mps2(gap_m, motion.closing_mps - error_mps), $most_mps2) END AS observed
+    CASE WHEN object_id IS NULL THEN 0.0::DOUBLE ELSE sure_at_most(drac_mps2(gap_m, motion.closing_mps), drac_mps2(gap_m, motion.closing_mps + error_mps), drac_mps2(gap_m, motion.closing_mps - error_mps), $most_mps2) END AS observed
 FROM vehicle_ahead
 CROSS JOIN LATERAL (SELECT ego_speed_mps - along_mps(speed_mps, oncoming) AS closing_mps) motion

@@ -74,7 +74,7 @@ JOIN (
 ) m ON m.drive_id = v.drive_id AND m.ego_id = v.ego_id AND m.t_ns = v.t_ns
 CROSS JOIN LATERAL (
     SELECT CASE WHEN v.object_id IS NULL THEN 'inf'::DOUBLE
-        ELSE sure(
+        ELSE sure_at_least(
             or_never(mttc_s(v.gap_m, v.ego_speed_mps, m.accel_mps2, v.away_mps, v.other_mps2), $least_s),
             mttc_s(v.gap_m, v.ego_speed_mps, m.most_mps2, v.away_mps, v.least_mps2),
             mttc_s(v.gap_m, v.ego_speed_mps, m.least_mps2, v.away_mps, v.most_mps2), $least_s

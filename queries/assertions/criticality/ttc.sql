@@ -39,6 +39,6 @@ LEFT JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t
 -- @condition
 -- The value is known only if the error of the speeds does not change on which side of the limit it is.
 SELECT drive_id, ego_id, t_ns, object_id, $least_s AS required,
-    CASE WHEN object_id IS NULL THEN 'inf'::DOUBLE ELSE sure(or_never(ttc_s(gap_m, motion.closing_mps), $least_s), ttc_s(gap_m, motion.closing_mps + error_mps), ttc_s(gap_m, motion.closing_mps - error_mps), $least_s) END AS observed
+    CASE WHEN object_id IS NULL THEN 'inf'::DOUBLE ELSE sure_at_least(or_never(ttc_s(gap_m, motion.closing_mps), $least_s), ttc_s(gap_m, motion.closing_mps + error_mps), ttc_s(gap_m, motion.closing_mps - error_mps), $least_s) END AS observed
 FROM vehicle_ahead
 CROSS JOIN LATERAL (SELECT ego_speed_mps - along_mps(speed_mps, oncoming) AS closing_mps) motion

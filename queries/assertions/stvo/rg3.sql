@@ -53,6 +53,10 @@
 -- [reasons.no_lane_no_limit]
 -- says = "the ego is on no lane, so no limit is known"
 --
+-- [reasons.speed_unknown_or_contradicted]
+-- says = "the ego's speed is not known, or contradicts its positions"
+-- advice = "record it, or correct it"
+--
 -- [reasons.ego_class_unknown]
 -- says = "the ego's class of vehicle is not known"
 -- advice = "give --env vehicle_class=..."
@@ -68,7 +72,7 @@
 -- before the next step.
 SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed,
     CASE WHEN e.speed_mps > bounds.most_mps + $tolerance_mps THEN bounds.most_mps WHEN e.peak_mps <= bounds.least_mps + $tolerance_mps THEN bounds.least_mps END + $tolerance_mps AS required,
-    CASE WHEN required IS NOT NULL THEN NULL WHEN c.limit_mps IS NULL THEN coalesce(limit_doubt(e.limit_source, e.lanelet_id), why('no_lane_no_limit'))
+    CASE WHEN e.speed_mps IS NULL THEN why('speed_unknown_or_contradicted') WHEN required IS NOT NULL THEN NULL WHEN c.limit_mps IS NULL THEN coalesce(limit_doubt(e.limit_source, e.lanelet_id), why('no_lane_no_limit'))
         WHEN e.speed_mps <= bounds.least_mps + $tolerance_mps THEN why('peak_between_samples')
         WHEN c.vehicle_class IS NULL THEN why('ego_class_unknown')
         ELSE why('limit_by_class_and_road') END AS reason

@@ -55,9 +55,9 @@
 SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed,
     CASE WHEN e.speed_mps > c.most_mps THEN c.most_mps WHEN e.speed_mps <= c.least_mps THEN c.least_mps END AS required,
     CASE WHEN required IS NULL AND c.least_mps IS NOT NULL THEN why('class_speed_unknown') END AS reason,
-    -- A slow vehicle ahead is a reason, if it is near for an ego that drives as fast as it may. At a step without a row in `lead`, there
-    -- may be such a vehicle. A person, an animal or a thing in the way is a reason, too, and so is a slow vehicle in the lane beside (StVO
-    -- 7(2a)). An ego that speeds up from a standstill, or declares a minimal risk manoeuvre, does not hinder by choice.
+    -- A slow vehicle ahead is a reason if it is as near as matters at the speed that the ego is allowed. At a step without a row in `lead`,
+    -- there may be such a vehicle. A person, an animal or a thing in the way is a reason, too, and so is a slow vehicle in the lane beside
+    -- (StVO 7(2a)). An ego that speeds up from a standstill, or declares a minimal risk manoeuvre, does not hinder by choice.
     CASE WHEN e.has_stood AND e.speed_mps > standing_mps() OR r.is_on OR b.t_ns IS NOT NULL OR NOT may_be_vehicle(w.actor_class) THEN false
         WHEN l.t_ns IS NOT NULL THEN l.object_id IS NULL OR l.speed_mps > c.most_mps OR l.gap_m > lead_reach_m(c.most_mps + $slower_mps) WHEN e.speed_mps > c.most_mps THEN true END AS applies
 FROM (

@@ -59,7 +59,7 @@ SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN clearance_m IS NOT NULL THEN
 FROM pair
 WHERE clearance_m IS NULL OR clearance_m <= $within_m
 UNION ALL
--- An actor whose track ends close by may have touched the ego unseen: one step for each, which is not judged.
+-- An actor whose track ends close by may have touched the ego unseen: each such actor adds one step, whose result is not known.
 SELECT l.drive_id, l.ego_id, s.t_ns, l.object_id, NULL,
     why('recorded_too_short', {'object_id': l.object_id, 'to_ns': last.t_ns, 'far_m': coalesce(p.clearance_m, p.distance_m), 'ego_to_ns': c.t_end_ns})
 FROM lost_object l

@@ -45,7 +45,7 @@
 -- default = 10.0
 -- unit = "m"
 -- why = "our default: and so much further, however slow it is"
-
+--
 -- [params.junction_s]
 -- default = 2.0
 -- unit = "s"

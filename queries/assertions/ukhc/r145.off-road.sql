@@ -27,10 +27,11 @@
 -- says = "part of the ego is on ground that the map does not have"
 --
 -- [reasons.may_be_access]
--- says = "slowly over the footway, from or to ground that the map does not have: it may be property"
+-- says = "slowly over the footway, from or to ground that the map does not have, which may be private property that the ego may reach"
 
 -- @condition
--- Property is ground that the map does not have. An ego that slowly comes from there, or goes there, may cross the footway.
+-- Ground that the map does not have may be property: an ego that comes from there slowly, or goes there, may cross the footway to get
+-- access.
 WITH footway_step AS (
     SELECT f.drive_id, f.ego_id, f.t_ns, f.depth_m, coalesce(f.depth_m > $tolerance_m, false) AS is_on_footway,
         f.depth_m IS NULL AND e.x_m IS NOT NULL AS is_beyond_map, coalesce(e.speed_mps <= $access_mps, true) AS is_slow

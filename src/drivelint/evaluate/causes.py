@@ -58,6 +58,7 @@ WITH _doubted AS (
 SELECT {{'drive_id': d.drive_id, 'ego_id': d.ego_id, 't_ns': d.t_ns, 'object_id': coalesce(d.object_id, ''), 'of_hidden': d.of_hidden,
     'of_lanes': d.of_lanes}} AS key, CASE
     WHEN e.x_m + e.y_m + e.yaw_rad IS NULL THEN ego_lacks(e.x_m + e.y_m, e.yaw_rad, e.lanelet_id, e.front_s_m)
+    WHEN p.off_level THEN why('object_off_level', {_OBJECT})
     WHEN p.object_id IS NOT NULL AND {_LACKS} IS NOT NULL THEN why('object_lacks', {{'object_id': p.object_id, 'lack': {_LACKS}}})
     WHEN p.object_id IS NULL AND o.to_ns < d.t_ns THEN why('track_ends', {{'object_id': d.object_id, 't_ns': o.to_ns}})
     WHEN p.object_id IS NULL AND o.from_ns > d.t_ns THEN why('track_begins', {{'object_id': d.object_id, 't_ns': o.from_ns}})

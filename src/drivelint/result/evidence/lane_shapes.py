@@ -26,7 +26,7 @@ ANTI JOIN lane_shape k USING (environment_id, lanelet_id)
 
 _LANES: Final = """
 WITH share AS (
-    SELECT environment_id, lanelet_id, side, marking, sum(whole_pm(s_end_m - s_start_m)) AS m
+    SELECT environment_id, lanelet_id, side, marking, sum(to_picometres(s_end_m - s_start_m)) AS m
     FROM lane_boundary SEMI JOIN _near USING (environment_id, lanelet_id) GROUP BY ALL
 ),
 mark AS (
