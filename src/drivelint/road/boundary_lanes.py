@@ -13,13 +13,15 @@ import pyarrow as pa
 import shapely
 
 from drivelint.road import driving_side
-from drivelint.road.tables import from_columns, from_rows, repeated
+from drivelint.road.map_reader import environment_id
+from drivelint.road.tables import Rows, crossing_row, from_columns, from_rows, map_tables, repeated
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
+    from drivelint.road.map_reader import MapOptions, MapSource, MapTables
     from drivelint.road.quality import MapQuality
 
     Floats = NDArray[np.float64]
@@ -110,6 +112,15 @@ class LaneGeometry:
     def width(self) -> float:
         """Mean width (m)."""
         return float(((self.half_width[:-1] + self.half_width[1:]) * np.diff(self.s)).sum() / self.s[-1])
+
+    @property
+    def polygon(self) -> shapely.Polygon:
+        """The ground between the bounds."""
+        return shapely.Polygon(np.vstack([self.right, self.left[::-1]])).buffer(0.0)
+
+    def station(self, place: Floats) -> float:
+        """Return how far along the centre line (m) a place (2,) lies."""
+        return float(shapely.line_locate_point(shapely.LineString(self.centre), shapely.Point(place)))
 
 
 def build_lanes(lanes: Iterable[BoundedLane], offset: tuple[float, float], quality: MapQuality) -> list[BoundedLane]:
@@ -229,6 +240,32 @@ def _row(first: BoundedLane, lanes: Mapping[str, BoundedLane]) -> list[tuple[Bou
     return row
 
 
+def bounded_map(
+    source: MapSource,
+    request: MapOptions,
+    lanes: Sequence[BoundedLane],
+    furniture: Mapping[str, Rows],
+    quality: MapQuality,
+    *,
+    kind: str,
+    side: tuple[str, str],
+    geo_reference: str | None = None,
+) -> MapTables:
+    """Return the map of lanes from `build_lanes` and of what is on and beside them: see `map_tables`."""
+    name = environment_id(source, request.offset, side[0], guessed=side[1] == "default")
+    content = {**tables(name, lanes), "road_object": [], **furniture}
+    return map_tables(name, source, request, content, quality, kind=kind, side=side, geo_reference=geo_reference)
+
+
+def signal_row(lane: BoundedLane, s_m: float, place: Floats, **said: Any) -> dict[str, Any]:
+    """Return a row of `traffic_signal`: where it holds on the lane, the place (x, y) where it stands, and what is said of it."""
+    return {
+        "country": None, "type": None, "subtype": None, "value": None, "unit": None, "dynamic": False, "turns": None, **said,
+        "road_id": lane.road_id, "road_s_m": s_m if lane.along > 0 else float(lane.line.s[-1]) - s_m,
+        "lanelet_id": lane.lanelet_id, "lane_s_m": s_m, "x_m": float(place[0]), "y_m": float(place[1]),
+    }  # fmt: skip
+
+
 def tables(name: str, lanes: Sequence[BoundedLane]) -> dict[str, pa.Table]:
     """Return lanelet, lane_point, lane_link, lane_boundary and speed_limit of lanes from `build_lanes`."""
     by_id = {lane.lanelet_id: lane for lane in lanes}
@@ -237,13 +274,12 @@ def tables(name: str, lanes: Sequence[BoundedLane]) -> dict[str, pa.Table]:
         for lane in lanes
         for to in sorted(set(lane.successors))
     ]
-    limits = [row for lane in lanes for row in _limits(lane)]
     return {
         "lanelet": from_rows("lanelet", name, [_lanelet(lane) for lane in lanes]),
         "lane_point": _points(name, lanes),
         "lane_link": from_rows("lane_link", name, links),
         "lane_boundary": from_rows("lane_boundary", name, [row for lane in lanes for row in _boundaries(lane)]),
-        "speed_limit": from_rows("speed_limit", name, limits),
+        "speed_limit": from_rows("speed_limit", name, [row for lane in lanes for row in _limits(lane)]),
     }
 
 
@@ -283,11 +319,12 @@ def _boundaries(lane: BoundedLane) -> list[dict[str, Any]]:
 
 def _points(name: str, lanes: Sequence[BoundedLane]) -> pa.Table:
     counts = [len(lane.line.s) for lane in lanes]
+    heights = [np.full(n, np.nan) if lane.z_m is None else lane.z_m for lane, n in zip(lanes, counts, strict=True)]
     columns: dict[str, Any] = {
         "s_m": np.concatenate([lane.line.s for lane in lanes]),
         "half_width_m": np.concatenate([lane.line.half_width for lane in lanes]),
         "road_s_m": np.concatenate([s if lane.along > 0 else s[-1] - s for lane in lanes for s in (lane.line.s,)]),
-        "z_m": pa.array(np.concatenate([_heights(lane) for lane in lanes]), pa.float64(), from_pandas=True),
+        "z_m": pa.array(np.concatenate(heights), pa.float64(), from_pandas=True),
         "k": np.concatenate([np.arange(n, dtype=np.int32) for n in counts]),
         "lanelet_id": repeated([lane.lanelet_id for lane in lanes], counts),
     }
@@ -302,10 +339,6 @@ def _points(name: str, lanes: Sequence[BoundedLane]) -> pa.Table:
     return from_columns("lane_point", name, columns, sum(counts))
 
 
-def _heights(lane: BoundedLane) -> Floats:
-    return lane.z_m if lane.z_m is not None else np.full(len(lane.line.s), np.nan)
-
-
 def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
     """Return lht or rht by the lanes beside each other that are driven in opposite directions; None: there are none.
 
@@ -316,34 +349,27 @@ def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
     right = sum(lane.right_against is True and lane.right_id in one_way for lane in one_way.values())
     if left != right:
         return "rht" if left > right else "lht"
-    return driving_side.side_driven_on([_course(lane.line) for lane in one_way.values() if lane.junction_id is None])
+    lines = [lane.line for lane in one_way.values() if lane.junction_id is None]
+    return driving_side.side_driven_on(
+        [
+            driving_side.OneWayLane(x, y, np.full(len(x), np.nan), tx, ty, line.half_width)
+            for line in lines
+            for (x, y), (tx, ty) in [(line.centre.T, line.tangent.T)]
+        ]
+    )
 
 
-def _course(line: LaneGeometry) -> driving_side.OneWayLane:
-    (x, y), (tx, ty) = line.centre.T, line.tangent.T
-    return driving_side.OneWayLane(x, y, np.full(len(line.s), np.nan), tx, ty, line.half_width)
-
-
-def crossings(
-    walks: Iterable[BoundedLane], lanes: Sequence[BoundedLane], offset: tuple[float, float]
-) -> list[dict[str, Any]]:
+def crossings(walks: Iterable[BoundedLane], lanes: Sequence[BoundedLane], offset: tuple[float, float]) -> Rows:
     """Return the rows of `crossing`: one for each drivable lanelet that a lane for people on foot lies across."""
     driven = [lane for lane in lanes if lane.drivable]
     lines = [shapely.LineString(lane.line.centre) for lane in driven]
     tree = shapely.STRtree(lines)
     rows = []
     for walk in walks:
+        kind = "zebra" if walk.kind == "zebra" else None
         area = shapely.Polygon(np.vstack([walk.right, walk.left[::-1]]) + offset).buffer(0.0)
-        for i in sorted(int(i) for i in tree.query(area, predicate="intersects")):
+        for i in tree.query(area, predicate="intersects"):
             common = shapely.get_coordinates(shapely.intersection(area, lines[i]))
             s = shapely.line_locate_point(lines[i], shapely.points(common))
-            rows.append(
-                {
-                    "crossing_id": walk.lanelet_id,
-                    "lanelet_id": driven[i].lanelet_id,
-                    "s_start_m": float(s.min()),
-                    "s_end_m": float(s.max()),
-                    "kind": "zebra" if walk.kind == "zebra" else None,
-                }
-            )
+            rows.append(crossing_row(walk.lanelet_id, driven[i].lanelet_id, s, kind))
     return sorted(rows, key=lambda r: (r["crossing_id"], r["lanelet_id"]))

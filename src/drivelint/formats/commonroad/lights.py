@@ -9,6 +9,7 @@ import numpy as np
 import pyarrow as pa
 
 from drivelint.drive.trace import QualityFinding
+from drivelint.formats import safe_xml
 
 if TYPE_CHECKING:
     from lxml import etree
@@ -70,10 +71,12 @@ def _unrolled(light: etree._Element, first: float, last: float) -> tuple[NDArray
     colours = _colours(light)
     if not colours:
         raise _UnreadError("it has no cycle")
-    durations = np.array([_number(e.findtext("duration")) for e in light.iterfind("cycle/cycleElement")], np.float64)
+    durations = np.array(
+        [safe_xml.number(e.findtext("duration")) for e in light.iterfind("cycle/cycleElement")], np.float64
+    )
     if not (durations >= _LEAST_STEPS).all():
         raise _UnreadError("a phase of its cycle has no duration")
-    offset = _number(_said(light, "timeOffset") or "0")
+    offset = safe_xml.number(_said(light, "timeOffset") or "0")
     if not math.isfinite(offset):
         raise _UnreadError("its time offset is no number")
     ends = np.cumsum(durations)
@@ -92,10 +95,3 @@ def _colours(light: etree._Element) -> list[str]:
 def _said(light: etree._Element, name: str) -> str:
     """Return what a light says, or its cycle: writers differ in where they put it."""
     return (light.findtext(name) or light.findtext(f"cycle/{name}") or "").strip()
-
-
-def _number(text: str | None) -> float:
-    try:
-        return float(text or "nan")
-    except ValueError:
-        return math.nan

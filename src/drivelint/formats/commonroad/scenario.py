@@ -52,11 +52,8 @@ def read(path: Path) -> Recording:
     """Read a scenario. Errors: `TraceError` for malformed XML, no obstacles, or times that cannot be understood."""
     content = path.read_bytes()
     fast = extract_trajectories(content)
-    try:
-        root = safe_xml.parse(content if fast is None else fast.rest)
-    except safe_xml.RefusedError as error:
-        raise TraceError(f"{path} {error}") from None
-    step_s = _number(root.get("timeStepSize"))
+    root = safe_xml.parse(content if fast is None else fast.rest, str(path), TraceError)
+    step_s = safe_xml.number(root.get("timeStepSize"))
     if not step_s > 0.0:
         raise TraceError(
             f"{path}: timeStepSize is {root.get('timeStepSize')!r}: a scenario needs a positive number of seconds"
@@ -100,17 +97,6 @@ def read(path: Path) -> Recording:
     return recording
 
 
-def _number(text: str | None) -> float:
-    try:
-        return float(text or "nan")
-    except ValueError:
-        return math.nan
-
-
-def _all_states(obstacle: etree._Element) -> list[etree._Element]:
-    return [*obstacle.findall("initialState"), *obstacle.findall("trajectory/state")]
-
-
 @cache
 def _lacking(places: tuple[str, ...]) -> etree.XPath:
     """Return the question whether some state lacks one of these places."""
@@ -129,14 +115,16 @@ def _numbers(obstacle: etree._Element, states: list[etree._Element]) -> dict[str
             }
         except ValueError:
             pass  # one of them is no number: which, is seen below
-    return {place: np.array([_number(state.findtext(place)) for state in states], np.float64) for place in texts}
+    return {
+        place: np.array([safe_xml.number(state.findtext(place)) for state in states], np.float64) for place in texts
+    }
 
 
 def _states(
     path: Path, obstacle: etree._Element, trajectories: Mapping[etree._Element, Mapping[str, Floats]]
 ) -> dict[str, Floats]:
     """Return the columns of an obstacle, (n,) each. Errors: `TraceError` for a state without an exact time."""
-    states = _all_states(obstacle)
+    states = [*obstacle.findall("initialState"), *obstacle.findall("trajectory/state")]
     found = _numbers(obstacle, states)
     trajectory = obstacle.find("trajectory")
     more = None if trajectory is None else trajectories.get(trajectory)
@@ -170,8 +158,8 @@ def _size(obstacle: etree._Element) -> tuple[float, float]:
     """Return length and width of a rectangle, or of the square around a circle; of other shapes: not known."""
     box, circle = obstacle.find("shape/rectangle"), obstacle.find("shape/circle")
     if box is not None:
-        return _number(box.findtext("length")), _number(box.findtext("width"))
-    diameter = 2 * _number(circle.findtext("radius")) if circle is not None else math.nan
+        return safe_xml.number(box.findtext("length")), safe_xml.number(box.findtext("width"))
+    diameter = 2 * safe_xml.number(circle.findtext("radius")) if circle is not None else math.nan
     return diameter, diameter
 
 

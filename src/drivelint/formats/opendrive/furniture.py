@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
 from drivelint.formats.opendrive.objects import PlacedObject, placed_objects
 from drivelint.formats.opendrive.signals import signal_rows
+from drivelint.road.tables import Rows, crossing_row, stop_line_row
 
 if TYPE_CHECKING:
     from drivelint.formats.opendrive.cubic import Floats
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 MIN_SHARE = 0.5  # a stop line that covers less of a lane's width is another lane's
 MIN_ANGLE_RAD = 0.87  # 50 degrees: a line more along the lane than this is not one to stop at
 MIN_AREA_M2 = 0.5  # a crossing that only touches a lane does not lie across it
-Rows = list[dict[str, Any]]
 
 
 def furniture(net: Network, lanes: list[Lanelet], offset: tuple[float, float], quality: MapQuality) -> dict[str, Rows]:
@@ -103,13 +103,7 @@ def _stop_line(placed: PlacedObject, lane: Lanelet, common: shapely.Geometry) ->
     across = abs(float(axis[0] * ty - axis[1] * tx)) / max(float(np.hypot(tx, ty)), 1e-9)
     if float(d.max() - d.min()) < MIN_SHARE * width or across < np.sin(MIN_ANGLE_RAD):
         return []
-    row = {
-        "stop_line_id": placed.object_id,
-        "lanelet_id": lane.lanelet_id,
-        "lane_s_m": float(s.min()),
-        "source": "object",
-    }
-    return [row]
+    return [stop_line_row(placed.object_id, lane.lanelet_id, float(s.min()))]
 
 
 def _crossing(placed: PlacedObject, lane: Lanelet, common: shapely.Geometry) -> Rows:
@@ -118,12 +112,4 @@ def _crossing(placed: PlacedObject, lane: Lanelet, common: shapely.Geometry) -> 
     s, _, _ = _stations(lane, shapely.get_coordinates(common))
     said = f"{placed.subtype or ''} {placed.name or ''}".lower()
     kind = "zebra" if "zebra" in said else "signalled" if "signal" in said else None
-    return [
-        {
-            "crossing_id": placed.object_id,
-            "lanelet_id": lane.lanelet_id,
-            "s_start_m": float(s.min()),
-            "s_end_m": float(s.max()),
-            "kind": kind,
-        }
-    ]
+    return [crossing_row(placed.object_id, lane.lanelet_id, s, kind)]

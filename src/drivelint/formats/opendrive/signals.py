@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from drivelint.formats.opendrive.placement import place_one
 from drivelint.formats.opendrive.xml import MalformedError, integer, number
 from drivelint.road.signcodes import kind_of, turns_of
+from drivelint.road.tables import Rows, stop_line_row
 
 if TYPE_CHECKING:
     from lxml import etree
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
 MIN_LINE_M = 1.0  # a stop line said to be narrower than this does not say how far it goes across
 MIN_OWN_SHARE = 0.25  # of a stop line's width, on lanes of its orientation: less is on the others' lanes
 OFF_ROAD_M = 1.0  # a signal further beyond its road's end than this is a mistake worth a warning
-Rows = list[dict[str, Any]]
 
 
 def signal_rows(
@@ -104,12 +104,7 @@ class _Reader:
         ]
         if kind == "stop_line":
             self.stop_lines += [
-                {
-                    "stop_line_id": listing.get("id", ""),
-                    "lanelet_id": lane.lanelet_id,
-                    "lane_s_m": lane.station_at(s),
-                    "source": "signal",
-                }
+                stop_line_row(listing.get("id", ""), lane.lanelet_id, lane.station_at(s), "signal")
                 for lane in self._stopped(listing, signal, s, lanes)
             ]
 
