@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from lxml import etree
@@ -25,8 +25,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.formats.probe import Probe
+
     Floats = NDArray[np.float64]
 
+formats: Final = {"commonroad": ("CommonRoad scenario", "said with --ego")}
+takes_mapping: Final = False
 _CLASSES = {
     "car": "car", "taxi": "car", "truck": "truck", "bus": "bus", "motorcycle": "motorcycle", "bicycle": "bicycle",
     "pedestrian": "pedestrian", "priorityVehicle": "vehicle", "parkedVehicle": "vehicle", "train": "vehicle",
@@ -43,13 +47,14 @@ _STATES = "(initialState|trajectory/state)"
 _TEXTS = {place: etree.XPath(f"{_STATES}/{place}/text()", smart_strings=False) for place in (*_FIELDS.values(), _TIME)}
 
 
-def is_scenario(head: bytes) -> bool:
-    """Say whether a file begins as a CommonRoad scenario."""
-    return b"<commonRoad" in head
+def accepts(probe: Probe) -> bool:
+    """Accept by its root element."""
+    return b"<commonRoad" in probe.head
 
 
-def read(path: Path) -> Recording:
+def read(probe: Probe) -> Recording:
     """Read a scenario. Errors: `TraceError` for malformed XML, no obstacles, or times that cannot be understood."""
+    path = probe.path
     content = path.read_bytes()
     fast = extract_trajectories(content)
     root = safe_xml.parse(content if fast is None else fast.rest, str(path), TraceError)

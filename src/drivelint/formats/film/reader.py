@@ -14,7 +14,7 @@ from drivelint.drive.trace import ACTOR_CLASSES, QualityFinding, Recording, Stat
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.film import boxes
 from drivelint.formats.film import mapping as video_mapping
-from drivelint.formats.film.sightings import Sightings
+from drivelint.formats.film.boxes import Sightings
 from drivelint.formats.tables.mapping import TextLayout
 from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, describe_places
 
@@ -24,7 +24,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.formats.film.mapping import DetectedActor, EgoCar, OvertakeStages, VideoMapping
+    from drivelint.formats.probe import Probe
+    from drivelint.formats.tables.sheets import Sheet
 
+formats: Final[dict[str, tuple[str, str]]] = {}
+takes_mapping: Final = True
 PULL_OUT_OVERLAP_M: Final = 0.06
 """How far a corner is over the centre line in the first frame of pulling out: just more than counts as over it (0.05 m)."""
 PASSING_SHORTFALL_M: Final = 0.11
@@ -33,7 +37,7 @@ ROAD_EXTENSION_M: Final = 400.0
 """How much longer the road is than the ego's way, at both ends."""
 
 
-def matching_mapping(path: Path) -> str | None:
+def _matching_mapping(path: Path) -> str | None:
     """Return the shipped mapping that judges every frame and whose columns the table has; None where there is none."""
     try:
         names = CsvSheet(path, TextLayout()).names
@@ -46,37 +50,39 @@ def matching_mapping(path: Path) -> str | None:
     return None
 
 
-def read(path: Path, name: str) -> Recording:
-    """Read a table of detections through a mapping. Errors: `TraceError`, `UsageError`."""
-    stem, film = video_mapping.load(name)
-    with path.open("rb") as file:
-        head = file.read(5)
+def accepts(probe: Probe) -> bool:
+    """Accept by the mapping; a table without one by the columns of a shipped one."""
+    if probe.path.is_dir():
+        return False
+    if probe.options.mapping is not None:
+        return video_mapping.is_video_mapping(probe.options.mapping)
+    begins = probe.head[:16].lstrip(b"\xef\xbb\xbf").startswith(b"frame")
+    return begins and _matching_mapping(probe.path) is not None
+
+
+def read(probe: Probe) -> Recording:
+    """Read detections, a table or boxes in MCAP, through a mapping. Errors: `TraceError`, `UsageError`."""
+    path = probe.path
+    stem, film = video_mapping.load(probe.options.mapping or _matching_mapping(path) or "")
     findings: list[QualityFinding] = []
-    if head.startswith(b"\x89MCAP"):
+    if probe.head.startswith(b"\x89MCAP"):
         seen = boxes.read(path, film)
     else:
-        seen = _table(path, stem, film, findings, is_parquet=head.startswith(b"PAR1"))
-    return make_recording(path, stem, film, seen, findings)
-
-
-def make_recording(
-    path: Path, name: str, film: VideoMapping, seen: Sightings, findings: list[QualityFinding]
-) -> Recording:
-    """Return the recording of the detections, placed on the assumed road. Errors: `TraceError` where no frame is left."""
+        seen = _table(path, stem, film, findings, is_parquet=probe.head.startswith(b"PAR1"))
     judged = seen.frames % film.frames.every == 0
     frames = seen.frames[judged]
     if not len(frames):
-        raise TraceError(f"{path}: no frame that mapping {name!r} judges: see its [frames]")
+        raise TraceError(f"{path}: no frame that mapping {stem!r} judges: see its [frames]")
     t_ns = np.rint((film.frames.start_s + frames / film.frames.rate_hz) * 1e9).astype(np.int64)
     states, egos_x = _states(film, frames, t_ns, [ahead[judged] for ahead in seen.ahead_m])
     assumed = "speeds, lanes and the ego's way across them"
-    message = f"mapping {name!r} assumes {assumed}; only distances ahead are measured: rules about anything else judge what is assumed"
+    message = f"mapping {stem!r} assumes {assumed}; only distances ahead are measured: rules about anything else judge what is assumed"
     recording = Recording(
-        name, states, ego_ids=[film.ego.id], findings=[*findings, QualityFinding("assumed_motion", "warning", message)]
+        stem, states, ego_ids=[film.ego.id], findings=[*findings, QualityFinding("assumed_motion", "warning", message)]
     )
     recording.embedded_map = _road(film, egos_x)
     recording.sensor_range_m = film.sensor_range_m
-    recording.notes = [f"read through the mapping {name!r}: {assumed} are assumed"]
+    recording.notes = [f"read through the mapping {stem!r}: {assumed} are assumed"]
     return recording
 
 
@@ -120,9 +126,7 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
     return Sightings(whole, ahead)
 
 
-def _report(
-    path: Path, sheet: CsvSheet | ParquetSheet, rows: NDArray[np.bool_], why: str, findings: list[QualityFinding]
-) -> None:
+def _report(path: Path, sheet: Sheet, rows: NDArray[np.bool_], why: str, findings: list[QualityFinding]) -> None:
     if rows.any():
         message = f"{path.name}, {sheet.describe_rows(np.flatnonzero(rows))}: {why}"
         findings.append(QualityFinding("malformed_cell", "warning", message, int(rows.sum())))

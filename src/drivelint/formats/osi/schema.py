@@ -20,7 +20,8 @@ _SCALARS = {
     "string": _F.TYPE_STRING,
 }
 _LIGHTS = "MovingObject.VehicleClassification.LightState"
-MESSAGES: Final[dict[str, tuple[tuple[str, int, str], ...]]] = {
+Messages = dict[str, tuple[tuple[str, int, str], ...]]
+MESSAGES: Final[Messages] = {
     "InterfaceVersion": (
         ("version_major", 1, "uint32"),
         ("version_minor", 2, "uint32"),
@@ -72,56 +73,28 @@ MESSAGES: Final[dict[str, tuple[tuple[str, int, str], ...]]] = {
     "MapAsamOpenDrive": (("map_reference", 1, "string"), ("open_drive_xml_content", 2, "string")),
 }
 """Message -> (field, number, type); `[]` repeats, dots nest."""
+
+
+def _numbered(prefix: str, *words: str) -> dict[str, int]:
+    """Return the values of an enumeration, numbered from 0."""
+    return {f"{prefix}_{word}": number for number, word in enumerate(words)}
+
+
+_VEHICLES: Final = _numbered(
+    "TYPE", "UNKNOWN", "OTHER", "SMALL_CAR", "COMPACT_CAR", "MEDIUM_CAR", "LUXURY_CAR", "DELIVERY_VAN", "HEAVY_TRUCK",
+    "SEMITRAILER", "TRAILER", "MOTORBIKE", "BICYCLE", "BUS", "TRAM", "TRAIN", "WHEELCHAIR", "SEMITRACTOR", "STANDUP_SCOOTER",
+)  # fmt: skip
+_VEHICLE_TYPE = "MovingObject.VehicleClassification.Type"
+_MODE = "TrafficLight.Classification.Mode"
 ENUMS: Final[dict[str, dict[str, int]]] = {
-    "MovingObject.Type": {
-        "TYPE_UNKNOWN": 0,
-        "TYPE_OTHER": 1,
-        "TYPE_VEHICLE": 2,
-        "TYPE_PEDESTRIAN": 3,
-        "TYPE_ANIMAL": 4,
-    },
-    "MovingObject.VehicleClassification.Type": {
-        "TYPE_UNKNOWN": 0,
-        "TYPE_OTHER": 1,
-        "TYPE_MEDIUM_CAR": 4,
-        "TYPE_DELIVERY_VAN": 6,
-        "TYPE_HEAVY_TRUCK": 7,
-        "TYPE_TRAILER": 9,
-        "TYPE_MOTORBIKE": 10,
-        "TYPE_BICYCLE": 11,
-        "TYPE_BUS": 12,
-    },
-    f"{_LIGHTS}.IndicatorState": {
-        "INDICATOR_STATE_UNKNOWN": 0,
-        "INDICATOR_STATE_OTHER": 1,
-        "INDICATOR_STATE_OFF": 2,
-        "INDICATOR_STATE_LEFT": 3,
-        "INDICATOR_STATE_RIGHT": 4,
-        "INDICATOR_STATE_WARNING": 5,
-    },
-    f"{_LIGHTS}.BrakeLightState": {
-        "BRAKE_LIGHT_STATE_UNKNOWN": 0,
-        "BRAKE_LIGHT_STATE_OTHER": 1,
-        "BRAKE_LIGHT_STATE_OFF": 2,
-        "BRAKE_LIGHT_STATE_NORMAL": 3,
-        "BRAKE_LIGHT_STATE_STRONG": 4,
-    },
-    "TrafficLight.Classification.Color": {
-        "COLOR_UNKNOWN": 0,
-        "COLOR_OTHER": 1,
-        "COLOR_RED": 2,
-        "COLOR_YELLOW": 3,
-        "COLOR_GREEN": 4,
-    },
-    "TrafficLight.Classification.Mode": {
-        "MODE_UNKNOWN": 0,
-        "MODE_OTHER": 1,
-        "MODE_OFF": 2,
-        "MODE_CONSTANT": 3,
-        "MODE_FLASHING": 4,
-    },
+    "MovingObject.Type": _numbered("TYPE", "UNKNOWN", "OTHER", "VEHICLE", "PEDESTRIAN", "ANIMAL"),
+    _VEHICLE_TYPE: {name: number for name, number in _VEHICLES.items() if number in {0, 1, 4, 6, 7, 9, 10, 11, 12}},
+    f"{_LIGHTS}.IndicatorState": _numbered("INDICATOR_STATE", "UNKNOWN", "OTHER", "OFF", "LEFT", "RIGHT", "WARNING"),
+    f"{_LIGHTS}.BrakeLightState": _numbered("BRAKE_LIGHT_STATE", "UNKNOWN", "OTHER", "OFF", "NORMAL", "STRONG"),
+    "TrafficLight.Classification.Color": _numbered("COLOR", "UNKNOWN", "OTHER", "RED", "YELLOW", "GREEN"),
+    _MODE: _numbered("MODE", "UNKNOWN", "OTHER", "OFF", "CONSTANT", "FLASHING"),
 }
-_READ_MESSAGES: Final[dict[str, tuple[tuple[str, int, str], ...]]] = {
+_READ_MESSAGES: Final[Messages] = {
     **MESSAGES,
     "GroundTruth": (
         *MESSAGES["GroundTruth"],
@@ -259,29 +232,13 @@ _READ_MESSAGES: Final[dict[str, tuple[tuple[str, int, str], ...]]] = {
 }
 _READ_ENUMS: Final[dict[str, dict[str, int]]] = {
     **ENUMS,
-    "MovingObject.VehicleClassification.Type": {
-        **ENUMS["MovingObject.VehicleClassification.Type"],
-        "TYPE_SMALL_CAR": 2,
-        "TYPE_COMPACT_CAR": 3,
-        "TYPE_LUXURY_CAR": 5,
-        "TYPE_SEMITRAILER": 8,
-        "TYPE_TRAM": 13,
-        "TYPE_TRAIN": 14,
-        "TYPE_WHEELCHAIR": 15,
-        "TYPE_SEMITRACTOR": 16,
-        "TYPE_STANDUP_SCOOTER": 17,
-    },
-    f"{_LIGHTS}.GenericLightState": {
-        "GENERIC_LIGHT_STATE_UNKNOWN": 0,
-        "GENERIC_LIGHT_STATE_OTHER": 1,
-        "GENERIC_LIGHT_STATE_OFF": 2,
-        "GENERIC_LIGHT_STATE_ON": 3,
-        "GENERIC_LIGHT_STATE_FLASHING_BLUE": 4,
-        "GENERIC_LIGHT_STATE_FLASHING_BLUE_AND_RED": 5,
-        "GENERIC_LIGHT_STATE_FLASHING_AMBER": 6,
-    },
-    "TrafficLight.Classification.Mode": {**ENUMS["TrafficLight.Classification.Mode"], "MODE_COUNTING": 5},
-}
+    _VEHICLE_TYPE: _VEHICLES,
+    f"{_LIGHTS}.GenericLightState": _numbered(
+        "GENERIC_LIGHT_STATE", "UNKNOWN", "OTHER", "OFF", "ON",
+        "FLASHING_BLUE", "FLASHING_BLUE_AND_RED", "FLASHING_AMBER",
+    ),
+    _MODE: {**ENUMS[_MODE], "MODE_COUNTING": 5},
+}  # fmt: skip
 PACKAGE: Final = "osi3"
 GROUND_TRUTH: Final = f"{PACKAGE}.GroundTruth"
 OPEN_DRIVE: Final = f"{PACKAGE}.MapAsamOpenDrive"
@@ -293,9 +250,7 @@ VERSION: Final = (3, 7, 0)
 """The version of OSI that is written."""
 
 
-def _file(
-    messages: dict[str, tuple[tuple[str, int, str], ...]], enums: dict[str, dict[str, int]]
-) -> descriptor_pb2.FileDescriptorProto:
+def _file(messages: Messages, enums: dict[str, dict[str, int]]) -> descriptor_pb2.FileDescriptorProto:
     file = descriptor_pb2.FileDescriptorProto(name="osi_written.proto", package=PACKAGE, syntax="proto2")
     made: dict[str, Any] = {}
 

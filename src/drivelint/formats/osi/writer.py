@@ -12,8 +12,9 @@ from mcap.writer import CompressionType, Writer
 
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIZE_COLUMNS, STATE_COLUMNS
 from drivelint.formats.osi import extras
-from drivelint.formats.osi.encode import Objects, ground_truth_head, moving_objects, nested, traffic_light
+from drivelint.formats.osi.encode import Objects, ground_truth_head, moving_objects, traffic_light
 from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, VERSION, descriptor_set
+from drivelint.formats.protobuf.wire import nested
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import pyarrow as pa
@@ -26,8 +26,12 @@ from drivelint.phrases import listed
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from drivelint.formats.probe import Probe
+
     Floats = NDArray[np.float64]
 
+formats: Final = {"sumo-fcd": ("SUMO floating car data", "said with --ego")}
+takes_mapping: Final = True
 HEAD_BYTES = 65536
 _COLUMNS = ("timestep_time", "vehicle_id", "vehicle_x", "vehicle_y", "vehicle_angle")
 _FIELDS = ("id", "x", "y", "angle", "type", "speed", "signals", "acceleration")
@@ -74,11 +78,17 @@ def is_fcd(path: Path, head: bytes) -> bool:
         return b"<fcd-export" in file.read(HEAD_BYTES)
 
 
-def read(path: Path, types_file: str | None) -> Recording:
-    """Read a log; `types_file` is the file with its vTypes, None: those beside it.
+def accepts(probe: Probe) -> bool:
+    """Accept by its element or its columns."""
+    return not probe.path.is_dir() and is_fcd(probe.path, probe.head)
+
+
+def read(probe: Probe) -> Recording:
+    """Read a log; its mapping is the file with its vTypes, None: those beside it.
 
     Errors: `TraceError` for a file that cannot be understood, `UsageError` for a types file that has no vType.
     """
+    path = probe.path
     table = _rows(path)
     nameless = pc.fill_null(pc.equal(_text(table, "id"), ""), fill_value=True).to_numpy()
     # a step at which nobody is there is a row with its time alone
@@ -87,7 +97,7 @@ def read(path: Path, types_file: str | None) -> Recording:
     table = table.filter(pa.array(~nameless)) if nameless.any() else table
     if not table.num_rows:
         raise TraceError(f"{path}: no vehicle in this log")
-    types, notes = _types(path, types_file)
+    types, notes = _types(path, probe.options.mapping)
     recording = _recording(table, types)
     lights = sumo_lights.read_light_states(path, _is_log)
     recording.signals = lights.signals

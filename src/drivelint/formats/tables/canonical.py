@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import msgspec
 import numpy as np
@@ -21,6 +21,7 @@ from drivelint.drive.trace import (
     States,
 )
 from drivelint.errors import TraceError
+from drivelint.formats.files import is_canonical_folder
 from drivelint.formats.osi.extras import parse_conditions
 from drivelint.formats.tables import parquet
 
@@ -29,6 +30,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.formats.probe import Probe
+
+formats: Final = {"canonical-parquet": ("drivelint's own Parquet tables", "marked is_ego in the log")}
+takes_mapping: Final = False
 REQUIRED_COLUMNS = ("t_ns", "actor_id", "x_m", "y_m", "yaw_rad")
 """What makes a Parquet table canonical; every other column may be missing and is then unknown."""
 _OF_A_STATE = {"indicator": INDICATORS, "brake_light": BRAKE_LIGHTS, "actor_class": ACTOR_CLASSES}
@@ -36,16 +41,21 @@ _WORDS = {**_OF_A_STATE, "state": SIGNAL_STATES}
 """Column -> its words; a log may write them in any case."""
 
 
-def has_columns(path: Path) -> bool:
-    """Say whether a Parquet file has the columns of `actor_state`. Errors: `TraceError` where it is damaged."""
-    return set(REQUIRED_COLUMNS) <= set(parquet.schema(path).names)
+def accepts(probe: Probe) -> bool:
+    """Accept a folder, or Parquet with canonical columns unless a mapping was asked for."""
+    if probe.path.is_dir():
+        return is_canonical_folder(probe.path)
+    if probe.options.mapping is not None or not probe.head.startswith(b"PAR1"):
+        return False
+    return set(REQUIRED_COLUMNS) <= set(parquet.schema(probe.path).names)
 
 
-def read(path: Path) -> Recording:
+def read(probe: Probe) -> Recording:
     """Read a canonical folder or file.
 
     Errors: `TraceError` for damaged files, missing or ill-typed columns, several drives in one.
     """
+    path = probe.path
     states, egos, findings = _states(path / "actor_state.parquet" if path.is_dir() else path)
     recording = Recording("canonical-parquet", states, ego_ids=egos, findings=findings)
     if not path.is_dir():

@@ -15,7 +15,7 @@ from drivelint.errors import TraceError
 from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables.geometry import to_map_frame
 from drivelint.formats.tables.mapping import FIELD_QUANTITIES, GROUP_PLACEHOLDER, UNITS
-from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, describe_places
+from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, Sheet, describe_places
 from drivelint.phrases import hint
 
 if TYPE_CHECKING:
@@ -23,18 +23,27 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.formats.probe import Probe
     from drivelint.formats.tables.mapping import Field, Mapping, WordMapping
-    from drivelint.formats.tables.sheets import Sheet
 
+formats: Final[dict[str, tuple[str, str]]] = {}
+takes_mapping: Final = True
 MAX_HEADING_RAD: Final = 4 * np.pi
 """A heading that is never wrapped goes beyond one turn, on a roundabout or a ramp of a car park."""
 
 
-def read(path: Path, name: str | None) -> Recording:
-    """Read a table through the mapping `name`, or through the only shipped mapping whose columns it has.
+def accepts(probe: Probe) -> bool:
+    """Accept Parquet, and whatever reads as text without markup."""
+    head = probe.head
+    return head.startswith(b"PAR1") or not (b"\0" in head or head.lstrip()[:1] in {b"<", b"{"})
+
+
+def read(probe: Probe) -> Recording:
+    """Read a table through the mapping named, or through the only shipped mapping whose columns it has.
 
     Errors: `UsageError` for a bad mapping, `TraceError` for a table that does not fit it or cannot be read.
     """
+    path, name = probe.path, probe.options.mapping
     if name is None:
         name, mapping, sheet = _fitting(path)
         said = [f"read through the shipped mapping {name!r}, the only one whose columns the file has"]
