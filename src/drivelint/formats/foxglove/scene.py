@@ -4,6 +4,7 @@ elsewhere."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -26,7 +27,7 @@ from drivelint.formats.foxglove.decode import (
 )
 from drivelint.formats.foxglove.entity_lifetime import Deletions, EntityUpdates, persisted_states
 from drivelint.formats.mcap import bag
-from drivelint.formats.mcap.reader import Container
+from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.osi.enum_codes import struct_field
 from drivelint.formats.ros2.objects import class_code
 from drivelint.formats.ros2.recorded_poses import (
@@ -35,22 +36,19 @@ from drivelint.formats.ros2.recorded_poses import (
     distinct,
     join_batches,
     message_times,
+    recorded_poses,
     states_in_fixed_frame,
-    unknown_vectors,
 )
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from mcap.records import Channel
     from numpy.typing import NDArray
 
     from drivelint.drive.trace import Severity
-    from drivelint.formats.mcap.reader import Packet
 
-BATCH_BYTES = 32 * 1024 * 1024
 KIND_KEYS: Final = ("class", "type", "classification", "category", "label", "object_class", "object_type")
 """Keys of the metadata that say what an entity is, where the value is a word that is known."""
 DELETE_ALL: Final = 1
@@ -77,8 +75,10 @@ def read(path: Path, topic: str | None) -> Recording:
     findings: list[QualityFinding] = []
     for file in bag.mcap_files(path):
         container = Container(file)
-        for channel, name, packets in _batches(container):
-            decoder = _decoder(container, channel, name)
+        for name, packets in message_batches(container, partial(_kind, container)):
+            channel = packets[0].channel
+            schema = container.schemas[channel.schema_id].data
+            decoder = Decoder(file, name, channel.message_encoding, schema)
             log_ns = np.array([packet.log_time_ns for packet in packets], np.int64)
             decoded = decoder.rows(packets)
             if name == SCENE:
@@ -98,29 +98,6 @@ def _kind(container: Container, channel: Channel) -> str | None:
     if schema is None or channel.message_encoding not in {"protobuf", "json"} or schema.name not in FIELD_TREES:
         return None
     return schema.name
-
-
-def _batches(container: Container) -> Iterator[tuple[Channel, str, list[Packet]]]:
-    """Yield the messages of each channel, some tens of megabytes at a time."""
-    waiting: dict[int, list[Packet]] = {}
-    sizes: dict[int, int] = {}
-    for packet in container.packets():
-        kind = _kind(container, packet.channel)
-        if kind is None:
-            continue
-        number = packet.channel.id
-        waiting.setdefault(number, []).append(packet)
-        sizes[number] = sizes.get(number, 0) + len(packet.data)
-        if sizes[number] >= BATCH_BYTES:
-            yield packet.channel, kind, waiting.pop(number)
-            sizes[number] = 0
-    for packets in waiting.values():
-        channel = packets[0].channel
-        yield channel, str(_kind(container, channel)), packets
-
-
-def _decoder(container: Container, channel: Channel, name: str) -> Decoder:
-    return Decoder(container.path, name, channel.message_encoding, container.schemas[channel.schema_id].data)
 
 
 def _chosen(path: Path, scenes: dict[str, _Scene], topic: str | None) -> str:
@@ -151,26 +128,17 @@ def _take(scene: _Scene, decoded: pa.StructArray, log_ns: NDArray[np.int64]) -> 
     cubes = cubes.take(pa.array((np.cumsum(count) - count)[boxed]))
     entities = entities.filter(pa.array(boxed))
     message = message[boxed]
-    n = len(entities)
-    stamp, stamped = times(struct_field(entities, "timestamp"))
     names, which = distinct_texts(entities, "id")
     frames, frame = distinct_texts(entities, "frame_id")
     pose = struct_field(cubes, "pose")
-    rows = RecordedPoses(
-        stamp_ns=stamp,
-        stamped=stamped,
+    rows = recorded_poses(
+        times(struct_field(entities, "timestamp")),
+        (vectors(pose, "position"), vectors(pose, "orientation", "xyzw")),
         log_ns=log_ns[message],
         ids=np.array([name.encode() for name in names] or [b""])[which],
         frames=np.array([name.encode() for name in frames] or [b""])[frame],
-        place=vectors(pose, "position"),
-        turn=vectors(pose, "orientation", "xyzw"),
         size=vectors(cubes, "size"),
         classes=_classes(entities),
-        along=np.zeros(n, np.bool_),
-        faces=np.ones(n, np.bool_),
-        velocity=unknown_vectors(n),
-        acceleration=unknown_vectors(n),
-        t_ns=stamp,
     )
     scene.rows.append(rows)
     scene.lifetime.append(times(struct_field(entities, "lifetime"))[0])

@@ -10,6 +10,7 @@ import io
 import mmap
 import struct
 import zlib
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeVar
 
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 MAGIC = b"\x89MCAP0\r\n"
+BATCH_BYTES = 32 * 1024 * 1024
+"""Messages are decoded in batches of about this size, which bounds the memory that a long log needs."""
 MAX_CHUNK_BYTES = 512 * 1024 * 1024
 """A chunk that says it grows beyond this is refused before anything is allocated: recorders write a few MB each."""
 _RECORD = struct.Struct("<BQ")
@@ -235,6 +238,28 @@ class Container:
             )
         message = f"{extra} bytes follow the end of the log at byte {end + len(MAGIC)}: they are not part of it"
         self.findings.append(QualityFinding("trailing_bytes", "warning", message))
+
+
+def message_batches(
+    container: Container, kind_of: Callable[[Channel], str | None]
+) -> Iterator[tuple[str, list[Packet]]]:
+    """Yield the kind and the messages of a topic, those of one schema and some tens of megabytes at a time.
+
+    `kind_of`: what is read from a channel; None: nothing.
+    """
+    waiting: dict[str, tuple[str, list[Packet]]] = {}
+    sizes: Counter[str] = Counter()
+    for packet in container.packets():
+        topic, kind = packet.channel.topic, kind_of(packet.channel)
+        if kind is None:
+            continue
+        changed = topic in waiting and waiting[topic][1][0].channel.schema_id != packet.channel.schema_id
+        if changed or sizes[topic] >= BATCH_BYTES:
+            yield waiting.pop(topic)
+            sizes[topic] = 0
+        waiting.setdefault(topic, (kind, []))[1].append(packet)
+        sizes[topic] += len(packet.data)
+    yield from waiting.values()
 
 
 def _name(opcode: int) -> str:

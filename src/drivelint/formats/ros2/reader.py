@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from drivelint.drive.trace import QualityFinding, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats.coordinate_frames import TransformTree, clean_frame_name, fixed_frame
 from drivelint.formats.mcap import bag
-from drivelint.formats.mcap.reader import Container
+from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.ros2 import cdr
 from drivelint.formats.ros2 import ego as ros_ego
 from drivelint.formats.ros2 import types as ros_types
@@ -40,17 +41,15 @@ from drivelint.formats.ros2.recorded_poses import (
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Iterable
     from pathlib import Path
 
-    from mcap.records import Channel
+    from mcap.records import Channel, Schema
     from numpy.typing import NDArray
 
     from drivelint.drive.trace import IngestOptions
-    from drivelint.formats.mcap.reader import Packet
     from drivelint.formats.ros2.cdr import Decoder, Table
 
-BATCH_BYTES = 32 * 1024 * 1024
 STATIC_TOPIC_SUFFIX = "tf_static"
 """What the topic of transforms that always hold ends with: nothing in the messages says it."""
 _REPORTS = {TURN_INDICATORS: "report", HAZARD_LIGHTS: "report", CONTROL_MODE: "mode", ENGAGE: "engage"}
@@ -75,29 +74,11 @@ def message_type(container: Container, channel: Channel) -> str | None:
 
 @dataclass
 class TopicMessages:
-    """The messages of one topic, decoded and still to be decoded."""
+    """The messages of one topic, decoded: what was read of each batch."""
 
     kind: str
     topic: str
-    read: Callable[[Table, NDArray[np.int64]], Any]
     parts: list[Any] = field(default_factory=list)
-    waiting: list[Packet] = field(default_factory=list)
-    size: int = 0
-    decoder: Decoder | None = None
-
-    def add(self, packet: Packet) -> None:
-        """Add a message, and decode the waiting ones when they fill a batch."""
-        self.waiting.append(packet)
-        self.size += len(packet.data)
-        if self.size >= BATCH_BYTES:
-            self.flush()
-
-    def flush(self) -> None:
-        """Decode the messages that are still to be decoded."""
-        if self.waiting and self.decoder is not None:
-            log_ns = np.array([packet.log_time_ns for packet in self.waiting], np.int64)
-            self.parts.append(self.read(self.decoder.table(self.waiting), log_ns))
-        self.waiting, self.size = [], 0
 
 
 class _Log:
@@ -114,42 +95,26 @@ class _Log:
         for file in files:
             container = Container(file)
             decoders: dict[int, Decoder] = {}
-            for packet in container.packets():
-                kind = message_type(container, packet.channel)
-                if kind is None:
-                    continue
-                number = packet.channel.schema_id
-                if number not in decoders:
-                    decoders[number] = _decoder(file, container, number, kind)
-                source = self._source(kind, packet.channel.topic)
-                if source.decoder is not decoders[number]:
-                    source.flush()
-                    source.decoder = decoders[number]
-                source.add(packet)
-            for source in self._all():
-                source.flush()
+            for kind, packets in message_batches(container, partial(_kind, container, decoders)):
+                channel = packets[0].channel
+                table = decoders[channel.schema_id].table(packets)
+                log_ns = np.array([packet.log_time_ns for packet in packets], np.int64)
+                topics = self.topics.setdefault(kind, {})
+                topic = topics.setdefault(channel.topic, TopicMessages(kind, channel.topic))
+                topic.parts.append(self._part(kind, table, log_ns))
             self.carla |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())
             self.findings += container.findings
 
-    def _all(self) -> list[TopicMessages]:
-        return [source for topics in self.topics.values() for source in topics.values()]
-
-    def _source(self, kind: str, topic: str) -> TopicMessages:
-        topics = self.topics.setdefault(kind, {})
-        if topic not in topics:
-            topics[topic] = TopicMessages(kind, topic, self._reader(kind))
-        return topics[topic]
-
-    def _reader(self, kind: str) -> Callable[[Table, NDArray[np.int64]], Any]:
+    def _part(self, kind: str, table: Table, log_ns: NDArray[np.int64]) -> Any:
         if kind in OBJECT_MESSAGES:
-            return lambda table, log_ns: _objects(kind, table, log_ns)
+            return _objects(kind, table, log_ns)
         if kind == ODOMETRY:
-            return lambda table, log_ns: ros_ego.odometry(table, log_ns, self._forward_m)
-        return lambda table, log_ns: (table, log_ns)
+            return ros_ego.odometry(table, log_ns, self._forward_m)
+        return table, log_ns
 
     def one(self, kinds: Iterable[str], what: str, asked: list[str]) -> TopicMessages | None:
         """Return the one topic with messages of some kinds. Errors: `TraceError` where there are several, none asked for."""
-        found = {t: source for kind in kinds for t, source in self.topics.get(kind, {}).items() if source.parts}
+        found = {topic: source for kind in kinds for topic, source in self.topics.get(kind, {}).items()}
         chosen = [topic for topic in asked if topic in found] or sorted(found)
         if len(chosen) > 1:
             raise TraceError(
@@ -165,8 +130,15 @@ def _objects(kind: str, table: Table, log_ns: NDArray[np.int64]) -> RecordedPose
     return rows
 
 
-def _decoder(path: Path, container: Container, number: int, kind: str) -> Decoder:
-    schema = container.schemas[number]
+def _kind(container: Container, decoders: dict[int, Decoder], channel: Channel) -> str | None:
+    """Return the type of ROS messages that are read on a channel, its decoder made; None for any other."""
+    kind = message_type(container, channel)
+    if kind is not None and channel.schema_id not in decoders:
+        decoders[channel.schema_id] = _decoder(container.path, container.schemas[channel.schema_id], kind)
+    return kind
+
+
+def _decoder(path: Path, schema: Schema, kind: str) -> Decoder:
     if schema.encoding != "ros2msg":
         raise TraceError(
             f"{path}: {schema.name} is described by {schema.encoding or 'nothing'}: only ros2msg is read: record or convert it "
