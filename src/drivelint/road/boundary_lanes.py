@@ -52,8 +52,8 @@ class BoundedLane:
     `left_against`: the lane on that side is driven the other way. A marking of None is not known; `marks` are given instead of
     `left_marking` and `right_marking` where a side's marking changes along the lane. `limit_mps` is None where there is none or the
     map does not say, which `limit_known` tells, or says it in a way that cannot be read (not `limit_readable`); `limits` are given
-    instead where it changes: from one share of the length to another, in m/s; `limit_source` is the source of `speed_limit`. `z_m`:
-    height of each point of `line`; None: not known.
+    instead where it changes: from one share of the length to another, in m/s; `limit_source` is the source of `speed_limit`. `z`:
+    height of each point of `line`; NaN: not known.
     """
 
     lanelet_id: str
@@ -81,7 +81,12 @@ class BoundedLane:
     lane_no: int = 0
     along: int = 1
     line: LaneGeometry = field(init=False)
-    z_m: Floats | None = field(init=False, default=None)
+    z: Floats = field(init=False)
+
+    @property
+    def road_s(self) -> Floats:
+        """Stations of the points on the road."""
+        return self.line.s if self.along > 0 else self.line.s[-1] - self.line.s
 
 
 @dataclass(frozen=True)
@@ -118,6 +123,11 @@ class LaneGeometry:
         """The ground between the bounds."""
         return shapely.Polygon(np.vstack([self.right, self.left[::-1]])).buffer(0.0)
 
+    def course(self, z: Floats) -> driving_side.OneWayLane:
+        """Return the lane as one that is driven one way; `z`: its heights (m), NaN: not known."""
+        (x, y), (tx, ty) = self.centre.T, self.tangent.T
+        return driving_side.OneWayLane(x, y, z, tx, ty, self.half_width)
+
     def station(self, place: Floats) -> float:
         """Return how far along the centre line (m) a place (2,) lies."""
         return float(shapely.line_locate_point(shapely.LineString(self.centre), shapely.Point(place)))
@@ -129,6 +139,7 @@ def build_lanes(lanes: Iterable[BoundedLane], offset: tuple[float, float], quali
     for lane in sorted(lanes, key=lambda lane: _by_number(lane.lanelet_id)):
         try:
             lane.line = _line(lane.left + offset, lane.right + offset)
+            lane.z = np.full(len(lane.line.s), np.nan)
         except _UnbuildableError as error:
             quality.add("invalid_lane", "error", lane.lanelet_id, f"lanelet {lane.lanelet_id} is left out: {error}")
             continue
@@ -276,7 +287,7 @@ def tables(name: str, lanes: Sequence[BoundedLane]) -> dict[str, pa.Table]:
     ]
     return {
         "lanelet": from_rows("lanelet", name, [_lanelet(lane) for lane in lanes]),
-        "lane_point": _points(name, lanes),
+        "lane_point": lane_points(name, lanes),
         "lane_link": from_rows("lane_link", name, links),
         "lane_boundary": from_rows("lane_boundary", name, [row for lane in lanes for row in _boundaries(lane)]),
         "speed_limit": from_rows("speed_limit", name, [row for lane in lanes for row in _limits(lane)]),
@@ -317,14 +328,14 @@ def _boundaries(lane: BoundedLane) -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
-def _points(name: str, lanes: Sequence[BoundedLane]) -> pa.Table:
+def lane_points(name: str, lanes: Sequence[Any]) -> pa.Table:
+    """Return `lane_point`. Each lane has `lanelet_id`, `line`, `road_s` (stations on its road) and `z` (heights, NaN: not known)."""
     counts = [len(lane.line.s) for lane in lanes]
-    heights = [np.full(n, np.nan) if lane.z_m is None else lane.z_m for lane, n in zip(lanes, counts, strict=True)]
     columns: dict[str, Any] = {
         "s_m": np.concatenate([lane.line.s for lane in lanes]),
         "half_width_m": np.concatenate([lane.line.half_width for lane in lanes]),
-        "road_s_m": np.concatenate([s if lane.along > 0 else s[-1] - s for lane in lanes for s in (lane.line.s,)]),
-        "z_m": pa.array(np.concatenate(heights), pa.float64(), from_pandas=True),
+        "road_s_m": np.concatenate([lane.road_s for lane in lanes]),
+        "z_m": pa.array(np.concatenate([lane.z for lane in lanes]), pa.float64(), from_pandas=True),
         "k": np.concatenate([np.arange(n, dtype=np.int32) for n in counts]),
         "lanelet_id": repeated([lane.lanelet_id for lane in lanes], counts),
     }
@@ -334,8 +345,7 @@ def _points(name: str, lanes: Sequence[BoundedLane]) -> pa.Table:
         ("left", "left_x_m", "left_y_m"),
         ("right", "right_x_m", "right_y_m"),
     ):
-        both = np.vstack([getattr(lane.line, attribute) for lane in lanes])
-        columns[x], columns[y] = both[:, 0], both[:, 1]
+        columns[x], columns[y] = np.vstack([getattr(lane.line, attribute) for lane in lanes]).T
     return from_columns("lane_point", name, columns, sum(counts))
 
 
@@ -349,13 +359,8 @@ def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
     right = sum(lane.right_against is True and lane.right_id in one_way for lane in one_way.values())
     if left != right:
         return "rht" if left > right else "lht"
-    lines = [lane.line for lane in one_way.values() if lane.junction_id is None]
     return driving_side.side_driven_on(
-        [
-            driving_side.OneWayLane(x, y, np.full(len(x), np.nan), tx, ty, line.half_width)
-            for line in lines
-            for (x, y), (tx, ty) in [(line.centre.T, line.tangent.T)]
-        ]
+        [lane.line.course(np.full(len(lane.line.s), np.nan)) for lane in one_way.values() if lane.junction_id is None]
     )
 
 

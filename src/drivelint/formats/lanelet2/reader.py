@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import shapely
 
@@ -52,27 +52,24 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     return bounded_map(source, request, lanes, beside, quality, kind="lanelet2", side=side, geo_reference=reference)
 
 
-class _Bound(NamedTuple):
-    """A line as it bounds a lane: which, and whether it runs the other way round than it was drawn."""
-
-    line: int
-    inverted: bool
+Bound = tuple[int, bool]
+"""A line as it bounds a lane: which, and whether it runs the other way round than it was drawn."""
 
 
-def _bound(line: Any) -> _Bound:
-    return _Bound(line.id, bool(line.inverted()))
+def _bound(line: Any) -> Bound:
+    return line.id, bool(line.inverted())
 
 
-def _is_lane(element: Any) -> bool:
-    return attribute(element, "subtype") in _KINDS
+def _turned(line: Any) -> Bound:
+    return line.id, not line.inverted()
 
 
 def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
     """Yield the lanes. Neighbours share a bound, what follows begins at the points where a lane ends."""
-    mine = sorted((x for x in layers.laneletLayer if _is_lane(x)), key=lambda x: x.id)
+    mine = sorted((x for x in layers.laneletLayer if attribute(x, "subtype") in _KINDS), key=lambda x: x.id)
     starts: dict[tuple[int, int], list[str]] = defaultdict(list)
-    lefts: dict[_Bound, list[Any]] = defaultdict(list)
-    rights: dict[_Bound, list[Any]] = defaultdict(list)
+    lefts: dict[Bound, list[Any]] = defaultdict(list)
+    rights: dict[Bound, list[Any]] = defaultdict(list)
     for x in mine:
         starts[x.leftBound[0].id, x.rightBound[0].id].append(str(x.id))
         lefts[_bound(x.leftBound)].append(x)
@@ -94,12 +91,9 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
             left_marking=_marking(x.leftBound, near_left=False), right_marking=_marking(x.rightBound, near_left=True),
             limit_mps=limit_mps if readable else None, limit_known=known, limit_readable=readable,
         )  # fmt: skip
-        turned = (
-            _Bound(x.leftBound.id, not x.leftBound.inverted()),
-            _Bound(x.rightBound.id, not x.rightBound.inverted()),
-        )
-        lane.left_id, lane.left_against = _beside(x, rights[_bound(x.leftBound)], lefts[turned[0]])
-        lane.right_id, lane.right_against = _beside(x, lefts[_bound(x.rightBound)], rights[turned[1]])
+        left, right = x.leftBound, x.rightBound
+        lane.left_id, lane.left_against = _beside(x, rights[_bound(left)], lefts[_turned(left)])
+        lane.right_id, lane.right_against = _beside(x, lefts[_bound(right)], rights[_turned(right)])
         yield lane
 
 

@@ -62,9 +62,7 @@ def _laid_over(objects: list[PlacedObject], lanes: list[Lanelet], quality: MapQu
 
 
 def _area(lane: Lanelet) -> shapely.Geometry:
-    x = np.concatenate([lane.right_x, lane.left_x[::-1]])
-    y = np.concatenate([lane.right_y, lane.left_y[::-1]])
-    polygon = shapely.Polygon(np.column_stack([x, y]))
+    polygon = shapely.Polygon(np.vstack([lane.line.right, lane.line.left[::-1]]))
     return polygon if polygon.is_valid else polygon.buffer(0.0)
 
 
@@ -83,12 +81,11 @@ def _shape(placed: PlacedObject) -> shapely.Geometry:
 
 def _stations(lane: Lanelet, points: Floats) -> tuple[Floats, Floats, float]:
     """Return station and offset (left positive) of points on a lanelet, and the lane's width there."""
-    line = shapely.LineString(np.column_stack([lane.x, lane.y]))
-    s = np.atleast_1d(shapely.line_locate_point(line, shapely.points(points)))
+    line = lane.line
+    s = np.atleast_1d(shapely.line_locate_point(shapely.LineString(line.centre), shapely.points(points)))
     middle = float(np.mean(s))
-    x, y, tx, ty, half = (
-        float(np.interp(middle, lane.s, a)) for a in (lane.x, lane.y, lane.tx, lane.ty, lane.half_width)
-    )
+    columns = (*line.centre.T, *line.tangent.T, line.half_width)
+    x, y, tx, ty, half = (float(np.interp(middle, line.s, column)) for column in columns)
     norm = max(float(np.hypot(tx, ty)), 1e-9)
     d = ((points[:, 1] - y) * tx - (points[:, 0] - x) * ty) / norm
     return s, d, 2.0 * half
@@ -99,7 +96,7 @@ def _stop_line(placed: PlacedObject, lane: Lanelet, common: shapely.Geometry) ->
     s, d, width = _stations(lane, shapely.get_coordinates(common))
     axis = np.linalg.svd(placed.outline - placed.outline.mean(axis=0))[2][0]
     middle = float(np.mean(s))
-    tx, ty = float(np.interp(middle, lane.s, lane.tx)), float(np.interp(middle, lane.s, lane.ty))
+    tx, ty = (float(np.interp(middle, lane.line.s, column)) for column in lane.line.tangent.T)
     across = abs(float(axis[0] * ty - axis[1] * tx)) / max(float(np.hypot(tx, ty)), 1e-9)
     if float(d.max() - d.min()) < MIN_SHARE * width or across < np.sin(MIN_ANGLE_RAD):
         return []
@@ -110,6 +107,6 @@ def _crossing(placed: PlacedObject, lane: Lanelet, common: shapely.Geometry) -> 
     if float(shapely.area(common)) < MIN_AREA_M2:
         return []
     s, _, _ = _stations(lane, shapely.get_coordinates(common))
-    said = f"{placed.subtype or ''} {placed.name or ''}".lower()
+    said = f"{placed.element.get('subtype', '')} {placed.element.get('name', '')}".lower()
     kind = "zebra" if "zebra" in said else "signalled" if "signal" in said else None
     return [crossing_row(placed.object_id, lane.lanelet_id, s, kind)]

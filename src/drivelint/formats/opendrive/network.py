@@ -266,7 +266,7 @@ def _marks(lane: etree._Element, section_start: float) -> list[RoadMark]:
     return sorted(marks, key=lambda mark: mark.start_m)
 
 
-_UNITS = {"m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
+SPEED_UNITS_MPS = {"m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
 
 
 def _speeds(
@@ -298,7 +298,7 @@ def _speeds(
 
 def _limit(speed: etree._Element) -> float | None:
     try:
-        limit = number(speed, "max") * _UNITS[speed.get("unit", "m/s")]
+        limit = number(speed, "max") * SPEED_UNITS_MPS[speed.get("unit", "m/s")]
     except (MalformedError, KeyError):
         return None
     return limit if limit > 0.0 else None

@@ -5,22 +5,20 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import pyarrow as pa
-
 from drivelint.errors import MapError
 from drivelint.formats import safe_xml
 from drivelint.formats.opendrive.attributes import boundary_rows, road_type, speed_rows
 from drivelint.formats.opendrive.direction import SideStatements, report_exceptions
 from drivelint.formats.opendrive.furniture import furniture
 from drivelint.formats.opendrive.lanes import build
-from drivelint.formats.opendrive.links import Link, links
+from drivelint.formats.opendrive.links import links
 from drivelint.formats.opendrive.network import network
 from drivelint.formats.opendrive.signlimits import sign_limits
-from drivelint.road.driving_side import OneWayLane, side_driven_on
+from drivelint.road.boundary_lanes import lane_points
+from drivelint.road.driving_side import side_driven_on
 from drivelint.road.map_reader import environment_id
 from drivelint.road.quality import MapQuality
-from drivelint.road.tables import from_columns, map_tables, repeated
+from drivelint.road.tables import map_tables
 
 if TYPE_CHECKING:
     from drivelint.formats.opendrive.direction import Direction
@@ -49,8 +47,8 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     signed = sign_limits(built, joined, beside["traffic_signal"], recorded)
     content = {
         "lanelet": [_lanelet_row(lane) for lane in built],
-        "lane_point": _points(name, built),
-        "lane_link": [_link_row(link) for link in joined],
+        "lane_point": lane_points(name, built),
+        "lane_link": [{"from_id": a.lanelet_id, "to_id": b.lanelet_id, "turn_rad": b.line.turn} for a, b in joined],
         "lane_boundary": [row for lane in built for row in boundary_rows(lane)],
         "speed_limit": sorted([*recorded, *signed], key=lambda row: places[row["lanelet_id"]]),
         **beside,
@@ -68,7 +66,7 @@ def _built(net: Network, request: MapOptions, quality: MapQuality) -> tuple[Dire
     lanes = build(net, first, request.offset, quality)
     side = side_driven_on(
         [
-            OneWayLane(lane.x, lane.y, lane.z, lane.tx, lane.ty, lane.half_width)
+            lane.line.course(lane.z)
             for lane in sorted(lanes.built.values(), key=lambda lane: lane.key)
             if lane.drivable and not lane.bidirectional and lane.road.junction_id is None
         ]
@@ -100,7 +98,7 @@ def _lanelet_row(lane: Lanelet) -> dict[str, Any]:
         "road_type": road_type(lane),
         "length_m": lane.length_m,
         "width_m": lane.mean_width(),
-        "area_m2": lane.area(),
+        "area_m2": lane.line.area,
         "left_id": lane.left.lanelet_id if lane.left else None,
         "left_against": _against(lane, lane.left),
         "right_id": lane.right.lanelet_id if lane.right else None,
@@ -111,28 +109,3 @@ def _lanelet_row(lane: Lanelet) -> dict[str, Any]:
 def _against(lane: Lanelet, beside: Lanelet | None) -> bool | None:
     """Tell whether the lane beside is driven the other way; one that is driven both ways is."""
     return None if beside is None else beside.along != lane.along or beside.bidirectional
-
-
-def _link_row(link: Link) -> dict[str, Any]:
-    return {
-        "from_id": link.source.lanelet_id,
-        "to_id": link.target.lanelet_id,
-        "turn_rad": link.target.heading_change(),
-    }
-
-
-def _points(name: str, lanes: list[Lanelet]) -> pa.Table:
-    counts = [len(lane.s) for lane in lanes]
-    arrays = {
-        "s_m": "s", "x_m": "x", "y_m": "y", "tx": "tx", "ty": "ty", "half_width_m": "half_width",
-        "left_x_m": "left_x", "left_y_m": "left_y", "right_x_m": "right_x", "right_y_m": "right_y",
-        "road_s_m": "road_s",
-    }  # fmt: skip
-    columns = {
-        column: np.concatenate([getattr(lane, attribute) for lane in lanes]) for column, attribute in arrays.items()
-    }
-    z = np.concatenate([lane.z for lane in lanes])
-    columns["z_m"] = pa.array(z, mask=np.isnan(z))
-    columns["k"] = np.concatenate([np.arange(n, dtype=np.int32) for n in counts])
-    columns["lanelet_id"] = repeated([lane.lanelet_id for lane in lanes], counts)
-    return from_columns("lane_point", name, columns, sum(counts))

@@ -210,7 +210,7 @@ def _over(mark: Any, area: Any, road: _Road) -> list[tuple[BoundedLane, float]]:
         if not lane.drivable or common.is_empty:
             continue
         s = lane.line.station(shapely.get_coordinates(common.centroid)[0])
-        if lane.z_m is None or abs(float(np.interp(s, lane.line.s, lane.z_m)) - z) <= _ON_ROAD_M:
+        if abs(float(np.interp(s, lane.line.s, lane.z)) - z) <= _ON_ROAD_M:
             found.append((lane, s))
     return found
 

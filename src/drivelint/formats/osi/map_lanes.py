@@ -55,7 +55,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     heights = {str(i): lane.centre for i, lane in alone.items()} | {str(i): lane.centre for i, lane in logical.items()}
     heights |= {way.lanelet_id: osi_physical.intersection_lane_heights(way.lanelet_id, alone) for way in ways}
     for lane in lanes:
-        lane.z_m = _height(heights[lane.lanelet_id], lane.line.centre - request.offset)
+        lane.z = _height(heights[lane.lanelet_id], lane.line.centre - request.offset)
     # the option counts whatever the lanes say
     said = ("option", request.side) if request.side else ("lanes", side_driven_on(lanes))
     side = choose_side([said], quality, "the lanes")
