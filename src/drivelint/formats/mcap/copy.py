@@ -23,7 +23,7 @@ from mcap.records import AttachmentIndex, Channel, Chunk, ChunkIndex, MetadataIn
 from mcap.stream_reader import get_chunk_data_stream
 
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.writer import MAGIC
+from drivelint.formats.mcap.reader import MAGIC
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -40,17 +40,10 @@ _TIMES: Final = struct.Struct("<QQ")
 _MESSAGE: Final = struct.Struct("<HIQ")
 _INDEX: Final = struct.Struct("<HI")
 _LOOSE: Final = frozenset({Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE})
-_SUMMARY: Final = frozenset(
-    {
-        Opcode.DATA_END,
-        Opcode.FOOTER,
-        Opcode.CHUNK_INDEX,
-        Opcode.ATTACHMENT_INDEX,
-        Opcode.METADATA_INDEX,
-        Opcode.STATISTICS,
-        Opcode.SUMMARY_OFFSET,
-    }
-)
+_SUMMARY: Final = frozenset({
+    Opcode.DATA_END, Opcode.FOOTER, Opcode.CHUNK_INDEX, Opcode.ATTACHMENT_INDEX, Opcode.METADATA_INDEX, Opcode.STATISTICS,
+    Opcode.SUMMARY_OFFSET,
+})  # fmt: skip
 LOOSE_CHUNK_BYTES: Final = 4 << 20
 """Messages outside of chunks are put into chunks of about this size."""
 _BLOCK: Final = 4 << 20
@@ -139,18 +132,15 @@ class Original:
             raise self.damage_error(start)
         return content
 
-    def body_stream(self, record: Record) -> ReadDataStream:
-        """Return the body of a record, to be read field by field."""
-        return ReadDataStream(io.BytesIO(self.read(record.body, record.end)))
-
-    def head_stream(self, record: Record) -> ReadDataStream:
-        """Return the beginning of a record that may be large, for the fields before its data."""
-        return ReadDataStream(io.BytesIO(self.read(record.body, min(record.end, record.body + _HEAD_BYTES))))
+    def stream(self, record: Record, most: int | None = None) -> ReadDataStream:
+        """Return the body of a record, to be read field by field; `most`: so many bytes, for the fields before its data."""
+        end = record.end if most is None else min(record.end, record.body + most)
+        return ReadDataStream(io.BytesIO(self.read(record.body, end)))
 
     def chunk_records(self, record: Record) -> Iterator[tuple[int, int, memoryview]]:
         """Yield opcode, offset within the chunk and body of every record of a chunk."""
         try:
-            stream, size = get_chunk_data_stream(Chunk.read(self.body_stream(record)), validate_crc=True)
+            stream, size = get_chunk_data_stream(Chunk.read(self.stream(record)), validate_crc=True)
             view = memoryview(stream.read(size))
         except McapError as error:
             raise self.damage_error(record.at) from error
@@ -188,13 +178,13 @@ class Original:
         for record in self.records():
             behind_chunk = record.opcode == Opcode.CHUNK or (behind_chunk and record.opcode == Opcode.MESSAGE_INDEX)
             if record.opcode == Opcode.SCHEMA:
-                schema = Schema.read(self.body_stream(record))
+                schema = Schema.read(self.stream(record))
                 found.schemas.setdefault(schema.id, schema)
             elif record.opcode == Opcode.CHANNEL:
-                channel = Channel.read(self.body_stream(record))
+                channel = Channel.read(self.stream(record))
                 found.channels.setdefault(channel.id, channel)
             elif record.opcode == Opcode.STATISTICS:
-                found.statistics = Statistics.read(self.body_stream(record))
+                found.statistics = Statistics.read(self.stream(record))
             elif record.opcode == Opcode.CHUNK:
                 chunks.append(record)
             elif record.opcode == Opcode.MESSAGE:
@@ -315,37 +305,26 @@ class _Copy:
         elif record.opcode == Opcode.ATTACHMENT:
             self._sink.attachments.append(self._attachment_index(record, start, length))
         elif record.opcode == Opcode.METADATA:
-            name = self._original.body_stream(record).read_prefixed_string()
+            name = self._original.stream(record).read_prefixed_string()
             self._sink.metadata.append(MetadataIndex(offset=start, length=length, name=name))
 
     def _chunk_index(self, record: Record, start: int, length: int) -> ChunkIndex:
-        head = self._original.head_stream(record)
+        head = self._original.stream(record, _HEAD_BYTES)
         begin, end, size, _crc = head.read8(), head.read8(), head.read8(), head.read4()
         return ChunkIndex(
-            chunk_length=length,
-            chunk_start_offset=start,
-            compression=head.read_prefixed_string(),
-            compressed_size=head.read8(),
-            message_end_time=end,
-            message_index_length=0,
-            message_index_offsets={},
-            message_start_time=begin,
-            uncompressed_size=size,
-        )
+            chunk_length=length, chunk_start_offset=start, compression=head.read_prefixed_string(),
+            compressed_size=head.read8(), message_end_time=end, message_index_length=0, message_index_offsets={},
+            message_start_time=begin, uncompressed_size=size,
+        )  # fmt: skip
 
     def _attachment_index(self, record: Record, start: int, length: int) -> AttachmentIndex:
-        head = self._original.head_stream(record)
+        head = self._original.stream(record, _HEAD_BYTES)
         log_time, create_time = head.read8(), head.read8()
         name, media_type = head.read_prefixed_string(), head.read_prefixed_string()
         return AttachmentIndex(
-            offset=start,
-            length=length,
-            log_time=log_time,
-            create_time=create_time,
-            data_size=head.read8(),
-            name=name,
-            media_type=media_type,
-        )
+            offset=start, length=length, log_time=log_time, create_time=create_time, data_size=head.read8(),
+            name=name, media_type=media_type,
+        )  # fmt: skip
 
     def _take_index(self, record: Record) -> None:
         """Copy a message index that can be relied on; another is left out and found anew."""

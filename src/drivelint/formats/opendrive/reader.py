@@ -16,6 +16,7 @@ from drivelint.formats.opendrive.network import network
 from drivelint.formats.opendrive.signlimits import sign_limits
 from drivelint.road.boundary_lanes import lane_points
 from drivelint.road.driving_side import side_driven_on
+from drivelint.road.handedness import opposite_side
 from drivelint.road.map_reader import environment_id
 from drivelint.road.quality import MapQuality
 from drivelint.road.tables import map_tables
@@ -72,7 +73,7 @@ def _built(net: Network, request: MapOptions, quality: MapQuality) -> tuple[Dire
         ]
     )
     if side is not None and not first.forward:
-        side = "lht" if side == "rht" else "rht"
+        side = opposite_side(side)
     built = quality.rows[noted:]
     del quality.rows[noted:]
     direction = witnesses.final_direction(side, quality)
@@ -86,24 +87,16 @@ def _built(net: Network, request: MapOptions, quality: MapQuality) -> tuple[Dire
 
 def _lanelet_row(lane: Lanelet) -> dict[str, Any]:
     return {
-        "lanelet_id": lane.lanelet_id,
-        "road_id": lane.road.road_id,
-        "section": lane.strip.section,
-        "lane_no": lane.lane.number,
-        "lane_type": lane.lane.kind,
-        "drivable": lane.drivable,
-        "bidirectional": lane.bidirectional,
-        "along_road": lane.along,
-        "junction_id": lane.road.junction_id,
+        "lanelet_id": lane.lanelet_id, "road_id": lane.road.road_id, "section": lane.strip.section,
+        "lane_no": lane.lane.number, "lane_type": lane.lane.kind, "drivable": lane.drivable,
+        "bidirectional": lane.bidirectional, "along_road": lane.along, "junction_id": lane.road.junction_id,
         "road_type": road_type(lane),
-        "length_m": lane.length_m,
-        "width_m": lane.mean_width(),
-        "area_m2": lane.line.area,
+        "length_m": lane.length_m, "width_m": lane.mean_width(), "area_m2": lane.line.area,
         "left_id": lane.left.lanelet_id if lane.left else None,
         "left_against": _against(lane, lane.left),
         "right_id": lane.right.lanelet_id if lane.right else None,
         "right_against": _against(lane, lane.right),
-    }
+    }  # fmt: skip
 
 
 def _against(lane: Lanelet, beside: Lanelet | None) -> bool | None:

@@ -74,34 +74,25 @@ class _Reader:
     def _read(self, road: Road, listing: etree._Element, home: Road, signal: etree._Element | None) -> None:
         if signal is None:
             raise MalformedError("it refers to a signal that is not defined")
-        said = number(listing, "s")
-        s = min(max(said, 0.0), road.length_m)
-        if abs(said - s) > OFF_ROAD_M:
-            message = f"signal {listing.get('id')} is listed at {said:.1f} m of a road of {road.length_m:.1f} m"
+        listed_s = number(listing, "s")
+        s = min(max(listed_s, 0.0), road.length_m)
+        if abs(listed_s - s) > OFF_ROAD_M:
+            message = f"signal {listing.get('id')} is listed at {listed_s:.1f} m of a road of {road.length_m:.1f} m"
             self.quality.add("signal_off_road", "warning", road.road_id, message)
         lanes = [lane for lane in self.lanes.get(road.road_id, []) if _at(lane, s)]
         x, y = _position(home, signal, self.offset)
         kind = kind_of(signal.get("country", ""), signal.get("type", ""), signal.get("name", ""))
         turns = turns_of(signal.get("type", ""), signal.get("subtype", "")) if kind == "traffic_light" else None
         value = 0.0 if signal.get("value") in {None, "", "None"} else number(signal, "value")
+        said = {
+            "signal_id": listing.get("id", ""), "kind": kind, "country": (signal.get("country") or "").lower() or None,
+            "type": signal.get("type"), "subtype": signal.get("subtype"),
+            "value": value if value > 0.0 else None,  # writers say -1 or 0 where there is nothing to say
+            "unit": signal.get("unit"), "dynamic": signal.get("dynamic") == "yes", "turns": turns,
+            "road_id": road.road_id, "road_s_m": s, "x_m": x, "y_m": y,
+        }  # fmt: skip
         self.signals += [
-            {
-                "signal_id": listing.get("id", ""),
-                "kind": kind,
-                "country": (signal.get("country") or "").lower() or None,
-                "type": signal.get("type"),
-                "subtype": signal.get("subtype"),
-                "value": value if value > 0.0 else None,  # writers say -1 or 0 where there is nothing to say
-                "unit": signal.get("unit"),
-                "dynamic": signal.get("dynamic") == "yes",
-                "turns": turns,
-                "road_id": road.road_id,
-                "road_s_m": s,
-                "lanelet_id": lane.lanelet_id,
-                "lane_s_m": lane.station_at(s),
-                "x_m": x,
-                "y_m": y,
-            }
+            {**said, "lanelet_id": lane.lanelet_id, "lane_s_m": lane.station_at(s)}
             for lane in self._held(listing, lanes)
         ]
         if kind == "stop_line":
