@@ -41,8 +41,18 @@ class Mark(NamedTuple):
     lane_change: str | None = None
 
 
-class _UnbuildableError(ValueError):
-    """A lane whose bounds make no area; caught where the lane is named."""
+class UnbuildableError(ValueError):
+    """A lane that has no shape or no direction; caught where the lane is named."""
+
+
+def stations(line: Floats) -> Floats:
+    """Return how far along a line (n, 2) or (n, 3), seen from above, each of its points lies (m)."""
+    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))])
+
+
+def resampled(line: Floats, s: Floats, at: Floats) -> Floats:
+    """Return the points (m, k) of a line (n, k) at other stations (m,) than its own (n,)."""
+    return np.column_stack([np.interp(at, s, column) for column in line.T])
 
 
 @dataclass(eq=False)
@@ -140,7 +150,7 @@ def build_lanes(lanes: Iterable[BoundedLane], offset: tuple[float, float], quali
         try:
             lane.line = _line(lane.left + offset, lane.right + offset)
             lane.z = np.full(len(lane.line.s), np.nan)
-        except _UnbuildableError as error:
+        except UnbuildableError as error:
             quality.add("invalid_lane", "error", lane.lanelet_id, f"lanelet {lane.lanelet_id} is left out: {error}")
             continue
         built[lane.lanelet_id] = lane
@@ -159,20 +169,20 @@ def build_lanes(lanes: Iterable[BoundedLane], offset: tuple[float, float], quali
 
 
 def _line(left: Floats, right: Floats) -> LaneGeometry:
-    """Return the points of a lane. Errors: `_UnbuildableError` saying what is wrong with it."""
+    """Return the points of a lane. Errors: `UnbuildableError` saying what is wrong with it."""
     if len(left) < 2 or len(right) < 2:
-        raise _UnbuildableError("a bound has fewer than two points")
+        raise UnbuildableError("a bound has fewer than two points")
     if not (np.isfinite(left).all() and np.isfinite(right).all()):
-        raise _UnbuildableError("a bound has a coordinate that is not finite")
+        raise UnbuildableError("a bound has a coordinate that is not finite")
     left, right = _paired(left, right)
     centre = (left + right) / 2
     keep = np.r_[True, np.hypot(*np.diff(centre, axis=0).T) > 0.01]
     left, right, centre = left[keep], right[keep], centre[keep]
     if len(centre) < 2:
-        raise _UnbuildableError("it has no length")
+        raise UnbuildableError("it has no length")
     total_m = float(np.hypot(*np.diff(centre, axis=0).T).sum())
     if total_m > _LONGEST_M:
-        raise _UnbuildableError(f"it is {total_m / 1000:.0f} km long")
+        raise UnbuildableError(f"it is {total_m / 1000:.0f} km long")
     left, right = _dense(centre, left), _dense(centre, right)
     centre = (left + right) / 2
     step = np.diff(centre, axis=0)
@@ -181,15 +191,15 @@ def _line(left: Floats, right: Floats) -> LaneGeometry:
     tangent = np.vstack([direction[:1], direction[:-1] + direction[1:], direction[-1:]])
     size = np.hypot(*tangent.T)
     if (size < 0.1).any():
-        raise _UnbuildableError("its centre line turns back on itself")
+        raise UnbuildableError("its centre line turns back on itself")
     tangent = tangent / size[:, None]
     across = left - right
     half = (tangent[:, 0] * across[:, 1] - tangent[:, 1] * across[:, 0]) / 2
     if (half <= 0).all():
-        raise _UnbuildableError("its left bound lies on the right of its right bound")
+        raise UnbuildableError("its left bound lies on the right of its right bound")
     half = np.maximum(half, 0.0)
     if 2 * half.max() > _WIDEST_M:
-        raise _UnbuildableError(f"it is {2 * half.max():.0f} m wide")
+        raise UnbuildableError(f"it is {2 * half.max():.0f} m wide")
     return LaneGeometry(np.r_[0.0, np.cumsum(length)], centre, left, right, tangent, half)
 
 
@@ -197,14 +207,9 @@ def _paired(left: Floats, right: Floats) -> tuple[Floats, Floats]:
     """Return the bounds with as many points each, one beside the other: as given, or at equal shares of their lengths."""
     if len(left) == len(right):
         return left, right
-    stations = [np.r_[0.0, np.cumsum(np.hypot(*np.diff(bound, axis=0).T))] for bound in (left, right)]
-    shares = [s / s[-1] if s[-1] > 0 else np.linspace(0.0, 1.0, len(s)) for s in stations]
+    shares = [s / s[-1] if s[-1] > 0 else np.linspace(0.0, 1.0, len(s)) for s in map(stations, (left, right))]
     at = np.unique(np.round(np.concatenate(shares), 6))
-    first, second = (
-        np.column_stack([np.interp(at, share, bound[:, 0]), np.interp(at, share, bound[:, 1])])
-        for share, bound in zip(shares, (left, right), strict=True)
-    )
-    return first, second
+    return resampled(left, shares[0], at), resampled(right, shares[1], at)
 
 
 def _dense(centre: Floats, bound: Floats) -> Floats:

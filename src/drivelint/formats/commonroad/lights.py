@@ -39,9 +39,8 @@ def signal_states(
         try:
             steps, shown = _unrolled(light, first, last)
         except _UnreadError as error:
-            findings.append(
-                QualityFinding("signal_cycle", "warning", f"the states of traffic light {name} are not known: {error}")
-            )
+            message = f"the states of traffic light {name} are not known: {error}"
+            findings.append(QualityFinding("signal_cycle", "warning", message))
             continue
         if None in shown:
             words = sorted({w for w in _colours(light) if w not in _STATES})

@@ -68,9 +68,8 @@ def read(probe: Probe) -> Recording:
         raise TraceError(f"{path}: the scenario has no obstacles: there is nobody to judge")
     ids = [str(o.get("id")) for o in obstacles]
     if len(set(ids)) < len(ids):
-        raise TraceError(
-            f"{path}: two obstacles have the same id: {listed(sorted({i for i in ids if ids.count(i) > 1}))}"
-        )
+        twice = listed(sorted({i for i in ids if ids.count(i) > 1}))
+        raise TraceError(f"{path}: two obstacles have the same id: {twice}")
     trajectories = {} if fast is None else dict(zip(root.iter("trajectory"), fast.columns, strict=True))
     parts = [_states(path, o, trajectories) for o in obstacles]
     last = max((int(part["step"].max()) for part in parts if len(part["step"])), default=0)
@@ -169,9 +168,7 @@ def _size(obstacle: etree._Element) -> tuple[float, float]:
 
 
 def _codes(obstacles: list[etree._Element], counts: list[int]) -> dict[str, NDArray[np.int8]]:
-    classes = []
-    for obstacle in obstacles:
-        word = _CLASSES.get((obstacle.findtext("type") or "").strip())
-        classes.append(ACTOR_CLASSES.index(word) if word else -1)
+    words = [_CLASSES.get((obstacle.findtext("type") or "").strip()) for obstacle in obstacles]
+    classes = [ACTOR_CLASSES.index(word) if word else -1 for word in words]
     unknown = np.full(sum(counts), -1, np.int8)
     return {"actor_class": np.repeat(np.array(classes, np.int8), counts), "indicator": unknown, "brake_light": unknown}

@@ -61,10 +61,9 @@ class _Scene:
     rows: list[RecordedPoses] = field(default_factory=list)
     lifetime: list[NDArray[np.int64]] = field(default_factory=list)
     locked: list[NDArray[np.bool_]] = field(default_factory=list)
-    deletions: list[tuple[NDArray[np.int64], NDArray[np.bool_], NDArray[np.int64], list[str], NDArray[np.bool_]]] = (
-        field(default_factory=list)
+    deletions: list[tuple[NDArray[np.int64], NDArray[np.bool_], NDArray[np.int64], list[str | None]]] = field(
+        default_factory=list
     )
-    messages: list[NDArray[np.int64]] = field(default_factory=list)
     without_box: int = 0
 
 
@@ -107,12 +106,8 @@ def _chosen(path: Path, scenes: dict[str, _Scene], topic: str | None) -> str:
             raise TraceError(f"{path}: no scene on topic {topic!r}: {SCENE} is on {listed(names) or 'none'}")
         return topic
     if len(names) != 1:
-        what = (
-            f"on {len(names)} topics ({', '.join(names)}): choose one with --topic"
-            if names
-            else "in none of its messages"
-        )
-        raise TraceError(f"{path}: {SCENE} {what}")
+        several = f"on {len(names)} topics ({', '.join(names)}): choose one with --topic"
+        raise TraceError(f"{path}: {SCENE} {several if names else 'in none of its messages'}")
     return names[0]
 
 
@@ -142,16 +137,15 @@ def _take(scene: _Scene, decoded: pa.StructArray, log_ns: NDArray[np.int64]) -> 
     )
     scene.rows.append(rows)
     scene.lifetime.append(times(struct_field(entities, "lifetime"))[0])
-    scene.locked.append(
-        pc.fill_null(struct_field(entities, "frame_locked").cast(pa.bool_()), False).to_numpy(zero_copy_only=False)
-    )
-    scene.messages.append(log_ns)
+    locked = struct_field(entities, "frame_locked").cast(pa.bool_())
+    scene.locked.append(pc.fill_null(locked, False).to_numpy(zero_copy_only=False))
     gone, message = list_items(decoded, "deletions")
     if len(gone):
         t_ns, timed = times(struct_field(gone, "timestamp"))
         names, which = distinct_texts(gone, "id")
         every = np.nan_to_num(numbers(gone, "type")) == DELETE_ALL
-        scene.deletions.append((t_ns, timed & (t_ns != 0), log_ns[message], [names[i] for i in which], every))
+        whom = [None if all_ else names[i] for i, all_ in zip(which, every, strict=True)]
+        scene.deletions.append((t_ns, timed & (t_ns != 0), log_ns[message], whom))
 
 
 def _classes(entities: pa.Array) -> NDArray[np.int8]:
@@ -181,9 +175,8 @@ def _recording(
     named = rows.ids != b""
     if not named.all():
         n = int((~named).sum())
-        findings.append(
-            QualityFinding("dropped_row", "error", f"{topic}: entities without an id: {n}: they are not judged", n)
-        )
+        message = f"{topic}: entities without an id: {n}: they are not judged"
+        findings.append(QualityFinding("dropped_row", "error", message, n))
         rows, lifetime, locked = rows.take(named), lifetime[named], locked[named]
     if not len(rows):
         raise TraceError(f"{path}: no entity on {topic!r} has a cube and an id: nothing can be judged")
@@ -199,35 +192,29 @@ def _recording(
     findings += found
     if not np.isfinite(states.numbers["x_m"]).any():
         raise TraceError(f"{path}: nothing can be placed: {found[-1].message if found else 'no positions'}")
-    frame_times, utc_start_ns = message_times([rows])
-    return Recording(
-        "foxglove-mcap",
-        states,
-        findings=findings,
-        notes=[f"positions are in the frame {fixed!r}"],
-        utc_start_ns=utc_start_ns,
-        frame_times=frame_times,
-    )
+    recording = Recording("foxglove-mcap", states, findings=findings)
+    recording.notes = [f"positions are in the frame {fixed!r}"]
+    recording.frame_times, recording.utc_start_ns = message_times([rows])
+    return recording
 
 
-def _deletions(
-    scene: _Scene, rows: RecordedPoses, *, own_times: bool
-) -> list[tuple[NDArray[np.int64], list[str], NDArray[np.bool_]]]:
-    """Return (time, id, whether all are meant). One without a time has that of its message, in the entities' clock."""
+def _deletions(scene: _Scene, rows: RecordedPoses, *, own_times: bool) -> tuple[NDArray[np.int64], list[str | None]]:
+    """Return times and ids (None: all are meant). One without a time has that of its message, in the entities' clock."""
     order = np.argsort(rows.log_ns, kind="stable")
     log_ns, latest = rows.log_ns[order], np.maximum.accumulate(rows.t_ns[order])
-    found = []
-    for t_ns, timed, sent_ns, names, every in scene.deletions:
+    times, ids = [np.zeros(0, np.int64)], []
+    for t_ns, timed, sent_ns, whom in scene.deletions:
         at = np.searchsorted(log_ns, sent_ns, side="right") - 1
         last = np.where(at >= 0, latest[np.maximum(at, 0)], np.iinfo(np.int64).min)
-        found.append((np.where(timed & own_times, t_ns, last if own_times else sent_ns), names, every))
-    return found
+        times.append(np.where(timed & own_times, t_ns, last if own_times else sent_ns))
+        ids += whom
+    return np.concatenate(times), ids
 
 
 def _alive(
     rows: RecordedPoses,
     manner: tuple[NDArray[np.int64], NDArray[np.bool_]],
-    gone: list[tuple[NDArray[np.int64], list[str], NDArray[np.bool_]]],
+    gone: tuple[NDArray[np.int64], list[str | None]],
     findings: list[QualityFinding],
     topic: str,
 ) -> RecordedPoses:
@@ -238,20 +225,10 @@ def _alive(
     lifetime, locked = manner
     unique, actor = distinct(rows.ids)
     number = {name: i for i, name in enumerate(unique)}
-    whom = [
-        -1 if all_ else number.get(name, len(unique))
-        for _, names, every in gone
-        for name, all_ in zip(names, every, strict=True)
-    ]
-    deletions = Deletions(
-        np.array(whom, np.int32), np.concatenate([t_ns for t_ns, _, _ in gone]) if gone else np.zeros(0, np.int64)
-    )
-    entities = EntityUpdates(
-        actor,
-        rows.t_ns,
-        lifetime,
-        np.concatenate([rows.place, rows.turn, rows.size], axis=1),
-    )
+    whom = [-1 if name is None else number.get(name, len(unique)) for name in gone[1]]
+    deletions = Deletions(np.array(whom, np.int32), gone[0])
+    box = np.concatenate([rows.place, rows.turn, rows.size], axis=1)
+    entities = EntityUpdates(actor, rows.t_ns, lifetime, box)
     new = np.r_[True, rows.t_ns[1:] != rows.t_ns[:-1]]  # what is all but sorted and single is sorted faster
     more = persisted_states(entities, deletions, np.unique(np.concatenate([rows.t_ns[new], deletions.t_ns])))
     if not len(more.row):
@@ -279,15 +256,12 @@ def _frames(transforms: list[tuple[pa.Array, NDArray[np.int64]]], *, own_times: 
     for rows, log_ns in transforms:
         t_ns = times(struct_field(rows, "timestamp"))[0] if own_times else log_ns
         place, turn = vectors(rows, "translation"), vectors(rows, "rotation", "xyzw")
-        (parents, parent), (children, inner) = (
-            distinct_texts(rows, "parent_frame_id"),
-            distinct_texts(rows, "child_frame_id"),
-        )
+        parents, parent = distinct_texts(rows, "parent_frame_id")
+        children, inner = distinct_texts(rows, "child_frame_id")
         for i, j in sorted(set(zip(inner.tolist(), parent.tolist(), strict=True))):
             here = (inner == i) & (parent == j)
-            found.setdefault((clean_frame_name(children[i]), clean_frame_name(parents[j])), []).append(
-                (t_ns[here], place[here], turn[here])
-            )
+            names = clean_frame_name(children[i]), clean_frame_name(parents[j])
+            found.setdefault(names, []).append((t_ns[here], place[here], turn[here]))
     frames = TransformTree()
     for (name, parent_name), parts in found.items():
         t_ns, place, turn = (np.concatenate([part[k] for part in parts]) for k in range(3))

@@ -17,7 +17,7 @@ from drivelint.formats.osi import map_furniture as osi_furniture
 from drivelint.formats.osi import map_logical as osi_logical
 from drivelint.formats.osi import map_physical as osi_physical
 from drivelint.formats.osi import schema as osi_schema
-from drivelint.road.boundary_lanes import bounded_map, build_lanes, side_driven_on
+from drivelint.road.boundary_lanes import bounded_map, build_lanes, resampled, side_driven_on, stations
 from drivelint.road.handedness import choose_side
 from drivelint.road.quality import MapQuality
 
@@ -79,12 +79,8 @@ def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalL
             continue
         points = _middles(drawn.centre)
         over, under = tree.query(shapely.points(points[:, :2]), predicate="within")
-        level = np.array(
-            [
-                abs(points[p, 2] - _height(logical[names[a]].centre, points[p : p + 1, :2])[0])
-                for p, a in zip(over, under, strict=True)
-            ]
-        )
+        heights = [_height(logical[names[a]].centre, points[[p], :2])[0] for p, a in zip(over, under, strict=True)]
+        level = np.abs(points[over, 2] - heights)
         same = level < _SAME_SURFACE_M
         if len(set(over[same].tolist())) > len(points) / 2:
             covers[ref] = sorted({names[a] for a in under[same].tolist()})
@@ -93,16 +89,14 @@ def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalL
 
 def _middles(line: Floats) -> Floats:
     """Return the middles of 20 equal pieces of a line (n, 3)."""
-    s = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))])
-    at = (np.arange(20) + 0.5) / 20 * s[-1]
-    return np.column_stack([np.interp(at, s, line[:, k]) for k in range(3)])
+    s = stations(line)
+    return resampled(line, s, (np.arange(20) + 0.5) / 20 * s[-1])
 
 
 def _height(line: Floats, points: Floats) -> Floats:
     """Return the height of a line (n, 3) beside points (m, 2)."""
-    s = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))])
     at = shapely.line_locate_point(shapely.LineString(line[:, :2]), shapely.points(points))
-    return np.asarray(np.interp(at, s, line[:, 2]), np.float64)
+    return np.asarray(np.interp(at, stations(line), line[:, 2]), np.float64)
 
 
 def _why_none(truth: Any, quality: MapQuality) -> str:

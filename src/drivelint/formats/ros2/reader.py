@@ -28,7 +28,7 @@ from drivelint.formats.ros2.ego import (
     TURN_INDICATORS,
     WORLD_INFO,
 )
-from drivelint.formats.ros2.merge import Sources, merge_ego
+from drivelint.formats.ros2.merge import merge_ego
 from drivelint.formats.ros2.objects import OBJECT_MESSAGES, stamps
 from drivelint.formats.ros2.recorded_poses import (
     RecordedPoses,
@@ -41,7 +41,7 @@ from drivelint.formats.ros2.recorded_poses import (
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
     from mcap.records import Channel, Schema
@@ -59,17 +59,6 @@ _OLD = {
 }
 """Packages whose messages have the same fields under an older name."""
 _CARLA = "carla_msgs/"
-
-
-def message_type(container: Container, channel: Channel) -> str | None:
-    """Return the type of ROS messages that are read on a channel; None for any other."""
-    schema = container.schemas.get(channel.schema_id)
-    if schema is None or channel.message_encoding != "cdr":
-        return None
-    name = ros_types.short_type_name(schema.name)
-    package, _, rest = name.partition("/")
-    name = f"{_OLD.get(package, package)}/{rest}"
-    return name if name in OBJECT_MESSAGES or name in FIELD_TREES else None
 
 
 @dataclass
@@ -112,6 +101,11 @@ class _Log:
             return ros_ego.odometry(table, log_ns, self._forward_m)
         return table, log_ns
 
+    def parts(self, kind: str) -> Iterator[tuple[str, Any]]:
+        """Yield topic and batch of the messages of a kind, by topic."""
+        for topic, source in sorted(self.topics.get(kind, {}).items()):
+            yield from ((topic, part) for part in source.parts)
+
     def one(self, kinds: Iterable[str], what: str, asked: list[str]) -> TopicMessages | None:
         """Return the one topic with messages of some kinds. Errors: `TraceError` where there are several, none asked for."""
         found = {topic: source for kind in kinds for topic, source in self.topics.get(kind, {}).items()}
@@ -132,9 +126,15 @@ def _objects(kind: str, table: Table, log_ns: NDArray[np.int64]) -> RecordedPose
 
 def _kind(container: Container, decoders: dict[int, Decoder], channel: Channel) -> str | None:
     """Return the type of ROS messages that are read on a channel, its decoder made; None for any other."""
-    kind = message_type(container, channel)
-    if kind is not None and channel.schema_id not in decoders:
-        decoders[channel.schema_id] = _decoder(container.path, container.schemas[channel.schema_id], kind)
+    schema = container.schemas.get(channel.schema_id)
+    if schema is None or channel.message_encoding != "cdr":
+        return None
+    package, _, rest = ros_types.short_type_name(schema.name).partition("/")
+    kind = f"{_OLD.get(package, package)}/{rest}"
+    if kind not in OBJECT_MESSAGES and kind not in FIELD_TREES:
+        return None
+    if channel.schema_id not in decoders:
+        decoders[channel.schema_id] = _decoder(container.path, schema, kind)
     return kind
 
 
@@ -182,16 +182,14 @@ def read(path: Path, options: IngestOptions) -> Recording:
             findings += found
     if not any(np.isfinite(part.numbers["x_m"]).any() for part in states.values()):
         raise TraceError(f"{path}: nothing can be placed: {findings[-1].message if findings else 'no positions'}")
-    recording = merge_ego(
-        Sources(
-            None if objects is None or not len(states[objects.topic]) else (objects.topic, states[objects.topic]),
-            None if odometry is None or not len(states[odometry.topic]) else (odometry.topic, states[odometry.topic]),
-            objects is not None and objects.kind == "derived_object_msgs/ObjectArray" and log.carla,
-            _infos(log),
-            forward_m,
-            findings,
-        )
+    others, own = (
+        None if source is None or not len(states[source.topic]) else (source.topic, states[source.topic])
+        for source in (objects, odometry)
     )
+    carla = objects is not None and objects.kind == "derived_object_msgs/ObjectArray" and log.carla
+    # the id of the ego that each topic of the CARLA bridge's ego info gives last
+    infos = {topic: str(number) for topic, (table, _) in log.parts(EGO_INFO) for number in table.columns["id"].tolist()}
+    recording = merge_ego(others, own, infos, findings, carla=carla, forward_m=forward_m)
     reports = _reports(log, asked, own_times=own_times)
     for ego in recording.ego_ids[:1]:
         mine = recording.states.actor == recording.states.ids.index(ego) if ego in recording.states.ids else None
@@ -200,7 +198,11 @@ def read(path: Path, options: IngestOptions) -> Recording:
             codes[mine] = ros_ego.indicators(recording.states.t_ns[mine], reports)
             recording.states.codes["indicator"] = codes
         recording.events = ros_ego.engagement(reports, ego)
-    recording.embedded_map, trouble = embedded_map.single_map(_maps(log))
+    maps: dict[bytes, str] = {}
+    for topic, (table, _) in log.parts(WORLD_INFO):
+        for text in filter(bytes.strip, table.columns["opendrive"].tolist()):
+            maps.setdefault(text, topic)
+    recording.embedded_map, trouble = embedded_map.single_map(maps)
     recording.findings += trouble
     recording.frame_times, recording.utc_start_ns = message_times(list(parts.values()))
     recording.notes.append(f"positions are in the frame {fixed!r}")
@@ -213,11 +215,9 @@ def _frame_names(rows: RecordedPoses) -> list[str]:
 
 def _frames(log: _Log, *, own_times: bool) -> TransformTree:
     frames = TransformTree()
-    for topic, source in sorted(log.topics.get(TRANSFORMS, {}).items()):
-        for table, log_ns in source.parts:
-            ros_ego.add_transforms(
-                frames, table, log_ns, static=topic.endswith(STATIC_TOPIC_SUFFIX), own_times=own_times
-            )
+    for topic, (table, log_ns) in log.parts(TRANSFORMS):
+        static = topic.endswith(STATIC_TOPIC_SUFFIX)
+        ros_ego.add_transforms(frames, table, log_ns, static=static, own_times=own_times)
     return frames
 
 
@@ -247,22 +247,3 @@ def _reports(log: _Log, asked: list[str], *, own_times: bool) -> dict[str, tuple
         values = [table.columns[column] for table, _ in source.parts]
         reports[kind] = (np.concatenate(t_ns), np.concatenate(values))
     return reports
-
-
-def _infos(log: _Log) -> dict[str, str]:
-    """Return the id of the ego that each topic of the CARLA bridge's ego info gives last."""
-    found: dict[str, str] = {}
-    for topic, source in sorted(log.topics.get(EGO_INFO, {}).items()):
-        for table, _ in source.parts:
-            found.update((topic, str(number)) for number in table.columns["id"].tolist())
-    return found
-
-
-def _maps(log: _Log) -> dict[bytes, str]:
-    texts: dict[bytes, str] = {}
-    for topic, source in sorted(log.topics.get(WORLD_INFO, {}).items()):
-        for table, _ in source.parts:
-            for text in table.columns["opendrive"].tolist():
-                if text.strip():
-                    texts.setdefault(text, topic)
-    return texts

@@ -26,6 +26,7 @@ from drivelint.formats.osi.extras import parse_conditions
 from drivelint.formats.tables import parquet
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -124,6 +125,11 @@ def _column(path: Path, table: pa.Table, name: str, kind: pa.DataType) -> pa.Arr
         ) from error
 
 
+def _columns(path: Path, table: pa.Table, names: Iterable[str], kind: pa.DataType) -> dict[str, pa.Array]:
+    """Return those of the columns that the table has."""
+    return {name: _column(path, table, name, kind) for name in names if name in table.schema.names}
+
+
 def _need(path: Path, table: pa.Table, names: tuple[str, ...]) -> None:
     missing = [name for name in names if name not in table.schema.names]
     if missing:
@@ -143,21 +149,16 @@ def _states(path: Path) -> tuple[States, list[str], list[QualityFinding]]:
     )
     n = len(ids)
     numbers, not_finite = {}, np.zeros(n, np.bool_)
-    for name in (*STATE_COLUMNS, *SIZE_COLUMNS):
-        if name in table.schema.names:
-            column = _column(path, table, name, pa.float64())
-            values = pc.fill_null(column, float("nan")).to_numpy(zero_copy_only=False)
-            odd = ~np.isfinite(values)
-            numbers[name] = np.where(odd, np.nan, values)
-            not_finite |= odd & column.is_valid().to_numpy(zero_copy_only=False)
-    codes = {
-        name: _codes(path, _column(path, table, name, pa.string()), name)
-        for name in _OF_A_STATE
-        if name in table.schema.names
-    }
+    for name, column in _columns(path, table, (*STATE_COLUMNS, *SIZE_COLUMNS), pa.float64()).items():
+        values = pc.fill_null(column, float("nan")).to_numpy(zero_copy_only=False)
+        odd = ~np.isfinite(values)
+        numbers[name] = np.where(odd, np.nan, values)
+        not_finite |= odd & column.is_valid().to_numpy(zero_copy_only=False)
+    texts = _columns(path, table, _OF_A_STATE, pa.string())
+    codes = {name: _codes(path, column, name) for name, column in texts.items()}
     egos: list[str] = []
-    if "is_ego" in table.schema.names:
-        chosen = pc.fill_null(_column(path, table, "is_ego", pa.bool_()), fill_value=False)
+    for column in _columns(path, table, ("is_ego",), pa.bool_()).values():
+        chosen = pc.fill_null(column, fill_value=False)
         egos = [i for i in pc.unique(ids.filter(chosen)).to_pylist() if i]
     encoded = pc.dictionary_encode(pc.fill_null(ids, ""))
     actor = encoded.indices.to_numpy()
@@ -190,14 +191,10 @@ def _actors(path: Path) -> pa.Table:
     table = parquet.table(path)
     _need(path, table, ("actor_id",))
     columns = {"actor_id": _column(path, table, "actor_id", pa.string())}
-    for name in SIZE_COLUMNS:
-        if name in table.schema.names:
-            columns[name] = _column(path, table, name, pa.float64())
-    if "actor_class" in table.schema.names:
-        columns["actor_class"] = _spelled(path, _column(path, table, "actor_class", pa.string()), "actor_class")
-    if "is_ego" in table.schema.names:
-        columns["is_ego"] = _column(path, table, "is_ego", pa.bool_())
-    return pa.table(columns)
+    columns |= _columns(path, table, SIZE_COLUMNS, pa.float64())
+    words = _columns(path, table, ("actor_class",), pa.string())
+    columns |= {name: _spelled(path, column, name) for name, column in words.items()}
+    return pa.table(columns | _columns(path, table, ("is_ego",), pa.bool_()))
 
 
 def _extra(path: Path, required: tuple[str, ...], optional: tuple[str, ...]) -> pa.Table | None:
