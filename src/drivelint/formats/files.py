@@ -89,10 +89,9 @@ def _inside(path: Path) -> list[Path]:
     if not path.is_dir() or is_drive_folder(path):
         return [path]
     try:
-        drives = [folder.parent for folder in path.rglob("actor_state.parquet")]
-        drives += [
-            file.parent for file in path.rglob(METADATA_FILE) if is_bag(file.parent) and file.parent not in drives
-        ]
+        drives = [file.parent for file in path.rglob("actor_state.parquet")]
+        bags = [file.parent for file in path.rglob(METADATA_FILE) if is_bag(file.parent)]
+        drives += [bag for bag in bags if bag not in drives]
         inside = frozenset(drives)
         files = [
             file

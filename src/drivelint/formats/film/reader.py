@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
     from drivelint.formats.film.mapping import DetectedActor, EgoCar, OvertakeStages, VideoMapping
     from drivelint.formats.probe import Probe
-    from drivelint.formats.tables.sheets import Sheet
 
 formats: Final[dict[str, tuple[str, str]]] = {}
 takes_mapping: Final = True
@@ -111,7 +110,11 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
     ahead = []
     for actor in film.actor:
         values, odd = sheet.number(str(actor.ahead))
-        _report(path, sheet, odd & ~bad, f"column {actor.ahead!r} is not a number: not detected there", findings)
+        odd &= ~bad
+        if odd.any():
+            where = sheet.describe_rows(np.flatnonzero(odd))
+            message = f"{path.name}, {where}: column {actor.ahead!r} is not a number: not detected there"
+            findings.append(QualityFinding("malformed_cell", "warning", message, int(odd.sum())))
         distance = np.full(len(whole), np.nan)
         distance[at] = values[rows[first]]
         ahead.append(distance)
@@ -124,12 +127,6 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
         )
         findings.append(QualityFinding("malformed_row", "warning", message, n))
     return Sightings(whole, ahead)
-
-
-def _report(path: Path, sheet: Sheet, rows: NDArray[np.bool_], why: str, findings: list[QualityFinding]) -> None:
-    if rows.any():
-        message = f"{path.name}, {sheet.describe_rows(np.flatnonzero(rows))}: {why}"
-        findings.append(QualityFinding("malformed_cell", "warning", message, int(rows.sum())))
 
 
 def _states(

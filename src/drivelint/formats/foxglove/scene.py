@@ -186,8 +186,7 @@ def _recording(
     own_times = choose_clock({topic: rows}, findings)
     frames = _frames(transforms, own_times=own_times)
     rows = _alive(rows, (lifetime, locked), _deletions(scene, rows, own_times=own_times), findings, topic)
-    used = [clean_frame_name(name) for name in sorted(distinct(rows.frames)[0])]
-    fixed = fixed_frame(frames, used)
+    fixed = fixed_frame(frames, sorted(distinct(rows.frames)[0]))
     states, found = states_in_fixed_frame(rows, frames, fixed, topic)
     findings += found
     if not np.isfinite(states.numbers["x_m"]).any():

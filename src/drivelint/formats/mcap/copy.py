@@ -271,7 +271,9 @@ class _Copy:
             if record.opcode != Opcode.MESSAGE_INDEX:
                 self._end_chunk()
             if record.opcode in _LOOSE:
-                self._take_loose(record)
+                self._loose.append(record)
+                if record.end - self._loose[0].at >= LOOSE_CHUNK_BYTES:
+                    self._end_loose()
                 continue
             self._end_loose()
             if record.opcode == Opcode.MESSAGE_INDEX:
@@ -347,11 +349,6 @@ class _Copy:
             return
         self._flush()
         self._sink.index_chunk(index, self._original.chunk_message_index(record))
-
-    def _take_loose(self, record: Record) -> None:
-        self._loose.append(record)
-        if record.end - self._loose[0].at >= LOOSE_CHUNK_BYTES:
-            self._end_loose()
 
     def _end_loose(self) -> None:
         """Put messages outside of chunks, and what was announced between them, into a chunk; announcements alone stay."""

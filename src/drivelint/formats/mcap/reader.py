@@ -85,8 +85,10 @@ class Container:
                 self._check_summary(view, at, start, end)
                 break
             if opcode == Opcode.DATA_END:
-                self._check_data(view, at, view[start:end])
                 in_data = False
+                crc = self._parsed(DataEnd.read, view[start:end], at).data_section_crc
+                if crc and zlib.crc32(view[:at]) != crc:
+                    raise self._damaged(at, "a data section with a wrong CRC (its content changed), ending")
             elif opcode == Opcode.STATISTICS:
                 statistics = self._parsed(Statistics.read, view[start:end], at)
             elif opcode == Opcode.CHUNK:
@@ -158,10 +160,8 @@ class Container:
         if packed_length != len(packed):
             raise self._damaged(at, "a chunk record whose lengths do not fit")
         if size > MAX_CHUNK_BYTES:
-            limit = MAX_CHUNK_BYTES // 2**20
-            raise self._damaged(
-                at, f"a chunk of {len(packed)} bytes that says it unpacks to {size}, beyond {limit} MiB,"
-            )
+            beyond = f"{size}, beyond {MAX_CHUNK_BYTES // 2**20} MiB,"
+            raise self._damaged(at, f"a chunk of {len(packed)} bytes that says it unpacks to {beyond}")
         records = self._unpacked(packed, compression, size, at)
         if crc == 0:
             self._unprotected += 1
@@ -174,13 +174,12 @@ class Container:
             place = end
 
     def _inner(self, view: memoryview, place: int, at: int) -> tuple[int, int, int]:
-        if place + _RECORD.size > len(view):
-            raise self._damaged(at, "a chunk that ends within a record")
-        opcode, length = _RECORD.unpack_from(view, place)
         start = place + _RECORD.size
-        if length > len(view) - start:
-            raise self._damaged(at, "a chunk that ends within a record")
-        return opcode, start, start + length
+        if start <= len(view):
+            opcode, length = _RECORD.unpack_from(view, place)
+            if length <= len(view) - start:
+                return opcode, start, start + length
+        raise self._damaged(at, "a chunk that ends within a record")
 
     def _unpacked(self, packed: memoryview, compression: str, size: int, at: int) -> bytes:
         """Decompress at most `size` bytes, the number the chunk declares."""
@@ -211,11 +210,6 @@ class Container:
         if len(records) != size:
             raise self._damaged(at, f"a chunk that says it unpacks to {size} bytes and unpacks to {len(records)}")
         return records
-
-    def _check_data(self, view: memoryview, at: int, body: memoryview) -> None:
-        crc = self._parsed(DataEnd.read, body, at).data_section_crc
-        if crc and zlib.crc32(view[:at]) != crc:
-            raise self._damaged(at, "a data section with a wrong CRC (its content changed), ending")
 
     def _check_summary(self, view: memoryview, at: int, start: int, end: int) -> None:
         """Check the index's CRC: the data were read without it, so damage there loses nothing."""

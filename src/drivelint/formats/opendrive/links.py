@@ -50,7 +50,11 @@ def links(net: Network, lanes: BuiltLanes, quality: MapQuality) -> list[Link]:
             found[link[0].lanelet_id, link[1].lanelet_id] = link
     result = [found[key] for key in sorted(found)]
     for source, target in result:
-        _check_gap(source, target, quality)
+        gap = float(np.hypot(*(source.line.centre[-1] - target.line.centre[0])))
+        if gap > GAP_M:
+            name = source.lanelet_id
+            message = f"lane {target.lanelet_id} begins {gap:.2f} m away from the end of lane {name} that it continues"
+            quality.add("link_gap", "warning" if source.drivable else "info", name, message)
     _check_unlinked(sorted(lanes.built.values(), key=lambda lane: lane.key), found, quality)
     return result
 
@@ -184,13 +188,6 @@ def _missing(lanes: BuiltLanes, end: LaneEnd, what: str, quality: MapQuality) ->
     severity = "error" if lane is None or lane.drivable else "warning"
     name = lanelet_id(end[0])
     quality.add("missing_link", severity, name, f"lane {name} is linked at its {end[1]} to {what}")
-
-
-def _check_gap(a: Lanelet, b: Lanelet, quality: MapQuality) -> None:
-    gap = float(np.hypot(*(a.line.centre[-1] - b.line.centre[0])))
-    if gap > GAP_M:
-        message = f"lane {b.lanelet_id} begins {gap:.2f} m away from the end of lane {a.lanelet_id} that it continues"
-        quality.add("link_gap", "warning" if a.drivable else "info", a.lanelet_id, message)
 
 
 def _check_unlinked(lanes: list[Lanelet], found: dict[tuple[str, str], Link], quality: MapQuality) -> None:

@@ -179,17 +179,11 @@ def _whole(side: Floats, centre: Floats) -> Floats:
     at = stations(centre)
     begin, end = (float(line.project(shapely.Point(p))) for p in (side[0], side[-1]))
     missing = (at < begin - _CUT_M), (at > end + _CUT_M)
-    before, after = (
-        centre[m] + left[m] * _offset(p, centre, left, s, at)
-        for m, p, s in zip(missing, (side[0], side[-1]), (begin, end), strict=True)
-    )
-    return np.vstack([before, side, after])
-
-
-def _offset(point: Floats, centre: Floats, left: Floats, station: float, at: Floats) -> float:
-    """Return how far a point is to the left of the centre line."""
-    k = int(np.argmin(np.abs(at - station)))
-    return float(np.dot(point - centre[k], left[k]))
+    led = []
+    for beyond, point, station in zip(missing, (side[0], side[-1]), (begin, end), strict=True):
+        k = int(np.argmin(np.abs(at - station)))
+        led.append(centre[beyond] + left[beyond] * float(np.dot(point - centre[k], left[k])))
+    return np.vstack([led[0], side, led[1]])
 
 
 def _nearest(points: Floats, to: Floats) -> Floats:

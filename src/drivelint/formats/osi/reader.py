@@ -29,7 +29,6 @@ from drivelint.phrases import listed
 if TYPE_CHECKING:
     from pathlib import Path
 
-    import pyarrow as pa
     from mcap.records import Channel
     from numpy.typing import NDArray
 
@@ -133,10 +132,8 @@ def _check_topics(container: Container, truths: list[str], topic: str | None) ->
 
 def _nothing(container: Container) -> str:
     """Say what an MCAP file without OSI messages holds instead."""
-    kinds = set()
-    for channel in container.channels.values():
-        schema = container.schemas.get(channel.schema_id)
-        kinds.add(f"{schema.name if schema else 'no schema'} in {channel.message_encoding or 'no encoding'}")
+    names = {0: "no schema", **{number: schema.name for number, schema in container.schemas.items()}}
+    kinds = {f"{names[c.schema_id]} in {c.message_encoding or 'no encoding'}" for c in container.channels.values()}
     needed = f"{GROUND_TRUTH} or {SENSOR_VIEW} in protobuf is needed"
     return f"it has {listed(sorted(kinds)) if kinds else 'no channel'}; {needed}"
 
@@ -157,6 +154,11 @@ def join_batches(batches: list[FrameBatch], log_ns: NDArray[np.uint64]) -> Recor
         {name: np.concatenate([batch.codes[name] for batch in batches]) for name in batches[0].codes},
         np.concatenate([batch.not_finite for batch in batches]),
     )
+    bulbs = Bulbs(
+        np.concatenate([batch.bulbs.frame + offset for batch, offset in zip(batches, offsets, strict=False)]),
+        [name for batch in batches for name in batch.bulbs.signal_id],
+        np.concatenate([batch.bulbs.bits for batch in batches]),
+    )
     nameless = sum(batch.nameless for batch in batches)
     if nameless:
         message = f"moving objects without an id: {nameless}: they are not judged"
@@ -164,7 +166,7 @@ def join_batches(batches: list[FrameBatch], log_ns: NDArray[np.uint64]) -> Recor
     return Recording(
         "osi-mcap",
         states,
-        signals=_signals(batches, offsets, t_ns),
+        signals=signal_states(bulbs, t_ns),
         ego_ids=_host([host for batch in batches for host in batch.hosts], t_ns, findings),
         findings=findings,
         utc_start_ns=int(log_ns.min()) if log_ns.min() >= LEAST_UTC_NS else None,
@@ -180,10 +182,7 @@ def _zeros(batches: list[FrameBatch]) -> list[dict[str, NDArray[np.float64]]]:
     if any(batch.says_zero for batch in batches):
         return [batch.numbers for batch in batches]
     return [
-        {
-            name: np.where(batch.left_out[name], 0.0, v) if name in batch.left_out else v
-            for name, v in batch.numbers.items()
-        }
+        batch.numbers | {name: np.where(rows, 0.0, batch.numbers[name]) for name, rows in batch.left_out.items()}
         for batch in batches
     ]
 
@@ -223,12 +222,3 @@ def _host(hosts: list[int | None], t_ns: NDArray[np.int64], findings: list[Quali
         since = min(at for host, at in first.items() if host != ego)
         findings.append(QualityFinding("ego_count", "warning", message, n, since, str(ego)))
     return [str(ego)]
-
-
-def _signals(batches: list[FrameBatch], offsets: NDArray[np.int64], t_ns: NDArray[np.int64]) -> pa.Table | None:
-    bulbs = Bulbs(
-        np.concatenate([batch.bulbs.frame + offset for batch, offset in zip(batches, offsets, strict=False)]),
-        [name for batch in batches for name in batch.bulbs.signal_id],
-        np.concatenate([batch.bulbs.bits for batch in batches]),
-    )
-    return signal_states(bulbs, t_ns)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from drivelint.drive import embedded_map
 from drivelint.drive.trace import QualityFinding, Recording, States
 from drivelint.errors import TraceError
-from drivelint.formats.coordinate_frames import TransformTree, clean_frame_name, fixed_frame
+from drivelint.formats.coordinate_frames import TransformTree, fixed_frame
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.ros2 import cdr
@@ -173,8 +174,8 @@ def read(path: Path, options: IngestOptions) -> Recording:
     own_times = choose_clock(parts, findings)
     frames = _frames(log, own_times=own_times)
     _drop_nameless(parts, objects, findings)
-    used = [name for source in (odometry, objects) if source for name in _frame_names(parts[source.topic])]
-    fixed = fixed_frame(frames, used)
+    used = [sorted(distinct(parts[source.topic].frames)[0]) for source in (odometry, objects) if source]
+    fixed = fixed_frame(frames, chain.from_iterable(used))
     states: dict[str, States] = {}
     for source in (objects, odometry):
         if source is not None:
@@ -207,10 +208,6 @@ def read(path: Path, options: IngestOptions) -> Recording:
     recording.frame_times, recording.utc_start_ns = message_times(list(parts.values()))
     recording.notes.append(f"positions are in the frame {fixed!r}")
     return recording
-
-
-def _frame_names(rows: RecordedPoses) -> list[str]:
-    return [clean_frame_name(name) for name in sorted(distinct(rows.frames)[0])]
 
 
 def _frames(log: _Log, *, own_times: bool) -> TransformTree:

@@ -72,7 +72,12 @@ def read(probe: Probe) -> Recording:
     recording.conditions = _conditions(path / "drive_condition.parquet")
     if (path / "data_log.parquet").is_file():
         log = (parquet.table(path / "data_log.parquet").to_pylist() or [{}])[0]
-        _whole(path, log.get("n_states"), len(states) + sum(f.n for f in findings if f.check_id == "dropped_row"))
+        counted, found = log.get("n_states"), len(states) + sum(f.n for f in findings if f.check_id == "dropped_row")
+        if counted is not None and counted != found:  # nobody knows who is missing, and when
+            raise TraceError(
+                f"{path / 'actor_state.parquet'}: {found} rows, and data_log.parquet counts {counted} states: copy or "
+                "convert the folder again"
+            )
         recording.sensor_range_m, recording.utc_start_ns = log.get("sensor_range_m"), log.get("utc_start_ns")
         offset = log.get("map_offset_x_m"), log.get("map_offset_y_m")
         if offset != (None, None):
@@ -82,15 +87,6 @@ def read(probe: Probe) -> Recording:
         recording.embedded_map = (path / "map.xodr").read_bytes()
     recording.findings += _quality(path / "quality.parquet")
     return recording
-
-
-def _whole(path: Path, counted: object, found: int) -> None:
-    """Refuse a folder whose states are not those that its log counted: nobody knows who is missing, and when."""
-    if counted is not None and counted != found:
-        raise TraceError(
-            f"{path / 'actor_state.parquet'}: {found} rows, and data_log.parquet counts {counted} states: copy or convert "
-            "the folder again"
-        )
 
 
 def _offset(path: Path, offset: tuple[object, object]) -> tuple[float, float]:

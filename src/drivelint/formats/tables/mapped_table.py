@@ -95,12 +95,10 @@ def _fitting(path: Path) -> tuple[str, Mapping, Sheet]:
         fits.append((name, mapping, sheet))
     if len(fits) == 1:
         return fits[0]
-    names = ", ".join(name for name, _, _ in fits) if fits else ", ".join(mappings.shipped_mappings())
-    what = (
-        f"several mappings fit ({names})"
-        if fits
-        else f"read as a table, no shipped mapping fits its columns (shipped: {names})"
-    )
+    what = f"several mappings fit ({', '.join(name for name, _, _ in fits)})"
+    if not fits:
+        shipped = ", ".join(mappings.shipped_mappings())
+        what = f"read as a table, no shipped mapping fits its columns (shipped: {shipped})"
     raise TraceError(f"{path}: {what}: say how to read it with --mapping FILE|NAME; drivelint inspect drafts one")
 
 
@@ -117,13 +115,11 @@ def _groups(path: Path, name: str, mapping: Mapping, sheet: Sheet) -> list[str]:
         groups = sorted({match[1] for column in sheet.names if (match := shape.fullmatch(column))}, key=int) or ["1"]
     for column in (column.replace(GROUP_PLACEHOLDER, k) for column in columns for k in groups):
         count = sheet.names.count(column)
-        if count != 1:
-            what = (
-                f"the column {column!r} is there {count} times"
-                if count
-                else f"no column {column!r}, which mapping {name!r} needs: {hint(column, sheet.names)}"
-            )
-            raise TraceError(f"{path}: {what}")
+        if count == 0:
+            known = hint(column, sheet.names)
+            raise TraceError(f"{path}: no column {column!r}, which mapping {name!r} needs: {known}")
+        if count > 1:
+            raise TraceError(f"{path}: the column {column!r} is there {count} times")
     return groups
 
 
@@ -268,9 +264,8 @@ class _Body:
         what = f"{describe_places('line', lines, len(lines))}: not the {len(self.sheet.names)} cells of the header"
         if n == 0:
             raise TraceError(f"{self.path}: {what}: no row is left; check the mapping's separator and skip_rows")
-        self.findings.append(
-            QualityFinding("malformed_row", "error", f"{self.path.name}, {what}: not judged", len(lines))
-        )
+        message = f"{self.path.name}, {what}: not judged"
+        self.findings.append(QualityFinding("malformed_row", "error", message, len(lines)))
 
 
 def _word(text: str, spec: WordMapping) -> str | None:
@@ -283,13 +278,11 @@ def _joined(ids: list[str], actor: NDArray[np.int32], parts: list[States]) -> St
     if len(parts) == 1:
         parts[0].ids, parts[0].actor = ids, actor
         return parts[0]
-    numbers = {name: np.concatenate([part.numbers[name] for part in parts]) for name in parts[0].numbers}
-    codes = {name: np.concatenate([part.codes[name] for part in parts]) for name in parts[0].codes}
     return States(
         ids,
         actor,
         np.concatenate([part.t_ns for part in parts]),
-        numbers,
-        codes,
+        {name: np.concatenate([part.numbers[name] for part in parts]) for name in parts[0].numbers},
+        {name: np.concatenate([part.codes[name] for part in parts]) for name in parts[0].codes},
         np.concatenate([part.not_finite for part in parts]),
     )
