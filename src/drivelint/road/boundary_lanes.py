@@ -41,6 +41,14 @@ class Mark(NamedTuple):
     lane_change: str | None = None
 
 
+Limit = tuple[float, float, float | None]
+
+
+def both_marks(left: str | None, right: str | None) -> tuple[Mark, Mark]:
+    """Return the marks of a lane whose markings do not change along it."""
+    return Mark("left", 0.0, 1.0, left), Mark("right", 0.0, 1.0, right)
+
+
 class UnbuildableError(ValueError):
     """A lane that has no shape or no direction; caught where the lane is named."""
 
@@ -59,11 +67,9 @@ def resampled(line: Floats, s: Floats, at: Floats) -> Floats:
 class BoundedLane:
     """One lane. `left`, `right`: bounds (n, 2), (m, 2) in metres, in the direction of travel; the rest as in `lanelet`.
 
-    `left_against`: the lane on that side is driven the other way. A marking of None is not known; `marks` are given instead of
-    `left_marking` and `right_marking` where a side's marking changes along the lane. `limit_mps` is None where there is none or the
-    map does not say, which `limit_known` tells, or says it in a way that cannot be read (not `limit_readable`); `limits` are given
-    instead where it changes: from one share of the length to another, in m/s; `limit_source` is the source of `speed_limit`. `z`:
-    height of each point of `line`; NaN: not known.
+    `left_against`: the lane on that side is driven the other way. `marks`: none, if the markings are not known. `limits`: from one
+    share of the length to another, in m/s, None where there is none or it cannot be read; none, if the map does not say one.
+    `limit_source` is the source of `speed_limit`. `z`: height of each point of `line`; NaN: not known.
     """
 
     lanelet_id: str
@@ -79,14 +85,9 @@ class BoundedLane:
     left_against: bool | None = None
     right_id: str | None = None
     right_against: bool | None = None
-    left_marking: str | None = None
-    right_marking: str | None = None
-    limit_mps: float | None = None
-    limit_known: bool = False
-    limit_readable: bool = True
     limit_source: str = "sign"
     marks: tuple[Mark, ...] = ()
-    limits: tuple[tuple[float, float, float], ...] = ()
+    limits: tuple[Limit, ...] = ()
     road_id: str = ""
     lane_no: int = 0
     along: int = 1
@@ -311,25 +312,20 @@ def _lanelet(lane: BoundedLane) -> dict[str, Any]:
 
 
 def _limits(lane: BoundedLane) -> list[dict[str, Any]]:
-    spans = lane.limits or (((0.0, 1.0, lane.limit_mps),) if lane.limit_known else ())
     length = float(lane.line.s[-1])
     return [
         {"lanelet_id": lane.lanelet_id, "s_start_m": begin * length, "s_end_m": end * length, "limit_mps": limit,
-         "source": lane.limit_source if lane.limit_readable else "unread"}
-        for begin, end, limit in spans
+         "source": lane.limit_source}
+        for begin, end, limit in lane.limits
     ]  # fmt: skip
 
 
 def _boundaries(lane: BoundedLane) -> list[dict[str, Any]]:
-    marks = lane.marks or (
-        Mark("left", 0.0, 1.0, lane.left_marking),
-        Mark("right", 0.0, 1.0, lane.right_marking),
-    )
     length = float(lane.line.s[-1])
     return [
         {"lanelet_id": lane.lanelet_id, "side": mark.side, "s_start_m": mark.begin * length, "s_end_m": mark.end * length,
          "marking": mark.marking, "color": None, "lane_change": mark.lane_change}
-        for mark in marks
+        for mark in lane.marks or both_marks(None, None)
     ]  # fmt: skip
 
 

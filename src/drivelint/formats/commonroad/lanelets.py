@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from drivelint.errors import MapError
 from drivelint.formats import safe_xml
 from drivelint.formats.commonroad.signs import Signs, points, read_signs, referenced_ids, signal_rows, stop_line_rows
-from drivelint.road.boundary_lanes import BoundedLane, bounded_map, build_lanes, crossings, side_driven_on
+from drivelint.road.boundary_lanes import BoundedLane, both_marks, bounded_map, build_lanes, crossings, side_driven_on
 from drivelint.road.handedness import choose_side
 from drivelint.road.quality import MapQuality
 
@@ -82,8 +82,8 @@ def _lane(element: etree._Element, kinds: Sequence[str], signs: Signs) -> Bounde
         bidirectional=len(element.findall("userOneWay")) == 0 and len(element.findall("userBidirectional")) > 0,
         road_type=next((_ROADS[k] for k in kinds if k in _ROADS), None),
         successors=tuple(referenced_ids(element, "successor")),
-        left_marking=_marking(left), right_marking=_marking(right),
-        limit_mps=limit_mps, limit_known=limit_mps is not None, limit_source=limit_source,
+        marks=both_marks(_marking(left), _marking(right)),
+        limits=() if limit_mps is None else ((0.0, 1.0, limit_mps),), limit_source=limit_source,
     )  # fmt: skip
     if (beside := element.find("adjacentLeft")) is not None:
         lane.left_id, lane.left_against = beside.get("ref"), beside.get("drivingDir") != "same"

@@ -6,7 +6,7 @@ place; before he is first detected and after the last time nothing is claimed bu
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -140,7 +140,7 @@ def _states(
     if film.stages is not None:
         ego_y = -own * _across(film, film.stages, frames)
     front = ego_x + film.ego.length / 2
-    parts = [(0, ego_x, ego_y, 0.0, film.ego.speed.mps, t_ns)]
+    parts = [_track(0, t_ns, ego_x, ego_y, yaw=0.0, mps=film.ego.speed.mps)]
     for number, (actor, distance) in enumerate(zip(film.actor, ahead, strict=True), 1):
         seen = np.flatnonzero(np.isfinite(distance))
         if not len(seen):
@@ -149,36 +149,29 @@ def _states(
         along = actor.lane == "own"
         x = (front + distance + actor.length / 2)[there]
         y = np.where(np.isfinite(x), middle if along else -middle, np.nan)
-        parts.append((number, x, y, 0.0 if along else np.pi, actor.speed.mps * (1 if along else -1), t_ns[there]))
+        yaw, mps = (0.0, actor.speed.mps) if along else (np.pi, -actor.speed.mps)
+        parts.append(_track(number, t_ns[there], x, y, yaw=yaw, mps=mps))
     everybody: list[EgoCar | DetectedActor] = [film.ego, *film.actor]
     kinds = ["car", *(actor.kind for actor in film.actor)]
-    who = np.concatenate([np.full(len(x), number, np.int32) for number, x, *_ in parts])
-    placed = np.isfinite(np.concatenate([x for _, x, *_ in parts]))
-
-    def per_part(at: int) -> NDArray[np.float64]:
-        """Return a number that is the same for every state of an actor, unknown where he has no place."""
-        values = np.concatenate([np.full(len(part[1]), part[at], np.float64) for part in parts])
-        return np.where(placed, values, np.nan)
-
-    numbers = {
-        "x_m": np.concatenate([part[1] for part in parts]),
-        "y_m": np.concatenate([part[2] for part in parts]),
-        "yaw_rad": per_part(3),
-        "vx_mps": per_part(4),
-        "vy_mps": np.where(placed, 0.0, np.nan),
-        "length_m": np.array([each.length for each in everybody])[who],
-        "width_m": np.array([each.width for each in everybody])[who],
-    }
+    columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    who, times = columns.pop("who"), columns.pop("t_ns")
+    columns["length_m"] = np.array([each.length for each in everybody])[who]
+    columns["width_m"] = np.array([each.width for each in everybody])[who]
     codes = {"actor_class": np.array([ACTOR_CLASSES.index(kind) for kind in kinds], np.int8)[who]}
-    states = States(
-        [each.id for each in everybody],
-        who,
-        np.concatenate([part[5] for part in parts]),
-        numbers,
-        codes,
-        np.zeros(len(who), np.bool_),
-    )
+    states = States([each.id for each in everybody], who, times, columns, codes, np.zeros(len(who), np.bool_))
     return states, (float(ego_x[0]), float(ego_x[-1]))
+
+
+def _track(
+    number: int, t_ns: NDArray[np.int64], x: NDArray[np.float64], y: NDArray[np.float64], *, yaw: float, mps: float
+) -> dict[str, NDArray[Any]]:
+    """Return the columns of one actor on a straight road; where he has no place, nothing else is known."""
+    placed = np.isfinite(x)
+    same = {"yaw_rad": yaw, "vx_mps": mps, "vy_mps": 0.0}
+    return {
+        "who": np.full(len(x), number, np.int32), "t_ns": t_ns, "x_m": x, "y_m": y,
+        **{name: np.where(placed, value, np.nan) for name, value in same.items()},
+    }  # fmt: skip
 
 
 def _across(film: VideoMapping, stages: OvertakeStages, frames: NDArray[np.int64]) -> NDArray[np.float64]:

@@ -11,7 +11,7 @@ import shapely
 from drivelint.errors import MapError
 from drivelint.formats.lanelet2.file import attribute, load, xy
 from drivelint.formats.lanelet2.furniture import furniture
-from drivelint.road.boundary_lanes import BoundedLane, bounded_map, build_lanes, side_driven_on
+from drivelint.road.boundary_lanes import BoundedLane, both_marks, bounded_map, build_lanes, side_driven_on
 from drivelint.road.handedness import choose_side
 from drivelint.road.quality import MapQuality
 
@@ -77,8 +77,9 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
     limit = _limits()
     for x in mine:
         kind = _KINDS[attribute(x, "subtype")]
-        limit_mps, known = limit(x)
+        limit_mps = limit(x)
         readable = limit_mps is None or (math.isfinite(limit_mps) and limit_mps > 0.0)
+        limits = () if limit_mps is None else ((0.0, 1.0, limit_mps if readable else None),)
         if not readable:
             said = attribute(x, "speed_limit")[:20]
             message = f"{said!r} is no speed limit: taken as unknown"
@@ -88,8 +89,8 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
             bidirectional=kind in _DRIVEN and attribute(x, "one_way") in {"no", "false"},
             road_type=_road_type(x),
             successors=tuple(sorted(starts[x.leftBound[-1].id, x.rightBound[-1].id])),
-            left_marking=_marking(x.leftBound, near_left=False), right_marking=_marking(x.rightBound, near_left=True),
-            limit_mps=limit_mps if readable else None, limit_known=known, limit_readable=readable,
+            marks=both_marks(_marking(x.leftBound, near_left=False), _marking(x.rightBound, near_left=True)),
+            limits=limits, limit_source="sign" if readable else "unread",
         )  # fmt: skip
         left, right = x.leftBound, x.rightBound
         lane.left_id, lane.left_against = _beside(x, rights[_bound(left)], lefts[_turned(left)])
@@ -113,18 +114,18 @@ def _road_type(x: Any) -> str | None:
 
 
 def _limits() -> Any:
-    """Return a function lanelet -> (limit in m/s, whether the map says one): by its signs, not by a nation's default."""
+    """Return a function lanelet -> limit in m/s by its signs, not by a nation's default; None: the map does not say one."""
     import lanelet2
 
     rules = lanelet2.traffic_rules.create(
         lanelet2.traffic_rules.Locations.Germany, lanelet2.traffic_rules.Participants.Vehicle
     )
 
-    def limit(x: Any) -> tuple[float | None, bool]:
+    def limit(x: Any) -> float | None:
         signed = any(attribute(r, "subtype") == "speed_limit" for r in x.regulatoryElements)
         if not signed and "speed_limit" not in x.attributes:
-            return None, False
-        return float(rules.speedLimit(x).speedLimit) / 3.6, True
+            return None
+        return float(rules.speedLimit(x).speedLimit) / 3.6
 
     return limit
 

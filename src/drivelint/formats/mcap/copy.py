@@ -12,7 +12,6 @@ import mmap
 import os
 import struct
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple, Self
 
 import numpy as np
@@ -59,24 +58,11 @@ class Record(NamedTuple):
     end: int
 
 
-@dataclass
-class Contents:
-    """What an MCAP file holds, as far as an index must know it; `indexed`: its chunks' message indexes can be relied on."""
-
-    schemas: dict[int, Schema] = field(default_factory=dict)
-    channels: dict[int, Channel] = field(default_factory=dict)
-    statistics: Statistics | None = None
-    chunks: int = 0
-    in_indexes: int = 0
-    loose: int = 0
-    indexed: bool = True
-
-
 class Original:
     """An MCAP file, mapped into memory and read by its record heads alone wherever that is enough.
 
-    The file was read and checked by ingest; `sha256` is what it was then. Errors: `TraceError` where it is damaged or was
-    changed since.
+    The file was read and checked by ingest; `sha256` is what it was then. `indexed`: its chunks' message indexes can be relied on.
+    Errors: `TraceError` where it is damaged or was changed since.
     """
 
     def __init__(self, path: Path, sha256: str) -> None:
@@ -85,7 +71,9 @@ class Original:
         self._file = _opened(path)  # closed by leaving the `with` that this object is made for
         # mapped for the record heads alone: what is read through a map counts as memory of this process
         self._view = memoryview(mmap.mmap(self._file.fileno(), 0, access=mmap.ACCESS_READ))
-        self.contents = self._survey()
+        self.schemas: dict[int, Schema] = {}
+        self.channels: dict[int, Channel] = {}
+        self.indexed = self._survey()
 
     def __enter__(self) -> Self:
         return self
@@ -169,45 +157,55 @@ class Original:
         channel, _, log_time = _MESSAGE.unpack_from(self._view, record.body)
         return channel, log_time
 
-    def _survey(self) -> Contents:
-        """Find schemas, channels and counts: from the summary if it agrees with the data, else from the chunks themselves."""
-        found = Contents()
+    def _survey(self) -> bool:
+        """Find schemas and channels, from the summary if it agrees with the data, else from the chunks; say whether it agrees."""
+        counts: Statistics | None = None
         named: set[int] = set()
         chunks: list[Record] = []
-        behind_chunk = False
+        messages, behind_chunk = 0, False
         for record in self.records():
             behind_chunk = record.opcode == Opcode.CHUNK or (behind_chunk and record.opcode == Opcode.MESSAGE_INDEX)
             if record.opcode == Opcode.SCHEMA:
                 schema = Schema.read(self.stream(record))
-                found.schemas.setdefault(schema.id, schema)
+                self.schemas.setdefault(schema.id, schema)
             elif record.opcode == Opcode.CHANNEL:
                 channel = Channel.read(self.stream(record))
-                found.channels.setdefault(channel.id, channel)
+                self.channels.setdefault(channel.id, channel)
             elif record.opcode == Opcode.STATISTICS:
-                found.statistics = Statistics.read(self.stream(record))
+                counts = Statistics.read(self.stream(record))
             elif record.opcode == Opcode.CHUNK:
                 chunks.append(record)
             elif record.opcode == Opcode.MESSAGE:
-                found.loose += 1
+                messages += 1
             elif record.opcode == Opcode.MESSAGE_INDEX and behind_chunk:
                 channel_id, n = self.message_index_header(record)
                 named.add(channel_id)
-                found.in_indexes += n
-        found.chunks = len(chunks)
-        found.indexed = not chunks or _agrees(found, named)
-        if not found.indexed:
-            self._look_inside(chunks, found)
-        return found
+                messages += n
+        if not chunks or self._agrees(counts, messages, named):
+            return True
+        self._look_inside(chunks)
+        return False
 
-    def _look_inside(self, chunks: list[Record], found: Contents) -> None:
+    def _look_inside(self, chunks: list[Record]) -> None:
         for chunk in chunks:
             for opcode, _, body in self.chunk_records(chunk):
                 if opcode == Opcode.SCHEMA:
                     schema = Schema.read(ReadDataStream(io.BytesIO(body)))
-                    found.schemas[schema.id] = schema
+                    self.schemas[schema.id] = schema
                 elif opcode == Opcode.CHANNEL:
                     channel = Channel.read(ReadDataStream(io.BytesIO(body)))
-                    found.channels[channel.id] = channel
+                    self.channels[channel.id] = channel
+
+    def _agrees(self, counts: Statistics | None, messages: int, named: set[int]) -> bool:
+        """Whether the summary names every channel and schema, and the message indexes know of every message."""
+        return (
+            counts is not None
+            and counts.message_count == messages
+            and counts.channel_count == len(self.channels)
+            and counts.schema_count == len(self.schemas)
+            and named <= self.channels.keys()
+            and all(c.schema_id == 0 or c.schema_id in self.schemas for c in self.channels.values())
+        )
 
     def _digest(self) -> str:
         digest = hashlib.sha256()
@@ -235,19 +233,6 @@ def _unreadable(path: Path, error: OSError) -> TraceError:
     return TraceError(f"{path}: the log cannot be read any more ({error.strerror or error}): check it again")
 
 
-def _agrees(found: Contents, named: set[int]) -> bool:
-    """Whether the summary names every channel and schema, and the message indexes know of every message."""
-    counts = found.statistics
-    return (
-        counts is not None
-        and counts.message_count == found.in_indexes + found.loose
-        and counts.channel_count == len(found.channels)
-        and counts.schema_count == len(found.schemas)
-        and named <= found.channels.keys()
-        and all(c.schema_id == 0 or c.schema_id in found.schemas for c in found.channels.values())
-    )
-
-
 class _Copy:
     """One copying: bytes wait to be written in one go, from `_from` on, as long as nothing must be put between them."""
 
@@ -261,9 +246,8 @@ class _Copy:
 
     def run(self) -> None:
         """Copy everything before the end of the data."""
-        contents = self._original.contents
-        self._sink.schemas.update(contents.schemas)
-        self._sink.channels.update(contents.channels)
+        self._sink.schemas.update(self._original.schemas)
+        self._sink.channels.update(self._original.channels)
         self._to = len(MAGIC)
         for record in self._original.records():
             if record.opcode in _SUMMARY:
@@ -330,7 +314,7 @@ class _Copy:
 
     def _take_index(self, record: Record) -> None:
         """Copy a message index that can be relied on; another is left out and found anew."""
-        if self._chunk is None or not self._original.contents.indexed:
+        if self._chunk is None or not self._original.indexed:
             self._flush()
             self._from = self._to = record.end
             return
@@ -344,7 +328,7 @@ class _Copy:
         if self._chunk is None:
             return
         (record, index), self._chunk = self._chunk, None
-        if self._original.contents.indexed:
+        if self._original.indexed:
             self._sink.chunks.append(index)
             return
         self._flush()

@@ -14,7 +14,7 @@ import shapely
 
 from drivelint.formats.osi import map_kinds as kinds
 from drivelint.formats.osi.map_logical import MAX_LINK_GAP_M
-from drivelint.road.boundary_lanes import BoundedLane, UnbuildableError, resampled, stations
+from drivelint.road.boundary_lanes import BoundedLane, UnbuildableError, both_marks, resampled, stations
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -222,7 +222,7 @@ def lanelets(plain: Mapping[int, PhysicalLane], truth: Any, ways: Sequence[Bound
             ),
             left_id=neighbours[0][0], left_against=neighbours[0][1],
             right_id=neighbours[1][0], right_against=neighbours[1][1],
-            left_marking=_marking(ids[0], bounds), right_marking=_marking(ids[1], bounds),
+            marks=both_marks(_marking(ids[0], bounds), _marking(ids[1], bounds)),
         )  # fmt: skip
     yield from ways
 

@@ -17,7 +17,7 @@ import numpy as np
 from drivelint.errors import MapError
 from drivelint.formats import safe_xml
 from drivelint.formats.sumo.right_of_way import control_rows
-from drivelint.road.boundary_lanes import BoundedLane, bounded_map, build_lanes, crossings
+from drivelint.road.boundary_lanes import BoundedLane, Limit, bounded_map, build_lanes, crossings
 from drivelint.road.quality import MapQuality
 
 if TYPE_CHECKING:
@@ -149,7 +149,7 @@ def _lane(edge: etree._Element, element: etree._Element) -> BoundedLane:
         road_type=_ROADS.get((edge.get("type") or "").removeprefix("highway.")),
         junction_id=edge.get("id", "").removeprefix(":").rpartition("_")[0] if inside else None,
         # inside a junction the speed is what the bend allows, not a limit
-        limit_mps=None if inside else limit, limit_known=not inside,
+        limits=() if inside else ((0.0, 1.0, limit),),
     )  # fmt: skip
 
 
@@ -234,15 +234,15 @@ def _begun(middle: Floats, other: BoundedLane, end: int) -> Floats:
 
 
 def _limits(lanes: Mapping[str, BoundedLane], follows: Mapping[str, Iterable[str]], inside: Iterable[str]) -> None:
-    waiting = {name for name in inside if not lanes[name].limit_known}
-    found: dict[str, list[float | None]] = defaultdict(list)
+    waiting = {name for name in inside if not lanes[name].limits}
+    found: dict[str, list[tuple[Limit, ...]]] = defaultdict(list)
     for name, targets in follows.items():
         for to in targets:
-            if to in waiting and lanes[name].limit_known:
-                found[to].append(lanes[name].limit_mps)
+            if to in waiting and lanes[name].limits:
+                found[to].append(lanes[name].limits)
     for to, limits in found.items():
         if len(set(limits)) == 1:
-            lanes[to].limit_mps, lanes[to].limit_known = limits[0], True
+            lanes[to].limits = limits[0]
 
 
 def _at(net: _Net, edge: str, index: str) -> str:

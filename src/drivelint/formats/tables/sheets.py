@@ -85,20 +85,20 @@ class CsvSheet:
         self._check_text()
         width = len(self.names) + self._spare
         wanted = {str(self.names.index(name)): name for name in names}
-        options = {
-            "read_options": arrow_csv.ReadOptions(
+        options = (
+            arrow_csv.ReadOptions(
                 skip_rows=self._layout.skip_rows + 1, column_names=[str(i) for i in range(width)], use_threads=False
             ),
-            "parse_options": arrow_csv.ParseOptions(
+            arrow_csv.ParseOptions(
                 delimiter=self._layout.separator, invalid_row_handler=self._refuse, ignore_empty_lines=False
             ),
-            "convert_options": arrow_csv.ConvertOptions(
+            arrow_csv.ConvertOptions(
                 include_columns=list(wanted), column_types=dict.fromkeys(wanted, pa.string()), strings_can_be_null=False
             ),
-        }
+        )
         try:
             with self._path.open("rb") as file:
-                table = arrow_csv.read_csv(file, **options)
+                table = arrow_csv.read_csv(file, *options)
         except pa.ArrowInvalid as error:
             if "Empty CSV" in str(error):
                 raise TraceError(f"{self._path}: no row follows the header: nothing can be judged") from error
