@@ -18,8 +18,8 @@ from drivelint.convert import ConvertRequest, convert
 from drivelint.drive.trace import IngestOptions
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import read_trace
-from drivelint.formats.osi.encode import varint
 from drivelint.formats.osi.writer import osi_ids
+from drivelint.formats.protobuf.wire import varint
 from drivelint.result.files import OutputError
 from tests.formats.osi import osi_log
 from tests.shared_data import ROOT

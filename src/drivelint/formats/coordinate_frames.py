@@ -63,10 +63,10 @@ class TransformTree:
 
     def add(self, child: str, parent: str, t_ns: NDArray[np.int64], poses: Poses, *, static: bool) -> None:
         """Add all transforms of a frame. A second parent makes it ambiguous; static ones count from the last."""
-        if child in self.edges and self.edges[child].parent != parent:
+        known = self.edges.get(child)
+        if known is not None and known.parent != parent:
             self.ambiguous.add(child)
             return
-        known = self.edges.get(child)
         if known is not None:
             t_ns = np.concatenate([known.t_ns, t_ns])
             poses = Poses(
@@ -109,11 +109,11 @@ class TransformTree:
 
 
 def fixed_frame(frames: TransformTree, used: Iterable[str]) -> str:
-    """Return the fixed frame for poses that are given in the frames `used`, the most important first.
+    """Return the fixed frame for poses that are given in the frames `used`, named as recorded, the most important first.
 
     The best of `FIXED_FRAMES` that any of them leads to, else the one above the first of them.
     """
-    names = list(used)
+    names = [clean_frame_name(name) for name in used]
     for candidate in FIXED_FRAMES:
         if any(frames.chain(name, candidate) is not None for name in names):
             return candidate

@@ -19,15 +19,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 CANONICAL_FILES = (
-    "actor.parquet",
-    "actor_state.parquet",
-    "data_log.parquet",
-    "declared_event.parquet",
-    "drive_condition.parquet",
-    "map.xodr",
-    "quality.parquet",
-    "signal_state.parquet",
-)
+    "actor.parquet", "actor_state.parquet", "data_log.parquet", "declared_event.parquet", "drive_condition.parquet",
+    "map.xodr", "quality.parquet", "signal_state.parquet",
+)  # fmt: skip
 """The files of a canonical folder, in name order; all but `actor_state.parquet` may be missing."""
 TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi"})
 """What a folder of traces is searched for, besides XML that is SUMO's: maps and routes lie there as XML too."""
@@ -35,19 +29,10 @@ _HEAD_BYTES = 4096
 RESULT_FILES = frozenset(
     f"{name}.parquet"
     for name in (
-        "courses",
-        "drives",
-        "findings",
-        "lanes",
-        "margins",
-        "opportunities",
-        "overtakes",
-        "rules",
-        "scenes",
-        "spaces",
+        "courses", "drives", "findings", "lanes", "margins", "opportunities", "overtakes", "rules", "scenes", "spaces",
         "verdicts",
     )
-)
+)  # fmt: skip
 """What `check --out` writes and a folder of traces is not searched for, where it lies with its `summary.json`."""
 ANNOTATED_FOLDER = "annotated"
 """The folder beside them: logs that were judged already."""
@@ -104,10 +89,9 @@ def _inside(path: Path) -> list[Path]:
     if not path.is_dir() or is_drive_folder(path):
         return [path]
     try:
-        drives = [folder.parent for folder in path.rglob("actor_state.parquet")]
-        drives += [
-            file.parent for file in path.rglob(METADATA_FILE) if is_bag(file.parent) and file.parent not in drives
-        ]
+        drives = [file.parent for file in path.rglob("actor_state.parquet")]
+        bags = [file.parent for file in path.rglob(METADATA_FILE) if is_bag(file.parent)]
+        drives += [bag for bag in bags if bag not in drives]
         inside = frozenset(drives)
         files = [
             file

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 import re
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from drivelint.errors import MapError, UsageError
-from drivelint.road.map_reader import MapOptions, MapReader, MapSource, MapTables
+from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
 MAX_BYTES = 512 * 2**20  # a city of 2,000 km of lanes is about 200 MB; beyond that the file is a mistake or an attack
@@ -25,37 +25,13 @@ _LOOKS = {
 }
 
 
-def _opendrive() -> MapReader:
-    from drivelint.formats.opendrive.reader import OpenDriveReader
-
-    return OpenDriveReader()
-
-
-def _commonroad() -> MapReader:
-    from drivelint.formats.commonroad.lanelets import CommonRoadReader
-
-    return CommonRoadReader()
-
-
-def _lanelet2() -> MapReader:
-    from drivelint.formats.lanelet2.reader import Lanelet2Reader
-
-    return Lanelet2Reader()
-
-
-def _sumo_net() -> MapReader:
-    from drivelint.formats.sumo.net import SumoNetReader
-
-    return SumoNetReader()
-
-
-# by root element, lower case
-READERS: dict[str, Callable[[], MapReader]] = {
-    "opendrive": _opendrive,
-    "commonroad": _commonroad,
-    "osm": _lanelet2,
-    "net": _sumo_net,
+READERS = {
+    "opendrive": "opendrive.reader",
+    "commonroad": "commonroad.lanelets",
+    "osm": "lanelet2.reader",
+    "net": "sumo.net",
 }
+"""Root element, lower case -> the module that reads such a map: `read(source, options)` returns `MapTables`."""
 
 
 def read_source(path: Path) -> MapSource:
@@ -104,14 +80,14 @@ def load_map(
     if len(source.content) > MAX_BYTES:
         raise _too_large(source.name, len(source.content))
     request = MapOptions((float(offset[0]), float(offset[1])), handedness, sensed, origin)
-    return _reader(source).read(source, request)
+    tables: MapTables = import_module(f"drivelint.formats.{_reader(source)}").read(source, request)
+    return tables
 
 
-def _reader(source: MapSource) -> MapReader:
+def _reader(source: MapSource) -> str:
+    """Return the module of `drivelint.formats` that reads the map."""
     if source.content[:1] in OSI_TAGS:
-        from drivelint.formats.osi.map_lanes import OsiLanesReader
-
-        return OsiLanesReader()
+        return "osi.map_lanes"
     root = root_element_name(source.content)
     if root is None:
         shown = source.content[:24]
@@ -122,7 +98,7 @@ def _reader(source: MapSource) -> MapReader:
             f"map {source.name} looks like {looks}; supported: OpenDRIVE (root element <OpenDRIVE>), "
             "CommonRoad (<commonRoad>), Lanelet2 (<osm>) and SUMO networks (<net>)"
         )
-    return READERS[root.lower()]()
+    return READERS[root.lower()]
 
 
 def root_element_name(content: bytes) -> str | None:

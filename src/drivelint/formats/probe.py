@@ -24,7 +24,7 @@ class Probe:
 
 
 class Reader(Protocol):
-    """One trace format: a module `trace.py` in the format's folder. Its heavy imports stand inside the functions."""
+    """One trace format: a module with these four names."""
 
     @property
     def formats(self) -> Mapping[str, tuple[str, str]]:

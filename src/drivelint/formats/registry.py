@@ -5,15 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import TraceError, UsageError
-from drivelint.formats.commonroad import trace as commonroad
+from drivelint.formats.commonroad import scenario
 from drivelint.formats.files import identify, is_drive_folder
-from drivelint.formats.film import trace as film
+from drivelint.formats.film import reader as film
 from drivelint.formats.mcap import trace as mcap
-from drivelint.formats.osi import trace as osi_file
+from drivelint.formats.osi import file_reader as osi_file
 from drivelint.formats.probe import HEAD_BYTES, Probe, Reader
-from drivelint.formats.sumo import trace as sumo
-from drivelint.formats.tables import canonical_trace as canonical
-from drivelint.formats.tables import trace as table
+from drivelint.formats.sumo import fcd
+from drivelint.formats.tables import canonical, mapped_table
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -25,9 +24,9 @@ READERS: Final[tuple[Reader, ...]] = (
     canonical,
     mcap,
     osi_file,
-    commonroad,
-    sumo,
-    table,  # last: it accepts any text without markup
+    scenario,
+    fcd,
+    mapped_table,  # last: it accepts any text without markup
 )
 """The first that accepts a file reads it."""
 FORMATS: Final = {name: told for reader in READERS for name, told in reader.formats.items()}
@@ -75,10 +74,8 @@ def _probe(path: Path, options: IngestOptions) -> Probe:
         raise TraceError(f"{path}: cannot be read: {error.strerror or error}") from error
     if not head:
         raise TraceError(f"{path}: the file is empty (0 bytes): record or copy it again")
-    from drivelint.formats.osi.file_reader import is_osi_trace
-
     suffix = path.suffix.lower()
-    if suffix == ".osi" and not is_osi_trace(head, path.stat().st_size):
+    if suffix == ".osi" and not osi_file.is_osi_trace(head, path.stat().st_size):
         raise TraceError(
             f"{path}: not an OSI trace: it should begin with a message's length and the message, and begins {head[:32]!r} at "
             "byte 0: copy it again"

@@ -2,30 +2,48 @@
 
 from __future__ import annotations
 
+import math
+from typing import TYPE_CHECKING
+
 from lxml import etree
 
+from drivelint.errors import MapError
 
-class RefusedError(ValueError):
-    """The content is not well-formed XML, or carries a DOCTYPE; the message says which and goes on from a file's name."""
+if TYPE_CHECKING:
+    from drivelint.errors import DriveLintError
+    from drivelint.road.map_reader import MapSource
 
 
-def parse(content: bytes) -> etree._Element:
-    """Return the root element, tags without namespaces. Errors: `RefusedError`."""
+def parse(content: bytes, name: str, kind: type[DriveLintError]) -> etree._Element:
+    """Return the root element, tags without namespaces. Errors: `kind`, about `name`: not well-formed, or with a DOCTYPE."""
     parser = etree.XMLParser(
         resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, remove_comments=True, remove_pis=True
     )
-    doctype = "carries a DOCTYPE, which no map or log needs and which is refused: remove it"
+    doctype = kind(f"{name} carries a DOCTYPE, which no map or log needs and which is refused: remove it")
     try:
         root = etree.fromstring(content, parser)
     except etree.XMLSyntaxError as error:
         if b"<!DOCTYPE" in content[:65536]:
-            raise RefusedError(doctype) from None
-        raise RefusedError(f"is not well-formed XML ({error.msg}): give the complete, unchanged file") from None
+            raise doctype from None
+        raise kind(f"{name} is not well-formed XML ({error.msg}): give the complete, unchanged file") from None
     if root.getroottree().docinfo.internalDTD is not None:
-        raise RefusedError(doctype)
+        raise doctype
     if b"xmlns" not in content and content[:2] not in {b"\xff\xfe", b"\xfe\xff"}:
         return root  # without a declaration nothing has a namespace
     for element in root.iter():
         if isinstance(element.tag, str) and element.tag.startswith("{"):
             element.tag = element.tag.partition("}")[2]
     return root
+
+
+def parse_map(source: MapSource) -> etree._Element:
+    """Return the root element of a map, tags without namespaces. Errors: `MapError`."""
+    return parse(source.content, f"map {source.name}", MapError)
+
+
+def number(text: str | None) -> float:
+    """Return a text as a number, NaN where it is none."""
+    try:
+        return float(text or "nan")
+    except ValueError:
+        return math.nan

@@ -13,13 +13,15 @@ import pyarrow as pa
 import shapely
 
 from drivelint.road import driving_side
-from drivelint.road.tables import from_columns, from_rows, repeated
+from drivelint.road.map_reader import environment_id
+from drivelint.road.tables import Rows, crossing_row, from_columns, from_rows, map_tables, repeated
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
+    from drivelint.road.map_reader import MapOptions, MapSource, MapTables
     from drivelint.road.quality import MapQuality
 
     Floats = NDArray[np.float64]
@@ -39,19 +41,35 @@ class Mark(NamedTuple):
     lane_change: str | None = None
 
 
-class _UnbuildableError(ValueError):
-    """A lane whose bounds make no area; caught where the lane is named."""
+Limit = tuple[float, float, float | None]
+
+
+def both_marks(left: str | None, right: str | None) -> tuple[Mark, Mark]:
+    """Return the marks of a lane whose markings do not change along it."""
+    return Mark("left", 0.0, 1.0, left), Mark("right", 0.0, 1.0, right)
+
+
+class UnbuildableError(ValueError):
+    """A lane that has no shape or no direction; caught where the lane is named."""
+
+
+def stations(line: Floats) -> Floats:
+    """Return how far along a line (n, 2) or (n, 3), seen from above, each of its points lies (m)."""
+    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))])
+
+
+def resampled(line: Floats, s: Floats, at: Floats) -> Floats:
+    """Return the points (m, k) of a line (n, k) at other stations (m,) than its own (n,)."""
+    return np.column_stack([np.interp(at, s, column) for column in line.T])
 
 
 @dataclass(eq=False)
 class BoundedLane:
     """One lane. `left`, `right`: bounds (n, 2), (m, 2) in metres, in the direction of travel; the rest as in `lanelet`.
 
-    `left_against`: the lane on that side is driven the other way. A marking of None is not known; `marks` are given instead of
-    `left_marking` and `right_marking` where a side's marking changes along the lane. `limit_mps` is None where there is none or the
-    map does not say, which `limit_known` tells, or says it in a way that cannot be read (not `limit_readable`); `limits` are given
-    instead where it changes: from one share of the length to another, in m/s; `limit_source` is the source of `speed_limit`. `z_m`:
-    height of each point of `line`; None: not known.
+    `left_against`: the lane on that side is driven the other way. `marks`: none, if the markings are not known. `limits`: from one
+    share of the length to another, in m/s, None where there is none or it cannot be read; none, if the map does not say one.
+    `limit_source` is the source of `speed_limit`. `z`: height of each point of `line`; NaN: not known.
     """
 
     lanelet_id: str
@@ -67,19 +85,19 @@ class BoundedLane:
     left_against: bool | None = None
     right_id: str | None = None
     right_against: bool | None = None
-    left_marking: str | None = None
-    right_marking: str | None = None
-    limit_mps: float | None = None
-    limit_known: bool = False
-    limit_readable: bool = True
     limit_source: str = "sign"
     marks: tuple[Mark, ...] = ()
-    limits: tuple[tuple[float, float, float], ...] = ()
+    limits: tuple[Limit, ...] = ()
     road_id: str = ""
     lane_no: int = 0
     along: int = 1
     line: LaneGeometry = field(init=False)
-    z_m: Floats | None = field(init=False, default=None)
+    z: Floats = field(init=False)
+
+    @property
+    def road_s(self) -> Floats:
+        """Stations of the points on the road."""
+        return self.line.s if self.along > 0 else self.line.s[-1] - self.line.s
 
 
 @dataclass(frozen=True)
@@ -111,6 +129,20 @@ class LaneGeometry:
         """Mean width (m)."""
         return float(((self.half_width[:-1] + self.half_width[1:]) * np.diff(self.s)).sum() / self.s[-1])
 
+    @property
+    def polygon(self) -> shapely.Polygon:
+        """The ground between the bounds."""
+        return shapely.Polygon(np.vstack([self.right, self.left[::-1]])).buffer(0.0)
+
+    def course(self, z: Floats) -> driving_side.OneWayLane:
+        """Return the lane as one that is driven one way; `z`: its heights (m), NaN: not known."""
+        (x, y), (tx, ty) = self.centre.T, self.tangent.T
+        return driving_side.OneWayLane(x, y, z, tx, ty, self.half_width)
+
+    def station(self, place: Floats) -> float:
+        """Return how far along the centre line (m) a place (2,) lies."""
+        return float(shapely.line_locate_point(shapely.LineString(self.centre), shapely.Point(place)))
+
 
 def build_lanes(lanes: Iterable[BoundedLane], offset: tuple[float, float], quality: MapQuality) -> list[BoundedLane]:
     """Build the lanes, sorted by id; report in `quality` a lane that cannot be built, and leave it out."""
@@ -118,7 +150,8 @@ def build_lanes(lanes: Iterable[BoundedLane], offset: tuple[float, float], quali
     for lane in sorted(lanes, key=lambda lane: _by_number(lane.lanelet_id)):
         try:
             lane.line = _line(lane.left + offset, lane.right + offset)
-        except _UnbuildableError as error:
+            lane.z = np.full(len(lane.line.s), np.nan)
+        except UnbuildableError as error:
             quality.add("invalid_lane", "error", lane.lanelet_id, f"lanelet {lane.lanelet_id} is left out: {error}")
             continue
         built[lane.lanelet_id] = lane
@@ -137,20 +170,20 @@ def build_lanes(lanes: Iterable[BoundedLane], offset: tuple[float, float], quali
 
 
 def _line(left: Floats, right: Floats) -> LaneGeometry:
-    """Return the points of a lane. Errors: `_UnbuildableError` saying what is wrong with it."""
+    """Return the points of a lane. Errors: `UnbuildableError` saying what is wrong with it."""
     if len(left) < 2 or len(right) < 2:
-        raise _UnbuildableError("a bound has fewer than two points")
+        raise UnbuildableError("a bound has fewer than two points")
     if not (np.isfinite(left).all() and np.isfinite(right).all()):
-        raise _UnbuildableError("a bound has a coordinate that is not finite")
+        raise UnbuildableError("a bound has a coordinate that is not finite")
     left, right = _paired(left, right)
     centre = (left + right) / 2
     keep = np.r_[True, np.hypot(*np.diff(centre, axis=0).T) > 0.01]
     left, right, centre = left[keep], right[keep], centre[keep]
     if len(centre) < 2:
-        raise _UnbuildableError("it has no length")
+        raise UnbuildableError("it has no length")
     total_m = float(np.hypot(*np.diff(centre, axis=0).T).sum())
     if total_m > _LONGEST_M:
-        raise _UnbuildableError(f"it is {total_m / 1000:.0f} km long")
+        raise UnbuildableError(f"it is {total_m / 1000:.0f} km long")
     left, right = _dense(centre, left), _dense(centre, right)
     centre = (left + right) / 2
     step = np.diff(centre, axis=0)
@@ -159,15 +192,15 @@ def _line(left: Floats, right: Floats) -> LaneGeometry:
     tangent = np.vstack([direction[:1], direction[:-1] + direction[1:], direction[-1:]])
     size = np.hypot(*tangent.T)
     if (size < 0.1).any():
-        raise _UnbuildableError("its centre line turns back on itself")
+        raise UnbuildableError("its centre line turns back on itself")
     tangent = tangent / size[:, None]
     across = left - right
     half = (tangent[:, 0] * across[:, 1] - tangent[:, 1] * across[:, 0]) / 2
     if (half <= 0).all():
-        raise _UnbuildableError("its left bound lies on the right of its right bound")
+        raise UnbuildableError("its left bound lies on the right of its right bound")
     half = np.maximum(half, 0.0)
     if 2 * half.max() > _WIDEST_M:
-        raise _UnbuildableError(f"it is {2 * half.max():.0f} m wide")
+        raise UnbuildableError(f"it is {2 * half.max():.0f} m wide")
     return LaneGeometry(np.r_[0.0, np.cumsum(length)], centre, left, right, tangent, half)
 
 
@@ -175,14 +208,9 @@ def _paired(left: Floats, right: Floats) -> tuple[Floats, Floats]:
     """Return the bounds with as many points each, one beside the other: as given, or at equal shares of their lengths."""
     if len(left) == len(right):
         return left, right
-    stations = [np.r_[0.0, np.cumsum(np.hypot(*np.diff(bound, axis=0).T))] for bound in (left, right)]
-    shares = [s / s[-1] if s[-1] > 0 else np.linspace(0.0, 1.0, len(s)) for s in stations]
+    shares = [s / s[-1] if s[-1] > 0 else np.linspace(0.0, 1.0, len(s)) for s in map(stations, (left, right))]
     at = np.unique(np.round(np.concatenate(shares), 6))
-    first, second = (
-        np.column_stack([np.interp(at, share, bound[:, 0]), np.interp(at, share, bound[:, 1])])
-        for share, bound in zip(shares, (left, right), strict=True)
-    )
-    return first, second
+    return resampled(left, shares[0], at), resampled(right, shares[1], at)
 
 
 def _dense(centre: Floats, bound: Floats) -> Floats:
@@ -229,6 +257,32 @@ def _row(first: BoundedLane, lanes: Mapping[str, BoundedLane]) -> list[tuple[Bou
     return row
 
 
+def bounded_map(
+    source: MapSource,
+    request: MapOptions,
+    lanes: Sequence[BoundedLane],
+    furniture: Mapping[str, Rows],
+    quality: MapQuality,
+    *,
+    kind: str,
+    side: tuple[str, str],
+    geo_reference: str | None = None,
+) -> MapTables:
+    """Return the map of lanes from `build_lanes` and of what is on and beside them: see `map_tables`."""
+    name = environment_id(source, request.offset, side[0], guessed=side[1] == "default")
+    content = {**tables(name, lanes), "road_object": [], **furniture}
+    return map_tables(name, source, request, content, quality, kind=kind, side=side, geo_reference=geo_reference)
+
+
+def signal_row(lane: BoundedLane, s_m: float, place: Floats, **said: Any) -> dict[str, Any]:
+    """Return a row of `traffic_signal`: where it holds on the lane, the place (x, y) where it stands, and what is said of it."""
+    return {
+        "country": None, "type": None, "subtype": None, "value": None, "unit": None, "dynamic": False, "turns": None, **said,
+        "road_id": lane.road_id, "road_s_m": s_m if lane.along > 0 else float(lane.line.s[-1]) - s_m,
+        "lanelet_id": lane.lanelet_id, "lane_s_m": s_m, "x_m": float(place[0]), "y_m": float(place[1]),
+    }  # fmt: skip
+
+
 def tables(name: str, lanes: Sequence[BoundedLane]) -> dict[str, pa.Table]:
     """Return lanelet, lane_point, lane_link, lane_boundary and speed_limit of lanes from `build_lanes`."""
     by_id = {lane.lanelet_id: lane for lane in lanes}
@@ -237,13 +291,12 @@ def tables(name: str, lanes: Sequence[BoundedLane]) -> dict[str, pa.Table]:
         for lane in lanes
         for to in sorted(set(lane.successors))
     ]
-    limits = [row for lane in lanes for row in _limits(lane)]
     return {
         "lanelet": from_rows("lanelet", name, [_lanelet(lane) for lane in lanes]),
-        "lane_point": _points(name, lanes),
+        "lane_point": lane_points(name, lanes),
         "lane_link": from_rows("lane_link", name, links),
         "lane_boundary": from_rows("lane_boundary", name, [row for lane in lanes for row in _boundaries(lane)]),
-        "speed_limit": from_rows("speed_limit", name, limits),
+        "speed_limit": from_rows("speed_limit", name, [row for lane in lanes for row in _limits(lane)]),
     }
 
 
@@ -259,35 +312,31 @@ def _lanelet(lane: BoundedLane) -> dict[str, Any]:
 
 
 def _limits(lane: BoundedLane) -> list[dict[str, Any]]:
-    spans = lane.limits or (((0.0, 1.0, lane.limit_mps),) if lane.limit_known else ())
     length = float(lane.line.s[-1])
     return [
         {"lanelet_id": lane.lanelet_id, "s_start_m": begin * length, "s_end_m": end * length, "limit_mps": limit,
-         "source": lane.limit_source if lane.limit_readable else "unread"}
-        for begin, end, limit in spans
+         "source": lane.limit_source}
+        for begin, end, limit in lane.limits
     ]  # fmt: skip
 
 
 def _boundaries(lane: BoundedLane) -> list[dict[str, Any]]:
-    marks = lane.marks or (
-        Mark("left", 0.0, 1.0, lane.left_marking),
-        Mark("right", 0.0, 1.0, lane.right_marking),
-    )
     length = float(lane.line.s[-1])
     return [
         {"lanelet_id": lane.lanelet_id, "side": mark.side, "s_start_m": mark.begin * length, "s_end_m": mark.end * length,
          "marking": mark.marking, "color": None, "lane_change": mark.lane_change}
-        for mark in marks
+        for mark in lane.marks or both_marks(None, None)
     ]  # fmt: skip
 
 
-def _points(name: str, lanes: Sequence[BoundedLane]) -> pa.Table:
+def lane_points(name: str, lanes: Sequence[Any]) -> pa.Table:
+    """Return `lane_point`. Each lane has `lanelet_id`, `line`, `road_s` (stations on its road) and `z` (heights, NaN: not known)."""
     counts = [len(lane.line.s) for lane in lanes]
     columns: dict[str, Any] = {
         "s_m": np.concatenate([lane.line.s for lane in lanes]),
         "half_width_m": np.concatenate([lane.line.half_width for lane in lanes]),
-        "road_s_m": np.concatenate([s if lane.along > 0 else s[-1] - s for lane in lanes for s in (lane.line.s,)]),
-        "z_m": pa.array(np.concatenate([_heights(lane) for lane in lanes]), pa.float64(), from_pandas=True),
+        "road_s_m": np.concatenate([lane.road_s for lane in lanes]),
+        "z_m": pa.array(np.concatenate([lane.z for lane in lanes]), pa.float64(), from_pandas=True),
         "k": np.concatenate([np.arange(n, dtype=np.int32) for n in counts]),
         "lanelet_id": repeated([lane.lanelet_id for lane in lanes], counts),
     }
@@ -297,13 +346,8 @@ def _points(name: str, lanes: Sequence[BoundedLane]) -> pa.Table:
         ("left", "left_x_m", "left_y_m"),
         ("right", "right_x_m", "right_y_m"),
     ):
-        both = np.vstack([getattr(lane.line, attribute) for lane in lanes])
-        columns[x], columns[y] = both[:, 0], both[:, 1]
+        columns[x], columns[y] = np.vstack([getattr(lane.line, attribute) for lane in lanes]).T
     return from_columns("lane_point", name, columns, sum(counts))
-
-
-def _heights(lane: BoundedLane) -> Floats:
-    return lane.z_m if lane.z_m is not None else np.full(len(lane.line.s), np.nan)
 
 
 def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
@@ -316,34 +360,22 @@ def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
     right = sum(lane.right_against is True and lane.right_id in one_way for lane in one_way.values())
     if left != right:
         return "rht" if left > right else "lht"
-    return driving_side.side_driven_on([_course(lane.line) for lane in one_way.values() if lane.junction_id is None])
+    return driving_side.side_driven_on(
+        [lane.line.course(np.full(len(lane.line.s), np.nan)) for lane in one_way.values() if lane.junction_id is None]
+    )
 
 
-def _course(line: LaneGeometry) -> driving_side.OneWayLane:
-    (x, y), (tx, ty) = line.centre.T, line.tangent.T
-    return driving_side.OneWayLane(x, y, np.full(len(line.s), np.nan), tx, ty, line.half_width)
-
-
-def crossings(
-    walks: Iterable[BoundedLane], lanes: Sequence[BoundedLane], offset: tuple[float, float]
-) -> list[dict[str, Any]]:
+def crossings(walks: Iterable[BoundedLane], lanes: Sequence[BoundedLane], offset: tuple[float, float]) -> Rows:
     """Return the rows of `crossing`: one for each drivable lanelet that a lane for people on foot lies across."""
     driven = [lane for lane in lanes if lane.drivable]
     lines = [shapely.LineString(lane.line.centre) for lane in driven]
     tree = shapely.STRtree(lines)
     rows = []
     for walk in walks:
+        kind = "zebra" if walk.kind == "zebra" else None
         area = shapely.Polygon(np.vstack([walk.right, walk.left[::-1]]) + offset).buffer(0.0)
-        for i in sorted(int(i) for i in tree.query(area, predicate="intersects")):
+        for i in tree.query(area, predicate="intersects"):
             common = shapely.get_coordinates(shapely.intersection(area, lines[i]))
             s = shapely.line_locate_point(lines[i], shapely.points(common))
-            rows.append(
-                {
-                    "crossing_id": walk.lanelet_id,
-                    "lanelet_id": driven[i].lanelet_id,
-                    "s_start_m": float(s.min()),
-                    "s_end_m": float(s.max()),
-                    "kind": "zebra" if walk.kind == "zebra" else None,
-                }
-            )
+            rows.append(crossing_row(walk.lanelet_id, driven[i].lanelet_id, s, kind))
     return sorted(rows, key=lambda r: (r["crossing_id"], r["lanelet_id"]))

@@ -67,13 +67,8 @@ def side_driven_on(courses: Sequence[OneWayLane]) -> str | None:
     for reach_m in (SAME_CARRIAGEWAY_M, CENTRAL_RESERVATION_M):
         left, right = _opposing(pieces, reach_m)
         if left + right >= LEAST_LENGTH_M:
-            return (
-                "rht"
-                if left >= DECISIVE_SHARE * (left + right)
-                else "lht"
-                if right >= DECISIVE_SHARE * (left + right)
-                else None
-            )
+            decisive = DECISIVE_SHARE * (left + right)
+            return "rht" if left >= decisive else "lht" if right >= decisive else None
     return None
 
 

@@ -13,6 +13,8 @@ _CDATA: Final = re.compile(r"<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
 _HEAD_BYTES: Final = 65536
 _SILENT: Final = frozenset({"no_defs", "wktext", "type", "units", "vunits", "geoidgrids"})
 """What does not move a place in the plane (lengths are metres in all our formats)."""
+_DEFAULTS: Final = {("x_0", "0.0"), ("y_0", "0.0"), ("k", "1.0"), ("k_0", "1.0")}
+"""What holds without being said."""
 _DIGITS: Final = 9
 """Decimals that are compared: a tenth of a millimetre on the ground, even of a degree; writers round the last of theirs."""
 
@@ -42,12 +44,8 @@ def _parsed(text: str) -> frozenset[tuple[str, str]]:
     if not any(word.startswith("+") for word in words):
         return frozenset({("", " ".join(words))})
     pairs = (word.removeprefix("+").partition("=")[::2] for word in words)
-    return frozenset((key, _plain(value)) for key, value in pairs if key not in _SILENT and not _nothing(key, value))
-
-
-def _nothing(key: str, value: str) -> bool:
-    """Say whether a parameter says what holds without it."""
-    return (key in {"x_0", "y_0"} and _plain(value) == "0.0") or (key in {"k", "k_0"} and _plain(value) == "1.0")
+    said = {(key, _plain(value)) for key, value in pairs if key not in _SILENT}
+    return frozenset(said - _DEFAULTS)
 
 
 def _plain(value: str) -> str:

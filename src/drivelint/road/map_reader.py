@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -38,6 +38,11 @@ class MapOptions:
     sensed: str | None = None
     origin: tuple[float, float] | None = None
 
+    @property
+    def side(self) -> str | None:
+        """The side driven on that the user gives, lht or rht."""
+        return None if self.handedness == "auto" else self.handedness
+
 
 @dataclass(frozen=True)
 class MapTables:
@@ -54,16 +59,6 @@ class MapTables:
     tables: dict[str, pa.Table] = field(repr=False)
     lanes: str | None = None
     lanes_source: str | None = None
-
-
-class MapReader(Protocol):
-    """One map format."""
-
-    format: str
-
-    def read(self, source: MapSource, request: MapOptions) -> MapTables:
-        """Return the map's tables; `MapError` where nothing can be read."""
-        ...
 
 
 def environment_id(

@@ -9,9 +9,15 @@ from typing import TYPE_CHECKING, Any
 import pyarrow as pa
 
 from drivelint.resources import folder
+from drivelint.road.map_reader import MapTables
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from drivelint.road.map_reader import MapOptions, MapSource
+    from drivelint.road.quality import MapQuality
+
+Rows = list[dict[str, Any]]
 
 _TABLE = re.compile(r"^CREATE TABLE (\w+) \(\n(.*?)^\);", re.DOTALL | re.MULTILINE)
 _COLUMN = re.compile(r"^    (\w+) ([A-Z]+(?:\[\])?)", re.MULTILINE)
@@ -50,6 +56,46 @@ def from_columns(name: str, environment: str, columns: Mapping[str, Any], n: int
         raise KeyError(f"{name}: columns {sorted(columns)} are not those of schemas/map.sql")
     data = {"environment_id": pa.repeat(pa.scalar(environment), n), **columns}
     return pa.table([_array(data[f.name], f.type) for f in schema], schema=schema)
+
+
+def crossing_row(crossing: str, lanelet: str, stations: Any, kind: str | None) -> dict[str, Any]:
+    """Return a row of `crossing` from the first to the last of some stations (m) on the lanelet."""
+    return {
+        "crossing_id": crossing, "lanelet_id": lanelet,
+        "s_start_m": float(min(stations)), "s_end_m": float(max(stations)), "kind": kind,
+    }  # fmt: skip
+
+
+def stop_line_row(stop_line: str, lanelet: str, s_m: float, source: str = "object") -> dict[str, Any]:
+    """Return a row of `stop_line`."""
+    return {"stop_line_id": stop_line, "lanelet_id": lanelet, "lane_s_m": s_m, "source": source}
+
+
+def map_tables(
+    name: str,
+    source: MapSource,
+    request: MapOptions,
+    content: Mapping[str, pa.Table | Rows],
+    quality: MapQuality,
+    *,
+    kind: str,
+    side: tuple[str, str],
+    geo_reference: str | None = None,
+) -> MapTables:
+    """Return the map `name`: `content`, tables or rows by table, with `environment` and `map_quality`.
+
+    `kind`: its format; `side`: the side that is driven on, and what says so.
+    """
+    environment = {
+        "name": source.name, "sha256": source.sha256, "format": kind,
+        "offset_x_m": request.offset[0], "offset_y_m": request.offset[1],
+        "handedness": side[0], "handedness_source": side[1], "geo_reference": geo_reference,
+    }  # fmt: skip
+    tables = {
+        table: from_rows(table, name, rows) if isinstance(rows, list) else rows
+        for table, rows in {"environment": [environment], **content}.items()
+    }
+    return MapTables(name, *side, tables | {"map_quality": quality.table(name)})
 
 
 def _array(values: Any, kind: pa.DataType) -> pa.Array:

@@ -437,7 +437,7 @@ def test_every_way_to_pack_gives_the_same(tmp_path: Path, options: dict[str, Any
 def test_batches_do_not_show(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = write(tmp_path, osi_log.drive(30))
     whole = read(path)
-    monkeypatch.setattr("drivelint.formats.osi.reader.BATCH_BYTES", 700)
+    monkeypatch.setattr("drivelint.formats.mcap.reader.BATCH_BYTES", 700)
     for name, rows in read(path).tables.items():
         assert isinstance(rows, pa.Table)
         assert rows == whole.tables[name]

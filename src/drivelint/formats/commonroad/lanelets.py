@@ -6,21 +6,21 @@ Read with lxml: commonroad-io pins a protobuf of 2022, which cannot be installed
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from drivelint.errors import MapError
 from drivelint.formats import safe_xml
 from drivelint.formats.commonroad.signs import Signs, points, read_signs, referenced_ids, signal_rows, stop_line_rows
-from drivelint.road.boundary_lanes import BoundedLane, build_lanes, crossings, side_driven_on, tables
-from drivelint.road.handedness import correction_hint
-from drivelint.road.map_reader import MapOptions, MapSource, MapTables, environment_id
+from drivelint.road.boundary_lanes import BoundedLane, both_marks, bounded_map, build_lanes, crossings, side_driven_on
+from drivelint.road.handedness import choose_side
 from drivelint.road.quality import MapQuality
-from drivelint.road.tables import from_rows
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from lxml import etree
+
+    from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
 _KINDS = {
     "sidewalk": "sidewalk", "busLane": "bus", "bicycleLane": "biking", "exitRamp": "exit", "accessRamp": "entry",
@@ -40,79 +40,55 @@ _LEFT_DRIVEN = frozenset({
 })  # fmt: skip
 
 
-class CommonRoadReader:
-    """CommonRoad XML."""
-
-    format = "commonroad"
-
-    def read(self, source: MapSource, request: MapOptions) -> MapTables:
-        """Return the map's tables; `MapError` where the file is not XML or has no lanelet that can be built."""
+def read(source: MapSource, request: MapOptions) -> MapTables:
+    """Return the map's tables; `MapError` where the file is not XML or has no lanelet that can be built."""
+    root = safe_xml.parse_map(source)
+    quality = MapQuality()
+    signs = read_signs(root, _country(root), quality)
+    built: list[BoundedLane] = []
+    walks: list[BoundedLane] = []
+    for element in root.findall("lanelet"):
         try:
-            root = safe_xml.parse(source.content)
-        except safe_xml.RefusedError as error:
-            raise MapError(f"map {source.name} {error}") from None
-        quality = MapQuality()
-        signs = read_signs(root, _country(root), quality)
-        read: list[BoundedLane] = []
-        walks: list[BoundedLane] = []
-        for element in root.findall("lanelet"):
-            try:
-                kinds = [t.text or "" for t in element.findall("laneletType")]
-                (walks if "crosswalk" in kinds else read).append(_lane(element, kinds, signs))
-            except (ValueError, KeyError) as error:
-                name = element.get("id") or f"in line {element.sourceline}"
-                quality.add("invalid_lane", "error", name, f"lanelet {name} is left out: {error}")
-        signs.report(root.findall("lanelet"), [light.get("id", "") for light in root.findall("trafficLight")])
-        _report_words(root, quality)
-        _without_towns(root, read, quality)
-        _junctions(root, read)
-        lanes = build_lanes(read, request.offset, quality)
-        if not lanes:
-            first = next((row["message"] for row in quality.rows), "it has no <lanelet>")
-            raise MapError(f"map {source.name} has no lane that can be built: {first}")
-        handedness, how = _handedness(root, lanes, request, quality)
-        name = environment_id(source, request.offset, handedness, guessed=how == "default")
-        result = tables(name, lanes)
-        rows: dict[str, list[dict[str, Any]]] = {
-            "environment": [_environment(source, request, handedness, how)],
-            "traffic_signal": signal_rows(root, signs, lanes, request.offset),
-            "stop_line": stop_line_rows(root, lanes, request.offset),
-            "road_object": [],
-            "crossing": crossings(walks, lanes, request.offset),
-        }
-        result |= {table: from_rows(table, name, content) for table, content in rows.items()}
-        result["map_quality"] = quality.table(name)
-        return MapTables(name, handedness, how, result)
-
-
-def _environment(source: MapSource, request: MapOptions, handedness: str, how: str) -> dict[str, object]:
-    return {
-        "name": source.name, "sha256": source.sha256, "format": CommonRoadReader.format,
-        "offset_x_m": request.offset[0], "offset_y_m": request.offset[1],
-        "handedness": handedness, "handedness_source": how, "geo_reference": None,
-    }  # fmt: skip
+            kinds = [t.text or "" for t in element.findall("laneletType")]
+            (walks if "crosswalk" in kinds else built).append(_lane(element, kinds, signs))
+        except (ValueError, KeyError) as error:
+            name = element.get("id") or f"in line {element.sourceline}"
+            quality.add("invalid_lane", "error", name, f"lanelet {name} is left out: {error}")
+    signs.report(root.findall("lanelet"), [light.get("id", "") for light in root.findall("trafficLight")])
+    _report_words(root, quality)
+    _without_towns(root, built, quality)
+    _junctions(root, built)
+    lanes = build_lanes(built, request.offset, quality)
+    if not lanes:
+        first = next((row["message"] for row in quality.rows), "it has no <lanelet>")
+        raise MapError(f"map {source.name} has no lane that can be built: {first}")
+    country = _country(root)
+    by_country = None if country in {"", "ZAM", "TES"} else "lht" if country in _LEFT_DRIVEN else "rht"
+    side = choose_side([("option", request.side), ("lanes", side_driven_on(lanes)), ("attribute", by_country)], quality)
+    furniture = {
+        "traffic_signal": signal_rows(root, signs, lanes, request.offset),
+        "stop_line": stop_line_rows(root, lanes, request.offset),
+        "crossing": crossings(walks, lanes, request.offset),
+    }
+    return bounded_map(source, request, lanes, furniture, quality, kind="commonroad", side=side)
 
 
 def _lane(element: etree._Element, kinds: Sequence[str], signs: Signs) -> BoundedLane:
     kind = next((_KINDS[k] for k in kinds if k in _KINDS), "driving")
-    limit = signs.speed_limit(element)
+    limit_mps, limit_source = signs.speed_limit(element)
     left, right = element.find("leftBound"), element.find("rightBound")
     lane = BoundedLane(
         str(element.attrib["id"]), points(left), points(right), kind, kind not in _NOT_DRIVEN,
         bidirectional=len(element.findall("userOneWay")) == 0 and len(element.findall("userBidirectional")) > 0,
         road_type=next((_ROADS[k] for k in kinds if k in _ROADS), None),
         successors=tuple(referenced_ids(element, "successor")),
-        left_marking=_marking(left), right_marking=_marking(right),
-        limit_mps=limit.limit_mps, limit_known=limit.limit_mps is not None, limit_source=limit.source,
+        marks=both_marks(_marking(left), _marking(right)),
+        limits=() if limit_mps is None else ((0.0, 1.0, limit_mps),), limit_source=limit_source,
     )  # fmt: skip
-    for side in ("Left", "Right"):
-        beside = element.find(f"adjacent{side}")
-        if beside is not None:
-            against = beside.get("drivingDir") != "same"
-            if side == "Left":
-                lane.left_id, lane.left_against = beside.get("ref"), against
-            else:
-                lane.right_id, lane.right_against = beside.get("ref"), against
+    if (beside := element.find("adjacentLeft")) is not None:
+        lane.left_id, lane.left_against = beside.get("ref"), beside.get("drivingDir") != "same"
+    if (beside := element.find("adjacentRight")) is not None:
+        lane.right_id, lane.right_against = beside.get("ref"), beside.get("drivingDir") != "same"
     return lane
 
 
@@ -158,30 +134,3 @@ def _junctions(root: etree._Element, lanes: Sequence[BoundedLane]) -> None:
     for lane in lanes:
         if lane.lanelet_id in inside and lane.lanelet_id in ends:
             lane.junction_id = inside[lane.lanelet_id]
-
-
-def _handedness(
-    root: etree._Element, lanes: Sequence[BoundedLane], request: MapOptions, quality: MapQuality
-) -> tuple[str, str]:
-    """Return the side driven on and how it was found: option, lanes beside each other, country, default."""
-    country = _country(root)
-    by_country = None if country in {"", "ZAM", "TES"} else "lht" if country in _LEFT_DRIVEN else "rht"
-    said = [
-        (how, side)
-        for how, side in (
-            ("option", None if request.handedness == "auto" else request.handedness),
-            ("lanes", side_driven_on(lanes)),
-            ("attribute", by_country),
-        )
-        if side is not None
-    ]
-    if len({side for _, side in said}) > 1:
-        opinions = ", ".join(f"{how}: {side}" for how, side in said)
-        source, side = said[0]
-        message = f"{opinions}; the first is taken: if it is wrong, {correction_hint(side, source)}"
-        quality.add("handedness_disagrees", "warning", None, message)
-    if not said:
-        message = "nothing in the map says which side is driven on: right-hand traffic is a guess; give --handedness"
-        quality.add("handedness_default", "warning", None, message)
-        return "rht", "default"
-    return said[0][1], said[0][0]

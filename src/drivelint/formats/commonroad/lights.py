@@ -9,6 +9,7 @@ import numpy as np
 import pyarrow as pa
 
 from drivelint.drive.trace import QualityFinding
+from drivelint.formats import safe_xml
 
 if TYPE_CHECKING:
     from lxml import etree
@@ -38,9 +39,8 @@ def signal_states(
         try:
             steps, shown = _unrolled(light, first, last)
         except _UnreadError as error:
-            findings.append(
-                QualityFinding("signal_cycle", "warning", f"the states of traffic light {name} are not known: {error}")
-            )
+            message = f"the states of traffic light {name} are not known: {error}"
+            findings.append(QualityFinding("signal_cycle", "warning", message))
             continue
         if None in shown:
             words = sorted({w for w in _colours(light) if w not in _STATES})
@@ -70,10 +70,12 @@ def _unrolled(light: etree._Element, first: float, last: float) -> tuple[NDArray
     colours = _colours(light)
     if not colours:
         raise _UnreadError("it has no cycle")
-    durations = np.array([_number(e.findtext("duration")) for e in light.iterfind("cycle/cycleElement")], np.float64)
+    durations = np.array(
+        [safe_xml.number(e.findtext("duration")) for e in light.iterfind("cycle/cycleElement")], np.float64
+    )
     if not (durations >= _LEAST_STEPS).all():
         raise _UnreadError("a phase of its cycle has no duration")
-    offset = _number(_said(light, "timeOffset") or "0")
+    offset = safe_xml.number(_said(light, "timeOffset") or "0")
     if not math.isfinite(offset):
         raise _UnreadError("its time offset is no number")
     ends = np.cumsum(durations)
@@ -92,10 +94,3 @@ def _colours(light: etree._Element) -> list[str]:
 def _said(light: etree._Element, name: str) -> str:
     """Return what a light says, or its cycle: writers differ in where they put it."""
     return (light.findtext(name) or light.findtext(f"cycle/{name}") or "").strip()
-
-
-def _number(text: str | None) -> float:
-    try:
-        return float(text or "nan")
-    except ValueError:
-        return math.nan

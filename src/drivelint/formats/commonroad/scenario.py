@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from lxml import etree
@@ -25,8 +25,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.formats.probe import Probe
+
     Floats = NDArray[np.float64]
 
+formats: Final = {"commonroad": ("CommonRoad scenario", "said with --ego")}
+takes_mapping: Final = False
 _CLASSES = {
     "car": "car", "taxi": "car", "truck": "truck", "bus": "bus", "motorcycle": "motorcycle", "bicycle": "bicycle",
     "pedestrian": "pedestrian", "priorityVehicle": "vehicle", "parkedVehicle": "vehicle", "train": "vehicle",
@@ -43,20 +47,18 @@ _STATES = "(initialState|trajectory/state)"
 _TEXTS = {place: etree.XPath(f"{_STATES}/{place}/text()", smart_strings=False) for place in (*_FIELDS.values(), _TIME)}
 
 
-def is_scenario(head: bytes) -> bool:
-    """Say whether a file begins as a CommonRoad scenario."""
-    return b"<commonRoad" in head
+def accepts(probe: Probe) -> bool:
+    """Accept by its root element."""
+    return b"<commonRoad" in probe.head
 
 
-def read(path: Path) -> Recording:
+def read(probe: Probe) -> Recording:
     """Read a scenario. Errors: `TraceError` for malformed XML, no obstacles, or times that cannot be understood."""
+    path = probe.path
     content = path.read_bytes()
     fast = extract_trajectories(content)
-    try:
-        root = safe_xml.parse(content if fast is None else fast.rest)
-    except safe_xml.RefusedError as error:
-        raise TraceError(f"{path} {error}") from None
-    step_s = _number(root.get("timeStepSize"))
+    root = safe_xml.parse(content if fast is None else fast.rest, str(path), TraceError)
+    step_s = safe_xml.number(root.get("timeStepSize"))
     if not step_s > 0.0:
         raise TraceError(
             f"{path}: timeStepSize is {root.get('timeStepSize')!r}: a scenario needs a positive number of seconds"
@@ -66,9 +68,8 @@ def read(path: Path) -> Recording:
         raise TraceError(f"{path}: the scenario has no obstacles: there is nobody to judge")
     ids = [str(o.get("id")) for o in obstacles]
     if len(set(ids)) < len(ids):
-        raise TraceError(
-            f"{path}: two obstacles have the same id: {listed(sorted({i for i in ids if ids.count(i) > 1}))}"
-        )
+        twice = listed(sorted({i for i in ids if ids.count(i) > 1}))
+        raise TraceError(f"{path}: two obstacles have the same id: {twice}")
     trajectories = {} if fast is None else dict(zip(root.iter("trajectory"), fast.columns, strict=True))
     parts = [_states(path, o, trajectories) for o in obstacles]
     last = max((int(part["step"].max()) for part in parts if len(part["step"])), default=0)
@@ -100,17 +101,6 @@ def read(path: Path) -> Recording:
     return recording
 
 
-def _number(text: str | None) -> float:
-    try:
-        return float(text or "nan")
-    except ValueError:
-        return math.nan
-
-
-def _all_states(obstacle: etree._Element) -> list[etree._Element]:
-    return [*obstacle.findall("initialState"), *obstacle.findall("trajectory/state")]
-
-
 @cache
 def _lacking(places: tuple[str, ...]) -> etree.XPath:
     """Return the question whether some state lacks one of these places."""
@@ -129,14 +119,16 @@ def _numbers(obstacle: etree._Element, states: list[etree._Element]) -> dict[str
             }
         except ValueError:
             pass  # one of them is no number: which, is seen below
-    return {place: np.array([_number(state.findtext(place)) for state in states], np.float64) for place in texts}
+    return {
+        place: np.array([safe_xml.number(state.findtext(place)) for state in states], np.float64) for place in texts
+    }
 
 
 def _states(
     path: Path, obstacle: etree._Element, trajectories: Mapping[etree._Element, Mapping[str, Floats]]
 ) -> dict[str, Floats]:
     """Return the columns of an obstacle, (n,) each. Errors: `TraceError` for a state without an exact time."""
-    states = _all_states(obstacle)
+    states = [*obstacle.findall("initialState"), *obstacle.findall("trajectory/state")]
     found = _numbers(obstacle, states)
     trajectory = obstacle.find("trajectory")
     more = None if trajectory is None else trajectories.get(trajectory)
@@ -170,15 +162,13 @@ def _size(obstacle: etree._Element) -> tuple[float, float]:
     """Return length and width of a rectangle, or of the square around a circle; of other shapes: not known."""
     box, circle = obstacle.find("shape/rectangle"), obstacle.find("shape/circle")
     if box is not None:
-        return _number(box.findtext("length")), _number(box.findtext("width"))
-    diameter = 2 * _number(circle.findtext("radius")) if circle is not None else math.nan
+        return safe_xml.number(box.findtext("length")), safe_xml.number(box.findtext("width"))
+    diameter = 2 * safe_xml.number(circle.findtext("radius")) if circle is not None else math.nan
     return diameter, diameter
 
 
 def _codes(obstacles: list[etree._Element], counts: list[int]) -> dict[str, NDArray[np.int8]]:
-    classes = []
-    for obstacle in obstacles:
-        word = _CLASSES.get((obstacle.findtext("type") or "").strip())
-        classes.append(ACTOR_CLASSES.index(word) if word else -1)
+    words = [_CLASSES.get((obstacle.findtext("type") or "").strip()) for obstacle in obstacles]
+    classes = [ACTOR_CLASSES.index(word) if word else -1 for word in words]
     unknown = np.full(sum(counts), -1, np.int8)
     return {"actor_class": np.repeat(np.array(classes, np.int8), counts), "indicator": unknown, "brake_light": unknown}

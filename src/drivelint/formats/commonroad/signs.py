@@ -11,12 +11,15 @@ import math
 import re
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import shapely
 
+from drivelint.formats import safe_xml
+from drivelint.road.boundary_lanes import signal_row
 from drivelint.road.signcodes import kind_of, turns_of_direction
+from drivelint.road.tables import Rows, stop_line_row
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -36,9 +39,8 @@ _AT_THE_END = frozenset({"traffic_light", "stop", "give_way"})  # where the lane
 _SPEEDS = _LIMITS | {"minimum_speed"}
 _STVO = re.compile(r"1?\d{3}(\.\d)?(-\d+)?")  # of these, the codes that limit the speed are known
 _FASTEST_MPS = 45.0  # 160 km/h: no sign allows more, so a greater number is not in m/s
-_PLATES = frozenset(
-    {"1000", "1002", "1006", "1007", "1010", "1012"}
-)  # give a direction or a reason; others of 1xxx restrict a sign
+# of additional plates, these give a direction or a reason; others restrict the sign above them
+_PLATES = frozenset({"1000", "1002", "1006", "1007", "1010", "1012"})
 
 
 class SignElement(NamedTuple):
@@ -49,26 +51,22 @@ class SignElement(NamedTuple):
     value: float | None
 
 
-@dataclass(frozen=True)
-class SpeedLimit:
-    """The limit of a lanelet in m/s, None where the map gives none that is sure; `source`: sign, or lane for its own element."""
-
-    limit_mps: float | None
-    source: str
-
-
 @dataclass
 class Signs:
-    """The signs of a map by their id; what cannot be read of them is a row of `quality`."""
+    """The signs of a map by their id; what cannot be read of them is a row of `quality`.
+
+    `codes`: the list that their codes are from, as in `traffic_signal`.
+    """
 
     country: str
+    codes: str
     quality: MapQuality
     elements: dict[str, list[SignElement]] = field(default_factory=dict)
 
-    def speed_limit(self, lanelet: etree._Element) -> SpeedLimit:
-        """Return the limit of a lanelet: the least of those on its signs and of its own (2018b).
+    def speed_limit(self, lanelet: etree._Element) -> tuple[float | None, str]:
+        """Return the limit of a lanelet in m/s, the least of those on its signs and of its own (2018b), and its source, sign or lane.
 
-        One that holds only under a condition, by a plate, may be lower: then the limit is not known.
+        None: the map gives none that is sure. One that holds only under a condition, by a plate, may be lower: then the limit is not known.
         """
         own = _number(lanelet.findtext("speedLimit"))
         if own is not None and (trouble := _implausible(own)):
@@ -86,7 +84,7 @@ class Signs:
         least = min(sure, default=None)
         if perhaps and (least is None or min(perhaps) < least):
             least = None
-        return SpeedLimit(least, "lane" if least is not None and least == own else "sign")
+        return least, "lane" if least is not None and least == own else "sign"
 
     def report(self, lanelets: Sequence[etree._Element], lights: Iterable[str]) -> None:
         """Report signs that are not read, and references to signs or lights that the map does not have."""
@@ -132,22 +130,16 @@ class Signs:
 
 def read_signs(root: etree._Element, country: str, quality: MapQuality) -> Signs:
     """Read the signs of a map; `country` is that of its name, by ISO 3166 (three letters)."""
-    signs = Signs(country or "no country", quality)
-    codes = _LISTS.get(country, "de")
+    signs = Signs(country or "no country", _LISTS.get(country, "de"), quality)
     for sign in root.findall("trafficSign"):
         on_post = []
         for part in sign.findall("trafficSignElement"):
             code = (part.findtext("trafficSignID") or "").strip()
             values = [_number(v.text) for v in part.findall("additionalValue")]
-            kind = kind_of(codes, code, "") or kind_of("de", code, "")
+            kind = kind_of(signs.codes, code, "") or kind_of("de", code, "")
             on_post.append(SignElement(code, kind, next((v for v in values if v is not None), None)))
         signs.elements[sign.get("id", "")] = on_post
     return signs
-
-
-def code_list(country: str) -> str:
-    """Return the list that the codes of a country's signs are from, as in `traffic_signal`."""
-    return _LISTS.get(country, "de")
 
 
 def referenced_ids(element: etree._Element, name: str) -> list[str]:
@@ -157,19 +149,14 @@ def referenced_ids(element: etree._Element, name: str) -> list[str]:
 
 def signal_refs(lanelet: etree._Element) -> list[str]:
     """Return the signs and lights that hold for a lanelet: its own, and those of its stop line."""
-    found = [
-        referenced_ids(each, name) for each in _and_line(lanelet) for name in ("trafficSignRef", "trafficLightRef")
-    ]
-    return list(dict.fromkeys(ref for some in found for ref in some))
+    return list(dict.fromkeys(ref for each in (lanelet, *lanelet.findall("stopLine")) for ref in _own_refs(each)))
 
 
-def _and_line(lanelet: etree._Element) -> list[etree._Element]:
-    return [lanelet, *lanelet.findall("stopLine")]
+def _own_refs(element: etree._Element) -> list[str]:
+    return referenced_ids(element, "trafficSignRef") + referenced_ids(element, "trafficLightRef")
 
 
-def signal_rows(
-    root: etree._Element, signs: Signs, lanes: Sequence[BoundedLane], offset: tuple[float, float]
-) -> list[dict[str, Any]]:
+def signal_rows(root: etree._Element, signs: Signs, lanes: Sequence[BoundedLane], offset: tuple[float, float]) -> Rows:
     """Return rows of `traffic_signal`: one for each sign or light and lanelet that refers to it.
 
     A light, stop sign or give-way sign stands at the lanelet's stop line if that refers to it, a light always there or, without a line, at
@@ -182,14 +169,10 @@ def signal_rows(
         lane = by_id.get(lanelet.get("id", ""))
         if lane is None:
             continue
-        at_line = {
-            ref
-            for line in lanelet.findall("stopLine")
-            for ref in (*referenced_ids(line, "trafficSignRef"), *referenced_ids(line, "trafficLightRef"))
-        }
-        lights = set(referenced_ids(lanelet, "trafficLightRef"))
+        at_line = {ref for line in lanelet.findall("stopLine") for ref in _own_refs(line)}
+        at_line |= set(referenced_ids(lanelet, "trafficLightRef"))
         for ref in signal_refs(lanelet):
-            holds.setdefault(ref, []).append((lane, lines.get(lane.lanelet_id) if ref in at_line | lights else None))
+            holds.setdefault(ref, []).append((lane, lines.get(lane.lanelet_id) if ref in at_line else None))
     rows = []
     for element in [*root.findall("trafficSign"), *root.findall("trafficLight")]:
         light = element.tag == "trafficLight"
@@ -204,14 +187,10 @@ def signal_rows(
                 end = float(lane.line.s[-1])
                 unit = "m/s" if part.kind in _SPEEDS and part.value is not None else None
                 where = stands if stands is not None else lane.line.centre[-1 if s > end / 2 else 0]
-                rows.append(
-                    {
-                        "signal_id": name, "kind": part.kind, "country": code_list(signs.country),
-                        "type": part.code, "subtype": None, "value": part.value, "unit": unit,
-                        "dynamic": light, "turns": turns, "road_id": lane.road_id, "road_s_m": s if lane.along > 0 else end - s,
-                        "lanelet_id": lane.lanelet_id, "lane_s_m": s, "x_m": float(where[0]), "y_m": float(where[1]),
-                    }
-                )  # fmt: skip
+                rows.append(signal_row(
+                    lane, s, where, signal_id=name, kind=part.kind, country=signs.codes, type=part.code, value=part.value,
+                    unit=unit, dynamic=light, turns=turns,
+                ))  # fmt: skip
     return sorted(rows, key=lambda r: (r["signal_id"], r["type"], r["lanelet_id"]))
 
 
@@ -223,7 +202,7 @@ def _station(lane: BoundedLane, kind: str | None, stands: Floats | None, line_s_
     if kind == "traffic_light":
         return end
     if stands is not None:
-        return float(shapely.line_locate_point(shapely.LineString(lane.line.centre), shapely.Point(stands)))
+        return lane.line.station(stands)
     return end if kind in _AT_THE_END else 0.0
 
 
@@ -241,14 +220,9 @@ def _lines(root: etree._Element, lanes: Sequence[BoundedLane], offset: tuple[flo
     return found
 
 
-def stop_line_rows(
-    root: etree._Element, lanes: Sequence[BoundedLane], offset: tuple[float, float]
-) -> list[dict[str, Any]]:
+def stop_line_rows(root: etree._Element, lanes: Sequence[BoundedLane], offset: tuple[float, float]) -> Rows:
     """Return rows of `stop_line`, one for each lanelet that has one."""
-    rows = [
-        {"stop_line_id": f"{name}.stop", "lanelet_id": name, "lane_s_m": s, "source": "object"}
-        for name, s in _lines(root, lanes, offset).items()
-    ]
+    rows = [stop_line_row(f"{name}.stop", name, s) for name, s in _lines(root, lanes, offset).items()]
     return sorted(rows, key=lambda r: str(r["stop_line_id"]))
 
 
@@ -262,10 +236,7 @@ def points(parent: etree._Element | None) -> Floats:
 
 
 def _number(text: str | None) -> float | None:
-    try:
-        value = float(text or "nan")
-    except ValueError:
-        return None
+    value = safe_xml.number(text)
     return value if math.isfinite(value) else None
 
 
@@ -281,13 +252,7 @@ def _implausible(limit_mps: float) -> str | None:
 def _restricts(element: SignElement) -> bool:
     """Tell whether an additional plate (StVO, 1000 to 1099) says when, where or for whom the sign above it holds."""
     number = element.code.partition("-")[0]
-    return (
-        element.kind is None
-        and len(number) == 4
-        and number.isdecimal()
-        and number[:2] == "10"
-        and number not in _PLATES
-    )
+    return element.kind is None and bool(re.fullmatch(r"10\d\d", number)) and number not in _PLATES
 
 
 def _counted(found: Counter[str]) -> str:

@@ -5,12 +5,11 @@ A box of w pixels of somebody W metres wide is s = c W / w metres ahead, c being
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from drivelint.errors import TraceError, UsageError
-from drivelint.formats.film.sightings import Sightings
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container
 from drivelint.formats.ros2 import cdr
@@ -31,6 +30,13 @@ _TREE: Final[FieldTree] = {
     "header": HEADER,
     "detections": {"bbox": {"size_x": None, "size_y": None}, "id": None, "tracking_id": None},
 }
+
+
+class Sightings(NamedTuple):
+    """Frames that exist (numbers, rising), and per actor its distance ahead in each, NaN where it was not detected."""
+
+    frames: NDArray[np.int64]
+    ahead_m: list[NDArray[np.float64]]
 
 
 def read(path: Path, film: VideoMapping) -> Sightings:

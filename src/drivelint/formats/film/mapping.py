@@ -13,7 +13,7 @@ from typing import Annotated, Any, Final, Literal
 import msgspec
 
 from drivelint.errors import UsageError
-from drivelint.formats.tables.mapping import UNITS
+from drivelint.formats.tables.mapping import UNITS, read_toml
 from drivelint.phrases import hint
 
 MAPPINGS_FOLDER: Final = Path(__file__).parent / "mappings"
@@ -126,27 +126,18 @@ def is_video_mapping(name: str) -> bool:
 def load(name: str) -> tuple[str, VideoMapping]:
     """Return a mapping and its name. Errors: `UsageError` naming file and key."""
     path = Path(name) if Path(name).is_file() else MAPPINGS_FOLDER / f"{name}.toml"
-    raw = _raw(path)
+    raw = read_toml(path)
     if "extends" in raw:
         base = raw.pop("extends")
         if base not in shipped_mappings():
             raise UsageError(f"mapping {path}: extends {base!r}: {hint(str(base), shipped_mappings())}")
-        raw = _merged(_raw(MAPPINGS_FOLDER / f"{base}.toml"), raw)
+        raw = _merged(read_toml(MAPPINGS_FOLDER / f"{base}.toml"), raw)
     try:
         film = msgspec.convert(raw, VideoMapping)
     except msgspec.ValidationError as error:
         raise UsageError(f"mapping {path}: {error}") from error
     _validate(path, film)
     return path.stem, film
-
-
-def _raw(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise UsageError(f"mapping {path}: cannot be read: {error.strerror or error}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise UsageError(f"mapping {path}: not valid TOML: {error}") from error
 
 
 def _merged(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:

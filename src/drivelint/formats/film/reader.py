@@ -6,7 +6,7 @@ place; before he is first detected and after the last time nothing is claimed bu
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from drivelint.drive.trace import ACTOR_CLASSES, QualityFinding, Recording, Stat
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.film import boxes
 from drivelint.formats.film import mapping as video_mapping
-from drivelint.formats.film.sightings import Sightings
+from drivelint.formats.film.boxes import Sightings
 from drivelint.formats.tables.mapping import TextLayout
 from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, describe_places
 
@@ -24,7 +24,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.formats.film.mapping import DetectedActor, EgoCar, OvertakeStages, VideoMapping
+    from drivelint.formats.probe import Probe
 
+formats: Final[dict[str, tuple[str, str]]] = {}
+takes_mapping: Final = True
 PULL_OUT_OVERLAP_M: Final = 0.06
 """How far a corner is over the centre line in the first frame of pulling out: just more than counts as over it (0.05 m)."""
 PASSING_SHORTFALL_M: Final = 0.11
@@ -33,7 +36,7 @@ ROAD_EXTENSION_M: Final = 400.0
 """How much longer the road is than the ego's way, at both ends."""
 
 
-def matching_mapping(path: Path) -> str | None:
+def _matching_mapping(path: Path) -> str | None:
     """Return the shipped mapping that judges every frame and whose columns the table has; None where there is none."""
     try:
         names = CsvSheet(path, TextLayout()).names
@@ -46,37 +49,39 @@ def matching_mapping(path: Path) -> str | None:
     return None
 
 
-def read(path: Path, name: str) -> Recording:
-    """Read a table of detections through a mapping. Errors: `TraceError`, `UsageError`."""
-    stem, film = video_mapping.load(name)
-    with path.open("rb") as file:
-        head = file.read(5)
+def accepts(probe: Probe) -> bool:
+    """Accept by the mapping; a table without one by the columns of a shipped one."""
+    if probe.path.is_dir():
+        return False
+    if probe.options.mapping is not None:
+        return video_mapping.is_video_mapping(probe.options.mapping)
+    begins = probe.head[:16].lstrip(b"\xef\xbb\xbf").startswith(b"frame")
+    return begins and _matching_mapping(probe.path) is not None
+
+
+def read(probe: Probe) -> Recording:
+    """Read detections, a table or boxes in MCAP, through a mapping. Errors: `TraceError`, `UsageError`."""
+    path = probe.path
+    stem, film = video_mapping.load(probe.options.mapping or _matching_mapping(path) or "")
     findings: list[QualityFinding] = []
-    if head.startswith(b"\x89MCAP"):
+    if probe.head.startswith(b"\x89MCAP"):
         seen = boxes.read(path, film)
     else:
-        seen = _table(path, stem, film, findings, is_parquet=head.startswith(b"PAR1"))
-    return make_recording(path, stem, film, seen, findings)
-
-
-def make_recording(
-    path: Path, name: str, film: VideoMapping, seen: Sightings, findings: list[QualityFinding]
-) -> Recording:
-    """Return the recording of the detections, placed on the assumed road. Errors: `TraceError` where no frame is left."""
+        seen = _table(path, stem, film, findings, is_parquet=probe.head.startswith(b"PAR1"))
     judged = seen.frames % film.frames.every == 0
     frames = seen.frames[judged]
     if not len(frames):
-        raise TraceError(f"{path}: no frame that mapping {name!r} judges: see its [frames]")
+        raise TraceError(f"{path}: no frame that mapping {stem!r} judges: see its [frames]")
     t_ns = np.rint((film.frames.start_s + frames / film.frames.rate_hz) * 1e9).astype(np.int64)
     states, egos_x = _states(film, frames, t_ns, [ahead[judged] for ahead in seen.ahead_m])
     assumed = "speeds, lanes and the ego's way across them"
-    message = f"mapping {name!r} assumes {assumed}; only distances ahead are measured: rules about anything else judge what is assumed"
+    message = f"mapping {stem!r} assumes {assumed}; only distances ahead are measured: rules about anything else judge what is assumed"
     recording = Recording(
-        name, states, ego_ids=[film.ego.id], findings=[*findings, QualityFinding("assumed_motion", "warning", message)]
+        stem, states, ego_ids=[film.ego.id], findings=[*findings, QualityFinding("assumed_motion", "warning", message)]
     )
     recording.embedded_map = _road(film, egos_x)
     recording.sensor_range_m = film.sensor_range_m
-    recording.notes = [f"read through the mapping {name!r}: {assumed} are assumed"]
+    recording.notes = [f"read through the mapping {stem!r}: {assumed} are assumed"]
     return recording
 
 
@@ -105,7 +110,11 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
     ahead = []
     for actor in film.actor:
         values, odd = sheet.number(str(actor.ahead))
-        _report(path, sheet, odd & ~bad, f"column {actor.ahead!r} is not a number: not detected there", findings)
+        odd &= ~bad
+        if odd.any():
+            where = sheet.describe_rows(np.flatnonzero(odd))
+            message = f"{path.name}, {where}: column {actor.ahead!r} is not a number: not detected there"
+            findings.append(QualityFinding("malformed_cell", "warning", message, int(odd.sum())))
         distance = np.full(len(whole), np.nan)
         distance[at] = values[rows[first]]
         ahead.append(distance)
@@ -120,14 +129,6 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
     return Sightings(whole, ahead)
 
 
-def _report(
-    path: Path, sheet: CsvSheet | ParquetSheet, rows: NDArray[np.bool_], why: str, findings: list[QualityFinding]
-) -> None:
-    if rows.any():
-        message = f"{path.name}, {sheet.describe_rows(np.flatnonzero(rows))}: {why}"
-        findings.append(QualityFinding("malformed_cell", "warning", message, int(rows.sum())))
-
-
 def _states(
     film: VideoMapping, frames: NDArray[np.int64], t_ns: NDArray[np.int64], ahead: list[NDArray[np.float64]]
 ) -> tuple[States, tuple[float, float]]:
@@ -139,7 +140,7 @@ def _states(
     if film.stages is not None:
         ego_y = -own * _across(film, film.stages, frames)
     front = ego_x + film.ego.length / 2
-    parts = [(0, ego_x, ego_y, 0.0, film.ego.speed.mps, t_ns)]
+    parts = [_track(0, t_ns, ego_x, ego_y, yaw=0.0, mps=film.ego.speed.mps)]
     for number, (actor, distance) in enumerate(zip(film.actor, ahead, strict=True), 1):
         seen = np.flatnonzero(np.isfinite(distance))
         if not len(seen):
@@ -148,36 +149,29 @@ def _states(
         along = actor.lane == "own"
         x = (front + distance + actor.length / 2)[there]
         y = np.where(np.isfinite(x), middle if along else -middle, np.nan)
-        parts.append((number, x, y, 0.0 if along else np.pi, actor.speed.mps * (1 if along else -1), t_ns[there]))
+        yaw, mps = (0.0, actor.speed.mps) if along else (np.pi, -actor.speed.mps)
+        parts.append(_track(number, t_ns[there], x, y, yaw=yaw, mps=mps))
     everybody: list[EgoCar | DetectedActor] = [film.ego, *film.actor]
     kinds = ["car", *(actor.kind for actor in film.actor)]
-    who = np.concatenate([np.full(len(x), number, np.int32) for number, x, *_ in parts])
-    placed = np.isfinite(np.concatenate([x for _, x, *_ in parts]))
-
-    def per_part(at: int) -> NDArray[np.float64]:
-        """Return a number that is the same for every state of an actor, unknown where he has no place."""
-        values = np.concatenate([np.full(len(part[1]), part[at], np.float64) for part in parts])
-        return np.where(placed, values, np.nan)
-
-    numbers = {
-        "x_m": np.concatenate([part[1] for part in parts]),
-        "y_m": np.concatenate([part[2] for part in parts]),
-        "yaw_rad": per_part(3),
-        "vx_mps": per_part(4),
-        "vy_mps": np.where(placed, 0.0, np.nan),
-        "length_m": np.array([each.length for each in everybody])[who],
-        "width_m": np.array([each.width for each in everybody])[who],
-    }
+    columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    who, times = columns.pop("who"), columns.pop("t_ns")
+    columns["length_m"] = np.array([each.length for each in everybody])[who]
+    columns["width_m"] = np.array([each.width for each in everybody])[who]
     codes = {"actor_class": np.array([ACTOR_CLASSES.index(kind) for kind in kinds], np.int8)[who]}
-    states = States(
-        [each.id for each in everybody],
-        who,
-        np.concatenate([part[5] for part in parts]),
-        numbers,
-        codes,
-        np.zeros(len(who), np.bool_),
-    )
+    states = States([each.id for each in everybody], who, times, columns, codes, np.zeros(len(who), np.bool_))
     return states, (float(ego_x[0]), float(ego_x[-1]))
+
+
+def _track(
+    number: int, t_ns: NDArray[np.int64], x: NDArray[np.float64], y: NDArray[np.float64], *, yaw: float, mps: float
+) -> dict[str, NDArray[Any]]:
+    """Return the columns of one actor on a straight road; where he has no place, nothing else is known."""
+    placed = np.isfinite(x)
+    same = {"yaw_rad": yaw, "vx_mps": mps, "vy_mps": 0.0}
+    return {
+        "who": np.full(len(x), number, np.int32), "t_ns": t_ns, "x_m": x, "y_m": y,
+        **{name: np.where(placed, value, np.nan) for name, value in same.items()},
+    }  # fmt: skip
 
 
 def _across(film: VideoMapping, stages: OvertakeStages, frames: NDArray[np.int64]) -> NDArray[np.float64]:

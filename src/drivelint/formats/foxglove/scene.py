@@ -4,6 +4,7 @@ elsewhere."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -26,7 +27,7 @@ from drivelint.formats.foxglove.decode import (
 )
 from drivelint.formats.foxglove.entity_lifetime import Deletions, EntityUpdates, persisted_states
 from drivelint.formats.mcap import bag
-from drivelint.formats.mcap.reader import Container
+from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.osi.enum_codes import struct_field
 from drivelint.formats.ros2.objects import class_code
 from drivelint.formats.ros2.recorded_poses import (
@@ -35,22 +36,19 @@ from drivelint.formats.ros2.recorded_poses import (
     distinct,
     join_batches,
     message_times,
+    recorded_poses,
     states_in_fixed_frame,
-    unknown_vectors,
 )
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from mcap.records import Channel
     from numpy.typing import NDArray
 
     from drivelint.drive.trace import Severity
-    from drivelint.formats.mcap.reader import Packet
 
-BATCH_BYTES = 32 * 1024 * 1024
 KIND_KEYS: Final = ("class", "type", "classification", "category", "label", "object_class", "object_type")
 """Keys of the metadata that say what an entity is, where the value is a word that is known."""
 DELETE_ALL: Final = 1
@@ -63,10 +61,9 @@ class _Scene:
     rows: list[RecordedPoses] = field(default_factory=list)
     lifetime: list[NDArray[np.int64]] = field(default_factory=list)
     locked: list[NDArray[np.bool_]] = field(default_factory=list)
-    deletions: list[tuple[NDArray[np.int64], NDArray[np.bool_], NDArray[np.int64], list[str], NDArray[np.bool_]]] = (
-        field(default_factory=list)
+    deletions: list[tuple[NDArray[np.int64], NDArray[np.bool_], NDArray[np.int64], list[str | None]]] = field(
+        default_factory=list
     )
-    messages: list[NDArray[np.int64]] = field(default_factory=list)
     without_box: int = 0
 
 
@@ -77,8 +74,10 @@ def read(path: Path, topic: str | None) -> Recording:
     findings: list[QualityFinding] = []
     for file in bag.mcap_files(path):
         container = Container(file)
-        for channel, name, packets in _batches(container):
-            decoder = _decoder(container, channel, name)
+        for name, packets in message_batches(container, partial(_kind, container)):
+            channel = packets[0].channel
+            schema = container.schemas[channel.schema_id].data
+            decoder = Decoder(file, name, channel.message_encoding, schema)
             log_ns = np.array([packet.log_time_ns for packet in packets], np.int64)
             decoded = decoder.rows(packets)
             if name == SCENE:
@@ -100,29 +99,6 @@ def _kind(container: Container, channel: Channel) -> str | None:
     return schema.name
 
 
-def _batches(container: Container) -> Iterator[tuple[Channel, str, list[Packet]]]:
-    """Yield the messages of each channel, some tens of megabytes at a time."""
-    waiting: dict[int, list[Packet]] = {}
-    sizes: dict[int, int] = {}
-    for packet in container.packets():
-        kind = _kind(container, packet.channel)
-        if kind is None:
-            continue
-        number = packet.channel.id
-        waiting.setdefault(number, []).append(packet)
-        sizes[number] = sizes.get(number, 0) + len(packet.data)
-        if sizes[number] >= BATCH_BYTES:
-            yield packet.channel, kind, waiting.pop(number)
-            sizes[number] = 0
-    for packets in waiting.values():
-        channel = packets[0].channel
-        yield channel, str(_kind(container, channel)), packets
-
-
-def _decoder(container: Container, channel: Channel, name: str) -> Decoder:
-    return Decoder(container.path, name, channel.message_encoding, container.schemas[channel.schema_id].data)
-
-
 def _chosen(path: Path, scenes: dict[str, _Scene], topic: str | None) -> str:
     names = sorted(scenes)
     if topic is not None:
@@ -130,12 +106,8 @@ def _chosen(path: Path, scenes: dict[str, _Scene], topic: str | None) -> str:
             raise TraceError(f"{path}: no scene on topic {topic!r}: {SCENE} is on {listed(names) or 'none'}")
         return topic
     if len(names) != 1:
-        what = (
-            f"on {len(names)} topics ({', '.join(names)}): choose one with --topic"
-            if names
-            else "in none of its messages"
-        )
-        raise TraceError(f"{path}: {SCENE} {what}")
+        several = f"on {len(names)} topics ({', '.join(names)}): choose one with --topic"
+        raise TraceError(f"{path}: {SCENE} {several if names else 'in none of its messages'}")
     return names[0]
 
 
@@ -151,39 +123,29 @@ def _take(scene: _Scene, decoded: pa.StructArray, log_ns: NDArray[np.int64]) -> 
     cubes = cubes.take(pa.array((np.cumsum(count) - count)[boxed]))
     entities = entities.filter(pa.array(boxed))
     message = message[boxed]
-    n = len(entities)
-    stamp, stamped = times(struct_field(entities, "timestamp"))
     names, which = distinct_texts(entities, "id")
     frames, frame = distinct_texts(entities, "frame_id")
     pose = struct_field(cubes, "pose")
-    rows = RecordedPoses(
-        stamp_ns=stamp,
-        stamped=stamped,
+    rows = recorded_poses(
+        times(struct_field(entities, "timestamp")),
+        (vectors(pose, "position"), vectors(pose, "orientation", "xyzw")),
         log_ns=log_ns[message],
         ids=np.array([name.encode() for name in names] or [b""])[which],
         frames=np.array([name.encode() for name in frames] or [b""])[frame],
-        place=vectors(pose, "position"),
-        turn=vectors(pose, "orientation", "xyzw"),
         size=vectors(cubes, "size"),
         classes=_classes(entities),
-        along=np.zeros(n, np.bool_),
-        faces=np.ones(n, np.bool_),
-        velocity=unknown_vectors(n),
-        acceleration=unknown_vectors(n),
-        t_ns=stamp,
     )
     scene.rows.append(rows)
     scene.lifetime.append(times(struct_field(entities, "lifetime"))[0])
-    scene.locked.append(
-        pc.fill_null(struct_field(entities, "frame_locked").cast(pa.bool_()), False).to_numpy(zero_copy_only=False)
-    )
-    scene.messages.append(log_ns)
+    locked = struct_field(entities, "frame_locked").cast(pa.bool_())
+    scene.locked.append(pc.fill_null(locked, False).to_numpy(zero_copy_only=False))
     gone, message = list_items(decoded, "deletions")
     if len(gone):
         t_ns, timed = times(struct_field(gone, "timestamp"))
         names, which = distinct_texts(gone, "id")
         every = np.nan_to_num(numbers(gone, "type")) == DELETE_ALL
-        scene.deletions.append((t_ns, timed & (t_ns != 0), log_ns[message], [names[i] for i in which], every))
+        whom = [None if all_ else names[i] for i, all_ in zip(which, every, strict=True)]
+        scene.deletions.append((t_ns, timed & (t_ns != 0), log_ns[message], whom))
 
 
 def _classes(entities: pa.Array) -> NDArray[np.int8]:
@@ -213,9 +175,8 @@ def _recording(
     named = rows.ids != b""
     if not named.all():
         n = int((~named).sum())
-        findings.append(
-            QualityFinding("dropped_row", "error", f"{topic}: entities without an id: {n}: they are not judged", n)
-        )
+        message = f"{topic}: entities without an id: {n}: they are not judged"
+        findings.append(QualityFinding("dropped_row", "error", message, n))
         rows, lifetime, locked = rows.take(named), lifetime[named], locked[named]
     if not len(rows):
         raise TraceError(f"{path}: no entity on {topic!r} has a cube and an id: nothing can be judged")
@@ -225,41 +186,34 @@ def _recording(
     own_times = choose_clock({topic: rows}, findings)
     frames = _frames(transforms, own_times=own_times)
     rows = _alive(rows, (lifetime, locked), _deletions(scene, rows, own_times=own_times), findings, topic)
-    used = [clean_frame_name(name) for name in sorted(distinct(rows.frames)[0])]
-    fixed = fixed_frame(frames, used)
+    fixed = fixed_frame(frames, sorted(distinct(rows.frames)[0]))
     states, found = states_in_fixed_frame(rows, frames, fixed, topic)
     findings += found
     if not np.isfinite(states.numbers["x_m"]).any():
         raise TraceError(f"{path}: nothing can be placed: {found[-1].message if found else 'no positions'}")
-    frame_times, utc_start_ns = message_times([rows])
-    return Recording(
-        "foxglove-mcap",
-        states,
-        findings=findings,
-        notes=[f"positions are in the frame {fixed!r}"],
-        utc_start_ns=utc_start_ns,
-        frame_times=frame_times,
-    )
+    recording = Recording("foxglove-mcap", states, findings=findings)
+    recording.notes = [f"positions are in the frame {fixed!r}"]
+    recording.frame_times, recording.utc_start_ns = message_times([rows])
+    return recording
 
 
-def _deletions(
-    scene: _Scene, rows: RecordedPoses, *, own_times: bool
-) -> list[tuple[NDArray[np.int64], list[str], NDArray[np.bool_]]]:
-    """Return (time, id, whether all are meant). One without a time has that of its message, in the entities' clock."""
+def _deletions(scene: _Scene, rows: RecordedPoses, *, own_times: bool) -> tuple[NDArray[np.int64], list[str | None]]:
+    """Return times and ids (None: all are meant). One without a time has that of its message, in the entities' clock."""
     order = np.argsort(rows.log_ns, kind="stable")
     log_ns, latest = rows.log_ns[order], np.maximum.accumulate(rows.t_ns[order])
-    found = []
-    for t_ns, timed, sent_ns, names, every in scene.deletions:
+    times, ids = [np.zeros(0, np.int64)], []
+    for t_ns, timed, sent_ns, whom in scene.deletions:
         at = np.searchsorted(log_ns, sent_ns, side="right") - 1
         last = np.where(at >= 0, latest[np.maximum(at, 0)], np.iinfo(np.int64).min)
-        found.append((np.where(timed & own_times, t_ns, last if own_times else sent_ns), names, every))
-    return found
+        times.append(np.where(timed & own_times, t_ns, last if own_times else sent_ns))
+        ids += whom
+    return np.concatenate(times), ids
 
 
 def _alive(
     rows: RecordedPoses,
     manner: tuple[NDArray[np.int64], NDArray[np.bool_]],
-    gone: list[tuple[NDArray[np.int64], list[str], NDArray[np.bool_]]],
+    gone: tuple[NDArray[np.int64], list[str | None]],
     findings: list[QualityFinding],
     topic: str,
 ) -> RecordedPoses:
@@ -270,20 +224,10 @@ def _alive(
     lifetime, locked = manner
     unique, actor = distinct(rows.ids)
     number = {name: i for i, name in enumerate(unique)}
-    whom = [
-        -1 if all_ else number.get(name, len(unique))
-        for _, names, every in gone
-        for name, all_ in zip(names, every, strict=True)
-    ]
-    deletions = Deletions(
-        np.array(whom, np.int32), np.concatenate([t_ns for t_ns, _, _ in gone]) if gone else np.zeros(0, np.int64)
-    )
-    entities = EntityUpdates(
-        actor,
-        rows.t_ns,
-        lifetime,
-        np.concatenate([rows.place, rows.turn, rows.size], axis=1),
-    )
+    whom = [-1 if name is None else number.get(name, len(unique)) for name in gone[1]]
+    deletions = Deletions(np.array(whom, np.int32), gone[0])
+    box = np.concatenate([rows.place, rows.turn, rows.size], axis=1)
+    entities = EntityUpdates(actor, rows.t_ns, lifetime, box)
     new = np.r_[True, rows.t_ns[1:] != rows.t_ns[:-1]]  # what is all but sorted and single is sorted faster
     more = persisted_states(entities, deletions, np.unique(np.concatenate([rows.t_ns[new], deletions.t_ns])))
     if not len(more.row):
@@ -311,15 +255,12 @@ def _frames(transforms: list[tuple[pa.Array, NDArray[np.int64]]], *, own_times: 
     for rows, log_ns in transforms:
         t_ns = times(struct_field(rows, "timestamp"))[0] if own_times else log_ns
         place, turn = vectors(rows, "translation"), vectors(rows, "rotation", "xyzw")
-        (parents, parent), (children, inner) = (
-            distinct_texts(rows, "parent_frame_id"),
-            distinct_texts(rows, "child_frame_id"),
-        )
+        parents, parent = distinct_texts(rows, "parent_frame_id")
+        children, inner = distinct_texts(rows, "child_frame_id")
         for i, j in sorted(set(zip(inner.tolist(), parent.tolist(), strict=True))):
             here = (inner == i) & (parent == j)
-            found.setdefault((clean_frame_name(children[i]), clean_frame_name(parents[j])), []).append(
-                (t_ns[here], place[here], turn[here])
-            )
+            names = clean_frame_name(children[i]), clean_frame_name(parents[j])
+            found.setdefault(names, []).append((t_ns[here], place[here], turn[here]))
     frames = TransformTree()
     for (name, parent_name), parts in found.items():
         t_ns, place, turn = (np.concatenate([part[k] for part in parts]) for k in range(3))

@@ -36,10 +36,7 @@ def load(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[A
         raise MapError(
             f"map {source.name} is a Lanelet2 map, and the package lanelet2 is not installed: pip install 'drivelint[lanelet2]'"
         ) from error
-    try:
-        root = safe_xml.parse(source.content)  # it is not the library that refuses entities
-    except safe_xml.RefusedError as error:
-        raise MapError(f"map {source.name} {error}") from None
+    root = safe_xml.parse_map(source)  # it is not the library that refuses entities
     local = root.find("node/tag[@k='local_x']") is not None
     if local:
         _place_locally(root, quality)
@@ -74,7 +71,7 @@ def _place_locally(root: etree._Element, quality: MapQuality) -> None:
     first: tuple[float, float] | None = None
     for node in root.iterfind("node"):
         tags = {tag.get("k"): tag for tag in node.iterfind("tag")}
-        x, y = (_number(tags[k].get("v") if k in tags else None) for k in ("local_x", "local_y"))
+        x, y = (safe_xml.number(tags[k].get("v") if k in tags else None) for k in ("local_x", "local_y"))
         if not (math.isfinite(x) and math.isfinite(y)):
             lost += 1
             x = y = math.nan
@@ -88,13 +85,6 @@ def _place_locally(root: etree._Element, quality: MapQuality) -> None:
     if lost:
         message = "nodes have no local_x and local_y, as the others have: what they belong to is left out"
         quality.add("unplaced_node", "warning", None, message, lost)
-
-
-def _number(text: str | None) -> float:
-    try:
-        return float(text or "nan")
-    except ValueError:
-        return math.nan
 
 
 def xy(bound: Any) -> Floats:

@@ -10,8 +10,9 @@ import numpy as np
 import shapely
 
 from drivelint.formats.lanelet2.file import attribute, xy
-from drivelint.road.boundary_lanes import BoundedLane, crossings
+from drivelint.road.boundary_lanes import BoundedLane, crossings, signal_row
 from drivelint.road.signcodes import kind_of
+from drivelint.road.tables import Rows, stop_line_row
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from drivelint.road.quality import MapQuality
 
     Floats = NDArray[np.float64]
-    Rows = list[dict[str, Any]]
 
 STOP_LINE_GAP_M = 1.0  # a stop line that misses the end of a lane by less is drawn between two lanes
 _SIGN = re.compile(r"([a-z]{2})(\d.*)")  # a code of a national catalogue, as in de274-60
@@ -30,11 +30,10 @@ _SIGN = re.compile(r"([a-z]{2})(\d.*)")  # a code of a national catalogue, as in
 def furniture(
     layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality
 ) -> dict[str, Rows]:
-    """Return rows of `traffic_signal`, `stop_line`, `road_object` and `crossing`."""
+    """Return rows of `traffic_signal`, `stop_line` and `crossing`."""
     return {
         "traffic_signal": _signals(layers, lanes, offset),
         "stop_line": _stop_lines(layers, lanes, offset, quality),
-        "road_object": [],
         "crossing": _crossings(layers, lanes, offset, quality),
     }
 
@@ -52,17 +51,14 @@ def _signals(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, flo
             continue
         for element in sorted(x.regulatoryElements, key=lambda r: r.id):
             s = _where(element, lane, offset)
-            x_m, y_m = (float(np.interp(s, lane.line.s, c)) for c in lane.line.centre.T)
+            place = np.array([np.interp(s, lane.line.s, c) for c in lane.line.centre.T])
+            said = {"country": attribute(x, "region") or None, "type": attribute(element, "subtype")}
             rows += [
-                {
-                    "signal_id": str(element.id), "kind": kind, "country": attribute(x, "region") or None,
-                    "type": attribute(element, "subtype"), "subtype": None, "value": None, "unit": None,
-                    "dynamic": kind == "traffic_light", "turns": None,
-                    "road_id": lane.road_id, "road_s_m": s if lane.along > 0 else float(lane.line.s[-1]) - s,
-                    "lanelet_id": lane.lanelet_id, "lane_s_m": s, "x_m": x_m, "y_m": y_m,
-                }
+                signal_row(
+                    lane, s, place, signal_id=str(element.id), kind=kind, dynamic=kind == "traffic_light", **said
+                )
                 for kind in _kinds(element, x)
-            ]  # fmt: skip
+            ]
     return rows
 
 
@@ -128,9 +124,7 @@ def _stop_lines(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, 
         points = xy(line) + offset
         if attribute(line, "type") != "stop_line" or len(line) < 2 or not np.isfinite(points).all():
             continue
-        near = [
-            driven[i] for i in sorted(int(i) for i in tree.query(shapely.LineString(points).buffer(STOP_LINE_GAP_M)))
-        ]
+        near = [driven[i] for i in sorted(tree.query(shapely.LineString(points).buffer(STOP_LINE_GAP_M)))]
         own = [
             (lane, s)
             for lane in near
@@ -139,7 +133,7 @@ def _stop_lines(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, 
         found = own or [(lane, s) for lane in near if (s := _crossed(lane, points, near_m=0.0)) is not None]
         followers = {name for lane, _ in found for name in lane.successors}
         rows += [
-            {"stop_line_id": str(line.id), "lanelet_id": lane.lanelet_id, "lane_s_m": s, "source": "object"}
+            stop_line_row(str(line.id), lane.lanelet_id, s)
             for lane, s in found
             if s > 0.0 or lane.lanelet_id not in followers
         ]
@@ -160,19 +154,14 @@ def _referring(layers: Any) -> dict[int, set[str]]:
 
 
 def _crossings(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality) -> Rows:
-    walks = _walks(layers)
+    walks = []
+    for x in sorted(layers.laneletLayer, key=lambda x: x.id):
+        left, right = xy(x.leftBound), xy(x.rightBound)
+        if attribute(x, "subtype") == "crosswalk" and np.isfinite(left).all() and np.isfinite(right).all():
+            marks = {attribute(bound, "type") for bound in (x.leftBound, x.rightBound)}
+            walks.append(BoundedLane(str(x.id), left, right, "zebra" if "zebra_marking" in marks else "crossing"))
     rows = crossings(walks, lanes, offset)
     for lost in sorted({walk.lanelet_id for walk in walks} - {row["crossing_id"] for row in rows}):
         message = f"crossing {lost} lies across no lane that vehicles drive on"
         quality.add("object_without_lane", "info", None, message)
     return rows
-
-
-def _walks(layers: Any) -> list[BoundedLane]:
-    found = []
-    for x in sorted(layers.laneletLayer, key=lambda x: x.id):
-        left, right = xy(x.leftBound), xy(x.rightBound)
-        if attribute(x, "subtype") == "crosswalk" and np.isfinite(left).all() and np.isfinite(right).all():
-            marks = {attribute(bound, "type") for bound in (x.leftBound, x.rightBound)}
-            found.append(BoundedLane(str(x.id), left, right, "zebra" if "zebra_marking" in marks else "crossing"))
-    return found

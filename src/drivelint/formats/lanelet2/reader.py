@@ -4,26 +4,21 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import shapely
 
 from drivelint.errors import MapError
 from drivelint.formats.lanelet2.file import attribute, load, xy
 from drivelint.formats.lanelet2.furniture import furniture
-from drivelint.road.boundary_lanes import BoundedLane, build_lanes, side_driven_on, tables
-from drivelint.road.handedness import correction_hint
-from drivelint.road.map_reader import MapOptions, MapSource, MapTables, environment_id
+from drivelint.road.boundary_lanes import BoundedLane, both_marks, bounded_map, build_lanes, side_driven_on
+from drivelint.road.handedness import choose_side
 from drivelint.road.quality import MapQuality
-from drivelint.road.tables import from_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
 _KINDS = {
     "road": "driving", "highway": "driving", "play_street": "driving", "bus_lane": "bus", "exit": "exit",
@@ -36,66 +31,45 @@ _EDGES = {"curbstone": "curb", "virtual": "none"}
 _LEFT_DRIVEN = frozenset({"gb", "uk", "ie", "au", "nz", "jp", "in", "za", "sg", "my", "th", "hk", "cy", "mt"})
 
 
-class Lanelet2Reader:
-    """Lanelet2 in the format of OpenStreetMap."""
+def read(source: MapSource, request: MapOptions) -> MapTables:
+    """Return the map's tables.
 
-    format = "lanelet2"
-
-    def read(self, source: MapSource, request: MapOptions) -> MapTables:
-        """Return the map's tables.
-
-        Errors: `MapError` where the library is not installed, the file is none of Lanelet2's, or nothing says where the
-        log's frame lies on the globe.
-        """
-        quality = MapQuality()
-        layers, local = load(source, request, quality)
-        lanes = build_lanes(list(_lanes(layers, quality)), request.offset, quality)
-        if not lanes:
-            raise MapError(f"map {source.name} has no lanelet that can be built: is it a plain OpenStreetMap extract?")
-        _junctions(lanes)
-        handedness, how = _handedness(layers, lanes, request, quality)
-        name = environment_id(source, request.offset, handedness, guessed=how == "default")
-        result = tables(name, lanes)
-        rows: dict[str, list[dict[str, Any]]] = {
-            "environment": [
-                {
-                    "name": source.name, "sha256": source.sha256, "format": self.format,
-                    "offset_x_m": request.offset[0], "offset_y_m": request.offset[1], "handedness": handedness,
-                    "handedness_source": how, "geo_reference": _reference(request, local=local),
-                }
-            ],
-            **furniture(layers, lanes, request.offset, quality),
-        }  # fmt: skip
-        result |= {table: from_rows(table, name, content) for table, content in rows.items()}
-        result["map_quality"] = quality.table(name)
-        return MapTables(name, handedness, how, result)
+    Errors: `MapError` where the library is not installed, the file is none of Lanelet2's, or nothing says where the
+    log's frame lies on the globe.
+    """
+    quality = MapQuality()
+    layers, local = load(source, request, quality)
+    lanes = build_lanes(_lanes(layers, quality), request.offset, quality)
+    if not lanes:
+        raise MapError(f"map {source.name} has no lanelet that can be built: is it a plain OpenStreetMap extract?")
+    _junctions(lanes)
+    regions = {attribute(x, "region") for x in layers.laneletLayer} - {""}
+    by_region = {"lht" if region[:2].lower() in _LEFT_DRIVEN else "rht" for region in regions}
+    said = by_region.pop() if len(by_region) == 1 else None
+    side = choose_side([("option", request.side), ("lanes", side_driven_on(lanes)), ("attribute", said)], quality)
+    beside = furniture(layers, lanes, request.offset, quality)
+    reference = None if request.origin is None or local else f"origin {request.origin[0]:g},{request.origin[1]:g}"
+    return bounded_map(source, request, lanes, beside, quality, kind="lanelet2", side=side, geo_reference=reference)
 
 
-def _reference(request: MapOptions, *, local: bool) -> str | None:
-    return None if request.origin is None or local else f"origin {request.origin[0]:g},{request.origin[1]:g}"
+Bound = tuple[int, bool]
+"""A line as it bounds a lane: which, and whether it runs the other way round than it was drawn."""
 
 
-class _Bound(NamedTuple):
-    """A line as it bounds a lane: which, and whether it runs the other way round than it was drawn."""
-
-    line: int
-    inverted: bool
+def _bound(line: Any) -> Bound:
+    return line.id, bool(line.inverted())
 
 
-def _bound(line: Any) -> _Bound:
-    return _Bound(line.id, bool(line.inverted()))
-
-
-def _is_lane(element: Any) -> bool:
-    return attribute(element, "subtype") in _KINDS
+def _turned(line: Any) -> Bound:
+    return line.id, not line.inverted()
 
 
 def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
     """Yield the lanes. Neighbours share a bound, what follows begins at the points where a lane ends."""
-    mine = sorted((x for x in layers.laneletLayer if _is_lane(x)), key=lambda x: x.id)
+    mine = sorted((x for x in layers.laneletLayer if attribute(x, "subtype") in _KINDS), key=lambda x: x.id)
     starts: dict[tuple[int, int], list[str]] = defaultdict(list)
-    lefts: dict[_Bound, list[Any]] = defaultdict(list)
-    rights: dict[_Bound, list[Any]] = defaultdict(list)
+    lefts: dict[Bound, list[Any]] = defaultdict(list)
+    rights: dict[Bound, list[Any]] = defaultdict(list)
     for x in mine:
         starts[x.leftBound[0].id, x.rightBound[0].id].append(str(x.id))
         lefts[_bound(x.leftBound)].append(x)
@@ -103,8 +77,9 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
     limit = _limits()
     for x in mine:
         kind = _KINDS[attribute(x, "subtype")]
-        limit_mps, known = limit(x)
+        limit_mps = limit(x)
         readable = limit_mps is None or (math.isfinite(limit_mps) and limit_mps > 0.0)
+        limits = () if limit_mps is None else ((0.0, 1.0, limit_mps if readable else None),)
         if not readable:
             said = attribute(x, "speed_limit")[:20]
             message = f"{said!r} is no speed limit: taken as unknown"
@@ -114,15 +89,12 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
             bidirectional=kind in _DRIVEN and attribute(x, "one_way") in {"no", "false"},
             road_type=_road_type(x),
             successors=tuple(sorted(starts[x.leftBound[-1].id, x.rightBound[-1].id])),
-            left_marking=_marking(x.leftBound, near_left=False), right_marking=_marking(x.rightBound, near_left=True),
-            limit_mps=limit_mps if readable else None, limit_known=known, limit_readable=readable,
+            marks=both_marks(_marking(x.leftBound, near_left=False), _marking(x.rightBound, near_left=True)),
+            limits=limits, limit_source="sign" if readable else "unread",
         )  # fmt: skip
-        turned = (
-            _Bound(x.leftBound.id, not x.leftBound.inverted()),
-            _Bound(x.rightBound.id, not x.rightBound.inverted()),
-        )
-        lane.left_id, lane.left_against = _beside(x, rights[_bound(x.leftBound)], lefts[turned[0]])
-        lane.right_id, lane.right_against = _beside(x, lefts[_bound(x.rightBound)], rights[turned[1]])
+        left, right = x.leftBound, x.rightBound
+        lane.left_id, lane.left_against = _beside(x, rights[_bound(left)], lefts[_turned(left)])
+        lane.right_id, lane.right_against = _beside(x, lefts[_bound(right)], rights[_turned(right)])
         yield lane
 
 
@@ -142,18 +114,18 @@ def _road_type(x: Any) -> str | None:
 
 
 def _limits() -> Any:
-    """Return a function lanelet -> (limit in m/s, whether the map says one): by its signs, not by a nation's default."""
+    """Return a function lanelet -> limit in m/s by its signs, not by a nation's default; None: the map does not say one."""
     import lanelet2
 
     rules = lanelet2.traffic_rules.create(
         lanelet2.traffic_rules.Locations.Germany, lanelet2.traffic_rules.Participants.Vehicle
     )
 
-    def limit(x: Any) -> tuple[float | None, bool]:
+    def limit(x: Any) -> float | None:
         signed = any(attribute(r, "subtype") == "speed_limit" for r in x.regulatoryElements)
         if not signed and "speed_limit" not in x.attributes:
-            return None, False
-        return float(rules.speedLimit(x).speedLimit) / 3.6, True
+            return None
+        return float(rules.speedLimit(x).speedLimit) / 3.6
 
     return limit
 
@@ -174,7 +146,7 @@ def _marking(bound: Any, *, near_left: bool) -> str | None:
 def _junctions(lanes: Sequence[BoundedLane]) -> None:
     """Mark lanes for driving whose areas overlap another's, that do not lie side by side, as parts of one junction."""
     driven = [lane for lane in lanes if lane.drivable]
-    areas = [shapely.Polygon(np.vstack([lane.line.right, lane.line.left[::-1]])).buffer(0.0) for lane in driven]
+    areas = [lane.line.polygon for lane in driven]
     tree = shapely.STRtree(areas)
     parent = list(range(len(driven)))
 
@@ -195,27 +167,3 @@ def _junctions(lanes: Sequence[BoundedLane]) -> None:
             parent[max(root(i), root(j))] = min(root(i), root(j))
     for i in sorted(overlaps):
         driven[i].junction_id = f"j{driven[root(i)].lanelet_id}"
-
-
-def _handedness(layers: Any, lanes: Sequence[BoundedLane], request: MapOptions, quality: MapQuality) -> tuple[str, str]:
-    regions = {attribute(x, "region") for x in layers.laneletLayer} - {""}
-    by_region = {"lht" if region[:2].lower() in _LEFT_DRIVEN else "rht" for region in regions}
-    said = [
-        (how, side)
-        for how, side in (
-            ("option", None if request.handedness == "auto" else request.handedness),
-            ("lanes", side_driven_on(lanes)),
-            ("attribute", next(iter(by_region)) if len(by_region) == 1 else None),
-        )
-        if side is not None
-    ]
-    if len({side for _, side in said}) > 1:
-        opinions = ", ".join(f"{how}: {side}" for how, side in said)
-        source, side = said[0]
-        message = f"{opinions}; the first is taken: if it is wrong, {correction_hint(side, source)}"
-        quality.add("handedness_disagrees", "warning", None, message)
-    if not said:
-        message = "nothing in the map says which side is driven on: right-hand traffic is a guess; give --handedness"
-        quality.add("handedness_default", "warning", None, message)
-        return "rht", "default"
-    return said[0][1], said[0][0]

@@ -20,6 +20,10 @@ _ROOT = "rosbag2_bagfile_information"
 OSI_SCHEMAS: Final = frozenset({"osi3.GroundTruth", "osi3.SensorView"})
 ROAD_USERS: Final = "road users"
 ODOMETRY: Final = "odometry"
+_VEHICLE_REPORTS: Final = {
+    "lights": ("TurnIndicatorsReport", "HazardLightsReport"),
+    "declared events": ("ControlModeReport", "Engage"),
+}
 ROS_ROLES: Final = {
     "derived_object_msgs/ObjectArray": ROAD_USERS,
     "autoware_perception_msgs/TrackedObjects": ROAD_USERS,
@@ -32,12 +36,8 @@ ROS_ROLES: Final = {
     **{
         f"{package}/{name}": role
         for package in ("autoware_vehicle_msgs", "autoware_auto_vehicle_msgs")
-        for name, role in (
-            ("TurnIndicatorsReport", "lights"),
-            ("HazardLightsReport", "lights"),
-            ("ControlModeReport", "declared events"),
-            ("Engage", "declared events"),
-        )
+        for role, names in _VEHICLE_REPORTS.items()
+        for name in names
     },
 }
 FOXGLOVE_ROLES: Final = {

@@ -12,7 +12,6 @@ import mmap
 import os
 import struct
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple, Self
 
 import numpy as np
@@ -23,7 +22,7 @@ from mcap.records import AttachmentIndex, Channel, Chunk, ChunkIndex, MetadataIn
 from mcap.stream_reader import get_chunk_data_stream
 
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.writer import MAGIC
+from drivelint.formats.mcap.reader import MAGIC
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -40,17 +39,10 @@ _TIMES: Final = struct.Struct("<QQ")
 _MESSAGE: Final = struct.Struct("<HIQ")
 _INDEX: Final = struct.Struct("<HI")
 _LOOSE: Final = frozenset({Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE})
-_SUMMARY: Final = frozenset(
-    {
-        Opcode.DATA_END,
-        Opcode.FOOTER,
-        Opcode.CHUNK_INDEX,
-        Opcode.ATTACHMENT_INDEX,
-        Opcode.METADATA_INDEX,
-        Opcode.STATISTICS,
-        Opcode.SUMMARY_OFFSET,
-    }
-)
+_SUMMARY: Final = frozenset({
+    Opcode.DATA_END, Opcode.FOOTER, Opcode.CHUNK_INDEX, Opcode.ATTACHMENT_INDEX, Opcode.METADATA_INDEX, Opcode.STATISTICS,
+    Opcode.SUMMARY_OFFSET,
+})  # fmt: skip
 LOOSE_CHUNK_BYTES: Final = 4 << 20
 """Messages outside of chunks are put into chunks of about this size."""
 _BLOCK: Final = 4 << 20
@@ -66,24 +58,11 @@ class Record(NamedTuple):
     end: int
 
 
-@dataclass
-class Contents:
-    """What an MCAP file holds, as far as an index must know it; `indexed`: its chunks' message indexes can be relied on."""
-
-    schemas: dict[int, Schema] = field(default_factory=dict)
-    channels: dict[int, Channel] = field(default_factory=dict)
-    statistics: Statistics | None = None
-    chunks: int = 0
-    in_indexes: int = 0
-    loose: int = 0
-    indexed: bool = True
-
-
 class Original:
     """An MCAP file, mapped into memory and read by its record heads alone wherever that is enough.
 
-    The file was read and checked by ingest; `sha256` is what it was then. Errors: `TraceError` where it is damaged or was
-    changed since.
+    The file was read and checked by ingest; `sha256` is what it was then. `indexed`: its chunks' message indexes can be relied on.
+    Errors: `TraceError` where it is damaged or was changed since.
     """
 
     def __init__(self, path: Path, sha256: str) -> None:
@@ -92,7 +71,9 @@ class Original:
         self._file = _opened(path)  # closed by leaving the `with` that this object is made for
         # mapped for the record heads alone: what is read through a map counts as memory of this process
         self._view = memoryview(mmap.mmap(self._file.fileno(), 0, access=mmap.ACCESS_READ))
-        self.contents = self._survey()
+        self.schemas: dict[int, Schema] = {}
+        self.channels: dict[int, Channel] = {}
+        self.indexed = self._survey()
 
     def __enter__(self) -> Self:
         return self
@@ -139,18 +120,15 @@ class Original:
             raise self.damage_error(start)
         return content
 
-    def body_stream(self, record: Record) -> ReadDataStream:
-        """Return the body of a record, to be read field by field."""
-        return ReadDataStream(io.BytesIO(self.read(record.body, record.end)))
-
-    def head_stream(self, record: Record) -> ReadDataStream:
-        """Return the beginning of a record that may be large, for the fields before its data."""
-        return ReadDataStream(io.BytesIO(self.read(record.body, min(record.end, record.body + _HEAD_BYTES))))
+    def stream(self, record: Record, most: int | None = None) -> ReadDataStream:
+        """Return the body of a record, to be read field by field; `most`: so many bytes, for the fields before its data."""
+        end = record.end if most is None else min(record.end, record.body + most)
+        return ReadDataStream(io.BytesIO(self.read(record.body, end)))
 
     def chunk_records(self, record: Record) -> Iterator[tuple[int, int, memoryview]]:
         """Yield opcode, offset within the chunk and body of every record of a chunk."""
         try:
-            stream, size = get_chunk_data_stream(Chunk.read(self.body_stream(record)), validate_crc=True)
+            stream, size = get_chunk_data_stream(Chunk.read(self.stream(record)), validate_crc=True)
             view = memoryview(stream.read(size))
         except McapError as error:
             raise self.damage_error(record.at) from error
@@ -179,45 +157,55 @@ class Original:
         channel, _, log_time = _MESSAGE.unpack_from(self._view, record.body)
         return channel, log_time
 
-    def _survey(self) -> Contents:
-        """Find schemas, channels and counts: from the summary if it agrees with the data, else from the chunks themselves."""
-        found = Contents()
+    def _survey(self) -> bool:
+        """Find schemas and channels, from the summary if it agrees with the data, else from the chunks; say whether it agrees."""
+        counts: Statistics | None = None
         named: set[int] = set()
         chunks: list[Record] = []
-        behind_chunk = False
+        messages, behind_chunk = 0, False
         for record in self.records():
             behind_chunk = record.opcode == Opcode.CHUNK or (behind_chunk and record.opcode == Opcode.MESSAGE_INDEX)
             if record.opcode == Opcode.SCHEMA:
-                schema = Schema.read(self.body_stream(record))
-                found.schemas.setdefault(schema.id, schema)
+                schema = Schema.read(self.stream(record))
+                self.schemas.setdefault(schema.id, schema)
             elif record.opcode == Opcode.CHANNEL:
-                channel = Channel.read(self.body_stream(record))
-                found.channels.setdefault(channel.id, channel)
+                channel = Channel.read(self.stream(record))
+                self.channels.setdefault(channel.id, channel)
             elif record.opcode == Opcode.STATISTICS:
-                found.statistics = Statistics.read(self.body_stream(record))
+                counts = Statistics.read(self.stream(record))
             elif record.opcode == Opcode.CHUNK:
                 chunks.append(record)
             elif record.opcode == Opcode.MESSAGE:
-                found.loose += 1
+                messages += 1
             elif record.opcode == Opcode.MESSAGE_INDEX and behind_chunk:
                 channel_id, n = self.message_index_header(record)
                 named.add(channel_id)
-                found.in_indexes += n
-        found.chunks = len(chunks)
-        found.indexed = not chunks or _agrees(found, named)
-        if not found.indexed:
-            self._look_inside(chunks, found)
-        return found
+                messages += n
+        if not chunks or self._agrees(counts, messages, named):
+            return True
+        self._look_inside(chunks)
+        return False
 
-    def _look_inside(self, chunks: list[Record], found: Contents) -> None:
+    def _look_inside(self, chunks: list[Record]) -> None:
         for chunk in chunks:
             for opcode, _, body in self.chunk_records(chunk):
                 if opcode == Opcode.SCHEMA:
                     schema = Schema.read(ReadDataStream(io.BytesIO(body)))
-                    found.schemas[schema.id] = schema
+                    self.schemas[schema.id] = schema
                 elif opcode == Opcode.CHANNEL:
                     channel = Channel.read(ReadDataStream(io.BytesIO(body)))
-                    found.channels[channel.id] = channel
+                    self.channels[channel.id] = channel
+
+    def _agrees(self, counts: Statistics | None, messages: int, named: set[int]) -> bool:
+        """Whether the summary names every channel and schema, and the message indexes know of every message."""
+        return (
+            counts is not None
+            and counts.message_count == messages
+            and counts.channel_count == len(self.channels)
+            and counts.schema_count == len(self.schemas)
+            and named <= self.channels.keys()
+            and all(c.schema_id == 0 or c.schema_id in self.schemas for c in self.channels.values())
+        )
 
     def _digest(self) -> str:
         digest = hashlib.sha256()
@@ -245,19 +233,6 @@ def _unreadable(path: Path, error: OSError) -> TraceError:
     return TraceError(f"{path}: the log cannot be read any more ({error.strerror or error}): check it again")
 
 
-def _agrees(found: Contents, named: set[int]) -> bool:
-    """Whether the summary names every channel and schema, and the message indexes know of every message."""
-    counts = found.statistics
-    return (
-        counts is not None
-        and counts.message_count == found.in_indexes + found.loose
-        and counts.channel_count == len(found.channels)
-        and counts.schema_count == len(found.schemas)
-        and named <= found.channels.keys()
-        and all(c.schema_id == 0 or c.schema_id in found.schemas for c in found.channels.values())
-    )
-
-
 class _Copy:
     """One copying: bytes wait to be written in one go, from `_from` on, as long as nothing must be put between them."""
 
@@ -271,9 +246,8 @@ class _Copy:
 
     def run(self) -> None:
         """Copy everything before the end of the data."""
-        contents = self._original.contents
-        self._sink.schemas.update(contents.schemas)
-        self._sink.channels.update(contents.channels)
+        self._sink.schemas.update(self._original.schemas)
+        self._sink.channels.update(self._original.channels)
         self._to = len(MAGIC)
         for record in self._original.records():
             if record.opcode in _SUMMARY:
@@ -281,7 +255,9 @@ class _Copy:
             if record.opcode != Opcode.MESSAGE_INDEX:
                 self._end_chunk()
             if record.opcode in _LOOSE:
-                self._take_loose(record)
+                self._loose.append(record)
+                if record.end - self._loose[0].at >= LOOSE_CHUNK_BYTES:
+                    self._end_loose()
                 continue
             self._end_loose()
             if record.opcode == Opcode.MESSAGE_INDEX:
@@ -315,41 +291,30 @@ class _Copy:
         elif record.opcode == Opcode.ATTACHMENT:
             self._sink.attachments.append(self._attachment_index(record, start, length))
         elif record.opcode == Opcode.METADATA:
-            name = self._original.body_stream(record).read_prefixed_string()
+            name = self._original.stream(record).read_prefixed_string()
             self._sink.metadata.append(MetadataIndex(offset=start, length=length, name=name))
 
     def _chunk_index(self, record: Record, start: int, length: int) -> ChunkIndex:
-        head = self._original.head_stream(record)
+        head = self._original.stream(record, _HEAD_BYTES)
         begin, end, size, _crc = head.read8(), head.read8(), head.read8(), head.read4()
         return ChunkIndex(
-            chunk_length=length,
-            chunk_start_offset=start,
-            compression=head.read_prefixed_string(),
-            compressed_size=head.read8(),
-            message_end_time=end,
-            message_index_length=0,
-            message_index_offsets={},
-            message_start_time=begin,
-            uncompressed_size=size,
-        )
+            chunk_length=length, chunk_start_offset=start, compression=head.read_prefixed_string(),
+            compressed_size=head.read8(), message_end_time=end, message_index_length=0, message_index_offsets={},
+            message_start_time=begin, uncompressed_size=size,
+        )  # fmt: skip
 
     def _attachment_index(self, record: Record, start: int, length: int) -> AttachmentIndex:
-        head = self._original.head_stream(record)
+        head = self._original.stream(record, _HEAD_BYTES)
         log_time, create_time = head.read8(), head.read8()
         name, media_type = head.read_prefixed_string(), head.read_prefixed_string()
         return AttachmentIndex(
-            offset=start,
-            length=length,
-            log_time=log_time,
-            create_time=create_time,
-            data_size=head.read8(),
-            name=name,
-            media_type=media_type,
-        )
+            offset=start, length=length, log_time=log_time, create_time=create_time, data_size=head.read8(),
+            name=name, media_type=media_type,
+        )  # fmt: skip
 
     def _take_index(self, record: Record) -> None:
         """Copy a message index that can be relied on; another is left out and found anew."""
-        if self._chunk is None or not self._original.contents.indexed:
+        if self._chunk is None or not self._original.indexed:
             self._flush()
             self._from = self._to = record.end
             return
@@ -363,16 +328,11 @@ class _Copy:
         if self._chunk is None:
             return
         (record, index), self._chunk = self._chunk, None
-        if self._original.contents.indexed:
+        if self._original.indexed:
             self._sink.chunks.append(index)
             return
         self._flush()
         self._sink.index_chunk(index, self._original.chunk_message_index(record))
-
-    def _take_loose(self, record: Record) -> None:
-        self._loose.append(record)
-        if record.end - self._loose[0].at >= LOOSE_CHUNK_BYTES:
-            self._end_loose()
 
     def _end_loose(self) -> None:
         """Put messages outside of chunks, and what was announced between them, into a chunk; announcements alone stay."""

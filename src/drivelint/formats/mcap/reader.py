@@ -10,6 +10,7 @@ import io
 import mmap
 import struct
 import zlib
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeVar
 
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 MAGIC = b"\x89MCAP0\r\n"
+BATCH_BYTES = 32 * 1024 * 1024
+"""Messages are decoded in batches of about this size, which bounds the memory that a long log needs."""
 MAX_CHUNK_BYTES = 512 * 1024 * 1024
 """A chunk that says it grows beyond this is refused before anything is allocated: recorders write a few MB each."""
 _RECORD = struct.Struct("<BQ")
@@ -82,8 +85,10 @@ class Container:
                 self._check_summary(view, at, start, end)
                 break
             if opcode == Opcode.DATA_END:
-                self._check_data(view, at, view[start:end])
                 in_data = False
+                crc = self._parsed(DataEnd.read, view[start:end], at).data_section_crc
+                if crc and zlib.crc32(view[:at]) != crc:
+                    raise self._damaged(at, "a data section with a wrong CRC (its content changed), ending")
             elif opcode == Opcode.STATISTICS:
                 statistics = self._parsed(Statistics.read, view[start:end], at)
             elif opcode == Opcode.CHUNK:
@@ -155,10 +160,8 @@ class Container:
         if packed_length != len(packed):
             raise self._damaged(at, "a chunk record whose lengths do not fit")
         if size > MAX_CHUNK_BYTES:
-            limit = MAX_CHUNK_BYTES // 2**20
-            raise self._damaged(
-                at, f"a chunk of {len(packed)} bytes that says it unpacks to {size}, beyond {limit} MiB,"
-            )
+            beyond = f"{size}, beyond {MAX_CHUNK_BYTES // 2**20} MiB,"
+            raise self._damaged(at, f"a chunk of {len(packed)} bytes that says it unpacks to {beyond}")
         records = self._unpacked(packed, compression, size, at)
         if crc == 0:
             self._unprotected += 1
@@ -171,13 +174,12 @@ class Container:
             place = end
 
     def _inner(self, view: memoryview, place: int, at: int) -> tuple[int, int, int]:
-        if place + _RECORD.size > len(view):
-            raise self._damaged(at, "a chunk that ends within a record")
-        opcode, length = _RECORD.unpack_from(view, place)
         start = place + _RECORD.size
-        if length > len(view) - start:
-            raise self._damaged(at, "a chunk that ends within a record")
-        return opcode, start, start + length
+        if start <= len(view):
+            opcode, length = _RECORD.unpack_from(view, place)
+            if length <= len(view) - start:
+                return opcode, start, start + length
+        raise self._damaged(at, "a chunk that ends within a record")
 
     def _unpacked(self, packed: memoryview, compression: str, size: int, at: int) -> bytes:
         """Decompress at most `size` bytes, the number the chunk declares."""
@@ -209,11 +211,6 @@ class Container:
             raise self._damaged(at, f"a chunk that says it unpacks to {size} bytes and unpacks to {len(records)}")
         return records
 
-    def _check_data(self, view: memoryview, at: int, body: memoryview) -> None:
-        crc = self._parsed(DataEnd.read, body, at).data_section_crc
-        if crc and zlib.crc32(view[:at]) != crc:
-            raise self._damaged(at, "a data section with a wrong CRC (its content changed), ending")
-
     def _check_summary(self, view: memoryview, at: int, start: int, end: int) -> None:
         """Check the index's CRC: the data were read without it, so damage there loses nothing."""
         footer = self._parsed(Footer.read, view[start:end], at)
@@ -235,6 +232,28 @@ class Container:
             )
         message = f"{extra} bytes follow the end of the log at byte {end + len(MAGIC)}: they are not part of it"
         self.findings.append(QualityFinding("trailing_bytes", "warning", message))
+
+
+def message_batches(
+    container: Container, kind_of: Callable[[Channel], str | None]
+) -> Iterator[tuple[str, list[Packet]]]:
+    """Yield the kind and the messages of a topic, those of one schema and some tens of megabytes at a time.
+
+    `kind_of`: what is read from a channel; None: nothing.
+    """
+    waiting: dict[str, tuple[str, list[Packet]]] = {}
+    sizes: Counter[str] = Counter()
+    for packet in container.packets():
+        topic, kind = packet.channel.topic, kind_of(packet.channel)
+        if kind is None:
+            continue
+        changed = topic in waiting and waiting[topic][1][0].channel.schema_id != packet.channel.schema_id
+        if changed or sizes[topic] >= BATCH_BYTES:
+            yield waiting.pop(topic)
+            sizes[topic] = 0
+        waiting.setdefault(topic, (kind, []))[1].append(packet)
+        sizes[topic] += len(packet.data)
+    yield from waiting.values()
 
 
 def _name(opcode: int) -> str:

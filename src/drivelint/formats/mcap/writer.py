@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 import zlib
 from collections import Counter
+from dataclasses import replace
 from typing import TYPE_CHECKING, BinaryIO, Final
 
 import numpy as np
@@ -29,13 +30,13 @@ from mcap.records import (
 )
 
 from drivelint.errors import DriveLintError
+from drivelint.formats.mcap.reader import MAGIC
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
-MAGIC: Final = b"\x89MCAP0\r\n"
 ID_LIMIT: Final = 1 << 16  # channel and schema ids are 16 bits wide; schema 0 means none
 _ZSTD_LEVEL: Final = 1
 _BLOCK: Final = 4 << 20
@@ -77,16 +78,10 @@ class Sink:
 
         `schema` comes without an id (0). Errors: `DriveLintError` where all 65,535 ids are taken.
         """
-        same = [
-            s.id
-            for s in self.schemas.values()
-            if (s.name, s.encoding, s.data) == (schema.name, schema.encoding, schema.data)
-        ]
-        if same:
-            number = min(same)
-        else:
-            number = _free(self.schemas, 1, "schema")
-            self.schemas[number] = Schema(id=number, name=schema.name, encoding=schema.encoding, data=schema.data)
+        same = [number for number, known in self.schemas.items() if replace(known, id=0) == replace(schema, id=0)]
+        number = min(same) if same else _free(self.schemas, 1, "schema")
+        if not same:
+            self.schemas[number] = replace(schema, id=number)
             self._record(self.schemas[number])
         channel = Channel(
             id=_free(self.channels, 0, "channel"), topic=topic, message_encoding=encoding, metadata={}, schema_id=number
@@ -131,17 +126,10 @@ class Sink:
         """Write an attachment; its creation time is 0, so that the same run writes the same bytes."""
         start = self.offset
         self._record(Attachment(create_time=0, log_time=log_time, name=name, media_type=media_type, data=data))
-        self.attachments.append(
-            AttachmentIndex(
-                offset=start,
-                length=self.offset - start,
-                log_time=log_time,
-                create_time=0,
-                data_size=len(data),
-                name=name,
-                media_type=media_type,
-            )
-        )
+        self.attachments.append(AttachmentIndex(
+            offset=start, length=self.offset - start, log_time=log_time, create_time=0, data_size=len(data),
+            name=name, media_type=media_type,
+        ))  # fmt: skip
 
     def add_metadata(self, name: str, content: Mapping[str, str]) -> None:
         """Write a metadata record, its keys in order."""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from drivelint.formats.opendrive.network import record_spans
+from drivelint.formats.opendrive.network import RoadMark, record_spans
 
 if TYPE_CHECKING:
     from drivelint.formats.opendrive.lanelet import Lanelet
-    from drivelint.formats.opendrive.network import RoadMark, SpeedLimit
+    from drivelint.formats.opendrive.network import SpeedLimit
+    from drivelint.road.tables import Rows
 
 
 def road_type(lanelet: Lanelet) -> str | None:
@@ -22,31 +23,29 @@ def road_type(lanelet: Lanelet) -> str | None:
     return None if best == "unknown" else best
 
 
-def speed_rows(lanelet: Lanelet) -> list[dict[str, Any]]:
+def speed_rows(lanelet: Lanelet) -> Rows:
     """Return rows of `speed_limit`: the lane's own records, else the road type's; none where neither says."""
-    rows: list[dict[str, Any]] = []
+    rows: Rows = []
     start, end = lanelet.strip.start_m, lanelet.strip.end_m
     for i, a, b in record_spans((s.start_m for s in lanelet.lane.speeds), start, end):
         if i >= 0 and lanelet.lane.speeds[i].known:
-            rows += _speed_row(lanelet, [(0, a, b)], lanelet.lane.speeds[i], "lane")
+            rows += _speed_row(lanelet, a, b, lanelet.lane.speeds[i], "lane")
             continue
         for j, c, d in record_spans((s.start_m for s in lanelet.road.speeds), a, b):
             if j >= 0 and lanelet.road.speeds[j].known:
-                rows += _speed_row(lanelet, [(0, c, d)], lanelet.road.speeds[j], "road_type")
+                rows += _speed_row(lanelet, c, d, lanelet.road.speeds[j], "road_type")
     return sorted(rows, key=lambda row: float(row["s_start_m"]))
 
 
-def _speed_row(
-    lanelet: Lanelet, span: list[tuple[int, float, float]], speed: SpeedLimit, source: str
-) -> list[dict[str, Any]]:
+def _speed_row(lanelet: Lanelet, start: float, end: float, speed: SpeedLimit, source: str) -> Rows:
     limit, said = speed.limit_mps, source if speed.readable else "unread"
     return [
         {"lanelet_id": lanelet.lanelet_id, "s_start_m": a, "s_end_m": b, "limit_mps": limit, "source": said}
-        for _, a, b in lanelet.lanelet_spans(span)
+        for _, a, b in lanelet.lanelet_spans([(0, start, end)])
     ]
 
 
-def boundary_rows(lanelet: Lanelet) -> list[dict[str, Any]]:
+def boundary_rows(lanelet: Lanelet) -> Rows:
     """Return rows of `lane_boundary`: both sides, all along; the marking is NULL where the map does not say.
 
     A lane's mark lies on its outer edge, lane 0's on the centre line; double lines are named with the line nearer to
@@ -66,20 +65,14 @@ def boundary_rows(lanelet: Lanelet) -> list[dict[str, Any]]:
 _SWAPPED = {"solid_broken": "broken_solid", "broken_solid": "solid_broken"}
 
 
-def _mark_rows(lanelet: Lanelet, side: str, marks: tuple[RoadMark, ...], *, swap: bool) -> list[dict[str, Any]]:
+def _mark_rows(lanelet: Lanelet, side: str, marks: tuple[RoadMark, ...], *, swap: bool) -> Rows:
     rows = []
-    for i, a, b in lanelet.lanelet_spans(
-        record_spans((m.start_m for m in marks), lanelet.strip.start_m, lanelet.strip.end_m)
-    ):
-        mark = marks[i] if i >= 0 else None
-        marking = mark.marking if mark else None
+    spans = record_spans((m.start_m for m in marks), lanelet.strip.start_m, lanelet.strip.end_m)
+    for i, a, b in lanelet.lanelet_spans(spans):
+        mark = marks[i] if i >= 0 else RoadMark(0.0, None, None, None)
+        marking = _SWAPPED.get(mark.marking or "", mark.marking) if swap else mark.marking
         rows.append({
-            "lanelet_id": lanelet.lanelet_id,
-            "side": side,
-            "s_start_m": a,
-            "s_end_m": b,
-            "marking": _SWAPPED.get(marking or "", marking) if swap else marking,
-            "color": mark.color if mark else None,
-            "lane_change": mark.lane_change if mark else None,
+            "lanelet_id": lanelet.lanelet_id, "side": side, "s_start_m": a, "s_end_m": b,
+            "marking": marking, "color": mark.color, "lane_change": mark.lane_change,
         })  # fmt: skip
     return rows

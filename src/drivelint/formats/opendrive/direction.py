@@ -70,9 +70,8 @@ class SideStatements:
         """Collect the statements of the option, the roads' rules, the junctions, the lanes' travel directions and the traces."""
         roads = Counter(road.rule for road in net.roads.values() if road.rule)
         junctions, travel = _junction_votes(net), _travel_votes(net)
-        option = None if request.handedness == "auto" else request.handedness
         found = [
-            ("option", option, "--handedness says", False),
+            ("option", request.side, "--handedness says", False),
             ("attribute", _winner(roads), f"the rule attribute of {plural(roads.total(), 'road')} says", False),
             ("junctions", _winner(junctions), f"{junctions.total()} lane links of junctions fit", True),
             ("attribute", _winner(travel), f"the travel direction of {travel.total()} lanes (userData) fits", True),

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
 from drivelint.formats.opendrive.objects import PlacedObject, placed_objects
 from drivelint.formats.opendrive.signals import signal_rows
+from drivelint.road.tables import Rows, crossing_row, stop_line_row
 
 if TYPE_CHECKING:
     from drivelint.formats.opendrive.cubic import Floats
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 MIN_SHARE = 0.5  # a stop line that covers less of a lane's width is another lane's
 MIN_ANGLE_RAD = 0.87  # 50 degrees: a line more along the lane than this is not one to stop at
 MIN_AREA_M2 = 0.5  # a crossing that only touches a lane does not lie across it
-Rows = list[dict[str, Any]]
 
 
 def furniture(net: Network, lanes: list[Lanelet], offset: tuple[float, float], quality: MapQuality) -> dict[str, Rows]:
@@ -62,9 +62,7 @@ def _laid_over(objects: list[PlacedObject], lanes: list[Lanelet], quality: MapQu
 
 
 def _area(lane: Lanelet) -> shapely.Geometry:
-    x = np.concatenate([lane.right_x, lane.left_x[::-1]])
-    y = np.concatenate([lane.right_y, lane.left_y[::-1]])
-    polygon = shapely.Polygon(np.column_stack([x, y]))
+    polygon = shapely.Polygon(np.vstack([lane.line.right, lane.line.left[::-1]]))
     return polygon if polygon.is_valid else polygon.buffer(0.0)
 
 
@@ -83,12 +81,11 @@ def _shape(placed: PlacedObject) -> shapely.Geometry:
 
 def _stations(lane: Lanelet, points: Floats) -> tuple[Floats, Floats, float]:
     """Return station and offset (left positive) of points on a lanelet, and the lane's width there."""
-    line = shapely.LineString(np.column_stack([lane.x, lane.y]))
-    s = np.atleast_1d(shapely.line_locate_point(line, shapely.points(points)))
+    line = lane.line
+    s = np.atleast_1d(shapely.line_locate_point(shapely.LineString(line.centre), shapely.points(points)))
     middle = float(np.mean(s))
-    x, y, tx, ty, half = (
-        float(np.interp(middle, lane.s, a)) for a in (lane.x, lane.y, lane.tx, lane.ty, lane.half_width)
-    )
+    columns = (*line.centre.T, *line.tangent.T, line.half_width)
+    x, y, tx, ty, half = (float(np.interp(middle, line.s, column)) for column in columns)
     norm = max(float(np.hypot(tx, ty)), 1e-9)
     d = ((points[:, 1] - y) * tx - (points[:, 0] - x) * ty) / norm
     return s, d, 2.0 * half
@@ -99,31 +96,17 @@ def _stop_line(placed: PlacedObject, lane: Lanelet, common: shapely.Geometry) ->
     s, d, width = _stations(lane, shapely.get_coordinates(common))
     axis = np.linalg.svd(placed.outline - placed.outline.mean(axis=0))[2][0]
     middle = float(np.mean(s))
-    tx, ty = float(np.interp(middle, lane.s, lane.tx)), float(np.interp(middle, lane.s, lane.ty))
+    tx, ty = (float(np.interp(middle, lane.line.s, column)) for column in lane.line.tangent.T)
     across = abs(float(axis[0] * ty - axis[1] * tx)) / max(float(np.hypot(tx, ty)), 1e-9)
     if float(d.max() - d.min()) < MIN_SHARE * width or across < np.sin(MIN_ANGLE_RAD):
         return []
-    row = {
-        "stop_line_id": placed.object_id,
-        "lanelet_id": lane.lanelet_id,
-        "lane_s_m": float(s.min()),
-        "source": "object",
-    }
-    return [row]
+    return [stop_line_row(placed.object_id, lane.lanelet_id, float(s.min()))]
 
 
 def _crossing(placed: PlacedObject, lane: Lanelet, common: shapely.Geometry) -> Rows:
     if float(shapely.area(common)) < MIN_AREA_M2:
         return []
     s, _, _ = _stations(lane, shapely.get_coordinates(common))
-    said = f"{placed.subtype or ''} {placed.name or ''}".lower()
+    said = f"{placed.element.get('subtype', '')} {placed.element.get('name', '')}".lower()
     kind = "zebra" if "zebra" in said else "signalled" if "signal" in said else None
-    return [
-        {
-            "crossing_id": placed.object_id,
-            "lanelet_id": lane.lanelet_id,
-            "s_start_m": float(s.min()),
-            "s_end_m": float(s.max()),
-            "kind": kind,
-        }
-    ]
+    return [crossing_row(placed.object_id, lane.lanelet_id, s, kind)]

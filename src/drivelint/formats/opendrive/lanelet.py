@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from drivelint.formats.opendrive.cubic import Floats
     from drivelint.formats.opendrive.network import Lane, Road, Strip
+    from drivelint.road.boundary_lanes import LaneGeometry
 
 LaneKey = tuple[str, int, int]  # road, section, lane number
 
@@ -25,7 +26,7 @@ def lanelet_id(key: LaneKey) -> str:
 
 @dataclass(eq=False)
 class Lanelet:
-    """A lane of a section as arrays, all (n,), in the direction of travel."""
+    """A lane of a section in the direction of travel: its points `line`, and as arrays (n,) what else they are."""
 
     key: LaneKey
     lane: Lane
@@ -33,18 +34,9 @@ class Lanelet:
     strip: Strip
     along: int
     bidirectional: bool
+    line: LaneGeometry
     road_s: Floats
-    x: Floats
-    y: Floats
     z: Floats
-    tx: Floats
-    ty: Floats
-    half_width: Floats
-    left_x: Floats
-    left_y: Floats
-    right_x: Floats
-    right_y: Floats
-    s: Floats
     t: Floats  # of the centre line, in road coordinates
     left: Lanelet | None = None
     right: Lanelet | None = None
@@ -62,17 +54,17 @@ class Lanelet:
     @property
     def length_m(self) -> float:
         """Length along the centre line."""
-        return float(self.s[-1])
+        return float(self.line.s[-1])
 
     def station_at(self, road_s: float) -> float:
         """Return the lanelet station (m) of a road station (m), held within the lanelet."""
         step = self.along
-        return float(np.interp(road_s, self.road_s[::step], self.s[::step]))
+        return float(np.interp(road_s, self.road_s[::step], self.line.s[::step]))
 
     def lateral_range(self, road_s: float) -> tuple[float, float]:
         """Return the road coordinates t between which the lanelet lies at a road station (m)."""
         s = self.station_at(road_s)
-        t, half = float(np.interp(s, self.s, self.t)), float(np.interp(s, self.s, self.half_width))
+        t, half = (float(np.interp(s, self.line.s, values)) for values in (self.t, self.line.half_width))
         return t - half, t + half
 
     def lanelet_spans(self, spans: Iterable[tuple[int, float, float]]) -> list[tuple[int, float, float]]:
@@ -81,20 +73,7 @@ class Lanelet:
         ordered = [(i, min(a, b), max(a, b)) for i, a, b in found if abs(b - a) > 1e-6]
         return sorted(ordered, key=lambda r: r[1])
 
-    def heading_change(self) -> float:
-        """Return the heading change over the lanelet (rad), left positive."""
-        cross = self.tx[:-1] * self.ty[1:] - self.ty[:-1] * self.tx[1:]
-        dot = self.tx[:-1] * self.tx[1:] + self.ty[:-1] * self.ty[1:]
-        return float(np.arctan2(cross, dot).sum())
-
-    def area(self) -> float:
-        """Return the area between the bounds (m2)."""
-        x = np.concatenate([self.right_x, self.left_x[::-1]])
-        y = np.concatenate([self.right_y, self.left_y[::-1]])
-        x, y = x - x[0], y - y[0]
-        return abs(0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)))
-
     def mean_width(self) -> float:
         """Return the mean distance between the bounds (m)."""
-        ds = np.diff(self.s)
-        return float(((self.half_width[:-1] + self.half_width[1:]) * ds).sum() / ds.sum()) if ds.sum() > 0 else 0.0
+        ds, half = np.diff(self.line.s), self.line.half_width
+        return float(((half[:-1] + half[1:]) * ds).sum() / ds.sum()) if ds.sum() > 0 else 0.0

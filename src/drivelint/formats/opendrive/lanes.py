@@ -12,6 +12,7 @@ from drivelint.formats.opendrive.crosssection import Edges, Evaluator, sample_st
 from drivelint.formats.opendrive.lanelet import LaneKey, Lanelet, lanelet_id
 from drivelint.formats.opendrive.network import DRIVABLE
 from drivelint.formats.opendrive.xml import MalformedError
+from drivelint.road.boundary_lanes import LaneGeometry
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -130,7 +131,7 @@ class _StripBuilder:
         """Return one lane as arrays; `rows` are those of its left and right edge, seen along the reference line."""
         i, j = rows
         along, bidirectional = self.direction.lane_direction(lane)
-        line, (dx, dy) = edges.line, self.offset
+        line = edges.line
         t, dt = 0.5 * (edges.t[i] + edges.t[j]), 0.5 * (edges.dt[i] + edges.dt[j])
         x, y = line.x - line.sin * t, line.y + line.cos * t
         forward = line.speed * (1.0 - line.curvature * t)
@@ -144,28 +145,20 @@ class _StripBuilder:
         z = self.road.elevation.evaluate(s, s)[0] if len(self.road.elevation.start) else np.full_like(s, np.nan)
         order = slice(None, None, along)
         left, right = (i, j) if along > 0 else (j, i)
-        x, y = x[order] + dx, y[order] + dy
-        return Lanelet(
-            key=self._key(lane),
-            lane=lane,
-            road=self.road,
-            strip=self.strip,
-            along=along,
-            bidirectional=bidirectional,
-            road_s=s[order],
-            x=x,
-            y=y,
-            z=z[order],
-            tx=(along * tx / norm)[order],
-            ty=(along * ty / norm)[order],
+        bounds = [np.column_stack([edges.x[k], edges.y[k]])[order] + self.offset for k in (left, right)]
+        centre = np.column_stack([x, y])[order] + self.offset
+        geometry = LaneGeometry(
+            s=np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(centre, axis=0).T))]),
+            centre=centre,
+            left=bounds[0],
+            right=bounds[1],
+            tangent=(along * np.column_stack([tx, ty]) / norm[:, None])[order],
             half_width=(0.5 * (edges.t[i] - edges.t[j]))[order],
-            left_x=edges.x[left][order] + dx,
-            left_y=edges.y[left][order] + dy,
-            right_x=edges.x[right][order] + dx,
-            right_y=edges.y[right][order] + dy,
-            s=np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))]),
-            t=t[order],
         )
+        return Lanelet(
+            self._key(lane), lane, self.road, self.strip, along, bidirectional,
+            line=geometry, road_s=s[order], z=z[order], t=t[order],
+        )  # fmt: skip
 
     def _check_fold(self, lane: Lane, folded: NDArray[np.bool_], forward: Floats) -> None:
         if folded.any():

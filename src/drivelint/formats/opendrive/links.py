@@ -6,7 +6,6 @@ touch. Directions are applied once, to the touching ends; so it does not matter 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,15 +25,8 @@ GAP_M = 0.5  # linked ends further apart than this are reported
 TOUCH_M = 0.1  # a lane that begins this close to another's end, in the same direction, should be linked to it
 TOUCH_HEADING_COS = 0.98
 LaneEnd = tuple[LaneKey, str]
+Link = tuple[Lanelet, Lanelet]  # the second continues the first
 _OTHER = {START: END, END: START}
-
-
-@dataclass(frozen=True)
-class Link:
-    """One lanelet continues another."""
-
-    source: Lanelet
-    target: Lanelet
 
 
 def links(net: Network, lanes: BuiltLanes, quality: MapQuality) -> list[Link]:
@@ -55,10 +47,14 @@ def links(net: Network, lanes: BuiltLanes, quality: MapQuality) -> list[Link]:
     for a, b in sorted(_through_short(touching, lanes.short)):
         link = _directed(a, b, lanes, quality)
         if link is not None:
-            found[link.source.lanelet_id, link.target.lanelet_id] = link
+            found[link[0].lanelet_id, link[1].lanelet_id] = link
     result = [found[key] for key in sorted(found)]
-    for link in result:
-        _check_gap(link, quality)
+    for source, target in result:
+        gap = float(np.hypot(*(source.line.centre[-1] - target.line.centre[0])))
+        if gap > GAP_M:
+            name = source.lanelet_id
+            message = f"lane {target.lanelet_id} begins {gap:.2f} m away from the end of lane {name} that it continues"
+            quality.add("link_gap", "warning" if source.drivable else "info", name, message)
     _check_unlinked(sorted(lanes.built.values(), key=lambda lane: lane.key), found, quality)
     return result
 
@@ -95,23 +91,15 @@ def _contacts_at(
     if other is None:
         yield from (((key, end), ((join.element_id, 0, target), START)) for target in targets)
         return
-    contact = join.contact or _contact_back(other, road.road_id)
+    back = [e for e, link in other.joins.items() if not link.is_junction and link.element_id == road.road_id]
+    contact = join.contact or (back[0] if len(back) == 1 else None)
     if contact is None:
         name = lanelet_id(key)
-        quality.add(
-            "missing_link",
-            "error",
-            name,
-            f"lane {name} goes on in road {join.element_id}, but the file does not say at which end",
-        )
+        message = f"lane {name} goes on in road {join.element_id}, but the file does not say at which end"
+        quality.add("missing_link", "error", name, message)
         return
     for target in targets:
         yield (key, end), (_lane_at(other, contact, target), contact)
-
-
-def _contact_back(other: Road, road_id: str) -> str | None:
-    ends = [end for end, join in other.joins.items() if not join.is_junction and join.element_id == road_id]
-    return ends[0] if len(ends) == 1 else None
 
 
 def _lane_at(road: Road, contact: str, lane_no: int) -> LaneKey:
@@ -178,9 +166,9 @@ def _directed(a: LaneEnd, b: LaneEnd, lanes: BuiltLanes, quality: MapQuality) ->
         return None
     leaves, enters = _exit(first) == a[1], _exit(second) != b[1]
     if leaves and enters:
-        return Link(first, second)
+        return first, second
     if not leaves and not enters:
-        return Link(second, first)
+        return second, first
     if not (first.bidirectional or second.bidirectional) and first.drivable and second.drivable:
         message = (
             f"{first.lanelet_id} and {second.lanelet_id} are linked, but are driven towards each other: not linked"
@@ -202,24 +190,16 @@ def _missing(lanes: BuiltLanes, end: LaneEnd, what: str, quality: MapQuality) ->
     quality.add("missing_link", severity, name, f"lane {name} is linked at its {end[1]} to {what}")
 
 
-def _check_gap(link: Link, quality: MapQuality) -> None:
-    a, b = link.source, link.target
-    gap = float(np.hypot(a.x[-1] - b.x[0], a.y[-1] - b.y[0]))
-    if gap > GAP_M:
-        message = f"lane {b.lanelet_id} begins {gap:.2f} m away from the end of lane {a.lanelet_id} that it continues"
-        quality.add("link_gap", "warning" if a.drivable else "info", a.lanelet_id, message)
-
-
 def _check_unlinked(lanes: list[Lanelet], found: dict[tuple[str, str], Link], quality: MapQuality) -> None:
     """Report drivable lanes that plainly go on in another one without a link: chains would end there."""
     lanes = [lane for lane in lanes if lane.drivable]
     if not lanes:
         return
-    ends, starts = ([(lane.x[k], lane.y[k]) for lane in lanes] for k in (-1, 0))
+    ends, starts = ([lane.line.centre[k] for lane in lanes] for k in (-1, 0))
     touching = shapely.STRtree(shapely.points(starts)).query(shapely.points(ends), "dwithin", TOUCH_M)
     for i, j in sorted(touching.T.tolist()):
         a, b = lanes[i], lanes[j]
-        same = float(a.tx[-1] * b.tx[0] + a.ty[-1] * b.ty[0]) > TOUCH_HEADING_COS
+        same = float((a.line.tangent[-1] * b.line.tangent[0]).sum()) > TOUCH_HEADING_COS
         if same and (a.lanelet_id, b.lanelet_id) not in found:
             message = f"lane {b.lanelet_id} begins where lane {a.lanelet_id} ends, but the map does not link them"
             quality.add("unlinked_end", "error", a.lanelet_id, message)

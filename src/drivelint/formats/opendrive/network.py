@@ -140,9 +140,8 @@ def network(root: etree._Element, quality: MapQuality) -> Network:
             road = _road(element, roads, quality)
         except MalformedError as error:
             lanes = sum(1 for lane in element.iterfind("lanes/laneSection//lane") if lane.get("id") != "0")
-            quality.add(
-                "invalid_road", "error", name, f"road {name} is left out with its {lanes} lanes: {error}", max(lanes, 1)
-            )
+            message = f"road {name} is left out with its {lanes} lanes: {error}"
+            quality.add("invalid_road", "error", name, message, max(lanes, 1))
         else:
             roads[road.road_id] = road
     reference = root.findtext("header/geoReference")
@@ -158,9 +157,7 @@ def _road(element: etree._Element, others: dict[str, Road], quality: MapQuality)
     junction = element.get("junction", "-1")
     rule = (element.get("rule") or "").lower()
     plan = planview(element.find("planView"))
-    types = sorted(
-        ((number(t, "s", 0.0), t.get("type", "unknown")) for t in element.findall("type")), key=lambda t: t[0]
-    )
+    types = [(number(t, "s", 0.0), t.get("type", "unknown")) for t in element.findall("type")]
     return Road(
         road_id=required_attribute(element, "id"),
         length_m=min(length, plan.end),
@@ -168,7 +165,7 @@ def _road(element: etree._Element, others: dict[str, Road], quality: MapQuality)
         junction_id=None if junction in {"-1", ""} else junction,
         rule=rule if rule in {"lht", "rht"} else None,
         joins=_joins(element),
-        types=tuple(types),
+        types=tuple(sorted(types, key=lambda t: t[0])),
         speeds=_speeds(element.findall("type"), "s", 0.0, quality, child="speed"),
         plan=plan,
         elevation=cubics(element.findall("elevationProfile/elevation"), "s"),
@@ -266,7 +263,7 @@ def _marks(lane: etree._Element, section_start: float) -> list[RoadMark]:
     return sorted(marks, key=lambda mark: mark.start_m)
 
 
-_UNITS = {"m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
+SPEED_UNITS_MPS = {"m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
 
 
 def _speeds(
@@ -287,18 +284,14 @@ def _speeds(
             speeds.append(SpeedLimit(start, limit, known=True, readable=limit is not None))
             if limit is None:
                 said = f"{word[:20]} {speed.get('unit', 'm/s')[:20]}"
-                quality.add(
-                    "invalid_speed",
-                    "warning",
-                    None,
-                    f"line {speed.sourceline}: {said} is no speed limit: taken as unknown",
-                )
+                message = f"line {speed.sourceline}: {said} is no speed limit: taken as unknown"
+                quality.add("invalid_speed", "warning", None, message)
     return tuple(sorted(speeds, key=lambda s: s.start_m))
 
 
 def _limit(speed: etree._Element) -> float | None:
     try:
-        limit = number(speed, "max") * _UNITS[speed.get("unit", "m/s")]
+        limit = number(speed, "max") * SPEED_UNITS_MPS[speed.get("unit", "m/s")]
     except (MalformedError, KeyError):
         return None
     return limit if limit > 0.0 else None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -43,30 +44,30 @@ _BY_NAME = (
 class PlacedObject:
     """One object in the map; the outline is (n, 2) map metres, None for a point."""
 
-    object_id: str
-    kind: str
-    name: str | None
-    subtype: str | None
     road: Road
+    element: etree._Element
+    object_id: str
     s: float
     x: float
     y: float
     outline: Floats | None
 
+    @cached_property
+    def kind(self) -> str:
+        """What it is, by its type, else by its name."""
+        name = (self.element.get("name") or "").lower()
+        by_name = next((kind for part, kind in _BY_NAME if part in name), "other")
+        return _BY_TYPE.get(self.element.get("type", ""), by_name)
+
     def row(self) -> dict[str, Any]:
         """Return the row of `road_object`."""
         outline = None if self.outline is None else counter_clockwise(self.outline)
         return {
-            "object_id": self.object_id,
-            "kind": self.kind,
-            "name": self.name,
-            "road_id": self.road.road_id,
-            "road_s_m": self.s,
-            "x_m": self.x,
-            "y_m": self.y,
+            "object_id": self.object_id, "kind": self.kind, "name": self.element.get("name") or None,
+            "road_id": self.road.road_id, "road_s_m": self.s, "x_m": self.x, "y_m": self.y,
             "outline_x_m": None if outline is None else outline[:, 0].tolist(),
             "outline_y_m": None if outline is None else outline[:, 1].tolist(),
-        }
+        }  # fmt: skip
 
 
 def counter_clockwise(outline: Floats) -> Floats:
@@ -89,15 +90,6 @@ def placed_objects(net: Network, offset: tuple[float, float], quality: MapQualit
                 message = f"object {element.get('id')} of road {road.road_id} is left out: {error}"
                 quality.add("invalid_object", "warning", road.road_id, message)
     return sorted(placed, key=lambda p: (p.object_id, p.road.road_id, p.s, p.x, p.y))
-
-
-def kind_of_object(element: etree._Element) -> str:
-    """Return the kind of an `<object>` by its type, else by its name."""
-    kind = _BY_TYPE.get(element.get("type", ""))
-    if kind is None:
-        name = (element.get("name") or "").lower()
-        kind = next((kind for part, kind in _BY_NAME if part in name), "other")
-    return kind
 
 
 def _placed(road: Road, element: etree._Element, offset: tuple[float, float]) -> Iterator[PlacedObject]:
@@ -125,8 +117,7 @@ def _instances(
     road: Road, element: etree._Element, s: Floats, t: Floats, offset: tuple[float, float], *, numbered: bool
 ) -> Iterator[PlacedObject]:
     x, y, heading = place(road, s, t, offset)
-    local = _local_outline(element)
-    on_road = _road_outline(element)
+    local, on_road = _local_outline(element), _corners(element, "cornerRoad", ("s", "t"))
     turned = heading + number(element, "hdg", 0.0)
     for i in range(len(s)):
         outline = None
@@ -138,15 +129,7 @@ def _instances(
             cos, sin = np.cos(turned[i]), np.sin(turned[i])
             outline = np.array([x[i], y[i]]) + local @ np.array([[cos, sin], [-sin, cos]])
         name = required_attribute(element, "id") + (f"/{i}" if numbered else "")
-        yield _make(road, element, name, (float(s[i]), float(x[i]), float(y[i])), outline)
-
-
-def _make(
-    road: Road, element: etree._Element, name: str, at: tuple[float, float, float], outline: Floats | None
-) -> PlacedObject:
-    return PlacedObject(
-        name, kind_of_object(element), element.get("name") or None, element.get("subtype") or None, road, *at, outline
-    )
+        yield PlacedObject(road, element, name, float(s[i]), float(x[i]), float(y[i]), outline)
 
 
 def _band(road: Road, element: etree._Element, repeat: etree._Element, offset: tuple[float, float]) -> PlacedObject:
@@ -164,7 +147,9 @@ def _band(road: Road, element: etree._Element, repeat: etree._Element, offset: t
     right, left = (np.column_stack(place(road, s, t + side, offset)[:2]) for side in (-half, half))
     x, y, _ = place(road, s[:1], t[:1], offset)
     outline = np.concatenate([right, left[::-1]])
-    return _make(road, element, required_attribute(element, "id"), (float(s[0]), float(x[0]), float(y[0])), outline)
+    return PlacedObject(
+        road, element, required_attribute(element, "id"), float(s[0]), float(x[0]), float(y[0]), outline
+    )
 
 
 def _corners(element: etree._Element, tag: str, axes: tuple[str, str]) -> Floats | None:
@@ -174,10 +159,6 @@ def _corners(element: etree._Element, tag: str, axes: tuple[str, str]) -> Floats
             mine = [c for c in found if c.getparent() is found[0].getparent()]  # the first outline of several
             return np.array([[number(c, axis) for axis in axes] for c in mine])
     return None
-
-
-def _road_outline(element: etree._Element) -> Floats | None:
-    return _corners(element, "cornerRoad", ("s", "t"))
 
 
 def _local_outline(element: etree._Element) -> Floats | None:

@@ -20,9 +20,3 @@ def place(road: Road, s: Floats, t: Floats, offset: tuple[float, float]) -> tupl
     back = np.argsort(order, kind="stable")
     x, y = (line.x - line.sin * t[order])[back] + offset[0], (line.y + line.cos * t[order])[back] + offset[1]
     return x, y, np.arctan2(line.sin, line.cos)[back]
-
-
-def place_one(road: Road, s: float, t: float, offset: tuple[float, float]) -> tuple[float, float]:
-    """Return x and y (m) of one place."""
-    x, y, _ = place(road, np.array([s]), np.array([t]), offset)
-    return float(x[0]), float(y[0])

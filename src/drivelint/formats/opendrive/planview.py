@@ -8,7 +8,7 @@ length); constant curvature has the closed form. Polynomials are a curve c(p) wi
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -36,14 +36,6 @@ class ReferenceLine:
     speed: Floats
 
 
-class Shape(Protocol):
-    """One geometry in its own frame: starts at the origin along the u axis."""
-
-    def evaluate(self, ds: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
-        """Return u, v, cos and sin of the heading, curvature, speed, each (n,), at distances `ds` from the start."""
-        ...
-
-
 @dataclass(frozen=True)
 class Clothoid:
     """Line, arc or spiral: curvature linear in s."""
@@ -52,7 +44,7 @@ class Clothoid:
     rate: float  # 1/m^2
 
     def evaluate(self, ds: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
-        """Return u, v, cos and sin of the heading, curvature and speed at distances `ds`, as `Shape.evaluate` does."""
+        """Return u, v, cos and sin of the heading, curvature, speed, each (n,), at distances `ds` from the start."""
         heading = (self.start + 0.5 * self.rate * ds) * ds
         u, v = self._constant(ds) if self.rate == 0.0 else self._integral(ds)
         return u, v, np.cos(heading), np.sin(heading), self.start + self.rate * ds, np.ones_like(ds)
@@ -88,7 +80,7 @@ class Polynomial:
     stretch: float = 1.0  # metres of curve per metre of s, where the table is used
 
     def evaluate(self, ds: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
-        """Return u, v, cos and sin of the heading, curvature and speed at distances `ds`, as `Shape.evaluate` does."""
+        """Return u, v, cos and sin of the heading, curvature, speed, each (n,), at distances `ds` from the start."""
         p = ds if self.table is None else self._parameter(ds * self.stretch)
         (u, du, ddu), (v, dv, ddv) = _powers(self.u, p), _powers(self.v, p)
         norm = np.hypot(du, dv)
@@ -130,6 +122,10 @@ def arc_length_polynomial(u: Floats, v: Floats, p_max: float, length: float | No
     if not along[-1] > 1e-6:
         raise MalformedError("a polynomial geometry has no length")
     return Polynomial(u, v, (along, p_at), 1.0 if length is None else float(along[-1]) / length)
+
+
+Shape = Clothoid | Polynomial
+"""One geometry in its own frame: starts at the origin along the u axis."""
 
 
 @dataclass(frozen=True, eq=False)

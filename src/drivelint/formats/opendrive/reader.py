@@ -2,70 +2,62 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-import numpy as np
-import pyarrow as pa
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 from drivelint.errors import MapError
-from drivelint.formats.opendrive import xml
+from drivelint.formats import safe_xml
 from drivelint.formats.opendrive.attributes import boundary_rows, road_type, speed_rows
 from drivelint.formats.opendrive.direction import SideStatements, report_exceptions
 from drivelint.formats.opendrive.furniture import furniture
 from drivelint.formats.opendrive.lanes import build
-from drivelint.formats.opendrive.links import Link, links
+from drivelint.formats.opendrive.links import links
 from drivelint.formats.opendrive.network import network
 from drivelint.formats.opendrive.signlimits import sign_limits
-from drivelint.road.driving_side import OneWayLane, side_driven_on
-from drivelint.road.map_reader import MapOptions, MapSource, MapTables, environment_id
+from drivelint.road.boundary_lanes import lane_points
+from drivelint.road.driving_side import side_driven_on
+from drivelint.road.handedness import opposite_side
+from drivelint.road.map_reader import environment_id
 from drivelint.road.quality import MapQuality
-from drivelint.road.tables import from_columns, from_rows, repeated
+from drivelint.road.tables import map_tables
 
 if TYPE_CHECKING:
     from drivelint.formats.opendrive.direction import Direction
     from drivelint.formats.opendrive.lanelet import Lanelet
     from drivelint.formats.opendrive.lanes import BuiltLanes
     from drivelint.formats.opendrive.network import Network
+    from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
 
-class OpenDriveReader:
-    """ASAM OpenDRIVE."""
-
-    format = "opendrive"
-
-    def read(self, source: MapSource, request: MapOptions) -> MapTables:
-        """Return the map's tables; `MapError` where the file is not XML or nothing in it can be built."""
-        quality = MapQuality()
-        net = network(xml.parse(source), quality)
-        direction, lanes = _built(net, request, quality)
-        if not lanes.built:
-            first = next((row["message"] for row in quality.rows if row["severity"] == "error"), "it has no roads")
-            raise MapError(f"map {source.name} has no lane that can be built: {first}")
-        joined = links(net, lanes, quality)
-        name = environment_id(
-            source, request.offset, direction.handedness, guessed=direction.source == "default",
-            turned=direction.forward != (direction.handedness == "rht"),
-        )  # fmt: skip
-        built = sorted(lanes.built.values(), key=lambda lane: lane.key)
-        places = {lane.lanelet_id: n for n, lane in enumerate(built)}
-        recorded = [row for lane in built for row in speed_rows(lane)]
-        beside = furniture(net, built, request.offset, quality)
-        signed = sign_limits(built, joined, beside["traffic_signal"], recorded)
-        rows = {
-            "environment": [_environment_row(source, request, direction, net.geo_reference)],
-            "lanelet": [_lanelet_row(lane) for lane in built],
-            "lane_link": [_link_row(link) for link in joined],
-            "lane_boundary": [row for lane in built for row in boundary_rows(lane)],
-            "speed_limit": sorted([*recorded, *signed], key=lambda row: places[row["lanelet_id"]]),
-            **beside,
-        }
-        tables = {table: from_rows(table, name, content) for table, content in rows.items()}
-        tables["lane_point"] = _points(name, built)
-        tables["map_quality"] = quality.table(name)
-        return MapTables(
-            name, direction.handedness, direction.source, tables,
-            lanes="rht" if direction.forward else "lht", lanes_source=direction.forward_source,
-        )  # fmt: skip
+def read(source: MapSource, request: MapOptions) -> MapTables:
+    """Return the map's tables; `MapError` where the file is not XML or nothing in it can be built."""
+    quality = MapQuality()
+    net = network(safe_xml.parse_map(source), quality)
+    direction, lanes = _built(net, request, quality)
+    if not lanes.built:
+        first = next((row["message"] for row in quality.rows if row["severity"] == "error"), "it has no roads")
+        raise MapError(f"map {source.name} has no lane that can be built: {first}")
+    joined = links(net, lanes, quality)
+    side = direction.handedness, direction.source
+    turned = direction.forward != (direction.handedness == "rht")
+    name = environment_id(source, request.offset, side[0], guessed=side[1] == "default", turned=turned)
+    built = sorted(lanes.built.values(), key=lambda lane: lane.key)
+    places = {lane.lanelet_id: n for n, lane in enumerate(built)}
+    recorded = [row for lane in built for row in speed_rows(lane)]
+    beside = furniture(net, built, request.offset, quality)
+    signed = sign_limits(built, joined, beside["traffic_signal"], recorded)
+    content = {
+        "lanelet": [_lanelet_row(lane) for lane in built],
+        "lane_point": lane_points(name, built),
+        "lane_link": [{"from_id": a.lanelet_id, "to_id": b.lanelet_id, "turn_rad": b.line.turn} for a, b in joined],
+        "lane_boundary": [row for lane in built for row in boundary_rows(lane)],
+        "speed_limit": sorted([*recorded, *signed], key=lambda row: places[row["lanelet_id"]]),
+        **beside,
+    }
+    tables = map_tables(
+        name, source, request, content, quality, kind="opendrive", side=side, geo_reference=net.geo_reference
+    )
+    return replace(tables, lanes="rht" if direction.forward else "lht", lanes_source=direction.forward_source)
 
 
 def _built(net: Network, request: MapOptions, quality: MapQuality) -> tuple[Direction, BuiltLanes]:
@@ -75,13 +67,13 @@ def _built(net: Network, request: MapOptions, quality: MapQuality) -> tuple[Dire
     lanes = build(net, first, request.offset, quality)
     side = side_driven_on(
         [
-            OneWayLane(lane.x, lane.y, lane.z, lane.tx, lane.ty, lane.half_width)
+            lane.line.course(lane.z)
             for lane in sorted(lanes.built.values(), key=lambda lane: lane.key)
             if lane.drivable and not lane.bidirectional and lane.road.junction_id is None
         ]
     )
     if side is not None and not first.forward:
-        side = "lht" if side == "rht" else "rht"
+        side = opposite_side(side)
     built = quality.rows[noted:]
     del quality.rows[noted:]
     direction = witnesses.final_direction(side, quality)
@@ -93,68 +85,20 @@ def _built(net: Network, request: MapOptions, quality: MapQuality) -> tuple[Dire
     return direction, lanes
 
 
-def _environment_row(
-    source: MapSource, request: MapOptions, direction: Direction, geo_reference: str | None
-) -> dict[str, object]:
+def _lanelet_row(lane: Lanelet) -> dict[str, Any]:
     return {
-        "name": source.name,
-        "sha256": source.sha256,
-        "format": OpenDriveReader.format,
-        "offset_x_m": request.offset[0],
-        "offset_y_m": request.offset[1],
-        "handedness": direction.handedness,
-        "handedness_source": direction.source,
-        "geo_reference": geo_reference,
-    }
-
-
-def _lanelet_row(lane: Lanelet) -> dict[str, object]:
-    return {
-        "lanelet_id": lane.lanelet_id,
-        "road_id": lane.road.road_id,
-        "section": lane.strip.section,
-        "lane_no": lane.lane.number,
-        "lane_type": lane.lane.kind,
-        "drivable": lane.drivable,
-        "bidirectional": lane.bidirectional,
-        "along_road": lane.along,
-        "junction_id": lane.road.junction_id,
+        "lanelet_id": lane.lanelet_id, "road_id": lane.road.road_id, "section": lane.strip.section,
+        "lane_no": lane.lane.number, "lane_type": lane.lane.kind, "drivable": lane.drivable,
+        "bidirectional": lane.bidirectional, "along_road": lane.along, "junction_id": lane.road.junction_id,
         "road_type": road_type(lane),
-        "length_m": lane.length_m,
-        "width_m": lane.mean_width(),
-        "area_m2": lane.area(),
+        "length_m": lane.length_m, "width_m": lane.mean_width(), "area_m2": lane.line.area,
         "left_id": lane.left.lanelet_id if lane.left else None,
         "left_against": _against(lane, lane.left),
         "right_id": lane.right.lanelet_id if lane.right else None,
         "right_against": _against(lane, lane.right),
-    }
+    }  # fmt: skip
 
 
 def _against(lane: Lanelet, beside: Lanelet | None) -> bool | None:
     """Tell whether the lane beside is driven the other way; one that is driven both ways is."""
     return None if beside is None else beside.along != lane.along or beside.bidirectional
-
-
-def _link_row(link: Link) -> dict[str, object]:
-    return {
-        "from_id": link.source.lanelet_id,
-        "to_id": link.target.lanelet_id,
-        "turn_rad": link.target.heading_change(),
-    }
-
-
-def _points(name: str, lanes: list[Lanelet]) -> pa.Table:
-    counts = [len(lane.s) for lane in lanes]
-    arrays = {
-        "s_m": "s", "x_m": "x", "y_m": "y", "tx": "tx", "ty": "ty", "half_width_m": "half_width",
-        "left_x_m": "left_x", "left_y_m": "left_y", "right_x_m": "right_x", "right_y_m": "right_y",
-        "road_s_m": "road_s",
-    }  # fmt: skip
-    columns = {
-        column: np.concatenate([getattr(lane, attribute) for lane in lanes]) for column, attribute in arrays.items()
-    }
-    z = np.concatenate([lane.z for lane in lanes])
-    columns["z_m"] = pa.array(z, mask=np.isnan(z))
-    columns["k"] = np.concatenate([np.arange(n, dtype=np.int32) for n in counts])
-    columns["lanelet_id"] = repeated([lane.lanelet_id for lane in lanes], counts)
-    return from_columns("lane_point", name, columns, sum(counts))

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from drivelint.formats.opendrive.placement import place_one
+import numpy as np
+
+from drivelint.formats.opendrive.placement import place
 from drivelint.formats.opendrive.xml import MalformedError, integer, number
 from drivelint.road.signcodes import kind_of, turns_of
+from drivelint.road.tables import Rows, stop_line_row
 
 if TYPE_CHECKING:
     from lxml import etree
@@ -18,7 +21,6 @@ if TYPE_CHECKING:
 MIN_LINE_M = 1.0  # a stop line said to be narrower than this does not say how far it goes across
 MIN_OWN_SHARE = 0.25  # of a stop line's width, on lanes of its orientation: less is on the others' lanes
 OFF_ROAD_M = 1.0  # a signal further beyond its road's end than this is a mistake worth a warning
-Rows = list[dict[str, Any]]
 
 
 def signal_rows(
@@ -72,44 +74,30 @@ class _Reader:
     def _read(self, road: Road, listing: etree._Element, home: Road, signal: etree._Element | None) -> None:
         if signal is None:
             raise MalformedError("it refers to a signal that is not defined")
-        said = number(listing, "s")
-        s = min(max(said, 0.0), road.length_m)
-        if abs(said - s) > OFF_ROAD_M:
-            message = f"signal {listing.get('id')} is listed at {said:.1f} m of a road of {road.length_m:.1f} m"
+        listed_s = number(listing, "s")
+        s = min(max(listed_s, 0.0), road.length_m)
+        if abs(listed_s - s) > OFF_ROAD_M:
+            message = f"signal {listing.get('id')} is listed at {listed_s:.1f} m of a road of {road.length_m:.1f} m"
             self.quality.add("signal_off_road", "warning", road.road_id, message)
         lanes = [lane for lane in self.lanes.get(road.road_id, []) if _at(lane, s)]
         x, y = _position(home, signal, self.offset)
         kind = kind_of(signal.get("country", ""), signal.get("type", ""), signal.get("name", ""))
         turns = turns_of(signal.get("type", ""), signal.get("subtype", "")) if kind == "traffic_light" else None
         value = 0.0 if signal.get("value") in {None, "", "None"} else number(signal, "value")
+        said = {
+            "signal_id": listing.get("id", ""), "kind": kind, "country": (signal.get("country") or "").lower() or None,
+            "type": signal.get("type"), "subtype": signal.get("subtype"),
+            "value": value if value > 0.0 else None,  # writers say -1 or 0 where there is nothing to say
+            "unit": signal.get("unit"), "dynamic": signal.get("dynamic") == "yes", "turns": turns,
+            "road_id": road.road_id, "road_s_m": s, "x_m": x, "y_m": y,
+        }  # fmt: skip
         self.signals += [
-            {
-                "signal_id": listing.get("id", ""),
-                "kind": kind,
-                "country": (signal.get("country") or "").lower() or None,
-                "type": signal.get("type"),
-                "subtype": signal.get("subtype"),
-                "value": value if value > 0.0 else None,  # writers say -1 or 0 where there is nothing to say
-                "unit": signal.get("unit"),
-                "dynamic": signal.get("dynamic") == "yes",
-                "turns": turns,
-                "road_id": road.road_id,
-                "road_s_m": s,
-                "lanelet_id": lane.lanelet_id,
-                "lane_s_m": lane.station_at(s),
-                "x_m": x,
-                "y_m": y,
-            }
+            {**said, "lanelet_id": lane.lanelet_id, "lane_s_m": lane.station_at(s)}
             for lane in self._held(listing, lanes)
         ]
         if kind == "stop_line":
             self.stop_lines += [
-                {
-                    "stop_line_id": listing.get("id", ""),
-                    "lanelet_id": lane.lanelet_id,
-                    "lane_s_m": lane.station_at(s),
-                    "source": "signal",
-                }
+                stop_line_row(listing.get("id", ""), lane.lanelet_id, lane.station_at(s), "signal")
                 for lane in self._stopped(listing, signal, s, lanes)
             ]
 
@@ -175,7 +163,8 @@ def _position(road: Road, signal: etree._Element, offset: tuple[float, float]) -
     inertial = signal.find("positionInertial")
     if inertial is not None:
         return number(inertial, "x") + offset[0], number(inertial, "y") + offset[1]
-    return place_one(road, number(signal, "s"), number(signal, "t", 0.0), offset)
+    x, y, _ = place(road, np.array([number(signal, "s")]), np.array([number(signal, "t", 0.0)]), offset)
+    return float(x[0]), float(y[0])
 
 
 def _at(lane: Lanelet, s: float) -> bool:

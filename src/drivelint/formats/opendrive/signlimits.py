@@ -8,19 +8,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from drivelint.formats.opendrive.network import SPEED_UNITS_MPS
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from drivelint.formats.opendrive.lanelet import Lanelet
     from drivelint.formats.opendrive.links import Link
+    from drivelint.road.tables import Rows
 
-Rows = list[dict[str, Any]]
 LIMIT_BEGINS = frozenset({"speed_limit", "speed_zone"})
 LIMIT_ENDS = LIMIT_BEGINS | {
     "speed_limit_end", "speed_zone_end", "restrictions_end", "town_entrance", "town_exit", "motorway", "motorway_end",
     "expressway", "expressway_end",
 }  # fmt: skip
-_UNITS = {"m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
 
 
 class _Stretch(NamedTuple):
@@ -36,8 +37,8 @@ def sign_limits(lanes: Sequence[Lanelet], joined: Sequence[Link], signals: Rows,
     by_id = {lane.lanelet_id: lane for lane in lanes}
     silent = by_id.keys() - {row["lanelet_id"] for row in recorded}
     after: dict[str, list[str]] = {}
-    for link in joined:
-        after.setdefault(link.source.lanelet_id, []).append(link.target.lanelet_id)
+    for a, b in joined:
+        after.setdefault(a.lanelet_id, []).append(b.lanelet_id)
     posts: dict[str, list[float]] = {}
     for row in signals:
         if row["kind"] in LIMIT_ENDS:
@@ -54,31 +55,21 @@ def sign_limits(lanes: Sequence[Lanelet], joined: Sequence[Link], signals: Rows,
         posted = min((s for s in posts.get(stretch.lanelet_id, ()) if s > stretch.start_m), default=None)
         end = lane.length_m if posted is None else posted
         if end > stretch.start_m:
-            rows.append(_row(stretch, end))
+            source = "unread" if stretch.limit_mps is None else "sign"
+            rows.append({
+                "lanelet_id": stretch.lanelet_id, "s_start_m": stretch.start_m, "s_end_m": end,
+                "limit_mps": stretch.limit_mps, "source": source,
+            })  # fmt: skip
         if posted is None:
-            todo += _beyond(stretch, after, by_id, posts)
+            todo += [
+                _Stretch(name, 0.0, stretch.limit_mps)
+                for name in after.get(stretch.lanelet_id, ())
+                if by_id[name].road.junction_id is None and 0.0 not in posts.get(name, ())
+            ]
     return sorted(rows, key=lambda r: (r["lanelet_id"], r["s_start_m"], r["s_end_m"], r["limit_mps"] or 0.0))
-
-
-def _beyond(
-    stretch: _Stretch, after: Mapping[str, list[str]], by_id: Mapping[str, Lanelet], posts: Mapping[str, list[float]]
-) -> list[_Stretch]:
-    """Return the lanelets on which the limit goes on."""
-    return [
-        _Stretch(name, 0.0, stretch.limit_mps)
-        for name in after.get(stretch.lanelet_id, ())
-        if by_id[name].road.junction_id is None and 0.0 not in posts.get(name, ())
-    ]
-
-
-def _row(stretch: _Stretch, end_m: float) -> dict[str, Any]:
-    return {
-        "lanelet_id": stretch.lanelet_id, "s_start_m": stretch.start_m, "s_end_m": end_m, "limit_mps": stretch.limit_mps,
-        "source": "unread" if stretch.limit_mps is None else "sign",
-    }  # fmt: skip
 
 
 def _limit(row: Mapping[str, Any]) -> float | None:
     """Return the limit on a sign (m/s); None: it has no number or no unit, or it changes."""
-    unit = _UNITS.get(row["unit"] or "")
+    unit = SPEED_UNITS_MPS.get(row["unit"] or "")
     return None if unit is None or row["value"] is None or row["dynamic"] else float(row["value"]) * unit

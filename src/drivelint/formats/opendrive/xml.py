@@ -1,29 +1,16 @@
-"""XML as untrusted input: no entities, no network, no DTD; numbers are finite or refused."""
+"""Attributes of XML elements: numbers are finite or refused."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING
 
-from drivelint.errors import MapError
-from drivelint.formats import safe_xml
-
 if TYPE_CHECKING:
     from lxml import etree
-
-    from drivelint.road.map_reader import MapSource
 
 
 class MalformedError(ValueError):
     """An element that cannot be understood; caught where the road or lane concerned is named."""
-
-
-def parse(source: MapSource) -> etree._Element:
-    """Return the root element, tags without namespaces; `MapError` for a DOCTYPE or malformed XML, naming the line."""
-    try:
-        return safe_xml.parse(source.content)
-    except safe_xml.RefusedError as error:
-        raise MapError(f"map {source.name} {error}") from None
 
 
 MAX_NUMBER = 1e9  # no length, coordinate or coefficient of a road is larger; beyond it arithmetic loses the millimetres

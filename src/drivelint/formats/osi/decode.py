@@ -161,17 +161,12 @@ class Decoder:
         try:
             rows = self._handler.list_to_record_batch([packet.data for packet in packets])
         except ValueError as error:
-            self._blame(packets)
+            if len(packets) == 1:
+                raise decode_error(self._path, packets[0], error) from error
+            for packet in packets:  # one of them spoilt the batch
+                self._decode([packet])
             raise TraceError(f"{self._path}: {len(packets)} messages cannot be decoded together: {error}") from error
         return pa.StructArray.from_arrays(rows.columns, fields=list(rows.schema))
-
-    def _blame(self, packets: list[Packet]) -> None:
-        """Find the message that spoilt a batch."""
-        for packet in packets:
-            try:
-                self._handler.list_to_record_batch([packet.data])
-            except ValueError as error:
-                raise decode_error(self._path, packet, error) from error
 
 
 class FirstMessage(NamedTuple):

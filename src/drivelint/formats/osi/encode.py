@@ -13,6 +13,7 @@ import numpy as np
 
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
 from drivelint.formats.osi.schema import ENUMS, OPEN_DRIVE_REFERENCE, VERSION
+from drivelint.formats.protobuf.wire import BYTES, FIXED64, VARINT, integer, nested, tag, varint
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
 BLOCK_ROWS: Final = 1 << 14
 """Objects laid out at a time: enough to be quick, few enough to need only some tens of MB."""
-_VARINT, _FIXED64, _BYTES = 0, 1, 2
 _VECTORS: Final[dict[str, tuple[int, tuple[tuple[int, str], ...]]]] = {
     "dimension": (1, ((1, "length_m"), (2, "width_m"), (3, "height_m"))),
     "position": (2, ((1, "x_m"), (2, "y_m"), (3, "z_m"))),
@@ -104,32 +104,8 @@ class Slot:
 LayoutPart = bytes | Slot
 
 
-def varint(value: int) -> bytes:
-    """Return a non-negative integer in base 128, least significant group first."""
-    out = bytearray()
-    while value > 0x7F:
-        out.append(value & 0x7F | 0x80)
-        value >>= 7
-    return bytes([*out, value])
-
-
-def _tag(number: int, kind: int) -> bytes:
-    return varint(number << 3 | kind)
-
-
-def nested(number: int, content: bytes) -> bytes:
-    """Return a field that holds a message or text."""
-    return _tag(number, _BYTES) + varint(len(content)) + content
-
-
-def integer(number: int, value: int) -> bytes:
-    """Return a field that holds a non-negative integer or an enumeration."""
-    return _tag(number, _VARINT) + varint(value)
-
-
 def _nested(number: int, parts: Sequence[LayoutPart]) -> list[LayoutPart]:
-    size = sum(len(part) if isinstance(part, bytes) else part.size for part in parts)
-    return [_tag(number, _BYTES) + varint(size), *parts]
+    return [tag(number, BYTES) + varint(sum(map(_size, parts))), *parts]
 
 
 def ground_truth_head(t_ns: int, host: int | None) -> bytes:
@@ -187,22 +163,22 @@ def _shape(objects: Objects) -> NDArray[np.int64]:
 def _layout(key: int) -> list[LayoutPart]:
     """Return the parts of an object of one shape, from the tag of the field that holds it on."""
     known = {column for i, column in enumerate(_ALL, 4) if key >> i & 1}
-    parts: list[LayoutPart] = _nested(1, [_tag(1, _VARINT), Slot("number", key & 15)])
+    parts: list[LayoutPart] = _nested(1, [tag(1, VARINT), Slot("number", key & 15)])
     base: list[LayoutPart] = []
     for number, coordinates in _VECTORS.values():
         must = {column for _, column in coordinates} - _OPTIONAL
         written = [(n, column) for n, column in coordinates if column in known]
         if written and must <= known:
-            fields = [part for n, column in written for part in (_tag(n, _FIXED64), Slot(column, 8))]
+            fields = [part for n, column in written for part in (tag(n, FIXED64), Slot(column, 8))]
             base += _nested(number, fields)
     parts += _nested(2, base)
-    parts += [_tag(3, _VARINT), Slot("type", 1)]
+    parts += [tag(3, VARINT), Slot("type", 1)]
     if not (lit := key >> (4 + len(_ALL))):
         return _nested(5, parts)
-    classification: list[LayoutPart] = [_tag(1, _VARINT), Slot("vehicle", 1)]
+    classification: list[LayoutPart] = [tag(1, VARINT), Slot("vehicle", 1)]
     if lit & 3:
-        lights: list[LayoutPart] = [_tag(1, _VARINT), Slot("indicator", 1)] if lit & 1 else []
-        lights += [_tag(7, _VARINT), Slot("brake_light", 1)] if lit & 2 else []
+        lights: list[LayoutPart] = [tag(1, VARINT), Slot("indicator", 1)] if lit & 1 else []
+        lights += [tag(7, VARINT), Slot("brake_light", 1)] if lit & 2 else []
         classification += _nested(2, lights)
     parts += _nested(6, classification)
     return _nested(5, parts)

@@ -52,43 +52,40 @@ _COLORS = {"COLOR_RED": RED, "COLOR_YELLOW": AMBER, "COLOR_GREEN": GREEN}
 _LIT = {0: "off", RED: "red", RED | AMBER: "red_amber", AMBER: "amber", GREEN: "green"}
 
 
+_MOVING = ("moving_object",)
+_VEHICLE = (*_MOVING, "vehicle_classification")
+_LIGHTS = (*_VEHICLE, "light_state")
+_TRAFFIC_LIGHT = ("traffic_light", "classification")
+_CODES: dict[str, tuple[tuple[str, ...], dict[str, int]]] = {
+    "kind": ((*_MOVING, "type"), {name: ACTOR_CLASSES.index(word) for name, word in _KINDS.items()}),
+    "vehicle": ((*_VEHICLE, "type"), {name: ACTOR_CLASSES.index(word) for name, word in _VEHICLES.items()}),
+    "indicator": ((*_LIGHTS, "indicator_state"), {n: INDICATORS.index(w) for n, w in _INDICATORS.items()}),
+    "brake_light": ((*_LIGHTS, "brake_light_state"), {n: BRAKE_LIGHTS.index(w) for n, w in _BRAKE_LIGHTS.items()}),
+    "lamp": ((*_LIGHTS, "head_light"), _LAMPS),
+    "color": ((*_TRAFFIC_LIGHT, "color"), _COLORS),
+}
+"""What is translated -> the field of a ground truth with the enumeration, and name -> code."""
+
+
 @dataclass(frozen=True)
 class EnumCodes:
-    """Lookup tables number -> code for one schema; numbers beyond a table are unknown."""
+    """Number -> code by what is translated, for one schema (numbers beyond a table are unknown); `modes`: name -> number."""
 
-    kind: NDArray[np.int8]
-    vehicle: NDArray[np.int8]
-    indicator: NDArray[np.int8]
-    brake_light: NDArray[np.int8]
-    lamp: NDArray[np.int8]
-    color: NDArray[np.int8]
-    mode: dict[str, int]
+    tables: dict[str, NDArray[np.int8]]
+    modes: dict[str, int]
+
+    def look(self, what: str, numbers: pa.Array) -> NDArray[np.int8]:
+        """Return the codes of numbers, -1 where they are unknown."""
+        table = self.tables[what]
+        index = pc.fill_null(numbers.cast(pa.int32()), -1).to_numpy(zero_copy_only=False)
+        return np.asarray(table[np.where((index < 0) | (index >= len(table)), len(table) - 1, index)], np.int8)
 
 
 def build_enum_codes(types: Types, truth: str) -> EnumCodes:
     """Build the tables from the enumerations of the ground-truth message `truth`."""
-    moving = ("moving_object",)
-    lights = (*moving, "vehicle_classification", "light_state")
-    classes = {word: i for i, word in enumerate(ACTOR_CLASSES)}
-    modes = enum_names(types, truth, "traffic_light", "classification", "mode")
-    return EnumCodes(
-        _table(enum_names(types, truth, *moving, "type"), {name: classes[word] for name, word in _KINDS.items()}),
-        _table(
-            enum_names(types, truth, *moving, "vehicle_classification", "type"),
-            {name: classes[word] for name, word in _VEHICLES.items()},
-        ),
-        _table(
-            enum_names(types, truth, *lights, "indicator_state"),
-            {n: INDICATORS.index(w) for n, w in _INDICATORS.items()},
-        ),
-        _table(
-            enum_names(types, truth, *lights, "brake_light_state"),
-            {n: BRAKE_LIGHTS.index(w) for n, w in _BRAKE_LIGHTS.items()},
-        ),
-        _table(enum_names(types, truth, *lights, "head_light"), _LAMPS),
-        _table(enum_names(types, truth, "traffic_light", "classification", "color"), _COLORS),
-        {name: number for number, name in modes.items()},
-    )
+    modes = enum_names(types, truth, *_TRAFFIC_LIGHT, "mode")
+    tables = {what: _table(enum_names(types, truth, *path), codes) for what, (path, codes) in _CODES.items()}
+    return EnumCodes(tables, {name: number for number, name in modes.items()})
 
 
 def _table(names: dict[int, str], codes: dict[str, int]) -> NDArray[np.int8]:
@@ -98,11 +95,6 @@ def _table(names: dict[int, str], codes: dict[str, int]) -> NDArray[np.int8]:
         if number >= 0:
             table[number] = codes.get(name, -1)
     return table
-
-
-def _look(table: NDArray[np.int8], numbers: pa.Array) -> NDArray[np.int8]:
-    index = pc.fill_null(numbers.cast(pa.int32()), -1).to_numpy(zero_copy_only=False)
-    return np.asarray(table[np.where((index < 0) | (index >= len(table)), len(table) - 1, index)], np.int8)
 
 
 def struct_field(parent: pa.Array, name: str) -> pa.Array:
@@ -116,15 +108,15 @@ def state_codes(words: EnumCodes, objects: pa.Array) -> dict[str, NDArray[np.int
     """Return class, indicator, brake light and headlights of moving objects as codes. A vehicle of unsaid kind is a `vehicle`."""
     vehicle = struct_field(objects, "vehicle_classification")
     lights = struct_field(vehicle, "light_state")
-    kind = _look(words.kind, struct_field(objects, "type"))
-    finer = _look(words.vehicle, struct_field(vehicle, "type"))
+    kind = words.look("kind", struct_field(objects, "type"))
+    finer = words.look("vehicle", struct_field(vehicle, "type"))
     is_vehicle = kind == ACTOR_CLASSES.index("vehicle")
     return {
         "actor_class": np.where(is_vehicle & (finer >= 0), finer, kind),
-        "indicator": _look(words.indicator, struct_field(lights, "indicator_state")),
-        "brake_light": _look(words.brake_light, struct_field(lights, "brake_light_state")),
+        "indicator": words.look("indicator", struct_field(lights, "indicator_state")),
+        "brake_light": words.look("brake_light", struct_field(lights, "brake_light_state")),
         HEADLIGHTS: _headlights(
-            _look(words.lamp, struct_field(lights, "head_light")), _look(words.lamp, struct_field(lights, "high_beam"))
+            *(words.look("lamp", struct_field(lights, each)) for each in ("head_light", "high_beam"))
         ),
     }
 
@@ -158,11 +150,11 @@ def bulbs_of(words: EnumCodes, lights: pa.Array, joined: Mapping[str, str]) -> B
     counts = pc.fill_null(pc.list_value_length(lights), 0).to_numpy(zero_copy_only=False)
     seen = struct_field(bulbs, "classification")
     mode = pc.fill_null(struct_field(seen, "mode").cast(pa.int32()), -1).to_numpy(zero_copy_only=False)
-    color = _look(words.color, struct_field(seen, "color"))
-    lit = np.isin(mode, [words.mode.get(name, -2) for name in ("MODE_CONSTANT", "MODE_COUNTING")])
+    color = words.look("color", struct_field(seen, "color"))
+    lit = np.isin(mode, [words.modes.get(name, -2) for name in ("MODE_CONSTANT", "MODE_COUNTING")])
     bits = np.full(len(bulbs), UNKNOWN, np.int8)
-    bits[mode == words.mode.get("MODE_OFF", -2)] = 0
-    bits[mode == words.mode.get("MODE_FLASHING", -2)] = FLASHING
+    bits[mode == words.modes.get("MODE_OFF", -2)] = 0
+    bits[mode == words.modes.get("MODE_FLASHING", -2)] = FLASHING
     bits[lit & (color > 0)] = color[lit & (color > 0)]
     return Bulbs(np.repeat(np.arange(len(lights)), counts), _signal_ids(bulbs, joined), bits)
 

@@ -80,13 +80,11 @@ def metadata_records(trace: Trace, numbers: Mapping[str, int]) -> dict[str, dict
         "unknown": [name for name in OPTIONAL_COORDINATES if states[name].null_count == states.num_rows],
     }
     holds = {r["condition"]: r["value"] for r in trace.tables["drive_condition"].to_pylist() if r["source"] == "trace"}
-    if holds:
-        said["conditions"] = holds
-    if trace.map_offset is not None:
-        said["map_offset_m"] = trace.map_offset
-    for name in ("sensor_range_m", "utc_start_ns"):
-        if log[name] is not None:
-            said[name] = log[name]
+    optional = {
+        "conditions": holds or None, "map_offset_m": trace.map_offset,
+        "sensor_range_m": log["sensor_range_m"], "utc_start_ns": log["utc_start_ns"],
+    }  # fmt: skip
+    said |= {name: value for name, value in optional.items() if value is not None}
     actors = trace.tables["actor"].drop_columns("drive_id").to_pylist()
     return {
         TRACE_RECORD: {name: msgspec.json.encode(value).decode() for name, value in said.items()},
@@ -120,15 +118,8 @@ def read_declared_events(path: Path, messages: Sequence[bytes]) -> pa.Table | No
         rows = [msgspec.json.decode(message, type=Event) for message in messages]
     except (msgspec.ValidationError, msgspec.DecodeError) as error:
         raise TraceError(f"{path}: a declared event cannot be read ({error}): convert the log again") from error
-    return pa.table(
-        {
-            "t_ns": pa.array([row.t_ns for row in rows], pa.int64()),
-            **{
-                name: pa.array([getattr(row, name) for row in rows], pa.string())
-                for name in ("actor_id", "event", "value")
-            },
-        }
-    )
+    kinds = {"t_ns": pa.int64(), "actor_id": pa.string(), "event": pa.string(), "value": pa.string()}
+    return pa.table({name: pa.array([getattr(row, name) for row in rows], kind) for name, kind in kinds.items()})
 
 
 def parse_conditions(path: Path, rows: Iterable[tuple[str | None, str | None]]) -> dict[str, str]:
@@ -153,10 +144,9 @@ def _apply_trace(path: Path, said: _Said, recording: Recording) -> None:
     if said.map_offset_m is not None:
         dx, dy = recording.map_offset = said.map_offset_m
         recording.notes.append(f"the log moves the map by ({dx:+g}, {dy:+g}) m")
-    if said.sensor_range_m is not None:
-        recording.sensor_range_m = said.sensor_range_m
     if said.utc_start_ns is not None:
         recording.utc_start_ns = said.utc_start_ns
+    recording.sensor_range_m = said.sensor_range_m
     for name in set(said.unknown) & set(OPTIONAL_COORDINATES):
         recording.states.numbers[name] = np.full(len(recording.states), np.nan)
     recording.findings += said.quality

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import mmap
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from mcap.records import Channel
 
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.reader import Packet
+from drivelint.formats.mcap.reader import BATCH_BYTES, Packet
 from drivelint.formats.osi.decode import GROUND_TRUTH, SENSOR_VIEW, Decoder, FirstMessage, read_first_message
-from drivelint.formats.osi.reader import BATCH_BYTES, join_batches
+from drivelint.formats.osi.reader import join_batches
 from drivelint.formats.osi.schema import reader_descriptor_set
 
 if TYPE_CHECKING:
@@ -21,7 +21,10 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import Recording
     from drivelint.formats.osi.decode import FrameBatch
+    from drivelint.formats.probe import Probe
 
+formats: Final = {"osi-file": ("ASAM OSI trace file", "the log's host vehicle")}
+takes_mapping: Final = False
 _LENGTH = 4
 _FIRST_TAGS = frozenset({0x0A, 0x12, 0x1A})
 """What an OSI message begins with: its version, time stamp or an id (fields 1 to 3, length-delimited)."""
@@ -33,12 +36,18 @@ def is_osi_trace(head: bytes, size: int) -> bool:
     return 2 <= length <= size - _LENGTH and len(head) > _LENGTH and head[_LENGTH] in _FIRST_TAGS
 
 
-def read(path: Path) -> Recording:
+def accepts(probe: Probe) -> bool:
+    """Accept by the first length and the message behind it."""
+    return not probe.path.is_dir() and is_osi_trace(probe.head, probe.path.stat().st_size)
+
+
+def read(probe: Probe) -> Recording:
     """Read a trace of `osi3.GroundTruth` or `osi3.SensorView` messages: which of the two, the first messages tell.
 
     Errors: `TraceError` with the byte for a file that breaks off within a message (what is lost cannot be told), a message
     that is neither kind, or messages without time stamps.
     """
+    path = probe.path
     channel = Channel(id=1, topic=path.name, message_encoding="protobuf", schema_id=1, metadata={})
     batches: list[FrameBatch] = []
     decoder: Decoder | None = None

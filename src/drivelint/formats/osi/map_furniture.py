@@ -10,7 +10,9 @@ import shapely
 
 from drivelint.formats.osi import map_kinds as kinds
 from drivelint.formats.osi.schema import LIGHT_REFERENCE, OPEN_DRIVE_REFERENCE
+from drivelint.road.boundary_lanes import signal_row
 from drivelint.road.signcodes import kind_of
+from drivelint.road.tables import crossing_row, stop_line_row
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -93,7 +95,7 @@ class _Road:
         if stands is None:
             return lanes
         place = stands[:2]
-        ends = {lane.lanelet_id: _station(lane, place) for lane in lanes}
+        ends = {lane.lanelet_id: lane.line.station(place) for lane in lanes}
         inside = [lane for lane in lanes if 0.0 < ends[lane.lanelet_id] < lane.line.s[-1]]
         if inside or not lanes:
             return inside
@@ -129,10 +131,6 @@ def rotation(base: Any) -> Floats:
     )
 
 
-def _station(lane: BoundedLane, place: Floats) -> float:
-    return float(shapely.line_locate_point(shapely.LineString(lane.line.centre), shapely.Point(place)))
-
-
 def _code(said: Any) -> str | None:
     return kind_of(said.country, said.code, "") if said.country and said.code else None
 
@@ -145,12 +143,13 @@ def _sign(sign: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
     if not lanes:
         message = f"traffic sign {sign.id.value} is assigned to no lane of the map: nobody knows for whom it holds"
         quality.add("signal_without_lane", "warning", None, message)
+    value = said.value.value if said.value.value > 0 else None
     row = {
         "signal_id": str(sign.id.value), "kind": kinds.SIGN_KINDS.get(said.type) or _code(said),
         "country": said.country.lower() or None if said.code else "osi", "type": said.code or str(said.type),
-        "subtype": said.sub_code or None, "value": said.value.value if said.value.value > 0 else None,
-        "unit": kinds.UNITS.get(said.value.value_unit) if said.value.value > 0 else None,
-        "dynamic": said.variability in kinds.VARIABLE_SIGN, "turns": None,
+        "subtype": said.sub_code or None, "value": value,
+        "unit": None if value is None else kinds.UNITS.get(said.value.value_unit),
+        "dynamic": said.variability in kinds.VARIABLE_SIGN,
     }  # fmt: skip
     return [_placed(row, lane, road.place(base)) for lane in lanes]
 
@@ -176,8 +175,7 @@ def _light(name: str, bulbs: Sequence[Any], road: _Road, quality: MapQuality) ->
     turns = {turn for icon in arrows or icons for turn in kinds.TURNS.get(icon, ())}
     row = {
         "signal_id": name, "kind": next((kinds.LIGHT_KINDS[icon] for icon in sorted(icons) if icon in kinds.LIGHT_KINDS), None),
-        "country": "osi", "type": None, "subtype": None, "value": None, "unit": None, "dynamic": True,
-        "turns": sorted(turns) if turns and icons <= kinds.TURNS.keys() else None,
+        "country": "osi", "dynamic": True, "turns": sorted(turns) if turns and icons <= kinds.TURNS.keys() else None,
     }  # fmt: skip
     place = next((at for bulb in bulbs if (at := road.place(bulb.base)) is not None), None)
     return [_placed(row, lane, place) for lane in lanes]
@@ -185,13 +183,9 @@ def _light(name: str, bulbs: Sequence[Any], road: _Road, quality: MapQuality) ->
 
 def _placed(row: Row, lane: BoundedLane, place: Floats | None) -> Row:
     """Return the row of a signal for one lane; where it stands is the lane's end if the log does not say it."""
-    end = float(lane.line.s[-1])
-    at = lane.line.centre[-1] if place is None else place[:2]
-    s = end if place is None else _station(lane, at)
-    return {
-        **row, "road_id": lane.road_id, "road_s_m": s if lane.along > 0 else end - s, "lanelet_id": lane.lanelet_id,
-        "lane_s_m": s, "x_m": float(at[0]), "y_m": float(at[1]),
-    }  # fmt: skip
+    if place is None:
+        return signal_row(lane, float(lane.line.s[-1]), lane.line.centre[-1], **row)
+    return signal_row(lane, lane.line.station(place[:2]), place, **row)
 
 
 def _outline(mark: Any, road: _Road) -> Floats:
@@ -212,12 +206,11 @@ def _over(mark: Any, area: Any, road: _Road) -> list[tuple[BoundedLane, float]]:
     found = []
     z = mark.base.position.z
     for lane in road.lanes:
-        shape = shapely.Polygon(np.vstack([lane.line.right, lane.line.left[::-1]])).buffer(0.0)
-        common = shapely.intersection(shape, area)
+        common = shapely.intersection(lane.line.polygon, area)
         if not lane.drivable or common.is_empty:
             continue
-        s = _station(lane, shapely.get_coordinates(common.centroid)[0])
-        if lane.z_m is None or abs(float(np.interp(s, lane.line.s, lane.z_m)) - z) <= _ON_ROAD_M:
+        s = lane.line.station(shapely.get_coordinates(common.centroid)[0])
+        if abs(float(np.interp(s, lane.line.s, lane.z)) - z) <= _ON_ROAD_M:
             found.append((lane, s))
     return found
 
@@ -234,9 +227,8 @@ def _stop_line(mark: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
     across: list[tuple[BoundedLane, float, float]] = []
     for lane, s in _over(mark, line, road):
         tangent = np.array([np.interp(s, lane.line.s, lane.line.tangent[:, k]) for k in (0, 1)])
-        shape = shapely.Polygon(np.vstack([lane.line.right, lane.line.left[::-1]])).buffer(0.0)
         width = 2 * float(np.interp(s, lane.line.s, lane.line.half_width))
-        enough = shapely.intersection(shape, line).length > 0.5 * min(width, 2 * reach)
+        enough = shapely.intersection(lane.line.polygon, line).length > 0.5 * min(width, 2 * reach)
         if enough and abs(way[0] * tangent[1] - way[1] * tangent[0]) > _ACROSS:
             across.append((lane, s, float(upwards @ tangent)))
     if held & {lane.lanelet_id for lane, _, _ in across}:
@@ -246,10 +238,7 @@ def _stop_line(mark: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
     name = str(mark.id.value)
     if not across:
         quality.add("stop_line_without_lane", "warning", None, f"stop line {name} lies across no lane for driving")
-    return [
-        {"stop_line_id": name, "lanelet_id": lane.lanelet_id, "lane_s_m": s, "source": "object"}
-        for lane, s, _ in across
-    ]
+    return [stop_line_row(name, lane.lanelet_id, s) for lane, s, _ in across]
 
 
 def _zebra(mark: Any, road: _Road) -> Iterable[Row]:
@@ -258,14 +247,6 @@ def _zebra(mark: Any, road: _Road) -> Iterable[Row]:
     for lane, _ in _over(mark, area, road):
         common = shapely.get_coordinates(shapely.intersection(area, shapely.LineString(lane.line.centre)))
         if len(common):
-            s = [_station(lane, point) for point in common]
-            rows.append(
-                {
-                    "crossing_id": str(mark.id.value),
-                    "lanelet_id": lane.lanelet_id,
-                    "s_start_m": min(s),
-                    "s_end_m": max(s),
-                    "kind": "zebra",
-                }
-            )
+            s = [lane.line.station(point) for point in common]
+            rows.append(crossing_row(str(mark.id.value), lane.lanelet_id, s, "zebra"))
     return rows

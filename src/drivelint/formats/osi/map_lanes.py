@@ -17,10 +17,9 @@ from drivelint.formats.osi import map_furniture as osi_furniture
 from drivelint.formats.osi import map_logical as osi_logical
 from drivelint.formats.osi import map_physical as osi_physical
 from drivelint.formats.osi import schema as osi_schema
-from drivelint.road.boundary_lanes import build_lanes, side_driven_on, tables
-from drivelint.road.map_reader import MapOptions, MapSource, MapTables, environment_id
+from drivelint.road.boundary_lanes import bounded_map, build_lanes, resampled, side_driven_on, stations
+from drivelint.road.handedness import choose_side
 from drivelint.road.quality import MapQuality
-from drivelint.road.tables import from_rows
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -29,57 +28,39 @@ if TYPE_CHECKING:
 
     from drivelint.formats.osi.map_logical import LogicalLane
     from drivelint.formats.osi.map_physical import PhysicalLane
-    from drivelint.road.boundary_lanes import BoundedLane
+    from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
     Floats = NDArray[np.float64]
 
 _SAME_SURFACE_M = 1.0  # a lane nearer than this above or below another lies on the same road
 
 
-class OsiLanesReader:
-    """OSI ground truth with lanes that have boundaries."""
-
-    format = "osi"
-
-    def read(self, source: MapSource, request: MapOptions) -> MapTables:
-        """Return the map's tables; `MapError` saying why where no lane for driving can be built."""
-        quality = MapQuality()
-        truth = osi_schema.message_class("GroundTruth").FromString(source.content)
-        logical = osi_logical.read(truth, quality)
-        physical = osi_physical.read(truth, quality)
-        covers = _covers(logical, physical)
-        alone = {i: lane for i, lane in physical.items() if i not in covers}
-        for i in sorted(alone.keys() & logical.keys()):
-            message = f"lane {i} is left out: a logical lane of another place has the same id"
-            quality.add("invalid_lane", "error", str(i), message)
-            del alone[i]
-        ways = osi_physical.intersection_lanes(truth, alone)
-        read = [*osi_logical.lanelets(logical, truth), *osi_physical.lanelets(alone, truth, ways)]
-        lanes = build_lanes(read, request.offset, quality)
-        if not any(lane.drivable for lane in lanes):
-            raise MapError(f"map {source.name}: {_why_none(truth, quality)}")
-        heights = {str(i): lane.centre for i, lane in alone.items()} | {
-            str(i): lane.centre for i, lane in logical.items()
-        }
-        heights |= {way.lanelet_id: osi_physical.intersection_lane_heights(way.lanelet_id, alone) for way in ways}
-        for lane in lanes:
-            lane.z_m = _height(heights[lane.lanelet_id], lane.line.centre - request.offset)
-        handedness, how = _handedness(lanes, request, quality)
-        name = environment_id(source, request.offset, handedness, guessed=how == "default")
-        beside = osi_furniture.read(truth, lanes, covers, request.offset, quality)
-        rows: dict[str, list[dict[str, Any]]] = {
-            "environment": [
-                {
-                    "name": source.name, "sha256": source.sha256, "format": self.format,
-                    "offset_x_m": request.offset[0], "offset_y_m": request.offset[1], "handedness": handedness,
-                    "handedness_source": how, "geo_reference": None,
-                }
-            ],
-            "road_object": [], **beside,
-        }  # fmt: skip
-        result = tables(name, lanes) | {table: from_rows(table, name, content) for table, content in rows.items()}
-        result["map_quality"] = quality.table(name)
-        return MapTables(name, handedness, how, result)
+def read(source: MapSource, request: MapOptions) -> MapTables:
+    """Return the map's tables; `MapError` saying why where no lane for driving can be built."""
+    quality = MapQuality()
+    truth = osi_schema.message_class("GroundTruth").FromString(source.content)
+    logical = osi_logical.read(truth, quality)
+    physical = osi_physical.read(truth, quality)
+    covers = _covers(logical, physical)
+    alone = {i: lane for i, lane in physical.items() if i not in covers}
+    for i in sorted(alone.keys() & logical.keys()):
+        message = f"lane {i} is left out: a logical lane of another place has the same id"
+        quality.add("invalid_lane", "error", str(i), message)
+        del alone[i]
+    ways = osi_physical.intersection_lanes(truth, alone)
+    bounded = [*osi_logical.lanelets(logical, truth), *osi_physical.lanelets(alone, truth, ways)]
+    lanes = build_lanes(bounded, request.offset, quality)
+    if not any(lane.drivable for lane in lanes):
+        raise MapError(f"map {source.name}: {_why_none(truth, quality)}")
+    heights = {str(i): lane.centre for i, lane in alone.items()} | {str(i): lane.centre for i, lane in logical.items()}
+    heights |= {way.lanelet_id: osi_physical.intersection_lane_heights(way.lanelet_id, alone) for way in ways}
+    for lane in lanes:
+        lane.z = _height(heights[lane.lanelet_id], lane.line.centre - request.offset)
+    # the option counts whatever the lanes say
+    said = ("option", request.side) if request.side else ("lanes", side_driven_on(lanes))
+    side = choose_side([said], quality, "the lanes")
+    beside = osi_furniture.read(truth, lanes, covers, request.offset, quality)
+    return bounded_map(source, request, lanes, beside, quality, kind="osi", side=side)
 
 
 def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalLane]) -> dict[int, list[int]]:
@@ -98,12 +79,8 @@ def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalL
             continue
         points = _middles(drawn.centre)
         over, under = tree.query(shapely.points(points[:, :2]), predicate="within")
-        level = np.array(
-            [
-                abs(points[p, 2] - _height(logical[names[a]].centre, points[p : p + 1, :2])[0])
-                for p, a in zip(over, under, strict=True)
-            ]
-        )
+        heights = [_height(logical[names[a]].centre, points[[p], :2])[0] for p, a in zip(over, under, strict=True)]
+        level = np.abs(points[over, 2] - heights)
         same = level < _SAME_SURFACE_M
         if len(set(over[same].tolist())) > len(points) / 2:
             covers[ref] = sorted({names[a] for a in under[same].tolist()})
@@ -112,16 +89,14 @@ def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalL
 
 def _middles(line: Floats) -> Floats:
     """Return the middles of 20 equal pieces of a line (n, 3)."""
-    s = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))])
-    at = (np.arange(20) + 0.5) / 20 * s[-1]
-    return np.column_stack([np.interp(at, s, line[:, k]) for k in range(3)])
+    s = stations(line)
+    return resampled(line, s, (np.arange(20) + 0.5) / 20 * s[-1])
 
 
 def _height(line: Floats, points: Floats) -> Floats:
     """Return the height of a line (n, 3) beside points (m, 2)."""
-    s = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))])
     at = shapely.line_locate_point(shapely.LineString(line[:, :2]), shapely.points(points))
-    return np.asarray(np.interp(at, s, line[:, 2]), np.float64)
+    return np.asarray(np.interp(at, stations(line), line[:, 2]), np.float64)
 
 
 def _why_none(truth: Any, quality: MapQuality) -> str:
@@ -134,15 +109,3 @@ def _why_none(truth: Any, quality: MapQuality) -> str:
         return f"none of the log's own {n} lanes is one for driving"
     reason, most = min(reasons.items(), key=lambda item: (-item[1], item[0]))
     return f"none of the log's own {n} lanes is one for driving that can be built, {most} of them because {reason}: give --map"
-
-
-def _handedness(lanes: list[BoundedLane], request: MapOptions, quality: MapQuality) -> tuple[str, str]:
-    """Return the side driven on and how it was found: option, lanes beside each other, default."""
-    sides = side_driven_on(lanes)
-    if request.handedness != "auto":
-        return request.handedness, "option"
-    if sides:
-        return sides, "lanes"
-    message = "nothing in the lanes says which side is driven on: right-hand traffic is a guess; give --handedness"
-    quality.add("handedness_default", "warning", None, message)
-    return "rht", "default"

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drivelint.formats.osi import map_kinds as kinds
-from drivelint.road.boundary_lanes import BoundedLane, Mark
+from drivelint.road.boundary_lanes import BoundedLane, Mark, UnbuildableError, resampled
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -24,10 +24,6 @@ if TYPE_CHECKING:
 
 _SHORT_M = 0.5  # a boundary that ends further than this before its lane does not reach its end
 MAX_LINK_GAP_M = 5.0  # a lane that begins further away from where another ends does not follow it
-
-
-class UnbuildableError(ValueError):
-    """A lane that has no shape or no direction; caught where the lane is named."""
 
 
 @dataclass(frozen=True)
@@ -103,10 +99,7 @@ def _lane(message: Any, bounds: Mapping[int, Any]) -> LogicalLane:
     way = message.move_direction
     if driven and way not in {kinds.INCREASING, kinds.DECREASING, kinds.BOTH}:
         raise UnbuildableError("its move_direction does not say in which direction it is driven")
-    left, right = (
-        _side(ids, bounds, word)
-        for ids, word in ((message.left_boundary_id, "left"), (message.right_boundary_id, "right"))
-    )
+    left, right = _side(message.left_boundary_id, bounds, "left"), _side(message.right_boundary_id, bounds, "right")
     begin, end = message.start_s, message.end_s
     low, high = max(left[0, 3], right[0, 3]), min(left[-1, 3], right[-1, 3])
     if not end > begin:
@@ -120,9 +113,7 @@ def _lane(message: Any, bounds: Mapping[int, Any]) -> LogicalLane:
         raise UnbuildableError("its boundaries have no length")
     stations = np.concatenate([left[:, 3], right[:, 3]])
     at = np.unique(np.concatenate([[begin, end], stations[(stations > begin) & (stations < end)]]))
-    first, second = (
-        np.column_stack([np.interp(at, side[:, 3], side[:, k]) for k in range(3)]) for side in (left, right)
-    )
+    first, second = (resampled(side[:, :3], side[:, 3], at) for side in (left, right))
     if way == kinds.DECREASING:
         return LogicalLane(message, second[::-1], first[::-1], (begin, end), -1)
     return LogicalLane(message, first, second, (begin, end), 1)
@@ -139,9 +130,8 @@ def _side(ids: Iterable[Any], bounds: Mapping[int, Any], word: str) -> Floats:
     parts = []
     for name in names:
         line = bounds[name].boundary_line
-        points = np.array([(p.position.x, p.position.y, p.position.z, p.s_position) for p in line], np.float64).reshape(
-            -1, 4
-        )
+        rows = [(p.position.x, p.position.y, p.position.z, p.s_position) for p in line]
+        points = np.array(rows, np.float64).reshape(-1, 4)
         if len(points) < 2 or not np.isfinite(points).all():
             raise UnbuildableError(f"its {word} boundary {name} has fewer than two points with finite coordinates")
         parts.append(points)
@@ -210,12 +200,9 @@ def _marks(lane: LogicalLane, bounds: Mapping[int, Any], types: Mapping[int, int
             begin, end = sorted((lane.lane_fraction(min(stations)), lane.lane_fraction(max(stations))))
             if end <= begin:
                 continue
-            physical = [
-                types.get(p.value) for p in bound.physical_boundary_id
-            ]  # from right to left of the reference line
-            marking = kinds.marking(physical if nearest_first else physical[::-1])
-            if not physical and told:
-                marking = "none"
+            # from right to left of the reference line
+            physical = [types.get(p.value) for p in bound.physical_boundary_id]
+            marking = kinds.marking(physical if nearest_first else physical[::-1]) if physical or not told else "none"
             yield Mark(word, begin, end, marking, kinds.LANE_CHANGES.get(bound.passing_rule))
 
 

@@ -13,8 +13,8 @@ import numpy as np
 import shapely
 
 from drivelint.formats.osi import map_kinds as kinds
-from drivelint.formats.osi.map_logical import MAX_LINK_GAP_M, UnbuildableError
-from drivelint.road.boundary_lanes import BoundedLane
+from drivelint.formats.osi.map_logical import MAX_LINK_GAP_M
+from drivelint.road.boundary_lanes import BoundedLane, UnbuildableError, both_marks, resampled, stations
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -137,28 +137,20 @@ def _between(left: Floats, right: Floats) -> tuple[Floats, Floats]:
     """Return the parts (n, 3) of two boundaries that lie beside each other, at equal shares of their lengths."""
     left = _along(left, right)
     right = _along(right, left)
-    sides = []
-    for side in (left, right):
-        s = _stations(side)
-        sides.append((side, s / s[-1]))
-    at = np.unique(np.round(np.concatenate([share for _, share in sides]), 6))
-    first, second = (np.column_stack([np.interp(at, share, side[:, k]) for k in range(3)]) for side, share in sides)
-    return first, second
+    shares = [s / s[-1] for s in map(stations, (left, right))]
+    at = np.unique(np.round(np.concatenate(shares), 6))
+    return resampled(left, shares[0], at), resampled(right, shares[1], at)
 
 
 def _along(side: Floats, other: Floats) -> Floats:
     """Return the part of a boundary that another lies beside. Errors: `UnbuildableError` where there is none."""
-    s = _stations(side)
+    s = stations(side)
     line = shapely.LineString(side[:, :2])
     begin, end = (float(line.project(shapely.Point(p))) for p in (other[0, :2], other[-1, :2]))
     if end - begin < 1e-3:
         raise UnbuildableError("its two boundaries do not lie beside each other in the same order")
     at = np.unique(np.concatenate([[begin, end], s[(s > begin) & (s < end)]]))
-    return np.column_stack([np.interp(at, s, side[:, k]) for k in range(3)])
-
-
-def _stations(line: Floats) -> Floats:
-    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))])
+    return resampled(side, s, at)
 
 
 def _bound(centre: Floats, points: Floats) -> Floats:
@@ -184,20 +176,14 @@ def _whole(side: Floats, centre: Floats) -> Floats:
     way = np.gradient(centre, axis=0)
     left = np.column_stack([-way[:, 1], way[:, 0]]) / np.maximum(np.hypot(*way.T), 1e-9)[:, None]
     line = shapely.LineString(centre)
-    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(centre, axis=0).T))])
+    at = stations(centre)
     begin, end = (float(line.project(shapely.Point(p))) for p in (side[0], side[-1]))
     missing = (at < begin - _CUT_M), (at > end + _CUT_M)
-    before, after = (
-        centre[m] + left[m] * _offset(p, centre, left, s, at)
-        for m, p, s in zip(missing, (side[0], side[-1]), (begin, end), strict=True)
-    )
-    return np.vstack([before, side, after])
-
-
-def _offset(point: Floats, centre: Floats, left: Floats, station: float, at: Floats) -> float:
-    """Return how far a point is to the left of the centre line."""
-    k = int(np.argmin(np.abs(at - station)))
-    return float(np.dot(point - centre[k], left[k]))
+    led = []
+    for beyond, point, station in zip(missing, (side[0], side[-1]), (begin, end), strict=True):
+        k = int(np.argmin(np.abs(at - station)))
+        led.append(centre[beyond] + left[beyond] * float(np.dot(point - centre[k], left[k])))
+    return np.vstack([led[0], side, led[1]])
 
 
 def _nearest(points: Floats, to: Floats) -> Floats:
@@ -236,7 +222,7 @@ def lanelets(plain: Mapping[int, PhysicalLane], truth: Any, ways: Sequence[Bound
             ),
             left_id=neighbours[0][0], left_against=neighbours[0][1],
             right_id=neighbours[1][0], right_against=neighbours[1][1],
-            left_marking=_marking(ids[0], bounds), right_marking=_marking(ids[1], bounds),
+            marks=both_marks(_marking(ids[0], bounds), _marking(ids[1], bounds)),
         )  # fmt: skip
     yield from ways
 

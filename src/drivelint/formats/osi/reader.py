@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +12,7 @@ import ptars
 from drivelint.drive import embedded_map
 from drivelint.drive.trace import LEAST_UTC_NS, FrameTimes, QualityFinding, Recording, States
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.reader import Container
+from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.osi import extras
 from drivelint.formats.osi.decode import (
     FIELD_TREES,
@@ -29,7 +29,6 @@ from drivelint.phrases import listed
 if TYPE_CHECKING:
     from pathlib import Path
 
-    import pyarrow as pa
     from mcap.records import Channel
     from numpy.typing import NDArray
 
@@ -37,8 +36,6 @@ if TYPE_CHECKING:
     from drivelint.formats.osi.decode import FrameBatch
 
 OPEN_DRIVE = "osi3.MapAsamOpenDrive"
-BATCH_BYTES = 32 * 1024 * 1024
-"""Messages are decoded in batches of about this size, which bounds the memory that a long log needs."""
 
 
 def read(path: Path, topic: str | None) -> Recording:
@@ -48,45 +45,59 @@ def read(path: Path, topic: str | None) -> Recording:
     topics, or a schema without the fields needed.
     """
     container = Container(path)
-    source = _Source(container, topic)
+    truths: list[str] = []  # topics of ground truth
+    head, decoder = FirstMessage(), None
+    batches: list[FrameBatch] = []
+    log_ns: list[int] = []
     maps: dict[bytes, str] = {}
     events: list[bytes] = []
     lost: list[QualityFinding] = []
-    for packet in container.packets():
-        kind = _kind(container, packet.channel)
+    for kind, packets in message_batches(container, partial(_kind, container, truths, topic)):
         if kind in FIELD_TREES:
-            source.take(packet, kind)
+            _check_topics(container, truths, topic)
+            schema = container.schemas[packets[0].channel.schema_id]
+            if not batches:  # lanes stand in the first message, if anywhere
+                head = read_first_message(packets[0].data, kind)
+            if decoder is None or decoder.schema_id != schema.id:
+                decoder = Decoder(path, schema.id, schema.name, schema.data)
+                decoder.lights = head.lights
+            batches.append(decoder.frames(packets))
+            log_ns += [packet.log_time_ns for packet in packets]
         elif kind == OPEN_DRIVE:
-            text, trouble = _map_text(container, packet)
-            lost += trouble
-            if text is not None:
-                maps.setdefault(text, packet.channel.topic)
-        elif _is_event(container, packet.channel):
-            events.append(packet.data)
-    recording = source.recording()
+            for packet in packets:
+                text, trouble = _map_text(container, packet)
+                lost += trouble
+                if text is not None:
+                    maps.setdefault(text, packet.channel.topic)
+        else:
+            events += [packet.data for packet in packets]
+    _check_topics(container, truths, topic)
+    recording = join_batches(batches, np.array(log_ns, np.uint64))
     recording.findings += container.findings
     own, several = embedded_map.single_map(maps)
-    recording.embedded_map = own if maps else source.head.lanes
+    recording.embedded_map = own if maps else head.lanes
     recording.findings += [*lost[:1], *several]
-    recording.geo_reference = source.head.reference
-    recording.findings += () if maps else source.head.findings
+    recording.geo_reference = head.reference
+    recording.findings += () if maps else head.findings
     recording.events = extras.read_declared_events(path, events)
     extras.apply_metadata(path, container.metadata, recording)
     return recording
 
 
-def _kind(container: Container, channel: Channel) -> str | None:
-    """Return the protobuf message type on a channel; None for any other encoding."""
+def _kind(container: Container, truths: list[str], topic: str | None, channel: Channel) -> str | None:
+    """Return the type of the messages on a channel that are read; None: none are. Topics of ground truth go to `truths`."""
     schema = container.schemas.get(channel.schema_id)
-    if schema is None or schema.encoding != "protobuf" or channel.message_encoding != "protobuf":
+    if schema is None:
         return None
-    return schema.name
-
-
-def _is_event(container: Container, channel: Channel) -> bool:
-    """Say whether a channel is that of the declared events of a converted log."""
-    schema = container.schemas.get(channel.schema_id)
-    return schema is not None and schema.name == extras.EVENT_MESSAGE and channel.message_encoding == "json"
+    if schema.name == extras.EVENT_MESSAGE and channel.message_encoding == "json":
+        return schema.name
+    if schema.encoding != "protobuf" or channel.message_encoding != "protobuf":
+        return None
+    if schema.name in FIELD_TREES:
+        if channel.topic not in truths:
+            truths.append(channel.topic)
+        return schema.name if channel.topic == (truths[0] if topic is None else topic) else None
+    return schema.name if schema.name == OPEN_DRIVE else None
 
 
 def _map_text(container: Container, packet: Packet) -> tuple[bytes | None, tuple[QualityFinding, ...]]:
@@ -107,67 +118,22 @@ def _map_text(container: Container, packet: Packet) -> tuple[bytes | None, tuple
     return text if isinstance(text, bytes) else str(text).encode(), ()
 
 
-@dataclass
-class _Source:
-    """Collects the messages of the one ground-truth topic and decodes them batch by batch."""
-
-    container: Container
-    topic: str | None
-    kinds: dict[str, str] = field(default_factory=dict)
-    waiting: list[Packet] = field(default_factory=list)
-    size: int = 0
-    log_ns: list[int] = field(default_factory=list)
-    batches: list[FrameBatch] = field(default_factory=list)
-    decoder: Decoder | None = None
-    head: FirstMessage = field(default_factory=FirstMessage)
-
-    def take(self, packet: Packet, kind: str) -> None:
-        """Keep a message of the topic, decoding when enough have come together."""
-        topic = packet.channel.topic
-        self.kinds.setdefault(topic, kind)
-        if topic != (self.topic if self.topic is not None else next(iter(self.kinds))):
-            return
-        if self.waiting and packet.channel.schema_id != self.waiting[-1].channel.schema_id:
-            self._decode()
-        self.waiting.append(packet)
-        if not self.log_ns:  # lanes stand in the first message, if anywhere
-            self.head = read_first_message(packet.data, kind)
-        self.log_ns.append(packet.log_time_ns)
-        self.size += len(packet.data)
-        if self.size >= BATCH_BYTES:
-            self._decode()
-
-    def _decode(self) -> None:
-        if not self.waiting:
-            return
-        schema = self.container.schemas[self.waiting[0].channel.schema_id]
-        if self.decoder is None or self.decoder.schema_id != schema.id:
-            self.decoder = Decoder(self.container.path, schema.id, schema.name, schema.data)
-            self.decoder.lights = self.head.lights
-        self.batches.append(self.decoder.frames(self.waiting))
-        self.waiting, self.size = [], 0
-
-    def recording(self) -> Recording:
-        """Join the batches. Errors: `TraceError` where the topic is missing or not the only one."""
-        path = self.container.path
-        topics = ", ".join(sorted(self.kinds))
-        if self.topic is not None and self.topic not in self.kinds:
-            found = f"ground truth is on {topics}" if self.kinds else _nothing(self.container)
-            raise TraceError(f"{path}: no OSI ground truth on topic {self.topic!r}: {found}")
-        if not self.kinds:
-            raise TraceError(f"{path}: no OSI ground truth in this file: {_nothing(self.container)}")
-        if self.topic is None and len(self.kinds) > 1:
-            raise TraceError(f"{path}: ground truth on {len(self.kinds)} topics ({topics}): choose one with --topic")
-        self._decode()
-        return join_batches(self.batches, np.array(self.log_ns, np.uint64))
+def _check_topics(container: Container, truths: list[str], topic: str | None) -> None:
+    """Refuse a log in which the topic of ground truth is missing or not the only one. Errors: `TraceError`."""
+    path, topics = container.path, ", ".join(sorted(truths))
+    if topic is not None and topic not in truths:
+        found = f"ground truth is on {topics}" if truths else _nothing(container)
+        raise TraceError(f"{path}: no OSI ground truth on topic {topic!r}: {found}")
+    if not truths:
+        raise TraceError(f"{path}: no OSI ground truth in this file: {_nothing(container)}")
+    if topic is None and len(truths) > 1:
+        raise TraceError(f"{path}: ground truth on {len(truths)} topics ({topics}): choose one with --topic")
 
 
 def _nothing(container: Container) -> str:
     """Say what an MCAP file without OSI messages holds instead."""
-    kinds = set()
-    for channel in container.channels.values():
-        schema = container.schemas.get(channel.schema_id)
-        kinds.add(f"{schema.name if schema else 'no schema'} in {channel.message_encoding or 'no encoding'}")
+    names = {0: "no schema", **{number: schema.name for number, schema in container.schemas.items()}}
+    kinds = {f"{names[c.schema_id]} in {c.message_encoding or 'no encoding'}" for c in container.channels.values()}
     needed = f"{GROUND_TRUTH} or {SENSOR_VIEW} in protobuf is needed"
     return f"it has {listed(sorted(kinds)) if kinds else 'no channel'}; {needed}"
 
@@ -188,6 +154,11 @@ def join_batches(batches: list[FrameBatch], log_ns: NDArray[np.uint64]) -> Recor
         {name: np.concatenate([batch.codes[name] for batch in batches]) for name in batches[0].codes},
         np.concatenate([batch.not_finite for batch in batches]),
     )
+    bulbs = Bulbs(
+        np.concatenate([batch.bulbs.frame + offset for batch, offset in zip(batches, offsets, strict=False)]),
+        [name for batch in batches for name in batch.bulbs.signal_id],
+        np.concatenate([batch.bulbs.bits for batch in batches]),
+    )
     nameless = sum(batch.nameless for batch in batches)
     if nameless:
         message = f"moving objects without an id: {nameless}: they are not judged"
@@ -195,7 +166,7 @@ def join_batches(batches: list[FrameBatch], log_ns: NDArray[np.uint64]) -> Recor
     return Recording(
         "osi-mcap",
         states,
-        signals=_signals(batches, offsets, t_ns),
+        signals=signal_states(bulbs, t_ns),
         ego_ids=_host([host for batch in batches for host in batch.hosts], t_ns, findings),
         findings=findings,
         utc_start_ns=int(log_ns.min()) if log_ns.min() >= LEAST_UTC_NS else None,
@@ -211,10 +182,7 @@ def _zeros(batches: list[FrameBatch]) -> list[dict[str, NDArray[np.float64]]]:
     if any(batch.says_zero for batch in batches):
         return [batch.numbers for batch in batches]
     return [
-        {
-            name: np.where(batch.left_out[name], 0.0, v) if name in batch.left_out else v
-            for name, v in batch.numbers.items()
-        }
+        batch.numbers | {name: np.where(rows, 0.0, batch.numbers[name]) for name, rows in batch.left_out.items()}
         for batch in batches
     ]
 
@@ -254,12 +222,3 @@ def _host(hosts: list[int | None], t_ns: NDArray[np.int64], findings: list[Quali
         since = min(at for host, at in first.items() if host != ego)
         findings.append(QualityFinding("ego_count", "warning", message, n, since, str(ego)))
     return [str(ego)]
-
-
-def _signals(batches: list[FrameBatch], offsets: NDArray[np.int64], t_ns: NDArray[np.int64]) -> pa.Table | None:
-    bulbs = Bulbs(
-        np.concatenate([batch.bulbs.frame + offset for batch, offset in zip(batches, offsets, strict=False)]),
-        [name for batch in batches for name in batch.bulbs.signal_id],
-        np.concatenate([batch.bulbs.bits for batch in batches]),
-    )
-    return signal_states(bulbs, t_ns)

@@ -12,8 +12,9 @@ from mcap.writer import CompressionType, Writer
 
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIZE_COLUMNS, STATE_COLUMNS
 from drivelint.formats.osi import extras
-from drivelint.formats.osi.encode import Objects, ground_truth_head, moving_objects, nested, traffic_light
+from drivelint.formats.osi.encode import Objects, ground_truth_head, moving_objects, traffic_light
 from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, VERSION, descriptor_set
+from drivelint.formats.protobuf.wire import nested
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -50,7 +51,8 @@ def write(sink: BinaryIO, trace: Trace, road: MapSource | None) -> int:
     truth = writer.register_channel(
         GROUND_TRUTH_TOPIC, "protobuf", writer.register_schema(GROUND_TRUTH, "protobuf", descriptor_set()), described
     )
-    earliest = _earliest(trace)
+    times = [pc.min(trace.tables[name]["t_ns"]).as_py() for name in ("actor_state", "signal_state", "declared_event")]
+    earliest = int(min(t for t in times if t is not None))
     if road is not None:
         schema = writer.register_schema(OPEN_DRIVE, "protobuf", descriptor_set())
         channel = writer.register_channel(MAP_TOPIC, "protobuf", schema, described)
@@ -73,11 +75,6 @@ def osi_ids(actors: list[str]) -> dict[str, int]:
     return {name: number for number, name in enumerate(sorted(actors), 1)}
 
 
-def _earliest(trace: Trace) -> int:
-    times = [pc.min(trace.tables[name]["t_ns"]).as_py() for name in ("actor_state", "signal_state", "declared_event")]
-    return int(min(t for t in times if t is not None))
-
-
 def _frames(trace: Trace, numbers: dict[str, int]) -> Iterator[tuple[int, bytes]]:
     """Yield time and message of every frame, in order of time."""
     states = trace.tables["actor_state"]
@@ -88,11 +85,8 @@ def _frames(trace: Trace, numbers: dict[str, int]) -> Iterator[tuple[int, bytes]
     first = np.searchsorted(t_ns[order], times)
     last = np.append(first[1:], len(order))
     actor, columns, codes = _columns(trace, numbers)
-    host = min(
-        (numbers[row["actor_id"]] for row in trace.tables["actor"].to_pylist() if row["is_ego"]),
-        key=str,
-        default=None,
-    )
+    egos = [numbers[row["actor_id"]] for row in trace.tables["actor"].to_pylist() if row["is_ego"]]
+    host = min(egos, key=str, default=None)
     heights = not bool(np.isnan(columns["z_m"]).all())
     begin = 0
     while begin < len(times):

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-_VARINT, _FIXED64, _BYTES = 0, 1, 2
+VARINT, FIXED64, BYTES = 0, 1, 2  # kinds of fields
 _SMALL: Final = [bytes([value]) for value in range(0x80)]
 _NS: Final = 1_000_000_000
 _PADDED: Final = 5  # bytes of a varint of fixed width: 35 bits, seconds until the year 3058
@@ -29,7 +29,7 @@ def varint(value: int) -> bytes:
 
 def nested(number: int, content: bytes) -> bytes:
     """Return a field that holds a message or bytes."""
-    return _key(number, _BYTES) + varint(len(content)) + content
+    return tag(number, BYTES) + varint(len(content)) + content
 
 
 def text(number: int, content: str) -> bytes:
@@ -39,12 +39,12 @@ def text(number: int, content: str) -> bytes:
 
 def integer(number: int, value: int) -> bytes:
     """Return a field that holds a non-negative integer, an enumeration or a truth value."""
-    return _key(number, _VARINT) + varint(value)
+    return tag(number, VARINT) + varint(value)
 
 
 def doubles(*values: float, first: int = 1) -> bytes:
     """Return consecutive fields from number `first` on (all below 16), a double each."""
-    keyed = [part for number, value in enumerate(values, first) for part in (number << 3 | _FIXED64, value)]
+    keyed = [part for number, value in enumerate(values, first) for part in (number << 3 | FIXED64, value)]
     return struct.pack("<" + "Bd" * len(values), *keyed)
 
 
@@ -55,8 +55,8 @@ def time(number: int, t_ns: int) -> bytes:
 
 def points(number: int, xyz: NDArray[np.float64]) -> bytes:
     """Return a repeated field of points: `xyz` has a row of three doubles each."""
-    head = _key(number, _BYTES) + varint(27)
-    parts = [part for axis in range(3) for part in (_key(axis + 1, _FIXED64), double_column(xyz[:, axis]))]
+    head = tag(number, BYTES) + varint(27)
+    parts = [part for axis in range(3) for part in (tag(axis + 1, FIXED64), double_column(xyz[:, axis]))]
     return join_columns(len(xyz), head, *parts).tobytes()
 
 
@@ -73,7 +73,7 @@ def double_column(values: NDArray[np.float64]) -> Bytes:
 def timestamps(number: int, t_ns: NDArray[np.uint64]) -> Bytes:
     """Return a field that holds a Timestamp, a row each, all of one width: unused high groups are written as zeros."""
     parts = [integer_column(1, t_ns // _NS), integer_column(2, t_ns % _NS)]
-    return join_columns(len(t_ns), _key(number, _BYTES) + varint(2 * (_PADDED + 1)), *parts)
+    return join_columns(len(t_ns), tag(number, BYTES) + varint(2 * (_PADDED + 1)), *parts)
 
 
 def integer_column(number: int, values: NDArray[np.uint64]) -> Bytes:
@@ -81,7 +81,7 @@ def integer_column(number: int, values: NDArray[np.uint64]) -> Bytes:
     shifts = np.arange(_PADDED, dtype=np.uint64) * np.uint64(7)
     groups = ((values[:, None] >> shifts) & np.uint64(0x7F)).astype(np.uint8)
     groups[:, :-1] |= 0x80
-    return join_columns(len(values), _key(number, _VARINT), groups)
+    return join_columns(len(values), tag(number, VARINT), groups)
 
 
 def join_columns(n: int, *parts: bytes | Bytes) -> Bytes:
@@ -95,5 +95,6 @@ def join_columns(n: int, *parts: bytes | Bytes) -> Bytes:
     return out
 
 
-def _key(number: int, kind: int) -> bytes:
+def tag(number: int, kind: int) -> bytes:
+    """Return what stands before a field: its number and kind."""
     return varint(number << 3 | kind)

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from drivelint.formats.protobuf.descriptors import FieldTree
     from drivelint.formats.ros2.types import Types
 
+    Places = NDArray[np.int64]
+    Rows = NDArray[np.intp]
+
 HEADER_BYTES = 4
 BYTE_ORDERS: Final = {0: ">", 1: "<"}
 """Second byte of the header -> byte order; others are encodings that ROS 2 recorders do not write."""
@@ -185,23 +188,18 @@ class _Batch:
             raise self._misfit(int(np.argmin(sizes)), "is shorter than its header")
         orders = {packet.data[:2] for packet in packets}
         if len(orders) > 1 or any(head[0] != 0 or head[1] not in BYTE_ORDERS for head in orders):
-            odd = next(
-                i for i, p in enumerate(packets) if p.data[:2] != packets[0].data[:2] or p.data[1] not in BYTE_ORDERS
-            )
-            raise self._misfit(
-                odd, f"is encoded otherwise than plain CDR like the others (header {packets[odd].data[:4].hex()})"
-            )
-        self._order = BYTE_ORDERS[packets[0].data[1]] if packets else "<"
+            first = packets[0].data[:2]
+            odd = next(i for i, p in enumerate(packets) if p.data[:2] != first or p.data[1] not in BYTE_ORDERS)
+            header = packets[odd].data[:4].hex()
+            raise self._misfit(odd, f"is encoded otherwise than plain CDR like the others (header {header})")
         padded = -(-sizes // _MAX_ALIGN) * _MAX_ALIGN
         self._start = np.concatenate([[0], np.cumsum(padded)])[:-1]
         self._end = self._start + sizes
-        buffer = np.zeros(int(padded.sum()) + _MAX_ALIGN, np.uint8)
-        joined = b"".join(
-            packet.data[HEADER_BYTES:] + b"\0" * int(pad) for packet, pad in zip(packets, padded - sizes, strict=True)
-        )
-        buffer[: len(joined)] = np.frombuffer(joined, np.uint8)
+        bodies = [p.data[HEADER_BYTES:] + b"\0" * int(n) for p, n in zip(packets, padded - sizes, strict=True)]
+        buffer = np.frombuffer(b"".join([*bodies, b"\0" * _MAX_ALIGN]), np.uint8)
         self._bytes = buffer
-        self._views = {code: buffer.view(f"{self._order}{code}") for code in set(NUMPY_CODES.values())}
+        order = BYTE_ORDERS[packets[0].data[1]] if packets else "<"
+        self._views = {code: buffer.view(f"{order}{code}") for code in set(NUMPY_CODES.values())}
 
     def table(self, program: list[Any]) -> Table:
         messages = np.arange(len(self._packets))
@@ -213,9 +211,7 @@ class _Batch:
             raise self._misfit(i, f"has {left[i]} bytes more than its definition")
         return table
 
-    def _run(
-        self, program: list[Any], cursor: NDArray[np.int64], message: NDArray[np.intp]
-    ) -> tuple[NDArray[np.int64], Table]:
+    def _run(self, program: list[Any], cursor: Places, message: Rows) -> tuple[Places, Table]:
         """Take the steps from each cursor on (owned, changed in place); `message`: the message each is in."""
         table = Table(len(cursor))
         end = self._end[message]
@@ -238,9 +234,7 @@ class _Batch:
                 self._items(step, cursor, end, message, table)
         return cursor, table
 
-    def _numbers(
-        self, step: _Numbers, cursor: NDArray[np.int64], end: NDArray[np.int64], message: NDArray[np.intp], table: Table
-    ) -> None:
+    def _numbers(self, step: _Numbers, cursor: Places, end: Places, message: Rows, table: Table) -> None:
         length = self._length(cursor, end, message, step.size * step.per_item)
         cursor += np.where(length > 0, -cursor % step.size, 0)
         size = length * step.size * step.per_item
@@ -253,9 +247,7 @@ class _Batch:
             table.columns[step.keep] = first
         cursor += size
 
-    def _items(
-        self, step: _Items, cursor: NDArray[np.int64], end: NDArray[np.int64], message: NDArray[np.intp], table: Table
-    ) -> None:
+    def _items(self, step: _Items, cursor: Places, end: Places, message: Rows, table: Table) -> None:
         length = self._length(cursor, end, message, 1)
         parts: list[Table] = []
         for k in range(int(length.max(initial=0))):
@@ -265,15 +257,15 @@ class _Batch:
             part.parent = active
             parts.append(part)
         if step.keep is not None:
-            table.children[step.keep] = _joined(parts, step.program)
+            # of no items at all, an empty table has the columns
+            parts = parts or [self._run(step.program, cursor[:0].copy(), message[:0])[1]]
+            table.children[step.keep] = _stacked(parts, [0] * len(parts), np.arange(len(cursor)))
 
-    def _taken(self, code: str, at: NDArray[np.int64], count: int | None) -> NDArray[Any]:
+    def _taken(self, code: str, at: Places, count: int | None) -> NDArray[Any]:
         view, index = self._views[code], at // int(code[1])
         return view[index] if count is None else view[index[:, None] + np.arange(count)]
 
-    def _length(
-        self, cursor: NDArray[np.int64], end: NDArray[np.int64], message: NDArray[np.intp], item_bytes: int
-    ) -> NDArray[np.int64]:
+    def _length(self, cursor: Places, end: Places, message: Rows, item_bytes: int) -> Places:
         """Read a length, move on behind it, and check that so many items can follow (an item has a byte at least)."""
         cursor += -cursor % 4
         self._check(cursor + 4, end, message)
@@ -282,7 +274,7 @@ class _Batch:
         self._check(cursor + length * item_bytes, end, message)
         return length
 
-    def _texts(self, start: NDArray[np.int64], length: NDArray[np.int64]) -> NDArray[Any]:
+    def _texts(self, start: Places, length: Places) -> NDArray[Any]:
         """Return texts as fixed-width bytes; numpy drops the zero at their ends."""
         width = max(int(length.max(initial=0)), 1)
         place = np.arange(width)
@@ -290,11 +282,10 @@ class _Batch:
         letters = np.where(place < length[:, None], self._bytes[index], np.uint8(0))
         return np.ascontiguousarray(letters).view(f"S{width}").reshape(-1)
 
-    def _check(self, reach: NDArray[np.int64], end: NDArray[np.int64], message: NDArray[np.intp]) -> None:
+    def _check(self, reach: Places, end: Places, message: Rows) -> None:
         beyond = reach > end
         if beyond.any():
-            i = int(message[np.argmax(beyond)])
-            raise self._misfit(i, "ends before its definition does")
+            raise self._misfit(int(message[np.argmax(beyond)]), "ends before its definition does")
 
     def _misfit(self, i: int, what: str) -> TraceError:
         packet = self._packets[i]
@@ -302,49 +293,19 @@ class _Batch:
         return TraceError(f"{self._path}: {where}: the {self._name} {what}: record or copy the log again")
 
 
-def _joined(parts: list[Table], program: list[Any]) -> Table:
-    """Put the first, second, ... items of all sequences into the order of their sequences."""
-    if not parts:
-        return empty_table(program)
-    parent = np.concatenate([part.parent for part in parts])
-    order = np.argsort(parent, kind="stable")
-    place = np.empty_like(order)
-    place[order] = np.arange(len(order))
-    offsets = np.concatenate([[0], np.cumsum([part.n for part in parts])])
-    table = Table(len(parent), parent=parent[order])
-    for path in parts[0].columns:
-        table.columns[path] = np.concatenate([part.columns[path] for part in parts])[order]
-    for path in parts[0].children:
-        table.children[path] = _stacked([part.children[path] for part in parts], offsets, place)
-    return table
+def _stacked(parts: list[Table], offsets: Sequence[int], place: NDArray[np.intp]) -> Table:
+    """Put the first, second, ... items of all sequences, and what is in them, into the order of their sequences.
 
-
-def _stacked(parts: list[Table], offsets: NDArray[np.int64], place: NDArray[np.intp]) -> Table:
-    """Join tables one level further down; `place`: where each row above has gone."""
+    `offsets`: how many rows above belong to earlier parts; `place`: where each row above has gone.
+    """
     parent = place[np.concatenate([part.parent + offset for part, offset in zip(parts, offsets, strict=False)])]
     order = np.argsort(parent, kind="stable")
     moved = np.empty_like(order)
     moved[order] = np.arange(len(order))
-    below = np.concatenate([[0], np.cumsum([part.n for part in parts])])
+    below = np.cumsum([0, *(part.n for part in parts)]).tolist()
     return Table(
         len(parent),
         {path: np.concatenate([part.columns[path] for part in parts])[order] for path in parts[0].columns},
         parent[order],
         {path: _stacked([part.children[path] for part in parts], below, moved) for path in parts[0].children},
     )
-
-
-def empty_table(program: list[Any]) -> Table:
-    """Return an empty table with the columns of a program."""
-    table = Table(0)
-    for step in program:
-        if isinstance(step, _Block):
-            for path, code, _, count in step.keep:
-                table.columns[path] = np.zeros(0 if count is None else (0, count), code)
-        elif isinstance(step, _Text) and step.keep is not None:
-            table.columns[step.keep] = np.zeros(0, "S1")
-        elif isinstance(step, _Numbers) and step.keep is not None:
-            table.columns[step.keep] = np.zeros((0, MAX_KEPT_NUMBERS))
-        elif isinstance(step, _Items) and step.keep is not None:
-            table.children[step.keep] = empty_table(step.program)
-    return table

@@ -10,7 +10,7 @@ import pyarrow as pa
 from drivelint.drive.trace import ACTOR_CLASSES, INDICATORS
 from drivelint.formats.coordinate_frames import Poses, TransformTree, clean_frame_name, unit_quaternions
 from drivelint.formats.ros2.objects import HEADER, POSE, STAMP, XYZ, stamps, vectors
-from drivelint.formats.ros2.recorded_poses import RecordedPoses, unknown_vectors
+from drivelint.formats.ros2.recorded_poses import RecordedPoses, recorded_poses
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -60,7 +60,6 @@ def odometry(table: Table, log_ns: NDArray[np.int64], forward_m: float) -> Recor
 
     Twist is in the child frame, as the message says; in the header's where that is what the child frame is called.
     """
-    stamp, stamped = stamps(table, "header.stamp")
     n = table.n
     frames = table.columns["header.frame_id"]
     child = table.columns["child_frame_id"]
@@ -77,22 +76,11 @@ def odometry(table: Table, log_ns: NDArray[np.int64], forward_m: float) -> Recor
         yaw = inside.yaw
         velocity[:, 0] += np.where(along, 0.0, -np.sin(yaw) * sideways)
         velocity[:, 1] += np.where(along, sideways, np.cos(yaw) * sideways)
-    return RecordedPoses(
-        stamp_ns=stamp,
-        stamped=stamped,
-        log_ns=log_ns,
-        ids=np.full(n, b"ego"),
-        frames=frames,
-        place=place,
-        turn=turn,
-        size=unknown_vectors(n),
-        classes=np.full(n, ACTOR_CLASSES.index("vehicle"), np.int8),
-        along=along,
-        faces=np.ones(n, np.bool_),
-        velocity=velocity,
-        acceleration=unknown_vectors(n),
-        t_ns=stamp,
-    )
+    kind = np.full(n, ACTOR_CLASSES.index("vehicle"), np.int8)
+    return recorded_poses(
+        stamps(table, "header.stamp"), (place, turn), log_ns=log_ns, ids=np.full(n, b"ego"), frames=frames, classes=kind,
+        along=along, velocity=velocity,
+    )  # fmt: skip
 
 
 def add_transforms(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,41 +17,45 @@ DEFAULT_EGO_ID = "ego"
 """What the odometry's vehicle is called where nobody gives it an id."""
 
 
-@dataclass
-class Sources:
-    """The states of the objects and of the odometry, each with its topic.
+def merge_ego(
+    objects: tuple[str, States] | None,
+    odometry: tuple[str, States] | None,
+    infos: Mapping[str, str],
+    findings: list[QualityFinding],
+    *,
+    carla: bool,
+    forward_m: float,
+) -> Recording:
+    """Merge the objects and the odometry, each with its topic, into one recording with one track of the ego.
 
-    `infos`: topic of the CARLA bridge's ego info -> the id of the ego; `forward_m` as in `EgoSize`.
+    `infos`: topic of the CARLA bridge's ego info -> the id of the ego; `carla`: the objects are the bridge's; `forward_m` as in
+    `EgoSize`.
     """
-
-    objects: tuple[str, States] | None
-    odometry: tuple[str, States] | None
-    carla: bool
-    infos: Mapping[str, str]
-    forward_m: float
-    findings: list[QualityFinding] = field(default_factory=list)
-
-
-def merge_ego(sources: Sources) -> Recording:
-    """Merge the objects and the odometry into one recording with one track of the ego."""
-    names = _said_egos(sources)
-    if sources.carla and sources.objects is not None:
-        _carla_origins(*sources.objects, sources.findings)
-    if sources.objects is None:
-        assert sources.odometry is not None  # noqa: S101 (the reader refuses a log with neither)
-        states = sources.odometry[1]
-        states.ids = names[:1] or [DEFAULT_EGO_ID]
-        _say_odometry(sources, states)
-        return Recording(FORMAT, states, ego_ids=list(states.ids), findings=sources.findings)
-    if sources.odometry is None:
-        return Recording(FORMAT, sources.objects[1], ego_ids=names, findings=sources.findings)
-    (topic, others), (_, ego) = sources.objects, sources.odometry
-    found = [name for name in names if name in others.ids] or ids_at_ego(ego, others)
-    ego.ids = found[:1] or [_free(names[0] if names else DEFAULT_EGO_ID, others.ids)]
-    _say_odometry(sources, ego)
-    if not found:
-        return Recording(FORMAT, concatenate_states(ego, others), ego_ids=list(ego.ids), findings=sources.findings)
-    return _once(ego, others, topic, sources.findings)
+    names = _said_egos(infos, odometry)
+    if carla and objects is not None:
+        _carla_origins(*objects, findings)
+    if odometry is None:
+        assert objects is not None  # noqa: S101 (the reader refuses a log with neither)
+        return Recording(FORMAT, objects[1], ego_ids=names, findings=findings)
+    ego = odometry[1]
+    found: list[str] = []
+    if objects is None:
+        ego.ids = names[:1] or [DEFAULT_EGO_ID]
+    else:
+        others = objects[1]
+        found = [name for name in names if name in others.ids] or ids_at_ego(ego, others)
+        ego.ids = found[:1] or [_free(names[0] if names else DEFAULT_EGO_ID, others.ids)]
+    if not carla and forward_m == 0.0:
+        message = (
+            f"{odometry[0]}: the ego's place is that of the odometry's child frame, taken as the centre of its box: where "
+            "that frame is at the rear axle, say how far ahead of it the centre is: --ego-size LENGTH,WIDTH,AHEAD"
+        )
+        first = int(ego.t_ns.min())
+        findings.append(QualityFinding("reference_point", "warning", message, len(ego), first, ego.ids[0]))
+    if objects is not None and found:
+        return _once(ego, objects[1], objects[0], findings)
+    states = ego if objects is None else concatenate_states(ego, objects[1])
+    return Recording(FORMAT, states, ego_ids=list(ego.ids), findings=findings)
 
 
 def _once(ego: States, others: States, topic: str, findings: list[QualityFinding]) -> Recording:
@@ -62,9 +65,8 @@ def _once(ego: States, others: States, topic: str, findings: list[QualityFinding
     n = int(twin.sum())
     both = f"the ego is {name!r} on {topic} too"
     if n >= len(ego):
-        findings.append(
-            QualityFinding("ego_twice", "info", f"{both}: its {n} states there count, not the odometry's", len(ego))
-        )
+        message = f"{both}: its {n} states there count, not the odometry's"
+        findings.append(QualityFinding("ego_twice", "info", message, len(ego)))
         return Recording(FORMAT, others, ego_ids=[name], findings=findings)
     for size in SIZE_COLUMNS:
         known = np.sort(others.numbers[size][twin])
@@ -73,11 +75,8 @@ def _once(ego: States, others: States, topic: str, findings: list[QualityFinding
     kinds = others.codes["actor_class"][twin]
     if (kinds >= 0).any():
         ego.codes["actor_class"][:] = kinds[kinds >= 0][0]
-    findings.append(
-        QualityFinding(
-            "ego_twice", "info", f"{both}: its size there counts, its {len(ego)} states are the odometry's", n
-        )
-    )
+    message = f"{both}: its size there counts, its {len(ego)} states are the odometry's"
+    findings.append(QualityFinding("ego_twice", "info", message, n))
     return Recording(FORMAT, concatenate_states(ego, others.take(~twin)), ego_ids=[name], findings=findings)
 
 
@@ -103,11 +102,10 @@ def _free(name: str, taken: list[str]) -> str:
     return name
 
 
-def _said_egos(sources: Sources) -> list[str]:
+def _said_egos(found: Mapping[str, str], odometry: tuple[str, States] | None) -> list[str]:
     """Return the ids that the CARLA bridge gives its egos; of several, that of the odometry's vehicle."""
-    found = dict(sources.infos)
-    if sources.odometry is not None and len(set(found.values())) > 1:
-        beside = sources.odometry[0].rpartition("/")[0]
+    if odometry is not None and len(set(found.values())) > 1:
+        beside = odometry[0].rpartition("/")[0]
         found = {topic: name for topic, name in found.items() if topic.rpartition("/")[0] == beside}
     return sorted(set(found.values()))
 
@@ -122,14 +120,3 @@ def _carla_origins(topic: str, states: States, findings: list[QualityFinding]) -
         "these lie up to a few decimetres ahead or behind; vehicles are lifted by half their height"
     )
     findings.append(QualityFinding("reference_point", "info", message, len(states), int(states.t_ns.min())))
-
-
-def _say_odometry(sources: Sources, ego: States) -> None:
-    if sources.odometry is None or sources.carla or sources.forward_m != 0.0:
-        return
-    message = (
-        f"{sources.odometry[0]}: the ego's place is that of the odometry's child frame, taken as the centre of its box: where "
-        "that frame is at the rear axle, say how far ahead of it the centre is: --ego-size LENGTH,WIDTH,AHEAD"
-    )
-    findings = sources.findings
-    findings.append(QualityFinding("reference_point", "warning", message, len(ego), int(ego.t_ns.min()), ego.ids[0]))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from drivelint.drive.trace import ACTOR_CLASSES
-from drivelint.formats.ros2.recorded_poses import RecordedPoses, distinct, unknown_vectors
+from drivelint.formats.ros2.recorded_poses import RecordedPoses, distinct, recorded_poses
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,28 +33,16 @@ _NO_ORIENTATION, _EITHER_WAY = 0, 1
 _UNKNOWN = -1
 
 
-def class_codes(*words: str | None) -> NDArray[np.int8]:
-    """Return our class codes of a numbered list of words."""
+def _class_codes(*words: str | None) -> NDArray[np.int8]:
     return np.array([_UNKNOWN if word is None else ACTOR_CLASSES.index(word) for word in words], np.int8)
 
 
-_DERIVED = class_codes(
+_DERIVED = _class_codes(
     None, None, None, None, "pedestrian", "bicycle", "car", "truck", "motorcycle", "vehicle", "object", "object"
 )
-_AUTOWARE = class_codes(
-    None,
-    "car",
-    "truck",
-    "bus",
-    "trailer",
-    "motorcycle",
-    "bicycle",
-    "pedestrian",
-    "animal",
-    "object",
-    "object",
-    "object",
-)
+_AUTOWARE = _class_codes(
+    None, "car", "truck", "bus", "trailer", "motorcycle", "bicycle", "pedestrian", "animal", "object", "object", "object"
+)  # fmt: skip
 _WORDS: Final = {
     **{word: word for word in ACTOR_CLASSES},
     "person": "pedestrian", "bike": "bicycle", "cyclist": "bicycle", "motorbike": "motorcycle", "lorry": "truck",
@@ -103,28 +91,14 @@ class ObjectMessage:
 
 def _rows(top: Table, items: Table, ids: NDArray[Any], frame: str | None, pose: str) -> RecordedPoses:
     """Fill in what all kinds have alike: times and frames of the message, unless an item says its own frame, and poses."""
-    stamp, stamped = stamps(top, "header.stamp")
+    stamp_ns, stamped = stamps(top, "header.stamp")
     frames = top.columns.get("header.frame_id", np.zeros(top.n, "S1"))[items.parent]
     own = items.columns.get(frame) if frame is not None else None
     if own is not None:
         frames = np.where(own == b"", frames, own)
-    n = items.n
-    return RecordedPoses(
-        stamp_ns=stamp[items.parent],
-        stamped=stamped[items.parent],
-        log_ns=items.parent.astype(np.int64),
-        ids=ids,
-        frames=frames,
-        place=vectors(items, f"{pose}.position"),
-        turn=vectors(items, f"{pose}.orientation", "xyzw"),
-        size=unknown_vectors(n),
-        classes=np.full(n, _UNKNOWN, np.int8),
-        along=np.zeros(n, np.bool_),
-        faces=np.ones(n, np.bool_),
-        velocity=unknown_vectors(n),
-        acceleration=unknown_vectors(n),
-        t_ns=stamp[items.parent],
-    )
+    poses = vectors(items, f"{pose}.position"), vectors(items, f"{pose}.orientation", "xyzw")
+    times = stamp_ns[items.parent], stamped[items.parent]
+    return recorded_poses(times, poses, log_ns=items.parent.astype(np.int64), ids=ids, frames=frames)
 
 
 def _derived(top: Table, items: Table) -> RecordedPoses:
@@ -155,16 +129,14 @@ def _autoware(top: Table, items: Table) -> RecordedPoses:
 
 
 def _detections(top: Table, items: Table) -> RecordedPoses:
-    name = next((c for c in ("id", "tracking_id") if c in items.columns), None)
-    ids = items.columns[name] if name is not None else np.zeros(items.n, "S1")
+    ids = items.columns.get("id", items.columns.get("tracking_id", np.zeros(items.n, "S1")))
     rows = _rows(top, items, ids, "header.frame_id", "bbox.center")
     rows.size = vectors(items, "bbox.size")
     results = items.children["results"]
     key = next((c for c in ("hypothesis.class_id", "id") if c in results.columns), None)
     score = next((c for c in ("hypothesis.score", "score") if c in results.columns), None)
     if key is not None and score is not None and results.columns[key].dtype.kind == "S":
-        word = _likeliest(items, "results", key, score, b"")
-        words, which = distinct(word)
+        words, which = distinct(_likeliest(items, "results", key, score, b""))
         rows.classes = np.array([class_code(each) for each in words], np.int8)[which]
     return rows
 
@@ -186,24 +158,6 @@ def _looked_up(known: NDArray[np.int8], numbers: NDArray[Any]) -> NDArray[np.int
     return result
 
 
-_TRACKED: Final = ObjectMessage(
-    {
-        "header": HEADER,
-        "objects": {
-            "object_id": {"uuid": None},
-            "classification": {"label": None, "probability": None},
-            "kinematics": {
-                "pose_with_covariance": {"pose": POSE},
-                "twist_with_covariance": {"twist": {"linear": XYZ}},
-                "acceleration_with_covariance": {"accel": {"linear": XYZ}},
-                "orientation_availability": None,
-            },
-            "shape": {"dimensions": XYZ},
-        },
-    },
-    "objects",
-    _autoware,
-)
 OBJECT_MESSAGES: Final[dict[str, ObjectMessage]] = {
     "derived_object_msgs/ObjectArray": ObjectMessage(
         {
@@ -221,7 +175,24 @@ OBJECT_MESSAGES: Final[dict[str, ObjectMessage]] = {
         "objects",
         _derived,
     ),
-    "autoware_perception_msgs/TrackedObjects": _TRACKED,
+    "autoware_perception_msgs/TrackedObjects": ObjectMessage(
+        {
+            "header": HEADER,
+            "objects": {
+                "object_id": {"uuid": None},
+                "classification": {"label": None, "probability": None},
+                "kinematics": {
+                    "pose_with_covariance": {"pose": POSE},
+                    "twist_with_covariance": {"twist": {"linear": XYZ}},
+                    "acceleration_with_covariance": {"accel": {"linear": XYZ}},
+                    "orientation_availability": None,
+                },
+                "shape": {"dimensions": XYZ},
+            },
+        },
+        "objects",
+        _autoware,
+    ),
     "vision_msgs/Detection3DArray": ObjectMessage(
         {
             "header": HEADER,

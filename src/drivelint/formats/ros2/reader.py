@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,9 +12,9 @@ import numpy as np
 from drivelint.drive import embedded_map
 from drivelint.drive.trace import QualityFinding, Recording, States
 from drivelint.errors import TraceError
-from drivelint.formats.coordinate_frames import TransformTree, clean_frame_name, fixed_frame
+from drivelint.formats.coordinate_frames import TransformTree, fixed_frame
 from drivelint.formats.mcap import bag
-from drivelint.formats.mcap.reader import Container
+from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.ros2 import cdr
 from drivelint.formats.ros2 import ego as ros_ego
 from drivelint.formats.ros2 import types as ros_types
@@ -27,7 +29,7 @@ from drivelint.formats.ros2.ego import (
     TURN_INDICATORS,
     WORLD_INFO,
 )
-from drivelint.formats.ros2.merge import Sources, merge_ego
+from drivelint.formats.ros2.merge import merge_ego
 from drivelint.formats.ros2.objects import OBJECT_MESSAGES, stamps
 from drivelint.formats.ros2.recorded_poses import (
     RecordedPoses,
@@ -40,17 +42,15 @@ from drivelint.formats.ros2.recorded_poses import (
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
-    from mcap.records import Channel
+    from mcap.records import Channel, Schema
     from numpy.typing import NDArray
 
     from drivelint.drive.trace import IngestOptions
-    from drivelint.formats.mcap.reader import Packet
     from drivelint.formats.ros2.cdr import Decoder, Table
 
-BATCH_BYTES = 32 * 1024 * 1024
 STATIC_TOPIC_SUFFIX = "tf_static"
 """What the topic of transforms that always hold ends with: nothing in the messages says it."""
 _REPORTS = {TURN_INDICATORS: "report", HAZARD_LIGHTS: "report", CONTROL_MODE: "mode", ENGAGE: "engage"}
@@ -62,42 +62,13 @@ _OLD = {
 _CARLA = "carla_msgs/"
 
 
-def message_type(container: Container, channel: Channel) -> str | None:
-    """Return the type of ROS messages that are read on a channel; None for any other."""
-    schema = container.schemas.get(channel.schema_id)
-    if schema is None or channel.message_encoding != "cdr":
-        return None
-    name = ros_types.short_type_name(schema.name)
-    package, _, rest = name.partition("/")
-    name = f"{_OLD.get(package, package)}/{rest}"
-    return name if name in OBJECT_MESSAGES or name in FIELD_TREES else None
-
-
 @dataclass
 class TopicMessages:
-    """The messages of one topic, decoded and still to be decoded."""
+    """The messages of one topic, decoded: what was read of each batch."""
 
     kind: str
     topic: str
-    read: Callable[[Table, NDArray[np.int64]], Any]
     parts: list[Any] = field(default_factory=list)
-    waiting: list[Packet] = field(default_factory=list)
-    size: int = 0
-    decoder: Decoder | None = None
-
-    def add(self, packet: Packet) -> None:
-        """Add a message, and decode the waiting ones when they fill a batch."""
-        self.waiting.append(packet)
-        self.size += len(packet.data)
-        if self.size >= BATCH_BYTES:
-            self.flush()
-
-    def flush(self) -> None:
-        """Decode the messages that are still to be decoded."""
-        if self.waiting and self.decoder is not None:
-            log_ns = np.array([packet.log_time_ns for packet in self.waiting], np.int64)
-            self.parts.append(self.read(self.decoder.table(self.waiting), log_ns))
-        self.waiting, self.size = [], 0
 
 
 class _Log:
@@ -114,42 +85,31 @@ class _Log:
         for file in files:
             container = Container(file)
             decoders: dict[int, Decoder] = {}
-            for packet in container.packets():
-                kind = message_type(container, packet.channel)
-                if kind is None:
-                    continue
-                number = packet.channel.schema_id
-                if number not in decoders:
-                    decoders[number] = _decoder(file, container, number, kind)
-                source = self._source(kind, packet.channel.topic)
-                if source.decoder is not decoders[number]:
-                    source.flush()
-                    source.decoder = decoders[number]
-                source.add(packet)
-            for source in self._all():
-                source.flush()
+            for kind, packets in message_batches(container, partial(_kind, container, decoders)):
+                channel = packets[0].channel
+                table = decoders[channel.schema_id].table(packets)
+                log_ns = np.array([packet.log_time_ns for packet in packets], np.int64)
+                topics = self.topics.setdefault(kind, {})
+                topic = topics.setdefault(channel.topic, TopicMessages(kind, channel.topic))
+                topic.parts.append(self._part(kind, table, log_ns))
             self.carla |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())
             self.findings += container.findings
 
-    def _all(self) -> list[TopicMessages]:
-        return [source for topics in self.topics.values() for source in topics.values()]
-
-    def _source(self, kind: str, topic: str) -> TopicMessages:
-        topics = self.topics.setdefault(kind, {})
-        if topic not in topics:
-            topics[topic] = TopicMessages(kind, topic, self._reader(kind))
-        return topics[topic]
-
-    def _reader(self, kind: str) -> Callable[[Table, NDArray[np.int64]], Any]:
+    def _part(self, kind: str, table: Table, log_ns: NDArray[np.int64]) -> Any:
         if kind in OBJECT_MESSAGES:
-            return lambda table, log_ns: _objects(kind, table, log_ns)
+            return _objects(kind, table, log_ns)
         if kind == ODOMETRY:
-            return lambda table, log_ns: ros_ego.odometry(table, log_ns, self._forward_m)
-        return lambda table, log_ns: (table, log_ns)
+            return ros_ego.odometry(table, log_ns, self._forward_m)
+        return table, log_ns
+
+    def parts(self, kind: str) -> Iterator[tuple[str, Any]]:
+        """Yield topic and batch of the messages of a kind, by topic."""
+        for topic, source in sorted(self.topics.get(kind, {}).items()):
+            yield from ((topic, part) for part in source.parts)
 
     def one(self, kinds: Iterable[str], what: str, asked: list[str]) -> TopicMessages | None:
         """Return the one topic with messages of some kinds. Errors: `TraceError` where there are several, none asked for."""
-        found = {t: source for kind in kinds for t, source in self.topics.get(kind, {}).items() if source.parts}
+        found = {topic: source for kind in kinds for topic, source in self.topics.get(kind, {}).items()}
         chosen = [topic for topic in asked if topic in found] or sorted(found)
         if len(chosen) > 1:
             raise TraceError(
@@ -165,8 +125,21 @@ def _objects(kind: str, table: Table, log_ns: NDArray[np.int64]) -> RecordedPose
     return rows
 
 
-def _decoder(path: Path, container: Container, number: int, kind: str) -> Decoder:
-    schema = container.schemas[number]
+def _kind(container: Container, decoders: dict[int, Decoder], channel: Channel) -> str | None:
+    """Return the type of ROS messages that are read on a channel, its decoder made; None for any other."""
+    schema = container.schemas.get(channel.schema_id)
+    if schema is None or channel.message_encoding != "cdr":
+        return None
+    package, _, rest = ros_types.short_type_name(schema.name).partition("/")
+    kind = f"{_OLD.get(package, package)}/{rest}"
+    if kind not in OBJECT_MESSAGES and kind not in FIELD_TREES:
+        return None
+    if channel.schema_id not in decoders:
+        decoders[channel.schema_id] = _decoder(container.path, schema, kind)
+    return kind
+
+
+def _decoder(path: Path, schema: Schema, kind: str) -> Decoder:
     if schema.encoding != "ros2msg":
         raise TraceError(
             f"{path}: {schema.name} is described by {schema.encoding or 'nothing'}: only ros2msg is read: record or convert it "
@@ -201,8 +174,8 @@ def read(path: Path, options: IngestOptions) -> Recording:
     own_times = choose_clock(parts, findings)
     frames = _frames(log, own_times=own_times)
     _drop_nameless(parts, objects, findings)
-    used = [name for source in (odometry, objects) if source for name in _frame_names(parts[source.topic])]
-    fixed = fixed_frame(frames, used)
+    used = [sorted(distinct(parts[source.topic].frames)[0]) for source in (odometry, objects) if source]
+    fixed = fixed_frame(frames, chain.from_iterable(used))
     states: dict[str, States] = {}
     for source in (objects, odometry):
         if source is not None:
@@ -210,16 +183,14 @@ def read(path: Path, options: IngestOptions) -> Recording:
             findings += found
     if not any(np.isfinite(part.numbers["x_m"]).any() for part in states.values()):
         raise TraceError(f"{path}: nothing can be placed: {findings[-1].message if findings else 'no positions'}")
-    recording = merge_ego(
-        Sources(
-            None if objects is None or not len(states[objects.topic]) else (objects.topic, states[objects.topic]),
-            None if odometry is None or not len(states[odometry.topic]) else (odometry.topic, states[odometry.topic]),
-            objects is not None and objects.kind == "derived_object_msgs/ObjectArray" and log.carla,
-            _infos(log),
-            forward_m,
-            findings,
-        )
+    others, own = (
+        None if source is None or not len(states[source.topic]) else (source.topic, states[source.topic])
+        for source in (objects, odometry)
     )
+    carla = objects is not None and objects.kind == "derived_object_msgs/ObjectArray" and log.carla
+    # the id of the ego that each topic of the CARLA bridge's ego info gives last
+    infos = {topic: str(number) for topic, (table, _) in log.parts(EGO_INFO) for number in table.columns["id"].tolist()}
+    recording = merge_ego(others, own, infos, findings, carla=carla, forward_m=forward_m)
     reports = _reports(log, asked, own_times=own_times)
     for ego in recording.ego_ids[:1]:
         mine = recording.states.actor == recording.states.ids.index(ego) if ego in recording.states.ids else None
@@ -228,24 +199,22 @@ def read(path: Path, options: IngestOptions) -> Recording:
             codes[mine] = ros_ego.indicators(recording.states.t_ns[mine], reports)
             recording.states.codes["indicator"] = codes
         recording.events = ros_ego.engagement(reports, ego)
-    recording.embedded_map, trouble = embedded_map.single_map(_maps(log))
+    maps: dict[bytes, str] = {}
+    for topic, (table, _) in log.parts(WORLD_INFO):
+        for text in filter(bytes.strip, table.columns["opendrive"].tolist()):
+            maps.setdefault(text, topic)
+    recording.embedded_map, trouble = embedded_map.single_map(maps)
     recording.findings += trouble
     recording.frame_times, recording.utc_start_ns = message_times(list(parts.values()))
     recording.notes.append(f"positions are in the frame {fixed!r}")
     return recording
 
 
-def _frame_names(rows: RecordedPoses) -> list[str]:
-    return [clean_frame_name(name) for name in sorted(distinct(rows.frames)[0])]
-
-
 def _frames(log: _Log, *, own_times: bool) -> TransformTree:
     frames = TransformTree()
-    for topic, source in sorted(log.topics.get(TRANSFORMS, {}).items()):
-        for table, log_ns in source.parts:
-            ros_ego.add_transforms(
-                frames, table, log_ns, static=topic.endswith(STATIC_TOPIC_SUFFIX), own_times=own_times
-            )
+    for topic, (table, log_ns) in log.parts(TRANSFORMS):
+        static = topic.endswith(STATIC_TOPIC_SUFFIX)
+        ros_ego.add_transforms(frames, table, log_ns, static=static, own_times=own_times)
     return frames
 
 
@@ -275,22 +244,3 @@ def _reports(log: _Log, asked: list[str], *, own_times: bool) -> dict[str, tuple
         values = [table.columns[column] for table, _ in source.parts]
         reports[kind] = (np.concatenate(t_ns), np.concatenate(values))
     return reports
-
-
-def _infos(log: _Log) -> dict[str, str]:
-    """Return the id of the ego that each topic of the CARLA bridge's ego info gives last."""
-    found: dict[str, str] = {}
-    for topic, source in sorted(log.topics.get(EGO_INFO, {}).items()):
-        for table, _ in source.parts:
-            found.update((topic, str(number)) for number in table.columns["id"].tolist())
-    return found
-
-
-def _maps(log: _Log) -> dict[bytes, str]:
-    texts: dict[bytes, str] = {}
-    for topic, source in sorted(log.topics.get(WORLD_INFO, {}).items()):
-        for table, _ in source.parts:
-            for text in table.columns["opendrive"].tolist():
-                if text.strip():
-                    texts.setdefault(text, topic)
-    return texts

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from drivelint.drive.trace import LEAST_UTC_NS, SIZE_COLUMNS, STATE_COLUMNS, Fra
 from drivelint.formats.coordinate_frames import Poses, clean_frame_name, rotated, unit_quaternions
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
@@ -61,27 +61,28 @@ class RecordedPoses:
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> RecordedPoses:
         """Return the chosen rows."""
-        return RecordedPoses(**_columns(lambda name: None if (v := getattr(self, name)) is None else v[rows]))
+        chosen: dict[str, Any] = {name: None if v is None else v[rows] for name, v in vars(self).items()}
+        return RecordedPoses(**chosen)
 
 
 def join_batches(parts: Sequence[RecordedPoses]) -> RecordedPoses:
     """Return the rows of several batches."""
-    lists = {item.name: [getattr(part, item.name) for part in parts] for item in fields(RecordedPoses)}
-    return RecordedPoses(**_columns(lambda name: None if lists[name][0] is None else np.concatenate(lists[name])))
+    lists = {name: [vars(part)[name] for part in parts] for name in vars(parts[0])}
+    joined: dict[str, Any] = {name: None if v[0] is None else np.concatenate(v) for name, v in lists.items()}
+    return RecordedPoses(**joined)
 
 
-def _columns(of: Callable[[str], Any]) -> dict[str, Any]:
-    return {item.name: of(item.name) for item in fields(RecordedPoses)}
-
-
-def unknown_vectors(n: int) -> Vectors:
-    """Return vectors of which nothing is known."""
-    return np.full((n, 3), np.nan)
-
-
-def distinct_ids(rows: RecordedPoses) -> tuple[list[str], NDArray[np.int32]]:
-    """Return the distinct ids as text, and each row's index into them."""
-    return distinct(rows.ids)
+def recorded_poses(
+    stamps: tuple[NDArray[np.int64], NDArray[np.bool_]], poses: tuple[Vectors, Vectors], **columns: Any
+) -> RecordedPoses:
+    """Return poses, place and turn, with their own times, all of whose other columns that are not given are not known."""
+    n = len(poses[0])
+    unknown: dict[str, Any] = {
+        **{name: np.full((n, 3), np.nan) for name in ("size", "velocity", "acceleration")},
+        "classes": np.full(n, -1, np.int8), "along": np.zeros(n, np.bool_), "faces": np.ones(n, np.bool_),
+    }  # fmt: skip
+    (stamp_ns, stamped), (place, turn) = stamps, poses
+    return RecordedPoses(stamp_ns=stamp_ns, stamped=stamped, t_ns=stamp_ns, place=place, turn=turn, **unknown | columns)
 
 
 def distinct(values: NDArray[Any]) -> tuple[list[str], NDArray[np.int32]]:
@@ -114,7 +115,7 @@ def states_in_fixed_frame(
 
     `what` they are is said in the findings.
     """
-    ids, actor = distinct_ids(rows)
+    ids, actor = distinct(rows.ids)
     place, turn = rows.place.copy(), unit_quaternions(rows.turn)
     along = rows.along[:, None]
     outward = rotated(turn, rows.velocity)
@@ -147,17 +148,12 @@ def states_in_fixed_frame(
             **{name: rows.size[:, k].astype(np.float64) for k, name in enumerate(SIZE_COLUMNS)},
         },
         {"actor_class": rows.classes},
-        _odd(rows.place) | _odd(rows.velocity),
+        np.asarray(np.isinf(np.hstack([rows.place, rows.velocity])).any(axis=1)),
     )  # fmt: skip
     for name, values in states.numbers.items():
         states.numbers[name] = np.where(np.isfinite(values), values, np.nan)
     findings += _other_frame(states, swapped, rows.along, what)
     return states, findings
-
-
-def _odd(vectors: Vectors) -> NDArray[np.bool_]:
-    odd: NDArray[np.bool_] = np.asarray(np.isinf(vectors).any(axis=1))
-    return odd
 
 
 def _lost(what: str, frame: str, fixed: str, frames: TransformTree, t_ns: NDArray[np.int64]) -> QualityFinding:

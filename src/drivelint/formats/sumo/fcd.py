@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import pyarrow as pa
@@ -26,8 +26,12 @@ from drivelint.phrases import listed
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from drivelint.formats.probe import Probe
+
     Floats = NDArray[np.float64]
 
+formats: Final = {"sumo-fcd": ("SUMO floating car data", "said with --ego")}
+takes_mapping: Final = True
 HEAD_BYTES = 65536
 _COLUMNS = ("timestep_time", "vehicle_id", "vehicle_x", "vehicle_y", "vehicle_angle")
 _FIELDS = ("id", "x", "y", "angle", "type", "speed", "signals", "acceleration")
@@ -74,11 +78,17 @@ def is_fcd(path: Path, head: bytes) -> bool:
         return b"<fcd-export" in file.read(HEAD_BYTES)
 
 
-def read(path: Path, types_file: str | None) -> Recording:
-    """Read a log; `types_file` is the file with its vTypes, None: those beside it.
+def accepts(probe: Probe) -> bool:
+    """Accept by its element or its columns."""
+    return not probe.path.is_dir() and is_fcd(probe.path, probe.head)
+
+
+def read(probe: Probe) -> Recording:
+    """Read a log; its mapping is the file with its vTypes, None: those beside it.
 
     Errors: `TraceError` for a file that cannot be understood, `UsageError` for a types file that has no vType.
     """
+    path = probe.path
     table = _rows(path)
     nameless = pc.fill_null(pc.equal(_text(table, "id"), ""), fill_value=True).to_numpy()
     # a step at which nobody is there is a row with its time alone
@@ -87,7 +97,7 @@ def read(path: Path, types_file: str | None) -> Recording:
     table = table.filter(pa.array(~nameless)) if nameless.any() else table
     if not table.num_rows:
         raise TraceError(f"{path}: no vehicle in this log")
-    types, notes = _types(path, types_file)
+    types, notes = _types(path, probe.options.mapping)
     recording = _recording(table, types)
     lights = sumo_lights.read_light_states(path, _is_log)
     recording.signals = lights.signals
@@ -198,11 +208,10 @@ def _types(path: Path, types_file: str | None) -> tuple[dict[str, VehicleType], 
 
 def _read_types(file: Path) -> dict[str, VehicleType]:
     try:
-        root = safe_xml.parse(file.read_bytes())
+        content = file.read_bytes()
     except OSError as error:
         raise UsageError(f"--mapping {file}: cannot be read: {error.strerror or error}") from error
-    except safe_xml.RefusedError as error:
-        raise UsageError(f"--mapping {file}: {error}") from None
+    root = safe_xml.parse(content, f"--mapping {file}:", UsageError)
     found = {}
     for element in root.iter("vType"):
         default = _of_class(element.get("vClass", "passenger"))
@@ -215,10 +224,7 @@ def _read_types(file: Path) -> dict[str, VehicleType]:
 
 
 def _positive(text: str | None, default: float) -> float:
-    try:
-        value = float(text) if text is not None else default
-    except ValueError:
-        return float("nan")
+    value = default if text is None else safe_xml.number(text)
     return value if value > 0 else float("nan")
 
 
@@ -260,31 +266,15 @@ def _csv(path: Path) -> pa.Table:
 
 
 def _xml(path: Path) -> pa.Table:
-    """Read XML: where all vehicles look like the first, line by line, else by one expression, else by the parser."""
+    """Read XML: where all vehicles look like the first, line by line, else by the parser."""
     content = path.read_bytes()
-    begin = content.find(b"<fcd-export")
-    lines = _lines(content, begin) if b"&" not in content else None
-    if lines is not None:
-        return lines
-    first = re.search(rb"<vehicle\s([^<>]*?)/?>", content[begin:])
-    if first is not None and b"&" not in content:
-        names = [name.decode() for name in re.findall(rb'([\w:]+)="', first[1])]
-        groups = rb"\s+".join(name.encode() + rb'="([^"<]*)"' for name in names)
-        rows = re.findall(rb'<timestep\s+time="([^"<]*)"|<vehicle\s+' + groups + rb"\s*/?>", content[begin:])
-        steps = sum(1 for _ in re.finditer(rb"<timestep\b", content))
-        others = (
-            content.count(b"<vehicle ", begin)
-            + content.count(b"<person ", begin)
-            + content.count(b"<container ", begin)
-        )
-        if len(rows) == steps + others and content.rstrip().endswith(b"</fcd-export>"):
-            return _table(rows, names)
-    return _parsed(path, content)
+    lines = _lines(content, content.find(b"<fcd-export")) if b"&" not in content else None
+    return _parsed(path, content) if lines is None else lines
 
 
 def _lines(content: bytes, begin: int) -> pa.Table | None:
     """Read a log with an element on each line as a table that quotation marks cut; None where one looks otherwise."""
-    first = re.search(rb"^[ \t]*<vehicle [^\n]*/>$", content[begin:], re.MULTILINE)
+    first = re.search(rb"^[ \t]*<vehicle [^\n]*/>(?=\r?$)", content[begin:], re.MULTILINE)
     if first is None or not content.rstrip().endswith(b"</fcd-export>"):
         return None
     parts = first[0].decode("utf-8", "replace").split('"')
@@ -338,26 +328,8 @@ def _timed(table: pa.Table, names: list[str], others: list[tuple[int, str]]) -> 
     return pa.table(made)
 
 
-def _table(rows: list[tuple[bytes, ...]], names: list[str]) -> pa.Table:
-    """Return the table of rows (time of a step, or '' and a vehicle's attributes)."""
-    columns = dict(zip(["time", *names], zip(*rows, strict=True), strict=True))
-    time = np.array(columns["time"], dtype=object)
-    is_step = time != b""
-    stamps = np.array([float(t) for t in time[is_step]], np.float64)
-    at = np.cumsum(is_step)[~is_step] - 1
-    keep = pa.array(~is_step)
-    wanted = [name for name in _FIELDS if name in columns]
-    made: dict[str, Any] = {"timestep_time": pa.array(stamps[at])}
-    for name in wanted:
-        made[f"vehicle_{name}"] = pa.array(columns[name], pa.binary()).filter(keep).cast(pa.string())
-    return pa.table(made)
-
-
 def _parsed(path: Path, content: bytes) -> pa.Table:
-    try:
-        root = safe_xml.parse(content)
-    except safe_xml.RefusedError as error:
-        raise TraceError(f"{path} {error}") from None
+    root = safe_xml.parse(content, str(path), TraceError)
     rows: dict[str, list[Any]] = {"timestep_time": [], **{f"vehicle_{name}": [] for name in _FIELDS}}
     for step in root.iter("timestep"):
         for item in step:

@@ -13,6 +13,7 @@ import numpy as np
 import pyarrow as pa
 
 from drivelint.drive.trace import SIGNAL_STATES, QualityFinding
+from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
 from drivelint.phrases import listed
 
@@ -73,13 +74,9 @@ def _has_states(file: Path) -> bool:
 
 def _read(file: Path) -> LightStates:
     try:
-        root = safe_xml.parse(file.read_bytes())
-    except safe_xml.RefusedError as error:
-        return LightStates(
-            None,
-            [],
-            [QualityFinding("lights_unread", "warning", f"light states of {file.name} are not read: it {error}", 1)],
-        )
+        root = safe_xml.parse(file.read_bytes(), f"light states of {file.name} are not read: it", TraceError)
+    except TraceError as error:
+        return LightStates(None, [], [QualityFinding("lights_unread", "warning", str(error))])
     table, dropped = _rows(root.iter("tlsState"))
     findings = []
     if dropped:
@@ -93,8 +90,8 @@ def _rows(states: Iterable[etree._Element]) -> tuple[pa.Table | None, int]:
     found: dict[tuple[str, int], tuple[list[float], list[str]]] = {}
     dropped = 0
     for element in states:
-        light, letters, at = element.get("id"), element.get("state"), _seconds(element.get("time"))
-        if not light or not letters or not letters.isascii() or at is None:
+        light, letters, at = element.get("id"), element.get("state"), safe_xml.number(element.get("time"))
+        if not light or not letters or not letters.isascii() or not abs(at) < 1e9:
             dropped += 1
             continue
         times, shown = found.setdefault((light, len(letters)), ([], []))
@@ -119,11 +116,3 @@ def _table(light: str, n: int, times: np.ndarray, codes: np.ndarray) -> pa.Table
     states = pa.DictionaryArray.from_arrays(pa.array(codes, mask=codes < 0), pa.array(list(SIGNAL_STATES)))
     t_ns = np.repeat(np.round(times * 1e9).astype(np.int64), n)
     return pa.table({"signal_id": names.cast(pa.string()), "t_ns": t_ns, "state": states.cast(pa.string())})
-
-
-def _seconds(text: str | None) -> float | None:
-    try:
-        value = float(text or "nan")
-    except ValueError:
-        return None
-    return value if abs(value) < 1e9 else None

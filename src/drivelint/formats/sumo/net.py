@@ -10,23 +10,23 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from drivelint.errors import MapError
 from drivelint.formats import safe_xml
-from drivelint.formats.sumo.right_of_way import Rows, control_rows
-from drivelint.road.boundary_lanes import BoundedLane, build_lanes, crossings, tables
-from drivelint.road.map_reader import MapOptions, MapSource, MapTables, environment_id
+from drivelint.formats.sumo.right_of_way import control_rows
+from drivelint.road.boundary_lanes import BoundedLane, Limit, bounded_map, build_lanes, crossings
 from drivelint.road.quality import MapQuality
-from drivelint.road.tables import from_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from lxml import etree
     from numpy.typing import NDArray
+
+    from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
     Floats = NDArray[np.float64]
 
@@ -67,57 +67,35 @@ class _Net:
     walks: list[BoundedLane] = field(default_factory=list)
 
 
-class SumoNetReader:
-    """SUMO's own road networks."""
-
-    format = "sumo"
-
-    def read(self, source: MapSource, request: MapOptions) -> MapTables:
-        """Return the map's tables; `MapError` where the file is not XML or nothing in it can be built."""
-        try:
-            root = safe_xml.parse(source.content)
-        except safe_xml.RefusedError as error:
-            raise MapError(f"map {source.name} {error}") from None
-        quality = MapQuality()
-        left = root.get("lefthand") in {"true", "1"}
-        net = _read(root, left=left, quality=quality)
-        _connect(root, net)
-        lanes = build_lanes(net.lanes.values(), request.offset, quality)
-        if not lanes:
-            first = next((row["message"] for row in quality.rows), "it has no <lane>")
-            raise MapError(f"map {source.name} has no lane that can be built: {first}")
-        handedness, how = _handedness(request, "lht" if left else "rht", quality)
-        name = environment_id(source, request.offset, handedness)
-        signals, stop_lines = control_rows(root, {lane.lanelet_id: lane for lane in lanes})
-        rows: dict[str, Rows] = {
-            "environment": [_environment(source, request, handedness, how)],
-            "traffic_signal": signals,
-            "stop_line": stop_lines,
-            "road_object": [],
-            "crossing": crossings(net.walks, lanes, request.offset),
-        }
-        result = tables(name, lanes)
-        result |= {table: from_rows(table, name, content) for table, content in rows.items()}
-        result["map_quality"] = quality.table(name)
-        return MapTables(name, handedness, how, result)
-
-
-def _environment(source: MapSource, request: MapOptions, handedness: str, how: str) -> dict[str, Any]:
-    return {
-        "name": source.name, "sha256": source.sha256, "format": SumoNetReader.format,
-        "offset_x_m": request.offset[0], "offset_y_m": request.offset[1],
-        "handedness": handedness, "handedness_source": how, "geo_reference": None,
-    }  # fmt: skip
+def read(source: MapSource, request: MapOptions) -> MapTables:
+    """Return the map's tables; `MapError` where the file is not XML or nothing in it can be built."""
+    root = safe_xml.parse_map(source)
+    quality = MapQuality()
+    left = root.get("lefthand") in {"true", "1"}
+    net = _read(root, left=left, quality=quality)
+    _connect(root, net)
+    lanes = build_lanes(net.lanes.values(), request.offset, quality)
+    if not lanes:
+        first = next((row["message"] for row in quality.rows), "it has no <lane>")
+        raise MapError(f"map {source.name} has no lane that can be built: {first}")
+    side = _handedness(request, "lht" if left else "rht", quality)
+    signals, stop_lines = control_rows(root, {lane.lanelet_id: lane for lane in lanes})
+    furniture = {
+        "traffic_signal": signals,
+        "stop_line": stop_lines,
+        "crossing": crossings(net.walks, lanes, request.offset),
+    }
+    return bounded_map(source, request, lanes, furniture, quality, kind="sumo", side=side)
 
 
 def _handedness(request: MapOptions, said: str, quality: MapQuality) -> tuple[str, str]:
     """Return the side that is driven on: a net says so where it is the left, and nothing where it is the right."""
-    if request.handedness == "auto":
+    if request.side is None:
         return said, "attribute"
-    if request.handedness != said:
-        message = f"the option --handedness: {request.handedness}; the net: {said}; the option is taken"
+    if request.side != said:
+        message = f"the option --handedness: {request.side}; the net: {said}; the option is taken"
         quality.add("handedness_disagrees", "warning", None, message)
-    return request.handedness, "option"
+    return request.side, "option"
 
 
 def _read(root: etree._Element, *, left: bool, quality: MapQuality) -> _Net:
@@ -171,7 +149,7 @@ def _lane(edge: etree._Element, element: etree._Element) -> BoundedLane:
         road_type=_ROADS.get((edge.get("type") or "").removeprefix("highway.")),
         junction_id=edge.get("id", "").removeprefix(":").rpartition("_")[0] if inside else None,
         # inside a junction the speed is what the bend allows, not a limit
-        limit_mps=None if inside else limit, limit_known=not inside,
+        limits=() if inside else ((0.0, 1.0, limit),),
     )  # fmt: skip
 
 
@@ -256,15 +234,15 @@ def _begun(middle: Floats, other: BoundedLane, end: int) -> Floats:
 
 
 def _limits(lanes: Mapping[str, BoundedLane], follows: Mapping[str, Iterable[str]], inside: Iterable[str]) -> None:
-    waiting = {name for name in inside if not lanes[name].limit_known}
-    found: dict[str, list[float | None]] = defaultdict(list)
+    waiting = {name for name in inside if not lanes[name].limits}
+    found: dict[str, list[tuple[Limit, ...]]] = defaultdict(list)
     for name, targets in follows.items():
         for to in targets:
-            if to in waiting and lanes[name].limit_known:
-                found[to].append(lanes[name].limit_mps)
+            if to in waiting and lanes[name].limits:
+                found[to].append(lanes[name].limits)
     for to, limits in found.items():
         if len(set(limits)) == 1:
-            lanes[to].limit_mps, lanes[to].limit_known = limits[0], True
+            lanes[to].limits = limits[0]
 
 
 def _at(net: _Net, edge: str, index: str) -> str:

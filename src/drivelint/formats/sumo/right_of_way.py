@@ -10,14 +10,15 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any, Final
 
+from drivelint.road.boundary_lanes import signal_row
+from drivelint.road.tables import Rows, stop_line_row
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from lxml import etree
 
     from drivelint.road.boundary_lanes import BoundedLane
-
-Rows = list[dict[str, Any]]
 
 _TURNS: Final = {
     "s": ("straight",), "l": ("left",), "r": ("right",), "t": ("u_turn",), "L": ("left", "straight"), "R": ("right", "straight"),
@@ -34,16 +35,12 @@ def control_rows(root: etree._Element, lanes: Mapping[str, BoundedLane]) -> tupl
     signals, lines = _lights(links, lanes)
     signed, stops = _signs(root, links, lanes)
     lines |= stops
-    rows = [
-        {
-            "stop_line_id": f"end of {name}",
-            "lanelet_id": name,
-            "lane_s_m": float(lanes[name].line.s[-1]),
-            "source": "connection",
-        }
-        for name in sorted(lines)
-    ]
+    rows = [stop_line_row(f"end of {name}", name, _end(lanes[name]), "connection") for name in sorted(lines)]
     return sorted([*signals, *signed], key=lambda row: (row["signal_id"], row["lanelet_id"])), rows
+
+
+def _end(lane: BoundedLane) -> float:
+    return float(lane.line.s[-1])
 
 
 def _lights(links: list[etree._Element], lanes: Mapping[str, BoundedLane]) -> tuple[Rows, set[str]]:
@@ -58,7 +55,7 @@ def _lights(links: list[etree._Element], lanes: Mapping[str, BoundedLane]) -> tu
         if light is None or source not in lanes:
             continue
         via = link.get("via")
-        at, s = (via, 0.0) if via in lanes else (source, float(lanes[source].line.s[-1]))
+        at, s = (via, 0.0) if via in lanes else (source, _end(lanes[source]))
         turns[f"{light}_{link.get('linkIndex')}", str(at), s].update(_TURNS.get(link.get("dir", ""), ()))
         if lanes[source].drivable:
             ends.add(source)
@@ -88,17 +85,12 @@ def _signs(
         kind = "stop" if "stop" in found else "give_way"
         for name, lane in sorted(lanes.items()):
             if lane.drivable and name.rpartition("_")[0] == edge:
-                rows.append(_row(f"{kind} {edge}", kind, lane, float(lane.line.s[-1]), turns=None))
+                rows.append(_row(f"{kind} {edge}", kind, lane, _end(lane), turns=None))
                 if kind == "stop":
                     stops.add(name)
     return rows, stops
 
 
 def _row(name: str, kind: str, lane: BoundedLane, s: float, *, turns: list[str] | None) -> dict[str, Any]:
-    x, y = lane.line.centre[0 if s == 0.0 else -1]
-    return {
-        "signal_id": name, "kind": kind, "country": None, "type": None, "subtype": None, "value": None, "unit": None,
-        "dynamic": kind == "traffic_light", "turns": turns, "road_id": lane.road_id,
-        "road_s_m": s if lane.along > 0 else float(lane.line.s[-1]) - s,
-        "lanelet_id": lane.lanelet_id, "lane_s_m": s, "x_m": float(x), "y_m": float(y),
-    }  # fmt: skip
+    place = lane.line.centre[0 if s == 0.0 else -1]
+    return signal_row(lane, s, place, signal_id=name, kind=kind, dynamic=kind == "traffic_light", turns=turns)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import msgspec
 import numpy as np
@@ -21,14 +21,20 @@ from drivelint.drive.trace import (
     States,
 )
 from drivelint.errors import TraceError
+from drivelint.formats.files import is_canonical_folder
 from drivelint.formats.osi.extras import parse_conditions
 from drivelint.formats.tables import parquet
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
     from numpy.typing import NDArray
 
+    from drivelint.formats.probe import Probe
+
+formats: Final = {"canonical-parquet": ("drivelint's own Parquet tables", "marked is_ego in the log")}
+takes_mapping: Final = False
 REQUIRED_COLUMNS = ("t_ns", "actor_id", "x_m", "y_m", "yaw_rad")
 """What makes a Parquet table canonical; every other column may be missing and is then unknown."""
 _OF_A_STATE = {"indicator": INDICATORS, "brake_light": BRAKE_LIGHTS, "actor_class": ACTOR_CLASSES}
@@ -36,16 +42,21 @@ _WORDS = {**_OF_A_STATE, "state": SIGNAL_STATES}
 """Column -> its words; a log may write them in any case."""
 
 
-def has_columns(path: Path) -> bool:
-    """Say whether a Parquet file has the columns of `actor_state`. Errors: `TraceError` where it is damaged."""
-    return set(REQUIRED_COLUMNS) <= set(parquet.schema(path).names)
+def accepts(probe: Probe) -> bool:
+    """Accept a folder, or Parquet with canonical columns unless a mapping was asked for."""
+    if probe.path.is_dir():
+        return is_canonical_folder(probe.path)
+    if probe.options.mapping is not None or not probe.head.startswith(b"PAR1"):
+        return False
+    return set(REQUIRED_COLUMNS) <= set(parquet.schema(probe.path).names)
 
 
-def read(path: Path) -> Recording:
+def read(probe: Probe) -> Recording:
     """Read a canonical folder or file.
 
     Errors: `TraceError` for damaged files, missing or ill-typed columns, several drives in one.
     """
+    path = probe.path
     states, egos, findings = _states(path / "actor_state.parquet" if path.is_dir() else path)
     recording = Recording("canonical-parquet", states, ego_ids=egos, findings=findings)
     if not path.is_dir():
@@ -61,7 +72,12 @@ def read(path: Path) -> Recording:
     recording.conditions = _conditions(path / "drive_condition.parquet")
     if (path / "data_log.parquet").is_file():
         log = (parquet.table(path / "data_log.parquet").to_pylist() or [{}])[0]
-        _whole(path, log.get("n_states"), len(states) + sum(f.n for f in findings if f.check_id == "dropped_row"))
+        counted, found = log.get("n_states"), len(states) + sum(f.n for f in findings if f.check_id == "dropped_row")
+        if counted is not None and counted != found:  # nobody knows who is missing, and when
+            raise TraceError(
+                f"{path / 'actor_state.parquet'}: {found} rows, and data_log.parquet counts {counted} states: copy or "
+                "convert the folder again"
+            )
         recording.sensor_range_m, recording.utc_start_ns = log.get("sensor_range_m"), log.get("utc_start_ns")
         offset = log.get("map_offset_x_m"), log.get("map_offset_y_m")
         if offset != (None, None):
@@ -71,15 +87,6 @@ def read(path: Path) -> Recording:
         recording.embedded_map = (path / "map.xodr").read_bytes()
     recording.findings += _quality(path / "quality.parquet")
     return recording
-
-
-def _whole(path: Path, counted: object, found: int) -> None:
-    """Refuse a folder whose states are not those that its log counted: nobody knows who is missing, and when."""
-    if counted is not None and counted != found:
-        raise TraceError(
-            f"{path / 'actor_state.parquet'}: {found} rows, and data_log.parquet counts {counted} states: copy or convert "
-            "the folder again"
-        )
 
 
 def _offset(path: Path, offset: tuple[object, object]) -> tuple[float, float]:
@@ -114,6 +121,11 @@ def _column(path: Path, table: pa.Table, name: str, kind: pa.DataType) -> pa.Arr
         ) from error
 
 
+def _columns(path: Path, table: pa.Table, names: Iterable[str], kind: pa.DataType) -> dict[str, pa.Array]:
+    """Return those of the columns that the table has."""
+    return {name: _column(path, table, name, kind) for name in names if name in table.schema.names}
+
+
 def _need(path: Path, table: pa.Table, names: tuple[str, ...]) -> None:
     missing = [name for name in names if name not in table.schema.names]
     if missing:
@@ -133,21 +145,16 @@ def _states(path: Path) -> tuple[States, list[str], list[QualityFinding]]:
     )
     n = len(ids)
     numbers, not_finite = {}, np.zeros(n, np.bool_)
-    for name in (*STATE_COLUMNS, *SIZE_COLUMNS):
-        if name in table.schema.names:
-            column = _column(path, table, name, pa.float64())
-            values = pc.fill_null(column, float("nan")).to_numpy(zero_copy_only=False)
-            odd = ~np.isfinite(values)
-            numbers[name] = np.where(odd, np.nan, values)
-            not_finite |= odd & column.is_valid().to_numpy(zero_copy_only=False)
-    codes = {
-        name: _codes(path, _column(path, table, name, pa.string()), name)
-        for name in _OF_A_STATE
-        if name in table.schema.names
-    }
+    for name, column in _columns(path, table, (*STATE_COLUMNS, *SIZE_COLUMNS), pa.float64()).items():
+        values = pc.fill_null(column, float("nan")).to_numpy(zero_copy_only=False)
+        odd = ~np.isfinite(values)
+        numbers[name] = np.where(odd, np.nan, values)
+        not_finite |= odd & column.is_valid().to_numpy(zero_copy_only=False)
+    texts = _columns(path, table, _OF_A_STATE, pa.string())
+    codes = {name: _codes(path, column, name) for name, column in texts.items()}
     egos: list[str] = []
-    if "is_ego" in table.schema.names:
-        chosen = pc.fill_null(_column(path, table, "is_ego", pa.bool_()), fill_value=False)
+    for column in _columns(path, table, ("is_ego",), pa.bool_()).values():
+        chosen = pc.fill_null(column, fill_value=False)
         egos = [i for i in pc.unique(ids.filter(chosen)).to_pylist() if i]
     encoded = pc.dictionary_encode(pc.fill_null(ids, ""))
     actor = encoded.indices.to_numpy()
@@ -180,14 +187,10 @@ def _actors(path: Path) -> pa.Table:
     table = parquet.table(path)
     _need(path, table, ("actor_id",))
     columns = {"actor_id": _column(path, table, "actor_id", pa.string())}
-    for name in SIZE_COLUMNS:
-        if name in table.schema.names:
-            columns[name] = _column(path, table, name, pa.float64())
-    if "actor_class" in table.schema.names:
-        columns["actor_class"] = _spelled(path, _column(path, table, "actor_class", pa.string()), "actor_class")
-    if "is_ego" in table.schema.names:
-        columns["is_ego"] = _column(path, table, "is_ego", pa.bool_())
-    return pa.table(columns)
+    columns |= _columns(path, table, SIZE_COLUMNS, pa.float64())
+    words = _columns(path, table, ("actor_class",), pa.string())
+    columns |= {name: _spelled(path, column, name) for name, column in words.items()}
+    return pa.table(columns | _columns(path, table, ("is_ego",), pa.bool_()))
 
 
 def _extra(path: Path, required: tuple[str, ...], optional: tuple[str, ...]) -> pa.Table | None:

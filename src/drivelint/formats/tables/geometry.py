@@ -69,9 +69,8 @@ def _to_centre(states: States, mapping: Mapping) -> None:
         log["z"] = log["z"] + log.get("up", zero)
     if "vx" in log:
         turning = log["yaw_rate"] if "yaw_rate" in log else _yaw_rate(states)
-        turning = np.where(
-            np.isnan(turning), 0.0, turning
-        )  # a single sample has no rate; its lever's share is then left out
+        # a single sample has no rate; its lever's share is then left out
+        turning = np.where(np.isnan(turning), 0.0, turning)
         log["vx"], log["vy"] = log["vx"] - turning * north, log["vy"] + turning * east
 
 

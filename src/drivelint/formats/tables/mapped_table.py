@@ -15,7 +15,7 @@ from drivelint.errors import TraceError
 from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables.geometry import to_map_frame
 from drivelint.formats.tables.mapping import FIELD_QUANTITIES, GROUP_PLACEHOLDER, UNITS
-from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, describe_places
+from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, Sheet, describe_places
 from drivelint.phrases import hint
 
 if TYPE_CHECKING:
@@ -23,18 +23,27 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.formats.probe import Probe
     from drivelint.formats.tables.mapping import Field, Mapping, WordMapping
-    from drivelint.formats.tables.sheets import Sheet
 
+formats: Final[dict[str, tuple[str, str]]] = {}
+takes_mapping: Final = True
 MAX_HEADING_RAD: Final = 4 * np.pi
 """A heading that is never wrapped goes beyond one turn, on a roundabout or a ramp of a car park."""
 
 
-def read(path: Path, name: str | None) -> Recording:
-    """Read a table through the mapping `name`, or through the only shipped mapping whose columns it has.
+def accepts(probe: Probe) -> bool:
+    """Accept Parquet, and whatever reads as text without markup."""
+    head = probe.head
+    return head.startswith(b"PAR1") or not (b"\0" in head or head.lstrip()[:1] in {b"<", b"{"})
+
+
+def read(probe: Probe) -> Recording:
+    """Read a table through the mapping named, or through the only shipped mapping whose columns it has.
 
     Errors: `UsageError` for a bad mapping, `TraceError` for a table that does not fit it or cannot be read.
     """
+    path, name = probe.path, probe.options.mapping
     if name is None:
         name, mapping, sheet = _fitting(path)
         said = [f"read through the shipped mapping {name!r}, the only one whose columns the file has"]
@@ -86,12 +95,10 @@ def _fitting(path: Path) -> tuple[str, Mapping, Sheet]:
         fits.append((name, mapping, sheet))
     if len(fits) == 1:
         return fits[0]
-    names = ", ".join(name for name, _, _ in fits) if fits else ", ".join(mappings.shipped_mappings())
-    what = (
-        f"several mappings fit ({names})"
-        if fits
-        else f"read as a table, no shipped mapping fits its columns (shipped: {names})"
-    )
+    what = f"several mappings fit ({', '.join(name for name, _, _ in fits)})"
+    if not fits:
+        shipped = ", ".join(mappings.shipped_mappings())
+        what = f"read as a table, no shipped mapping fits its columns (shipped: {shipped})"
     raise TraceError(f"{path}: {what}: say how to read it with --mapping FILE|NAME; drivelint inspect drafts one")
 
 
@@ -108,13 +115,11 @@ def _groups(path: Path, name: str, mapping: Mapping, sheet: Sheet) -> list[str]:
         groups = sorted({match[1] for column in sheet.names if (match := shape.fullmatch(column))}, key=int) or ["1"]
     for column in (column.replace(GROUP_PLACEHOLDER, k) for column in columns for k in groups):
         count = sheet.names.count(column)
-        if count != 1:
-            what = (
-                f"the column {column!r} is there {count} times"
-                if count
-                else f"no column {column!r}, which mapping {name!r} needs: {hint(column, sheet.names)}"
-            )
-            raise TraceError(f"{path}: {what}")
+        if count == 0:
+            known = hint(column, sheet.names)
+            raise TraceError(f"{path}: no column {column!r}, which mapping {name!r} needs: {known}")
+        if count > 1:
+            raise TraceError(f"{path}: the column {column!r} is there {count} times")
     return groups
 
 
@@ -259,9 +264,8 @@ class _Body:
         what = f"{describe_places('line', lines, len(lines))}: not the {len(self.sheet.names)} cells of the header"
         if n == 0:
             raise TraceError(f"{self.path}: {what}: no row is left; check the mapping's separator and skip_rows")
-        self.findings.append(
-            QualityFinding("malformed_row", "error", f"{self.path.name}, {what}: not judged", len(lines))
-        )
+        message = f"{self.path.name}, {what}: not judged"
+        self.findings.append(QualityFinding("malformed_row", "error", message, len(lines)))
 
 
 def _word(text: str, spec: WordMapping) -> str | None:
@@ -274,13 +278,11 @@ def _joined(ids: list[str], actor: NDArray[np.int32], parts: list[States]) -> St
     if len(parts) == 1:
         parts[0].ids, parts[0].actor = ids, actor
         return parts[0]
-    numbers = {name: np.concatenate([part.numbers[name] for part in parts]) for name in parts[0].numbers}
-    codes = {name: np.concatenate([part.codes[name] for part in parts]) for name in parts[0].codes}
     return States(
         ids,
         actor,
         np.concatenate([part.t_ns for part in parts]),
-        numbers,
-        codes,
+        {name: np.concatenate([part.numbers[name] for part in parts]) for name in parts[0].numbers},
+        {name: np.concatenate([part.codes[name] for part in parts]) for name in parts[0].codes},
         np.concatenate([part.not_finite for part in parts]),
     )

@@ -174,17 +174,11 @@ def load(name: str) -> tuple[str, Mapping]:
     path = Path(name)
     if not path.is_file():
         if name not in shipped_mappings():
-            known = sorted(
-                file.stem for file in MAPPINGS_FOLDER.parents[1].glob("*/mappings/*.toml")
-            )  # those of films too
+            # those of films too
+            known = sorted(file.stem for file in MAPPINGS_FOLDER.parents[1].glob("*/mappings/*.toml"))
             raise UsageError(f"mapping {name!r}: neither a file nor a shipped mapping: {hint(name, known)}")
         path = MAPPINGS_FOLDER / f"{name}.toml"
-    try:
-        raw = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise UsageError(f"mapping {path}: cannot be read: {error.strerror or error}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise UsageError(f"mapping {path}: not valid TOML: {error}") from error
+    raw = read_toml(path)
     _refuse_unknown(path, raw, Mapping, "")
     try:
         mapping = msgspec.convert(raw, Mapping)
@@ -192,6 +186,16 @@ def load(name: str) -> tuple[str, Mapping]:
         raise UsageError(f"mapping {path}: {error}") from error
     _validate(path, mapping)
     return path.stem, mapping
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Return what a mapping file says. Errors: `UsageError` where it cannot be read or is no TOML."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UsageError(f"mapping {path}: cannot be read: {error.strerror or error}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise UsageError(f"mapping {path}: not valid TOML: {error}") from error
 
 
 def as_field(spec: FieldSpec) -> Field:
@@ -307,12 +311,8 @@ def _contradictions(mapping: Mapping, given: AbstractSet[str]) -> list[tuple[boo
 
 
 def _validate_words(path: Path, name: str, spec: WordMapping, allowed: tuple[str, ...]) -> None:
-    for word in (
-        *spec.values.values(),
-        *(p.word for p in spec.patterns),
-        *([spec.default] if spec.default is not None else []),
-    ):
-        if word not in allowed:
+    for word in (*spec.values.values(), *(p.word for p in spec.patterns), spec.default):
+        if word is not None and word not in allowed:
             raise UsageError(f"mapping {path}: {name}: {word!r} is not one of its words: {hint(word, allowed)}")
     for pattern in spec.patterns:
         try:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import codecs
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import polars as pl
 import pyarrow as pa
 import pyarrow.compute as pc
 
@@ -18,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
+    import polars as pl
     from numpy.typing import NDArray
 
     from drivelint.formats.tables.mapping import TextLayout
@@ -28,47 +28,13 @@ _SHOWN = 5
 """How many places a message names."""
 
 
-class Sheet(Protocol):
-    """A table on disk whose columns are read by name; an empty cell gives NaN or null."""
-
-    names: list[str]
-    """Column names, without padding."""
-    bad_lines: list[int]
-    """Lines whose number of cells is wrong; they are not among the rows."""
-    metadata: dict[bytes, bytes]
-
-    def load(self, names: Iterable[str]) -> int:
-        """Read these columns and return the number of rows."""
-        ...
-
-    def text(self, name: str) -> pa.Array:
-        """Return the column as trimmed strings, empty ones as null."""
-        ...
-
-    def filled(self, name: str) -> NDArray[np.bool_]:
-        """Say which cells hold anything."""
-        ...
-
-    def number(self, name: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        """Return values (NaN: empty or bad) and which cells are not numbers."""
-        ...
-
-    def time(self, name: str, unit: str) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-        """Return nanoseconds and which cells are empty or not times."""
-        ...
-
-    def describe_rows(self, rows: NDArray[np.intp]) -> str:
-        """Return where the first of these rows stand, for a message."""
-        ...
-
-
 class CsvSheet:
     """A CSV file of UTF-8 text. Every cell is read as text first: nothing is guessed, nothing dropped unseen."""
 
     def __init__(self, path: Path, layout: TextLayout) -> None:
         """Read the header. Errors: `TraceError` where there is none."""
         self._path, self._layout = path, layout
-        self.bad_lines: list[int] = []
+        self.bad_lines: list[int] = []  # their number of cells is wrong; they are not among the rows
         self.metadata: dict[bytes, bytes] = {}
         self._skipped: list[int] = []
         self._columns: dict[str, pl.Series] = {}
@@ -119,20 +85,20 @@ class CsvSheet:
         self._check_text()
         width = len(self.names) + self._spare
         wanted = {str(self.names.index(name)): name for name in names}
-        options = {
-            "read_options": arrow_csv.ReadOptions(
+        options = (
+            arrow_csv.ReadOptions(
                 skip_rows=self._layout.skip_rows + 1, column_names=[str(i) for i in range(width)], use_threads=False
             ),
-            "parse_options": arrow_csv.ParseOptions(
+            arrow_csv.ParseOptions(
                 delimiter=self._layout.separator, invalid_row_handler=self._refuse, ignore_empty_lines=False
             ),
-            "convert_options": arrow_csv.ConvertOptions(
+            arrow_csv.ConvertOptions(
                 include_columns=list(wanted), column_types=dict.fromkeys(wanted, pa.string()), strings_can_be_null=False
             ),
-        }
+        )
         try:
             with self._path.open("rb") as file:
-                table = arrow_csv.read_csv(file, **options)
+                table = arrow_csv.read_csv(file, *options)
         except pa.ArrowInvalid as error:
             if "Empty CSV" in str(error):
                 raise TraceError(f"{self._path}: no row follows the header: nothing can be judged") from error
@@ -156,13 +122,17 @@ class CsvSheet:
         return self._columns[name].is_not_null().to_numpy()
 
     def number(self, name: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        """Return values and which cells are not numbers."""
+        """Return values (NaN: empty or bad) and which cells are not numbers."""
+        import polars as pl
+
         column = self._columns[name]
         values = column.cast(pl.Float64, strict=False)
         return values.fill_null(float("nan")).to_numpy(), (column.is_not_null() & values.is_null()).to_numpy()
 
     def time(self, name: str, unit: str) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-        """Return nanoseconds, whole ones exactly, and which cells are not times."""
+        """Return nanoseconds, whole ones exactly, and which cells are empty or not times."""
+        import polars as pl
+
         t_ns, bad = _nanoseconds(*self.number(name), factor=TIME_UNITS[unit])
         if TIME_UNITS[unit] > 1:
             return t_ns, bad
@@ -243,6 +213,10 @@ class ParquetSheet:
         return describe_places("row", [int(row) + 1 for row in rows[:_SHOWN]], len(rows))
 
 
+Sheet = CsvSheet | ParquetSheet
+"""A table on disk whose columns are read by name; an empty cell gives NaN or null."""
+
+
 def describe_places(what: str, first: list[int], n: int) -> str:
     """Return the first of `n` places as text: `line 7`, `lines 7, 9`, `lines 1, 2, 3, 4, 5 and 12 more`."""
     more = n - len(first[:_SHOWN])
@@ -250,6 +224,8 @@ def describe_places(what: str, first: list[int], n: int) -> str:
 
 
 def _trimmed(column: pa.Array | pa.ChunkedArray, nothing: list[str]) -> pl.Series:
+    import polars as pl
+
     series = pl.Series(column).str.strip_chars()
     return series.set(series.is_in(["", *nothing]) if nothing else series == "", None)
 

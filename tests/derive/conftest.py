@@ -1,0 +1,23 @@
+"""The scenes of a module are derived together."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests import together
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _answered_together(request: pytest.FixtureRequest) -> None:
+    together.answer_together([item for item in request.session.items if item.path == request.path])
+
+
+@pytest.fixture(autouse=True)
+def _answered(request: pytest.FixtureRequest, _answered_together: None) -> Iterator[None]:
+    with together.answers.running(request.node.nodeid):
+        yield

@@ -1,0 +1,240 @@
+"""Scenes of a module's tests, derived and judged together: a small scene takes its time in planning the statements, not in rows.
+
+A test asks for its scenes one after the other: `derived(...)`, `judged(...)`. `answer_together` runs each test of a module until it
+asks for something new, stops it there, answers all such questions in one database, and does so again until no test asks. When pytest
+then runs a test, each of its questions has an answer. A question without one (the test was left out, or asks for other than before)
+is answered by a database of its own, as everywhere else.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from functools import cache
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
+
+import pyarrow as pa
+import pytest
+
+from drivelint.sql import store, syntax
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    import duckdb
+
+    from drivelint.engine.batch import Drive
+
+LEAST_TESTS: Final = 6
+"""Fewer tests than these get their other scenes one by one: a database of its own costs as much."""
+Row: TypeAlias = "dict[str, Any]"
+
+
+class Question(NamedTuple):
+    """What a test asks for: the derived tables of some drives, or the verdicts of one batch of them."""
+
+    drives: tuple[Drive, ...]
+    tables: frozenset[str] = frozenset()
+    rules: tuple[str, ...] | None = None
+    profiles: tuple[str, ...] = ()
+    order: str = ""
+
+    def same_as(self, other: Question) -> bool:
+        """Whether both ask for the same, row by row."""
+        return (
+            self[1:] == other[1:]
+            and len(self.drives) == len(other.drives)
+            and all(_is_same(a, b) for a, b in zip(self.drives, other.drives, strict=True))
+        )
+
+
+class _AskedError(BaseException):
+    """Ends the run of a test that asks for something new; no `except Exception` of the test may hold it up."""
+
+    def __init__(self, question: Question) -> None:
+        super().__init__()
+        self.question = question
+
+
+@dataclass(frozen=True)
+class SceneTables:
+    """The tables of one question in a database of many: a query sees the rows of its drives, under their own names."""
+
+    con: duckdb.DuckDBPyConnection
+    prefix: str
+    environments: tuple[str, ...]
+
+    def execute(self, sql: str, params: Sequence[object] | Mapping[str, object] | None = None) -> Any:
+        """Run a SELECT on the rows of these drives."""
+        return self.con.execute(self._restricted(sql), params)
+
+    def _restricted(self, sql: str) -> str:
+        ctes = []
+        for table in sorted(_tables(sql)):
+            columns = store.column_comments()[table]
+            if "drive_id" in columns:
+                name = f"substr(drive_id::VARCHAR, {len(self.prefix) + 1}) AS drive_id"
+                where = f"starts_with(drive_id::VARCHAR, '{self.prefix}')"
+                ctes.append(f"{table} AS (SELECT * REPLACE ({name}) FROM main.{table} WHERE {where})")
+            elif "environment_id" in columns:
+                ids = ", ".join(f"'{each}'" for each in self.environments) or "NULL"
+                ctes.append(f"{table} AS (FROM main.{table} WHERE environment_id IN ({ids}))")
+        if not ctes:
+            return sql
+        head = ", ".join(ctes)
+        text = sql.lstrip()
+        return f"WITH {head}, {text[4:]}" if text[:5].upper() == "WITH " else f"WITH {head} {text}"
+
+
+@dataclass
+class Answers:
+    """What the tests of a module asked for, by test and number of the question, and which test is running."""
+
+    questions: dict[tuple[str, int], Question] = field(default_factory=dict)
+    found: dict[tuple[str, int], Any] = field(default_factory=dict)
+    test: str | None = None
+    asked: int = 0
+    is_rehearsal: bool = False
+
+    def answer(self, question: Question) -> Any:
+        """Return the answer to the next question of the running test; None: there is none."""
+        if self.test is None:
+            return None
+        key = self.test, self.asked
+        self.asked += 1
+        if key in self.found and question.same_as(self.questions[key]):
+            return self.found[key]
+        if self.is_rehearsal:
+            raise _AskedError(question)
+        return None
+
+    @contextmanager
+    def running(self, test: str, *, is_rehearsal: bool = False) -> Iterator[None]:
+        """Take the questions inside for those of this test."""
+        self.test, self.asked, self.is_rehearsal = test, 0, is_rehearsal
+        try:
+            yield
+        finally:
+            self.test = None
+
+
+answers: Final = Answers()
+"""The answers for the module whose tests run now."""
+
+
+def answer_together(items: Iterable[pytest.Item]) -> None:
+    """Answer what the tests of one module ask for, all of them at once; a test with fixtures is left out."""
+    answers.questions.clear()
+    answers.found.clear()
+    waiting = [item for item in items if _is_plain(item)]
+    while waiting:
+        asked = {}
+        for item in waiting:
+            if (question := _rehearse(item)) is not None:
+                asked[item] = question
+        if len(asked) < LEAST_TESTS:
+            return
+        keys = {(item.nodeid, _asked_so_far(item)): question for item, question in asked.items()}
+        answers.questions.update(keys)
+        answers.found.update(_answer(keys))
+        waiting = list(asked)
+
+
+def _is_plain(item: pytest.Item) -> bool:
+    if not isinstance(item, pytest.Function) or hasattr(item.obj, "hypothesis"):
+        return False
+    given = set(item.callspec.params) if hasattr(item, "callspec") else set()
+    return set(item.fixturenames) - given <= {"_answered", "_answered_together", "request"}
+
+
+def _asked_so_far(item: pytest.Item) -> int:
+    return sum(test == item.nodeid for test, _ in answers.questions)
+
+
+def _rehearse(item: pytest.Item) -> Question | None:
+    """Run a test up to its first question without an answer. None: it has none, or fails before; pytest's run says how."""
+    assert isinstance(item, pytest.Function)
+    params = item.callspec.params if hasattr(item, "callspec") else {}
+    try:
+        with answers.running(item.nodeid, is_rehearsal=True):
+            item.obj(**params)
+    except _AskedError as asked:
+        return asked.question
+    except (Exception, pytest.fail.Exception, pytest.skip.Exception):  # noqa: BLE001
+        return None
+    return None
+
+
+def _answer(questions: Mapping[tuple[str, int], Question]) -> dict[tuple[str, int], Any]:
+    from tests import scenes
+
+    groups: dict[Any, list[tuple[str, int]]] = defaultdict(list)
+    for key, question in questions.items():
+        groups[question.rules, question.profiles].append(key)
+    found: dict[tuple[str, int], Any] = {}
+    for (rules, profiles), keys in sorted(groups.items(), key=repr):
+        for some in _with_one_map_each(keys, questions):
+            renamed = {key: _renamed(questions[key].drives, f"q{n:04}.") for n, key in enumerate(some)}
+            drives = [drive for each in renamed.values() for drive in each]
+            con = store.connect(threads=1)
+            if rules is None:
+                scenes.derived(*drives, tables=frozenset().union(*(questions[key].tables for key in some)), con=con)
+                for n, key in enumerate(some):
+                    ids = {d.environment.environment_id for d in questions[key].drives if d.environment}
+                    found[key] = SceneTables(con, f"q{n:04}.", tuple(sorted(ids)))
+                continue
+            scenes.judged(drives, rules=rules, profiles=profiles, con=con)
+            for n, key in enumerate(some):
+                tables = SceneTables(con, f"q{n:04}.", ())
+                found[key] = scenes.rows(tables, f"SELECT * FROM verdict ORDER BY {questions[key].order}")
+            con.close()
+    return found
+
+
+def _with_one_map_each(
+    keys: Sequence[tuple[str, int]], questions: Mapping[tuple[str, int], Question]
+) -> Iterator[list[tuple[str, int]]]:
+    """Part the questions so that no two maps of one part have the same id: tests alter maps and leave their ids."""
+    parts: list[tuple[dict[str, int], list[tuple[str, int]]]] = []
+    for key in keys:
+        mine = {d.environment.environment_id: id(d.environment) for d in questions[key].drives if d.environment}
+        for maps, part in parts:
+            if all(maps.get(name, number) == number for name, number in mine.items()):
+                maps.update(mine)
+                part.append(key)
+                break
+        else:
+            parts.append((mine, [key]))
+    yield from (part for _, part in parts)
+
+
+def _renamed(drives: Sequence[Drive], prefix: str) -> list[Drive]:
+    """Return the drives with the prefix before their ids."""
+    found = []
+    for drive in drives:
+        tables = {}
+        for name, table in drive.trace.tables.items():
+            if "drive_id" in table.column_names:
+                at = table.column_names.index("drive_id")
+                ids = pa.array([prefix + each for each in table["drive_id"].to_pylist()], table.schema.field(at).type)
+                table = table.set_column(at, table.schema.field(at), ids)
+            tables[name] = table
+        trace = replace(drive.trace, drive_id=prefix + drive.trace.drive_id, tables=tables)
+        found.append(replace(drive, trace=trace))
+    return found
+
+
+def _is_same(one: Drive, other: Drive) -> bool:
+    """NaN of one is not that of the other: such a scene is derived once more."""
+    return (
+        one.trace.drive_id == other.trace.drive_id
+        and one.environment is other.environment
+        and one.trace.tables.keys() == other.trace.tables.keys()
+        and all(table.equals(other.trace.tables[name]) for name, table in one.trace.tables.items())
+    )
+
+
+@cache
+def _tables(sql: str) -> frozenset[str]:
+    return frozenset(syntax.tables_read(syntax.parse_select(sql, "a test's query")) & store.column_comments().keys())
