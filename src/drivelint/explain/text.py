@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 import textwrap
 from dataclasses import asdict
@@ -17,7 +16,7 @@ from drivelint.explain.plot import plot
 from drivelint.explain.sensitivity import VERDICTS
 from drivelint.explain.verdict_context import lacks_signal
 from drivelint.reasons.remedies import condition_of, remedy
-from drivelint.result.text import seconds
+from drivelint.result.text import finite, seconds
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -59,7 +58,7 @@ def to_json(found: Explanation) -> str:
     plain["series"] = [list(step) for step in found.series]
     plain["rows"] = [rows._asdict() for rows in found.rows]
     plain["changes"] = [change._asdict() for change in found.changes]
-    return json.dumps(_finite(plain), indent=2, ensure_ascii=False, allow_nan=False)
+    return json.dumps(finite(plain), indent=2, ensure_ascii=False, allow_nan=False)
 
 
 def render(found: Explanation, width: int) -> Group:
@@ -297,11 +296,3 @@ def _value(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     return f"{value:.6g}" if isinstance(value, float) else str(value)
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    return [_finite(item) for item in value] if isinstance(value, list | tuple) else value

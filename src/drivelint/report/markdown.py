@@ -6,7 +6,6 @@ import re
 from typing import TYPE_CHECKING, Final
 from urllib.parse import quote
 
-import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.gate import descriptions
@@ -30,7 +29,6 @@ MAX_CHARS: Final = 60_000
 MAX_REASON_CHARS: Final = 160
 """Characters of one reason."""
 
-_OPEN: Final = pa.array(["unknown", "error"])
 _HEAD: Final = ("pass", "fail", "unknown", "not applicable", "error")
 
 
@@ -108,8 +106,7 @@ def _mark(exit_code: int) -> str:
 def _packs(result: Result) -> Iterator[str]:
     yield _row("pack", *_HEAD)
     yield _row("---", *["---:"] * len(_HEAD))
-    told = counts.verdicts_by_pack(result.rules, counts.verdicts_by(result.verdicts, "rule_id"))
-    for pack, sums in told.items():
+    for pack, sums in counts.verdicts_by_pack(result.rules, result.verdicts).items():
         yield _row(code(pack), *(str(sums[verdict]) for verdict in counts.VERDICTS))
 
 
@@ -117,21 +114,15 @@ def _findings(result: Result, link: str) -> Iterator[str]:
     """Yield a table of findings that gate, then one of those that do not, with the reason."""
     drives = {row["drive_id"]: row for row in result.drives.to_pylist()}
     rules = {row["rule_id"]: row for row in result.rules.to_pylist()}
-    stopped: list[tuple[Row, str]] = []
-    passed: list[tuple[Row, str]] = []
-    for row in result.findings.to_pylist():
-        excuse = _excuse(row, rules.get(row["rule_id"]), result)
-        (passed if excuse else stopped).append((row, excuse))
+    excused = [(row, _excuse(row, rules.get(row["rule_id"]), result)) for row in result.findings.to_pylist()]
+    excused.sort(key=lambda item: counts.SEVERITIES.index(item[0]["severity"]))
     gate = result.gate
     kind = "New findings" if gate is not None and gate.baseline is not None else "Findings"
-    for title, rows in ((kind, stopped), ("Findings that do not gate", passed)):
+    for title, why in ((kind, False), ("Findings that do not gate", True)):
+        rows = [item for item in excused if bool(item[1]) is why]
         if rows:
-            rows.sort(key=lambda item: counts.SEVERITIES.index(item[0]["severity"]))
-            why = rows is passed
-            lines = [
-                _row("severity", "drive", "time", "rule", "who", "observed", "required", *(["why not"] if why else []))
-            ]
-            lines.append(_row(*["---"] * (8 if why else 7)))
+            head = ["severity", "drive", "time", "rule", "who", "observed", "required", *(["why not"] if why else [])]
+            lines = [_row(*head), _row(*["---"] * len(head))]
             for row, excuse in rows[:MAX_ROWS]:
                 start_ns = drives[row["drive_id"]]["t_start_ns"]
                 sense = rules[row["rule_id"]]["sense"] if row["rule_id"] in rules else ""
@@ -154,12 +145,8 @@ def _finding(row: Row, sense: str, start_ns: int | None, link: str, more: list[s
 
 def _excuse(row: Row, rule: Row | None, result: Result) -> str:
     """Return why a finding does not gate; '' where it does."""
-    gate = result.gate
-    waiver = gate.waiver(row["finding_id"]) if gate else None
-    if waiver is not None:
-        return descriptions.waiver_reason(waiver)
-    if gate is not None and gate.in_baseline(row["finding_id"]):
-        return "known: the baseline has it"
+    if excuse := descriptions.excuse(result.gate, row["finding_id"]):
+        return excuse
     if rule is None or rule["status"] != "stable":
         return "draft" if rule is None else rule["status"]
     severe = () if result.fail_on == "never" else counts.SEVERITIES[: counts.SEVERITIES.index(result.fail_on) + 1]
@@ -212,24 +199,18 @@ def _open(result: Result) -> Iterator[str]:
         ]
         rest = [f"* ... and {len(lost) - MAX_ROWS} more"] if len(lost) > MAX_ROWS else []
         yield f"### Drives that could not be judged ({len(lost)})\n\n" + "\n".join([*lines[:MAX_ROWS], *rest])
-    rows = result.verdicts.filter(pc.is_in(result.verdicts["verdict"], value_set=_OPEN))
-    if not rows.num_rows:
+    rows = counts.distinct_rows(counts.undecided(result.verdicts), ["verdict", "reason", "rule_id"])
+    if not rows:
         return
-    why: dict[tuple[str, str], list[str]] = {}
-    told: dict[tuple[str, str], int] = {}
-    grouped = rows.group_by(["verdict", "reason", "rule_id"], use_threads=False).aggregate([([], "count_all")])
-    for row in grouped.to_pylist():
-        at = row["verdict"], row["reason"]
-        why.setdefault(at, []).append(row["rule_id"])
-        told[at] = told.get(at, 0) + row["count_all"]
-    ordered = sorted(told, key=lambda at: (at[0], -told[at], at[1]))
+    why = counts.grouped(rows, lambda row: (row["verdict"], row["reason"]))
+    told = {at: sum(row["count_all"] for row in alike) for at, alike in why.items()}
     lines = [_row("verdict", "rules", "why"), _row("---", "---", "---")]
-    lines += [
-        _row(at[0], _few(sorted(why[at])), escaped(with_count(_short(at[1]), told[at]))) for at in ordered[:MAX_ROWS]
-    ]
-    more = f" (the first {MAX_ROWS} of {len(ordered)} reasons)" if len(ordered) > MAX_ROWS else ""
-    n = plural(rows.num_rows, "verdict")
-    yield _folded(f"Could not be judged: {n}, for {plural(len(ordered), 'reason')}{more}", "\n".join(lines))
+    for at in sorted(told, key=lambda at: (at[0], -told[at], at[1]))[:MAX_ROWS]:
+        rules = sorted(row["rule_id"] for row in why[at])
+        lines.append(_row(at[0], _few(rules), escaped(with_count(_short(at[1]), told[at]))))
+    more = f" (the first {MAX_ROWS} of {len(told)} reasons)" if len(told) > MAX_ROWS else ""
+    n = plural(sum(told.values()), "verdict")
+    yield _folded(f"Could not be judged: {n}, for {plural(len(told), 'reason')}{more}", "\n".join(lines))
 
 
 def _few(rules: Sequence[str]) -> str:

@@ -60,6 +60,11 @@ class Result:
             object.__setattr__(self, name, conform(getattr(self, name), table))
 
     @property
+    def start_times(self) -> dict[str, int | None]:
+        """drive_id -> the drive's first time stamp in ns, on the log's clock."""
+        return dict(zip(self.drives["drive_id"].to_pylist(), self.drives["t_start_ns"].to_pylist(), strict=True))
+
+    @property
     def lossy(self) -> bool:
         """Whether parts of a judged log could not be read."""
         return bool(pc.any(pc.and_(self.drives["lossy"], pc.equal(self.drives["status"], "judged"))).as_py())

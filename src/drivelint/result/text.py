@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -54,3 +55,12 @@ def line(row: Row, start_ns: int | None) -> str:
 def with_count(reason: str, n: int) -> str:
     """Return a reason with how often it was given, if more than once."""
     return reason if n == 1 else f"{reason} ({n} times)"
+
+
+def finite(value: Any) -> Any:
+    """Return plain data with NaN and infinity as null: neither is JSON."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: finite(item) for key, item in value.items()}
+    return [finite(item) for item in value] if isinstance(value, list | tuple) else value

@@ -8,12 +8,12 @@ from __future__ import annotations
 import tomllib
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
-    Row = Mapping[str, Any]
+    from drivelint.result.text import Row
 
 
 class LogNote(NamedTuple):
@@ -35,9 +35,5 @@ def _known() -> dict[str, LogNote]:
 
 def notes_on_logs(drives: Sequence[Row]) -> list[LogNote]:
     """Return the notes on the published logs that are among the drives."""
-    found: list[LogNote] = []
-    for row in drives:
-        note = _known().get(row["sha256"])
-        if note is not None and note not in found:
-            found.append(note)
-    return found
+    found = (_known().get(row["sha256"]) for row in drives)
+    return list({note.title: note for note in found if note is not None}.values())

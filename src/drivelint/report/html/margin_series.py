@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from drivelint.report.html.axis import Axis, axis_around
 from drivelint.report.html.svg import num
-from drivelint.result.text import NONE, number
+from drivelint.result.text import number
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
-    Row = Mapping[str, Any]
+    from drivelint.result.text import Row
 
 WIDTH: Final = 420
 HEIGHT: Final = 132
@@ -146,6 +146,4 @@ def _words(row: Row, t: Sequence[float], unit: str | None) -> str:
     failed = sum(kept is False for kept in row["holds"])
     last = next((v for v in reversed(row["required"]) if v is not None), None)
     required = "" if last is None else f"required {number(last, unit)} at the end, "
-    return (
-        f"From {t[0]:.1f} s to {t[-1]:.1f} s: {between}{required}not kept at {failed} of {len(t)} steps" if t else NONE
-    )
+    return f"From {t[0]:.1f} s to {t[-1]:.1f} s: {between}{required}not kept at {failed} of {len(t)} steps"

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from drivelint.report.html.axis import Axis, round_step
 from drivelint.report.html.svg import num
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
-    Row = Mapping[str, Any]
+    from drivelint.result.text import Row
 
 _WIDTH, _HEIGHT = 560, 230
 _BINS: Final = 12

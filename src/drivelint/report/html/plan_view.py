@@ -61,15 +61,6 @@ class DrawnActor(NamedTuple):
     seconds: str
 
 
-class Line(NamedTuple):
-    """A straight line."""
-
-    x1: str
-    y1: str
-    x2: str
-    y2: str
-
-
 @dataclass(frozen=True)
 class PlanView:
     """The plan view of an incident as the template draws it, in drawing order, with a description in words."""
@@ -79,7 +70,7 @@ class PlanView:
     tiles: list[str]
     spaces: list[tuple[str, str]]
     bodies: list[DrawnActor]
-    gaps: list[Line]
+    gaps: list[str]
     texts: list[Label]
     scale_px: str
     scale_m: int
@@ -101,9 +92,12 @@ class _View:
 
     def __call__(self, xy: Points, /) -> Points:
         """Return viewBox coordinates, shape (n, 2), of map points of the same shape."""
-        dx, dy = xy[:, 0] - self.x, xy[:, 1] - self.y
+        return np.column_stack(self._at(*xy.T))
+
+    def _at(self, x: Any, y: Any) -> tuple[Any, Any]:
+        dx, dy = x - self.x, y - self.y
         u, v = dx * self.cos + dy * self.sin - self.ahead, dy * self.cos - dx * self.sin - self.left
-        return np.column_stack([WIDTH / 2 + self.scale * u, self.height / 2 - self.scale * v])
+        return WIDTH / 2 + self.scale * u, self.height / 2 - self.scale * v
 
     def matrix(self, lanes: Lanes) -> str:
         """Return the transformation of drawn units of the map."""
@@ -114,9 +108,7 @@ class _View:
 
     def holds(self, actor: Mapping[str, Any], room: float = 0.0) -> bool:
         """Whether the middle of an actor is in the view, or no more than `room` of its width beside it."""
-        dx, dy = actor["x_m"] - self.x, actor["y_m"] - self.y
-        x = WIDTH / 2 + self.scale * (dx * self.cos + dy * self.sin - self.ahead)
-        y = self.height / 2 - self.scale * (dy * self.cos - dx * self.sin - self.left)
+        x, y = self._at(actor["x_m"], actor["y_m"])
         beside = room * WIDTH
         return bool(-beside < x < WIDTH + beside and -beside < y < self.height + beside)
 
@@ -139,7 +131,7 @@ def plan_view(
     view = _fit(ego, heading, np.concatenate(shown))
     texts, gaps, told = _distances(ego, met, view)
     texts += [_label(a, ego, met, view) for a in actors if view.holds(a)]
-    length_px, length_m = _bar(view.scale)
+    bar_m = next((m for m in _BARS_M if m * view.scale >= 55), _BARS_M[-1])
     return PlanView(
         height=num(view.height),
         matrix=view.matrix(lanes),
@@ -152,8 +144,8 @@ def plan_view(
         ],
         gaps=gaps,
         texts=texts,
-        scale_px=num(length_px),
-        scale_m=length_m,
+        scale_px=num(bar_m * view.scale),
+        scale_m=bar_m,
         words=_words(ego, met, told, around),
     )
 
@@ -177,8 +169,7 @@ def _size(actor: Mapping[str, Any]) -> tuple[float, float]:
 
 
 def _area(actor: Mapping[str, Any]) -> float:
-    length, width = _size(actor)
-    return length * width
+    return math.prod(_size(actor))
 
 
 def _outline(actor: Mapping[str, Any]) -> Points:
@@ -205,19 +196,19 @@ def actor_shapes(scenes: Iterable[Mapping[str, Any]]) -> list[ActorShape]:
     return [_shape(name, actor) for name, actor in sorted(actors.items())]
 
 
+def _has_front(actor: Mapping[str, Any]) -> bool:
+    return actor["yaw_rad"] is not None and actor["length_m"] is not None
+
+
 def _shape(name: str, actor: Mapping[str, Any]) -> ActorShape:
-    """Return the shape of an actor; without a heading it has no front."""
-    length, width = _size(actor)
-    turned = actor["yaw_rad"] is not None and actor["length_m"] is not None
-    hl, hw = UNITS_PER_M * length / 2, UNITS_PER_M * width / 2
-    front = polyline(np.array([(0.5 * hl, 0.8 * hw), (0.82 * hl, 0.0), (0.5 * hl, -0.8 * hw)])) if turned else ""
-    return ActorShape(name, polygon(UNITS_PER_M * _outline(actor)), front)
+    hl, hw = (UNITS_PER_M * side / 2 for side in _size(actor))
+    front = np.array([(0.5 * hl, 0.8 * hw), (0.82 * hl, 0.0), (0.5 * hl, -0.8 * hw)])
+    return ActorShape(name, polygon(UNITS_PER_M * _outline(actor)), polyline(front) if _has_front(actor) else "")
 
 
 def _shape_name(actor: Mapping[str, Any]) -> str:
     length, width = _size(actor)
-    turned = actor["yaw_rad"] is not None and actor["length_m"] is not None
-    return f"b{length * 100:.0f}x{width * 100:.0f}{'' if turned else 'n'}"
+    return f"b{length * 100:.0f}x{width * 100:.0f}{'' if _has_front(actor) else 'n'}"
 
 
 def _body(actor: Mapping[str, Any], kind: str, lanes: Lanes, t_ns: int) -> DrawnActor:
@@ -244,7 +235,7 @@ def _way(way: Sequence[Mapping[str, Any]], lanes: Lanes, t_ns: int) -> tuple[str
 
 def _distances(
     ego: Mapping[str, Any], met: Sequence[Mapping[str, Any]], view: _View
-) -> tuple[list[Label], list[Line], list[str]]:
+) -> tuple[list[Label], list[str], list[str]]:
     """Return labels, lines and words of the least distances from the ego's box to those concerned."""
     texts, lines, told = [], [], []
     for actor in met:
@@ -259,14 +250,13 @@ def _distances(
         p, q = view(nearest)
         middle = (p + q) / 2
         text = f"{far:.1f} m" if far >= 10 else f"{far:.2f} m"
+        lines.append(polyline(np.array([p, q])))
         if np.hypot(*(q - p)) > 60:
-            lines.append(Line(num(p[0]), num(p[1]), num(q[0]), num(q[1])))
             texts.append(Label(num(middle[0]), num(middle[1] - 6), text, "gap"))
         else:  # too short for a label on it: lead it out to the free side
             top = float(min(view(a)[:, 1].min(), view(b)[:, 1].min()))
             y = top - 26 if top > 44 else float(max(view(a)[:, 1].max(), view(b)[:, 1].max())) + 34
-            lines.append(Line(num(p[0]), num(p[1]), num(q[0]), num(q[1])))
-            lines.append(Line(num(middle[0]), num(middle[1]), num(middle[0]), num(y + (4 if y < middle[1] else -12))))
+            lines.append(polyline(np.array([middle, (middle[0], y + (4 if y < middle[1] else -12))])))
             texts.append(Label(num(middle[0]), num(y), text, "gap"))
     return texts, lines, told
 
@@ -286,12 +276,6 @@ def _label(actor: Mapping[str, Any], ego: Mapping[str, Any], met: Sequence[Mappi
     return Label(num(x), num(min(max(float(y), 12.0), view.height - 4.0)), name, kind, actor["actor_id"])
 
 
-def _bar(scale: float) -> tuple[float, int]:
-    """Return length in units and in metres of the scale bar."""
-    metres = next((m for m in _BARS_M if m * scale >= 55), _BARS_M[-1])
-    return metres * scale, metres
-
-
 def _words(
     ego: Mapping[str, Any],
     met: Sequence[Mapping[str, Any]],
@@ -299,15 +283,10 @@ def _words(
     spaces: Sequence[Mapping[str, Any]],
 ) -> str:
     """Return the picture in words."""
-    speeds = [f"ego {ego['actor_id']} at {_speed(ego)}"] + [f"{a['actor_id']} at {_speed(a)}" for a in met]
-    parts = [", ".join(speeds)]
-    parts += told
-    if spaces:
-        lengths = ", ".join(
-            f"{'ego' if s['actor_id'] == ego['actor_id'] else s['actor_id']} {s['length_m']:.1f} m" for s in spaces
-        )
-        parts.append(f"danger spaces: {lengths}")
-    return "; ".join(parts)
+    speeds = [f"ego {ego['actor_id']} at {_speed(ego)}", *(f"{a['actor_id']} at {_speed(a)}" for a in met)]
+    names = {ego["actor_id"]: "ego"}
+    lengths = [f"{names.get(s['actor_id'], s['actor_id'])} {s['length_m']:.1f} m" for s in spaces]
+    return "; ".join([", ".join(speeds), *told, *([f"danger spaces: {', '.join(lengths)}"] if lengths else [])])
 
 
 def _speed(actor: Mapping[str, Any]) -> str:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-import pyarrow as pa
-import pyarrow.compute as pc
-
 from drivelint.phrases import plural
 from drivelint.report.html.anchors import rule_anchor
+from drivelint.result import counts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
+
+    import pyarrow as pa
 
 MAX_REASONS: Final = 60
 
@@ -65,12 +65,9 @@ _OF_THE_MOMENT: Final = {"applies_unknown", "anchor_unknown", "reference_time_un
 
 def reason_groups(verdicts: pa.Table, titles: Mapping[str, str]) -> list[ReasonGroup]:
     """Return why verdicts are unknown or errors; what can be provided first, then the most frequent."""
-    rows = verdicts.filter(pc.is_in(verdicts["verdict"], value_set=pa.array(["unknown", "error"])))
     keys = ["verdict", "reason_code", "cause_code", "reason", "rule_id", "drive_id"]
-    counted = rows.group_by(keys, use_threads=False).aggregate([([], "count_all")]).to_pylist()
-    grouped: dict[tuple[str, tuple[str, ...]], list[dict[str, Any]]] = {}
-    for row in counted:
-        grouped.setdefault((row["verdict"], verdict_reason(row).kind), []).append(row)
+    rows = counts.distinct_rows(counts.undecided(verdicts), keys)
+    groups = counts.grouped(rows, lambda row: (row["verdict"], verdict_reason(row).kind))
     found = [
         ReasonGroup(
             verdict,
@@ -80,7 +77,7 @@ def reason_groups(verdicts: pa.Table, titles: Mapping[str, str]) -> list[ReasonG
             sum(row["count_all"] for row in told),
             len({row["drive_id"] for row in told}),
         )
-        for (verdict, _), told in grouped.items()
+        for (verdict, _), told in groups.items()
     ]
     return sorted(found, key=lambda r: (r.verdict, not r.provide, -r.n, r.why))[:MAX_REASONS]
 

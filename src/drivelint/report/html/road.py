@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 
 from drivelint.report.html.svg import polygon, polyline
+from drivelint.result.counts import grouped
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -43,17 +44,17 @@ class Road:
     """All lane shapes of a result."""
 
     def __init__(self, lanes: pa.Table) -> None:
-        maps: dict[str, list[dict[str, Any]]] = {}
-        for row in lanes.to_pylist():
+        rows = lanes.to_pylist()
+        for row in rows:
             for side in ("left", "right"):
                 row[side] = np.column_stack([row[f"{side}_x_m"], row[f"{side}_y_m"]])
-            maps.setdefault(row["environment_id"], []).append(row)
+        maps = grouped(rows, lambda row: row["environment_id"])
         self._maps = {name: Lanes(f"m{n}", rows) for n, (name, rows) in enumerate(sorted(maps.items()))}
         self._none = Lanes("m", [])
 
     def lanes_of(self, environment_id: str | None) -> Lanes:
         """Return the lanes of a map; none without a map."""
-        return self._maps.get(environment_id, self._none) if environment_id is not None else self._none
+        return self._maps.get(environment_id or "", self._none)
 
     def tiles(self) -> list[Tile]:
         """Return the tiles of all maps, each of which the page draws once."""

@@ -25,3 +25,8 @@ def polyline(points: NDArray[np.float64]) -> str:
 def polygon(points: NDArray[np.float64]) -> str:
     """Return the path data of a closed ring through points of shape (n, 2)."""
     return polyline(points) + "Z"
+
+
+def percent(value: float) -> str:
+    """Return a share with at most two decimals."""
+    return f"{value:.2f}".rstrip("0").rstrip(".") + "%"
