@@ -9,6 +9,7 @@ from typing import Final, NamedTuple
 
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
+from drivelint.resources import folder
 
 TOPICS: Final = (
     "traces",
@@ -59,10 +60,15 @@ def text(name: str, table: str | None = None) -> str:
         raise UsageError(f"no guide {name!r}: {hint(name, TOPICS + REFERENCE_TOPICS)}")
     if table is not None and name != "dictionary":
         raise UsageError(f"docs {name} {table}: only the dictionary has tables: drivelint docs dictionary {table}")
-    if name in REFERENCE_TOPICS:
-        from drivelint.guide import reference
+    if name == "catalogue":
+        from drivelint.catalogue import load_rules
+        from drivelint.report import catalogue_page
 
-        return reference.dictionary_text(table) if name == "dictionary" else reference.catalogue_markdown()
+        return catalogue_page.page(load_rules(()).values(), folder("queries") / "assertions")
+    if name == "dictionary":
+        from drivelint.guide import dictionary
+
+        return dictionary.text() if table is None else dictionary.table_text(table)
     source = _source(name)
     if OUTPUT_TABLES_MARK in source:
         from drivelint.guide.dictionary import output_tables
