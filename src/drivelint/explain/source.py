@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import duckdb
-import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.drive.finish import TRACE_SCHEMAS
@@ -15,12 +14,15 @@ from drivelint.drive.trace import Trace
 from drivelint.engine.batch import Drive, drive_with_map
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import DriveLintError, UsageError
+from drivelint.explain.sandbox import renamed, with_column
 from drivelint.formats import read_trace
 from drivelint.road.map_reader import MapTables
 from drivelint.road.tables import schemas
 from drivelint.sql import store
 
 if TYPE_CHECKING:
+    import pyarrow as pa
+
     from drivelint.result.request import RunRequest
 
 DATABASE_FILE = "drivelint.duckdb"
@@ -68,18 +70,8 @@ def _read(asked: RunRequest, path: Path, map_: Path | None, drive_id: str, ego_i
             f"{path} is not the log that was judged ({drive_id}) but {read.drive_id}: give that one with --trace"
         )
     if read.drive_id != drive_id:  # the same bytes under another name
-        read = _renamed(read, drive_id)
+        read = renamed(read, drive_id)
     return drive_with_map(read, MapLibrary.from_options(asked))
-
-
-def _renamed(trace: Trace, drive_id: str) -> Trace:
-    tables = {
-        name: rows.set_column(
-            rows.schema.get_field_index("drive_id"), "drive_id", pa.repeat(pa.scalar(drive_id), rows.num_rows)
-        )
-        for name, rows in trace.tables.items()
-    }
-    return replace(trace, drive_id=drive_id, tables=tables)
 
 
 def _kept(file: Path, drive_id: str, ego_id: str) -> Drive:
@@ -89,7 +81,7 @@ def _kept(file: Path, drive_id: str, ego_id: str) -> Drive:
             raise DriveLintError(f"{file}: the drive {drive_id} is not in it: check the drives again")
         actors = tables["actor"]
         is_ego = pc.equal(actors["actor_id"], ego_id)
-        tables["actor"] = actors.set_column(actors.schema.get_field_index("is_ego"), "is_ego", is_ego)
+        tables["actor"] = with_column(actors, "is_ego", is_ego)
         place = tables["data_log"]["environment_id"][0].as_py()
         environment = None
         if place is not None:
@@ -100,5 +92,4 @@ def _kept(file: Path, drive_id: str, ego_id: str) -> Drive:
 
 
 def _rows(con: duckdb.DuckDBPyConnection, table: str, key: str, value: str) -> pa.Table:
-    order: Any = ", ".join(str(n) for n in range(1, len(store.column_comments()[table]) + 1))
-    return con.execute(f"SELECT * FROM {table} WHERE {key} = ? ORDER BY {order}", [value]).to_arrow_table()
+    return con.execute(f"SELECT * FROM {table} WHERE {key} = ? ORDER BY ALL", [value]).to_arrow_table()

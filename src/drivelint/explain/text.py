@@ -13,7 +13,6 @@ from rich.text import Text
 
 from drivelint.drive.declared_events import EVENTS
 from drivelint.explain.plot import plot
-from drivelint.explain.sensitivity import VERDICTS
 from drivelint.explain.verdict_context import lacks_signal
 from drivelint.reasons.remedies import condition_of, remedy
 from drivelint.result.text import finite, seconds
@@ -114,21 +113,19 @@ def _happened(found: Explanation) -> list[str]:
         lines.append(f"{row['n_judged']} of {row['n_expected']} steps that had to be judged could be.")
     lines += found.notes
     if found.others:
-        told = [
-            f"{other['verdict'].replace('_', ' ')}"
-            + (f" for ego {other['ego_id']}" if other["ego_id"] != row["ego_id"] else "")
-            + (f" with profile {other['profile']}" if other["profile"] else "")
-            + (f" for object {other['object_id']}" if other["object_id"] else "")
-            + (
-                f" from {seconds(other['t_start_ns'], found.drive['t_start_ns'])}"
-                if other["t_start_ns"] is not None
-                else ""
-            )
-            for other in found.others[:MAX_OTHERS]
-        ]
+        told = [_elsewhere(other, row["ego_id"], found.drive["t_start_ns"]) for other in found.others[:MAX_OTHERS]]
         more = f"; {len(found.others) - MAX_OTHERS} more" if len(found.others) > MAX_OTHERS else ""
         lines.append(f"The same rule elsewhere in this drive: {'; '.join(told)}{more}.")
     return lines
+
+
+def _elsewhere(other: Row, ego_id: str, start_ns: int | None) -> str:
+    """Return another verdict in a few words; its ego only if it is another one."""
+    text = str(other["verdict"]).replace("_", " ")
+    text += f" for ego {other['ego_id']}" if other["ego_id"] != ego_id else ""
+    text += f" with profile {other['profile']}" if other["profile"] else ""
+    text += f" for object {other['object_id']}" if other["object_id"] else ""
+    return text + (f" from {seconds(other['t_start_ns'], start_ns)}" if other["t_start_ns"] is not None else "")
 
 
 def _decides(found: Explanation) -> list[str]:
@@ -258,7 +255,7 @@ def _sure(found: Explanation) -> list[str]:
     told = found.sensitivity
     if told is None:
         return []
-    counts = ", ".join(f"{_DOES[v]} in {told.counts[v]}" for v in VERDICTS if v in told.counts)
+    counts = ", ".join(f"{_DOES[verdict]} in {n}" for verdict, n in told.counts.items())
     return [f"{counts[0].upper()}{counts[1:]} of {told.samples}.", _errors(told, found.drive)]
 
 
