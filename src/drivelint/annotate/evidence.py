@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import pyarrow as pa
 import pyarrow.compute as pc
@@ -51,7 +51,7 @@ class Evidence:
     verdicts: pa.Table
     findings: pa.Table
     drive: pa.Table
-    spaces: list[dict[str, Any]]
+    spaces: pa.Table
     chains: pa.Table
 
 
@@ -73,19 +73,6 @@ def gather_evidence(
 ) -> dict[str, Evidence]:
     """Return the evidence of every drive of a batch whose last part was just judged."""
     ids = list(drive_ids)
-    spaces, chains = (pa.concat_tables(tables) for tables in zip(*rooms, strict=True))
-    verdicts, findings, rows = collect.verdicts(con, ids), collect.findings(con, ids), collect.drives(con, ids)
-    return {
-        drive: Evidence(
-            _of(verdicts, drive),
-            _of(findings, drive),
-            _of(rows, drive),
-            _of(spaces, drive).to_pylist(),
-            _of(chains, drive),
-        )
-        for drive in ids
-    }
-
-
-def _of(rows: pa.Table, drive: str) -> pa.Table:
-    return rows.filter(pc.equal(rows["drive_id"], drive))
+    tables = [collect.verdicts(con, ids), collect.findings(con, ids), collect.drives(con, ids)]
+    tables += [pa.concat_tables(parts) for parts in zip(*rooms, strict=True)]
+    return {drive: Evidence(*(rows.filter(pc.equal(rows["drive_id"], drive)) for rows in tables)) for drive in ids}
