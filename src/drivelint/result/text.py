@@ -30,6 +30,11 @@ def seconds(t_ns: int | None, start_ns: int | None) -> str:
     return NONE if t_ns is None else f"{(t_ns - (start_ns or 0)) / 1e9:.2f} s"
 
 
+def rule_name(row: Row) -> str:
+    """Return the rule of a verdict or finding, with its profile if there is one."""
+    return f"{row['rule_id']}" + ("" if row["profile"] is None else f" [{row['profile']}]")
+
+
 def subject(row: Row) -> str:
     """Return the ego and, if any, the object of a verdict or finding."""
     who = f"ego {row['ego_id']}" if row["ego_id"] else "no ego"
