@@ -15,7 +15,7 @@ from drivelint import __version__
 from drivelint.gate import descriptions
 from drivelint.result import counts
 from drivelint.result.model import exit_status
-from drivelint.result.text import comparison, finite, number, seconds, subject, with_count
+from drivelint.result.text import comparison, finite, number, rule_name, seconds, subject, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -48,9 +48,9 @@ class _Run:
 
     def __init__(self, result: Result) -> None:
         self._result = result
-        self._rules: list[Row] = result.rules.to_pylist()
-        self._logs: list[Row] = result.drives.to_pylist()
-        self._drives: dict[str, Row] = {row["drive_id"]: row for row in self._logs}
+        self._rules = result.rules.to_pylist()
+        self._logs = result.drives.to_pylist()
+        self._drives = {row["drive_id"]: row for row in self._logs}
         self._rule_index = {rule["rule_id"]: n for n, rule in enumerate(self._rules)}
         self._artifact_index = {drive["drive_id"]: n for n, drive in enumerate(self._logs)}
 
@@ -88,11 +88,8 @@ class _Run:
         start_ns = drive["t_start_ns"]
         measured = "" if row["reason_measures"] else comparison(row)
         profile = "" if row["profile"] is None else f", profile {row['profile']}"
-        said = [
-            f"{rule['title']}: {row['reason']}",
-            measured,
-            f"{subject(row)}{profile}, {seconds(row['t_worst_ns'], start_ns)}",
-        ]
+        who = f"{subject(row)}{profile}, {seconds(row['t_worst_ns'], start_ns)}"
+        said = [f"{rule['title']}: {row['reason']}", measured, who]
         found: dict[str, Any] = {
             "ruleId": row["rule_id"],
             "ruleIndex": rule_index,
@@ -124,26 +121,17 @@ class _Run:
     def _location(self, drive: Row, row: Row | None = None) -> dict[str, Any]:
         """Return a log as a place, and within it, if a finding is given, whom it is about and where it was."""
         drive_id = drive["drive_id"]
-        place: dict[str, Any] = {
-            "physicalLocation": {
-                "artifactLocation": {"uri": _uri(drive["file_name"]), "index": self._artifact_index[drive_id]}
-            }
-        }
+        artifact = {"uri": _uri(drive["file_name"]), "index": self._artifact_index[drive_id]}
+        place: dict[str, Any] = {"physicalLocation": {"artifactLocation": artifact}}
         if row is not None:
-            inside = [
-                ("drive", drive_id),
-                ("ego", row["ego_id"]),
-                ("object", row["object_id"]),
-                ("lanelet", row["lanelet_id"]),
-            ]
+            inside = {"ego": row["ego_id"], "object": row["object_id"], "lanelet": row["lanelet_id"]}
             place["logicalLocations"] = [
-                {
-                    "name": name,
-                    "kind": kind,
-                    "fullyQualifiedName": f"{drive_id}/{kind}/{name}" if kind != "drive" else drive_id,
-                }
-                for kind, name in inside
-                if name is not None
+                {"name": drive_id, "kind": "drive", "fullyQualifiedName": drive_id},
+                *(
+                    {"name": name, "kind": kind, "fullyQualifiedName": f"{drive_id}/{kind}/{name}"}
+                    for kind, name in inside.items()
+                    if name is not None
+                ),
             ]
             at = f"{seconds(row['t_worst_ns'], drive['t_start_ns'])} into {drive['file_name']}"
             if row["x_m"] is not None and row["y_m"] is not None:
@@ -158,8 +146,7 @@ class _Run:
                 yield _notice("not-judged", "error", drive["status_reason"] or "no reason given", self._location(drive))
         result, columns = self._result, ["drive_id", "rule_id", "profile", "verdict", "reason"]
         for row in counts.distinct_rows(counts.undecided(result.verdicts), columns):
-            profile = "" if row["profile"] is None else f" [{row['profile']}]"
-            text = f"{row['rule_id']}{profile}: {row['verdict']}: {with_count(row['reason'], row['count_all'])}"
+            text = f"{rule_name(row)}: {row['verdict']}: {with_count(row['reason'], row['count_all'])}"
             level = "error" if row["verdict"] == "error" else "warning"
             notice = _notice(row["verdict"], level, text, self._location(self._drives[row["drive_id"]]))
             yield notice | {"associatedRule": {"id": row["rule_id"], "index": self._rule_index[row["rule_id"]]}}

@@ -16,9 +16,11 @@ from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
 from drivelint.result import counts
 from drivelint.result.model import exit_status
-from drivelint.result.text import NONE, comparison, number, seconds, with_count
+from drivelint.result.text import NONE, comparison, number, rule_name, seconds, with_count
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rich.console import RenderableType
 
     from drivelint.result.model import Result
@@ -63,8 +65,8 @@ def render(result: Result, out: str | None = None, width: int = 120) -> Group:
 def _drives(result: Result, *, wide: bool) -> Table:
     told = counts.verdicts_by(result.verdicts, "drive_id")
     rows = result.drives.to_pylist()
-    table = _table("Drives" if len(rows) <= MAX_ROWS else f"Drives (first {MAX_ROWS} of {len(rows)})")
-    table.add_column("drive", overflow="fold", ratio=1)
+    title = "Drives" if len(rows) <= MAX_ROWS else f"Drives (first {MAX_ROWS} of {len(rows)})"
+    table = _table(title, "bold", {"drive": 1})
     for column in ("km", "time") if wide else ():
         table.add_column(column, justify="right", no_wrap=True)
     _count_columns(table)
@@ -80,8 +82,7 @@ def _drives(result: Result, *, wide: bool) -> Table:
 
 def _rules(result: Result, *, wide: bool) -> Table:
     told = counts.verdicts_by(result.verdicts, "rule_id")
-    table = _table("Rules")
-    table.add_column("rule", overflow="fold", ratio=1)
+    table = _table("Rules", "bold", {"rule": 1})
     if wide:
         table.add_column("severity")
     _count_columns(table)
@@ -155,8 +156,7 @@ def _measured(
         if where != previous:
             table.add_row("", Text(where, style="bold"))
             previous = where
-        profile = "" if row["profile"] is None else f" [{row['profile']}]"
-        when, rule = seconds(row["t_worst_ns"], starts.get(row["drive_id"])), Text(f"{row['rule_id']}{profile}")
+        when, rule = seconds(row["t_worst_ns"], starts.get(row["drive_id"])), Text(rule_name(row))
         if wide:
             numbers = (number(row[name], row["unit"]) for name in ("observed", "required", "margin"))
             table.add_row(when, rule, Text(row["object_id"] or ""), *numbers)
@@ -174,9 +174,7 @@ def _open(result: Result) -> Table | None:
     why = counts.grouped(rows, lambda row: (row["verdict"], row["reason"]))
     if not lost and not why:
         return None
-    table = _table(_title("Could not be judged", len(lost) + len(why)), "yellow")
-    table.add_column("what", overflow="fold", ratio=1)
-    table.add_column("why", overflow="fold", ratio=1)
+    table = _table(_title("Could not be judged", len(lost) + len(why)), "yellow", {"what": 1, "why": 1})
     for row in lost[:MAX_ROWS]:
         table.add_row(Text(f"drive {row['drive_id']}", style="yellow"), Text(row["status_reason"] or ""))
     order = sorted(why, key=lambda at: (at[0], -len(why[at]), at[1]))
@@ -193,9 +191,7 @@ def _quality(result: Result) -> Table | None:
     seen = counts.grouped(worse, lambda told: tuple(told[1][name] for name in ("severity", "check_id", "message")))
     if not seen:
         return None
-    table = _table(_title("Data quality", len(seen)), "yellow")
-    table.add_column("check", overflow="fold", ratio=1)
-    table.add_column("what was seen", overflow="fold", ratio=3)
+    table = _table(_title("Data quality", len(seen)), "yellow", {"check": 1, "what was seen": 3})
     for (severity, check_id, message), told in list(seen.items())[:MAX_ROWS]:
         drives = {drive_id for drive_id, _ in told}
         where = told[0][0] if len(drives) == 1 else f"{len(drives)} drives"
@@ -205,13 +201,7 @@ def _quality(result: Result) -> Table | None:
 
 def _end(result: Result, out: str | None) -> Text:
     end = exit_status(result)
-    style = (
-        "bold green"
-        if end.code is ExitCode.OK
-        else "bold red"
-        if end.code in {ExitCode.FAILED, ExitCode.USAGE}
-        else "bold yellow"
-    )
+    style = {ExitCode.OK: "bold green", ExitCode.FAILED: "bold red", ExitCode.USAGE: "bold red"}
     told = counts.total(result.verdicts)
     text = Text(", ".join(f"{n} {_HEAD[verdict]}" for verdict, n in told.items()))
     given = {f"{c['condition']}={c['value']}" for cs in result.drives["conditions"].to_pylist() for c in cs or ()}
@@ -221,7 +211,7 @@ def _end(result: Result, out: str | None) -> Text:
     if assumed:
         verb = "verdict assumes" if assumed == 1 else "verdicts assume"
         text.append(f"\n{assumed} {verb} that whoever a log does not have is not in plain view (--visibility)", "dim")
-    text.append(f"\nexit {int(end.code)}: {end.why}", style=style)
+    text.append(f"\nexit {int(end.code)}: {end.why}", style=style.get(end.code, "bold yellow"))
     if told["unknown"]:
         text.append(
             "\nunknown is not pass: drivelint inspect TRACE tells what a log lacks, and what to provide", "yellow"
@@ -235,10 +225,13 @@ def _end(result: Result, out: str | None) -> Text:
     return text
 
 
-def _table(title: str, style: str = "bold") -> Table:
-    return Table(
-        title=Text(title, style=style), title_justify="left", box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False
-    )
+def _table(title: str, style: str, columns: Mapping[str, int] | None = None) -> Table:
+    """Return a table with these columns, whose text is folded, and the shares of the width that they take."""
+    table = Table(title=Text(title, style=style), title_justify="left", box=box.SIMPLE_HEAD)
+    table.show_edge = table.pad_edge = False
+    for name, ratio in (columns or {}).items():
+        table.add_column(name, overflow="fold", ratio=ratio)
+    return table
 
 
 def _title(title: str, n: int) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.report.html.anchors import drive_anchor, finding_anchor, incident_anchor, rule_anchor
-from drivelint.report.html.plan_view import PlanView, plan_view
+from drivelint.report.html.plan_view import plan_view
 from drivelint.report.html.replay import centiseconds
 from drivelint.report.html.svg import num
 from drivelint.result.counts import SEVERITIES, grouped
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
     from drivelint.report.html.baseline_status import BaselineStatus
-    from drivelint.report.html.margin_series import MarginSeries
     from drivelint.report.html.road import Road
 
     Row = Mapping[str, Any]
@@ -26,15 +25,6 @@ _SPACES: Final = "danger_space"
 """Tag of the rules whose plan views show danger spaces."""
 MAX_KEY_INCIDENTS: Final = 6
 """Moments of a drive that the printed report shows with their plan views."""
-
-
-class Gauge(NamedTuple):
-    """Observed against required as percentages of a bar's width."""
-
-    zero: str
-    x: str
-    w: str
-    required: str
 
 
 class FindingLine(NamedTuple):
@@ -55,9 +45,9 @@ class FindingLine(NamedTuple):
     margin: str
     missed: str
     sense: str
-    gauge: Gauge | None
+    gauge: dict[str, str] | None
     told: str
-    course: MarginSeries | None
+    course: dict[str, Any] | None
     standing: BaselineStatus | None
 
 
@@ -85,7 +75,7 @@ class Incident(NamedTuple):
     kind: str
     severity: str
     titles: list[str]
-    plan: PlanView | None
+    plan: dict[str, Any] | None
     no_plan: str
     cards: list[RuleCard]
 
@@ -97,7 +87,7 @@ def finding_line(
     start_ns: int,
     *,
     linked: bool,
-    course: MarginSeries | None,
+    course: dict[str, Any] | None,
     standing: BaselineStatus | None,
 ) -> FindingLine:
     """Return a finding or near miss as the page shows it; `linked`: its drive has a section in the page."""
@@ -153,7 +143,7 @@ def key_incidents(lines: Iterable[FindingLine]) -> set[Key]:
 
 
 def incidents(
-    lines: Sequence[FindingLine], pictures: Mapping[Key, PlanView], start_ns: int, told: Collection[Key]
+    lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any]], start_ns: int, told: Collection[Key]
 ) -> list[Incident]:
     """Return the moments of one drive, in time order, from its findings and near misses; `told`: those that lead."""
     groups = grouped(lines, lambda line: incident_key(line.row))
@@ -165,10 +155,10 @@ def incidents(
 
 def plan_views(
     lines: Iterable[FindingLine], scenes: Mapping[Key, Row], spaces: Mapping[Key, list[Row]], road: Road, *, most: int
-) -> dict[Key, PlanView]:
+) -> dict[Key, dict[str, Any]]:
     """Return the plan views of the first `most` incidents of `lines`."""
     told = grouped(lines, lambda line: incident_key(line.row))
-    drawn: dict[Key, PlanView] = {}
+    drawn: dict[Key, dict[str, Any]] = {}
     for at, found in [(at, found) for at, found in told.items() if at in scenes][:most]:
         about = any(_SPACES in line.rule["tags"] for line in found)
         drawn[at] = plan_view(scenes[at], road, _objects(found), spaces.get(at, []) if about else [])
@@ -179,7 +169,9 @@ def _objects(lines: Iterable[FindingLine]) -> set[str]:
     return {line.row["object_id"] for line in lines if line.row["object_id"] is not None}
 
 
-def _moment(at: Key, found: Sequence[FindingLine], picture: PlanView | None, start_ns: int, *, leads: bool) -> Incident:
+def _moment(
+    at: Key, found: Sequence[FindingLine], picture: dict[str, Any] | None, start_ns: int, *, leads: bool
+) -> Incident:
     failed = [line for line in found if line.kind == "fail"]
     gravest = sorted(failed or found, key=lambda line: SEVERITIES.index(line.row["severity"]))
     cards = grouped(found, lambda line: line.row["rule_id"])
@@ -208,8 +200,8 @@ def _weight(item: tuple[str, Sequence[FindingLine]]) -> tuple[bool, int, str]:
     return lines[0].kind != "fail", SEVERITIES.index(lines[0].row["severity"]), rule_id
 
 
-def _gauge(observed: float | None, required: float | None) -> Gauge | None:
-    """Return the bar from zero to what was observed, and where what was required lies."""
+def _gauge(observed: float | None, required: float | None) -> dict[str, str] | None:
+    """Return the bar from zero to what was observed, and where what was required lies, as percentages of its width."""
     if observed is None or required is None or not max(abs(observed), abs(required)) < float("inf"):
         return None
     low, high = min(0.0, observed, required), max(0.0, observed, required)
@@ -221,4 +213,5 @@ def _gauge(observed: float | None, required: float | None) -> Gauge | None:
         return 100 * (value - low) / (high - low)
 
     start, end = sorted((at(0.0), at(observed)))
-    return Gauge(f"{num(at(0.0))}%", f"{num(start)}%", f"{num(max(end - start, 0.4))}%", f"{num(at(required))}%")
+    places = {"zero": at(0.0), "x": start, "w": max(end - start, 0.4), "required": at(required)}
+    return {name: f"{num(value)}%" for name, value in places.items()}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.report.html.incidents import incident_key
 from drivelint.result.text import NONE
@@ -17,18 +17,11 @@ if TYPE_CHECKING:
 _STANDS_MPS: Final = 0.1
 
 
-class InvolvedActor(NamedTuple):
-    """One actor in words; `n`: findings that are about it."""
+def involved_actors(lines: Sequence[FindingLine], scenes: Mapping[Key, Row]) -> list[dict[str, Any]]:
+    """Return the egos and objects of one drive's findings and near misses, in words, from their scenes; egos first.
 
-    name: str
-    what: str
-    size: str
-    speeds: str
-    n: int
-
-
-def involved_actors(lines: Sequence[FindingLine], scenes: Mapping[Key, Row]) -> list[InvolvedActor]:
-    """Return the egos and objects of one drive's findings and near misses, from their scenes; egos first."""
+    `n`: findings that are about it.
+    """
     findings: Counter[tuple[bool, str]] = Counter()
     seen: dict[str, list[Row]] = defaultdict(list)
     for line in lines:
@@ -41,9 +34,13 @@ def involved_actors(lines: Sequence[FindingLine], scenes: Mapping[Key, Row]) -> 
                     seen[who].append(actors[who])
     order = sorted(findings.items(), key=lambda item: (item[0][0], -item[1], item[0][1]))
     return [
-        InvolvedActor(
-            f"{'object' if is_object else 'ego'} {who}", _kind(seen[who]), _size(seen[who]), _speeds(seen[who]), n
-        )
+        {
+            "name": f"{'object' if is_object else 'ego'} {who}",
+            "what": _kind(seen[who]),
+            "size": _size(seen[who]),
+            "speeds": _speeds(seen[who]),
+            "n": n,
+        }
         for (is_object, who), n in order
         if not (is_object and (False, who) in findings)
     ]

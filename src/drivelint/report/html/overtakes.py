@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import statistics
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.report.html.anchors import overtake_anchor
-from drivelint.report.html.axis import Axis
-from drivelint.report.html.svg import num, percent
+from drivelint.report.html.svg import Axis, num, percent
 from drivelint.result.text import non_breaking, number, seconds
 
 if TYPE_CHECKING:
@@ -35,80 +34,12 @@ _ZONES_S: Final = (0.0, 0.5, 2.5)  # the spare time at which zones B, C and D be
 _SHAPES: Final = ("circle", "square", "diamond", "triangle", "cross")
 _PLOT_W, _PLOT_H = 560, 400
 _LABELS: Final = 10
+_NOT_COMPUTED: Final = {"verdict": "unknown", "sda": "-", "spare": "-", "zone": "", "reason": "not computed"}
 _TIMES: Final = ("t0_ns", "t1_ns", "t2_ns", "t3_ns")
 
 
-class ProfileCell(NamedTuple):
-    """What one profile says of an overtake."""
-
-    verdict: str
-    sda: str
-    spare: str
-    zone: str
-    reason: str
-
-
-class StageRow(NamedTuple):
-    """One of the four assertions: its verdict and worst depth per stage, and its stretches over time as percentages."""
-
-    title: str
-    cells: list[tuple[str, str]]
-    bands: list[tuple[str, str, str, str]]
-
-
-class Overtake(NamedTuple):
-    """One overtake."""
-
-    row: Row
-    anchor: str
-    time: str
-    ov_id: str
-    status: str
-    da: str
-    speeds: str
-    inputs: str
-    cells: list[ProfileCell]
-    stages: list[str]
-    rows: list[StageRow]
-    times: list[tuple[str, str]]
-    bounds: list[tuple[str, str, str]]
-
-
-class ZoneDot(NamedTuple):
-    """One overtake against one profile."""
-
-    x: str
-    y: str
-    shape: str
-    zone: str
-    title: str
-
-
-class ZonePlot(NamedTuple):
-    """The zone plot: areas of the zones, axes, a dot per overtake and profile, names, and the speed that the areas are drawn for."""
-
-    areas: list[tuple[str, str, tuple[str, str] | None]]
-    x_ticks: list[tuple[str, str]]
-    y_ticks: list[tuple[str, str]]
-    dots: list[ZoneDot]
-    names: list[tuple[str, str, str]]
-    shapes: list[tuple[str, str]]
-    speed: str
-    same_speed: bool
-    missing: int
-
-
-class OvertakeViews(NamedTuple):
-    """The table of overtakes and the zone plot, as the page shows them."""
-
-    profiles: list[str]
-    overtakes: list[Overtake]
-    n: int
-    zones: ZonePlot | None
-
-
-def overtake_views(records: Sequence[Row], starts: Mapping[str, int]) -> OvertakeViews | None:
-    """Return the views of the rows of `overtake_record`; None: there are none."""
+def overtake_views(records: Sequence[Row], starts: Mapping[str, int]) -> dict[str, Any] | None:
+    """Return the table of overtakes and the zone plot from the rows of `overtake_record`; None: there are none."""
     records = [row for row in records if row["profiles"] or row["stretches"]]
     if not records:
         return None
@@ -116,12 +47,12 @@ def overtake_views(records: Sequence[Row], starts: Mapping[str, int]) -> Overtak
     profiles = [profile for _, profile in sorted(told)]
     picked = sorted(records, key=_least_spare)[:MAX_OVERTAKES]
     listed = sorted(picked, key=lambda r: (r["drive_id"], r["ego_id"], r["occurrence"]))
-    return OvertakeViews(
-        profiles,
-        [_overtake(row, profiles, starts.get(row["drive_id"]) or 0) for row in listed],
-        len(records),
-        _zones(listed, profiles, starts),
-    )
+    return {
+        "profiles": profiles,
+        "overtakes": [_overtake(row, profiles, starts.get(row["drive_id"]) or 0) for row in listed],
+        "n": len(records),
+        "zones": _zones(listed, profiles, starts),
+    }
 
 
 def _least_spare(row: Row) -> tuple[float, str, str, int]:
@@ -129,7 +60,7 @@ def _least_spare(row: Row) -> tuple[float, str, str, int]:
     return min(spare, default=float("inf")), row["drive_id"], row["ego_id"], row["occurrence"]
 
 
-def _overtake(row: Row, profiles: Sequence[str], start_ns: int) -> Overtake:
+def _overtake(row: Row, profiles: Sequence[str], start_ns: int) -> dict[str, Any]:
     cells = {p["profile"]: _cell(p) for p in row["profiles"]}
     stages = [stage for stage in _STAGES if any(s["stage"] == stage for s in row["stretches"])]
     clock = Axis(row["t0_ns"], max(row["t_end_ns"], row["t0_ns"] + 1), 0.0, 100.0)
@@ -138,26 +69,28 @@ def _overtake(row: Row, profiles: Sequence[str], start_ns: int) -> Overtake:
         ("ego", row["l_av_m"], "m long"),
         ("passed", row["l_vbp_m"], "m long"),
     )
-    return Overtake(
-        row,
-        anchor=overtake_anchor(row["drive_id"], row["ego_id"], row["occurrence"]),
-        time=seconds(row["t0_ns"], start_ns),
-        ov_id=row["ov_id"] or "nobody seen",
-        status=_STATUS.get(row["status"]) or row["status"],
-        da=("" if row["ov_id"] else "at least " if row["da_m"] is not None else "") + number(row["da_m"], "m"),
-        speeds=", ".join(
+    return {
+        "row": row,
+        "anchor": overtake_anchor(row["drive_id"], row["ego_id"], row["occurrence"]),
+        "time": seconds(row["t0_ns"], start_ns),
+        "ov_id": row["ov_id"] or "nobody seen",
+        "status": _STATUS.get(row["status"]) or row["status"],
+        "da": ("" if row["ov_id"] else "at least " if row["da_m"] is not None else "") + number(row["da_m"], "m"),
+        "speeds": ", ".join(
             f"{who} {number(v, 'm/s')}"
             for who, v in (("ego", row["v_av_mps"]), ("passed", row["v_vbp_mps"]), ("oncoming", row["v_ov_mps"]))
         ),
-        inputs=", ".join(f"{what} {value:.2f} {unit}" for what, value, unit in given if value is not None),
-        cells=[cells.get(profile, ProfileCell("unknown", "-", "-", "", "not computed")) for profile in profiles],
-        stages=[stage.replace("_", " ") for stage in stages],
-        rows=[_assertion(n, row["stretches"], stages, clock) for n in range(len(ASSERTION_TITLES))] if stages else [],
-        times=_marks(
+        "inputs": ", ".join(f"{what} {value:.2f} {unit}" for what, value, unit in given if value is not None),
+        "cells": [cells.get(profile, _NOT_COMPUTED) for profile in profiles],
+        "stages": [stage.replace("_", " ") for stage in stages],
+        "rows": [_assertion(n, row["stretches"], stages, clock) for n in range(len(ASSERTION_TITLES))]
+        if stages
+        else [],
+        "times": _marks(
             [(clock.at(row[at]), f"{at[:2]} {(row[at] - start_ns) / 1e9:.1f}") for at in _TIMES if row[at] is not None]
         ),
-        bounds=_bounds(row["stretches"], clock),
-    )
+        "bounds": _bounds(row["stretches"], clock),
+    }
 
 
 def _marks(times: Sequence[tuple[float, str]]) -> list[tuple[str, str]]:
@@ -171,12 +104,18 @@ def _marks(times: Sequence[tuple[float, str]]) -> list[tuple[str, str]]:
     return [(percent(at), label) for at, label in kept]
 
 
-def _cell(p: Row) -> ProfileCell:
-    verdict = "unknown" if p["zone"] is None else "fail" if p["zone"] == "A" else "pass"
+def _cell(p: Row) -> dict[str, Any]:
+    """Return what one profile says of an overtake."""
     spare = "-"
     if p["spare_m"] is not None:
         spare = f"{'short by' if p['spare_m'] <= 0 else 'spare'} {non_breaking(number(abs(p['spare_m']), 'm'))}"
-    return ProfileCell(verdict, non_breaking(number(p["sda_m"], "m")), spare, p["zone"] or "", p["reason"] or "")
+    return {
+        "verdict": "unknown" if p["zone"] is None else "fail" if p["zone"] == "A" else "pass",
+        "sda": non_breaking(number(p["sda_m"], "m")),
+        "spare": spare,
+        "zone": p["zone"],
+        "reason": p["reason"] or "",
+    }
 
 
 def _bounds(stretches: Sequence[Row], clock: Axis) -> list[tuple[str, str, str]]:
@@ -190,7 +129,8 @@ def _bounds(stretches: Sequence[Row], clock: Axis) -> list[tuple[str, str, str]]
     return drawn
 
 
-def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: Axis) -> StageRow:
+def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: Axis) -> dict[str, Any]:
+    """Return one of the assertions: its verdict and worst depth per stage, and its stretches over time as percentages."""
     cells = []
     for stage in stages:
         mine = [(s["said"][n], s["worst_m"][n]) for s in stretches if s["stage"] == stage]
@@ -210,7 +150,7 @@ def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: A
     for (said, start, last), end in zip(runs, ends, strict=True):
         a, b = clock.at(start), min(max(clock.at(max(last, end)), clock.at(start) + _THIN), 100.0)
         bands.append((said, percent(min(a, 100.0 - _THIN)), percent(b - min(a, 100.0 - _THIN)), _SAID[said]))
-    return StageRow(ASSERTION_TITLES[n], cells, bands)
+    return {"title": ASSERTION_TITLES[n], "cells": cells, "bands": bands}
 
 
 def _depth(metres: float | None) -> str:
@@ -219,7 +159,8 @@ def _depth(metres: float | None) -> str:
     return f"{'inside' if metres >= 0 else 'clear'} by {non_breaking(number(abs(metres), 'm'))}"
 
 
-def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str, int]) -> ZonePlot | None:
+def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str, int]) -> dict[str, Any] | None:
+    """Return the areas of the zones, axes, a dot per overtake and profile, names, and the speed that the areas are drawn for."""
     known = [(row, p) for row in records for p in row["profiles"] if p["da_m"] is not None and p["sda_m"] is not None]
     missing = sum(len(row["profiles"]) for row in records) - len(known)
     if not known:
@@ -230,27 +171,27 @@ def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str,
     v = statistics.median(closing) if closing else 0.0
     shapes = {profile: _SHAPES[min(n, len(_SHAPES) - 1)] for n, profile in enumerate(profiles)}
     rows = {id(row): row for row, _ in known}.values()
-    return ZonePlot(
-        areas=_areas(x, y, far, v),
-        x_ticks=x.ticks(7),
-        y_ticks=y.ticks(7),
-        dots=[
-            ZoneDot(
-                num(x.at(p["sda_m"])),
-                num(y.at(p["da_m"])),
-                shapes[p["profile"]],
-                p["zone"] or "",
-                f"{row['drive_id']} at {seconds(row['t0_ns'], starts.get(row['drive_id']))}, {p['profile']}: distance ahead "
+    return {
+        "areas": _areas(x, y, far, v),
+        "x_ticks": x.ticks(7),
+        "y_ticks": y.ticks(7),
+        "dots": [
+            {
+                "x": num(x.at(p["sda_m"])),
+                "y": num(y.at(p["da_m"])),
+                "shape": shapes[p["profile"]],
+                "zone": p["zone"],
+                "title": f"{row['drive_id']} at {seconds(row['t0_ns'], starts.get(row['drive_id']))}, {p['profile']}: distance ahead "
                 f"{number(p['da_m'], 'm')}, required more than {number(p['sda_m'], 'm')}, zone {p['zone'] or 'unknown'}",
-            )
+            }
             for row, p in known
         ],
-        names=[_name(row, x, y) for row in rows] if len(rows) <= _LABELS else [],
-        shapes=list(shapes.items()),
-        speed=number(v, "m/s"),
-        same_speed=bool(closing) and max(closing) - min(closing) < 0.05 * v,
-        missing=missing,
-    )
+        "names": [_name(row, x, y) for row in rows] if len(rows) <= _LABELS else [],
+        "shapes": list(shapes.items()),
+        "speed": number(v, "m/s"),
+        "same_speed": bool(closing) and max(closing) - min(closing) < 0.05 * v,
+        "missing": missing,
+    }
 
 
 def _name(row: Row, x: Axis, y: Axis) -> tuple[str, str, str]:

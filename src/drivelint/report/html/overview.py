@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow.compute as pc
 
@@ -13,7 +13,7 @@ from drivelint.result.text import non_breaking, number, seconds
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from drivelint.report.html.incidents import FindingLine, Incident
+    from drivelint.report.html.incidents import FindingLine
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
@@ -22,27 +22,6 @@ _CONTACT: Final = "contact"
 _NAMED: Final = 4
 _STORY_DRIVES: Final = 6
 _STORY_PARTIES: Final = 6
-
-
-class BrokenRule(NamedTuple):
-    """A rule that was not kept: how often, and the worst of it (None: not among the findings of the page)."""
-
-    rule: Row
-    href: str
-    n: int
-    n_drives: int
-    worst: FindingLine | None
-
-
-class DriveSummary(NamedTuple):
-    """What happened in one drive, in time order; `who`: the vehicles and people that the findings are about."""
-
-    drive_id: str
-    href: str
-    file_name: str
-    who: list[str]
-    n_more: int
-    moments: list[Incident]
 
 
 def headline(result: Result) -> tuple[str, str]:
@@ -65,15 +44,11 @@ def headline(result: Result) -> tuple[str, str]:
     return "pass", "No finding"
 
 
-class Contacts(NamedTuple):
-    """The contacts that rules found, in words, each with the link to it; `n_more`: those that are not named."""
+def contacts(result: Result, lines: Sequence[FindingLine]) -> dict[str, Any] | None:
+    """Return who touched whom and when, from all findings (`lines`: those of the page); None if no finding is a contact.
 
-    named: list[tuple[str, str]]
-    n_more: int
-
-
-def contacts(result: Result, lines: Sequence[FindingLine]) -> Contacts | None:
-    """Return who touched whom and when, from all findings (`lines`: those of the page); None if no finding is a contact."""
+    `named`: contacts of the boxes, or told by the speeds, in words, each with the link to it; `n_more`: those that are not named.
+    """
     starts = result.start_times
     hrefs = {line.row["finding_id"]: line.href for line in lines}
     tagged = {row["rule_id"] for row in result.rules.select(["rule_id", "tags"]).to_pylist() if _CONTACT in row["tags"]}
@@ -90,7 +65,7 @@ def contacts(result: Result, lines: Sequence[FindingLine]) -> Contacts | None:
         where = f", {first['drive_id']}" if len(starts) > 1 else ""
         said = f"{who} at {non_breaking(seconds(first['t_worst_ns'], starts[first['drive_id']]))}{deep}{where}"
         named.append((said, hrefs.get(first["finding_id"], "")))
-    return Contacts(named[:_NAMED], len(named) - len(named[:_NAMED])) if named else None
+    return {"named": named[:_NAMED], "n_more": len(named[_NAMED:])} if named else None
 
 
 def _of_these(result: Result) -> str:
@@ -103,21 +78,21 @@ def _of_these(result: Result) -> str:
     return f", {left or 'none'} of them {'new' if gate.baseline is not None else 'not waived'}"
 
 
-def broken_rules(result: Result, rules: Mapping[str, Row], lines: Sequence[FindingLine]) -> list[BrokenRule]:
-    """Return the rules with findings, the gravest and most frequent first."""
+def broken_rules(result: Result, rules: Mapping[str, Row], lines: Sequence[FindingLine]) -> list[dict[str, Any]]:
+    """Return the rules with findings, the gravest and most frequent first; `worst` None: not among the findings of the page."""
     columns = result.findings.select(["rule_id", "drive_id"]).to_pylist()
     shown = counts.grouped(lines, lambda line: line.row["rule_id"])
     found = [
-        BrokenRule(
-            rules[rule_id],
-            "#" + rule_anchor(rule_id),
-            len(rows),
-            len({row["drive_id"] for row in rows}),
-            min(shown.get(rule_id, []), key=_margin, default=None),
-        )
+        {
+            "rule": rules[rule_id],
+            "href": "#" + rule_anchor(rule_id),
+            "n": len(rows),
+            "n_drives": len({row["drive_id"] for row in rows}),
+            "worst": min(shown.get(rule_id, []), key=_margin, default=None),
+        }
         for rule_id, rows in counts.grouped(columns, lambda row: row["rule_id"]).items()
     ]
-    return sorted(found, key=lambda b: (counts.SEVERITIES.index(b.rule["severity"]), -b.n, b.rule["rule_id"]))
+    return sorted(found, key=lambda b: (counts.SEVERITIES.index(b["rule"]["severity"]), -b["n"], b["rule"]["rule_id"]))
 
 
 def _margin(line: FindingLine) -> float:
@@ -150,26 +125,31 @@ def verdict_shares(told: Mapping[str, int]) -> list[dict[str, Any]]:
     return found
 
 
-def drive_summaries(sections: Sequence[Mapping[str, Any]], n_drives: int) -> list[DriveSummary]:
-    """Return a summary of each drive; none if there are too many drives for the first page."""
-    if n_drives > _STORY_DRIVES:
-        return []
+def drive_summaries(sections: Sequence[Mapping[str, Any]], n_drives: int) -> list[dict[str, Any]]:
+    """Return what happened in each drive, in time order; none if there are too many drives for the first page.
+
+    `who`: the vehicles and people that the findings are about.
+    """
     told = []
-    for section in sections:
-        who = [f"{party.name} ({party.what})" for party in section["parties"] if party.n]
-        if moments := [moment for moment in section["moments"] if moment.leading]:
-            href, n_more = "#" + section["anchor"], max(len(who) - _STORY_PARTIES, 0)
-            told.append(
-                DriveSummary(section["drive_id"], href, section["file_name"], who[:_STORY_PARTIES], n_more, moments)
-            )
+    for section in sections if n_drives <= _STORY_DRIVES else ():
+        who = [f"{party['name']} ({party['what']})" for party in section["parties"] if party["n"]]
+        summary = {
+            "drive_id": section["drive_id"],
+            "href": "#" + section["anchor"],
+            "file_name": section["file_name"],
+            "who": who[:_STORY_PARTIES],
+            "n_more": len(who[_STORY_PARTIES:]),
+            "moments": [moment for moment in section["moments"] if moment.leading],
+        }
+        told += [summary] if summary["moments"] else []
     return told
 
 
 def first_page_texts(
-    rules: Sequence[BrokenRule], told: Sequence[DriveSummary], lines: Sequence[FindingLine]
+    rules: Sequence[Mapping[str, Any]], told: Sequence[Mapping[str, Any]], lines: Sequence[FindingLine]
 ) -> list[str]:
     """Return what the first page says of rules and findings, to be searched for words that need to be explained."""
-    worst = [b.worst for b in rules if b.worst is not None]
-    leading = [line for story in told for moment in story.moments for card in moment.cards for line in card.lines]
+    worst = [b["worst"] for b in rules if b["worst"] is not None]
+    leading = [line for story in told for moment in story["moments"] for card in moment.cards for line in card.lines]
     profiles = {line.row["profile"] or "" for line in lines}
-    return [b.rule["title"] for b in rules] + [line.told for line in worst + leading] + sorted(profiles)
+    return [b["rule"]["title"] for b in rules] + [line.told for line in worst + leading] + sorted(profiles)

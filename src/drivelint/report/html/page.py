@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from drivelint.report.html.incidents import FindingLine, Incident, Key
-    from drivelint.report.html.involved_actors import InvolvedActor
     from drivelint.report.html.timeline import Timeline
     from drivelint.result.model import Result
     from drivelint.result.text import Row
@@ -239,7 +238,12 @@ def _clock(row: Row) -> TimeAxis:
 
 
 def _section(
-    row: Row, tracks: Sequence[Timeline], seen: Sequence[Incident], involved: Sequence[InvolvedActor], *, unfolded: bool
+    row: Row,
+    tracks: Sequence[Timeline],
+    seen: Sequence[Incident],
+    involved: Sequence[dict[str, Any]],
+    *,
+    unfolded: bool,
 ) -> dict[str, Any]:
     """Return a drive with its egos: the timeline, the moments and the parties of each."""
     weight = {"error": 0, "warning": 1, "info": 2}

@@ -6,7 +6,7 @@ Drawn lengths are decimetres from an origin of the map, y up: a scene turns and 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -14,10 +14,12 @@ from drivelint.report.html.svg import polygon, polyline
 from drivelint.result.counts import grouped
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
     import pyarrow as pa
     from numpy.typing import NDArray
+
+    from drivelint.result.text import Row
 
     Points = NDArray[np.float64]
     """Shape (n, 2)."""
@@ -28,16 +30,6 @@ _ARROW_EVERY_M: Final = 25.0
 _ON_ROAD_M: Final = 6.0  # a bound nearer than this belongs to the road that the ego is on
 _SLANT_RAD: Final = math.radians(50)  # and it runs along it if the ego does not cross it more steeply
 _TILE_M: Final = 200.0  # lanes that begin in one square are drawn together
-
-
-class Tile(NamedTuple):
-    """The drawn lanes of one square of the map as SVG path data."""
-
-    name: str
-    road: str
-    beside: str
-    marks: list[tuple[str, str]]
-    arrows: str
 
 
 class Road:
@@ -56,15 +48,15 @@ class Road:
         """Return the lanes of a map; none without a map."""
         return self._maps.get(environment_id or "", self._none)
 
-    def tiles(self) -> list[Tile]:
-        """Return the tiles of all maps, each of which the page draws once."""
+    def tiles(self) -> list[dict[str, Any]]:
+        """Return the tiles of all maps, each of which the page draws once: the lanes of a square as SVG path data."""
         return [tile for lanes in self._maps.values() for tile in lanes.tiles()]
 
 
 class Lanes:
     """The lanes of one map."""
 
-    def __init__(self, name: str, lanes: Sequence[Mapping[str, Any]]) -> None:
+    def __init__(self, name: str, lanes: Sequence[Row]) -> None:
         self._name, self._lanes = name, lanes
         points = np.concatenate([lane["left"] for lane in lanes]) if lanes else None
         self.origin = (0.0, 0.0) if points is None else tuple(float(v) for v in np.round(points.mean(axis=0)))
@@ -98,23 +90,23 @@ class Lanes:
         fits = (away < _ON_ROAD_M) & (np.abs(turn) < _SLANT_RAD)
         return yaw_rad + float(turn[np.where(fits, away, np.inf).argmin()]) if fits.any() else yaw_rad
 
-    def tiles(self) -> Iterator[Tile]:
+    def tiles(self) -> Iterator[dict[str, Any]]:
         """Yield the drawing of the lanes, tile by tile."""
         marks = self._markings()
         for name in sorted(set(self._tile.values())):
             lanes = [lane for lane in self._lanes if self._tile[lane["lanelet_id"]] == name]
-            yield Tile(
-                name,
-                road=self._areas(lanes, drivable=True),
-                beside=self._areas(lanes, drivable=False),
-                marks=[
+            yield {
+                "name": name,
+                "road": self._areas(lanes, drivable=True),
+                "beside": self._areas(lanes, drivable=False),
+                "marks": [
                     (kind, "".join(line for tile, what, line in marks if (tile, what) == (name, kind)))
                     for kind in sorted({what for tile, what, _ in marks if tile == name})
                 ],
-                arrows="".join(arrow for lane in lanes for arrow in self._arrows(lane)),
-            )
+                "arrows": "".join(arrow for lane in lanes for arrow in self._arrows(lane)),
+            }
 
-    def _areas(self, lanes: Sequence[Mapping[str, Any]], *, drivable: bool) -> str:
+    def _areas(self, lanes: Sequence[Row], *, drivable: bool) -> str:
         rings = [np.concatenate([lane["left"], lane["right"][::-1]]) for lane in lanes if lane["drivable"] is drivable]
         # all the same way round: where lanes overlap they fill, and do not cut each other out
         return "".join(polygon(np.rint(self.to_units(ring if _area(ring) > 0 else ring[::-1]))) for ring in rings)
@@ -134,7 +126,7 @@ class Lanes:
                     marks.append((self._tile[lane["lanelet_id"]], kind, polyline(np.rint(self.to_units(line)))))
         return marks
 
-    def _arrows(self, lane: Mapping[str, Any]) -> Iterator[str]:
+    def _arrows(self, lane: Row) -> Iterator[str]:
         """Yield small chevrons in the middle of a lane that is driven on, in the direction of travel."""
         if not lane["drivable"] or lane["in_junction"]:
             return
@@ -148,7 +140,7 @@ class Lanes:
             v = np.array([-u[1], u[0]])
             yield polyline(np.rint(np.array([at - 8 * u + 6 * v, at, at - 8 * u - 6 * v])))
 
-    def _tile_of(self, lane: Mapping[str, Any]) -> str:
+    def _tile_of(self, lane: Row) -> str:
         x, y = (int((lane["left"][0][i] - self.origin[i]) // _TILE_M) for i in (0, 1))
         return f"{self._name}t{x}_{y}".replace("-", "n")
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from drivelint.report.html.anchors import finding_anchor, grid_name, rule_anchor
-from drivelint.report.html.reasons import VerdictReason, can_be_provided, rule_links, summarise_reasons, verdict_reason
+from drivelint.report.html.reasons import VerdictReason, can_be_provided, summarise_reasons, verdict_reason
 from drivelint.report.html.svg import percent
 from drivelint.result.counts import SEVERITIES, grouped
 from drivelint.result.text import number, seconds
@@ -25,27 +25,11 @@ _MOST_TICKS: Final = 9
 _THIN: Final = 0.35  # percent: a shorter stretch is drawn as a mark
 
 
-class Band(NamedTuple):
-    """A judged stretch, or a moment (`w` empty)."""
-
-    verdict: str
-    x: str
-    w: str
-    title: str
-
-
-class Mark(NamedTuple):
-    """A finding (with its anchor) or a near miss on a row."""
-
-    kind: str
-    x: str
-    w: str
-    href: str
-    title: str
-
-
 class TimelineRow(NamedTuple):
-    """One row of a timeline: a rule and profile, its worst verdict, and what is drawn."""
+    """One row of a timeline: a rule and profile, its worst verdict, and what is drawn.
+
+    `bands`: judged stretches, or moments (`w` empty); `marks`: findings, with their anchors, and near misses.
+    """
 
     rule_id: str
     href: str
@@ -53,8 +37,8 @@ class TimelineRow(NamedTuple):
     profile: str | None
     verdict: str
     keys: str
-    bands: list[Band]
-    marks: list[Mark]
+    bands: list[dict[str, str]]
+    marks: list[dict[str, str]]
 
 
 class FoldedRules(NamedTuple):
@@ -121,7 +105,7 @@ def timelines(
     """
     found = grouped(findings, lambda row: row["ego_id"])
     return [
-        _timeline(told, found.get(ego, []), rules=rules, anchors=anchors, clock=clock)
+        _timeline(told, found.get(ego, []), rules, anchors, clock)
         for ego, told in grouped(verdicts, lambda row: row["ego_id"]).items()
     ]
 
@@ -133,7 +117,6 @@ def _rule_and_profile(row: Row) -> tuple[str, str | None]:
 def _timeline(
     verdicts: Sequence[Row],
     findings: Sequence[Row],
-    *,
     rules: Mapping[str, Row],
     anchors: Mapping[str, str],
     clock: TimeAxis,
@@ -141,23 +124,21 @@ def _timeline(
     """Return the timeline of one ego."""
     ego, found = verdicts[0]["ego_id"], grouped(findings, _rule_and_profile)
     rows: list[TimelineRow] = []
-    folded: dict[tuple[str, tuple[str, ...]], dict[str, set[VerdictReason]]] = {}
+    folded: dict[tuple[str, tuple[str, ...]], dict[tuple[str, str], set[VerdictReason]]] = {}
     for key, told in grouped(verdicts, _rule_and_profile).items():
         rule_id, profile = key
+        rule, href = rules[rule_id], f"#{rule_anchor(rule_id)}"
         worst = min((row["verdict"] for row in told), key=_ORDER.index)
         if worst == "not_applicable" or all(_is_missing(row) for row in told):
             reason = verdict_reason(told[0])
-            folded.setdefault((worst, reason.kind), {}).setdefault(rule_id, set()).add(reason)
+            folded.setdefault((worst, reason.kind), {}).setdefault((rule["title"], href), set()).add(reason)
             continue
         marks = [_finding(row, anchors, clock) for row in found.get(key, [])]
         near = [_near(row, clock) for row in told if row["near_miss"]]
-        rule = rules[rule_id]
         stands = sorted({anchors.get(finding_anchor(row), "") for row in found.get(key, [])})
         keys = " ".join((worst, "near" if near else "", rule["severity"], rule["pack"], *stands))
-        href = f"#{rule_anchor(rule_id)}"
         rows.append(TimelineRow(rule_id, href, rule["title"], profile, worst, keys, _bands(told, clock), marks + near))
     rows.sort(key=lambda lane: (_ORDER.index(lane.verdict), SEVERITIES.index(rules[lane.rule_id]["severity"])))
-    titles = {rule_id: rule["title"] for rule_id, rule in rules.items()}
     order = sorted(folded.items(), key=lambda item: (_ORDER.index(item[0][0]), -len(item[1]), item[0][1]))
     return Timeline(
         ego,
@@ -165,10 +146,7 @@ def _timeline(
         f"{clock.tick_step_s() / clock.duration_s:.5f}",
         clock.ticks(),
         rows,
-        [
-            FoldedRules(*key, dict(zip(rule_links(why, titles), (why[i] for i in sorted(why)), strict=True)))
-            for key, why in order
-        ],
+        [FoldedRules(*key, why) for key, why in order],
         {verdict: sum(lane.verdict == verdict for lane in rows) for verdict in _ORDER},
     )
 
@@ -204,7 +182,7 @@ def _is_missing(row: Row) -> bool:
     return bool(row["verdict"] == "unknown" and row["t_start_ns"] is None and can_be_provided(row["reason_code"]))
 
 
-def _bands(told: Sequence[Row], clock: TimeAxis) -> list[Band]:
+def _bands(told: Sequence[Row], clock: TimeAxis) -> list[dict[str, str]]:
     """Return the judged stretches by verdict; stretches of one verdict that touch are one (many objects, one rule)."""
     bands = []
     for verdict in _LAYERS:
@@ -217,9 +195,7 @@ def _bands(told: Sequence[Row], clock: TimeAxis) -> list[Band]:
                 spans.append((start, end, {reason}))
         for start, end, reasons in spans:
             why = "" if verdict in {"pass", "fail"} else f": {summarise_reasons(reasons)}"
-            bands.append(
-                Band(verdict, percent(start), percent(end - start) if end - start > _THIN else "", f"{verdict}{why}")
-            )
+            bands.append({"verdict": verdict, **_extent(start, end), "title": f"{verdict}{why}"})
     return bands
 
 
@@ -230,20 +206,20 @@ def _span(row: Row, clock: TimeAxis) -> tuple[float, float]:
     return clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])
 
 
-def _finding(row: Row, anchors: Collection[str], clock: TimeAxis) -> Mark:
+def _finding(row: Row, anchors: Collection[str], clock: TimeAxis) -> dict[str, str]:
     anchor = finding_anchor(row)
     start, end = clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])
-    return Mark(
-        "fail",
-        percent(start),
-        percent(end - start) if end - start > _THIN else "",
-        f"#{anchor}" if anchor in anchors else "",
-        _title(row, clock),
-    )
+    href = f"#{anchor}" if anchor in anchors else ""
+    return {"kind": "fail", **_extent(start, end), "href": href, "title": _title(row, clock)}
 
 
-def _near(row: Row, clock: TimeAxis) -> Mark:
-    return Mark("near", percent(clock.at(row["t_worst_ns"])), "", "", f"near miss, {_title(row, clock)}")
+def _near(row: Row, clock: TimeAxis) -> dict[str, str]:
+    at = clock.at(row["t_worst_ns"])
+    return {"kind": "near", **_extent(at, at), "href": "", "title": f"near miss, {_title(row, clock)}"}
+
+
+def _extent(start: float, end: float) -> dict[str, str]:
+    return {"x": percent(start), "w": percent(end - start) if end - start > _THIN else ""}
 
 
 def _title(row: Row, clock: TimeAxis) -> str:
