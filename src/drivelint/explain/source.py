@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import duckdb
 import pyarrow.compute as pc
@@ -30,24 +30,18 @@ _OTHER = {"map_quality"}
 """Tables of the map that nothing is derived from."""
 
 
-class SourceDrive(NamedTuple):
-    """A drive with one ego, and where it is from."""
-
-    drive: Drive
-    where: str
-
-
 def open_drive(
     folder: Path, asked: RunRequest, drive_id: str, ego_id: str, *, trace: Path | None, map_: Path | None
-) -> SourceDrive:
-    """Return the drive that was judged. `trace`, `map_`: where log and map are now, if not where they were.
+) -> tuple[Drive, str]:
+    """Return the drive that was judged, with one ego, and where it is from.
 
+    `trace`, `map_`: where log and map are now, if not where they were.
     Errors: `UsageError` where neither the database was kept nor the log is where it was, or where the log is another one.
     """
     kept = folder / DATABASE_FILE
     if trace is None and kept.is_file():
         try:
-            return SourceDrive(_kept(kept, drive_id, ego_id), f"the kept database {kept.name}")
+            return _kept(kept, drive_id, ego_id), f"the kept database {kept.name}"
         except duckdb.Error as error:
             raise UsageError(f"{kept}: {str(error).splitlines()[0]}: check the drives again with --keep-db") from error
     path = trace or Path(asked.traces.get(drive_id, ""))
@@ -56,7 +50,7 @@ def open_drive(
             f"the log of {drive_id} is not at {path} any more and the result has no database (check --keep-db): "
             "say where it is with --trace FILE"
         )
-    return SourceDrive(_read(asked, path, map_, drive_id, ego_id), f"the log {path.name}, read again")
+    return _read(asked, path, map_, drive_id, ego_id), f"the log {path.name}, read again"
 
 
 def _read(asked: RunRequest, path: Path, map_: Path | None, drive_id: str, ego_id: str) -> Drive:

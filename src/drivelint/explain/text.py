@@ -142,9 +142,10 @@ def _decides(found: Explanation) -> list[str]:
         told += "; that is the first thing that was found missing: more may be missing there"
     text = "\n".join(found.sql.values())
     asked = row["reason_code"].startswith(("missing_declared", "missing_mode"))
-    events = [event for event in EVENTS if asked and f"'{event}'" in text]
     named = [
-        f"The rule reads the event {event} (value: {EVENTS[event].value}): {EVENTS[event].says}." for event in events
+        f"The rule reads the event {name} (value: {event.value}): {event.says}."
+        for name, event in EVENTS.items()
+        if asked and f"'{name}'" in text
     ]
     return [f"{told[0].upper()}{told[1:]}.", *named]
 
