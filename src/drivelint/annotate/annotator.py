@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import duckdb
     import pyarrow as pa
 
-    from drivelint.annotate.evidence import DangerSpaces, Evidence
+    from drivelint.annotate.evidence import Evidence
     from drivelint.engine.batch import Drive
     from drivelint.road.map_reader import MapTables
 
@@ -44,7 +44,7 @@ class Annotator:
         self._fail_on = fail_on
         self._strict = strict
         self._roads: dict[str, Road] = {}
-        self._rooms: list[DangerSpaces] = []
+        self._rooms: list[tuple[pa.Table, pa.Table]] = []
 
     def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], *, first: bool, last: bool) -> None:
         """Annotate a batch that was just judged in `con`, once the last of its parts was.

@@ -48,7 +48,8 @@ class Topic(NamedTuple):
 @cache
 def topics() -> tuple[Topic, ...]:
     """Return every guide, in reading order."""
-    return tuple(_topic(name) for name in TOPICS)
+    heads = ((name, *_source(name).splitlines()[:3]) for name in TOPICS)
+    return tuple(Topic(name, title.removeprefix("# "), sentence) for name, title, _, sentence in heads)
 
 
 def text(name: str, table: str | None = None) -> str:
@@ -85,8 +86,3 @@ def listing() -> str:
 
 def _source(name: str) -> str:
     return (FOLDER / f"{name}.md").read_text(encoding="utf-8")
-
-
-def _topic(name: str) -> Topic:
-    title, _, sentence, *_ = _source(name).splitlines()
-    return Topic(name, title.removeprefix("# "), sentence)
