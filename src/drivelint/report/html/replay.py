@@ -15,9 +15,10 @@ from drivelint.result.counts import grouped
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from drivelint.report.html.incidents import Key
     from drivelint.report.html.road import Road
     from drivelint.result.text import Row
+
+    Key = tuple[str, str, int]
 
 MAX_POINTS: Final = 60_000
 """Places of actors in the page; drives beyond that are shown without replay."""
