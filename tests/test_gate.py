@@ -19,7 +19,7 @@ import yaml
 from drivelint import cli
 from drivelint.demo import files
 from drivelint.guide import FOLDER
-from drivelint.report import report_formats
+from drivelint.report import outputs
 from tests.shared_data import ROOT
 
 GUIDE = (FOLDER / "ci.md").read_text(encoding="utf-8")
@@ -258,7 +258,7 @@ def test_each_report_is_written_from_the_folder_alone(results: dict[str, Path], 
     folder.mkdir()
     for file in (*results["new"].glob("*.parquet"), results["new"] / "summary.json"):
         shutil.copy(file, folder)
-    for kind, (name, _) in report_formats.REPORT_FORMATS.items():
+    for kind, (name, _) in outputs.REPORT_FORMATS.items():
         code, out, err = ran("report", str(folder), "--to", kind)
         assert (code, out, err) == (0, f"{folder / name}\n", "")
         first = (folder / name).read_bytes()

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from drivelint.errors import DriveLintError, ExitCode
-from drivelint.result.model import Result, exit_code, exit_status
+from drivelint.result.model import Result, exit_status
 from drivelint.result.schemas import empty_table
 from tests.report.synthetic import drive, result, rule, verdict
 
@@ -37,7 +37,7 @@ def test_exit_code(
     verdicts: list[str], drives: list[dict[str, Any]] | None, settings: dict[str, Any], code: ExitCode
 ) -> None:
     run = result([verdict(said, occurrence=n) for n, said in enumerate(verdicts)], drives=drives, **settings)
-    assert exit_code(run) is code
+    assert exit_status(run).code is code
     assert exit_status(run).why
 
 
@@ -52,17 +52,17 @@ def test_it_is_said_that_nothing_could_be_decided() -> None:
 def test_only_failures_at_or_above_the_threshold_gate(severity: str, fail_on: str) -> None:
     weight = {"critical": 3, "major": 2, "minor": 1, "never": 4}
     run = result([verdict("fail", severity=severity)], rules=[rule(severity=severity)], fail_on=fail_on)
-    assert (exit_code(run) is ExitCode.FAILED) == (weight[severity] >= weight[fail_on])
+    assert (exit_status(run).code is ExitCode.FAILED) == (weight[severity] >= weight[fail_on])
 
 
 @pytest.mark.parametrize("status", ["draft", "deprecated"])
 def test_only_stable_rules_gate(status: str) -> None:
     rows = [verdict("fail"), verdict("unknown", occurrence=1)]
-    assert exit_code(result(rows, rules=[rule(status=status)], strict=True)) is ExitCode.OK
+    assert exit_status(result(rows, rules=[rule(status=status)], strict=True)).code is ExitCode.OK
 
 
 def test_an_error_of_a_draft_is_still_an_error() -> None:
-    assert exit_code(result([verdict("error")], rules=[rule(status="draft")])) is ExitCode.USAGE
+    assert exit_status(result([verdict("error")], rules=[rule(status="draft")])).code is ExitCode.USAGE
 
 
 def test_a_lossy_drive_that_was_not_judged_is_no_lossy_verdict() -> None:

@@ -78,8 +78,8 @@ def messages(boxes: Boxes, clock: LogClock, channel: int) -> Iterator[RecordChun
         rows_of = rows[first[begin] : first[end - 1] + count[end - 1]]
         times, counts = log_time[begin:end], count[begin:end]
         starts = message_headers(channel, times, size[begin:end], int(begin))
-        pieces = _Pieces(heads, tracks.actor[rows_of], _tails(tracks, rows_of, np.repeat(times, counts)))
-        records, place = pieces.behind(starts, counts)
+        tails = _tails(tracks, rows_of, np.repeat(times, counts))
+        records, place = _behind(starts, counts, heads, tracks.actor[rows_of], tails)
         yield records, np.stack([times, place.astype(np.uint64)], axis=1)
 
 
@@ -91,16 +91,14 @@ def ego_transforms(boxes: Boxes, clock: LogClock, channel: int) -> Iterator[Reco
         return
     rows = boxes.rows[tracks.actor[boxes.rows] == tracks.names.index(min(egos))]
     log_time = clock.log_time(tracks.t_ns[rows])
-    z = np.nan_to_num(tracks.z[rows])
-    moved = [part for values in (tracks.x[rows], tracks.y[rows], z) for part in (wire.double_column(values),)]
-    half = tracks.yaw[rows] / 2
+    z, half = np.nan_to_num(tracks.z[rows]), tracks.yaw[rows] / 2
     body = wire.join_columns(
         len(rows),
         wire.text(2, draw.MAP_FRAME) + wire.text(3, EGO_FRAME),
-        b"\x22\x1b\x09", moved[0], b"\x11", moved[1], b"\x19", moved[2],
-        b"\x2a\x12\x19", wire.double_column(np.sin(half)), b"\x21", wire.double_column(np.cos(half)),
+        _doubles(4, tracks.x[rows], tracks.y[rows], z),
+        _doubles(5, np.sin(half), np.cos(half), first=3),
         wire.timestamps(1, log_time),
-    )  # fmt: skip
+    )
     size = body.shape[1] + message_headers(channel, log_time[:0], log_time[:0].astype(np.int64), 0).shape[1]
     for first in range(0, len(rows), CHUNK_BYTES // size):
         part = slice(first, first + CHUNK_BYTES // size)
@@ -122,32 +120,29 @@ def message_headers(channel: int, log_time: NDArray[np.uint64], size: NDArray[np
     return head.view(np.uint8).reshape(n, head.dtype.itemsize)
 
 
-@dataclass(frozen=True)
-class _Pieces:
-    """The boxes of some steps: of each its actor, what is the same for that actor at every step, and what changes."""
+def _behind(
+    starts: wire.Bytes, count: NDArray[np.int64], heads: list[bytes], actor: NDArray[np.int32], tails: wire.Bytes
+) -> tuple[bytes, NDArray[np.int64]]:
+    """Lay `count` boxes behind each of `starts`, all pieces of one width at once; return where each start lies.
 
-    heads: list[bytes]
-    actor: NDArray[np.int32]
-    tails: wire.Bytes
-
-    def behind(self, starts: wire.Bytes, count: NDArray[np.int64]) -> tuple[bytes, NDArray[np.int64]]:
-        """Lay `count` boxes behind each of `starts`, all pieces of one width at once; return where each start lies."""
-        head_width = np.array([len(head) for head in self.heads])[self.actor]
-        is_start = np.zeros(len(self.actor) + len(count), np.bool_)
-        is_start[np.cumsum(count) - count + np.arange(len(count))] = True
-        width = np.where(is_start, starts.shape[1], 0)
-        width[~is_start] = head_width + self.tails.shape[1]
-        place = np.cumsum(width) - width
-        out = np.empty(int(width.sum()), np.uint8)
-        out[place[is_start, None] + np.arange(starts.shape[1])] = starts
-        box_place = place[~is_start]
-        for w in np.unique(head_width):
-            chosen = np.flatnonzero(head_width == w)
-            names, which = np.unique(self.actor[chosen], return_inverse=True)
-            table = np.stack([np.frombuffer(self.heads[name], np.uint8) for name in names])
-            piece = np.concatenate([table[which], self.tails[chosen]], axis=1)
-            out[box_place[chosen, None] + np.arange(piece.shape[1])] = piece
-        return out.tobytes(), place[is_start]
+    Of each box: `heads[actor]`, which is the same for that actor at every step, and a row of `tails`, which changes.
+    """
+    head_width = np.array([len(head) for head in heads])[actor]
+    is_start = np.zeros(len(actor) + len(count), np.bool_)
+    is_start[np.cumsum(count) - count + np.arange(len(count))] = True
+    width = np.where(is_start, starts.shape[1], 0)
+    width[~is_start] = head_width + tails.shape[1]
+    place = np.cumsum(width) - width
+    out = np.empty(int(width.sum()), np.uint8)
+    out[place[is_start, None] + np.arange(starts.shape[1])] = starts
+    box_place = place[~is_start]
+    for w in np.unique(head_width):
+        chosen = np.flatnonzero(head_width == w)
+        names, which = np.unique(actor[chosen], return_inverse=True)
+        table = np.stack([np.frombuffer(heads[name], np.uint8) for name in names])
+        piece = np.concatenate([table[which], tails[chosen]], axis=1)
+        out[box_place[chosen, None] + np.arange(piece.shape[1])] = piece
+    return out.tobytes(), place[is_start]
 
 
 def _lifetime(t_ns: NDArray[np.int64]) -> int:
@@ -169,9 +164,8 @@ def _heads(tracks: Tracks, lifetime_ns: int) -> list[bytes]:
             "length": f"{size[0]:.2f} m",
             "width": f"{size[1]:.2f} m",
         }
-        pairs = b"".join(wire.nested(6, wire.text(1, k) + wire.text(2, v)) for k, v in facts.items())
         lifetime = wire.time(4, lifetime_ns) if lifetime_ns else b""
-        body = wire.text(2, draw.MAP_FRAME) + wire.text(3, name) + lifetime + pairs
+        body = wire.text(2, draw.MAP_FRAME) + wire.text(3, name) + lifetime + draw.facts_fields(facts)
         body += draw.cube_header(len(cube) + _POSE_WIDTH) + cube
         heads.append(wire.varint(2 << 3 | 2) + wire.varint(len(body) + _tail_width()) + body)
     return heads
@@ -183,39 +177,27 @@ def _tails(tracks: Tracks, rows: NDArray[np.intp], log_time: NDArray[np.uint64])
     z = tracks.z[rows]
     height = np.nan_to_num(tracks.sizes[tracks.actor[rows], 2], nan=_HEIGHT)
     z = np.where(np.isfinite(z), z, height / 2)
-    return np.concatenate(
-        [pose_fields(1, tracks.x[rows], tracks.y[rows], z, half), wire.timestamps(1, log_time)], axis=1
-    )
+    pose = _pose_fields(tracks.x[rows], tracks.y[rows], z, half)
+    return np.concatenate([pose, wire.timestamps(1, log_time)], axis=1)
 
 
-def pose_fields(
-    number: int, x: NDArray[np.float64], y: NDArray[np.float64], z: NDArray[np.float64], half_yaw: NDArray[np.float64]
+def _pose_fields(
+    x: NDArray[np.float64], y: NDArray[np.float64], z: NDArray[np.float64], half_yaw: NDArray[np.float64]
 ) -> wire.Bytes:
     """Return one encoded pose field per row."""
-    where = wire.join_columns(
-        len(x),
-        wire.varint(1 << 3 | 2) + b"\x1b",
-        b"\x09",
-        wire.double_column(x),
-        b"\x11",
-        wire.double_column(y),
-        b"\x19",
-        wire.double_column(z),
-    )
-    turned = wire.join_columns(
-        len(x),
-        wire.varint(2 << 3 | 2) + b"\x12",
-        b"\x19",
-        wire.double_column(np.sin(half_yaw)),
-        b"\x21",
-        wire.double_column(np.cos(half_yaw)),
-    )
-    return wire.join_columns(
-        len(x), wire.varint(number << 3 | 2) + wire.varint(where.shape[1] + turned.shape[1]), where, turned
-    )
+    where, turned = _doubles(1, x, y, z), _doubles(2, np.sin(half_yaw), np.cos(half_yaw), first=3)
+    head = wire.varint(1 << 3 | 2) + wire.varint(where.shape[1] + turned.shape[1])
+    return wire.join_columns(len(x), head, where, turned)
 
 
-_POSE_WIDTH: Final = int(pose_fields(1, *(np.zeros(1),) * 4).shape[1])
+def _doubles(number: int, *columns: NDArray[np.float64], first: int = 1) -> wire.Bytes:
+    """Return a field that holds a message of doubles, numbered from `first`, a row each."""
+    keyed = [(wire.varint(n << 3 | 1), wire.double_column(values)) for n, values in enumerate(columns, first)]
+    head = wire.varint(number << 3 | 2) + wire.varint(9 * len(columns))
+    return wire.join_columns(len(columns[0]), head, *(part for pair in keyed for part in pair))
+
+
+_POSE_WIDTH: Final = int(_pose_fields(*(np.zeros(1),) * 4).shape[1])
 
 
 def _tail_width() -> int:

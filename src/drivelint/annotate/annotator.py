@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import duckdb
     import pyarrow as pa
 
-    from drivelint.annotate.evidence import DangerSpaces, Evidence
+    from drivelint.annotate.evidence import Evidence
     from drivelint.engine.batch import Drive
     from drivelint.road.map_reader import MapTables
 
@@ -44,7 +44,7 @@ class Annotator:
         self._fail_on = fail_on
         self._strict = strict
         self._roads: dict[str, Road] = {}
-        self._rooms: list[DangerSpaces] = []
+        self._rooms: list[tuple[pa.Table, pa.Table]] = []
 
     def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], *, first: bool, last: bool) -> None:
         """Annotate a batch that was just judged in `con`, once the last of its parts was.
@@ -60,15 +60,9 @@ class Annotator:
         found = gather_evidence(con, ids, self._rooms)
         self._rooms.clear()
         for drive in drives:
-            name = drive.trace.drive_id
-            said = Annotation(
-                drive.trace,
-                found[name],
-                self._road(drive.environment),
-                self._versions,
-                self._senses,
-                self._summary(found[name]),
-            )
+            name, road = drive.trace.drive_id, self._road(drive.environment)
+            told = self._summary(found[name])
+            said = Annotation(drive.trace, found[name], road, self._versions, self._senses, told)
             with _whole(self._folder / f"{name}.mcap") as file:
                 write(file, said)
         with _whole(self._folder / LAYOUT_FILE) as file:
@@ -84,15 +78,8 @@ class Annotator:
 
     def _summary(self, evidence: Evidence) -> bytes:
         """Return the summary of one drive, as if it had been checked alone."""
-        alone = Result(
-            evidence.verdicts,
-            evidence.findings,
-            evidence.drive,
-            self._rules,
-            fail_on=self._fail_on,
-            strict=self._strict,
-        )
-        return summary.render(alone)
+        tables = (evidence.verdicts, evidence.findings, evidence.drive, self._rules)
+        return summary.render(Result(*tables, fail_on=self._fail_on, strict=self._strict))
 
 
 @contextmanager

@@ -11,7 +11,9 @@ import pyarrow.compute as pc
 from drivelint.annotate import draw
 from drivelint.annotate.draw import Colour
 from drivelint.annotate.result_messages import Message
+from drivelint.annotate.tracks import floats
 from drivelint.formats.foxglove import messages as foxglove
+from drivelint.result.counts import grouped
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -34,11 +36,9 @@ _LEAST_M: Final = 0.1
 
 def messages(evidence: Evidence, tracks: Tracks, clock: LogClock) -> list[Message]:
     """Return a SceneUpdate for every step of an overtake, and an empty one behind each."""
-    rows = evidence.spaces
+    rows = evidence.spaces.to_pylist()
     every = max(1, -(-len(rows) // MAX_STEPS))
-    by_time: dict[int, list[dict[str, Any]]] = {}
-    for row in rows[::every]:
-        by_time.setdefault(row["t_ns"], []).append(row)
+    by_time = grouped(rows[::every], lambda row: int(row["t_ns"]))
     for ego in sorted({row["ego_id"] for row in rows}):
         for t in _behind(tracks.times(ego), np.array([r["t_ns"] for r in rows if r["ego_id"] == ego], np.int64)):
             by_time.setdefault(t, [])
@@ -85,7 +85,7 @@ class _Lines:
         if (ego, chain) not in self._found:
             mine = pc.and_(pc.equal(self._chains["ego_id"], ego), pc.equal(self._chains["chain_id"], chain))
             rows = self._chains.filter(mine)
-            columns = [np.asarray(rows[c].to_numpy(), np.float64) for c in ("s_m", "x_m", "y_m", "z_m", "tx", "ty")]
+            columns = [floats(rows[name]) for name in ("s_m", "x_m", "y_m", "z_m", "tx", "ty")]
             self._found[ego, chain] = np.nan_to_num(np.stack(columns)[:, np.argsort(columns[0], kind="stable")])
         return self._found[ego, chain]
 
@@ -123,14 +123,9 @@ def _spaces(row: dict[str, Any], lines: _Lines) -> bytes:
         if None not in (s, d, half, sd):
             start, end = sorted((s, s + direction * sd))
             if strip := lines.strip(row, start, end, d, half):
-                parts += _space(strip, ENTERED_COLOUR if met else OVERLAP_COLOUR if row["overlap"] else FREE_COLOUR)
+                left, right = strip
+                colour = ENTERED_COLOUR if met else OVERLAP_COLOUR if row["overlap"] else FREE_COLOUR
+                around = np.concatenate([left, right[::-1]])
+                parts.append(draw.ribbon(left, right, colour.faint(0.3)))
+                parts.append(draw.line(around, colour, thickness=2.0, kind=foxglove.LINE_LOOP))
     return b"".join(parts)
-
-
-def _space(strip: Strip, colour: Colour) -> list[bytes]:
-    left, right = strip
-    around = np.concatenate([left, right[::-1]])
-    return [
-        draw.ribbon(left, right, colour.faint(0.3)),
-        draw.line(around, colour, thickness=2.0, kind=foxglove.LINE_LOOP),
-    ]

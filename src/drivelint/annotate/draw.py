@@ -31,14 +31,15 @@ class Colour(NamedTuple):
         return self._replace(a=opacity)
 
 
-def entity(
-    name: str, log_time: int, primitives: bytes, *, lifetime_ns: int = 0, facts: dict[str, str] | None = None
-) -> bytes:
+def entity(name: str, log_time: int, primitives: bytes, facts: dict[str, str] | None = None) -> bytes:
     """Return a scene entity as a field of a SceneUpdate; `facts` are shown when it is clicked on."""
-    pairs = (wire.nested(6, wire.text(1, key) + wire.text(2, value)) for key, value in (facts or {}).items())
-    lifetime = wire.time(4, lifetime_ns) if lifetime_ns else b""
-    head = wire.time(1, log_time) + wire.text(2, MAP_FRAME) + wire.text(3, name) + lifetime
-    return wire.nested(2, head + b"".join(pairs) + primitives)
+    head = wire.time(1, log_time) + wire.text(2, MAP_FRAME) + wire.text(3, name)
+    return wire.nested(2, head + facts_fields(facts or {}) + primitives)
+
+
+def facts_fields(facts: dict[str, str]) -> bytes:
+    """Return the fields of a scene entity that hold its facts."""
+    return b"".join(wire.nested(6, wire.text(1, key) + wire.text(2, value)) for key, value in facts.items())
 
 
 def deletion(log_time: int) -> bytes:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import pyarrow as pa
 import pyarrow.compute as pc
@@ -51,41 +51,21 @@ class Evidence:
     verdicts: pa.Table
     findings: pa.Table
     drive: pa.Table
-    spaces: list[dict[str, Any]]
-    chains: pa.Table
-
-
-class DangerSpaces(NamedTuple):
-    """Danger spaces and the chains they lie on, of a part of a drive or of a batch."""
-
     spaces: pa.Table
     chains: pa.Table
 
 
-def danger_spaces(con: duckdb.DuckDBPyConnection, drive_ids: Sequence[str]) -> DangerSpaces:
-    """Return the danger spaces and chains of these drives, while the database still has them."""
+def danger_spaces(con: duckdb.DuckDBPyConnection, drive_ids: Sequence[str]) -> tuple[pa.Table, pa.Table]:
+    """Return the danger spaces of these drives and the chains they lie on, while the database still has them."""
     ids = list(drive_ids)
-    return DangerSpaces(con.execute(_SPACES, [ids]).to_arrow_table(), con.execute(_CHAINS, [ids]).to_arrow_table())
+    return con.execute(_SPACES, [ids]).to_arrow_table(), con.execute(_CHAINS, [ids]).to_arrow_table()
 
 
 def gather_evidence(
-    con: duckdb.DuckDBPyConnection, drive_ids: Sequence[str], rooms: Sequence[DangerSpaces]
+    con: duckdb.DuckDBPyConnection, drive_ids: Sequence[str], rooms: Sequence[tuple[pa.Table, pa.Table]]
 ) -> dict[str, Evidence]:
-    """Return the evidence of every drive of a batch whose last part was just judged."""
+    """Return the evidence of every drive of a batch whose last part was just judged. `rooms`: `danger_spaces` of each part."""
     ids = list(drive_ids)
-    spaces, chains = (pa.concat_tables(tables) for tables in zip(*rooms, strict=True))
-    verdicts, findings, rows = collect.verdicts(con, ids), collect.findings(con, ids), collect.drives(con, ids)
-    return {
-        drive: Evidence(
-            _of(verdicts, drive),
-            _of(findings, drive),
-            _of(rows, drive),
-            _of(spaces, drive).to_pylist(),
-            _of(chains, drive),
-        )
-        for drive in ids
-    }
-
-
-def _of(rows: pa.Table, drive: str) -> pa.Table:
-    return rows.filter(pc.equal(rows["drive_id"], drive))
+    tables = [collect.verdicts(con, ids), collect.findings(con, ids), collect.drives(con, ids)]
+    tables += [pa.concat_tables(parts) for parts in zip(*rooms, strict=True)]
+    return {drive: Evidence(*(rows.filter(pc.equal(rows["drive_id"], drive)) for rows in tables)) for drive in ids}

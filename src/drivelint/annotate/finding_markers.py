@@ -101,8 +101,7 @@ def messages(evidence: Evidence, tracks: Tracks, clock: LogClock, senses: Mappin
 
 
 def _window(row: dict[str, Any], senses: Mapping[str, str], colour: Colour, start_ns: int, end_ns: int) -> Marker:
-    text = headline(row, senses)
-    return Marker(row["ego_id"], row["object_id"], start_ns, end_ns, colour, text)
+    return Marker(row["ego_id"], row["object_id"], start_ns, end_ns, colour, headline(row, senses))
 
 
 def _steps(tracks: Tracks, window: Marker) -> tuple[NDArray[np.int64], int | None]:

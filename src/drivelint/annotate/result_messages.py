@@ -54,9 +54,8 @@ def log_messages(rows: pa.Table, clock: LogClock, t_start_ns: int, senses: Mappi
     for row in rows.to_pylist():
         if row["verdict"] in {"fail", "error", "unknown"} or row["near_miss"]:
             time = clock.at(display_time(row, t_start_ns))
-            level = (
-                foxglove.ERROR if (row["verdict"], row["severity"]) == ("fail", "critical") else _LEVELS[row["verdict"]]
-            )
+            critical = (row["verdict"], row["severity"]) == ("fail", "critical")
+            level = foxglove.ERROR if critical else _LEVELS[row["verdict"]]
             said = wire.text(3, f"{headline(row, senses)}. {row['reason']}") + wire.text(4, row["rule_id"])
             lines.append(Message(time, wire.time(1, time) + wire.integer(2, level) + said))
     return _in_order(lines)

@@ -11,6 +11,7 @@ import shapely
 
 from drivelint.annotate import draw
 from drivelint.annotate.draw import Colour
+from drivelint.annotate.tracks import floats
 from drivelint.formats.foxglove import messages as foxglove
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ VERGE = Colour(0.33, 0.36, 0.32)
 BOUND_COLOUR = Colour(0.80, 0.80, 0.78)
 ARROW_COLOUR = Colour(0.55, 0.57, 0.60)
 _FOOT: Final = frozenset({"sidewalk", "walking"})
-_UNDRAWN: Final = frozenset({"none"})
+_COLUMNS: Final = ("x_m", "y_m", "z_m", "tx", "ty", "left_x_m", "left_y_m", "right_x_m", "right_y_m")
 _SURFACE_DOWN_M: Final = 0.05  # below the bounds, so that neither flickers through the other
 
 
@@ -37,7 +38,7 @@ class Road:
     def __init__(self, environment: MapTables) -> None:
         points, lanelets = environment.tables["lane_point"], environment.tables["lanelet"]
         order = points.sort_by([("lanelet_id", "ascending"), ("k", "ascending")])
-        self._points = {name: _floats(order, name) for name in _COLUMNS}
+        self._points = {name: floats(order[name]) for name in _COLUMNS}
         names = np.asarray(order["lanelet_id"].to_numpy(zero_copy_only=False), object).astype(str)
         self._names, first, count = np.unique(names, return_index=True, return_counts=True)
         self._rows = [slice(int(a), int(a + n)) for a, n in zip(first, count, strict=True)]
@@ -67,14 +68,14 @@ class Road:
 
     def _entity(self, number: int, log_time: int) -> bytes:
         name = str(self._names[number])
-        if number not in self._encoded:
-            self._encoded[number] = self._primitives(number, self._about[name])
         about = self._about[name]
+        if number not in self._encoded:
+            self._encoded[number] = self._primitives(number, about)
         facts = {"lane type": about["lane_type"], "road": about["road_id"]}
-        return draw.entity(name, log_time, self._encoded[number], facts=facts)
+        return draw.entity(name, log_time, self._encoded[number], facts)
 
     def _primitives(self, number: int, about: dict[str, Any]) -> bytes:
-        if about["lane_type"] in _UNDRAWN:
+        if about["lane_type"] == "none":
             return b""
         p = {name: values[self._rows[number]] for name, values in self._points.items()}
         z = np.nan_to_num(p["z_m"])
@@ -91,10 +92,3 @@ class Road:
             yaw = math.atan2(p["ty"][k], p["tx"][k])
             parts.append(draw.arrow((float(p["x_m"][k]), float(p["y_m"][k]), float(z[k])), yaw, 3.0, ARROW_COLOUR))
         return b"".join(parts)
-
-
-_COLUMNS: Final = ("x_m", "y_m", "z_m", "tx", "ty", "left_x_m", "left_y_m", "right_x_m", "right_y_m")
-
-
-def _floats(table: Any, column: str) -> NDArray[np.float64]:
-    return np.asarray(table[column].to_numpy(), np.float64)

@@ -75,23 +75,19 @@ def tracks(tables: Mapping[str, pa.Table]) -> Tracks:
     states = tables["actor_state"]
     codes = pc.dictionary_encode(states["actor_id"].combine_chunks())
     names = codes.dictionary.to_pylist()
-    about = {row["actor_id"]: row for row in tables["actor"].to_pylist()}
-    sizes = [[_number(about[n][c]) for c in ("length_m", "width_m", "height_m")] for n in names]
-    columns = {c: _floats(states[c]) for c in ("x_m", "y_m", "z_m", "yaw_rad")}
+    known = tables["actor"]
+    about = known.take(pc.index_in(codes.dictionary, value_set=known["actor_id"].combine_chunks()))
     return Tracks(
         names,
-        [about[n]["actor_class"] for n in names],
-        np.array(sizes, np.float64).reshape(-1, 3),
-        [about[n]["is_ego"] for n in names],
+        about["actor_class"].to_pylist(),
+        np.column_stack([floats(about[name]) for name in ("length_m", "width_m", "height_m")]),
+        about["is_ego"].to_pylist(),
         codes.indices.to_numpy(),
         states["t_ns"].to_numpy(),
-        *columns.values(),
+        *(floats(states[name]) for name in ("x_m", "y_m", "z_m", "yaw_rad")),
     )
 
 
-def _number(value: float | None) -> float:
-    return float("nan") if value is None else value
-
-
-def _floats(column: pa.ChunkedArray) -> NDArray[np.float64]:
+def floats(column: pa.ChunkedArray) -> NDArray[np.float64]:
+    """Return a column as numbers, with NaN for NULL."""
     return np.asarray(column.to_numpy(), np.float64)

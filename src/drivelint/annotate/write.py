@@ -82,34 +82,19 @@ class _Writer:
         if self._said.road is not None and len(boxes.rows):
             at = times.at(start)
             lanes = self._said.road.lanes_near(self._tracks.x[boxes.rows], self._tracks.y[boxes.rows], at)
-            self._few("map", "protobuf", scene, [result_messages.Message(at, lanes)])
+            self._few("map", scene, [result_messages.Message(at, lanes)])
         self._many("scene", scene, lambda channel: actor_boxes.messages(boxes, times, channel))
         if not self._moves:  # the log's own frames are not ours to speak of
-            self._many(
-                "tf",
-                foxglove.schema("FrameTransform"),
-                lambda channel: actor_boxes.ego_transforms(boxes, times, channel),
-            )
-        self._few("danger_spaces", "protobuf", scene, danger_spaces.messages(evidence, self._tracks, times))
-        self._few("markers", "protobuf", scene, finding_markers.messages(evidence, self._tracks, times, senses))
-        self._few(
-            "verdicts",
-            "json",
-            result_messages.schema("verdict"),
-            result_messages.verdict_messages(evidence.verdicts, times, start),
-        )
-        self._few(
-            "findings",
-            "json",
-            result_messages.schema("finding"),
-            result_messages.finding_messages(evidence.findings, times),
-        )
-        self._few(
-            "log",
-            "protobuf",
-            foxglove.schema("Log"),
-            result_messages.log_messages(evidence.verdicts, times, start, senses),
-        )
+            transform = foxglove.schema("FrameTransform")
+            self._many("tf", transform, lambda channel: actor_boxes.ego_transforms(boxes, times, channel))
+        self._few("danger_spaces", scene, danger_spaces.messages(evidence, self._tracks, times))
+        self._few("markers", scene, finding_markers.messages(evidence, self._tracks, times, senses))
+        verdicts = result_messages.verdict_messages(evidence.verdicts, times, start)
+        self._few("verdicts", result_messages.schema("verdict"), verdicts)
+        findings = result_messages.finding_messages(evidence.findings, times)
+        self._few("findings", result_messages.schema("finding"), findings)
+        lines = result_messages.log_messages(evidence.verdicts, times, start, senses)
+        self._few("log", foxglove.schema("Log"), lines)
         self._sink.add_metadata("drivelint", self._facts(boxes.every))
         self._sink.add_attachment("summary.json", "application/json", self._said.summary, times.at(start))
 
@@ -118,7 +103,8 @@ class _Writer:
         for records, index in chunks(channel):
             self._sink.add_chunk(records, {channel: index})
 
-    def _few(self, topic: str, encoding: str, schema: Schema, messages: list[Message]) -> None:
+    def _few(self, topic: str, schema: Schema, messages: list[Message]) -> None:
+        encoding = "json" if schema.encoding == "jsonschema" else "protobuf"
         channel = self._sink.add_channel(f"{self._prefix}/{topic}", encoding, schema)
         for first, group in _cut(messages):
             size = np.array([len(m.data) for m in group])
@@ -132,16 +118,9 @@ class _Writer:
         """Return what the verdicts stand on: tool, log, map, rules with their versions."""
         row = self._said.evidence.drive.to_pylist()[0]
         known = (
-            "drive_id",
-            "file_name",
-            "sha256",
-            "format",
-            "environment_id",
-            "map_name",
-            "map_sha256",
-            "handedness",
+            "drive_id", "file_name", "sha256", "format", "environment_id", "map_name", "map_sha256", "handedness",
             "handedness_source",
-        )
+        )  # fmt: skip
         shift = self._clock.shift_ns
         return {
             "tool": "drivelint",

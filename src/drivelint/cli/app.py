@@ -124,7 +124,7 @@ def check(
     from drivelint.gate import GateInputs
     from drivelint.report.outputs import write
     from drivelint.result.files import prepare_folder
-    from drivelint.result.model import exit_code
+    from drivelint.result.model import exit_status
     from drivelint.settings import SETTINGS_FILE
 
     gate_inputs = GateInputs.from_files(baseline, waivers, Path(SETTINGS_FILE), values.parse_today(today), out)
@@ -157,7 +157,7 @@ def check(
                 f"{format_bytes(most)} of memory were taken at most, with everything that is not the database's"
             )
     _print(result, format_, out)
-    raise typer.Exit(int(exit_code(result)))
+    raise typer.Exit(int(exit_status(result).code))
 
 
 @app.command()

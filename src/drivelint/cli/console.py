@@ -40,9 +40,9 @@ def progress(quiet: bool) -> AbstractContextManager[Progress]:
         return nullcontext(Silent())
     if not sys.stderr.isatty():
         return nullcontext(NotePrinter())
-    from drivelint.report.console import Bar
+    from drivelint.report.console import bar
 
-    return Bar()
+    return bar()
 
 
 def print_rich(what: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> None:

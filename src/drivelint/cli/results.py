@@ -26,7 +26,7 @@ def report(
 
     Files: report.html, junit.xml, report.sarif, report.xqar, report.md. Prints the name of the one that was written.
     """
-    from drivelint.report.report_formats import REPORT_FORMATS
+    from drivelint.report.outputs import REPORT_FORMATS
     from drivelint.result.files import publish
     from drivelint.result.load import load_result
 

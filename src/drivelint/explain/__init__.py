@@ -16,9 +16,8 @@ from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.errors import UsageError
 from drivelint.explain import evidence
 from drivelint.explain.change import verdict_changes
-from drivelint.explain.model import Explanation, Sensitivity
-from drivelint.explain.outcome import first_unknown
-from drivelint.explain.sensitivity import MeasurementErrors, perturbed_copies, verdict_counts
+from drivelint.explain.model import Explanation
+from drivelint.explain.sensitivity import MeasurementErrors, verdict_sensitivity
 from drivelint.explain.source import open_drive
 from drivelint.explain.target import VerdictFilter, find_verdict
 from drivelint.explain.verdict_context import VerdictContext, sufficient_part
@@ -32,7 +31,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.catalogue import Rule
-    from drivelint.engine.batch import Drive
     from drivelint.explain.model import Change, Row, Step
     from drivelint.explain.target import Target
     from drivelint.result.model import Result
@@ -89,8 +87,8 @@ def explain(request: ExplainRequest) -> Explanation:
                 sandbox = opened.enter_context(case.sandbox([part]))
             found = verdict_changes(case, sandbox, now)
             if request.errors.samples:
-                sensitivity = _sensitivity(case, part, request.errors, span)
-    rule = case.rule
+                sensitivity = verdict_sensitivity(case, part, request.errors, span)
+    rule, about = case.rule, _drive(result, row["drive_id"])
     return Explanation(
         rule={
             "rule_id": rule.id,
@@ -98,10 +96,10 @@ def explain(request: ExplainRequest) -> Explanation:
             **{key: getattr(rule, key) for key in _RULE},
             "applies": rule.applies.restricting,
         },
-        drive=_drive(result, row["drive_id"]),
+        drive=about,
         verdict={**row, "judged_anew": now},
         others=target.others,
-        asks=_asks(rule, row, _drive(result, row["drive_id"])["t_start_ns"] or 0),
+        asks=_asks(rule, row, about["t_start_ns"] or 0),
         decides_ns=decides,
         sql=evidence.sql_with_values(rule, case.params),
         params=[
@@ -136,17 +134,14 @@ def _asks(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
         return reason_text.advice_sentence(
             row["cause_code"], json.loads(row["cause_args"] or "{}"), start_ns, rule.reasons
         )
-    return {"reference_time_unknown": rule.without_time, "anchor_unknown": rule.without_anchor}.get(
-        row.get("reason_code", "")
-    )
+    return {"reference_time_unknown": rule.without_time, "anchor_unknown": rule.without_anchor}.get(row["reason_code"])
 
 
 def _decides(target: Target, series: list[Step], now: str) -> int | None:
     """Return the step that the verdict hangs on; None: it is about no step."""
-    times: list[int | None] = [target.verdict_row["t_worst_ns"], target.verdict_row["t_start_ns"]]
-    if now == "unknown":
-        # somebody who is lost has no step after the last one: that is the one to show
-        times = [first_unknown(series), target.verdict_row["t_worst_ns"], target.verdict_row["t_start_ns"]]
+    # somebody who is lost has no step after the last one: that is the one to show
+    unknown = [step.t_ns for step in series if step.holds is None and now == "unknown"]
+    times = [*unknown[:1], target.verdict_row["t_worst_ns"], target.verdict_row["t_start_ns"]]
     return next((t_ns for t_ns in times if t_ns is not None), None)
 
 
@@ -161,19 +156,6 @@ def _notes(case: VerdictContext, now: str) -> list[str]:
     if now != before:
         notes.append(f"Judged anew it is {now}, not {before} as in the result: the tool or the rule has changed.")
     return notes
-
-
-def _sensitivity(
-    case: VerdictContext, drive: Drive, errors: MeasurementErrors, span: tuple[int, int] | None
-) -> Sensitivity:
-    found: list[str] = []
-    for batch in perturbed_copies(drive, errors):
-        with case.sandbox(batch) as sandbox:
-            found += case.verdicts_on(sandbox.judge(case.params), [copy.trace.drive_id for copy in batch])
-    start, end = span or (None, None)
-    return Sensitivity(
-        errors.samples, errors.seed, errors.position_m, errors.time_s, errors.map_m, verdict_counts(found), start, end
-    )
 
 
 def _drive(result: Result, drive_id: str) -> Row:

@@ -34,14 +34,6 @@ class _Number(NamedTuple):
     judge: Callable[[float], str]
 
 
-class _Edge(NamedTuple):
-    """The nearest value on one side that changes the verdict, what it becomes, and the furthest one looked at that agrees."""
-
-    value: float
-    becomes: str
-    beyond: bool
-
-
 def verdict_changes(case: VerdictContext, sandbox: Sandbox, verdict: str) -> list[Change]:
     """Return the nearest change of each number that changes `verdict` on the drive in `sandbox`, the least relative one first."""
     found = [_nearest(number, verdict) for number in _numbers(case, sandbox)]
@@ -90,7 +82,7 @@ def _nearest(number: _Number, verdict: str) -> Change:
     none = Change(number.name, number.what, number.unit, number.now, None, None, False, low, high)
     shut: set[int] = set()
     for n in range(len(SEARCH_FACTORS)):
-        edges = []
+        edges: list[Change] = []
         for side, values in enumerate(sides):
             if n >= len(values) or side in shut:
                 continue
@@ -98,10 +90,10 @@ def _nearest(number: _Number, verdict: str) -> Change:
             if becomes == "error":
                 shut.add(side)  # no value beyond it means anything
             elif not _same(becomes, verdict):
-                edges.append(_edge(number, values, n, becomes))
+                value, beyond = _edge(number, values, n, becomes)
+                edges.append(none._replace(found=value, becomes=becomes, beyond=beyond))
         if edges:
-            edge = min(edges, key=lambda e: (abs(e.value - number.now), e.value))
-            return none._replace(found=edge.value, becomes=edge.becomes, beyond=edge.beyond)
+            return min(edges, key=lambda edge: (abs((edge.found or 0.0) - number.now), edge.found))
     return none
 
 
@@ -116,7 +108,8 @@ def _same(becomes: str, verdict: str) -> bool:
     return becomes == verdict or (becomes == "unknown" and verdict in {"pass", "fail"})
 
 
-def _edge(number: _Number, values: list[float], at: int, becomes: str) -> _Edge:
+def _edge(number: _Number, values: list[float], at: int, becomes: str) -> tuple[float, bool]:
+    """Return the nearest value on one side that changes the verdict, and whether those further away agree."""
     near, far = (values[at - 1] if at else number.now), values[at]
     for _ in range(_HALVINGS):
         middle = (near + far) / 2
@@ -125,7 +118,7 @@ def _edge(number: _Number, values: list[float], at: int, becomes: str) -> _Edge:
         else:
             near = middle
     further = values[at + 1 : at + 3] or [values[at]]
-    return _Edge(_round(number, far, becomes), becomes, all(number.judge(v) == becomes for v in further))
+    return _round(number, far, becomes), all(number.judge(v) == becomes for v in further)
 
 
 def _round(number: _Number, far: float, becomes: str) -> float:

@@ -59,7 +59,7 @@ def judged_steps(rule: Rule, target: Target, judged: Judgement) -> list[Step]:
     if rule.combine == "each":
         same["object_id"] = row["object_id"]
     return [
-        Step(step["t_ns"], step["observed"], step["required"], step["margin"], step["holds"])
+        Step(*(step[name] for name in Step._fields))
         for step in judged.steps
         if start <= step["t_ns"] <= end and all(step[key] == value for key, value in same.items())
     ]

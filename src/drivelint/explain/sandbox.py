@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from contextlib import ExitStack
+from contextlib import contextmanager
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import duckdb
 import pyarrow as pa
@@ -18,10 +18,10 @@ from drivelint.sql import store
 from drivelint.sql.derivations import derivations, needed
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from types import TracebackType
+    from collections.abc import Iterator, Mapping, Sequence
 
     from drivelint.catalogue import Rule
+    from drivelint.drive.trace import Trace
     from drivelint.engine.batch import Drive
     from drivelint.explain.model import Row
 
@@ -37,22 +37,23 @@ class Judgement(NamedTuple):
 
 
 class Sandbox:
-    """One rule over some copies of a drive, derived once. Use it as a context manager.
+    """One rule over some copies of a drive, derived once."""
 
-    `drives` share one map. The shipped or user's `profiles` are the rows of the table `profile`. `memory` is the limit of the
-    database in bytes (None: 80 % of the machine's), which is lifted where it does not do.
-    """
-
-    def __init__(self, rule: Rule, drives: Sequence[Drive], profiles: pa.Table, memory: int | None) -> None:
+    def __init__(
+        self,
+        rule: Rule,
+        drives: Sequence[Drive],
+        profiles: pa.Table,
+        con: duckdb.DuckDBPyConnection,
+        memory: int | None,
+    ) -> None:
         self._rule = rule
         self.drive_id = drives[0].trace.drive_id
-        with ExitStack() as stack:
-            self.con = stack.enter_context(store.workspace(memory))
-            self._memory = Memory(self.con, memory)
-            self._insert("profile", profiles)
-            self._fill(drives)
-            self._derive()
-            self._opened = stack.pop_all()
+        self.con = con
+        self._memory = Memory(con, memory)
+        self._insert("profile", profiles)
+        self._fill(drives)
+        self._derive()
 
     def _insert(self, table: str, rows: pa.Table) -> None:
         self._memory.run_job(lambda con: store.insert(con, table, rows), self.con)
@@ -67,8 +68,7 @@ class Sandbox:
         for table in drives[0].trace.tables:
             rows = pa.concat_tables([drive.trace.tables[table] for drive in drives])
             if table == "data_log":
-                at = rows.schema.get_field_index("environment_id")
-                rows = rows.set_column(at, "environment_id", pa.concat_arrays([place] * rows.num_rows))
+                rows = with_column(rows, "environment_id", pa.concat_arrays([place] * rows.num_rows))
             self._insert(table, rows)
 
     def _derive(self) -> None:
@@ -80,14 +80,6 @@ class Sandbox:
                 raise
             store.recreate_empty(self.con, derivations())
             self._derive()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._opened.close()
 
     def judge(self, params: Mapping[str, object]) -> Judgement:
         """Judge every copy by the rule with these parameters."""
@@ -119,6 +111,31 @@ class Sandbox:
         return [dict(row) for row in self.con.execute(sql, list(values)).to_arrow_table().to_pylist()]
 
 
+@contextmanager
+def open_sandbox(rule: Rule, drives: Sequence[Drive], profiles: pa.Table, memory: int | None) -> Iterator[Sandbox]:
+    """Open a database with these drives, which share one map, derived for the rule.
+
+    The shipped or user's `profiles` are the rows of the table `profile`. `memory` is the limit of the database in bytes
+    (None: 80 % of the machine's), which is lifted where it does not do.
+    """
+    with store.workspace(memory) as con:
+        yield Sandbox(rule, drives, profiles, con, memory)
+
+
+def with_column(rows: pa.Table, name: str, values: pa.Array) -> pa.Table:
+    """Return a table with other values in one column."""
+    return rows.set_column(rows.schema.get_field_index(name), name, values)
+
+
+def renamed(trace: Trace, drive_id: str) -> Trace:
+    """Return a trace under another name."""
+    tables = {
+        name: with_column(rows, "drive_id", pa.repeat(pa.scalar(drive_id, pa.string()), rows.num_rows))
+        for name, rows in trace.tables.items()
+    }
+    return replace(trace, drive_id=drive_id, tables=tables)
+
+
 def crop(drive: Drive, from_ns: int, to_ns: int) -> Drive:
     """Return the part of a drive between two times."""
     tables = dict(drive.trace.tables)
@@ -134,6 +151,6 @@ def crop(drive: Drive, from_ns: int, to_ns: int) -> Drive:
         ("t_end_ns", span["max"]),
         ("n_states", tables["actor_state"].num_rows),
     ):
-        log = log.set_column(log.schema.get_field_index(column), column, pa.array([value], pa.int64()))
+        log = with_column(log, column, pa.array([value], pa.int64()))
     tables["data_log"] = log
     return replace(drive, trace=replace(drive.trace, tables=tables))

@@ -7,7 +7,7 @@ and one offset of the map, which is one of all actors together. Normal distribut
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -15,13 +15,17 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.engine.batch import BATCH_STATES, Drive
+from drivelint.explain.model import Sensitivity
+from drivelint.explain.sandbox import renamed, with_column
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
-VERDICTS: Final = ("fail", "unknown", "pass", "not_applicable", "error")
+    from drivelint.explain.verdict_context import VerdictContext
+
+_VERDICTS: Final = ("fail", "unknown", "pass", "not_applicable", "error")
 
 
 @dataclass(frozen=True)
@@ -64,22 +68,26 @@ def _moved(
     for axis, (place, speed) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
         along = np.nan_to_num(numbers[speed]) * clock
         values = numbers[place] + drawn[:, axis] * errors.position_m + of_map[axis] * errors.map_m + along
-        states = states.set_column(states.schema.get_field_index(place), place, pa.array(values, from_pandas=True))
+        states = with_column(states, place, pa.array(values, from_pandas=True))
     return states
 
 
 def _copy(drive: Drive, sample: int, states: pa.Table) -> Drive:
-    name = f"{drive.trace.drive_id}~{sample:05}"
-    tables = {}
-    for table, rows in {**drive.trace.tables, "actor_state": states}.items():
-        at = rows.schema.get_field_index("drive_id")
-        tables[table] = rows.set_column(at, "drive_id", pa.repeat(pa.scalar(name, pa.string()), rows.num_rows))
-    return Drive(replace(drive.trace, drive_id=name, tables=tables), drive.environment)
+    moved = replace(drive.trace, tables={**drive.trace.tables, "actor_state": states})
+    return Drive(renamed(moved, f"{drive.trace.drive_id}~{sample:05}"), drive.environment)
 
 
-def verdict_counts(found: Sequence[str]) -> dict[str, int]:
-    """Return how often each verdict occurs, without those that never do."""
-    return {verdict: found.count(verdict) for verdict in VERDICTS if verdict in found}
+def verdict_sensitivity(
+    case: VerdictContext, drive: Drive, errors: MeasurementErrors, span: tuple[int, int] | None
+) -> Sensitivity:
+    """Return how often each verdict occurs on copies of a drive, without those that never do. `span`: what of it is in `drive`."""
+    found: list[str] = []
+    for batch in perturbed_copies(drive, errors):
+        with case.sandbox(batch) as sandbox:
+            found += case.verdicts_on(sandbox.judge(case.params), [copy.trace.drive_id for copy in batch])
+    counts: dict[str, int] = {verdict: found.count(verdict) for verdict in _VERDICTS if verdict in found}
+    start, end = span or (None, None)
+    return Sensitivity(**asdict(errors), counts=counts, from_ns=start, to_ns=end)
 
 
 def _floats(table: pa.Table, column: str) -> NDArray[np.float64]:

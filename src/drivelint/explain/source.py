@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
 import duckdb
-import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.drive.finish import TRACE_SCHEMAS
@@ -15,12 +14,15 @@ from drivelint.drive.trace import Trace
 from drivelint.engine.batch import Drive, drive_with_map
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import DriveLintError, UsageError
+from drivelint.explain.sandbox import renamed, with_column
 from drivelint.formats import read_trace
 from drivelint.road.map_reader import MapTables
 from drivelint.road.tables import schemas
 from drivelint.sql import store
 
 if TYPE_CHECKING:
+    import pyarrow as pa
+
     from drivelint.result.request import RunRequest
 
 DATABASE_FILE = "drivelint.duckdb"
@@ -28,24 +30,18 @@ _OTHER = {"map_quality"}
 """Tables of the map that nothing is derived from."""
 
 
-class SourceDrive(NamedTuple):
-    """A drive with one ego, and where it is from."""
-
-    drive: Drive
-    where: str
-
-
 def open_drive(
     folder: Path, asked: RunRequest, drive_id: str, ego_id: str, *, trace: Path | None, map_: Path | None
-) -> SourceDrive:
-    """Return the drive that was judged. `trace`, `map_`: where log and map are now, if not where they were.
+) -> tuple[Drive, str]:
+    """Return the drive that was judged, with one ego, and where it is from.
 
+    `trace`, `map_`: where log and map are now, if not where they were.
     Errors: `UsageError` where neither the database was kept nor the log is where it was, or where the log is another one.
     """
     kept = folder / DATABASE_FILE
     if trace is None and kept.is_file():
         try:
-            return SourceDrive(_kept(kept, drive_id, ego_id), f"the kept database {kept.name}")
+            return _kept(kept, drive_id, ego_id), f"the kept database {kept.name}"
         except duckdb.Error as error:
             raise UsageError(f"{kept}: {str(error).splitlines()[0]}: check the drives again with --keep-db") from error
     path = trace or Path(asked.traces.get(drive_id, ""))
@@ -54,7 +50,7 @@ def open_drive(
             f"the log of {drive_id} is not at {path} any more and the result has no database (check --keep-db): "
             "say where it is with --trace FILE"
         )
-    return SourceDrive(_read(asked, path, map_, drive_id, ego_id), f"the log {path.name}, read again")
+    return _read(asked, path, map_, drive_id, ego_id), f"the log {path.name}, read again"
 
 
 def _read(asked: RunRequest, path: Path, map_: Path | None, drive_id: str, ego_id: str) -> Drive:
@@ -68,18 +64,8 @@ def _read(asked: RunRequest, path: Path, map_: Path | None, drive_id: str, ego_i
             f"{path} is not the log that was judged ({drive_id}) but {read.drive_id}: give that one with --trace"
         )
     if read.drive_id != drive_id:  # the same bytes under another name
-        read = _renamed(read, drive_id)
+        read = renamed(read, drive_id)
     return drive_with_map(read, MapLibrary.from_options(asked))
-
-
-def _renamed(trace: Trace, drive_id: str) -> Trace:
-    tables = {
-        name: rows.set_column(
-            rows.schema.get_field_index("drive_id"), "drive_id", pa.repeat(pa.scalar(drive_id), rows.num_rows)
-        )
-        for name, rows in trace.tables.items()
-    }
-    return replace(trace, drive_id=drive_id, tables=tables)
 
 
 def _kept(file: Path, drive_id: str, ego_id: str) -> Drive:
@@ -89,7 +75,7 @@ def _kept(file: Path, drive_id: str, ego_id: str) -> Drive:
             raise DriveLintError(f"{file}: the drive {drive_id} is not in it: check the drives again")
         actors = tables["actor"]
         is_ego = pc.equal(actors["actor_id"], ego_id)
-        tables["actor"] = actors.set_column(actors.schema.get_field_index("is_ego"), "is_ego", is_ego)
+        tables["actor"] = with_column(actors, "is_ego", is_ego)
         place = tables["data_log"]["environment_id"][0].as_py()
         environment = None
         if place is not None:
@@ -100,5 +86,4 @@ def _kept(file: Path, drive_id: str, ego_id: str) -> Drive:
 
 
 def _rows(con: duckdb.DuckDBPyConnection, table: str, key: str, value: str) -> pa.Table:
-    order: Any = ", ".join(str(n) for n in range(1, len(store.column_comments()[table]) + 1))
-    return con.execute(f"SELECT * FROM {table} WHERE {key} = ? ORDER BY {order}", [value]).to_arrow_table()
+    return con.execute(f"SELECT * FROM {table} WHERE {key} = ? ORDER BY ALL", [value]).to_arrow_table()

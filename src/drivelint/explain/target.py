@@ -70,7 +70,7 @@ def find_verdict(result: Result, name: str, wanted: VerdictFilter) -> Target:
     if drive:
         drive = _meant(drive, sorted({row["drive_id"] for row in rows}), f"{rule}: drive")
         rows = [row for row in rows if row["drive_id"] == drive]
-    starts = dict(zip(result.drives["drive_id"].to_pylist(), result.drives["t_start_ns"].to_pylist(), strict=True))
+    starts = result.start_times
     row = min(_asked(rows, wanted, starts), key=_order)
     return Target(row, None, _others(row, verdicts))
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 import textwrap
 from dataclasses import asdict
@@ -14,10 +13,9 @@ from rich.text import Text
 
 from drivelint.drive.declared_events import EVENTS
 from drivelint.explain.plot import plot
-from drivelint.explain.sensitivity import VERDICTS
 from drivelint.explain.verdict_context import lacks_signal
 from drivelint.reasons.remedies import condition_of, remedy
-from drivelint.result.text import seconds
+from drivelint.result.text import finite, seconds
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -59,7 +57,7 @@ def to_json(found: Explanation) -> str:
     plain["series"] = [list(step) for step in found.series]
     plain["rows"] = [rows._asdict() for rows in found.rows]
     plain["changes"] = [change._asdict() for change in found.changes]
-    return json.dumps(_finite(plain), indent=2, ensure_ascii=False, allow_nan=False)
+    return json.dumps(finite(plain), indent=2, ensure_ascii=False, allow_nan=False)
 
 
 def render(found: Explanation, width: int) -> Group:
@@ -115,21 +113,19 @@ def _happened(found: Explanation) -> list[str]:
         lines.append(f"{row['n_judged']} of {row['n_expected']} steps that had to be judged could be.")
     lines += found.notes
     if found.others:
-        told = [
-            f"{other['verdict'].replace('_', ' ')}"
-            + (f" for ego {other['ego_id']}" if other["ego_id"] != row["ego_id"] else "")
-            + (f" with profile {other['profile']}" if other["profile"] else "")
-            + (f" for object {other['object_id']}" if other["object_id"] else "")
-            + (
-                f" from {seconds(other['t_start_ns'], found.drive['t_start_ns'])}"
-                if other["t_start_ns"] is not None
-                else ""
-            )
-            for other in found.others[:MAX_OTHERS]
-        ]
+        told = [_elsewhere(other, row["ego_id"], found.drive["t_start_ns"]) for other in found.others[:MAX_OTHERS]]
         more = f"; {len(found.others) - MAX_OTHERS} more" if len(found.others) > MAX_OTHERS else ""
         lines.append(f"The same rule elsewhere in this drive: {'; '.join(told)}{more}.")
     return lines
+
+
+def _elsewhere(other: Row, ego_id: str, start_ns: int | None) -> str:
+    """Return another verdict in a few words; its ego only if it is another one."""
+    text = str(other["verdict"]).replace("_", " ")
+    text += f" for ego {other['ego_id']}" if other["ego_id"] != ego_id else ""
+    text += f" with profile {other['profile']}" if other["profile"] else ""
+    text += f" for object {other['object_id']}" if other["object_id"] else ""
+    return text + (f" from {seconds(other['t_start_ns'], start_ns)}" if other["t_start_ns"] is not None else "")
 
 
 def _decides(found: Explanation) -> list[str]:
@@ -146,9 +142,10 @@ def _decides(found: Explanation) -> list[str]:
         told += "; that is the first thing that was found missing: more may be missing there"
     text = "\n".join(found.sql.values())
     asked = row["reason_code"].startswith(("missing_declared", "missing_mode"))
-    events = [event for event in EVENTS if asked and f"'{event}'" in text]
     named = [
-        f"The rule reads the event {event} (value: {EVENTS[event].value}): {EVENTS[event].says}." for event in events
+        f"The rule reads the event {name} (value: {event.value}): {event.says}."
+        for name, event in EVENTS.items()
+        if asked and f"'{name}'" in text
     ]
     return [f"{told[0].upper()}{told[1:]}.", *named]
 
@@ -259,7 +256,7 @@ def _sure(found: Explanation) -> list[str]:
     told = found.sensitivity
     if told is None:
         return []
-    counts = ", ".join(f"{_DOES[v]} in {told.counts[v]}" for v in VERDICTS if v in told.counts)
+    counts = ", ".join(f"{_DOES[verdict]} in {n}" for verdict, n in told.counts.items())
     return [f"{counts[0].upper()}{counts[1:]} of {told.samples}.", _errors(told, found.drive)]
 
 
@@ -297,11 +294,3 @@ def _value(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     return f"{value:.6g}" if isinstance(value, float) else str(value)
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    return [_finite(item) for item in value] if isinstance(value, list | tuple) else value

@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from drivelint.explain import evidence
-from drivelint.explain.outcome import verdicts_by_drive
-from drivelint.explain.sandbox import Sandbox, crop
+from drivelint.explain.sandbox import crop, open_sandbox
+from drivelint.result.counts import grouped
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+    from contextlib import AbstractContextManager
 
     import pyarrow as pa
 
     from drivelint.catalogue import Rule
     from drivelint.engine.batch import Drive
-    from drivelint.explain.model import Step
-    from drivelint.explain.sandbox import Judgement
+    from drivelint.explain.model import Row, Step
+    from drivelint.explain.sandbox import Judgement, Sandbox
     from drivelint.explain.target import Target
+
+SAME_REFERENCE_NS: Final = 2_000_000_000
+"""A reference point that moved by no more is the same one."""
+CROP_MARGINS_NS = (20_000_000_000, 60_000_000_000)
+"""How much of a drive around what is explained is enough, if the verdict is the same there; tried in this order."""
+_WORST: Final = ("error", "fail", "unknown", "pass", "not_applicable")
 
 
 @dataclass(frozen=True)
@@ -31,28 +38,27 @@ class VerdictContext:
     profiles: pa.Table
     memory: int | None
 
-    def sandbox(self, drives: Sequence[Drive]) -> Sandbox:
-        """Return a database with these drives, derived for the rule."""
-        return Sandbox(self.rule, drives, self.profiles, self.memory)
+    def sandbox(self, drives: Sequence[Drive]) -> AbstractContextManager[Sandbox]:
+        """Open a database with these drives, derived for the rule."""
+        return open_sandbox(self.rule, drives, self.profiles, self.memory)
 
     def judge(self, sandbox: Sandbox, params: Mapping[str, object] | None = None) -> str:
         """Return the verdict on the one drive in a sandbox, with other parameters if they are given."""
         return self.verdicts_on(sandbox.judge(self.params if params is None else params), [sandbox.drive_id])[0]
 
     def verdicts_on(self, judged: Judgement, drives: Sequence[str]) -> list[str]:
-        """Return the verdict on each of these drives, in their order."""
-        found = verdicts_by_drive(self.rule, self.target, judged, drives)
-        return [found[drive] for drive in drives]
+        """Return the verdict on the target's interval, profile and object in each of these drives, in their order."""
+        verdicts, steps = (
+            grouped((row for row in rows if _same(self.rule, self.target, row)), lambda row: row["drive_id"])
+            for rows in (judged.verdicts, judged.steps)
+        )
+        return [_outcome(self.rule, self.target, verdicts.get(drive, []), steps.get(drive, [])) for drive in drives]
 
     @property
     def lacks_signal(self) -> bool:
         """Whether the rule was not run because the log or map lacks something: no number alters that."""
         code = "" if self.target.finding else self.target.verdict["reason_code"]
         return lacks_signal(self.target.verdict["verdict"], code)
-
-
-CROP_MARGINS_NS = (20_000_000_000, 60_000_000_000)
-"""How much of a drive around what is explained is enough, if the verdict is the same there; tried in this order."""
 
 
 def lacks_signal(verdict: str, reason_code: str) -> bool:
@@ -87,3 +93,47 @@ def _same_numbers(case: VerdictContext, series: list[Step]) -> bool:
         return True
     here = [step.margin for step in series if step.t_ns == row["t_worst_ns"] and step.margin is not None]
     return any(abs(margin - row["margin"]) < 1e-6 for margin in here)
+
+
+def _same(rule: Rule, target: Target, row: Row) -> bool:
+    if row["ego_id"] != target.verdict_row["ego_id"] or row["profile"] != target.verdict_row["profile"]:
+        return False
+    about_all = target.span is None or rule.combine != "each"  # then the object is only the one that decided
+    return about_all or row["object_id"] == target.verdict_row["object_id"]
+
+
+def _outcome(rule: Rule, target: Target, verdicts: list[Row], steps: list[Row]) -> str:
+    span = target.span
+    if any(row["verdict"] == "error" for row in verdicts):
+        return "error"
+    if span is None:
+        return _worst(verdicts)
+    if rule.kind != "invariant":
+        return _worst(_at_reference(target, verdicts))
+    within = [row["holds"] for row in steps if span[0] <= row["t_ns"] <= span[1]]
+    if any(holds is False for holds in within):
+        return "fail"
+    over = [row for row in verdicts if _overlaps(row, span)]
+    if any(holds is None for holds in within) or (not within and any(row["verdict"] == "unknown" for row in over)):
+        return "unknown"
+    return "pass" if within else "not_applicable"
+
+
+def _at_reference(target: Target, verdicts: list[Row]) -> list[Row]:
+    """Return the verdicts at the reference point nearest to the target's."""
+    t_ref = target.verdict_row["t_ref_ns"]
+    if t_ref is None:
+        return verdicts
+    apart = {id(row): abs(row["t_ref_ns"] - t_ref) for row in verdicts if row["t_ref_ns"] is not None}
+    least = min(apart.values(), default=SAME_REFERENCE_NS + 1)
+    return [row for row in verdicts if apart.get(id(row)) == least] if least <= SAME_REFERENCE_NS else []
+
+
+def _overlaps(row: Row, span: tuple[int, int]) -> bool:
+    if row["t_start_ns"] is None or row["t_end_ns"] is None:
+        return True
+    return bool(row["t_start_ns"] <= span[1] and row["t_end_ns"] >= span[0])
+
+
+def _worst(rows: list[Row]) -> str:
+    return min((row["verdict"] for row in rows), key=_WORST.index, default="not_applicable")

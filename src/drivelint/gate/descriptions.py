@@ -150,6 +150,14 @@ def waiver_reason(waiver: Waiver) -> str:
     return f"waived until {waiver.expires} by {waiver.owner}: {waiver.reason}"
 
 
+def excuse(gate: Gate | None, finding_id: str) -> str:
+    """Return why a gate lets a finding through, its waiver before the baseline; '' where it does not."""
+    waiver = gate.waiver(finding_id) if gate else None
+    if waiver is not None:
+        return waiver_reason(waiver)
+    return "known: the baseline has it" if gate and gate.in_baseline(finding_id) else ""
+
+
 def gate_counts(gate: Gate) -> dict[str, Any]:
     """Return a gate's counts as plain data."""
     states = Counter(waiver.state for waiver in gate.waivers)

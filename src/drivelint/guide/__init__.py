@@ -9,6 +9,7 @@ from typing import Final, NamedTuple
 
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
+from drivelint.resources import folder
 
 TOPICS: Final = (
     "traces",
@@ -47,7 +48,8 @@ class Topic(NamedTuple):
 @cache
 def topics() -> tuple[Topic, ...]:
     """Return every guide, in reading order."""
-    return tuple(_topic(name) for name in TOPICS)
+    heads = ((name, *_source(name).splitlines()[:3]) for name in TOPICS)
+    return tuple(Topic(name, title.removeprefix("# "), sentence) for name, title, _, sentence in heads)
 
 
 def text(name: str, table: str | None = None) -> str:
@@ -59,10 +61,15 @@ def text(name: str, table: str | None = None) -> str:
         raise UsageError(f"no guide {name!r}: {hint(name, TOPICS + REFERENCE_TOPICS)}")
     if table is not None and name != "dictionary":
         raise UsageError(f"docs {name} {table}: only the dictionary has tables: drivelint docs dictionary {table}")
-    if name in REFERENCE_TOPICS:
-        from drivelint.guide import reference
+    if name == "catalogue":
+        from drivelint.catalogue import load_rules
+        from drivelint.report import catalogue_page
 
-        return reference.dictionary_text(table) if name == "dictionary" else reference.catalogue_markdown()
+        return catalogue_page.page(load_rules(()).values(), folder("queries") / "assertions")
+    if name == "dictionary":
+        from drivelint.guide import dictionary
+
+        return dictionary.text() if table is None else dictionary.table_text(table)
     source = _source(name)
     if OUTPUT_TABLES_MARK in source:
         from drivelint.guide.dictionary import output_tables
@@ -79,8 +86,3 @@ def listing() -> str:
 
 def _source(name: str) -> str:
     return (FOLDER / f"{name}.md").read_text(encoding="utf-8")
-
-
-def _topic(name: str) -> Topic:
-    title, _, sentence, *_ = _source(name).splitlines()
-    return Topic(name, title.removeprefix("# "), sentence)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from drivelint.guide.markdown import escaped, table
+from drivelint.guide.dictionary import escaped
+from drivelint.report.catalogue_page import table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -6,7 +6,9 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING, Final
 
-from drivelint.guide.markdown import escaped, table
+from drivelint.errors import UsageError
+from drivelint.phrases import hint
+from drivelint.report.catalogue_page import table
 from drivelint.result.schemas import TABLE_OF_FILE
 from drivelint.sql import store, syntax
 from drivelint.sql.derivations import derivations
@@ -27,6 +29,7 @@ DERIVATIONS_INTRODUCTION: Final = """## How the tables are derived
 Each derived table is filled by one SELECT, `queries/derive/<table>.sql`. A table of a level reads recorded tables and tables
 of lower levels. The tables that it reads stand behind it.
 """
+_MARKUP: Final = re.compile(r"([\\`*_\[\]<>~&])")
 _GROUPS: Final = {
     "model": "The recorded drive",
     "map": "The map",
@@ -66,12 +69,24 @@ def text() -> str:
 
 
 def table_text(name: str) -> str:
-    """Return one table as plain text: its name, what is said of it, and a line per column with its type and meaning."""
+    """Return one table as plain text: its name, what is said of it, and a line per column with its type and meaning.
+
+    Errors: `UsageError` with the nearest table.
+    """
+    if name not in column_comments():
+        near = hint(name, column_comments())
+        advice = "drivelint docs dictionary prints all" if near.startswith("known") else near
+        raise UsageError(f"docs dictionary {name}: no table {name!r}: {advice}")
     columns = [(column, _types()[name, column], comment) for column, comment in column_comments()[name].items()]
     wide, wider = (max(len(row[i]) for row in columns) for i in (0, 1))
     said = [line for line in (_about(name), " ".join(_facts(name, tables_read(), ", ".join))) if line]
     rows = [f"  {column:<{wide}}  {kind:<{wider}}  {comment}" for column, kind, comment in columns]
     return "\n".join([name, *said, *rows]) + "\n"
+
+
+def escaped(said: str) -> str:
+    """Return text that Markdown shows as it is."""
+    return _MARKUP.sub(r"\\\1", said)
 
 
 def output_tables() -> str:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint import __version__, guide
 from drivelint.errors import UsageError
-from drivelint.guide import command_page, dictionary, html, reference
-from drivelint.guide.markdown import table
+from drivelint.guide import command_page, dictionary, html
+from drivelint.report.catalogue_page import table
 from drivelint.result.files import publish
 
 if TYPE_CHECKING:
@@ -39,8 +39,7 @@ def write(folder: Path, commands: Iterable[Command]) -> Path:
 
 def contents(commands: Iterable[Command]) -> dict[str, bytes]:
     """Return every file of the site, name -> bytes: the same for the same version."""
-    pages = {topic.name: guide.text(topic.name) for topic in guide.topics()}
-    pages["catalogue"] = reference.catalogue_markdown()
+    pages = {name: guide.text(name) for name in (*guide.TOPICS, "catalogue")}
     pages["dictionary"] = dictionary.page()
     pages["commands"] = command_page.page(commands)
     pages["index"] = _index()

@@ -36,6 +36,17 @@ if TYPE_CHECKING:
 
 DEFAULT_RULES: Final = ("ukhc",)
 _SEVERITIES: Final = ("error", "warning", "info")
+_REGISTRATIONS: Final = """
+SELECT ego_id, ok, reason, n_steps AS steps, n_on_lane AS on_lane, n_moving AS moving, n_with_direction AS with_direction,
+    lateral_median_m
+FROM registration
+"""
+_QUALITY: Final = """
+SELECT 'log' AS about, severity, check_id, message, n, actor_id, t_first_ns FROM quality
+UNION ALL
+SELECT 'map', severity, check_id, coalesce(lanelet_id || ': ', '') || message, n, NULL, NULL FROM map_quality
+ORDER BY about, check_id, actor_id NULLS FIRST, t_first_ns NULLS FIRST, message
+"""
 
 
 @dataclass(frozen=True)
@@ -65,17 +76,16 @@ def inspect(request: InspectRequest) -> model.Inspection:
     (path,) = paths
     library = MapLibrary.from_options(request)
     options = request.ingest_options(need_ego=False)
-    file = model.File(name=path.resolve().name, bytes=size_bytes(path))
+    name, size = path.resolve().name, size_bytes(path)
     try:
         trace = read_trace(path, options)
     except TraceError as error:
-        return model.Inspection(file=file, content=_content_of_unread(path), problem=str(error))
+        unread = model.File(name=name, bytes=size)
+        return model.Inspection(file=unread, content=_content_of_unread(path), problem=str(error))
     log = trace.tables["data_log"].to_pylist()[0]
     mapping = None if log["format"] in FORMATS else request.mapping or log["format"]
     return model.Inspection(
-        file=model.File(
-            name=file.name, bytes=file.bytes, sha256=log["sha256"], drive_id=trace.drive_id, format=log["format"]
-        ),
+        file=msgspec.convert({**log, "name": name, "bytes": size}, model.File),
         content=content(path, mapping, list(trace.notes), read=True),
         drive=_drive(trace, library, rules, request, selection),
     )
@@ -152,12 +162,12 @@ def _judgeable(
     with store.workspace(memory) as con:
         session = JudgingSession(con, (), {}, None, observers=[known], memory=Memory(con, memory))
         session.judge([Judgeable(trace, environment)])
-        rows = {table: _rows(con, f"FROM {table}") for table in ("capability", "registration", "exposure")}
+        rows = {table: _rows(con, f"FROM {table}") for table in ("capability", "exposure")}
+        registrations = {row["ego_id"]: row for row in _rows(con, _REGISTRATIONS)}
         start = trace.tables["data_log"]["t_start_ns"][0].as_py()
         quality = _quality(con, start)
     log_format = trace.tables["data_log"]["format"][0].as_py()
     by_id = {actor.actor_id: actor for actor in everybody}
-    registrations = {row["ego_id"]: row for row in rows["registration"]}
     egos = []
     for way in sorted(rows["exposure"], key=lambda row: str(row["ego_id"])):
         ego_id = way["ego_id"]
@@ -199,36 +209,14 @@ class _Knowledge:
 def _registration(row: dict[str, Any] | None) -> model.Registration | None:
     if row is None:
         return None
-    return model.Registration(
-        ok=row["ok"],
-        reason=reason_text.sentence(row["reason"]),
-        steps=row["n_steps"],
-        on_lane=row["n_on_lane"],
-        moving=row["n_moving"],
-        with_direction=row["n_with_direction"],
-        lateral_median_m=row["lateral_median_m"],
-    )
+    return msgspec.convert({**row, "reason": reason_text.sentence(row["reason"])}, model.Registration)
 
 
 def _quality(con: duckdb.DuckDBPyConnection, start_ns: int) -> list[model.Quality]:
-    sql = """
-        SELECT 'log' AS about, severity, check_id, message, n, actor_id, t_first_ns FROM quality
-        UNION ALL
-        SELECT 'map', severity, check_id, coalesce(lanelet_id || ': ', '') || message, n, NULL, NULL FROM map_quality
-        ORDER BY about, check_id, actor_id NULLS FIRST, t_first_ns NULLS FIRST, message"""
-    found = [
-        model.Quality(
-            about=row["about"],
-            severity=row["severity"],
-            check_id=row["check_id"],
-            message=row["message"],
-            n=row["n"],
-            actor_id=row["actor_id"],
-            first_at_s=None if row["t_first_ns"] is None else (row["t_first_ns"] - start_ns) / 1e9,
-        )
-        for row in _rows(con, sql)
-    ]
-    return sorted(found, key=lambda q: _SEVERITIES.index(q.severity))
+    rows = _rows(con, _QUALITY)
+    for row in rows:
+        row["first_at_s"] = None if row["t_first_ns"] is None else (row["t_first_ns"] - start_ns) / 1e9
+    return sorted(msgspec.convert(rows, list[model.Quality]), key=lambda q: _SEVERITIES.index(q.severity))
 
 
 def _rows(con: duckdb.DuckDBPyConnection, sql: str) -> list[dict[str, Any]]:
@@ -252,16 +240,11 @@ def _road(environment: MapTables, *, given: bool) -> model.Road:
     row = environment.tables["environment"].to_pylist()[0]
     lanelets = environment.tables["lanelet"]
     drivable = lanelets.filter(lanelets["drivable"])
-    return model.Road(
-        name=row["name"],
-        source="option" if given else "log",
-        environment_id=row["environment_id"],
-        sha256=row["sha256"],
-        format=row["format"],
-        offset_m=(row["offset_x_m"], row["offset_y_m"]),
-        handedness=row["handedness"],
-        handedness_source=row["handedness_source"],
-        lanelets=lanelets.num_rows,
-        drivable=drivable.num_rows,
-        drivable_km=sum(drivable["length_m"].to_pylist()) / 1000,
-    )
+    more = {
+        "source": "option" if given else "log",
+        "offset_m": (row["offset_x_m"], row["offset_y_m"]),
+        "lanelets": lanelets.num_rows,
+        "drivable": drivable.num_rows,
+        "drivable_km": sum(drivable["length_m"].to_pylist()) / 1000,
+    }
+    return msgspec.convert(row | more, model.Road)

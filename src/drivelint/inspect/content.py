@@ -22,6 +22,7 @@ from drivelint.inspect.mapping_draft import draft_mapping
 from drivelint.inspect.model import Channel, Column, Content, Sheet
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
     from mcap import records
@@ -55,7 +56,8 @@ def content(path: Path, mapping: str | None, notes: list[str], *, read: bool) ->
     if path.is_dir():
         if bag.is_bag(path):
             return Content(channels=_channels(path), notes=notes)
-        return Content(sheets=[_plain(path / name) for name in CANONICAL_FILES if _is_table(path / name)], notes=notes)
+        tables = [path / name for name in CANONICAL_FILES if name.endswith(".parquet") and (path / name).is_file()]
+        return Content(sheets=[_plain(table) for table in tables], notes=notes)
     with path.open("rb") as file:
         head = file.read(_HEAD_BYTES)
     if head.startswith(MAGIC[:5]):
@@ -77,19 +79,16 @@ def _of_table(path: Path, head: bytes, mapping: str | None, notes: list[str], *,
     if read or b"\0" in head or not head.strip() or head.lstrip()[:1] in {b"<", b"{"}:
         return Content(notes=notes)  # no table, or a text that another reader has read
     names = CsvSheet(path, TextLayout()).names
-    columns = [Column(name=name, read_as=[]) for name in names]
-    return Content(
-        sheets=[Sheet(name=path.name, rows=None, columns=columns)], notes=notes, draft_mapping=draft_mapping(names)
-    )
+    sheet = Sheet(name=path.name, rows=None, columns=_unread(names))
+    return Content(sheets=[sheet], notes=notes, draft_mapping=draft_mapping(names))
 
 
-def _is_table(path: Path) -> bool:
-    return path.suffix == ".parquet" and path.is_file()
+def _unread(names: Iterable[str]) -> list[Column]:
+    return [Column(name=name, read_as=[]) for name in names]
 
 
 def _plain(path: Path) -> Sheet:
-    columns = [Column(name=name, read_as=[]) for name in parquet.schema(path).names]
-    return Sheet(name=path.name, rows=parquet.n_rows(path), columns=columns)
+    return Sheet(name=path.name, rows=parquet.n_rows(path), columns=_unread(parquet.schema(path).names))
 
 
 def _mapped(path: Path, mapping: Mapping) -> Sheet:
@@ -102,7 +101,7 @@ def _mapped(path: Path, mapping: Mapping) -> Sheet:
     grouped = any(GROUP_PLACEHOLDER in c.name for c in columns)
     unread = [name for name in names if name and not any(shape.fullmatch(name) for shape in shapes)]
     others = dict.fromkeys(re.sub(r"(?<=#)\d+", GROUP_PLACEHOLDER, name) if grouped else name for name in unread)
-    columns += [Column(name=name, read_as=[]) for name in others]
+    columns += _unread(others)
     return Sheet(name=path.name, rows=parquet.n_rows(path) if is_parquet else None, columns=columns)
 
 
@@ -113,7 +112,7 @@ def _filmed(path: Path, film: VideoMapping) -> Sheet:
         str(actor.ahead): [f"distance ahead of {actor.id}"] for actor in film.actor
     }
     columns = [Column(name=name, read_as=read_as) for name, read_as in read.items()]
-    columns += [Column(name=name, read_as=[]) for name in names if name and name not in read]
+    columns += _unread(name for name in names if name and name not in read)
     return Sheet(name=path.name, rows=None, columns=columns)
 
 

@@ -45,10 +45,9 @@ def draft_mapping(columns: Sequence[str]) -> str | None:
         meant = _meaning(column)
         if meant is not None:
             found.setdefault(meant, column)
-    if ("vx" in found) != ("vy" in found):
-        found.pop("vx", None), found.pop("vy", None)
-    if ("ax" in found) != ("ay" in found):
-        found.pop("ax", None), found.pop("ay", None)
+    for pair in (("vx", "vy"), ("ax", "ay")):
+        if sum(name in found for name in pair) == 1:
+            found = {name: column for name, column in found.items() if name not in pair}
     if "vx" in found or "yaw" not in found:
         found.pop("speed", None)
     if sum(name in found for name in REQUIRED_FIELDS) < 3:

@@ -9,6 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from drivelint.phrases import listed, plural
+from drivelint.result.counts import grouped
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -21,9 +22,8 @@ _NAMED: Final = 6
 
 def decidable_rules(drive: Drive, log: str) -> Group:
     """Return the rules that each ego can and cannot decide; egos that lack the same signals share a paragraph."""
-    alike: dict[tuple[str, ...], list[Ego]] = {}
-    for ego in drive.egos or ([drive.supposed] if drive.supposed else []):
-        alike.setdefault(tuple(item.signal for item in ego.missing), []).append(ego)
+    egos_told = drive.egos or ([drive.supposed] if drive.supposed else [])
+    alike = grouped(egos_told, lambda ego: tuple(item.signal for item in ego.missing))
     parts: list[RenderableType] = []
     for egos in sorted(alike.values(), key=lambda group: -len(group[0].can)):
         parts += _about(drive, egos, log)
@@ -72,12 +72,9 @@ def _by_signal(ego: Ego) -> Table:
 def _by_rule(ego: Ego) -> Table:
     """Return the rules that wait for the same together."""
     grid = _grid()
-    waiting: dict[tuple[str, ...], list[str]] = {}
-    for rule in ego.cannot:
-        waiting.setdefault(tuple(rule.missing), []).append(
-            f"{rule.rule_id} (can be broken, not kept)" if rule.breach_only else rule.rule_id
-        )
-    for missing, ids in sorted(waiting.items(), key=lambda item: (-len(item[1]), item[0])):
+    waiting = grouped(ego.cannot, lambda rule: tuple(rule.missing))
+    for missing, rules in sorted(waiting.items(), key=lambda item: (-len(item[1]), item[0])):
+        ids = (f"{rule.rule_id}{' (can be broken, not kept)' if rule.breach_only else ''}" for rule in rules)
         grid.add_row(" + ".join(missing), Text(", ".join(ids)))
     return grid
 

@@ -12,7 +12,6 @@ from rich.text import Text
 
 from drivelint.formats.registry import FORMATS
 from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER
-from drivelint.inspect.formatting import distance_text, handedness_text, holes_text, part_text, size_text
 from drivelint.inspect.rules_text import decidable_rules
 from drivelint.phrases import listed, plural
 
@@ -27,7 +26,6 @@ if TYPE_CHECKING:
         Column,
         Content,
         Drive,
-        Ego,
         Inspection,
         Quality,
         Registration,
@@ -40,12 +38,20 @@ MAX_ROWS: Final = 12
 _STYLE: Final = {"error": "bold red", "warning": "yellow", "info": "dim"}
 _TOLD: Final = "read through"
 """How notes of the readers begin that the content tells anyway."""
+_SOURCES: Final = {
+    "option": "as --handedness says",
+    "attribute": "as the map says",
+    "junctions": "as the map's junctions are linked",
+    "lanes": "as its lanes lie beside each other",
+    "traces": "as the log's traffic drives",
+    "default": "only by the standard's default: say it with --handedness",
+}
+"""Source of the side that is driven on -> who says so."""
 Line = tuple[str, Text]
 
 
 def render(found: Inspection, trace: str) -> Group:
     """Return the whole inspection; `trace` is what the user called the log."""
-    parts: list[RenderableType] = [_title(found)]
     lines = [*_content(found.content)]
     if found.file.drive_id:
         lines.append(("drive", Text(found.file.drive_id)))
@@ -53,29 +59,32 @@ def render(found: Inspection, trace: str) -> Group:
         lines.append(("problem", Text(f"cannot be read as a drive: {found.problem}", "bold red")))
     if found.drive is not None:
         lines += _drive(found.drive)
-    parts.append(_labelled(lines))
+    parts: list[RenderableType] = [_title(found), _labelled(lines)]
     if found.drive is not None:
         parts.append(decidable_rules(found.drive, found.file.name))
-    if found.content.draft_mapping is not None:
-        parts.append(
-            Text(
-                f"A mapping says which column is what. One to start from, to be checked line by line:\n\n{found.content.draft_mapping}"
-            )
-        )
-        parts.append(
-            Text(f"Save it as my.toml, then: drivelint inspect {shlex.quote(trace)} --mapping my.toml", style="bold")
-        )
+    if (draft := found.content.draft_mapping) is not None:
+        save = f"Save it as my.toml, then: drivelint inspect {shlex.quote(trace)} --mapping my.toml"
+        parts += [
+            Text(f"A mapping says which column is what. One to start from, to be checked line by line:\n\n{draft}"),
+            Text(save, style="bold"),
+        ]
     return Group(*(Padding(part, (0, 0, 1, 0)) for part in parts))
 
 
 def _title(found: Inspection) -> Text:
     file = found.file
-    text = Text(file.name, style="bold")
-    kind = ""
+    about = [_size(file.bytes)]
     if file.format is not None:
-        kind = FORMATS[file.format][0] if file.format in FORMATS else f"a table, read through the mapping {file.format}"
-    text.append(f"  {', '.join(part for part in (kind, size_text(file.bytes)) if part)}", style="default")
-    return text
+        mapped = f"a table, read through the mapping {file.format}"
+        about.insert(0, FORMATS[file.format][0] if file.format in FORMATS else mapped)
+    return Text(file.name, style="bold").append(f"  {', '.join(about)}", style="default")
+
+
+def _size(n: int) -> str:
+    for unit, factor in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
+        if n >= factor:
+            return f"{n / factor:.1f} {unit}"
+    return plural(n, "byte")
 
 
 def _labelled(lines: Sequence[Line]) -> Table:
@@ -106,7 +115,7 @@ def _channel(channel: Channel) -> Text:
     text = Text(channel.topic)
     rate = "" if channel.rate_hz is None else f", {channel.rate_hz:.3g} Hz"
     kind = f"{channel.schema or 'no schema'} in {channel.encoding or 'no encoding'}"
-    text.append(f": {plural(channel.messages, 'message')} of {kind}{rate}, {size_text(channel.bytes)}")
+    text.append(f": {plural(channel.messages, 'message')} of {kind}{rate}, {_size(channel.bytes)}")
     text.append(
         f", read as {channel.read_as}" if channel.read_as else ", not read", "green" if channel.read_as else "dim"
     )
@@ -139,7 +148,9 @@ def _drive(drive: Drive) -> Iterator[Line]:
     clock = drive.clock
     period = "" if clock.period_s is None else f", one every {clock.period_s:.4g} s ({1 / clock.period_s:.3g} Hz)"
     time = Text(f"{clock.duration_s:.2f} s, {plural(clock.steps, 'step')}{period}, ")
-    time.append(holes_text(clock), style="yellow" if clock.holes else "green")
+    holes = f"{plural(clock.holes, 'hole')}, the longest {clock.longest_hole_s or 0.0:.2f} s, "
+    holes += f"the first at {clock.first_hole_at_s or 0.0:.2f} s"
+    time.append(holes if clock.holes else "no holes", style="yellow" if clock.holes else "green")
     yield "time", time.append("" if clock.utc_start is None else f", from {clock.utc_start}")
     total = sum(c.n for c in drive.classes)
     yield "actors", Text(f"{plural(total, 'actor')}, {plural(drive.states, 'state')}")
@@ -175,9 +186,10 @@ def _actor(actor: Actor) -> str:
     box = "size unknown"
     if actor.length_m is not None and actor.width_m is not None:
         box = f"{actor.length_m:.2f} x {actor.width_m:.2f} m"
+    way = f"{actor.way_m / 1000:.2f} km" if actor.way_m >= 1000 else f"{actor.way_m:.0f} m"
     speed = "" if actor.top_speed_mps is None else f", up to {actor.top_speed_mps:.1f} m/s"
     seen = f"from {actor.first_at_s:.1f} to {actor.last_at_s:.1f} s"
-    return f"{actor.actor_class or 'class unknown'}, {box}, {distance_text(actor.way_m)}{speed}, {seen}"
+    return f"{actor.actor_class or 'class unknown'}, {box}, {way}{speed}, {seen}"
 
 
 def _road(drive: Drive) -> Iterator[Line]:
@@ -194,18 +206,12 @@ def _road(drive: Drive) -> Iterator[Line]:
         return
     bad = [(ego, fit) for ego, fit in fits if not fit.ok]
     good = len(fits) - len(bad)
-    yield (
-        "fit",
-        Text(f"{part_text(good, len(fits))} of the egos lie well on the map", style="yellow" if bad else "green"),
-    )
+    share = "none" if not good else f"{good} of {len(fits)}" if bad else "all"
+    yield "fit", Text(f"{share} of the egos lie well on the map", style="yellow" if bad else "green")
     for ego, fit in bad[:MAX_ROWS]:
-        yield "fit", Text(f"{_named(ego)}: {fit.reason}", style="yellow")
+        yield "fit", Text(f"ego {ego.actor.actor_id}: {fit.reason}", style="yellow")
     if len(bad) > MAX_ROWS:
         yield "fit", Text(f"and {len(bad) - MAX_ROWS} more", style="dim")
-
-
-def _named(ego: Ego) -> str:
-    return f"ego {ego.actor.actor_id}"
 
 
 def _map(road: Road) -> Text:
@@ -213,8 +219,9 @@ def _map(road: Road) -> Text:
     text.append(f": {plural(road.lanelets, 'lanelet')}, {road.drivable} of them for driving, {road.drivable_km:.2f} km")
     if any(road.offset_m):
         text.append(f", moved by ({road.offset_m[0]:+g}, {road.offset_m[1]:+g}) m")
-    guess = road.handedness_source == "default"
-    return text.append(f"; {handedness_text(road.handedness, road.handedness_source)}", style="yellow" if guess else "")
+    side = f"{'left' if road.handedness == 'lht' else 'right'}-hand traffic"
+    source = _SOURCES.get(road.handedness_source, road.handedness_source)
+    return text.append(f"; {side}, {source}", style="yellow" if road.handedness_source == "default" else "")
 
 
 def _fit(fit: Registration) -> Text:
@@ -228,16 +235,9 @@ def _quality(found: Sequence[Quality]) -> Iterator[Line]:
     if not any(q.severity != "info" for q in found):
         yield "data", Text("nothing that speaks against it", style="green")
     for finding in found[:MAX_ROWS]:
-        about = "map: " if finding.about == "map" else ""
-        at = (
-            ""
-            if finding.first_at_s is None or finding.severity == "info"
-            else f" (first at {finding.first_at_s:.2f} s)"
-        )
+        about, info = "map: " if finding.about == "map" else "", finding.severity == "info"
+        at = "" if finding.first_at_s is None or info else f" (first at {finding.first_at_s:.2f} s)"
         text = Text(f"{finding.severity}: ", style=_STYLE[finding.severity])
-        yield (
-            "data",
-            text.append(f"{about}{finding.message}{at}", style="dim" if finding.severity == "info" else "default"),
-        )
+        yield "data", text.append(f"{about}{finding.message}{at}", style="dim" if info else "default")
     if len(found) > MAX_ROWS:
         yield "data", Text(f"and {len(found) - MAX_ROWS} more", style="dim")

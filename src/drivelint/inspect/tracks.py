@@ -11,6 +11,7 @@ import pyarrow.compute as pc
 from drivelint.drive.order import MAX_GAP_PERIODS
 from drivelint.drive.trace import MOTOR_VEHICLES
 from drivelint.inspect.model import Actor, ClassCount, Clock
+from drivelint.result.counts import grouped
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -69,10 +70,7 @@ def actors(trace: Trace) -> list[Actor]:
     names = encoded.dictionary.take(encoded.indices.take(firsts)).to_pylist()
     return [
         Actor(
-            actor_id=name,
-            actor_class=known[name]["actor_class"],
-            length_m=known[name]["length_m"],
-            width_m=known[name]["width_m"],
+            **{key: known[name][key] for key in ("actor_id", "actor_class", "length_m", "width_m")},
             states=int(counts[k]),
             first_at_s=(int(times[firsts[k]]) - start) / 1e9,
             last_at_s=(int(times[firsts[k] + counts[k] - 1]) - start) / 1e9,
@@ -89,9 +87,6 @@ def _floats(states: object, name: str) -> NDArray[np.float64]:
 
 def count_classes(found: Sequence[Actor]) -> list[ClassCount]:
     """Count actors by class, the most numerous first."""
-    by_class: dict[str | None, list[Actor]] = {}
-    for actor in found:
-        by_class.setdefault(actor.actor_class, []).append(actor)
     counts = [
         ClassCount(
             actor_class=name,
@@ -99,7 +94,7 @@ def count_classes(found: Sequence[Actor]) -> list[ClassCount]:
             sized=sum(a.length_m is not None and a.width_m is not None for a in some),
             moving=sum(a.way_m > MIN_MOVED_M for a in some),
         )
-        for name, some in by_class.items()
+        for name, some in grouped(found, lambda actor: actor.actor_class).items()
     ]
     return sorted(counts, key=lambda c: (-c.n, c.actor_class or "~"))
 

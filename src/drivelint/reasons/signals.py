@@ -97,12 +97,7 @@ def problem(signal: str) -> str | None:
 
 def how_to_provide(signal: str, log_format: str) -> str:
     """Return how to provide a signal in a log of this format."""
-    return ADVICE.get(signal, "see what the rules that need it say: drivelint rules show ID").format_map(
-        _where(log_format)
-    )
-
-
-def _where(log_format: str) -> dict[str, str]:
     name = log_format if log_format in FORMATS else "mapped"
     # what a format has no place for goes into its tables
-    return {key: _CONVERTED + where for key, where in _TABLES.items()} | _WHERE.get(name, {})
+    where = {key: _CONVERTED + table for key, table in _TABLES.items()} | _WHERE.get(name, {})
+    return ADVICE.get(signal, "see what the rules that need it say: drivelint rules show ID").format_map(where)

@@ -14,6 +14,7 @@ import msgspec
 
 from drivelint.errors import RuleError
 from drivelint.report import vocabulary
+from drivelint.result.counts import grouped
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -119,29 +120,27 @@ def clause_coverage(rules: Iterable[Rule], table: Sequence[Clause]) -> list[Clau
 def page(rules: Iterable[Rule], folder: Path) -> str:
     """Return the page for rules whose packs lie in `folder` (for its clauses.toml files)."""
     rules = sorted(rules, key=lambda rule: rule.id)
-    packs: dict[str, list[Rule]] = {}
-    for rule in rules:
-        packs.setdefault(rule.pack, []).append(rule)
+    packs = grouped(rules, lambda rule: rule.pack)
     parts = [INTRODUCTION, _overview(packs)]
     for pack, mine in packs.items():
         parts.append(_pack(pack, mine))
-        if table := read_clauses(folder / pack):
-            parts.append(_clauses(clause_coverage(rules, table)))
+        if known := read_clauses(folder / pack):
+            parts.append(_clauses(clause_coverage(rules, known)))
     parts += [LOG_INTRODUCTION, "\n".join(vocabulary.column_value_lines()) + "\n"]
-    parts += [CONDITIONS_INTRODUCTION, _table(*vocabulary.condition_table(rules))]
-    parts += [EVENTS_INTRODUCTION, _table(*vocabulary.event_table(rules))]
-    parts += [MAP_INTRODUCTION, _table(*vocabulary.map_feature_table(rules))]
+    parts += [CONDITIONS_INTRODUCTION, table(*vocabulary.condition_table(rules))]
+    parts += [EVENTS_INTRODUCTION, table(*vocabulary.event_table(rules))]
+    parts += [MAP_INTRODUCTION, table(*vocabulary.map_feature_table(rules))]
     return "\n".join(parts)
 
 
 def _overview(packs: dict[str, list[Rule]]) -> str:
-    rows = [
-        (f"[`{pack}`](#{pack})", str(len(mine)), *(str(sum(r.status == s for r in mine)) for s in ("stable", "draft")))
-        for pack, mine in packs.items()
-    ]
     total = [rule for mine in packs.values() for rule in mine]
-    rows.append(("all", str(len(total)), *(str(sum(rule.status == s for rule in total)) for s in ("stable", "draft"))))
-    return _table(("pack", "rules", "stable", "draft"), rows)
+    counted = [*((f"[`{pack}`](#{pack})", mine) for pack, mine in packs.items()), ("all", total)]
+    rows = [
+        (name, str(len(mine)), *(str(sum(rule.status == s for rule in mine)) for s in ("stable", "draft")))
+        for name, mine in counted
+    ]
+    return table(("pack", "rules", "stable", "draft"), rows)
 
 
 def _pack(pack: str, rules: Sequence[Rule]) -> str:
@@ -156,14 +155,14 @@ def _pack(pack: str, rules: Sequence[Rule]) -> str:
         )
         for rule in rules
     ]
-    return f"## {pack}\n\n" + _table(("rule", "asserts", "kind", "needs", "numbers", "from"), rows)
+    return f"## {pack}\n\n" + table(("rule", "asserts", "kind", "needs", "numbers", "from"), rows)
 
 
 def _kind(rule: Rule) -> str:
-    window = f" {rule.quantifier} within {rule.window_s} s" if isinstance(rule.window_s, float | int) else ""
-    if isinstance(rule.window_s, str):
-        window = f" {rule.quantifier} within {rule.params[rule.window_s].default:g} s"
-    return rule.kind + window + (f", [{_applies(rule)}]" if _applies(rule) else "")
+    length = f"{rule.params[rule.window_s].default:g}" if isinstance(rule.window_s, str) else rule.window_s
+    window = "" if length is None else f" {rule.quantifier} within {length} s"
+    applies = _applies(rule)
+    return rule.kind + window + (f", [{applies}]" if applies else "")
 
 
 def _applies(rule: Rule) -> str:
@@ -202,11 +201,12 @@ def _clauses(rows: Sequence[ClauseCoverage]) -> str:
         "### By clause of the Highway Code\n\n"
         f"Of {len(rows)} entries {counts[0]} are covered, {counts[1]} drafted only, {counts[2]} undecidable from a trace. "
         "The last column says what is left open.\n\n"
-        + _table(("clause", "about", "covered by", "drafted", "not decided"), body)
+        + table(("clause", "about", "covered by", "drafted", "not decided"), body)
     )
 
 
-def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a table; cells are Markdown, on one line each."""
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     lines += ["| " + " | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in row) + " |" for row in rows]
     return "\n".join(lines) + "\n"

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import pyarrow.compute as pc
 from lxml import etree
 
 from drivelint.gate import descriptions
-from drivelint.report.xml import replace_non_xml
+from drivelint.report.xml import add, document, replace_non_xml
+from drivelint.result import counts
 from drivelint.result.text import line, with_count
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Sequence
 
     import pyarrow as pa
 
-    from drivelint.result.gate import Gate
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
@@ -56,21 +56,18 @@ def render(result: Result) -> bytes:
         totals = {name: n + counted[name] for name, n in totals.items()}
     for name, n in totals.items():
         root.set(name, str(n))
-    return bytes(etree.tostring(root, xml_declaration=True, encoding="UTF-8", pretty_print=True))
+    return document(root)
 
 
 def _cases(result: Result) -> dict[str, list[Case]]:
     """Return drive_id -> its test cases, in the order of the verdict table."""
-    starts = dict(zip(result.drives["drive_id"].to_pylist(), result.drives["t_start_ns"].to_pylist(), strict=True))
+    starts = result.start_times
     drafts = set(result.rules.filter(pc.not_equal(result.rules["status"], "stable"))["rule_id"].to_pylist())
     found: dict[CaseKey, list[str]] = defaultdict(list)
     passed: dict[CaseKey, list[str]] = defaultdict(list)
     for row in result.findings.to_pylist():
-        text, excuse = line(row, starts.get(row["drive_id"])), _excuse(row["finding_id"], result.gate)
-        if excuse:
-            passed[_key(row)].append(f"{excuse}: {text}")
-        else:
-            found[_key(row)].append(text)
+        text, excuse = line(row, starts.get(row["drive_id"])), descriptions.excuse(result.gate, row["finding_id"])
+        (passed if excuse else found)[_key(row)].append(f"{excuse}: {text}" if excuse else text)
     reasons: dict[CaseKey, dict[str, list[str]]] = defaultdict(dict)
     for row in _reasons(result.verdicts):
         reasons[_key(row)].setdefault(row["verdict"], []).append(with_count(row["reason"], row["count_all"]))
@@ -85,13 +82,11 @@ def _cases(result: Result) -> dict[str, list[Case]]:
     return cases
 
 
-def _reasons(verdicts: pa.Table) -> Iterator[Row]:
-    """Yield each distinct verdict and reason of a drive, rule and profile with its count; passes need no reason."""
+def _reasons(verdicts: pa.Table) -> Sequence[Row]:
+    """Return each distinct verdict and reason of a drive, rule and profile with its count; passes need no reason."""
     reason = pc.if_else(pc.equal(verdicts["verdict"], "pass"), "", verdicts["reason"])
     columns = ["drive_id", "rule_id", "profile", "verdict"]
-    told = verdicts.select(columns).append_column("reason", reason)
-    grouped = told.group_by([*columns, "reason"], use_threads=False).aggregate([([], "count_all")])
-    yield from grouped.to_pylist()
+    return counts.distinct_rows(verdicts.select(columns).append_column("reason", reason), [*columns, "reason"])
 
 
 def _case(key: CaseKey, verdicts: dict[str, list[str]], *, draft: bool, strict: bool) -> Case:
@@ -100,20 +95,12 @@ def _case(key: CaseKey, verdicts: dict[str, list[str]], *, draft: bool, strict: 
     if "error" in verdicts:
         return Case(name, "error", "error", verdicts["error"])
     if "fail" in verdicts:
-        lines = verdicts["fail"]
-        return (
-            Case(name, "skipped", "draft", [f"draft, does not gate: {x}" for x in lines])
-            if draft
-            else Case(name, "failure", "fail", lines)
-        )
+        lines = [f"draft, does not gate: {x}" for x in verdicts["fail"]]
+        return Case(name, "skipped", "draft", lines) if draft else Case(name, "failure", "fail", verdicts["fail"])
     let_through = verdicts.get("let_through", [])
     if "unknown" in verdicts:
-        return Case(
-            name,
-            "error" if strict and not draft else "skipped",
-            "unknown",
-            [*(f"unknown: {x}" for x in verdicts["unknown"]), *let_through],
-        )
+        lines = [*(f"unknown: {x}" for x in verdicts["unknown"]), *let_through]
+        return Case(name, "error" if strict and not draft else "skipped", "unknown", lines)
     if let_through:
         return Case(name, "skipped", "let_through", let_through)
     if "pass" in verdicts:
@@ -121,36 +108,19 @@ def _case(key: CaseKey, verdicts: dict[str, list[str]], *, draft: bool, strict: 
     return Case(name, "skipped", "not_applicable", [f"not applicable: {x}" for x in verdicts.get("not_applicable", [])])
 
 
-def _excuse(finding_id: str, gate: Gate | None) -> str:
-    """Return why a finding does not fail its case; '' where it does."""
-    if gate is None or gate.gates(finding_id):
-        return ""
-    waiver = gate.waiver(finding_id)
-    return "known: the baseline has it" if waiver is None else descriptions.waiver_reason(waiver)
-
-
 def _suite(root: etree._Element, drive_id: str, cases: list[Case]) -> dict[str, int]:
     """Append a drive's suite to the document and return its counts."""
-    counted = {
-        "tests": len(cases),
-        "failures": sum(case.outcome == "failure" for case in cases),
-        "errors": sum(case.outcome == "error" for case in cases),
-        "skipped": sum(case.outcome == "skipped" for case in cases),
-    }
-    suite = etree.SubElement(root, "testsuite", name=replace_non_xml(drive_id))
-    for name, n in counted.items():
-        suite.set(name, str(n))
+    outcomes = Counter(case.outcome for case in cases)
+    counted = {"tests": len(cases), "failures": outcomes["failure"], "errors": outcomes["error"]}
+    counted["skipped"] = outcomes["skipped"]
+    suite = add(root, "testsuite", name=drive_id, **{name: str(n) for name, n in counted.items()})
     for case in cases:
-        element = etree.SubElement(
-            suite, "testcase", name=replace_non_xml(case.name), classname=replace_non_xml(drive_id)
-        )
+        element = add(suite, "testcase", name=case.name, classname=drive_id)
         if case.outcome:
             lines = case.lines[:MAX_LINES]
             if more := len(case.lines) - len(lines):
                 lines.append(f"... and {more} more: see findings.parquet and verdicts.parquet")
-            detail = etree.SubElement(
-                element, case.outcome, type=case.kind, message=replace_non_xml(lines[0] if lines else case.kind)
-            )
+            detail = add(element, case.outcome, type=case.kind, message=lines[0] if lines else case.kind)
             detail.text = replace_non_xml("\n".join(lines))
     return counted
 

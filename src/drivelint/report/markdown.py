@@ -6,7 +6,6 @@ import re
 from typing import TYPE_CHECKING, Final
 from urllib.parse import quote
 
-import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.gate import descriptions
@@ -14,10 +13,10 @@ from drivelint.phrases import plural
 from drivelint.report.html.anchors import finding_anchor
 from drivelint.result import counts
 from drivelint.result.model import exit_status
-from drivelint.result.text import number, seconds, subject, with_count
+from drivelint.result.text import number, rule_name, seconds, subject, with_count
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Sequence
 
     from drivelint.result.gate import ComparedFinding, Difference, Gate
     from drivelint.result.model import Result
@@ -30,7 +29,6 @@ MAX_CHARS: Final = 60_000
 MAX_REASON_CHARS: Final = 160
 """Characters of one reason."""
 
-_OPEN: Final = pa.array(["unknown", "error"])
 _HEAD: Final = ("pass", "fail", "unknown", "not applicable", "error")
 
 
@@ -41,7 +39,10 @@ def render(result: Result, link: str = "report.html") -> bytes:
     """
     end = exit_status(result)
     blocks = [f"## drivelint: {_mark(int(end.code))}, exit {int(end.code)}", f"{escaped(end.why)}."]
-    blocks.append("\n".join(_packs(result)))
+    packs = counts.verdicts_by_pack(result.rules, result.verdicts)
+    blocks.append(
+        _table(["pack", *_HEAD], [[code(pack), *map(str, told.values())] for pack, told in packs.items()], _HEAD)
+    )
     gate = result.gate
     if gate is not None and gate.baseline is not None:
         blocks.append(f"Against the baseline: {escaped(descriptions.headline(gate.baseline))}.")
@@ -73,8 +74,7 @@ def difference(diff: Difference, failing: Sequence[ComparedFinding], fail_on: st
         f"{escaped(descriptions.exit_summary(failing, fail_on))}.",
     ]
     rows = [(diff.base_name, diff.base_verdicts), (diff.name, diff.verdicts)]
-    lines = [_row("result", *_HEAD), _row("---", *["---:"] * len(_HEAD))]
-    blocks.append("\n".join([*lines, *(_row(code(name), *map(str, told.values())) for name, told in rows)]))
+    blocks.append(_table(["result", *_HEAD], [[code(name), *map(str, told.values())] for name, told in rows], _HEAD))
     blocks += _entries(diff, descriptions.STANDING_TITLES, gate, None)
     blocks += _opened(diff)
     for title, names in (("Only in the newer result", diff.new_only), ("Only in the base", diff.base_only)):
@@ -105,61 +105,40 @@ def _mark(exit_code: int) -> str:
     return {0: "passed", 1: "failed", 2: "a rule could not be run"}.get(exit_code, "not everything could be judged")
 
 
-def _packs(result: Result) -> Iterator[str]:
-    yield _row("pack", *_HEAD)
-    yield _row("---", *["---:"] * len(_HEAD))
-    told = counts.verdicts_by_pack(result.rules, counts.verdicts_by(result.verdicts, "rule_id"))
-    for pack, sums in told.items():
-        yield _row(code(pack), *(str(sums[verdict]) for verdict in counts.VERDICTS))
-
-
 def _findings(result: Result, link: str) -> Iterator[str]:
     """Yield a table of findings that gate, then one of those that do not, with the reason."""
-    drives = {row["drive_id"]: row for row in result.drives.to_pylist()}
+    starts = result.start_times
     rules = {row["rule_id"]: row for row in result.rules.to_pylist()}
-    stopped: list[tuple[Row, str]] = []
-    passed: list[tuple[Row, str]] = []
-    for row in result.findings.to_pylist():
-        excuse = _excuse(row, rules.get(row["rule_id"]), result)
-        (passed if excuse else stopped).append((row, excuse))
+    excused = [(row, _excuse(row, rules.get(row["rule_id"]), result)) for row in result.findings.to_pylist()]
+    excused.sort(key=lambda item: counts.SEVERITIES.index(item[0]["severity"]))
     gate = result.gate
     kind = "New findings" if gate is not None and gate.baseline is not None else "Findings"
-    for title, rows in ((kind, stopped), ("Findings that do not gate", passed)):
+    for title, why in ((kind, False), ("Findings that do not gate", True)):
+        rows = [item for item in excused if bool(item[1]) is why]
         if rows:
-            rows.sort(key=lambda item: counts.SEVERITIES.index(item[0]["severity"]))
-            why = rows is passed
-            lines = [
-                _row("severity", "drive", "time", "rule", "who", "observed", "required", *(["why not"] if why else []))
-            ]
-            lines.append(_row(*["---"] * (8 if why else 7)))
+            head = ["severity", "drive", "time", "rule", "who", "observed", "required", *(["why not"] if why else [])]
+            lines = []
             for row, excuse in rows[:MAX_ROWS]:
-                start_ns = drives[row["drive_id"]]["t_start_ns"]
                 sense = rules[row["rule_id"]]["sense"] if row["rule_id"] in rules else ""
-                lines.append(_finding(row, sense, start_ns, link, [escaped(_short(excuse))] if why else []))
-            more = len(rows) - MAX_ROWS
-            shown = f" (the first {MAX_ROWS} of {len(rows)})" if more > 0 else f" ({len(rows)})"
-            table = "\n".join(lines)
-            yield _folded(title + shown, table) if why else f"### {title}{shown}\n\n{table}"
+                cells = _finding(row, sense, starts[row["drive_id"]], link)
+                lines.append([*cells, escaped(_short(excuse))] if why else cells)
+            heading, table = title + _shown(len(rows)), _table(head, lines)
+            yield _folded(heading, table) if why else f"### {heading}\n\n{table}"
 
 
-def _finding(row: Row, sense: str, start_ns: int | None, link: str, more: list[str]) -> str:
-    profile = "" if row["profile"] is None else f" [{row['profile']}]"
-    rule = f"[{code(row['rule_id'] + profile)}]({_target(link)}#{finding_anchor(row)})"
+def _finding(row: Row, sense: str, start_ns: int | None, link: str) -> list[str]:
+    rule = f"[{code(rule_name(row))}]({_target(link)}#{finding_anchor(row)})"
     measured = [escaped(number(row["observed"], row["unit"])), escaped(number(row["required"], row["unit"]))]
     if sense in {">", ">=", "<", "<="} and row["required"] is not None:
         measured[1] = f"{escaped(sense)} {measured[1]}"
     when, who = escaped(seconds(row["t_worst_ns"], start_ns)), escaped(subject(row))
-    return _row(row["severity"], code(row["drive_id"]), when, rule, who, *measured, *more)
+    return [row["severity"], code(row["drive_id"]), when, rule, who, *measured]
 
 
 def _excuse(row: Row, rule: Row | None, result: Result) -> str:
     """Return why a finding does not gate; '' where it does."""
-    gate = result.gate
-    waiver = gate.waiver(row["finding_id"]) if gate else None
-    if waiver is not None:
-        return descriptions.waiver_reason(waiver)
-    if gate is not None and gate.in_baseline(row["finding_id"]):
-        return "known: the baseline has it"
+    if excuse := descriptions.excuse(result.gate, row["finding_id"]):
+        return excuse
     if rule is None or rule["status"] != "stable":
         return "draft" if rule is None else rule["status"]
     severe = () if result.fail_on == "never" else counts.SEVERITIES[: counts.SEVERITIES.index(result.fail_on) + 1]
@@ -187,20 +166,16 @@ def _entries(diff: Difference, titles: dict[str, str], gate: Gate | None, link: 
             here = link is not None and standing == "changed"
             there = f" [see]({_target(link or '')}#{finding_anchor({'finding_id': entry.finding_id})})" if here else ""
             lines.append(f"* {escaped(_short(descriptions.finding_line(entry)))}{waived}{there}")
-        shown = f" (the first {MAX_ROWS} of {len(entries)})" if len(entries) > MAX_ROWS else f" ({len(entries)})"
-        body = "\n".join(lines)
-        yield (
-            f"### {title}{shown}\n\n{body}" if standing in {"new", "unknown", "lost"} else _folded(title + shown, body)
-        )
+        heading, body = title + _shown(len(entries)), "\n".join(lines)
+        yield f"### {heading}\n\n{body}" if standing in {"new", "unknown", "lost"} else _folded(heading, body)
 
 
 def _opened(diff: Difference) -> Iterator[str]:
     groups = descriptions.group_by_reason(diff.opened)
     if groups:
         total = sum(n for _, _, n in groups)
-        lines = [_row("verdicts", "rules", "why"), _row("---:", "---", "---")]
-        lines += [_row(str(n), _few(rules), escaped(_short(reason))) for reason, rules, n in groups[:MAX_ROWS]]
-        yield f"### More is unknown than was ({total})\n\n" + "\n".join(lines)
+        rows = [[str(n), _few(rules), escaped(_short(reason))] for reason, rules, n in groups[:MAX_ROWS]]
+        yield f"### More is unknown than was ({total})\n\n" + _table(["verdicts", "rules", "why"], rows, ["verdicts"])
 
 
 def _open(result: Result) -> Iterator[str]:
@@ -212,24 +187,19 @@ def _open(result: Result) -> Iterator[str]:
         ]
         rest = [f"* ... and {len(lost) - MAX_ROWS} more"] if len(lost) > MAX_ROWS else []
         yield f"### Drives that could not be judged ({len(lost)})\n\n" + "\n".join([*lines[:MAX_ROWS], *rest])
-    rows = result.verdicts.filter(pc.is_in(result.verdicts["verdict"], value_set=_OPEN))
-    if not rows.num_rows:
+    rows = counts.distinct_rows(counts.undecided(result.verdicts), ["verdict", "reason", "rule_id"])
+    if not rows:
         return
-    why: dict[tuple[str, str], list[str]] = {}
-    told: dict[tuple[str, str], int] = {}
-    grouped = rows.group_by(["verdict", "reason", "rule_id"], use_threads=False).aggregate([([], "count_all")])
-    for row in grouped.to_pylist():
-        at = row["verdict"], row["reason"]
-        why.setdefault(at, []).append(row["rule_id"])
-        told[at] = told.get(at, 0) + row["count_all"]
-    ordered = sorted(told, key=lambda at: (at[0], -told[at], at[1]))
-    lines = [_row("verdict", "rules", "why"), _row("---", "---", "---")]
-    lines += [
-        _row(at[0], _few(sorted(why[at])), escaped(with_count(_short(at[1]), told[at]))) for at in ordered[:MAX_ROWS]
-    ]
-    more = f" (the first {MAX_ROWS} of {len(ordered)} reasons)" if len(ordered) > MAX_ROWS else ""
-    n = plural(rows.num_rows, "verdict")
-    yield _folded(f"Could not be judged: {n}, for {plural(len(ordered), 'reason')}{more}", "\n".join(lines))
+    why = counts.grouped(rows, lambda row: (row["verdict"], row["reason"]))
+    told = {at: sum(row["count_all"] for row in alike) for at, alike in why.items()}
+    cells = []
+    for at in sorted(told, key=lambda at: (at[0], -told[at], at[1]))[:MAX_ROWS]:
+        rules = sorted(row["rule_id"] for row in why[at])
+        cells.append([at[0], _few(rules), escaped(with_count(_short(at[1]), told[at]))])
+    more = f" (the first {MAX_ROWS} of {len(told)} reasons)" if len(told) > MAX_ROWS else ""
+    n = plural(sum(told.values()), "verdict")
+    table = _table(["verdict", "rules", "why"], cells)
+    yield _folded(f"Could not be judged: {n}, for {plural(len(told), 'reason')}{more}", table)
 
 
 def _few(rules: Sequence[str]) -> str:
@@ -242,8 +212,14 @@ def _folded(title: str, body: str) -> str:
     return f"<details><summary>{title}</summary>\n\n{body}\n\n</details>"
 
 
-def _row(*cells: str) -> str:
-    return f"| {' | '.join(cells)} |"
+def _table(head: Sequence[str], rows: Iterable[Sequence[str]], numbers: Collection[str] = ()) -> str:
+    """Return a table; `numbers`: the columns that have them."""
+    line = ["---:" if name in numbers else "---" for name in head]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in (head, line, *rows))
+
+
+def _shown(n: int) -> str:
+    return f" (the first {MAX_ROWS} of {n})" if n > MAX_ROWS else f" ({n})"
 
 
 def _short(words_: str) -> str:

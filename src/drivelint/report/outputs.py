@@ -1,19 +1,28 @@
-"""The files of a finished run, written together into one folder."""
+"""The files of a finished run, written together into one folder, and the formats of `drivelint report`."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
-from drivelint.report import html, junit, summary
-from drivelint.report.report_formats import REPORT_FORMATS
+from drivelint.report import html, junit, markdown, sarif, summary, xqar
 from drivelint.result import gate_file, request
 from drivelint.result.files import parquet_bytes, publish
 from drivelint.result.schemas import TABLE_OF_FILE
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
     from pathlib import Path
 
     from drivelint.result.model import Result
+
+REPORT_FORMATS: Final[Mapping[str, tuple[str, Callable[[Result], bytes]]]] = {
+    "html": ("report.html", html.render),
+    "junit": ("junit.xml", junit.render),
+    "sarif": ("report.sarif", sarif.render),
+    "xqar": ("report.xqar", xqar.render),
+    "markdown": ("report.md", markdown.render),
+}
+"""Name -> file in the result folder, and what renders it: the same result, the same bytes."""
 
 
 def write(result: Result, out: Path) -> None:
@@ -26,13 +35,10 @@ def write(result: Result, out: Path) -> None:
     contents["junit.xml"] = junit.render(result)
     moved: dict[str, Path | None] = {"margins.parquet": result.margins_file}
     moved |= {name: None for name, _ in REPORT_FORMATS.values() if name not in contents}  # of an earlier result
-    if result.gate is None:
-        moved[gate_file.FILE] = None
-    else:
+    moved |= {gate_file.FILE: None, request.RUN_FILE: None}
+    if result.gate is not None:
         contents[gate_file.FILE] = gate_file.render(result.gate)
-    if result.asked is None:
-        moved[request.RUN_FILE] = None
-    else:
+    if result.asked is not None:
         contents[request.RUN_FILE] = request.render(result.asked, out)
     contents["summary.json"] = summary.render(result)
     publish(out, contents, moved)

@@ -26,19 +26,8 @@ _MERGE_GAP_S: Final = 1.0
 
 def listing_json(rules: Iterable[Rule]) -> str:
     """Return a JSON list: id, pack, kind, subtype, severity, status, clause, requires of every rule."""
-    rows = [
-        {
-            "id": rule.id,
-            "pack": rule.pack,
-            "kind": rule.kind,
-            "subtype": rule.subtype,
-            "severity": rule.severity,
-            "status": rule.status,
-            "clause": rule.clause,
-            "requires": sorted(rule.requires),
-        }
-        for rule in rules
-    ]
+    keys = ("id", "pack", "kind", "subtype", "severity", "status", "clause")
+    rows = [{key: getattr(rule, key) for key in keys} | {"requires": sorted(rule.requires)} for rule in rules]
     return json.dumps(rows, indent=2, ensure_ascii=False)
 
 

@@ -8,18 +8,14 @@ properties of the run and of each rule, so that a pass is not read where nothing
 from __future__ import annotations
 
 import json
-import math
 from typing import TYPE_CHECKING, Any, Final
 from urllib.parse import quote
-
-import pyarrow as pa
-import pyarrow.compute as pc
 
 from drivelint import __version__
 from drivelint.gate import descriptions
 from drivelint.result import counts
 from drivelint.result.model import exit_status
-from drivelint.result.text import comparison, number, seconds, subject, with_count
+from drivelint.result.text import comparison, finite, number, rule_name, seconds, subject, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -31,7 +27,6 @@ SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/sche
 LEVELS: Final = {"critical": "error", "major": "warning", "minor": "note"}
 """Severity -> level. A draft's findings are notes, whatever their severity: they do not gate."""
 
-_OPEN: Final = pa.array(["unknown", "error"])
 _STATES: Final = {"new": "new", "changed": "updated", "unchanged": "unchanged"}
 _NOTICES: Final = {
     "unknown": "A rule could not be judged",
@@ -45,7 +40,7 @@ _NOTICES: Final = {
 def render(result: Result) -> bytes:
     """Return the SARIF log as UTF-8 JSON with a final newline; the same result gives the same bytes."""
     content = {"$schema": SCHEMA, "version": "2.1.0", "runs": [_Run(result).content()]}
-    return (json.dumps(_finite(content), indent=1, ensure_ascii=True, allow_nan=False) + "\n").encode()
+    return (json.dumps(finite(content), indent=1, ensure_ascii=True, allow_nan=False) + "\n").encode()
 
 
 class _Run:
@@ -53,16 +48,16 @@ class _Run:
 
     def __init__(self, result: Result) -> None:
         self._result = result
-        self._rules: list[Row] = result.rules.to_pylist()
-        self._logs: list[Row] = result.drives.to_pylist()
-        self._drives: dict[str, Row] = {row["drive_id"]: row for row in self._logs}
+        self._rules = result.rules.to_pylist()
+        self._logs = result.drives.to_pylist()
+        self._drives = {row["drive_id"]: row for row in self._logs}
         self._rule_index = {rule["rule_id"]: n for n, rule in enumerate(self._rules)}
         self._artifact_index = {drive["drive_id"]: n for n, drive in enumerate(self._logs)}
 
     def content(self) -> dict[str, Any]:
         """Return the SARIF run as plain data."""
         result, end = self._result, exit_status(self._result)
-        told, none = counts.verdicts_by(result.verdicts, "rule_id"), dict.fromkeys(counts.VERDICTS, 0)
+        told = counts.verdicts_by(result.verdicts, "rule_id")
         total = counts.total(result.verdicts)
         properties = {"verdicts": total, "failOn": result.fail_on, "strict": result.strict}
         if result.gate is not None:
@@ -70,7 +65,7 @@ class _Run:
         driver = {
             "name": "drivelint",
             "semanticVersion": __version__,
-            "rules": [_rule(rule, told.get(rule["rule_id"], none)) for rule in self._rules],
+            "rules": [_rule(rule, told[rule["rule_id"]]) for rule in self._rules],
             "notifications": [{"id": name, "shortDescription": {"text": text}} for name, text in _NOTICES.items()],
         }
         invocation = {
@@ -93,11 +88,8 @@ class _Run:
         start_ns = drive["t_start_ns"]
         measured = "" if row["reason_measures"] else comparison(row)
         profile = "" if row["profile"] is None else f", profile {row['profile']}"
-        said = [
-            f"{rule['title']}: {row['reason']}",
-            measured,
-            f"{subject(row)}{profile}, {seconds(row['t_worst_ns'], start_ns)}",
-        ]
+        who = f"{subject(row)}{profile}, {seconds(row['t_worst_ns'], start_ns)}"
+        said = [f"{rule['title']}: {row['reason']}", measured, who]
         found: dict[str, Any] = {
             "ruleId": row["rule_id"],
             "ruleIndex": rule_index,
@@ -129,26 +121,17 @@ class _Run:
     def _location(self, drive: Row, row: Row | None = None) -> dict[str, Any]:
         """Return a log as a place, and within it, if a finding is given, whom it is about and where it was."""
         drive_id = drive["drive_id"]
-        place: dict[str, Any] = {
-            "physicalLocation": {
-                "artifactLocation": {"uri": _uri(drive["file_name"]), "index": self._artifact_index[drive_id]}
-            }
-        }
+        artifact = {"uri": _uri(drive["file_name"]), "index": self._artifact_index[drive_id]}
+        place: dict[str, Any] = {"physicalLocation": {"artifactLocation": artifact}}
         if row is not None:
-            inside = [
-                ("drive", drive_id),
-                ("ego", row["ego_id"]),
-                ("object", row["object_id"]),
-                ("lanelet", row["lanelet_id"]),
-            ]
+            inside = {"ego": row["ego_id"], "object": row["object_id"], "lanelet": row["lanelet_id"]}
             place["logicalLocations"] = [
-                {
-                    "name": name,
-                    "kind": kind,
-                    "fullyQualifiedName": f"{drive_id}/{kind}/{name}" if kind != "drive" else drive_id,
-                }
-                for kind, name in inside
-                if name is not None
+                {"name": drive_id, "kind": "drive", "fullyQualifiedName": drive_id},
+                *(
+                    {"name": name, "kind": kind, "fullyQualifiedName": f"{drive_id}/{kind}/{name}"}
+                    for kind, name in inside.items()
+                    if name is not None
+                ),
             ]
             at = f"{seconds(row['t_worst_ns'], drive['t_start_ns'])} into {drive['file_name']}"
             if row["x_m"] is not None and row["y_m"] is not None:
@@ -161,12 +144,9 @@ class _Run:
         for drive in self._logs:
             if drive["status"] == "not_judged":
                 yield _notice("not-judged", "error", drive["status_reason"] or "no reason given", self._location(drive))
-        result = self._result
-        rows = result.verdicts.filter(pc.is_in(result.verdicts["verdict"], value_set=_OPEN))
-        columns = ["drive_id", "rule_id", "profile", "verdict", "reason"]
-        for row in rows.group_by(columns, use_threads=False).aggregate([([], "count_all")]).to_pylist():
-            profile = "" if row["profile"] is None else f" [{row['profile']}]"
-            text = f"{row['rule_id']}{profile}: {row['verdict']}: {with_count(row['reason'], row['count_all'])}"
+        result, columns = self._result, ["drive_id", "rule_id", "profile", "verdict", "reason"]
+        for row in counts.distinct_rows(counts.undecided(result.verdicts), columns):
+            text = f"{rule_name(row)}: {row['verdict']}: {with_count(row['reason'], row['count_all'])}"
             level = "error" if row["verdict"] == "error" else "warning"
             notice = _notice(row["verdict"], level, text, self._location(self._drives[row["drive_id"]]))
             yield notice | {"associatedRule": {"id": row["rule_id"], "index": self._rule_index[row["rule_id"]]}}
@@ -228,12 +208,3 @@ def _since(t_ns: int | None, start_ns: int | None) -> float | None:
 def _uri(name: str) -> str:
     """Return a file's name as a relative URI; a colon in it must not be read as a scheme's."""
     return quote(name, safe="", errors="surrogateescape")
-
-
-def _finite(value: Any) -> Any:
-    """Return plain data with NaN and infinity as null: neither is JSON."""
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    return [_finite(item) for item in value] if isinstance(value, list) else value

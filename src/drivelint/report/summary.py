@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
-import math
-from typing import TYPE_CHECKING, Any
+from collections import Counter
+from typing import TYPE_CHECKING, Any, Final
 
 import duckdb
 
@@ -13,14 +13,24 @@ from drivelint.gate import descriptions
 from drivelint.result import counts
 from drivelint.result.model import exit_status
 from drivelint.result.schemas import OUTPUT_VERSION
+from drivelint.result.text import finite
 
 if TYPE_CHECKING:
+    import pyarrow as pa
+
     from drivelint.result.model import Result
+
+_RULE: Final = ["rule_id", "rule_version", "title", "severity", "status", "profiles", "params"]
+_DRIVE: Final = [
+    "drive_id", "file_name", "sha256", "format", "map_name", "map_sha256", "handedness", "handedness_source",
+    "status", "status_reason", "lossy", "duration_s", "km", "n_states", "n_steps", "n_egos",
+    "conditions", "quality", "not_judged",
+]  # fmt: skip
 
 
 def render(result: Result) -> bytes:
     """Return the summary as UTF-8 JSON with a final newline."""
-    return (json.dumps(_finite(content(result)), indent=2, ensure_ascii=False, allow_nan=False) + "\n").encode()
+    return (json.dumps(finite(content(result)), indent=2, ensure_ascii=False, allow_nan=False) + "\n").encode()
 
 
 def content(result: Result) -> dict[str, Any]:
@@ -39,51 +49,24 @@ def content(result: Result) -> dict[str, Any]:
         "findings": counts.tally(result.findings, counts.SEVERITIES, "severity"),
         "packs": [
             {"pack": pack, "verdicts": told}
-            for pack, told in counts.verdicts_by_pack(
-                result.rules, counts.verdicts_by(result.verdicts, "rule_id")
-            ).items()
+            for pack, told in counts.verdicts_by_pack(result.rules, result.verdicts).items()
         ],
-        "rules": _rules(result, counts.rows_by(near, "rule_id")),
-        "drives": _drives(result, counts.rows_by(near, "drive_id")),
+        "rules": _counted(result, result.rules.select(_RULE), near),
+        "drives": _counted(result, result.drives.select(_DRIVE), near),
     }
 
 
-def _rules(result: Result, near: dict[str, int]) -> list[dict[str, Any]]:
-    verdicts, findings = counts.verdicts_by(result.verdicts, "rule_id"), counts.rows_by(result.findings, "rule_id")
-    columns = ["rule_id", "rule_version", "title", "severity", "status", "profiles", "params"]
+def _counted(result: Result, rows: pa.Table, near: pa.Table) -> list[dict[str, Any]]:
+    """Return rows, of which the first column is the id, with the numbers of their verdicts, near misses and findings."""
+    key = rows.column_names[0]
+    verdicts = counts.verdicts_by(result.verdicts, key)
+    near_misses, findings = (Counter(table[key].to_pylist()) for table in (near, result.findings))
     return [
         {
-            **rule,
-            "verdicts": verdicts.get(rule["rule_id"], dict.fromkeys(counts.VERDICTS, 0)),
-            "near_misses": near.get(rule["rule_id"], 0),
-            "findings": findings.get(rule["rule_id"], 0),
+            **row,
+            "verdicts": verdicts[row[key]],
+            "near_misses": near_misses[row[key]],
+            "findings": findings[row[key]],
         }
-        for rule in result.rules.select(columns).to_pylist()
+        for row in rows.to_pylist()
     ]
-
-
-def _drives(result: Result, near: dict[str, int]) -> list[dict[str, Any]]:
-    verdicts, findings = counts.verdicts_by(result.verdicts, "drive_id"), counts.rows_by(result.findings, "drive_id")
-    columns = [
-        "drive_id", "file_name", "sha256", "format", "map_name", "map_sha256", "handedness", "handedness_source",
-        "status", "status_reason", "lossy", "duration_s", "km", "n_states", "n_steps", "n_egos",
-        "conditions", "quality", "not_judged",
-    ]  # fmt: skip
-    return [
-        {
-            **drive,
-            "verdicts": verdicts.get(drive["drive_id"], dict.fromkeys(counts.VERDICTS, 0)),
-            "near_misses": near.get(drive["drive_id"], 0),
-            "findings": findings.get(drive["drive_id"], 0),
-        }
-        for drive in result.drives.select(columns).to_pylist()
-    ]
-
-
-def _finite(value: Any) -> Any:
-    """Return plain data with NaN and infinity as null: neither is JSON."""
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    return [_finite(item) for item in value] if isinstance(value, list) else value

@@ -16,9 +16,11 @@ from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
 from drivelint.result import counts
 from drivelint.result.model import exit_status
-from drivelint.result.text import NONE, comparison, number, seconds, with_count
+from drivelint.result.text import NONE, comparison, number, rule_name, seconds, with_count
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rich.console import RenderableType
 
     from drivelint.result.model import Result
@@ -28,7 +30,6 @@ MAX_ROWS: Final = 20
 NARROW_WIDTH: Final = 96
 """Below this width findings take two lines each, and columns that only repeat are left out."""
 
-_OPEN: Final = pa.array(["unknown", "error"])
 _STYLE: Final = {
     "pass": "green",
     "fail": "bold red",
@@ -46,11 +47,11 @@ def render(result: Result, out: str | None = None, width: int = 120) -> Group:
     Sections: drives, rules, findings, near misses, what could not be judged, data quality, exit.
     """
     wide = width >= NARROW_WIDTH
-    starts = dict(zip(result.drives["drive_id"].to_pylist(), result.drives["t_start_ns"].to_pylist(), strict=True))
+    starts = result.start_times
     near = result.verdicts.filter(result.verdicts["near_miss"])
     sections: list[RenderableType | None] = [
-        _drives(result, width),
-        _rules(result, width),
+        _drives(result, wide=wide),
+        _rules(result, wide=wide),
         *_findings(result, starts, wide=wide),
         _measured("Near misses: kept, but only just", near, starts, "yellow", wide=wide),
         _open(result),
@@ -61,12 +62,11 @@ def render(result: Result, out: str | None = None, width: int = 120) -> Group:
     return Group(*(Padding(section, (0, 0, 1, 0)) for section in sections if section is not None))
 
 
-def _drives(result: Result, width: int) -> Table:
+def _drives(result: Result, *, wide: bool) -> Table:
     told = counts.verdicts_by(result.verdicts, "drive_id")
     rows = result.drives.to_pylist()
-    table = _table("Drives" if len(rows) <= MAX_ROWS else f"Drives (first {MAX_ROWS} of {len(rows)})")
-    table.add_column("drive", overflow="fold", ratio=1)
-    wide = width >= NARROW_WIDTH
+    title = "Drives" if len(rows) <= MAX_ROWS else f"Drives (first {MAX_ROWS} of {len(rows)})"
+    table = _table(title, "bold", {"drive": 1})
     for column in ("km", "time") if wide else ():
         table.add_column(column, justify="right", no_wrap=True)
     _count_columns(table)
@@ -76,15 +76,13 @@ def _drives(result: Result, width: int) -> Table:
             name.append(" (lossy)", style="yellow")
         duration = NONE if row["duration_s"] is None else f"{row['duration_s']:.1f} s"
         extent = [f"{row['km']:.2f}", duration] if wide else []
-        table.add_row(name, *extent, *_count_cells(told.get(row["drive_id"], {})))
+        table.add_row(name, *extent, *_count_cells(told[row["drive_id"]]))
     return table
 
 
-def _rules(result: Result, width: int) -> Table:
+def _rules(result: Result, *, wide: bool) -> Table:
     told = counts.verdicts_by(result.verdicts, "rule_id")
-    table = _table("Rules")
-    table.add_column("rule", overflow="fold", ratio=1)
-    wide = width >= NARROW_WIDTH
+    table = _table("Rules", "bold", {"rule": 1})
     if wide:
         table.add_column("severity")
     _count_columns(table)
@@ -93,9 +91,9 @@ def _rules(result: Result, width: int) -> Table:
         if row["status"] != "stable":
             name.append(f" ({row['status']})", style="dim")
         severity = [Text(row["severity"], style=_SEVERITY[row["severity"]])] if wide else []
-        table.add_row(name, *severity, *_count_cells(told.get(row["rule_id"], {})))
+        table.add_row(name, *severity, *_count_cells(told[row["rule_id"]]))
     table.add_section()
-    packs = counts.verdicts_by_pack(result.rules, told)
+    packs = counts.verdicts_by_pack(result.rules, result.verdicts)
     for pack, sums in packs.items():  # packs are never one verdict
         what = "all" if len(packs) == 1 else f"all of {pack}"
         table.add_row(Text(what, style="bold"), *([""] if wide else []), *_count_cells(sums))
@@ -158,8 +156,7 @@ def _measured(
         if where != previous:
             table.add_row("", Text(where, style="bold"))
             previous = where
-        profile = "" if row["profile"] is None else f" [{row['profile']}]"
-        when, rule = seconds(row["t_worst_ns"], starts.get(row["drive_id"])), Text(f"{row['rule_id']}{profile}")
+        when, rule = seconds(row["t_worst_ns"], starts.get(row["drive_id"])), Text(rule_name(row))
         if wide:
             numbers = (number(row[name], row["unit"]) for name in ("observed", "required", "margin"))
             table.add_row(when, rule, Text(row["object_id"] or ""), *numbers)
@@ -173,52 +170,38 @@ def _measured(
 def _open(result: Result) -> Table | None:
     """Return what could not be judged and why: drives, then unknown and erred verdicts by reason."""
     lost = result.drives.filter(pc.equal(result.drives["status"], "not_judged")).to_pylist()
-    verdicts = result.verdicts.filter(pc.is_in(result.verdicts["verdict"], value_set=_OPEN))
-    grouped = verdicts.group_by(["verdict", "reason", "rule_id"], use_threads=False).aggregate([([], "count_all")])
-    why: dict[tuple[str, str], list[str]] = {}
-    for row in grouped.to_pylist():
-        why.setdefault((row["verdict"], row["reason"]), []).append(with_count(row["rule_id"], row["count_all"]))
+    rows = counts.distinct_rows(counts.undecided(result.verdicts), ["verdict", "reason", "rule_id"])
+    why = counts.grouped(rows, lambda row: (row["verdict"], row["reason"]))
     if not lost and not why:
         return None
-    table = _table(_title("Could not be judged", len(lost) + len(why)), "yellow")
-    table.add_column("what", overflow="fold", ratio=1)
-    table.add_column("why", overflow="fold", ratio=1)
+    table = _table(_title("Could not be judged", len(lost) + len(why)), "yellow", {"what": 1, "why": 1})
     for row in lost[:MAX_ROWS]:
         table.add_row(Text(f"drive {row['drive_id']}", style="yellow"), Text(row["status_reason"] or ""))
-    for (verdict, reason), rules in sorted(why.items(), key=lambda item: (item[0][0], -len(item[1]), item[0][1]))[
-        :MAX_ROWS
-    ]:
+    order = sorted(why, key=lambda at: (at[0], -len(why[at]), at[1]))
+    for verdict, reason in order[:MAX_ROWS]:
+        rules = (with_count(row["rule_id"], row["count_all"]) for row in why[verdict, reason])
         table.add_row(Text("\n".join(rules), style=_STYLE[verdict]), Text(reason))
     return table
 
 
 def _quality(result: Result) -> Table | None:
     """Return the data-quality findings of logs and maps that are more than information, one row each."""
-    seen: dict[tuple[str, str, str], list[str]] = {}
-    for drive in result.drives.to_pylist():
-        for check in drive["quality"]:
-            if check["severity"] != "info":
-                seen.setdefault((check["severity"], check["check_id"], check["message"]), []).append(drive["drive_id"])
+    checks = [(drive["drive_id"], check) for drive in result.drives.to_pylist() for check in drive["quality"]]
+    worse = [(drive_id, check) for drive_id, check in checks if check["severity"] != "info"]
+    seen = counts.grouped(worse, lambda told: tuple(told[1][name] for name in ("severity", "check_id", "message")))
     if not seen:
         return None
-    table = _table(_title("Data quality", len(seen)), "yellow")
-    table.add_column("check", overflow="fold", ratio=1)
-    table.add_column("what was seen", overflow="fold", ratio=3)
-    for (severity, check_id, message), drives in list(seen.items())[:MAX_ROWS]:
-        where = drives[0] if len(set(drives)) == 1 else f"{len(set(drives))} drives"
+    table = _table(_title("Data quality", len(seen)), "yellow", {"check": 1, "what was seen": 3})
+    for (severity, check_id, message), told in list(seen.items())[:MAX_ROWS]:
+        drives = {drive_id for drive_id, _ in told}
+        where = told[0][0] if len(drives) == 1 else f"{len(drives)} drives"
         table.add_row(Text(check_id, style=_SEVERITY[severity]), Text(f"{where}: {message}"))
     return table
 
 
 def _end(result: Result, out: str | None) -> Text:
     end = exit_status(result)
-    style = (
-        "bold green"
-        if end.code is ExitCode.OK
-        else "bold red"
-        if end.code in {ExitCode.FAILED, ExitCode.USAGE}
-        else "bold yellow"
-    )
+    style = {ExitCode.OK: "bold green", ExitCode.FAILED: "bold red", ExitCode.USAGE: "bold red"}
     told = counts.total(result.verdicts)
     text = Text(", ".join(f"{n} {_HEAD[verdict]}" for verdict, n in told.items()))
     given = {f"{c['condition']}={c['value']}" for cs in result.drives["conditions"].to_pylist() for c in cs or ()}
@@ -228,7 +211,7 @@ def _end(result: Result, out: str | None) -> Text:
     if assumed:
         verb = "verdict assumes" if assumed == 1 else "verdicts assume"
         text.append(f"\n{assumed} {verb} that whoever a log does not have is not in plain view (--visibility)", "dim")
-    text.append(f"\nexit {int(end.code)}: {end.why}", style=style)
+    text.append(f"\nexit {int(end.code)}: {end.why}", style=style.get(end.code, "bold yellow"))
     if told["unknown"]:
         text.append(
             "\nunknown is not pass: drivelint inspect TRACE tells what a log lacks, and what to provide", "yellow"
@@ -242,10 +225,13 @@ def _end(result: Result, out: str | None) -> Text:
     return text
 
 
-def _table(title: str, style: str = "bold") -> Table:
-    return Table(
-        title=Text(title, style=style), title_justify="left", box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False
-    )
+def _table(title: str, style: str, columns: Mapping[str, int] | None = None) -> Table:
+    """Return a table with these columns, whose text is folded, and the shares of the width that they take."""
+    table = Table(title=Text(title, style=style), title_justify="left", box=box.SIMPLE_HEAD)
+    table.show_edge = table.pad_edge = False
+    for name, ratio in (columns or {}).items():
+        table.add_column(name, overflow="fold", ratio=ratio)
+    return table
 
 
 def _title(title: str, n: int) -> str:
@@ -260,6 +246,6 @@ def _count_columns(table: Table) -> None:
 def _count_cells(told: dict[str, Any]) -> list[Text]:
     """Return one cell per verdict; zeros are a quiet dot, so that what happened stands out."""
     return [
-        Text(str(told[verdict]), style=_STYLE[verdict]) if told.get(verdict) else Text("·", style="dim")
+        Text(str(told[verdict]), style=_STYLE[verdict]) if told[verdict] else Text("·", style="dim")
         for verdict in counts.VERDICTS
     ]

@@ -1,9 +1,11 @@
-"""Replaces characters that XML does not allow."""
+"""XML that may hold a log's own words, in which XML does not allow every character."""
 
 from __future__ import annotations
 
 import re
 from typing import Final
+
+from lxml import etree
 
 _NOT_XML: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
@@ -11,3 +13,13 @@ _NOT_XML: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010f
 def replace_non_xml(text: str) -> str:
     """Return text with the characters that XML cannot hold replaced: ids and reasons are a log's own words."""
     return _NOT_XML.sub("\ufffd", text)
+
+
+def add(parent: etree._Element, tag: str, **attributes: str) -> etree._Element:
+    """Append an element with these attributes, in their order, and return it."""
+    return etree.SubElement(parent, tag, {name: replace_non_xml(value) for name, value in attributes.items()})
+
+
+def document(root: etree._Element) -> bytes:
+    """Return a document as UTF-8, indented."""
+    return bytes(etree.tostring(root, xml_declaration=True, encoding="UTF-8", pretty_print=True))

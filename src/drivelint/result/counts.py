@@ -1,16 +1,20 @@
-"""Counts verdicts by any column; each count has all verdicts."""
+"""Counts verdicts by any column (each count has all verdicts), and groups rows."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections import defaultdict
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
+import pyarrow as pa
 import pyarrow.compute as pc
 
 if TYPE_CHECKING:
-    import pyarrow as pa
+    from collections.abc import Callable, Iterable, Sequence
 
 VERDICTS: Final = ("pass", "fail", "unknown", "not_applicable", "error")
 SEVERITIES: Final = ("critical", "major", "minor")
+_Row = TypeVar("_Row")
+_Key = TypeVar("_Key")
 
 
 def total(verdicts: pa.Table) -> dict[str, int]:
@@ -30,23 +34,38 @@ def count_assuming(verdicts: pa.Table, what: str) -> int:
 
 
 def verdicts_by(verdicts: pa.Table, key: str) -> dict[str, dict[str, int]]:
-    """Return key's value -> verdict -> number of rows; keys without rows are absent."""
-    counted: dict[str, dict[str, int]] = {}
-    for row in verdicts.group_by([key, "verdict"]).aggregate([([], "count_all")]).to_pylist():
-        counted.setdefault(row[key], dict.fromkeys(VERDICTS, 0))[row["verdict"]] = row["count_all"]
+    """Return key's value -> verdict -> number of rows, zeros included; so has a key without rows."""
+    counted: dict[str, dict[str, int]] = defaultdict(lambda: dict.fromkeys(VERDICTS, 0))
+    for row in distinct_rows(verdicts, [key, "verdict"]):
+        counted[row[key]][row["verdict"]] = row["count_all"]
     return counted
 
 
-def verdicts_by_pack(rules: pa.Table, told: dict[str, dict[str, int]]) -> dict[str, dict[str, int]]:
-    """Return pack -> verdict -> number of rows, from rule -> verdict -> number of rows; packs in the order of `rules`."""
+def verdicts_by_pack(rules: pa.Table, verdicts: pa.Table) -> dict[str, dict[str, int]]:
+    """Return pack -> verdict -> number of rows, zeros included; packs in the order of `rules`."""
+    told = verdicts_by(verdicts, "rule_id")
     found: dict[str, dict[str, int]] = {}
-    for rule_id, pack in zip(rules["rule_id"].to_pylist(), rules["pack"].to_pylist(), strict=True):
-        sums = found.setdefault(pack, dict.fromkeys(VERDICTS, 0))
-        for verdict, n in told.get(rule_id, {}).items():
+    for rule in rules.select(["rule_id", "pack"]).to_pylist():
+        sums = found.setdefault(rule["pack"], dict.fromkeys(VERDICTS, 0))
+        for verdict, n in told[rule["rule_id"]].items():
             sums[verdict] += n
     return found
 
 
-def rows_by(rows: pa.Table, key: str) -> dict[str, int]:
-    """Return key's value -> number of rows."""
-    return {item["values"]: item["counts"] for item in pc.value_counts(rows[key]).to_pylist()}
+def distinct_rows(rows: pa.Table, columns: Sequence[str]) -> list[dict[str, Any]]:
+    """Return the distinct values of these columns in the order of their first rows, each with its number as `count_all`."""
+    counted = rows.group_by(list(columns), use_threads=False).aggregate([([], "count_all")])
+    return list(counted.to_pylist())
+
+
+def undecided(verdicts: pa.Table) -> pa.Table:
+    """Return the verdicts that are unknown or errors."""
+    return verdicts.filter(pc.is_in(verdicts["verdict"], value_set=pa.array(["unknown", "error"])))
+
+
+def grouped(rows: Iterable[_Row], key: Callable[[_Row], _Key]) -> dict[_Key, list[_Row]]:
+    """Return key -> its rows, both in the order of the rows."""
+    found: dict[_Key, list[_Row]] = {}
+    for row in rows:
+        found.setdefault(key(row), []).append(row)
+    return found

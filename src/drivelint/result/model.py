@@ -60,6 +60,11 @@ class Result:
             object.__setattr__(self, name, conform(getattr(self, name), table))
 
     @property
+    def start_times(self) -> dict[str, int | None]:
+        """drive_id -> the drive's first time stamp in ns, on the log's clock."""
+        return dict(zip(self.drives["drive_id"].to_pylist(), self.drives["t_start_ns"].to_pylist(), strict=True))
+
+    @property
     def lossy(self) -> bool:
         """Whether parts of a judged log could not be read."""
         return bool(pc.any(pc.and_(self.drives["lossy"], pc.equal(self.drives["status"], "judged"))).as_py())
@@ -75,17 +80,17 @@ def exit_status(result: Result) -> ExitStatus:
 
 def _outcomes(result: Result) -> Iterator[ExitStatus]:
     """Yield what the run comes to, weightiest first."""
-    gating = _rows_of(result.verdicts, result.rules.filter(pc.equal(result.rules["status"], "stable")))
+    gating = _of_stable_rules(result, result.verdicts)
     if errors := _count(result.verdicts, "error"):
         yield ExitStatus(ExitCode.USAGE, f"{plural(errors, 'verdict')} in error: a rule could not be run")
     let_through = ""
     if result.gate is None:
-        if failed := _severe(gating, "fail", result.fail_on):
+        if failed := _count(_at_or_above(gating, result.fail_on), "fail"):
             yield ExitStatus(
                 ExitCode.FAILED, f"{plural(failed, 'verdict')} failed at or above severity {result.fail_on}"
             )
     else:
-        stopped, let_through = _gate(result, gating)
+        stopped, let_through = _gate(result, result.gate, gating)
         if stopped:
             yield ExitStatus(ExitCode.FAILED, f"{stopped} at or above severity {result.fail_on}{let_through}")
     if lost := int(pc.sum(pc.equal(result.drives["status"], "not_judged")).as_py() or 0):
@@ -106,21 +111,13 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
     yield ExitStatus(ExitCode.OK, f"nothing {new}failed at or above severity {result.fail_on}{let_through}")
 
 
-def exit_code(result: Result) -> ExitCode:
-    """Return the exit code of DESIGN.md for a finished run."""
-    return exit_status(result).code
-
-
 def _count(verdicts: pa.Table, verdict: str) -> int:
     return int(pc.sum(pc.equal(verdicts["verdict"], verdict)).as_py() or 0)
 
 
-def _rows_of(verdicts: pa.Table, rules: pa.Table) -> pa.Table:
-    return verdicts.filter(pc.is_in(verdicts["rule_id"], value_set=rules["rule_id"].combine_chunks()))
-
-
-def _severe(verdicts: pa.Table, verdict: str, fail_on: str) -> int:
-    return _count(_at_or_above(verdicts, fail_on), verdict)
+def _of_stable_rules(result: Result, rows: pa.Table) -> pa.Table:
+    stable = result.rules.filter(pc.equal(result.rules["status"], "stable"))["rule_id"]
+    return rows.filter(pc.is_in(rows["rule_id"], value_set=stable.combine_chunks()))
 
 
 def _at_or_above(rows: pa.Table, fail_on: str) -> pa.Table:
@@ -129,15 +126,12 @@ def _at_or_above(rows: pa.Table, fail_on: str) -> pa.Table:
     return rows.filter(pc.is_in(rows["severity"], value_set=pa.array(SEVERITIES[: SEVERITIES.index(fail_on) + 1])))
 
 
-def _gate(result: Result, gating: pa.Table) -> tuple[str, str]:
+def _gate(result: Result, gate: Gate, gating: pa.Table) -> tuple[str, str]:
     """Return what a gate stops ('' for nothing) and what it lets through, in words.
 
     It lets findings through, not verdicts: a failed verdict of a drive, ego, rule and profile without any finding is stopped.
     """
-    gate = result.gate
-    assert gate is not None  # noqa: S101 - for the type checker
-    stable = result.rules.filter(pc.equal(result.rules["status"], "stable"))
-    findings = _at_or_above(_rows_of(result.findings, stable), result.fail_on)
+    findings = _at_or_above(_of_stable_rules(result, result.findings), result.fail_on)
     ids = findings["finding_id"].to_pylist()
     waived = sum(gate.waiver(name) is not None for name in ids)
     known = sum(gate.waiver(name) is None and gate.in_baseline(name) for name in ids)

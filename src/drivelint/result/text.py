@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -29,6 +30,11 @@ def seconds(t_ns: int | None, start_ns: int | None) -> str:
     return NONE if t_ns is None else f"{(t_ns - (start_ns or 0)) / 1e9:.2f} s"
 
 
+def rule_name(row: Row) -> str:
+    """Return the rule of a verdict or finding, with its profile if there is one."""
+    return f"{row['rule_id']}" + ("" if row["profile"] is None else f" [{row['profile']}]")
+
+
 def subject(row: Row) -> str:
     """Return the ego and, if any, the object of a verdict or finding."""
     who = f"ego {row['ego_id']}" if row["ego_id"] else "no ego"
@@ -54,3 +60,12 @@ def line(row: Row, start_ns: int | None) -> str:
 def with_count(reason: str, n: int) -> str:
     """Return a reason with how often it was given, if more than once."""
     return reason if n == 1 else f"{reason} ({n} times)"
+
+
+def finite(value: Any) -> Any:
+    """Return plain data with NaN and infinity as null: neither is JSON."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: finite(item) for key, item in value.items()}
+    return [finite(item) for item in value] if isinstance(value, list | tuple) else value

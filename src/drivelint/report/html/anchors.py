@@ -30,12 +30,21 @@ def rule_anchor(rule_id: str) -> str:
 
 def incident_anchor(drive_id: str, ego_id: str, t_ns: int) -> str:
     """Return the anchor of a moment of an ego."""
-    return f"moment-{hashlib.sha256(repr((drive_id, ego_id, t_ns)).encode()).hexdigest()[:12]}"
+    return f"moment-{_hash(drive_id, ego_id, t_ns)}"
 
 
 def overtake_anchor(drive_id: str, ego_id: str, occurrence: int) -> str:
     """Return the anchor of an overtake."""
-    return f"overtake-{hashlib.sha256(repr((drive_id, ego_id, occurrence)).encode()).hexdigest()[:12]}"
+    return f"overtake-{_hash(drive_id, ego_id, occurrence)}"
+
+
+def grid_name(drive_id: str, ego_id: str) -> str:
+    """Return the name of the grid that the rows of a timeline share."""
+    return f"grid-{_hash(drive_id, ego_id)}"
+
+
+def _hash(*key: str | int) -> str:
+    return hashlib.sha256(repr(key).encode()).hexdigest()[:12]
 
 
 def _safe(name: str) -> str:

@@ -2,17 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-
-
-class GlossaryEntry(NamedTuple):
-    """A word and what it means."""
-
-    word: str
-    means: str
 
 
 _WORDS: Final = (
@@ -47,7 +40,7 @@ _WORDS: Final = (
 """What is looked for (in lower case), how it is written, what it means; in the order shown."""
 
 
-def glossary_entries(texts: Iterable[str]) -> list[GlossaryEntry]:
-    """Return the glossary entries whose words occur in any of the texts."""
+def glossary_entries(texts: Iterable[str]) -> list[tuple[str, str]]:
+    """Return the words that occur in any of the texts, each with what it means."""
     said = " ".join(texts).lower()
-    return [GlossaryEntry(word, means) for sign, word, means in _WORDS if sign in said]
+    return [(word, means) for sign, word, means in _WORDS if sign in said]

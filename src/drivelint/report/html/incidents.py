@@ -5,17 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.report.html.anchors import drive_anchor, finding_anchor, incident_anchor, rule_anchor
-from drivelint.report.html.plan_view import PlanView, plan_view
+from drivelint.report.html.plan_view import plan_view
 from drivelint.report.html.replay import centiseconds
 from drivelint.report.html.svg import num
-from drivelint.result.counts import SEVERITIES
+from drivelint.result.counts import SEVERITIES, grouped
 from drivelint.result.text import NONE, non_breaking, number, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
     from drivelint.report.html.baseline_status import BaselineStatus
-    from drivelint.report.html.margin_series import MarginSeries
     from drivelint.report.html.road import Road
 
     Row = Mapping[str, Any]
@@ -28,30 +27,16 @@ MAX_KEY_INCIDENTS: Final = 6
 """Moments of a drive that the printed report shows with their plan views."""
 
 
-class Gauge(NamedTuple):
-    """Observed against required as percentages of a bar's width."""
-
-    zero: str
-    x: str
-    w: str
-    required: str
-
-
 class FindingLine(NamedTuple):
-    """One finding or near miss as the page shows it, in the table and in its incident."""
+    """One finding (`fail`) or near miss (`near`) as the page shows it, in the table and in its incident."""
 
+    row: Row
+    rule: Row
+    kind: str
     anchor: str
     href: str
-    kind: str
-    severity: str
-    keys: str
-    status: str
-    rule_id: str
-    title: str
-    profile: str
-    drive_id: str
     drive_href: str
-    ego_id: str
+    keys: str
     object_id: str
     time: str
     stretch: str
@@ -60,10 +45,9 @@ class FindingLine(NamedTuple):
     margin: str
     missed: str
     sense: str
-    gauge: Gauge | None
-    reason: str
+    gauge: dict[str, str] | None
     told: str
-    course: MarginSeries | None
+    course: dict[str, Any] | None
     standing: BaselineStatus | None
 
 
@@ -71,8 +55,7 @@ class RuleCard(NamedTuple):
     """The findings and near misses of one rule in an incident."""
 
     rule: Row
-    rule_href: str
-    severity: str
+    href: str
     lines: list[FindingLine]
 
 
@@ -92,7 +75,7 @@ class Incident(NamedTuple):
     kind: str
     severity: str
     titles: list[str]
-    plan: PlanView | None
+    plan: dict[str, Any] | None
     no_plan: str
     cards: list[RuleCard]
 
@@ -101,30 +84,27 @@ def finding_line(
     row: Row,
     kind: str,
     rule: Row,
-    start_ns: int | None,
+    start_ns: int,
     *,
-    course: MarginSeries | None = None,
-    standing: BaselineStatus | None = None,
+    linked: bool,
+    course: dict[str, Any] | None,
+    standing: BaselineStatus | None,
 ) -> FindingLine:
-    """Return a finding (`fail`) or near miss (`near`) as the page shows it."""
+    """Return a finding or near miss as the page shows it; `linked`: its drive has a section in the page."""
     unit, long = row["unit"], row["t_end_ns"] is not None and row["t_end_ns"] != row["t_start_ns"]
     sense = _SENSE.get(rule["sense"])
     required = number(row["required"], unit)
     if sense is not None:
         required = "none" if row["required"] == 0 and rule["sense"][0] == "<" else f"{sense} {non_breaking(required)}"
+    anchor = finding_anchor(row) if linked and kind == "fail" else ""
     return FindingLine(
-        anchor=finding_anchor(row) if kind == "fail" else "",
-        href="#" + (finding_anchor(row) if kind == "fail" else incident_anchor(*incident_key(row))),
-        kind=kind,
-        severity=row["severity"],
+        row,
+        rule,
+        kind,
+        anchor=anchor,
+        href=f"#{anchor or incident_anchor(*incident_key(row))}" if linked else "",
+        drive_href="#" + drive_anchor(row["drive_id"]) if linked else "",
         keys=" ".join((kind, row["severity"], rule["pack"], *([standing.filter_key] if standing else []))),
-        status=rule["status"],
-        rule_id=row["rule_id"],
-        title=rule["title"],
-        profile=row["profile"] or "",
-        drive_id=row["drive_id"],
-        drive_href="#" + drive_anchor(row["drive_id"]),
-        ego_id=row["ego_id"],
         object_id=NONE if row["object_id"] is None else row["object_id"],
         time=non_breaking(seconds(row["t_worst_ns"], start_ns)),
         stretch=f"{seconds(row['t_start_ns'], start_ns)} to {seconds(row['t_end_ns'], start_ns)}" if long else "",
@@ -134,7 +114,6 @@ def finding_line(
         missed=NONE if row["margin"] is None else non_breaking(number(abs(row["margin"]), unit)),
         sense=sense or "",
         gauge=_gauge(row["observed"], row["required"]),
-        reason=row["reason"],
         told=_told(row, rule, required) if sense else row["reason"],
         course=course,
         standing=standing,
@@ -153,104 +132,76 @@ def incident_key(row: Row) -> Key:
     return row["drive_id"], row["ego_id"], row["t_worst_ns"]
 
 
-def key_incidents(rows: Iterable[tuple[Row, FindingLine]]) -> set[Key]:
+def key_incidents(lines: Iterable[FindingLine]) -> set[Key]:
     """Return the incidents of one drive that its summary shows: the worst of each rule, the most severe rules first."""
     first: dict[str, tuple[int, float, Key]] = {}
-    for row, line in rows:
-        if line.kind == "fail":
-            ratio = 0.0 if not row["required"] or row["margin"] is None else row["margin"] / abs(row["required"])
-            worst = (SEVERITIES.index(row["severity"]), ratio, incident_key(row))
-            first[row["rule_id"]] = min(first.get(row["rule_id"], worst), worst)
-    told: dict[Key, None] = {}
-    for _, _, at in sorted(first.values()):
-        if len(told) < MAX_KEY_INCIDENTS:
-            told[at] = None
-    return set(told)
+    for row in (line.row for line in lines if line.kind == "fail"):
+        ratio = 0.0 if not row["required"] or row["margin"] is None else row["margin"] / abs(row["required"])
+        worst = (SEVERITIES.index(row["severity"]), ratio, incident_key(row))
+        first[row["rule_id"]] = min(first.get(row["rule_id"], worst), worst)
+    return set(list(dict.fromkeys(at for _, _, at in sorted(first.values())))[:MAX_KEY_INCIDENTS])
 
 
 def incidents(
-    rows: Sequence[tuple[Row, FindingLine]],
-    rules: Mapping[str, Row],
-    pictures: Mapping[Key, PlanView],
-    start_ns: int,
-    told: Collection[Key],
+    lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any]], start_ns: int, told: Collection[Key]
 ) -> list[Incident]:
     """Return the moments of one drive, in time order, from its findings and near misses; `told`: those that lead."""
-    groups: dict[Key, list[tuple[Row, FindingLine]]] = {}
-    for row, line in rows:
-        groups.setdefault(incident_key(row), []).append((row, line))
+    groups = grouped(lines, lambda line: incident_key(line.row))
     return [
-        _moment(at, found, rules, pictures.get(at), centiseconds(at[2], start_ns), leads=at in told)
+        _moment(at, found, pictures.get(at), start_ns, leads=at in told)
         for at, found in sorted(groups.items(), key=lambda item: (item[0][2], item[0][1]))
     ]
 
 
 def plan_views(
-    rows: Iterable[Row],
-    scenes: Mapping[Key, Row],
-    spaces: Mapping[Key, list[Row]],
-    road: Road,
-    *,
-    rules: Mapping[str, Row],
-    most: int,
-) -> dict[Key, PlanView]:
-    """Return the plan views of the first `most` incidents of `rows`."""
-    told: dict[Key, list[Row]] = {}
-    for row in rows:
-        told.setdefault(incident_key(row), []).append(row)
-    drawn: dict[Key, PlanView] = {}
+    lines: Iterable[FindingLine], scenes: Mapping[Key, Row], spaces: Mapping[Key, list[Row]], road: Road, *, most: int
+) -> dict[Key, dict[str, Any]]:
+    """Return the plan views of the first `most` incidents of `lines`."""
+    told = grouped(lines, lambda line: incident_key(line.row))
+    drawn: dict[Key, dict[str, Any]] = {}
     for at, found in [(at, found) for at, found in told.items() if at in scenes][:most]:
-        concerned = {row["object_id"] for row in found if row["object_id"] is not None}
-        about = any(_SPACES in rules[row["rule_id"]]["tags"] for row in found)
-        drawn[at] = plan_view(scenes[at], road, concerned, spaces.get(at, []) if about else [])
+        about = any(_SPACES in line.rule["tags"] for line in found)
+        drawn[at] = plan_view(scenes[at], road, _objects(found), spaces.get(at, []) if about else [])
     return drawn
 
 
+def _objects(lines: Iterable[FindingLine]) -> set[str]:
+    return {line.row["object_id"] for line in lines if line.row["object_id"] is not None}
+
+
 def _moment(
-    at: Key,
-    found: Sequence[tuple[Row, FindingLine]],
-    rules: Mapping[str, Row],
-    picture: PlanView | None,
-    t: int,
-    *,
-    leads: bool,
+    at: Key, found: Sequence[FindingLine], picture: dict[str, Any] | None, start_ns: int, *, leads: bool
 ) -> Incident:
-    cards: dict[str, list[FindingLine]] = {}
-    for row, line in found:
-        cards.setdefault(row["rule_id"], []).append(line)
-    failed = [line for _, line in found if line.kind == "fail"]
-    keys = {name for _, line in found for name in line.keys.split()}
+    failed = [line for line in found if line.kind == "fail"]
+    gravest = sorted(failed or found, key=lambda line: SEVERITIES.index(line.row["severity"]))
+    cards = grouped(found, lambda line: line.row["rule_id"])
     return Incident(
         anchor=incident_anchor(*at),
-        time=found[0][1].time,
-        t=t,
-        keys=" ".join(sorted(keys)),
+        time=found[0].time,
+        t=centiseconds(at[2], start_ns),
+        keys=" ".join(sorted({name for line in found for name in line.keys.split()})),
         leading=leads,
         ego_id=at[1],
-        objects=sorted({row["object_id"] for row, _ in found if row["object_id"] is not None}),
+        objects=sorted(_objects(found)),
         kind="fail" if failed else "near",
-        severity=min((line.severity for line in failed or [line for _, line in found]), key=SEVERITIES.index),
-        titles=list(dict.fromkeys(line.title for line in sorted(failed or [line for _, line in found], key=_grave))),
+        severity=gravest[0].row["severity"],
+        titles=list(dict.fromkeys(line.rule["title"] for line in gravest)),
         plan=picture,
         no_plan="" if picture else "No picture: the ego's position is not known here, or too many findings are worse.",
         cards=[
-            RuleCard(rules[rule_id], "#" + rule_anchor(rule_id), lines[0].severity, lines)
+            RuleCard(lines[0].rule, "#" + rule_anchor(rule_id), lines)
             for rule_id, lines in sorted(cards.items(), key=_weight)
         ],
     )
 
 
-def _grave(line: FindingLine) -> int:
-    return SEVERITIES.index(line.severity)
-
-
 def _weight(item: tuple[str, Sequence[FindingLine]]) -> tuple[bool, int, str]:
     rule_id, lines = item
-    return lines[0].kind != "fail", SEVERITIES.index(lines[0].severity), rule_id
+    return lines[0].kind != "fail", SEVERITIES.index(lines[0].row["severity"]), rule_id
 
 
-def _gauge(observed: float | None, required: float | None) -> Gauge | None:
-    """Return the bar from zero to what was observed, and where what was required lies."""
+def _gauge(observed: float | None, required: float | None) -> dict[str, str] | None:
+    """Return the bar from zero to what was observed, and where what was required lies, as percentages of its width."""
     if observed is None or required is None or not max(abs(observed), abs(required)) < float("inf"):
         return None
     low, high = min(0.0, observed, required), max(0.0, observed, required)
@@ -262,4 +213,5 @@ def _gauge(observed: float | None, required: float | None) -> Gauge | None:
         return 100 * (value - low) / (high - low)
 
     start, end = sorted((at(0.0), at(observed)))
-    return Gauge(f"{num(at(0.0))}%", f"{num(start)}%", f"{num(max(end - start, 0.4))}%", f"{num(at(required))}%")
+    places = {"zero": at(0.0), "x": start, "w": max(end - start, 0.4), "required": at(required)}
+    return {name: f"{num(value)}%" for name, value in places.items()}

@@ -2,57 +2,52 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from collections import Counter, defaultdict
+from typing import TYPE_CHECKING, Any, Final
 
+from drivelint.report.html.incidents import incident_key
 from drivelint.result.text import NONE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    Row = Mapping[str, Any]
-    Key = tuple[str, str, int]
-
+    from drivelint.report.html.incidents import FindingLine, Key
+    from drivelint.result.text import Row
 
 _STANDS_MPS: Final = 0.1
 
 
-class InvolvedActor(NamedTuple):
-    """One actor in words; `n`: findings that are about it."""
+def involved_actors(lines: Sequence[FindingLine], scenes: Mapping[Key, Row]) -> list[dict[str, Any]]:
+    """Return the egos and objects of one drive's findings and near misses, in words, from their scenes; egos first.
 
-    name: str
-    what: str
-    size: str
-    speeds: str
-    n: int
-
-
-def involved_actors(drive_id: str, rows: Sequence[tuple[Row, Any]], scenes: Mapping[Key, Row]) -> list[InvolvedActor]:
-    """Return the egos and objects of one drive's findings and near misses, from their scenes; egos first."""
-    findings: dict[tuple[bool, str], int] = {}
-    seen: dict[str, list[Row]] = {}
-    for row, line in rows:
-        actors = {
-            a["actor_id"]: a for a in scenes.get((drive_id, row["ego_id"], row["t_worst_ns"]), {"actors": []})["actors"]
-        }
-        for is_object, who in ((False, row["ego_id"]), (True, row["object_id"])):
+    `n`: findings that are about it.
+    """
+    findings: Counter[tuple[bool, str]] = Counter()
+    seen: dict[str, list[Row]] = defaultdict(list)
+    for line in lines:
+        scene = scenes.get(incident_key(line.row))
+        actors = {actor["actor_id"]: actor for actor in scene["actors"]} if scene else {}
+        for is_object, who in ((False, line.row["ego_id"]), (True, line.row["object_id"])):
             if who is not None:
-                findings[is_object, who] = findings.get((is_object, who), 0) + (line.kind == "fail")
+                findings[is_object, who] += line.kind == "fail"
                 if who in actors:
-                    seen.setdefault(who, []).append(actors[who])
-    egos = {who for is_object, who in findings if not is_object}
+                    seen[who].append(actors[who])
+    order = sorted(findings.items(), key=lambda item: (item[0][0], -item[1], item[0][1]))
     return [
-        InvolvedActor(
-            f"{'object' if is_object else 'ego'} {who}",
-            next((a["actor_class"] for a in seen.get(who, []) if a["actor_class"]), "of unknown kind").replace(
-                "_", " "
-            ),
-            _size(seen.get(who, [])),
-            _speeds(seen.get(who, [])),
-            n,
-        )
-        for (is_object, who), n in sorted(findings.items(), key=lambda item: (item[0][0], -item[1], item[0][1]))
-        if not (is_object and who in egos)
+        {
+            "name": f"{'object' if is_object else 'ego'} {who}",
+            "what": _kind(seen[who]),
+            "size": _size(seen[who]),
+            "speeds": _speeds(seen[who]),
+            "n": n,
+        }
+        for (is_object, who), n in order
+        if not (is_object and (False, who) in findings)
     ]
+
+
+def _kind(actors: Sequence[Row]) -> str:
+    return next((a["actor_class"] for a in actors if a["actor_class"]), "of unknown kind").replace("_", " ")
 
 
 def _size(actors: Sequence[Row]) -> str:

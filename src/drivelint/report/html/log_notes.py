@@ -8,36 +8,28 @@ from __future__ import annotations
 import tomllib
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
-    Row = Mapping[str, Any]
-
-
-class LogNote(NamedTuple):
-    """A note on a published log: its title and, per row, the subject, the authors' value, the value here and the reason."""
-
-    title: str
-    rows: list[tuple[str, str, str, str]]
+    from drivelint.result.text import Row
 
 
 @cache
-def _known() -> dict[str, LogNote]:
-    known: dict[str, LogNote] = {}
+def _known() -> dict[str, dict[str, Any]]:
+    """Return sha256 of a log -> its note."""
+    known: dict[str, dict[str, Any]] = {}
     for file in sorted((Path(__file__).parent / "known_logs").glob("*.toml")):
         said = tomllib.loads(file.read_text(encoding="utf-8"))
-        note = LogNote(said["title"], [(row["what"], row["theirs"], row["ours"], row["why"]) for row in said["row"]])
-        known |= dict.fromkeys(said["logs"], note)
+        known |= dict.fromkeys(said["logs"], said)
     return known
 
 
-def notes_on_logs(drives: Sequence[Row]) -> list[LogNote]:
-    """Return the notes on the published logs that are among the drives."""
-    found: list[LogNote] = []
-    for row in drives:
-        note = _known().get(row["sha256"])
-        if note is not None and note not in found:
-            found.append(note)
-    return found
+def notes_on_logs(drives: Sequence[Row]) -> list[dict[str, Any]]:
+    """Return the notes on the published logs that are among the drives.
+
+    `title`, and per `row` the subject (`what`), the authors' value (`theirs`), the value here (`ours`) and the reason (`why`).
+    """
+    found = (_known().get(row["sha256"]) for row in drives)
+    return list({note["title"]: note for note in found if note is not None}.values())

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.report.html.axis import Axis, axis_around
-from drivelint.report.html.svg import num
-from drivelint.result.text import NONE, number
+from drivelint.report.html.svg import Axis, axis_around, num
+from drivelint.result.text import number
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
-    Row = Mapping[str, Any]
+    from drivelint.result.text import Row
 
 WIDTH: Final = 420
 HEIGHT: Final = 132
@@ -23,83 +22,53 @@ _LEAST: Final = 3
 """Fewer steps are not worth a chart."""
 
 
-class Span(NamedTuple):
-    """A stretch of the time axis: fail or unknown."""
+def margin_series(row: Row, worst_ns: int, unit: str | None, start_ns: int) -> dict[str, Any]:
+    """Return the margin series of a finding from its row of the table `course`.
 
-    kind: str
-    x: str
-    w: str
-
-
-class Chart(NamedTuple):
-    """Lines in a frame of 420 by 132; `t0`, `t1`: hundredths of a second at its ends."""
-
-    observed: str
-    required: str
-    spans: list[Span]
-    worst: tuple[str, str]
-    t_ticks: list[tuple[str, str]]
-    v_ticks: list[tuple[str, str]]
-    unit: str
-    t0: int
-    t1: int
-    words: str
-
-
-class Step(NamedTuple):
-    """One judged step in words; numbers in the unit of the course."""
-
-    time: str
-    observed: str
-    required: str
-    margin: str
-    kept: str
-    worst: bool
-
-
-class MarginSeries(NamedTuple):
-    """The chart (None: too few steps, or nothing is measured) and the steps around the worst one."""
-
-    chart: Chart | None
-    unit: str
-    steps: list[Step]
-    n_steps: int
-
-
-def margin_series(row: Row, worst_ns: int, unit: str | None, start_ns: int) -> MarginSeries:
-    """Return the margin series of a finding from its row of the table `course`."""
+    The chart (None: too few steps, or nothing is measured), and the steps around the worst one; numbers in `unit`.
+    """
     t: list[int] = row["t_ns"]
     worst = min(range(len(t)), key=lambda i: abs(t[i] - worst_ns))
     first = max(0, min(worst - _ROWS // 2, len(t) - _ROWS))
     steps = [_step(row, i, start_ns, worst=i == worst) for i in range(first, min(first + _ROWS, len(t)))]
     measured = len(t) >= _LEAST and any(value is not None for value in row["observed"])
-    return MarginSeries(_chart(row, worst, unit, start_ns) if measured else None, unit or "", steps, len(t))
+    return {
+        "chart": _chart(row, worst, unit, start_ns) if measured else None,
+        "unit": unit or "",
+        "steps": steps,
+        "n_steps": len(t),
+    }
 
 
-def _step(row: Row, i: int, start_ns: int, *, worst: bool) -> Step:
-    kept = {True: "yes", False: "no", None: "unknown"}[row["holds"][i]]
-    observed, required, margin = (number(row[name][i]) for name in ("observed", "required", "margin"))
-    return Step(f"{(row['t_ns'][i] - start_ns) / 1e9:.2f}", observed, required, margin, kept, worst)
+def _step(row: Row, i: int, start_ns: int, *, worst: bool) -> dict[str, Any]:
+    """Return one judged step in words."""
+    return {
+        "time": f"{(row['t_ns'][i] - start_ns) / 1e9:.2f}",
+        **{name: number(row[name][i]) for name in ("observed", "required", "margin")},
+        "kept": {True: "yes", False: "no", None: "unknown"}[row["holds"][i]],
+        "worst": worst,
+    }
 
 
-def _chart(row: Row, worst: int, unit: str | None, start_ns: int) -> Chart:
+def _chart(row: Row, worst: int, unit: str | None, start_ns: int) -> dict[str, Any]:
+    """Return lines in a frame of 420 by 132; `t0`, `t1`: hundredths of a second at its ends."""
     t = [(t_ns - start_ns) / 1e9 for t_ns in row["t_ns"]]
     x = Axis(t[0], t[-1], _LEFT, _RIGHT)
     values = [v for name in ("observed", "required") for v in row[name] if v is not None]
     y = axis_around(values, _BOTTOM, _TOP) if values else None
     seen = [row["observed"][worst]] if row["observed"][worst] is not None else []
-    return Chart(
-        observed=_line(t, row["observed"], x, y),
-        required=_line(t, row["required"], x, y),
-        spans=_spans(t, row["holds"], x),
-        worst=(num(x.at(t[worst])), num(y.at(seen[0]) if y and seen else (_TOP + _BOTTOM) / 2)),
-        t_ticks=x.ticks(6),
-        v_ticks=y.ticks(4) if y else [],
-        unit=unit or "",
-        t0=round(t[0] * 100),
-        t1=round(t[-1] * 100),
-        words=_words(row, t, unit),
-    )
+    return {
+        "observed": _line(t, row["observed"], x, y),
+        "required": _line(t, row["required"], x, y),
+        "spans": _spans(t, row["holds"], x),
+        "worst": (num(x.at(t[worst])), num(y.at(seen[0]) if y and seen else (_TOP + _BOTTOM) / 2)),
+        "t_ticks": x.ticks(6),
+        "v_ticks": y.ticks(4) if y else [],
+        "unit": unit or "",
+        "t0": round(t[0] * 100),
+        "t1": round(t[-1] * 100),
+        "words": _words(row, t, unit),
+    }
 
 
 def _line(t: Sequence[float], values: Sequence[float | None], x: Axis, y: Axis | None) -> str:
@@ -122,7 +91,7 @@ def _typical(t: Sequence[float]) -> float:
     return steps[len(steps) // 2] if steps else math.inf
 
 
-def _spans(t: Sequence[float], holds: Sequence[bool | None], x: Axis) -> list[Span]:
+def _spans(t: Sequence[float], holds: Sequence[bool | None], x: Axis) -> list[dict[str, str]]:
     """Return the stretches that are not kept or not known, each as far as halfway to its neighbours."""
     half, gap = _typical(t) / 2, 3 * _typical(t)
     runs: list[tuple[str, float, float]] = []
@@ -136,7 +105,7 @@ def _spans(t: Sequence[float], holds: Sequence[bool | None], x: Axis) -> list[Sp
     for kind, a, b in runs:
         if kind:
             left, right = max(x.at(a - half), _LEFT), min(x.at(b + half), _RIGHT)
-            drawn.append(Span(kind, num(left), num(max(right - left, 1.5))))
+            drawn.append({"kind": kind, "x": num(left), "w": num(max(right - left, 1.5))})
     return drawn
 
 
@@ -146,6 +115,4 @@ def _words(row: Row, t: Sequence[float], unit: str | None) -> str:
     failed = sum(kept is False for kept in row["holds"])
     last = next((v for v in reversed(row["required"]) if v is not None), None)
     required = "" if last is None else f"required {number(last, unit)} at the end, "
-    return (
-        f"From {t[0]:.1f} s to {t[-1]:.1f} s: {between}{required}not kept at {failed} of {len(t)} steps" if t else NONE
-    )
+    return f"From {t[0]:.1f} s to {t[-1]:.1f} s: {between}{required}not kept at {failed} of {len(t)} steps"

@@ -2,47 +2,25 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.report.html.axis import Axis, round_step
-from drivelint.report.html.svg import num
+from drivelint.report.html.svg import Axis, num, round_step
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
-    Row = Mapping[str, Any]
+    from drivelint.result.text import Row
 
 _WIDTH, _HEIGHT = 560, 230
 _BINS: Final = 12
 _PREFERRED: Final = "nominal"
 
 
-class Bar(NamedTuple):
-    """One range of distances: place and width, heights of both parts, and in words."""
+def opportunities(records: Sequence[Row]) -> dict[str, Any] | None:
+    """Return the histogram of the rows of `opportunity_record` for one profile, and per profile how many were taken and not, by zone.
 
-    x: str
-    w: str
-    taken_y: str
-    taken_h: str
-    passed_y: str
-    passed_h: str
-    words: str
-
-
-class Opportunities(NamedTuple):
-    """The histogram for one profile, and per profile how many were taken and not, by zone."""
-
-    profile: str
-    n: int
-    unknown: int
-    bars: list[Bar]
-    x_ticks: list[tuple[str, str]]
-    y_ticks: list[tuple[str, str]]
-    rows: list[tuple[str, list[tuple[int, int]], tuple[int, int]]]
-
-
-def opportunities(records: Sequence[Row]) -> Opportunities | None:
-    """Return the distribution of the rows of `opportunity_record`; None: there are none."""
+    None: there are none.
+    """
     if not records:
         return None
     profiles = [name for _, name in sorted({(row["style"], row["profile"]) for row in records})]
@@ -50,9 +28,15 @@ def opportunities(records: Sequence[Row]) -> Opportunities | None:
     mine = [row for row in records if row["profile"] == profile]
     known = [row for row in mine if row["da_m"] is not None]
     bars, x_ticks, y_ticks = _bars(known) if known else ([], [], [])
-    return Opportunities(
-        profile, len(mine), len(mine) - len(known), bars, x_ticks, y_ticks, [_row(p, records) for p in profiles]
-    )
+    return {
+        "profile": profile,
+        "n": len(mine),
+        "unknown": len(mine) - len(known),
+        "bars": bars,
+        "x_ticks": x_ticks,
+        "y_ticks": y_ticks,
+        "rows": [_row(name, records) for name in profiles],
+    }
 
 
 def _row(profile: str, records: Sequence[Row]) -> tuple[str, list[tuple[int, int]], tuple[int, int]]:
@@ -66,7 +50,7 @@ def _row(profile: str, records: Sequence[Row]) -> tuple[str, list[tuple[int, int
     return profile, [count(zone) for zone in "ABCD"], count(None)
 
 
-def _bars(known: Sequence[Row]) -> tuple[list[Bar], list[tuple[str, str]], list[tuple[str, str]]]:
+def _bars(known: Sequence[Row]) -> tuple[list[dict[str, str]], list[tuple[str, str]], list[tuple[str, str]]]:
     far = max(row["da_m"] for row in known)
     width = round_step(max(far, 10.0) / _BINS)
     n = int(far // width) + 1
@@ -79,9 +63,16 @@ def _bars(known: Sequence[Row]) -> tuple[list[Bar], list[tuple[str, str]], list[
     for k, (taken, passed) in enumerate(counts):
         a, b = x.at(k * width), x.at((k + 1) * width)
         low, middle, high = y.at(0), y.at(taken), y.at(taken + passed)
-        words = f"{k * width:g} to {(k + 1) * width:g} m: {taken} taken, {passed} not taken"
         bars.append(
-            Bar(num(a + 1), num(b - a - 2), num(middle), num(low - middle), num(high), num(middle - high), words)
+            {
+                "x": num(a + 1),
+                "w": num(b - a - 2),
+                "taken_y": num(middle),
+                "taken_h": num(low - middle),
+                "passed_y": num(high),
+                "passed_h": num(middle - high),
+                "words": f"{k * width:g} to {(k + 1) * width:g} m: {taken} taken, {passed} not taken",
+            }
         )
     whole = [(place, label.split(".")[0]) for place, label in y.ticks(4) if float(label) == int(float(label))]
     return bars, x.ticks(8), whole

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import statistics
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.report.html.anchors import drive_anchor, overtake_anchor
-from drivelint.report.html.axis import Axis
-from drivelint.report.html.svg import num
+from drivelint.report.html.anchors import overtake_anchor
+from drivelint.report.html.svg import Axis, num, percent
 from drivelint.result.text import non_breaking, number, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    Row = Mapping[str, Any]
+    from drivelint.result.text import Row
 
 MAX_OVERTAKES: Final = 60
 """Overtakes in the page: those with the least to spare against any profile first."""
@@ -26,6 +25,7 @@ ASSERTION_TITLES: Final = (
 """The runtime assertions in the order of `overtake_record.stretches`: what must hold."""
 _STAGES: Final = ("pulling_out", "passing", "cutting_in")
 _SAID: Final = {"fail": "not kept", "pass": "kept", "unknown": "unknown", "not_applicable": "nobody was coming"}
+_VERDICT: Final = {"nobody": "not_applicable"}
 _STATUS: Final = {"truncated": "still out at the end of the recording", "lane_change": "stayed in the other lane"}
 _APART: Final = 20.0  # percent: so much room a label needs on a phone
 _THIN: Final = 0.6  # percent: a band is at least as wide
@@ -34,89 +34,12 @@ _ZONES_S: Final = (0.0, 0.5, 2.5)  # the spare time at which zones B, C and D be
 _SHAPES: Final = ("circle", "square", "diamond", "triangle", "cross")
 _PLOT_W, _PLOT_H = 560, 400
 _LABELS: Final = 10
+_NOT_COMPUTED: Final = {"verdict": "unknown", "sda": "-", "spare": "-", "zone": "", "reason": "not computed"}
+_TIMES: Final = ("t0_ns", "t1_ns", "t2_ns", "t3_ns")
 
 
-class ProfileCell(NamedTuple):
-    """What one profile says of an overtake."""
-
-    verdict: str
-    sda: str
-    spare: str
-    zone: str
-    reason: str
-
-
-class StageCell(NamedTuple):
-    """What one assertion says of one stage."""
-
-    verdict: str
-    worst: str
-
-
-class StageRow(NamedTuple):
-    """One of the four assertions: per stage, and its stretches over time as percentages."""
-
-    title: str
-    cells: list[StageCell]
-    bands: list[tuple[str, str, str, str]]
-
-
-class Overtake(NamedTuple):
-    """One overtake."""
-
-    anchor: str
-    drive_id: str
-    drive_href: str
-    ego_id: str
-    time: str
-    vbp_id: str
-    ov_id: str
-    status: str
-    da: str
-    speeds: str
-    inputs: str
-    cells: list[ProfileCell]
-    stages: list[str]
-    rows: list[StageRow]
-    times: list[tuple[str, str]]
-    bounds: list[tuple[str, str, str]]
-
-
-class ZoneDot(NamedTuple):
-    """One overtake against one profile."""
-
-    x: str
-    y: str
-    shape: str
-    zone: str
-    title: str
-
-
-class ZonePlot(NamedTuple):
-    """The zone plot: areas of the zones, axes, a dot per overtake and profile, names, and the speed that the areas are drawn for."""
-
-    areas: list[tuple[str, str, tuple[str, str] | None]]
-    x_ticks: list[tuple[str, str]]
-    y_ticks: list[tuple[str, str]]
-    dots: list[ZoneDot]
-    names: list[tuple[str, str, str]]
-    shapes: list[tuple[str, str]]
-    speed: str
-    same_speed: bool
-    missing: int
-
-
-class OvertakeViews(NamedTuple):
-    """The table of overtakes and the zone plot, as the page shows them."""
-
-    profiles: list[str]
-    overtakes: list[Overtake]
-    n: int
-    zones: ZonePlot | None
-
-
-def overtake_views(records: Sequence[Row], starts: Mapping[str, int], shown: set[str]) -> OvertakeViews | None:
-    """Return the views of the rows of `overtake_record` (None: there are none); `shown`: drives that have a section."""
+def overtake_views(records: Sequence[Row], starts: Mapping[str, int]) -> dict[str, Any] | None:
+    """Return the table of overtakes and the zone plot from the rows of `overtake_record`; None: there are none."""
     records = [row for row in records if row["profiles"] or row["stretches"]]
     if not records:
         return None
@@ -124,12 +47,12 @@ def overtake_views(records: Sequence[Row], starts: Mapping[str, int], shown: set
     profiles = [profile for _, profile in sorted(told)]
     picked = sorted(records, key=_least_spare)[:MAX_OVERTAKES]
     listed = sorted(picked, key=lambda r: (r["drive_id"], r["ego_id"], r["occurrence"]))
-    return OvertakeViews(
-        profiles,
-        [_overtake(row, profiles, starts.get(row["drive_id"]) or 0, row["drive_id"] in shown) for row in listed],
-        len(records),
-        _zones(listed, profiles, starts),
-    )
+    return {
+        "profiles": profiles,
+        "overtakes": [_overtake(row, profiles, starts.get(row["drive_id"]) or 0) for row in listed],
+        "n": len(records),
+        "zones": _zones(listed, profiles, starts),
+    }
 
 
 def _least_spare(row: Row) -> tuple[float, str, str, int]:
@@ -137,7 +60,7 @@ def _least_spare(row: Row) -> tuple[float, str, str, int]:
     return min(spare, default=float("inf")), row["drive_id"], row["ego_id"], row["occurrence"]
 
 
-def _overtake(row: Row, profiles: Sequence[str], start_ns: int, shown: bool) -> Overtake:
+def _overtake(row: Row, profiles: Sequence[str], start_ns: int) -> dict[str, Any]:
     cells = {p["profile"]: _cell(p) for p in row["profiles"]}
     stages = [stage for stage in _STAGES if any(s["stage"] == stage for s in row["stretches"])]
     clock = Axis(row["t0_ns"], max(row["t_end_ns"], row["t0_ns"] + 1), 0.0, 100.0)
@@ -146,27 +69,28 @@ def _overtake(row: Row, profiles: Sequence[str], start_ns: int, shown: bool) -> 
         ("ego", row["l_av_m"], "m long"),
         ("passed", row["l_vbp_m"], "m long"),
     )
-    return Overtake(
-        anchor=overtake_anchor(row["drive_id"], row["ego_id"], row["occurrence"]),
-        drive_id=row["drive_id"],
-        drive_href="#" + drive_anchor(row["drive_id"]) if shown else "",
-        ego_id=row["ego_id"],
-        time=seconds(row["t0_ns"], start_ns),
-        vbp_id=row["vbp_id"],
-        ov_id=row["ov_id"] or "nobody seen",
-        status=_STATUS.get(row["status"]) or row["status"],
-        da=("" if row["ov_id"] else "at least " if row["da_m"] is not None else "") + number(row["da_m"], "m"),
-        speeds=", ".join(
+    return {
+        "row": row,
+        "anchor": overtake_anchor(row["drive_id"], row["ego_id"], row["occurrence"]),
+        "time": seconds(row["t0_ns"], start_ns),
+        "ov_id": row["ov_id"] or "nobody seen",
+        "status": _STATUS.get(row["status"]) or row["status"],
+        "da": ("" if row["ov_id"] else "at least " if row["da_m"] is not None else "") + number(row["da_m"], "m"),
+        "speeds": ", ".join(
             f"{who} {number(v, 'm/s')}"
             for who, v in (("ego", row["v_av_mps"]), ("passed", row["v_vbp_mps"]), ("oncoming", row["v_ov_mps"]))
         ),
-        inputs=", ".join(f"{what} {value:.2f} {unit}" for what, value, unit in given if value is not None),
-        cells=[cells.get(profile, ProfileCell("unknown", "-", "-", "", "not computed")) for profile in profiles],
-        stages=[stage.replace("_", " ") for stage in stages],
-        rows=[_assertion(n, row["stretches"], stages, clock) for n in range(len(ASSERTION_TITLES))] if stages else [],
-        times=_marks([(clock.at(t), f"{name} {(t - start_ns) / 1e9:.1f}") for name, t in _times(row)]),
-        bounds=_bounds(row["stretches"], clock),
-    )
+        "inputs": ", ".join(f"{what} {value:.2f} {unit}" for what, value, unit in given if value is not None),
+        "cells": [cells.get(profile, _NOT_COMPUTED) for profile in profiles],
+        "stages": [stage.replace("_", " ") for stage in stages],
+        "rows": [_assertion(n, row["stretches"], stages, clock) for n in range(len(ASSERTION_TITLES))]
+        if stages
+        else [],
+        "times": _marks(
+            [(clock.at(row[at]), f"{at[:2]} {(row[at] - start_ns) / 1e9:.1f}") for at in _TIMES if row[at] is not None]
+        ),
+        "bounds": _bounds(row["stretches"], clock),
+    }
 
 
 def _marks(times: Sequence[tuple[float, str]]) -> list[tuple[str, str]]:
@@ -177,19 +101,21 @@ def _marks(times: Sequence[tuple[float, str]]) -> list[tuple[str, str]]:
             kept[-1] = kept[-1][0], f"{kept[-1][1]}, {label}"
         else:
             kept.append((at, label))
-    return [(_pc(at), label) for at, label in kept]
+    return [(percent(at), label) for at, label in kept]
 
 
-def _cell(p: Row) -> ProfileCell:
-    verdict = "unknown" if p["zone"] is None else "fail" if p["zone"] == "A" else "pass"
+def _cell(p: Row) -> dict[str, Any]:
+    """Return what one profile says of an overtake."""
     spare = "-"
     if p["spare_m"] is not None:
         spare = f"{'short by' if p['spare_m'] <= 0 else 'spare'} {non_breaking(number(abs(p['spare_m']), 'm'))}"
-    return ProfileCell(verdict, non_breaking(number(p["sda_m"], "m")), spare, p["zone"] or "", p["reason"] or "")
-
-
-def _times(row: Row) -> list[tuple[str, int]]:
-    return [(name, row[f"{name}_ns"]) for name in ("t0", "t1", "t2", "t3") if row[f"{name}_ns"] is not None]
+    return {
+        "verdict": "unknown" if p["zone"] is None else "fail" if p["zone"] == "A" else "pass",
+        "sda": non_breaking(number(p["sda_m"], "m")),
+        "spare": spare,
+        "zone": p["zone"],
+        "reason": p["reason"] or "",
+    }
 
 
 def _bounds(stretches: Sequence[Row], clock: Axis) -> list[tuple[str, str, str]]:
@@ -199,21 +125,22 @@ def _bounds(stretches: Sequence[Row], clock: Axis) -> list[tuple[str, str, str]]
         mine = [s for s in stretches if s["stage"] == stage]
         if mine:
             a, b = clock.at(min(s["t_start_ns"] for s in mine)), clock.at(max(s["t_end_ns"] for s in mine))
-            drawn.append((stage.replace("_", " "), _pc(a), _pc(b - a)))
+            drawn.append((stage.replace("_", " "), percent(a), percent(b - a)))
     return drawn
 
 
-def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: Axis) -> StageRow:
+def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: Axis) -> dict[str, Any]:
+    """Return one of the assertions: its verdict and worst depth per stage, and its stretches over time as percentages."""
     cells = []
     for stage in stages:
         mine = [(s["said"][n], s["worst_m"][n]) for s in stretches if s["stage"] == stage]
         verdict = min((said for said, _ in mine), key=_WORST.index)
         deep = max((m for _, m in mine if m is not None), default=None)
         worst = "nobody was coming" if verdict == "nobody" else _depth(deep)
-        cells.append(StageCell("not_applicable" if verdict == "nobody" else verdict, worst))
+        cells.append((_VERDICT.get(verdict, verdict), worst))
     runs: list[list[Any]] = []
     for s in stretches:
-        said = "not_applicable" if s["said"][n] == "nobody" else s["said"][n]
+        said = _VERDICT.get(s["said"][n], s["said"][n])
         if runs and runs[-1][0] == said:
             runs[-1][2] = s["t_end_ns"]
         else:
@@ -222,21 +149,18 @@ def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: A
     bands = []
     for (said, start, last), end in zip(runs, ends, strict=True):
         a, b = clock.at(start), min(max(clock.at(max(last, end)), clock.at(start) + _THIN), 100.0)
-        bands.append((said, _pc(min(a, 100.0 - _THIN)), _pc(b - min(a, 100.0 - _THIN)), _SAID[said]))
-    return StageRow(ASSERTION_TITLES[n], cells, bands)
+        bands.append((said, percent(min(a, 100.0 - _THIN)), percent(b - min(a, 100.0 - _THIN)), _SAID[said]))
+    return {"title": ASSERTION_TITLES[n], "cells": cells, "bands": bands}
 
 
 def _depth(metres: float | None) -> str:
     if metres is None:
         return ""
-    return (
-        f"inside by {non_breaking(number(metres, 'm'))}"
-        if metres >= 0
-        else f"clear by {non_breaking(number(-metres, 'm'))}"
-    )
+    return f"{'inside' if metres >= 0 else 'clear'} by {non_breaking(number(abs(metres), 'm'))}"
 
 
-def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str, int]) -> ZonePlot | None:
+def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str, int]) -> dict[str, Any] | None:
+    """Return the areas of the zones, axes, a dot per overtake and profile, names, and the speed that the areas are drawn for."""
     known = [(row, p) for row in records for p in row["profiles"] if p["da_m"] is not None and p["sda_m"] is not None]
     missing = sum(len(row["profiles"]) for row in records) - len(known)
     if not known:
@@ -247,27 +171,27 @@ def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str,
     v = statistics.median(closing) if closing else 0.0
     shapes = {profile: _SHAPES[min(n, len(_SHAPES) - 1)] for n, profile in enumerate(profiles)}
     rows = {id(row): row for row, _ in known}.values()
-    return ZonePlot(
-        areas=_areas(x, y, far, v),
-        x_ticks=x.ticks(7),
-        y_ticks=y.ticks(7),
-        dots=[
-            ZoneDot(
-                num(x.at(p["sda_m"])),
-                num(y.at(p["da_m"])),
-                shapes[p["profile"]],
-                p["zone"] or "",
-                f"{row['drive_id']} at {seconds(row['t0_ns'], starts.get(row['drive_id']))}, {p['profile']}: distance ahead "
+    return {
+        "areas": _areas(x, y, far, v),
+        "x_ticks": x.ticks(7),
+        "y_ticks": y.ticks(7),
+        "dots": [
+            {
+                "x": num(x.at(p["sda_m"])),
+                "y": num(y.at(p["da_m"])),
+                "shape": shapes[p["profile"]],
+                "zone": p["zone"],
+                "title": f"{row['drive_id']} at {seconds(row['t0_ns'], starts.get(row['drive_id']))}, {p['profile']}: distance ahead "
                 f"{number(p['da_m'], 'm')}, required more than {number(p['sda_m'], 'm')}, zone {p['zone'] or 'unknown'}",
-            )
+            }
             for row, p in known
         ],
-        names=[_name(row, x, y) for row in rows] if len(rows) <= _LABELS else [],
-        shapes=list(shapes.items()),
-        speed=number(v, "m/s"),
-        same_speed=bool(closing) and max(closing) - min(closing) < 0.05 * v,
-        missing=missing,
-    )
+        "names": [_name(row, x, y) for row in rows] if len(rows) <= _LABELS else [],
+        "shapes": list(shapes.items()),
+        "speed": number(v, "m/s"),
+        "same_speed": bool(closing) and max(closing) - min(closing) < 0.05 * v,
+        "missing": missing,
+    }
 
 
 def _name(row: Row, x: Axis, y: Axis) -> tuple[str, str, str]:
@@ -288,7 +212,3 @@ def _areas(x: Axis, y: Axis, far: float, v: float) -> list[tuple[str, str, tuple
         letter = (num(x.at(a)), num(y.at(b) + 6)) if thick > 0.03 * far and b < 0.97 * far else None
         drawn.append((zone, path, letter))
     return drawn
-
-
-def _pc(value: float) -> str:
-    return f"{value:.2f}".rstrip("0").rstrip(".") + "%"

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
-import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.report.html.anchors import rule_anchor
@@ -14,38 +13,15 @@ from drivelint.result.text import non_breaking, number, seconds
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from drivelint.report.html.incidents import FindingLine, Incident
+    from drivelint.report.html.incidents import FindingLine
     from drivelint.result.model import Result
-
-    Row = Mapping[str, Any]
+    from drivelint.result.text import Row
 
 _CONTACT: Final = "contact"
 """Tag of the rules whose findings are contacts: of the boxes, or told by the speeds."""
 _NAMED: Final = 4
-_OPEN: Final = pa.array(["unknown", "error"])
 _STORY_DRIVES: Final = 6
 _STORY_PARTIES: Final = 6
-
-
-class BrokenRule(NamedTuple):
-    """A rule that was not kept: how often, and the worst of it (None: not among the findings of the page)."""
-
-    rule: Row
-    href: str
-    n: int
-    n_drives: int
-    worst: FindingLine | None
-
-
-class DriveSummary(NamedTuple):
-    """What happened in one drive, in time order; `who`: the vehicles and people that the findings are about."""
-
-    drive_id: str
-    href: str
-    file_name: str
-    who: list[str]
-    n_more: int
-    moments: list[Incident]
 
 
 def headline(result: Result) -> tuple[str, str]:
@@ -68,25 +44,17 @@ def headline(result: Result) -> tuple[str, str]:
     return "pass", "No finding"
 
 
-class Contacts(NamedTuple):
-    """The contacts that rules found, in words, each with the link to it; `n_more`: those that are not named."""
+def contacts(result: Result, lines: Sequence[FindingLine]) -> dict[str, Any] | None:
+    """Return who touched whom and when, from all findings (`lines`: those of the page); None if no finding is a contact.
 
-    named: list[tuple[str, str]]
-    n_more: int
-
-
-def contacts(result: Result, lines: Sequence[tuple[Row, FindingLine]]) -> Contacts | None:
-    """Return who touched whom and when, from all findings; None if no finding is a contact."""
-    starts = {
-        row["drive_id"]: row["t_start_ns"] for row in result.drives.select(["drive_id", "t_start_ns"]).to_pylist()
-    }
-    hrefs = {row["finding_id"]: line.href for row, line in lines if line.kind == "fail"}
-    tagged = [row["rule_id"] for row in result.rules.select(["rule_id", "tags"]).to_pylist() if _CONTACT in row["tags"]]
-    rows = result.findings.filter(pc.is_in(result.findings["rule_id"], value_set=pa.array(tagged, pa.string())))
-    rows = rows.sort_by([("drive_id", "ascending"), ("t_worst_ns", "ascending")])
-    met: dict[tuple[str, frozenset[str | None]], list[Row]] = {}
-    for row in rows.to_pylist():
-        met.setdefault((row["drive_id"], frozenset((row["ego_id"], row["object_id"]))), []).append(row)
+    `named`: contacts of the boxes, or told by the speeds, in words, each with the link to it; `n_more`: those that are not named.
+    """
+    starts = result.start_times
+    hrefs = {line.row["finding_id"]: line.href for line in lines}
+    tagged = {row["rule_id"] for row in result.rules.select(["rule_id", "tags"]).to_pylist() if _CONTACT in row["tags"]}
+    ordered = result.findings.sort_by([("drive_id", "ascending"), ("t_worst_ns", "ascending")]).to_pylist()
+    touches = [row for row in ordered if row["rule_id"] in tagged]
+    met = counts.grouped(touches, lambda row: (row["drive_id"], frozenset((row["ego_id"], row["object_id"]))))
     named = []
     for found in met.values():
         first = found[0]
@@ -97,13 +65,7 @@ def contacts(result: Result, lines: Sequence[tuple[Row, FindingLine]]) -> Contac
         where = f", {first['drive_id']}" if len(starts) > 1 else ""
         said = f"{who} at {non_breaking(seconds(first['t_worst_ns'], starts[first['drive_id']]))}{deep}{where}"
         named.append((said, hrefs.get(first["finding_id"], "")))
-    return Contacts(named[:_NAMED], len(named) - len(named[:_NAMED])) if named else None
-
-
-def undecided_rule_count(result: Result) -> int:
-    """Return how many rules are unknown, or could not be run, somewhere."""
-    rows = result.verdicts.filter(pc.is_in(result.verdicts["verdict"], value_set=_OPEN))
-    return len(pc.unique(rows["rule_id"]))
+    return {"named": named[:_NAMED], "n_more": len(named[_NAMED:])} if named else None
 
 
 def _of_these(result: Result) -> str:
@@ -116,41 +78,36 @@ def _of_these(result: Result) -> str:
     return f", {left or 'none'} of them {'new' if gate.baseline is not None else 'not waived'}"
 
 
-def broken_rules(
-    result: Result, rules: Mapping[str, Row], lines: Sequence[tuple[Row, FindingLine]]
-) -> list[BrokenRule]:
-    """Return the rules with findings, the gravest and most frequent first."""
-    drives: dict[str, set[str]] = {}
-    for row in result.findings.select(["rule_id", "drive_id"]).to_pylist():
-        drives.setdefault(row["rule_id"], set()).add(row["drive_id"])
-    worst: dict[str, tuple[float, int, FindingLine]] = {}
-    for n, (row, line) in enumerate(lines):
-        margin = float("-inf") if row["margin"] is None else row["margin"]
-        here = (margin, n, line)
-        worst[row["rule_id"]] = min(worst.get(row["rule_id"], here), here, key=lambda w: w[:2])
+def broken_rules(result: Result, rules: Mapping[str, Row], lines: Sequence[FindingLine]) -> list[dict[str, Any]]:
+    """Return the rules with findings, the gravest and most frequent first; `worst` None: not among the findings of the page."""
+    columns = result.findings.select(["rule_id", "drive_id"]).to_pylist()
+    shown = counts.grouped(lines, lambda line: line.row["rule_id"])
     found = [
-        BrokenRule(
-            rules[rule_id],
-            "#" + rule_anchor(rule_id),
-            n,
-            len(drives[rule_id]),
-            worst[rule_id][2] if rule_id in worst else None,
-        )
-        for rule_id, n in counts.rows_by(result.findings, "rule_id").items()
+        {
+            "rule": rules[rule_id],
+            "href": "#" + rule_anchor(rule_id),
+            "n": len(rows),
+            "n_drives": len({row["drive_id"] for row in rows}),
+            "worst": min(shown.get(rule_id, []), key=_margin, default=None),
+        }
+        for rule_id, rows in counts.grouped(columns, lambda row: row["rule_id"]).items()
     ]
-    return sorted(found, key=lambda b: (counts.SEVERITIES.index(b.rule["severity"]), -b.n, b.rule["rule_id"]))
+    return sorted(found, key=lambda b: (counts.SEVERITIES.index(b["rule"]["severity"]), -b["n"], b["rule"]["rule_id"]))
+
+
+def _margin(line: FindingLine) -> float:
+    return float("-inf") if line.row["margin"] is None else line.row["margin"]
 
 
 def verdicts_by_pack(result: Result) -> list[dict[str, Any]]:
     """Return how many verdicts of each kind every pack has, and of how many rules."""
-    told = counts.verdicts_by_pack(result.rules, counts.verdicts_by(result.verdicts, "rule_id"))
-    rules = counts.rows_by(result.rules, "pack")
-    titles = {row["pack"]: row["pack_title"] for row in result.rules.select(["pack", "pack_title"]).to_pylist()}
+    told = counts.verdicts_by_pack(result.rules, result.verdicts)
+    rules = counts.grouped(result.rules.select(["pack", "pack_title"]).to_pylist(), lambda row: row["pack"])
     return [
         {
             "pack": pack,
-            "about": titles[pack],
-            "n_rules": rules[pack],
+            "about": rules[pack][-1]["pack_title"],
+            "n_rules": len(rules[pack]),
             "verdicts": verdicts,
             "shares": verdict_shares(verdicts),
         }
@@ -168,31 +125,31 @@ def verdict_shares(told: Mapping[str, int]) -> list[dict[str, Any]]:
     return found
 
 
-def drive_summaries(sections: Sequence[Mapping[str, Any]], n_drives: int) -> list[DriveSummary]:
-    """Return a summary of each drive; none if there are too many drives for the first page."""
-    if n_drives > _STORY_DRIVES:
-        return []
-    told = [_story(s) for s in sections]
-    return [story for story in told if story.moments]
+def drive_summaries(sections: Sequence[Mapping[str, Any]], n_drives: int) -> list[dict[str, Any]]:
+    """Return what happened in each drive, in time order; none if there are too many drives for the first page.
 
-
-def _story(section: Mapping[str, Any]) -> DriveSummary:
-    who = [f"{party.name} ({party.what})" for party in section["parties"] if party.n]
-    return DriveSummary(
-        section["drive_id"],
-        "#" + section["anchor"],
-        section["file_name"],
-        who[:_STORY_PARTIES],
-        max(len(who) - _STORY_PARTIES, 0),
-        [moment for moment in section["moments"] if moment.leading],
-    )
+    `who`: the vehicles and people that the findings are about.
+    """
+    told = []
+    for section in sections if n_drives <= _STORY_DRIVES else ():
+        who = [f"{party['name']} ({party['what']})" for party in section["parties"] if party["n"]]
+        summary = {
+            "drive_id": section["drive_id"],
+            "href": "#" + section["anchor"],
+            "file_name": section["file_name"],
+            "who": who[:_STORY_PARTIES],
+            "n_more": len(who[_STORY_PARTIES:]),
+            "moments": [moment for moment in section["moments"] if moment.leading],
+        }
+        told += [summary] if summary["moments"] else []
+    return told
 
 
 def first_page_texts(
-    rules: Sequence[BrokenRule], told: Sequence[DriveSummary], lines: Sequence[FindingLine]
+    rules: Sequence[Mapping[str, Any]], told: Sequence[Mapping[str, Any]], lines: Sequence[FindingLine]
 ) -> list[str]:
     """Return what the first page says of rules and findings, to be searched for words that need to be explained."""
-    worst = [line for b in rules if (line := b.worst) is not None]
-    leading = [line for story in told for moment in story.moments for card in moment.cards for line in card.lines]
-    profiles = {line.profile for line in lines}
-    return [b.rule["title"] for b in rules] + [line.told for line in worst + leading] + sorted(profiles)
+    worst = [b["worst"] for b in rules if b["worst"] is not None]
+    leading = [line for story in told for moment in story["moments"] for card in moment.cards for line in card.lines]
+    profiles = {line.row["profile"] or "" for line in lines}
+    return [b["rule"]["title"] for b in rules] + [line.told for line in worst + leading] + sorted(profiles)

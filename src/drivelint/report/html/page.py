@@ -29,19 +29,17 @@ from drivelint.report.html.replay import replays
 from drivelint.report.html.road import Road
 from drivelint.report.html.timeline import TimeAxis, empty_timeline, separate_shared_rules, timelines
 from drivelint.result import counts
+from drivelint.result.counts import grouped
 from drivelint.result.model import exit_status
 from drivelint.result.text import number
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from drivelint.report.html.incidents import FindingLine, Incident, Key
-    from drivelint.report.html.involved_actors import InvolvedActor
-    from drivelint.report.html.margin_series import MarginSeries
     from drivelint.report.html.timeline import Timeline
     from drivelint.result.model import Result
-
-    Row = Mapping[str, Any]
+    from drivelint.result.text import Row
 
 MAX_FINDINGS: Final = 1000
 """Findings in the page: the worst; the Parquet files hold them all."""
@@ -72,40 +70,37 @@ def content(result: Result) -> dict[str, Any]:
     rules = {row["rule_id"]: row for row in result.rules.to_pylist()}
     drives = result.drives.to_pylist()
     starts = {row["drive_id"]: row["t_start_ns"] or 0 for row in drives}
-    lines, close = _lines(result, rules, starts)
-    scenes = {_at(row): row for row in result.scenes.to_pylist()}
-    spaces: dict[Key, list[Row]] = {}
-    for row in result.spaces.to_pylist():
-        spaces.setdefault(_at(row), []).append(row)
-    road = Road(result.lanes)
-    drawn = plan_views([row for row, _ in lines + close], scenes, spaces, road, rules=rules, most=MAX_PICTURES)
-    listed = _by_drive(lines + close)
     told = counts.verdicts_by(result.verdicts, "drive_id")
-    shown = _with_section(drives, listed, told)
-    lines, close = _linked(lines, shown), _linked(close, shown)
-    listed = _by_drive(lines + close)
-    anchors = {line.anchor: line.standing.filter_key if line.standing else "" for _, line in lines}
+    rows = _worst_rows(result)
+    shown = _with_section(drives, [row["drive_id"] for _, row in rows], told)
+    lines = _lines(result, rows, rules, starts, shown=shown)
+    failed = [line for line in lines if line.kind == "fail"]
+    scenes = {_at(row): row for row in result.scenes.to_pylist()}
+    spaces = grouped(result.spaces.to_pylist(), _at)
+    road = Road(result.lanes)
+    drawn = plan_views(lines, scenes, spaces, road, most=MAX_PICTURES)
+    listed = grouped(lines, lambda line: line.row["drive_id"])
+    anchors = {line.anchor: line.standing.filter_key if line.standing else "" for line in failed}
     verdicts, found = _rows_by_drive(result.verdicts, shown), _rows_by_drive(result.findings, shown)
     sections = [
         _section(
             row,
             timelines(verdicts.get(row["drive_id"], []), found.get(row["drive_id"], []), rules, anchors, _clock(row)),
-            incidents(
-                mine := listed.get(row["drive_id"], []), rules, drawn, starts[row["drive_id"]], key_incidents(mine)
-            ),
-            involved_actors(row["drive_id"], mine, scenes),
+            incidents(mine := listed.get(row["drive_id"], []), drawn, starts[row["drive_id"]], key_incidents(mine)),
+            involved_actors(mine, scenes),
             unfolded=len(drives) <= MAX_UNFOLDED_DRIVES,
         )
         for row in drives
         if row["drive_id"] in shown
     ]
     totals = counts.total(result.verdicts)
-    broken, told_of = overview.broken_rules(result, rules, lines), overview.drive_summaries(sections, len(drives))
+    broken, told_of = overview.broken_rules(result, rules, failed), overview.drive_summaries(sections, len(drives))
+    tracks = replays([scenes[at] for at in drawn], spaces, starts, road)
     return {
         "outcome": exit_status(result),
         "headline": overview.headline(result),
-        "contacts": overview.contacts(result, lines),
-        "not_decided": overview.undecided_rule_count(result),
+        "contacts": overview.contacts(result, failed),
+        "not_decided": len(pc.unique(counts.undecided(result.verdicts)["rule_id"])),
         "counts": overview.verdict_shares(totals),
         "names": _NAMES,
         "passes": totals["pass"],
@@ -115,32 +110,38 @@ def content(result: Result) -> dict[str, Any]:
         "n_near": int(pc.sum(result.verdicts["near_miss"]).as_py() or 0),
         "n_assumed": counts.count_assuming(result.verdicts, "line_of_sight"),
         "broken": broken,
-        "words": glossary_entries(overview.first_page_texts(broken, told_of, [line for _, line in lines])),
-        "several_egos": len({(row["drive_id"], row["ego_id"]) for row, _ in lines + close}) > len(listed),
+        "words": glossary_entries(overview.first_page_texts(broken, told_of, failed)),
+        "several_egos": len({(line.row["drive_id"], line.row["ego_id"]) for line in lines}) > len(listed),
         "notes": notes_on_logs(drives),
         "packs": overview.verdicts_by_pack(result),
         "stories": told_of,
-        "findings": [line for _, line in lines],
-        "near": [line for _, line in close],
-        "filters": _filters([line for _, line in lines + close], rules),
+        "findings": failed,
+        "near": [line for line in lines if line.kind == "near"],
+        "filters": _filters(lines, rules),
         "not_judged": [row for row in drives if row["status"] == "not_judged"],
         "open": reason_groups(result.verdicts, {rule_id: rule["title"] for rule_id, rule in rules.items()}),
         "km": sum(row["km"] for row in drives),
         "n_egos": sum(row["n_egos"] for row in drives),
         "duration_s": sum(row["duration_s"] or 0.0 for row in drives),
-        "drives": [_drive_row(row, told, listed, row["drive_id"] in shown) for row in drives],
+        "drives": [
+            {
+                **row,
+                "href": "#" + drive_anchor(row["drive_id"]) if row["drive_id"] in shown else "",
+                "verdicts": told[row["drive_id"]],
+                "near": sum(line.kind == "near" for line in listed.get(row["drive_id"], [])),
+                "warnings": sum(check["severity"] != "info" for check in row["quality"]),
+            }
+            for row in drives
+        ],
         "sections": sections,
         "n_charts": MAX_CHARTS,
         "brief": len(drives) > MAX_DETAILED_DRIVES,
         "tiles": road.tiles() if drawn else [],
         "shapes": actor_shapes(scenes[at] for at in drawn),
-        "replays_of": {
-            drive_anchor(drive_id): text
-            for drive_id, text in replays([scenes[at] for at in drawn], spaces, starts, road).items()
-        },
-        "overtakes": overtake_views(result.overtakes.to_pylist(), starts, shown),
+        "replays_of": {drive_anchor(drive_id): text for drive_id, text in tracks.items()},
+        "overtakes": overtake_views(result.overtakes.to_pylist(), starts),
         "opportunities": opportunities(result.opportunities.to_pylist()),
-        "rules": _rules(result, rules),
+        "n_rules": len(rules),
         "rule_groups": _rule_groups(result, rules),
         "profiles": sorted({profile for rule in rules.values() for profile in rule["profiles"]}),
         "maps": sorted({(row["map_name"], row["map_sha256"]) for row in drives if row["map_name"] is not None}),
@@ -151,24 +152,47 @@ def _at(row: Row) -> Key:
     return row["drive_id"], row["ego_id"], row["t_ns"]
 
 
-def _lines(
-    result: Result, rules: Mapping[str, Row], starts: Mapping[str, int]
-) -> tuple[list[tuple[Row, FindingLine]], list[tuple[Row, FindingLine]]]:
-    """Return the findings and the near misses that the page shows, the worst first, each with its words."""
-    courses = {_whose(row): row for row in result.courses.to_pylist()}
-    failed: list[tuple[Row, FindingLine]] = []
-    for row in _worst_first(result.findings, MAX_FINDINGS):
-        start = starts.get(row["drive_id"], 0)
-        way = _course(courses, row, start) if len(failed) < MAX_CHARTS else None
-        stands = finding_status(result.gate, row["finding_id"])
-        failed.append((row, finding_line(row, "fail", rules[row["rule_id"]], start, course=way, standing=stands)))
+def _worst_rows(result: Result) -> list[tuple[str, Row]]:
+    """Return the findings (`fail`), then the near misses (`near`) that the page shows, the worst first."""
     near = pc.and_(result.verdicts["near_miss"], pc.is_valid(result.verdicts["t_worst_ns"]))
-    close: list[tuple[Row, FindingLine]] = []
-    for row in _worst_first(result.verdicts.filter(near), MAX_NEAR_MISSES):
+    failed = _worst_first(result.findings, MAX_FINDINGS)
+    close = _worst_first(result.verdicts.filter(near), MAX_NEAR_MISSES)
+    return [*(("fail", row) for row in failed), *(("near", row) for row in close)]
+
+
+def _worst_first(rows: pa.Table, most: int) -> list[Row]:
+    """Return the rows to show, in the order of severity, drive and time."""
+    weight = pc.index_in(rows["severity"], value_set=pa.array(counts.SEVERITIES))
+    names = ("weight", "drive_id", "ego_id", "t_worst_ns", "rule_id", "profile", "object_id")
+    ordered = rows.append_column("weight", weight).sort_by([(name, "ascending") for name in names])
+    return list(ordered.slice(0, most).to_pylist())
+
+
+def _lines(
+    result: Result,
+    rows: Sequence[tuple[str, Row]],
+    rules: Mapping[str, Row],
+    starts: Mapping[str, int],
+    *,
+    shown: set[str],
+) -> list[FindingLine]:
+    """Return the rows with their words, those of drives in `shown` with links."""
+    courses = {_whose(row): row for row in result.courses.to_pylist()}
+    lines: list[FindingLine] = []
+    for kind, row in rows:
         start = starts.get(row["drive_id"], 0)
-        way = _course(courses, row, start) if len(failed) + len(close) < MAX_CHARTS else None
-        close.append((row, finding_line(row, "near", rules[row["rule_id"]], start, course=way)))
-    return failed, close
+        steps = courses.get(_whose(row)) if len(lines) < MAX_CHARTS else None
+        line = finding_line(
+            row,
+            kind,
+            rules[row["rule_id"]],
+            start,
+            linked=row["drive_id"] in shown,
+            course=None if steps is None else margin_series(steps, row["t_worst_ns"], row["unit"], start),
+            standing=finding_status(result.gate, row["finding_id"]) if kind == "fail" else None,
+        )
+        lines.append(line)
+    return lines
 
 
 def _whose(row: Row) -> tuple[Any, ...]:
@@ -177,62 +201,29 @@ def _whose(row: Row) -> tuple[Any, ...]:
     return (row.get("finding_id"), *told)
 
 
-def _course(courses: Mapping[tuple[Any, ...], Row], row: Row, start_ns: int) -> MarginSeries | None:
-    seen = courses.get(_whose(row))
-    return None if seen is None else margin_series(seen, row["t_worst_ns"], row["unit"], start_ns)
-
-
-def _worst_first(rows: pa.Table, most: int) -> list[dict[str, Any]]:
-    """Return the rows to show, in the order of severity, drive and time."""
-    weight = pc.index_in(rows["severity"], value_set=pa.array(counts.SEVERITIES))
-    order = [
-        (name, "ascending")
-        for name in ("weight", "drive_id", "ego_id", "t_worst_ns", "rule_id", "profile", "object_id")
-    ]
-    worst: list[dict[str, Any]] = rows.append_column("weight", weight).sort_by(order).slice(0, most).to_pylist()
-    return worst
-
-
-def _by_drive(rows: Sequence[tuple[Row, FindingLine]]) -> dict[str, list[tuple[Row, FindingLine]]]:
-    grouped: dict[str, list[tuple[Row, FindingLine]]] = {}
-    for row, line in rows:
-        grouped.setdefault(row["drive_id"], []).append((row, line))
-    return grouped
-
-
-def _with_section(drives: Sequence[Row], listed: Mapping[str, Any], told: Mapping[str, Mapping[str, int]]) -> set[str]:
-    """Return the ids of the drives that get a section: those with the worst findings first."""
-    place = {drive_id: n for n, drive_id in enumerate(listed)}
+def _with_section(drives: Sequence[Row], worst: Iterable[str], told: Mapping[str, Mapping[str, int]]) -> set[str]:
+    """Return the ids of the drives that get a section: those with the worst findings first, which are in `worst`."""
+    place = {drive_id: n for n, drive_id in enumerate(dict.fromkeys(worst))}
 
     def weight(row: Row) -> tuple[int, int]:
-        verdicts = told.get(row["drive_id"], {})
+        verdicts = told[row["drive_id"]]
         if row["drive_id"] in place:
             return 0, place[row["drive_id"]]
-        return (1, 0) if verdicts.get("unknown") or verdicts.get("error") else (2, 0)
+        return (1, 0) if verdicts["unknown"] or verdicts["error"] else (2, 0)
 
     judged = [row for row in drives if row["status"] == "judged"]
     return {row["drive_id"] for row in sorted(judged, key=weight)[:MAX_DRIVES]}
 
 
-def _linked(rows: Sequence[tuple[Row, FindingLine]], shown: set[str]) -> list[tuple[Row, FindingLine]]:
-    """Return the rows, without links into drives that have no section."""
-    return [
-        (row, line if line.drive_id in shown else line._replace(anchor="", href="", drive_href=""))
-        for row, line in rows
-    ]
-
-
-def _rows_by_drive(rows: pa.Table, drives: set[str]) -> dict[str, list[dict[str, Any]]]:
-    grouped: dict[str, list[dict[str, Any]]] = {}
-    for row in rows.filter(pc.is_in(rows["drive_id"], value_set=pa.array(sorted(drives), pa.string()))).to_pylist():
-        grouped.setdefault(row["drive_id"], []).append(row)
-    return grouped
+def _rows_by_drive(rows: pa.Table, drives: set[str]) -> dict[str, list[Row]]:
+    mine = rows.filter(pc.is_in(rows["drive_id"], value_set=pa.array(sorted(drives), pa.string())))
+    return grouped(mine.to_pylist(), lambda row: row["drive_id"])
 
 
 def _filters(lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str, list[tuple[str, str]]]:
     """Return what can be chosen in the filters: value and label."""
     severities = {rule["severity"] for rule in rules.values()}
-    drives = sorted({line.drive_id for line in lines})
+    drives = sorted({line.row["drive_id"] for line in lines})
     return {
         "verdict": [(v, _NAMES.get(v, "near miss")) for v in ("fail", "near", "unknown", "pass", "error")],
         "severity": [(s, s) for s in counts.SEVERITIES if s in severities],
@@ -246,22 +237,13 @@ def _clock(row: Row) -> TimeAxis:
     return TimeAxis(row["t_start_ns"] or 0, max(row["duration_s"] or 0.0, 1e-3))
 
 
-def _drive_row(
-    row: Row, told: Mapping[str, Mapping[str, int]], listed: Mapping[str, Any], shown: bool
-) -> dict[str, Any]:
-    verdicts = told.get(row["drive_id"], dict.fromkeys(counts.VERDICTS, 0))
-    near = sum(line.kind == "near" for _, line in listed.get(row["drive_id"], []))
-    return {
-        **row,
-        "href": "#" + drive_anchor(row["drive_id"]) if shown else "",
-        "verdicts": verdicts,
-        "near": near,
-        "warnings": sum(check["severity"] != "info" for check in row["quality"]),
-    }
-
-
 def _section(
-    row: Row, tracks: Sequence[Timeline], seen: Sequence[Incident], involved: Sequence[InvolvedActor], *, unfolded: bool
+    row: Row,
+    tracks: Sequence[Timeline],
+    seen: Sequence[Incident],
+    involved: Sequence[dict[str, Any]],
+    *,
+    unfolded: bool,
 ) -> dict[str, Any]:
     """Return a drive with its egos: the timeline, the moments and the parties of each."""
     weight = {"error": 0, "warning": 1, "info": 2}
@@ -269,15 +251,16 @@ def _section(
     without = sorted({m.ego_id for m in seen} - {t.ego_id for t in tracks})
     tracks = [*tracks, *(empty_timeline(ego_id) for ego_id in without)]
     egos = [{"timeline": t, "moments": [m for m in seen if m.ego_id == t.ego_id]} for t in tracks]
-    missing: dict[str, list[str]] = {}
-    for gap in row["not_judged"]:
-        missing.setdefault(gap["reason"], []).append(gap["ego_id"])
+    missing = grouped(row["not_judged"], lambda gap: gap["reason"])
     return {
         **row,
         "anchor": drive_anchor(row["drive_id"]),
         "folded": folded,
         "parties": involved,
-        "missing": [{"reason": why, "n": len(who), "egos": ", ".join(who)} for why, who in missing.items()],
+        "missing": [
+            {"reason": why, "n": len(gaps), "egos": ", ".join(gap["ego_id"] for gap in gaps)}
+            for why, gaps in missing.items()
+        ],
         "egos": sorted(egos, key=lambda ego: (-len(ego["moments"]), ego["timeline"].ego_id)) if len(egos) > 1 else egos,
         "moments": seen,
         "unfolded": unfolded,
@@ -294,7 +277,7 @@ def _rules(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any]]:
         {
             **rule,
             "anchor": rule_anchor(rule_id),
-            "verdicts": told.get(rule_id, dict.fromkeys(counts.VERDICTS, 0)),
+            "verdicts": told[rule_id],
             "worst": number(margins.get(rule_id), rule["unit"]),
         }
         for rule_id, rule in rules.items()
@@ -303,40 +286,38 @@ def _rules(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any]]:
 
 def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any]]:
     """Return the rules by pack: those that were judged somewhere, then the others in one fold per reason."""
-    told = {rule["rule_id"]: rule for rule in _rules(result, rules)}
     why = _first_reason(result.verdicts)
-    groups: dict[str, dict[str, Any]] = {}
-    for rule_id, rule in told.items():
-        group = groups.setdefault(
-            rule["pack"], {"pack": rule["pack"], "about": rule["pack_title"], "rules": [], "folds": {}}
-        )
-        if (reason := why.get(rule_id)) is None:
-            group["rules"].append(rule)
-        else:
-            group["folds"].setdefault((reason[0], reason[1].kind), []).append((reason[1], rule))
     order = ("not_applicable", "unknown")
-    for group in groups.values():
-        folds = sorted(group["folds"].items(), key=lambda item: (order.index(item[0][0]), -len(item[1]), item[0][1]))
-        group["folds"] = [
-            ((verdict, summarise_reasons(reason for reason, _ in folded)), [rule for _, rule in folded])
-            for (verdict, _), folded in folds
-        ]
-    return list(groups.values())
+    groups = []
+    for pack, mine in grouped(_rules(result, rules), lambda rule: rule["pack"]).items():
+        idle = [(*why[rule["rule_id"]], rule) for rule in mine if rule["rule_id"] in why]
+        folds = grouped(idle, lambda item: (item[0], item[1].kind))
+        weightiest = sorted(folds.items(), key=lambda item: (order.index(item[0][0]), -len(item[1]), item[0][1]))
+        groups.append(
+            {
+                "pack": pack,
+                "about": mine[0]["pack_title"],
+                "rules": [rule for rule in mine if rule["rule_id"] not in why],
+                "folds": [
+                    ((verdict, summarise_reasons(reason for _, reason, _ in folded)), [rule for *_, rule in folded])
+                    for (verdict, _), folded in weightiest
+                ],
+            }
+        )
+    return groups
 
 
 def _first_reason(verdicts: pa.Table) -> dict[str, tuple[str, VerdictReason]]:
     """Return verdict and reason of the rules that were judged nowhere, for want of an occasion or of something to be provided."""
-    keys = ["rule_id", "verdict", "reason_code", "cause_code", "reason"]
-    rows = verdicts.group_by(keys, use_threads=False).aggregate([([], "count_all")]).to_pylist()
-    found: dict[str, tuple[str, VerdictReason]] = {}
-    judged = set()
-    for row in sorted(
-        rows, key=lambda r: (r["rule_id"], r["verdict"] == "not_applicable", -r["count_all"], r["reason"])
-    ):
-        idle = row["verdict"] == "not_applicable" or (
-            row["verdict"] == "unknown" and can_be_provided(row["reason_code"])
-        )
-        if not idle:
-            judged.add(row["rule_id"])
-        found.setdefault(row["rule_id"], (row["verdict"], verdict_reason(row)))
-    return {rule_id: reason for rule_id, reason in found.items() if rule_id not in judged}
+    rows = counts.distinct_rows(verdicts, ["rule_id", "verdict", "reason_code", "cause_code", "reason"])
+    rows.sort(key=lambda r: (r["rule_id"], r["verdict"] == "not_applicable", -r["count_all"], r["reason"]))
+    return {
+        rule_id: (told[0]["verdict"], verdict_reason(told[0]))
+        for rule_id, told in grouped(rows, lambda row: row["rule_id"]).items()
+        if all(_is_idle(row) for row in told)
+    }
+
+
+def _is_idle(row: Row) -> bool:
+    unprovided = row["verdict"] == "unknown" and can_be_provided(row["reason_code"])
+    return row["verdict"] == "not_applicable" or unprovided

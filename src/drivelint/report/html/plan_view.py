@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import shapely
@@ -17,9 +17,10 @@ from drivelint.report.html.road import UNITS_PER_M
 from drivelint.report.html.svg import num, polygon, polyline
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Sequence
 
     from drivelint.report.html.road import Lanes, Points, Road
+    from drivelint.result.text import Row
 
 WIDTH: Final = 600
 _HEIGHT: Final = (190.0, 330.0)
@@ -29,61 +30,6 @@ _DOT_M: Final = 0.8  # drawn size of an actor whose size is not known
 _BARS_M: Final = (1, 2, 5, 10, 20, 50, 100)
 _BESIDE: Final = 0.5  # who is up to half a view away may come into it when the scene is replayed
 _TOUCH_M: Final = 0.005  # boxes nearer than this are not apart
-
-
-class Label(NamedTuple):
-    """A label at a point; `actor`: whose name it is."""
-
-    x: str
-    y: str
-    text: str
-    kind: str
-    actor: str = ""
-
-
-class ActorShape(NamedTuple):
-    """A box of one size and the chevron on it, in its own frame; drawn once in the page."""
-
-    name: str
-    box: str
-    front: str
-
-
-class DrawnActor(NamedTuple):
-    """An actor: its shape and where it is; its way before and after the moment, and where it was at full seconds from it."""
-
-    kind: str
-    actor: str
-    shape: str
-    place: str
-    before: str
-    after: str
-    seconds: str
-
-
-class Line(NamedTuple):
-    """A straight line."""
-
-    x1: str
-    y1: str
-    x2: str
-    y2: str
-
-
-@dataclass(frozen=True)
-class PlanView:
-    """The plan view of an incident as the template draws it, in drawing order, with a description in words."""
-
-    height: str
-    matrix: str
-    tiles: list[str]
-    spaces: list[tuple[str, str]]
-    bodies: list[DrawnActor]
-    gaps: list[Line]
-    texts: list[Label]
-    scale_px: str
-    scale_m: int
-    words: str
 
 
 @dataclass(frozen=True)
@@ -101,9 +47,12 @@ class _View:
 
     def __call__(self, xy: Points, /) -> Points:
         """Return viewBox coordinates, shape (n, 2), of map points of the same shape."""
-        dx, dy = xy[:, 0] - self.x, xy[:, 1] - self.y
+        return np.column_stack(self._at(*xy.T))
+
+    def _at(self, x: Any, y: Any) -> tuple[Any, Any]:
+        dx, dy = x - self.x, y - self.y
         u, v = dx * self.cos + dy * self.sin - self.ahead, dy * self.cos - dx * self.sin - self.left
-        return np.column_stack([WIDTH / 2 + self.scale * u, self.height / 2 - self.scale * v])
+        return WIDTH / 2 + self.scale * u, self.height / 2 - self.scale * v
 
     def matrix(self, lanes: Lanes) -> str:
         """Return the transformation of drawn units of the map."""
@@ -112,19 +61,15 @@ class _View:
         turn = f"{k * self.cos:.5f},{k * self.sin:.5f},{k * self.sin:.5f},{-k * self.cos:.5f}"
         return f"matrix({turn},{num(e)},{num(f)})"
 
-    def holds(self, actor: Mapping[str, Any], room: float = 0.0) -> bool:
+    def holds(self, actor: Row, room: float = 0.0) -> bool:
         """Whether the middle of an actor is in the view, or no more than `room` of its width beside it."""
-        dx, dy = actor["x_m"] - self.x, actor["y_m"] - self.y
-        x = WIDTH / 2 + self.scale * (dx * self.cos + dy * self.sin - self.ahead)
-        y = self.height / 2 - self.scale * (dy * self.cos - dx * self.sin - self.left)
+        x, y = self._at(actor["x_m"], actor["y_m"])
         beside = room * WIDTH
         return bool(-beside < x < WIDTH + beside and -beside < y < self.height + beside)
 
 
-def plan_view(
-    scene: Mapping[str, Any], road: Road, concerned: Collection[str], spaces: Sequence[Mapping[str, Any]]
-) -> PlanView:
-    """Return the plan view of a row of the table `scene`.
+def plan_view(scene: Row, road: Road, concerned: Collection[str], spaces: Sequence[Row]) -> dict[str, Any]:
+    """Return the plan view of a row of the table `scene` as the template draws it, in drawing order, with a description in words.
 
     `concerned`: the objects that the findings are about; `spaces`: rows of `danger_space` at the moment, to be shown.
     """
@@ -139,26 +84,26 @@ def plan_view(
     view = _fit(ego, heading, np.concatenate(shown))
     texts, gaps, told = _distances(ego, met, view)
     texts += [_label(a, ego, met, view) for a in actors if view.holds(a)]
-    length_px, length_m = _bar(view.scale)
-    return PlanView(
-        height=num(view.height),
-        matrix=view.matrix(lanes),
-        tiles=lanes.tile_names(scene["lanelets"]),
-        spaces=[(_kind(who, ego, concerned), polygon(np.rint(lanes.to_units(ring)))) for who, ring in rings],
-        bodies=[
+    bar_m = next((m for m in _BARS_M if m * view.scale >= 55), _BARS_M[-1])
+    return {
+        "height": num(view.height),
+        "matrix": view.matrix(lanes),
+        "tiles": lanes.tile_names(scene["lanelets"]),
+        "spaces": [(_kind(who, ego, concerned), polygon(np.rint(lanes.to_units(ring)))) for who, ring in rings],
+        "bodies": [
             _body(a, _kind(a["actor_id"], ego, concerned), lanes, scene["t_ns"])
             for a in sorted((*others, ego), key=_area, reverse=True)  # whoever is under a larger one is still seen
             if a is ego or a in met or view.holds(a, _BESIDE)
         ],
-        gaps=gaps,
-        texts=texts,
-        scale_px=num(length_px),
-        scale_m=length_m,
-        words=_words(ego, met, told, around),
-    )
+        "gaps": gaps,
+        "texts": texts,
+        "scale_px": num(bar_m * view.scale),
+        "scale_m": bar_m,
+        "words": _words(ego, met, told, around),
+    }
 
 
-def _fit(ego: Mapping[str, Any], yaw: float, shown: Points) -> _View:
+def _fit(ego: Row, yaw: float, shown: Points) -> _View:
     """Return the view, this heading to the right, that shows these map points with some road around them."""
     raw = _View(ego["x_m"], ego["y_m"], math.cos(yaw), math.sin(yaw), 0.0, 0.0, 1.0, 0.0)
     flat = raw(shown)
@@ -172,22 +117,21 @@ def _fit(ego: Mapping[str, Any], yaw: float, shown: Points) -> _View:
     )
 
 
-def _size(actor: Mapping[str, Any]) -> tuple[float, float]:
+def _size(actor: Row) -> tuple[float, float]:
     return actor["length_m"] or _DOT_M, actor["width_m"] or _DOT_M
 
 
-def _area(actor: Mapping[str, Any]) -> float:
-    length, width = _size(actor)
-    return length * width
+def _area(actor: Row) -> float:
+    return math.prod(_size(actor))
 
 
-def _outline(actor: Mapping[str, Any]) -> Points:
+def _outline(actor: Row) -> Points:
     """Return the corners of a box in its own frame in metres, front left first, counter-clockwise; shape (4, 2)."""
     hl, hw = (side / 2 for side in _size(actor))
     return np.array([(hl, hw), (-hl, hw), (-hl, -hw), (hl, -hw)])
 
 
-def _corners(actor: Mapping[str, Any]) -> Points:
+def _corners(actor: Row) -> Points:
     """Return the corners of a box in map metres; shape (4, 2)."""
     yaw = actor["yaw_rad"] or 0.0
     c, s = math.cos(yaw), math.sin(yaw)
@@ -195,39 +139,51 @@ def _corners(actor: Mapping[str, Any]) -> Points:
     return corners
 
 
-def _kind(actor_id: str, ego: Mapping[str, Any], concerned: Collection[str]) -> str:
+def _kind(actor_id: str, ego: Row, concerned: Collection[str]) -> str:
     return "ego" if actor_id == ego["actor_id"] else "met" if actor_id in concerned else "other"
 
 
-def actor_shapes(scenes: Iterable[Mapping[str, Any]]) -> list[ActorShape]:
-    """Return the shapes of all actors of these scenes, each once."""
+def actor_shapes(scenes: Iterable[Row]) -> list[dict[str, str]]:
+    """Return the shapes of all actors of these scenes, each once: a box and the chevron on it, in its own frame."""
     actors = {_shape_name(actor): actor for scene in scenes for actor in scene["actors"]}
     return [_shape(name, actor) for name, actor in sorted(actors.items())]
 
 
-def _shape(name: str, actor: Mapping[str, Any]) -> ActorShape:
-    """Return the shape of an actor; without a heading it has no front."""
+def _has_front(actor: Row) -> bool:
+    return actor["yaw_rad"] is not None and actor["length_m"] is not None
+
+
+def _shape(name: str, actor: Row) -> dict[str, str]:
+    hl, hw = (UNITS_PER_M * side / 2 for side in _size(actor))
+    front = np.array([(0.5 * hl, 0.8 * hw), (0.82 * hl, 0.0), (0.5 * hl, -0.8 * hw)])
+    return {
+        "name": name,
+        "box": polygon(UNITS_PER_M * _outline(actor)),
+        "front": polyline(front) if _has_front(actor) else "",
+    }
+
+
+def _shape_name(actor: Row) -> str:
     length, width = _size(actor)
-    turned = actor["yaw_rad"] is not None and actor["length_m"] is not None
-    hl, hw = UNITS_PER_M * length / 2, UNITS_PER_M * width / 2
-    front = polyline(np.array([(0.5 * hl, 0.8 * hw), (0.82 * hl, 0.0), (0.5 * hl, -0.8 * hw)])) if turned else ""
-    return ActorShape(name, polygon(UNITS_PER_M * _outline(actor)), front)
+    return f"b{length * 100:.0f}x{width * 100:.0f}{'' if _has_front(actor) else 'n'}"
 
 
-def _shape_name(actor: Mapping[str, Any]) -> str:
-    length, width = _size(actor)
-    turned = actor["yaw_rad"] is not None and actor["length_m"] is not None
-    return f"b{length * 100:.0f}x{width * 100:.0f}{'' if turned else 'n'}"
-
-
-def _body(actor: Mapping[str, Any], kind: str, lanes: Lanes, t_ns: int) -> DrawnActor:
+def _body(actor: Row, kind: str, lanes: Lanes, t_ns: int) -> dict[str, str]:
+    """Return where an actor is, its way before and after the moment, and where it was at full seconds from it."""
     before, after, seconds = _way(actor["path"] or [], lanes, t_ns) if kind != "other" else ("", "", "")
     x, y = ((actor[axis] - zero) * UNITS_PER_M for axis, zero in zip(("x_m", "y_m"), lanes.origin, strict=True))
-    place = f"translate({num(x)},{num(y)})rotate({math.degrees(actor['yaw_rad'] or 0.0):.1f})"
-    return DrawnActor(kind, actor["actor_id"], _shape_name(actor), place, before, after, seconds)
+    return {
+        "kind": kind,
+        "actor": actor["actor_id"],
+        "shape": _shape_name(actor),
+        "place": f"translate({num(x)},{num(y)})rotate({math.degrees(actor['yaw_rad'] or 0.0):.1f})",
+        "before": before,
+        "after": after,
+        "seconds": seconds,
+    }
 
 
-def _way(way: Sequence[Mapping[str, Any]], lanes: Lanes, t_ns: int) -> tuple[str, str, str]:
+def _way(way: Sequence[Row], lanes: Lanes, t_ns: int) -> tuple[str, str, str]:
     """Return the paths before and after a moment and of the points at full seconds from it; nothing for who stands."""
     xy = lanes.to_units(np.array([(p["x_m"], p["y_m"]) for p in way])) if way else np.empty((0, 2))
     if not len(xy) or np.ptp(xy, axis=0).sum() < UNITS_PER_M:
@@ -242,9 +198,7 @@ def _way(way: Sequence[Mapping[str, Any]], lanes: Lanes, t_ns: int) -> tuple[str
     return polyline(xy[t <= t_ns]), polyline(xy[t >= t_ns]), dots
 
 
-def _distances(
-    ego: Mapping[str, Any], met: Sequence[Mapping[str, Any]], view: _View
-) -> tuple[list[Label], list[Line], list[str]]:
+def _distances(ego: Row, met: Sequence[Row], view: _View) -> tuple[list[dict[str, str]], list[str], list[str]]:
     """Return labels, lines and words of the least distances from the ego's box to those concerned."""
     texts, lines, told = [], [], []
     for actor in met:
@@ -259,19 +213,18 @@ def _distances(
         p, q = view(nearest)
         middle = (p + q) / 2
         text = f"{far:.1f} m" if far >= 10 else f"{far:.2f} m"
+        lines.append(polyline(np.array([p, q])))
         if np.hypot(*(q - p)) > 60:
-            lines.append(Line(num(p[0]), num(p[1]), num(q[0]), num(q[1])))
-            texts.append(Label(num(middle[0]), num(middle[1] - 6), text, "gap"))
+            texts.append({"x": num(middle[0]), "y": num(middle[1] - 6), "text": text, "kind": "gap"})
         else:  # too short for a label on it: lead it out to the free side
             top = float(min(view(a)[:, 1].min(), view(b)[:, 1].min()))
             y = top - 26 if top > 44 else float(max(view(a)[:, 1].max(), view(b)[:, 1].max())) + 34
-            lines.append(Line(num(p[0]), num(p[1]), num(q[0]), num(q[1])))
-            lines.append(Line(num(middle[0]), num(middle[1]), num(middle[0]), num(y + (4 if y < middle[1] else -12))))
-            texts.append(Label(num(middle[0]), num(y), text, "gap"))
+            lines.append(polyline(np.array([middle, (middle[0], y + (4 if y < middle[1] else -12))])))
+            texts.append({"x": num(middle[0]), "y": num(y), "text": text, "kind": "gap"})
     return texts, lines, told
 
 
-def _label(actor: Mapping[str, Any], ego: Mapping[str, Any], met: Sequence[Mapping[str, Any]], view: _View) -> Label:
+def _label(actor: Row, ego: Row, met: Sequence[Row], view: _View) -> dict[str, str]:
     """Return an actor's name, on the side of its box that faces away from whom it met."""
     box = view(_corners(actor))
     middle = box.mean(axis=0)
@@ -279,37 +232,28 @@ def _label(actor: Mapping[str, Any], ego: Mapping[str, Any], met: Sequence[Mappi
     lower = middle[1] - view(_corners(partner)).mean(axis=0)[1]
     below = actor is not partner and (lower > 1 or (abs(lower) <= 1 and actor is not ego))
     y = box[:, 1].max() + 14 if below else box[:, 1].min() - 6
-    name, kind = (
-        (f"ego {actor['actor_id']}", "ego") if actor is ego else (actor["actor_id"], "met" if actor in met else "other")
-    )
-    x = min(max(float(middle[0]), 22.0), WIDTH - 22.0)
-    return Label(num(x), num(min(max(float(y), 12.0), view.height - 4.0)), name, kind, actor["actor_id"])
-
-
-def _bar(scale: float) -> tuple[float, int]:
-    """Return length in units and in metres of the scale bar."""
-    metres = next((m for m in _BARS_M if m * scale >= 55), _BARS_M[-1])
-    return metres * scale, metres
+    return {
+        "x": num(min(max(float(middle[0]), 22.0), WIDTH - 22.0)),
+        "y": num(min(max(float(y), 12.0), view.height - 4.0)),
+        "text": f"ego {actor['actor_id']}" if actor is ego else actor["actor_id"],
+        "kind": "ego" if actor is ego else "met" if actor in met else "other",
+        "actor": actor["actor_id"],
+    }
 
 
 def _words(
-    ego: Mapping[str, Any],
-    met: Sequence[Mapping[str, Any]],
+    ego: Row,
+    met: Sequence[Row],
     told: Sequence[str],
-    spaces: Sequence[Mapping[str, Any]],
+    spaces: Sequence[Row],
 ) -> str:
     """Return the picture in words."""
-    speeds = [f"ego {ego['actor_id']} at {_speed(ego)}"] + [f"{a['actor_id']} at {_speed(a)}" for a in met]
-    parts = [", ".join(speeds)]
-    parts += told
-    if spaces:
-        lengths = ", ".join(
-            f"{'ego' if s['actor_id'] == ego['actor_id'] else s['actor_id']} {s['length_m']:.1f} m" for s in spaces
-        )
-        parts.append(f"danger spaces: {lengths}")
-    return "; ".join(parts)
+    speeds = [f"ego {ego['actor_id']} at {_speed(ego)}", *(f"{a['actor_id']} at {_speed(a)}" for a in met)]
+    names = {ego["actor_id"]: "ego"}
+    lengths = [f"{names.get(s['actor_id'], s['actor_id'])} {s['length_m']:.1f} m" for s in spaces]
+    return "; ".join([", ".join(speeds), *told, *([f"danger spaces: {', '.join(lengths)}"] if lengths else [])])
 
 
-def _speed(actor: Mapping[str, Any]) -> str:
+def _speed(actor: Row) -> str:
     v = actor["speed_mps"]
     return "unknown speed" if v is None else f"{v:.1f} m/s"

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-import pyarrow as pa
-import pyarrow.compute as pc
-
 from drivelint.phrases import plural
 from drivelint.report.html.anchors import rule_anchor
+from drivelint.result import counts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    import pyarrow as pa
+
+    from drivelint.result.text import Row
+
 MAX_REASONS: Final = 60
+_OF_THE_MOMENT: Final = {"missing_step", "applies_unknown", "anchor_unknown", "reference_time_unknown"}
 
 
 class VerdictReason(NamedTuple):
@@ -23,18 +26,7 @@ class VerdictReason(NamedTuple):
     text: str
 
 
-class ReasonGroup(NamedTuple):
-    """Alike reasons as one row: the reason in words, its rules with links, and the numbers of verdicts and drives."""
-
-    verdict: str
-    why: str
-    provide: bool
-    rules: list[tuple[str, str]]
-    n: int
-    n_drives: int
-
-
-def verdict_reason(row: Mapping[str, Any]) -> VerdictReason:
+def verdict_reason(row: Row) -> VerdictReason:
     """Return the reason of a verdict; a text that a rule writes itself is a kind of its own."""
     text = row["reason"] if row["cause_code"] == "text" else ""
     return VerdictReason((row["reason_code"], row["cause_code"] or "", text), row["reason"])
@@ -55,36 +47,25 @@ def summarise_reasons(reasons_given: Iterable[VerdictReason]) -> str:
 
 def can_be_provided(code: str) -> bool:
     """Whether a log, a map or an option could tell what was missing: a signal, or a condition of the drive."""
-    return (code.startswith("missing_") and code != "missing_step") or (
-        code.endswith("_unknown") and code not in _OF_THE_MOMENT
-    )
+    return code not in _OF_THE_MOMENT and (code.startswith("missing_") or code.endswith("_unknown"))
 
 
-_OF_THE_MOMENT: Final = {"applies_unknown", "anchor_unknown", "reference_time_unknown"}
-
-
-def reason_groups(verdicts: pa.Table, titles: Mapping[str, str]) -> list[ReasonGroup]:
-    """Return why verdicts are unknown or errors; what can be provided first, then the most frequent."""
-    rows = verdicts.filter(pc.is_in(verdicts["verdict"], value_set=pa.array(["unknown", "error"])))
+def reason_groups(verdicts: pa.Table, titles: Mapping[str, str]) -> list[dict[str, Any]]:
+    """Return why verdicts are unknown or errors, alike reasons as one row: what can be provided first, then the most frequent."""
     keys = ["verdict", "reason_code", "cause_code", "reason", "rule_id", "drive_id"]
-    counted = rows.group_by(keys, use_threads=False).aggregate([([], "count_all")]).to_pylist()
-    grouped: dict[tuple[str, tuple[str, ...]], list[dict[str, Any]]] = {}
-    for row in counted:
-        grouped.setdefault((row["verdict"], verdict_reason(row).kind), []).append(row)
+    rows = counts.distinct_rows(counts.undecided(verdicts), keys)
+    groups = counts.grouped(rows, lambda row: (row["verdict"], verdict_reason(row).kind))
     found = [
-        ReasonGroup(
-            verdict,
-            summarise_reasons(verdict_reason(row) for row in told),
-            can_be_provided(told[0]["reason_code"]),
-            rule_links({row["rule_id"] for row in told}, titles),
-            sum(row["count_all"] for row in told),
-            len({row["drive_id"] for row in told}),
-        )
-        for (verdict, _), told in grouped.items()
+        {
+            "verdict": verdict,
+            "why": summarise_reasons(verdict_reason(row) for row in told),
+            "provide": can_be_provided(told[0]["reason_code"]),
+            "rules": [
+                (titles.get(rule, rule), "#" + rule_anchor(rule)) for rule in sorted({row["rule_id"] for row in told})
+            ],
+            "n": sum(row["count_all"] for row in told),
+            "n_drives": len({row["drive_id"] for row in told}),
+        }
+        for (verdict, _), told in groups.items()
     ]
-    return sorted(found, key=lambda r: (r.verdict, not r.provide, -r.n, r.why))[:MAX_REASONS]
-
-
-def rule_links(rules: Iterable[str], titles: Mapping[str, str]) -> list[tuple[str, str]]:
-    """Return titles of rules with links to them."""
-    return [(titles.get(rule, rule), "#" + rule_anchor(rule)) for rule in sorted(rules)]
+    return sorted(found, key=lambda r: (r["verdict"], not r["provide"], -r["n"], r["why"]))[:MAX_REASONS]

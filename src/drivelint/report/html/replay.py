@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any, Final
+from collections import defaultdict
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from markupsafe import Markup
 
 from drivelint.report.html.svg import polygon
+from drivelint.result.counts import grouped
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from drivelint.report.html.road import Road
+    from drivelint.result.text import Row
 
-    Row = Mapping[str, Any]
     Key = tuple[str, str, int]
 
 MAX_POINTS: Final = 60_000
@@ -37,12 +39,9 @@ def replays(
     `a`: actor -> times, x, y (cm from the map's origin), heading (centirad), each as its first value and what is added;
     `s`: ego -> time -> actor -> path of its danger space in the map's drawn units.
     """
-    drives: dict[str, list[Row]] = {}
-    for scene in scenes:
-        drives.setdefault(scene["drive_id"], []).append(scene)
     told: dict[str, Markup] = {}
     n = 0
-    for drive_id, rows in drives.items():
+    for drive_id, rows in grouped(scenes, lambda scene: scene["drive_id"]).items():
         start = starts.get(drive_id) or 0
         lanes = road.lanes_of(rows[0]["environment_id"])
         tracks = _tracks(rows)
@@ -64,12 +63,9 @@ def replays(
 
 
 def _tracks(scenes: Sequence[Row]) -> dict[str, dict[int, tuple[float, float, float]]]:
-    tracks: dict[str, dict[int, tuple[float, float, float]]] = {}
-    for scene in scenes:
-        for actor in scene["actors"]:
-            track = tracks.setdefault(actor["actor_id"], {})
-            for p in actor["path"] or []:
-                track[p["t_ns"]] = p["x_m"], p["y_m"], p["yaw_rad"] or 0.0
+    tracks: dict[str, dict[int, tuple[float, float, float]]] = defaultdict(dict)
+    for actor in (actor for scene in scenes for actor in scene["actors"]):
+        tracks[actor["actor_id"]] |= {p["t_ns"]: (p["x_m"], p["y_m"], p["yaw_rad"] or 0.0) for p in actor["path"] or []}
     return tracks
 
 

@@ -6,17 +6,20 @@ Drawn lengths are decimetres from an origin of the map, y up: a scene turns and 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from drivelint.report.html.svg import polygon, polyline
+from drivelint.result.counts import grouped
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
     import pyarrow as pa
     from numpy.typing import NDArray
+
+    from drivelint.result.text import Row
 
     Points = NDArray[np.float64]
     """Shape (n, 2)."""
@@ -29,41 +32,31 @@ _SLANT_RAD: Final = math.radians(50)  # and it runs along it if the ego does not
 _TILE_M: Final = 200.0  # lanes that begin in one square are drawn together
 
 
-class Tile(NamedTuple):
-    """The drawn lanes of one square of the map as SVG path data."""
-
-    name: str
-    road: str
-    beside: str
-    marks: list[tuple[str, str]]
-    arrows: str
-
-
 class Road:
     """All lane shapes of a result."""
 
     def __init__(self, lanes: pa.Table) -> None:
-        maps: dict[str, list[dict[str, Any]]] = {}
-        for row in lanes.to_pylist():
+        rows = lanes.to_pylist()
+        for row in rows:
             for side in ("left", "right"):
                 row[side] = np.column_stack([row[f"{side}_x_m"], row[f"{side}_y_m"]])
-            maps.setdefault(row["environment_id"], []).append(row)
+        maps = grouped(rows, lambda row: row["environment_id"])
         self._maps = {name: Lanes(f"m{n}", rows) for n, (name, rows) in enumerate(sorted(maps.items()))}
         self._none = Lanes("m", [])
 
     def lanes_of(self, environment_id: str | None) -> Lanes:
         """Return the lanes of a map; none without a map."""
-        return self._maps.get(environment_id, self._none) if environment_id is not None else self._none
+        return self._maps.get(environment_id or "", self._none)
 
-    def tiles(self) -> list[Tile]:
-        """Return the tiles of all maps, each of which the page draws once."""
+    def tiles(self) -> list[dict[str, Any]]:
+        """Return the tiles of all maps, each of which the page draws once: the lanes of a square as SVG path data."""
         return [tile for lanes in self._maps.values() for tile in lanes.tiles()]
 
 
 class Lanes:
     """The lanes of one map."""
 
-    def __init__(self, name: str, lanes: Sequence[Mapping[str, Any]]) -> None:
+    def __init__(self, name: str, lanes: Sequence[Row]) -> None:
         self._name, self._lanes = name, lanes
         points = np.concatenate([lane["left"] for lane in lanes]) if lanes else None
         self.origin = (0.0, 0.0) if points is None else tuple(float(v) for v in np.round(points.mean(axis=0)))
@@ -97,23 +90,23 @@ class Lanes:
         fits = (away < _ON_ROAD_M) & (np.abs(turn) < _SLANT_RAD)
         return yaw_rad + float(turn[np.where(fits, away, np.inf).argmin()]) if fits.any() else yaw_rad
 
-    def tiles(self) -> Iterator[Tile]:
+    def tiles(self) -> Iterator[dict[str, Any]]:
         """Yield the drawing of the lanes, tile by tile."""
         marks = self._markings()
         for name in sorted(set(self._tile.values())):
             lanes = [lane for lane in self._lanes if self._tile[lane["lanelet_id"]] == name]
-            yield Tile(
-                name,
-                road=self._areas(lanes, drivable=True),
-                beside=self._areas(lanes, drivable=False),
-                marks=[
+            yield {
+                "name": name,
+                "road": self._areas(lanes, drivable=True),
+                "beside": self._areas(lanes, drivable=False),
+                "marks": [
                     (kind, "".join(line for tile, what, line in marks if (tile, what) == (name, kind)))
                     for kind in sorted({what for tile, what, _ in marks if tile == name})
                 ],
-                arrows="".join(arrow for lane in lanes for arrow in self._arrows(lane)),
-            )
+                "arrows": "".join(arrow for lane in lanes for arrow in self._arrows(lane)),
+            }
 
-    def _areas(self, lanes: Sequence[Mapping[str, Any]], *, drivable: bool) -> str:
+    def _areas(self, lanes: Sequence[Row], *, drivable: bool) -> str:
         rings = [np.concatenate([lane["left"], lane["right"][::-1]]) for lane in lanes if lane["drivable"] is drivable]
         # all the same way round: where lanes overlap they fill, and do not cut each other out
         return "".join(polygon(np.rint(self.to_units(ring if _area(ring) > 0 else ring[::-1]))) for ring in rings)
@@ -133,7 +126,7 @@ class Lanes:
                     marks.append((self._tile[lane["lanelet_id"]], kind, polyline(np.rint(self.to_units(line)))))
         return marks
 
-    def _arrows(self, lane: Mapping[str, Any]) -> Iterator[str]:
+    def _arrows(self, lane: Row) -> Iterator[str]:
         """Yield small chevrons in the middle of a lane that is driven on, in the direction of travel."""
         if not lane["drivable"] or lane["in_junction"]:
             return
@@ -147,7 +140,7 @@ class Lanes:
             v = np.array([-u[1], u[0]])
             yield polyline(np.rint(np.array([at - 8 * u + 6 * v, at, at - 8 * u - 6 * v])))
 
-    def _tile_of(self, lane: Mapping[str, Any]) -> str:
+    def _tile_of(self, lane: Row) -> str:
         x, y = (int((lane["left"][0][i] - self.origin[i]) // _TILE_M) for i in (0, 1))
         return f"{self._name}t{x}_{y}".replace("-", "n")
 

@@ -1,10 +1,13 @@
-"""Numbers and paths as SVG writes them, as short as they can be."""
+"""Numbers and paths as SVG writes them, as short as they can be, and axes: round numbers and where they lie."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -25,3 +28,44 @@ def polyline(points: NDArray[np.float64]) -> str:
 def polygon(points: NDArray[np.float64]) -> str:
     """Return the path data of a closed ring through points of shape (n, 2)."""
     return polyline(points) + "Z"
+
+
+def percent(value: float) -> str:
+    """Return a share with at most two decimals."""
+    return f"{value:.2f}".rstrip("0").rstrip(".") + "%"
+
+
+class Axis(NamedTuple):
+    """Values from `low` to `high` laid from `start` to `end` in drawn units; a value without extent is in the middle."""
+
+    low: float
+    high: float
+    start: float
+    end: float
+
+    def at(self, value: float) -> float:
+        """Return where a value lies."""
+        if self.high == self.low:
+            return (self.start + self.end) / 2
+        return self.start + (value - self.low) / (self.high - self.low) * (self.end - self.start)
+
+    def ticks(self, most: int) -> list[tuple[str, str]]:
+        """Return places and labels of at most about `most` round values."""
+        step = round_step((self.high - self.low) / most) if self.high > self.low else 1.0
+        first, last = math.ceil(self.low / step - 1e-9), math.floor(self.high / step + 1e-9)
+        digits = max(0, -math.floor(math.log10(step) + 1e-9))
+        return [(num(self.at(k * step)), f"{k * step:.{digits}f}") for k in range(first, last + 1)]
+
+
+def axis_around(values: Iterable[float], start: float, end: float, room: float = 0.06) -> Axis:
+    """Return the axis that shows these values with some room on both sides."""
+    found = list(values)
+    low, high = min(found), max(found)
+    pad = (high - low) * room or max(abs(high) * 0.1, 0.5)
+    return Axis(low - pad, high + pad, start, end)
+
+
+def round_step(value: float) -> float:
+    """Return the least 1, 2 or 5 times a power of ten that is not less."""
+    power = 10.0 ** math.floor(math.log10(value)) if value > 0 else 1.0
+    return next(k * power for k in (1, 2, 5, 10) if k * power >= value * (1 - 1e-9))

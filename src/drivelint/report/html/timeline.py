@@ -5,18 +5,18 @@ Places along the time axis are percentages, so that the drawing fits any width w
 
 from __future__ import annotations
 
-import hashlib
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
-from drivelint.report.html.anchors import finding_anchor, rule_anchor
-from drivelint.report.html.reasons import VerdictReason, can_be_provided, rule_links, summarise_reasons, verdict_reason
-from drivelint.result.counts import SEVERITIES
+from drivelint.report.html.anchors import finding_anchor, grid_name, rule_anchor
+from drivelint.report.html.reasons import VerdictReason, can_be_provided, summarise_reasons, verdict_reason
+from drivelint.report.html.svg import percent
+from drivelint.result.counts import SEVERITIES, grouped
 from drivelint.result.text import number, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
-    Row = Mapping[str, Any]
+    from drivelint.result.text import Row
 
 _ORDER: Final = ("fail", "error", "unknown", "pass", "not_applicable")
 _LAYERS: Final = ("pass", "unknown", "error", "fail")  # what matters most is drawn last
@@ -25,27 +25,11 @@ _MOST_TICKS: Final = 9
 _THIN: Final = 0.35  # percent: a shorter stretch is drawn as a mark
 
 
-class Band(NamedTuple):
-    """A judged stretch, or a moment (`w` empty)."""
-
-    verdict: str
-    x: str
-    w: str
-    title: str
-
-
-class Mark(NamedTuple):
-    """A finding (with its anchor) or a near miss on a row."""
-
-    kind: str
-    x: str
-    w: str
-    href: str
-    title: str
-
-
 class TimelineRow(NamedTuple):
-    """One row of a timeline: a rule and profile, its worst verdict, and what is drawn."""
+    """One row of a timeline: a rule and profile, its worst verdict, and what is drawn.
+
+    `bands`: judged stretches, or moments (`w` empty); `marks`: findings, with their anchors, and near misses.
+    """
 
     rule_id: str
     href: str
@@ -53,8 +37,8 @@ class TimelineRow(NamedTuple):
     profile: str | None
     verdict: str
     keys: str
-    bands: list[Band]
-    marks: list[Mark]
+    bands: list[dict[str, str]]
+    marks: list[dict[str, str]]
 
 
 class FoldedRules(NamedTuple):
@@ -105,7 +89,7 @@ class TimeAxis(NamedTuple):
     def ticks(self) -> list[tuple[str, str]]:
         """Return positions and labels of the axis."""
         step = self.tick_step_s()
-        return [(_pc(100 * t / self.duration_s), str(t)) for t in range(0, int(self.duration_s) + 1, step)]
+        return [(percent(100 * t / self.duration_s), str(t)) for t in range(0, int(self.duration_s) + 1, step)]
 
 
 def timelines(
@@ -119,59 +103,50 @@ def timelines(
 
     `anchors`: the findings that are on the page, to link to, and what each is found by besides ('' for nothing).
     """
-    groups: dict[str, dict[tuple[str, str | None], list[Row]]] = {}
-    for row in verdicts:
-        groups.setdefault(row["ego_id"], {}).setdefault((row["rule_id"], row["profile"]), []).append(row)
-    found: dict[tuple[str, str, str | None], list[Row]] = {}
-    for row in findings:
-        found.setdefault((row["ego_id"], row["rule_id"], row["profile"]), []).append(row)
-    drawn = []
-    for ego, told in groups.items():
-        mine = {k[1:]: v for k, v in found.items() if k[0] == ego}
-        drive_id = next(iter(told.values()))[0]["drive_id"]
-        drawn.append(_timeline(_grid(drive_id, ego), ego, told, mine, rules=rules, anchors=anchors, clock=clock))
-    return drawn
+    found = grouped(findings, lambda row: row["ego_id"])
+    return [
+        _timeline(told, found.get(ego, []), rules, anchors, clock)
+        for ego, told in grouped(verdicts, lambda row: row["ego_id"]).items()
+    ]
+
+
+def _rule_and_profile(row: Row) -> tuple[str, str | None]:
+    return row["rule_id"], row["profile"]
 
 
 def _timeline(
-    grid: str,
-    ego: str,
-    groups: Mapping[tuple[str, str | None], list[Row]],
-    found: Mapping[tuple[str, str | None], list[Row]],
-    *,
+    verdicts: Sequence[Row],
+    findings: Sequence[Row],
     rules: Mapping[str, Row],
     anchors: Mapping[str, str],
     clock: TimeAxis,
 ) -> Timeline:
+    """Return the timeline of one ego."""
+    ego, found = verdicts[0]["ego_id"], grouped(findings, _rule_and_profile)
     rows: list[TimelineRow] = []
-    folded: dict[tuple[str, tuple[str, ...]], dict[str, set[VerdictReason]]] = {}
-    for key, told in groups.items():
+    folded: dict[tuple[str, tuple[str, ...]], dict[tuple[str, str], set[VerdictReason]]] = {}
+    for key, told in grouped(verdicts, _rule_and_profile).items():
         rule_id, profile = key
+        rule, href = rules[rule_id], f"#{rule_anchor(rule_id)}"
         worst = min((row["verdict"] for row in told), key=_ORDER.index)
         if worst == "not_applicable" or all(_is_missing(row) for row in told):
             reason = verdict_reason(told[0])
-            folded.setdefault((worst, reason.kind), {}).setdefault(rule_id, set()).add(reason)
+            folded.setdefault((worst, reason.kind), {}).setdefault((rule["title"], href), set()).add(reason)
             continue
         marks = [_finding(row, anchors, clock) for row in found.get(key, [])]
         near = [_near(row, clock) for row in told if row["near_miss"]]
-        rule = rules[rule_id]
         stands = sorted({anchors.get(finding_anchor(row), "") for row in found.get(key, [])})
         keys = " ".join((worst, "near" if near else "", rule["severity"], rule["pack"], *stands))
-        href = f"#{rule_anchor(rule_id)}"
         rows.append(TimelineRow(rule_id, href, rule["title"], profile, worst, keys, _bands(told, clock), marks + near))
     rows.sort(key=lambda lane: (_ORDER.index(lane.verdict), SEVERITIES.index(rules[lane.rule_id]["severity"])))
-    titles = {rule_id: rule["title"] for rule_id, rule in rules.items()}
     order = sorted(folded.items(), key=lambda item: (_ORDER.index(item[0][0]), -len(item[1]), item[0][1]))
     return Timeline(
         ego,
-        grid,
+        grid_name(verdicts[0]["drive_id"], ego),
         f"{clock.tick_step_s() / clock.duration_s:.5f}",
         clock.ticks(),
         rows,
-        [
-            FoldedRules(*key, dict(zip(rule_links(why, titles), (why[i] for i in sorted(why)), strict=True)))
-            for key, why in order
-        ],
+        [FoldedRules(*key, why) for key, why in order],
         {verdict: sum(lane.verdict == verdict for lane in rows) for verdict in _ORDER},
     )
 
@@ -186,7 +161,10 @@ def separate_shared_rules(drawn: Sequence[Timeline]) -> tuple[list[FoldedRules],
     common = {(f.verdict, f.kind): f.reasons for f in drawn[0].folded} if drawn else {}
     for t in drawn[1:]:
         mine = {(f.verdict, f.kind): f.reasons for f in t.folded}
-        common = {key: _both(why, mine.get(key, {})) for key, why in common.items()}
+        common = {
+            key: {rule: reasons | mine[key][rule] for rule, reasons in why.items() if rule in mine.get(key, {})}
+            for key, why in common.items()
+        }
     common = {key: why for key, why in common.items() if why}
 
     def rest(t: Timeline) -> list[FoldedRules]:
@@ -199,23 +177,12 @@ def separate_shared_rules(drawn: Sequence[Timeline]) -> tuple[list[FoldedRules],
     return [FoldedRules(*key, why) for key, why in common.items()], [t._replace(folded=rest(t)) for t in drawn]
 
 
-def _both(
-    one: Mapping[tuple[str, str], set[VerdictReason]], other: Mapping[tuple[str, str], set[VerdictReason]]
-) -> dict[tuple[str, str], set[VerdictReason]]:
-    return {rule: why | other[rule] for rule, why in one.items() if rule in other}
-
-
 def _is_missing(row: Row) -> bool:
     """Whether it is unknown for the whole drive, because a signal is missing."""
     return bool(row["verdict"] == "unknown" and row["t_start_ns"] is None and can_be_provided(row["reason_code"]))
 
 
-def _grid(drive_id: str, ego_id: str) -> str:
-    """Return the name of the grid that the rows of a timeline share."""
-    return f"grid-{hashlib.sha256(repr((drive_id, ego_id)).encode('utf-8', 'surrogatepass')).hexdigest()[:12]}"
-
-
-def _bands(told: Sequence[Row], clock: TimeAxis) -> list[Band]:
+def _bands(told: Sequence[Row], clock: TimeAxis) -> list[dict[str, str]]:
     """Return the judged stretches by verdict; stretches of one verdict that touch are one (many objects, one rule)."""
     bands = []
     for verdict in _LAYERS:
@@ -228,7 +195,7 @@ def _bands(told: Sequence[Row], clock: TimeAxis) -> list[Band]:
                 spans.append((start, end, {reason}))
         for start, end, reasons in spans:
             why = "" if verdict in {"pass", "fail"} else f": {summarise_reasons(reasons)}"
-            bands.append(Band(verdict, _pc(start), _pc(end - start) if end - start > _THIN else "", f"{verdict}{why}"))
+            bands.append({"verdict": verdict, **_extent(start, end), "title": f"{verdict}{why}"})
     return bands
 
 
@@ -239,26 +206,22 @@ def _span(row: Row, clock: TimeAxis) -> tuple[float, float]:
     return clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])
 
 
-def _finding(row: Row, anchors: Collection[str], clock: TimeAxis) -> Mark:
+def _finding(row: Row, anchors: Collection[str], clock: TimeAxis) -> dict[str, str]:
     anchor = finding_anchor(row)
     start, end = clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])
-    return Mark(
-        "fail",
-        _pc(start),
-        _pc(end - start) if end - start > _THIN else "",
-        f"#{anchor}" if anchor in anchors else "",
-        _title(row, clock),
-    )
+    href = f"#{anchor}" if anchor in anchors else ""
+    return {"kind": "fail", **_extent(start, end), "href": href, "title": _title(row, clock)}
 
 
-def _near(row: Row, clock: TimeAxis) -> Mark:
-    return Mark("near", _pc(clock.at(row["t_worst_ns"])), "", "", f"near miss, {_title(row, clock)}")
+def _near(row: Row, clock: TimeAxis) -> dict[str, str]:
+    at = clock.at(row["t_worst_ns"])
+    return {"kind": "near", **_extent(at, at), "href": "", "title": f"near miss, {_title(row, clock)}"}
+
+
+def _extent(start: float, end: float) -> dict[str, str]:
+    return {"x": percent(start), "w": percent(end - start) if end - start > _THIN else ""}
 
 
 def _title(row: Row, clock: TimeAxis) -> str:
     margin = "" if row["margin"] is None else f", margin {number(row['margin'], row['unit'])}"
     return f"{seconds(row['t_worst_ns'], clock.start_ns)}{margin}"
-
-
-def _pc(value: float) -> str:
-    return f"{value:.2f}".rstrip("0").rstrip(".") + "%"

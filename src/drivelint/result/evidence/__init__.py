@@ -5,14 +5,24 @@ Scenes of findings and near misses with lanes and danger spaces; overtakes and o
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from drivelint.result.evidence import lane_shapes, overtaking, surroundings
-from drivelint.result.schemas import conform
+from drivelint.result.schemas import TABLE_OF_FILE
 
 if TYPE_CHECKING:
     import duckdb
     import pyarrow as pa
+
+_KEYS: Final = {
+    "scenes": "drive_id, ego_id, t_ns",
+    "lanes": "environment_id, lanelet_id",
+    "spaces": "drive_id, ego_id, t_ns, actor_id <> ego_id, actor_id",
+    "courses": "finding_id IS NULL, finding_id, drive_id, ego_id, rule_id, profile, object_id, occurrence",
+    "overtakes": "drive_id, ego_id, occurrence",
+    "opportunities": "drive_id, ego_id, occurrence, style, profile",
+}
+"""Table of evidence in a result -> the order of its rows."""
 
 
 def gather(con: duckdb.DuckDBPyConnection) -> None:
@@ -25,37 +35,9 @@ def gather(con: duckdb.DuckDBPyConnection) -> None:
     overtaking.gather(con)
 
 
-def scenes(con: duckdb.DuckDBPyConnection) -> pa.Table:
-    """Return the table `scene`, totally ordered."""
-    return _ordered(con, "scene", "drive_id, ego_id, t_ns")
-
-
-def lanes(con: duckdb.DuckDBPyConnection) -> pa.Table:
-    """Return the table `lane_shape`, totally ordered."""
-    return _ordered(con, "lane_shape", "environment_id, lanelet_id")
-
-
-def danger_spaces(con: duckdb.DuckDBPyConnection) -> pa.Table:
-    """Return the table `danger_space`, totally ordered."""
-    return _ordered(con, "danger_space", "drive_id, ego_id, t_ns, actor_id <> ego_id, actor_id")
-
-
-def courses(con: duckdb.DuckDBPyConnection) -> pa.Table:
-    """Return the table `course`, totally ordered."""
-    return _ordered(
-        con, "course", "finding_id IS NULL, finding_id, drive_id, ego_id, rule_id, profile, object_id, occurrence"
-    )
-
-
-def overtakes(con: duckdb.DuckDBPyConnection) -> pa.Table:
-    """Return the table `overtake_record`, totally ordered."""
-    return _ordered(con, "overtake_record", "drive_id, ego_id, occurrence")
-
-
-def opportunities(con: duckdb.DuckDBPyConnection) -> pa.Table:
-    """Return the table `opportunity_record`, totally ordered."""
-    return _ordered(con, "opportunity_record", "drive_id, ego_id, occurrence, style, profile")
-
-
-def _ordered(con: duckdb.DuckDBPyConnection, table: str, keys: str) -> pa.Table:
-    return conform(con.execute(f"SELECT * FROM {table} ORDER BY {keys}").to_arrow_table(), table)
+def tables(con: duckdb.DuckDBPyConnection) -> dict[str, pa.Table]:
+    """Return the tables of evidence under the names that `Result` has for them, totally ordered."""
+    return {
+        name: con.execute(f"SELECT * FROM {TABLE_OF_FILE[name]} ORDER BY {keys}").to_arrow_table()
+        for name, keys in _KEYS.items()
+    }
