@@ -37,6 +37,7 @@ MOVING_MPS: Final = 1.0
 """Below this the direction of motion is noise, and the heading is what there is."""
 MOTION_COLUMNS: Final = ("vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
 STATE_COLUMNS: Final = ("x_m", "y_m", "z_m", "yaw_rad", *MOTION_COLUMNS)
+IN_STATES: Final = "{n} of {of} states ({ids}): "
 
 
 @dataclass(frozen=True)
@@ -84,14 +85,15 @@ def split_tracks(states: States, step: Steps, *, whole: Collection[str]) -> Spli
     alias: dict[str, str] = {}
     unknown, pieces = _around_jumps(states, jump)
     if jump.any():
-        findings = quality_findings(states, unknown, "teleport", "the position jumps: they are unknown around it")
+        text = IN_STATES + "the position jumps: they are unknown around it"
+        findings = states.findings(unknown, "teleport", "warning", text)
         alias = _renamed(states, pieces, whole, findings)
     refused = RejectedPositions.from_rows(states, unknown)
     set_unknown(states, unknown)
     beside = outlier_samples(states, step)
     if beside.any():
         text = "the position is beside its track, for a sample or by a step that nobody drives: they are unknown there"
-        findings += quality_findings(states, beside, "teleport", text)
+        findings += states.findings(beside, "teleport", "warning", IN_STATES + text)
         refused = refused.with_more(RejectedPositions.from_rows(states, beside))
         set_unknown(states, beside)
     return SplitTracks(findings, alias, refused) if findings else NO_SPLIT
@@ -102,17 +104,6 @@ def set_unknown(states: States, rows: Mask, what: tuple[str, ...] = STATE_COLUMN
     if rows.any():
         for name in set(what) & states.numbers.keys():
             states.numbers[name] = np.where(rows, np.nan, states.numbers[name])
-
-
-def quality_findings(states: States, rows: Mask, check: str, text: str) -> list[QualityFinding]:
-    """Return a finding on these rows; none, where there are none."""
-    n = int(rows.sum())
-    if not n:
-        return []
-    ids = [states.ids[i] for i in np.unique(states.actor[rows])]
-    message = f"{n} of {len(states)} states ({listed(ids)}): {text}"
-    only = ids[0] if len(ids) == 1 else None
-    return [QualityFinding(check, "warning", message, n, int(states.t_ns[rows].min()), only)]
 
 
 def jumps(states: States, step: Steps) -> Mask:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from drivelint.drive.order import track_starts
 from drivelint.drive.velocity import LEAST_NOISE_SAMPLES, MOVED_M, Tracklets, position_noise
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ def outlier_samples(states: States, step: Steps) -> Mask:
 def _told(states: States, place: Numbers) -> Mask:
     """Say of each sample whether its velocity is recorded; one that is zero throughout although the positions move is not."""
     v = [states.numbers.get(name, np.full(len(states), np.nan)) for name in ("vx_mps", "vy_mps")]
-    starts = np.flatnonzero(np.r_[True, states.actor[1:] != states.actor[:-1]])
+    starts = track_starts(states.actor)
     still = np.logical_and.reduceat((v[0] == 0.0) & (v[1] == 0.0), starts)
     extent = np.fmax.reduceat(place, starts, axis=1) - np.fmin.reduceat(place, starts, axis=1)
     false_zero = still & (np.nan_to_num(extent).max(axis=0) > MOVED_M)

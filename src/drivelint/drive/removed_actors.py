@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.jumps import jumps
-from drivelint.drive.trace import QualityFinding
-from drivelint.phrases import listed
+from drivelint.drive.jumps import IN_STATES, jumps
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -19,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.drive.order import Steps
-    from drivelint.drive.trace import States
+    from drivelint.drive.trace import QualityFinding, States
 
 SAME_PLACE_M: Final = 0.01
 """Centres nearer than this are in one place."""
@@ -50,11 +48,8 @@ def without_removed_actors(
     out = np.zeros(len(states), np.bool_)
     for first, end in gone:
         out[first:end] = True
-    ids = [states.ids[states.actor[first]] for first, _ in gone]
     text = "after a jump they stand in one place: they were taken out of the scene, and their tracks end there"
-    message = f"{int(out.sum())} of {len(states)} states ({listed(ids)}): {text}"
-    finding = QualityFinding("removed", "warning", message, int(out.sum()), int(states.t_ns[out].min()), actor_id=None)
-    return states.take(~out), [finding]
+    return states.take(~out), states.findings(out, "removed", "warning", IN_STATES + text)
 
 
 def _together(states: States, place: NDArray[np.float64], one: tuple[int, int], other: tuple[int, int]) -> bool:
