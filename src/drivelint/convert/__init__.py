@@ -114,24 +114,20 @@ def _moved(trace: Trace, offset: tuple[float, float]) -> Trace:
 def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, list[str]]:
     """Return the map that goes along, the user's, else the log's own, and what to tell about it. Errors: as `convert`."""
     library, own = MapLibrary.from_options(request), trace.embedded_map
-    where = (trace.path, own, trace.map_offset, trace.tables["actor_state"], trace.geo_reference)
-    if library.uses_embedded(trace.path, own) or (road := library.find_source(*where)) is None:
-        return (None, []) if own is None else _own_road(request, trace, own)
+    if library.uses_embedded(trace) or (road := library.find_source(trace)) is None:
+        return (None, []) if own is None else _own_road(request, trace, MapSource(MAP_FILE, own))
     if request.to == "mcap" and (why := _unfit_for_mcap(road)):
         raise UsageError(why)
-    library.find(*where)  # a wrong map is refused now, not by whoever checks the converted log
+    library.find(trace)  # a wrong map is refused now, not by whoever checks the converted log
     return road, []
 
 
-def _own_road(request: ConvertRequest, trace: Trace, content: bytes) -> tuple[MapSource | None, list[str]]:
+def _own_road(request: ConvertRequest, trace: Trace, road: MapSource) -> tuple[MapSource | None, list[str]]:
     """Return the log's own map as it is, whether it can be used or not: who converts a log loses nothing by it."""
-    road = MapSource(MAP_FILE, content)
     notes = []
-    states = trace.tables["actor_state"]
     library = MapLibrary(None, None, "auto")
     try:
-        environment = library.find(trace.path, content, trace.map_offset, states, trace.geo_reference)
-        library.doubts(trace.path, environment, states, trace.geo_reference)
+        library.doubts(trace, library.find(trace))
     except MapError as error:
         notes.append(f"the log's own map cannot be used: {error}")
     if request.to == "mcap" and (why := _unfit_for_mcap(road)):

@@ -24,17 +24,11 @@ def with_headlight_events(events: pa.Table | None, states: States) -> pa.Table |
     codes = states.codes.get(HEADLIGHTS)
     if codes is None or not (codes >= 0).any():
         return events
-    n = len(states)
-    first = np.ones(n, np.bool_)
-    first[1:] = states.actor[1:] != states.actor[:-1]
-    changed = first.copy()
-    changed[1:] |= codes[1:] != codes[:-1]
-    declared = (
-        set() if events is None else set(events.filter(pc.equal(events["event"], HEADLIGHTS))["actor_id"].to_pylist())
-    )
-    told = np.zeros(len(states.ids), np.bool_)
-    told[np.unique(states.actor[codes >= 0])] = True
-    told &= ~np.isin(states.ids, sorted(declared))
+    changed = np.r_[True, (states.actor[1:] != states.actor[:-1]) | (codes[1:] != codes[:-1])]
+    told = np.bincount(states.actor[codes >= 0], minlength=len(states.ids)) > 0
+    if events is not None:
+        declared = set(events.filter(pc.equal(events["event"], HEADLIGHTS))["actor_id"].to_pylist())
+        told &= [name not in declared for name in states.ids]
     rows = np.flatnonzero(changed & told[states.actor])
     lamps = pa.table(
         {

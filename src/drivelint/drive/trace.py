@@ -12,7 +12,7 @@ from drivelint.drive import conditions
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     import pyarrow as pa
     from numpy.typing import NDArray
@@ -159,9 +159,22 @@ class QualityFinding:
     actor_id: str | None = None
 
     @classmethod
+    def unusable_map(cls, message: str) -> QualityFinding:
+        """Return the finding that the log's own map cannot be used."""
+        return cls(OWN_MAP_UNUSABLE, "warning", message)
+
+    @classmethod
     def of_actors(cls, check_id: str, severity: Severity, message: str, ids: Sequence[str]) -> QualityFinding:
         """Return a finding about these actors, which names the actor where it is one only."""
         return cls(check_id, severity, message, len(ids), actor_id=ids[0] if len(ids) == 1 else None)
+
+
+def single_map(maps: Mapping[bytes, str]) -> tuple[bytes | None, tuple[QualityFinding, ...]]:
+    """Return the log's only OpenDRIVE map, or None with a finding if it has several; `maps`: map text -> topic where it was first seen."""
+    if len(maps) > 1:
+        message = f"the log has {len(maps)} different OpenDRIVE maps (topics {listed(sorted(maps.values()))}), and none is used: keep one"
+        return None, (QualityFinding.unusable_map(message),)
+    return next(iter(maps), None), ()
 
 
 @dataclass

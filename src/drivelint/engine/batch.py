@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pyarrow.compute as pc
 
-from drivelint.drive import embedded_map
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.trace import IngestOptions, QualityFinding, Trace
 from drivelint.errors import DriveLintError, MapError
@@ -147,16 +146,14 @@ def drive_with_map(trace: Trace, library: MapLibrary) -> Drive:
 
     Errors: `MapError` if a map that was given cannot be read, or shows another place or side of the road.
     """
-    states = trace.tables["actor_state"]
     try:
-        environment = library.find(trace.path, trace.embedded_map, trace.map_offset, states, trace.geo_reference)
-        doubts = library.doubts(trace.path, environment, states, trace.geo_reference)
+        environment = library.find(trace)
+        doubts = library.doubts(trace, environment)
     except MapError as error:
-        if not library.uses_embedded(trace.path, trace.embedded_map):
+        if not library.uses_embedded(trace):
             raise
-        return Drive(
-            with_quality_finding(trace, embedded_map.unusable_finding(f"the log's own map is not used: {error}")), None
-        )
+        unused = QualityFinding.unusable_map(f"the log's own map is not used: {error}")
+        return Drive(with_quality_finding(trace, unused), None)
     for check, doubt in doubts.items():
         trace = with_quality_finding(trace, QualityFinding(check, "warning", doubt))
     return Drive(trace, environment)

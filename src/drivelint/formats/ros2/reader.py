@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drivelint.drive import embedded_map
-from drivelint.drive.trace import QualityFinding, Recording, States
+from drivelint.drive.trace import QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
 from drivelint.formats.coordinate_frames import TransformTree, clean_frame_name, fixed_frame
 from drivelint.formats.mcap import bag
@@ -228,7 +227,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
             codes[mine] = ros_ego.indicators(recording.states.t_ns[mine], reports)
             recording.states.codes["indicator"] = codes
         recording.events = ros_ego.engagement(reports, ego)
-    recording.embedded_map, trouble = embedded_map.single_map(_maps(log))
+    recording.embedded_map, trouble = single_map(_maps(log))
     recording.findings += trouble
     recording.frame_times, recording.utc_start_ns = message_times(list(parts.values()))
     recording.notes.append(f"positions are in the frame {fixed!r}")
