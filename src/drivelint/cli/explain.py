@@ -54,7 +54,7 @@ def explain(
     ] = 100,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Another one draws other errors.")] = 0,
     memory: options.MemorySize = None,
-    format_: options.FormatOption = options.Format.text,
+    format_: options.FormatOption = "text",
 ) -> None:
     """Show why one verdict is what it is.
 
@@ -78,7 +78,7 @@ def explain(
         values.parse_memory(memory),
     )
     found = run_interruptible(lambda: explained(request))
-    if format_ is options.Format.json:
+    if format_ == "json":
         typer.echo(to_json(found))
     else:
         print_rich(lambda width: render(found, width))

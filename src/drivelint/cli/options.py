@@ -2,77 +2,22 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
-
-class Format(StrEnum):
-    """How results are printed on stdout."""
-
-    text = "text"
-    json = "json"
-
-
-class ConvertTarget(StrEnum):
-    """What a drive is converted to."""
-
-    mcap = "mcap"
-    parquet = "parquet"
-
-
-class ReportFormat(StrEnum):
-    """What a result can be written as."""
-
-    html = "html"
-    junit = "junit"
-    sarif = "sarif"
-    xqar = "xqar"
-    markdown = "markdown"
-
-
-class DiffFormat(StrEnum):
-    """How a difference is printed on stdout."""
-
-    text = "text"
-    json = "json"
-    markdown = "markdown"
-
-
-class RuleKind(StrEnum):
-    """The kind of a rule: what it is judged at."""
-
-    invariant = "invariant"
-    execution = "execution"
-    precondition = "precondition"
-    postcondition = "postcondition"
-
-
-class FailOn(StrEnum):
-    """The least severity that makes exit code 1."""
-
-    critical = "critical"
-    major = "major"
-    minor = "minor"
-    never = "never"
-
-
-class Visibility(StrEnum):
-    """What a log that does not record an actor says about it."""
-
-    line_of_sight = "line-of-sight"
-    none = "none"
-
-
-class Handedness(StrEnum):
-    """The side of the road that is driven on."""
-
-    auto = "auto"
-    lht = "lht"
-    rht = "rht"
-
+Format = Literal["text", "json"]
+"""How results are printed on stdout."""
+ConvertTarget = Literal["mcap", "parquet"]
+ReportFormat = Literal["html", "junit", "sarif", "xqar", "markdown"]
+DiffFormat = Literal["text", "json", "markdown"]
+RuleKind = Literal["invariant", "execution", "precondition", "postcondition"]
+FailOn = Literal["critical", "major", "minor", "never"]
+"""The least severity that makes exit code 1."""
+Visibility = Literal["line-of-sight", "none"]
+"""What a log that does not record an actor says about it."""
+Handedness = Literal["auto", "lht", "rht"]
 
 MapFile = Annotated[
     Path | None,

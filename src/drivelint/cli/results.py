@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from drivelint.cli import options
+from drivelint.cli import options  # noqa: TC001 - Typer looks the annotations up
 from drivelint.errors import ExitCode
 
 
@@ -20,7 +20,7 @@ def report(
             help="html: one page that opens offline; junit, sarif (2.1.0), xqar (ASAM): for servers and viewers; "
             "markdown: for a comment on a pull request.",
         ),
-    ] = options.ReportFormat.html,
+    ] = "html",
 ) -> None:
     """Write a report from a result folder, into it.
 
@@ -30,7 +30,7 @@ def report(
     from drivelint.result.files import publish
     from drivelint.result.load import load_result
 
-    name, render = REPORT_FORMATS[to.value]
+    name, render = REPORT_FORMATS[to]
     publish(folder, {name: render(load_result(folder))}, {})
     typer.echo(str(folder / name))
 
@@ -38,9 +38,7 @@ def report(
 def diff(
     base: Annotated[Path, typer.Argument(metavar="BASE", help="What check --out wrote, earlier.")],
     new: Annotated[Path, typer.Argument(metavar="NEW", help="What check --out wrote, later.")],
-    format_: Annotated[
-        options.DiffFormat, typer.Option("--format", help="What is printed on stdout.")
-    ] = options.DiffFormat.text,
+    format_: Annotated[options.DiffFormat, typer.Option("--format", help="What is printed on stdout.")] = "text",
     fail_on: Annotated[
         options.FailOn | None,
         typer.Option("--fail-on", help="Least severity of a new finding that makes exit code 1. Default: NEW's."),
@@ -56,11 +54,11 @@ def diff(
     from drivelint.result.load import load_result
 
     earlier, later = load_result(base), load_result(new)
-    least = later.fail_on if fail_on is None else fail_on.value
+    least = later.fail_on if fail_on is None else fail_on
     found, failing = compare_results(earlier, later, (base.resolve().name, new.resolve().name), least)
-    if format_ is options.DiffFormat.json:
+    if format_ == "json":
         typer.echo(descriptions.to_json(found, failing, least))
-    elif format_ is options.DiffFormat.markdown:
+    elif format_ == "markdown":
         from drivelint.report import markdown
 
         typer.echo(markdown.difference(found, failing, least, later.gate))
