@@ -25,19 +25,8 @@ if TYPE_CHECKING:
 PACK_NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 RULE_NAME = re.compile(r"[a-z0-9][a-z0-9._-]*")
 _KEYS = ("drive_id", "ego_id", "t_ns")
-_CONDITION = (
-    *_KEYS,
-    "object_id",
-    "ref_id",
-    "profile",
-    "observed",
-    "required",
-    "holds",
-    "applies",
-    "at_least",
-    "reason_code",
-    "reason",
-)
+_MEASURES = ("object_id", "ref_id", "profile", "observed", "required", "holds", "applies", "at_least")
+_CONDITION = (*_KEYS, *_MEASURES, "reason_code", "reason")
 
 
 class _Pack(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -122,7 +111,7 @@ def read_rule(file: Path) -> Rule:
     toml, sections = split(text, str(file))
     header = parse_header(toml, str(file))
     if header.reference is not None:
-        sections = _event_table(header.reference, sections, file, line_of(toml, "reference"))
+        sections["reference"] = _event_table(header.reference, sections, file, line_of(toml, "reference"))
     queries = {name: check_query(section.sql, str(file), section.sql_line) for name, section in sections.items()}
     _check_sections(header, sections, queries, file)
     _check_reads(header, queries, f"{file}:{line_of(toml, 'reads')}")
@@ -154,8 +143,8 @@ def _title(folder_: Path) -> str:
         raise RuleError(f'{file}: {error}: write title = "...", what the pack is about') from error
 
 
-def _event_table(table: str, sections: dict[str, Section], file: Path, line: int) -> dict[str, Section]:
-    """Let the header's `reference = "table"` stand for a @reference section over that event table."""
+def _event_table(table: str, sections: dict[str, Section], file: Path, line: int) -> Section:
+    """Return the section @reference for which the header's `reference = "table"` stands: all of that event table."""
     if "reference" in sections:
         raise RuleError(
             f"{file}:{sections['reference'].line}: the header names an event table already: drop it or @reference"
@@ -165,7 +154,7 @@ def _event_table(table: str, sections: dict[str, Section], file: Path, line: int
         raise RuleError(
             f"{file}:{line}: reference = {table!r} is no event table: it needs the columns drive_id, ego_id, t_ns"
         )
-    return {**sections, "reference": Section(f"SELECT {', '.join(columns)} FROM {table}", line, line)}
+    return Section(f"SELECT {', '.join(columns)} FROM {table}", line, line)
 
 
 def _check_sections(header: Header, sections: dict[str, Section], queries: dict[str, Query], file: Path) -> None:
@@ -189,12 +178,10 @@ def _check_sections(header: Header, sections: dict[str, Section], queries: dict[
     }
     for name, query in queries.items():
         where = f"{file}:{sections[name].line}: @{name}"
-        if name == "reference":
-            missing = [] if query.columns is None else [c for c in _KEYS if c not in query.columns]
-            if missing or "ref_id" in (query.columns or ()):
-                raise RuleError(f"{where} must return drive_id, ego_id, t_ns and no ref_id (the engine numbers it)")
-            continue
-        _check_columns(query.columns, *contracts[name], where)
+        if name != "reference":
+            _check_columns(query.columns, *contracts[name], where)
+        elif query.columns is not None and ("ref_id" in query.columns or not set(_KEYS) <= set(query.columns)):
+            raise RuleError(f"{where} must return drive_id, ego_id, t_ns and no ref_id (the engine numbers it)")
     _check_condition(header, queries["condition"], f"{file}:{sections['condition'].line}: @condition")
 
 
@@ -205,11 +192,9 @@ def _check_columns(
         raise RuleError(f"{where} must name every column it returns: no star, and AS for every expression")
     if len(set(columns)) != len(columns):
         raise RuleError(f"{where} returns a column twice: {', '.join(columns)}")
-    missing = [c for c in needed if c not in columns]
-    if missing:
+    if missing := [c for c in needed if c not in columns]:
         raise RuleError(f"{where} must return {', '.join(needed)}; {', '.join(missing)} missing")
-    stray = [c for c in columns if c not in allowed]
-    if stray:
+    if stray := [c for c in columns if c not in allowed]:
         raise RuleError(f"{where} returns the unknown column {stray[0]!r}; {hint(stray[0], allowed)}")
 
 
