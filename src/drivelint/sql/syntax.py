@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import duckdb
 
 from drivelint.errors import DriveLintError
-from drivelint.resources import folder
+from drivelint.sql.store import create_macros
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator, Mapping
@@ -132,8 +132,7 @@ def _nodes(tree: Any) -> Iterator[Node]:
 def _aggregates() -> Names:
     """Return DuckDB's aggregates and the macros, its own and ours, that call one; those of spatial all end in `_agg`."""
     with duckdb.connect() as con:
-        for file in sorted((folder("queries") / "macros").glob("*.sql")):
-            con.execute(file.read_text(encoding="utf-8"))
+        create_macros(con)
         rows = con.execute("SELECT function_name, function_type, macro_definition FROM duckdb_functions()").fetchall()
     found = {name for name, kind, _ in rows if kind == "aggregate"}
     calls = [(name, set(_CALLED.findall(text.lower()))) for name, kind, text in rows if kind == "macro" and text]
