@@ -22,9 +22,21 @@ _NONE: Final[frozenset[str]] = frozenset()
 _CALLED: Final = re.compile(r"(\w+)\"?\(")
 
 
+@cache
+def parser() -> duckdb.DuckDBPyConnection:
+    """Return a connection that only parses and prints statements."""
+    return duckdb.connect()
+
+
+def syntax_tree(sql: str) -> Node:
+    """Return what DuckDB makes of a SELECT: `error`, and `error_message` or `statements`."""
+    tree: Node = json.loads(parser().execute("SELECT json_serialize_sql(?)", [sql]).fetchall()[0][0])
+    return tree
+
+
 def parse_select(sql: str, where: str) -> Node:
     """Return the syntax tree of one SELECT. Errors: `DriveLintError` that begins with `where`."""
-    tree = json.loads(_parser().execute("SELECT json_serialize_sql(?)", [sql]).fetchall()[0][0])
+    tree = syntax_tree(sql)
     if tree["error"]:
         raise DriveLintError(f"{where}: {tree['error_message']}")
     node: Node = tree["statements"][0]["node"]
@@ -139,8 +151,3 @@ def _aggregates() -> Names:
     while more := {name for name, called in calls if called & found} - found:
         found |= more
     return frozenset(found)
-
-
-@cache
-def _parser() -> duckdb.DuckDBPyConnection:
-    return duckdb.connect()
