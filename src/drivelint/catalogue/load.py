@@ -6,13 +6,12 @@ import hashlib
 import re
 from functools import cache
 from pathlib import Path  # noqa: TC003 - msgspec looks the field types up when it needs them
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
 from drivelint.catalogue.check import ENGINE_TABLES, Query, check_query
 from drivelint.catalogue.header import Header, line_of, parse_header
-from drivelint.catalogue.sections import Section, split
 from drivelint.errors import RuleError
 from drivelint.phrases import hint
 from drivelint.reasons.reason_text import shared_texts
@@ -24,9 +23,19 @@ if TYPE_CHECKING:
 
 PACK_NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 RULE_NAME = re.compile(r"[a-z0-9][a-z0-9._-]*")
+SECTIONS = ("applies", "reference", "condition", "anchor")
+_MARK = re.compile(r"^--\s*@(\S+)\s*$")
 _KEYS = ("drive_id", "ego_id", "t_ns")
 _MEASURES = ("object_id", "ref_id", "profile", "observed", "required", "holds", "applies", "at_least")
 _CONDITION = (*_KEYS, *_MEASURES, "reason_code", "reason")
+
+
+class Section(NamedTuple):
+    """One section of a rule: its SELECT, the line of its `@` mark, and the line on which the SELECT begins."""
+
+    sql: str
+    line: int
+    sql_line: int
 
 
 class _Pack(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -108,7 +117,7 @@ def read_rule(file: Path) -> Rule:
         text = content.decode("utf-8")
     except UnicodeDecodeError as error:
         raise RuleError(f"{file}: not UTF-8 at byte {error.start}") from error
-    toml, sections = split(text, str(file))
+    toml, sections = split_sections(text, str(file))
     header = parse_header(toml, str(file))
     if header.reference is not None:
         sections["reference"] = _event_table(header.reference, sections, file, line_of(toml, "reference"))
@@ -129,6 +138,43 @@ def read_rule(file: Path) -> Rule:
         columns={name: query.columns for name, query in queries.items() if query.columns is not None},
         reason_codes=frozenset(reason.code for query in queries.values() for reason in query.reasons),
     )
+
+
+def split_sections(text: str, where: str) -> tuple[str, dict[str, Section]]:
+    """Return the header's TOML (line n of it is line n of the file) and the sections by name.
+
+    Errors: `RuleError` for SQL before the first section, an unknown, repeated or empty section.
+    """
+    lines = text.splitlines()
+    marks = [(n, match[1]) for n, line in enumerate(lines) if (match := _MARK.match(line))]
+    header_end = marks[0][0] if marks else len(lines)
+    header = [_uncomment(line, n, where) for n, line in enumerate(lines[:header_end], 1)]
+    sections: dict[str, Section] = {}
+    ends = [n for n, _ in marks[1:]] + [len(lines)]
+    for (start, name), end in zip(marks, ends, strict=False):
+        if name not in SECTIONS:
+            raise RuleError(f"{where}:{start + 1}: unknown section @{name}; {hint(name, SECTIONS, sign='@')}")
+        if name in sections:
+            raise RuleError(f"{where}:{start + 1}: section @{name} stands twice")
+        below = lines[start + 1 : end]
+        body = "\n".join(below).strip()
+        if not body:
+            raise RuleError(f"{where}:{start + 1}: section @{name} is empty")
+        blank = next(n for n, line in enumerate(below) if line.strip())
+        sections[name] = Section(body, start + 1, start + 2 + blank)
+    if "condition" not in sections:
+        raise RuleError(f"{where}:{len(lines)}: section '-- @condition' is missing")
+    return "\n".join(header), sections
+
+
+def _uncomment(line: str, n: int, where: str) -> str:
+    if not line.strip():
+        return ""
+    if not line.startswith("--"):
+        raise RuleError(
+            f"{where}:{n}: only '-- ' comment lines (the header) may stand before the first '-- @section' line"
+        )
+    return line[2:].removeprefix(" ")
 
 
 @cache

@@ -16,7 +16,6 @@ import typer
 
 from drivelint import __version__
 from drivelint.cli import docs as docs_
-from drivelint.cli import explain as explain_
 from drivelint.cli import inputs, options, results, rules, values
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.console import progress as bar
@@ -231,17 +230,16 @@ def convert(
     In metres, seconds and box centres, with its map, so that it needs no mapping any more and gives the same verdicts.
     """
     from drivelint import convert as converter
-    from drivelint.convert.text import summary_text
 
     request = converter.ConvertRequest(trace=trace, to=to, out=out, **drive)
     written = run_interruptible(lambda: converter.convert(request))
     for note in written.notes:
         typer.echo(f"drivelint: {note}", err=True)
-    typer.echo(summary_text(written))
+    typer.echo(converter.summary_text(written))
 
 
 app.command()(results.report)
-app.command()(explain_.explain)
+app.command()(results.explain)
 app.command("diff")(results.diff)
 app.command("docs")(docs_.docs)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Final, Literal
 
@@ -80,10 +81,9 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     notes = [*trace.notes, *told, *_of_a_check(request)]
     has_ego = any(trace.tables["actor"]["is_ego"].to_pylist())
     if not has_ego:
-        notes = [
-            *notes,
-            "the log names no ego: choose one with --ego ID, here or in every check (drivelint inspect lists them)",
-        ]
+        notes.append(
+            "the log names no ego: choose one with --ego ID, here or in every check (drivelint inspect lists them)"
+        )
     return ConvertedTrace(
         path=target,
         files=files,
@@ -173,3 +173,19 @@ def _parquet(target: Path, trace: Trace, road: MapSource | None) -> dict[str, in
         contents[MAP_FILE] = road.content
     publish(target, contents, {name: None for name in CANONICAL_FILES if name not in contents})
     return {name: len(content) for name, content in contents.items()}
+
+
+def summary_text(written: ConvertedTrace) -> str:
+    """Return what was written, and the command that checks it."""
+    size = sum(written.files.values())
+    amount = f"{size / 1e6:.1f} MB" if size >= 1e6 else f"{max(size / 1e3, 0.1):.1f} kB"
+    files = f"{len(written.files)} files, " if len(written.files) > 1 else ""
+    road = f", the map {written.map_name} with it" if written.map_name else ", no map"
+    ego = "" if written.has_ego else " --ego ID"
+    command = (
+        f"drivelint check {shlex.quote(str(written.path))}{ego}{'' if written.map_name else ' --map MAP'} --out results"
+    )
+    return (
+        f"{written.path}: {files}{amount}, {written.n_states} states of {written.n_actors} actors{road}\n"
+        f"check it, without a mapping, with: {command}"
+    )

@@ -98,16 +98,19 @@ def _element(
     ])  # fmt: skip
 
 
-def _lanes(road: Road, *, exit_lane: bool = False, ahead: bool = False, linked: bool = False) -> list[_Lane]:
+def _numbers(road: Road) -> list[int]:
+    return [*range(1, road.lanes + 1), *(-k for k in range(1, road.oncoming + 1))]
+
+
+def _lanes(road: Road, *, exit_lane: bool = False, ahead: bool = False) -> list[_Lane]:
     """Return the road's lanes; `exit_lane`: with one more on the nearside, `ahead`: that one begins where these end."""
     n, m = road.lanes, road.oncoming
     edge = "curb" if road.beside == "sidewalk" else "solid"
-    numbers = [*range(1, n + 1), *(-k for k in range(1, m + 1))]
     lanes = []
-    for k in numbers:
+    for k in _numbers(road):
         outermost = k in {n, -m}
         mark = "broken" if not outermost or (exit_lane and k == n) else edge
-        lanes.append(_Lane(k, mark=mark, before=k if linked else None, after=k if linked or ahead else None))
+        lanes.append(_Lane(k, mark=mark, after=k if ahead else None))
     if exit_lane and road.fork:
         lanes.append(_Lane(n + 1, "exit", _opening(road.fork), edge))
     width = f'<width sOffset="0" a="{SIDE_LANE_WIDTH_M}" b="0" c="0" d="0"/>'
@@ -175,10 +178,7 @@ def _forked(road: Road, fork: Fork) -> list[str]:
     off = Line((fork.turn,), line.pose(fork.at))
     branch = before.then(fork.turn, *fork.branch).cut(fork.at + fork.turn.length_m, fork.at + 1e6)
     plain = _lanes(road)
-    inside = [
-        _Lane(k, mark="none", before=k, after=k)
-        for k in [*range(1, road.lanes + 1), *(-k for k in range(1, road.oncoming + 1))]
-    ]
+    inside = [_Lane(k, mark="none", before=k, after=k) for k in _numbers(road)]
     at_junction = f'elementType="junction" elementId="{_JUNCTION}"'
     first = [_section(road, 0.0, plain, 0.0, fork.at)]
     if fork.is_exit:
@@ -253,8 +253,8 @@ _Connection = tuple[str, str, str, list[tuple[int, int]]]
 
 
 def _through(road: Road) -> list[_Connection]:
-    along = [(k * road.nearside_sign, k * road.nearside_sign) for k in range(1, road.lanes + 1)]
-    against = [(-k * road.nearside_sign, -k * road.nearside_sign) for k in range(1, road.oncoming + 1)]
+    links = [(k * road.nearside_sign, k * road.nearside_sign) for k in _numbers(road)]
+    along, against = links[: road.lanes], links[road.lanes :]
     return [(_BEFORE, _THROUGH, "start", along), (_AFTER, _THROUGH, "end", against)]
 
 
