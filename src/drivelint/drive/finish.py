@@ -12,10 +12,9 @@ from drivelint.drive import actors as actor_rows
 from drivelint.drive import checks, contradiction, ego, jumps
 from drivelint.drive.align import align_to_ego
 from drivelint.drive.clock_restart import unknown_at_restarts
-from drivelint.drive.headlights import with_headlight_events
+from drivelint.drive.declared_events import with_headlight_events
 from drivelint.drive.motion import complete_velocities
 from drivelint.drive.order import sorted_states, steps, without_duplicates, wrapped
-from drivelint.drive.removed_actors import without_removed_actors
 from drivelint.drive.trace import (
     BRAKE_LIGHTS,
     INDICATORS,
@@ -72,7 +71,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     gone: list[QualityFinding] = []
     parted = jumps.NO_SPLIT
     if not assumed:
-        states, gone = without_removed_actors(states, step, whole=named)
+        states, gone = jumps.without_removed_actors(states, step, whole=named)
         step = steps(states) if gone else step
         parted = jumps.split_tracks(states, step, whole=named)
     if parted.alias:

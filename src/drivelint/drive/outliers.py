@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from drivelint.drive.order import track_starts
-from drivelint.drive.velocity import LEAST_NOISE_SAMPLES, MOVED_M, Tracklets, position_noise
+from drivelint.drive.velocity import LEAST_NOISE_SAMPLES, MOVED_M, Tracklets, sample_noise
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -54,11 +54,7 @@ def outlier_samples(states: States, step: Steps) -> Mask:
     ):
         return nothing
     runs = Tracklets.from_samples(states.t_ns, place[0], place[1], step)
-    sigma = np.maximum(position_noise(place[0], runs, states.actor), position_noise(place[1], runs, states.actor))[
-        states.actor
-    ]
-    few = np.bincount(states.actor, minlength=len(states.ids))[states.actor] < LEAST_NOISE_SAMPLES
-    sigma = np.where(few, np.inf, sigma)
+    sigma = sample_noise(place[0], place[1], runs, states.actor)
     beside = _beside(place, moves, told, sigma, sigma)
     return beside | _stepped(moves, told, sigma, sigma, beside)
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from drivelint.drive.order import known_motion, led_by
-from drivelint.drive.velocity import LEAST_NOISE_SAMPLES, Tracklets, position_noise
+from drivelint.drive.velocity import Tracklets, sample_noise
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -62,10 +62,9 @@ def mismatched_samples(states: States, step: Steps) -> Mask:
     if not wrong.any():
         return found
     runs = Tracklets.from_samples(states.t_ns, numbers["x_m"], numbers["y_m"], step)
-    sigma = np.maximum(*(position_noise(numbers[name], runs, states.actor) for name in ("x_m", "y_m")))
-    sigma[np.bincount(states.actor, minlength=len(sigma)) < LEAST_NOISE_SAMPLES] = np.inf
+    sigma = sample_noise(numbers["x_m"], numbers["y_m"], runs, states.actor)
     with np.errstate(invalid="ignore"):
-        wrong &= off > allowed + SIGMAS * np.sqrt(2.0) * sigma[states.actor[:-k]] / span
+        wrong &= off > allowed + SIGMAS * np.sqrt(2.0) * sigma[:-k] / span
     rows = np.flatnonzero(wrong)
     edges = np.zeros(n + 1, np.int64)
     np.add.at(edges, rows, 1)
