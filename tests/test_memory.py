@@ -198,7 +198,7 @@ def test_a_rule_that_runs_out_of_memory_is_tried_again(monkeypatch: pytest.Monke
     rule = Evaluation.judge_rule
 
     def short(self: Evaluation, binding: Any) -> None:
-        ((limit,),) = self._con.execute("SELECT current_setting('memory_limit')").fetchall()
+        ((limit,),) = self.con.execute("SELECT current_setting('memory_limit')").fetchall()
         if binding.rule.id == FEW[0] and limit == "1.1 GiB":
             raise SHORT
         rule(self, binding)

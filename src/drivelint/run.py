@@ -26,7 +26,7 @@ from drivelint.result.rulebook import rule_table
 from drivelint.sql import store
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Sequence
     from pathlib import Path
 
     from drivelint.engine.session import BatchObserver
@@ -71,6 +71,11 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
         memory = Memory(con, settings.memory, progress.note)
         store.insert(con, "profile", profiles)
         table = rule_table(rules, params, settings.profiles or DEFAULT_PROFILES)
+        # who looks at each batch before its tables are cleared: the report, the annotated logs
+        observers: list[BatchObserver] = [_gather] if settings.out else []
+        if settings.out and settings.annotate:
+            annotated = settings.out / "annotated"
+            observers.append(Annotator(annotated, table, fail_on=settings.fail_on, strict=settings.strict))
         session = JudgingSession(
             con,
             rules,
@@ -78,7 +83,7 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
             settings.out,
             margins=settings.margins,
             keep_db=settings.keep_db,
-            observers=_observers(settings, table),
+            observers=observers,
             memory=memory,
         )
         progress.stage("checking", len(paths))
@@ -86,7 +91,10 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
         said: set[str] = set()
         places: dict[str, str] = {}
         try:
-            for batch in cut_batches(_noting(read_drives(paths, options, library), places)):
+            for batch in cut_batches(read_drives(paths, options, library)):
+                for drive in batch:
+                    if isinstance(drive, Drive):
+                        places.setdefault(drive.trace.drive_id, str(drive.trace.path))
                 failed = _judge(session, batch, progress, said)
                 refused += failed
                 if len(paths) > 1:  # a single one is the error of the whole run
@@ -97,44 +105,24 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
         if len(refused) == len(paths):
             raise _none_judged(refused)
         unjudged = [collect.unjudged_drive(r.path.stem, r.path.name, str(r.error)) for r in refused]
-        drives = pa.concat_tables([memory.run_job(collect.drives, con), *unjudged]).sort_by(
-            [("drive_id", "ascending"), ("file_name", "ascending")]
-        )
+        drives = pa.concat_tables([memory.run_job(collect.drives, con), *unjudged])
         return Result(
             verdicts=memory.run_job(collect.verdicts, con),
             findings=memory.run_job(collect.findings, con),
-            drives=drives,
+            drives=drives.sort_by([("drive_id", "ascending"), ("file_name", "ascending")]),
             rules=table,
             **memory.run_job(evidence.tables, con),
             margins_file=session.margins_file,
             fail_on=settings.fail_on,
             strict=settings.strict,
-            asked=_asked(settings, places),
+            asked=RunRequest.from_options(
+                settings,
+                traces=places,
+                profiles=settings.profiles,
+                params=settings.params,
+                rules_dirs=settings.rules_dirs,
+            ),
         )
-
-
-def _noting(drives: Iterable[Drive | RefusedLog], places: dict[str, str]) -> Iterator[Drive | RefusedLog]:
-    """Yield them, and note where the log of each lies."""
-    for drive in drives:
-        if isinstance(drive, Drive):
-            places.setdefault(drive.trace.drive_id, str(drive.trace.path))
-        yield drive
-
-
-def _asked(settings: CheckOptions, places: dict[str, str]) -> RunRequest:
-    return RunRequest.from_options(
-        settings, traces=places, profiles=settings.profiles, params=settings.params, rules_dirs=settings.rules_dirs
-    )
-
-
-def _observers(settings: CheckOptions, rules: pa.Table) -> list[BatchObserver]:
-    """Return who looks at each batch before its tables are cleared: the report, the annotated logs."""
-    if settings.out is None:
-        return []
-    seen: list[BatchObserver] = [_gather]
-    if settings.annotate:
-        seen.append(Annotator(settings.out / "annotated", rules, fail_on=settings.fail_on, strict=settings.strict))
-    return seen
 
 
 def _gather(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], **_part: bool) -> None:

@@ -99,7 +99,7 @@ def test_what_a_selector_asks_for_must_exist(rules: dict[str, Rule], selector: s
 
 def test_parameters_are_typed_like_their_default(rules: dict[str, Rule]) -> None:
     settings = ["pack.r1.speed.limit=2.5", "pack.r1.speed.on=FALSE", "pack.r2.gap.word=a=b"]
-    assert parse_params(rules, settings) == {
+    assert parse_params(rules.values(), settings) == {
         "pack.r1.speed": {"limit": 2.5, "on": False},
         "pack.r2.gap": {"word": "a=b"},
     }
@@ -118,4 +118,4 @@ def test_parameters_are_typed_like_their_default(rules: dict[str, Rule]) -> None
 )
 def test_wrong_parameters(rules: dict[str, Rule], setting: str, message: str) -> None:
     with pytest.raises(UsageError, match=message):
-        parse_params(rules, [setting])
+        parse_params(rules.values(), [setting])

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from drivelint.demo import scene_drive
-from drivelint.demo.scenes import all_scenes
 from tests.clean.judging import named, told, verdicts
+from tests.demo import scene_drive
+from tests.demo.scenes import all_scenes
 
 if TYPE_CHECKING:
     from collections.abc import Callable

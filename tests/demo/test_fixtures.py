@@ -12,13 +12,13 @@ from mcap.reader import make_reader
 
 from drivelint.demo.motion import separation
 from drivelint.demo.overtakes import overtakes
-from drivelint.demo.scenes import all_scenes
+from tests.demo.scenes import all_scenes
 from tests.demo.table_1 import TABLE_1
 from tests.shared_data import ROOT
 
 FOLDER = ROOT / "fixtures" / "scenes"
 MAKE = runpy.run_path(str(FOLDER / "make.py"))
-AGAIN = "run python fixtures/scenes/make.py and read what changed"
+AGAIN = "run PYTHONPATH=. python fixtures/scenes/make.py and read what changed"
 ZSTD = (1, 5, 7)  # the compressor of the committed logs: another one may pack the same messages into other bytes
 MAX_BYTES = 1_500_000
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from drivelint.demo.scene_drive import drive_of_scene
-from drivelint.demo.scenes import all_scenes
+from tests.demo.scene_drive import drive_of_scene
+from tests.demo.scenes import all_scenes
 from tests.scenes import Row, judged
 
 MIRRORED = ("near-miss", "collision-25mph", "signal-late", "overtake-two-in-one-go", "cyclist-at-1.0m")

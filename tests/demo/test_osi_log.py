@@ -14,10 +14,10 @@ from drivelint.demo.line import straight
 from drivelint.demo.osi_log import osi_mcap
 from drivelint.demo.road import Road
 from drivelint.demo.scene import Scene
-from drivelint.demo.scene_drive import drive_of_scene
-from drivelint.demo.scenes import all_scenes
 from drivelint.drive.trace import IngestOptions
 from drivelint.formats import read_trace
+from tests.demo.scene_drive import drive_of_scene
+from tests.demo.scenes import all_scenes
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pyarrow as pa
+
+from drivelint.drive.trace import Trace
 
 
 def states(x: float) -> pa.Table:
@@ -15,3 +19,10 @@ def states(x: float) -> pa.Table:
             "vy_mps": [0.0] * 20,
         }
     )
+
+
+def log_of(
+    rows: pa.Table, path: Path = Path("logs/drive.mcap"), *, embedded: bytes | None = None, reference: str | None = None
+) -> Trace:
+    """Return a drive of these states only."""
+    return Trace("drive", path, {"actor_state": rows}, embedded, None, [], geo_reference=reference)

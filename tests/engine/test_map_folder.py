@@ -9,7 +9,7 @@ import pytest
 from drivelint.engine.map_folder import MapFolder
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import MapError, UsageError
-from tests.engine.few_states import states
+from tests.engine.few_states import log_of, states
 from tests.formats.commonroad.scenario_text import lanelet, scenario
 
 
@@ -20,7 +20,7 @@ def put(folder: Path, name: str, x: float = 0.0) -> None:
 
 
 def found(folder: Path, log: str = "logs/drive.mcap", x: float = 5.0, embedded: bytes | None = None) -> str:
-    environment = MapLibrary(None, None, "auto", folder=folder).find(Path(log), embedded, None, states(x))
+    environment = MapLibrary(None, None, "auto", folder=folder).find(log_of(states(x), Path(log), embedded=embedded))
     assert environment is not None
     return environment.environment_id.split("-")[0]
 
@@ -63,13 +63,13 @@ def test_none_or_two_of_the_place_is_an_error_that_says_what_to_do(tmp_path: Pat
 def test_a_map_that_cannot_be_read_is_passed_over_where_another_is_of_the_place(tmp_path: Path) -> None:
     put(tmp_path, "a.xml")
     (tmp_path / "broken.xodr").write_text("<OpenDRIVE/>")
-    library, log = MapLibrary(None, None, "auto", folder=tmp_path), Path("logs/drive.mcap")
-    environment = library.find(log, None, None, states(5.0))
+    library, log = MapLibrary(None, None, "auto", folder=tmp_path), log_of(states(5.0))
+    environment = library.find(log)
     assert environment is not None
     assert environment.environment_id.startswith("a-")
-    assert "1 cannot, the first: " in library.doubts(log, environment, states(5.0))["map_unread"]
+    assert "1 cannot, the first: " in library.doubts(log, environment)["map_unread"]
     (tmp_path / "broken.xodr").unlink()
-    assert not MapLibrary(None, None, "auto", folder=tmp_path).doubts(log, environment, states(5.0))
+    assert not MapLibrary(None, None, "auto", folder=tmp_path).doubts(log, environment)
     (tmp_path / "broken.xodr").write_text("<OpenDRIVE/>")
     with pytest.raises(MapError, match=r"none of its maps .* \(1 could not be read, the first: .*broken\.xodr"):
         found(tmp_path, x=5000.0)

@@ -46,9 +46,7 @@ def robustness(spec: Spec, trace: Trace, formula: str | None = None) -> float:
 def ours(spec: Spec, traces: list[Trace]) -> list[CaseOutcome]:
     """Judge all traces at once, as drives of one database."""
     rule = RULES[spec.rule]
-    members = [
-        NumberedCase(no, complete_scene(rule, trace.given, (), spec.rule), {}) for no, trace in enumerate(traces)
-    ]
+    members = [NumberedCase(no, complete_scene(rule, trace.given, ()), {}) for no, trace in enumerate(traces)]
     outcome = judge([rule], merge(members, "drive_id"), {})[rule.id]
     return [outcome_of_case(outcome, member.no) for member in members]
 

@@ -11,7 +11,7 @@ from drivelint.engine.map_library import MapLibrary
 from drivelint.formats import read_trace
 from drivelint.road import geo_reference
 from drivelint.road.map_reader import MapSource
-from tests.engine.few_states import states
+from tests.engine.few_states import log_of, states
 from tests.formats.opendrive.xodr import xodr
 from tests.formats.osi import osi_log
 
@@ -58,16 +58,15 @@ def put(folder: Path, **references: str | None) -> MapLibrary:
 def test_the_map_of_the_logs_reference(tmp_path: Path) -> None:
     """All lie at the same coordinates: the place does not tell them apart."""
     library = put(tmp_path, here=KARLSRUHE, there=UTM, nowhere=None)
-    log = Path("logs/drive.mcap")
-    found = library.find(log, None, None, states(5.0), KARLSRUHE + " +no_defs")
+    found = library.find(log_of(states(5.0), reference=KARLSRUHE + " +no_defs"))
     assert found is not None
     assert found.environment_id.startswith("here")
-    assert library.doubts(log, found, states(5.0), KARLSRUHE) == {}
-    assert library.doubts(log, found, states(5.0), None) == {}
-    doubt = library.doubts(log, found, states(5.0), UTM)
+    assert library.doubts(log_of(states(5.0), reference=KARLSRUHE), found) == {}
+    assert library.doubts(log_of(states(5.0), reference=None), found) == {}
+    doubt = library.doubts(log_of(states(5.0), reference=UTM), found)
     assert doubt.keys() == {"geo_reference_differs"}
     assert "+lat_0=49" in doubt["geo_reference_differs"]
-    assert library.doubts(log, found, states(5.0), "EPSG:32632") == {}
+    assert library.doubts(log_of(states(5.0), reference="EPSG:32632"), found) == {}
 
 
 def test_the_reference_of_an_osi_log(tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from drivelint.errors import MapError
 from drivelint.road.boundary_lanes import BoundedLane, build_lanes, side_driven_on
 from drivelint.road.map_reader import MapSource
 from drivelint.road.quality import MapQuality
+from tests.engine.few_states import log_of
 from tests.formats.opendrive.xodr import checks, geometry, lane, lanelets, load, road, rows, section, xodr
 
 HANDS = pytest.mark.parametrize("hand", ["lht", "rht"])
@@ -153,27 +154,27 @@ def _states(hand: str, way: int) -> pa.Table:
 
 @HANDS
 def test_the_traffic_of_a_log_settles_it_and_contradicts_a_wrong_option(hand: str, tmp_path: object) -> None:
-    log = tmp_path / "log.csv"  # type: ignore[operator]
+    log = log_of(_states(hand, 1))
     content = xodr(*pair(hand)).encode()
     path = tmp_path / "small.xodr"  # type: ignore[operator]
     path.write_bytes(content)
     library = MapLibrary(path, None, "auto")
-    found = library.find(log, None, None, _states(hand, 1))
+    found = library.find(log)
     assert found is not None
     assert (found.handedness, found.handedness_source) == (hand, "traces")
-    assert not library.doubts(log, found, _states(hand, 1))
+    assert not library.doubts(log, found)
 
     wrong = MapLibrary(path, None, "rht" if hand == "lht" else "lht")
     with pytest.raises(MapError, match="runs against its lanes, on road 1 both ways"):
-        wrong.doubts(log, wrong.find(log, None, None, _states(hand, 1)), _states(hand, 1))
+        wrong.doubts(log, wrong.find(log))
 
     alone = MapSource("small.xodr", xodr(one("1", (LANE if hand == "lht" else -LANE) / 2)).encode())
     path.write_bytes(alone.content)
     for said, source in (("auto", "default"), ("lht", "option")):
         library = MapLibrary(path, None, said)
         for way in (1, -1):
-            states = _states(hand, way).slice(0, 60)
-            found = library.find(log, None, None, states)
+            log = log_of(_states(hand, way).slice(0, 60))
+            found = library.find(log)
             assert found is not None
             assert (found.handedness_source, along(found)) == (source, {way})
-            assert not library.doubts(log, found, states)
+            assert not library.doubts(log, found)

@@ -192,7 +192,7 @@ def coverage_problem(cases: Sequence[Case]) -> str:
 def run_case(rule: Rule, case: Case) -> CaseResult:
     """Fill a scene, judge it by this rule alone, compare. Errors: `RuleError` with file, line and case."""
     with _placed(rule, case):
-        message = difference(case, merged_cases.CaseOutcome(*judge(rule, case)))
+        message = difference(case, judge(rule, case))
     return CaseResult(case.name, not message, message and f"{case_location(rule, case)}: {message}")
 
 
@@ -218,13 +218,9 @@ def difference(case: Case, outcome: merged_cases.CaseOutcome) -> str:
     return message
 
 
-def judge(rule: Rule, case: Case) -> tuple[list[Row], list[Row]]:
-    """Return the verdict rows (in the order that `expect` uses) and the finding rows of a case.
-
-    Errors: `RuleError` for tables, columns or values that cannot be understood.
-    """
-    outcome = merged_cases.judge([rule], complete_scene(rule, case.given, case.missing, "given"), case.params)[rule.id]
-    return outcome.verdicts, outcome.findings
+def judge(rule: Rule, case: Case) -> merged_cases.CaseOutcome:
+    """Judge one case alone. Errors: `RuleError` for tables, columns or values that cannot be understood."""
+    return merged_cases.judge([rule], complete_scene(rule, case.given, case.missing), case.params)[rule.id]
 
 
 def numbered_cases(rule: Rule, cases: Sequence[Case]) -> list[merged_cases.NumberedCase]:
@@ -232,9 +228,8 @@ def numbered_cases(rule: Rule, cases: Sequence[Case]) -> list[merged_cases.Numbe
     found = []
     for no, case in enumerate(cases):
         with _placed(rule, case):
-            found.append(
-                merged_cases.NumberedCase(no, complete_scene(rule, case.given, case.missing, "given"), case.params)
-            )
+            scene = complete_scene(rule, case.given, case.missing)
+            found.append(merged_cases.NumberedCase(no, scene, case.params))
     return found
 
 
@@ -254,10 +249,9 @@ def run_merged_cases(
     for key, where in keys.items():
         for group in merged_cases.mergeable_groups(everybody, key):
             outcome = merged_cases.judge([rule], merged_cases.merge(group, key), group[0].params)[rule.id]
-            rows = (row for row in [*outcome.verdicts, *outcome.findings] if row["cause_code"] is not None)
-            codes |= {
-                code for row in rows for code in codes_in(row["cause_code"], json.loads(row["cause_args"] or "{}"))
-            }
+            for row in [*outcome.verdicts, *outcome.findings]:
+                if row["cause_code"] is not None:
+                    codes.update(codes_in(row["cause_code"], json.loads(row["cause_args"] or "{}")))
             for member in group:
                 case = cases[member.no]
                 if message := difference(case, merged_cases.outcome_of_case(outcome, member.no)):

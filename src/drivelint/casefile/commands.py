@@ -66,11 +66,9 @@ def case_test(root: Path | None, only: Sequence[str], say: Say) -> ExitCode:
     """
     code = ExitCode.OK
     for rule in _rules(root, only):
-        if isinstance(rule, RuleError):
-            say(f"REFUSED {rule}")
-            code = ExitCode.USAGE
-            continue
         try:
+            if isinstance(rule, RuleError):
+                raise rule
             results = run_cases(rule)
         except RuleError as error:
             say(f"REFUSED {error}")

@@ -19,10 +19,10 @@ from collections import Counter
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import duckdb
 import msgspec
 
 from drivelint.catalogue.allowed import macros
+from drivelint.sql.syntax import parser, syntax_tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
 Node = dict[str, Any]
+Way = tuple[str | int, ...]
+"""The keys from the node of a statement to one inside it."""
 
 OPPOSITE = {">": "<=", ">=": "<", "<": ">=", "<=": ">"}
 BOUNDARY_SWAP = {">": ">=", ">=": ">", "<": "<=", "<=": "<"}
@@ -95,7 +97,7 @@ def _of_the_windows(rule: Rule) -> Iterator[Mutant]:
 
 def _of_the_sql(rule: Rule) -> Iterator[Mutant]:
     for section, sql in rule.sections.items():
-        tree = _tree(sql)
+        tree = syntax_tree(sql)
         for place in _places(tree["statements"][0]["node"]):
             for fault, changed in _faults(tree, place):
                 yield Mutant(f"@{section} {fault}", _with_section(rule, section, _sql(changed)))
@@ -108,15 +110,15 @@ def _with_section(rule: Rule, name: str, sql: str) -> Rule:
 class _Place(NamedTuple):
     """A node of a syntax tree: the way to it from the statement's node, and itself."""
 
-    way: tuple[str | int, ...]
+    way: Way
     node: Node
 
 
 def _places(root: Node) -> list[_Place]:
     """Return every node that can matter to a verdict, in the order of the text."""
-    wording = _wording(root)
+    wording = _columns(root, frozenset({"reason", "reason_code"}))
     found: list[_Place] = []
-    todo: list[tuple[tuple[str | int, ...], Any]] = [((), root)]
+    todo: list[tuple[Way, Any]] = [((), root)]
     while todo:
         way, part = todo.pop()
         if way in wording:
@@ -129,19 +131,19 @@ def _places(root: Node) -> list[_Place]:
     return found
 
 
-def _outputs(root: Node) -> list[tuple[str | int, ...]]:
+def _outputs(root: Node) -> list[Way]:
     """Return the ways to the SELECT nodes whose columns are those of the statement: itself or the branches of a UNION."""
     if root["type"] == "SELECT_NODE":
         return [()]
     if root["type"] != "SET_OPERATION_NODE":
         return []
-    branches: list[tuple[str | int, ...]] = (
+    branches: list[Way] = (
         [("left",), ("right",)] if "left" in root else [("children", i) for i in range(len(root["children"]))]
     )
     return [(*branch, *way) for branch in branches for way in _outputs(_at(root, branch))]
 
 
-def _columns(root: Node, names: frozenset[str]) -> set[tuple[str | int, ...]]:
+def _columns(root: Node, names: frozenset[str]) -> set[Way]:
     """Return the ways to the expressions of the statement's columns of these names."""
     outputs = _outputs(root)
     if not outputs:
@@ -151,15 +153,11 @@ def _columns(root: Node, names: frozenset[str]) -> set[tuple[str | int, ...]]:
     return {(*way, "select_list", i) for way in outputs for i in chosen}
 
 
-def _wording(root: Node) -> set[tuple[str | int, ...]]:
-    return _columns(root, frozenset({"reason", "reason_code"}))
-
-
 def _name(item: Node) -> str:
     return str(item.get("alias") or (item["column_names"][-1] if item["class"] == "COLUMN_REF" else "")).lower()
 
 
-def _at(root: Any, way: tuple[str | int, ...]) -> Any:
+def _at(root: Any, way: Way) -> Any:
     for key in way:
         root = root[key]
     return root
@@ -181,21 +179,19 @@ def _faults(tree: Node, place: _Place) -> Iterator[tuple[str, Node]]:
     for i, column in enumerate(using):
         rest = node | {"using_columns": using[:i] + using[i + 1 :]}
         if not rest["using_columns"]:
-            rest |= {"condition": _true()}
+            rest |= {"condition": _expression("true")}
         yield f"USING without: {column}", _replaced(tree, way, rest)
 
 
-def _without_terms(tree: Node, way: tuple[str | int, ...], clause: Node, words: str) -> Iterator[tuple[str, Node]]:
+def _without_terms(tree: Node, way: Way, clause: Node, words: str) -> Iterator[tuple[str, Node]]:
     if clause["type"] != "CONJUNCTION_AND":
-        yield f"{words} without: {_text(clause)}", _replaced(tree, way, _true())
+        yield f"{words} without: {_text(clause)}", _replaced(tree, way, _expression("true"))
         return
     terms = clause["children"]
     for i, term in enumerate(terms):
         rest = terms[:i] + terms[i + 1 :]
-        yield (
-            f"{words} without: {_text(term)}",
-            _replaced(tree, way, rest[0] if len(rest) == 1 else clause | {"children": rest}),
-        )
+        new = rest[0] if len(rest) == 1 else clause | {"children": rest}
+        yield f"{words} without: {_text(term)}", _replaced(tree, way, new)
 
 
 def _is_threshold(tree: Node, place: _Place) -> bool:
@@ -211,16 +207,14 @@ def _is_threshold(tree: Node, place: _Place) -> bool:
 
 
 def _is_number(value: Node) -> bool:
-    if value.get("is_null") or isinstance(value.get("value"), bool | str | None):
-        return False
-    if not isinstance(value["value"], int | float):
+    if value.get("is_null") or isinstance(value["value"], bool) or not isinstance(value["value"], int | float):
         return False
     info = value["type"].get("type_info") or {}
     number = abs(value["value"]) / 10 ** info.get("scale", 0)
-    return number not in {0, 1} and number not in {float(10**n) for n in range(3, 19)}
+    return number not in {0, 1, *(10.0**n for n in range(3, 19))}
 
 
-def _replaced(tree: Node, way: tuple[str | int, ...], new: Node) -> Node:
+def _replaced(tree: Node, way: Way, new: Node) -> Node:
     changed: Node = copy.deepcopy(tree)
     _at(changed["statements"][0]["node"], way[:-1])[way[-1]] = copy.deepcopy(new)
     return changed
@@ -232,18 +226,14 @@ def _scaled(node: Node, factor: float) -> Node:
     return product | {"alias": node.get("alias", "")}
 
 
-def _true() -> Node:
-    return _expression("true")
-
-
 @cache
 def _expression(sql: str) -> Node:
-    node: Node = _tree(f"SELECT {sql}")["statements"][0]["node"]["select_list"][0]
+    node: Node = syntax_tree(f"SELECT {sql}")["statements"][0]["node"]["select_list"][0]
     return node
 
 
 def _text(node: Node) -> str:
-    tree = copy.deepcopy(_tree("SELECT 1"))
+    tree = copy.deepcopy(syntax_tree("SELECT 1"))
     tree["statements"][0]["node"]["select_list"] = [node | {"alias": ""}]
     return _bare(_sql(tree).removeprefix("SELECT "))
 
@@ -264,15 +254,5 @@ def _balanced(text: str) -> bool:
     return depth == 0
 
 
-@cache
-def _printer() -> duckdb.DuckDBPyConnection:
-    return duckdb.connect()
-
-
-def _tree(sql: str) -> Node:
-    tree: Node = json.loads(_printer().execute("SELECT json_serialize_sql(?)", [sql]).fetchall()[0][0])
-    return tree
-
-
 def _sql(tree: Node) -> str:
-    return str(_printer().execute("SELECT json_deserialize_sql(?::JSON)", [json.dumps(tree)]).fetchall()[0][0])
+    return str(parser().execute("SELECT json_deserialize_sql(?::JSON)", [json.dumps(tree)]).fetchall()[0][0])

@@ -119,13 +119,15 @@ def judge_mutants(rule: Rule) -> MutationResult:
     The cases are judged together, first as drives of one database, then (what is left) as egos of one drive.
     """
     listed: tuple[str, ...] = ()
+    survivors: tuple[str, ...] = ()
+    problem = ""
     wrong = mutants(rule)
     try:
-        listed = _listed(rule)
+        listed = tuple(entry.mutant for entry in _read(rule.path.parent / SURVIVORS_FILE) if entry.rule == rule.id)
         survivors = tuple(mutant.fault for mutant in _survivors(rule, wrong))
     except RuleError as error:
-        return MutationResult(rule.id, rule.status == "stable", len(wrong), (), listed, str(error))
-    return MutationResult(rule.id, rule.status == "stable", len(wrong), survivors, listed)
+        problem = str(error)
+    return MutationResult(rule.id, rule.status == "stable", len(wrong), survivors, listed, problem)
 
 
 def _survivors(rule: Rule, alive: list[Mutant]) -> list[Mutant]:
@@ -146,11 +148,6 @@ def _wrong(rule: Rule, cases: Sequence[Case], crowd: Sequence[NumberedCase], out
         if message := difference(cases[member.no], outcome_of_case(outcome, member.no)):
             return f"{case_location(rule, cases[member.no])}: {message}"
     return ""
-
-
-def _listed(rule: Rule) -> tuple[str, ...]:
-    """Return the mutants of a rule that its pack lets live. Errors: `RuleError` naming the file."""
-    return tuple(entry.mutant for entry in _read(rule.path.parent / SURVIVORS_FILE) if entry.rule == rule.id)
 
 
 def entries_without_rule(rules: Sequence[Rule]) -> list[str]:

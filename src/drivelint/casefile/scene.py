@@ -35,25 +35,20 @@ def case_database() -> duckdb.DuckDBPyConnection:
     return con
 
 
-class _Column(NamedTuple):
-    type: str
-    nullable: bool
-
-
 @cache
-def _tables() -> dict[str, dict[str, _Column]]:
-    tables: dict[str, dict[str, _Column]] = {}
-    found = case_database().execute(
-        "SELECT table_name, column_name, data_type, is_nullable FROM duckdb_columns() WHERE NOT internal"
-    )
-    for table, column, kind, nullable in found.fetchall():
-        tables.setdefault(table, {})[column] = _Column(kind, nullable)
+def _tables() -> dict[str, dict[str, Any]]:
+    """Return table -> column -> what it has where it must not be NULL and is not given; None: it may be NULL."""
+    zero = {"VARCHAR": "", "BOOLEAN": False, "DOUBLE": 0.0}
+    tables: dict[str, dict[str, Any]] = {}
+    columns = "SELECT table_name, column_name, data_type, is_nullable FROM duckdb_columns() WHERE NOT internal"
+    for table, column, kind, nullable in case_database().execute(columns).fetchall():
+        tables.setdefault(table, {})[column] = None if nullable else zero.get(kind, 0)
     return tables
 
 
-def complete_scene(rule: Rule, given: Mapping[str, Any], missing: Sequence[str], where: str) -> dict[str, list[Row]]:
-    """Return table -> rows: what a case gives, and what follows from it. Errors: `RuleError` starting with `where`."""
-    scene = {table: _rows(table, blocks, where) for table, blocks in given.items()}
+def complete_scene(rule: Rule, given: Mapping[str, Any], missing: Sequence[str]) -> dict[str, list[Row]]:
+    """Return table -> rows: what a case gives, and what follows from it. Errors: `RuleError`."""
+    scene = {table: _rows(table, blocks) for table, blocks in given.items()}
     clock = scene.pop("clock", [{}])
     scene["step"] = _steps(scene, clock[0].get("max_gap_ns"))
     scene["clock"] = _clocks(scene["step"], clock)
@@ -61,7 +56,7 @@ def complete_scene(rule: Rule, given: Mapping[str, Any], missing: Sequence[str],
     subjects = [(row["drive_id"], row["ego_id"]) for row in scene["clock"]]
     logged = {row["drive_id"] for row in scene.get("data_log", ())}
     new = [{"drive_id": d, "sha256": f"hash of {d}"} for d in dict.fromkeys(d for d, _ in subjects) if d not in logged]
-    scene["data_log"] = scene.get("data_log", []) + new
+    scene["data_log"] = [*scene.get("data_log", ()), *new]
     answered = {row["signal"] for row in scene.get("capability", ())}
     signals = [s for s in dict.fromkeys([*rule.requires, *missing]) if s not in answered]
     scene["capability"] = scene.get("capability", []) + [
@@ -78,16 +73,15 @@ def complete_scene(rule: Rule, given: Mapping[str, Any], missing: Sequence[str],
     return scene
 
 
-def _rows(table: str, given: Any, where: str) -> list[Row]:
+def _rows(table: str, given: Any) -> list[Row]:
     """Spread the blocks of one table into rows."""
     if table not in _tables():
-        raise RuleError(f"{where}: there is no table {table!r}")
-    blocks = given if isinstance(given, list) else [given]
+        raise RuleError(f"given: there is no table {table!r}")
     rows: list[Row] = []
-    for block in blocks:
+    for block in given if isinstance(given, list) else [given]:
         if not isinstance(block, dict):
-            raise RuleError(f"{where}: {table}: a block is 'column: value' pairs, not {block!r}")
-        rows += _block(table, block, f"{where}: {table}")
+            raise RuleError(f"given: {table}: a block is 'column: value' pairs, not {block!r}")
+        rows += _block(table, block, f"given: {table}")
     return rows
 
 
@@ -175,16 +169,12 @@ def _by_time(value: Mapping[Any, Any], times: Any, where: str) -> list[Any]:
 
 def _steps(given: Mapping[str, Sequence[Row]], max_gap_ns: int | None) -> list[Row]:
     """Return the step rows of every subject, from `step` or from the times that the scene uses."""
-    sources = (
-        {"step": given["step"]} if "step" in given else {t: rows for t, rows in given.items() if _is_grid(t) and rows}
-    )
+    grids = {t: rows for t, rows in given.items() if rows and _is_grid(t)}
+    sources = {"step": given["step"]} if "step" in given else grids
     times: dict[tuple[str, str], set[int]] = {}
     for row in (row for rows in (sources or given).values() for row in rows):
-        used = {
-            v
-            for c, v in row.items()
-            if v is not None and c.endswith("_ns") and c not in _DURATIONS and (c == "t_ns" or not sources)
-        }
+        names = ["t_ns"] if sources else [name for name in row if name.endswith("_ns") and name not in _DURATIONS]
+        used = {row[name] for name in names if row.get(name) is not None}
         times.setdefault((row.get("drive_id", _DRIVE), row.get("ego_id", _EGO)), set()).update(used)
     said = {(row["drive_id"], row["ego_id"], row["t_ns"]): row for row in given.get("step", ())}
     steps: list[Row] = []
@@ -229,17 +219,8 @@ def _clocks(steps: Iterable[Row], given: Sequence[Row]) -> list[Row]:
         used = sorted(times.get((drive, ego), [0]))
         period = _period(used)
         own = {c: v for c, v in said.get((drive, ego), {}).items() if v is not None}
-        clocks.append(
-            {
-                "drive_id": drive,
-                "ego_id": ego,
-                "period_ns": period,
-                "max_gap_ns": period * 5 // 2,
-                "t_start_ns": used[0],
-                "t_end_ns": used[-1],
-            }
-            | own
-        )
+        clock = {"drive_id": drive, "ego_id": ego, "period_ns": period, "max_gap_ns": period * 5 // 2}
+        clocks.append(clock | {"t_start_ns": used[0], "t_end_ns": used[-1]} | own)
     return clocks
 
 
@@ -252,8 +233,7 @@ def fill(con: duckdb.DuckDBPyConnection, table: str, rows: Sequence[Row]) -> Non
 
     if not rows:
         return
-    zero = {"VARCHAR": "", "BOOLEAN": False, "DOUBLE": 0.0}
-    defaults = {c: zero.get(column.type, 0) for c, column in _tables()[table].items() if not column.nullable}
+    defaults = {column: default for column, default in _tables()[table].items() if default is not None}
     names = dict.fromkeys([*defaults, *(c for row in rows for c in row)])
     try:
         store.insert(con, table, pa.table({c: [row.get(c, defaults.get(c)) for row in rows] for c in names}))

@@ -10,7 +10,6 @@ import re
 from functools import cache
 from typing import Final
 
-from drivelint.resources import folder
 from drivelint.sql import store
 
 ENGINE_TABLES: Final = frozenset({"reference", "reference_step"})
@@ -61,8 +60,7 @@ _OUTPUTS = ("verdict", "evidence", "output")  # what a run writes is not what a 
 @cache
 def macros() -> frozenset[str]:
     """Return the names of the library's macros, in lower case."""
-    files = sorted((folder("queries") / "macros").glob("*.sql"))
-    return frozenset(name.lower() for file in files for name in _MACRO.findall(file.read_text(encoding="utf-8")))
+    return frozenset(name.lower() for name in _MACRO.findall(store.macro_definitions()))
 
 
 @cache

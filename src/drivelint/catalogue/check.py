@@ -6,9 +6,8 @@ says nothing (it does so with two statements, DESCRIBE, `query('...')` and `FROM
 
 from __future__ import annotations
 
-import json
 import re
-from functools import cache, lru_cache
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import duckdb
@@ -16,6 +15,7 @@ import duckdb
 from drivelint.catalogue import allowed
 from drivelint.catalogue.allowed import ENGINE_TABLES
 from drivelint.errors import RuleError
+from drivelint.sql.syntax import parser, syntax_tree
 
 __all__ = ["ENGINE_TABLES", "Query", "check_query"]
 
@@ -63,11 +63,6 @@ class _Text(NamedTuple):
         return f"{self.file}:{self.line + (int(line[1]) - 1 if line else 0)}"
 
 
-@cache
-def _parser() -> duckdb.DuckDBPyConnection:
-    return duckdb.connect()
-
-
 @lru_cache(maxsize=2048)  # whoever judges twice in a process reads the same rules again
 def check_query(sql: str, file: str, line: int = 1) -> Query:
     """Check the SQL of one section, which begins at `line` of `file`, and return what it is made of.
@@ -85,15 +80,14 @@ def check_query(sql: str, file: str, line: int = 1) -> Query:
 
 
 def _parsed(text: _Text) -> tuple[duckdb.Statement, Node]:
-    con = _parser()
     try:
-        statements = con.extract_statements(text.sql)
+        statements = parser().extract_statements(text.sql)
         if len(statements) > 1:
             second = text.sql.encode().find(statements[1].query.strip().encode())
             raise RuleError(f"{text.at(second)}: a section is exactly one SELECT, found {len(statements)} statements")
         if not statements or statements[0].type != duckdb.StatementType.SELECT:
             raise RuleError(f"{text.at(0)}: a section is exactly one SELECT, and this is none")
-        tree = json.loads(con.execute("SELECT json_serialize_sql(?)", [text.sql]).fetchall()[0][0])
+        tree = syntax_tree(text.sql)
     except duckdb.Error as error:
         raise RuleError(f"{text.of(error)}: {str(error).splitlines()[0]}") from error
     except RecursionError as error:

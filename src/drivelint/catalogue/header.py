@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 import tomllib
+from itertools import chain
 from math import inf
-from typing import Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import msgspec
 
@@ -14,6 +15,9 @@ from drivelint.errors import RuleError
 from drivelint.phrases import hint
 from drivelint.reasons import signals
 from drivelint.reasons.reason_text import ReasonText
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 Kind = Literal["invariant", "execution", "precondition", "postcondition"]
 Seconds = float | str
@@ -112,8 +116,7 @@ def parse_header(text: str, where: str) -> Header:
     """Parse the TOML `text`, whose line n is line n of the file `where`.
 
     Errors: `RuleError` naming file and line for bad TOML, an unknown key (with the nearest known one), a wrong type, or
-    fields
-    that contradict each other.
+    fields that contradict each other.
     """
     try:
         raw = tomllib.loads(text)
@@ -124,8 +127,7 @@ def parse_header(text: str, where: str) -> Header:
         header = msgspec.convert(raw, Header)
     except msgspec.ValidationError as error:
         raise _explained(error, text, where) from error
-    problem = _contradiction(header)
-    if problem:
+    if problem := next(chain(_kind_problems(header), _word_problems(header), _number_problems(header)), None):
         key, message = problem
         raise RuleError(f"{where}:{line_of(text, key)}: {message}")
     return header
@@ -170,88 +172,66 @@ def _parts(name: str) -> list[str]:
     return [part.strip(" \t'\"") for part in name.split(".")]
 
 
-def _contradiction(h: Header) -> tuple[str, str] | None:
-    """Return (key, message) of the first rule of the header that is broken, or None."""
-    later = h.kind in {"precondition", "postcondition"}
-    seconds = {"window_s": h.window_s, "exempt_after_s": h.exempt_after_s, "merge_gap_s": h.merge_gap_s}
-    checks: list[tuple[bool, str, str]] = [
-        (
-            later != (h.subtype is not None),
-            "subtype" if h.subtype else "kind",
-            "subtype (temporal or physical) belongs to pre- and postconditions, and they need it",
-        ),
-        (
-            (h.subtype == "temporal") != (h.window_s is not None),
-            "window_s",
-            "window_s belongs to temporal conditions, and they need it",
-        ),
-        (
-            h.quantifier == "eventually" and not later,
-            "quantifier",
-            f"quantifier = 'eventually' makes no sense for an {h.kind}: use a pre- or postcondition",
-        ),
-        (
-            h.combine != "each" and h.kind == "invariant",
-            "combine",
-            "an invariant is judged per object: combine is for conditions at a reference point",
-        ),
-        (h.sense != "holds" and h.unit is None, "sense", "unit is missing: a measured condition says in which unit"),
-        (
-            h.sense == "holds" and h.near_margin is not None,
-            "near_margin",
-            "near_margin needs a measured condition, not sense = 'holds'",
-        ),
-        (h.kind == "invariant" and h.reference is not None, "reference", "an invariant has no reference point"),
-        (h.kind != "invariant" and h.exempt_after_s != 0, "exempt_after_s", "exempt_after_s is for invariants"),
-        (
-            h.observes is not None and (h.sense == "holds" or not h.observes.strip()),
-            "observes",
-            "observes names what a measured condition observes, as a short noun phrase; sense = 'holds' observes nothing",
-        ),
-        (h.kind == "invariant" and h.without_time is not None, "without_time", "an invariant has no reference point"),
-        (
-            h.subtype != "physical" and h.without_anchor is not None,
-            "without_anchor",
-            "without_anchor is for physical conditions: no other has an anchor",
-        ),
-        (not h.reads, "reads", "reads must name the tables that the rule reads"),
-    ]
-    checks += [
-        (
-            not _NAME.fullmatch(name),
-            f"params.{name}",
-            f"parameter {name!r}: use lower-case letters, digits and _, a letter first",
-        )
-        for name in h.params
-    ]
-    for key in ("requires", "pass_requires"):
-        checks += [(True, key, f"{key}: {wrong}") for word in getattr(h, key) if (wrong := signals.problem(word))]
-    checks += [(True, "law", f"law: {wrong}") for word in h.law if (wrong := conditions.value_problem("nation", word))]
+def _kind_problems(h: Header) -> Iterator[tuple[str, str]]:
+    """Yield the key and what is wrong with it: fields that do not go with the kind or the sense."""
+    later, measured = h.kind in {"precondition", "postcondition"}, h.sense != "holds"
+    if later != (h.subtype is not None):
+        key = "subtype" if h.subtype else "kind"
+        yield key, "subtype (temporal or physical) belongs to pre- and postconditions, and they need it"
+    if (h.subtype == "temporal") != (h.window_s is not None):
+        yield "window_s", "window_s belongs to temporal conditions, and they need it"
+    if h.quantifier == "eventually" and not later:
+        yield "quantifier", f"quantifier = 'eventually' makes no sense for an {h.kind}: use a pre- or postcondition"
+    if h.combine != "each" and h.kind == "invariant":
+        yield "combine", "an invariant is judged per object: combine is for conditions at a reference point"
+    if measured and h.unit is None:
+        yield "sense", "unit is missing: a measured condition says in which unit"
+    if not measured and h.near_margin is not None:
+        yield "near_margin", "near_margin needs a measured condition, not sense = 'holds'"
+    if h.kind == "invariant" and h.reference is not None:
+        yield "reference", "an invariant has no reference point"
+    if h.kind != "invariant" and h.exempt_after_s != 0:
+        yield "exempt_after_s", "exempt_after_s is for invariants"
+    if h.observes is not None and not (measured and h.observes.strip()):
+        message = "observes names what a measured condition observes, as a short noun phrase; sense = 'holds' observes nothing"
+        yield "observes", message
+    if h.kind == "invariant" and h.without_time is not None:
+        yield "without_time", "an invariant has no reference point"
+    if h.subtype != "physical" and h.without_anchor is not None:
+        yield "without_anchor", "without_anchor is for physical conditions: no other has an anchor"
+
+
+def _word_problems(h: Header) -> Iterator[tuple[str, str]]:
+    if not h.reads:
+        yield "reads", "reads must name the tables that the rule reads"
+    for name in h.params:
+        if not _NAME.fullmatch(name):
+            yield f"params.{name}", f"parameter {name!r}: use lower-case letters, digits and _, a letter first"
+    for key, words in (("requires", h.requires), ("pass_requires", h.pass_requires)):
+        yield from ((key, f"{key}: {wrong}") for word in words if (wrong := signals.problem(word)))
+    yield from (("law", f"law: {wrong}") for word in h.law if (wrong := conditions.value_problem("nation", word)))
     for name, words in h.applies.restricting.items():
-        checks += [
-            (True, f"applies.{name}", f"[applies] {wrong}")
-            for word in words
-            if (wrong := conditions.value_problem(name, word))
-        ]
+        problems = (conditions.value_problem(name, word) for word in words)
+        yield from ((f"applies.{name}", f"[applies] {wrong}") for wrong in problems if wrong)
+
+
+def _number_problems(h: Header) -> Iterator[tuple[str, str]]:
     least, most = h.applies.limit_min_mps, h.applies.limit_max_mps
-    checks += [
-        (value is not None and not 0 <= value < inf, f"applies.{key}", f"{key} must be a speed in m/s, not {value}")
-        for key, value in (("limit_min_mps", least), ("limit_max_mps", most))
-    ]
-    checks.append(
-        (
-            least is not None and most is not None and least > most,
-            "applies.limit_min_mps",
-            "limit_min_mps is above limit_max_mps: the rule would apply nowhere",
-        )
-    )
-    for key, value in seconds.items():
-        if isinstance(value, str):
-            default = h.params[value].default if value in h.params else None
-            good = isinstance(default, float) and default >= 0
-            checks.append(
-                (not good, key, f"{key} = {value!r} must be a number or the name of a numeric parameter of this rule")
-            )
-        elif value is not None:
-            checks.append((not 0 <= value < 1e9, key, f"{key} must be a number of seconds, not {value}"))
-    return next(((key, message) for broken, key, message in checks if broken), None)
+    for key, value in (("limit_min_mps", least), ("limit_max_mps", most)):
+        if value is not None and not 0 <= value < inf:
+            yield f"applies.{key}", f"{key} must be a speed in m/s, not {value}"
+    if least is not None and most is not None and least > most:
+        yield "applies.limit_min_mps", "limit_min_mps is above limit_max_mps: the rule would apply nowhere"
+    for key in ("window_s", "exempt_after_s", "merge_gap_s"):
+        if wrong := _seconds_problem(h, getattr(h, key)):
+            yield key, f"{key} {wrong}"
+
+
+def _seconds_problem(h: Header, seconds: Seconds | None) -> str | None:
+    if isinstance(seconds, str):
+        default = h.params[seconds].default if seconds in h.params else None
+        if not (isinstance(default, float) and default >= 0):
+            return f"= {seconds!r} must be a number or the name of a numeric parameter of this rule"
+    elif seconds is not None and not 0 <= seconds < 1e9:
+        return f"must be a number of seconds, not {seconds}"
+    return None

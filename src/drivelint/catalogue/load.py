@@ -6,13 +6,12 @@ import hashlib
 import re
 from functools import cache
 from pathlib import Path  # noqa: TC003 - msgspec looks the field types up when it needs them
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
 from drivelint.catalogue.check import ENGINE_TABLES, Query, check_query
 from drivelint.catalogue.header import Header, line_of, parse_header
-from drivelint.catalogue.sections import Section, split
 from drivelint.errors import RuleError
 from drivelint.phrases import hint
 from drivelint.reasons.reason_text import shared_texts
@@ -24,20 +23,19 @@ if TYPE_CHECKING:
 
 PACK_NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 RULE_NAME = re.compile(r"[a-z0-9][a-z0-9._-]*")
+SECTIONS = ("applies", "reference", "condition", "anchor")
+_MARK = re.compile(r"^--\s*@(\S+)\s*$")
 _KEYS = ("drive_id", "ego_id", "t_ns")
-_CONDITION = (
-    *_KEYS,
-    "object_id",
-    "ref_id",
-    "profile",
-    "observed",
-    "required",
-    "holds",
-    "applies",
-    "at_least",
-    "reason_code",
-    "reason",
-)
+_MEASURES = ("object_id", "ref_id", "profile", "observed", "required", "holds", "applies", "at_least")
+_CONDITION = (*_KEYS, *_MEASURES, "reason_code", "reason")
+
+
+class Section(NamedTuple):
+    """One section of a rule: its SELECT, the line of its `@` mark, and the line on which the SELECT begins."""
+
+    sql: str
+    line: int
+    sql_line: int
 
 
 class _Pack(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -119,10 +117,10 @@ def read_rule(file: Path) -> Rule:
         text = content.decode("utf-8")
     except UnicodeDecodeError as error:
         raise RuleError(f"{file}: not UTF-8 at byte {error.start}") from error
-    toml, sections = split(text, str(file))
+    toml, sections = split_sections(text, str(file))
     header = parse_header(toml, str(file))
     if header.reference is not None:
-        sections = _event_table(header.reference, sections, file, line_of(toml, "reference"))
+        sections["reference"] = _event_table(header.reference, sections, file, line_of(toml, "reference"))
     queries = {name: check_query(section.sql, str(file), section.sql_line) for name, section in sections.items()}
     _check_sections(header, sections, queries, file)
     _check_reads(header, queries, f"{file}:{line_of(toml, 'reads')}")
@@ -142,6 +140,43 @@ def read_rule(file: Path) -> Rule:
     )
 
 
+def split_sections(text: str, where: str) -> tuple[str, dict[str, Section]]:
+    """Return the header's TOML (line n of it is line n of the file) and the sections by name.
+
+    Errors: `RuleError` for SQL before the first section, an unknown, repeated or empty section.
+    """
+    lines = text.splitlines()
+    marks = [(n, match[1]) for n, line in enumerate(lines) if (match := _MARK.match(line))]
+    header_end = marks[0][0] if marks else len(lines)
+    header = [_uncomment(line, n, where) for n, line in enumerate(lines[:header_end], 1)]
+    sections: dict[str, Section] = {}
+    ends = [n for n, _ in marks[1:]] + [len(lines)]
+    for (start, name), end in zip(marks, ends, strict=False):
+        if name not in SECTIONS:
+            raise RuleError(f"{where}:{start + 1}: unknown section @{name}; {hint(name, SECTIONS, sign='@')}")
+        if name in sections:
+            raise RuleError(f"{where}:{start + 1}: section @{name} stands twice")
+        below = lines[start + 1 : end]
+        body = "\n".join(below).strip()
+        if not body:
+            raise RuleError(f"{where}:{start + 1}: section @{name} is empty")
+        blank = next(n for n, line in enumerate(below) if line.strip())
+        sections[name] = Section(body, start + 1, start + 2 + blank)
+    if "condition" not in sections:
+        raise RuleError(f"{where}:{len(lines)}: section '-- @condition' is missing")
+    return "\n".join(header), sections
+
+
+def _uncomment(line: str, n: int, where: str) -> str:
+    if not line.strip():
+        return ""
+    if not line.startswith("--"):
+        raise RuleError(
+            f"{where}:{n}: only '-- ' comment lines (the header) may stand before the first '-- @section' line"
+        )
+    return line[2:].removeprefix(" ")
+
+
 @cache
 def _title(folder_: Path) -> str:
     """Return what a pack is about, as its `pack.toml` says; '' where it has none. Errors: `RuleError`."""
@@ -154,8 +189,8 @@ def _title(folder_: Path) -> str:
         raise RuleError(f'{file}: {error}: write title = "...", what the pack is about') from error
 
 
-def _event_table(table: str, sections: dict[str, Section], file: Path, line: int) -> dict[str, Section]:
-    """Let the header's `reference = "table"` stand for a @reference section over that event table."""
+def _event_table(table: str, sections: dict[str, Section], file: Path, line: int) -> Section:
+    """Return the section @reference for which the header's `reference = "table"` stands: all of that event table."""
     if "reference" in sections:
         raise RuleError(
             f"{file}:{sections['reference'].line}: the header names an event table already: drop it or @reference"
@@ -165,7 +200,7 @@ def _event_table(table: str, sections: dict[str, Section], file: Path, line: int
         raise RuleError(
             f"{file}:{line}: reference = {table!r} is no event table: it needs the columns drive_id, ego_id, t_ns"
         )
-    return {**sections, "reference": Section(f"SELECT {', '.join(columns)} FROM {table}", line, line)}
+    return Section(f"SELECT {', '.join(columns)} FROM {table}", line, line)
 
 
 def _check_sections(header: Header, sections: dict[str, Section], queries: dict[str, Query], file: Path) -> None:
@@ -189,12 +224,10 @@ def _check_sections(header: Header, sections: dict[str, Section], queries: dict[
     }
     for name, query in queries.items():
         where = f"{file}:{sections[name].line}: @{name}"
-        if name == "reference":
-            missing = [] if query.columns is None else [c for c in _KEYS if c not in query.columns]
-            if missing or "ref_id" in (query.columns or ()):
-                raise RuleError(f"{where} must return drive_id, ego_id, t_ns and no ref_id (the engine numbers it)")
-            continue
-        _check_columns(query.columns, *contracts[name], where)
+        if name != "reference":
+            _check_columns(query.columns, *contracts[name], where)
+        elif query.columns is not None and ("ref_id" in query.columns or not set(_KEYS) <= set(query.columns)):
+            raise RuleError(f"{where} must return drive_id, ego_id, t_ns and no ref_id (the engine numbers it)")
     _check_condition(header, queries["condition"], f"{file}:{sections['condition'].line}: @condition")
 
 
@@ -205,11 +238,9 @@ def _check_columns(
         raise RuleError(f"{where} must name every column it returns: no star, and AS for every expression")
     if len(set(columns)) != len(columns):
         raise RuleError(f"{where} returns a column twice: {', '.join(columns)}")
-    missing = [c for c in needed if c not in columns]
-    if missing:
+    if missing := [c for c in needed if c not in columns]:
         raise RuleError(f"{where} must return {', '.join(needed)}; {', '.join(missing)} missing")
-    stray = [c for c in columns if c not in allowed]
-    if stray:
+    if stray := [c for c in columns if c not in allowed]:
         raise RuleError(f"{where} returns the unknown column {stray[0]!r}; {hint(stray[0], allowed)}")
 
 

@@ -114,15 +114,13 @@ def _nearest(word: str, known: Iterable[str]) -> str:
     return f"; did you mean {near[0]!r}?" if near else ""
 
 
-def parse_params(
-    rules: Mapping[str, Rule] | Iterable[Rule], settings: Sequence[str]
-) -> dict[str, dict[str, float | str | bool]]:
+def parse_params(rules: Iterable[Rule], settings: Sequence[str]) -> dict[str, dict[str, float | str | bool]]:
     """Read `RULE.PARAM=VALUE` settings into rule id -> parameter -> value, typed like the parameter's default.
 
     Errors: `UsageError` for a setting without '=', an unknown rule or parameter (with the nearest one), or a value of
     another type.
     """
-    known = {rule.id: rule for rule in (rules.values() if hasattr(rules, "values") else rules)}
+    known = {rule.id: rule for rule in rules}
     values: dict[str, dict[str, float | str | bool]] = {}
     for setting in settings:
         name, equals, text = setting.partition("=")

@@ -10,20 +10,16 @@ import os
 import sys
 from contextlib import redirect_stdout
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
 
 from drivelint import __version__
 from drivelint.cli import docs as docs_
-from drivelint.cli import explain as explain_
 from drivelint.cli import inputs, options, results, rules, values
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.console import progress as bar
 from drivelint.errors import DriveLintError, ExitCode
-
-if TYPE_CHECKING:
-    from drivelint.result.model import Result
 
 app = typer.Typer(
     name="drivelint",
@@ -89,9 +85,9 @@ def check(
     rules_dir: options.RulesDirs = None,
     fail_on: Annotated[
         options.FailOn, typer.Option("--fail-on", help="Least severity that makes exit code 1.")
-    ] = options.FailOn.critical,
+    ] = "critical",
     strict: Annotated[bool, typer.Option("--strict", help="Unknown is not good enough: exit code 4.")] = False,
-    format_: options.FormatOption = options.Format.text,
+    format_: options.FormatOption = "text",
     margins: Annotated[bool, typer.Option("--margins", help="Also write margins.parquet: every judged step.")] = False,
     keep_db: Annotated[
         bool, typer.Option("--keep-db", help="Also keep the database with every stage's tables.")
@@ -122,6 +118,7 @@ def check(
     from drivelint import run
     from drivelint.engine.memory import format_bytes, peak_bytes
     from drivelint.gate import GateInputs
+    from drivelint.report import summary, terminal
     from drivelint.report.outputs import write
     from drivelint.result.files import prepare_folder
     from drivelint.result.model import exit_status
@@ -137,7 +134,7 @@ def check(
         profiles=tuple(profile or ()),
         params=tuple(param or ()),
         rules_dirs=tuple(rules_dir or ()),
-        fail_on=fail_on.value,
+        fail_on=fail_on,
         strict=strict,
         margins=margins,
         keep_db=keep_db,
@@ -156,7 +153,10 @@ def check(
             progress.note(
                 f"{format_bytes(most)} of memory were taken at most, with everything that is not the database's"
             )
-    _print(result, format_, out)
+    if format_ == "json":
+        typer.echo(summary.render(result), nl=False)
+    else:
+        print_rich(lambda width: terminal.render(result, None if out is None else str(out), width))
     raise typer.Exit(int(exit_status(result).code))
 
 
@@ -189,7 +189,7 @@ def inspect(
     ] = None,
     rules_dir: options.RulesDirs = None,
     memory: options.MemorySize = None,
-    format_: options.FormatOption = options.Format.text,
+    format_: options.FormatOption = "text",
 ) -> None:
     """Show what is in a log and what it can decide.
 
@@ -205,7 +205,7 @@ def inspect(
         memory=values.parse_memory(memory),
     )
     found = run_interruptible(lambda: inspection.inspect(request))
-    if format_ is options.Format.json:
+    if format_ == "json":
         typer.echo(inspection.to_json(found))
     else:
         from drivelint.inspect.text import render
@@ -230,22 +230,16 @@ def convert(
     In metres, seconds and box centres, with its map, so that it needs no mapping any more and gives the same verdicts.
     """
     from drivelint import convert as converter
-    from drivelint.convert.text import summary_text
 
-    request = converter.ConvertRequest(
-        trace=trace,
-        to=to.value,
-        out=out,
-        **drive,
-    )
+    request = converter.ConvertRequest(trace=trace, to=to, out=out, **drive)
     written = run_interruptible(lambda: converter.convert(request))
     for note in written.notes:
         typer.echo(f"drivelint: {note}", err=True)
-    typer.echo(summary_text(written))
+    typer.echo(converter.summary_text(written))
 
 
 app.command()(results.report)
-app.command()(explain_.explain)
+app.command()(results.explain)
 app.command("diff")(results.diff)
 app.command("docs")(docs_.docs)
 
@@ -305,13 +299,3 @@ def _settings() -> dict[str, Any]:
 def _fail(message: str, code: ExitCode) -> NoReturn:
     print(f"drivelint: error: {' '.join(message.split())}", file=sys.stderr)
     sys.exit(int(code))
-
-
-def _print(result: Result, format_: options.Format, out: Path | None) -> None:
-    """Print the outcome of a check on stdout."""
-    from drivelint.report import summary, terminal
-
-    if format_ is options.Format.json:
-        typer.echo(summary.render(result), nl=False)
-    else:
-        print_rich(lambda width: terminal.render(result, None if out is None else str(out), width))

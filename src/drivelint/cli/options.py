@@ -2,141 +2,20 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
+Format = Literal["text", "json"]
+"""How results are printed on stdout."""
+ConvertTarget = Literal["mcap", "parquet"]
+ReportFormat = Literal["html", "junit", "sarif", "xqar", "markdown"]
+DiffFormat = Literal["text", "json", "markdown"]
+RuleKind = Literal["invariant", "execution", "precondition", "postcondition"]
+FailOn = Literal["critical", "major", "minor", "never"]
+"""The least severity that makes exit code 1."""
 
-class Format(StrEnum):
-    """How results are printed on stdout."""
-
-    text = "text"
-    json = "json"
-
-
-class ConvertTarget(StrEnum):
-    """What a drive is converted to."""
-
-    mcap = "mcap"
-    parquet = "parquet"
-
-
-class ReportFormat(StrEnum):
-    """What a result can be written as."""
-
-    html = "html"
-    junit = "junit"
-    sarif = "sarif"
-    xqar = "xqar"
-    markdown = "markdown"
-
-
-class DiffFormat(StrEnum):
-    """How a difference is printed on stdout."""
-
-    text = "text"
-    json = "json"
-    markdown = "markdown"
-
-
-class RuleKind(StrEnum):
-    """The kind of a rule: what it is judged at."""
-
-    invariant = "invariant"
-    execution = "execution"
-    precondition = "precondition"
-    postcondition = "postcondition"
-
-
-class FailOn(StrEnum):
-    """The least severity that makes exit code 1."""
-
-    critical = "critical"
-    major = "major"
-    minor = "minor"
-    never = "never"
-
-
-class Visibility(StrEnum):
-    """What a log that does not record an actor says about it."""
-
-    line_of_sight = "line-of-sight"
-    none = "none"
-
-
-class Handedness(StrEnum):
-    """The side of the road that is driven on."""
-
-    auto = "auto"
-    lht = "lht"
-    rht = "rht"
-
-
-MapFile = Annotated[
-    Path | None,
-    typer.Option(
-        "--map", metavar="MAP", help="The road, as OpenDRIVE, Lanelet2, CommonRoad or a SUMO net: most rules need it."
-    ),
-]
-EgoId = Annotated[
-    str | None, typer.Option("--ego", metavar="ID|all", help="The vehicle under test, or every vehicle in turn.")
-]
-MappingName = Annotated[
-    str | None,
-    typer.Option(
-        "--mapping", metavar="FILE|NAME", help="How a table's columns are read: a TOML file or a shipped name."
-    ),
-]
-MapOffset = Annotated[
-    str | None, typer.Option("--map-offset", metavar="DX,DY", help="Metres added to the map's coordinates.")
-]
-MapDir = Annotated[
-    Path | None,
-    typer.Option("--map-dir", metavar="DIR", help="Folder of maps: each log gets its own, by maps.csv, name or place."),
-]
-MapOrigin = Annotated[
-    str | None,
-    typer.Option("--map-origin", metavar="LAT,LON", help="Where the log's 0,0 is, for a map in degrees (Lanelet2)."),
-]
-HandednessOption = Annotated[Handedness, typer.Option("--handedness", help="Side of the road that is driven on.")]
-SensorRange = Annotated[
-    float | None,
-    typer.Option(
-        "--sensor-range",
-        metavar="M",
-        min=0,
-        help="Range in which the recorder sees everybody. Default: what the log says, else 50 m.",
-    ),
-]
-VisibilityOption = Annotated[
-    Visibility,
-    typer.Option(
-        "--visibility",
-        help="Whoever is not recorded: line-of-sight, not in plain view of the recorder (2.5 s after it was lost); none, anywhere.",
-    ),
-]
-EgoSize = Annotated[
-    str | None,
-    typer.Option(
-        "--ego-size",
-        metavar="L,W[,AHEAD]",
-        help="The ego's length and width in metres, where the log has none; AHEAD: its centre ahead of the odometry's frame.",
-    ),
-]
-Conditions = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--env",
-        metavar="KEY=VALUE",
-        help="What holds in the drives: nation, weather, light, vehicle_class, road_type, carriageway, area, engaged. "
-        "Repeatable. Counts before what the map or the log says.",
-    ),
-]
-Topic = Annotated[
-    str | None, typer.Option("--topic", metavar="NAME", help="Read this MCAP topic, where several would do.")
-]
 Baseline = Annotated[
     Path | None,
     typer.Option("--baseline", metavar="DIR", help="An earlier result: its findings are known, only new ones gate."),

@@ -1,4 +1,4 @@
-"""`drivelint report` and `drivelint diff`: what reads the folders that `check --out` wrote."""
+"""`drivelint report`, `diff` and `explain`: what reads the folders that `check --out` wrote."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from drivelint.cli import options
+from drivelint.cli import options, values
+from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.errors import ExitCode
 
 
@@ -20,7 +21,7 @@ def report(
             help="html: one page that opens offline; junit, sarif (2.1.0), xqar (ASAM): for servers and viewers; "
             "markdown: for a comment on a pull request.",
         ),
-    ] = options.ReportFormat.html,
+    ] = "html",
 ) -> None:
     """Write a report from a result folder, into it.
 
@@ -30,7 +31,7 @@ def report(
     from drivelint.result.files import publish
     from drivelint.result.load import load_result
 
-    name, render = REPORT_FORMATS[to.value]
+    name, render = REPORT_FORMATS[to]
     publish(folder, {name: render(load_result(folder))}, {})
     typer.echo(str(folder / name))
 
@@ -38,9 +39,7 @@ def report(
 def diff(
     base: Annotated[Path, typer.Argument(metavar="BASE", help="What check --out wrote, earlier.")],
     new: Annotated[Path, typer.Argument(metavar="NEW", help="What check --out wrote, later.")],
-    format_: Annotated[
-        options.DiffFormat, typer.Option("--format", help="What is printed on stdout.")
-    ] = options.DiffFormat.text,
+    format_: Annotated[options.DiffFormat, typer.Option("--format", help="What is printed on stdout.")] = "text",
     fail_on: Annotated[
         options.FailOn | None,
         typer.Option("--fail-on", help="Least severity of a new finding that makes exit code 1. Default: NEW's."),
@@ -56,14 +55,87 @@ def diff(
     from drivelint.result.load import load_result
 
     earlier, later = load_result(base), load_result(new)
-    least = later.fail_on if fail_on is None else fail_on.value
+    least = later.fail_on if fail_on is None else fail_on
     found, failing = compare_results(earlier, later, (base.resolve().name, new.resolve().name), least)
-    if format_ is options.DiffFormat.json:
+    if format_ == "json":
         typer.echo(descriptions.to_json(found, failing, least))
-    elif format_ is options.DiffFormat.markdown:
+    elif format_ == "markdown":
         from drivelint.report import markdown
 
         typer.echo(markdown.difference(found, failing, least, later.gate))
     else:
         typer.echo(descriptions.difference_text(found, failing, least, later.gate))
     raise typer.Exit(int(ExitCode.FAILED if failing else ExitCode.OK))
+
+
+def explain(
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="FINDING",
+            help="A finding's id or how it begins; or, for any verdict, RULE or RULE@DRIVE, or how they begin.",
+        ),
+    ],
+    *,
+    folder: Annotated[Path, typer.Option("--in", metavar="DIR", help="What check --out wrote.")],
+    profile: Annotated[
+        str | None, typer.Option("--profile", metavar="NAME", help="The rule's verdict for this profile.")
+    ] = None,
+    object_: Annotated[
+        str | None, typer.Option("--object", metavar="ID", help="The rule's verdict about this actor.")
+    ] = None,
+    ego: Annotated[str | None, typer.Option("--ego", metavar="ID", help="The rule's verdict on this ego.")] = None,
+    verdict: Annotated[
+        str | None, typer.Option("--verdict", metavar="WORD", help="A verdict of this kind, such as unknown.")
+    ] = None,
+    at: Annotated[
+        float | None, typer.Option("--at", metavar="S", help="The rule's verdict about this second of the drive.")
+    ] = None,
+    trace: Annotated[
+        Path | None, typer.Option("--trace", metavar="FILE", help="Where the log is, if it was moved.")
+    ] = None,
+    map_: Annotated[
+        Path | None, typer.Option("--map", metavar="MAP", help="Where the map is, if it was moved.")
+    ] = None,
+    position: Annotated[
+        float, typer.Option("--sigma-position", metavar="M", min=0, help="Standard error of each actor's position.")
+    ] = 0.1,
+    time: Annotated[
+        float, typer.Option("--sigma-time", metavar="S", min=0, help="Standard error of each actor's clock.")
+    ] = 0.05,
+    of_map: Annotated[
+        float, typer.Option("--sigma-map", metavar="M", min=0, help="Standard error of where the map lies.")
+    ] = 0.1,
+    samples: Annotated[
+        int, typer.Option("--samples", min=0, max=100_000, help="Copies with such errors; 0 leaves them out.")
+    ] = 100,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Another one draws other errors.")] = 0,
+    memory: options.MemorySize = None,
+    format_: options.FormatOption = "text",
+) -> None:
+    """Show why one verdict is what it is.
+
+    The clause, the SQL with its numbers, the rows that it read, the margin over time, the least change of a number that
+    changes the verdict, and how often it stays the same when positions, clocks and map are a little off. Of several
+    verdicts of a rule the worst is shown, unless --ego, --verdict, --profile, --object or --at choose.
+
+    The drive is judged anew by that rule, from the database that check --keep-db kept, else from its log.
+    """
+    from drivelint.explain import ExplainRequest, MeasurementErrors, VerdictFilter
+    from drivelint.explain import explain as explained
+    from drivelint.explain.text import render, to_json
+
+    request = ExplainRequest(
+        name,
+        folder,
+        VerdictFilter(profile, object_, at, ego, verdict),
+        trace,
+        map_,
+        MeasurementErrors(position, time, of_map, samples, seed),
+        values.parse_memory(memory),
+    )
+    found = run_interruptible(lambda: explained(request))
+    if format_ == "json":
+        typer.echo(to_json(found))
+    else:
+        print_rich(lambda width: render(found, width))

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from drivelint.cli import options
+from drivelint.cli import options  # noqa: TC001 - Typer looks the annotations up
 from drivelint.cli.console import print_rich, run_interruptible
 
 app = typer.Typer(help="List, show, write and test the rules.", rich_markup_mode=None)
@@ -18,7 +18,7 @@ def list_(
     selectors: Annotated[
         list[str] | None, typer.Argument(metavar="[SEL]...", help="Which ones, as --rules of check. Default: all.")
     ] = None,
-    format_: options.FormatOption = options.Format.text,
+    format_: options.FormatOption = "text",
     rules_dir: options.RulesDirs = None,
 ) -> None:
     """List the rules.
@@ -32,7 +32,7 @@ def list_(
 
     known = load_rules(tuple(rules_dir or ()))
     rules = select_rules(known, selectors, ()) if selectors else list(known.values())
-    if format_ is options.Format.json:
+    if format_ == "json":
         typer.echo(rules_text.listing_json(rules))
     else:
         print_rich(lambda width: rules_text.listing(rules, width))
@@ -56,9 +56,7 @@ def show(
 def new(
     rule_id: Annotated[str, typer.Argument(metavar="PACK.NAME", help="The id of the rule to write.")],
     folder: Annotated[Path, typer.Option("--dir", metavar="DIR", help="Folder of packs to write it into.")] = Path(),
-    kind: Annotated[
-        options.RuleKind, typer.Option("--kind", help="What it is judged at.")
-    ] = options.RuleKind.invariant,
+    kind: Annotated[options.RuleKind, typer.Option("--kind", help="What it is judged at.")] = "invariant",
 ) -> None:
     """Write a rule to start from.
 
@@ -66,7 +64,7 @@ def new(
     """
     from drivelint.casefile import commands
 
-    for file in commands.new_rule(rule_id, folder, kind.value):
+    for file in commands.new_rule(rule_id, folder, kind):
         typer.echo(file)
     typer.echo(f"Edit both, then: drivelint rules test {folder} --rules {rule_id}", err=True)
 

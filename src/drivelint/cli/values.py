@@ -40,15 +40,22 @@ def parse_memory(text: str | None) -> int | None:
     return size
 
 
+def _numbers(text: str) -> tuple[float, ...]:
+    """Return the numbers between commas; none where one is none."""
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        return ()
+
+
 def parse_offset(text: str | None) -> tuple[float, float] | None:
     """Read DX,DY. Errors: `UsageError`."""
     if text is None:
         return None
-    try:
-        dx, dy = (float(part) for part in text.split(","))
-    except ValueError as error:
-        raise UsageError(f"--map-offset {text!r}: write two numbers in metres, DX,DY, such as 2.6,3.1") from error
-    return dx, dy
+    match _numbers(text):
+        case dx, dy:
+            return dx, dy
+    raise UsageError(f"--map-offset {text!r}: write two numbers in metres, DX,DY, such as 2.6,3.1")
 
 
 def parse_ego_size(text: str | None) -> EgoSize | None:
@@ -57,24 +64,17 @@ def parse_ego_size(text: str | None) -> EgoSize | None:
         return None
     from drivelint.drive.trace import EgoSize
 
-    try:
-        length, width, *rest = (float(part) for part in text.split(","))
-        (ahead,) = rest or [0.0]
-    except ValueError:
-        length = width = ahead = float("nan")
-    if not (0.0 < length < 100.0 and 0.0 < width < 10.0 and abs(ahead) < 100.0):
-        raise UsageError(f"--ego-size {text!r}: write length and width in metres, such as 4.9,1.9 or 4.9,1.9,1.4")
-    return EgoSize(length, width, ahead)
+    size = _numbers(text)
+    if len(size) in {2, 3} and 0.0 < size[0] < 100.0 and 0.0 < size[1] < 10.0 and all(abs(x) < 100.0 for x in size[2:]):
+        return EgoSize(*size)
+    raise UsageError(f"--ego-size {text!r}: write length and width in metres, such as 4.9,1.9 or 4.9,1.9,1.4")
 
 
 def parse_origin(text: str | None) -> tuple[float, float] | None:
     """Read LAT,LON. Errors: `UsageError`."""
     if text is None:
         return None
-    try:
-        lat, lon = (float(part) for part in text.split(","))
-    except ValueError:
-        lat = lon = 999.0
-    if not (abs(lat) <= 90 and abs(lon) <= 180):
-        raise UsageError(f"--map-origin {text!r}: write latitude and longitude in degrees, LAT,LON, such as 51.5,-2.58")
-    return lat, lon
+    match _numbers(text):
+        case lat, lon if abs(lat) <= 90 and abs(lon) <= 180:
+            return lat, lon
+    raise UsageError(f"--map-origin {text!r}: write latitude and longitude in degrees, LAT,LON, such as 51.5,-2.58")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Final, Literal
 
@@ -80,10 +81,9 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     notes = [*trace.notes, *told, *_of_a_check(request)]
     has_ego = any(trace.tables["actor"]["is_ego"].to_pylist())
     if not has_ego:
-        notes = [
-            *notes,
-            "the log names no ego: choose one with --ego ID, here or in every check (drivelint inspect lists them)",
-        ]
+        notes.append(
+            "the log names no ego: choose one with --ego ID, here or in every check (drivelint inspect lists them)"
+        )
     return ConvertedTrace(
         path=target,
         files=files,
@@ -114,24 +114,20 @@ def _moved(trace: Trace, offset: tuple[float, float]) -> Trace:
 def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, list[str]]:
     """Return the map that goes along, the user's, else the log's own, and what to tell about it. Errors: as `convert`."""
     library, own = MapLibrary.from_options(request), trace.embedded_map
-    where = (trace.path, own, trace.map_offset, trace.tables["actor_state"], trace.geo_reference)
-    if library.uses_embedded(trace.path, own) or (road := library.find_source(*where)) is None:
-        return (None, []) if own is None else _own_road(request, trace, own)
+    if library.uses_embedded(trace) or (road := library.find_source(trace)) is None:
+        return (None, []) if own is None else _own_road(request, trace, MapSource(MAP_FILE, own))
     if request.to == "mcap" and (why := _unfit_for_mcap(road)):
         raise UsageError(why)
-    library.find(*where)  # a wrong map is refused now, not by whoever checks the converted log
+    library.find(trace)  # a wrong map is refused now, not by whoever checks the converted log
     return road, []
 
 
-def _own_road(request: ConvertRequest, trace: Trace, content: bytes) -> tuple[MapSource | None, list[str]]:
+def _own_road(request: ConvertRequest, trace: Trace, road: MapSource) -> tuple[MapSource | None, list[str]]:
     """Return the log's own map as it is, whether it can be used or not: who converts a log loses nothing by it."""
-    road = MapSource(MAP_FILE, content)
     notes = []
-    states = trace.tables["actor_state"]
     library = MapLibrary(None, None, "auto")
     try:
-        environment = library.find(trace.path, content, trace.map_offset, states, trace.geo_reference)
-        library.doubts(trace.path, environment, states, trace.geo_reference)
+        library.doubts(trace, library.find(trace))
     except MapError as error:
         notes.append(f"the log's own map cannot be used: {error}")
     if request.to == "mcap" and (why := _unfit_for_mcap(road)):
@@ -177,3 +173,19 @@ def _parquet(target: Path, trace: Trace, road: MapSource | None) -> dict[str, in
         contents[MAP_FILE] = road.content
     publish(target, contents, {name: None for name in CANONICAL_FILES if name not in contents})
     return {name: len(content) for name, content in contents.items()}
+
+
+def summary_text(written: ConvertedTrace) -> str:
+    """Return what was written, and the command that checks it."""
+    size = sum(written.files.values())
+    amount = f"{size / 1e6:.1f} MB" if size >= 1e6 else f"{max(size / 1e3, 0.1):.1f} kB"
+    files = f"{len(written.files)} files, " if len(written.files) > 1 else ""
+    road = f", the map {written.map_name} with it" if written.map_name else ", no map"
+    ego = "" if written.has_ego else " --ego ID"
+    command = (
+        f"drivelint check {shlex.quote(str(written.path))}{ego}{'' if written.map_name else ' --map MAP'} --out results"
+    )
+    return (
+        f"{written.path}: {files}{amount}, {written.n_states} states of {written.n_actors} actors{road}\n"
+        f"check it, without a mapping, with: {command}"
+    )

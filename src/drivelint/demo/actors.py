@@ -94,16 +94,6 @@ def car() -> Actor:
     return Actor(Body("car", 4.8, 1.8, 1.5))
 
 
-def van() -> Actor:
-    """Return a delivery van."""
-    return Actor(Body("van", 5.9, 2.0, 2.6))
-
-
-def bus() -> Actor:
-    """Return a bus."""
-    return Actor(Body("bus", 11.0, 2.5, 3.0))
-
-
 def cyclist() -> Actor:
     """Return somebody on a bicycle."""
     return Actor(Body("bicycle", 1.8, 0.6, 1.7))

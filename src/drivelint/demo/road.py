@@ -1,4 +1,4 @@
-"""Roads of the scenes: pieces, lanes, handedness, markings, limits, signs and at most one fork.
+"""Roads of the scenes: pieces, lanes, handedness, markings, limits and signs.
 
 A road's line is its centre line. Actors and signs are placed by the station `s` along it and the offset `d` from it,
 **positive towards the nearside** (the side of the road that is driven on), so that a scene reads the same for left-hand
@@ -27,25 +27,6 @@ class Sign(NamedTuple):
     at: float
 
 
-class Fork(NamedTuple):
-    """Where a branch leaves the road: by a lane of its own (`exit_m` long, opening over `taper_m`), or as a side road.
-
-    The junction begins at station `at` and is `through_m` long; `turn` leads through it to the pieces of the branch.
-    """
-
-    at: float
-    through_m: float
-    turn: Piece
-    branch: tuple[Piece, ...]
-    exit_m: float = 0.0
-    taper_m: float = 40.0
-
-    @property
-    def is_exit(self) -> bool:
-        """Tell an exit from a side road."""
-        return self.exit_m > 0.0
-
-
 @dataclass(frozen=True)
 class Road:
     """A two-way road. `lanes` and `oncoming` count driving lanes along and against its line.
@@ -62,7 +43,6 @@ class Road:
     centre: tuple[tuple[float, str], ...] = ((0.0, "broken"),)
     beside: Literal["sidewalk", "shoulder"] = "sidewalk"
     signs: tuple[Sign, ...] = ()
-    fork: Fork | None = None
 
     @property
     def line(self) -> Line:
@@ -79,12 +59,10 @@ class Road:
         return (abs(number) - 0.5) * (LANE_WIDTH_M if number > 0 else -LANE_WIDTH_M)
 
     def path(self, *, branch: bool) -> Line:
-        """Return the line that traffic along the road follows: on, or into the branch."""
-        if not branch:
-            return self.line
-        if self.fork is None:
+        """Return the line that traffic along the road follows: on, or into the branch. Errors: `ValueError` where there is none."""
+        if branch:
             raise ValueError("this road has no fork to leave by")
-        return self.line.cut(0.0, self.fork.at).then(self.fork.turn, *self.fork.branch)
+        return self.line
 
     def driven_on_the(self, hand: Handedness) -> Road:
         """Return the same road driven on the other side."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from drivelint.drive.order import track_starts
 from drivelint.drive.trace import ACTOR_CLASSES, SIZE_COLUMNS, QualityFinding
 from drivelint.phrases import listed
 
@@ -33,7 +34,7 @@ class Actors:
 
 def from_states(states: States) -> tuple[Actors, list[QualityFinding]]:
     """Collect each actor's class (the first known) and sizes (the median of those known). `states` in order."""
-    starts = np.flatnonzero(np.r_[True, states.actor[1:] != states.actor[:-1]]) if len(states) else np.zeros(0, np.intp)
+    starts = track_starts(states.actor)
     classes: list[str | None] = [None] * len(states.ids)
     codes = states.codes.get("actor_class")
     if codes is not None and len(states):
@@ -61,9 +62,7 @@ def from_states(states: States) -> tuple[Actors, list[QualityFinding]]:
     if varying:
         ids = sorted(varying)
         message = f"box size changes over the log ({listed(ids)}): the median is used throughout"
-        findings.append(
-            QualityFinding("size_varies", "warning", message, len(ids), actor_id=ids[0] if len(ids) == 1 else None)
-        )
+        findings.append(QualityFinding.of_actors("size_varies", "warning", message, ids))
     return Actors(states.ids, classes, sizes), findings
 
 

@@ -59,7 +59,7 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
         f"actors sampled at other times than the ego ({listed(names)}): their states are interpolated at its steps, "
         f"between samples no more than {MAX_GAP_PERIODS * longest / 1e9:g} s apart"
     )
-    finding = QualityFinding("aligned", "info", message, len(names), actor_id=names[0] if len(names) == 1 else None)
+    finding = QualityFinding.of_actors("aligned", "info", message, names)
     return sorted_states(_joined([states.take(kept), *added])), [finding]
 
 

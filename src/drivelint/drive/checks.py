@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import MAX_GAP_PERIODS, wrapped
+from drivelint.drive.order import MAX_GAP_PERIODS, known_motion, led_by, wrapped
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.phrases import listed
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from drivelint.drive.actors import Actors
     from drivelint.drive.order import Steps
-    from drivelint.drive.trace import Severity, States
+    from drivelint.drive.trace import States
 
 VELOCITY_MISMATCH_MPS = 1.0
 VELOCITY_MISMATCH_SHARE = 0.15
@@ -43,88 +43,43 @@ LONG_CLASSES = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle"))
 
 def run(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[QualityFinding]:
     """Run every check on states in order. `derived`: velocities come from the positions, comparing says nothing."""
-    findings = [*_not_finite(states), *_not_placed(states), *_sizes(actors), *_gaps(states, step)]
+    lost = np.isnan(states.numbers["x_m"]) | np.isnan(states.numbers["y_m"])
+    findings = []
+    for rows, check, text in (
+        (states.not_finite, "not_finite", "NaN or infinity in {n} of {of} states ({ids}): those values are unknown"),
+        (lost, "no_position", "no position in {n} of {of} states ({ids}): the actors are present but not placed"),
+        (
+            ~lost & np.isnan(states.numbers["yaw_rad"]),
+            "no_yaw",
+            "no heading in {n} of {of} states ({ids}): their boxes cannot be placed",
+        ),
+    ):
+        findings += states.findings(rows, check, "warning", text)
+    findings += [*_sizes(actors), *_gaps(states, step)]
     if len(states) > 1:
         jump = _jumps(states, step)
-        findings += _report(
-            states,
-            jump,
-            "teleport",
-            "warning",
-            "position jumps further than any speed explains in {n} of {of} states ({ids})",
-        )
+        text = "position jumps further than any speed explains in {n} of {of} states ({ids})"
+        findings += states.findings(jump, "teleport", "warning", text)
         if not derived:
             findings += _velocity(states, step, jump)
         findings += _yaw(states, actors)
     return findings
 
 
-def _report(states: States, rows: NDArray[np.bool_], check: str, severity: Severity, text: str) -> list[QualityFinding]:
-    n = int(rows.sum())
-    if n == 0:
-        return []
-    ids = [states.ids[i] for i in np.unique(states.actor[rows])]
-    message = text.format(n=n, ids=listed(ids), of=len(states))
-    return [
-        QualityFinding(check, severity, message, n, int(states.t_ns[rows].min()), ids[0] if len(ids) == 1 else None)
-    ]
-
-
-def _not_finite(states: States) -> list[QualityFinding]:
-    return _report(
-        states,
-        states.not_finite,
-        "not_finite",
-        "warning",
-        "NaN or infinity in {n} of {of} states ({ids}): those values are unknown",
-    )
-
-
-def _not_placed(states: States) -> list[QualityFinding]:
-    lost = np.isnan(states.numbers["x_m"]) | np.isnan(states.numbers["y_m"])
-    turned = ~lost & np.isnan(states.numbers["yaw_rad"])
-    return [
-        *_report(
-            states,
-            lost,
-            "no_position",
-            "warning",
-            "no position in {n} of {of} states ({ids}): the actors are present but not placed",
-        ),
-        *_report(
-            states,
-            turned,
-            "no_yaw",
-            "warning",
-            "no heading in {n} of {of} states ({ids}): their boxes cannot be placed",
-        ),
-    ]
-
-
 def _sizes(actors: Actors) -> list[QualityFinding]:
     length, width = actors.sizes["length_m"], actors.sizes["width_m"]
-    findings = []
-    missing = [actors.ids[i] for i in np.flatnonzero(np.isnan(length) | np.isnan(width))]
-    if missing:
-        message = f"no length or width is known of {listed(missing)}: distances to their boxes are unknown"
-        findings.append(
-            QualityFinding(
-                "no_size", "warning", message, len(missing), actor_id=missing[0] if len(missing) == 1 else None
-            )
-        )
     long_kind = np.array([kind in LONG_CLASSES for kind in actors.classes], np.bool_)
-    swapped = [actors.ids[i] for i in np.flatnonzero(long_kind & (length < width))]
-    if swapped:
-        message = f"shorter than wide: {listed(swapped)}: length and width may be swapped"
-        findings.append(
-            QualityFinding(
-                "length_below_width",
-                "warning",
-                message,
-                len(swapped),
-                actor_id=swapped[0] if len(swapped) == 1 else None,
-            )
-        )
+    findings = []
+    for check, rows, text in (
+        (
+            "no_size",
+            np.isnan(length) | np.isnan(width),
+            "no length or width is known of {}: distances to their boxes are unknown",
+        ),
+        ("length_below_width", long_kind & (length < width), "shorter than wide: {}: length and width may be swapped"),
+    ):
+        if ids := [actors.ids[i] for i in np.flatnonzero(rows)]:
+            findings.append(QualityFinding.of_actors(check, "warning", text.format(listed(ids)), ids))
     return findings
 
 
@@ -151,18 +106,8 @@ def _gaps(states: States, step: Steps) -> list[QualityFinding]:
     if findings:  # a hole that is a gap of the whole log is reported once
         inside = np.searchsorted(times, states.t_ns[:-1][hole[:-1]])
         hole[np.flatnonzero(hole)[wide[inside]]] = False
-    findings += _report(
-        states,
-        hole,
-        "track_gap",
-        "info",
-        "interruptions of single tracks: {n} ({ids}): those actors are unknown in between",
-    )
-    return findings
-
-
-def _displacement(states: States) -> NDArray[np.float64]:
-    return np.hypot(np.diff(states.numbers["x_m"]), np.diff(states.numbers["y_m"]))
+    text = "interruptions of single tracks: {n} ({ids}): those actors are unknown in between"
+    return findings + states.findings(hole, "track_gap", "info", text)
 
 
 def _jumps(states: States, step: Steps) -> NDArray[np.bool_]:
@@ -170,8 +115,9 @@ def _jumps(states: States, step: Steps) -> NDArray[np.bool_]:
     # where neither speed is known, none says that it is a jump
     reach = TELEPORT_M + TELEPORT_FACTOR * np.fmax(speed[1:], speed[:-1]) * step.dt_s
     jump = np.zeros(len(states), np.bool_)
+    way = np.hypot(np.diff(states.numbers["x_m"]), np.diff(states.numbers["y_m"]))
     with np.errstate(invalid="ignore"):
-        jump[1:] = step.continuous & (_displacement(states) > reach)
+        jump[1:] = step.continuous & (way > reach)
     return jump
 
 
@@ -200,15 +146,10 @@ def _velocity(states: States, step: Steps, jump: NDArray[np.bool_]) -> list[Qual
                 f"velocity disagrees with the steps in position in {100.0 * n / n_moving:.0f} % "
                 f"of the moving samples (speed is {ratio:.3g} times the step): {_cause(ratio)}"
             )
-            return _report(states, wrong, "velocity_mismatch", "error", text.replace("{", "{{").replace("}", "}}"))
+            return states.findings(wrong, "velocity_mismatch", "error", text)
         break
-    return _report(
-        states,
-        wrong,
-        "velocity_mismatch",
-        "warning",
-        "velocity disagrees with the step in position in {n} of {of} states ({ids})",
-    )
+    text = "velocity disagrees with the step in position in {n} of {of} states ({ids})"
+    return states.findings(wrong, "velocity_mismatch", "warning", text)
 
 
 def _against_positions(
@@ -221,9 +162,7 @@ def _against_positions(
     """
     numbers, n = states.numbers, len(states)
     told_mps = np.hypot(numbers["vx_mps"], numbers["vy_mps"])
-    known = step.continuous & ~jump[1:]
-    for name in ("x_m", "y_m", "vx_mps", "vy_mps"):
-        known = known & np.isfinite(numbers[name][1:]) & np.isfinite(numbers[name][:-1])
+    known = known_motion(states, step) & ~jump[1:]
     first = np.arange(max(0, n - n_steps))
     last = first + n_steps
     unknown = np.r_[0, np.cumsum(~known)]
@@ -232,7 +171,7 @@ def _against_positions(
     span_s = np.where(span_s > 0.0, span_s, np.nan)
 
     def led(rate: NDArray[np.float64]) -> NDArray[np.float64]:
-        total = np.r_[0.0, np.cumsum(np.where(known, 0.5 * (rate[1:] + rate[:-1]) * step.dt_s, 0.0))]
+        total = np.r_[0.0, np.cumsum(led_by(rate, step, known))]
         mean: NDArray[np.float64] = (total[last] - total[first]) / span_s
         return mean
 
@@ -282,11 +221,6 @@ def _yaw(states: States, actors: Actors) -> list[QualityFinding]:
             f"heading is off the direction of motion in {100.0 * n / n_moving:.0f} % of the moving samples "
             f"(by {degrees:.0f} degrees): the unit, sign or zero of the heading is wrong"
         )
-        return _report(states, wrong, "yaw_mismatch", "error", text)
-    return _report(
-        states,
-        wrong,
-        "yaw_mismatch",
-        "warning",
-        "heading is more than 30 degrees off the direction of motion in {n} of {of} states ({ids})",
-    )
+        return states.findings(wrong, "yaw_mismatch", "error", text)
+    text = "heading is more than 30 degrees off the direction of motion in {n} of {of} states ({ids})"
+    return states.findings(wrong, "yaw_mismatch", "warning", text)

@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from drivelint.drive.jumps import (
+    IN_STATES,
     MOTION_COLUMNS,
     MOVING_MPS,
     NO_SPLIT,
     RejectedPositions,
     SplitTracks,
-    quality_findings,
     set_unknown,
 )
-from drivelint.drive.order import wrapped
+from drivelint.drive.order import known_motion, led_by, wrapped
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.drive.velocity_mismatch import mismatched_samples
 from drivelint.phrases import listed
@@ -81,28 +81,23 @@ def resolve(
         frozen = _frozen(states, step)
         if frozen.any():
             places.append(RejectedPositions.from_rows(states, frozen))
-        findings += quality_findings(
-            states, frozen, "motion_unknown", "position and velocity contradict each other: they are unknown"
-        )
+        text = IN_STATES + "position and velocity contradict each other: they are unknown"
+        findings += states.findings(frozen, "motion_unknown", "warning", text)
         set_unknown(states, frozen)
         astray = mismatched_samples(states, step)
         text = "for half a second and longer the velocity leads elsewhere than the positions: it is unknown"
-        findings += quality_findings(states, astray, "velocity_unknown", text)
+        findings += states.findings(astray, "velocity_unknown", "warning", IN_STATES + text)
         set_unknown(states, astray, MOTION_COLUMNS)
     for each in places:
         findings += _upon_others(states, step, actors, each, parted.alias)
     turned, sideways = _headings(states, step, actors)
     yaw = states.numbers["yaw_rad"]
-    if turned.any():
-        text = "the heading is turned round, the motion is not: the motion counts"
-        findings += quality_findings(states, turned, "heading_turned", text)
-        yaw = np.where(turned, wrapped(yaw + np.pi), yaw)
-    if sideways.any():
-        findings += quality_findings(
-            states, sideways, "heading_unknown", "the heading is across the motion: it is unknown"
-        )
-        yaw = np.where(sideways, np.nan, yaw)
-    states.numbers["yaw_rad"] = yaw
+    text = IN_STATES + "the heading is turned round, the motion is not: the motion counts"
+    findings += states.findings(turned, "heading_turned", "warning", text)
+    text = IN_STATES + "the heading is across the motion: it is unknown"
+    findings += states.findings(sideways, "heading_unknown", "warning", text)
+    yaw = np.where(turned, wrapped(yaw + np.pi), yaw)
+    states.numbers["yaw_rad"] = np.where(sideways, np.nan, yaw)
     return findings
 
 
@@ -149,14 +144,12 @@ def _frozen(states: States, step: Steps) -> Mask:
     without such steps.
     """
     numbers, n = states.numbers, len(states)
-    usable = step.continuous.copy()
-    for name in ("x_m", "y_m", "vx_mps", "vy_mps"):
-        usable &= np.isfinite(numbers[name][1:]) & np.isfinite(numbers[name][:-1])
+    usable = known_motion(states, step)
     went, led, slack = np.zeros((2, n - 1)), np.zeros((2, n - 1)), np.zeros(n - 1)
     for i, (place, rate_of) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
         v = numbers[rate_of]
         went[i] = np.where(usable, np.diff(numbers[place]), 0.0)
-        led[i] = np.where(usable, 0.5 * (v[1:] + v[:-1]) * step.dt_s, 0.0)
+        led[i] = led_by(v, step, usable)
         # what the velocity did between two samples is not known
         slack = np.hypot(slack, np.where(usable, 0.5 * np.abs(np.diff(v)) * step.dt_s, 0.0))
 
@@ -175,17 +168,12 @@ def _frozen(states: States, step: Steps) -> Mask:
     beside = both | np.r_[moved, False] | np.r_[False, moved]
     went, led, slack = (np.where(alone, 0.0, values) for values in (went, led, slack))
     first, last = _around(states, np.cumsum(np.r_[False, ~usable]), np.arange(n))
-    sums = {
-        name: np.concatenate([np.zeros((2, 1)), np.cumsum(values, axis=1)], axis=1)
-        for name, values in (("went", went), ("led", led))
-    }
-    loose = np.r_[0.0, np.cumsum(slack)]
-    around = contradict(
-        sums["went"][:, last] - sums["went"][:, first],
-        sums["led"][:, last] - sums["led"][:, first],
-        loose[last] - loose[first],
-    )
-    frozen: Mask = beside | around
+
+    def between(values: Numbers) -> Numbers:
+        sums = np.insert(np.cumsum(values, axis=-1), 0, 0.0, axis=-1)
+        return sums[..., last] - sums[..., first]
+
+    frozen: Mask = beside | contradict(between(went), between(led), between(slack))
     return frozen
 
 

@@ -12,10 +12,9 @@ from drivelint.drive import actors as actor_rows
 from drivelint.drive import checks, contradiction, ego, jumps
 from drivelint.drive.align import align_to_ego
 from drivelint.drive.clock_restart import unknown_at_restarts
-from drivelint.drive.headlights import with_headlight_events
+from drivelint.drive.declared_events import with_headlight_events
 from drivelint.drive.motion import complete_velocities
 from drivelint.drive.order import sorted_states, steps, without_duplicates, wrapped
-from drivelint.drive.removed_actors import without_removed_actors
 from drivelint.drive.trace import (
     BRAKE_LIGHTS,
     INDICATORS,
@@ -70,16 +69,24 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     named = recording.ego_ids if options.ego is None else [options.ego]
     step = steps(states)
     gone: list[QualityFinding] = []
+    parted = jumps.NO_SPLIT
     if not assumed:
-        states, gone = without_removed_actors(states, step, whole=named)
+        states, gone = jumps.without_removed_actors(states, step, whole=named)
         step = steps(states) if gone else step
-    parted = jumps.split_tracks(states, step, whole=named) if not assumed else jumps.NO_SPLIT
+        parted = jumps.split_tracks(states, step, whole=named)
     if parted.alias:
         states = sorted_states(states)
         step = steps(states)
-    _wrap_heading(states)
-    motion = complete_velocities(states, step, most=_replaceable(recording))
-    actors, varying = _actors(recording, states, parted.alias)
+    if "yaw_rad" in states.numbers:
+        states.numbers["yaw_rad"] = wrapped(states.numbers["yaw_rad"])
+    # what a film's mapping assumes is asked for; of most actors' velocities another mapping is at fault, and can be corrected
+    most_replaced = 0.0 if assumed else 0.5 if recording.strict_units else 1.0
+    motion = complete_velocities(states, step, most=most_replaced)
+    varying: list[QualityFinding] = []
+    if recording.actors is None:
+        actors, varying = actor_rows.from_states(states)
+    else:
+        actors = actor_rows.from_table(recording.actors, states, parted.alias)
     egos, chosen = ego.choose(path, actors, options.ego, recording.ego_ids, needed=options.need_ego)
     chosen += ego.fill_sizes(actors, egos, options.ego_size)
     derived = any(f.check_id == "velocity_derived" and f.n == len(states) for f in [*recording.findings, *motion])
@@ -124,32 +131,11 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     )
 
 
-def _actors(recording: Recording, states: States, alias: Mapping[str, str]) -> tuple[Actors, list[QualityFinding]]:
-    if recording.actors is None:
-        return actor_rows.from_states(states)
-    return actor_rows.from_table(recording.actors, states, alias), []
-
-
 def with_quality_finding(trace: Trace, finding: QualityFinding) -> Trace:
     """Return the trace with one more row in `quality`."""
     rows = pa.concat_tables([trace.tables["quality"], _quality(trace.drive_id, [finding])])
     ordered = rows.sort_by([(name, "ascending") for name in ("check_id", "actor_id", "t_first_ns", "message")])
     return replace(trace, tables={**trace.tables, "quality": ordered})
-
-
-def _replaceable(recording: Recording) -> float:
-    """Return the share of the motion for which velocities that disagree with it may be replaced.
-
-    What a film's mapping assumes is asked for; of most actors' velocities another mapping is at fault, and can be corrected.
-    """
-    if any(finding.check_id == "assumed_motion" for finding in recording.findings):
-        return 0.0
-    return 0.5 if recording.strict_units else 1.0
-
-
-def _wrap_heading(states: States) -> None:
-    if "yaw_rad" in states.numbers:
-        states.numbers["yaw_rad"] = wrapped(states.numbers["yaw_rad"])
 
 
 def _refuse_wrong_units(path: Path, recording: Recording, findings: list[QualityFinding]) -> None:
@@ -159,9 +145,8 @@ def _refuse_wrong_units(path: Path, recording: Recording, findings: list[Quality
         if recording.strict_units
         else "record or convert it again in its format's"
     )
-    for finding in findings:
-        if finding.severity == "error":
-            raise TraceError(f"{path}: {finding.message}: {remedy}")
+    if errors := [finding for finding in findings if finding.severity == "error"]:
+        raise TraceError(f"{path}: {errors[0].message}: {remedy}")
 
 
 def _lights(states: States, egos: list[str], is_ego: NDArray[np.bool_]) -> list[QualityFinding]:
@@ -191,7 +176,6 @@ def _data_log(
         "file_name": identity.file_name,
         "sha256": identity.sha256,
         "format": recording.format,
-        "environment_id": None,
         "t_start_ns": start,
         "t_end_ns": int(states.t_ns.max()),
         "utc_start_ns": start if start >= LEAST_UTC_NS else recording.utc_start_ns,
@@ -204,7 +188,7 @@ def _data_log(
         "has_acceleration": not bool(np.isnan(states.numbers["ax_mps2"][is_ego]).all()),
         "in_sight": options.in_sight,
     }
-    return _table("data_log", {name: [value] for name, value in row.items()})
+    return pa.Table.from_pylist([row], schema=_schema("data_log"))
 
 
 def _actor_table(drive: str, actors: Actors, egos: list[str]) -> pa.Table:
@@ -215,62 +199,51 @@ def _actor_table(drive: str, actors: Actors, egos: list[str]) -> pa.Table:
         **{name: _nullable(actors.sizes[name]) for name in SIZE_COLUMNS},
         "is_ego": [name in egos for name in actors.ids],
     }
-    return _table("actor", columns)
+    return pa.table(columns, schema=_schema("actor"))
 
 
 def _state_table(drive: str, states: States) -> pa.Table:
-    n = len(states)
+    unknown = np.full(len(states), -1, np.int8)
     columns = {
-        "drive_id": pa.repeat(pa.scalar(drive, _S), n),
+        "drive_id": pa.repeat(pa.scalar(drive, _S), len(states)),
         "actor_id": _words(states.actor, tuple(states.ids)),
         "t_ns": states.t_ns,
         **{name: _nullable(states.numbers[name]) for name in STATE_COLUMNS},
-        "indicator": _words(states.codes.get("indicator", np.full(n, -1, np.int8)), INDICATORS),
-        "brake_light": _words(states.codes.get("brake_light", np.full(n, -1, np.int8)), BRAKE_LIGHTS),
+        "indicator": _words(states.codes.get("indicator", unknown), INDICATORS),
+        "brake_light": _words(states.codes.get("brake_light", unknown), BRAKE_LIGHTS),
     }
-    return _table("actor_state", columns)
+    return pa.table(columns, schema=_schema("actor_state"))
 
 
 def _extra(drive: str, name: str, table: pa.Table | None) -> pa.Table:
     """Bring a reader's signal states or events into the contract's columns and order, equal rows once."""
+    schema = _schema(name)
     if table is None:
-        return _table(name, {column: [] for column in TRACE_SCHEMAS[name]})
+        return schema.empty_table()
     keys = _KEYS[name]
-    rows = (
-        table.select(keys)
-        .group_by(list(keys), use_threads=False)
-        .aggregate([])
-        .sort_by([(key, "ascending") for key in keys])
-    )
-    return _table(
-        name, {"drive_id": pa.repeat(pa.scalar(drive, _S), rows.num_rows), **{c: rows.column(c) for c in keys}}
-    )
+    rows = table.select(keys).group_by(list(keys), use_threads=False).aggregate([])
+    rows = rows.sort_by([(key, "ascending") for key in keys])
+    drives = pa.repeat(pa.scalar(drive, _S), rows.num_rows)
+    return pa.table({"drive_id": drives, **{key: rows[key] for key in keys}}, schema=schema)
 
 
 def _conditions(drive: str, trace: Mapping[str, str], env: Mapping[str, str]) -> pa.Table:
     """Bring together what the log says and what the user gives, which counts more; one row per condition."""
-    rows = sorted({**{c: (v, "trace") for c, v in trace.items()}, **{c: (v, "env") for c, v in env.items()}}.items())
-    columns = {
-        "drive_id": [drive] * len(rows),
-        "condition": [condition for condition, _ in rows],
-        "value": [value for _, (value, _) in rows],
-        "source": [source for _, (_, source) in rows],
-    }
-    return _table("drive_condition", columns)
+    rows = [
+        {"drive_id": drive, "condition": name, "value": value, "source": "env" if name in env else "trace"}
+        for name, value in sorted({**trace, **env}.items())
+    ]
+    return pa.Table.from_pylist(rows, schema=_schema("drive_condition"))
 
 
 def _quality(drive: str, findings: list[QualityFinding]) -> pa.Table:
     # a converted log brings findings that may be found again
     rows = sorted(dict.fromkeys(findings), key=lambda f: (f.check_id, f.actor_id or "", f.t_first_ns or 0, f.message))
-    columns: dict[str, list[object]] = {"drive_id": [drive] * len(rows)}
-    for name in ("check_id", "severity", "actor_id", "n", "t_first_ns", "message"):
-        columns[name] = [getattr(row, name) for row in rows]
-    return _table("quality", columns)
+    return pa.Table.from_pylist([{"drive_id": drive, **vars(row)} for row in rows], schema=_schema("quality"))
 
 
-def _table(name: str, columns: Mapping[str, object]) -> pa.Table:
-    schema = pa.schema([pa.field(column, kind) for column, kind in TRACE_SCHEMAS[name].items()])
-    return pa.table({column: columns[column] for column in TRACE_SCHEMAS[name]}, schema=schema)
+def _schema(name: str) -> pa.Schema:
+    return pa.schema(TRACE_SCHEMAS[name].items())
 
 
 def _nullable(values: NDArray[np.float64]) -> pa.Array:

@@ -1,4 +1,8 @@
-"""Makes states around a position jump unknown; a track that continues elsewhere becomes another actor."""
+"""Makes states around a position jump unknown; a track that continues elsewhere becomes another actor.
+
+Actors that a simulator removed from the scene but still writes, all in one place, are left out. CARLA's destroyed actors lie at the
+origin until the log ends. Two bodies are never in one place, so their tracks end where they jump there.
+"""
 
 from __future__ import annotations
 
@@ -37,6 +41,9 @@ MOVING_MPS: Final = 1.0
 """Below this the direction of motion is noise, and the heading is what there is."""
 MOTION_COLUMNS: Final = ("vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
 STATE_COLUMNS: Final = ("x_m", "y_m", "z_m", "yaw_rad", *MOTION_COLUMNS)
+SAME_PLACE_M: Final = 0.01
+"""Centres nearer than this are in one place."""
+IN_STATES: Final = "{n} of {of} states ({ids}): "
 
 
 @dataclass(frozen=True)
@@ -84,14 +91,15 @@ def split_tracks(states: States, step: Steps, *, whole: Collection[str]) -> Spli
     alias: dict[str, str] = {}
     unknown, pieces = _around_jumps(states, jump)
     if jump.any():
-        findings = quality_findings(states, unknown, "teleport", "the position jumps: they are unknown around it")
+        text = IN_STATES + "the position jumps: they are unknown around it"
+        findings = states.findings(unknown, "teleport", "warning", text)
         alias = _renamed(states, pieces, whole, findings)
     refused = RejectedPositions.from_rows(states, unknown)
     set_unknown(states, unknown)
     beside = outlier_samples(states, step)
     if beside.any():
         text = "the position is beside its track, for a sample or by a step that nobody drives: they are unknown there"
-        findings += quality_findings(states, beside, "teleport", text)
+        findings += states.findings(beside, "teleport", "warning", IN_STATES + text)
         refused = refused.with_more(RejectedPositions.from_rows(states, beside))
         set_unknown(states, beside)
     return SplitTracks(findings, alias, refused) if findings else NO_SPLIT
@@ -102,17 +110,6 @@ def set_unknown(states: States, rows: Mask, what: tuple[str, ...] = STATE_COLUMN
     if rows.any():
         for name in set(what) & states.numbers.keys():
             states.numbers[name] = np.where(rows, np.nan, states.numbers[name])
-
-
-def quality_findings(states: States, rows: Mask, check: str, text: str) -> list[QualityFinding]:
-    """Return a finding on these rows; none, where there are none."""
-    n = int(rows.sum())
-    if not n:
-        return []
-    ids = [states.ids[i] for i in np.unique(states.actor[rows])]
-    message = f"{n} of {len(states)} states ({listed(ids)}): {text}"
-    only = ids[0] if len(ids) == 1 else None
-    return [QualityFinding(check, "warning", message, n, int(states.t_ns[rows].min()), only)]
 
 
 def jumps(states: States, step: Steps) -> Mask:
@@ -212,3 +209,41 @@ def _renamed(
         findings.append(QualityFinding("track_parted", "warning", message, len(alias), actor_id=None))
     states.ids, states.actor = ids, actor
     return alias
+
+
+def without_removed_actors(
+    states: States, step: Steps, *, whole: Collection[str]
+) -> tuple[States, list[QualityFinding]]:
+    """Leave out the states of actors that jump to one place and stand there until their tracks end (states in order).
+
+    One that is alone there stays. `whole`: actors that are kept (the egos that are named).
+    """
+    if len(states) < 3 or not {"x_m", "y_m"} <= states.numbers.keys():
+        return states, []
+    jump = np.flatnonzero(jumps(states, step))
+    place = np.stack([states.numbers["x_m"], states.numbers["y_m"]])
+    # an actor's last jump, and where its track ends
+    last = {int(states.actor[row]): int(row) + 1 for row in jump if states.ids[states.actor[row]] not in whole}
+    parked = []
+    for actor, first in last.items():
+        end = int(np.searchsorted(states.actor, actor, side="right"))
+        spread = np.ptp(place[:, first:end], axis=1).max()
+        if spread <= SAME_PLACE_M and end - first > 1:
+            parked.append((first, end))
+    gone = [a for a in parked if any(b != a and _together(states, place, a, b) for b in parked)]
+    if not gone:
+        return states, []
+    out = np.zeros(len(states), np.bool_)
+    for first, end in gone:
+        out[first:end] = True
+    text = "after a jump they stand in one place: they were taken out of the scene, and their tracks end there"
+    return states.take(~out), states.findings(out, "removed", "warning", IN_STATES + text)
+
+
+def _together(states: States, place: NDArray[np.float64], one: tuple[int, int], other: tuple[int, int]) -> bool:
+    """Say whether both rows (first, end) are of one place and share some time."""
+    (a, a_end), (b, b_end) = one, other
+    apart = np.hypot(*(place[:, a] - place[:, b]))
+    return bool(
+        apart <= SAME_PLACE_M and states.t_ns[a] <= states.t_ns[b_end - 1] and states.t_ns[b] <= states.t_ns[a_end - 1]
+    )

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.trace import QualityFinding
+from drivelint.drive.order import known_motion, led_by
+from drivelint.drive.trace import STATE_COLUMNS, QualityFinding
 from drivelint.drive.velocity import KNOWN_ERROR_MPS, MOVED_M, derive_velocities
-from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,17 +30,13 @@ def complete_velocities(states: States, step: Steps, *, most: float = 1.0) -> li
     `most`: the share of the motion up to which it may be of another; beyond that all velocities stay. Accelerations that were
     never measured are dropped. `states` in order, changed in place: every column of `STATE_COLUMNS` exists afterwards.
     """
-    from drivelint.drive.trace import STATE_COLUMNS
-
     n = len(states)
     for name in STATE_COLUMNS:
         states.numbers.setdefault(name, np.full(n, np.nan))
     if n == 0:
         return []
     starts = np.flatnonzero(np.r_[True, ~step.same])
-    findings = _velocity(states, step, starts, most)
-    findings += _acceleration(states, starts)
-    return findings
+    return _velocity(states, step, starts, most) + _acceleration(states, starts)
 
 
 def _velocity(states: States, step: Steps, starts: NDArray[np.intp], most: float) -> list[QualityFinding]:
@@ -58,47 +54,32 @@ def _velocity(states: States, step: Steps, starts: NDArray[np.intp], most: float
         spread = np.maximum(spread, np.nan_to_num(extent))
     false_zero = still & (spread > MOVED_M)
     findings = []
-    for check, which, why in (
-        ("velocity_derived", absent, "no velocity in the log"),
-        ("velocity_derived", false_zero, "velocity 0 throughout although the positions move"),
-        ("velocity_derived", astray & ~still, "velocity that is not the motion of the positions"),
+    for which, why in (
+        (absent, "no velocity in the log"),
+        (false_zero, "velocity 0 throughout although the positions move"),
+        (astray & ~still, "velocity that is not the motion of the positions"),
     ):
         if not which.any():
             continue
-        ids = [states.ids[i] for i in states.actor[starts[which]]]
-        rows = _rows_of(which, starts, len(states))
+        rows = np.repeat(which, np.diff(np.r_[starts, len(states)]))
         motion = derive_velocities(states.t_ns, states.actor, numbers["x_m"], numbers["y_m"], step)
         numbers["vx_mps"] = np.where(rows, motion.vx, numbers["vx_mps"])
         numbers["vy_mps"] = np.where(rows, motion.vy, numbers["vy_mps"])
-        message = f"{why} ({listed(ids)}): velocity is derived from positions"
         findings += _filtered(states, rows & motion.filtered)
-        findings.append(
-            QualityFinding(
-                check,
-                "warning",
-                message,
-                int(rows.sum()),
-                int(states.t_ns[rows].min()),
-                ids[0] if len(ids) == 1 else None,
-            )
-        )
+        text = why + " ({ids}): velocity is derived from positions"
+        findings += states.findings(rows, "velocity_derived", "warning", text)
     return findings
 
 
 def _filtered(states: States, rows: NDArray[np.bool_]) -> list[QualityFinding]:
     """Name each actor whose positions tremble: what a filter hides, and what its error leaves open, is unknown of it."""
+    text = (
+        "the positions of {ids} tremble: its velocity is a mean over up to two seconds, "
+        f"known to {KNOWN_ERROR_MPS:g} m/s, its acceleration is not known"
+    )
     found = []
     for number in np.unique(states.actor[rows]):
-        of = rows & (states.actor == number)
-        message = (
-            f"the positions of {states.ids[number]} tremble: its velocity is a mean over up to two seconds, "
-            f"known to {KNOWN_ERROR_MPS:g} m/s, its acceleration is not known"
-        )
-        found.append(
-            QualityFinding(
-                "velocity_filtered", "warning", message, int(of.sum()), int(states.t_ns[of].min()), states.ids[number]
-            )
-        )
+        found += states.findings(rows & (states.actor == number), "velocity_filtered", "warning", text)
     return found
 
 
@@ -110,13 +91,10 @@ def _astray(states: States, step: Steps, most: float) -> NDArray[np.bool_]:
         return wrong
     t_ns, numbers = states.t_ns, states.numbers
     off, moved, told = (np.zeros(n - k) for _ in range(3))
-    usable = step.continuous.copy()
-    for name in ("x_m", "y_m", "vx_mps", "vy_mps"):
-        usable &= np.isfinite(numbers[name][1:]) & np.isfinite(numbers[name][:-1])
+    usable = known_motion(states, step)
     unusable = np.r_[0, np.cumsum(~usable)]
     for place, rate_of in (("x_m", "vx_mps"), ("y_m", "vy_mps")):
-        v = numbers[rate_of]
-        way = np.r_[0.0, np.cumsum(np.where(usable, 0.5 * (v[1:] + v[:-1]) * step.dt_s, 0.0))]
+        way = np.r_[0.0, np.cumsum(led_by(numbers[rate_of], step, usable))]
         went, led = numbers[place][k:] - numbers[place][:-k], way[k:] - way[:-k]
         off, moved, told = np.hypot(off, went - led), np.hypot(moved, went), np.hypot(told, led)
     span = (t_ns[k:] - t_ns[:-k]) * 1e-9
@@ -165,16 +143,5 @@ def _acceleration(states: States, starts: NDArray[np.intp]) -> list[QualityFindi
     states.numbers["ax_mps2"] = np.full(len(states), np.nan)
     states.numbers["ay_mps2"] = np.full(len(states), np.nan)
     n = int(known.sum())
-    return [
-        QualityFinding(
-            "acceleration_not_recorded",
-            "info",
-            f"acceleration is 0 in all {n} states although speeds change: it counts as not recorded",
-            n,
-            int(states.t_ns[known].min()),
-        )
-    ]
-
-
-def _rows_of(actors: NDArray[np.bool_], starts: NDArray[np.intp], n: int) -> NDArray[np.bool_]:
-    return np.repeat(actors, np.diff(np.r_[starts, n]))
+    message = f"acceleration is 0 in all {n} states although speeds change: it counts as not recorded"
+    return [QualityFinding("acceleration_not_recorded", "info", message, n, int(states.t_ns[known].min()))]

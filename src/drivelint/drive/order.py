@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drivelint.drive.trace import STATE_COLUMNS, QualityFinding, States
-from drivelint.phrases import listed
+from drivelint.drive.trace import STATE_COLUMNS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from drivelint.drive.trace import Severity
+    from drivelint.drive.trace import QualityFinding, States
 
 MAX_GAP_PERIODS = 2.5
 """Samples further apart than this many periods are not continuous (DESIGN.md, Verdicts)."""
@@ -63,9 +62,14 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
     for name, codes in kept.codes.items():
         codes[differ[name]] = UNKNOWN_CODE
     differing = repeated & _any(list(differ.values()))[of]
+    text = "an actor appears again at the same time in {n} states ({ids}), which "
+    differ_text, same_text = (
+        text + "differ: what they do not agree on is unknown there",
+        text + "are the same: they count once",
+    )
     return kept, [
-        *_repeated(states, differing, "error", "differ: what they do not agree on is unknown there"),
-        *_repeated(states, repeated & ~differing, "info", "are the same: they count once"),
+        *states.findings(differing, "duplicate_state", "error", differ_text),
+        *states.findings(repeated & ~differing, "duplicate_state", "info", same_text),
     ]
 
 
@@ -83,16 +87,6 @@ def changed_columns(states: States) -> dict[str, NDArray[np.bool_]]:
         found[name] = np.zeros(len(values), np.bool_)
         found[name][1:] = (values[1:] != values[:-1]) & ~(unknown[1:] & unknown[:-1])
     return found
-
-
-def _repeated(states: States, rows: NDArray[np.bool_], severity: Severity, what: str) -> list[QualityFinding]:
-    n = int(rows.sum())
-    if n == 0:
-        return []
-    ids = [states.ids[i] for i in np.unique(states.actor[rows])]
-    message = f"an actor appears again at the same time in {n} states ({listed(ids)}), which {what}"
-    only = ids[0] if len(ids) == 1 else None
-    return [QualityFinding("duplicate_state", severity, message, n, int(states.t_ns[rows].min()), only)]
 
 
 @dataclass(frozen=True)
@@ -136,6 +130,25 @@ def time_derivative(values: NDArray[np.float64], step: Steps) -> NDArray[np.floa
     result = np.full(n, np.nan)
     np.divide(rise, span, out=result, where=span > 0)
     return result
+
+
+def known_motion(states: States, step: Steps) -> NDArray[np.bool_]:
+    """Say of each step (n - 1) whether place and velocity are known at both of its ends, and no hole lies between."""
+    known = step.continuous.copy()
+    for name in ("x_m", "y_m", "vx_mps", "vy_mps"):
+        finite = np.isfinite(states.numbers[name])
+        known &= finite[1:] & finite[:-1]
+    return known
+
+
+def led_by(rate: NDArray[np.float64], step: Steps, known: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Return how far a rate (n) leads within each step (n - 1), by the mean of its ends; 0 where that is not `known`."""
+    return np.where(known, 0.5 * (rate[1:] + rate[:-1]) * step.dt_s, 0.0)
+
+
+def track_starts(actor: NDArray[np.int32]) -> NDArray[np.intp]:
+    """Return the first row of each actor's track (`actor`: which one, in order); none where there are no rows."""
+    return np.flatnonzero(np.r_[True, actor[1:] != actor[:-1]][: len(actor)])
 
 
 def wrapped(angle: NDArray[np.float64]) -> NDArray[np.float64]:

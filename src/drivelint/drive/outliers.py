@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from drivelint.drive.velocity import LEAST_NOISE_SAMPLES, MOVED_M, Tracklets, position_noise
+from drivelint.drive.order import track_starts
+from drivelint.drive.velocity import LEAST_NOISE_SAMPLES, MOVED_M, Tracklets, sample_noise
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -53,11 +54,7 @@ def outlier_samples(states: States, step: Steps) -> Mask:
     ):
         return nothing
     runs = Tracklets.from_samples(states.t_ns, place[0], place[1], step)
-    sigma = np.maximum(position_noise(place[0], runs, states.actor), position_noise(place[1], runs, states.actor))[
-        states.actor
-    ]
-    few = np.bincount(states.actor, minlength=len(states.ids))[states.actor] < LEAST_NOISE_SAMPLES
-    sigma = np.where(few, np.inf, sigma)
+    sigma = sample_noise(place[0], place[1], runs, states.actor)
     beside = _beside(place, moves, told, sigma, sigma)
     return beside | _stepped(moves, told, sigma, sigma, beside)
 
@@ -65,7 +62,7 @@ def outlier_samples(states: States, step: Steps) -> Mask:
 def _told(states: States, place: Numbers) -> Mask:
     """Say of each sample whether its velocity is recorded; one that is zero throughout although the positions move is not."""
     v = [states.numbers.get(name, np.full(len(states), np.nan)) for name in ("vx_mps", "vy_mps")]
-    starts = np.flatnonzero(np.r_[True, states.actor[1:] != states.actor[:-1]])
+    starts = track_starts(states.actor)
     still = np.logical_and.reduceat((v[0] == 0.0) & (v[1] == 0.0), starts)
     extent = np.fmax.reduceat(place, starts, axis=1) - np.fmin.reduceat(place, starts, axis=1)
     false_zero = still & (np.nan_to_num(extent).max(axis=0) > MOVED_M)

@@ -6,10 +6,14 @@ from dataclasses import dataclass, field
 from pathlib import Path  # noqa: TC003 - msgspec reads it
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
+import numpy as np
+
 from drivelint.drive import conditions
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
-    import numpy as np
+    from collections.abc import Mapping, Sequence
+
     import pyarrow as pa
     from numpy.typing import NDArray
 
@@ -154,6 +158,24 @@ class QualityFinding:
     t_first_ns: int | None = None
     actor_id: str | None = None
 
+    @classmethod
+    def unusable_map(cls, message: str) -> QualityFinding:
+        """Return the finding that the log's own map cannot be used."""
+        return cls(OWN_MAP_UNUSABLE, "warning", message)
+
+    @classmethod
+    def of_actors(cls, check_id: str, severity: Severity, message: str, ids: Sequence[str]) -> QualityFinding:
+        """Return a finding about these actors, which names the actor where it is one only."""
+        return cls(check_id, severity, message, len(ids), actor_id=ids[0] if len(ids) == 1 else None)
+
+
+def single_map(maps: Mapping[bytes, str]) -> tuple[bytes | None, tuple[QualityFinding, ...]]:
+    """Return the log's only OpenDRIVE map, or None with a finding if it has several; `maps`: map text -> topic where it was first seen."""
+    if len(maps) > 1:
+        message = f"the log has {len(maps)} different OpenDRIVE maps (topics {listed(sorted(maps.values()))}), and none is used: keep one"
+        return None, (QualityFinding.unusable_map(message),)
+    return next(iter(maps), None), ()
+
 
 @dataclass
 class States:
@@ -184,6 +206,16 @@ class States:
             {name: codes[rows] for name, codes in self.codes.items()},
             self.not_finite[rows],
         )
+
+    def findings(self, rows: NDArray[np.bool_], check_id: str, severity: Severity, text: str) -> list[QualityFinding]:
+        """Return a finding on the rows of a mask, none where there are none. `text`: its message, with {n}, {of} and {ids}."""
+        n = int(rows.sum())
+        if not n:
+            return []
+        ids = [self.ids[i] for i in np.unique(self.actor[rows])]
+        message = text.format(n=n, of=len(self), ids=listed(ids))
+        only = ids[0] if len(ids) == 1 else None
+        return [QualityFinding(check_id, severity, message, n, int(self.t_ns[rows].min()), only)]
 
 
 @dataclass

@@ -64,7 +64,7 @@ def _filtered(  # noqa: PLR0917
     vx, vy = central
     filtered = np.zeros(len(x), np.bool_)
     runs = Tracklets.from_samples(t_ns, x, y, step)
-    sigma = np.maximum(position_noise(x, runs, actor), position_noise(y, runs, actor))[actor]
+    sigma = sample_noise(x, y, runs, actor, unknown=0.0)
     with np.errstate(invalid="ignore", divide="ignore"):
         known = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.period_ns * 1e-9) <= KNOWN_ERROR_MPS
         vx, vy = np.where(known, vx, np.nan), np.where(known, vy, np.nan)
@@ -123,6 +123,13 @@ class Tracklets(NamedTuple):
         spread = np.where(spread > 1e-9, spread, np.nan)
         wx, wy = ((over(t * p) - mean_t * over(p)) / spread for p in (px, py))
         return wx, wy, np.where(np.isfinite(spread), 3.0 * sigma / np.sqrt(spread), np.inf)
+
+
+def sample_noise(x: Floats, y: Floats, runs: Tracklets, actor: NDArray[np.int32], *, unknown: float = np.inf) -> Floats:
+    """Return the standard deviation of the noise of each sample's place (m); `unknown` where its actor has too few samples."""
+    sigma = np.maximum(position_noise(x, runs, actor), position_noise(y, runs, actor))
+    sigma[np.bincount(actor) < LEAST_NOISE_SAMPLES] = unknown
+    return sigma[actor]
 
 
 def position_noise(values: Floats, runs: Tracklets, actor: NDArray[np.int32]) -> Floats:

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.velocity import LEAST_NOISE_SAMPLES, Tracklets, position_noise
+from drivelint.drive.order import known_motion, led_by
+from drivelint.drive.velocity import Tracklets, sample_noise
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -40,9 +41,7 @@ def mismatched_samples(states: States, step: Steps) -> Mask:
     k = max(2, round(STRETCH_S * 1e9 / step.period_ns)) if step.period_ns else n
     if n <= k:
         return found
-    usable = step.continuous.copy()
-    for name in ("x_m", "y_m", "vx_mps", "vy_mps"):
-        usable &= np.isfinite(numbers[name][1:]) & np.isfinite(numbers[name][:-1])
+    usable = known_motion(states, step)
     unusable = np.r_[0, np.cumsum(~usable)]
     whole = unusable[k:] == unusable[:-k]
     span = np.where(whole, (states.t_ns[k:] - states.t_ns[:-k]) * 1e-9, np.nan)
@@ -50,7 +49,7 @@ def mismatched_samples(states: States, step: Steps) -> Mask:
     slack, alone = np.zeros(n - 1), np.zeros(n - 1)
     for place, rate_of in (("x_m", "vx_mps"), ("y_m", "vy_mps")):
         v = numbers[rate_of]
-        told = np.where(usable, 0.5 * (v[1:] + v[:-1]) * step.dt_s, 0.0)
+        told = led_by(v, step, usable)
         way = np.r_[0.0, np.cumsum(told)]
         went, led = (numbers[place][k:] - numbers[place][:-k]) / span, (way[k:] - way[:-k]) / span
         off, fastest = np.hypot(off, went - led), np.hypot(fastest, np.maximum(np.abs(went), np.abs(led)))
@@ -63,18 +62,18 @@ def mismatched_samples(states: States, step: Steps) -> Mask:
     if not wrong.any():
         return found
     runs = Tracklets.from_samples(states.t_ns, numbers["x_m"], numbers["y_m"], step)
-    sigma = np.maximum(*(position_noise(numbers[name], runs, states.actor) for name in ("x_m", "y_m")))
-    sigma[np.bincount(states.actor, minlength=len(sigma)) < LEAST_NOISE_SAMPLES] = np.inf
+    sigma = sample_noise(numbers["x_m"], numbers["y_m"], runs, states.actor)
     with np.errstate(invalid="ignore"):
-        wrong &= off > allowed + SIGMAS * np.sqrt(2.0) * sigma[states.actor[:-k]] / span
+        wrong &= off > allowed + SIGMAS * np.sqrt(2.0) * sigma[:-k] / span
     rows = np.flatnonzero(wrong)
     edges = np.zeros(n + 1, np.int64)
     np.add.at(edges, rows, 1)
     np.add.at(edges, rows + k + 1, -1)
     found = np.cumsum(edges[:-1]) > 0
-    many = np.bincount(states.actor[found], minlength=len(states.ids)) > WHOLE_TRACK_SHARE * np.bincount(
-        states.actor, minlength=len(states.ids)
+    wrong_by_actor, all_by_actor = (
+        np.bincount(who, minlength=len(states.ids)) for who in (states.actor[found], states.actor)
     )
+    many = wrong_by_actor > WHOLE_TRACK_SHARE * all_by_actor
     return found & ~many[states.actor]
 
 

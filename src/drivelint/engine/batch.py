@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections import deque
+from collections import Counter, deque
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
-from hashlib import sha256
+from hashlib import file_digest
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pyarrow.compute as pc
 
-from drivelint.drive import embedded_map
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.trace import IngestOptions, QualityFinding, Trace
 from drivelint.errors import DriveLintError, MapError
@@ -67,9 +66,7 @@ class RefusedLog:
 
 def sorted_logs(paths: Sequence[Path]) -> list[Path]:
     """Return the logs in an order that does not depend on how they were named or where they lie: by stem, then by content."""
-    stems: dict[str, int] = {}
-    for path in paths:
-        stems[path.stem] = stems.get(path.stem, 0) + 1
+    stems = Counter(path.stem for path in paths)
     return sorted(paths, key=lambda p: (p.stem, _digest(p) if stems[p.stem] > 1 else "", str(p)))
 
 
@@ -85,7 +82,12 @@ def read_drives(paths: Sequence[Path], options: IngestOptions, library: MapLibra
                 if not waiting:
                     return
                 path, future = waiting.popleft()
-                yield _drive(path, future, library)
+                found: Drive | RefusedLog
+                try:
+                    found = drive_with_map(future.result(), library)
+                except DriveLintError as error:
+                    found = RefusedLog(path, error)
+                yield found
         finally:
             for _, future in waiting:
                 future.cancel()
@@ -147,34 +149,21 @@ def drive_with_map(trace: Trace, library: MapLibrary) -> Drive:
 
     Errors: `MapError` if a map that was given cannot be read, or shows another place or side of the road.
     """
-    states = trace.tables["actor_state"]
     try:
-        environment = library.find(trace.path, trace.embedded_map, trace.map_offset, states, trace.geo_reference)
-        doubts = library.doubts(trace.path, environment, states, trace.geo_reference)
+        environment = library.find(trace)
+        doubts = library.doubts(trace, environment)
     except MapError as error:
-        if not library.uses_embedded(trace.path, trace.embedded_map):
+        if not library.uses_embedded(trace):
             raise
-        return Drive(
-            with_quality_finding(trace, embedded_map.unusable_finding(f"the log's own map is not used: {error}")), None
-        )
+        unused = QualityFinding.unusable_map(f"the log's own map is not used: {error}")
+        return Drive(with_quality_finding(trace, unused), None)
     for check, doubt in doubts.items():
         trace = with_quality_finding(trace, QualityFinding(check, "warning", doubt))
     return Drive(trace, environment)
-
-
-def _drive(path: Path, future: Future[Trace], library: MapLibrary) -> Drive | RefusedLog:
-    try:
-        trace = future.result()
-        return drive_with_map(trace, library)
-    except DriveLintError as error:
-        return RefusedLog(path, error)
 
 
 def _digest(path: Path) -> str:
     if path.is_dir():
         return "".join(_digest(child) for child in sorted(path.iterdir()) if child.is_file())
     with path.open("rb") as file:
-        digest = sha256()
-        while block := file.read(1 << 20):
-            digest.update(block)
-    return digest.hexdigest()
+        return file_digest(file, "sha256").hexdigest()

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
     import shapely
 
-    from drivelint.drive.trace import DriveInput
+    from drivelint.drive.trace import DriveInput, Trace
     from drivelint.engine.map_fit import LaneHeadings, OneWayLanes
     from drivelint.road.map_reader import MapTables
 
@@ -76,64 +76,43 @@ class MapLibrary:
         """Return the library for these options. Errors: `MapError` for a map that cannot be read, `UsageError`."""
         return cls(given.map, given.map_offset, given.handedness, origin=given.map_origin, folder=given.map_dir)
 
-    def find(
-        self,
-        log: Path,
-        embedded: bytes | None,
-        offset: tuple[float, float] | None,
-        states: pa.Table,
-        reference: str | None = None,
-    ) -> MapTables | None:
-        """Return the environment for one drive.
+    def find(self, trace: Trace) -> MapTables | None:
+        """Return the environment for one drive; the user's `--map-offset` goes before the drive's own.
 
-        `log` is the drive's file, `offset` is the mapping's (the user's `--map-offset` goes before it), `states` the drive's
-        `actor_state` rows, `reference` the geo reference of its coordinates, a PROJ string.
         Errors: `MapError` if the map cannot be read, or is of another place.
         """
-        shift = self._offset or offset or (0.0, 0.0)
-        source = self.find_source(log, embedded, offset, states, reference)
+        source, states = self.find_source(trace), trace.tables["actor_state"]
         if source is None:
             return None
-        environment = self._load(source, shift, None)
+        environment = self._load(source, trace, None)
         if trouble := _elsewhere(environment, self._ground(environment), states):
             raise MapError(
-                f"map {environment.environment_id} is of another place than {log.name}: {trouble}; "
+                f"map {environment.environment_id} is of another place than {trace.path.name}: {trouble}; "
                 "give the right --map, or --map-offset"
             )
         if environment.lanes_source == "default" and (sensed := self._sensed(environment, states)):
-            return self._load(source, shift, sensed)
+            return self._load(source, trace, sensed)
         return environment
 
-    def find_source(
-        self,
-        log: Path,
-        embedded: bytes | None,
-        offset: tuple[float, float] | None,
-        states: pa.Table,
-        reference: str | None = None,
-    ) -> MapSource | None:
+    def find_source(self, trace: Trace) -> MapSource | None:
         """Return the map that `find` takes for one drive, as it was given. Errors: as there."""
-        own = MapSource("embedded", embedded) if embedded is not None else None
+        own = MapSource("embedded", trace.embedded_map) if trace.embedded_map is not None else None
         if self._map_folder is None:
             return self._given or own
         return (
-            self._map_folder.for_log(log)
+            self._map_folder.for_log(trace.path)
             or own
-            or (self._map_folder.with_reference(reference) if reference else None)
-            or self._only_fitting(self._map_folder, log, self._offset or offset or (0.0, 0.0), states)
+            or (self._map_folder.with_reference(trace.geo_reference) if trace.geo_reference else None)
+            or self._only_fitting(self._map_folder, trace)
         )
 
-    def uses_embedded(self, log: Path, embedded: bytes | None) -> bool:
+    def uses_embedded(self, trace: Trace) -> bool:
         """Say whether the map in the log is the one that `find` takes."""
-        return (
-            embedded is not None
-            and self._given is None
-            and (self._map_folder is None or not self._map_folder.for_log(log))
-        )
+        if trace.embedded_map is None or self._given is not None:
+            return False
+        return self._map_folder is None or not self._map_folder.for_log(trace.path)
 
-    def doubts(
-        self, log: Path, environment: MapTables | None, states: pa.Table, reference: str | None = None
-    ) -> dict[str, str]:
+    def doubts(self, trace: Trace, environment: MapTables | None) -> dict[str, str]:
         """Return check id -> why the map may be wrong for this drive: geo reference, driving side, maps not looked at.
 
         Keys name the check. Errors: `MapError` where the traffic shows that the lanes run the other way.
@@ -141,10 +120,10 @@ class MapLibrary:
         if environment is None:
             return {}
         found = {
-            "handedness_disagrees": self._side_doubt(log, environment, states),
-            "map_unread": self._unread.get(log),
+            "handedness_disagrees": self._side_doubt(trace, environment),
+            "map_unread": self._unread.get(trace.path),
         }
-        theirs = environment.tables["environment"]["geo_reference"][0].as_py()
+        reference, theirs = trace.geo_reference, environment.tables["environment"]["geo_reference"][0].as_py()
         if (
             reference
             and theirs
@@ -157,17 +136,17 @@ class MapLibrary:
             )
         return {check: text for check, text in found.items() if text}
 
-    def _side_doubt(self, log: Path, environment: MapTables, states: pa.Table) -> str | None:
-        if (environment.lanes_source or environment.handedness_source) in {"default", "traces"}:
+    def _side_doubt(self, trace: Trace, environment: MapTables) -> str | None:
+        side, source = environment.handedness, environment.handedness_source
+        if (environment.lanes_source or source) in {"default", "traces"}:
             return None
-        seen = self._headings(environment, states, DOUBT_SAMPLES)
+        seen = self._headings(environment, trace.tables["actor_state"], DOUBT_SAMPLES)
         if road := reversed_road(self._lanes(environment), seen):
             raise MapError(
-                f"map {environment.environment_id}: the traffic of {log.name} runs against its lanes, on road {road} both ways: the "
-                f"side of the road ({environment.handedness} by {environment.handedness_source}) or the lanes' direction is wrong; "
-                f"{correction_hint(environment.handedness, environment.handedness_source)}, or give another map"
+                f"map {environment.environment_id}: the traffic of {trace.path.name} runs against its lanes, on road {road} both ways: "
+                f"the side of the road ({side} by {source}) or the lanes' direction is wrong; "
+                f"{correction_hint(side, source)}, or give another map"
             )
-        side, source = environment.handedness, environment.handedness_source
         if vote_handedness(side, seen) in {None, side}:
             return None
         said = "--handedness says" if source == "option" else f"the map says (by {source})"
@@ -192,21 +171,21 @@ class MapLibrary:
             self._ways[environment.environment_id] = one_way_lanes(environment)
         return self._ways[environment.environment_id]
 
-    def _only_fitting(self, maps: MapFolder, log: Path, shift: tuple[float, float], states: pa.Table) -> MapSource:
+    def _only_fitting(self, maps: MapFolder, trace: Trace) -> MapSource:
         """Return the one map on which the drive lies, of those that can be read. Errors: `MapError` where none or several are."""
         fitting = []
         unread: list[MapError] = []
         for source in maps.sources():
             try:
-                environment = self._load(source, shift, None)
+                environment = self._load(source, trace, None)
             except MapError as error:
                 unread.append(error)
                 continue
-            if not _elsewhere(environment, self._ground(environment), states):
+            if not _elsewhere(environment, self._ground(environment), trace.tables["actor_state"]):
                 fitting.append(source)
         if len(fitting) == 1:
             if unread:  # it may have been the right one
-                self._unread[log] = (
+                self._unread[trace.path] = (
                     f"{fitting[0].name} is the only map of the place among those that can be read; {len(unread)} cannot, the first: "
                     f"{unread[0]}"
                 )
@@ -214,7 +193,7 @@ class MapLibrary:
         what = "none of its maps is of" if not fitting else f"{listed([s.name for s in fitting])} are all of"
         besides = f" ({len(unread)} could not be read, the first: {unread[0]})" if unread else ""
         raise MapError(
-            f"{maps.folder}: {what} the place of {log.name}{besides}: name its map in {maps.folder / MANIFEST}"
+            f"{maps.folder}: {what} the place of {trace.path.name}{besides}: name its map in {maps.folder / MANIFEST}"
         )
 
     def _ground(self, environment: MapTables) -> shapely.STRtree:
@@ -222,7 +201,8 @@ class MapLibrary:
             self._grounds[environment.environment_id] = lane_areas(environment)
         return self._grounds[environment.environment_id]
 
-    def _load(self, source: MapSource, offset: tuple[float, float], sensed: str | None) -> MapTables:
+    def _load(self, source: MapSource, trace: Trace, sensed: str | None) -> MapTables:
+        offset = self._offset or trace.map_offset or (0.0, 0.0)
         key = (source.sha256, offset, sensed)
         if key not in self._loaded:
             self._loaded[key] = load_map(

@@ -40,7 +40,7 @@ class Memory:
         self.limited = limit is not None
         share = 1.0 if limit is None else min(1.0, limit / DEFAULT_MEMORY)
         self.room = max(1, int(batch.PART_PAIRS * share))
-        """Meetings of one part of a drive: see `batch.parts`."""
+        """Meetings of one part of a drive: see `batch.egos_left_out`."""
 
     def halve_parts(self, meetings: int) -> None:
         """Judge parts of at most half as many pairs as the part that did not fit."""

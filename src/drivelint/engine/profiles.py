@@ -58,23 +58,12 @@ def profile_table(profiles: dict[str, Profile], selected: Sequence[str]) -> pa.T
     chosen = set(selected or DEFAULT_PROFILES)
     for name in sorted(chosen - profiles.keys()):
         raise UsageError(f"no profile {name!r}; {hint(name, profiles)}")
-    rows = [
-        {
-            "profile": name,
-            "style": p.style,
-            "pull_out_angle_rad": _radians(p.pull_out_angle_deg),
-            "cut_in_angle_rad": _radians(p.cut_in_angle_deg),
-            "pull_out_headroom_m": p.pull_out_headroom_m,
-            "cut_in_clearance_m": p.cut_in_clearance_m,
-            "v_min_mps": p.v_min_mps,
-            "v_max_mps": p.v_max_mps,
-            "selected": name in chosen,
-        }
-        for name, p in profiles.items()
-    ]
+    rows = []
+    for name, profile in profiles.items():
+        row = {"profile": name, **msgspec.structs.asdict(profile), "selected": name in chosen}
+        for angle in ("pull_out_angle", "cut_in_angle"):
+            degrees = row.pop(f"{angle}_deg")
+            row[f"{angle}_rad"] = None if degrees is None else math.radians(degrees)
+        rows.append(row)
     kinds = {"profile": pa.string(), "style": pa.int32(), "selected": pa.bool_()}
     return pa.Table.from_pylist(rows, schema=pa.schema([(key, kinds.get(key, pa.float64())) for key in rows[0]]))
-
-
-def _radians(degrees: float | None) -> float | None:
-    return None if degrees is None else math.radians(degrees)

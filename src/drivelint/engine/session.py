@@ -24,16 +24,6 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
     from drivelint.engine.batch import Drive
 
-# small tables that say what was judged, and on what: they stay until the end of the run
-
-
-class _PartTooLargeError(Exception):
-    """A part of a drive ran out of memory, and has several egos: judge fewer at once."""
-
-    def __init__(self, meetings: int) -> None:
-        super().__init__(meetings)
-        self.meetings = meetings
-
 
 class BatchObserver(Protocol):
     """Called after each batch while its tables are still filled."""
@@ -66,7 +56,7 @@ class JudgingSession:
         self._con = con
         self._rules = rules
         self._params = params
-        self._witnesses = observers
+        self._observers = observers
         self._tables = {table for rule in rules for table in rule.reads}
         self._memory = memory or Memory(con, None)
         self._seen: set[str] = set()
@@ -95,28 +85,21 @@ class JudgingSession:
         """
         if not drives:
             return
-        while not self._fits(drives):
-            pass
+        done = False
+        while not done:
+            try:
+                done = self._judge(drives)
+            except duckdb.OutOfMemoryException:
+                # what one ego needs and cannot be spilled to disk may take what the machine has
+                if len(drives) > 1 or not self._memory.lift_limit():
+                    raise
         self._seen.update(drive.trace.drive_id for drive in drives)
         if self._margins:
             self._margins.add(self._con, self._memory)
-        self._clear()
+        store.recreate_empty(self._con, store.tables_of_lifetime("drive", "part"))
 
-    def _fits(self, drives: Sequence[Drive]) -> bool:
-        """Judge a batch. Return False if memory ran out: the next try needs less at once, or may have more."""
-        try:
-            self._judge(drives)
-        except _PartTooLargeError as part:
-            self._memory.halve_parts(part.meetings)
-            return False
-        except duckdb.OutOfMemoryException:
-            # what one ego needs and cannot be spilled to disk may take what the machine has
-            if len(drives) > 1 or not self._memory.lift_limit():
-                raise
-            return False
-        return True
-
-    def _judge(self, drives: Sequence[Drive]) -> None:
+    def _judge(self, drives: Sequence[Drive]) -> bool:
+        """Judge a batch. Return False if a part of several egos ran out of memory: the next try has fewer of them in it."""
         ids = [drive.trace.drive_id for drive in drives]
         with ExitStack() as undo:
             undo.callback(self._forget, ids)
@@ -126,34 +109,34 @@ class JudgingSession:
                 if no:
                     store.recreate_empty(self._con, store.tables_of_lifetime("part"))
                 if deferred:
-                    store.insert(self._con, "deferred_ego", _egos(drives[0], deferred))
+                    egos = pa.table({"drive_id": ids * len(deferred), "ego_id": deferred})
+                    store.insert(self._con, "deferred_ego", egos)
                 judged = {ego: n for ego, n in drives[0].pairs_by_ego.items() if ego not in set(deferred)}
                 cuttable = len(drives) == 1 and len(judged) > 1
                 try:
                     self._judge_part(ids, may_retry=len(drives) > 1 or cuttable or self._memory.limited)
-                    for observer in self._witnesses:
+                    for observer in self._observers:
                         observer(self._con, drives, first=no == 0, last=no + 1 == len(todo))
-                except duckdb.OutOfMemoryException as error:
-                    if cuttable:
-                        raise _PartTooLargeError(sum(judged.values())) from error
-                    raise
+                except duckdb.OutOfMemoryException:
+                    if not cuttable:
+                        raise
+                    self._memory.halve_parts(sum(judged.values()))
+                    return False
                 # a kept database has every ego
                 self._keep((t for t in store.tables_of_lifetime("part") if t != "deferred_ego"), again=no > 0)
             self._keep(store.tables_of_lifetime("drive"))
             undo.pop_all()
+        return True
 
     def _judge_part(self, ids: Sequence[str], *, may_retry: bool) -> None:
         """Judge the egos that do not rest."""
         derive(self._con, self._tables, of_the_map=False)
-        evaluate(
-            self._con,
-            self._rules,
-            self._params,
-            margins=self._margins is not None,
-            courses=bool(self._witnesses),
-            may_retry=may_retry,
-        )
-        self._refuse_shared_error(ids)
+        margins, courses = self._margins is not None, bool(self._observers)
+        evaluate(self._con, self._rules, self._params, margins=margins, courses=courses, may_retry=may_retry)
+        # a rule that erred on a crowd is tried on each drive alone: the fault of one is not the others'
+        erred = "SELECT rule_id FROM verdict WHERE verdict = 'error' AND list_contains(?, drive_id) ORDER BY rule_id LIMIT 1"
+        if len(ids) > 1 and (row := self._con.execute(erred, [list(ids)]).fetchone()):
+            raise RuleError(f"{row[0]} erred on a batch of {len(ids)} drives")
 
     def close(self) -> None:
         """Finish the files that grew with the batches."""
@@ -170,10 +153,8 @@ class JudgingSession:
             self._maps = frozenset()  # until the new ones are whole: a failure here must not leave half a map behind
             for table in store.tables_of_lifetime("map"):
                 self._con.execute(f"DELETE FROM {table}")
-            for _, environment in sorted(environments.items()):
-                known = self._con.execute(
-                    "SELECT count(*) FROM environment WHERE environment_id = ?", [environment.environment_id]
-                ).fetchall()[0][0]
+            for id_, environment in sorted(environments.items()):
+                known = self._con.execute("FROM environment WHERE environment_id = ?", [id_]).fetchone() is not None
                 for table, rows in environment.tables.items():
                     if not (known and store.lifetimes()[table] == "run"):
                         store.insert(self._con, table, rows)
@@ -193,7 +174,7 @@ class JudgingSession:
         with store.connect(path):
             pass
         self._con.execute("RESET GLOBAL checkpoint_threshold")  # or its log would be as large as itself
-        self._con.execute(f"ATTACH '{str(path).replace(chr(39), chr(39) * 2)}' AS kept")
+        self._con.execute(f"ATTACH {store.quoted(path)} AS kept")
 
     def _keep(self, tables: Iterable[str], *, again: bool = False) -> None:
         """Copy tables to the kept database; `again`: what is the same for all parts of a drive is there already."""
@@ -213,17 +194,8 @@ class JudgingSession:
                 )
             self._kept_maps.update(new)
 
-    def _refuse_shared_error(self, ids: Sequence[str]) -> None:
-        """Let a rule that erred on a crowd be tried on each drive alone: the fault of one is not the others'."""
-        erred = "SELECT rule_id FROM verdict WHERE verdict = 'error' AND list_contains(?, drive_id) ORDER BY rule_id LIMIT 1"
-        if len(ids) > 1 and (row := self._con.execute(erred, [list(ids)]).fetchone()):
-            raise RuleError(f"{row[0]} erred on a batch of {len(ids)} drives")
-
-    def _clear(self) -> None:
-        store.recreate_empty(self._con, store.tables_of_lifetime("drive", "part"))
-
     def _forget(self, ids: Sequence[str]) -> None:
-        self._clear()
+        store.recreate_empty(self._con, store.tables_of_lifetime("drive", "part"))
         for table in store.tables_of_lifetime("run"):
             if "drive_id" in store.column_comments()[table]:
                 self._con.execute(f"DELETE FROM {table} WHERE list_contains(?, drive_id)", [list(ids)])
@@ -242,7 +214,3 @@ def _actors(drives: Iterable[Drive]) -> set[str]:
     tables = [d.trace.tables[name] for d in drives for name in d.trace.tables if name in held]
     columns = [table.column(c) for table in tables for c in table.column_names if c in store.ACTOR_ID_COLUMNS]
     return {each for column in columns for each in pc.unique(column).to_pylist() if each is not None}
-
-
-def _egos(drive: Drive, names: Sequence[str]) -> pa.Table:
-    return pa.table({"drive_id": [drive.trace.drive_id] * len(names), "ego_id": list(names)})

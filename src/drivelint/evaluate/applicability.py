@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING
 from drivelint.drive import conditions
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from drivelint.catalogue import Rule
 
 CREATE_WATCHED = """
@@ -34,16 +32,13 @@ def has_conditions(rule: Rule) -> bool:
     return bool(rule.applies.restricting) or rule.applies.has_limit
 
 
-def engagement_joins(alias: str) -> str:
-    """Return the joins that `ENGAGED` needs for rows with these keys and `t_ns`."""
-    return _joins(alias, f"{alias}.t_ns", watching=True)
-
-
 def condition_joins(rule: Rule, alias: str, time: str, *, watching: bool) -> str:
-    """Return the joins that `in_force_sql` and `unknown_reason_sql` need for rows with these keys and this time; '' for none."""
+    """Return the joins that the conditions, and with `watching` `ENGAGED`, need for rows with these keys and time; '' for none."""
     if not (has_conditions(rule) or watching):
         return ""
-    return _joins(alias, time, watching=watching)
+    same = "{0}.drive_id = {1}.drive_id AND {0}.ego_id = {1}.ego_id"
+    condition = f"LEFT JOIN ego_condition e ON {same.format('e', alias)} AND e.t_ns = {time}"
+    return f"{condition} LEFT JOIN _watched w ON {same.format('w', alias)}" if watching else condition
 
 
 def in_force_sql(rule: Rule, *, watching: bool) -> str:
@@ -79,19 +74,7 @@ def _terms(rule: Rule, *, watching: bool) -> dict[str, str]:
             f"CASE WHEN list_contains($_is_{name}, e.{name}) THEN true "
             f"WHEN e.{name} IS NOT NULL AND NOT list_contains($_may_{name}, e.{name}) THEN false END"
         )
+    limits = ((">= $_limit_min", rule.applies.limit_min_mps), ("<= $_limit_max", rule.applies.limit_max_mps))
     if rule.applies.has_limit:
-        found["limit"] = " AND ".join(_limits(rule))
+        found["limit"] = " AND ".join(f"e.limit_mps {bound}" for bound, mps in limits if mps is not None)
     return found
-
-
-def _limits(rule: Rule) -> Iterable[str]:
-    if rule.applies.limit_min_mps is not None:
-        yield "e.limit_mps >= $_limit_min"
-    if rule.applies.limit_max_mps is not None:
-        yield "e.limit_mps <= $_limit_max"
-
-
-def _joins(alias: str, time: str, *, watching: bool) -> str:
-    same = "{0}.drive_id = {1}.drive_id AND {0}.ego_id = {1}.ego_id"
-    condition = f"LEFT JOIN ego_condition e ON {same.format('e', alias)} AND e.t_ns = {time}"
-    return f"{condition} LEFT JOIN _watched w ON {same.format('w', alias)}" if watching else condition

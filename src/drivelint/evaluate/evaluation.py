@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor, wait
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 import duckdb
@@ -23,58 +24,48 @@ MOST_SHARED_STEPS: Final = 200_000
 """Steps from which on they are not: one statement then uses all cores, and two would need twice the memory."""
 
 
+@dataclass
 class Evaluation:
-    """A connection, the rules to judge on it, and what they share."""
+    """A connection, the rules to judge on it, what is asked for, and what the rules share."""
 
-    def __init__(
-        self,
-        con: duckdb.DuckDBPyConnection,
-        bindings: Sequence[Binding],
-        *,
-        margins: bool,
-        courses: bool = False,
-        may_retry: bool = False,
-    ) -> None:
-        self._con = con
-        self._bindings = bindings
-        self._margins = margins
-        self._courses = courses
-        self._may_retry = may_retry
-        self._n_todo: dict[int, int] = {}
-        self._n_subjects = 0
-        self._has_holes = False
-        self._watching = False
+    con: duckdb.DuckDBPyConnection
+    bindings: Sequence[Binding]
+    margins: bool
+    courses: bool = False
+    may_retry: bool = False
+    _n_todo: dict[int, int] = field(default_factory=dict, init=False)
+    _n_subjects: int = field(default=0, init=False)
+    _has_holes: bool = field(default=False, init=False)
+    _watching: bool = field(default=False, init=False)
 
     def judge(self) -> None:
         """Judge by every rule, then write the verdicts, findings and margins of all of them at once."""
         self.prepare()
-        todo = deque(binding for binding in self._bindings if self._n_todo.get(binding.no))
+        todo = deque(binding for binding in self.bindings if self._n_todo.get(binding.no))
         if len(todo) >= LEAST_SHARED_RULES and self._count("SELECT count(*) FROM step") < MOST_SHARED_STEPS:
             self._share(todo)
         else:
             self._work(todo)
         for statement in finalize.COLLECT_STATEMENTS:
-            self._con.execute(statement)
+            self.con.execute(statement)
         make_reason_table(
-            self._con, finalize.REASONS_TO_WORD, {binding.no: binding.rule.reasons for binding in self._bindings}
+            self.con, finalize.REASONS_TO_WORD, {binding.no: binding.rule.reasons for binding in self.bindings}
         )
         for statement in finalize.INSERT_STATEMENTS:
-            self._con.execute(statement)
-        if self._courses:
-            self._con.execute(finalize.INSERT_COURSES)
+            self.con.execute(statement)
+        if self.courses:
+            self.con.execute(finalize.INSERT_COURSES)
 
     def _share(self, todo: deque[Binding]) -> None:
         """Judge on a second connection too: on so few rows a statement is planned and run on one core."""
-        with ThreadPoolExecutor(1) as pool, self._con.cursor() as other:
-            helper = Evaluation(
-                other, self._bindings, margins=self._margins, courses=self._courses, may_retry=self._may_retry
-            )
+        with ThreadPoolExecutor(1) as pool, self.con.cursor() as other:
+            helper = replace(self, con=other)
             helped = pool.submit(helper.judge_shared, todo)
             try:
                 self._work(todo)
                 helped.result()
                 for table in temp_tables.OUTCOME_TABLES:
-                    store.insert(self._con, table, other.execute(f"FROM temp.{table}").to_arrow_table())
+                    store.insert(self.con, table, other.execute(f"FROM temp.{table}").to_arrow_table())
             finally:
                 todo.clear()  # whatever came between, the helper stops after its present rule
                 wait([helped])
@@ -98,14 +89,14 @@ class Evaluation:
 
     def prepare(self) -> None:
         """Make the run's tables, decide which rules need not run, and group the default grids once for all rules."""
-        self._n_todo = temp_tables.create_tables(self._con, self._bindings)
+        self._n_todo = temp_tables.create_tables(self.con, self.bindings)
         self._n_subjects = self._count("SELECT count(*) FROM _subject")
         self._has_holes = self._count("SELECT count(*) FROM _segment WHERE seg > 0") > 0
-        self._con.execute(applicability.CREATE_WATCHED)
+        self.con.execute(applicability.CREATE_WATCHED)
         self._watching = self._count("SELECT count(*) FROM _watched") > 0
-        quick = [b for b in self._bindings if self._is_quick(b)]
+        quick = [b for b in self.bindings if self._is_quick(b)]
         if quick:
-            self._con.execute(invariant.CREATE_GRID_GROUPS, {"_objects": any(b.rule.per_object for b in quick)})
+            self.con.execute(invariant.CREATE_GRID_GROUPS, {"_objects": any(b.rule.per_object for b in quick)})
 
     def judge_rule(self, binding: Binding) -> None:
         """Run the statements of one rule."""
@@ -116,7 +107,7 @@ class Evaluation:
 
     def _is_quick(self, binding: Binding) -> bool:
         """Whether the first pass can settle groups; margins need every step anyway."""
-        return not self._margins and invariant.grid_of(binding.rule) is not None
+        return not self.margins and invariant.grid_of(binding.rule) is not None
 
     def _is_partial(self, binding: Binding) -> bool:
         return self._n_todo.get(binding.no, 0) < self._n_subjects
@@ -133,9 +124,7 @@ class Evaluation:
             n_steps = self._count(
                 f"SELECT coalesce(sum(n), 0)::BIGINT FROM _group WHERE rule_no = {binding.no} AND NOT clean"
             )
-            if self._courses and not self._may_stop(
-                self._count(findings.near_miss_count_sql(binding.no, "_group", "clean"))
-            ):
+            if self._has_near_misses(binding, "_group", "clean"):
                 self._execute(findings.settled_courses_sql(binding.rule), binding)
             if self._may_stop(n_steps):
                 return
@@ -155,7 +144,7 @@ class Evaluation:
         rule = binding.rule
         if self._may_stop(self._execute(reference_points.raw_references_sql(rule, self._is_partial(binding)), binding)):
             return
-        described = self._con.execute("SELECT * FROM _raw_reference LIMIT 0").description or []
+        described = self.con.execute("SELECT * FROM _raw_reference LIMIT 0").description or []
         columns = [str(column[0]) for column in described]
         own_object = "object_id" in columns
         self._execute(reference_points.references_sql(columns), binding)
@@ -169,52 +158,53 @@ class Evaluation:
         self._leave(binding)
 
     def _leave(self, binding: Binding) -> None:
-        if self._courses and not self._may_stop(
-            self._count(findings.near_miss_count_sql(binding.no, "_outcome", "verdict = 'pass'"))
-        ):
+        if self._has_near_misses(binding, "_outcome", "verdict = 'pass'"):
             self._execute(findings.near_miss_courses_sql(binding.rule), binding)
         if not self._may_stop(self._count("SELECT count(*) FROM (FROM _judged WHERE NOT holds LIMIT 1)")):
             self._execute(findings.stretches_sql(binding.rule), binding)
-            if self._courses:
+            if self.courses:
                 self._execute(findings.courses_sql(binding.rule), binding)
-        if self._margins:
+        if self.margins:
             self._execute(findings.margins_sql(binding.rule), binding)
+
+    def _has_near_misses(self, binding: Binding, table: str, kept: str) -> bool:
+        """Whether courses are asked for, and kept rows of a table of outcomes are near misses."""
+        near = f"FROM {table} JOIN _rule USING (rule_no) WHERE rule_no = {binding.no} AND {kept} AND {findings.IS_NEAR_MISS}"
+        return self.courses and not self._may_stop(self._count(f"SELECT count(*) {near}"))
 
     def _may_stop(self, n_rows: int) -> bool:
         return n_rows == 0
 
     def _execute(self, sql: str, binding: Binding) -> int:
         """Execute one statement with exactly the values it names; return how many rows it made."""
-        statement = self._con.extract_statements(sql)[0]
-        row = self._con.execute(statement, binding.values(statement.named_parameters)).fetchone()
+        statement = self.con.extract_statements(sql)[0]
+        row = self.con.execute(statement, binding.values(statement.named_parameters)).fetchone()
         return int(row[0]) if row else 0
 
     def _count(self, sql: str) -> int:
-        row = self._con.execute(sql).fetchone()
+        row = self.con.execute(sql).fetchone()
         return int(row[0]) if row else 0
 
     def _blame(self, binding: Binding, error: duckdb.Error) -> None:
         """Make this rule an error for every subject that it was to judge; raise what another try may not meet."""
         code, words = "rule_error", str(error).splitlines()[0]
         if isinstance(error, duckdb.OutOfMemoryException):
-            if self._may_retry:
+            if self.may_retry:
                 raise error
-            code, words = (
-                "out_of_memory",
-                "needs more memory than there is",
-            )  # the database tells of blocks, ever others
-        self._con.execute(
+            # the database tells of blocks, ever others
+            code, words = "out_of_memory", "needs more memory than there is"
+        self.con.execute(
             "INSERT INTO _error SELECT rule_no, drive_id, ego_id, $code, $reason FROM _todo WHERE rule_no = $no",
             {"no": binding.no, "code": code, "reason": f"rule {binding.rule.id}: {words}"},
         )
 
 
+@dataclass
 class PlanRecorder(Evaluation):
     """An evaluation that records the plan of every statement and runs all alternatives."""
 
-    def __init__(self, con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding], *, margins: bool) -> None:
-        super().__init__(con, bindings, margins=margins, courses=True)
-        self.plans: list[str] = []
+    courses: bool = True
+    plans: list[str] = field(default_factory=list, init=False)
 
     def prepare(self) -> None:
         """Make the run's tables; holes and drivers that are not engaged are always looked for."""
@@ -225,7 +215,7 @@ class PlanRecorder(Evaluation):
         return False
 
     def _execute(self, sql: str, binding: Binding) -> int:
-        statement = self._con.extract_statements(f"EXPLAIN {sql}")[0]
-        rows = self._con.execute(statement, binding.values(statement.named_parameters)).fetchall()
+        statement = self.con.extract_statements(f"EXPLAIN {sql}")[0]
+        rows = self.con.execute(statement, binding.values(statement.named_parameters)).fetchall()
         self.plans += [str(plan) for _, plan in rows]
         return super()._execute(sql, binding)

@@ -74,11 +74,6 @@ QUALIFY row_number() OVER (
 """
 
 
-def near_miss_count_sql(rule_no: int, table: str, kept: str) -> str:
-    """SQL that counts the near misses of a rule among the kept rows of a table of outcomes."""
-    return f"SELECT count(*) FROM {table} JOIN _rule USING (rule_no) WHERE rule_no = {rule_no} AND {kept} AND {IS_NEAR_MISS}"
-
-
 def settled_courses_sql(rule: Rule) -> str:
     """Return the SQL of near-miss courses for groups that the first pass settled."""
     near = f"""SELECT g.drive_id, g.ego_id, coalesce(g.object_id, '') AS object_id, '' AS profile, NULL::INTEGER AS ref_id, '' AS label,

@@ -127,7 +127,7 @@ WITH {sql_fragments.condition_ctes(rule)}, _grid AS ({source}
         CASE WHEN NOT ({human}) THEN v.reason END AS reason
     FROM _grid g {"JOIN _profile_set p ON g.drive_id = p.drive_id AND g.ego_id = p.ego_id" if rule.profiled else ""}
     LEFT JOIN _state v ON {on}
-    {applicability.engagement_joins("g") if watching else ""}
+    {applicability.condition_joins(rule, "g", "g.t_ns", watching=True) if watching else ""}
 ), _expected AS (SELECT * FROM _joined WHERE applies IS DISTINCT FROM false
 ){_combination(rule) if combined else ", _series AS (SELECT *, object_id AS who, 1 AS n_same FROM _expected)"}
 SELECT * REPLACE (coalesce(object_id, '') AS object_id, coalesce(who, '') AS who), row_number()

@@ -104,49 +104,29 @@ def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -
 
 
 def _rules(bindings: Sequence[Binding]) -> pa.Table:
-    rules = [b.rule for b in bindings]
-    derived = [with_sources(r.reads) for r in rules]
-    columns = {
-        "rule_id": [r.id for r in rules], "rule_version": [r.version for r in rules], "kind": [r.kind for r in rules],
-        "severity": [r.severity for r in rules], "sense": [r.sense for r in rules], "unit": [r.unit for r in rules],
-        "observes": [r.observes for r in rules], "without_time": [r.without_time for r in rules],
-        "without_anchor": [r.without_anchor for r in rules],
-    }  # fmt: skip
-    return pa.table(
-        {
-            "rule_no": pa.array([b.no for b in bindings], pa.int32()),
-            **{name: pa.array(values, pa.string()) for name, values in columns.items()},
-            "near_margin": pa.array([r.near_margin for r in rules], pa.float64()),
-            "of_others": pa.array(["pair" in tables for tables in derived], pa.bool_()),
-            "of_hidden": pa.array(["hidden" in tables for tables in derived], pa.bool_()),
-            "of_lanes": pa.array(["registration" in r.requires for r in rules], pa.bool_()),
-        }
-    )
+    told = ("kind", "severity", "sense", "unit", "observes", "near_margin", "without_time", "without_anchor")
+    rows = []
+    for binding in bindings:
+        rule, sources = binding.rule, with_sources(binding.rule.reads)
+        row = {"rule_no": binding.no, "rule_id": rule.id, "rule_version": rule.version}
+        row |= {name: getattr(rule, name) for name in told}
+        row |= {"of_others": "pair" in sources, "of_hidden": "hidden" in sources}
+        rows.append(row | {"of_lanes": "registration" in rule.requires})
+    return pa.Table.from_pylist(rows)
 
 
 def _needs(bindings: Sequence[Binding]) -> pa.Table:
-    needs = [(b.no, pos, signal) for b in bindings for pos, signal in enumerate(b.rule.requires)]
-    return pa.table(
-        {
-            "rule_no": pa.array([no for no, _, _ in needs], pa.int32()),
-            "pos": pa.array([pos for _, pos, _ in needs], pa.int32()),
-            "signal": pa.array([signal for _, _, signal in needs], pa.string()),
-        }
-    )
+    return pa.Table.from_pylist([
+        {"rule_no": b.no, "pos": pos, "signal": signal} for b in bindings for pos, signal in enumerate(b.rule.requires)
+    ])  # fmt: skip
 
 
 def _laws(bindings: Sequence[Binding]) -> pa.Table:
-    laws = [
-        (b.no, word)
-        for b in bindings
-        for word in (*conditions.with_narrower_values(b.rule.law), *conditions.broader_values(b.rule.law))
-    ]
-    return pa.table(
-        {
-            "rule_no": pa.array([no for no, _ in laws], pa.int32()),
-            "nation": pa.array([word for _, word in laws], pa.string()),
-        }
-    )
+    rows = []
+    for b in bindings:
+        words = (*conditions.with_narrower_values(b.rule.law), *conditions.broader_values(b.rule.law))
+        rows += [{"rule_no": b.no, "nation": word} for word in words]
+    return pa.Table.from_pylist(rows)
 
 
 def drop_tables(con: duckdb.DuckDBPyConnection) -> None:

@@ -41,16 +41,18 @@ class GateInputs:
         """
         from drivelint.result.load import load_result
 
-        said = [*(waivers.read(waiver_file) if waiver_file else ()), *(_beside(settings_file) if settings_file else ())]
+        said = waivers.read(waiver_file) if waiver_file else []
+        if settings_file and settings_file.is_file():
+            said += waivers.read(settings_file, alone=False)
         if baseline is None and not said:
             return None
         if baseline is not None and out is not None and baseline.resolve() == out.resolve():
             raise UsageError(
                 f"--baseline {baseline}: is also --out: what is new today would be known tomorrow; write the results elsewhere"
             )
-        earlier = None if baseline is None else load_result(baseline)
-        name = "baseline" if baseline is None else baseline.resolve().name
-        return cls(today, earlier, name, tuple(said))
+        if baseline is None:
+            return cls(today, waivers=tuple(said))
+        return cls(today, load_result(baseline), baseline.resolve().name, tuple(said))
 
     def apply_to(self, result: Result) -> Result:
         """Return the result with its gate: difference to the baseline and applied waivers."""
@@ -68,7 +70,3 @@ def compare_results(
     """Return the difference of two results and its new findings that fail the run."""
     found = diff.compare(base, new, *names)
     return found, descriptions.gating_findings(found, fail_on, new.gate)
-
-
-def _beside(settings_file: Path) -> list[Waiver]:
-    return waivers.read(settings_file, alone=False) if settings_file.is_file() else []

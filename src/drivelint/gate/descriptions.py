@@ -48,7 +48,8 @@ def headline(difference: Difference) -> str:
     """Return the counts in one sentence: what is new, what is fixed, and what is not fixed but gone."""
     n = difference.counts()
     kept = Counter(entry.there for entry in difference.with_standing("fixed"))
-    worse = sum(_worse(entry) for entry in difference.with_standing("changed"))
+    margins = [(entry.margin, entry.base_margin) for entry in difference.with_standing("changed")]
+    worse = sum(now is not None and was is not None and now < was for now, was in margins)
     text = f"{n['new']} new, {n['changed']} changed ({worse} worse), {n['unchanged']} unchanged, "
     text += f"{n['fixed']} fixed ({kept['pass']} now pass, {kept['not_applicable']} now not applicable)"
     if n["unknown"] or n["lost"]:
@@ -114,27 +115,19 @@ def finding_line(entry: ComparedFinding) -> str:
 def _there(entry: ComparedFinding) -> str:
     if entry.standing == "changed":
         return f": {entry.why}"
-    if entry.standing == "new":
-        return f" (the base says {_SAID[entry.there]}: {entry.why})"
-    return f" (now {_SAID[entry.there]}: {entry.why})"
-
-
-_SAID: Final = {"not_applicable": "not applicable", "none": "nothing"} | {
-    name: name for name in ("pass", "fail", "unknown", "error")
-}
+    said = {"not_applicable": "not applicable", "none": "nothing"}.get(entry.there, entry.there)
+    return f" ({'the base says' if entry.standing == 'new' else 'now'} {said}: {entry.why})"
 
 
 def waiver_warnings(gate: Gate) -> Iterator[str]:
     """Yield a warning for each waiver that has expired or matches no finding."""
     for waiver in gate.waivers:
         if waiver.state == "expired":
-            yield f"{waiver.where}: expired {waiver.expires} ({waiver.owner}): it waives nothing{_would(waiver)}"
+            like_that = plural(waiver.findings, "finding") if waiver.findings else "no finding is"
+            like_that += " like that"
+            yield f"{waiver.where}: expired {waiver.expires} ({waiver.owner}): it waives nothing; {like_that}"
         elif waiver.state == "unmatched":
             yield f"{waiver.where}: no finding is like that: {waiver_scope(waiver)} ({waiver.owner}); correct or drop it"
-
-
-def _would(waiver: Waiver) -> str:
-    return f"; {plural(waiver.findings, 'finding')} like that" if waiver.findings else "; no finding is like that"
 
 
 def waiver_scope(waiver: Waiver) -> str:
@@ -182,12 +175,10 @@ def group_by_reason(opened: Iterable[NewUnknowns]) -> list[tuple[str, list[str],
 def _table(difference: Difference) -> Iterator[str]:
     names = (difference.base_name, difference.name)
     width = max(len(name) for name in names)
-    yield " " * width + "".join(f"  {_HEAD[verdict]:>7}" for verdict in counts.VERDICTS)
+    heads = ["n/a" if verdict == "not_applicable" else verdict for verdict in counts.VERDICTS]
+    yield " " * width + "".join(f"  {head:>7}" for head in heads)
     for name, told in zip(names, (difference.base_verdicts, difference.verdicts), strict=True):
         yield f"{name:<{width}}" + "".join(f"  {told[verdict]:>7}" for verdict in counts.VERDICTS)
-
-
-_HEAD: Final = {"not_applicable": "n/a"} | {name: name for name in ("pass", "fail", "unknown", "error")}
 
 
 def _opened(opened: Sequence[NewUnknowns]) -> Iterator[str]:
@@ -204,10 +195,6 @@ def _drives(difference: Difference) -> Iterator[str]:
         if names:
             few = ", ".join(names[:MAX_LINES])
             yield f"{title} ({plural(len(names), 'drive')}): {few}{' ...' if len(names) > MAX_LINES else ''}"
-
-
-def _worse(entry: ComparedFinding) -> bool:
-    return entry.margin is not None and entry.base_margin is not None and entry.margin < entry.base_margin
 
 
 def _more(n: int) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow as pa
@@ -37,15 +38,14 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
     """
     had, has = ResultLookup(base), ResultLookup(new)
     same = match.match_drives(list(had.drives.values()), list(has.drives.values()))
-    before, after = had.findings, has.findings
     entries: list[ComparedFinding] = []
     gone: list[ComparedFinding] = []
-    for drive_id in [*after, *(drive for drive in same if drive not in after)]:
+    for drive_id in dict.fromkeys([*has.findings, *same]):
         found, left = _drive(had, has, same.get(drive_id), drive_id)
         entries += found
         gone += left
     known = set(same.values())
-    for drive_id, stretches in before.items():
+    for drive_id, stretches in had.findings.items():
         if drive_id not in known:
             gone += [_gone(each, drive_id, has.verdict_at(None, each, same_log=False), had) for each in stretches]
     return Difference(
@@ -126,34 +126,20 @@ def _differs(now: Row, was: Row) -> bool:
 def _gone(was: TimedFinding, drive_id: str, said: LookupResult, had: ResultLookup) -> ComparedFinding:
     """Return a finding that only BASE has: fixed only if NEW looked there and found the rule kept, or not applicable."""
     standing = {"pass": "fixed", "not_applicable": "fixed", "none": "lost"}.get(said.verdict, "unknown")
-    entry = _entry(standing, was, was, had, said)
-    return entry if drive_id == entry.drive_id else _renamed(entry, drive_id)
-
-
-def _renamed(entry: ComparedFinding, drive_id: str) -> ComparedFinding:
-    return ComparedFinding(**{**entry.__dict__, "drive_id": drive_id})
+    return replace(_entry(standing, was, was, had, said), drive_id=drive_id)
 
 
 def _entry(
     standing: str, at: TimedFinding, was: TimedFinding | None, lookup: ResultLookup, said: LookupResult
 ) -> ComparedFinding:
-    row = at.row
-    rule = lookup.rules.get(row["rule_id"])
+    same = ("finding_id", "drive_id", "ego_id", "rule_id", "profile", "object_id", "severity", "margin", "unit")
     return ComparedFinding(
         standing=standing,
-        finding_id=at.id,
+        **{name: at.row[name] for name in same},
         base_id=None if was is None else was.id,
-        drive_id=row["drive_id"],
-        ego_id=row["ego_id"],
-        rule_id=row["rule_id"],
-        profile=row["profile"],
-        object_id=row["object_id"],
-        severity=row["severity"],
-        stable=rule is not None and rule["status"] == "stable",
+        stable=lookup.is_stable(at.row["rule_id"]),
         t_s=round(at.worst, 3),
-        margin=row["margin"],
         base_margin=None if was is None else was.row["margin"],
-        unit=row["unit"],
         there=said.verdict,
         why=said.why,
     )
@@ -168,8 +154,9 @@ def _opened(base: Result, new: Result, same: Mapping[str, str], has: ResultLooku
         drive_id, ego_id, rule_id, profile = at
         before = was[same.get(drive_id, ""), ego_id, rule_id, profile]
         if n > before:
-            stable = rule_id in has.rules and has.rules[rule_id]["status"] == "stable"
-            found.append(NewUnknowns(drive_id, ego_id, rule_id, profile, stable, n, before, reasons[at]))
+            found.append(
+                NewUnknowns(drive_id, ego_id, rule_id, profile, has.is_stable(rule_id), n, before, reasons[at])
+            )
     return sorted(found, key=lambda each: (each.drive_id, each.ego_id, each.rule_id, each.profile or ""))
 
 

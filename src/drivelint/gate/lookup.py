@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from drivelint.gate import match
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
 
     from drivelint.gate.match import TimedFinding
     from drivelint.result.model import Result
@@ -49,6 +49,10 @@ class ResultLookup:
         for row in result.findings.to_pylist():
             self.findings[row["drive_id"]].append(match.timed_finding(row, self.drives[row["drive_id"]]))
 
+    def is_stable(self, rule_id: str) -> bool:
+        """Return whether this result's rule of that id is stable."""
+        return rule_id in self.rules and self.rules[rule_id]["status"] == "stable"
+
     def verdict_at(self, drive_id: str | None, at: TimedFinding, *, same_log: bool) -> LookupResult:
         """Return the verdict of this result where another result has the finding `at`; `drive_id` is the drive's id in this result."""
         row = at.row
@@ -63,11 +67,9 @@ class ResultLookup:
         if not rows:
             return LookupResult("none", "there is no verdict of this rule")
         there = [each for each in rows if self._about(each, row, drive_id) and _overlaps(each, at, drive)]
-        said = [self._judged(each, at) for each in there]
-        for verdict in _WEIGHT:
-            for each in said:
-                if each.verdict == verdict:
-                    return each
+        said = [judged for each in there if (judged := self._judged(each, at)).verdict in _WEIGHT]
+        if said:
+            return min(said, key=lambda each: _WEIGHT.index(each.verdict))
         if not same_log and row["object_id"] not in self._objects[drive_id]:
             return LookupResult("none", f"object {row['object_id']} is not in this log, or has another id")
         return LookupResult("not_applicable", there[0]["reason"] if there else "The rule does not apply there.")
@@ -77,10 +79,8 @@ class ResultLookup:
         if each["verdict"] != "fail":
             return LookupResult(each["verdict"], each["reason"])
         mine = self.findings.get(each["drive_id"], ())
-        if any(
-            match.finding_key(other.row) == match.finding_key(at.row) and match.gap_s(other, at) <= match.NEAR_S
-            for other in mine
-        ):
+        alike = [other for other in mine if match.finding_key(other.row) == match.finding_key(at.row)]
+        if any(match.gap_s(other, at) <= match.NEAR_S for other in alike):
             return LookupResult("fail", "the rule fails there still, at another step or place")
         if each["n_judged"] == each["n_expected"]:
             return LookupResult("pass", "kept there, though not at another time of the same stretch of driving")
@@ -115,12 +115,8 @@ class ResultLookup:
 
 def _overlaps(each: Row, at: TimedFinding, drive: Row) -> bool:
     """Return whether a verdict covers a finding's time; one without times covers the drive."""
-    times = _times(each[name] for name in ("t_ref_ns", "t_start_ns", "t_end_ns", "t_worst_ns"))
+    times = [t for name in ("t_ref_ns", "t_start_ns", "t_end_ns", "t_worst_ns") if (t := each[name]) is not None]
     if not times:
         return True
     start, end = match.seconds_since_start(min(times), drive), match.seconds_since_start(max(times), drive)
     return start - match.NEAR_S <= at.end and at.start <= end + match.NEAR_S
-
-
-def _times(values: Iterable[int | None]) -> list[int]:
-    return [value for value in values if value is not None]

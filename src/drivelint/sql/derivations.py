@@ -16,20 +16,13 @@ from drivelint.sql import syntax
 from drivelint.sql.store import column_comments, lifetimes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable
 
 _GIVEN = {"profile"}  # filled from queries/profiles.toml
 # What the engine and the drive table read themselves, whatever the rules are.
 ALWAYS_NEEDED = (
-    "clock",
-    "step",
-    "ego_state",
-    "pair",
-    "lost_object",
-    "ego_condition",
-    "capability",
-    "registration",
-    "exposure",
+    *("clock", "step", "ego_state", "pair", "lost_object"),
+    *("ego_condition", "capability", "registration", "exposure"),
 )
 
 
@@ -49,7 +42,7 @@ class Derivation:
 
 
 @cache
-def derivations() -> Mapping[str, Derivation]:
+def derivations() -> dict[str, Derivation]:
     """Return every derivation, in an order in which each can be run after those before it."""
     found: dict[str, Derivation] = {}
     files = sorted((folder("queries") / "derive").glob("*.sql"))
@@ -72,13 +65,10 @@ def derivations() -> Mapping[str, Derivation]:
 
 def with_sources(tables: Iterable[str]) -> set[str]:
     """Return these tables and the library tables from which they are derived."""
-    found: set[str] = set()
-    todo = [*tables]
-    while todo:
-        table = todo.pop()
-        if table not in found:
-            found.add(table)
-            todo.extend(derivations()[table].reads if table in derivations() else ())
+    found = set(tables)
+    for name, derivation in reversed(derivations().items()):
+        if name in found:
+            found |= derivation.reads
     return found
 
 

@@ -32,12 +32,13 @@ _CODES = r"SELECT regexp_extract(type_name, '^actor_ids_(\d+)$', 1) FROM duckdb_
 _COLUMN = re.compile(r"^    (\w+) .*?,?\s*-- (.+)$", re.MULTILINE)
 
 
+def quoted(text: object) -> str:
+    """Return a text as a literal of SQL."""
+    return "'" + str(text).replace("'", "''") + "'"
+
+
 def connect(
-    path: Path | None = None,
-    *,
-    threads: int | None = None,
-    memory_limit: str | None = None,
-    spill: Path | None = None,
+    path: Path | None = None, *, threads: int | None = None, memory_limit: str | None = None, spill: Path | None = None
 ) -> duckdb.DuckDBPyConnection:
     """Open a database with spatial loaded from its wheel (no network) and every table of `schemas/` and macro created.
 
@@ -127,7 +128,7 @@ def _load_spatial(con: duckdb.DuckDBPyConnection) -> None:
     wheel = Path(next(iter(duckdb_extension_spatial.__path__)))
     for file in sorted(wheel.rglob("spatial.duckdb_extension")):
         try:
-            con.execute(f"LOAD '{str(file).replace(chr(39), chr(39) * 2)}'")
+            con.execute(f"LOAD {quoted(file)}")
         except duckdb.Error as error:
             raise DriveLintError(
                 f"duckdb {duckdb.__version__} cannot load its spatial extension {file}: {error}; "
@@ -140,18 +141,18 @@ def _load_spatial(con: duckdb.DuckDBPyConnection) -> None:
 @cache
 def column_comments(file: str = "*") -> dict[str, dict[str, str]]:
     """Return table -> column -> comment for every table of `schemas/<file>.sql` (`*`: of all of them), in file order."""
-    tables: dict[str, dict[str, str]] = {}
-    for path in sorted(folder("schemas").glob(f"{file}.sql")):
-        for name, body in _TABLE.findall(path.read_text(encoding="utf-8")):
-            tables[name] = dict(_COLUMN.findall(body))
-    return tables
+    return {name: dict(_COLUMN.findall(body)) for name, body in _TABLE.findall(_declarations(file))}
+
+
+@cache
+def _declarations(file: str = "*") -> str:
+    return "\n".join(path.read_text(encoding="utf-8") for path in sorted(folder("schemas").glob(f"{file}.sql")))
 
 
 @cache
 def lifetimes() -> dict[str, str]:
     """Return table -> its lifetime, as the line above it in `schemas/` says. Errors: `DriveLintError` for a table without one."""
-    text = "\n".join(file.read_text(encoding="utf-8") for file in sorted(folder("schemas").glob("*.sql")))
-    found = {table: lifetime for lifetime, table in _LIFETIME.findall(text)}
+    found = {table: lifetime for lifetime, table in _LIFETIME.findall(_declarations())}
     for table in column_comments():
         if found.get(table) not in LIFETIMES:
             raise DriveLintError(
@@ -175,7 +176,7 @@ def recreate_with_enums(
     """
     old = _codes(con)
     for kind, ids in (("drive", drives), ("actor", actors)):
-        listed = ", ".join("'" + each.replace("'", "''") + "'" for each in sorted(set(ids)))
+        listed = ", ".join(map(quoted, sorted(set(ids))))
         made = f"ENUM ({listed})" if listed else "VARCHAR"
         con.execute(f"CREATE TYPE {kind}_ids_{max(old, default=0) + 1} AS {made}")
     recreate_empty(con, tables)
@@ -191,8 +192,9 @@ def recreate_empty(con: duckdb.DuckDBPyConnection, tables: Iterable[str]) -> Non
     types = {}
     if codes := _codes(con):
         types = {"drive_id": f"drive_ids_{max(codes)}", **dict.fromkeys(ACTOR_ID_COLUMNS, f"actor_ids_{max(codes)}")}
+    bodies = dict(_TABLE.findall(_declarations()))
     for table in tables:
-        body = _bodies()[table]
+        body = bodies[table]
         for column in types.keys() & column_comments()[table].keys() if table not in _AS_TOLD else ():
             body = re.sub(rf"^    {column} VARCHAR", f"    {column} {types[column]}", body, flags=re.MULTILINE)
         con.execute(f"CREATE OR REPLACE TABLE {table} (\n{body})")
@@ -203,28 +205,22 @@ def _codes(con: duckdb.DuckDBPyConnection) -> list[int]:
 
 
 @cache
-def _bodies() -> dict[str, str]:
-    files = sorted(folder("schemas").glob("*.sql"))
-    return dict(each for file in files for each in _TABLE.findall(file.read_text(encoding="utf-8")))
+def macro_definitions() -> str:
+    """Return the text of `queries/macros`."""
+    files = sorted((folder("queries") / "macros").glob("*.sql"))
+    return "\n".join(file.read_text(encoding="utf-8") for file in files)
 
 
 def create_macros(con: duckdb.DuckDBPyConnection) -> None:
     """Create every macro of `queries/macros`, which derivations, rules and the reasons of verdicts call."""
-    for macro in sorted((folder("queries") / "macros").glob("*.sql")):
-        con.execute(macro.read_text(encoding="utf-8"))
+    con.execute(macro_definitions())
 
 
 def create_tables(con: duckdb.DuckDBPyConnection, *, comments: bool = False) -> None:
     """Create every table of `schemas/*.sql`, its columns' comments kept in the database if asked."""
-    for file in sorted(folder("schemas").glob("*.sql")):
-        con.execute(file.read_text(encoding="utf-8"))
+    con.execute(_declarations())
     for table, columns in column_comments().items() if comments else ():
-        con.execute(
-            ";".join(
-                f"COMMENT ON COLUMN {table}.{c} IS '{text.replace(chr(39), chr(39) * 2)}'"
-                for c, text in columns.items()
-            )
-        )
+        con.execute(";".join(f"COMMENT ON COLUMN {table}.{c} IS {quoted(text)}" for c, text in columns.items()))
 
 
 def insert(con: duckdb.DuckDBPyConnection, table: str, rows: pa.Table) -> None:

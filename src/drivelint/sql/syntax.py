@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import duckdb
 
 from drivelint.errors import DriveLintError
-from drivelint.resources import folder
+from drivelint.sql.store import create_macros
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator, Mapping
@@ -22,9 +22,21 @@ _NONE: Final[frozenset[str]] = frozenset()
 _CALLED: Final = re.compile(r"(\w+)\"?\(")
 
 
+@cache
+def parser() -> duckdb.DuckDBPyConnection:
+    """Return a connection that only parses and prints statements."""
+    return duckdb.connect()
+
+
+def syntax_tree(sql: str) -> Node:
+    """Return what DuckDB makes of a SELECT: `error`, and `error_message` or `statements`."""
+    tree: Node = json.loads(parser().execute("SELECT json_serialize_sql(?)", [sql]).fetchall()[0][0])
+    return tree
+
+
 def parse_select(sql: str, where: str) -> Node:
     """Return the syntax tree of one SELECT. Errors: `DriveLintError` that begins with `where`."""
-    tree = json.loads(_parser().execute("SELECT json_serialize_sql(?)", [sql]).fetchall()[0][0])
+    tree = syntax_tree(sql)
     if tree["error"]:
         raise DriveLintError(f"{where}: {tree['error_message']}")
     node: Node = tree["statements"][0]["node"]
@@ -132,16 +144,10 @@ def _nodes(tree: Any) -> Iterator[Node]:
 def _aggregates() -> Names:
     """Return DuckDB's aggregates and the macros, its own and ours, that call one; those of spatial all end in `_agg`."""
     with duckdb.connect() as con:
-        for file in sorted((folder("queries") / "macros").glob("*.sql")):
-            con.execute(file.read_text(encoding="utf-8"))
+        create_macros(con)
         rows = con.execute("SELECT function_name, function_type, macro_definition FROM duckdb_functions()").fetchall()
     found = {name for name, kind, _ in rows if kind == "aggregate"}
     calls = [(name, set(_CALLED.findall(text.lower()))) for name, kind, text in rows if kind == "macro" and text]
     while more := {name for name, called in calls if called & found} - found:
         found |= more
     return frozenset(found)
-
-
-@cache
-def _parser() -> duckdb.DuckDBPyConnection:
-    return duckdb.connect()

@@ -138,7 +138,7 @@ def compare(place: Place) -> list[Row]:
 
 def _read(place: Place) -> Drive:
     trace = read_trace(place.reference, IngestOptions())
-    return Drive(trace, MapLibrary(place.road, None, "auto").find(Path(), None, None, trace.tables["actor_state"]))
+    return Drive(trace, MapLibrary(place.road, None, "auto").find(trace))
 
 
 def _ours(place: Place) -> Answer:

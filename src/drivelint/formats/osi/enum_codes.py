@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.drive.headlights import HEADLIGHTS
+from drivelint.drive.declared_events import HEADLIGHTS
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
 from drivelint.formats.osi.schema import OPEN_DRIVE_REFERENCE
 from drivelint.formats.protobuf.descriptors import enum_names

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import ptars
 
-from drivelint.drive import embedded_map
-from drivelint.drive.trace import LEAST_UTC_NS, FrameTimes, QualityFinding, Recording, States
+from drivelint.drive.trace import LEAST_UTC_NS, FrameTimes, QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.osi import extras
@@ -74,7 +73,7 @@ def read(path: Path, topic: str | None) -> Recording:
     _check_topics(container, truths, topic)
     recording = join_batches(batches, np.array(log_ns, np.uint64))
     recording.findings += container.findings
-    own, several = embedded_map.single_map(maps)
+    own, several = single_map(maps)
     recording.embedded_map = own if maps else head.lanes
     recording.findings += [*lost[:1], *several]
     recording.geo_reference = head.reference
@@ -114,7 +113,7 @@ def _map_text(container: Container, packet: Packet) -> tuple[bytes | None, tuple
         message = (
             f"the log's own map is not used: the one on topic {packet.channel.topic!r}, byte {packet.offset}, {why}"
         )
-        return None, (embedded_map.unusable_finding(message),)
+        return None, (QualityFinding.unusable_map(message),)
     return text if isinstance(text, bytes) else str(text).encode(), ()
 
 

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drivelint.drive import embedded_map
-from drivelint.drive.trace import QualityFinding, Recording, States
+from drivelint.drive.trace import QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
 from drivelint.formats.coordinate_frames import TransformTree, fixed_frame
 from drivelint.formats.mcap import bag
@@ -203,7 +202,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     for topic, (table, _) in log.parts(WORLD_INFO):
         for text in filter(bytes.strip, table.columns["opendrive"].tolist()):
             maps.setdefault(text, topic)
-    recording.embedded_map, trouble = embedded_map.single_map(maps)
+    recording.embedded_map, trouble = single_map(maps)
     recording.findings += trouble
     recording.frame_times, recording.utc_start_ns = message_times(list(parts.values()))
     recording.notes.append(f"positions are in the frame {fixed!r}")

@@ -6,8 +6,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from drivelint.demo.osi_log import osi_mcap
-from drivelint.demo.states import HOST_ID, states
+from drivelint.demo.osi_log import HOST_ID, osi_mcap, states
 from drivelint.drive.finish import finish_trace
 from drivelint.drive.trace import Identity, IngestOptions, Recording
 from drivelint.engine.batch import Drive

@@ -7,16 +7,17 @@ from typing import Final
 from drivelint.demo.actors import Actor, car, cyclist
 from drivelint.demo.line import left, right, straight
 from drivelint.demo.overtakes import OvertakeManner, overtakes, pass_parked_car
-from drivelint.demo.road import LANE_WIDTH_M, MPH, Fork, Road, Sign
+from drivelint.demo.road import LANE_WIDTH_M, MPH, Road, Sign
 from drivelint.demo.scene import Scene, lane_departure, place_oncoming
+from tests.demo.fork import Fork, ForkedRoad
 
 TWO_LANE_ROAD: Final = Road((straight(500.0),), lanes=2)
 LONG_ROAD: Final = Road((straight(1000.0),))
 BEND_ROAD: Final = Road((straight(100.0), left(250.0, radius=150.0), straight(150.0)))
-SIDE_ROAD: Final = Road(
+SIDE_ROAD: Final = ForkedRoad(
     (straight(600.0),), fork=Fork(at=150.0, through_m=20.0, turn=left(15.707963, radius=10.0), branch=(straight(60.0),))
 )
-EXIT_ROAD: Final = Road(
+EXIT_ROAD: Final = ForkedRoad(
     (straight(600.0),),
     kind="rural",
     limits_mph=((0.0, 40.0),),
