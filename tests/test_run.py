@@ -82,8 +82,8 @@ def ragged(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_where_the_egos_are_cut_does_not_show(ragged: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every file of the results has the same bytes, and every table of the kept database the same rows."""
     found = []
-    for room in (batch.PART_PAIRS, 1, 1100):
-        monkeypatch.setattr(batch, "PART_PAIRS", room)
+    for room in (batch.PAIRS_PER_PART, 1, 1100):
+        monkeypatch.setattr(batch, "PAIRS_PER_PART", room)
         monkeypatch.setattr(surroundings, "SCENES_AT_ONCE", room)
         out = tmp_path / str(room)
         asked = settings(ragged, ego="all", out=out, keep_db=True, margins=True, rules=("all",))
@@ -111,7 +111,7 @@ def test_parts_of_a_drive_hold_its_egos_once(ragged: Path, monkeypatch: pytest.M
     assert drive.pairs_by_ego["ego"] == 3 * steps["ego"] + 1
     assert drive.size == sum(drive.pairs_by_ego.values())
     for room in (1, 1100, 10**9):
-        monkeypatch.setattr(batch, "PART_PAIRS", room)
+        monkeypatch.setattr(batch, "PAIRS_PER_PART", room)
         judged = [sorted(set(EGOS) - set(resting)) for resting in batch.egos_left_out([drive])]
         assert [ego for part in judged for ego in part] == sorted(EGOS)
         assert all(len(part) == 1 or sum(drive.pairs_by_ego[e] for e in part) <= room for part in judged)
@@ -121,7 +121,7 @@ def test_parts_of_a_drive_hold_its_egos_once(ragged: Path, monkeypatch: pytest.M
 def test_a_drive_of_which_a_part_fails_leaves_nothing(
     ragged: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(batch, "PART_PAIRS", 1)
+    monkeypatch.setattr(batch, "PAIRS_PER_PART", 1)
     monkeypatch.setattr(batch, "BATCH_STATES", 1)
     calls = []
 

@@ -215,11 +215,10 @@ def _renamed(drives: Sequence[Drive], prefix: str) -> list[Drive]:
     for drive in drives:
         tables = {}
         for name, table in drive.trace.tables.items():
-            if "drive_id" in table.column_names:
-                at = table.column_names.index("drive_id")
-                ids = pa.array([prefix + each for each in table["drive_id"].to_pylist()], table.schema.field(at).type)
-                table = table.set_column(at, table.schema.field(at), ids)
-            tables[name] = table
+            at = table.schema.get_field_index("drive_id")
+            field = table.schema.field(at)
+            ids = pa.array([prefix + each for each in table["drive_id"].to_pylist()], field.type)
+            tables[name] = table.set_column(at, field, ids)
         trace = replace(drive.trace, drive_id=prefix + drive.trace.drive_id, tables=tables)
         found.append(replace(drive, trace=trace))
     return found

@@ -153,7 +153,7 @@ def test_a_rule_that_breaks_its_own_cases_proves_nothing(tmp_path: Path) -> None
 
 @pytest.mark.parametrize(("key", "other"), [("drive_id", "ego_id"), ("ego_id", "drive_id")])
 def test_a_join_without_a_key_is_noticed_by_cases_of_one_drive_each(tmp_path: Path, key: str, other: str) -> None:
-    """Both cases are fine alone: only beside each other does the lost key show."""
+    """Both cases are fine only_waivers: only beside each other does the lost key show."""
     sql = f"""
 SELECT e.drive_id, e.ego_id, e.t_ns, 20 AS observed, CASE WHEN l.t_to_ns IS NULL THEN e.speed_mps END AS required
 FROM ego_state e

@@ -109,7 +109,7 @@ def _ends(before: str, at_before: str, after: str, at_after: str) -> str:
 
 def _exit(road: ForkedRoad, off: Line, branch: Line) -> list[str]:
     """Return the ramp of an exit lane, one way, and the junction: its lane lies beside the through lanes' line."""
-    shift = f'<laneOffset s="0" a="{_n(LANE_WIDTH_M * road.lanes * road.nearside_sign)}" b="0" c="0" d="0"/>'
+    shift = f'<laneOffset s="0" a="{_n(LANE_WIDTH_M * road.lanes * road.nearside_factor)}" b="0" c="0" d="0"/>'
     number = road.lanes + 1
     link = f'<predecessor elementType="junction" elementId="{_JUNCTION}"/>'
     bare = replace(road, centre=((0.0, "solid"),), signs=())  # a ramp has no centre line
@@ -119,13 +119,13 @@ def _exit(road: ForkedRoad, off: Line, branch: Line) -> list[str]:
             link=_ends(_BEFORE, "end", _BRANCH, "start"), start=1.0, offset=shift, junction=_JUNCTION,
         ),
         _element(bare, branch, [_section(bare, 0.0, [_Lane(1)])], _BRANCH, link=link, start=1.0, offset=shift),
-        _junction([*_through(road), (_BEFORE, _OFF, "start", [(number * road.nearside_sign, road.nearside_sign)])]),
+        _junction([*_through(road), (_BEFORE, _OFF, "start", [(number * road.nearside_factor, road.nearside_factor)])]),
     ]  # fmt: skip
 
 
 def _side_road(road: ForkedRoad, off: Line, branch: Line, inside: Sequence[_Lane]) -> list[str]:
     """Return the side road, the two ways round its corners, and the junction."""
-    side = road.nearside_sign
+    side = road.nearside_factor
     mouth = branch.start
     on = Line(off.pieces, Pose(mouth.x, mouth.y, mouth.heading + math.pi))
     turned = [_Lane(lane.number, mark="none", before=-lane.number, after=lane.number) for lane in inside]
@@ -148,7 +148,7 @@ def _side_road(road: ForkedRoad, off: Line, branch: Line, inside: Sequence[_Lane
 
 
 def _through(road: Road) -> list[_Connection]:
-    links = [(k * road.nearside_sign, k * road.nearside_sign) for k in _numbers(road)]
+    links = [(k * road.nearside_factor, k * road.nearside_factor) for k in _numbers(road)]
     along, against = links[: road.lanes], links[road.lanes :]
     return [(_BEFORE, _THROUGH, "start", along), (_AFTER, _THROUGH, "end", against)]
 

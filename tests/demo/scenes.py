@@ -165,7 +165,7 @@ def _two_in_one_go() -> list[Scene]:
 
 def _cyclists() -> list[Scene]:
     """Return a cyclist, half a metre from the kerb, passed at 25 mph with this much air between the boxes."""
-    rider: Actor = cyclist().starts(90.0, nearer=0.95).drives(4.5)
+    rider: Actor = cyclist().starts(90.0, nearside_m=0.95).drives(4.5)
     scenes = []
     for clearance in (1.0, 1.6):
         aside = 0.95 - rider.body.width_m / 2 - car().body.width_m / 2 - clearance

@@ -47,7 +47,7 @@ def test_the_nearside_is_the_side_that_is_driven_on(hand: Handedness) -> None:
     assert set(ego.light) == {"off", "right" if hand == "left" else "left"}
     assert ego.light[999] == ego.light[2000] == "off"
     assert ego.light[1000] == ego.light[1999] != "off"
-    oncoming = actor_track(car().starts(10.0, lane=-1, nearer=0.5).drives(10.0), road, 1.0)
+    oncoming = actor_track(car().starts(10.0, lane=-1, nearside_m=0.5).drives(10.0), road, 1.0)
     assert oncoming.y[0] * side == pytest.approx(-LANE_WIDTH_M / 2 - 0.5)  # its own nearside
     assert abs(oncoming.yaw[0]) == pytest.approx(math.pi)
 
@@ -91,7 +91,7 @@ def test_boxes_apart_are_as_far_apart_as_shapely_says() -> None:
     shapely = pytest.importorskip("shapely")
     road = Road((straight(60.0), left(200.0, radius=40.0)))
     ego = car().starts(0.0).drives(12.0).moves_out(3.0, at=10.0, within=15.0)
-    other = cyclist().starts(30.0, nearer=0.5).drives(3.0)
+    other = cyclist().starts(30.0, nearside_m=0.5).drives(3.0)
     a, b = actor_track(ego, road, 6.0), actor_track(other, road, 6.0)
     sat = separation(a, b)
     for k in range(0, 6001, 50):

@@ -53,10 +53,10 @@ def test_lanes_lie_where_actors_drive(name: str, hand: Handedness) -> None:
     for lanelet in table(environment, "lanelet"):
         if not lanelet["drivable"]:
             continue
-        number = lanelet["lane_no"] * road.nearside_sign
+        number = lanelet["lane_no"] * road.nearside_factor
         assert lanelet["along_road"] == (1 if number > 0 else -1)
         mine = points[lanelet["lanelet_id"]]
-        x, y, _ = road.line.at([p["road_s_m"] for p in mine], road.lane_offset(number) * road.nearside_sign)
+        x, y, _ = road.line.at([p["road_s_m"] for p in mine], road.lane_offset(number) * road.nearside_factor)
         assert np.hypot(x - [p["x_m"] for p in mine], y - [p["y_m"] for p in mine]).max() < 0.02
         assert {round(2 * p["half_width_m"], 2) for p in mine} == {LANE_WIDTH_M}
 
@@ -82,7 +82,7 @@ def test_the_limit_the_marking_and_the_signs_hold_from_where_they_are_said() -> 
     )
     for hand in HANDS:
         environment = read(road.driven_on_the(hand))
-        side = road.driven_on_the(hand).nearside_sign
+        side = road.driven_on_the(hand).nearside_factor
         own = f"1.0.{side}"
         limits = [r for r in table(environment, "speed_limit") if r["lanelet_id"] == own]
         assert [(r["s_start_m"], round(r["limit_mps"] / MPH, 6)) for r in limits] == [(0.0, 30.0), (120.0, 40.0)]

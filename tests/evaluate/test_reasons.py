@@ -64,7 +64,10 @@ def test_an_ego_without_a_place(tmp_path: Path, state: dict[str, Any], because: 
         ({"x_m": [1, None]}, "object o has no position (or no fresh one): record it"),
         ({"yaw_rad": [0, None]}, "object o has no heading: record it"),
         ({"length_m": [4, None]}, "object o has no size: record it"),
-        ({"off_level": [False, True]}, "object o may be over or under the road: record the heights of both, or correct them"),
+        (
+            {"off_level": [False, True]},
+            "object o may be over or under the road: record the heights of both, or correct them",
+        ),
         ({"speed_mps": [4, None]}, "the speed of object o is not known: record it"),
         ({"actor_class": ["car", None]}, "the class of object o is not known: record it"),
     ],

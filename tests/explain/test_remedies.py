@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from drivelint.drive.conditions import ENV_VALUES
+from drivelint.drive.conditions import DRIVE_CONDITION_VALUES
 from drivelint.reasons.remedies import REMEDIES, remedy
 
 
@@ -45,7 +45,7 @@ def test_the_words_of_the_format() -> None:
 
 
 def test_every_condition_has_its_own() -> None:
-    told = {name: remedy(f"{name}_unknown", None, "") for name in ENV_VALUES}
+    told = {name: remedy(f"{name}_unknown", None, "") for name in DRIVE_CONDITION_VALUES}
     assert len(set(told.values())) == len(told)
     assert not any(text.startswith("see what the rules") for text in told.values())
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from drivelint.gate import compare_results, descriptions, diff
 from drivelint.result import gate_file as store
-from drivelint.result.gate import STANDINGS, ComparedFinding, Gate, Waiver
+from drivelint.result.gate import DIFF_STATUSES, ComparedFinding, Gate, Waiver
 from drivelint.result.model import Result
 from tests.report.synthetic import SECOND, drive, finding, result, rule, verdict
 
@@ -258,7 +258,7 @@ def test_only_new_findings_of_stable_rules_at_or_above_the_severity_gate() -> No
 
 def test_json_holds_every_entry_and_the_counts() -> None:
     found = diff.compare(run([at(8), at(12, finding_id="x")]), run([at(8, margin=-20.0), at(15, finding_id="n")]))
-    told = json.loads(descriptions.to_json(found, found.with_standing("new"), "critical"))
+    told = json.loads(descriptions.to_json(found, found.with_diff_status("new"), "critical"))
     assert told["counts"] == {"new": 1, "changed": 1, "unchanged": 0, "fixed": 1, "unknown": 0, "lost": 0}
     assert told["gating"] == ["n"]
     assert told["exit"] == {"code": 1, "why": "1 new finding at or above severity critical"}
@@ -293,7 +293,7 @@ def test_every_finding_of_both_is_one_entry(
     assert set(theirs) == set(a.findings["finding_id"].to_pylist())
     assert sum(found.counts().values()) == len(found.entries)
     assert {e.standing for e in diff.compare(a, a).entries} <= {"unchanged"}
-    assert set(found.counts()) == set(STANDINGS)
+    assert set(found.counts()) == set(DIFF_STATUSES)
 
 
 def test_a_gate_survives_its_file() -> None:

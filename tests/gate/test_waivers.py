@@ -78,10 +78,10 @@ def test_no_such_file(tmp_path: Path) -> None:
 def test_beside_settings_other_keys_are_not_its_business(tmp_path: Path) -> None:
     file = tmp_path / "drivelint.toml"
     file.write_text(f'map = "road.xodr"\n[[waiver]]\n{WHOLE}[env]\nnation = "gb"\n', encoding="utf-8")
-    (found,) = waivers.read(file, alone=False)
+    (found,) = waivers.read(file, only_waivers=False)
     assert found.where.endswith("drivelint.toml:2")
     file.write_text('map = "road.xodr"\n', encoding="utf-8")
-    assert waivers.read(file, alone=False) == []
+    assert waivers.read(file, only_waivers=False) == []
 
 
 ROW = finding()  # drive d1 (d1.csv), ego 1, object 3, profile nominal, at 8 s

@@ -13,7 +13,7 @@ import pytest
 
 from drivelint import cli, guide
 from drivelint.catalogue.header import Conditions, Header
-from drivelint.drive.conditions import CONDITION_VALUES, ENV_VALUES
+from drivelint.drive.conditions import CONDITION_VALUES, DRIVE_CONDITION_VALUES
 from drivelint.drive.declared_events import MODES
 from drivelint.formats.osi.extras import Event
 from drivelint.reasons.remedies import REMEDIES
@@ -122,7 +122,7 @@ def test_reading_an_unknown_has_every_reason_code() -> None:
     text = guide.text("reading-an-unknown")
     codes = set(re.findall(r"`(\w+)`", "".join(re.findall(r"^\| (`[^|]+)\|", text, re.MULTILINE))))
     required = {f"missing_{signal}" for signal in SIGNALS if signal.removeprefix("mode_") not in MODES}
-    assert codes >= REMEDIES.keys() | required | {f"{name}_unknown" for name in (*ENV_VALUES, "limit")}
+    assert codes >= REMEDIES.keys() | required | {f"{name}_unknown" for name in (*DRIVE_CONDITION_VALUES, "limit")}
 
 
 def test_the_guide_of_traces_has_the_keys_of_a_declared_event() -> None:

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from drivelint.catalogue import load_rules
-from drivelint.drive.conditions import CONDITION_TEXTS, ENV_VALUES
+from drivelint.drive.conditions import CONDITION_TEXTS, DRIVE_CONDITION_VALUES
 from drivelint.drive.declared_events import EVENTS, MODES
 from drivelint.errors import RuleError
 from drivelint.report import vocabulary
@@ -89,7 +89,7 @@ def test_the_modes_that_the_log_is_looked_through_for_are_those_of_the_vocabular
 
 
 def test_every_condition_is_explained() -> None:
-    assert CONDITION_TEXTS.keys() == ENV_VALUES.keys()
+    assert CONDITION_TEXTS.keys() == DRIVE_CONDITION_VALUES.keys()
 
 
 def test_a_signal_is_recognised_by_the_name_that_the_page_gives() -> None:

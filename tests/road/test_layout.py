@@ -46,10 +46,10 @@ def along(environment: object) -> set[int]:
 @HANDS
 @pytest.mark.parametrize("gap", [0.0, 1.5, 10.0])
 def test_traces_tell_the_direction_and_the_layout_the_side(hand: str, gap: float) -> None:
-    seen = load(*pair(hand, gap), sensed="rht")
+    seen = load(*pair(hand, gap), voted_handedness="rht")
     assert (seen.handedness, seen.handedness_source, seen.lanes) == (hand, "traces", "rht")
     assert along(seen) == {1}
-    turned = load(*pair(hand, gap), sensed="lht")
+    turned = load(*pair(hand, gap), voted_handedness="lht")
     assert (turned.handedness, along(turned)) == ("rht" if hand == "lht" else "lht", {-1})
     guess = load(*pair(hand, gap))
     assert (guess.handedness_source, guess.lanes_source) == ("default", "default")
@@ -77,7 +77,7 @@ def test_junctions_tell_the_direction(hand: str) -> None:
 @pytest.mark.parametrize("rule", ["LHT", "RHT"])
 def test_a_rule_that_the_layout_contradicts_is_said_and_not_counted(hand: str, rule: str) -> None:
     """By the rule RHT these lanes run along their roads, and by LHT against them."""
-    told = load(*pair(hand, rule=rule), sensed="rht")
+    told = load(*pair(hand, rule=rule), voted_handedness="rht")
     if hand == "rht":
         assert (told.handedness, told.handedness_source) == (rule.lower(), "attribute")
         return
@@ -87,16 +87,16 @@ def test_a_rule_that_the_layout_contradicts_is_said_and_not_counted(hand: str, r
 
 
 def test_on_a_road_of_one_direction_the_lanes_do_not_tell_the_side() -> None:
-    for sensed, way in (("rht", 1), ("lht", -1)):
-        seen = load(one(), sensed=sensed)
+    for side, way in (("rht", 1), ("lht", -1)):
+        seen = load(one(), voted_handedness=side)
         assert (seen.handedness_source, seen.lanes_source, along(seen)) == ("default", "traces", {way})
         assert "handedness_default" in checks(seen)
-        given = load(one(), handedness="lht", sensed=sensed)
+        given = load(one(), handedness="lht", voted_handedness=side)
         assert (given.handedness, given.handedness_source, along(given)) == ("lht", "option", {way})
         doubts = [row["message"] for row in rows(given, "map_quality") if row["check_id"] == "handedness_disagrees"]
         assert doubts == (
             []
-            if sensed == "lht"
+            if side == "lht"
             else [
                 (
                     "--handedness says lht, the traces fit rht: lht is taken. If that is wrong, the side for overtaking is wrong: "
@@ -104,12 +104,12 @@ def test_on_a_road_of_one_direction_the_lanes_do_not_tell_the_side() -> None:
                 )
             ]
         )
-        ids = {load(one(), sensed=s).environment_id for s in (sensed, "rht", None)}
-        assert len(ids) == (1 if sensed == "rht" else 2)
+        ids = {load(one(), voted_handedness=s).environment_id for s in (side, "rht", None)}
+        assert len(ids) == (1 if side == "rht" else 2)
     # without traces as the standard has it
     assert along(load(one(), handedness="lht")) == along(load(one(rule="LHT"))) == {-1}
     assert load(one(rule="LHT")).lanes_source == "attribute"
-    doubted = load(one(rule="LHT"), handedness="rht", sensed="lht")
+    doubted = load(one(rule="LHT"), handedness="rht", voted_handedness="lht")
     assert (doubted.handedness, along(doubted)) == ("rht", {-1})
 
 
@@ -121,7 +121,7 @@ def test_not_far_off_nor_above_nor_the_same_way() -> None:
         (one("1", 0.0), one("2", 1.0, back=True)),
     )
     for roads in apart:
-        assert "none has one of the other direction beside it" in _default(load(*roads, sensed="rht"))
+        assert "none has one of the other direction beside it" in _default(load(*roads, voted_handedness="rht"))
 
 
 def _default(environment: object) -> str:

@@ -40,7 +40,7 @@ class Annotator:
         self._rules = rules
         names = rules["rule_id"].to_pylist()
         self._versions = dict(zip(names, rules["rule_version"].to_pylist(), strict=True))
-        self._senses = dict(zip(names, rules["sense"].to_pylist(), strict=True))
+        self._sense_by_rule = dict(zip(names, rules["sense"].to_pylist(), strict=True))
         self._fail_on = fail_on
         self._strict = strict
         self._roads: dict[str, Road] = {}
@@ -62,7 +62,7 @@ class Annotator:
         for drive in drives:
             name, road = drive.trace.drive_id, self._road(drive.environment)
             told = self._summary(found[name])
-            said = Annotation(drive.trace, found[name], road, self._versions, self._senses, told)
+            said = Annotation(drive.trace, found[name], road, self._versions, self._sense_by_rule, told)
             with _whole(self._folder / f"{name}.mcap") as file:
                 write(file, said)
         with _whole(self._folder / LAYOUT_FILE) as file:

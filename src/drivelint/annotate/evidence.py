@@ -62,10 +62,10 @@ def danger_spaces(con: duckdb.DuckDBPyConnection, drive_ids: Sequence[str]) -> t
 
 
 def gather_evidence(
-    con: duckdb.DuckDBPyConnection, drive_ids: Sequence[str], rooms: Sequence[tuple[pa.Table, pa.Table]]
+    con: duckdb.DuckDBPyConnection, drive_ids: Sequence[str], spaces: Sequence[tuple[pa.Table, pa.Table]]
 ) -> dict[str, Evidence]:
-    """Return the evidence of every drive of a batch whose last part was just judged. `rooms`: `danger_spaces` of each part."""
+    """Return the evidence of every drive of a batch whose last part was just judged. `spaces`: `danger_spaces` of each part."""
     ids = list(drive_ids)
     tables = [collect.verdicts(con, ids), collect.findings(con, ids), collect.drives(con, ids)]
-    tables += [pa.concat_tables(parts) for parts in zip(*rooms, strict=True)]
+    tables += [pa.concat_tables(parts) for parts in zip(*spaces, strict=True)]
     return {drive: Evidence(*(rows.filter(pc.equal(rows["drive_id"], drive)) for rows in tables)) for drive in ids}

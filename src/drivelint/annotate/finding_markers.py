@@ -65,23 +65,25 @@ class MarkerFrame(NamedTuple):
     object: Box | None
 
 
-def markers(evidence: Evidence, senses: Mapping[str, str]) -> list[Marker]:
+def markers(evidence: Evidence, sense_by_rule: Mapping[str, str]) -> list[Marker]:
     """Return findings over their failing stretch, near misses around their worst step; fails first, by severity."""
     fails = [
-        _window(row, senses, FAIL_COLOUR, row["t_start_ns"], max(row["t_end_ns"], row["t_start_ns"] + DRAW_AFTER_NS))
+        _window(
+            row, sense_by_rule, FAIL_COLOUR, row["t_start_ns"], max(row["t_end_ns"], row["t_start_ns"] + DRAW_AFTER_NS)
+        )
         for row in sorted(evidence.findings.to_pylist(), key=lambda row: SEVERITIES.index(row["severity"]))
     ]
     near = [
-        _window(row, senses, NEAR_MISS_COLOUR, t - DRAW_BEFORE_NS, t + DRAW_AFTER_NS)
+        _window(row, sense_by_rule, NEAR_MISS_COLOUR, t - DRAW_BEFORE_NS, t + DRAW_AFTER_NS)
         for row in evidence.verdicts.filter(evidence.verdicts["near_miss"]).to_pylist()
         if (t := row["t_ref_ns"] if row["t_worst_ns"] is None else row["t_worst_ns"]) is not None
     ]
     return fails + near
 
 
-def messages(evidence: Evidence, tracks: Tracks, clock: LogClock, senses: Mapping[str, str]) -> list[Message]:
+def messages(evidence: Evidence, tracks: Tracks, clock: LogClock, sense_by_rule: Mapping[str, str]) -> list[Message]:
     """Return the SceneUpdates of all windows: one for every step in any of them, and an empty one behind each."""
-    found = markers(evidence, senses)
+    found = markers(evidence, sense_by_rule)
     steps = [_steps(tracks, window) for window in found]
     every = max(1, -(-sum(len(times) for times, _ in steps) // MAX_STEPS))
     drawn: dict[int, list[MarkerFrame]] = {}
@@ -100,8 +102,10 @@ def messages(evidence: Evidence, tracks: Tracks, clock: LogClock, senses: Mappin
     return out
 
 
-def _window(row: dict[str, Any], senses: Mapping[str, str], colour: Colour, start_ns: int, end_ns: int) -> Marker:
-    return Marker(row["ego_id"], row["object_id"], start_ns, end_ns, colour, headline(row, senses))
+def _window(
+    row: dict[str, Any], sense_by_rule: Mapping[str, str], colour: Colour, start_ns: int, end_ns: int
+) -> Marker:
+    return Marker(row["ego_id"], row["object_id"], start_ns, end_ns, colour, headline(row, sense_by_rule))
 
 
 def _steps(tracks: Tracks, window: Marker) -> tuple[NDArray[np.int64], int | None]:

@@ -48,7 +48,7 @@ def finding_messages(rows: pa.Table, clock: LogClock) -> list[Message]:
     return _in_order([_json(row, clock.at(row["t_start_ns"])) for row in rows.to_pylist()])
 
 
-def log_messages(rows: pa.Table, clock: LogClock, t_start_ns: int, senses: Mapping[str, str]) -> list[Message]:
+def log_messages(rows: pa.Table, clock: LogClock, t_start_ns: int, sense_by_rule: Mapping[str, str]) -> list[Message]:
     """Return a `foxglove.Log` line for every verdict that a person should look at: fails, near misses, unknowns, errors."""
     lines = []
     for row in rows.to_pylist():
@@ -56,7 +56,7 @@ def log_messages(rows: pa.Table, clock: LogClock, t_start_ns: int, senses: Mappi
             time = clock.at(display_time(row, t_start_ns))
             critical = (row["verdict"], row["severity"]) == ("fail", "critical")
             level = foxglove.ERROR if critical else _LEVELS[row["verdict"]]
-            said = wire.text(3, f"{headline(row, senses)}. {row['reason']}") + wire.text(4, row["rule_id"])
+            said = wire.text(3, f"{headline(row, sense_by_rule)}. {row['reason']}") + wire.text(4, row["rule_id"])
             lines.append(Message(time, wire.time(1, time) + wire.integer(2, level) + said))
     return _in_order(lines)
 
@@ -67,8 +67,11 @@ def display_time(row: dict[str, Any], t_start_ns: int) -> int:
     return int(next(t for t in times if t is not None))
 
 
-def headline(row: dict[str, Any], senses: Mapping[str, str]) -> str:
-    """Return a verdict or finding in a few words: what, which rule, with whom, how much. `senses`: rule -> relation that must hold."""
+def headline(row: dict[str, Any], sense_by_rule: Mapping[str, str]) -> str:
+    """Return a verdict or finding in a few words: what, which rule, with whom, how much.
+
+    `sense_by_rule`: rule -> relation that must hold.
+    """
     word = "NEAR MISS" if row.get("near_miss") else row.get("verdict", "fail").upper().replace("_", " ")
     profile = f" [{row['profile']}]" if row["profile"] else ""
     who = f", {row['object_id']}" if row["object_id"] else ""
@@ -76,7 +79,7 @@ def headline(row: dict[str, Any], senses: Mapping[str, str]) -> str:
     if row["observed"] is None or row["required"] is None:
         return start
     unit = f" {row['unit']}" if row["unit"] else ""
-    return f"{start}: {row['observed']:.2f}{unit}, must be {senses[row['rule_id']]} {row['required']:.2f}"
+    return f"{start}: {row['observed']:.2f}{unit}, must be {sense_by_rule[row['rule_id']]} {row['required']:.2f}"
 
 
 def _json(row: dict[str, Any], log_time: int) -> Message:

@@ -36,14 +36,14 @@ _TRANSFORMS: Final = ("FrameTransform", "FrameTransforms", "TFMessage", "tfMessa
 class Annotation:
     """What is written beside the log: one drive's evidence and summary, and the road it is drawn on (None: no map).
 
-    `versions` and `senses` are rule id -> hash of its file, rule id -> relation that must hold.
+    `versions` and `sense_by_rule` are rule id -> hash of its file, rule id -> relation that must hold.
     """
 
     trace: Trace
     evidence: Evidence
     road: Road | None
     versions: Mapping[str, str]
-    senses: Mapping[str, str]
+    sense_by_rule: Mapping[str, str]
     summary: bytes
 
 
@@ -77,7 +77,7 @@ class _Writer:
         """Write every channel, then metadata and attachment."""
         evidence, times, start = self._said.evidence, self._clock, self._start_ns
         boxes = actor_boxes.select_boxes(self._tracks)
-        senses = self._said.senses
+        sense_by_rule = self._said.sense_by_rule
         scene = foxglove.schema("SceneUpdate")
         if self._said.road is not None and len(boxes.rows):
             at = times.at(start)
@@ -88,12 +88,12 @@ class _Writer:
             transform = foxglove.schema("FrameTransform")
             self._many("tf", transform, lambda channel: actor_boxes.ego_transforms(boxes, times, channel))
         self._few("danger_spaces", scene, danger_spaces.messages(evidence, self._tracks, times))
-        self._few("markers", scene, finding_markers.messages(evidence, self._tracks, times, senses))
+        self._few("markers", scene, finding_markers.messages(evidence, self._tracks, times, sense_by_rule))
         verdicts = result_messages.verdict_messages(evidence.verdicts, times, start)
         self._few("verdicts", result_messages.schema("verdict"), verdicts)
         findings = result_messages.finding_messages(evidence.findings, times)
         self._few("findings", result_messages.schema("finding"), findings)
-        lines = result_messages.log_messages(evidence.verdicts, times, start, senses)
+        lines = result_messages.log_messages(evidence.verdicts, times, start, sense_by_rule)
         self._few("log", foxglove.schema("Log"), lines)
         self._sink.add_metadata("drivelint", self._facts(boxes.every))
         self._sink.add_attachment("summary.json", "application/json", self._said.summary, times.at(start))

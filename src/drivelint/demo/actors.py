@@ -60,9 +60,9 @@ class Actor:
     lights: tuple[Indicator, ...] = ()
     leaves: bool = False
 
-    def starts(self, at: float, *, lane: int = 1, nearer: float = 0.0) -> Actor:
-        """Begin at a station in a lane (negative: oncoming), `nearer` to the nearside than the lane's middle."""
-        return replace(self, station=at, lane=lane, beside_m=nearer)
+    def starts(self, at: float, *, lane: int = 1, nearside_m: float = 0.0) -> Actor:
+        """Begin at a station in a lane (negative: oncoming), `nearside_m` nearer to the nearside than the lane's middle."""
+        return replace(self, station=at, lane=lane, beside_m=nearside_m)
 
     def drives(self, mps: float) -> Actor:
         """Drive at this speed from the start."""

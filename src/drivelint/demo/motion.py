@@ -62,12 +62,12 @@ def actor_track(actor: Actor, road: Road, duration_s: float) -> Track:
     reach = np.arange(0.0, float(way[-1]) * 1.2 + 1.0, _GRID_M)
     grid = actor.station + along * reach
     d, slope = _offsets(actor, road, grid)
-    scale = np.hypot(1.0 - line.curvature(grid) * d * road.nearside_sign, slope)
+    scale = np.hypot(1.0 - line.curvature(grid) * d * road.nearside_factor, slope)
     path = np.concatenate([[0.0], np.cumsum((scale[1:] + scale[:-1]) / 2 * _GRID_M)])
     station = actor.station + along * np.interp(way, path, reach)
     d, slope = _offsets(actor, road, station)
-    x, y, heading = line.at(station, d * road.nearside_sign)
-    drift = np.arctan2(slope * road.nearside_sign, 1.0 - line.curvature(station) * d * road.nearside_sign)
+    x, y, heading = line.at(station, d * road.nearside_factor)
+    drift = np.arctan2(slope * road.nearside_factor, 1.0 - line.curvature(station) * d * road.nearside_factor)
     yaw = heading + drift + (0.0 if along > 0 else np.pi)
     yaw = np.arctan2(np.sin(yaw), np.cos(yaw))
     brakes = np.diff(speed, prepend=speed[0]) * TICKS_PER_S < -_BRAKES_MPS2

@@ -117,7 +117,7 @@ def _lanes(road: Road) -> list[_Lane]:
 
 def _section(road: Road, s: float, lanes: Sequence[_Lane], start: float = 0.0, end: float = 1e9) -> str:
     """Return a lane section at `s` of its road, which begins at the station `start` of the scene's road."""
-    side = road.nearside_sign
+    side = road.nearside_factor
     ordered = sorted(lanes, key=lambda lane: -lane.number * side)
     centre = "".join(_mark(marking, at) for at, marking in _from(road.centre, start + s, end))
     left = [_lane(lane, side) for lane in ordered if lane.number * side > 0]
@@ -153,6 +153,6 @@ def _signal(road: Road, number: int, sign: Sign, s: float) -> str:
     t = (0.5 if painted else 1.0) * LANE_WIDTH_M * road.lanes + (0.0 if painted else 3.0)
     width = f' width="{_n(LANE_WIDTH_M * road.lanes)}"' if painted else ' width="0.6"'
     return (
-        f'      <signal id="{number}" name="{name}" s="{_n(s)}" t="{_n(t * road.nearside_sign)}" zOffset="{0.0 if painted else 2.0}"'
+        f'      <signal id="{number}" name="{name}" s="{_n(s)}" t="{_n(t * road.nearside_factor)}" zOffset="{0.0 if painted else 2.0}"'
         f' dynamic="no" orientation="+" country="{country}" type="{code}" subtype="-1" height="0.6"{width}/>'
     )

@@ -61,7 +61,7 @@ def pass_parked_car(parked_at: float, manner: OvertakeManner) -> tuple[Actor, Ac
     over = LEAD_IN_S + manner.change_m / v
     home = LEAD_IN_S + (back + manner.change_m - out) / v
     ego = ego.signals("offside", 1.0, over).signals("nearside", over, home)
-    return ego, car().starts(parked_at, nearer=0.6), math.ceil(home + 3.0)
+    return ego, car().starts(parked_at, nearside_m=0.6), math.ceil(home + 3.0)
 
 
 def _scene(run: str, ending: str, manner: OvertakeManner) -> Scene:

@@ -50,7 +50,7 @@ class Road:
         return Line(self.pieces)
 
     @property
-    def nearside_sign(self) -> int:
+    def nearside_factor(self) -> int:
         """Return 1 where the nearside is the left, -1 where it is the right."""
         return 1 if self.hand == "left" else -1
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import States
 
-ESTIMATED_SPREAD_M = 0.05
+LARGEST_SIZE_SPREAD_M = 0.05
 """Sizes that spread by more than this over a track were estimated, not known."""
 
 
@@ -54,7 +54,7 @@ def from_states(states: States) -> tuple[Actors, list[QualityFinding]]:
         for i in np.flatnonzero(high - low > 0.0):
             track = np.sort(positive[starts[i] : ends[i]])
             track = track[~np.isnan(track)]
-            if high[i] - low[i] > ESTIMATED_SPREAD_M:
+            if high[i] - low[i] > LARGEST_SIZE_SPREAD_M:
                 varying.add(states.ids[i])
             low[i] = track[(len(track) - 1) // 2]
         sizes[name] = low

@@ -39,7 +39,7 @@ CONDITION_VALUES: dict[str, tuple[str, ...]] = {
 }
 """Condition -> its words; `nation` also takes any other country's two letters (ISO 3166-1), see `value_problem`."""
 
-ENV_VALUES: dict[str, tuple[str, ...]] = {**CONDITION_VALUES, "engaged": ("yes", "no")}
+DRIVE_CONDITION_VALUES: dict[str, tuple[str, ...]] = {**CONDITION_VALUES, "engaged": ("yes", "no")}
 """What may be given for a drive: those, and whether the automated driver drives."""
 
 CONDITION_TEXTS: dict[str, str] = {
@@ -59,12 +59,12 @@ CONDITION_TEXTS: dict[str, str] = {
 
 _WIDER = {"gb": BRITISH_NATIONS, "town": TOWN_ROAD_TYPES}
 _COUNTRY = re.compile(r"[a-z]{2}")
-_SPELLED = {name.casefold(): name for name in ENV_VALUES}
+_SPELLED = {name.casefold(): name for name in DRIVE_CONDITION_VALUES}
 
 
 def value_problem(condition: str, word: str) -> str | None:
     """Return what is wrong with this word for this condition, with the nearest good one; None: nothing."""
-    words = ENV_VALUES[condition]
+    words = DRIVE_CONDITION_VALUES[condition]
     if word in words or (condition == "nation" and word != "uk" and _COUNTRY.fullmatch(word)):
         return None
     if condition == "nation" and word.lower() == "uk":
@@ -75,7 +75,7 @@ def value_problem(condition: str, word: str) -> str | None:
 def canonical_spelling(condition: str, word: str) -> tuple[str, str]:
     """Return a condition and its word as they are spelled here, whatever their case; what is not known stays as it is."""
     condition = _SPELLED.get(condition.casefold(), condition)
-    words = {known.casefold(): known for known in ENV_VALUES.get(condition, ())}
+    words = {known.casefold(): known for known in DRIVE_CONDITION_VALUES.get(condition, ())}
     country = condition == "nation" and _COUNTRY.fullmatch(word.casefold())
     return condition, words.get(word.casefold(), word.casefold() if country else word)
 
@@ -111,6 +111,6 @@ def parse(settings: Iterable[str]) -> tuple[tuple[str, str], ...]:
 
 def condition_problem(condition: str) -> str | None:
     """Return what is wrong with this name of a condition, with the nearest good one; None: nothing."""
-    if condition in ENV_VALUES:
+    if condition in DRIVE_CONDITION_VALUES:
         return None
-    return f"{condition!r} is no condition of a drive; {hint(condition, ENV_VALUES)}"
+    return f"{condition!r} is no condition of a drive; {hint(condition, DRIVE_CONDITION_VALUES)}"

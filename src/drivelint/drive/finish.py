@@ -71,9 +71,9 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     gone: list[QualityFinding] = []
     parted = jumps.NO_SPLIT
     if not assumed:
-        states, gone = jumps.without_removed_actors(states, step, whole=named)
+        states, gone = jumps.without_removed_actors(states, step, kept=named)
         step = steps(states) if gone else step
-        parted = jumps.split_tracks(states, step, whole=named)
+        parted = jumps.split_tracks(states, step, kept=named)
     if parted.alias:
         states = sorted_states(states)
         step = steps(states)
@@ -81,7 +81,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         states.numbers["yaw_rad"] = wrapped(states.numbers["yaw_rad"])
     # what a film's mapping assumes is asked for; of most actors' velocities another mapping is at fault, and can be corrected
     most_replaced = 0.0 if assumed else 0.5 if recording.strict_units else 1.0
-    motion = complete_velocities(states, step, most=most_replaced)
+    motion = complete_velocities(states, step, most_replaced_share=most_replaced)
     varying: list[QualityFinding] = []
     if recording.actors is None:
         actors, varying = actor_rows.from_states(states)

@@ -79,10 +79,10 @@ class SplitTracks:
 NO_SPLIT: Final = SplitTracks([], {})
 
 
-def split_tracks(states: States, step: Steps, *, whole: Collection[str]) -> SplitTracks:
+def split_tracks(states: States, step: Steps, *, kept: Collection[str]) -> SplitTracks:
     """Make states at jumps unknown, and give a track that continues elsewhere a new id, in place (states in order).
 
-    `whole`: actors that keep their id (the egos that are named).
+    `kept`: actors that keep their id (the egos that are named).
     """
     if len(states) < 3 or not {"x_m", "y_m"} <= states.numbers.keys():
         return NO_SPLIT
@@ -93,7 +93,7 @@ def split_tracks(states: States, step: Steps, *, whole: Collection[str]) -> Spli
     if jump.any():
         text = IN_STATES + "the position jumps: they are unknown around it"
         findings = states.findings(unknown, "teleport", "warning", text)
-        alias = _renamed(states, pieces, whole, findings)
+        alias = _renamed(states, pieces, kept, findings)
     refused = RejectedPositions.from_rows(states, unknown)
     set_unknown(states, unknown)
     beside = outlier_samples(states, step)
@@ -185,13 +185,13 @@ def _goes_on(states: States, last: int, first: int) -> bool:
 
 
 def _renamed(
-    states: States, pieces: NDArray[np.int32], whole: Collection[str], findings: list[QualityFinding]
+    states: States, pieces: NDArray[np.int32], named: Collection[str], findings: list[QualityFinding]
 ) -> dict[str, str]:
     """Give each later piece of a track that jumped an id of its own, in place; return new id -> old id."""
     alias: dict[str, str] = {}
     if not pieces.any():
         return alias
-    kept = {i for i, name in enumerate(states.ids) if name in whole}
+    kept = {i for i, name in enumerate(states.ids) if name in named}
     keys = np.where(np.isin(states.actor, list(kept)), 0, pieces)
     ids, actor = list(states.ids), states.actor.copy()
     for i in np.unique(states.actor[keys > 0]):
@@ -212,18 +212,18 @@ def _renamed(
 
 
 def without_removed_actors(
-    states: States, step: Steps, *, whole: Collection[str]
+    states: States, step: Steps, *, kept: Collection[str]
 ) -> tuple[States, list[QualityFinding]]:
     """Leave out the states of actors that jump to one place and stand there until their tracks end (states in order).
 
-    One that is alone there stays. `whole`: actors that are kept (the egos that are named).
+    One that is alone there stays. `kept`: actors that are kept (the egos that are named).
     """
     if len(states) < 3 or not {"x_m", "y_m"} <= states.numbers.keys():
         return states, []
     jump = np.flatnonzero(jumps(states, step))
     place = np.stack([states.numbers["x_m"], states.numbers["y_m"]])
     # an actor's last jump, and where its track ends
-    last = {int(states.actor[row]): int(row) + 1 for row in jump if states.ids[states.actor[row]] not in whole}
+    last = {int(states.actor[row]): int(row) + 1 for row in jump if states.ids[states.actor[row]] not in kept}
     parked = []
     for actor, first in last.items():
         end = int(np.searchsorted(states.actor, actor, side="right"))

@@ -8,7 +8,7 @@ import numpy as np
 
 from drivelint.drive.order import known_motion, led_by
 from drivelint.drive.trace import STATE_COLUMNS, QualityFinding
-from drivelint.drive.velocity import KNOWN_ERROR_MPS, MOVED_M, derive_velocities
+from drivelint.drive.velocity import LARGEST_ERROR_MPS, MOVED_M, derive_velocities
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,11 +24,11 @@ LEAST_MISMATCHES = 20
 """Over a second the trembling of positions averages out, which step by step is worse than any velocity: so many must be wrong."""
 
 
-def complete_velocities(states: States, step: Steps, *, most: float = 1.0) -> list[QualityFinding]:
+def complete_velocities(states: States, step: Steps, *, most_replaced_share: float = 1.0) -> list[QualityFinding]:
     """Fill velocities that are absent, zero although the actor moves, or of another motion than its positions'.
 
-    `most`: the share of the motion up to which it may be of another; beyond that all velocities stay. Accelerations that were
-    never measured are dropped. `states` in order, changed in place: every column of `STATE_COLUMNS` exists afterwards.
+    `most_replaced_share`: the share of the motion up to which it may be of another; beyond that all velocities stay. Accelerations that
+    were never measured are dropped. `states` in order, changed in place: every column of `STATE_COLUMNS` exists afterwards.
     """
     n = len(states)
     for name in STATE_COLUMNS:
@@ -36,15 +36,17 @@ def complete_velocities(states: States, step: Steps, *, most: float = 1.0) -> li
     if n == 0:
         return []
     starts = np.flatnonzero(np.r_[True, ~step.same])
-    return _velocity(states, step, starts, most) + _acceleration(states, starts)
+    return _velocity(states, step, starts, most_replaced_share) + _acceleration(states, starts)
 
 
-def _velocity(states: States, step: Steps, starts: NDArray[np.intp], most: float) -> list[QualityFinding]:
+def _velocity(
+    states: States, step: Steps, starts: NDArray[np.intp], most_replaced_share: float
+) -> list[QualityFinding]:
     numbers = states.numbers
     vx, vy = numbers["vx_mps"], numbers["vy_mps"]
     absent = np.logical_and.reduceat(np.isnan(vx) & np.isnan(vy), starts)
     still = ~absent & np.logical_and.reduceat((vx == 0.0) & (vy == 0.0), starts)
-    astray = ~absent & _astray(states, step, most)[states.actor[starts]]
+    astray = ~absent & _astray(states, step, most_replaced_share)[states.actor[starts]]
     if not (absent.any() or still.any() or astray.any()):
         return []
     spread = np.zeros(len(starts))
@@ -75,7 +77,7 @@ def _filtered(states: States, rows: NDArray[np.bool_]) -> list[QualityFinding]:
     """Name each actor whose positions tremble: what a filter hides, and what its error leaves open, is unknown of it."""
     text = (
         "the positions of {ids} tremble: its velocity is a mean over up to two seconds, "
-        f"known to {KNOWN_ERROR_MPS:g} m/s, its acceleration is not known"
+        f"known to {LARGEST_ERROR_MPS:g} m/s, its acceleration is not known"
     )
     found = []
     for number in np.unique(states.actor[rows]):
@@ -83,11 +85,11 @@ def _filtered(states: States, rows: NDArray[np.bool_]) -> list[QualityFinding]:
     return found
 
 
-def _astray(states: States, step: Steps, most: float) -> NDArray[np.bool_]:
+def _astray(states: States, step: Steps, most_replaced_share: float) -> NDArray[np.bool_]:
     """Say of each actor whether its velocities lead elsewhere than its positions in most of the seconds in which it moves."""
     wrong, n = np.zeros(len(states.ids), np.bool_), len(states)
     k = max(1, round(MISMATCH_WINDOW_NS / step.period_ns)) if step.period_ns else n
-    if n <= k or most == 0.0 or not _suspicious(states, k):
+    if n <= k or most_replaced_share == 0.0 or not _suspicious(states, k):
         return wrong
     t_ns, numbers = states.t_ns, states.numbers
     off, moved, told = (np.zeros(n - k) for _ in range(3))
@@ -105,7 +107,7 @@ def _astray(states: States, step: Steps, most: float) -> NDArray[np.bool_]:
         bad = moving & (moved > MISMATCH_MPS * span) & (off > MISMATCH_MPS * span + MISMATCH_SHARE * fastest)
     seconds, astray = (np.bincount(states.actor[:-k][rows], minlength=len(states.ids)) for rows in (moving, bad))
     wrong = (astray >= LEAST_MISMATCHES) & (2 * astray > seconds)
-    return wrong & bool(seconds[wrong].sum() <= most * seconds.sum())
+    return wrong & bool(seconds[wrong].sum() <= most_replaced_share * seconds.sum())
 
 
 def _suspicious(states: States, k: int) -> bool:

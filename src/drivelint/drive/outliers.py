@@ -28,9 +28,9 @@ SAME_SPEED_SHARE: Final = 0.25
 """After a step the speed is the one before, but for this share of what the step makes of it."""
 SIGMAS: Final = 6.0
 """So many standard deviations of its positions' noise a sample is off before it counts."""
-LEAST_STEP_DERIVED_M: Final = (0.05, 0.25)
+LEAST_STEP_DERIVED_VELOCITY_M: Final = (0.05, 0.25)
 """Where velocities are derived, a step counts from 24 m/s2 dt2 on, within these bounds: of less no jolt of 12 m/s2 is made."""
-LEAST_STEP_RECORDED_M: Final = 0.4
+LEAST_STEP_RECORDED_VELOCITY_M: Final = 0.4
 """Where velocities are recorded nothing hangs on the step but the place: less is within what boxes are known to."""
 
 
@@ -97,7 +97,7 @@ def _beside(place: Numbers, moves: _Motion, told: Mask, sigma: Numbers, error: N
         off = (to - without) * dt_to
         size = np.hypot(*off)
         s, e = sigma[2:-2], error[2:-2]
-        least = np.where(told[2:-2], LEAST_STEP_RECORDED_M, _least_m(dt_to))
+        least = np.where(told[2:-2], LEAST_STEP_RECORDED_VELOCITY_M, _least_m(dt_to))
         limit = np.maximum(least, np.maximum(TYRE_MPS2 * dt_to * dt_away / 2, SIGMAS * 1.22 * s))
         # there and back: both neighbours bend the other way
         there = np.sum((to - before) * off, axis=0) * dt_to > size**2 / 2
@@ -143,5 +143,5 @@ def _can(one: Numbers, other: Numbers, time_s: Numbers, error_mps: Numbers) -> M
 
 
 def _least_m(dt_s: Numbers) -> Numbers:
-    least: Numbers = np.clip(2.0 * TYRE_MPS2 * dt_s**2, *LEAST_STEP_DERIVED_M)
+    least: Numbers = np.clip(2.0 * TYRE_MPS2 * dt_s**2, *LEAST_STEP_DERIVED_VELOCITY_M)
     return least

@@ -1,7 +1,7 @@
 """Derives velocities from positions by a filter whose width follows the position noise and whose error is known.
 
 The velocity at a state is the least-squares slope over the positions within some time to both sides: the narrowest of `HALF_WIDTHS_S`
-over which three standard errors are at most `KNOWN_ERROR_MPS`. Exact positions (a simulator's) get central differences; five centimetres
+over which three standard errors are at most `LARGEST_ERROR_MPS`. Exact positions (a simulator's) get central differences; five centimetres
 of noise at 10 Hz get half a second to both sides. What even a second does not tell is unknown. An actor that stays within its noise
 over two seconds stands: its velocity is zero.
 """
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-KNOWN_ERROR_MPS: Final = 0.25
+LARGEST_ERROR_MPS: Final = 0.25
 """Three standard errors of a velocity component that counts as known: half of what standing is (`standing_mps`)."""
 HALF_WIDTHS_S: Final = (0.25, 0.5, 1.0)
 """Half widths of the filter, after central differences; a braking of 10 m/s3 of jerk is 0.06, 0.25 and 1 m/s off in its middle."""
@@ -66,17 +66,17 @@ def _filtered(  # noqa: PLR0917
     runs = Tracklets.from_samples(t_ns, x, y, step)
     sigma = sample_noise(x, y, runs, actor, unknown=0.0)
     with np.errstate(invalid="ignore", divide="ignore"):
-        known = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.period_ns * 1e-9) <= KNOWN_ERROR_MPS
+        known = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.period_ns * 1e-9) <= LARGEST_ERROR_MPS
         vx, vy = np.where(known, vx, np.nan), np.where(known, vy, np.nan)
         for width in HALF_WIDTHS_S:
             if known.all():
                 break
             wx, wy, error = runs.slopes(x, y, width, sigma)
-            now = ~known & (error <= KNOWN_ERROR_MPS)
+            now = ~known & (error <= LARGEST_ERROR_MPS)
             vx, vy, known, filtered = np.where(now, wx, vx), np.where(now, wy, vy), known | now, filtered | now
         # the widest tells who stands, at the ends of a track by one side alone
         wx, wy, error = runs.slopes(x, y, HALF_WIDTHS_S[-1], sigma, both_sides=False)
-        stands = (sigma > 0.0) & (error <= KNOWN_ERROR_MPS) & (np.abs(wx) <= error) & (np.abs(wy) <= error)
+        stands = (sigma > 0.0) & (error <= LARGEST_ERROR_MPS) & (np.abs(wx) <= error) & (np.abs(wy) <= error)
     filtered |= ~known & ~stands
     return DerivedVelocity(np.where(stands, 0.0, vx), np.where(stands, 0.0, vy), filtered)
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from drivelint.road.map_reader import MapTables
 
 BATCH_STATES: Final = 400_000  # a batch costs little more than its longest drive, and its tables still fit in a GiB
-PART_PAIRS: Final = 1_500_000
+PAIRS_PER_PART: Final = 1_500_000
 """A part of a drive of many egos has no more ego steps times the actors that are there then: the largest tables have so many rows."""
 READ_AHEAD: Final = 4
 
@@ -48,7 +48,7 @@ class Drive:
         """Each ego -> its steps times the actors that are there then, by id. Empty: there are not several egos."""
         actors = self.trace.tables["actor"]
         egos = set(actors.filter(actors["is_ego"])["actor_id"].to_pylist())
-        return _meetings(self.trace, egos) if len(egos) > 1 else {}
+        return _pairs_by_ego(self.trace, egos) if len(egos) > 1 else {}
 
     @property
     def size(self) -> int:
@@ -94,7 +94,7 @@ def read_drives(paths: Sequence[Path], options: IngestOptions, library: MapLibra
 
 
 def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | RefusedLog]]:
-    """Cut into batches of at most `BATCH_STATES` states or meetings, a longer drive being a batch of its own."""
+    """Cut into batches of at most `BATCH_STATES` states or pairs, a longer drive being a batch of its own."""
     batch: list[Drive | RefusedLog] = []
     states = 0
     for drive in drives:
@@ -108,25 +108,25 @@ def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | R
         yield batch
 
 
-def egos_left_out(drives: Sequence[Drive], room: int | None = None) -> list[list[str]]:
+def egos_left_out(drives: Sequence[Drive], pairs_per_part: int | None = None) -> list[list[str]]:
     """Return, for each part in which a batch is judged, the egos that are not judged in it; a part has at least one ego.
 
-    Only a drive alone is cut, with its egos in the order of their ids, into parts of at most `room` meetings (default: `PART_PAIRS`);
-    what comes out does not depend on where.
+    Only a drive alone is cut, with its egos in the order of their ids, into parts of at most `pairs_per_part` pairs (default:
+    `PAIRS_PER_PART`); what comes out does not depend on where.
     """
-    meetings = drives[0].pairs_by_ego if len(drives) == 1 else {}
+    pairs = drives[0].pairs_by_ego if len(drives) == 1 else {}
     found: list[list[str]] = []
     left = 0
-    for ego, n in meetings.items():
+    for ego, n in pairs.items():
         if not found or n > left:
             found.append([])
-            left = PART_PAIRS if room is None else room
+            left = PAIRS_PER_PART if pairs_per_part is None else pairs_per_part
         found[-1].append(ego)
         left -= n
-    return [[ego for ego in meetings if ego not in part] for part in map(set, found)] or [[]]
+    return [[ego for ego in pairs if ego not in part] for part in map(set, found)] or [[]]
 
 
-def _meetings(trace: Trace, egos: set[str]) -> dict[str, int]:
+def _pairs_by_ego(trace: Trace, egos: set[str]) -> dict[str, int]:
     states = trace.tables["actor_state"]
     coded = pc.dictionary_encode(states["actor_id"].combine_chunks())
     names, code, t_ns = coded.dictionary.to_pylist(), coded.indices.to_numpy(), states["t_ns"].to_numpy()

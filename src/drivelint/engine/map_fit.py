@@ -17,8 +17,10 @@ if TYPE_CHECKING:
 DOUBT_SAMPLES: Final = 80  # where the side is known, every drive is looked at: it must cost next to nothing
 VOTE_SAMPLES: Final = 400  # moving states looked at, evenly spread: enough to vote, cheap for a long log
 LEAST_VOTES: Final = 20
-FEW, MANY = 20, 2000  # positions looked at to see whether a drive is on its map
-LEAST_EACH_WAY: Final = 5  # so many of them against their lane in both directions of a road: nobody overtakes both ways
+FIRST_POSITIONS, MOST_POSITIONS = 20, 2000  # positions looked at to see whether a drive is on its map
+LEAST_REVERSED_EACH_WAY: Final = (
+    5  # so many of them against their lane in both directions of a road: nobody overtakes both ways
+)
 BESIDE_M: Final = 8.0  # so near lie the middles of two lanes of one road, with what may be between them
 FACING_COSINE: Final = 0.9
 AGREEMENT_SHARE: Final = 0.8  # an overtake drives against its lane for a while, a drive does not
@@ -97,10 +99,10 @@ def reversed_road(lanes: OneWayLanes, seen: LaneHeadings) -> str | None:
     against = seen.lane[~seen.agree]
     for road in sorted({str(name) for name in lanes.road[against]}):
         here = against[lanes.road[against] == road]
-        if min(int((lanes.along[here] == way).sum()) for way in (1, -1)) >= LEAST_EACH_WAY:
+        if min(int((lanes.along[here] == way).sum()) for way in (1, -1)) >= LEAST_REVERSED_EACH_WAY:
             return road
     lane, counts = np.unique(against, return_counts=True)
-    often = lane[counts >= LEAST_EACH_WAY]
+    often = lane[counts >= LEAST_REVERSED_EACH_WAY]
     one, other = (often[k] for k in np.triu_indices(len(often), 1))
     near = shapely.shortest_line(lanes.lines[one], lanes.lines[other])
     facing = np.cos(_heading(lanes.lines[one], near, 0) - _heading(lanes.lines[other], near, -1)) < -FACING_COSINE
@@ -131,11 +133,11 @@ def lane_areas(environment: MapTables) -> shapely.STRtree:
 def count_on_map(lanes: shapely.STRtree, x_m: NDArray[np.float64], y_m: NDArray[np.float64]) -> tuple[int, int]:
     """Return how many known positions, evenly spread, are looked at, and how many of them lie on some lanelet.
 
-    A few do where one is found; before it is said that there is none, `MANY` are looked at.
+    A few do where one is found; before it is said that there is none, `MOST_POSITIONS` are looked at.
     """
     known = np.flatnonzero(np.isfinite(x_m) & np.isfinite(y_m))
     looked = found = 0
-    for most in (FEW, MANY):
+    for most in (FIRST_POSITIONS, MOST_POSITIONS):
         if found or looked == len(known):
             break
         chosen = known[np.unique(np.linspace(0, len(known) - 1, min(most, len(known))).astype(np.int64))]

@@ -90,8 +90,8 @@ class MapLibrary:
                 f"map {environment.environment_id} is of another place than {trace.path.name}: {trouble}; "
                 "give the right --map, or --map-offset"
             )
-        if environment.lanes_source == "default" and (sensed := self._sensed(environment, states)):
-            return self._load(source, trace, sensed)
+        if environment.lanes_source == "default" and (voted := self._vote(environment, states)):
+            return self._load(source, trace, voted)
         return environment
 
     def find_source(self, trace: Trace) -> MapSource | None:
@@ -156,7 +156,7 @@ class MapLibrary:
             f"{correction_hint(side, source)}."
         )
 
-    def _sensed(self, environment: MapTables, states: pa.Table) -> str | None:
+    def _vote(self, environment: MapTables, states: pa.Table) -> str | None:
         assert environment.lanes is not None  # noqa: S101 - a reader that guesses says what
         return vote_handedness(environment.lanes, self._headings(environment, states, VOTE_SAMPLES))
 
@@ -201,12 +201,16 @@ class MapLibrary:
             self._grounds[environment.environment_id] = lane_areas(environment)
         return self._grounds[environment.environment_id]
 
-    def _load(self, source: MapSource, trace: Trace, sensed: str | None) -> MapTables:
+    def _load(self, source: MapSource, trace: Trace, voted_handedness: str | None) -> MapTables:
         offset = self._offset or trace.map_offset or (0.0, 0.0)
-        key = (source.sha256, offset, sensed)
+        key = (source.sha256, offset, voted_handedness)
         if key not in self._loaded:
             self._loaded[key] = load_map(
-                source, offset=offset, handedness=self._handedness, sensed=sensed, origin=self._origin
+                source,
+                offset=offset,
+                handedness=self._handedness,
+                voted_handedness=voted_handedness,
+                origin=self._origin,
             )
         return self._loaded[key]
 

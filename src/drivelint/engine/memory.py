@@ -39,12 +39,12 @@ class Memory:
         self._note = note
         self.limited = limit is not None
         share = 1.0 if limit is None else min(1.0, limit / DEFAULT_MEMORY)
-        self.room = max(1, int(batch.PART_PAIRS * share))
+        self.pairs_per_part = max(1, int(batch.PAIRS_PER_PART * share))
         """Meetings of one part of a drive: see `batch.egos_left_out`."""
 
-    def halve_parts(self, meetings: int) -> None:
+    def halve_parts(self, pairs: int) -> None:
         """Judge parts of at most half as many pairs as the part that did not fit."""
-        self.room = max(1, meetings // 2)
+        self.pairs_per_part = max(1, pairs // 2)
 
     def lift_limit(self) -> bool:
         """Lift the database's memory limit to the machine's; return whether it was lower before."""

@@ -104,7 +104,7 @@ class JudgingSession:
         with ExitStack() as undo:
             undo.callback(self._forget, ids)
             self._load(drives)
-            todo = egos_left_out(drives, self._memory.room)
+            todo = egos_left_out(drives, self._memory.pairs_per_part)
             for no, deferred in enumerate(todo):
                 if no:
                     store.recreate_empty(self._con, store.tables_of_lifetime("part"))
@@ -131,8 +131,10 @@ class JudgingSession:
     def _judge_part(self, ids: Sequence[str], *, may_retry: bool) -> None:
         """Judge the egos that do not rest."""
         derive(self._con, self._tables, of_the_map=False)
-        margins, courses = self._margins is not None, bool(self._observers)
-        evaluate(self._con, self._rules, self._params, margins=margins, courses=courses, may_retry=may_retry)
+        margins, measure_courses = self._margins is not None, bool(self._observers)
+        evaluate(
+            self._con, self._rules, self._params, margins=margins, measure_courses=measure_courses, may_retry=may_retry
+        )
         # a rule that erred on a crowd is tried on each drive alone: the fault of one is not the others'
         erred = "SELECT rule_id FROM verdict WHERE verdict = 'error' AND list_contains(?, drive_id) ORDER BY rule_id LIMIT 1"
         if len(ids) > 1 and (row := self._con.execute(erred, [list(ids)]).fetchone()):

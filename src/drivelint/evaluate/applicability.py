@@ -13,7 +13,7 @@ from drivelint.drive import conditions
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
-CREATE_WATCHED = """
+CREATE_DISENGAGED = """
 CREATE OR REPLACE TEMP TABLE _watched AS
 SELECT s.drive_id, s.ego_id, bool_and(coalesce(NOT e.engaged, false)) AS never
 FROM step s
@@ -32,23 +32,23 @@ def has_conditions(rule: Rule) -> bool:
     return bool(rule.applies.restricting) or rule.applies.has_limit
 
 
-def condition_joins(rule: Rule, alias: str, time: str, *, watching: bool) -> str:
-    """Return the joins that the conditions, and with `watching` `ENGAGED`, need for rows with these keys and time; '' for none."""
-    if not (has_conditions(rule) or watching):
+def condition_joins(rule: Rule, alias: str, time: str, check_engagement: bool) -> str:
+    """Return the joins that the conditions, and with `check_engagement` `ENGAGED`, need for rows with these keys and time; '' for none."""
+    if not (has_conditions(rule) or check_engagement):
         return ""
     same = "{0}.drive_id = {1}.drive_id AND {0}.ego_id = {1}.ego_id"
     condition = f"LEFT JOIN ego_condition e ON {same.format('e', alias)} AND e.t_ns = {time}"
-    return f"{condition} LEFT JOIN _watched w ON {same.format('w', alias)}" if watching else condition
+    return f"{condition} LEFT JOIN _watched w ON {same.format('w', alias)}" if check_engagement else condition
 
 
-def in_force_sql(rule: Rule, *, watching: bool) -> str:
+def in_force_sql(rule: Rule, check_engagement: bool) -> str:
     """Return whether the rule is in force: true, false or NULL. One condition that is false settles it."""
-    return " AND ".join(_terms(rule, watching=watching).values()) or "true"
+    return " AND ".join(_terms(rule, check_engagement).values()) or "true"
 
 
-def unknown_reason_sql(rule: Rule, *, watching: bool) -> str:
+def unknown_reason_sql(rule: Rule, check_engagement: bool) -> str:
     """Return the reason code of the first condition that is not known, or NULL."""
-    terms = _terms(rule, watching=watching)
+    terms = _terms(rule, check_engagement)
     whens = " ".join(f"WHEN ({term}) IS NULL THEN '{name}_unknown'" for name, term in terms.items())
     return f"CASE {whens} END" if terms else "NULL::VARCHAR"
 
@@ -66,9 +66,9 @@ def bound_values(rule: Rule) -> dict[str, object]:
     return values
 
 
-def _terms(rule: Rule, *, watching: bool) -> dict[str, str]:
+def _terms(rule: Rule, check_engagement: bool) -> dict[str, str]:
     """Return condition -> its three-valued SQL, the driver's engagement first."""
-    found = {"engaged": ENGAGED} if watching else {}
+    found = {"engaged": ENGAGED} if check_engagement else {}
     for name in rule.applies.restricting:
         found[name] = (
             f"CASE WHEN list_contains($_is_{name}, e.{name}) THEN true "

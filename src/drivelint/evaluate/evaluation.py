@@ -31,12 +31,12 @@ class Evaluation:
     con: duckdb.DuckDBPyConnection
     bindings: Sequence[Binding]
     margins: bool
-    courses: bool = False
+    measure_courses: bool = False
     may_retry: bool = False
     _n_todo: dict[int, int] = field(default_factory=dict, init=False)
     _n_subjects: int = field(default=0, init=False)
     _has_holes: bool = field(default=False, init=False)
-    _watching: bool = field(default=False, init=False)
+    _check_engagement: bool = field(default=False, init=False)
 
     def judge(self) -> None:
         """Judge by every rule, then write the verdicts, findings and margins of all of them at once."""
@@ -49,12 +49,12 @@ class Evaluation:
         for statement in finalize.COLLECT_STATEMENTS:
             self.con.execute(statement)
         make_reason_table(
-            self.con, finalize.REASONS_TO_WORD, {binding.no: binding.rule.reasons for binding in self.bindings}
+            self.con, finalize.SELECT_REASONS, {binding.no: binding.rule.reasons for binding in self.bindings}
         )
         for statement in finalize.INSERT_STATEMENTS:
             self.con.execute(statement)
-        if self.courses:
-            self.con.execute(finalize.INSERT_COURSES)
+        if self.measure_courses:
+            self.con.execute(finalize.INSERT_MEASURE_COURSES)
 
     def _share(self, todo: deque[Binding]) -> None:
         """Judge on a second connection too: on so few rows a statement is planned and run on one core."""
@@ -92,8 +92,8 @@ class Evaluation:
         self._n_todo = temp_tables.create_tables(self.con, self.bindings)
         self._n_subjects = self._count("SELECT count(*) FROM _subject")
         self._has_holes = self._count("SELECT count(*) FROM _segment WHERE seg > 0") > 0
-        self.con.execute(applicability.CREATE_WATCHED)
-        self._watching = self._count("SELECT count(*) FROM _watched") > 0
+        self.con.execute(applicability.CREATE_DISENGAGED)
+        self._check_engagement = self._count("SELECT count(*) FROM _watched") > 0
         quick = [b for b in self.bindings if self._is_quick(b)]
         if quick:
             self.con.execute(invariant.CREATE_GRID_GROUPS, {"_objects": any(b.rule.per_object for b in quick)})
@@ -117,7 +117,7 @@ class Evaluation:
         if rule.profiled:
             self._execute(invariant.profile_set_sql(rule), binding)
         if rule.per_object and "applies" not in rule.sections:
-            self._execute(invariant.lost_objects_sql(rule, partial, self._watching), binding)
+            self._execute(invariant.lost_objects_sql(rule, partial, self._check_engagement), binding)
         n_steps = -1
         if quick:
             self._execute(invariant.first_pass_sql(rule, partial), binding)
@@ -125,15 +125,15 @@ class Evaluation:
                 f"SELECT coalesce(sum(n), 0)::BIGINT FROM _group WHERE rule_no = {binding.no} AND NOT clean"
             )
             if self._has_near_misses(binding, "_group", "clean"):
-                self._execute(findings.settled_courses_sql(binding.rule), binding)
+                self._execute(findings.settled_measure_courses_sql(binding.rule), binding)
             if self._may_stop(n_steps):
                 return
-        elif self._may_stop(self._execute(invariant.grid_sql(rule, partial, self._watching), binding)):
+        elif self._may_stop(self._execute(invariant.grid_sql(rule, partial, self._check_engagement), binding)):
             return
-        n_judged = self._execute(invariant.second_pass_sql(rule, partial, quick, self._watching), binding)
+        n_judged = self._execute(invariant.second_pass_sql(rule, partial, quick, self._check_engagement), binding)
         if self._may_stop(n_judged):
             return
-        if self._watching or n_judged != n_steps:  # as many rows as the grid has steps: none can be double
+        if self._check_engagement or n_judged != n_steps:  # as many rows as the grid has steps: none can be double
             self._execute(invariant.INSERT_ERRORS, binding)
         self._execute(invariant.episodes_sql(rule), binding)
         if self._has_holes:
@@ -148,29 +148,29 @@ class Evaluation:
         columns = [str(column[0]) for column in described]
         own_object = "object_id" in columns
         self._execute(reference_points.references_sql(columns), binding)
-        self._execute(reference_points.windows_sql(rule, own_object, self._watching), binding)
+        self._execute(reference_points.windows_sql(rule, own_object, self._check_engagement), binding)
         self._execute(reference_points.reference_steps_sql(rule), binding)
         if rule.profiled:
             self._execute(invariant.profile_set_sql(rule), binding)
-        self._execute(reference_points.judged_steps_sql(rule, own_object, self._watching), binding)
+        self._execute(reference_points.judged_steps_sql(rule, own_object, self._check_engagement), binding)
         self._execute(reference_points.INSERT_ERRORS, binding)
         self._execute(reference_points.outcomes_sql(rule, own_object), binding)
         self._leave(binding)
 
     def _leave(self, binding: Binding) -> None:
         if self._has_near_misses(binding, "_outcome", "verdict = 'pass'"):
-            self._execute(findings.near_miss_courses_sql(binding.rule), binding)
+            self._execute(findings.near_miss_measure_courses_sql(binding.rule), binding)
         if not self._may_stop(self._count("SELECT count(*) FROM (FROM _judged WHERE NOT holds LIMIT 1)")):
             self._execute(findings.stretches_sql(binding.rule), binding)
-            if self.courses:
-                self._execute(findings.courses_sql(binding.rule), binding)
+            if self.measure_courses:
+                self._execute(findings.measure_courses_sql(binding.rule), binding)
         if self.margins:
             self._execute(findings.margins_sql(binding.rule), binding)
 
     def _has_near_misses(self, binding: Binding, table: str, kept: str) -> bool:
         """Whether courses are asked for, and kept rows of a table of outcomes are near misses."""
         near = f"FROM {table} JOIN _rule USING (rule_no) WHERE rule_no = {binding.no} AND {kept} AND {findings.IS_NEAR_MISS}"
-        return self.courses and not self._may_stop(self._count(f"SELECT count(*) {near}"))
+        return self.measure_courses and not self._may_stop(self._count(f"SELECT count(*) {near}"))
 
     def _may_stop(self, n_rows: int) -> bool:
         return n_rows == 0
@@ -203,13 +203,13 @@ class Evaluation:
 class PlanRecorder(Evaluation):
     """An evaluation that records the plan of every statement and runs all alternatives."""
 
-    courses: bool = True
+    measure_courses: bool = True
     plans: list[str] = field(default_factory=list, init=False)
 
     def prepare(self) -> None:
         """Make the run's tables; holes and drivers that are not engaged are always looked for."""
         super().prepare()
-        self._has_holes = self._watching = True
+        self._has_holes = self._check_engagement = True
 
     def _may_stop(self, n_rows: int) -> bool:  # noqa: ARG002 - the shape of what it overrides
         return False

@@ -110,7 +110,7 @@ SELECT m.* EXCLUDE (rule_no) REPLACE (nullif(m.profile, '') AS profile, nullif(m
 ANTI JOIN _error e ON e.rule_no = m.rule_no AND e.drive_id = m.drive_id AND e.ego_id = m.ego_id
 """
 
-INSERT_COURSES = """
+INSERT_MEASURE_COURSES = """
 INSERT INTO course BY NAME
 WITH _named AS (SELECT c.* REPLACE (nullif(c.profile, '') AS profile, nullif(c.object_id, '') AS object_id), r.rule_id
     FROM _course c JOIN _rule r USING (rule_no)), _whose AS (
@@ -131,7 +131,7 @@ GROUP BY f.finding_id, f.drive_id, f.ego_id, f.rule_id, f.profile, f.object_id, 
 
 COLLECT_STATEMENTS = (coverage_gaps.CREATE_GAPS, _ALL, _NAMED, _FAILED)
 """Run in this order after the last rule."""
-REASONS_TO_WORD = "SELECT rule_no, cause, start_ns FROM _named UNION ALL SELECT rule_no, cause, start_ns FROM _failed"
+SELECT_REASONS = "SELECT rule_no, cause, start_ns FROM _named UNION ALL SELECT rule_no, cause, start_ns FROM _failed"
 """The causes that `make_reason_table` puts into words between the two lists of statements."""
 INSERT_STATEMENTS = (_VERDICTS, _FINDINGS, _MARGINS)
 """Run in this order after `make_reason_table`."""

@@ -89,7 +89,7 @@ SELECT $_no AS rule_no, g.drive_id, g.ego_id, g.object_id, coalesce(g.whole AND 
         s.worst.reason AS reason
 FROM _grid_group g
 LEFT JOIN _seen s ON g.drive_id = s.drive_id AND g.ego_id = s.ego_id{who} AND g.n = s.n AND g.signature = s.signature
-{sql_fragments.todo_join(partial, "g")}
+{sql_fragments.subject_join(partial, "g")}
 WHERE g.grid = '{OBJECT_GRID if rule.per_object else STEP_GRID}' AND s.n_out IS DISTINCT FROM g.n
 """
 
@@ -106,7 +106,7 @@ SELECT s.drive_id, s.ego_id, '' FROM _subject s ANTI JOIN _known k ON s.drive_id
 """
 
 
-def _grid(rule: Rule, partial: bool, unsettled: bool, watching: bool) -> str:
+def _grid(rule: Rule, partial: bool, unsettled: bool, check_engagement: bool) -> str:
     """CTEs ending in `_grid`: drive_id, ego_id, t_ns, object_id, label, k, seg, applies, doubt and why (the code and the author's
     reason where it is NULL)."""
     if "applies" not in rule.sections:
@@ -135,25 +135,26 @@ def _grid(rule: Rule, partial: bool, unsettled: bool, watching: bool) -> str:
         keep = " SEMI JOIN (SELECT * FROM _group WHERE rule_no = $_no AND NOT clean) _u"
         keep += " ON a.drive_id = _u.drive_id AND a.ego_id = _u.ego_id"
         keep += " AND a.object_id = _u.object_id" if rule.per_object else ""
-    joins = applicability.condition_joins(rule, "a", "a.t_ns", watching=watching)
+    joins = applicability.condition_joins(rule, "a", "a.t_ns", check_engagement)
     if not joins:
         return f"""{first}, _grid AS (SELECT a.*, CASE WHEN a.applies IS NULL THEN 'applies_unknown' END AS doubt
             FROM _base a
-    {sql_fragments.todo_join(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
+    {sql_fragments.subject_join(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
     return f"""{first}, _restricted AS (
-    SELECT a.* EXCLUDE (applies), a.applies AND {applicability.in_force_sql(rule, watching=watching)} AS applies,
-        CASE WHEN a.applies IS NULL THEN 'applies_unknown' ELSE {applicability.unknown_reason_sql(rule, watching=watching)} END AS doubt
+    SELECT a.* EXCLUDE (applies), a.applies AND {applicability.in_force_sql(rule, check_engagement)} AS applies,
+        CASE WHEN a.applies IS NULL THEN 'applies_unknown'
+            ELSE {applicability.unknown_reason_sql(rule, check_engagement)} END AS doubt
     FROM _base a
     {joins}
-), _grid AS (SELECT a.* FROM _restricted a{sql_fragments.todo_join(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
+), _grid AS (SELECT a.* FROM _restricted a{sql_fragments.subject_join(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
 
 
-def grid_sql(rule: Rule, partial: bool, watching: bool) -> str:
+def grid_sql(rule: Rule, partial: bool, check_engagement: bool) -> str:
     """Return the SQL for `_asked`: the grid of a rule without a first pass; empty where nothing is to be judged."""
-    return f"CREATE OR REPLACE TEMP TABLE _asked AS WITH {_grid(rule, partial, False, watching)} SELECT * FROM _grid"
+    return f"CREATE OR REPLACE TEMP TABLE _asked AS WITH {_grid(rule, partial, False, check_engagement)} SELECT * FROM _grid"
 
 
-def second_pass_sql(rule: Rule, partial: bool, unsettled: bool, watching: bool) -> str:
+def second_pass_sql(rule: Rule, partial: bool, unsettled: bool, check_engagement: bool) -> str:
     """SQL for `_judged`: every step of the grid, judged or not; '' stands for no object, profile or label.
 
     The grid is what a first pass left unsettled, or `_asked`.
@@ -180,7 +181,7 @@ def second_pass_sql(rule: Rule, partial: bool, unsettled: bool, watching: bool) 
 SELECT a.* EXCLUDE (t_begin_ns, k_begin, episode) FROM _aged a
 LEFT JOIN _segment s ON s.drive_id = a.drive_id AND s.ego_id = a.ego_id AND s.seg = a.seg
 WHERE s.seg IS NULL OR k_begin = s.k_first OR t_ns - t_begin_ns >= $_exempt_ns"""
-    grid = _grid(rule, partial, True, watching) if unsettled else "_grid AS (SELECT * FROM _asked)"
+    grid = _grid(rule, partial, True, check_engagement) if unsettled else "_grid AS (SELECT * FROM _asked)"
     return f"""
 CREATE OR REPLACE TEMP TABLE _judged AS
 WITH {sql_fragments.condition_ctes(rule)}, {grid}, _joined AS (
@@ -269,7 +270,7 @@ FROM _holes
 """Appends a row of its own for each hole between two applicable steps that the rule reaches from either side."""
 
 
-def lost_objects_sql(rule: Rule, partial: bool, watching: bool) -> str:
+def lost_objects_sql(rule: Rule, partial: bool, check_engagement: bool) -> str:
     """SQL that appends one unknown row per object whose track ends while it could still have been there."""
     profiles = "JOIN _profile_set p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id" if rule.profiled else ""
     return f"""
@@ -283,7 +284,7 @@ SELECT $_no AS rule_no, l.drive_id, l.ego_id, l.object_id, {"p.profile" if rule.
 FROM lost_object l JOIN _subject s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id {profiles}
 CROSS JOIN LATERAL (SELECT l.t_from_ns - 1 AS t_ns) t
 LEFT JOIN pair q ON q.drive_id = l.drive_id AND q.ego_id = l.ego_id AND q.object_id = l.object_id AND q.t_ns = t.t_ns
-{applicability.condition_joins(rule, "l", "l.t_from_ns", watching=watching)}
-{sql_fragments.todo_join(partial, "l")}
-WHERE ({applicability.in_force_sql(rule, watching=watching)}) IS DISTINCT FROM false
+{applicability.condition_joins(rule, "l", "l.t_from_ns", check_engagement)}
+{sql_fragments.subject_join(partial, "l")}
+WHERE ({applicability.in_force_sql(rule, check_engagement)}) IS DISTINCT FROM false
 """

@@ -25,7 +25,7 @@ CREATE OR REPLACE TEMP TABLE _raw_reference AS
 WITH _author AS (
 {rule.sections["reference"]}
 ) SELECT r.* FROM _author r SEMI JOIN _subject s ON r.drive_id = s.drive_id
-    AND r.ego_id = s.ego_id{sql_fragments.todo_join(partial, "r")}
+    AND r.ego_id = s.ego_id{sql_fragments.subject_join(partial, "r")}
 """
 
 
@@ -41,7 +41,7 @@ SELECT (row_number() OVER (ORDER BY {order}) - 1)::INTEGER AS ref_id, * FROM _ra
 """
 
 
-def windows_sql(rule: Rule, own_object: bool, watching: bool) -> str:
+def windows_sql(rule: Rule, own_object: bool, check_engagement: bool) -> str:
     """Return the SQL for `_occasion`: each reference point with its window, and whether the rule applies there."""
     start, end = {
         "precondition": ("r.t_ns - $_window_ns", "r.t_ns"),
@@ -56,10 +56,10 @@ SELECT r.ref_id, r.ref_id - min(r.ref_id) OVER (PARTITION BY r.drive_id, r.ego_i
     r.drive_id::VARCHAR AS drive_id,
     r.ego_id::VARCHAR AS ego_id, {"r.object_id" if own_object else "NULL"}::VARCHAR AS object_id,
         r.t_ns::BIGINT AS t_ref_ns,
-    ({start})::BIGINT AS a_ns, ({end})::BIGINT AS b_ns, {applicability.in_force_sql(rule, watching=watching)} AS applies,
-    {applicability.unknown_reason_sql(rule, watching=watching)} AS doubt
+    ({start})::BIGINT AS a_ns, ({end})::BIGINT AS b_ns, {applicability.in_force_sql(rule, check_engagement)} AS applies,
+    {applicability.unknown_reason_sql(rule, check_engagement)} AS doubt
 FROM reference r
-{applicability.condition_joins(rule, "r", "r.t_ns", watching=watching)}
+{applicability.condition_joins(rule, "r", "r.t_ns", check_engagement)}
 """
 
 
@@ -91,7 +91,7 @@ LEFT JOIN step s ON s.drive_id = p.drive_id AND s.ego_id = p.ego_id AND s.t_ns =
 """
 
 
-def judged_steps_sql(rule: Rule, own_object: bool, watching: bool) -> str:
+def judged_steps_sql(rule: Rule, own_object: bool, check_engagement: bool) -> str:
     """SQL for `_judged`: every expected point, judged or not; combined over objects where the rule says so.
 
     A point of a window at which the automated driver does not drive is not judged: what happens there is not its doing.
@@ -108,7 +108,7 @@ def judged_steps_sql(rule: Rule, own_object: bool, watching: bool) -> str:
     # where nobody is, "all" is kept and "any" is missed by as much as can be
     edge = "'inf'::DOUBLE" if rule.combine == "all" else "'-inf'::DOUBLE"
     human, why = "false", ""
-    if watching:
+    if check_engagement:
         human = f"({applicability.ENGAGED}) IS DISTINCT FROM true"
         why = f"WHEN {human} THEN CASE WHEN NOT e.engaged THEN 'not_engaged' ELSE 'engaged_unknown' END"
     empty = f"CASE WHEN g.sensor_range_m IS NULL THEN {'true' if rule.combine == 'all' else 'false'} END"
@@ -127,7 +127,7 @@ WITH {sql_fragments.condition_ctes(rule)}, _grid AS ({source}
         CASE WHEN NOT ({human}) THEN v.reason END AS reason
     FROM _grid g {"JOIN _profile_set p ON g.drive_id = p.drive_id AND g.ego_id = p.ego_id" if rule.profiled else ""}
     LEFT JOIN _state v ON {on}
-    {applicability.condition_joins(rule, "g", "g.t_ns", watching=True) if watching else ""}
+    {applicability.condition_joins(rule, "g", "g.t_ns", True) if check_engagement else ""}
 ), _expected AS (SELECT * FROM _joined WHERE applies IS DISTINCT FROM false
 ){_combination(rule) if combined else ", _series AS (SELECT *, object_id AS who, 1 AS n_same FROM _expected)"}
 SELECT * REPLACE (coalesce(object_id, '') AS object_id, coalesce(who, '') AS who), row_number()

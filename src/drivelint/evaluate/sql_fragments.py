@@ -99,9 +99,9 @@ def condition_ctes(rule: Rule) -> str:
     {holds} AS holds, {gain} AS gain, {code} AS code, reason FROM _value)"""
 
 
-def todo_join(binding_partial: bool, alias: str) -> str:
+def subject_join(partial: bool, alias: str) -> str:
     """Return the semi-join that keeps the subjects for which the rule is to be run; '' if it is run for all."""
-    if not binding_partial:
+    if not partial:
         return ""
     subjects = "(SELECT drive_id, ego_id FROM _todo WHERE rule_no = $_no) _t"
     return f" SEMI JOIN {subjects} ON {alias}.drive_id = _t.drive_id AND {alias}.ego_id = _t.ego_id"

@@ -76,9 +76,11 @@ def explain(request: ExplainRequest) -> Explanation:
         now = case.verdicts_on(judged, [sandbox.drive_id])[0]
         series = evidence.judged_steps(case.rule, target, judged)
         decides = _decides(target, series, now)
-        gate = row["reason_code"].removeprefix("missing_") if case.lacks_signal else None
+        missing_signal = row["reason_code"].removeprefix("missing_") if case.lacks_signal else None
         condition = condition_of(row["reason_code"]) if row["verdict"] == "unknown" and not target.finding else None
-        rows = evidence.rows_read(case.rule, target, sandbox, decides, gate=gate, condition=condition)
+        rows = evidence.rows_read(
+            case.rule, target, sandbox, decides, missing_signal=missing_signal, condition=condition
+        )
         found: list[Change] = []
         sensitivity = None
         if not case.lacks_signal:

@@ -20,7 +20,7 @@ MAX_ROWS: Final = 6
 """Rows shown of one table."""
 CONDITION_TABLES: Final = ("ego_condition", "ego_state")
 """Tables that show why a condition is not known."""
-SERIES_MARGIN_NS: Final = 30_000_000_000
+SERIES_PADDING_NS: Final = 30_000_000_000
 """How much of a longer episode is shown on each side of what is explained."""
 _NAMED = re.compile(r"\$(\w+)")
 _SPANS: Final = (
@@ -52,7 +52,7 @@ def judged_steps(rule: Rule, target: Target, judged: Judgement) -> list[Step]:
     if span is None:
         return []
     start, end = target.verdict["t_start_ns"], target.verdict["t_end_ns"]
-    start, end = max(start, span[0] - SERIES_MARGIN_NS), min(end, span[1] + SERIES_MARGIN_NS)
+    start, end = max(start, span[0] - SERIES_PADDING_NS), min(end, span[1] + SERIES_PADDING_NS)
     same = {"ego_id": row["ego_id"], "profile": row["profile"]}
     if rule.kind != "invariant":
         same["ref_id"] = row["ref_id"]
@@ -66,16 +66,16 @@ def judged_steps(rule: Rule, target: Target, judged: Judgement) -> list[Step]:
 
 
 def rows_read(
-    rule: Rule, target: Target, sandbox: Sandbox, t_ns: int | None, *, gate: str | None, condition: str | None
+    rule: Rule, target: Target, sandbox: Sandbox, t_ns: int | None, *, missing_signal: str | None, condition: str | None
 ) -> list[TableRows]:
     """Return the rows of each table that the rule reads, for ego and object, at one time or in the whole drive.
 
-    `gate`: the signal for want of which the rule was not run; then only what is known about that. `condition`: the one that is not
-    known; then also where the ego is and what holds there.
+    `missing_signal`: the signal for want of which the rule was not run; then only what is known about that. `condition`: the one that
+    is not known; then also where the ego is and what holds there.
     """
-    if gate is not None:
+    if missing_signal is not None:
         sql = "SELECT signal, available, reason FROM capability WHERE ego_id = ? AND signal = ?"
-        told = sandbox.query(sql, [target.verdict_row["ego_id"], gate])
+        told = sandbox.query(sql, [target.verdict_row["ego_id"], missing_signal])
         return [TableRows("capability", [{**row, "reason": reason_text.sentence(row["reason"])} for row in told], 0)]
     found = []
     for table in dict.fromkeys((*(CONDITION_TABLES if condition else ()), *rule.reads)):

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from drivelint.explain.model import Row
     from drivelint.result.model import Result
 
-MAX_OTHERS = 6
+MAX_OTHER_VERDICTS = 6
 _WEIGHT = {"error": 0, "fail": 1, "unknown": 2, "pass": 3, "not_applicable": 4}
 
 
@@ -105,7 +105,7 @@ def _asked(rows: list[Row], wanted: VerdictFilter, starts: dict[str, int | None]
     around = [row for row in rows if _covers(row, wanted.at_s, starts)]
     if not around:
         told = sorted({_span(row, starts) for row in rows if row["t_start_ns"] is not None})
-        there = ", ".join(told[:MAX_OTHERS]) or "none with a time"
+        there = ", ".join(told[:MAX_OTHER_VERDICTS]) or "none with a time"
         raise UsageError(
             f"no such verdict of {rows[0]['rule_id']} is about {wanted.at_s:g} s of the drive; there are {there}"
         )

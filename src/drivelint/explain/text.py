@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 EXPLAIN_SCHEMA: Final = 1
 """Version of the JSON: raised when a key changes its meaning or goes."""
 PLOT_HEIGHT: Final = 8
-MAX_OTHERS: Final = 6
+MAX_OTHER_VERDICTS: Final = 6
 _STYLE: Final = {"pass": "bold green", "fail": "bold red", "unknown": "bold yellow", "error": "bold magenta"}
 _MEANS: Final = {
     "fail": "the rule was broken",
@@ -113,8 +113,10 @@ def _happened(found: Explanation) -> list[str]:
         lines.append(f"{row['n_judged']} of {row['n_expected']} steps that had to be judged could be.")
     lines += found.notes
     if found.others:
-        told = [_elsewhere(other, row["ego_id"], found.drive["t_start_ns"]) for other in found.others[:MAX_OTHERS]]
-        more = f"; {len(found.others) - MAX_OTHERS} more" if len(found.others) > MAX_OTHERS else ""
+        told = [
+            _elsewhere(other, row["ego_id"], found.drive["t_start_ns"]) for other in found.others[:MAX_OTHER_VERDICTS]
+        ]
+        more = f"; {len(found.others) - MAX_OTHER_VERDICTS} more" if len(found.others) > MAX_OTHER_VERDICTS else ""
         lines.append(f"The same rule elsewhere in this drive: {'; '.join(told)}{more}.")
     return lines
 

@@ -66,10 +66,10 @@ def lacks_signal(verdict: str, reason_code: str) -> bool:
     return verdict == "unknown" and reason_code.startswith("missing_") and reason_code != "missing_step"
 
 
-def sufficient_part(case: VerdictContext, drive: Drive, now: str) -> tuple[Drive, tuple[int, int] | None]:
+def sufficient_part(case: VerdictContext, drive: Drive, verdict: str) -> tuple[Drive, tuple[int, int] | None]:
     """Return the shortest tried part of a drive with the same verdict, and its interval; None for the whole drive."""
     span = case.target.span
-    if span is None or now == "not_applicable":
+    if span is None or verdict == "not_applicable":
         return drive, None
     log = drive.trace.tables["data_log"].to_pylist()[0]
     for margin in CROP_MARGINS_NS:
@@ -79,7 +79,7 @@ def sufficient_part(case: VerdictContext, drive: Drive, now: str) -> tuple[Drive
         small = crop(drive, *part)
         with case.sandbox([small]) as sandbox:
             judged = sandbox.judge(case.params)
-            if case.verdicts_on(judged, [sandbox.drive_id]) == [now] and _same_numbers(
+            if case.verdicts_on(judged, [sandbox.drive_id]) == [verdict] and _same_numbers(
                 case, evidence.judged_steps(case.rule, case.target, judged)
             ):
                 return small, part

@@ -61,25 +61,25 @@ def load_map(
     *,
     offset: tuple[float, float] = (0, 0),
     handedness: str = "auto",
-    sensed: str | None = None,
+    voted_handedness: str | None = None,
     origin: tuple[float, float] | None = None,
 ) -> MapTables:
     """Return the map as the tables of `schemas/map.sql`.
 
-    `offset` (metres) is added to all coordinates; `handedness` is the user's option, `sensed` what the traces voted
+    `offset` (metres) is added to all coordinates; `handedness` is the user's option, `voted_handedness` what the traces voted
     (used only when neither the option nor the map decides), `origin` the latitude and longitude (degrees) of the log's 0,0.
     `MapError`: unknown format or unreadable content;
     `UsageError`: an option that has no meaning.
     """
     if handedness not in {"auto", "lht", "rht"}:
         raise UsageError(f"handedness {handedness!r} is not known: use auto, lht or rht")
-    if sensed not in {None, "lht", "rht"}:
-        raise ValueError(f"sensed={sensed!r}")
+    if voted_handedness not in {None, "lht", "rht"}:
+        raise ValueError(f"voted_handedness={voted_handedness!r}")
     if not all(math.isfinite(v) for v in offset):
         raise UsageError(f"map offset {offset} is not two finite numbers of metres")
     if len(source.content) > MAX_BYTES:
         raise _too_large(source.name, len(source.content))
-    request = MapOptions((float(offset[0]), float(offset[1])), handedness, sensed, origin)
+    request = MapOptions((float(offset[0]), float(offset[1])), handedness, voted_handedness, origin)
     tables: MapTables = import_module(f"drivelint.formats.{_reader(source)}").read(source, request)
     return tables
 

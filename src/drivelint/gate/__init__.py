@@ -43,7 +43,7 @@ class GateInputs:
 
         said = waivers.read(waiver_file) if waiver_file else []
         if settings_file and settings_file.is_file():
-            said += waivers.read(settings_file, alone=False)
+            said += waivers.read(settings_file, only_waivers=False)
         if baseline is None and not said:
             return None
         if baseline is not None and out is not None and baseline.resolve() == out.resolve():

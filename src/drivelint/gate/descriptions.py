@@ -23,7 +23,7 @@ MAX_LINES: Final = 50
 DIFF_SCHEMA: Final = 1
 """Version of the JSON: raised when a key changes its meaning or goes."""
 
-STANDING_TITLES: Final = {
+DIFF_STATUS_TITLES: Final = {
     "new": "New",
     "changed": "Changed: known, but not as it was",
     "unknown": "Not fixed: it cannot be told any more",
@@ -40,15 +40,17 @@ def gating_findings(difference: Difference, fail_on: str, gate: Gate | None = No
     severe = counts.SEVERITIES[: counts.SEVERITIES.index(fail_on) + 1]
     waived = gate.waived if gate else {}
     return [
-        e for e in difference.with_standing("new") if e.stable and e.severity in severe and e.finding_id not in waived
+        e
+        for e in difference.with_diff_status("new")
+        if e.stable and e.severity in severe and e.finding_id not in waived
     ]
 
 
 def headline(difference: Difference) -> str:
     """Return the counts in one sentence: what is new, what is fixed, and what is not fixed but gone."""
     n = difference.counts()
-    kept = Counter(entry.there for entry in difference.with_standing("fixed"))
-    margins = [(entry.margin, entry.base_margin) for entry in difference.with_standing("changed")]
+    kept = Counter(entry.there for entry in difference.with_diff_status("fixed"))
+    margins = [(entry.margin, entry.base_margin) for entry in difference.with_diff_status("changed")]
     worse = sum(now is not None and was is not None and now < was for now, was in margins)
     text = f"{n['new']} new, {n['changed']} changed ({worse} worse), {n['unchanged']} unchanged, "
     text += f"{n['fixed']} fixed ({kept['pass']} now pass, {kept['not_applicable']} now not applicable)"
@@ -63,8 +65,8 @@ def difference_text(
     """Return a difference as text for a person."""
     waived = gate.waived if gate else {}
     blocks = [list(_table(difference)), [headline(difference)]]
-    for standing, title in STANDING_TITLES.items():
-        entries = difference.with_standing(standing)
+    for standing, title in DIFF_STATUS_TITLES.items():
+        entries = difference.with_diff_status(standing)
         if entries:
             lines = [f"{title} ({len(entries)})"]
             lines += [

@@ -45,10 +45,10 @@ _TIMES: Final = ("from_s", "to_s")
 _HEAD: Final = re.compile(r"\s*\[\[\s*(waiver|\"waiver\"|'waiver')\s*\]\]")
 
 
-def read(file: Path, *, alone: bool = True) -> list[Waiver]:
+def read(file: Path, *, only_waivers: bool = True) -> list[Waiver]:
     """Return the waivers of a TOML file, in its order.
 
-    `alone`: the file is for waivers only, else they stand beside other settings. Errors: `UsageError` with file and line for
+    `only_waivers`: the file is for waivers only, else they stand beside other settings. Errors: `UsageError` with file and line for
     bad TOML, an unknown key (with the nearest), a missing rule, reason, owner or expiry, or a value of another kind.
     """
     try:
@@ -60,12 +60,12 @@ def read(file: Path, *, alone: bool = True) -> list[Waiver]:
         raise UsageError(f"{file}: cannot be read: {error.strerror or error}") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise UsageError(f"{file}: not TOML: {error}") from error
-    if alone and (excess := sorted(set(content) - {"waiver"})):
+    if only_waivers and (excess := sorted(set(content) - {"waiver"})):
         raise UsageError(f"{file}: unknown key {excess[0]!r}: it holds tables [[waiver]] only")
     tables = content.get("waiver", [])
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise UsageError(f"{file}: waiver must be tables, each headed [[waiver]]")
-    if alone and not tables:
+    if only_waivers and not tables:
         raise UsageError(f"{file}: no table [[waiver]] in it")
     places = _places(text, len(tables))
     return [_waiver(table, file, place) for table, place in zip(tables, places, strict=True)]

@@ -206,10 +206,10 @@ class _Knowledge:
             self.of[ego] = {c: row[c] or self.of.get(ego, {}).get(c, False) for c in row}
 
 
-def _registration(row: dict[str, Any] | None) -> model.Registration | None:
+def _registration(row: dict[str, Any] | None) -> model.MapRegistration | None:
     if row is None:
         return None
-    return msgspec.convert({**row, "reason": reason_text.sentence(row["reason"])}, model.Registration)
+    return msgspec.convert({**row, "reason": reason_text.sentence(row["reason"])}, model.MapRegistration)
 
 
 def _quality(con: duckdb.DuckDBPyConnection, start_ns: int) -> list[model.Quality]:

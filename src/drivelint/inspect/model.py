@@ -108,7 +108,7 @@ class Actor(msgspec.Struct, frozen=True, kw_only=True):
     top_speed_mps: Annotated[float | None, Meta(description="null: no speed is known")]
 
 
-class Registration(msgspec.Struct, frozen=True, kw_only=True):
+class MapRegistration(msgspec.Struct, frozen=True, kw_only=True):
     """How an ego's track lies on the map."""
 
     ok: Annotated[bool, Meta(description="good enough for rules that need the map")]
@@ -149,7 +149,7 @@ class Ego(msgspec.Struct, frozen=True, kw_only=True):
     actor: Actor
     km: float
     steps: int
-    registration: Registration | None
+    registration: MapRegistration | None
     can: Annotated[list[str], Meta(description="rules that can be decided")]
     cannot: list[Undecided]
     missing: list[Missing]

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
         Content,
         Drive,
         Inspection,
+        MapRegistration,
         Quality,
-        Registration,
         Road,
         Sheet,
     )
@@ -224,7 +224,7 @@ def _map(road: Road) -> Text:
     return text.append(f"; {side}, {source}", style="yellow" if road.handedness_source == "default" else "")
 
 
-def _fit(fit: Registration) -> Text:
+def _fit(fit: MapRegistration) -> Text:
     if not fit.ok:
         return Text(fit.reason, style="bold yellow")
     off = "" if fit.lateral_median_m is None else f", {fit.lateral_median_m:.2f} m from its middle (median)"

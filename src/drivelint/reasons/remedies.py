@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from drivelint.drive.conditions import ENV_VALUES
+from drivelint.drive.conditions import DRIVE_CONDITION_VALUES
 from drivelint.reasons.signals import SIGNAL_OF_CONDITION, how_to_provide
 
 _NAMED = "{advice}"
@@ -30,19 +30,19 @@ REMEDIES: Final = {
 """Reason code -> what to do; `{advice}`: what its cause asks for."""
 
 
-def remedy(code: str, object_id: str | None, log_format: str, asked: str | None = None) -> str:
-    """Return what would decide an unknown verdict with this reason code, for a log of this format. `asked`: what its cause asks for."""
+def remedy(code: str, object_id: str | None, log_format: str, advice: str | None = None) -> str:
+    """Return what would decide an unknown verdict with this reason code, for a log of this format. `advice`: what its cause asks for."""
     if code.startswith("missing_") and code not in REMEDIES:
         return how_to_provide(code.removeprefix("missing_"), log_format) + _AGAIN
     condition = code.removesuffix("_unknown")
-    if condition in ENV_VALUES or condition == "limit":
+    if condition in DRIVE_CONDITION_VALUES or condition == "limit":
         return (
             how_to_provide({**SIGNAL_OF_CONDITION, "engaged": "mode_engaged"}.get(condition, condition), log_format)
             + _AGAIN
         )
     return REMEDIES.get(code, _NAMED).format(
         object="the object" if object_id is None else f"object {object_id}",
-        advice=asked or (_A_MAP_THAT_GOES_ON if code == "only_a_bound" else _SHOWN),
+        advice=advice or (_A_MAP_THAT_GOES_ON if code == "only_a_bound" else _SHOWN),
     )
 
 
@@ -51,4 +51,4 @@ def condition_of(code: str) -> str | None:
     condition = code.removesuffix("_unknown")
     if condition == code:
         return None
-    return condition if condition in ENV_VALUES else "limit_mps" if condition == "limit" else None
+    return condition if condition in DRIVE_CONDITION_VALUES else "limit_mps" if condition == "limit" else None

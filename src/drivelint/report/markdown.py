@@ -75,7 +75,7 @@ def difference(diff: Difference, failing: Sequence[ComparedFinding], fail_on: st
     ]
     rows = [(diff.base_name, diff.base_verdicts), (diff.name, diff.verdicts)]
     blocks.append(_table(["result", *_HEAD], [[code(name), *map(str, told.values())] for name, told in rows], _HEAD))
-    blocks += _entries(diff, descriptions.STANDING_TITLES, gate, None)
+    blocks += _entries(diff, descriptions.DIFF_STATUS_TITLES, gate, None)
     blocks += _opened(diff)
     for title, names in (("Only in the newer result", diff.new_only), ("Only in the base", diff.base_only)):
         if names:
@@ -148,7 +148,7 @@ def _excuse(row: Row, rule: Row | None, result: Result) -> str:
 def _changes(gate: Gate, link: str) -> Iterator[str]:
     """Yield what a baseline and the waivers tell beyond the findings: new ones stand above."""
     if gate.baseline is not None:
-        titles = {standing: title for standing, title in descriptions.STANDING_TITLES.items() if standing != "new"}
+        titles = {standing: title for standing, title in descriptions.DIFF_STATUS_TITLES.items() if standing != "new"}
         yield from _entries(gate.baseline, titles, gate, link)
         yield from _opened(gate.baseline)
     if said := [f"* {escaped(line)}" for line in descriptions.waiver_warnings(gate)]:
@@ -157,7 +157,7 @@ def _changes(gate: Gate, link: str) -> Iterator[str]:
 
 def _entries(diff: Difference, titles: dict[str, str], gate: Gate | None, link: str | None) -> Iterator[str]:
     for standing, title in titles.items():
-        entries = diff.with_standing(standing)
+        entries = diff.with_diff_status(standing)
         if not entries:
             continue
         lines = []

@@ -9,7 +9,7 @@ import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from drivelint.drive.conditions import CONDITION_TEXTS, ENV_VALUES
+from drivelint.drive.conditions import CONDITION_TEXTS, DRIVE_CONDITION_VALUES
 from drivelint.drive.declared_events import EVENTS, MODES
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIGNAL_STATES
 from drivelint.road.signcodes import codes_of
@@ -130,7 +130,7 @@ def condition_table(rules: Sequence[Rule]) -> Table:
             CONDITION_TEXTS[name],
             "all" if name == "engaged" else _ids(_asking(rules, (name,), _GIVEN)),
         )
-        for name, known in ENV_VALUES.items()
+        for name, known in DRIVE_CONDITION_VALUES.items()
     ]
     return ("condition", "values", "says", "asked for by"), rows
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
 
-STANDINGS: Final = ("new", "changed", "unchanged", "fixed", "unknown", "lost")
+DIFF_STATUSES: Final = ("new", "changed", "unchanged", "fixed", "unknown", "lost")
 """Of NEW's findings: new, changed, unchanged. Of BASE's that NEW has not: fixed (kept there, or never applicable), unknown
 (NEW cannot tell), lost (NEW did not look there). Neither of the last two is fixed."""
 
@@ -71,9 +71,9 @@ class Difference:
     def counts(self) -> dict[str, int]:
         """Return standing -> number of findings, zeros included."""
         found = Counter(entry.standing for entry in self.entries)
-        return {standing: found[standing] for standing in STANDINGS}
+        return {standing: found[standing] for standing in DIFF_STATUSES}
 
-    def with_standing(self, standing: str) -> list[ComparedFinding]:
+    def with_diff_status(self, standing: str) -> list[ComparedFinding]:
         """Return the findings of one standing."""
         return [entry for entry in self.entries if entry.standing == standing]
 

@@ -28,14 +28,14 @@ class MapSource:
 class MapOptions:
     """The options for reading a map: offset, driving side, origin.
 
-    `offset` in metres is added to all coordinates; `handedness` is the user's option (auto, lht, rht); `sensed` is the side by whose
-    rule the lanes run as the traces drive (lht, rht; see `MapTables.lanes`), used only where neither option nor map decides.
+    `offset` in metres is added to all coordinates; `handedness` is the user's option (auto, lht, rht); `voted_handedness` is the side
+    by whose rule the lanes run as the traces drive (lht, rht; see `MapTables.lanes`), used only where neither option nor map decides.
     `origin`: latitude and longitude (degrees) of the point that is 0,0 in the log, for maps that lie on the globe.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
     handedness: str = "auto"
-    sensed: str | None = None
+    voted_handedness: str | None = None
     origin: tuple[float, float] | None = None
 
     @property
@@ -62,14 +62,19 @@ class MapTables:
 
 
 def environment_id(
-    source: MapSource, offset: tuple[float, float], handedness: str, *, guessed: bool = False, turned: bool = False
+    source: MapSource,
+    offset: tuple[float, float],
+    handedness: str,
+    *,
+    guessed: bool = False,
+    lanes_reversed: bool = False,
 ) -> str:
     """Return `<map stem>-<first 8 hex of sha256><offset, if any>@<lht or rht>`; the same on every machine.
 
-    A handedness that is only the standard's default has a question mark: the traces of another drive may tell it for sure. `turned`: the
-    lanes run the other way than its rule says, which the traces may have told; then the id ends in a tilde.
+    A handedness that is only the standard's default has a question mark: the traces of another drive may tell it for sure.
+    `lanes_reversed`: the lanes run the other way than its rule says, which the traces may have told; then the id ends in a tilde.
     """
     x, y = (float(v) + 0.0 for v in offset)
     shift = f"{x:+}{y:+}" if x or y else ""
-    marks = f"{'?' if guessed else ''}{'~' if turned else ''}"
+    marks = f"{'?' if guessed else ''}{'~' if lanes_reversed else ''}"
     return f"{PurePath(source.name).stem}-{source.sha256[:8]}{shift}@{handedness}{marks}"

@@ -26,7 +26,7 @@ CONNECTING = road("10", junction="9")
 
 
 def test_the_option_comes_first() -> None:
-    environment = load(road(attributes='rule="RHT"'), handedness="lht", sensed="rht")
+    environment = load(road(attributes='rule="RHT"'), handedness="lht", voted_handedness="rht")
     assert (environment.handedness, environment.handedness_source) == ("lht", "option")
     assert "handedness_disagrees" in checks(environment)
     assert lanelets(environment)["1.0.1"]["along_road"] == 1
@@ -69,7 +69,7 @@ def test_a_doubt_says_what_would_have_the_other_side(attributes: str, options: d
 
 
 def test_then_the_attribute() -> None:
-    environment = load(road(attributes='rule="LHT"'), CONNECTING, junction(("start", -1)), sensed="rht")
+    environment = load(road(attributes='rule="LHT"'), CONNECTING, junction(("start", -1)), voted_handedness="rht")
     assert (environment.handedness, environment.handedness_source) == ("lht", "attribute")
     assert "handedness_disagrees" in checks(environment)
 
@@ -84,20 +84,22 @@ def test_then_the_junctions(contact: str, to: int, handedness: str) -> None:
 
 
 def test_junctions_that_list_both_ends_say_nothing() -> None:
-    environment = load(road(), CONNECTING, junction(("start", -1), ("end", -1)), sensed="lht")
+    environment = load(road(), CONNECTING, junction(("start", -1), ("end", -1)), voted_handedness="lht")
     assert (environment.handedness, environment.handedness_source) == ("lht", "traces")
 
 
 def test_then_the_lanes_own_travel_direction() -> None:
-    environment = load(road(lanes=section(0, travelling(1, "forward"), travelling(-1, "backward"))), sensed="rht")
+    environment = load(
+        road(lanes=section(0, travelling(1, "forward"), travelling(-1, "backward"))), voted_handedness="rht"
+    )
     assert (environment.handedness, environment.handedness_source) == ("lht", "attribute")
     assert "handedness_disagrees" in checks(environment)
 
 
 def test_then_the_traces_then_the_default_with_a_warning() -> None:
-    sensed = load(road(), sensed="lht")
-    assert (sensed.handedness, sensed.handedness_source) == ("lht", "traces")
-    assert "handedness_default" not in checks(sensed)
+    voted = load(road(), voted_handedness="lht")
+    assert (voted.handedness, voted.handedness_source) == ("lht", "traces")
+    assert "handedness_default" not in checks(voted)
     guessed = load(road())
     assert (guessed.handedness, guessed.handedness_source) == ("rht", "default")
     assert checks(guessed)["handedness_default"] == [None]

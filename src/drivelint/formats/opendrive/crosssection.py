@@ -11,7 +11,7 @@ from drivelint.formats.opendrive.xml import MalformedError
 
 if TYPE_CHECKING:
     from drivelint.formats.opendrive.cubic import Floats
-    from drivelint.formats.opendrive.network import Lane, Road, Strip
+    from drivelint.formats.opendrive.network import Lane, LaneSection, Road
     from drivelint.formats.opendrive.planview import ReferenceLine
 
 CHORD_TOLERANCE_M = 0.01  # furthest that a bound may be from the chord between two of its points
@@ -37,7 +37,7 @@ class Edges:
 class Evaluator:
     """Evaluates the edges of one strip."""
 
-    def __init__(self, road: Road, strip: Strip) -> None:
+    def __init__(self, road: Road, strip: LaneSection) -> None:
         self.road, self.strip = road, strip
         usable = [lane for lane in strip.lanes if lane.invalid is None]
         self.left = [lane for lane in usable if lane.number > 0]

@@ -45,7 +45,7 @@ class Direction:
         return (-along if lane.direction == "reversed" else along), False
 
 
-class SideStatement(NamedTuple):
+class DrivingSideStatement(NamedTuple):
     """What one source states about the side that is driven on, or about the lanes' direction.
 
     `text`: subject and verb of a sentence that ends with the side.
@@ -58,15 +58,15 @@ class SideStatement(NamedTuple):
 
 
 @dataclass(frozen=True)
-class SideStatements:
+class DrivingSideStatements:
     """All statements about the side that is driven on, the most trusted first."""
 
-    said: tuple[SideStatement, ...]
+    said: tuple[DrivingSideStatement, ...]
     rules: Counter[str]
     travel: str | None
 
     @classmethod
-    def collect(cls, net: Network, request: MapOptions) -> SideStatements:
+    def collect(cls, net: Network, request: MapOptions) -> DrivingSideStatements:
         """Collect the statements of the option, the roads' rules, the junctions, the lanes' travel directions and the traces."""
         roads = Counter(road.rule for road in net.roads.values() if road.rule)
         junctions, travel = _junction_votes(net), _travel_votes(net)
@@ -75,33 +75,39 @@ class SideStatements:
             ("attribute", _winner(roads), f"the rule attribute of {plural(roads.total(), 'road')} says", False),
             ("junctions", _winner(junctions), f"{junctions.total()} lane links of junctions fit", True),
             ("attribute", _winner(travel), f"the travel direction of {travel.total()} lanes (userData) fits", True),
-            ("traces", request.sensed, "the traces fit", True),
+            ("traces", request.voted_handedness, "the traces fit", True),
         ]
-        said = tuple(SideStatement(source, side, text, of) for source, side, text, of in found if side is not None)
+        said = tuple(
+            DrivingSideStatement(source, side, text, of) for source, side, text, of in found if side is not None
+        )
         return cls(said, roads, _winner(travel))
 
     def two_way_direction(self) -> Direction:
         """Return the direction on two-way roads, where the side that is driven on fixes the lanes' direction."""
         return self._direction("rht", self.said[0] if self.said else None)
 
-    def final_direction(self, layout: str | None, quality: MapQuality) -> Direction:
+    def final_direction(self, side_by_lanes: str | None, quality: MapQuality) -> Direction:
         """Return the direction by the most trusted statement, and report the statements that disagree.
 
-        `layout`: the side that is driven on by the lanes beside each other, if the lanes with negative numbers run along the reference
-        line. lht: each direction is a road of its own, and they lie the other way round than on one road, as SUMO writes its left-hand
-        nets; None: no lane has an opposing one beside it, so the lanes' direction does not tell the side that is driven on.
+        `side_by_lanes`: the side that is driven on by the lanes beside each other, if the lanes with negative numbers run along the
+        reference line. lht: each direction is a road of its own, and they lie the other way round than on one road, as SUMO writes its
+        left-hand nets; None: no lane has an opposing one beside it, so the lanes' direction does not tell the side that is driven on.
         """
         if len(self.rules) > 1:
             counts = ", ".join(f"{side} {n}" for side, n in sorted(self.rules.items()))
             quality.add(
                 "handedness_mixed", "warning", None, f"roads of both rules in one map ({counts}): one is taken for all"
             )
-        found = self._without_opposing(quality) if layout is None else self._with_layout(layout, quality)
+        found = (
+            self._without_opposing(quality)
+            if side_by_lanes is None
+            else self._with_side_by_lanes(side_by_lanes, quality)
+        )
         if found.source == "default":
             message = (
                 "nothing in the map says which side is driven on: right-hand traffic is a guess; give --handedness"
             )
-            if layout is None and found.forward_source != "default":
+            if side_by_lanes is None and found.forward_source != "default":
                 message = (
                     f"which way the lanes run is known by {found.forward_source}, but none has one of the other direction beside it: "
                     "that right-hand traffic drives on them is a guess; give --handedness"
@@ -109,18 +115,22 @@ class SideStatements:
             quality.add("handedness_default", "warning", None, message)
         return found
 
-    def _with_layout(self, layout: str, quality: MapQuality) -> Direction:
+    def _with_side_by_lanes(self, side_by_lanes: str, quality: MapQuality) -> Direction:
         said = list(self.said)
-        if layout == "lht" and (rule := next((w for w in said if w.source == "attribute" and not w.of_lanes), None)):
+        if side_by_lanes == "lht" and (
+            rule := next((w for w in said if w.source == "attribute" and not w.of_lanes), None)
+        ):
             said.remove(rule)  # by it, the lanes run so that the other side is driven on
             message = (
                 f"{rule.text} {rule.side}, but by its rule the lanes run so that the oncoming ones lie on the other side: it is "
                 "not counted; give --handedness if the side is wrong"
             )
             quality.add("handedness_disagrees", "warning", None, message)
-        said = [w._replace(side=w.side if layout == "rht" or not w.of_lanes else opposite_side(w.side)) for w in said]
+        said = [
+            w._replace(side=w.side if side_by_lanes == "rht" or not w.of_lanes else opposite_side(w.side)) for w in said
+        ]
         _disagreements(said, quality, "every direction")
-        return self._direction(layout, said[0] if said else None)
+        return self._direction(side_by_lanes, said[0] if said else None)
 
     def _without_opposing(self, quality: MapQuality) -> Direction:
         side = next((w for w in self.said if not w.of_lanes), None)
@@ -143,13 +153,15 @@ class SideStatements:
             self.travel == ("rht" if forward else "lht"),
         )
 
-    def _direction(self, layout: str, said: SideStatement | None) -> Direction:
-        side, source = (said.side, said.source) if said else (layout, "default")
-        forward = side == layout
+    def _direction(self, side_by_lanes: str, said: DrivingSideStatement | None) -> Direction:
+        side, source = (said.side, said.source) if said else (side_by_lanes, "default")
+        forward = side == side_by_lanes
         return Direction(side, source, forward, source, self.travel == ("rht" if forward else "lht"))
 
 
-def _disagreements(said: Sequence[SideStatement], quality: MapQuality, wrong: str, advice: str | None = None) -> None:
+def _disagreements(
+    said: Sequence[DrivingSideStatement], quality: MapQuality, wrong: str, advice: str | None = None
+) -> None:
     """Report witnesses that disagree. `wrong`: what is wrong if the first one is; `advice`: what to do then, if no side helps."""
     if len({w.side for w in said}) > 1:
         first, second = said[:2]
@@ -190,7 +202,7 @@ def _travel_votes(net: Network) -> Counter[str]:
     )
 
 
-def report_exceptions(net: Network, direction: Direction, quality: MapQuality) -> None:
+def report_lanes_against_side(net: Network, direction: Direction, quality: MapQuality) -> None:
     """Name the lanes whose own direction is not that of their side."""
     plain = replace(direction, travel=False)
     for road in net.roads.values():

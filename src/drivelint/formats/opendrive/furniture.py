@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from drivelint.formats.opendrive.network import Network
     from drivelint.road.quality import MapQuality
 
-MIN_SHARE = 0.5  # a stop line that covers less of a lane's width is another lane's
-MIN_ANGLE_RAD = 0.87  # 50 degrees: a line more along the lane than this is not one to stop at
-MIN_AREA_M2 = 0.5  # a crossing that only touches a lane does not lie across it
+MIN_STOP_LINE_SHARE = 0.5  # a stop line that covers less of a lane's width is another lane's
+MIN_STOP_LINE_ANGLE_RAD = 0.87  # 50 degrees: a line more along the lane than this is not one to stop at
+MIN_CROSSING_AREA_M2 = 0.5  # a crossing that only touches a lane does not lie across it
 
 
 def furniture(net: Network, lanes: list[Lanelet], offset: tuple[float, float], quality: MapQuality) -> dict[str, Rows]:
@@ -98,13 +98,13 @@ def _stop_line(placed: PlacedObject, lane: Lanelet, common: shapely.Geometry) ->
     middle = float(np.mean(s))
     tx, ty = (float(np.interp(middle, lane.line.s, column)) for column in lane.line.tangent.T)
     across = abs(float(axis[0] * ty - axis[1] * tx)) / max(float(np.hypot(tx, ty)), 1e-9)
-    if float(d.max() - d.min()) < MIN_SHARE * width or across < np.sin(MIN_ANGLE_RAD):
+    if float(d.max() - d.min()) < MIN_STOP_LINE_SHARE * width or across < np.sin(MIN_STOP_LINE_ANGLE_RAD):
         return []
     return [stop_line_row(placed.object_id, lane.lanelet_id, float(s.min()))]
 
 
 def _crossing(placed: PlacedObject, lane: Lanelet, common: shapely.Geometry) -> Rows:
-    if float(shapely.area(common)) < MIN_AREA_M2:
+    if float(shapely.area(common)) < MIN_CROSSING_AREA_M2:
         return []
     s, _, _ = _stations(lane, shapely.get_coordinates(common))
     said = f"{placed.element.get('subtype', '')} {placed.element.get('name', '')}".lower()

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from drivelint.formats.opendrive.cubic import Floats
-    from drivelint.formats.opendrive.network import Lane, Road, Strip
+    from drivelint.formats.opendrive.network import Lane, LaneSection, Road
     from drivelint.road.boundary_lanes import LaneGeometry
 
 LaneKey = tuple[str, int, int]  # road, section, lane number
@@ -31,7 +31,7 @@ class Lanelet:
     key: LaneKey
     lane: Lane
     road: Road
-    strip: Strip
+    strip: LaneSection
     along: int
     bidirectional: bool
     line: LaneGeometry

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from drivelint.formats.opendrive.cubic import Floats
     from drivelint.formats.opendrive.direction import Direction
-    from drivelint.formats.opendrive.network import Lane, Network, Road, Strip
+    from drivelint.formats.opendrive.network import Lane, LaneSection, Network, Road
     from drivelint.road.quality import MapQuality
 
 NARROW_M = 0.05  # a lane that is nowhere wider is a line, not a lane
@@ -68,7 +68,7 @@ class _StripBuilder:
     """Builds the lanelets of one strip into `lanes`."""
 
     road: Road
-    strip: Strip
+    strip: LaneSection
     direction: Direction
     offset: tuple[float, float]
     lanes: BuiltLanes
@@ -180,7 +180,7 @@ class _StripBuilder:
             self.quality.add("invalid_lane", "error", lanelet_id(key), message)
 
 
-def _unbuildable(strip: Strip) -> dict[int, str]:
+def _unbuildable(strip: LaneSection) -> dict[int, str]:
     """Return lane number -> reason; a lane that lies outside an invalid one has no place either."""
     reasons: dict[int, str] = {}
     for side in (1, -1):

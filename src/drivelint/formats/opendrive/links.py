@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from drivelint.formats.opendrive.lanes import BuiltLanes
-    from drivelint.formats.opendrive.network import Connection, Network, Road, Strip
+    from drivelint.formats.opendrive.network import Connection, LaneSection, Network, Road
     from drivelint.road.quality import MapQuality
 
 GAP_M = 0.5  # linked ends further apart than this are reported
@@ -62,7 +62,7 @@ def links(net: Network, lanes: BuiltLanes, quality: MapQuality) -> list[Link]:
 def _declared_contacts(net: Network, quality: MapQuality) -> Iterator[tuple[LaneEnd, LaneEnd]]:
     for road in net.roads.values():
         for side in (1, -1):
-            strips = road.strips_on_side(side)
+            strips = road.sections_on_side(side)
             for k, strip in enumerate(strips):
                 for lane in strip.lanes:
                     if lane.number * side > 0 and lane.invalid is None:
@@ -76,7 +76,7 @@ def _declared_contacts(net: Network, quality: MapQuality) -> Iterator[tuple[Lane
 
 
 def _contacts_at(
-    net: Network, road: Road, at: LaneEnd, targets: tuple[int, ...], beside: Strip | None, *, quality: MapQuality
+    net: Network, road: Road, at: LaneEnd, targets: tuple[int, ...], beside: LaneSection | None, *, quality: MapQuality
 ) -> Iterator[tuple[LaneEnd, LaneEnd]]:
     """Yield what a lane's end touches: in the next section of its road, or in the next road."""
     key, end = at
@@ -103,7 +103,7 @@ def _contacts_at(
 
 
 def _lane_at(road: Road, contact: str, lane_no: int) -> LaneKey:
-    strips = road.strips_on_side(lane_no)
+    strips = road.sections_on_side(lane_no)
     if not strips:
         return (road.road_id, 0, lane_no)
     return (road.road_id, strips[0 if contact == START else -1].section, lane_no)

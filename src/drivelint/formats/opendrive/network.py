@@ -69,7 +69,7 @@ class Lane:
 
 
 @dataclass(frozen=True, eq=False)
-class Strip:
+class LaneSection:
     """Lanes that begin and end together: a lane section, or one side of it where the sides are cut differently."""
 
     section: int
@@ -103,10 +103,10 @@ class Road:
     plan: PlanView
     elevation: Cubics
     offset: Cubics
-    strips: tuple[Strip, ...]
+    strips: tuple[LaneSection, ...]
     element: etree._Element = field(repr=False)
 
-    def strips_on_side(self, lane_no: int) -> list[Strip]:
+    def sections_on_side(self, lane_no: int) -> list[LaneSection]:
         """Return the strips that hold lanes of that side, in order of station."""
         return [s for s in self.strips if any((lane.number > 0) == (lane_no > 0) for lane in s.lanes)]
 
@@ -189,7 +189,7 @@ def _joins(element: etree._Element) -> dict[str, RoadLink]:
     return joins
 
 
-def _strips(element: etree._Element, length: float, quality: MapQuality) -> tuple[Strip, ...]:
+def _strips(element: etree._Element, length: float, quality: MapQuality) -> tuple[LaneSection, ...]:
     sections = sorted(enumerate(element.findall("lanes/laneSection")), key=lambda item: number(item[1], "s"))
     if not sections:
         raise MalformedError("it has no <laneSection>")
@@ -207,7 +207,7 @@ def _strips(element: etree._Element, length: float, quality: MapQuality) -> tupl
             numbers = [lane.number for lane in lanes]
             if len(set(numbers)) < len(numbers):
                 raise MalformedError(f"section {index} has the same lane twice")
-            strips.append(Strip(index, start, end, tuple(sorted(lanes, key=lambda lane: lane.number)), marks))
+            strips.append(LaneSection(index, start, end, tuple(sorted(lanes, key=lambda lane: lane.number)), marks))
     return tuple(strips)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from drivelint.errors import MapError
 from drivelint.formats import safe_xml
 from drivelint.formats.opendrive.attributes import boundary_rows, road_type, speed_rows
-from drivelint.formats.opendrive.direction import SideStatements, report_exceptions
+from drivelint.formats.opendrive.direction import DrivingSideStatements, report_lanes_against_side
 from drivelint.formats.opendrive.furniture import furniture
 from drivelint.formats.opendrive.lanes import build
 from drivelint.formats.opendrive.links import links
@@ -40,7 +40,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     joined = links(net, lanes, quality)
     side = direction.handedness, direction.source
     turned = direction.forward != (direction.handedness == "rht")
-    name = environment_id(source, request.offset, side[0], guessed=side[1] == "default", turned=turned)
+    name = environment_id(source, request.offset, side[0], guessed=side[1] == "default", lanes_reversed=turned)
     built = sorted(lanes.built.values(), key=lambda lane: lane.key)
     places = {lane.lanelet_id: n for n, lane in enumerate(built)}
     recorded = [row for lane in built for row in speed_rows(lane)]
@@ -62,7 +62,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
 
 def _built(net: Network, request: MapOptions, quality: MapQuality) -> tuple[Direction, BuiltLanes]:
     """Build the lanes as they run: as on roads with both directions, and once more if their layout shows that this is not one."""
-    witnesses = SideStatements.collect(net, request)
+    witnesses = DrivingSideStatements.collect(net, request)
     first, noted = witnesses.two_way_direction(), len(quality.rows)
     lanes = build(net, first, request.offset, quality)
     side = side_driven_on(
@@ -81,7 +81,7 @@ def _built(net: Network, request: MapOptions, quality: MapQuality) -> tuple[Dire
         lanes = build(net, direction, request.offset, quality)
     else:
         quality.rows += built
-    report_exceptions(net, direction, quality)
+    report_lanes_against_side(net, direction, quality)
     return direction, lanes
 
 

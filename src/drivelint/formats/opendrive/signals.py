@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from drivelint.road.quality import MapQuality
 
 MIN_LINE_M = 1.0  # a stop line said to be narrower than this does not say how far it goes across
-MIN_OWN_SHARE = 0.25  # of a stop line's width, on lanes of its orientation: less is on the others' lanes
+MIN_SAME_DIRECTION_SHARE = 0.25  # of a stop line's width, on lanes of its orientation: less is on the others' lanes
 OFF_ROAD_M = 1.0  # a signal further beyond its road's end than this is a mistake worth a warning
 
 
@@ -139,7 +139,10 @@ class _Reader:
         across = [lane for lane, common, wide in shared if common > min(0.5 * wide, half)]
         if not across or any(lane in held for lane in across):
             return [lane for lane in across if lane in held] or held
-        if sum(common for lane, common, _ in shared if lane in held and common > 0.0) > MIN_OWN_SHARE * width:
+        if (
+            sum(common for lane, common, _ in shared if lane in held and common > 0.0)
+            > MIN_SAME_DIRECTION_SHARE * width
+        ):
             return held
         self.contradictions.append(listing.get("id", ""))
         return across

@@ -32,12 +32,12 @@ _ACROSS = 0.7  # sine of the least angle between a stop line and its lane
 def read(
     truth: Any,
     lanes: Sequence[BoundedLane],
-    covers: Mapping[int, Sequence[int]],
+    logical_by_physical: Mapping[int, Sequence[int]],
     offset: tuple[float, float],
     quality: MapQuality,
 ) -> dict[str, list[Row]]:
-    """Return the rows of traffic_signal, stop_line and crossing. `covers`: physical lane -> logical lanes in its place."""
-    road = _Road(lanes, covers, np.array(offset))
+    """Return the rows of traffic_signal, stop_line and crossing. `logical_by_physical`: physical lane -> logical lanes in its place."""
+    road = _Road(lanes, logical_by_physical, np.array(offset))
     signals = [row for sign in truth.traffic_sign for row in _sign(sign, road, quality)]
     signals += [row for bulbs in _heads(truth.traffic_light).items() for row in _light(*bulbs, road, quality)]
     stops: list[Row] = []
@@ -67,7 +67,7 @@ class _Road:
     """The lanes of the map."""
 
     lanes: Sequence[BoundedLane]
-    covers: Mapping[int, Sequence[int]]
+    logical_by_physical: Mapping[int, Sequence[int]]
     offset: Floats
 
     def place(self, base: Any) -> Floats | None:
@@ -83,8 +83,8 @@ class _Road:
         if found:
             return _once(found)
         for ref in said.assigned_lane_id:
-            if ref.value in self.covers:
-                held = [by_id[str(name)] for name in self.covers[ref.value] if str(name) in by_id]
+            if ref.value in self.logical_by_physical:
+                held = [by_id[str(name)] for name in self.logical_by_physical[ref.value] if str(name) in by_id]
                 found += _facing(base, self._beside(held, self.place(base)))
             elif str(ref.value) in by_id:
                 found.append(by_id[str(ref.value)])

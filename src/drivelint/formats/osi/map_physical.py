@@ -201,7 +201,9 @@ def _kind(said: Any) -> tuple[str, bool]:
     return kind if said.type == _NONDRIVING and kind != "driving" else "none", False
 
 
-def lanelets(plain: Mapping[int, PhysicalLane], truth: Any, ways: Sequence[BoundedLane]) -> Iterable[BoundedLane]:
+def lanelets(
+    plain: Mapping[int, PhysicalLane], truth: Any, through_lanes: Sequence[BoundedLane]
+) -> Iterable[BoundedLane]:
     """Yield the lanes, then the lanes drawn through intersections; each lane links to those that continue it."""
     bounds = {b.id.value: b for b in truth.lane_boundary}
     linked = _linked(plain)
@@ -218,13 +220,13 @@ def lanelets(plain: Mapping[int, PhysicalLane], truth: Any, ways: Sequence[Bound
             junction_id=f"j{i}" if said.type == kinds.INTERSECTION else None,
             successors=(
                 *(str(b) for a, b in linked if a == i),
-                *(way.lanelet_id for way in ways if way.lanelet_id.split(".")[1] == str(i)),
+                *(way.lanelet_id for way in through_lanes if way.lanelet_id.split(".")[1] == str(i)),
             ),
             left_id=neighbours[0][0], left_against=neighbours[0][1],
             right_id=neighbours[1][0], right_against=neighbours[1][1],
             marks=both_marks(_marking(ids[0], bounds), _marking(ids[1], bounds)),
         )  # fmt: skip
-    yield from ways
+    yield from through_lanes
 
 
 def _linked(plain: Mapping[int, PhysicalLane]) -> list[tuple[int, int]]:

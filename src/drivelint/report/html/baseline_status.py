@@ -58,7 +58,7 @@ def gate_summary(gate: Gate | None, finding_ids: list[str]) -> dict[str, Any] | 
     kinds = Counter(status.kind for name in finding_ids if (status := finding_status(gate, name)) is not None)
     shown = ("new", "known", "waived") if gate.baseline is not None else ("open", "waived")
     before = gate.baseline
-    gone = {kind: before.with_standing(kind) for kind in _GONE} if before else {}
+    gone = {kind: before.with_diff_status(kind) for kind in _GONE} if before else {}
     return {
         "since": before.base_name if before else "",
         "counts": [(kind, _LABELS[kind], kinds[kind]) for kind in shown if kind != "waived" or gate.waivers],
@@ -71,7 +71,7 @@ def gate_summary(gate: Gate | None, finding_ids: list[str]) -> dict[str, Any] | 
         "today": gate.today or "",
         "gone": [
             {
-                "title": descriptions.STANDING_TITLES[kind],
+                "title": descriptions.DIFF_STATUS_TITLES[kind],
                 "n": len(entries),
                 "lines": [descriptions.finding_line(entry) for entry in entries[:MAX_LISTED]],
             }

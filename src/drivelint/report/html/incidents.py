@@ -87,8 +87,8 @@ def finding_line(
     start_ns: int,
     *,
     linked: bool,
-    course: dict[str, Any] | None,
-    standing: BaselineStatus | None,
+    series: dict[str, Any] | None,
+    status: BaselineStatus | None,
 ) -> FindingLine:
     """Return a finding or near miss as the page shows it; `linked`: its drive has a section in the page."""
     unit, long = row["unit"], row["t_end_ns"] is not None and row["t_end_ns"] != row["t_start_ns"]
@@ -104,7 +104,7 @@ def finding_line(
         anchor=anchor,
         href=f"#{anchor or incident_anchor(*incident_key(row))}" if linked else "",
         drive_href="#" + drive_anchor(row["drive_id"]) if linked else "",
-        keys=" ".join((kind, row["severity"], rule["pack"], *([standing.filter_key] if standing else []))),
+        keys=" ".join((kind, row["severity"], rule["pack"], *([status.filter_key] if status else []))),
         object_id=NONE if row["object_id"] is None else row["object_id"],
         time=non_breaking(seconds(row["t_worst_ns"], start_ns)),
         stretch=f"{seconds(row['t_start_ns'], start_ns)} to {seconds(row['t_end_ns'], start_ns)}" if long else "",
@@ -115,8 +115,8 @@ def finding_line(
         sense=sense or "",
         gauge=_gauge(row["observed"], row["required"]),
         told=_told(row, rule, required) if sense else row["reason"],
-        course=course,
-        standing=standing,
+        course=series,
+        standing=status,
     )
 
 
@@ -143,12 +143,12 @@ def key_incidents(lines: Iterable[FindingLine]) -> set[Key]:
 
 
 def incidents(
-    lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any]], start_ns: int, told: Collection[Key]
+    lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any]], start_ns: int, leading: Collection[Key]
 ) -> list[Incident]:
-    """Return the moments of one drive, in time order, from its findings and near misses; `told`: those that lead."""
+    """Return the moments of one drive, in time order, from its findings and near misses; `leading`: those that lead."""
     groups = grouped(lines, lambda line: incident_key(line.row))
     return [
-        _moment(at, found, pictures.get(at), start_ns, leads=at in told)
+        _moment(at, found, pictures.get(at), start_ns, leads=at in leading)
         for at, found in sorted(groups.items(), key=lambda item: (item[0][2], item[0][1]))
     ]
 

@@ -188,8 +188,8 @@ def _lines(
             rules[row["rule_id"]],
             start,
             linked=row["drive_id"] in shown,
-            course=None if steps is None else margin_series(steps, row["t_worst_ns"], row["unit"], start),
-            standing=finding_status(result.gate, row["finding_id"]) if kind == "fail" else None,
+            series=None if steps is None else margin_series(steps, row["t_worst_ns"], row["unit"], start),
+            status=finding_status(result.gate, row["finding_id"]) if kind == "fail" else None,
         )
         lines.append(line)
     return lines
