@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
 
 LEAST_TESTS: Final = 6
-"""Fewer tests than these get their other scenes one by one: a database of its own costs as much."""
+MOST_ROUNDS: Final = 6
+"""Fewer tests than these, or the questions of a test after so many, are not answered together: a database costs time and memory."""
 Row: TypeAlias = "dict[str, Any]"
 
 
@@ -128,7 +129,7 @@ def answer_together(items: Iterable[pytest.Item]) -> None:
     answers.questions.clear()
     answers.found.clear()
     waiting = [item for item in items if _is_plain(item)]
-    while waiting:
+    for _ in range(MOST_ROUNDS):
         asked = {}
         for item in waiting:
             if (question := _rehearse(item)) is not None:

@@ -15,8 +15,8 @@ CREATE OR REPLACE MACRO ttc_s(gap_m, closing_mps) AS
 CREATE OR REPLACE MACRO or_never(time_s, required_s) AS
     CASE WHEN time_s > greatest(600.0, required_s) THEN 'inf'::DOUBLE ELSE time_s END;
 
--- A value, if its worst and its best case (by the errors of its inputs) are on the same side of the required value; else NULL. `sure` is
--- for a value that must be at least the required one, `sure_most` for a value that must be at most that.
+-- A value, if its worst and its best case (by the errors of its inputs) are on the same side of the required value; else NULL. `sure_at_least` is
+-- for a value that must be at least the required one, `sure_at_most` for a value that must be at most that.
 CREATE OR REPLACE MACRO sure_at_least(value, worst, best, required) AS CASE WHEN worst >= required OR best < required THEN value END;
 CREATE OR REPLACE MACRO sure_at_most(value, worst, best, required) AS CASE WHEN worst <= required OR best > required THEN value END;
 

@@ -20,7 +20,8 @@ def docs(
     topic: Annotated[
         str | None,
         typer.Argument(
-            metavar="[TOPIC]", help="The guide to print, dictionary or catalogue; default: list the guides."
+            metavar="[TOPIC]",
+            help="The guide to print, dictionary, catalogue, reasons or macros; default: list the guides.",
         ),
     ] = None,
     table: Annotated[
@@ -39,7 +40,7 @@ def docs(
     Without TOPIC: lists the guides. With TOPIC: prints that guide as Markdown.
 
     docs dictionary [TABLE] prints the tables that rules read, with the meaning of each column. docs catalogue prints the
-    shipped rules as Markdown.
+    shipped rules as Markdown, docs reasons every reason code with its words, docs macros the macros that rules can call.
 
     With --html: writes one offline site with the guides, the rule catalogue, the data dictionary and the command line, and
     prints the name of its first page.
@@ -55,7 +56,8 @@ def docs(
     elif topic is None:
         typer.echo(guide.listing())
         typer.echo(
-            "drivelint docs TOPIC prints one; drivelint docs dictionary [TABLE] the tables; drivelint docs catalogue the rules; "
+            "drivelint docs TOPIC prints one; drivelint docs dictionary [TABLE] the tables, catalogue the rules, reasons the reason codes, "
+            "macros the macros; "
             "drivelint docs --html DIR writes all as a site",
             err=True,
         )

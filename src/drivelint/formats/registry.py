@@ -42,20 +42,28 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
         raise UsageError(f"--sensor-range {options.sensor_range_m}: the range must be more than 0 m")
     probe = _probe(path, options)
     identity = identify(path)
-    for reader in READERS:
-        if reader.accepts(probe):
-            recording = reader.read(probe)
-            if options.mapping is not None and not reader.takes_mapping:
-                recording.notes.append(f"mapping {options.mapping!r} is not needed: the log is {recording.format}")
-            from drivelint.drive.finish import finish_trace
+    if reader := next((each for each in READERS if each.accepts(probe)), None):
+        recording = reader.read(probe)
+        if options.mapping is not None and not reader.takes_mapping:
+            recording.notes.append(f"mapping {options.mapping!r} is not needed: the log is {recording.format}")
+        from drivelint.drive.finish import finish_trace
 
-            return finish_trace(path, identity, recording, options)
+        return finish_trace(path, identity, recording, options)
     if b"<OpenDRIVE" in probe.head:
         raise TraceError(f"{path}: this is a map, not a log: give it with --map, beside a log")
     raise TraceError(
         f"{path}: no reader for this file, which begins with {probe.head[:16]!r}: give MCAP, OSI, Parquet, CSV, "
         "SUMO's floating car data or a CommonRoad scenario"
     )
+
+
+def may_be_mapped_table(path: Path, options: IngestOptions) -> bool:
+    """Whether no other reader accepts a file than the one for tables with a mapping."""
+    try:
+        probe = _probe(path, options)
+    except TraceError:
+        return True
+    return not any(reader.accepts(probe) for reader in READERS if reader is not mapped_table)
 
 
 def _probe(path: Path, options: IngestOptions) -> Probe:

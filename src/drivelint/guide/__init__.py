@@ -30,8 +30,8 @@ TOPICS: Final = (
 )
 """The topics in reading order; each is the stem of a file."""
 FOLDER: Final = Path(__file__).parent
-REFERENCE_TOPICS: Final = ("dictionary", "catalogue")
-"""What `drivelint docs` prints beside the guides: the tables and the rules."""
+REFERENCE_TOPICS: Final = ("dictionary", "catalogue", "reasons", "macros")
+"""What `drivelint docs` prints beside the guides: the tables, the rules, the reason codes and the macros."""
 OUTPUT_TABLES_MARK: Final = "<!-- tables: output -->"
 """The line of a guide that stands for the columns of every output file."""
 _MARK = re.compile(r"^<!-- .* -->\n", re.MULTILINE)
@@ -70,6 +70,10 @@ def text(name: str, table: str | None = None) -> str:
         from drivelint.guide import dictionary
 
         return dictionary.text() if table is None else dictionary.table_text(table)
+    if name in {"reasons", "macros"}:
+        from drivelint.guide import listings
+
+        return listings.reasons_page() if name == "reasons" else listings.macros_page()
     source = _source(name)
     if OUTPUT_TABLES_MARK in source:
         from drivelint.guide.dictionary import output_tables

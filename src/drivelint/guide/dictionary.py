@@ -6,6 +6,7 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING, Final
 
+from drivelint.catalogue import load_rules
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
 from drivelint.report.catalogue_page import table
@@ -136,6 +137,8 @@ def _facts(
         said.append(f"Reads {listed(read[name])}." if read[name] else "Reads no table.")
     if readers := [each for each, tables in read.items() if name in tables]:
         said.append(f"Read by {listed(sorted(readers))}.")
+    if rules := sorted(rule_id for rule_id, rule in load_rules(()).items() if name in rule.reads):
+        said.append(f"Rules: {', '.join(rules)}.")
     return said
 
 

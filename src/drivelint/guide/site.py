@@ -24,6 +24,11 @@ REFERENCE_PAGES: Final = {
         "Every rule with its numbers and sources, and every clause with what covers it.",
     ),
     "dictionary": ("The data dictionary", "Every table with its columns, and how the derived tables are derived."),
+    "reasons": (
+        "Reason codes",
+        "Every cause of an unknown verdict and every reason, with its sentence and the advice.",
+    ),
+    "macros": ("Macros", "What the SQL of a rule can call."),
     "commands": ("The command line", "Every command with its arguments and options."),
 }
 """Page -> its title and what it has."""
@@ -39,7 +44,7 @@ def write(folder: Path, commands: Iterable[Command]) -> Path:
 
 def contents(commands: Iterable[Command]) -> dict[str, bytes]:
     """Return every file of the site, name -> bytes: the same for the same version."""
-    pages = {name: guide.text(name) for name in (*guide.TOPICS, "catalogue")}
+    pages = {name: guide.text(name) for name in (*guide.TOPICS, "catalogue", "reasons", "macros")}
     pages["dictionary"] = dictionary.page()
     pages["commands"] = command_page.page(commands)
     pages["index"] = _index()

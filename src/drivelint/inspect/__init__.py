@@ -17,7 +17,7 @@ from drivelint.engine.memory import DEFAULT_MEMORY, Memory
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import ExitCode, MapError, TraceError, UsageError
 from drivelint.formats import expand_traces, read_trace
-from drivelint.formats.registry import FORMATS
+from drivelint.formats.registry import FORMATS, may_be_mapped_table
 from drivelint.inspect import advice, model, tracks
 from drivelint.inspect.content import content, size_bytes
 from drivelint.phrases import listed
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     import duckdb
 
     from drivelint.catalogue import Rule
-    from drivelint.drive.trace import Trace
+    from drivelint.drive.trace import IngestOptions, Trace
     from drivelint.road.map_reader import MapTables
 
 DEFAULT_RULES: Final = ("ukhc",)
@@ -81,7 +81,7 @@ def inspect(request: InspectRequest) -> model.Inspection:
         trace = read_trace(path, options)
     except TraceError as error:
         unread = model.File(name=name, bytes=size)
-        return model.Inspection(file=unread, content=_content_of_unread(path), problem=str(error))
+        return model.Inspection(file=unread, content=_content_of_unread(path, options), problem=str(error))
     log = trace.tables["data_log"].to_pylist()[0]
     mapping = None if log["format"] in FORMATS else request.mapping or log["format"]
     return model.Inspection(
@@ -102,9 +102,9 @@ def exit_code(found: model.Inspection) -> ExitCode:
     return ExitCode.NOT_JUDGED if unfit else ExitCode.OK
 
 
-def _content_of_unread(path: Path) -> model.Content:
+def _content_of_unread(path: Path, options: IngestOptions) -> model.Content:
     try:
-        return content(path, None, [], read=False)
+        return content(path, None, [], read=not may_be_mapped_table(path, options))
     except TraceError:  # the problem that the reader has told already
         return model.Content()
 

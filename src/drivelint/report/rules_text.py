@@ -78,7 +78,11 @@ def rule_details(rule: Rule) -> Group:
             facts.add_row(name, Text(value))
     parts: list[RenderableType] = [Text(f"{rule.id}: {rule.title}", style="bold"), facts]
     if rule.params:
-        parts.append(_params(rule))
+        rows = [(name, str(each.default), each.unit, each.why, each.source) for name, each in rule.params.items()]
+        parts.append(_table(("parameter", "default", "unit", "why", "source"), rows))
+    if rule.reasons:
+        rows = [(code, each.says, each.advice) for code, each in rule.reasons.items()]
+        parts.append(_table(("reason", "says", "advice"), rows))
     return Group(*parts)
 
 
@@ -100,10 +104,10 @@ def _seconds(rule: Rule, key: str) -> str:
     return f"{rule.params[value].default:g} s ({value})" if isinstance(value, str) else f"{value:g} s"
 
 
-def _params(rule: Rule) -> Table:
+def _table(names: Iterable[str], rows: Iterable[tuple[str, ...]]) -> Table:
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
-    for name in ("parameter", "default", "unit", "why", "source"):
+    for name in names:
         table.add_column(name, overflow="fold")
-    for name, param in rule.params.items():
-        table.add_row(*(Text(cell) for cell in (name, str(param.default), param.unit, param.why, param.source)))
+    for row in rows:
+        table.add_row(*map(Text, row))
     return table
