@@ -107,8 +107,14 @@ def explain(
         float, typer.Option("--sigma-map", metavar="M", min=0, help="Standard error of where the map lies.")
     ] = 0.1,
     samples: Annotated[
-        int, typer.Option("--samples", min=0, max=100_000, help="Copies with such errors; 0 leaves them out.")
-    ] = 100,
+        int | None,
+        typer.Option(
+            "--samples",
+            min=0,
+            max=100_000,
+            help="Copies with such errors; 0 leaves them out. Default: 100, for an unknown verdict 10.",
+        ),
+    ] = None,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Another one draws other errors.")] = 0,
     memory: options.MemorySize = None,
     format_: options.FormatOption = "text",

@@ -88,8 +88,9 @@ def explain(request: ExplainRequest) -> Explanation:
             if part is not drive:
                 sandbox = opened.enter_context(case.sandbox([part]))
             found = verdict_changes(case, sandbox, now)
-            if request.errors.samples:
-                sensitivity = verdict_sensitivity(case, part, request.errors, span)
+            errors = request.errors.for_verdict(row["verdict"])
+            if errors.samples:
+                sensitivity = verdict_sensitivity(case, part, errors, span)
     rule, about = case.rule, _drive(result, row["drive_id"])
     return Explanation(
         rule={

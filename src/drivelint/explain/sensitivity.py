@@ -30,13 +30,17 @@ _VERDICTS: Final = ("fail", "unknown", "pass", "not_applicable", "error")
 
 @dataclass(frozen=True)
 class MeasurementErrors:
-    """Standard deviations of the errors, the number of copies and the seed."""
+    """Standard deviations of the errors, the number of copies (None: as `for_verdict` says) and the seed."""
 
     position_m: float = 0.1
     time_s: float = 0.05
     map_m: float = 0.1
-    samples: int = 100
+    samples: int | None = None
     seed: int = 0
+
+    def for_verdict(self, verdict: str) -> MeasurementErrors:
+        """Return these errors with a number of copies: few for an unknown verdict, which small errors seldom decide."""
+        return self if self.samples is not None else replace(self, samples=10 if verdict == "unknown" else 100)
 
 
 def perturbed_copies(drive: Drive, errors: MeasurementErrors) -> Iterator[list[Drive]]:
@@ -45,14 +49,15 @@ def perturbed_copies(drive: Drive, errors: MeasurementErrors) -> Iterator[list[D
     ids = sorted(pc.unique(states["actor_id"]).to_pylist())
     actor = pc.index_in(states["actor_id"], value_set=pa.array(ids, pa.string())).to_numpy(zero_copy_only=False)
     rng = np.random.Generator(np.random.PCG64(errors.seed))
-    drawn = rng.standard_normal((errors.samples, len(ids), 3))
-    of_map = rng.standard_normal((errors.samples, 2))
+    samples = errors.samples or 0
+    drawn = rng.standard_normal((samples, len(ids), 3))
+    of_map = rng.standard_normal((samples, 2))
     numbers = {name: _floats(states, name) for name in ("x_m", "y_m", "vx_mps", "vy_mps")}
     at_once = max(1, BATCH_STATES // max(1, states.num_rows))
-    for start in range(0, errors.samples, at_once):
+    for start in range(0, samples, at_once):
         yield [
             _copy(drive, sample, _moved(states, numbers, drawn[sample][actor], of_map[sample], errors))
-            for sample in range(start, min(start + at_once, errors.samples))
+            for sample in range(start, min(start + at_once, samples))
         ]
 
 

@@ -81,8 +81,8 @@ def rule_details(rule: Rule) -> Group:
         rows = [(name, str(each.default), each.unit, each.why, each.source) for name, each in rule.params.items()]
         parts.append(_table(("parameter", "default", "unit", "why", "source"), rows))
     if rule.reasons:
-        rows = [(code, each.says, each.advice) for code, each in rule.reasons.items()]
-        parts.append(_table(("reason", "says", "advice"), rows))
+        words = [(code, each.says, each.advice) for code, each in rule.reasons.items()]
+        parts.append(_table(("reason", "says", "advice"), words))
     return Group(*parts)
 
 

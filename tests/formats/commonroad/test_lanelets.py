@@ -88,7 +88,7 @@ def test_turns_that_a_light_holds_for(direction: str, turns: list[str] | None) -
             ("lht", "lanes"),
         ),
         # whoever drives along one-way lanes agrees with them on either side of the road
-        ([lanelet(1, 0.0)], "ZAM_Test-1", {"sensed": "lht"}, ("rht", "default")),
+        ([lanelet(1, 0.0)], "ZAM_Test-1", {"voted_handedness": "lht"}, ("rht", "default")),
     ],
 )
 def test_the_side_driven_on(

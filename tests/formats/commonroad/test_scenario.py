@@ -95,6 +95,7 @@ def test_the_older_version_and_the_files_own_map(tmp_path: Path) -> None:
         ([moving(), moving()], 'timeStepSize="0.1"', "same id: 1"),
         ([moving().replace("<time><exact>3</exact></time>", "")], 'timeStepSize="0.1"', "without an exact time"),
         (["<x>"], 'timeStepSize="0.1"', "not well-formed"),
+        (["</state>"], 'timeStepSize="0.1"', "not well-formed"),
     ],
 )
 def test_what_is_refused(tmp_path: Path, parts: list[str], attributes: str, why: str) -> None:

@@ -195,6 +195,16 @@ def test_a_lane_with_a_node_that_has_no_place_is_named_and_no_other() -> None:
     assert tables["lanelet"].num_rows == 3
 
 
+def test_a_lane_whose_bound_has_no_points_is_left_out_and_named() -> None:
+    drawing = Drawing()
+    ids = road(drawing)
+    empty = drawing.lanelet(drawing.way([]), drawing.way([(0.0, 20.0), (50.0, 20.0)]))
+    tables = drawing.load().tables
+    lost = {(r["check_id"], r["lanelet_id"]) for r in tables["map_quality"].to_pylist() if r["severity"] == "error"}
+    assert ("invalid_lane", str(empty)) in lost
+    assert tables["lanelet"].num_rows == len(ids)
+
+
 def test_a_stop_line_and_its_sign_hold_for_the_lanes_that_refer_to_them() -> None:
     drawing = Drawing(local=True, globe=False)
     line = drawing.way([(40.2, 1.0), (40.2, -4.5)], "stop_line", "solid")

@@ -37,7 +37,7 @@ def test_the_option_comes_first() -> None:
     [
         (
             'rule="RHT"',
-            {"handedness": "lht", "sensed": "rht"},
+            {"handedness": "lht", "voted_handedness": "rht"},
             (
                 "--handedness says lht, the rule attribute of 1 road says rht, the traces fit rht: lht is taken. "
                 "If that is wrong, every direction is wrong: leave the option out, or give rht."
@@ -45,7 +45,7 @@ def test_the_option_comes_first() -> None:
         ),
         (
             'rule="RHT"',
-            {"handedness": "rht", "sensed": "lht"},
+            {"handedness": "rht", "voted_handedness": "lht"},
             (
                 "--handedness says rht, the rule attribute of 1 road says rht, the traces fit lht: rht is taken. "
                 "If that is wrong, every direction is wrong: give --handedness lht."
@@ -53,7 +53,7 @@ def test_the_option_comes_first() -> None:
         ),
         (
             'rule="RHT"',
-            {"sensed": "lht"},
+            {"voted_handedness": "lht"},
             (
                 "the rule attribute of 1 road says rht, the traces fit lht: rht is taken. "
                 "If that is wrong, every direction is wrong: give --handedness lht."

@@ -57,6 +57,8 @@ def _shape(state: bytes) -> tuple[re.Pattern[bytes], list[str], int] | None:
     for tag in tags:
         between = state[at : tag.start()]
         closes, name = bool(tag[1]), tag[2].decode()
+        if closes and not stack:
+            return None
         if opened and closes:
             pattern += rb"([^<]*)"
             places.append("/".join(stack[1:]))

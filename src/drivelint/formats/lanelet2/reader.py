@@ -67,6 +67,9 @@ def _turned(line: Any) -> Bound:
 def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
     """Yield the lanes. Neighbours share a bound, what follows begins at the points where a lane ends."""
     mine = sorted((x for x in layers.laneletLayer if attribute(x, "subtype") in _KINDS), key=lambda x: x.id)
+    for x in [x for x in mine if not (len(x.leftBound) and len(x.rightBound))]:
+        mine.remove(x)
+        quality.add("invalid_lane", "error", str(x.id), f"lanelet {x.id} is left out: a bound has no points")
     starts: dict[tuple[int, int], list[str]] = defaultdict(list)
     lefts: dict[Bound, list[Any]] = defaultdict(list)
     rights: dict[Bound, list[Any]] = defaultdict(list)
