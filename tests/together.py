@@ -180,15 +180,16 @@ def _answer(questions: Mapping[tuple[str, int], Question]) -> dict[tuple[str, in
             drives = [drive for each in renamed.values() for drive in each]
             con = store.connect(threads=1)
             if rules is None:
-                scenes.derived(*drives, tables=frozenset().union(*(questions[key].tables for key in some)), con=con)
+                tables = [questions[key].tables for key in some]
+                scenes.derived(*drives, tables=frozenset().union(*tables) if all(tables) else (), con=con)  # (): all
                 for n, key in enumerate(some):
                     ids = {d.environment.environment_id for d in questions[key].drives if d.environment}
                     found[key] = SceneTables(con, f"q{n:04}.", tuple(sorted(ids)))
                 continue
             scenes.judged(drives, rules=rules, profiles=profiles, con=con)
             for n, key in enumerate(some):
-                tables = SceneTables(con, f"q{n:04}.", ())
-                found[key] = scenes.rows(tables, f"SELECT * FROM verdict ORDER BY {questions[key].order}")
+                mine = SceneTables(con, f"q{n:04}.", ())
+                found[key] = scenes.rows(mine, f"SELECT * FROM verdict ORDER BY {questions[key].order}")
             con.close()
     return found
 

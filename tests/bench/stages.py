@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 WATCHED = (
     (store, "connect", "database opened"),
     (catalogue, "load", "catalogue read"),
-    (batch, "_drive", "ingest"),  # waiting for the threads that read
+    (batch, "_wait_for", "ingest"),  # waiting for the threads that read
     (MapLibrary, "find", "map"),
     (judge.JudgingSession, "_load", "tables filled"),
     (judge, "derive", "derive"),

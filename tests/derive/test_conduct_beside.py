@@ -81,7 +81,9 @@ def test_one_that_comes_the_other_way_is_beside_but_not_along() -> None:
     way = road()
     t = times(4.0)
     ego, other = moving("ego", way, t, 100 + 10 * t, way.own), moving("x", way, t, 140 - 10 * t, way.other)
-    found = rows(derived(drive([ego, other], way.environment), tables=["beside", "passing"]), "FROM beside")
+    found = rows(
+        derived(drive([ego, other], way.environment), tables=["beside", "passing"]), "FROM beside ORDER BY t_ns"
+    )
     assert seconds(found, "t_ns") == [1.8, 1.9, 2.0, 2.1, 2.2]
     assert {(row["along"], row["on_carriageway"], row["side"]) for row in found} == {(False, True, "left")}
 

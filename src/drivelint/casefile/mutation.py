@@ -106,6 +106,8 @@ def result_text(proof: MutationResult) -> str:
 
 def summary(proofs: Sequence[MutationResult]) -> str:
     """Return the figures of all proofs in one line."""
+    if not proofs:
+        return "no rule was tested"
     stable = [proof for proof in proofs if proof.stable]
     if not stable:
         return "no stable rule here: only the mutants of stable rules must be noticed"

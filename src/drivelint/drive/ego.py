@@ -43,7 +43,7 @@ def choose(
         )
         if not needed:
             return [], [QualityFinding("no_ego", "warning", f"no ego: {absent}: nothing is judged without --ego ID")]
-        raise TraceError(f"{path}: no ego: {absent}: use --ego ID (ids: {listed(actors.ids)})")
+        raise TraceError(f"{path}: no ego: {absent}: use --ego ID or --ego all (ids: {listed(actors.ids)})")
     if len(egos) > 1:
         message = f"the log names {len(egos)} egos ({listed(egos)}): each is judged; choose one with --ego ID"
         return egos, [QualityFinding("ego_count", "warning", message, len(egos))]
@@ -71,7 +71,7 @@ def _every(path: Path, actors: Actors) -> tuple[list[str], list[QualityFinding]]
     unknown = [i for i, kind in zip(actors.ids, actors.classes, strict=True) if kind is None]
     if not egos:
         why = "no actor's class is known" if len(unknown) == len(actors.ids) else "no actor is a motor vehicle"
-        raise TraceError(f"{path}: no ego: {why}: use --ego ID (ids: {listed(actors.ids)})")
+        raise TraceError(f"{path}: no ego: {why}: use --ego ID or --ego all (ids: {listed(actors.ids)})")
     if not unknown:
         return egos, []
     message = f"actors of unknown class are not taken as egos ({listed(unknown)})"

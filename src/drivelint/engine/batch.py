@@ -82,15 +82,17 @@ def read_drives(paths: Sequence[Path], options: IngestOptions, library: MapLibra
                 if not waiting:
                     return
                 path, future = waiting.popleft()
-                found: Drive | RefusedLog
-                try:
-                    found = drive_with_map(future.result(), library)
-                except DriveLintError as error:
-                    found = RefusedLog(path, error)
-                yield found
+                yield _wait_for(path, future, library)
         finally:
             for _, future in waiting:
                 future.cancel()
+
+
+def _wait_for(path: Path, future: Future[Trace], library: MapLibrary) -> Drive | RefusedLog:
+    try:
+        return drive_with_map(future.result(), library)
+    except DriveLintError as error:
+        return RefusedLog(path, error)
 
 
 def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | RefusedLog]]:

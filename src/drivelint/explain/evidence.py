@@ -104,7 +104,9 @@ def _of_table(target: Target, sandbox: Sandbox, table: str, columns: list[str], 
             values += [row["object_id"]] * len(who)
     where = f" WHERE {' AND '.join(terms)}" if terms else ""
     # a table of the catalogue's own list, never a word of a user
-    everything = sandbox.query(f"SELECT * FROM {table}{where} ORDER BY ALL LIMIT {MAX_ROWS}", values)
+    ours = [row["ego_id"], row["object_id"] or ""] if "actor_id" in columns else []  # their rows come first
+    first = "actor_id NOT IN (?, ?), COLUMNS(*)" if ours else "ALL"
+    everything = sandbox.query(f"SELECT * FROM {table}{where} ORDER BY {first} LIMIT {MAX_ROWS}", [*values, *ours])
     n = sandbox.query(f"SELECT count(*) AS n FROM {table}{where}", values)[0]["n"]
     return TableRows(table, [_plain(each) for each in everything], max(0, n - len(everything)))
 

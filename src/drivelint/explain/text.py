@@ -138,10 +138,9 @@ def _decides(found: Explanation) -> list[str]:
     unknown = [step.t_ns for step in found.series if step.holds is None]
     if len(unknown) > 1 and not lacks_signal(row["verdict"], row["reason_code"]):
         start, end = (seconds(t, found.drive["t_start_ns"]) for t in (unknown[0], unknown[-1]))
-        told += f"; that is for the first of {len(unknown)} steps that are not known, from {start} to {end}: "
-        told += "later ones may lack something else"
+        told += f". This is for the first of {len(unknown)} unknown steps ({start} to {end}): others may lack something else"
     if found.asks and row["reason_code"] in {"null_value", "applies_unknown", "missing_step"}:
-        told += "; that is the first thing that was found missing: more may be missing there"
+        told += ". More than this may be missing there"
     text = "\n".join(found.sql.values())
     asked = row["reason_code"].startswith(("missing_declared", "missing_mode"))
     named = [

@@ -137,9 +137,14 @@ def _facts(
         said.append(f"Reads {listed(read[name])}." if read[name] else "Reads no table.")
     if readers := [each for each, tables in read.items() if name in tables]:
         said.append(f"Read by {listed(sorted(readers))}.")
-    if rules := sorted(rule_id for rule_id, rule in load_rules(()).items() if name in rule.reads):
+    if rules := [rule_id for rule_id, reads in _rule_reads() if name in reads]:
         said.append(f"Rules: {', '.join(rules)}.")
     return said
+
+
+@cache
+def _rule_reads() -> list[tuple[str, tuple[str, ...]]]:
+    return sorted((rule_id, tuple(rule.reads)) for rule_id, rule in load_rules(()).items())
 
 
 def _about(name: str) -> str:

@@ -14,6 +14,7 @@ from rich.text import Text
 
 from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
+from drivelint.phrases import listed
 from drivelint.result import counts
 from drivelint.result.model import exit_status
 from drivelint.result.text import NONE, comparison, number, rule_name, seconds, with_count
@@ -178,9 +179,15 @@ def _open(result: Result) -> Table | None:
     for row in lost[:MAX_ROWS]:
         table.add_row(Text(f"drive {row['drive_id']}", style="yellow"), Text(row["status_reason"] or ""))
     order = sorted(why, key=lambda at: (at[0], -len(why[at]), at[1]))
+    of_egos = counts.distinct_rows(counts.undecided(result.verdicts), ["verdict", "reason", "ego_id"])
+    egos = counts.grouped(of_egos, lambda row: (row["verdict"], row["reason"]))
+    several = len({row["ego_id"] for row in of_egos}) > 1
     for verdict, reason in order[:MAX_ROWS]:
         rules = (with_count(row["rule_id"], row["count_all"]) for row in why[verdict, reason])
-        table.add_row(Text("\n".join(rules), style=_STYLE[verdict]), Text(reason))
+        text = Text(reason)
+        if several:
+            text.append(f"\nego {listed([row['ego_id'] for row in egos[verdict, reason]])}", "dim")
+        table.add_row(Text("\n".join(rules), style=_STYLE[verdict]), text)
     return table
 
 

@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
-from drivelint.road.tables import from_rows
-
-if TYPE_CHECKING:
-    import pyarrow as pa
+from typing import Any
 
 _ORDER = {"error": 0, "warning": 1, "info": 2}
 
@@ -23,9 +18,8 @@ class MapQuality:
         assert severity in _ORDER, severity  # noqa: S101 - a mistake of ours
         self.rows.append({"check_id": check, "severity": severity, "lanelet_id": lanelet, "n": n, "message": message})
 
-    def table(self, environment: str) -> pa.Table:
-        """Return `map_quality`, the most severe first."""
-        rows = sorted(
+    def sorted_rows(self) -> list[dict[str, Any]]:
+        """Return the rows, the most severe first."""
+        return sorted(
             self.rows, key=lambda r: (_ORDER[r["severity"]], r["check_id"], r["lanelet_id"] or "", r["message"])
         )
-        return from_rows("map_quality", environment, rows)

@@ -95,7 +95,7 @@ def map_tables(
         table: from_rows(table, name, rows) if isinstance(rows, list) else rows
         for table, rows in {"environment": [environment], **content}.items()
     }
-    return MapTables(name, *side, tables | {"map_quality": quality.table(name)})
+    return MapTables(name, *side, tables | {"map_quality": from_rows("map_quality", name, quality.sorted_rows())})
 
 
 def _array(values: Any, kind: pa.DataType) -> pa.Array:
