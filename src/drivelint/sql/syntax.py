@@ -68,7 +68,9 @@ def _read(part: Any, ctes: Names, found: set[str]) -> None:
             ctes |= {_folded(part["cte_name"])}
         if part.get("type") == "BASE_TABLE" and not _is_cte(part, ctes):
             found.add(_folded(part["table_name"]))
-        _read([value for key, value in part.items() if key != "cte_map"], ctes, found)
+        for key, value in part.items():
+            if key != "cte_map" and isinstance(value, (dict, list)):
+                _read(value, ctes, found)
 
 
 def _query(node: Node, ctes: Mapping[str, Names], *, beside: bool) -> Names:
