@@ -68,8 +68,9 @@ encounter_time AS MATERIALIZED (
     FROM box_time
     GROUP BY drive_id, ego_id, object_id, n
 ),
--- The entry (sense 1) or exit (sense -1) of a box, the actor on_id whose ground it enters or leaves, and when that actor is there. i is the
--- box on the ground; t_off_ns is the moment next to it at which it is off the ground.
+-- One row per entry (sense 1) or exit (sense -1) of a box: on_id is the actor whose ground is entered or left, t_from_ns to t_to_ns the
+-- time in which that actor is there. i is the box at the first or last moment on the ground; t_off_ns is the moment just before or after,
+-- at which the box is off the ground.
 ground_edge AS MATERIALIZED (
     SELECT
         p.drive_id, p.ego_id, p.object_id, p.n, p.is_ego, p.on_id, p.t_from_ns - g.period_ns AS t_from_ns, p.t_to_ns + g.period_ns AS t_to_ns, p.sense, i,

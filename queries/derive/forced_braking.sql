@@ -16,7 +16,7 @@ head_on_stop AS MATERIALIZED (
         AND abs(p.heading_diff_rad) >= head_on_rad() AND p.speed_mps <= standing_mps() AND p.distance_m < forced_near_m()
     GROUP BY ALL
 ),
-searched_clock_second AS (
+clock_second_to_search AS (
     SELECT drive_id, object_id AS actor_id, t_ns // 1_000_000_000 + d.i AS second FROM hard_braking CROSS JOIN (VALUES (-1), (0), (1)) AS d(i)
     UNION
     SELECT drive_id, object_id, t_ns // 1_000_000_000 - d.i FROM head_on_stop CROSS JOIN range(2 * conflict_ns() // 1_000_000_000) AS d(i)
@@ -30,7 +30,7 @@ slowing_sample AS MATERIALIZED (
             CASE WHEN s.t_ns > first_value(s.t_ns) OVER half_second THEN first_value({'t_ns': s.t_ns, 'speed_mps': s.speed_mps}) OVER half_second
                 ELSE lag({'t_ns': s.t_ns, 'speed_mps': s.speed_mps}) OVER w END AS earlier
         FROM state_dynamics s
-        SEMI JOIN searched_clock_second n ON n.drive_id = s.drive_id AND n.actor_id = s.actor_id AND n.second = s.t_ns // 1_000_000_000
+        SEMI JOIN clock_second_to_search n ON n.drive_id = s.drive_id AND n.actor_id = s.actor_id AND n.second = s.t_ns // 1_000_000_000
         WINDOW
             w AS (PARTITION BY s.drive_id, s.actor_id ORDER BY s.t_ns),
             half_second AS (PARTITION BY s.drive_id, s.actor_id ORDER BY s.t_ns RANGE BETWEEN 500_000_000 PRECEDING AND CURRENT ROW)

@@ -2,7 +2,7 @@
 -- the distance that was driven. If several vehicles are passed in one go, each counts with the length of the whole row up to its front. The
 -- formula takes one speed for the whole manoeuvre: the speed at t0 or, for the profile `observed` of a completed overtake, the mean speed.
 -- An ego that sped up to overtake would have needed less than its speed at t0 says. With which of the two speeds it planned is not known.
--- If the log ends before the ego is back, the speed that it had reached by then stands for the mean speed.
+-- If the log ends before the ego is back, its highest speed until then stands for the mean speed.
 WITH ov_candidate AS (
     SELECT o.drive_id, o.ego_id, o.occurrence, v.object_id AS ov_id, v.da_m, v.speed_mps AS v_ov_mps
     FROM overtake o
@@ -10,7 +10,7 @@ WITH ov_candidate AS (
     UNION ALL
     SELECT drive_id, ego_id, occurrence, NULL, da_m, v_ov_mps FROM overtake WHERE ov_id IS NULL
 ),
-ov_closing AS (
+ov_closed_distance AS (
     SELECT v.drive_id, v.ego_id, v.occurrence, v.ov_id, v.da_m - min(n.da_m) AS closed_m
     FROM overtake o
     JOIN ov_candidate v USING (drive_id, ego_id, occurrence)
@@ -37,7 +37,7 @@ driven_distance AS (
     LEFT JOIN ego_corridor b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.chain_id = o.chain_id AND b.t_ns = o.t_end_ns
     LEFT JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns = o.t0_ns
     LEFT JOIN ego_state f ON f.drive_id = o.drive_id AND f.ego_id = o.ego_id AND f.t_ns = o.t_end_ns
-    LEFT JOIN ov_closing c ON c.drive_id = o.drive_id AND c.ego_id = o.ego_id AND c.occurrence = o.occurrence AND c.ov_id = v.ov_id
+    LEFT JOIN ov_closed_distance c ON c.drive_id = o.drive_id AND c.ego_id = o.ego_id AND c.occurrence = o.occurrence AND c.ov_id = v.ov_id
     LEFT JOIN top_speed m ON m.drive_id = o.drive_id AND m.ego_id = o.ego_id AND m.occurrence = o.occurrence
 ),
 formula_input AS (

@@ -25,8 +25,8 @@ CREATE OR REPLACE MACRO cell_key(ix, iy) AS ix::BIGINT * 1000003 + iy::BIGINT;
 CREATE OR REPLACE MACRO lane_cell_of(x, y) AS cell_key(floor(x / 2), floor(y / 2));
 CREATE OR REPLACE MACRO corridor_cell_of(x, y) AS cell_key(floor(x / 4), floor(y / 4));
 
--- A segment of a centre line with unit tangents t0, t1 at its ends contains the points between the normals at its ends: a0 >= 0 beyond the
--- first normal, a1 > 0 before the second one. Consecutive segments share a tangent, so that they tile the strip.
+-- A segment of a centre line with unit tangents t0, t1 at its ends contains the points between the normals at its ends: along0 >= 0 beyond
+-- the first normal, along1 > 0 before the second one. Consecutive segments share a tangent, so that they tile the strip.
 CREATE OR REPLACE MACRO along0(x, y, x0, y0, tx0, ty0) AS (x - x0) * tx0 + (y - y0) * ty0;
 CREATE OR REPLACE MACRO along1(x, y, x1, y1, tx1, ty1) AS (x1 - x) * tx1 + (y1 - y) * ty1;
 
@@ -93,7 +93,8 @@ CREATE OR REPLACE MACRO box_clearance(dx, dy, c, s, hla, hwa, hlb, hwb) AS
 -- Depth of an overlap from its three one-sided depths; NULL if one of them is (least() alone would ignore it).
 CREATE OR REPLACE MACRO least_of_three(a, b, c) AS CASE WHEN a IS NOT NULL AND b IS NOT NULL AND c IS NOT NULL THEN least(a, b, c) END;
 
--- The depth of the overlap of two boxes of which only one axis is known: NULL unless they are apart on this axis.
+-- The depth of the overlap of two boxes whose overlap is known along one axis only: its value if they are apart along this axis (negative),
+-- else NULL, because they may be apart along another one.
 CREATE OR REPLACE MACRO depth_if_apart(along_m) AS CASE WHEN along_m < 0 THEN along_m END;
 
 -- Lengths in whole picometres, and back. Their running sums are the same to the last bit in every order and beside any other drive. (A sum

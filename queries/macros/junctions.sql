@@ -94,6 +94,8 @@ CREATE OR REPLACE MACRO fork_rad() AS radians(10);
 -- degrees: a road at a greater angle lies across.
 CREATE OR REPLACE MACRO comes_by_road_ahead(from_rad, straightest_rad) AS
     abs(from_rad) >= pi() - least(greatest(radians(45), abs(straightest_rad) + fork_rad()), radians(80));
+-- The relations of an actor, as a list: that of relation_of, and oncoming as well if the actor came by the road ahead although that road
+-- leads off at an angle.
 CREATE OR REPLACE MACRO relations_of(from_rad, straightest_rad) AS
     CASE WHEN comes_by_road_ahead(from_rad, straightest_rad) AND relation_of(from_rad) <> 'oncoming' THEN [relation_of(from_rad), 'oncoming'] ELSE [relation_of(from_rad)] END;
 -- Whether the ego went nearly straight on while another way out is straighter. Maps do not say whether the ego turned off there or its road

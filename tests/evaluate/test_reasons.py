@@ -45,7 +45,7 @@ def test_the_authors_reason_of_an_unknown_applicability(tmp_path: Path) -> None:
         ({"x_m": 1.0, "y_m": 0.0, "speed_mps": [12, None, 12]}, "the speed of the ego is not known: record it"),
         (
             {"x_m": 1.0, "y_m": 0.0, "speed_mps": [12, 12, None]},
-            "the speed of the ego is not known within 1 s of that: record it",
+            "the speed of the ego is not known at some moment within 1 s of that time: record it",
         ),
         ({"x_m": 1.0, "y_m": 0.0}, None),
     ],

@@ -24,7 +24,7 @@
 -- why = "UN R79 5.6.4.6.5 gives a lane change by the system 5 s, that of a bus or lorry 10 s; here a driver has 10 s whatever it drives"
 --
 -- [reasons.astride_begin_unseen]
--- says = "the ego is astride the line when the log begins, or enters the map"
+-- says = "the ego is already astride the line when the log begins or when the ego enters the map"
 -- advice = "record it from before that"
 --
 -- [reasons.change_end_unseen]
