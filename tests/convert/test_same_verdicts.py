@@ -11,7 +11,7 @@ import pytest
 from drivelint.convert import ConvertRequest, convert
 from drivelint.drive.trace import IngestOptions
 from drivelint.formats import read_trace
-from drivelint.formats.osi.extras import ego_independent_quality
+from drivelint.formats.osi.metadata import ego_independent_quality
 from drivelint.report.progress import Silent
 from drivelint.run import CheckOptions, check
 from tests.shared_data import shared

@@ -15,7 +15,7 @@ from drivelint import cli, guide
 from drivelint.catalogue.header import Conditions, Header
 from drivelint.drive.conditions import CONDITION_VALUES, DRIVE_CONDITION_VALUES
 from drivelint.drive.declared_events import MODES
-from drivelint.formats.osi.extras import Event
+from drivelint.formats.osi.metadata import Event
 from drivelint.reasons.remedies import REMEDIES
 from drivelint.reasons.signals import SIGNALS
 from drivelint.result.schemas import TABLE_OF_FILE

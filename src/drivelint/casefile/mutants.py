@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
 Node = dict[str, Any]
-Way = tuple[str | int, ...]
+NodePath = tuple[str | int, ...]
 """The keys from the node of a statement to one inside it."""
 
 OPPOSITE = {">": "<=", ">=": "<", "<": ">=", "<=": ">"}
@@ -110,7 +110,7 @@ def _with_section(rule: Rule, name: str, sql: str) -> Rule:
 class _Place(NamedTuple):
     """A node of a syntax tree: the way to it from the statement's node, and itself."""
 
-    way: Way
+    way: NodePath
     node: Node
 
 
@@ -118,7 +118,7 @@ def _places(root: Node) -> list[_Place]:
     """Return every node that can matter to a verdict, in the order of the text."""
     wording = _columns(root, frozenset({"reason", "reason_code"}))
     found: list[_Place] = []
-    todo: list[tuple[Way, Any]] = [((), root)]
+    todo: list[tuple[NodePath, Any]] = [((), root)]
     while todo:
         way, part = todo.pop()
         if way in wording:
@@ -131,19 +131,19 @@ def _places(root: Node) -> list[_Place]:
     return found
 
 
-def _outputs(root: Node) -> list[Way]:
+def _outputs(root: Node) -> list[NodePath]:
     """Return the ways to the SELECT nodes whose columns are those of the statement: itself or the branches of a UNION."""
     if root["type"] == "SELECT_NODE":
         return [()]
     if root["type"] != "SET_OPERATION_NODE":
         return []
-    branches: list[Way] = (
+    branches: list[NodePath] = (
         [("left",), ("right",)] if "left" in root else [("children", i) for i in range(len(root["children"]))]
     )
     return [(*branch, *way) for branch in branches for way in _outputs(_at(root, branch))]
 
 
-def _columns(root: Node, names: frozenset[str]) -> set[Way]:
+def _columns(root: Node, names: frozenset[str]) -> set[NodePath]:
     """Return the ways to the expressions of the statement's columns of these names."""
     outputs = _outputs(root)
     if not outputs:
@@ -157,7 +157,7 @@ def _name(item: Node) -> str:
     return str(item.get("alias") or (item["column_names"][-1] if item["class"] == "COLUMN_REF" else "")).lower()
 
 
-def _at(root: Any, way: Way) -> Any:
+def _at(root: Any, way: NodePath) -> Any:
     for key in way:
         root = root[key]
     return root
@@ -183,7 +183,7 @@ def _faults(tree: Node, place: _Place) -> Iterator[tuple[str, Node]]:
         yield f"USING without: {column}", _replaced(tree, way, rest)
 
 
-def _without_terms(tree: Node, way: Way, clause: Node, words: str) -> Iterator[tuple[str, Node]]:
+def _without_terms(tree: Node, way: NodePath, clause: Node, words: str) -> Iterator[tuple[str, Node]]:
     if clause["type"] != "CONJUNCTION_AND":
         yield f"{words} without: {_text(clause)}", _replaced(tree, way, _expression("true"))
         return
@@ -214,7 +214,7 @@ def _is_number(value: Node) -> bool:
     return number not in {0, 1, *(10.0**n for n in range(3, 19))}
 
 
-def _replaced(tree: Node, way: Way, new: Node) -> Node:
+def _replaced(tree: Node, way: NodePath, new: Node) -> Node:
     changed: Node = copy.deepcopy(tree)
     _at(changed["statements"][0]["node"], way[:-1])[way[-1]] = copy.deepcopy(new)
     return changed

@@ -18,7 +18,7 @@ from drivelint.formats import expand_traces, read_trace
 from drivelint.formats.files import CANONICAL_FILES
 from drivelint.formats.map_registry import root_element_name
 from drivelint.formats.osi import writer as osi_log
-from drivelint.formats.osi.extras import ego_independent_quality
+from drivelint.formats.osi.metadata import ego_independent_quality
 from drivelint.phrases import listed
 from drivelint.result.files import OutputError, prepare_folder, publish
 from drivelint.road.map_reader import MapSource

@@ -7,7 +7,7 @@ from pathlib import PurePath
 from shutil import which
 from typing import TYPE_CHECKING, Final
 
-from drivelint.demo.opendrive import MAKER
+from drivelint.demo.opendrive import GENERATOR
 from drivelint.demo.osi_log import osi_mcap
 from drivelint.demo.overtakes import PROFILES, overtakes
 from drivelint.errors import UsageError
@@ -44,7 +44,7 @@ def _is_ours(path: Path) -> None:
         return
     try:
         with path.open("rb") as file:
-            ours = MAKER.encode() in file.read(_HEAD_BYTES)
+            ours = GENERATOR.encode() in file.read(_HEAD_BYTES)
     except OSError:
         ours = False
     if not ours:

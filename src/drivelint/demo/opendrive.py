@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from drivelint.demo.road import Sign
 
 T = TypeVar("T")
-MAKER = "drivelint demo"
+GENERATOR = "drivelint demo"
 """Stands in every file that is written here: what carries it may be overwritten."""
 
 _SIGNS = {  # country, code, name
@@ -42,7 +42,7 @@ def opendrive(road: Road, name: str) -> str:
     return "\n".join([
         '<?xml version="1.0" encoding="UTF-8"?>',
         "<OpenDRIVE>",
-        f'  <header revMajor="1" revMinor="7" name="{name}" version="1.00" vendor="{MAKER}"/>',
+        f'  <header revMajor="1" revMinor="7" name="{name}" version="1.00" vendor="{GENERATOR}"/>',
         *road_elements(road),
         "</OpenDRIVE>",
         "",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from mcap.writer import CompressionType, Writer
 
-from drivelint.demo.opendrive import MAKER
+from drivelint.demo.opendrive import GENERATOR
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIZE_COLUMNS, STATE_COLUMNS, States
 from drivelint.formats.osi.encode import Objects, ground_truth_head, moving_objects
 from drivelint.formats.osi.schema import GROUND_TRUTH, VERSION, descriptor_set
@@ -44,7 +44,7 @@ def osi_mcap(scene: Scene) -> bytes:
     """Return the scene's log: one `osi3.GroundTruth` per sample, log time = sample time, the same bytes every time."""
     sink = io.BytesIO()
     writer = Writer(sink, compression=CompressionType.ZSTD, enable_crcs=True, enable_data_crcs=True)
-    writer.start(library=MAKER)
+    writer.start(library=GENERATOR)
     version = ".".join(map(str, VERSION))
     schema = writer.register_schema(GROUND_TRUTH, "protobuf", descriptor_set())
     channel = writer.register_channel(TOPIC, "protobuf", schema, {"net.asam.osi.trace.channel.osi_version": version})

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 LONGEST_PERIOD_NS: Final = 250_000_000
 """An object that is sampled more rarely is not aligned: half of that time on, a car that brakes is 8 cm beside the line."""
-OTHER_RATE_FACTOR: Final = 1.5
+DIFFERENT_RATE_FACTOR: Final = 1.5
 """So many times the ego's period is another rate, less is a sample that is missing now and then."""
 COVERED_SHARE: Final = 0.75
 """A track that has a sample at so many of the ego's steps needs no others."""
@@ -78,7 +78,7 @@ def _own_period(t_ns: Times, grid: Times, period_ns: float) -> int | None:
     shared = len(np.intersect1d(steps, t_ns, assume_unique=True))
     if shared >= COVERED_SHARE * len(steps):  # as where there is no step of the ego's at all
         return None
-    return own if own > OTHER_RATE_FACTOR * period_ns or shared < 0.5 * n else None
+    return own if own > DIFFERENT_RATE_FACTOR * period_ns or shared < 0.5 * n else None
 
 
 def _at_steps(states: States, span: slice, grid: Times, own_ns: int, log_ns: tuple[int, int]) -> States:

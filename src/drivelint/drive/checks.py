@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import MAX_GAP_PERIODS, known_motion, led_by, wrapped
+from drivelint.drive.order import MAX_GAP_PERIODS, known_motion, step_change, wrapped
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.phrases import listed
 
@@ -37,7 +37,7 @@ WRONG_UNITS_SHARE = 0.5
 """Where more than half of the moving samples disagree, the units or the frame are wrong, not the sensor."""
 LEAST_MOVING_SAMPLES = 20
 """Fewer moving samples than this are too few to blame units or frame."""
-LONG_CLASSES = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle"))
+LONGER_THAN_WIDE_CLASSES = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle"))
 """Actors whose box is longer than wide."""
 
 
@@ -68,7 +68,7 @@ def run(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[Q
 
 def _sizes(actors: Actors) -> list[QualityFinding]:
     length, width = actors.sizes["length_m"], actors.sizes["width_m"]
-    long_kind = np.array([kind in LONG_CLASSES for kind in actors.classes], np.bool_)
+    long_kind = np.array([kind in LONGER_THAN_WIDE_CLASSES for kind in actors.classes], np.bool_)
     findings = []
     for check, rows, text in (
         (
@@ -171,7 +171,7 @@ def _against_positions(
     span_s = np.where(span_s > 0.0, span_s, np.nan)
 
     def led(rate: NDArray[np.float64]) -> NDArray[np.float64]:
-        total = np.r_[0.0, np.cumsum(led_by(rate, step, known))]
+        total = np.r_[0.0, np.cumsum(step_change(rate, step, known))]
         mean: NDArray[np.float64] = (total[last] - total[first]) / span_s
         return mean
 
@@ -201,7 +201,9 @@ def _yaw(states: States, actors: Actors) -> list[QualityFinding]:
     """Compare the heading of vehicles with their direction of motion."""
     numbers = states.numbers
     place = {name: i for i, name in enumerate(actors.ids)}
-    long_kind = np.array([actors.classes[place[name]] in {*LONG_CLASSES, None} for name in states.ids], np.bool_)
+    long_kind = np.array(
+        [actors.classes[place[name]] in {*LONGER_THAN_WIDE_CLASSES, None} for name in states.ids], np.bool_
+    )
     speed = np.hypot(numbers["vx_mps"], numbers["vy_mps"])
     with np.errstate(invalid="ignore"):
         moving = (speed > YAW_CHECK_LEAST_MPS) & long_kind[states.actor] & ~np.isnan(numbers["yaw_rad"])

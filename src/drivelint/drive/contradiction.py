@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from drivelint.drive.jumps import (
-    IN_STATES,
+    COUNT_PREFIX,
     MOTION_COLUMNS,
     MOVING_MPS,
     NO_SPLIT,
@@ -21,7 +21,7 @@ from drivelint.drive.jumps import (
     SplitTracks,
     set_unknown,
 )
-from drivelint.drive.order import known_motion, led_by, wrapped
+from drivelint.drive.order import known_motion, step_change, wrapped
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.drive.velocity_mismatch import mismatched_samples
 from drivelint.phrases import listed
@@ -81,20 +81,20 @@ def resolve(
         frozen = _frozen(states, step)
         if frozen.any():
             places.append(RejectedPositions.from_rows(states, frozen))
-        text = IN_STATES + "position and velocity contradict each other: they are unknown"
+        text = COUNT_PREFIX + "position and velocity contradict each other: they are unknown"
         findings += states.findings(frozen, "motion_unknown", "warning", text)
         set_unknown(states, frozen)
         astray = mismatched_samples(states, step)
         text = "for half a second and longer the velocity leads elsewhere than the positions: it is unknown"
-        findings += states.findings(astray, "velocity_unknown", "warning", IN_STATES + text)
+        findings += states.findings(astray, "velocity_unknown", "warning", COUNT_PREFIX + text)
         set_unknown(states, astray, MOTION_COLUMNS)
     for each in places:
         findings += _upon_others(states, step, actors, each, parted.alias)
     turned, sideways = _headings(states, step, actors)
     yaw = states.numbers["yaw_rad"]
-    text = IN_STATES + "the heading is turned round, the motion is not: the motion counts"
+    text = COUNT_PREFIX + "the heading is turned round, the motion is not: the motion counts"
     findings += states.findings(turned, "heading_turned", "warning", text)
-    text = IN_STATES + "the heading is across the motion: it is unknown"
+    text = COUNT_PREFIX + "the heading is across the motion: it is unknown"
     findings += states.findings(sideways, "heading_unknown", "warning", text)
     yaw = np.where(turned, wrapped(yaw + np.pi), yaw)
     states.numbers["yaw_rad"] = np.where(sideways, np.nan, yaw)
@@ -149,7 +149,7 @@ def _frozen(states: States, step: Steps) -> Mask:
     for i, (place, rate_of) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
         v = numbers[rate_of]
         went[i] = np.where(usable, np.diff(numbers[place]), 0.0)
-        led[i] = led_by(v, step, usable)
+        led[i] = step_change(v, step, usable)
         # what the velocity did between two samples is not known
         slack = np.hypot(slack, np.where(usable, 0.5 * np.abs(np.diff(v)) * step.dt_s, 0.0))
 

@@ -43,7 +43,7 @@ MOTION_COLUMNS: Final = ("vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
 STATE_COLUMNS: Final = ("x_m", "y_m", "z_m", "yaw_rad", *MOTION_COLUMNS)
 SAME_PLACE_M: Final = 0.01
 """Centres nearer than this are in one place."""
-IN_STATES: Final = "{n} of {of} states ({ids}): "
+COUNT_PREFIX: Final = "{n} of {of} states ({ids}): "
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ def split_tracks(states: States, step: Steps, *, kept: Collection[str]) -> Split
     alias: dict[str, str] = {}
     unknown, pieces = _around_jumps(states, jump)
     if jump.any():
-        text = IN_STATES + "the position jumps: they are unknown around it"
+        text = COUNT_PREFIX + "the position jumps: they are unknown around it"
         findings = states.findings(unknown, "teleport", "warning", text)
         alias = _renamed(states, pieces, kept, findings)
     refused = RejectedPositions.from_rows(states, unknown)
@@ -99,7 +99,7 @@ def split_tracks(states: States, step: Steps, *, kept: Collection[str]) -> Split
     beside = outlier_samples(states, step)
     if beside.any():
         text = "the position is beside its track, for a sample or by a step that nobody drives: they are unknown there"
-        findings += states.findings(beside, "teleport", "warning", IN_STATES + text)
+        findings += states.findings(beside, "teleport", "warning", COUNT_PREFIX + text)
         refused = refused.with_more(RejectedPositions.from_rows(states, beside))
         set_unknown(states, beside)
     return SplitTracks(findings, alias, refused) if findings else NO_SPLIT
@@ -237,7 +237,7 @@ def without_removed_actors(
     for first, end in gone:
         out[first:end] = True
     text = "after a jump they stand in one place: they were taken out of the scene, and their tracks end there"
-    return states.take(~out), states.findings(out, "removed", "warning", IN_STATES + text)
+    return states.take(~out), states.findings(out, "removed", "warning", COUNT_PREFIX + text)
 
 
 def _together(states: States, place: NDArray[np.float64], one: tuple[int, int], other: tuple[int, int]) -> bool:

@@ -131,9 +131,14 @@ class JudgingSession:
     def _judge_part(self, ids: Sequence[str], *, may_retry: bool) -> None:
         """Judge the egos that do not rest."""
         derive(self._con, self._tables, of_the_map=False)
-        margins, measure_courses = self._margins is not None, bool(self._observers)
+        margins, keep_measure_series = self._margins is not None, bool(self._observers)
         evaluate(
-            self._con, self._rules, self._params, margins=margins, measure_courses=measure_courses, may_retry=may_retry
+            self._con,
+            self._rules,
+            self._params,
+            margins=margins,
+            keep_measure_series=keep_measure_series,
+            may_retry=may_retry,
         )
         # a rule that erred on a crowd is tried on each drive alone: the fault of one is not the others'
         erred = "SELECT rule_id FROM verdict WHERE verdict = 'error' AND list_contains(?, drive_id) ORDER BY rule_id LIMIT 1"

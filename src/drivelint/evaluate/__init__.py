@@ -30,7 +30,7 @@ def evaluate(
     params: Mapping[str, Mapping[str, object]] | None = None,
     *,
     margins: bool = False,
-    measure_courses: bool = False,
+    keep_measure_series: bool = False,
     may_retry: bool = False,
 ) -> None:
     """Judge every (drive_id, ego_id) of `clock` by `rules`; append to `verdict`, `finding` and, if asked for, `margin`, `course`.
@@ -48,7 +48,7 @@ def evaluate(
     if not rules:
         return
     bindings = [Binding(rule, no, params.get(rule.id, {})) for no, rule in enumerate(rules)]
-    run = Evaluation(con, bindings, margins=margins, measure_courses=measure_courses, may_retry=may_retry)
+    run = Evaluation(con, bindings, margins=margins, keep_measure_series=keep_measure_series, may_retry=may_retry)
     try:
         run.judge()
     finally:

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
     from drivelint.evaluate.sql_fragments import Binding
 
-LEAST_SHARED_RULES: Final = 16
+LEAST_RULES_FOR_TWO_CONNECTIONS: Final = 16
 """From so many rules on they are judged on two connections."""
-MOST_SHARED_STEPS: Final = 200_000
+MOST_STEPS_FOR_TWO_CONNECTIONS: Final = 200_000
 """Steps from which on they are not: one statement then uses all cores, and two would need twice the memory."""
 
 
@@ -31,7 +31,7 @@ class Evaluation:
     con: duckdb.DuckDBPyConnection
     bindings: Sequence[Binding]
     margins: bool
-    measure_courses: bool = False
+    keep_measure_series: bool = False
     may_retry: bool = False
     _n_todo: dict[int, int] = field(default_factory=dict, init=False)
     _n_subjects: int = field(default=0, init=False)
@@ -42,7 +42,10 @@ class Evaluation:
         """Judge by every rule, then write the verdicts, findings and margins of all of them at once."""
         self.prepare()
         todo = deque(binding for binding in self.bindings if self._n_todo.get(binding.no))
-        if len(todo) >= LEAST_SHARED_RULES and self._count("SELECT count(*) FROM step") < MOST_SHARED_STEPS:
+        if (
+            len(todo) >= LEAST_RULES_FOR_TWO_CONNECTIONS
+            and self._count("SELECT count(*) FROM step") < MOST_STEPS_FOR_TWO_CONNECTIONS
+        ):
             self._share(todo)
         else:
             self._work(todo)
@@ -53,14 +56,14 @@ class Evaluation:
         )
         for statement in finalize.INSERT_STATEMENTS:
             self.con.execute(statement)
-        if self.measure_courses:
-            self.con.execute(finalize.INSERT_MEASURE_COURSES)
+        if self.keep_measure_series:
+            self.con.execute(finalize.INSERT_MEASURE_SERIES)
 
     def _share(self, todo: deque[Binding]) -> None:
         """Judge on a second connection too: on so few rows a statement is planned and run on one core."""
         with ThreadPoolExecutor(1) as pool, self.con.cursor() as other:
             helper = replace(self, con=other)
-            helped = pool.submit(helper.judge_shared, todo)
+            helped = pool.submit(helper.judge_from_queue, todo)
             try:
                 self._work(todo)
                 helped.result()
@@ -70,7 +73,7 @@ class Evaluation:
                 todo.clear()  # whatever came between, the helper stops after its present rule
                 wait([helped])
 
-    def judge_shared(self, todo: deque[Binding]) -> None:
+    def judge_from_queue(self, todo: deque[Binding]) -> None:
         """Judge rules from a shared queue; another run collects the outcomes."""
         self.prepare()
         self._work(todo)
@@ -96,7 +99,7 @@ class Evaluation:
         self._check_engagement = self._count("SELECT count(*) FROM _watched") > 0
         quick = [b for b in self.bindings if self._is_quick(b)]
         if quick:
-            self.con.execute(invariant.CREATE_GRID_GROUPS, {"_objects": any(b.rule.per_object for b in quick)})
+            self.con.execute(invariant.CREATE_STEP_GROUPS, {"_objects": any(b.rule.per_object for b in quick)})
 
     def judge_rule(self, binding: Binding) -> None:
         """Run the statements of one rule."""
@@ -107,7 +110,7 @@ class Evaluation:
 
     def _is_quick(self, binding: Binding) -> bool:
         """Whether the first pass can settle groups; margins need every step anyway."""
-        return not self.margins and invariant.grid_of(binding.rule) is not None
+        return not self.margins and invariant.default_steps_table(binding.rule) is not None
 
     def _is_partial(self, binding: Binding) -> bool:
         return self._n_todo.get(binding.no, 0) < self._n_subjects
@@ -125,10 +128,12 @@ class Evaluation:
                 f"SELECT coalesce(sum(n), 0)::BIGINT FROM _group WHERE rule_no = {binding.no} AND NOT clean"
             )
             if self._has_near_misses(binding, "_group", "clean"):
-                self._execute(findings.settled_measure_courses_sql(binding.rule), binding)
+                self._execute(findings.settled_measure_series_sql(binding.rule), binding)
             if self._may_stop(n_steps):
                 return
-        elif self._may_stop(self._execute(invariant.grid_sql(rule, partial, self._check_engagement), binding)):
+        elif self._may_stop(
+            self._execute(invariant.steps_to_judge_sql(rule, partial, self._check_engagement), binding)
+        ):
             return
         n_judged = self._execute(invariant.second_pass_sql(rule, partial, quick, self._check_engagement), binding)
         if self._may_stop(n_judged):
@@ -159,18 +164,18 @@ class Evaluation:
 
     def _leave(self, binding: Binding) -> None:
         if self._has_near_misses(binding, "_outcome", "verdict = 'pass'"):
-            self._execute(findings.near_miss_measure_courses_sql(binding.rule), binding)
+            self._execute(findings.near_miss_measure_series_sql(binding.rule), binding)
         if not self._may_stop(self._count("SELECT count(*) FROM (FROM _judged WHERE NOT holds LIMIT 1)")):
             self._execute(findings.stretches_sql(binding.rule), binding)
-            if self.measure_courses:
-                self._execute(findings.measure_courses_sql(binding.rule), binding)
+            if self.keep_measure_series:
+                self._execute(findings.measure_series_sql(binding.rule), binding)
         if self.margins:
             self._execute(findings.margins_sql(binding.rule), binding)
 
     def _has_near_misses(self, binding: Binding, table: str, kept: str) -> bool:
         """Whether courses are asked for, and kept rows of a table of outcomes are near misses."""
         near = f"FROM {table} JOIN _rule USING (rule_no) WHERE rule_no = {binding.no} AND {kept} AND {findings.IS_NEAR_MISS}"
-        return self.measure_courses and not self._may_stop(self._count(f"SELECT count(*) {near}"))
+        return self.keep_measure_series and not self._may_stop(self._count(f"SELECT count(*) {near}"))
 
     def _may_stop(self, n_rows: int) -> bool:
         return n_rows == 0
@@ -203,7 +208,7 @@ class Evaluation:
 class PlanRecorder(Evaluation):
     """An evaluation that records the plan of every statement and runs all alternatives."""
 
-    measure_courses: bool = True
+    keep_measure_series: bool = True
     plans: list[str] = field(default_factory=list, init=False)
 
     def prepare(self) -> None:

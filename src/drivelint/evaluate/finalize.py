@@ -110,7 +110,7 @@ SELECT m.* EXCLUDE (rule_no) REPLACE (nullif(m.profile, '') AS profile, nullif(m
 ANTI JOIN _error e ON e.rule_no = m.rule_no AND e.drive_id = m.drive_id AND e.ego_id = m.ego_id
 """
 
-INSERT_MEASURE_COURSES = """
+INSERT_MEASURE_SERIES = """
 INSERT INTO course BY NAME
 WITH _named AS (SELECT c.* REPLACE (nullif(c.profile, '') AS profile, nullif(c.object_id, '') AS object_id), r.rule_id
     FROM _course c JOIN _rule r USING (rule_no)), _whose AS (

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 IS_NEAR_MISS = "round(margin, 6) < near_margin"
 """What makes a kept row a near miss; of a row of outcomes joined to `_rule`."""
-MOST_NEAR_MISS_COURSES = 20
+MOST_NEAR_MISS_SERIES = 20
 """Near misses of an ego, rule and profile whose course is kept."""
 _SERIES = "drive_id, ego_id, object_id, profile, ref_id"
 
@@ -47,7 +47,7 @@ FROM _worst
 """
 
 
-def measure_courses_sql(rule: Rule) -> str:
+def measure_series_sql(rule: Rule) -> str:
     """Return the SQL that appends to `_course` the measure's values around the failing stretches of a rule.
 
     From 2 s before to 2 s after a stretch and 5 s around its worst step, but at most 30 s from that; thinned to some 150
@@ -74,7 +74,7 @@ QUALIFY row_number() OVER (
 """
 
 
-def settled_measure_courses_sql(rule: Rule) -> str:
+def settled_measure_series_sql(rule: Rule) -> str:
     """Return the SQL of near-miss courses for groups that the first pass settled."""
     near = f"""SELECT g.drive_id, g.ego_id, coalesce(g.object_id, '') AS object_id, '' AS profile, NULL::INTEGER AS ref_id, '' AS label,
         g.t_start_ns, g.t_end_ns, g.t_worst_ns, g.margin
@@ -85,7 +85,7 @@ def settled_measure_courses_sql(rule: Rule) -> str:
     return _near(rule, near, f"{sql_fragments.condition_ctes(rule)}, _steps AS ({steps})", "_steps")
 
 
-def near_miss_measure_courses_sql(rule: Rule) -> str:
+def near_miss_measure_series_sql(rule: Rule) -> str:
     """SQL that appends to `_course` how the measure went around near misses of `_outcome`, the closest per ego and profile."""
     near = f"""SELECT o.drive_id, o.ego_id, coalesce(o.object_id, '') AS object_id, coalesce(o.profile, '') AS profile, o.ref_id,
         coalesce(o.label, '') AS label, o.t_start_ns, o.t_end_ns, o.t_worst_ns, o.margin
@@ -103,7 +103,7 @@ def _near(rule: Rule, near: str, before: str, steps: str) -> str:
 INSERT INTO _course BY NAME
 WITH {before + ", " if before else ""}_near AS ({near}
     QUALIFY row_number() OVER (PARTITION BY drive_id, ego_id, profile ORDER BY margin, t_worst_ns, object_id, ref_id)
-        <= {MOST_NEAR_MISS_COURSES}
+        <= {MOST_NEAR_MISS_SERIES}
 )
 SELECT $_no AS rule_no, s.drive_id, s.ego_id, {series}, true AS near, j.t_ns, {sql_fragments.measure_columns(rule, "j.")}, j.holds
 FROM _near s

@@ -12,8 +12,8 @@ from drivelint.evaluate import applicability, sql_fragments
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
-OBJECT_GRID = "pair"
-STEP_GRID = "step"
+OBJECT_STEPS_TABLE = "pair"
+STEPS_TABLE = "step"
 
 _SAME = "a.drive_id = b.drive_id AND a.ego_id = b.ego_id AND a.t_ns = b.t_ns"
 _GROUP = "drive_id, ego_id, object_id"
@@ -33,7 +33,7 @@ _WALK = f"""), _linked AS (
 """CTE text (it closes the CTE before it and leaves its last one open): rows of a source numbered by episode."""
 
 
-def grid_of(rule: Rule) -> str | None:
+def default_steps_table(rule: Rule) -> str | None:
     """Return the table that is an invariant's default grid; None: it brings its own, or needs each step looked at."""
     if (
         rule.kind != "invariant"
@@ -43,7 +43,7 @@ def grid_of(rule: Rule) -> str | None:
         or rule.exempt_after_s != 0
     ):
         return None
-    return OBJECT_GRID if rule.per_object else STEP_GRID
+    return OBJECT_STEPS_TABLE if rule.per_object else STEPS_TABLE
 
 
 def _default_grid(per_object: bool) -> str:
@@ -53,7 +53,7 @@ def _default_grid(per_object: bool) -> str:
     return f"SELECT a.drive_id, a.ego_id, a.t_ns, a.object_id, b.k, b.seg FROM pair a JOIN step b ON {_SAME}"
 
 
-CREATE_GRID_GROUPS = f"""
+CREATE_STEP_GROUPS = f"""
 CREATE OR REPLACE TEMP TABLE _grid_group AS
 WITH _seen AS (
     SELECT grid, {_GROUP}, count(*) AS n, sum(hash(t_ns)::HUGEINT) AS signature,
@@ -90,7 +90,7 @@ SELECT $_no AS rule_no, g.drive_id, g.ego_id, g.object_id, coalesce(g.whole AND 
 FROM _grid_group g
 LEFT JOIN _seen s ON g.drive_id = s.drive_id AND g.ego_id = s.ego_id{who} AND g.n = s.n AND g.signature = s.signature
 {sql_fragments.subject_join(partial, "g")}
-WHERE g.grid = '{OBJECT_GRID if rule.per_object else STEP_GRID}' AND s.n_out IS DISTINCT FROM g.n
+WHERE g.grid = '{OBJECT_STEPS_TABLE if rule.per_object else STEPS_TABLE}' AND s.n_out IS DISTINCT FROM g.n
 """
 
 
@@ -149,7 +149,7 @@ def _grid(rule: Rule, partial: bool, unsettled: bool, check_engagement: bool) ->
 ), _grid AS (SELECT a.* FROM _restricted a{sql_fragments.subject_join(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
 
 
-def grid_sql(rule: Rule, partial: bool, check_engagement: bool) -> str:
+def steps_to_judge_sql(rule: Rule, partial: bool, check_engagement: bool) -> str:
     """Return the SQL for `_asked`: the grid of a rule without a first pass; empty where nothing is to be judged."""
     return f"CREATE OR REPLACE TEMP TABLE _asked AS WITH {_grid(rule, partial, False, check_engagement)} SELECT * FROM _grid"
 

@@ -12,7 +12,7 @@ from drivelint.formats.film import mapping as video_mapping
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import MAGIC, Container
 from drivelint.formats.osi.decode import FIELD_TREES
-from drivelint.formats.osi.extras import EVENT_MESSAGE
+from drivelint.formats.osi.metadata import EVENT_MESSAGE
 from drivelint.formats.osi.reader import OPEN_DRIVE
 from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables import parquet

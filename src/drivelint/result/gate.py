@@ -73,9 +73,9 @@ class Difference:
         found = Counter(entry.standing for entry in self.entries)
         return {standing: found[standing] for standing in DIFF_STATUSES}
 
-    def with_diff_status(self, standing: str) -> list[ComparedFinding]:
-        """Return the findings of one standing."""
-        return [entry for entry in self.entries if entry.standing == standing]
+    def with_diff_status(self, status: str) -> list[ComparedFinding]:
+        """Return the findings of one status."""
+        return [entry for entry in self.entries if entry.standing == status]
 
 
 @dataclass(frozen=True)

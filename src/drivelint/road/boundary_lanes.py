@@ -41,7 +41,7 @@ class Mark(NamedTuple):
     lane_change: str | None = None
 
 
-Limit = tuple[float, float, float | None]
+SpeedLimitSpan = tuple[float, float, float | None]
 
 
 def both_marks(left: str | None, right: str | None) -> tuple[Mark, Mark]:
@@ -87,7 +87,7 @@ class BoundedLane:
     right_against: bool | None = None
     limit_source: str = "sign"
     marks: tuple[Mark, ...] = ()
-    limits: tuple[Limit, ...] = ()
+    limits: tuple[SpeedLimitSpan, ...] = ()
     road_id: str = ""
     lane_no: int = 0
     along: int = 1
@@ -134,7 +134,7 @@ class LaneGeometry:
         """The ground between the bounds."""
         return shapely.Polygon(np.vstack([self.right, self.left[::-1]])).buffer(0.0)
 
-    def course(self, z: Floats) -> driving_side.OneWayLane:
+    def one_way_lane(self, z: Floats) -> driving_side.OneWayLane:
         """Return the lane as one that is driven one way; `z`: its heights (m), NaN: not known."""
         (x, y), (tx, ty) = self.centre.T, self.tangent.T
         return driving_side.OneWayLane(x, y, z, tx, ty, self.half_width)
@@ -257,7 +257,7 @@ def _row(first: BoundedLane, lanes: Mapping[str, BoundedLane]) -> list[tuple[Bou
     return row
 
 
-def bounded_map(
+def map_from_bounds(
     source: MapSource,
     request: MapOptions,
     lanes: Sequence[BoundedLane],
@@ -361,7 +361,11 @@ def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
     if left != right:
         return "rht" if left > right else "lht"
     return driving_side.side_driven_on(
-        [lane.line.course(np.full(len(lane.line.s), np.nan)) for lane in one_way.values() if lane.junction_id is None]
+        [
+            lane.line.one_way_lane(np.full(len(lane.line.s), np.nan))
+            for lane in one_way.values()
+            if lane.junction_id is None
+        ]
     )
 
 

@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING
 from drivelint.errors import MapError
 from drivelint.formats import safe_xml
 from drivelint.formats.commonroad.signs import Signs, points, read_signs, referenced_ids, signal_rows, stop_line_rows
-from drivelint.road.boundary_lanes import BoundedLane, both_marks, bounded_map, build_lanes, crossings, side_driven_on
+from drivelint.road.boundary_lanes import (
+    BoundedLane,
+    both_marks,
+    build_lanes,
+    crossings,
+    map_from_bounds,
+    side_driven_on,
+)
 from drivelint.road.handedness import choose_side
 from drivelint.road.quality import MapQuality
 
@@ -70,7 +77,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         "stop_line": stop_line_rows(root, lanes, request.offset),
         "crossing": crossings(walks, lanes, request.offset),
     }
-    return bounded_map(source, request, lanes, furniture, quality, kind="commonroad", side=side)
+    return map_from_bounds(source, request, lanes, furniture, quality, kind="commonroad", side=side)
 
 
 def _lane(element: etree._Element, kinds: Sequence[str], signs: Signs) -> BoundedLane:

@@ -11,7 +11,7 @@ import shapely
 from drivelint.errors import MapError
 from drivelint.formats.lanelet2.file import attribute, load, xy
 from drivelint.formats.lanelet2.furniture import furniture
-from drivelint.road.boundary_lanes import BoundedLane, both_marks, bounded_map, build_lanes, side_driven_on
+from drivelint.road.boundary_lanes import BoundedLane, both_marks, build_lanes, map_from_bounds, side_driven_on
 from drivelint.road.handedness import choose_side
 from drivelint.road.quality import MapQuality
 
@@ -49,7 +49,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     side = choose_side([("option", request.side), ("lanes", side_driven_on(lanes)), ("attribute", said)], quality)
     beside = furniture(layers, lanes, request.offset, quality)
     reference = None if request.origin is None or local else f"origin {request.origin[0]:g},{request.origin[1]:g}"
-    return bounded_map(source, request, lanes, beside, quality, kind="lanelet2", side=side, geo_reference=reference)
+    return map_from_bounds(source, request, lanes, beside, quality, kind="lanelet2", side=side, geo_reference=reference)
 
 
 Bound = tuple[int, bool]

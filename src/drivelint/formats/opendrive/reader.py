@@ -67,7 +67,7 @@ def _built(net: Network, request: MapOptions, quality: MapQuality) -> tuple[Dire
     lanes = build(net, first, request.offset, quality)
     side = side_driven_on(
         [
-            lane.line.course(lane.z)
+            lane.line.one_way_lane(lane.z)
             for lane in sorted(lanes.built.values(), key=lambda lane: lane.key)
             if lane.drivable and not lane.bidirectional and lane.road.junction_id is None
         ]

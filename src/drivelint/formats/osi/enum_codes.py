@@ -74,7 +74,7 @@ class EnumCodes:
     tables: dict[str, NDArray[np.int8]]
     modes: dict[str, int]
 
-    def look(self, what: str, numbers: pa.Array) -> NDArray[np.int8]:
+    def codes(self, what: str, numbers: pa.Array) -> NDArray[np.int8]:
         """Return the codes of numbers, -1 where they are unknown."""
         table = self.tables[what]
         index = pc.fill_null(numbers.cast(pa.int32()), -1).to_numpy(zero_copy_only=False)
@@ -108,15 +108,15 @@ def state_codes(words: EnumCodes, objects: pa.Array) -> dict[str, NDArray[np.int
     """Return class, indicator, brake light and headlights of moving objects as codes. A vehicle of unsaid kind is a `vehicle`."""
     vehicle = struct_field(objects, "vehicle_classification")
     lights = struct_field(vehicle, "light_state")
-    kind = words.look("kind", struct_field(objects, "type"))
-    finer = words.look("vehicle", struct_field(vehicle, "type"))
+    kind = words.codes("kind", struct_field(objects, "type"))
+    finer = words.codes("vehicle", struct_field(vehicle, "type"))
     is_vehicle = kind == ACTOR_CLASSES.index("vehicle")
     return {
         "actor_class": np.where(is_vehicle & (finer >= 0), finer, kind),
-        "indicator": words.look("indicator", struct_field(lights, "indicator_state")),
-        "brake_light": words.look("brake_light", struct_field(lights, "brake_light_state")),
+        "indicator": words.codes("indicator", struct_field(lights, "indicator_state")),
+        "brake_light": words.codes("brake_light", struct_field(lights, "brake_light_state")),
         HEADLIGHTS: _headlights(
-            *(words.look("lamp", struct_field(lights, each)) for each in ("head_light", "high_beam"))
+            *(words.codes("lamp", struct_field(lights, each)) for each in ("head_light", "high_beam"))
         ),
     }
 
@@ -150,7 +150,7 @@ def bulbs_of(words: EnumCodes, lights: pa.Array, joined: Mapping[str, str]) -> B
     counts = pc.fill_null(pc.list_value_length(lights), 0).to_numpy(zero_copy_only=False)
     seen = struct_field(bulbs, "classification")
     mode = pc.fill_null(struct_field(seen, "mode").cast(pa.int32()), -1).to_numpy(zero_copy_only=False)
-    color = words.look("color", struct_field(seen, "color"))
+    color = words.codes("color", struct_field(seen, "color"))
     lit = np.isin(mode, [words.modes.get(name, -2) for name in ("MODE_CONSTANT", "MODE_COUNTING")])
     bits = np.full(len(bulbs), UNKNOWN, np.int8)
     bits[mode == words.modes.get("MODE_OFF", -2)] = 0

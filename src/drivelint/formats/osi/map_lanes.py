@@ -17,7 +17,7 @@ from drivelint.formats.osi import map_furniture as osi_furniture
 from drivelint.formats.osi import map_logical as osi_logical
 from drivelint.formats.osi import map_physical as osi_physical
 from drivelint.formats.osi import schema as osi_schema
-from drivelint.road.boundary_lanes import bounded_map, build_lanes, resampled, side_driven_on, stations
+from drivelint.road.boundary_lanes import build_lanes, map_from_bounds, resampled, side_driven_on, stations
 from drivelint.road.handedness import choose_side
 from drivelint.road.quality import MapQuality
 
@@ -60,7 +60,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     said = ("option", request.side) if request.side else ("lanes", side_driven_on(lanes))
     side = choose_side([said], quality, "the lanes")
     beside = osi_furniture.read(truth, lanes, covers, request.offset, quality)
-    return bounded_map(source, request, lanes, beside, quality, kind="osi", side=side)
+    return map_from_bounds(source, request, lanes, beside, quality, kind="osi", side=side)
 
 
 def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalLane]) -> dict[int, list[int]]:

@@ -12,7 +12,7 @@ import ptars
 from drivelint.drive.trace import LEAST_UTC_NS, FrameTimes, QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import Container, message_batches
-from drivelint.formats.osi import extras
+from drivelint.formats.osi import metadata
 from drivelint.formats.osi.decode import (
     FIELD_TREES,
     GROUND_TRUTH,
@@ -78,8 +78,8 @@ def read(path: Path, topic: str | None) -> Recording:
     recording.findings += [*lost[:1], *several]
     recording.geo_reference = head.reference
     recording.findings += () if maps else head.findings
-    recording.events = extras.read_declared_events(path, events)
-    extras.apply_metadata(path, container.metadata, recording)
+    recording.events = metadata.read_declared_events(path, events)
+    metadata.apply_metadata(path, container.metadata, recording)
     return recording
 
 
@@ -88,7 +88,7 @@ def _kind(container: Container, truths: list[str], topic: str | None, channel: C
     schema = container.schemas.get(channel.schema_id)
     if schema is None:
         return None
-    if schema.name == extras.EVENT_MESSAGE and channel.message_encoding == "json":
+    if schema.name == metadata.EVENT_MESSAGE and channel.message_encoding == "json":
         return schema.name
     if schema.encoding != "protobuf" or channel.message_encoding != "protobuf":
         return None

@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 from mcap.writer import CompressionType, Writer
 
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIZE_COLUMNS, STATE_COLUMNS
-from drivelint.formats.osi import extras
+from drivelint.formats.osi import metadata
 from drivelint.formats.osi.encode import Objects, ground_truth_head, moving_objects, traffic_light
 from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, VERSION, descriptor_set
 from drivelint.formats.protobuf.wire import nested
@@ -45,7 +45,7 @@ def write(sink: BinaryIO, trace: Trace, road: MapSource | None) -> int:
     version = ".".join(map(str, VERSION))
     bounds = dict.fromkeys(("version", "min_osi_version", "max_osi_version"), version)
     writer.add_metadata("net.asam.osi.trace", {**bounds, "description": trace.path.name})
-    for name, content in extras.metadata_records(trace, numbers).items():
+    for name, content in metadata.metadata_records(trace, numbers).items():
         writer.add_metadata(name, content)
     described = {"net.asam.osi.trace.channel.osi_version": version}
     truth = writer.register_channel(
@@ -150,7 +150,7 @@ def _events(writer: Writer, trace: Trace, shift: int) -> None:
     rows = trace.tables["declared_event"].drop_columns("drive_id").to_pylist()
     if not rows:
         return
-    schema = writer.register_schema(extras.EVENT_MESSAGE, "jsonschema", extras.EVENT_SCHEMA)
+    schema = writer.register_schema(metadata.EVENT_MESSAGE, "jsonschema", metadata.EVENT_SCHEMA)
     channel = writer.register_channel(EVENT_TOPIC, "json", schema)
     for row in rows:
         writer.add_message(channel, row["t_ns"] - shift, msgspec.json.encode(row), row["t_ns"] - shift)

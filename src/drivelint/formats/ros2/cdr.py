@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from drivelint.formats.protobuf.descriptors import FieldTree
     from drivelint.formats.ros2.types import Types
 
-    Places = NDArray[np.int64]
+    Offsets = NDArray[np.int64]
     Rows = NDArray[np.intp]
 
 HEADER_BYTES = 4
@@ -211,7 +211,7 @@ class _Batch:
             raise self._misfit(i, f"has {left[i]} bytes more than its definition")
         return table
 
-    def _run(self, program: list[Any], cursor: Places, message: Rows) -> tuple[Places, Table]:
+    def _run(self, program: list[Any], cursor: Offsets, message: Rows) -> tuple[Offsets, Table]:
         """Take the steps from each cursor on (owned, changed in place); `message`: the message each is in."""
         table = Table(len(cursor))
         end = self._end[message]
@@ -234,7 +234,7 @@ class _Batch:
                 self._items(step, cursor, end, message, table)
         return cursor, table
 
-    def _numbers(self, step: _Numbers, cursor: Places, end: Places, message: Rows, table: Table) -> None:
+    def _numbers(self, step: _Numbers, cursor: Offsets, end: Offsets, message: Rows, table: Table) -> None:
         length = self._length(cursor, end, message, step.size * step.per_item)
         cursor += np.where(length > 0, -cursor % step.size, 0)
         size = length * step.size * step.per_item
@@ -247,7 +247,7 @@ class _Batch:
             table.columns[step.keep] = first
         cursor += size
 
-    def _items(self, step: _Items, cursor: Places, end: Places, message: Rows, table: Table) -> None:
+    def _items(self, step: _Items, cursor: Offsets, end: Offsets, message: Rows, table: Table) -> None:
         length = self._length(cursor, end, message, 1)
         parts: list[Table] = []
         for k in range(int(length.max(initial=0))):
@@ -261,11 +261,11 @@ class _Batch:
             parts = parts or [self._run(step.program, cursor[:0].copy(), message[:0])[1]]
             table.children[step.keep] = _stacked(parts, [0] * len(parts), np.arange(len(cursor)))
 
-    def _taken(self, code: str, at: Places, count: int | None) -> NDArray[Any]:
+    def _taken(self, code: str, at: Offsets, count: int | None) -> NDArray[Any]:
         view, index = self._views[code], at // int(code[1])
         return view[index] if count is None else view[index[:, None] + np.arange(count)]
 
-    def _length(self, cursor: Places, end: Places, message: Rows, item_bytes: int) -> Places:
+    def _length(self, cursor: Offsets, end: Offsets, message: Rows, item_bytes: int) -> Offsets:
         """Read a length, move on behind it, and check that so many items can follow (an item has a byte at least)."""
         cursor += -cursor % 4
         self._check(cursor + 4, end, message)
@@ -274,7 +274,7 @@ class _Batch:
         self._check(cursor + length * item_bytes, end, message)
         return length
 
-    def _texts(self, start: Places, length: Places) -> NDArray[Any]:
+    def _texts(self, start: Offsets, length: Offsets) -> NDArray[Any]:
         """Return texts as fixed-width bytes; numpy drops the zero at their ends."""
         width = max(int(length.max(initial=0)), 1)
         place = np.arange(width)
@@ -282,7 +282,7 @@ class _Batch:
         letters = np.where(place < length[:, None], self._bytes[index], np.uint8(0))
         return np.ascontiguousarray(letters).view(f"S{width}").reshape(-1)
 
-    def _check(self, reach: Places, end: Places, message: Rows) -> None:
+    def _check(self, reach: Offsets, end: Offsets, message: Rows) -> None:
         beyond = reach > end
         if beyond.any():
             raise self._misfit(int(message[np.argmax(beyond)]), "ends before its definition does")

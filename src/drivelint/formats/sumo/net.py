@@ -17,7 +17,7 @@ import numpy as np
 from drivelint.errors import MapError
 from drivelint.formats import safe_xml
 from drivelint.formats.sumo.right_of_way import control_rows
-from drivelint.road.boundary_lanes import BoundedLane, Limit, bounded_map, build_lanes, crossings
+from drivelint.road.boundary_lanes import BoundedLane, SpeedLimitSpan, build_lanes, crossings, map_from_bounds
 from drivelint.road.quality import MapQuality
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         "stop_line": stop_lines,
         "crossing": crossings(net.walks, lanes, request.offset),
     }
-    return bounded_map(source, request, lanes, furniture, quality, kind="sumo", side=side)
+    return map_from_bounds(source, request, lanes, furniture, quality, kind="sumo", side=side)
 
 
 def _handedness(request: MapOptions, said: str, quality: MapQuality) -> tuple[str, str]:
@@ -235,7 +235,7 @@ def _begun(middle: Floats, other: BoundedLane, end: int) -> Floats:
 
 def _limits(lanes: Mapping[str, BoundedLane], follows: Mapping[str, Iterable[str]], inside: Iterable[str]) -> None:
     waiting = {name for name in inside if not lanes[name].limits}
-    found: dict[str, list[tuple[Limit, ...]]] = defaultdict(list)
+    found: dict[str, list[tuple[SpeedLimitSpan, ...]]] = defaultdict(list)
     for name, targets in follows.items():
         for to in targets:
             if to in waiting and lanes[name].limits:

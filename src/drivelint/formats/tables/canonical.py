@@ -22,7 +22,7 @@ from drivelint.drive.trace import (
 )
 from drivelint.errors import TraceError
 from drivelint.formats.files import is_canonical_folder
-from drivelint.formats.osi.extras import parse_conditions
+from drivelint.formats.osi.metadata import parse_conditions
 from drivelint.formats.tables import parquet
 
 if TYPE_CHECKING:

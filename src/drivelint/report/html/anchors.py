@@ -38,7 +38,7 @@ def overtake_anchor(drive_id: str, ego_id: str, occurrence: int) -> str:
     return f"overtake-{_hash(drive_id, ego_id, occurrence)}"
 
 
-def grid_name(drive_id: str, ego_id: str) -> str:
+def timeline_axis_id(drive_id: str, ego_id: str) -> str:
     """Return the name of the grid that the rows of a timeline share."""
     return f"grid-{_hash(drive_id, ego_id)}"
 

@@ -15,8 +15,8 @@ from drivelint.report.html.incidents import finding_line, incidents, key_inciden
 from drivelint.report.html.involved_actors import involved_actors
 from drivelint.report.html.log_notes import notes_on_logs
 from drivelint.report.html.margin_series import margin_series
-from drivelint.report.html.opportunities import opportunities
 from drivelint.report.html.overtakes import overtake_views
+from drivelint.report.html.overtaking_opportunities import overtaking_opportunities
 from drivelint.report.html.plan_view import actor_shapes
 from drivelint.report.html.reasons import (
     VerdictReason,
@@ -140,7 +140,7 @@ def content(result: Result) -> dict[str, Any]:
         "shapes": actor_shapes(scenes[at] for at in drawn),
         "replays_of": {drive_anchor(drive_id): text for drive_id, text in tracks.items()},
         "overtakes": overtake_views(result.overtakes.to_pylist(), starts),
-        "opportunities": opportunities(result.opportunities.to_pylist()),
+        "opportunities": overtaking_opportunities(result.opportunities.to_pylist()),
         "n_rules": len(rules),
         "rule_groups": _rule_groups(result, rules),
         "profiles": sorted({profile for rule in rules.values() for profile in rule["profiles"]}),

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from drivelint.report.html.anchors import finding_anchor, grid_name, rule_anchor
+from drivelint.report.html.anchors import finding_anchor, rule_anchor, timeline_axis_id
 from drivelint.report.html.reasons import VerdictReason, can_be_provided, summarise_reasons, verdict_reason
 from drivelint.report.html.svg import percent
 from drivelint.result.counts import SEVERITIES, grouped
@@ -142,7 +142,7 @@ def _timeline(
     order = sorted(folded.items(), key=lambda item: (_ORDER.index(item[0][0]), -len(item[1]), item[0][1]))
     return Timeline(
         ego,
-        grid_name(verdicts[0]["drive_id"], ego),
+        timeline_axis_id(verdicts[0]["drive_id"], ego),
         f"{clock.tick_step_s() / clock.duration_s:.5f}",
         clock.ticks(),
         rows,

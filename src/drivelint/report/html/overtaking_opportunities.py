@@ -16,7 +16,7 @@ _BINS: Final = 12
 _PREFERRED: Final = "nominal"
 
 
-def opportunities(records: Sequence[Row]) -> dict[str, Any] | None:
+def overtaking_opportunities(records: Sequence[Row]) -> dict[str, Any] | None:
     """Return the histogram of the rows of `opportunity_record` for one profile, and per profile how many were taken and not, by zone.
 
     None: there are none.
