@@ -112,10 +112,10 @@ def test_parts_of_a_drive_hold_its_egos_once(ragged: Path, monkeypatch: pytest.M
     assert drive.size == sum(drive.pairs_by_ego.values())
     for room in (1, 1100, 10**9):
         monkeypatch.setattr(batch, "PAIRS_PER_PART", room)
-        judged = [sorted(set(EGOS) - set(resting)) for resting in batch.egos_left_out([drive])]
+        judged = [sorted(set(EGOS) - set(resting)) for resting in batch.skipped_egos_by_part([drive])]
         assert [ego for part in judged for ego in part] == sorted(EGOS)
         assert all(len(part) == 1 or sum(drive.pairs_by_ego[e] for e in part) <= room for part in judged)
-    assert batch.egos_left_out([drive, drive]) == [[]]
+    assert batch.skipped_egos_by_part([drive, drive]) == [[]]
 
 
 def test_a_drive_of_which_a_part_fails_leaves_nothing(

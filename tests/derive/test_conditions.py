@@ -11,7 +11,7 @@ import pytest
 
 from drivelint import catalogue
 from drivelint.formats import load_map
-from drivelint.inspect.advice import MAP_SIGNALS
+from drivelint.inspect.advice import SIGNALS_NEEDING_MAP
 from drivelint.reasons.reason_text import sentence
 from drivelint.road.map_reader import MapSource
 from tests.derive.marked import shouldered
@@ -225,7 +225,9 @@ def test_every_signal_says_why_it_is_there_or_what_to_provide() -> None:
         for row in capabilities(scene):
             assert row["reason"], row
     nothing = {row["signal"]: sentence(row["reason"]) for row in capabilities(drive([ride()], None))}
-    assert {nothing[signal] for signal in {"map", *MAP_SIGNALS} - {"registration"}} == {"no map: give one with --map"}
+    assert {nothing[signal] for signal in {"map", *SIGNALS_NEEDING_MAP} - {"registration"}} == {
+        "no map: give one with --map"
+    }
 
 
 def test_what_the_log_declares_can_be_required() -> None:

@@ -227,4 +227,4 @@ def test_a_file_that_is_no_gate_is_refused(tmp_path: Path, content: bytes) -> No
 
 def test_nothing_given_is_no_gate(tmp_path: Path) -> None:
     assert GateInputs.from_files(None, None, tmp_path / "drivelint.toml", TODAY, None) is None
-    assert Gate().gates("x")
+    assert Gate().is_gating("x")

@@ -14,7 +14,7 @@ import pytest
 from drivelint import cli, guide
 from drivelint.catalogue.header import Conditions, Header
 from drivelint.drive.conditions import CONDITION_VALUES, DRIVE_CONDITION_VALUES
-from drivelint.drive.declared_events import MODES
+from drivelint.drive.declared_events import ON_OFF_EVENTS
 from drivelint.formats.osi.metadata import Event
 from drivelint.reasons.remedies import REMEDIES
 from drivelint.reasons.signals import SIGNALS
@@ -121,7 +121,7 @@ def test_the_guide_of_columns_has_every_column_of_every_file() -> None:
 def test_reading_an_unknown_has_every_reason_code() -> None:
     text = guide.text("reading-an-unknown")
     codes = set(re.findall(r"`(\w+)`", "".join(re.findall(r"^\| (`[^|]+)\|", text, re.MULTILINE))))
-    required = {f"missing_{signal}" for signal in SIGNALS if signal.removeprefix("mode_") not in MODES}
+    required = {f"missing_{signal}" for signal in SIGNALS if signal.removeprefix("mode_") not in ON_OFF_EVENTS}
     assert codes >= REMEDIES.keys() | required | {f"{name}_unknown" for name in (*DRIVE_CONDITION_VALUES, "limit")}
 
 

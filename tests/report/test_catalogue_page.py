@@ -8,7 +8,7 @@ import pytest
 
 from drivelint.catalogue import load_rules
 from drivelint.drive.conditions import CONDITION_TEXTS, DRIVE_CONDITION_VALUES
-from drivelint.drive.declared_events import EVENTS, MODES
+from drivelint.drive.declared_events import EVENTS, ON_OFF_EVENTS
 from drivelint.errors import RuleError
 from drivelint.report import vocabulary
 from drivelint.report.catalogue_page import Clause, cited_clauses, clause_coverage, page, read_clauses
@@ -83,9 +83,9 @@ def test_every_event_that_a_rule_or_a_derivation_asks_for_is_on_the_page() -> No
 
 def test_the_modes_that_the_log_is_looked_through_for_are_those_of_the_vocabulary() -> None:
     sql = (folder("queries") / "derive" / "capability.sql").read_text(encoding="utf-8")
-    assert compared(sql, "mode") == MODES.keys()
+    assert compared(sql, "mode") == ON_OFF_EVENTS.keys()
     required = {signal for rule in load_rules().values() for signal in rule.requires if signal.startswith("mode_")}
-    assert required <= {f"mode_{mode}" for mode in MODES}
+    assert required <= {f"mode_{mode}" for mode in ON_OFF_EVENTS}
 
 
 def test_every_condition_is_explained() -> None:

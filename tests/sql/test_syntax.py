@@ -73,7 +73,7 @@ def con() -> duckdb.DuckDBPyConnection:
 
 @pytest.mark.parametrize("sql", NEEDS)
 def test_a_select_has_no_rows_without_those_of_what_it_needs(con: duckdb.DuckDBPyConnection, sql: str) -> None:
-    needs = syntax.tables_required(syntax.parse_select(sql, "here"))
+    needs = syntax.tables_needing_rows(syntax.parse_select(sql, "here"))
     assert needs == set(NEEDS[sql].split())
     assert con.execute(sql).fetchall()
     for table in needs:
@@ -95,7 +95,7 @@ def test_what_is_read() -> None:
 
 @pytest.mark.parametrize("name", ["st_extent_agg", "ST_Union_Agg"])
 def test_the_aggregates_of_spatial_are_known(name: str) -> None:
-    assert not syntax.tables_required(syntax.parse_select(f"SELECT {name}(x) FROM a", "here"))
+    assert not syntax.tables_needing_rows(syntax.parse_select(f"SELECT {name}(x) FROM a", "here"))
 
 
 @pytest.mark.parametrize("step", derivations().values(), ids=lambda step: step.table)

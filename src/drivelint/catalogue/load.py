@@ -57,7 +57,7 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """The codes that its SQL names as reasons."""
 
     @property
-    def profiled(self) -> bool:
+    def per_profile(self) -> bool:
         """Whether it is judged against each profile."""
         return "profile" in self.columns["condition"]
 

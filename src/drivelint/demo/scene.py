@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from drivelint.demo.actors import Actor
     from drivelint.demo.road import Handedness, Road
 
-DEPARTURE_M = 0.05  # a corner this far over the centre line has left the lane
+LANE_DEPARTURE_M = 0.05  # a corner this far over the centre line has left the lane
 SAMPLE_RATE_HZ = 10
 
 
@@ -67,7 +67,7 @@ def lane_departure(ego: Actor, road: Road, duration_s: float) -> LaneDeparture:
     track = actor_track(ego, road, duration_s)
     track = track.at(np.arange(0, len(track.t_s), TICKS_PER_S // SAMPLE_RATE_HZ))
     along, across = half_extents(ego.body, track.yaw - road.line.at(track.station)[2])
-    over = np.flatnonzero(track.offset - across < -DEPARTURE_M)
+    over = np.flatnonzero(track.offset - across < -LANE_DEPARTURE_M)
     if not len(over):
         raise ValueError("the ego never leaves its lane")
     k = int(over[0])

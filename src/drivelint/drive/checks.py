@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import MAX_GAP_PERIODS, known_motion, step_change, wrapped
+from drivelint.drive.order import MAX_GAP_PERIODS, integral_per_step, known_motion, wrapped
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.phrases import listed
 
@@ -171,7 +171,7 @@ def _against_positions(
     span_s = np.where(span_s > 0.0, span_s, np.nan)
 
     def led(rate: NDArray[np.float64]) -> NDArray[np.float64]:
-        total = np.r_[0.0, np.cumsum(step_change(rate, step, known))]
+        total = np.r_[0.0, np.cumsum(integral_per_step(rate, step, known))]
         mean: NDArray[np.float64] = (total[last] - total[first]) / span_s
         return mean
 

@@ -21,7 +21,7 @@ from drivelint.drive.jumps import (
     SplitTracks,
     set_unknown,
 )
-from drivelint.drive.order import known_motion, step_change, wrapped
+from drivelint.drive.order import integral_per_step, known_motion, wrapped
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.drive.velocity_mismatch import mismatched_samples
 from drivelint.phrases import listed
@@ -149,7 +149,7 @@ def _frozen(states: States, step: Steps) -> Mask:
     for i, (place, rate_of) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
         v = numbers[rate_of]
         went[i] = np.where(usable, np.diff(numbers[place]), 0.0)
-        led[i] = step_change(v, step, usable)
+        led[i] = integral_per_step(v, step, usable)
         # what the velocity did between two samples is not known
         slack = np.hypot(slack, np.where(usable, 0.5 * np.abs(np.diff(v)) * step.dt_s, 0.0))
 

@@ -23,7 +23,7 @@ class DeclaredEvent(NamedTuple):
     says: str
 
 
-MODES: Final = {
+ON_OFF_EVENTS: Final = {
     "engaged": "the automated driver drives",
     "emergency_manoeuvre": "an emergency manoeuvre of the automated driver is under way",
     "minimal_risk_manoeuvre": "a minimal risk manoeuvre of the automated driver is under way",
@@ -33,7 +33,7 @@ MODES: Final = {
 }
 """Events that are on until they are declared off."""
 EVENTS: Final = {
-    **{mode: DeclaredEvent("on, off", says) for mode, says in MODES.items()},
+    **{mode: DeclaredEvent("on, off", says) for mode, says in ON_OFF_EVENTS.items()},
     "mirror_check": DeclaredEvent("left, right; none: both sides", "a look into the mirrors"),
     "blind_spot_check": DeclaredEvent("left, right; none: both sides", "a look over the shoulder"),
     "overtake_go": DeclaredEvent("none", "the decision to overtake"),

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import known_motion, step_change
+from drivelint.drive.order import integral_per_step, known_motion
 from drivelint.drive.trace import STATE_COLUMNS, QualityFinding
 from drivelint.drive.velocity import LARGEST_ERROR_MPS, MOVED_M, derive_velocities
 
@@ -96,7 +96,7 @@ def _astray(states: States, step: Steps, most_replaced_share: float) -> NDArray[
     usable = known_motion(states, step)
     unusable = np.r_[0, np.cumsum(~usable)]
     for place, rate_of in (("x_m", "vx_mps"), ("y_m", "vy_mps")):
-        way = np.r_[0.0, np.cumsum(step_change(numbers[rate_of], step, usable))]
+        way = np.r_[0.0, np.cumsum(integral_per_step(numbers[rate_of], step, usable))]
         went, led = numbers[place][k:] - numbers[place][:-k], way[k:] - way[:-k]
         off, moved, told = np.hypot(off, went - led), np.hypot(moved, went), np.hypot(told, led)
     span = (t_ns[k:] - t_ns[:-k]) * 1e-9

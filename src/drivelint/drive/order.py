@@ -141,7 +141,7 @@ def known_motion(states: States, step: Steps) -> NDArray[np.bool_]:
     return known
 
 
-def step_change(rate: NDArray[np.float64], step: Steps, known: NDArray[np.bool_]) -> NDArray[np.float64]:
+def integral_per_step(rate: NDArray[np.float64], step: Steps, known: NDArray[np.bool_]) -> NDArray[np.float64]:
     """Return how far a rate (n) leads within each step (n - 1), by the mean of its ends; 0 where that is not `known`."""
     return np.where(known, 0.5 * (rate[1:] + rate[:-1]) * step.dt_s, 0.0)
 

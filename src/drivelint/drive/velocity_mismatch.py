@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.order import known_motion, step_change
+from drivelint.drive.order import integral_per_step, known_motion
 from drivelint.drive.velocity import Tracklets, sample_noise
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def mismatched_samples(states: States, step: Steps) -> Mask:
     slack, alone = np.zeros(n - 1), np.zeros(n - 1)
     for place, rate_of in (("x_m", "vx_mps"), ("y_m", "vy_mps")):
         v = numbers[rate_of]
-        told = step_change(v, step, usable)
+        told = integral_per_step(v, step, usable)
         way = np.r_[0.0, np.cumsum(told)]
         went, led = (numbers[place][k:] - numbers[place][:-k]) / span, (way[k:] - way[:-k]) / span
         off, fastest = np.hypot(off, went - led), np.hypot(fastest, np.maximum(np.abs(went), np.abs(led)))

@@ -110,7 +110,7 @@ def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | R
         yield batch
 
 
-def egos_left_out(drives: Sequence[Drive], pairs_per_part: int | None = None) -> list[list[str]]:
+def skipped_egos_by_part(drives: Sequence[Drive], pairs_per_part: int | None = None) -> list[list[str]]:
     """Return, for each part in which a batch is judged, the egos that are not judged in it; a part has at least one ego.
 
     Only a drive alone is cut, with its egos in the order of their ids, into parts of at most `pairs_per_part` pairs (default:

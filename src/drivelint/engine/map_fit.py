@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from drivelint.road.map_reader import MapTables
 
-DOUBT_SAMPLES: Final = 80  # where the side is known, every drive is looked at: it must cost next to nothing
+SIDE_CHECK_SAMPLES: Final = 80  # where the side is known, every drive is looked at: it must cost next to nothing
 VOTE_SAMPLES: Final = 400  # moving states looked at, evenly spread: enough to vote, cheap for a long log
 LEAST_VOTES: Final = 20
 FIRST_POSITIONS, MOST_POSITIONS = 20, 2000  # positions looked at to see whether a drive is on its map

@@ -13,7 +13,7 @@ import numpy as np
 import pyarrow.compute as pc
 
 from drivelint.engine.map_fit import (
-    DOUBT_SAMPLES,
+    SIDE_CHECK_SAMPLES,
     VOTE_SAMPLES,
     compare_headings,
     count_on_map,
@@ -140,7 +140,7 @@ class MapLibrary:
         side, source = environment.handedness, environment.handedness_source
         if (environment.lanes_source or source) in {"default", "traces"}:
             return None
-        seen = self._headings(environment, trace.tables["actor_state"], DOUBT_SAMPLES)
+        seen = self._headings(environment, trace.tables["actor_state"], SIDE_CHECK_SAMPLES)
         if road := reversed_road(self._lanes(environment), seen):
             raise MapError(
                 f"map {environment.environment_id}: the traffic of {trace.path.name} runs against its lanes, on road {road} both ways: "

@@ -40,7 +40,7 @@ class Memory:
         self.limited = limit is not None
         share = 1.0 if limit is None else min(1.0, limit / DEFAULT_MEMORY)
         self.pairs_per_part = max(1, int(batch.PAIRS_PER_PART * share))
-        """Meetings of one part of a drive: see `batch.egos_left_out`."""
+        """Meetings of one part of a drive: see `batch.skipped_egos_by_part`."""
 
     def halve_parts(self, pairs: int) -> None:
         """Judge parts of at most half as many pairs as the part that did not fit."""

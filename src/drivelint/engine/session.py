@@ -9,7 +9,7 @@ import duckdb
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.engine.batch import egos_left_out
+from drivelint.engine.batch import skipped_egos_by_part
 from drivelint.engine.derive import derive
 from drivelint.engine.margins import MarginFile
 from drivelint.engine.memory import Memory
@@ -104,7 +104,7 @@ class JudgingSession:
         with ExitStack() as undo:
             undo.callback(self._forget, ids)
             self._load(drives)
-            todo = egos_left_out(drives, self._memory.pairs_per_part)
+            todo = skipped_egos_by_part(drives, self._memory.pairs_per_part)
             for no, deferred in enumerate(todo):
                 if no:
                     store.recreate_empty(self._con, store.tables_of_lifetime("part"))

@@ -117,7 +117,7 @@ class Evaluation:
 
     def _invariant(self, binding: Binding) -> None:
         rule, partial, quick = binding.rule, self._is_partial(binding), self._is_quick(binding)
-        if rule.profiled:
+        if rule.per_profile:
             self._execute(invariant.profile_set_sql(rule), binding)
         if rule.per_object and "applies" not in rule.sections:
             self._execute(invariant.lost_objects_sql(rule, partial, self._check_engagement), binding)
@@ -155,7 +155,7 @@ class Evaluation:
         self._execute(reference_points.references_sql(columns), binding)
         self._execute(reference_points.windows_sql(rule, own_object, self._check_engagement), binding)
         self._execute(reference_points.reference_steps_sql(rule), binding)
-        if rule.profiled:
+        if rule.per_profile:
             self._execute(invariant.profile_set_sql(rule), binding)
         self._execute(reference_points.judged_steps_sql(rule, own_object, self._check_engagement), binding)
         self._execute(reference_points.INSERT_ERRORS, binding)

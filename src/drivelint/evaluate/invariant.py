@@ -39,7 +39,7 @@ def default_steps_table(rule: Rule) -> str | None:
         rule.kind != "invariant"
         or "applies" in rule.sections
         or applicability.has_conditions(rule)
-        or rule.profiled
+        or rule.per_profile
         or rule.exempt_after_s != 0
     ):
         return None
@@ -169,8 +169,8 @@ def second_pass_sql(rule: Rule, partial: bool, unsettled: bool, check_engagement
             if "applies" in rule.sections
             else " AND g.object_id = v.object_id"
         )
-    profile = " AND p.profile = v.profile" if rule.profiled else ""
-    profiles = "JOIN _profile_set p ON g.drive_id = p.drive_id AND g.ego_id = p.ego_id" if rule.profiled else ""
+    profile = " AND p.profile = v.profile" if rule.per_profile else ""
+    profiles = "JOIN _profile_set p ON g.drive_id = p.drive_id AND g.ego_id = p.ego_id" if rule.per_profile else ""
     final = ") SELECT * FROM _steps"
     if rule.exempt_after_s != 0:
         # an episode whose beginning was not seen (the log's start, a hole) has no known age: none of it is exempt
@@ -186,7 +186,7 @@ WHERE s.seg IS NULL OR k_begin = s.k_first OR t_ns - t_begin_ns >= $_exempt_ns""
 CREATE OR REPLACE TEMP TABLE _judged AS
 WITH {sql_fragments.condition_ctes(rule)}, {grid}, _joined AS (
     SELECT g.drive_id, g.ego_id, coalesce(g.object_id, '') AS object_id,
-        {"p.profile" if rule.profiled else "''"} AS profile,
+        {"p.profile" if rule.per_profile else "''"} AS profile,
         coalesce(g.label, '') AS label, NULL::INTEGER AS ref_id, g.t_ns, g.k, g.seg,
         g.applies AND (v.t_ns IS NULL OR v.applies) AS applies, v.holds, v.gain, v.observed, v.required,
         CASE WHEN g.applies IS NULL THEN g.doubt WHEN v.t_ns IS NULL THEN 'missing_step'
@@ -272,10 +272,10 @@ FROM _holes
 
 def lost_objects_sql(rule: Rule, partial: bool, check_engagement: bool) -> str:
     """SQL that appends one unknown row per object whose track ends while it could still have been there."""
-    profiles = "JOIN _profile_set p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id" if rule.profiled else ""
+    profiles = "JOIN _profile_set p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id" if rule.per_profile else ""
     return f"""
 INSERT INTO _outcome BY NAME
-SELECT $_no AS rule_no, l.drive_id, l.ego_id, l.object_id, {"p.profile" if rule.profiled else "''"} AS profile,
+SELECT $_no AS rule_no, l.drive_id, l.ego_id, l.object_id, {"p.profile" if rule.per_profile else "''"} AS profile,
     l.t_from_ns AS t_start_ns, l.t_to_ns AS t_end_ns, t.t_ns AS t_worst_ns, t.t_ns AS t_decides_ns, 'unknown' AS verdict, l.code,
     why('recorded_too_short', {{'object_id': l.object_id, 'to_ns': t.t_ns,
         'far_m': CASE WHEN q.clearance_is_bound THEN q.distance_m ELSE coalesce(q.clearance_m, q.distance_m) END,

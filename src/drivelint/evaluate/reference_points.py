@@ -104,7 +104,7 @@ def judged_steps_sql(rule: Rule, own_object: bool, check_engagement: bool) -> st
     on = "g.drive_id = v.drive_id AND g.ego_id = v.ego_id AND g.t_ns = v.t_ns"
     on += " AND g.ref_id = v.ref_id" if rule.has_column("ref_id") else ""
     on += " AND g.object_id IS NOT DISTINCT FROM v.object_id" if rule.per_object else ""
-    on += " AND p.profile = v.profile" if rule.profiled else ""
+    on += " AND p.profile = v.profile" if rule.per_profile else ""
     # where nobody is, "all" is kept and "any" is missed by as much as can be
     edge = "'inf'::DOUBLE" if rule.combine == "all" else "'-inf'::DOUBLE"
     human, why = "false", ""
@@ -116,7 +116,7 @@ def judged_steps_sql(rule: Rule, own_object: bool, check_engagement: bool) -> st
 CREATE OR REPLACE TEMP TABLE _judged AS
 WITH {sql_fragments.condition_ctes(rule)}, _grid AS ({source}
 ), _joined AS (
-    SELECT g.ref_no AS ref_id, g.drive_id, g.ego_id, g.object_id, {"p.profile" if rule.profiled else "''"} AS profile,
+    SELECT g.ref_no AS ref_id, g.drive_id, g.ego_id, g.object_id, {"p.profile" if rule.per_profile else "''"} AS profile,
         g.t_ns, g.seg, v.t_ns IS NULL OR v.applies AS applies, v.observed, v.required,
         CASE WHEN g.nobody THEN {edge} ELSE v.gain END AS gain,
         CASE WHEN {human} THEN NULL WHEN g.nobody THEN {empty} WHEN v.applies AND g.lost IS NULL THEN v.holds END AS holds,
@@ -125,7 +125,7 @@ WITH {sql_fragments.condition_ctes(rule)}, _grid AS ({source}
             WHEN g.nobody THEN 'beyond_sensor_range' WHEN v.t_ns IS NULL THEN 'missing_step'
             WHEN v.applies IS NULL THEN coalesce(v.code, 'applies_unknown') ELSE v.code END AS code,
         CASE WHEN NOT ({human}) THEN v.reason END AS reason
-    FROM _grid g {"JOIN _profile_set p ON g.drive_id = p.drive_id AND g.ego_id = p.ego_id" if rule.profiled else ""}
+    FROM _grid g {"JOIN _profile_set p ON g.drive_id = p.drive_id AND g.ego_id = p.ego_id" if rule.per_profile else ""}
     LEFT JOIN _state v ON {on}
     {applicability.condition_joins(rule, "g", "g.t_ns", True) if check_engagement else ""}
 ), _expected AS (SELECT * FROM _joined WHERE applies IS DISTINCT FROM false
@@ -214,7 +214,7 @@ def outcomes_sql(rule: Rule, own_object: bool) -> str:
         if crowd
         else "'outside_conditions'"
     )
-    profiles = "JOIN _profile_set p ON o.drive_id = p.drive_id AND o.ego_id = p.ego_id" if rule.profiled else ""
+    profiles = "JOIN _profile_set p ON o.drive_id = p.drive_id AND o.ego_id = p.ego_id" if rule.per_profile else ""
     somebody = (
         "o.ref_id IN (SELECT ref_id FROM reference_step JOIN pair USING (drive_id, ego_id, t_ns))" if crowd else "true"
     )
@@ -226,7 +226,7 @@ WITH {_coverage(rule)}, _steps AS (
         {sql_fragments.deciding_step(rule)} AS worst, {sql_fragments.first_unknown_step(rule)} AS unknown
     FROM _judged GROUP BY ALL
 ), _all AS (
-    SELECT o.*, {"p.profile" if rule.profiled else "''"} AS profile, coalesce(c.n_points, 0) AS n_points, c.problem,
+    SELECT o.*, {"p.profile" if rule.per_profile else "''"} AS profile, coalesce(c.n_points, 0) AS n_points, c.problem,
         c.t_min, c.t_max,
         {somebody} AS somebody
     FROM _occasion o {profiles} LEFT JOIN _cover c ON c.ref_id = o.ref_id

@@ -54,7 +54,7 @@ def _numbers(case: VerdictContext, sandbox: Sandbox) -> Iterator[_Number]:
 
         yield _Number(name, param.why, param.unit, float(now), math.inf, with_param)
     profile = case.target.verdict_row["profile"]
-    if not case.rule.profiled or profile is None:
+    if not case.rule.per_profile or profile is None:
         return
     for row in sandbox.query("SELECT * FROM profile WHERE profile = ?", [profile]):
         for column, (unit, what) in _PROFILE.items():

@@ -145,7 +145,7 @@ def waiver_reason(waiver: Waiver) -> str:
     return f"waived until {waiver.expires} by {waiver.owner}: {waiver.reason}"
 
 
-def excuse(gate: Gate | None, finding_id: str) -> str:
+def reason_not_gating(gate: Gate | None, finding_id: str) -> str:
     """Return why a gate lets a finding through, its waiver before the baseline; '' where it does not."""
     waiver = gate.waiver(finding_id) if gate else None
     if waiver is not None:

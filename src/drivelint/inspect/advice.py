@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
 
-MAP_SIGNALS: Final = frozenset(
+SIGNALS_NEEDING_MAP: Final = frozenset(
     {
         "registration", "handedness", "lane_types", "markings", "speed_limits", "exit_signs", "road_types", "junctions",
         "traffic_lights", "stop_lines", "crossings",
@@ -42,11 +42,11 @@ def undecided_rules(rules: Sequence[Rule], lacking: Mapping[str, str], never: Ma
     found = []
     for rule in rules:
         conditions = {SIGNAL_OF_CONDITION.get(name, name) for name in rule.applies.restricting}
-        conditions |= {"speed_limits"} if rule.applies.has_limit else set()
+        conditions |= {"speed_limits"} if rule.applies.restricts_speed_limit else set()
         needed = set(rule.requires) & lacking.keys() | conditions & never.keys()
         missing = needed | set(rule.pass_requires) & never.keys()
         if "map" in missing:
-            missing -= MAP_SIGNALS
+            missing -= SIGNALS_NEEDING_MAP
         if missing:
             found.append(Undecided(rule_id=rule.id, title=rule.title, missing=sorted(missing), breach_only=not needed))
     return found

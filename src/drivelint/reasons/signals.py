@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from drivelint.drive.conditions import CONDITION_TEXTS, CONDITION_VALUES
-from drivelint.drive.declared_events import MODES
+from drivelint.drive.declared_events import ON_OFF_EVENTS
 from drivelint.formats.registry import FORMATS
 from drivelint.phrases import hint
 
@@ -39,7 +39,7 @@ ADVICE: Final = {
     },
     **{
         f"mode_{mode}": f"when {mode} is on, as declared events {mode} with the values on and off: {{declared_events}}"
-        for mode in MODES
+        for mode in ON_OFF_EVENTS
     },
     "mode_engaged": (
         "whether the automated driver drives: --env engaged=yes or no for the whole drive, "

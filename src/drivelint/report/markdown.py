@@ -118,10 +118,10 @@ def _findings(result: Result, link: str) -> Iterator[str]:
         if rows:
             head = ["severity", "drive", "time", "rule", "who", "observed", "required", *(["why not"] if why else [])]
             lines = []
-            for row, excuse in rows[:MAX_ROWS]:
+            for row, reason_not_gating in rows[:MAX_ROWS]:
                 sense = rules[row["rule_id"]]["sense"] if row["rule_id"] in rules else ""
                 cells = _finding(row, sense, starts[row["drive_id"]], link)
-                lines.append([*cells, escaped(_short(excuse))] if why else cells)
+                lines.append([*cells, escaped(_short(reason_not_gating))] if why else cells)
             heading, table = title + _shown(len(rows)), _table(head, lines)
             yield _folded(heading, table) if why else f"### {heading}\n\n{table}"
 
@@ -137,8 +137,8 @@ def _finding(row: Row, sense: str, start_ns: int | None, link: str) -> list[str]
 
 def _excuse(row: Row, rule: Row | None, result: Result) -> str:
     """Return why a finding does not gate; '' where it does."""
-    if excuse := descriptions.excuse(result.gate, row["finding_id"]):
-        return excuse
+    if reason_not_gating := descriptions.reason_not_gating(result.gate, row["finding_id"]):
+        return reason_not_gating
     if rule is None or rule["status"] != "stable":
         return "draft" if rule is None else rule["status"]
     severe = () if result.fail_on == "never" else counts.SEVERITIES[: counts.SEVERITIES.index(result.fail_on) + 1]

@@ -106,7 +106,7 @@ def _findings(result: Result, starts: dict[str, int | None], *, wide: bool) -> l
     gate, rows = result.gate, result.findings
     if gate is None:
         return [_measured("Findings", rows, starts, "red", wide=wide)]
-    stops = pa.array([gate.gates(name) for name in rows["finding_id"].to_pylist()], pa.bool_())
+    stops = pa.array([gate.is_gating(name) for name in rows["finding_id"].to_pylist()], pa.bool_())
     title = "New findings" if gate.baseline is not None else "Findings"
     return [
         _measured(title, rows.filter(stops), starts, "red", wide=wide),

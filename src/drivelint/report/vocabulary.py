@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from drivelint.drive.conditions import CONDITION_TEXTS, DRIVE_CONDITION_VALUES
-from drivelint.drive.declared_events import EVENTS, MODES
+from drivelint.drive.declared_events import EVENTS, ON_OFF_EVENTS
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIGNAL_STATES
 from drivelint.road.signcodes import codes_of
 
@@ -139,7 +139,7 @@ def event_table(rules: Sequence[Rule]) -> Table:
     """Return a row per declared event: its value, what it says, which rules ask for it."""
     rows = []
     for name, event in EVENTS.items():
-        asking = _asking(rules, (f"'{name}'",), ("ego_mode",) if name in MODES else ("declared_event",))
+        asking = _asking(rules, (f"'{name}'",), ("ego_mode",) if name in ON_OFF_EVENTS else ("declared_event",))
         rows.append((f"`{name}`", event.value, event.says, "all" if name == "engaged" else _ids(asking)))
     return ("event", "value", "says", "asked for by"), rows
 

@@ -136,6 +136,6 @@ class Gate:
         entry = self.compared(finding_id)
         return entry is not None and entry.standing != "new"
 
-    def gates(self, finding_id: str) -> bool:
+    def is_gating(self, finding_id: str) -> bool:
         """Return whether a finding may fail a run: it is neither waived nor in the baseline."""
         return finding_id not in self.waived and not self.in_baseline(finding_id)

@@ -33,7 +33,7 @@ def _row(rule: Rule, overrides: Mapping[str, object], profiles: Sequence[str]) -
         "window_s": window,
         "tags": list(rule.tags),
         "requires": list(rule.requires),
-        "profiles": sorted(profiles) if rule.profiled else [],
+        "profiles": sorted(profiles) if rule.per_profile else [],
         "params": [
             {
                 "name": name,

@@ -53,7 +53,7 @@ def derivations() -> dict[str, Derivation]:
         sql = file.read_text(encoding="utf-8")
         tree = syntax.parse_select(sql, str(file))
         found[file.stem] = Derivation(
-            file.stem, sql, syntax.tables_read(tree) & names - {file.stem}, syntax.tables_required(tree)
+            file.stem, sql, syntax.tables_read(tree) & names - {file.stem}, syntax.tables_needing_rows(tree)
         )
     if missing := sorted(column_comments("derived").keys() - names - _GIVEN):
         raise DriveLintError(

@@ -50,7 +50,7 @@ def tables_read(tree: Node) -> Names:
     return frozenset(found)
 
 
-def tables_required(tree: Node) -> Names:
+def tables_needing_rows(tree: Node) -> Names:
     """Return tables that must have rows for the SELECT to have any; a table left out only costs time."""
     return _query(tree, {}, beside=False)
 

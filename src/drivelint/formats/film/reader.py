@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
 formats: Final[dict[str, tuple[str, str]]] = {}
 takes_mapping: Final = True
-PULL_OUT_OVERLAP_M: Final = 0.06
+PULL_OUT_START_OVER_LINE_M: Final = 0.06
 """How far a corner is over the centre line in the first frame of pulling out: just more than counts as over it (0.05 m)."""
-PULL_OUT_SHORTFALL_M: Final = 0.11
+PULL_OUT_END_REMAINING_M: Final = 0.11
 """How much the last frame of pulling out is short of passing: just more than counts as settled (0.1 m)."""
 ROAD_EXTENSION_M: Final = 400.0
 """How much longer the road is than the ego's way, at both ends."""
@@ -181,16 +181,16 @@ def _across(film: VideoMapping, stages: OvertakeStages, frames: NDArray[np.int64
     middle of its lane.
     """
     home = -film.road.lane_width / 2
-    touching = PULL_OUT_OVERLAP_M - film.ego.width / 2
+    touching = PULL_OUT_START_OVER_LINE_M - film.ego.width / 2
     pulling = frames[(frames >= stages.pulling_out) & (frames < stages.passing)]
     leaving = frames[frames >= stages.abort]
     points: list[tuple[float, float]] = []
     if len(pulling):
         if pulling[0] > frames[0]:
-            points.append((float(pulling[0] - 1), min(home, touching - 2 * PULL_OUT_OVERLAP_M)))
+            points.append((float(pulling[0] - 1), min(home, touching - 2 * PULL_OUT_START_OVER_LINE_M)))
         points += [
             (float(pulling[0]), touching),
-            (float(pulling[-1]), max(touching, stages.offset - PULL_OUT_SHORTFALL_M)),
+            (float(pulling[-1]), max(touching, stages.offset - PULL_OUT_END_REMAINING_M)),
         ]
     points.append((float(stages.passing), stages.offset))
     if len(leaving):

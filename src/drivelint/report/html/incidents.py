@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _SENSE: Final = {">": "more than", ">=": "at least", "<": "less than", "<=": "at most"}
 _SPACES: Final = "danger_space"
 """Tag of the rules whose plan views show danger spaces."""
-MAX_KEY_INCIDENTS: Final = 6
+MAX_INCIDENTS_IN_SUMMARY: Final = 6
 """Moments of a drive that the printed report shows with their plan views."""
 
 
@@ -132,14 +132,14 @@ def incident_key(row: Row) -> Key:
     return row["drive_id"], row["ego_id"], row["t_worst_ns"]
 
 
-def key_incidents(lines: Iterable[FindingLine]) -> set[Key]:
+def incidents_in_summary(lines: Iterable[FindingLine]) -> set[Key]:
     """Return the incidents of one drive that its summary shows: the worst of each rule, the most severe rules first."""
     first: dict[str, tuple[int, float, Key]] = {}
     for row in (line.row for line in lines if line.kind == "fail"):
         ratio = 0.0 if not row["required"] or row["margin"] is None else row["margin"] / abs(row["required"])
         worst = (SEVERITIES.index(row["severity"]), ratio, incident_key(row))
         first[row["rule_id"]] = min(first.get(row["rule_id"], worst), worst)
-    return set(list(dict.fromkeys(at for _, _, at in sorted(first.values())))[:MAX_KEY_INCIDENTS])
+    return set(list(dict.fromkeys(at for _, _, at in sorted(first.values())))[:MAX_INCIDENTS_IN_SUMMARY])
 
 
 def incidents(

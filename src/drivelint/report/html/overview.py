@@ -74,7 +74,7 @@ def _of_these(result: Result) -> str:
     if gate is None:
         return ""
     ids = result.findings["finding_id"].to_pylist()
-    left = sum(gate.gates(name) for name in ids)
+    left = sum(gate.is_gating(name) for name in ids)
     return f", {left or 'none'} of them {'new' if gate.baseline is not None else 'not waived'}"
 
 

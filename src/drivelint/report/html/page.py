@@ -11,7 +11,7 @@ from drivelint.report.html import overview
 from drivelint.report.html.anchors import drive_anchor, rule_anchor
 from drivelint.report.html.baseline_status import finding_status, gate_summary
 from drivelint.report.html.glossary import glossary_entries
-from drivelint.report.html.incidents import finding_line, incidents, key_incidents, plan_views
+from drivelint.report.html.incidents import finding_line, incidents, incidents_in_summary, plan_views
 from drivelint.report.html.involved_actors import involved_actors
 from drivelint.report.html.log_notes import notes_on_logs
 from drivelint.report.html.margin_series import margin_series
@@ -86,7 +86,9 @@ def content(result: Result) -> dict[str, Any]:
         _section(
             row,
             timelines(verdicts.get(row["drive_id"], []), found.get(row["drive_id"], []), rules, anchors, _clock(row)),
-            incidents(mine := listed.get(row["drive_id"], []), drawn, starts[row["drive_id"]], key_incidents(mine)),
+            incidents(
+                mine := listed.get(row["drive_id"], []), drawn, starts[row["drive_id"]], incidents_in_summary(mine)
+            ),
             involved_actors(mine, scenes),
             unfolded=len(drives) <= MAX_UNFOLDED_DRIVES,
         )
