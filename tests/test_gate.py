@@ -17,7 +17,7 @@ import pytest
 import yaml
 
 from drivelint import cli
-from drivelint.demo import files
+from drivelint import demo as demo_files
 from drivelint.guide import FOLDER
 from drivelint.report import outputs
 from tests.shared_data import ROOT
@@ -134,7 +134,7 @@ class Workflow:
 
 def test_the_guides_workflow_stops_what_is_new_and_nothing_else(tmp_path: Path) -> None:
     demo = tmp_path / "demo"
-    files.write(demo)
+    demo_files.write(demo)
     (tmp_path / "work").mkdir()
     workflow = Workflow(tmp_path / "work")
 

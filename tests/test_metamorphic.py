@@ -19,7 +19,6 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from drivelint.demo import scene as sampling
 from drivelint.engine.batch import Drive
 from drivelint.formats import load_map
 from drivelint.road.map_reader import MapSource
@@ -28,6 +27,7 @@ from tests.clean.judging import named
 from tests.clean.planted import PLANTED
 from tests.clean.roads import open_road
 from tests.clean.story import Story
+from tests.demo import scene as sampling
 from tests.demo import scene_drive
 from tests.demo.scenes import all_scenes
 from tests.mirror import mirrored_map

@@ -12,7 +12,7 @@ import pytest
 from typer.main import get_command
 
 from drivelint import cli
-from drivelint.demo import files
+from drivelint import demo as demo_files
 from tests.guide.blocks import PAGES, shell_lines
 from tests.shared_data import ROOT
 
@@ -44,7 +44,7 @@ def test_the_first_command_checks_the_demo_as_the_demo_says() -> None:
     install, demo, check = command("run").split(" && ", 1)[1].split(" && ")
     assert install.endswith(" install -q .")
     assert demo == ".venv/bin/drivelint demo"
-    shown = files.check_command(Path("demo"), "drivelint").partition(" ")[2]
+    shown = demo_files.check_command(Path("demo"), "drivelint").partition(" ")[2]
     assert check == f".venv/bin/drivelint {shown}"
     assert f"`{shown.rpartition(' ')[2]}/report.html`" in README
 

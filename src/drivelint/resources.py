@@ -1,4 +1,4 @@
-"""Finds the folders `schemas` and `queries`, in the repository or in the installed wheel."""
+"""Finds the folders `schemas`, `queries` and `fixtures`, in the repository or in the installed wheel."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from drivelint.errors import DriveLintError
 
 @cache
 def folder(name: str) -> Path:
-    """Return the folder `schemas` or `queries`, installed or from the repository."""
+    """Return the folder `schemas`, `queries` or `fixtures` (installed: what `drivelint demo` writes of it)."""
     package = Path(__file__).parent
     for root in (package / "_data", package.parent.parent):
         if (root / name).is_dir():

@@ -12,7 +12,7 @@ from tests.scenes import Actor
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from drivelint.demo.line import Line
+    from tests.demo.line import Line
 
     Floats = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from drivelint.demo.line import Line, Piece, Pose
+from tests.demo.line import Line, Piece, Pose
 from tests.formats.opendrive import xodr
 from tests.scenes import plan
 

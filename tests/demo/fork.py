@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from drivelint.demo.line import Line, Piece, Pose
-from drivelint.demo.opendrive import _element, _Lane, _lanes, _n, _numbers, _section, road_elements
-from drivelint.demo.road import LANE_WIDTH_M, Road
+from tests.demo.line import Line, Piece, Pose
+from tests.demo.opendrive import _element, _Lane, _lanes, _n, _numbers, _section, road_elements
+from tests.demo.road import LANE_WIDTH_M, Road
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

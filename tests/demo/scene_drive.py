@@ -6,15 +6,15 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from drivelint.demo.osi_log import HOST_ID, osi_mcap, states
 from drivelint.drive.finish import finish_trace
 from drivelint.drive.trace import Identity, IngestOptions, Recording
 from drivelint.engine.batch import Drive
 from drivelint.formats import load_map
 from drivelint.road.map_reader import MapSource
+from tests.demo.osi_log import HOST_ID, osi_mcap, states
 
 if TYPE_CHECKING:
-    from drivelint.demo.scene import Scene
+    from tests.demo.scene import Scene
 
 
 def drive_of_scene(scene: Scene) -> Drive:

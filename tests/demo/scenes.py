@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Final
 
-from drivelint.demo.actors import Actor, car, cyclist
-from drivelint.demo.line import left, right, straight
-from drivelint.demo.overtakes import OvertakeManner, overtakes, pass_parked_car
-from drivelint.demo.road import LANE_WIDTH_M, MPH, Road, Sign
-from drivelint.demo.scene import Scene, lane_departure, place_oncoming
+from tests.demo.actors import Actor, car, cyclist
 from tests.demo.fork import Fork, ForkedRoad
+from tests.demo.line import left, right, straight
+from tests.demo.overtakes import OvertakeManner, overtakes, pass_parked_car
+from tests.demo.road import LANE_WIDTH_M, MPH, Road, Sign
+from tests.demo.scene import Scene, lane_departure, place_oncoming
 
 TWO_LANE_ROAD: Final = Road((straight(500.0),), lanes=2)
 LONG_ROAD: Final = Road((straight(1000.0),))

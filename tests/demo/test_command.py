@@ -11,11 +11,11 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from drivelint.demo import files
-from drivelint.demo.overtakes import PAPER_SPEED_MPS, distance_ahead_m, safe_distance_ahead_m
-from drivelint.demo.road import MPH
+from drivelint import demo as demo_files
 from drivelint.engine.profiles import load_profiles
 from drivelint.errors import UsageError
+from tests.demo.overtakes import PAPER_SPEED_MPS, distance_ahead_m, safe_distance_ahead_m
+from tests.demo.road import MPH
 from tests.demo.table_1 import TABLE_1
 
 PROGRAM = [sys.executable, "-m", "drivelint"]
@@ -47,10 +47,10 @@ def test_the_printed_command_gives_the_nine_verdicts_at_both_speeds(tmp_path: Pa
 
 
 def test_an_earlier_demo_is_written_over(tmp_path: Path) -> None:
-    first = {path.name: path.read_bytes() for path in files.write(tmp_path)}
-    road = tmp_path / files.ROAD_FILE
+    first = {path.name: path.read_bytes() for path in demo_files.write(tmp_path)}
+    road = tmp_path / demo_files.ROAD_FILE
     road.write_text(road.read_text(encoding="utf-8").replace("30", "20"), encoding="utf-8")
-    assert {path.name: path.read_bytes() for path in files.write(tmp_path)} == first
+    assert {path.name: path.read_bytes() for path in demo_files.write(tmp_path)} == first
 
 
 @pytest.mark.parametrize("foreign", [b"", b"mine", b"\x89MCAP0\r\n" + bytes(2000) + b"drivelint demo"])
@@ -58,7 +58,7 @@ def test_somebody_elses_file_stays_and_nothing_is_written(tmp_path: Path, foreig
     mine = tmp_path / "near-miss.mcap"
     mine.write_bytes(foreign)
     with pytest.raises(UsageError, match=r"near-miss\.mcap was not written by this demo"):
-        files.write(tmp_path)
+        demo_files.write(tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == [mine.name]
     assert mine.read_bytes() == foreign
 
@@ -69,13 +69,15 @@ def test_a_folder_or_a_dangling_link_of_that_name_stays(tmp_path: Path) -> None:
     (tmp_path / "two" / "safe.mcap").symlink_to(tmp_path / "nowhere")
     for name in ("one", "two"):
         with pytest.raises(UsageError, match=r"safe\.mcap was not written"):
-            files.write(tmp_path / name)
+            demo_files.write(tmp_path / name)
 
 
 def test_the_next_command_names_the_program_as_it_was_called_where_it_is_on_no_path(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setenv("PATH", "")
-    assert files.check_command(Path("demo"), ".venv/bin/drivelint").startswith(".venv/bin/drivelint check demo/*.mcap ")
-    assert files.check_command(Path("demo"), "/x/pytest").startswith("drivelint check ")
-    assert files.check_command(Path("my demo")).endswith("--out 'my demo'/results")
+    assert demo_files.check_command(Path("demo"), ".venv/bin/drivelint").startswith(
+        ".venv/bin/drivelint check demo/*.mcap "
+    )
+    assert demo_files.check_command(Path("demo"), "/x/pytest").startswith("drivelint check ")
+    assert demo_files.check_command(Path("my demo")).endswith("--out 'my demo'/results")

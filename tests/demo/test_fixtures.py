@@ -10,8 +10,8 @@ import pytest
 import zstandard
 from mcap.reader import make_reader
 
-from drivelint.demo.motion import separation
-from drivelint.demo.overtakes import overtakes
+from tests.demo.motion import separation
+from tests.demo.overtakes import overtakes
 from tests.demo.scenes import all_scenes
 from tests.demo.table_1 import TABLE_1
 from tests.shared_data import ROOT

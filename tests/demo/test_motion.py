@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from drivelint.demo.actors import Actor, car, cyclist
-from drivelint.demo.line import Line, left, right, straight
-from drivelint.demo.motion import TICKS_PER_S, Track, actor_track, separation, stop_on_contact
-from drivelint.demo.road import LANE_WIDTH_M, Handedness, Road
-from drivelint.demo.scene import lane_departure, place_oncoming
+from tests.demo.actors import Actor, car, cyclist
+from tests.demo.line import Line, left, right, straight
+from tests.demo.motion import TICKS_PER_S, Track, actor_track, separation, stop_on_contact
+from tests.demo.road import LANE_WIDTH_M, Handedness, Road
+from tests.demo.scene import lane_departure, place_oncoming
 
 HANDS: tuple[Handedness, ...] = ("left", "right")
 S_BEND = Road((straight(60.0), left(80.0, radius=100.0), right(80.0, radius=60.0), straight(300.0)))

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from drivelint.demo.line import straight
-from drivelint.demo.opendrive import opendrive
-from drivelint.demo.road import LANE_WIDTH_M, MPH, Handedness, Road, Sign
 from drivelint.formats import load_map
 from drivelint.road.map_reader import MapSource
 from tests.demo import scenes
+from tests.demo.line import straight
+from tests.demo.opendrive import opendrive
+from tests.demo.road import LANE_WIDTH_M, MPH, Handedness, Road, Sign
 
 if TYPE_CHECKING:
     from drivelint.road.map_reader import MapTables

@@ -9,13 +9,13 @@ import pytest
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 from mcap.reader import make_reader
 
-from drivelint.demo.actors import car, pedestrian
-from drivelint.demo.line import straight
-from drivelint.demo.osi_log import osi_mcap
-from drivelint.demo.road import Road
-from drivelint.demo.scene import Scene
 from drivelint.drive.trace import IngestOptions
 from drivelint.formats import read_trace
+from tests.demo.actors import car, pedestrian
+from tests.demo.line import straight
+from tests.demo.osi_log import osi_mcap
+from tests.demo.road import Road
+from tests.demo.scene import Scene
 from tests.demo.scene_drive import drive_of_scene
 from tests.demo.scenes import all_scenes
 

@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from drivelint.demo import files
+from drivelint import demo as demo_files
 from drivelint.drive.trace import IngestOptions
 from drivelint.errors import TraceError
 from drivelint.formats import registry
@@ -35,7 +35,7 @@ MARKS = {"", "run", "prints", "file", "command", "workflow"}
 @pytest.fixture(scope="module")
 def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("demo")
-    files.write(folder)
+    demo_files.write(folder)
     return folder
 
 

@@ -13,7 +13,7 @@ from tests.sumo.both import both
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from drivelint.demo.road import Handedness
+    from tests.demo.road import Handedness
 
 needs_sumo = pytest.mark.skipif(
     world.tool("sumo") is None or world.tool("netconvert") is None,

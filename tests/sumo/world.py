@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from drivelint.demo.line import left, right, straight
-from drivelint.demo.opendrive import opendrive
-from drivelint.demo.road import LANE_WIDTH_M, MPH, Handedness, Road
+from tests.demo.line import left, right, straight
+from tests.demo.opendrive import opendrive
+from tests.demo.road import LANE_WIDTH_M, MPH, Handedness, Road
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -170,11 +170,11 @@ def demo(
 
     Three overtakes at two speeds, as ASAM OSI in MCAP, and their road. Prints the command that checks them.
     """
-    from drivelint.demo import files
+    from drivelint import demo
 
-    written = files.write(out)
+    written = demo.write(out)
     typer.echo(f"{out}: {len(written) - 1} drives and their road are there. Check them with:", err=True)
-    typer.echo(files.check_command(out, sys.argv[0]))
+    typer.echo(demo.check_command(out, sys.argv[0]))
 
 
 @app.command()

@@ -1,4 +1,7 @@
-"""What `drivelint demo` writes: the paper's overtakes and their road, and the command that checks them."""
+"""What `drivelint demo` writes: the paper's overtakes and their road, and the command that checks them.
+
+The files are those of `fixtures/scenes`, made by the scenes of `tests/demo`.
+"""
 
 from __future__ import annotations
 
@@ -7,23 +10,26 @@ from pathlib import PurePath
 from shutil import which
 from typing import TYPE_CHECKING, Final
 
-from drivelint.demo.opendrive import GENERATOR
-from drivelint.demo.osi_log import osi_mcap
-from drivelint.demo.overtakes import PROFILES, overtakes
 from drivelint.errors import UsageError
+from drivelint.resources import folder
 from drivelint.result.files import publish
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 ROAD_FILE: Final = "road.xodr"
-_HEAD_BYTES = 1024  # the maker's name stands in the header of either format
+PROFILES: Final = ("relaxed", "nominal", "aggressive")
+_SOURCES: Final = {ROAD_FILE: "overtake-road.xodr"} | {
+    name: name for scene in ("safe", "near-miss", "collision") for name in (f"{scene}.mcap", f"{scene}-25mph.mcap")
+}
+_GENERATOR = b"drivelint demo"
+_HEAD_BYTES = 1024  # the generator's name stands in the header of either format
 
 
 def contents() -> dict[str, bytes]:
-    """Return every file, name -> bytes: the same bytes every time."""
-    scenes = overtakes()
-    return {ROAD_FILE: scenes[0].map_text.encode()} | {f"{scene.name}.mcap": osi_mcap(scene) for scene in scenes}
+    """Return every file, name -> bytes."""
+    scenes = folder("fixtures") / "scenes"
+    return {name: (scenes / source).read_bytes() for name, source in _SOURCES.items()}
 
 
 def write(out: Path) -> list[Path]:
@@ -44,7 +50,7 @@ def _is_ours(path: Path) -> None:
         return
     try:
         with path.open("rb") as file:
-            ours = GENERATOR.encode() in file.read(_HEAD_BYTES)
+            ours = _GENERATOR in file.read(_HEAD_BYTES)
     except OSError:
         ours = False
     if not ours:
@@ -53,7 +59,7 @@ def _is_ours(path: Path) -> None:
 
 def check_command(out: Path, called: str = "drivelint") -> str:
     """Return the command that checks what was written, to be copied into a shell; `called` is how drivelint was started."""
-    folder = shlex.quote(str(out))
+    there = shlex.quote(str(out))
     profiles = " ".join(f"--profile {name}" for name in PROFILES)
     program = shlex.quote(called) if PurePath(called).name == "drivelint" and not which("drivelint") else "drivelint"
-    return f"{program} check {folder}/*.mcap --map {folder}/{ROAD_FILE} {profiles} --out {folder}/results"
+    return f"{program} check {there}/*.mcap --map {there}/{ROAD_FILE} {profiles} --out {there}/results"

@@ -11,16 +11,16 @@ from __future__ import annotations
 import math
 from typing import Final, NamedTuple
 
-from drivelint.demo.actors import Actor, car
-from drivelint.demo.line import straight
-from drivelint.demo.road import LANE_WIDTH_M, MPH, Road
-from drivelint.demo.scene import Scene, lane_departure, place_oncoming
+from drivelint.demo import PROFILES
 from drivelint.engine.profiles import Profile, load_profiles
+from tests.demo.actors import Actor, car
+from tests.demo.line import straight
+from tests.demo.road import LANE_WIDTH_M, MPH, Road
+from tests.demo.scene import Scene, lane_departure, place_oncoming
 
 PAPER_SPEED_MPS: Final = 5.22
 PAPER_DISTANCES_AHEAD_M: Final = {"safe": 76.43, "near-miss": 58.33, "collision": 35.63}
 """Distance ahead in the paper's logs when the ego leaves its lane."""
-PROFILES: Final = ("relaxed", "nominal", "aggressive")
 ROAD: Final = Road((straight(400.0),))
 ROAD_NAME: Final = "overtake-road"
 LEAD_IN_S: Final = 7.0  # from the start to pulling out; six of them signalled

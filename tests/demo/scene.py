@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.demo.motion import TICKS_PER_S, Track, actor_track, half_extents, stop_on_contact
-from drivelint.demo.opendrive import opendrive
+from tests.demo.motion import TICKS_PER_S, Track, actor_track, half_extents, stop_on_contact
+from tests.demo.opendrive import opendrive
 
 if TYPE_CHECKING:
-    from drivelint.demo.actors import Actor
-    from drivelint.demo.road import Handedness, Road
+    from tests.demo.actors import Actor
+    from tests.demo.road import Handedness, Road
 
 LANE_DEPARTURE_M = 0.05  # a corner this far over the centre line has left the lane
 SAMPLE_RATE_HZ = 10

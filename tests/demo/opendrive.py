@@ -5,13 +5,13 @@ from __future__ import annotations
 from functools import singledispatch
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
-from drivelint.demo.road import LANE_WIDTH_M, SIDE_LANE_WIDTH_M, Road
+from tests.demo.road import LANE_WIDTH_M, SIDE_LANE_WIDTH_M, Road
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from drivelint.demo.line import Line
-    from drivelint.demo.road import Sign
+    from tests.demo.line import Line
+    from tests.demo.road import Sign
 
 T = TypeVar("T")
 GENERATOR = "drivelint demo"

@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from mcap.writer import CompressionType, Writer
 
-from drivelint.demo.opendrive import GENERATOR
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIZE_COLUMNS, STATE_COLUMNS, States
 from drivelint.formats.osi.encode import Objects, ground_truth_head, moving_objects
 from drivelint.formats.osi.schema import GROUND_TRUTH, VERSION, descriptor_set
+from tests.demo.opendrive import GENERATOR
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
-    from drivelint.demo.motion import Track
-    from drivelint.demo.scene import Scene
+    from tests.demo.motion import Track
+    from tests.demo.scene import Scene
 
     Floats = NDArray[np.float64]
 

@@ -13,8 +13,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from drivelint.demo.actors import Actor, Body
-    from drivelint.demo.road import Road
+    from tests.demo.actors import Actor, Body
+    from tests.demo.road import Road
 
     Floats = NDArray[np.float64]
 

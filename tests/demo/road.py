@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Literal, NamedTuple
 
-from drivelint.demo.line import Line, Piece
+from tests.demo.line import Line, Piece
 
 LANE_WIDTH_M = 3.5
 SIDE_LANE_WIDTH_M = 2.0  # a footway's or a shoulder's width
