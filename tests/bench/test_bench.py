@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+import tests.bench
+from tests.bench import stages
 from tests.bench.__main__ import SECTIONS, main
 from tests.bench.clock import Span, Stages, now
 from tests.bench.place import TINY, Place
@@ -24,6 +26,13 @@ def test_a_section_measures_something(section: str, tmp_path: Path) -> None:
     assert rows
     assert all(row.value > 0 for row in rows if row.bar)
     assert markdown(rows).count("\n") == len(rows) + 1
+
+
+def test_every_stage_of_the_reference_drive_takes_time(tmp_path: Path) -> None:
+    """A stage whose function was renamed would take none."""
+    place = Place(tmp_path, TINY)
+    spent = stages.check([str(place.reference)], place.road, tmp_path / "out")
+    assert [stage for stage, took in spent.items() if took.wall <= 0] == []
 
 
 def test_the_command_prints_the_table(capsys: pytest.CaptureFixture[str]) -> None:
@@ -60,3 +69,11 @@ def test_a_stage_does_not_count_the_stages_within() -> None:
     assert stages.spent["inner"].wall >= 0.01
     assert Span() <= stages.spent["outer"] < stages.spent["inner"]
     assert _Work.outer.__name__ == "outer"
+
+
+def test_a_module_is_not_watched_as_a_function() -> None:
+    with (
+        pytest.raises(TypeError, match=r"tests\.bench\.growth is no function"),
+        Stages().watch((tests.bench, "growth", "b")),
+    ):
+        pass
