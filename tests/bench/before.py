@@ -46,6 +46,7 @@ def before(place: Place) -> list[Row]:
     runs = place.sizes.runs
     rows = [_about(trees["now"], then, runs)]
     for no, each in enumerate(_inputs(place)):
+        print(f"before: {each.name} (load {os.getloadavg()[0]:.1f}) ...", file=sys.stderr, flush=True)
         if no == 0 and runs > 1:  # so that no tree is compiled while its time counts
             for tree in trees.values():
                 _timed(tree, each, place.home)
