@@ -1,5 +1,7 @@
 """`python -m tests.bench [SECTION]...`, from the repository's root: what the product takes, beside its bars.
 
+`before COMMIT` compares the present tree with another commit of this repository, stage by stage.
+
 Everything is generated, in a temporary folder. Shared machines are noisy: compare lines of one run, not numbers of two, and look
 at CPU seconds beside the clock's. Nothing here asserts a time; comparisons assert that both sides gave the same answer.
 """
@@ -16,7 +18,8 @@ from typing import TYPE_CHECKING
 
 import duckdb
 
-from tests.bench import copying, formats, growth, profiling, stages
+from tests.bench import before, copying, formats, growth, profiling, stages
+from tests.bench.commit import UnknownCommitError
 from tests.bench.place import TINY, Place, Sizes
 from tests.bench.rivals import boxes, postgis, reading, temporal
 from tests.bench.table import Row, Skipped, markdown
@@ -36,8 +39,9 @@ SECTIONS: dict[str, Callable[[Place], list[Row]]] = {
     "postgis": postgis.compare,
     "long": growth.long,
     "profile": profiling.profile,
+    "before": before.before,
 }
-ASKED_ONLY = ("long", "profile")  # minutes and gigabytes; a table of its own
+ASKED_ONLY = ("long", "profile", "before")  # minutes and gigabytes; a table of its own; needs a commit
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -56,13 +60,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
         )
     rows: list[Row] = []
     with tempfile.TemporaryDirectory(prefix="drivelint-bench-") as home:
-        place = Place(Path(home), sizes)
+        place = Place(Path(home), sizes, options.commit)
         for name in options.sections or [s for s in SECTIONS if s not in ASKED_ONLY]:
             print(f"{name} (load {os.getloadavg()[0]:.1f}) ...", file=sys.stderr, flush=True)
             try:
                 rows += SECTIONS[name](place)
             except Skipped as why:
                 print(f"skipped: {name}: {why}", file=sys.stderr, flush=True)
+            except UnknownCommitError as error:
+                raise SystemExit(f"{name}: {error}") from error
     print(
         f"{os.cpu_count()} cores, Python {platform.python_version()}, DuckDB {duckdb.__version__}; "
         f"load at the end {os.getloadavg()[0]:.1f}\n"
@@ -75,7 +81,7 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
         prog="python -m tests.bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     whole = Sizes()
-    parser.add_argument("sections", nargs="*", metavar="SECTION", help=f"of {', '.join(SECTIONS)}")
+    parser.add_argument("sections", nargs="*", metavar="SECTION", help=f"of {', '.join(SECTIONS)} COMMIT")
     parser.add_argument("--runs", type=int, default=whole.runs, help="repetitions (default 5; slow sections: 3)")
     parser.add_argument("--short", type=int, default=whole.drives, help="how many short drives")
     parser.add_argument("--unit", type=float, default=whole.unit.seconds, help="seconds of the 1x drive of `growth`")
@@ -84,6 +90,12 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--steps", type=int, default=whole.steps, help="steps of the PostGIS loop over time steps")
     parser.add_argument("--tiny", action="store_true", help="everything as small as can be: only to see that it runs")
     options = parser.parse_args(arguments)
+    options.commit = "HEAD"
+    if "before" in options.sections:
+        at = options.sections.index("before") + 1
+        if at == len(options.sections):
+            parser.error("before: name the commit to compare with, as in `before HEAD~1`")
+        options.commit = options.sections.pop(at)
     if unknown := [s for s in options.sections if s not in SECTIONS]:
         parser.error(f"no section {unknown[0]!r}: choose of {', '.join(SECTIONS)}")
     return options

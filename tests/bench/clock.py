@@ -49,8 +49,11 @@ class Stages:
 
     @contextmanager
     def watch(self, *watched: tuple[Any, str, str]) -> Iterator[None]:
-        """Watch (owner, name of the function, stage)."""
+        """Watch (owner, name of the function, stage). Errors: `TypeError` for what is no function, such as a module of that name."""
         plain = [(owner, name, getattr(owner, name)) for owner, name, _ in watched]
+        for owner, name, found in plain:
+            if not callable(found):
+                raise TypeError(f"{owner.__name__}.{name} is no function")
         for (owner, name, stage), (_, _, function) in zip(watched, plain, strict=True):
             setattr(owner, name, self._timed(function, stage))
         try:

@@ -42,11 +42,12 @@ TINY = Sizes(
 
 
 class Place:
-    """A temporary folder with the traces and the road of a run."""
+    """A temporary folder with the traces and the road of a run. `commit`: what `before` compares with."""
 
-    def __init__(self, home: Path, sizes: Sizes) -> None:
+    def __init__(self, home: Path, sizes: Sizes, commit: str = "HEAD") -> None:
         self.home = home
         self.sizes = sizes
+        self.commit = commit
 
     @cached_property
     def road(self) -> Path:

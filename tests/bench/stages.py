@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 WATCHED = (
     (store, "connect", "database opened"),
-    (catalogue, "load", "catalogue read"),
+    (catalogue, "load_rules", "catalogue read"),
     (batch, "_wait_for", "ingest"),  # waiting for the threads that read
     (MapLibrary, "find", "map"),
     (judge.JudgingSession, "_load", "tables filled"),
