@@ -163,7 +163,8 @@ junction_direction_check AS (
     FROM (
         SELECT e.drive_id, e.ego_id, e.t_ns, coalesce(bool_and(abs(o.heading_diff_rad) > $against_rad), false) AS is_against
         FROM ego_state e
-        LEFT JOIN lane_occupancy o ON e.in_junction AND o.drive_id = e.drive_id AND o.actor_id = e.ego_id AND o.t_ns = e.t_ns AND o.drivable
+        -- The condition is in the key: beside the keys, it would make the join a nested loop.
+        LEFT JOIN lane_occupancy o ON o.drive_id = e.drive_id AND o.actor_id = e.ego_id AND o.t_ns = CASE WHEN e.in_junction THEN e.t_ns END AND o.drivable
         GROUP BY ALL
     )
     WINDOW so_far AS (PARTITION BY drive_id, ego_id ORDER BY t_ns)
