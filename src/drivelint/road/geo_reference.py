@@ -25,6 +25,7 @@ _DIGITS: Final = 9
 _TANGENT_PLANE: Final = "ortho"
 _LOCAL_M: Final = 100_000.0
 _EQUATOR_DEG: Final = 1.0
+_POLE_DEG: Final = 5.0  # 0,0 of the southern zones of UTM is 4.5 degrees from the pole
 _DEGREE_M: Final = 111_195.0  # of a great circle, on the sphere of the earth's mean radius
 _METRE: Final = (0.4, 1.6)
 """What a unit of a projection in metres may measure on the ground: Mercator's shrinks to 0.4 m at 66 degrees of latitude."""
@@ -74,8 +75,8 @@ def why_unusable(frame: GeoFrame, x_m: float, y_m: float) -> str | None:
     turned = math.remainder(beside - longitude, 360.0) * math.cos(math.radians(latitude))
     if not _METRE[0] < math.hypot(turned, above - latitude) * _DEGREE_M < _METRE[1]:
         return "its unit is not the metre, or the coordinates are far outside the area for which it is made"
-    local = max(abs(x), abs(y)) < _LOCAL_M
-    if local and min(abs(latitude), 90.0 - abs(latitude)) < _EQUATOR_DEG and not _has_local_origin(frame.reference):
+    local = max(abs(x), abs(y)) < _LOCAL_M and not _has_local_origin(frame.reference)
+    if local and (abs(latitude) < _EQUATOR_DEG or abs(latitude) > 90.0 - _POLE_DEG):
         return (
             f"it is a placeholder: the coordinates are local ones, and it would put them at latitude {latitude:.3f}, "
             f"longitude {longitude:.3f}"
