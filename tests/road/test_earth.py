@@ -17,15 +17,20 @@ from drivelint.engine.map_library import MapLibrary
 from drivelint.formats import read_trace
 from drivelint.formats.map_registry import load_map, read_source
 from drivelint.formats.safe_xml import parse_map
+from drivelint.report.progress import Silent
+from drivelint.result.model import Result
 from drivelint.road.geo_reference import GeoFrame, why_unusable
 from drivelint.road.map_reader import MapSource, MapTables
+from drivelint.run import CheckOptions, check
 from drivelint.sql import store
 from tests.engine.few_states import log_of, states
 from tests.formats.opendrive.xodr import xodr
 from tests.formats.osi import osi_log
+from tests.report.pages import Parsed, page
 from tests.shared_data import shared
 
 UTM = "+proj=utm +zone=32 +datum=WGS84 +units=m +no_defs"
+FIXTURE = Path(__file__).resolve().parents[2] / "fixtures" / "overtake"
 KARLSRUHE = "+proj=tmerc +lat_0=49 +lon_0=8.4 +datum=WGS84"
 
 
@@ -230,3 +235,46 @@ def test_a_lanelet2_map_against_its_own_latitudes() -> None:
     assert len(bounds) > 20
     for found in placed(geo_of(environment), *bounds):
         assert min(metres_apart(found, node) for node in nodes) < 1.0
+
+
+def run_on(folder: Path, reference: str) -> Result:
+    """Judge the fixture's collision on its road with a geo reference and an offset."""
+    said = f'vendor="drivelint demo"><geoReference>{reference}</geoReference><offset x="50" y="1000" hdg="{math.pi / 2}"/></header>'
+    text = (FIXTURE / "road.xodr").read_text("utf-8")
+    road = folder / "road.xodr"
+    road.write_text(text.replace('vendor="drivelint demo"/>', said), "utf-8")
+    log, mapping = FIXTURE / "collision.csv", str(FIXTURE / "mapping.toml")
+    return check(
+        CheckOptions(traces=(str(log),), map=road, mapping=mapping, rules=("ukhc.no-collision",), out=folder), Silent()
+    )
+
+
+def test_a_run_puts_findings_and_the_drive_on_the_earth(tmp_path: Path) -> None:
+    result = run_on(tmp_path, KARLSRUHE)
+    (found, *_) = result.findings.to_pylist()
+    north, east = (
+        1000.0 + found["x_m"],
+        50.0 - found["y_m"],
+    )  # a quarter turn; beside its origin the projection is a plane
+    # radii of curvature of the ellipsoid at 49 degrees: 6,372 km along the meridian, 6,390 km across
+    expected = (
+        8.4 + math.degrees(east / 6_390_300 / math.cos(math.radians(49.0))),
+        49.0 + math.degrees(north / 6_371_800),
+    )
+    assert metres_apart((found["lon"], found["lat"]), expected) < 1.0
+    (drive,) = result.drives.to_pylist()
+    assert 49.0 < drive["lat"] < found["lat"]
+    links = [link for link in Parsed(page(result)).all("href") if link and link.startswith("https:")]
+    place = f"{found['lat']:.6f}/{found['lon']:.6f}"
+    assert links
+    assert links[0] == f"https://www.openstreetmap.org/?mlat={place.replace('/', '&mlon=')}#map=18/{place}"
+
+
+def test_a_run_with_a_placeholder_has_no_places(tmp_path: Path) -> None:
+    result = run_on(tmp_path, "+proj=tmerc +lat_0=0 +lon_0=0")
+    for table in (result.findings, result.drives):
+        assert table.num_rows
+        assert table["lon"].null_count == table["lat"].null_count == table.num_rows
+    (drive,) = result.drives.to_pylist()
+    assert [q["severity"] for q in drive["quality"] if q["check_id"] == "geo_reference_unusable"] == ["info"]
+    assert "openstreetmap" not in page(result)
