@@ -50,7 +50,7 @@ def placed(geo: GeoFrame, *places: tuple[float, float]) -> list[tuple[float | No
         add(con, "actor", {"drive_id": "d", "actor_id": "e", "is_ego": True})
         add(con, "actor", {"drive_id": "d", "actor_id": "a", "is_ego": False})
         for i, (x, y) in enumerate(places):
-            add(con, "finding", {"finding_id": f"{i}", "drive_id": "d", "x_m": x, "y_m": y})
+            add(con, "finding", {"finding_id": f"{i:06}", "drive_id": "d", "x_m": x, "y_m": y})
             add(con, "actor_state", {"drive_id": "d", "actor_id": "e", "t_ns": i, "x_m": x, "y_m": y})
             add(con, "actor_state", {"drive_id": "d", "actor_id": "a", "t_ns": i - 9, "x_m": 7.0, "y_m": 7.0})
         place_findings(con, ["d"])
@@ -217,12 +217,20 @@ def test_an_osi_log_whose_reference_is_a_placeholder(tmp_path: Path) -> None:
 def test_a_real_map_against_pyproj(name: str) -> None:
     pyproj = pytest.importorskip("pyproj")
     environment = load_map(read_source(shared(name)))
-    points = environment.tables["lane_point"].select(["x_m", "y_m"]).to_pylist()[::500]
+    points = environment.tables["lane_point"].select(["x_m", "y_m"]).to_pylist()[::50]
     to_earth = pyproj.Transformer.from_crs(row_of(environment)["geo_reference"], "EPSG:4326", always_xy=True)
     places = [(p["x_m"], p["y_m"]) for p in points]
     assert len(places) > 3
     for found, (x, y) in zip(placed(geo_of(environment), *places), places, strict=True):
         assert metres_apart(found, to_earth.transform(x, y)) < 1.0
+
+
+@pytest.mark.parametrize("name", ["maps/Town10HD.xodr", "maps/circle_300m.xodr", "osi/soderleden.xodr"])
+def test_a_real_map_whose_reference_is_a_placeholder(name: str) -> None:
+    """CARLA's town is at 0,0; esmini's roads are in a UTM zone with a latitude and longitude that are of another place."""
+    row = row_of(load_map(read_source(shared(name))))
+    assert row["geo_reference"]
+    assert row["geo_usable"] is False
 
 
 def test_a_lanelet2_map_against_its_own_latitudes() -> None:
