@@ -11,7 +11,12 @@ CREATE TABLE environment (
     offset_y_m DOUBLE NOT NULL,       -- added to the map's coordinates
     handedness VARCHAR NOT NULL,      -- lht or rht: the side of the road that is driven on
     handedness_source VARCHAR NOT NULL, -- option, attribute, junctions, lanes (beside each other, driven in opposite directions), traces, default: how it was found (default: a guess)
-    geo_reference VARCHAR             -- projection string, if the map has one
+    geo_reference VARCHAR,            -- projection (a PROJ string or what else PROJ understands), if the map has one
+    geo_offset_x_m DOUBLE,            -- the map's own coordinates, without offset_x_m and offset_y_m, are turned by geo_offset_yaw_rad and then moved by this to be those of geo_reference; NULL: no geo_reference
+    geo_offset_y_m DOUBLE,            -- the same for y
+    geo_offset_z_m DOUBLE,            -- the same for z
+    geo_offset_yaw_rad DOUBLE,        -- turn about the z axis from the map's own coordinates to those of geo_reference, counter-clockwise
+    geo_usable BOOLEAN                -- geo_reference gives positions on the earth; why not is in map_quality (geo_reference_unusable); NULL: there is none
 );
 
 -- lifetime: map

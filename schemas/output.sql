@@ -14,6 +14,8 @@ CREATE TABLE drive (
     utc_start_ns BIGINT,              -- UTC of the first time stamp; NULL: the log does not say
     t_start_ns BIGINT,                -- first time stamp of any actor, on the log's own clock
     duration_s DOUBLE,                -- from the first to the last time stamp; NULL: no states
+    lon DOUBLE,                       -- longitude in degrees (WGS 84) of the first position of the ego, of several of that whose id is first; NULL: not known, or neither map nor log has a geo reference that gives positions on the earth
+    lat DOUBLE,                       -- latitude in degrees (WGS 84) of the same; NULL: as lon
     km DOUBLE NOT NULL,               -- way made, all egos together
     n_states BIGINT NOT NULL,         -- actor states read
     n_steps BIGINT NOT NULL,          -- ego steps, all egos together

@@ -61,6 +61,8 @@ CREATE TABLE finding (
     unit VARCHAR,                     -- of observed, required and margin
     x_m DOUBLE,                       -- ego at the worst step
     y_m DOUBLE,                       -- ego at the worst step
+    lon DOUBLE,                       -- longitude of x_m, y_m in degrees (WGS 84); NULL: neither map nor log has a geo reference that gives positions on the earth
+    lat DOUBLE,                       -- latitude of x_m, y_m in degrees (WGS 84); NULL: as lon
     lanelet_id VARCHAR                -- ego's lanelet at the worst step
 );
 

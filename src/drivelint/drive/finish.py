@@ -42,7 +42,8 @@ TRACE_SCHEMAS: dict[str, dict[str, pa.DataType]] = {
         "drive_id": _S, "file_name": _S, "sha256": _S, "format": _S, "environment_id": _S,
         "t_start_ns": _I, "t_end_ns": _I, "utc_start_ns": _I, "n_states": _I, "sensor_range_m": _F,
         "map_offset_x_m": _F, "map_offset_y_m": _F,
-        "has_indicator": _B, "has_brake_light": _B, "has_acceleration": _B, "in_sight": _B,
+        "has_indicator": _B, "has_brake_light": _B, "has_acceleration": _B,
+        "geo_reference": _S, "geo_x_m": _F, "geo_y_m": _F, "geo_yaw_rad": _F, "lon": _F, "lat": _F, "in_sight": _B,
     },
     "actor": {"drive_id": _S, "actor_id": _S, "actor_class": _S, **dict.fromkeys(SIZE_COLUMNS, _F), "is_ego": _B},
     "actor_state": {
@@ -128,6 +129,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         recording.notes,
         recording.frame_times,
         recording.geo_reference,
+        recording.geo_offset,
     )
 
 

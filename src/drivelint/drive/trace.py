@@ -134,7 +134,8 @@ class Trace:
 
     `data_log` has one row, its `environment_id` NULL. Rows are totally ordered: `actor_state` by actor_id and t_ns.
     `embedded_map` is OpenDRIVE found in the log; `map_offset` (metres) is added to the map's coordinates. `frame_times`:
-    see `FrameTimes`; None where the log has one clock only. `geo_reference`: the projection of its coordinates, a PROJ string.
+    see `FrameTimes`; None where the log has one clock only. `geo_reference`: the projection of its coordinates, a PROJ string,
+    of which they are after a turn and a shift, `geo_offset`: x and y in metres, the turn in radians.
     """
 
     drive_id: str
@@ -145,6 +146,7 @@ class Trace:
     notes: list[str]
     frame_times: FrameTimes | None = None
     geo_reference: str | None = None
+    geo_offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -243,3 +245,4 @@ class Recording:
     strict_units: bool = False
     frame_times: FrameTimes | None = None
     geo_reference: str | None = None
+    geo_offset: tuple[float, float, float] = (0.0, 0.0, 0.0)

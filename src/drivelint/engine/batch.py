@@ -14,6 +14,7 @@ import pyarrow.compute as pc
 
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.trace import IngestOptions, QualityFinding, Trace
+from drivelint.engine.earth import place_on_earth
 from drivelint.errors import DriveLintError, MapError
 from drivelint.formats import read_trace
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.engine.map_library import MapLibrary
+    from drivelint.road.geo_reference import GeoFrame
     from drivelint.road.map_reader import MapTables
 
 BATCH_STATES: Final = 400_000  # a batch costs little more than its longest drive, and its tables still fit in a GiB
@@ -33,10 +35,11 @@ READ_AHEAD: Final = 4
 
 @dataclass(frozen=True)
 class Drive:
-    """One log that was read, and its map (None: none was given)."""
+    """One log that was read, its map (None: none was given), and how it lies on the earth (None: nothing says it)."""
 
     trace: Trace
     environment: MapTables | None
+    geo: GeoFrame | None = None
 
     @property
     def n_states(self) -> int:
@@ -158,10 +161,13 @@ def drive_with_map(trace: Trace, library: MapLibrary) -> Drive:
         if not library.uses_embedded(trace):
             raise
         unused = QualityFinding.unusable_map(f"the log's own map is not used: {error}")
-        return Drive(with_quality_finding(trace, unused), None)
+        trace, environment, doubts = with_quality_finding(trace, unused), None, {}
     for check, doubt in doubts.items():
         trace = with_quality_finding(trace, QualityFinding(check, "warning", doubt))
-    return Drive(trace, environment)
+    geo, trouble = place_on_earth(trace, environment)
+    if trouble:
+        trace = with_quality_finding(trace, QualityFinding("geo_reference_unusable", "info", trouble))
+    return Drive(trace, environment, geo)
 
 
 def _digest(path: Path) -> str:

@@ -11,6 +11,7 @@ import pyarrow.compute as pc
 
 from drivelint.engine.batch import skipped_egos_by_part
 from drivelint.engine.derive import derive
+from drivelint.engine.earth import place_drives, place_findings
 from drivelint.engine.margins import MarginFile
 from drivelint.engine.memory import Memory
 from drivelint.errors import RuleError
@@ -101,9 +102,11 @@ class JudgingSession:
     def _judge(self, drives: Sequence[Drive]) -> bool:
         """Judge a batch. Return False if a part of several egos ran out of memory: the next try has fewer of them in it."""
         ids = [drive.trace.drive_id for drive in drives]
+        on_earth = [drive.trace.drive_id for drive in drives if drive.geo]
         with ExitStack() as undo:
             undo.callback(self._forget, ids)
             self._load(drives)
+            place_drives(self._con, on_earth)
             todo = skipped_egos_by_part(drives, self._memory.pairs_per_part)
             for no, deferred in enumerate(todo):
                 if no:
@@ -115,6 +118,7 @@ class JudgingSession:
                 cuttable = len(drives) == 1 and len(judged) > 1
                 try:
                     self._judge_part(ids, may_retry=len(drives) > 1 or cuttable or self._memory.limited)
+                    place_findings(self._con, on_earth)
                     for observer in self._observers:
                         observer(self._con, drives, first=no == 0, last=no + 1 == len(todo))
                 except duckdb.OutOfMemoryException:
@@ -211,9 +215,16 @@ class JudgingSession:
 
 
 def _on_map(drive: Drive) -> pa.Table:
-    log = drive.trace.tables["data_log"]
-    name = pa.array([drive.environment.environment_id if drive.environment else None], pa.string())
-    return log.set_column(log.schema.get_field_index("environment_id"), "environment_id", name)
+    log, geo = drive.trace.tables["data_log"], drive.geo
+    found: dict[str, str | float | None] = {
+        "environment_id": drive.environment.environment_id if drive.environment else None
+    }
+    if geo:
+        found |= {"geo_reference": geo.reference, "geo_x_m": geo.x_m, "geo_y_m": geo.y_m, "geo_yaw_rad": geo.yaw_rad}
+    for name, value in found.items():
+        at = log.schema.get_field_index(name)
+        log = log.set_column(at, name, pa.array([value], log.schema.field(at).type))
+    return log
 
 
 def _actors(drives: Iterable[Drive]) -> set[str]:

@@ -104,7 +104,8 @@ class _Run:
                 "start_s": _since(row["t_start_ns"], start_ns),
                 "end_s": _since(row["t_end_ns"], start_ns),
                 "worst_s": _since(row["t_worst_ns"], start_ns),
-                **{name: row[name] for name in ("observed", "required", "margin", "unit", "x_m", "y_m", "lanelet_id")},
+                **{name: row[name] for name in ("observed", "required", "margin", "unit")},
+                **{name: row[name] for name in ("x_m", "y_m", "lon", "lat", "lanelet_id")},
             },
         }
         if gate is not None:

@@ -59,6 +59,7 @@ WITH
         WHERE NOT available AND coalesce(list_contains($only::VARCHAR[], drive_id), true) GROUP BY drive_id)
 SELECT l.drive_id, l.file_name, l.sha256, l.format, l.environment_id, e.name AS map_name, e.sha256 AS map_sha256,
     e.handedness, e.handedness_source, l.utc_start_ns, l.t_start_ns, (l.t_end_ns - l.t_start_ns) / 1e9 AS duration_s,
+    l.lon, l.lat,
     coalesce(list_sum([x.km FOR x IN w.exposure]), 0.0::DOUBLE) AS km, l.n_states,
     coalesce(list_sum([x.n_steps FOR x IN w.exposure]), 0)::BIGINT AS n_steps, coalesce(len(w.exposure), 0) AS n_egos,
     'judged' AS status, NULL::VARCHAR AS status_reason, coalesce(d.lossy, false) AS lossy,

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.road.geo_reference import GeoFrame
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
     from drivelint.road.quality import MapQuality
 
@@ -266,12 +267,12 @@ def map_from_bounds(
     *,
     kind: str,
     side: tuple[str, str],
-    geo_reference: str | None = None,
+    geo: GeoFrame | None = None,
 ) -> MapTables:
     """Return the map of lanes from `build_lanes` and of what is on and beside them: see `map_tables`."""
     name = environment_id(source, request.offset, side[0], guessed=side[1] == "default")
     content = {**tables(name, lanes), "road_object": [], **furniture}
-    return map_tables(name, source, request, content, quality, kind=kind, side=side, geo_reference=geo_reference)
+    return map_tables(name, source, request, content, quality, kind=kind, side=side, geo=geo)
 
 
 def signal_row(lane: BoundedLane, s_m: float, place: Floats, **said: Any) -> dict[str, Any]:

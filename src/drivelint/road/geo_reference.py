@@ -1,9 +1,14 @@
-"""Reads the geo reference of a map and compares it with that of a log."""
+"""Reads the geo reference of a map, compares it with that of a log, and tells whether it gives positions on the earth."""
 
 from __future__ import annotations
 
+import math
 import re
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import duckdb
+
+from drivelint.sql import store
 
 if TYPE_CHECKING:
     from drivelint.road.map_reader import MapSource
@@ -17,6 +22,80 @@ _DEFAULTS: Final = {("x_0", "0.0"), ("y_0", "0.0"), ("k", "1.0"), ("k_0", "1.0")
 """What holds without being said."""
 _DIGITS: Final = 9
 """Decimals that are compared: a tenth of a millimetre on the ground, even of a degree; writers round the last of theirs."""
+_TANGENT_PLANE: Final = "ortho"
+_LOCAL_M: Final = 100_000.0
+_EQUATOR_DEG: Final = 1.0
+_POLE_DEG: Final = 5.0  # 0,0 of the southern zones of UTM is 4.5 degrees from the pole
+_DEGREE_M: Final = 111_195.0  # of a great circle, on the sphere of the earth's mean radius
+_METRE: Final = (0.4, 1.6)
+"""What a unit of a projection in metres may measure on the ground: Mercator's shrinks to 0.4 m at 66 degrees of latitude."""
+
+
+class GeoFrame(NamedTuple):
+    """A projection, and how coordinates become its own: turned by `yaw_rad`, then moved by x, y and z (metres).
+
+    ASAM OpenDRIVE 1.7 and later define `<offset>` so (8.5, georeferencing), ASAM OSI `proj_frame_offset`.
+    """
+
+    reference: str
+    x_m: float = 0.0
+    y_m: float = 0.0
+    z_m: float = 0.0
+    yaw_rad: float = 0.0
+
+    def project(self, x_m: float, y_m: float) -> tuple[float, float]:
+        """Return coordinates in the projection."""
+        cos, sin = math.cos(self.yaw_rad), math.sin(self.yaw_rad)
+        return x_m * cos - y_m * sin + self.x_m, x_m * sin + y_m * cos + self.y_m
+
+    def after_shift(self, x_m: float, y_m: float) -> GeoFrame:
+        """Return the frame of the same coordinates after x and y were added to them."""
+        x, y = self.project(-x_m, -y_m)
+        return self._replace(x_m=x, y_m=y)
+
+
+def tangent_plane(latitude: float, longitude: float) -> GeoFrame:
+    """Return the frame of metres to the east and north of a point (degrees, WGS 84)."""
+    return GeoFrame(f"+proj={_TANGENT_PLANE} +lat_0={latitude!r} +lon_0={longitude!r} +datum=WGS84 +units=m +no_defs")
+
+
+def why_unusable(frame: GeoFrame, x_m: float, y_m: float) -> str | None:
+    """Return why the frame gives no positions on the earth, judged at one place of the map or log; None: it gives them.
+
+    A placeholder cannot be told from a true reference by its text alone: local coordinates near 0,0 of a projection that has its
+    origin on the equator or at a pole would be in the Gulf of Guinea or on the ice.
+    """
+    x, y = frame.project(x_m, y_m)
+    try:
+        (longitude, latitude), (beside, above) = _on_earth(frame.reference, [(x, y), (x + 1.0, y)])
+    except duckdb.Error:
+        return "PROJ does not understand it"
+    if not all(map(math.isfinite, (longitude, latitude, beside, above))):
+        return "it has no place on the earth for the coordinates"
+    turned = math.remainder(beside - longitude, 360.0) * math.cos(math.radians(latitude))
+    if not _METRE[0] < math.hypot(turned, above - latitude) * _DEGREE_M < _METRE[1]:
+        return "its unit is not the metre, or the coordinates are far outside the area for which it is made"
+    local = max(abs(x), abs(y)) < _LOCAL_M and not _has_local_origin(frame.reference)
+    if local and (abs(latitude) < _EQUATOR_DEG or abs(latitude) > 90.0 - _POLE_DEG):
+        return (
+            f"it is a placeholder: the coordinates are local ones, and it would put them at latitude {latitude:.3f}, "
+            f"longitude {longitude:.3f}"
+        )
+    return None
+
+
+def _on_earth(reference: str, places: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Return longitude and latitude of places in a projection. Errors: `duckdb.Error` where PROJ does not understand it."""
+    sql = "SELECT ST_X(p), ST_Y(p) FROM (SELECT ST_Transform(ST_Point(?, ?), ?, 'EPSG:4326', always_xy := true) AS p)"
+    with store.open_as_is() as con:
+        store.lock(con)  # a reference may name files of grids
+        return [con.execute(sql, [x, y, reference]).fetchall()[0] for x, y in places]
+
+
+def _has_local_origin(reference: str) -> bool:
+    """Say whether a PROJ string names the latitude of its origin, which UTM does not heed."""
+    said = dict(_parsed(reference))
+    return said.get("proj") != "utm" and said.get("lat_0", "0.0") != "0.0"
 
 
 def reference_of(source: MapSource) -> str | None:
@@ -35,8 +114,11 @@ def same_reference(one: str, other: str) -> bool:
 
 
 def different_places(one: str, other: str) -> bool:
-    """Return whether two unequal references mean different places: both must be PROJ strings with a projection."""
-    return all("proj" in dict(_parsed(text)) for text in (one, other))
+    """Return whether two unequal references mean different places: both must be PROJ strings with a projection.
+
+    A tangent plane is the user's `--map-origin`, who thereby said where the log lies.
+    """
+    return all(dict(_parsed(text)).get("proj", _TANGENT_PLANE) != _TANGENT_PLANE for text in (one, other))
 
 
 def _parsed(text: str) -> frozenset[tuple[str, str]]:

@@ -7,8 +7,10 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
+import pyarrow.compute as pc
 
 from drivelint.resources import folder
+from drivelint.road.geo_reference import GeoFrame, why_unusable
 from drivelint.road.map_reader import MapTables
 
 if TYPE_CHECKING:
@@ -80,22 +82,35 @@ def map_tables(
     *,
     kind: str,
     side: tuple[str, str],
-    geo_reference: str | None = None,
+    geo: GeoFrame | None = None,
 ) -> MapTables:
     """Return the map `name`: `content`, tables or rows by table, with `environment` and `map_quality`.
 
-    `kind`: its format; `side`: the side that is driven on, and what says so.
+    `kind`: its format; `side`: the side that is driven on, and what says so; `geo`: how its own coordinates lie on the earth.
     """
+    tables = {
+        table: from_rows(table, name, rows) if isinstance(rows, list) else rows for table, rows in content.items()
+    }
+    trouble = _geo_trouble(geo, tables["lane_point"], request) if geo else None
+    if geo and trouble:
+        message = f"the geo reference {geo.reference!r} gives no positions on the earth: {trouble}"
+        quality.add("geo_reference_unusable", "info", None, message)
     environment = {
         "name": source.name, "sha256": source.sha256, "format": kind,
         "offset_x_m": request.offset[0], "offset_y_m": request.offset[1],
-        "handedness": side[0], "handedness_source": side[1], "geo_reference": geo_reference,
+        "handedness": side[0], "handedness_source": side[1], "geo_reference": geo.reference if geo else None,
+        **{f"geo_offset_{part}": getattr(geo, part, None) for part in ("x_m", "y_m", "z_m", "yaw_rad")},
+        "geo_usable": trouble is None if geo else None,
     }  # fmt: skip
-    tables = {
-        table: from_rows(table, name, rows) if isinstance(rows, list) else rows
-        for table, rows in {"environment": [environment], **content}.items()
-    }
-    return MapTables(name, *side, tables | {"map_quality": from_rows("map_quality", name, quality.sorted_rows())})
+    about = from_rows("environment", name, [environment])
+    found = from_rows("map_quality", name, quality.sorted_rows())
+    return MapTables(name, *side, {"environment": about, **tables, "map_quality": found})
+
+
+def _geo_trouble(geo: GeoFrame, points: pa.Table, request: MapOptions) -> str | None:
+    """Return why the frame gives no positions on the earth, judged in the middle of the lanes."""
+    middle = [sum(pc.min_max(points[axis]).as_py().values()) / 2.0 for axis in ("x_m", "y_m")]
+    return why_unusable(geo, middle[0] - request.offset[0], middle[1] - request.offset[1])
 
 
 def _array(values: Any, kind: pa.DataType) -> pa.Array:

@@ -12,6 +12,7 @@ from drivelint.errors import MapError
 from drivelint.formats.lanelet2.file import attribute, load, xy
 from drivelint.formats.lanelet2.furniture import furniture
 from drivelint.road.boundary_lanes import BoundedLane, both_marks, build_lanes, map_from_bounds, side_driven_on
+from drivelint.road.geo_reference import tangent_plane
 from drivelint.road.handedness import choose_side
 from drivelint.road.quality import MapQuality
 
@@ -48,8 +49,8 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     said = by_region.pop() if len(by_region) == 1 else None
     side = choose_side([("option", request.side), ("lanes", side_driven_on(lanes)), ("attribute", said)], quality)
     beside = furniture(layers, lanes, request.offset, quality)
-    reference = None if request.origin is None or local else f"origin {request.origin[0]:g},{request.origin[1]:g}"
-    return map_from_bounds(source, request, lanes, beside, quality, kind="lanelet2", side=side, geo_reference=reference)
+    geo = None if request.origin is None or local else tangent_plane(*request.origin)
+    return map_from_bounds(source, request, lanes, beside, quality, kind="lanelet2", side=side, geo=geo)
 
 
 Bound = tuple[int, bool]

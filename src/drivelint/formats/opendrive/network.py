@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from drivelint.formats.opendrive.cubic import Cubics, cubics
 from drivelint.formats.opendrive.planview import PlanView, planview
 from drivelint.formats.opendrive.xml import MalformedError, integer, number, required_attribute
+from drivelint.road.geo_reference import GeoFrame
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -128,7 +129,7 @@ class Network:
 
     roads: dict[str, Road]
     connections: tuple[Connection, ...]
-    geo_reference: str | None
+    geo: GeoFrame | None
 
 
 def network(root: etree._Element, quality: MapQuality) -> Network:
@@ -144,8 +145,23 @@ def network(root: etree._Element, quality: MapQuality) -> Network:
             quality.add("invalid_road", "error", name, message, max(lanes, 1))
         else:
             roads[road.road_id] = road
-    reference = root.findtext("header/geoReference")
-    return Network(roads, tuple(_connections(root, quality)), reference.strip() or None if reference else None)
+    return Network(roads, tuple(_connections(root, quality)), _geo_frame(root, quality))
+
+
+def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
+    """Return how the file's coordinates lie on the earth; None: it does not say, or not in a way that can be read."""
+    reference = (root.findtext("header/geoReference") or "").strip()
+    offset = root.find("header/offset")
+    if not reference:
+        return None
+    if offset is None:
+        return GeoFrame(reference)
+    try:
+        return GeoFrame(reference, *(number(offset, name, 0.0) for name in ("x", "y", "z", "hdg")))
+    except MalformedError as error:
+        message = f"the geo reference {reference!r} gives no positions on the earth: {error}"
+        quality.add("geo_reference_unusable", "info", None, message)
+        return None
 
 
 def _road(element: etree._Element, others: dict[str, Road], quality: MapQuality) -> Road:

@@ -54,9 +54,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         "speed_limit": sorted([*recorded, *signed], key=lambda row: places[row["lanelet_id"]]),
         **beside,
     }
-    tables = map_tables(
-        name, source, request, content, quality, kind="opendrive", side=side, geo_reference=net.geo_reference
-    )
+    tables = map_tables(name, source, request, content, quality, kind="opendrive", side=side, geo=net.geo)
     return replace(tables, lanes="rht" if direction.forward else "lht", lanes_source=direction.forward_source)
 
 

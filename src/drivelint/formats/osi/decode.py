@@ -170,7 +170,7 @@ class Decoder:
 
 
 class FirstMessage(NamedTuple):
-    """What the first message alone says: lanes as a message of their own, the geo reference, lanes that have no width.
+    """What the first message alone says: lanes as a message of their own, the geo reference with its offset, lanes that have no width.
 
     `lights`: see `osi_heads.heads`.
     """
@@ -179,10 +179,11 @@ class FirstMessage(NamedTuple):
     reference: str | None = None
     findings: tuple[QualityFinding, ...] = ()
     lights: Mapping[str, str] = MappingProxyType({})
+    geo_offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 def read_first_message(data: bytes, name: str) -> FirstMessage:
-    """Return lanes and geo reference (a PROJ string) of a ground truth, or of the one in a sensor view.
+    """Return lanes and geo reference (a PROJ string, with x, y and yaw) of a ground truth, or of the one in a sensor view.
 
     The lanes go with their boundaries, signs, lights and road markings. Lanes without boundaries have no width, and nothing can be
     placed on them: they are told, and make no map.
@@ -194,14 +195,14 @@ def read_first_message(data: bytes, name: str) -> FirstMessage:
     truth = outer.global_ground_truth if name == SENSOR_VIEW else outer
     reference = str(truth.proj_string) or None
     lights = osi_heads.light_by_bulb(truth.traffic_light)
+    frame = truth.proj_frame_offset
+    head = FirstMessage(None, reference, (), lights, (frame.position.x, frame.position.y, frame.yaw))
     if not (truth.lane_boundary or truth.logical_lane_boundary):
         n = len(truth.lane) + len(truth.logical_lane)
         message = f"lanes in the log: {n}, all of them centre lines without boundaries: without a width they make no map: give --map"
-        return FirstMessage(
-            None, reference, (QualityFinding("lanes_without_width", "info", message, n),) if n else (), lights
-        )
+        return head._replace(findings=(QualityFinding("lanes_without_width", "info", message, n),) if n else ())
     if not (truth.lane or truth.logical_lane):
-        return FirstMessage(None, reference, lights=lights)
+        return head
     lanes, beside = osi_schema.message_class("GroundTruth")(), osi_schema.message_class("GroundTruth")()
     for each in _LANES:
         getattr(lanes, each).extend(getattr(truth, each))
@@ -210,7 +211,7 @@ def read_first_message(data: bytes, name: str) -> FirstMessage:
     beside.road_marking.extend(truth.road_marking)
     # a map is known by the tag that it begins with, so that lanes stand before what stands beside them
     content = b"".join(part.SerializeToString(deterministic=True) for part in (lanes, beside))
-    return FirstMessage(content, reference, lights=lights)
+    return head._replace(lanes=content)
 
 
 def decode_error(path: Path, packet: Packet, error: ValueError) -> TraceError:

@@ -66,7 +66,8 @@ def read(probe: Probe) -> Recording:
     recording = join_batches(batches, np.zeros(n, np.uint64))
     recording.format = "osi-file"
     recording.frame_times = None
-    recording.embedded_map, recording.geo_reference = head.lanes, head.reference
+    recording.embedded_map = head.lanes
+    recording.geo_reference, recording.geo_offset = head.reference, head.geo_offset
     recording.findings += head.findings
     recording.findings.append(
         QualityFinding("unprotected", "info", "the file has no checksums: damage inside a message may go unseen")

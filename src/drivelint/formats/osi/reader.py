@@ -76,7 +76,7 @@ def read(path: Path, topic: str | None) -> Recording:
     own, several = single_map(maps)
     recording.embedded_map = own if maps else head.lanes
     recording.findings += [*lost[:1], *several]
-    recording.geo_reference = head.reference
+    recording.geo_reference, recording.geo_offset = head.reference, head.geo_offset
     recording.findings += () if maps else head.findings
     recording.events = metadata.read_declared_events(path, events)
     metadata.apply_metadata(path, container.metadata, recording)

@@ -86,8 +86,9 @@ _READ_MESSAGES: Final[Messages] = {
         *MESSAGES["GroundTruth"], ("traffic_sign", 6, "TrafficSign[]"), ("road_marking", 8, "RoadMarking[]"),
         ("lane_boundary", 9, "LaneBoundary[]"), ("lane", 10, "Lane[]"), ("proj_string", 14, "string"),
         ("reference_line", 17, "ReferenceLine[]"), ("logical_lane_boundary", 18, "LogicalLaneBoundary[]"),
-        ("logical_lane", 19, "LogicalLane[]"),
+        ("logical_lane", 19, "LogicalLane[]"), ("proj_frame_offset", 20, "GroundTruth.ProjFrameOffset"),
     ),
+    "GroundTruth.ProjFrameOffset": (("position", 1, "Vector3d"), ("yaw", 2, "double")),
     _LIGHTS: (
         *MESSAGES[_LIGHTS], ("head_light", 4, f"{_LIGHTS}.GenericLightState"),
         ("high_beam", 5, f"{_LIGHTS}.GenericLightState"),

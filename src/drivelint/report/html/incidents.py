@@ -62,7 +62,8 @@ class RuleCard(NamedTuple):
 class Incident(NamedTuple):
     """The findings and near misses of one ego at one time, with their plan view or the reason why there is none.
 
-    `t`: hundredths of a second since the drive's start; `leading`: it is among those that tell what happened.
+    `t`: hundredths of a second since the drive's start; `leading`: it is among those that tell what happened; `map_href`: the place
+    on a map of the world, empty where it is not known.
     """
 
     anchor: str
@@ -77,6 +78,7 @@ class Incident(NamedTuple):
     titles: list[str]
     plan: dict[str, Any] | None
     no_plan: str
+    map_href: str
     cards: list[RuleCard]
 
 
@@ -188,11 +190,19 @@ def _moment(
         titles=list(dict.fromkeys(line.rule["title"] for line in gravest)),
         plan=picture,
         no_plan="" if picture else "No picture: the ego's position is not known here, or too many findings are worse.",
+        map_href=next(filter(None, map(_map_href, failed)), ""),
         cards=[
             RuleCard(lines[0].rule, "#" + rule_anchor(rule_id), lines)
             for rule_id, lines in sorted(cards.items(), key=_weight)
         ],
     )
+
+
+def _map_href(line: FindingLine) -> str:
+    lon, lat = line.row["lon"], line.row["lat"]
+    if lon is None or lat is None:
+        return ""
+    return f"https://www.openstreetmap.org/?mlat={lat:.6f}&mlon={lon:.6f}#map=18/{lat:.6f}/{lon:.6f}"
 
 
 def _weight(item: tuple[str, Sequence[FindingLine]]) -> tuple[bool, int, str]:
