@@ -104,4 +104,4 @@ SELECT
     o.drive_id, o.ego_id, o.chain_id, o.seq, o.lanelet_id, o.length_m, v.t_first_ns, v.t_last_ns,
     from_picometres(o.end_pm - to_picometres(o.length_m) - coalesce(max(CASE WHEN o.v < 0 THEN o.end_pm END) OVER (PARTITION BY o.drive_id, o.ego_id, o.chain_id), 0)) AS s_start_m
 FROM chain_link o
-LEFT JOIN visit v ON v.drive_id = o.drive_id AND v.ego_id = o.ego_id AND v.v = o.v AND o.hop = 0
+LEFT JOIN visit v ON v.drive_id = o.drive_id AND v.ego_id = o.ego_id AND v.v = CASE WHEN o.hop = 0 THEN o.v END

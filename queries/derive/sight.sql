@@ -60,12 +60,18 @@ lane_place AS (
     ASOF JOIN corridor_segment p ON p.drive_id = o.drive_id AND p.ego_id = o.ego_id AND p.chain_id = o.chain_id AND p.s_m <= o.place_s_m
 ),
 hidden_place AS (
-    SELECT a.drive_id, a.ego_id, a.t_ns, min(a.along_m) FILTER (p.t_ns IS NOT NULL) - sight_step_m() AS along_m
-    FROM lane_place a
-    CROSS JOIN LATERAL (SELECT sqrt(a.dx_m ** 2 + a.dy_m ** 2) AS distance_m) x
-    LEFT JOIN pair p ON p.drive_id = a.drive_id AND p.ego_id = a.ego_id AND p.t_ns = a.t_ns AND p.distance_m < x.distance_m + both_half_diagonals_m() / 2
-        AND blocks_sight(p.x_m - a.x_m, p.y_m - a.y_m, a.dx_m, a.dy_m, p.yaw_rad, p.length_m, p.width_m)
-    GROUP BY ALL
+    SELECT drive_id, ego_id, t_ns, min(along_m) - sight_step_m() AS along_m
+    FROM (
+        SELECT a.drive_id, a.ego_id, a.t_ns, a.along_m
+        FROM lane_place a
+        CROSS JOIN LATERAL (SELECT sqrt(a.dx_m ** 2 + a.dy_m ** 2) AS distance_m) x
+        JOIN pair p ON p.drive_id = a.drive_id AND p.ego_id = a.ego_id AND p.t_ns = a.t_ns AND p.distance_m < x.distance_m + both_half_diagonals_m() / 2
+            AND blocks_sight(p.x_m - a.x_m, p.y_m - a.y_m, a.dx_m, a.dy_m, p.yaw_rad, p.length_m, p.width_m)
+        UNION ALL
+        -- Nothing blocks the sight: min() ignores NULL. A left join with blocks_sight in its condition would be a nested loop.
+        SELECT drive_id, ego_id, t_ns, NULL FROM lane_place
+    )
+    GROUP BY drive_id, ego_id, t_ns
 )
 SELECT
     e.drive_id, e.ego_id, e.t_ns, greatest(0.0, least(n.around_m, e.range_m)) AS around_m,
