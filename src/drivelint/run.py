@@ -71,7 +71,7 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
         memory = Memory(con, settings.memory, progress.note)
         store.insert(con, "profile", profiles)
         table = rule_table(rules, params, settings.profiles or DEFAULT_PROFILES)
-        # who looks at each batch before its tables are cleared: the report, the annotated logs
+        # the report and the annotated logs read each batch before its tables are cleared
         observers: list[BatchObserver] = [_gather] if settings.out else []
         if settings.out and settings.annotate:
             annotated = settings.out / "annotated"

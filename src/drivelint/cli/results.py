@@ -125,7 +125,7 @@ def explain(
     changes the verdict, and how often it stays the same when positions, clocks and map are a little off. Of several
     verdicts of a rule the worst is shown, unless --ego, --verdict, --profile, --object or --at choose.
 
-    The drive is judged anew by that rule, from the database that check --keep-db kept, else from its log.
+    explain judges the drive again by that rule. It reads the database of check --keep-db, or else the log.
     """
     from drivelint.explain import ExplainRequest, MeasurementErrors, VerdictFilter
     from drivelint.explain import explain as explained

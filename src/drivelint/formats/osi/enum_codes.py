@@ -64,7 +64,7 @@ _CODES: dict[str, tuple[tuple[str, ...], dict[str, int]]] = {
     "lamp": ((*_LIGHTS, "head_light"), _LAMPS),
     "color": ((*_TRAFFIC_LIGHT, "color"), _COLORS),
 }
-"""What is translated -> the field of a ground truth with the enumeration, and name -> code."""
+"""Attribute -> the field of a ground truth that has its enumeration, and the codes of the names."""
 
 
 @dataclass(frozen=True)
