@@ -1,6 +1,6 @@
 """Why one verdict is what it is: clause, SQL and numbers behind it, what would change it, and how sure it is.
 
-It judges the drive again by that rule alone, from the kept database or from the log.
+`explain` judges the drive again by that rule alone, from the kept database or from the log.
 """
 
 from __future__ import annotations
