@@ -90,68 +90,88 @@ segment_candidate AS (
         along1(a.x_m, a.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) AS a1
     FROM pair_offset a
     JOIN corridor_cell c ON c.drive_id = a.drive_id AND c.ego_id = a.ego_id AND c.cell = corridor_cell_of(a.x_m, a.y_m)
+    -- The conditions repeat the expressions of a0 and a1, because DuckDB then filters before it computes the rest.
     WHERE a.ego_s_m IS NOT NULL
+        AND along0(a.x_m, a.y_m, c.x0_m, c.y0_m, c.tx0, c.ty0) >= -c.slack0_m AND along1(a.x_m, a.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) > -c.slack1_m
 ),
 object_on_strip AS (
     SELECT
         pair_no, drive_id, ego_id, chain_id, ego_s_m, lanelet_id, s0_m + u * len_m AS lane_s_m, d_m, hw0_m + u * (hw1_m - hw0_m) AS half_width_m,
-        wrap_rad(yaw_rad - atan2(ty0 + u * (ty1 - ty0), tx0 + u * (tx1 - tx0))) AS lane_heading_diff_rad
+        wrap_rad(yaw_rad - atan2(ty0 + u * (ty1 - ty0), tx0 + u * (tx1 - tx0))) AS lane_heading_diff_rad, ego_s_m - lane_s_m AS level_start_m
     FROM (
         SELECT *, a0 / (a0 + a1) AS u, offset_left(x_m, y_m, a0 / (a0 + a1), x0_m, y0_m, tx0, ty0, x1_m, y1_m, tx1, ty1) AS d_m
         FROM segment_candidate
-        WHERE a0 >= -slack0_m AND a1 > -slack1_m AND a0 + a1 > 0
+        WHERE a0 + a1 > 0
     )
     WHERE abs(d_m) <= strip_m()
 ),
--- The corridor by kilometre of the ego's station: only what lies within 1.2 km of it, so that the other laps of a ring are not searched.
-corridor_bucket AS (
-    SELECT *, unnest(range(floor((s_start_m - 1200) / 1000)::BIGINT, floor((s_start_m + length_m + 1200) / 1000)::BIGINT + 1)) AS bucket
-    FROM corridor
+-- A lanelet is on the chain once per lap. If the object were level with the ego, the lanelet would start at the station `level_start_m`. The
+-- lap that starts nearest to it is the object's lap: from_m < level_start_m <= to_m. But an object that comes the other way and is at most
+-- 1.2 km ahead is still ahead, even if the shorter way round a ring leads back.
+lap_end AS (
+    SELECT
+        * EXCLUDE (next_start_m),
+        CASE
+            WHEN is_oncoming THEN least((s_start_m + next_start_m) / 2, greatest(s_start_m + exact_clearance_m(), next_start_m - 1200))
+            ELSE (s_start_m + next_start_m) / 2
+        END AS to_m
+    FROM (
+        SELECT *, lead(s_start_m) OVER (PARTITION BY drive_id, ego_id, chain_id, lanelet_id, is_oncoming ORDER BY s_start_m) AS next_start_m
+        FROM corridor CROSS JOIN (VALUES (false), (true)) AS v(is_oncoming)
+    )
+),
+lap AS (
+    SELECT *, lag(to_m) OVER (PARTITION BY drive_id, ego_id, chain_id, lanelet_id, is_oncoming ORDER BY s_start_m) AS from_m
+    FROM lap_end
+),
+-- The laps by kilometre of level_start_m. Only what lies within about 1.2 km of the ego counts.
+lap_bucket AS (
+    SELECT
+        *, unnest(range(floor(greatest(from_m, s_start_m - 2200 - length_m) / 1000)::BIGINT, floor(least(to_m, s_start_m + length_m + 2200) / 1000)::BIGINT + 1)) AS bucket,
+        floor((s_start_m - 1200) / 1000) AS first_km, floor((s_start_m + length_m + 1200) / 1000) AS last_km
+    FROM lap
 ),
 chain_place AS MATERIALIZED (
     SELECT
-        b.pair_no, c.s_start_m + b.lane_s_m AS s_m, b.d_m, b.half_width_m, b.lane_heading_diff_rad, c.over_width_m, c.over_against, b.lanelet_id,
-        abs(c.s_start_m + b.lane_s_m - b.ego_s_m)
-        -- An object is beside the road only if it is nowhere on it: the legs of a hairpin lie in each other's strip.
-        + CASE WHEN abs(b.d_m) > b.half_width_m + coalesce(c.over_width_m, 2 * b.half_width_m) THEN 1e8 ELSE 0.0 END
-        -- An object that comes the other way is still ahead, even if the shorter way round a ring leads back.
-        + CASE WHEN abs(b.lane_heading_diff_rad) > pi() / 2 AND c.s_start_m + b.lane_s_m < b.ego_s_m - exact_clearance_m() THEN 1e6 ELSE 0.0 END AS off
+        b.pair_no, c.s_start_m + b.lane_s_m AS s_m, b.d_m, b.half_width_m, b.lane_heading_diff_rad, c.over_width_m, c.over_against, b.lanelet_id, b.ego_s_m, c.is_oncoming
     FROM object_on_strip b
-    JOIN corridor_bucket c ON c.drive_id = b.drive_id AND c.ego_id = b.ego_id AND c.lanelet_id = b.lanelet_id AND c.chain_id = b.chain_id
-        AND c.bucket = floor(b.ego_s_m / 1000)::BIGINT
+    JOIN lap_bucket c ON c.drive_id = b.drive_id AND c.ego_id = b.ego_id AND c.lanelet_id = b.lanelet_id AND c.chain_id = b.chain_id
+        AND c.is_oncoming = coalesce(abs(b.lane_heading_diff_rad) > pi() / 2, false) AND c.bucket = floor(b.level_start_m / 1000)::BIGINT
+    WHERE coalesce(b.level_start_m > c.from_m, true) AND coalesce(b.level_start_m <= c.to_m, true)
+        AND floor(b.ego_s_m / 1000) BETWEEN c.first_km AND c.last_km
 ),
--- Of several places on a corridor that meets itself, the one nearest to the ego along it counts: the one with the least `off`, the distance
--- with the penalties above. The station decides a tie.
-least_penalty AS MATERIALIZED (SELECT pair_no, min(off) AS off FROM chain_place GROUP BY pair_no),
-nearest_place AS MATERIALIZED (SELECT o.* FROM chain_place o JOIN least_penalty USING (pair_no, off)),
--- Ties are rare. They are looked for only if there are more rows than pairs.
-tied_pair AS (
-    SELECT pair_no FROM nearest_place WHERE (SELECT count(*) FROM nearest_place) > (SELECT count(*) FROM least_penalty) GROUP BY pair_no HAVING count(*) > 1
-),
-tie_winner AS (
+-- Of several places on a corridor that meets itself, the one nearest to the ego along it counts. The station decides a tie.
+pair_with_places AS MATERIALIZED (SELECT pair_no FROM chain_place GROUP BY pair_no HAVING count(*) > 1),
+nearest_place AS (
     SELECT
         pair_no,
         min({
+            'off': abs(s_m - ego_s_m)
+                -- An object is beside the road only if it is nowhere on it: the legs of a hairpin lie in each other's strip.
+                + CASE WHEN abs(d_m) > half_width_m + coalesce(over_width_m, 2 * half_width_m) THEN 1e8 ELSE 0.0 END
+                + CASE WHEN is_oncoming AND s_m < ego_s_m - exact_clearance_m() THEN 1e6 ELSE 0.0 END,
             's_m': s_m, 'd_m': d_m, 'half_width_m': half_width_m, 'lane_heading_diff_rad': lane_heading_diff_rad, 'over_width_m': over_width_m, 'over_against': over_against,
             'lanelet_id': lanelet_id
         }) AS p
-    FROM nearest_place SEMI JOIN tied_pair USING (pair_no)
+    FROM chain_place SEMI JOIN pair_with_places USING (pair_no)
     GROUP BY pair_no
 ),
 object_place AS (
-    SELECT * EXCLUDE (off) FROM nearest_place ANTI JOIN tied_pair USING (pair_no)
+    SELECT * EXCLUDE (ego_s_m, is_oncoming) FROM chain_place ANTI JOIN pair_with_places USING (pair_no)
     UNION ALL
-    SELECT pair_no, unnest(p) FROM tie_winner
+    SELECT pair_no, p.s_m, p.d_m, p.half_width_m, p.lane_heading_diff_rad, p.over_width_m, p.over_against, p.lanelet_id FROM nearest_place
 ),
 -- ---- levels: objects whose box lies in plan over the running lane or one lane's width beside it, if heights or the map can tell the level
 drive_with_overpass AS (SELECT DISTINCT g.drive_id FROM data_log g SEMI JOIN lane_apart l ON l.environment_id = g.environment_id),
 pair_over_road AS MATERIALIZED (
     SELECT a.pair_no, a.drive_id, a.ego_id, a.chain_id, a.object_id, a.t_sample_ns, a.z_m, p.s_m, p.lane_heading_diff_rad, p.lanelet_id
-    FROM pair_offset a
+    FROM (
+        SELECT * FROM pair_offset WHERE z_m IS NOT NULL
+        UNION ALL
+        SELECT * FROM pair_offset SEMI JOIN drive_with_overpass USING (drive_id) WHERE z_m IS NULL
+    ) a
     JOIN object_place p USING (pair_no)
-    LEFT JOIN drive_with_overpass r USING (drive_id)
-    WHERE (a.z_m IS NOT NULL OR r.drive_id IS NOT NULL)
-        AND abs(p.d_m) - coalesce(a.object_half_length_m * abs(sin(p.lane_heading_diff_rad)) + a.object_half_width_m * abs(cos(p.lane_heading_diff_rad)), 0.0) < p.half_width_m + greatest(coalesce(p.over_width_m, 0.0), 2 * p.half_width_m)
+    WHERE abs(p.d_m) - coalesce(a.object_half_length_m * abs(sin(p.lane_heading_diff_rad)) + a.object_half_width_m * abs(cos(p.lane_heading_diff_rad)), 0.0) < p.half_width_m + greatest(coalesce(p.over_width_m, 0.0), 2 * p.half_width_m)
 ),
 -- An ego that stands has several samples at one station: the lowest height is taken.
 ego_height AS (SELECT drive_id, ego_id, chain_id, s_m, min(z_m) AS z_m FROM ego_state WHERE s_m IS NOT NULL AND z_m IS NOT NULL GROUP BY ALL),
@@ -205,35 +225,40 @@ trailer_clearance AS (
 ),
 combined_clearance AS (
     SELECT
-        c.* EXCLUDE (clearance_m, clearance_is_bound),
-        CASE WHEN d.pair_no IS NULL THEN c.clearance_is_bound ELSE r.m > exact_clearance_m() END AS clearance_is_bound, r.m AS clearance_m
-    FROM pair_clearance c
-    LEFT JOIN trailer_clearance d USING (pair_no)
-    -- A contact of one of the two boxes is a contact. To rule out a contact, both clearances must be known.
-    CROSS JOIN LATERAL (
-        SELECT CASE
-            WHEN d.pair_no IS NULL OR c.clearance_m <= 0 THEN c.clearance_m
-            WHEN d.clearance_m <= 0 OR c.clearance_m + d.clearance_m IS NOT NULL THEN least(c.clearance_m, d.clearance_m)
-        END AS m
-    ) r
+        * EXCLUDE (clearance_m, clearance_is_bound, has_trailer, trailer_m),
+        CASE WHEN has_trailer THEN nearer_m > exact_clearance_m() ELSE clearance_is_bound END AS clearance_is_bound, nearer_m AS clearance_m
+    FROM (
+        SELECT
+            c.*, d.pair_no IS NOT NULL AS has_trailer, d.clearance_m AS trailer_m,
+            -- A contact of one of the two boxes is a contact. To rule out a contact, both clearances must be known.
+            CASE
+                WHEN d.pair_no IS NULL OR c.clearance_m <= 0 THEN c.clearance_m
+                WHEN d.clearance_m <= 0 OR c.clearance_m + d.clearance_m IS NOT NULL THEN least(c.clearance_m, d.clearance_m)
+            END AS nearer_m
+        FROM pair_clearance c
+        LEFT JOIN trailer_clearance d USING (pair_no)
+    )
+),
+pair_with_place AS (
+    SELECT
+        c.*, p.s_m, p.d_m, p.lane_heading_diff_rad, p.half_width_m, p.over_width_m, p.over_against,
+        -- If the object has no position on the corridor, its level matters only in a contact.
+        o.pair_no IS NOT NULL OR coalesce(p.pair_no IS NULL AND c.clearance_m <= 0 AND NOT same_level(c.z_m, c.ego_z_m), false) AS off_level
+    FROM combined_clearance c
+    LEFT JOIN pair_off_level o USING (pair_no)
+    -- The join is by keys alone: a condition of the left side would make it a nested loop.
+    LEFT JOIN object_place p ON p.pair_no = CASE WHEN o.pair_no IS NULL THEN c.pair_no END
 )
 SELECT
-    c.drive_id, c.ego_id, c.t_ns, c.object_id, c.actor_class, l.off_level,
-    CASE WHEN NOT l.off_level THEN c.x_m END AS x_m, CASE WHEN NOT l.off_level THEN c.y_m END AS y_m, c.yaw_rad, c.speed_mps, c.accel_mps2,
-    c.length_m, c.width_m, c.distance_m,
+    drive_id, ego_id, t_ns, object_id, actor_class, off_level,
+    CASE WHEN NOT off_level THEN x_m END AS x_m, CASE WHEN NOT off_level THEN y_m END AS y_m, yaw_rad, speed_mps, accel_mps2,
+    length_m, width_m, distance_m,
     -- On another level, the object is at least as far away as in plan.
-    CASE WHEN NOT l.off_level OR c.clearance_m > 0 THEN c.clearance_m END AS clearance_m,
-    CASE WHEN NOT l.off_level THEN c.clearance_is_bound WHEN c.clearance_m > 0 THEN true END AS clearance_is_bound,
-    p.s_m AS s_m, p.d_m AS d_m,
-    p.s_m + c.object_half_length_m * abs(cos(p.lane_heading_diff_rad)) + c.object_half_width_m * abs(sin(p.lane_heading_diff_rad)) AS front_s_m,
-    p.s_m - c.object_half_length_m * abs(cos(p.lane_heading_diff_rad)) - c.object_half_width_m * abs(sin(p.lane_heading_diff_rad)) AS rear_s_m,
-    c.object_half_length_m * abs(sin(p.lane_heading_diff_rad)) + c.object_half_width_m * abs(cos(p.lane_heading_diff_rad)) AS lat_half_m,
-    p.lane_heading_diff_rad AS heading_diff_rad,
-    p.half_width_m AS half_width_m, p.over_width_m AS over_width_m, p.over_against AS over_against
-FROM combined_clearance c
-LEFT JOIN pair_off_level o USING (pair_no)
-LEFT JOIN (FROM object_place ANTI JOIN pair_off_level USING (pair_no)) p USING (pair_no)
--- If the object has no position on the corridor, its level matters only in a contact.
-CROSS JOIN LATERAL (
-    SELECT o.pair_no IS NOT NULL OR coalesce(p.pair_no IS NULL AND c.clearance_m <= 0 AND NOT same_level(c.z_m, c.ego_z_m), false) AS off_level
-) l
+    CASE WHEN NOT off_level OR clearance_m > 0 THEN clearance_m END AS clearance_m,
+    CASE WHEN NOT off_level THEN clearance_is_bound WHEN clearance_m > 0 THEN true END AS clearance_is_bound,
+    s_m, d_m,
+    s_m + object_half_length_m * abs(cos(lane_heading_diff_rad)) + object_half_width_m * abs(sin(lane_heading_diff_rad)) AS front_s_m,
+    s_m - object_half_length_m * abs(cos(lane_heading_diff_rad)) - object_half_width_m * abs(sin(lane_heading_diff_rad)) AS rear_s_m,
+    object_half_length_m * abs(sin(lane_heading_diff_rad)) + object_half_width_m * abs(cos(lane_heading_diff_rad)) AS lat_half_m,
+    lane_heading_diff_rad AS heading_diff_rad, half_width_m, over_width_m, over_against
+FROM pair_with_place
