@@ -102,7 +102,9 @@ overtaker_cut_in AS (
     ) l ON l.drive_id = p.drive_id AND l.ego_id = p.ego_id AND l.object_id = p.object_id AND l.t_ns >= p.t_ns
     JOIN ahead a ON a.drive_id = l.drive_id AND a.ego_id = l.ego_id AND a.object_id = l.object_id AND a.t_ns = l.t_ns AND a.is_along
     ANTI JOIN ahead b ON b.drive_id = l.drive_id AND b.ego_id = l.ego_id AND b.object_id = l.object_id AND b.t_ns >= p.t_ns AND b.t_ns <= l.t_ns
-        AND (b.inside_m <= over_boundary_m() OR b.chain_id <> a.chain_id)
+        AND b.inside_m <= over_boundary_m()
+    ANTI JOIN ahead d ON d.drive_id = l.drive_id AND d.ego_id = l.ego_id AND d.object_id = l.object_id AND d.t_ns >= p.t_ns AND d.t_ns <= l.t_ns
+        AND d.chain_id <> a.chain_id
     ANTI JOIN seen_cut_in n ON n.drive_id = l.drive_id AND n.ego_id = l.ego_id AND n.object_id = l.object_id AND n.t_ns >= p.t_from_ns AND n.t_ns <= l.t_ns
     WHERE NOT p.ego_passes
     QUALIFY l.t_ns = min(l.t_ns) OVER (PARTITION BY p.drive_id, p.ego_id, p.occurrence)

@@ -6,13 +6,14 @@ WITH RECURSIVE carriageway AS (
     SELECT environment_id, road_id, section, along_road, count(*) AS n FROM lanelet WHERE drivable GROUP BY ALL
 ),
 lane_pair AS (
-    SELECT n.environment_id, n.lanelet_id AS exit_id, m.lanelet_id AS through_id, v.side
-    FROM lanelet n
-    CROSS JOIN (VALUES ('left'), ('right')) AS v(side)
-    JOIN lanelet m ON m.environment_id = n.environment_id AND m.drivable AND m.junction_id IS NULL
-        AND m.lanelet_id = CASE v.side WHEN 'right' THEN n.left_id ELSE n.right_id END
-        AND NOT CASE v.side WHEN 'right' THEN n.left_against ELSE n.right_against END
-    WHERE n.drivable AND n.junction_id IS NULL
+    SELECT n.environment_id, n.lanelet_id AS exit_id, m.lanelet_id AS through_id, n.side
+    FROM (
+        SELECT *, unnest([{'side': 'left', 'beside_id': right_id, 'against': right_against}, {'side': 'right', 'beside_id': left_id, 'against': left_against}], recursive := true)
+        FROM lanelet
+        WHERE drivable AND junction_id IS NULL
+    ) n
+    JOIN lanelet m ON m.environment_id = n.environment_id AND m.lanelet_id = n.beside_id AND m.drivable AND m.junction_id IS NULL
+    WHERE NOT n.against
 ),
 -- Both lanes are followed straight on, through the junction if there is one, until they are beside each other again or on roads of their
 -- own. e is the lanelet reached from the exit lane, m the one reached from the through lane.

@@ -129,11 +129,12 @@ grid_scale AS (
 ),
 -- A time slot is as long as the period from the earliest to the latest moment that counts. Such a period lies in two slots at most.
 path_cell AS MATERIALIZED (
-    SELECT c.*, meeting_cell(c.x_m, c.y_m, g.cell_m) + cell_key(x.i, y.i) AS cell, forced_slot(c.t_expected_ns + z.i * forced_apart_ns()) AS slot
+    SELECT
+        c.*, meeting_cell(c.x_m, c.y_m, g.cell_m) + cell_key(x.i, y.i) AS cell,
+        unnest(list_distinct([forced_slot(c.t_expected_ns - forced_apart_ns()), forced_slot(c.t_expected_ns + forced_apart_ns())])) AS slot
     FROM course c
     JOIN grid_scale g USING (drive_id)
-    CROSS JOIN (VALUES (-1), (0), (1)) AS x(i) CROSS JOIN (VALUES (-1), (0), (1)) AS y(i) CROSS JOIN (VALUES (-1), (1)) AS z(i)
-    WHERE z.i < 0 OR forced_slot(c.t_expected_ns - forced_apart_ns()) < forced_slot(c.t_expected_ns + forced_apart_ns())
+    CROSS JOIN (VALUES (-1), (0), (1)) AS x(i) CROSS JOIN (VALUES (-1), (0), (1)) AS y(i)
 ),
 box AS NOT MATERIALIZED (
     SELECT

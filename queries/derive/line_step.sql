@@ -49,12 +49,11 @@ least_over_line AS (
 ),
 step_over_line AS (
     SELECT
-        a.*, v.side, CASE v.side WHEN 1 THEN 'left' ELSE 'right' END AS side_name, CASE v.side WHEN 1 THEN left_out_m ELSE right_out_m END AS out_m,
-        CASE v.side WHEN 1 THEN left_in_m ELSE right_in_m END < -over_boundary_m() AS line_contact,
-        CASE v.side WHEN 1 THEN lane_index + 1 ELSE lane_index END AS line_no, (v.side = 1) = (v.side * d_m > half_width_m) AS left_of
-    FROM step_context a
-    CROSS JOIN (VALUES (1), (-1)) AS v(side)
-    WHERE NOT in_junction AND CASE v.side WHEN 1 THEN left_out_m ELSE right_out_m END > over_boundary_m()
+        *, CASE side WHEN 1 THEN 'left' ELSE 'right' END AS side_name, CASE side WHEN 1 THEN left_out_m ELSE right_out_m END AS out_m,
+        CASE side WHEN 1 THEN left_in_m ELSE right_in_m END < -over_boundary_m() AS line_contact,
+        CASE side WHEN 1 THEN lane_index + 1 ELSE lane_index END AS line_no, (side = 1) = (side * d_m > half_width_m) AS left_of
+    FROM (SELECT *, unnest([1, -1]) AS side FROM step_context WHERE NOT in_junction)
+    WHERE CASE side WHEN 1 THEN left_out_m ELSE right_out_m END > over_boundary_m()
 ),
 numbered_step AS (
     SELECT

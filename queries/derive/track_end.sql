@@ -21,12 +21,11 @@ placed_sample AS (
     WHERE p.x_m IS NOT NULL AND p.y_m IS NOT NULL
 ),
 track_edge AS (
-    SELECT drive_id, ego_id, object_id, t_ns, x_m, y_m, vx_mps, vy_mps, v.lost
-    FROM (SELECT *, lag(k) OVER w AS k_before, lead(k) OVER w AS k_after FROM placed_sample WINDOW w AS (PARTITION BY drive_id, ego_id, object_id ORDER BY k)) o
+    SELECT drive_id, ego_id, object_id, t_ns, x_m, y_m, vx_mps, vy_mps, lost
+    FROM (SELECT *, lag(k) OVER w AS k_before, lead(k) OVER w AS k_after, unnest([true, false]) AS lost FROM placed_sample WINDOW w AS (PARTITION BY drive_id, ego_id, object_id ORDER BY k)) o
     JOIN incomplete_track m USING (drive_id, ego_id, object_id)
-    CROSS JOIN (VALUES (true), (false)) AS v(lost)
     -- A track that begins or ends with the log is not lost.
-    WHERE CASE WHEN v.lost THEN k_after IS DISTINCT FROM k + 1 AND t_ns < t_end_limit_ns ELSE k_before IS DISTINCT FROM k - 1 AND t_ns > t_begin_limit_ns END
+    WHERE CASE WHEN lost THEN k_after IS DISTINCT FROM k + 1 AND t_ns < t_end_limit_ns ELSE k_before IS DISTINCT FROM k - 1 AND t_ns > t_begin_limit_ns END
 ),
 -- The place of the object soon after its track ends, or just before it begins, at its speed there.
 extrapolation AS (
