@@ -1,4 +1,5 @@
--- Plane geometry as arithmetic, so that no geometry object is built on the hot path.
+-- Plane geometry as arithmetic, for what a run asks of every row and for the depth of an overlap, which no ST_ function tells. Shapes for
+-- the ST_ functions are in shapes.sql; tests hold that both say the same.
 
 -- Angle wrapped to [-pi, pi).
 CREATE OR REPLACE MACRO wrap_rad(a) AS a - 2 * pi() * floor((a + pi()) / (2 * pi()));
@@ -80,7 +81,7 @@ CREATE OR REPLACE MACRO contact_ends(a, b) AS
 CREATE OR REPLACE MACRO first_touch(a, b) AS CASE WHEN contact_begins(a, b) <= contact_ends(a, b) THEN contact_begins(a, b) END;
 
 -- Exact distance between two boxes; if they overlap, minus the depth. Arguments as above; every one must be known. If two convex boxes are
--- apart, at least one of their two nearest points is a corner.
+-- apart, at least one of their two nearest points is a corner. (ST_Distance of two polygons cannot be used: see apart_m in shapes.sql.)
 CREATE OR REPLACE MACRO box_clearance(dx, dy, c, s, hla, hwa, hlb, hwb) AS
     CASE
         WHEN box_separation(dx, dy, c, s, hla, hwa, hlb, hwb) <= 0 THEN box_separation(dx, dy, c, s, hla, hwa, hlb, hwb)

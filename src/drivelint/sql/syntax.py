@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import duckdb
 
 from drivelint.errors import DriveLintError
-from drivelint.sql.store import create_macros
+from drivelint.sql.store import create_macros, open_as_is
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator, Mapping
@@ -145,7 +145,7 @@ def _nodes(tree: Any) -> Iterator[Node]:
 @cache
 def _aggregates() -> Names:
     """Return DuckDB's aggregates and the macros, its own and ours, that call one; those of spatial all end in `_agg`."""
-    with duckdb.connect() as con:
+    with open_as_is() as con:
         create_macros(con)
         rows = con.execute("SELECT function_name, function_type, macro_definition FROM duckdb_functions()").fetchall()
     found = {name for name, kind, _ in rows if kind == "aggregate"}

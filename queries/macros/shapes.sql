@@ -1,0 +1,20 @@
+-- Shapes as geometries, for candidates that cheap arithmetic left over and for what is written: all in the map's metres, NULL if an argument
+-- is NULL. `ST_Intersects(danger_space(...), actor_box(...))` reads as the rule does.
+
+-- The box of an actor: its centre, heading, length and width.
+CREATE OR REPLACE MACRO actor_box(x_m, y_m, yaw_rad, length_m, width_m) AS
+    ST_Affine(ST_MakeEnvelope(-length_m / 2, -width_m / 2, length_m / 2, width_m / 2), cos(yaw_rad), -sin(yaw_rad), sin(yaw_rad), cos(yaw_rad), x_m, y_m);
+
+-- The danger space of an actor on a straight way: as wide as the actor, from its front so far ahead as it takes to stop (Harper et al. 2021).
+-- Along a bend it follows the lane: see overtake_step, and spaces.parquet for its shape.
+CREATE OR REPLACE MACRO danger_space(x_m, y_m, yaw_rad, length_m, width_m, stopping_m) AS
+    ST_Affine(ST_MakeEnvelope(length_m / 2, -width_m / 2, length_m / 2 + stopping_m, width_m / 2), cos(yaw_rad), -sin(yaw_rad), sin(yaw_rad), cos(yaw_rad), x_m, y_m);
+
+-- The ground that a box covers on its way from one place to the next, if it goes straight on: the least convex shape around both.
+CREATE OR REPLACE MACRO swept_path(from_box, to_box) AS
+    CASE WHEN from_box IS NOT NULL AND to_box IS NOT NULL THEN ST_ConvexHull(ST_Collect([from_box, to_box])) END;
+
+-- The distance between two shapes, 0 if they touch. DuckDB 1.5.5 says 0 for the ST_Distance of two polygons that are apart, if a corner of
+-- one lies level with an edge of the other, and ST_DWithin follows it. The distance of their boundaries is right.
+CREATE OR REPLACE MACRO apart_m(a, b) AS
+    CASE WHEN ST_Intersects(a, b) THEN 0.0 ELSE ST_Distance(CASE WHEN ST_Dimension(a) = 2 THEN ST_Boundary(a) ELSE a END, CASE WHEN ST_Dimension(b) = 2 THEN ST_Boundary(b) ELSE b END) END;
