@@ -98,7 +98,7 @@ def test_a_pair_that_arithmetic_leaves_out_is_apart(found: list[tuple[Box, Box]]
 def test_the_danger_space_lies_ahead_of_the_box(box: Box, stopping: float, other: Box) -> None:
     """It shares the front with the box, and nothing else; a box further on is in it if it is less far than the stopping distance."""
     x, y, yaw, length, width = box
-    space = "danger_space(ax + {0}, ay + {0}, ayaw, al, aw, {1!r})".format(FAR, stopping)
+    space = f"danger_space(ax + {FAR}, ay + {FAR}, ayaw, al, aw, {stopping!r})"
     ahead = length / 2 + stopping + 1.0 + math.hypot(other[3], other[4]) / 2
     beyond = (x + ahead * math.cos(yaw), y + ahead * math.sin(yaw), *other[2:])
     near = (
